@@ -34,6 +34,11 @@ typedef struct contact_operator {
   /* x[m], at the known rows as given, of (A + added) x = b at the others; Ax[m]
    * = A x at all rows. */
   void (*solve)(void *ctx, const double *b, double *x, double *Ax);
+  /* Rows at[m] 1 of which response is wanted, until set_rows. */
+  void (*set_response)(void *ctx, const unsigned char *at);
+  /* Ax as of solve, known rows at 0, at the contact nodes of those rows alone:
+   * cheaper where they and the forces b[m] are few. */
+  void (*response)(void *ctx, const double *b, double *Ax);
 } contact_operator;
 
 #endif

@@ -695,6 +695,6 @@ condense_info condensed_info(const condensed *c) {
         f->L->xsize * sizeof(double) + f->L->ssize * sizeof(SuiteSparse_long);
   }
   if (c->A != NULL) info.bytes += (size_t)c->m * (size_t)c->m * sizeof(double);
-  if (c->sparse != NULL) info.bytes *= 2; /* the interior's too */
+  if (c->sparse != NULL) info.bytes += c->sparse->n_own * sizeof(double);
   return info;
 }

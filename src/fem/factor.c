@@ -71,24 +71,6 @@ typedef struct columns { /* lower triangle under construction */
   double *value;
 } columns;
 
-/* 1: entry (r, c) of block (i, j) is left out: a row or column is known. */
-static int is_left_out(const columns *w, int i, int r, int j, int c) {
-  const unsigned char *known = w->f->known;
-  const int a = contact_row(w->k, i, r), b = contact_row(w->k, j, c);
-  if (known == NULL || a == b) return 0;
-  return (a >= 0 && known[a]) || (b >= 0 && known[b]);
-}
-
-/* What is added to entry (r, c) of the diagonal block of node i, scaled. */
-static double addition(const columns *w, int i, int r, int c) {
-  const double *added = w->f->added;
-  const int a = contact_row(w->k, i, r), b = contact_row(w->k, i, c);
-  double sum = 0;
-  if (r == c) sum = body_factor_spring(w->k, w->f, (long)w->k->dim * i + c);
-  if (added == NULL || a < 0 || b < 0) return sum;
-  return sum + w->scale * added[w->k->rows * a + b % w->k->rows];
-}
-
 /* Entries of block p = (i, j) of the lower node graph: counted in start (row
  * NULL) or stored at start[column]++. */
 static void put_block(columns *w, size_t p, int i, int j) {
@@ -108,8 +90,8 @@ static void put_block(columns *w, size_t p, int i, int j) {
       const SuiteSparse_long at = w->start[col]++;
       w->row[at] = ni[r] < nj[c] ? nj[c] : ni[r];
       w->value[at] = w->scale * b[dim * c + r];
-      if (i == j) w->value[at] += addition(w, i, r, c);
-      if (is_left_out(w, i, r, j, c)) w->value[at] = 0;
+      if (i == j && r == c)
+        w->value[at] += body_factor_spring(w->k, w->f, (long)dim * i + c);
     }
   }
 }
@@ -173,6 +155,13 @@ static int node_of(const stiffness *k, const body_factor *f, const long *number,
   return f->node[0];
 }
 
+status body_factor_broke(body_factor *f, int node) {
+  f->bad_node = node;
+  RAISE(ERR_SINGULAR,
+        "stiffness not positive definite to rounding; contrasts of "
+        "stiffness, slivers, nu near 1/2 and weak supports lose digits");
+}
+
 static status factorise(const stiffness *k, const long *number,
                         cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
   const int done_ok = cholmod_l_factorize(a, f->L, cm);
@@ -181,10 +170,7 @@ static status factorise(const stiffness *k, const long *number,
           f->n, cm->lnz * sizeof(double));
   if (f->L->minor < (size_t)f->n) {
     const SuiteSparse_long *perm = f->L->Perm;
-    f->bad_node = node_of(k, f, number, perm[f->L->minor]);
-    RAISE(ERR_SINGULAR,
-          "stiffness not positive definite to rounding; contrasts of "
-          "stiffness, slivers, nu near 1/2 and weak supports lose digits");
+    return body_factor_broke(f, node_of(k, f, number, perm[f->L->minor]));
   }
   return OK;
 }
@@ -243,19 +229,6 @@ status body_factor_analyse(const stiffness *k, const long *number,
   status st = begin(k, number, cm, f, &a);
   cholmod_l_free_sparse(&a, cm);
   timer_leave(STAGE_ORDERING);
-  return st;
-}
-
-status body_factor_renew(const stiffness *k, const long *number,
-                         cholmod_common *cm, body_factor *f) {
-  status st = OK;
-  cholmod_sparse *a = NULL;
-  timer_enter(STAGE_FACTOR);
-  TRY(body_factor_matrix(k, f, number, cm, &a));
-  TRY(factorise(k, number, a, cm, f));
-done:
-  cholmod_l_free_sparse(&a, cm);
-  timer_leave(STAGE_FACTOR);
   return st;
 }
 
@@ -395,17 +368,6 @@ status body_factor_forward(body_factor *f, const double *load, double *f_c,
   multiply_cc(f, 0, in, out);
   for (long q = 0; q < f->nc; ++q) f_c[f->contact_id[q]] = back * out[q];
   return OK;
-}
-
-void body_factor_plain_solve(const body_factor *f, cholmod_factor *L, double *v,
-                             cholmod_common *cm) {
-  const double scale = ldexp(1, -f->exponent);
-  double *x = f->y->x;
-  for (long p = 0; p < f->n; ++p) x[p] = scale * v[f->unknown[p]];
-  /* They fail only for arguments that do not fit. */
-  cholmod_l_super_lsolve(L, f->y, f->work, cm);
-  cholmod_l_super_ltsolve(L, f->y, f->work, cm);
-  for (long p = 0; p < f->n; ++p) v[f->unknown[p]] = x[p];
 }
 
 double body_factor_least_pivot(const stiffness *k, const body_factor *f) {

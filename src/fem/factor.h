@@ -31,10 +31,6 @@ typedef struct body_factor {
   double flops;                /* of the factorisation */
   int whole;                   /* 1: contact unknowns anywhere in the order,
                                   nc = 0 */
-  const unsigned char *known;  /* [m] contact unknowns without coupling in the
-                                  factor, borrowed; NULL: none */
-  const double *added;         /* [rows*m] by contact node, a symmetric block
-                                  on its unknowns, N/m, borrowed; NULL: none */
   const unsigned char *pinned; /* [m] contact unknowns whose diagonal entry is
                                   doubled in the factor, borrowed; NULL: none */
   cholmod_factor *L;
@@ -45,8 +41,8 @@ typedef struct body_factor {
 /* Number the unknowns of f->node (set by the caller): sets n, nc and
  * number[dim*n_node], -1 where prescribed. */
 void body_factor_number(const stiffness *k, body_factor *f, long *number);
-/* Scaled lower triangle in elimination order, what f adds to it or leaves out
- * included; *out is new. ERR_MEMORY. */
+/* Scaled lower triangle in elimination order, f->pinned included; *out is new.
+ * ERR_MEMORY. */
 status body_factor_matrix(const stiffness *k, const body_factor *f,
                           const long *number, cholmod_common *cm,
                           cholmod_sparse **out);
@@ -54,9 +50,6 @@ status body_factor_matrix(const stiffness *k, const body_factor *f,
  * ERR_SINGULAR, ERR_MEMORY. */
 status body_factor_analyse(const stiffness *k, const long *number,
                            cholmod_common *cm, body_factor *f);
-/* Factor of the matrix as f says. ERR_SINGULAR: f->bad_node; ERR_MEMORY. */
-status body_factor_renew(const stiffness *k, const long *number,
-                         cholmod_common *cm, body_factor *f);
 /* Build the matrix, f->pinned included, and factor it. ERR_SINGULAR,
  * ERR_MEMORY. */
 status body_factor_build(const stiffness *k, const long *number,
@@ -64,6 +57,8 @@ status body_factor_build(const stiffness *k, const long *number,
 /* Spring of the unknown dim*node + component in the scaled matrix, 0: none. */
 double body_factor_spring(const stiffness *k, const body_factor *f,
                           long unknown);
+/* f->bad_node and ERR_SINGULAR: the factor ends at a node. */
+status body_factor_broke(body_factor *f, int node);
 void body_factor_release(body_factor *f, cholmod_common *cm);
 /* Put the body's part of the condensed stiffness, without the pins, into A[m*m]
  * (zero there). */
@@ -74,9 +69,6 @@ void symmetric_fill(size_t n, double *A);
 /* y = L^-1 P load, stored; the body's rows of f_c[m]. load[dim*n_node]. */
 status body_factor_forward(body_factor *f, const double *load, double *f_c,
                            cholmod_common *cm);
-/* v[dim*n_node], forces at the unknowns, becomes their displacements. */
-void body_factor_plain_solve(const body_factor *f, cholmod_factor *L, double *v,
-                             cholmod_common *cm);
 /* Least pivot over its diagonal entry: -, 1 for a diagonal matrix. */
 double body_factor_least_pivot(const stiffness *k, const body_factor *f);
 /* u[dim*n_node] at the body's unknowns from u_c[m] and the stored y. */

@@ -9,45 +9,240 @@
 
 static const double NO_PIVOT = 0x1p-42; /* -, of the diagonal: singular */
 
-static size_t all_unknowns(const stiffness *k) {
-  return (size_t)k->dim * (size_t)k->n_node;
+static int n_contact(const sparse_operator *o) {
+  return o->k->n_row / o->k->rows;
 }
 
-/* Block p of node j times part of x into y; size: magnitudes, or NULL. */
-static void add_block(const stiffness *k, size_t p, int j, const double *x,
-                      double *y, double *size) {
-  const size_t dim = (size_t)k->dim, a = dim * (size_t)k->row[p],
-               b = dim * (size_t)j;
-  const double *block = k->block + dim * dim * p;
-  for (size_t c = 0; c < dim; ++c)
-    for (size_t r = 0; r < dim; ++r) {
-      const double e = block[dim * c + r];
-      y[a + r] += e * x[b + c];
-      if (a != b) y[b + c] += e * x[a + r];
-      if (size == NULL) continue;
-      size[a + r] += fabs(e * x[b + c]);
-      if (a != b) size[b + c] += fabs(e * x[a + r]);
+static int contact_node(const sparse_operator *o, int id) {
+  return (int)o->unknown[id * o->k->rows] / o->k->dim;
+}
+
+/* Place in the factor of component c of a node, -1: prescribed. */
+static long place_of(const sparse_operator *o, int node, int c) {
+  return o->number[(size_t)o->k->dim * (size_t)node + (size_t)c];
+}
+
+/* ---- the factors ----------------------------------------------------------
+ */
+
+typedef struct filling {
+  const sparse_operator *o;
+  const row_state *rows;
+  double scale;
+} filling;
+
+/* Entry (r, c) of the block of nodes i and j, a row of which is in contact. */
+static double contact_entry(const filling *w, int i, int r, int j, int c,
+                            double entry) {
+  const sparse_operator *o = w->o;
+  const row_state *rows = w->rows;
+  const int a = contact_row(o->k, i, r), b = contact_row(o->k, j, c);
+  if (a != b && ((a >= 0 && rows->known[a]) || (b >= 0 && rows->known[b])))
+    return 0.0;
+  entry *= w->scale;
+  if (i != j || a < 0 || b < 0) return entry;
+  if (a == b && rows->springs)
+    entry += body_factor_spring(o->k, &o->f, (long)o->k->dim * i + r);
+  return entry + w->scale * rows->added[o->k->rows * a + b % o->k->rows];
+}
+
+/* What block p of nodes i >= j has in the columns first to last - 1. */
+static void put_block(const filling *w, size_t p, int j, const long *columns,
+                      const int *position, size_t lead, double *x) {
+  const stiffness *k = w->o->k;
+  const int dim = k->dim, i = k->row[p];
+  const int touches = k->first_row[i] >= 0 || k->first_row[j] >= 0;
+  const double *block = k->block + (size_t)(dim * dim) * p;
+  for (int c = 0; c < dim; ++c)
+    for (int r = i == j ? c : 0; r < dim; ++r) {
+      const long at = place_of(w->o, i, r), bt = place_of(w->o, j, c);
+      const long column = at < bt ? at : bt, row = at < bt ? bt : at;
+      const double entry = block[dim * c + r];
+      if (column < columns[0] || column >= columns[1]) continue;
+      x[lead * (size_t)(column - columns[0]) + (size_t)position[row]] =
+          touches ? contact_entry(w, i, r, j, c, entry) : w->scale * entry;
     }
 }
 
-/* y = K x, x zero at prescribed components; what y has there means nothing. */
-static void product(const stiffness *k, const double *x, double *y,
-                    double *size) {
-  memset(y, 0, all_unknowns(k) * sizeof *y);
-  if (size != NULL) memset(size, 0, all_unknowns(k) * sizeof *size);
-  for (int j = 0; j < k->n_node; ++j)
-    for (size_t p = k->start[j]; k->free[j] && p < k->start[j + 1]; ++p)
-      if (k->free[k->row[p]]) add_block(k, p, j, x, y, size);
+static void put_columns(void *ctx, int supernode, const int *position,
+                        double *x) {
+  const filling *w = ctx;
+  const supernodal *s = w->o->s;
+  const block_lists *list = &w->o->columns;
+  const size_t lead = (size_t)(s->start[supernode + 1] - s->start[supernode]);
+  for (size_t t = list->start[supernode]; t < list->start[supernode + 1]; ++t)
+    put_block(w, list->item[t].block, list->item[t].node, s->first + supernode,
+              position, lead, x);
 }
 
-/* v = inv(K_ii) v_i, zero elsewhere. */
-static void solve_interior(sparse_operator *o, double *v) {
-  for (int q = 0; q < o->k->n_row; ++q) v[o->unknown[q]] = 0.0;
-  body_factor_plain_solve(&o->f, o->inner, v, o->cm);
+/* The marked supernodes of a factor x for these rows. ERR_SINGULAR. */
+static status factor(sparse_operator *o, const row_state *rows, double **x) {
+  filling w = {o, rows, ldexp(1.0, -o->f.exponent)};
+  timer_enter(STAGE_FACTOR);
+  const int bad = supernodal_factor(o->s, o->part.mark, put_columns, &w, x);
+  timer_leave(STAGE_FACTOR);
+  if (bad < 0) return OK;
+  return body_factor_broke(&o->f, (int)(o->f.unknown[bad] / o->k->dim));
 }
 
-/* ---- what the contact problem sees ----------------------------------------
+/* Mark the supernodes with entries of a contact node. */
+static void mark_node(sparse_operator *o, int id, unsigned char *mark) {
+  const int a = contact_node(o, id), dim = o->k->dim;
+  for (size_t t = o->touched.start[id]; t < o->touched.start[id + 1]; ++t)
+    for (int r = 0; r < dim; ++r)
+      for (int c = 0; c < dim; ++c) {
+        const long at = place_of(o, a, r);
+        const long bt = place_of(o, o->touched.item[t].node, c);
+        if (at >= 0 && bt >= 0) mark[o->s->of[at < bt ? at : bt]] = 1;
+      }
+}
+
+/* 1: what the factor follows at a contact node is other than that. */
+static int differs(const sparse_operator *o, int id, const known_rows *rows,
+                   int springs) {
+  const size_t dim = (size_t)o->k->rows, first = dim * (size_t)id;
+  for (size_t q = first; q < first + dim; ++q) {
+    const int known = rows->known != NULL && rows->known[q];
+    if (o->rows.known[q] != known) return 1;
+    if (springs != o->rows.springs && o->pinned != NULL && o->pinned[q])
+      return 1;
+  }
+  for (size_t i = dim * first; i < dim * (first + dim); ++i)
+    if (o->rows.added[i] != (rows->added != NULL ? rows->added[i] : 0.0))
+      return 1;
+  return 0;
+}
+
+static void take_rows(sparse_operator *o, const known_rows *rows, int springs) {
+  const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
+  for (size_t q = 0; q < m; ++q)
+    o->rows.known[q] = rows->known != NULL && rows->known[q];
+  for (size_t i = 0; i < size; ++i)
+    o->rows.added[i] = rows->added != NULL ? rows->added[i] : 0.0;
+  o->rows.springs = springs;
+}
+
+/* Mark what is to be made again for the rows; returns 0 if nothing is. */
+static int mark_changes(sparse_operator *o, const known_rows *rows,
+                        int springs) {
+  unsigned char *mark = o->part.mark;
+  int any = o->state != FACTORED;
+  const size_t count = (size_t)o->s->count;
+  if (o->state == BROKEN)
+    memcpy(mark, o->part.touches, count);
+  else
+    memset(mark, o->state == NO_FACTOR, count);
+  for (int i = 0; o->state == FACTORED && i < n_contact(o); ++i) {
+    if (!differs(o, i, rows, springs)) continue;
+    mark_node(o, i, mark);
+    any = 1;
+  }
+  if (any) supernodal_close(o->s, mark);
+  return any;
+}
+
+/* The factor of the rows, springs or not, in o->x. ERR_SINGULAR. */
+static status refactor(sparse_operator *o, const known_rows *rows,
+                       int springs) {
+  if (!mark_changes(o, rows, springs)) return OK;
+  take_rows(o, rows, springs);
+  if (o->state == FACTORED) o->state = BROKEN;
+  PASS(factor(o, &o->rows, o->x));
+  o->state = FACTORED;
+  return OK;
+}
+
+status sparse_operator_all_rows(sparse_operator *o) {
+  return refactor(o, &(known_rows){0}, 1);
+}
+
+/* The factor of the interior, where contact unknowns have part in it; the rest
+ * is that of the factor of all rows. */
+static status factor_interior(sparse_operator *o) {
+  memcpy(o->part.mark, o->part.touches, (size_t)o->s->count);
+  return factor(o, &o->inside, o->inner);
+}
+
+/* ---- products and solves --------------------------------------------------
  */
+
+static void clear(const sparse_operator *o, double *v) {
+  const supernodal_part *part = &o->part.contact;
+  for (int t = 0; t < part->n; ++t) {
+    const long first = o->s->first[part->list[t]];
+    const long n = o->s->first[part->list[t] + 1] - first;
+    memset(v + first, 0, (size_t)n * sizeof *v);
+  }
+}
+
+/* Forces v at the places of the part become displacements of the factor x;
+ * there are forces in the supernodes of the contact only, or in all of them. */
+static void solve_part(const sparse_operator *o, double **x,
+                       const supernodal_part *forces,
+                       const supernodal_part *part, double *v) {
+  const double scale = ldexp(1.0, -o->f.exponent);
+  for (int t = 0; t < forces->n; ++t)
+    for (long p = o->s->first[forces->list[t]];
+         p < o->s->first[forces->list[t] + 1]; ++p)
+      v[p] *= scale;
+  supernodal_forward(o->s, x, forces, v);
+  supernodal_back(o->s, x, part, v);
+}
+
+static void solve_contact(const sparse_operator *o, double **x, double *v) {
+  solve_part(o, x, &o->part.contact, &o->part.contact, v);
+}
+
+/* w += part * K u of contact unknowns u[m], that of held ones left out. */
+static void spread(const sparse_operator *o, double part, const double *u,
+                   double *w) {
+  const stiffness *k = o->k;
+  const size_t dim = (size_t)k->dim;
+  for (int q = 0; q < k->n_row; ++q) {
+    const int id = q / k->rows, r = q % k->rows;
+    const double move = part * u[q];
+    if (o->held[q] || move == 0.0) continue;
+    const int a = contact_node(o, id);
+    for (size_t t = o->touched.start[id]; t < o->touched.start[id + 1]; ++t) {
+      const block_at *b = &o->touched.item[t];
+      const double *block = k->block + dim * dim * b->block;
+      const int of_row = k->row[b->block] == a;
+      for (int c = 0; c < k->dim; ++c) {
+        const long at = place_of(o, b->node, c);
+        if (at < 0) continue;
+        w[at] += move * block[of_row ? k->dim * c + r : k->dim * r + c];
+      }
+    }
+  }
+}
+
+/* Forces f[rows] of displacements v at a contact node, and sums of their
+ * magnitudes, or NULL. */
+static void gather_node(const sparse_operator *o, int id, const double *v,
+                        double *f, double *size) {
+  const stiffness *k = o->k;
+  const size_t dim = (size_t)k->dim;
+  const int a = contact_node(o, id);
+  for (int r = 0; r < k->rows; ++r) {
+    f[r] = 0.0;
+    if (size != NULL) size[r] = 0.0;
+  }
+  for (size_t t = o->touched.start[id]; t < o->touched.start[id + 1]; ++t) {
+    const block_at *b = &o->touched.item[t];
+    const double *block = k->block + dim * dim * b->block;
+    const int of_row = k->row[b->block] == a;
+    for (int c = 0; c < k->dim; ++c) {
+      const long at = place_of(o, b->node, c);
+      if (at < 0) continue;
+      for (int r = 0; r < k->rows; ++r) {
+        const double part =
+            v[at] * block[of_row ? k->dim * c + r : k->dim * r + c];
+        f[r] += part;
+        if (size != NULL) size[r] += fabs(part);
+      }
+    }
+  }
+}
 
 /* v -= Q Q'v: no force by a rigid motion, no motion of forces. */
 static void project(const sparse_operator *o, double *v) {
@@ -61,73 +256,49 @@ static void project(const sparse_operator *o, double *v) {
   }
 }
 
-/* o->v: u at the contact unknowns, Au[m] its projection, and the interior that
- * follows. */
-static void follow(sparse_operator *o, const double *u, double *Au) {
-  const int m = o->k->n_row;
-  memcpy(Au, u, (size_t)m * sizeof *Au);
-  project(o, Au);
-  memset(o->v, 0, all_unknowns(o->k) * sizeof *o->v);
-  for (int q = 0; q < m; ++q)
-    if (!o->held[q]) o->v[o->unknown[q]] = Au[q];
-  product(o->k, o->v, o->w, NULL);
-  solve_interior(o, o->w);
-  for (long p = 0; p < o->f.n; ++p)
-    o->v[o->f.unknown[p]] -= o->w[o->f.unknown[p]];
-}
-
-/* Forces o->w at the contact unknowns. */
-static void gather(sparse_operator *o, const double *u, double *Au) {
+/* Au[m] from o->v; held unknowns have u and their own stiffness. */
+static void gather(const sparse_operator *o, const double *u, double *Au,
+                   double *size) {
+  const int rows = o->k->rows;
+  for (int i = 0; i < n_contact(o); ++i)
+    gather_node(o, i, o->v, Au + rows * i,
+                size != NULL ? size + rows * i : NULL);
   for (int q = 0; q < o->k->n_row; ++q)
-    Au[q] = o->held[q] ? o->diagonal[q] * u[q] : o->w[o->unknown[q]];
+    if (o->held[q]) Au[q] = o->diagonal[q] * u[q];
   project(o, Au);
 }
 
-static void apply(void *ctx, const double *u, double *Au) {
-  sparse_operator *o = ctx;
-  follow(o, u, Au);
-  product(o->k, o->v, o->w, NULL);
-  gather(o, u, Au);
+/* The contact unknowns have u[m]: o->v at them and next to them. */
+static void move_contact(sparse_operator *o, const double *u) {
+  clear(o, o->v);
+  spread(o, -1.0, u, o->v);
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) o->v[o->number[o->unknown[q]]] = 0.0;
+  solve_contact(o, o->inner, o->v);
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) o->v[o->number[o->unknown[q]]] = u[q];
 }
 
 static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
   sparse_operator *o = ctx;
-  follow(o, u, Au);
-  product(o->k, o->v, o->w, o->sizes);
-  gather(o, u, Au);
-  for (int q = 0; q < o->k->n_row; ++q)
-    size[q] = o->held[q] ? fabs(Au[q]) : o->sizes[o->unknown[q]];
+  const int m = o->k->n_row;
+  memcpy(Au, u, (size_t)m * sizeof *Au);
+  project(o, Au);
+  move_contact(o, Au);
+  gather(o, u, Au, size);
+  for (int q = 0; size != NULL && q < m; ++q)
+    if (o->held[q]) size[q] = fabs(Au[q]);
 }
 
-/* 1: the factor is of these rows. */
-static int is_ready(const sparse_operator *o, const known_rows *rows) {
-  const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
-  if (o->state != OF_ROWS || memcmp(o->known, rows->known, m) != 0) return 0;
-  for (size_t i = 0; i < size; ++i)
-    if (o->added[i] != (rows->added != NULL ? rows->added[i] : 0.0)) return 0;
-  return 1;
-}
-
-static void take_rows(sparse_operator *o, const known_rows *rows) {
-  const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
-  memcpy(o->known, rows->known, m);
-  if (rows->added != NULL)
-    memcpy(o->added, rows->added, size * sizeof *o->added);
-  else
-    memset(o->added, 0, size * sizeof *o->added);
-  o->f.known = o->known;
-  o->f.added = o->added;
-  o->f.pinned = NULL;
+static void apply(void *ctx, const double *u, double *Au) {
+  apply_sizes(ctx, u, Au, NULL);
 }
 
 static status set_rows(void *ctx, const known_rows *rows, int *singular) {
   sparse_operator *o = ctx;
   *singular = 0;
   if (rows->known == NULL) return sparse_operator_all_rows(o);
-  if (is_ready(o, rows)) return OK;
-  take_rows(o, rows);
-  o->state = NO_FACTOR;
-  status st = body_factor_renew(o->k, o->number, o->cm, &o->f);
+  const status st = refactor(o, rows, 0);
   if (st == ERR_SINGULAR) {
     status_clear();
     *singular = 1;
@@ -136,85 +307,105 @@ static status set_rows(void *ctx, const known_rows *rows, int *singular) {
   PASS(st);
   *singular =
       o->rigid->n_set > 0 && !(body_factor_least_pivot(o->k, &o->f) > NO_PIVOT);
-  if (!*singular) o->state = OF_ROWS;
   return OK;
-}
-
-static int is_known(const sparse_operator *o, int row) {
-  return o->state == OF_ROWS && o->known[row];
 }
 
 static void solve(void *ctx, const double *b, double *x, double *Ax) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row;
-  int moved = 0;
-  memset(o->v, 0, all_unknowns(o->k) * sizeof *o->v);
+  for (int q = 0; q < m; ++q)
+    Ax[q] = o->rows.known[q] && !o->held[q] ? x[q] : 0.0;
+  clear(o, o->v);
+  spread(o, -1.0, Ax, o->v);
   for (int q = 0; q < m; ++q) {
-    if (!is_known(o, q) || o->held[q]) continue;
-    o->v[o->unknown[q]] = x[q];
-    moved |= x[q] != 0.0;
+    if (o->held[q]) continue;
+    double *v = o->v + o->number[o->unknown[q]];
+    *v = o->rows.known[q] ? 0.0 : *v + b[q];
   }
-  if (moved)
-    product(o->k, o->v, o->w, NULL);
-  else
-    memset(o->w, 0, all_unknowns(o->k) * sizeof *o->w);
-  for (long p = 0; p < o->f.n; ++p)
-    o->w[o->f.unknown[p]] = -o->w[o->f.unknown[p]];
+  solve_contact(o, o->x, o->v);
+  for (int q = 0; q < m; ++q) {
+    if (o->held[q]) continue;
+    double *v = o->v + o->number[o->unknown[q]];
+    if (o->rows.known[q])
+      *v = x[q];
+    else
+      x[q] = *v;
+  }
+  gather(o, x, Ax, NULL);
+}
+
+static void set_response(void *ctx, const unsigned char *at) {
+  sparse_operator *o = ctx;
+  const int rows = o->k->rows;
+  o->part.n = 0;
+  memset(o->part.mark, 0, (size_t)o->s->count);
+  for (int i = 0; i < n_contact(o); ++i) {
+    const int a = contact_node(o, i);
+    if (memchr(at + rows * i, 1, (size_t)rows) == NULL) continue;
+    o->part.node[o->part.n++] = i;
+    for (size_t t = o->touched.start[i]; t < o->touched.start[i + 1]; ++t)
+      for (int c = 0; c < o->k->dim; ++c) {
+        const long next = place_of(o, o->touched.item[t].node, c);
+        const long own = place_of(o, a, c);
+        if (next >= 0) o->part.mark[o->s->of[next]] = 1;
+        if (own >= 0) o->part.mark[o->s->of[own]] = 1;
+      }
+  }
+  supernodal_close(o->s, o->part.mark);
+  supernodal_list(o->s, o->part.mark, &o->part.response);
+}
+
+static void response(void *ctx, const double *b, double *Ax) {
+  sparse_operator *o = ctx;
+  const int m = o->k->n_row, rows = o->k->rows;
+  clear(o, o->v);
   for (int q = 0; q < m; ++q)
-    if (!o->held[q])
-      o->w[o->unknown[q]] = is_known(o, q) ? 0.0 : b[q] + o->w[o->unknown[q]];
-  body_factor_plain_solve(&o->f, o->f.L, o->w, o->cm);
-  for (long p = 0; p < o->f.n; ++p)
-    o->v[o->f.unknown[p]] += o->w[o->f.unknown[p]];
-  for (int q = 0; q < m; ++q)
-    if (!o->held[q]) x[q] = o->v[o->unknown[q]];
-  product(o->k, o->v, o->w, NULL);
-  gather(o, x, Ax);
+    if (b[q] != 0.0 && !o->held[q] && !o->rows.known[q])
+      o->v[o->number[o->unknown[q]]] = b[q];
+  solve_part(o, o->x, &o->part.contact, &o->part.response, o->v);
+  for (int t = 0; t < o->part.n; ++t)
+    gather_node(o, o->part.node[t], o->v, Ax + rows * o->part.node[t], NULL);
 }
 
 /* ---- loads and recovery ---------------------------------------------------
  */
 
+/* Forces v by place of load[dim*n_node] in the interior. */
+static void take_load(const sparse_operator *o, const double *load, double *v) {
+  for (long p = 0; p < o->f.n; ++p) v[p] = load[o->f.unknown[p]];
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) v[o->number[o->unknown[q]]] = 0.0;
+}
+
 void sparse_operator_forward(sparse_operator *o, const double *load,
                              double *f_c) {
-  memcpy(o->y, load, all_unknowns(o->k) * sizeof *o->y);
-  solve_interior(o, o->y);
-  for (int i = 0; i < o->k->n_node; ++i)
-    for (int c = 0; c < o->k->dim; ++c)
-      if (!(o->k->free[i] >> c & 1)) o->y[o->k->dim * i + c] = 0.0;
-  product(o->k, o->y, o->w, NULL);
-  for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) f_c[q] = load[o->unknown[q]] - o->w[o->unknown[q]];
+  const int rows = o->k->rows;
+  take_load(o, load, o->y);
+  solve_part(o, o->inner, &o->part.all, &o->part.all, o->y);
+  for (int i = 0; i < n_contact(o); ++i) {
+    double f[3];
+    gather_node(o, i, o->y, f, NULL);
+    for (int q = rows * i; q < rows * (i + 1); ++q)
+      if (!o->held[q]) f_c[q] = load[o->unknown[q]] - f[q - rows * i];
+  }
 }
 
 void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
-  memset(o->v, 0, all_unknowns(o->k) * sizeof *o->v);
+  memset(o->v, 0, (size_t)o->f.n * sizeof *o->v);
+  spread(o, -1.0, u_c, o->v);
   for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) o->v[o->unknown[q]] = u_c[q];
-  product(o->k, o->v, o->w, NULL);
-  solve_interior(o, o->w);
-  for (long p = 0; p < o->f.n; ++p) {
-    const long id = o->f.unknown[p];
-    u[id] = o->y[id] + o->v[id] - o->w[id];
-  }
+    if (!o->held[q]) o->v[o->number[o->unknown[q]]] = 0.0;
+  solve_part(o, o->inner, &o->part.contact, &o->part.all, o->v);
+  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] = o->y[p] + o->v[p];
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) u[o->unknown[q]] = u_c[q];
 }
 
 void sparse_operator_interior(sparse_operator *o, const double *load,
                               double *u) {
-  memcpy(o->w, load, all_unknowns(o->k) * sizeof *o->w);
-  solve_interior(o, o->w);
-  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->w[o->f.unknown[p]];
-}
-
-status sparse_operator_all_rows(sparse_operator *o) {
-  if (o->state == OF_ALL) return OK;
-  o->state = NO_FACTOR;
-  o->f.known = NULL;
-  o->f.added = NULL;
-  o->f.pinned = o->pinned;
-  PASS(body_factor_renew(o->k, o->number, o->cm, &o->f));
-  o->state = OF_ALL;
-  return OK;
+  take_load(o, load, o->w);
+  solve_part(o, o->inner, &o->part.all, &o->part.all, o->w);
+  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->w[p];
 }
 
 /* ---- building --------------------------------------------------------------
@@ -267,35 +458,21 @@ static status order_whole(sparse_operator *o, const double *x,
   return OK;
 }
 
-/* The factor of the interior; f.L is without a factor afterwards if st. */
-static status factor_interior(sparse_operator *o) {
-  cholmod_factor *own = o->f.L;
-  memset(o->all, 1, (size_t)o->k->n_row);
-  o->f.known = o->all;
-  o->f.added = NULL;
-  o->f.pinned = NULL;
-  o->f.L = o->inner;
-  status st = body_factor_renew(o->k, o->number, o->cm, &o->f);
-  o->inner = o->f.L;
-  o->f.L = own;
-  return st;
-}
-
-static status new_arrays(sparse_operator *o) {
-  const size_t m = (size_t)o->k->n_row, n = all_unknowns(o->k);
-  PASS_NEW(o->number, n);
+/* Arrays by contact row, before there is a factor. */
+static status new_rows(sparse_operator *o) {
+  const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
+  PASS_NEW(o->number, (size_t)o->k->dim * (size_t)o->k->n_node);
   PASS_NEW(o->unknown, m);
-  PASS_NEW(o->all, m);
   PASS_NEW(o->held, m);
-  PASS_NEW(o->known, m);
-  PASS_NEW(o->added, (size_t)o->k->rows * m);
-  PASS_NEW(o->v, n);
-  PASS_NEW(o->w, n);
-  PASS_NEW(o->sizes, n);
-  PASS_NEW(o->y, n);
+  PASS_NEW(o->rows.known, m);
+  PASS_NEW(o->rows.added, size);
+  PASS_NEW(o->inside.known, m);
+  PASS_NEW(o->inside.added, size);
+  memset(o->inside.known, 1, m);
   PASS_NEW(o->diagonal, m);
   PASS_NEW(o->room, 2 * m);
-  PASS_NEW(o->body, m);
+  PASS_NEW(o->body, m / (size_t)o->k->rows);
+  PASS_NEW(o->part.node, m / (size_t)o->k->rows);
   return OK;
 }
 
@@ -337,14 +514,114 @@ static void renumber(sparse_operator *o) {
   o->f.L->ordering = CHOLMOD_NATURAL;
 }
 
+/* Calls `take` for each block that has unknowns at both nodes. */
+typedef void block_taker(sparse_operator *o, size_t p, int j);
+static void each_block(sparse_operator *o, block_taker *take) {
+  const stiffness *k = o->k;
+  for (int j = 0; j < k->n_node; ++j)
+    for (size_t p = k->start[j]; k->free[j] && p < k->start[j + 1]; ++p)
+      if (k->free[k->row[p]]) take(o, p, j);
+}
+
+/* Each item counted in start, or stored at start[of]++. */
+static void list_item(block_lists *list, int of, size_t p, int node) {
+  const size_t at = list->start[of]++;
+  if (list->item != NULL) list->item[at] = (block_at){p, node};
+}
+
+/* By the supernodes of the columns of its entries. */
+static void list_by_column(sparse_operator *o, size_t p, int j) {
+  const int dim = o->k->dim, i = o->k->row[p];
+  int seen[9], n = 0;
+  for (int e = 0; e < dim * dim; ++e) {
+    const long at = place_of(o, i, e % dim), bt = place_of(o, j, e / dim);
+    if (at < 0 || bt < 0) continue;
+    const int of = o->s->of[at < bt ? at : bt];
+    int met = 0;
+    for (int t = 0; t < n; ++t) met |= seen[t] == of;
+    if (met) continue;
+    seen[n++] = of;
+    list_item(&o->columns, of, p, j);
+  }
+}
+
+/* By its contact nodes. */
+static void list_by_contact(sparse_operator *o, size_t p, int j) {
+  const stiffness *k = o->k;
+  const int i = k->row[p];
+  if (k->first_row[i] >= 0)
+    list_item(&o->touched, k->first_row[i] / k->rows, p, j);
+  if (i != j && k->first_row[j] >= 0)
+    list_item(&o->touched, k->first_row[j] / k->rows, p, i);
+}
+
+static status list_blocks(sparse_operator *o, int n, block_taker *take,
+                          block_lists *list) {
+  size_t sum = 0;
+  PASS_NEW(list->start, n + 1);
+  each_block(o, take);
+  for (int q = 0; q <= n; ++q) {
+    const size_t own = list->start[q];
+    list->start[q] = sum;
+    sum += own;
+  }
+  PASS_NEW(list->item, sum);
+  each_block(o, take);
+  memmove(list->start + 1, list->start, (size_t)n * sizeof *list->start);
+  list->start[0] = 0;
+  return OK;
+}
+
+/* The supernodes in which contact unknowns have part. */
+static status divide(sparse_operator *o) {
+  const int count = o->s->count;
+  PASS_NEW(o->part.mark, count);
+  PASS_NEW(o->part.touches, count);
+  PASS_NEW(o->part.all.list, count);
+  PASS_NEW(o->part.contact.list, count);
+  PASS_NEW(o->part.response.list, count);
+  memset(o->part.mark, 1, (size_t)count);
+  supernodal_list(o->s, o->part.mark, &o->part.all);
+  for (int i = 0; i < n_contact(o); ++i) mark_node(o, i, o->part.touches);
+  supernodal_close(o->s, o->part.touches);
+  supernodal_list(o->s, o->part.touches, &o->part.contact);
+  return OK;
+}
+
+/* The columns of both factors. */
+static status new_columns(sparse_operator *o) {
+  const int count = o->s->count;
+  const SuiteSparse_long *px = o->f.L->px;
+  if (!cholmod_l_change_factor(CHOLMOD_REAL, 1, 1, 1, 1, o->f.L, o->cm))
+    RAISE(ERR_MEMORY, "memory exhausted: factor of %ld unknowns", o->f.n);
+  PASS_NEW(o->x, count);
+  PASS_NEW(o->inner, count);
+  for (int q = 0; q < count; ++q)
+    if (o->part.touches[q]) o->n_own += supernodal_entries(o->s, q);
+  PASS_NEW(o->own, o->n_own);
+  double *at = o->own;
+  for (int q = 0; q < count; ++q) {
+    o->x[q] = o->inner[q] = (double *)o->f.L->x + px[q];
+    if (!o->part.touches[q]) continue;
+    o->inner[q] = at;
+    at += supernodal_entries(o->s, q);
+  }
+  return OK;
+}
+
 static status factor_both(sparse_operator *o) {
   o->f.pinned = o->pinned;
   body_factor_number(o->k, &o->f, o->number);
   PASS(body_factor_analyse(o->k, o->number, o->cm, &o->f));
   renumber(o);
-  o->inner = cholmod_l_copy_factor(o->f.L, o->cm);
-  if (o->inner == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: factor of %ld unknowns", o->f.n);
+  PASS(supernodal_new(o->f.L, &o->s));
+  PASS(list_blocks(o, o->s->count, list_by_column, &o->columns));
+  PASS(list_blocks(o, n_contact(o), list_by_contact, &o->touched));
+  PASS(divide(o));
+  PASS_NEW(o->v, o->f.n);
+  PASS_NEW(o->w, o->f.n);
+  PASS_NEW(o->y, o->f.n);
+  PASS(new_columns(o));
   PASS(sparse_operator_all_rows(o));
   return factor_interior(o);
 }
@@ -360,7 +637,7 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
   o->rigid = d->rigid;
   o->cm = d->cm;
   o->pinned = d->pinned;
-  TRY(new_arrays(o));
+  TRY(new_rows(o));
   memcpy(o->held, d->held, (size_t)k->n_row);
   memcpy(o->body, d->body, (size_t)(k->n_row / k->rows) * sizeof *o->body);
   number_rows(o);
@@ -377,15 +654,21 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
                                .apply = apply,
                                .apply_sizes = apply_sizes,
                                .set_rows = set_rows,
-                               .solve = solve};
+                               .solve = solve,
+                               .set_response = set_response,
+                               .response = response};
 done:
   return st;
 }
 
 void sparse_operator_free(sparse_operator *o) {
   if (o == NULL) return;
-  cholmod_l_free_factor(&o->inner, o->cm);
+  supernodal_free(o->s);
   body_factor_release(&o->f, o->cm);
-  RELEASE(o->number, o->unknown, o->all, o->held, o->known, o->added, o->v,
-          o->w, o->sizes, o->y, o->diagonal, o->room, o->body, o);
+  RELEASE(o->columns.start, o->columns.item, o->touched.start, o->touched.item,
+          o->part.all.list, o->part.contact.list, o->part.response.list,
+          o->part.mark, o->part.touches, o->part.node, o->x, o->inner, o->own,
+          o->rows.known, o->rows.added, o->inside.known, o->inside.added);
+  RELEASE(o->number, o->unknown, o->held, o->v, o->w, o->y, o->diagonal,
+          o->room, o->body, o);
 }

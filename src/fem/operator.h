@@ -10,8 +10,27 @@
 #include "contact/operator.h"
 #include "fem/factor.h"
 #include "fem/rigid.h"
+#include "fem/supernodal/supernodal.h"
 
-typedef enum { NO_FACTOR, OF_ALL, OF_ROWS } rows_factored;
+/* A block of the stiffness and the other node of it, or its column. */
+typedef struct block_at {
+  size_t block;
+  int node;
+} block_at;
+
+/* Blocks by what they belong to. */
+typedef struct block_lists {
+  size_t *start; /* [n+1] */
+  block_at *item;
+} block_lists;
+
+/* What a factor follows: the rows that are known, what is added to others, and
+ * whether there are springs. */
+typedef struct row_state {
+  unsigned char *known; /* [m] */
+  double *added;        /* [rows*m] N/m */
+  int springs;
+} row_state;
 
 typedef struct sparse_operator {
   contact_operator seen; /* what the contact problem has of it */
@@ -20,19 +39,32 @@ typedef struct sparse_operator {
   cholmod_common *cm;
   const unsigned char *pinned; /* [m] with springs where no row is known */
   body_factor f;               /* its L: of the rows known at the time */
-  cholmod_factor *inner;
-  long *number;          /* [dim*n_node] of the unknowns, -1 */
-  size_t *unknown;       /* [m] dim*node + component of a row */
-  unsigned char *all;    /* [m] 1 */
-  unsigned char *held;   /* [m] 1: prescribed, no unknown */
-  unsigned char *known;  /* [m] of f.L */
-  double *added;         /* [rows*m] of f.L */
-  rows_factored state;   /* of f.L: all rows, with springs, or those known */
-  double *v, *w, *sizes; /* [dim*n_node] */
-  double *diagonal;      /* [m] N/m, what seen has */
-  double *y;             /* [dim*n_node] inv(K_ii) of the load last condensed */
-  double *room;          /* [2*m] likewise */
-  int *body;             /* [m/rows] likewise */
+  supernodal *s;
+  block_lists columns; /* of a supernode: with their column */
+  block_lists touched; /* of a contact node: with the other node */
+  struct {
+    supernodal_part all, contact, response; /* of the contact and above */
+    unsigned char *mark;                    /* [supernodes] workspace */
+    unsigned char *touches;                 /* [supernodes] 1: in contact */
+    int *node; /* [n] contact nodes of the response, n: their number */
+    int n;
+  } part;
+  double **x;       /* [supernodes] columns of f.L */
+  double **inner;   /* [supernodes] of the interior's: shared with x where no
+                       contact unknown has part in them */
+  double *own;      /* those that are not */
+  size_t n_own;     /* entries of them */
+  row_state rows;   /* of f.L */
+  row_state inside; /* of inner: all known */
+  enum { NO_FACTOR, BROKEN, FACTORED } state; /* BROKEN: but for the interior */
+  long *number;        /* [dim*n_node] place in the factor, -1 */
+  size_t *unknown;     /* [m] dim*node + component of a row */
+  unsigned char *held; /* [m] 1: prescribed, no unknown */
+  double *v, *w;       /* [unknowns] by place */
+  double *diagonal;    /* [m] N/m, what seen has */
+  double *y;           /* [unknowns] inv(K_ii) of the load last condensed */
+  double *room;        /* [2*m] what seen has, as the next */
+  int *body;           /* [m/rows] */
 } sparse_operator;
 
 /* What it is made of, all borrowed until sparse_operator_free but held and

@@ -232,6 +232,79 @@ START_TEST(solves_under_known_rows_are_those_of_the_entries) {
 }
 END_TEST
 
+/* Normals of some nodes known, and the tangents of others. */
+static void some_rows(const both *b, int every, unsigned char *known) {
+  for (int i = 0; i < b->m; ++i)
+    known[i] = (i / b->dim + i % b->dim) % every == 0 || i / b->dim == 2 ||
+               is_held(b, i);
+}
+
+/* A factor of which a part was made again, from one without known rows or with
+ * others, and one made at once. */
+START_TEST(factors_made_in_part_have_the_bits_of_whole_ones) {
+  both a = both_new(_i), b = both_new(_i);
+  const size_t m = (size_t)a.m, dim = (size_t)a.dim;
+  double *rhs = numbers(m, 7), *added = get(dim * m), *x[2], *Ax[2];
+  unsigned char *known = memory_new(m, 1);
+  const known_rows rows = {known, added};
+  int singular;
+  for (int every = 4; every > 1; --every) {
+    some_rows(&a, every, known);
+    memset(added, 0, dim * m * sizeof *added);
+    if (every % 2 == 0) add_turning(&a, known, added);
+    ck_assert_int_eq(a.op->set_rows(a.op->ctx, &rows, &singular), OK);
+  }
+  ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
+  both *of[2] = {&a, &b};
+  for (int k = 0; k < 2; ++k) {
+    x[k] = get(m);
+    Ax[k] = get(m);
+    of[k]->op->solve(of[k]->op->ctx, rhs, x[k], Ax[k]);
+  }
+  ck_assert(memcmp(x[0], x[1], m * sizeof *rhs) == 0);
+  ck_assert(memcmp(Ax[0], Ax[1], m * sizeof *rhs) == 0);
+  for (int k = 0; k < 2; ++k) {
+    free(x[k]);
+    free(Ax[k]);
+    both_free(of[k]);
+  }
+  free(rhs);
+  free(added);
+  memory_free(known);
+}
+END_TEST
+
+/* Of some nodes, to forces at others. */
+START_TEST(responses_are_those_of_solves) {
+  both b = both_new(_i);
+  const size_t m = (size_t)b.m;
+  double *rhs = numbers(m, 7), *x = get(m), *Ax = get(m), *part = get(m);
+  unsigned char *known = memory_new(m, 1), *at = memory_new(m, 1);
+  const known_rows rows = {known, NULL};
+  int singular, all = 0;
+  some_rows(&b, 3, known);
+  ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
+  for (size_t i = 0; i < m; ++i) {
+    at[i] = known[i] && !is_held(&b, (int)i) && i > m / 2;
+    all += at[i];
+    if (known[i] || i < m / 3) rhs[i] = 0;
+  }
+  ck_assert_int_gt(all, 0);
+  b.op->set_response(b.op->ctx, at);
+  b.op->response(b.op->ctx, rhs, part);
+  b.op->solve(b.op->ctx, rhs, x, Ax);
+  for (size_t i = 0; i < m; ++i)
+    if (at[i]) ck_assert_double_eq_tol(part[i], Ax[i], 1e-12);
+  free(rhs);
+  free(x);
+  free(Ax);
+  free(part);
+  memory_free(known);
+  memory_free(at);
+  both_free(&b);
+}
+END_TEST
+
 /* With too few rows known the body may move: said, not solved. */
 START_TEST(rows_that_leave_a_motion_are_singular) {
   both b = both_new(FLOATING);
@@ -241,6 +314,12 @@ START_TEST(rows_that_leave_a_motion_are_singular) {
   for (int i = 0; i < b.m; i += 3) known[i] = 1; /* all normals */
   ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
   ck_assert_int_eq(singular, 1);
+  for (int i = 1; i < b.m; i += 3) { /* and a node: turns about it */
+    known[i] = known[i + 1] = 1;
+    ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
+    ck_assert_int_eq(singular, 1);
+    known[i] = known[i + 1] = 0;
+  }
   known[1] = known[2] = known[b.m - 1] = known[b.m - 2] = 1;
   ck_assert_int_eq(b.op->set_rows(b.op->ctx, &rows, &singular), OK);
   ck_assert_int_eq(singular, 0);
@@ -394,6 +473,9 @@ int main(void) {
   tcase_add_loop_test(tests, products_have_the_entries, 0, SCENES);
   tcase_add_loop_test(tests, solves_under_known_rows_are_those_of_the_entries,
                       0, SCENES);
+  tcase_add_loop_test(tests, factors_made_in_part_have_the_bits_of_whole_ones,
+                      0, SCENES);
+  tcase_add_loop_test(tests, responses_are_those_of_solves, 0, SCENES);
   tcase_add_test(tests, rows_that_leave_a_motion_are_singular);
   tcase_add_loop_test(tests, loads_and_recovery_are_the_same, 0, SCENES);
   tcase_add_loop_test(tests, energies_and_errors_are_the_same, 0, HELD);

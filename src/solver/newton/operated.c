@@ -24,24 +24,28 @@ struct operated_system {
   double *added;        /* [dim*m] known_rows.added */
   unsigned char *known; /* [m] of the last step */
   int repeated;         /* steps on the same rows before the last one */
-  int bent;             /* 1: it had friction that follows pressure */
   int stepped;          /* 1: there was a last step */
   double enough;        /* -, of the right side, left by GMRES */
   struct {
-    int capacity;   /* columns that there is room for */
-    int n;          /* made */
-    double *V;      /* [m*capacity] orthonormal right sides */
-    double *X, *AX; /* [m*capacity] their solutions, A times them */
-    double *H;      /* [(DIRECTIONS+1)*DIRECTIONS] Hessenberg, then its R */
-    double *c, *s;  /* [DIRECTIONS] rotations */
-    double *g;      /* [DIRECTIONS+1] */
+    int n, *dof;            /* [m] those in which friction follows pressure */
+    double *load;           /* [m] forces there, zero elsewhere */
+    unsigned char *pressed; /* [m] 1: the pressure it follows */
+  } slip;
+  struct {
+    size_t capacity; /* numbers that there is room for */
+    int n;           /* directions made */
+    double *V;     /* [slip.n*(n+1)] orthonormal forces in the slipping rows */
+    double *H;     /* [(DIRECTIONS+1)*DIRECTIONS] Hessenberg, then its R */
+    double *c, *s; /* [DIRECTIONS] rotations */
+    double *g;     /* [DIRECTIONS+1] */
   } krylov;
 };
 
 void operated_system_free(operated_system *s) {
   if (s == NULL) return;
-  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->krylov.V, s->krylov.X,
-          s->krylov.AX, s->krylov.H, s->krylov.c, s->krylov.s, s->krylov.g, s);
+  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->slip.dof, s->slip.load,
+          s->slip.pressed, s->krylov.V, s->krylov.H, s->krylov.c, s->krylov.s,
+          s->krylov.g, s);
 }
 
 static double power_of(const contact_problem *cp) {
@@ -65,6 +69,9 @@ status operated_system_new(const contact_problem *cp, operated_system **out) {
   NEW(s->Ax, m);
   NEW(s->added, (size_t)cp->dim * m);
   NEW(s->known, m);
+  NEW(s->slip.dof, m);
+  NEW(s->slip.load, m);
+  NEW(s->slip.pressed, m);
   NEW(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS);
   NEW(s->krylov.c, DIRECTIONS);
   NEW(s->krylov.s, DIRECTIONS);
@@ -81,47 +88,59 @@ void operated_system_fit(operated_system *s) { s->stepped = 0; }
 /* ---- friction that follows pressure ---------------------------------------
  */
 
-/* y += N x: in the rows of the slipping nodes e (B (A x)_n) of the closed ones;
- * returns 1 if there is any. */
-static int add_friction(const contact_problem *cp, const pattern *p,
-                        const double *Ax, double *y) {
+/* The rows in which friction follows pressure: s->slip. */
+static void list_slip(operated_system *s, const contact_problem *cp,
+                      const pattern *p) {
   const sparse_rows *B = cp->B;
-  int any = 0, tangents = cp->dim - 1;
+  s->slip.n = 0;
+  memset(s->slip.pressed, 0, (size_t)s->m);
   for (int i = 0; B != NULL && i < cp->n; ++i) {
-    double sum = 0.0;
+    int any = 0;
     if (p->mode[i] != SLIP) continue;
     for (int k = B->start[i]; k < B->start[i + 1]; ++k) {
-      int dof = B->col[k] * cp->dim;
+      const int dof = B->col[k] * cp->dim;
       if (!p->closed[dof] || B->val[k] == 0.0) continue;
-      sum += B->val[k] * Ax[dof];
+      s->slip.pressed[dof] = 1;
       any = 1;
     }
-    for (int k = 0; k < tangents; ++k) {
-      int dof = i * cp->dim + 1 + k;
-      if (p->place[dof] >= 0) y[dof] += p->e[i * tangents + k] * sum;
-    }
+    for (int dof = i * cp->dim + 1; any && dof < (i + 1) * cp->dim; ++dof)
+      if (p->place[dof] >= 0) s->slip.dof[s->slip.n++] = dof;
   }
-  return any;
+}
+
+/* y[slip.n] += N x: e (B (A x)_n) of the closed nodes. */
+static void add_friction(const operated_system *s, const contact_problem *cp,
+                         const pattern *p, const double *Ax, double *y) {
+  const sparse_rows *B = cp->B;
+  for (int t = 0; t < s->slip.n; ++t) {
+    const int i = s->slip.dof[t] / cp->dim, c = s->slip.dof[t] % cp->dim - 1;
+    double sum = 0.0;
+    for (int k = B->start[i]; k < B->start[i + 1]; ++k) {
+      const int dof = B->col[k] * cp->dim;
+      if (p->closed[dof]) sum += B->val[k] * Ax[dof];
+    }
+    y[t] += p->e[i * (cp->dim - 1) + c] * sum;
+  }
 }
 
 /* ---- GMRES ----------------------------------------------------------------
  */
 
-/* Room for another direction. */
+/* Room for the directions made and two more. */
 static status grow(operated_system *s) {
-  const size_t m = (size_t)s->m, have = (size_t)s->krylov.capacity;
-  const size_t want = have + 8;
-  double **of[] = {&s->krylov.V, &s->krylov.X, &s->krylov.AX};
-  if (s->krylov.n + 1 < s->krylov.capacity) return OK;
-  for (int k = 0; k < 3; ++k) {
-    double *more = NULL;
-    PASS_NEW(more, m * want);
-    if (have > 0) memcpy(more, *of[k], m * have * sizeof *more);
-    memory_free(*of[k]);
-    *of[k] = more;
-  }
-  s->krylov.capacity = (int)want;
+  const size_t n = (size_t)s->slip.n, have = s->krylov.capacity;
+  if (n * (size_t)(s->krylov.n + 2) <= have) return OK;
+  const size_t want = n * (size_t)(s->krylov.n + 10);
+  double *more = memory_resize(s->krylov.V, have, want, sizeof *more);
+  if (more == NULL)
+    RAISE(ERR_MEMORY, "memory exhausted: %zu numbers of GMRES", want);
+  s->krylov.V = more;
+  s->krylov.capacity = want;
   return OK;
+}
+
+static double *direction(const operated_system *s, int j) {
+  return s->krylov.V + (size_t)s->slip.n * (size_t)j;
 }
 
 /* w orthogonal to v[0..j]; column j of H. */
@@ -129,11 +148,11 @@ static void orthogonalise(operated_system *s, int j, double *w) {
   double *h = s->krylov.H + (size_t)j * (DIRECTIONS + 1);
   memset(h, 0, (DIRECTIONS + 1) * sizeof *h);
   for (int i = 0; i <= j; ++i) {
-    const double *v = s->krylov.V + (size_t)s->m * (size_t)i;
-    h[i] = cblas_ddot(s->m, v, 1, w, 1);
-    cblas_daxpy(s->m, -h[i], v, 1, w, 1);
+    const double *v = direction(s, i);
+    h[i] = cblas_ddot(s->slip.n, v, 1, w, 1);
+    cblas_daxpy(s->slip.n, -h[i], v, 1, w, 1);
   }
-  h[j + 1] = cblas_dnrm2(s->m, w, 1);
+  h[j + 1] = cblas_dnrm2(s->slip.n, w, 1);
 }
 
 /* The rotations so far and a new one on column j; what is left of the right
@@ -151,49 +170,59 @@ static double rotate(operated_system *s, int j) {
   return fabs(g[j + 1]);
 }
 
-/* The combination of the directions that leaves least is added to x, Ax. */
-static void combine(operated_system *s) {
+/* s->slip.load: v[slip.n] at the slipping rows. */
+static void set_load(operated_system *s, const double *v) {
+  for (int t = 0; t < s->slip.n; ++t) s->slip.load[s->slip.dof[t]] = v[t];
+}
+
+/* The combination of the directions that leaves least is added to the load, and
+ * that solved for. */
+static void combine(operated_system *s, const contact_problem *cp) {
   const int n = s->krylov.n;
+  double *sum = direction(s, n);
   cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, n,
               s->krylov.H, DIRECTIONS + 1, s->krylov.g, 1);
-  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, n, 1.0, s->krylov.X, s->m,
-              s->krylov.g, 1, 1.0, s->x, 1);
-  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, n, 1.0, s->krylov.AX, s->m,
-              s->krylov.g, 1, 1.0, s->Ax, 1);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, s->slip.n, n, 1.0, s->krylov.V,
+              s->slip.n, s->krylov.g, 1, 0.0, sum, 1);
+  for (int t = 0; t < s->slip.n; ++t) s->b[s->slip.dof[t]] += sum[t];
+  cp->op->solve(cp->op->ctx, s->b, s->x, s->Ax);
 }
 
 /* (x, Ax), which solves the symmetric part for the right side b of size
- * "size", becomes the step: what the friction of x leaves is solved for. */
+ * "size", becomes the step: what the friction of x leaves is solved for, in the
+ * slipping rows, which alone have any. */
 static status gmres(operated_system *s, const contact_problem *cp,
                     const pattern *p, double size) {
-  const size_t m = (size_t)s->m;
+  const size_t n = (size_t)s->slip.n;
   double left;
   s->krylov.n = 0;
   PASS(grow(s));
   double *v = s->krylov.V;
-  memset(v, 0, m * sizeof *v);
-  add_friction(cp, p, s->Ax, v);
-  left = cblas_dnrm2(s->m, v, 1);
+  memset(v, 0, n * sizeof *v);
+  add_friction(s, cp, p, s->Ax, v);
+  left = cblas_dnrm2(s->slip.n, v, 1);
   memset(s->krylov.g, 0, (DIRECTIONS + 1) * sizeof *s->krylov.g);
   size = fmax(size, left); /* a body that known rows alone move has no load */
   if (!(left > s->enough * size)) return OK;
   s->krylov.g[0] = -left;
-  for (size_t i = 0; i < m; ++i) v[i] /= left;
+  for (size_t i = 0; i < n; ++i) v[i] /= left;
+  cp->op->set_response(cp->op->ctx, s->slip.pressed);
+  memset(s->slip.load, 0, (size_t)s->m * sizeof *s->slip.load);
   for (double next = 1.0; left > s->enough * size && next > EXHAUSTED &&
                           s->krylov.n < DIRECTIONS;) {
     PASS(grow(s));
-    const size_t at = m * (size_t)s->krylov.n;
-    double *w = s->krylov.V + at + m, *x = s->krylov.X + at;
-    memset(x, 0, m * sizeof *x);
-    cp->op->solve(cp->op->ctx, s->krylov.V + at, x, s->krylov.AX + at);
-    memcpy(w, s->krylov.V + at, m * sizeof *w);
-    add_friction(cp, p, s->krylov.AX + at, w);
+    v = direction(s, s->krylov.n);
+    double *w = direction(s, s->krylov.n + 1);
+    set_load(s, v);
+    cp->op->response(cp->op->ctx, s->slip.load, s->Ax);
+    memcpy(w, v, n * sizeof *w);
+    add_friction(s, cp, p, s->Ax, w);
     orthogonalise(s, s->krylov.n, w);
-    next = cblas_dnrm2(s->m, w, 1);
+    next = cblas_dnrm2(s->slip.n, w, 1);
     left = rotate(s, s->krylov.n++);
-    for (size_t i = 0; i < m && next > EXHAUSTED; ++i) w[i] /= next;
+    for (size_t i = 0; i < n && next > EXHAUSTED; ++i) w[i] /= next;
   }
-  combine(s);
+  combine(s, cp);
   return OK;
 }
 
@@ -238,10 +267,8 @@ status operated_system_step(operated_system *s, const contact_problem *cp,
   s->stepped = 1;
   cblas_dscal(s->m, s->power, s->x, 1);
   cp->op->solve(cp->op->ctx, s->b, s->x, s->Ax);
-  memset(s->added, 0, (size_t)s->m * sizeof *s->added);
-  s->bent = add_friction(cp, p, s->Ax, s->added);
-  const double size = cblas_dnrm2(s->m, s->b, 1);
-  if (s->bent) PASS(gmres(s, cp, p, size));
+  list_slip(s, cp, p);
+  if (s->slip.n > 0) PASS(gmres(s, cp, p, cblas_dnrm2(s->m, s->b, 1)));
   cblas_daxpy(s->m, 1.0 / s->power, s->x, 1, u, 1);
   newton_take_known(cp, p, u);
   /* Steps from afar leave their rounding in a sum. */

@@ -1,0 +1,293 @@
+/* Cholesky factors of which parts change (supernodal.h). */
+#include "fem/supernodal/supernodal.h"
+
+#include "base/memory.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+  FEW_COLUMNS = 16,   /* BLAS costs more than it saves */
+  FEW_PRODUCTS = 2048 /* of an update, likewise */
+};
+
+static int n_row(const supernodal *s, int q) {
+  return (int)(s->start[q + 1] - s->start[q]);
+}
+
+static int n_column(const supernodal *s, int q) {
+  return (int)(s->first[q + 1] - s->first[q]);
+}
+
+static const SuiteSparse_long *rows_of(const supernodal *s, int q) {
+  return s->row + s->start[q];
+}
+
+size_t supernodal_entries(const supernodal *s, int supernode) {
+  return (size_t)n_row(s, supernode) * (size_t)n_column(s, supernode);
+}
+
+status supernodal_new(const cholmod_factor *L, supernodal **out) {
+  status st = OK;
+  supernodal *s = NULL;
+  NEW(s, 1);
+  *out = s;
+  s->n = (int)L->n;
+  s->count = (int)L->nsuper;
+  s->first = L->super;
+  s->start = L->pi;
+  s->row = L->s;
+  NEW(s->of, s->n);
+  NEW(s->parent, s->count);
+  NEW(s->head, s->count);
+  NEW(s->next, s->count);
+  NEW(s->done, s->count);
+  NEW(s->place, s->n);
+  NEW(s->product, L->maxcsize);
+  int most = 0;
+  for (int q = 0; q < s->count; ++q) {
+    most = n_row(s, q) > most ? n_row(s, q) : most;
+    for (long c = s->first[q]; c < s->first[q + 1]; ++c) s->of[c] = q;
+  }
+  NEW(s->relative, most);
+  NEW(s->below, most);
+  for (int q = 0; q < s->count; ++q)
+    s->parent[q] = n_row(s, q) > n_column(s, q)
+                       ? s->of[rows_of(s, q)[n_column(s, q)]]
+                       : -1;
+done:
+  return st;
+}
+
+void supernodal_free(supernodal *s) {
+  if (s == NULL) return;
+  RELEASE(s->of, s->parent, s->head, s->next, s->done, s->place, s->relative,
+          s->product, s->below, s);
+}
+
+void supernodal_close(const supernodal *s, unsigned char *mark) {
+  for (int q = 0; q < s->count; ++q)
+    if (mark[q] && s->parent[q] >= 0) mark[s->parent[q]] = 1;
+}
+
+void supernodal_list(const supernodal *s, const unsigned char *mark,
+                     supernodal_part *part) {
+  part->n = 0;
+  for (int q = 0; q < s->count; ++q)
+    if (mark[q]) part->list[part->n++] = q;
+}
+
+/* ---- factor ----------------------------------------------------------------
+ */
+
+/* y[n] += sum of k columns of a, each times what it has in its row 0. */
+static void add_columns(int n, int k, const double *restrict a, size_t lead,
+                        double *restrict y) {
+  int c = 0;
+  for (; c + 4 <= k; c += 4) {
+    const double *a0 = a + lead * (size_t)c, *a1 = a0 + lead, *a2 = a1 + lead,
+                 *a3 = a2 + lead;
+    const double f0 = a0[0], f1 = a1[0], f2 = a2[0], f3 = a3[0];
+    for (int i = 0; i < n; ++i)
+      y[i] += a0[i] * f0 + a1[i] * f1 + a2[i] * f2 + a3[i] * f3;
+  }
+  for (; c < k; ++c) {
+    const double *a0 = a + lead * (size_t)c, f0 = a0[0];
+    for (int i = 0; i < n; ++i) y[i] += a0[i] * f0;
+  }
+}
+
+/* out[rows*columns], lower part: a a' of the first "columns" of a[rows*k]. */
+static void multiply(int rows, int columns, int k, const double *a, int lead,
+                     double *out) {
+  const size_t ld = (size_t)rows;
+  if ((double)rows * columns * k <= FEW_PRODUCTS) {
+    memset(out, 0, ld * (size_t)columns * sizeof *out);
+    for (int j = 0; j < columns; ++j)
+      add_columns(rows - j, k, a + j, (size_t)lead, out + (ld + 1) * (size_t)j);
+    return;
+  }
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, k, 1.0, a, lead,
+              0.0, out, rows);
+  if (rows > columns)
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, rows - columns,
+                columns, k, 1.0, a + columns, lead, a, lead, 0.0, out + columns,
+                rows);
+}
+
+/* Of supernode d from row "from" on, those within q: their number. */
+static int rows_within(const supernodal *s, int d, int q) {
+  const SuiteSparse_long *row = rows_of(s, d);
+  int to = s->done[d];
+  while (to < n_row(s, d) && row[to] < s->first[q + 1]) ++to;
+  return to - s->done[d];
+}
+
+/* x[q] less what supernode d, which is done, has in its columns. */
+static void subtract(supernodal *s, int q, int d, int inside,
+                     double *const *x) {
+  const int from = s->done[d], rows = n_row(s, d) - from;
+  const SuiteSparse_long *row = rows_of(s, d) + from;
+  const size_t lead = (size_t)n_row(s, q);
+  int *relative = s->relative;
+  multiply(rows, inside, n_column(s, d), x[d] + from, n_row(s, d), s->product);
+  for (int i = 0; i < rows; ++i) relative[i] = s->place[row[i]];
+  for (int j = 0; j < inside; ++j) {
+    double *to = x[q] + lead * (size_t)relative[j];
+    const double *product = s->product + (size_t)rows * (size_t)j;
+    for (int i = j; i < rows; ++i) to[relative[i]] -= product[i];
+  }
+}
+
+/* d updates next the supernode of its first row that is left. */
+static void pass_on(supernodal *s, int d) {
+  if (s->done[d] >= n_row(s, d)) return;
+  const int to = s->of[rows_of(s, d)[s->done[d]]];
+  s->next[d] = s->head[to];
+  s->head[to] = d;
+}
+
+/* Cholesky factor of the diagonal block and the rows below it; the first column
+ * without a positive pivot, or -1. */
+static int eliminate_few(int rows, int columns, double *x) {
+  const size_t lead = (size_t)rows;
+  for (int j = 0; j < columns; ++j) {
+    double *own = x + (lead + 1) * (size_t)j;
+    const int n = rows - j;
+    for (int c = 0; c < j; ++c) {
+      const double *a = x + lead * (size_t)c + j, f = a[0];
+      for (int i = 0; i < n; ++i) own[i] -= a[i] * f;
+    }
+    if (!(own[0] > 0.0)) return j;
+    const double root = sqrt(own[0]), part = 1.0 / root;
+    own[0] = root;
+    for (int i = 1; i < n; ++i) own[i] *= part;
+  }
+  return -1;
+}
+
+static int eliminate(int rows, int columns, double *x) {
+  if (columns <= FEW_COLUMNS) return eliminate_few(rows, columns, x);
+  const int bad =
+      (int)LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', columns, x, rows);
+  if (bad != 0) return bad - 1;
+  if (rows > columns)
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit,
+                rows - columns, columns, 1.0, x, rows, x + columns, rows);
+  return -1;
+}
+
+/* The supernodes below q have updated it. */
+static void use_up(supernodal *s, int q, int renew, double *const *x) {
+  for (int d = s->head[q], next; d >= 0; d = next) {
+    const int inside = rows_within(s, d, q);
+    next = s->next[d];
+    if (renew) subtract(s, q, d, inside, x);
+    s->done[d] += inside;
+    pass_on(s, d);
+  }
+}
+
+static void begin(supernodal *s, int q, supernodal_fill *fill, void *ctx,
+                  double *x) {
+  const SuiteSparse_long *row = rows_of(s, q);
+  memset(x, 0, supernodal_entries(s, q) * sizeof *x);
+  for (int i = 0; i < n_row(s, q); ++i) s->place[row[i]] = i;
+  fill(ctx, q, s->place, x);
+}
+
+int supernodal_factor(supernodal *s, const unsigned char *mark,
+                      supernodal_fill *fill, void *ctx, double *const *x) {
+  for (int q = 0; q < s->count; ++q) s->head[q] = -1;
+  for (int q = 0; q < s->count; ++q) {
+    if (mark[q]) begin(s, q, fill, ctx, x[q]);
+    use_up(s, q, mark[q], x);
+    if (mark[q]) {
+      const int bad = eliminate(n_row(s, q), n_column(s, q), x[q]);
+      if (bad >= 0) return (int)s->first[q] + bad;
+    }
+    s->done[q] = n_column(s, q);
+    pass_on(s, q);
+  }
+  return -1;
+}
+
+/* ---- solves ----------------------------------------------------------------
+ */
+
+static int is_zero(int n, const double *v) {
+  for (int i = 0; i < n; ++i)
+    if (v[i] != 0.0) return 0;
+  return 1;
+}
+
+/* own[columns] = inv of the diagonal block, below[rows] the rest times it. */
+static void forward_few(int rows, int columns, const double *x, double *own,
+                        double *restrict below) {
+  memset(below, 0, (size_t)rows * sizeof *below);
+  for (int c = 0; c < columns; ++c) {
+    const double *restrict a = x + (size_t)(rows + columns) * (size_t)c;
+    const double f = own[c] /= a[c];
+    for (int r = c + 1; r < columns; ++r) own[r] -= a[r] * f;
+    for (int r = 0; r < rows; ++r) below[r] += a[columns + r] * f;
+  }
+}
+
+void supernodal_forward(const supernodal *s, double *const *x,
+                        const supernodal_part *part, double *v) {
+  for (int t = 0; t < part->n; ++t) {
+    const int q = part->list[t], columns = n_column(s, q);
+    const int lead = n_row(s, q), rows = lead - columns;
+    const SuiteSparse_long *row = rows_of(s, q) + columns;
+    double *own = v + s->first[q];
+    if (is_zero(columns, own)) continue;
+    if (columns <= FEW_COLUMNS) {
+      forward_few(rows, columns, x[q], own, s->below);
+    } else {
+      cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit,
+                  columns, x[q], lead, own, 1);
+      if (rows > 0)
+        cblas_dgemv(CblasColMajor, CblasNoTrans, rows, columns, 1.0,
+                    x[q] + columns, lead, own, 1, 0.0, s->below, 1);
+    }
+    for (int r = 0; r < rows; ++r) v[row[r]] -= s->below[r];
+  }
+}
+
+/* own[columns] = inv of the transposed diagonal block, own less what "below"
+ * adds. */
+static void back_few(int rows, int columns, const double *x, double *own,
+                     const double *below) {
+  for (int c = columns - 1; c >= 0; --c) {
+    const double *a = x + (size_t)(rows + columns) * (size_t)c;
+    double sum[4] = {own[c]};
+    int r = 0;
+    for (int k = c + 1; k < columns; ++k) sum[0] -= a[k] * own[k];
+    for (; r + 4 <= rows; r += 4)
+      for (int k = 0; k < 4; ++k) sum[k] -= a[columns + r + k] * below[r + k];
+    for (; r < rows; ++r) sum[0] -= a[columns + r] * below[r];
+    own[c] = ((sum[0] + sum[1]) + (sum[2] + sum[3])) / a[c];
+  }
+}
+
+void supernodal_back(const supernodal *s, double *const *x,
+                     const supernodal_part *part, double *v) {
+  for (int t = part->n - 1; t >= 0; --t) {
+    const int q = part->list[t], columns = n_column(s, q);
+    const int lead = n_row(s, q), rows = lead - columns;
+    const SuiteSparse_long *row = rows_of(s, q) + columns;
+    double *own = v + s->first[q];
+    for (int r = 0; r < rows; ++r) s->below[r] = v[row[r]];
+    if (columns <= FEW_COLUMNS) {
+      back_few(rows, columns, x[q], own, s->below);
+      continue;
+    }
+    if (rows > 0)
+      cblas_dgemv(CblasColMajor, CblasTrans, rows, columns, -1.0,
+                  x[q] + columns, lead, s->below, 1, 1.0, own, 1);
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, columns,
+                x[q], lead, own, 1);
+  }
+}
