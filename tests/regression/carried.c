@@ -34,6 +34,8 @@ static void check_stopped(const char *cards) {
     job j = new_job(cards);
     t = (traced){.action = TRACE_SIGNAL, .at = k * all / 10, .number = SIGINT};
     ck_assert_int_eq(traced_run(&j, none, &t), 130);
+    ck_assert_int_gt(t.restarts, 0);
+    ck_assert_int_eq(t.synced, t.restarts);
     int code = job_run(&j, "--restart --no-timing");
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
     const char *file = traced_difference(&whole, &j);

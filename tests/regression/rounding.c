@@ -346,6 +346,28 @@ START_TEST(rigid_motion_is_right_to_its_digits) {
 }
 END_TEST
 
+/* Led through the air by its support, a body of many nodes keeps no stress:
+ * what it creeps by, and the works, are rounding, so two increments are enough.
+ */
+START_TEST(creep_in_free_motion_is_rounding) {
+  job j;
+  begin(&j, "rect 40 40 1 1", &(mesh_change){.map = {wavy_x, wavy_y}});
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n1.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3\n0.25, 1.\n*BOUNDARY\n"
+            "TOP, 1, 1, \"1.3*sin(t)\"\nTOP, 2, 2, \"0.7*t\"\n"
+            "*PRINT, ENERGY\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  dat e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_le(dat_at(&e, 0, "increment"), 3);
+  ck_assert_double_eq(dat_at(&e, 0, "energy_defect_relative"), 0);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(nothing_is_told_of_plain_bodies) {
   job j;
   int code = run_layers(&j, "10.", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
@@ -409,6 +431,7 @@ int main(void) {
   tcase_add_test(tests, no_digit_is_left_of_needles);
   tcase_add_loop_test(tests, loss_of_a_body_led_far_is_told, 0, 4);
   tcase_add_loop_test(tests, no_digit_is_left_of_a_body_led_too_far, 0, 2);
+  tcase_add_test(tests, creep_in_free_motion_is_rounding);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
   tcase_add_loop_test(tests, loss_of_a_body_carried_far_is_told, 0, 4);

@@ -91,6 +91,17 @@ START_TEST(given_pressure_goes_by_area) {
 }
 END_TEST
 
+/* Held by friction all the time, without any slip. */
+START_TEST(contact_that_holds_is_one_that_touches) {
+  job j = run("", FLOOR
+              "*FRICTION, CONTACT=A, LAW=COULOMB\n1.\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\nTIPS, 1, 5.\nTIPS, 2, -10.\n"
+              "*END STEP\n");
+  ck_assert_ptr_null(strstr(j.errors, "P4021"));
+  job_end(&j);
+}
+END_TEST
+
 /* Two static problems of the same loads: the slip, and its work, are those from
  * the origin in both. */
 START_TEST(static_problems_slip_from_the_origin) {
@@ -304,6 +315,16 @@ START_TEST(creep_in_shear_is_near_the_locking_it_tells) {
 }
 END_TEST
 
+/* The same law in volume too, pressed: shear and volume weaken alike. */
+START_TEST(creep_in_volume_is_far_from_locking) {
+  job j = run("*INELASTIC, LAW=MAXWELL\n0.010101010101\n",
+              "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n*BOUNDARY\n"
+              "CLAMPED, 1, 2\nTIPS, 1\nTIPS, 2, 2, 0.001\n*END STEP\n");
+  ck_assert_ptr_null(strstr(j.errors, "an apparent"));
+  job_end(&j);
+}
+END_TEST
+
 /* ---- what the plan and *EFFECTS tell ----------------------------------------
  */
 
@@ -352,8 +373,10 @@ START_TEST(law_at_its_end_keeps_the_energy_of_its_springs) {
 }
 END_TEST
 
-UNIT_MAIN("tips", given_pressure_goes_by_area,
+UNIT_MAIN("tips", contact_that_holds_is_one_that_touches,
+          given_pressure_goes_by_area,
           creep_in_shear_is_near_the_locking_it_tells,
+          creep_in_volume_is_far_from_locking,
           moduli_of_a_table_in_plane_strain_and_stress,
           foreseen_shares_are_the_whole,
           law_at_its_end_keeps_the_energy_of_its_springs,

@@ -89,12 +89,10 @@ static int of_folder(const job *j, pid_t pid, unsigned long long fd,
   return counts(j, path, timed);
 }
 
-/* 1: the path that stands there in the memory of the run is of the folder. A
- * build that counts branches writes its counts elsewhere. */
-static int names_folder(const job *j, pid_t pid, unsigned long long address,
-                        int timed) {
-  char path[PATH] = "";
-  struct iovec here = {path, sizeof path - 1};
+/* The path that stands there in the memory of the run; 0: none. */
+static int path_at(pid_t pid, unsigned long long address, char path[PATH]) {
+  memset(path, 0, PATH);
+  struct iovec here = {path, PATH - 1};
   const size_t page = 4096, left = page - address % page;
   struct iovec there[2] = {{(void *)(uintptr_t)address, here.iov_len}};
   if (left < here.iov_len) { /* a page after it may not be there           */
@@ -102,8 +100,15 @@ static int names_folder(const job *j, pid_t pid, unsigned long long address,
     there[1] = (struct iovec){(void *)(uintptr_t)(address + left),
                               here.iov_len - left};
   }
-  return process_vm_readv(pid, &here, 1, there, 2, 0) > 0 &&
-         counts(j, path, timed);
+  return process_vm_readv(pid, &here, 1, there, 2, 0) > 0;
+}
+
+/* 1: that path is of the folder. A build that counts branches writes its counts
+ * elsewhere. */
+static int names_folder(const job *j, pid_t pid, unsigned long long address,
+                        int timed) {
+  char path[PATH];
+  return path_at(pid, address, path) && counts(j, path, timed);
 }
 
 /* 1: the descriptor was opened for writing. */
@@ -157,10 +162,23 @@ static void answer(pid_t pid, int number) {
   ck_assert_int_eq(ptrace(PTRACE_SETREGS, pid, NULL, &r), 0);
 }
 
+/* Restart files that are renamed to their place, and the folder after them. */
+static void note_sync(const job *j, pid_t pid, const struct user_regs_struct *r,
+                      traced *t) {
+  char link[64], path[PATH] = "";
+  if (r->orig_rax == SYS_rename && path_at(pid, r->rsi, path))
+    t->restarts += strstr(path, ".rst.h5") != NULL;
+  if (r->orig_rax != SYS_fsync) return;
+  snprintf(link, sizeof link, "/proc/%d/fd/%llu", (int)pid, r->rdi);
+  if (readlink(link, path, sizeof path - 1) > 0 && strcmp(path, j->dir) == 0)
+    t->synced = t->restarts;
+}
+
 /* At the entry of a call; 1: its answer is to be an error. */
 static int meet(const job *j, pid_t pid, traced *t) {
   struct user_regs_struct r;
   ck_assert_int_eq(ptrace(PTRACE_GETREGS, pid, NULL, &r), 0);
+  note_sync(j, pid, &r, t);
   if (!changes_file(j, pid, &r, t->timed)) return 0;
   ++t->changes;
   if (t->changes != t->at && !(t->always && t->changes > t->at)) return 0;
@@ -215,7 +233,7 @@ static int follow(const job *j, pid_t pid, traced *t) {
 
 int traced_run(job *j, const char *const *words, traced *t) {
   job told = *j;
-  t->changes = 0;
+  t->changes = t->restarts = t->synced = 0;
   int code = follow(j, start(j, words), t);
   snprintf(told.name, sizeof told.name, "stderr");
   free(j->errors);

@@ -20,11 +20,13 @@ typedef enum {
 
 typedef struct traced {
   trace_action action;
-  int at;      /* the change it happens at                                  */
-  int always;  /* 1: and at every later one                                 */
-  int timed;   /* 1: changes of JOB.xdmf count, which is rewritten by time  */
-  int number;  /* signal or errno                                           */
-  int changes; /* out: changes of files in all                             */
+  int at;       /* the change it happens at                                  */
+  int always;   /* 1: and at every later one                                 */
+  int timed;    /* 1: changes of JOB.xdmf count, which is rewritten by time  */
+  int number;   /* signal or errno                                           */
+  int changes;  /* out: changes of files in all                             */
+  int restarts; /* out: restart files that a new one replaced               */
+  int synced;   /* out: those after which the folder itself was synced      */
 } traced;
 
 /* protis JOB --no-timing with further words (at most two, ended by NULL);

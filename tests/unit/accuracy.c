@@ -210,6 +210,38 @@ START_TEST(rate_is_that_of_the_worst_pass) {
 }
 END_TEST
 
+/* Two nodes that slip towards each other: the rate is that of the largest
+ * eigenvalue of -mu A_nt inv(A_tt) e. */
+START_TEST(rate_of_two_nodes_is_an_eigenvalue) {
+  static const double nt[2][2] = {{-0.8, 0.3}, {0.2, 0.5}};
+  static const double tt[2][2] = {{2.0, -0.6}, {-0.6, 3.0}};
+  static const double e[] = {1.0, -1.0}, mu = 0.5;
+  contact_case c = case_new(2, 2, mu);
+  double T[2][2], limit;
+  for (int i = 0; i < 2; ++i) {
+    c.A[10 * i] = 9.0;
+    c.r[2 * i] = -2.0;
+    c.r[2 * i + 1] = e[i] * mu * 2.0;
+    c.u[2 * i + 1] = -0.1 * e[i];
+    for (int k = 0; k < 2; ++k) {
+      c.A[2 * i + 1 + 4 * (2 * k + 1)] = tt[i][k];
+      c.A[2 * i + 4 * (2 * k + 1)] = c.A[2 * k + 1 + 4 * 2 * i] = nt[i][k];
+    }
+  }
+  const double det = tt[0][0] * tt[1][1] - tt[0][1] * tt[0][1];
+  for (int i = 0; i < 2; ++i) {
+    const double *a = nt[i];
+    T[i][0] = -mu * (a[0] * tt[1][1] - a[1] * tt[0][1]) / det * e[0];
+    T[i][1] = -mu * (a[1] * tt[0][0] - a[0] * tt[0][1]) / det * e[1];
+  }
+  const double half = 0.5 * (T[0][0] + T[1][1]);
+  const double root = sqrt(half * half - T[0][0] * T[1][1] + T[0][1] * T[1][0]);
+  ck_assert_int_eq(contraction_limit(&c.cp, c.u, c.r, &limit), OK);
+  ck_assert_double_eq_tol(limit, fabs(half) + root, 1e-9);
+  case_free(&c);
+}
+END_TEST
+
 /* Slip to the right by 1.04 at mu = 2 is beyond the critical friction. */
 START_TEST(no_bound_beyond_the_critical_friction) {
   contact_case c = case_triangle(0.3, 2.0, 1.9, -1.0);
@@ -335,7 +367,8 @@ END_TEST
 UNIT_MAIN("accuracy", bound_holds_for_a_given_limit_and_is_not_absurd,
           bound_holds_without_friction, bound_holds_with_coulomb_friction,
           rate_of_the_triangle_is_known, two_rates_are_remembered,
-          rate_is_that_of_the_worst_pass, no_bound_beyond_the_critical_friction,
+          rate_is_that_of_the_worst_pass, rate_of_two_nodes_is_an_eigenvalue,
+          no_bound_beyond_the_critical_friction,
           bound_holds_at_held_and_cornered_nodes,
           bound_holds_in_the_compliance_form, bound_changes_with_the_units_only,
           rounding_is_part_of_the_bound)

@@ -40,12 +40,13 @@ static void take_left(run *r, double left) {
 /* Those of an unloaded body, whose state is rounding, are relative to the
  * largest energy so far; a body in free motion has none. */
 static void estimate_unloaded(run *r) {
-  const energies *e = &r->now.energy;
+  energies *e = &r->now.energy;
   r->errors.left = 1.0;
   if (rounding_is_all(r)) {
     take_left(r, 0.0);
     if (r->errors.error.why == NULL) r->errors.error.relative = 0.0;
     r->errors.error.hidden = 0.0;
+    if (rounding_hides_works(r)) e->defect = 0.0;
     return;
   }
   if (!(e->strain < UNLOADED * e->largest)) return;

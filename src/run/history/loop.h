@@ -44,6 +44,9 @@ status rounding_find(run *r);
 status rounding_hidden(const run *r, double *part);
 /* 1: the strains of the body are no more than the rounding of its motion. */
 int rounding_hides_strains(const run *r);
+/* 1: the energies so far are no more than the rounding of the forces that this
+ * motion takes times the motion. */
+int rounding_hides_works(const run *r);
 /* 1: no load acts on it either, contact forces are no more than that, and its
  * supports do not strain it; or contact carries the load straight, and strains
  * are rounding of both or left by the solver. After rounding_find. */

@@ -100,6 +100,12 @@ int rounding_hides_strains(const run *r) {
          r->msh->n_node * condensed_stiffest(r->c) * u * u;
 }
 
+int rounding_hides_works(const run *r) {
+  const double u = largest_entry(r->n_dof, r->now.u);
+  return r->now.energy.largest <=
+         r->msh->n_node * condensed_stiffest(r->c) * u * lost(r);
+}
+
 static double largest_force(const run *r) {
   return fmax(largest_entry(r->n_dof, r->now.F),
               largest_entry((size_t)r->nodes.n_c, r->now.rc));
