@@ -1,7 +1,8 @@
 /*
  * *GOAL: values and estimates against closed forms (Hertz's half plane cut out
  * with its tractions; the axisymmetric and the whole sphere; a bar) and against
- * a block on a rough floor whose force is known from meshes of 54,000 nodes.
+ * a block on a rough floor whose force is known from meshes of 54,000 nodes,
+ * pushed once, and to and fro (144 times the nodes).
  */
 #include "support/job.h"
 #include "support/unit.h"
@@ -132,6 +133,65 @@ START_TEST(friction_force_of_the_block) {
 }
 END_TEST
 
+/* The block pressed, pushed, pulled back and pushed again; its stiffness formed
+ * or not. */
+static job to_and_fro(const char *kind) {
+  job j = job_begin("fro");
+  job_copy(&j, "input/greco/greco.geo");
+  job_write(&j, "fro.inp",
+            "*PARAMETER\nN = 32\nSTRUCTURED = 0\n*MESH, FILE=greco.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.4\n"
+            "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n"
+            "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
+            "*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+            "*AMPLITUDE, NAME=PRESS\n0., 0., 1., 1., 4., 1.\n"
+            "*AMPLITUDE, NAME=FRO\n0., 0., 1., 0., 2., 1., 3., -.4, 4., .4\n"
+            "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n"
+            "*DSLOAD, AMPLITUDE=PRESS\nTOP, P, 50.\n"
+            "*DSLOAD, AMPLITUDE=FRO\nLEFT, P, 70.\n*PRINT, GOALS\n"
+            "*SOLVER, STIFFNESS=%s\n*END STEP\n",
+            kind);
+  ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
+  return j;
+}
+
+/* Where nodes stick, they do so in error: without that the ratios of the last
+ * increment are 0.43, 3.2, 0.01. */
+START_TEST(errors_of_earlier_increments_are_in_it) {
+  job j = to_and_fro("AUTO");
+  check_goal(&j, 0, -205.785, 0.8, 1.2, 1.0);
+  check_goal(&j, 1, -0.012159874, 0.8, 1.25, 1.0);
+  check_goal(&j, 2, 5.204, 0.5, 1.1, 1.1);
+  check_goal(&j, 3, 14.9095, 0.8, 1.25, 1.0);
+  ck_assert(has_verdict(&j, "UY", "reliable"));
+  /* All of the base sticks: it ends at the corner alone. */
+  dat t = job_table(&j, "GOALS", 0);
+  ck_assert_double_gt(dat_at(&t, 0, "contact_ends"), 3.0);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* The condensed stiffness is formed, or known by products and solves. */
+START_TEST(both_kinds_of_stiffness_give_the_same) {
+  job dense = to_and_fro("DENSE"), factor = to_and_fro("FACTOR");
+  for (int k = 0; k < 4; ++k) {
+    const told a = told_of(&dense, k), b = told_of(&factor, k);
+    ck_assert_double_eq_tol(b.value, a.value, 1e-9 * fabs(a.value));
+    ck_assert_double_eq_tol(b.error, a.error, 1e-9 * fabs(a.error));
+    ck_assert_double_eq_tol(b.band, a.band, 1e-9 * fabs(a.band));
+    ck_assert_double_eq_tol(b.ends, a.ends, 1e-9 * a.ends);
+  }
+  job_end(&dense);
+  job_end(&factor);
+}
+END_TEST
+
 /* On the axis, and in space: 3 P/(2 pi a^2), a = (3 P R/(4 E*))^(1/3). */
 START_TEST(peak_and_width_of_the_sphere) {
   static const char goals[] =
@@ -185,7 +245,7 @@ START_TEST(goals_that_are_not_covered_say_so) {
                      "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, "
                      "COMPONENT=1\n*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n",
                      "-D N=8");
-  ck_assert(has_verdict(&j, "GRIP", "no_history"));
+  ck_assert(!has_verdict(&j, "GRIP", "no_history"));
   ck_assert(isfinite(told_of(&j, 1).error));
   job_end(&j);
   j = with_goals("input/creep_block/creep_block",
@@ -200,5 +260,6 @@ START_TEST(goals_that_are_not_covered_say_so) {
 END_TEST
 
 UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
-          friction_force_of_the_block, peak_and_width_of_the_sphere,
+          friction_force_of_the_block, errors_of_earlier_increments_are_in_it,
+          both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
           energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so)

@@ -196,6 +196,25 @@ START_TEST(path_on_a_moving_obstacle_goes_on) {
 }
 END_TEST
 
+/* What friction remembers of errors. */
+START_TEST(errors_of_goals_go_on) {
+  int changes, all;
+  job both[2];
+  for (int k = 0; k < 2; ++k) {
+    both[k] = small_flat(0.1, "*PRINT, GOALS\n", "NEWTON");
+    edit(&both[k], "*STEP",
+         "*GOAL, NAME=F, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+         "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n*STEP");
+  }
+  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
+  ck_assert_int_eq(run_until(&both[1], nothing, 2 * all / 3, SIGINT, &changes),
+                   130);
+  goes_on(&both[1], 0, "goals");
+  same_files(&both[0], &both[1], "goals");
+  for (int k = 0; k < 2; ++k) job_end(&both[k]);
+}
+END_TEST
+
 /* A stiffness that is an operator: its factors are made again. */
 START_TEST(factor_goes_on) {
   int changes, all;
@@ -561,6 +580,6 @@ UNIT_MAIN("restart", what_is_read_is_written_again,
           chosen_tolerance_goes_on, path_on_a_moving_obstacle_goes_on,
           known_rate_goes_on, largest_loads_and_energies_go_on,
           run_without_a_file_begins_anew, files_are_in_the_seal,
-          restart_files_are_equal, factor_goes_on, kind_of_stiffness_goes_on,
-          restart_file_does_not_grow, some_jobs_start_anew,
-          damaged_files_are_refused)
+          restart_files_are_equal, errors_of_goals_go_on, factor_goes_on,
+          kind_of_stiffness_goes_on, restart_file_does_not_grow,
+          some_jobs_start_anew, damaged_files_are_refused)

@@ -1,11 +1,13 @@
 /*
- * src/accuracy/goal/adjoint.c: the adjoint of a contact problem against
- * solutions under changed loads, and its error against disturbed solutions.
+ * src/accuracy/goal/adjoint.c, linear.c: the adjoint of a contact problem
+ * against solutions under changed loads and from changed positions of stick,
+ * and its error against disturbed solutions; an operator against its matrix.
  */
 #include "accuracy/goal/goal.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -15,7 +17,7 @@ static const double TOL = 1e-14;
 /* J = j'u + psi'r at a solution, and its adjoint. */
 typedef struct goal_case {
   contact_case c;
-  double j[MOST], psi[MOST], y[MOST], solver;
+  double j[MOST], psi[MOST], y[MOST], stick[MOST], solver;
 } goal_case;
 
 static double value(const goal_case *g, const double *u, const double *r) {
@@ -28,7 +30,9 @@ static void find_adjoint(goal_case *g, const double *u, const double *r) {
   contact_adjoint *a = NULL;
   ck_assert_int_eq(contact_adjoint_new(&g->c.cp, u, r, &a), OK);
   ck_assert_ptr_nonnull(a);
-  contact_adjoint_solve(a, g->j, g->psi, g->y, &g->solver);
+  ck_assert_int_eq(contact_adjoint_solve(a, g->j, g->psi, g->y, &g->solver),
+                   OK);
+  memcpy(g->stick, contact_adjoint_stick(a), sizeof g->stick);
   contact_adjoint_free(a);
 }
 
@@ -61,6 +65,23 @@ static int same_states(const goal_case *g, const double *u, const double *r) {
   contact_classify(&g->c.cp, g->c.u, g->c.r, a);
   contact_classify(&g->c.cp, u, r, b);
   return memcmp(a, b, sizeof a) == 0;
+}
+
+/* The same from positions of stick that are "sign" times ds[m] further. */
+static int solve_moved(goal_case *g, const double *ds, double sign, double *J) {
+  double u[MOST], r[MOST];
+  const int dim = g->c.cp.dim;
+  memcpy(u, g->c.u, (size_t)g->c.cp.m * sizeof *u);
+  memcpy(r, g->c.r, (size_t)g->c.cp.m * sizeof *r);
+  for (int pass = 0; pass < 2; ++pass) {
+    const double by = pass == 0 ? sign : -sign;
+    for (int i = 0; i < NODES; ++i)
+      for (int a = 1; a < dim; ++a)
+        g->c.ut0[(dim - 1) * i + a - 1] += by * ds[dim * i + a];
+    if (pass == 0) solve_by(NULL, &g->c, TOL, u, r);
+  }
+  *J = value(g, u, r);
+  return same_states(g, u, r);
 }
 
 static int count(const goal_case *g, contact_status what) {
@@ -119,6 +140,152 @@ START_TEST(adjoint_is_the_derivative_by_the_load) {
 }
 END_TEST
 
+/* Local and nonlocal friction in two and three dimensions: where an increment
+ * before has left the nodes. */
+START_TEST(adjoint_is_the_derivative_by_the_positions_of_stick) {
+  static const double eps = 1e-6;
+  const int dim = 2 + _i % 2;
+  int checked = 0;
+  for (unsigned long long seed = 1; seed <= 12; ++seed) {
+    goal_case g = goal_new(dim, 0.4, _i / 2, seed);
+    double ds[MOST] = {0.0}, by_adjoint = 0.0, size = 0.0, J[2];
+    unsigned long long dice = seed + 100;
+    for (int k = 0; k < g.c.cp.m; ++k) {
+      if (k % dim > 0) ds[k] = eps * (case_random(&dice) - 0.5);
+      by_adjoint += g.stick[k] * ds[k];
+      size += fabs(g.stick[k] * ds[k]);
+    }
+    if (count(&g, CONTACT_STICK) > 0 && solve_moved(&g, ds, 1.0, &J[0]) &&
+        solve_moved(&g, ds, -1.0, &J[1])) {
+      const double is = 0.5 * (J[0] - J[1]);
+      ck_assert_msg(fabs(is - by_adjoint) < 1e-4 * size,
+                    "seed %llu: %.9g, by the adjoint %.9g of %g", seed, is,
+                    by_adjoint, size);
+      ++checked;
+    }
+    case_free(&g.c);
+  }
+  ck_assert_int_ge(checked, 6);
+}
+END_TEST
+
+/* du, and with it J, by loads df and sticks ds: the transpose of the adjoint.
+ */
+static double change_of(const goal_case *g, const double *df, const double *ds,
+                        double *du) {
+  contact_adjoint *a = NULL;
+  double sum = 0.0, dr[MOST];
+  ck_assert_int_eq(contact_adjoint_new(&g->c.cp, g->c.u, g->c.r, &a), OK);
+  ck_assert_int_eq(contact_adjoint_change(a, df, ds, du), OK);
+  contact_adjoint_free(a);
+  contact_apply(&g->c.cp, du, dr);
+  for (int k = 0; k < g->c.cp.m; ++k)
+    sum += g->j[k] * du[k] + g->psi[k] * (dr[k] - df[k]);
+  return sum;
+}
+
+START_TEST(changes_are_the_transpose_of_the_adjoint) {
+  const int dim = 2 + _i % 2, kind = _i / 2;
+  for (unsigned long long seed = 1; seed <= 6; ++seed) {
+    goal_case g = goal_new(dim, kind == 0 ? 0.0 : 0.4, kind == 2, seed);
+    double df[MOST], ds[MOST] = {0.0}, du[MOST], sum = 0.0, size = 0.0;
+    unsigned long long dice = seed + 100;
+    for (int k = 0; k < g.c.cp.m; ++k) {
+      df[k] = case_random(&dice) - 0.5;
+      if (k % dim > 0) ds[k] = case_random(&dice) - 0.5;
+      sum += g.y[k] * df[k] + g.stick[k] * ds[k];
+      size += fabs(g.y[k] * df[k]) + fabs(g.stick[k] * ds[k]);
+    }
+    const double is = change_of(&g, df, ds, du);
+    ck_assert_msg(fabs(is - sum) < 1e-11 * size, "seed %llu: %.12g, %.12g",
+                  seed, is, sum);
+    case_free(&g.c);
+  }
+}
+END_TEST
+
+/* ---- an operator in the place of the matrix ------------------------------ */
+
+/* A by products, and by solves with a factor of its own. */
+typedef struct by_solves {
+  const contact_problem *cp;
+  unsigned char known[MOST];
+  double added[3 * MOST], diagonal[MOST];
+} by_solves;
+
+static void apply(void *ctx, const double *u, double *Au) {
+  const by_solves *b = ctx;
+  contact_product(b->cp->m, b->cp->A, u, Au);
+}
+
+static status set_rows(void *ctx, const known_rows *rows, int *singular) {
+  by_solves *b = ctx;
+  memcpy(b->known, rows->known, (size_t)b->cp->m);
+  memcpy(b->added, rows->added,
+         (size_t)(b->cp->dim * b->cp->m) * sizeof *b->added);
+  *singular = 0;
+  return OK;
+}
+
+static void solve(void *ctx, const double *rhs, double *x, double *Ax) {
+  const by_solves *b = ctx;
+  const int m = b->cp->m, dim = b->cp->dim;
+  static double M[MOST * MOST];
+  lapack_int pivot[MOST];
+  for (int i = 0; i < m; ++i) {
+    if (!b->known[i]) x[i] = rhs[i];
+    for (int j = 0; j < m; ++j) {
+      M[i + m * j] = b->known[i] ? i == j : b->cp->A[i + m * j];
+      if (!b->known[i] && i / dim == j / dim)
+        M[i + m * j] += b->added[dim * i + j % dim];
+    }
+  }
+  LAPACKE_dgesv(LAPACK_COL_MAJOR, m, 1, M, m, pivot, x, m);
+  contact_product(m, b->cp->A, x, Ax);
+}
+
+START_TEST(an_operator_gives_what_its_matrix_does) {
+  const int dim = 2 + _i % 2, kind = _i / 2;
+  for (unsigned long long seed = 1; seed <= 6; ++seed) {
+    goal_case g = goal_new(dim, kind == 0 ? 0.0 : 0.4, kind == 2, seed);
+    const contact_problem matrix = g.c.cp;
+    by_solves b = {.cp = &matrix};
+    const contact_operator op = {.ctx = &b,
+                                 .diagonal = b.diagonal,
+                                 .apply = apply,
+                                 .set_rows = set_rows,
+                                 .solve = solve};
+    double y[MOST], stick[MOST], df[MOST], ds[MOST] = {0.0}, du[2][MOST];
+    unsigned long long dice = seed;
+    for (int k = 0; k < matrix.m; ++k) {
+      b.diagonal[k] = matrix.A[k + matrix.m * k];
+      df[k] = case_random(&dice) - 0.5;
+      if (k % dim > 0) ds[k] = case_random(&dice) - 0.5;
+    }
+    memcpy(y, g.y, sizeof y);
+    memcpy(stick, g.stick, sizeof stick);
+    change_of(&g, df, ds, du[0]);
+    g.c.cp.A = NULL;
+    g.c.cp.op = &op;
+    find_adjoint(&g, g.c.u, g.c.r);
+    change_of(&g, df, ds, du[1]);
+    double most[3] = {0.0};
+    for (int k = 0; k < matrix.m; ++k) {
+      most[0] = fmax(most[0], fabs(y[k]));
+      most[1] = fmax(most[1], fabs(stick[k]));
+      most[2] = fmax(most[2], fabs(du[0][k]));
+    }
+    for (int k = 0; k < matrix.m; ++k) {
+      ck_assert_double_eq_tol(g.y[k], y[k], 1e-10 * most[0]);
+      ck_assert_double_eq_tol(g.stick[k], stick[k], 1e-10 * most[1] + 1e-300);
+      ck_assert_double_eq_tol(du[1][k], du[0][k], 1e-10 * most[2]);
+    }
+    g.c.cp = matrix;
+    case_free(&g.c);
+  }
+}
+END_TEST
+
 /* Displacements and forces that miss equations and conditions a little. */
 START_TEST(error_of_the_solver_is_that_of_a_disturbed_solution) {
   static const double eps = 1e-8;
@@ -149,5 +316,9 @@ int main(void) {
   tcase_add_loop_test(tests, adjoint_is_the_derivative_by_the_load, 0, 6);
   tcase_add_loop_test(
       tests, error_of_the_solver_is_that_of_a_disturbed_solution, 0, 6);
+  tcase_add_loop_test(
+      tests, adjoint_is_the_derivative_by_the_positions_of_stick, 0, 4);
+  tcase_add_loop_test(tests, changes_are_the_transpose_of_the_adjoint, 0, 6);
+  tcase_add_loop_test(tests, an_operator_gives_what_its_matrix_does, 0, 6);
   return unit_run("goal", tests);
 }

@@ -4,10 +4,9 @@
 #include "accuracy/goal/goal.h"
 
 #include "accuracy/accuracy.h"
+#include "accuracy/goal/linear.h"
 #include "base/memory.h"
 
-#include <cblas.h>
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -16,17 +15,19 @@ struct contact_adjoint {
   const double *u, *r;          /* [m] borrowed */
   int n_free, *free_id, *place; /* [m] free unknowns; their place or -1 */
   unsigned char *closed, *slip; /* [n] */
-  double *e;          /* [m] direction of the friction force on slip */
-  double *kappa;      /* [n] N/m */
-  double *M;          /* [n_free^2] its factor */
-  lapack_int *pivot;  /* [n_free] */
+  double *e;        /* [m] direction of the friction force on slip */
+  double *kappa;    /* [n] N/m */
+  linear_rows rows; /* of all these */
+  linear_system *linear;
   double *w, *x, *Ax; /* [m] w of goal.h; workspace */
+  double *stick;      /* [m] derivative by the positions of stick */
 };
 
 void contact_adjoint_free(contact_adjoint *a) {
   if (a == NULL) return;
-  RELEASE(a->free_id, a->place, a->closed, a->slip, a->e, a->kappa, a->M,
-          a->pivot, a->w, a->x, a->Ax, a);
+  linear_system_free(a->linear);
+  RELEASE(a->free_id, a->place, a->closed, a->slip, a->e, a->kappa, a->w, a->x,
+          a->Ax, a->stick, a);
 }
 
 /* Friction of node i: slip, e, kappa. */
@@ -73,43 +74,6 @@ static void set_states(contact_adjoint *a) {
   }
 }
 
-/* Row of M of a sliding unknown: e B A_n + kappa (I - e e'). */
-static void add_slip(contact_adjoint *a, int dof) {
-  const contact_problem *cp = a->cp;
-  const int i = dof / cp->dim, n = a->n_free;
-  double *row = a->M + a->place[dof];
-  for (int k = cp->B == NULL ? 0 : cp->B->start[i];
-       cp->B != NULL && k < cp->B->start[i + 1]; ++k) {
-    const int j = cp->B->col[k];
-    if (!a->closed[j]) continue;
-    const double *column =
-        cp->A + (size_t)(j * cp->dim) * (size_t)cp->m; /* A is symmetric */
-    for (int b = 0; b < n; ++b)
-      row[(size_t)n * (size_t)b] +=
-          a->e[dof] * cp->B->val[k] * column[a->free_id[b]];
-  }
-  for (int t = i * cp->dim + 1; cp->dim == 3 && t < (i + 1) * cp->dim; ++t)
-    if (a->place[t] >= 0)
-      row[(size_t)n * (size_t)a->place[t]] +=
-          a->kappa[i] * ((t == dof) - a->e[dof] * a->e[t]);
-}
-
-/* 0: singular. */
-static int factor(contact_adjoint *a) {
-  const contact_problem *cp = a->cp;
-  const size_t n = (size_t)a->n_free;
-  for (size_t b = 0; b < n; ++b) {
-    const double *column = cp->A + (size_t)cp->m * (size_t)a->free_id[b];
-    for (size_t k = 0; k < n; ++k) a->M[k + n * b] = column[a->free_id[k]];
-  }
-  for (int k = 0; k < a->n_free; ++k) {
-    const int dof = a->free_id[k];
-    if (dof % cp->dim > 0 && a->slip[dof / cp->dim]) add_slip(a, dof);
-  }
-  return n == 0 || LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, a->n_free, a->n_free,
-                                       a->M, a->n_free, a->pivot) == 0;
-}
-
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out) {
   status st = OK;
@@ -128,10 +92,12 @@ status contact_adjoint_new(const contact_problem *cp, const double *u,
   NEW(a->w, cp->m);
   NEW(a->x, cp->m);
   NEW(a->Ax, cp->m);
+  NEW(a->stick, cp->m);
   set_states(a);
-  NEW(a->pivot, a->n_free);
-  NEW(a->M, (size_t)a->n_free * (size_t)a->n_free);
-  if (!factor(a)) goto done;
+  a->rows = (linear_rows){cp,        a->n_free, a->free_id, a->place,
+                          a->closed, a->slip,   a->e,       a->kappa};
+  TRY(linear_system_new(&a->rows, &a->linear));
+  if (a->linear == NULL) goto done;
   *out = a;
   a = NULL;
 done:
@@ -144,20 +110,6 @@ static int carries(const contact_adjoint *a, int dof) {
   const contact_problem *cp = a->cp;
   if (contact_held(cp, dof)) return 0;
   return a->place[dof] < 0 || (dof % cp->dim > 0 && a->slip[dof / cp->dim]);
-}
-
-/* w of the closed nodes from that of the sliding ones. */
-static void spread_slip(contact_adjoint *a) {
-  const contact_problem *cp = a->cp;
-  for (int i = 0; i < cp->n && cp->B != NULL; ++i) {
-    double along = 0.0;
-    if (!a->slip[i]) continue;
-    for (int t = i * cp->dim + 1; t < (i + 1) * cp->dim; ++t)
-      if (a->place[t] >= 0) along += a->e[t] * a->w[t];
-    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
-      if (a->closed[cp->B->col[k]])
-        a->w[cp->B->col[k] * cp->dim] += cp->B->val[k] * along;
-  }
 }
 
 /* Force of friction on a sliding unknown by its slip, N: opposite to it. */
@@ -173,22 +125,27 @@ static double friction_of(const contact_adjoint *a, int dof) {
          (contact_stick(cp, dof) - a->u[dof]) / size;
 }
 
+/* 1: it is held by friction where it sticks. */
+static int sticks(const contact_adjoint *a, int dof) {
+  return dof % a->cp->dim > 0 && a->place[dof] < 0 &&
+         !contact_held(a->cp, dof) && !(contact_bound(a->cp, dof) < HUGE_VAL);
+}
+
 /* What each equation that (u, r) misses adds to J: that of equilibrium by y,
  * u = bound by the rest of the adjoint equation, the law of a force by w. */
 static double misses(const contact_adjoint *a, const double *j,
                      const double *y) {
   const contact_problem *cp = a->cp;
   double sum = 0.0;
-  contact_product(cp->m, cp->A, a->u, a->x);
-  contact_product(cp->m, cp->A, y, a->Ax);
+  contact_apply(cp, a->u, a->x);
   for (int k = 0; k < cp->m; ++k) {
     const int i = k / cp->dim, tangent = k % cp->dim > 0;
-    const int sticks = tangent && !(contact_bound(cp, k) < HUGE_VAL);
     if (contact_held(cp, k)) continue;
     sum += y[k] * (cp->f[k] + a->r[k] - a->x[k]);
     if (a->place[k] < 0)
       sum += (j[k] - a->Ax[k]) *
-             ((sticks ? contact_stick(cp, k) : contact_bound(cp, k)) - a->u[k]);
+             ((sticks(a, k) ? contact_stick(cp, k) : contact_bound(cp, k)) -
+              a->u[k]);
     else if (tangent && a->slip[i])
       sum += a->w[k] * (friction_of(a, k) - a->r[k]);
     else
@@ -197,20 +154,44 @@ static double misses(const contact_adjoint *a, const double *j,
   return sum;
 }
 
-void contact_adjoint_solve(contact_adjoint *a, const double *j,
-                           const double *psi, double *y, double *solver) {
+/* Where a node sticks, the rest of the adjoint equation; in space slip turns
+ * with it. */
+static void set_stick(contact_adjoint *a, const double *j) {
+  const contact_problem *cp = a->cp;
+  memset(a->stick, 0, (size_t)cp->m * sizeof *a->stick);
+  linear_add_turn(&a->rows, a->w, a->stick);
+  for (int k = 0; k < cp->m; ++k)
+    if (sticks(a, k)) a->stick[k] = j[k] - a->Ax[k];
+}
+
+const double *contact_adjoint_stick(const contact_adjoint *a) {
+  return a->stick;
+}
+
+status contact_adjoint_solve(contact_adjoint *a, const double *j,
+                             const double *psi, double *y, double *solver) {
   const contact_problem *cp = a->cp;
   for (int k = 0; k < cp->m; ++k) a->x[k] = carries(a, k) ? psi[k] : 0.0;
-  contact_product(cp->m, cp->A, a->x, a->Ax);
+  contact_apply(cp, a->x, a->Ax);
   for (int k = 0; k < cp->m; ++k) y[k] = -a->x[k];
-  memset(a->w, 0, (size_t)cp->m * sizeof *a->w);
-  for (int k = 0; k < a->n_free; ++k)
-    a->x[k] = j[a->free_id[k]] + a->Ax[a->free_id[k]];
-  if (a->n_free > 0)
-    LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', a->n_free, 1, a->M, a->n_free,
-                        a->pivot, a->x, a->n_free);
-  for (int k = 0; k < a->n_free; ++k) a->w[a->free_id[k]] = a->x[k];
-  spread_slip(a);
+  for (int k = 0; k < cp->m; ++k)
+    a->x[k] = a->place[k] < 0 ? 0.0 : j[k] + a->Ax[k];
+  PASS(linear_solve_transposed(a->linear, a->x, a->w));
   for (int k = 0; k < cp->m; ++k) y[k] += a->w[k];
+  contact_apply(cp, y, a->Ax);
   *solver = misses(a, j, y);
+  set_stick(a, j);
+  return OK;
+}
+
+status contact_adjoint_change(contact_adjoint *a, const double *df,
+                              const double *stick, double *du) {
+  const contact_problem *cp = a->cp;
+  for (int k = 0; k < cp->m; ++k) {
+    a->x[k] = df[k];
+    du[k] = sticks(a, k) ? stick[k] : 0.0;
+  }
+  linear_add_friction(&a->rows, df, a->x);
+  linear_add_turn(&a->rows, stick, a->x);
+  return linear_solve(a->linear, a->x, du);
 }

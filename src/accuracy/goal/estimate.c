@@ -22,20 +22,18 @@ struct goal_estimator {
   goal_solution s;
   space_recovery *recovery; /* borrowed */
   int n_region;
-  double **gradient; /* [n_region][dim*dim*n_node] recovered of u, - */
-  double **stress;   /* [n_region][ns*n_node] recovered of u, Pa */
-  double *own;       /* [n_elem] |e_u|^2, J */
-  double *sigma_y;   /* [ns*n_elem] of the adjoint; workspace */
-  double *node_y;    /* [ns*n_node] recovered; workspace */
+  double **stress; /* [n_region][ns*n_node] recovered of u, Pa */
+  double *bubble;  /* [ns*n_elem] mean strains of u in the bubbles, - */
+  double *own;     /* [n_elem] |e_u|^2, J */
+  double *sigma_y; /* [ns*n_elem] of the adjoint; workspace */
+  double *node_y;  /* [ns*n_node] recovered; workspace */
 };
 
 void goal_estimator_free(goal_estimator *e) {
   if (e == NULL) return;
-  for (int k = 0; k < e->n_region; ++k) {
-    if (e->gradient != NULL) memory_free(e->gradient[k]);
-    if (e->stress != NULL) memory_free(e->stress[k]);
-  }
-  RELEASE(e->gradient, e->stress, e->own, e->sigma_y, e->node_y, e);
+  for (int k = 0; k < e->n_region && e->stress != NULL; ++k)
+    memory_free(e->stress[k]);
+  RELEASE(e->stress, e->bubble, e->own, e->sigma_y, e->node_y, e);
 }
 
 /* q[(dim*dim+ns)*n_elem]: du_c/dx_k at c*dim + k, and the stresses. */
@@ -56,23 +54,101 @@ static void gradients(const goal_solution *s, double *q) {
   }
 }
 
-/* What belongs to u in one region; q[(dim*dim+ns)*n_elem] gradients and
- * stresses, node[(dim*dim+ns)*n_node] workspace. */
+/* ---- the part of u in the bubble of an edge -------------------------------
+ */
+
+static int by_nodes(const void *a_, const void *b_) {
+  const contact_edge *a = a_, *b = b_;
+  if (a->a != b->a) return a->a < b->a ? -1 : 1;
+  return (a->b > b->b) - (a->b < b->b);
+}
+
+static const contact_edge *find_edge(const goal_solution *s, int a, int b) {
+  const contact_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
+  if (s->n_edge == 0) return NULL;
+  return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key, by_nodes);
+}
+
+/* d[dim] on a closed edge: along n that of the gap, across it 0 on stick. */
+static void hold(const contact_edge *c, int dim, double *d) {
+  double along = 0.0;
+  for (int k = 0; k < dim; ++k) along += c->n[k] * d[k];
+  for (int k = 0; k < dim; ++k)
+    d[k] = c->excess * c->n[k] + (c->stuck ? 0.0 : d[k] - along * c->n[k]);
+}
+
+/* d[dim] of the edge from node a to b by the recovered gradient of a region,
+ * G[dim*dim*n_node]. */
+static void bubble_of(const goal_solution *s, const double *G, int a, int b,
+                      double *d) {
+  const int dim = s->d->mesh->dim, n = dim * dim;
+  const double *xa = s->d->mesh->x + dim * a, *xb = s->d->mesh->x + dim * b;
+  const double *ga = G + (size_t)n * (size_t)a, *gb = G + (size_t)n * (size_t)b;
+  for (int c = 0; c < dim; ++c) {
+    d[c] = 0.0;
+    for (int k = 0; k < dim; ++k)
+      d[c] += (ga[c * dim + k] - gb[c * dim + k]) * (xb[k] - xa[k]) / 8.0;
+  }
+  const contact_edge *contact = find_edge(s, a, b);
+  if (contact != NULL && contact->closed) hold(contact, dim, d);
+  for (int c = 0; c < dim; ++c)
+    if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c]) d[c] = 0.0;
+}
+
+/* Mean radius of an element, m. */
+static double radius_of(const mesh *m, int elem_id) {
+  const int *v = m->elem + 3 * elem_id;
+  return (m->x[2 * v[0]] + m->x[2 * v[1]] + m->x[2 * v[2]]) / 3.0;
+}
+
+/* Adds the strain of a field with the gradient g[dim] times d[dim]. */
+static void add_strain(int dim, const double *g, const double *d, double *e) {
+  for (int c = 0; c < dim; ++c) e[c] += g[c] * d[c];
+  e[3] += g[0] * d[1] + g[1] * d[0];
+  if (dim == 2) return;
+  e[4] += g[1] * d[2] + g[2] * d[1];
+  e[5] += g[2] * d[0] + g[0] * d[2];
+}
+
+/* Mean strain e[ns] of an element by the bubbles of its edges. */
+static void bubbles_of(const goal_solution *s, const double *G, int elem_id,
+                       double *e) {
+  const mesh *m = s->d->mesh;
+  const int dim = m->dim, *v = m->elem + (dim + 1) * elem_id;
+  const int axi = s->d->kin[s->d->section_id[elem_id]] == AXISYMMETRIC;
+  double g[12], grad[3], d[3];
+  mesh_elem_gradients(m, elem_id, g);
+  for (int a = 0; a < dim; ++a)
+    for (int b = a + 1; b <= dim; ++b) {
+      bubble_of(s, G, v[a], v[b], d);
+      for (int k = 0; k < dim; ++k)
+        grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
+      add_strain(dim, grad, d, e);
+      if (axi) e[2] += d[0] / (3.0 * radius_of(m, elem_id));
+    }
+}
+
+/* ---- what belongs to u ----------------------------------------------------
+ */
+
+/* In one region; q[(dim*dim+ns)*n_elem] gradients and stresses,
+ * node[(dim*dim+ns)*n_node] and G[dim*dim*n_node] workspace. */
 static status recover_region(goal_estimator *e, int region, const double *q,
-                             double *node) {
+                             double *node, double *G) {
   const mesh *m = e->s.d->mesh;
   const size_t ns = (size_t)e->s.d->ns, n = (size_t)(m->dim * m->dim);
-  PASS_NEW(e->gradient[region], n * (size_t)m->n_node);
   PASS_NEW(e->stress[region], ns * (size_t)m->n_node);
   space_recover(e->recovery, region, (int)(n + ns), q, node);
   for (size_t i = 0; i < (size_t)m->n_node; ++i, node += n + ns) {
-    memcpy(e->gradient[region] + n * i, node, n * sizeof *node);
+    memcpy(G + n * i, node, n * sizeof *node);
     memcpy(e->stress[region] + ns * i, node + n, ns * sizeof *node);
   }
   const space_field f = {e->s.sigma, e->stress[region]};
-  for (int k = 0; k < m->n_elem; ++k)
-    if (space_region(e->recovery, k) == region)
-      e->own[k] = space_product(e->recovery, k, &f, &f);
+  for (int k = 0; k < m->n_elem; ++k) {
+    if (space_region(e->recovery, k) != region) continue;
+    e->own[k] = space_product(e->recovery, k, &f, &f);
+    bubbles_of(&e->s, G, k, e->bubble + ns * (size_t)k);
+  }
   return OK;
 }
 
@@ -81,29 +157,50 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   status st = OK;
   const mesh *m = s->d->mesh;
   goal_estimator *e = NULL;
-  double *q = NULL, *node = NULL;
-  const size_t both = (size_t)(m->dim * m->dim + s->d->ns);
+  double *q = NULL, *node = NULL, *G = NULL;
+  const size_t n = (size_t)(m->dim * m->dim), both = n + (size_t)s->d->ns;
   *out = NULL;
   NEW(e, 1);
   e->s = *s;
   e->recovery = recovery;
   NEW(q, both * (size_t)m->n_elem);
   NEW(node, both * (size_t)m->n_node);
+  NEW(G, n * (size_t)m->n_node);
   gradients(s, q);
   e->n_region = space_regions(recovery);
-  NEW(e->gradient, e->n_region);
   NEW(e->stress, e->n_region);
   NEW(e->own, m->n_elem);
+  NEW(e->bubble, (size_t)s->d->ns * (size_t)m->n_elem);
   NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
   NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
   TRY(space_moduli(recovery));
-  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q, node));
+  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q, node, G));
   *out = e;
   e = NULL;
 done:
-  RELEASE(q, node);
+  RELEASE(q, node, G);
   goal_estimator_free(e);
   return st;
+}
+
+/* The stress E e of an element by a strain e[ns]. */
+static void stress_by(const domain *d, int elem_id, const double *e,
+                      double *t) {
+  const int ns = d->ns;
+  const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[elem_id];
+  for (int i = 0; i < ns; ++i) {
+    t[i] = 0.0;
+    for (int j = 0; j < ns; ++j) t[i] += E[i + ns * j] * e[j];
+  }
+}
+
+void goal_estimator_force(goal_estimator *e, double *F) {
+  const domain *d = e->s.d;
+  const size_t ns = (size_t)d->ns;
+  for (int k = 0; k < d->mesh->n_elem; ++k)
+    stress_by(d, k, e->bubble + ns * (size_t)k, e->sigma_y + ns * (size_t)k);
+  domain_internal_force(d, e->sigma_y, F);
+  for (int k = 0; k < d->mesh->dim * d->mesh->n_node; ++k) F[k] = -F[k];
 }
 
 /* ---- what it is worth ---------------------------------------------------- */
@@ -114,6 +211,7 @@ done:
 static const double TRUSTED = 0.03; /* -, share of the contact ends */
 static const double LEFT = 0.05;    /* -, of the sum of magnitudes */
 static const double BAND = 0.1;     /* -, the same */
+static const double HISTORY = 0.25; /* -, of what the increments before add */
 
 static const struct {
   const char *word, *text;
@@ -140,7 +238,7 @@ const char *goal_verdict_text(goal_verdict v) { return verdicts[v].text; }
 goal_result goal_judge(const goal_estimate *e, int n_closed) {
   enum { FEW = 3 };
   goal_result r = {.error = e->error,
-                   .band = BAND * e->magnitude + e->ends,
+                   .band = BAND * e->magnitude + e->ends + HISTORY * e->history,
                    .ends = e->product > 0.0 ? e->ends / e->product : 0.0};
   if (n_closed > 0 && n_closed <= FEW)
     r.verdict = GOAL_FEW_NODES;
@@ -154,85 +252,6 @@ goal_result goal_judge(const goal_estimate *e, int n_closed) {
 double goal_estimator_energy(const goal_estimator *e) {
   double sum = 0.0;
   for (int k = 0; k < e->s.d->mesh->n_elem; ++k) sum += e->own[k];
-  return sum;
-}
-
-/* ---- an edge of an element ----------------------------------------------- */
-
-static int by_nodes(const void *a_, const void *b_) {
-  const contact_edge *a = a_, *b = b_;
-  if (a->a != b->a) return a->a < b->a ? -1 : 1;
-  return (a->b > b->b) - (a->b < b->b);
-}
-
-static const contact_edge *find_edge(const goal_solution *s, int a, int b) {
-  const contact_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
-  if (s->n_edge == 0) return NULL;
-  return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key, by_nodes);
-}
-
-/* d[dim] on a closed edge: along n that of the gap, across it 0 on stick. */
-static void hold(const contact_edge *c, int dim, double *d) {
-  double along = 0.0;
-  for (int k = 0; k < dim; ++k) along += c->n[k] * d[k];
-  for (int k = 0; k < dim; ++k)
-    d[k] = c->excess * c->n[k] + (c->stuck ? 0.0 : d[k] - along * c->n[k]);
-}
-
-/* The part of u in the bubble of the edge from node a to b, in a region. */
-static void bubble_of(const goal_estimator *e, int region, int a, int b,
-                      double *d) {
-  const goal_solution *s = &e->s;
-  const int dim = s->d->mesh->dim, n = dim * dim;
-  const double *xa = s->d->mesh->x + dim * a, *xb = s->d->mesh->x + dim * b;
-  const double *ga = e->gradient[region] + (size_t)n * (size_t)a;
-  const double *gb = e->gradient[region] + (size_t)n * (size_t)b;
-  for (int c = 0; c < dim; ++c) {
-    d[c] = 0.0;
-    for (int k = 0; k < dim; ++k)
-      d[c] += (ga[c * dim + k] - gb[c * dim + k]) * (xb[k] - xa[k]) / 8.0;
-  }
-  const contact_edge *contact = find_edge(s, a, b);
-  if (contact != NULL && contact->closed) hold(contact, dim, d);
-  for (int c = 0; c < dim; ++c)
-    if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c]) d[c] = 0.0;
-}
-
-/* Row c of a stress in Voigt's components times a vector. */
-static double traction(int dim, const double *t, int c, const double *v) {
-  static const int plane[2][2] = {{0, 3}, {3, 1}};
-  static const int space[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  double sum = 0.0;
-  for (int k = 0; k < dim; ++k)
-    sum += t[dim == 2 ? plane[c][k] : space[c][k]] * v[k];
-  return sum;
-}
-
-/* Mean radius of an element, m. */
-static double radius_of(const mesh *m, int elem_id) {
-  const int *v = m->elem + 3 * elem_id;
-  return (m->x[2 * v[0]] + m->x[2 * v[1]] + m->x[2 * v[2]]) / 3.0;
-}
-
-/* Sum of R d over the edges of an element; t[ns] is tau - sigma(y) there. */
-static double edges_of(const goal_estimator *e, int elem_id, const double *t) {
-  const domain *d = e->s.d;
-  const mesh *m = d->mesh;
-  const int dim = m->dim, *v = m->elem + (dim + 1) * elem_id;
-  const int region = space_region(e->recovery, elem_id);
-  const int axi = d->kin[d->section_id[elem_id]] == AXISYMMETRIC;
-  const double w = element_weight(d, elem_id);
-  double g[12], grad[3], part[3], sum = 0.0;
-  mesh_elem_gradients(m, elem_id, g);
-  for (int a = 0; a < dim; ++a)
-    for (int b = a + 1; b <= dim; ++b) {
-      bubble_of(e, region, v[a], v[b], part);
-      for (int k = 0; k < dim; ++k)
-        grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
-      for (int c = 0; c < dim; ++c)
-        sum += w * traction(dim, t, c, grad) * part[c];
-      if (axi) sum += w * t[2] * part[0] / (3.0 * radius_of(m, elem_id));
-    }
   return sum;
 }
 
@@ -253,12 +272,13 @@ static double add_element(goal_estimator *e, int elem_id, const double *tau,
   const int region = space_region(e->recovery, elem_id);
   const space_field u = {e->s.sigma, e->stress[region]};
   const space_field y = {e->sigma_y, e->node_y};
-  double t[6];
+  double residual = 0.0;
   for (size_t k = 0; k < ns; ++k)
-    t[k] = (tau != NULL ? tau[at + k] : 0.0) - e->sigma_y[at + k];
+    residual += ((tau != NULL ? tau[at + k] : 0.0) - e->sigma_y[at + k]) *
+                e->bubble[at + k];
   const double square = space_product(e->recovery, elem_id, &y, &y);
   const double both = sqrt(fmax(e->own[elem_id] * square, 0.0));
-  out->error += edges_of(e, elem_id, t);
+  out->error += element_weight(e->s.d, elem_id) * residual;
   out->magnitude += fabs(space_product(e->recovery, elem_id, &u, &y));
   out->product += both;
   if (is_at_end(e, elem_id)) out->ends += both;
@@ -270,7 +290,7 @@ status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
   domain d = *e->s.d;
   const mesh *m = d.mesh;
   d.eigen = NULL;
-  *out = (goal_estimate){0.0, 0.0, 0.0, 0.0};
+  *out = (goal_estimate){0};
   domain_stress(&d, y, NULL, e->sigma_y);
   for (int region = 0; region < e->n_region; ++region) {
     space_recover(e->recovery, region, d.ns, e->sigma_y, e->node_y);

@@ -41,6 +41,7 @@ typedef struct goal_estimate {
   double magnitude; /* sum of the magnitudes of the parts of elements */
   double product;   /* sum over the elements of |e_u| |e_y| */
   double ends;      /* the same where the contact ends */
+  double history;   /* sum of the magnitudes by the increments before */
 } goal_estimate;
 /* The result of an estimate but for value, solver and cpu; n_closed: nodes. */
 goal_result goal_judge(const goal_estimate *e, int n_closed);
@@ -60,14 +61,20 @@ goal_result goal_judge(const goal_estimate *e, int n_closed);
  */
 typedef struct contact_adjoint contact_adjoint;
 /* *out is new; NULL if the matrix is singular. cp, u, r [m] are borrowed; cp
- * has its matrix. ERR_MEMORY. */
+ * has its matrix or operator. ERR_MEMORY. */
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out);
 void contact_adjoint_free(contact_adjoint *a); /* accepts NULL */
 /* y[m] of j[m], psi[m]; psi counts where a force can change. *solver: J of the
- * discrete solution less J of (u, r), to first order. */
-void contact_adjoint_solve(contact_adjoint *a, const double *j,
-                           const double *psi, double *y, double *solver);
+ * discrete solution less J of (u, r), to first order. NAN: not solved. */
+status contact_adjoint_solve(contact_adjoint *a, const double *j,
+                             const double *psi, double *y, double *solver);
+/* [m] derivative of the J solved last by the positions of stick. */
+const double *contact_adjoint_stick(const contact_adjoint *a);
+/* du[m]: the change of u by loads df[m] and by positions of stick that are
+ * stick[m] further. */
+status contact_adjoint_change(contact_adjoint *a, const double *df,
+                              const double *stick, double *du);
 
 /* ---- estimate.c ---------------------------------------------------------- */
 
@@ -97,6 +104,9 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
                           goal_estimator **out);
 void goal_estimator_free(goal_estimator *e);           /* accepts NULL */
 double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
+/* F[dim*n_node]: forces that what u is in the bubbles exerts on the mesh; under
+ * them the nodes move by their error. */
+void goal_estimator_force(goal_estimator *e, double *F);
 /*
  * The error by the adjoint y[dim*n_node] of a J with the derivative integral of
  * tau : e(v), tau[ns*n_elem] (or NULL: zero), besides values at nodes:

@@ -3,6 +3,18 @@
  * contact problem linearised at the solution is solved once more, transposed:
  * a solve with the dense factor, which all share, and one with that of the
  * body.
+ *
+ * Friction that remembers: where a node sticks, it does so at the place where
+ * the increment before has left it, and that place is in error too. With s the
+ * derivative of J by the positions of stick and e the errors of the nodes after
+ * the increment before,
+ *
+ *   J(u) - J(u_h) = estimate of this increment + s'e.
+ *
+ * e is found forwards, by the same linearised problem under the forces of what
+ * u is in the bubbles, at the positions of stick that are e of the increment
+ * before further: one solve an increment for all goals at all times, the
+ * transpose of a chain of adjoints backwards through the increments.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -15,12 +27,20 @@
 
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
 
+/* Errors that friction remembers, after the last increment. */
+typedef struct goal_history {
+  double *u;          /* [dim*n_node] of the nodes, m; NULL: none is needed */
+  double *sum, *band; /* [n] of goals that are sums over the increments */
+  int lost;           /* 1: an increment before was not covered */
+} goal_history;
+
 typedef struct goal_state {
   int n;
   goal_result *result;      /* [n] */
   double *product;          /* [n*n_elem] of goal_estimate_find, or NULL */
   space_recovery *recovery; /* NULL until the first estimate */
   long elastic_no;          /* of the run, that it is made of */
+  goal_history before;
 } goal_state;
 
 static status goals_new(run *r, void **self) {
@@ -31,6 +51,10 @@ static status goals_new(run *r, void **self) {
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
     PASS_NEW(own->product, (size_t)own->n * (size_t)r->msh->n_elem);
+  PASS_NEW(own->before.sum, own->n);
+  PASS_NEW(own->before.band, own->n);
+  if (!effect_is_on(&slip_history_effect, r->m)) return OK;
+  PASS_NEW(own->before.u, r->n_dof);
   return OK;
 }
 
@@ -38,23 +62,36 @@ static void release(void *self) {
   goal_state *own = self;
   if (own == NULL) return;
   space_recovery_free(own->recovery);
-  RELEASE(own->result, own->product, own);
+  RELEASE(own->before.u, own->before.sum, own->before.band, own->product,
+          own->result, own);
 }
 
 /* ---- what the estimate covers -------------------------------------------- */
 
-/* Friction rules whose position of stick holds the errors of the increments
- * before. */
-static int has_history(const run *r) {
-  return run_remembers(r) && r->course.total_no > 1;
+static int has_stiffness(const run *r) {
+  return r->problem.cp.A != NULL || r->problem.cp.op != NULL;
 }
 
 static int is_covered(const run *r) {
   return !model_has_pairs(r->m) && r->body.d.cluster == NULL &&
          r->strains.visco == NULL && effects_sum_up(r) == NULL &&
          r->problem.given == NULL && r->m->mesh.corner_id < 0 &&
-         (r->nodes.n == 0 || r->problem.cp.A != NULL) &&
-         r->solving.report.outcome > 0;
+         (r->nodes.n == 0 || has_stiffness(r)) && r->solving.report.outcome > 0;
+}
+
+/* ---- the increments before ----------------------------------------------- */
+
+/* 1: the positions of stick are those of the increment before. */
+static int remembers(const run *r, const goal_state *own) {
+  return own->before.u != NULL && r->nodes.n > 0 && run_remembers(r);
+}
+
+/* A static problem starts from the origin. */
+static void forget(const run *r, goal_history *h, int n) {
+  if (r->step->kind != STEP_STATIC || r->course.relaxing) return;
+  memset(h->sum, 0, (size_t)n * sizeof *h->sum);
+  memset(h->band, 0, (size_t)n * sizeof *h->band);
+  h->lost = 0;
 }
 
 /* ---- an increment -------------------------------------------------------- */
@@ -67,6 +104,7 @@ typedef struct shared {
   goal_form form;
   double *y;                    /* [dim*n_node] */
   double *j, *more, *psi, *y_c; /* [n_row] */
+  double *moved; /* [n_row] errors of the positions of stick, m */
 } shared;
 
 static void shared_free(shared *s) {
@@ -74,7 +112,7 @@ static void shared_free(shared *s) {
   goal_estimator_free(s->estimator);
   contact_adjoint_free(s->adjoint);
   goal_form_free(&s->form);
-  RELEASE(s->y, s->j, s->more, s->psi, s->y_c);
+  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->moved);
 }
 
 static status recover(const run *r, goal_state *own) {
@@ -83,6 +121,15 @@ static status recover(const run *r, goal_state *own) {
   own->recovery = NULL;
   own->elastic_no = r->body.elastic_no;
   return space_recovery_new(&r->body.d, &own->recovery);
+}
+
+static status set_moved(const run *r, goal_state *own, shared *s) {
+  OWNED double *at = NULL;
+  if (!remembers(r, own)) return OK;
+  PASS_NEW(at, r->nodes.n_c);
+  surface_relative(r->surface, own->before.u, at);
+  run_take_rows(r, at, s->moved);
+  return OK;
 }
 
 static status prepare(run *r, goal_state *own, shared *s) {
@@ -101,7 +148,9 @@ static status prepare(run *r, goal_state *own, shared *s) {
   PASS_NEW(s->more, n);
   PASS_NEW(s->psi, n);
   PASS_NEW(s->y_c, n);
+  PASS_NEW(s->moved, n);
   if (n == 0) return OK;
+  PASS(set_moved(r, own, s));
   return contact_adjoint_new(&r->problem.cp, run_rows(r, 0, r->now.uc),
                              run_rows(r, 1, r->now.rc), &s->adjoint);
 }
@@ -114,37 +163,97 @@ static status solve(run *r, shared *s, double *solver) {
     run_take_rows(r, s->form.rows, s->more);
     run_take_rows(r, s->form.psi, s->psi);
     for (int k = 0; k < r->nodes.n_row; ++k) s->j[k] += s->more[k];
-    contact_adjoint_solve(s->adjoint, s->j, s->psi, s->y_c, solver);
+    PASS(contact_adjoint_solve(s->adjoint, s->j, s->psi, s->y_c, solver));
   }
   return condense_recover(r->c, s->y_c, s->y);
 }
 
-/* product[n_elem] or NULL */
-static status estimate(run *r, shared *s, double *product, goal_result *out) {
+/* s'e of the head of this file, and the sum of its magnitudes. */
+static double of_sticks(const run *r, const goal_state *own, const shared *s,
+                        double *size) {
+  double sum = 0.0;
+  *size = 0.0;
+  if (s->adjoint == NULL || !remembers(r, own)) return 0.0;
+  const double *by = contact_adjoint_stick(s->adjoint);
+  for (int k = 0; k < r->nodes.n_row; ++k) {
+    const double part =
+        (by[k] - (s->form.sums ? s->more[k] : 0.0)) * s->moved[k];
+    sum += part;
+    *size += fabs(part);
+  }
+  return sum;
+}
+
+/* What the increments before have added to a sum over them. */
+static void add_sum(goal_history *h, int id, goal_result *out) {
+  out->error += h->sum[id];
+  out->band += h->band[id];
+  h->sum[id] = out->error;
+  h->band[id] = out->band;
+}
+
+/* [n_elem] of a goal, or NULL. */
+static double *product_of(const run *r, const goal_state *own, int id) {
+  return own->product == NULL
+             ? NULL
+             : own->product + (size_t)r->msh->n_elem * (size_t)id;
+}
+
+static status estimate(run *r, goal_state *own, shared *s, int id) {
   const goal_form *f = &s->form;
+  goal_result *out = &own->result[id];
   const double value = f->value, cpu = out->cpu;
   goal_estimate e;
   double solver;
   PASS(solve(r, s, &solver));
   PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
-                          product, &e));
+                          product_of(r, own, id), &e));
+  if (!isfinite(e.error)) return OK;
   e.error += f->curved;
   e.magnitude += fabs(f->curved);
   if (f->is_square) e.error += 0.5 * goal_estimator_energy(s->estimator);
+  e.error += of_sticks(r, own, s, &e.history);
   *out = goal_judge(&e, s->surface.n_closed);
+  if (f->sums) add_sum(&own->before, id, out);
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
   if (e.magnitude <= ROUNDING * fabs(value)) out->verdict = GOAL_RELIABLE;
-  if (has_history(r)) out->verdict = GOAL_NO_HISTORY;
+  if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
 }
 
-static status find_goal(run *r, shared *s, int id, goal_state *own) {
-  const size_t n = (size_t)r->msh->n_elem;
+/* ---- the errors that the next increment remembers ------------------------ */
+
+/* Errors of the nodes by the bubbles and by the positions of stick. */
+static status move_nodes(run *r, goal_state *own, shared *s) {
+  goal_estimator_force(s->estimator, s->y);
+  PASS(condense_load(r->c, s->y, NULL, s->j));
+  if (s->adjoint != NULL)
+    PASS(contact_adjoint_change(s->adjoint, s->j, s->moved, s->y_c));
+  return condense_recover(r->c, s->y_c, own->before.u);
+}
+
+/* 1: no increment follows. */
+static int is_last(const run *r) {
+  return r->at.last && run_step_id(r) == r->m->n.step - 1;
+}
+
+static status remember(run *r, goal_state *own, shared *s) {
+  goal_history *h = &own->before;
+  if (h->u == NULL || is_last(r)) return OK;
+  if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL)) {
+    h->lost = 1;
+    return OK;
+  }
+  return move_nodes(r, own, s);
+}
+
+static status find_goal(run *r, goal_state *own, shared *s, int id) {
   goal_result *out = &own->result[id];
-  double *product = own->product != NULL ? own->product + n * (size_t)id : NULL;
-  if (product != NULL) memset(product, 0, n * sizeof *product);
+  double *product = product_of(r, own, id);
+  if (product != NULL)
+    memset(product, 0, (size_t)r->msh->n_elem * sizeof *product);
   PASS(goal_form_set(r, &r->m->accuracy.goals[id], &s->form));
   *out =
       (goal_result){s->form.value, NAN, NAN, NAN, NAN, out->cpu, s->form.why};
@@ -152,7 +261,7 @@ static status find_goal(run *r, shared *s, int id, goal_state *own) {
   out->verdict = GOAL_NOT_COVERED;
   if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL))
     return OK;
-  return estimate(r, s, product, out);
+  return estimate(r, own, s, id);
 }
 
 /* The time that all share counts with the first. */
@@ -162,16 +271,32 @@ static status find_goals(run *r, void *self) {
   double cpu = timer_cpu();
   status st = OK;
   TRY(goal_form_new(r, &s.form));
+  forget(r, &own->before, own->n);
   domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
   if (is_covered(r)) TRY(prepare(r, own, &s));
   for (int k = 0; k < own->n; ++k) {
-    TRY(find_goal(r, &s, k, own));
+    TRY(find_goal(r, own, &s, k));
     own->result[k].cpu += timer_cpu() - cpu;
     cpu = timer_cpu();
   }
+  TRY(remember(r, own, &s));
+  own->result[0].cpu += timer_cpu() - cpu;
 done:
   shared_free(&s);
   return st;
+}
+
+static status keep(run *r, void *self, archive *a) {
+  goal_state *own = self;
+  goal_history *h = &own->before;
+  int made = own->recovery != NULL;
+  PASS(archive_ints(a, "recovery", &made, 1));
+  if (archive_reads(a) && made) PASS(recover(r, own));
+  if (h->u == NULL) return OK;
+  PASS(archive_ints(a, "lost", &h->lost, 1));
+  PASS(archive_reals(a, "u", h->u, r->n_dof));
+  PASS(archive_reals(a, "sum", h->sum, (size_t)own->n));
+  return archive_reals(a, "band", h->band, (size_t)own->n);
 }
 
 static void show(const void *self, state *s) {
@@ -183,14 +308,18 @@ static void show(const void *self, state *s) {
 
 /* ---- the row ------------------------------------------------------------- */
 
+/* Factor of the contact; passes over the elements and solves of all, of each
+ * goal, and of the errors that friction remembers. */
 static status expected(const plan_sizes *s, effect_work *w) {
   const double m = plan_contact_unknowns(s), n = s->m->n.goal;
   const double passes = s->is_flat ? 6.0 : 12.0;
   const double factor = m * m * m / 3.0 / PLAN_DENSE;
-  const double each = s->elements * passes * plan_element_work(s) +
-                      2.0 * work_factor_entries(s) + 4.0 * m * m;
-  *w = (effect_work){n, "goals", s->increments,
-                     s->increments * (factor + (1.0 + n) * each)};
+  const double pass = s->elements * passes * plan_element_work(s);
+  const double solve = 2.0 * work_factor_entries(s) + 4.0 * m * m;
+  const int history = effect_is_on(&slip_history_effect, s->m);
+  *w = (effect_work){
+      n, "goals", s->increments,
+      s->increments * (factor + (1.0 + n) * pass + (n + history) * solve)};
   return OK;
 }
 
@@ -262,6 +391,7 @@ const effect_ops goals_effect = {
     .on.create = goals_new,
     .on.accept = find_goals,
     .on.show = show,
+    .on.keep = keep,
     .on.release = release,
     .columns = columns,
     .n_column = COLUMNS(columns),

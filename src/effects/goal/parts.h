@@ -17,6 +17,8 @@ typedef struct goal_form {
   double *psi;  /* [dim*n] by contact forces, contact frame */
   double *tau;  /* [ns*n_elem] by strains, per volume */
   int has_tau;
+  int sums;         /* 1: a sum over the increments, of which rows are the
+                       derivative by the motion of the last */
   int is_square;    /* 1: the energy, whose error has a quadratic part too */
   double curved;    /* contact forces times what psi is between the nodes more
                        than at them */

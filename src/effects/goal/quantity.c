@@ -27,7 +27,7 @@ static void clear(const run *r, goal_form *f) {
   memset(f->psi, 0, n_c * sizeof *f->psi);
   memset(f->tau, 0, (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
   f->value = f->curved = 0.0;
-  f->has_tau = f->is_square = 0;
+  f->has_tau = f->is_square = f->sums = 0;
   f->why = GOAL_RELIABLE;
 }
 
@@ -61,6 +61,7 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   const int dim = r->msh->dim;
   (void)g;
   f->value = r->now.energy.friction_end;
+  f->sums = 1;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       const int k = (dim - 1) * i + a - 1;

@@ -1,6 +1,6 @@
 /*
  * Edges of the contact surface: closed, stuck, curved; where its status
- * changes.
+ * changes, or it is closed at its border, where stresses may be infinite.
  */
 #include "base/memory.h"
 #include "effects/goal/parts.h"
@@ -89,11 +89,36 @@ static int by_nodes(const void *a_, const void *b_) {
   return (a->b > b->b) - (a->b < b->b);
 }
 
+/* 1: edge k of the sorted edges of all faces is of one face, and not on a plane
+ * of symmetry. */
+static int is_border(const run *r, const int *where, const goal_surface *s,
+                     int k) {
+  const contact_edge *e = &s->edge[k];
+  if (k > 0 && by_nodes(e - 1, e) == 0) return 0;
+  if (k < s->n_edge - 1 && by_nodes(e, e + 1) == 0) return 0;
+  return !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
+}
+
+/* The border where it is closed: ends of a line, edges of one face.
+ * seen[n_node] zero. */
+static void mark_border(const run *r, const int *where, int *seen,
+                        goal_surface *s) {
+  const int flat = r->msh->dim == 2;
+  for (int k = 0; k < s->n_edge; ++k) {
+    if (!flat && !is_border(r, where, s, k)) continue;
+    ++seen[s->edge[k].a];
+    ++seen[s->edge[k].b];
+  }
+  for (int q = 0; q < r->nodes.n; ++q) {
+    const int i = r->surface->node_id[q];
+    const int border = flat ? seen[i] == 1 && !goal_is_mirrored(r, q) : seen[i];
+    if (border && r->result.contact[q] != CONTACT_OPEN) s->ends[i] = 1;
+  }
+}
+
 /* Each edge once. */
-static void sort_edges(goal_surface *s) {
+static void unite_edges(goal_surface *s) {
   int n = 0;
-  if (s->n_edge == 0) return;
-  qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, by_nodes);
   for (int k = 0; k < s->n_edge; ++k)
     if (n == 0 || by_nodes(&s->edge[n - 1], &s->edge[k]) != 0)
       s->edge[n++] = s->edge[k];
@@ -104,8 +129,9 @@ status goal_surface_new(const run *r, goal_surface *s) {
   status st = OK;
   const mesh *m = r->msh;
   const int dim = m->dim;
-  int *where = NULL, n = 0;
+  int *where = NULL, *seen = NULL, n = 0;
   NEW(s->ends, m->n_node);
+  NEW(seen, m->n_node);
   TRY(goal_places(r, &where));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     n += m->group[r->m->contacts[k].group_id].n_item;
@@ -118,11 +144,14 @@ status goal_surface_new(const run *r, goal_surface *s) {
         for (int b = a + 1; b < dim; ++b) add_edge(r, v[a], v[b], where, s);
     }
   }
-  sort_edges(s);
+  if (s->n_edge > 0)
+    qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, by_nodes);
+  mark_border(r, where, seen, s);
+  unite_edges(s);
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
 done:
-  memory_free(where);
+  RELEASE(where, seen);
   return st;
 }
 
