@@ -11,10 +11,13 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
+#include "fem/supernodal/supernodal.h"
 
 #include <lapacke.h>
 #include <math.h>
 #include <string.h>
+
+enum { MOST_COLUMNS = 1024 }; /* of a supernode: with less the BLAS is slower */
 
 /* Number the unknowns; contact nodes are met in descending order and their
  * components too, so that L_cc stands reversed in A (see condense). */
@@ -139,7 +142,7 @@ static status analyse(cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
   cm->postorder = 1;
   cm->supernodal = CHOLMOD_SUPERNODAL;
   f->L = cholmod_l_analyze(a, cm);
-  if (f->L == NULL)
+  if (f->L == NULL || !supernodal_split(f->L, MOST_COLUMNS, cm))
     RAISE(ERR_MEMORY, "memory exhausted: symbolic factor of %ld unknowns",
           f->n);
   f->flops = cm->fl;

@@ -55,7 +55,8 @@ static cholmod_sparse *pattern(grid *g) {
   return A;
 }
 
-static grid *grid_new(void) {
+/* most: columns of a supernode, 0: any. */
+static grid *grid_new_of(int most) {
   grid *g = calloc(1, sizeof *g);
   for (int i = 0; i < N; ++i) g->diagonal[i] = 4.1 + 0.001 * (i % 7);
   cholmod_l_start(&g->cm);
@@ -63,6 +64,7 @@ static grid *grid_new(void) {
   cholmod_sparse *A = pattern(g);
   g->L = cholmod_l_analyze(A, &g->cm);
   cholmod_l_free_sparse(&A, &g->cm);
+  if (most > 0) ck_assert_int_eq(supernodal_split(g->L, most, &g->cm), 1);
   const long *perm = g->L->Perm;
   for (long p = 0; p < N; ++p) {
     g->of[p] = perm[p];
@@ -82,6 +84,8 @@ static grid *grid_new(void) {
   }
   return g;
 }
+
+static grid *grid_new(void) { return grid_new_of(0); }
 
 static void grid_free(grid *g) {
   supernodal_free(g->s);
@@ -191,6 +195,26 @@ START_TEST(parts_give_what_the_whole_gives) {
 }
 END_TEST
 
+/* Parts of supernodes: the same factor in less memory, for CHOLMOD too. */
+START_TEST(wide_supernodes_can_be_split) {
+  grid *g = grid_new_of(5), *h = grid_new();
+  ck_assert_int_gt(g->s->count, h->s->count);
+  ck_assert_uint_lt(g->L->xsize, h->L->xsize);
+  ck_assert_uint_lt(g->L->maxcsize, h->L->maxcsize);
+  for (int q = 0; q < g->s->count; ++q)
+    ck_assert_int_le(g->s->first[q + 1] - g->s->first[q], 5);
+  ck_assert_int_eq(factor_whole(g), -1);
+  ck_assert_double_le(left_by_solve(g), 1e-13);
+  cholmod_sparse *A = pattern(g);
+  ck_assert_int_eq(cholmod_l_factorize(A, g->L, &g->cm), 1);
+  for (size_t i = 0; i < g->L->xsize; ++i)
+    ck_assert_double_eq_tol(((double *)g->L->x)[i], g->values[i], 1e-14);
+  cholmod_l_free_sparse(&A, &g->cm);
+  grid_free(g);
+  grid_free(h);
+}
+END_TEST
+
 /* The place of the first pivot that is not positive. */
 START_TEST(indefinite_matrices_are_told) {
   grid *g = grid_new();
@@ -208,4 +232,5 @@ END_TEST
 
 UNIT_MAIN("supernodal", solves_leave_nothing_of_the_right_side,
           changes_reach_a_part_and_leave_the_bits_of_a_whole_factor,
-          parts_give_what_the_whole_gives, indefinite_matrices_are_told)
+          parts_give_what_the_whole_gives, wide_supernodes_can_be_split,
+          indefinite_matrices_are_told)

@@ -67,6 +67,100 @@ void supernodal_free(supernodal *s) {
           s->product, s->below, s);
 }
 
+/* ---- supernodes of few columns --------------------------------------------
+ */
+
+typedef struct split {
+  SuiteSparse_long count, *first, *start, *at, *row; /* as L has them */
+  SuiteSparse_long n_row, n_entry;
+} split;
+
+/* The parts of supernode q: counted, and stored where there is room. */
+static void split_one(const cholmod_factor *L, size_t q, int most, split *p) {
+  const SuiteSparse_long *first = L->super, *start = L->pi, *row = L->s;
+  const SuiteSparse_long columns = first[q + 1] - first[q];
+  const SuiteSparse_long rows = start[q + 1] - start[q];
+  const SuiteSparse_long parts = (columns + most - 1) / most;
+  for (SuiteSparse_long k = 0; k < parts; ++k) {
+    const SuiteSparse_long from = columns * k / parts;
+    const SuiteSparse_long to = columns * (k + 1) / parts;
+    if (p->row != NULL) {
+      p->first[p->count] = first[q] + from;
+      p->start[p->count] = p->n_row;
+      p->at[p->count] = p->n_entry;
+      memcpy(p->row + p->n_row, row + start[q] + from,
+             (size_t)(rows - from) * sizeof *row);
+    }
+    ++p->count;
+    p->n_row += rows - from;
+    p->n_entry += (rows - from) * (to - from);
+  }
+}
+
+/* Numbers that the updates and the solves take at most, and the parts in the
+ * place of the supernodes; of[n] is overwritten. */
+static void take_parts(cholmod_factor *L, const split *p,
+                       SuiteSparse_long *of) {
+  L->maxcsize = L->maxesize = 0;
+  for (SuiteSparse_long q = 0; q < p->count; ++q)
+    for (SuiteSparse_long c = p->first[q]; c < p->first[q + 1]; ++c) of[c] = q;
+  for (SuiteSparse_long q = 0; q < p->count; ++q) {
+    const SuiteSparse_long own = p->first[q + 1] - p->first[q];
+    const SuiteSparse_long end = p->start[q + 1];
+    const size_t below = (size_t)(end - p->start[q] - own);
+    if (below > L->maxesize) L->maxesize = below;
+    for (SuiteSparse_long i = p->start[q] + own, to; i < end; i = to) {
+      for (to = i; to < end && of[p->row[to]] == of[p->row[i]];) ++to;
+      const size_t size = (size_t)(end - i) * (size_t)(to - i);
+      if (size > L->maxcsize) L->maxcsize = size;
+    }
+  }
+  L->super = p->first;
+  L->pi = p->start;
+  L->px = p->at;
+  L->s = p->row;
+  L->nsuper = (size_t)p->count;
+  L->ssize = (size_t)p->n_row;
+  L->xsize = (size_t)p->n_entry;
+}
+
+static void free_parts(const split *p, cholmod_common *cm) {
+  const size_t n = (size_t)p->count + 1, size = sizeof *p->row;
+  cholmod_l_free(n, size, p->first, cm);
+  cholmod_l_free(n, size, p->start, cm);
+  cholmod_l_free(n, size, p->at, cm);
+  cholmod_l_free((size_t)p->n_row, size, p->row, cm);
+}
+
+int supernodal_split(cholmod_factor *L, int most, cholmod_common *cm) {
+  split p = {0},
+        old = {(SuiteSparse_long)L->nsuper, L->super, L->pi, L->px, L->s,
+               (SuiteSparse_long)L->ssize,  0};
+  const size_t size = sizeof *p.row;
+  for (size_t q = 0; q < L->nsuper; ++q) split_one(L, q, most, &p);
+  if (p.count == old.count) return 1;
+  const SuiteSparse_long count = p.count, rows = p.n_row;
+  SuiteSparse_long *of = cholmod_l_malloc(L->n, size, cm);
+  p.first = cholmod_l_malloc((size_t)p.count + 1, size, cm);
+  p.start = cholmod_l_malloc((size_t)p.count + 1, size, cm);
+  p.at = cholmod_l_malloc((size_t)p.count + 1, size, cm);
+  p.row = cholmod_l_malloc((size_t)p.n_row, size, cm);
+  const int fits = cm->status == CHOLMOD_OK;
+  if (fits) {
+    p.count = p.n_row = p.n_entry = 0;
+    for (size_t q = 0; q < L->nsuper; ++q) split_one(L, q, most, &p);
+    p.first[p.count] = (SuiteSparse_long)L->n;
+    p.start[p.count] = p.n_row;
+    p.at[p.count] = p.n_entry;
+    take_parts(L, &p, of);
+  }
+  cholmod_l_free(L->n, size, of, cm);
+  p.count = count;
+  p.n_row = rows;
+  free_parts(fits ? &old : &p, cm);
+  return fits;
+}
+
 void supernodal_close(const supernodal *s, unsigned char *mark) {
   for (int q = 0; q < s->count; ++q)
     if (mark[q] && s->parent[q] >= 0) mark[s->parent[q]] = 1;

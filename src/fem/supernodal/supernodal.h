@@ -34,6 +34,10 @@ typedef struct supernodal_part {
   int n, *list; /* ascending */
 } supernodal_part;
 
+/* Supernodes of a symbolic factor with more than so many columns become
+ * several, for CHOLMOD too: nearly all the zeros above their diagonal and most
+ * of the largest update are saved. 0: no memory. */
+int supernodal_split(cholmod_factor *L, int most, cholmod_common *cm);
 /* L: symbolic, borrowed. ERR_MEMORY. */
 status supernodal_new(const cholmod_factor *L, supernodal **out);
 void supernodal_free(supernodal *s); /* accepts NULL */
