@@ -196,13 +196,17 @@ END_TEST
 START_TEST(peak_and_width_of_the_sphere) {
   static const char goals[] =
       "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE\n"
-      "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=POLE\n";
+      "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=POLE\n"
+      "*PARAMETER\nR3 = \"0.3*A\"\n"
+      "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=POLE\n<R3>, 0.\n";
   job j = with_goals("input/hertz_sphere/hertz_sphere", goals, "-D NC=16");
   check_goal(&j, 0, 4688.3, 0.7, 1.5, 1.0);
   check_goal(&j, 1, 1.0016 * 0.31913, 0.5, 2.0, 1.0);
+  const told at = told_of(&j, 2);
+  ck_assert_double_eq_tol(at.value + at.error, 4688.3 * sqrt(1.0 - 0.09), 40.0);
   job_end(&j);
   j = with_goals("input/hertz_sphere/hertz_sphere_3d", goals, "");
-  check_goal(&j, 0, 4688.3, 0.5, 2.0, 1.0);
+  check_goal(&j, 0, 4688.3, 0.3, 2.0, 1.0);
   ck_assert(isnan(told_of(&j, 1).value));
   ck_assert(has_verdict(&j, "WIDE", "not_covered"));
   job_end(&j);
@@ -259,7 +263,136 @@ START_TEST(goals_that_are_not_covered_say_so) {
 }
 END_TEST
 
+/* A block of two parts side by side, 4 x 2, with "goals" and a contact. */
+static void write_block(job *j, double size, const char *right,
+                        const char *goals) {
+  job_write(j, "block.geo",
+            "h = %g;\nPoint(1) = {0, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
+            "Point(3) = {4, 0, 0, h};\nPoint(4) = {4, 2, 0, 8*h};\n"
+            "Point(5) = {2, 2, 0, 8*h};\nPoint(6) = {0, 2, 0, 8*h};\n"
+            "For k In {1 : 5}\n  Line(k) = {k, k + 1};\nEndFor\n"
+            "Line(6) = {6, 1};\nLine(7) = {2, 5};\n"
+            "Curve Loop(1) = {1, 7, 5, 6};\nPlane Surface(1) = {1};\n"
+            "Curve Loop(2) = {2, 3, 4, -7};\nPlane Surface(2) = {2};\n"
+            "Physical Surface(\"LEFT\") = {1};\n"
+            "Physical Surface(\"RIGHT\") = {2};\n"
+            "Physical Curve(\"FOOT\") = {1, 2};\n"
+            "Physical Curve(\"TOP\") = {4, 5};\n"
+            "Physical Curve(\"SIDE\") = {6};\n",
+            size);
+  job_write(j, "block.inp",
+            "*MESH, FILE=block.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=LEFT, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=RIGHT, MATERIAL=M%s\n%s"
+            "*END STEP\n",
+            right, goals);
+  const int code = job_run(j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+}
+
+/* Two parabolas below a block: the zone of the larger pressure, from the first
+ * to the last closed node of it but for one element. */
+START_TEST(width_is_that_of_one_zone) {
+  job j = job_begin("block");
+  write_block(
+      &j, 0.025, "",
+      "*OBSTACLE, NAME=O, TYPE=GAP\n\"min((x - 1)^2/8 + 0.008, (x - 3)^2/4)\"\n"
+      "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
+      "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n*STEP\n*STATIC\n"
+      "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.05\n*PRINT, GOALS, ZONES\n");
+  dat z = job_table(&j, "ZONES", -1);
+  ck_assert_int_eq(z.n_row, 5);
+  ck_assert_double_gt(dat_at(&z, 1, "extent"), 0.2);
+  ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&z, 3, "extent"), 0.025);
+  dat_free(&z);
+  job_end(&j);
+}
+END_TEST
+
+/* A uniform pressure, by means that an end of the surface cuts, that are
+ * shorter than an edge, off the surface, and of two thicknesses. */
+START_TEST(means_of_a_pressure_lie_on_its_surface) {
+  static const char *cards =
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+      "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
+      "*GOAL, NAME=MIRROR, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=1.\n"
+      "0.5, 0.\n"
+      "*GOAL, NAME=CUT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.51\n3.5, 0.\n"
+      "*GOAL, NAME=WHOLE, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.49\n"
+      "3.5, 0.\n"
+      "*GOAL, NAME=SHORT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.09\n"
+      "1.5, 0.\n"
+      "*GOAL, NAME=FEW, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.15\n"
+      "1.5, 0.\n"
+      "*GOAL, NAME=OFF, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.5\n"
+      "2., 1.\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 10.\n"
+      "*PRINT, GOALS\n";
+  job j = job_begin("block");
+  write_block(&j, 0.1, "", cards);
+  ck_assert(has_verdict(&j, "MIRROR", "reliable"));
+  ck_assert(has_verdict(&j, "CUT", "no_end"));
+  ck_assert(has_verdict(&j, "WHOLE", "reliable"));
+  ck_assert(has_verdict(&j, "SHORT", "no_zone"));
+  ck_assert(has_verdict(&j, "FEW", "few_nodes"));
+  ck_assert(has_verdict(&j, "OFF", "no_zone"));
+  for (int k = 0; k < 3; k += 2)
+    ck_assert_double_eq_tol(told_of(&j, k).value, 10.0, 0.05);
+  write_block(&j, 0.1, ", THICKNESS=2.", cards);
+  ck_assert(has_verdict(&j, "MIRROR", "not_covered"));
+  ck_assert(isnan(told_of(&j, 0).value));
+  job_end(&j);
+}
+END_TEST
+
+/* The same in space, where a mean goes on behind planes of symmetry, and a node
+ * that a support holds in the middle is on none. */
+START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
+  job j = job_begin("cube");
+  job_write(&j, "cube.geo",
+            "h = 0.25;\nPoint(1) = {0, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
+            "Point(3) = {2, 2, 0, h};\nPoint(4) = {0, 2, 0, h};\n"
+            "Point(5) = {1, 1, 0, h};\n"
+            "For k In {1 : 4}\n  Line(k) = {k, k %% 4 + 1};\nEndFor\n"
+            "Curve Loop(1) = {1 ... 4};\nPlane Surface(1) = {1};\n"
+            "Point{5} In Surface{1};\n"
+            "e[] = Extrude {0, 0, 1} { Surface{1}; };\n"
+            "Physical Volume(\"BODY\") = {e[1]};\n"
+            "Physical Surface(\"FOOT\") = {1};\n"
+            "Physical Surface(\"TOP\") = {e[0]};\n"
+            "Physical Surface(\"YS\") = {e[2]};\n"
+            "Physical Surface(\"XS\") = {e[5]};\n"
+            "Physical Point(\"PIN\") = {5};\n");
+  job_write(&j, "cube.inp",
+            "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
+            "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
+            "*GOAL, NAME=PIN, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+            "1., 1., 0.\n"
+            "*GOAL, NAME=NEAR, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+            "0.5, 0.4, 0.\n"
+            "*GOAL, NAME=CORNER, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+            "0., 0., 0.\n"
+            "*GOAL, NAME=CUT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+            "1.5, 1., 0.\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nXS, 1\nYS, 2\nPIN, 1, 2\n*DSLOAD\n"
+            "TOP, P, 10.\n*PRINT, GOALS\n*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  for (int k = 0; k < 3; ++k) {
+    const told g = told_of(&j, k);
+    ck_assert_double_eq_tol(g.value, 10.0, 0.5);
+    ck_assert_double_eq_tol(g.value + g.error, 10.0, 0.1);
+  }
+  ck_assert(has_verdict(&j, "CUT", "no_end"));
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           friction_force_of_the_block, errors_of_earlier_increments_are_in_it,
           both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
-          energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so)
+          energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
+          width_is_that_of_one_zone, means_of_a_pressure_lie_on_its_surface,
+          means_in_space_go_on_behind_planes_of_symmetry)

@@ -218,6 +218,8 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
+  if (f->is_coarse && out->verdict == GOAL_RELIABLE)
+    out->verdict = GOAL_FEW_NODES;
   if (e.magnitude <= ROUNDING * fabs(value)) out->verdict = GOAL_RELIABLE;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;

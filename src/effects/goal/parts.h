@@ -19,6 +19,7 @@ typedef struct goal_form {
   int has_tau;
   int sums;         /* 1: a sum over the increments, of which rows are the
                        derivative by the motion of the last */
+  int is_coarse;    /* 1: a mean over less than two elements to each side */
   int is_square;    /* 1: the energy, whose error has a quadratic part too */
   double curved;    /* contact forces times what psi is between the nodes more
                        than at them */

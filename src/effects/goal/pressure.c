@@ -9,8 +9,7 @@
  * which are 1 over all and 0 times t^2: the error for a smooth pressure is of
  * the order rho^4 (Hertz, rho half the half width: 2.6e-4 of the peak). A line
  * where the contact is one, and a disc in space and, within rho of it, on the
- * axis. What is beyond
- * a plane of symmetry is on the other side of it.
+ * axis. What is beyond a plane of symmetry is on the other side of it.
  *
  * The width of a zone is that of the pressure c sqrt(a - x) at its end,
  *
@@ -34,10 +33,11 @@ typedef struct weight {
   double thickness;
   double origin[3], t[3]; /* m; unit tangent of a line */
   double radius;          /* m */
-  double factor;          /* of a disc: 2 for each plane of symmetry */
+  double plane[3];        /* of symmetry, by its coordinate, m; HUGE_VAL */
   double mirror[2];       /* planes of symmetry along a line, m; HUGE_VAL */
   double x0, N1, N2;      /* m, N, N m: of an end */
   double sign;            /* of the side of the end */
+  double most;            /* sign times the coordinate where the zone ends, m */
   int n;                  /* closed nodes beyond x0 */
 } weight;
 
@@ -67,18 +67,33 @@ static double on_line(const weight *w, const double *x) {
   return sum > 0.0 || sum < 0.0 ? -sum * per_length(w, x) : 0.0;
 }
 
-static double on_disc(const weight *w, const double *x) {
-  double square = 0.0;
-  for (int c = 0; c < w->dim; ++c)
-    square += (x[c] - w->origin[c]) * (x[c] - w->origin[c]);
-  const double t2 = square / (w->radius * w->radius), q = 1.0 - t2;
+static double disc_weight(double square, double radius) {
+  const double t2 = square / (radius * radius), q = 1.0 - t2;
   if (!(q > 0.0)) return 0.0;
-  return -w->factor * 8.0 / (PI * w->radius * w->radius) * (1.0 - 2.5 * t2) *
-         q * q;
+  return 8.0 / (PI * radius * radius) * (1.0 - 2.5 * t2) * q * q;
+}
+
+/* x and its images in the planes of symmetry, each plane a bit of "image". */
+static double on_disc(const weight *w, const double *x) {
+  double sum = 0.0;
+  for (int image = 0; image < 1 << w->dim; ++image) {
+    double square = 0.0;
+    for (int c = 0; c < w->dim; ++c) {
+      const double at = image >> c & 1 ? 2.0 * w->plane[c] - x[c] : x[c];
+      square += (at - w->origin[c]) * (at - w->origin[c]);
+    }
+    sum += disc_weight(square, w->radius); /* 0 where there is no plane */
+  }
+  return -sum;
+}
+
+/* Distance from x0 towards the end, m; 0: not between both. */
+static double beyond(const weight *w, double s) {
+  return w->sign * s > w->most ? 0.0 : fmax(w->sign * (s - w->x0), 0.0);
 }
 
 static double at_end(const weight *w, const double *x) {
-  const double L = w->sign * (along(w, x) - w->x0);
+  const double L = beyond(w, along(w, x));
   if (!(L > 0.0)) return 0.0;
   return -1.75 * (L * L / w->N1 - L * w->N2 / (w->N1 * w->N1)) *
          per_length(w, x);
@@ -263,7 +278,7 @@ static weight weight_at(const run *r, const goal_card *g, int q) {
   const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
   weight w = {.dim = dim,
               .axi = r->faces.input.axisymmetric,
-              .factor = 1.0,
+              .plane = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
               .thickness = r->faces.face_weight[of->item_id[0]]};
   for (int c = 0; c < dim; ++c) {
     w.origin[c] = s->x[dim * q + c];
@@ -302,6 +317,44 @@ static double half_of(const run *r, const line *l, int first, int last) {
   return (half ? 0.5 : 0.25) * (l->s[last] - l->s[first]);
 }
 
+/* Near the axis the mean is over a disc, which has its middle there. */
+static void set_disc_of_axis(const goal_card *g, weight *w, goal_form *f) {
+  if (!(w->origin[0] < w->radius)) return;
+  if (g->has_point && w->origin[0] > 0.0) {
+    if (g->radius > 0.0) f->why = GOAL_NO_END;
+    w->radius = w->origin[0];
+    return;
+  }
+  w->origin[0] = 0.0;
+  w->at = on_disc;
+}
+
+/* A mean takes nodes on both sides of its middle, which lies on the surface. */
+static void judge_mean(const goal_card *g, const weight *w, const double *near,
+                       double longest, goal_form *f) {
+  double away = 0.0;
+  for (int c = 0; c < w->dim && g->has_point; ++c)
+    away = hypot(away, g->point[c] - near[c]);
+  f->is_coarse = w->radius < 2.0 * longest;
+  if (f->why == GOAL_RELIABLE && (w->radius < longest || away > w->radius))
+    f->why = GOAL_NO_ZONE;
+}
+
+/* The longest edge within the radius, and whether it is cut by an end of the
+ * surface that carries; l->s is from the middle. */
+static void judge_line(const run *r, const goal_card *g, const line *l,
+                       const weight *w, goal_form *f) {
+  double longest = 0.0;
+  for (int k = 1; k < l->n; ++k)
+    if (l->s[k] > -w->radius && l->s[k - 1] < w->radius)
+      longest = fmax(longest, l->s[k] - l->s[k - 1]);
+  judge_mean(g, w, r->surface->x + w->dim * l->node[l->peak], longest, f);
+  for (int k = 0; k<l->n; k += l->n> 1 ? l->n - 1 : 1)
+    if (fabs(l->s[k]) < w->radius && is_closed(r, l, k) &&
+        !goal_is_mirrored(r, l->node[k]) && f->why == GOAL_RELIABLE)
+      f->why = GOAL_NO_END;
+}
+
 /* Where the largest pressure may be infinite there is no peak. */
 static status place_on_line(const run *r, const goal_card *g, int peak,
                             weight *w, goal_form *f) {
@@ -325,63 +378,145 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
   for (int k = 0; k < l.n; ++k) l.s[k] += moved;
   set_mirrors(r, &l, w);
   w->at = on_line;
-  if (w->axi && w->origin[0] < w->radius) {
-    w->origin[0] = 0.0;
-    w->at = on_disc;
-  }
+  if (w->axi) set_disc_of_axis(g, w, f);
+  judge_line(r, g, &l, w, f);
 done:
   line_free(&l);
   return st;
 }
 
-/* 1: a node at the border of its group, and on no plane of symmetry. */
-static status is_at_border(const run *r, const goal_card *g, int q, int *is) {
-  const mesh *m = r->msh;
-  const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
-  const int at = r->surface->node_id[q];
-  OWNED int *seen = NULL;
-  PASS_NEW(seen, m->n_node);
-  for (int k = 0; k < of->n_item; ++k) {
-    const int *v = m->face + 3 * of->item_id[k];
-    for (int a = 0; a < 3; ++a)
-      if (v[a] == at) {
-        ++seen[v[(a + 1) % 3]];
-        ++seen[v[(a + 2) % 3]];
-      }
-  }
-  *is = 0;
-  for (int i = 0; i < m->n_node; ++i) *is |= seen[i] == 1;
-  *is = *is && !goal_is_mirrored(r, q);
+/* ---- a disc in space ----------------------------------------------------- */
+
+typedef struct side {
+  int v[2]; /* mesh nodes, ascending */
+} side;
+
+static int by_ends(const void *a_, const void *b_) {
+  const side *a = a_, *b = b_;
+  if (a->v[0] != b->v[0]) return a->v[0] < b->v[0] ? -1 : 1;
+  return (a->v[1] > b->v[1]) - (a->v[1] < b->v[1]);
+}
+
+/* Sides of the faces of a group, sorted; new. */
+static status sides_of(const mesh *m, const mesh_group *of, side **out) {
+  PASS_NEW(*out, 3 * of->n_item);
+  for (int k = 0; k < of->n_item; ++k)
+    for (int a = 0; a < 3; ++a) {
+      const int *v = m->face + 3 * of->item_id[k];
+      const int p = v[a], q = v[(a + 1) % 3];
+      (*out)[3 * k + a] = (side){{p < q ? p : q, p < q ? q : p}};
+    }
+  qsort(*out, 3 * (size_t)of->n_item, sizeof **out, by_ends);
   return OK;
 }
 
-static status place_on_disc(const run *r, const goal_card *g, int peak,
-                            weight *w, goal_form *f) {
-  int border = 0, closed = 0;
+/* What a disc meets. */
+typedef struct rim {
+  int cut;        /* 1: by a border that carries and is on no plane */
+  double longest; /* side of a face, m */
+} rim;
+
+/* The planes of symmetry that a side of the border lies in; 0: none. */
+static int add_planes(const run *r, const side *e, weight *w) {
+  const mesh *m = r->msh;
+  const unsigned char *fixed = r->body.d.fixed;
+  int any = 0;
+  for (int c = 0; c < 3; ++c) {
+    const int i = 3 * e->v[0] + c, j = 3 * e->v[1] + c;
+    if (!fixed[i] || !fixed[j] || fabs(m->x[i] - m->x[j]) > 1e-9 * m->size)
+      continue;
+    w->plane[c] = m->x[i];
+    any = 1;
+  }
+  return any;
+}
+
+static int is_near(const run *r, int node, const weight *w, double radius) {
+  double away = 0.0;
+  for (int c = 0; c < 3; ++c)
+    away = hypot(away, r->msh->x[3 * node + c] - w->origin[c]);
+  return away <= radius;
+}
+
+static int carries(const run *r, const int *where, int node) {
+  return where[node] >= 0 && r->result.contact[where[node]] != CONTACT_OPEN;
+}
+
+/* The sides that have a node within a radius of the middle. */
+static status look_round(const run *r, const goal_card *g, double radius,
+                         weight *w, rim *out) {
+  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  const int n = 3 * of->n_item;
+  OWNED side *e = NULL;
+  OWNED int *where = NULL;
+  PASS(sides_of(r->msh, of, &e));
+  PASS(goal_places(r, &where));
+  *out = (rim){0, 0.0};
+  for (int k = 0, last; k < n; k = last) {
+    const int *v = e[k].v;
+    for (last = k + 1; last < n && by_ends(e + k, e + last) == 0;) ++last;
+    if (!is_near(r, v[0], w, radius) && !is_near(r, v[1], w, radius)) continue;
+    double length = 0.0;
+    for (int c = 0; c < 3; ++c)
+      length = hypot(length, r->msh->x[3 * v[1] + c] - r->msh->x[3 * v[0] + c]);
+    out->longest = fmax(out->longest, length);
+    if (last == k + 1 && !add_planes(r, e + k, w))
+      out->cut |= carries(r, where, v[0]) || carries(r, where, v[1]);
+  }
+  return OK;
+}
+
+/* Half the radius of a disc of the area that is closed, m. */
+static status set_half_of_disc(const run *r, const goal_card *g, weight *w,
+                               goal_form *f) {
+  int closed = 0;
   double area = 0.0;
-  PASS(is_at_border(r, g, peak, &border));
-  for (int a = 1; a < 3; ++a)
-    if (r->surface->held[3 * peak + a]) w->factor *= 2.0;
+  rim border;
   for (int q = 0; q < r->nodes.n; ++q)
     if (is_on(r, g, q) && r->result.contact[q] != CONTACT_OPEN) {
       area += r->surface->area[q];
       ++closed;
     }
-  if (border) f->why = GOAL_NO_PEAK;
   if (closed < 6) f->why = GOAL_NO_ZONE;
-  w->radius = g->radius > 0.0 ? g->radius : 0.5 * sqrt(w->factor * area / PI);
-  w->at = on_disc;
-  if (g->has_point) memcpy(w->origin, g->point, sizeof w->origin);
+  w->radius = 0.5 * sqrt(area / PI);
+  PASS(look_round(r, g, w->radius, w, &border));
+  for (int c = 0; c < 3; ++c)
+    if (isfinite(w->plane[c])) w->radius *= sqrt(2.0);
   return OK;
+}
+
+static status place_on_disc(const run *r, const goal_card *g, int peak,
+                            weight *w, goal_form *f) {
+  const double *at = r->surface->x + 3 * peak;
+  rim border;
+  PASS(look_round(r, g, 1e-9 * r->msh->size, w, &border));
+  if (border.cut) f->why = GOAL_NO_PEAK;
+  w->at = on_disc;
+  w->radius = g->radius;
+  if (!(g->radius > 0.0)) PASS(set_half_of_disc(r, g, w, f));
+  if (g->has_point) memcpy(w->origin, g->point, sizeof w->origin);
+  PASS(look_round(r, g, w->radius, w, &border));
+  judge_mean(g, w, at, border.longest, f);
+  if (border.cut && f->why == GOAL_RELIABLE) f->why = GOAL_NO_END;
+  return OK;
+}
+
+/* 1: forces per length are pressures times one thickness. */
+static int has_one_thickness(const run *r, const goal_card *g) {
+  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  const double *thickness = r->faces.face_weight;
+  int same = 1;
+  for (int k = 0; k < of->n_item; ++k)
+    same &= thickness[of->item_id[k]] == thickness[of->item_id[0]];
+  return same;
 }
 
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {
   const int peak = peak_of(r, g);
   f->value = NAN;
-  if (peak < 0) {
-    f->why = GOAL_NO_ZONE;
-    return OK;
-  }
+  if (peak < 0) f->why = GOAL_NO_ZONE;
+  if (!has_one_thickness(r, g)) f->why = GOAL_NOT_COVERED;
+  if (f->why != GOAL_RELIABLE) return OK;
   weight w = weight_at(r, g, peak);
   if (w.dim == 2)
     PASS(place_on_line(r, g, peak, &w, f));
@@ -401,7 +536,7 @@ static double end_for(const run *r, const line *l, weight *w, double x0) {
   w->n = 0;
   for (int k = 0; k < l->n; ++k) {
     const double *x = r->surface->x + 2 * l->node[k];
-    const double L = w->sign * (l->s[k] - x0);
+    const double L = beyond(w, l->s[k]);
     if (!(L > 0.0)) continue;
     const double p = -r->now.rc[2 * l->node[k]] * per_length(w, x);
     w->n += p > 0.0;
@@ -438,6 +573,8 @@ static int start_end(const run *r, const line *l, int k, int at,
   z->w[k] = *w;
   z->w[k].at = at_end;
   z->w[k].sign = k == 0 ? -1.0 : 1.0;
+  z->w[k].most =
+      border ? HUGE_VAL : z->w[k].sign * l->s[at + (k == 0 ? -1 : 1)];
   z->at[k] = l->s[at];
   z->mirrored[k] = border && goal_is_mirrored(r, l->node[at]);
   return z->mirrored[k] || !border;
@@ -473,7 +610,7 @@ status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
   line l = {0};
   const int peak = peak_of(r, g);
   f->value = NAN;
-  if (r->msh->dim == 3) f->why = GOAL_NOT_COVERED;
+  if (r->msh->dim == 3 || !has_one_thickness(r, g)) f->why = GOAL_NOT_COVERED;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (f->why != GOAL_RELIABLE) return OK;
   const weight w = weight_at(r, g, peak);

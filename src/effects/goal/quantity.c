@@ -27,7 +27,7 @@ static void clear(const run *r, goal_form *f) {
   memset(f->psi, 0, n_c * sizeof *f->psi);
   memset(f->tau, 0, (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
   f->value = f->curved = 0.0;
-  f->has_tau = f->is_square = f->sums = 0;
+  f->has_tau = f->is_square = f->is_coarse = f->sums = 0;
   f->why = GOAL_RELIABLE;
 }
 
