@@ -102,6 +102,26 @@ void space_sizes(const mesh *m, const double *eta, double target,
   for (int k = 0; k < SWEEPS && limit_growth(m, size); ++k) continue;
 }
 
+void space_lengths(const mesh *m, double *size) {
+  for (int i = 0; i < m->n_node; ++i) size[i] = HUGE_VAL;
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int a = 0; a <= m->dim; ++a) {
+      double *at = &size[m->elem[(m->dim + 1) * e + a]];
+      *at = fmin(*at, element_length(m, e));
+    }
+}
+
+double space_growth(const mesh *m, const double *size) {
+  double sum = 0.0;
+  for (int e = 0; e < m->n_elem; ++e) {
+    double mean = 0.0;
+    for (int a = 0; a <= m->dim; ++a)
+      mean += size[m->elem[(m->dim + 1) * e + a]] / (m->dim + 1);
+    sum += pow(element_length(m, e) / mean, m->dim);
+  }
+  return sum / m->n_elem;
+}
+
 enum { MAX_BASIS = 4, MAX_NS = 6 };
 static const double FLAT = 1e-6; /* -, pivot of a fit without enough points */
 

@@ -61,5 +61,9 @@ double space_product(const space_recovery *s, int elem_id, const space_field *a,
  * within a factor of 8 of the target) or 2 up.
  */
 void space_sizes(const mesh *m, const double *eta, double target, double *size);
+/* The lengths size[n_node] that it has. */
+void space_lengths(const mesh *m, double *size);
+/* How many times the elements a mesh of these sizes has, about, -. */
+double space_growth(const mesh *m, const double *size);
 
 #endif

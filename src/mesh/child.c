@@ -43,7 +43,8 @@
   X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                 \
   X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)          \
   X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                      \
-  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetAsBackgroundMesh)            \
+  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetNumbers)                     \
+  X(ModelMeshFieldSetAsBackgroundMesh)                                       \
   X(ModelMeshRemoveConstraints) X(Clear) X(Write)                            \
   X(ViewAdd) X(ViewAddListData) X(Free)
 /* clang-format on */
@@ -290,9 +291,9 @@ static void fix_options(const child *c) {
 
 /* The earlier mesh as a view of gmsh: per element the coordinates x of all
  * vertices, then y, then z, then the sizes there, in units of the .geo. */
-static double *view_of_sizes(const child *c, size_t *n) {
+static double *view_of_sizes(const child *c, const mesh_sizes *s, size_t *n) {
   const mesh_source *r = c->request->source;
-  const mesh *m = r->old;
+  const mesh *m = s->of;
   size_t vertices = (size_t)m->dim + 1, k = 0;
   *n = 4 * vertices * (size_t)m->n_elem;
   double *data = memory_new(*n, sizeof *data);
@@ -302,8 +303,7 @@ static double *view_of_sizes(const child *c, size_t *n) {
     for (int i = 0; i < 3; ++i)
       for (size_t a = 0; a < vertices; ++a)
         data[k++] = (i < m->dim ? m->x[m->dim * node[a] + i] : m->z) / r->scale;
-    for (size_t a = 0; a < vertices; ++a)
-      data[k++] = r->size[node[a]] / r->scale;
+    for (size_t a = 0; a < vertices; ++a) data[k++] = s->at[node[a]] / r->scale;
   }
   return data;
 }
@@ -356,28 +356,44 @@ static void free_counts(const child *c) {
   check(c, error, "read the geometry again");
 }
 
-/* Sizes wanted at the nodes of an earlier mesh in place of those of the .geo.
- */
-static void set_sizes(const child *c) {
+/* Field of the sizes at the nodes of an earlier mesh. */
+static int add_sizes(const child *c, const mesh_sizes *s) {
   size_t n;
   int error;
-  double *data = view_of_sizes(c, &n);
-  const mesh *m = c->request->source->old;
+  double *data = view_of_sizes(c, s, &n);
   int view = c->gmsh.ViewAdd("sizes", -1, &error);
   check(c, error, "take the sizes");
-  c->gmsh.ViewAddListData(view, m->dim == 2 ? "ST" : "SS", m->n_elem, data, n,
-                          &error);
+  c->gmsh.ViewAddListData(view, s->of->dim == 2 ? "ST" : "SS", s->of->n_elem,
+                          data, n, &error);
   check(c, error, "take the sizes");
   int field = c->gmsh.ModelMeshFieldAdd("PostView", -1, &error);
   check(c, error, "take the sizes");
   c->gmsh.ModelMeshFieldSetNumber(field, "ViewTag", view, &error);
   check(c, error, "take the sizes");
-  c->gmsh.ModelMeshFieldSetAsBackgroundMesh(field, &error);
+  memory_free(data);
+  return field;
+}
+
+/* In place of those of the .geo. */
+static void set_sizes(const child *c) {
+  const mesh_sizes *s = c->request->source->sizes;
+  double fields[MESH_SIZES];
+  size_t n = 0;
+  int error;
+  for (; n < MESH_SIZES && s[n].of != NULL; ++n)
+    fields[n] = add_sizes(c, &s[n]);
+  int least = (int)fields[0];
+  if (n > 1) {
+    least = c->gmsh.ModelMeshFieldAdd("Min", -1, &error);
+    check(c, error, "take the sizes");
+    c->gmsh.ModelMeshFieldSetNumbers(least, "FieldsList", fields, n, &error);
+    check(c, error, "take the sizes");
+  }
+  c->gmsh.ModelMeshFieldSetAsBackgroundMesh(least, &error);
   check(c, error, "take the sizes");
   set(c, "Mesh.MeshSizeExtendFromBoundary", 0);
   set(c, "Mesh.MeshSizeFromPoints", 0);
   set(c, "Mesh.MeshSizeFromCurvature", 0);
-  memory_free(data);
 }
 
 /* 1: there is an options file (x.geo.opt), which gmsh would execute after the
@@ -583,13 +599,13 @@ void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
   load(c);
   start(c);
   open_geo(c);
-  if (request->source->size != NULL) free_counts(c);
+  if (request->source->sizes[0].of != NULL) free_counts(c);
   int dim = send_groups(c);
   const char *doing = "read the file";
   if (dim >= 2 && !has_elements(c, dim)) {
     doing = "mesh the geometry";
     fix_options(c);
-    if (request->source->size != NULL) set_sizes(c);
+    if (request->source->sizes[0].of != NULL) set_sizes(c);
     c->gmsh.ModelMeshGenerate(dim, &error);
     check(c, error, doing);
   }

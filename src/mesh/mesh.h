@@ -65,16 +65,22 @@ typedef struct mesh_number { /* a number handed to a .geo file */
   double value;
 } mesh_number;
 
+/* Lengths of elements at the nodes of a mesh. */
+typedef struct mesh_sizes {
+  const mesh *of;
+  const double *at; /* [of->n_node] length */
+} mesh_sizes;
+
 /* Where a mesh comes from. */
+enum { MESH_SIZES = 2 };
 typedef struct mesh_source {
   const char *file; /* .msh, or .geo to be meshed */
   double scale;     /* coordinates are multiplied by it, - */
   int n_number;
   const mesh_number *numbers; /* [n_number] for a .geo */
-  /* A .geo meshed again: the lengths its elements shall have, at the nodes of
-   * an earlier mesh of it, length; both NULL: the sizes of the .geo. */
-  const mesh *old;
-  const double *size; /* [old->n_node] */
+  /* A .geo meshed again: the lengths its elements shall have, the least of
+   * those at the nodes of earlier meshes of it; NULL: those of the .geo. */
+  mesh_sizes sizes[MESH_SIZES];
   int meets; /* 1: its bodies meet, no warning where they touch or overlap */
 } mesh_source;
 

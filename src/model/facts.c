@@ -284,3 +284,13 @@ const char *goal_unit(const goal_card *g) {
       [GOAL_FRICTION] = "force*length"};
   return units[g->quantity];
 }
+
+const goal_card *model_targeted_goal(const model *m) {
+  for (int i = 0; i < m->n.goal; ++i)
+    if (m->accuracy.goals[i].target > 0.0) return &m->accuracy.goals[i];
+  return NULL;
+}
+
+int model_has_target(const model *m) {
+  return m->accuracy.target.percent > 0.0 || model_targeted_goal(m) != NULL;
+}

@@ -347,8 +347,9 @@ typedef struct closed_form {
 typedef struct accuracy_target { /* *ACCURACY, TARGET= */
   double percent;                /* of the energy norm; 0: none */
   double max_cpu, max_memory;    /* s, MB; 0: no limit */
-  int max_passes;
+  int max_passes;                /* 0: the default */
 } accuracy_target;
+enum { MAX_PASSES_DEFAULT = 8 };
 
 /* *GOAL: a quantity whose error the user wants to know. */
 typedef enum {
@@ -373,6 +374,8 @@ typedef struct goal_card {
   int group_id, node_id; /* set by model_check; -1: none */
   int component;
   double radius; /* of the mean of a pressure, m; 0: chosen */
+  double target; /* error to reach, its unit or % of its value; 0: none */
+  int in_percent;
   int has_point;
   double point[3]; /* m */
   place at, group_at, point_at;
@@ -555,6 +558,9 @@ int model_has_pairs(const model *m);
 int model_has_axis(const model *m);
 /* "force", "length", ... */
 const char *goal_unit(const goal_card *g);
+/* The first *GOAL with TARGET=, or NULL; 1: some error is to be reached. */
+const goal_card *model_targeted_goal(const model *m);
+int model_has_target(const model *m);
 /* 1: the law of an element counts. */
 int model_flows(const model *m, int elem_id);
 /* The last of an effect's cards for a contact, -1: for any; NULL: none. */

@@ -188,14 +188,35 @@ static void write_goals(json *w, const job *j) {
   json_close(w, ']');
 }
 
-static void write_pass(json *w, const output_options *o, const pass_row *r) {
+static void write_pass_goals(json *w, const job *j, const pass_goal *g) {
+  json_open(w, "goals", '[');
+  for (int i = 0; i < j->m->n.goal; ++i) {
+    json_open(w, NULL, '{');
+    json_string(w, "goal", j->m->accuracy.goals[i].name);
+    json_real(w, "value", g[i].found.value);
+    json_real(w, "error", g[i].found.error);
+    json_real(w, "band", g[i].found.band);
+    json_real(w, "solver_error", g[i].found.solver);
+    json_real(w, "error_at_most", g[i].off);
+    if (j->m->accuracy.goals[i].target > 0.0)
+      json_real(w, "target", g[i].allowed);
+    json_string(w, "verdict", goal_verdict_word(g[i].found.verdict));
+    json_close(w, '}');
+  }
+  json_close(w, ']');
+}
+
+static void write_pass(json *w, const job *j, int i) {
+  const pass_table *t = &j->run->passes;
+  const pass_row *r = &t->rows[i];
   json_open(w, NULL, '{');
   json_count(w, "unknowns", r->unknowns);
   json_real(w, "mesh_error_percent", r->mesh);
   json_real(w, "time_error_percent", r->time);
   json_real(w, "solver_error_percent", r->solver);
   json_real(w, "total_error_percent", r->total);
-  if (!o->no_timing) json_real(w, "cpu", r->cpu);
+  if (t->goals != NULL) write_pass_goals(w, j, t->goals + i * j->m->n.goal);
+  if (!j->o->no_timing) json_real(w, "cpu", r->cpu);
   json_string(w, "changed_next", r->change);
   json_close(w, '}');
 }
@@ -204,10 +225,10 @@ static void write_passes(json *w, const job *j) {
   const pass_table *t = &j->run->passes;
   if (t->n == 0) return;
   json_open(w, "target", '{');
-  json_real(w, "percent", t->target);
+  if (t->target > 0.0) json_real(w, "percent", t->target);
   json_flag(w, "reached", t->why[0] == '\0');
   json_open(w, "passes", '[');
-  for (int i = 0; i < t->n; ++i) write_pass(w, j->o, &t->rows[i]);
+  for (int i = 0; i < t->n; ++i) write_pass(w, j, i);
   json_close(w, ']');
   json_close(w, '}');
 }

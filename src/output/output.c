@@ -141,9 +141,8 @@ static status verdict_of(status run, int unsettled) {
   return run == OK && unsettled > 0 ? ERR_UNSETTLED : run;
 }
 
-void output_passes(output *o, double target, int n, const pass_row *rows,
-                   const pass_row *forecast, const char *why) {
-  o->run.passes = (pass_table){target, n, rows, forecast, why};
+void output_passes(output *o, const pass_table *passes) {
+  o->run.passes = *passes;
 }
 
 /* The last record, once more in files of one grid. */

@@ -23,10 +23,9 @@ history_sink output_sink(output *o);
 /* Restart data of the files, into an archive that is written before the next
  * increment; all files are synchronised. */
 status output_keep(output *o, archive *a);
-/* The passes so far, for listing and JSON; forecast of a tenth of the error;
- * why the target is missed, or "". All borrowed until output_close. */
-void output_passes(output *o, double target, int n, const pass_row *rows,
-                   const pass_row *forecast, const char *why);
+/* The passes so far, for listing and JSON, with the forecast of a tenth of the
+ * error. Its arrays are borrowed until output_close. */
+void output_passes(output *o, const pass_table *passes);
 /*
  * Close with the outcome of the run; writes the closing tables and JOB.json,
  * frees o (NULL: nothing to do). Returns the status of the whole: run if it

@@ -334,8 +334,7 @@ static status run_adapted(const command *c, const job_input *in,
   TRY(message_log_new(&other.log));
   space_sizes(in->msh, eta, wanted, size);
   stage_costs(NULL, &before);
-  TRY(job_read(c, &(job_mesh){.old = in->msh, .size = size}, other.log,
-               &other));
+  TRY(job_read(c, &(job_mesh){.sizes = {{in->msh, size}}}, other.log, &other));
   TRY(run_trial(&other, t, NULL));
   stage_costs(&before, t);
 done:

@@ -41,16 +41,15 @@ static status read_mesh(const job_mesh *other, job_input *in) {
       numbers[n++] =
           (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
   timer_enter(STAGE_MESH);
-  if (m->accuracy.target.percent > 0.0 && job_is_geo(m)) mesh_gmsh_load();
+  if (model_has_target(m) && job_is_geo(m)) mesh_gmsh_load();
   in->library_cpu = timer_cpu() - cpu;
-  st = mesh_read_gmsh(&(mesh_source){.file = m->mesh.file,
-                                     .scale = m->mesh.scale,
-                                     .n_number = n,
-                                     .numbers = numbers,
-                                     .old = other != NULL ? other->old : NULL,
-                                     .size = other != NULL ? other->size : NULL,
-                                     .meets = model_has_pairs(m)},
-                      &m->mesh.at, m->log, &in->msh);
+  mesh_source source = {.file = m->mesh.file,
+                        .scale = m->mesh.scale,
+                        .n_number = n,
+                        .numbers = numbers,
+                        .meets = model_has_pairs(m)};
+  if (other != NULL) memcpy(source.sizes, other->sizes, sizeof source.sizes);
+  st = mesh_read_gmsh(&source, &m->mesh.at, m->log, &in->msh);
   timer_leave(STAGE_MESH);
 done:
   memory_free(numbers);

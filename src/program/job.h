@@ -23,9 +23,8 @@ typedef struct job_input {
 
 /* The mesh of another pass. */
 typedef struct job_mesh {
-  const mesh *old; /* a .geo is meshed again with sizes as in mesh_source */
-  const double *size;
-  mesh *same; /* or NULL: this mesh, taken over */
+  mesh_sizes sizes[MESH_SIZES]; /* a .geo is meshed again as in mesh_source */
+  mesh *same;                   /* or NULL: this mesh, taken over */
 } job_mesh;
 
 /* Everything before the first solve; NULL: the mesh of the deck. What is there

@@ -432,9 +432,9 @@ status restart_read(const command *c, const job_input *in, archive **out) {
     FAIL(ERR_DECK,
          "--restart: *CONDENSED PROBLEM is one increment, there is "
          "nothing to go on with");
-  if (in->m->accuracy.target.percent > 0.0)
+  if (model_has_target(in->m))
     FAIL(ERR_DECK,
-         "--restart: *ACCURACY, TARGET= makes passes of the whole "
+         "--restart: TARGET= makes passes of the whole "
          "run; such a job starts at its beginning");
   for (int i = 0; i < in->m->n.step; ++i)
     if (in->m->steps[i].accuracy.theorems)

@@ -12,6 +12,7 @@
  */
 #include "program/target.h"
 
+#include "program/aims.h"
 #include "accuracy/space.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
@@ -42,6 +43,11 @@ typedef struct pass {
                                      that counts */
   double mesh, time, solver;      /* -, errors there */
   double *eta;                    /* [n_elem] shares of the elements there */
+  double *size;                   /* [n_node] of the next mesh, m */
+  aims *goals;                    /* or NULL: none has a target */
+  mesh *first;                    /* of the deck, with targets of goals: its
+                                     lengths are the largest of all passes */
+  double *first_size;             /* [first->n_node] m */
   double unknowns;                /* of this pass */
   double mesh_cpu, last_mesh_cpu; /* s, of meshing; of the pass before */
   double dt, tol;                 /* factors on the increments and tolerances of
@@ -63,6 +69,7 @@ static void see_ready(void *ctx, const setup_facts *facts) {
 
 static status see_increment(void *ctx, const state *s) {
   pass *p = ctx;
+  aims_see(p->goals, p->in->msh, s);
   if (!s->errors.mesh_error.asked || s->energy.strain < p->energy) return OK;
   p->energy = s->energy.strain;
   p->mesh = s->errors.mesh_error.relative;
@@ -74,6 +81,13 @@ static status see_increment(void *ctx, const state *s) {
 }
 
 static double total(const pass *p) { return p->mesh + p->time + p->solver; }
+
+/* 1: the energy norm has a target. */
+static int has_norm(const pass *p) { return p->target->percent > 0.0; }
+
+static int norm_is_met(const pass *p) {
+  return !has_norm(p) || total(p) <= p->target->percent / 100.0;
+}
 
 /* ---- deciding ------------------------------------------------------------ */
 
@@ -91,9 +105,24 @@ static double mesh_goal(const pass *p) {
   return goal - p->time - p->solver;
 }
 
-/* Factor by which the unknowns grow if the mesh error falls to "wanted". */
-static double growth(const pass *p, double wanted) {
-  return p->mesh > wanted ? pow(p->mesh / wanted, p->in->m->dim) : 1.0;
+static int norm_wants_mesh(const pass *p) {
+  return has_norm(p) && p->mesh > mesh_goal(p);
+}
+
+/* Sizes of the next mesh, and the factor by which the unknowns grow. */
+static status find_sizes(pass *p, double *factor) {
+  const mesh *msh = p->in->msh;
+  const double wanted = AIM * mesh_goal(p);
+  *factor = 1.0;
+  PASS_NEW(p->size, msh->n_node);
+  for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
+  if (has_norm(p)) space_sizes(msh, p->eta, wanted, p->size);
+  if (norm_wants_mesh(p)) *factor = pow(p->mesh / wanted, p->in->m->dim);
+  if (p->goals == NULL) return OK;
+  PASS(aims_sizes(p->goals, p->in->m, msh, p->energy >= 0.0 ? p->eta : NULL,
+                  p->size));
+  *factor = fmax(*factor, space_growth(msh, p->size));
+  return OK;
 }
 
 /* Estimated CPU seconds of meshing that many times the unknowns: linear from
@@ -122,7 +151,8 @@ static void check_limits(pass *p, double factor) {
   const accuracy_target *t = p->target;
   double cpu = timer_cpu() + price(p, factor);
   double bytes = (double)memory_peak() * factor;
-  if (p->n >= t->max_passes) {
+  int most = t->max_passes > 0 ? t->max_passes : MAX_PASSES_DEFAULT;
+  if (p->n >= most) {
     miss(p, "MAX_PASSES is reached");
   } else if (t->max_cpu > 0.0 && cpu > t->max_cpu) {
     snprintf(text, sizeof text,
@@ -143,23 +173,34 @@ static void check_limits(pass *p, double factor) {
   }
 }
 
+/* Factor on the tolerance of the solver, 1: it stays. */
+static double change_of_tol(const pass *p) {
+  double over = aims_solver(p->goals, p->in->m, SOLVER_SHARE);
+  if (has_norm(p))
+    over = fmax(over, p->solver / (SOLVER_SHARE * p->target->percent / 100.0));
+  return over > 1.0 && p->tol > LEAST_TOL ? AIM / over : 1.0;
+}
+
 /* Changes of the next pass; "" if none is possible. */
 static void choose(pass *p, char *text, size_t size) {
-  double goal = p->target->percent / 100.0;
+  double goal = p->target->percent / 100.0, tol = change_of_tol(p);
   size_t used = 0;
   text[0] = '\0';
-  if (p->mesh > mesh_goal(p)) used += (size_t)snprintf(text, size, "mesh");
-  if (p->time > TIME_SHARE * goal && p->dt > SHORTEST * SHORTEST) {
+  if (norm_wants_mesh(p) || !aims_are_met(p->goals, p->in->m)) {
+    used = (size_t)snprintf(text, size, "mesh");
+    used += aims_name(p->goals, p->in->m, text + used, size - used);
+  }
+  if (has_norm(p) && p->time > TIME_SHARE * goal &&
+      p->dt > SHORTEST * SHORTEST) {
     double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
     p->dt *= factor;
     used += (size_t)snprintf(text + used, size - used, "%sdt * %.2g",
                              used > 0 ? ", " : "", factor);
   }
-  if (p->solver > SOLVER_SHARE * goal && p->tol > LEAST_TOL) {
-    double factor = AIM * SOLVER_SHARE * goal / p->solver;
-    p->tol *= factor;
+  if (tol < 1.0) {
+    p->tol *= tol;
     snprintf(text + used, size - used, "%stol * %.2g", used > 0 ? ", " : "",
-             factor);
+             tol);
   }
 }
 
@@ -167,27 +208,36 @@ static int refines(const pass_row *row) {
   return strncmp(row->change, "mesh", 4) == 0;
 }
 
-/* 1 if the last pass gained nothing although the mesh was to change. */
+/* 1: the last pass gained nothing although the mesh was to change. */
 static int was_in_vain(const pass *p) {
   if (p->n < 2 || !refines(&p->rows[p->n - 2])) return 0;
-  return p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh;
+  if (norm_wants_mesh(p) &&
+      p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh)
+    return 1;
+  return aims_stand_still(p->goals);
 }
 
-/* After the increments of a pass: is it the last? */
-static void decide(pass *p) {
-  double goal = p->target->percent / 100.0;
-  pass_row *row = &p->rows[p->n - 1];
-  if (total(p) <= goal) {
-    p->done = 1;
-    return;
-  }
-  if (isnan(total(p))) {
+/* Errors that no other pass can change. */
+static void check_known(pass *p) {
+  char why[256];
+  aims_check(p->goals, p->in->m, why, sizeof why);
+  if (has_norm(p) && isnan(total(p)))
     miss(p, isnan(p->time)
                 ? "the error of the steps is unknown, see the listing"
                 : "the solver has no bound of its error, see the "
                   "listing");
-    return;
-  }
+  else if (why[0] != '\0')
+    miss(p, why);
+}
+
+/* After the increments of a pass: is it the last? */
+static status decide(pass *p) {
+  pass_row *row = &p->rows[p->n - 1];
+  double factor = 1.0;
+  p->done = norm_is_met(p) && aims_are_met(p->goals, p->in->m);
+  if (!p->done) check_known(p);
+  if (p->done) return OK;
+  PASS(find_sizes(p, &factor));
   choose(p, row->change, sizeof row->change);
   int finer = refines(row);
   if (row->change[0] == '\0')
@@ -199,30 +249,42 @@ static void decide(pass *p) {
   else if (was_in_vain(p))
     miss(p, "a mesh asked to be finer has no smaller error");
   else
-    check_limits(p, finer ? growth(p, AIM * mesh_goal(p)) : 1.0);
+    check_limits(p, finer ? factor : 1.0);
   if (p->done) row->change[0] = '\0';
+  return OK;
 }
 
 /* ---- one pass ------------------------------------------------------------ */
 
 static void report_pass(const pass *p) {
   const pass_row *r = &p->rows[p->n - 1];
+  const char *next = r->change[0] != '\0' ? r->change
+                     : p->why[0] != '\0'  ? p->why
+                                          : "done";
   if (p->c->quiet) return;
-  if (p->n == 1)
-    printf("%4s %10s %9s %9s %9s %9s %9s  %s\n", "pass", "unknowns", "mesh[%]",
-           "steps[%]", "solver[%]", "total[%]", "cpu[s]", "next");
-  printf("%4d %10.0f %9.2e %9.2e %9.2e %9.2e %9.3g  %s\n", p->n, r->unknowns,
-         r->mesh, r->time, r->solver, r->total, r->cpu,
-         r->change[0] != '\0' ? r->change
-         : p->why[0] != '\0'  ? p->why
-                              : "done");
+  if (p->n == 1) {
+    printf("%4s %10s", "pass", "unknowns");
+    if (has_norm(p))
+      printf(" %9s %9s %9s %9s", "mesh[%]", "steps[%]", "solver[%]",
+             "total[%]");
+    if (p->goals != NULL) passes_goal_heads(p->in->m, stdout);
+    printf(" %9s  %s\n", "cpu[s]", "next");
+  }
+  printf("%4d %10.0f", p->n, r->unknowns);
+  if (has_norm(p))
+    printf(" %9.2e %9.2e %9.2e %9.2e", r->mesh, r->time, r->solver, r->total);
+  if (p->goals != NULL)
+    passes_goals(p->in->m, aims_rows(p->goals), p->n - 1, stdout);
+  printf(" %9.3g  %s\n", r->cpu, next);
   fflush(stdout);
 }
 
-/* Forecast of a tenth of the error reached. */
+/* Forecast of a tenth of the error reached; that of goals is of second order.
+ */
 static pass_row next_digit(const pass *p) {
   const pass_row *r = &p->rows[p->n - 1];
-  double factor = pow(10.0, p->in->m->dim);
+  const int dim = p->in->m->dim;
+  double factor = pow(10.0, has_norm(p) ? dim : 0.5 * dim);
   pass_row row = {.unknowns = r->unknowns * factor,
                   .total = r->total / 10.0,
                   .cpu = price(p, factor)};
@@ -232,6 +294,7 @@ static pass_row next_digit(const pass *p) {
 static status see_finished(void *ctx, status st, output *out) {
   pass *p = ctx;
   if (st != OK) return st;
+  aims_evaluate(p->goals, p->in->m, p->unknowns);
   pass_row *row = &p->rows[p->n++];
   *row = (pass_row){.unknowns = p->unknowns,
                     .mesh = 100.0 * p->mesh,
@@ -240,11 +303,16 @@ static status see_finished(void *ctx, status st, output *out) {
                     .total = 100.0 * total(p),
                     .cpu = timer_cpu() - p->cpu};
   p->mesh_cpu = timer_cost(STAGE_MESH).cpu - p->meshed - p->in->library_cpu;
-  decide(p);
+  TRY(decide(p));
   report_pass(p);
   p->forecast = next_digit(p);
-  output_passes(out, p->target->percent, p->n, p->rows,
-                total(p) > EXACT ? &p->forecast : NULL, p->why);
+  output_passes(out, &(pass_table){p->target->percent, p->n, p->rows,
+                                   total(p) > EXACT ? &p->forecast : NULL,
+                                   aims_rows(p->goals), p->why});
+  if (p->why[0] != '\0' && !has_norm(p))
+    FAIL(ERR_UNSETTLED,
+         "a target of *GOAL is missed: %s; the files are those of pass %d",
+         p->why, p->n);
   if (p->why[0] != '\0')
     FAIL(ERR_UNSETTLED,
          "the error is %.3g %%, the target %g %%: %s; the files are those of "
@@ -266,11 +334,12 @@ static void adjust(const pass *p, model *m) {
 static status run_pass(pass *p, int *unsettled) {
   status st = OK;
   const job_watch watch = {p, see_increment, see_ready, see_finished};
-  memory_free(p->eta);
-  p->eta = NULL;
+  RELEASE(p->eta, p->size);
+  p->eta = p->size = NULL;
   p->energy = -1.0;
   p->mesh = p->time = p->solver = 0.0;
   NEW(p->eta, p->in->msh->n_elem);
+  TRY(aims_begin(p->goals, p->in->msh));
   adjust(p, p->in->m);
   *unsettled = 0;
   st = job_solve(p->c, p->in, &watch, NULL, unsettled);
@@ -282,18 +351,15 @@ done:
  * of the first pass, shown only if something is wrong. */
 static status read_next(pass *p) {
   status st = OK;
-  double *size = NULL;
   job_input next = {0};
   job_mesh other = {0};
   mesh *msh = p->in->msh;
   p->cpu = timer_cpu();
   p->meshed = timer_cost(STAGE_MESH).cpu;
   p->last_mesh_cpu = p->mesh_cpu;
-  NEW(size, msh->n_node);
   TRY(message_log_new(&next.log));
   if (refines(&p->rows[p->n - 1])) {
-    space_sizes(msh, p->eta, AIM * mesh_goal(p), size);
-    other = (job_mesh){.old = msh, .size = size};
+    other = (job_mesh){.sizes = {{msh, p->size}, {p->first, p->first_size}}};
   } else {
     other.same = msh;
     p->in->msh = NULL;
@@ -302,20 +368,30 @@ static status read_next(pass *p) {
   next.first = p->in->first != NULL ? p->in->first : p->in->d;
   if (p->in->first == NULL) p->in->d = NULL;
   p->in->first = NULL;
+  if (p->first == p->in->msh) p->in->msh = NULL;
   job_input_free(p->in);
   *p->in = next;
   next = (job_input){0};
 done:
   if (st != OK && next.log != NULL) message_print(next.log, stderr);
+  if (next.msh == p->first) next.msh = NULL;
   job_input_free(&next);
-  memory_free(size);
   return st;
+}
+
+static status keep_first(pass *p) {
+  PASS_NEW(p->first_size, p->in->msh->n_node);
+  p->first = p->in->msh;
+  space_lengths(p->first, p->first_size);
+  return OK;
 }
 
 status target_reach(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   const accuracy_target target = in->m->accuracy.target;
   pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
+  TRY(aims_new(in->m, &p.goals));
+  if (p.goals != NULL) TRY(keep_first(&p));
   for (;;) {
     TRY(run_pass(&p, unsettled));
     if (p.done) break;
@@ -326,6 +402,8 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
     TRY(read_next(&p));
   }
 done:
-  memory_free(p.eta);
+  if (p.first != in->msh) mesh_free(p.first);
+  RELEASE(p.eta, p.size, p.first_size);
+  aims_free(p.goals);
   return st;
 }

@@ -151,8 +151,9 @@ static uint64_t request_key(const raw_request *request) {
   uint64_t key = mix(14695981039346656037u, file, strlen(file));
   for (int i = 0; i < s->n_number; ++i)
     key = mix(key, &s->numbers[i].value, sizeof s->numbers[i].value);
-  if (s->size != NULL)
-    key = mix(key, s->size, (size_t)s->old->n_node * sizeof *s->size);
+  for (int k = 0; k < MESH_SIZES && s->sizes[k].of != NULL; ++k)
+    key = mix(key, s->sizes[k].at,
+              (size_t)s->sizes[k].of->n_node * sizeof *s->sizes[k].at);
   return key;
 }
 

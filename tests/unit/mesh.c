@@ -279,10 +279,8 @@ START_TEST(sizes_reach_the_geometry) {
   double *size = calloc((size_t)old->n_node, sizeof *size), area[2] = {0, 0};
   for (int i = 0; i < old->n_node; ++i)
     size[i] = old->x[2 * i] < 0 && old->x[2 * i + 1] < 0 ? 0.5 : 5;
-  const mesh_source source = {.file = mesh_file_path(&f, "d.geo"),
-                              .scale = 10,
-                              .old = old,
-                              .size = size};
+  const mesh_source source = {
+      .file = mesh_file_path(&f, "d.geo"), .scale = 10, .sizes = {{old, size}}};
   mesh *m = mesh_file_from(&f, &source);
   ck_assert_msg(m != NULL, "%s", f.messages);
   int n[2] = {0, 0};

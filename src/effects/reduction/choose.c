@@ -259,7 +259,7 @@ static int must_stay(const model *m) {
   for (int i = 0; i < m->n.section; ++i)
     if (m->sections[i].averaged) return 1;
   if (m->n.points > 0) return 1;
-  return m->accuracy.target.percent > 0.0;
+  return model_has_target(m);
 }
 
 status reduction_choose(model *m, const mesh *msh) {

@@ -62,6 +62,22 @@ status apply_solver(reading *r) {
   return OK;
 }
 
+/* Its limits count with a target of the energy norm, or of a *GOAL. */
+static void take_target(const reading *r, const accuracy_param *p) {
+  accuracy_target *t = &r->m->accuracy.target;
+  const int limited = p->max_cpu > 0.0 || p->max_memory > 0.0 ||
+                      p->max_passes != MAX_PASSES_DEFAULT;
+  if (p->target > 0.0 || (limited && model_targeted_goal(r->m) != NULL)) {
+    const double percent = p->target > 0.0 ? p->target : t->percent;
+    *t = (accuracy_target){percent, p->max_cpu, p->max_memory, p->max_passes};
+    return;
+  }
+  if (p->max_cpu > 0.0) report_idle(r, "MAX_CPU", "TARGET=");
+  if (p->max_memory > 0.0) report_idle(r, "MAX_MEMORY", "TARGET=");
+  if (p->max_passes != MAX_PASSES_DEFAULT)
+    report_idle(r, "MAX_PASSES", "TARGET=");
+}
+
 status apply_accuracy(reading *r) {
   const accuracy_param *p = r->param;
   step *s = open_step(r);
@@ -80,14 +96,7 @@ status apply_accuracy(reading *r) {
   s->accuracy.theorems = p->theorems;
   if (!s->accuracy.time_balanced && p->time_share != 0.1)
     report_idle(r, "TIME_SHARE", "TIME=BALANCED");
-  if (p->target > 0.0) {
-    r->m->accuracy.target =
-        (accuracy_target){p->target, p->max_cpu, p->max_memory, p->max_passes};
-    return OK;
-  }
-  if (p->max_cpu > 0.0) report_idle(r, "MAX_CPU", "TARGET=");
-  if (p->max_memory > 0.0) report_idle(r, "MAX_MEMORY", "TARGET=");
-  if (p->max_passes != 8) report_idle(r, "MAX_PASSES", "TARGET=");
+  take_target(r, p);
   return OK;
 }
 

@@ -132,6 +132,18 @@ static void read_point(const reading *r, goal_card *g) {
       return;
 }
 
+/* A number with % or one in the unit of the goal. */
+static void read_target(const reading *r, const char *text, goal_card *g) {
+  static const option row =
+      OPTION_REAL(goal_card, target, "TARGET", DBL_MIN, DBL_MAX, NULL, "%", "");
+  char why[200];
+  if (text == NULL) return;
+  g->in_percent = text[strlen(text) - 1] == '%';
+  if (option_read(&row, text, g, why, sizeof why) != 0)
+    message_add(r->m->log, P2004, value_place(r, "TARGET"), "*GOAL, TARGET: %s",
+                why);
+}
+
 status apply_goal(reading *r) {
   const goal_param *p = r->param;
   model *m = r->m;
@@ -152,6 +164,8 @@ status apply_goal(reading *r) {
                    .group_at = *value_place(r, "GROUP")};
   const int takes = quantities[g->quantity].takes;
   read_point(r, g);
+  read_target(r, p->target, g);
+  m->accuracy.goal_products |= g->target > 0.0;
   check_parameter(r, g, "CONTACT", takes & ON_CONTACT, takes & ON_CONTACT);
   check_parameter(r, g, "GROUP", takes & IN_GROUP,
                   (takes & IN_GROUP) && !(takes & AT_POINT && g->has_point));

@@ -29,9 +29,12 @@ static void find_point(const model *m, const mesh *msh, goal_card *g) {
   if (distance > NEAR * msh->size && g->quantity == GOAL_DISPLACEMENT)
     message_add(m->log, P2021, &g->point_at,
                 "*GOAL %s: no node of the mesh is at this point, the nearest "
-                "is %zu at (%g, %g, %g)",
+                "is %zu at (%g, %g, %g)%s",
                 g->name, msh->node_no[g->node_id], x[0], x[1],
-                msh->dim == 3 ? x[2] : msh->z);
+                msh->dim == 3 ? x[2] : msh->z,
+                model_has_target(m) ? "; TARGET= meshes again: make it a "
+                                      "Point of the .geo"
+                                    : "");
 }
 
 static void check_goal(const model *m, const mesh *msh, goal_card *g) {

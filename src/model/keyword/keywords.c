@@ -270,6 +270,9 @@ static const option goal_options[] = {
   OPTION_REAL(goal_param, radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT,
               "length", "of the mean that PRESSURE is; half the half width of "
               "the zone if absent"),
+  OPTION_NAME(goal_param, target, "TARGET", OPTION_ABSENT,
+              "error to reach by meshes refined for it: 1 %, of the value, or "
+              "a number in its unit"),
   OPTION_END};
 static const option accuracy_options[] = {
   OPTION_CHOICE(accuracy_param, mesh, "MESH", "NO|YES|END", "END",

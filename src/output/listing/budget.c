@@ -1,6 +1,6 @@
 /*
  * The budget of the errors: each with the stages that determine it, its cost,
- * the saving by stopping early, the passes towards a target.
+ * the saving by stopping early.
  */
 #include "base/timer.h"
 #include "effects/rows.h"
@@ -183,35 +183,4 @@ void listing_budget(const job *j, FILE *f) {
   if (!isnan(effectivity))
     fprintf(f, "  estimated over true error: %.2f\n", effectivity);
   print_saved(j, f);
-}
-
-static void print_pass(const job *j, int no, const pass_row *r, FILE *f) {
-  char number[4][NUMBER_SIZE];
-  if (no > 0)
-    fprintf(f, "  %-10d", no);
-  else
-    fprintf(f, "  %-10s", "next digit");
-  fprintf(f, " %10.0f", r->unknowns);
-  if (no > 0)
-    fprintf(f, " %10s %10s %10s", text_number(number[0], r->mesh, 2),
-            text_number(number[1], r->time, 2),
-            text_number(number[2], r->solver, 2));
-  else
-    fprintf(f, " %10s %10s %10s", "", "", "");
-  fprintf(f, " %10s", text_number(number[3], r->total, 2));
-  if (!j->o->no_timing) fprintf(f, " %9.3g", r->cpu);
-  fprintf(f, "  %s\n", no > 0 ? r->change : "forecast");
-}
-
-void listing_passes(const job *j, FILE *f) {
-  const pass_table *t = &j->run->passes;
-  if (t->n == 0) return;
-  fprintf(f, "\n  target %g %% of the energy norm: %s\n", t->target,
-          t->why[0] == '\0' ? "reached" : "missed");
-  fprintf(f, "  %-10s %10s %10s %10s %10s %10s", "pass", "unknowns", "mesh[%]",
-          "steps[%]", "solver[%]", "total[%]");
-  if (!j->o->no_timing) fprintf(f, " %9s", "cpu[s]");
-  fprintf(f, "  changed next\n");
-  for (int i = 0; i < t->n; ++i) print_pass(j, i + 1, &t->rows[i], f);
-  if (t->forecast != NULL) print_pass(j, 0, t->forecast, f);
 }

@@ -24,7 +24,7 @@ typedef struct output_options {
   int n_problem;       /* contacts of a *CONDENSED PROBLEM */
 } output_options;
 
-/* A pass towards *ACCURACY, TARGET=. */
+/* A pass towards TARGET= of *ACCURACY or *GOAL. */
 enum { MAX_PASS_ROWS = 20 };
 typedef struct pass_row {
   double unknowns;
@@ -32,6 +32,13 @@ typedef struct pass_row {
   double cpu;                       /* s, of the pass */
   char change[80];                  /* what the next pass has changed, "" */
 } pass_row;
+
+/* A goal after a pass, in its unit. */
+typedef struct pass_goal {
+  goal_result found;
+  double off;     /* |error| + band + |solver|; aims.c */
+  double allowed; /* its target */
+} pass_goal;
 
 typedef struct increment_summary {
   int step_no, increment_no, total_no, attempt;
@@ -54,10 +61,11 @@ typedef struct increment_summary {
 } increment_summary;
 
 typedef struct pass_table {
-  double target; /* % */
+  double target; /* % of the energy norm; 0: goals alone */
   int n;         /* 0: no target */
   const pass_row *rows, *forecast;
-  const char *why;
+  const pass_goal *goals; /* [n*n_goal]; NULL: none has a target */
+  const char *why;        /* the target is missed, or "" */
 } pass_table;
 
 typedef struct run_summary {
@@ -104,6 +112,11 @@ size_t job_end_size(const model *m);
  * one; NULL: none. Its unit with the labels of the deck. */
 const goal_result *job_goal(const job *j, int id);
 const char *job_goal_unit(const model *m, int id, char *text, size_t size);
+/* passes.c: the errors of all goals after pass number "pass" of "goals" as
+ * columns, and their heads. The error of one, % of its value. */
+void passes_goal_heads(const model *m, FILE *f);
+void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f);
+double pass_goal_percent(const pass_goal *g);
 /* advice.c: 1: the error of the steps may be other than zero. */
 int job_path_counts(const model *m);
 /* One sentence: the error to improve next, and what that costs; "": none is

@@ -1,8 +1,8 @@
 /*
  * The parts of the listing: an increment (increment.c), the solutions of CHECK=
  * (solutions.c), the theorems of THEORY= (theory.c), the budget of the errors
- * (budget.c). Each writes nothing where it is not required. Private to
- * src/output/listing.
+ * (budget.c), the passes towards a target (passes.c). Each writes nothing where
+ * it is not required. Private to src/output/listing.
  */
 #ifndef PROTIS_LISTING_PARTS_H
 #define PROTIS_LISTING_PARTS_H
@@ -28,6 +28,8 @@ void listing_budget(const job *j, FILE *f);
 /* Those of an increment; at the end of the listing. */
 void listing_goals_now(const job *j, const state *s, FILE *f);
 void listing_goals(const job *j, FILE *f);
+
+/* ---- passes.c ---- */
 /* The passes towards the target, and what a digit more would cost. */
 void listing_passes(const job *j, FILE *f);
 

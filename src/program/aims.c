@@ -1,0 +1,249 @@
+/*
+ * The error of a goal is at most off = |error| + band + |error of the solver|,
+ * the first two twice where too much of them comes from the ends of contact: a
+ * pass reaches its target if off is below it.
+ *
+ * The band goes like the sum of m = |e_u| |e_y| over the elements, which is of
+ * the second order in their length: the sizes are those of space_sizes with
+ * sqrt(m) in the place of eta. Errors of a global force cancel better on meshes
+ * for the energy norm, in whose squared error they are linear. So each goal has
+ * the one of the two meshes that is foreseen to need fewer unknowns, by the
+ * order that it has shown, off ~ unknowns^(-order), or 2/dim before. The mesh
+ * of the next pass has the smallest size that any goal requires.
+ */
+#include "program/aims.h"
+
+#include "accuracy/space.h"
+#include "base/memory.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double AIM = 0.93;  /* -, of the target */
+static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
+static const double BLIND = 0.5; /* -, of the error, without an estimate */
+static const double ENDS = 2.0;  /* -, of an estimate that is not reliable for
+                                    the ends of contact */
+
+/* What a goal has shown so far. */
+typedef struct course {
+  int by_energy, at_first; /* 1: meshes for the energy; those of the start */
+  double order[2]; /* -, of its own meshes and those for the energy; 0: none */
+} course;
+
+struct aims {
+  int n, n_pass;   /* goals */
+  double unknowns; /* of the pass before */
+  double least;    /* -, largest off over its target, least of all passes */
+  int in_vain;     /* passes since */
+  course *course;  /* [n] */
+  pass_goal *rows; /* [MAX_PASS_ROWS*n] */
+  double *product; /* [n*n_elem] of the last increment */
+};
+
+status aims_new(const model *m, aims **out) {
+  status st = OK;
+  aims *a = NULL;
+  *out = NULL;
+  if (model_targeted_goal(m) == NULL) return OK;
+  NEW(a, 1);
+  a->n = m->n.goal;
+  a->least = HUGE_VAL;
+  NEW(a->course, a->n);
+  NEW(a->rows, MAX_PASS_ROWS * a->n);
+  for (int i = 0; i < a->n; ++i)
+    a->course[i].at_first = m->accuracy.goals[i].quantity == GOAL_FORCE;
+  *out = a;
+  a = NULL;
+done:
+  aims_free(a);
+  return st;
+}
+
+void aims_free(aims *a) {
+  if (a == NULL) return;
+  RELEASE(a->course, a->rows, a->product, a);
+}
+
+static pass_goal *last_row(const aims *a, int i) {
+  return &a->rows[(a->n_pass - 1) * a->n + i];
+}
+
+const pass_goal *aims_rows(const aims *a) { return a != NULL ? a->rows : NULL; }
+
+/* ---- observing ----------------------------------------------------------- */
+
+status aims_begin(aims *a, const mesh *msh) {
+  if (a == NULL) return OK;
+  memory_free(a->product);
+  a->product = NULL;
+  PASS_NEW(a->product, (size_t)a->n * (size_t)msh->n_elem);
+  ++a->n_pass;
+  return OK;
+}
+
+void aims_see(aims *a, const mesh *msh, const state *s) {
+  if (a == NULL) return;
+  for (int i = 0; i < a->n; ++i) last_row(a, i)->found = s->errors.goals[i];
+  memcpy(a->product, s->errors.goal_products,
+         (size_t)a->n * (size_t)msh->n_elem * sizeof *a->product);
+}
+
+/* ---- evaluating -------------------------------------------------------------
+ */
+
+static int is_estimate(const pass_goal *g) {
+  return g->found.verdict == GOAL_RELIABLE ||
+         g->found.verdict == GOAL_CANCELS ||
+         g->found.verdict == GOAL_CONTACT_END;
+}
+
+/* 1: a finer mesh may have an estimate. */
+static int may_have_estimate(const pass_goal *g) {
+  return is_estimate(g) || g->found.verdict == GOAL_FEW_NODES ||
+         g->found.verdict == GOAL_NO_ZONE;
+}
+
+static int is_met(const goal_card *goal, const pass_goal *g) {
+  return !(goal->target > 0.0) || (is_estimate(g) && g->off <= g->allowed);
+}
+
+int aims_are_met(const aims *a, const model *m) {
+  int met = 1;
+  for (int i = 0; a != NULL && i < a->n; ++i)
+    met &= is_met(&m->accuracy.goals[i], last_row(a, i));
+  return met;
+}
+
+static double sum_of(const goal_result *r, double factor) {
+  return factor * (fabs(r->error) + r->band) + fabs(r->solver);
+}
+
+static void evaluate(const goal_card *goal, pass_goal *g) {
+  const goal_result *r = &g->found;
+  g->off = sum_of(r, r->verdict == GOAL_CONTACT_END ? ENDS : 1.0);
+  g->allowed = goal->in_percent
+                   ? goal->target / 100.0 * fabs(r->value + r->error)
+                   : goal->target;
+}
+
+/* The order of this pass, of a goal that is to come nearer. */
+static void observe(aims *a, int i, double unknowns) {
+  course *c = &a->course[i];
+  const double now = last_row(a, i)->off;
+  const double before = a->n_pass > 1 ? last_row(a, i - a->n)->off : NAN;
+  if (now > 0.0 && before > 0.0 && unknowns > 1.1 * a->unknowns)
+    c->order[c->by_energy] = log(before / now) / log(unknowns / a->unknowns);
+}
+
+void aims_evaluate(aims *a, const model *m, double unknowns) {
+  double most = 0.0;
+  if (a == NULL) return;
+  for (int i = 0; i < a->n; ++i) {
+    const goal_card *goal = &m->accuracy.goals[i];
+    pass_goal *g = last_row(a, i);
+    evaluate(goal, g);
+    observe(a, i, unknowns);
+    if (goal->target > 0.0)
+      most = fmax(most, isnan(g->off) ? HUGE_VAL : g->off / g->allowed);
+  }
+  a->in_vain = most >= GAIN * a->least ? a->in_vain + 1 : 0;
+  a->least = fmin(a->least, most);
+  a->unknowns = unknowns;
+}
+
+int aims_stand_still(const aims *a) { return a != NULL && a->in_vain > 1; }
+
+void aims_check(const aims *a, const model *m, char *why, size_t size) {
+  why[0] = '\0';
+  for (int i = 0; a != NULL && i < a->n && why[0] == '\0'; ++i) {
+    const goal_card *goal = &m->accuracy.goals[i];
+    const pass_goal *g = last_row(a, i);
+    const double value = fabs(g->found.value + g->found.error);
+    if (!(goal->target > 0.0)) continue;
+    if (!may_have_estimate(g))
+      snprintf(why, size, "%s: %s", goal->name,
+               goal_verdict_text(g->found.verdict));
+    else if (goal->in_percent && a->n_pass > 1 && g->off >= value)
+      snprintf(why, size,
+               "%s is zero within its error: give its TARGET= in its unit",
+               goal->name);
+  }
+}
+
+/* ---- the next pass ------------------------------------------------------- */
+
+/* Part of the error that the next pass aims at, <= 1: there the estimate is
+ * expected to be reliable. */
+static double part_of(const pass_goal *g) {
+  const double once = sum_of(&g->found, 1.0);
+  const double from = once > g->allowed ? once : g->off;
+  if (!is_estimate(g)) return BLIND;
+  return from > 0.0 ? fmin(AIM * g->allowed / from, 1.0) : 1.0;
+}
+
+size_t aims_name(const aims *a, const model *m, char *text, size_t size) {
+  size_t used = 0;
+  for (int i = 0; a != NULL && i < a->n && used < size; ++i)
+    if (!is_met(&m->accuracy.goals[i], last_row(a, i)))
+      used +=
+          (size_t)snprintf(text + used, size - used, "%s %s%s",
+                           used > 0 ? "," : " for", m->accuracy.goals[i].name,
+                           a->course[i].by_energy ? " by energy" : "");
+  return used < size ? used : size;
+}
+
+double aims_solver(const aims *a, const model *m, double share) {
+  double most = 0.0;
+  for (int i = 0; a != NULL && i < a->n; ++i) {
+    const pass_goal *g = last_row(a, i);
+    if (m->accuracy.goals[i].target > 0.0 && g->allowed > 0.0)
+      most = fmax(most, fabs(g->found.solver) / (share * g->allowed));
+  }
+  return most;
+}
+
+/* The cheaper of both kinds of meshes. */
+static int prefers_energy(const course *c, double part, int dim) {
+  const double full = 2.0 / dim;
+  double growth[2];
+  for (int k = 0; k < 2; ++k) {
+    const double order = c->order[k] != 0.0 ? c->order[k] : full;
+    growth[k] = pow(part, -1.0 / fmin(fmax(order, 0.5 * full), 1.5 * full));
+  }
+  return c->at_first ? growth[1] <= growth[0] : growth[1] < growth[0];
+}
+
+/* more[n_node] is workspace. */
+static void take_sizes(const mesh *msh, const double *eta, double part,
+                       double *more, double *size) {
+  double square = 0.0;
+  for (int e = 0; e < msh->n_elem; ++e) square += eta[e] * eta[e];
+  space_sizes(msh, eta, sqrt(part * square), more);
+  for (int i = 0; i < msh->n_node; ++i) size[i] = fmin(size[i], more[i]);
+}
+
+status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
+                  double *size) {
+  OWNED double *own = NULL, *more = NULL;
+  PASS_NEW(own, msh->n_elem);
+  PASS_NEW(more, msh->n_node);
+  for (int i = 0; i < a->n; ++i) {
+    const goal_card *goal = &m->accuracy.goals[i];
+    const double *product = a->product + (size_t)i * (size_t)msh->n_elem;
+    const double part = part_of(last_row(a, i));
+    double sum = 0.0;
+    if (!(goal->target > 0.0)) continue;
+    for (int e = 0; e < msh->n_elem; ++e) {
+      own[e] = sqrt(product[e]);
+      sum += product[e];
+    }
+    a->course[i].by_energy =
+        eta != NULL &&
+        (!(sum > 0.0) || prefers_energy(&a->course[i], part, msh->dim));
+    take_sizes(msh, a->course[i].by_energy ? eta : own, part, more, size);
+  }
+  return OK;
+}

@@ -1,0 +1,41 @@
+/*
+ * The targets of *GOAL in the passes of target.c: errors against what is
+ * allowed, the sizes of the next mesh.
+ */
+#ifndef PROTIS_AIMS_H
+#define PROTIS_AIMS_H
+
+#include "output/listing/job.h"
+
+typedef struct aims aims; /* NULL: no goal has a target */
+
+/* *out is new, or NULL. ERR_MEMORY. */
+status aims_new(const model *m, aims **out);
+void aims_free(aims *a); /* accepts NULL */
+
+/* Of a pass, in this order: before its increments; after each of them; after
+ * the last one, on so many unknowns. All accept NULL. */
+status aims_begin(aims *a, const mesh *msh);
+void aims_see(aims *a, const mesh *msh, const state *s);
+void aims_evaluate(aims *a, const model *m, double unknowns);
+
+/* Of the last pass; NULL: nothing is wanted. 1: all targets are reached. */
+int aims_are_met(const aims *a, const model *m);
+/* Why no mesh can reach them, or "". */
+void aims_check(const aims *a, const model *m, char *why, size_t size);
+/* 1: the meshes of the last two passes brought the goals no nearer. */
+int aims_stand_still(const aims *a);
+/* Largest error of the contact solver over that share of what is allowed, -. */
+double aims_solver(const aims *a, const model *m, double share);
+/* size[n_node] of the next mesh made smaller where a goal requires that;
+ * eta[n_elem]: errors of the elements in the energy norm, or NULL. ERR_MEMORY.
+ */
+status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
+                  double *size);
+/* The goals that require it, after "mesh"; 0: none. */
+size_t aims_name(const aims *a, const model *m, char *text, size_t size);
+
+/* [n*n_goal] of the passes so far; NULL of NULL. */
+const pass_goal *aims_rows(const aims *a);
+
+#endif

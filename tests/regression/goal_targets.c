@@ -1,0 +1,259 @@
+/*
+ * TARGET= of *GOAL: the true error against closed forms (Hertz's half plane cut
+ * out, his sphere) and against the block whose values are known from meshes of
+ * 54,000 nodes; what stops the passes, and what they tell.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define A_H 0.2348908547
+#define P_H 2710.278943
+#define L_H (A_H * P_H * 200.0 / 210e3)
+
+/* The deck of an example with cards before its first step and in it; its exit
+ * code. */
+static int run_with(job *j, const char *deck, const char *cards,
+                    const char *in_step, const char *words) {
+  const char *name = strrchr(deck, '/') + 1;
+  char path[200], file[80];
+  *j = job_begin(name);
+  job_copy_meshes(j, deck);
+  snprintf(path, sizeof path, "%s.inp", deck);
+  FILE *f = fopen(path, "r");
+  ck_assert_ptr_nonnull(f);
+  char *text = calloc(20000, 1);
+  ck_assert_uint_gt(fread(text, 1, 19999, f), 0);
+  fclose(f);
+  char *at = strstr(text, "\n*STEP"), *end = strstr(text, "\n*END STEP");
+  char *accuracy = strstr(text, "*ACCURACY, MESH=YES");
+  ck_assert(at != NULL && end != NULL);
+  if (accuracy != NULL) memcpy(accuracy, "**                 ", 19);
+  snprintf(file, sizeof file, "%s.inp", name);
+  job_write(j, file, "%.*s\n%s%.*s\n%s*PRINT, GOALS, TOTALS%s",
+            (int)(at - text), text, cards, (int)(end - at - 1), at + 1, in_step,
+            end);
+  free(text);
+  return job_run(j, words);
+}
+
+/* A goal after a pass, as JSON has it. */
+typedef struct told {
+  double error, band, solver, off, target;
+  int at_end; /* 1: not reliable for the contact ends */
+} told;
+
+static double number(const char *from, const char *name) {
+  const char *at = strstr(from, name);
+  ck_assert_msg(at != NULL, "no %s", name);
+  at += strlen(name) + 2;
+  return strncmp(at, "null", 4) == 0 ? NAN : strtod(at, NULL);
+}
+
+/* The goals of all passes, in the order of the ladder. */
+static int ladder(const job *j, told *t, int most) {
+  char *json = job_file(j, "json"), *at = strstr(json, "\"passes\"");
+  char *end = strstr(json, "\"cost\"");
+  int n = 0;
+  ck_assert(at != NULL && end != NULL);
+  *end = '\0';
+  while ((at = strstr(at, "\"goal\": ")) != NULL && n < most) {
+    char *close = strchr(at, '}');
+    *close = '\0';
+    t[n++] = (told){
+        .error = number(at, "\"error\""),
+        .band = number(at, "\"band\""),
+        .solver = number(at, "\"solver_error\""),
+        .off = number(at, "\"error_at_most\""),
+        .target = strstr(at, "\"target\"") ? number(at, "\"target\"") : 0.0,
+        .at_end = strstr(at, "\"contact_end\"") != NULL};
+    at = close + 1;
+  }
+  free(json);
+  return n;
+}
+
+/* The last pass, and it alone, has every error within its target; an error is
+ * |estimate| + band + |solver|, the first two twice at ends of contact. */
+static void ck_ladder(const job *j, int n_goal) {
+  enum { MOST = 60 };
+  told t[MOST];
+  const int n = ladder(j, t, MOST);
+  ck_assert_int_eq(n % n_goal, 0);
+  ck_assert_int_gt(n, n_goal);
+  for (int k = 0; k < n; k += n_goal) {
+    int met = 1;
+    for (int i = k; i < k + n_goal; ++i) {
+      const double factor = t[i].at_end ? 2.0 : 1.0;
+      const double off =
+          factor * (fabs(t[i].error) + t[i].band) + fabs(t[i].solver);
+      if (isfinite(off)) ck_assert_double_eq_tol(t[i].off, off, 1e-12 * off);
+      if (t[i].target != 0.0) met = met && t[i].off <= t[i].target;
+    }
+    ck_assert_msg(met == (k + n_goal == n), "pass %d of %d: %s", k / n_goal + 1,
+                  n / n_goal, met ? "reached" : "missed");
+  }
+}
+
+/* The true error of goal "row" is within its target. */
+static void ck_true(const job *j, int row, double exact, double most) {
+  dat t = job_table(j, "GOALS", -1);
+  const double value = dat_at(&t, row, "value");
+  ck_assert_msg(fabs(value - exact) <= most, "goal %d: %.9g, exact %.9g +- %g",
+                row, value, exact, most);
+  dat_free(&t);
+}
+
+#define OK_OR_STOP(code, j) \
+  ck_assert_msg((code) == 0, "exit %d: %s", code, (j).errors)
+
+START_TEST(every_goal_is_within_its_target) {
+  static const char goals[] =
+      "*PARAMETER\nHALF = \"A/2\"\nL = \"SIZE*A\"\n"
+      "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE, RADIUS=<HALF>, "
+      "TARGET=0.5 %\n0., 0.\n"
+      "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=LINE, TARGET=0.5 %\n"
+      "*GOAL, NAME=TOP, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., <L>\n"
+      "*GOAL, NAME=SIDE, QUANTITY=DISPLACEMENT, COMPONENT=1, "
+      "TARGET=4.E-6\n<L>, 0.\n";
+  job j;
+  const int code = run_with(&j, "input/hertz_line/hertz_exact", goals, "", "");
+  OK_OR_STOP(code, j);
+  ck_ladder(&j, 4);
+  ck_true(&j, 0, 1.00026235 * P_H, 0.005 * P_H);
+  ck_true(&j, 1, 1.00157562 * A_H, 0.005 * A_H);
+  ck_true(&j, 3, -0.00204203522 * L_H, 4e-6);
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(
+      strstr(lst,
+             "target 0.5 % of PEAK, 0.5 % of WIDE, 4e-06 mm SIDE: "
+             "reached"));
+  ck_assert_ptr_nonnull(strstr(lst, "SIDE[mm]"));
+  free(lst);
+  job_end(&j);
+}
+END_TEST
+
+/* The surface that is loaded is round: a mesh coarser than that of the deck
+ * would lose a part of it, which no estimate has. */
+START_TEST(peak_of_the_sphere_in_space) {
+  job j;
+  const int code = run_with(&j, "input/hertz_sphere/hertz_sphere_3d",
+                            "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, "
+                            "CONTACT=POLE, TARGET=5 %\n",
+                            "", "-D NC=2");
+  OK_OR_STOP(code, j);
+  ck_ladder(&j, 1);
+  ck_true(&j, 0, 4688.3, 0.05 * 4688.3);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_gt(dat_at(&t, 0, "normal"), 0.995 * 250.0);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+static const char grip[] =
+    "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1, "
+    "TARGET=%s\n";
+
+/* The block pressed on its top and its side, with goals. */
+static int block(job *j, const char *goal, const char *in_step) {
+  *j = job_begin("block");
+  job_copy(j, "input/greco/greco.geo");
+  job_write(j, "block.inp",
+            "*PARAMETER\nN = 8\nSTRUCTURED = 0\n"
+            "*MESH, FILE=greco.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "130.D3, 0.2\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.\n%s*STEP\n"
+            "*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\nTOP, P, 50.\n"
+            "LEFT, P, 150.\n%s*PRINT, GOALS, TOTALS\n*END STEP\n",
+            goal, in_step);
+  return job_run(j, "");
+}
+
+/* A force that friction decides, and a displacement; both reached. */
+START_TEST(force_and_slip_of_the_block) {
+  char goals[400];
+  job j;
+  snprintf(goals, sizeof goals, grip, "0.3 %");
+  strcat(goals,
+         "*GOAL, NAME=UX, QUANTITY=DISPLACEMENT, COMPONENT=1, TARGET=0.3 %\n"
+         "0., 0.\n");
+  const int code = block(&j, goals, "*STATIC\n");
+  OK_OR_STOP(code, j);
+  ck_ladder(&j, 2);
+  ck_true(&j, 0, -1405.346, 0.003 * 1405.346);
+  ck_true(&j, 1, 0.02860321, 0.003 * 0.02860321);
+  char *json = job_file(&j, "json");
+  ck_assert_ptr_nonnull(strstr(json, "GRIP by energy"));
+  ck_assert_ptr_nonnull(strstr(json, "\"reached\": true"));
+  free(json);
+  job_end(&j);
+}
+END_TEST
+
+/* Exit code and message of a target that cannot be reached. */
+static void must_miss(const char *goal, const char *in_step, int exit_code,
+                      const char *why) {
+  job j;
+  const int code = block(&j, goal, in_step);
+  ck_assert_msg(code == exit_code, "%s: exit %d: %s", why, code, j.errors);
+  ck_assert_msg(strstr(j.errors, why) != NULL, "%s: %s", why, j.errors);
+  job_end(&j);
+}
+
+START_TEST(targets_out_of_reach_say_why) {
+  char goal[400];
+  snprintf(goal, sizeof goal, grip, "0.1 %");
+  must_miss(goal, "*STATIC\n*ACCURACY, MAX_PASSES=2\n", 1,
+            "MAX_PASSES is reached");
+  must_miss(goal, "*STATIC\n*ACCURACY, MAX_CPU=0.01\n", 1, "MAX_CPU is 0.01");
+  must_miss(
+      "*WEAR, CONTACT=FOOT, COEFFICIENT=1.E-9\n"
+      "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, TARGET=1 %\n",
+      "*QUASISTATIC\n0.5, 1.\n", 1, "GRIP: no estimate: not covered");
+  must_miss("*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=FOOT, TARGET=1\n",
+            "*STATIC\n*DSLOAD\nLEFT, P, -150.\n", 1,
+            "PEAK: none: the largest pressure is at an edge");
+  must_miss(
+      "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, TARGET=0.1 %\n"
+      "15., 0.\n",
+      "*STATIC\n", 2, "Point of the .geo");
+}
+END_TEST
+
+/* The middle of a block pressed on a rough floor moves not sideways, but that
+ * of its mesh does: there is no percent of it. */
+START_TEST(zero_needs_a_target_in_its_unit) {
+  job j = job_begin("zero");
+  job_write(&j, "zero.geo",
+            "Point(1)={0,0,0,.2};Point(2)={1,0,0,.13};Point(3)={1,1,0,.3};"
+            "Point(4)={.5,1,0,.3};Point(5)={0,1,0,.3};\nLine(1)={1,2};"
+            "Line(2)={2,3};Line(3)={3,4};Line(4)={4,5};Line(5)={5,1};\n"
+            "Curve Loop(1)={1:5};Plane Surface(1)={1};\n"
+            "Physical Surface(\"BODY\")={1};Physical Curve(\"FOOT\")={1};\n"
+            "Physical Curve(\"TOP\")={3,4};\n");
+  job_write(&j, "zero.inp",
+            "*MESH, FILE=zero.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, TARGET=1 %%\n"
+            "0.5, 1.\n*STEP\n*STATIC\n*DSLOAD\nTOP, P, 0.01\n*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 1, "exit %d: %s", code, j.errors);
+  ck_assert_msg(strstr(j.errors, "give its TARGET= in its unit") != NULL, "%s",
+                j.errors);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("goal_targets", every_goal_is_within_its_target,
+          peak_of_the_sphere_in_space, force_and_slip_of_the_block,
+          targets_out_of_reach_say_why, zero_needs_a_target_in_its_unit)
