@@ -41,17 +41,6 @@
   X(CHECK,       "second solutions, jumps")                \
   X(THEORY,      "theorems")                               \
   X(LISTING,     "listing, .sta, .cvg")                    \
-  X(TABLE_CONTACT,   "table of contact nodes")             \
-  X(TABLE_TOTALS,    "table of resultants")                \
-  X(TABLE_NODES,     "table of nodes")                     \
-  X(TABLE_ELEMENTS,  "table of elements")                  \
-  X(TABLE_ENERGY,    "table of energies")                  \
-  X(TABLE_REACTIONS, "table of reactions")                 \
-  X(TABLE_ZONES,     "table of zones")                     \
-  X(TABLE_LOOP,      "table of loops")                     \
-  X(TABLE_WEAR,      "table of wear")                      \
-  X(TABLE_SIF,       "table of stress intensity factors")  \
-  X(TABLE_GOALS,     "table of goals")                     \
   X(HDF5,        "HDF5 output")                            \
   X(FCLIB,       "condensed problems to files")            \
   X(RESTART,     "restart")
@@ -63,7 +52,7 @@
 #define STAGE_ENUM(name, text) STAGE_##name,
 typedef enum {
   STAGE_LIST(STAGE_ENUM) STAGE_LISTED,
-  STAGE_COUNT = STAGE_LISTED + 40,
+  STAGE_COUNT = STAGE_LISTED + 64,
   STAGE_NONE
 } stage;
 

@@ -149,7 +149,7 @@ static status write_table(tabular *t, const view *v, const print_request *p) {
 }
 
 static status write_timed(tabular *t, const view *v, const print_request *p) {
-  const stage s = effect_of_table(p->table)->table.shown;
+  const stage s = effect_stage(effect_of_table(p->table));
   timer_enter(s);
   status st = write_table(t, v, p);
   timer_leave(s);

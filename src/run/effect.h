@@ -115,10 +115,9 @@ typedef struct effect_ops {
   int (*strains)(const model *m, int elem_id);
 
   effect_hooks on;
-  struct {       /* *PRINT, of its own; all-zero: none */
-    int bit;     /* PRINT_* */
-    entity of;   /* its rows */
-    stage shown; /* when it is written */
+  struct {     /* *PRINT, of its own; all-zero: none */
+    int bit;   /* PRINT_* */
+    entity of; /* its rows */
   } table;
   const column *columns; /* [n_column] */
   int n_column;

@@ -408,17 +408,16 @@ static const column columns[] = {
  "of the largest domain"}};
 /* clang-format on */
 
-const effect_ops cracks_effect = {
-    .name = "stress intensity factors",
-    .bit = NO_BIT,
-    .required = requires_factors,
-    .expected = expected,
-    .table = {PRINT_SIF, PER_TIP, STAGE_TABLE_SIF},
-    .on.create = cracks_new,
-    .on.due = factors_due,
-    .on.accept = find_factors,
-    .on.copy = cracks_copy,
-    .on.release = release,
-    .columns = columns,
-    .n_column = COLUMNS(columns),
-    .items = tips_items};
+const effect_ops cracks_effect = {.name = "stress intensity factors",
+                                  .bit = NO_BIT,
+                                  .required = requires_factors,
+                                  .expected = expected,
+                                  .table = {PRINT_SIF, PER_TIP},
+                                  .on.create = cracks_new,
+                                  .on.due = factors_due,
+                                  .on.accept = find_factors,
+                                  .on.copy = cracks_copy,
+                                  .on.release = release,
+                                  .columns = columns,
+                                  .n_column = COLUMNS(columns),
+                                  .items = tips_items};

@@ -119,18 +119,16 @@ static const column columns[] = {
  "friction_work_end since the step began: the area of a loop that closes"}};
 /* clang-format on */
 
-const effect_ops loops_effect = {
-    .name = "table of loops",
-    .bit = NO_BIT,
-    .required = requires_loops,
-    .expected = expected,
-    .own = STAGE_NONE,
-    .table = {PRINT_LOOP, PER_CONTACT, STAGE_TABLE_LOOP},
-    .on.create = loops_new,
-    .on.begin_step = begin_step,
-    .on.accept = find_loops,
-    .on.keep = keep,
-    .on.copy = loops_copy,
-    .on.release = memory_free,
-    .columns = columns,
-    .n_column = COLUMNS(columns)};
+const effect_ops loops_effect = {.name = "table of loops",
+                                 .bit = NO_BIT,
+                                 .required = requires_loops,
+                                 .expected = expected,
+                                 .table = {PRINT_LOOP, PER_CONTACT},
+                                 .on.create = loops_new,
+                                 .on.begin_step = begin_step,
+                                 .on.accept = find_loops,
+                                 .on.keep = keep,
+                                 .on.copy = loops_copy,
+                                 .on.release = memory_free,
+                                 .columns = columns,
+                                 .n_column = COLUMNS(columns)};

@@ -202,20 +202,19 @@ static const column columns[] = {
  "volume worn off so far"}};
 /* clang-format on */
 
-const effect_ops wear_effect = {
-    .name = "wear",
-    .bit = NO_BIT,
-    .required = requires_wear,
-    .expected = expected,
-    .sums_up =
-        "wear of half the increments is not "
-        "compared",
-    .table = {PRINT_WEAR, PER_CONTACT_NODE, STAGE_TABLE_WEAR},
-    .on.create = wear_new,
-    .on.pose = open_gaps,
-    .on.accept = wear_off,
-    .on.keep = keep,
-    .on.copy = wear_copy,
-    .on.release = memory_free,
-    .columns = columns,
-    .n_column = COLUMNS(columns)};
+const effect_ops wear_effect = {.name = "wear",
+                                .bit = NO_BIT,
+                                .required = requires_wear,
+                                .expected = expected,
+                                .sums_up =
+                                    "wear of half the increments is not "
+                                    "compared",
+                                .table = {PRINT_WEAR, PER_CONTACT_NODE},
+                                .on.create = wear_new,
+                                .on.pose = open_gaps,
+                                .on.accept = wear_off,
+                                .on.keep = keep,
+                                .on.copy = wear_copy,
+                                .on.release = memory_free,
+                                .columns = columns,
+                                .n_column = COLUMNS(columns)};

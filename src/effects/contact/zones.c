@@ -538,18 +538,17 @@ static const column columns[] = {
  "area of the zone, of the whole turn in axisymmetry"}};
 /* clang-format on */
 
-const effect_ops zones_effect = {
-    .name = "table of zones",
-    .bit = NO_BIT,
-    .required = requires_zones,
-    .expected = expected,
-    .own = STAGE_ZONES,
-    .table = {PRINT_ZONES, PER_ZONE, STAGE_TABLE_ZONES},
-    .on.create = zones_new,
-    .on.due = zones_due,
-    .on.accept = find_zones,
-    .on.copy = zones_copy,
-    .on.release = zones_free,
-    .columns = columns,
-    .n_column = COLUMNS(columns),
-    .items = zones_items};
+const effect_ops zones_effect = {.name = "table of zones",
+                                 .bit = NO_BIT,
+                                 .required = requires_zones,
+                                 .expected = expected,
+                                 .own = STAGE_ZONES,
+                                 .table = {PRINT_ZONES, PER_ZONE},
+                                 .on.create = zones_new,
+                                 .on.due = zones_due,
+                                 .on.accept = find_zones,
+                                 .on.copy = zones_copy,
+                                 .on.release = zones_free,
+                                 .columns = columns,
+                                 .n_column = COLUMNS(columns),
+                                 .items = zones_items};

@@ -384,17 +384,16 @@ static const column columns[] = {
  "reliable, or why not"}};
 /* clang-format on */
 
-const effect_ops goals_effect = {
-    .name = "errors of goals",
-    .bit = NO_BIT,
-    .required = requires_goals,
-    .expected = expected,
-    .table = {PRINT_GOALS, PER_GOAL, STAGE_TABLE_GOALS},
-    .on.create = goals_new,
-    .on.accept = find_goals,
-    .on.show = show,
-    .on.keep = keep,
-    .on.release = release,
-    .columns = columns,
-    .n_column = COLUMNS(columns),
-    .items = goal_items};
+const effect_ops goals_effect = {.name = "errors of goals",
+                                 .bit = NO_BIT,
+                                 .required = requires_goals,
+                                 .expected = expected,
+                                 .table = {PRINT_GOALS, PER_GOAL},
+                                 .on.create = goals_new,
+                                 .on.accept = find_goals,
+                                 .on.show = show,
+                                 .on.keep = keep,
+                                 .on.release = release,
+                                 .columns = columns,
+                                 .n_column = COLUMNS(columns),
+                                 .items = goal_items};

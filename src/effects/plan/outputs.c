@@ -56,7 +56,7 @@ TABLE_ROWS(nodes, PRINT_NODES, s->nodes)
 TABLE_ROWS(elements, PRINT_ELEMENTS, s->elements)
 TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
 
-#define TABLE(row, text, bit_, of_, rows_, stage_)                    \
+#define TABLE(row, text, bit_, of_, rows_)                            \
   static int requires_##row(const model *m, char *why, size_t size) { \
     return plan_requires_table(m, bit_, why, size);                   \
   }                                                                   \
@@ -64,20 +64,18 @@ TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
                                    .bit = NO_BIT,                     \
                                    .required = requires_##row,        \
                                    .expected = rows_,                 \
-                                   .own = stage_,                     \
-                                   .table = {bit_, of_, stage_}};
+                                   .table = {bit_, of_}};
 TABLE(contact_table, "table of contact nodes", PRINT_CONTACT, PER_CONTACT_NODE,
-      contact_rows, STAGE_TABLE_CONTACT)
+      contact_rows)
 TABLE(totals_table, "table of resultants", PRINT_TOTALS, PER_CONTACT,
-      totals_rows, STAGE_TABLE_TOTALS)
-TABLE(nodes_table, "table of nodes", PRINT_NODES, PER_NODE, nodes_rows,
-      STAGE_TABLE_NODES)
+      totals_rows)
+TABLE(nodes_table, "table of nodes", PRINT_NODES, PER_NODE, nodes_rows)
 TABLE(elements_table, "table of elements", PRINT_ELEMENTS, PER_ELEMENT,
-      elements_rows, STAGE_TABLE_ELEMENTS)
+      elements_rows)
 TABLE(energy_table, "table of energies", PRINT_ENERGY, PER_INCREMENT,
-      energy_rows, STAGE_TABLE_ENERGY)
+      energy_rows)
 TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, PER_NODE,
-      held_rows, STAGE_TABLE_REACTIONS)
+      held_rows)
 
 static int requires_fields(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i) {

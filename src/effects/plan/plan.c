@@ -51,8 +51,6 @@ static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
     plan_says(1, r->why, sizeof r->why,
               "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->reduction.at));
   if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
-  if (e->table.bit != 0 && e->table.shown != e->own)
-    r->stages[r->n_stage++] = e->table.shown;
   for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
   status st = e->expected(s, &r->work);
   if (!r->on) r->work = (effect_work){.kind = r->work.kind};
