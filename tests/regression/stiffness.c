@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DENSE "*SOLVER, STIFFNESS=DENSE, TOL=1E-12\n"
-#define FACTOR "*SOLVER, STIFFNESS=FACTOR, TOL=1E-12\n"
+#define DENSE "*SOLVER, METHOD=NEWTON, STIFFNESS=DENSE, TOL=1E-12\n"
+#define FACTOR "*SOLVER, METHOD=NEWTON, STIFFNESS=FACTOR, TOL=1E-12\n"
 
 /* Decks of all kinds: friction in the plane and in space, pairs, inelastic
  * strains, bodies that contact alone holds, averages. */
@@ -25,6 +25,7 @@ static const struct {
     {"input/press_fit/press_fit", ""},
     {"input/arch/arch", ""},
     {"input/nonlocal_slider/nonlocal_slider", ""},
+    {"input/torsion_sphere_3d/torsion_sphere_3d", "-D NC=3 -D DT=1"},
 };
 enum { DECKS = sizeof decks / sizeof *decks };
 

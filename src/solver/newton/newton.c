@@ -112,9 +112,27 @@ typedef struct run {
   status failed; /* of a step, ERR_MEMORY: the method ends */
 } run;
 
-static double residual_of(const run *s) {
+/* raw from u, or r. */
+static void set_raw(const run *s) {
+  const contact_problem *cp = s->cp;
+  if (contact_has_stiffness(cp))
+    contact_reaction(cp, s->u, s->st->raw);
+  else
+    compliance_displace(cp, s->r, s->st->raw);
+}
+
+static double mismatch(const run *s) {
   states_clean(s->st);
   return contact_mismatch(s->cp, s->scale, s->u, s->r, s->st->raw);
+}
+
+/* What a sum of reactions calls solved is measured by the reaction of u. */
+static double residual_of(const run *s) {
+  const double residual = mismatch(s);
+  if (!operated_system_sums(s->w->operated) || residual > s->control->tol)
+    return residual;
+  set_raw(s);
+  return mismatch(s);
 }
 
 /* 1: the pattern occurred before in this attempt. */
@@ -154,15 +172,6 @@ static int stuck(course *c, double residual) {
     c->best_at = c->at;
   }
   return c->at - c->best_at > PATIENCE;
-}
-
-/* raw from u, or r. */
-static void set_raw(const run *s) {
-  const contact_problem *cp = s->cp;
-  if (contact_has_stiffness(cp))
-    contact_reaction(cp, s->u, s->st->raw);
-  else
-    compliance_displace(cp, s->r, s->st->raw);
 }
 
 /* A step under the guess; s->singular 1: the system is. */

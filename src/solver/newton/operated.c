@@ -279,6 +279,10 @@ status operated_system_step(operated_system *s, const contact_problem *cp,
   return OK;
 }
 
+int operated_system_sums(const operated_system *s) {
+  return s != NULL && s->repeated == 0;
+}
+
 int operated_system_refresh(operated_system *s) {
   return s != NULL && s->repeated < REPEATS;
 }

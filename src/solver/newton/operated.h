@@ -18,6 +18,9 @@ void operated_system_fit(operated_system *s);
 /* newton_system_step. *singular 1: weak springs held the body. ERR_MEMORY. */
 status operated_system_step(operated_system *s, const contact_problem *cp,
                             pattern *p, double *u, double *raw, int *singular);
+/* 1: raw of the last step is a sum over steps, not the reaction of u. Accepts
+ * NULL. */
+int operated_system_sums(const operated_system *s);
 /* 1: another step on the same rows may mend the last, which was solved to a few
  * digits. Accepts NULL. */
 int operated_system_refresh(operated_system *s);
