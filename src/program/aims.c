@@ -35,6 +35,7 @@ typedef struct course {
 
 struct aims {
   int n, n_pass;   /* goals */
+  int all;         /* 1: goals without a target count too */
   double unknowns; /* of the pass before */
   double least;    /* -, largest off over its target, least of all passes */
   int in_vain;     /* passes since */
@@ -43,12 +44,13 @@ struct aims {
   double *product; /* [n*n_elem] of the last increment */
 };
 
-status aims_new(const model *m, aims **out) {
+status aims_new(const model *m, int all, aims **out) {
   status st = OK;
   aims *a = NULL;
   *out = NULL;
-  if (model_targeted_goal(m) == NULL) return OK;
+  if (!all && model_targeted_goal(m) == NULL) return OK;
   NEW(a, 1);
+  a->all = all;
   a->n = m->n.goal;
   a->least = HUGE_VAL;
   NEW(a->course, a->n);
@@ -216,13 +218,41 @@ static int prefers_energy(const course *c, double part, int dim) {
   return c->at_first ? growth[1] <= growth[0] : growth[1] < growth[0];
 }
 
-/* more[n_node] is workspace. */
-static void take_sizes(const mesh *msh, const double *eta, double part,
-                       double *more, double *size) {
+void aims_ask(aims *a, double part) {
+  for (int i = 0; i < a->n; ++i) {
+    pass_goal *g = last_row(a, i);
+    g->allowed = part / AIM * sum_of(&g->found, 1.0);
+  }
+}
+
+/* size[n_node] for the errors own[n_elem] of which that part is left. */
+static void find_sizes(const mesh *msh, const double *own, double part,
+                       double *size) {
   double square = 0.0;
-  for (int e = 0; e < msh->n_elem; ++e) square += eta[e] * eta[e];
-  space_sizes(msh, eta, sqrt(part * square), more);
-  for (int i = 0; i < msh->n_node; ++i) size[i] = fmin(size[i], more[i]);
+  for (int e = 0; e < msh->n_elem; ++e) square += own[e] * own[e];
+  space_sizes(msh, own, sqrt(part * square), size);
+}
+
+/* own[n_elem] of goal i; 1: there are some. */
+static int find_own(const aims *a, const mesh *msh, int i, double *own) {
+  const double *product = a->product + (size_t)i * (size_t)msh->n_elem;
+  int any = 0;
+  for (int e = 0; e < msh->n_elem; ++e) {
+    own[e] = sqrt(product[e]);
+    any |= own[e] > 0.0;
+  }
+  return any;
+}
+
+status aims_share(const aims *a, const mesh *msh, int i, double *share) {
+  OWNED double *own = NULL, *size = NULL;
+  PASS_NEW(own, msh->n_elem);
+  PASS_NEW(size, msh->n_node);
+  *share = 1.0;
+  if (!find_own(a, msh, i, own)) return OK;
+  find_sizes(msh, own, 1.0, size);
+  *share = space_growth(msh, size);
+  return OK;
 }
 
 status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
@@ -231,19 +261,14 @@ status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
   PASS_NEW(own, msh->n_elem);
   PASS_NEW(more, msh->n_node);
   for (int i = 0; i < a->n; ++i) {
-    const goal_card *goal = &m->accuracy.goals[i];
-    const double *product = a->product + (size_t)i * (size_t)msh->n_elem;
     const double part = part_of(last_row(a, i));
-    double sum = 0.0;
-    if (!(goal->target > 0.0)) continue;
-    for (int e = 0; e < msh->n_elem; ++e) {
-      own[e] = sqrt(product[e]);
-      sum += product[e];
-    }
-    a->course[i].by_energy =
-        eta != NULL &&
-        (!(sum > 0.0) || prefers_energy(&a->course[i], part, msh->dim));
-    take_sizes(msh, a->course[i].by_energy ? eta : own, part, more, size);
+    course *c = &a->course[i];
+    if (!a->all && !(m->accuracy.goals[i].target > 0.0)) continue;
+    const int any = find_own(a, msh, i, own);
+    c->by_energy = eta != NULL && (!any || prefers_energy(c, part, msh->dim));
+    if (!any && eta == NULL) continue;
+    find_sizes(msh, c->by_energy ? eta : own, part, more);
+    for (int k = 0; k < msh->n_node; ++k) size[k] = fmin(size[k], more[k]);
   }
   return OK;
 }

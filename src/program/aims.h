@@ -7,10 +7,11 @@
 
 #include "output/listing/job.h"
 
-typedef struct aims aims; /* NULL: no goal has a target */
+typedef struct aims aims;
 
-/* *out is new, or NULL. ERR_MEMORY. */
-status aims_new(const model *m, aims **out);
+/* *out is new; NULL: no goal has a target, unless all goals are to count, for a
+ * forecast. ERR_MEMORY. */
+status aims_new(const model *m, int all, aims **out);
 void aims_free(aims *a); /* accepts NULL */
 
 /* Of a pass, in this order: before its increments; after each of them; after
@@ -32,6 +33,11 @@ double aims_solver(const aims *a, const model *m, double share);
  */
 status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
                   double *size);
+/* In the place of the targets: the errors shall fall to that part. */
+void aims_ask(aims *a, double part);
+/* Elements that goal i alone needs for its error, over those of the mesh of the
+ * last pass, -. ERR_MEMORY. */
+status aims_share(const aims *a, const mesh *msh, int i, double *share);
 /* The goals that require it, after "mesh"; 0: none. */
 size_t aims_name(const aims *a, const model *m, char *text, size_t size);
 

@@ -22,8 +22,15 @@
  * the increments costs as much as these. The rest is linear in N. All costs but
  * those paid once a run are proportional to the number of increments, which
  * grows as their error is to fall.
+ *
+ * For the goals there are two runs more, on meshes refined for all of them
+ * (aims.c). The error of a goal goes like N^(-p), p from these two near that of
+ * its second order, 2/dim; of the finer mesh it takes the share of the elements
+ * that it needs for itself. The passes of its target cost that of the deck and
+ * two like the last one.
  */
 #include "program/forecast.h"
+#include "program/aims.h"
 #include "effects/rows.h"
 
 #include "accuracy/space.h"
@@ -42,6 +49,7 @@ typedef struct trial {
   double *eta; /* [n_elem] shares of the elements there, or
                   NULL; borrowed */
   int n_elem;
+  aims *goals; /* or NULL */
 } trial;
 
 static status see_sizes(void *ctx, int n_node, const stiffness_choice *choice) {
@@ -60,6 +68,7 @@ static status see_ready(void *ctx, const setup_facts *facts,
 
 static status see_increment(void *ctx, const state *s) {
   trial *t = ctx;
+  aims_see(t->goals, t->in->msh, s);
   if (s->energy.strain < t->energy) return OK;
   t->energy = s->energy.strain;
   t->error = s->errors.mesh_error.relative;
@@ -71,9 +80,8 @@ static status see_increment(void *ctx, const state *s) {
   return OK;
 }
 
-/* One run without output; eta[n_elem] or NULL: shares of the elements in its
- * error. */
-static status run_trial(job_input *in, trial *t, double *eta) {
+/* One run without output. */
+static status run_quietly(job_input *in, trial *t) {
   int unsettled = 0;
   const history_sink sink = {.ctx = t,
                              .expect = see_sizes,
@@ -81,16 +89,25 @@ static status run_trial(job_input *in, trial *t, double *eta) {
                              .increment = see_increment};
   t->energy = -1.0;
   t->in = in;
-  t->eta = eta;
   t->n_elem = in->msh->n_elem;
+  PASS(aims_begin(t->goals, in->msh));
+  in->m->accuracy.goal_products = t->goals != NULL;
+  PASS(history_run(in->m, in->msh, effect_table, &sink, &unsettled));
+  t->bytes = (double)memory_peak();
+  aims_evaluate(t->goals, in->m, t->unknowns);
+  return OK;
+}
+
+/* With its errors in the energy norm; eta[n_elem] or NULL: shares of the
+ * elements in that of the mesh. */
+static status run_trial(job_input *in, trial *t, double *eta) {
+  t->eta = eta;
   for (int i = 0; i < in->m->n.step; ++i) {
     in->m->steps[i].accuracy.mesh = MESH_ERROR_YES;
     in->m->steps[i].accuracy.time = 1;
   }
   in->m->effects |= EFFECT_MESH_ERROR | EFFECT_TIME_ERROR;
-  PASS(history_run(in->m, in->msh, effect_table, &sink, &unsettled));
-  t->bytes = (double)memory_peak();
-  return OK;
+  return run_quietly(in, t);
 }
 
 /* CPU seconds of the stages since "before". */
@@ -344,28 +361,187 @@ done:
   return st;
 }
 
-status forecast_print(const command *c, job_input *in) {
-  OWNED double *eta = NULL;
-  model_of_cost cost = {.dim = in->m != NULL ? in->m->dim : 2};
-  if (in->problem != NULL || !job_is_geo(in->m))
-    RAISE(ERR_DECK,
-          "--estimate-cost meshes the geometry again: the deck must name "
-          "a .geo in *MESH, FILE=");
-  mesh_gmsh_load();
-  PASS_NEW(eta, in->msh->n_elem);
-  PASS(run_trial(in, &cost.deck, eta));
-  stage_costs(NULL, &cost.deck);
-  int plane = cost.dim == 2;
-  double now = cost.deck.error;
-  if (now + cost.deck.time <= wanted_errors[N_WANTED - 1]) {
-    print_table(&cost);
+static status forecast_norm(const command *c, job_input *in, const double *eta,
+                            model_of_cost *cost) {
+  const int plane = cost->dim == 2;
+  const double now = cost->deck.error;
+  if (now + cost->deck.time <= wanted_errors[N_WANTED - 1]) {
+    print_table(cost);
     return OK;
   }
-  double wanted = now / (plane ? 3.0 : 1.6);
-  PASS(run_adapted(c, in, eta, now / (plane ? 1.5 : 1.2), &cost.coarse));
-  PASS(run_adapted(c, in, eta, wanted, &cost.fine));
-  PASS(fit(&cost, wanted));
-  print_table(&cost);
-  print_fit(&cost);
+  const double wanted = now / (plane ? 3.0 : 1.6);
+  PASS(run_adapted(c, in, eta, now / (plane ? 1.5 : 1.2), &cost->coarse));
+  PASS(run_adapted(c, in, eta, wanted, &cost->fine));
+  PASS(fit(cost, wanted));
+  print_table(cost);
+  print_fit(cost);
   return OK;
+}
+
+/* ---- goals --------------------------------------------------------------- */
+
+/* A mesh for the goals, the run on it. */
+typedef struct stand {
+  job_input in;
+  double *eta; /* [n_elem] as in trial; owned */
+  trial t;
+} stand;
+
+static void stand_free(stand *s) {
+  memory_free(s->eta);
+  job_input_free(&s->in);
+  *s = (stand){.eta = NULL};
+}
+
+/* The job on a mesh for all goals, whose errors are to fall to that part of
+ * those of "at". */
+static status run_for_goals(const command *c, const mesh_sizes *first,
+                            const job_input *at, const double *eta, double part,
+                            stand *s) {
+  OWNED double *size = NULL;
+  trial before = {0};
+  const mesh *msh = at->msh;
+  PASS_NEW(size, msh->n_node);
+  for (int i = 0; i < msh->n_node; ++i) size[i] = HUGE_VAL;
+  aims_ask(s->t.goals, part);
+  PASS(aims_sizes(s->t.goals, at->m, msh, eta, size));
+  PASS(message_log_new(&s->in.log));
+  stage_costs(NULL, &before);
+  status st = job_read(c, &(job_mesh){.sizes = {{msh, size}, *first}},
+                       s->in.log, &s->in);
+  if (st == OK) {
+    PASS_NEW(s->eta, s->in.msh->n_elem);
+    s->t.eta = s->eta;
+    s->in.m->effects |= EFFECT_MESH_ERROR;
+    for (int i = 0; i < s->in.m->n.step; ++i)
+      s->in.m->steps[i].accuracy.mesh = MESH_ERROR_YES;
+    st = run_quietly(&s->in, &s->t);
+  }
+  if (st != OK) message_print(s->in.log, stderr);
+  stage_costs(&before, &s->t);
+  return st;
+}
+
+/* A goal on the meshes of the deck and of the last two runs, and the share of
+ * the elements of the last one that it needs. */
+typedef struct goal_fit {
+  const pass_goal *now, *coarse, *fine;
+  double share;
+} goal_fit;
+
+/* What an error of so many % would cost. */
+static void print_level(const model_of_cost *c, const goal_fit *g,
+                        double percent) {
+  const double full = 2.0 / c->dim;
+  const double off = AIM * percent / 100.0 * fabs(g->fine->found.value);
+  double order = -exponent(g->coarse->off, g->fine->off, c->coarse.unknowns,
+                           c->fine.unknowns);
+  order = order > 0.0 ? within(0.5 * full, order, 1.1 * full) : full;
+  double unknowns =
+      c->fine.unknowns * g->share * pow(g->fine->off / off, 1.0 / order);
+  unknowns = fmax(unknowns, c->deck.unknowns);
+  printf("; %g %%: ", percent);
+  if (pass_goal_percent(g->now) <= percent)
+    printf("reached already");
+  else if (unknowns > MOST_UNKNOWNS)
+    printf("out of reach");
+  else
+    printf("%.2g s, %.2g MB, %.2g unknowns",
+           sum_of(&c->deck) + 2.0 * cpu_at(c, unknowns, 1.0),
+           bytes_at(c, unknowns) / 1048576.0, unknowns);
+}
+
+/* n: runs after that of the deck. */
+static status print_goals(const model_of_cost *c, aims *a, const model *m,
+                          const mesh *msh, int n) {
+  static const double levels[] = {1.0, 0.1, 0.01}; /* % */
+  printf("  goals: TARGET= of each alone\n");
+  for (int i = 0; i < m->n.goal; ++i) {
+    const pass_goal *row = aims_rows(a) + i;
+    goal_fit g = {row, row + (n - 1) * m->n.goal, row + n * m->n.goal, 1.0};
+    printf("  %s: ", m->accuracy.goals[i].name);
+    if (isnan(g.fine->off)) {
+      printf("%s\n", goal_verdict_text(g.fine->found.verdict));
+      continue;
+    }
+    PASS(aims_share(a, msh, i, &g.share));
+    if (isnan(g.now->off))
+      printf("no estimate now");
+    else
+      printf("%.2g %% now", pass_goal_percent(g.now));
+    for (size_t k = 0; k < sizeof levels / sizeof *levels; ++k)
+      print_level(c, &g, levels[k]);
+    printf("\n");
+  }
+  return OK;
+}
+
+/* 1: some goal had no estimate after pass number "pass". */
+static int lacks_estimate(const aims *a, const model *m, int pass) {
+  const pass_goal *g = aims_rows(a) + pass * m->n.goal;
+  int lacks = 0;
+  for (int i = 0; i < m->n.goal; ++i) lacks |= isnan(g[i].off);
+  return lacks;
+}
+
+/* Power of N that the contact unknowns are like, from two runs. */
+static double contact_power(const trial *a, const trial *b, int dim) {
+  const double full = 1.0 - 1.0 / dim;
+  if (!(a->contact > 0.0 && b->contact > a->contact)) return full;
+  return within(0.5 * full,
+                exponent(a->contact, b->contact, a->unknowns, b->unknowns),
+                1.0);
+}
+
+/* now: of the mesh of the deck, with its goals. A mesh on which some goal has
+ * no estimate yet is followed by another. */
+static status forecast_goals(const command *c, job_input *in, trial *now) {
+  enum { LEAST = 2, MOST = 4 };
+  static const double part = 0.3;
+  status st = OK;
+  double *length = NULL;
+  stand s[2] = {{.t.goals = now->goals}, {.t.goals = now->goals}};
+  model_of_cost cost = {.dim = in->m->dim, .deck = *now};
+  int n = 0;
+  NEW(length, in->msh->n_node);
+  space_lengths(in->msh, length);
+  const mesh_sizes first = {in->msh, length};
+  while (n < LEAST || (n < MOST && lacks_estimate(now->goals, in->m, n - 1))) {
+    stand *to = &s[n % 2], *from = &s[(n + 1) % 2];
+    stand_free(to);
+    to->t.goals = now->goals;
+    TRY(run_for_goals(c, &first, n > 0 ? &from->in : in,
+                      n > 0 ? from->eta : now->eta, part, to));
+    ++n;
+  }
+  cost.coarse = s[n % 2].t;
+  cost.fine = s[(n + 1) % 2].t;
+  cost.contact = contact_power(&cost.coarse, &cost.fine, cost.dim);
+  TRY(print_goals(&cost, now->goals, in->m, s[(n + 1) % 2].in.msh, n));
+done:
+  stand_free(&s[0]);
+  stand_free(&s[1]);
+  memory_free(length);
+  return st;
+}
+
+status forecast_print(const command *c, job_input *in) {
+  status st = OK;
+  double *eta = NULL;
+  model_of_cost cost = {.dim = in->m != NULL ? in->m->dim : 2};
+  if (in->problem != NULL || !job_is_geo(in->m))
+    FAIL(ERR_DECK,
+         "--estimate-cost meshes the geometry again: the deck must name "
+         "a .geo in *MESH, FILE=");
+  mesh_gmsh_load();
+  NEW(eta, in->msh->n_elem);
+  if (in->m->n.goal > 0) TRY(aims_new(in->m, 1, &cost.deck.goals));
+  TRY(run_trial(in, &cost.deck, eta));
+  stage_costs(NULL, &cost.deck);
+  TRY(forecast_norm(c, in, eta, &cost));
+  if (in->m->n.goal > 0) TRY(forecast_goals(c, in, &cost.deck));
+done:
+  aims_free(cost.deck.goals);
+  memory_free(eta);
+  return st;
 }

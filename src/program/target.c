@@ -390,7 +390,7 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   const accuracy_target target = in->m->accuracy.target;
   pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
-  TRY(aims_new(in->m, &p.goals));
+  TRY(aims_new(in->m, 0, &p.goals));
   if (p.goals != NULL) TRY(keep_first(&p));
   for (;;) {
     TRY(run_pass(&p, unsettled));

@@ -254,6 +254,55 @@ START_TEST(zero_needs_a_target_in_its_unit) {
 }
 END_TEST
 
-UNIT_MAIN("goal_targets", every_goal_is_within_its_target,
-          peak_of_the_sphere_in_space, force_and_slip_of_the_block,
-          targets_out_of_reach_say_why, zero_needs_a_target_in_its_unit)
+/* What --estimate-cost says of an error of a goal: unknowns, 0: reached. */
+static double foreseen(const job *j, const char *goal, const char *level) {
+  char word[40];
+  double unknowns = 0.0;
+  snprintf(word, sizeof word, "  %s: ", goal);
+  const char *at = strstr(j->text, word);
+  ck_assert_msg(at != NULL, "no %s in %s", word, j->text);
+  snprintf(word, sizeof word, "; %s %%: ", level);
+  at = strstr(at, word);
+  ck_assert_msg(at != NULL, "no %s in %s", word, j->text);
+  at += strlen(word);
+  if (strncmp(at, "reached already", 15) != 0)
+    ck_assert_int_eq(sscanf(at, "%*f s, %*f MB, %lf unknowns", &unknowns), 1);
+  return unknowns;
+}
+
+/* The forecasts against the passes that reach two goals, one at a time. */
+START_TEST(forecasts_of_goals_are_near_the_passes) {
+  static const char goals[] =
+      "*PARAMETER\nL = \"SIZE*A\"\n"
+      "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE%s\n"
+      "*GOAL, NAME=TOP, QUANTITY=DISPLACEMENT, COMPONENT=2%s\n0., <L>\n"
+      "*GOAL, NAME=ALL, QUANTITY=FORCE, CONTACT=LINE\n";
+  static const char target[] = ", TARGET=0.1 %";
+  char cards[600];
+  job j;
+  snprintf(cards, sizeof cards, goals, "", "");
+  int code = run_with(&j, "input/hertz_line/hertz_exact", cards, "",
+                      "--estimate-cost");
+  OK_OR_STOP(code, j);
+  const double expected[2] = {foreseen(&j, "PEAK", "0.1"),
+                              foreseen(&j, "TOP", "0.1")};
+  ck_assert_double_gt(foreseen(&j, "TOP", "0.01"), 3 * expected[1]);
+  ck_assert_double_eq(foreseen(&j, "ALL", "0.01"), 0.0);
+  job_end(&j);
+  for (int k = 0; k < 2; ++k) {
+    snprintf(cards, sizeof cards, goals, k == 0 ? target : "",
+             k == 1 ? target : "");
+    code = run_with(&j, "input/hertz_line/hertz_exact", cards, "", "");
+    OK_OR_STOP(code, j);
+    const double has = job_told(&j, "unknowns");
+    ck_assert_msg(expected[k] > has / 2.5 && expected[k] < 2.5 * has,
+                  "%d: %g unknowns, foreseen %g", k, has, expected[k]);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("goal_targets", forecasts_of_goals_are_near_the_passes,
+          every_goal_is_within_its_target, peak_of_the_sphere_in_space,
+          force_and_slip_of_the_block, targets_out_of_reach_say_why,
+          zero_needs_a_target_in_its_unit)
