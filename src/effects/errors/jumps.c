@@ -205,7 +205,7 @@ done:
 }
 
 /* AUTO in the place of the method of the deck, so that the result does not
- * depend on it; *own: that of the deck. */
+ * depend on it, nor on what TOL=BALANCED allows; *own: that of the deck. */
 static status lend_solver(run *r, contact_solver **own) {
   status st = OK;
   solver_choice choice = r->step->solver;
@@ -219,8 +219,9 @@ done:
   return st;
 }
 
-static void give_back(run *r, contact_solver *own) {
+static void give_back(run *r, contact_solver *own, double tol) {
   contact_solver_free(r->elastic.solver);
+  r->solving.tol = tol;
   r->elastic.solver = own;
   r->solver = own;
 }
@@ -241,7 +242,9 @@ static status look_into(run *r, double t, double *at, double *share) {
   status st = OK;
   path s = {.r = r, .shortest = ldexp(t - r->old.t, -DEPTH) * 1.5};
   contact_solver *own = NULL;
+  const double tol = r->solving.tol;
   int found = -1;
+  r->solving.tol = r->step->solver.tol;
   TRY(lend_solver(r, &own));
   NEW(s.room, 2 * r->nodes.n_c);
   TRY(increment_solve(r, t));
@@ -256,7 +259,7 @@ static status look_into(run *r, double t, double *at, double *share) {
   *at = s.p[found + 1].t;
   *share = s.p[found].motion / all;
 done:
-  if (own != NULL) give_back(r, own);
+  if (own != NULL) give_back(r, own, tol);
   path_free(&s);
   return st;
 }
