@@ -5,11 +5,11 @@
  *
  * The band goes like the sum of m = |e_u| |e_y| over the elements, which is of
  * the second order in their length: the sizes are those of space_sizes with
- * sqrt(m) in the place of eta. Errors of a global force cancel better on meshes
- * for the energy norm, in whose squared error they are linear. So each goal has
- * the one of the two meshes that is foreseen to need fewer unknowns, by the
- * order that it has shown, off ~ unknowns^(-order), or 2/dim before. The mesh
- * of the next pass has the smallest size that any goal requires.
+ * sqrt(m) in the place of eta, those for the energy norm where there is no m
+ * yet. Meshes for the energy norm need 1.2 to 3 times the unknowns for the same
+ * error, for the friction force of the block too (measured with |error| +
+ * band), so none is taken for its cancelling. The mesh of the next pass has the
+ * smallest size that any goal requires.
  */
 #include "program/aims.h"
 
@@ -27,19 +27,12 @@ static const double BLIND = 0.5; /* -, of the error, without an estimate */
 static const double ENDS = 2.0;  /* -, of an estimate that is not reliable for
                                     the ends of contact */
 
-/* What a goal has shown so far. */
-typedef struct course {
-  int by_energy, at_first; /* 1: meshes for the energy; those of the start */
-  double order[2]; /* -, of its own meshes and those for the energy; 0: none */
-} course;
-
 struct aims {
   int n, n_pass;   /* goals */
   int all;         /* 1: goals without a target count too */
-  double unknowns; /* of the pass before */
+  int counts;      /* 1: some goal counts; 0: they are only shown */
   double least;    /* -, largest off over its target, least of all passes */
   int in_vain;     /* passes since */
-  course *course;  /* [n] */
   pass_goal *rows; /* [MAX_PASS_ROWS*n] */
   double *product; /* [n*n_elem] of the last increment */
 };
@@ -48,15 +41,13 @@ status aims_new(const model *m, int all, aims **out) {
   status st = OK;
   aims *a = NULL;
   *out = NULL;
-  if (!all && model_targeted_goal(m) == NULL) return OK;
+  if (m->n.goal == 0) return OK;
   NEW(a, 1);
   a->all = all;
+  a->counts = all || model_targeted_goal(m) != NULL;
   a->n = m->n.goal;
   a->least = HUGE_VAL;
-  NEW(a->course, a->n);
   NEW(a->rows, MAX_PASS_ROWS * a->n);
-  for (int i = 0; i < a->n; ++i)
-    a->course[i].at_first = m->accuracy.goals[i].quantity == GOAL_FORCE;
   *out = a;
   a = NULL;
 done:
@@ -66,7 +57,7 @@ done:
 
 void aims_free(aims *a) {
   if (a == NULL) return;
-  RELEASE(a->course, a->rows, a->product, a);
+  RELEASE(a->rows, a->product, a);
 }
 
 static pass_goal *last_row(const aims *a, int i) {
@@ -81,17 +72,20 @@ status aims_begin(aims *a, const mesh *msh) {
   if (a == NULL) return OK;
   memory_free(a->product);
   a->product = NULL;
-  PASS_NEW(a->product, (size_t)a->n * (size_t)msh->n_elem);
   ++a->n_pass;
+  if (a->counts) PASS_NEW(a->product, (size_t)a->n * (size_t)msh->n_elem);
   return OK;
 }
 
 void aims_see(aims *a, const mesh *msh, const state *s) {
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) last_row(a, i)->found = s->errors.goals[i];
-  memcpy(a->product, s->errors.goal_products,
-         (size_t)a->n * (size_t)msh->n_elem * sizeof *a->product);
+  if (a->counts)
+    memcpy(a->product, s->errors.goal_products,
+           (size_t)a->n * (size_t)msh->n_elem * sizeof *a->product);
 }
+
+int aims_count(const aims *a) { return a != NULL && a->counts; }
 
 /* ---- evaluating -------------------------------------------------------------
  */
@@ -131,32 +125,21 @@ static void evaluate(const goal_card *goal, pass_goal *g) {
                    : goal->target;
 }
 
-/* The order of this pass, of a goal that is to come nearer. */
-static void observe(aims *a, int i, double unknowns) {
-  course *c = &a->course[i];
-  const double now = last_row(a, i)->off;
-  const double before = a->n_pass > 1 ? last_row(a, i - a->n)->off : NAN;
-  if (now > 0.0 && before > 0.0 && unknowns > 1.1 * a->unknowns)
-    c->order[c->by_energy] = log(before / now) / log(unknowns / a->unknowns);
-}
-
-void aims_evaluate(aims *a, const model *m, double unknowns) {
+void aims_evaluate(aims *a, const model *m) {
   double most = 0.0;
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) {
     const goal_card *goal = &m->accuracy.goals[i];
     pass_goal *g = last_row(a, i);
     evaluate(goal, g);
-    observe(a, i, unknowns);
     if (goal->target > 0.0)
       most = fmax(most, isnan(g->off) ? HUGE_VAL : g->off / g->allowed);
   }
   a->in_vain = most >= GAIN * a->least ? a->in_vain + 1 : 0;
   a->least = fmin(a->least, most);
-  a->unknowns = unknowns;
 }
 
-int aims_stand_still(const aims *a) { return a != NULL && a->in_vain > 1; }
+int aims_stand_still(const aims *a) { return aims_count(a) && a->in_vain > 1; }
 
 void aims_check(const aims *a, const model *m, char *why, size_t size) {
   why[0] = '\0';
@@ -191,9 +174,8 @@ size_t aims_name(const aims *a, const model *m, char *text, size_t size) {
   for (int i = 0; a != NULL && i < a->n && used < size; ++i)
     if (!is_met(&m->accuracy.goals[i], last_row(a, i)))
       used +=
-          (size_t)snprintf(text + used, size - used, "%s %s%s",
-                           used > 0 ? "," : " for", m->accuracy.goals[i].name,
-                           a->course[i].by_energy ? " by energy" : "");
+          (size_t)snprintf(text + used, size - used, "%s %s",
+                           used > 0 ? "," : " for", m->accuracy.goals[i].name);
   return used < size ? used : size;
 }
 
@@ -205,17 +187,6 @@ double aims_solver(const aims *a, const model *m, double share) {
       most = fmax(most, fabs(g->found.solver) / (share * g->allowed));
   }
   return most;
-}
-
-/* The cheaper of both kinds of meshes. */
-static int prefers_energy(const course *c, double part, int dim) {
-  const double full = 2.0 / dim;
-  double growth[2];
-  for (int k = 0; k < 2; ++k) {
-    const double order = c->order[k] != 0.0 ? c->order[k] : full;
-    growth[k] = pow(part, -1.0 / fmin(fmax(order, 0.5 * full), 1.5 * full));
-  }
-  return c->at_first ? growth[1] <= growth[0] : growth[1] < growth[0];
 }
 
 void aims_ask(aims *a, double part) {
@@ -262,12 +233,10 @@ status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
   PASS_NEW(more, msh->n_node);
   for (int i = 0; i < a->n; ++i) {
     const double part = part_of(last_row(a, i));
-    course *c = &a->course[i];
     if (!a->all && !(m->accuracy.goals[i].target > 0.0)) continue;
     const int any = find_own(a, msh, i, own);
-    c->by_energy = eta != NULL && (!any || prefers_energy(c, part, msh->dim));
     if (!any && eta == NULL) continue;
-    find_sizes(msh, c->by_energy ? eta : own, part, more);
+    find_sizes(msh, any ? own : eta, part, more);
     for (int k = 0; k < msh->n_node; ++k) size[k] = fmin(size[k], more[k]);
   }
   return OK;

@@ -9,16 +9,17 @@
 
 typedef struct aims aims;
 
-/* *out is new; NULL: no goal has a target, unless all goals are to count, for a
- * forecast. ERR_MEMORY. */
+/* *out is new; NULL: there are no goals. Those with a target count, or all, for
+ * a forecast. ERR_MEMORY. */
 status aims_new(const model *m, int all, aims **out);
-void aims_free(aims *a); /* accepts NULL */
+int aims_count(const aims *a); /* 1: some goal counts; NULL: none */
+void aims_free(aims *a);       /* accepts NULL */
 
 /* Of a pass, in this order: before its increments; after each of them; after
- * the last one, on so many unknowns. All accept NULL. */
+ * the last one. All accept NULL. */
 status aims_begin(aims *a, const mesh *msh);
 void aims_see(aims *a, const mesh *msh, const state *s);
-void aims_evaluate(aims *a, const model *m, double unknowns);
+void aims_evaluate(aims *a, const model *m);
 
 /* Of the last pass; NULL: nothing is wanted. 1: all targets are reached. */
 int aims_are_met(const aims *a, const model *m);

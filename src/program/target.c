@@ -44,7 +44,7 @@ typedef struct pass {
   double mesh, time, solver;      /* -, errors there */
   double *eta;                    /* [n_elem] shares of the elements there */
   double *size;                   /* [n_node] of the next mesh, m */
-  aims *goals;                    /* or NULL: none has a target */
+  aims *goals;                    /* or NULL: there are none */
   mesh *first;                    /* of the deck, with targets of goals: its
                                      lengths are the largest of all passes */
   double *first_size;             /* [first->n_node] m */
@@ -118,7 +118,7 @@ static status find_sizes(pass *p, double *factor) {
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
   if (has_norm(p)) space_sizes(msh, p->eta, wanted, p->size);
   if (norm_wants_mesh(p)) *factor = pow(p->mesh / wanted, p->in->m->dim);
-  if (p->goals == NULL) return OK;
+  if (!aims_count(p->goals)) return OK;
   PASS(aims_sizes(p->goals, p->in->m, msh, p->energy >= 0.0 ? p->eta : NULL,
                   p->size));
   *factor = fmax(*factor, space_growth(msh, p->size));
@@ -294,7 +294,7 @@ static pass_row next_digit(const pass *p) {
 static status see_finished(void *ctx, status st, output *out) {
   pass *p = ctx;
   if (st != OK) return st;
-  aims_evaluate(p->goals, p->in->m, p->unknowns);
+  aims_evaluate(p->goals, p->in->m);
   pass_row *row = &p->rows[p->n++];
   *row = (pass_row){.unknowns = p->unknowns,
                     .mesh = 100.0 * p->mesh,
@@ -391,7 +391,7 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
   const accuracy_target target = in->m->accuracy.target;
   pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
   TRY(aims_new(in->m, 0, &p.goals));
-  if (p.goals != NULL) TRY(keep_first(&p));
+  if (aims_count(p.goals)) TRY(keep_first(&p));
   for (;;) {
     TRY(run_pass(&p, unsettled));
     if (p.done) break;

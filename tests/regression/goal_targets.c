@@ -190,7 +190,7 @@ START_TEST(force_and_slip_of_the_block) {
   ck_true(&j, 0, -1405.346, 0.003 * 1405.346);
   ck_true(&j, 1, 0.02860321, 0.003 * 0.02860321);
   char *json = job_file(&j, "json");
-  ck_assert_ptr_nonnull(strstr(json, "GRIP by energy"));
+  ck_assert_ptr_nonnull(strstr(json, "mesh for GRIP, UX"));
   ck_assert_ptr_nonnull(strstr(json, "\"reached\": true"));
   free(json);
   job_end(&j);

@@ -64,7 +64,7 @@ typedef struct pass_table {
   double target; /* % of the energy norm; 0: goals alone */
   int n;         /* 0: no target */
   const pass_row *rows, *forecast;
-  const pass_goal *goals; /* [n*n_goal]; NULL: none has a target */
+  const pass_goal *goals; /* [n*n_goal]; NULL: there are none */
   const char *why;        /* the target is missed, or "" */
 } pass_table;
 
