@@ -276,6 +276,8 @@ static void write_block(job *j, double size, const char *right,
             "Curve Loop(2) = {2, 3, 4, -7};\nPlane Surface(2) = {2};\n"
             "Physical Surface(\"LEFT\") = {1};\n"
             "Physical Surface(\"RIGHT\") = {2};\n"
+            "Physical Surface(\"ALL\") = {1, 2};\n"
+            "Physical Point(\"CORNERS\") = {4, 6};\n"
             "Physical Curve(\"FOOT\") = {1, 2};\n"
             "Physical Curve(\"TOP\") = {4, 5};\n"
             "Physical Curve(\"SIDE\") = {6};\n",
@@ -296,14 +298,21 @@ START_TEST(width_is_that_of_one_zone) {
   job j = job_begin("block");
   write_block(
       &j, 0.025, "",
-      "*OBSTACLE, NAME=O, TYPE=GAP\n\"min((x - 1)^2/8 + 0.008, (x - 3)^2/4)\"\n"
+      "*OBSTACLE, NAME=O, TYPE=GAP\n"
+      "\"min((x - 1)^2/8 + 0.008, (x - 3.01)^2/4)\"\n"
       "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
-      "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n*STEP\n*STATIC\n"
+      "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
+      "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.15\n"
+      "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.15\n3.01, 0.\n"
+      "*STEP\n*STATIC\n"
       "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.05\n*PRINT, GOALS, ZONES\n");
   dat z = job_table(&j, "ZONES", -1);
   ck_assert_int_eq(z.n_row, 5);
   ck_assert_double_gt(dat_at(&z, 1, "extent"), 0.2);
   ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&z, 3, "extent"), 0.025);
+  const told peak = told_of(&j, 1), at = told_of(&j, 2);
+  ck_assert_double_eq_tol(peak.value + peak.error, at.value + at.error,
+                          3e-4 * at.value);
   dat_free(&z);
   job_end(&j);
 }
@@ -345,11 +354,78 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
 }
 END_TEST
 
-/* The same in space, where a mean goes on behind planes of symmetry, and a node
- * that a support holds in the middle is on none. */
-START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
-  job j = job_begin("cube");
-  job_write(&j, "cube.geo",
+/* The mean stress under a weight is that of its moment, whatever the mesh, and
+ * the mean of two displacements has the mean of their errors. */
+START_TEST(means_are_of_volumes_and_of_nodes) {
+  job j = job_begin("block");
+  write_block(&j, 0.1, "",
+              "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=ALL, COMPONENT=YY\n"
+              "*GOAL, NAME=L, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 2.\n"
+              "*GOAL, NAME=R, QUANTITY=DISPLACEMENT, COMPONENT=2\n4., 2.\n"
+              "*GOAL, NAME=BOTH, QUANTITY=DISPLACEMENT, GROUP=CORNERS, "
+              "COMPONENT=2\n*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DLOAD\n"
+              "LEFT, BY, -1.\nRIGHT, BY, -3.\n*PRINT, GOALS\n");
+  ck_assert_double_eq_tol(told_of(&j, 0).value, -2.0, 1e-9);
+  const told l = told_of(&j, 1), r = told_of(&j, 2), both = told_of(&j, 3);
+  ck_assert_double_eq_tol(both.value, 0.5 * (l.value + r.value),
+                          1e-9 * fabs(l.value));
+  ck_assert_double_gt(fabs(l.error), 1e-3 * fabs(l.value));
+  ck_assert_double_eq_tol(both.error, 0.5 * (l.error + r.error),
+                          1e-6 * fabs(l.error));
+  job_end(&j);
+}
+END_TEST
+
+/* A pressed block that slips to both sides from its middle. */
+START_TEST(slip_that_changes_its_sense_is_an_end) {
+  job j = job_begin("block");
+  write_block(&j, 0.2, "",
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.E-5\n"
+              "*GOAL, NAME=E, QUANTITY=ENERGY\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nTOP, 1\n*DSLOAD\n"
+              "TOP, P, \"10. + x\"\n*PRINT, GOALS, TOTALS\n");
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq(dat_at(&t, 0, "open") + dat_at(&t, 0, "stick"), 0.0);
+  ck_assert_double_gt(told_of(&j, 0).ends, 0.0);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* A tube under a pressure from inside (Lame), in plane strain: energy and
+ * displacement. */
+START_TEST(goals_of_a_ring_count_the_hoop) {
+  static const double widens = 1.3 / 1000.0 * 10.0 / 3.0 * (0.4 + 4.0);
+  job j = job_begin("ring");
+  job_write(&j, "ring.geo",
+            "h = 0.2;\nPoint(1) = {1, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
+            "Point(3) = {2, 1, 0, h};\nPoint(4) = {1, 1, 0, h};\n"
+            "For k In {1 : 4}\n  Line(k) = {k, k %% 4 + 1};\nEndFor\n"
+            "Curve Loop(1) = {1 ... 4};\nPlane Surface(1) = {1};\n"
+            "Physical Surface(\"TUBE\") = {1};\n"
+            "Physical Curve(\"INSIDE\") = {4};\n"
+            "Physical Curve(\"FACES\") = {1, 3};\n");
+  job_write(&j, "ring.inp",
+            "*MESH, FILE=ring.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=TUBE, MATERIAL=M, TYPE=CAX3\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=INSIDE, COMPONENT=1\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nFACES, 2\n*DSLOAD\nINSIDE, P, 10.\n"
+            "*PRINT, GOALS\n*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  check_goal(&j, 0, 10.0 * acos(-1.0) * widens, 0.8, 1.5, 1.0);
+  check_goal(&j, 1, widens, 0.5, 2.0, 1.0);
+  ck_assert_double_lt(told_of(&j, 1).band, 0.01 * widens);
+  job_end(&j);
+}
+END_TEST
+
+/* A body of 2 x 2 x 1 on a plane. */
+static void write_cube(job *j, const char *cards) {
+  job_write(j, "cube.geo",
             "h = 0.25;\nPoint(1) = {0, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
             "Point(3) = {2, 2, 0, h};\nPoint(4) = {0, 2, 0, h};\n"
             "Point(5) = {1, 1, 0, h};\n"
@@ -363,23 +439,31 @@ START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
             "Physical Surface(\"YS\") = {e[2]};\n"
             "Physical Surface(\"XS\") = {e[5]};\n"
             "Physical Point(\"PIN\") = {5};\n");
-  job_write(&j, "cube.inp",
+  job_write(j, "cube.inp",
             "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
-            "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
-            "*GOAL, NAME=PIN, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
-            "1., 1., 0.\n"
-            "*GOAL, NAME=NEAR, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
-            "0.5, 0.4, 0.\n"
-            "*GOAL, NAME=CORNER, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
-            "0., 0., 0.\n"
-            "*GOAL, NAME=CUT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
-            "1.5, 1., 0.\n"
-            "*STEP\n*STATIC\n*BOUNDARY\nXS, 1\nYS, 2\nPIN, 1, 2\n*DSLOAD\n"
-            "TOP, P, 10.\n*PRINT, GOALS\n*END STEP\n");
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+            "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n%s*END STEP\n",
+            cards);
+  const int code = job_run(j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
+}
+
+/* The mean of a pressure in space goes on behind planes of symmetry, and a node
+ * that a support holds in the middle is on none. */
+START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
+  job j = job_begin("cube");
+  write_cube(&j,
+             "*GOAL, NAME=PIN, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+             "1., 1., 0.\n"
+             "*GOAL, NAME=NEAR, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+             "0.5, 0.4, 0.\n"
+             "*GOAL, NAME=CORNER, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+             "0., 0., 0.\n"
+             "*GOAL, NAME=CUT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.9\n"
+             "1.5, 1., 0.\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nXS, 1\nYS, 2\nPIN, 1, 2\n*DSLOAD\n"
+             "TOP, P, 10.\n*PRINT, GOALS\n");
   for (int k = 0; k < 3; ++k) {
     const told g = told_of(&j, k);
     ck_assert_double_eq_tol(g.value, 10.0, 0.5);
@@ -390,9 +474,28 @@ START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
 }
 END_TEST
 
+START_TEST(tangential_force_in_space_is_the_first) {
+  job j = job_begin("cube");
+  write_cube(&j,
+             "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n"
+             "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=TANGENT\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.004\nTOP, 2, 2, 0.002\n"
+             "*DSLOAD\nTOP, P, 10.\n*PRINT, GOALS, TOTALS\n");
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_gt(fabs(dat_at(&t, 0, "tangential_2")), 1.0);
+  ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&t, 0, "tangential_1"),
+                          1e-9);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           friction_force_of_the_block, errors_of_earlier_increments_are_in_it,
           both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
           energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
           width_is_that_of_one_zone, means_of_a_pressure_lie_on_its_surface,
-          means_in_space_go_on_behind_planes_of_symmetry)
+          means_are_of_volumes_and_of_nodes,
+          slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
+          means_in_space_go_on_behind_planes_of_symmetry,
+          tangential_force_in_space_is_the_first)

@@ -310,6 +310,27 @@ START_TEST(error_of_the_solver_is_that_of_a_disturbed_solution) {
 }
 END_TEST
 
+/* Close to each limit, on both sides of it. */
+START_TEST(verdicts_change_at_their_limits) {
+  static const struct {
+    double error, ends;
+    int n_closed;
+    goal_verdict verdict;
+  } cases[] = {
+      {0.051, 0.029, 4, GOAL_RELIABLE},  {-0.051, 0.0, 0, GOAL_RELIABLE},
+      {0.051, 0.029, 3, GOAL_FEW_NODES}, {0.051, 0.031, 4, GOAL_CONTACT_END},
+      {-0.049, 0.029, 4, GOAL_CANCELS},  {0.049, 0.0, 0, GOAL_CANCELS}};
+  for (int k = 0; k < 6; ++k) {
+    const goal_estimate e = {.error = 2.0 * cases[k].error,
+                             .magnitude = 2.0,
+                             .product = 5.0,
+                             .ends = 5.0 * cases[k].ends};
+    ck_assert_int_eq(goal_judge(&e, cases[k].n_closed).verdict,
+                     cases[k].verdict);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("goal");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -320,5 +341,6 @@ int main(void) {
       tests, adjoint_is_the_derivative_by_the_positions_of_stick, 0, 4);
   tcase_add_loop_test(tests, changes_are_the_transpose_of_the_adjoint, 0, 6);
   tcase_add_loop_test(tests, an_operator_gives_what_its_matrix_does, 0, 6);
+  tcase_add_test(tests, verdicts_change_at_their_limits);
   return unit_run("goal", tests);
 }

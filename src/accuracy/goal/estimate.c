@@ -238,7 +238,8 @@ const char *goal_verdict_text(goal_verdict v) { return verdicts[v].text; }
 goal_result goal_judge(const goal_estimate *e, int n_closed) {
   enum { FEW = 3 };
   goal_result r = {.error = e->error,
-                   .band = BAND * e->magnitude + e->ends + HISTORY * e->history,
+                   .band = BAND * e->magnitude + e->ends +
+                           HISTORY * e->history + fabs(e->hoop),
                    .ends = e->product > 0.0 ? e->ends / e->product : 0.0};
   if (n_closed > 0 && n_closed <= FEW)
     r.verdict = GOAL_FEW_NODES;
@@ -285,6 +286,30 @@ static double add_element(goal_estimator *e, int elem_id, const double *tau,
   return both;
 }
 
+/* The stiffness takes the hoop at the mean radius r of an element: what u'E y
+ * has there more than its integral, E A (u y/r - mean of u y/r), J. */
+static double hoop_of(const goal_estimator *e, int elem_id, const double *y) {
+  static const double part[2] = {1.0 / 6.0, 2.0 / 3.0};
+  const domain *d = e->s.d;
+  const mesh *m = d->mesh;
+  const int *v = m->elem + 3 * elem_id;
+  double mean[3] = {0.0}, sum = 0.0;
+  if (d->kin[d->section_id[elem_id]] != AXISYMMETRIC) return 0.0;
+  for (int p = 0; p < 3; ++p) {
+    double at[3] = {0.0};
+    for (int a = 0; a < 3; ++a) {
+      const double all[3] = {e->s.u[2 * v[a]], y[2 * v[a]], m->x[2 * v[a]]};
+      for (int k = 0; k < 3; ++k) {
+        at[k] += part[a == p] * all[k];
+        if (p == 0) mean[k] += all[k] / 3.0;
+      }
+    }
+    sum += at[0] * at[1] / at[2] / 3.0;
+  }
+  return element_weight(d, elem_id) * d->E[16 * d->section_id[elem_id] + 10] *
+         (mean[0] * mean[1] / mean[2] - sum) / mean[2];
+}
+
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           double *product, goal_estimate *out) {
   domain d = *e->s.d;
@@ -298,6 +323,7 @@ status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
       if (space_region(e->recovery, k) != region) continue;
       const double both = add_element(e, k, tau, out);
       if (product != NULL) product[k] = both;
+      out->hoop += hoop_of(e, k, y);
     }
   }
   return OK;

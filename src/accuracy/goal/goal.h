@@ -42,6 +42,8 @@ typedef struct goal_estimate {
   double product;   /* sum over the elements of |e_u| |e_y| */
   double ends;      /* the same where the contact ends */
   double history;   /* sum of the magnitudes by the increments before */
+  double hoop;      /* by the hoop strains of axisymmetric elements, which the
+                       stiffness takes at their mean radius */
 } goal_estimate;
 /* The result of an estimate but for value, solver and cpu; n_closed: nodes. */
 goal_result goal_judge(const goal_estimate *e, int n_closed);

@@ -211,7 +211,10 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   if (!isfinite(e.error)) return OK;
   e.error += f->curved;
   e.magnitude += fabs(f->curved);
-  if (f->is_square) e.error += 0.5 * goal_estimator_energy(s->estimator);
+  if (f->is_square) {
+    e.error += 0.5 * (goal_estimator_energy(s->estimator) + e.hoop);
+    e.hoop = 0.0;
+  }
   e.error += of_sticks(r, own, s, &e.history);
   *out = goal_judge(&e, s->surface.n_closed);
   if (f->sums) add_sum(&own->before, id, out);
