@@ -7,6 +7,8 @@
 #include <math.h>
 
 enum { ROOT_STEPS = 100 };
+static const double LAST_STEP = 0x1p-27; /* -, of a root found by Newton steps:
+                                            the next is its square */
 
 /* A state computed, and the violation of its inequalities, N. */
 typedef struct candidate {
@@ -14,6 +16,10 @@ typedef struct candidate {
 } candidate;
 
 static double positive(double a) { return a > 0.0 ? a : 0.0; }
+
+static double length(const double *v) {
+  return sqrt(v[0] * v[0] + v[1] * v[1]);
+}
 
 static double size_of(const local_problem *lp, const double *v) {
   double sum = 0.0;
@@ -104,14 +110,18 @@ static void slip_disc(const disc_problem *dp, double nu, double *s) {
       high = nu;
     if (excess == 0.0) break;
     double next = slope < 0.0 ? nu - excess / slope : HUGE_VAL;
+    double enough = LAST_STEP;
     if (!(next > low && next < high)) {
+      enough = 0x1p-52;
       if (high < HUGE_VAL)
         next = low + 0.5 * (high - low);
       else
         next = 4.0 * (low > 0.0 ? low : start);
     }
-    if (fabs(next - nu) <= 0x1p-52 * nu || !(next < HUGE_VAL)) break;
+    if (!(next < HUGE_VAL)) break;
+    const double moved = fabs(next - nu);
     nu = next;
+    if (moved <= enough * nu) break;
   }
   slip_excess(dp, nu, q, &slope);
   s[0] = nu * q[0];
@@ -121,7 +131,7 @@ static void slip_disc(const disc_problem *dp, double nu, double *s) {
 /* The same in steps, where the slip s found is so long that errors of its
  * direction n fade: (S + n gb') d = c - ga n. */
 static void slip_step(const disc_problem *dp, const double *s, double *d) {
-  double size = hypot(s[0], s[1]), n[2], y[2], M[4];
+  double size = length(s), n[2], y[2], M[4];
   for (int i = 0; i < 2; ++i) {
     d[i] = s[i] - dp->at[i];
     n[i] = s[i] / size;
@@ -147,16 +157,15 @@ static int disc_solve(const disc_problem *dp, double *d, double *t) {
     for (int j = 0; j < dp->n; ++j)
       held.c[i] += dp->S[i + dp->n * j] * dp->at[j];
     held.ga -= dp->gb[i] * dp->at[i];
-    size = hypot(size, held.c[i]);
+    size += held.c[i] * held.c[i];
     d[i] = -dp->at[i];
     t[i] = -held.c[i];
   }
-  if (size <= positive(held.ga)) return 0;
+  if (sqrt(size) <= positive(held.ga)) return 0;
   if (dp->n == 1) {
     slip_line(dp, held.c[0], d);
   } else {
-    double flexibility =
-        hypot(dp->at[0], dp->at[1]) / hypot(dp->c[0], dp->c[1]);
+    double flexibility = length(dp->at) / length(dp->c);
     slip_disc(&held, flexibility < HUGE_VAL ? flexibility : 0.0, s);
     slip_step(dp, s, d);
   }
