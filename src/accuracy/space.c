@@ -125,6 +125,13 @@ double space_growth(const mesh *m, const double *size) {
 enum { MAX_BASIS = 4, MAX_NS = 6 };
 static const double FLAT = 1e-6; /* -, pivot of a fit without enough points */
 
+/* The values at the nodes of a region as sums over elements. */
+typedef struct fit_weights {
+  int *start;     /* [n_node+1] */
+  int *elem;      /* [start[n_node]] */
+  double *weight; /* the same, - */
+} fit_weights;
+
 struct space_recovery {
   const domain *d;
   int n_section, n_region;
@@ -132,9 +139,12 @@ struct space_recovery {
   double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E) of the estimate */
   int *start, *elem;  /* [n_node+1], elements round each node */
   int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
+  double *weight;     /* [n_elem] of the elements of a patch, - */
   int *seen;          /* [n_node] mark of the last patch */
   int last;           /* mark */
   double *centroid;   /* [dim*n_elem] m */
+  double *measure;    /* [n_elem] element_weight */
+  fit_weights *kept;  /* [n_region] after space_keep, else NULL */
   double *recovered;  /* [ns*n_node] of the current region, Pa */
 };
 
@@ -215,10 +225,13 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   NEW(s->elem, (size_t)(m->dim + 1) * (size_t)m->n_elem);
   NEW(s->patch, m->n_elem);
   NEW(s->stamp, m->n_elem);
+  NEW(s->weight, m->n_elem);
   NEW(s->seen, m->n_node);
   NEW(s->recovered, (size_t)d->ns * (size_t)m->n_node);
   NEW(s->centroid, m->dim * m->n_elem);
+  NEW(s->measure, m->n_elem);
   find_centroids(m, s->centroid);
+  for (int k = 0; k < m->n_elem; ++k) s->measure[k] = element_weight(d, k);
   find_regions(s);
   list_neighbours(s);
   *out = s;
@@ -230,8 +243,11 @@ done:
 
 void space_recovery_free(space_recovery *s) {
   if (s == NULL) return;
+  for (int k = 0; k < s->n_region && s->kept != NULL; ++k)
+    RELEASE(s->kept[k].start, s->kept[k].elem, s->kept[k].weight);
   RELEASE(s->region, s->compliance, s->start, s->elem, s->patch, s->stamp,
-          s->seen, s->recovered, s->centroid, s);
+          s->weight, s->seen, s->recovered, s->centroid, s->measure, s->kept,
+          s);
 }
 
 /* ---- patches ------------------------------------------------------------- */
@@ -344,27 +360,74 @@ static void value_weights(int p, const double *L, double *g) {
   }
 }
 
-/* Values at the node of nq fields from its patch of n elements; the mean if the
- * fit is not determined. q[nq*n_elem], value[nq]. */
-static void fit(const space_recovery *s, int node, int n, int nq,
-                const double *q, double *value) {
+/* weight[n]: the value at the node is the sum of weights times those of its
+ * patch of n elements; the mean if the fit is not determined. */
+static void fit(const space_recovery *s, int node, int n, double *weight) {
   const int p = s->d->mesh->dim + 1;
   const double size = patch_size(s, node, n);
   double G[MAX_BASIS * MAX_BASIS], L[MAX_BASIS * MAX_BASIS];
   double g[MAX_BASIS] = {1.0 / n}, basis[MAX_BASIS];
   normal_equations(s, node, n, size, G);
   if (n > p && factor(p, G, L)) value_weights(p, L, g);
-  for (int i = 0; i < nq; ++i) value[i] = 0.0;
   for (int k = 0; k < n; ++k) {
-    const double *t = q + (size_t)nq * (size_t)s->patch[k];
-    double weight = 0.0;
+    weight[k] = 0.0;
     basis_at(s, node, k, size, basis);
-    for (int j = 0; j < p; ++j) weight += g[j] * basis[j];
-    for (int i = 0; i < nq; ++i) value[i] += weight * t[i];
+    for (int j = 0; j < p; ++j) weight[k] += g[j] * basis[j];
   }
 }
 
+/* Sum over n elements; q[nq*n_elem], value[nq]. */
+static void add_up(int n, const int *elem, const double *weight, int nq,
+                   const double *q, double *value) {
+  for (int i = 0; i < nq; ++i) value[i] = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const double *t = q + (size_t)nq * (size_t)elem[k];
+    for (int i = 0; i < nq; ++i) value[i] += weight[k] * t[i];
+  }
+}
+
+/* Room for n elements; *have so far. */
+static status grow(fit_weights *w, size_t *have, size_t n) {
+  const size_t all = n + n / 2;
+  int *elem = memory_resize(w->elem, *have, all, sizeof *elem);
+  if (elem == NULL) RAISE(ERR_MEMORY, "memory exhausted: %zu patches", all);
+  w->elem = elem;
+  double *weight = memory_resize(w->weight, *have, all, sizeof *weight);
+  if (weight == NULL) RAISE(ERR_MEMORY, "memory exhausted: %zu patches", all);
+  w->weight = weight;
+  *have = all;
+  return OK;
+}
+
+/* The patch and weights of a region. */
+static status keep_region(space_recovery *s, int region, fit_weights *w) {
+  const mesh *m = s->d->mesh;
+  size_t have = 0;
+  PASS_NEW(w->start, m->n_node + 1);
+  for (int i = 0; i < m->n_node; ++i) {
+    const int n = gather(s, i, region);
+    const size_t at = (size_t)w->start[i], next = at + (size_t)n;
+    if (next > have) PASS(grow(w, &have, next));
+    w->start[i + 1] = (int)next;
+    if (n == 0) continue;
+    memcpy(w->elem + at, s->patch, (size_t)n * sizeof *s->patch);
+    fit(s, i, n, w->weight + at);
+  }
+  return OK;
+}
+
+status space_keep(space_recovery *s) {
+  if (s->kept != NULL) return OK;
+  PASS_NEW(s->kept, s->n_region);
+  for (int k = 0; k < s->n_region; ++k) PASS(keep_region(s, k, &s->kept[k]));
+  return OK;
+}
+
 int space_regions(const space_recovery *s) { return s->n_region; }
+
+double space_measure(const space_recovery *s, int elem_id) {
+  return s->measure[elem_id];
+}
 
 int space_region(const space_recovery *s, int elem_id) {
   return s->region[s->d->section_id[elem_id]];
@@ -372,9 +435,14 @@ int space_region(const space_recovery *s, int elem_id) {
 
 void space_recover(space_recovery *s, int region, int nq, const double *q,
                    double *value) {
-  for (int i = 0; i < s->d->mesh->n_node; ++i) {
-    const int n = gather(s, i, region);
-    if (n > 0) fit(s, i, n, nq, q, value + (size_t)nq * (size_t)i);
+  const fit_weights *w = s->kept != NULL ? &s->kept[region] : NULL;
+  for (int i = 0; i < s->d->mesh->n_node; ++i, value += nq) {
+    const int n =
+        w != NULL ? w->start[i + 1] - w->start[i] : gather(s, i, region);
+    if (n == 0) continue;
+    if (w == NULL) fit(s, i, n, s->weight);
+    add_up(n, w != NULL ? w->elem + w->start[i] : s->patch,
+           w != NULL ? w->weight + w->start[i] : s->weight, nq, q, value);
   }
 }
 
@@ -393,26 +461,56 @@ static const double *compliance_of(const space_recovery *s, int elem_id) {
          (size_t)(s->d->ns * s->d->ns) * (size_t)s->d->section_id[elem_id];
 }
 
-double space_product(const space_recovery *s, int elem_id, const space_field *a,
-                     const space_field *b) {
-  const mesh *m = s->d->mesh;
-  const int ns = s->d->ns, vertices = m->dim + 1;
-  const size_t own = (size_t)ns * (size_t)elem_id;
-  const double *S = compliance_of(s, elem_id);
-  double all_a[MAX_NS] = {0.0}, all_b[MAX_NS] = {0.0}, sum = 0.0;
-  for (int k = 0; k < vertices; ++k) {
-    const size_t at = (size_t)ns * (size_t)m->elem[vertices * elem_id + k];
-    double da[MAX_NS], db[MAX_NS];
-    for (int i = 0; i < ns; ++i) {
-      da[i] = a->node[at + (size_t)i] - a->element[own + (size_t)i];
-      db[i] = b->node[at + (size_t)i] - b->element[own + (size_t)i];
-      all_a[i] += da[i];
-      all_b[i] += db[i];
-    }
-    sum += energy_product(ns, S, da, db);
+/* Adds a S b and b S b. */
+static inline void add_products(int ns, const double *S, const double *a,
+                                const double *b, double *sum) {
+  for (int j = 0; j < ns; ++j) {
+    double t = 0.0;
+    for (int i = 0; i < ns; ++i) t += S[i + ns * j] * b[i];
+    sum[0] += t * a[j];
+    sum[1] += t * b[j];
   }
-  sum += energy_product(ns, S, all_a, all_b);
-  return element_weight(s->d, elem_id) / (vertices * (vertices + 1)) * sum;
+}
+
+/* d[ns] of a field at node v less that of the element; added to all[ns]. */
+static inline void difference(int ns, const space_field *f, int elem_id, int v,
+                              double *d, double *all) {
+  const double *node = f->node + (size_t)ns * (size_t)v;
+  const double *own = f->element + (size_t)ns * (size_t)elem_id;
+  for (int i = 0; i < ns; ++i) {
+    d[i] = node[i] - own[i];
+    all[i] += d[i];
+  }
+}
+
+/* sum[2] += the products at n vertices and of their sums; ns and n are known to
+ * the compiler. */
+static inline void find_products(const space_recovery *s, int elem_id,
+                                 const space_field *a, const space_field *b,
+                                 const int n, double *sum) {
+  const int ns = n == 3 ? 4 : 6, *v = s->d->mesh->elem + n * elem_id;
+  const double *S = compliance_of(s, elem_id);
+  double da[MAX_NS], db[MAX_NS];
+  double all_a[MAX_NS] = {0.0}, all_b[MAX_NS] = {0.0};
+  for (int k = 0; k < n; ++k) {
+    difference(ns, a, elem_id, v[k], da, all_a);
+    difference(ns, b, elem_id, v[k], db, all_b);
+    add_products(ns, S, da, db, sum);
+  }
+  add_products(ns, S, all_a, all_b, sum);
+}
+
+double space_product(const space_recovery *s, int elem_id, const space_field *a,
+                     const space_field *b, double *square) {
+  const int vertices = s->d->mesh->dim + 1;
+  const double share = s->measure[elem_id] / (vertices * (vertices + 1));
+  double sum[2] = {0.0};
+  if (vertices == 3)
+    find_products(s, elem_id, a, b, 3, sum);
+  else
+    find_products(s, elem_id, a, b, 4, sum);
+  *square = share * sum[1];
+  return share * sum[0];
 }
 
 status space_moduli(space_recovery *s) {
@@ -431,10 +529,11 @@ static void add_region(space_recovery *s, int region, const double *sigma,
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     const double *t = sigma + (size_t)d->ns * (size_t)e;
     if (space_region(s, e) != region) continue;
-    double square = space_product(s, e, &own, &own);
+    double square;
+    space_product(s, e, &own, &own, &square);
     out->error += square;
     out->norm +=
-        element_weight(d, e) * energy_product(d->ns, compliance_of(s, e), t, t);
+        s->measure[e] * energy_product(d->ns, compliance_of(s, e), t, t);
     if (eta != NULL) eta[e] = sqrt(fmax(square, 0.0));
   }
 }

@@ -41,8 +41,11 @@ status space_estimate(space_recovery *s, const double *sigma, double *eta,
  * q[nq*n_elem] at the nodes of one. */
 int space_regions(const space_recovery *s);
 int space_region(const space_recovery *s, int elem_id);
+double space_measure(const space_recovery *s, int elem_id); /* element_weight */
 void space_recover(space_recovery *s, int region, int nq, const double *q,
                    double *value);
+/* For many of them: the fits are made once. ERR_MEMORY. */
+status space_keep(space_recovery *s);
 /* A stress and what is recovered from it in the region of an element: [ns] per
  * element and node, Pa. */
 typedef struct space_field {
@@ -50,9 +53,10 @@ typedef struct space_field {
 } space_field;
 /* The moduli of the domain now, for the products; ERR_INTERNAL as above. */
 status space_moduli(space_recovery *s);
-/* Integral of d_a' inv(E) d_b over an element, d recovered less own, J. */
+/* Integral of d_a' inv(E) d_b over an element, d recovered less own, J; that of
+ * d_b' inv(E) d_b in *square. */
 double space_product(const space_recovery *s, int elem_id, const space_field *a,
-                     const space_field *b);
+                     const space_field *b, double *square);
 
 /*
  * Lengths size[n_node] of the elements of the next mesh for which |u - u_h| is

@@ -364,8 +364,12 @@ status body_factor_forward(body_factor *f, const double *load, double *f_c,
   const double scale = ldexp(1, -f->exponent), back = ldexp(1, f->exponent);
   PASS_NEW(in, f->nc);
   PASS_NEW(out, f->nc);
-  for (long p = 0; p < f->n; ++p) y[p] = scale * load[f->unknown[p]];
-  if (!cholmod_l_super_lsolve(f->L, f->y, f->work, cm))
+  int any = 0;
+  for (long p = 0; p < f->n; ++p) {
+    y[p] = scale * load[f->unknown[p]];
+    any |= y[p] != 0.0;
+  }
+  if (any && !cholmod_l_super_lsolve(f->L, f->y, f->work, cm))
     RAISE(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
   for (long q = 0; q < f->nc; ++q) in[q] = y[f->contact_at[q]];
   multiply_cc(f, 0, in, out);

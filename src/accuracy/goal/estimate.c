@@ -25,27 +25,27 @@ struct goal_estimator {
   double **stress; /* [n_region][ns*n_node] recovered of u, Pa */
   double *bubble;  /* [ns*n_elem] mean strains of u in the bubbles, - */
   double *own;     /* [n_elem] |e_u|^2, J */
-  double *sigma_y; /* [ns*n_elem] of the adjoint; workspace */
-  double *node_y;  /* [ns*n_node] recovered; workspace */
+  unsigned char *on_surface; /* [n_node] 1: of an edge of the contact */
+  double *sigma_y;           /* [ns*n_elem] of the adjoint; workspace */
+  double *node_y;            /* [ns*n_node] recovered; workspace */
 };
 
 void goal_estimator_free(goal_estimator *e) {
   if (e == NULL) return;
   for (int k = 0; k < e->n_region && e->stress != NULL; ++k)
     memory_free(e->stress[k]);
-  RELEASE(e->stress, e->bubble, e->own, e->sigma_y, e->node_y, e);
+  RELEASE(e->stress, e->bubble, e->own, e->on_surface, e->sigma_y, e->node_y,
+          e);
 }
 
-/* q[(dim*dim+ns)*n_elem]: du_c/dx_k at c*dim + k, and the stresses. */
+/* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
 static void gradients(const goal_solution *s, double *q) {
   const mesh *m = s->d->mesh;
-  const int dim = m->dim, ns = s->d->ns;
+  const int dim = m->dim;
   const double *u = s->u;
   double g[12];
-  for (int e = 0; e < m->n_elem; ++e, q += dim * dim + ns) {
+  for (int e = 0; e < m->n_elem; ++e, q += dim * dim) {
     mesh_elem_gradients(m, e, g);
-    memcpy(q + dim * dim, s->sigma + (size_t)ns * (size_t)e,
-           (size_t)ns * sizeof *q);
     for (int a = 0; a <= dim; ++a) {
       const double *v = u + (size_t)dim * (size_t)m->elem[(dim + 1) * e + a];
       for (int c = 0; c < dim; ++c)
@@ -63,9 +63,10 @@ static int by_nodes(const void *a_, const void *b_) {
   return (a->b > b->b) - (a->b < b->b);
 }
 
-static const contact_edge *find_edge(const goal_solution *s, int a, int b) {
+static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
+  const goal_solution *s = &e->s;
   const contact_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
-  if (s->n_edge == 0) return NULL;
+  if (!e->on_surface[a] || !e->on_surface[b]) return NULL;
   return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key, by_nodes);
 }
 
@@ -79,8 +80,9 @@ static void hold(const contact_edge *c, int dim, double *d) {
 
 /* d[dim] of the edge from node a to b by the recovered gradient of a region,
  * G[dim*dim*n_node]. */
-static void bubble_of(const goal_solution *s, const double *G, int a, int b,
+static void bubble_of(const goal_estimator *e, const double *G, int a, int b,
                       double *d) {
+  const goal_solution *s = &e->s;
   const int dim = s->d->mesh->dim, n = dim * dim;
   const double *xa = s->d->mesh->x + dim * a, *xb = s->d->mesh->x + dim * b;
   const double *ga = G + (size_t)n * (size_t)a, *gb = G + (size_t)n * (size_t)b;
@@ -89,7 +91,7 @@ static void bubble_of(const goal_solution *s, const double *G, int a, int b,
     for (int k = 0; k < dim; ++k)
       d[c] += (ga[c * dim + k] - gb[c * dim + k]) * (xb[k] - xa[k]) / 8.0;
   }
-  const contact_edge *contact = find_edge(s, a, b);
+  const contact_edge *contact = find_edge(e, a, b);
   if (contact != NULL && contact->closed) hold(contact, dim, d);
   for (int c = 0; c < dim; ++c)
     if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c]) d[c] = 0.0;
@@ -111,8 +113,9 @@ static void add_strain(int dim, const double *g, const double *d, double *e) {
 }
 
 /* Mean strain e[ns] of an element by the bubbles of its edges. */
-static void bubbles_of(const goal_solution *s, const double *G, int elem_id,
+static void bubbles_of(const goal_estimator *of, const double *G, int elem_id,
                        double *e) {
+  const goal_solution *s = &of->s;
   const mesh *m = s->d->mesh;
   const int dim = m->dim, *v = m->elem + (dim + 1) * elem_id;
   const int axi = s->d->kin[s->d->section_id[elem_id]] == AXISYMMETRIC;
@@ -120,7 +123,7 @@ static void bubbles_of(const goal_solution *s, const double *G, int elem_id,
   mesh_elem_gradients(m, elem_id, g);
   for (int a = 0; a < dim; ++a)
     for (int b = a + 1; b <= dim; ++b) {
-      bubble_of(s, G, v[a], v[b], d);
+      bubble_of(of, G, v[a], v[b], d);
       for (int k = 0; k < dim; ++k)
         grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
       add_strain(dim, grad, d, e);
@@ -131,23 +134,19 @@ static void bubbles_of(const goal_solution *s, const double *G, int elem_id,
 /* ---- what belongs to u ----------------------------------------------------
  */
 
-/* In one region; q[(dim*dim+ns)*n_elem] gradients and stresses,
- * node[(dim*dim+ns)*n_node] and G[dim*dim*n_node] workspace. */
+/* In one region; q[dim*dim*n_elem] gradients, G[dim*dim*n_node] workspace. */
 static status recover_region(goal_estimator *e, int region, const double *q,
-                             double *node, double *G) {
+                             double *G) {
   const mesh *m = e->s.d->mesh;
-  const size_t ns = (size_t)e->s.d->ns, n = (size_t)(m->dim * m->dim);
-  PASS_NEW(e->stress[region], ns * (size_t)m->n_node);
-  space_recover(e->recovery, region, (int)(n + ns), q, node);
-  for (size_t i = 0; i < (size_t)m->n_node; ++i, node += n + ns) {
-    memcpy(G + n * i, node, n * sizeof *node);
-    memcpy(e->stress[region] + ns * i, node + n, ns * sizeof *node);
-  }
+  const int ns = e->s.d->ns;
+  PASS_NEW(e->stress[region], (size_t)ns * (size_t)m->n_node);
+  space_recover(e->recovery, region, m->dim * m->dim, q, G);
+  space_recover(e->recovery, region, ns, e->s.sigma, e->stress[region]);
   const space_field f = {e->s.sigma, e->stress[region]};
   for (int k = 0; k < m->n_elem; ++k) {
     if (space_region(e->recovery, k) != region) continue;
-    e->own[k] = space_product(e->recovery, k, &f, &f);
-    bubbles_of(&e->s, G, k, e->bubble + ns * (size_t)k);
+    space_product(e->recovery, k, &f, &f, &e->own[k]);
+    bubbles_of(e, G, k, e->bubble + (size_t)ns * (size_t)k);
   }
   return OK;
 }
@@ -157,28 +156,31 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   status st = OK;
   const mesh *m = s->d->mesh;
   goal_estimator *e = NULL;
-  double *q = NULL, *node = NULL, *G = NULL;
-  const size_t n = (size_t)(m->dim * m->dim), both = n + (size_t)s->d->ns;
+  double *q = NULL, *G = NULL;
+  const size_t n = (size_t)(m->dim * m->dim);
   *out = NULL;
   NEW(e, 1);
   e->s = *s;
   e->recovery = recovery;
-  NEW(q, both * (size_t)m->n_elem);
-  NEW(node, both * (size_t)m->n_node);
+  NEW(q, n * (size_t)m->n_elem);
   NEW(G, n * (size_t)m->n_node);
   gradients(s, q);
   e->n_region = space_regions(recovery);
   NEW(e->stress, e->n_region);
   NEW(e->own, m->n_elem);
+  NEW(e->on_surface, m->n_node);
+  for (int k = 0; k < s->n_edge; ++k)
+    e->on_surface[s->edge[k].a] = e->on_surface[s->edge[k].b] = 1;
   NEW(e->bubble, (size_t)s->d->ns * (size_t)m->n_elem);
   NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
   NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
   TRY(space_moduli(recovery));
-  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q, node, G));
+  TRY(space_keep(recovery));
+  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q, G));
   *out = e;
   e = NULL;
 done:
-  RELEASE(q, node, G);
+  RELEASE(q, G);
   goal_estimator_free(e);
   return st;
 }
@@ -277,10 +279,11 @@ static double add_element(goal_estimator *e, int elem_id, const double *tau,
   for (size_t k = 0; k < ns; ++k)
     residual += ((tau != NULL ? tau[at + k] : 0.0) - e->sigma_y[at + k]) *
                 e->bubble[at + k];
-  const double square = space_product(e->recovery, elem_id, &y, &y);
+  double square;
+  const double product = space_product(e->recovery, elem_id, &u, &y, &square);
   const double both = sqrt(fmax(e->own[elem_id] * square, 0.0));
   out->error += element_weight(e->s.d, elem_id) * residual;
-  out->magnitude += fabs(space_product(e->recovery, elem_id, &u, &y));
+  out->magnitude += fabs(product);
   out->product += both;
   if (is_at_end(e, elem_id)) out->ends += both;
   return both;

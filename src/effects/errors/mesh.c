@@ -46,8 +46,18 @@ static status recover(const run *r, mesh_estimate *own) {
   own->elastic_no = r->body.elastic_no;
   timer_enter(STAGE_MESH_ERROR);
   status st = space_recovery_new(&r->body.d, &own->recovery);
+  if (st == OK && r->m->n.goal > 0) st = space_keep(own->recovery);
   timer_leave(STAGE_MESH_ERROR);
   return st;
+}
+
+status mesh_recovery(const run *r, space_recovery **out) {
+  mesh_estimate *own = effect_state(&r->effects, &mesh_error_effect);
+  *out = NULL;
+  if (own == NULL) return OK;
+  PASS(recover(r, own));
+  *out = own->recovery;
+  return OK;
 }
 
 /* From r->result.stress. */

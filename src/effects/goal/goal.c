@@ -18,6 +18,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "effects/errors/mesh.h"
 #include "effects/goal/parts.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
@@ -38,7 +39,7 @@ typedef struct goal_state {
   int n;
   goal_result *result;      /* [n] */
   double *product;          /* [n*n_elem] of goal_estimate_find, or NULL */
-  space_recovery *recovery; /* NULL until the first estimate */
+  space_recovery *recovery; /* its own; NULL: not needed so far */
   long elastic_no;          /* of the run, that it is made of */
   goal_history before;
 } goal_state;
@@ -115,12 +116,18 @@ static void shared_free(shared *s) {
   RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->moved);
 }
 
-static status recover(const run *r, goal_state *own) {
-  if (own->recovery != NULL && own->elastic_no == r->body.elastic_no) return OK;
-  space_recovery_free(own->recovery);
-  own->recovery = NULL;
-  own->elastic_no = r->body.elastic_no;
-  return space_recovery_new(&r->body.d, &own->recovery);
+/* That of the error of the mesh, or its own. */
+static status recover(const run *r, goal_state *own, space_recovery **out) {
+  PASS(mesh_recovery(r, out));
+  if (*out != NULL) return OK;
+  if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
+    space_recovery_free(own->recovery);
+    own->recovery = NULL;
+    own->elastic_no = r->body.elastic_no;
+    PASS(space_recovery_new(&r->body.d, &own->recovery));
+  }
+  *out = own->recovery;
+  return OK;
 }
 
 static status set_moved(const run *r, goal_state *own, shared *s) {
@@ -133,16 +140,17 @@ static status set_moved(const run *r, goal_state *own, shared *s) {
 }
 
 static status prepare(run *r, goal_state *own, shared *s) {
+  space_recovery *recovery;
   const int n = r->nodes.n_row;
   PASS(goal_surface_new(r, &s->surface));
-  PASS(recover(r, own));
+  PASS(recover(r, own, &recovery));
   const goal_solution found = {.d = &r->body.d,
                                .u = r->now.u,
                                .sigma = r->result.stress,
                                .n_edge = s->surface.n_edge,
                                .edge = s->surface.edge,
                                .ends = s->surface.ends};
-  PASS(goal_estimator_new(&found, own->recovery, &s->estimator));
+  PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW(s->y, r->n_dof);
   PASS_NEW(s->j, n);
   PASS_NEW(s->more, n);
@@ -277,7 +285,8 @@ static status find_goals(run *r, void *self) {
   status st = OK;
   TRY(goal_form_new(r, &s.form));
   forget(r, &own->before, own->n);
-  domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
+  if (!(r->m->effects & EFFECT_REACTION) && !run_finds_mesh_error(r))
+    domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
   if (is_covered(r)) TRY(prepare(r, own, &s));
   for (int k = 0; k < own->n; ++k) {
     TRY(find_goal(r, own, &s, k));
@@ -296,7 +305,10 @@ static status keep(run *r, void *self, archive *a) {
   goal_history *h = &own->before;
   int made = own->recovery != NULL;
   PASS(archive_ints(a, "recovery", &made, 1));
-  if (archive_reads(a) && made) PASS(recover(r, own));
+  if (archive_reads(a) && made) {
+    space_recovery *recovery;
+    PASS(recover(r, own, &recovery));
+  }
   if (h->u == NULL) return OK;
   PASS(archive_ints(a, "lost", &h->lost, 1));
   PASS(archive_reals(a, "u", h->u, r->n_dof));

@@ -15,7 +15,7 @@ typedef struct goal_form {
   double *load; /* [dim*n_node] by displacements of nodes, global components */
   double *rows; /* [dim*n] by contact unknowns */
   double *psi;  /* [dim*n] by contact forces, contact frame */
-  double *tau;  /* [ns*n_elem] by strains, per volume */
+  double *tau;  /* [ns*n_elem] by strains, per volume; NULL: of no goal */
   int has_tau;
   int sums;         /* 1: a sum over the increments, of which rows are the
                        derivative by the motion of the last */

@@ -11,7 +11,11 @@ status goal_form_new(const run *r, goal_form *f) {
   PASS_NEW(f->load, r->n_dof);
   PASS_NEW(f->rows, r->nodes.n_c);
   PASS_NEW(f->psi, r->nodes.n_c);
-  PASS_NEW(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  for (int i = 0; i < r->m->n.goal; ++i) {
+    const int q = r->m->accuracy.goals[i].quantity;
+    if ((q == GOAL_STRESS || q == GOAL_ENERGY) && f->tau == NULL)
+      PASS_NEW(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  }
   return OK;
 }
 
@@ -25,7 +29,9 @@ static void clear(const run *r, goal_form *f) {
   memset(f->load, 0, r->n_dof * sizeof *f->load);
   memset(f->rows, 0, n_c * sizeof *f->rows);
   memset(f->psi, 0, n_c * sizeof *f->psi);
-  memset(f->tau, 0, (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
+  if (f->has_tau)
+    memset(f->tau, 0,
+           (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
   f->value = f->curved = 0.0;
   f->has_tau = f->is_square = f->is_coarse = f->sums = 0;
   f->why = GOAL_RELIABLE;
