@@ -36,9 +36,9 @@ typedef struct contact_operator {
   void (*solve)(void *ctx, const double *b, double *x, double *Ax);
   /* Rows at[m] 1 of which response is wanted, until set_rows. */
   void (*set_response)(void *ctx, const unsigned char *at);
-  /* Ax as of solve, known rows at 0, at the contact nodes of those rows alone:
-   * cheaper where they and the forces b[m] are few. */
-  void (*response)(void *ctx, const double *b, double *Ax);
+  /* x and Ax as of solve, known rows at 0, at the contact nodes of those rows
+   * alone: cheaper where they and the forces b[m] are few. */
+  void (*response)(void *ctx, const double *b, double *x, double *Ax);
 } contact_operator;
 
 #endif

@@ -355,7 +355,7 @@ static void set_response(void *ctx, const unsigned char *at) {
   supernodal_list(o->s, o->part.mark, &o->part.response);
 }
 
-static void response(void *ctx, const double *b, double *Ax) {
+static void response(void *ctx, const double *b, double *x, double *Ax) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row, rows = o->k->rows;
   clear(o, o->v);
@@ -363,8 +363,12 @@ static void response(void *ctx, const double *b, double *Ax) {
     if (b[q] != 0.0 && !o->held[q] && !o->rows.known[q])
       o->v[o->number[o->unknown[q]]] = b[q];
   solve_part(o, o->x, &o->part.contact, &o->part.response, o->v);
-  for (int t = 0; t < o->part.n; ++t)
-    gather_node(o, o->part.node[t], o->v, Ax + rows * o->part.node[t], NULL);
+  for (int t = 0; t < o->part.n; ++t) {
+    const int first = rows * o->part.node[t];
+    gather_node(o, o->part.node[t], o->v, Ax + first, NULL);
+    for (int q = first; q < first + rows; ++q)
+      if (!o->held[q]) x[q] = o->v[o->number[o->unknown[q]]];
+  }
 }
 
 /* ---- loads and recovery ---------------------------------------------------

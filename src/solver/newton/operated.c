@@ -21,13 +21,18 @@ struct operated_system {
   int m;
   double power;         /* of two: the diagonal times it is of order 1 */
   double *b, *x, *Ax;   /* [m] */
-  double *added;        /* [dim*m] known_rows.added */
+  double *added;        /* [dim*m] known_rows.added, of the present step or of
+                           one before */
+  int drifts;           /* 1: it may be apart */
+  int exhausted;        /* 1: the last step had springs, or GMRES left more
+                           than it should: not again with its factor */
   unsigned char *known; /* [m] of the last step */
   int repeated;         /* steps on the same rows before the last one */
   int stepped;          /* 1: there was a last step */
   double enough;        /* -, of the right side, left by GMRES */
   struct {
     int n, *dof;            /* [m] those in which friction follows pressure */
+    double *x;              /* [m] displacements by a direction */
     double *load;           /* [m] forces there, zero elsewhere */
     unsigned char *pressed; /* [m] 1: the pressure it follows */
   } slip;
@@ -43,9 +48,9 @@ struct operated_system {
 
 void operated_system_free(operated_system *s) {
   if (s == NULL) return;
-  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->slip.dof, s->slip.load,
-          s->slip.pressed, s->krylov.V, s->krylov.H, s->krylov.c, s->krylov.s,
-          s->krylov.g, s);
+  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->slip.dof, s->slip.x,
+          s->slip.load, s->slip.pressed, s->krylov.V, s->krylov.H, s->krylov.c,
+          s->krylov.s, s->krylov.g, s);
 }
 
 static double power_of(const contact_problem *cp) {
@@ -70,6 +75,7 @@ status operated_system_new(const contact_problem *cp, operated_system **out) {
   NEW(s->added, (size_t)cp->dim * m);
   NEW(s->known, m);
   NEW(s->slip.dof, m);
+  NEW(s->slip.x, m);
   NEW(s->slip.load, m);
   NEW(s->slip.pressed, m);
   NEW(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS);
@@ -88,16 +94,31 @@ void operated_system_fit(operated_system *s) { s->stepped = 0; }
 /* ---- friction that follows pressure ---------------------------------------
  */
 
-/* The rows in which friction follows pressure: s->slip. */
+/* kappa (I - e e') of a slipping node in space, entry (a, b). */
+static double turning(const pattern *p, int node, int a, int b) {
+  const double *e = p->e + 2 * node;
+  return p->kappa[node] * ((a == b) - e[a] * e[b]);
+}
+
+/* What the factor has less of it. */
+static double missing(const operated_system *s, const pattern *p, int node,
+                      int a, int b) {
+  return turning(p, node, a, b) - s->added[9 * node + 3 * (1 + a) + 1 + b];
+}
+
+/* Rows that differ from those of the factor: friction follows pressure in them,
+ * or turns otherwise: s->slip. */
 static void list_slip(operated_system *s, const contact_problem *cp,
                       const pattern *p) {
   const sparse_rows *B = cp->B;
   s->slip.n = 0;
   memset(s->slip.pressed, 0, (size_t)s->m);
-  for (int i = 0; B != NULL && i < cp->n; ++i) {
-    int any = 0;
+  for (int i = 0; i < cp->n; ++i) {
+    int any = s->drifts;
     if (p->mode[i] != SLIP) continue;
-    for (int k = B->start[i]; k < B->start[i + 1]; ++k) {
+    s->slip.pressed[i * cp->dim + 1] = (unsigned char)any;
+    for (int k = B != NULL ? B->start[i] : 0; B != NULL && k < B->start[i + 1];
+         ++k) {
       const int dof = B->col[k] * cp->dim;
       if (!p->closed[dof] || B->val[k] == 0.0) continue;
       s->slip.pressed[dof] = 1;
@@ -108,18 +129,23 @@ static void list_slip(operated_system *s, const contact_problem *cp,
   }
 }
 
-/* y[slip.n] += N x: e (B (A x)_n) of the closed nodes. */
+/* y[slip.n] += N x: e (B (A x)_n) of the closed nodes, and what the factor has
+ * not of the turning. */
 static void add_friction(const operated_system *s, const contact_problem *cp,
-                         const pattern *p, const double *Ax, double *y) {
+                         const pattern *p, const double *x, const double *Ax,
+                         double *y) {
   const sparse_rows *B = cp->B;
   for (int t = 0; t < s->slip.n; ++t) {
     const int i = s->slip.dof[t] / cp->dim, c = s->slip.dof[t] % cp->dim - 1;
     double sum = 0.0;
-    for (int k = B->start[i]; k < B->start[i + 1]; ++k) {
+    for (int k = B != NULL ? B->start[i] : 0; B != NULL && k < B->start[i + 1];
+         ++k) {
       const int dof = B->col[k] * cp->dim;
       if (p->closed[dof]) sum += B->val[k] * Ax[dof];
     }
     y[t] += p->e[i * (cp->dim - 1) + c] * sum;
+    for (int b = 0; b < 2 && s->drifts; ++b)
+      y[t] += missing(s, p, i, c, b) * x[3 * i + 1 + b];
   }
 }
 
@@ -199,7 +225,7 @@ static status gmres(operated_system *s, const contact_problem *cp,
   PASS(grow(s));
   double *v = s->krylov.V;
   memset(v, 0, n * sizeof *v);
-  add_friction(s, cp, p, s->Ax, v);
+  add_friction(s, cp, p, s->x, s->Ax, v);
   left = cblas_dnrm2(s->slip.n, v, 1);
   memset(s->krylov.g, 0, (DIRECTIONS + 1) * sizeof *s->krylov.g);
   size = fmax(size, left); /* a body that known rows alone move has no load */
@@ -214,14 +240,15 @@ static status gmres(operated_system *s, const contact_problem *cp,
     v = direction(s, s->krylov.n);
     double *w = direction(s, s->krylov.n + 1);
     set_load(s, v);
-    cp->op->response(cp->op->ctx, s->slip.load, s->Ax);
+    cp->op->response(cp->op->ctx, s->slip.load, s->slip.x, s->Ax);
     memcpy(w, v, n * sizeof *w);
-    add_friction(s, cp, p, s->Ax, w);
+    add_friction(s, cp, p, s->slip.x, s->Ax, w);
     orthogonalise(s, s->krylov.n, w);
     next = cblas_dnrm2(s->slip.n, w, 1);
     left = rotate(s, s->krylov.n++);
     for (size_t i = 0; i < n && next > EXHAUSTED; ++i) w[i] /= next;
   }
+  if (left > s->enough * size) s->exhausted = 1;
   combine(s, cp);
   return OK;
 }
@@ -229,27 +256,39 @@ static status gmres(operated_system *s, const contact_problem *cp,
 /* ---- a step ---------------------------------------------------------------
  */
 
+/* 1: the same rows are known as in the last step, and slip in space turns at
+ * most otherwise, which GMRES can add. */
+static int has_rows(const operated_system *s, const contact_problem *cp,
+                    const pattern *p) {
+  if (!s->stepped || s->exhausted) return 0;
+  for (int i = 0; i < s->m; ++i)
+    if (s->known[i] != (p->place[i] < 0)) return 0;
+  for (int i = 0; cp->dim == 3 && i < 9 * cp->n; ++i)
+    if (p->mode[i / 9] != SLIP && s->added[i] != 0.0) return 0;
+  return 1;
+}
+
 /* The rows of the guess; spring: share of the diagonal. */
 static status set_rows(operated_system *s, const contact_problem *cp,
                        const pattern *p, double spring, int *singular) {
   const size_t dim = (size_t)cp->dim;
   const known_rows rows = {s->known, s->added};
   int changed = s->stepped ? 0 : s->m;
-  memset(s->added, 0, dim * (size_t)s->m * sizeof *s->added);
+  s->drifts = cp->dim == 3 && spring == 0.0 && has_rows(s, cp, p);
+  for (int i = 0; i < cp->n && !s->drifts; ++i) {
+    double *added = s->added + dim * dim * (size_t)i;
+    memset(added, 0, dim * dim * sizeof *added);
+    for (int a = 0; a < 2 && dim == 3 && p->mode[i] == SLIP; ++a)
+      for (int b = 0; b < 2; ++b)
+        added[3 * (1 + a) + 1 + b] = turning(p, i, a, b);
+    for (size_t a = 0; a < dim; ++a)
+      added[(dim + 1) * a] +=
+          spring * contact_diagonal(cp, (int)dim * i + (int)a);
+  }
   for (int i = 0; i < s->m; ++i) {
     const unsigned char now = p->place[i] < 0;
     changed += s->known[i] != now;
     s->known[i] = now;
-    s->added[dim * (size_t)i + (size_t)i % dim] =
-        spring * contact_diagonal(cp, i);
-  }
-  for (int i = 0; dim == 3 && i < cp->n; ++i) {
-    const double *e = p->e + 2 * i;
-    if (p->mode[i] != SLIP) continue;
-    for (int a = 0; a < 2; ++a)
-      for (int b = 0; b < 2; ++b)
-        s->added[9 * i + 3 * (1 + a) + 1 + b] +=
-            p->kappa[i] * ((a == b) - e[a] * e[b]);
   }
   s->repeated = changed > 0 ? 0 : s->repeated + 1;
   s->enough = changed > FEW * s->m ? ROUGH : ENOUGH;
@@ -265,6 +304,7 @@ status operated_system_step(operated_system *s, const contact_problem *cp,
   PASS(set_rows(s, cp, p, 0.0, singular));
   if (*singular) PASS(set_rows(s, cp, p, SPRING, &held));
   s->stepped = 1;
+  s->exhausted = *singular;
   cblas_dscal(s->m, s->power, s->x, 1);
   cp->op->solve(cp->op->ctx, s->b, s->x, s->Ax);
   list_slip(s, cp, p);
