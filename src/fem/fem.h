@@ -29,6 +29,7 @@ typedef struct whole_order {
   int n, *node;     /* [n], owned */
   const char *name; /* of the method */
   double flops, entries;
+  double contact_flops, contact_entries; /* where contact unknowns have part */
 } whole_order;
 
 /* What the elements are made of. */

@@ -419,6 +419,8 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   status st = OK;
   graph g = {0};
   cholmod_common cm;
+  order_cost cost;
+  unsigned char *mark = NULL;
   const double dim = k->dim;
   *o = (whole_order){0};
   memory_count_suitesparse();
@@ -430,12 +432,17 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   for (int i = 0; i < k->n_node; ++i)
     if (k->free[i] != 0) o->node[o->n++] = i;
   TRY(order_nodes(&g, k->dim, x, o->n, o->node, &cm, &o->name));
-  TRY(order_flops(&g, o->n, o->node, &cm, &o->flops));
-  o->flops *= dim * dim * dim;
-  o->entries = cm.lnz * dim * dim;
+  NEW(mark, k->n_node);
+  for (int i = 0; i < k->n_node; ++i) mark[i] = k->first_row[i] >= 0;
+  TRY(order_cost_of(&g, o->n, o->node, mark, &cm, &cost));
+  o->flops = cost.flops * dim * dim * dim;
+  o->entries = cost.entries * dim * dim;
+  o->contact_flops = cost.reached_flops * dim * dim * dim;
+  o->contact_entries = cost.reached_entries * dim * dim;
 done:
   timer_leave(STAGE_ORDERING);
   graph_release(&g);
+  memory_free(mark);
   cholmod_l_finish(&cm);
   return st;
 }

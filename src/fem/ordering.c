@@ -309,37 +309,65 @@ status order_by(order_method method, const graph *g, int dim, const double *x,
                               : order_by_pattern(method, g, n, node, cm);
 }
 
-status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
-                   double *flops) {
+/* 1: a node is marked or next to one. */
+static int is_near(const graph *g, int node, const unsigned char *mark) {
+  if (mark[node]) return 1;
+  for (size_t p = g->start[node]; p < g->start[node + 1]; ++p)
+    if (mark[g->next[p]]) return 1;
+  return 0;
+}
+
+/* The columns above those that are reached are too. */
+static void add_reached(int n, const SuiteSparse_long *parent,
+                        const SuiteSparse_long *count, unsigned char *reached,
+                        order_cost *cost) {
+  for (int q = 0; q < n; ++q) {
+    if (!reached[q]) continue;
+    if (parent[q] >= 0) reached[parent[q]] = 1;
+    cost->reached_entries += (double)count[q];
+    cost->reached_flops += (double)count[q] * (double)count[q];
+  }
+}
+
+status order_cost_of(const graph *g, int n, const int *node,
+                     const unsigned char *mark, cholmod_common *cm,
+                     order_cost *cost) {
   status st = OK;
   cholmod_sparse *a = NULL;
   SuiteSparse_long *w = NULL;
+  unsigned char *reached = NULL;
   const size_t size = (size_t)n;
+  *cost = (order_cost){0};
   TRY(graph_pattern(g, n, node, cm, &a));
   NEW(w, 6 * size);
+  NEW(reached, n);
   for (int i = 0; i < n; ++i) w[i] = i;
   if (!cholmod_l_analyze_ordering(a, CHOLMOD_GIVEN, w, NULL, 0, w + size,
                                   w + 2 * size, w + 3 * size, w + 4 * size,
                                   w + 5 * size, cm))
     FAIL(ERR_MEMORY, "memory exhausted: count of %d nodes", n);
-  *flops = cm->fl;
+  cost->flops = cm->fl;
+  cost->entries = cm->lnz;
+  for (int q = 0; mark != NULL && q < n; ++q)
+    reached[q] = (unsigned char)is_near(g, node[q], mark);
+  add_reached(n, w + size, w + 3 * size, reached, cost);
 done:
   cholmod_l_free_sparse(&a, cm);
-  memory_free(w);
+  RELEASE(w, reached);
   return st;
 }
 
 /* Both orders, the cheaper by its count: node[] holds that of the cuts. */
 static status compare_with_metis(const graph *g, int n, int *node,
                                  cholmod_common *cm, const char **name) {
-  double cuts, metis;
+  order_cost cuts, metis;
   OWNED int *other = NULL;
   PASS_NEW(other, n);
   memcpy(other, node, (size_t)n * sizeof *node);
   PASS(order_by_pattern(ORDER_METIS, g, n, other, cm));
-  PASS(order_flops(g, n, node, cm, &cuts));
-  PASS(order_flops(g, n, other, cm, &metis));
-  if (metis < cuts) {
+  PASS(order_cost_of(g, n, node, NULL, cm, &cuts));
+  PASS(order_cost_of(g, n, other, NULL, cm, &metis));
+  if (metis.flops < cuts.flops) {
     memcpy(node, other, (size_t)n * sizeof *node);
     *name = "METIS";
   }

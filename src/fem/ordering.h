@@ -24,10 +24,16 @@ typedef enum { ORDER_CUTS, ORDER_METIS, ORDER_AMD } order_method;
 /* Order node[0..n) in place by one method. */
 status order_by(order_method method, const graph *g, int dim, const double *x,
                 int n, int *node, cholmod_common *cm);
-/* Operations of a Cholesky factor in that order, one unknown per node; its
- * entries are in cm->lnz. */
-status order_flops(const graph *g, int n, const int *node, cholmod_common *cm,
-                   double *flops);
+/* Operations and entries of a Cholesky factor in an order, one unknown per
+ * node: of all columns, and of those that marked nodes reach. */
+typedef struct order_cost {
+  double flops, entries;
+  double reached_flops, reached_entries;
+} order_cost;
+/* mark[g->n] 1: marked. ERR_MEMORY. */
+status order_cost_of(const graph *g, int n, const int *node,
+                     const unsigned char *mark, cholmod_common *cm,
+                     order_cost *cost);
 /*
  * Order node[0..n) in place (the interior of one body); neighbours outside the
  * list are ignored. x[dim*g->n] coordinates. "name" says which order was taken.

@@ -1,10 +1,12 @@
 /*
  * Large contacts: both kinds of stiffness, CPU seconds and memory of whole runs
- * next to what --check foresees.
+ * next to what --check foresees (its row of the kind, the rest of its line
+ * "memory" and PROGRAM for the program itself).
  *
  * BIG in the environment adds the rows that take minutes or gigabytes.
  *
- * Strips whose cells double in size away from a rough floor, and cubes, pressed
+ * Strips whose cells double in size away from a rough floor, one of cells of
+ * one size, cubes, and a block whose cells grow away from the floor, pressed
  * and sheared, from a cold start, mu = 0.3.
  */
 #include "support/job.h"
@@ -17,17 +19,26 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+typedef enum { GRADED, UNIFORM } spacing;
+
 typedef struct bench_case {
   int dim, cells; /* at the contact, along an edge */
-  int dense;      /* 1: DENSE too */
-  int large;      /* 1: only with BIG */
+  spacing how;
+  const char *kinds[2];
+  int large; /* 1: only with BIG */
 } bench_case;
 
+#define BOTH \
+  { "FACTOR", "DENSE" }
 static const bench_case cases[] = {
-    {2, 512, 1, 0},   {2, 1024, 1, 0}, {2, 2048, 1, 0}, {2, 4096, 0, 0},
-    {2, 32768, 0, 1}, {3, 12, 1, 0},   {3, 20, 1, 0},   {3, 33, 1, 1}};
+    {2, 512, GRADED, BOTH, 0},         {2, 1024, GRADED, BOTH, 0},
+    {2, 2048, GRADED, BOTH, 0},        {2, 4096, GRADED, {"FACTOR"}, 0},
+    {2, 32768, GRADED, {"FACTOR"}, 1}, {2, 8192, UNIFORM, {"FACTOR"}, 1},
+    {3, 12, UNIFORM, BOTH, 0},         {3, 20, UNIFORM, BOTH, 0},
+    {3, 33, UNIFORM, {"DENSE"}, 1},    {3, 200, GRADED, {"FACTOR"}, 1}};
 
-enum { LEAST = 8 };
+enum { LEAST = 8, LAYERS = 122 };
+static const double PROGRAM = 10; /* MB */
 
 /* ---- meshes ----------------------------------------------------------------
  */
@@ -54,6 +65,12 @@ static int strip_rows(int cells, row *r) {
   return n;
 }
 
+static int layers(int cells, row *r) {
+  for (int k = 0; k <= LAYERS; ++k)
+    r[k] = (row){k * (cells + 1), cells, (double)k / cells};
+  return LAYERS + 1;
+}
+
 static void triangle(FILE *f, int *no, int a, int b, int c) {
   fprintf(f, "%d 2 2 1 1 %d %d %d\n", ++*no, a + 1, b + 1, c + 1);
 }
@@ -75,9 +92,10 @@ static int between(FILE *f, int *no, const row *a, const row *b) {
   return 0;
 }
 
-static void write_strip(FILE *f, int cells) {
+static void write_strip(FILE *f, int cells, spacing how) {
   row *r = calloc(200, sizeof *r);
-  int n = strip_rows(cells, r), no = 0, elements = cells + r[n - 1].n;
+  int n = how == GRADED ? strip_rows(cells, r) : layers(cells, r);
+  int no = 0, elements = cells + r[n - 1].n;
   fprintf(f,
           "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
           "1 2 \"BOTTOM\"\n1 3 \"TOP\"\n2 1 \"BODY\"\n$EndPhysicalNames\n"
@@ -110,20 +128,84 @@ static void write_cube(FILE *f, int cells) {
           cells, cells, cells);
 }
 
+/* A block with cells of size 1/cells on the floor. */
+static void write_block(FILE *f, int cells) {
+  fprintf(f,
+          "Point(1) = {0, 0, 0, 1};\n"
+          "l[] = Extrude {1, 0, 0} { Point{1}; };\n"
+          "s[] = Extrude {0, 1, 0} { Line{l[1]}; };\n"
+          "v[] = Extrude {0, 0, 0.5} { Surface{s[1]}; };\n"
+          "Field[1] = MathEval;\nField[1].F = \"1/%d + 0.5*z\";\n"
+          "Background Field = 1;\n"
+          "Mesh.CharacteristicLengthExtendFromBoundary = 0;\n"
+          "Mesh.CharacteristicLengthFromPoints = 0;\n"
+          "Physical Surface(\"BOTTOM\") = {s[1]};\n"
+          "Physical Surface(\"TOP\") = {v[0]};\n"
+          "Physical Volume(\"BODY\") = {v[1]};\n",
+          cells);
+}
+
+static void write_mesh(const mesh *m, const char *path) {
+  FILE *f = fopen(path, "w");
+  int no = 0, items = 0;
+  for (int g = 0; g < m->n_group; ++g) items += m->group[g].n_item;
+  fprintf(f, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n%d\n",
+          m->n_group);
+  for (int g = 0; g < m->n_group; ++g)
+    fprintf(f, "%d %d \"%s\"\n", m->group[g].dim, g + 1, m->group[g].name);
+  fprintf(f, "$EndPhysicalNames\n$Nodes\n%d\n", m->n_node);
+  for (int i = 0; i < m->n_node; ++i)
+    fprintf(f, "%d %.17g %.17g %.17g\n", i + 1, m->x[3 * i], m->x[3 * i + 1],
+            m->x[3 * i + 2]);
+  fprintf(f, "$EndNodes\n$Elements\n%d\n", items);
+  for (int g = 0; g < m->n_group; ++g)
+    for (int k = 0; k < m->group[g].n_item; ++k) {
+      const int id = m->group[g].item_id[k], n = m->group[g].dim + 1;
+      const int *node = (n == 4 ? m->elem : m->face) + n * id;
+      fprintf(f, "%d %d 2 %d %d", ++no, n == 4 ? 4 : 2, g + 1, g + 1);
+      for (int c = 0; c < n; ++c) fprintf(f, " %d", node[c] + 1);
+      fputc('\n', f);
+    }
+  fprintf(f, "$EndElements\n");
+  fclose(f);
+}
+
+/* The mesh of a .geo, so that no run counts gmsh; by a process of its own,
+ * whose memory would count too. */
+static void mesh_block(const char *geo, const char *msh) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const mesh_source from = {.file = geo, .scale = 1};
+    const place at = {0};
+    mesh *m = NULL;
+    message_log *log = NULL;
+    if (message_log_new(&log) != OK) _exit(1);
+    if (mesh_read_gmsh(&from, &at, log, &m) != OK) _exit(1);
+    write_mesh(m, msh);
+    _exit(0);
+  }
+  waitpid(child, NULL, 0);
+}
+
 /* ---- runs
  * -------------------------------------------------------------------- */
 
 static job make_job(const bench_case *c, const char *kind) {
   job j = job_begin("size");
-  char path[100];
-  const char *file = c->dim == 2 ? "size.msh" : "size.geo";
-  snprintf(path, sizeof path, "%s/%s", j.dir, file);
+  char path[100], made[100];
+  const int is_msh = c->dim == 2;
+  const char *file = is_msh || c->how == GRADED ? "size.msh" : "size.geo";
+  snprintf(path, sizeof path, "%s/size.%s", j.dir, is_msh ? "msh" : "geo");
+  snprintf(made, sizeof made, "%s/size.msh", j.dir);
   FILE *f = fopen(path, "w");
   if (c->dim == 2)
-    write_strip(f, c->cells);
-  else
+    write_strip(f, c->cells, c->how);
+  else if (c->how == UNIFORM)
     write_cube(f, c->cells);
+  else
+    write_block(f, c->cells);
   fclose(f);
+  if (!is_msh && c->how == GRADED) mesh_block(path, made);
   job_write(&j, "size.inp",
             "*MESH, FILE=%s\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -155,7 +237,7 @@ static int run(const job *j, double *cpu, double *mega) {
   wait4(child, &state, 0, &used);
   *cpu = (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
          1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-  *mega = (double)used.ru_maxrss / 1024;
+  *mega = (double)used.ru_maxrss * 1024 / 1e6;
   return WIFEXITED(state) && WEXITSTATUS(state) == 0;
 }
 
@@ -169,6 +251,9 @@ static void foreseen(job *j, const char *kind, double *cpu, double *mega) {
   if (at == NULL) return;
   at += strcspn(at, "0123456789");
   sscanf(at, "%lf s, %lf MB", cpu, mega);
+  const char *rest = strstr(at, "for the contact, ");
+  if (rest != NULL)
+    *mega += PROGRAM + strtod(rest + strlen("for the contact, "), NULL);
 }
 
 static void row_of(const bench_case *c, const char *kind) {
@@ -176,8 +261,9 @@ static void row_of(const bench_case *c, const char *kind) {
   job j = make_job(c, kind);
   foreseen(&j, kind, &cpu_before, &mega_before);
   if (run(&j, &cpu, &mega))
-    printf("%d-D %6d %-7s %9.2f %9.1f %12.2g %12.1f\n", c->dim, c->cells, kind,
-           cpu, mega, cpu_before, mega_before);
+    printf("%d-D %-7s %6d %-7s %9.2f %9.1f %12.2g %12.1f\n", c->dim,
+           c->how == GRADED ? "graded" : "uniform", c->cells, kind, cpu, mega,
+           cpu_before, mega_before);
   else
     printf("%d-D %6d %-7s failed\n", c->dim, c->cells, kind);
   fflush(stdout);
@@ -186,11 +272,13 @@ static void row_of(const bench_case *c, const char *kind) {
 
 START_TEST(both_kinds_of_stiffness) {
   const int all = getenv("BIG") != NULL;
-  puts("mesh  cells kind        cpu[s]   mem[MB]  foreseen[s] foreseen[MB]");
+  puts(
+      "mesh           cells kind        cpu[s]   mem[MB]  foreseen[s] "
+      "foreseen[MB]");
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     if (cases[i].large && !all) continue;
-    row_of(&cases[i], "FACTOR");
-    if (cases[i].dense) row_of(&cases[i], "DENSE");
+    for (int k = 0; k < 2 && cases[i].kinds[k] != NULL; ++k)
+      row_of(&cases[i], cases[i].kinds[k]);
   }
 }
 END_TEST

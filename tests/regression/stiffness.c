@@ -136,7 +136,7 @@ static job strip(int cells, const char *solver) {
 START_TEST(kind_is_chosen_by_memory) {
   static const char *const kinds[] = {"DENSE", "FACTOR"};
   for (int k = 0; k < 2; ++k) {
-    job j = strip(300, k == 0 ? "STIFFNESS=AUTO" : "MAX_MEMORY=10");
+    job j = strip(60, k == 0 ? "STIFFNESS=AUTO" : "MAX_MEMORY=0.3");
     ck_assert_int_eq(job_run(&j, "--check"), 0);
     ck_assert_str_eq(taken(&j), kinds[k]);
     ck_assert((strstr(j.text, "needs more memory than there is") != NULL) ==

@@ -44,6 +44,14 @@ static void is_permutation(int n, const int *node) {
   free(seen);
 }
 
+static status order_flops(const graph *g, int n, const int *node,
+                          cholmod_common *cm, double *flops) {
+  order_cost cost;
+  status st = order_cost_of(g, n, node, NULL, cm, &cost);
+  *flops = cost.flops;
+  return st;
+}
+
 START_TEST(graph_has_both_directions_of_every_element_edge) {
   setting t = begin(make_grid_2d((int[]){2, 2}, (double[]){1, 1}));
   /* 9 nodes, 16 edges (12 sides of cells, 4 diagonals). */
@@ -87,6 +95,24 @@ START_TEST(count_of_a_path_is_exact) {
   ck_assert_int_eq(order_flops(&path, 4, (int[]){0, 1, 2, 3}, &t.cm, &flops),
                    OK);
   ck_assert_double_eq(flops, 13);
+  end(&t);
+}
+END_TEST
+
+/* Of the same path the column of the marked node, of the one before it, which
+ * has an entry in its row, and of those after it. */
+START_TEST(marked_nodes_reach_their_columns_and_the_next) {
+  setting t = begin(make_grid_2d((int[]){1, 1}, (double[]){1, 1}));
+  int start_next[] = {1, 0, 2, 1, 3, 2};
+  size_t start[] = {0, 1, 3, 5, 6};
+  graph path = {.n = 4, .start = start, .next = start_next};
+  order_cost cost;
+  ck_assert_int_eq(order_cost_of(&path, 4, (int[]){0, 1, 2, 3},
+                                 (unsigned char[]){0, 0, 1, 0}, &t.cm, &cost),
+                   OK);
+  ck_assert_double_eq(cost.entries, 7);
+  ck_assert_double_eq(cost.reached_entries, 5);
+  ck_assert_double_eq(cost.reached_flops, 9);
   end(&t);
 }
 END_TEST
@@ -166,6 +192,7 @@ END_TEST
 UNIT_MAIN("ordering", graph_has_both_directions_of_every_element_edge,
           every_method_gives_a_permutation_cheaper_than_the_natural_one,
           count_of_a_path_is_exact,
+          marked_nodes_reach_their_columns_and_the_next,
           squares_are_cut_and_bodies_that_cuts_do_not_suit_go_to_metis,
           rolled_strip_costs_less_than_a_square,
           large_bodies_are_cut_where_the_separator_is_shortest)

@@ -17,25 +17,34 @@ enum {
   WARM = 5,     /* of one that starts from the last */
   SOLVES = 7,   /* of a step of FACTOR */
   OTHERS = 3,   /* factors of an increment besides: errors, rounding */
-  VECTORS = 600 /* bytes of an unknown of the body */
+  VECTORS = 150 /* bytes of an unknown of the body */
 };
 static const double DENSE_COLD = 1e-10; /* s, times m^3: the first problem */
 static const double DENSE_WARM = 3e-11; /* s, times m^3: one more */
-static const double FLOP = 1e-11;       /* s, of a sparse factor */
-static const double ENTRY = 2.5e-8;     /* s, of its entries */
-static const double READ = 3e-9;        /* s, of an entry in a solve */
-static const double MATRICES = 3.5;     /* of the size of the condensed one,
-                                           that DENSE holds at most */
+static const double FLOP = 1.6e-11;     /* s, of a sparse factor */
+static const double ENTRY = 5e-9;       /* s, of its entries */
+static const double READ = 1.6e-9;      /* s, of an entry in a solve */
+static const double UNKNOWN = 5e-6;     /* s, mesh, assembly and order */
+static const double ZEROS = 1.25;    /* -, entries with those of supernodes */
+static const double MATRICES = 2.75; /* of the size of the condensed one,
+                                        that DENSE holds at most */
 static const double FLAT_FILL = 25.0, SPATIAL_FILL = 150.0;
 /* -, least entries of the factor over unknowns */
 static const double SHARE = 0.8; /* -, of the memory there is */
 
-/* Seconds of FACTOR: its factors and solves. */
-static double factor_seconds(double problems, double flops, double entries) {
+/* Seconds of FACTOR: its factors, of which a step makes again what contact
+ * unknowns reach, and solves. */
+static double factor_seconds(double problems, const whole_order *o) {
   const double steps = COLD + WARM * (problems - 1.0);
-  return (2.0 + steps + OTHERS * (problems - 1.0)) *
-             (FLOP * flops + ENTRY * entries) +
-         steps * SOLVES * READ * entries;
+  return FLOP * o->flops + ENTRY * o->entries +
+         (1.0 + steps + OTHERS * (problems - 1.0)) *
+             (FLOP * o->contact_flops + ENTRY * o->contact_entries) +
+         steps * SOLVES * READ * o->contact_entries;
+}
+
+static double factor_bytes(double n, const whole_order *o) {
+  return ZEROS * sizeof(double) * (o->entries + o->contact_entries) +
+         VECTORS * n;
 }
 
 static double problems_of(const run *r) {
@@ -62,8 +71,10 @@ static void bound(const run *r, stiffness_choice *c) {
   c->dense.seconds = (DENSE_COLD + DENSE_WARM * (problems - 1.0)) * m * m * m +
                      ENTRY * entries + FLOP * flops;
   c->dense.bytes = (MATRICES * m * m + entries) * sizeof(double);
-  c->factor.seconds = factor_seconds(problems, 0.0, fill * n);
-  c->factor.bytes = n * (2.0 * fill * sizeof(double) + VECTORS);
+  const whole_order least = {.entries = fill * n, .contact_entries = fill * m};
+  c->dense.seconds += UNKNOWN * n;
+  c->factor.seconds = factor_seconds(problems, &least) + UNKNOWN * n;
+  c->factor.bytes = factor_bytes(n, &least);
 }
 
 static void forget_order(run *r) {
@@ -80,9 +91,9 @@ static status find_factor(run *r, stiffness_choice *c) {
   TRY(stiffness_assemble(&r->body.d, &k));
   TRY(stiffness_order(k, r->msh->x, o));
   r->body.d.order = o;
-  c->factor.seconds = factor_seconds(problems_of(r), o->flops, o->entries);
-  c->factor.bytes =
-      2.0 * o->entries * sizeof(double) + VECTORS * unknowns_of(r);
+  c->factor.seconds =
+      factor_seconds(problems_of(r), o) + UNKNOWN * unknowns_of(r);
+  c->factor.bytes = factor_bytes(unknowns_of(r), o);
   c->exact = 1;
 done:
   stiffness_free(k);
