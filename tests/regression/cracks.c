@@ -280,6 +280,65 @@ START_TEST(crack_in_a_warm_body) {
 }
 END_TEST
 
+/* Heat in x^2, by which the stresses are no longer those of an elastic body by
+ * one and by four hundredths of the largest: measured where it acts alone. */
+START_TEST(little_heat_that_varies_leaves_K) {
+  static const char *const stress[] = {"stress_xx", "stress_yy", "stress_xy"};
+  double most[2] = {0, 0};
+  char heat[40];
+  for (int k = 0; k < 4; ++k) {
+    job j = job_begin("warm");
+    snprintf(heat, sizeof heat, "%.9g",
+             k == 0   ? 0.0
+             : k == 1 ? 1.0
+                      : (k == 2 ? 0.01 : 0.04) * most[0] / most[1]);
+    job_copy(&j, "input/crack/crack.geo");
+    job_write(&j, "warm.inp",
+              "*PARAMETER\nN = 10\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n*EXPANSION\n1.E-5\n"
+              "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+              "*CRACK, NAME=C, GROUP=LINE\n"
+              "*STEP\n*STATIC\n*BOUNDARY\n" HELD
+              "*DSLOAD\nTOP, P, %g\n"
+              "BOTTOM, P, %g\n*TEMPERATURE\nPLATE, \"50 + %s*x^2\"\n"
+              "*PRINT, SIF, ELEMENTS\n*OUTPUT, HDF5=NO\n*END STEP\n",
+              k == 1 ? 0.0 : -1.0, k == 1 ? 0.0 : -1.0, heat);
+    int code = job_run(&j, "--no-timing");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat e = job_table(&j, "ELEMENTS", -1), t = job_table(&j, "SIF", -1);
+    for (int i = 0; k < 2 && i < 3; ++i)
+      most[k] = fmax(most[k], dat_max(&e, stress[i]));
+    if (k > 1) ck_assert_int_eq(isnan(dat_at(&t, 0, "K_I")) != 0, k == 3);
+    dat_free(&e);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* What moves supports is no force: after creep there is no K. */
+START_TEST(creeping_body_with_supports_that_move_has_no_K) {
+  job j = job_begin("moved");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "moved.inp",
+            "*PARAMETER\nN = 10\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n2.\n"
+            "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=LINE\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nPIN, 1, 1\nBOTTOM, 2\n"
+            "TOP, 2, 2, 0.01\n*PRINT, SIF\n*OUTPUT, HDF5=NO\n*END STEP\n"
+            "*STEP\n*VISCO, INTEGRATOR=RK4\n0.5, 1.\n*END STEP\n");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "SIF", -1);
+  for (int i = 0; i < t.n_row; ++i)
+    ck_assert(isnan(dat_at(&t, i, "K_I")) && isnan(dat_at(&t, i, "G")));
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* Under a held load K stays, and the lips open as a bar would grow: E = 1000,
  * 4 s. */
 START_TEST(crack_in_a_body_that_creeps) {
@@ -359,6 +418,8 @@ int main(void) {
   tcase_add_loop_test(tests, crack_in_a_warm_body, 0, 2);
   tcase_add_test(tests, rate_integral_of_power_law_creep);
   tcase_add_loop_test(tests, crack_in_a_body_that_creeps, 0, 3);
+  tcase_add_test(tests, little_heat_that_varies_leaves_K);
+  tcase_add_test(tests, creeping_body_with_supports_that_move_has_no_K);
   tcase_add_test(tests, lips_balance);
   return unit_run("cracks", tests);
 }

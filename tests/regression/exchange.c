@@ -665,6 +665,34 @@ START_TEST(error_is_bound_on_request) {
 }
 END_TEST
 
+/* A loose tolerance on nodes that are bound to each other: the bound of the
+ * error is beyond a tenth of the energy norm. */
+START_TEST(error_in_doubt_is_no_solution) {
+  enum { N = 12, M = 2 * N };
+  double W[M * M], q[M], mu[N];
+  for (int i = 0; i < M; ++i) {
+    q[i] = i % 2 == 0 ? -1.0 : 0.3;
+    for (int k = 0; k < M; ++k)
+      W[i + M * k] = i % 2 != k % 2 ? 0.0 : (i == k ? 0.05 : 0.0) + 1.0;
+  }
+  for (int i = 0; i < N; ++i) mu[i] = 0.2;
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("read");
+    fclib_local(in_folder(&j, "problem.h5"), STORE_COLUMNS, 2, N, W, q, mu);
+    job_write(&j, "read.inp",
+              "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n"
+              "*SOLVER, METHOD=%s\n*ACCURACY\n*END STEP\n",
+              k == 0 ? "AUTO" : "SOR, TOL=0.05");
+    const int code = job_run(&j, "");
+    char *sta = job_file(&j, "sta");
+    ck_assert_msg(code == k, "exit %d: %s%s", code, j.errors, sta);
+    ck_assert_int_eq(strstr(sta, "UNSETTLED BOUND") != NULL, k == 1);
+    free(sta);
+    job_end(&j);
+  }
+}
+END_TEST
+
 START_TEST(no_contact_is_solved) {
   job j = job_begin("read");
   fclib_local(in_folder(&j, "problem.h5"), STORE_ROWS, 3, 0, NULL, NULL, NULL);
@@ -737,5 +765,6 @@ UNIT_MAIN("exchange", problem_written_and_read_has_the_same_solution,
           exponential_case_is_solved, semidefinite_case_is_solved,
           case_without_solution_ends_with_six,
           contact_without_solution_ends_with_six, effect_plan_has_no_mesh,
-          error_is_bound_on_request, no_contact_is_solved,
-          deck_errors_have_a_line, file_of_the_problem_is_not_overwritten)
+          error_is_bound_on_request, error_in_doubt_is_no_solution,
+          no_contact_is_solved, deck_errors_have_a_line,
+          file_of_the_problem_is_not_overwritten)

@@ -297,7 +297,43 @@ START_TEST(what_is_refused_or_told) {
 }
 END_TEST
 
+/* One half of a block is a hundred times stiffer when it is warm: the error of
+ * the mesh after a cold step is that of a run which was warm from the start. */
+START_TEST(error_of_the_mesh_is_that_of_the_moduli_now) {
+  double told[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("halves");
+    job_write(&j, "halves.geo",
+              "h = 0.25;\nPoint(1) = {0, 0, 0, h};\nPoint(2) = {1, 0, 0, h};\n"
+              "Point(3) = {2, 0, 0, h};\nPoint(4) = {2, 1, 0, h};\n"
+              "Point(5) = {1, 1, 0, h};\nPoint(6) = {0, 1, 0, h};\n"
+              "For k In {1 : 6}\n  Line(k) = {k, k %% 6 + 1};\nEndFor\n"
+              "Line(7) = {2, 5};\nCurve Loop(1) = {1, 7, 5, 6};\n"
+              "Curve Loop(2) = {2, 3, 4, -7};\nPlane Surface(1) = {1};\n"
+              "Plane Surface(2) = {2};\nPhysical Surface(\"ONE\") = {1};\n"
+              "Physical Surface(\"OTHER\") = {2};\n"
+              "Physical Curve(\"FOOT\") = {1, 2};\n"
+              "Physical Curve(\"TOP\") = {4, 5};\n");
+    job_write(&j, "halves.inp",
+              "*MESH, FILE=halves.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+              "1000., 0.3, 0.\n1.E5, 0.3, 100.\n*MATERIAL, NAME=S\n*ELASTIC\n"
+              "1000., 0.3\n*SOLID SECTION, ELSET=ONE, MATERIAL=M\n"
+              "*SOLID SECTION, ELSET=OTHER, MATERIAL=S\n%s"
+              "*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DSLOAD\nTOP, P, 1.\n"
+              "*TEMPERATURE\nONE, 100.\n*ACCURACY, MESH=YES\n*END STEP\n",
+              k == 0 ? ""
+                     : "*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DSLOAD\n"
+                       "TOP, P, 1.\n*ACCURACY, MESH=YES\n*END STEP\n");
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    told[k] = job_told(&j, "mesh_error_percent");
+    job_end(&j);
+  }
+  ck_assert_double_gt(told[0], 1.0);
+  ck_assert_double_eq_tol(told[1], told[0], 1e-6 * told[0]);
+}
+END_TEST
+
 UNIT_MAIN("moduli", a_bar_forgets_the_way_of_its_temperature, confined_bodies,
           a_loaded_bar_gives_way, each_element_has_its_temperature,
           friction_follows_the_moduli, inelastic_strains_under_changing_moduli,
-          what_is_refused_or_told)
+          error_of_the_mesh_is_that_of_the_moduli_now, what_is_refused_or_told)

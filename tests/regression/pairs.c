@@ -637,6 +637,35 @@ START_TEST(bad_pairs_are_told) {
 }
 END_TEST
 
+/* A force of 0.5 along x, or y, across a gap of 0.1 along z. */
+START_TEST(moment_in_space_is_about_any_axis) {
+  job j = job_begin("cubes");
+  job_write(&j, "cubes.geo",
+            "SetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n"
+            "Box(2) = {0, 0, 1.1, 1, 1, 1};\n"
+            "MeshSize{ PointsOf{ Volume{:}; } } = 0.5;\n"
+            "Physical Surface(\"BOTTOM\") = {5};\n"
+            "Physical Surface(\"UNDER\") = {6};\n"
+            "Physical Surface(\"OVER\") = {11};\n"
+            "Physical Surface(\"TOP\") = {12};\n"
+            "Physical Volume(\"BODY\") = {1, 2};\n");
+  job_write(&j, "cubes.inp",
+            "*MESH, FILE=cubes.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P\nOVER, UNDER\nINTERFERENCE, 0.1\n"
+            "*FRICTION, CONTACT=P, LAW=COULOMB\n1.\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nBOTTOM, 1, 3\n*DSLOAD\nTOP, P, 3.\nTOP, T%c, 0.5\n"
+            "*PRINT, TOTALS\n*END STEP\n",
+            _i == 0 ? 'X' : 'Y');
+  const int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "moment_of_both"), 0.05, 1e-9);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("pairs");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -654,6 +683,7 @@ int main(void) {
   tcase_add_test(tests, adjusted_nodes_are_tied);
   tcase_add_loop_test(tests, facets_in_a_fit_are_told, 0, 2);
   tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
+  tcase_add_loop_test(tests, moment_in_space_is_about_any_axis, 0, 2);
   tcase_add_loop_test(tests, bad_pairs_are_told, 0, 15);
   return unit_run("pairs", tests);
 }

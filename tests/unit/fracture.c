@@ -562,6 +562,42 @@ START_TEST(factors_of_a_front_that_is_bent_inward) {
 }
 END_TEST
 
+/* A uniform stress across the crack without tractions on its lips, and no
+ * displacement: what is missing there, an integral of q / sqrt(x), goes with
+ * the root of the size of the domain, 1 to 0.6. */
+START_TEST(scatter_is_half_of_what_domains_differ_by) {
+  crack_scene s;
+  tip_field f = tip_of(&strain_steel, 1, 0);
+  start_square(&s, 64, &strain_steel, 0);
+  scene_move(&s, tip_displacement, &f);
+  memset(s.u, 0, 2 * (size_t)s.m->n_node * sizeof *s.u);
+  for (int k = 0; k < 4 * s.m->n_elem; ++k) s.sigma[k] = k % 4 == 1;
+  answer a = ask(&s);
+  const double wanted = (1 - sqrt(0.6)) / (1 + sqrt(0.6));
+  ck_assert_double_gt(fabs(a.at[0].K[0]), 0.1);
+  ck_assert_double_eq_tol(a.at[0].K_scatter[0] / fabs(a.at[0].K[0]), wanted,
+                          0.02 * wanted);
+  drop(&a);
+  scene_end(&s);
+}
+END_TEST
+
+/* The first point of a closed front is its last one too. */
+START_TEST(closed_front_has_no_end) {
+  static const double stretch[9] = {1.4, 0, 0, 0, 1, 0, 0, 0, 1};
+  crack_scene s;
+  scene_start(&s, disc_mesh(0.12, 0), 0, &strain_steel, stretch);
+  answer a = ask(&s);
+  const fracture_point *p = a.point, *q = a.point + a.n - 1;
+  ck_assert_int_eq(p->node, q->node);
+  for (int k = 0; k < 9; ++k)
+    ck_assert_double_eq_tol(p->frame[k], q->frame[k], 1e-12);
+  ck_assert_double_eq_tol(p->curvature, q->curvature, 1e-12);
+  drop(&a);
+  scene_end(&s);
+}
+END_TEST
+
 START_TEST(each_refused_request_is_an_error_and_frees_all) {
   crack_scene s;
   start_square(&s, 8, &strain_steel, 0);
@@ -593,4 +629,5 @@ UNIT_MAIN("fracture", fields_are_those_of_complex_functions,
           tip_between_materials_has_the_energy_release_rate_alone,
           factors_of_a_straight_front, factors_of_a_penny,
           factors_of_a_front_that_is_bent_inward,
+          scatter_is_half_of_what_domains_differ_by, closed_front_has_no_end,
           each_refused_request_is_an_error_and_frees_all)
