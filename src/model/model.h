@@ -359,10 +359,11 @@ typedef enum {
   GOAL_DISPLACEMENT,
   GOAL_STRESS,
   GOAL_ENERGY,
-  GOAL_FRICTION
+  GOAL_FRICTION,
+  GOAL_MOMENT
 } goal_quantity;
 #define GOAL_QUANTITIES \
-  "FORCE|PRESSURE|WIDTH|DISPLACEMENT|STRESS|ENERGY|FRICTION WORK"
+  "FORCE|PRESSURE|WIDTH|DISPLACEMENT|STRESS|ENERGY|FRICTION WORK|MOMENT"
 /* Of COMPONENT=: 1 to 3 are global ones, from 0. */
 enum { GOAL_NORMAL = 3, GOAL_TANGENT, GOAL_TENSOR };
 #define GOAL_COMPONENTS "1|2|3|NORMAL|TANGENT|XX|YY|ZZ|XY|YZ|ZX"
@@ -372,13 +373,16 @@ typedef struct goal_card {
   int contact_id;        /* -1: none */
   const char *group;     /* or NULL */
   int group_id, node_id; /* set by model_check; -1: none */
+  /* Of a difference of displacements: nodes whose mean is taken off. */
+  const char *from;          /* group, or NULL */
+  int from_id, from_node_id; /* as above */
   int component;
   double radius; /* of the mean of a pressure, m; 0: chosen */
   double target; /* error to reach, its unit or % of its value; 0: none */
   int in_percent;
-  int has_point;
-  double point[3]; /* m */
-  place at, group_at, point_at;
+  int n_point;
+  double point[2][3]; /* m; the second is taken off */
+  place at, group_at, from_at, point_at[2];
 } goal_card;
 
 /* The card of an effect, interpreted by the file of the effect. */

@@ -117,6 +117,16 @@ START_TEST(friction_force_of_the_block) {
             "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, COMPONENT=1\n"
             "*GOAL, NAME=UY, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 40.\n"
             "*GOAL, NAME=PRESSED, QUANTITY=FORCE, CONTACT=FOOT\n"
+            "*GOAL, NAME=TURN, QUANTITY=MOMENT, CONTACT=FOOT, COMPONENT=3\n"
+            "0., 0.\n"
+            "*GOAL, NAME=ABOUT, QUANTITY=MOMENT, CONTACT=FOOT, COMPONENT=3\n"
+            "10., 5.\n"
+            "*GOAL, NAME=FOOT, QUANTITY=DISPLACEMENT, GROUP=CONTACT, "
+            "COMPONENT=2\n"
+            "*GOAL, NAME=PLAY, QUANTITY=DISPLACEMENT, COMPONENT=2\n"
+            "0., 40.\n40., 0.\n"
+            "*GOAL, NAME=LIFT, QUANTITY=DISPLACEMENT, COMPONENT=2, "
+            "FROM=CONTACT\n0., 40.\n"
             "*STEP\n*STATIC\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
             "TOP, P, 50.\nLEFT, P, 150.\n*PRINT, GOALS, TOTALS\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
@@ -125,6 +135,20 @@ START_TEST(friction_force_of_the_block) {
   dat t = job_table(&j, "TOTALS", -1);
   ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&t, 0, "force_x"), 1e-9);
   ck_assert_double_eq_tol(told_of(&j, 2).value, dat_at(&t, 0, "normal"), 1e-9);
+  /* About another point the moment is less by its arm times the force, and so
+   * is its error; displacements and their errors are subtracted. */
+  const told fx = told_of(&j, 0), fy = told_of(&j, 2);
+  const told turn = told_of(&j, 3), about = told_of(&j, 4);
+  ck_assert_double_eq_tol(turn.value, dat_at(&t, 0, "moment_z"), 1e-6);
+  ck_assert_double_eq_tol(about.value,
+                          turn.value - 10.0 * fy.value + 5.0 * fx.value, 1e-6);
+  ck_assert_double_gt(fabs(turn.error), 1.0);
+  ck_assert_double_eq_tol(about.error,
+                          turn.error - 10.0 * fy.error + 5.0 * fx.error, 1e-6);
+  const told uy = told_of(&j, 1), foot = told_of(&j, 5), lift = told_of(&j, 7);
+  ck_assert_double_eq_tol(lift.value, uy.value - foot.value, 1e-15);
+  ck_assert_double_eq_tol(lift.error, uy.error - foot.error, 1e-15);
+  ck_assert_double_eq_tol(told_of(&j, 6).error, uy.error, 1e-12);
   dat_free(&t);
   /* Equilibrium gives the normal force whatever the mesh. */
   ck_assert_double_lt(fabs(told_of(&j, 2).error), 1e-9);

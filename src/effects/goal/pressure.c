@@ -210,9 +210,9 @@ static int peak_of(const run *r, const goal_card *g) {
     double d = 0.0;
     double value = pressure_of(r, q) * (1.0 + margin * mirrors_of(r, q));
     if (!is_on(r, g, q)) continue;
-    for (int c = 0; g->has_point && c < dim; ++c)
-      d = hypot(d, r->surface->x[dim * q + c] - g->point[c]);
-    if (g->has_point) value = 1.0 / (d + 1e-12 * r->msh->size);
+    for (int c = 0; g->n_point > 0 && c < dim; ++c)
+      d = hypot(d, r->surface->x[dim * q + c] - g->point[0][c]);
+    if (g->n_point > 0) value = 1.0 / (d + 1e-12 * r->msh->size);
     if (value <= most) continue;
     most = value;
     best = q;
@@ -320,7 +320,7 @@ static double half_of(const run *r, const line *l, int first, int last) {
 /* Near the axis the mean is over a disc, which has its middle there. */
 static void set_disc_of_axis(const goal_card *g, weight *w, goal_form *f) {
   if (!(w->origin[0] < w->radius)) return;
-  if (g->has_point && w->origin[0] > 0.0) {
+  if (g->n_point > 0 && w->origin[0] > 0.0) {
     if (g->radius > 0.0) f->why = GOAL_NO_END;
     w->radius = w->origin[0];
     return;
@@ -333,8 +333,8 @@ static void set_disc_of_axis(const goal_card *g, weight *w, goal_form *f) {
 static void judge_mean(const goal_card *g, const weight *w, const double *near,
                        double longest, goal_form *f) {
   double away = 0.0;
-  for (int c = 0; c < w->dim && g->has_point; ++c)
-    away = hypot(away, g->point[c] - near[c]);
+  for (int c = 0; c < w->dim && g->n_point > 0; ++c)
+    away = hypot(away, g->point[0][c] - near[c]);
   f->is_coarse = w->radius < 2.0 * longest;
   if (f->why == GOAL_RELIABLE && (w->radius < longest || away > w->radius))
     f->why = GOAL_NO_ZONE;
@@ -370,10 +370,10 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
     f->why = GOAL_NO_PEAK;
   else if (last - first < 2)
     f->why = GOAL_NO_ZONE;
-  else if (!at_border && !g->has_point)
+  else if (!at_border && g->n_point == 0)
     refine_peak(r, &l, w);
-  if (g->has_point)
-    for (int c = 0; c < w->dim; ++c) w->origin[c] = g->point[c];
+  if (g->n_point > 0)
+    for (int c = 0; c < w->dim; ++c) w->origin[c] = g->point[0][c];
   const double moved = along(w, r->surface->x + w->dim * peak);
   for (int k = 0; k < l.n; ++k) l.s[k] += moved;
   set_mirrors(r, &l, w);
@@ -494,7 +494,7 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
   w->at = on_disc;
   w->radius = g->radius;
   if (!(g->radius > 0.0)) PASS(set_half_of_disc(r, g, w, f));
-  if (g->has_point) memcpy(w->origin, g->point, sizeof w->origin);
+  if (g->n_point > 0) memcpy(w->origin, g->point[0], sizeof w->origin);
   PASS(look_round(r, g, w->radius, w, &border));
   judge_mean(g, w, at, border.longest, f);
   if (border.cut && f->why == GOAL_RELIABLE) f->why = GOAL_NO_END;

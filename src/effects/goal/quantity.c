@@ -39,12 +39,27 @@ static void clear(const run *r, goal_form *f) {
 
 /* ---- forces -------------------------------------------------------------- */
 
-/* Part of row a of contact node i in the force. */
+/* Moment about the point of the goal of a unit force f[dim] at x[dim]. */
+static double moment_of(const goal_card *g, int dim, const double *x,
+                        const double *f) {
+  double arm[3] = {0.0}, force[3] = {0.0};
+  const int a = (g->component + 1) % 3, b = (g->component + 2) % 3;
+  for (int c = 0; c < dim; ++c) {
+    arm[c] = x[c] - g->point[0][c];
+    force[c] = f[c];
+  }
+  return arm[a] * force[b] - arm[b] * force[a];
+}
+
+/* Part of row a of contact node i in the force or moment. */
 static double share_of(const run *r, const goal_card *g, int i, int a) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
   const int side = a > 0 ? s->side_id[(dim - 1) * i + a - 1] : -1;
   if ((side >= 0 ? side : s->contact_id[i]) != g->contact_id) return 0.0;
+  if (g->quantity == GOAL_MOMENT)
+    return moment_of(g, dim, s->x + dim * i,
+                     s->frame + dim * dim * i + dim * a);
   if (g->component == GOAL_NORMAL) return a == 0 || side >= 0 ? -1.0 : 0.0;
   if (g->component == GOAL_TANGENT) return a == 1 && side < 0 ? 1.0 : 0.0;
   return s->frame[dim * dim * i + dim * a + g->component];
@@ -80,16 +95,23 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
 
 /* ---- displacements, stresses --------------------------------------------- */
 
-static status set_displacement(const run *r, const goal_card *g, goal_form *f) {
+/* Adds the mean over a node or a group times a sign. */
+static void add_mean(const run *r, int node_id, int group_id, int component,
+                     double sign, goal_form *f) {
   const mesh *m = r->msh;
-  const mesh_group *of = g->node_id < 0 ? &m->group[g->group_id] : NULL;
+  const mesh_group *of = node_id < 0 ? &m->group[group_id] : NULL;
   const int n = of == NULL ? 1 : of->n_node;
   for (int k = 0; k < n; ++k) {
-    const int at =
-        m->dim * (of == NULL ? g->node_id : of->node_id[k]) + g->component;
-    f->load[at] = 1.0 / n;
-    f->value += r->now.u[at] / n;
+    const int at = m->dim * (of == NULL ? node_id : of->node_id[k]) + component;
+    f->load[at] += sign / n;
+    f->value += sign * r->now.u[at] / n;
   }
+}
+
+static status set_displacement(const run *r, const goal_card *g, goal_form *f) {
+  add_mean(r, g->node_id, g->group_id, g->component, 1.0, f);
+  if (g->from_node_id >= 0 || g->from_id >= 0)
+    add_mean(r, g->from_node_id, g->from_id, g->component, -1.0, f);
   return OK;
 }
 
@@ -123,10 +145,10 @@ static status set_energy(const run *r, const goal_card *g, goal_form *f) {
 status goal_form_set(const run *r, const goal_card *g, goal_form *f) {
   static status (*const set[])(const run *r, const goal_card *g,
                                goal_form *f) = {
-      [GOAL_FORCE] = set_force,      [GOAL_PRESSURE] = goal_set_pressure,
-      [GOAL_WIDTH] = goal_set_width, [GOAL_DISPLACEMENT] = set_displacement,
-      [GOAL_STRESS] = set_stress,    [GOAL_ENERGY] = set_energy,
-      [GOAL_FRICTION] = set_friction};
+      [GOAL_FORCE] = set_force,       [GOAL_PRESSURE] = goal_set_pressure,
+      [GOAL_WIDTH] = goal_set_width,  [GOAL_DISPLACEMENT] = set_displacement,
+      [GOAL_STRESS] = set_stress,     [GOAL_ENERGY] = set_energy,
+      [GOAL_FRICTION] = set_friction, [GOAL_MOMENT] = set_force};
   clear(r, f);
   PASS(set[g->quantity](r, g, f));
   if (f->has_tau) domain_internal_force(&r->body.d, f->tau, f->load);

@@ -73,7 +73,14 @@ status apply_reference(reading *r) {
 /* ---- *GOAL --------------------------------------------------------------- */
 
 /* What a quantity takes, as bits. */
-enum { ON_CONTACT = 1, IN_GROUP = 2, AT_POINT = 4, HAS_RADIUS = 8 };
+enum {
+  ON_CONTACT = 1,
+  IN_GROUP = 2,
+  AT_POINT = 4,
+  HAS_RADIUS = 8,
+  FROM = 16,       /* a difference */
+  NEEDS_POINT = 32 /* with AT_POINT */
+};
 static const struct {
   const char *word;
   int takes, least, most; /* components, from 0; most < 0: none */
@@ -81,10 +88,11 @@ static const struct {
     [GOAL_FORCE] = {"FORCE", ON_CONTACT, 0, GOAL_TANGENT},
     [GOAL_PRESSURE] = {"PRESSURE", ON_CONTACT | AT_POINT | HAS_RADIUS, 0, -1},
     [GOAL_WIDTH] = {"WIDTH", ON_CONTACT, 0, -1},
-    [GOAL_DISPLACEMENT] = {"DISPLACEMENT", IN_GROUP | AT_POINT, 0, 2},
+    [GOAL_DISPLACEMENT] = {"DISPLACEMENT", IN_GROUP | AT_POINT | FROM, 0, 2},
     [GOAL_STRESS] = {"STRESS", IN_GROUP, GOAL_TENSOR, GOAL_TENSOR + 5},
     [GOAL_ENERGY] = {"ENERGY", 0, 0, -1},
-    [GOAL_FRICTION] = {"FRICTION WORK", 0, 0, -1}};
+    [GOAL_FRICTION] = {"FRICTION WORK", 0, 0, -1},
+    [GOAL_MOMENT] = {"MOMENT", ON_CONTACT | AT_POINT | NEEDS_POINT, 0, 2}};
 
 static int is_given(const reading *r, const char *name) {
   return card_parameter(r->card, name) != NULL;
@@ -117,19 +125,34 @@ static void check_component(const reading *r, goal_card *g) {
                 quantities[g->quantity].word);
 }
 
-static void read_point(const reading *r, goal_card *g) {
-  const record *line = r->card->records;
-  g->has_point = r->card->n_record > 0;
-  if (!g->has_point) return;
-  g->point_at = line->at;
-  if (!(quantities[g->quantity].takes & AT_POINT))
+/* Line k of the card, a point. */
+static void read_point(const reading *r, int k, goal_card *g) {
+  const record *line = &r->card->records[k];
+  const int takes = quantities[g->quantity].takes;
+  g->point_at[k] = line->at;
+  if (!(takes & AT_POINT))
     message_add(r->m->log, P2037, &line->at,
-                "*GOAL: a point counts with PRESSURE and DISPLACEMENT only");
+                "*GOAL: a point counts with PRESSURE, DISPLACEMENT and MOMENT "
+                "only");
+  else if (k > 0 && !(takes & FROM))
+    message_add(r->m->log, P2037, &line->at,
+                "*GOAL: a second point counts with DISPLACEMENT only");
   if (record_fields(r, line, 2, 3, "x, y[, z]") != 0) return;
-  for (int k = 0; k < line->n_field; ++k)
-    if (field_real(r, &line->fields[k], -DBL_MAX, DBL_MAX, "a coordinate",
-                   &g->point[k]) != 0)
+  for (int c = 0; c < line->n_field; ++c)
+    if (field_real(r, &line->fields[c], -DBL_MAX, DBL_MAX, "a coordinate",
+                   &g->point[k][c]) != 0)
       return;
+}
+
+static void read_points(const reading *r, goal_card *g) {
+  const int needs = quantities[g->quantity].takes & NEEDS_POINT;
+  const int n = r->card->n_record;
+  g->n_point = n < 2 ? n : 2;
+  for (int k = 0; k < g->n_point; ++k) read_point(r, k, g);
+  if (needs && n == 0)
+    message_add(r->m->log, P2007, &r->card->at,
+                "*GOAL, QUANTITY=%s needs a line with a point",
+                quantities[g->quantity].word);
 }
 
 /* A number with % or one in the unit of the goal. */
@@ -158,17 +181,22 @@ status apply_goal(reading *r) {
                    .group = p->group,
                    .group_id = -1,
                    .node_id = -1,
+                   .from = p->from,
+                   .from_id = -1,
+                   .from_node_id = -1,
                    .component = p->component,
                    .radius = p->radius,
                    .at = r->card->at,
-                   .group_at = *value_place(r, "GROUP")};
+                   .group_at = *value_place(r, "GROUP"),
+                   .from_at = *value_place(r, "FROM")};
   const int takes = quantities[g->quantity].takes;
-  read_point(r, g);
+  read_points(r, g);
   read_target(r, p->target, g);
   m->accuracy.goal_products |= g->target > 0.0;
   check_parameter(r, g, "CONTACT", takes & ON_CONTACT, takes & ON_CONTACT);
   check_parameter(r, g, "GROUP", takes & IN_GROUP,
-                  (takes & IN_GROUP) && !(takes & AT_POINT && g->has_point));
+                  (takes & IN_GROUP) && !(takes & AT_POINT && g->n_point > 0));
+  check_parameter(r, g, "FROM", takes & FROM, 0);
   check_parameter(r, g, "RADIUS", takes & HAS_RADIUS, 0);
   check_component(r, g);
   if (p->contact != NULL) g->contact_id = find_contact(r, p->contact);

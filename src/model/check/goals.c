@@ -22,30 +22,43 @@ static int nearest_node(const mesh *msh, const double *x, double *distance) {
   return best;
 }
 
-static void find_point(const model *m, const mesh *msh, goal_card *g) {
+/* The node of point k of a goal. */
+static int find_point(const model *m, const mesh *msh, const goal_card *g,
+                      int k) {
   double distance;
-  g->node_id = nearest_node(msh, g->point, &distance);
-  const double *x = msh->x + msh->dim * g->node_id;
+  const int id = nearest_node(msh, g->point[k], &distance);
+  const double *x = msh->x + msh->dim * id;
   if (distance > NEAR * msh->size && g->quantity == GOAL_DISPLACEMENT)
-    message_add(m->log, P2021, &g->point_at,
+    message_add(m->log, P2021, &g->point_at[k],
                 "*GOAL %s: no node of the mesh is at this point, the nearest "
                 "is %zu at (%g, %g, %g)%s",
-                g->name, msh->node_no[g->node_id], x[0], x[1],
+                g->name, msh->node_no[id], x[0], x[1],
                 msh->dim == 3 ? x[2] : msh->z,
                 model_has_target(m) ? "; TARGET= meshes again: make it a "
                                       "Point of the .geo"
                                     : "");
+  return id;
+}
+
+/* 1: a mesh of this dimension has the component; in the plane moments turn
+ * about z, and on an axis there are none. */
+static int has_component(const model *m, const mesh *msh, const goal_card *g) {
+  if (g->component - GOAL_TENSOR >= m->ns) return 0;
+  if (g->component >= GOAL_NORMAL) return 1;
+  if (g->quantity == GOAL_MOMENT && msh->dim == 2 && m->n.section > 0)
+    return g->component == 2 && m->sections[0].kin != AXISYMMETRIC;
+  return g->component < msh->dim;
 }
 
 static void check_goal(const model *m, const mesh *msh, goal_card *g) {
-  const int tensor = g->component - GOAL_TENSOR;
-  if (g->has_point) find_point(m, msh, g);
+  if (g->n_point > 0) g->node_id = find_point(m, msh, g, 0);
+  if (g->n_point > 1) g->from_node_id = find_point(m, msh, g, 1);
+  if (g->from != NULL) g->from_id = check_group(m, msh, g->from, &g->from_at);
   if (g->group != NULL && g->quantity == GOAL_STRESS)
     g->group_id = check_group_of(m, msh, g->group, msh->dim, &g->group_at);
   else if (g->group != NULL)
     g->group_id = check_group(m, msh, g->group, &g->group_at);
-  if (tensor >= m->ns ||
-      (g->component < GOAL_NORMAL && g->component >= msh->dim))
+  if (!has_component(m, msh, g))
     message_add(m->log, P2024, &g->at,
                 "*GOAL %s: a mesh in %d-D has no such component", g->name,
                 msh->dim);
