@@ -119,7 +119,7 @@ help:
 	@echo "make browser-test pages of tools/report in a headless browser"
 	@echo "make reference    every example against its input/*/reference (-update)"
 	@echo "make viewers      JOB.xdmf read by VTK, pyvista, meshio from PyPI"
-	@echo "make study        error against CPU seconds: four pictures"
+	@echo "make study        error against CPU seconds: pictures"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
 	@echo "make bench-big    large contacts, minutes and gigabytes"
@@ -366,6 +366,10 @@ viewers: $(program)
 
 # Error against CPU seconds: solvers, meshes, integrators, nonlocal radii.
 STUDY := PROTIS=$(abspath $(program)) tools/study -j $(JOBS)
+comma := ,
+sp    := $(subst ,, )
+EXACT := PEAK=2710.98998,WIDE=0.235260953,SIDE=-0.00123809517
+GOALS := input/hertz_line/hertz_goals.inp --error GOALS --reference $(EXACT)
 .PHONY: study
 study: $(program)
 	$(Q)$(STUDY) input/greco/greco.inp -o build/study/solvers \
@@ -385,6 +389,15 @@ study: $(program)
 	  -o build/study/radii --vary NC=8,16,32,64,128 \
 	  --vary RHO=0.02,0.05,0.1 --error CONTACT.traction_t --reference own \
 	  --title "sliding cylinder, nonlocal friction of radius RHO"
+
+	$(Q)$(STUDY) $(GOALS) -o build/study/goals/uniform --vary N=4,8,16,32,64
+	$(Q)$(STUDY) $(GOALS) -o build/study/goals/energy \
+	  --vary TARGET=6,4,2.5,1.5,1,0.6 --vary N=4
+	$(Q)$(STUDY) $(GOALS) -o build/study/goals/goal --vary N=4 --vary \
+	  GOAL_TARGET=$(subst $(sp),$(comma),$(foreach g,PEAK WIDE SIDE,\
+	  $(foreach t,1% 0.3% 0.1% 0.03% 0.01%,$g:$t)))
+	$(Q)tools/plot goals build/study/goals build/study/goals.png \
+	  $(subst $(comma), ,$(EXACT))
 
 bench-big: $(program) $(out)/tests/bench/size
 	$(Q)BIG=1 PROTIS=$(abspath $(program)) $(out)/tests/bench/size

@@ -12,7 +12,8 @@ from protis import read_blocks  # noqa: E402
 
 CARDS = {"METHOD": ("SOLVER", "METHOD"), "TOL": ("SOLVER", "TOL"),
          "FORM": ("QUASISTATIC", "FORM"),
-         "INTEGRATOR": ("VISCO", "INTEGRATOR"), "THETA": ("VISCO", "THETA")}
+         "INTEGRATOR": ("VISCO", "INTEGRATOR"), "THETA": ("VISCO", "THETA"),
+         "TARGET": ("ACCURACY", "TARGET")}
 FILES = ("MESH", "INCLUDE", "CONDENSED PROBLEM", "TEMPERATURE",
          "INITIAL CONDITIONS")
 
@@ -58,17 +59,29 @@ def set_parameter(line, name, value):
 
 
 def set_card(lines, card, name, value):
-    """Set it on every such card; a missing *SOLVER is put into each step."""
+    """Set it on every such card; a missing *SOLVER or *ACCURACY is put into each
+    step."""
     out, found = [], False
     for line in lines:
         if card_name(line) == card:
             line, found = set_parameter(line, name, value), True
-        elif card_name(line) == "END STEP" and card == "SOLVER" and not found:
-            out.append(f"*SOLVER, {name}={value}")
+        elif card_name(line) == "END STEP" and not found and card in (
+                "SOLVER", "ACCURACY"):
+            out.append(f"*{card}, {name}={value}")
         if card_name(line) == "END STEP":
             found = False
         out.append(line)
     return out
+
+
+def set_goal(lines, value):
+    """X or NAME:X: TARGET=X of every *GOAL or of that name."""
+    name, _, target = value.rpartition(":")
+    word = re.compile(r",\s*NAME\s*=\s*" + re.escape(name) + r"\s*(,|$)",
+                      re.IGNORECASE)
+    return [set_parameter(line, "TARGET", target)
+            if card_name(line) == "GOAL" and (not name or word.search(line))
+            else line for line in lines]
 
 
 def set_dt(lines, value):

@@ -24,6 +24,7 @@ import protis  # noqa: E402
 PROGRAM = os.path.abspath(os.environ.get("PROTIS", "build/release/protis"))
 os.environ["PROTIS"] = PROGRAM
 DECK = pathlib.Path("input/greco/greco.inp")
+GOALS = "input/hertz_line/hertz_goals.inp"
 SMALL = ["-DN=4", "-DMU=0.5"]
 
 
@@ -204,6 +205,22 @@ class Results(unittest.TestCase):
     def test_batch_tells_a_deck_that_is_not_there(self):
         code, said = tool("batch", self.dir / "none.inp", "-o", self.dir)
         self.assertEqual(code, 2, said)
+
+    def test_study_tells_errors_of_goals(self):
+        """Of the peak of Hertz, with a target of its own: within it."""
+        code, said = tool("study", GOALS,
+                          "--error", "GOALS", "--reference",
+                          "PEAK=2710.98998,SIDE=-0.00123809517", "--vary",
+                          "GOAL_TARGET=PEAK:1%", "--vary", "N=4", "-o",
+                          self.dir / "goals")
+        self.assertEqual(code, 0, said)
+        rows = [line.split() for line in
+                (self.dir / "goals/study.txt").read_text().splitlines()]
+        self.assertEqual([r[2] for r in rows], ["GOAL", "PEAK", "SIDE"])
+        self.assertLess(float(rows[1][4]), 0.01)
+        self.assertEqual(tool("study", GOALS,
+                              "--error", "GOALS", "--reference", "5", "--vary",
+                              "N=4", "-o", self.dir / "goals")[0], 2)
 
     def test_study_tells_a_response(self):
         code, said = tool("study", DECK, "--response", "TOTALS.force_x",

@@ -128,6 +128,30 @@ def hertz_line(job, axes):
     tractions(axes)
 
 
+@example("hertz_goals", "Goals: what an answer is worth",
+         "hertz_line/hertz_goals", scale=1.0)
+def hertz_goals(job, axes):
+    line = closed.Line()
+    length = line.a * line.p0 * 200.0 / 210e3
+    exact = {"PEAK": 1.00026235 * line.p0, "WIDE": 1.00157562 * line.a,
+             "TOP": -0.00857071821 * length, "SIDE": -0.00204203522 * length}
+    for k, goal in enumerate(job.json["goals"]):
+        true, unit = exact[goal["goal"]], 1e3 / abs(exact[goal["goal"]])
+        sign = 1.0 if true > 0 else -1.0
+        value, corrected = (sign * unit * (goal[name] - true)
+                            for name in ("value", "corrected"))
+        axes.errorbar(k + 0.12, corrected, unit * goal["band"], color=GREEN,
+                      marker="s", ms=5, capsize=4,
+                      label="" if k else "value + error, band")
+        axes.plot(k - 0.12, value, "o", color=RED, ms=5,
+                  label="" if k else "value")
+    axes.axhline(0.0, color=BLUE, label="closed form", **FORM)
+    axes.set_xticks(range(4), [g["goal"] for g in job.json["goals"]])
+    axes.set_yscale("symlog", linthresh=0.1)
+    axes.set_ylabel("off the closed form, 1/1000")
+    legend_below(axes)
+
+
 @example("disc", "Disc between two planes, the upper one moves down",
          "hertz_line/disc")
 def disc(job, axes):

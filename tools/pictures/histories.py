@@ -1,4 +1,5 @@
 """Curves over time, loops, forces, and what errors and stages cost."""
+import json
 import math
 
 from matplotlib import pyplot
@@ -160,4 +161,35 @@ def solvers(path):
     handles, labels = axes[0, 0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center",
                   ncol=min(6, math.ceil(len(labels) / 2)))
+    return figure
+
+
+def goals(folder, pairs):
+    """Error of each goal, relative to its exact value, against CPU time: a
+    curve for each study of tools/study in the folder, uniform meshes first."""
+    try:
+        exact = {name: float(x) for name, x in (p.split("=") for p in pairs)}
+    except ValueError:
+        raise Missing("NAME=X of each goal expected") from None
+    studies = sorted(folder.glob("*/runs.jsonl"),
+                     key=lambda p: (p.parent.name != "uniform", p.parent.name))
+    if not studies:
+        raise Missing(f"{folder}: no folders of tools/study in it")
+    figure, axes = new(3.4 * len(exact) + 0.4, 4.2, len(exact))
+    for k, path in enumerate(studies):
+        runs = [json.loads(line) for line in open(path, encoding="utf-8")]
+        for panel, (name, value) in zip(axes[0], exact.items()):
+            points = sorted(
+                (r["costs"][0]["all"], abs(g["value"] / value - 1.0))
+                for r in runs for g in r.get("goals", [])
+                if g["goal"] == name and g["value"] is not None
+                and r["choice"].get("GOAL_TARGET", ":").split(":")[0]
+                in ("", name))
+            if points:
+                panel.loglog(*zip(*points), marker="osD^"[k % 4], ms=5,
+                             color=COLOURS[k % 6], label=path.parent.name)
+            panel.set_title(name)
+            panel.set_xlabel("CPU time, all passes, s")
+    axes[0, 0].set_ylabel("true error, relative")
+    legend_below(axes[0, len(exact) // 2])
     return figure
