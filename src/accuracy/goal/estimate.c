@@ -247,7 +247,7 @@ goal_result goal_judge(const goal_estimate *e, int n_closed) {
     r.verdict = GOAL_FEW_NODES;
   else if (r.ends >= TRUSTED)
     r.verdict = GOAL_CONTACT_END;
-  else if (fabs(e->error) < LEFT * e->magnitude)
+  else if (fabs(e->error) < fmax(LEFT * e->magnitude, fabs(e->hoop)))
     r.verdict = GOAL_CANCELS;
   return r;
 }
