@@ -407,11 +407,15 @@ bench-solvers: $(out)/tests/bench/solvers
 bench-auto: $(out)/tests/bench/auto
 	$(Q)$<
 
-# Problems from files, of a folder: DIR=.
+# Problems from files, of a folder: DIR=; next to another library where that is
+# installed.
 bench-fclib: $(out)/tests/bench/fclib
 	@test -n "$(DIR)" || { echo "bench-fclib: DIR= a folder of FCLIB files" \
 	  >&2; exit 1; }
 	$(Q)$< $(sort $(wildcard $(DIR)/*.hdf5 $(DIR)/*.h5))
+	$(Q)! test -d $(SICONOS)/numerics || { \
+	  $(MAKE) --no-print-directory $(out)/tests/peers/files && \
+	  $(out)/tests/peers/files $(sort $(wildcard $(DIR)/*.hdf5 $(DIR)/*.h5)); }
 
 # Against another library, which nothing else needs.
 SICONOS ?= /usr/include/siconos
@@ -422,8 +426,8 @@ $(peers): LDLIBS += -lsiconos_numerics
 bench-peers:
 	@test -d $(SICONOS)/numerics || { echo "bench-peers: no folder" \
 	  "$(SICONOS)/numerics: install libsiconos-numerics-dev" >&2; exit 1; }
-	$(Q)$(MAKE) --no-print-directory $(peers)
-	$(Q)for p in $(peers); do $$p || exit 1; done
+	$(Q)$(MAKE) --no-print-directory $(out)/tests/peers/peers
+	$(Q)$(out)/tests/peers/peers
 
 format:
 	$(Q)clang-format-14 --style=file:tools/clang-format -i $(wildcard src/*.[ch] src/*/*.[ch] \

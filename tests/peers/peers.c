@@ -23,6 +23,7 @@
 #include "base/timer.h"
 #include "fem/fem.h"
 #include "solver/solver.h"
+#include "peers/kernels.h"
 #include "support/pressed_block.h"
 
 #include <FrictionContactProblem.h>
@@ -53,49 +54,7 @@ enum {
 static const double TOL = 1e-8, ENOUGH = 1.0; /* -; s of one measurement      */
 static const double HOPELESS = 5.0;           /* times slower than AUTO       */
 
-typedef enum { LCP, PLANE, SOLID } problem_kind;
-
-/* Kernels that need no other product; inner: local solver of NSGS, or 0; large:
- * tries large problems too. */
 /* clang-format off */
-static const struct kernel {
-  const char *name;
-  problem_kind kind;
-  int id, inner, large;
-} kernels[] = {
-  {"lemke",   LCP,   SICONOS_LCP_LEMKE,              0, 1},
-  {"pivot",   LCP,   SICONOS_LCP_PIVOT,              0, 0},
-  {"bard",    LCP,   SICONOS_LCP_BARD,               0, 0},
-  {"murty",   LCP,   SICONOS_LCP_MURTY,              0, 1},
-  {"pgs",     LCP,   SICONOS_LCP_PGS,                0, 0},
-  {"psor",    LCP,   SICONOS_LCP_PSOR,               0, 1},
-  {"cpg",     LCP,   SICONOS_LCP_CPG,                0, 0},
-  {"newton",  LCP,   SICONOS_LCP_NEWTONMIN,          0, 0},
-  {"fb",      LCP,   SICONOS_LCP_NEWTON_FB_FBLSA,    0, 0},
-  {"min",     LCP,   SICONOS_LCP_NEWTON_MIN_FBLSA,   0, 1},
-  {"caof",    LCP,   SICONOS_LCP_AVI_CAOFERRIS,      0, 0},
-  {"nsgs",    PLANE, SICONOS_FRICTION_2D_NSGS,       0, 1},
-  {"cpg",     PLANE, SICONOS_FRICTION_2D_CPG,        0, 1},
-  {"lemke",   PLANE, SICONOS_FRICTION_2D_LEMKE,      0, 1},
-  {"nsgs",    SOLID, SICONOS_FRICTION_3D_NSGS,       0, 0},
-  {"nsgs_ac", SOLID, SICONOS_FRICTION_3D_NSGS,
-   SICONOS_FRICTION_3D_ONECONTACT_NSN, 1},
-  {"nsgs_p",  SOLID, SICONOS_FRICTION_3D_NSGS,
-   SICONOS_FRICTION_3D_ONECONTACT_ProjectionOnCone, 1},
-  {"nsgs_pl", SOLID, SICONOS_FRICTION_3D_NSGS,
-   SICONOS_FRICTION_3D_ONECONTACT_ProjectionOnConeWithLocalIteration, 0},
-  {"nsgs_q",  SOLID, SICONOS_FRICTION_3D_NSGS,
-   SICONOS_FRICTION_3D_ONECONTACT_QUARTIC, 0},
-  {"nsn_ac",  SOLID, SICONOS_FRICTION_3D_NSN_AC,     0, 1},
-  {"nsn_act", SOLID, SICONOS_FRICTION_3D_NSN_AC_TEST, 0, 0},
-  {"nsn_fb",  SOLID, SICONOS_FRICTION_3D_NSN_FB,     0, 0},
-  {"nsn_nm",  SOLID, SICONOS_FRICTION_3D_NSN_NM,     0, 0},
-  {"admm",    SOLID, SICONOS_FRICTION_3D_ADMM,       0, 0},
-  {"prox",    SOLID, SICONOS_FRICTION_3D_PROX,       0, 0},
-  {"tfp",     SOLID, SICONOS_FRICTION_3D_TFP,        0, 0},
-  {"aclmfp",  SOLID, SICONOS_FRICTION_3D_ACLMFP,     0, 0},
-  {"soclcp",  SOLID, SICONOS_FRICTION_3D_SOCLCP,     0, 0}};
-
 static const struct loading {
   const char *name;
   double side, down;
@@ -233,14 +192,6 @@ typedef struct kernel_run {
   double tol; /* of its own measure                                          */
 } kernel_run;
 
-static SolverOptions *options_of(const kernel_run *c) {
-  SolverOptions *o = solver_options_create(c->k->id);
-  if (c->k->inner) solver_options_update_internal(o, 0, c->k->inner);
-  o->dparam[SICONOS_DPARAM_TOL] = c->tol;
-  o->iparam[SICONOS_IPARAM_MAX_ITER] = 100000;
-  return o;
-}
-
 /* u_t of the normal forces: part of the answer that an LCP leaves out. */
 static void displace_tangents(void) {
   const contact_problem *cp = &peers.b.cp;
@@ -263,7 +214,7 @@ static double run_lcp(const kernel_run *c, double *M) {
   }
   LinearComplementarityProblem p = {
       .size = n, .M = NM_create_from_data(NM_DENSE, n, n, M), .q = q};
-  SolverOptions *o = options_of(c);
+  SolverOptions *o = kernel_options(c->k, c->tol);
   double start = cpu();
   linearComplementarity_driver(&p, z, w, o);
   memset(peers.z, 0, m * sizeof *peers.z);
@@ -289,7 +240,7 @@ static double run_friction(const kernel_run *c, double *M) {
       .M = NM_create_from_data(NM_DENSE, cp->m, cp->m, M),
       .q = peers.Mq,
       .mu = peers.mus};
-  SolverOptions *o = options_of(c);
+  SolverOptions *o = kernel_options(c->k, c->tol);
   double start = cpu();
   if (cp->dim == 2)
     fc2d_driver(&p, peers.z, peers.w, o);

@@ -92,6 +92,8 @@ static status step_matrix_new(const contact_problem *cp, const force_set *set,
   NEW(s->x, m);
   memory_count_suitesparse();
   umfpack_di_defaults(s->control);
+  s->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+  s->control[UMFPACK_IRSTEP] = 0;
   if (set->rows.start != NULL) {
     NEW(s->rows.start, m + 1);
   } else {
