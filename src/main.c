@@ -34,6 +34,8 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   TRY(job_lock_take(c->dir, in->m->name.job, &lock));
   interrupt_catch(stop);
   if (c->restart) TRY(restart_read(c, in, &from));
+  if (in->problem == NULL && in->m->steps[0].nested && from == NULL)
+    TRY(job_solve_coarser(c, in));
   if (model_has_target(in->m) && in->problem == NULL)
     TRY(target_reach(c, in, unsettled));
   else if (in->m->reduction.is_auto && in->problem == NULL && from == NULL)

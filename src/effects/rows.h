@@ -48,6 +48,7 @@
   X(restart)             \
   X(listing)             \
   X(balance)             \
+  X(nested)              \
   X(warnings)
 /* clang-format on */
 

@@ -317,6 +317,7 @@ typedef struct step {
   int check;            /* solution_check, comes with *SOLVER */
   int balanced;         /* TOL=BALANCED */
   double share;         /* -, of the errors it is balanced with */
+  int nested;           /* 1: NESTED=YES, of the first step */
   solver_choice solver; /* its param is owned by the step it came with */
   void *solver_param;   /* owned, or NULL */
   place solver_at;
@@ -471,6 +472,8 @@ typedef struct model {
     double mesh_price; /* -, expected share of the run, for which the error of
                           the mesh that no card requires is left out; 0: it is
                           not */
+    const struct coarser *coarser; /* where contact starts from, borrowed; or
+                                      NULL (run/start/coarser.h) */
   } accuracy;
   struct {              /* *EFFECTS */
     int given, is_auto; /* is_auto: MODE=AUTO */

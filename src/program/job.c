@@ -4,6 +4,7 @@
 #include "program/job.h"
 #include "effects/rows.h"
 
+#include "accuracy/space.h"
 #include "base/memory.h"
 #include "base/timer.h"
 #include "model/check/check.h"
@@ -41,7 +42,8 @@ static status read_mesh(const job_mesh *other, job_input *in) {
       numbers[n++] =
           (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
   timer_enter(STAGE_MESH);
-  if (model_has_target(m) && job_is_geo(m)) mesh_gmsh_load();
+  if ((model_has_target(m) || m->steps[0].nested) && job_is_geo(m))
+    mesh_gmsh_load();
   in->library_cpu = timer_cpu() - cpu;
   mesh_source source = {.file = m->mesh.file,
                         .scale = m->mesh.scale,
@@ -104,8 +106,16 @@ int job_is_geo(const model *m) {
   return m->mesh.file != NULL && mesh_is_program(m->mesh.file);
 }
 
+status job_keep_contact(coarser *to, const state *s) {
+  const state_contacts *c = &s->contacts;
+  if (c->surface == NULL) return OK;
+  return coarser_add(to, c->surface,
+                     &(contact_view){s->t, c->rc, c->gap, c->slip, c->contact});
+}
+
 void job_input_free(job_input *in) {
   exchange_free(in->problem);
+  coarser_free(in->contact);
   mesh_free(in->msh);
   model_free(in->m);
   deck_free(in->d);
@@ -212,4 +222,54 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
 done:
   free(files);
   return st;
+}
+
+/* ---- the start from a coarser mesh --------------------------------------- */
+
+/* Keeps the first increment and ends the run. */
+static status keep_first(void *to, const state *s) {
+  PASS(job_keep_contact(to, s));
+  RAISE(ERR_UNSETTLED, "the first increment is all that is needed");
+}
+
+/* Without what the start does not depend on. */
+static void simplify(model *m) {
+  step *s = m->steps;
+  s->accuracy.mesh = 0;
+  s->accuracy.time = s->accuracy.time_balanced = s->accuracy.theorems = 0;
+  s->accuracy.no_solver = 1;
+  s->check = CHECK_NONE;
+  m->n.goal = 0;
+  m->effects &=
+      ~(unsigned)(EFFECT_MESH_ERROR | EFFECT_TIME_ERROR | EFFECT_ESTIMATES |
+                  EFFECT_REFERENCE | EFFECT_THEORY);
+}
+
+/* On the mesh with these sizes, into *to. */
+static status solve_first(const command *c, const mesh_sizes *sizes,
+                          coarser *to) {
+  status st = OK;
+  int unsettled = 0;
+  job_input other = {0};
+  const history_sink sink = {.ctx = to, .increment = keep_first};
+  TRY(message_log_new(&other.log));
+  TRY(job_read(c, &(job_mesh){.sizes = {*sizes}}, other.log, &other));
+  simplify(other.m);
+  TRY(history_run(other.m, other.msh, effect_table, &sink, &unsettled));
+done:
+  job_input_free(&other);
+  return st;
+}
+
+status job_solve_coarser(const command *c, job_input *in) {
+  OWNED double *size = NULL;
+  PASS_NEW(size, in->msh->n_node);
+  space_lengths(in->msh, size);
+  for (int i = 0; i < in->msh->n_node; ++i) size[i] *= 2.0;
+  PASS(coarser_new(&in->contact));
+  const status st = solve_first(c, &(mesh_sizes){in->msh, size}, in->contact);
+  if (st == ERR_MEMORY || status_is_request(st)) return st;
+  status_clear();
+  in->m->accuracy.coarser = in->contact;
+  return OK;
 }

@@ -7,6 +7,7 @@
 #include "program/command.h"
 #include "run/discrete/discrete.h"
 #include "output/output.h"
+#include "run/start/coarser.h"
 
 typedef struct job_input {
   deck *d;
@@ -14,6 +15,7 @@ typedef struct job_input {
   mesh *msh;                 /* NULL: a problem from a file */
   double library_cpu;        /* s, CPU time for loading the mesher */
   exchange_problem *problem; /* or NULL */
+  coarser *contact;          /* what in->m starts from, or NULL */
   /* Of another pass than the first: the deck of that, to which the messages
    * refer, and the messages of its own. */
   deck *first;
@@ -48,6 +50,14 @@ typedef struct job_watch {
    * returns the status of the run. */
   status (*finished)(void *ctx, status run, output *out);
 } job_watch;
+
+/* The contact of an increment, for the start of one on a finer mesh. */
+status job_keep_contact(coarser *to, const state *s);
+
+/* *SOLVER, NESTED=YES: the first increment on a mesh with elements of twice the
+ * length becomes the start of the job: in->coarser. Where it fails there is
+ * none. ERR_MEMORY, or that of an interruption. */
+status job_solve_coarser(const command *c, job_input *in);
 
 /* Solve and write the results into the folder, which is there; watch may be
  * NULL. Only a pass without observer writes restart files. from: the restart

@@ -45,6 +45,7 @@ typedef struct pass {
   double *eta;                    /* [n_elem] shares of the elements there */
   double *size;                   /* [n_node] of the next mesh, m */
   aims *goals;                    /* or NULL: there are none */
+  coarser *contact, *before;      /* of this pass, of the one before */
   mesh *first;                    /* of the deck, with targets of goals: its
                                      lengths are the largest of all passes */
   double *first_size;             /* [first->n_node] m */
@@ -69,6 +70,7 @@ static void see_ready(void *ctx, const setup_facts *facts) {
 
 static status see_increment(void *ctx, const state *s) {
   pass *p = ctx;
+  PASS(job_keep_contact(p->contact, s));
   aims_see(p->goals, p->in->msh, s);
   if (!s->errors.mesh_error.asked || s->energy.strain < p->energy) return OK;
   p->energy = s->energy.strain;
@@ -331,6 +333,15 @@ static void adjust(const pass *p, model *m) {
   }
 }
 
+/* The contact of the last pass is the start of this one. */
+static status next_contact(pass *p) {
+  coarser_free(p->before);
+  p->before = p->contact;
+  p->contact = NULL;
+  if (p->before != NULL) p->in->m->accuracy.coarser = p->before;
+  return coarser_new(&p->contact);
+}
+
 static status run_pass(pass *p, int *unsettled) {
   status st = OK;
   const job_watch watch = {p, see_increment, see_ready, see_finished};
@@ -338,6 +349,7 @@ static status run_pass(pass *p, int *unsettled) {
   p->eta = p->size = NULL;
   p->energy = -1.0;
   p->mesh = p->time = p->solver = 0.0;
+  TRY(next_contact(p));
   NEW(p->eta, p->in->msh->n_elem);
   TRY(aims_begin(p->goals, p->in->msh));
   adjust(p, p->in->m);
@@ -404,6 +416,8 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
 done:
   if (p.first != in->msh) mesh_free(p.first);
   RELEASE(p.eta, p.size, p.first_size);
+  coarser_free(p.before);
+  coarser_free(p.contact);
   aims_free(p.goals);
   return st;
 }

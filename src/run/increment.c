@@ -60,13 +60,19 @@ static double residual_of(run *r, double *u, double *rc) {
                           run_rows(r, 1, rc));
 }
 
-/* Start values: the last equilibrium, or the guess if it is nearer. */
+/* Start values: the last equilibrium, or what is put in its place, or the guess
+ * if it is nearer. */
 static void take_start(run *r) {
   size_t bytes = (size_t)r->nodes.n_c * sizeof *r->now.uc;
-  const double *u = r->old.uc, *rc = r->old.rc;
-  if (r->solving.guess_u != NULL && !r->course.shadow &&
+  const int own = r->course.shadow;
+  double *u = r->old.uc, *rc = r->old.rc;
+  if (r->solving.start_u != NULL && !own) {
+    u = r->solving.start_u;
+    rc = r->solving.start_r;
+  }
+  if (r->solving.guess_u != NULL && !own &&
       residual_of(r, r->solving.guess_u, r->solving.guess_r) <
-          residual_of(r, r->old.uc, r->old.rc)) {
+          residual_of(r, u, rc)) {
     u = r->solving.guess_u;
     rc = r->solving.guess_r;
   }

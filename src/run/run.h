@@ -154,13 +154,13 @@ typedef struct error_state {
   rounding_loss rounding;
   error_share mesh_error, time_error;
   double *elem_error; /* [n_elem] borrowed, or NULL */
-  double left;              /* -, of an unloaded body: share of the largest
-                               energy so far that its errors are relative to; 0:
-                               its state is rounding */
-  int strained;             /* 1: supports of r->now strain a body, looked at
-                               where motions are far above strains */
-  int evaluated;            /* 1: the errors of mesh and solver are those of
-                               r->now */
+  double left;        /* -, of an unloaded body: share of the largest
+                         energy so far that its errors are relative to; 0:
+                         its state is rounding */
+  int strained;       /* 1: supports of r->now strain a body, looked at
+                         where motions are far above strains */
+  int evaluated;      /* 1: the errors of mesh and solver are those of
+                         r->now */
 } error_state;
 
 /* How the contact problem is solved. */
@@ -169,6 +169,8 @@ typedef struct solving {
   double tol;                /* of the contact solver, in force, - */
   double *guess_u, *guess_r; /* [m] start values that may be nearer than those
                                 of r->old, borrowed; NULL: none */
+  double *start_u, *start_r; /* [m] start values in the place of those of
+                                r->old, borrowed; NULL: none */
   known_rate rate;
   double known_key; /* of the matrix that "rate" was read for, until in
                        use */

@@ -150,7 +150,7 @@ typedef struct temperature_param {
 typedef struct solver_param {
   const char *method;
   double tol, share;
-  int max_iter, limit_max_iter, check, stiffness;
+  int max_iter, limit_max_iter, check, stiffness, nested;
   double max_memory;
 } solver_param;
 enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY */

@@ -32,6 +32,15 @@ plugin names_solver(const reading *r) {
 /* Of a solver that is to be balanced with errors that are zero. */
 static const double TOL_DEFAULT = 1e-10;
 
+/* The first increment starts from a coarser mesh of a geometry. */
+static void take_nested(const reading *r, const solver_param *p, step *s) {
+  const char *file = r->m->mesh.file;
+  if (!p->nested) return;
+  s->nested = s == r->m->steps && file != NULL && mesh_is_program(file);
+  if (!s->nested)
+    report_idle(r, "NESTED", "the first step and a .geo in *MESH");
+}
+
 status apply_solver(reading *r) {
   const solver_param *p = r->param;
   step *s = open_step(r);
@@ -51,6 +60,7 @@ status apply_solver(reading *r) {
   s->solver.max_memory = p->max_memory;
   if (p->stiffness != STIFFNESS_AUTO && p->max_memory > 0.0)
     report_idle(r, "MAX_MEMORY", "STIFFNESS=AUTO");
+  take_nested(r, p, s);
   s->check = p->check;
   if (!s->balanced && p->share != 0.05) report_idle(r, "SHARE", "TOL=BALANCED");
   if (r->plugin == NULL) return OK;

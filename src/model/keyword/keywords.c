@@ -247,6 +247,9 @@ static const option solver_options[] = {
                 "as foreseen (--check prints both)"),
   OPTION_REAL(solver_param, max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
               "that STIFFNESS=AUTO keeps below; 0: 80 % of the memory"),
+  OPTION_FLAG(solver_param, nested, "NESTED", "NO",
+              "first step: the first increment is solved on a mesh of elements "
+              "twice as long before, whose contact is the start"),
   OPTION_END};
 static const option effects_options[] = {
   OPTION_CHOICE(effects_param, mode, "MODE", "CALLED|AUTO", "CALLED",
