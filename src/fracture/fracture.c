@@ -59,20 +59,30 @@ static void compare(const integrals *of, int part, double factor, double *value,
   *scatter = (high - low) / 2;
 }
 
-/* E' = 8 G / (kappa + 1), in plane stress and plane strain. */
-static void find_point(fracture *f, const fracture_state *s,
-                       const fracture_point *p, fracture_factors *out) {
+static elasticity elasticity_at(const fracture *f, const fracture_point *p) {
   elasticity x = {0};
-  integrals sum;
   if (p->section >= 0 && f->body.material[p->section].E > 0) {
     const fracture_material *of = &f->body.material[p->section];
     x.G = of->E / (2 * (1 + of->nu));
     x.kappa = of->plane_stress ? (3 - of->nu) / (1 + of->nu) : 3 - 4 * of->nu;
   }
+  return x;
+}
+
+/* K over the integral: half of E' = 8 G / (kappa + 1), in plane stress and
+ * plane strain. */
+static double factor_of(const elasticity *x, int mode) {
+  return mode < 2 ? 4 * x->G / (x->kappa + 1) : x->G;
+}
+
+static void find_point(fracture *f, const fracture_state *s,
+                       const fracture_point *p, fracture_factors *out) {
+  const elasticity x = elasticity_at(f, p);
+  integrals sum;
   integrals_find(f, s, p, &x, &sum);
   compare(&sum, MODES, 1, &out->J, &out->J_scatter);
   for (int mode = 0; mode < MODES && x.G > 0; ++mode)
-    compare(&sum, mode, mode < 2 ? 4 * x.G / (x.kappa + 1) : x.G, &out->K[mode],
+    compare(&sum, mode, factor_of(&x, mode), &out->K[mode],
             &out->K_scatter[mode]);
 }
 
@@ -82,4 +92,38 @@ void fracture_find(fracture *f, const fracture_state *s,
     out[i] = (fracture_factors){{NAN, NAN, NAN}, {NAN, NAN, NAN}, NAN, NAN};
     if (f->point[i].radius > 0) find_point(f, s, &f->point[i], &out[i]);
   }
+}
+
+/* Half of the domain that gives the least, half of that with the most. */
+static void share_domains(const integrals *of, int mode, double factor,
+                          double *part) {
+  int low = 0, high = 0;
+  for (int k = 1; k < DOMAINS; ++k) {
+    const double here = of->I[k][mode] / of->length[k];
+    if (here < of->I[low][mode] / of->length[low]) low = k;
+    if (here > of->I[high][mode] / of->length[high]) high = k;
+  }
+  for (int k = 0; k < DOMAINS; ++k)
+    part[k] = factor / of->length[k] * ((k == low) + (k == high)) / 2;
+}
+
+status fracture_derive(fracture *f, const fracture_state *s, int point,
+                       int mode, fracture_linear *out) {
+  const mesh *m = f->body.mesh;
+  const size_t n_dof = (size_t)m->dim * (size_t)m->n_node;
+  const fracture_point *p = &f->point[point];
+  const elasticity x = elasticity_at(f, p);
+  integrals sum;
+  double part[DOMAINS];
+  *out = (fracture_linear){0};
+  integrals_find(f, s, p, &x, &sum);
+  share_domains(&sum, mode, factor_of(&x, mode), part);
+  PASS_NEW(out->by_u, n_dof);
+  PASS_NEW(out->by_traction, n_dof);
+  return integrals_derive(f, s, p, &x, mode, part, out);
+}
+
+void fracture_linear_free(fracture_linear *l) {
+  RELEASE(l->by_u, l->by_traction, l->elem, l->flux);
+  *l = (fracture_linear){0};
 }

@@ -89,4 +89,24 @@ const fracture_point *fracture_points(const fracture *f); /* borrowed */
 /* out[fracture_count]. Cost: that of the elements in the domains. */
 void fracture_find(fracture *f, const fracture_state *s, fracture_factors *out);
 
+/* K of one mode at one point as a linear function of displacements and
+ * tractions, K = by_u'u + by_traction't. */
+typedef struct fracture_linear {
+  double *by_u;        /* [dim*n_node] Pa m^(-1/2) */
+  double *by_traction; /* [dim*n_node] m^(1/2) */
+  int n;
+  int *elem;    /* [n] of the domains */
+  double *flux; /* [n*(dim+1)*dim*dim] the derivative by du_i/dx_j, row by row,
+                   at dim + 1 points of each, Pa m^(1/2) per m^dim; point k has
+                   fracture_corner of corner k */
+} fracture_linear;
+/* Barycentric coordinate of a point of flux in its own corner, those in the
+ * others are equal: degree 2 with equal weights. */
+double fracture_corner(int dim);
+/* Mode 0 to 2, of the domains that give K in s; *out is new. The point has a K.
+ * ERR_MEMORY. */
+status fracture_derive(fracture *f, const fracture_state *s, int point,
+                       int mode, fracture_linear *out);
+void fracture_linear_free(fracture_linear *l); /* accepts all-zero */
+
 #endif

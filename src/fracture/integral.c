@@ -3,6 +3,8 @@
  */
 #include "fracture/parts.h"
 
+#include "base/memory.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -134,11 +136,69 @@ static double lack(const field_tensor *s, const field_tensor *d,
   return sum;
 }
 
+/* By the slope and by the stress at a place, of one domain, in its frame. */
+static void add_integrand(const auxiliary *x, const field_tensor *grow,
+                          const double *Q, double by_d[3][3],
+                          double by_s[3][3]) {
+  const double trace = grow->of[0][0] + grow->of[1][1] + grow->of[2][2];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      for (int k = 0; k < 3; ++k) {
+        by_d[i][j] += x->s.of[i][k] * grow->of[j][k];
+        by_s[i][j] += x->d.of[i][k] * grow->of[k][j];
+      }
+      by_s[i][j] += x->X.of[i][j] * Q[0] - x->e.of[i][j] * trace;
+      by_d[i][j] += x->div[i] * Q[j];
+    }
+}
+
+/* To global components, out[dim*dim]. */
+static void turn_back(const local *at, int dim, double by[3][3], double *out) {
+  for (int b = 0; b < dim; ++b)
+    for (int c = 0; c < dim; ++c) {
+      out[dim * b + c] = 0;
+      for (int i = 0; i < 3; ++i)
+        for (int l = 0; l < 3; ++l)
+          out[dim * b + c] +=
+              at->axis[3 * i + b] * by[i][l] * at->axis[3 * l + c];
+    }
+}
+
+/* The derivative of the integrand by du_i/dx_j, global, out[dim*dim], at a
+ * place of the current element, where the stress is that of the slope. */
+static void flux_at(const work *w, const double *phi, const double *g, int mode,
+                    const double *part, double *out) {
+  const double lambda = w->x->G * (3 - w->x->kappa) / (w->x->kappa - 1);
+  double by_d[3][3] = {{0}}, by_s[3][3] = {{0}};
+  auxiliary x;
+  local at;
+  place_at(w, phi, &at);
+  auxiliary_set(w->x, &at, mode, &x);
+  for (int k = 0; k < DOMAINS; ++k) {
+    field_tensor grow;
+    double Q[3];
+    growth_at(w, phi, &at, k, Q);
+    growth_slope(w, g, &at, k, &grow);
+    for (int l = 0; l < 3; ++l) {
+      Q[l] *= part[k];
+      for (int j = 0; j < 3; ++j) grow.of[l][j] *= part[k];
+    }
+    add_integrand(&x, &grow, Q, by_d, by_s);
+  }
+  const double trace = by_s[0][0] + by_s[1][1] + by_s[2][2];
+  for (int i = 0; i < 3; ++i) {
+    by_d[i][i] += lambda * trace;
+    for (int l = 0; l < 3; ++l)
+      by_d[i][l] += w->x->G * (by_s[i][l] + by_s[l][i]);
+  }
+  turn_back(&at, w->m->dim, by_d, out);
+}
+
 /* The fields are constant in an element, and the auxiliary ones at its centroid
  * are as accurate. */
+static const double centre[2][4] = {{1.0 / 3, 1.0 / 3, 1.0 / 3, 0},
+                                    {0.25, 0.25, 0.25, 0.25}};
 static void add_element(work *w, int elem) {
-  static const double centre[2][4] = {{1.0 / 3, 1.0 / 3, 1.0 / 3, 0},
-                                      {0.25, 0.25, 0.25, 0.25}};
   const double *phi = centre[w->m->dim - 2];
   const int n = w->m->dim + 1;
   double g[12], Q[DOMAINS][3];
@@ -163,6 +223,28 @@ static void add_element(work *w, int elem) {
       w->sum->I[k][mode] +=
           w->measure * (field_product(&P, &grow[k]) + lack(&s, &d, &x, Q[k]));
   }
+}
+
+/* Adds what an element has; 1: it has a part. */
+static int derive_element(work *w, int elem, int mode, const double *part,
+                          double *by_u, double *flux) {
+  const int dim = w->m->dim, *v = w->m->elem + (dim + 1) * elem;
+  const double own = fracture_corner(dim);
+  double g[12], slope[9];
+  if (!set_corners(w, dim + 1, v)) return 0;
+  const double measure = set_fields(w, elem, g);
+  flux_at(w, centre[dim - 2], g, mode, part, slope);
+  for (int a = 0; a <= dim; ++a)
+    for (int i = 0; i < dim; ++i)
+      for (int j = 0; j < dim; ++j)
+        by_u[dim * v[a] + i] += measure * slope[dim * i + j] * g[dim * a + j];
+  for (int a = 0; a <= dim; ++a) {
+    double phi[4];
+    for (int b = 0; b <= dim; ++b) phi[b] = (1 - own) / dim;
+    phi[a] = own;
+    flux_at(w, phi, g, mode, part, flux + dim * dim * a);
+  }
+  return 1;
 }
 
 /* ---- lips ---------------------------------------------------------------- */
@@ -240,14 +322,18 @@ static double set_traction(work *w, corner *c, int node) {
   return behind;
 }
 
+static void place_on_lip(const work *w, const double *phi, local *at) {
+  place_at(w, phi, at);
+  at->x[0] = -fabs(at->x[0]);
+  at->x[1] = w->above ? 0.0 : -0.0;
+}
+
 static void add_lip_point(work *w, const rule_point *point) {
   const double part = point->part * w->measure;
   double t[3] = {0, 0, 0}, Q[3];
   field_tensor d[MODES + 1] = {0};
   local at;
-  place_at(w, point->phi, &at);
-  at.x[0] = -fabs(at.x[0]);
-  at.x[1] = w->above ? 0.0 : -0.0;
+  place_on_lip(w, point->phi, &at);
   for (int k = 0; k < w->n; ++k)
     for (int c = 0; c < 3; ++c) t[c] += point->phi[k] * w->at[k].traction[c];
   for (int mode = 0; mode < MODES && w->x->G > 0; ++mode) {
@@ -279,6 +365,103 @@ static void add_lips(work *w) {
     const int n = lip_rule(m->dim - 1, behind, rule);
     for (int k = 0; k < n; ++k) add_lip_point(w, &rule[k]);
   }
+}
+
+/* ---- their derivative by tractions ----------------------------------------
+ */
+
+/* What a line takes: by the tractions that it is made of. */
+typedef struct taken {
+  double level[3], slope[3];
+} taken;
+
+/* Adds the force t[3] in the frame of a place to a node. */
+static void add_turned(const work *w, const local *at, const double *t,
+                       int node, double *by) {
+  for (int c = 0; c < w->m->dim; ++c)
+    for (int i = 0; i < 3; ++i)
+      by[w->m->dim * node + c] += at->axis[3 * i + c] * t[i];
+}
+
+/* By the traction t[3] of a corner: add_lip_point transposed. */
+static void corner_share(work *w, int own, int mode, const double *part, int n,
+                         const rule_point *rule, double *t) {
+  t[0] = t[1] = t[2] = 0;
+  for (int p = 0; p < n; ++p) {
+    const double size = rule[p].part * w->measure * rule[p].phi[own];
+    auxiliary x;
+    local at;
+    place_on_lip(w, rule[p].phi, &at);
+    auxiliary_set(w->x, &at, mode, &x);
+    for (int k = 0; k < DOMAINS; ++k) {
+      double Q[3];
+      growth_at(w, rule[p].phi, &at, k, Q);
+      for (int i = 0; i < 3; ++i)
+        for (int l = 0; l < 3; ++l)
+          t[i] -= part[k] * size * x.d.of[i][l] * Q[l];
+    }
+  }
+}
+
+/* A corner whose traction is given, or of a line: set_traction transposed. */
+static void derive_corner(work *w, const corner *c, int node, const double *t,
+                          taken *side, double *by) {
+  const trend *of = &w->side[w->above];
+  taken *to = &side[w->above];
+  local at;
+  locate(w->p, c->x, &at);
+  const double behind = -at.x[0];
+  if (!(behind < w->scatter && of->n > 0)) {
+    add_turned(w, &at, t, node, by);
+    return;
+  }
+  const double spread = of->n * of->xx - of->x * of->x;
+  const int is_line = 4 * spread > of->n * of->n * w->scatter * w->scatter;
+  for (int i = 0; i < 3; ++i) {
+    to->level[i] += t[i] / of->n;
+    if (is_line)
+      to->slope[i] += t[i] * (of->n * behind - of->x) / (of->n * spread);
+  }
+}
+
+/* Those that lines are made of: find_trends transposed. */
+static void derive_trends(work *w, const taken *side, double *by) {
+  const int dim = w->m->dim;
+  for (int i = 0; i < 2 * w->crack->n; ++i) {
+    const int face = set_lip(w, i);
+    for (int k = 0; k < dim && face >= 0; ++k) {
+      const trend *of = &w->side[w->above];
+      const taken *from = &side[w->above];
+      local at;
+      double t[3];
+      locate(w->p, w->at[k].x, &at);
+      if (-at.x[0] < w->scatter || -at.x[0] > smooth * w->p->size) continue;
+      for (int c = 0; c < 3; ++c)
+        t[c] = from->level[c] + from->slope[c] * (of->n * -at.x[0] - of->x);
+      add_turned(w, &at, t, w->m->face[dim * face + k], by);
+    }
+  }
+}
+
+static void derive_lips(work *w, int mode, const double *part, double *by) {
+  const mesh *m = w->m;
+  taken side[2] = {{{0}, {0}}, {{0}, {0}}};
+  find_trends(w);
+  for (int i = 0; i < 2 * w->crack->n; ++i) {
+    const int face = set_lip(w, i);
+    double behind[3], t[3];
+    rule_point rule[RULE_MOST];
+    if (face < 0) continue;
+    const int *v = m->face + m->dim * face;
+    for (int k = 0; k < m->dim; ++k)
+      behind[k] = set_traction(w, &w->at[k], v[k]);
+    const int n = lip_rule(m->dim - 1, behind, rule);
+    for (int k = 0; k < m->dim; ++k) {
+      corner_share(w, k, mode, part, n, rule, t);
+      derive_corner(w, &w->at[k], v[k], t, side, by);
+    }
+  }
+  derive_trends(w, side, by);
 }
 
 /* ---- a point ------------------------------------------------------------- */
@@ -349,4 +532,23 @@ void integrals_find(fracture *f, const fracture_state *s,
   for (int i = 0; i < n; ++i) add_element(&w, f->elem_list[i]);
   if (s->traction != NULL) add_lips(&w);
   measure_front(&w, f->n);
+}
+
+status integrals_derive(fracture *f, const fracture_state *s,
+                        const fracture_point *p, const elasticity *x, int mode,
+                        const double *part, fracture_linear *out) {
+  work w = {.f = f, .m = f->body.mesh, .crack = f->body.crack, .p = p};
+  const int dim = w.m->dim;
+  const size_t each = (size_t)((dim + 1) * dim * dim);
+  w.state = s;
+  w.x = x;
+  const int n = gather_elements(f, p);
+  PASS_NEW(out->elem, n);
+  PASS_NEW(out->flux, each * (size_t)n);
+  for (int i = 0; i < n; ++i)
+    if (derive_element(&w, f->elem_list[i], mode, part, out->by_u,
+                       out->flux + each * (size_t)out->n))
+      out->elem[out->n++] = f->elem_list[i];
+  if (s->traction != NULL) derive_lips(&w, mode, part, out->by_traction);
+  return OK;
 }

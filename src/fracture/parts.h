@@ -86,5 +86,10 @@ typedef struct integrals {
 void integrals_find(fracture *f, const fracture_state *s,
                     const fracture_point *p, const elasticity *x,
                     integrals *out);
+/* The derivative of the integrals of a mode, part[k] of domain k; out has its
+ * arrays by nodes, and gets its elements. ERR_MEMORY. */
+status integrals_derive(fracture *f, const fracture_state *s,
+                        const fracture_point *p, const elasticity *x, int mode,
+                        const double *part, fracture_linear *out);
 
 #endif

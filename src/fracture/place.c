@@ -71,3 +71,7 @@ int lip_rule(int n, const double *behind, rule_point *to) {
     }
   return count;
 }
+
+double fracture_corner(int dim) {
+  return dim == 2 ? 2.0 / 3.0 : 0.58541019662496845446;
+}

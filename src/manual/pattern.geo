@@ -31,7 +31,7 @@ EndFor
 Point(71) = {63, 4, 0};
 Point(72) = {67, 6, 0};
 Line(320) = {71, 72};
-Transfinite Curve{320} = 5;
+Transfinite Curve{320} = 13;
 Curve{320} In Surface{11};
 MeshSize{:} = 40 / N;
 Physical Surface("BODY") = {1};

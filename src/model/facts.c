@@ -281,7 +281,8 @@ const char *goal_unit(const goal_card *g) {
       [GOAL_FORCE] = "force",           [GOAL_PRESSURE] = "force/length^2",
       [GOAL_WIDTH] = "length",          [GOAL_DISPLACEMENT] = "length",
       [GOAL_STRESS] = "force/length^2", [GOAL_ENERGY] = "force*length",
-      [GOAL_FRICTION] = "force*length", [GOAL_MOMENT] = "force*length"};
+      [GOAL_FRICTION] = "force*length", [GOAL_MOMENT] = "force*length",
+      [GOAL_SIF] = "force/length^1.5"};
   return units[g->quantity];
 }
 

@@ -361,10 +361,11 @@ typedef enum {
   GOAL_STRESS,
   GOAL_ENERGY,
   GOAL_FRICTION,
-  GOAL_MOMENT
+  GOAL_MOMENT,
+  GOAL_SIF
 } goal_quantity;
 #define GOAL_QUANTITIES \
-  "FORCE|PRESSURE|WIDTH|DISPLACEMENT|STRESS|ENERGY|FRICTION WORK|MOMENT"
+  "FORCE|PRESSURE|WIDTH|DISPLACEMENT|STRESS|ENERGY|FRICTION WORK|MOMENT|SIF"
 /* Of COMPONENT=: 1 to 3 are global ones, from 0. */
 enum { GOAL_NORMAL = 3, GOAL_TANGENT, GOAL_TENSOR };
 #define GOAL_COMPONENTS "1|2|3|NORMAL|TANGENT|XX|YY|ZZ|XY|YZ|ZX"
@@ -372,6 +373,7 @@ typedef struct goal_card {
   const char *name;
   goal_quantity quantity;
   int contact_id;        /* -1: none */
+  int crack_id;          /* of SIF; -1: none */
   const char *group;     /* or NULL */
   int group_id, node_id; /* set by model_check; -1: none */
   /* Of a difference of displacements: nodes whose mean is taken off. */

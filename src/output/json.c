@@ -189,10 +189,12 @@ static void write_goals(json *w, const job *j) {
 }
 
 static void write_pass_goals(json *w, const job *j, const pass_goal *g) {
+  char unit[64];
   json_open(w, "goals", '[');
   for (int i = 0; i < j->m->n.goal; ++i) {
     json_open(w, NULL, '{');
     json_string(w, "goal", j->m->accuracy.goals[i].name);
+    json_string(w, "unit", job_goal_unit(j->m, i, unit, sizeof unit));
     json_real(w, "value", g[i].found.value);
     json_real(w, "error", g[i].found.error);
     json_real(w, "band", g[i].found.band);

@@ -92,14 +92,14 @@ int aims_count(const aims *a) { return a != NULL && a->counts; }
 
 static int is_estimate(const pass_goal *g) {
   return g->found.verdict == GOAL_RELIABLE ||
-         g->found.verdict == GOAL_CANCELS ||
+         g->found.verdict == GOAL_CANCELS || g->found.verdict == GOAL_FRONT ||
          g->found.verdict == GOAL_CONTACT_END;
 }
 
 /* 1: a finer mesh may have an estimate. */
 static int may_have_estimate(const pass_goal *g) {
   return is_estimate(g) || g->found.verdict == GOAL_FEW_NODES ||
-         g->found.verdict == GOAL_NO_ZONE;
+         g->found.verdict == GOAL_NO_ZONE || g->found.verdict == GOAL_NO_FACTOR;
 }
 
 static int is_met(const goal_card *goal, const pass_goal *g) {

@@ -598,6 +598,80 @@ START_TEST(closed_front_has_no_end) {
 }
 END_TEST
 
+/* ---- a factor as a linear function -----------------------------------------
+ */
+
+/* K of all modes at a point is by_u'u + by_traction't; with the flux in the
+ * place of by_u it is within "near". */
+static void check_linear(const crack_scene *s, int point, double near) {
+  const fracture_body body = {s->m, &s->crack, s->section, s->material};
+  const fracture_state state = {s->u, s->sigma, s->traction, 0.5};
+  const int dim = s->m->dim;
+  answer a = ask(s);
+  fracture *f;
+  double size = 0;
+  ck_assert_int_eq(fracture_new(&body, &f), OK);
+  for (int mode = 0; mode < dim; ++mode)
+    size = fmax(size, fabs(a.at[point].K[mode]));
+  for (int mode = 0; mode < dim; ++mode) {
+    fracture_linear l;
+    double by_u = 0, by_t = 0, by_flux = 0;
+    ck_assert_int_eq(fracture_derive(f, &state, point, mode, &l), OK);
+    for (int k = 0; k < dim * s->m->n_node; ++k) {
+      by_u += l.by_u[k] * s->u[k];
+      if (s->traction != NULL) by_t += l.by_traction[k] * s->traction[k];
+    }
+    for (int i = 0; i < l.n; ++i) {
+      const int *v = s->m->elem + (dim + 1) * l.elem[i];
+      double g[12];
+      mesh_elem_gradients(s->m, l.elem[i], g);
+      for (int p = 0; p <= dim; ++p)
+        for (int b = 0; b <= dim; ++b)
+          for (int k = 0; k < dim * dim; ++k)
+            by_flux += mesh_elem_measure(s->m, l.elem[i]) / (dim + 1) *
+                       l.flux[((dim + 1) * i + p) * dim * dim + k] *
+                       s->u[dim * v[b] + k / dim] * g[dim * b + k % dim];
+    }
+    ck_assert_double_eq_tol(by_u + by_t, a.at[point].K[mode], 1e-12 * size);
+    ck_assert_double_eq_tol(by_flux, by_u, near * size);
+    fracture_linear_free(&l);
+  }
+  fracture_free(f);
+  drop(&a);
+}
+
+START_TEST(factors_are_linear_functions) {
+  for (int plane_stress = 0; plane_stress < 2; ++plane_stress) {
+    const fracture_material *x = plane_stress ? &stress_steel : &strain_steel;
+    crack_scene s;
+    tip_field f = tip_of(x, 1.0, 0.5);
+    if (!plane_stress) f.stress[0] = -3;
+    start_square(&s, 32, x, 0.7);
+    scene_move(&s, tip_displacement, &f);
+    check_linear(&s, 0, 0.01);
+    if (!plane_stress) scene_load(&s, tip_traction, &f);
+    /* They scatter: what is next to the tip is of a line through the others. */
+    for (int k = 0; k < 2 * s.m->n_node && !plane_stress; ++k)
+      s.traction[k] *= 1 + 0.1 * sin(3.0 * k);
+    check_linear(&s, 0, 0.01);
+    scene_end(&s);
+  }
+}
+END_TEST
+
+START_TEST(factors_of_a_penny_are_linear_functions) {
+  crack_scene s;
+  scene_start(&s, disc_mesh(0.15, 0), 0, &strain_steel, NULL);
+  for (int mode = 0; mode < 3; ++mode) {
+    const disc_field f = {mode, 0.3, G};
+    scene_move(&s, disc_displacement, &f);
+    scene_load(&s, disc_traction, &f);
+    check_linear(&s, 2 + mode, 0.03);
+  }
+  scene_end(&s);
+}
+END_TEST
+
 START_TEST(each_refused_request_is_an_error_and_frees_all) {
   crack_scene s;
   start_square(&s, 8, &strain_steel, 0);
@@ -630,4 +704,5 @@ UNIT_MAIN("fracture", fields_are_those_of_complex_functions,
           factors_of_a_straight_front, factors_of_a_penny,
           factors_of_a_front_that_is_bent_inward,
           scatter_is_half_of_what_domains_differ_by, closed_front_has_no_end,
+          factors_are_linear_functions, factors_of_a_penny_are_linear_functions,
           each_refused_request_is_an_error_and_frees_all)

@@ -24,6 +24,8 @@ struct goal_estimator {
   int n_region;
   double **stress; /* [n_region][ns*n_node] recovered of u, Pa */
   double *bubble;  /* [ns*n_elem] mean strains of u in the bubbles, - */
+  double *part;    /* [edges*dim*n_elem] u in the bubbles of their edges, m;
+                      NULL: no J has a flux */
   double *own;     /* [n_elem] |e_u|^2, J */
   unsigned char *on_surface; /* [n_node] 1: of an edge of the contact */
   double *sigma_y;           /* [ns*n_elem] of the adjoint; workspace */
@@ -34,8 +36,8 @@ void goal_estimator_free(goal_estimator *e) {
   if (e == NULL) return;
   for (int k = 0; k < e->n_region && e->stress != NULL; ++k)
     memory_free(e->stress[k]);
-  RELEASE(e->stress, e->bubble, e->own, e->on_surface, e->sigma_y, e->node_y,
-          e);
+  RELEASE(e->stress, e->bubble, e->part, e->own, e->on_surface, e->sigma_y,
+          e->node_y, e);
 }
 
 /* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
@@ -70,12 +72,50 @@ static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
   return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key, by_nodes);
 }
 
-/* d[dim] on a closed edge: along n that of the gap, across it 0 on stick. */
-static void hold(const contact_edge *c, int dim, double *d) {
+/* d[dim] on a closed edge: along n that of the gap, across it 0 on stick;
+ * relative to the opposite lip, half on each, to rest[dim]. */
+static void hold(const contact_edge *c, int dim, const double *rest,
+                 double *d) {
   double along = 0.0;
-  for (int k = 0; k < dim; ++k) along += c->n[k] * d[k];
+  for (int k = 0; k < dim; ++k) along += c->n[k] * (d[k] - rest[k]);
   for (int k = 0; k < dim; ++k)
-    d[k] = c->excess * c->n[k] + (c->stuck ? 0.0 : d[k] - along * c->n[k]);
+    d[k] = rest[k] + c->excess * c->n[k] +
+           (c->stuck ? 0.0 : d[k] - rest[k] - along * c->n[k]);
+}
+
+/* From the front of a crack at node a to b, u is a root of the distance and
+ * linear: with their slope at b the root is twice what the slope lacks, and its
+ * part in the bubble sqrt(1/2) - 1/2 of that. */
+static void root_bubble(const goal_solution *s, const double *G, int a, int b,
+                        double *d) {
+  static const double ROOT = 0.41421356237309505;
+  const mesh *m = s->d->mesh;
+  const int dim = m->dim;
+  const double *xa = m->x + dim * a, *xb = m->x + dim * b;
+  const double *g = G + (size_t)(dim * dim) * (size_t)b;
+  for (int c = 0; c < dim; ++c) {
+    double lacks = s->u[dim * b + c] - s->u[dim * a + c];
+    for (int k = 0; k < dim; ++k) lacks -= g[c * dim + k] * (xb[k] - xa[k]);
+    d[c] = ROOT * lacks;
+  }
+}
+
+/* d[dim] of the edge from node a to b by G alone. */
+static void free_bubble(const goal_solution *s, const double *G, int a, int b,
+                        double *d) {
+  const mesh *m = s->d->mesh;
+  const int dim = m->dim, n = dim * dim;
+  if (s->front != NULL && s->front[a] != s->front[b]) {
+    root_bubble(s, G, s->front[a] ? a : b, s->front[a] ? b : a, d);
+    return;
+  }
+  const double *xa = m->x + dim * a, *xb = m->x + dim * b;
+  const double *ga = G + (size_t)n * (size_t)a, *gb = G + (size_t)n * (size_t)b;
+  for (int c = 0; c < dim; ++c) {
+    d[c] = 0.0;
+    for (int k = 0; k < dim; ++k)
+      d[c] += (ga[c * dim + k] - gb[c * dim + k]) * (xb[k] - xa[k]) / 8.0;
+  }
 }
 
 /* d[dim] of the edge from node a to b by the recovered gradient of a region,
@@ -83,16 +123,17 @@ static void hold(const contact_edge *c, int dim, double *d) {
 static void bubble_of(const goal_estimator *e, const double *G, int a, int b,
                       double *d) {
   const goal_solution *s = &e->s;
-  const int dim = s->d->mesh->dim, n = dim * dim;
-  const double *xa = s->d->mesh->x + dim * a, *xb = s->d->mesh->x + dim * b;
-  const double *ga = G + (size_t)n * (size_t)a, *gb = G + (size_t)n * (size_t)b;
-  for (int c = 0; c < dim; ++c) {
-    d[c] = 0.0;
-    for (int k = 0; k < dim; ++k)
-      d[c] += (ga[c * dim + k] - gb[c * dim + k]) * (xb[k] - xa[k]) / 8.0;
-  }
+  const int dim = s->d->mesh->dim;
+  double rest[3] = {0.0};
+  free_bubble(s, G, a, b, d);
   const contact_edge *contact = find_edge(e, a, b);
-  if (contact != NULL && contact->closed) hold(contact, dim, d);
+  if (contact != NULL && contact->closed) {
+    if (contact->other[0] >= 0) {
+      free_bubble(s, G, contact->other[0], contact->other[1], rest);
+      for (int c = 0; c < dim; ++c) rest[c] = 0.5 * (rest[c] + d[c]);
+    }
+    hold(contact, dim, rest, d);
+  }
   for (int c = 0; c < dim; ++c)
     if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c]) d[c] = 0.0;
 }
@@ -112,18 +153,22 @@ static void add_strain(int dim, const double *g, const double *d, double *e) {
   e[5] += g[2] * d[0] + g[0] * d[2];
 }
 
+static int edges_of(int dim) { return dim == 2 ? 3 : 6; }
+
 /* Mean strain e[ns] of an element by the bubbles of its edges. */
-static void bubbles_of(const goal_estimator *of, const double *G, int elem_id,
+static void bubbles_of(goal_estimator *of, const double *G, int elem_id,
                        double *e) {
   const goal_solution *s = &of->s;
   const mesh *m = s->d->mesh;
   const int dim = m->dim, *v = m->elem + (dim + 1) * elem_id;
   const int axi = s->d->kin[s->d->section_id[elem_id]] == AXISYMMETRIC;
   double g[12], grad[3], d[3];
+  size_t at = (size_t)(edges_of(dim) * dim) * (size_t)elem_id;
   mesh_elem_gradients(m, elem_id, g);
   for (int a = 0; a < dim; ++a)
     for (int b = a + 1; b <= dim; ++b) {
       bubble_of(of, G, v[a], v[b], d);
+      for (int k = 0; of->part != NULL && k < dim; ++k) of->part[at++] = d[k];
       for (int k = 0; k < dim; ++k)
         grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
       add_strain(dim, grad, d, e);
@@ -172,6 +217,8 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   for (int k = 0; k < s->n_edge; ++k)
     e->on_surface[s->edge[k].a] = e->on_surface[s->edge[k].b] = 1;
   NEW(e->bubble, (size_t)s->d->ns * (size_t)m->n_elem);
+  if (s->has_flux)
+    NEW(e->part, (size_t)(edges_of(m->dim) * m->dim) * (size_t)m->n_elem);
   NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
   NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
   TRY(space_moduli(recovery));
@@ -205,6 +252,39 @@ void goal_estimator_force(goal_estimator *e, double *F) {
   for (int k = 0; k < d->mesh->dim * d->mesh->n_node; ++k) F[k] = -F[k];
 }
 
+/* At a point of an element: T : grad of u in the bubbles, by the gradients of
+ * the P1 functions. */
+static double flux_part(const goal_estimator *e, int elem_id, const double *phi,
+                        const double *g, const double *T) {
+  const int dim = e->s.d->mesh->dim;
+  const double *d = e->part + (size_t)(edges_of(dim) * dim) * (size_t)elem_id;
+  double sum = 0.0;
+  for (int a = 0; a < dim; ++a)
+    for (int b = a + 1; b <= dim; ++b, d += dim)
+      for (int i = 0; i < dim; ++i)
+        for (int k = 0; k < dim; ++k)
+          sum += T[dim * i + k] * d[i] * 4.0 *
+                 (phi[a] * g[dim * b + k] + phi[b] * g[dim * a + k]);
+  return sum;
+}
+
+double goal_estimator_flux(const goal_estimator *e, const goal_flux *f) {
+  const mesh *m = e->s.d->mesh;
+  const int dim = m->dim;
+  const double *T = f->at;
+  double sum = 0.0, g[12], phi[4];
+  for (int i = 0; i < f->n; ++i) {
+    const double part = mesh_elem_gradients(m, f->elem[i], g) /
+                        (dim == 2 ? 2.0 : 6.0) / (dim + 1);
+    for (int k = 0; k <= dim; ++k, T += dim * dim) {
+      for (int a = 0; a <= dim; ++a) phi[a] = (1.0 - f->corner) / dim;
+      phi[k] = f->corner;
+      sum += part * flux_part(e, f->elem[i], phi, g, T);
+    }
+  }
+  return sum;
+}
+
 /* ---- what it is worth ---------------------------------------------------- */
 
 /* Measured on plane scenes with known goals: the estimate is within a factor of
@@ -221,6 +301,7 @@ static const struct {
     [GOAL_RELIABLE] = {"reliable", "reliable"},
     [GOAL_CONTACT_END] = {"contact_end", "not reliable: contact end"},
     [GOAL_FEW_NODES] = {"few_nodes", "not reliable: few contact nodes"},
+    [GOAL_FRONT] = {"crack_front", "not reliable: front of a crack in space"},
     [GOAL_CANCELS] = {"cancels", "not reliable: errors cancel"},
     [GOAL_NO_HISTORY] = {"no_history",
                          "without history: errors of earlier "
@@ -232,7 +313,9 @@ static const struct {
     [GOAL_NO_END] = {"no_end",
                      "none: the contact reaches the end of its "
                      "surface"},
-    [GOAL_NO_ZONE] = {"no_zone", "none: too few closed nodes"}};
+    [GOAL_NO_ZONE] = {"no_zone", "none: too few closed nodes"},
+    [GOAL_NO_FACTOR] = {"no_factor",
+                        "none: no space for an integral at the front"}};
 
 const char *goal_verdict_word(goal_verdict v) { return verdicts[v].word; }
 const char *goal_verdict_text(goal_verdict v) { return verdicts[v].text; }

@@ -16,12 +16,14 @@ typedef enum {
   GOAL_RELIABLE,
   GOAL_CONTACT_END, /* the mesh is too coarse where the contact ends */
   GOAL_FEW_NODES,   /* three closed nodes or less */
+  GOAL_FRONT,       /* an integral round the front of a crack in space */
   GOAL_CANCELS,     /* parts of opposite sign, of which little is left */
   GOAL_NO_HISTORY,  /* errors of the increments before are not in it */
   GOAL_NOT_COVERED, /* by the estimate; the value stands */
   GOAL_NO_PEAK,     /* the largest pressure is at an edge: it may be infinite */
   GOAL_NO_END,      /* the contact reaches the end of its surface */
-  GOAL_NO_ZONE      /* nothing is closed, or too few nodes */
+  GOAL_NO_ZONE,     /* nothing is closed, or too few nodes */
+  GOAL_NO_FACTOR    /* no space for a domain at the front of the crack */
 } goal_verdict;
 const char *goal_verdict_word(goal_verdict v); /* one word */
 const char *goal_verdict_text(goal_verdict v);
@@ -86,7 +88,18 @@ typedef struct contact_edge {
   int closed, stuck; /* both ends are */
   double n[3];       /* unit normal, the mean of its ends */
   double excess;     /* gap in its middle less the mean of its ends, m */
+  int other[2];      /* nodes of the opposite lip of a crack, in the order of a,
+                        b; -1: on an obstacle */
 } contact_edge;
+
+/* A derivative by displacement gradients, of a crack (fracture.h); borrowed. */
+typedef struct goal_flux {
+  int n;
+  const int *elem;  /* [n] */
+  double corner;    /* barycentric coordinate of point k in corner k, - */
+  const double *at; /* [n*(dim+1)*dim*dim] at point k of each, unit of J per
+                       volume */
+} goal_flux;
 
 /* The solution. All is borrowed. */
 typedef struct goal_solution {
@@ -94,9 +107,13 @@ typedef struct goal_solution {
   const double *u;     /* [dim*n_node] m */
   const double *sigma; /* [ns*n_elem] Pa */
   int n_edge;
-  const contact_edge *edge;  /* [n_edge] sorted by a, b */
-  const unsigned char *ends; /* [n_node] 1: the contact changes its status next
-                                to it */
+  const contact_edge *edge;   /* [n_edge] sorted by a, b */
+  const unsigned char *ends;  /* [n_node] 1: the contact changes its status next
+                                 to it */
+  const unsigned char *front; /* [n_node] 1: of the front of a crack, round
+                                 which u goes like the root of the distance;
+                                 NULL: no crack */
+  int has_flux;               /* 1: some J has a flux */
 } goal_solution;
 
 typedef struct goal_estimator goal_estimator;
@@ -106,6 +123,8 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
                           goal_estimator **out);
 void goal_estimator_free(goal_estimator *e);           /* accepts NULL */
 double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
+/* Derivative f of what u is in the bubbles. */
+double goal_estimator_flux(const goal_estimator *e, const goal_flux *f);
 /* F[dim*n_node]: forces that what u is in the bubbles exerts on the mesh; under
  * them the nodes move by their error. */
 void goal_estimator_force(goal_estimator *e, double *F);

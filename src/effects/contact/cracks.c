@@ -5,12 +5,11 @@
  * good to some percent.
  */
 #include "base/memory.h"
+#include "effects/contact/cracks.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
-#include "fracture/fracture.h"
 #include "model/facts.h"
 #include "run/history/loop.h"
-#include "run/run.h"
 
 #include <math.h>
 #include <string.h>
@@ -30,9 +29,12 @@ typedef struct crack_state {
   fracture **of;                /* [n_crack] */
   fracture_material *materials; /* [n_section] */
   int n;
-  tip *tips;        /* [n] */
-  int flows;        /* 1: there are strains without stress */
-  double *rate;     /* [dim*n_node] of the displacements, m/s, or NULL */
+  tip *tips;               /* [n] */
+  fracture_factors *found; /* [n] of the last increment that needed them */
+  int step_id;             /* of that increment; -1: none */
+  double t;                /* its end, s */
+  int flows;               /* 1: there are strains without stress */
+  double *rate;            /* [dim*n_node] of the displacements, m/s, or NULL */
   double *elastic;  /* [dim*n_node] displacements of an elastic body under the
                        same forces, m; NULL: none flows */
   double *sigma;    /* [ns*n_elem] Pa */
@@ -107,6 +109,7 @@ static status new_cracks(run *r, crack_state *own) {
     add_areas(r, c->n, c->minus, own->area);
   }
   PASS_NEW(own->tips, own->n);
+  PASS_NEW(own->found, own->n);
   for (int i = 0, n = 0; i < m->n_crack; ++i)
     for (int k = 0; k < fracture_count(own->of[i]); ++k)
       own->tips[n++] = (tip){.crack_id = i, .point = k};
@@ -121,6 +124,7 @@ static status cracks_new(run *r, void **self) {
   PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   PASS_NEW(own->traction, r->n_dof);
   PASS_NEW(own->area, r->msh->n_node);
+  own->step_id = -1;
   own->flows =
       facts_has_inelastic(r->m) || (r->m->effects & EFFECT_THERMAL) != 0;
   if (own->flows) PASS_NEW(own->elastic, r->n_dof);
@@ -141,8 +145,8 @@ static void release(void *self) {
   if (own == NULL) return;
   for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
     fracture_free(own->of[i]);
-  RELEASE(own->of, own->elastic, own->rate, own->tips, own->materials,
-          own->sigma, own->traction, own->area);
+  RELEASE(own->of, own->elastic, own->rate, own->tips, own->found,
+          own->materials, own->sigma, own->traction, own->area);
   memory_free(own);
 }
 
@@ -288,22 +292,52 @@ static status check_elastic(const run *r, const crack_state *own, double *u) {
   return OK;
 }
 
-static status find_factors(run *r, void *self) {
-  crack_state *own = self;
-  OWNED fracture_factors *found = NULL;
-  PASS_NEW(found, own->n);
+static fracture_state state_of(const run *r, const crack_state *own) {
+  return (fracture_state){own->flows ? own->elastic : r->now.u, own->sigma,
+                          own->traction, 0.5};
+}
+
+/* own->found of r->now, once an increment. */
+static status find_all(run *r, crack_state *own) {
+  const int step_id = run_step_id(r);
+  if (own->step_id == step_id && !(own->t < r->now.t)) return OK;
   domain_stress(&r->body.d, r->now.u, NULL, own->sigma);
   find_tractions(r, own);
   if (own->flows) PASS(find_elastic(r, own->elastic));
   if (own->flows) PASS(check_elastic(r, own, own->elastic));
-  const fracture_state s = {own->flows ? own->elastic : r->now.u, own->sigma,
-                            own->traction, 0.5};
+  const fracture_state s = state_of(r, own);
   for (int i = 0, n = 0; i < r->msh->n_crack; ++i) {
-    fracture_find(own->of[i], &s, found + n);
+    fracture_find(own->of[i], &s, own->found + n);
     n += fracture_count(own->of[i]);
   }
+  own->step_id = step_id;
+  own->t = r->now.t;
+  return OK;
+}
+
+status cracks_factors(run *r, int crack_id, crack_factors *out) {
+  crack_state *own = effect_state(&r->effects, &cracks_effect);
+  int first = 0;
+  PASS(find_all(r, own));
+  for (int i = 0; i < crack_id; ++i) first += fracture_count(own->of[i]);
+  *out = (crack_factors){fracture_count(own->of[crack_id]),
+                         fracture_points(own->of[crack_id]), own->found + first,
+                         own->area, !own->flows};
+  return OK;
+}
+
+status cracks_derive(const run *r, int crack_id, int point, int mode,
+                     fracture_linear *out) {
+  const crack_state *own = effect_state(&r->effects, &cracks_effect);
+  const fracture_state s = state_of(r, own);
+  return fracture_derive(own->of[crack_id], &s, point, mode, out);
+}
+
+static status find_factors(run *r, void *self) {
+  crack_state *own = self;
+  PASS(find_all(r, own));
   for (int i = 0; i < own->n; ++i) {
-    own->tips[i].found = found[i];
+    own->tips[i].found = own->found[i];
     find_jumps(r, own, &own->tips[i]);
   }
   return find_creep(r, own);
@@ -312,6 +346,10 @@ static status find_factors(run *r, void *self) {
 /* ---- the row ------------------------------------------------------------- */
 
 static int requires_factors(const model *m, char *why, size_t size) {
+  for (int i = 0; i < m->n.goal; ++i)
+    if (m->accuracy.goals[i].quantity == GOAL_SIF)
+      return plan_says(1, why, size, "*GOAL, QUANTITY=SIF, %s:%d",
+                       PLACE(m->accuracy.goals[i].at));
   return plan_requires_table(m, PRINT_SIF, why, size);
 }
 

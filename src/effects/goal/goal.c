@@ -73,8 +73,21 @@ static int has_stiffness(const run *r) {
   return r->problem.cp.A != NULL || r->problem.cp.op != NULL;
 }
 
+/* 1: of pairs there are cracks alone, each within one material. */
+static int has_cracks_alone(const run *r) {
+  const mesh *m = r->msh;
+  int all = r->m->n.tie == 0;
+  for (int i = 0; i < r->m->n.contact; ++i)
+    all &= !r->m->contacts[i].is_pair || r->m->contacts[i].is_crack;
+  for (int i = 0; i < m->n_crack && all; ++i)
+    for (int k = 0; k < m->crack[i].n; ++k)
+      all &= r->m->elem_section[m->face_elem[m->crack[i].plus[k]]] ==
+             r->m->elem_section[m->face_elem[m->crack[i].minus[k]]];
+  return all;
+}
+
 static int is_covered(const run *r) {
-  return !model_has_pairs(r->m) && r->body.d.cluster == NULL &&
+  return has_cracks_alone(r) && r->body.d.cluster == NULL &&
          r->strains.visco == NULL && effects_sum_up(r) == NULL &&
          r->problem.given == NULL && r->m->mesh.corner_id < 0 &&
          (r->nodes.n == 0 || has_stiffness(r)) && r->solving.report.outcome > 0;
@@ -139,6 +152,13 @@ static status set_moved(const run *r, goal_state *own, shared *s) {
   return OK;
 }
 
+static int has_factor(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n.goal; ++i)
+    any |= m->accuracy.goals[i].quantity == GOAL_SIF;
+  return any;
+}
+
 static status prepare(run *r, goal_state *own, shared *s) {
   space_recovery *recovery;
   const int n = r->nodes.n_row;
@@ -149,7 +169,9 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .sigma = r->result.stress,
                                .n_edge = s->surface.n_edge,
                                .edge = s->surface.edge,
-                               .ends = s->surface.ends};
+                               .ends = s->surface.ends,
+                               .front = s->surface.front,
+                               .has_flux = has_factor(r->m)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW(s->y, r->n_dof);
   PASS_NEW(s->j, n);
@@ -217,6 +239,11 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
                           product_of(r, own, id), &e));
   if (!isfinite(e.error)) return OK;
+  if (f->factor.n > 0) {
+    const goal_flux flux = {f->factor.n, f->factor.elem,
+                            fracture_corner(r->msh->dim), f->factor.flux};
+    e.error += goal_estimator_flux(s->estimator, &flux);
+  }
   e.error += f->curved;
   e.magnitude += fabs(f->curved);
   if (f->is_square) {
@@ -229,6 +256,9 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
+  out->band += f->rough;
+  if (f->rough > 0.0 && out->verdict == GOAL_RELIABLE)
+    out->verdict = GOAL_FRONT;
   if (f->is_coarse && out->verdict == GOAL_RELIABLE)
     out->verdict = GOAL_FEW_NODES;
   if (e.magnitude <= ROUNDING * fabs(value)) out->verdict = GOAL_RELIABLE;

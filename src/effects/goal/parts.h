@@ -1,12 +1,14 @@
 /*
  * The parts of the goals: quantities as functions of displacements and contact
- * forces (quantity.c), those of a pressure (pressure.c), the contact surface as
- * the estimate sees it (surface.c). Private to src/effects/goal.
+ * forces (quantity.c), those of a pressure (pressure.c) and a crack (crack.c),
+ * the contact surface as the estimate sees it (surface.c). Private to
+ * src/effects/goal.
  */
 #ifndef PROTIS_EFFECTS_GOAL_PARTS_H
 #define PROTIS_EFFECTS_GOAL_PARTS_H
 
 #include "accuracy/goal/goal.h"
+#include "fracture/fracture.h"
 #include "run/run.h"
 
 /* A quantity J at r->now, with its derivatives. */
@@ -16,6 +18,7 @@ typedef struct goal_form {
   double *rows; /* [dim*n] by contact unknowns */
   double *psi;  /* [dim*n] by contact forces, contact frame */
   double *tau;  /* [ns*n_elem] by strains, per volume; NULL: of no goal */
+  fracture_linear factor; /* of a stress intensity factor; all-zero: of none */
   int has_tau;
   int sums;         /* 1: a sum over the increments, of which rows are the
                        derivative by the motion of the last */
@@ -23,23 +26,27 @@ typedef struct goal_form {
   int is_square;    /* 1: the energy, whose error has a quadratic part too */
   double curved;    /* contact forces times what psi is between the nodes more
                        than at them */
+  double rough;     /* of a front in space: what its integral lacks */
   goal_verdict why; /* GOAL_RELIABLE: it has a value */
 } goal_form;
 
 status goal_form_new(const run *r, goal_form *f);
 void goal_form_free(goal_form *f); /* accepts all-zero */
 /* quantity.c: *f of a goal. ERR_MEMORY. */
-status goal_form_set(const run *r, const goal_card *g, goal_form *f);
+status goal_form_set(run *r, const goal_card *g, goal_form *f);
 /* pressure.c: the mean of a pressure round a point; the width of a zone. */
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f);
 status goal_set_width(const run *r, const goal_card *g, goal_form *f);
+/* crack.c: a stress intensity factor. ERR_MEMORY. */
+status goal_set_factor(run *r, const goal_card *g, goal_form *f);
 
 /* surface.c */
 typedef struct goal_surface {
   int n_edge;
-  contact_edge *edge;  /* [n_edge] sorted */
-  unsigned char *ends; /* [n_node] */
-  int n_closed;        /* closed nodes */
+  contact_edge *edge;   /* [n_edge] sorted */
+  unsigned char *ends;  /* [n_node] */
+  unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
+  int n_closed;         /* closed nodes */
 } goal_surface;
 status goal_surface_new(const run *r, goal_surface *s);
 void goal_surface_free(goal_surface *s); /* accepts all-zero */

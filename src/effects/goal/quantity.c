@@ -1,6 +1,6 @@
 /*
  * The quantities of *GOAL and their derivatives; those of a pressure are in
- * pressure.c.
+ * pressure.c, those of a crack in crack.c.
  */
 #include "base/memory.h"
 #include "effects/goal/parts.h"
@@ -21,6 +21,7 @@ status goal_form_new(const run *r, goal_form *f) {
 
 void goal_form_free(goal_form *f) {
   RELEASE(f->load, f->rows, f->psi, f->tau);
+  fracture_linear_free(&f->factor);
   *f = (goal_form){0};
 }
 
@@ -32,7 +33,8 @@ static void clear(const run *r, goal_form *f) {
   if (f->has_tau)
     memset(f->tau, 0,
            (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
-  f->value = f->curved = 0.0;
+  fracture_linear_free(&f->factor);
+  f->value = f->curved = f->rough = 0.0;
   f->has_tau = f->is_square = f->is_coarse = f->sums = 0;
   f->why = GOAL_RELIABLE;
 }
@@ -142,7 +144,7 @@ static status set_energy(const run *r, const goal_card *g, goal_form *f) {
   return OK;
 }
 
-status goal_form_set(const run *r, const goal_card *g, goal_form *f) {
+status goal_form_set(run *r, const goal_card *g, goal_form *f) {
   static status (*const set[])(const run *r, const goal_card *g,
                                goal_form *f) = {
       [GOAL_FORCE] = set_force,       [GOAL_PRESSURE] = goal_set_pressure,
@@ -150,6 +152,7 @@ status goal_form_set(const run *r, const goal_card *g, goal_form *f) {
       [GOAL_STRESS] = set_stress,     [GOAL_ENERGY] = set_energy,
       [GOAL_FRICTION] = set_friction, [GOAL_MOMENT] = set_force};
   clear(r, f);
+  if (g->quantity == GOAL_SIF) return goal_set_factor(r, g, f);
   PASS(set[g->quantity](r, g, f));
   if (f->has_tau) domain_internal_force(&r->body.d, f->tau, f->load);
   return OK;

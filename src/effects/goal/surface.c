@@ -74,7 +74,7 @@ static void add_edge(const run *r, int i, int j, const int *where,
                      goal_surface *s) {
   const int q[2] = {where[i], where[j]};
   if (q[0] < 0 || q[1] < 0) return;
-  contact_edge e = {.a = i < j ? i : j, .b = i < j ? j : i};
+  contact_edge e = {.a = i < j ? i : j, .b = i < j ? j : i, .other = {-1, -1}};
   const contact_status a = r->result.contact[q[0]], b = r->result.contact[q[1]];
   e.closed = a != CONTACT_OPEN && b != CONTACT_OPEN;
   e.stuck = a == CONTACT_STICK && b == CONTACT_STICK;
@@ -82,6 +82,67 @@ static void add_edge(const run *r, int i, int j, const int *where,
   if (state_of(r, q[0]) != state_of(r, q[1])) s->ends[i] = s->ends[j] = 1;
   s->edge[s->n_edge++] = e;
 }
+
+/* ---- the lips of a crack --------------------------------------------------
+ */
+
+/* An edge of a lip between nodes v[2], opposite other[2]; n_q of its nodes are
+ * contact nodes q: the others are at the front, where both lips are one. */
+static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
+                         const int *q, goal_surface *s) {
+  const int dim = r->msh->dim, turn = v[0] > v[1];
+  contact_edge e = {.a = v[turn],
+                    .b = v[!turn],
+                    .closed = 1,
+                    .stuck = 1,
+                    .other = {other[turn], other[!turn]}};
+  double size = 0.0;
+  for (int k = 0; k < n_q; ++k) {
+    e.closed &= r->result.contact[q[k]] != CONTACT_OPEN;
+    e.stuck &= r->result.contact[q[k]] == CONTACT_STICK;
+    for (int c = 0; c < dim; ++c)
+      e.n[c] += r->surface->frame[dim * dim * q[k] + c];
+  }
+  for (int c = 0; c < dim; ++c) size = hypot(size, e.n[c]);
+  for (int c = 0; c < dim; ++c) e.n[c] /= size;
+  s->edge[s->n_edge++] = e;
+  if (n_q < 2 || state_of(r, q[0]) == state_of(r, q[1])) return;
+  s->ends[e.a] = s->ends[e.b] = 1;
+}
+
+/* Edge a, b of two faces that lie on each other, v[dim] with the contact nodes,
+ * w[dim], node by node. */
+static void add_lip_edges(const run *r, const int *where, const int *v,
+                          const int *w, goal_surface *s) {
+  const int dim = r->msh->dim;
+  for (int a = 0; a < dim; ++a)
+    for (int b = a + 1; b < dim; ++b) {
+      const int near[2] = {v[a], v[b]}, far[2] = {w[a], w[b]};
+      int q[2], n = 0;
+      for (int k = 0; k < 2; ++k)
+        if (where[near[k]] >= 0) q[n++] = where[near[k]];
+      if (n == 0) continue;
+      add_lip_edge(r, near, far, n, q, s);
+      add_lip_edge(r, far, near, n, q, s);
+    }
+}
+
+static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
+  const mesh *m = r->msh;
+  const mesh_crack *c = &m->crack[id];
+  const contact *of = &r->m->contacts[r->m->mesh.cracks[id].contact_id];
+  for (int k = 0; k < c->n; ++k) {
+    const int *v = m->face + m->dim * (of->pair.slave ? c->plus : c->minus)[k];
+    const int *to = m->face + m->dim * (of->pair.slave ? c->minus : c->plus)[k];
+    int w[3];
+    for (int a = 0; a < m->dim; ++a)
+      for (int b = 0; b < m->dim; ++b)
+        if (m->origin[v[a]] == m->origin[to[b]]) w[a] = to[b];
+    add_lip_edges(r, where, v, w, s);
+  }
+}
+
+/* ---- the border ---------------------------------------------------------- */
 
 static int by_nodes(const void *a_, const void *b_) {
   const contact_edge *a = a_, *b = b_;
@@ -96,7 +157,8 @@ static int is_border(const run *r, const int *where, const goal_surface *s,
   const contact_edge *e = &s->edge[k];
   if (k > 0 && by_nodes(e - 1, e) == 0) return 0;
   if (k < s->n_edge - 1 && by_nodes(e, e + 1) == 0) return 0;
-  return !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
+  return where[e->a] < 0 || where[e->b] < 0 ||
+         !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
 }
 
 /* The border where it is closed: ends of a line, edges of one face.
@@ -116,6 +178,15 @@ static void mark_border(const run *r, const int *where, int *seen,
   }
 }
 
+static status mark_front(const mesh *m, goal_surface *s) {
+  if (m->n_crack == 0) return OK;
+  PASS_NEW(s->front, m->n_node);
+  for (int i = 0; i < m->n_crack; ++i)
+    for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
+      s->front[m->crack[i].front_node[k]] = 1;
+  return OK;
+}
+
 /* Each edge once. */
 static void unite_edges(goal_surface *s) {
   int n = 0;
@@ -125,28 +196,38 @@ static void unite_edges(goal_surface *s) {
   s->n_edge = n;
 }
 
+/* The edges of a contact on an obstacle. */
+static void add_group(const run *r, const mesh_group *g, const int *where,
+                      goal_surface *s) {
+  const int dim = r->msh->dim;
+  for (int i = 0; i < g->n_item; ++i) {
+    const int *v = r->msh->face + dim * g->item_id[i];
+    for (int a = 0; a < dim; ++a)
+      for (int b = a + 1; b < dim; ++b) add_edge(r, v[a], v[b], where, s);
+  }
+}
+
 status goal_surface_new(const run *r, goal_surface *s) {
   status st = OK;
   const mesh *m = r->msh;
-  const int dim = m->dim;
   int *where = NULL, *seen = NULL, n = 0;
   NEW(s->ends, m->n_node);
   NEW(seen, m->n_node);
   TRY(goal_places(r, &where));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
-    n += m->group[r->m->contacts[k].group_id].n_item;
-  NEW(s->edge, n * (dim == 3 ? 3 : 1));
-  for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k) {
-    const mesh_group *g = &m->group[r->m->contacts[k].group_id];
-    for (int i = 0; i < g->n_item; ++i) {
-      const int *v = m->face + dim * g->item_id[i];
-      for (int a = 0; a < dim; ++a)
-        for (int b = a + 1; b < dim; ++b) add_edge(r, v[a], v[b], where, s);
-    }
-  }
+    if (!r->m->contacts[k].is_pair)
+      n += m->group[r->m->contacts[k].group_id].n_item;
+  for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;
+  NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
+  for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
+    if (!r->m->contacts[k].is_pair)
+      add_group(r, &m->group[r->m->contacts[k].group_id], where, s);
+  for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
+    add_crack(r, k, where, s);
   if (s->n_edge > 0)
     qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, by_nodes);
   mark_border(r, where, seen, s);
+  TRY(mark_front(m, s));
   unite_edges(s);
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
@@ -156,6 +237,6 @@ done:
 }
 
 void goal_surface_free(goal_surface *s) {
-  RELEASE(s->edge, s->ends);
+  RELEASE(s->edge, s->ends, s->front);
   *s = (goal_surface){0};
 }

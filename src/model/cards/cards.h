@@ -161,7 +161,7 @@ typedef struct accuracy_param {
 } accuracy_param;
 typedef struct goal_param {
   int quantity, component;
-  const char *name, *contact, *group, *from, *target;
+  const char *name, *contact, *crack, *group, *from, *target;
   double radius;
 } goal_param;
 typedef struct effects_param {

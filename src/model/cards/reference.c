@@ -78,8 +78,9 @@ enum {
   IN_GROUP = 2,
   AT_POINT = 4,
   HAS_RADIUS = 8,
-  FROM = 16,       /* a difference */
-  NEEDS_POINT = 32 /* with AT_POINT */
+  FROM = 16,        /* a difference */
+  NEEDS_POINT = 32, /* with AT_POINT */
+  ON_CRACK = 64
 };
 static const struct {
   const char *word;
@@ -92,7 +93,8 @@ static const struct {
     [GOAL_STRESS] = {"STRESS", IN_GROUP, GOAL_TENSOR, GOAL_TENSOR + 5},
     [GOAL_ENERGY] = {"ENERGY", 0, 0, -1},
     [GOAL_FRICTION] = {"FRICTION WORK", 0, 0, -1},
-    [GOAL_MOMENT] = {"MOMENT", ON_CONTACT | AT_POINT | NEEDS_POINT, 0, 2}};
+    [GOAL_MOMENT] = {"MOMENT", ON_CONTACT | AT_POINT | NEEDS_POINT, 0, 2},
+    [GOAL_SIF] = {"SIF", ON_CRACK | AT_POINT, 0, 2}};
 
 static int is_given(const reading *r, const char *name) {
   return card_parameter(r->card, name) != NULL;
@@ -132,8 +134,8 @@ static void read_point(const reading *r, int k, goal_card *g) {
   g->point_at[k] = line->at;
   if (!(takes & AT_POINT))
     message_add(r->m->log, P2037, &line->at,
-                "*GOAL: a point counts with PRESSURE, DISPLACEMENT and MOMENT "
-                "only");
+                "*GOAL: a point counts with PRESSURE, DISPLACEMENT, MOMENT and "
+                "SIF only");
   else if (k > 0 && !(takes & FROM))
     message_add(r->m->log, P2037, &line->at,
                 "*GOAL: a second point counts with DISPLACEMENT only");
@@ -167,6 +169,20 @@ static void read_target(const reading *r, const char *text, goal_card *g) {
                 why);
 }
 
+static const char *crack_name(const void *of, int i) {
+  const model *m = of;
+  return i < m->n.crack ? m->mesh.cracks[i].name : NULL;
+}
+
+static int find_crack(const reading *r, const char *name) {
+  for (int i = 0; i < r->m->n.crack; ++i)
+    if (same_word(name, r->m->mesh.cracks[i].name)) return i;
+  unknown_word(r->m->log, P2012, value_place(r, "CRACK"),
+               "*GOAL: before this card there is no *CRACK, NAME=", name,
+               crack_name, r->m);
+  return -1;
+}
+
 status apply_goal(reading *r) {
   const goal_param *p = r->param;
   model *m = r->m;
@@ -178,6 +194,7 @@ status apply_goal(reading *r) {
   *g = (goal_card){.name = p->name,
                    .quantity = (goal_quantity)p->quantity,
                    .contact_id = -1,
+                   .crack_id = -1,
                    .group = p->group,
                    .group_id = -1,
                    .node_id = -1,
@@ -194,11 +211,13 @@ status apply_goal(reading *r) {
   read_target(r, p->target, g);
   m->accuracy.goal_products |= g->target > 0.0;
   check_parameter(r, g, "CONTACT", takes & ON_CONTACT, takes & ON_CONTACT);
+  check_parameter(r, g, "CRACK", takes & ON_CRACK, takes & ON_CRACK);
   check_parameter(r, g, "GROUP", takes & IN_GROUP,
                   (takes & IN_GROUP) && !(takes & AT_POINT && g->n_point > 0));
   check_parameter(r, g, "FROM", takes & FROM, 0);
   check_parameter(r, g, "RADIUS", takes & HAS_RADIUS, 0);
   check_component(r, g);
   if (p->contact != NULL) g->contact_id = find_contact(r, p->contact);
+  if (p->crack != NULL) g->crack_id = find_crack(r, p->crack);
   return OK;
 }

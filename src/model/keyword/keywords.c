@@ -261,18 +261,22 @@ static const option effects_options[] = {
 static const option goal_options[] = {
   OPTION_CHOICE(goal_param, quantity, "QUANTITY", GOAL_QUANTITIES, NULL,
                 "what is wanted; PRESSURE: the largest, or that at a point; "
-                "WIDTH: of the closed zone; STRESS: mean of a group"),
+                "WIDTH: of the closed zone; STRESS: mean of a group; SIF: "
+                "stress intensity factor, the largest of a front, or that at "
+                "a point"),
   OPTION_NAME(goal_param, name, "NAME", NULL, "name in the results"),
   OPTION_NAME(goal_param, contact, "CONTACT", OPTION_ABSENT,
               "of FORCE, PRESSURE, WIDTH, MOMENT: name of a *CONTACT"),
+  OPTION_NAME(goal_param, crack, "CRACK", OPTION_ABSENT,
+              "of SIF: name of a *CRACK"),
   OPTION_NAME(goal_param, group, "GROUP", OPTION_ABSENT,
               "of STRESS: elements; of DISPLACEMENT: nodes, whose mean it is"),
   OPTION_NAME(goal_param, from, "FROM", OPTION_ABSENT,
               "of DISPLACEMENT: nodes whose mean is taken off"),
   OPTION_CHOICE(goal_param, component, "COMPONENT", GOAL_COMPONENTS,
                 OPTION_ABSENT,
-                "of FORCE (NORMAL if absent), DISPLACEMENT, STRESS and "
-                "MOMENT, there the axis through the point"),
+                "of FORCE (NORMAL if absent), DISPLACEMENT, STRESS, of MOMENT "
+                "the axis through the point, of SIF the mode"),
   OPTION_REAL(goal_param, radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT,
               "length", "of the mean that PRESSURE is; half the half width of "
               "the zone if absent"),
