@@ -278,8 +278,9 @@
     "group of its own.")                                                     \
   X(2061, ERROR, "condensed stiffness without entries",                      \
     "With STIFFNESS=FACTOR of *SOLVER the matrix is known by its products "  \
-    "alone. What is named needs its entries: write STIFFNESS=DENSE or AUTO, " \
-    "or leave that out; protis --list solvers says which methods do.")
+    "and solves alone. What is named needs its entries: write "              \
+    "STIFFNESS=DENSE or AUTO, or leave that out; of the methods take "       \
+    "METHOD=AUTO, NEWTON, AUGLAG, PROXIMAL, PCG or LAGRANGE.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

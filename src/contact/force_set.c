@@ -8,13 +8,18 @@
 #include <math.h>
 #include <string.h>
 
-enum { SHARPENINGS = 4 };         /* of the bound of the spectrum */
+enum {
+  SHARPENINGS = 4,  /* of the bound of the spectrum */
+  POWER_STEPS = 12, /* of the estimate of its end */
+  SAMPLES = 8       /* of the estimate of its mean */
+};
+static const double SURE = 2.0;   /* -, times the estimate: a bound */
 static const double SPARSE = 0.1; /* -, share of entries that are not zero */
 static const double NOTHING = 0x1p-40; /* -, diagonal over its column */
 
 void force_set_free(force_set *s) {
   if (s == NULL) return;
-  RELEASE(s->D, s->origin, s->part, s->rim, s->load, s->defect);
+  RELEASE(s->D, s->origin, s->part, s->rim, s->load, s->defect, s->image);
   sparse_free(&s->rows);
   memory_free(s);
 }
@@ -23,11 +28,19 @@ static double largest_of_column(const contact_problem *cp, int dof) {
   const sparse_blocks *b = cp->blocks;
   const size_t d = (size_t)cp->dim, m = (size_t)cp->m;
   double most = 0.0;
+  if (cp->op != NULL) return 0.0;
   if (b == NULL) return largest_entry(m, cp->W + m * (size_t)dof);
   for (int k = b->start[dof / cp->dim]; k < b->start[dof / cp->dim + 1]; ++k)
     most = fmax(
         most, largest_entry(d, b->val + d * (d * (size_t)k + (size_t)dof % d)));
   return most;
+}
+
+/* W_ii; of an operator what its diagonal bounds. */
+static double own_compliance(const contact_problem *cp, int dof) {
+  if (cp->op != NULL) return 1.0 / contact_diagonal(cp, dof);
+  if (cp->blocks != NULL) return contact_diagonal(cp, dof);
+  return cp->W[(size_t)dof * (size_t)(cp->m + 1)];
 }
 
 /* D: 1/W_ii, equal in the tangents of a node, so that discs stay discs; of the
@@ -37,9 +50,7 @@ static void scaling(const contact_problem *cp, double *D) {
   int d = cp->dim;
   double largest = 0.0;
   for (int i = 0; i < cp->m; ++i) {
-    const double own = cp->blocks != NULL
-                           ? contact_diagonal(cp, i)
-                           : cp->W[(size_t)i * (size_t)(cp->m + 1)];
+    const double own = own_compliance(cp, i);
     D[i] = own > NOTHING * largest_of_column(cp, i) ? own : 0.0;
     largest = fmax(largest, D[i]);
   }
@@ -117,6 +128,60 @@ status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
   return OK;
 }
 
+static unsigned next_random(unsigned seed) {
+  return seed * 1664525u + 1013904223u;
+}
+
+double force_set_spectrum(const force_set *s, double *v, double *z) {
+  const int m = s->cp->m;
+  double largest = 0.0;
+  unsigned seed = 1;
+  for (int i = 0; i < m; ++i) {
+    seed = next_random(seed);
+    v[i] = s->D[i] * (1.0 + 0x1p-32 * seed);
+  }
+  for (int k = 0; k < POWER_STEPS; ++k) {
+    double top = 0.0, bottom = 0.0;
+    force_set_product(s, v, z);
+    for (int i = 0; i < m; ++i) {
+      top += v[i] * z[i];
+      bottom += v[i] * v[i] / s->D[i];
+    }
+    if (!(bottom > 0.0) || !(top > 0.0)) break;
+    largest = fmax(largest, top / bottom);
+    for (int i = 0; i < m; ++i) v[i] = bottom / top * s->D[i] * z[i];
+  }
+  return largest;
+}
+
+/* Mean of D_i W_ii, by vectors of random signs (Hutchinson 1989). */
+static double mean_of_spectrum(const force_set *s, double *v, double *z) {
+  const int m = s->cp->m;
+  double sum = 0.0;
+  unsigned seed = 1;
+  for (int k = 0; k < SAMPLES; ++k) {
+    for (int i = 0; i < m; ++i) {
+      seed = next_random(seed);
+      v[i] = seed >> 31 ? sqrt(s->D[i]) : -sqrt(s->D[i]);
+    }
+    force_set_product(s, v, z);
+    for (int i = 0; i < m; ++i) sum += v[i] * z[i] / m;
+  }
+  return sum / SAMPLES;
+}
+
+/* The step where there are no entries to bound the spectrum by. */
+static status step_of_operator(force_set *s, const contact_problem *cp,
+                               double *v, double *z) {
+  PASS_NEW(s->image, cp->m);
+  PASS(force_set_fit(s, cp));
+  const double mean = mean_of_spectrum(s, v, z);
+  for (int i = 0; i < cp->m && mean > 0.0; ++i) s->D[i] /= mean;
+  const double largest = force_set_spectrum(s, v, z);
+  s->step = largest > 0.0 ? 1.0 / (SURE * largest) : 0.0;
+  return OK;
+}
+
 status force_set_new(const contact_problem *cp, force_set **out) {
   status st = OK;
   force_set *s = NULL;
@@ -129,11 +194,15 @@ status force_set_new(const contact_problem *cp, force_set **out) {
   NEW(s->load, cp->m);
   NEW(s->defect, cp->m);
   NEW(v, 2 * cp->m);
-  s->symmetric = cp->blocks == NULL && is_symmetric(cp->m, cp->W);
   scaling(cp, s->D);
-  if (cp->blocks != NULL || (double)entries(cp) <= SPARSE * cp->m * cp->m)
-    TRY(compliance_rows(cp, &s->rows));
-  s->step = 1.0 / spectrum_bound(cp, s->D, v, v + cp->m);
+  if (cp->op != NULL) {
+    TRY(step_of_operator(s, cp, v, v + cp->m));
+  } else {
+    s->symmetric = cp->blocks == NULL && is_symmetric(cp->m, cp->W);
+    if (cp->blocks != NULL || (double)entries(cp) <= SPARSE * cp->m * cp->m)
+      TRY(compliance_rows(cp, &s->rows));
+    s->step = 1.0 / spectrum_bound(cp, s->D, v, v + cp->m);
+  }
   *out = s;
   s = NULL;
 done:
@@ -152,9 +221,19 @@ static void sparse_product(const sparse_rows *rows, const double *x,
   }
 }
 
+/* Held unknowns have their own stiffness alone. */
+static void solve_operator(const force_set *s, const double *r, double *u) {
+  const contact_problem *cp = s->cp;
+  for (int i = 0; i < cp->m; ++i)
+    if (contact_held(cp, i)) u[i] = r[i] / contact_diagonal(cp, i);
+  cp->op->solve(cp->op->ctx, r, u, s->image);
+}
+
 void force_set_product(const force_set *s, const double *r, double *u) {
   int m = s->cp->m;
-  if (s->rows.start != NULL)
+  if (s->cp->op != NULL)
+    solve_operator(s, r, u);
+  else if (s->rows.start != NULL)
     sparse_product(&s->rows, r, u);
   else if (s->symmetric)
     cblas_dsymv(CblasColMajor, CblasLower, m, 1.0, s->cp->W, m, r, 1, 0.0, u,
@@ -172,7 +251,7 @@ void force_set_displacement(const force_set *s, const double *r, double *u) {
   }
   for (int i = 0; i < cp->m; ++i) s->load[i] = r[i] + cp->f[i];
   force_set_product(s, s->load, u);
-  contact_product(cp->m, cp->A, u, s->defect);
+  contact_apply(cp, u, s->defect);
   for (int i = 0; i < cp->m; ++i) s->defect[i] = s->load[i] - s->defect[i];
   force_set_product(s, s->defect, s->load);
   cblas_daxpy(cp->m, 1.0, s->load, 1, u, 1);
@@ -201,10 +280,13 @@ void force_parts(const contact_problem *cp, unsigned char *part,
   }
 }
 
-void force_set_fit(force_set *s, const contact_problem *cp) {
+status force_set_fit(force_set *s, const contact_problem *cp) {
+  const known_rows none = {0};
+  int singular;
   s->cp = cp;
   force_parts(cp, s->part, s->origin);
   for (int i = 0; i < cp->n; ++i) s->rim[i] = 0;
+  return cp->op == NULL ? OK : cp->op->set_rows(cp->op->ctx, &none, &singular);
 }
 
 /* Force into the tangent disc of a node; margin: relative depth at which a

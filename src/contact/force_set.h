@@ -1,6 +1,6 @@
 /*
- * Admissible contact forces of a problem whose compliance is known: common
- * parts of the methods for them.
+ * Admissible contact forces of a problem whose compliance is known, by its
+ * entries or by solves with an operator: common parts of the methods for them.
  */
 #ifndef PROTIS_CONTACT_FORCE_SET_H
 #define PROTIS_CONTACT_FORCE_SET_H
@@ -21,7 +21,8 @@ void force_parts(const contact_problem *cp, unsigned char *part,
                  double *origin);
 typedef struct force_set {
   const contact_problem *cp; /* of the last fit */
-  double *D;                 /* [m] 1/W_ii, the mean in a tangent plane, N/m */
+  double *D;                 /* [m] 1/W_ii, of an operator its diagonal; the
+                                mean in a tangent plane, N/m */
   double step;               /* -, 1/bound of the spectrum of D W */
   double *origin;            /* [m] gap, stick position, second obstacle, m */
   unsigned char *part;       /* [m] force_part */
@@ -29,16 +30,21 @@ typedef struct force_set {
   int symmetric;             /* W is, but for rounding */
   sparse_rows rows;          /* of W if most of it is zero, else all zero */
   double *load, *defect;     /* [m] work */
+  double *image;             /* [m] the same, of an operator */
 } force_set;
 status force_set_new(const contact_problem *cp, force_set **out);
 void force_set_free(force_set *s); /* accepts NULL */
-/* Parts and origins of a problem with the same W. */
-void force_set_fit(force_set *s, const contact_problem *cp);
+/* Parts and origins of a problem with the same W; an operator is prepared for
+ * products until its rows are set otherwise. Errors: ERR_MEMORY. */
+status force_set_fit(force_set *s, const contact_problem *cp);
 /* Into the set; a force deeper than g by less than the share "margin" counts
  * as lying on the rim. */
 void force_set_project(const force_set *s, double margin, double *r);
 void force_set_product(const force_set *s, const double *r,
                        double *u); /* W r */
+/* Largest eigenvalue of D W, from below by the power method. v[m], z[m]: work.
+ */
+double force_set_spectrum(const force_set *s, double *v, double *z);
 /* All entries of W that are not zero. */
 status compliance_rows(const contact_problem *cp, sparse_rows *rows);
 /* u = W (r + f), mended once by A; without A: u = W r + q. */

@@ -36,6 +36,8 @@ static void list_solvers(FILE *out) {
     const solver_ops *s = solver_list[i];
     fputc('\n', out);
     list_plugin(s->name, s->reference, s->help, s->options, out);
+    fprintf(out, "  works with STIFFNESS=DENSE%s\n",
+            s->entries == NULL ? " and FACTOR" : " alone");
   }
 }
 

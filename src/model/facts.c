@@ -207,8 +207,8 @@ int facts_asks_time_error(const step *s) { return s->accuracy.time; }
 int facts_asks_theory(const step *s) { return s->accuracy.theorems; }
 
 const char *facts_reads_entries(const model *m, const step *s) {
-  if (s->solver.ops != NULL && !(s->solver.ops->handles & BY_OPERATOR))
-    return "the METHOD of *SOLVER";
+  if (s->solver.ops != NULL && s->solver.ops->entries != NULL)
+    return s->solver.ops->entries;
   if (s->check != CHECK_NONE) return "CHECK of *SOLVER";
   if (s->accuracy.theorems) return "THEORY of *ACCURACY";
   if (s->output.condensed >= 0) return "CONDENSED of *OUTPUT";

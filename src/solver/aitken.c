@@ -341,6 +341,7 @@ const solver_ops aitken_solver = {
     "a few digits of a very large problem.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
+  .entries = "METHOD=AITKEN, which relaxes row by row,",
   .param_size = sizeof(aitken),
   .options = aitken_options,
   .setup = aitken_setup,

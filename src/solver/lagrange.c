@@ -43,9 +43,8 @@ static const option lagrange_options[] = {
 /* clang-format on */
 
 enum {
-  STEPS = 100000,  /* default limit */
-  PATIENCE = 2000, /* steps without a lower residual */
-  POWER_STEPS = 12
+  STEPS = 100000, /* default limit */
+  PATIENCE = 2000 /* steps without a lower residual */
 };
 static const double PROGRESS = 0.9;     /* a lower residual is lower by this */
 static const double ROUNDING = 0x1p-30; /* -, of |r|^2: a shorter step shows
@@ -71,29 +70,6 @@ static void lagrange_release(void *work) {
   memory_free(w);
 }
 
-/* 1/largest eigenvalue of D W, from below by the power method. */
-static double power_step(const lagrange_work *w, int m) {
-  double largest = 0.0;
-  unsigned seed = 1;
-  for (int i = 0; i < m; ++i) {
-    seed = seed * 1664525u + 1013904223u;
-    w->y[i] = w->set->D[i] * (1.0 + 0x1p-32 * seed);
-  }
-  for (int k = 0; k < POWER_STEPS; ++k) {
-    double top = 0.0, bottom = 0.0;
-    force_set_product(w->set, w->y, w->y_x);
-    for (int i = 0; i < m; ++i) {
-      top += w->y[i] * w->y_x[i];
-      bottom += w->y[i] * w->y[i] / w->set->D[i];
-    }
-    if (!(bottom > 0.0) || !(top > 0.0)) break;
-    largest = fmax(largest, top / bottom);
-    for (int i = 0; i < m; ++i)
-      w->y[i] = bottom / top * w->set->D[i] * w->y_x[i];
-  }
-  return largest > 0.0 ? 1.0 / largest : 0.0;
-}
-
 static status lagrange_setup(const contact_problem *cp, const void *par,
                              void **work) {
   status st = OK;
@@ -108,8 +84,9 @@ static status lagrange_setup(const contact_problem *cp, const void *par,
   NEW(w->c, cp->m);
   NEW(w->old_r, cp->m);
   TRY(best_iterate_new(cp->m, &w->best));
-  force_set_fit(w->set, cp);
-  w->step = fmax(w->set->step, LONGER * power_step(w, cp->m));
+  TRY(force_set_fit(w->set, cp));
+  const double largest = force_set_spectrum(w->set, w->y, w->y_x);
+  w->step = fmax(w->set->step, largest > 0.0 ? LONGER / largest : 0.0);
   *work = w;
   w = NULL;
 done:
@@ -205,7 +182,6 @@ static outcome steps(run *s, solver_report *rep) {
   size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   int limit = s->control->max_iter > 0 ? s->control->max_iter : STEPS;
   double theta = 0.0;
-  force_set_fit(w->set, s->cp);
   force_set_project(w->set, 0.0, s->r);
   refresh(s);
   outcome o = check(s, 0);
@@ -246,6 +222,7 @@ static status lagrange_solve(const contact_problem *cp, const void *par,
            .accelerated = p->acceleration == BY_NESTEROV};
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
+  PASS(force_set_fit(w->set, cp));
   rep->outcome = steps(&s, rep);
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);

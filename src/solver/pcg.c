@@ -23,7 +23,9 @@
  *
  * Face preconditioner: the block A_FF of the stiffness. inv(W_FF) is that block
  * less the compliance of the other unknowns, so the two differ by a bounded
- * factor except at the ends of the face. Without A: the diagonal of W.
+ * factor except at the ends of the face. Without A: the diagonal of W. Of an
+ * operator a product with W is a solve with the factor of all rows, and a
+ * product with A one with that of the interior.
  */
 #include "base/memory.h"
 #include "contact/force_set.h"
@@ -251,7 +253,9 @@ static outcome check(run *s) {
 static void precondition(run *s) {
   const contact_problem *cp = s->cp;
   pcg_work *w = s->w;
-  if (s->by_face)
+  if (s->by_face && cp->op != NULL)
+    contact_apply(cp, w->phi, w->z);
+  else if (s->by_face)
     cblas_dsymv(CblasColMajor, CblasLower, cp->m, 1.0, cp->A, cp->m, w->phi, 1,
                 0.0, w->z, 1);
   else
@@ -387,7 +391,6 @@ static outcome phase(run *s) {
 
 static outcome phases(run *s) {
   outcome o;
-  force_set_fit(s->w->set, s->cp);
   force_set_project(s->w->set, ON_THE_RIM, s->r);
   refresh(s);
   if ((o = check(s)) != RUNNING) return o;
@@ -426,6 +429,7 @@ static status pcg_solve(const contact_problem *cp, const void *par, void *work,
            .limit = control->max_iter > 0 ? control->max_iter : STEPS};
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
+  PASS(force_set_fit(w->set, cp));
   rep->outcome = phases(&s);
   rep->iterations = s.steps;
   rep->residual = w->best.residual;
@@ -448,7 +452,8 @@ const solver_ops pcg_solver = {
     "used and a slipping node turns along its rim. PRECONDITIONER=FACE takes\n"
     "the block of the stiffness that belongs to the face, DIAGONAL the\n"
     "diagonal. The sliding limit is updated around it (CPR98, 2.3). Needs the\n"
-    "compliance (an inverse, once per matrix); a body that contact alone\n"
+    "compliance (an inverse, once per matrix; with STIFFNESS=FACTOR solves\n"
+    "with one factor); a body that contact alone\n"
     "holds is held by soft springs on its rigid motions, which follow it\n"
     "until they carry nothing. A step costs two products. Choose it for large\n"
     "problems with many increments on one matrix and small friction.",

@@ -70,7 +70,7 @@ enum {
   REGULAR_COMPLIANCE = 64, /* instead of the stiffness a compliance that has an
                               inverse, which need not be made */
   SPARSE_COMPLIANCE = 128, /* the compliance in blocks */
-  BY_OPERATOR = 256 /* works by products and solves (contact/operator.h) */
+  FLOATS_BY_OPERATOR = 256 /* with a semidefinite A that is an operator */
 };
 
 typedef struct solver_ops {
@@ -79,6 +79,9 @@ typedef struct solver_ops {
                                    weaknesses */
   const char *help;             /* manual text: method, when to choose it */
   unsigned handles;             /* bits above */
+  const char *entries;          /* the method and why it needs the entries of
+                                   A; NULL: an operator (contact/operator.h)
+                                   suffices */
   size_t param_size;
   const option *options;
   /* Once per matrix; par: [param_size]. work receives the private state. */

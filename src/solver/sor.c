@@ -261,6 +261,7 @@ const solver_ops sor_solver = {
     "few digits of a large problem.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
+  .entries = "METHOD=SOR, which relaxes row by row,",
   .param_size = sizeof(sor),
   .options = sor_options,
   .setup = sor_setup,

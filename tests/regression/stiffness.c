@@ -21,7 +21,7 @@ static const struct {
     {"input/greco/greco", "-D N=16"},
     {"input/block_shear_3d/block_shear_3d", "-D N=4"},
     {"input/creep_block/creep_block", ""},
-    {"input/lying_block/lying_block_3d", ""},
+    {"input/lying_block/lying_block_3d", "-D N=6"},
     {"input/press_fit/press_fit", ""},
     {"input/arch/arch", ""},
     {"input/nonlocal_slider/nonlocal_slider", ""},
@@ -76,6 +76,59 @@ START_TEST(both_kinds_give_the_same_forces) {
 }
 END_TEST
 
+/* ---- every METHOD that works by products ----------------------------------
+ */
+
+static const char *const methods[] = {
+    "AUTO", "PCG", "AUGLAG", "AUGLAG, VARIANT=UZAWA", "PROXIMAL", "LAGRANGE"};
+/* The first decks, the last method in two of them alone. */
+enum { METHODS = sizeof methods / sizeof *methods, FIVE = 5, BOTH = 2 };
+
+/* By the same deck, STIFFNESS=FACTOR; the forces of t to the tolerance. */
+static void method_agrees(int of, const char *method, const dat *t) {
+  char card[100];
+  double force = 0;
+  job j = job_begin("method");
+  snprintf(card, sizeof card,
+           "*SOLVER, METHOD=%s, STIFFNESS=FACTOR, TOL=1E-11\n", method);
+  ck_assert_int_eq(job_run_with(&j, decks[of].deck, card, 0, decks[of].words),
+                   0);
+  dat s = job_table(&j, "CONTACT", -1);
+  ck_assert_int_eq(t->n_row, s.n_row);
+  ck_assert_msg(apart(t, &s, "f_n", &force) <= 1e-9, "%s: f_n", method);
+  const char *shear = dat_has(t, "f_t") ? "f_t" : "f_t1";
+  ck_assert_msg(apart(t, &s, shear, &force) <= 1e-9, "%s: %s", method, shear);
+  dat_free(&s);
+  job_end(&j);
+}
+
+START_TEST(every_method_gives_the_forces_of_the_entries) {
+  job j = job_begin("dense");
+  ck_assert_int_eq(job_run_with(&j, decks[_i].deck, DENSE, 0, decks[_i].words),
+                   0);
+  dat t = job_table(&j, "CONTACT", -1);
+  for (int k = 0; k < METHODS - (_i >= BOTH); ++k)
+    method_agrees(_i, methods[k], &t);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* No equilibrium: the words of NEWTON on the entries. */
+START_TEST(every_method_finds_no_equilibrium) {
+  char card[100];
+  job a = job_begin("dense"), b = job_begin("method");
+  const char *deck = "input/arch/arch", *thin = "-D H=0.1";
+  snprintf(card, sizeof card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR\n",
+           methods[_i]);
+  ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, thin), 6);
+  ck_assert_int_eq(job_run_with(&b, deck, card, 0, thin), 6);
+  ck_assert_str_eq(a.errors, b.errors);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
 /* "--check" prints both rows; the kind it marks as taken. */
 static const char *taken(const job *j) {
   const char *dense = strstr(j->text, "stiffness DENSE");
@@ -108,7 +161,6 @@ START_TEST(kind_is_chosen_by_cost) {
 }
 END_TEST
 
-/* A strip, all of whose lower side touches: FACTOR, and the forces of DENSE. */
 /* A strip of so many cells, all of whose lower side touches. */
 static job strip(int cells, const char *solver) {
   job j = job_begin("strip");
@@ -185,7 +237,10 @@ int main(void) {
   TCase *tests = tcase_create("stiffness");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, both_kinds_give_the_same_forces, 0, DECKS);
+  tcase_add_loop_test(tests, every_method_gives_the_forces_of_the_entries, 0,
+                      FIVE);
   tcase_add_test(tests, verdicts_are_the_same);
+  tcase_add_loop_test(tests, every_method_finds_no_equilibrium, 1, METHODS);
   tcase_add_test(tests, kind_is_chosen_by_cost);
   tcase_add_test(tests, kind_is_chosen_by_memory);
   tcase_add_test(tests, contact_of_most_of_the_body_is_not_condensed);

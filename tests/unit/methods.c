@@ -182,7 +182,7 @@ START_TEST(displacements_are_refined_by_the_stiffness) {
     for (size_t i = 0; i < m; ++i) c.r[i] = sin(1.0 + (double)i);
     c.cp.W = W;
     ck_assert_int_eq(force_set_new(&c.cp, &s), OK);
-    force_set_fit(s, &c.cp);
+    ck_assert_int_eq(force_set_fit(s, &c.cp), OK);
     force_set_displacement(s, c.r, u);
     contact_product(c.cp.m, c.A, u, Au);
     for (size_t i = 0; i < m; ++i) {

@@ -24,7 +24,7 @@ static const double PROGRESS = 0.9; /* -, a lower residual */
 static const double STEADY = 0x1p-7; /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
-  RELEASE(an->R, an->spring, an->A, an->W, an->f, an->a, an->step);
+  RELEASE(an->R, an->spring, an->A, an->W, an->f, an->a, an->step, an->y);
   *an = (anchor){0};
 }
 
@@ -139,17 +139,100 @@ static status choose_springs(const contact_problem *cp, anchor *an) {
   return OK;
 }
 
+/* ---- A_s of an operator: A R = 0 and R'R = I, so
+ *
+ *   inv(A_s) b = (I - R R') y + R inv(k) R'b,   A y = (I - R R') b,
+ *
+ * for any y; the operator finds one, as this load has no resultant. ----------
+ */
+
+static double *mode_of(const anchor *an, int m, int k) {
+  return an->R + (size_t)m * (size_t)k;
+}
+
+/* Au += R k R'u. */
+static void add_springs(const anchor *an, int m, const double *u, double *Au) {
+  for (int k = 0; k < an->n_mode; ++k) {
+    const double *v = mode_of(an, m, k);
+    cblas_daxpy(m, an->spring[k] * cblas_ddot(m, v, 1, u, 1), v, 1, Au, 1);
+  }
+}
+
+static void held_apply(void *ctx, const double *u, double *Au) {
+  const anchor *an = ctx;
+  an->of->apply(an->of->ctx, u, Au);
+  add_springs(an, an->m, u, Au);
+}
+
+static void held_sizes(void *ctx, const double *u, double *Au, double *size) {
+  const anchor *an = ctx;
+  an->of->apply_sizes(an->of->ctx, u, Au, size);
+  add_springs(an, an->m, u, Au);
+}
+
+static status held_rows(void *ctx, const known_rows *rows, int *singular) {
+  const anchor *an = ctx;
+  return an->of->set_rows(an->of->ctx, rows, singular);
+}
+
+static void held_solve(void *ctx, const double *b, double *x, double *Ax) {
+  const anchor *an = ctx;
+  const int m = an->m;
+  memcpy(an->y, b, (size_t)m * sizeof *an->y);
+  for (int k = 0; k < an->n_mode; ++k) {
+    const double *v = mode_of(an, m, k);
+    cblas_daxpy(m, -cblas_ddot(m, v, 1, an->y, 1), v, 1, an->y, 1);
+  }
+  an->of->solve(an->of->ctx, an->y, x, Ax);
+  for (int k = 0; k < an->n_mode; ++k) {
+    const double *v = mode_of(an, m, k);
+    const double load = cblas_ddot(m, v, 1, b, 1);
+    cblas_daxpy(m, load / an->spring[k] - cblas_ddot(m, v, 1, x, 1), v, 1, x,
+                1);
+    cblas_daxpy(m, load, v, 1, Ax, 1);
+  }
+}
+
+/* Products with all rows free alone. */
+static status hold_operator(const contact_problem *cp, anchor *an) {
+  PASS_NEW(an->y, cp->m);
+  an->m = cp->m;
+  an->of = cp->op;
+  an->op = (contact_operator){.ctx = an,
+                              .diagonal = cp->op->diagonal,
+                              .body = cp->op->body,
+                              .n_body = cp->op->n_body,
+                              .room = cp->op->room,
+                              .apply = held_apply,
+                              .apply_sizes = held_sizes,
+                              .set_rows = held_rows,
+                              .solve = held_solve};
+  return OK;
+}
+
 status anchor_make(const contact_problem *cp, anchor *an) {
   size_t m = (size_t)cp->m;
-  if (an->missing || an->W != NULL) return OK;
-  an->missing = cp->A == NULL || cp->n == 0;
+  if (an->missing || an->made) return OK;
+  an->missing = !contact_has_stiffness(cp) || cp->n == 0;
   if (an->missing) return OK;
-  PASS_NEW(an->A, m * m);
-  PASS_NEW(an->W, m * m);
   PASS_NEW(an->f, m);
   PASS(anchor_modes(cp, an));
   PASS(choose_springs(cp, an));
+  an->made = 1;
+  if (cp->op != NULL) return hold_operator(cp, an);
+  PASS_NEW(an->A, m * m);
+  PASS_NEW(an->W, m * m);
   return hold(cp, an);
+}
+
+int anchor_holds(const anchor *an, const contact_problem *cp) {
+  return (cp->A != NULL && cp->A == an->A) || cp->op == &an->op;
+}
+
+void anchor_put(const anchor *an, contact_problem *cp) {
+  cp->A = an->A;
+  cp->W = an->W;
+  cp->op = an->of != NULL ? &an->op : NULL;
 }
 
 /* ---- the passes ---------------------------------------------------------- */
@@ -289,8 +372,7 @@ static contact_problem anchored(const passes *p) {
   for (int k = 0; k < an->n_mode; ++k)
     cblas_daxpy(own.m, an->spring[k] * p->an->a[k],
                 an->R + (size_t)k * (size_t)own.m, 1, an->f, 1);
-  own.A = an->A;
-  own.W = an->W;
+  anchor_put(an, &own);
   own.f = an->f;
   own.floating = 0;
   return own;

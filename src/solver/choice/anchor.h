@@ -19,12 +19,16 @@
 #include "solver/solver.h"
 
 typedef struct anchor {
-  int missing;    /* 1: the null vectors could not be found */
-  int n_mode;     /* of them */
-  double *R;      /* [m*n_mode] - */
-  double *spring; /* [n_mode] k, N/m */
-  double *A, *W;  /* [m*m] A_s and its inverse */
-  double *f;      /* [m] f_s, N */
+  int made;            /* 1: A_s is there */
+  int missing;         /* 1: the null vectors could not be found */
+  int m, n_mode;       /* unknowns of an operator; null vectors */
+  double *R;           /* [m*n_mode] - */
+  double *spring;      /* [n_mode] k, N/m */
+  double *A, *W;       /* [m*m] A_s and its inverse, where A has entries */
+  contact_operator op; /* A_s, where it is an operator, */
+  const contact_operator *of; /* A, */
+  double *y;                  /* [m] and its work */
+  double *f;                  /* [m] f_s, N */
   double *a,
       *step; /* [n_mode] place of the springs, last move of the body, m */
 } anchor;
@@ -34,6 +38,9 @@ status anchor_modes(const contact_problem *cp, anchor *an);
 /* Make it for the matrix of cp, unless it was tried before. */
 status anchor_make(const contact_problem *cp, anchor *an);
 void anchor_free(anchor *an); /* all zero afterwards */
+/* Its matrix in the place of that of cp; 1: cp has it. */
+void anchor_put(const anchor *an, contact_problem *cp);
+int anchor_holds(const anchor *an, const contact_problem *cp);
 
 /* Solves a problem with springs as given, from u, r. */
 typedef struct anchored_solver {

@@ -58,8 +58,7 @@ done:
 static status suit_by_springs(contact_solver *s, const contact_problem *cp,
                               contact_problem *out, const char **why) {
   PASS(anchor_make(cp, &s->held));
-  out->A = s->held.A;
-  out->W = s->held.W;
+  if (!s->held.missing) anchor_put(&s->held, out);
   if (s->held.missing)
     *why = "needs the compliance, but the stiffness is nearly singular";
   return OK;
@@ -70,6 +69,11 @@ static int lacks_stiffness(const contact_solver *s, const contact_problem *cp,
   int does = (ops->handles & REGULAR_COMPLIANCE) && !s->inverse_wanted;
   return (ops->handles & NEEDS_STIFFNESS) && !contact_has_stiffness(cp) &&
          !does;
+}
+
+static int lacks_compliance(const contact_problem *cp, const solver_ops *ops) {
+  return (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL &&
+         cp->blocks == NULL && cp->op == NULL;
 }
 
 /* All of a compliance given in blocks, for the others. */
@@ -92,7 +96,7 @@ static status fill_up(contact_solver *s, contact_problem *cp) {
 static status form_entries(contact_solver *s, contact_problem *cp,
                            const solver_ops *ops, const char **why) {
   const double m = cp->m;
-  if (cp->op == NULL || (ops->handles & BY_OPERATOR)) return OK;
+  if (cp->op == NULL || ops->entries == NULL) return OK;
   if (s->full == NULL && m * m * sizeof *s->full > memory_left()) {
     *why = "needs the entries of the condensed stiffness, which do not fit";
     return OK;
@@ -113,6 +117,13 @@ static const char *unfit(const contact_problem *cp, const solver_ops *ops) {
   return NULL;
 }
 
+/* 1: it takes a semidefinite stiffness. */
+static int floats(const contact_problem *cp, const solver_ops *ops) {
+  const unsigned needs =
+      cp->op != NULL ? SOLVES_FLOATING | FLOATS_BY_OPERATOR : SOLVES_FLOATING;
+  return (ops->handles & needs) != 0;
+}
+
 /* The problem in a form the solver can use; NULL, or why there is none. */
 static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
@@ -125,9 +136,8 @@ static status suit(contact_solver *s, const contact_problem *cp,
   *out = *cp;
   if (*why != NULL) goto done;
   int stiffness = lacks_stiffness(s, cp, ops);
-  int compliance =
-      (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL && cp->blocks == NULL;
-  if (cp->floating && !(ops->handles & SOLVES_FLOATING)) {
+  int compliance = lacks_compliance(cp, ops);
+  if (cp->floating && !floats(cp, ops)) {
     TRY(suit_by_springs(s, cp, out, why));
     goto done;
   }
@@ -224,7 +234,7 @@ static status drive_form(drive_call *x, const contact_problem *own,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep) {
   anchored_solver inner = {drive_anchored, x};
-  if (own->A != NULL && own->A == x->s->held.A)
+  if (anchor_holds(&x->s->held, own))
     return anchor_solve(&x->s->held, x->given, &inner, control, u, r, rep);
   return drive_one(x->s, own, x->a, control, u, r, rep);
 }
@@ -280,7 +290,8 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
     log_unfit(s, a->ops->name, why);
     goto done;
   }
-  if (own.A == cp->A && own.W == cp->W) control.scale = s->scale;
+  if (own.A == cp->A && own.op == cp->op && own.W == cp->W)
+    control.scale = s->scale;
   if (s->work[row] == NULL) {
     TRY(a->ops->setup(&own, a->param, &s->work[row]));
     TRY(remember(s, row));

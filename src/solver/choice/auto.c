@@ -16,6 +16,9 @@
  * nearly singular under large mu. In 3-D with a loose tolerance (TOL=BALANCED)
  * sweeps of SOR first, as many as cost less than some steps of NEWTON.
  *
+ * Stiffness as an operator: after NEWTON what works by products and solves too,
+ * AUGLAG, PROXIMAL, PCG; its entries are formed for SOR and LEMKE alone.
+ *
  * Compliance given: in 3-D first sweeps of SOR, while their rate predicts the
  * solution at less cost than the steps of NEWTON. Then the same, with NEWTON
  * for the forces, if the compliance is regular; sweeps again, PCG, PROXIMAL,
@@ -54,7 +57,9 @@ const char auto_help[] =
   "(every deck with a mesh), it is NEWTON, then NEWTON along a friction path\n"
   "(the coefficient grows to its value, each solution the start of the\n"
   "next), then SOR, then LEMKE, then PROXIMAL; in 3-D with TOL above 1e-4\n"
-  "sweeps of SOR go first. Of a problem that comes as a compliance\n"
+  "sweeps of SOR go first. With STIFFNESS=FACTOR AUGLAG, PROXIMAL and PCG\n"
+  "follow NEWTON, and the entries of the stiffness are formed, if they fit,\n"
+  "for SOR and LEMKE. Of a problem that comes as a compliance\n"
   "(*CONDENSED PROBLEM) such sweeps go first in 3-D, while their rate\n"
   "predicts the solution at less cost than NEWTON; then the same chain with\n"
   "such sweeps, PCG, PROXIMAL, PCG with more iterations and LAGRANGE before\n"
@@ -127,7 +132,16 @@ static const link sparse_chain[] = {
     {&aitken_solver, PLAIN, 1, 0, 0, 0},
     {&sor_solver, PLAIN, 1, 0, 0, 0},
     {&lemke_solver, PLAIN, 1, 0, 0, 0}};
+/* Of an operator: the last two have its entries formed. */
+static const link operator_chain[] = {{&newton_solver, PLAIN, 0, 1, 0, 1},
+                                      {&newton_solver, ALONG_PATH, 0, 1, 0, 0},
+                                      {&auglag_solver, PLAIN, 0, 1, 0, 0},
+                                      {&proximal_solver, PLAIN, 0, 1, 0, 0},
+                                      {&pcg_solver, PLAIN, 0, 0, 1000, 0},
+                                      {&sor_solver, PLAIN, 0, 0, 0, 0},
+                                      {&lemke_solver, PLAIN, 0, 0, 0, 0}};
 enum {
+  N_OPERATOR = sizeof operator_chain / sizeof *operator_chain,
   N_DENSE = sizeof dense_chain / sizeof *dense_chain,
   N_SPARSE = sizeof sparse_chain / sizeof *sparse_chain,
   MOST_LINKS = N_DENSE > N_SPARSE ? N_DENSE : N_SPARSE,
@@ -152,9 +166,12 @@ static double cost_of(const contact_problem *cp, const solver_ops *ops) {
 
 /* The methods in their order, order[MOST_LINKS]; their number. */
 static int order_links(const contact_problem *cp, const link **order) {
-  const int sparse = cp->blocks != NULL, n = sparse ? N_SPARSE : N_DENSE;
-  for (int i = 0; i < n; ++i)
-    order[i] = sparse ? &sparse_chain[i] : &dense_chain[i];
+  const int sparse = cp->blocks != NULL;
+  const link *chain = cp->op != NULL ? operator_chain
+                      : sparse       ? sparse_chain
+                                     : dense_chain;
+  const int n = cp->op != NULL ? N_OPERATOR : sparse ? N_SPARSE : N_DENSE;
+  for (int i = 0; i < n; ++i) order[i] = chain + i;
   for (int i = 2; sparse && i <= SORTED; ++i) {
     const link *one = order[i];
     int k = i;

@@ -28,11 +28,20 @@
  * limit is updated around it (CPR98, 2.3).
  *
  * rho is a multiple of the diagonal of A, equal in the tangents of a node.
+ *
+ * Of an operator the equations of both variants are solved as those of NEWTON
+ * (operated.h). With F' = s (I - e e') where a node slips, s = g/|z|, those of
+ * VARIANT=NEWTON are, multiplied by inv(I - F'),
+ *
+ *   (A_t + rho s/(1 - s) (I - e e') + e B A_n) du = g e - y - ...,
+ *
+ * the very step of NEWTON for these states.
  */
 #include "base/memory.h"
 #include "contact/force_set.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
+#include "solver/newton/operated.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
@@ -50,8 +59,6 @@ static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 typedef enum { OPEN, CLOSED } contact_state;
 
-typedef enum { FREE, STICK, SLIP } tangent;
-
 typedef struct auglag_work {
   int m;                      /* unknowns */
   unsigned char *part;        /* [m] force_part */
@@ -68,7 +75,12 @@ typedef struct auglag_work {
   double power;               /* of two: power*A has a diagonal of order 1 */
   /* hashes of the states of the steps */
   uint64_t seen[NEWTON_STEPS + 1];
-  int *pivot, *free_id; /* [m] */
+  int *pivot, *free_id;      /* [m] */
+  struct {                   /* in the place of K, pivot and free_id */
+    operated_system *system; /* NULL: A has entries */
+    pattern guess;
+    double *hold, *b; /* [m] N/m, N */
+  } by;
   fixed_point *fixed;
   best_iterate best;
 } auglag_work;
@@ -80,12 +92,13 @@ typedef struct auglag_run {
   double *u, *r;
   double scale, rho; /* N; -, of the diagonal */
   int steps, limit;
-  int changes;  /* states changed by the last evaluation */
-  int turned;   /* nodes with another state than after the step before */
-  int bent;     /* 1: F' of a slipping node moves with z (3-D) */
-  int factored; /* w->K is the factor for the present states */
-  int singular; /* the last matrix needed springs */
-  int cycle;    /* the states occurred before in these Newton steps */
+  int changes;   /* states changed by the last evaluation */
+  int turned;    /* nodes with another state than after the step before */
+  int bent;      /* 1: F' of a slipping node moves with z (3-D) */
+  int factored;  /* w->K is the factor for the present states */
+  int singular;  /* the last matrix needed springs */
+  int cycle;     /* the states occurred before in these Newton steps */
+  status failed; /* of a step, ERR_MEMORY: the method ends */
 } auglag_run;
 
 /* ---- the augmented forces F(z), the states of the nodes they stand for, and
@@ -192,6 +205,30 @@ static void auglag_move(auglag_run *s, double a) {
   cblas_daxpy(s->cp->m, a, s->w->dy, 1, s->w->y, 1);
 }
 
+/* ---- steps of an operator ------------------------------------------------ */
+
+static const double STIFFEST = 0x1p20; /* -, of rho: slip that hardly turns */
+
+/* Node i slips with this share of its turning stiffness rho. */
+static void put_slip(auglag_run *s, int i, double turning) {
+  const int dim = s->cp->dim, first = i * dim + 1;
+  pattern *p = &s->w->by.guess;
+  p->mode[i] = SLIP;
+  p->kappa[i] = auglag_rho(s, first) * fmin(turning, STIFFEST);
+  for (int k = 0; k < dim - 1; ++k)
+    p->e[i * (dim - 1) + k] =
+        auglag_slips(s, first + k) ? s->w->e[first + k] : 0;
+}
+
+/* du and dy; 0: ERR_MEMORY, in s->failed. */
+static int operated_direction(auglag_run *s, const double *hold) {
+  auglag_work *w = s->w;
+  const operated_rows rows = {&w->by.guess, hold, w->by.b};
+  s->failed = operated_system_direction(w->by.system, s->cp, &rows, w->du,
+                                        w->dy, &s->singular);
+  return s->failed == OK;
+}
+
 /* ---- VARIANT=NEWTON: the generalised Newton method for both equations at
  * once. */
 
@@ -263,10 +300,27 @@ static int newton_matrix(auglag_run *s, int n) {
   return slipping;
 }
 
+/* The same of an operator. */
+static int newton_operated(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  pattern *p = &w->by.guess;
+  for (int dof = 0; dof < cp->m; ++dof)
+    p->closed[dof] = w->part[dof] == PUSH && w->closed[dof] == CLOSED;
+  for (int i = 0; i < cp->n; ++i) {
+    p->mode[i] = w->mode[i];
+    if (w->mode[i] == SLIP) put_slip(s, i, w->share[i] / (1.0 - w->share[i]));
+  }
+  newton_list_known(cp, p, s->u, w->du);
+  newton_load(cp, p, 1.0, s->u, w->y, w->by.b);
+  return operated_direction(s, NULL);
+}
+
 /* du of a Newton step; 0: the matrix is singular. */
 static int newton_direction(auglag_run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
+  if (cp->op != NULL) return newton_operated(s);
   int n = known_steps(s), info = 0;
   contact_product(cp->m, cp->A, w->du, w->dy);
   for (int i = 0; i < n; ++i) {
@@ -392,6 +446,37 @@ static int uzawa_factor(auglag_run *s) {
   return 0;
 }
 
+/* du and dy of the factor. */
+static int uzawa_dense(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  if (!s->factored && !uzawa_factor(s)) return 0;
+  for (int i = 0; i < cp->m; ++i) w->du[i] = w->power * (w->F[i] - w->y[i]);
+  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', cp->m, 1, w->K, cp->m, w->du,
+                      cp->m);
+  contact_product(cp->m, cp->A, w->du, w->dy);
+  return 1;
+}
+
+/* The same of an operator: no row known. */
+static int uzawa_operated(auglag_run *s) {
+  const contact_problem *cp = s->cp;
+  auglag_work *w = s->w;
+  for (int i = 0; i < cp->n; ++i) {
+    w->by.guess.mode[i] = FREE;
+    if (w->mode[i] == SLIP) put_slip(s, i, w->share[i]);
+  }
+  for (int dof = 0; dof < cp->m; ++dof) {
+    const double left = w->F[dof] - w->y[dof];
+    w->by.guess.closed[dof] = 0;
+    w->by.guess.place[dof] = dof;
+    w->by.hold[dof] = auglag_is_fixed(s, dof) ? auglag_rho(s, dof) : 0.0;
+    w->by.b[dof] = left;
+    w->du[dof] = contact_held(cp, dof) ? left / contact_diagonal(cp, dof) : 0.0;
+  }
+  return operated_direction(s, w->by.hold);
+}
+
 /* Slope of the augmented Lagrangian along du at the present u, N m. */
 static double slope(auglag_run *s) {
   double sum = 0.0;
@@ -452,11 +537,8 @@ static outcome minimise(auglag_run *s) {
       return RUNNING;
     if (k >= INNER_STEPS) return s->singular ? STOPPED_RAY : RUNNING;
     ++s->steps;
-    if (!s->factored && !uzawa_factor(s)) return STOPPED_SINGULAR;
-    for (int i = 0; i < cp->m; ++i) w->du[i] = w->power * (w->F[i] - w->y[i]);
-    LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', cp->m, 1, w->K, cp->m, w->du,
-                        cp->m);
-    contact_product(cp->m, cp->A, w->du, w->dy);
+    if (!(cp->op != NULL ? uzawa_operated(s) : uzawa_dense(s)))
+      return STOPPED_SINGULAR;
     search(s);
     contact_reaction(cp, s->u, w->y);
     auglag_evaluate(s, w->lambda);
@@ -505,6 +587,7 @@ static void auglag_start_bonded(auglag_run *s) {
   s->w->best.residual = HUGE_VAL;
   auglag_uzawa(&start);
   s->steps = start.steps;
+  s->failed = start.failed;
   solver_take_best(&s->w->best, cp->m, s->u, s->r);
 }
 
@@ -531,7 +614,9 @@ static void auglag_release(void *work) {
   if (w == NULL) return;
   RELEASE(w->part, w->closed, w->mode, w->state, w->origin, w->diagonal,
           w->lambda, w->z, w->F, w->y, w->du, w->dy, w->e, w->share, w->bonded,
-          w->K, w->pivot, w->free_id);
+          w->K, w->pivot, w->free_id, w->by.hold, w->by.b);
+  operated_system_free(w->by.system);
+  pattern_free(&w->by.guess);
   fixed_point_free(w->fixed);
   best_iterate_free(&w->best);
   memory_free(w);
@@ -553,6 +638,22 @@ static void take_diagonal(const contact_problem *cp, double *diagonal) {
     double least = SOFT * fmax(fmax(own[0], mean), SOFT * largest);
     for (int k = 0; k < d; ++k) own[k] = fmax(own[k], least);
   }
+}
+
+/* Workspace of the matrix of a step. */
+static status new_matrix(const contact_problem *cp, auglag_work *w) {
+  const size_t m = (size_t)cp->m;
+  if (cp->op != NULL) {
+    PASS(operated_system_new(cp, &w->by.system));
+    PASS(pattern_new(cp->dim, cp->n, &w->by.guess));
+    PASS_NEW(w->by.hold, m);
+    PASS_NEW(w->by.b, m);
+    return OK;
+  }
+  PASS_NEW(w->K, m * m);
+  PASS_NEW(w->pivot, m);
+  PASS_NEW(w->free_id, m);
+  return OK;
 }
 
 static status auglag_setup(const contact_problem *cp, const void *par,
@@ -578,9 +679,7 @@ static status auglag_setup(const contact_problem *cp, const void *par,
   NEW(w->e, m);
   NEW(w->share, cp->n);
   NEW(w->bonded, cp->n);
-  NEW(w->K, m * m);
-  NEW(w->pivot, m);
-  NEW(w->free_id, m);
+  TRY(new_matrix(cp, w));
   TRY(fixed_point_new(cp->n, &w->fixed));
   TRY(best_iterate_new(cp->m, &w->best));
   take_diagonal(cp, w->diagonal);
@@ -603,6 +702,7 @@ static status follow_limit(auglag_run *s, solver_report *rep) {
   solver_control rest = *s->control;
   int bounded = s->control->max_iter > 0;
   if (!bounded || s->steps < s->limit) auglag_start_bonded(s);
+  PASS(s->failed);
   rest.max_iter = bounded ? s->limit - s->steps : 0;
   int before = s->steps;
   rep->outcome = STOPPED_ITERATIONS;
@@ -639,13 +739,16 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
   force_parts(cp, w->part, w->origin);
+  if (w->by.system != NULL) operated_system_fit(w->by.system);
   if (p->variant == BY_NEWTON) rep->outcome = auglag_newton(&s);
   int done_well = rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN;
   int cycled = rep->outcome == STOPPED_CYCLE;
+  TRY(s.failed);
   if (!done_well && cp->B == NULL) rep->outcome = auglag_uzawa(&s);
   rep->iterations = s.steps;
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
+  TRY(s.failed);
   if (!done_well && cp->B != NULL) TRY(follow_limit(&s, rep));
   if (cycled && made_no_progress(control, rep)) rep->outcome = STOPPED_CYCLE;
 done:
@@ -672,7 +775,7 @@ const solver_ops auglag_solver = {
     "variant goes on. VARIANT=UZAWA minimises over u for fixed multipliers, a\n"
     "convex problem solved by Newton's method with a search along the step,\n"
     "then sets lambda to F; the limit is updated around it (CPR98, 2.3). rho\n"
-    "is a multiple of the diagonal of A, no parameter. A step costs one dense\n"
+    "is a multiple of the diagonal of A, no parameter. A step costs one\n"
     "factorisation. Choose it where NEWTON cycles, and UZAWA for a body that\n"
     "contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |

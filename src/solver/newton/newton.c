@@ -373,7 +373,7 @@ const solver_ops newton_solver = {
     "nodes; no inverse is made, but the compliance must have one. The first\n"
     "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
-             REGULAR_COMPLIANCE | SOLVES_FLOATING | BY_OPERATOR,
+             REGULAR_COMPLIANCE | SOLVES_FLOATING,
   .param_size = sizeof(newton),
   .options = newton_options,
   .setup = newton_setup,

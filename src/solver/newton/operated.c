@@ -27,6 +27,7 @@ struct operated_system {
   int exhausted;        /* 1: the last step had springs, or GMRES left more
                            than it should: not again with its factor */
   unsigned char *known; /* [m] of the last step */
+  unsigned char *held;  /* [m] 1: stiffness was added to its row */
   int repeated;         /* steps on the same rows before the last one */
   int stepped;          /* 1: there was a last step */
   double enough;        /* -, of the right side, left by GMRES */
@@ -48,9 +49,9 @@ struct operated_system {
 
 void operated_system_free(operated_system *s) {
   if (s == NULL) return;
-  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->slip.dof, s->slip.x,
-          s->slip.load, s->slip.pressed, s->krylov.V, s->krylov.H, s->krylov.c,
-          s->krylov.s, s->krylov.g, s);
+  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->held, s->slip.dof,
+          s->slip.x, s->slip.load, s->slip.pressed, s->krylov.V, s->krylov.H,
+          s->krylov.c, s->krylov.s, s->krylov.g, s);
 }
 
 static double power_of(const contact_problem *cp) {
@@ -74,6 +75,7 @@ status operated_system_new(const contact_problem *cp, operated_system **out) {
   NEW(s->Ax, m);
   NEW(s->added, (size_t)cp->dim * m);
   NEW(s->known, m);
+  NEW(s->held, m);
   NEW(s->slip.dof, m);
   NEW(s->slip.x, m);
   NEW(s->slip.load, m);
@@ -256,59 +258,112 @@ static status gmres(operated_system *s, const contact_problem *cp,
 /* ---- a step ---------------------------------------------------------------
  */
 
-/* 1: the same rows are known as in the last step, and slip in space turns at
- * most otherwise, which GMRES can add. */
-static int has_rows(const operated_system *s, const contact_problem *cp,
-                    const pattern *p) {
-  if (!s->stepped || s->exhausted) return 0;
-  for (int i = 0; i < s->m; ++i)
-    if (s->known[i] != (p->place[i] < 0)) return 0;
-  for (int i = 0; cp->dim == 3 && i < 9 * cp->n; ++i)
-    if (p->mode[i / 9] != SLIP && s->added[i] != 0.0) return 0;
+/* Stiffness that the guess adds at a node, block[dim*dim]. */
+static void wanted(const contact_problem *cp, const operated_rows *rows,
+                   int node, double *block) {
+  const int dim = cp->dim;
+  memset(block, 0, (size_t)(dim * dim) * sizeof *block);
+  for (int a = 0; a < 2 && dim == 3 && rows->p->mode[node] == SLIP; ++a)
+    for (int b = 0; b < 2; ++b)
+      block[3 * (1 + a) + 1 + b] = turning(rows->p, node, a, b);
+  for (int a = 0; a < dim && rows->hold != NULL; ++a)
+    block[(dim + 1) * a] += rows->hold[dim * node + a];
+}
+
+/* 1: the factor has what the guess adds at a node; of one that slips only the
+ * turning may be another. */
+static int has_block(const operated_system *s, const operated_rows *rows,
+                     int node, const double *block) {
+  for (int i = 0; i < 9; ++i) {
+    const int turns = i / 3 > 0 && i % 3 > 0;
+    if (turns && rows->p->mode[node] == SLIP) continue;
+    if (s->added[9 * node + i] != block[i]) return 0;
+  }
   return 1;
 }
 
-/* The rows of the guess; spring: share of the diagonal. */
+static int is_held(const operated_rows *rows, int dof) {
+  return rows->hold != NULL && rows->hold[dof] > 0.0;
+}
+
+/* 1: the same rows are known and held as in the last step, and slip in space
+ * turns at most otherwise, which GMRES can add. */
+static int has_rows(const operated_system *s, const contact_problem *cp,
+                    const operated_rows *rows) {
+  double block[9];
+  if (!s->stepped || s->exhausted || cp->dim < 3) return 0;
+  for (int i = 0; i < s->m; ++i)
+    if (s->known[i] != (rows->p->place[i] < 0) ||
+        s->held[i] != is_held(rows, i))
+      return 0;
+  for (int i = 0; i < cp->n; ++i) {
+    wanted(cp, rows, i, block);
+    if (!has_block(s, rows, i, block)) return 0;
+  }
+  return 1;
+}
+
+/* The rows of the guess, in which slip may turn otherwise; spring: share of the
+ * diagonal. */
 static status set_rows(operated_system *s, const contact_problem *cp,
-                       const pattern *p, double spring, int *singular) {
-  const size_t dim = (size_t)cp->dim;
-  const known_rows rows = {s->known, s->added};
+                       const operated_rows *rows, double spring,
+                       int *singular) {
+  const known_rows known = {s->known, s->added};
   int changed = s->stepped ? 0 : s->m;
-  s->drifts = cp->dim == 3 && spring == 0.0 && has_rows(s, cp, p);
+  s->drifts = spring == 0.0 && has_rows(s, cp, rows);
   for (int i = 0; i < cp->n && !s->drifts; ++i) {
-    double *added = s->added + dim * dim * (size_t)i;
-    memset(added, 0, dim * dim * sizeof *added);
-    for (int a = 0; a < 2 && dim == 3 && p->mode[i] == SLIP; ++a)
-      for (int b = 0; b < 2; ++b)
-        added[3 * (1 + a) + 1 + b] = turning(p, i, a, b);
-    for (size_t a = 0; a < dim; ++a)
-      added[(dim + 1) * a] +=
-          spring * contact_diagonal(cp, (int)dim * i + (int)a);
+    double *added = s->added + cp->dim * cp->dim * i;
+    wanted(cp, rows, i, added);
+    for (int a = 0; a < cp->dim; ++a)
+      added[(cp->dim + 1) * a] +=
+          spring * contact_diagonal(cp, cp->dim * i + a);
   }
   for (int i = 0; i < s->m; ++i) {
-    const unsigned char now = p->place[i] < 0;
-    changed += s->known[i] != now;
+    const unsigned char now = rows->p->place[i] < 0;
+    const unsigned char held = (unsigned char)is_held(rows, i);
+    changed += s->known[i] != now || s->held[i] != held;
     s->known[i] = now;
+    s->held[i] = held;
   }
   s->repeated = changed > 0 ? 0 : s->repeated + 1;
   s->enough = changed > FEW * s->m ? ROUGH : ENOUGH;
-  return cp->op->set_rows(cp->op->ctx, &rows, singular);
+  return cp->op->set_rows(cp->op->ctx, &known, singular);
+}
+
+/* Size of the right side where the stiffness added does not carry it. */
+static double size_of_load(const operated_system *s, const contact_problem *cp,
+                           const double *hold) {
+  double sum = 0.0;
+  if (hold == NULL) return cblas_dnrm2(s->m, s->b, 1);
+  for (int i = 0; i < s->m; ++i) {
+    const double own = contact_diagonal(cp, i);
+    sum += pow(s->b[i] * own / (own + hold[i]), 2);
+  }
+  return sqrt(sum);
+}
+
+/* s->x, s->Ax for the right side s->b. */
+static status solve_rows(operated_system *s, const contact_problem *cp,
+                         const operated_rows *rows, int *singular) {
+  int held = 0;
+  *singular = 0;
+  PASS(set_rows(s, cp, rows, 0.0, singular));
+  if (*singular) PASS(set_rows(s, cp, rows, SPRING, &held));
+  s->stepped = 1;
+  s->exhausted = *singular;
+  cp->op->solve(cp->op->ctx, s->b, s->x, s->Ax);
+  list_slip(s, cp, rows->p);
+  if (s->slip.n == 0) return OK;
+  return gmres(s, cp, rows->p, size_of_load(s, cp, rows->hold));
 }
 
 status operated_system_step(operated_system *s, const contact_problem *cp,
                             pattern *p, double *u, double *raw, int *singular) {
-  int held = 0;
-  *singular = 0;
+  const operated_rows rows = {p, NULL, s->b};
   newton_list_known(cp, p, u, s->x);
   newton_load(cp, p, s->power, u, raw, s->b);
-  PASS(set_rows(s, cp, p, 0.0, singular));
-  if (*singular) PASS(set_rows(s, cp, p, SPRING, &held));
-  s->stepped = 1;
-  s->exhausted = *singular;
   cblas_dscal(s->m, s->power, s->x, 1);
-  cp->op->solve(cp->op->ctx, s->b, s->x, s->Ax);
-  list_slip(s, cp, p);
-  if (s->slip.n > 0) PASS(gmres(s, cp, p, cblas_dnrm2(s->m, s->b, 1)));
+  PASS(solve_rows(s, cp, &rows, singular));
   cblas_daxpy(s->m, 1.0 / s->power, s->x, 1, u, 1);
   newton_take_known(cp, p, u);
   /* Steps from afar leave their rounding in a sum. */
@@ -316,6 +371,21 @@ status operated_system_step(operated_system *s, const contact_problem *cp,
     contact_reaction(cp, u, raw);
   else
     cblas_daxpy(s->m, 1.0 / s->power, s->Ax, 1, raw, 1);
+  return OK;
+}
+
+status operated_system_direction(operated_system *s, const contact_problem *cp,
+                                 const operated_rows *rows, double *du,
+                                 double *Adu, int *singular) {
+  for (int i = 0; i < s->m; ++i) {
+    s->b[i] = s->power * rows->b[i];
+    s->x[i] = s->power * du[i];
+  }
+  PASS(solve_rows(s, cp, rows, singular));
+  for (int i = 0; i < s->m; ++i) {
+    du[i] = s->x[i] / s->power;
+    Adu[i] = s->Ax[i] / s->power;
+  }
   return OK;
 }
 

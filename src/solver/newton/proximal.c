@@ -17,231 +17,27 @@
  * equilibrium with one another, the centre is extrapolated along the last
  * change of r (Guler 1992). The stretch s > 0 affects the convergence, not the
  * solutions.
+ *
+ * Of an operator u is moved along with r = A u - f, and the step is that of
+ * NEWTON (operated.h) with stiffness added where a force acts: with dr = A du,
+ * inv(W) = A, e = z_t/|z_t|, P = I - e e' and t = g/|z_t|,
+ *
+ *   no force      (A du)_i = -F_i
+ *   push, stick   (A du)_i + D/a du_i = -F_i/(s a)
+ *   slip          (A du)_t + t s D/q P du_t + e B (A du)_n = -F_t + (1 - 1/q)
+ *                 P F_t,                          q = 1 - (1 - s a) t.
+ *
+ * A body that contact alone holds needs no compliance so.
  */
 #include "base/memory.h"
 #include "contact/force_set.h"
+#include "solver/newton/operated.h"
+#include "solver/newton/step_matrix.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <lapacke.h>
 #include <math.h>
 #include <string.h>
-#include <umfpack.h>
-
-typedef struct step_matrix step_matrix;
-
-/* ---- matrix of a step ----------------------------------------------------
- *
- * The matrix of a step of Newton's method on the forces, row by row:
- *
- *   J_i = e_i                                         nothing acts on unknown i
- *   J_i = e_i - sum_j c_ij (e_j (1 - a) - D_j W_j) + ...            the others
- *
- * with rows W_j of the compliance. Unknowns of the first kind are eliminated;
- * what is left is sparse where W is, and then factored by UMFPACK, else by
- * LAPACK.
- */
-
-struct step_matrix {
-  int m, k;                       /* unknowns; of them in the system */
-  const force_set *set;           /* borrowed */
-  sparse_rows own;                /* rows of W where the set has none */
-  const sparse_rows *W;           /* the one or the other */
-  int *place;                     /* [m] in the system, -1: eliminated */
-  double *line;                   /* [m] the current row */
-  int n_touched, *touched;        /* [m] its entries */
-  unsigned char *is_touched;      /* [m] */
-  const double *d;                /* [m] borrowed */
-  double *rhs, *x;                /* [m] */
-  double *full;                   /* [m*m] rows of the system, one after the
-                                     other */
-  int *pivot;                     /* [m] */
-  sparse_rows rows;               /* the same where W is sparse */
-  int col_capacity, val_capacity; /* entries of rows */
-  double control[UMFPACK_CONTROL];
-};
-
-static int is_sparse(const step_matrix *s) { return s->full == NULL; }
-
-/* accepts NULL */
-static void step_matrix_free(step_matrix *s) {
-  if (s == NULL) return;
-  sparse_free(&s->own);
-  sparse_free(&s->rows);
-  void *const blocks[] = {s->place, s->line, s->touched, s->is_touched,
-                          s->rhs,   s->x,    s->full,    s->pivot};
-  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-    memory_free(blocks[k]);
-  memory_free(s);
-}
-
-static status step_matrix_new(const contact_problem *cp, const force_set *set,
-                              step_matrix **out) {
-  status st = OK;
-  step_matrix *s = NULL;
-  size_t m = (size_t)cp->m;
-  NEW(s, 1);
-  s->m = cp->m;
-  s->set = set;
-  s->W = &set->rows;
-  NEW(s->place, m);
-  NEW(s->line, m);
-  NEW(s->touched, m);
-  NEW(s->is_touched, m);
-  NEW(s->rhs, m);
-  NEW(s->x, m);
-  memory_count_suitesparse();
-  umfpack_di_defaults(s->control);
-  s->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
-  s->control[UMFPACK_IRSTEP] = 0;
-  if (set->rows.start != NULL) {
-    NEW(s->rows.start, m + 1);
-  } else {
-    TRY(compliance_rows(cp, &s->own));
-    s->W = &s->own;
-    NEW(s->full, m * m);
-    NEW(s->pivot, m);
-  }
-  *out = s;
-  s = NULL;
-done:
-  step_matrix_free(s);
-  return st;
-}
-
-/* A new matrix: acts[m], 0: row i is e_i; d[m] the right side, kept by the
- * caller until the solve. */
-static void step_matrix_begin(step_matrix *s, const unsigned char *acts,
-                              const double *d) {
-  s->k = 0;
-  s->d = d;
-  s->rows.n = 0;
-  for (int i = 0; i < s->m; ++i) s->place[i] = acts[i] ? s->k++ : -1;
-}
-
-/* Into the current row: value in column j; share times row j of W. */
-static void step_matrix_add(step_matrix *s, int j, double value) {
-  s->line[j] += value;
-  if (s->is_touched[j]) return;
-  s->is_touched[j] = 1;
-  s->touched[s->n_touched++] = j;
-}
-
-static void step_matrix_add_row(step_matrix *s, int j, double share) {
-  const sparse_rows *W = s->W;
-  for (int k = W->start[j]; k < W->start[j + 1]; ++k)
-    step_matrix_add(s, W->col[k], share * W->val[k]);
-}
-
-/* The entries of the current row in ascending order; the rows of W that they
- * come from ascend. */
-static void sort_touched(step_matrix *s) {
-  for (int a = 1; a < s->n_touched; ++a) {
-    int j = s->touched[a], b = a;
-    for (; b > 0 && s->touched[b - 1] > j; --b)
-      s->touched[b] = s->touched[b - 1];
-    s->touched[b] = j;
-  }
-}
-
-/* Contribution of the eliminated unknowns to the right side; their entries of
- * the line are cleared. */
-static double take_out(step_matrix *s, int i) {
-  double rhs = s->d[i];
-  for (int a = 0; a < s->n_touched; ++a) {
-    const int j = s->touched[a];
-    if (s->place[j] >= 0) continue;
-    rhs -= s->line[j] * s->d[j];
-    s->line[j] = 0.0;
-  }
-  return rhs;
-}
-
-static status put_sparse(step_matrix *s, int row) {
-  int n = s->rows.start[row];
-  for (int a = 0; a < s->n_touched; ++a) {
-    const int j = s->touched[a];
-    if (s->line[j] == 0.0) continue;
-    PASS_GROW(s->rows.col, n, s->col_capacity);
-    PASS_GROW(s->rows.val, n, s->val_capacity);
-    s->rows.col[n] = s->place[j];
-    s->rows.val[n++] = s->line[j];
-  }
-  s->rows.start[row + 1] = n;
-  return OK;
-}
-
-/* It is row i (with acts[i], in ascending order); the next one is empty.
- * Errors: ERR_MEMORY. */
-static status step_matrix_put(step_matrix *s, int i) {
-  status st = OK;
-  int row = s->place[i];
-  sort_touched(s);
-  s->rhs[row] = take_out(s, i);
-  if (is_sparse(s)) {
-    TRY(put_sparse(s, row));
-    goto done;
-  }
-  double *to = s->full + (size_t)row * (size_t)s->k;
-  memset(to, 0, (size_t)s->k * sizeof *to);
-  for (int a = 0; a < s->n_touched; ++a)
-    if (s->place[s->touched[a]] >= 0)
-      to[s->place[s->touched[a]]] = s->line[s->touched[a]];
-done:
-  for (int a = 0; a < s->n_touched; ++a) {
-    s->line[s->touched[a]] = 0.0;
-    s->is_touched[s->touched[a]] = 0;
-  }
-  s->n_touched = 0;
-  return st;
-}
-
-/* The rows one after the other are the transpose by columns. */
-static int solve_dense(step_matrix *s) {
-  int k = s->k;
-  memcpy(s->x, s->rhs, (size_t)k * sizeof *s->x);
-  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, k, k, s->full, k, s->pivot) != 0)
-    return 0;
-  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', k, 1, s->full, k, s->pivot, s->x,
-                      k);
-  return 1;
-}
-
-static status solve_sparse(step_matrix *s, int *singular) {
-  status st = OK;
-  double info[UMFPACK_INFO];
-  void *symbolic = NULL, *numeric = NULL;
-  const sparse_rows *a = &s->rows;
-  int k = s->k;
-  int end = umfpack_di_symbolic(k, k, a->start, a->col, a->val, &symbolic,
-                                s->control, info);
-  if (end == UMFPACK_OK)
-    end = umfpack_di_numeric(a->start, a->col, a->val, symbolic, &numeric,
-                             s->control, info);
-  if (end == UMFPACK_OK)
-    end = umfpack_di_solve(UMFPACK_At, a->start, a->col, a->val, s->x, s->rhs,
-                           numeric, s->control, info);
-  *singular = end != UMFPACK_OK;
-  if (end == UMFPACK_ERROR_out_of_memory)
-    FAIL(ERR_MEMORY, "memory exhausted: factor of %d sparse rows", k);
-done:
-  umfpack_di_free_symbolic(&symbolic);
-  umfpack_di_free_numeric(&numeric);
-  return st;
-}
-
-/* d <- inv(J) d; *singular = 1: not found. Errors: ERR_MEMORY. */
-static status step_matrix_solve(step_matrix *s, double *d, int *singular) {
-  *singular = 0;
-  if (s->k == 0) return OK;
-  if (is_sparse(s))
-    PASS(solve_sparse(s, singular));
-  else
-    *singular = !solve_dense(s);
-  for (int i = 0; i < s->m && !*singular; ++i)
-    if (s->place[i] >= 0) d[i] = s->x[s->place[i]];
-  return OK;
-}
 
 static const option proximal_options[] = {OPTION_END};
 
@@ -274,12 +70,19 @@ typedef struct proximal_work {
   force_set *set;
   best_iterate best;
   step_matrix *J;
-  unsigned char *acts;    /* [m] 1: the row of J is not that of the unit
-                             matrix */
-  double *x, *F, *d, *z;  /* [m] */
-  double *weight;         /* [m] of F, m/N */
-  double *start, *centre; /* [m] force at the start; of the pass */
-  double *before;         /* [m] end of the last pass */
+  unsigned char *acts;       /* [m] 1: the row of J is not that of the unit
+                                matrix */
+  double *x, *F, *d, *z;     /* [m] */
+  double *weight;            /* [m] of F, m/N */
+  double *start, *centre;    /* [m] force at the start; of the pass */
+  double *before;            /* [m] end of the last pass */
+  struct {                   /* of an operator */
+    operated_system *system; /* NULL: J */
+    pattern guess;           /* nodes that slip; pressures */
+    double *hold, *b;        /* [m] N/m, N */
+    double *du;              /* [m] m, with d */
+    double *start, *centre, *before; /* [m] displacements of those forces */
+  } by;
 } proximal_work;
 
 static void proximal_release(void *work) {
@@ -288,11 +91,26 @@ static void proximal_release(void *work) {
   force_set_free(w->set);
   best_iterate_free(&w->best);
   step_matrix_free(w->J);
-  void *const blocks[] = {w->x,     w->F,      w->d,      w->z,   w->weight,
-                          w->start, w->centre, w->before, w->acts};
-  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-    memory_free(blocks[k]);
-  memory_free(w);
+  operated_system_free(w->by.system);
+  pattern_free(&w->by.guess);
+  RELEASE(w->x, w->F, w->d, w->z, w->weight, w->start, w->centre, w->before,
+          w->acts);
+  RELEASE(w->by.hold, w->by.b, w->by.du, w->by.start, w->by.centre,
+          w->by.before, w);
+}
+
+/* Workspace of the steps of an operator. */
+static status new_steps(const contact_problem *cp, proximal_work *w) {
+  const size_t m = (size_t)cp->m;
+  PASS(operated_system_new(cp, &w->by.system));
+  PASS(pattern_new(cp->dim, cp->n, &w->by.guess));
+  PASS_NEW(w->by.hold, m);
+  PASS_NEW(w->by.b, m);
+  PASS_NEW(w->by.du, m);
+  PASS_NEW(w->by.start, m);
+  PASS_NEW(w->by.centre, m);
+  PASS_NEW(w->by.before, m);
+  return OK;
 }
 
 static status proximal_setup(const contact_problem *cp, const void *par,
@@ -304,7 +122,10 @@ static status proximal_setup(const contact_problem *cp, const void *par,
   NEW(w, 1);
   TRY(force_set_new(cp, &w->set));
   TRY(best_iterate_new(cp->m, &w->best));
-  TRY(step_matrix_new(cp, w->set, &w->J));
+  if (cp->op != NULL)
+    TRY(new_steps(cp, w));
+  else
+    TRY(step_matrix_new(cp, w->set, &w->J));
   NEW(w->x, m);
   NEW(w->F, m);
   NEW(w->d, m);
@@ -368,7 +189,7 @@ static double evaluate(run *s) {
   const force_set *set = w->set;
   double sum = 0.0;
   int count;
-  force_set_displacement(set, s->r, s->u);
+  if (cp->op == NULL) force_set_displacement(set, s->r, s->u);
   for (int i = 0; i < cp->m; ++i) {
     w->x[i] = s->u[i] - set->origin[i];
     w->z[i] = s->r[i] - s->stretch * (set->D[i] * w->x[i] +
@@ -462,14 +283,82 @@ static status fill_matrix(const run *s) {
   return OK;
 }
 
+/* ---- the equations of a step of an operator -------------------------------
+ */
+
+/* Tangents of a node that slips: its turning stiffness and the load. */
+static void put_slip(const run *s, int node_id, double length) {
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  const pattern *p = &w->by.guess;
+  const int first = node_id * cp->dim;
+  double *e = p->e + node_id * (cp->dim - 1) - 1, along = 0.0;
+  const double t = contact_node_limit(cp, s->r, node_id) / length;
+  const double q = 1.0 - (1.0 - s->stretch * s->share) * t;
+  p->mode[node_id] = SLIP;
+  p->kappa[node_id] = t * s->stretch * w->set->D[first + 1] / q;
+  for (int k = 1; k < cp->dim; ++k) {
+    e[k] = w->set->part[first + k] == IN_DISC ? w->z[first + k] / length : 0.0;
+    along += e[k] * w->F[first + k];
+  }
+  for (int k = 1; k < cp->dim; ++k)
+    w->by.b[first + k] = -(e[k] * along + (w->F[first + k] - e[k] * along) / q);
+}
+
+/* Row of an unknown that does not slip; fixed: its force is z. */
+static void put_row(const run *s, int dof, int fixed) {
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  const double scale = fixed ? s->stretch * s->share : 1.0;
+  w->by.guess.place[dof] = dof;
+  w->by.guess.closed[dof] =
+      w->set->part[dof] == PUSH && (s->r[dof] < 0.0 || w->z[dof] < 0.0);
+  w->by.hold[dof] = fixed ? w->set->D[dof] / s->share : 0.0;
+  w->by.b[dof] = -w->F[dof] / scale;
+  w->by.du[dof] = contact_held(cp, dof)
+                      ? cp->f[dof] / contact_diagonal(cp, dof) - s->u[dof]
+                      : 0.0;
+}
+
+static void put_node(const run *s, int node_id) {
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  int count;
+  const double length = tangent_length(s, node_id, &count);
+  const int slips = count > 0 && !is_idle(s, node_id) &&
+                    length > contact_node_limit(cp, s->r, node_id);
+  w->by.guess.mode[node_id] = FREE;
+  for (int dof = node_id * cp->dim; dof < (node_id + 1) * cp->dim; ++dof)
+    put_row(s, dof, w->acts[dof] && (w->set->part[dof] == PUSH || !slips));
+  if (slips) put_slip(s, node_id, length);
+}
+
+/* d and du of the rows that act. Forces that are to vanish do so exactly. */
+static status solve_operator(const run *s, int *singular) {
+  proximal_work *w = s->w;
+  const operated_rows rows = {&w->by.guess, w->by.hold, w->by.b};
+  PASS(operated_system_direction(w->by.system, s->cp, &rows, w->by.du, w->d,
+                                 singular));
+  *singular = 0;
+  for (int i = 0; i < s->cp->m; ++i)
+    if (!w->acts[i]) w->d[i] = -w->F[i];
+  return OK;
+}
+
 /* ---- steps ----------------------------------------------------------------
  */
+
+/* r and, of an operator, u by a part of the step. */
+static void move(run *s, double part) {
+  cblas_daxpy(s->cp->m, part, s->w->d, 1, s->r, 1);
+  if (s->cp->op != NULL) cblas_daxpy(s->cp->m, part, s->w->by.du, 1, s->u, 1);
+}
 
 /* Along d, shortened while |F|^2 is above "bound"; the last trial is taken. */
 static double search(run *s, double bound) {
   double t = 1.0, taken = 0.0, value = HUGE_VAL;
   for (int k = 0; k < HALVINGS; ++k, t *= 0.5) {
-    cblas_daxpy(s->cp->m, t - taken, s->w->d, 1, s->r, 1);
+    move(s, t - taken);
     taken = t;
     value = evaluate(s);
     if (value <= bound * (1.0 - SLOPE * t)) break;
@@ -477,15 +366,25 @@ static double search(run *s, double bound) {
   return value;
 }
 
-/* One step of Newton's method; *value NAN if there is none. */
-static status newton_step(run *s, double bound, double *value) {
+/* d of the equations at r. */
+static status direction(run *s, int *singular) {
   proximal_work *w = s->w;
-  int singular = 0;
-  *value = NAN;
+  if (s->cp->op != NULL) {
+    mark_rows(s);
+    for (int i = 0; i < s->cp->n; ++i) put_node(s, i);
+    return solve_operator(s, singular);
+  }
   for (int i = 0; i < s->cp->m; ++i) w->d[i] = -w->F[i];
   PASS(fill_matrix(s));
+  return step_matrix_solve(w->J, w->d, singular);
+}
+
+/* One step of Newton's method; *value NAN if there is none. */
+static status newton_step(run *s, double bound, double *value) {
+  int singular = 0;
+  *value = NAN;
   ++s->steps;
-  PASS(step_matrix_solve(w->J, w->d, &singular));
+  PASS(direction(s, &singular));
   if (!singular) *value = search(s, bound);
   return OK;
 }
@@ -521,9 +420,27 @@ static double next_share(double share, int steps) {
 
 /* The forces that close every gap and let nothing slip, for limits so large
  * that no step from zero leads there. */
+static status close_operator(run *s) {
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  int singular;
+  memset(w->centre, 0, (size_t)cp->m * sizeof *w->centre);
+  evaluate(s);
+  for (int i = 0; i < cp->n; ++i) w->by.guess.mode[i] = FREE;
+  for (int i = 0; i < cp->m; ++i) {
+    w->acts[i] = w->set->part[i] != NO_FORCE;
+    w->F[i] = w->acts[i] ? s->r[i] - w->z[i] : s->r[i];
+    put_row(s, i, w->acts[i]);
+  }
+  PASS(solve_operator(s, &singular));
+  move(s, 1.0);
+  return OK;
+}
+
 static status start_closed(run *s) {
   proximal_work *w = s->w;
   int m = s->cp->m, singular = 0;
+  if (s->cp->op != NULL) return close_operator(s);
   memset(s->r, 0, (size_t)m * sizeof *s->r);
   memset(w->centre, 0, (size_t)m * sizeof *w->centre);
   evaluate(s);
@@ -553,6 +470,47 @@ static void set_centre(run *s, int creeps) {
     w->before[i] = now;
     w->centre[i] = s->r[i];
   }
+  for (int i = 0; s->cp->op != NULL && i < s->cp->m; ++i) {
+    double now = s->u[i];
+    s->u[i] += ahead * (now - w->by.before[i]);
+    w->by.before[i] = now;
+    w->by.centre[i] = s->u[i];
+  }
+}
+
+/* The pass failed: where it began. */
+static void return_to_centre(run *s) {
+  const size_t bytes = (size_t)s->cp->m * sizeof *s->r;
+  memcpy(s->r, s->w->centre, bytes);
+  if (s->cp->op != NULL) memcpy(s->u, s->w->by.centre, bytes);
+}
+
+/* The start forces, of an operator with their displacements; of a body that
+ * contact alone holds the start displacements with their forces. */
+static status begin(run *s) {
+  const contact_problem *cp = s->cp;
+  const proximal_work *w = s->w;
+  const size_t bytes = (size_t)cp->m * sizeof *s->r;
+  memcpy(s->r, w->start, bytes);
+  if (cp->op == NULL) return OK;
+  operated_system_fit(w->by.system);
+  if (cp->floating) {
+    memcpy(s->u, w->by.start, bytes);
+    contact_reaction(cp, s->u, s->r);
+    return OK;
+  }
+  PASS(force_set_fit(w->set, cp));
+  force_set_displacement(w->set, s->r, s->u);
+  return OK;
+}
+
+/* Residual at r; of an operator r and A u - f have drifted apart by rounding.
+ */
+static double residual_of(const run *s) {
+  const contact_problem *cp = s->cp;
+  double *raw = cp->op != NULL ? s->w->by.b : NULL;
+  if (raw != NULL) contact_reaction(cp, s->u, raw);
+  return contact_mismatch(cp, s->scale, s->u, s->r, raw);
 }
 
 /* Passes from the start forces. */
@@ -561,13 +519,13 @@ static status trial(run *s, int limit, int closed, outcome *end) {
   size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   double lowest = HUGE_VAL, before = HUGE_VAL;
   int steps = 0, creeps = 0;
-  memcpy(s->r, w->start, bytes);
+  PASS(begin(s));
   if (closed) PASS(start_closed(s));
   *end = STOPPED_STAGNATION;
   for (int idle = 0; idle < PATIENCE; ++idle) {
     memcpy(w->centre, s->r, bytes);
     evaluate(s);
-    double residual = contact_mismatch(s->cp, s->scale, s->u, s->r, NULL);
+    double residual = residual_of(s);
     solver_keep_best(&w->best, s->cp->m, residual, s->u, s->r);
     solver_report_step(s->control, "proximal", s->steps, residual);
     *end = residual <= s->control->tol ? CONVERGED
@@ -584,7 +542,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
     set_centre(s, creeps);
     PASS(pass(s, evaluate(s), &steps));
     if (steps > PASS && s->share >= MOST_SHARE) break; /* would be repeated */
-    if (steps > PASS) memcpy(s->r, w->centre, bytes);
+    if (steps > PASS) return_to_centre(s);
     s->share = next_share(s->share, steps);
   }
   return OK;
@@ -601,9 +559,10 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   s.scale = contact_scale(cp);
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
-  force_set_fit(w->set, cp);
+  TRY(force_set_fit(w->set, cp));
   set_weights(w, cp);
   memcpy(w->start, r, (size_t)cp->m * sizeof *r);
+  if (cp->op != NULL) memcpy(w->by.start, u, (size_t)cp->m * sizeof *u);
   for (int k = 0; k < TRIALS && rep->outcome != CONVERGED; ++k) {
     if (k > 0 && (s.steps >= limit || control->no_restart)) break;
     int until = s.steps + TRIAL;
@@ -634,11 +593,11 @@ const solver_ops proximal_solver = {
     "share of its diagonal about the forces of the last pass. The share falls\n"
     "as the passes succeed. Needs no stiffness: the compliance may be\n"
     "semidefinite, with more contacts than bodies can move, and unsymmetric.\n"
-    "A step is a dense factorisation, a pass 2 to 20 steps. Choose it for\n"
+    "A step is a factorisation, a pass 2 to 20 steps. Choose it for\n"
     "problems from files where the sweeps and PCG do not reach the tolerance;\n"
     "for a body on its contact surface NEWTON is faster.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
-             SPARSE_COMPLIANCE,
+             SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
   .param_size = 0,
   .options = proximal_options,
   .setup = proximal_setup,

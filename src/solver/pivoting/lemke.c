@@ -472,6 +472,7 @@ const solver_ops lemke_solver = {
     "NEWTON or SOR. For up to some hundred contact nodes, and where other\n"
     "methods disagree or fail.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
+  .entries = "METHOD=LEMKE, which pivots on columns,",
   .param_size = sizeof(lemke),
   .options = lemke_options,
   .setup = lemke_setup,

@@ -1,0 +1,202 @@
+/* Matrix of a step of the proximal point iteration (step_matrix.h). */
+#include "solver/newton/step_matrix.h"
+
+#include "base/memory.h"
+
+#include <lapacke.h>
+#include <string.h>
+#include <umfpack.h>
+
+struct step_matrix {
+  int m, k;                       /* unknowns; of them in the system */
+  const force_set *set;           /* borrowed */
+  sparse_rows own;                /* rows of W where the set has none */
+  const sparse_rows *W;           /* the one or the other */
+  int *place;                     /* [m] in the system, -1: eliminated */
+  double *line;                   /* [m] the current row */
+  int n_touched, *touched;        /* [m] its entries */
+  unsigned char *is_touched;      /* [m] */
+  const double *d;                /* [m] borrowed */
+  double *rhs, *x;                /* [m] */
+  double *full;                   /* [m*m] rows of the system, one after the
+                                     other */
+  int *pivot;                     /* [m] */
+  sparse_rows rows;               /* the same where W is sparse */
+  int col_capacity, val_capacity; /* entries of rows */
+  double control[UMFPACK_CONTROL];
+};
+
+static int is_sparse(const step_matrix *s) { return s->full == NULL; }
+
+void step_matrix_free(step_matrix *s) {
+  if (s == NULL) return;
+  sparse_free(&s->own);
+  sparse_free(&s->rows);
+  void *const blocks[] = {s->place, s->line, s->touched, s->is_touched,
+                          s->rhs,   s->x,    s->full,    s->pivot};
+  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
+    memory_free(blocks[k]);
+  memory_free(s);
+}
+
+status step_matrix_new(const contact_problem *cp, const force_set *set,
+                       step_matrix **out) {
+  status st = OK;
+  step_matrix *s = NULL;
+  size_t m = (size_t)cp->m;
+  NEW(s, 1);
+  s->m = cp->m;
+  s->set = set;
+  s->W = &set->rows;
+  NEW(s->place, m);
+  NEW(s->line, m);
+  NEW(s->touched, m);
+  NEW(s->is_touched, m);
+  NEW(s->rhs, m);
+  NEW(s->x, m);
+  memory_count_suitesparse();
+  umfpack_di_defaults(s->control);
+  s->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
+  s->control[UMFPACK_IRSTEP] = 0;
+  if (set->rows.start != NULL) {
+    NEW(s->rows.start, m + 1);
+  } else {
+    TRY(compliance_rows(cp, &s->own));
+    s->W = &s->own;
+    NEW(s->full, m * m);
+    NEW(s->pivot, m);
+  }
+  *out = s;
+  s = NULL;
+done:
+  step_matrix_free(s);
+  return st;
+}
+
+void step_matrix_begin(step_matrix *s, const unsigned char *acts,
+                       const double *d) {
+  s->k = 0;
+  s->d = d;
+  s->rows.n = 0;
+  for (int i = 0; i < s->m; ++i) s->place[i] = acts[i] ? s->k++ : -1;
+}
+
+void step_matrix_add(step_matrix *s, int j, double value) {
+  s->line[j] += value;
+  if (s->is_touched[j]) return;
+  s->is_touched[j] = 1;
+  s->touched[s->n_touched++] = j;
+}
+
+void step_matrix_add_row(step_matrix *s, int j, double share) {
+  const sparse_rows *W = s->W;
+  for (int k = W->start[j]; k < W->start[j + 1]; ++k)
+    step_matrix_add(s, W->col[k], share * W->val[k]);
+}
+
+/* The entries of the current row in ascending order; the rows of W that they
+ * come from ascend. */
+static void sort_touched(step_matrix *s) {
+  for (int a = 1; a < s->n_touched; ++a) {
+    int j = s->touched[a], b = a;
+    for (; b > 0 && s->touched[b - 1] > j; --b)
+      s->touched[b] = s->touched[b - 1];
+    s->touched[b] = j;
+  }
+}
+
+/* Contribution of the eliminated unknowns to the right side; their entries of
+ * the line are cleared. */
+static double take_out(step_matrix *s, int i) {
+  double rhs = s->d[i];
+  for (int a = 0; a < s->n_touched; ++a) {
+    const int j = s->touched[a];
+    if (s->place[j] >= 0) continue;
+    rhs -= s->line[j] * s->d[j];
+    s->line[j] = 0.0;
+  }
+  return rhs;
+}
+
+static status put_sparse(step_matrix *s, int row) {
+  int n = s->rows.start[row];
+  for (int a = 0; a < s->n_touched; ++a) {
+    const int j = s->touched[a];
+    if (s->line[j] == 0.0) continue;
+    PASS_GROW(s->rows.col, n, s->col_capacity);
+    PASS_GROW(s->rows.val, n, s->val_capacity);
+    s->rows.col[n] = s->place[j];
+    s->rows.val[n++] = s->line[j];
+  }
+  s->rows.start[row + 1] = n;
+  return OK;
+}
+
+status step_matrix_put(step_matrix *s, int i) {
+  status st = OK;
+  int row = s->place[i];
+  sort_touched(s);
+  s->rhs[row] = take_out(s, i);
+  if (is_sparse(s)) {
+    TRY(put_sparse(s, row));
+    goto done;
+  }
+  double *to = s->full + (size_t)row * (size_t)s->k;
+  memset(to, 0, (size_t)s->k * sizeof *to);
+  for (int a = 0; a < s->n_touched; ++a)
+    if (s->place[s->touched[a]] >= 0)
+      to[s->place[s->touched[a]]] = s->line[s->touched[a]];
+done:
+  for (int a = 0; a < s->n_touched; ++a) {
+    s->line[s->touched[a]] = 0.0;
+    s->is_touched[s->touched[a]] = 0;
+  }
+  s->n_touched = 0;
+  return st;
+}
+
+/* The rows one after the other are the transpose by columns. */
+static int solve_dense(step_matrix *s) {
+  int k = s->k;
+  memcpy(s->x, s->rhs, (size_t)k * sizeof *s->x);
+  if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, k, k, s->full, k, s->pivot) != 0)
+    return 0;
+  LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', k, 1, s->full, k, s->pivot, s->x,
+                      k);
+  return 1;
+}
+
+static status solve_sparse(step_matrix *s, int *singular) {
+  status st = OK;
+  double info[UMFPACK_INFO];
+  void *symbolic = NULL, *numeric = NULL;
+  const sparse_rows *a = &s->rows;
+  int k = s->k;
+  int end = umfpack_di_symbolic(k, k, a->start, a->col, a->val, &symbolic,
+                                s->control, info);
+  if (end == UMFPACK_OK)
+    end = umfpack_di_numeric(a->start, a->col, a->val, symbolic, &numeric,
+                             s->control, info);
+  if (end == UMFPACK_OK)
+    end = umfpack_di_solve(UMFPACK_At, a->start, a->col, a->val, s->x, s->rhs,
+                           numeric, s->control, info);
+  *singular = end != UMFPACK_OK;
+  if (end == UMFPACK_ERROR_out_of_memory)
+    FAIL(ERR_MEMORY, "memory exhausted: factor of %d sparse rows", k);
+done:
+  umfpack_di_free_symbolic(&symbolic);
+  umfpack_di_free_numeric(&numeric);
+  return st;
+}
+
+status step_matrix_solve(step_matrix *s, double *d, int *singular) {
+  *singular = 0;
+  if (s->k == 0) return OK;
+  if (is_sparse(s))
+    PASS(solve_sparse(s, singular));
+  else
+    *singular = !solve_dense(s);
+  for (int i = 0; i < s->m && !*singular; ++i)
+    if (s->place[i] >= 0) d[i] = s->x[s->place[i]];
+  return OK;
+}

@@ -1,0 +1,144 @@
+/*
+ * The methods on a stiffness known by products and solves (operated_case.h),
+ * next to unit/conformance: options, held unknowns, the order of AUTO, refused
+ * memory.
+ */
+#include "base/memory.h"
+#include "support/operated_case.h"
+#include "support/solver_rows.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A method with an option of it, or without. */
+typedef struct variant {
+  const char *solver, *option, *value;
+} variant;
+static const variant variants[] = {{"newton", NULL, NULL},
+                                   {"auglag", "VARIANT", "NEWTON"},
+                                   {"auglag", "VARIANT", "UZAWA"},
+                                   {"proximal", NULL, NULL},
+                                   {"pcg", "PRECONDITIONER", "FACE"},
+                                   {"pcg", "PRECONDITIONER", "DIAGONAL"},
+                                   {"lagrange", "ACCELERATION", "NESTEROV"},
+                                   {"lagrange", "ACCELERATION", "NONE"},
+                                   {NULL, NULL, NULL}};
+enum { VARIANTS = sizeof variants / sizeof *variants };
+
+/* From u, r; what was tried in log[1024], or NULL. */
+static status solve(const variant *v, contact_case *c, int max_iter,
+                    solver_report *rep, char *log) {
+  double param[PARAM_SIZE / sizeof(double)] = {0.0};
+  contact_solver *s = NULL;
+  solver_choice choice = {
+      .ops = v->solver != NULL ? solver_find(v->solver) : NULL,
+      .param = param,
+      .tol = 1e-11,
+      .max_iter = max_iter};
+  if (choice.ops != NULL) option_defaults(choice.ops->options, param);
+  if (v->option != NULL) set_option(choice.ops, param, v->option, v->value);
+  status st = contact_solver_new(&choice, &s);
+  if (st == OK) st = contact_solve(s, &c->cp, NULL, c->u, c->r, rep);
+  if (st == OK && log != NULL) snprintf(log, 1024, "%s", contact_solver_log(s));
+  contact_solver_free(s);
+  return st;
+}
+
+/* A symmetric half of a block, whose last contact node is held along x. */
+static contact_case half_block(double mu) {
+  const case_block_data d = {.columns = 12,
+                             .layers = 6,
+                             .symmetric = 1,
+                             .nu = 0.3,
+                             .mu = mu,
+                             .top = {0, -1e-3},
+                             .left = {1.2e-3, 0}};
+  return case_block(&d);
+}
+
+/* The held unknown is moved by its own row. */
+START_TEST(held_unknowns_are_solved_for_alone) {
+  contact_case c = half_block(0.4);
+  solver_report rep;
+  int held = 0;
+  for (int i = 0; i < c.cp.m; ++i) held += contact_held(&c.cp, i);
+  ck_assert_int_eq(held, 1);
+  operated_case *o = operated_new(&c);
+  case_cold(&c);
+  ck_assert_int_eq(solve(&variants[_i], &c, 0, &rep, NULL), OK);
+  ck_assert_int_eq(rep.outcome, CONVERGED);
+  ck_assert_double_le(case_violation(&c, c.u, c.r), 1e-9);
+  operated_free(o, &c);
+  case_free(&c);
+}
+END_TEST
+
+/* In space, where slip turns, and in the plane; a warm start of a solver that
+ * has solved another load. */
+START_TEST(variants_solve) {
+  for (int k = 0; k < 4; ++k) {
+    contact_case c = case_any(2 + k % 2, 9, 0.3, k / 2, 700u + (unsigned)k);
+    solver_report rep;
+    operated_case *o = operated_new(&c);
+    for (int load = 0; load < 2; ++load) {
+      ck_assert_int_eq(solve(&variants[_i], &c, 0, &rep, NULL), OK);
+      ck_assert_int_eq(rep.outcome, CONVERGED);
+      ck_assert_double_le(case_violation(&c, c.u, c.r), 1e-9);
+      for (int i = 0; i < c.cp.m; ++i) c.f[i] *= i % 2 ? 1.3 : 0.8;
+    }
+    operated_free(o, &c);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Those that need no entries come first. */
+START_TEST(entries_are_formed_last) {
+  static const char *const order[] = {
+      "newton: ", "newton along", "auglag: ", "proximal: ", "pcg: ", "sor: "};
+  char log[1024];
+  contact_case c = case_any(3, 12, 1.5, 0, 41);
+  operated_case *o = operated_new(&c);
+  solver_report rep;
+  const char *at = log;
+  case_cold(&c);
+  ck_assert_int_eq(solve(&variants[VARIANTS - 1], &c, 1, &rep, log), OK);
+  for (size_t i = 0; i < sizeof order / sizeof *order; ++i) {
+    at = strstr(at, order[i]);
+    ck_assert_msg(at != NULL, "%s not in its place: %s", order[i], log);
+  }
+  operated_free(o, &c);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(refused_memory_is_given_back) {
+  contact_case c = half_block(0.4);
+  operated_case *o = operated_new(&c);
+  status st = ERR_MEMORY;
+  for (long k = 1; st != OK; ++k) {
+    const size_t before = memory_in_use();
+    solver_report rep;
+    case_cold(&c);
+    memory_refuse(k, 0);
+    st = solve(&variants[_i], &c, 0, &rep, NULL);
+    memory_refuse(0, 0);
+    status_clear();
+    ck_assert(st == OK || st == ERR_MEMORY);
+    ck_assert_uint_eq(memory_in_use(), before);
+  }
+  operated_free(o, &c);
+  case_free(&c);
+}
+END_TEST
+
+int main(void) {
+  TCase *all = tcase_create("operated");
+  tcase_set_timeout(all, UNIT_SECONDS);
+  tcase_add_loop_test(all, held_unknowns_are_solved_for_alone, 0, VARIANTS);
+  tcase_add_loop_test(all, variants_solve, 0, VARIANTS);
+  tcase_add_test(all, entries_are_formed_last);
+  tcase_add_loop_test(all, refused_memory_is_given_back, 0, VARIANTS);
+  return unit_run("operated", all);
+}
