@@ -26,10 +26,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <time.h>
-#include <unistd.h>
 
 enum { LADDER = 9, MAX_REPEATS = 200 };
 static const double TOL = 1e-8, ENOUGH = 0.2, SHORT = 1e-4; /* -; s; s */
@@ -53,12 +49,6 @@ static double *numbers(int n) {
   double *x = calloc((size_t)n + 1, sizeof *x);
   if (x == NULL) abort();
   return x;
-}
-
-static double cpu(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* Normal forces push the other way there. */
@@ -178,46 +168,16 @@ static double least(timed *run, const struct kernel *k, double tol) {
   return best;
 }
 
-typedef struct answer {
-  double cpu, map; /* s, HUGE_VAL: none; - */
-} answer;
-
-static answer try_kernel(const struct kernel *k, double most) {
-  answer a = {HUGE_VAL, HUGE_VAL};
+static result try_kernel(const struct kernel *k, double most) {
+  result a = {HUGE_VAL, HUGE_VAL};
   double spent = 0.0, tol = 1e-4;
   for (int i = 0; i < LADDER && spent < 3.0 * most; ++i, tol *= 0.1) {
     spent += run_kernel(k, tol);
-    a.map = natural_map(peers.cp, peers.u, peers.r);
-    if (!(a.map <= TOL)) continue;
+    a.measure = natural_map(peers.cp, peers.u, peers.r);
+    if (!(a.measure <= TOL)) continue;
     a.cpu = least(run_kernel, k, tol);
     break;
   }
-  return a;
-}
-
-/* A kernel that crashes or never ends takes only its own process with it. */
-static answer apart(const struct kernel *k, double most) {
-  int ends[2];
-  answer a = {HUGE_VAL, HUGE_VAL};
-  fflush(stdout);
-  if (pipe(ends) != 0) exit(EXIT_FAILURE);
-  pid_t child = fork();
-  if (child == 0) {
-    rlim_t s = (rlim_t)(2.0 + 4.0 * most);
-    struct rlimit time = {s, s}, core = {0, 0};
-    setrlimit(RLIMIT_CPU, &time);
-    setrlimit(RLIMIT_CORE, &core);
-    if (freopen("/dev/null", "w", stdout) == NULL ||
-        freopen("/dev/null", "w", stderr) == NULL)
-      _exit(1);
-    a = try_kernel(k, most);
-    _exit(write(ends[1], &a, sizeof a) != sizeof a);
-  }
-  close(ends[1]);
-  if (child < 0 || read(ends[0], &a, sizeof a) != sizeof a)
-    a = (answer){HUGE_VAL, NAN};
-  close(ends[0]);
-  if (child > 0) waitpid(child, NULL, 0);
   return a;
 }
 
@@ -236,19 +196,20 @@ static void line(const char *name) {
   const contact_problem *cp = peers.cp;
   double own = least(run_auto, NULL, TOL);
   double map = natural_map(cp, peers.u, peers.r);
-  answer best = {HUGE_VAL, HUGE_VAL};
+  result best = {HUGE_VAL, HUGE_VAL};
   const char *who = "-";
   for (int i = 0; i < N_KERNEL; ++i) {
     if (kernels[i].kind != (cp->dim == 2 ? PLANE : SOLID)) continue;
-    answer a = apart(&kernels[i], fmin(HOPELESS * own, 2.0 * best.cpu));
+    result a = kernel_apart(try_kernel, &kernels[i],
+                            fmin(HOPELESS * own, 2.0 * best.cpu));
     if (peers.verbose)
-      printf("    %-8s %10.6f %8.1e\n", kernels[i].name, a.cpu, a.map);
+      printf("    %-8s %10.6f %8.1e\n", kernels[i].name, a.cpu, a.measure);
     if (!(a.cpu < best.cpu)) continue;
     best = a;
     who = kernels[i].name;
   }
   printf("%-40.40s %dD %5d %10.6f %8.1e  %-8s %10.6f %8.1e %7.2f\n", name,
-         cp->dim, cp->n, own, map, who, best.cpu, best.map, own / best.cpu);
+         cp->dim, cp->n, own, map, who, best.cpu, best.measure, own / best.cpu);
   fflush(stdout);
   if (!(map <= 10.0 * TOL) || !(best.cpu < HUGE_VAL)) return;
   count(&all, own / best.cpu);

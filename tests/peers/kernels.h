@@ -5,6 +5,13 @@
 #include <Friction_cst.h>
 #include <SolverOptions.h>
 #include <lcp_cst.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
 
 typedef enum { LCP, PLANE, SOLID } problem_kind;
 
@@ -59,6 +66,47 @@ static inline SolverOptions *kernel_options(const struct kernel *k,
   o->dparam[SICONOS_DPARAM_TOL] = tol;
   o->iparam[SICONOS_IPARAM_MAX_ITER] = 100000;
   return o;
+}
+
+typedef struct result {
+  double cpu, measure; /* s, HUGE_VAL: no answer; residual or natural map, - */
+} result;
+
+typedef result kernel_try(const struct kernel *k, double most);
+
+/* CPU of this thread, s: the kernels have one, and the clock of a process under
+ * a limit moves by ticks. */
+static inline double cpu(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A kernel that crashes or never ends takes only its own process with it. */
+static inline result kernel_apart(kernel_try *attempt, const struct kernel *k,
+                                  double most) {
+  int ends[2];
+  result a = {HUGE_VAL, HUGE_VAL};
+  fflush(stdout);
+  if (pipe(ends) != 0) exit(EXIT_FAILURE);
+  pid_t child = fork();
+  if (child == 0) {
+    rlim_t s = (rlim_t)(2.0 + 4.0 * most);
+    struct rlimit time = {s, s}, core = {0, 0};
+    setrlimit(RLIMIT_CPU, &time);
+    setrlimit(RLIMIT_CORE, &core);
+    if (freopen("/dev/null", "w", stdout) == NULL ||
+        freopen("/dev/null", "w", stderr) == NULL)
+      _exit(1);
+    a = attempt(k, most);
+    _exit(write(ends[1], &a, sizeof a) != sizeof a);
+  }
+  close(ends[1]);
+  if (child < 0 || read(ends[0], &a, sizeof a) != sizeof a)
+    a = (result){HUGE_VAL, NAN};
+  close(ends[0]);
+  if (child > 0) waitpid(child, NULL, 0);
+  return a;
 }
 
 #endif
