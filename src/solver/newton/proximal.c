@@ -53,7 +53,7 @@ enum {
   HALVINGS = 10   /* of a step */
 };
 static const double PASS_GAIN =
-    0x1p-7; /* |F|^2 after a pass, over that before, - */
+    0x1p-2; /* |F|^2 after a pass, over that before, - */
 static const double SLOPE = 0x1p-12;       /* of the descent required, - */
 static const double CREEP = 0.75;          /* residual after a pass, - */
 static const double LEAST_SHARE = 0x1p-40; /* - */
