@@ -13,7 +13,7 @@ enum {
   POWER_STEPS = 12, /* of the estimate of its end */
   SAMPLES = 8       /* of the estimate of its mean */
 };
-static const double SURE = 2.0;   /* -, times the estimate: a bound */
+static const double SURE = 2.0;   /* -, times an estimate: a bound */
 static const double SPARSE = 0.1; /* -, share of entries that are not zero */
 static const double NOTHING = 0x1p-40; /* -, diagonal over its column */
 
@@ -170,13 +170,14 @@ static double mean_of_spectrum(const force_set *s, double *v, double *z) {
   return sum / SAMPLES;
 }
 
-/* The step where there are no entries to bound the spectrum by. */
+/* D and the step where there are no entries: those of D W_ii that are not the
+ * mean are below 1 too, as PROXIMAL wants them. */
 static status step_of_operator(force_set *s, const contact_problem *cp,
                                double *v, double *z) {
   PASS_NEW(s->image, cp->m);
   PASS(force_set_fit(s, cp));
   const double mean = mean_of_spectrum(s, v, z);
-  for (int i = 0; i < cp->m && mean > 0.0; ++i) s->D[i] /= mean;
+  for (int i = 0; i < cp->m && mean > 0.0; ++i) s->D[i] /= SURE * mean;
   const double largest = force_set_spectrum(s, v, z);
   s->step = largest > 0.0 ? 1.0 / (SURE * largest) : 0.0;
   return OK;

@@ -33,14 +33,10 @@ static int is_out(const operated_case *o, int i) {
   return o->known[i] || contact_held(&o->of, i);
 }
 
-/* Springs on the motions, where no row is known. */
+/* Springs at as many unknowns as there are motions, where no row is known. */
 static void hold_motions(operated_case *o) {
-  const int m = o->of.m;
   for (int k = 0; k < o->op.n_kernel; ++k)
-    for (int j = 0; j < m; ++j)
-      for (int i = 0; i < m; ++i)
-        o->M[i + m * j] +=
-            o->diagonal[0] * o->kernel[i + m * k] * o->kernel[j + m * k];
+    o->M[o->pin[k] * (o->of.m + 1)] += o->diagonal[o->pin[k]];
 }
 
 /* Rows that are out have their diagonal alone. */
@@ -116,6 +112,25 @@ static void find_kernel(operated_case *o) {
   anchor_free(&an);
 }
 
+/* Unknowns whose rows of the motions are independent: elimination, the largest
+ * entry first. */
+static void choose_pins(operated_case *o) {
+  const int m = o->of.m, n = o->op.n_kernel;
+  double *R = calloc((size_t)(m * n), sizeof *R);
+  memcpy(R, o->kernel, (size_t)(m * n) * sizeof *R);
+  for (int k = 0; k < n; ++k) {
+    int best = 0;
+    for (int i = 1; i < m; ++i)
+      if (fabs(R[i + m * k]) > fabs(R[best + m * k])) best = i;
+    o->pin[k] = best;
+    for (int l = k + 1; l < n; ++l) {
+      const double part = R[best + m * l] / R[best + m * k];
+      for (int i = 0; i < m; ++i) R[i + m * l] -= part * R[i + m * k];
+    }
+  }
+  free(R);
+}
+
 operated_case *operated_new(contact_case *c) {
   operated_case *o = calloc(1, sizeof *o);
   const contact_problem *dense = &o->of;
@@ -141,7 +156,10 @@ operated_case *operated_new(contact_case *c) {
                              .solve = solve,
                              .set_response = set_response,
                              .response = response};
-  if (dense->floating) find_kernel(o);
+  if (dense->floating) {
+    find_kernel(o);
+    choose_pins(o);
+  }
   c->cp.A = NULL;
   c->cp.op = &o->op;
   return o;

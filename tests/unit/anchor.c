@@ -122,6 +122,32 @@ START_TEST(modes_are_the_rigid_motions) {
 }
 END_TEST
 
+/* The springs of an operator: a solve is the inverse of a product. */
+START_TEST(springs_of_an_operator_are_in_its_inverse) {
+  enum { M = 3 * NODES };
+  double x[M], b[M], u[M], Au[M], Ax[M];
+  contact_case c = truss(0.5, x);
+  operated_case *o = operated_new(&c);
+  const known_rows none = {0};
+  unsigned long long seed = 7;
+  anchor an = {0};
+  int singular = 1;
+  ck_assert_int_eq(anchor_make(&c.cp, &an), OK);
+  ck_assert_int_eq(an.missing, 0);
+  for (int i = 0; i < M; ++i) b[i] = case_random(&seed) - 0.4;
+  ck_assert_int_eq(an.op.set_rows(an.op.ctx, &none, &singular), OK);
+  an.op.solve(an.op.ctx, b, u, Au);
+  an.op.apply(an.op.ctx, u, Ax);
+  for (int i = 0; i < M; ++i) {
+    ck_assert_double_eq_tol(Ax[i], b[i], 1e-11);
+    ck_assert_double_eq_tol(Au[i], b[i], 1e-11);
+  }
+  anchor_free(&an);
+  operated_free(o, &c);
+  case_free(&c);
+}
+END_TEST
+
 /* ---- a block on a floor --------------------------------------------------
  */
 
@@ -255,6 +281,7 @@ START_TEST(refused_memory_is_given_back) {
 END_TEST
 
 UNIT_MAIN("anchor", truss_stands_by_statics, truss_stands_by_products_alone,
+          springs_of_an_operator_are_in_its_inverse,
           modes_are_the_rigid_motions, two_bodies_stand_apart,
           block_falls_to_its_floor, drift_is_told_as_a_ray,
           factors_of_two_change_no_bit, refused_memory_is_given_back)
