@@ -217,16 +217,21 @@ END_TEST
 
 /* A stiffness that is an operator: its factors are made again. */
 START_TEST(factor_goes_on) {
-  int changes, all;
-  job both[2];
-  for (int k = 0; k < 2; ++k)
-    both[k] = small_flat(0.4, "", "AUTO, STIFFNESS=FACTOR");
-  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
-  ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
-                   130);
-  goes_on(&both[1], 0, "factor");
-  same_files(&both[0], &both[1], "factor");
-  for (int k = 0; k < 2; ++k) job_end(&both[k]);
+  static const char *const methods[] = {"AUTO", "AUGLAG", "PROXIMAL", "PCG",
+                                        "LAGRANGE"};
+  for (size_t m = 0; m < sizeof methods / sizeof *methods; ++m) {
+    char choice[60];
+    int changes, all;
+    job both[2];
+    snprintf(choice, sizeof choice, "%s, STIFFNESS=FACTOR", methods[m]);
+    for (int k = 0; k < 2; ++k) both[k] = small_flat(0.4, "", choice);
+    ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
+    ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
+                     130);
+    goes_on(&both[1], 0, methods[m]);
+    same_files(&both[0], &both[1], methods[m]);
+    for (int k = 0; k < 2; ++k) job_end(&both[k]);
+  }
 }
 END_TEST
 
