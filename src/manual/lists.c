@@ -36,8 +36,10 @@ static void list_solvers(FILE *out) {
     const solver_ops *s = solver_list[i];
     fputc('\n', out);
     list_plugin(s->name, s->reference, s->help, s->options, out);
-    fprintf(out, "  works with STIFFNESS=DENSE%s\n",
-            s->entries == NULL ? " and FACTOR" : " alone");
+    if (s->entries == NULL)
+      fputs("  works with STIFFNESS=DENSE and FACTOR\n", out);
+    else
+      fprintf(out, "  %s needs the entries: STIFFNESS=DENSE\n", s->entries);
   }
 }
 

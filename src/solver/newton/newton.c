@@ -360,7 +360,7 @@ const solver_ops newton_solver = {
   .help =
     "Semismooth Newton method on the natural map of contact and friction,\n"
     "written as a primal-dual active set. Each step guesses which nodes are\n"
-    "open, stick or slip, solves one dense linear system in the displacements\n"
+    "open, stick or slip, solves one linear system in the displacements\n"
     "that are free under the guess, and corrects the guess. Friction follows\n"
     "the pressure inside the step; in 3-D the slip turns with the exact\n"
     "derivative of the friction disc. Typically 5 to 15 steps from a cold and\n"
