@@ -4,6 +4,7 @@
  * messages are made.
  */
 #include "mesh/build.h"
+#include "mesh/refine/refine.h"
 
 #include "base/memory.h"
 #include "base/system/input.h"
@@ -190,6 +191,16 @@ done:
   return st;
 }
 
+static status refine(const mesh_source *source, raw_mesh *raw) {
+  const mesh *of = source->sizes[0].of;
+  const refine_request request = {
+      {of->dim, of->n_node, of->n_elem, of->x, of->elem, source->sizes[0].at},
+      source->scale,
+      source->n_round,
+      source->rounds};
+  return raw_refine(raw, &request);
+}
+
 int mesh_is_program(const char *file) { return ends_in(file, ".geo"); }
 
 status mesh_read_gmsh(const mesh_source *source, const place *at,
@@ -203,6 +214,8 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
     TRY(read_geo(source, head, at, log, &raw));
   else
     TRY(read_msh(source, head, at, log, &raw));
+  if (source->sizes[0].of != NULL && !mesh_is_program(source->file))
+    TRY(refine(source, raw));
   raw->meets = source->meets;
   raw->made = mesh_is_program(source->file);
   TRY(build_mesh(raw, source->scale, at, log, out));

@@ -79,8 +79,11 @@ typedef struct mesh_source {
   int n_number;
   const mesh_number *numbers; /* [n_number] for a .geo */
   /* A .geo meshed again: the lengths its elements shall have, the least of
-   * those at the nodes of earlier meshes of it; NULL: those of the .geo. */
+   * those at the nodes of earlier meshes of it; NULL: those of the .geo. A .msh
+   * is refined to the first of them (mesh/refine/refine.h). */
   mesh_sizes sizes[MESH_SIZES];
+  int n_round;               /* groups of a .msh whose faces may be curved */
+  const char *const *rounds; /* [n_round] their names */
   int meets; /* 1: its bodies meet, no warning where they touch or overlap */
 } mesh_source;
 

@@ -24,6 +24,7 @@
 static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
 static const double BLIND = 0.5; /* -, of the error, without an estimate */
+enum { BLIND_PASSES = 3 };       /* without one at all, at most */
 static const double ENDS = 2.0;  /* -, of an estimate that is not reliable for
                                     the ends of contact */
 
@@ -139,7 +140,9 @@ void aims_evaluate(aims *a, const model *m) {
   a->least = fmin(a->least, most);
 }
 
-int aims_stand_still(const aims *a) { return aims_count(a) && a->in_vain > 1; }
+int aims_stand_still(const aims *a) {
+  return aims_count(a) && a->in_vain > (isfinite(a->least) ? 1 : BLIND_PASSES);
+}
 
 void aims_check(const aims *a, const model *m, char *why, size_t size) {
   why[0] = '\0';

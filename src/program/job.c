@@ -28,12 +28,26 @@ static status check_safe_mesh(const model *m) {
   return message_status(m->log, ERR_DECK);
 }
 
+/* Surfaces in contact, names[2*n.contact]; not cracks, which are straight
+ * between their nodes. */
+static int find_rounds(const model *m, const char **names) {
+  int n = 0;
+  for (int i = 0; i < m->n.contact; ++i) {
+    const contact *c = &m->contacts[i];
+    if (c->is_crack) continue;
+    names[n++] = c->is_pair ? c->pair.group[0] : c->group;
+    if (c->is_pair) names[n++] = c->pair.group[1];
+  }
+  return n;
+}
+
 /* Numbers of the deck go to a .geo under their own names. */
 static status read_mesh(const job_mesh *other, job_input *in) {
   status st = OK;
   const model *m = in->m;
   double cpu = timer_cpu();
   mesh_number *numbers = NULL;
+  const char **rounds = NULL;
   int n = 0;
   TRY(check_safe_mesh(m));
   NEW(numbers, m->deck->n_symbol);
@@ -41,6 +55,7 @@ static status read_mesh(const job_mesh *other, job_input *in) {
     if (m->deck->symbols[i].in_geometry)
       numbers[n++] =
           (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
+  NEW(rounds, 2 * m->n.contact);
   timer_enter(STAGE_MESH);
   if ((model_has_target(m) || m->steps[0].nested) && job_is_geo(m))
     mesh_gmsh_load();
@@ -51,10 +66,12 @@ static status read_mesh(const job_mesh *other, job_input *in) {
                         .numbers = numbers,
                         .meets = model_has_pairs(m)};
   if (other != NULL) memcpy(source.sizes, other->sizes, sizeof source.sizes);
+  source.n_round = find_rounds(m, rounds);
+  source.rounds = rounds;
   st = mesh_read_gmsh(&source, &m->mesh.at, m->log, &in->msh);
   timer_leave(STAGE_MESH);
 done:
-  memory_free(numbers);
+  RELEASE(numbers, rounds);
   return st;
 }
 

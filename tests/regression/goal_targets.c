@@ -4,6 +4,8 @@
  * 54,000 nodes; what stops the passes, and what they tell.
  */
 #include "support/job.h"
+#include "support/mesh_file.h"
+#include "support/msh_write.h"
 #include "support/unit.h"
 
 #include <math.h>
@@ -303,7 +305,49 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
 }
 END_TEST
 
-UNIT_MAIN("goal_targets", forecasts_of_goals_are_near_the_passes,
+/* The mesh of the file is refined; its contact stays on the circle. */
+START_TEST(msh_of_a_cylinder_is_refined) {
+  static const mesh_number few[] = {{"NC", 2}, {"R", 10}, {"A", A_H}};
+  const mesh_source source = {.file = "input/hertz_line/hertz_line.geo",
+                              .scale = 1.0,
+                              .n_number = 3,
+                              .numbers = few};
+  char path[200];
+  job j = job_begin("line");
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *m = mesh_file_from(&f, &source);
+  ck_assert_msg(m != NULL, "%s", f.messages);
+  snprintf(path, sizeof path, "%s/line.msh", j.dir);
+  msh_write(path, m);
+  mesh_free(m);
+  mesh_file_close(&f);
+  job_write(&j, "line.inp",
+            "*MESH, FILE=line.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"
+            "210.D3, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL\n"
+            "*OBSTACLE, NAME=PLANE, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=LINE, GROUP=CONTACT, OBSTACLE=PLANE, "
+            "NORMAL=OBSTACLE\n"
+            "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE, TARGET=1 %%\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
+            "TOP, P, 50.\n*PRINT, CONTACT, GOALS\n*OUTPUT, HDF5=NO\n"
+            "*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "value"), P_H, 0.01 * P_H);
+  ck_assert_int_gt(c.n_row, 15);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(
+        hypot(dat_at(&c, i, "x"), dat_at(&c, i, "y") - 10.0), 10.0, 1e-12);
+  dat_free(&t);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("goal_targets", msh_of_a_cylinder_is_refined,
+          forecasts_of_goals_are_near_the_passes,
           every_goal_is_within_its_target, peak_of_the_sphere_in_space,
           force_and_slip_of_the_block, targets_out_of_reach_say_why,
           zero_needs_a_target_in_its_unit)

@@ -128,7 +128,8 @@ START_TEST(structured_geometry_is_made_finer) {
 }
 END_TEST
 
-START_TEST(mesh_without_geometry_is_named) {
+/* A .msh is refined; --estimate-cost meshes again and needs a .geo. */
+START_TEST(mesh_without_geometry_is_refined) {
   static const char msh[] =
       MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
           "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
@@ -137,10 +138,35 @@ START_TEST(mesh_without_geometry_is_named) {
   job j = job_begin("square");
   job_write(&j, "square.msh", "%s", msh);
   job_write(&j, "square.inp", "*MESH, FILE=square.msh\n%s", square_deck);
-  ck_assert_int_eq(job_run(&j, ""), 1);
-  ck_assert_ptr_nonnull(strstr(j.errors, "give the .geo"));
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  ck_assert_double_gt(job_told(&j, "unknowns"), 20.0);
   ck_assert_int_eq(job_run(&j, "--estimate-cost"), 2);
   ck_assert_ptr_nonnull(strstr(j.errors, ".geo"));
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(values_at_nodes_keep_the_mesh) {
+  static const char msh[] =
+      MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
+          "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
+          "4\n1 1 2 1 1 1 2\n2 1 2 2 3 3 4\n3 2 2 3 1 1 2 3\n"
+          "4 2 2 3 1 1 3 4\n");
+  job j = job_begin("square");
+  job_write(&j, "square.msh", "%s", msh);
+  job_write(&j, "heat.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$NodeData\n1\n\"T\"\n"
+            "1\n0.\n3\n0\n1\n4\n1 1.\n2 2.\n3 3.\n4 4.\n$EndNodeData\n");
+  job_write(&j, "square.inp",
+            "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*EXPANSION\n1.E-3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n"
+            "*TEMPERATURE, FILE=heat.msh\nBODY\n*ACCURACY, TARGET=8\n"
+            "*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  ck_assert_msg(strstr(j.errors, "values at its nodes") != NULL, "%s",
+                j.errors);
   job_end(&j);
 }
 END_TEST
@@ -375,8 +401,9 @@ END_TEST
 
 UNIT_MAIN("target", target_is_reached_in_truth,
           limits_stop_with_the_best_there_is, structured_geometry_is_made_finer,
-          mesh_without_geometry_is_named, forecast_is_near_the_truth,
-          increments_are_made_shorter, least_increment_is_made_shorter_too,
+          mesh_without_geometry_is_refined, values_at_nodes_keep_the_mesh,
+          forecast_is_near_the_truth, increments_are_made_shorter,
+          least_increment_is_made_shorter_too,
           order_at_a_sharp_edge_is_that_of_three_meshes,
           flow_has_its_share_of_the_target,
           exact_solution_costs_one_pass_and_no_forecast,

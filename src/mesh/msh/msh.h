@@ -1,6 +1,7 @@
 /*
  * Reader of .msh files: the sections of the versions 2.2 and 4.1 become blocks
- * of elements, groups and nodes of a raw mesh. Inside src/mesh/msh only.
+ * of elements, groups and nodes of a raw mesh. Inside src/mesh/msh, but for the
+ * table of ids.
  */
 #ifndef PROTIS_MSH_MSH_H
 #define PROTIS_MSH_MSH_H

@@ -1,0 +1,36 @@
+/*
+ * Sizes, surfaces and cells of a refinement. Inside src/mesh/refine only.
+ */
+#ifndef PROTIS_REFINE_PARTS_H
+#define PROTIS_REFINE_PARTS_H
+
+#include "mesh/msh/msh.h"
+#include "mesh/refine/refine.h"
+
+/* ---- sizes.c: the size at a place ---------------------------------------- */
+
+typedef struct size_grid size_grid;
+/* *out is new. ERR_MEMORY. */
+status size_grid_new(const refine_sizes *s, size_grid **out);
+void size_grid_free(size_grid *g); /* accepts NULL */
+/* m; beyond the mesh about that of the nearest element. */
+double size_grid_at(const size_grid *g, const double *x);
+
+/* ---- round.c: where the middle of an edge is ----------------------------
+ */
+
+/* Faces of groups that may be curved: lines in the plane, triangles. */
+typedef struct surface_faces {
+  int n, n_node;   /* faces, nodes of each */
+  const int *node; /* [n*n_node] */
+} surface_faces;
+
+typedef struct round_surface round_surface;
+/* x[3*n_all]; *out is new. ERR_MEMORY. */
+status round_surface_new(const surface_faces *f, int n_all, const double *x,
+                         round_surface **out);
+void round_surface_free(round_surface *s); /* accepts NULL */
+/* middle[3] of the edge a, b; 1: it is not the mean of both. */
+int round_surface_middle(const round_surface *s, int a, int b, double *middle);
+
+#endif

@@ -1,0 +1,372 @@
+/*
+ * src/mesh/refine: bisection of meshes of a .msh. Its meshes are conforming, of
+ * the same measure where they are polyhedra, on circles and spheres where they
+ * were, and no worse in shape than half of the smallest angle.
+ */
+#include "base/memory.h"
+#include "support/grid.h"
+#include "support/mesh_file.h"
+#include "support/msh_write.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- scenes -----------------------------------------------------------------
+ */
+
+/* The mesh again with elements of "size" at the nodes of m; NULL: of m itself.
+ */
+static mesh *read_again(mesh_file *f, const mesh *m, const double *size) {
+  static const char *const rounds[] = {"BOTTOM", "RIGHT", "FRONT"};
+  const mesh_source source = {.file = mesh_file_path(f, "grid.msh"),
+                              .scale = 1.0,
+                              .sizes = {{size == NULL ? NULL : m, size}},
+                              .n_round = m->dim == 2 ? 2 : 1,
+                              .rounds = rounds + (m->dim == 2 ? 0 : 2)};
+  mesh *out = mesh_file_from(f, &source);
+  ck_assert_msg(out != NULL, "%s", f->messages);
+  return out;
+}
+
+typedef double size_at(const double *x);
+
+static mesh *refine(mesh_file *f, const mesh *m, size_at *wanted) {
+  double *size = calloc((size_t)m->n_node, sizeof *size);
+  for (int i = 0; i < m->n_node; ++i) size[i] = wanted(m->x + m->dim * i);
+  mesh *out = read_again(f, m, size);
+  free(size);
+  return out;
+}
+
+static double near_origin(const double *x) {
+  return 0.02 + 0.2 * hypot(x[0], x[1]);
+}
+static double finer_there(const double *x) {
+  return 0.003 + 0.1 * hypot(x[0], x[1]);
+}
+static double near_in_space(const double *x) {
+  return 0.15 + 0.2 * hypot(x[0], hypot(x[1], x[2]));
+}
+static double finer_in_space(const double *x) {
+  return 0.02 + 0.2 * hypot(x[0], hypot(x[1], x[2]));
+}
+static double fine(const double *x) {
+  (void)x;
+  return 0.03;
+}
+static double large(const double *x) {
+  (void)x;
+  return 9.0;
+}
+
+/* ---- what holds of every mesh ----------------------------------------------
+ */
+
+static int by_nodes(const void *a_, const void *b_) {
+  const int *a = a_, *b = b_;
+  for (int k = 0; k < 3; ++k)
+    if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
+  return 0;
+}
+
+/* Sides of one element are all in groups of the border: no node hangs. */
+static void check_conforming(const mesh *m) {
+  const int n = m->n_elem * (m->dim + 1);
+  int(*side)[3] = calloc((size_t)n, sizeof *side), single = 0, border = 0;
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int a = 0; a <= m->dim; ++a) {
+      int *s = side[e * (m->dim + 1) + a], used = 0;
+      s[2] = -1;
+      for (int b = 0; b <= m->dim; ++b)
+        if (b != a) s[used++] = m->elem[(m->dim + 1) * e + b];
+      for (int p = 0; p < m->dim; ++p)
+        for (int q = 0; q < m->dim - 1; ++q)
+          if (s[q] > s[q + 1]) {
+            const int swap = s[q];
+            s[q] = s[q + 1];
+            s[q + 1] = swap;
+          }
+    }
+  qsort(side, (size_t)n, sizeof *side, by_nodes);
+  for (int k = 0; k < n;) {
+    int same = 1;
+    while (k + same < n && by_nodes(side[k], side[k + same]) == 0) ++same;
+    ck_assert_int_le(same, 2);
+    single += same == 1;
+    k += same;
+  }
+  free(side);
+  for (int k = 0; k < m->n_face; ++k) border += m->face_other[k] < 0;
+  ck_assert_int_eq(single, border);
+}
+
+static double measure(const mesh *m) {
+  double sum = 0.0;
+  for (int e = 0; e < m->n_elem; ++e) sum += mesh_elem_measure(m, e);
+  return sum;
+}
+
+static double measure_of(const mesh *m, const char *name) {
+  const mesh_group *g = mesh_find_group(m, name);
+  double sum = 0.0, normal[3];
+  ck_assert_ptr_nonnull(g);
+  for (int k = 0; k < g->n_item; ++k)
+    sum += mesh_face_normal(m, g->item_id[k], normal);
+  return sum;
+}
+
+/* Smallest angle of the triangles. */
+static double sharpest(const mesh *m) {
+  double least = 4.0;
+  for (int e = 0; e < m->n_elem; ++e)
+    for (int a = 0; a < 3; ++a) {
+      const int *v = m->elem + 3 * e;
+      const double *o = m->x + 2 * v[a], *p = m->x + 2 * v[(a + 1) % 3],
+                   *q = m->x + 2 * v[(a + 2) % 3];
+      const double c[2] = {p[0] - o[0], p[1] - o[1]};
+      const double d[2] = {q[0] - o[0], q[1] - o[1]};
+      least = fmin(least, atan2(fabs(c[0] * d[1] - c[1] * d[0]),
+                                c[0] * d[0] + c[1] * d[1]));
+    }
+  return least;
+}
+
+/* The least quality of tetrahedra, 1 of a regular one: measure over that of the
+ * same sum of squared edges. */
+static double worst_shape(const mesh *m) {
+  double least = 1.0;
+  for (int e = 0; e < m->n_elem; ++e) {
+    double squares = 0.0;
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b)
+        for (int c = 0; c < 3; ++c) {
+          const int *v = m->elem + 4 * e;
+          const double d = m->x[3 * v[a] + c] - m->x[3 * v[b] + c];
+          squares += d * d;
+        }
+    least = fmin(least, mesh_elem_measure(m, e) * 6.0 * sqrt(2.0) /
+                            pow(squares / 6.0, 1.5));
+  }
+  return least;
+}
+
+/* ---- tests ------------------------------------------------------------------
+ */
+
+START_TEST(square_is_refined_to_its_sizes) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL), *once = refine(&f, m, near_origin);
+  mesh *twice = refine(&f, once, finer_there);
+  const mesh *all[] = {once, twice};
+  for (int k = 0; k < 2; ++k) {
+    const mesh *r = all[k];
+    check_conforming(r);
+    ck_assert_double_eq_tol(measure(r), 0.8, 1e-14);
+    ck_assert_double_eq_tol(measure_of(r, "LEFT"), 0.8, 1e-14);
+    ck_assert_double_eq_tol(measure_of(r, "TOP"), 1.0, 1e-14);
+    ck_assert_double_ge(sharpest(r), 0.5 * sharpest(m) - 1e-12);
+    for (int e = 0; e < r->n_elem; ++e) {
+      double x[2] = {0.0, 0.0};
+      for (int a = 0; a < 3; ++a)
+        for (int c = 0; c < 2; ++c)
+          x[c] += r->x[2 * r->elem[3 * e + a] + c] / 3.0;
+      const double length = sqrt(mesh_elem_measure(r, e) * 4.0 / sqrt(3.0));
+      ck_assert_double_le(length,
+                          1.3 * (k == 0 ? near_origin : finer_there)(x));
+    }
+  }
+  ck_assert_int_gt(twice->n_elem, 2 * once->n_elem);
+  ck_assert_int_lt(twice->n_elem, 4000);
+  /* Nodes that were there keep number and place. */
+  for (int i = 0; i < m->n_node; ++i) {
+    int k = 0;
+    while (k < twice->n_node && twice->node_no[k] != m->node_no[i]) ++k;
+    ck_assert_int_lt(k, twice->n_node);
+    ck_assert_double_eq(twice->x[2 * k], m->x[2 * i]);
+    ck_assert_double_eq(twice->x[2 * k + 1], m->x[2 * i + 1]);
+  }
+  mesh_free(twice);
+  mesh_free(once);
+  mesh_free(m);
+  mesh_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* The neighbours of elements that are bisected are bisected at their longest
+ * edge first, or they would get ever sharper. */
+START_TEST(angles_keep_half_of_the_smallest) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_2d((int[]){3, 12}, (double[]){1.0, 0.8});
+  for (int i = 0; i < grid->n_node; ++i)
+    grid->x[2 * i] += 0.9 * grid->x[2 * i + 1];
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, finer_there);
+  mesh *more = refine(&f, r, finer_there);
+  check_conforming(more);
+  ck_assert_double_ge(sharpest(more), 0.5 * sharpest(m) - 1e-12);
+  mesh_free(more);
+  mesh_free(r);
+  mesh_free(m);
+  mesh_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
+START_TEST(nothing_gets_larger) {
+  mesh_file f;
+  const char *what = NULL;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8});
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL), *same = refine(&f, m, large);
+  ck_assert_msg(mesh_same(m, same, 0.0, &what), "%s", what);
+  mesh_free(same);
+  mesh_free(m);
+  mesh_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
+START_TEST(box_is_refined) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_3d((int[]){2, 3, 2}, (double[]){1.0, 1.2, 0.7});
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL), *once = refine(&f, m, near_in_space);
+  mesh *twice = refine(&f, once, finer_in_space);
+  check_conforming(once);
+  check_conforming(twice);
+  ck_assert_double_eq_tol(measure(twice), 0.84, 1e-13);
+  ck_assert_double_eq_tol(measure_of(twice, "FRONT"), 1.2, 1e-13);
+  ck_assert_double_eq_tol(measure_of(twice, "LEFT"), 0.84, 1e-13);
+  ck_assert_int_gt(twice->n_elem, 2 * once->n_elem);
+  ck_assert_double_ge(worst_shape(twice), 0.2 * worst_shape(m));
+  mesh_free(twice);
+  mesh_free(once);
+  mesh_free(m);
+  mesh_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* Below x = 1 the bottom of the square becomes an arc of the radius 2 that goes
+ * over into a straight line. */
+static void bend(mesh *m) {
+  for (int i = 0; i < m->n_node; ++i) {
+    double *x = m->x + 2 * i;
+    const double turn = fmin(x[0] - 1.0, 0.0) / 2.0, up = x[1];
+    const double low[2] = {x[0] < 1.0 ? 1.0 + 2.0 * sin(turn) : x[0],
+                           2.0 - 2.0 * cos(turn)};
+    x[0] = low[0];
+    x[1] = low[1] + up * (1.0 - low[1]);
+  }
+}
+
+/* New nodes are on the arc; what is straight and the corner to the group RIGHT,
+ * which may be curved too, stay. */
+START_TEST(surfaces_in_contact_are_followed) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
+  bend(grid);
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, fine);
+  const mesh_group *low = mesh_find_group(r, "BOTTOM");
+  const mesh_group *side = mesh_find_group(r, "RIGHT");
+  double worst = 0.0;
+  check_conforming(r);
+  ck_assert_int_gt(low->n_node, 40);
+  for (int k = 0; k < low->n_node; ++k) {
+    const double *x = r->x + 2 * low->node_id[k];
+    if (x[0] < 1.0)
+      worst = fmax(worst, fabs(hypot(x[0] - 1.0, x[1] - 2.0) - 2.0));
+    else
+      ck_assert_double_eq(x[1], 0.0);
+  }
+  ck_assert_double_le(worst, 1e-5);
+  for (int k = 0; k < side->n_node; ++k)
+    ck_assert_double_eq(r->x[2 * side->node_id[k]], 2.0);
+  /* The line, not in a group that may be curved, is what it was. */
+  ck_assert_double_eq_tol(measure_of(r, "LEFT"), measure_of(m, "LEFT"), 1e-14);
+  mesh_free(r);
+  mesh_free(m);
+  mesh_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* A quarter of a cap of the radius 2, with the planes x = 0 and y = 0. */
+START_TEST(sphere_is_followed) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_3d((int[]){4, 4, 2}, (double[]){0.8, 0.8, 0.6});
+  for (int i = 0; i < grid->n_node; ++i) {
+    double *x = grid->x + 3 * i;
+    const double low = 2.0 - sqrt(4.0 - x[0] * x[0] - x[1] * x[1]);
+    x[2] = low + x[2] / 0.6 * (0.6 - low);
+  }
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL), *r = refine(&f, m, finer_in_space);
+  const mesh_group *low = mesh_find_group(r, "FRONT");
+  const mesh_group *plane = mesh_find_group(r, "LEFT");
+  double worst = 0.0, chord = 0.2 * 0.2 / 16.0;
+  check_conforming(r);
+  for (int k = 0; k < low->n_node; ++k) {
+    const double *x = r->x + 3 * low->node_id[k];
+    worst = fmax(worst, fabs(hypot(hypot(x[0], x[1]), x[2] - 2.0) - 2.0));
+  }
+  ck_assert_int_gt(low->n_node, 60);
+  ck_assert_double_le(worst, 0.01 * chord);
+  for (int k = 0; k < plane->n_node; ++k)
+    ck_assert_double_eq_tol(r->x[3 * plane->node_id[k]], 0.0, 1e-15);
+  mesh_free(r);
+  mesh_free(m);
+  mesh_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
+START_TEST(each_refused_request_is_an_error_and_frees_all) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_2d((int[]){2, 2}, (double[]){1.0, 1.0});
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL);
+  double size[9];
+  for (int i = 0; i < 9; ++i) size[i] = 0.4;
+  const mesh_source source = {.file = mesh_file_path(&f, "grid.msh"),
+                              .scale = 1.0,
+                              .sizes = {{m, size}}};
+  message_log *log;
+  const place at = {.file = "job.inp", .line_no = 1, .column_no = 1};
+  ck_assert_int_eq(message_log_new(&log), OK);
+  for (long k = 1, refused = 1; refused; ++k) {
+    const size_t before = memory_in_use();
+    const long start = memory_requests();
+    mesh *r;
+    memory_refuse(k, 0);
+    const status st = mesh_read_gmsh(&source, &at, log, &r);
+    refused = k <= memory_requests() - start;
+    memory_refuse(0, 0);
+    ck_assert_int_eq(st, refused ? ERR_MEMORY : OK);
+    ck_assert((r == NULL) == refused);
+    mesh_free(r);
+    ck_assert_uint_eq(memory_in_use(), before);
+  }
+  message_log_free(log);
+  mesh_free(m);
+  mesh_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
+UNIT_MAIN("refine", square_is_refined_to_its_sizes,
+          angles_keep_half_of_the_smallest, nothing_gets_larger, box_is_refined,
+          surfaces_in_contact_are_followed, sphere_is_followed,
+          each_refused_request_is_an_error_and_frees_all)
