@@ -18,7 +18,7 @@ enum { COLUMNS = 32, NOTES = 16000, JOBS = 16, CPU_SECONDS = 1800 };
 
 typedef struct column {
   char label[4];
-  char solver[24], integrator[24];
+  char solver[32], integrator[24];
   int velocity;
 } column;
 
@@ -28,6 +28,9 @@ static int make_columns(column *c) {
   for (int i = 0; solver_list[i] != NULL; ++i, ++n)
     snprintf(c[n].solver, sizeof c->solver, "%s", solver_list[i]->name);
   c[n++] = (column){"Fac", "AUTO, STIFFNESS=FACTOR", "", 0};
+  c[n++] = (column){"Fau", "AUGLAG, STIFFNESS=FACTOR", "", 0};
+  c[n++] = (column){"Fpr", "PROXIMAL, STIFFNESS=FACTOR", "", 0};
+  c[n++] = (column){"Fpc", "PCG, STIFFNESS=FACTOR", "", 0};
   c[n++] = (column){"Vel", "AUTO", "", 1};
   for (int i = 0; scheme_list[i] != NULL; ++i, ++n) {
     snprintf(c[n].solver, sizeof c->solver, "AUTO");
