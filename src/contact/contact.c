@@ -138,7 +138,8 @@ double contact_bound(const contact_problem *cp, int dof) {
 
 double contact_stick(const contact_problem *cp, int dof) {
   int node_id = dof / cp->dim, k = dof % cp->dim;
-  return cp->ut0 == NULL ? 0.0 : cp->ut0[node_id * (cp->dim - 1) + k - 1];
+  const int slides = cp->ut0 != NULL && k > 0;
+  return slides ? cp->ut0[node_id * (cp->dim - 1) + k - 1] : 0.0;
 }
 
 /* ---- stiffness of a node ----------------------------------------------- */

@@ -154,20 +154,22 @@ double force_set_spectrum(const force_set *s, double *v, double *z) {
   return largest;
 }
 
-/* Mean of D_i W_ii, by vectors of random signs (Hutchinson 1989). */
+/* Mean of D_i W_ii, by vectors of random signs (Hutchinson 1989). Roots are
+ * taken of ratios: of a D in another unit they would round otherwise. */
 static double mean_of_spectrum(const force_set *s, double *v, double *z) {
   const int m = s->cp->m;
-  double sum = 0.0;
+  double sum = 0.0, largest = 0.0;
   unsigned seed = 1;
+  for (int i = 0; i < m; ++i) largest = fmax(largest, s->D[i]);
   for (int k = 0; k < SAMPLES; ++k) {
     for (int i = 0; i < m; ++i) {
       seed = next_random(seed);
-      v[i] = seed >> 31 ? sqrt(s->D[i]) : -sqrt(s->D[i]);
+      v[i] = seed >> 31 ? sqrt(s->D[i] / largest) : -sqrt(s->D[i] / largest);
     }
     force_set_product(s, v, z);
     for (int i = 0; i < m; ++i) sum += v[i] * z[i] / m;
   }
-  return sum / SAMPLES;
+  return largest * sum / SAMPLES;
 }
 
 /* D and the step where there are no entries: those of D W_ii that are not the

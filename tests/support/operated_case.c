@@ -39,13 +39,16 @@ static void hold_motions(operated_case *o) {
     o->M[o->pin[k] * (o->of.m + 1)] += o->diagonal[o->pin[k]];
 }
 
-/* Rows that are out have their diagonal alone. */
+/* Rows that are out have their diagonal alone; all times the power of two that
+ * makes a square root free of the unit. */
 static void take_out(operated_case *o) {
   const int m = o->of.m;
   for (int j = 0; j < m; ++j)
-    for (int i = 0; i < m; ++i)
-      if (is_out(o, i) || is_out(o, j))
-        o->M[i + m * j] = i == j ? o->diagonal[i] : 0;
+    for (int i = 0; i < m; ++i) {
+      double *entry = o->M + i + m * j;
+      if (is_out(o, i) || is_out(o, j)) *entry = i == j ? o->diagonal[i] : 0;
+      *entry *= o->power;
+    }
 }
 
 /* Of the factor, over the entry it comes from. */
@@ -53,7 +56,7 @@ static double least_pivot(const operated_case *o) {
   const int m = o->of.m;
   double least = HUGE_VAL;
   for (int i = 0; i < m; ++i)
-    least = fmin(least, pow(o->M[i + m * i], 2) / o->diagonal[i]);
+    least = fmin(least, pow(o->M[i + m * i], 2) / (o->power * o->diagonal[i]));
   return least;
 }
 
@@ -83,6 +86,7 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
         o->y[i] -= o->of.A[i + m * j] * x[j];
     if (is_out(o, i)) o->y[i] = 0;
   }
+  for (int i = 0; i < m; ++i) o->y[i] *= o->power;
   LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', m, 1, o->M, m, o->y, m);
   for (int i = 0; i < m; ++i)
     if (!is_out(o, i)) x[i] = o->y[i];
@@ -135,6 +139,7 @@ operated_case *operated_new(contact_case *c) {
   operated_case *o = calloc(1, sizeof *o);
   const contact_problem *dense = &o->of;
   const size_t m = (size_t)c->cp.m;
+  int exponent;
   o->of = c->cp;
   o->known = calloc(m, 1);
   o->M = calloc(m * m, sizeof *o->M);
@@ -144,6 +149,8 @@ operated_case *operated_new(contact_case *c) {
   for (size_t i = 0; i < m; ++i)
     o->diagonal[i] =
         (contact_held(dense, (int)i) ? 1 : LARGER) * dense->A[i * (m + 1)];
+  frexp(o->diagonal[0], &exponent);
+  o->power = ldexp(1, -exponent);
   ck_assert_int_eq(contact_bodies_new(dense, &o->bodies), OK);
   o->op = (contact_operator){.ctx = o,
                              .diagonal = o->diagonal,

@@ -15,6 +15,7 @@ typedef struct operated_case {
   unsigned char *known; /* [m]                                                */
   double *M, *y;        /* [m*m] factor of the free rows; [m]                 */
   double *diagonal, *room, *kernel;
+  double power; /* of two, over the diagonal                                  */
   int pin[6]; /* unknowns with springs where no row is known                  */
 } operated_case;
 

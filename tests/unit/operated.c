@@ -123,6 +123,31 @@ START_TEST(steps_are_as_many_as_by_the_entries) {
 }
 END_TEST
 
+/* A unit of force and one of length: A by 2^41, f by 2^28. */
+START_TEST(factors_of_two_change_no_bit) {
+  for (int k = 0; k < 2; ++k) {
+    contact_case c = case_any(2 + k, 9, 0.3, 0, 80u),
+                 d = case_any(2 + k, 9, 0.3, 0, 80u);
+    solver_report one, two;
+    const int m = c.cp.m;
+    for (int j = 0; j < m * m; ++j) d.A[j] = ldexp(c.A[j], 41);
+    for (int j = 0; j < m; ++j) d.f[j] = ldexp(c.f[j], 28);
+    for (int j = 0; j < c.cp.n; ++j) d.gap[j] = ldexp(c.gap[j], -13);
+    for (int j = 0; j < m - c.cp.n; ++j) d.ut0[j] = ldexp(c.ut0[j], -13);
+    operated_case *o = operated_new(&c), *q = operated_new(&d);
+    ck_assert_int_eq(solve(&variants[_i], &c, 0, &one, NULL), OK);
+    ck_assert_int_eq(solve(&variants[_i], &d, 0, &two, NULL), OK);
+    ck_assert_int_eq(one.iterations, two.iterations);
+    for (int j = 0; j < m; ++j)
+      ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
+    operated_free(o, &c);
+    operated_free(q, &d);
+    case_free(&c);
+    case_free(&d);
+  }
+}
+END_TEST
+
 /* Those that need no entries come first. */
 START_TEST(entries_are_formed_last) {
   static const char *const order[] = {
@@ -169,6 +194,7 @@ int main(void) {
   tcase_add_loop_test(all, held_unknowns_are_solved_for_alone, 0, VARIANTS);
   tcase_add_loop_test(all, variants_solve, 0, VARIANTS);
   tcase_add_loop_test(all, steps_are_as_many_as_by_the_entries, 0, 4);
+  tcase_add_loop_test(all, factors_of_two_change_no_bit, 0, VARIANTS);
   tcase_add_test(all, entries_are_formed_last);
   tcase_add_loop_test(all, refused_memory_is_given_back, 0, VARIANTS);
   return unit_run("operated", all);
