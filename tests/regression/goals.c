@@ -426,32 +426,43 @@ START_TEST(slip_that_changes_its_sense_is_an_end) {
 }
 END_TEST
 
-/* A tube under a pressure from inside (Lame), in plane strain: energy and
- * displacement. */
-START_TEST(goals_of_a_ring_count_the_hoop) {
+/* A tube under a pressure from inside (Lame), in plane strain: energy,
+ * displacement, mean radial stress. Its elements vary in hoop strain and turn:
+ * with their means alone the last two estimates are 1.7 and -0.9 of the error.
+ * On coarse ones the band has what is left. */
+static void check_ring(int fine) {
   static const double widens = 1.3 / 1000.0 * 10.0 / 3.0 * (0.4 + 4.0);
   job j = job_begin("ring");
   job_write(&j, "ring.geo",
-            "h = 0.2;\nPoint(1) = {1, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
+            "h = %g;\nPoint(1) = {1, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
             "Point(3) = {2, 1, 0, h};\nPoint(4) = {1, 1, 0, h};\n"
             "For k In {1 : 4}\n  Line(k) = {k, k %% 4 + 1};\nEndFor\n"
             "Curve Loop(1) = {1 ... 4};\nPlane Surface(1) = {1};\n"
             "Physical Surface(\"TUBE\") = {1};\n"
             "Physical Curve(\"INSIDE\") = {4};\n"
-            "Physical Curve(\"FACES\") = {1, 3};\n");
+            "Physical Curve(\"FACES\") = {1, 3};\n",
+            fine ? 0.1 : 0.25);
   job_write(&j, "ring.inp",
             "*MESH, FILE=ring.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=TUBE, MATERIAL=M, TYPE=CAX3\n"
             "*GOAL, NAME=E, QUANTITY=ENERGY\n"
             "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=INSIDE, COMPONENT=1\n"
+            "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=TUBE, COMPONENT=XX\n"
             "*STEP\n*STATIC\n*BOUNDARY\nFACES, 2\n*DSLOAD\nINSIDE, P, 10.\n"
             "*PRINT, GOALS\n*END STEP\n");
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   check_goal(&j, 0, 10.0 * acos(-1.0) * widens, 0.8, 1.5, 1.0);
-  check_goal(&j, 1, widens, 0.5, 2.0, 1.0);
+  check_goal(&j, 1, widens, fine ? 0.7 : 0.2, 1.3, 1.0);
+  check_goal(&j, 2, 10.0 / 3.0 * (1.0 - 8.0 / 3.0 * log(2.0)), fine ? 0.7 : 0.5,
+             fine ? 1.3 : 1.5, 1.2);
   ck_assert_double_lt(told_of(&j, 1).band, 0.01 * widens);
   job_end(&j);
+}
+
+START_TEST(goals_of_a_ring_count_the_hoop) {
+  check_ring(1);
+  check_ring(0);
 }
 END_TEST
 

@@ -136,9 +136,11 @@ void goal_estimator_force(goal_estimator *e, double *F);
  *
  * b = 4 la lb the bubble of the edge and d the part of u in it, from recovered
  * gradients; on closed edges d_n is that of the gap, and d_t = 0 where they
- * stick. product[n_elem] or NULL: the share of each element in out->product.
+ * stick. In axisymmetric elements at points, as strains vary within them. of_u:
+ * J is the energy, and tau the stress of u there. product[n_elem] or NULL: the
+ * share of each element in out->product.
  */
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
-                          double *product, goal_estimate *out);
+                          int of_u, double *product, goal_estimate *out);
 
 #endif

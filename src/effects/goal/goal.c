@@ -237,7 +237,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   double solver;
   PASS(solve(r, s, &solver));
   PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
-                          product_of(r, own, id), &e));
+                          f->is_square, product_of(r, own, id), &e));
   if (!isfinite(e.error)) return OK;
   if (f->factor.n > 0) {
     const goal_flux flux = {f->factor.n, f->factor.elem,
@@ -246,6 +246,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   }
   e.error += f->curved;
   e.magnitude += fabs(f->curved);
+  e.error += f->is_square ? 0.0 : e.hoop;
   if (f->is_square) {
     e.error += 0.5 * (goal_estimator_energy(s->estimator) + e.hoop);
     e.hoop = 0.0;
