@@ -24,7 +24,8 @@ typedef struct contact_operator {
   int n_body;
   const double *kernel; /* [m*n_kernel] orthonormal motions without energy */
   int n_kernel;
-  double *room; /* [2*m] workspace of the contact problem */
+  double *room;             /* [2*m] workspace of the contact problem */
+  double unknowns, entries; /* of the matrix that is factored; of its factor */
   /* Au[m] = A u. */
   void (*apply)(void *ctx, const double *u, double *Au);
   /* Au[m] as apply, and in size[m] the sums of the magnitudes of its terms. */

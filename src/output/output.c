@@ -69,7 +69,7 @@ static status open_new(output *o) {
   PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
   if (o->dat == NULL) PASS(remove_old(o, "dat"));
   PASS(sta_header(&o->o, &o->sta));
-  cvg_header(&o->cvg);
+  cvg_header(&o->o, &o->cvg);
   PASS(text_check(&o->cvg));
   PASS(listing_open(&j, &o->lst));
   return open_hdf5(o, NULL);

@@ -154,7 +154,7 @@ done:
 
 static void sink_iteration(void *ctx, const solver_step *s) {
   output *o = ctx;
-  cvg_line(o->run.n_increment + 1, o->attempt, s, &o->cvg);
+  cvg_line(&o->o, (cvg_place){o->run.n_increment + 1, o->attempt}, s, &o->cvg);
 }
 
 static status sink_rejected(void *ctx, const state *s, const char *why) {

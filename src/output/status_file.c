@@ -83,23 +83,40 @@ status sta_line(const output_options *o, const state *s, const char *why,
   return text_check(sta);
 }
 
-void cvg_header(text_file *cvg) {
-  fprintf(cvg->f, "%-7s %3s %-9s %6s %6s %10s %8s %12s %5s\n", "#total", "att",
-          "solver", "iter", "limit", "residual", "changes", "limit_change",
-          "cycle");
+void cvg_header(const output_options *o, text_file *cvg) {
+  fprintf(cvg->f, "%-7s %3s %-9s %6s %6s %10s %8s %12s %5s %10s %10s %6s",
+          "#total", "att", "solver", "iter", "limit", "residual", "changes",
+          "limit_change", "cycle", "unknowns", "entries", "solves");
+  fprintf(cvg->f, "%s\n", o->no_timing ? "" : "    cpu[s]");
+}
+
+/* The linear system of an iteration, or "-" in each column. */
+static void cvg_linear(const output_options *o, const linear_work *w,
+                       text_file *cvg) {
+  if (w->unknowns > 0.0)
+    fprintf(cvg->f, " %10.0f %10.0f %6d", w->unknowns, w->entries, w->solves);
+  else
+    fprintf(cvg->f, " %10s %10s %6s", "-", "-", "-");
+  if (!o->no_timing && w->unknowns > 0.0)
+    fprintf(cvg->f, " %9.6f", w->cpu);
+  else if (!o->no_timing)
+    fprintf(cvg->f, " %9s", "-");
+  fputc('\n', cvg->f);
 }
 
 /* Unknown values are "-". */
-void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg) {
+void cvg_line(const output_options *o, cvg_place at, const solver_step *s,
+              text_file *cvg) {
   char residual[NUMBER_SIZE] = "-", change[NUMBER_SIZE] = "-";
   char changes[16] = "-";
   if (!isnan(s->residual)) text_number(residual, s->residual, 3);
   if (!isnan(s->limit_change)) text_number(change, s->limit_change, 3);
   if (s->status_changes >= 0)
     snprintf(changes, sizeof changes, "%d", s->status_changes);
-  fprintf(cvg->f, "%7d %3d %-9s %6d %6d %10s %8s %12s %5s\n", total_no, attempt,
-          s->solver != NULL ? s->solver : "-", s->iteration, s->limit_update,
-          residual, changes, change, s->cycle ? "YES" : "no");
+  fprintf(cvg->f, "%7d %3d %-9s %6d %6d %10s %8s %12s %5s", at.total_no,
+          at.attempt, s->solver != NULL ? s->solver : "-", s->iteration,
+          s->limit_update, residual, changes, change, s->cycle ? "YES" : "no");
+  cvg_linear(o, &s->linear, cvg);
 }
 
 void cvg_end(int total_no, int attempt, const state *s, text_file *cvg) {

@@ -28,8 +28,13 @@ status sta_header(const output_options *o, text_file *sta);
 /* why: NULL for an accepted increment. */
 status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta);
-void cvg_header(text_file *cvg);
-void cvg_line(int total_no, int attempt, const solver_step *s, text_file *cvg);
+void cvg_header(const output_options *o, text_file *cvg);
+/* s at an attempt at increment total_no. */
+typedef struct cvg_place {
+  int total_no, attempt;
+} cvg_place;
+void cvg_line(const output_options *o, cvg_place at, const solver_step *s,
+              text_file *cvg);
 /* How the iterations of an attempt ended: a comment line. */
 void cvg_end(int total_no, int attempt, const state *s, text_file *cvg);
 /* One line on the terminal, rewritten; "" clears it. */

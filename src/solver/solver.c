@@ -10,19 +10,23 @@ static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 
 int solver_few_digits(double tol) { return tol >= FEW_DIGITS; }
 
+void solver_report_all(const solver_control *control, const solver_step *s) {
+  const solver_listener *l = control->listener;
+  solver_step step = *s;
+  if (l == NULL || l->step == NULL) return;
+  step.limit_update = control->limit_update;
+  step.limit_change = NAN;
+  l->step(l->ctx, &step);
+}
+
 void solver_report_states(const solver_control *control, const char *solver,
                           int iteration, double residual, int changes,
                           int cycle) {
-  const solver_listener *l = control->listener;
-  if (l == NULL || l->step == NULL) return;
-  solver_step step = {.solver = solver,
-                      .iteration = iteration,
-                      .limit_update = control->limit_update,
-                      .residual = residual,
-                      .limit_change = NAN,
-                      .status_changes = changes,
-                      .cycle = cycle};
-  l->step(l->ctx, &step);
+  solver_report_all(control, &(solver_step){.solver = solver,
+                                            .iteration = iteration,
+                                            .residual = residual,
+                                            .status_changes = changes,
+                                            .cycle = cycle});
 }
 
 void solver_report_step(const solver_control *control, const char *solver,

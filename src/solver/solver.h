@@ -22,6 +22,15 @@ typedef struct solver_report {
   const char *solver; /* the method that converged */
 } solver_report;
 
+/* The linear system of an iteration; unknowns 0: there is none, or it is not
+ * told. */
+typedef struct linear_work {
+  double unknowns; /* of the matrix */
+  double entries;  /* of the factor in use */
+  int solves;      /* with the factor */
+  double cpu;      /* s */
+} linear_work;
+
 /* One line per iteration, for .cvg; NULL: no listener. */
 typedef struct solver_step {
   const char *solver;
@@ -30,6 +39,7 @@ typedef struct solver_step {
   double limit_change; /* change of the sliding limit, relative; NAN: none */
   int status_changes;  /* nodes; -1: unknown */
   int cycle;           /* 1: a status pattern was repeated */
+  linear_work linear;
 } solver_step;
 typedef struct solver_listener {
   void (*step)(void *ctx, const solver_step *s);
@@ -115,6 +125,8 @@ extern const char auto_help[]; /* manual text of METHOD=AUTO */
 /* 1: the tolerance is so loose (TOL=BALANCED) that an iterate within it is
  * accepted, even where one more step would be exact. */
 int solver_few_digits(double tol);
+/* To the listener, with the pass of the limit. */
+void solver_report_all(const solver_control *control, const solver_step *s);
 void solver_report_step(const solver_control *control, const char *solver,
                         int iteration, double residual);
 /* The same with the nodes that changed their state, and whether a pattern of

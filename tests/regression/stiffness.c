@@ -222,6 +222,52 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
 END_TEST
 
 /* No equilibrium: the verdict of DENSE, and its words. */
+/* Unknowns, entries and solves of the last iteration, and words of its row. */
+static int last_system(const job *j, double system[3]) {
+  char *text = job_file(j, "cvg"), *row = NULL;
+  int words = 0;
+  for (char *at = text; at != NULL; at = strchr(at + 1, '\n'))
+    if (at[1] == ' ') row = at + 1;
+  ck_assert_ptr_nonnull(row);
+  *strchr(row, '\n') = '\0';
+  for (char *word = strtok(row, " "); word != NULL; word = strtok(NULL, " ")) {
+    if (words >= 9 && words < 12) system[words - 9] = atof(word);
+    ++words;
+  }
+  free(text);
+  return words;
+}
+
+START_TEST(iterations_tell_their_linear_systems) {
+  double dense[3], factor[3], free_unknowns = 0;
+  job a = job_begin("dense"), b = job_begin("factor");
+  const char *deck = "input/greco/greco", *words = "-D N=16 -D MU=0.6";
+  ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, words), 0);
+  ck_assert_int_eq(last_system(&a, dense), 13);
+  job_end(&a);
+  a = job_begin("dense");
+  words = "-D N=16 -D MU=0.6 --no-timing";
+  ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, words), 0);
+  ck_assert_int_eq(job_run_with(&b, deck, FACTOR, 0, words), 0);
+  ck_assert_int_eq(last_system(&a, dense), 12);
+  ck_assert_int_eq(last_system(&b, factor), 12);
+  dat t = job_table(&a, "CONTACT", -1);
+  for (int i = 0; i < t.n_row; ++i) {
+    const double is = dat_at(&t, i, "status");
+    free_unknowns += is == 0 ? 2 : is == 1;
+  }
+  ck_assert_double_gt(free_unknowns, 0);
+  ck_assert_double_eq(dense[0], free_unknowns);
+  ck_assert_double_eq(dense[1], free_unknowns * free_unknowns);
+  ck_assert_double_eq(dense[2], 1);
+  ck_assert_double_eq(factor[0], job_told(&b, "unknowns"));
+  ck_assert(factor[1] > 5 * factor[0] && factor[2] >= 1);
+  dat_free(&t);
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
 START_TEST(verdicts_are_the_same) {
   job a = job_begin("dense"), b = job_begin("factor");
   const char *deck = "input/arch/arch", *thin = "-D H=0.1";
@@ -241,6 +287,7 @@ int main(void) {
                       FIVE);
   tcase_add_test(tests, verdicts_are_the_same);
   tcase_add_loop_test(tests, every_method_finds_no_equilibrium, 1, METHODS);
+  tcase_add_test(tests, iterations_tell_their_linear_systems);
   tcase_add_test(tests, kind_is_chosen_by_cost);
   tcase_add_test(tests, kind_is_chosen_by_memory);
   tcase_add_test(tests, contact_of_most_of_the_body_is_not_condensed);

@@ -150,17 +150,21 @@ END_TEST
 /* ---- runs ----------------------------------------------------------------
  */
 
-/* Pressed on a rough floor with a gap at one end, pushed to and fro. */
-static const char pressed[] =
-    "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-    "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-    "*AMPLITUDE, NAME=FRO\n0., 0., 0.25, 1., 1., -2.\n"
-    "*OBSTACLE, NAME=O, TYPE=GAP\n\"if(x > 3, 0.004*(x - 3)^2, 0)\"\n"
-    "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-    "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"
-    "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 10.\n"
-    "LEFT, TX, 0.6, FRO\nRIGHT, TX, 0.6, FRO\n*OUTPUT, HDF5=NO\n*END STEP\n";
-
+/* Pressed on a rough floor and pushed: to and fro, with a gap at one end, or by
+ * a force that grows with the pressure. */
+#define PUSHED(to_and_fro, gap)                                               \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"           \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                                  \
+  "*AMPLITUDE, NAME=FRO\n" to_and_fro "\n*OBSTACLE, NAME=O, TYPE=GAP\n\"" gap \
+  "\"\n"                                                                      \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                              \
+  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.4\n"                                  \
+  "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 10.\n"                     \
+  "LEFT, TX, 0.6, FRO\nRIGHT, TX, 0.6, FRO\n*OUTPUT, HDF5=NO\n"               \
+  "*END STEP\n"
+static const char to_and_fro[] =
+    PUSHED("0., 0., 0.25, 1., 1., -2.", "if(x > 3, 0.004*(x - 3)^2, 0)");
+static const char growing[] = PUSHED("0., 0., 1., 1.", "0");
 enum { DOFS = 2000 };
 
 typedef void spoiler(int n, cloud *c);
@@ -191,13 +195,14 @@ static status keep(void *ctx, const state *s) {
   return coarser_add(r->kept, x->surface, &v);
 }
 
-static trace run_on(int cells, const coarser *from, spoiler *spoil) {
+static trace run_on(const char *text, int cells, const coarser *from,
+                    spoiler *spoil) {
   const int n[] = {6 * cells, 4 * cells};
   const double length[] = {6.0, 4.0};
   text_model s;
   trace r = {.spoil = spoil};
   int unsettled = 0;
-  text_model_read(&s, pressed, make_grid_2d(n, length));
+  text_model_read(&s, text, make_grid_2d(n, length));
   ck_assert_int_eq(s.st, OK);
   ck_assert_int_eq(coarser_new(&r.kept), OK);
   r.n_dof = 2 * s.msh->n_node;
@@ -221,21 +226,36 @@ static double far_apart(const trace *a, const trace *b) {
 }
 
 START_TEST(coarser_mesh_saves_steps) {
-  trace coarse = run_on(2, NULL, NULL), cold = run_on(4, NULL, NULL);
-  trace fine = run_on(4, coarse.kept, NULL);
+  trace coarse = run_on(to_and_fro, 2, NULL, NULL),
+        cold = run_on(to_and_fro, 4, NULL, NULL);
+  trace fine = run_on(to_and_fro, 4, coarse.kept, NULL);
   ck_assert_int_eq(coarse.started + cold.started, 0);
   ck_assert_int_ge(fine.started, 1);
   ck_assert_msg(fine.iterations[0] <= 3 && cold.iterations[0] >= 5,
                 "%d steps, cold %d", fine.iterations[0], cold.iterations[0]);
   ck_assert_double_lt(far_apart(&cold, &fine), 1e-12);
   /* On its own mesh the solution itself is the start. */
-  trace again = run_on(4, cold.kept, NULL);
+  trace again = run_on(to_and_fro, 4, cold.kept, NULL);
   ck_assert_int_eq(again.iterations[0], 1);
   ck_assert_double_lt(far_apart(&cold, &again), 1e-12);
   coarser_free(coarse.kept);
   coarser_free(cold.kept);
   coarser_free(fine.kept);
   coarser_free(again.kept);
+}
+END_TEST
+
+/* Where no state changes the last increment is nearer. */
+START_TEST(later_increments_start_from_what_is_nearer) {
+  trace coarse = run_on(growing, 1, NULL, NULL);
+  trace cold = run_on(growing, 4, NULL, NULL);
+  trace fine = run_on(growing, 4, coarse.kept, NULL);
+  ck_assert_int_eq(fine.started, 1);
+  for (int k = 1; k < 4; ++k)
+    ck_assert_int_eq(fine.iterations[k], cold.iterations[k]);
+  coarser_free(coarse.kept);
+  coarser_free(cold.kept);
+  coarser_free(fine.kept);
 }
 END_TEST
 
@@ -268,10 +288,10 @@ static void reversed(int n, cloud *c) {
 
 START_TEST(wrong_start_changes_no_answer) {
   spoiler *const spoil[] = {all_open, all_stick, reversed};
-  trace cold = run_on(2, NULL, NULL);
+  trace cold = run_on(to_and_fro, 2, NULL, NULL);
   for (int k = 0; k < 3; ++k) {
-    trace wrong = run_on(1, NULL, spoil[k]);
-    trace fine = run_on(2, wrong.kept, NULL);
+    trace wrong = run_on(to_and_fro, 1, NULL, spoil[k]);
+    trace fine = run_on(to_and_fro, 2, wrong.kept, NULL);
     ck_assert_int_ge(fine.started, 1);
     ck_assert_msg(far_apart(&cold, &fine) < 1e-12, "start %d: %g", k,
                   far_apart(&cold, &fine));
@@ -285,4 +305,5 @@ END_TEST
 UNIT_MAIN("coarser", node_is_the_nearest_of_its_contact,
           tractions_and_slip_are_those_in_space,
           increments_are_found_by_their_time, coarser_mesh_saves_steps,
+          later_increments_start_from_what_is_nearer,
           wrong_start_changes_no_answer)

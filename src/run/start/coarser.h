@@ -29,6 +29,7 @@ status coarser_add(coarser *c, const contact_surface *s, const contact_view *v);
 typedef struct coarser_state coarser_state;
 const coarser_state *coarser_at(const coarser *c, double t, int next);
 double coarser_time(const coarser_state *x); /* s, its end */
+int coarser_nodes(const coarser_state *x);
 
 /* nearest[s->n]: of each node the nearest of the same contact, -1: there is
  * none. ERR_MEMORY. */

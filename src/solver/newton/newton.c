@@ -23,6 +23,7 @@
  * the guess (compliance.h); a singular system then ends the method.
  */
 #include "base/memory.h"
+#include "base/timer.h"
 #include "solver/newton/compliance.h"
 #include "solver/newton/operated.h"
 #include "solver/newton/states.h"
@@ -106,10 +107,11 @@ typedef struct run {
   states *st;
   const solver_control *control;
   double *u, *r;
-  double scale;  /* contact_scale, N (m) */
-  int steps;     /* made so far */
-  int singular;  /* the last system needed springs */
-  status failed; /* of a step, ERR_MEMORY: the method ends */
+  double scale;       /* contact_scale, N (m) */
+  int steps;          /* made so far */
+  int singular;       /* the last system needed springs */
+  status failed;      /* of a step, ERR_MEMORY: the method ends */
+  linear_work linear; /* of a step, where somebody listens */
 } run;
 
 /* raw from u, or r. */
@@ -188,6 +190,19 @@ static status step(run *s) {
   return OK;
 }
 
+/* A step, with its work. */
+static void tell_step(run *s) {
+  const newton_work *w = s->w;
+  const double cpu = s->control->listener != NULL ? timer_cpu() : 0.0;
+  s->failed = step(s);
+  if (s->failed != OK || s->control->listener == NULL) return;
+  if (w->operated != NULL)
+    s->linear = operated_system_work(w->operated, s->cp);
+  else if (w->system != NULL)
+    s->linear = newton_system_work(w->system);
+  s->linear.cpu = timer_cpu() - cpu;
+}
+
 /* 1: springs carry part of the load, less with each step. */
 static int settles(const run *s, course *c, double residual) {
   double before = c->before;
@@ -234,7 +249,7 @@ static outcome attempt(run *s, int limit) {
   int m = s->cp->m;
   for (c.at = 0; goes_on(s, &c, limit); ++c.at) {
     c.cycle = met_before(s, c.at);
-    s->failed = step(s);
+    tell_step(s);
     if (s->failed != OK) return STOPPED_NAN;
     ++s->steps;
     if (s->singular && !contact_has_stiffness(s->cp)) return STOPPED_SINGULAR;
@@ -242,8 +257,12 @@ static outcome attempt(run *s, int limit) {
     if (isnan(residual)) return STOPPED_NAN;
     solver_keep_best(&s->w->best, m, residual, s->u, s->r);
     c.changes = states_next(s->st, 0);
-    solver_report_states(s->control, "newton", s->steps, residual, c.changes,
-                         c.cycle);
+    solver_report_all(s->control, &(solver_step){.solver = "newton",
+                                                 .iteration = s->steps,
+                                                 .residual = residual,
+                                                 .status_changes = c.changes,
+                                                 .cycle = c.cycle,
+                                                 .linear = s->linear});
     if (solved(s, &c, residual)) return CONVERGED;
     outcome o = settles(s, &c, residual) ? RUNNING : verdict(s, &c, residual);
     if (o != RUNNING) return o;

@@ -31,6 +31,7 @@ struct operated_system {
   int repeated;         /* steps on the same rows before the last one */
   int stepped;          /* 1: there was a last step */
   double enough;        /* -, of the right side, left by GMRES */
+  int solves;           /* with the factor in the last step */
   struct {
     int n, *dof;            /* [m] those in which friction follows pressure */
     double *x;              /* [m] displacements by a direction */
@@ -353,8 +354,11 @@ static status solve_rows(operated_system *s, const contact_problem *cp,
   s->exhausted = *singular;
   cp->op->solve(cp->op->ctx, s->b, s->x, s->Ax);
   list_slip(s, cp, rows->p);
-  if (s->slip.n == 0) return OK;
-  return gmres(s, cp, rows->p, size_of_load(s, cp, rows->hold));
+  s->krylov.n = 0;
+  if (s->slip.n > 0)
+    PASS(gmres(s, cp, rows->p, size_of_load(s, cp, rows->hold)));
+  s->solves = 1 + s->krylov.n + (s->krylov.n > 0);
+  return OK;
 }
 
 status operated_system_step(operated_system *s, const contact_problem *cp,
@@ -395,4 +399,11 @@ int operated_system_sums(const operated_system *s) {
 
 int operated_system_refresh(operated_system *s) {
   return s != NULL && s->repeated < REPEATS;
+}
+
+linear_work operated_system_work(const operated_system *s,
+                                 const contact_problem *cp) {
+  return (linear_work){.unknowns = cp->op->unknowns,
+                       .entries = cp->op->entries,
+                       .solves = s->solves};
 }

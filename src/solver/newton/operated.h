@@ -31,6 +31,9 @@ typedef struct operated_rows {
 status operated_system_direction(operated_system *s, const contact_problem *cp,
                                  const operated_rows *rows, double *du,
                                  double *Adu, int *singular);
+/* newton_system_work. */
+linear_work operated_system_work(const operated_system *s,
+                                 const contact_problem *cp);
 /* 1: raw of the last step is a sum over steps, not the reaction of u. Accepts
  * NULL. */
 int operated_system_sums(const operated_system *s);

@@ -26,6 +26,8 @@ struct newton_system {
   uint64_t friction; /* hash of B in it */
   double spent;      /* on updates of the base, operations */
   int updated;       /* the last step came from an update */
+  int n_free;        /* of the last step */
+  int solves;        /* with the factor in it */
   struct {
     int capacity, n;  /* columns of X: most, made */
     int *column;      /* [m] of X, -1: not made */
@@ -159,7 +161,8 @@ static int newton_factor(newton_system *s) {
 }
 
 /* x[n_free, n_rhs], distance m, from the right sides, by the factor. */
-static void newton_back(const newton_system *s, int n_rhs, double *x) {
+static void newton_back(newton_system *s, int n_rhs, double *x) {
+  s->solves += n_rhs;
   dense_solve(&s->K, n_rhs, x, s->m);
 }
 
@@ -627,6 +630,8 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
   const contact_problem *cp = s->cp;
   set_known(s, p, u, raw);
   s->updated = 0;
+  s->n_free = p->n_free;
+  s->solves = 0;
   if (p->n_free == 0) return 0;
   if (s->symmetric < 0)
     s->symmetric = dense_is_symmetric(s->m, cp->A, SYMMETRIC / s->power);
@@ -677,4 +682,11 @@ int newton_system_refresh(newton_system *s) {
   int updated = s != NULL && s->updated;
   if (updated) s->has_base = 0;
   return updated;
+}
+
+linear_work newton_system_work(const newton_system *s) {
+  const double n = s->K.n;
+  return (linear_work){.unknowns = s->n_free,
+                       .entries = s->K.full ? n * n : n * (n + 1.0) / 2.0,
+                       .solves = s->solves};
 }

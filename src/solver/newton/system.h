@@ -22,6 +22,7 @@
 
 #include "base/archive/archive.h"
 #include "contact/contact.h"
+#include "solver/solver.h"
 
 typedef enum { FREE, STICK, SLIP } tangent;
 
@@ -47,6 +48,8 @@ void newton_system_fit(newton_system *s, const contact_problem *cp);
  * which the free unknowns are listed; raw = A u - f. Returns 1 if the system is
  * singular (weak springs then held the body). */
 int newton_system_step(newton_system *s, pattern *p, double *u, double *raw);
+/* Unknowns, entries, solves of the last step. */
+linear_work newton_system_work(const newton_system *s);
 /* Save or read the factor and its exchanged rows. */
 status newton_system_keep(newton_system *s, archive *a);
 /* 1: the last step came from an updated factor, which is discarded for the
