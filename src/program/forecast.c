@@ -143,9 +143,17 @@ enum { MOST_PASSES = 20 };
 
 static const double MOST_UNKNOWNS = 1e9;
 static const double DENSE = 2.5; /* power of m */
+/* -, of the powers of N that costs grow with, in space of that of the memory,
+ * whose contact may be dense or not; least factors of a forecast, of seconds,
+ * of memory in the plane and in space (make bench: tests/bench/forecast.c). */
+static const double DOUBT = 0.1, MEMORY_DOUBT = 0.5;
+static const double LEAST_DOUBT = 2.0, LEAST_MEMORY[2] = {1.5, 2.0};
 /* -, unknowns of the last pass to a goal over those that its error needs, which
  * the last step goes beyond: measured on 12 targets. */
 static const double BEYOND = 1.4;
+/* -, least factor that the seconds of a goal are expected within (1.7
+ * measured), and the one more where its parts cancel (tenfold measured). */
+static const double LEAST_GOAL_DOUBT = 1.7, CANCELS_DOUBT = 6.0;
 
 typedef struct model_of_cost {
   int dim;
@@ -262,6 +270,32 @@ static course go(const model_of_cost *c, double goal) {
   return at;
 }
 
+/* Factors that seconds and bytes are expected within, by the order of the error
+ * from each pair of the three runs, and of the powers that they grow with. */
+static void find_doubt(const model_of_cost *c, double error, const course *end,
+                       double *cpu, double *bytes) {
+  const trial *runs[3][2] = {
+      {&c->deck, &c->coarse}, {&c->coarse, &c->fine}, {&c->deck, &c->fine}};
+  const double full = 1.0 / c->dim;
+  const double grown = pow(fmax(end->unknowns / c->fine.unknowns, 1.0), DOUBT);
+  const double held_more = pow(fmax(end->unknowns / c->fine.unknowns, 1.0),
+                               c->dim == 3 ? MEMORY_DOUBT : DOUBT);
+  *cpu = LEAST_DOUBT;
+  *bytes = LEAST_MEMORY[c->dim == 3] * (c->dim == 3 ? held_more : 1.0);
+  if (end->unknowns <= c->deck.unknowns) return;
+  for (int k = 0; k < 3; ++k) {
+    model_of_cost other = *c;
+    other.order = within(0.5 * full,
+                         -exponent(runs[k][0]->error, runs[k][1]->error,
+                                   runs[k][0]->unknowns, runs[k][1]->unknowns),
+                         1.1 * full);
+    const course its = go(&other, error);
+    const double held = bytes_at(c, its.unknowns) / bytes_at(c, end->unknowns);
+    *cpu = fmax(*cpu, grown * fmax(its.cpu / end->cpu, end->cpu / its.cpu));
+    *bytes = fmax(*bytes, held_more * fmax(held, 1.0 / held));
+  }
+}
+
 static void print_row(const model_of_cost *c, double error) {
   course end = go(c, error);
   int there = end.unknowns <= c->deck.unknowns;
@@ -270,9 +304,11 @@ static void print_row(const model_of_cost *c, double error) {
     return;
   }
   double bytes = there ? c->deck.bytes : bytes_at(c, end.unknowns);
-  printf("  %8.3g %12.3g %12.3g %10.3g %12.3g%s\n", 100 * error, end.unknowns,
-         end.times, end.cpu, bytes / 1048576.0,
-         there ? "  the mesh of the deck does" : "");
+  double doubt[2];
+  find_doubt(c, error, &end, &doubt[0], &doubt[1]);
+  printf("  %8.3g %12.3g %12.3g %10.3g %12.3g %9.2g %9.2g%s\n", 100 * error,
+         end.unknowns, end.times, end.cpu, bytes / 1048576.0, doubt[0],
+         doubt[1], there ? "  the mesh of the deck does" : "");
 }
 
 /* In 3-D, where a digit is expensive, the levels are closer. */
@@ -281,12 +317,13 @@ static const double wanted_errors[] = {0.1,  0.07,  0.05, 0.03,
 enum { N_WANTED = sizeof wanted_errors / sizeof *wanted_errors };
 
 static void print_table(const model_of_cost *c) {
-  printf("  %8s %12s %12s %10s %12s\n", "error[%]", "unknowns", "increments*",
-         "cpu[s]", "memory[MB]");
+  printf("  %8s %12s %12s %10s %12s %9s %9s\n", "error[%]", "unknowns",
+         "increments*", "cpu[s]", "memory[MB]", "cpu:", "memory:");
   for (int k = 0; k < N_WANTED; ++k)
     if (c->dim == 3 || k == 0 || k > 2) print_row(c, wanted_errors[k]);
   printf(
-      "  * times those of the deck. CPU of all passes of TARGET=.\n"
+      "  * times those of the deck. CPU of all passes of TARGET=. Behind cpu: "
+      "and memory:\n    the factor within which they are expected\n"
       "  mesh of the deck: %.3g %% with %.0f unknowns; increments: %.3g %%\n",
       100 * c->deck.error, c->deck.unknowns, 100 * c->deck.time);
 }
@@ -432,6 +469,19 @@ typedef struct goal_fit {
   double share;
 } goal_fit;
 
+/* The factor that its seconds are expected within: by the order against that of
+ * the second order, and where its parts cancel by their magnitude. */
+static double doubt_of_goal(const model_of_cost *c, const goal_fit *g,
+                            double off, double order, double unknowns) {
+  const double by =
+      fabs(log(g->fine->off / off)) * fabs(1.0 / order - 0.5 * c->dim);
+  const double ratio =
+      cpu_at(c, unknowns * exp(by), 1.0) / cpu_at(c, unknowns, 1.0);
+  const double grown = pow(fmax(unknowns / c->fine.unknowns, 1.0), DOUBT);
+  return LEAST_GOAL_DOUBT * grown * ratio *
+         (g->fine->found.verdict == GOAL_CANCELS ? CANCELS_DOUBT : 1.0);
+}
+
 /* What an error of so many % would cost. */
 static void print_level(const model_of_cost *c, const goal_fit *g,
                         double percent) {
@@ -449,9 +499,10 @@ static void print_level(const model_of_cost *c, const goal_fit *g,
   else if (unknowns > MOST_UNKNOWNS)
     printf("out of reach");
   else
-    printf("%.2g s, %.2g MB, %.2g unknowns",
+    printf("%.2g s, %.2g MB, %.2g unknowns, within %.2g",
            sum_of(&c->deck) + 2.0 * cpu_at(c, unknowns, 1.0),
-           bytes_at(c, unknowns) / 1048576.0, unknowns);
+           bytes_at(c, unknowns) / 1048576.0, unknowns,
+           doubt_of_goal(c, g, off, order, unknowns));
 }
 
 /* n: runs after that of the deck. */

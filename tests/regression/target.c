@@ -212,6 +212,17 @@ static void ck_order(const job *j) {
   ck_assert_double_eq_tol(order, fmin(two, 0.55), 0.02);
 }
 
+/* The factor behind the memory of that row, in which the real one is. */
+static double forecast_doubt(const job *j, double level) {
+  double row[7];
+  for (const char *at = j->text; at != NULL; at = strchr(at + 1, '\n'))
+    if (sscanf(at, "%lf %lf %lf %lf %lf %lf %lf", &row[0], &row[1], &row[2],
+               &row[3], &row[4], &row[5], &row[6]) == 7 &&
+        row[0] == level)
+      return row[6];
+  return NAN;
+}
+
 /* The forecast of an error against the passes that reach it. */
 START_TEST(forecast_is_near_the_truth) {
   job j;
@@ -219,8 +230,15 @@ START_TEST(forecast_is_near_the_truth) {
   ck_assert_int_eq(press(&j, 4, "", "--estimate-cost"), 0);
   ck_order(&j);
   forecast_row(&j, 3, &unknowns, &memory);
+  const double within = forecast_doubt(&j, 3);
+  ck_assert_double_ge(within, 1.5);
+  ck_assert_double_le(within, 4.0);
+  ck_assert_double_ge(forecast_doubt(&j, 0.1), within);
   job_end(&j);
   ck_assert_int_eq(press(&j, 4, "*ACCURACY, TARGET=3\n", ""), 0);
+  const double held = job_told(&j, "peak_bytes") / 1048576.0;
+  ck_assert_double_gt(held, memory / within);
+  ck_assert_double_lt(held, memory * within);
   char *json = job_file(&j, "json"), *last = NULL;
   for (char *at = strstr(json, "\"passes\""); at != NULL;
        at = strstr(at + 1, "\"unknowns\": "))
