@@ -428,6 +428,20 @@ done:
   return st;
 }
 
+/* W in blocks and q without a matrix of all entries; p->blocks NULL: not
+ * possible, or most of it is not zero. */
+static status condense_bodies(const global *g, exchange_problem *p) {
+  status st = OK;
+  triplets W = {0};
+  int usable = 0;
+  memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
+  TRY(reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
+  if (usable) TRY(take_blocks(p, &W));
+done:
+  triplets_free(&W);
+  return st;
+}
+
 /* W and q, or, of a symmetric and singular M, A and f of the same size. */
 static status condense_global(const hdf5_source *s, global *g,
                               exchange_problem *p) {
@@ -458,18 +472,24 @@ static status read_global(const hdf5_source *s, exchange_problem *p) {
   TRY(triplets_size(s, GLOBAL "/H", &g.H));
   TRY(set_size(s, GLOBAL, g.H.columns, p));
   TRY(read_matrices(s, &g));
-  TRY(new_matrix(s, GLOBAL, p));
   TRY(new_arrays(p));
   TRY(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
   TRY(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
   TRY(read_friction(s, GLOBAL "/vectors/mu", p));
   p->unknowns = g.M.rows + g.G.columns;
+  TRY(find_diagonal(&g));
+  if (g.h == NULL && g.G.columns == 0) TRY(condense_bodies(&g, p));
+  if (p->blocks != NULL) {
+    turn_signs(p);
+    set_problem(p, 0, 0);
+    goto done;
+  }
+  TRY(new_matrix(s, GLOBAL, p));
   if (g.G.columns > 0) {
     TRY(read_vector(s, GLOBAL "/vectors/b", g.G.columns, &g.b));
     TRY(condense_constrained(s, &g, p));
     goto done;
   }
-  TRY(find_diagonal(&g));
   TRY(condense_global(s, &g, p));
 done:
   global_release(&g);

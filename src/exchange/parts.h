@@ -13,7 +13,8 @@ enum { MOST_UNKNOWNS = 30000 };
  * its own and those of a solver; checked before they are read. */
 status require_problem_memory(double m);
 
-/* ---- matrix.c: the matrix group ------------------------------------------ */
+/* ---- triplets.c ----------------------------------------------------------
+ */
 
 /* Entries in the order of the file; repeated ones add up. */
 typedef struct triplets {
@@ -30,15 +31,17 @@ status triplets_read(const hdf5_source *s, const char *group, triplets *t);
 void triplets_free(triplets *t);
 /* Dense, column major with leading dimension t->rows, into zeroed a. */
 void triplets_dense(const triplets *t, double *a);
+/* Numbers of the entries, column by column: those of column j are entry[k],
+ * start[j] <= k < start[j + 1]. */
+status triplets_by_column(const triplets *t, int **start, long **entry);
+/* 1, -1: only the upper, the lower triangle is stored; 0: both or none. */
+int triplets_triangle(const triplets *t);
 
-/* ---- fclib.c, lcp_text.c --------------------------------------------------
+/* ---- fclib.c --------------------------------------------------------------
  */
 
 /* p is all zero before; release it on failure too. */
 status fclib_read(const char *path, exchange_problem *p);
-
-/* ---- constraints.c ----------------------------------------------------------
- */
 
 /* V'r + R l + s = 0 with u = W r + V l + q. */
 typedef struct constraints {
@@ -62,13 +65,17 @@ void constraints_free(constraints *c); /* accepts all-zero */
  */
 status reduce_global(const triplets *M, const triplets *H, const double *f,
                      double *W, double *q, int *usable);
+/*
+ * Entries of the same W (any order, those of one place add up) where M falls
+ * into bodies that share few contacts: *usable = 0 also where more than "share"
+ * of its m*m entries may not be zero. W all zero before, freed by the caller.
+ */
+status reduce_bodies(const triplets *M, const triplets *H, const double *f,
+                     double share, triplets *W, double *q, int *usable);
 /* The same for any M of moderate size. "path" for messages. ERR_SINGULAR: M
  * cannot be inverted, or is too large. */
 status reduce_any(const char *path, const triplets *M, const triplets *H,
                   const double *f, double *W, double *q);
-
-/* ---- springs.c -------------------------------------------------------------
- */
 
 /* M + s H H' into *held; s >= 0 from the diagonals. */
 status springs_add(const triplets *M, const triplets *H, double *s,

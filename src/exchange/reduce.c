@@ -17,176 +17,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* ---- the matrix group of FCLIB: nzmax, m (rows), n (columns), nz, p, i, x.
- * nz >= 0   triplets: p = columns, i = rows, nz of them (nzmax may be more)
- * nz = -1   by columns: p[n+1] starts of the columns, i = rows   nz = -2   by
- * rows: p[m+1] starts of the rows,    i = columns  Indices count from 0. */
-
-enum { NAME = 240, BY_COLUMN = -1, BY_ROW = -2 };
-
-typedef struct arrays {
-  const hdf5_source *s;
-  const char *group;
-  int nz;
-  long n_p, n_i, n_x; /* items in the file */
-  int *p, *i;
-  double *x;
-} arrays;
-
-static const char *name_of(char text[NAME], const char *group,
-                           const char *item) {
-  snprintf(text, NAME, "%s/%s", group, item);
-  return text;
-}
-
-static status group_int(const hdf5_source *s, const char *group,
-                        const char *item, int *value) {
-  char name[NAME];
-  return source_int(s, name_of(name, group, item), value);
-}
-
-/* The three arrays; those of a matrix without entries may be missing. */
-static status read_arrays(arrays *a) {
-  char name[NAME];
-  const long most = MOST_ITEMS;
-  PASS(
-      source_ints(a->s, name_of(name, a->group, "p"), 1, most, &a->n_p, &a->p));
-  PASS(
-      source_ints(a->s, name_of(name, a->group, "i"), 1, most, &a->n_i, &a->i));
-  return source_reals(a->s, name_of(name, a->group, "x"), 1, most, &a->n_x,
-                      &a->x);
-}
-
-static status too_short(const arrays *a, const char *item, long have,
-                        long want) {
-  if (have < want)
-    RAISE(ERR_DECK, "%s: %s/%s has %ld items, expected %ld", a->s->path,
-          a->group, item, have, want);
-  return OK;
-}
-
-/* The starts of n lines ascend from 0; *entries = the last one. */
-static status check_starts(const arrays *a, int n, long *entries) {
-  *entries = 0;
-  if (n == 0 && a->n_p == 0) return OK;
-  PASS(too_short(a, "p", a->n_p, (long)n + 1));
-  if (a->p[0] != 0)
-    RAISE(ERR_DECK, "%s: %s/p starts with %d, expected 0", a->s->path, a->group,
-          a->p[0]);
-  for (int k = 0; k < n; ++k)
-    if (a->p[k + 1] < a->p[k])
-      RAISE(ERR_DECK, "%s: %s/p descends at item %d", a->s->path, a->group,
-            k + 1);
-  *entries = a->p[n];
-  return OK;
-}
-
-static status check_index(const arrays *a, const char *item, const int *index,
-                          long n, int limit) {
-  for (long k = 0; k < n; ++k)
-    if (index[k] < 0 || index[k] >= limit)
-      RAISE(ERR_DECK, "%s: %s/%s, item %ld = %d outside 0 to %d", a->s->path,
-            a->group, item, k, index[k], limit - 1);
-  return OK;
-}
-
-/* Lines of a compressed matrix written out, one index per entry. */
-static void expand(const int *start, int n, int *line) {
-  for (int k = 0; k < n; ++k)
-    for (int e = start[k]; e < start[k + 1]; ++e) line[e] = k;
-}
-
-static status fill(arrays *a, triplets *t) {
-  int compressed = a->nz < 0;
-  int lines = a->nz == BY_ROW ? t->rows : t->columns;
-  int limit = a->nz == BY_ROW ? t->columns : t->rows;
-  t->n = a->nz;
-  if (compressed) PASS(check_starts(a, lines, &t->n));
-  PASS(too_short(a, "i", a->n_i, t->n));
-  PASS(too_short(a, "x", a->n_x, t->n));
-  PASS(check_index(a, "i", a->i, t->n, limit));
-  if (!compressed) {
-    PASS(too_short(a, "p", a->n_p, t->n));
-    PASS(check_index(a, "p", a->p, t->n, lines));
-  }
-  PASS_NEW(t->column, t->n);
-  if (compressed && a->n_p > 0)
-    expand(a->p, lines, t->column);
-  else if (t->n > 0)
-    memcpy(t->column, a->p, (size_t)t->n * sizeof *t->column);
-  t->row = a->i;
-  t->value = a->x;
-  a->i = NULL;
-  a->x = NULL;
-  if (a->nz == BY_ROW) {
-    int *swap = t->row;
-    t->row = t->column;
-    t->column = swap;
-  }
-  return OK;
-}
-
-status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
-  memset(t, 0, sizeof *t);
-  if (!source_has(s, group))
-    RAISE(ERR_DECK, "%s: there is no group %s", s->path, group);
-  PASS(group_int(s, group, "m", &t->rows));
-  PASS(group_int(s, group, "n", &t->columns));
-  if (t->rows < 0 || t->columns < 0)
-    RAISE(ERR_DECK, "%s: %s has %d rows and %d columns", s->path, group,
-          t->rows, t->columns);
-  return OK;
-}
-
-status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
-  status st = OK;
-  arrays a = {.s = s, .group = group};
-  TRY(triplets_size(s, group, t));
-  TRY(group_int(s, group, "nz", &a.nz));
-  if (a.nz < BY_ROW)
-    FAIL(ERR_DECK, "%s: %s/nz = %d; expected a number of entries, -1 or -2",
-         s->path, group, a.nz);
-  TRY(read_arrays(&a));
-  TRY(fill(&a, t));
-done:
-  RELEASE(a.p, a.i, a.x);
-  if (st != OK) triplets_free(t);
-  return st;
-}
-
-void triplets_free(triplets *t) {
-  RELEASE(t->row, t->column, t->value);
-  memset(t, 0, sizeof *t);
-}
-
-void triplets_dense(const triplets *t, double *a) {
-  for (long k = 0; k < t->n; ++k)
-    a[(size_t)t->row[k] + (size_t)t->rows * (size_t)t->column[k]] +=
-        t->value[k];
-}
-
-/* Numbers of the entries, column by column: those of column j are entry[k],
- * start[j] <= k < start[j + 1]. */
-static status triplets_by_column(const triplets *t, int **start, long **entry) {
-  PASS_NEW(*start, t->columns + 2);
-  PASS_NEW(*entry, t->n);
-  for (long k = 0; k < t->n; ++k) ++(*start)[t->column[k] + 2];
-  for (int j = 0; j <= t->columns; ++j) (*start)[j + 1] += (*start)[j];
-  for (long k = 0; k < t->n; ++k) (*entry)[(*start)[t->column[k] + 1]++] = k;
-  return OK;
-}
-
-/* 1, -1: only the upper, the lower triangle is stored; 0: both or none. */
-static int triplets_triangle(const triplets *t) {
-  int lower = 0, upper = 0;
-  for (long k = 0; k < t->n; ++k)
-    if (t->value[k] != 0.0) {
-      lower |= t->row[k] > t->column[k];
-      upper |= t->row[k] < t->column[k];
-    }
-  return upper - lower;
-}
-
 /* ---- a global problem whose M is symmetric and singular: bodies that contact
  * alone holds. Springs s between the contact points and their obstacles hold
  * them, and are taken out again:    M v = H r + f,   y = H'v,   Ms = M + s H
@@ -487,6 +317,23 @@ static double *target(const columns *c, int k, double *W, double *q) {
 /* ---- Cholesky or LU ---------------------------------------------------------
  */
 
+/* x <- inv(M) x. */
+static status solve_scaled(reduction *s, double *x) {
+  cholmod_dense b = {.nrow = (size_t)s->n,
+                     .ncol = 1,
+                     .nzmax = (size_t)s->n,
+                     .d = (size_t)s->n,
+                     .x = x,
+                     .xtype = CHOLMOD_REAL,
+                     .dtype = CHOLMOD_DOUBLE};
+  for (int i = 0; i < s->n; ++i) x[i] *= s->scale[i];
+  cholmod_dense *y = cholmod_solve(CHOLMOD_A, s->L, &b, &s->cm);
+  if (y == NULL) PASS(no_memory());
+  for (int i = 0; i < s->n; ++i) x[i] = s->scale[i] * ((double *)y->x)[i];
+  cholmod_free_dense(&y, &s->cm);
+  return OK;
+}
+
 static status reduce_block(reduction *s, const columns *c, int first, int count,
                            double *W, double *q) {
   status st = OK;
@@ -559,26 +406,195 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
   return OK;
 }
 
+static void reduction_begin(reduction *s) {
+  cholmod_start(&s->cm);
+  s->cm.print = 0;
+  s->cm.final_ll = 1; /* LL' finds what is not positive definite */
+  s->cm.quick_return_if_not_posdef = 1;
+}
+
+static void reduction_end(reduction *s) {
+  memory_free(s->scale);
+  cholmod_free_sparse(&s->M, &s->cm);
+  cholmod_free_factor(&s->L, &s->cm);
+  cholmod_finish(&s->cm);
+}
+
 status reduce_global(const triplets *M, const triplets *H, const double *f,
                      double *W, double *q, int *usable) {
   status st = OK;
   reduction s = {.n = M->rows};
   columns c = {0};
   *usable = 1;
-  cholmod_start(&s.cm);
-  s.cm.print = 0;
-  s.cm.final_ll = 1; /* LL' finds what is not positive definite */
-  s.cm.quick_return_if_not_posdef = 1;
+  reduction_begin(&s);
   if (M->rows == 0) goto done;
   TRY(columns_new(H, f, &c));
   TRY(factorise(&s, M, usable));
   if (*usable) TRY(reduce_sparse(&s, &c, W, q));
 done:
   columns_free(&c);
-  memory_free(s.scale);
-  cholmod_free_sparse(&s.M, &s.cm);
-  cholmod_free_factor(&s.L, &s.cm);
-  cholmod_finish(&s.cm);
+  reduction_end(&s);
+  return st;
+}
+
+/* ---- bodies apart -----------------------------------------------------------
+ *
+ * The rows of M fall into sets without entries between them, a body each, and
+ * W = sum H_s' inv(M_s) H_s. Solutions of all sets share one right side: its
+ * part in a set is that of one of the columns with entries there.
+ */
+
+typedef struct row_sets {
+  int n, most;  /* sets; columns of the set that has most of them */
+  int *of;      /* [rows] set of a row */
+  int *start;   /* [n+1] */
+  int *column;  /* [start[n]] columns of each set */
+  int *current; /* [n] that of the right side; -1: none left */
+} row_sets;
+
+static void row_sets_free(row_sets *t) {
+  RELEASE(t->of, t->start, t->column, t->current);
+}
+
+static int root(int *parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+static status join_rows(const triplets *M, row_sets *t) {
+  OWNED int *parent = NULL, *number = NULL;
+  PASS_NEW(parent, M->rows);
+  PASS_NEW(number, M->rows);
+  for (int i = 0; i < M->rows; ++i) {
+    parent[i] = i;
+    number[i] = -1;
+  }
+  for (long k = 0; k < M->n; ++k)
+    if (M->value[k] != 0.0)
+      parent[root(parent, M->row[k])] = root(parent, M->column[k]);
+  for (int i = 0; i < M->rows; ++i) {
+    int *at = &number[root(parent, i)];
+    if (*at < 0) *at = t->n++;
+    t->of[i] = *at;
+  }
+  return OK;
+}
+
+/* Columns of the sets: counted (t->column NULL) or put. */
+static void count_columns(const columns *c, row_sets *t) {
+  for (int s = 0; s < t->n; ++s) t->current[s] = -1;
+  for (int j = 0; j < c->H->columns; ++j)
+    for (int e = c->start[j]; e < c->start[j + 1]; ++e) {
+      const int s = t->of[c->H->row[c->entry[e]]];
+      if (t->current[s] == j) continue;
+      t->current[s] = j;
+      if (t->column != NULL) t->column[t->start[s + 1]] = j;
+      ++t->start[s + (t->column == NULL ? 2 : 1)];
+    }
+}
+
+/* *entries: of W, at most. */
+static status row_sets_new(const triplets *M, const columns *c, row_sets *t,
+                           double *entries) {
+  PASS_NEW(t->of, M->rows);
+  PASS(join_rows(M, t));
+  PASS_NEW(t->start, t->n + 2);
+  PASS_NEW(t->current, t->n);
+  count_columns(c, t);
+  *entries = 0.0;
+  for (int s = 0; s < t->n; ++s) {
+    const int own = t->start[s + 2];
+    if (own > t->most) t->most = own;
+    *entries += (double)own * own;
+    t->start[s + 2] += t->start[s + 1];
+  }
+  PASS_NEW(t->column, t->start[t->n + 1]);
+  count_columns(c, t);
+  return OK;
+}
+
+/* Right side k of all sets into b[rows]. */
+static void put_parts(const columns *c, row_sets *t, int k, double *b) {
+  for (int s = 0; s < t->n; ++s)
+    t->current[s] =
+        t->start[s] + k < t->start[s + 1] ? t->column[t->start[s] + k] : -1;
+  for (long e = 0; e < c->H->n; ++e)
+    if (c->H->column[e] == t->current[t->of[c->H->row[e]]])
+      b[c->H->row[e]] += c->H->value[e];
+}
+
+/* Their entries of W from x[rows] = inv(M) b, half of each across the diagonal:
+ * W becomes symmetric. */
+static status take_parts(const columns *c, const row_sets *t, const double *x,
+                         triplets *W, long room) {
+  for (long e = 0; e < c->H->n; ++e) {
+    const int i = c->H->column[e], j = t->current[t->of[c->H->row[e]]];
+    const double half = 0.5 * c->H->value[e] * x[c->H->row[e]];
+    if (j < 0 || half == 0.0) continue;
+    if (W->n + 2 > room) RAISE(ERR_INTERNAL, "more entries than counted");
+    for (int turn = 0; turn < 2; ++turn) {
+      W->row[W->n] = turn ? j : i;
+      W->column[W->n] = turn ? i : j;
+      W->value[W->n++] = half;
+    }
+  }
+  return OK;
+}
+
+/* Entries take_parts has at most. */
+static long count_parts(const columns *c, const row_sets *t) {
+  long n = 0;
+  for (long e = 0; e < c->H->n; ++e) {
+    const int s = t->of[c->H->row[e]];
+    n += 2 * (long)(t->start[s + 1] - t->start[s]);
+  }
+  return n;
+}
+
+static status solve_parts(reduction *s, const columns *c, row_sets *t,
+                          triplets *W) {
+  const long room = count_parts(c, t);
+  OWNED double *x = NULL;
+  PASS_NEW(W->row, room);
+  PASS_NEW(W->column, room);
+  PASS_NEW(W->value, room);
+  PASS_NEW(x, s->n);
+  for (int k = 0; k < t->most; ++k) {
+    memset(x, 0, (size_t)s->n * sizeof *x);
+    put_parts(c, t, k, x);
+    PASS(solve_scaled(s, x));
+    PASS(take_parts(c, t, x, W, room));
+  }
+  return OK;
+}
+
+status reduce_bodies(const triplets *M, const triplets *H, const double *f,
+                     double share, triplets *W, double *q, int *usable) {
+  status st = OK;
+  reduction s = {.n = M->rows};
+  columns c = {0};
+  row_sets t = {0};
+  double *x = NULL, entries = 0.0;
+  const double m = H->columns;
+  *usable = 0;
+  W->rows = W->columns = H->columns;
+  reduction_begin(&s);
+  if (M->rows == 0) goto done;
+  TRY(columns_new(H, f, &c));
+  TRY(row_sets_new(M, &c, &t, &entries));
+  if (entries > share * m * m) goto done;
+  TRY(factorise(&s, M, usable));
+  if (!*usable) goto done;
+  TRY(solve_parts(&s, &c, &t, W));
+  NEW(x, s.n);
+  put_column(&c, H->columns, x);
+  TRY(solve_scaled(&s, x));
+  take_column(&c, x, q);
+done:
+  memory_free(x);
+  row_sets_free(&t);
+  columns_free(&c);
+  reduction_end(&s);
   return st;
 }
 
