@@ -216,8 +216,10 @@ static void judge_normal(const judged *j, const deck_contact *c,
                          const contact_node *q, const touch_scale *s) {
   double gap = gap_to(j->d, &c->obstacle, j->now->t, q->x, q->n);
   double stiff = j->stiffness[q->node], own = gap - dot(q->n, q->u), miss;
-  judge_note(j->q, OF_GAP, own - q->gap, s->length + fabs(gap), j->now,
-             q->node + 1);
+  /* The tolerance, 1e-7, of this is a few roundings of the coordinates. */
+  const double rounded = 1e-8 * sqrt(dot(q->x, q->x));
+  judge_note(j->q, OF_GAP, own - q->gap, s->length + fabs(gap) + rounded,
+             j->now, q->node + 1);
   miss = q->f_n - fmax(0, q->f_n - stiff * own);
   if (c->given) miss = q->f_n - given_force(j, c, q);
   judge_note(j->q, OF_NORMAL, miss, s->slack + 1e-7 * stiff * s->length, j->now,
