@@ -2,6 +2,7 @@
  * src/solver/choice/proof.c: no equilibrium is said where an inequality proves
  * it and only there, by every method, on both sides of the limit.
  */
+#include "base/sparse.h"
 #include "solver/choice/proof.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
@@ -223,8 +224,54 @@ START_TEST(compliance_of_zero_is_solved_without_forces) {
 }
 END_TEST
 
+/* A row of equal bodies pressed together, 2 and -1: a search would make a
+ * matrix of all normal unknowns. */
+START_TEST(large_sparse_compliance_is_not_searched) {
+  enum { N = 3000, M = 2 * N };
+  int *row = calloc(3 * M, sizeof *row), *column = calloc(3 * M, sizeof *row);
+  double *value = calloc(3 * M, sizeof *value), *gap = calloc(N, sizeof *gap);
+  double *f = calloc(M, sizeof *f), *u = calloc(M, sizeof *u),
+         *r = calloc(M, sizeof *r), param[64] = {0.0};
+  const solver_ops *sor = solver_find("sor");
+  sparse_blocks *W = NULL;
+  contact_solver *s = NULL;
+  solver_report rep;
+  int n = 0;
+  for (int i = 0; i < M; ++i)
+    for (int j = i - 2; j <= i + 2; j += 2) {
+      if (j < 0 || j >= M) continue;
+      row[n] = i;
+      column[n] = j;
+      value[n++] = i == j ? 2.0 : -1.0;
+    }
+  for (int i = 0; i < M; i += 2) f[i] = i % 3 ? 1.0 : -0.5;
+  ck_assert_int_eq(sparse_blocks_new(2, N, n, row, column, value, &W), OK);
+  const contact_problem cp = {
+      .dim = 2, .n = N, .m = M, .blocks = W, .f = f, .gap = gap};
+  option_defaults(sor->options, param);
+  memory_limit(memory_in_use() + (size_t)N * N, "the test");
+  const solver_choice choice = {
+      .ops = sor, .param = param, .tol = 1e-8, .max_iter = 3};
+  ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
+  const status st = contact_solve(s, &cp, NULL, u, r, &rep);
+  memory_limit(SIZE_MAX, "");
+  ck_assert_msg(st == OK, "%s", status_message());
+  ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
+  contact_solver_free(s);
+  sparse_blocks_free(W);
+  free(row);
+  free(column);
+  free(value);
+  free(gap);
+  free(f);
+  free(u);
+  free(r);
+}
+END_TEST
+
 UNIT_MAIN("proof", balanced_load_has_no_proof,
           limit_of_friction_is_met_from_both_sides,
           solvable_problem_is_never_said_to_have_no_equilibrium,
           body_too_thick_for_its_gap_has_no_equilibrium,
-          compliance_of_zero_is_solved_without_forces)
+          compliance_of_zero_is_solved_without_forces,
+          large_sparse_compliance_is_not_searched)

@@ -79,7 +79,6 @@ enum {
   WARM_STEPS = 3,      /* of NEWTON before the normal form is made */
   ROUND = 10,          /* sweeps from one check of their rate to the next */
   SPARSE_ROUND = 32,   /* the same of sparse blocks */
-  MOST_FULL = 5000,    /* m of a sparse compliance of which all is made */
   SWEEP_SHARE = 4,     /* m over it: sweeps that cost less than an inverse */
   STEPS = 6,           /* of NEWTON, compared with the cost of sweeps */
   LEAST_ROUNDS = 3,    /* least number for a trial */
@@ -266,7 +265,7 @@ static int sweeps_fit(const contact_problem *cp) {
 static int is_skipped(const contact_problem *cp, const link *l) {
   if (l->how == ALONG_PATH && cp->B == NULL) return 1;
   if (cp->blocks != NULL)
-    return cp->m > MOST_FULL && !(l->ops->handles & SPARSE_COMPLIANCE);
+    return is_large_sparse(cp) && !(l->ops->handles & SPARSE_COMPLIANCE);
   if (l->how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
   if (l->compliance < 0) return !contact_has_stiffness(cp);
   return l->compliance && contact_has_stiffness(cp);

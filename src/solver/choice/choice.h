@@ -62,11 +62,16 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
 void attempt_check(const contact_solver *s, const contact_problem *cp,
                    const double *u, const double *r, solver_report *rep);
 /* After a failure: STOPPED_RAY if it is proved that there is no solution
- * (proof.h), and only then. */
+ * (proof.h), and only then; of a large sparse compliance none is sought. */
 status attempt_prove(contact_solver *s, const contact_problem *cp,
                      solver_report *rep);
 /* Cold start: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r);
+
+enum { MOST_FULL = 5000 }; /* m of a sparse compliance of which all is made */
+static inline int is_large_sparse(const contact_problem *cp) {
+  return cp->blocks != NULL && cp->m > MOST_FULL;
+}
 
 /* METHOD=AUTO (auto.c), as contact_solve. */
 status auto_solve(contact_solver *s, const contact_problem *cp,
