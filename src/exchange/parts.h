@@ -67,8 +67,8 @@ status reduce_global(const triplets *M, const triplets *H, const double *f,
                      double *W, double *q, int *usable);
 /*
  * Entries of the same W (any order, those of one place add up) where M falls
- * into bodies that share few contacts: *usable = 0 also where more than "share"
- * of its m*m entries may not be zero. W all zero before, freed by the caller.
+ * into bodies that share few contacts: *usable = 0 also where they may be more
+ * than "share" of m*m. W all zero before, freed by the caller.
  */
 status reduce_bodies(const triplets *M, const triplets *H, const double *f,
                      double share, triplets *W, double *q, int *usable);

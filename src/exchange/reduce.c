@@ -493,19 +493,14 @@ static void count_columns(const columns *c, row_sets *t) {
     }
 }
 
-/* *entries: of W, at most. */
-static status row_sets_new(const triplets *M, const columns *c, row_sets *t,
-                           double *entries) {
+static status row_sets_new(const triplets *M, const columns *c, row_sets *t) {
   PASS_NEW(t->of, M->rows);
   PASS(join_rows(M, t));
   PASS_NEW(t->start, t->n + 2);
   PASS_NEW(t->current, t->n);
   count_columns(c, t);
-  *entries = 0.0;
   for (int s = 0; s < t->n; ++s) {
-    const int own = t->start[s + 2];
-    if (own > t->most) t->most = own;
-    *entries += (double)own * own;
+    if (t->start[s + 2] > t->most) t->most = t->start[s + 2];
     t->start[s + 2] += t->start[s + 1];
   }
   PASS_NEW(t->column, t->start[t->n + 1]);
@@ -542,18 +537,17 @@ static status take_parts(const columns *c, const row_sets *t, const double *x,
 }
 
 /* Entries take_parts has at most. */
-static long count_parts(const columns *c, const row_sets *t) {
-  long n = 0;
+static double count_parts(const columns *c, const row_sets *t) {
+  double n = 0.0;
   for (long e = 0; e < c->H->n; ++e) {
     const int s = t->of[c->H->row[e]];
-    n += 2 * (long)(t->start[s + 1] - t->start[s]);
+    n += 2.0 * (t->start[s + 1] - t->start[s]);
   }
   return n;
 }
 
 static status solve_parts(reduction *s, const columns *c, row_sets *t,
-                          triplets *W) {
-  const long room = count_parts(c, t);
+                          long room, triplets *W) {
   OWNED double *x = NULL;
   PASS_NEW(W->row, room);
   PASS_NEW(W->column, room);
@@ -574,18 +568,19 @@ status reduce_bodies(const triplets *M, const triplets *H, const double *f,
   reduction s = {.n = M->rows};
   columns c = {0};
   row_sets t = {0};
-  double *x = NULL, entries = 0.0;
+  double *x = NULL, entries;
   const double m = H->columns;
   *usable = 0;
   W->rows = W->columns = H->columns;
   reduction_begin(&s);
   if (M->rows == 0) goto done;
   TRY(columns_new(H, f, &c));
-  TRY(row_sets_new(M, &c, &t, &entries));
+  TRY(row_sets_new(M, &c, &t));
+  entries = count_parts(&c, &t);
   if (entries > share * m * m) goto done;
   TRY(factorise(&s, M, usable));
   if (!*usable) goto done;
-  TRY(solve_parts(&s, &c, &t, W));
+  TRY(solve_parts(&s, &c, &t, (long)entries, W));
   NEW(x, s.n);
   put_column(&c, H->columns, x);
   TRY(solve_scaled(&s, x));
