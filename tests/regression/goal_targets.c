@@ -21,15 +21,9 @@
 static int run_with(job *j, const char *deck, const char *cards,
                     const char *in_step, const char *words) {
   const char *name = strrchr(deck, '/') + 1;
-  char path[200], file[80];
+  char file[80], *text = job_deck_text(deck);
   *j = job_begin(name);
   job_copy_meshes(j, deck);
-  snprintf(path, sizeof path, "%s.inp", deck);
-  FILE *f = fopen(path, "r");
-  ck_assert_ptr_nonnull(f);
-  char *text = calloc(20000, 1);
-  ck_assert_uint_gt(fread(text, 1, 19999, f), 0);
-  fclose(f);
   char *at = strstr(text, "\n*STEP"), *end = strstr(text, "\n*END STEP");
   char *accuracy = strstr(text, "*ACCURACY, MESH=YES");
   ck_assert(at != NULL && end != NULL);

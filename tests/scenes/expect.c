@@ -73,12 +73,22 @@ static int table_holds(const expectation *t, const dat *d, char *why) {
   return d->n_row > 0;
 }
 
+/* One of the words with | between them. */
+static int has_words(const char *text, const char *words) {
+  char list[WHY], *save = NULL;
+  snprintf(list, sizeof list, "%s", words);
+  for (char *one = strtok_r(list, "|", &save); one != NULL;
+       one = strtok_r(NULL, "|", &save))
+    if (strstr(text, one) != NULL) return 1;
+  return 0;
+}
+
 static int words_hold(const job *j, const char *file, int wanted,
                       const char *words, char *why) {
   char *text = strcmp(file, "errors") == 0
                    ? strdup(j->errors == NULL ? "" : j->errors)
                    : job_file(j, file);
-  int has = text != NULL && strstr(text, words) != NULL;
+  int has = text != NULL && has_words(text, words);
   free(text);
   if (has == wanted) return 1;
   snprintf(why, WHY, "%s %s '%s'", file, has ? "has" : "lacks", words);

@@ -100,6 +100,14 @@ static char *read_all(const char *path) {
   return text;
 }
 
+char *job_deck_text(const char *deck) {
+  char path[PATH];
+  snprintf(path, sizeof path, "%s.inp", deck);
+  char *text = read_all(path);
+  ck_assert_msg(text != NULL, "%s", path);
+  return text;
+}
+
 char *job_file(const job *j, const char *suffix) {
   char path[PATH];
   snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);

@@ -37,6 +37,8 @@ void job_write(const job *j, const char *file, const char *format, ...)
 void job_copy(const job *j, const char *path);
 /* Copy the .geo and .msh files beside a deck of the sources. */
 void job_copy_meshes(const job *j, const char *deck);
+/* Of an example, "input/x/x"; caller frees. */
+char *job_deck_text(const char *deck);
 /* Options that make an example cheaper: half the segments (a quarter of more
  * than 30), increments of four times the length. */
 void job_coarsen(const char *deck, char *words, size_t size);

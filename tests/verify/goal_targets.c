@@ -13,14 +13,9 @@
 /* The deck of an example with some text replaced. */
 static job run_deck(const char *deck, const char *old, const char *by,
                     const char *in_step, const char *words) {
-  char path[200], *text = calloc(20000, 1);
+  char *text = job_deck_text(deck);
   job j = job_begin("goals");
   job_copy_meshes(&j, deck);
-  snprintf(path, sizeof path, "%s.inp", deck);
-  FILE *f = fopen(path, "r");
-  ck_assert_ptr_nonnull(f);
-  ck_assert_uint_gt(fread(text, 1, 19999, f), 0);
-  fclose(f);
   char *at = strstr(text, old), *end = strstr(text, "*END STEP");
   ck_assert(at != NULL && end > at);
   const char *rest = at + strlen(old);

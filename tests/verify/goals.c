@@ -152,19 +152,9 @@ static struct {
   int wide, narrow, sign; /* of all: within [.5, 2], [.8, 1.25]; right sign */
 } sums;
 
-static char *deck_text(const char *deck) {
-  char path[200], *text = calloc(20000, 1);
-  snprintf(path, sizeof path, "%s.inp", deck);
-  FILE *f = fopen(path, "r");
-  ck_assert_ptr_nonnull(f);
-  ck_assert_uint_gt(fread(text, 1, 19999, f), 0);
-  fclose(f);
-  return text;
-}
-
 /* The static block with 150 N/mm^2 on its side. */
 static char *block_text(void) {
-  char *text = deck_text("input/greco/greco_static");
+  char *text = job_deck_text("input/greco/greco_static");
   char *at = strstr(text, "LEFT, P, 100.");
   ck_assert_ptr_nonnull(at);
   memcpy(at, "LEFT, P, 150.", 13);
@@ -201,7 +191,7 @@ static job run_scene(const scene *s, int n) {
   const int block = strcmp(s->deck, "block") == 0;
   job j = job_begin("goals");
   if (write_own(s, &j)) return run_words(s, n, j);
-  char *text = block ? block_text() : deck_text(s->deck);
+  char *text = block ? block_text() : job_deck_text(s->deck);
   job_copy_meshes(&j, block ? "input/greco/greco_static" : s->deck);
   char *at = strstr(text, "\n*STEP"), *end = strstr(text, "\n*END STEP");
   for (char *next = end; next != NULL; next = strstr(end + 1, "\n*END STEP"))
