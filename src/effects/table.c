@@ -14,7 +14,7 @@ unsigned effects_required(const model *m) {
   for (int k = 0; effect_table[k] != NULL; ++k)
     if (effect_table[k]->bit != NO_BIT && effect_table[k]->required(m, NULL, 0))
       bits |= 1u << effect_table[k]->bit;
-  return bits & ~(unsigned)(EFFECTS_WITHOUT);
+  return bits;
 }
 
 const char *effect_name(int bit) {

@@ -123,7 +123,8 @@ static void print_column(const column *c, FILE *out) {
 static void list_table(const char *name, const char *help, unsigned bit,
                        FILE *out) {
   fprintf(out, "%s: %s\n", name, help);
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
     if (bit == 0 ? (c->tables & COLUMN_TABLES) == 0 : (c->tables & bit) != 0)
       print_column(c, out);
 }

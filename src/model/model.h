@@ -500,37 +500,16 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE= */
   place move_at, rotate_at; /* of the lines MOVE, ROTATE */
 } move;
 
-/* clang-format off */
-#define EFFECT_LIST(X)                                                       \
-  X(CONTACT,   "unilateral contact")                                         \
-  X(FRICTION,  "friction")                                                   \
-  X(NONLOCAL,  "nonlocal average")                                           \
-  X(TANGENTS,  "tangential unknowns")                                        \
-  X(GIVEN,     "given contact forces")                                       \
-  X(HISTORY,   "history of slip")                                            \
-  X(START,     "initial state")                                              \
-  X(INELASTIC, "inelastic strain")                                           \
-  X(THERMAL,   "thermal strain")                                             \
-  X(BODY,      "body forces")                                                \
-  X(STRESS,    "stresses")                                                   \
-  X(REACTION,  "reactions")                                                  \
-  X(MESH_ERROR, "error of mesh")                                             \
-  X(TIME_ERROR, "error of steps")                                            \
-  X(ESTIMATES, "error of solver")                                            \
-  X(REFERENCE, "closed form")                                            \
-  X(THEORY,    "theory checks")                                              \
-  X(MESH,      "finite elements")
-/* clang-format on */
-#define EFFECT_BIT(name, text) EFFECT_BIT_##name,
-enum { EFFECT_LIST(EFFECT_BIT) EFFECT_COUNT };
-/* Bits of effects left out of a build: tools/effects_cost proves with such
- * builds that effects that are off cost nothing. */
-#ifndef EFFECTS_WITHOUT
-#define EFFECTS_WITHOUT 0
-#endif
-#define EFFECT_MASK(name, text) \
-  EFFECT_##name = (1 << EFFECT_BIT_##name) & ~(EFFECTS_WITHOUT),
-enum { EFFECT_LIST(EFFECT_MASK) EFFECT_ALL = (1 << EFFECT_COUNT) - 1 };
+/* Bits of m->effects: what a model requires and other files ask for. */
+#define EFFECT_LIST(X)                                                \
+  X(CONTACT) X(FRICTION) X(NONLOCAL) X(TANGENTS) X(GIVEN) X(HISTORY)  \
+  X(START) X(INELASTIC) X(THERMAL) X(BODY) X(STRESS) X(REACTION)      \
+  X(MESH_ERROR) X(TIME_ERROR) X(ESTIMATES) X(REFERENCE) X(THEORY)     \
+  X(MESH)
+#define EFFECT_BIT(name) EFFECT_BIT_##name,
+enum { EFFECT_LIST(EFFECT_BIT) };
+#define EFFECT_MASK(name) EFFECT_##name = 1 << EFFECT_BIT_##name,
+enum { EFFECT_LIST(EFFECT_MASK) };
 /* Name of the file of a place, without folder. */
 const char *place_file(const place *at);
 /* For "%s:%d": file without folder, line. */

@@ -140,7 +140,9 @@ static void write_accuracy(json *w, const job *j) {
 static const double *write_contact(json *w, const model *m, int id,
                                    const double *value) {
   json_string(w, "contact", m->contacts[id].name);
-  for (const column *c = NULL; (c = job_end_column(m, c)) != NULL; ++value)
+  const column *c;
+  for (column_walk k = columns_of(PER_CONTACT);
+       (c = job_end_column(m, &k)) != NULL; ++value)
     if (c->form == AS_COUNT && isfinite(*value))
       json_count(w, c->name, *value);
     else

@@ -6,6 +6,7 @@
 #include "base/text.h"
 
 #include <math.h>
+#include <string.h>
 
 static void json_text(FILE *f, const char *text) {
   char piece[PIECE_SIZE];
@@ -13,21 +14,26 @@ static void json_text(FILE *f, const char *text) {
   for (;;) {
     for (; *text == '\n'; ++text) fputs("\\n", f);
     if (text_piece(&text, piece) == 0) break;
-    for (const char *p = piece; *p != '\0'; ++p)
-      if (*p == '\t')
-        fputs("\\t", f);
-      else
-        fprintf(f, *p == '"' || *p == '\\' ? "\\%c" : "%c", *p);
+    for (const char *p = piece; *p != '\0'; ++p) {
+      if (strchr("\t\"\\", *p) != NULL) fputc('\\', f);
+      fputc(*p == '\t' ? 't' : *p, f);
+    }
   }
   fputc('"', f);
 }
 
+static void json_line(const json *w) {
+  fputc('\n', w->f);
+  for (int k = 0; k < w->depth; ++k) fputs("  ", w->f);
+}
+
 static void json_next(json *w, const char *name) {
   if (w->filled[w->depth]++ > 0) fputc(',', w->f);
-  fprintf(w->f, "\n%*s", 2 * w->depth, "");
+  json_line(w);
   if (name == NULL) return;
-  json_text(w->f, name);
-  fputs(": ", w->f);
+  fputc('"', w->f);
+  fputs(name, w->f);
+  fputs("\": ", w->f);
 }
 
 void json_open(json *w, const char *name, char bracket) {
@@ -38,7 +44,8 @@ void json_open(json *w, const char *name, char bracket) {
 
 void json_close(json *w, char bracket) {
   --w->depth;
-  fprintf(w->f, "\n%*s%c", 2 * w->depth, "", bracket);
+  json_line(w);
+  fputc(bracket, w->f);
 }
 
 void json_string(json *w, const char *name, const char *text) {

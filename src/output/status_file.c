@@ -174,7 +174,9 @@ static const double *close_contact(const job *j, int id, const double *value,
   char unit[80];
   fprintf(f, "%-9s ", j->m->contacts[id].name);
   const char *before = "";
-  for (const column *c = NULL; (c = job_end_column(j->m, c)) != NULL; ++value)
+  const column *c;
+  for (column_walk w = columns_of(PER_CONTACT);
+       (c = job_end_column(j->m, &w)) != NULL; ++value)
     if (strncmp(c->name, "force_", 6) == 0 || c->form == AS_COUNT) {
       fprintf(f, "%s%s %.6g%s", before, c->name, *value,
               unit_after(c->unit, j->m, unit));

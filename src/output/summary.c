@@ -13,8 +13,9 @@
 /* The larger; NaN wins, so that it is seen. */
 static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
-const column *job_end_column(const model *m, const column *c) {
-  do c = column_next(c);
+const column *job_end_column(const model *m, column_walk *w) {
+  const column *c;
+  do c = column_next(w);
   while (c != NULL && (c->of != PER_CONTACT || c->form == AS_WORD ||
                        !(c->tables & PRINT_TOTALS) || !column_visible(c, m)));
   return c;
@@ -22,7 +23,8 @@ const column *job_end_column(const model *m, const column *c) {
 
 size_t job_end_size(const model *m) {
   size_t n = 0;
-  for (const column *c = NULL; (c = job_end_column(m, c)) != NULL;) ++n;
+  for (column_walk w = columns_of(PER_CONTACT); job_end_column(m, &w) != NULL;)
+    ++n;
   return 2 + n * (size_t)m->n.contact;
 }
 
@@ -33,7 +35,9 @@ static void remember_contacts(output *o, const state *s) {
   *to++ = s->increment_no;
   *to++ = s->t;
   for (int i = 0; i < o->m->n.contact; ++i) {
-    for (const column *c = NULL; (c = job_end_column(o->m, c)) != NULL;)
+    const column *c;
+    for (column_walk w = columns_of(PER_CONTACT);
+         (c = job_end_column(o->m, &w)) != NULL;)
       *to++ = column_ready(c, s) ? c->value(&v, i, c->part) : NAN;
     if (s->contacts.totals != NULL)
       o->run.penetration_worst =

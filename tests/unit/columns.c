@@ -1,5 +1,6 @@
 /* src/output/columns: over the tables, so that a new row is tested too. */
 #include "base/memory.h"
+#include "effects/rows.h"
 #include "output/columns/columns.h"
 #include "support/made_up.h"
 #include "support/unit.h"
@@ -9,7 +10,8 @@
 #include <string.h>
 
 START_TEST(every_row_has_unit_help_scene_and_value) {
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
     ck_assert_msg(c->unit != NULL && c->unit[0] != '\0', "%s", c->name);
     ck_assert_msg(c->help != NULL && c->help[0] != '\0', "%s", c->name);
     ck_assert_msg((c->scenes & (SCENE_ALL | SCENE_LCP)) != 0, "%s", c->name);
@@ -20,9 +22,22 @@ START_TEST(every_row_has_unit_help_scene_and_value) {
 }
 END_TEST
 
+START_TEST(every_column_of_an_effect_is_listed_once) {
+  for (int e = 0; effect_table[e] != NULL; ++e)
+    for (int i = 0; i < effect_table[e]->n_column; ++i) {
+      const column *c;
+      int times = 0;
+      for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
+        times += c == &effect_table[e]->columns[i];
+      ck_assert_int_eq(times, 1);
+    }
+}
+END_TEST
+
 START_TEST(names_are_unique_within_entity_and_scene) {
-  for (const column *a = column_next(NULL); a != NULL; a = column_next(a))
-    for (const column *b = column_next(a); b != NULL; b = column_next(b))
+  const column *a, *b;
+  for (column_walk k = {0}; (a = column_next(&k)) != NULL;)
+    for (column_walk l = k; (b = column_next(&l)) != NULL;)
       ck_assert_msg(a->of != b->of || (a->scenes & b->scenes) == 0 ||
                         strcmp(a->name, b->name) != 0,
                     "%s", a->name);
@@ -31,8 +46,9 @@ END_TEST
 
 /* Components of one field of HDF5 have places of their own. */
 START_TEST(fields_have_distinct_components) {
-  for (const column *a = column_next(NULL); a != NULL; a = column_next(a))
-    for (const column *b = column_next(a); b != NULL; b = column_next(b)) {
+  const column *a, *b;
+  for (column_walk k = {0}; (a = column_next(&k)) != NULL;)
+    for (column_walk l = k; (b = column_next(&l)) != NULL;) {
       if (a->of != b->of || (a->scenes & b->scenes) == 0) continue;
       if (a->field == NULL || b->field == NULL) continue;
       if (strcmp(a->field, b->field) == 0) ck_assert_int_ne(a->part, b->part);
@@ -43,7 +59,8 @@ END_TEST
 static int count_finite(const made_up *made) {
   int n = 0;
   view v = {&made->m, made->msh, &made->s};
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
     if (!column_visible(c, &made->m)) continue;
     ck_assert(column_ready(c, &made->s));
     for (int id = 0; id < column_items(c, &v); ++id) {
@@ -74,7 +91,8 @@ END_TEST
 START_TEST(columns_follow_the_effects) {
   made_up *made = made_up_new(2, 1, 1);
   made->m.effects = 0;
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
     if (column_visible(c, &made->m)) {
       ck_assert_int_ne(c->of, PER_CONTACT_NODE);
       ck_assert_int_ne(c->of, PER_CONTACT);
@@ -86,7 +104,8 @@ START_TEST(columns_follow_the_effects) {
 END_TEST
 
 static const column *named(const made_up *made, entity of, const char *name) {
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
     if (c->of == of && column_visible(c, &made->m) &&
         strcmp(c->name, name) == 0)
       return c;
@@ -207,12 +226,13 @@ START_TEST(internal_variables_of_unlike_laws) {
   made->s.body.inelastic = &inelastic;
   view v = {&made->m, made->msh, &made->s};
   int seen = 0;
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
     if (c->of != PER_ELEMENT) continue;
     if (strncmp(c->name, "alpha_", 6) == 0)
-      for (int k = 0; k < 3; ++k, ++seen)
-        ck_assert_double_eq(c->value(&v, elem[k], c->part),
-                            c->part < 3 ? expected[k][c->part] : 0);
+      for (int i = 0; i < 3; ++i, ++seen)
+        ck_assert_double_eq(c->value(&v, elem[i], c->part),
+                            c->part < 3 ? expected[i][c->part] : 0);
     if (strncmp(c->name, "alpha_", 6) == 0 || strncmp(c->name, "ei_", 3) == 0)
       ck_assert_double_eq(c->value(&v, 2, c->part), 0);
     if (strcmp(c->name, "ei_yy") == 0)
@@ -247,7 +267,8 @@ END_TEST
 static double told(const made_up *made, entity of, unsigned scene,
                    const char *name) {
   view v = {&made->m, made->msh, &made->s};
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
     if (c->of == of && (c->scenes & scene) != 0 && strcmp(c->name, name) == 0)
       return c->value(&v, 0, c->part);
   ck_abort_msg("no column %s", name);
@@ -376,14 +397,15 @@ START_TEST(components_are_those_of_their_letters) {
       {"t1", SCENE_SOLID, 0}, {"t2", SCENE_SOLID, 1},  {"_1", SCENE_SOLID, 0},
       {"_2", SCENE_SOLID, 1}};
   int seen = 0;
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c))
-    for (size_t k = 0; k < sizeof letters / sizeof *letters; ++k) {
-      const size_t n = strlen(c->name), m = strlen(letters[k].end);
-      if (n < m || strcmp(c->name + n - m, letters[k].end) != 0) continue;
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
+    for (size_t i = 0; i < sizeof letters / sizeof *letters; ++i) {
+      const size_t n = strlen(c->name), m = strlen(letters[i].end);
+      if (n < m || strcmp(c->name + n - m, letters[i].end) != 0) continue;
       if (strncmp(c->name, "alpha", 5) == 0 ||
-          (c->scenes & letters[k].scenes) == 0)
+          (c->scenes & letters[i].scenes) == 0)
         continue;
-      ck_assert_msg(c->part == letters[k].part, "%s: %d", c->name, c->part);
+      ck_assert_msg(c->part == letters[i].part, "%s: %d", c->name, c->part);
       ++seen;
     }
   ck_assert_int_gt(seen, 70);
@@ -407,6 +429,7 @@ START_TEST(units_are_composed_from_the_labels) {
 END_TEST
 
 UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
+          every_column_of_an_effect_is_listed_once,
           names_are_unique_within_entity_and_scene,
           fields_have_distinct_components, every_value_is_finite,
           columns_follow_the_effects, contact_signs_and_directions,

@@ -2,6 +2,7 @@
  * The columns one after another, which of them a model and a state have, and
  * their units.
  */
+#include "output/columns/columns.h"
 #include "run/column_row.h"
 #include "effects/rows.h"
 
@@ -25,56 +26,40 @@ static const struct {
              {PER_TIP, tip_columns},
              {PER_GOAL, goal_columns},
              {PER_CONTACT, contact_columns}};
+
 enum { N_PART = sizeof parts / sizeof *parts };
 
-static int part_of(entity of) {
-  int k = 0;
-  while (parts[k].of != of) ++k;
-  return k;
+/* The next of the effects at a place in the list of an entity, or NULL. */
+static const column *next_of_effects(column_walk *w, int nth) {
+  for (; effect_table[w->effect] != NULL; ++w->effect, w->k = 0)
+    while (w->k < effect_table[w->effect]->n_column) {
+      const column *c = &effect_table[w->effect]->columns[w->k++];
+      if (c->of == parts[w->part].of && (int)(c->tables >> COLUMN_PLACE) == nth)
+        return c;
+    }
+  w->effect = 0;
+  return NULL;
 }
 
-/* A place of the effects in the list of an entity. */
-static const column *place_of_effects(entity of, int nth) {
-  const column *c = parts[part_of(of)].column;
-  while (c->name[0] != '\0' || c->part != nth) ++c;
+column_walk columns_of(entity of) {
+  column_walk w = {0};
+  while (parts[w.part].of != of) ++w.part;
+  return w;
+}
+
+const column *column_next(column_walk *w) {
+  const column *c = NULL;
+  while (c == NULL && w->part < N_PART) {
+    const column *own = &parts[w->part].column[w->at];
+    if (own->name == NULL) {
+      ++w->part;
+      w->at = 0;
+      continue;
+    }
+    c = own->name[0] != '\0' ? own : next_of_effects(w, own->part);
+    if (c == own || c == NULL) ++w->at;
+  }
   return c;
-}
-
-static int place_of(const column *c) {
-  return (int)(c->tables >> COLUMN_PLACE);
-}
-
-/* The first column of an entity at a place from number k of effect number e on,
- * or what follows the place. */
-static const column *next_of_effects(entity of, int nth, int e, int k) {
-  for (; effect_table[e] != NULL; ++e, k = 0)
-    for (; k < effect_table[e]->n_column; ++k) {
-      const column *c = &effect_table[e]->columns[k];
-      if (c->of == of && place_of(c) == nth) return c;
-    }
-  return place_of_effects(of, nth) + 1;
-}
-
-const column *column_next(const column *c) {
-  entity of = c == NULL ? parts[0].of : c->of;
-  const effect_ops *owner = c == NULL ? NULL : effect_of_column(c);
-  const column *next = c == NULL ? parts[0].column : c + 1;
-  if (owner != NULL) {
-    int e = 0;
-    while (effect_table[e] != owner) ++e;
-    next = next_of_effects(of, place_of(c), e, (int)(next - owner->columns));
-  }
-  while (next->name == NULL || next->name[0] == '\0') {
-    if (next->name != NULL) {
-      next = next_of_effects(of, next->part, 0, 0);
-    } else {
-      int k = part_of(of) + 1;
-      if (k == N_PART) return NULL;
-      of = parts[k].of;
-      next = parts[k].column;
-    }
-  }
-  return next;
 }
 
 unsigned scene_of(const model *m) {

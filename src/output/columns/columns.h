@@ -14,9 +14,14 @@
 #include <stdio.h>
 
 unsigned scene_of(const model *m);
-/* All columns, entity after entity: the first after NULL, NULL after the last.
- */
-const column *column_next(const column *c);
+/* All columns, entity after entity; all-zero before the first, NULL behind the
+ * last. */
+typedef struct column_walk {
+  int part, at, effect, k;
+} column_walk;
+const column *column_next(column_walk *w);
+/* Before the first of an entity. */
+column_walk columns_of(entity of);
 
 /* 1: the model shows the column at all. */
 int column_visible(const column *c, const model *m);

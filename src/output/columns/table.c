@@ -30,8 +30,10 @@ void table_choose(table *t, entity of, unsigned print_bit, const view *v,
   t->n = 0;
   t->of = of;
   t->digits = digits;
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
-    if (c->of != of || (c->tables & print_bit) == 0) continue;
+  const column *c;
+  for (column_walk w = columns_of(of);
+       (c = column_next(&w)) != NULL && c->of == of;) {
+    if ((c->tables & print_bit) == 0) continue;
     if (!column_visible(c, v->m) || !column_ready(c, v->s)) continue;
     if (t->n == COLUMNS) break;
     t->width[t->n] = cell_width(c, v->m, digits);

@@ -82,7 +82,8 @@ static status add_field(hdf5_file *h, const column *c, entity of,
 
 static status choose_fields(hdf5_file *h) {
   char name[100], group[120];
-  for (const column *c = column_next(NULL); c != NULL; c = column_next(c)) {
+  const column *c;
+  for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
     if (c->field == NULL || !column_visible(c, h->m)) continue;
     if (c->of == PER_CONTACT_NODE && h->n_contact_node == 0) continue;
     if (c->of != PER_CONTACT) {

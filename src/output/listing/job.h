@@ -8,7 +8,7 @@
 #include "base/archive/archive.h"
 #include "run/history/history.h"
 #include "effects/plan/plan.h"
-#include "run/column.h"
+#include "output/columns/columns.h"
 
 typedef struct output_options {
   const char *dir;     /* folder of the results; NULL or "": the current one */
@@ -105,7 +105,7 @@ typedef struct job {
 /* The numbers of the table TOTALS that the model has, one after another: for
  * each step run_summary.ends has the number (0: none) and the time of its last
  * increment so far, then contact by contact the values of these columns. */
-const column *job_end_column(const model *m, const column *c);
+const column *job_end_column(const model *m, column_walk *w);
 /* Numbers of a step there. */
 size_t job_end_size(const model *m);
 /* goals.c: goal "id" at the last increment so far of the last step that has
