@@ -101,6 +101,21 @@ START_TEST(crack_loaded_on_its_lips) {
 }
 END_TEST
 
+/* A pressure of x opens it from -1/3 to 1 alone (Bui): the estimate follows how
+ * far, whatever the lengths of neighbouring elements. */
+START_TEST(crack_that_is_closed_in_part) {
+  static const char *const sizes[] = {"N = 50", "N = 100"};
+  for (int i = 0; i < 2; ++i) {
+    char numbers[60];
+    snprintf(numbers, sizeof numbers, "%s\nANGLE = 0.\nW = 200.", sizes[i]);
+    job j = run_crack("crack", numbers, SIF "NAME=ONE, COMPONENT=1\n",
+                      HELD "*DSLOAD\nLINE+, P, \"x\"\nLINE-, P, \"x\"\n");
+    check_goal(&j, 0, 2.0 / 3.0 * sqrt(2.0 / 3.0 * pi), 0.5, 2.0, 1.0);
+    job_end(&j);
+  }
+}
+END_TEST
+
 START_TEST(crack_at_an_edge) {
   job j = run_crack("edge", "N = 20\nW = 300.", SIF "NAME=ONE, COMPONENT=1\n",
                     "*BOUNDARY\nPIN, 1, 2\nEND, 1\n" PULLED);
@@ -213,6 +228,7 @@ START_TEST(target_of_a_factor) {
 END_TEST
 
 UNIT_MAIN("goals_cracks", open_crack_in_a_plate, crack_loaded_on_its_lips,
-          crack_at_an_edge, closed_crack_that_slips,
-          error_of_the_solver_in_a_factor, crack_that_sticks_is_none,
-          disc_in_space, no_factor_no_estimate, target_of_a_factor)
+          crack_that_is_closed_in_part, crack_at_an_edge,
+          closed_crack_that_slips, error_of_the_solver_in_a_factor,
+          crack_that_sticks_is_none, disc_in_space, no_factor_no_estimate,
+          target_of_a_factor)

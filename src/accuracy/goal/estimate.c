@@ -252,19 +252,26 @@ void goal_estimator_force(goal_estimator *e, double *F) {
   for (int k = 0; k < d->mesh->dim * d->mesh->n_node; ++k) F[k] = -F[k];
 }
 
-/* At a point of an element: T : grad of u in the bubbles, by the gradients of
- * the P1 functions. */
+/* At a point of an element: T : grad of u, that in the bubbles too, by the
+ * gradients of the P1 functions. */
 static double flux_part(const goal_estimator *e, int elem_id, const double *phi,
                         const double *g, const double *T) {
   const int dim = e->s.d->mesh->dim;
   const double *d = e->part + (size_t)(edges_of(dim) * dim) * (size_t)elem_id;
+  const int *v = e->s.d->mesh->elem + (dim + 1) * elem_id;
   double sum = 0.0;
-  for (int a = 0; a < dim; ++a)
-    for (int b = a + 1; b <= dim; ++b, d += dim)
-      for (int i = 0; i < dim; ++i)
-        for (int k = 0; k < dim; ++k)
-          sum += T[dim * i + k] * d[i] * 4.0 *
-                 (phi[a] * g[dim * b + k] + phi[b] * g[dim * a + k]);
+  for (int i = 0; i < dim; ++i)
+    for (int k = 0; k < dim; ++k) {
+      double slope = 0.0;
+      const double *of = d + i;
+      for (int a = 0; a <= dim; ++a) {
+        slope += e->s.u[dim * v[a] + i] * g[dim * a + k];
+        for (int b = a + 1; b <= dim; ++b, of += dim)
+          slope +=
+              *of * 4.0 * (phi[a] * g[dim * b + k] + phi[b] * g[dim * a + k]);
+      }
+      sum += T[dim * i + k] * slope;
+    }
   return sum;
 }
 

@@ -123,7 +123,7 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
                           goal_estimator **out);
 void goal_estimator_free(goal_estimator *e);           /* accepts NULL */
 double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
-/* Derivative f of what u is in the bubbles. */
+/* J of u, what u is in the bubbles too, by its derivative f. */
 double goal_estimator_flux(const goal_estimator *e, const goal_flux *f);
 /* F[dim*n_node]: forces that what u is in the bubbles exerts on the mesh; under
  * them the nodes move by their error. */

@@ -39,7 +39,11 @@ typedef struct crack_state {
                        same forces, m; NULL: none flows */
   double *sigma;    /* [ns*n_elem] Pa */
   double *traction; /* [dim*n_node] on the lips, Pa */
-  double *area;     /* [n_node] of the lips, m2 */
+  double *lumped;   /* [dim*n_node] workspace of find_tractions, Pa */
+  double *area;     /* [n_node] of the lips, m2; 0 at the fronts, where both
+                       are one */
+  double *shift;    /* [dim*n_node] from a node to where the force of a uniform
+                       traction acts that it takes, m */
 } crack_state;
 
 /* ---- what stays ---------------------------------------------------------- */
@@ -59,17 +63,43 @@ static status new_materials(const run *r, crack_state *own) {
   return OK;
 }
 
-/* Half of each lip face to its nodes (a third in space). */
-static void add_areas(const run *r, int n, const int *face, double *area) {
-  const mesh *m = r->msh;
+/* The area of a lip face. */
+static double area_of(const run *r, int face) {
+  const int id = r->m->elem_section[r->msh->face_elem[face]];
   double normal[3];
-  for (int i = 0; i < n; ++i) {
-    const section *s =
-        &r->m->sections[r->m->elem_section[m->face_elem[face[i]]]];
-    const double measure = mesh_face_normal(m, face[i], normal) * s->thickness;
-    for (int k = 0; k < m->dim; ++k)
-      area[m->face[m->dim * face[i] + k]] += measure / m->dim;
+  return mesh_face_normal(r->msh, face, normal) * r->m->sections[id].thickness;
+}
+
+/* Lip k of a crack, the plus lips first. */
+static int lip_of(const mesh_crack *c, int k) {
+  return k < c->n ? c->plus[k] : c->minus[k - c->n];
+}
+
+/* Half of each lip face to its nodes (a third in space). */
+static void add_areas(const run *r, const mesh_crack *c, crack_state *own) {
+  const mesh *m = r->msh;
+  const int dim = m->dim;
+  for (int i = 0; i < 2 * c->n; ++i) {
+    const int *v = m->face + dim * lip_of(c, i);
+    const double share = area_of(r, lip_of(c, i)) / dim;
+    for (int a = 0; a < dim; ++a) {
+      own->area[v[a]] += share;
+      for (int k = 0; k < dim * dim; ++k)
+        own->shift[dim * v[a] + k % dim] +=
+            share / (dim + 1) *
+            (m->x[dim * v[k / dim] + k % dim] - m->x[dim * v[a] + k % dim]);
+    }
   }
+}
+
+static void set_areas(run *r, crack_state *own) {
+  const mesh *m = r->msh;
+  for (int i = 0; i < m->n_crack; ++i) add_areas(r, &m->crack[i], own);
+  for (int k = 0; k < m->dim * m->n_node; ++k)
+    if (own->area[k / m->dim] > 0.0) own->shift[k] /= own->area[k / m->dim];
+  for (int i = 0; i < m->n_crack; ++i)
+    for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
+      own->area[m->crack[i].front_node[k]] = 0.0;
 }
 
 /* Points of a front without factors, and why. */
@@ -105,9 +135,8 @@ static status new_cracks(run *r, crack_state *own) {
     const fracture_body body = {m, c, r->m->elem_section, own->materials};
     PASS(fracture_new(&body, &own->of[i]));
     own->n += fracture_count(own->of[i]);
-    add_areas(r, c->n, c->plus, own->area);
-    add_areas(r, c->n, c->minus, own->area);
   }
+  set_areas(r, own);
   PASS_NEW(own->tips, own->n);
   PASS_NEW(own->found, own->n);
   for (int i = 0, n = 0; i < m->n_crack; ++i)
@@ -123,7 +152,9 @@ static status cracks_new(run *r, void **self) {
   *self = own;
   PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   PASS_NEW(own->traction, r->n_dof);
+  PASS_NEW(own->lumped, r->n_dof);
   PASS_NEW(own->area, r->msh->n_node);
+  PASS_NEW(own->shift, r->n_dof);
   own->step_id = -1;
   own->flows =
       facts_has_inelastic(r->m) || (r->m->effects & EFFECT_THERMAL) != 0;
@@ -146,21 +177,73 @@ static void release(void *self) {
   for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
     fracture_free(own->of[i]);
   RELEASE(own->of, own->elastic, own->rate, own->tips, own->found,
-          own->materials, own->sigma, own->traction, own->area);
+          own->materials, own->sigma, own->traction, own->lumped, own->area);
   memory_free(own);
 }
 
 /* ---- an increment -------------------------------------------------------- */
 
-/* Contact forces and loads at the lips over their areas. */
-static void find_tractions(const run *r, crack_state *own) {
+/* The gradient of P1 function "node" along the shift of another, -. */
+static double along_shift(const run *r, const crack_state *own, int elem_id,
+                          int node, int other) {
   const mesh *m = r->msh;
+  const int *v = m->elem + (m->dim + 1) * elem_id;
+  double g[12], sum = 0.0;
+  int at = 0;
+  while (v[at] != node) ++at;
+  mesh_elem_gradients(m, elem_id, g);
+  for (int c = 0; c < m->dim; ++c)
+    sum += g[m->dim * at + c] * own->shift[m->dim * other + c];
+  return sum;
+}
+
+/* A force over its area is the traction at the shifted place: to[dim*n_node]
+ * gets what it is less at the node, by its mean slope on the faces there but
+ * those at the front; or the transpose of that. */
+static void shift_back(const run *r, const crack_state *own, int face,
+                       int transposed, const double *from, double *to) {
+  const int dim = r->msh->dim, *v = r->msh->face + dim * face;
+  const double share = area_of(r, face) / dim;
+  for (int a = 0; a < dim; ++a)
+    if (!(own->area[v[a]] > 0.0)) return;
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b) {
+      const double part =
+          share / own->area[v[a]] *
+          along_shift(r, own, r->msh->face_elem[face], v[b], v[a]);
+      const int get = transposed ? v[a] : v[b], put = transposed ? v[b] : v[a];
+      for (int c = 0; c < dim; ++c)
+        to[dim * put + c] -= part * from[dim * get + c];
+    }
+}
+
+static void shift_all(const run *r, const crack_state *own, int transposed,
+                      double *t) {
+  const mesh *m = r->msh;
+  memcpy(own->lumped, t, r->n_dof * sizeof *t);
+  for (int i = 0; i < m->n_crack; ++i)
+    for (int k = 0; k < 2 * m->crack[i].n; ++k)
+      shift_back(r, own, lip_of(&m->crack[i], k), transposed, own->lumped, t);
+}
+
+static void over_areas(const run *r, const crack_state *own, double *t) {
+  const int dim = r->msh->dim;
+  for (int k = 0; k < dim * r->msh->n_node; ++k)
+    t[k] *= own->area[k / dim] > 0.0 ? 1.0 / own->area[k / dim] : 0.0;
+}
+
+void cracks_by_forces(const run *r, double *by) {
+  const crack_state *own = effect_state(&r->effects, &cracks_effect);
+  shift_all(r, own, 1, by);
+  over_areas(r, own, by);
+}
+
+/* Of contact forces and loads at the lips. */
+static void find_tractions(const run *r, crack_state *own) {
   memcpy(own->traction, r->now.F, r->n_dof * sizeof *own->traction);
   if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
-  for (int i = 0; i < m->n_node; ++i)
-    for (int c = 0; c < m->dim; ++c)
-      own->traction[m->dim * i + c] *=
-          own->area[i] > 0.0 ? 1.0 / own->area[i] : 0.0;
+  over_areas(r, own, own->traction);
+  shift_all(r, own, 0, own->traction);
 }
 
 /* Sums of a line K + slope * distance by least squares. */
@@ -322,7 +405,7 @@ status cracks_factors(run *r, int crack_id, crack_factors *out) {
   for (int i = 0; i < crack_id; ++i) first += fracture_count(own->of[i]);
   *out = (crack_factors){fracture_count(own->of[crack_id]),
                          fracture_points(own->of[crack_id]), own->found + first,
-                         own->area, !own->flows};
+                         !own->flows};
   return OK;
 }
 

@@ -12,8 +12,7 @@ typedef struct crack_factors {
   int n;
   const fracture_point *points; /* [n] borrowed */
   const fracture_factors *at; /* [n] borrowed until the next ones; NAN: none */
-  const double *area; /* [n_node] of the lips, by which forces are tractions */
-  int is_linear;      /* 1: in displacements and contact forces */
+  int is_linear;              /* 1: in displacements and contact forces */
 } crack_factors;
 /* ERR_MEMORY. */
 status cracks_factors(run *r, int crack_id, crack_factors *out);
@@ -21,5 +20,8 @@ status cracks_factors(run *r, int crack_id, crack_factors *out);
  * cracks_factors. ERR_MEMORY. */
 status cracks_derive(const run *r, int crack_id, int point, int mode,
                      fracture_linear *out);
+/* by[dim*n_node]: a derivative by tractions at the lips becomes that by the
+ * forces there. */
+void cracks_by_forces(const run *r, double *by);
 
 #endif

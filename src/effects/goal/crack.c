@@ -31,17 +31,6 @@ static int find_point(const goal_card *g, const crack_factors *k) {
   return best;
 }
 
-/* From tractions at nodes to contact forces. */
-static status set_forces(const run *r, const double *area, double *by,
-                         goal_form *f) {
-  const int dim = r->msh->dim;
-  for (int i = 0; i < r->msh->n_node; ++i)
-    for (int c = 0; c < dim; ++c)
-      by[dim * i + c] *= area[i] > 0.0 ? 1.0 / area[i] : 0.0;
-  if (r->nodes.n > 0) surface_relative(r->surface, by, f->psi);
-  return OK;
-}
-
 status goal_set_factor(run *r, const goal_card *g, goal_form *f) {
   const size_t n = r->n_dof;
   crack_factors k;
@@ -58,5 +47,8 @@ status goal_set_factor(run *r, const goal_card *g, goal_form *f) {
     f->rough =
         ROUGH * fabs(f->value) * k.points[point].size / k.points[point].radius;
   for (size_t i = 0; i < n; ++i) f->load[i] = f->factor.by_u[i];
-  return set_forces(r, k.area, f->factor.by_traction, f);
+  cracks_by_forces(r, f->factor.by_traction);
+  if (r->nodes.n > 0)
+    surface_relative(r->surface, f->factor.by_traction, f->psi);
+  return OK;
 }

@@ -229,6 +229,16 @@ static double *product_of(const run *r, const goal_state *own, int id) {
              : own->product + (size_t)r->msh->n_elem * (size_t)id;
 }
 
+/* What a stress intensity factor has by the bubbles, and by its integral at
+ * more points than the centroids. */
+static double of_factor(const run *r, const shared *s) {
+  const fracture_linear *f = &s->form.factor;
+  const goal_flux flux = {f->n, f->elem, fracture_corner(r->msh->dim), f->flux};
+  double sum = goal_estimator_flux(s->estimator, &flux);
+  for (size_t k = 0; k < r->n_dof; ++k) sum -= f->by_u[k] * r->now.u[k];
+  return sum;
+}
+
 static status estimate(run *r, goal_state *own, shared *s, int id) {
   const goal_form *f = &s->form;
   goal_result *out = &own->result[id];
@@ -239,11 +249,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
                           f->is_square, product_of(r, own, id), &e));
   if (!isfinite(e.error)) return OK;
-  if (f->factor.n > 0) {
-    const goal_flux flux = {f->factor.n, f->factor.elem,
-                            fracture_corner(r->msh->dim), f->factor.flux};
-    e.error += goal_estimator_flux(s->estimator, &flux);
-  }
+  if (f->factor.n > 0) e.error += of_factor(r, s);
   e.error += f->curved;
   e.magnitude += fabs(f->curved);
   e.error += f->is_square ? 0.0 : e.hoop;
