@@ -34,40 +34,89 @@ static double mises(const view *v, int id, int part) {
   return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
-/* Turn p and q of a symmetric matrix so that a[p][q] = 0 (Jacobi). */
-static void turn(double a[3][3], int p, int q) {
-  const int r = 3 - p - q;
-  const double half = (a[q][q] - a[p][p]) / 2, off = a[p][q];
-  const double t = off / (half + copysign(sqrt(half * half + off * off), half));
-  const double cosine = 1 / sqrt(1 + t * t), sine = t * cosine;
-  const double rp = a[r][p], rq = a[r][q];
-  a[p][p] -= t * off;
-  a[q][q] += t * off;
-  a[p][q] = a[q][p] = 0;
-  a[r][p] = a[p][r] = cosine * rp - sine * rq;
-  a[r][q] = a[q][r] = sine * rp + cosine * rq;
+static double dot(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Principal stress number part, the largest first. */
+static double length(const double *a) { return sqrt(dot(a, a)); }
+
+/* The larger (sign 1) or the smaller (-1) eigenvalue of [a c; c b]. */
+static double of_two(double a, double b, double c, int sign) {
+  return (a + b) / 2 + sign * hypot((a - b) / 2, c);
+}
+
+/* Of d, symmetric without trace, the eigenvalue farthest from the others. */
+static double lone_value(double d[3][3]) {
+  const double r =
+      sqrt((dot(d[0], d[0]) + dot(d[1], d[1]) + dot(d[2], d[2])) / 6);
+  const double normal[3] = {d[1][1] * d[2][2] - d[1][2] * d[2][1],
+                            d[1][2] * d[2][0] - d[1][0] * d[2][2],
+                            d[1][0] * d[2][1] - d[1][1] * d[2][0]};
+  const double ratio = dot(d[0], normal) / (2 * r * r * r);
+  const double angle = acos(fmax(-1, fmin(1, ratio))) / 3, pi = acos(-1);
+  return 2 * r * cos(angle < pi / 6 ? angle : angle + 2 * pi / 3);
+}
+
+/* Unit vectors s, t of the plane normal to the eigenvector of "lone", from the
+ * columns of d - lone I: the longest, and of the others what is normal to it.
+ */
+static void plane_of(double d[3][3], double lone, double *s, double *t) {
+  double c[3][3];
+  int p = 0;
+  for (int k = 0; k < 3; ++k) {
+    for (int i = 0; i < 3; ++i) c[k][i] = d[k][i] - (i == k ? lone : 0);
+    if (length(c[k]) > length(c[p])) p = k;
+  }
+  double *q = c[(p + 1) % 3], *other = c[(p + 2) % 3];
+  const double size = length(c[p]);
+  for (int i = 0; i < 3; ++i) s[i] = c[p][i] / size;
+  const double along[2] = {dot(s, q), dot(s, other)};
+  for (int i = 0; i < 3; ++i) {
+    q[i] -= along[0] * s[i];
+    other[i] -= along[1] * s[i];
+  }
+  if (length(other) > length(q)) q = other;
+  const double rest = length(q);
+  for (int i = 0; i < 3; ++i) t[i] = q[i] / rest;
+}
+
+/* Principal stress number part, the largest first, in space: the lone one by
+ * its angle, the others from the plane normal to its direction. W. M.
+ * Scherzinger, C. R. Dohrmann, Comput. Methods Appl. Mech. Engrg. 197 (2008)
+ * 4007. */
+static double principal_in_space(const double *stress, int part) {
+  double d[3][3], s[3], t[3], ds[3], dt[3], scale = 0;
+  for (int k = 0; k < 6; ++k) scale = fmax(scale, fabs(stress[k]));
+  const double mean = (stress[0] + stress[1] + stress[2]) / 3;
+  for (int k = 0; k < 3; ++k) {
+    d[k][k] = (stress[k] - mean) / scale;
+    d[k][(k + 1) % 3] = d[(k + 1) % 3][k] = stress[3 + k] / scale;
+  }
+  if (!(length(d[0]) + length(d[1]) + length(d[2]) > 0)) return mean;
+  const double lone = lone_value(d);
+  plane_of(d, lone, s, t);
+  for (int k = 0; k < 3; ++k) {
+    ds[k] = dot(d[k], s);
+    dt[k] = dot(d[k], t);
+  }
+  const double a = dot(s, ds), b = dot(t, dt), c = dot(s, dt);
+  double e[3] = {lone, of_two(a, b, c, 1), of_two(a, b, c, -1)};
+  if (lone < e[1]) {
+    e[0] = e[1];
+    e[1] = e[2];
+    e[2] = lone;
+  }
+  return mean + scale * e[part];
+}
+
 static double principal(const view *v, int id, int part) {
   const double *s = v->s->body.stress + at(v->m->ns, id, 0);
-  const int solid = v->m->ns == 6;
-  double a[3][3], scale = 0;
-  for (int k = 0; k < v->m->ns; ++k) scale = fmax(scale, fabs(s[k]));
-  if (!(scale > 0)) return s[0];
-  for (int k = 0; k < 3; ++k) a[k][k] = s[k] / scale;
-  a[0][1] = a[1][0] = s[3] / scale;
-  a[1][2] = a[2][1] = solid ? s[4] / scale : 0;
-  a[2][0] = a[0][2] = solid ? s[5] / scale : 0;
-  for (int pass = 0; pass < 30; ++pass) {
-    const int p = pass % 3, q = (p + 1) % 3;
-    if (fabs(a[p][q]) > 1e-17) turn(a, p, q);
-  }
-  const double most = fmax(fmax(a[0][0], a[1][1]), a[2][2]);
-  const double least = fmin(fmin(a[0][0], a[1][1]), a[2][2]);
-  if (part == 0) return scale * most;
-  if (part == 2) return scale * least;
-  return scale * (a[0][0] + a[1][1] + a[2][2] - most - least);
+  if (v->m->ns == 6) return principal_in_space(s, part);
+  const double high = of_two(s[0], s[1], s[3], 1);
+  const double low = of_two(s[0], s[1], s[3], -1);
+  if (part == 0) return fmax(high, s[2]);
+  if (part == 2) return fmin(low, s[2]);
+  return fmax(low, fmin(high, s[2]));
 }
 
 /* clang-format off */
