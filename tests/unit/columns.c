@@ -152,6 +152,7 @@ START_TEST(principal_stresses_are_those_of_the_tensor) {
                  {{-3, 5, 1, 0, 0, 0}, {5, 1, -3}},
                  {{0, 0, 0, 4, 0, 0}, {4, 0, -4}},
                  {{1, 1, 1, 1, 1, 1}, {3, 0, 0}},
+                 {{2, 2, 2, -1, -1, -1}, {3, 3, 0}},
                  {{2, 3, 4, -2, -2, 0}, {6, 3, 0}}};
   made_up *made = made_up_new(3, 2, 3);
   made_up_advance(made, 1);
