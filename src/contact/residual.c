@@ -300,7 +300,7 @@ static void measure_node(measure *x, int node_id, measured *node) {
     terms = node->k * (terms + largest_of(cp->dim, x->u + first));
   double carried = smaller(b->carried, b->reach);
   node->rounding = ROUNDING * (terms + sqrt(node->k) * carried);
-  if (b->carried > b->reach && contact_has_stiffness(cp))
+  if (b->carried > b->reach)
     node->drift = DBL_EPSILON * sqrt(node->k) * b->carried;
   node->normal = scale_of(x, b, node, node->c.n);
   node->slide = scale_of(x, b, node, node->c.t);

@@ -173,29 +173,46 @@ START_TEST(solvable_problem_is_never_said_to_have_no_equilibrium) {
 END_TEST
 
 /* A rigid body between two walls that are as far apart as it is thick, but for
- * a little; it slides along them. */
+ * "thick"; it slides along them. */
+static contact_case between_walls(int dim, double thick) {
+  contact_case c = case_new(dim, 2, 0.3);
+  for (int i = 0; i < 2 * dim; ++i)
+    for (int j = 0; j < 2 * dim; ++j)
+      if (i % dim == j % dim)
+        c.A[i + 2 * dim * j] = i % dim == 0 && i != j ? -2.0 : 2.0;
+  c.f[0] = 1.0;
+  c.f[dim] = -1.0 + thick;
+  c.f[1] = c.f[dim + 1] = 0.1;
+  c.cp.W = c.A;
+  c.cp.A = NULL;
+  return c;
+}
+
 START_TEST(body_too_thick_for_its_gap_has_no_equilibrium) {
   static const double off[] = {1.0, 1e-3, 1e-6, 0.0, -1e-6, -1e-3};
   const solver_ops *ops;
   for (int k = 0; k < 12; ++k) {
-    int dim = 2 + k / 6;
-    contact_case c = case_new(dim, 2, 0.3);
     double thick = off[k % 6];
-    for (int i = 0; i < 2 * dim; ++i)
-      for (int j = 0; j < 2 * dim; ++j)
-        if (i % dim == j % dim)
-          c.A[i + 2 * dim * j] = i % dim == 0 && i != j ? -2.0 : 2.0;
-    c.f[0] = 1.0;
-    c.f[dim] = -1.0 + thick;
-    c.f[1] = c.f[dim + 1] = 0.1;
-    c.cp.W = c.A;
-    c.cp.A = NULL;
+    contact_case c = between_walls(2 + k / 6, thick);
     for (int i = 0; solver_row(i, &ops); ++i) {
       case_cold(&c);
       solver_report rep = solve_by(ops, &c, 1e-9, c.u, c.r);
       ck_assert_msg((rep.outcome == STOPPED_RAY) == (thick > 0.0), "%s: %g: %s",
                     row_name(ops), thick, outcome_text(rep.outcome));
     }
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Forces so large that they lose the penetration in r - c (u - gap). */
+START_TEST(forces_without_bound_do_not_hide_a_body_too_thick) {
+  for (double size = 0x1p10; size <= 0x1p80; size *= 2.0) {
+    contact_case c = between_walls(2, 0x1p-10);
+    c.r[0] = c.r[2] = -size;
+    memcpy(c.u, c.f, 4 * sizeof *c.u);
+    c.cp.g0 = NULL;
+    ck_assert_msg(contact_residual(&c.cp, c.u, c.r) > 1e-9, "%g", size);
     case_free(&c);
   }
 }
@@ -273,5 +290,6 @@ UNIT_MAIN("proof", balanced_load_has_no_proof,
           limit_of_friction_is_met_from_both_sides,
           solvable_problem_is_never_said_to_have_no_equilibrium,
           body_too_thick_for_its_gap_has_no_equilibrium,
+          forces_without_bound_do_not_hide_a_body_too_thick,
           compliance_of_zero_is_solved_without_forces,
           large_sparse_compliance_is_not_searched)
