@@ -112,11 +112,22 @@ done:
   return st;
 }
 
+/* The system of an iteration is counted. */
+static void see_iteration(void *ctx, const solver_step *s) {
+  run *r = ctx;
+  observed_work *seen = &r->solving.seen;
+  if (s->linear.unknowns > 0.0) ++seen->now;
+  if (s->linear.unknowns > 0.0 && r->problem.cp.op != NULL) {
+    ++seen->factors;
+    seen->solves += s->linear.solves;
+  }
+  if (r->sink->iteration != NULL) r->sink->iteration(r->sink->ctx, s);
+}
+
 /* r->problem.cp solved as the effects rewrite it, from r->old into r->now. */
 static status solve_contact(run *r) {
-  const solver_listener listener = {r->sink->iteration, r->sink->ctx};
-  const solver_listener *reported =
-      listener.step == NULL || r->course.shadow ? NULL : &listener;
+  const solver_listener listener = {see_iteration, r};
+  const int before = r->solving.seen.now;
   contact_problem cp = r->problem.cp;
   take_start(r);
   double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
@@ -128,10 +139,13 @@ static status solve_contact(run *r) {
   PASS(effects_rewrite(r, &cp, &u, rc));
   timer_enter(STAGE_CONTACT);
   contact_solver_tolerance(r->solver, r->solving.tol);
-  status st =
-      contact_solve(r->solver, &cp, reported, u, rc, &r->solving.report);
+  status st = contact_solve(r->solver, &cp, r->course.shadow ? NULL : &listener,
+                            u, rc, &r->solving.report);
   timer_leave(STAGE_CONTACT);
   PASS(st);
+  if (!r->course.shadow && r->solving.report.iterations > 0 &&
+      r->solving.seen.now == before)
+    r->solving.seen.untold = 1;
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &cp);
   effects_restore(r, &r->problem.cp, own_u, rc);
   put_rows(r, own_u, rc);

@@ -117,6 +117,7 @@ status run_renew_nodes(run *r) {
   matrices_free(&r->elastic);
   run_take_nodes(r);
   TRY(run_room_for_part(r));
+  TRY(run_choose_stiffness(r));
   TRY(run_renew_elastic(r));
   TRY(run_use(r, &r->elastic));
 done:

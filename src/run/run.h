@@ -9,10 +9,10 @@
 #include "accuracy/space.h"
 #include "base/timer.h"
 #include "contact/reach.h"
+#include "material/scheme/scheme.h"
 #include "run/effect.h"
 #include "run/moduli/moduli.h"
 #include "run/state.h"
-#include "material/scheme/scheme.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
 typedef struct equilibrium {
@@ -90,7 +90,7 @@ typedef struct body_state {
   long elastic_no;         /* counts the matrices that r->elastic was */
   unsigned char *fixed;    /* [dim*n_node] */
   tie_set ties;            /* of d, all-zero without *TIE */
-  whole_order order;       /* of d, all-zero unless STIFFNESS=FACTOR */
+  whole_order order;       /* of d where it is needed, else all-zero */
   stiffness_choice choice; /* of the step */
 } body_state;
 
@@ -163,6 +163,16 @@ typedef struct error_state {
                          r->now */
 } error_state;
 
+/* Linear systems of the contact problems so far, without those of shadow runs:
+ * what the choice of the stiffness expects of the increments ahead. */
+typedef struct observed_work {
+  int increments;      /* accepted, of which each solve told its systems */
+  int first, later;    /* systems of the first of them, of the others */
+  int factors, solves; /* systems of STIFFNESS=FACTOR, solves with them */
+  int now, untold;     /* systems since the last accepted increment; 1: a
+                          method did not tell its own */
+} observed_work;
+
 /* How the contact problem is solved. */
 typedef struct solving {
   solver_report report;
@@ -175,6 +185,7 @@ typedef struct solving {
   double known_key; /* of the matrix that "rate" was read for, until in
                        use */
   long matrix_no;   /* counts the matrices taken into use */
+  observed_work seen;
 } solving;
 
 /* Counters, messages and saved data of the run. */
@@ -285,8 +296,19 @@ int run_misses_nodes(const run *r);
 /* Those and more nodes for r->problem.cp, with a matrix and a solver of their
  * own. */
 status run_add_nodes(run *r);
-/* A matrix and a solver for the nodes that r->nodes.reach now has. */
+/* A stiffness, chosen again, and a solver for the nodes that r->nodes.reach now
+ * has. */
 status run_renew_nodes(run *r);
+
+/* stiffness.c: how the contact problem of the current supports and nodes knows
+ * the condensed stiffness, r->body.choice, and r->body.order for it; as it was
+ * where the run goes on from r->course.from. ERR_MEMORY. */
+status run_choose_stiffness(run *r);
+/* r->body.choice of the step, where matrices for its supports and nodes exist;
+ * *other = 1: they are of the other kind. ERR_MEMORY. */
+status run_asks_for_other_stiffness(run *r, int *other);
+/* r->body.order for r->body.choice. ERR_MEMORY. */
+status run_take_stiffness(run *r);
 
 /* strains.c: strains that carry no stress. */
 status strains_new(run *r);

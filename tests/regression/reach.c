@@ -16,7 +16,7 @@
 #include <string.h>
 
 static const char head[] =
-    "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+    "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
     "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n";
 static const char rough[] = "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n";
 static const char whole[] = "*OUTPUT, CONDENSED=FCLIB\n";
@@ -26,7 +26,8 @@ static job on_cylinder(const char *friction, const char *more) {
   job j = job_begin("cylinder");
   block_file_write(&j, (int[]){80, 10}, (double[]){80.0, 20.0}, 0);
   job_write(&j, "cylinder.inp",
-            "%s*OBSTACLE, NAME=O, TYPE=CYLINDER, RADIUS=100.\n40., -100.\n"
+            "*MESH, FILE=block.msh\n%s*OBSTACLE, NAME=O, TYPE=CYLINDER, "
+            "RADIUS=100.\n40., -100.\n"
             "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
             "%s*STEP\n*QUASISTATIC\n0.25, 1.0\n*BOUNDARY\nLEFT, 1, 1\n"
             "TOP, 2, 2, -0.1\n*DSLOAD\nSYMMETRY, P, 2.\n"
@@ -40,7 +41,8 @@ static job cantilever(const char *friction, const char *more) {
   job j = job_begin("cantilever");
   block_file_write(&j, (int[]){48, 6}, (double[]){8.0, 1.0}, 0);
   job_write(&j, "cantilever.inp",
-            "%s*OBSTACLE, NAME=O, TYPE=PLANE\n0., -0.02\n0., 1.\n"
+            "*MESH, FILE=block.msh\n%s*OBSTACLE, NAME=O, TYPE=PLANE\n0., "
+            "-0.02\n0., 1.\n"
             "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
             "%s*STEP\n*QUASISTATIC\n0.125, 1.0, 0.03125, 0.125\n*BOUNDARY\n"
             "LEFT, 1, 2\n*DSLOAD\nTOP, P, 0.08\n*PRINT, CONTACT\n*RESTART\n"
@@ -165,6 +167,41 @@ START_TEST(other_laws_keep_all_nodes) {
 }
 END_TEST
 
+/* What is cheap with the nodes first expected to touch may not fit with all. */
+START_TEST(stiffness_is_chosen_again_for_more_nodes) {
+  static const char *const cards[] = {"*SOLVER, MAX_MEMORY=7\n",
+                                      "*SOLVER, STIFFNESS=DENSE\n"};
+  job j[2];
+  for (int k = 0; k < 2; ++k) {
+    j[k] = job_begin("thick");
+    job_write(&j[k], "block.geo",
+              "Point(1) = {0, 0, 0};\n"
+              "b[] = Extrude {8, 0, 0} { Point{1}; Layers{300}; };\n"
+              "s[] = Extrude {0, 0.48, 0} { Line{b[1]}; Layers{12}; };\n"
+              "Physical Curve(\"CONTACT\") = {b[1]};\n"
+              "Physical Curve(\"TOP\") = {s[0]};\n"
+              "Physical Curve(\"LEFT\") = {s[3]};\n"
+              "Physical Surface(\"BODY\") = {s[1]};\n");
+    job_write(&j[k], "thick.inp",
+              "*MESH, FILE=block.geo\n%s*OBSTACLE, NAME=O, TYPE=PLANE\n0., "
+              "-0.02\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+              "%s*STEP\n*QUASISTATIC\n0.5, 1.0\n*BOUNDARY\nLEFT, 1, 2\n"
+              "*DSLOAD\nTOP, P, 0.08\n*PRINT, CONTACT\n%s*END STEP\n",
+              head, rough, cards[k]);
+    run(&j[k], 0);
+    ck_assert_int_ge(notes(&j[k]), 1);
+    char *listing = job_file(&j[k], "lst");
+    ck_assert_ptr_nonnull(strstr(listing, " DENSE  "));
+    free(listing);
+  }
+  ck_assert_int_eq(job_stage(&j[0], "condensed stiffness", NULL), 1);
+  ck_assert_int_eq(job_stage(&j[1], "condensed stiffness", NULL), 2);
+  same_answer(&j[0], &j[1], 1e-9);
+  for (int k = 0; k < 2; ++k) job_end(&j[k]);
+}
+END_TEST
+
 /* The most attempts at an increment. */
 static int attempts(const job *j) {
   char *text = job_file(j, "sta");
@@ -230,6 +267,7 @@ END_TEST
 UNIT_MAIN("reach", long_surface_costs_its_nodes_within_reach,
           rough_surface_costs_its_nodes_within_reach,
           nodes_that_reach_are_taken_in_a_second_pass,
-          rough_nodes_that_reach_are_taken_too, other_laws_keep_all_nodes,
+          rough_nodes_that_reach_are_taken_too,
+          stiffness_is_chosen_again_for_more_nodes, other_laws_keep_all_nodes,
           increments_are_cut_with_all_nodes, run_goes_on_bit_for_bit,
           rough_run_goes_on_bit_for_bit)

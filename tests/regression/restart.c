@@ -235,44 +235,74 @@ START_TEST(factor_goes_on) {
 }
 END_TEST
 
-/* The kind of stiffness is that of the step, not of the one before it. */
-START_TEST(kind_of_stiffness_goes_on) {
+/* A strip of so many cells in three steps, their *SOLVER cards and supports. */
+static job strip(int cells, const char *const solver[2],
+                 const char *const supports[2]) {
+  job j = job_begin("strip");
+  job_write(&j, "strip.geo",
+            "Point(1) = {0, 0, 0};\n"
+            "b[] = Extrude {1, 0, 0} { Point{1}; Layers{%d}; };\n"
+            "s[] = Extrude {0, 0.01, 0} { Line{b[1]}; Layers{3}; };\n"
+            "Physical Curve(\"BOTTOM\") = {b[1]};\n"
+            "Physical Curve(\"TOP\") = {s[0]};\n"
+            "Physical Curve(\"END\") = {s[2]};\n"
+            "Physical Surface(\"BODY\") = {s[1]};\n",
+            cells);
+  job_write(&j, "strip.inp",
+            "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"1e-5*(1 - cos(40*x))\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+            "0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -5e-5\n"
+            "*SOLVER%s\n*PRINT, CONTACT\n*OUTPUT, HDF5=NO\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 4e-5\n%s"
+            "*SOLVER%s\n*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
+            "*BOUNDARY\nTOP, 1, 1, 5e-5\n%s*END STEP\n",
+            solver[0], supports[0], solver[1], supports[1]);
+  return j;
+}
+
+/* Interrupted in the second step; chosen: of the first and a later one. */
+static void check_kinds(int cells, const char *const solver[2],
+                        const char *const supports[2],
+                        const char *const chosen[2]) {
   int changes, all;
   job both[2];
-  for (int k = 0; k < 2; ++k) {
-    both[k] = job_begin("strip");
-    job_write(&both[k], "strip.geo",
-              "Point(1) = {0, 0, 0};\n"
-              "b[] = Extrude {1, 0, 0} { Point{1}; Layers{600}; };\n"
-              "s[] = Extrude {0, 0.01, 0} { Line{b[1]}; Layers{3}; };\n"
-              "Physical Curve(\"BOTTOM\") = {b[1]};\n"
-              "Physical Curve(\"TOP\") = {s[0]};\n"
-              "Physical Surface(\"BODY\") = {s[1]};\n");
-    job_write(&both[k], "strip.inp",
-              "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
-              "*OBSTACLE, NAME=O, TYPE=GAP\n\"1e-5*(1 - cos(40*x))\"\n"
-              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
-              "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -5e-5\n"
-              "*SOLVER, STIFFNESS=DENSE\n*PRINT, CONTACT\n*OUTPUT, HDF5=NO\n"
-              "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\n"
-              "TOP, 1, 1, 4e-5\n*SOLVER\n*END STEP\n");
-  }
+  for (int k = 0; k < 2; ++k) both[k] = strip(cells, solver, supports);
   ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
   ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
                    130);
   char *listing = job_file(&both[0], "lst");
-  const char *dense = strstr(listing, "DENSE  STIFFNESS of");
-  ck_assert_ptr_nonnull(dense);
-  ck_assert_ptr_nonnull(strstr(dense, "FACTOR  it is foreseen"));
+  const char *first = strstr(listing, chosen[0]);
+  ck_assert_ptr_nonnull(first);
+  ck_assert_ptr_nonnull(strstr(first, chosen[1]));
   free(listing);
   char *status_file = job_file(&both[1], "sta");
   ck_assert_ptr_nonnull(strstr(status_file, "\n     2     1 "));
+  ck_assert_ptr_null(strstr(status_file, "\n     3     1 "));
   free(status_file);
   goes_on(&both[1], 0, "strip");
   same_files(&both[0], &both[1], "strip");
   for (int k = 0; k < 2; ++k) job_end(&both[k]);
+}
+
+/* The kind of stiffness is that of the step, not of the one before it. */
+START_TEST(kind_of_stiffness_goes_on) {
+  check_kinds(
+      600, (const char *const[]){", STIFFNESS=DENSE", ""},
+      (const char *const[]){"", ""},
+      (const char *const[]){"DENSE  STIFFNESS of", "FACTOR  it is foreseen"});
+}
+END_TEST
+
+/* Other supports: a new choice, by the systems and solves so far, without which
+ * it would be DENSE. */
+START_TEST(observed_work_goes_on) {
+  check_kinds(150, (const char *const[]){", STIFFNESS=FACTOR", ""},
+              (const char *const[]){"END, 1, 1, 4e-5\n", "END, 2, 2, -5e-5\n"},
+              (const char *const[]){"FACTOR  STIFFNESS of",
+                                    "FACTOR  it is foreseen to be faster, by"});
 }
 END_TEST
 
@@ -586,5 +616,6 @@ UNIT_MAIN("restart", what_is_read_is_written_again,
           known_rate_goes_on, largest_loads_and_energies_go_on,
           run_without_a_file_begins_anew, files_are_in_the_seal,
           restart_files_are_equal, errors_of_goals_go_on, factor_goes_on,
-          kind_of_stiffness_goes_on, restart_file_does_not_grow,
-          some_jobs_start_anew, damaged_files_are_refused)
+          kind_of_stiffness_goes_on, observed_work_goes_on,
+          restart_file_does_not_grow, some_jobs_start_anew,
+          damaged_files_are_refused)

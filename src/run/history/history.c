@@ -4,8 +4,8 @@
  */
 #include "accuracy/verdict.h"
 #include "run/history/loop.h"
-#include "run/visco.h"
 #include "run/setup/setup.h"
+#include "run/visco.h"
 
 #include "base/interrupt.h"
 #include "base/memory.h"
@@ -194,11 +194,23 @@ static void note_nodes(run *r) {
   r->nodes.n_reported = now;
 }
 
+/* The systems of an increment, unless a method did not tell its own. */
+static void count_work(observed_work *seen) {
+  if (!seen->untold) {
+    if (seen->increments++ == 0)
+      seen->first = seen->now;
+    else
+      seen->later += seen->now;
+  }
+  seen->now = seen->untold = 0;
+}
+
 status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
   status st = OK;
   TRY(dense_show(r, increment_no));
   ++r->course.total_no;
+  count_work(&r->solving.seen);
   r->at.last = last;
   TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   TRY(estimate_increment(r));
@@ -548,7 +560,8 @@ status history_stiffness(const model *m, const mesh *msh,
   TRY(run_build_ties(&r));
   if (m->effects & EFFECT_CONTACT) TRY(run_build_surface(&r));
   r.body.d.surface = r.surface;
-  TRY(run_choose_stiffness(&r, choice));
+  TRY(run_choose_stiffness(&r));
+  *choice = r.body.choice;
 done:
   run_free(&r);
   return st;

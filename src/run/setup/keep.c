@@ -104,8 +104,23 @@ done:
   return st;
 }
 
+static status keep_choice(run *r, archive *a) {
+  status st = OK;
+  stiffness_choice *c = &r->body.choice;
+  TRY(archive_ints(a, "stiffness", &c->sparse, 1));
+  TRY(archive_ints(a, "stiffness_exact", &c->exact, 1));
+  TRY(archive_bytes(a, "stiffness_dense", &c->dense, sizeof c->dense));
+  TRY(archive_bytes(a, "stiffness_factor", &c->factor, sizeof c->factor));
+  TRY(archive_bytes(a, "stiffness_why", c->why, sizeof c->why));
+done:
+  return st;
+}
+
 static status keep_counts(run *r, archive *a) {
   status st = OK;
+  observed_work *seen = &r->solving.seen;
+  TRY(keep_choice(r, a));
+  TRY(archive_bytes(a, "observed", seen, sizeof *seen));
   TRY(archive_bytes(a, "at", &r->at, sizeof r->at));
   TRY(archive_ints(a, "total_no", &r->course.total_no, 1));
   TRY(archive_ints(a, "unsettled", &r->course.unsettled, 1));
@@ -130,6 +145,13 @@ done:
 status run_keep_start(run *r, archive *a) {
   archive_enter(a, "run");
   status st = archive_reals(a, "start", r->loads.start, r->n_dof);
+  archive_leave(a);
+  return st;
+}
+
+status run_keep_choice(run *r, archive *a) {
+  archive_enter(a, "run");
+  status st = keep_choice(r, a);
   archive_leave(a);
   return st;
 }

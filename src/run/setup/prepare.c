@@ -162,8 +162,9 @@ static int updates_pairs(const run *r) {
   return any && run_step_id(r) > 0;
 }
 
-/* Surface and matrices for r->body.fixed. */
-static status make_matrices(run *r) {
+/* Surface and matrices for r->body.fixed; chosen: of the kind of
+ * r->body.choice. */
+static status make_matrices(run *r, int chosen) {
   int motions = 0;
   PASS(run_build_ties(r));
   if (r->m->effects & EFFECT_CONTACT)
@@ -175,8 +176,9 @@ static status make_matrices(run *r) {
   PASS(choose_nodes(r, motions));
   r->problem.n_before = r->nodes.n_row;
   r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
-  PASS(run_choose_stiffness(r, &r->body.choice));
-  r->body.d.sparse = r->body.choice.sparse;
+  r->c = NULL;
+  matrices_free(&r->elastic);
+  PASS(chosen ? run_take_stiffness(r) : run_choose_stiffness(r));
   if (r->sink->expect != NULL)
     PASS(r->sink->expect(r->sink->ctx, r->nodes.n_reported, &r->body.choice));
   PASS(run_renew_elastic(r));
@@ -185,8 +187,9 @@ static status make_matrices(run *r) {
 }
 
 /* Pairs are coupled at the displacements that the step starts from: those of
- * the archive where the run goes on within it. */
+ * the archive where the run goes on within it, as the kind of stiffness is. */
 static status take_places(run *r) {
+  if (r->course.from != NULL) PASS(run_keep_choice(r, r->course.from));
   if (!updates_pairs(r)) return OK;
   if (r->course.from != NULL) PASS(run_keep_start(r, r->course.from));
   r->faces.input.u = r->loads.start;
@@ -195,22 +198,23 @@ static status take_places(run *r) {
 
 status run_prepare(run *r) {
   status st = OK;
-  int fresh = 0;
+  int fresh, other = 0;
   unsigned char *fixed = NULL;
   NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
   known_rate_forget(&r->solving.rate);
   TRY(take_places(r));
-  if (r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||
-      updates_pairs(r) || run_asks_for_other_stiffness(r)) {
+  fresh = r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||
+          updates_pairs(r);
+  if (!fresh) TRY(run_asks_for_other_stiffness(r, &other));
+  if (fresh || other) {
     memcpy(r->body.fixed, fixed, r->n_dof);
-    TRY(make_matrices(r));
-    fresh = 1;
+    TRY(make_matrices(r, other));
   }
   TRY(find_load(r));
   TRY(effects_prepare(r));
-  if (fresh) TRY(report_ready(r));
+  if (fresh || other) TRY(report_ready(r));
   contact_solver_free(r->elastic.solver);
   r->elastic.solver = NULL;
   r->solving.tol = r->step->solver.tol;

@@ -34,19 +34,14 @@ void run_free_surface(run *r);
 status run_build_ties(run *r);
 void run_free_ties(run *r);
 
-/* stiffness.c: how the solver of r->step knows the condensed stiffness, and
- * r->body.order for it. ERR_MEMORY. */
-status run_choose_stiffness(run *r, stiffness_choice *c);
-/* 1: the *SOLVER of r->step may choose another than the step before it. */
-int run_asks_for_other_stiffness(const run *r);
-
 /* prepare.c: surface, stiffness, condensed matrix and solver for r->step. */
 status run_prepare(run *r);
 
 /* keep.c: the state an increment starts from that does not follow from the
  * matrices, to an archive, or, after run_prepare, from it. */
 status run_keep(run *r, archive *a);
-/* r->loads.start alone. */
+/* r->loads.start alone; r->body.choice. */
 status run_keep_start(run *r, archive *a);
+status run_keep_choice(run *r, archive *a);
 
 #endif
