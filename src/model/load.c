@@ -16,9 +16,8 @@ static double value_time(const load *l, double t) {
   return l->run == RUN_HELD ? l->before_t : t;
 }
 
-/* Value of a load at a point and total time t of step s. */
-static double load_value(const load *l, const step *s, const double x[3],
-                         double t) {
+double load_at_point(const load *l, const step *s, const double x[3],
+                     double t) {
   double now = quantity_value(&l->value, x, value_time(l, t));
   if (l->run != RUN_RAMP || t >= s->start + s->total) return now;
   double w = (t - s->start) / s->total;
@@ -37,7 +36,7 @@ double load_at_node(const load *l, const mesh *msh, const step *s, int node,
                     double t) {
   double x[3];
   node_position(msh, node, x);
-  return load_value(l, s, x, t);
+  return load_at_point(l, s, x, t);
 }
 
 /* Report where a value is not finite. */

@@ -501,11 +501,11 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE= */
 } move;
 
 /* Bits of m->effects: what a model requires and other files ask for. */
-#define EFFECT_LIST(X)                                                \
-  X(CONTACT) X(FRICTION) X(NONLOCAL) X(TANGENTS) X(GIVEN) X(HISTORY)  \
-  X(START) X(INELASTIC) X(THERMAL) X(BODY) X(STRESS) X(REACTION)      \
-  X(MESH_ERROR) X(TIME_ERROR) X(ESTIMATES) X(REFERENCE) X(THEORY)     \
-  X(MESH)
+#define EFFECT_LIST(X)                                                    \
+  X(CONTACT)                                                              \
+  X(FRICTION) X(NONLOCAL) X(TANGENTS) X(GIVEN) X(HISTORY) X(START)        \
+      X(INELASTIC) X(THERMAL) X(BODY) X(STRESS) X(REACTION) X(MESH_ERROR) \
+          X(TIME_ERROR) X(ESTIMATES) X(REFERENCE) X(THEORY) X(MESH)
 #define EFFECT_BIT(name) EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_BIT) };
 #define EFFECT_MASK(name) EFFECT_##name = 1 << EFFECT_BIT_##name,
@@ -576,7 +576,8 @@ void model_free(model *m);
  * ERR_DECK if a value is not finite (the record names card, node and time). */
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F);
-/* Value of a load at a node and total time t of the step. */
+/* Value of a load at a point, at a node, and total time t of the step. */
+double load_at_point(const load *l, const step *s, const double x[3], double t);
 double load_at_node(const load *l, const mesh *msh, const step *s, int node,
                     double t);
 /* 1 if that is finite at the nodes of its group; else the log has the first

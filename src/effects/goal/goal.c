@@ -23,6 +23,7 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <string.h>
 
@@ -118,6 +119,7 @@ typedef struct shared {
   goal_form form;
   double *y;                    /* [dim*n_node] */
   double *j, *more, *psi, *y_c; /* [n_row] */
+  double *lacks;                /* [dim*n_node] forces of boundary.c, N */
   double *moved; /* [n_row] errors of the positions of stick, m */
 } shared;
 
@@ -126,7 +128,7 @@ static void shared_free(shared *s) {
   goal_estimator_free(s->estimator);
   contact_adjoint_free(s->adjoint);
   goal_form_free(&s->form);
-  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->moved);
+  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->moved);
 }
 
 /* That of the error of the mesh, or its own. */
@@ -174,6 +176,8 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .has_flux = has_factor(r->m)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW(s->y, r->n_dof);
+  PASS_NEW(s->lacks, r->n_dof);
+  PASS(goal_add_boundary(r, s->lacks));
   PASS_NEW(s->j, n);
   PASS_NEW(s->more, n);
   PASS_NEW(s->psi, n);
@@ -250,7 +254,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
                           f->is_square, product_of(r, own, id), &e));
   if (!isfinite(e.error)) return OK;
   if (f->factor.n > 0) e.error += of_factor(r, s);
-  e.error += f->curved;
+  e.error += f->curved + cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   e.magnitude += fabs(f->curved);
   e.error += f->is_square ? 0.0 : e.hoop;
   if (f->is_square) {
@@ -278,6 +282,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
 /* Errors of the nodes by the bubbles and by the positions of stick. */
 static status move_nodes(run *r, goal_state *own, shared *s) {
   goal_estimator_force(s->estimator, s->y);
+  cblas_daxpy((int)r->n_dof, 1.0, s->lacks, 1, s->y, 1);
   PASS(condense_load(r->c, s->y, NULL, s->j));
   if (s->adjoint != NULL)
     PASS(contact_adjoint_change(s->adjoint, s->j, s->moved, s->y_c));

@@ -40,6 +40,9 @@ status goal_set_width(const run *r, const goal_card *g, goal_form *f);
 /* crack.c: a stress intensity factor. ERR_MEMORY. */
 status goal_set_factor(run *r, const goal_card *g, goal_form *f);
 
+/* boundary.c: adds dF[dim*n_node] of its head. ERR_MEMORY. */
+status goal_add_boundary(const run *r, double *dF);
+
 /* surface.c */
 typedef struct goal_surface {
   int n_edge;

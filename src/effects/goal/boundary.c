@@ -1,0 +1,262 @@
+/*
+ * What the body and its loads are more than linear between the nodes. A
+ * surface is curved where the faces at a node are smooth: it is beyond a face,
+ * by the normals at its corners, by
+ *
+ *   o = 4 sum over edges of la lb B_ab,  B_ab = (n_b - n_a).(x_b - x_a)/8,
+ *
+ * and loads given by a formula have their value there. The forces
+ *
+ *   dF v = F(v) - F_h(v) - integral of sigma : e(v) over the part beyond
+ *
+ * are in no residual at the nodes: a goal with the adjoint y lacks dF y.
+ */
+#include "base/memory.h"
+#include "effects/goal/parts.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+static const double SMOOTH = 0.86; /* -, cosine between faces of a surface */
+
+/* A face, or an element for a load in the body. */
+typedef struct patch {
+  int n, node[4]; /* its corners */
+  double weight;  /* measure times thickness */
+  double normal[3];
+  double B[3][3]; /* of the edges of a face, m */
+  double g[4][3]; /* gradients of the P1 functions along a face, 1/m */
+  int is_curved;
+} patch;
+
+/* A point of a patch and of the surface beyond it. */
+typedef struct spot {
+  double b[4], x[3], on[3]; /* barycentric; of the patch; of the surface */
+  double beyond, slope[3];  /* o, m; its gradient along the face */
+  double weight;            /* of the patch */
+} spot;
+
+/* Gauss points, n of a simplex with n corners, of degree 3 on a line, else 2:
+ * barycentric coordinate of point k in corner k. */
+static const double AT[5] = {
+    [2] = 0.78867513459481288, [3] = 2.0 / 3.0, [4] = 0.58541019662496847};
+
+static spot spot_at(const mesh *m, const patch *p, int k) {
+  spot s = {.weight = p->weight / p->n};
+  for (int i = 0; i < p->n; ++i) {
+    s.b[i] = i == k ? AT[p->n] : (1.0 - AT[p->n]) / (p->n - 1);
+    for (int c = 0; c < m->dim; ++c)
+      s.x[c] += s.b[i] * m->x[m->dim * p->node[i] + c];
+  }
+  for (int i = 0; i < p->n && p->is_curved; ++i)
+    for (int j = i + 1; j < p->n; ++j) {
+      s.beyond += 4.0 * s.b[i] * s.b[j] * p->B[i][j];
+      for (int c = 0; c < m->dim; ++c)
+        s.slope[c] +=
+            4.0 * p->B[i][j] * (s.b[i] * p->g[j][c] + s.b[j] * p->g[i][c]);
+    }
+  for (int c = 0; c < 3; ++c) s.on[c] = s.x[c] + s.beyond * p->normal[c];
+  return s;
+}
+
+/* ---- faces --------------------------------------------------------------- */
+
+/* Faces round each node. */
+typedef struct ring {
+  int *start, *face; /* [n_node+1], [dim*n_face] */
+} ring;
+
+static status ring_new(const mesh *m, ring *r) {
+  PASS_NEW(r->start, m->n_node + 1);
+  PASS_NEW(r->face, m->dim * m->n_face);
+  for (int k = 0; k < m->dim * m->n_face; ++k) ++r->start[m->face[k] + 1];
+  for (int i = 0; i < m->n_node; ++i) r->start[i + 1] += r->start[i];
+  for (int k = 0; k < m->dim * m->n_face; ++k)
+    r->face[r->start[m->face[k]]++] = k / m->dim;
+  for (int i = m->n_node; i > 0; --i) r->start[i] = r->start[i - 1];
+  r->start[0] = 0;
+  return OK;
+}
+
+/* Of the surface at a node of a face with the unit normal own; it goes on
+ * smoothly behind a plane that holds the node. */
+static void normal_at(const run *r, const ring *rings, int node,
+                      const double *own, double *n) {
+  const mesh *m = r->msh;
+  double size = 0.0;
+  memset(n, 0, 3 * sizeof *n);
+  for (int k = rings->start[node]; k < rings->start[node + 1]; ++k) {
+    const int face = rings->face[k];
+    double other[3] = {0.0}, along = 0.0;
+    if (m->face_other[face] >= 0) continue;
+    const double measure = mesh_face_normal(m, face, other);
+    for (int c = 0; c < m->dim; ++c) along += own[c] * other[c];
+    for (int c = 0; c < m->dim && along >= SMOOTH; ++c)
+      n[c] += measure * other[c];
+  }
+  for (int c = 0; c < m->dim; ++c) {
+    const int held = r->body.d.fixed[m->dim * node + c];
+    if (held && 1.0 - 2.0 * own[c] * own[c] >= SMOOTH) n[c] = 0.0;
+    size = hypot(size, n[c]);
+  }
+  for (int c = 0; c < m->dim && size > 0.0; ++c) n[c] /= size;
+}
+
+static void set_bulges(const run *r, const ring *rings, patch *p) {
+  const mesh *m = r->msh;
+  double n[3][3], length = 0.0, most = 0.0;
+  for (int i = 0; i < p->n; ++i)
+    normal_at(r, rings, p->node[i], p->normal, n[i]);
+  for (int i = 0; i < p->n; ++i)
+    for (int j = i + 1; j < p->n; ++j) {
+      for (int c = 0; c < m->dim; ++c) {
+        const double d =
+            m->x[m->dim * p->node[j] + c] - m->x[m->dim * p->node[i] + c];
+        p->B[i][j] += (n[j][c] - n[i][c]) * d / 8.0;
+        length = fmax(length, fabs(d));
+      }
+      most = fmax(most, fabs(p->B[i][j]));
+    }
+  p->is_curved = most > 1e-9 * length;
+}
+
+static double thickness_of(const run *r, int elem_id) {
+  return r->m->sections[r->m->elem_section[elem_id]].thickness;
+}
+
+static patch face_patch(const run *r, const ring *rings, int face) {
+  const mesh *m = r->msh;
+  patch p = {.n = m->dim};
+  const int *v = m->elem + (m->dim + 1) * m->face_elem[face];
+  double g[12];
+  memcpy(p.node, m->face + m->dim * face, (size_t)m->dim * sizeof *p.node);
+  p.weight =
+      mesh_face_normal(m, face, p.normal) * thickness_of(r, m->face_elem[face]);
+  if (m->face_other[face] >= 0) return p;
+  set_bulges(r, rings, &p);
+  if (!p.is_curved) return p;
+  mesh_elem_gradients(m, m->face_elem[face], g);
+  for (int i = 0; i < p.n; ++i)
+    for (int a = 0; a <= m->dim; ++a) {
+      double along = 0.0;
+      if (v[a] != p.node[i]) continue;
+      for (int c = 0; c < m->dim; ++c) along += g[m->dim * a + c] * p.normal[c];
+      for (int c = 0; c < m->dim; ++c)
+        p.g[i][c] = g[m->dim * a + c] - along * p.normal[c];
+    }
+  return p;
+}
+
+static int is_axisymmetric(const run *r) {
+  return r->m->sections[0].kin == AXISYMMETRIC;
+}
+
+static double turn_of(const run *r, double radius) {
+  return is_axisymmetric(r) ? 2.0 * PI * radius : 1.0;
+}
+
+/* Less the stress of the element times the strains over what is beyond a face.
+ */
+static void add_part_beyond(const run *r, const patch *p, int face,
+                            double *dF) {
+  const mesh *m = r->msh;
+  const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
+  const double *t = r->result.stress + (size_t)r->body.d.ns * (size_t)e;
+  const double T[3][3] = {{t[0], t[3], dim == 3 ? t[5] : 0.0},
+                          {t[3], t[1], dim == 3 ? t[4] : 0.0},
+                          {dim == 3 ? t[5] : 0.0, dim == 3 ? t[4] : 0.0, t[2]}};
+  double g[12], volume = 0.0;
+  mesh_elem_gradients(m, e, g);
+  for (int k = 0; k < p->n; ++k) {
+    const spot s = spot_at(m, p, k);
+    volume += s.weight * s.beyond * turn_of(r, s.x[0]);
+    if (!is_axisymmetric(r)) continue;
+    for (int i = 0; i < p->n; ++i)
+      dF[2 * p->node[i]] -= s.weight * s.beyond * 2.0 * PI * s.b[i] * t[2];
+  }
+  for (int a = 0; a <= dim; ++a)
+    for (int c = 0; c < dim; ++c)
+      for (int k = 0; k < dim; ++k)
+        dF[dim * v[a] + c] -= volume * T[c][k] * g[dim * a + k];
+}
+
+/* ---- loads --------------------------------------------------------------- */
+
+static int varies(const load *l) {
+  return (quantity_variables(&l->value) & 7u) != 0 ||
+         (l->has_before && (quantity_variables(&l->before) & 7u) != 0);
+}
+
+/* Direction of a load on the patch, and on the surface beyond it with the ratio
+ * of their areas. */
+static void directions(const load *l, int dim, const patch *p, const spot *s,
+                       double *flat, double *bent) {
+  double slope = 0.0;
+  for (int c = 0; c < dim; ++c) slope += s->slope[c] * s->slope[c];
+  for (int c = 0; c < dim; ++c) {
+    const double along = c == l->component;
+    flat[c] = l->kind == LOAD_PRESSURE ? -p->normal[c] : along;
+    bent[c] = l->kind == LOAD_PRESSURE ? s->slope[c] - p->normal[c]
+                                       : along * sqrt(1.0 + slope);
+  }
+}
+
+static void add_load(const run *r, const load *l, const patch *p, double *dF) {
+  const mesh *m = r->msh;
+  double value[4], flat[3], bent[3];
+  if (!p->is_curved && !varies(l)) return;
+  for (int i = 0; i < p->n; ++i)
+    value[i] = load_at_node(l, m, r->step, p->node[i], r->now.t);
+  for (int k = 0; k < p->n; ++k) {
+    const spot s = spot_at(m, p, k);
+    double linear = 0.0;
+    for (int i = 0; i < p->n; ++i) linear += s.b[i] * value[i];
+    const double there = load_at_point(l, r->step, s.on, r->now.t);
+    if (!isfinite(there)) continue;
+    directions(l, m->dim, p, &s, flat, bent);
+    for (int c = 0; c < m->dim; ++c) {
+      const double more = there * bent[c] * turn_of(r, s.on[0]) -
+                          linear * flat[c] * turn_of(r, s.x[0]);
+      for (int i = 0; i < p->n; ++i)
+        dF[m->dim * p->node[i] + c] += s.weight * s.b[i] * more;
+    }
+  }
+}
+
+static patch element_patch(const run *r, int e) {
+  const mesh *m = r->msh;
+  patch p = {.n = m->dim + 1};
+  memcpy(p.node, m->elem + p.n * e, (size_t)p.n * sizeof *p.node);
+  p.weight = mesh_elem_measure(m, e) * thickness_of(r, e);
+  return p;
+}
+
+static void add_loads(const run *r, const ring *rings, double *dF) {
+  const load_list *all = &r->step->loads;
+  for (int i = 0; i < all->n; ++i) {
+    const load *l = &all->item[i];
+    const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
+    if (!on_faces && (l->kind != LOAD_BODY || !varies(l))) continue;
+    const mesh_group *g = &r->msh->group[l->group_id];
+    for (int k = 0; k < g->n_item; ++k) {
+      const patch p = on_faces ? face_patch(r, rings, g->item_id[k])
+                               : element_patch(r, g->item_id[k]);
+      add_load(r, l, &p, dF);
+    }
+  }
+}
+
+status goal_add_boundary(const run *r, double *dF) {
+  status st = OK;
+  ring rings = {0};
+  TRY(ring_new(r->msh, &rings));
+  for (int f = 0; f < r->msh->n_face; ++f) {
+    const patch p = face_patch(r, &rings, f);
+    if (p.is_curved) add_part_beyond(r, &p, f, dF);
+  }
+  add_loads(r, &rings, dF);
+done:
+  RELEASE(rings.start, rings.face);
+  return st;
+}

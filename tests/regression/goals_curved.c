@@ -1,0 +1,123 @@
+/*
+ * *GOAL on bodies with curved surfaces and under loads given by formulas, which
+ * a mesh takes at its nodes: thick rings, tubes and shells under a pressure
+ * (Lame) and a column under its own load.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* A quarter of a ring from radius 1 to 2; in space a slice of it. */
+#define RING                                                                 \
+  "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {2, 0, 0};\n"      \
+  "Point(4) = {0, 2, 0}; Point(5) = {0, 1, 0};\n"                            \
+  "Line(1) = {2, 3}; Circle(2) = {3, 1, 4}; Line(3) = {4, 5};\n"             \
+  "Circle(4) = {5, 1, 2};\nCurve Loop(1) = {1:4}; Plane Surface(1) = {1};\n" \
+  "Mesh.MeshSizeMax = 0.125;\n"
+#define PLANE                                                                  \
+  RING "Physical Surface(\"BODY\") = {1}; Physical Curve(\"BOTTOM\") = {1};\n" \
+       "Physical Curve(\"OUTER\") = {2}; Physical Curve(\"LEFT\") = {3};\n"    \
+       "Physical Curve(\"INNER\") = {4};\n"
+#define SLICE                                                                 \
+  RING "e[] = Extrude {0, 0, 0.5} { Surface{1}; };\n"                         \
+       "Physical Volume(\"BODY\") = {e[1]}; Physical Surface(\"FACES\") = "   \
+       "{1, e[0]};\nPhysical Surface(\"BOTTOM\") = {e[2]};\n"                 \
+       "Physical Surface(\"OUTER\") = {e[3]};\nPhysical Surface(\"LEFT\") = " \
+       "{e[4]};\nPhysical Surface(\"INNER\") = {e[5]};\n"
+
+/* Pressure 100, E 1e5, nu 0.3: displacement at the radius r. */
+static double of_ring(double r) {
+  return 100.0 / 3.0 * 1.3e-5 * (0.4 * r + 4.0 / r);
+}
+static double of_ball(double r) {
+  return 100.0 / 7.0 * r * 1e-5 * (0.4 + 0.65 * 8.0 / (r * r * r));
+}
+
+/* Goals at radius 1 and 2: estimate over error, within "least" and "most". */
+static void check_body(const char *geo, const char *section, const char *z,
+                       const char *cards, double (*exact)(double), double least,
+                       double most) {
+  job j = job_begin("curved");
+  job_write(&j, "curved.geo", "%s", geo);
+  job_write(&j, "curved.inp",
+            "*MESH, FILE=curved.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
+            "*GOAL, NAME=IN, QUANTITY=DISPLACEMENT, COMPONENT=1\n1., 0.%s\n"
+            "*GOAL, NAME=OUT, QUANTITY=DISPLACEMENT, COMPONENT=1\n2., 0.%s\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n%s"
+            "*PRINT, GOALS\n*END STEP\n",
+            section, z, z, cards);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  for (int k = 0; k < 2; ++k) {
+    const double is = exact(1.0 + k) - dat_at(&t, k, "value");
+    const double told = dat_at(&t, k, "error"), band = dat_at(&t, k, "band");
+    ck_assert_msg(told / is > least && told / is < most,
+                  "radius %d: error %g, estimate %g of it", k + 1, is,
+                  told / is);
+    ck_assert_msg(fabs(told - is) <= band, "error %g, %g, band %g", is, told,
+                  band);
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+
+#define PRESSED "*DSLOAD\nINNER, P, 100.\n"
+#define PUSHED "*DSLOAD\nINNER, TX, \"100*x\"\nINNER, TY, \"100*y\"\n"
+
+START_TEST(plane_ring_under_a_pressure) {
+  check_body(PLANE, ", TYPE=CPE3", "", PRESSED, of_ring, 0.9, 1.15);
+}
+END_TEST
+
+/* On the chord between two nodes a formula has another value. */
+START_TEST(plane_ring_under_tractions_of_a_formula) {
+  check_body(PLANE, ", TYPE=CPE3", "", PUSHED, of_ring, 0.9, 1.15);
+}
+END_TEST
+
+START_TEST(shell_of_revolution_under_a_pressure) {
+  check_body(PLANE, ", TYPE=CAX3", "", PRESSED, of_ball, 0.6, 1.15);
+}
+END_TEST
+
+START_TEST(shell_of_revolution_under_tractions_of_a_formula) {
+  check_body(PLANE, ", TYPE=CAX3", "", PUSHED, of_ball, 0.7, 1.15);
+}
+END_TEST
+
+START_TEST(slice_in_space_under_a_pressure) {
+  check_body(SLICE, "", ", 0.", "FACES, 3\n" PRESSED, of_ring, 0.8, 1.25);
+}
+END_TEST
+
+/* A column of height 40 under the force c y^2 per volume: c 40^4/4/E at its
+ * top. Its nodes are in error by the load alone. */
+START_TEST(column_under_a_load_of_a_formula) {
+  job j = job_begin("column");
+  job_copy(&j, "input/greco/greco.geo");
+  job_write(&j, "column.inp",
+            "*PARAMETER\nN = 8\nSTRUCTURED = 1\n*MESH, FILE=greco.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=2\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nCONTACT, 1, 2\nSYMMETRY, 1\nLEFT, 1\n"
+            "*DLOAD\nBODY, BY, \"y^2/1000\"\n*PRINT, GOALS\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  dat t = job_table(&j, "GOALS", -1);
+  const double is = 0.64 - dat_at(&t, 0, "value");
+  ck_assert_double_gt(fabs(is), 1e-3);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "error"), is, 0.1 * fabs(is));
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("goals_curved", plane_ring_under_a_pressure,
+          plane_ring_under_tractions_of_a_formula,
+          shell_of_revolution_under_a_pressure,
+          shell_of_revolution_under_tractions_of_a_formula,
+          slice_in_space_under_a_pressure, column_under_a_load_of_a_formula)
