@@ -270,12 +270,11 @@ static void check_sets(lines *r, const char *material_name) {
 status elastic_table_read(const card *c, elastic_type type,
                           const char *material_name, message_log *log,
                           elastic_table *table) {
-  status st = OK;
   lines r = {.c = c, .log = log, .table = table};
   table->type = type;
   table->n_constant = constants_of[type];
   for (int i = 0; i < c->n_record && !r.wrong; ++i)
-    TRY(add_line(&r, &c->records[i]));
+    PASS(add_line(&r, &c->records[i]));
   if (!r.wrong && r.n > 0) {
     char found[32];
     snprintf(found, sizeof found, "%d found", r.n);
@@ -286,8 +285,7 @@ status elastic_table_read(const card *c, elastic_type type,
     elastic_table_free(table);
   else
     check_sets(&r, material_name);
-done:
-  return st;
+  return OK;
 }
 
 /* E, nu of G/(1 - relaxed[0]), K/(1 - relaxed[1]). */

@@ -94,22 +94,18 @@ static int is_open(const run *r, const double *uc) {
  */
 static status drop_reactions(const run *r, double *residual, double *u,
                              double *rc) {
-  status st = OK;
-  double *q = NULL, *zero = NULL;
+  OWNED double *q = NULL, *zero = NULL;
   if (r->course.shadow || r->problem.given != NULL || condensed_floating(r->c))
-    goto done;
-  NEW(q, r->nodes.n_row);
-  NEW(zero, r->nodes.n_row);
-  TRY(condensed_untouched(r->c, r->problem.cp.f, q));
+    return OK;
+  PASS_NEW(q, r->nodes.n_row);
+  PASS_NEW(zero, r->nodes.n_row);
+  PASS(condensed_untouched(r->c, r->problem.cp.f, q));
   double left = contact_residual(&r->problem.cp, q, zero);
-  if (!(left <= *residual)) goto done;
+  if (!(left <= *residual)) return OK;
   *residual = left;
   memcpy(u, q, (size_t)r->nodes.n_row * sizeof *u);
   memset(rc, 0, (size_t)r->nodes.n_row * sizeof *rc);
-done:
-  memory_free(q);
-  memory_free(zero);
-  return st;
+  return OK;
 }
 
 /* The system of an iteration is counted. */
@@ -220,14 +216,12 @@ done:
 
 /* Condensed load and contact problem under the forces F. */
 static status pose(run *r, const double *F) {
-  status st = OK;
   r->solving.report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
   if (r->nodes.n > 0 && largest_entry(r->n_dof, r->loads.ud) > 0.0)
-    TRY(condense_load(r->c, F, NULL, r->problem.f_load));
-  TRY(condense_load(r->c, F, r->loads.ud, r->problem.f));
-  if (r->nodes.n > 0) TRY(pose_contact(r, r->now.t));
-done:
-  return st;
+    PASS(condense_load(r->c, F, NULL, r->problem.f_load));
+  PASS(condense_load(r->c, F, r->loads.ud, r->problem.f));
+  if (r->nodes.n > 0) PASS(pose_contact(r, r->now.t));
+  return OK;
 }
 
 double increment_free_load(const run *r, const double *F) {
@@ -238,66 +232,50 @@ double increment_free_load(const run *r, const double *F) {
 }
 
 status increment_load(run *r, double t) {
-  status st = OK;
   r->now.t = t;
-  TRY(load_at(r, t));
-  TRY(effects_load(r, t));
-done:
-  return st;
+  PASS(load_at(r, t));
+  return effects_load(r, t);
 }
 
 status increment_begin(run *r, double t) {
-  status st = OK;
-  TRY(increment_load(r, t));
+  PASS(increment_load(r, t));
   strains_collect(r);
-done:
-  return st;
+  return OK;
 }
 
 status increment_pose(run *r, double t) {
-  status st = OK;
-  TRY(increment_begin(r, t));
-  TRY(run_use(r, &r->elastic));
-  TRY(pose(r, strains_load(r)));
-done:
-  return st;
+  PASS(increment_begin(r, t));
+  PASS(run_use(r, &r->elastic));
+  return pose(r, strains_load(r));
 }
 
 /* With the current contact nodes; *iterations so far. */
 static status solve_with_nodes(run *r, const double *F, int *iterations) {
-  status st = OK;
-  TRY(pose(r, F));
+  PASS(pose(r, F));
   while (r->nodes.n > 0) {
-    TRY(solve_contact(r));
+    PASS(solve_contact(r));
     *iterations += r->solving.report.iterations;
     r->solving.report.iterations = *iterations;
     int again = 0;
-    TRY(effects_found(r, &again));
+    PASS(effects_found(r, &again));
     if (!again) break;
   }
-  TRY(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));
-  TRY(take_interior(r));
-done:
-  return st;
+  PASS(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));
+  return take_interior(r);
 }
 
 status increment_equilibrium(run *r, const double *F) {
-  status st = OK;
   int iterations = 0;
-  TRY(solve_with_nodes(r, F, &iterations));
+  PASS(solve_with_nodes(r, F, &iterations));
   while (run_misses_nodes(r)) {
-    TRY(run_add_nodes(r));
-    TRY(solve_with_nodes(r, F, &iterations));
+    PASS(run_add_nodes(r));
+    PASS(solve_with_nodes(r, F, &iterations));
   }
-done:
-  return st;
+  return OK;
 }
 
 status increment_solve(run *r, double t) {
-  status st = OK;
-  TRY(increment_begin(r, t));
-  TRY(run_use(r, &r->elastic));
-  TRY(increment_equilibrium(r, strains_load(r)));
-done:
-  return st;
+  PASS(increment_begin(r, t));
+  PASS(run_use(r, &r->elastic));
+  return increment_equilibrium(r, strains_load(r));
 }

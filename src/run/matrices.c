@@ -61,21 +61,17 @@ done:
 }
 
 status run_renew_elastic(run *r) {
-  status st = OK;
   r->body.stale = 0;
   r->c = NULL;
   ++r->body.elastic_no;
   matrices_free(&r->elastic);
-  TRY(stiffness_assemble(&r->body.d, &r->elastic.k));
-  TRY(condense(r->elastic.k, &r->body.d, &r->elastic.c));
-done:
-  return st;
+  PASS(stiffness_assemble(&r->body.d, &r->elastic.k));
+  return condense(r->elastic.k, &r->body.d, &r->elastic.c);
 }
 
 status run_use(run *r, matrices *m) {
-  status st = OK;
-  if (m == &r->elastic && r->body.stale) TRY(run_renew_elastic(r));
-  if (m->solver == NULL) TRY(new_solver(r, m));
+  if (m == &r->elastic && r->body.stale) PASS(run_renew_elastic(r));
+  if (m->solver == NULL) PASS(new_solver(r, m));
   int read = r->solving.known_key != RUN_NO_KEY;
   if (read ? r->solving.known_key != m->key : r->c != m->c)
     run_forget_estimates(r);
@@ -83,8 +79,7 @@ status run_use(run *r, matrices *m) {
   r->c = m->c;
   r->solver = m->solver;
   r->solving.known_key = RUN_NO_KEY;
-done:
-  return st;
+  return OK;
 }
 
 void run_take_nodes(run *r) {
@@ -94,14 +89,12 @@ void run_take_nodes(run *r) {
 }
 
 status run_room_for_part(run *r) {
-  status st = OK;
   for (int k = 0;
        k < 2 && r->nodes.n_row < r->nodes.n_c && r->problem.row[k] == NULL; ++k)
-    NEW(r->problem.row[k], r->nodes.rows * r->nodes.n);
+    PASS_NEW(r->problem.row[k], r->nodes.rows * r->nodes.n);
   if (r->nodes.reach.in != NULL && r->problem.part.gap == NULL)
-    TRY(reach_part_new(r->nodes.n, r->nodes.rows, &r->problem.part));
-done:
-  return st;
+    PASS(reach_part_new(r->nodes.n, r->nodes.rows, &r->problem.part));
+  return OK;
 }
 
 int run_misses_nodes(const run *r) {
@@ -112,23 +105,17 @@ int run_misses_nodes(const run *r) {
 }
 
 status run_renew_nodes(run *r) {
-  status st = OK;
   r->c = NULL;
   matrices_free(&r->elastic);
   run_take_nodes(r);
-  TRY(run_room_for_part(r));
-  TRY(run_choose_stiffness(r));
-  TRY(run_renew_elastic(r));
-  TRY(run_use(r, &r->elastic));
-done:
-  return st;
+  PASS(run_room_for_part(r));
+  PASS(run_choose_stiffness(r));
+  PASS(run_renew_elastic(r));
+  return run_use(r, &r->elastic);
 }
 
 status run_add_nodes(run *r) {
-  status st = OK;
-  TRY(reach_extend(&r->nodes.reach, r->nodes.n, r->problem.gap, r->now.uc,
-                   r->msh->dim, r->solving.report.outcome <= 0));
-  TRY(run_renew_nodes(r));
-done:
-  return st;
+  PASS(reach_extend(&r->nodes.reach, r->nodes.n, r->problem.gap, r->now.uc,
+                    r->msh->dim, r->solving.report.outcome <= 0));
+  return run_renew_nodes(r);
 }

@@ -14,30 +14,28 @@
 
 /* One kind for each section whose material has a law. */
 static status new_kinds(const run *r, flow *x, int *kind_of) {
-  status st = OK;
   const model *m = r->m;
   x->ns = m->ns;
-  NEW(x->kind, m->n.section);
+  PASS_NEW(x->kind, m->n.section);
   for (int i = 0; i < m->n.section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
     law_elastic elastic;
     kind_of[i] = -1;
     if (mat->law.ops == NULL) continue;
-    TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
-                         &elastic));
+    PASS(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
+                          &elastic));
     kind_of[i] = x->n_kind++;
-    TRY(flow_new_kind(&x->kind[kind_of[i]], &mat->law, &elastic));
+    PASS(flow_new_kind(&x->kind[kind_of[i]], &mat->law, &elastic));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status new_points(run *r, visco *v, const int *kind_of) {
-  status st = OK;
-  int n = 0, *kind_id = NULL;
-  NEW(kind_id, r->strains.eigen.n);
-  NEW(v->place, r->strains.eigen.n);
-  NEW(v->elem, r->strains.eigen.n);
+  OWNED int *kind_id = NULL;
+  int n = 0;
+  PASS_NEW(kind_id, r->strains.eigen.n);
+  PASS_NEW(v->place, r->strains.eigen.n);
+  PASS_NEW(v->elem, r->strains.eigen.n);
   for (int k = 0; k < r->strains.eigen.n; ++k) {
     int kind = kind_of[r->m->elem_section[r->strains.elem[k]]];
     if (kind < 0 || !model_flows(r->m, r->strains.elem[k])) continue;
@@ -45,12 +43,10 @@ static status new_points(run *r, visco *v, const int *kind_of) {
     v->elem[n] = r->strains.elem[k];
     kind_id[n++] = kind;
   }
-  TRY(flow_new_points(&v->x, n, kind_id));
+  PASS(flow_new_points(&v->x, n, kind_id));
   for (int k = 0; k < n; ++k)
     v->x.weight[k] = element_weight(&r->body.d, v->elem[k]);
-done:
-  memory_free(kind_id);
-  return st;
+  return OK;
 }
 
 static int compare_id(const void *a, const void *b) {
@@ -60,7 +56,6 @@ static int compare_id(const void *a, const void *b) {
 
 /* One line of *INITIAL CONDITIONS into both states. */
 static status take_initial(const run *r, visco *v, const initial *c) {
-  status st = OK;
   const mesh_group *g = &r->msh->group[c->group_id];
   size_t ns = (size_t)r->m->ns, part = (size_t)c->component;
   for (int i = 0; i < g->n_item; ++i) {
@@ -69,26 +64,23 @@ static status take_initial(const run *r, visco *v, const initial *c) {
                                sizeof *v->elem, compare_id);
     if (found == NULL) continue;
     size_t k = (size_t)(found - v->elem);
-    TRY(load_initial(r->m, r->msh, c, *found, &value));
+    PASS(load_initial(r->m, r->msh, c, *found, &value));
     if (c->type == INITIAL_STRAIN)
       v->old.ei[ns * k + part] = v->now.ei[ns * k + part] = value;
     else
       v->old.alpha[v->x.alpha_at[k] + part] =
           v->now.alpha[v->x.alpha_at[k] + part] = value;
   }
-done:
-  return st;
+  return OK;
 }
 
 static status initial_state(const run *r, visco *v) {
-  status st = OK;
   for (int i = 0; i < r->m->n.initial; ++i) {
     const initial *c = &r->m->initial.lines[i];
     if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
-      TRY(take_initial(r, v, c));
+      PASS(take_initial(r, v, c));
   }
-done:
-  return st;
+  return OK;
 }
 
 status visco_new(run *r) {
@@ -340,7 +332,6 @@ static inline void add_points(int ns, const run *r, const visco_part *p,
 }
 
 status visco_part_sums(run *r, const visco_part *p) {
-  status st = OK;
   visco *v = r->strains.visco;
   const int end = p->point + p->n_point;
   point_sums sum = v->sums;
@@ -352,11 +343,10 @@ status visco_part_sums(run *r, const visco_part *p) {
     add_points(4, r, p, &sum);
   else
     add_points(6, r, p, &sum);
-  TRY(flow_add_stored(&v->x, &v->now, p->point, end, &sum.stored));
-  TRY(flow_add_elastic(&v->x, &v->now, p->point, end, &sum.elastic));
+  PASS(flow_add_stored(&v->x, &v->now, p->point, end, &sum.stored));
+  PASS(flow_add_elastic(&v->x, &v->now, p->point, end, &sum.elastic));
   v->sums = sum;
-done:
-  return st;
+  return OK;
 }
 
 void visco_show(const run *r, state *s) {

@@ -158,15 +158,14 @@ static void find_torques(run *r) {
 /* Energy of the springs of laws that elastic constants represent, J: the part
  * 1/2 sigma R sigma of their strain energy (model.h). */
 static status relaxed_energy(const run *r, double *kept) {
-  status st = OK;
-  double *sigma = NULL;
+  OWNED double *sigma = NULL;
   const int ns = r->m->ns;
   int any = 0;
   *kept = 0.0;
   for (int i = 0; i < r->m->n.material; ++i)
     any |= r->m->materials[i].is_relaxed;
-  if (!any) goto done;
-  NEW(sigma, (size_t)ns * (size_t)r->msh->n_elem);
+  if (!any) return OK;
+  PASS_NEW(sigma, (size_t)ns * (size_t)r->msh->n_elem);
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < r->msh->n_elem; ++e) {
     const material *mat = run_material(r, e);
@@ -176,9 +175,7 @@ static status relaxed_energy(const run *r, double *kept) {
     tensor_product(ns, mat->relaxed, own, strain);
     *kept += 0.5 * element_weight(&r->body.d, e) * tensor_dot(ns, own, strain);
   }
-done:
-  memory_free(sigma);
-  return st;
+  return OK;
 }
 
 /*
@@ -188,7 +185,6 @@ done:
  * and with strains e0 that carry no stress 1/2 (s + s_old)'(e0 - e0_old) less.
  */
 static status find_energies(run *r) {
-  status st = OK;
   const equilibrium *a = &r->old, *b = &r->now;
   energies e = a->energy;
   double kept;
@@ -213,8 +209,8 @@ static status find_energies(run *r) {
   e.normal += work + friction;
   e.stored -= a->kept;
   strains_work(r, &e);
-  if (r->strains.visco != NULL) TRY(visco_energies(r, &e));
-  TRY(relaxed_energy(r, &kept));
+  if (r->strains.visco != NULL) PASS(visco_energies(r, &e));
+  PASS(relaxed_energy(r, &kept));
   e.strain = strains_energy(r) - kept;
   e.inelastic += kept - a->kept;
   e.stored += kept;
@@ -225,12 +221,10 @@ static status find_energies(run *r) {
   for (int k = 0; k < 6; ++k) e.largest = fmax(e.largest, fabs(part[k]));
   r->now.energy = e;
   r->now.kept = kept;
-done:
-  return st;
+  return OK;
 }
 
 status result_evaluate(run *r, int due) {
-  status st = OK;
   unsigned effects = r->m->effects;
   int shown = (effects & EFFECT_STRESS) && due;
   int needed = run_finds_mesh_error(r) || r->m->accuracy.ref.has_stress;
@@ -243,9 +237,8 @@ status result_evaluate(run *r, int due) {
   if (r->course.relaxing)
     result_start(r, &r->now);
   else
-    TRY(find_energies(r));
-done:
-  return st;
+    PASS(find_energies(r));
+  return OK;
 }
 
 void result_start(const run *r, equilibrium *e) {

@@ -25,48 +25,42 @@ static int is_flow(const run *r) {
 }
 
 static status new_strains(const run *r, equilibrium *e) {
-  status st = OK;
   size_t n = strains_kept(r);
   if (r->strains.temperature0 != NULL) {
-    NEW(e->temperature, r->msh->n_elem);
+    PASS_NEW(e->temperature, r->msh->n_elem);
     memcpy(e->temperature, r->strains.temperature0,
            (size_t)r->msh->n_elem * sizeof *e->temperature);
   }
-  if (n == 0) goto done;
-  NEW(e->thermal, n);
-  NEW(e->e0, n);
-  NEW(e->sigma, n);
-  if (r->body.moduli.n_own > 0) NEW(e->elastic, n);
-done:
-  return st;
+  if (n == 0) return OK;
+  PASS_NEW(e->thermal, n);
+  PASS_NEW(e->e0, n);
+  PASS_NEW(e->sigma, n);
+  if (r->body.moduli.n_own > 0) PASS_NEW(e->elastic, n);
+  return OK;
 }
 
 static status list_elements(run *r) {
-  status st = OK;
   int n = 0;
   for (int e = 0; e < r->msh->n_elem; ++e)
     r->strains.eigen.n += effects_strain(r, e);
-  NEW(r->strains.elem, r->strains.eigen.n);
+  PASS_NEW(r->strains.elem, r->strains.eigen.n);
   for (int e = 0; e < r->msh->n_elem; ++e)
     if (effects_strain(r, e)) r->strains.elem[n++] = e;
   r->strains.eigen.elem_id = r->strains.elem;
-  NEW(r->strains.load, r->n_dof);
-done:
-  return st;
+  PASS_NEW(r->strains.load, r->n_dof);
+  return OK;
 }
 
 status strains_new(run *r) {
-  status st = OK;
-  TRY(moduli_new(r->m, r->msh, r->strains.temperature0, &r->body.moduli));
+  PASS(moduli_new(r->m, r->msh, r->strains.temperature0, &r->body.moduli));
   moduli_domain(&r->body.moduli, r->m, &r->body.d);
-  if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) goto done;
-  TRY(list_elements(r));
-  TRY(new_strains(r, &r->old));
-  TRY(new_strains(r, &r->now));
-  if (r->m->effects & EFFECT_INELASTIC) TRY(visco_new(r));
+  if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) return OK;
+  PASS(list_elements(r));
+  PASS(new_strains(r, &r->old));
+  PASS(new_strains(r, &r->now));
+  if (r->m->effects & EFFECT_INELASTIC) PASS(visco_new(r));
   r->body.d.eigen = &r->strains.eigen;
-done:
-  return st;
+  return OK;
 }
 
 void strains_free(run *r) {

@@ -34,17 +34,14 @@ void visco_new_solvers(run *r) {
 }
 
 static status factor(const domain *d, matrices *m) {
-  status st = OK;
   matrices keep = *m;
   matrices_free(m);
   if (keep.c == NULL) { /* as it was before a restart */
     m->from = keep.from;
     memcpy(m->group, keep.group, sizeof m->group);
   }
-  TRY(stiffness_assemble(d, &m->k));
-  TRY(condense(m->k, d, &m->c));
-done:
-  return st;
+  PASS(stiffness_assemble(d, &m->k));
+  return condense(m->k, d, &m->c);
 }
 
 /* Those of before a restart again, without counting them. */
@@ -59,11 +56,11 @@ static status factor_again(const domain *d, matrices *m) {
 
 /* Sections as they are, with the tangents of their kinds. */
 static status constant_domain(run *r, const flow_tangent *law, domain *d) {
-  status st = OK;
   visco *v = r->strains.visco;
   size_t square = visco_at(r, r->m->ns);
   int kind = 0;
-  if (v->E == NULL) NEW(v->E, square * (size_t)(r->body.moduli.n + v->x.n));
+  if (v->E == NULL)
+    PASS_NEW(v->E, square * (size_t)(r->body.moduli.n + v->x.n));
   v->E_is_fresh = 0;
   memcpy(v->E, r->body.moduli.E,
          square * (size_t)r->body.moduli.n * sizeof *v->E);
@@ -75,8 +72,7 @@ static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   }
   *d = r->body.d;
   d->E = v->E;
-done:
-  return st;
+  return OK;
 }
 
 /* The matrices of v->E. A group that has relaxed within the step may be so soft
@@ -99,13 +95,12 @@ static status factor_constant(run *r, int again, const domain *d, matrices *m) {
 
 /* Each point a section of its own. */
 static status new_sections(run *r) {
-  status st = OK;
   visco *v = r->strains.visco;
   const moduli *own = &r->body.moduli;
   int n = own->n + v->x.n;
-  NEW(v->section_id, r->msh->n_elem);
-  NEW(v->kin, n);
-  NEW(v->thickness, n);
+  PASS_NEW(v->section_id, r->msh->n_elem);
+  PASS_NEW(v->kin, n);
+  PASS_NEW(v->thickness, n);
   memcpy(v->section_id, r->body.d.section_id,
          (size_t)r->msh->n_elem * sizeof *v->section_id);
   memcpy(v->kin, own->kin, (size_t)own->n * sizeof *v->kin);
@@ -116,16 +111,14 @@ static status new_sections(run *r) {
     v->thickness[entry] = own->thickness[v->section_id[e]];
     v->section_id[e] = entry;
   }
-done:
-  return st;
+  return OK;
 }
 
 static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
-  status st = OK;
   visco *v = r->strains.visco;
   size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
-  if (v->section_id == NULL) TRY(new_sections(r));
-  if (v->E == NULL) NEW(v->E, square * (n + (size_t)v->x.n));
+  if (v->section_id == NULL) PASS(new_sections(r));
+  if (v->E == NULL) PASS_NEW(v->E, square * (n + (size_t)v->x.n));
   memcpy(v->E, r->body.moduli.E, square * n * sizeof *v->E);
   memcpy(v->E + square * n, law->D, square * (size_t)v->x.n * sizeof *v->E);
   v->E_is_fresh = 1;
@@ -136,8 +129,7 @@ static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   d->thickness = v->thickness;
   d->E = v->E;
   d->C = NULL;
-done:
-  return st;
+  return OK;
 }
 
 /* 1 if the tangents of the points are those of the last solve of its kind. */
@@ -151,31 +143,28 @@ static int same_tangents(const run *r, const flow_tangent *law) {
 
 /* Tangents of this solve alone: their symbolic factor is kept. */
 static status use_fresh(run *r, const flow_tangent *law) {
-  status st = OK;
   visco *v = r->strains.visco;
   domain d;
   int same = same_tangents(r, law);
-  if (same && v->fresh.c != NULL) goto done;
-  TRY(fresh_domain(r, law, &d));
+  if (same && v->fresh.c != NULL) return OK;
+  PASS(fresh_domain(r, law, &d));
   r->c = NULL;
   if (!same) run_forget_estimates(r);
-  TRY(same ? factor_again(&d, &v->fresh) : factor(&d, &v->fresh));
+  PASS(same ? factor_again(&d, &v->fresh) : factor(&d, &v->fresh));
   v->fresh.key = RUN_FRESH_KEY;
-done:
-  return st;
+  return OK;
 }
 
 /* The matrices of a tangent: those of its key if they are still there. */
 static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
-  status st = OK;
   visco *v = r->strains.visco;
   matrices *m = &v->slot[0];
   domain d;
   *out = law->elastic ? &r->elastic : &v->fresh;
-  if (law->elastic) goto done;
+  if (law->elastic) return OK;
   if (law->key == 0.0) {
-    TRY(use_fresh(r, law));
-    goto done;
+    PASS(use_fresh(r, law));
+    return OK;
   }
   int there = 0;
   for (int i = 0; i < SLOTS && !there; ++i) {
@@ -185,16 +174,15 @@ static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
   }
   if (!there) m->from = NULL;
   if (!there || m->c == NULL) {
-    TRY(constant_domain(r, law, &d));
+    PASS(constant_domain(r, law, &d));
     if (r->c == m->c) r->c = NULL;
-    TRY(factor_constant(r, there, &d, m));
+    PASS(factor_constant(r, there, &d, m));
     m->key = law->key;
     m->exact = law->exact;
   }
   m->used = ++v->clock;
   *out = m;
-done:
-  return st;
+  return OK;
 }
 
 /* v->stress from its start: of the items of a part, what sigma = sigma_k + D (e
@@ -253,26 +241,21 @@ static const double *step_load(run *r, const flow_tangent *law,
 
 /* The points at the equilibrium of a step of constant laws. */
 static status step_follow(run *r, const scheme_call *a) {
-  status st = OK;
   visco_part p = {0};
   r->strains.visco->sums = (point_sums){0};
   while (visco_next_part(r, &p)) {
     visco_part_strains(r, &p);
     linear_follow(a, p.point, p.point + p.n_point);
-    TRY(visco_part_sums(r, &p));
+    PASS(visco_part_sums(r, &p));
   }
-done:
-  return st;
+  return OK;
 }
 
 status tangent_solve(run *r, const flow_tangent *law) {
-  status st = OK;
   matrices *m = NULL;
-  TRY(find_matrices(r, law, &m));
-  TRY(run_use(r, m));
-  TRY(increment_equilibrium(r, tangent_load(r, law)));
-done:
-  return st;
+  PASS(find_matrices(r, law, &m));
+  PASS(run_use(r, m));
+  return increment_equilibrium(r, tangent_load(r, law));
 }
 
 status tangent_step(run *r, const flow_tangent *law, const scheme_call *a) {
@@ -293,21 +276,18 @@ done:
 
 /* The tangents that v->fresh is made of. */
 static status keep_fresh(run *r, archive *a) {
-  status st = OK;
   visco *v = r->strains.visco;
   size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
   int there = v->E_is_fresh && v->fresh.c != NULL;
-  TRY(archive_ints(a, "fresh", &there, 1));
+  PASS(archive_ints(a, "fresh", &there, 1));
   if (archive_reads(a)) v->E_is_fresh = there;
-  if (!there) goto done;
-  if (v->E == NULL) NEW(v->E, square * (n + (size_t)v->x.n));
-  TRY(archive_reals(a, "tangents", v->E + square * n, square * (size_t)v->x.n));
-done:
-  return st;
+  if (!there) return OK;
+  if (v->E == NULL) PASS_NEW(v->E, square * (n + (size_t)v->x.n));
+  return archive_reals(a, "tangents", v->E + square * n,
+                       square * (size_t)v->x.n);
 }
 
 status tangent_keep(run *r, archive *a) {
-  status st = OK;
   visco *v = r->strains.visco;
   char name[20];
   double known = r->c == r->elastic.c ? r->elastic.key : RUN_OTHER_KEY;
@@ -317,19 +297,17 @@ status tangent_keep(run *r, archive *a) {
     if (m->c != NULL && m->c == r->c) known = m->key;
     snprintf(name, sizeof name, "slot%d", i);
     archive_enter(a, name);
-    TRY(archive_reals(a, "key", &m->key, 1));
-    TRY(archive_ints(a, "exact", &m->exact, 1));
-    TRY(archive_bytes(a, "used", &m->used, sizeof m->used));
-    TRY(matrices_keep(m, a, "solver"));
+    PASS(archive_reals(a, "key", &m->key, 1));
+    PASS(archive_ints(a, "exact", &m->exact, 1));
+    PASS(archive_bytes(a, "used", &m->used, sizeof m->used));
+    PASS(matrices_keep(m, a, "solver"));
     archive_leave(a);
   }
   if (r->solving.known_key != RUN_NO_KEY) known = r->solving.known_key;
-  TRY(keep_fresh(r, a));
-  TRY(archive_reals(a, "known_key", &known, 1));
+  PASS(keep_fresh(r, a));
+  PASS(archive_reals(a, "known_key", &known, 1));
   if (archive_reads(a)) r->solving.known_key = known;
-  TRY(archive_bytes(a, "clock", &v->clock, sizeof v->clock));
-done:
-  return st;
+  return archive_bytes(a, "clock", &v->clock, sizeof v->clock);
 }
 
 void run_change_moduli(run *r) {

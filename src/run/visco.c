@@ -96,7 +96,6 @@ static double step_length(run *r, double t) {
 }
 
 static status advance(run *r, double t) {
-  status st = OK;
   visco *v = r->strains.visco;
   const flow_body body = {r, equilibrium_of, begin, linear, constant};
   scheme_step p = {.t = t,
@@ -109,7 +108,7 @@ static status advance(run *r, double t) {
   v->sums.known = 0;
   const scheme_call call = {&v->x,   &p,      &body,     v->work,
                             &v->old, &v->now, &v->result};
-  TRY(r->step->visco.integrator->advance(&call));
+  PASS(r->step->visco.integrator->advance(&call));
   v->now.t = t;
   if (v->sums.known && r->now.e0 != NULL)
     r->strains.eigen.e0 = r->now.e0;
@@ -117,8 +116,7 @@ static status advance(run *r, double t) {
     strains_collect(r);
   if (!v->result.settled && r->solving.report.outcome > 0)
     r->solving.report.outcome = STOPPED_ITERATIONS;
-done:
-  return st;
+  return OK;
 }
 
 status visco_between(run *r, double t, flow_state *s, double *dissipated) {
@@ -179,12 +177,10 @@ status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
 }
 
 status start_point_new(const run *r, start_point *p) {
-  status st = OK;
-  NEW(p->uc, r->nodes.n_c);
-  NEW(p->rc, r->nodes.n_c);
-  if (r->old.motion != NULL) NEW(p->motion, r->nodes.n_c);
-done:
-  return st;
+  PASS_NEW(p->uc, r->nodes.n_c);
+  PASS_NEW(p->rc, r->nodes.n_c);
+  if (r->old.motion != NULL) PASS_NEW(p->motion, r->nodes.n_c);
+  return OK;
 }
 
 void start_point_free(start_point *p) {
@@ -258,32 +254,28 @@ static double halves_error(const run *r) {
 
 /* Root mean square of the elastic strains of v->now. */
 static status elastic_norm(const visco *v, double *norm) {
-  status st = OK;
   double sum = v->sums.elastic;
   if (!v->sums.known) {
     sum = 0.0;
-    TRY(flow_add_elastic(&v->x, &v->now, 0, v->x.n, &sum));
+    PASS(flow_add_elastic(&v->x, &v->now, 0, v->x.n, &sum));
   }
   *norm = flow_root(&v->x, sum);
-done:
-  return st;
+  return OK;
 }
 
 static status try_step(run *r, double t, double *error) {
-  status st = OK;
   visco *v = r->strains.visco;
   int estimates = r->step->visco.integrator->estimates;
   *error = HUGE_VAL;
-  if (!estimates) TRY(two_halves(r, t));
-  if (!estimates && r->solving.report.outcome <= 0) goto done;
-  TRY(advance(r, t));
-  if (r->solving.report.outcome <= 0) goto done;
+  if (!estimates) PASS(two_halves(r, t));
+  if (!estimates && r->solving.report.outcome <= 0) return OK;
+  PASS(advance(r, t));
+  if (r->solving.report.outcome <= 0) return OK;
   *error = estimates ? v->result.error : halves_error(r);
   double norm = 0.0;
-  TRY(elastic_norm(v, &norm));
+  PASS(elastic_norm(v, &norm));
   if (*error > 0.0) *error /= fmax(v->largest, norm);
-done:
-  return st;
+  return OK;
 }
 
 status visco_try(run *r, double t, double *error) {
@@ -368,21 +360,18 @@ done:
 }
 
 status visco_keep(run *r, archive *a) {
-  status st = OK;
   visco *v = r->strains.visco;
   int reported = v->reported == r->step;
-  TRY(visco_keep_flow(&v->x, &v->old, a, "old"));
-  TRY(visco_keep_flow(&v->x, &v->now, a, "now"));
-  TRY(archive_reals(a, "largest", &v->largest, 1));
-  TRY(archive_reals(a, "length", v->length, SLOTS));
-  TRY(archive_bytes(a, "n_length", &v->n_length, sizeof v->n_length));
-  TRY(archive_reals(a, "asked", &v->x.tally->asked, 1));
-  TRY(archive_reals(a, "resting", &v->x.tally->resting, 1));
-  TRY(archive_ints(a, "told", &reported, 1));
+  PASS(visco_keep_flow(&v->x, &v->old, a, "old"));
+  PASS(visco_keep_flow(&v->x, &v->now, a, "now"));
+  PASS(archive_reals(a, "largest", &v->largest, 1));
+  PASS(archive_reals(a, "length", v->length, SLOTS));
+  PASS(archive_bytes(a, "n_length", &v->n_length, sizeof v->n_length));
+  PASS(archive_reals(a, "asked", &v->x.tally->asked, 1));
+  PASS(archive_reals(a, "resting", &v->x.tally->resting, 1));
+  PASS(archive_ints(a, "told", &reported, 1));
   v->reported = reported ? r->step : NULL;
-  TRY(archive_ints(a, "told_locking", &v->locking_reported, 1));
-  TRY(archive_ints(a, "told_stuck", &v->stuck_reported, 1));
-  TRY(tangent_keep(r, a));
-done:
-  return st;
+  PASS(archive_ints(a, "told_locking", &v->locking_reported, 1));
+  PASS(archive_ints(a, "told_stuck", &v->stuck_reported, 1));
+  return tangent_keep(r, a);
 }

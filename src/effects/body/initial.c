@@ -14,9 +14,8 @@
 /* K u_0 - F into R, the largest of both into *largest; diagonal of K. */
 static status start_forces(run *r, double *R, double *diagonal,
                            double *largest) {
-  status st = OK;
-  double *sigma = NULL;
-  NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  OWNED double *sigma = NULL;
+  PASS_NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   domain_stress(&r->body.d, r->old.u, NULL, sigma);
   domain_internal_force(&r->body.d, sigma, R);
   for (size_t k = 0; k < r->n_dof; ++k) {
@@ -24,9 +23,7 @@ static status start_forces(run *r, double *R, double *diagonal,
     R[k] -= r->now.F[k];
   }
   start_stiffness(&r->body.d, diagonal);
-done:
-  memory_free(sigma);
-  return st;
+  return OK;
 }
 
 /* The start is the old equilibrium of the first increment. */
@@ -53,10 +50,9 @@ done:
 }
 
 static status check_start(run *r, start_report *s) {
-  status st = OK;
   const start_card *asked = &r->m->initial.start;
   s->relaxed = s->n_bad > 0 && asked->relax;
-  if (r->sink->start != NULL) TRY(r->sink->start(r->sink->ctx, s));
+  if (r->sink->start != NULL) PASS(r->sink->start(r->sink->ctx, s));
   if (s->n_bad > 0 && !s->relaxed) {
     message_add(r->m->log, P4014, &asked->at,
                 "the start is not compatible: defect %.3g (%.2g of the largest "
@@ -64,14 +60,13 @@ static status check_start(run *r, start_report *s) {
                 s->worst, s->ratio, r->msh->node_no[s->node_id],
                 defect_text(s->kind[s->node_id]), s->n_bad,
                 s->n_bad == 1 ? "" : "s", start_tolerance);
-    FAIL(ERR_DECK, "the initial displacements are not compatible");
+    RAISE(ERR_DECK, "the initial displacements are not compatible");
   }
   if (s->relaxed)
-    TRY(relax_start(r));
+    PASS(relax_start(r));
   else
     accept_start(r);
-done:
-  return st;
+  return OK;
 }
 
 /* Test the initial displacements against the loads of time 0. */

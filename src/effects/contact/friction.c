@@ -255,21 +255,18 @@ static const load *holder(const run *r, int i, int a) {
  */
 static status check_held(const run *r, const friction *own, int i, int a,
                          double from, double to) {
-  status st = OK;
   const contact_surface *s = r->surface;
   int other = s->dim == 3 ? 3 - a : a;
   if (s->dim < 3 || from == to || s->held[3 * i + other] ||
       !can_stick(&own->limit, i))
-    goto done;
+    return OK;
   const load *l = holder(r, i, a);
   message_add(r->m->log, P4015, l == NULL ? &r->step->at : &l->at,
               "contact node %zu has one prescribed tangential displacement "
               "while friction acts in the other direction",
               s->node_no[i]);
-  FAIL(ERR_DECK, "*BOUNDARY moves contact node %zu against friction",
-       s->node_no[i]);
-done:
-  return st;
+  RAISE(ERR_DECK, "*BOUNDARY moves contact node %zu against friction",
+        s->node_no[i]);
 }
 
 /*

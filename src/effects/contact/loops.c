@@ -22,12 +22,10 @@ static status expected(const plan_sizes *s, effect_work *w) {
 }
 
 static status loops_new(run *r, void **self) {
-  status st = OK;
   contact_loop *own = NULL;
-  NEW(own, r->m->n.contact);
+  PASS_NEW(own, r->m->n.contact);
   *self = own;
-done:
-  return st;
+  return OK;
 }
 
 static status loops_copy(const run *r, const void *of, run *copy, void **self) {

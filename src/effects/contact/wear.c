@@ -46,12 +46,10 @@ static size_t length_of(const run *r) {
 }
 
 static status wear_new(run *r, void **self) {
-  status st = OK;
   double *depth = NULL;
-  NEW(depth, length_of(r));
+  PASS_NEW(depth, length_of(r));
   *self = depth;
-done:
-  return st;
+  return OK;
 }
 
 static status wear_copy(const run *r, const void *of, run *copy, void **self) {
@@ -100,12 +98,12 @@ static double slip_of(const run *r, int i) {
  * of D in the rows of r->problem.cp. */
 static status overshoot(const run *r, const double *root, double *largest) {
   enum { PRODUCTS = 20 };
-  status st = OK;
   const contact_problem *cp = &r->problem.cp;
   const int m = cp->m;
-  double *x = NULL, *y = NULL, norm = 0.0;
-  NEW(x, m);
-  NEW(y, m);
+  OWNED double *x = NULL, *y = NULL;
+  double norm = 0.0;
+  PASS_NEW(x, m);
+  PASS_NEW(y, m);
   *largest = 0.0;
   for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] = root[i]);
   for (int k = 0; k < PRODUCTS && norm > 0.0; ++k) {
@@ -115,17 +113,15 @@ static status overshoot(const run *r, const double *root, double *largest) {
     for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] *= root[i]);
     *largest = norm;
   }
-done:
-  RELEASE(x, y);
-  return st;
+  return OK;
 }
 
 static status wear_off(run *r, void *self) {
-  status st = OK;
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
-  double *depth = self, *root = NULL, factor = 0.0;
-  NEW(root, r->nodes.n_c);
+  OWNED double *root = NULL;
+  double *depth = self, factor = 0.0;
+  PASS_NEW(root, r->nodes.n_c);
   for (int i = 0; i < r->nodes.n; ++i) {
     const double slip = slip_of(r, i);
     for (int a = 0; a < dim; ++a) {
@@ -139,18 +135,16 @@ static status wear_off(run *r, void *self) {
       root[k] = sqrt(per_force);
     }
   }
-  TRY(overshoot(r, run_rows(r, 0, root), &factor));
+  PASS(overshoot(r, run_rows(r, 0, root), &factor));
   if (factor > 2.0)
-    FAIL(ERR_DECK,
-         "step %d, time %g: the wear of an increment of dt = %g reduces the "
-         "forces of a node by %.3g times their value, above 2 they grow "
-         "without bound: give "
-         "increments of dt <= %.3g",
-         run_step_id(r) + 1, r->now.t, r->now.t - r->old.t, factor,
-         (r->now.t - r->old.t) / factor);
-done:
-  memory_free(root);
-  return st;
+    RAISE(ERR_DECK,
+          "step %d, time %g: the wear of an increment of dt = %g reduces the "
+          "forces of a node by %.3g times their value, above 2 they grow "
+          "without bound: give "
+          "increments of dt <= %.3g",
+          run_step_id(r) + 1, r->now.t, r->now.t - r->old.t, factor,
+          (r->now.t - r->old.t) / factor);
+  return OK;
 }
 
 static status keep(run *r, void *self, archive *a) {

@@ -47,13 +47,11 @@ typedef struct finder {
 } finder;
 
 static status level_new(int dim, int n, level *l) {
-  status st = OK;
-  NEW(l->in, n);
-  NEW(l->square, n);
-  NEW(l->slope, dim * n);
-  NEW(l->weight, n);
-done:
-  return st;
+  PASS_NEW(l->in, n);
+  PASS_NEW(l->square, n);
+  PASS_NEW(l->slope, dim * n);
+  PASS_NEW(l->weight, n);
+  return OK;
 }
 
 static void level_free(level *l) {
@@ -73,20 +71,18 @@ static void finder_free(finder *z) {
 }
 
 static status finder_new(run *r, finder *z) {
-  status st = OK;
   const contact_surface *s = r->surface;
   z->r = r;
   z->dim = s->dim;
-  NEW(z->index, r->msh->n_node);
+  PASS_NEW(z->index, r->msh->n_node);
   for (int i = 0; i < r->msh->n_node; ++i) z->index[i] = -1;
   for (int i = 0; i < s->n; ++i) z->index[s->node_id[i]] = i;
-  TRY(level_new(z->dim, s->n, &z->closed));
-  TRY(level_new(z->dim, s->n, &z->stick));
-  NEW(z->next, s->n);
-  NEW(z->next_face, s->n);
-  NEW(z->before, s->n);
-done:
-  return st;
+  PASS(level_new(z->dim, s->n, &z->closed));
+  PASS(level_new(z->dim, s->n, &z->stick));
+  PASS_NEW(z->next, s->n);
+  PASS_NEW(z->next_face, s->n);
+  PASS_NEW(z->before, s->n);
+  return OK;
 }
 
 static double tangential(const run *r, int i) {
@@ -267,15 +263,12 @@ static double part_of_face(const finder *z, const level *l, const int *node) {
 }
 
 static status add_zone(zone_list *out, const contact_zone *zone) {
-  status st = OK;
-  GROW(out->zone, out->n, out->cap);
+  PASS_GROW(out->zone, out->n, out->cap);
   out->zone[out->n++] = *zone;
-done:
-  return st;
+  return OK;
 }
 
 static status find_areas(const finder *z, int contact_id) {
-  status st = OK;
   const mesh_group *group = z->r->faces.pairs[contact_id].group;
   double whole = 0.0, closed = 0.0, stick = 0.0;
   contact_zone zone = {.contact_id = contact_id};
@@ -291,10 +284,9 @@ static status find_areas(const finder *z, int contact_id) {
   for (int kind = CONTACT_OPEN; kind <= CONTACT_STICK; ++kind) {
     zone.kind = kind;
     zone.area = area[kind];
-    TRY(add_zone(z->out, &zone));
+    PASS(add_zone(z->out, &zone));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* ---- in the plane: along the contact line --------------------------
@@ -366,7 +358,6 @@ static contact_zone first_zone(const finder *z, int contact_id, int i, int j) {
 }
 
 static status walk(const finder *z, int contact_id, int start) {
-  status st = OK;
   int i = start;
   contact_zone zone = first_zone(z, contact_id, z->before[start], start);
   for (int j; (j = z->next[i]) >= 0; i = j) {
@@ -376,16 +367,14 @@ static status walk(const finder *z, int contact_id, int start) {
       double end = zone_end(z, i, j);
       add_piece(z, i, 0.0, end, &zone);
       set_point(z, i, end, zone.to);
-      TRY(add_zone(z->out, &zone));
-      if (j == start) goto done;
+      PASS(add_zone(z->out, &zone));
+      if (j == start) return OK;
       zone = first_zone(z, contact_id, i, j);
     }
     if (j == start) break;
   }
   set_point(z, z->next[i] == start ? start : i, 0.0, zone.to);
-  TRY(add_zone(z->out, &zone));
-done:
-  return st;
+  return add_zone(z->out, &zone);
 }
 
 /* Where to cut a closed line: before a node that begins a zone. */
@@ -397,7 +386,6 @@ static int cut_ring(const finder *z, int start) {
 }
 
 static status find_lines(finder *z, int contact_id) {
-  status st = OK;
   const mesh_group *group = z->r->faces.pairs[contact_id].group;
   int n = z->r->nodes.n, node[3];
   for (int i = 0; i < n; ++i) z->next[i] = z->before[i] = -1;
@@ -411,14 +399,13 @@ static status find_lines(finder *z, int contact_id) {
     for (int i = 0; i < n; ++i) {
       if (z->next[i] < 0 || (pass == 0 && z->before[i] >= 0)) continue;
       int start = pass == 0 ? i : cut_ring(z, i);
-      TRY(walk(z, contact_id, start));
+      PASS(walk(z, contact_id, start));
       for (int k = start, next; k >= 0; k = next) {
         next = z->next[k];
         z->next[k] = -1;
       }
     }
-done:
-  return st;
+  return OK;
 }
 
 static status find_zones(run *r, void *self) {
@@ -453,13 +440,11 @@ static status expected(const plan_sizes *s, effect_work *w) {
 }
 
 static status zones_new(run *r, void **self) {
-  status st = OK;
   zone_list *own = NULL;
   (void)r;
-  NEW(own, 1);
+  PASS_NEW(own, 1);
   *self = own;
-done:
-  return st;
+  return OK;
 }
 
 static status zones_copy(const run *r, const void *of, run *copy, void **self) {

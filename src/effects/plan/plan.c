@@ -58,11 +58,9 @@ static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
 }
 
 static status add_row(effect_plan *p, int *capacity, const plan_row *r) {
-  status st = OK;
-  GROW(p->rows, p->n, *capacity);
+  PASS_GROW(p->rows, p->n, *capacity);
   p->rows[p->n++] = *r;
-done:
-  return st;
+  return OK;
 }
 
 /* Elements of a section whose law counts. */
@@ -76,7 +74,6 @@ static double flowing_elements(const model *m, const mesh *msh, int id) {
 /* One row for each group whose material has a law; the first has the stage. */
 static status add_laws(const model *m, const mesh *msh, effect_plan *p,
                        int *capacity, const plan_row *all) {
-  status st = OK;
   int first = 1;
   for (int i = 0; i < m->n.section && msh != NULL; ++i) {
     const material *mat = plan_material(m, i);
@@ -93,11 +90,10 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
       r.within = "the first group";
     }
     first = 0;
-    TRY(add_row(p, capacity, &r));
+    PASS(add_row(p, capacity, &r));
   }
-  if (first) TRY(add_row(p, capacity, all));
-done:
-  return st;
+  if (first) PASS(add_row(p, capacity, all));
+  return OK;
 }
 
 static void find_shares(effect_plan *p) {
@@ -137,8 +133,7 @@ static int is_default(const step *s) {
 
 status plan_leave_out(model *m, const mesh *msh) {
   effect_plan *p = NULL;
-  if (facts_first_step(m, is_default) == NULL ||
-      model_targeted_goal(m) != NULL)
+  if (facts_first_step(m, is_default) == NULL || model_targeted_goal(m) != NULL)
     return OK;
   PASS(plan_new(m, msh, 0, &p));
   double share = 0.0;

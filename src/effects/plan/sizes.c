@@ -83,12 +83,11 @@ static void count_increments(const model *m, plan_sizes *s) {
 
 status plan_contact_nodes(const plan_sizes *s,
                           int (*is)(const friction_rule *rule), double *n) {
-  status st = OK;
   const model *m = s->m;
   const mesh *msh = s->msh;
-  unsigned char *seen = NULL;
+  OWNED unsigned char *seen = NULL;
   *n = 0.0;
-  NEW(seen, msh->n_node);
+  PASS_NEW(seen, msh->n_node);
   for (int i = 0; i < m->n.contact; ++i) {
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
     int counts = is == NULL;
@@ -99,19 +98,16 @@ status plan_contact_nodes(const plan_sizes *s,
       seen[g->node_id[k]] = 1;
     }
   }
-done:
-  memory_free(seen);
-  return st;
+  return OK;
 }
 
 status plan_held(const plan_sizes *s, double *unknowns, double *nodes) {
-  status st = OK;
   const model *m = s->m;
   const mesh *msh = s->msh;
   int dim = msh->dim;
-  unsigned char *fixed = NULL;
+  OWNED unsigned char *fixed = NULL;
   *unknowns = *nodes = 0.0;
-  NEW(fixed, dim * msh->n_node);
+  PASS_NEW(fixed, dim * msh->n_node);
   if (m->n.step > 0) load_fixed(m, msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i) {
     int any = 0;
@@ -119,9 +115,7 @@ status plan_held(const plan_sizes *s, double *unknowns, double *nodes) {
     *unknowns += any;
     *nodes += any > 0;
   }
-done:
-  memory_free(fixed);
-  return st;
+  return OK;
 }
 
 const material *plan_material(const model *m, int section_id) {
@@ -162,7 +156,6 @@ double plan_contact_work(const plan_sizes *s, double m) {
 }
 
 status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s) {
-  status st = OK;
   double held, nodes;
   *s = (plan_sizes){.m = m,
                     .msh = msh,
@@ -175,13 +168,12 @@ status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s) {
   if (msh != NULL) {
     s->nodes = msh->n_node;
     s->elements = msh->n_elem;
-    TRY(plan_held(s, &held, &nodes));
+    PASS(plan_held(s, &held, &nodes));
     s->unknowns = (double)msh->dim * msh->n_node - held;
-    TRY(plan_contact_nodes(s, NULL, &s->contact));
+    PASS(plan_contact_nodes(s, NULL, &s->contact));
   }
   if (m->effects & EFFECT_TANGENTS) s->tangents = (s->dim - 1) * s->contact;
-done:
-  return st;
+  return OK;
 }
 
 /*
@@ -194,9 +186,8 @@ done:
 status plan_memory(const model *m, const mesh *msh, double nodes,
                    const stiffness_choice *choice, plan_bytes *b) {
   enum { MATRICES = 5, OF_ELEMENT = 500, STAGES = 24, BUFFERS = 2000000 };
-  status st = OK;
   plan_sizes s;
-  TRY(plan_sizes_find(m, msh, 0, &s));
+  PASS(plan_sizes_find(m, msh, 0, &s));
   double all = s.contact + s.tangents, real = sizeof(double);
   double dofs = nodes >= 0.0 && s.contact > 0.0 ? nodes / s.contact * all : all;
   double sets = s.factors > 1.0 ? 2.0 : 1.0;
@@ -209,6 +200,5 @@ status plan_memory(const model *m, const mesh *msh, double nodes,
   b->rest = BUFFERS + s.elements * OF_ELEMENT;
   if (m->effects & EFFECT_INELASTIC)
     b->rest += s.elements * STAGES * real * s.ns;
-done:
-  return st;
+  return OK;
 }

@@ -117,25 +117,22 @@ static void grow_scales(reduction *n, const state *s) {
 
 status reduction_again(reduction *n, const state *s, int k, double bound,
                        omitted *row) {
-  status st = OK;
-  double *rc = NULL;
+  OWNED double *rc = NULL;
   int solved = 0;
   const size_t dofs = (size_t)(n->msh->dim * n->msh->n_node);
   grow_scales(n, s);
-  if (row->bit == EFFECT_BIT_NONLOCAL || bound == 0.0) goto done;
-  if (!s->end_of_step && bound <= 2.0 * n->seen[k]) goto done;
+  if (row->bit == EFFECT_BIT_NONLOCAL || bound == 0.0) return OK;
+  if (!s->end_of_step && bound <= 2.0 * n->seen[k]) return OK;
   n->seen[k] = fmax(bound, n->seen[k]);
   if (s->contacts.surface != NULL)
-    NEW(rc, s->contacts.surface->dim * s->contacts.surface->n);
+    PASS_NEW(rc, s->contacts.surface->dim * s->contacts.surface->n);
   take_forces(n, s, row);
-  TRY(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
+  PASS(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
   double change = solved ? reduction_part(distance(dofs, n->u, s->body.u),
                                           largest_entry(dofs, s->body.u))
                          : HUGE_VAL;
   if (rc != NULL) change = fmax(change, force_change(n, s, rc));
   if (!(change <= row->change)) row->change = change;
   ++row->again;
-done:
-  memory_free(rc);
-  return st;
+  return OK;
 }

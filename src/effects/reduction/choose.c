@@ -44,27 +44,22 @@ static double largest_temperature(const model *m) {
 /* *jumps 1: a *VISCO step starts with other temperatures than were there
  * before, to which a body that creeps responds at once, by an increment. */
 static status find_jump(const model *m, const mesh *msh, int *jumps) {
-  status st = OK;
-  double *T0 = NULL, *before = NULL, *T = NULL;
+  OWNED double *T0 = NULL, *before = NULL, *T = NULL;
   const size_t bytes = (size_t)msh->n_elem * sizeof *T;
   *jumps = 0;
-  NEW(T0, msh->n_elem);
-  NEW(before, msh->n_elem);
-  NEW(T, msh->n_elem);
-  TRY(load_temperature_initial(m, msh, T0));
+  PASS_NEW(T0, msh->n_elem);
+  PASS_NEW(before, msh->n_elem);
+  PASS_NEW(T, msh->n_elem);
+  PASS(load_temperature_initial(m, msh, T0));
   memcpy(before, T0, bytes);
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    TRY(load_temperature(m, msh, s, s->start, T0, T));
+    PASS(load_temperature(m, msh, s, s->start, T0, T));
     for (int e = 0; e < msh->n_elem && s->kind == STEP_VISCO; ++e)
       *jumps |= fabs(T[e] - before[e]) > 1e-12 * fabs(T[e]);
-    TRY(load_temperature(m, msh, s, s->start + s->total, T0, before));
+    PASS(load_temperature(m, msh, s, s->start + s->total, T0, before));
   }
-done:
-  memory_free(T0);
-  memory_free(before);
-  memory_free(T);
-  return st;
+  return OK;
 }
 
 /* The largest thermal strain over that of the loads; HUGE_VAL: not known. */
@@ -89,21 +84,19 @@ static double thermal_part(const model *m, const mesh *msh) {
 }
 
 static status try_thermal(model *m, const mesh *msh) {
-  status st = OK;
   int jumps;
-  if (!(m->effects & EFFECT_THERMAL)) goto done;
+  if (!(m->effects & EFFECT_THERMAL)) return OK;
   double worst = thermal_part(m, msh);
-  if (!(worst <= reduction_share * m->reduction.tol)) goto done;
+  if (!(worst <= reduction_share * m->reduction.tol)) return OK;
   if (m->effects & EFFECT_INELASTIC) {
-    TRY(find_jump(m, msh, &jumps));
-    if (jumps) goto done;
+    PASS(find_jump(m, msh, &jumps));
+    if (jumps) return OK;
   }
   omitted *row = reduction_row(m, EFFECT_BIT_THERMAL, -1);
-  if (row == NULL) goto done;
+  if (row == NULL) return OK;
   snprintf(row->why, sizeof row->why, "at most %.1e of the strain of the loads",
            worst);
-done:
-  return st;
+  return OK;
 }
 
 /* ---- nonlocal average --------------------------------------------------- */
@@ -208,40 +201,35 @@ static int has_no_coupling(const model *m) {
 
 /* 1 if friction holds a body in some step. */
 static status friction_holds(const model *m, const mesh *msh, int *holds) {
-  status st = OK;
-  free_motion *list = NULL;
+  OWNED free_motion *list = NULL;
   *holds = 0;
   for (int i = 0; i < m->n.step && !*holds; ++i) {
     int n = 0;
-    TRY(history_motions(m, msh, effect_table, i, &n, &list));
+    PASS(history_motions(m, msh, effect_table, i, &n, &list));
     for (int k = 0; k < n; ++k) *holds |= list[k].held_by == HELD_BY_FRICTION;
     memory_free(list);
     list = NULL;
   }
-done:
-  memory_free(list);
-  return st;
+  return OK;
 }
 
 static status try_friction(model *m, const mesh *msh) {
-  status st = OK;
   double mu = largest_mu(m), part = 2.0 * reduction_share * m->reduction.tol;
   int holds = 0, small = mu * all_increments(m) <= part * part;
   if (!(m->effects & EFFECT_FRICTION) || (m->effects & EFFECT_GIVEN) ||
       !(mu < HUGE_VAL) || reduction_has_initial(m))
-    goto done;
-  if (!small && !has_no_coupling(m)) goto done;
-  TRY(friction_holds(m, msh, &holds));
-  if (holds) goto done;
+    return OK;
+  if (!small && !has_no_coupling(m)) return OK;
+  PASS(friction_holds(m, msh, &holds));
+  if (holds) return OK;
   omitted *row = reduction_row(m, EFFECT_BIT_FRICTION, -1);
-  if (row == NULL) goto done;
+  if (row == NULL) return OK;
   if (small)
     snprintf(row->why, sizeof row->why, "mu is at most %.1e", mu);
   else
     snprintf(row->why, sizeof row->why,
              "no material expands across its load: no slip expected");
-done:
-  return st;
+  return OK;
 }
 
 /* ---- all ---------------------------------------------------------------- */
@@ -263,13 +251,10 @@ static int must_stay(const model *m) {
 }
 
 status reduction_choose(model *m, const mesh *msh) {
-  status st = OK;
   m->reduction.n = 0;
-  if (must_stay(m)) goto done;
+  if (must_stay(m)) return OK;
   try_average(m, msh);
-  TRY(try_thermal(m, msh));
-  TRY(reduction_try_laws(m, msh));
-  TRY(try_friction(m, msh));
-done:
-  return st;
+  PASS(try_thermal(m, msh));
+  PASS(reduction_try_laws(m, msh));
+  return try_friction(m, msh);
 }

@@ -51,18 +51,17 @@ done:
 
 /* *tried: 1 if there is a row. */
 static status try_small(model *m, const mesh *msh, int id, int *tried) {
-  status st = OK;
   material *mat = &m->materials[id];
   double rate, young = reduction_young(mat);
   *tried = 0;
   double stress = reduction_load_stress(m, msh, young);
-  if (!(stress > 0.0)) goto done;
-  TRY(uniaxial_rate(mat, (kinematics)reduction_kinematics(m, id), stress,
-                    &rate));
+  if (!(stress > 0.0)) return OK;
+  PASS(uniaxial_rate(mat, (kinematics)reduction_kinematics(m, id), stress,
+                     &rate));
   double share = rate * visco_time(m) * young / stress;
-  if (!(share <= reduction_share * m->reduction.tol)) goto done;
+  if (!(share <= reduction_share * m->reduction.tol)) return OK;
   omitted *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
-  if (row == NULL) goto done;
+  if (row == NULL) return OK;
   *tried = 1;
   if (rate > 0.0)
     snprintf(row->why, sizeof row->why,
@@ -72,8 +71,7 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
     snprintf(row->why, sizeof row->why,
              "material %s: the loads are below the threshold of %s", mat->name,
              mat->law.ops->name);
-done:
-  return st;
+  return OK;
 }
 
 /* ---- final state -----------------------------------------------------------
@@ -121,46 +119,39 @@ static void relaxed_constants(const elastic_constants *from, const double *R,
 }
 
 static status try_relaxed(model *m, int id) {
-  status st = OK;
   material *mat = &m->materials[id];
   double R[36], time, dt = damped_increment(m);
-  if (!(dt > 0.0) || mat->elastic.type != ELASTIC_ISO) goto done;
-  TRY(relaxed_law(mat, SOLID_3D, R, &time));
+  if (!(dt > 0.0) || mat->elastic.type != ELASTIC_ISO) return OK;
+  PASS(relaxed_law(mat, SOLID_3D, R, &time));
   if (!(time > 0.0) || !(time <= reduction_share * m->reduction.tol * dt))
-    goto done;
+    return OK;
   omitted *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
-  if (row == NULL) goto done;
+  if (row == NULL) return OK;
   row->time = time;
   relaxed_constants(&mat->elastic.set[0], R, &mat->elastic_aside);
-  TRY(relaxed_law(mat, (kinematics)reduction_kinematics(m, id), mat->relaxed,
-                  &time));
+  PASS(relaxed_law(mat, (kinematics)reduction_kinematics(m, id), mat->relaxed,
+                   &time));
   snprintf(row->why, sizeof row->why,
            "material %s: %s ends within %.3g, %.1e of an increment; E = %.6g, "
            "nu = %.6g replace it",
            mat->name, mat->law.ops->name, time, time / dt,
            mat->elastic_aside.constant[0], mat->elastic_aside.constant[1]);
-done:
-  return st;
+  return OK;
 }
 
 static status try_law(model *m, const mesh *msh, int id) {
-  status st = OK;
   const material *mat = &m->materials[id];
   int tried;
   if (mat->law.ops == NULL || reduction_kinematics(m, id) < 0 ||
       mat->elastic.n != 1 || law_varies(&mat->law) != 0)
-    goto done;
-  TRY(try_small(m, msh, id, &tried));
-  if (!tried) TRY(try_relaxed(m, id));
-done:
-  return st;
+    return OK;
+  PASS(try_small(m, msh, id, &tried));
+  if (!tried) PASS(try_relaxed(m, id));
+  return OK;
 }
 
 status reduction_try_laws(model *m, const mesh *msh) {
-  status st = OK;
-  if (!(m->effects & EFFECT_INELASTIC) || reduction_has_initial(m)) goto done;
-  for (int i = 0; i < m->n.material; ++i) TRY(try_law(m, msh, i));
-  TRY(reduction_try_threshold(m, msh));
-done:
-  return st;
+  if (!(m->effects & EFFECT_INELASTIC) || reduction_has_initial(m)) return OK;
+  for (int i = 0; i < m->n.material; ++i) PASS(try_law(m, msh, i));
+  return reduction_try_threshold(m, msh);
 }

@@ -26,14 +26,13 @@
 enum { SAFETY = 2 };
 
 static status new_domain(reduction *n) {
-  status st = OK;
   const model *m = n->m;
   size_t square = (size_t)(m->ns * m->ns);
-  NEW(n->kin, m->n.section);
-  NEW(n->thickness, m->n.section);
-  NEW(n->E, square * (size_t)m->n.section);
-  NEW(n->C, 36 * (size_t)m->n.section);
-  NEW(n->fixed, n->msh->dim * n->msh->n_node);
+  PASS_NEW(n->kin, m->n.section);
+  PASS_NEW(n->thickness, m->n.section);
+  PASS_NEW(n->E, square * (size_t)m->n.section);
+  PASS_NEW(n->C, 36 * (size_t)m->n.section);
+  PASS_NEW(n->fixed, n->msh->dim * n->msh->n_node);
   for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const double *C = m->materials[s->material_id].C;
@@ -50,8 +49,7 @@ static status new_domain(reduction *n) {
                   .E = n->E,
                   .C = n->C,
                   .fixed = n->fixed};
-done:
-  return st;
+  return OK;
 }
 
 status reduction_new(const model *m, const mesh *msh, reduction **out) {
@@ -138,13 +136,12 @@ static double energy_of(const reduction *n, int elem_id, const double *e,
 /* Stresses of the run into n->sigma: its thermal strains and those of the laws
  * in force carry none. */
 status reduction_stress(reduction *n, const state *s) {
-  status st = OK;
   const model *m = n->m;
   const int ns = m->ns, warm = (m->effects & EFFECT_THERMAL) != 0;
   const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
   if (warm)
-    TRY(load_temperature(m, n->msh, &m->steps[s->step_no - 1], s->t, n->T0,
-                         n->T));
+    PASS(load_temperature(m, n->msh, &m->steps[s->step_no - 1], s->t, n->T0,
+                          n->T));
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double *own = n->strain + (size_t)(ns * e);
     for (int i = 0; i < ns; ++i) own[i] = 0.0;
@@ -159,20 +156,18 @@ status reduction_stress(reduction *n, const state *s) {
   n->d.eigen = &x;
   domain_stress(&n->d, s->body.u, NULL, n->sigma);
   n->d.eigen = NULL;
-done:
-  return st;
+  return OK;
 }
 
 /* ---- the effects -------------------------------------------------------- */
 
 static status measure_thermal(reduction *n, const state *s, double *sum,
                               double *norm, double *stress) {
-  status st = OK;
   double now = 0.0, change = 0.0;
   int ns = n->m->ns;
   *stress = 0.0;
-  TRY(load_temperature(n->m, n->msh, &n->m->steps[s->step_no - 1], s->t, n->T0,
-                       n->T));
+  PASS(load_temperature(n->m, n->msh, &n->m->steps[s->step_no - 1], s->t, n->T0,
+                        n->T));
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double strain[6] = {0.0}, moved[6] = {0.0}, own, none;
     const material *mat = reduction_material(n, e);
@@ -189,8 +184,7 @@ static status measure_thermal(reduction *n, const state *s, double *sum,
   }
   *sum += sqrt(change);
   *norm = n->m->effects & EFFECT_FRICTION ? SAFETY * *sum : sqrt(now);
-done:
-  return st;
+  return OK;
 }
 
 /*
@@ -267,7 +261,6 @@ done:
 
 static status measure_inelastic(reduction *n, const state *s, int k,
                                 double *norm, double *stress) {
-  status st = OK;
   const omitted *row = &n->m->reduction.row[k];
   double now;
   int flows = n->m->steps[s->step_no - 1].kind == STEP_VISCO;
@@ -275,7 +268,7 @@ static status measure_inelastic(reduction *n, const state *s, int k,
     measure_relaxed(n, row, flows ? s->dt : 0.0, norm, stress);
     return OK;
   }
-  TRY(add_rates(n, s, row, flows ? s->dt : 0.0, &now));
+  PASS(add_rates(n, s, row, flows ? s->dt : 0.0, &now));
   if (flows) n->sum[k] += s->dt * fmax(now, n->last[k]);
   n->last[k] = now;
   *norm = SAFETY * n->sum[k];
@@ -283,8 +276,7 @@ static status measure_inelastic(reduction *n, const state *s, int k,
   for (int e = 0; e < n->msh->n_elem; ++e)
     if (reduction_is_about(n, row, e))
       *stress = fmax(*stress, SAFETY * n->flow.stress[e]);
-done:
-  return st;
+  return OK;
 }
 
 static void measure_friction(reduction *n, const state *s, double *sum,
@@ -305,29 +297,27 @@ static void measure_friction(reduction *n, const state *s, double *sum,
 }
 
 status reduction_measure(reduction *n, const state *s, omitted *rows) {
-  status st = OK;
   double size = sqrt(2.0 * fmax(s->energy.strain, 0.0));
-  TRY(reduction_stress(n, s));
+  PASS(reduction_stress(n, s));
   double scale = stress_scale(n, s);
   for (int k = 0; k < n->m->reduction.n; ++k) {
     double norm = 0.0, stress = 0.0;
     omitted *row = &rows[k];
     if (row->back) continue;
     if (row->bit == EFFECT_BIT_THERMAL)
-      TRY(measure_thermal(n, s, &n->sum[k], &norm, &stress));
+      PASS(measure_thermal(n, s, &n->sum[k], &norm, &stress));
     if (row->bit == EFFECT_BIT_INELASTIC)
-      TRY(measure_inelastic(n, s, k, &norm, &stress));
+      PASS(measure_inelastic(n, s, k, &norm, &stress));
     if (row->bit == EFFECT_BIT_FRICTION)
       measure_friction(n, s, &n->sum[k], &norm);
     double bound = reduction_part(norm, size),
            local = reduction_part(stress, scale);
-    TRY(reduction_again(n, s, k, bound, row));
+    PASS(reduction_again(n, s, k, bound, row));
     if (!(bound <= row->bound)) row->bound = bound;
     if (!(local <= row->local)) row->local = local;
     ++row->checked;
   }
-done:
-  return st;
+  return OK;
 }
 
 static int reduction_holds(const model *m, const omitted *row) {

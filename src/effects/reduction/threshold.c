@@ -153,16 +153,13 @@ static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
 }
 
 status reduction_try_threshold(model *m, const mesh *msh) {
-  status st = OK;
-  unsigned char *flows = NULL;
+  OWNED unsigned char *flows = NULL;
   int seen = 0;
-  if (!is_worth_it(m)) goto done;
-  NEW(flows, msh->n_elem);
-  TRY(run_elastic(m, msh, flows, &seen));
-  if (!seen) goto done;
-  if (m->reduction.still == NULL) NEW(m->reduction.still, msh->n_elem);
+  if (!is_worth_it(m)) return OK;
+  PASS_NEW(flows, msh->n_elem);
+  PASS(run_elastic(m, msh, flows, &seen));
+  if (!seen) return OK;
+  if (m->reduction.still == NULL) PASS_NEW(m->reduction.still, msh->n_elem);
   add_rows(m, msh, flows);
-done:
-  memory_free(flows);
-  return st;
+  return OK;
 }

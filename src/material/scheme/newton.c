@@ -105,13 +105,12 @@ static status solve_points(const scheme_call *a, point_work *r) {
 static status linear_stress(const flow *x, const flow_tangent *law,
                             const flow_state *now, double *linear,
                             double *scale) {
-  status st = OK;
   const int ns = x->ns;
   double sum = 0.0;
   for (int k = 0; k < x->n; ++k) {
     const size_t at = (size_t)ns * (size_t)k;
     flow_kind *kind = &x->kind[x->kind_id[k]];
-    TRY(flow_heat(kind, now->temperature[k]));
+    PASS(flow_heat(kind, now->temperature[k]));
     const double *E = kind->elastic.E;
     const double *D = law->elastic ? E : law->D + (size_t)ns * at;
     double step[6], change[6], whole[6];
@@ -124,8 +123,7 @@ static status linear_stress(const flow *x, const flow_tangent *law,
                            tensor_dot(ns, linear + at, linear + at));
   }
   *scale = sqrt(sum);
-done:
-  return st;
+  return OK;
 }
 
 /* Misfit of the stresses and of those of the linear law, over the scale. */

@@ -47,14 +47,13 @@ void point_step_free(point_step *l) { RELEASE(l->work, l->pivot); }
 status point_step_begin(const flow *x, const scheme_step *p, int k,
                         const flow_state *old, const flow_state *now,
                         point_step *l) {
-  status st = OK;
   const double th = p->theta;
   size_t at = (size_t)x->ns * (size_t)k;
   flow_kind *kind = &x->kind[x->kind_id[k]];
   double T = (1 - th) * old->temperature[k] + th * now->temperature[k];
-  TRY(flow_heat(kind, now->temperature[k]));
+  PASS(flow_heat(kind, now->temperature[k]));
   memcpy(l->E, kind->elastic.E, (size_t)(x->ns * x->ns) * sizeof *l->E);
-  TRY(flow_coefficients(kind, old->t + th * p->dt, T, l->value, &l->p));
+  PASS(flow_coefficients(kind, old->t + th * p->dt, T, l->value, &l->p));
   l->p.dt = p->dt;
   l->ns = x->ns;
   l->na = kind->n_alpha;
@@ -67,8 +66,7 @@ status point_step_begin(const flow *x, const scheme_step *p, int k,
   memcpy(l->old + l->ns, old->alpha + x->alpha_at[k],
          (size_t)l->na * sizeof *l->old);
   memcpy(l->y, l->old, (size_t)l->n * sizeof *l->y);
-done:
-  return st;
+  return OK;
 }
 
 /* The theta-point of y; sigma_old[ns]. */
@@ -253,22 +251,20 @@ status point_step_tangent(const scheme_step *p, point_step *l, double *D) {
 static status compliance_at(const flow *x, const scheme_step *p, int k,
                             const flow_state *old, const flow_state *now,
                             point_step *l, double *Q) {
-  status st = OK;
   const size_t at = (size_t)x->ns * (size_t)k;
-  TRY(point_step_begin(x, p, k, old, now, l));
+  PASS(point_step_begin(x, p, k, old, now, l));
   const int ns = l->ns, n = l->n;
   memset(Q, 0, (size_t)(ns * ns) * sizeof *Q);
   memcpy(l->y, now->ei + at, (size_t)ns * sizeof *l->y);
   memcpy(l->y + ns, now->alpha + x->alpha_at[k], (size_t)l->na * sizeof *l->y);
   point_step_place(p, old->sigma + at, l->y, l);
-  if (!law_flows(&l->p)) goto done;
+  if (!law_flows(&l->p)) return OK;
   point_matrix(p, NULL, l);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, ns, l->M, n, l->pivot, l->X, n) != 0)
-    FAIL(ERR_SINGULAR, "the step of an inelastic law has no solution");
+    RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
   for (int j = 0; j < ns; ++j)
     memcpy(Q + ns * j, l->X + n * j, (size_t)ns * sizeof *Q);
-done:
-  return st;
+  return OK;
 }
 
 /* R[n*n] with R R = E, symmetric and positive semidefinite. */

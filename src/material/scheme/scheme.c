@@ -54,8 +54,7 @@ static status rates(const scheme_call *a, const flow_state *s, int i,
 static status euler_advance(const scheme_call *a) {
   const double h = a->p->dt;
   PASS(rates(a, a->old, 0, h));
-  PASS(stage(a, h, (double[STAGES]){h}));
-  return OK;
+  return stage(a, h, (double[STAGES]){h});
 }
 
 static status heun_advance(const scheme_call *a) {
@@ -85,8 +84,7 @@ static status rk4_advance(const scheme_call *a) {
   PASS(stage(a, h, (double[STAGES]){0, 0, h}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 3, h / 6));
-  PASS(stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6}));
-  return OK;
+  return stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6});
 }
 
 /*

@@ -39,20 +39,18 @@ typedef struct discrete {
 } discrete;
 
 static status discrete_new(discrete *d) {
-  status st = OK;
   const exchange_problem *p = d->p;
-  NEW(d->surface.node_no, p->n);
-  NEW(d->u, p->m);
-  NEW(d->r, p->m);
-  NEW(d->gap, p->n);
-  NEW(d->slip, (size_t)p->n * (size_t)(p->dim - 1));
-  NEW(d->g, p->n);
-  NEW(d->contact, p->n);
+  PASS_NEW(d->surface.node_no, p->n);
+  PASS_NEW(d->u, p->m);
+  PASS_NEW(d->r, p->m);
+  PASS_NEW(d->gap, p->n);
+  PASS_NEW(d->slip, (size_t)p->n * (size_t)(p->dim - 1));
+  PASS_NEW(d->g, p->n);
+  PASS_NEW(d->contact, p->n);
   d->surface.dim = p->dim;
   d->surface.n = p->n;
   for (int i = 0; i < p->n; ++i) d->surface.node_no[i] = (size_t)i + 1;
-done:
-  return st;
+  return OK;
 }
 
 static void discrete_free(discrete *d) {
@@ -71,16 +69,13 @@ static void discrete_free(discrete *d) {
 /* Energy x' M x/2 of the condensed solution. */
 static status condensed_energy(const contact_problem *cp, const double *u,
                                const double *r, double *energy) {
-  status st = OK;
-  double *y = NULL;
+  OWNED double *y = NULL;
   const double *x = contact_has_stiffness(cp) ? u : r;
-  NEW(y, cp->m);
+  PASS_NEW(y, cp->m);
   contact_apply(cp, x, y);
   *energy = 0.0;
   for (int i = 0; i < cp->m; ++i) *energy += 0.5 * x[i] * y[i];
-done:
-  memory_free(y);
-  return st;
+  return OK;
 }
 
 /* The bound by the inverse of the matrix given; where that is a definite
@@ -90,21 +85,17 @@ done:
 static status bound_error(const contact_problem *cp, dense_inverse *dense,
                           const double *u, const double *r,
                           solver_error *found) {
-  status st = OK;
   inverse_energy inverse = dense_inverse_energy(dense);
   contact_problem stiff = *cp;
-  double *A = NULL;
+  OWNED double *A = NULL;
   int made = 0;
   if (!contact_has_stiffness(cp) && cp->B != NULL) {
-    NEW(A, (size_t)cp->m * (size_t)cp->m);
+    PASS_NEW(A, (size_t)cp->m * (size_t)cp->m);
     dense_inverse_fill(dense, A, &made);
     stiff.A = A;
     inverse.stiffness = made ? &stiff : NULL;
   }
-  TRY(solver_error_bound(cp, &inverse, u, r, NULL, found));
-done:
-  memory_free(A);
-  return st;
+  return solver_error_bound(cp, &inverse, u, r, NULL, found);
 }
 
 /* Of a compliance in blocks all of it, for the bound and the checks. */
@@ -257,26 +248,23 @@ static status report_ready(const discrete *d, const history_sink *sink) {
 
 static status report_solution(discrete *d, const history_sink *sink, double cpu,
                               int *unsettled) {
-  status st = OK;
   state s = state_of(d);
   const char *why = outcome_text(d->report.outcome);
   s.cpu = timer_cpu() - cpu;
   *unsettled = !s.settled;
   if (!outcome_is_fatal(d->report.outcome)) {
-    if (sink->increment != NULL) TRY(sink->increment(sink->ctx, &s));
-    goto done;
+    if (sink->increment != NULL) PASS(sink->increment(sink->ctx, &s));
+    return OK;
   }
   s.contacts.n_open = s.contacts.n_slip = s.contacts.n_stick = 0;
-  if (sink->rejected != NULL) TRY(sink->rejected(sink->ctx, &s, why));
+  if (sink->rejected != NULL) PASS(sink->rejected(sink->ctx, &s, why));
   if (d->report.outcome == STOPPED_UNFIT)
-    FAIL(ERR_SINGULAR,
-         "the method cannot treat this problem: %s; use METHOD=AUTO or "
-         "PROXIMAL",
-         d->log);
-  FAIL(ERR_SINGULAR, "no solution found: %s%s%s%s", why,
-       d->log[0] == '\0' ? "" : " (", d->log, d->log[0] == '\0' ? "" : ")");
-done:
-  return st;
+    RAISE(ERR_SINGULAR,
+          "the method cannot treat this problem: %s; use METHOD=AUTO or "
+          "PROXIMAL",
+          d->log);
+  RAISE(ERR_SINGULAR, "no solution found: %s%s%s%s", why,
+        d->log[0] == '\0' ? "" : " (", d->log, d->log[0] == '\0' ? "" : ")");
 }
 
 status condensed_run(const model *m, const exchange_problem *p,

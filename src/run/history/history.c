@@ -146,13 +146,11 @@ done:
 }
 
 static status dense_show(run *r, int increment_no) {
-  status st = OK;
   double t = next_point(r, r->old.t);
   if (r->sink->between == NULL || r->step->kind == STEP_STATIC) return OK;
   for (; isfinite(t); t = next_point(r, t))
-    TRY(show_within(r, t, increment_no));
-done:
-  return st;
+    PASS(show_within(r, t, increment_no));
+  return OK;
 }
 
 /* ---- an increment is accepted or rejected ---------------------------------
@@ -167,19 +165,17 @@ static int stress_is_due(const step *s, double t, int increment_no, int last) {
 
 /* Where an accepted increment did not converge to its tolerance. */
 static status note_misfit(run *r) {
-  status st = OK;
   char text[400];
   size_t used = strlen(r->course.note);
-  if (r->solving.report.outcome > 0) goto done;
+  if (r->solving.report.outcome > 0) return OK;
   visco_warn_stuck(r);
-  if (r->nodes.n == 0) goto done;
-  TRY(verdict_misfit(&r->problem.cp, r->surface, run_rows(r, 0, r->now.uc),
-                     run_rows(r, 1, r->now.rc), text, sizeof text));
+  if (r->nodes.n == 0) return OK;
+  PASS(verdict_misfit(&r->problem.cp, r->surface, run_rows(r, 0, r->now.uc),
+                      run_rows(r, 1, r->now.rc), text, sizeof text));
   if (text[0] != '\0')
     snprintf(r->course.note + used, sizeof r->course.note - used, "  %s\n",
              text);
-done:
-  return st;
+  return OK;
 }
 
 /* Where nodes were added in the increment. */
@@ -207,28 +203,27 @@ static void count_work(observed_work *seen) {
 
 status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
-  status st = OK;
-  TRY(dense_show(r, increment_no));
+  PASS(dense_show(r, increment_no));
   ++r->course.total_no;
   count_work(&r->solving.seen);
   r->at.last = last;
-  TRY(result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
-  TRY(estimate_increment(r));
+  PASS(
+      result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
+  PASS(estimate_increment(r));
   r->at.violated = 0;
   note_nodes(r);
-  TRY(effects_accept(r));
-  TRY(note_misfit(r));
+  PASS(effects_accept(r));
+  PASS(note_misfit(r));
   state s = loop_state(r, attempt, increment_no);
   if (!s.settled) ++r->course.unsettled;
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
   effects_show(r, &s);
-  if (r->sink->increment != NULL) TRY(r->sink->increment(r->sink->ctx, &s));
-  TRY(result_accept(r));
+  if (r->sink->increment != NULL) PASS(r->sink->increment(r->sink->ctx, &s));
+  PASS(result_accept(r));
   r->course.due =
       frequency_shows(r->step->restart.frequency, increment_no, last);
-done:
-  return st;
+  return OK;
 }
 
 int loop_cut_helps(const run *r) {
@@ -251,7 +246,6 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why) {
 }
 
 status loop_no_equilibrium(run *r) {
-  status st = OK;
   char why[1024] = "";
   const char *tried = contact_solver_log(r->solver);
   verdict_scene scene = {.m = r->m,
@@ -264,20 +258,19 @@ status loop_no_equilibrium(run *r) {
                          .r = run_rows(r, 1, r->now.rc),
                          .c = r->c};
   if (r->solving.report.outcome == STOPPED_UNFIT)
-    FAIL(ERR_SINGULAR,
-         "step %d, time %g: the method cannot treat this problem: %s; use "
-         "METHOD=AUTO, NEWTON, AUGLAG or SOR",
-         run_step_id(r) + 1, r->now.t, contact_solver_log(r->solver));
-  TRY(verdict_text(&scene, why, sizeof why));
-  FAIL(ERR_SINGULAR,
-       "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
-       "written is that of time %g",
-       run_step_id(r) + 1, r->now.t, why, why[0] == '\0' ? "" : "; ",
-       tried[0] == '\0' ? "" : "tried ",
-       tried[0] == '\0' ? outcome_text(r->solving.report.outcome) : tried,
-       r->old.t);
-done:
-  return st;
+    RAISE(ERR_SINGULAR,
+          "step %d, time %g: the method cannot treat this problem: %s; use "
+          "METHOD=AUTO, NEWTON, AUGLAG or SOR",
+          run_step_id(r) + 1, r->now.t, contact_solver_log(r->solver));
+  PASS(verdict_text(&scene, why, sizeof why));
+  RAISE(ERR_SINGULAR,
+        "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
+        "written is that of time %g",
+        run_step_id(r) + 1, r->now.t, why, why[0] == '\0' ? "" : "; ",
+        tried[0] == '\0' ? "" : "tried ",
+        tried[0] == '\0' ? outcome_text(r->solving.report.outcome) : tried,
+        r->old.t);
+  return OK;
 }
 
 /* ---- before the increments of a step: effects, sudden loads of *VISCO -----
@@ -321,30 +314,24 @@ static int has_law(const run *r) {
  * *VISCO step: an increment without length of its own.
  */
 static status start_visco(run *r, int *increment_no) {
-  status st = OK;
   double cpu = timer_cpu();
   if (r->step->kind != STEP_VISCO) return OK;
   if (!has_law(r)) return OK;
-  TRY(increment_begin(r, r->step->start));
+  PASS(increment_begin(r, r->step->start));
   if (!starts_smoothly(r)) {
-    TRY(increment_solve(r, r->step->start));
+    PASS(increment_solve(r, r->step->start));
     if (outcome_is_fatal(r->solving.report.outcome))
-      TRY(loop_no_equilibrium(r));
+      PASS(loop_no_equilibrium(r));
     if (!same_vector(r->n_dof, r->now.u, r->old.u))
-      TRY(loop_accept(r, 1, ++*increment_no, 0, cpu));
+      PASS(loop_accept(r, 1, ++*increment_no, 0, cpu));
   }
-  TRY(visco_begin_step(r));
-done:
-  return st;
+  return visco_begin_step(r);
 }
 
 static status start_step(run *r) {
-  status st = OK;
   visco_rest(r);
-  TRY(effects_start(r));
-  TRY(start_visco(r, &r->at.increment_no));
-done:
-  return st;
+  PASS(effects_start(r));
+  return start_visco(r, &r->at.increment_no);
 }
 
 /* ---- between two attempts ------------------------------------------------ */
@@ -364,21 +351,18 @@ static status checkpoint(run *r) {
 }
 
 static status stop(run *r, status why) {
-  status st = OK;
   const progress *p = &r->at;
   const char *by = interrupt_name();
   const char *on =
       r->sink->checkpoint != NULL ? "; protis --restart goes on" : "";
   if (r->course.total_no == 0)
-    FAIL(why, "interrupted by %s before the first increment", by);
-  if (!r->course.kept) TRY(checkpoint(r));
+    RAISE(why, "interrupted by %s before the first increment", by);
+  if (!r->course.kept) PASS(checkpoint(r));
   if (p->increment_no == 0)
-    FAIL(why, "interrupted by %s before step %d, at time %g%s", by,
-         p->step_id + 1, r->old.t, on);
-  FAIL(why, "interrupted by %s after step %d, increment %d, time %g%s", by,
-       p->step_id + 1, p->increment_no, r->old.t, on);
-done:
-  return st;
+    RAISE(why, "interrupted by %s before step %d, at time %g%s", by,
+          p->step_id + 1, r->old.t, on);
+  RAISE(why, "interrupted by %s after step %d, increment %d, time %g%s", by,
+        p->step_id + 1, p->increment_no, r->old.t, on);
 }
 
 /* The checkpoint that is due between two attempts; ends the run on request. */
@@ -417,7 +401,6 @@ static int can_cut(const run *r) {
 
 /* The next piece of n increments was accepted. */
 static status accept_piece(run *r, long n, double cpu) {
-  status st = OK;
   progress *p = &r->at;
   int attempt = p->attempt, end = p->part + 1 == 1L << p->level;
   int last = p->i == n - 1 && end;
@@ -428,15 +411,12 @@ static status accept_piece(run *r, long n, double cpu) {
     ++p->i;
     p->part = p->level = p->cut = 0;
   }
-  TRY(loop_accept(r, attempt, p->increment_no, last, cpu));
-done:
-  return st;
+  return loop_accept(r, attempt, p->increment_no, last, cpu);
 }
 
 /* End of the next piece of n increments: the longest that starts here and is
  * stable. */
 static status choose_piece(run *r, long n, double *t) {
-  status st = OK;
   progress *p = &r->at;
   int deeper;
   while (p->level > p->cut && p->part % 2 == 0) {
@@ -444,69 +424,61 @@ static status choose_piece(run *r, long n, double *t) {
     --p->level;
   }
   *t = piece_end(r->step, n, p->i, p->part + 1, p->level);
-  TRY(visco_level(r, *t - r->old.t, &deeper));
+  PASS(visco_level(r, *t - r->old.t, &deeper));
   p->part <<= deeper;
   p->level += deeper;
   *t = piece_end(r->step, n, p->i, p->part + 1, p->level);
-done:
-  return st;
+  return OK;
 }
 
 /* One attempt at the next piece of n increments: accepted, or cut into
  * halves. */
 static status attempt_piece(run *r, long n) {
-  status st = OK;
   progress *p = &r->at;
   double cpu = timer_cpu(), t;
-  TRY(choose_piece(r, n, &t));
-  TRY(effects_attempt(r, t));
-  TRY(loop_solve(r, t));
+  PASS(choose_piece(r, n, &t));
+  PASS(effects_attempt(r, t));
+  PASS(loop_solve(r, t));
   int settled = r->solving.report.outcome > 0, finer = !settled && can_cut(r);
   if (finer || (!settled && outcome_is_fatal(r->solving.report.outcome)))
-    TRY(loop_reject(r, p->attempt, p->increment_no + 1,
-                    outcome_text(r->solving.report.outcome)));
+    PASS(loop_reject(r, p->attempt, p->increment_no + 1,
+                     outcome_text(r->solving.report.outcome)));
   if (finer) {
     p->part *= 2;
     p->cut = ++p->level;
     ++p->attempt;
-    goto done;
+    return OK;
   }
   if (!settled && outcome_is_fatal(r->solving.report.outcome))
-    TRY(loop_no_equilibrium(r));
-  TRY(effects_examine(r, t));
-  TRY(accept_piece(r, n, cpu));
-done:
-  return st;
+    PASS(loop_no_equilibrium(r));
+  PASS(effects_examine(r, t));
+  return accept_piece(r, n, cpu);
 }
 
 static status run_fixed(run *r) {
-  status st = OK;
   long n = increments_of(r->step);
   while (r->at.i < n) {
-    TRY(loop_pause(r));
-    TRY(attempt_piece(r, n));
+    PASS(loop_pause(r));
+    PASS(attempt_piece(r, n));
   }
-done:
-  return st;
+  return OK;
 }
 
 static status run_step(run *r) {
-  status st = OK;
   int made = 0;
-  TRY(run_prepare(r));
+  PASS(run_prepare(r));
   if (r->course.from != NULL) {
-    TRY(run_keep(r, r->course.from));
+    PASS(run_keep(r, r->course.from));
     r->course.from = NULL;
   } else {
     r->at =
         (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
-    TRY(start_step(r));
+    PASS(start_step(r));
   }
-  TRY(effects_make_step(r, &made));
-  if (!made) TRY(run_fixed(r));
-  if (r->course.due) TRY(checkpoint(r));
-done:
-  return st;
+  PASS(effects_make_step(r, &made));
+  if (!made) PASS(run_fixed(r));
+  if (r->course.due) PASS(checkpoint(r));
+  return OK;
 }
 
 /* The step in progress. */

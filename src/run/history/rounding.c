@@ -36,19 +36,17 @@ static int leaves_none(const rounding_loss *loss, double share,
 }
 
 static status check(const run *r, double share, const condensed *c) {
-  status st = OK;
   const rounding_loss *loss = &r->errors.rounding;
-  if (!leaves_none(loss, share, c)) goto done;
-  FAIL(ERR_SINGULAR,
-       "step %d, time %g: rounding leaves no correct digit: the energy "
-       "norm is wrong by about %.1g of itself, stresses by %.1g and "
-       "displacements by %.1g of the largest (condition %.1e); contrasts of "
-       "stiffness, slivers, nu near 1/2, weak supports, creep strains and "
-       "motions far above the elastic ones lose digits",
-       run_step_id(r) + 1, r->now.t, loss->energy, loss->stress, loss->u,
-       condensed_condition(c));
-done:
-  return st;
+  if (!leaves_none(loss, share, c)) return OK;
+  RAISE(ERR_SINGULAR,
+        "step %d, time %g: rounding leaves no correct digit: the energy "
+        "norm is wrong by about %.1g of itself, stresses by %.1g and "
+        "displacements by %.1g of the largest (condition %.1e); contrasts of "
+        "stiffness, slivers, nu near 1/2, weak supports, creep strains and "
+        "motions far above the elastic ones lose digits",
+        run_step_id(r) + 1, r->now.t, loss->energy, loss->stress, loss->u,
+        condensed_condition(c));
+  return OK;
 }
 
 /* Arrays of a body whose solution is checked. */
@@ -61,15 +59,13 @@ typedef struct misfit {
 } misfit;
 
 static status misfit_new(const run *r, misfit *x) {
-  status st = OK;
   x->c = r->elastic.c != NULL ? r->elastic.c : r->c;
   x->n_stress = (size_t)r->m->ns * (size_t)r->msh->n_elem;
-  NEW(x->stress, x->n_stress);
-  NEW(x->rest, r->n_dof);
-  NEW(x->w, r->n_dof);
-  NEW(x->rc, r->problem.cp.m);
-done:
-  return st;
+  PASS_NEW(x->stress, x->n_stress);
+  PASS_NEW(x->rest, r->n_dof);
+  PASS_NEW(x->w, r->n_dof);
+  PASS_NEW(x->rc, r->problem.cp.m);
+  return OK;
 }
 
 static void misfit_free(misfit *x) {
@@ -191,21 +187,17 @@ static void find_held(const run *r, const contact_status *touch,
 
 /* Again with the body held by contact, where supports are weak. */
 static status find_adjacent_contact(run *r, misfit *x) {
-  status st = OK;
-  contact_status *touch = NULL;
-  unsigned char *held = NULL;
+  OWNED contact_status *touch = NULL;
+  OWNED unsigned char *held = NULL;
   double square = 0.0;
-  NEW(touch, r->problem.cp.n);
-  NEW(held, r->problem.cp.m);
+  PASS_NEW(touch, r->problem.cp.n);
+  PASS_NEW(held, r->problem.cp.m);
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
                    run_rows(r, 1, r->now.rc), touch);
   find_held(r, touch, held);
-  TRY(condensed_misfit_held(x->c, x->rest, x->rc, held, x->w, &square));
+  PASS(condensed_misfit_held(x->c, x->rest, x->rc, held, x->w, &square));
   if (square < HUGE_VAL) take_loss(r, x, square);
-done:
-  memory_free(touch);
-  memory_free(held);
-  return st;
+  return OK;
 }
 
 /* The loads now over the largest of the step: rounding errors do not grow with
@@ -247,20 +239,18 @@ done:
 
 /* A body moved so far that contact is decided by rounding. */
 static status check_touch(const run *r) {
-  status st = OK;
   const double u = largest_entry(r->n_dof, r->now.u);
-  if (u <= FAR * r->msh->size || !rounding_is_all(r)) goto done;
+  if (u <= FAR * r->msh->size || !rounding_is_all(r)) return OK;
   for (int i = 0; i < r->nodes.n; ++i) {
     const double gap = r->problem.gap[i] - r->now.uc[r->msh->dim * i];
     if (fabs(gap) <= 16 * DBL_EPSILON * u)
-      FAIL(ERR_SINGULAR,
-           "step %d, time %g: rounding leaves no correct digit: after a "
-           "motion of %.1g a gap of %.1g may be open or closed; start nearer "
-           "to the obstacle",
-           run_step_id(r) + 1, r->now.t, u, gap);
+      RAISE(ERR_SINGULAR,
+            "step %d, time %g: rounding leaves no correct digit: after a "
+            "motion of %.1g a gap of %.1g may be open or closed; start nearer "
+            "to the obstacle",
+            run_step_id(r) + 1, r->now.t, u, gap);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* What the motion would store as a strain of the stiffest element, or the
@@ -273,12 +263,11 @@ static double farthest_work(const run *r) {
 
 /* Largest stress next to each contact node times its area, own[n], N. */
 static status find_own(const run *r, double *own) {
-  status st = OK;
   const mesh *m = r->msh;
   const contact_surface *s = r->surface;
-  double *sigma = NULL, *most = NULL;
-  NEW(sigma, (size_t)r->m->ns * (size_t)m->n_elem);
-  NEW(most, m->n_node);
+  OWNED double *sigma = NULL, *most = NULL;
+  PASS_NEW(sigma, (size_t)r->m->ns * (size_t)m->n_elem);
+  PASS_NEW(most, m->n_node);
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < m->n_elem; ++e) {
     const size_t ns = (size_t)r->m->ns;
@@ -292,26 +281,20 @@ static status find_own(const run *r, double *own) {
     const int i = r->nodes.reach.in != NULL ? r->nodes.reach.in[k] : k;
     own[k] = most[s->node_id[i]] * s->area[i];
   }
-done:
-  memory_free(sigma);
-  memory_free(most);
-  return st;
+  return OK;
 }
 
 status rounding_hidden(const run *r, double *part) {
-  status st = OK;
-  double *own = NULL;
+  OWNED double *own = NULL;
   *part = 0.0;
   if (r->nodes.n == 0 || r->solving.report.outcome <= 0) return OK;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
   *part = contact_hidden(&r->problem.cp, u, rc, NULL);
-  if (!(*part > LAST_DIGIT)) goto done;
-  NEW(own, r->problem.cp.n);
-  TRY(find_own(r, own));
+  if (!(*part > LAST_DIGIT)) return OK;
+  PASS_NEW(own, r->problem.cp.n);
+  PASS(find_own(r, own));
   *part = contact_hidden(&r->problem.cp, u, rc, own);
-done:
-  memory_free(own);
-  return st;
+  return OK;
 }
 
 static int is_doubtful(const run *r) {

@@ -49,7 +49,6 @@ static void list_own(run *b, own_array list[OWN]) {
 }
 
 static status copy_arrays(run *b) {
-  status st = OK;
   own_array list[OWN];
   const double *from[OWN];
   list_own(b, list);
@@ -59,11 +58,10 @@ static status copy_arrays(run *b) {
   }
   for (int i = 0; i < OWN; ++i) {
     if (from[i] == NULL) continue;
-    NEW(*list[i].at, list[i].n);
+    PASS_NEW(*list[i].at, list[i].n);
     memcpy(*list[i].at, from[i], list[i].n * sizeof **list[i].at);
   }
-done:
-  return st;
+  return OK;
 }
 
 void shadow_free(shadow *b) {
@@ -97,7 +95,6 @@ done:
 }
 
 static status own_points(const run *r, shadow *b) {
-  status st = OK;
   visco *v = &b->v;
   if (r->strains.visco == NULL) return OK;
   *v = *r->strains.visco;
@@ -106,17 +103,15 @@ static status own_points(const run *r, shadow *b) {
   for (int i = 0; i < SLOTS; ++i) v->slot[i] = (matrices){0};
   v->fresh = (matrices){0};
   b->r.strains.visco = v;
-  TRY(flow_state_new(&v->x, &v->now));
+  PASS(flow_state_new(&v->x, &v->now));
   flow_state_copy(&v->x, &r->strains.visco->old, &v->now);
-done:
-  return st;
+  return OK;
 }
 
 /* *out is valid (free it) also after a failure. */
 static status shadow_new(const run *r, shadow **out) {
-  status st = OK;
   shadow *b = NULL;
-  NEW(b, 1);
+  PASS_NEW(b, 1);
   *out = b;
   run *own = &b->r;
   *own = *r;
@@ -129,24 +124,19 @@ static status shadow_new(const run *r, shadow **out) {
   if (r->body.d.eigen != NULL) own->body.d.eigen = &own->strains.eigen;
   own->effects.n = 0;
   own->body.moduli.n_own = 0; /* not owned yet */
-  TRY(copy_arrays(own));
-  TRY(own_points(r, b));
-  TRY(own_moduli(r, own));
-  TRY(effects_copy(r, own));
-done:
-  return st;
+  PASS(copy_arrays(own));
+  PASS(own_points(r, b));
+  PASS(own_moduli(r, own));
+  return effects_copy(r, own);
 }
 
 static status solve(run *r, run *b, double t) {
-  status st = OK;
   if (r->strains.visco != NULL && r->step->kind == STEP_VISCO)
-    TRY(visco_between(r, t, &b->strains.visco->now,
-                      &b->strains.visco->result.dissipated));
-  TRY(increment_solve(b, t));
+    PASS(visco_between(r, t, &b->strains.visco->now,
+                       &b->strains.visco->result.dissipated));
+  PASS(increment_solve(b, t));
   if (b->strains.visco != NULL) visco_take(b);
-  TRY(result_evaluate(b, 1));
-done:
-  return st;
+  return result_evaluate(b, 1);
 }
 
 status shadow_at(run *r, double t, shadow **out) {
@@ -165,16 +155,13 @@ done:
 }
 
 static status solve_with(run *r, run *b, const double *more) {
-  status st = OK;
   if (b->strains.visco != NULL)
     flow_state_copy(&b->strains.visco->x, &r->strains.visco->now,
                     &b->strains.visco->now);
-  TRY(increment_begin(b, r->now.t));
+  PASS(increment_begin(b, r->now.t));
   for (size_t i = 0; i < b->n_dof; ++i) b->now.F[i] += more[i];
-  TRY(run_use(b, &b->elastic));
-  TRY(increment_equilibrium(b, strains_load(b)));
-done:
-  return st;
+  PASS(run_use(b, &b->elastic));
+  return increment_equilibrium(b, strains_load(b));
 }
 
 status shadow_with(void *run_, const double *more, double *u, double *rc,

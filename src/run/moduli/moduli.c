@@ -28,7 +28,6 @@ static void put_entry(moduli *x, const model *m, int i, const double C[36]) {
 /* Entry n_section + k at the temperature T; 1 in *changed if it is new. */
 static status heat_entry(moduli *x, const model *m, int k, double T,
                          int *changed) {
-  status st = OK;
   const int i = x->n - x->n_own + k, e = x->elem_id[k];
   const material *mat = material_of(m, m->elem_section[e]);
   double C[36] = {0};
@@ -36,22 +35,20 @@ static status heat_entry(moduli *x, const model *m, int k, double T,
   const char *wrong = elastic_at(&mat->elastic, T, C, text, (int)sizeof text);
   x->at[k] = T;
   if (wrong != NULL)
-    FAIL(ERR_DECK, "material %s at the temperature %g: %s", mat->name, T,
-         wrong);
-  if (memcmp(C, x->C + 36 * (size_t)i, sizeof C) == 0) goto done;
+    RAISE(ERR_DECK, "material %s at the temperature %g: %s", mat->name, T,
+          wrong);
+  if (memcmp(C, x->C + 36 * (size_t)i, sizeof C) == 0) return OK;
   put_entry(x, m, i, C);
   *changed = 1;
-done:
-  return st;
+  return OK;
 }
 
 /* Elements that follow their temperature get entries behind the sections. */
 static status own_entries(moduli *x, const model *m, const mesh *msh) {
-  status st = OK;
   int n = 0;
-  NEW(x->section_id, msh->n_elem);
-  NEW(x->elem_id, x->n_own);
-  NEW(x->at, x->n_own);
+  PASS_NEW(x->section_id, msh->n_elem);
+  PASS_NEW(x->elem_id, x->n_own);
+  PASS_NEW(x->at, x->n_own);
   for (int e = 0; e < msh->n_elem; ++e) {
     x->section_id[e] = m->elem_section[e];
     if (!moduli_follows(m, e)) continue;
@@ -62,33 +59,30 @@ static status own_entries(moduli *x, const model *m, const mesh *msh) {
     x->section_id[e] = own;
     x->elem_id[n++] = e;
   }
-done:
-  return st;
+  return OK;
 }
 
 status moduli_new(const model *m, const mesh *msh, const double *T, moduli *x) {
-  status st = OK;
   int changed = 0;
   for (int e = 0; e < msh->n_elem && T != NULL; ++e)
     x->n_own += moduli_follows(m, e);
   x->n = m->n.section + x->n_own;
-  NEW(x->origin, x->n);
-  NEW(x->kin, x->n);
-  NEW(x->thickness, x->n);
-  NEW(x->E, (size_t)(m->ns * m->ns) * (size_t)x->n);
-  NEW(x->C, 36 * (size_t)x->n);
+  PASS_NEW(x->origin, x->n);
+  PASS_NEW(x->kin, x->n);
+  PASS_NEW(x->thickness, x->n);
+  PASS_NEW(x->E, (size_t)(m->ns * m->ns) * (size_t)x->n);
+  PASS_NEW(x->C, 36 * (size_t)x->n);
   for (int i = 0; i < m->n.section; ++i) {
     x->origin[i] = i;
     x->kin[i] = (kinematics)m->sections[i].kin;
     x->thickness[i] = m->sections[i].thickness;
     put_entry(x, m, i, material_of(m, i)->C);
   }
-  if (x->n_own == 0) goto done;
-  TRY(own_entries(x, m, msh));
+  if (x->n_own == 0) return OK;
+  PASS(own_entries(x, m, msh));
   for (int k = 0; k < x->n_own; ++k)
-    TRY(heat_entry(x, m, k, T[x->elem_id[k]], &changed));
-done:
-  return st;
+    PASS(heat_entry(x, m, k, T[x->elem_id[k]], &changed));
+  return OK;
 }
 
 void moduli_free(moduli *x) {
@@ -104,13 +98,11 @@ void moduli_free(moduli *x) {
 }
 
 status moduli_heat(moduli *x, const model *m, const double *T, int *changed) {
-  status st = OK;
   *changed = 0;
   for (int k = 0; k < x->n_own; ++k)
     if (T[x->elem_id[k]] != x->at[k])
-      TRY(heat_entry(x, m, k, T[x->elem_id[k]], changed));
-done:
-  return st;
+      PASS(heat_entry(x, m, k, T[x->elem_id[k]], changed));
+  return OK;
 }
 
 void moduli_domain(const moduli *x, const model *m, domain *d) {

@@ -14,59 +14,51 @@ static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh */
 /* Items of a node in a dataset of n numbers: at least dim of them. */
 static status width_of(const hdf5_source *s, const char *name, long n,
                        const mesh *msh, size_t *width) {
-  status st = OK;
   *width = (size_t)n / (size_t)msh->n_node;
   if (n % msh->n_node != 0 || *width < (size_t)msh->dim)
-    FAIL(ERR_DECK,
-         "%s has another mesh: %s has %ld numbers, which does not fit %d nodes "
-         "in %d-D",
-         s->path, name, n, msh->n_node, msh->dim);
-done:
-  return st;
+    RAISE(
+        ERR_DECK,
+        "%s has another mesh: %s has %ld numbers, which does not fit %d nodes "
+        "in %d-D",
+        s->path, name, n, msh->n_node, msh->dim);
+  return OK;
 }
 
 static status check_mesh(const hdf5_source *s, const mesh *msh) {
-  status st = OK;
   static const char name[] = "/mesh/nodes";
-  double *x = NULL;
+  OWNED double *x = NULL;
   size_t width, dim = (size_t)msh->dim;
   long n = 0;
-  TRY(source_reals(s, name, 0, 3L * msh->n_node, &n, &x));
-  TRY(width_of(s, name, n, msh, &width));
+  PASS(source_reals(s, name, 0, 3L * msh->n_node, &n, &x));
+  PASS(width_of(s, name, n, msh, &width));
   for (size_t i = 0; i < (size_t)msh->n_node; ++i)
     for (size_t c = 0; c < width; ++c) {
       double here = c < dim ? msh->x[dim * i + c] : 0.0;
       if (fabs(x[width * i + c] - here) > SAME_PLACE * msh->size)
-        FAIL(ERR_DECK,
-             "%s has another mesh: node %zu is at %c = %.9g there and %.9g "
-             "here",
-             s->path, msh->node_no[i], "xyz"[c < 3 ? c : 2], x[width * i + c],
-             here);
+        RAISE(ERR_DECK,
+              "%s has another mesh: node %zu is at %c = %.9g there and %.9g "
+              "here",
+              s->path, msh->node_no[i], "xyz"[c < 3 ? c : 2], x[width * i + c],
+              here);
     }
-done:
-  memory_free(x);
-  return st;
+  return OK;
 }
 
 static status read_last(const hdf5_source *s, const mesh *msh, double *u,
                         double *t) {
-  status st = OK;
   char name[64];
-  double *time = NULL, *all = NULL;
+  OWNED double *time = NULL, *all = NULL;
   size_t width, dim = (size_t)msh->dim;
   long n = 0, items = 0;
-  TRY(source_reals(s, "/fields/time", 0, MOST_ITEMS, &n, &time));
-  if (n < 1) FAIL(ERR_DECK, "%s has no record of fields", s->path);
+  PASS(source_reals(s, "/fields/time", 0, MOST_ITEMS, &n, &time));
+  if (n < 1) RAISE(ERR_DECK, "%s has no record of fields", s->path);
   *t = time[n - 1];
   snprintf(name, sizeof name, "/fields/u/%05ld", n);
-  TRY(source_reals(s, name, 0, 3L * msh->n_node, &items, &all));
-  TRY(width_of(s, name, items, msh, &width));
+  PASS(source_reals(s, name, 0, 3L * msh->n_node, &items, &all));
+  PASS(width_of(s, name, items, msh, &width));
   for (size_t i = 0; i < (size_t)msh->n_node; ++i)
     for (size_t c = 0; c < dim; ++c) u[dim * i + c] = all[width * i + c];
-done:
-  memory_free(time);
-  memory_free(all);
-  return st;
+  return OK;
 }
 
 status end_state_read(const char *path, const mesh *msh, const place *at,

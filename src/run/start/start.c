@@ -10,11 +10,9 @@
 #include <string.h>
 
 status start_report_new(const mesh *msh, start_report *report) {
-  status st = OK;
-  NEW(report->defect, msh->n_node);
-  NEW(report->kind, msh->n_node);
-done:
-  return st;
+  PASS_NEW(report->defect, msh->n_node);
+  PASS_NEW(report->kind, msh->n_node);
+  return OK;
 }
 
 void start_report_free(start_report *report) {
@@ -25,7 +23,6 @@ void start_report_free(start_report *report) {
 
 static status set_line(const model *m, const mesh *msh, const initial *line,
                        double *u) {
-  status st = OK;
   const mesh_group *g = &msh->group[line->group_id];
   size_t dim = (size_t)msh->dim;
   for (int k = 0; k < g->n_node; ++k) {
@@ -40,24 +37,21 @@ static status set_line(const model *m, const mesh *msh, const initial *line,
                 "%g)",
                 line->component + 1, value, msh->node_no[node], x[0], x[1],
                 x[2]);
-    FAIL(ERR_DECK, "an initial displacement is no number");
+    RAISE(ERR_DECK, "an initial displacement is no number");
   }
-done:
-  return st;
+  return OK;
 }
 
 status start_displacements(const model *m, const mesh *msh, double *u,
                            start_report *report) {
-  status st = OK;
   const start_card *asked = &m->initial.start;
   if (asked->file != NULL) {
-    TRY(end_state_read(asked->file, msh, &asked->file_at, m->log, u,
-                       &report->source_time));
+    PASS(end_state_read(asked->file, msh, &asked->file_at, m->log, u,
+                        &report->source_time));
     report->source = asked->file_name;
   }
   for (int i = 0; i < m->n.initial; ++i)
     if (m->initial.lines[i].type == INITIAL_DISPLACEMENT)
-      TRY(set_line(m, msh, &m->initial.lines[i], u));
-done:
-  return st;
+      PASS(set_line(m, msh, &m->initial.lines[i], u));
+  return OK;
 }
