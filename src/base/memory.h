@@ -57,6 +57,8 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 
 /* OWNED double *a = NULL: freed where the name ends, on each return. */
 #define OWNED __attribute__((cleanup(memory_leave)))
+/* The same by a function of a pointer to the local. */
+#define ENDS_BY(function) __attribute__((cleanup(function)))
 
 /* From here on all blocks of SuiteSparse come from here too. Called before
  * its first use; further calls change nothing. */

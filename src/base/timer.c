@@ -73,6 +73,15 @@ void timer_leave(stage s) {
   --depth;
 }
 
+stage timer_begin(stage s) {
+  if (s != STAGE_NONE) timer_enter(s);
+  return s;
+}
+
+void timer_end(const stage *s) {
+  if (*s != STAGE_NONE) timer_leave(*s);
+}
+
 stage_cost timer_cost(stage s) {
   if (depth > 0 && open_stage[depth - 1] == s) charge();
   return cost[s];

@@ -66,7 +66,13 @@ void timer_enter(stage s);
 /* The same for a shadow run: stages entered before it is left are part of it,
  * their own costs and calls are not counted. */
 void timer_enter_whole(stage s);
-void timer_leave(stage s);       /* must match the last timer_enter */
+void timer_leave(stage s); /* must match the last timer_enter */
+/* TIMED(s): stage s, none if STAGE_NONE, from here to the end of the block. */
+#define TIMED(s)                                                   \
+  const stage timed_ __attribute__((cleanup(timer_end), unused)) = \
+      timer_begin(s)
+stage timer_begin(stage s);
+void timer_end(const stage *s);
 stage_cost timer_cost(stage s);  /* so far, running stages included */
 const char *timer_name(stage s); /* NULL: one that has not been named */
 /* Stage number k, from 0, of those that are not listed; name is borrowed. */

@@ -192,26 +192,20 @@ static void set_problem(run *r) {
 }
 
 static status load_at(run *r, double t) {
-  status st = OK;
-  timer_enter(STAGE_LOAD);
-  st = load_forces(r->m, r->msh, r->step, t, r->now.F);
-  if (st == OK)
-    st = load_prescribed(r->m, r->msh, r->step, t, r->loads.start, r->loads.ud);
-  timer_leave(STAGE_LOAD);
-  return st;
+  TIMED(STAGE_LOAD);
+  PASS(load_forces(r->m, r->msh, r->step, t, r->now.F));
+  return load_prescribed(r->m, r->msh, r->step, t, r->loads.start, r->loads.ud);
 }
 
 static status pose_contact(run *r, double t) {
-  status st = OK;
   timer_enter(STAGE_SURFACE);
-  st = surface_gap(r->surface, &r->faces.input, t, r->problem.gap,
-                   r->problem.side_gap);
+  status st = surface_gap(r->surface, &r->faces.input, t, r->problem.gap,
+                          r->problem.side_gap);
   timer_leave(STAGE_SURFACE);
-  TRY(st);
-  TRY(effects_pose(r, t));
+  PASS(st);
+  PASS(effects_pose(r, t));
   set_problem(r);
-done:
-  return st;
+  return OK;
 }
 
 /* Condensed load and contact problem under the forces F. */

@@ -84,24 +84,20 @@ static status initial_state(const run *r, visco *v) {
 }
 
 status visco_new(run *r) {
-  status st = OK;
-  int *kind_of = NULL;
+  OWNED int *kind_of = NULL;
   visco *v = NULL;
-  timer_enter(STAGE_INELASTIC);
-  NEW(v, 1);
+  TIMED(STAGE_INELASTIC);
+  PASS_NEW(v, 1);
   r->strains.visco = v;
-  NEW(kind_of, r->m->n.section);
-  TRY(new_kinds(r, &v->x, kind_of));
-  TRY(new_points(r, v, kind_of));
-  TRY(flow_state_new(&v->x, &v->old));
-  TRY(flow_state_new(&v->x, &v->now));
-  TRY(initial_state(r, v));
-  TRY(scheme_work_new(&v->work));
-  NEW(v->stress, (size_t)r->m->ns * (size_t)r->strains.eigen.n);
-done:
-  timer_leave(STAGE_INELASTIC);
-  memory_free(kind_of);
-  return st;
+  PASS_NEW(kind_of, r->m->n.section);
+  PASS(new_kinds(r, &v->x, kind_of));
+  PASS(new_points(r, v, kind_of));
+  PASS(flow_state_new(&v->x, &v->old));
+  PASS(flow_state_new(&v->x, &v->now));
+  PASS(initial_state(r, v));
+  PASS(scheme_work_new(&v->work));
+  PASS_NEW(v->stress, (size_t)r->m->ns * (size_t)r->strains.eigen.n);
+  return OK;
 }
 
 void visco_free(visco *v) {

@@ -19,7 +19,7 @@ int run_finds_mesh_error(const run *r) {
  * known: r->result.stress is that of r->now already. */
 static void find_reactions(run *r, int known) {
   double *reaction = r->now.reaction;
-  timer_enter(STAGE_REACTION);
+  TIMED(STAGE_REACTION);
   if (!known)
     domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
   domain_internal_force(&r->body.d, r->result.stress, reaction);
@@ -28,16 +28,13 @@ static void find_reactions(run *r, int known) {
   ties_share(&r->body.ties, reaction);
   for (size_t i = 0; i < r->n_dof; ++i)
     if (!r->body.fixed[i]) reaction[i] = 0.0;
-  timer_leave(STAGE_REACTION);
 }
 
 /* Stresses that an output or an error estimate needs. */
 static void find_stresses(run *r, int shown) {
   stage s = run_finds_mesh_error(r) ? STAGE_MESH_ERROR : STAGE_REFERENCE;
-  if (shown) s = STAGE_STRESS;
-  timer_enter(s);
+  TIMED(shown ? STAGE_STRESS : s);
   domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
-  timer_leave(s);
 }
 
 double run_motion_over(const run *r, int k) {

@@ -390,7 +390,7 @@ run *shadow_run(shadow *b);
 /* what_if.solve of the increment in r->now. */
 status shadow_with(void *run, const double *more, double *u, double *rc,
                    int *solved);
-void shadow_free(shadow *b); /* accepts NULL */
+void shadow_leave(shadow **b); /* frees it; accepts NULL */
 
 /* Displacement of the obstacle at a contact unknown since 0 s, m. */
 static inline double run_drift(const equilibrium *e, int k) {

@@ -164,7 +164,7 @@ void strains_work(run *r, energies *e) {
   const int known = v != NULL && v->sums.known;
   double held = 0.0;
   if (r->strains.eigen.n == 0) return;
-  timer_enter(STAGE_ENERGY);
+  TIMED(STAGE_ENERGY);
   if (known) {
     e->thermal += v->sums.thermal;
     e->inelastic += v->sums.inelastic;
@@ -174,7 +174,6 @@ void strains_work(run *r, energies *e) {
     items_work(r, 0, r->strains.eigen.n, e, &held);
   }
   e->largest = fmax(e->largest, held);
-  timer_leave(STAGE_ENERGY);
 }
 
 double strains_energy(const run *r) {

@@ -75,12 +75,11 @@ void visco_rest(run *r) {
 status visco_begin_step(run *r) {
   visco *v = r->strains.visco;
   if (v == NULL) return OK;
-  timer_enter(STAGE_INELASTIC);
+  TIMED(STAGE_INELASTIC);
   visco_temperatures(r, &r->old, &v->old);
   visco_strains(r, &r->old, &v->old);
   v->old.t = r->old.t;
   v->sums.known = 0;
-  timer_leave(STAGE_INELASTIC);
   return OK;
 }
 
@@ -120,19 +119,15 @@ static status advance(run *r, double t) {
 }
 
 status visco_between(run *r, double t, flow_state *s, double *dissipated) {
-  status st = OK;
   visco *v = r->strains.visco;
   const scheme_step p = {
       .t = r->now.t, .dt = r->now.t - v->old.t, .theta = r->step->visco.theta};
   const scheme_call call = {&v->x,   &p,      NULL,      v->work,
                             &v->old, &v->now, &v->result};
-  timer_enter(STAGE_INELASTIC);
+  TIMED(STAGE_INELASTIC);
   s->t = t;
-  TRY(r->step->visco.integrator->between(&call, s));
-  TRY(scheme_dissipated(&call, t, dissipated));
-done:
-  timer_leave(STAGE_INELASTIC);
-  return st;
+  PASS(r->step->visco.integrator->between(&call, s));
+  return scheme_dissipated(&call, t, dissipated);
 }
 
 /* v->now at an equilibrium whose inelastic strains it has. */
@@ -148,10 +143,8 @@ void visco_take(run *r) { take_strains(r, &r->now); }
 
 status visco_advance(run *r, double t) {
   if (r->strains.visco == NULL) return increment_solve(r, t);
-  timer_enter(STAGE_INELASTIC);
-  status st = advance(r, t);
-  timer_leave(STAGE_INELASTIC);
-  return st;
+  TIMED(STAGE_INELASTIC);
+  return advance(r, t);
 }
 
 /* From another state than that of the run, which stays. */
@@ -169,11 +162,10 @@ static status advance_from(run *r, flow_state *from, double t) {
 status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
   visco *v = r->strains.visco;
   if (v == NULL) return increment_solve(r, t);
-  timer_enter(STAGE_INELASTIC);
-  status st = advance_from(r, from, t);
-  if (st == OK) flow_state_copy(&v->x, &v->now, to);
-  timer_leave(STAGE_INELASTIC);
-  return st;
+  TIMED(STAGE_INELASTIC);
+  PASS(advance_from(r, from, t));
+  flow_state_copy(&v->x, &v->now, to);
+  return OK;
 }
 
 status start_point_new(const run *r, start_point *p) {
@@ -183,11 +175,7 @@ status start_point_new(const run *r, start_point *p) {
   return OK;
 }
 
-void start_point_free(start_point *p) {
-  memory_free(p->uc);
-  memory_free(p->rc);
-  memory_free(p->motion);
-}
+void start_point_free(start_point *p) { RELEASE(p->uc, p->rc, p->motion); }
 
 void start_point_copy(const run *r, const equilibrium *e, start_point *p) {
   size_t bytes = (size_t)r->nodes.n_c * sizeof *p->uc;
@@ -209,35 +197,30 @@ equilibrium start_point_use(run *r, const start_point *p) {
 
 /* From r->now, which is temporarily the accepted state, to t. */
 static status second_half(run *r, double t) {
-  status st = OK;
   visco *v = r->strains.visco;
-  start_point p = {0};
-  if (v->middle.e == NULL) TRY(flow_state_new(&v->x, &v->middle));
-  TRY(start_point_new(r, &p));
+  ENDS_BY(start_point_free) start_point p = {0};
+  if (v->middle.e == NULL) PASS(flow_state_new(&v->x, &v->middle));
+  PASS(start_point_new(r, &p));
   start_point_copy(r, &r->now, &p);
   flow_state_copy(&v->x, &v->now, &v->middle);
   equilibrium keep = start_point_use(r, &p);
-  st = advance_from(r, &v->middle, t);
+  const status st = advance_from(r, &v->middle, t);
   r->old = keep;
-done:
-  start_point_free(&p);
   return st;
 }
 
 /* Two halves into v->fine[ns*n]; r->solving.report says if they were found. */
 static status two_halves(run *r, double t) {
-  status st = OK;
   visco *v = r->strains.visco;
   size_t n = visco_at(r, v->x.n);
-  if (v->fine == NULL) NEW(v->fine, n);
+  if (v->fine == NULL) PASS_NEW(v->fine, n);
   r->course.shadow = 1;
-  TRY(advance(r, 0.5 * (r->old.t + t)));
-  if (r->solving.report.outcome <= 0) goto done;
-  TRY(second_half(r, t));
-  memcpy(v->fine, v->now.ei, n * sizeof *v->fine);
-done:
+  status st = advance(r, 0.5 * (r->old.t + t));
+  if (st == OK && r->solving.report.outcome > 0) st = second_half(r, t);
   r->course.shadow = 0;
-  return st;
+  PASS(st);
+  memcpy(v->fine, v->now.ei, n * sizeof *v->fine);
+  return OK;
 }
 
 /* The difference to the halves, with Richardson's factor. */
@@ -263,7 +246,8 @@ static status elastic_norm(const visco *v, double *norm) {
   return OK;
 }
 
-static status try_step(run *r, double t, double *error) {
+status visco_try(run *r, double t, double *error) {
+  TIMED(STAGE_INELASTIC);
   visco *v = r->strains.visco;
   int estimates = r->step->visco.integrator->estimates;
   *error = HUGE_VAL;
@@ -278,69 +262,47 @@ static status try_step(run *r, double t, double *error) {
   return OK;
 }
 
-status visco_try(run *r, double t, double *error) {
-  timer_enter(STAGE_INELASTIC);
-  status st = try_step(r, t, error);
-  timer_leave(STAGE_INELASTIC);
-  return st;
-}
-
 status visco_level(run *r, double dt, int *level) {
-  status st = OK;
   visco *v = r->strains.visco;
   double rate;
   *level = 0;
   if (v == NULL || r->step->kind != STEP_VISCO || !step_has_limit(r->step))
     return OK;
-  timer_enter(STAGE_INELASTIC);
-  TRY(flow_fastest(&v->x, &v->old, dt, &rate));
+  TIMED(STAGE_INELASTIC);
+  PASS(flow_fastest(&v->x, &v->old, dt, &rate));
   *level = step_level(r->m, r->step, r->old.t, dt, rate,
                       v->reported != r->step && !flow_is_constant(&v->x));
   v->reported = r->step;
   if (*level < 0)
-    FAIL(ERR_DECK, "step %d: the increment is not stable", run_step_id(r) + 1);
-done:
-  timer_leave(STAGE_INELASTIC);
-  return st;
+    RAISE(ERR_DECK, "step %d: the increment is not stable", run_step_id(r) + 1);
+  return OK;
 }
 
 status visco_energies(run *r, energies *e) {
-  status st = OK;
   visco *v = r->strains.visco;
-  timer_enter(STAGE_INELASTIC);
+  TIMED(STAGE_INELASTIC);
   e->dissipated += v->result.dissipated;
   e->stored = v->sums.stored;
-  if (v->sums.known) goto done;
+  if (v->sums.known) return OK;
   e->stored = 0.0;
-  TRY(flow_add_stored(&v->x, &v->now, 0, v->x.n, &e->stored));
-done:
-  timer_leave(STAGE_INELASTIC);
-  return st;
-}
-
-/* v->now becomes v->old; what becomes v->now is to be overwritten. */
-static void change_places(visco *v) {
-  flow_state old = v->old;
-  v->old = v->now;
-  v->now = old;
-  v->sums.known = 0;
+  return flow_add_stored(&v->x, &v->now, 0, v->x.n, &e->stored);
 }
 
 status visco_accept(run *r) {
-  status st = OK;
   visco *v = r->strains.visco;
   double norm = 0.0;
   const int flows = r->step->kind == STEP_VISCO && r->old.t > r->now.t;
   v->result.dissipated = 0.0;
-  timer_enter(STAGE_INELASTIC);
+  TIMED(STAGE_INELASTIC);
   if (!flows) take_strains(r, &r->old);
-  TRY(elastic_norm(v, &norm));
+  PASS(elastic_norm(v, &norm));
   v->largest = fmax(v->largest, norm);
   if (flows) visco_warn_locking(r);
-  change_places(v);
-done:
-  timer_leave(STAGE_INELASTIC);
-  return st;
+  const flow_state old = v->old;
+  v->old = v->now;
+  v->now = old; /* to be overwritten */
+  v->sums.known = 0;
+  return OK;
 }
 
 status visco_keep_flow(const flow *x, flow_state *s, archive *a,

@@ -71,13 +71,13 @@ static status check_start(run *r, start_report *s) {
 
 /* Test the initial displacements against the loads of time 0. */
 static status test_start(run *r, start_report *s) {
-  status st = OK;
-  double *R = NULL, *diagonal = NULL, largest = 0.0;
-  timer_enter(effect_stage(&initial_state_effect));
-  NEW(R, r->n_dof);
-  NEW(diagonal, r->n_dof);
-  TRY(increment_pose(r, 0.0));
-  TRY(start_forces(r, R, diagonal, &largest));
+  OWNED double *R = NULL, *diagonal = NULL;
+  double largest = 0.0;
+  TIMED(effect_stage(&initial_state_effect));
+  PASS_NEW(R, r->n_dof);
+  PASS_NEW(diagonal, r->n_dof);
+  PASS(increment_pose(r, 0.0));
+  PASS(start_forces(r, R, diagonal, &largest));
   ties_share(&r->body.ties, R);
   const start_input in = {.mesh = r->msh,
                           .fixed = r->body.fixed,
@@ -91,28 +91,20 @@ static status test_start(run *r, start_report *s) {
                           .uc = r->old.uc,
                           .given = r->problem.given,
                           .load = largest};
-  TRY(start_test(&in, r->old.rc, r->old.reaction, s));
-  TRY(effects_initial(r));
-done:
-  timer_leave(effect_stage(&initial_state_effect));
-  memory_free(R);
-  memory_free(diagonal);
-  return st;
+  PASS(start_test(&in, r->old.rc, r->old.reaction, s));
+  return effects_initial(r);
 }
 
 /* u_0 into r->old, before the contact surface is built. */
 static status report_new(run *r, void **self) {
-  status st = OK;
   start_report *own = NULL;
   PASS_NEW(own, 1);
   *self = own;
   if (r->course.from != NULL || (r->step != NULL && run_step_id(r) > 0))
     return OK;
-  timer_enter(effect_stage(&initial_state_effect));
-  st = start_report_new(r->msh, own);
-  if (st == OK) st = start_displacements(r->m, r->msh, r->old.u, own);
-  timer_leave(effect_stage(&initial_state_effect));
-  return st;
+  TIMED(effect_stage(&initial_state_effect));
+  PASS(start_report_new(r->msh, own));
+  return start_displacements(r->m, r->msh, r->old.u, own);
 }
 
 static void release(void *self) {

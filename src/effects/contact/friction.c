@@ -181,19 +181,15 @@ static status add_law(run *r, friction *own, int contact_id, double t,
 }
 
 static status find_limit(run *r, friction *own, double t) {
-  status st = OK;
-  int *node = NULL;
-  timer_enter(STAGE_LIMIT);
+  OWNED int *node = NULL;
+  TIMED(STAGE_LIMIT);
   friction_limit_free(&own->limit);
-  TRY(friction_limit_new(r->nodes.n, &own->limit));
-  NEW(node, r->nodes.n);
-  for (int i = 0; i < r->m->n.contact; ++i) TRY(add_law(r, own, i, t, node));
+  PASS(friction_limit_new(r->nodes.n, &own->limit));
+  PASS_NEW(node, r->nodes.n);
+  for (int i = 0; i < r->m->n.contact; ++i) PASS(add_law(r, own, i, t, node));
   own->known = !limit_varies(r);
   if (!own->known) run_forget_estimates(r);
-done:
-  memory_free(node);
-  timer_leave(STAGE_LIMIT);
-  return st;
+  return OK;
 }
 
 static status update_limit(run *r, friction *own, double t) {
@@ -301,27 +297,22 @@ static stage history_of(const run *r) {
 
 static status pose(run *r, void *self, double t) {
   friction *own = self;
-  const stage history = history_of(r);
   PASS(update_limit(r, own, t));
-  if (history != STAGE_NONE) timer_enter(history);
-  status st = find_stick(r, own);
-  if (history != STAGE_NONE) timer_leave(history);
-  return st;
+  TIMED(history_of(r));
+  return find_stick(r, own);
 }
 
 /* Slip is summed while a node is closed. */
 static status add_distance(run *r, void *self) {
   friction *own = self;
-  const stage history = history_of(r);
   int dim = r->msh->dim;
-  if (history != STAGE_NONE) timer_enter(history);
+  TIMED(history_of(r));
   for (int i = 0; i < r->nodes.n; ++i) {
     double s[2] = {run_motion_over(r, dim * i + 1), 0.0};
     if (dim == 3) s[1] = run_motion_over(r, dim * i + 2);
     if (r->result.contact[i] == CONTACT_SLIP)
       own->distance[i] += hypot(s[0], s[1]);
   }
-  if (history != STAGE_NONE) timer_leave(history);
   return OK;
 }
 

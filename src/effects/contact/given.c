@@ -120,22 +120,19 @@ static void release(void *self) {
 
 static status take(run *r, void *self, contact_problem *cp, double **u,
                    double *force) {
-  status st = OK;
   given_forces *own = self;
   contact_problem before = *cp;
   if (own->n == 0) return OK;
-  timer_enter(effect_stage(&given_forces_effect));
+  TIMED(effect_stage(&given_forces_effect));
   if (own->matrix_no != r->solving.matrix_no) {
     given_form_free(own->form);
     own->form = NULL;
   }
   own->matrix_no = r->solving.matrix_no;
-  if (own->form == NULL) TRY(given_form_new(cp, own->n, own->node, &own->form));
-  TRY(given_form_set(own->form, &before, own->force, r->msh->size, *u, force,
-                     cp));
-done:
-  timer_leave(effect_stage(&given_forces_effect));
-  return st;
+  if (own->form == NULL)
+    PASS(given_form_new(cp, own->n, own->node, &own->form));
+  return given_form_set(own->form, &before, own->force, r->msh->size, *u, force,
+                        cp);
 }
 
 static void give(run *r, void *self, contact_problem *cp, double *u,

@@ -18,6 +18,7 @@
 #include "effects/reduction/parts.h"
 
 #include "base/memory.h"
+#include "base/sparse.h"
 #include "fem/fem.h"
 
 #include <math.h>
@@ -25,80 +26,68 @@
 
 enum { SAFETY = 2 };
 
-static status new_domain(reduction *n) {
+/* a / b; 0 if a is 0. */
+static double part_of(double a, double b) {
+  return a == 0.0 ? 0.0 : b > 0.0 ? a / b : HUGE_VAL;
+}
+
+const material *reduction_material(const reduction *n, int elem_id) {
   const model *m = n->m;
-  size_t square = (size_t)(m->ns * m->ns);
-  PASS_NEW(n->kin, m->n.section);
-  PASS_NEW(n->thickness, m->n.section);
-  PASS_NEW(n->E, square * (size_t)m->n.section);
-  PASS_NEW(n->C, 36 * (size_t)m->n.section);
-  PASS_NEW(n->fixed, n->msh->dim * n->msh->n_node);
-  for (int i = 0; i < m->n.section; ++i) {
-    const section *s = &m->sections[i];
-    const double *C = m->materials[s->material_id].C;
-    n->kin[i] = (kinematics)s->kin;
-    n->thickness[i] = s->thickness;
-    memcpy(n->C + 36 * (size_t)i, C, 36 * sizeof *C);
-    elastic_reduce(C, n->kin[i], n->E + square * (size_t)i);
-  }
-  n->d = (domain){.mesh = n->msh,
-                  .ns = m->ns,
-                  .section_id = m->elem_section,
-                  .kin = n->kin,
-                  .thickness = n->thickness,
-                  .E = n->E,
-                  .C = n->C,
-                  .fixed = n->fixed};
-  return OK;
+  return &m->materials[m->sections[m->elem_section[elem_id]].material_id];
+}
+
+/* 1: the row leaves out the law of that element. */
+static int is_about(const reduction *n, const omitted *row, int elem_id) {
+  return reduction_material(n, elem_id) == &n->m->materials[row->id] &&
+         (row->some == 0 || n->m->reduction.still[elem_id]);
+}
+
+/* Coefficient of the friction left out at contact node i. */
+static double coefficient_of(const reduction *n, const state *s, int i) {
+  const contact_surface *c = s->contacts.surface;
+  const friction_rule *rule =
+      friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
+  double x[3] = {0.0, 0.0, 0.0};
+  if (rule->aside == NULL) return 0.0;
+  for (int k = 0; k < c->dim; ++k) x[k] = c->x[c->dim * i + k];
+  return quantity_value(&rule->card.value, x, s->t);
 }
 
 status reduction_new(const model *m, const mesh *msh, reduction **out) {
-  status st = OK;
-  reduction *n = NULL;
   const size_t strains = (size_t)m->ns * (size_t)msh->n_elem;
-  *out = NULL;
-  NEW(n, 1);
+  reduction *n = NULL;
+  PASS_NEW(n, 1);
+  *out = n;
   n->m = m;
   n->msh = msh;
-  TRY(new_domain(n));
-  NEW(n->sigma, strains);
-  NEW(n->T0, msh->n_elem);
-  NEW(n->T, msh->n_elem);
-  NEW(n->heat, strains);
-  NEW(n->flow.strain, strains);
-  NEW(n->flow.strain_rate, strains);
-  NEW(n->strain, strains);
-  NEW(n->elem_id, msh->n_elem);
-  NEW(n->way, (msh->dim - 1) * msh->n_node);
-  NEW(n->force, msh->dim * msh->n_node);
-  NEW(n->u, msh->dim * msh->n_node);
+  n->d.mesh = msh;
+  PASS(moduli_new(m, msh, NULL, &n->moduli));
+  moduli_domain(&n->moduli, m, &n->d);
+  PASS_NEW(n->fixed, msh->dim * msh->n_node);
+  n->d.fixed = n->fixed;
+  PASS_NEW(n->sigma, strains);
+  PASS_NEW(n->T0, msh->n_elem);
+  PASS_NEW(n->T, msh->n_elem);
+  PASS_NEW(n->heat, strains);
+  PASS_NEW(n->flow.strain, strains);
+  PASS_NEW(n->flow.strain_rate, strains);
+  PASS_NEW(n->strain, strains);
+  PASS_NEW(n->elem_id, msh->n_elem);
+  PASS_NEW(n->way, (msh->dim - 1) * msh->n_node);
+  PASS_NEW(n->force, msh->dim * msh->n_node);
+  PASS_NEW(n->u, msh->dim * msh->n_node);
   for (int e = 0; e < msh->n_elem; ++e) n->elem_id[e] = e;
-  NEW(n->flow.stress, msh->n_elem);
-  NEW(n->flow.rate, msh->n_elem);
-  TRY(load_temperature_initial(m, msh, n->T0));
-  *out = n;
-  n = NULL;
-done:
-  reduction_free(n);
-  return st;
+  PASS_NEW(n->flow.stress, msh->n_elem);
+  PASS_NEW(n->flow.rate, msh->n_elem);
+  return load_temperature_initial(m, msh, n->T0);
 }
 
 void reduction_free(reduction *n) {
   if (n == NULL) return;
-  double *const arrays[] = {n->thickness, n->E,
-                            n->C,         n->sigma,
-                            n->T0,        n->T,
-                            n->heat,      n->flow.stress,
-                            n->flow.rate, n->flow.strain,
-                            n->strain,    n->way,
-                            n->force,     n->flow.strain_rate,
-                            n->u};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
-    memory_free(arrays[i]);
-  memory_free(n->kin);
-  memory_free(n->elem_id);
-  memory_free(n->fixed);
-  memory_free(n);
+  moduli_free(&n->moduli);
+  RELEASE(n->fixed, n->sigma, n->T0, n->T, n->heat, n->flow.stress,
+          n->flow.rate, n->flow.strain, n->flow.strain_rate, n->strain,
+          n->elem_id, n->way, n->force, n->u, n);
 }
 
 /* ---- scales ------------------------------------------------------------- */
@@ -122,7 +111,7 @@ static double energy_of(const reduction *n, int elem_id, const double *e,
   double held[6], sum = 0.0;
   int ns = n->m->ns;
   const double *E =
-      n->E + (size_t)(ns * ns) * (size_t)n->m->elem_section[elem_id];
+      n->moduli.E + (size_t)(ns * ns) * (size_t)n->m->elem_section[elem_id];
   *stress = 0.0;
   for (int i = 0; i < ns; ++i) {
     held[i] = 0.0;
@@ -133,8 +122,6 @@ static double energy_of(const reduction *n, int elem_id, const double *e,
   return sum;
 }
 
-/* Stresses of the run into n->sigma: its thermal strains and those of the laws
- * in force carry none. */
 status reduction_stress(reduction *n, const state *s) {
   const model *m = n->m;
   const int ns = m->ns, warm = (m->effects & EFFECT_THERMAL) != 0;
@@ -205,7 +192,7 @@ static void measure_relaxed(reduction *n, const omitted *row, double dt,
     double ended[6], own;
     double *before = n->flow.strain_rate + (size_t)(ns * e);
     double *lag = n->flow.strain + (size_t)(ns * e);
-    if (!reduction_is_about(n, row, e)) continue;
+    if (!is_about(n, row, e)) continue;
     tensor_product(ns, mat->relaxed, n->sigma + (size_t)(ns * e), ended);
     for (int i = 0; i < ns; ++i) {
       lag[i] = left * (lag[i] - (ended[i] - before[i]));
@@ -221,29 +208,21 @@ static void measure_relaxed(reduction *n, const omitted *row, double dt,
  * its elements grows by dt. */
 static status add_rates(reduction *n, const state *s, const omitted *row,
                         double dt, double *norm) {
-  status st = OK;
   const material *mat = &n->m->materials[row->id];
   law_card law = mat->law;
-  flow_kind kind = {0};
-  double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], sum = 0.0;
-  static const double zero[FLOW_VALUE_MAX];
+  ENDS_BY(law_sample_free) law_sample x = {0};
+  double alpha_rate[FLOW_VALUE_MAX], sum = 0.0;
   int section_id = -1;
   if (row->some == 0) law.ops = mat->law_aside;
   for (int e = 0; e < n->msh->n_elem; ++e) {
-    law_point p;
     double ei_rate[6] = {0.0}, stress;
-    if (!reduction_is_about(n, row, e)) continue;
+    if (!is_about(n, row, e)) continue;
     if (section_id != n->m->elem_section[e]) {
-      law_elastic elastic;
       section_id = n->m->elem_section[e];
-      flow_kind_free(&kind);
-      TRY(law_elastic_read(&mat->elastic, 0.0, n->kin[section_id], &elastic));
-      TRY(flow_new_kind(&kind, &law, &elastic));
+      PASS(law_sample_at(mat, &law, n->moduli.kin[section_id], s->t, &x));
     }
-    TRY(flow_coefficients(&kind, s->t, 0.0, value, &p));
-    p.sigma = n->sigma + (size_t)n->m->ns * (size_t)e;
-    p.ei = p.alpha = zero;
-    law_rate(&p, ei_rate, alpha_rate);
+    x.p.sigma = n->sigma + (size_t)n->m->ns * (size_t)e;
+    law_rate(&x.p, ei_rate, alpha_rate);
     sum += element_weight(&n->d, e) * energy_of(n, e, ei_rate, &stress);
     n->flow.stress[e] += dt * fmax(stress, n->flow.rate[e]);
     n->flow.rate[e] = stress;
@@ -254,9 +233,7 @@ static status add_rates(reduction *n, const state *s, const omitted *row,
     }
   }
   *norm = sqrt(sum);
-done:
-  flow_kind_free(&kind);
-  return st;
+  return OK;
 }
 
 static status measure_inelastic(reduction *n, const state *s, int k,
@@ -274,7 +251,7 @@ static status measure_inelastic(reduction *n, const state *s, int k,
   *norm = SAFETY * n->sum[k];
   *stress = 0.0;
   for (int e = 0; e < n->msh->n_elem; ++e)
-    if (reduction_is_about(n, row, e))
+    if (is_about(n, row, e))
       *stress = fmax(*stress, SAFETY * n->flow.stress[e]);
   return OK;
 }
@@ -290,10 +267,142 @@ static void measure_friction(reduction *n, const state *s, double *sum,
       slip = hypot(slip, s->contacts.slip[sides * i + k]);
     for (int k = 0; k < sides; ++k)
       n->way[sides * c->node_id[i] + k] += s->contacts.slip[sides * i + k];
-    work += reduction_coefficient(n, s, i) * fmax(p, 0.0) * slip;
+    work += coefficient_of(n, s, i) * fmax(p, 0.0) * slip;
   }
   *sum += sqrt(work);
   *norm = SAFETY * *sum;
+}
+
+/*
+ * The increment solved once more with an effect that is left out, with its
+ * strains and forces at the current state: its change to first order, in
+ * displacements, in the forces of the nodes and in their sums. The bounds above
+ * are of energies; a slender body may move far for little energy, and friction
+ * may be a small part of the forces.
+ */
+
+/* Strains of the row of the elements it is about into n->strain. */
+static void take_strains(reduction *n, const omitted *row) {
+  const int ns = n->m->ns, heat = row->bit == EFFECT_BIT_THERMAL;
+  const double *from = heat ? n->heat : n->flow.strain;
+  for (int e = 0; e < n->msh->n_elem; ++e) {
+    const int own = heat || is_about(n, row, e);
+    for (int i = 0; i < ns; ++i)
+      n->strain[ns * e + i] = own ? from[ns * e + i] : 0.0;
+  }
+}
+
+/* Friction at node i against a displacement: at most its limit, and the force
+ * that returns the node alone, N. */
+static double friction_force(const reduction *n, const state *s, int i,
+                             double way) {
+  const contact_problem *cp = s->contacts.problem;
+  const int k = cp->dim * i;
+  double held = 0.0;
+  for (int a = 1; a < cp->dim; ++a)
+    held = fmax(held, contact_diagonal(cp, k + a));
+  return fmin(coefficient_of(n, s, i) * fmax(-s->contacts.rc[k], 0.0),
+              held * way);
+}
+
+/* Friction against the displacement of each node into n->force, N. */
+static void take_friction(reduction *n, const state *s) {
+  const contact_surface *c = s->contacts.surface;
+  const int sides = n->msh->dim - 1;
+  for (int i = 0; c != NULL && i < c->n; ++i) {
+    const double *way = n->way + sides * c->node_id[i];
+    const double length = sides == 2 ? hypot(way[0], way[1]) : fabs(way[0]);
+    if (!(length > 0.0)) continue;
+    const double force = friction_force(n, s, i, length);
+    for (int a = 0; a < sides; ++a)
+      surface_spread_row(c, i, a + 1, -(force * way[a] / length), n->force);
+  }
+}
+
+static void take_forces(reduction *n, const state *s, const omitted *row) {
+  const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
+  memset(n->force, 0,
+         (size_t)(n->msh->dim * n->msh->n_node) * sizeof *n->force);
+  if (row->bit == EFFECT_BIT_FRICTION) {
+    take_friction(n, s);
+    return;
+  }
+  take_strains(n, row);
+  eigen_force(&n->d, &x, n->force);
+}
+
+/* Largest of a - b. */
+static double distance(size_t n, const double *a, const double *b) {
+  double most = 0.0;
+  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+/* Of the nodes: largest normal and tangential force, sum of each direction of
+ * all nodes. */
+typedef struct force_sizes {
+  double node[2], sum[3];
+} force_sizes;
+
+/* Of rc, or of rc - from. */
+static force_sizes sizes_of(const contact_surface *c, const double *rc,
+                            const double *from) {
+  force_sizes f = {{0.0, 0.0}, {0.0, 0.0, 0.0}};
+  for (int i = 0; i < c->n; ++i) {
+    double side = 0.0;
+    for (int a = 0; a < c->dim; ++a) {
+      const int k = c->dim * i + a;
+      const double value = rc[k] - (from != NULL ? from[k] : 0.0);
+      f.sum[a] += value;
+      if (a == 0) f.node[0] = fmax(f.node[0], fabs(value));
+      if (a > 0) side = hypot(side, value);
+    }
+    f.node[1] = fmax(f.node[1], side);
+  }
+  return f;
+}
+
+/* The forces against those of the increment; of friction against its largest
+ * so far. */
+static double force_change(reduction *n, const state *s, const double *rc) {
+  const force_sizes now = sizes_of(s->contacts.surface, s->contacts.rc, NULL);
+  const force_sizes d = sizes_of(s->contacts.surface, rc, s->contacts.rc);
+  double worst = part_of(d.node[0], now.node[0]);
+  worst = fmax(worst, part_of(fabs(d.sum[0]), fabs(now.sum[0])));
+  if (!(n->m->effects & EFFECT_FRICTION)) return worst;
+  worst = fmax(worst, part_of(d.node[1], n->tangential));
+  return fmax(worst, part_of(hypot(d.sum[1], d.sum[2]), n->total));
+}
+
+static void grow_scales(reduction *n, const state *s) {
+  if (s->contacts.surface == NULL) return;
+  const force_sizes now = sizes_of(s->contacts.surface, s->contacts.rc, NULL);
+  n->tangential = fmax(n->tangential, now.node[1]);
+  n->total = fmax(n->total, hypot(now.sum[1], now.sum[2]));
+}
+
+/* The increment with the effect of row k in force, where the row's "bound" now
+ * has doubled since the last time or the step ends. */
+static status solve_again(reduction *n, const state *s, int k, double bound,
+                          omitted *row) {
+  OWNED double *rc = NULL;
+  int solved = 0;
+  const size_t dofs = (size_t)(n->msh->dim * n->msh->n_node);
+  grow_scales(n, s);
+  if (row->bit == EFFECT_BIT_NONLOCAL || bound == 0.0) return OK;
+  if (!s->end_of_step && bound <= 2.0 * n->seen[k]) return OK;
+  n->seen[k] = fmax(bound, n->seen[k]);
+  if (s->contacts.surface != NULL)
+    PASS_NEW(rc, s->contacts.surface->dim * s->contacts.surface->n);
+  take_forces(n, s, row);
+  PASS(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
+  double change = solved ? part_of(distance(dofs, n->u, s->body.u),
+                                   largest_entry(dofs, s->body.u))
+                         : HUGE_VAL;
+  if (rc != NULL) change = fmax(change, force_change(n, s, rc));
+  if (!(change <= row->change)) row->change = change;
+  ++row->again;
+  return OK;
 }
 
 status reduction_measure(reduction *n, const state *s, omitted *rows) {
@@ -310,9 +419,8 @@ status reduction_measure(reduction *n, const state *s, omitted *rows) {
       PASS(measure_inelastic(n, s, k, &norm, &stress));
     if (row->bit == EFFECT_BIT_FRICTION)
       measure_friction(n, s, &n->sum[k], &norm);
-    double bound = reduction_part(norm, size),
-           local = reduction_part(stress, scale);
-    PASS(reduction_again(n, s, k, bound, row));
+    double bound = part_of(norm, size), local = part_of(stress, scale);
+    PASS(solve_again(n, s, k, bound, row));
     if (!(bound <= row->bound)) row->bound = bound;
     if (!(local <= row->local)) row->local = local;
     ++row->checked;
@@ -320,7 +428,7 @@ status reduction_measure(reduction *n, const state *s, omitted *rows) {
   return OK;
 }
 
-static int reduction_holds(const model *m, const omitted *row) {
+static int is_within(const model *m, const omitted *row) {
   return row->checked > 0 && row->bound <= reduction_share * m->reduction.tol &&
          row->local <= m->reduction.tol &&
          row->change <= 0.5 * m->reduction.tol;
@@ -329,7 +437,7 @@ static int reduction_holds(const model *m, const omitted *row) {
 int reduction_refuted(const model *m) {
   for (int k = 0; k < m->reduction.n; ++k)
     if (!m->reduction.row[k].back && m->reduction.row[k].checked > 0 &&
-        !reduction_holds(m, &m->reduction.row[k]))
+        !is_within(m, &m->reduction.row[k]))
       return 1;
   return 0;
 }
@@ -338,7 +446,7 @@ int reduction_take_back(model *m, int all) {
   int n = 0;
   for (int k = 0; k < m->reduction.n; ++k) {
     omitted *row = &m->reduction.row[k];
-    if (row->back || (reduction_holds(m, row) && !all)) continue;
+    if (row->back || (is_within(m, row) && !all)) continue;
     row->back = 1;
     row->lost = all;
     ++n;

@@ -5,18 +5,17 @@
 #define PROTIS_REDUCTION_PARTS_H
 
 #include "effects/reduction/reduction.h"
+#include "run/moduli/moduli.h"
 
 struct reduction {
   const model *m;
   const mesh *msh;
   domain d;
-  kinematics *kin;       /* [n_section] */
-  double *thickness, *E; /* [n_section], [ns*ns*n_section] */
-  double *C;             /* [36*n_section] */
-  unsigned char *fixed;  /* [dim*n_node] zero */
-  double *sigma;         /* [ns*n_elem] Pa */
-  double *T0, *T;        /* [n_elem] */
-  double *heat;          /* [ns*n_elem] thermal strain of the last increment */
+  moduli moduli;        /* of the sections */
+  unsigned char *fixed; /* [dim*n_node] zero */
+  double *sigma;        /* [ns*n_elem] Pa */
+  double *T0, *T;       /* [n_elem] */
+  double *heat;         /* [ns*n_elem] thermal strain of the last increment */
   struct {
     double *strain;      /* [ns*n_elem] inelastic strain so far */
     double *strain_rate; /* [ns*n_elem] 1/s, of the last increment */
@@ -34,7 +33,7 @@ struct reduction {
   double *force, *u;        /* [dim*n_node] room */
 };
 
-/* scales.c. Largest stress by pressures and prescribed displacements, Pa; 0:
+/* model.c. Largest stress by pressures and prescribed displacements, Pa; 0:
  * not known (expressions, forces). */
 double reduction_load_stress(const model *m, const mesh *msh, double young);
 double reduction_young(const material *mat); /* Pa */
@@ -45,24 +44,25 @@ omitted *reduction_row(model *m, int bit, int id);
 int reduction_kinematics(const model *m, int material_id);
 /* Increments of a step if each has dt. */
 double reduction_increments(const step *s, double dt);
-/* a / b; 0 if a is 0. */
-double reduction_part(double a, double b);
-const material *reduction_material(const reduction *n, int elem_id);
-/* 1: the row leaves out the law of that element. */
-int reduction_is_about(const reduction *n, const omitted *row, int elem_id);
-/* Coefficient of the friction left out at contact node i. */
-double reduction_coefficient(const reduction *n, const state *s, int i);
+
+/* A law without strain at time t under a stress p.sigma that is still to be
+ * set, in the place of the one before (all-zero: none). */
+typedef struct law_sample {
+  flow_kind kind;
+  double value[FLOW_VALUE_MAX];
+  law_point p;
+} law_sample;
+status law_sample_at(const material *mat, const law_card *law, kinematics kin,
+                     double t, law_sample *x);
+void law_sample_free(law_sample *x);
 
 /* laws.c: materials to try without their law. */
 status reduction_try_laws(model *m, const mesh *msh);
-/* threshold.c: elements that stay below the threshold of their law. */
-status reduction_try_threshold(model *m, const mesh *msh);
-/* measure.c: stresses of the run into n->sigma. */
-status reduction_stress(reduction *n, const state *s);
 
-/* again.c: the increment with the effect of row k in force, where the row's
- * "bound" now has doubled since the last time or the step ends. */
-status reduction_again(reduction *n, const state *s, int k, double bound,
-                       omitted *row);
+/* measure.c */
+const material *reduction_material(const reduction *n, int elem_id);
+/* Stresses of the run into n->sigma: its thermal strains and those of the laws
+ * in force carry none. */
+status reduction_stress(reduction *n, const state *s);
 
 #endif

@@ -54,14 +54,8 @@ static status discrete_new(discrete *d) {
 }
 
 static void discrete_free(discrete *d) {
-  memory_free(d->surface.node_no);
-  memory_free(d->u);
-  memory_free(d->r);
-  memory_free(d->gap);
-  memory_free(d->slip);
-  memory_free(d->g);
-  memory_free(d->contact);
-  memory_free(d->full);
+  RELEASE(d->surface.node_no, d->u, d->r, d->gap, d->slip, d->g, d->contact,
+          d->full);
   contact_bodies_free(d->bodies);
   solution_set_free(&d->solutions);
 }
@@ -115,26 +109,24 @@ static status fill_up(discrete *d) {
 
 static status find_error(const step *s, const contact_problem *cp,
                          const double *u, const double *r, error_bound *e) {
-  status st = OK;
   solver_error found = {.norm = NAN, .why = error_bound_indefinite};
   dense_inverse *dense = NULL;
   double energy = 0.0;
   *e = (error_bound){.hidden = contact_hidden(cp, u, r, NULL)};
   if (cp->m == 0 || s->accuracy.no_solver) return OK;
-  timer_enter(STAGE_ESTIMATE);
-  TRY(condensed_energy(cp, u, r, &energy));
+  TIMED(STAGE_ESTIMATE);
+  PASS(condensed_energy(cp, u, r, &energy));
   if (cp->blocks != NULL)
     found.why = "its inverse would need all of a large sparse matrix";
   else
-    TRY(dense_inverse_new(cp->m, contact_matrix(cp), &dense));
-  if (dense != NULL) TRY(bound_error(cp, dense, u, r, &found));
+    PASS(dense_inverse_new(cp->m, contact_matrix(cp), &dense));
+  const status st = dense == NULL ? OK : bound_error(cp, dense, u, r, &found);
+  dense_inverse_free(dense);
+  PASS(st);
   const double hidden = e->hidden;
   error_bound_set(&found, energy, e);
   e->hidden = hidden;
-done:
-  dense_inverse_free(dense);
-  timer_leave(STAGE_ESTIMATE);
-  return st;
+  return OK;
 }
 
 /* ---- contact problems -----------------------------------------------------
@@ -269,23 +261,20 @@ static status report_solution(discrete *d, const history_sink *sink, double cpu,
 
 status condensed_run(const model *m, const exchange_problem *p,
                      const history_sink *sink, int *unsettled) {
-  status st = OK;
+  ENDS_BY(discrete_free)
   discrete d = {.step = &m->steps[0], .p = p, .cp = p->cp};
   double cpu = timer_cpu();
   *unsettled = 0;
-  TRY(discrete_new(&d));
-  TRY(report_ready(&d, sink));
+  PASS(discrete_new(&d));
+  PASS(report_ready(&d, sink));
   timer_enter(STAGE_CONTACT);
-  st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
+  const status st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
   timer_leave(STAGE_CONTACT);
-  TRY(st);
+  PASS(st);
   if (p->dim > 1 && !outcome_is_fatal(d.report.outcome)) {
-    TRY(fill_up(&d));
-    TRY(find_error(d.step, &d.whole, d.u, d.r, &d.error));
-    TRY(check_problem(d.step, &d.whole, &d.report, d.u, d.r, &d.solutions));
+    PASS(fill_up(&d));
+    PASS(find_error(d.step, &d.whole, d.u, d.r, &d.error));
+    PASS(check_problem(d.step, &d.whole, &d.report, d.u, d.r, &d.solutions));
   }
-  TRY(report_solution(&d, sink, cpu, unsettled));
-done:
-  discrete_free(&d);
-  return st;
+  return report_solution(&d, sink, cpu, unsettled);
 }

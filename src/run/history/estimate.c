@@ -89,23 +89,15 @@ status estimate_increment(run *r) {
 status check_problem(const step *s, const contact_problem *cp,
                      const solver_report *report, const double *u,
                      const double *r, solution_set *out) {
-  status st = OK;
+  char why[256];
   solution_set_free(out);
   if (s->check == CHECK_NONE || cp->m == 0) return OK;
-  timer_enter(STAGE_CHECK);
-  if (s->check == CHECK_SOLVERS) {
-    TRY(solutions_by_solvers(cp, s->solver.tol, report, u, r, out));
-    goto done;
-  }
-  st = solutions_by_statuses(cp, s->solver.tol, u, r, out);
-  if (st == ERR_DECK) {
-    char why[256];
-    snprintf(why, sizeof why, "%s", status_message());
-    FAIL(ERR_DECK, "deck line %d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
-         s->solver_at.line_no, why);
-  }
-  TRY(st);
-done:
-  timer_leave(STAGE_CHECK);
-  return st;
+  TIMED(STAGE_CHECK);
+  if (s->check == CHECK_SOLVERS)
+    return solutions_by_solvers(cp, s->solver.tol, report, u, r, out);
+  const status st = solutions_by_statuses(cp, s->solver.tol, u, r, out);
+  if (st != ERR_DECK) return st;
+  snprintf(why, sizeof why, "%s", status_message());
+  RAISE(ERR_DECK, "deck line %d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
+        s->solver_at.line_no, why);
 }

@@ -131,18 +131,14 @@ static double next_point(const run *r, double after) {
 }
 
 static status show_within(run *r, double t, int increment_no) {
-  status st = OK;
-  shadow *b = NULL;
-  TRY(shadow_at(r, t, &b));
+  ENDS_BY(shadow_leave) shadow *b = NULL;
+  PASS(shadow_at(r, t, &b));
   run *own = shadow_run(b);
-  TRY(effects_accept(own));
+  PASS(effects_accept(own));
   if (own->solving.report.outcome <= 0) ++r->course.unsettled;
   state s = loop_state(own, 1, increment_no);
   s.within = 1;
-  TRY(r->sink->between(r->sink->ctx, &s));
-done:
-  shadow_free(b);
-  return st;
+  return r->sink->between(r->sink->ctx, &s);
 }
 
 static status dense_show(run *r, int increment_no) {
@@ -339,15 +335,12 @@ static status start_step(run *r) {
 static status keep_all(void *run_, archive *a) { return run_keep(run_, a); }
 
 static status checkpoint(run *r) {
-  status st = OK;
   const run_memory memory = {r, keep_all, r->at.step_id + 1};
   int planned = r->course.due; /* others are no stage of the continued run */
   r->course.due = 0;
   if (r->sink->checkpoint == NULL) return OK;
-  if (planned) timer_enter(STAGE_RESTART);
-  st = r->sink->checkpoint(r->sink->ctx, &memory);
-  if (planned) timer_leave(STAGE_RESTART);
-  return st;
+  TIMED(planned ? STAGE_RESTART : STAGE_NONE);
+  return r->sink->checkpoint(r->sink->ctx, &memory);
 }
 
 static status stop(run *r, status why) {
@@ -367,12 +360,10 @@ static status stop(run *r, status why) {
 
 /* The checkpoint that is due between two attempts; ends the run on request. */
 status loop_pause(run *r) {
-  status st = OK, why = interrupt_asked();
+  const status why = interrupt_asked();
   r->course.kept = r->course.due;
-  if (r->course.due) TRY(checkpoint(r));
-  if (why != OK) TRY(stop(r, why));
-done:
-  return st;
+  if (r->course.due) PASS(checkpoint(r));
+  return why != OK ? stop(r, why) : OK;
 }
 
 /* ---- increments ---------------------------------------------------------- */
@@ -483,16 +474,14 @@ static status run_step(run *r) {
 
 /* The step in progress. */
 static status read_progress(run *r) {
-  status st = OK;
-  if (r->course.from == NULL) goto done;
+  if (r->course.from == NULL) return OK;
   archive_enter(r->course.from, "run");
-  st = archive_bytes(r->course.from, "at", &r->at, sizeof r->at);
+  status st = archive_bytes(r->course.from, "at", &r->at, sizeof r->at);
   archive_leave(r->course.from);
-  TRY(st);
+  PASS(st);
   if (r->at.step_id < 0 || r->at.step_id >= r->m->n.step)
-    FAIL(ERR_FILE, "the restart file is of a deck with other steps");
-done:
-  return st;
+    RAISE(ERR_FILE, "the restart file is of a deck with other steps");
+  return OK;
 }
 
 status history_continue(const model *m, const mesh *msh,
@@ -523,31 +512,26 @@ status history_run(const model *m, const mesh *msh,
 status history_stiffness(const model *m, const mesh *msh,
                          const effect_ops *const *effects,
                          stiffness_choice *choice) {
-  status st = OK;
   static const history_sink nobody;
+  ENDS_BY(run_free)
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
   *choice = (stiffness_choice){0};
-  TRY(run_new(&r, effects));
+  PASS(run_new(&r, effects));
   load_fixed(m, msh, r.step, r.body.fixed);
-  TRY(run_build_ties(&r));
-  if (m->effects & EFFECT_CONTACT) TRY(run_build_surface(&r));
+  PASS(run_build_ties(&r));
+  if (m->effects & EFFECT_CONTACT) PASS(run_build_surface(&r));
   r.body.d.surface = r.surface;
-  TRY(run_choose_stiffness(&r));
+  PASS(run_choose_stiffness(&r));
   *choice = r.body.choice;
-done:
-  run_free(&r);
-  return st;
+  return OK;
 }
 
 status history_motions(const model *m, const mesh *msh,
                        const effect_ops *const *effects, int step_id, int *n,
                        free_motion **list) {
-  status st = OK;
   static const history_sink nobody;
+  ENDS_BY(run_free)
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[step_id]};
-  TRY(run_new(&r, effects));
-  TRY(run_motions(&r, n, list));
-done:
-  run_free(&r);
-  return st;
+  PASS(run_new(&r, effects));
+  return run_motions(&r, n, list);
 }

@@ -68,12 +68,7 @@ static status misfit_new(const run *r, misfit *x) {
   return OK;
 }
 
-static void misfit_free(misfit *x) {
-  memory_free(x->stress);
-  memory_free(x->rest);
-  memory_free(x->w);
-  memory_free(x->rc);
-}
+static void misfit_free(misfit *x) { RELEASE(x->stress, x->rest, x->w, x->rc); }
 
 /* The stresses of the displacement w alone, over those of the solution. */
 static void compare_stresses(run *r, misfit *x) {
@@ -219,22 +214,18 @@ static void forget_strains(run *r) {
 }
 
 static status find(run *r) {
-  status st = OK;
-  misfit x = {0};
+  ENDS_BY(misfit_free) misfit x = {0};
   const double share = share_of_step(r);
   double square = 0.0;
-  TRY(misfit_new(r, &x));
+  PASS(misfit_new(r, &x));
   find_rest(r, &x);
-  TRY(find_forces(r, &x));
-  TRY(condensed_misfit(x.c, x.rest, x.rc, x.w, &square));
+  PASS(find_forces(r, &x));
+  PASS(condensed_misfit(x.c, x.rest, x.rc, x.w, &square));
   take_loss(r, &x, square);
   if (leaves_none(&r->errors.rounding, 1.0, x.c) && r->nodes.n_row > 0)
-    TRY(find_adjacent_contact(r, &x));
+    PASS(find_adjacent_contact(r, &x));
   forget_strains(r);
-  TRY(check(r, share, x.c));
-done:
-  misfit_free(&x);
-  return st;
+  return check(r, share, x.c);
 }
 
 /* A body moved so far that contact is decided by rounding. */
@@ -304,18 +295,14 @@ static int is_doubtful(const run *r) {
 }
 
 status rounding_find(run *r) {
-  status st = OK;
   r->errors.rounding = (rounding_loss){0};
   r->errors.strained = 0;
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
-  TRY(check_touch(r));
+  PASS(check_touch(r));
   if (!is_doubtful(r)) return OK;
-  TRY(supports_strain(r, &r->errors.strained));
-  timer_enter(STAGE_RECOVERY);
-  st = find(r);
-  timer_leave(STAGE_RECOVERY);
-done:
-  return st;
+  PASS(supports_strain(r, &r->errors.strained));
+  TIMED(STAGE_RECOVERY);
+  return find(r);
 }

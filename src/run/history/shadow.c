@@ -64,7 +64,8 @@ static status copy_arrays(run *b) {
   return OK;
 }
 
-void shadow_free(shadow *b) {
+void shadow_leave(shadow **p) {
+  shadow *b = *p;
   own_array list[OWN];
   if (b == NULL) return;
   list_own(&b->r, list);
@@ -80,18 +81,16 @@ void shadow_free(shadow *b) {
 
 /* Moduli that follow the temperature, and their matrix, are the copy's own. */
 static status own_moduli(const run *r, run *b) {
-  status st = OK;
   if (r->body.moduli.n_own == 0) return OK;
   b->c = NULL;
   b->body.stale = 1;
   b->elastic = (matrices){0};
   b->body.moduli = (moduli){0};
-  st = moduli_new(r->m, r->msh, r->now.temperature, &b->body.moduli);
+  status st = moduli_new(r->m, r->msh, r->now.temperature, &b->body.moduli);
   b->body.moduli.n_own = r->body.moduli.n_own; /* owned also after a failure */
-  TRY(st);
+  PASS(st);
   moduli_domain(&b->body.moduli, r->m, &b->body.d);
-done:
-  return st;
+  return OK;
 }
 
 static status own_points(const run *r, shadow *b) {
@@ -140,18 +139,10 @@ static status solve(run *r, run *b, double t) {
 }
 
 status shadow_at(run *r, double t, shadow **out) {
-  status st = OK;
+  TIMED(STAGE_BETWEEN);
   *out = NULL;
-  timer_enter(STAGE_BETWEEN);
-  TRY(shadow_new(r, out));
-  TRY(solve(r, &(*out)->r, t));
-done:
-  timer_leave(STAGE_BETWEEN);
-  if (st != OK) {
-    shadow_free(*out);
-    *out = NULL;
-  }
-  return st;
+  PASS(shadow_new(r, out));
+  return solve(r, &(*out)->r, t);
 }
 
 static status solve_with(run *r, run *b, const double *more) {
@@ -166,20 +157,16 @@ static status solve_with(run *r, run *b, const double *more) {
 
 status shadow_with(void *run_, const double *more, double *u, double *rc,
                    int *solved) {
-  status st = OK;
   run *r = run_;
-  shadow *b = NULL;
-  timer_enter(STAGE_BETWEEN);
-  TRY(shadow_new(r, &b));
-  TRY(solve_with(r, &b->r, more));
+  ENDS_BY(shadow_leave) shadow *b = NULL;
+  TIMED(STAGE_BETWEEN);
+  PASS(shadow_new(r, &b));
+  PASS(solve_with(r, &b->r, more));
   *solved = b->r.solving.report.outcome > 0;
   memcpy(u, b->r.now.u, r->n_dof * sizeof *u);
   if (r->nodes.n_c > 0)
     memcpy(rc, b->r.now.rc, (size_t)r->nodes.n_c * sizeof *rc);
-done:
-  timer_leave(STAGE_BETWEEN);
-  shadow_free(b);
-  return st;
+  return OK;
 }
 
 run *shadow_run(shadow *b) { return &b->r; }

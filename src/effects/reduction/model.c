@@ -1,8 +1,72 @@
 /*
- * Effects out of the model for a run, and back into it.
+ * The model as the trials read it: scales of the deck, laws at a point; effects
+ * out of it for a run, and back into it.
  */
-#include "effects/reduction/reduction.h"
+#include "effects/reduction/parts.h"
 #include "effects/rows.h"
+
+#include <math.h>
+
+const double reduction_share = 0.1;
+
+double reduction_load_stress(const model *m, const mesh *msh, double young) {
+  double most = 0.0;
+  for (int i = 0; i < m->n.step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k) {
+      const load *l = &m->steps[i].loads.item[k];
+      double value = fabs(l->value.number);
+      if (l->kind == LOAD_TEMPERATURE) continue;
+      if (l->value.formula != NULL || l->kind == LOAD_POINT ||
+          l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY)
+        return 0.0;
+      if (l->kind == LOAD_FIXING) value *= young / msh->size;
+      most = fmax(most, value);
+    }
+  return most;
+}
+
+double reduction_young(const material *mat) {
+  double C = 0.0;
+  for (int i = 0; i < 3; ++i) C = fmax(C, mat->C[7 * i]);
+  return C;
+}
+
+int reduction_has_initial(const model *m) {
+  for (int i = 0; i < m->n.initial; ++i)
+    if (m->initial.lines[i].type != INITIAL_TEMPERATURE) return 1;
+  return m->initial.start.given;
+}
+
+omitted *reduction_row(model *m, int bit, int id) {
+  if (m->reduction.n == NEGLECT_MAX) return NULL;
+  omitted *row = &m->reduction.row[m->reduction.n++];
+  *row = (omitted){.bit = bit, .id = id};
+  return row;
+}
+
+int reduction_kinematics(const model *m, int material_id) {
+  for (int i = 0; i < m->n.section; ++i)
+    if (m->sections[i].material_id == material_id) return m->sections[i].kin;
+  return -1;
+}
+
+double reduction_increments(const step *s, double dt) {
+  return s->kind == STEP_STATIC ? 1.0 : ceil(s->total / dt);
+}
+
+void law_sample_free(law_sample *x) { flow_kind_free(&x->kind); }
+
+status law_sample_at(const material *mat, const law_card *law, kinematics kin,
+                     double t, law_sample *x) {
+  static const double zero[FLOW_VALUE_MAX];
+  law_elastic elastic;
+  law_sample_free(x);
+  PASS(law_elastic_read(&mat->elastic, 0.0, kin, &elastic));
+  PASS(flow_new_kind(&x->kind, law, &elastic));
+  PASS(flow_coefficients(&x->kind, t, 0.0, x->value, &x->p));
+  x->p.ei = x->p.alpha = zero;
+  return OK;
+}
 
 /* Each friction rule of the model once. */
 static void each_rule(model *m, void (*change)(friction_rule *rule)) {
