@@ -232,28 +232,22 @@ static const char *check(const law_card *law, elastic_type type,
   .fastest_rate = fastest_rate, .relaxed = relaxed, .series = series, \
   .dissipation = dissipation, .stored = stored, .check = check
 
+/* clang-format off */
 const law_ops zener_law = {
-    .name = "ZENER",
-    .reference = "Zener 1948",
-    .help = "standard linear solid: a spring and a Kelvin-Voigt unit in series",
-    .fields = zener_fields,
-    .example = "5E4, 1E5",
-    .uses_ei = 1,
-    CHAIN_COMMON};
+  .name = "ZENER", .reference = "Zener 1948",
+  .help = "standard linear solid: a spring and a Kelvin-Voigt unit in series",
+  .example = "5E4, 1E5",
+  .fields = zener_fields, .uses_ei = 1, CHAIN_COMMON};
 
 const law_ops kelvin_law = {
-    .name = "KELVIN",
-    .reference = "Thomson 1865; Voigt 1892",
-    .help = "a spring and Kelvin-Voigt units in series, a unit a line",
-    .terms = kelvin_terms,
-    .min_term = 1,
-    .example = "5E4, 1E5\n2E5, 3E6",
-    CHAIN_COMMON};
+  .name = "KELVIN", .reference = "Thomson 1865; Voigt 1892",
+  .help = "a spring and Kelvin-Voigt units in series, a unit a line",
+  .example = "5E4, 1E5\n2E5, 3E6",
+  .terms = kelvin_terms, .min_term = 1, CHAIN_COMMON};
 
 const law_ops burgers_law = {
-    .name = "BURGERS",
-    .reference = "Burgers 1935",
-    .help = "a spring, a dashpot and a Kelvin-Voigt unit in series",
-    .fields = burgers_fields,
-    .example = "2E6, 5E4, 1E5",
-    CHAIN_COMMON};
+  .name = "BURGERS", .reference = "Burgers 1935",
+  .help = "a spring, a dashpot and a Kelvin-Voigt unit in series",
+  .example = "2E6, 5E4, 1E5",
+  .fields = burgers_fields, CHAIN_COMMON};
+/* clang-format on */

@@ -107,15 +107,12 @@ static int is_warm(const law_card *law) {
   return warm;
 }
 
+/* clang-format off */
 const law_ops hyperbolic_law = {
-    .name = "HYPERBOLIC",
-    .reference = "Garofalo 1963; Abaqus, creep law HYPERB",
-    .help = "creep by a hyperbolic sine of the stress and an Arrhenius factor",
-    .fields = fields,
-    .is_warm = is_warm,
-    .example = "1E-3, 0.02, 3.",
-    .rate = rate,
-    .jacobian = jacobian,
-    .fastest_rate = fastest_rate,
-    .flows = flows,
-    .dissipation = dissipation};
+  .name = "HYPERBOLIC",
+  .reference = "Garofalo 1963; Abaqus, creep law HYPERB",
+  .help = "creep by a hyperbolic sine of the stress and an Arrhenius factor",
+  .example = "1E-3, 0.02, 3.",
+  .fields = fields, .is_warm = is_warm, .rate = rate, .jacobian = jacobian,
+  .fastest_rate = fastest_rate, .flows = flows, .dissipation = dissipation};
+/* clang-format on */

@@ -111,18 +111,12 @@ static const char *check(const law_card *law, elastic_type type,
   return text;
 }
 
+/* clang-format off */
 const law_ops maxwell_law = {
-    .name = "MAXWELL",
-    .reference = "Raous 1981; Cocu, Pratt, Raous 1998, 3.2",
-    .help = "linear viscoelastic fluid: a spring and a dashpot in series",
-    .param_size = sizeof(maxwell),
-    .options = options,
-    .fields = fields,
-    .linear = 1,
-    .example = "2.",
-    .rate = rate,
-    .jacobian = jacobian,
-    .fastest_rate = fastest_rate,
-    .series = series,
-    .dissipation = dissipation,
-    .check = check};
+  .name = "MAXWELL", .reference = "Raous 1981; Cocu, Pratt, Raous 1998, 3.2",
+  .help = "linear viscoelastic fluid: a spring and a dashpot in series",
+  .example = "2.",
+  .param_size = sizeof(maxwell), .options = options, .fields = fields,
+  .linear = 1, .rate = rate, .jacobian = jacobian, .fastest_rate = fastest_rate,
+  .series = series, .dissipation = dissipation, .check = check};
+/* clang-format on */

@@ -150,16 +150,13 @@ static double dissipation(const law_point *p) {
   return q > 0 ? q * creep_of(p, q).rate : 0;
 }
 
+/* clang-format off */
 const law_ops norton_law = {
-    .name = "NORTON",
-    .reference = "Norton 1929; Abaqus, creep laws TIME and STRAIN",
-    .help = "power law creep, with time or strain hardening",
-    .param_size = sizeof(norton),
-    .options = options,
-    .fields = fields,
-    .example = "1E-15, 5., -0.3",
-    .n_alpha = n_alpha,
-    .rate = rate,
-    .jacobian = jacobian,
-    .fastest_rate = fastest_rate,
-    .dissipation = dissipation};
+  .name = "NORTON",
+  .reference = "Norton 1929; Abaqus, creep laws TIME and STRAIN",
+  .help = "power law creep, with time or strain hardening",
+  .example = "1E-15, 5., -0.3",
+  .param_size = sizeof(norton), .options = options, .fields = fields,
+  .n_alpha = n_alpha, .rate = rate, .jacobian = jacobian,
+  .fastest_rate = fastest_rate, .dissipation = dissipation};
+/* clang-format on */

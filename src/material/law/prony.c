@@ -194,20 +194,14 @@ static const char *check(const law_card *law, elastic_type type,
   return text;
 }
 
+/* clang-format off */
 const law_ops prony_law = {
-    .name = "PRONY",
-    .reference = "Prony series as in Abaqus, time domain viscoelasticity",
-    .help = "generalised Maxwell body in shear and bulk, a term a line",
-    .terms = terms,
-    .min_term = 1,
-    .linear = 1,
-    .example = "0.3, 0.1, 0.5\n0.2, 0., 10.\n0.25, 0.3, 200.",
-    .n_alpha = n_alpha,
-    .rate = rate,
-    .jacobian = jacobian,
-    .fastest_rate = fastest_rate,
-    .relaxing = relaxing,
-    .relaxed = relaxed,
-    .dissipation = dissipation,
-    .stored = stored,
-    .check = check};
+  .name = "PRONY",
+  .reference = "Prony series as in Abaqus, time domain viscoelasticity",
+  .help = "generalised Maxwell body in shear and bulk, a term a line",
+  .example = "0.3, 0.1, 0.5\n0.2, 0., 10.\n0.25, 0.3, 200.",
+  .terms = terms, .min_term = 1, .linear = 1, .n_alpha = n_alpha, .rate = rate,
+  .jacobian = jacobian, .fastest_rate = fastest_rate, .relaxing = relaxing,
+  .relaxed = relaxed, .dissipation = dissipation, .stored = stored,
+  .check = check};
+/* clang-format on */

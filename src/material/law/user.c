@@ -95,15 +95,11 @@ static double dissipation(const law_point *p) {
   return q > 0 ? q * formula(p, q, p->alpha[0]) : 0;
 }
 
+/* clang-format off */
 const law_ops user_law = {
-    .name = "USER",
-    .reference = "rate from the deck",
-    .help = "creep of which the rate of strain is a formula of q, p, temp, t",
-    .needs_formula = 1,
-    .example = "\"2E-15*q^5/(1 + 100*p)\"",
-    .n_alpha = n_alpha,
-    .rate = rate,
-    .jacobian = jacobian,
-    .fastest_rate = fastest_rate,
-    .flows = flows,
-    .dissipation = dissipation};
+  .name = "USER", .reference = "rate from the deck",
+  .help = "creep of which the rate of strain is a formula of q, p, temp, t",
+  .example = "\"2E-15*q^5/(1 + 100*p)\"",
+  .needs_formula = 1, .n_alpha = n_alpha, .rate = rate, .jacobian = jacobian,
+  .fastest_rate = fastest_rate, .flows = flows, .dissipation = dissipation};
+/* clang-format on */

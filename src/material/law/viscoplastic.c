@@ -286,32 +286,24 @@ static double stored(const law_point *p) {
   .n_alpha = n_alpha, .rate = rate, .jacobian = jacobian, .flows = flows, \
   .dissipation = dissipation, .stored = stored
 
+/* clang-format off */
 const law_ops bingham_law = {
-    .name = "BINGHAM",
-    .reference = "Bingham 1922; Hohenemser, Prager 1932",
-    .help = "flow beyond a threshold, rate linear in the overstress",
-    .fields = bingham_fields,
-    .example = "100., 1E4",
-    .fastest_rate = fastest_rate,
-    YIELD_COMMON};
+  .name = "BINGHAM", .reference = "Bingham 1922; Hohenemser, Prager 1932",
+  .help = "flow beyond a threshold, rate linear in the overstress",
+  .example = "100., 1E4",
+  .fields = bingham_fields, .fastest_rate = fastest_rate, YIELD_COMMON};
 
 const law_ops perzyna_law = {
-    .name = "PERZYNA",
-    .reference = "Perzyna 1966",
-    .help = "viscoplasticity with isotropic hardening, power of the overstress",
-    .fields = perzyna_fields,
-    .example = "80., 1E4, 1E4, 1.5, 30., 100.",
-    .fastest_rate = fastest_rate,
-    YIELD_COMMON};
+  .name = "PERZYNA", .reference = "Perzyna 1966",
+  .help = "viscoplasticity with isotropic hardening, power of the overstress",
+  .example = "80., 1E4, 1E4, 1.5, 30., 100.",
+  .fields = perzyna_fields, .fastest_rate = fastest_rate, YIELD_COMMON};
 
 const law_ops chaboche_law = {
-    .name = "CHABOCHE",
-    .reference = "Armstrong, Frederick 1966; Chaboche 1989",
-    .help =
-        "viscoplasticity with isotropic and kinematic hardening, a back "
-        "stress a line",
-    .fields = chaboche_fields,
-    .terms = chaboche_terms,
-    .example = "60., 150., 3., 20., 50.\n2E4, 100.\n5E3, 20.",
-    .fastest_rate = fastest_rate,
-    YIELD_COMMON};
+  .name = "CHABOCHE", .reference = "Armstrong, Frederick 1966; Chaboche 1989",
+  .help = "viscoplasticity with isotropic and kinematic hardening, a back "
+          "stress a line",
+  .example = "60., 150., 3., 20., 50.\n2E4, 100.\n5E3, 20.",
+  .fields = chaboche_fields, .terms = chaboche_terms,
+  .fastest_rate = fastest_rate, YIELD_COMMON};
+/* clang-format on */

@@ -200,64 +200,50 @@ static status exponential_advance(const scheme_call *a) {
  * of 1 - z + z^2/2 - z^3/6 + z^4/24 = 1. */
 static const double rk4_limit = 2.78529356340528;
 
+/* clang-format off */
 static const scheme euler = {
-    .name = "EULER",
-    .reference = "CPR98 3.2",
-    .help = "explicit, order 1: one equilibrium a step",
-    .order = 1,
-    .limit = 2.0,
-    .advance = euler_advance,
-    .between = hermite_between};
+  .name = "EULER", .reference = "CPR98 3.2",
+  .help = "explicit, order 1: one equilibrium a step",
+  .order = 1, .limit = 2.0, .advance = euler_advance,
+  .between = hermite_between};
+
 static const scheme heun = {
-    .name = "HEUN",
-    .reference = "Heun 1900",
-    .help = "explicit, order 2, with an estimate of its error: two equilibria",
-    .order = 2,
-    .limit = 2.0,
-    .estimates = 1,
-    .advance = heun_advance,
-    .between = hermite_between};
-static const scheme rk4 = {.name = "RK4",
-                           .reference = "Kutta 1901",
-                           .help = "explicit, order 4: four equilibria",
-                           .order = 4,
-                           .limit = rk4_limit,
-                           .advance = rk4_advance,
-                           .between = hermite_between};
+  .name = "HEUN", .reference = "Heun 1900",
+  .help = "explicit, order 2, with an estimate of its error: two equilibria",
+  .order = 2, .limit = 2.0, .estimates = 1, .advance = heun_advance,
+  .between = hermite_between};
+
+static const scheme rk4 = {
+  .name = "RK4", .reference = "Kutta 1901",
+  .help = "explicit, order 4: four equilibria",
+  .order = 4, .limit = rk4_limit, .advance = rk4_advance,
+  .between = hermite_between};
+
 static const scheme theta = {
-    .name = "THETA",
-    .reference = "Dahlquist 1975, one-leg methods",
-    .help = "implicit, rates at (1 - THETA) old + THETA new; order 2 if 0.5",
-    .order = 1,
-    .has_theta = 1,
-    .advance = theta_advance,
-    .between = hermite_between};
+  .name = "THETA", .reference = "Dahlquist 1975, one-leg methods",
+  .help = "implicit, rates at (1 - THETA) old + THETA new; order 2 if 0.5",
+  .order = 1, .has_theta = 1, .advance = theta_advance,
+  .between = hermite_between};
+
 static const scheme midpoint = {
-    .name = "MIDPOINT",
-    .reference = "Dahlquist 1975, one-leg methods",
-    .help = "THETA with 0.5: order 2, no damping of what is fast",
-    .order = 2,
-    .theta = 0.5,
-    .advance = theta_advance,
-    .between = hermite_between};
+  .name = "MIDPOINT", .reference = "Dahlquist 1975, one-leg methods",
+  .help = "THETA with 0.5: order 2, no damping of what is fast",
+  .order = 2, .theta = 0.5, .advance = theta_advance,
+  .between = hermite_between};
+
 static const scheme backward = {
-    .name = "BACKWARD",
-    .reference = "implicit Euler",
-    .help = "THETA with 1: order 1, damps all that is fast",
-    .order = 1,
-    .theta = 1.0,
-    .advance = theta_advance,
-    .between = hermite_between};
+  .name = "BACKWARD", .reference = "implicit Euler",
+  .help = "THETA with 1: order 1, damps all that is fast",
+  .order = 1, .theta = 1.0, .advance = theta_advance,
+  .between = hermite_between};
+
 static const scheme exponential = {
-    .name = "EXPONENTIAL",
-    .reference =
-        "Zienkiewicz, Watson, King 1968; Taylor, Pister, Goudreau 1970",
-    .help = "exact for linear laws if strains are linear over a step; order 2",
-    .order = 2,
-    .linear_only = 1,
-    .theta = 0.5,
-    .advance = exponential_advance,
-    .between = exponential_between};
+  .name = "EXPONENTIAL",
+  .reference = "Zienkiewicz, Watson, King 1968; Taylor, Pister, Goudreau 1970",
+  .help = "exact for linear laws if strains are linear over a step; order 2",
+  .order = 2, .linear_only = 1, .theta = 0.5, .advance = exponential_advance,
+  .between = exponential_between};
+/* clang-format on */
 
 const scheme *const scheme_list[] = {&euler,    &heun,     &rk4,         &theta,
                                      &midpoint, &backward, &exponential, NULL};
