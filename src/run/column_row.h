@@ -38,6 +38,8 @@ static inline const char *status_word(unsigned k) {
 #define PA "force/length^2"
 #define J "force*length"
 #define COLUMNS(table) ((int)(sizeof table / sizeof *table))
+/* In a row of the effects, which has them. */
+#define COLUMNS_OF(table) .columns = table, .n_column = COLUMNS(table)
 /* A row: name, unit, entity and form, tables, effects, scenes, needs, field,
  * part, value, word, help. */
 /* Place k, from 0, of the columns of the effects in the list of an entity; AT

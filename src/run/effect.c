@@ -3,7 +3,10 @@
  */
 #include "run/effect.h"
 
+#include "base/memory.h"
 #include "run/run.h"
+
+#include <string.h>
 
 int effect_is_on(const effect_ops *e, const model *m) {
   if (e->bit != NO_BIT) return (m->effects >> e->bit & 1u) != 0;
@@ -36,19 +39,31 @@ static int is_due(const run *r, int k) {
   return !r->effects.on[k].borrowed && (e->on.due == NULL || e->on.due(r));
 }
 
+static size_t size_of(const run *r, const effect_ops *e) {
+  return e->size * (e->count == NULL ? 1 : e->count(r));
+}
+
+static status new_state(const run *r, const effect_ops *e, void **own) {
+  char *bytes = NULL;
+  *own = NULL;
+  if (e->size > 0) PASS_NEW(bytes, size_of(r, e));
+  *own = bytes;
+  return OK;
+}
+
 status effects_create(run *r, const effect_ops *const *table) {
-  status st = OK;
   effect_list *list = &r->effects;
-  for (int k = 0; table[k] != NULL && st == OK; ++k) {
+  for (int k = 0; table[k] != NULL; ++k) {
     const effect_ops *e = table[k];
     if (!effect_is_on(e, r->m)) continue;
     list->on[list->n].ops = e;
     list->on[list->n].stage =
         e->own != 0 ? e->own : timer_own_stage(k, e->name);
     void **own = &list->on[list->n++].state;
-    if (e->on.create != NULL) st = e->on.create(r, own);
+    PASS(new_state(r, e, own));
+    if (e->on.create != NULL) PASS(e->on.create(r, own));
   }
-  return st;
+  return OK;
 }
 
 const char *effects_sum_up(const run *r) {
@@ -152,26 +167,30 @@ status effects_keep(run *r, archive *a) {
 }
 
 status effects_copy(const run *from, run *copy) {
-  status st = OK;
   effect_list *list = &copy->effects;
   list->n = 0;
-  for (int k = 0; k < from->effects.n && st == OK; ++k) {
+  for (int k = 0; k < from->effects.n; ++k) {
     const effect_ops *e = from->effects.on[k].ops;
-    void *own = from->effects.on[k].state;
-    list->on[list->n].ops = e;
-    list->on[list->n].stage = from->effects.on[k].stage;
-    list->on[list->n].borrowed = e->on.copy == NULL;
-    list->on[list->n].state = e->on.copy == NULL ? own : NULL;
-    if (e->on.copy != NULL)
-      st = e->on.copy(from, own, copy, &list->on[list->n].state);
-    ++list->n;
+    void *of = from->effects.on[k].state, **own = &list->on[k].state;
+    list->on[list->n++] = from->effects.on[k];
+    list->on[k].borrowed = e->copy_as == COPY_BORROWS && e->on.copy == NULL;
+    if (list->on[k].borrowed) continue;
+    PASS(new_state(from, e, own));
+    if (e->copy_as == COPY_IS_NEW && e->on.create != NULL)
+      PASS(e->on.create(copy, own));
+    if (e->copy_as == COPY_IS_EQUAL) memcpy(*own, of, size_of(from, e));
+    if (e->on.copy != NULL) PASS(e->on.copy(from, of, copy, own));
   }
-  return st;
+  return OK;
 }
 
 void effects_release(run *r) {
-  for (int k = 0; k < r->effects.n; ++k)
-    if (!r->effects.on[k].borrowed && r->effects.on[k].ops->on.release != NULL)
-      r->effects.on[k].ops->on.release(r->effects.on[k].state);
+  for (int k = 0; k < r->effects.n; ++k) {
+    const effect_ops *e = r->effects.on[k].ops;
+    void *own = r->effects.on[k].state;
+    if (r->effects.on[k].borrowed || own == NULL) continue;
+    if (e->on.release != NULL) e->on.release(own);
+    if (e->size > 0) memory_free(own);
+  }
   r->effects.n = 0;
 }

@@ -23,9 +23,15 @@ typedef struct effect_work effect_work; /* the same */
 
 enum { EFFECT_STAGES = 7, NO_BIT = -1 };
 
+/* State of the effect in a copy of the run, which solves a state within the
+ * increment: that of the run, with which the copy poses but accepts nothing; a
+ * new one; a new one with the same bytes; or that of the hook "copy". */
+typedef enum { COPY_BORROWS, COPY_IS_NEW, COPY_IS_EQUAL } effect_copy;
+
 /* Any may be NULL. The stage of the effect is entered around those marked T. */
 typedef struct effect_hooks {
-  /* *own is new and not NULL; it is released also after a failure. */
+  /* *own is new and not NULL, or has been made with the size of the row; it is
+   * released also after a failure. */
   status (*create)(struct run *r, void **own);
   /* 0: initial, accept, show, rewrite have nothing to do at this increment, and
    * are not counted. */
@@ -76,16 +82,17 @@ typedef struct effect_hooks {
   void (*forget)(struct run *r, void *own);
   /* Both ways, in a group of its own. */
   status (*keep)(struct run *r, void *own, archive *a);
-  /* *out: a state for "copy" of the run, which solves a state within the
-   * increment. Without this hook the copy poses with that of the run and
-   * accepts nothing. */
+  /* *out: the state for "copy" of the run, of the size of the row. */
   status (*copy)(const struct run *r, const void *own, struct run *copy,
                  void **out);
-  void (*release)(void *own);
+  void (*release)(void *own); /* what a state with a size owns, or all */
 } effect_hooks;
 
 typedef struct effect_ops {
   const char *name;
+  size_t size; /* of the state, zeroed: bytes times count; 0: of "create" */
+  size_t (*count)(const struct run *r); /* NULL: 1 */
+  effect_copy copy_as;
   int bit; /* EFFECT_BIT_... of the result of required in m->effects, for other
               files; or NO_BIT */
   /* 1: the model requires it; the card or fact that does, or why none does,

@@ -243,17 +243,12 @@ static int requires_inelastic(const model *m, char *why, size_t size) {
                    has_card(m, "VISCO") ? "" : ", but no step is *VISCO");
 }
 
-const effect_ops inelastic_effect = {.name = "inelastic strain",
-                                     .bit = EFFECT_BIT_INELASTIC,
-                                     .required = requires_inelastic,
-                                     .expected = expected,
-                                     .own = STAGE_INELASTIC,
-                                     .inside = 1,
-                                     .far = 1,
-                                     .strains = strains,
-                                     .columns = columns,
-                                     .n_column = COLUMNS(columns),
-                                     .on.prepare = prepare,
-                                     .on.make_step = adapt,
-                                     .on.forget = forget,
-                                     .on.keep = keep};
+/* clang-format off */
+const effect_ops inelastic_effect = {
+  .name = "inelastic strain", .bit = EFFECT_BIT_INELASTIC,
+  .required = requires_inelastic, .expected = expected, .own = STAGE_INELASTIC,
+  .inside = 1, .far = 1, .strains = strains,
+  .on = {.prepare = prepare, .make_step = adapt, .forget = forget,
+         .keep = keep},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -97,9 +97,7 @@ static status test_start(run *r, start_report *s) {
 
 /* u_0 into r->old, before the contact surface is built. */
 static status report_new(run *r, void **self) {
-  start_report *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  start_report *own = *self;
   if (r->course.from != NULL || (r->step != NULL && run_step_id(r) > 0))
     return OK;
   TIMED(effect_stage(&initial_state_effect));
@@ -107,10 +105,7 @@ static status report_new(run *r, void **self) {
   return start_displacements(r->m, r->msh, r->old.u, own);
 }
 
-static void release(void *self) {
-  if (self != NULL) start_report_free(self);
-  memory_free(self);
-}
+static void release(void *self) { start_report_free(self); }
 
 static status start(run *r, void *self) {
   if (run_step_id(r) > 0) return OK;
@@ -134,12 +129,9 @@ static int requires_start(const model *m, char *why, size_t size) {
                    PLACE(m->initial.start.at));
 }
 
-const effect_ops initial_state_effect = {.name = "initial state",
-                                         .bit = EFFECT_BIT_START,
-                                         .required = requires_start,
-                                         .expected = expected,
-                                         .inside = 1,
-                                         .far = 1,
-                                         .on.create = report_new,
-                                         .on.start = start,
-                                         .on.release = release};
+/* clang-format off */
+const effect_ops initial_state_effect = {
+  .name = "initial state", .bit = EFFECT_BIT_START, .required = requires_start,
+  .expected = expected, .inside = 1, .far = 1, .size = sizeof(start_report),
+  .on = {.create = report_new, .start = start, .release = release}};
+/* clang-format on */

@@ -103,18 +103,11 @@ static const column columns[] = {
 {"thermal_work", J, INC, PRINT_ENERGY | AT(4), ON(THERMAL), ANY,
  "thermal_work", 0, thermal_work, NULL,
  "work of the stresses on thermal strains so far"}};
-/* clang-format on */
 
-const effect_ops thermal_effect = {.name = "thermal strain",
-                                   .bit = EFFECT_BIT_THERMAL,
-                                   .required = requires_thermal,
-                                   .expected = expected,
-                                   .own = STAGE_THERMAL,
-                                   .far = 1,
-                                   .strains = strains,
-                                   .columns = columns,
-                                   .n_column = COLUMNS(columns),
-                                   .of_state = 1,
-                                   .on.create = temperatures_new,
-                                   .on.load = heat,
-                                   .on.release = memory_free};
+const effect_ops thermal_effect = {
+  .name = "thermal strain", .bit = EFFECT_BIT_THERMAL,
+  .required = requires_thermal, .expected = expected, .own = STAGE_THERMAL,
+  .far = 1, .strains = strains, .of_state = 1,
+  .on = {.create = temperatures_new, .load = heat, .release = memory_free},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -338,9 +338,7 @@ static status new_arrays(const run *r, friction *own) {
 }
 
 static status friction_new(run *r, void **self) {
-  friction *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  friction *own = *self;
   PASS_NEW(own->left, r->msh->n_node);
   return OK;
 }
@@ -368,10 +366,8 @@ static void forget(run *r, void *self) {
 
 static status friction_copy(const run *r, const void *of, run *copy,
                             void **self) {
-  friction *own = NULL;
+  friction *own = *self;
   const double *distance = ((const friction *)of)->distance;
-  PASS_NEW(own, 1);
-  *self = own;
   PASS(new_arrays(r, own));
   memcpy(own->distance, distance, (size_t)r->nodes.n * sizeof *distance);
   use_arrays(own, copy);
@@ -380,10 +376,8 @@ static status friction_copy(const run *r, const void *of, run *copy,
 
 static void release(void *self) {
   friction *own = self;
-  if (own == NULL) return;
   free_arrays(own);
   memory_free(own->left);
-  memory_free(own);
 }
 
 /* A limit that holds for all times of the step is made now, so that the costs
@@ -519,30 +513,22 @@ static const column columns[] = {
 {"limit", "force", CON, PRINT_CONTACT | AT(2), F, SCENE_ALL,
  NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
  "sliding limit"}};
-/* clang-format on */
 
 /* ---- the rows ----------------------------------------------------------- */
 
-const effect_ops friction_effect = {.name = "friction",
-                                    .bit = EFFECT_BIT_FRICTION,
-                                    .required = requires_friction,
-                                    .expected = expected,
-                                    .own = STAGE_LIMIT,
-                                    .inside = 1,
-                                    .columns = columns,
-                                    .n_column = COLUMNS(columns),
-                                    .of_state = 1,
-                                    .on.create = friction_new,
-                                    .on.prepare = prepare,
-                                    .on.pose = pose,
-                                    .on.accept = add_distance,
-                                    .on.forget = forget,
-                                    .on.keep = keep,
-                                    .on.copy = friction_copy,
-                                    .on.release = release};
+const effect_ops friction_effect = {
+  .name = "friction", .bit = EFFECT_BIT_FRICTION, .required = requires_friction,
+  .expected = expected, .own = STAGE_LIMIT, .inside = 1, .of_state = 1,
+  .size = sizeof(friction),
+  .on = {.create = friction_new, .prepare = prepare, .pose = pose,
+         .accept = add_distance, .forget = forget, .keep = keep,
+         .copy = friction_copy, .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */
 
 /* Its hooks are those of friction. */
-const effect_ops slip_history_effect = {.name = "history of slip",
-                                        .bit = EFFECT_BIT_HISTORY,
-                                        .required = requires_history,
-                                        .expected = expected_history};
+/* clang-format off */
+const effect_ops slip_history_effect = {
+  .name = "history of slip", .bit = EFFECT_BIT_HISTORY,
+  .required = requires_history, .expected = expected_history};
+/* clang-format on */

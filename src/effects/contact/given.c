@@ -73,19 +73,15 @@ static status set_forces(run *r, void *self, double t) {
   return OK;
 }
 
-static status given_new(run *r, void **self) {
-  given_forces *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *self = own;
-  return OK;
-}
-
-static void forget(run *r, void *self) {
+static void release(void *self) {
   given_forces *own = self;
   given_form_free(own->form);
   RELEASE(own->node, own->force, own->all);
   *own = (given_forces){0};
+}
+
+static void forget(run *r, void *self) {
+  release(self);
   r->problem.given = NULL;
 }
 
@@ -106,16 +102,7 @@ static status prepare(run *r, void *self) {
 static status given_copy(const run *r, const void *of, run *copy, void **self) {
   (void)r;
   (void)of;
-  PASS(given_new(copy, self));
   return prepare(copy, *self);
-}
-
-static void release(void *self) {
-  given_forces *own = self;
-  if (own == NULL) return;
-  given_form_free(own->form);
-  RELEASE(own->node, own->force, own->all);
-  memory_free(own);
 }
 
 static status take(run *r, void *self, contact_problem *cp, double **u,
@@ -160,17 +147,12 @@ static int requires_given(const model *m, char *why, size_t size) {
                    PLACE(c->force.at));
 }
 
-const effect_ops given_forces_effect = {.name = "given contact forces",
-                                        .bit = EFFECT_BIT_GIVEN,
-                                        .required = requires_given,
-                                        .expected = expected,
-                                        .inside = 1,
-                                        .far = 1,
-                                        .on.create = given_new,
-                                        .on.prepare = prepare,
-                                        .on.pose = set_forces,
-                                        .on.rewrite = take,
-                                        .on.restore = give,
-                                        .on.forget = forget,
-                                        .on.copy = given_copy,
-                                        .on.release = release};
+/* clang-format off */
+const effect_ops given_forces_effect = {
+  .name = "given contact forces", .bit = EFFECT_BIT_GIVEN,
+  .required = requires_given, .expected = expected, .inside = 1, .far = 1,
+  .size = sizeof(given_forces),
+  .on = {.prepare = prepare, .pose = set_forces,
+         .rewrite = take, .restore = give, .forget = forget, .copy = given_copy,
+         .release = release}};
+/* clang-format on */

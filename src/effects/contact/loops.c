@@ -6,8 +6,6 @@
 #include "effects/rows.h"
 #include "run/run.h"
 
-#include "base/memory.h"
-
 #include <string.h>
 
 #include "run/column_row.h"
@@ -21,20 +19,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static status loops_new(run *r, void **self) {
-  contact_loop *own = NULL;
-  PASS_NEW(own, r->m->n.contact);
-  *self = own;
-  return OK;
-}
-
-static status loops_copy(const run *r, const void *of, run *copy, void **self) {
-  (void)copy;
-  status st = loops_new((run *)r, self);
-  if (st == OK)
-    memcpy(*self, of, (size_t)r->m->n.contact * sizeof(contact_loop));
-  return st;
-}
+static size_t contacts_of(const run *r) { return (size_t)r->m->n.contact; }
 
 static status begin_step(run *r, void *self) {
   contact_loop *loops = self;
@@ -73,8 +58,7 @@ static status find_loops(run *r, void *self) {
 }
 
 static status keep(run *r, void *self, archive *a) {
-  return archive_bytes(a, "loops", self,
-                       (size_t)r->m->n.contact * sizeof(contact_loop));
+  return archive_bytes(a, "loops", self, contacts_of(r) * sizeof(contact_loop));
 }
 
 static const contact_loop *loop_of(const view *v, int id) {
@@ -115,18 +99,11 @@ static const column columns[] = {
  loop_friction_end, NULL, "the same with the forces at the end of increments"},
 {"loop_area", J, LOOP, SCENE_ALL, 0, NULL, 0, loop_area, NULL,
  "friction_work_end since the step began: the area of a loop that closes"}};
-/* clang-format on */
 
-const effect_ops loops_effect = {.name = "table of loops",
-                                 .bit = NO_BIT,
-                                 .required = requires_loops,
-                                 .expected = expected,
-                                 .table = {PRINT_LOOP, PER_CONTACT},
-                                 .on.create = loops_new,
-                                 .on.begin_step = begin_step,
-                                 .on.accept = find_loops,
-                                 .on.keep = keep,
-                                 .on.copy = loops_copy,
-                                 .on.release = memory_free,
-                                 .columns = columns,
-                                 .n_column = COLUMNS(columns)};
+const effect_ops loops_effect = {
+  .name = "table of loops", .bit = NO_BIT, .required = requires_loops,
+  .expected = expected, .table = {PRINT_LOOP, PER_CONTACT},
+  .size = sizeof(contact_loop), .count = contacts_of, .copy_as = COPY_IS_EQUAL,
+  .on = {.begin_step = begin_step, .accept = find_loops, .keep = keep},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -48,9 +48,9 @@ static int requires_motion(const model *m, char *why, size_t size) {
   return plan_says(0, why, size, "no *OBSTACLE moves");
 }
 
-const effect_ops moving_obstacle_effect = {.name = "moving obstacle",
-                                           .bit = NO_BIT,
-                                           .required = requires_motion,
-                                           .expected = expected,
-                                           .on.prepare = prepare,
-                                           .on.pose = pose};
+/* clang-format off */
+const effect_ops moving_obstacle_effect = {
+  .name = "moving obstacle", .bit = NO_BIT, .required = requires_motion,
+  .expected = expected,
+  .on = {.prepare = prepare, .pose = pose}};
+/* clang-format on */

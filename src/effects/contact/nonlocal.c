@@ -154,9 +154,7 @@ static status follow_zone(run *r, void *self, int *again) {
 /* ---- its state ---------------------------------------------------------- */
 
 static status nonlocal_new(run *r, void **self) {
-  nonlocal *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  nonlocal *own = *self;
   PASS_NEW(own->average, r->m->n.contact);
   return OK;
 }
@@ -172,21 +170,16 @@ static void forget(run *r, void *self) {
 
 static status nonlocal_copy(const run *r, const void *of, run *copy,
                             void **self) {
-  nonlocal *own = NULL;
   (void)r;
   (void)copy;
-  PASS_NEW(own, 1);
-  *own = (nonlocal){((const nonlocal *)of)->average, 1, {0}};
-  *self = own;
+  *(nonlocal *)*self = (nonlocal){((const nonlocal *)of)->average, 1, {0}};
   return OK;
 }
 
 static void release(void *self) {
   nonlocal *own = self;
-  if (own == NULL) return;
   zone_free(&own->zone);
   if (!own->borrowed) memory_free(own->average);
-  memory_free(own);
 }
 
 /* ---- the row ------------------------------------------------------------ */
@@ -203,17 +196,12 @@ static int requires_average(const model *m, char *why, size_t size) {
                             "no friction law with an average", why, size);
 }
 
-const effect_ops nonlocal_effect = {.name = "nonlocal average",
-                                    .bit = EFFECT_BIT_NONLOCAL,
-                                    .required = requires_average,
-                                    .expected = expected,
-                                    .own = STAGE_NONLOCAL,
-                                    .inside = 1,
-                                    .on.create = nonlocal_new,
-                                    .on.prepare = make_averages,
-                                    .on.describe = count_entries,
-                                    .on.pose = zone_start,
-                                    .on.found = follow_zone,
-                                    .on.forget = forget,
-                                    .on.copy = nonlocal_copy,
-                                    .on.release = release};
+/* clang-format off */
+const effect_ops nonlocal_effect = {
+  .name = "nonlocal average", .bit = EFFECT_BIT_NONLOCAL,
+  .required = requires_average, .expected = expected, .own = STAGE_NONLOCAL,
+  .inside = 1, .size = sizeof(nonlocal),
+  .on = {.create = nonlocal_new, .prepare = make_averages,
+         .describe = count_entries, .pose = zone_start, .found = follow_zone,
+         .forget = forget, .copy = nonlocal_copy, .release = release}};
+/* clang-format on */

@@ -15,7 +15,6 @@
 #include "run/column_row.h"
 
 typedef struct pair_forces {
-  int dim;
   double *force;  /* [dim*n_node] of the contact on the bodies, N */
   double *moment; /* [n_contact] left by both sides, N m */
 } pair_forces;
@@ -47,25 +46,15 @@ static status expected(const plan_sizes *s, effect_work *w) {
 }
 
 static status pairs_new(run *r, void **self) {
-  pair_forces *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
-  own->dim = r->msh->dim;
+  pair_forces *own = *self;
   PASS_NEW(own->force, r->n_dof);
   PASS_NEW(own->moment, r->m->n.contact);
   return OK;
 }
 
-static status pairs_copy(const run *r, const void *of, run *copy, void **self) {
-  (void)of;
-  (void)copy;
-  return pairs_new((run *)r, self);
-}
-
 static void release(void *self) {
   pair_forces *own = self;
-  if (own != NULL) RELEASE(own->force, own->moment);
-  memory_free(own);
+  RELEASE(own->force, own->moment);
 }
 
 /* Arm of row a of contact node i, from its master's place to its own, m. */
@@ -146,16 +135,11 @@ static const column columns[] = {
  NEEDS_TOTALS, "moment_of_both", 0, moment_left, NULL,
  "moment left by the forces on both sides of a pair: tangential forces across "
  "a gap"}};
-/* clang-format on */
 
-const effect_ops pairs_effect = {.name = "bodies in contact",
-                                 .bit = NO_BIT,
-                                 .required = requires_pairs,
-                                 .expected = expected,
-                                 .own = STAGE_COUPLING,
-                                 .on.create = pairs_new,
-                                 .on.accept = find_forces,
-                                 .on.copy = pairs_copy,
-                                 .on.release = release,
-                                 .columns = columns,
-                                 .n_column = COLUMNS(columns)};
+const effect_ops pairs_effect = {
+  .name = "bodies in contact", .bit = NO_BIT, .required = requires_pairs,
+  .expected = expected, .own = STAGE_COUPLING,
+  .size = sizeof(pair_forces), .copy_as = COPY_IS_NEW,
+  .on = {.create = pairs_new, .accept = find_forces, .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */

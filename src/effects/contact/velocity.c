@@ -3,7 +3,6 @@
  * increment (CPR98, problem N3).
  */
 #include "contact/formulation.h"
-#include "base/memory.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "run/run.h"
@@ -14,26 +13,8 @@ typedef struct velocity {
   contact_problem before; /* what was rewritten last */
 } velocity;
 
-static status velocity_new(run *r, void **self) {
-  velocity *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *self = own;
-  return OK;
-}
-
-static status velocity_copy(const run *r, const void *of, run *copy,
-                            void **self) {
-  (void)r;
-  (void)of;
-  return velocity_new(copy, self);
-}
-
 static void release(void *self) {
-  velocity *own = self;
-  if (own == NULL) return;
-  velocity_form_free(own->form);
-  memory_free(own);
+  velocity_form_free(((velocity *)self)->form);
 }
 
 /* The last equilibrium, from which the increment and its slip are counted:
@@ -92,14 +73,10 @@ static int requires_velocity(const model *m, char *why, size_t size) {
   return 0;
 }
 
-const effect_ops velocity_effect = {.name = "velocity form",
-                                    .bit = NO_BIT,
-                                    .required = requires_velocity,
-                                    .expected = expected,
-                                    .own = STAGE_VELOCITY,
-                                    .on.create = velocity_new,
-                                    .on.due = due,
-                                    .on.rewrite = take,
-                                    .on.restore = give,
-                                    .on.copy = velocity_copy,
-                                    .on.release = release};
+/* clang-format off */
+const effect_ops velocity_effect = {
+  .name = "velocity form", .bit = NO_BIT, .required = requires_velocity,
+  .expected = expected, .own = STAGE_VELOCITY,
+  .size = sizeof(velocity), .copy_as = COPY_IS_NEW,
+  .on = {.due = due, .rewrite = take, .restore = give, .release = release}};
+/* clang-format on */

@@ -45,20 +45,6 @@ static size_t length_of(const run *r) {
   return (size_t)r->msh->dim * (size_t)r->msh->n_node;
 }
 
-static status wear_new(run *r, void **self) {
-  double *depth = NULL;
-  PASS_NEW(depth, length_of(r));
-  *self = depth;
-  return OK;
-}
-
-static status wear_copy(const run *r, const void *of, run *copy, void **self) {
-  (void)copy;
-  status st = wear_new((run *)r, self);
-  if (st == OK) memcpy(*self, of, length_of(r) * sizeof(double));
-  return st;
-}
-
 /* The contact whose normal row a of node i is, or -1: a tangent. */
 static int normal_of(const contact_surface *s, int i, int a) {
   return a == 0 ? s->contact_id[i] : s->side_id[(s->dim - 1) * i + a - 1];
@@ -194,21 +180,12 @@ static const column columns[] = {
 {"worn_volume", "length^3", PER_CONTACT, AS_REAL, PRINT_TOTALS, C, SCENE_ALL,
  NEEDS_TOTALS, "worn_volume", 0, contact_volume, NULL,
  "volume worn off so far"}};
-/* clang-format on */
 
-const effect_ops wear_effect = {.name = "wear",
-                                .bit = NO_BIT,
-                                .required = requires_wear,
-                                .expected = expected,
-                                .sums_up =
-                                    "wear of half the increments is not "
-                                    "compared",
-                                .table = {PRINT_WEAR, PER_CONTACT_NODE},
-                                .on.create = wear_new,
-                                .on.pose = open_gaps,
-                                .on.accept = wear_off,
-                                .on.keep = keep,
-                                .on.copy = wear_copy,
-                                .on.release = memory_free,
-                                .columns = columns,
-                                .n_column = COLUMNS(columns)};
+const effect_ops wear_effect = {
+  .name = "wear", .bit = NO_BIT, .required = requires_wear,
+  .expected = expected, .table = {PRINT_WEAR, PER_CONTACT_NODE},
+  .sums_up = "wear of half the increments is not compared",
+  .size = sizeof(double), .count = length_of, .copy_as = COPY_IS_EQUAL,
+  .on = {.pose = open_gaps, .accept = wear_off, .keep = keep},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -439,20 +439,6 @@ static status expected(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static status zones_new(run *r, void **self) {
-  zone_list *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *self = own;
-  return OK;
-}
-
-static status zones_copy(const run *r, const void *of, run *copy, void **self) {
-  (void)copy;
-  (void)of;
-  return zones_new((run *)r, self);
-}
-
 static int zones_due(const run *r) {
   const int within = r->course.shadow;
   return r->nodes.n > 0 && table_is_due(r->step, PRINT_ZONES, r->now.t,
@@ -460,12 +446,7 @@ static int zones_due(const run *r) {
                                         within ? 0 : r->at.last);
 }
 
-static void zones_free(void *self) {
-  zone_list *own = self;
-  if (own == NULL) return;
-  memory_free(own->zone);
-  memory_free(own);
-}
+static void zones_free(void *self) { memory_free(((zone_list *)self)->zone); }
 
 static int zones_items(const void *self) {
   return ((const zone_list *)self)->n;
@@ -521,19 +502,11 @@ static const column columns[] = {
  "length along the contact line"},
 {"area", "length^2", ZONE, SCENE_ALL, 0, NULL, 0, zone_area, NULL,
  "area of the zone, of the whole turn in axisymmetry"}};
-/* clang-format on */
 
-const effect_ops zones_effect = {.name = "table of zones",
-                                 .bit = NO_BIT,
-                                 .required = requires_zones,
-                                 .expected = expected,
-                                 .own = STAGE_ZONES,
-                                 .table = {PRINT_ZONES, PER_ZONE},
-                                 .on.create = zones_new,
-                                 .on.due = zones_due,
-                                 .on.accept = find_zones,
-                                 .on.copy = zones_copy,
-                                 .on.release = zones_free,
-                                 .columns = columns,
-                                 .n_column = COLUMNS(columns),
-                                 .items = zones_items};
+const effect_ops zones_effect = {
+  .name = "table of zones", .bit = NO_BIT, .required = requires_zones,
+  .expected = expected, .own = STAGE_ZONES, .table = {PRINT_ZONES, PER_ZONE},
+  .items = zones_items, .size = sizeof(zone_list), .copy_as = COPY_IS_NEW,
+  .on = {.due = zones_due, .accept = find_zones, .release = zones_free},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -181,47 +181,33 @@ static const column reaction_columns[] = {
 {"reaction_z", "force", NODE, REACT(SCENE_SOLID), "reaction", 2, reaction,
  NULL, "force of the support on the body"}};
 
+/* clang-format off */
 const effect_ops finite_elements_effect = {
-    .name = "finite elements",
-    .bit = EFFECT_BIT_MESH,
-    .required = requires_mesh,
-    .expected = elements,
-    .own = STAGE_ASSEMBLY,
-    .more = {STAGE_ORDERING, STAGE_FACTOR, STAGE_LOAD, STAGE_RECOVERY,
-             STAGE_ENERGY}};
+  .name = "finite elements", .bit = EFFECT_BIT_MESH, .required = requires_mesh,
+  .expected = elements, .own = STAGE_ASSEMBLY,
+  .more = {STAGE_ORDERING, STAGE_FACTOR, STAGE_LOAD, STAGE_RECOVERY,
+           STAGE_ENERGY}};
+
 const effect_ops unilateral_contact_effect = {
-    .name = "unilateral contact",
-    .bit = EFFECT_BIT_CONTACT,
-    .required = requires_contact,
-    .expected = unilateral,
-    .own = STAGE_CONTACT,
-    .more = {STAGE_SURFACE, STAGE_CONDENSE, STAGE_PROBLEM}};
+  .name = "unilateral contact", .bit = EFFECT_BIT_CONTACT,
+  .required = requires_contact, .expected = unilateral, .own = STAGE_CONTACT,
+  .more = {STAGE_SURFACE, STAGE_CONDENSE, STAGE_PROBLEM}};
+
 const effect_ops tangents_effect = {
-    .name = "tangential unknowns",
-    .bit = EFFECT_BIT_TANGENTS,
-    .required = requires_tangents,
-    .expected = tangents,
-    .own = STAGE_NONE,
-    .within = "unilateral contact"};
+  .name = "tangential unknowns", .bit = EFFECT_BIT_TANGENTS,
+  .required = requires_tangents, .expected = tangents, .own = STAGE_NONE,
+  .within = "unilateral contact"};
+
 const effect_ops body_forces_effect = {
-    .far = 1,
-    .name = "body forces",
-    .bit = EFFECT_BIT_BODY,
-    .required = requires_body,
-    .expected = body,
-    .own = STAGE_BODY};
+  .name = "body forces", .bit = EFFECT_BIT_BODY,
+  .required = requires_body, .expected = body, .own = STAGE_BODY, .far = 1};
+
 const effect_ops stresses_effect = {
-    .name = "stresses",
-    .bit = EFFECT_BIT_STRESS,
-    .required = requires_stress,
-    .expected = stresses,
-    .own = STAGE_STRESS};
+  .name = "stresses", .bit = EFFECT_BIT_STRESS, .required = requires_stress,
+  .expected = stresses, .own = STAGE_STRESS};
+
 const effect_ops reactions_effect = {
-    .name = "reactions",
-    .bit = EFFECT_BIT_REACTION,
-    .required = requires_reaction,
-    .expected = reactions,
-    .own = STAGE_REACTION,
-    .columns = reaction_columns,
-    .n_column = COLUMNS(reaction_columns)};
+  .name = "reactions", .bit = EFFECT_BIT_REACTION,
+  .required = requires_reaction, .expected = reactions, .own = STAGE_REACTION,
+  COLUMNS_OF(reaction_columns)};
 /* clang-format on */

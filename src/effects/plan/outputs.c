@@ -144,28 +144,20 @@ static status listing(const plan_sizes *s, effect_work *w) {
 }
 
 /* clang-format off */
+/* clang-format off */
 const effect_ops fields_effect = {
-    .name = "fields in JOB.h5",
-    .bit = NO_BIT,
-    .required = requires_fields,
-    .expected = fields,
-    .own = STAGE_HDF5};
+  .name = "fields in JOB.h5", .bit = NO_BIT, .required = requires_fields,
+  .expected = fields, .own = STAGE_HDF5};
+
 const effect_ops condensed_problems_effect = {
-    .name = "condensed problems",
-    .bit = NO_BIT,
-    .required = requires_condensed,
-    .expected = condensed_problems,
-    .own = STAGE_FCLIB};
+  .name = "condensed problems", .bit = NO_BIT, .required = requires_condensed,
+  .expected = condensed_problems, .own = STAGE_FCLIB};
+
 const effect_ops restart_effect = {
-    .name = "restart",
-    .bit = NO_BIT,
-    .required = requires_restart,
-    .expected = restart,
-    .own = STAGE_RESTART};
+  .name = "restart", .bit = NO_BIT, .required = requires_restart,
+  .expected = restart, .own = STAGE_RESTART};
+
 const effect_ops listing_effect = {
-    .name = "listing, .sta, .cvg",
-    .bit = NO_BIT,
-    .required = requires_always,
-    .expected = listing,
-    .own = STAGE_LISTING};
+  .name = "listing, .sta, .cvg", .bit = NO_BIT, .required = requires_always,
+  .expected = listing, .own = STAGE_LISTING};
 /* clang-format on */
