@@ -166,54 +166,27 @@ VALUE(inelastic_stored, v->s->energy.stored)
 #define ELEM  PER_ELEMENT, AS_REAL
 #define FLOW(scenes) \
   PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), scenes, NEEDS_FLOW
-#define ALPHA \
-  PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), SCENE_ALL, \
-  NEEDS_FLOW | NEEDS_ALPHA
+#define EI(name, scenes, part, help) \
+  {name, "-", ELEM, FLOW(scenes), name, part, inelastic, NULL, help}
+#define EXTENSION "inelastic strain"
+#define SHEAR "inelastic shear strain, engineering"
+#define ALPHA(no) \
+  {"alpha_" #no, "-", ELEM, PRINT_ELEMENTS, ON(STRESS) | ON(INELASTIC), \
+   SCENE_ALL, NEEDS_FLOW | NEEDS_ALPHA, "alpha_" #no, no - 1, internal, NULL, \
+   "internal variable of the law, in its unit"}
 static const column columns[] = {
-{"ei_xx", "-", ELEM, FLOW(CART), "ei_xx", 0, inelastic, NULL,
- "inelastic strain"},
-{"ei_yy", "-", ELEM, FLOW(CART), "ei_yy", 1, inelastic, NULL,
- "inelastic strain"},
-{"ei_zz", "-", ELEM, FLOW(CART), "ei_zz", 2, inelastic, NULL,
- "inelastic strain"},
-{"ei_xy", "-", ELEM, FLOW(CART), "ei_xy", 3, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"ei_yz", "-", ELEM, FLOW(SCENE_SOLID), "ei_yz", 4, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"ei_zx", "-", ELEM, FLOW(SCENE_SOLID), "ei_zx", 5, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"ei_rr", "-", ELEM, FLOW(SCENE_AXI), "ei_rr", 0, inelastic, NULL,
- "inelastic strain"},
-{"ei_zz", "-", ELEM, FLOW(SCENE_AXI), "ei_zz", 1, inelastic, NULL,
- "inelastic strain"},
-{"ei_tt", "-", ELEM, FLOW(SCENE_AXI), "ei_tt", 2, inelastic, NULL,
- "inelastic strain"},
-{"ei_rz", "-", ELEM, FLOW(SCENE_AXI), "ei_rz", 3, inelastic, NULL,
- "inelastic shear strain, engineering"},
-{"alpha_1", "-", ELEM, ALPHA, "alpha_1", 0, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_2", "-", ELEM, ALPHA, "alpha_2", 1, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_3", "-", ELEM, ALPHA, "alpha_3", 2, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_4", "-", ELEM, ALPHA, "alpha_4", 3, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_5", "-", ELEM, ALPHA, "alpha_5", 4, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_6", "-", ELEM, ALPHA, "alpha_6", 5, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_7", "-", ELEM, ALPHA, "alpha_7", 6, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_8", "-", ELEM, ALPHA, "alpha_8", 7, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_9", "-", ELEM, ALPHA, "alpha_9", 8, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_10", "-", ELEM, ALPHA, "alpha_10", 9, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_11", "-", ELEM, ALPHA, "alpha_11", 10, internal, NULL,
- "internal variable of the law, in its unit"},
-{"alpha_12", "-", ELEM, ALPHA, "alpha_12", 11, internal, NULL,
- "internal variable of the law, in its unit"},
+EI("ei_xx", CART, 0, EXTENSION),
+EI("ei_yy", CART, 1, EXTENSION),
+EI("ei_zz", CART, 2, EXTENSION),
+EI("ei_xy", CART, 3, SHEAR),
+EI("ei_yz", SCENE_SOLID, 4, SHEAR),
+EI("ei_zx", SCENE_SOLID, 5, SHEAR),
+EI("ei_rr", SCENE_AXI, 0, EXTENSION),
+EI("ei_zz", SCENE_AXI, 1, EXTENSION),
+EI("ei_tt", SCENE_AXI, 2, EXTENSION),
+EI("ei_rz", SCENE_AXI, 3, SHEAR),
+ALPHA(1), ALPHA(2), ALPHA(3), ALPHA(4), ALPHA(5), ALPHA(6),
+ALPHA(7), ALPHA(8), ALPHA(9), ALPHA(10), ALPHA(11), ALPHA(12),
 {"inelastic_work", J, INC, PRINT_ENERGY | AT(5), ON(INELASTIC), ANY,
  "inelastic_work", 0, inelastic_work, NULL,
  "work of the stresses on inelastic strains so far, trapezoidal"},

@@ -463,7 +463,15 @@ static double slip_direction(const view *v, int id, int part) {
 
 /* clang-format off */
 #define CON   PER_CONTACT_NODE, AS_REAL
-#define SLIDES(scenes) PRINT_CONTACT | AT(2), F, scenes, NEEDS_PLACE
+#define SLIP(name, scene, part) \
+  {name, "length", CON, PRINT_CONTACT | AT(1), F, scene, NEEDS_SURFACE, name, \
+   part, contact_slip, NULL, "slip of the increment; *STATIC: from the origin"}
+#define SLIDE(name, scene, part) \
+  {name, "length", CON, AT(2), F, scene, NEEDS_PLACE, "slip_vector", part, \
+   contact_slide, NULL, "slip of the increment in global components"}
+#define DIRECTION(name, scene, part) \
+  {name, "-", CON, PRINT_CONTACT | AT(2), F, scene, NEEDS_PLACE, NULL, part, \
+   slip_direction, NULL, "direction of the slip, 0 where there is none"}
 static const column columns[] = {
 {"limit_updates", "-", PER_INCREMENT, AS_COUNT, AT(1), F, ANY,
  "limit_updates", 0, limit_updates, NULL,
@@ -473,43 +481,17 @@ static const column columns[] = {
 {"friction_work_end", J, INC, PRINT_ENERGY | AT(3), F, ANY,
  "friction_work_end", 0, friction_end, NULL,
  "the same with the forces at the end of increments"},
-{"slip", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_FLAT, NEEDS_SURFACE,
- "slip", 0, contact_slip, NULL,
- "slip of the increment; *STATIC: from the origin"},
-{"slip_1", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_SOLID, NEEDS_SURFACE,
- "slip_1", 0, contact_slip, NULL,
- "slip of the increment; *STATIC: from the origin"},
-{"slip_2", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_SOLID, NEEDS_SURFACE,
- "slip_2", 1, contact_slip, NULL,
- "slip of the increment; *STATIC: from the origin"},
+SLIP("slip", SCENE_FLAT, 0),
+SLIP("slip_1", SCENE_SOLID, 0), SLIP("slip_2", SCENE_SOLID, 1),
 {"slip_distance", "length", CON, PRINT_CONTACT | AT(1), F, SCENE_ALL,
  NEEDS_DISTANCE, "slip_distance", 0, slip_distance, NULL,
  "length of all slip so far"},
-{"slip_x", "length", CON, AT(2), F, CART, NEEDS_PLACE,
- "slip_vector", 0, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_r", "length", CON, AT(2), F, SCENE_AXI, NEEDS_PLACE,
- "slip_vector", 0, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_y", "length", CON, AT(2), F, CART, NEEDS_PLACE,
- "slip_vector", 1, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_z", "length", CON, AT(2), F, SCENE_AXI, NEEDS_PLACE,
- "slip_vector", 1, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_z", "length", CON, AT(2), F, SCENE_SOLID, NEEDS_PLACE,
- "slip_vector", 2, contact_slide,
- NULL, "slip of the increment in global components"},
-{"slip_dir_x", "-", CON, SLIDES(CART), NULL, 0, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_r", "-", CON, SLIDES(SCENE_AXI), NULL, 0, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_y", "-", CON, SLIDES(CART), NULL, 1, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_z", "-", CON, SLIDES(SCENE_AXI), NULL, 1, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
-{"slip_dir_z", "-", CON, SLIDES(SCENE_SOLID), NULL, 2, slip_direction, NULL,
- "direction of the slip, 0 where there is none"},
+SLIDE("slip_x", CART, 0), SLIDE("slip_r", SCENE_AXI, 0),
+SLIDE("slip_y", CART, 1), SLIDE("slip_z", SCENE_AXI, 1),
+SLIDE("slip_z", SCENE_SOLID, 2),
+DIRECTION("slip_dir_x", CART, 0), DIRECTION("slip_dir_r", SCENE_AXI, 0),
+DIRECTION("slip_dir_y", CART, 1), DIRECTION("slip_dir_z", SCENE_AXI, 1),
+DIRECTION("slip_dir_z", SCENE_SOLID, 2),
 {"limit", "force", CON, PRINT_CONTACT | AT(2), F, SCENE_ALL,
  NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
  "sliding limit"}};

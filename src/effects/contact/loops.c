@@ -76,23 +76,21 @@ VALUE(loop_area, loop_of(v, id)->friction_end - loop_of(v, id)->start_end)
 
 /* clang-format off */
 #define LOOP PER_CONTACT, AS_REAL, PRINT_LOOP, C
+#define WAY(name, scene, part) \
+  {name, "length", LOOP, scene, 0, NULL, part, loop_way, NULL, \
+   "mean displacement of the obstacle at the nodes"}
+#define MEAN(name, scene, part) \
+  {name, "length", LOOP, scene, 0, NULL, part, loop_u_t, NULL, \
+   "mean tangential displacement of the contact nodes"}
 static const column columns[] = {
 {"time", "time", LOOP, SCENE_ALL, 0, NULL, 0, loop_time, NULL,
  "end of the increment"},
-{"way", "length", LOOP, SCENE_FLAT, 0, NULL, 0, loop_way, NULL,
- "mean displacement of the obstacle at the nodes"},
-{"way_1", "length", LOOP, SCENE_SOLID, 0, NULL, 0, loop_way, NULL,
- "mean displacement of the obstacle at the nodes"},
-{"way_2", "length", LOOP, SCENE_SOLID, 0, NULL, 1, loop_way, NULL,
- "mean displacement of the obstacle at the nodes"},
+WAY("way", SCENE_FLAT, 0), WAY("way_1", SCENE_SOLID, 0),
+WAY("way_2", SCENE_SOLID, 1),
 {"angle", "rad", LOOP, CART, NEEDS_TORQUE, NULL, 0, loop_angle,
  NULL, "angle of the obstacle"},
-{"mean_u_t", "length", LOOP, SCENE_FLAT, 0, NULL, 0, loop_u_t, NULL,
- "mean tangential displacement of the contact nodes"},
-{"mean_u_t1", "length", LOOP, SCENE_SOLID, 0, NULL, 0, loop_u_t, NULL,
- "mean tangential displacement of the contact nodes"},
-{"mean_u_t2", "length", LOOP, SCENE_SOLID, 0, NULL, 1, loop_u_t, NULL,
- "mean tangential displacement of the contact nodes"},
+MEAN("mean_u_t", SCENE_FLAT, 0), MEAN("mean_u_t1", SCENE_SOLID, 0),
+MEAN("mean_u_t2", SCENE_SOLID, 1),
 {"friction_work", J, LOOP, SCENE_ALL, 0, NULL, 0, loop_friction, NULL,
  "dissipated by friction so far, trapezoidal"},
 {"friction_work_end", J, LOOP, SCENE_ALL, 0, NULL, 0,

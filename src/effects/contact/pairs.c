@@ -117,20 +117,14 @@ VALUE(contact_force, forces_of(v)->force[at(v->msh->dim, id, part)])
 VALUE(moment_left, forces_of(v)->moment[id])
 
 /* clang-format off */
-#define NODE PER_NODE, AS_REAL, PRINT_NODES, C
-static const char on_both[] = "nodal force of the contacts on the body, on "
-                              "both sides of pairs";
+#define FORCE(name, scene, part) \
+  {name, "force", PER_NODE, AS_REAL, PRINT_NODES, C, scene, 0, \
+   "contact_force", part, contact_force, NULL, \
+   "nodal force of the contacts on the body, on both sides of pairs"}
 static const column columns[] = {
-{"contact_x", "force", NODE, CART, 0, "contact_force", 0, contact_force, NULL,
- on_both},
-{"contact_r", "force", NODE, SCENE_AXI, 0, "contact_force", 0, contact_force,
- NULL, on_both},
-{"contact_y", "force", NODE, CART, 0, "contact_force", 1, contact_force, NULL,
- on_both},
-{"contact_z", "force", NODE, SCENE_AXI, 0, "contact_force", 1, contact_force,
- NULL, on_both},
-{"contact_z", "force", NODE, SCENE_SOLID, 0, "contact_force", 2, contact_force,
- NULL, on_both},
+FORCE("contact_x", CART, 0), FORCE("contact_r", SCENE_AXI, 0),
+FORCE("contact_y", CART, 1), FORCE("contact_z", SCENE_AXI, 1),
+FORCE("contact_z", SCENE_SOLID, 2),
 {"moment_of_both", J, PER_CONTACT, AS_REAL, PRINT_TOTALS, C, CART,
  NEEDS_TOTALS, "moment_of_both", 0, moment_left, NULL,
  "moment left by the forces on both sides of a pair: tangential forces across "

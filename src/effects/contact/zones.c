@@ -475,6 +475,8 @@ static const char *zone_contact_name(const view *v, int id) {
 
 /* clang-format off */
 #define ZONE PER_ZONE, AS_REAL, PRINT_ZONES, C
+#define EDGE(name, scene, part, at, help) \
+  {name, "length", ZONE, scene, 0, NULL, part, at, NULL, help}
 static const column columns[] = {
 {"contact", "-", PER_ZONE, AS_WORD, PRINT_ZONES, C, SCENE_ALL, 0,
  NULL, 0, zone_contact_no, zone_contact_name, "name of the *CONTACT"},
@@ -482,22 +484,14 @@ static const column columns[] = {
  0, zone_kind, zone_word, "OPEN, SLIP, STICK; as number 0, 1, 2"},
 {"direction", "-", PER_ZONE, AS_COUNT, PRINT_ZONES, F, SCENE_FLAT, 0,
  NULL, 0, zone_direction, NULL, "sign of the slip along the tangent"},
-{"x_from", "length", ZONE, SCENE_PLANE, 0, NULL, 0, zone_from, NULL,
- "where the zone begins"},
-{"y_from", "length", ZONE, SCENE_PLANE, 0, NULL, 1, zone_from, NULL,
- "where the zone begins"},
-{"x_to", "length", ZONE, SCENE_PLANE, 0, NULL, 0, zone_to, NULL,
- "where the zone ends"},
-{"y_to", "length", ZONE, SCENE_PLANE, 0, NULL, 1, zone_to, NULL,
- "where the zone ends"},
-{"r_from", "length", ZONE, SCENE_AXI, 0, NULL, 0, zone_from, NULL,
- "where the zone begins"},
-{"z_from", "length", ZONE, SCENE_AXI, 0, NULL, 1, zone_from, NULL,
- "where the zone begins"},
-{"r_to", "length", ZONE, SCENE_AXI, 0, NULL, 0, zone_to, NULL,
- "where the zone ends"},
-{"z_to", "length", ZONE, SCENE_AXI, 0, NULL, 1, zone_to, NULL,
- "where the zone ends"},
+EDGE("x_from", SCENE_PLANE, 0, zone_from, "where the zone begins"),
+EDGE("y_from", SCENE_PLANE, 1, zone_from, "where the zone begins"),
+EDGE("x_to", SCENE_PLANE, 0, zone_to, "where the zone ends"),
+EDGE("y_to", SCENE_PLANE, 1, zone_to, "where the zone ends"),
+EDGE("r_from", SCENE_AXI, 0, zone_from, "where the zone begins"),
+EDGE("z_from", SCENE_AXI, 1, zone_from, "where the zone begins"),
+EDGE("r_to", SCENE_AXI, 0, zone_to, "where the zone ends"),
+EDGE("z_to", SCENE_AXI, 1, zone_to, "where the zone ends"),
 {"extent", "length", ZONE, SCENE_FLAT, 0, NULL, 0, zone_length, NULL,
  "length along the contact line"},
 {"area", "length^2", ZONE, SCENE_ALL, 0, NULL, 0, zone_area, NULL,

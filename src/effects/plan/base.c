@@ -167,21 +167,15 @@ int plan_requires_accuracy(const model *m, const char *word,
 VALUE(reaction, v->s->body.reaction[at(v->msh->dim, id, part)])
 
 /* clang-format off */
-#define NODE  PER_NODE, AS_REAL
-#define REACT(scenes) PRINT_REACTIONS, ON(REACTION), scenes, NEEDS_REACTION
+#define REACTION(name, scene, part) \
+  {name, "force", PER_NODE, AS_REAL, PRINT_REACTIONS, ON(REACTION), scene, \
+   NEEDS_REACTION, "reaction", part, reaction, NULL, \
+   "force of the support on the body"}
 static const column reaction_columns[] = {
-{"reaction_x", "force", NODE, REACT(CART), "reaction", 0,
- reaction, NULL, "force of the support on the body"},
-{"reaction_r", "force", NODE, REACT(SCENE_AXI), "reaction", 0, reaction, NULL,
- "force of the support on the body"},
-{"reaction_y", "force", NODE, REACT(CART), "reaction", 1,
- reaction, NULL, "force of the support on the body"},
-{"reaction_z", "force", NODE, REACT(SCENE_AXI), "reaction", 1, reaction, NULL,
- "force of the support on the body"},
-{"reaction_z", "force", NODE, REACT(SCENE_SOLID), "reaction", 2, reaction,
- NULL, "force of the support on the body"}};
+REACTION("reaction_x", CART, 0), REACTION("reaction_r", SCENE_AXI, 0),
+REACTION("reaction_y", CART, 1), REACTION("reaction_z", SCENE_AXI, 1),
+REACTION("reaction_z", SCENE_SOLID, 2)};
 
-/* clang-format off */
 const effect_ops finite_elements_effect = {
   .name = "finite elements", .bit = EFFECT_BIT_MESH, .required = requires_mesh,
   .expected = elements, .own = STAGE_ASSEMBLY,
