@@ -5,7 +5,7 @@
 #define PROTIS_JOB_H
 
 #include "program/command.h"
-#include "run/discrete/discrete.h"
+#include "run/history/history.h"
 #include "output/output.h"
 #include "run/start/coarser.h"
 

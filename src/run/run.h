@@ -11,7 +11,6 @@
 #include "contact/reach.h"
 #include "material/scheme/scheme.h"
 #include "run/effect.h"
-#include "run/moduli/moduli.h"
 #include "run/state.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
@@ -81,6 +80,21 @@ typedef struct contact_nodes {
   contact_reach reach; /* the contact nodes of cp */
   int n_reported;      /* how many the output has */
 } contact_nodes;
+
+/* Elasticity of the elements: one entry for each section, and one for each
+ * element whose constants follow its temperature (*ELASTIC with several sets,
+ * and temperatures in the deck). */
+typedef struct moduli {
+  int n;                     /* entries: sections, then the elements */
+  int n_own;                 /* elements with an entry of their own */
+  int *elem_id;              /* [n_own] ascending */
+  double *at;                /* [n_own] temperature of their entry */
+  int *section_id;           /* [n_elem] entry of an element, or NULL: its
+                                section */
+  int *origin;               /* [n] section of an entry */
+  kinematics *kin;           /* [n] */
+  double *thickness, *E, *C; /* [n] m, [ns*ns*n], [36*n] Pa */
+} moduli;
 
 /* What the elements are made of. */
 typedef struct body_state {
@@ -309,6 +323,22 @@ status run_choose_stiffness(run *r);
 status run_asks_for_other_stiffness(run *r, int *other);
 /* r->body.order for r->body.choice. ERR_MEMORY. */
 status run_take_stiffness(run *r);
+
+/* moduli.c. At the temperatures T[n_elem]; T NULL: none is given, no element
+ * has an entry of its own. ERR_DECK: constants between two temperatures that
+ * are no elasticity; ERR_MEMORY. */
+status moduli_new(const model *m, const mesh *msh, const double *T,
+                  moduli *out);
+void moduli_free(moduli *x); /* accepts all-zero */
+/* To other temperatures; *changed = 1 if an entry is another one now, else it
+ * stays. ERR_DECK likewise. */
+status moduli_heat(moduli *x, const model *m, const double *T, int *changed);
+/* What d knows of its elements, borrowed from x and m. */
+void moduli_domain(const moduli *x, const model *m, domain *d);
+/* Entry of an element. */
+int moduli_entry(const moduli *x, const model *m, int elem_id);
+/* 1 if the stiffness of the element can change. */
+int moduli_follows(const model *m, int elem_id);
 
 /* strains.c: strains that carry no stress. */
 status strains_new(run *r);

@@ -5,7 +5,7 @@
 #define PROTIS_REDUCTION_PARTS_H
 
 #include "effects/reduction/reduction.h"
-#include "run/moduli/moduli.h"
+#include "run/run.h"
 
 struct reduction {
   const model *m;

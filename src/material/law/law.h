@@ -206,7 +206,7 @@ double law_stored(const law_point *p); /* 0 if the law has none */
  * ERR_SINGULAR if the Jacobian is not a number. */
 status law_fastest_rate(const law_point *p, double *rate);
 
-/* For the laws: tensor.c. Voigt vectors of ns components. */
+/* For the laws: Voigt vectors of ns components. */
 double tensor_trace(const double *v);
 void tensor_deviator(int ns, const double *v, double *d);
 double tensor_mises(int ns, const double *s); /* of a deviator, >= 0 */

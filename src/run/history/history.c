@@ -61,44 +61,31 @@ static int is_after_miss(const run *r) {
 /* View of r->now for the outputs. */
 static state loop_state(run *r, int attempt, int increment_no) {
   const equilibrium *e = &r->now;
+  const derived *d = &r->result;
+  /* clang-format off */
   state s = {
-      .step_no = run_step_id(r) + 1,
-      .increment_no = increment_no,
-      .total_no = r->course.total_no,
-      .attempt = attempt,
-      .t = e->t,
-      .dt = e->t - r->old.t,
-      .body.u = e->u,
-      .body.strain = r->result.strain,
-      .body.stress = r->result.stress,
-      .body.temperature = e->temperature,
-      .body.reaction = e->reaction,
-      .contacts.problem = r->nodes.n > 0 ? &r->problem.cp : NULL,
-      .contacts.surface = r->surface,
-      .contacts.uc = e->uc,
-      .contacts.rc = e->rc,
-      .contacts.gap = r->result.open_gap,
-      .contacts.slip = r->result.slip,
-      .contacts.limit = r->result.g,
-      .contacts.contact = r->result.contact,
-      .contacts.totals = r->result.totals,
-      .contacts.distance = r->result.distance,
-      .contacts.torque = r->result.torque,
-      .effects = &r->effects,
-      .energy = e->energy,
-      .report = r->solving.report,
-      .note = r->course.note,
-      .errors.error = r->errors.error,
-      .errors.rounding = r->errors.rounding,
-      .errors.mesh_error = r->errors.mesh_error,
-      .errors.time_error = r->errors.time_error,
-      .errors.elem_error =
-          r->errors.mesh_error.asked ? r->errors.elem_error : NULL,
-      .solver_log = contact_solver_log(r->solver),
-      .settled = is_settled(r),
-      .errors.in_doubt = error_bound_doubts(&r->errors.error, share_of_step(r)),
-      .errors.after_miss = is_after_miss(r),
-      .again = {r, shadow_with}};
+      .step_no = run_step_id(r) + 1, .increment_no = increment_no,
+      .total_no = r->course.total_no, .attempt = attempt,
+      .t = e->t, .dt = e->t - r->old.t, .energy = e->energy,
+      .body = {.u = e->u, .strain = d->strain, .stress = d->stress,
+               .temperature = e->temperature, .reaction = e->reaction},
+      .contacts = {.problem = r->nodes.n > 0 ? &r->problem.cp : NULL,
+                   .surface = r->surface, .uc = e->uc, .rc = e->rc,
+                   .gap = d->open_gap, .slip = d->slip, .limit = d->g,
+                   .contact = d->contact, .totals = d->totals,
+                   .distance = d->distance, .torque = d->torque},
+      .effects = &r->effects, .report = r->solving.report,
+      .note = r->course.note, .solver_log = contact_solver_log(r->solver),
+      .settled = is_settled(r), .again = {r, shadow_with},
+      .errors = {.error = r->errors.error, .rounding = r->errors.rounding,
+                 .mesh_error = r->errors.mesh_error,
+                 .time_error = r->errors.time_error,
+                 .elem_error =
+                     r->errors.mesh_error.asked ? r->errors.elem_error : NULL,
+                 .in_doubt =
+                     error_bound_doubts(&r->errors.error, share_of_step(r)),
+                 .after_miss = is_after_miss(r)}};
+  /* clang-format on */
   if (r->strains.visco != NULL) visco_show(r, &s);
   if (!(r->m->effects & EFFECT_STRESS)) s.body.stress = NULL;
   if (!(r->m->effects & EFFECT_REACTION)) s.body.reaction = NULL;

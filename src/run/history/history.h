@@ -4,6 +4,7 @@
 #ifndef PROTIS_HISTORY_HISTORY_H
 #define PROTIS_HISTORY_HISTORY_H
 
+#include "exchange/exchange.h"
 #include "run/effect.h"
 
 /*
@@ -23,13 +24,21 @@ status history_continue(const model *m, const mesh *msh,
                         const effect_ops *const *effects, archive *from,
                         const history_sink *sink, int *unsettled);
 
+/*
+ * A problem without a mesh (*CONDENSED PROBLEM): one solve, passed on as one
+ * increment. The state has the unknowns in the signs of contact.h, of a plain
+ * LCP w in uc and z in rc. Errors: as history_run.
+ */
+status condensed_run(const model *m, const exchange_problem *p,
+                     const history_sink *sink, int *unsettled);
+
 /* The reported bound, for a solution of that energy, J. */
 void error_bound_set(const solver_error *found, double energy, error_bound *e);
-/* The reason where the matrix has no inverse. */
 /* 1: it, or what rounding hides of contact forces, is above 10 % of the energy
  * norm of an answer under full loads, of which "share" act now: an answer that
  * does not count as one. */
 int error_bound_doubts(const error_bound *e, double share);
+/* The reason where the matrix has no inverse. */
 extern const char *const error_bound_indefinite;
 
 /* Other solutions than (u, r), which a solver reports so, into *out, if the

@@ -33,9 +33,6 @@ status loop_pause(run *r);
 
 /* The loads now over the largest of the step, at most 1. */
 double share_of_step(const run *r);
-/* strained.c: 1: the supports of a body strain it, 0: those of each body move
- * rigidly, to the rounding of the data. ERR_MEMORY. */
-status supports_strain(const run *r, int *strained);
 /* rounding.c: the rounding error of r->now, whose energies are known.
  * ERR_SINGULAR: no correct digit. */
 status rounding_find(run *r);

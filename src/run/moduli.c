@@ -1,5 +1,5 @@
-/* Elasticity of the elements at their temperatures (moduli.h). */
-#include "run/moduli/moduli.h"
+/* Elasticity of the elements at their temperatures. */
+#include "run/run.h"
 
 #include "base/memory.h"
 

@@ -2,12 +2,11 @@
  * A problem from a file: one solve, passed to the outputs as one increment. A
  * plain LCP goes to lcp_solve.
  */
-#include "run/discrete/discrete.h"
+#include "run/history/history.h"
 
 #include "base/memory.h"
 #include "base/timer.h"
 #include "solver/lcp/lcp_solve.h"
-#include "run/history/history.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -196,28 +195,21 @@ done:
 static state state_of(const discrete *d) {
   const exchange_problem *p = d->p;
   const contact_problem *cp = p->dim > 1 ? &d->cp : NULL;
+  const int doubt = error_bound_doubts(&d->error, 1.0);
+  /* clang-format off */
   state s = {
-      .step_no = 1,
-      .increment_no = 1,
-      .total_no = 1,
-      .attempt = 1,
-      .t = d->step->total,
-      .dt = d->step->total,
-      .end_of_step = 1,
-      .contacts.problem = cp,
-      .contacts.surface = &d->surface,
-      .contacts.uc = d->u,
-      .contacts.rc = d->r,
-      .contacts.gap = d->gap,
-      .contacts.slip = d->slip,
-      .contacts.limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
-      .contacts.contact = d->contact,
-      .report = d->report,
-      .errors.error = d->error,
-      .errors.solutions = d->step->check != CHECK_NONE ? &d->solutions : NULL,
-      .solver_log = d->log,
-      .settled = d->report.outcome > 0 && !error_bound_doubts(&d->error, 1.0),
-      .errors.in_doubt = error_bound_doubts(&d->error, 1.0)};
+      .step_no = 1, .increment_no = 1, .total_no = 1, .attempt = 1,
+      .t = d->step->total, .dt = d->step->total, .end_of_step = 1,
+      .contacts = {.problem = cp, .surface = &d->surface, .uc = d->u,
+                   .rc = d->r, .gap = d->gap, .slip = d->slip,
+                   .limit = cp != NULL && cp->g0 != NULL ? d->g : NULL,
+                   .contact = d->contact},
+      .report = d->report, .solver_log = d->log,
+      .settled = d->report.outcome > 0 && !doubt,
+      .errors = {.error = d->error, .in_doubt = doubt,
+                 .solutions =
+                     d->step->check != CHECK_NONE ? &d->solutions : NULL}};
+  /* clang-format on */
   for (int i = 0; i < p->n; ++i) {
     s.contacts.n_open += d->contact[i] == CONTACT_OPEN;
     s.contacts.n_slip += d->contact[i] == CONTACT_SLIP;
