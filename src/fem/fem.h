@@ -30,6 +30,7 @@ typedef struct whole_order {
   const char *name; /* of the method */
   double flops, entries;
   double contact_flops, contact_entries; /* where contact unknowns have part */
+  double interior_entries; /* the same without their rows and columns, about */
 } whole_order;
 
 /* What the elements are made of. */

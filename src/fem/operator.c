@@ -27,15 +27,22 @@ static long place_of(const sparse_operator *o, int node, int c) {
 
 typedef struct filling {
   const sparse_operator *o;
-  const row_state *rows;
+  const supernodal *s;
+  const int *inside; /* o->inside: of the interior; NULL: of all unknowns */
   double scale;
 } filling;
+
+/* Place in the factor that is filled. */
+static long filled_at(const filling *w, int node, int c) {
+  const long at = place_of(w->o, node, c);
+  return at < 0 || w->inside == NULL ? at : w->inside[at];
+}
 
 /* Entry (r, c) of the block of nodes i and j, a row of which is in contact. */
 static double contact_entry(const filling *w, int i, int r, int j, int c,
                             double entry) {
   const sparse_operator *o = w->o;
-  const row_state *rows = w->rows;
+  const row_state *rows = &o->rows;
   const int a = contact_row(o->k, i, r), b = contact_row(o->k, j, c);
   if (a != b && ((a >= 0 && rows->known[a]) || (b >= 0 && rows->known[b])))
     return 0.0;
@@ -55,7 +62,7 @@ static void put_block(const filling *w, size_t p, int j, const long *columns,
   const double *block = k->block + (size_t)(dim * dim) * p;
   for (int c = 0; c < dim; ++c)
     for (int r = i == j ? c : 0; r < dim; ++r) {
-      const long at = place_of(w->o, i, r), bt = place_of(w->o, j, c);
+      const long at = filled_at(w, i, r), bt = filled_at(w, j, c);
       const long column = at < bt ? at : bt, row = at < bt ? bt : at;
       const double entry = block[dim * c + r];
       if (column < columns[0] || column >= columns[1]) continue;
@@ -67,7 +74,7 @@ static void put_block(const filling *w, size_t p, int j, const long *columns,
 static void put_columns(void *ctx, int supernode, const int *position,
                         double *x) {
   const filling *w = ctx;
-  const supernodal *s = w->o->s;
+  const supernodal *s = w->s;
   const block_lists *list = &w->o->columns;
   const size_t lead = (size_t)(s->start[supernode + 1] - s->start[supernode]);
   for (size_t t = list->start[supernode]; t < list->start[supernode + 1]; ++t)
@@ -75,14 +82,18 @@ static void put_columns(void *ctx, int supernode, const int *position,
               position, lead, x);
 }
 
-/* The marked supernodes of a factor x for these rows. ERR_SINGULAR. */
-static status factor(sparse_operator *o, const row_state *rows, double **x) {
-  filling w = {o, rows, ldexp(1.0, -o->f.exponent)};
+/* The first place without a pivot, -1: none, of the marked supernodes. */
+static long factor(sparse_operator *o, supernodal *s, const int *inside,
+                   double **x) {
+  filling w = {o, s, inside, ldexp(1.0, -o->f.exponent)};
   timer_enter(STAGE_FACTOR);
-  const int bad = supernodal_factor(o->s, o->part.mark, put_columns, &w, x);
+  const int bad = supernodal_factor(s, o->part.mark, put_columns, &w, x);
   timer_leave(STAGE_FACTOR);
-  if (bad < 0) return OK;
-  return body_factor_broke(&o->f, (int)(o->f.unknown[bad] / o->k->dim));
+  return bad;
+}
+
+static status broke(sparse_operator *o, long at) {
+  return body_factor_broke(&o->f, (int)(o->f.unknown[at] / o->k->dim));
 }
 
 /* Mark the supernodes with entries of a contact node. */
@@ -147,7 +158,8 @@ static status refactor(sparse_operator *o, const known_rows *rows,
   if (!mark_changes(o, rows, springs)) return OK;
   take_rows(o, rows, springs);
   if (o->state == FACTORED) o->state = BROKEN;
-  PASS(factor(o, &o->rows, o->x));
+  const long bad = factor(o, o->s, NULL, o->x);
+  if (bad >= 0) return broke(o, bad);
   o->state = FACTORED;
   return OK;
 }
@@ -160,7 +172,10 @@ status sparse_operator_all_rows(sparse_operator *o) {
  * is that of the factor of all rows. */
 static status factor_interior(sparse_operator *o) {
   memcpy(o->part.mark, o->part.touches, (size_t)o->s->count);
-  return factor(o, &o->inside, o->inner);
+  const long bad = factor(o, o->interior, o->inside, o->inner);
+  for (long p = 0; bad >= 0 && p < o->f.n; ++p)
+    if (o->inside[p] == bad) return broke(o, p);
+  return OK;
 }
 
 /* ---- products and solves --------------------------------------------------
@@ -176,21 +191,34 @@ static void clear(const sparse_operator *o, double *v) {
 }
 
 /* Forces v at the places of the part become displacements of the factor x;
- * there are forces in the supernodes of the contact only, or in all of them. */
-static void solve_part(const sparse_operator *o, double **x,
-                       const supernodal_part *forces,
-                       const supernodal_part *part, double *v) {
+ * there are forces in the supernodes of the contact only. */
+static void solve_rows(const sparse_operator *o, const supernodal_part *part,
+                       double *v) {
+  const supernodal_part *forces = &o->part.contact;
   const double scale = ldexp(1.0, -o->f.exponent);
   for (int t = 0; t < forces->n; ++t)
     for (long p = o->s->first[forces->list[t]];
          p < o->s->first[forces->list[t] + 1]; ++p)
       v[p] *= scale;
-  supernodal_forward(o->s, x, forces, v);
-  supernodal_back(o->s, x, part, v);
+  supernodal_forward(o->s, o->x, forces, v);
+  supernodal_back(o->s, o->x, part, v);
 }
 
-static void solve_contact(const sparse_operator *o, double **x, double *v) {
-  solve_part(o, x, &o->part.contact, &o->part.contact, v);
+/* The same of the interior, at its places in the part; forces: of the contact
+ * only, or all. */
+static void solve_interior(const sparse_operator *o,
+                           const supernodal_part *forces,
+                           const supernodal_part *part, double *v) {
+  const double scale = ldexp(1.0, -o->f.exponent);
+  const SuiteSparse_long *first = o->s->first;
+  for (int t = 0; t < part->n; ++t)
+    for (long p = first[part->list[t]]; p < first[part->list[t] + 1]; ++p)
+      if (o->inside[p] >= 0) o->z[o->inside[p]] = scale * v[p];
+  supernodal_forward(o->interior, o->inner, forces, o->z);
+  supernodal_back(o->interior, o->inner, part, o->z);
+  for (int t = 0; t < part->n; ++t)
+    for (long p = first[part->list[t]]; p < first[part->list[t] + 1]; ++p)
+      if (o->inside[p] >= 0) v[p] = o->z[o->inside[p]];
 }
 
 /* w += part * K u of contact unknowns u[m], that of held ones left out. */
@@ -272,9 +300,7 @@ static void gather(const sparse_operator *o, const double *u, double *Au,
 static void move_contact(sparse_operator *o, const double *u) {
   clear(o, o->v);
   spread(o, -1.0, u, o->v);
-  for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) o->v[o->number[o->unknown[q]]] = 0.0;
-  solve_contact(o, o->inner, o->v);
+  solve_interior(o, &o->part.contact, &o->part.contact, o->v);
   for (int q = 0; q < o->k->n_row; ++q)
     if (!o->held[q]) o->v[o->number[o->unknown[q]]] = u[q];
 }
@@ -322,7 +348,7 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
     double *v = o->v + o->number[o->unknown[q]];
     *v = o->rows.known[q] ? 0.0 : *v + b[q];
   }
-  solve_contact(o, o->x, o->v);
+  solve_rows(o, &o->part.contact, o->v);
   for (int q = 0; q < m; ++q) {
     if (o->held[q]) continue;
     double *v = o->v + o->number[o->unknown[q]];
@@ -362,7 +388,7 @@ static void response(void *ctx, const double *b, double *x, double *Ax) {
   for (int q = 0; q < m; ++q)
     if (b[q] != 0.0 && !o->held[q] && !o->rows.known[q])
       o->v[o->number[o->unknown[q]]] = b[q];
-  solve_part(o, o->x, &o->part.contact, &o->part.response, o->v);
+  solve_rows(o, &o->part.response, o->v);
   for (int t = 0; t < o->part.n; ++t) {
     const int first = rows * o->part.node[t];
     gather_node(o, o->part.node[t], o->v, Ax + first, NULL);
@@ -385,7 +411,7 @@ void sparse_operator_forward(sparse_operator *o, const double *load,
                              double *f_c) {
   const int rows = o->k->rows;
   take_load(o, load, o->y);
-  solve_part(o, o->inner, &o->part.all, &o->part.all, o->y);
+  solve_interior(o, &o->part.all, &o->part.all, o->y);
   for (int i = 0; i < n_contact(o); ++i) {
     double f[3];
     gather_node(o, i, o->y, f, NULL);
@@ -397,9 +423,7 @@ void sparse_operator_forward(sparse_operator *o, const double *load,
 void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
   memset(o->v, 0, (size_t)o->f.n * sizeof *o->v);
   spread(o, -1.0, u_c, o->v);
-  for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) o->v[o->number[o->unknown[q]]] = 0.0;
-  solve_part(o, o->inner, &o->part.contact, &o->part.all, o->v);
+  solve_interior(o, &o->part.contact, &o->part.all, o->v);
   for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] = o->y[p] + o->v[p];
   for (int q = 0; q < o->k->n_row; ++q)
     if (!o->held[q]) u[o->unknown[q]] = u_c[q];
@@ -408,12 +432,20 @@ void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
 void sparse_operator_interior(sparse_operator *o, const double *load,
                               double *u) {
   take_load(o, load, o->w);
-  solve_part(o, o->inner, &o->part.all, &o->part.all, o->w);
+  solve_interior(o, &o->part.all, &o->part.all, o->w);
   for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->w[p];
 }
 
 /* ---- building --------------------------------------------------------------
  */
+
+/* Entries without the rows and columns of the contact unknowns: their share of
+ * the rows is taken as that of the columns. */
+static double interior_entries(const stiffness *k, const order_cost *c) {
+  const double left = 1.0 - (double)k->rows / k->dim * c->marked_entries /
+                                fmax(1.0, c->reached_entries);
+  return left * left * c->reached_entries;
+}
 
 status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   status st = OK;
@@ -439,6 +471,7 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   o->entries = cost.entries * dim * dim;
   o->contact_flops = cost.reached_flops * dim * dim * dim;
   o->contact_entries = cost.reached_entries * dim * dim;
+  o->interior_entries = interior_entries(k, &cost) * dim * dim;
 done:
   timer_leave(STAGE_ORDERING);
   graph_release(&g);
@@ -477,9 +510,6 @@ static status new_rows(sparse_operator *o) {
   PASS_NEW(o->held, m);
   PASS_NEW(o->rows.known, m);
   PASS_NEW(o->rows.added, size);
-  PASS_NEW(o->inside.known, m);
-  PASS_NEW(o->inside.added, size);
-  memset(o->inside.known, 1, m);
   PASS_NEW(o->diagonal, m);
   PASS_NEW(o->room, 2 * m);
   PASS_NEW(o->body, m / (size_t)o->k->rows);
@@ -599,6 +629,18 @@ static status divide(sparse_operator *o) {
   return OK;
 }
 
+/* The factor without contact unknowns. */
+static status leave_contact_out(sparse_operator *o) {
+  int n = 0;
+  PASS_NEW(o->inside, o->f.n);
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) o->inside[o->number[o->unknown[q]]] = -1;
+  for (long p = 0; p < o->f.n; ++p)
+    if (o->inside[p] == 0) o->inside[p] = n++;
+  PASS_NEW(o->z, n);
+  return supernodal_restrict(o->s, o->inside, &o->interior);
+}
+
 /* The columns of both factors. */
 static status new_columns(sparse_operator *o) {
   const int count = o->s->count;
@@ -608,14 +650,14 @@ static status new_columns(sparse_operator *o) {
   PASS_NEW(o->x, count);
   PASS_NEW(o->inner, count);
   for (int q = 0; q < count; ++q)
-    if (o->part.touches[q]) o->n_own += supernodal_entries(o->s, q);
+    if (o->part.touches[q]) o->n_own += supernodal_entries(o->interior, q);
   PASS_NEW(o->own, o->n_own);
   double *at = o->own;
   for (int q = 0; q < count; ++q) {
     o->x[q] = o->inner[q] = (double *)o->f.L->x + px[q];
     if (!o->part.touches[q]) continue;
     o->inner[q] = at;
-    at += supernodal_entries(o->s, q);
+    at += supernodal_entries(o->interior, q);
   }
   return OK;
 }
@@ -632,6 +674,7 @@ static status factor_both(sparse_operator *o) {
   PASS_NEW(o->v, o->f.n);
   PASS_NEW(o->w, o->f.n);
   PASS_NEW(o->y, o->f.n);
+  PASS(leave_contact_out(o));
   PASS(new_columns(o));
   PASS(sparse_operator_all_rows(o));
   return factor_interior(o);
@@ -676,12 +719,13 @@ done:
 
 void sparse_operator_free(sparse_operator *o) {
   if (o == NULL) return;
+  supernodal_free(o->interior);
   supernodal_free(o->s);
   body_factor_release(&o->f, o->cm);
   RELEASE(o->columns.start, o->columns.item, o->touched.start, o->touched.item,
           o->part.all.list, o->part.contact.list, o->part.response.list,
           o->part.mark, o->part.touches, o->part.node, o->x, o->inner, o->own,
-          o->rows.known, o->rows.added, o->inside.known, o->inside.added);
+          o->rows.known, o->rows.added, o->inside, o->z);
   RELEASE(o->number, o->unknown, o->held, o->v, o->w, o->y, o->diagonal,
           o->room, o->body, o);
 }

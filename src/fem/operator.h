@@ -39,7 +39,8 @@ typedef struct sparse_operator {
   cholmod_common *cm;
   const unsigned char *pinned; /* [m] with springs where no row is known */
   body_factor f;               /* its L: of the rows known at the time */
-  supernodal *s;
+  supernodal *s, *interior;    /* interior: without the contact unknowns */
+  int *inside;         /* [unknowns] place in the interior, -1: in contact */
   block_lists columns; /* of a supernode: with their column */
   block_lists touched; /* of a contact node: with the other node */
   struct {
@@ -49,18 +50,18 @@ typedef struct sparse_operator {
     int *node; /* [n] contact nodes of the response, n: their number */
     int n;
   } part;
-  double **x;       /* [supernodes] columns of f.L */
-  double **inner;   /* [supernodes] of the interior's: shared with x where no
-                       contact unknown has part in them */
-  double *own;      /* those that are not */
-  size_t n_own;     /* entries of them */
-  row_state rows;   /* of f.L */
-  row_state inside; /* of inner: all known */
+  double **x;     /* [supernodes] columns of f.L */
+  double **inner; /* [supernodes] of the interior's factor: shared with x
+                     where no contact unknown has part in them */
+  double *own;    /* those that are not */
+  size_t n_own;   /* entries of them */
+  row_state rows; /* of f.L */
   enum { NO_FACTOR, BROKEN, FACTORED } state; /* BROKEN: but for the interior */
   long *number;        /* [dim*n_node] place in the factor, -1 */
   size_t *unknown;     /* [m] dim*node + component of a row */
   unsigned char *held; /* [m] 1: prescribed, no unknown */
   double *v, *w;       /* [unknowns] by place */
+  double *z;           /* [interior] by place inside */
   double *diagonal;    /* [m] N/m, what seen has */
   double *y;           /* [unknowns] inv(K_ii) of the load last condensed */
   double *room;        /* [2*m] what seen has, as the next */

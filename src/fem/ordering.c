@@ -318,12 +318,14 @@ static int is_near(const graph *g, int node, const unsigned char *mark) {
 }
 
 /* The columns above those that are reached are too. */
-static void add_reached(int n, const SuiteSparse_long *parent,
+static void add_reached(int n, const int *node, const unsigned char *mark,
+                        const SuiteSparse_long *parent,
                         const SuiteSparse_long *count, unsigned char *reached,
                         order_cost *cost) {
   for (int q = 0; q < n; ++q) {
     if (!reached[q]) continue;
     if (parent[q] >= 0) reached[parent[q]] = 1;
+    if (mark[node[q]]) cost->marked_entries += (double)count[q];
     cost->reached_entries += (double)count[q];
     cost->reached_flops += (double)count[q] * (double)count[q];
   }
@@ -350,7 +352,8 @@ status order_cost_of(const graph *g, int n, const int *node,
   cost->entries = cm->lnz;
   for (int q = 0; mark != NULL && q < n; ++q)
     reached[q] = (unsigned char)is_near(g, node[q], mark);
-  add_reached(n, w + size, w + 3 * size, reached, cost);
+  if (mark != NULL)
+    add_reached(n, node, mark, w + size, w + 3 * size, reached, cost);
 done:
   cholmod_l_free_sparse(&a, cm);
   RELEASE(w, reached);

@@ -25,10 +25,10 @@ typedef enum { ORDER_CUTS, ORDER_METIS, ORDER_AMD } order_method;
 status order_by(order_method method, const graph *g, int dim, const double *x,
                 int n, int *node, cholmod_common *cm);
 /* Operations and entries of a Cholesky factor in an order, one unknown per
- * node: of all columns, and of those that marked nodes reach. */
+ * node: of all columns, of those that marked nodes reach, of their own. */
 typedef struct order_cost {
   double flops, entries;
-  double reached_flops, reached_entries;
+  double reached_flops, reached_entries, marked_entries;
 } order_cost;
 /* mark[g->n] 1: marked. ERR_MEMORY. */
 status order_cost_of(const graph *g, int n, const int *node,

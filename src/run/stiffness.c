@@ -76,7 +76,7 @@ static double factor_seconds(const work_ahead *w, const whole_order *o,
 }
 
 static double factor_bytes(double n, const whole_order *o) {
-  return ZEROS * sizeof(double) * (o->entries + o->contact_entries) +
+  return ZEROS * sizeof(double) * (o->entries + o->interior_entries) +
          VECTORS * n;
 }
 

@@ -3,7 +3,8 @@
  * next to what --check foresees (its row of the kind, the rest of its line
  * "memory" and PROGRAM for the program itself).
  *
- * BIG in the environment adds the rows that take minutes or gigabytes.
+ * BIG in the environment adds the rows that take minutes or gigabytes; ROW, a
+ * number from 1, is one of all of them alone.
  *
  * Strips whose cells double in size away from a rough floor, one of cells of
  * one size, cubes, and a block whose cells grow away from the floor, pressed
@@ -271,12 +272,13 @@ static void row_of(const bench_case *c, const char *kind) {
 }
 
 START_TEST(both_kinds_of_stiffness) {
-  const int all = getenv("BIG") != NULL;
+  const char *one = getenv("ROW");
+  const int all = getenv("BIG") != NULL, only = one != NULL ? atoi(one) : 0;
   puts(
       "mesh           cells kind        cpu[s]   mem[MB]  foreseen[s] "
       "foreseen[MB]");
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
-    if (cases[i].large && !all) continue;
+    if (only > 0 ? i + 1 != (size_t)only : cases[i].large && !all) continue;
     for (int k = 0; k < 2 && cases[i].kinds[k] != NULL; ++k)
       row_of(&cases[i], cases[i].kinds[k]);
   }

@@ -473,6 +473,40 @@ START_TEST(every_refused_request_is_survived) {
 }
 END_TEST
 
+/* Both factors: of thin slabs, most of whose unknowns are in contact or only
+ * their normal ones. */
+START_TEST(interior_is_foreseen_without_the_contact) {
+  for (int rows = 1; rows <= 3; rows += 2) {
+    const double real = sizeof(double);
+    scene *s = scene_new(make_grid_3d((int[]){14, 14, 2}, (double[]){7, 7, 1}),
+                         SOLID_3D, 5);
+    stiffness *k = NULL;
+    condensed *c = NULL;
+    whole_order order;
+    scene_contact(s, "FRONT", (double[]){0, 0, -1}, 0);
+    scene_contact(s, "BACK", (double[]){0, 0, 1}, 0);
+    scene_fix(s, "LEFT", 0);
+    s->d.rows = rows;
+    s->d.sparse = 1;
+    ck_assert_int_eq(stiffness_assemble(&s->d, &k), OK);
+    ck_assert_int_eq(stiffness_order(k, s->m->x, &order), OK);
+    s->d.order = &order;
+    ck_assert_int_eq(condense(k, &s->d, &c), OK);
+    const condense_info info = condensed_info(c);
+    const double second =
+        (double)info.bytes - real * (double)info.factor_entries;
+    ck_assert_double_le(real * order.interior_entries, 1.2 * second);
+    ck_assert_double_ge(real * order.interior_entries, 0.6 * second);
+    ck_assert_double_le(order.interior_entries,
+                        (rows == 1 ? 0.9 : 0.7) * order.contact_entries);
+    memory_free(order.node);
+    condensed_free(c);
+    stiffness_free(k);
+    scene_free(s);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("operator");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -486,6 +520,7 @@ int main(void) {
   tcase_add_loop_test(tests, loads_and_recovery_are_the_same, 0, SCENES);
   tcase_add_loop_test(tests, energies_and_errors_are_the_same, 0, HELD);
   tcase_add_test(tests, power_of_two_in_the_moduli_leaves_every_bit);
+  tcase_add_test(tests, interior_is_foreseen_without_the_contact);
   tcase_add_test(tests, every_refused_request_is_survived);
   return unit_run("operator", tests);
 }

@@ -112,12 +112,14 @@ START_TEST(marked_nodes_reach_what_is_above_them) {
   ck_assert_int_eq(order_cost_of(&path, 4, node, mark, &t.cm, &cost), OK);
   ck_assert_double_eq(cost.reached_entries, cost.entries);
   ck_assert_double_eq(cost.reached_flops, 13);
+  ck_assert_double_eq(cost.marked_entries, 2);
   mark[0] = 0;
   mark[3] = 1;
   ck_assert_int_eq(order_cost_of(&path, 4, node, mark, &t.cm, &cost), OK);
   ck_assert_double_eq(cost.entries, 7);
   ck_assert_double_eq(cost.reached_entries, 3);
   ck_assert_double_eq(cost.reached_flops, 5);
+  ck_assert_double_eq(cost.marked_entries, 1);
   end(&t);
 }
 END_TEST

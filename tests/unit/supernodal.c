@@ -116,14 +116,16 @@ static int factor_whole(grid *g) {
   return supernodal_factor(g->s, g->mark, fill, g, g->x);
 }
 
-/* Largest of A x - b for the solution x of b. */
+/* Largest of A x - b for the solution x of b; unknowns without a place are
+ * zero. */
 static double left_by_solve(grid *g) {
   double v[N], x[N], worst = 0;
   for (int p = 0; p < N; ++p) v[p] = 1 + p % 3;
   supernodal_forward(g->s, g->x, &g->all, v);
   supernodal_back(g->s, g->x, &g->all, v);
-  for (int i = 0; i < N; ++i) x[i] = v[g->at[i]];
+  for (int i = 0; i < N; ++i) x[i] = g->at[i] >= 0 ? v[g->at[i]] : 0;
   for (int i = 0; i < N; ++i) {
+    if (g->at[i] < 0) continue;
     double sum = g->diagonal[i] * x[i];
     if (i % SIDE > 0) sum -= x[i - 1];
     if (i % SIDE < SIDE - 1) sum -= x[i + 1];
@@ -144,6 +146,41 @@ START_TEST(solves_leave_nothing_of_the_right_side) {
     most = n > most ? n : most;
   }
   ck_assert_int_gt(most, 16); /* both ways of elimination */
+  grid_free(g);
+}
+END_TEST
+
+static size_t entries_of(const supernodal *s) {
+  size_t sum = 0;
+  for (int q = 0; q < s->count; ++q) sum += supernodal_entries(s, q);
+  return sum;
+}
+
+/* Without the unknowns of some rows of the grid, or of all that a supernode
+ * has: the factor of the rest, in less memory. */
+START_TEST(restricted_factors_are_of_the_other_unknowns) {
+  grid *g = grid_new();
+  supernodal *whole = g->s;
+  int number[N], n = 0, emptied = 0;
+  for (int p = 0; p < N; ++p)
+    number[p] = g->of[p] / SIDE % 4 == 1 || whole->of[p] % 9 == 2 ? -1 : n++;
+  ck_assert_int_eq(supernodal_restrict(whole, number, &g->s), OK);
+  ck_assert_int_eq(g->s->n, n);
+  for (int i = 0; i < N; ++i) g->at[i] = number[g->at[i]];
+  for (int i = 0; i < N; ++i)
+    if (g->at[i] >= 0) g->of[g->at[i]] = i;
+  ck_assert_double_lt((double)entries_of(g->s), 0.8 * (double)g->L->xsize);
+  double *next = g->values;
+  for (int q = 0; q < g->s->count; ++q) {
+    emptied += supernodal_entries(g->s, q) == 0;
+    g->x[q] = next;
+    next += supernodal_entries(g->s, q);
+  }
+  ck_assert_int_gt(emptied, 0);
+  ck_assert_int_eq(factor_whole(g), -1);
+  ck_assert_double_le(left_by_solve(g), 1e-13);
+  supernodal_free(g->s);
+  g->s = whole;
   grid_free(g);
 }
 END_TEST
@@ -231,6 +268,7 @@ START_TEST(indefinite_matrices_are_told) {
 END_TEST
 
 UNIT_MAIN("supernodal", solves_leave_nothing_of_the_right_side,
+          restricted_factors_are_of_the_other_unknowns,
           changes_reach_a_part_and_leave_the_bits_of_a_whole_factor,
           parts_give_what_the_whole_gives, wide_supernodes_can_be_split,
           indefinite_matrices_are_told)

@@ -29,9 +29,23 @@ size_t supernodal_entries(const supernodal *s, int supernode) {
   return (size_t)n_row(s, supernode) * (size_t)n_column(s, supernode);
 }
 
+/* Supernodes of the columns and those they update first. */
+static status link_up(supernodal *s) {
+  PASS_NEW(s->of, s->n);
+  PASS_NEW(s->parent, s->count);
+  for (int q = 0; q < s->count; ++q)
+    for (long c = s->first[q]; c < s->first[q + 1]; ++c) s->of[c] = q;
+  for (int q = 0; q < s->count; ++q)
+    s->parent[q] = n_row(s, q) > n_column(s, q)
+                       ? s->of[rows_of(s, q)[n_column(s, q)]]
+                       : -1;
+  return OK;
+}
+
 status supernodal_new(const cholmod_factor *L, supernodal **out) {
   status st = OK;
   supernodal *s = NULL;
+  int most = 0;
   NEW(s, 1);
   *out = s;
   s->n = (int)L->n;
@@ -39,32 +53,58 @@ status supernodal_new(const cholmod_factor *L, supernodal **out) {
   s->first = L->super;
   s->start = L->pi;
   s->row = L->s;
-  NEW(s->of, s->n);
-  NEW(s->parent, s->count);
+  TRY(link_up(s));
   NEW(s->head, s->count);
   NEW(s->next, s->count);
   NEW(s->done, s->count);
   NEW(s->place, s->n);
   NEW(s->product, L->maxcsize);
-  int most = 0;
-  for (int q = 0; q < s->count; ++q) {
+  for (int q = 0; q < s->count; ++q)
     most = n_row(s, q) > most ? n_row(s, q) : most;
-    for (long c = s->first[q]; c < s->first[q + 1]; ++c) s->of[c] = q;
-  }
   NEW(s->relative, most);
   NEW(s->below, most);
-  for (int q = 0; q < s->count; ++q)
-    s->parent[q] = n_row(s, q) > n_column(s, q)
-                       ? s->of[rows_of(s, q)[n_column(s, q)]]
-                       : -1;
 done:
+  return st;
+}
+
+status supernodal_restrict(const supernodal *s, const int *number,
+                           supernodal **out) {
+  status st = OK;
+  supernodal *r = NULL;
+  const size_t count = (size_t)s->count, rows = (size_t)s->start[count];
+  SuiteSparse_long n_rows = 0, *first = NULL;
+  NEW(first, 2 * (count + 1) + rows);
+  NEW(r, 1);
+  *r = *s;
+  r->of = r->parent = NULL;
+  r->n = 0;
+  r->pattern = first;
+  *out = r;
+  SuiteSparse_long *start = first + count + 1, *row = start + count + 1;
+  for (size_t q = 0; q < count; ++q) {
+    first[q] = r->n;
+    start[q] = n_rows;
+    for (long c = s->first[q]; c < s->first[q + 1]; ++c) r->n += number[c] >= 0;
+    for (long i = s->start[q]; i < s->start[q + 1] && r->n > first[q]; ++i)
+      if (number[s->row[i]] >= 0) row[n_rows++] = number[s->row[i]];
+  }
+  first[count] = r->n;
+  start[count] = n_rows;
+  r->first = first;
+  r->start = start;
+  r->row = row;
+  TRY(link_up(r));
+done:
+  if (r == NULL) memory_free(first);
   return st;
 }
 
 void supernodal_free(supernodal *s) {
   if (s == NULL) return;
-  RELEASE(s->of, s->parent, s->head, s->next, s->done, s->place, s->relative,
-          s->product, s->below, s);
+  if (s->pattern == NULL)
+    RELEASE(s->head, s->next, s->done, s->place, s->relative, s->product,
+            s->below);
+  RELEASE(s->of, s->parent, s->pattern, s);
 }
 
 /* ---- supernodes of few columns --------------------------------------------

@@ -27,6 +27,8 @@ typedef struct supernodal {
   int *relative;                 /* [most rows] of the rows of another */
   double *product;               /* [largest update] */
   double *below;                 /* [most rows] of a solve */
+  SuiteSparse_long *pattern;     /* its own first, start and row; NULL: they are
+                                    borrowed, and the workspace is its own */
 } supernodal;
 
 /* Supernodes of some columns and all that follow from them. */
@@ -40,6 +42,11 @@ typedef struct supernodal_part {
 int supernodal_split(cholmod_factor *L, int most, cholmod_common *cm);
 /* L: symbolic, borrowed. ERR_MEMORY. */
 status supernodal_new(const cholmod_factor *L, supernodal **out);
+/* The supernodes without the rows and columns whose number[n] is negative; the
+ * others are numbered ascending. *out is new and uses the workspace of s.
+ * ERR_MEMORY. */
+status supernodal_restrict(const supernodal *s, const int *number,
+                           supernodal **out);
 void supernodal_free(supernodal *s); /* accepts NULL */
 /* Entries of the columns of a supernode. */
 size_t supernodal_entries(const supernodal *s, int supernode);
