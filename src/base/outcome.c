@@ -4,51 +4,15 @@
 #include "base/outcome.h"
 
 const char *outcome_text(outcome o) {
-  switch (o) {
-    case CONVERGED:
-      return "converged";
-    case RUNNING:
-      return "running";
-    case STOPPED_ITERATIONS:
-      return "limit of iterations";
-    case STOPPED_STAGNATION:
-      return "no further progress";
-    case STOPPED_RAY:
-      return "no equilibrium";
-    case STOPPED_NAN:
-      return "not a number";
-    case STOPPED_CYCLE:
-      return "cycle of states";
-    case STOPPED_SINGULAR:
-      return "singular";
-    case STOPPED_UNFIT:
-      return "method does not apply to the problem";
-  }
-  return "?";
+#define OUTCOME_TEXT(name, value, code, text) [CONVERGED - name] = text,
+  static const char *const texts[] = {OUTCOME_LIST(OUTCOME_TEXT)};
+  return texts[CONVERGED - o];
 }
 
 const char *outcome_code(outcome o) {
-  switch (o) {
-    case CONVERGED:
-      return "CONVERGED";
-    case RUNNING:
-      return "RUNNING";
-    case STOPPED_ITERATIONS:
-      return "ITERATIONS";
-    case STOPPED_STAGNATION:
-      return "STAGNATION";
-    case STOPPED_RAY:
-      return "RAY";
-    case STOPPED_NAN:
-      return "NAN";
-    case STOPPED_CYCLE:
-      return "CYCLE";
-    case STOPPED_SINGULAR:
-      return "SINGULAR";
-    case STOPPED_UNFIT:
-      return "UNFIT";
-  }
-  return "?";
+#define OUTCOME_CODE(name, value, code, text) [CONVERGED - name] = code,
+  static const char *const codes[] = {OUTCOME_LIST(OUTCOME_CODE)};
+  return codes[CONVERGED - o];
 }
 
 int outcome_is_fatal(outcome o) {

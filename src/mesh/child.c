@@ -1,7 +1,8 @@
 /*
  * The child's side of the mesh reader: load libgmsh, mesh the geometry, send
  * what it holds. Every end of this file is _exit: nothing that the parent
- * registered or buffered may run or be written twice.
+ * registered or buffered may run or be written twice. What gmsh allocates is
+ * freed by that, but for the elements, which are many.
  *
  * libgmsh is loaded by the name that belongs to the header gmshc.h, whose calls
  * change from one minor version to the next.
@@ -241,10 +242,15 @@ static void check(const child *c, int error, const char *doing) {
           last != NULL && last[0] != '\0' ? last : "no reason given");
 }
 
+#define CALL(c, doing, call, ...) \
+  do {                            \
+    int error_;                   \
+    call(__VA_ARGS__, &error_);   \
+    check((c), error_, (doing));  \
+  } while (0)
+
 static void set(const child *c, const char *option, double value) {
-  int error;
-  c->gmsh.OptionSetNumber(option, value, &error);
-  check(c, error, option);
+  CALL(c, option, c->gmsh.OptionSetNumber, option, value);
 }
 
 /* Numbers for the .geo are set as on the command line of gmsh, before the file
@@ -336,6 +342,7 @@ static void drop_counts(const child *c, const char *from, const char *to) {
  * written out and read again without them.
  */
 static void free_counts(const child *c) {
+  static const char again[] = "read the geometry again";
   int error;
   char folder[] = "/tmp/protis_XXXXXX", all[64], rest[64];
   c->gmsh.ModelMeshRemoveConstraints(NULL, 0, &error);
@@ -344,32 +351,29 @@ static void free_counts(const child *c) {
     give_up(c, ERR_MESH, "cannot make a folder in /tmp: %s", strerror(errno));
   snprintf(all, sizeof all, "%s/all.geo_unrolled", folder);
   snprintf(rest, sizeof rest, "%s/rest.geo", folder);
-  c->gmsh.Write(all, &error);
-  check(c, error, "write out the geometry");
+  CALL(c, "write out the geometry", c->gmsh.Write, all);
   drop_counts(c, all, rest);
   c->gmsh.Clear(&error);
-  check(c, error, "read the geometry again");
+  check(c, error, again);
   c->gmsh.Open(rest, &error);
   unlink(all);
   unlink(rest);
   rmdir(folder);
-  check(c, error, "read the geometry again");
+  check(c, error, again);
 }
+
+static const char take_sizes[] = "take the sizes";
 
 /* Field of the sizes at the nodes of an earlier mesh. */
 static int add_sizes(const child *c, const mesh_sizes *s) {
   size_t n;
-  int error;
+  int view, field, n_elem = s->of->n_elem;
   double *data = view_of_sizes(c, s, &n);
-  int view = c->gmsh.ViewAdd("sizes", -1, &error);
-  check(c, error, "take the sizes");
-  c->gmsh.ViewAddListData(view, s->of->dim == 2 ? "ST" : "SS", s->of->n_elem,
-                          data, n, &error);
-  check(c, error, "take the sizes");
-  int field = c->gmsh.ModelMeshFieldAdd("PostView", -1, &error);
-  check(c, error, "take the sizes");
-  c->gmsh.ModelMeshFieldSetNumber(field, "ViewTag", view, &error);
-  check(c, error, "take the sizes");
+  CALL(c, take_sizes, view = c->gmsh.ViewAdd, "sizes", -1);
+  CALL(c, take_sizes, c->gmsh.ViewAddListData, view,
+       s->of->dim == 2 ? "ST" : "SS", n_elem, data, n);
+  CALL(c, take_sizes, field = c->gmsh.ModelMeshFieldAdd, "PostView", -1);
+  CALL(c, take_sizes, c->gmsh.ModelMeshFieldSetNumber, field, "ViewTag", view);
   memory_free(data);
   return field;
 }
@@ -379,18 +383,15 @@ static void set_sizes(const child *c) {
   const mesh_sizes *s = c->request->source->sizes;
   double fields[MESH_SIZES];
   size_t n = 0;
-  int error;
   for (; n < MESH_SIZES && s[n].of != NULL; ++n)
     fields[n] = add_sizes(c, &s[n]);
   int least = (int)fields[0];
   if (n > 1) {
-    least = c->gmsh.ModelMeshFieldAdd("Min", -1, &error);
-    check(c, error, "take the sizes");
-    c->gmsh.ModelMeshFieldSetNumbers(least, "FieldsList", fields, n, &error);
-    check(c, error, "take the sizes");
+    CALL(c, take_sizes, least = c->gmsh.ModelMeshFieldAdd, "Min", -1);
+    CALL(c, take_sizes, c->gmsh.ModelMeshFieldSetNumbers, least, "FieldsList",
+         fields, n);
   }
-  c->gmsh.ModelMeshFieldSetAsBackgroundMesh(least, &error);
-  check(c, error, "take the sizes");
+  CALL(c, take_sizes, c->gmsh.ModelMeshFieldSetAsBackgroundMesh, least);
   set(c, "Mesh.MeshSizeExtendFromBoundary", 0);
   set(c, "Mesh.MeshSizeFromPoints", 0);
   set(c, "Mesh.MeshSizeFromCurvature", 0);
@@ -436,7 +437,6 @@ static void check_log(const child *c, char *line) {
 /* Where there are such options the file is included by a file in memory, which
  * has no options file; a few elements of some meshes differ for that. */
 static void open_geo(child *c) {
-  int error;
   char name[32];
   check_merged(c);
   c->path = realpath(c->request->source->file, NULL);
@@ -451,25 +451,22 @@ static void open_geo(child *c) {
             "the path has quotes or backslashes and there is an options file "
             "of gmsh; rename it or remove the options file");
   dprintf(fd, "Include \"%s\";\n", c->path);
-  c->gmsh.Open(file, &error);
-  check(c, error, "read the file");
+  CALL(c, "read the file", c->gmsh.Open, file);
 }
 
 /* Highest dimension of the physical groups: 3, or 2, or less; -1 if none. */
 static int send_groups(const child *c) {
-  int *dim_tag, error, dim = -1;
+  int *dim_tag, dim = -1;
   size_t n;
-  c->gmsh.ModelGetPhysicalGroups(&dim_tag, &n, -1, &error);
-  check(c, error, "list the physical groups");
+  CALL(c, "list the physical groups", c->gmsh.ModelGetPhysicalGroups, &dim_tag,
+       &n, -1);
   for (size_t i = 0; i + 1 < n; i += 2) {
     char *name;
-    c->gmsh.ModelGetPhysicalName(dim_tag[i], dim_tag[i + 1], &name, &error);
-    check(c, error, "name the physical groups");
+    CALL(c, "name the physical groups", c->gmsh.ModelGetPhysicalName,
+         dim_tag[i], dim_tag[i + 1], &name);
     send_text(c, WIRE_GROUP, dim_tag[i], dim_tag[i + 1], name);
     if (dim_tag[i] > dim) dim = dim_tag[i];
-    c->gmsh.Free(name);
   }
-  c->gmsh.Free(dim_tag);
   return dim;
 }
 
@@ -479,11 +476,9 @@ typedef struct elements { /* of one entity, as gmsh gives them */
 } elements;
 
 static void get_elements(const child *c, int dim, int tag, elements *e) {
-  int error;
-  c->gmsh.ModelMeshGetElements(&e->type, &e->n_type, &e->no, &e->no_n,
-                               &e->no_nn, &e->node, &e->node_n, &e->node_nn,
-                               dim, tag, &error);
-  check(c, error, "list the elements");
+  CALL(c, "list the elements", c->gmsh.ModelMeshGetElements, &e->type,
+       &e->n_type, &e->no, &e->no_n, &e->no_nn, &e->node, &e->node_n,
+       &e->node_nn, dim, tag);
 }
 
 static void free_elements(const child *c, elements *e) {
@@ -508,28 +503,25 @@ static int has_elements(const child *c, int dim) {
 static void send_block(const child *c, int dim, const elements *e, size_t i,
                        const int *physical, size_t n_physical) {
   char *name;
-  int type_dim, order, n_per, n_corner, error;
+  int type_dim, order, n_per, n_corner;
   double *local;
   size_t n_local;
-  c->gmsh.ModelMeshGetElementProperties(e->type[i], &name, &type_dim, &order,
-                                        &n_per, &local, &n_local, &n_corner,
-                                        &error);
-  check(c, error, "name a type of elements");
+  CALL(c, "name a type of elements", c->gmsh.ModelMeshGetElementProperties,
+       e->type[i], &name, &type_dim, &order, &n_per, &local, &n_local,
+       &n_corner);
   send_text(c, WIRE_BLOCK, dim, e->type[i], name);
   send_array(c, WIRE_PHYSICAL, n_physical, sizeof(int), physical);
   send_array(c, WIRE_ELEM_NO, e->no_n[i], sizeof(size_t), e->no[i]);
   send_array(c, WIRE_ELEM_NODE, e->node_n[i], sizeof(size_t), e->node[i]);
-  c->gmsh.Free(name);
-  c->gmsh.Free(local);
 }
 
 /* The elements of one entity; how many are of dimension top in no group. */
 static size_t send_entity(const child *c, int dim, int tag, int top) {
-  int *physical, error;
+  int *physical;
   size_t n_physical, loose = 0;
-  c->gmsh.ModelGetPhysicalGroupsForEntity(dim, tag, &physical, &n_physical,
-                                          &error);
-  check(c, error, "list the groups of an entity");
+  CALL(c, "list the groups of an entity",
+       c->gmsh.ModelGetPhysicalGroupsForEntity, dim, tag, &physical,
+       &n_physical);
   if (n_physical > 0 || dim == top) {
     elements e;
     get_elements(c, dim, tag, &e);
@@ -543,45 +535,36 @@ static size_t send_entity(const child *c, int dim, int tag, int top) {
     }
     free_elements(c, &e);
   }
-  c->gmsh.Free(physical);
   return loose;
 }
 
 static void send_entities(const child *c, int top) {
-  int *dim_tag, error, census[4] = {0, 0, 0, 0};
+  int *dim_tag, census[4] = {0, 0, 0, 0};
   size_t n, loose = 0;
-  c->gmsh.ModelGetEntities(&dim_tag, &n, -1, &error);
-  check(c, error, "list the entities");
+  CALL(c, "list the entities", c->gmsh.ModelGetEntities, &dim_tag, &n, -1);
   for (size_t i = 0; i + 1 < n; i += 2) {
     if (dim_tag[i] >= 0 && dim_tag[i] < 4) ++census[dim_tag[i]];
     if (top >= 2) loose += send_entity(c, dim_tag[i], dim_tag[i + 1], top);
   }
   send_array(c, WIRE_CENSUS, 4, sizeof(int), census);
   send_array(c, WIRE_LOOSE, 1, sizeof(size_t), &loose);
-  c->gmsh.Free(dim_tag);
 }
 
 static void send_nodes(const child *c) {
   size_t *no, n, n_x, n_parameter;
   double *x, *parameter;
-  int error;
-  c->gmsh.ModelMeshGetNodes(&no, &n, &x, &n_x, &parameter, &n_parameter, -1, -1,
-                            0, 0, &error);
-  check(c, error, "list the nodes");
+  CALL(c, "list the nodes", c->gmsh.ModelMeshGetNodes, &no, &n, &x, &n_x,
+       &parameter, &n_parameter, -1, -1, 0, 0);
   send_array(c, WIRE_NODE_NO, n, sizeof(size_t), no);
   send_array(c, WIRE_NODE_X, n_x, sizeof(double), x);
-  c->gmsh.Free(no);
-  c->gmsh.Free(x);
-  c->gmsh.Free(parameter);
 }
 
 /* gmsh continues after some errors: the mesh is then not valid. */
 static void send_warnings(const child *c, const char *doing) {
   char **line;
   size_t n;
-  int error, n_warning = 0;
-  c->gmsh.LoggerGet(&line, &n, &error);
-  check(c, error, "list its messages");
+  int n_warning = 0;
+  CALL(c, "list its messages", c->gmsh.LoggerGet, &line, &n);
   for (size_t i = 0; i < n; ++i) {
     check_log(c, line[i]);
     if (strncmp(line[i], "Error: ", 7) == 0)
@@ -593,7 +576,6 @@ static void send_warnings(const child *c, const char *doing) {
 
 void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
   child here = {.request = request, .fd = fd}, *c = &here;
-  int error;
   detach(parent, fd, error_fd);
   confine();
   load(c);
@@ -606,8 +588,7 @@ void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
     doing = "mesh the geometry";
     fix_options(c);
     if (request->source->sizes[0].of != NULL) set_sizes(c);
-    c->gmsh.ModelMeshGenerate(dim, &error);
-    check(c, error, doing);
+    CALL(c, doing, c->gmsh.ModelMeshGenerate, dim);
   }
   send_warnings(c, doing);
   send_entities(c, dim);

@@ -8,6 +8,7 @@
 #include "base/status.h"
 
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct raw_block { /* elements of one type on one entity */
   int dim;                 /* of the entity */
@@ -46,5 +47,19 @@ void raw_free(raw_mesh *raw); /* accepts NULL */
 /* Read a .msh: data only, every number checked. ERR_MESH with file and line in
  * the record if it is damaged; ERR_FILE, ERR_MEMORY. */
 status msh_read(const char *file, raw_mesh **out);
+
+/* Ids by key, a hash table that grows. */
+typedef struct key_table {
+  int n;         /* keys */
+  size_t n_slot; /* power of two, or 0 */
+  uint64_t *key; /* [n_slot] */
+  int *id;       /* [n_slot] id + 1, 0: empty */
+} key_table;
+
+uint64_t table_key(int upper, long lower);        /* two 32-bit numbers */
+int table_find(const key_table *t, uint64_t key); /* id or -1 */
+/* The id of the key; a new key gets the id "n" of before. */
+status table_add(key_table *t, uint64_t key, int *id);
+void table_free(key_table *t);
 
 #endif

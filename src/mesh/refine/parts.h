@@ -4,7 +4,7 @@
 #ifndef PROTIS_REFINE_PARTS_H
 #define PROTIS_REFINE_PARTS_H
 
-#include "mesh/msh/msh.h"
+#include "mesh/msh/raw_mesh.h"
 #include "mesh/refine/refine.h"
 
 /* ---- sizes.c: the size at a place ---------------------------------------- */
