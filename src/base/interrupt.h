@@ -12,8 +12,7 @@
  * one on a full disk. */
 void interrupt_spare_writes(void);
 /* From now on requests are noted; stop_file is borrowed, NULL: no file is
- * looked for. One that exists already is a request only when it is touched.
- */
+ * looked for. One that exists already is a request only when it is touched. */
 void interrupt_catch(const char *stop_file);
 /* OK, or the status of the first request, ERR_INTERRUPTED of a file; that is
  * then removed if it was made during the run. */

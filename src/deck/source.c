@@ -102,8 +102,7 @@ static int is_empty_or_comment(const char *p) {
   return *p == '\0' || (p[0] == '*' && p[1] == '*');
 }
 
-/* *NAME, and then a comma or the end: the start of a deck.
- */
+/* *NAME, and then a comma or the end: the start of a deck. */
 static int is_card(const char *p) {
   while (is_blank(*p)) ++p;
   if (p[0] != '*' || !is_name_start(p[1])) return 0;

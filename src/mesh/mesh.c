@@ -166,8 +166,7 @@ done:
   return st;
 }
 
-/* ---- messages of the steps ------------------------------------------------
- */
+/* ---- messages of the steps ----------------------------------------------- */
 
 void fault_add(faults *c, const char *format, ...) {
   if (++c->n > SHOWN + 1) return;

@@ -61,9 +61,8 @@ status numbers_check(builder *b, const char *what, int n, const size_t *no,
   }
   if (bad.n > 0)
     message_add(b->log, P3029, b->at,
-                "%d %s(s) have the number of another "
-                "one: %s",
-                bad.n, what, bad.text);
+                "%d %s(s) have the number of another one: %s", bad.n, what,
+                bad.text);
   TRY(build_check(b));
 done:
   memory_free(t.slot);

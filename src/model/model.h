@@ -501,11 +501,13 @@ typedef struct move { /* *OBSTACLE, AMPLITUDE= */
 } move;
 
 /* Bits of m->effects: what a model requires and other files ask for. */
-#define EFFECT_LIST(X)                                                    \
-  X(CONTACT)                                                              \
-  X(FRICTION) X(NONLOCAL) X(TANGENTS) X(GIVEN) X(HISTORY) X(START)        \
-      X(INELASTIC) X(THERMAL) X(BODY) X(STRESS) X(REACTION) X(MESH_ERROR) \
-          X(TIME_ERROR) X(ESTIMATES) X(REFERENCE) X(THEORY) X(MESH)
+/* clang-format off */
+#define EFFECT_LIST(X)                                                \
+  X(CONTACT) X(FRICTION) X(NONLOCAL) X(TANGENTS) X(GIVEN) X(HISTORY)  \
+  X(START) X(INELASTIC) X(THERMAL) X(BODY) X(STRESS) X(REACTION)      \
+  X(MESH_ERROR) X(TIME_ERROR) X(ESTIMATES) X(REFERENCE) X(THEORY)     \
+  X(MESH)
+/* clang-format on */
 #define EFFECT_BIT(name) EFFECT_BIT_##name,
 enum { EFFECT_LIST(EFFECT_BIT) };
 #define EFFECT_MASK(name) EFFECT_##name = 1 << EFFECT_BIT_##name,

@@ -10,8 +10,7 @@ void sparse_blocks_free(sparse_blocks *b) {
   RELEASE(b->start, b->row, b->mate, b->own, b->val, b);
 }
 
-/* ---- pattern -------------------------------------------------------------
- */
+/* ---- pattern ------------------------------------------------------------- */
 
 typedef struct entries {
   long n;
@@ -131,8 +130,7 @@ done:
   return st;
 }
 
-/* ---- products ------------------------------------------------------------
- */
+/* ---- products ------------------------------------------------------------ */
 
 void sparse_blocks_add(const sparse_blocks *b, int j, const double *x,
                        double *y) {
@@ -186,8 +184,7 @@ void sparse_blocks_row(const sparse_blocks *b, int i, const double *x,
   }
 }
 
-/* ---- other forms ---------------------------------------------------------
- */
+/* ---- other forms --------------------------------------------------------- */
 
 status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows) {
   int d = b->dim, m = b->n * d, count_all = 0;

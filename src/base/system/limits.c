@@ -42,8 +42,7 @@ static void lower(limits *l, double memory, const char *who) {
   l->who = who;
 }
 
-/* ---- control groups -------------------------------------------------------
- */
+/* ---- control groups ------------------------------------------------------ */
 
 /* The limits of one group, by its folder. */
 typedef void group_limit(const char *folder, limits *l);
@@ -140,8 +139,7 @@ static void read_groups(const char *root, limits *l) {
   if (f != NULL) fclose(f);
 }
 
-/* ---- machine and process --------------------------------------------------
- */
+/* ---- machine and process ------------------------------------------------- */
 
 static void read_machine(const char *root, limits *l) {
   char path[PATH];

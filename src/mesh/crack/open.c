@@ -35,8 +35,7 @@ static void take_group(opening *o, int crack, int *owner) {
   }
   if (outer.n > 0)
     message_add(o->log, P3050, at,
-                "crack along %s: %d face(s) lie on the boundary, of element "
-                "%s",
+                "crack along %s: %d face(s) lie on the boundary, of element %s",
                 g->name, outer.n, outer.text);
   if (twice.n > 0)
     message_add(o->log, P3051, at,

@@ -8,11 +8,34 @@
 
 #include "model/model.h"
 
+/* The options of the cards; the rows of the keyword table say which of them a
+ * card has. */
+typedef struct card_options {
+  const char *name, *group, *file, *amplitude, *contact, *crack, *obstacle;
+  const char *length, *force, *units_time; /* labels of *UNITS */
+  const char *elset, *material, *law, *method, *integrator, *points;
+  const char *from, *goal_target; /* of *GOAL */
+  int type, time, mode, normal, slave, adjust, update, side, table;
+  int moduli, formulation, creep_law, incompatible, generate, form;
+  int iteration, substeps, op;
+  int max_iter, limit_max_iter, check, stiffness, nested; /* of *SOLVER */
+  int mesh, max_passes, solver, theorems;                 /* of *ACCURACY */
+  int quantity, component;                                /* of *GOAL */
+  int frequency, hdf5, condensed, print[PRINT_COUNT];
+  double scale, zero, thickness, radius, theta, tolerance, tol, share;
+  double max_memory, max_cpu, target, time_share;
+  double value[EFFECT_VALUES]; /* of an effect */
+  law_shift shift;
+} card_options;
+enum { CREEP_STRAIN, CREEP_TIME, CREEP_NORTON, CREEP_HYPERBOLIC };
+#define CREEP_WORDS "STRAIN|TIME|NORTON|HYPERB"
+enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY */
+
 /* State of reading a deck, card by card. */
 typedef struct reading {
   model *m;
-  const card *card;   /* the current card */
-  const void *param;  /* its options, as the row's table says */
+  const card *card;          /* the current card */
+  const card_options *param; /* its options */
   const void *plugin; /* options of the law or solver it names, or NULL */
   size_t plugin_size;
   int material_id; /* open *MATERIAL, or -1 */
@@ -40,145 +63,7 @@ typedef struct plugin {
   const char *parameter, *name; /* METHOD, newton; NULL: not known */
 } plugin;
 
-enum { PARAM_SIZE = 512 }; /* space for the options of any row or plug-in */
-
-/* ---- options of the cards, for the rows of the keyword table ---- */
-
-typedef struct units_param {
-  const char *length, *force, *time;
-} units_param;
-typedef struct mesh_param {
-  const char *file;
-  double scale;
-} mesh_param;
-typedef struct problem_param {
-  const char *file;
-  int type;
-} problem_param;
-typedef struct name_param {
-  const char *name;
-} name_param;
-typedef struct elastic_param {
-  int type, moduli;
-} elastic_param;
-typedef struct inelastic_param {
-  const char *law;
-  law_shift shift;
-} inelastic_param;
-typedef struct creep_param {
-  int law; /* CREEP_... */
-  law_shift shift;
-} creep_param;
-enum { CREEP_STRAIN, CREEP_TIME, CREEP_NORTON, CREEP_HYPERBOLIC };
-#define CREEP_WORDS "STRAIN|TIME|NORTON|HYPERB"
-typedef struct trs_param {
-  int definition;
-} trs_param;
-typedef struct viscoelastic_param {
-  int time;
-  law_shift shift;
-} viscoelastic_param;
-typedef struct expansion_param {
-  int type;
-  double zero;
-} expansion_param;
-typedef struct initial_param {
-  int type, incompatible;
-  const char *file;
-} initial_param;
-typedef struct section_param {
-  const char *elset, *material;
-  int type, formulation;
-  double thickness;
-} section_param;
-typedef struct obstacle_param {
-  const char *name, *amplitude;
-  int type, side;
-  double radius;
-} obstacle_param;
-typedef struct contact_param {
-  const char *name, *group, *obstacle;
-  int normal;
-} contact_param;
-typedef struct pair_param {
-  const char *name, *amplitude;
-  int slave, adjust, normal, type, update;
-} pair_param;
-typedef struct crack_param {
-  const char *name, *group;
-} crack_param;
-typedef struct tie_param {
-  const char *name;
-  int slave, adjust;
-} tie_param;
-typedef struct friction_param {
-  const char *contact, *law, *amplitude;
-  int table;
-} friction_param;
-typedef struct force_param {
-  const char *contact, *amplitude;
-  int table;
-} force_param;
-typedef struct effect_param { /* of an effect: CONTACT= and numbers */
-  const char *contact;
-  double value[EFFECT_VALUES];
-} effect_param;
-typedef struct amplitude_param {
-  const char *name;
-  int time;
-} amplitude_param;
-typedef struct points_param {
-  const char *name;
-  int time, generate;
-} points_param;
-typedef struct quasistatic_param {
-  int form;
-} quasistatic_param;
-typedef struct visco_param {
-  const char *integrator;
-  double theta, tolerance;
-  int iteration, substeps;
-} visco_param;
-typedef struct load_param {
-  const char *amplitude;
-  int op;
-} load_param;
-typedef struct temperature_param {
-  load_param load; /* first: what all loads have */
-  const char *file;
-} temperature_param;
-typedef struct solver_param {
-  const char *method;
-  double tol, share;
-  int max_iter, limit_max_iter, check, stiffness, nested;
-  double max_memory;
-} solver_param;
-enum { TIME_NO, TIME_YES, TIME_BALANCED }; /* TIME= of *ACCURACY */
-typedef struct accuracy_param {
-  int mesh, time, max_passes;
-  double target, max_cpu, max_memory, time_share;
-  int solver, theorems;
-} accuracy_param;
-typedef struct goal_param {
-  int quantity, component;
-  const char *name, *contact, *crack, *group, *from, *target;
-  double radius;
-} goal_param;
-typedef struct effects_param {
-  int mode;
-  double tol;
-} effects_param;
-typedef struct print_param {
-  int table[PRINT_COUNT];
-  int frequency;
-  const char *group, *points;
-} print_param;
-typedef struct output_param {
-  int hdf5, frequency, condensed;
-} output_param;
-typedef struct restart_param {
-  int frequency;
-} restart_param;
+enum { PARAM_SIZE = 512 }; /* space for the options of any plug-in */
 
 /* ---- part.c: title, units, mesh, sections, amplitudes, times ---- */
 status apply_heading(reading *r);
@@ -216,7 +101,7 @@ status apply_obstacle(reading *r);
 status apply_contact(reading *r);
 status apply_friction(reading *r);
 status apply_contact_force(reading *r);
-/* Of any effect whose options are effect_param. */
+/* Of any effect whose options are CONTACT= and numbers. */
 status apply_effect(reading *r);
 /* Id of a contact, or -1 and the error that this card names none. */
 int find_contact(const reading *r, const char *name);

@@ -157,7 +157,7 @@ static void read_shape(const reading *r, int n_line, obstacle *o) {
 }
 
 /* Parameters of a cylinder or a sphere only. */
-static void check_round(const reading *r, const obstacle_param *p) {
+static void check_round(const reading *r, const card_options *p) {
   message_log *log = r->m->log;
   const parameter *radius = card_parameter(r->card, "RADIUS");
   int round = p->type == OBSTACLE_CYLINDER || p->type == OBSTACLE_SPHERE;
@@ -174,7 +174,7 @@ static void check_round(const reading *r, const obstacle_param *p) {
 }
 
 status apply_obstacle(reading *r) {
-  const obstacle_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   const card *c = r->card;
   for (int i = 0; i < m->n.obstacle; ++i)
@@ -234,7 +234,7 @@ static status new_contact(const reading *r, const char *name, contact **out) {
 }
 
 status apply_contact(reading *r) {
-  const contact_param *p = r->param;
+  const card_options *p = r->param;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
   c->group = p->group == NULL ? "" : p->group;
@@ -299,7 +299,7 @@ static void read_lines(const reading *r, contact *c) {
 }
 
 status apply_contact_pair(reading *r) {
-  const pair_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
@@ -322,7 +322,7 @@ status apply_contact_pair(reading *r) {
 }
 
 status apply_tie(reading *r) {
-  const tie_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   for (int i = 0; i < m->n.tie; ++i) name_taken(r, p->name, m->ties[i].name);
   PASS_GROW(m->ties, m->n.tie, m->cap.tie);
@@ -344,7 +344,7 @@ static char *lip_name(const char *group, char sign) {
 }
 
 status apply_crack(reading *r) {
-  const crack_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
@@ -379,7 +379,7 @@ static const char *law_name(const void *ctx, int i) {
 }
 
 plugin names_law(const reading *r) {
-  const friction_param *p = r->param;
+  const card_options *p = r->param;
   const parameter *law = card_parameter(r->card, "LAW");
   plugin none = {NULL, 0, "LAW", NULL};
   if (p->law == NULL || law == NULL) return none;
@@ -487,7 +487,7 @@ static status copy_options(const reading *r, const friction_ops *law,
 }
 
 status apply_friction(reading *r) {
-  const friction_param *p = r->param;
+  const card_options *p = r->param;
   const card *c = r->card;
   const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
   if (law == NULL || p->contact == NULL) return OK;
@@ -513,7 +513,7 @@ status apply_friction(reading *r) {
 }
 
 status apply_contact_force(reading *r) {
-  const force_param *p = r->param;
+  const card_options *p = r->param;
   const card *c = r->card;
   if (p->contact == NULL) return OK;
   int id = find_contact(r, p->contact);
@@ -536,7 +536,7 @@ status apply_contact_force(reading *r) {
 status apply_effect(reading *r) {
   status st = OK;
   model *m = r->m;
-  const effect_param *p = r->param;
+  const card_options *p = r->param;
   int id = p->contact == NULL ? -1 : find_contact(r, p->contact);
   if (p->contact != NULL && id < 0) return OK;
   const effect_card *first = model_effect_card(m, r->card->name, id);

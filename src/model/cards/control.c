@@ -15,7 +15,7 @@ static const char *solver_name(const void *ctx, int i) {
 }
 
 plugin names_solver(const reading *r) {
-  const solver_param *p = r->param;
+  const card_options *p = r->param;
   const parameter *method = card_parameter(r->card, "METHOD");
   if (method == NULL || same_word(p->method, "AUTO"))
     return (plugin){NULL, 0, "METHOD", "AUTO"};
@@ -33,7 +33,7 @@ plugin names_solver(const reading *r) {
 static const double TOL_DEFAULT = 1e-10;
 
 /* The first increment starts from a coarser mesh of a geometry. */
-static void take_nested(const reading *r, const solver_param *p, step *s) {
+static void take_nested(const reading *r, const card_options *p, step *s) {
   const char *file = r->m->mesh.file;
   if (!p->nested) return;
   s->nested = s == r->m->steps && file != NULL && mesh_is_program(file);
@@ -42,7 +42,7 @@ static void take_nested(const reading *r, const solver_param *p, step *s) {
 }
 
 status apply_solver(reading *r) {
-  const solver_param *p = r->param;
+  const card_options *p = r->param;
   step *s = open_step(r);
   if (s->solver_at.file != NULL) {
     message_add(r->m->log, P2011, &r->card->at,
@@ -73,7 +73,7 @@ status apply_solver(reading *r) {
 }
 
 /* Its limits count with a target of the energy norm, or of a *GOAL. */
-static void take_target(const reading *r, const accuracy_param *p) {
+static void take_target(const reading *r, const card_options *p) {
   accuracy_target *t = &r->m->accuracy.target;
   const int limited = p->max_cpu > 0.0 || p->max_memory > 0.0 ||
                       p->max_passes != MAX_PASSES_DEFAULT;
@@ -89,7 +89,7 @@ static void take_target(const reading *r, const accuracy_param *p) {
 }
 
 status apply_accuracy(reading *r) {
-  const accuracy_param *p = r->param;
+  const card_options *p = r->param;
   step *s = open_step(r);
   if (s->accuracy.given)
     message_add(r->m->log, P2011, &r->card->at,
@@ -112,12 +112,12 @@ status apply_accuracy(reading *r) {
 
 #define PRINT_WORD(name, help) " " #name
 status apply_print(reading *r) {
-  const print_param *p = r->param;
+  const card_options *p = r->param;
   step *s = open_step(r);
   int any = 0;
   s->print.given = 1;
   for (int i = 0; i < PRINT_COUNT; ++i) {
-    if (!p->table[i]) continue;
+    if (!p->print[i]) continue;
     any = 1;
     PASS_GROW(s->print.requests, s->print.n, s->print.cap);
     print_request *q = &s->print.requests[s->print.n++];
@@ -142,7 +142,7 @@ status apply_print(reading *r) {
 }
 
 status apply_output(reading *r) {
-  const output_param *p = r->param;
+  const card_options *p = r->param;
   step *s = open_step(r);
   s->output.given = 1;
   s->output.at = r->card->at;
@@ -154,7 +154,7 @@ status apply_output(reading *r) {
 }
 
 status apply_restart(reading *r) {
-  const restart_param *p = r->param;
+  const card_options *p = r->param;
   step *s = open_step(r);
   s->restart.given = 1;
   s->restart.at = r->card->at;

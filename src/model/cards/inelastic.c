@@ -14,7 +14,7 @@ static const char *law_name(const void *ctx, int i) {
 }
 
 plugin names_inelastic(const reading *r) {
-  const inelastic_param *p = r->param;
+  const card_options *p = r->param;
   const law_ops *ops = p->law == NULL ? NULL : law_find(p->law);
   if (ops != NULL)
     return (plugin){ops->options, ops->param_size, "LAW", ops->name};
@@ -82,7 +82,7 @@ static status read_law(reading *r, const law_ops *ops, const void *words,
 }
 
 status apply_inelastic(reading *r) {
-  const inelastic_param *p = r->param;
+  const card_options *p = r->param;
   const law_ops *ops = p->law == NULL ? NULL : law_find(p->law);
   return ops == NULL ? OK : read_law(r, ops, r->plugin, &p->shift);
 }
@@ -90,18 +90,18 @@ status apply_inelastic(reading *r) {
 status apply_creep(reading *r) {
   _Alignas(16) char words[PARAM_SIZE] = {0};
   char why[64];
-  const creep_param *p = r->param;
-  if (p->law == CREEP_HYPERBOLIC)
+  const card_options *p = r->param;
+  if (p->creep_law == CREEP_HYPERBOLIC)
     return read_law(r, &hyperbolic_law, NULL, &p->shift);
   const option *row = option_find(norton_law.options, "HARDENING");
   option_defaults(norton_law.options, words);
-  (void)option_read(row, p->law == CREEP_STRAIN ? "STRAIN" : "TIME", words, why,
-                    sizeof why);
+  (void)option_read(row, p->creep_law == CREEP_STRAIN ? "STRAIN" : "TIME",
+                    words, why, sizeof why);
   return read_law(r, &norton_law, words, &p->shift);
 }
 
 status apply_viscoelastic(reading *r) {
-  const viscoelastic_param *p = r->param;
+  const card_options *p = r->param;
   r->m->materials[r->material_id].is_abaqus_prony = 1;
   return read_law(r, &prony_law, NULL, &p->shift);
 }

@@ -64,7 +64,7 @@ static const struct {
 
 /* Parameters of the card besides TYPE=. */
 static status open_initial(reading *r) {
-  const initial_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   const parameter *file = card_parameter(r->card, "FILE");
   if (!initial_rows[p->type].starts) {
@@ -93,7 +93,7 @@ static status open_initial(reading *r) {
 }
 
 status apply_initial(reading *r) {
-  const initial_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   if (r->misread) return OK;
   PASS(open_initial(r));

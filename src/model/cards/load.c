@@ -22,7 +22,7 @@ static load *new_load(reading *r, load_list *list, int kind,
   status st = OK;
   GROW(list->item, list->n, list->cap);
   load *l = &list->item[list->n++];
-  const load_param *p = r->param;
+  const card_options *p = r->param;
   memset(l, 0, sizeof *l);
   l->kind = kind;
   l->group = group->text;
@@ -42,7 +42,7 @@ done:
 
 /* Without data lines the card has OP=NEW only. */
 static void renew(const reading *r, unsigned kinds, const char *expected) {
-  const load_param *p = r->param;
+  const card_options *p = r->param;
   if (p->op == 1 && r->in_step) open_step(r)->renewed |= kinds;
   /* Lines that name their own amplitude leave this one unread. */
   if (p->amplitude != NULL && r->in_step)

@@ -8,7 +8,7 @@
 #include <float.h>
 
 status apply_material(reading *r) {
-  const name_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   for (int i = 0; i < m->n.material; ++i)
     name_taken(r, p->name, m->materials[i].name);
@@ -20,7 +20,7 @@ status apply_material(reading *r) {
 }
 
 status apply_elastic(reading *r) {
-  const elastic_param *p = r->param;
+  const card_options *p = r->param;
   const card *c = r->card;
   material *mat = &r->m->materials[r->material_id];
   char text[256];
@@ -74,7 +74,7 @@ static int read_expansion(const reading *r, const record *line, int i,
 }
 
 status apply_expansion(reading *r) {
-  const expansion_param *p = r->param;
+  const card_options *p = r->param;
   expansion *x = &r->m->materials[r->material_id].expand;
   int n = r->card->n_record, lines = 0;
   if (x->given++) {

@@ -16,17 +16,17 @@ status apply_heading(reading *r) {
 }
 
 status apply_units(reading *r) {
-  const units_param *p = r->param;
+  const card_options *p = r->param;
   if (r->m->unit.given++)
     message_add(r->m->log, P2011, &r->card->at, "a deck has one *UNITS card");
   r->m->unit.length = p->length;
   r->m->unit.force = p->force;
-  r->m->unit.time = p->time;
+  r->m->unit.time = p->units_time;
   return OK;
 }
 
 status apply_mesh(reading *r) {
-  const mesh_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   if (m->mesh.given) {
     message_add(m->log, P2015, &r->card->at, "a deck has one *MESH card");
@@ -39,7 +39,7 @@ status apply_mesh(reading *r) {
 }
 
 status apply_condensed_problem(reading *r) {
-  const problem_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   if (m->problem.given) {
     message_add(m->log, P2011, &r->card->at,
@@ -53,7 +53,7 @@ status apply_condensed_problem(reading *r) {
 }
 
 status apply_section(reading *r) {
-  const section_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   PASS_GROW(m->sections, m->n.section, m->cap.section);
   section *s = &m->sections[m->n.section++];
@@ -93,7 +93,7 @@ static status constant_table(double value, value_table *t) {
 }
 
 status apply_amplitude(reading *r) {
-  const amplitude_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   const card *c = r->card;
   for (int i = 0; i < m->n.amplitude; ++i)
@@ -170,7 +170,7 @@ static status read_times(reading *r, const record *line, time_points *p,
 }
 
 status apply_time_points(reading *r) {
-  const points_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   int room = 0;
   for (int i = 0; i < m->n.points; ++i)
@@ -189,7 +189,7 @@ status apply_time_points(reading *r) {
 }
 
 status apply_effects(reading *r) {
-  const effects_param *p = r->param;
+  const card_options *p = r->param;
   if (r->m->reduction.given)
     message_add(r->m->log, P2011, &r->card->at,
                 "a deck has one *EFFECTS card, this is its second");

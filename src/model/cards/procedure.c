@@ -9,7 +9,7 @@
 #include <math.h>
 
 status apply_step(reading *r) {
-  const name_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   PASS_GROW(m->steps, m->n.step, m->cap.step);
   step *s = &m->steps[m->n.step++];
@@ -95,7 +95,7 @@ static void read_increments(const reading *r, step *s) {
 
 status apply_quasistatic(reading *r) {
   step *s = open_step(r);
-  const quasistatic_param *p = r->param;
+  const card_options *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_QUASISTATIC;
   s->form = p->form;
@@ -111,7 +111,7 @@ static const char *scheme_name(const void *ctx, int i) {
 /* THETA=, ITERATION= and SUBSTEPS= where they have no effect; the defaults,
  * which the echo writes, are accepted. */
 static void check_visco(const reading *r, const scheme *s) {
-  const visco_param *p = r->param;
+  const card_options *p = r->param;
   if (!s->has_theta && p->theta != 0.5)
     message_add(r->m->log, P2037, value_place(r, "THETA"),
                 "*VISCO: THETA= counts for INTEGRATOR=THETA only");
@@ -129,7 +129,7 @@ static int gives_dt_min(const reading *r) {
 
 status apply_visco(reading *r) {
   step *s = open_step(r);
-  const visco_param *p = r->param;
+  const card_options *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_VISCO;
   s->visco.tolerance = p->tolerance;

@@ -184,7 +184,7 @@ static int find_crack(const reading *r, const char *name) {
 }
 
 status apply_goal(reading *r) {
-  const goal_param *p = r->param;
+  const card_options *p = r->param;
   model *m = r->m;
   if (r->misread || p->name == NULL || !is_given(r, "QUANTITY")) return OK;
   for (int i = 0; i < m->n.goal; ++i)
@@ -208,7 +208,7 @@ status apply_goal(reading *r) {
                    .from_at = *value_place(r, "FROM")};
   const int takes = quantities[g->quantity].takes;
   read_points(r, g);
-  read_target(r, p->target, g);
+  read_target(r, p->goal_target, g);
   m->accuracy.goal_products |= g->target > 0.0;
   check_parameter(r, g, "CONTACT", takes & ON_CONTACT, takes & ON_CONTACT);
   check_parameter(r, g, "CRACK", takes & ON_CRACK, takes & ON_CRACK);

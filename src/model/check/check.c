@@ -44,8 +44,7 @@ static void check_reference(model *m) {
   ref->has_stress = n_stress > 0;
 }
 
-/* ---- Contacts, their obstacles and their friction laws against the mesh. ----
- */
+/* ---- Contacts, their obstacles and their friction laws against the mesh. - */
 
 /* A group meets an obstacle once: twice would count its areas twice. */
 static void check_twice(const model *m, int contact_id) {
@@ -162,8 +161,7 @@ static void check_kinematics(model *m, const mesh *msh) {
     if ((s->kin == SOLID_3D) != (msh->dim == 3))
       message_add(
           m->log, P2024, &s->at,
-          "*SOLID SECTION: this TYPE does not fit a mesh in %d-D; "
-          "expected %s",
+          "*SOLID SECTION: this TYPE does not fit a mesh in %d-D; expected %s",
           msh->dim,
           msh->dim == 3 ? "3D" : "PLANE STRAIN, PLANE STRESS or AXISYMMETRIC");
     if ((s->kin == AXISYMMETRIC) != (m->sections[0].kin == AXISYMMETRIC))

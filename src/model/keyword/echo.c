@@ -92,13 +92,14 @@ static void echo_record(const card *c, const record *line, FILE *out) {
 }
 
 static void echo_card(const model *m, const card *c, FILE *out) {
-  _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
+  card_options param;
+  _Alignas(16) char plugin_param[PARAM_SIZE];
   const keyword *row = keyword_find(c->name);
   if (row == NULL || (row->where & LANGUAGE)) return;
   reading r = {.m = (model *)m, .card = c, .material_id = -1};
-  keyword_parameters(row, &r, param, plugin_param);
+  keyword_parameters(row, &r, &param, plugin_param);
   int column = fprintf(out, "*%s", c->name);
-  echo_options(m, c, row->options, param, &column, out);
+  echo_options(m, c, row->options, &param, &column, out);
   if (row->names != NULL)
     echo_options(m, c, row->names(&r).options, plugin_param, &column, out);
   fputc('\n', out);

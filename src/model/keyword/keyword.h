@@ -21,8 +21,7 @@ enum {
 typedef struct keyword {
   const char *name;
   unsigned where;        /* IN_... or LANGUAGE */
-  const option *options; /* of the struct of param_size bytes, or NULL */
-  size_t param_size;
+  const option *options; /* of card_options, or NULL */
   /* Options of what the card names; an unknown name goes to the log. */
   plugin (*names)(const reading *r);
   status (*apply)(reading *r); /* ERR_MEMORY only: the rest goes to the log */
@@ -34,9 +33,9 @@ typedef struct keyword {
 extern const keyword keyword_table[];          /* name NULL at the end */
 const keyword *keyword_find(const char *name); /* or NULL */
 
-/* Read the parameters of r->card into param[row->param_size] and
- * plugin[PARAM_SIZE]; fills r->param and r->plugin. Errors go to the log. */
-void keyword_parameters(const keyword *row, reading *r, void *param,
+/* Read the parameters of r->card into param and plugin_param[PARAM_SIZE]; fills
+ * r->param and r->plugin. Errors go to the log. */
+void keyword_parameters(const keyword *row, reading *r, card_options *param,
                         void *plugin_param);
 
 /*

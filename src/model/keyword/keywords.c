@@ -11,469 +11,433 @@
 #define ANY (-1)
 
 /* clang-format off */
+#define NAME(field, ...) OPTION_NAME(card_options, field, __VA_ARGS__)
+#define INT(field, ...) OPTION_INT(card_options, field, __VA_ARGS__)
+#define REAL(field, ...) OPTION_REAL(card_options, field, __VA_ARGS__)
+#define WORD(field, ...) OPTION_REAL_WORD(card_options, field, __VA_ARGS__)
+#define FLAG(field, ...) OPTION_FLAG(card_options, field, __VA_ARGS__)
+#define CHOICE(field, ...) OPTION_CHOICE(card_options, field, __VA_ARGS__)
+
 static const option units_options[] = {
-  OPTION_NAME(units_param, length, "LENGTH", OPTION_ABSENT, "label, \"mm\""),
-  OPTION_NAME(units_param, force, "FORCE", OPTION_ABSENT, "label, \"N\""),
-  OPTION_NAME(units_param, time, "TIME", OPTION_ABSENT, "label, \"s\""),
+  NAME(length, "LENGTH", OPTION_ABSENT, "label, \"mm\""),
+  NAME(force, "FORCE", OPTION_ABSENT, "label, \"N\""),
+  NAME(units_time, "TIME", OPTION_ABSENT, "label, \"s\""),
   OPTION_END};
 static const option mesh_options[] = {
-  OPTION_NAME(mesh_param, file, "FILE", NULL,
-              ".msh or .geo, relative to the deck"),
-  OPTION_REAL(mesh_param, scale, "SCALE", DBL_MIN, DBL_MAX, "1", "-",
-              "factor on all coordinates"),
+  NAME(file, "FILE", NULL, ".msh or .geo, relative to the deck"),
+  REAL(scale, "SCALE", DBL_MIN, DBL_MAX, "1", "-", "factor on all coordinates"),
   OPTION_END};
 static const option problem_options[] = {
-  OPTION_NAME(problem_param, file, "FILE", NULL,
-              "FCLIB (HDF5) or a plain LCP (text), relative to the deck"),
-  OPTION_CHOICE(problem_param, type, "TYPE", "FCLIB|LCP", OPTION_ABSENT,
-                "absent: by the file itself"),
+  NAME(file, "FILE", NULL,
+       "FCLIB (HDF5) or a plain LCP (text), relative to the deck"),
+  CHOICE(type, "TYPE", "FCLIB|LCP", OPTION_ABSENT,"absent: by the file itself"),
   OPTION_END};
 static const option name_options[] = {
-  OPTION_NAME(name_param, name, "NAME", NULL, "name for other cards"),
+  NAME(name, "NAME", NULL, "name for other cards"),
   OPTION_END};
 static const option step_options[] = {
-  OPTION_NAME(name_param, name, "NAME", OPTION_ABSENT, "name in the output"),
+  NAME(name, "NAME", OPTION_ABSENT, "name in the output"),
   OPTION_END};
 static const option elastic_options[] = {
-  OPTION_CHOICE(elastic_param, type, "TYPE", ELASTIC_WORDS, "ISO",
-                "symmetry of the material"),
-  OPTION_CHOICE(elastic_param, moduli, "MODULI", "LONG TERM|INSTANTANEOUS",
-                OPTION_ABSENT,
-                "with a Prony series: after all terms have relaxed, or at "
-                "once; absent: LONG TERM with *VISCOELASTIC, "
-                "INSTANTANEOUS with *INELASTIC"),
+  CHOICE(type, "TYPE", ELASTIC_WORDS, "ISO", "symmetry of the material"),
+  CHOICE(moduli, "MODULI", "LONG TERM|INSTANTANEOUS", OPTION_ABSENT,
+         "with a Prony series: after all terms have relaxed, or at once; "
+         "absent: LONG TERM with *VISCOELASTIC, INSTANTANEOUS with *INELASTIC"),
   OPTION_END};
-#define SHIFT_ROWS(struct_)                                                   \
-  OPTION_CHOICE(struct_, shift.kind, "SHIFT", SHIFT_WORDS, "NONE",            \
-                "time-temperature shift: the rates are divided by a"),      \
-  OPTION_REAL(struct_, shift.reference, "T_REF", -DBL_MAX, DBL_MAX,           \
-              OPTION_ABSENT, "temperature", "where a = 1"),                   \
-  OPTION_REAL(struct_, shift.c1, "C1", 0, DBL_MAX, OPTION_ABSENT, "-",        \
-              "WLF: log10 a = -C1 (T - T_REF)/(C2 + T - T_REF)"),             \
-  OPTION_REAL(struct_, shift.c2, "C2", DBL_MIN, DBL_MAX, OPTION_ABSENT,       \
-              "temperature", "no flow below T_REF - C2"),                     \
-  OPTION_REAL(struct_, shift.activation, "ACTIVATION", 0, DBL_MAX,            \
-              OPTION_ABSENT, "temperature", "ARRHENIUS: Q/R in log a = Q/R "  \
-              "(1/(T - T_ZERO) - 1/(T_REF - T_ZERO))"),                       \
-  OPTION_REAL(struct_, shift.zero, "T_ZERO", -DBL_MAX, DBL_MAX, OPTION_ABSENT,\
-              "temperature", "absolute zero, -273.15 in Celsius; absent: 0")
+#define SHIFT_ROWS                                                            \
+  CHOICE(shift.kind, "SHIFT", SHIFT_WORDS, "NONE",                            \
+         "time-temperature shift: the rates are divided by a"),               \
+  REAL(shift.reference, "T_REF", -DBL_MAX, DBL_MAX, OPTION_ABSENT,            \
+       "temperature", "where a = 1"),                                         \
+  REAL(shift.c1, "C1", 0, DBL_MAX, OPTION_ABSENT, "-",                        \
+       "WLF: log10 a = -C1 (T - T_REF)/(C2 + T - T_REF)"),                    \
+  REAL(shift.c2, "C2", DBL_MIN, DBL_MAX, OPTION_ABSENT, "temperature",        \
+       "no flow below T_REF - C2"),                                           \
+  REAL(shift.activation, "ACTIVATION", 0, DBL_MAX, OPTION_ABSENT,             \
+       "temperature", "ARRHENIUS: Q/R in log a = Q/R (1/(T - T_ZERO) - "      \
+       "1/(T_REF - T_ZERO))"),                                                \
+  REAL(shift.zero, "T_ZERO", -DBL_MAX, DBL_MAX, OPTION_ABSENT, "temperature", \
+       "absolute zero, -273.15 in Celsius; absent: 0")
 static const option inelastic_options[] = {
-  OPTION_NAME(inelastic_param, law, "LAW", NULL, "protis --list materials"),
-  SHIFT_ROWS(inelastic_param),
+  NAME(law, "LAW", NULL, "protis --list materials"),
+  SHIFT_ROWS,
   OPTION_END};
 static const option creep_options[] = {
-  OPTION_CHOICE(creep_param, law, "LAW", CREEP_WORDS, "STRAIN",
-                "strain hardening, time hardening, m = 0, hyperbolic sine"),
-  SHIFT_ROWS(creep_param),
+  CHOICE(creep_law, "LAW", CREEP_WORDS, "STRAIN",
+         "strain hardening, time hardening, m = 0, hyperbolic sine"),
+  SHIFT_ROWS,
   OPTION_END};
 static const option viscoelastic_options[] = {
-  OPTION_CHOICE(viscoelastic_param, time, "TIME", "PRONY", NULL,
-                "terms of a Prony series"),
-  SHIFT_ROWS(viscoelastic_param),
+  CHOICE(type, "TIME", "PRONY", NULL, "terms of a Prony series"),
+  SHIFT_ROWS,
   OPTION_END};
 static const option trs_options[] = {
-  OPTION_CHOICE(trs_param, definition, "DEFINITION", "WLF", "WLF",
-                "log10 a = -C1 (T - T_REF)/(C2 + T - T_REF); others: SHIFT= of "
-                "*INELASTIC, *VISCOELASTIC"),
+  CHOICE(type, "DEFINITION", "WLF", "WLF", "log10 a = -C1 (T - T_REF)/(C2 + T "
+         "- T_REF); others: SHIFT= of *INELASTIC, *VISCOELASTIC"),
   OPTION_END};
 static const option expansion_options[] = {
-  OPTION_CHOICE(expansion_param, type, "TYPE", EXPANSION_WORDS, "ISO",
-                "one coefficient, or one for each axis"),
-  OPTION_REAL(expansion_param, zero, "ZERO", -DBL_MAX, DBL_MAX, "0",
-              "temperature", "from where the coefficients are secants"),
+  CHOICE(type, "TYPE", EXPANSION_WORDS, "ISO",
+         "one coefficient, or one for each axis"),
+  REAL(zero, "ZERO", -DBL_MAX, DBL_MAX, "0", "temperature",
+       "from where the coefficients are secants"),
   OPTION_END};
 static const option initial_options[] = {
-  OPTION_CHOICE(initial_param, type, "TYPE", INITIAL_WORDS, NULL,
-                "what the lines give"),
-  OPTION_NAME(initial_param, file, "FILE", OPTION_ABSENT,
-              "of displacements: JOB.h5 of a run on the same mesh; its end "
-              "is the start, lines override it"),
-  OPTION_CHOICE(initial_param, incompatible, "INCOMPATIBLE", "REFUSE|RELAX",
-                "REFUSE", "displacements out of equilibrium at time 0 "
-                          "(CPR98 3.3): an error, or relaxed to it as "
-                          "increment 0"),
+  CHOICE(type, "TYPE", INITIAL_WORDS, NULL, "what the lines give"),
+  NAME(file, "FILE", OPTION_ABSENT, "of displacements: JOB.h5 of a run on the "
+       "same mesh; its end is the start, lines override it"),
+  CHOICE(incompatible, "INCOMPATIBLE", "REFUSE|RELAX", "REFUSE",
+         "displacements out of equilibrium at time 0 (CPR98 3.3): an error, or "
+         "relaxed to it as increment 0"),
   OPTION_END};
 static const option section_options[] = {
-  OPTION_NAME(section_param, elset, "ELSET", NULL, "group of elements"),
-  OPTION_NAME(section_param, material, "MATERIAL", NULL, "name of a *MATERIAL"),
-  OPTION_CHOICE(section_param, type, "TYPE", KINEMATICS_WORDS, OPTION_ABSENT,
-                "absent: plane strain in 2-D"),
-  OPTION_REAL(section_param, thickness, "THICKNESS", DBL_MIN, DBL_MAX, "1",
-              "length", "of plane strain and plane stress"),
-  OPTION_CHOICE(section_param, formulation, "FORMULATION", "STANDARD|AVERAGED",
-                "STANDARD", "AVERAGED: change of volume averaged over clusters "
-                "of elements, as far as nu exceeds 0.4, or all of it if the "
-                "material flows: no locking"),
+  NAME(elset, "ELSET", NULL, "group of elements"),
+  NAME(material, "MATERIAL", NULL, "name of a *MATERIAL"),
+  CHOICE(type, "TYPE", KINEMATICS_WORDS, OPTION_ABSENT,
+         "absent: plane strain in 2-D"),
+  REAL(thickness, "THICKNESS", DBL_MIN, DBL_MAX, "1", "length",
+       "of plane strain and plane stress"),
+  CHOICE(formulation, "FORMULATION", "STANDARD|AVERAGED", "STANDARD",
+         "AVERAGED: change of volume averaged over clusters of elements, as "
+         "far as nu exceeds 0.4, or all of it if the material flows: no "
+         "locking"),
   OPTION_END};
 static const option obstacle_options[] = {
-  OPTION_NAME(obstacle_param, name, "NAME", NULL, "name for *CONTACT"),
-  OPTION_CHOICE(obstacle_param, type, "TYPE", OBSTACLE_SHAPES, NULL, "shape"),
-  OPTION_REAL(obstacle_param, radius, "RADIUS", DBL_MIN, DBL_MAX,
-              OPTION_ABSENT, "length", "of cylinder and sphere"),
-  OPTION_CHOICE(obstacle_param, side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE",
-                "where the body is"),
-  OPTION_NAME(obstacle_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "factor on MOVE and ROTATE in total time, whatever its TIME="),
+  NAME(name, "NAME", NULL, "name for *CONTACT"),
+  CHOICE(type, "TYPE", OBSTACLE_SHAPES, NULL, "shape"),
+  REAL(radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT, "length",
+       "of cylinder and sphere"),
+  CHOICE(side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE", "where the body is"),
+  NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
+       "factor on MOVE and ROTATE in total time, whatever its TIME="),
   OPTION_END};
 static const option contact_options[] = {
-  OPTION_NAME(contact_param, name, "NAME", NULL, "name for *FRICTION"),
-  OPTION_NAME(contact_param, group, "GROUP", NULL, "faces of Gamma_3"),
-  OPTION_NAME(contact_param, obstacle, "OBSTACLE", NULL,
-              "name of an *OBSTACLE"),
-  OPTION_CHOICE(contact_param, normal, "NORMAL", "BODY|OBSTACLE",
-                OPTION_ABSENT, "whose normal counts; absent: that of a PLANE, "
-                "else that of the body"),
+  NAME(name, "NAME", NULL, "name for *FRICTION"),
+  NAME(group, "GROUP", NULL, "faces of Gamma_3"),
+  NAME(obstacle, "OBSTACLE", NULL, "name of an *OBSTACLE"),
+  CHOICE(normal, "NORMAL", "BODY|OBSTACLE", OPTION_ABSENT,
+         "whose normal counts; absent: that of a PLANE, else that of the body"),
   OPTION_END};
 static const option pair_options[] = {
-  OPTION_NAME(pair_param, name, "NAME", NULL, "name for *FRICTION"),
-  OPTION_CHOICE(pair_param, slave, "SLAVE", SLAVE_WORDS, "AUTO",
-                "which surface has the contact nodes; AUTO: the softer from a "
-                "ratio of 3 on, else the coarser"),
-  OPTION_CHOICE(pair_param, normal, "NORMAL", "MEAN|SLAVE", "MEAN",
-                "MEAN: of both surfaces"),
-  OPTION_CHOICE(pair_param, adjust, "ADJUST", "NO|YES", "NO",
-                "YES: nodes of the slave are moved onto the master before the "
-                "run, without strain"),
-  OPTION_CHOICE(pair_param, update, "UPDATE", "NO|STEP", "NO",
-                "STEP: partners are found again at the start of each step, at "
-                "the places the bodies have come to"),
-  OPTION_CHOICE(pair_param, type, "TYPE", "SURFACE TO SURFACE",
-                "SURFACE TO SURFACE", "mortar method; there is no other"),
-  OPTION_NAME(pair_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "factor on CLEARANCE or INTERFERENCE in total time, whatever its "
-              "TIME="),
+  NAME(name, "NAME", NULL, "name for *FRICTION"),
+  CHOICE(slave, "SLAVE", SLAVE_WORDS, "AUTO", "which surface has the contact "
+         "nodes; AUTO: the softer from a ratio of 3 on, else the coarser"),
+  CHOICE(normal, "NORMAL", "MEAN|SLAVE", "MEAN", "MEAN: of both surfaces"),
+  CHOICE(adjust, "ADJUST", "NO|YES", "NO", "YES: nodes of the slave are moved "
+         "onto the master before the run, without strain"),
+  CHOICE(update, "UPDATE", "NO|STEP", "NO", "STEP: partners are found again at "
+         "the start of each step, at the places the bodies have come to"),
+  CHOICE(type, "TYPE", "SURFACE TO SURFACE", "SURFACE TO SURFACE",
+         "mortar method; there is no other"),
+  NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
+       "factor on CLEARANCE or INTERFERENCE in total time, whatever its TIME="),
   OPTION_END};
 static const option crack_options[] = {
-  OPTION_NAME(crack_param, name, "NAME", NULL, "name for *FRICTION"),
-  OPTION_NAME(crack_param, group, "GROUP", NULL,
-              "faces inside the body (2-D: curves), which open"),
+  NAME(name, "NAME", NULL, "name for *FRICTION"),
+  NAME(group, "GROUP", NULL, "faces inside the body (2-D: curves), which open"),
   OPTION_END};
 static const option tie_options[] = {
-  OPTION_NAME(tie_param, name, "NAME", NULL, "name for messages"),
-  OPTION_CHOICE(tie_param, slave, "SLAVE", SLAVE_WORDS, "AUTO",
-                "whose nodes move with the other; AUTO: the softer from a "
-                "ratio of 3 on, else the coarser"),
-  OPTION_CHOICE(tie_param, adjust, "ADJUST", "NO|YES", "NO",
-                "YES: nodes of the slave are moved onto the master before the "
-                "run, without strain"),
+  NAME(name, "NAME", NULL, "name for messages"),
+  CHOICE(slave, "SLAVE", SLAVE_WORDS, "AUTO", "whose nodes move with the "
+         "other; AUTO: the softer from a ratio of 3 on, else the coarser"),
+  CHOICE(adjust, "ADJUST", "NO|YES", "NO", "YES: nodes of the slave are moved "
+         "onto the master before the run, without strain"),
   OPTION_END};
 static const option friction_options[] = {
-  OPTION_NAME(friction_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
-  OPTION_NAME(friction_param, law, "LAW", NULL, "protis --list friction"),
-  OPTION_NAME(friction_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "factor in total time, whatever the TIME= of the amplitude"),
-  OPTION_CHOICE(friction_param, table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
-                "data lines are pairs coordinate (or total time), value"),
+  NAME(contact, "CONTACT", NULL, "name of a *CONTACT"),
+  NAME(law, "LAW", NULL, "protis --list friction"),
+  NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
+       "factor in total time, whatever the TIME= of the amplitude"),
+  CHOICE(table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
+         "data lines are pairs coordinate (or total time), value"),
   OPTION_END};
 static const option force_options[] = {
-  OPTION_NAME(force_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
-  OPTION_NAME(force_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "factor in total time, whatever the TIME= of the amplitude"),
-  OPTION_CHOICE(force_param, table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
-                "data lines are pairs coordinate (or total time), value"),
+  NAME(contact, "CONTACT", NULL, "name of a *CONTACT"),
+  NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
+       "factor in total time, whatever the TIME= of the amplitude"),
+  CHOICE(table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
+         "data lines are pairs coordinate (or total time), value"),
   OPTION_END};
 static const option wear_options[] = {
-  OPTION_NAME(effect_param, contact, "CONTACT", NULL, "name of a *CONTACT"),
-  OPTION_REAL(effect_param, value[0], "COEFFICIENT", 0, DBL_MAX, NULL,
-              "length^2/force", "k of Archard's law, depth = k p |slip|"),
+  NAME(contact, "CONTACT", NULL, "name of a *CONTACT"),
+  REAL(value[0], "COEFFICIENT", 0, DBL_MAX, NULL, "length^2/force",
+       "k of Archard's law, depth = k p |slip|"),
   OPTION_END};
 static const option amplitude_options[] = {
-  OPTION_NAME(amplitude_param, name, "NAME", NULL, "name for AMPLITUDE="),
-  OPTION_CHOICE(amplitude_param, time, "TIME", "STEP TIME|TOTAL TIME",
-                "STEP TIME", "which time the table counts"),
+  NAME(name, "NAME", NULL, "name for AMPLITUDE="),
+  CHOICE(time, "TIME", "STEP TIME|TOTAL TIME", "STEP TIME",
+         "which time the table counts"),
   OPTION_END};
 static const option points_options[] = {
-  OPTION_NAME(points_param, name, "NAME", NULL, "name for TIME POINTS="),
-  OPTION_CHOICE(points_param, time, "TIME", "STEP TIME|TOTAL TIME",
-                "STEP TIME", "which time the points count"),
-  OPTION_FLAG(points_param, generate, "GENERATE", "NO",
-              "lines are first time, last time, interval"),
+  NAME(name, "NAME", NULL, "name for TIME POINTS="),
+  CHOICE(time, "TIME", "STEP TIME|TOTAL TIME", "STEP TIME",
+         "which time the points count"),
+  FLAG(generate, "GENERATE", "NO", "lines are first time, last time, interval"),
   OPTION_END};
 static const option quasistatic_options[] = {
-  OPTION_CHOICE(quasistatic_param, form, "FORM", STEP_FORMS, "DISPLACEMENT",
-                "unknown of an increment: N2 or N3 of CPR98, same solution"),
+  CHOICE(form, "FORM", STEP_FORMS, "DISPLACEMENT",
+         "unknown of an increment: N2 or N3 of CPR98, same solution"),
   OPTION_END};
 static const option visco_options[] = {
-  OPTION_NAME(visco_param, integrator, "INTEGRATOR", NULL,
-              "protis --list integrators"),
-  OPTION_REAL(visco_param, theta, "THETA", DBL_MIN, 1, "0.5", "-",
-              "of INTEGRATOR=THETA: where in the step the rates are taken"),
-  OPTION_REAL(visco_param, tolerance, "TOLERANCE", 1e-12, 1, OPTION_ABSENT,
-              "-", "error of inelastic strain in an increment over the largest "
-              "elastic strain so far: increments are chosen by it; absent: dt"),
-  OPTION_CHOICE(visco_param, iteration, "ITERATION", "TANGENT|INITIAL",
-                "TANGENT", "implicit steps of nonlinear laws: consistent "
-                "tangent, or initial stress, which never factors again"),
-  OPTION_CHOICE(visco_param, substeps, "SUBSTEPS", "NO|AUTO", "NO",
-                "AUTO cuts increments beyond the stability of an explicit "
-                "integrator into 2, 4, 8, ..."),
+  NAME(integrator, "INTEGRATOR", NULL, "protis --list integrators"),
+  REAL(theta, "THETA", DBL_MIN, 1, "0.5", "-",
+       "of INTEGRATOR=THETA: where in the step the rates are taken"),
+  REAL(tolerance, "TOLERANCE", 1e-12, 1, OPTION_ABSENT, "-",
+       "error of inelastic strain in an increment over the largest elastic "
+       "strain so far: increments are chosen by it; absent: dt"),
+  CHOICE(iteration, "ITERATION", "TANGENT|INITIAL", "TANGENT",
+         "implicit steps of nonlinear laws: consistent tangent, or initial "
+         "stress, which never factors again"),
+  CHOICE(substeps, "SUBSTEPS", "NO|AUTO", "NO", "AUTO cuts increments beyond "
+         "the stability of an explicit integrator into 2, 4, 8, ..."),
   OPTION_END};
 static const option load_options[] = {
-  OPTION_NAME(load_param, amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "course in time; absent: linear over the step"),
-  OPTION_CHOICE(load_param, op, "OP", "MOD|NEW", "MOD",
-                "NEW ends what earlier steps gave by this card"),
+  NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
+       "course in time; absent: linear over the step"),
+  CHOICE(op, "OP", "MOD|NEW", "MOD",
+         "NEW ends what earlier steps gave by this card"),
   OPTION_END};
 static const option temperature_options[] = {
-  OPTION_NAME(temperature_param, load.amplitude, "AMPLITUDE", OPTION_ABSENT,
-              "course in time; absent: linear over the step"),
-  OPTION_CHOICE(temperature_param, load.op, "OP", "MOD|NEW", "MOD",
-                "NEW ends what earlier steps gave by this card"),
-  OPTION_NAME(temperature_param, file, "FILE", OPTION_ABSENT,
-              "nodal field: .msh with $NodeData, or HDF5 with /node_no and "
-              "/temperature; relative to the deck"),
+  NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
+       "course in time; absent: linear over the step"),
+  CHOICE(op, "OP", "MOD|NEW", "MOD",
+         "NEW ends what earlier steps gave by this card"),
+  NAME(file, "FILE", OPTION_ABSENT, "nodal field: .msh with $NodeData, or HDF5 "
+       "with /node_no and /temperature; relative to the deck"),
   OPTION_END};
 static const option solver_options[] = {
-  OPTION_NAME(solver_param, method, "METHOD", "AUTO", "protis --list solvers"),
-  OPTION_REAL_WORD(solver_param, tol, "TOL", 1e-14, 0.1, "1E-10", "-",
-                   "BALANCED",
-                   "residual to reach; BALANCED: stop when the error of the "
-                   "solver is SHARE of those of mesh and increments"),
-  OPTION_REAL(solver_param, share, "SHARE", 0.001, 1, "0.05", "-",
-              "of the other errors, with TOL=BALANCED"),
-  OPTION_INT(solver_param, max_iter, "MAX_ITER", 0, 100000000, "0", "-",
-             "iterations of the method, restarts and passes together; with "
-             "AUTO of each method it tries; 0: its own limit"),
-  OPTION_INT(solver_param, limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000",
-             "-", "passes of the fixed point on the sliding limit"),
-  OPTION_CHOICE(solver_param, check, "CHECK", "NO|YES|ALL", "NO",
-                "look for second solutions: YES with solvers of all families "
-                "from several starts; ALL by all combinations of statuses, up "
-                "to 10 contact nodes in 2-D"),
-  OPTION_CHOICE(solver_param, stiffness, "STIFFNESS", "AUTO|DENSE|FACTOR",
-                "AUTO",
-                "DENSE: the condensed matrix is formed; FACTOR: it is known by "
-                "solves with the sparse matrix of the body; AUTO: the cheaper "
-                "as foreseen (--check prints both)"),
-  OPTION_REAL(solver_param, max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
-              "that STIFFNESS=AUTO keeps below; 0: 80 % of the memory"),
-  OPTION_FLAG(solver_param, nested, "NESTED", "NO",
-              "first step: the first increment is solved on a mesh of elements "
-              "twice as long before, whose contact is the start"),
+  NAME(method, "METHOD", "AUTO", "protis --list solvers"),
+  WORD(tol, "TOL", 1e-14, 0.1, "1E-10", "-", "BALANCED",
+       "residual to reach; BALANCED: stop when the error of the solver is "
+       "SHARE of those of mesh and increments"),
+  REAL(share, "SHARE", 0.001, 1, "0.05", "-",
+       "of the other errors, with TOL=BALANCED"),
+  INT(max_iter, "MAX_ITER", 0, 100000000, "0", "-",
+      "iterations of the method, restarts and passes together; with AUTO of "
+      "each method it tries; 0: its own limit"),
+  INT(limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000", "-",
+      "passes of the fixed point on the sliding limit"),
+  CHOICE(check, "CHECK", "NO|YES|ALL", "NO", "look for second solutions: YES "
+         "with solvers of all families from several starts; ALL by all "
+         "combinations of statuses, up to 10 contact nodes in 2-D"),
+  CHOICE(stiffness, "STIFFNESS", "AUTO|DENSE|FACTOR", "AUTO",
+         "DENSE: the condensed matrix is formed; FACTOR: it is known by solves "
+         "with the sparse matrix of the body; AUTO: the cheaper as foreseen "
+         "(--check prints both)"),
+  REAL(max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
+       "that STIFFNESS=AUTO keeps below; 0: 80 % of the memory"),
+  FLAG(nested, "NESTED", "NO", "first step: the first increment is solved on a "
+       "mesh of elements twice as long before, whose contact is the start"),
   OPTION_END};
 static const option effects_options[] = {
-  OPTION_CHOICE(effects_param, mode, "MODE", "CALLED|AUTO", "CALLED",
-                "CALLED: all that the deck requires. AUTO: what is proved "
-                "to change the solution by less than TOL is left out"),
-  OPTION_REAL(effects_param, tol, "TOL", DBL_MIN, 0.1, "1e-3", "-",
-              "for AUTO: of the energy norm and of the largest stress"),
+  CHOICE(mode, "MODE", "CALLED|AUTO", "CALLED",
+         "CALLED: all that the deck requires. AUTO: what is proved to change "
+         "the solution by less than TOL is left out"),
+  REAL(tol, "TOL", DBL_MIN, 0.1, "1e-3", "-",
+       "for AUTO: of the energy norm and of the largest stress"),
   OPTION_END};
 static const option goal_options[] = {
-  OPTION_CHOICE(goal_param, quantity, "QUANTITY", GOAL_QUANTITIES, NULL,
-                "what is wanted; PRESSURE: the largest, or that at a point; "
-                "WIDTH: of the closed zone; STRESS: mean of a group; SIF: "
-                "stress intensity factor, the largest of a front, or that at "
-                "a point"),
-  OPTION_NAME(goal_param, name, "NAME", NULL, "name in the results"),
-  OPTION_NAME(goal_param, contact, "CONTACT", OPTION_ABSENT,
-              "of FORCE, PRESSURE, WIDTH, MOMENT: name of a *CONTACT"),
-  OPTION_NAME(goal_param, crack, "CRACK", OPTION_ABSENT,
-              "of SIF: name of a *CRACK"),
-  OPTION_NAME(goal_param, group, "GROUP", OPTION_ABSENT,
-              "of STRESS: elements; of DISPLACEMENT: nodes, whose mean it is"),
-  OPTION_NAME(goal_param, from, "FROM", OPTION_ABSENT,
-              "of DISPLACEMENT: nodes whose mean is taken off"),
-  OPTION_CHOICE(goal_param, component, "COMPONENT", GOAL_COMPONENTS,
-                OPTION_ABSENT,
-                "of FORCE (NORMAL if absent), DISPLACEMENT, STRESS, of MOMENT "
-                "the axis through the point, of SIF the mode"),
-  OPTION_REAL(goal_param, radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT,
-              "length", "of the mean that PRESSURE is; half the half width of "
-              "the zone if absent"),
-  OPTION_NAME(goal_param, target, "TARGET", OPTION_ABSENT,
-              "error to reach by meshes refined for it: 1 %, of the value, or "
-              "a number in its unit"),
+  CHOICE(quantity, "QUANTITY", GOAL_QUANTITIES, NULL,
+         "what is wanted; PRESSURE: the largest, or that at a point; WIDTH: of "
+         "the closed zone; STRESS: mean of a group; SIF: stress intensity "
+         "factor, the largest of a front, or that at a point"),
+  NAME(name, "NAME", NULL, "name in the results"),
+  NAME(contact, "CONTACT", OPTION_ABSENT,
+       "of FORCE, PRESSURE, WIDTH, MOMENT: name of a *CONTACT"),
+  NAME(crack, "CRACK", OPTION_ABSENT, "of SIF: name of a *CRACK"),
+  NAME(group, "GROUP", OPTION_ABSENT,
+       "of STRESS: elements; of DISPLACEMENT: nodes, whose mean it is"),
+  NAME(from, "FROM", OPTION_ABSENT,
+       "of DISPLACEMENT: nodes whose mean is taken off"),
+  CHOICE(component, "COMPONENT", GOAL_COMPONENTS, OPTION_ABSENT,
+         "of FORCE (NORMAL if absent), DISPLACEMENT, STRESS, of MOMENT the "
+         "axis through the point, of SIF the mode"),
+  REAL(radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT, "length",
+       "of the mean that PRESSURE is; half the half width of the zone if "
+       "absent"),
+  NAME(goal_target, "TARGET", OPTION_ABSENT, "error to reach by meshes refined "
+       "for it: 1 %, of the value, or a number in its unit"),
   OPTION_END};
 static const option accuracy_options[] = {
-  OPTION_CHOICE(accuracy_param, mesh, "MESH", "NO|YES|END", "END",
-                "estimate of the error of the mesh, from recovered stresses: "
-                "at each increment, or the last of the step"),
-  OPTION_CHOICE(accuracy_param, time, "TIME", "NO|YES|BALANCED", "NO",
-                "estimate of the error of the increments, from increments "
-                "of half the length; "
-                "BALANCED: increments whose error is a share of the mesh's"),
-  OPTION_REAL(accuracy_param, time_share, "TIME_SHARE", 0.001, 1, "0.1", "-",
-              "of the error of the mesh, with TIME=BALANCED"),
-  OPTION_FLAG(accuracy_param, solver, "SOLVER", "YES",
-              "bound of the error of the contact solver in the energy norm"),
-  OPTION_FLAG(accuracy_param, theorems, "THEORY", "NO",
-              "limits of mu, bounds (3.9), (3.10) and inequality of CPR98"),
-  OPTION_REAL(accuracy_param, target, "TARGET", 0, 100, "0", "%",
-              "error to reach by finer meshes and increments; 0: none"),
-  OPTION_REAL(accuracy_param, max_cpu, "MAX_CPU", 0, 1e12, "0", "s",
-              "CPU time for that; 0: no limit"),
-  OPTION_REAL(accuracy_param, max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
-              "memory for that; 0: no limit"),
-  OPTION_INT(accuracy_param, max_passes, "MAX_PASSES", 1, 20, "8", "-",
-             "passes for that"),
+  CHOICE(mesh, "MESH", "NO|YES|END", "END",
+         "estimate of the error of the mesh, from recovered stresses: at each "
+         "increment, or the last of the step"),
+  CHOICE(time, "TIME", "NO|YES|BALANCED", "NO",
+         "estimate of the error of the increments, from increments of half the "
+         "length; BALANCED: increments whose error is a share of the mesh's"),
+  REAL(time_share, "TIME_SHARE", 0.001, 1, "0.1", "-",
+       "of the error of the mesh, with TIME=BALANCED"),
+  FLAG(solver, "SOLVER", "YES",
+       "bound of the error of the contact solver in the energy norm"),
+  FLAG(theorems, "THEORY", "NO",
+       "limits of mu, bounds (3.9), (3.10) and inequality of CPR98"),
+  REAL(target, "TARGET", 0, 100, "0", "%",
+       "error to reach by finer meshes and increments; 0: none"),
+  REAL(max_cpu, "MAX_CPU", 0, 1e12, "0", "s", "CPU time for that; 0: no limit"),
+  REAL(max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
+       "memory for that; 0: no limit"),
+  INT(max_passes, "MAX_PASSES", 1, 20, "8", "-", "passes for that"),
   OPTION_END};
 static const option print_options[] = {
 #define PRINT_OPTION(name, help) \
-  OPTION_FLAG(print_param, table[PRINT_NUMBER_##name], #name, "NO", help),
+  FLAG(print[PRINT_NUMBER_##name], #name, "NO", help),
   PRINT_LIST(PRINT_OPTION)
-  OPTION_INT(print_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
-             "every n-th increment and the last; 0: the last only"),
-  OPTION_NAME(print_param, group, "GROUP", OPTION_ABSENT,
-              "nodes or elements of one group only"),
-  OPTION_NAME(print_param, points, "TIME POINTS", OPTION_ABSENT,
-              "at these times, within increments too, in the place of "
-              "FREQUENCY="),
+  INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
+      "every n-th increment and the last; 0: the last only"),
+  NAME(group, "GROUP", OPTION_ABSENT, "nodes or elements of one group only"),
+  NAME(points, "TIME POINTS", OPTION_ABSENT,
+       "at these times, within increments too, in the place of FREQUENCY="),
   OPTION_END};
 static const option output_options[] = {
-  OPTION_FLAG(output_param, hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
-  OPTION_INT(output_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
-             "fields every n-th increment and the last; 0: the last only"),
-  OPTION_CHOICE(output_param, condensed, "CONDENSED", "NO|FCLIB", "NO",
-                "condensed contact problem and its solution, every n-th "
-                "increment, into JOB_condensed_NNNNN.h5 (increment counted "
-                "from the start)"),
+  FLAG(hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
+  INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
+      "fields every n-th increment and the last; 0: the last only"),
+  CHOICE(condensed, "CONDENSED", "NO|FCLIB", "NO",
+         "condensed contact problem and its solution, every n-th increment, "
+         "into JOB_condensed_NNNNN.h5 (increment counted from the start)"),
   OPTION_END};
 static const option restart_options[] = {
-  OPTION_INT(restart_param, frequency, "FREQUENCY", 0, 1000000000, "1", "-",
-             "every n-th increment and the last; 0: the last only"),
+  INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
+      "every n-th increment and the last; 0: the last only"),
   OPTION_END};
 
-#define OPTIONS(x) x##_options, sizeof(x##_param)
-#define NO_OPTIONS NULL, 0
-
 const keyword keyword_table[] = {
-  {"HEADING", IN_MODEL, NO_OPTIONS, NULL, apply_heading, 0, ANY,
+  {"HEADING", IN_MODEL, NULL, NULL, apply_heading, 0, ANY,
    "text", "title of the run"},
-  {"PARAMETER", LANGUAGE, NO_OPTIONS, NULL, NULL, 1, ANY,
+  {"PARAMETER", LANGUAGE, NULL, NULL, NULL, 1, ANY,
    "NAME = value or expression", "names for <NAME>, handed to a .geo too"},
-  {"INCLUDE", LANGUAGE, NO_OPTIONS, NULL, NULL, 0, 0,
+  {"INCLUDE", LANGUAGE, NULL, NULL, NULL, 0, 0,
    "", "INPUT=file: read another file here"},
-  {"LEGACY", LANGUAGE, NO_OPTIONS, NULL, NULL, 0, 0,
+  {"LEGACY", LANGUAGE, NULL, NULL, NULL, 0, 0,
    "", "FORMAT=(I5,3F10.0): the next data block stands in fixed columns"},
-  {"UNITS", IN_MODEL, OPTIONS(units), NULL, apply_units, 0, 0,
+  {"UNITS", IN_MODEL, units_options, NULL, apply_units, 0, 0,
    "", "labels of the consistent set of units; changes no number"},
-  {"MESH", IN_MODEL, OPTIONS(mesh), NULL, apply_mesh, 0, 0,
+  {"MESH", IN_MODEL, mesh_options, NULL, apply_mesh, 0, 0,
    "", "gmsh mesh or geometry; its physical groups are the names below"},
-  {"CONDENSED PROBLEM", IN_MODEL, OPTIONS(problem), NULL,
+  {"CONDENSED PROBLEM", IN_MODEL, problem_options, NULL,
    apply_condensed_problem, 0, 0,
    "", "discrete contact problem or LCP from a file in the place of a mesh"},
-  {"MATERIAL", IN_MODEL, OPTIONS(name), NULL, apply_material, 0, 0,
+  {"MATERIAL", IN_MODEL, name_options, NULL, apply_material, 0, 0,
    "", "opens a material: *ELASTIC, *INELASTIC, *DENSITY below belong to it"},
-  {"ELASTIC", IN_MATERIAL, OPTIONS(elastic), NULL, apply_elastic, 1, ANY,
+  {"ELASTIC", IN_MATERIAL, elastic_options, NULL, apply_elastic, 1, ANY,
    "ISO E, nu; ORTHO E1, E2, E3, nu12, nu13, nu23, G12, G13, G23; "
    "ANISO 21 constants; each [, temperature]: linear between, constant outside",
    "elasticity a_ijkl (CPR98 2.2): symmetric and positive definite"},
-  {"INELASTIC", IN_MATERIAL, OPTIONS(inelastic), names_inelastic,
+  {"INELASTIC", IN_MATERIAL, inelastic_options, names_inelastic,
    apply_inelastic, 1, ANY,
    "coefficients of the law (protis --list materials) [, temperature]; each a "
    "number, or an expression of t in quotes",
    "inelastic law of CPR98 (3.14-3.16), flows in *VISCO steps"},
-  {"CREEP", IN_MATERIAL, OPTIONS(creep), NULL, apply_creep, 1, ANY,
+  {"CREEP", IN_MATERIAL, creep_options, NULL, apply_creep, 1, ANY,
    "A, n [, m] [, temperature]; HYPERB A, B, n, dH, R [, temperature]",
    "creep, the same as *INELASTIC, LAW=NORTON or LAW=HYPERBOLIC"},
-  {"VISCOELASTIC", IN_MATERIAL, OPTIONS(viscoelastic), NULL,
+  {"VISCOELASTIC", IN_MATERIAL, viscoelastic_options, NULL,
    apply_viscoelastic, 1, ANY,
    "g_i, k_i, tau_i",
    "Prony series, the same as *INELASTIC, LAW=PRONY"},
-  {"TRS", IN_MATERIAL, OPTIONS(trs), NULL, apply_trs, 1, 1,
+  {"TRS", IN_MATERIAL, trs_options, NULL, apply_trs, 1, 1,
    "T_REF, C1, C2",
    "time-temperature shift of the relaxation, the same as SHIFT=WLF"},
-  {"DENSITY", IN_MATERIAL, NO_OPTIONS, NULL, apply_density, 1, 1,
+  {"DENSITY", IN_MATERIAL, NULL, NULL, apply_density, 1, 1,
    "rho", "mass per volume, for GRAV"},
-  {"EXPANSION", IN_MATERIAL, OPTIONS(expansion), NULL, apply_expansion, 1, ANY,
+  {"EXPANSION", IN_MATERIAL, expansion_options, NULL, apply_expansion, 1, ANY,
    "ISO alpha [, temperature]; ORTHO alpha1, alpha2, alpha3 [, temperature]",
    "thermal strain alpha(T) (T - ZERO), less its value at the initial T"},
-  {"SOLID SECTION", IN_MODEL, OPTIONS(section), NULL, apply_section, 0, 1,
+  {"SOLID SECTION", IN_MODEL, section_options, NULL, apply_section, 0, 1,
    "[thickness]", "material and kinematics of a group of elements"},
-  {"AMPLITUDE", IN_MODEL, OPTIONS(amplitude), NULL, apply_amplitude, 1, ANY,
+  {"AMPLITUDE", IN_MODEL, amplitude_options, NULL, apply_amplitude, 1, ANY,
    "t, a pairs, any number a line; or one expression of t",
    "course of a load, a motion or a friction value in time"},
-  {"TIME POINTS", IN_MODEL, OPTIONS(points), NULL, apply_time_points, 1, ANY,
+  {"TIME POINTS", IN_MODEL, points_options, NULL, apply_time_points, 1, ANY,
    "t, any number a line, ascending; with GENERATE first, last, interval",
    "times for tables of *PRINT; increments need not end there"},
-  {"OBSTACLE", IN_MODEL, OPTIONS(obstacle), NULL, apply_obstacle, 0, 4,
+  {"OBSTACLE", IN_MODEL, obstacle_options, NULL, apply_obstacle, 0, 4,
    "PLANE point; normal towards the body. CYLINDER point of the axis; "
    "direction (3-D). SPHERE centre. GAP value. Then MOVE, dx, dy, dz; "
    "ROTATE, x, y, angle (rad, about z) or ROTATE, x, y, z, ax, ay, az, angle",
    "rigid obstacle, may shift and turn; a number without AMPLITUDE= is reached "
    "at the end of the first step"},
-  {"CONTACT", IN_MODEL, OPTIONS(contact), NULL, apply_contact, 0, 1,
+  {"CONTACT", IN_MODEL, contact_options, NULL, apply_contact, 0, 1,
    "[AXIS, x, y (along z) or AXIS, x, y, z, ax, ay, az: of the torque]",
    "unilateral contact of Gamma_3 with an obstacle"},
-  {"CONTACT PAIR", IN_MODEL, OPTIONS(pair), NULL, apply_contact_pair, 1, 3,
+  {"CONTACT PAIR", IN_MODEL, pair_options, NULL, apply_contact_pair, 1, 3,
    "surface, surface; then CLEARANCE, value or INTERFERENCE, value; AXIS as in "
    "*CONTACT",
    "unilateral contact of two bodies, or of two surfaces of one: groups of "
    "faces whose meshes need not match"},
-  {"CRACK", IN_MODEL, OPTIONS(crack), NULL, apply_crack, 0, 0, "",
+  {"CRACK", IN_MODEL, crack_options, NULL, apply_crack, 0, 0, "",
    "opens the mesh along a group; its lips, the groups NAME+ and NAME-, are a "
    "contact pair"},
-  {"TIE", IN_MODEL, OPTIONS(tie), NULL, apply_tie, 1, 1, "surface, surface",
+  {"TIE", IN_MODEL, tie_options, NULL, apply_tie, 1, 1, "surface, surface",
    "joins two surfaces whose meshes need not match"},
-  {"FRICTION", IN_MODEL | IN_STEP, OPTIONS(friction), names_law,
+  {"FRICTION", IN_MODEL | IN_STEP, friction_options, names_law,
    apply_friction, 0, ANY,
    "mu or g: number, expression of x y z t, or pairs with TABLE=",
    "friction law of a contact; without it the contact is frictionless. In a "
    "step it replaces the old one from there on, at once"},
-  {"INITIAL CONDITIONS", IN_MODEL, OPTIONS(initial), NULL, apply_initial, 0,
+  {"INITIAL CONDITIONS", IN_MODEL, initial_options, NULL, apply_initial, 0,
    ANY, "TEMPERATURE group of elements, value. DISPLACEMENT group, dof, value. "
    "INELASTIC STRAIN group, component, value. INTERNAL group, number, value",
    "state before the first step; values not given are zero"},
-  {"CONTACT FORCE", IN_MODEL, OPTIONS(force), NULL, apply_contact_force, 0,
+  {"CONTACT FORCE", IN_MODEL, force_options, NULL, apply_contact_force, 0,
    ANY, "p >= 0, force/length^2: number, expression of x y z t, or pairs with "
    "TABLE=",
    "given normal force in the place of the unilateral condition (CPR98 3.19): "
    "p times the area of the node; the node may leave or enter the obstacle"},
-  {"WEAR", IN_MODEL, wear_options, sizeof(effect_param), NULL, apply_effect, 0,
+  {"WEAR", IN_MODEL, wear_options, NULL, apply_effect, 0,
    0, "",
    "the body wears where it slides: from increment to increment the gap "
    "opens by COEFFICIENT times pressure times slip (Archard 1953)"},
-  {"REFERENCE", IN_MODEL, NO_OPTIONS, NULL, apply_reference, 1, ANY,
+  {"REFERENCE", IN_MODEL, NULL, NULL, apply_reference, 1, ANY,
    "u_x, u_y, u_z (all); stress_xx, _yy, _zz, _xy, _yz, _zx (all), in "
    "axisymmetry u_r, u_z, stress_rr, _zz, _tt, _rz; pressure: name, number or "
    "expression of x y z t",
    "the solution in closed form: the true error is shown with the estimates"},
-  {"STEP", IN_MODEL, step_options, sizeof(name_param), NULL, apply_step, 0, 0,
+  {"STEP", IN_MODEL, step_options, NULL, apply_step, 0, 0,
    "", "opens a step; loads stay from step to step until changed"},
-  {"STATIC", IN_STEP, NO_OPTIONS, NULL, apply_static, 0, 1,
+  {"STATIC", IN_STEP, NULL, NULL, apply_static, 0, 1,
    "[duration, 1 if absent]",
    "one static problem: friction against the total displacement (P2/D2)"},
-  {"QUASISTATIC", IN_STEP, OPTIONS(quasistatic), NULL, apply_quasistatic, 1, 1,
+  {"QUASISTATIC", IN_STEP, quasistatic_options, NULL, apply_quasistatic, 1, 1,
    "dt, total [, dt_min [, dt_max]]",
    "increments S_i^n: friction against the displacement of each (N2)"},
-  {"VISCO", IN_STEP, OPTIONS(visco), NULL, apply_visco, 1, 1,
+  {"VISCO", IN_STEP, visco_options, NULL, apply_visco, 1, 1,
    "dt, total [, dt_min [, dt_max]]",
    "quasistatic increments in which inelastic strains flow"},
-  {"BOUNDARY", IN_STEP | IN_MODEL, OPTIONS(load), NULL, apply_boundary, 0, ANY,
+  {"BOUNDARY", IN_STEP | IN_MODEL, load_options, NULL, apply_boundary, 0, ANY,
    "group, first dof [, last dof [, value [, amplitude]]]",
    "supports and prescribed displacements"},
-  {"DSLOAD", IN_STEP, OPTIONS(load), NULL, apply_dsload, 0, ANY,
+  {"DSLOAD", IN_STEP, load_options, NULL, apply_dsload, 0, ANY,
    "group, P or TX TY TZ, value [, amplitude]",
    "pressure (pushes into the body) or traction on faces"},
-  {"DLOAD", IN_STEP, OPTIONS(load), NULL, apply_dload, 0, ANY,
+  {"DLOAD", IN_STEP, load_options, NULL, apply_dload, 0, ANY,
    "group, BX BY BZ, value [, amplitude]; or GRAV, g, gx, gy [, gz "
    "[, amplitude]]",
    "body force per volume, gravity"},
-  {"CLOAD", IN_STEP, OPTIONS(load), NULL, apply_cload, 0, ANY,
+  {"CLOAD", IN_STEP, load_options, NULL, apply_cload, 0, ANY,
    "group, dof, value [, amplitude]", "force on each node of a group"},
-  {"TEMPERATURE", IN_STEP, OPTIONS(temperature), NULL, apply_temperature, 0,
+  {"TEMPERATURE", IN_STEP, temperature_options, NULL, apply_temperature, 0,
    ANY, "group of elements, value [, amplitude]; with FILE= group "
    "[, factor [, amplitude]]",
    "temperatures; from the initial ones, linear over the step"},
-  {"SOLVER", IN_STEP, OPTIONS(solver), names_solver, apply_solver, 0, 0,
+  {"SOLVER", IN_STEP, solver_options, names_solver, apply_solver, 0, 0,
    "", "method for the contact problem and its options"},
-  {"ACCURACY", IN_STEP, OPTIONS(accuracy), NULL, apply_accuracy, 0, 0,
+  {"ACCURACY", IN_STEP, accuracy_options, NULL, apply_accuracy, 0, 0,
    "", "error estimates"},
-  {"GOAL", IN_MODEL, OPTIONS(goal), NULL, apply_goal, 0, 2,
+  {"GOAL", IN_MODEL, goal_options, NULL, apply_goal, 0, 2,
    "[x, y[, z]] of PRESSURE, DISPLACEMENT, MOMENT; a second taken off",
    "a quantity whose value, error by the mesh and its band are wanted"},
-  {"EFFECTS", IN_MODEL | IN_STEP, OPTIONS(effects), NULL, apply_effects, 0, 0,
+  {"EFFECTS", IN_MODEL | IN_STEP, effects_options, NULL, apply_effects, 0, 0,
    "", "which effects of the deck are simulated; for all steps"},
-  {"PRINT", IN_STEP, OPTIONS(print), NULL, apply_print, 0, 0,
+  {"PRINT", IN_STEP, print_options, NULL, apply_print, 0, 0,
    "", "tables in JOB.dat"},
-  {"OUTPUT", IN_STEP, OPTIONS(output), NULL, apply_output, 0, 0,
+  {"OUTPUT", IN_STEP, output_options, NULL, apply_output, 0, 0,
    "", "fields in JOB.h5; condensed problems for other programs"},
-  {"RESTART", IN_STEP, OPTIONS(restart), NULL, apply_restart, 0, 0,
+  {"RESTART", IN_STEP, restart_options, NULL, apply_restart, 0, 0,
    "", "JOB.rst.h5 while the run goes on, for --restart; an interruption "
    "writes it without the card"},
-  {"END STEP", IN_STEP, NO_OPTIONS, NULL, apply_end_step, 0, 0,
+  {"END STEP", IN_STEP, NULL, NULL, apply_end_step, 0, 0,
    "", "closes the step"},
-  {NULL, 0, NULL, 0, NULL, NULL, 0, 0, NULL, NULL}};
+  {NULL, 0, NULL, NULL, NULL, 0, 0, NULL, NULL}};
 /* clang-format on */
 
 const keyword *keyword_find(const char *name) {

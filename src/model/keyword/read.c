@@ -137,10 +137,10 @@ static void report_missing(const reading *r, const option *table) {
                   o->help);
 }
 
-void keyword_parameters(const keyword *row, reading *r, void *param,
+void keyword_parameters(const keyword *row, reading *r, card_options *param,
                         void *plugin_param) {
   const card *c = r->card;
-  memset(param, 0, PARAM_SIZE);
+  memset(param, 0, sizeof *param);
   memset(plugin_param, 0, PARAM_SIZE);
   r->param = param;
   r->plugin = NULL;
@@ -245,7 +245,8 @@ static void unknown_card(reading *r) {
 }
 
 static status read_card(reading *r) {
-  _Alignas(16) char param[PARAM_SIZE], plugin_param[PARAM_SIZE];
+  card_options param;
+  _Alignas(16) char plugin_param[PARAM_SIZE];
   const keyword *row = keyword_find(r->card->name);
   if (row == NULL) unknown_card(r);
   if (row != NULL && row->where & LANGUAGE) return OK;
@@ -253,7 +254,7 @@ static status read_card(reading *r) {
     r->lost = 1;
     return OK;
   }
-  keyword_parameters(row, r, param, plugin_param);
+  keyword_parameters(row, r, &param, plugin_param);
   r->lost |= r->misread;
   /* A card that has no lines means the same with some. */
   if (right_lines(r, row) || row->max_line == 0)

@@ -105,9 +105,7 @@ static void resolve_value(const model *m, const char *card_name,
   if (t == NULL) return;
   if (value->factor != NULL)
     message_add(m->log, P2033, at,
-                "*%s: TABLE= and AMPLITUDE= exclude each "
-                "other",
-                card_name);
+                "*%s: TABLE= and AMPLITUDE= exclude each other", card_name);
   value->factor = t;
 }
 
