@@ -92,9 +92,7 @@ status text_failed(const char *path, const char *doing, int error_no) {
 
 static status take(text_file *t, const char *path, FILE *f, int by_line) {
   t->f = f;
-  t->path = memory_text(path);
-  if (t->path == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: the name of %s", path);
+  PASS_GET(t->path, memory_text(path));
   setvbuf(f, NULL, by_line ? _IOLBF : _IOFBF, BUFFER);
   return OK;
 }

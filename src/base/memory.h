@@ -27,18 +27,34 @@
  * capacity is an int lvalue that belongs to the pointer. */
 #define GROW(pointer, n, capacity) GROW_OR(FAIL, pointer, n, capacity)
 #define PASS_GROW(pointer, n, capacity) GROW_OR(RAISE, pointer, n, capacity)
-#define GROW_OR(fail, pointer, n, capacity)                                \
-  do {                                                                     \
-    if ((n) >= (capacity)) {                                               \
-      int wanted_ = (capacity) > 0 ? 2 * (capacity) : 8;                   \
-      void *grown_ = memory_resize((pointer), (size_t)(capacity),          \
-                                   (size_t)wanted_, sizeof *(pointer));    \
-      if (grown_ == NULL)                                                  \
-        fail(ERR_MEMORY, "memory exhausted: %d items of %zu bytes for %s", \
-             wanted_, sizeof *(pointer), #pointer);                        \
-      (pointer) = grown_;                                                  \
-      (capacity) = wanted_;                                                \
-    }                                                                      \
+#define GROW_OR(fail, pointer, n, capacity)                \
+  do {                                                     \
+    if ((n) >= (capacity)) {                               \
+      int wanted_ = (capacity) > 0 ? 2 * (capacity) : 8;   \
+      RESIZE_OR(fail, pointer, capacity, (size_t)wanted_); \
+      (capacity) = wanted_;                                \
+    }                                                      \
+  } while (0)
+
+/* PASS_RESIZE(pointer, from, to): its items are kept, the rest is zero. */
+#define PASS_RESIZE(pointer, from, to) RESIZE_OR(RAISE, pointer, from, to)
+#define RESIZE_OR(fail, pointer, from, to)                                \
+  do {                                                                    \
+    void *grown_ = memory_resize((pointer), (size_t)(from), (size_t)(to), \
+                                 sizeof *(pointer));                      \
+    if (grown_ == NULL)                                                   \
+      fail(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", \
+           (size_t)(to), sizeof *(pointer), #pointer);                    \
+    (pointer) = grown_;                                                   \
+  } while (0)
+
+/* GET(pointer, block): a block that a function requests, or FAIL. */
+#define GET(pointer, block) GET_OR(FAIL, pointer, block)
+#define PASS_GET(pointer, block) GET_OR(RAISE, pointer, block)
+#define GET_OR(fail, pointer, block)                                           \
+  do {                                                                         \
+    (pointer) = (block);                                                       \
+    if ((pointer) == NULL) fail(ERR_MEMORY, "memory exhausted: %s", #pointer); \
   } while (0)
 
 void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused */

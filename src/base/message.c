@@ -117,8 +117,7 @@ static status file_rank(message_log *log, const place *at, int *rank) {
   for (*rank = 0; *rank < log->n_file; ++*rank)
     if (strcmp(log->files[*rank], file) == 0) return OK;
   PASS_GROW(log->files, log->n_file, log->file_capacity);
-  log->files[log->n_file] = memory_text(file);
-  if (log->files[log->n_file] == NULL) RAISE(ERR_MEMORY, "memory exhausted");
+  PASS_GET(log->files[log->n_file], memory_text(file));
   ++log->n_file;
   return OK;
 }

@@ -85,9 +85,8 @@ static status read_parameter(reader *r, piece p, parameter *out, int *ok) {
   *out = (parameter){.value = {.text = ""}};
   out->at = logical_place(&r->line, name.start);
   out->value.at = out->at;
-  out->name =
-      store_name(r->d, r->line.all.text + name.start, (size_t)name.length);
-  if (out->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: parameter");
+  PASS_GET(out->name, store_name(r->d, r->line.all.text + name.start,
+                                 (size_t)name.length));
   if (equals != NULL) PASS(read_value(r, p, end, out));
   *ok = equals == NULL || out->has_value;
   return OK;
@@ -251,8 +250,7 @@ static status read_name(reader *r, piece p, card *c, int *ok) {
   const char *equals = memchr(text, '=', (size_t)p.length);
   *ok = 0;
   c->at = logical_place(&r->line, p.start);
-  c->name = store_name(r->d, text + 1, (size_t)p.length - 1);
-  if (c->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: card");
+  PASS_GET(c->name, store_name(r->d, text + 1, (size_t)p.length - 1));
   if (*c->name == '\0')
     message_add(r->log, P1009, &c->at, "a card without a name");
   else if (equals != NULL)
@@ -293,8 +291,7 @@ static status add_record(reader *r, const physical *line, record **out) {
   PASS_GROW(c->records, c->n_record, r->record_capacity);
   record *new = &c->records[c->n_record];
   size_t blanks = 0;
-  new->raw = store_text(r->d, line->text, (size_t)line->length);
-  if (new->raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: line");
+  PASS_GET(new->raw, store_text(r->d, line->text, (size_t)line->length));
   while (is_blank(line->text[blanks])) ++blanks;
   new->at = source_place(r->top, line->line_no, (int)blanks + 1, new->raw);
   ++c->n_record;
@@ -307,8 +304,7 @@ static status read_text(reader *r, const physical *line) {
   size_t length;
   const char *text = trim(line->text, (size_t)line->length, &length);
   PASS(add_record(r, line, &new));
-  new->fields = store_new(r->d, 1, sizeof *new->fields);
-  if (new->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: field");
+  PASS_GET(new->fields, store_new(r->d, 1, sizeof *new->fields));
   new->n_field = 1;
   new->fields->at = new->at;
   return symbols_replace(r, text, length, REPLACE_LENIENT, &new->at,
@@ -337,8 +333,7 @@ static status read_record(reader *r, const physical *line) {
   PASS(add_record(r, line, &new));
   PASS(logical_read(r, line, LINE_FREE));
   int n = count_fields(&r->line);
-  new->fields = store_new(r->d, (size_t)n, sizeof *new->fields);
-  if (new->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: fields");
+  PASS_GET(new->fields, store_new(r->d, (size_t)n, sizeof *new->fields));
   piece p = {.next = 0};
   for (; new->n_field < n; ++new->n_field) {
     p = logical_piece(&r->line, p.next, 0);

@@ -202,8 +202,7 @@ static status settle_number(reader *r, const column_field *c, field *f,
   } else if (c->kind == 'F' && !named && c->decimals > 0 &&
              strchr(f->text, '.') == NULL) {
     PASS(add_point(&r->scratch, f->text, c->decimals));
-    f->text = store_text(r->d, r->scratch.text, (size_t)r->scratch.n);
-    if (f->text == NULL) RAISE(ERR_MEMORY, "memory exhausted: field");
+    PASS_GET(f->text, store_text(r->d, r->scratch.text, (size_t)r->scratch.n));
   }
   return OK;
 }
@@ -256,8 +255,8 @@ static void check_rest(reader *r, const format *f, const physical *line,
 status format_record(reader *r, const format *f, const physical *line,
                      record *out) {
   out->n_field = filled_fields(f, line);
-  out->fields = store_new(r->d, (size_t)out->n_field, sizeof *out->fields);
-  if (out->fields == NULL) RAISE(ERR_MEMORY, "memory exhausted: fields");
+  PASS_GET(out->fields,
+           store_new(r->d, (size_t)out->n_field, sizeof *out->fields));
   check_rest(r, f, line, &out->at);
   for (int i = 0; i < out->n_field; ++i)
     PASS(read_column(r, &f->fields[i], line, &out->at, &out->fields[i]));

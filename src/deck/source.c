@@ -218,8 +218,7 @@ status source_open(deck *d, message_log *log, const char *file, const place *at,
   text_shown(shown, size, file);
   s->file = shown;
   if (at != NULL) {
-    s->from = store_place(d, at);
-    if (s->from == NULL) FAIL(ERR_MEMORY, "memory exhausted: place");
+    GET(s->from, store_place(d, at));
   }
   if (at == NULL) TRY(deck_input(d, file));
   if (open_stream(s, file, log, at) != 0) goto done;

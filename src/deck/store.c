@@ -186,8 +186,7 @@ status symbol_add(deck *d, const char *name, size_t n, symbol **out) {
   PASS_GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
   PASS(grow_table(d));
   symbol *s = &d->symbols[d->n_symbol];
-  s->name = store_name(d, name, n);
-  if (s->name == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
+  PASS_GET(s->name, store_name(d, name, n));
   *find_slot(d, name, n) = ++d->n_symbol;
   *out = s;
   return OK;

@@ -19,8 +19,7 @@ int deck_symbol(const void *deck_, const char *name, double *value) {
 
 /* A .geo distinguishes upper and lower case. */
 static status keep_spelling(deck *d, symbol *s, const char *name, size_t n) {
-  s->typed = store_text(d, name, n);
-  if (s->typed == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
+  PASS_GET(s->typed, store_text(d, name, n));
   return OK;
 }
 

@@ -154,8 +154,7 @@ static status settle_constant(reader *r, field *f, int *valid) {
   double value = expression_value(e, origin, 0);
   if (!isfinite(value)) goto done;
   number_text(value, digits);
-  f->text = store_text(r->d, digits, strlen(digits));
-  if (f->text == NULL) FAIL(ERR_MEMORY, "memory exhausted: field");
+  GET(f->text, store_text(r->d, digits, strlen(digits)));
 done:
   expression_free(e);
   return st;

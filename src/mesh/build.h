@@ -42,6 +42,8 @@ typedef struct faults {
 } faults;
 void fault_add(faults *c, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
+/* Mean place x[3] of n nodes, for a message. */
+void fault_centre(const mesh *m, int n, const int *v, double *x);
 /* " no. 17 at (0.5, 2)" for a number and raw or mesh coordinates. */
 void fault_at(faults *c, int dim, size_t no, const double *x);
 /* "no. 17 and 18 at (0.5, 2)". */

@@ -151,16 +151,14 @@ static status orient(builder *b) {
   int n = m->dim + 1;
   double far = largest_coordinate(m);
   for (int e = 0; e < m->n_elem; ++e) {
-    int *v = m->elem + (size_t)n * (size_t)e;
+    int *v = mesh_elem_nodes(m, e);
     double edge, det = determinant(m, v, &edge);
     double face = m->dim == 2 ? edge : edge * edge;
     double floor = fmax(flat * edge, 16.0 * DBL_EPSILON * far) * face;
     if (det < 0.0) swap(&v[n - 2], &v[n - 1]);
     if (fabs(det) > floor) continue;
-    double centre[3] = {0.0, 0.0, 0.0};
-    for (int i = 0; i < n; ++i)
-      for (int k = 0; k < m->dim; ++k)
-        centre[k] += m->x[(size_t)m->dim * (size_t)v[i] + (size_t)k] / n;
+    double centre[3];
+    fault_centre(m, n, v, centre);
     fault_at(&bad, m->dim, m->elem_no[e], centre);
   }
   if (bad.n > 0)
@@ -192,7 +190,7 @@ static int by_corners(const void *ctx, int a, int b) {
 }
 
 /* Corners become mesh nodes in ascending order; number and key of each. */
-static void fill_keys(builder *b, size_t *no, uint64_t *key, int *id) {
+static void fill_keys(builder *b, size_t *no, sort_item *item) {
   int n = b->m->dim + 1;
   for (int i = 0; i < b->raw->n_block; ++i) {
     const raw_block *p = &b->raw->block[i];
@@ -202,8 +200,7 @@ static void fill_keys(builder *b, size_t *no, uint64_t *key, int *id) {
     int *v = b->corner + (size_t)n * (size_t)e;
     for (int k = 0; k < n; ++k) v[k] = b->node_id[v[k]];
     sort_few(n, v);
-    key[e] = (uint64_t)v[0] << 32 | (uint64_t)v[1];
-    id[e] = e;
+    item[e] = (sort_item){sort_key(v[0], v[1]), e};
   }
 }
 
@@ -223,14 +220,17 @@ static int share_a_group(const raw_block *p, const raw_block *q) {
 }
 
 /* Version 2.2 lists an element once for each of its groups. */
-static status check_repeated(builder *b, const top_list *t, const int *id) {
+static status check_repeated(builder *b, const top_list *t,
+                             const sort_item *item) {
   faults bad = {0};
   for (int i = 1; i < b->n_top; ++i)
-    for (int j = i; j > 0 && same_corners(t, id[j - 1], id[i]); --j)
-      if (share_a_group(block_of(b, id[j - 1]), block_of(b, id[i]))) {
-        fault_add(&bad, "%zu and %zu", t->no[id[j - 1]], t->no[id[i]]);
-        break;
-      }
+    for (int j = i; j > 0; --j) {
+      const int one = item[j - 1].id, two = item[i].id;
+      if (!same_corners(t, one, two)) break;
+      if (!share_a_group(block_of(b, one), block_of(b, two))) continue;
+      fault_add(&bad, "%zu and %zu", t->no[one], t->no[two]);
+      break;
+    }
   if (bad.n > 0)
     message_add(b->log, P3028, b->at,
                 "%d element(s) have the nodes of another one of their group: "
@@ -240,18 +240,20 @@ static status check_repeated(builder *b, const top_list *t, const int *id) {
 }
 
 /* Sorted top elements to the mesh, each set of corners once. */
-static status store_elements(builder *b, const top_list *t, const int *id) {
+static status store_elements(builder *b, const top_list *t,
+                             const sort_item *item) {
   mesh *m = b->m;
   size_t n = (size_t)t->n_corner;
   PASS_NEW(m->elem, n * (size_t)b->n_top);
   PASS_NEW(m->elem_no, b->n_top);
   for (int i = 0; i < b->n_top; ++i) {
-    if (i == 0 || !same_corners(t, id[i - 1], id[i])) {
-      memcpy(m->elem + n * (size_t)m->n_elem, t->corner + n * (size_t)id[i],
+    const int id = item[i].id;
+    if (i == 0 || !same_corners(t, item[i - 1].id, id)) {
+      memcpy(m->elem + n * (size_t)m->n_elem, t->corner + n * (size_t)id,
              n * sizeof(int));
-      m->elem_no[m->n_elem++] = t->no[id[i]];
+      m->elem_no[m->n_elem++] = t->no[id];
     }
-    b->elem_of_top[id[i]] = m->n_elem - 1;
+    b->elem_of_top[id] = m->n_elem - 1;
   }
   if (m->n_elem < b->n_top)
     message_add(b->log, P3026, b->at, "%d element(s) are listed more than once",
@@ -260,18 +262,16 @@ static status store_elements(builder *b, const top_list *t, const int *id) {
 }
 
 status elements_finish(builder *b) {
-  OWNED uint64_t *key = NULL;
-  OWNED int *id = NULL;
+  OWNED sort_item *item = NULL;
   OWNED size_t *no = NULL;
-  PASS_NEW(key, b->n_top);
-  PASS_NEW(id, b->n_top);
+  PASS_NEW(item, b->n_top);
   PASS_NEW(no, b->n_top);
   PASS_NEW(b->elem_of_top, b->n_top);
-  fill_keys(b, no, key, id);
+  fill_keys(b, no, item);
   top_list t = {b->m->dim + 1, b->corner, no};
-  PASS(sort_by_key(b->n_top, key, id, by_corners, &t));
-  PASS(check_repeated(b, &t, id));
-  PASS(store_elements(b, &t, id));
+  PASS(sort_items(b->n_top, item, by_corners, &t));
+  PASS(check_repeated(b, &t, item));
+  PASS(store_elements(b, &t, item));
   PASS(numbers_check(b, "element", b->n_top, no, b->elem_of_top));
   return orient(b);
 }

@@ -81,11 +81,9 @@ static status gather(builder *b, face_list *f, faults *bad) {
 /* Sort the low elements and give every set of corners one id. */
 static status number_faces(builder *b, face_list *f) {
   mesh *m = b->m;
-  OWNED uint64_t *key = NULL;
-  OWNED int *id = NULL;
+  OWNED sort_item *item = NULL;
   size_t dim = (size_t)f->dim, bytes = dim * sizeof(int);
-  PASS_NEW(key, b->n_low);
-  PASS_NEW(id, b->n_low);
+  PASS_NEW(item, b->n_low);
   PASS_NEW(b->face_of_low, b->n_low);
   PASS_NEW(f->corner, dim * (size_t)b->n_low);
   PASS_NEW(f->example, b->n_low);
@@ -93,19 +91,17 @@ static status number_faces(builder *b, face_list *f) {
   for (int j = 0; j < b->n_low; ++j) {
     const int *v = f->low + dim * (size_t)j;
     b->face_of_low[j] = -1;
-    if (v[0] < 0) continue;
-    key[n] = (uint64_t)v[0] << 32 | (uint64_t)v[1];
-    id[n++] = j;
+    if (v[0] >= 0) item[n++] = (sort_item){sort_key(v[0], v[1]), j};
   }
-  PASS(sort_by_key(n, key, id, by_corners, f));
+  PASS(sort_items(n, item, by_corners, f));
   for (int i = 0; i < n; ++i) {
-    const int *v = f->low + dim * (size_t)id[i];
+    const int id = item[i].id, *v = f->low + dim * (size_t)id;
     int last = m->n_face - 1;
     if (last < 0 || memcmp(f->corner + dim * (size_t)last, v, bytes) != 0) {
       memcpy(f->corner + dim * (size_t)++last, v, bytes);
-      f->example[m->n_face++] = id[i];
+      f->example[m->n_face++] = id;
     }
-    b->face_of_low[id[i]] = last;
+    b->face_of_low[id] = last;
   }
   if (m->n_face < n)
     message_add(b->log, P3031, b->at, "%d face(s) are listed more than once",

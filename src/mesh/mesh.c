@@ -11,6 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
+const char *const mesh_words[4] = {"points", "curves", "surfaces", "volumes"};
+
 void mesh_crack_free(mesh_crack *c) {
   RELEASE(c->plus, c->minus, c->front_start, c->front_node, c->front_face);
   *c = (mesh_crack){0};
@@ -44,8 +46,7 @@ const char *mesh_nearest_group(const mesh *m, const char *name) {
 /* d = x[b] - x[a] */
 static void difference(const mesh *m, int a, int b, double *d) {
   for (int k = 0; k < m->dim; ++k)
-    d[k] = m->x[(size_t)m->dim * (size_t)b + (size_t)k] -
-           m->x[(size_t)m->dim * (size_t)a + (size_t)k];
+    d[k] = mesh_node_x(m, b)[k] - mesh_node_x(m, a)[k];
 }
 
 static void cross(const double *a, const double *b, double *c) {
@@ -55,7 +56,7 @@ static void cross(const double *a, const double *b, double *c) {
 }
 
 double mesh_face_normal(const mesh *m, int face_id, double *normal) {
-  const int *v = m->face + (size_t)m->dim * (size_t)face_id;
+  const int *v = mesh_face_nodes(m, face_id);
   double a[3], b[3], c[3];
   difference(m, v[0], v[1], a);
   if (m->dim == 2) {
@@ -72,7 +73,7 @@ double mesh_face_normal(const mesh *m, int face_id, double *normal) {
 }
 
 double mesh_elem_measure(const mesh *m, int elem_id) {
-  const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)elem_id;
+  const int *v = mesh_elem_nodes(m, elem_id);
   double a[3], b[3], c[3], ab[3];
   difference(m, v[0], v[1], a);
   difference(m, v[0], v[2], b);
@@ -134,14 +135,13 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
   PASS_NEW(body_of, m->n_node);
   for (int i = 0; i < m->n_node; ++i) parent[i] = i;
   for (int e = 0; e < m->n_elem; ++e) {
-    const int *v = m->elem + (size_t)n_corner * (size_t)e;
+    const int *v = mesh_elem_nodes(m, e);
     for (int k = 1; k < n_corner; ++k) forest_join(parent, v[0], v[k]);
   }
   *n_body = 0;
   for (int i = 0; i < m->n_node; ++i) /* a root comes before its nodes */
     body_of[i] = parent[i] == i ? (*n_body)++ : body_of[forest_root(parent, i)];
-  for (int e = 0; e < m->n_elem; ++e)
-    body[e] = body_of[m->elem[(size_t)n_corner * (size_t)e]];
+  for (int e = 0; e < m->n_elem; ++e) body[e] = body_of[*mesh_elem_nodes(m, e)];
   return OK;
 }
 
@@ -184,6 +184,12 @@ void fault_add(faults *c, const char *format, ...) {
   va_start(args, format);
   vsnprintf(c->text + used, left, format, args);
   va_end(args);
+}
+
+void fault_centre(const mesh *m, int n, const int *v, double *x) {
+  for (int k = 0; k < 3; ++k) x[k] = 0.0;
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < m->dim; ++k) x[k] += mesh_node_x(m, v[i])[k] / n;
 }
 
 void fault_at(faults *c, int dim, size_t no, const double *x) {

@@ -101,6 +101,20 @@ void mesh_gmsh_load(void);
 void mesh_free(mesh *m);
 void mesh_crack_free(mesh_crack *c); /* accepts all-zero */
 
+/* "points", "curves", "surfaces", "volumes". */
+extern const char *const mesh_words[4];
+
+/* Nodes of an element and of a face, coordinates of a node. */
+static inline int *mesh_elem_nodes(const mesh *m, int elem) {
+  return m->elem + (ptrdiff_t)(m->dim + 1) * elem;
+}
+static inline int *mesh_face_nodes(const mesh *m, int face) {
+  return m->face + (ptrdiff_t)m->dim * face;
+}
+static inline double *mesh_node_x(const mesh *m, int node) {
+  return m->x + (ptrdiff_t)m->dim * node;
+}
+
 const mesh_group *mesh_find_group(const mesh *m,
                                   const char *name); /* or NULL */
 /* Name of the nearest group for a message, or NULL. */

@@ -153,12 +153,9 @@ static status check_plane(builder *b, const double lo[3], const double hi[3]) {
   return build_check(b);
 }
 
-typedef struct tie { /* nodes in one cell of the curve */
-  const raw_mesh *raw;
-} tie;
-
+/* Nodes in one cell of the curve. */
 static int by_coordinates(const void *ctx, int a, int b) {
-  const raw_mesh *raw = ((const tie *)ctx)->raw;
+  const raw_mesh *raw = ctx;
   const double *x = raw->xyz + 3 * (size_t)a, *y = raw->xyz + 3 * (size_t)b;
   for (int k = 0; k < 3; ++k)
     if (x[k] != y[k]) return x[k] < y[k] ? -1 : 1;
@@ -168,8 +165,7 @@ static int by_coordinates(const void *ctx, int a, int b) {
 
 /* The cells are shifted by odd fractions: round coordinates, which many
  * nodes share up to the last bit, are inside of cells and not between. */
-static void fill_keys(const builder *b, const double lo[3], uint64_t *key,
-                      int *id) {
+static void fill_keys(const builder *b, const double lo[3], sort_item *item) {
   static const double shift[3] = {0.1321, 0.1732, 0.1579};
   const double cells = (double)(1 << CURVE_BITS), share = 0.7071;
   int n = 0;
@@ -180,18 +176,17 @@ static void fill_keys(const builder *b, const double lo[3], uint64_t *key,
       double part = b->raw->xyz[3 * i + (size_t)k] * b->scale - lo[k];
       cell[k] = (uint32_t)((shift[k] + share * (part / b->m->size)) * cells);
     }
-    id[n] = (int)i;
-    key[n++] = on_curve(cell, b->m->dim);
+    item[n++] = (sort_item){on_curve(cell, b->m->dim), (int)i};
   }
 }
 
-static status store_nodes(builder *b, const int *raw_id) {
+static status store_nodes(builder *b, const sort_item *item) {
   mesh *m = b->m;
   size_t dim = (size_t)m->dim;
   PASS_NEW(m->x, dim * (size_t)m->n_node);
   PASS_NEW(m->node_no, m->n_node);
   for (int i = 0; i < m->n_node; ++i) {
-    size_t r = (size_t)raw_id[i];
+    size_t r = (size_t)item[i].id;
     for (size_t k = 0; k < dim; ++k)
       m->x[dim * (size_t)i + k] = b->raw->xyz[3 * r + k] * b->scale;
     if (dim == 2) m->z = b->raw->xyz[3 * r + 2] * b->scale;
@@ -204,24 +199,22 @@ static status store_nodes(builder *b, const int *raw_id) {
 /* The nodes of the top elements get their ids. */
 status nodes_order(builder *b) {
   mesh *m = b->m;
-  OWNED uint64_t *key = NULL;
-  OWNED int *id = NULL;
+  OWNED sort_item *item = NULL;
   double lo[3], hi[3];
   for (size_t i = 0; i < b->raw->n_node; ++i) m->n_node += b->node_id[i] >= 0;
   PASS(find_box(b, lo, hi));
   PASS(check_plane(b, lo, hi));
   for (int k = 0; k < m->dim; ++k) m->size = fmax(m->size, hi[k] - lo[k]);
-  PASS_NEW(key, m->n_node);
-  PASS_NEW(id, m->n_node);
+  PASS_NEW(item, m->n_node);
   if (m->size ==
       0.0) { /* all in one point: the check of the elements reports it */
     for (size_t i = 0, n = 0; i < b->raw->n_node; ++i)
-      if (b->node_id[i] >= 0) id[n++] = (int)i;
+      if (b->node_id[i] >= 0) item[n++].id = (int)i;
   } else {
-    fill_keys(b, lo, key, id);
+    fill_keys(b, lo, item);
   }
-  PASS(sort_by_key(m->n_node, key, id, by_coordinates, &(tie){b->raw}));
-  PASS(store_nodes(b, id));
+  PASS(sort_items(m->n_node, item, by_coordinates, b->raw));
+  PASS(store_nodes(b, item));
   size_t unused = b->raw->n_node - (size_t)m->n_node;
   if (unused > 0 && !b->raw->made)
     message_add(b->log, P3040, b->at,
@@ -260,9 +253,8 @@ status nodes_coincident(builder *b) {
       PASS_NEW(body_of, m->n_node);
       PASS(body_of_nodes(m, body_of));
     }
-    const double *x = m->x + (size_t)m->dim * (size_t)i;
     fault_at(body_of[i - 1] == body_of[i] ? &slit : &touch, m->dim,
-             m->node_no[i], x);
+             m->node_no[i], mesh_node_x(m, i));
   }
   if (slit.n > 0)
     message_add(b->log, P3041, b->at,

@@ -20,10 +20,10 @@
 /* ---- both sides of a face ------------------------------------------------ */
 
 typedef struct side_list {
-  int n;         /* sides of elements; after check_sides, on the boundary */
-  int *start;    /* [n_node+2] sides whose lowest node is i */
-  uint64_t *key; /* [n] the other nodes, their orientation */
-  int *id;       /* [n] (dim+1) * element + side */
+  int n;           /* sides of elements; after check_sides, on the boundary */
+  int *start;      /* [n_node+2] sides whose lowest node is i */
+  sort_item *side; /* [n] key: the other nodes, their orientation; id: (dim+1) *
+                      element + side */
 } side_list;
 
 static void side_nodes(const mesh *m, int id, int *v) {
@@ -55,8 +55,7 @@ static status gather_sides(const mesh *m, side_list *s) {
   int v[3], low[2];
   s->n = n * m->n_elem;
   PASS_NEW(s->start, m->n_node + 2);
-  PASS_NEW(s->key, s->n);
-  PASS_NEW(s->id, s->n);
+  PASS_NEW(s->side, s->n);
   for (int e = 0; e < m->n_elem; ++e) {
     two_lowest(n, m->elem + (size_t)n * (size_t)e, low);
     s->start[low[0] + 2] += m->dim;
@@ -67,29 +66,26 @@ static status gather_sides(const mesh *m, side_list *s) {
     for (int side = 0; side < n; ++side) {
       faces_side(m, e, side, v);
       int to = s->start[(m->dim == 2 && v[1] < v[0] ? v[1] : v[0]) + 1]++;
-      s->key[to] = side_key(m->dim, v);
-      s->id[to] = n * e + side;
+      s->side[to] = (sort_item){side_key(m->dim, v), n * e + side};
     }
   return OK;
 }
 
 /* The sides [n] of elements at one face. */
-static void check_face(const mesh *m, const uint64_t *key, const int *id, int n,
+static void check_face(const mesh *m, const sort_item *side, int n,
                        faults *bad) {
   int first[2] = {-1, -1}, v[3];
   for (int i = 0; i < n; ++i) {
-    int t = key[i] & 1;
+    int t = side[i].key & 1;
     if (first[t] < 0) {
-      first[t] = id[i];
+      first[t] = side[i].id;
       continue;
     }
-    double x[3] = {0.0, 0.0, 0.0};
-    side_nodes(m, id[i], v);
-    for (int j = 0; j < m->dim; ++j)
-      for (int k = 0; k < m->dim; ++k)
-        x[k] += m->x[(size_t)m->dim * (size_t)v[j] + (size_t)k] / m->dim;
+    double x[3];
+    side_nodes(m, side[i].id, v);
+    fault_centre(m, m->dim, v, x);
     fault_pair(bad, m->dim, m->elem_no[first[t] / (m->dim + 1)],
-               m->elem_no[id[i] / (m->dim + 1)], x);
+               m->elem_no[side[i].id / (m->dim + 1)], x);
     return;
   }
 }
@@ -101,15 +97,15 @@ static status check_sides(const builder *b, side_list *s) {
   s->n = 0;
   for (int i = 0; i < m->n_node; ++i) {
     int end = s->start[i + 1];
-    PASS(sort_by_key(end - s->start[i], s->key + s->start[i],
-                     s->id + s->start[i], NULL, NULL));
+    PASS(sort_items(end - s->start[i], s->side + s->start[i], NULL, NULL));
     for (int j = s->start[i], next; j < end; j = next) {
-      for (next = j + 1; next < end && s->key[next] / 2 == s->key[j] / 2;)
+      const sort_item *side = &s->side[j];
+      for (next = j + 1; next < end && s->side[next].key / 2 == side->key / 2;)
         ++next;
       if (next == j + 1)
-        s->id[s->n++] = s->id[j];
+        s->side[s->n++] = *side;
       else
-        check_face(m, s->key + j, s->id + j, next - j, &bad);
+        check_face(m, side, next - j, &bad);
     }
   }
   if (bad.n > 0)
@@ -339,16 +335,13 @@ static status belong_together(search *s, int f, int *together) {
 
 static status compare(search *s, int f) {
   const mesh *m = s->b->m;
-  double x[3] = {0.0, 0.0, 0.0};
+  double x[3];
   int e = s->e, together = 0;
   if (s->same.n > SHOWN || e == f || share_a_side(m, e, f) ||
       !intersect(m, s->far, e, f))
     return OK;
   PASS(belong_together(s, f, &together));
-  const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)e;
-  for (int i = 0; i <= m->dim; ++i)
-    for (int k = 0; k < m->dim; ++k)
-      x[k] += m->x[(size_t)m->dim * (size_t)v[i] + (size_t)k] / (m->dim + 1);
+  fault_centre(m, m->dim + 1, mesh_elem_nodes(m, e), x);
   fault_pair(together ? &s->same : &s->other, m->dim, m->elem_no[e],
              m->elem_no[f], x);
   return OK;
@@ -394,23 +387,20 @@ static status check_skin(search *s, const char *is_skin) {
 /* One side of each piece of the boundary, -1 for the others. A piece goes on
  * across edges (2-D: nodes) that two sides have in common. */
 static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
-  OWNED uint64_t *key = NULL;
-  OWNED int *id = NULL;
+  OWNED sort_item *item = NULL;
   int v[3], n = m->dim * sides->n;
-  PASS_NEW(key, n);
-  PASS_NEW(id, n);
+  PASS_NEW(item, n);
   for (int i = 0; i < n; ++i) {
     int side = i / m->dim, k = i % m->dim;
-    side_nodes(m, sides->id[side], v);
+    side_nodes(m, sides->side[side].id, v);
     int a = v[k], c = m->dim == 2 ? a : v[(k + 1) % 3];
-    key[i] = (uint64_t)(a < c ? a : c) << 32 | (uint64_t)(a < c ? c : a);
-    id[i] = side;
+    item[i] = (sort_item){a < c ? sort_key(a, c) : sort_key(c, a), side};
   }
-  PASS(sort_by_key(n, key, id, NULL, NULL));
+  PASS(sort_items(n, item, NULL, NULL));
   for (int i = 0; i < sides->n; ++i) piece[i] = i;
   for (int i = 0, end; i < n; i = end) {
-    for (end = i + 1; end < n && key[end] == key[i];) ++end;
-    if (end == i + 2) forest_join(piece, id[i], id[i + 1]);
+    end = sort_run_end(n, item, i);
+    if (end == i + 2) forest_join(piece, item[i].id, item[i + 1].id);
   }
   for (int i = sides->n; i-- > 0;)
     if (piece[i] != i) piece[i] = -1;
@@ -426,7 +416,7 @@ static status check_inside(search *s, const side_list *sides,
   PASS(find_pieces(m, sides, piece));
   PASS(start_tree(s, sides->n));
   for (int i = 0; i < sides->n; ++i)
-    if (piece[i] >= 0) s->t.elem[s->t.n++] = sides->id[i] / (m->dim + 1);
+    if (piece[i] >= 0) s->t.elem[s->t.n++] = sides->side[i].id / (m->dim + 1);
   if (s->t.n < 2) return OK; /* one closed surface bounds them all */
   PASS(grow_tree(m, &s->t));
   for (int e = 0; e < m->n_elem; ++e)
@@ -442,7 +432,8 @@ static status check_skins(const builder *b, const side_list *sides) {
   for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
     s.far = fmax(s.far, fabs(m->x[i]) / m->size);
   NEW(is_skin, m->n_elem);
-  for (int i = 0; i < sides->n; ++i) is_skin[sides->id[i] / (m->dim + 1)] = 1;
+  for (int i = 0; i < sides->n; ++i)
+    is_skin[sides->side[i].id / (m->dim + 1)] = 1;
   TRY(check_skin(&s, is_skin));
   TRY(check_inside(&s, sides, is_skin));
   if (s.other.n > 0 && !b->raw->meets)
@@ -464,6 +455,6 @@ status overlap_check(builder *b) {
   TRY(check_sides(b, &s));
   TRY(check_skins(b, &s));
 done:
-  RELEASE(s.start, s.key, s.id);
+  RELEASE(s.start, s.side);
   return st;
 }

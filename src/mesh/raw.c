@@ -61,18 +61,11 @@ static status copy_items(const wire_head *head, uint64_t wanted, void *to,
   return OK;
 }
 
-/* A new block, group or warning: the lists grow by doubling. */
-static void *list_item(void *list, int n, size_t size) {
-  if (n > 0 && (n < 8 || (n & (n - 1)) != 0)) return list;
-  size_t capacity = n < 8 ? 8 : 2 * (size_t)n;
-  return memory_resize(list, (size_t)n, capacity, size);
-}
-
-#define APPEND(list, n)                                                   \
-  do {                                                                    \
-    void *grown_ = list_item((list), (n), sizeof *(list));                \
-    if (grown_ == NULL) RAISE(ERR_MEMORY, "memory exhausted: %s", #list); \
-    (list) = grown_;                                                      \
+/* Room for a new block, group or warning: the lists grow by doubling. */
+#define APPEND(list, n)                                 \
+  do {                                                  \
+    if ((n) == 0 || ((n) >= 8 && ((n) & ((n)-1)) == 0)) \
+      PASS_RESIZE(list, n, (n) < 8 ? 8 : 2 * (n));      \
   } while (0)
 
 static status store(raw_mesh *raw, const wire_head *head, void **payload) {

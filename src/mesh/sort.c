@@ -8,60 +8,49 @@
 #include "base/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, FEW = 128 };
 
-static void insertion(int n, uint64_t *key, int *id) {
-  for (int i = 1; i < n; ++i) {
-    uint64_t k = key[i];
-    int v = id[i], j = i;
-    for (; j > 0 && key[j - 1] > k; --j) {
-      key[j] = key[j - 1];
-      id[j] = id[j - 1];
-    }
-    key[j] = k;
-    id[j] = v;
+static void insertion(int n, sort_item *item) {
+  for (int i = 1, j; i < n; ++i) {
+    const sort_item x = item[i];
+    for (j = i; j > 0 && item[j - 1].key > x.key; --j) item[j] = item[j - 1];
+    item[j] = x;
   }
 }
 
-/* One pass from (key, id) to (to_key, to_id); 0 if nothing would move. */
-static int pass(int n, int shift, const uint64_t *key, const int *id,
-                uint64_t *to_key, int *to_id) {
+/* One pass from one array to another; 0 if nothing would move. */
+static int pass(int n, int shift, const sort_item *from, sort_item *to) {
   int start[DIGITS] = {0};
-  for (int i = 0; i < n; ++i) ++start[(key[i] >> shift) & (DIGITS - 1)];
-  if (start[(key[0] >> shift) & (DIGITS - 1)] == n) return 0;
+  for (int i = 0; i < n; ++i) ++start[(from[i].key >> shift) & (DIGITS - 1)];
+  if (start[(from[0].key >> shift) & (DIGITS - 1)] == n) return 0;
   for (int d = 0, sum = 0; d < DIGITS; ++d) {
     int count = start[d];
     start[d] = sum;
     sum += count;
   }
-  for (int i = 0; i < n; ++i) {
-    int to = start[(key[i] >> shift) & (DIGITS - 1)]++;
-    to_key[to] = key[i];
-    to_id[to] = id[i];
-  }
+  for (int i = 0; i < n; ++i)
+    to[start[(from[i].key >> shift) & (DIGITS - 1)]++] = from[i];
   return 1;
 }
 
-static status radix(int n, uint64_t *key, int *id) {
-  OWNED uint64_t *other_key = NULL;
-  uint64_t *from_key = key;
-  OWNED int *other_id = NULL;
-  int *from_id = id;
-  PASS_NEW(other_key, n);
-  PASS_NEW(other_id, n);
+static status radix(int n, sort_item *item) {
+  OWNED sort_item *other = NULL;
+  sort_item *from = item;
+  PASS_NEW(other, n);
   for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
-    uint64_t *to_key = from_key == key ? other_key : key;
-    int *to_id = from_id == id ? other_id : id;
-    if (!pass(n, shift, from_key, from_id, to_key, to_id)) continue;
-    from_key = to_key;
-    from_id = to_id;
+    sort_item *to = from == item ? other : item;
+    if (pass(n, shift, from, to)) from = to;
   }
-  for (int i = 0; i < n && from_key != key; ++i) {
-    key[i] = from_key[i];
-    id[i] = from_id[i];
-  }
+  if (from != item) memcpy(item, from, (size_t)n * sizeof *item);
   return OK;
+}
+
+int sort_run_end(int n, const sort_item *item, int i) {
+  int end = i + 1;
+  while (end < n && item[end].key == item[i].key) ++end;
+  return end;
 }
 
 typedef struct ties {
@@ -71,29 +60,32 @@ typedef struct ties {
 
 static int by_ties(const void *a, const void *b, void *ctx) {
   const ties *t = ctx;
-  return t->compare(t->ctx, *(const int *)a, *(const int *)b);
+  return t->compare(t->ctx, ((const sort_item *)a)->id,
+                    ((const sort_item *)b)->id);
 }
 
-status sort_by_key(int n, uint64_t *key, int *id, sort_compare *compare,
-                   const void *ctx) {
+status sort_items(int n, sort_item *item, sort_compare *compare,
+                  const void *ctx) {
   if (n <= FEW)
-    insertion(n, key, id);
+    insertion(n, item);
   else
-    PASS(radix(n, key, id));
+    PASS(radix(n, item));
   for (int i = 0, end; compare != NULL && i < n; i = end) {
-    for (end = i + 1; end < n && key[end] == key[i];) ++end;
+    end = sort_run_end(n, item, i);
     if (end - i > 1)
-      qsort_r(id + i, (size_t)(end - i), sizeof *id, by_ties,
+      qsort_r(item + i, (size_t)(end - i), sizeof *item, by_ties,
               &(ties){compare, ctx});
   }
   return OK;
 }
 
 status sort_ids(int n, int *id) {
-  OWNED uint64_t *key = NULL;
-  PASS_NEW(key, n);
-  for (int i = 0; i < n; ++i) key[i] = (uint64_t)id[i];
-  return sort_by_key(n, key, id, NULL, NULL);
+  OWNED sort_item *item = NULL;
+  PASS_NEW(item, n);
+  for (int i = 0; i < n; ++i) item[i] = (sort_item){(uint64_t)id[i], id[i]};
+  PASS(sort_items(n, item, NULL, NULL));
+  for (int i = 0; i < n; ++i) id[i] = item[i].id;
+  return OK;
 }
 
 void sort_few(int n, int *v) {

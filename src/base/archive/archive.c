@@ -122,8 +122,7 @@ static status put(archive *a, const char *name, archive_kind kind, void *v,
   i->data = v;
   size_t bytes = item_bytes(i);
   if (bytes > SHORT) return OK;
-  i->own = memory_new(bytes, 1);
-  if (i->own == NULL) RAISE(ERR_MEMORY, "memory exhausted: array %s", name);
+  PASS_GET(i->own, memory_new(bytes, 1));
   memcpy(i->own, v, bytes);
   i->data = i->own;
   return OK;
@@ -438,8 +437,7 @@ status archive_read(const char *path, archive **out) {
   H5Lunregister(H5L_TYPE_EXTERNAL);
   TRY(archive_check_seal(path));
   NEW(a, 1);
-  a->path = memory_text(path);
-  if (a->path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  GET(a->path, memory_text(path));
   file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) TRY(damaged(path, "this is no restart file of Protis"));
   TRY(get_items(file, a));

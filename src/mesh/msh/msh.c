@@ -105,8 +105,7 @@ static status new_block(msh *m, int id, int type, int tag, int n_physical,
   PASS_NEW(b->physical, n_physical);
   memcpy(b->physical, physical, (size_t)n_physical * sizeof *physical);
   b->n_physical = n_physical;
-  b->type_name = memory_text(t->name);
-  if (b->type_name == NULL) RAISE(ERR_MEMORY, "memory exhausted: %s", t->name);
+  PASS_GET(b->type_name, memory_text(t->name));
   return OK;
 }
 
@@ -127,12 +126,8 @@ static status msh_add_element(msh *m, int block, size_t no, size_t **node) {
   raw_block *b = &m->raw->block[block];
   if (b->n >= m->fill[block].capacity) {
     size_t capacity = b->n < 4 ? 4 : 2 * b->n, per = b->n_per;
-    void *more = memory_resize(b->no, b->n, capacity, sizeof *b->no);
-    if (more == NULL) RAISE(ERR_MEMORY, "memory exhausted: element numbers");
-    b->no = more;
-    more = memory_resize(b->node, per * b->n, per * capacity, sizeof *b->node);
-    if (more == NULL) RAISE(ERR_MEMORY, "memory exhausted: elements");
-    b->node = more;
+    PASS_RESIZE(b->no, b->n, capacity);
+    PASS_RESIZE(b->node, per * b->n, per * capacity);
     m->fill[block].capacity = capacity;
   }
   b->no[b->n] = no;

@@ -64,9 +64,7 @@ status apply_solver(reading *r) {
   s->check = p->check;
   if (!s->balanced && p->share != 0.05) report_idle(r, "SHARE", "TOL=BALANCED");
   if (r->plugin == NULL) return OK;
-  s->solver_param = memory_new(1, r->plugin_size);
-  if (s->solver_param == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: solver options");
+  PASS_GET(s->solver_param, memory_new(1, r->plugin_size));
   memcpy(s->solver_param, r->plugin, r->plugin_size);
   s->solver.param = s->solver_param;
   return OK;

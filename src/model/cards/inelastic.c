@@ -70,8 +70,7 @@ static status read_law(reading *r, const law_ops *ops, const void *words,
   mat->law.shift = *shift;
   check_shift(r, ops, shift);
   if (ops->param_size > 0) {
-    param = memory_new(1, ops->param_size);
-    if (param == NULL) RAISE(ERR_MEMORY, "memory exhausted: words of a law");
+    PASS_GET(param, memory_new(1, ops->param_size));
     mat->law.param = param;
     if (words != NULL)
       memcpy(param, words, ops->param_size);

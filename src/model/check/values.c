@@ -11,9 +11,6 @@
 
 /* ---- names of groups to their ids in the mesh ---------------------------- */
 
-static const char *const dim_words[] = {"points", "curves", "surfaces",
-                                        "volumes"};
-
 int check_group(const model *m, const mesh *msh, const char *name,
                 const place *at) {
   const mesh_group *g = mesh_find_group(msh, name);
@@ -41,7 +38,7 @@ int check_group_of(const model *m, const mesh *msh, const char *name, int dim,
   if (id < 0 || msh->group[id].dim == dim) return id;
   message_add(m->log, P2022, at,
               "group %s is made of %s; %s are needed here in %d-D", name,
-              dim_words[msh->group[id].dim], dim_words[dim], msh->dim);
+              mesh_words[msh->group[id].dim], mesh_words[dim], msh->dim);
   return -1;
 }
 

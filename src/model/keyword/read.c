@@ -268,9 +268,7 @@ static status read_card(reading *r) {
 static status name_job(model *m) {
   const char *slash = strrchr(m->deck->file, '/');
   const char *base = slash == NULL ? m->deck->file : slash + 1;
-  m->name.job = memory_text(base);
-  if (m->name.job == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: name of the job");
+  PASS_GET(m->name.job, memory_text(base));
   size_t length = strlen(m->name.job);
   if (length > 4 && same_word(m->name.job + length - 4, ".inp"))
     m->name.job[length - 4] = '\0';
