@@ -646,7 +646,7 @@ static status groups_open(opening *o) {
   return opening_check(o);
 }
 
-/* ---- the front: edges (2-D: nodes) round which all elements hang together  */
+/* ---- the front: edges (2-D: nodes) round which all elements hang together */
 
 typedef struct front_edge {
   int face;    /* of the crack */
