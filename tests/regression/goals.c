@@ -195,6 +195,22 @@ START_TEST(errors_of_earlier_increments_are_in_it) {
 }
 END_TEST
 
+/* The zone of stick grows with the load: what its edges were when they began
+ * to stick counts, and the work that they do before. Reference: meshes and
+ * TARGET of make verify. */
+START_TEST(work_of_a_zone_of_stick_that_grows) {
+  job j = with_goals("input/spence/spence",
+                     "*PARAMETER\nHALF = \"A/2\"\n"
+                     "*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n"
+                     "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=LINE, "
+                     "RADIUS=<HALF>\n0., 0.\n",
+                     "-D DT=0.1 -D NC=16");
+  check_goal(&j, 0, 4.42619e-3, 0.65, 1.2, 1.0);
+  check_goal(&j, 1, 2902.6262, 0.6, 1.2, 1.0);
+  job_end(&j);
+}
+END_TEST
+
 /* The condensed stiffness is formed, or known by products and solves. */
 START_TEST(both_kinds_of_stiffness_give_the_same) {
   job dense = to_and_fro("DENSE"), factor = to_and_fro("FACTOR");
@@ -529,6 +545,7 @@ END_TEST
 
 UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           friction_force_of_the_block, errors_of_earlier_increments_are_in_it,
+          work_of_a_zone_of_stick_that_grows,
           both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
           energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
           width_is_that_of_one_zone, means_of_a_pressure_lie_on_its_surface,

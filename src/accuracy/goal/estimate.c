@@ -26,6 +26,7 @@ struct goal_estimator {
   double *bubble;  /* [ns*n_elem] mean strains of u in the bubbles, - */
   double *part;    /* [edges*dim*n_elem] u in the bubbles of their edges, m;
                       NULL: no J has a flux */
+  double *edge;    /* [dim*n_edge] u in the bubbles of contact edges, m */
   double *own;     /* [n_elem] |e_u|^2, J */
   unsigned char *on_surface; /* [n_node] 1: of an edge of the contact */
   double *sigma_y;           /* [ns*n_elem] of the adjoint; workspace */
@@ -36,8 +37,8 @@ void goal_estimator_free(goal_estimator *e) {
   if (e == NULL) return;
   for (int k = 0; k < e->n_region && e->stress != NULL; ++k)
     memory_free(e->stress[k]);
-  RELEASE(e->stress, e->bubble, e->part, e->own, e->on_surface, e->sigma_y,
-          e->node_y, e);
+  RELEASE(e->stress, e->bubble, e->part, e->edge, e->own, e->on_surface,
+          e->sigma_y, e->node_y, e);
 }
 
 /* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
@@ -72,15 +73,13 @@ static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
   return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key, by_nodes);
 }
 
-/* d[dim] on a closed edge: along n that of the gap, across it 0 on stick;
- * relative to the opposite lip, half on each, to rest[dim]. */
-static void hold(const contact_edge *c, int dim, const double *rest,
-                 double *d) {
+/* d[dim] on a closed edge: along n that of the gap, across it as it began to
+ * stick. */
+static void hold(const contact_edge *c, int dim, double *d) {
+  const double *v = c->stuck ? c->stick : d;
   double along = 0.0;
-  for (int k = 0; k < dim; ++k) along += c->n[k] * (d[k] - rest[k]);
-  for (int k = 0; k < dim; ++k)
-    d[k] = rest[k] + c->excess * c->n[k] +
-           (c->stuck ? 0.0 : d[k] - rest[k] - along * c->n[k]);
+  for (int k = 0; k < dim; ++k) along += c->n[k] * v[k];
+  for (int k = 0; k < dim; ++k) d[k] = v[k] + (c->excess - along) * c->n[k];
 }
 
 /* From the front of a crack at node a to b, u is a root of the distance and
@@ -120,19 +119,23 @@ static void free_bubble(const goal_solution *s, const double *G, int a, int b,
 
 /* d[dim] of the edge from node a to b by the recovered gradient of a region,
  * G[dim*dim*n_node]. */
-static void bubble_of(const goal_estimator *e, const double *G, int a, int b,
+static void bubble_of(goal_estimator *e, const double *G, int a, int b,
                       double *d) {
   const goal_solution *s = &e->s;
   const int dim = s->d->mesh->dim;
   double rest[3] = {0.0};
   free_bubble(s, G, a, b, d);
   const contact_edge *contact = find_edge(e, a, b);
-  if (contact != NULL && contact->closed) {
+  if (contact != NULL) {
     if (contact->other[0] >= 0) {
       free_bubble(s, G, contact->other[0], contact->other[1], rest);
       for (int c = 0; c < dim; ++c) rest[c] = 0.5 * (rest[c] + d[c]);
     }
-    hold(contact, dim, rest, d);
+    for (int c = 0; c < dim; ++c) d[c] -= rest[c];
+    if (contact->closed) hold(contact, dim, d);
+    memcpy(e->edge + (size_t)dim * (size_t)(contact - s->edge), d,
+           (size_t)dim * sizeof *d);
+    for (int c = 0; c < dim; ++c) d[c] += rest[c];
   }
   for (int c = 0; c < dim; ++c)
     if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c]) d[c] = 0.0;
@@ -213,6 +216,7 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   e->n_region = space_regions(recovery);
   NEW(e->stress, e->n_region);
   NEW(e->own, m->n_elem);
+  NEW(e->edge, m->dim * s->n_edge);
   NEW(e->on_surface, m->n_node);
   for (int k = 0; k < s->n_edge; ++k)
     e->on_surface[s->edge[k].a] = e->on_surface[s->edge[k].b] = 1;
@@ -343,6 +347,8 @@ goal_result goal_judge(const goal_estimate *e, int n_closed) {
     r.verdict = GOAL_CANCELS;
   return r;
 }
+
+const double *goal_estimator_edges(const goal_estimator *e) { return e->edge; }
 
 double goal_estimator_energy(const goal_estimator *e) {
   double sum = 0.0;

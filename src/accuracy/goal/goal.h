@@ -88,6 +88,8 @@ typedef struct contact_edge {
   int closed, stuck; /* both ends are */
   double n[3];       /* unit normal, the mean of its ends */
   double excess;     /* gap in its middle less the mean of its ends, m */
+  double stick[3];   /* what u was in its bubble where it began to stick, m */
+  double weight;     /* integral of its bubble over the surface, m2 */
   int other[2];      /* nodes of the opposite lip of a crack, in the order of a,
                         b; -1: on an obstacle */
 } contact_edge;
@@ -123,6 +125,9 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
                           goal_estimator **out);
 void goal_estimator_free(goal_estimator *e);           /* accepts NULL */
 double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
+/* [dim*n_edge] what u is in the bubbles of the contact edges, m; of a crack,
+ * less the mean of both lips. */
+const double *goal_estimator_edges(const goal_estimator *e);
 /* J of u, what u is in the bubbles too, by its derivative f. */
 double goal_estimator_flux(const goal_estimator *e, const goal_flux *f);
 /* F[dim*n_node]: forces that what u is in the bubbles exerts on the mesh; under
@@ -135,10 +140,10 @@ void goal_estimator_force(goal_estimator *e, double *F);
  *   sum over edges of R d,   R = integral of (tau - sigma(y)) : e(b),
  *
  * b = 4 la lb the bubble of the edge and d the part of u in it, from recovered
- * gradients; on closed edges d_n is that of the gap, and d_t = 0 where they
- * stick. In axisymmetric elements at points, as strains vary within them. of_u:
- * J is the energy, and tau the stress of u there. product[n_elem] or NULL: the
- * share of each element in out->product.
+ * gradients; on closed edges d_n is that of the gap, and d_t where they
+ * stick what it was when they began to. In axisymmetric elements at points, as
+ * strains vary within them. of_u: J is the energy, and tau the stress of u
+ * there. product[n_elem] or NULL: the share of each element in out->product.
  */
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           int of_u, double *product, goal_estimate *out);

@@ -31,7 +31,9 @@ static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
 
 /* Errors that friction remembers, after the last increment. */
 typedef struct goal_history {
-  double *u;          /* [dim*n_node] of the nodes, m; NULL: none is needed */
+  double *u;    /* [dim*n_node] of the nodes, m; NULL: none is needed */
+  double *edge; /* [dim*n_edge] u in the bubbles of contact edges, m; NULL: 0 */
+  int n_edge;
   double *sum, *band; /* [n] of goals that are sums over the increments */
   int lost;           /* 1: an increment before was not covered */
 } goal_history;
@@ -64,8 +66,8 @@ static void release(void *self) {
   goal_state *own = self;
   if (own == NULL) return;
   space_recovery_free(own->recovery);
-  RELEASE(own->before.u, own->before.sum, own->before.band, own->product,
-          own->result, own);
+  RELEASE(own->before.u, own->before.edge, own->before.sum, own->before.band,
+          own->product, own->result, own);
 }
 
 /* ---- what the estimate covers -------------------------------------------- */
@@ -104,6 +106,9 @@ static int remembers(const run *r, const goal_state *own) {
 /* A static problem starts from the origin. */
 static void forget(const run *r, goal_history *h, int n) {
   if (r->step->kind != STEP_STATIC || r->course.relaxing) return;
+  if (h->edge != NULL)
+    memset(h->edge, 0,
+           (size_t)r->msh->dim * (size_t)h->n_edge * sizeof *h->edge);
   memset(h->sum, 0, (size_t)n * sizeof *h->sum);
   memset(h->band, 0, (size_t)n * sizeof *h->band);
   h->lost = 0;
@@ -154,6 +159,13 @@ static status set_moved(const run *r, goal_state *own, shared *s) {
   return OK;
 }
 
+/* Where the edges began to stick. */
+static void set_sticks(const run *r, const goal_history *h, goal_surface *s) {
+  const size_t dim = (size_t)r->msh->dim;
+  for (int k = 0; k < s->n_edge && h->edge != NULL; ++k)
+    memcpy(s->edge[k].stick, h->edge + dim * (size_t)k, dim * sizeof *h->edge);
+}
+
 static int has_factor(const model *m) {
   int any = 0;
   for (int i = 0; i < m->n.goal; ++i)
@@ -165,6 +177,7 @@ static status prepare(run *r, goal_state *own, shared *s) {
   space_recovery *recovery;
   const int n = r->nodes.n_row;
   PASS(goal_surface_new(r, &s->surface));
+  set_sticks(r, &own->before, &s->surface);
   PASS(recover(r, own, &recovery));
   const goal_solution found = {.d = &r->body.d,
                                .u = r->now.u,
@@ -218,6 +231,29 @@ static double of_sticks(const run *r, const goal_state *own, const shared *s,
   return sum;
 }
 
+/* Work of friction that u in the bubbles of the contact does. */
+static status of_slip(const run *r, const shared *s, double *sum) {
+  const int dim = r->msh->dim;
+  const double *now = goal_estimator_edges(s->estimator);
+  OWNED int *where = NULL;
+  *sum = 0.0;
+  PASS(goal_places(r, &where));
+  for (int k = 0; k < s->surface.n_edge; ++k, now += dim) {
+    const contact_edge *e = &s->surface.edge[k];
+    const int q[2] = {where[e->a], where[e->b]};
+    if (!e->closed || e->stuck) continue;
+    for (int end = 0; end < 2; ++end)
+      for (int a = 1; a < dim && q[end] >= 0; ++a) {
+        const double *t = r->surface->frame + dim * dim * q[end] + dim * a;
+        const double traction =
+            r->now.rc[dim * q[end] + a] / r->surface->area[q[end]];
+        for (int c = 0; c < dim; ++c)
+          *sum -= 0.5 * e->weight * traction * t[c] * (now[c] - e->stick[c]);
+      }
+  }
+  return OK;
+}
+
 /* What the increments before have added to a sum over them. */
 static void add_sum(goal_history *h, int id, goal_result *out) {
   out->error += h->sum[id];
@@ -243,6 +279,26 @@ static double of_factor(const run *r, const shared *s) {
   return sum;
 }
 
+/* What the residual of the elements has not. */
+static status complete(const run *r, const shared *s, goal_estimate *e) {
+  const goal_form *f = &s->form;
+  if (f->factor.n > 0) e->error += of_factor(r, s);
+  e->error += f->curved + cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
+  e->magnitude += fabs(f->curved);
+  e->error += f->is_square ? 0.0 : e->hoop;
+  if (f->sums) {
+    double slips;
+    PASS(of_slip(r, s, &slips));
+    e->error += slips;
+    e->magnitude += fabs(slips);
+  }
+  if (f->is_square) {
+    e->error += 0.5 * (goal_estimator_energy(s->estimator) + e->hoop);
+    e->hoop = 0.0;
+  }
+  return OK;
+}
+
 static status estimate(run *r, goal_state *own, shared *s, int id) {
   const goal_form *f = &s->form;
   goal_result *out = &own->result[id];
@@ -253,14 +309,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
                           f->is_square, product_of(r, own, id), &e));
   if (!isfinite(e.error)) return OK;
-  if (f->factor.n > 0) e.error += of_factor(r, s);
-  e.error += f->curved + cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
-  e.magnitude += fabs(f->curved);
-  e.error += f->is_square ? 0.0 : e.hoop;
-  if (f->is_square) {
-    e.error += 0.5 * (goal_estimator_energy(s->estimator) + e.hoop);
-    e.hoop = 0.0;
-  }
+  PASS(complete(r, s, &e));
   e.error += of_sticks(r, own, s, &e.history);
   *out = goal_judge(&e, s->surface.n_closed);
   if (f->sums) add_sum(&own->before, id, out);
@@ -301,6 +350,12 @@ static status remember(run *r, goal_state *own, shared *s) {
     h->lost = 1;
     return OK;
   }
+  if (h->edge == NULL) {
+    h->n_edge = s->surface.n_edge;
+    PASS_NEW(h->edge, r->msh->dim * h->n_edge);
+  }
+  memcpy(h->edge, goal_estimator_edges(s->estimator),
+         (size_t)r->msh->dim * (size_t)h->n_edge * sizeof *h->edge);
   return move_nodes(r, own, s);
 }
 
@@ -353,6 +408,11 @@ static status keep(run *r, void *self, archive *a) {
   }
   if (h->u == NULL) return OK;
   PASS(archive_ints(a, "lost", &h->lost, 1));
+  PASS(archive_ints(a, "edges", &h->n_edge, 1));
+  if (h->edge == NULL && h->n_edge > 0)
+    PASS_NEW(h->edge, r->msh->dim * h->n_edge);
+  PASS(archive_reals(a, "edge", h->edge,
+                     (size_t)r->msh->dim * (size_t)h->n_edge));
   PASS(archive_reals(a, "u", h->u, r->n_dof));
   PASS(archive_reals(a, "sum", h->sum, (size_t)own->n));
   return archive_reals(a, "band", h->band, (size_t)own->n);

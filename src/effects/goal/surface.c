@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+static const double PI = 3.14159265358979323846;
 static const double SMOOTH = 0.5; /* -, sine of the turn of a curved surface */
 
 status goal_places(const run *r, int **where) {
@@ -44,6 +45,18 @@ static double bulge(const run *r, const int *q) {
   return fabs(along) <= SMOOTH * chord ? along / 8.0 : 0.0;
 }
 
+/* Integral of the bubble of an edge over a face. */
+static double bubble_weight(const run *r, int face) {
+  const mesh *m = r->msh;
+  const int *v = m->face + m->dim * face;
+  double normal[3];
+  const double weight =
+      mesh_face_normal(m, face, normal) * r->faces.face_weight[face];
+  if (m->dim == 3) return weight / 3.0;
+  if (!r->faces.input.axisymmetric) return weight * 2.0 / 3.0;
+  return weight * 2.0 / 3.0 * PI * (m->x[2 * v[0]] + m->x[2 * v[1]]);
+}
+
 /* Normal and gap in the middle of an edge between contact nodes q[2]. */
 static void set_middle(const run *r, const int *q, contact_edge *e) {
   const contact_surface *s = r->surface;
@@ -70,11 +83,14 @@ static int state_of(const run *r, int q) {
   return k == 1 && r->result.slip[q] < 0.0 ? -1 : CONTACT_SLIP;
 }
 
-static void add_edge(const run *r, int i, int j, const int *where,
-                     goal_surface *s) {
+static void add_edge(const run *r, int i, int j, double weight,
+                     const int *where, goal_surface *s) {
   const int q[2] = {where[i], where[j]};
   if (q[0] < 0 || q[1] < 0) return;
-  contact_edge e = {.a = i < j ? i : j, .b = i < j ? j : i, .other = {-1, -1}};
+  contact_edge e = {.a = i < j ? i : j,
+                    .b = i < j ? j : i,
+                    .weight = weight,
+                    .other = {-1, -1}};
   const contact_status a = r->result.contact[q[0]], b = r->result.contact[q[1]];
   e.closed = a != CONTACT_OPEN && b != CONTACT_OPEN;
   e.stuck = a == CONTACT_STICK && b == CONTACT_STICK;
@@ -86,13 +102,15 @@ static void add_edge(const run *r, int i, int j, const int *where,
 /* ---- the lips of a crack --------------------------------------------------
  */
 
-/* An edge of a lip between nodes v[2], opposite other[2]; n_q of its nodes are
- * contact nodes q: the others are at the front, where both lips are one. */
+/* An edge of a lip between nodes v[2], opposite other[2], of which each has
+ * half of the motion: the weight counts twice on one of them; n_q of its nodes
+ * are contact nodes q: the others are at the front, where both lips are one. */
 static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
-                         const int *q, goal_surface *s) {
+                         const int *q, double weight, goal_surface *s) {
   const int dim = r->msh->dim, turn = v[0] > v[1];
   contact_edge e = {.a = v[turn],
                     .b = v[!turn],
+                    .weight = weight,
                     .closed = 1,
                     .stuck = 1,
                     .other = {other[turn], other[!turn]}};
@@ -113,7 +131,7 @@ static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
 /* Edge a, b of two faces that lie on each other, v[dim] with the contact nodes,
  * w[dim], node by node. */
 static void add_lip_edges(const run *r, const int *where, const int *v,
-                          const int *w, goal_surface *s) {
+                          const int *w, double weight, goal_surface *s) {
   const int dim = r->msh->dim;
   for (int a = 0; a < dim; ++a)
     for (int b = a + 1; b < dim; ++b) {
@@ -122,8 +140,8 @@ static void add_lip_edges(const run *r, const int *where, const int *v,
       for (int k = 0; k < 2; ++k)
         if (where[near[k]] >= 0) q[n++] = where[near[k]];
       if (n == 0) continue;
-      add_lip_edge(r, near, far, n, q, s);
-      add_lip_edge(r, far, near, n, q, s);
+      add_lip_edge(r, near, far, n, q, 2.0 * weight, s);
+      add_lip_edge(r, far, near, n, q, 0.0, s);
     }
 }
 
@@ -132,13 +150,14 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
   const mesh_crack *c = &m->crack[id];
   const contact *of = &r->m->contacts[r->m->mesh.cracks[id].contact_id];
   for (int k = 0; k < c->n; ++k) {
-    const int *v = m->face + m->dim * (of->pair.slave ? c->plus : c->minus)[k];
+    const int near = (of->pair.slave ? c->plus : c->minus)[k];
+    const int *v = m->face + m->dim * near;
     const int *to = m->face + m->dim * (of->pair.slave ? c->minus : c->plus)[k];
     int w[3];
     for (int a = 0; a < m->dim; ++a)
       for (int b = 0; b < m->dim; ++b)
         if (m->origin[v[a]] == m->origin[to[b]]) w[a] = to[b];
-    add_lip_edges(r, where, v, w, s);
+    add_lip_edges(r, where, v, w, bubble_weight(r, near), s);
   }
 }
 
@@ -193,6 +212,8 @@ static void unite_edges(goal_surface *s) {
   for (int k = 0; k < s->n_edge; ++k)
     if (n == 0 || by_nodes(&s->edge[n - 1], &s->edge[k]) != 0)
       s->edge[n++] = s->edge[k];
+    else
+      s->edge[n - 1].weight += s->edge[k].weight;
   s->n_edge = n;
 }
 
@@ -203,7 +224,8 @@ static void add_group(const run *r, const mesh_group *g, const int *where,
   for (int i = 0; i < g->n_item; ++i) {
     const int *v = r->msh->face + dim * g->item_id[i];
     for (int a = 0; a < dim; ++a)
-      for (int b = a + 1; b < dim; ++b) add_edge(r, v[a], v[b], where, s);
+      for (int b = a + 1; b < dim; ++b)
+        add_edge(r, v[a], v[b], bubble_weight(r, g->item_id[i]), where, s);
   }
 }
 
