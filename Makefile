@@ -4,7 +4,8 @@ V     ?= 0
 JOBS  ?= $(shell nproc 2>/dev/null || echo 2)
 CC    ?= gcc
 
-out   := build/$(BUILD)
+# Objects of clang and gcc stand apart.
+out   := build/$(BUILD)$(if $(findstring clang,$(CC)),-clang)
 comma := ,
 Q     := $(if $(filter 1,$(V)),,@)
 

@@ -2,7 +2,6 @@
  * protis: reads the command line, runs the stages in order, prints what went
  * wrong and chooses the exit code.
  */
-#include "program/auto.h"
 #include "base/interrupt.h"
 #include "base/memory.h"
 #include "base/text.h"
@@ -39,7 +38,7 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   if (model_has_target(in->m) && in->problem == NULL)
     TRY(target_reach(c, in, unsettled));
   else if (in->m->reduction.is_auto && in->problem == NULL && from == NULL)
-    TRY(auto_solve_job(c, in, unsettled));
+    TRY(job_solve_auto(c, in, unsettled));
   else
     TRY(job_solve(c, in, NULL, from, unsettled));
 done:

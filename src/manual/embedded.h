@@ -16,6 +16,5 @@ typedef struct embedded_file {
 
 /* Folder after folder; folder NULL at the end. */
 extern const embedded_file embedded_files[];
-const embedded_file *embedded_find(const char *folder, const char *name);
 
 #endif

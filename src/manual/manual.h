@@ -21,8 +21,7 @@ const char *list_kind(const void *ctx, int i);
 /* One of them; 0 if there is no such kind. */
 int list_print(const char *kind, FILE *out);
 
-/* Names of the examples and their titles. */
-void examples_print(FILE *out);
+/* Name of example i, from 0; NULL at the end. */
 const char *example_name(const void *ctx, int i);
 /* Copy decks and geometries of an example into the current folder and tell
  * their names. ERR_DECK: no such example; ERR_FILE: one of the files is there

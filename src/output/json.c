@@ -2,13 +2,94 @@
  * JOB.json: the outcome and the figures of the run for programs.
  */
 #include "base/memory.h"
-#include "effects/rows.h"
+#include "base/text.h"
 #include "base/timer.h"
-#include "output/json_text.h"
+#include "effects/rows.h"
 #include "output/writers.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
+
+/* RFC 8259, UTF-8, one value after the other. A comma is due: a flag a depth.
+ */
+typedef struct json {
+  FILE *f;
+  int depth;
+  int filled[8];
+} json;
+
+static void json_text(FILE *f, const char *text) {
+  char piece[PIECE_SIZE];
+  fputc('"', f);
+  for (;;) {
+    for (; *text == '\n'; ++text) fputs("\\n", f);
+    if (text_piece(&text, piece) == 0) break;
+    for (const char *p = piece; *p != '\0'; ++p) {
+      if (strchr("\t\"\\", *p) != NULL) fputc('\\', f);
+      fputc(*p == '\t' ? 't' : *p, f);
+    }
+  }
+  fputc('"', f);
+}
+
+static void json_line(const json *w) {
+  fputc('\n', w->f);
+  for (int k = 0; k < w->depth; ++k) fputs("  ", w->f);
+}
+
+static void json_next(json *w, const char *name) {
+  if (w->filled[w->depth]++ > 0) fputc(',', w->f);
+  json_line(w);
+  if (name == NULL) return;
+  fputc('"', w->f);
+  fputs(name, w->f);
+  fputs("\": ", w->f);
+}
+
+/* '{' or '[', closed by '}' or ']'; name NULL: an item of an array. */
+static void json_open(json *w, const char *name, char bracket) {
+  if (w->depth > 0) json_next(w, name);
+  fputc(bracket, w->f);
+  w->filled[++w->depth] = 0;
+}
+
+static void json_close(json *w, char bracket) {
+  --w->depth;
+  json_line(w);
+  fputc(bracket, w->f);
+}
+
+static void json_string(json *w, const char *name, const char *text) {
+  json_next(w, name);
+  json_text(w->f, text != NULL ? text : "");
+}
+
+/* null if not finite. */
+static void json_real(json *w, const char *name, double value) {
+  json_next(w, name);
+  if (isfinite(value))
+    fprintf(w->f, "%.17g", value == 0 ? 0.0 : value);
+  else
+    fputs("null", w->f);
+}
+
+static void json_count(json *w, const char *name, double value) {
+  json_next(w, name);
+  fprintf(w->f, "%.0f", value);
+}
+
+static void json_flag(json *w, const char *name, int value) {
+  json_next(w, name);
+  fputs(value ? "true" : "false", w->f);
+}
+
+/* The name in one word: "contact nodes" -> "contact_nodes". */
+static void json_named_count(json *w, const char *name, double value) {
+  char word[80];
+  text_word(word, sizeof word, name);
+  json_count(w, word, value);
+}
 
 static void write_exit(json *w, const run_summary *run) {
   json_open(w, "exit", '{');

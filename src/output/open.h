@@ -1,5 +1,5 @@
 /*
- * The open job, shared by output.c, sink.c and summary.c.
+ * The open job, shared by output.c and saved.c.
  */
 #ifndef PROTIS_OUTPUT_OPEN_H
 #define PROTIS_OUTPUT_OPEN_H
@@ -44,12 +44,6 @@ struct output {
   saved_increments saved;
 };
 
-/* sink.c: what the writers take, borrowed from o. */
-job job_of(const output *o);
-/* JOB.xdmf with the records so far; "all": even if it was written just before.
- */
-status output_show_records(output *o, int all);
-
 /* Lengths of the text files, bytes, -1: there is none; rows of JOB.h5. */
 typedef struct file_ends {
   long lst, sta, cvg, dat;
@@ -58,14 +52,8 @@ typedef struct file_ends {
   hdf5_count h5;
 } file_ends;
 
-/* summary.c: an increment that has ended. */
+/* saved.c: an increment that has ended. */
 status output_remember(output *o, const state *s);
-/* saved.c: append the summaries of all increments since the last call to
- * JOB.rst.inc, which the first call makes, and synchronise it. ERR_FILE. */
-status saved_append(output *o, saved_end *end);
-/* o->run.increments from a file with that beginning; what follows is cut.
- * ERR_FILE: it is damaged. */
-status saved_read(output *o, const saved_end *end);
 /* Data saved by output_keep, and the ends of the files then. */
 status output_read(output *o, archive *a, file_ends *ends);
 

@@ -1,16 +1,260 @@
 /*
- * Opening and closing the files of a job: new ones, or those that a run
- * continues.
+ * The files of a job: their names, of which none may be one that the deck
+ * reads; opened, new or those that a run continues; the sink of history_run,
+ * which writes into them; closed. JOB.sta is written last: an increment in it
+ * is in all files.
  */
 #include "output/open.h"
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "base/timer.h"
+#include "output/writers.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
+
+/* JOB.stop is removed only if it was made during the run. */
+static const char *const results[] = {
+    "lst",           "sta",          "cvg",
+    "dat",           "h5",           "h5.tmp",
+    "xdmf",          "xdmf.tmp",     "json",
+    "json.tmp",      "rst.h5",       "lock",
+    "rst.h5.tmp",    "rst.old.h5",   "body.xdmf",
+    "body.xdmf.tmp", "contact.xdmf", "contact.xdmf.tmp",
+    "rst.inc"};
+
+static const char middle[] = "_condensed_";
+
+static status spare(const deck *d, const char *path) {
+  for (int i = 0; i < d->n_input; ++i) {
+    int same = file_same(d->inputs[i], path);
+    if (same < 0) PASS(text_failed(path, "inspect", errno));
+    if (same)
+      RAISE(
+          ERR_DECK,
+          "%s is the file %s that the deck reads: the results would overwrite "
+          "it; name the deck or the file otherwise, or use -o",
+          path, d->inputs[i]);
+  }
+  return OK;
+}
+
+static int is_condensed(const char *name, const char *of) {
+  size_t n = strlen(of), k = sizeof middle - 1;
+  return strncmp(name, of, n) == 0 && strncmp(name + n, middle, k) == 0;
+}
+
+static status spare_condensed(const model *m, const char *dir) {
+  status st = OK;
+  char *path = NULL;
+  DIR *folder = opendir(dir);
+  if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
+  if (folder == NULL) TRY(text_failed(dir, "read", errno));
+  for (struct dirent *e; (e = readdir(folder)) != NULL;) {
+    if (!is_condensed(e->d_name, m->name.job)) continue;
+    memory_free(path);
+    NEW(path, strlen(dir) + strlen(e->d_name) + 2);
+    sprintf(path, "%s/%s", dir, e->d_name);
+    TRY(spare(m->deck, path));
+  }
+done:
+  if (folder != NULL) closedir(folder);
+  memory_free(path);
+  return st;
+}
+
+status output_spare_inputs(const model *m, const char *dir) {
+  OWNED char *path = NULL;
+  if (m->deck == NULL) return OK;
+  for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
+    memory_free(path);
+    path = text_path(dir, m->name.job, results[k]);
+    if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+    PASS(spare(m->deck, path));
+  }
+  return spare_condensed(m, dir);
+}
+
+enum { XDMF_PAUSE = 1 };               /* s */
+static const double XDMF_SHARE = 0.02; /* of the CPU time at most */
+
+/* What the writers take, borrowed from o. */
+static job job_of(const output *o) {
+  return (job){o->m, o->msh, &o->o, &o->run, o->plan};
+}
+
+/* Wall clock, s; only its differences count. */
+static double clock_now(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* JOB.xdmf with the records so far; "all": even if it was written just before.
+ * The text is written again each time, so not more than once in XDMF_PAUSE
+ * seconds, and not above its share of the run except the last time: the cost
+ * stays small however long it grows. */
+static status show_records(output *o, int all) {
+  hdf5_shape shape;
+  if (o->h5 == NULL) return OK;
+  hdf5_shape_of(o->h5, &shape);
+  if (shape.n_record == o->n_xdmf) return OK;
+  double now = clock_now();
+  if (!all && o->n_xdmf > 0 && now < o->xdmf_at + XDMF_PAUSE) return OK;
+  double cpu = timer_cpu();
+  if (!all && o->xdmf_cpu > XDMF_SHARE * cpu) return OK;
+  PASS(xdmf_write(&shape, o->xdmf));
+  o->xdmf_cpu += timer_cpu() - cpu;
+  o->n_xdmf = shape.n_record;
+  o->xdmf_at = now;
+  return OK;
+}
+
+/* Repeated when a step has other supports. After a restart the facts are those
+ * of before, with the same elimination. */
+static status sink_ready(void *ctx, const setup_facts *facts,
+                         const contact_surface *surface) {
+  output *o = ctx;
+  job j = job_of(o);
+  (void)surface;
+  if (!o->run.facts_known) o->began_at = clock_now();
+  o->run.facts_known = 1;
+  if (o->quiet) {
+    o->run.facts.info.ordering = facts->info.ordering;
+    o->quiet = 0;
+    return OK;
+  }
+  o->run.facts = *facts;
+  timer_enter(STAGE_LISTING);
+  status st = listing_ready(&j, &o->lst);
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+static status sink_start(void *ctx, const start_report *report) {
+  output *o = ctx;
+  job j = job_of(o);
+  return listing_start(&j, report, &o->lst);
+}
+
+static status write_fields(output *o, const state *s) {
+  status st = OK;
+  if (o->h5 == NULL) return OK;
+  timer_enter(STAGE_HDF5);
+  st = hdf5_increment(o->h5, s);
+  if (st == OK) st = show_records(o, 0);
+  timer_leave(STAGE_HDF5);
+  return st;
+}
+
+/* The condensed problem, where required; that of a failed attempt without
+ * solution is replaced when the increment is solved. */
+static status write_condensed(output *o, const state *s) {
+  status st = OK;
+  const step *now = &o->m->steps[s->step_no - 1];
+  char name[512], text[200];
+  char *path = NULL;
+  if (s->contacts.problem == NULL ||
+      !frequency_shows(now->output.condensed, s->increment_no, s->end_of_step))
+    return OK;
+  timer_enter(STAGE_FCLIB);
+  snprintf(name, sizeof name, "%s_condensed_%05d", o->m->name.job,
+           o->run.n_increment + 1);
+  snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
+           o->o.version != NULL ? o->o.version : "", s->step_no,
+           s->increment_no, s->t);
+  path = text_path(o->o.dir, name, "h5");
+  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
+  TRY(fclib_write(s->contacts.problem, s->settled ? s->contacts.uc : NULL,
+                  s->contacts.rc, o->m->name.title, text, path));
+done:
+  memory_free(path);
+  timer_leave(STAGE_FCLIB);
+  return st;
+}
+
+static status write_tables(output *o, const state *s) {
+  status st = OK;
+  job j = job_of(o);
+  timer_enter(STAGE_LISTING);
+  TRY(tabular_increment(o->dat, s));
+  TRY(listing_increment(&j, s, &o->lst));
+  cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
+  TRY(text_check(&o->cvg));
+  TRY(output_remember(o, s));
+  TRY(sta_line(&o->o, s, NULL, &o->sta));
+done:
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+/* Ten times a second at most: a terminal is slow. */
+static void show_progress(output *o, const state *s) {
+  if (!o->progress) return;
+  const double now = clock_now();
+  ++o->n_done;
+  if (o->n_done > 1 && now < o->shown_at + 0.1) return;
+  o->shown_at = now;
+  progress_show(o->m, s, now - o->began_at, o->n_done);
+}
+
+static status sink_increment(void *ctx, const state *s) {
+  output *o = ctx;
+  PASS(write_fields(o, s));
+  PASS(write_condensed(o, s));
+  PASS(write_tables(o, s));
+  o->attempt = 1;
+  show_progress(o, s);
+  return OK;
+}
+
+static status sink_between(void *ctx, const state *s) {
+  status st = OK;
+  output *o = ctx;
+  timer_enter(STAGE_LISTING);
+  TRY(tabular_increment(o->dat, s));
+  TRY(listing_between(s, &o->lst));
+done:
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+static void sink_iteration(void *ctx, const solver_step *s) {
+  output *o = ctx;
+  cvg_line(&o->o, (cvg_place){o->run.n_increment + 1, o->attempt}, s, &o->cvg);
+}
+
+static status sink_rejected(void *ctx, const state *s, const char *why) {
+  status st = OK;
+  output *o = ctx;
+  cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
+  ++o->run.n_rejected;
+  ++o->attempt;
+  timer_enter(STAGE_LISTING);
+  TRY(text_check(&o->cvg));
+  TRY(listing_rejected(s, why, &o->lst));
+  TRY(sta_line(&o->o, s, why, &o->sta));
+  TRY(write_condensed(o, s));
+done:
+  timer_leave(STAGE_LISTING);
+  return st;
+}
+
+history_sink output_sink(output *o) {
+  return (history_sink){.ctx = o,
+                        .ready = sink_ready,
+                        .start = sink_start,
+                        .increment = sink_increment,
+                        .between = sink_between,
+                        .iteration = sink_iteration,
+                        .rejected = sink_rejected};
+}
 
 static void release(output *o) {
   plan_free(o->plan);
@@ -182,7 +426,7 @@ status output_close(output *o, status run, int unsettled) {
   job j = job_of(o);
   if (o->progress) progress_line("");
   first_of(&kept, message, sizeof message, run);
-  first_of(&kept, message, sizeof message, output_show_records(o, 1));
+  first_of(&kept, message, sizeof message, show_records(o, 1));
   first_of(&kept, message, sizeof message, write_last(o));
   first_of(&kept, message, sizeof message, hdf5_close(o->h5, kept == OK));
   first_of(&kept, message, sizeof message, tabular_close(o->dat));

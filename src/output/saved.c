@@ -1,9 +1,10 @@
 /*
- * JOB.rst.inc: the summaries of the increments, which the end of a run needs
- * and a restart must have. Each is written once: a restart file names the bytes
- * that count for it, so that its own size does not grow with the increments.
+ * The summary of the run: data of each increment for the end of the listing and
+ * JOB.json, saved for a restart and read back.
  *
- * A record: increment_summary without pointers, its reasons (text ended by NUL,
+ * JOB.rst.inc: each summary is written once: a restart file names the bytes
+ * that count for it, so that its own size does not grow with the increments. A
+ * record: increment_summary without pointers, its reasons (text ended by NUL,
  * where there is one), its solutions.
  */
 #include "output/open.h"
@@ -11,6 +12,8 @@
 #include "base/memory.h"
 
 #include <errno.h>
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const uint64_t EMPTY = 14695981039346656037u; /* FNV-1a */
@@ -70,7 +73,9 @@ static void append_increment(output *o, const increment_summary *from) {
            (size_t)s.n_solution * sizeof *from->solutions);
 }
 
-status saved_append(output *o, saved_end *end) {
+/* Append the summaries of all increments since the last call to JOB.rst.inc,
+ * which the first call makes, and synchronise it. ERR_FILE. */
+static status saved_append(output *o, saved_end *end) {
   saved_increments *s = &o->saved;
   if (s->file.f == NULL) PASS(open_file(o, NULL));
   while (s->n < o->run.n_increment)
@@ -135,7 +140,9 @@ static status read_file(output *o, size_t n) {
   return OK;
 }
 
-status saved_read(output *o, const saved_end *end) {
+/* o->run.increments from a file with that beginning; what follows is cut.
+ * ERR_FILE: it is damaged. */
+static status saved_read(output *o, const saved_end *end) {
   run_summary *run = &o->run;
   const size_t n = (size_t)end->length;
   const int count = run->n_increment;
@@ -152,4 +159,188 @@ status saved_read(output *o, const saved_end *end) {
   }
   o->saved.n = count;
   return OK;
+}
+
+/* The larger; NaN wins, so that it is seen. */
+static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
+
+const column *job_end_column(const model *m, column_walk *w) {
+  const column *c;
+  do c = column_next(w);
+  while (c != NULL && (c->of != PER_CONTACT || c->form == AS_WORD ||
+                       !(c->tables & PRINT_TOTALS) || !column_visible(c, m)));
+  return c;
+}
+
+size_t job_end_size(const model *m) {
+  size_t n = 0;
+  for (column_walk w = columns_of(PER_CONTACT); job_end_column(m, &w) != NULL;)
+    ++n;
+  return 2 + n * (size_t)m->n.contact;
+}
+
+/* The contacts of the last increment so far of the step. */
+static void remember_contacts(output *o, const state *s) {
+  const view v = {o->m, o->msh, s};
+  double *to = o->run.ends + (size_t)(s->step_no - 1) * job_end_size(o->m);
+  *to++ = s->increment_no;
+  *to++ = s->t;
+  for (int i = 0; i < o->m->n.contact; ++i) {
+    const column *c;
+    for (column_walk w = columns_of(PER_CONTACT);
+         (c = job_end_column(o->m, &w)) != NULL;)
+      *to++ = column_ready(c, s) ? c->value(&v, i, c->part) : NAN;
+    if (s->contacts.totals != NULL)
+      o->run.penetration_worst =
+          worse(o->run.penetration_worst, s->contacts.totals[i].penetration);
+  }
+}
+
+/* The facts of what CHECK= found. */
+static status remember_solutions(const solution_set *set,
+                                 increment_summary *i) {
+  if (set == NULL) return OK;
+  PASS_NEW(i->solutions, set->n_found);
+  i->n_solution = set->n_found;
+  i->checked = 1;
+  for (int k = 0; k < set->n_found; ++k) i->solutions[k] = set->found[k].facts;
+  return OK;
+}
+
+static status remember_theory(const theorems_report *t, increment_summary *i) {
+  theorems_contact *own = NULL;
+  i->theorems = *t;
+  i->theorems.contacts = NULL;
+  i->theorems.n_contact = 0;
+  if (t->n_contact == 0) return OK;
+  PASS_NEW(own, t->n_contact);
+  memcpy(own, t->contacts, (size_t)t->n_contact * sizeof *own);
+  i->theorems.contacts = own;
+  i->theorems.n_contact = t->n_contact;
+  return OK;
+}
+
+status output_remember(output *o, const state *s) {
+  run_summary *run = &o->run;
+  PASS_GROW(run->increments, run->n_increment, run->capacity);
+  increment_summary *i = &run->increments[run->n_increment++];
+  *i = (increment_summary){.step_no = s->step_no,
+                           .increment_no = s->increment_no,
+                           .total_no = s->total_no,
+                           .attempt = s->attempt,
+                           .t = s->t,
+                           .dt = s->dt,
+                           .count.open = s->contacts.n_open,
+                           .count.slip = s->contacts.n_slip,
+                           .count.stick = s->contacts.n_stick,
+                           .iterations = s->report.iterations,
+                           .settled = s->settled,
+                           .after_miss = s->errors.after_miss,
+                           .outcome = s->report.outcome,
+                           .residual = s->report.residual,
+                           .error = s->errors.error,
+                           .rounding = s->errors.rounding,
+                           .mesh_error = s->errors.mesh_error,
+                           .time_error = s->errors.time_error,
+                           .exact = s->errors.exact,
+                           .balance = s->errors.balance,
+                           .jumps = s->errors.jumps,
+                           .jump_t = s->errors.jump_t,
+                           .defect = energy_defect_relative(&s->energy)};
+  if (s->contacts.surface != NULL)
+    run->residual_worst = worse(run->residual_worst, s->report.residual);
+  run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+  if (s->body.flow != NULL) run->tally = *s->body.flow->tally;
+  PASS(remember_solutions(s->errors.solutions, i));
+  PASS(remember_theory(&s->errors.theorems, i));
+  remember_contacts(o, s);
+  if (s->errors.goals != NULL)
+    memcpy(run->goals + (size_t)((s->step_no - 1) * s->errors.n_goal),
+           s->errors.goals, (size_t)s->errors.n_goal * sizeof *run->goals);
+  if (!s->settled) ++run->n_unsettled;
+  return OK;
+}
+
+/* All but the name of the ordering. */
+static status keep_setup(setup_facts *f, archive *a) {
+  condense_info *i = &f->info;
+  PASS(archive_bytes(a, "unknowns", &i->unknowns, sizeof i->unknowns));
+  PASS(archive_bytes(a, "contact_unknowns", &i->contact_unknowns,
+                     sizeof i->contact_unknowns));
+  PASS(archive_bytes(a, "factor_entries", &i->factor_entries,
+                     sizeof i->factor_entries));
+  PASS(archive_ints(a, "bodies", &i->bodies, 1));
+  PASS(archive_reals(a, "flops", &i->flops, 1));
+  PASS(archive_bytes(a, "bytes", &i->bytes, sizeof i->bytes));
+  PASS(archive_reals(a, "condition", &f->condition, 1));
+  PASS(archive_reals(a, "digits", &f->digits, 1));
+  PASS(archive_ints(a, "floating", &f->floating, 1));
+  PASS(archive_ints(a, "n_contact_node", &f->n_contact_node, 1));
+  PASS(archive_ints(a, "n_left_out", &f->n_left_out, 1));
+  return archive_reals(a, "average_entries", &f->average_entries, 1);
+}
+
+/* Common part of writing and reading. */
+static status keep_counts(output *o, archive *a, file_ends *ends) {
+  run_summary *run = &o->run;
+  PASS(archive_bytes(a, "ends", ends, sizeof *ends));
+  PASS(keep_setup(&run->facts, a));
+  PASS(archive_ints(a, "attempt", &o->attempt, 1));
+  PASS(archive_ints(a, "increments", &run->n_increment, 1));
+  PASS(archive_ints(a, "rejected", &run->n_rejected, 1));
+  PASS(archive_ints(a, "unsettled", &run->n_unsettled, 1));
+  PASS(archive_reals(a, "residual_worst", &run->residual_worst, 1));
+  PASS(archive_reals(a, "defect_worst", &run->defect_worst, 1));
+  PASS(archive_reals(a, "penetration_worst", &run->penetration_worst, 1));
+  return archive_bytes(a, "tally", &run->tally, sizeof run->tally);
+}
+
+/* Without seconds, which differ from run to run. */
+static status keep_goals(output *o, archive *a, size_t steps) {
+  const size_t n = steps * (size_t)o->m->n.goal;
+  for (size_t i = 0; i < n; ++i) {
+    goal_result *g = &o->run.goals[i];
+    const double cpu = g->cpu;
+    char name[32];
+    snprintf(name, sizeof name, "goal%zu", i);
+    g->cpu = 0.0;
+    status st = archive_bytes(a, name, g, sizeof *g);
+    g->cpu = cpu;
+    if (st != OK) return st;
+  }
+  return OK;
+}
+
+/* The steps so far, written or read. */
+static status keep_ends(output *o, archive *a) {
+  const int n = o->run.n_increment;
+  const size_t steps = n > 0 ? (size_t)o->run.increments[n - 1].step_no : 0;
+  PASS(archive_reals(a, "contact_ends", o->run.ends,
+                     steps * job_end_size(o->m)));
+  return keep_goals(o, a, steps);
+}
+
+status output_keep(output *o, archive *a) {
+  status st = OK;
+  file_ends ends;
+  memset(&ends, 0, sizeof ends);
+  archive_enter(a, "output");
+  TRY(text_sync(&o->lst, &ends.lst));
+  TRY(text_sync(&o->sta, &ends.sta));
+  TRY(text_sync(&o->cvg, &ends.cvg));
+  TRY(tabular_sync(o->dat, &ends.dat));
+  ends.has_h5 = o->h5 != NULL;
+  TRY(hdf5_sync(o->h5, &ends.h5));
+  TRY(saved_append(o, &ends.increments));
+  TRY(keep_counts(o, a, &ends));
+  TRY(keep_ends(o, a));
+done:
+  archive_leave(a);
+  return st;
+}
+
+status output_read(output *o, archive *a, file_ends *ends) {
+  PASS(keep_counts(o, a, ends));
+  PASS(saved_read(o, &ends->increments));
+  return keep_ends(o, a);
 }

@@ -1,20 +1,22 @@
 /*
- * One pass: the stages in their order.
+ * One pass: the stages in their order; and *EFFECTS, MODE=AUTO: the run without
+ * some effects, with its checks, and the decision.
  */
 #include "program/job.h"
-#include "effects/rows.h"
 
 #include "accuracy/space.h"
 #include "base/memory.h"
+#include "base/system/input.h"
 #include "base/timer.h"
-#include "model/check/check.h"
-#include "fem/fem.h"
-#include "program/inform.h"
-#include "model/keyword/keyword.h"
 #include "effects/plan/plan.h"
+#include "effects/reduction/reduction.h"
+#include "effects/rows.h"
+#include "fem/fem.h"
+#include "model/check/check.h"
+#include "model/keyword/keyword.h"
+#include "program/inform.h"
 #include "program/restart.h"
 #include "run/setup/setup.h"
-#include "base/system/input.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -289,4 +291,70 @@ status job_solve_coarser(const command *c, job_input *in) {
   status_clear();
   in->m->accuracy.coarser = in->contact;
   return OK;
+}
+
+typedef struct watcher {
+  model *m;
+  reduction *n;
+  int refuted; /* 1: the run was ended, a bound does not hold */
+} watcher;
+
+static status see_increment(void *ctx, const state *s) {
+  watcher *w = ctx;
+  PASS(reduction_measure(w->n, s, w->m->reduction.row));
+  w->refuted = reduction_refuted(w->m);
+  if (w->refuted)
+    RAISE(ERR_UNSETTLED, "time %g: what was left out matters", s->t);
+  return OK;
+}
+
+/* 1: the run gave no answer to measure, or one that did not converge. */
+static int has_failed(const watcher *w, status st, int unsettled) {
+  return !w->refuted && (st != OK || unsettled > 0);
+}
+
+static int is_final(status st) {
+  return status_is_request(st) || st == ERR_MEMORY || st == ERR_FILE;
+}
+
+/* A run without the rows that are not back; *again: some are now. */
+static status try_without(watcher *w, const command *c, job_input *in,
+                          int *unsettled, int *again) {
+  status st = OK;
+  const job_watch watch = {.ctx = w, .increment = see_increment};
+  reduction_restore(in->m);
+  reduction_leave_out(in->m);
+  reduction_free(w->n);
+  w->n = NULL;
+  TRY(reduction_new(in->m, in->msh, &w->n));
+  w->refuted = 0;
+  st = job_solve(c, in, &watch, NULL, unsettled);
+  *again = !is_final(st) &&
+           reduction_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
+done:
+  return st;
+}
+
+/* Rows that are left out. */
+static int left_out(const model *m) {
+  int n = 0;
+  for (int i = 0; i < m->reduction.n; ++i) n += !m->reduction.row[i].back;
+  return n;
+}
+
+status job_solve_auto(const command *c, job_input *in, int *unsettled) {
+  status st = OK;
+  watcher w = {.m = in->m};
+  int again = 1;
+  TRY(reduction_choose(in->m, in->msh));
+  while (again && left_out(in->m) > 0)
+    st = try_without(&w, c, in, unsettled, &again);
+  if (again) {
+    reduction_restore(in->m);
+    st = job_solve(c, in, NULL, NULL, unsettled);
+  }
+done:
+  reduction_free(w.n);
+  reduction_restore(in->m);
+  return st;
 }

@@ -65,4 +65,9 @@ status job_solve_coarser(const command *c, job_input *in);
 status job_solve(const command *c, job_input *in, const job_watch *watch,
                  archive *from, int *unsettled);
 
+/* The same with *EFFECTS, MODE=AUTO: a run without effects that seem not to
+ * matter, and the run with them if that is not confirmed
+ * (effects/reduction/reduction.h). */
+status job_solve_auto(const command *c, job_input *in, int *unsettled);
+
 #endif

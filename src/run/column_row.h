@@ -40,6 +40,18 @@ static inline const char *status_word(unsigned k) {
 #define COLUMNS(table) ((int)(sizeof table / sizeof *table))
 /* In a row of the effects, which has them. */
 #define COLUMNS_OF(table) .columns = table, .n_column = COLUMNS(table)
+/* Components of a vector: x, y in the plane; r, z about an axis; x, y, z. */
+#define VECTOR(prefix, unit, of, tables, effects, needs, field, value, help)   \
+  {prefix "x", unit, of, tables, effects, CART, needs, field, 0, value, NULL,  \
+   help},                                                                      \
+  {prefix "r", unit, of, tables, effects, SCENE_AXI, needs, field, 0, value,   \
+   NULL, help},                                                                \
+  {prefix "y", unit, of, tables, effects, CART, needs, field, 1, value, NULL,  \
+   help},                                                                      \
+  {prefix "z", unit, of, tables, effects, SCENE_AXI, needs, field, 1, value,   \
+   NULL, help},                                                                \
+  {prefix "z", unit, of, tables, effects, SCENE_SOLID, needs, field, 2, value, \
+   NULL, help}
 /* A row: name, unit, entity and form, tables, effects, scenes, needs, field,
  * part, value, word, help. */
 /* Place k, from 0, of the columns of the effects in the list of an entity; AT

@@ -12,7 +12,7 @@ status goal_form_new(const run *r, goal_form *f) {
   PASS_NEW(f->rows, r->nodes.n_c);
   PASS_NEW(f->psi, r->nodes.n_c);
   for (int i = 0; i < r->m->n.goal; ++i) {
-    const int q = r->m->accuracy.goals[i].quantity;
+    const goal_quantity q = r->m->accuracy.goals[i].quantity;
     if ((q == GOAL_STRESS || q == GOAL_ENERGY) && f->tau == NULL)
       PASS_NEW(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   }

@@ -1,16 +1,80 @@
 /*
- * The columns one after another, which of them a model and a state have, and
- * their units.
+ * The columns one after another, which of them a model and a state have, their
+ * units; those with one value an increment; tables as text.
  */
 #include "output/columns/columns.h"
-#include "run/column_row.h"
-#include "effects/rows.h"
 
+#include "base/text.h"
+#include "effects/rows.h"
+#include "run/column_row.h"
+
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-extern const column increment_columns[], node_columns[], element_columns[],
-    contact_node_columns[], contact_columns[];
+VALUE(step_no, v->s->step_no)
+VALUE(increment_no, v->s->increment_no)
+VALUE(total_no, v->s->total_no)
+VALUE(attempt, v->s->attempt)
+VALUE(time_now, v->s->t)
+VALUE(time_step, v->s->dt)
+VALUE(settled, v->s->settled)
+VALUE(n_open, v->s->contacts.n_open)
+VALUE(n_slip, v->s->contacts.n_slip)
+VALUE(n_stick, v->s->contacts.n_stick)
+VALUE(iterations, v->s->report.iterations)
+VALUE(residual, v->s->report.residual)
+VALUE(strain_energy, v->s->energy.strain)
+VALUE(external_work, v->s->energy.external)
+VALUE(normal_work, v->s->energy.normal)
+VALUE(energy_defect, v->s->energy.defect)
+
+double energy_defect_relative(const energies *e) {
+  return e->largest > 0 ? e->defect / e->largest : 0;
+}
+VALUE(defect_relative, energy_defect_relative(&v->s->energy))
+
+/* clang-format off */
+#define COUNT(name, tables, effects, value, help)                           \
+  {name, "-", PER_INCREMENT, AS_COUNT, tables, effects, ANY, name, 0, value, \
+   NULL, help}
+#define ENERGY(name, unit, effects, value, help) \
+  {name, unit, INC, PRINT_ENERGY, effects, ANY, name, 0, value, NULL, help}
+static const column increment_columns[] = {
+COUNT("step", PRINT_ENERGY, 0, step_no, "number of the step"),
+COUNT("increment", PRINT_ENERGY, 0, increment_no, "increment within the step"),
+COUNT("total", 0, 0, total_no, "increments since the start"),
+COUNT("attempt", 0, 0, attempt, "1: the increment was not cut"),
+ENERGY("time", "time", 0, time_now, "end of the increment"),
+{"dt", "time", INC, 0, 0, ANY, "dt", 0, time_step, NULL, "time step"},
+COUNT("settled", 0, 0, settled, "1: the increment reached its tolerance"),
+COUNT("open", 0, C, n_open, "open nodes"),
+COUNT("slip", 0, C, n_slip, "slipping nodes"),
+COUNT("stick", 0, C, n_stick, "sticking nodes"),
+COUNT("iterations", 0, C, iterations, "iterations of the contact solver"),
+OF_EFFECTS(1),
+{"residual", "-", INC, 0, C, ANY, "residual", 0, residual, NULL,
+ "residual of the contact problem"},
+OF_EFFECTS(0),
+OF_EFFECTS(2),
+ENERGY("strain_energy", J, 0, strain_energy, "elastic energy stored"),
+ENERGY("external_work", J, 0, external_work,
+       "work of loads and supports so far"),
+OF_EFFECTS(3),
+ENERGY("normal_work", J, C, normal_work,
+       "work of the normal contact forces so far, trapezoidal: "
+       "moving obstacles, and gaps that open or close within an increment"),
+OF_EFFECTS(4),
+OF_EFFECTS(5),
+ENERGY("energy_defect", J, 0, energy_defect,
+       "external + normal - friction - thermal - inelastic work - strain"),
+ENERGY("energy_defect_relative", "-", 0, defect_relative,
+       "the defect over the largest of the energies so far"),
+NO_COLUMN};
+/* clang-format on */
+
+extern const column node_columns[], element_columns[], contact_node_columns[],
+    contact_columns[];
 static const column zone_columns[] = {OF_EFFECTS(0), NO_COLUMN};
 static const column tip_columns[] = {OF_EFFECTS(0), NO_COLUMN};
 static const column goal_columns[] = {OF_EFFECTS(0), NO_COLUMN};
@@ -156,4 +220,71 @@ void column_unit(const char *unit, const model *m, char *text, size_t size) {
     unit += known ? strlen(words[k]) : 1;
     used += (size_t)n;
   }
+}
+
+enum { COLUMNS = sizeof((table *)0)->col / sizeof(column *) };
+
+static int larger(int a, int b) { return a > b ? a : b; }
+
+static void cell_name(const column *c, const model *m, char *text,
+                      size_t size) {
+  char unit[80];
+  column_unit(c->unit, m, unit, sizeof unit);
+  snprintf(text, size, "%s[%s]", c->name, unit);
+}
+
+/* Sign, point, E and three digits of the exponent: digits + 8. */
+static int cell_width(const column *c, const model *m, int digits) {
+  char name[160];
+  cell_name(c, m, name, sizeof name);
+  int width = c->form == AS_REAL ? digits + 8 : 11;
+  return larger(width, (int)strlen(name)) + 1;
+}
+
+void table_choose(table *t, entity of, unsigned print_bit, const view *v,
+                  int digits) {
+  t->n = 0;
+  t->of = of;
+  t->digits = digits;
+  const column *c;
+  for (column_walk w = columns_of(of);
+       (c = column_next(&w)) != NULL && c->of == of;) {
+    if ((c->tables & print_bit) == 0) continue;
+    if (!column_visible(c, v->m) || !column_ready(c, v->s)) continue;
+    if (t->n == COLUMNS) break;
+    t->width[t->n] = cell_width(c, v->m, digits);
+    t->col[t->n++] = c;
+  }
+}
+
+void table_header(const table *t, const model *m, const char *lead, FILE *f) {
+  fputs(lead, f);
+  for (int k = 0; k < t->n; ++k) {
+    char name[160];
+    cell_name(t->col[k], m, name, sizeof name);
+    text_cell(f, name, t->width[k]);
+  }
+  fputc('\n', f);
+}
+
+static void row_cell(const table *t, int k, const view *v, int id, FILE *f) {
+  const column *c = t->col[k];
+  char text[NUMBER_SIZE], word[160];
+  if (c->form == AS_WORD) {
+    text_word(word, sizeof word, c->word(v, id));
+    text_cell(f, word, t->width[k]);
+    return;
+  }
+  double value = c->value(v, id, c->part);
+  if (c->form == AS_COUNT)
+    snprintf(text, sizeof text, "%.0f", value);
+  else
+    text_number(text, value, t->digits);
+  text_cell(f, text, t->width[k]);
+}
+
+void table_row(const table *t, const view *v, int id, FILE *f) {
+  fputc(' ', f);
+  for (int k = 0; k < t->n; ++k) row_cell(t, k, v, id, f);
+  fputc('\n', f);
 }

@@ -1,8 +1,8 @@
 /*
  * The columns of all tables and fields, and tables as text.
  *
- * Adding a column is one row in the table of its entity (increments.c,
- * bodies.c, contact_nodes.c, contacts.c) or of its effect (src/effects): the
+ * Adding a column is one row in the table of its entity (columns.c for the
+ * increments, bodies.c, contacts.c) or of its effect (src/effects): the
  * tables of JOB.dat and of the listing, the fields and histories of JOB.h5 and
  * JOB.xdmf, and the tests loop over them.
  */

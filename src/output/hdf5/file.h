@@ -68,10 +68,6 @@ struct hdf5_file {
   double *times;                 /* [n_record] */
 };
 
-/* From step first_id on, plus "extra" increments of the step before it. */
-void hdf5_forecast(const model *m, int first_id, double extra, int *n_row,
-                   int *n_record);
-
 /* content.c: fixed data and fields, into h. */
 status hdf5_content(hdf5_file *h);
 /* The times stand in "/history/time". */
@@ -79,11 +75,6 @@ int hdf5_is_history(const hdf5_field *f);
 /* Items of a field in one record; 1 for histories. */
 int hdf5_items(const hdf5_file *h, const hdf5_field *f);
 size_t fixed_bytes(const fixed_data *d);
-
-/* The field "/history/time". */
-int hdf5_time_field(const hdf5_file *h);
-/* The file with space for rows and records, and with its former contents. */
-status hdf5_renew(hdf5_file *h, int n_row, int n_record);
 
 /* layout.c: make the temporary file "aside" with space for rows and records; l
  * gets the offsets. */

@@ -1,12 +1,16 @@
 /*
  * The budget of the errors: each with the stages that determine it, its cost,
- * the saving by stopping early.
+ * the saving by stopping early; the goals; the passes towards the targets of
+ * *ACCURACY and *GOAL; which error to improve next, and its price.
  */
+#include "output/listing/listing.h"
+
 #include "base/timer.h"
 #include "effects/rows.h"
-#include "output/listing/parts.h"
+#include "output/columns/columns.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 static const stage mesh_stages[] = {
@@ -160,7 +164,7 @@ static void print_saved(const job *j, FILE *f) {
   fputs(" (to residual 1E-10)\n", f);
 }
 
-void listing_budget(const job *j, FILE *f) {
+static void print_budget(const job *j, FILE *f) {
   char last[NUMBER_SIZE], worst[NUMBER_SIZE];
   budget_row rows[BUDGET_ROWS];
   int n = job_budget(j, rows), cost = !j->o->no_timing;
@@ -183,4 +187,256 @@ void listing_budget(const job *j, FILE *f) {
   if (!isnan(effectivity))
     fprintf(f, "  estimated over true error: %.2f\n", effectivity);
   print_saved(j, f);
+}
+
+/* Elements of half the length have half the error where no edge is singular;
+ * their unknowns are 2^dim times as many, and the CPU seconds grow like a power
+ * of them, 1.2 in the plane and 1.75 in space (target.c), at most: meshing and
+ * output grow less. Increments of half the length have half the error or less.
+ */
+static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
+static const double EXACT = 1e-3; /* -, of the others: far more than needed */
+static const double WORTH = 0.05; /* -, of the CPU */
+
+/* The row of that name: its last error, %, NAN: none or unknown. */
+static double last_of(const budget_row *rows, int n, const char *name) {
+  for (int i = 0; i < n; ++i)
+    if (strcmp(rows[i].name, name) == 0) return rows[i].last;
+  return NAN;
+}
+
+static size_t add(char *text, size_t size, size_t used, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+static size_t add(char *text, size_t size, size_t used, const char *format,
+                  ...) {
+  va_list list;
+  va_start(list, format);
+  int n = used < size ? vsnprintf(text + used, size - used, format, list) : 0;
+  va_end(list);
+  return used + (size_t)(n > 0 ? n : 0);
+}
+
+static int is_balanced(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n.step; ++i) any |= m->steps[i].balanced;
+  return any;
+}
+
+/* What the solver does in vain. */
+static size_t add_solver(const job *j, double others, double solver, char *text,
+                         size_t size, size_t used) {
+  if (!(solver >= 0.0 && solver < EXACT * others) || is_balanced(j->m))
+    return used;
+  if (solver > 0.0)
+    used = add(text, size, used, "; the solver is %.0e times more exact",
+               others / solver);
+  else
+    used = add(text, size, used, "; the solver is exact");
+  if (j->o->no_timing || j->m->n.contact == 0) return used;
+  double share = timer_cost(STAGE_CONTACT).cpu / timer_cpu();
+  if (share < WORTH) return used;
+  return add(text, size, used, ", TOL=BALANCED saves up to %.0f %% of the CPU",
+             ceil(100 * share));
+}
+
+void job_advice(const job *j, char *text, size_t size) {
+  budget_row rows[BUDGET_ROWS];
+  const int n = job_budget(j, rows);
+  const double in_mesh = last_of(rows, n, "mesh");
+  const double in_steps = last_of(rows, n, "steps");
+  size_t used = 0;
+  text[0] = '\0';
+  if (j->run->n_increment == 0 || isnan(in_mesh)) return;
+  if (in_steps > in_mesh)
+    used =
+        add(text, size, used,
+            "the increments: half their length gives %.2g %% or less of %.2g "
+            "%% for 2 times the CPU",
+            0.5 * in_steps, in_steps);
+  else if (in_mesh > 0.0)
+    used = add(text, size, used,
+               "the mesh: half the length of the elements gives about %.2g %% "
+               "for up to %.0f times the CPU",
+               0.5 * in_mesh,
+               j->m->dim < 3 ? pow(4.0, GROWTH_2D) : pow(8.0, GROWTH_3D));
+  else
+    return;
+  used = add_solver(j, fmax(in_mesh, in_steps), last_of(rows, n, "solver"),
+                    text, size, used);
+  if (isnan(in_steps) && job_path_counts(j->m))
+    add(text, size, used, "; of the steps no error is known without TIME=YES");
+}
+
+static void print_advice(const job *j, FILE *f) {
+  char advice[ADVICE_SIZE], *at = advice, *end;
+  job_advice(j, advice, sizeof advice);
+  if (advice[0] == '\0') return;
+  fputs("  improve next: ", f);
+  for (; (end = strstr(at, "; ")) != NULL; at = end + 2)
+    fprintf(f, "%.*s;\n    ", (int)(end - at), at);
+  fprintf(f, "%s\n", at);
+}
+
+const char *job_goal_unit(const model *m, int id, char *text, size_t size) {
+  column_unit(goal_unit(&m->accuracy.goals[id]), m, text, size);
+  return text;
+}
+
+const goal_result *job_goal(const job *j, int id) {
+  const run_summary *run = j->run;
+  if (run->n_increment == 0 || run->goals == NULL) return NULL;
+  const int last = run->increments[run->n_increment - 1].step_no - 1;
+  return &run->goals[last * j->m->n.goal + id];
+}
+
+static void print_goal(const job *j, int id, const goal_result *g, int cost,
+                       FILE *f) {
+  char value[NUMBER_SIZE], error[NUMBER_SIZE], band[NUMBER_SIZE];
+  char corrected[NUMBER_SIZE], solver[NUMBER_SIZE], unit[64];
+  fprintf(f, "  %-16s %14s", j->m->accuracy.goals[id].name,
+          text_number(value, g->value, 6));
+  if (!isnan(g->error))
+    fprintf(f, " %12s %14s %10s %10s %6.2g", text_number(error, g->error, 3),
+            text_number(corrected, g->value + g->error, 6),
+            text_number(band, g->band, 1), text_number(solver, g->solver, 1),
+            100 * g->ends);
+  else
+    fprintf(f, " %12s %14s %10s %10s %6s", "-", "-", "-", "-", "-");
+  if (cost) fprintf(f, " %9.3f", g->cpu);
+  fprintf(f, "  %s; %s\n", job_goal_unit(j->m, id, unit, sizeof unit),
+          goal_verdict_text(g->verdict));
+}
+
+static void print_heading(int cost, FILE *f) {
+  fprintf(f, "  %-16s %14s %12s %14s %10s %10s %6s", "goal", "value", "error",
+          "corrected", "band", "solver", "ends%");
+  if (cost) fprintf(f, " %9s", "cpu[s]");
+  fputs("  unit; verdict\n", f);
+}
+
+void listing_goals_now(const job *j, const state *s, FILE *f) {
+  if (s->errors.goals == NULL) return;
+  print_heading(0, f);
+  for (int i = 0; i < s->errors.n_goal; ++i)
+    print_goal(j, i, &s->errors.goals[i], 0, f);
+}
+
+static void print_goals(const job *j, FILE *f) {
+  const int cost = !j->o->no_timing;
+  if (j->m->n.goal == 0 || job_goal(j, 0) == NULL) return;
+  fputc('\n', f);
+  print_heading(cost, f);
+  for (int i = 0; i < j->m->n.goal; ++i)
+    print_goal(j, i, job_goal(j, i), cost, f);
+}
+
+/* Of a goal, %: of its value, or where its target is not in %. */
+double pass_goal_percent(const pass_goal *g) {
+  return 100.0 * g->off / fabs(g->found.value + g->found.error);
+}
+
+static int is_absolute(const goal_card *g) {
+  return g->target > 0.0 && !g->in_percent;
+}
+
+void passes_goal_heads(const model *m, FILE *f) {
+  for (int i = 0; i < m->n.goal; ++i) {
+    char head[80], unit[64] = "%";
+    if (is_absolute(&m->accuracy.goals[i]))
+      job_goal_unit(m, i, unit, sizeof unit);
+    snprintf(head, sizeof head, "%s[%s]", m->accuracy.goals[i].name, unit);
+    fprintf(f, " %10s", head);
+  }
+}
+
+void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f) {
+  for (int i = 0; i < m->n.goal; ++i) {
+    const pass_goal *g = &goals[pass * m->n.goal + i];
+    char number[NUMBER_SIZE], head[80], unit[64] = "%";
+    const int absolute = is_absolute(&m->accuracy.goals[i]);
+    if (absolute) job_goal_unit(m, i, unit, sizeof unit);
+    const int width =
+        snprintf(head, sizeof head, "%s[%s]", m->accuracy.goals[i].name, unit);
+    fprintf(f, " %*s", width > 10 ? width : 10,
+            text_number(number, absolute ? g->off : pass_goal_percent(g), 2));
+  }
+}
+
+/* Errors in the energy norm, where they have a target. */
+static void print_norm(const pass_row *r, int is_pass, FILE *f) {
+  char number[4][NUMBER_SIZE];
+  if (is_pass)
+    fprintf(f, " %10s %10s %10s", text_number(number[0], r->mesh, 2),
+            text_number(number[1], r->time, 2),
+            text_number(number[2], r->solver, 2));
+  else
+    fprintf(f, " %10s %10s %10s", "", "", "");
+  fprintf(f, " %10s", text_number(number[3], r->total, 2));
+}
+
+static void print_pass(const job *j, int no, FILE *f) {
+  const pass_table *t = &j->run->passes;
+  const pass_row *r = &t->rows[no - 1];
+  fprintf(f, "  %-10d %10.0f", no, r->unknowns);
+  if (t->target > 0.0) print_norm(r, 1, f);
+  if (t->goals != NULL) passes_goals(j->m, t->goals, no - 1, f);
+  if (!j->o->no_timing) fprintf(f, " %9.3g", r->cpu);
+  fprintf(f, "  %s\n", r->change);
+}
+
+static void print_forecast(const job *j, FILE *f) {
+  const pass_table *t = &j->run->passes;
+  fprintf(f, "  %-10s %10.0f", "next digit", t->forecast->unknowns);
+  if (t->target > 0.0) print_norm(t->forecast, 0, f);
+  for (int i = 0; t->goals != NULL && i < j->m->n.goal; ++i)
+    fprintf(f, " %10s", "");
+  if (!j->o->no_timing) fprintf(f, " %9.3g", t->forecast->cpu);
+  fprintf(f, "  forecast\n");
+}
+
+/* "target 1 % of the energy norm, 2 % of PEAK: reached" */
+static void print_targets(const job *j, FILE *f) {
+  const pass_table *t = &j->run->passes;
+  const char *comma = "";
+  fprintf(f, "\n  target ");
+  if (t->target > 0.0) {
+    fprintf(f, "%g %% of the energy norm", t->target);
+    comma = ", ";
+  }
+  for (int i = 0; i < j->m->n.goal; ++i) {
+    const goal_card *g = &j->m->accuracy.goals[i];
+    char unit[64] = "% of";
+    if (!(g->target > 0.0)) continue;
+    if (!g->in_percent) job_goal_unit(j->m, i, unit, sizeof unit);
+    fprintf(f, "%s%g %s %s", comma, g->target, unit, g->name);
+    comma = ", ";
+  }
+  fprintf(f, ": %s\n", t->why[0] == '\0' ? "reached" : "missed");
+}
+
+static void print_passes(const job *j, FILE *f) {
+  const pass_table *t = &j->run->passes;
+  if (t->n == 0) return;
+  print_targets(j, f);
+  fprintf(f, "  %-10s %10s", "pass", "unknowns");
+  if (t->target > 0.0)
+    fprintf(f, " %10s %10s %10s %10s", "mesh[%]", "steps[%]", "solver[%]",
+            "total[%]");
+  if (t->goals != NULL) passes_goal_heads(j->m, f);
+  if (!j->o->no_timing) fprintf(f, " %9s", "cpu[s]");
+  fprintf(f, "  changed next\n");
+  for (int i = 0; i < t->n; ++i) print_pass(j, i + 1, f);
+  if (t->forecast != NULL) print_forecast(j, f);
+  if (t->goals != NULL)
+    fputs(
+        "  of goals: |error| + band + |error of the solver|, the first two "
+        "twice where\n  the estimate is not reliable for the contact ends\n",
+        f);
+}
+
+void listing_accuracy(const job *j, FILE *f) {
+  print_budget(j, f);
+  print_goals(j, f);
+  print_advice(j, f);
+  print_passes(j, f);
 }

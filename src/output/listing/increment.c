@@ -1,10 +1,235 @@
 /*
- * The block of an increment: solver, errors, forces, energies.
+ * The blocks of the initial state and of an increment: solver, solutions of
+ * CHECK=, theorems of THEORY= (constants, limits of mu, bounds of CPR98),
+ * errors, forces, energies.
  */
-#include "output/listing/parts.h"
+#include "output/listing/listing.h"
 
 #include <math.h>
 #include <string.h>
+
+enum { WORST_NODES = 10, DIGITS = 5 /* after the point */ };
+
+/* The node with the largest defect below that of "last"; -1: none. */
+static int next_defect(const start_report *s, int n, int last) {
+  int next = -1;
+  for (int i = 0; i < n; ++i) {
+    int after = last < 0 || s->defect[i] < s->defect[last] ||
+                (s->defect[i] == s->defect[last] && i > last);
+    if (after && (next < 0 || s->defect[i] > s->defect[next])) next = i;
+  }
+  return next >= 0 && s->defect[next] > 0.0 ? next : -1;
+}
+
+status listing_start(const job *j, const start_report *s, text_file *lst) {
+  FILE *f = lst->f;
+  char text[NUMBER_SIZE], unit[64];
+  int node = -1;
+  column_unit("force", j->m, unit, sizeof unit);
+  fputs("\ninitial state: ", f);
+  if (s->source != NULL)
+    fprintf(f, "end of %s, time %s\n", s->source,
+            text_number(text, s->source_time, 9));
+  else
+    fputs("displacements of the deck\n", f);
+  fprintf(f, "  %-24s %14s %s\n", "largest force",
+          text_number(text, s->scale, DIGITS), unit);
+  fprintf(f, "  %-24s %14s %s\n", "largest defect",
+          text_number(text, s->worst, DIGITS), unit);
+  fprintf(f, "  %-24s %14s -\n", "defect, relative",
+          text_number(text, s->ratio, DIGITS));
+  fprintf(f, "  %-24s %14d, above %s\n", "nodes out of equilibrium", s->n_bad,
+          text_number(text, start_tolerance, 0));
+  for (int k = 0; k < WORST_NODES && k < s->n_bad; ++k) {
+    node = next_defect(s, j->msh->n_node, node);
+    if (node < 0) break;
+    fprintf(f, "  node %-19zu %14s %s: %s\n", j->msh->node_no[node],
+            text_number(text, s->defect[node], DIGITS), unit,
+            defect_text(s->kind[node]));
+  }
+  fprintf(f, "  %s\n",
+          s->relaxed     ? "relaxed to the equilibrium of time 0, increment 0"
+          : s->n_bad > 0 ? "REFUSED"
+                         : "compatible");
+  return text_check(lst);
+}
+
+static void print_solution(const solution_set *set, int i, FILE *f) {
+  char text[4][NUMBER_SIZE];
+  const solution_facts *a = &set->found[i].facts;
+  fprintf(f, "    %2d  residual %s  open %d  slip %d  stick %d  ", i + 1,
+          text_number(text[0], a->residual, 1), a->n_open, a->n_slip,
+          a->n_stick);
+  fprintf(f, "u_n %s to %s  u_t %s to %s\n",
+          text_number(text[0], a->lowest[0], 4),
+          text_number(text[1], a->highest[0], 4),
+          text_number(text[2], a->lowest[1], 4),
+          text_number(text[3], a->highest[1], 4));
+  if (i > 0)
+    fprintf(f, "        %s %% of the energy norm away from solution 1\n",
+            text_number(text[0], 100 * a->distance, 2));
+  if (a->joined > 0)
+    fprintf(f,
+            "        all states between solutions %d and %d are solutions: a "
+            "continuum\n",
+            a->joined, i + 1);
+}
+
+/* Nodal values of one solution of an enumeration. */
+static void print_values(const state *s, const solution *a, FILE *f) {
+  static const char *const words[] = {"OPEN", "SLIP", "STICK"};
+  char text[4][NUMBER_SIZE];
+  fprintf(f, "        %8s %-6s %12s %12s %12s %12s\n", "node_no", "status",
+          "u_n", "u_t", "f_n", "f_t");
+  for (int i = 0; i < s->errors.solutions->n; ++i)
+    fprintf(f, "        %8zu %-6s %s %s %s %s\n",
+            s->contacts.surface->node_no[i], words[a->status[i]],
+            text_number(text[0], a->u[2 * i], 4),
+            text_number(text[1], a->u[2 * i + 1], 4),
+            text_number(text[2], -a->r[2 * i], 4),
+            text_number(text[3], a->r[2 * i + 1], 4));
+}
+
+/* Attempts that ended without a solution. */
+static void print_failures(const solution_set *set, FILE *f) {
+  char text[NUMBER_SIZE];
+  for (int k = 0; k < set->n_attempt; ++k) {
+    const solution_attempt *a = &set->attempts[k];
+    if (a->solution_no > 0) continue;
+    fprintf(f, "    %s (%s), start %s: %s, residual %s\n", a->solver, a->family,
+            a->start, outcome_text(a->outcome),
+            text_number(text, a->residual, 1));
+  }
+}
+
+/* The attempts that found solution number i + 1: a line for each solver. */
+static void print_finders(const solution_set *set, int i, FILE *f) {
+  const char *last = "";
+  for (int k = 0; k < set->n_attempt; ++k) {
+    const solution_attempt *a = &set->attempts[k];
+    if (a->solution_no != i + 1) continue;
+    if (strcmp(last, a->solver) != 0)
+      fprintf(f, "%s        by %s (%s) from: ", last[0] == '\0' ? "" : "\n",
+              a->solver, a->family);
+    else
+      fputs(", ", f);
+    fputs(a->start, f);
+    last = a->solver;
+  }
+  if (last[0] != '\0') fputc('\n', f);
+}
+
+static void print_solutions(const state *s, FILE *f) {
+  const solution_set *set = s->errors.solutions;
+  if (set == NULL) return;
+  if (set->n_pattern > 0)
+    fprintf(f, "  check: %ld combinations of statuses, ", set->n_pattern);
+  else
+    fprintf(f, "  check: %d attempts, ", set->n_attempt);
+  fprintf(f, "%d solution%s\n", set->n_found, set->n_found == 1 ? "" : "s");
+  for (int i = 0; i < set->n_found; ++i) {
+    print_solution(set, i, f);
+    if (set->n_pattern > 0)
+      print_values(s, &set->found[i], f);
+    else
+      print_finders(set, i, f);
+  }
+  if (set->n_found > 1) fprintf(f, "    the run goes on with solution 1\n");
+  if (set->n_undecided > 0)
+    fprintf(f,
+            "    %d singular combinations have solutions of unknown extent\n",
+            set->n_undecided);
+  print_failures(set, f);
+}
+
+static const char *row_name(const model *m, const theorems_contact *c) {
+  return c->contact_id < 0 ? "(all)" : m->contacts[c->contact_id].name;
+}
+
+/* The eigenvalues, when they have been found again. */
+static void print_constants(const job *j, const theorems_report *t, FILE *f) {
+  char text[2][NUMBER_SIZE], stiff[64], soft[64];
+  column_unit("force/length", j->m, stiff, sizeof stiff);
+  column_unit("length/force", j->m, soft, sizeof soft);
+  for (int i = 0; t->fresh && i < t->n_contact; ++i) {
+    const theorems_contact *c = &t->contacts[i];
+    fprintf(f, "  theory: %s: largest eigenvalues of A_nn %s %s, ",
+            row_name(j->m, c), text_number(text[0], c->normal, 4), stiff);
+    if (c->tangent < HUGE_VAL)
+      fprintf(f, "of inv(A)_tt %s %s\n", text_number(text[1], c->tangent, 4),
+              soft);
+    else
+      fputs("inv(A)_tt is not bounded\n", f);
+  }
+}
+
+static void print_limits(const job *j, const theorems_report *t, FILE *f) {
+  char text[4][NUMBER_SIZE];
+  if (t->n_contact == 0) return;
+  fprintf(f, "  %-20s %12s %12s %12s %12s  %s\n", "theory: contact", "mu[-]",
+          "1/C_h[-]", "contraction", "mu/contr.[-]", "mu is");
+  for (int i = 0; i < t->n_contact; ++i) {
+    const theorems_contact *c = &t->contacts[i];
+    fprintf(
+        f, "  %-20s %12s %12s %12s %12s  %s\n", row_name(j->m, c),
+        text_number(text[0], c->mu, 4), text_number(text[1], c->limit, 4),
+        text_number(text[2], c->rate, 4),
+        c->suggested < HUGE_VAL ? text_number(text[3], c->suggested, 4) : "-",
+        mu_regime_text(c->regime));
+  }
+}
+
+static void print_bound(const job *j, const char *what, const theorems_bound *b,
+                        FILE *f) {
+  char text[2][NUMBER_SIZE], unit[64];
+  if (b->why != NULL) {
+    fprintf(f, "  theory: %s: no bound, %s\n", what, b->why);
+    return;
+  }
+  column_unit("force*length", j->m, unit, sizeof unit);
+  fprintf(f, "  theory: %s: %s <= %s sqrt(%s)  %s\n", what,
+          text_number(text[0], b->left, 4), text_number(text[1], b->right, 4),
+          unit, b->violated ? "VIOLATED" : "ok");
+}
+
+/* Theorem 3.2: laws that flow under given friction. */
+static void print_path(const job *j, const theorems_path *p, FILE *f) {
+  static const char *const word[] = {"ok", "ok, but not below 1", "VIOLATED"};
+  char text[2][NUMBER_SIZE], unit[64], time[64];
+  if (!p->asked) return;
+  column_unit("1/time", j->m, unit, sizeof unit);
+  column_unit("time", j->m, time, sizeof time);
+  fputs("  theory: (3.2) stress: ", f);
+  if (p->why != NULL)
+    fprintf(f, "no rate, %s\n", p->why);
+  else
+    fprintf(f, "contraction %s <= %s  %s\n", text_number(text[0], p->rate, 4),
+            text_number(text[1], p->bound, 4),
+            word[p->violated ? 2 : p->bound >= 1.0]);
+  if (p->bound > 0.0)
+    fprintf(f,
+            "  theory: (3.2) constant of the laws %s %s, below 1 for dt < %s "
+            "%s; over the step after %.0f passes\n",
+            text_number(text[0], p->speed, 4), unit,
+            text_number(text[1], p->longest, 4), time, p->passes);
+}
+
+static void print_theory(const job *j, const state *s, FILE *f) {
+  char text[NUMBER_SIZE];
+  const theorems_report *t = &s->errors.theorems;
+  if (!t->asked) return;
+  if (t->has_start && s->total_no == 1)
+    fprintf(f, "  theory: (3.8) of the initial state: least %s\n",
+            text_number(text, t->start, 1));
+  print_constants(j, t, f);
+  print_limits(j, t, f);
+  print_bound(j, "(3.9) |u|", &t->total, f);
+  print_bound(j, "(3.10) |du|", &t->change, f);
+  fprintf(f, "  theory: S_i^n over %d test fields: least %s  %s\n", t->n_field,
+          text_number(text, t->inequality, 1),
+          t->inequality_violated ? "VIOLATED" : "ok");
+  print_path(j, &t->path, f);
+}
 
 static void print_totals(const job *j, const view *v, FILE *f) {
   table t;
@@ -173,8 +398,8 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
           lst->f);
   print_verdict(j, s, lst->f);
   if (s->contacts.surface != NULL) {
-    listing_solutions(s, lst->f);
-    listing_theory(j, s, lst->f);
+    print_solutions(s, lst->f);
+    print_theory(j, s, lst->f);
     print_totals(j, &v, lst->f);
   }
   print_share("mesh", &s->errors.mesh_error, lst->f);

@@ -4,13 +4,44 @@
  * columns (CPU seconds and bytes, which depend on the length of names) are left
  * out on request, and then two runs give the same bytes.
  */
+#include "output/listing/listing.h"
+
 #include "base/timer.h"
 #include "effects/rows.h"
 #include "model/keyword/keyword.h"
-#include "output/listing/parts.h"
 
 #include <math.h>
 #include <string.h>
+
+int job_sizes(const job *j, size_row rows[SIZE_ROWS]) {
+  const condense_info *info = &j->run->facts.info;
+  int n = 0;
+  rows[n++] = (size_row){"dimension", j->m->dim};
+  if (!j->m->problem.given) {
+    rows[n++] = (size_row){"nodes", j->msh->n_node};
+    rows[n++] = (size_row){"elements", j->msh->n_elem};
+    rows[n++] = (size_row){"groups", j->msh->n_group};
+    rows[n++] = (size_row){"materials", j->m->n.material};
+    rows[n++] = (size_row){"sections", j->m->n.section};
+    rows[n++] = (size_row){"contacts", j->m->n.contact};
+  }
+  rows[n++] = (size_row){"steps", j->m->n.step};
+  int model_rows = n;
+  if (j->run->facts_known) {
+    if (!j->m->problem.given) rows[n++] = (size_row){"bodies", info->bodies};
+    rows[n++] = (size_row){"unknowns", (double)info->unknowns};
+    rows[n++] = (size_row){"contact nodes", j->run->facts.n_contact_node};
+    if (j->run->facts.n_left_out > 0)
+      rows[n++] = (size_row){"  out of reach", j->run->facts.n_left_out};
+    rows[n++] = (size_row){"contact unknowns", (double)info->contact_unknowns};
+    if (!j->m->problem.given)
+      rows[n++] = (size_row){"factor entries", (double)info->factor_entries};
+    if (j->m->effects & EFFECT_NONLOCAL)
+      rows[n++] = (size_row){"average entries", j->run->facts.average_entries};
+  }
+  rows[n] = (size_row){NULL, 0};
+  return model_rows;
+}
 
 static void heading(FILE *f, const char *text) {
   fprintf(f, "\n%s\n", text);
@@ -196,10 +227,7 @@ status listing_verdict(const job *j, text_file *lst) {
   }
   heading(f, "ACCURACY");
   print_accuracy(j, f);
-  listing_budget(j, f);
-  listing_goals(j, f);
-  listing_advice(j, f);
-  listing_passes(j, f);
+  listing_accuracy(j, f);
   heading(f, "COST");
   print_stages(j, f);
   heading(f, "COST OF THE EFFECTS");

@@ -5,7 +5,6 @@
 #define PROTIS_LISTING_LISTING_H
 
 #include "base/text.h"
-#include "output/columns/columns.h"
 #include "output/listing/job.h"
 
 /* Deck, model, effects. */
@@ -20,5 +19,10 @@ status listing_between(const state *s, text_file *lst);
 status listing_rejected(const state *s, const char *why, text_file *lst);
 /* Warnings, accuracy, cost, exit code. */
 status listing_verdict(const job *j, text_file *lst);
+
+/* budget.c, for the files of this folder: the goals of an increment; at the end
+ * budget of the errors, goals, what to improve, passes. */
+void listing_goals_now(const job *j, const state *s, FILE *f);
+void listing_accuracy(const job *j, FILE *f);
 
 #endif
