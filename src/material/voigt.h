@@ -45,4 +45,11 @@ static inline double voigt_dot(int ns, const double *a, const double *b) {
   return sum[0] + sum[1];
 }
 
+/* e:e of a strain, its shears those of engineers: twice the tensor's */
+static inline double voigt_strain_square(int ns, const double *e) {
+  double sum = 0.0;
+  for (int i = 0; i < ns; ++i) sum += (i < 3 ? 1.0 : 0.5) * e[i] * e[i];
+  return sum;
+}
+
 #endif

@@ -368,6 +368,29 @@ START_TEST(creep_in_free_motion_is_rounding) {
 }
 END_TEST
 
+/* A block that reaches into the one below by the last digit of the coordinates
+ * presses nothing at the start. */
+START_TEST(gaps_of_rounding_make_no_increment) {
+  job j;
+  begin(&j, "rect 2 2 1 1 + rect 3 3 1 1 at 0 0.99999999999999989",
+        &(mesh_change){.shift = _i});
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n1.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=BODY2, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P\nTOP, BOTTOM2\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n*BOUNDARY\n"
+            "BOTTOM, 1, 2\nTOP2, 1\nTOP2, 2, 2, -1.E-3\n*PRINT, ENERGY\n"
+            "*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  dat e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_eq(dat_at(&e, 0, "increment"), 4);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(nothing_is_told_of_plain_bodies) {
   job j;
   int code = run_layers(&j, "10.", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
@@ -432,6 +455,7 @@ int main(void) {
   tcase_add_loop_test(tests, loss_of_a_body_led_far_is_told, 0, 4);
   tcase_add_loop_test(tests, no_digit_is_left_of_a_body_led_too_far, 0, 2);
   tcase_add_test(tests, creep_in_free_motion_is_rounding);
+  tcase_add_loop_test(tests, gaps_of_rounding_make_no_increment, 0, 2);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
   tcase_add_loop_test(tests, loss_of_a_body_carried_far_is_told, 0, 4);

@@ -22,6 +22,27 @@
 #define TWO_TO_MINUS_40 \
   "--no-timing -D STRESS=9.094947017729282379150390625E-13"
 
+/* Creep of a sheared block in increments by the size of its error; it is held
+ * and moved along its own axis, turned by the angle TURN. */
+#define CREEPING                                                               \
+  "*PARAMETER\nTURN = 0\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"            \
+  "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n1.\n*SOLID SECTION, ELSET=BODY, " \
+  "MATERIAL=M\n"                                                               \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                                       \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                               \
+  "*STEP\n*VISCO, INTEGRATOR=HEUN, TOLERANCE=0.01\n1E-3, 1.\n@S"               \
+  "*BOUNDARY\nRIGHT, 1, 2\nTOP, 1, 1, \"0.01*cos(<TURN>)\"\n"                  \
+  "TOP, 2, 2, \"0.01*sin(<TURN>)\"\n" END
+/* The lower block is stiff across the joint, soft along it. */
+#define GRAINED                                                           \
+  "*PARAMETER\nTURN = 0\n*MATERIAL, NAME=M\n*ELASTIC, TYPE=ORTHO\n"       \
+  "\"2000 - 1800*cos(<TURN>)\", \"2000 - 1800*sin(<TURN>)\", 1000., 0., " \
+  "0., 0., 500., 500., 500.\n*MATERIAL, NAME=M2\n*ELASTIC\n1000., 0.3\n"  \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                              \
+  "*SOLID SECTION, ELSET=BODY2, MATERIAL=M2\n"                            \
+  "*CONTACT PAIR, NAME=P\nTOP, BOTTOM2\n" COULOMB("P", "0.21") STATIC     \
+      "*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\nTOP2, P, 10.\nLEFT2, P, 2.\n" END
+
 /* clang-format off */
 #define SAME_BLOCK .mesh = PLANE_BLOCK, .deck = HELD("1.", "2", "15")
 #define SAME_BOX .mesh = "box 3 3 2 1 1 1", .deck = HELD("0.5", "3", "6")
@@ -40,6 +61,14 @@ const scene_row number_scenes[] = {
   {.name = "mirrored, turned and renumbered", .hard = "all at once",
    SAME_BLOCK, .twin = TWIN(.change = {.turn = 1.0, .mirror = 1,
    .shuffle = 99}, .tol = 1e-9)},
+  {.name = "creep turned by 0.7", .hard = "norm of strains", .flags = QUICK,
+   .mesh = PLANE_BLOCK, .deck = CREEPING,
+   .twin = TWIN(.change = {.turn = 0.7}, .words = "--no-timing -D TURN=0.7",
+   .tol = 1e-8)},
+  {.name = "grained pair turned by pi/2", .hard = "moduli by direction",
+   .mesh = "rect 5 5 1 1 + rect 4 4 1 1 at 0 1", .flags = QUICK,
+   .deck = GRAINED, .twin = TWIN(.change = {.turn = 1.5707963267948966},
+   .words = "--no-timing -D TURN=1.5707963267948966", .tol = 1e-8)},
   {.name = "box turned by 0.7", .hard = "tangents in 3-D", SAME_BOX,
    .twin = TWIN(.change = {.turn = 0.7}, .tol = 1e-8)},
   {.name = "box mirrored", .hard = "left-handed frames", SAME_BOX,

@@ -177,7 +177,7 @@ double flow_norm(const flow *x, const double *v) {
   double sum = 0.0;
   for (int k = 0; k < x->n; ++k) {
     const double *own = v + (size_t)x->ns * (size_t)k;
-    sum += x->weight[k] * tensor_dot(x->ns, own, own);
+    sum += x->weight[k] * voigt_strain_square(x->ns, own);
   }
   return flow_root(x, sum);
 }
@@ -194,7 +194,7 @@ status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
       PASS(flow_heat(kind, s->temperature[k]));
       voigt_product(x->ns, kind->elastic.S, s->sigma + at, e);
     }
-    *sum += x->weight[k] * voigt_dot(x->ns, e, e);
+    *sum += x->weight[k] * voigt_strain_square(x->ns, e);
   }
   return OK;
 }

@@ -7,6 +7,7 @@
  */
 #include "base/memory.h"
 #include "material/scheme/work.h"
+#include "material/voigt.h"
 
 #include <math.h>
 #include <strings.h>
@@ -119,17 +120,17 @@ typedef struct step_end {
   const double *y, *f;
 } step_end;
 
-/* Components [n] of one tensor, or one number, from place "at" on. */
+/* Components [n] of one strain, or one number, from place "at" on. */
 static void interpolate(int n, size_t at, double dt, double s,
                         const step_end end[2], double *y) {
   const double *old = end[0].y + at;
-  double change[6], d[2][6], in[2];
+  double change[6] = {0}, d[2][6] = {{0}}, in[2];
   for (int i = 0; i < n; ++i) change[i] = end[1].y[at + (size_t)i] - old[i];
-  double most = sqrt(tensor_dot(n, change, change));
+  double most = sqrt(voigt_strain_square(n, change));
   for (int k = 0; k < 2; ++k) {
     for (int i = 0; i < n; ++i)
       d[k][i] = dt * end[k].f[at + (size_t)i] - change[i];
-    in[k] = bounded(sqrt(tensor_dot(n, d[k], d[k])), most);
+    in[k] = bounded(sqrt(voigt_strain_square(n, d[k])), most);
   }
   for (int i = 0; i < n; ++i)
     y[at + (size_t)i] =
