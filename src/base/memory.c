@@ -4,12 +4,19 @@
 #include "base/memory.h"
 
 #include <SuiteSparse_config.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEADER = 16 };
+enum {
+  HEADER = 16,
+  MAPPED = 1 << 25 /* bytes: glibc maps larger blocks, and no smaller ones that
+                      it has seen freed */
+};
 
 static size_t in_use, peak, allocated;
 static size_t most = SIZE_MAX;
@@ -91,6 +98,14 @@ void memory_count_suitesparse(void) {
   SuiteSparse_config.calloc_func = memory_new;
   SuiteSparse_config.realloc_func = realloc_counted;
   SuiteSparse_config.free_func = memory_free;
+}
+
+void memory_return_before(size_t bytes) {
+#ifdef __GLIBC__
+  if (bytes > MAPPED) malloc_trim(0);
+#else
+  (void)bytes;
+#endif
 }
 
 size_t memory_in_use(void) { return in_use; }

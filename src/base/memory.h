@@ -80,6 +80,10 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
  * its first use; further calls change nothing. */
 void memory_count_suitesparse(void);
 
+/* What has been freed goes back to the system, where a block of so many bytes
+ * follows that cannot use it: malloc maps large ones apart. */
+void memory_return_before(size_t bytes);
+
 size_t memory_in_use(void);    /* bytes now held */
 size_t memory_peak(void);      /* largest number held at a time */
 size_t memory_allocated(void); /* bytes requested since the start */

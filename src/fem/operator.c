@@ -431,9 +431,9 @@ void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
 
 void sparse_operator_interior(sparse_operator *o, const double *load,
                               double *u) {
-  take_load(o, load, o->w);
-  solve_interior(o, &o->part.all, &o->part.all, o->w);
-  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->w[p];
+  take_load(o, load, o->v);
+  solve_interior(o, &o->part.all, &o->part.all, o->v);
+  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->v[p];
 }
 
 /* ---- building --------------------------------------------------------------
@@ -666,13 +666,13 @@ static status factor_both(sparse_operator *o) {
   o->f.pinned = o->pinned;
   body_factor_number(o->k, &o->f, o->number);
   PASS(body_factor_analyse(o->k, o->number, o->cm, &o->f));
+  memory_return_before(o->f.L->xsize * sizeof(double));
   renumber(o);
   PASS(supernodal_new(o->f.L, &o->s));
   PASS(list_blocks(o, o->s->count, list_by_column, &o->columns));
   PASS(list_blocks(o, n_contact(o), list_by_contact, &o->touched));
   PASS(divide(o));
   PASS_NEW(o->v, o->f.n);
-  PASS_NEW(o->w, o->f.n);
   PASS_NEW(o->y, o->f.n);
   PASS(leave_contact_out(o));
   PASS(new_columns(o));
@@ -726,6 +726,6 @@ void sparse_operator_free(sparse_operator *o) {
           o->part.all.list, o->part.contact.list, o->part.response.list,
           o->part.mark, o->part.touches, o->part.node, o->x, o->inner, o->own,
           o->rows.known, o->rows.added, o->inside, o->z);
-  RELEASE(o->number, o->unknown, o->held, o->v, o->w, o->y, o->diagonal,
-          o->room, o->body, o);
+  RELEASE(o->number, o->unknown, o->held, o->v, o->y, o->diagonal, o->room,
+          o->body, o);
 }

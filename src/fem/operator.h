@@ -60,7 +60,7 @@ typedef struct sparse_operator {
   long *number;        /* [dim*n_node] place in the factor, -1 */
   size_t *unknown;     /* [m] dim*node + component of a row */
   unsigned char *held; /* [m] 1: prescribed, no unknown */
-  double *v, *w;       /* [unknowns] by place */
+  double *v;           /* [unknowns] by place */
   double *z;           /* [interior] by place inside */
   double *diagonal;    /* [m] N/m, what seen has */
   double *y;           /* [unknowns] inv(K_ii) of the load last condensed */
