@@ -4,12 +4,12 @@
 #include "scenes/cards.h"
 #include "scenes/scenes.h"
 
-#define BODIES(E1, E2, nu)                              \
-  "*MATERIAL, NAME=M\n*ELASTIC\n" E1 ", " nu            \
-  "\n*MATERIAL, NAME=M2\n*ELASTIC\n" E2 ", " nu         \
-  "\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"          \
+#define BODIES(E1, E2, nu)                      \
+  "*MATERIAL, NAME=M\n*ELASTIC\n" E1 ", " nu    \
+  "\n*MATERIAL, NAME=M2\n*ELASTIC\n" E2 ", " nu \
+  "\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"  \
   "*SOLID SECTION, ELSET=BODY2, MATERIAL=M2\n"
-#define PAIR(name, lower, upper, words)                                \
+#define PAIR(name, lower, upper, words) \
   "*CONTACT PAIR, NAME=" name words "\n" lower ", " upper "\n"
 #define JOINT PAIR("P", "TOP", "BOTTOM2", "")
 #define SIDES "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\nLEFT2, 1\n"
@@ -87,7 +87,8 @@ const scene_row pair_scenes[] = {
      "*TIE, NAME=T\nTOP, BOTTOM2\n"
      PLANE("C", "BOTTOM", "0., 0.", "0., 1.") STATIC
      "*BOUNDARY\nLEFT, 1\nLEFT2, 1\n*DSLOAD\nTOP2, P, 10.\n" END,
-   .expect = "TOTALS force_y = 10 ~ 1e-9; NODES u_y = -0.0091*y ~ 1e-9"},
+   .expect = "TOTALS force_y = 10 ~ 1e-9; NODES u_y = -0.0091*y ~ 1e-9;"
+     "NODES contact_y = if(y > 0, 0, if(x*(1 - x) > 0, 2.5, 1.25)) ~ 1e-9"},
   {.name = "blocks in space", .hard = "clipped triangles",
    .mesh = "box 2 2 2 1 1 1 + box 3 2 2 1 1 1 at 0 0 1",
    .deck = BODIES("1000.", "2000.", "0.") JOINT COULOMB("P", "0.4")

@@ -92,9 +92,11 @@ static void add_moment(const run *r, int i, int a, double *moment) {
 static status find_forces(run *r, void *self) {
   pair_forces *own = self;
   const contact_surface *s = r->surface;
-  if (r->nodes.n == 0 || s->master == NULL) return OK;
   memset(own->force, 0, r->n_dof * sizeof *own->force);
+  memset(own->moment, 0, (size_t)r->m->n.contact * sizeof *own->moment);
+  if (r->nodes.n == 0) return OK;
   surface_spread(s, 1.0, r->now.rc, own->force);
+  if (s->master == NULL) return OK;
   for (int id = 0; id < r->m->n.contact; ++id) {
     double moment[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < r->nodes.n; ++i)
