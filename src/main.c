@@ -23,44 +23,39 @@
 #define PROTIS_COMMIT "unknown"
 #endif
 
+static void free_archive(archive **a) { archive_free(*a); }
+
 static status solve(const command *c, job_input *in, int *unsettled) {
-  status st = OK;
-  job_lock lock = {0};
-  archive *from = NULL;
-  char *stop = text_path(c->dir, in->m->name.job, "stop");
-  if (stop == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(output_spare_inputs(in->m, c->dir));
-  TRY(job_lock_take(c->dir, in->m->name.job, &lock));
+  job_lock lock ENDS_BY(job_lock_release) = {0};
+  archive *from ENDS_BY(free_archive) = NULL;
+  OWNED char *stop = NULL;
+  PASS_GET(stop, text_path(c->dir, in->m->name.job, "stop"));
+  PASS(output_spare_inputs(in->m, c->dir));
+  PASS(job_lock_take(c->dir, in->m->name.job, &lock));
   interrupt_catch(stop);
-  if (c->restart) TRY(restart_read(c, in, &from));
+  if (c->restart) PASS(restart_read(c, in, &from));
   if (in->problem == NULL && in->m->steps[0].nested && from == NULL)
-    TRY(job_solve_coarser(c, in));
+    PASS(job_solve_coarser(c, in));
   if (model_has_target(in->m) && in->problem == NULL)
-    TRY(target_reach(c, in, unsettled));
-  else if (in->m->reduction.is_auto && in->problem == NULL && from == NULL)
-    TRY(job_solve_auto(c, in, unsettled));
-  else
-    TRY(job_solve(c, in, NULL, from, unsettled));
-done:
-  archive_free(from);
-  job_lock_release(&lock);
-  memory_free(stop);
-  return st;
+    return target_reach(c, in, unsettled);
+  if (in->m->reduction.is_auto && in->problem == NULL && from == NULL)
+    return job_solve_auto(c, in, unsettled);
+  return job_solve(c, in, NULL, from, unsettled);
+}
+
+static status do_job(const command *c, message_log *log, job_input *in,
+                     int *unsettled) {
+  PASS(job_read(c, NULL, log, in));
+  if (c->check_only && in->problem != NULL)
+    return inform_check_problem(in->m, in->problem);
+  if (c->check_only) return inform_check(in->m, in->msh);
+  if (c->estimate_cost) return forecast_print(c, in);
+  return solve(c, in, unsettled);
 }
 
 static status run_job(const command *c, message_log *log, int *unsettled) {
-  status st = OK;
   job_input in = {0};
-  TRY(job_read(c, NULL, log, &in));
-  if (c->check_only && in.problem != NULL)
-    TRY(inform_check_problem(in.m, in.problem));
-  else if (c->check_only)
-    TRY(inform_check(in.m, in.msh));
-  else if (c->estimate_cost)
-    TRY(forecast_print(c, &in));
-  else
-    TRY(solve(c, &in, unsettled));
-done:
+  status st = do_job(c, log, &in, unsettled);
   message_print(log, stderr);
   if (in.closing != NULL) fputs(in.closing, stderr);
   job_input_free(&in);

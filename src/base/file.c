@@ -193,4 +193,18 @@ int text_memory_end(FILE *f, char **text) {
   return fclose(f) == 0 && whole && *text != NULL;
 }
 
+status text_made(char **text, const void *what,
+                 status (*write)(FILE *f, const void *what)) {
+  char *held = NULL;
+  size_t size = 0;
+  FILE *f = open_memstream(&held, &size);
+  status st = f == NULL ? ERR_MEMORY : write(f, what);
+  int whole = f != NULL && text_memory_end(f, &held);
+  if (whole && st == OK) *text = memory_text(held);
+  free(held);
+  if (!whole || (st == OK && *text == NULL))
+    RAISE(ERR_MEMORY, "memory exhausted: a text");
+  return st;
+}
+
 /* printf gives two digits of the exponent below 100. */

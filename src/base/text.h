@@ -30,6 +30,9 @@ status text_close(text_file *t); /* checked; accepts one never opened */
  * reader sees all of it or nothing. */
 status text_replace(const char *path, const void *what,
                     void (*write)(FILE *f, const void *what));
+/* What "write" prints as a new text (memory_free); its status. */
+status text_made(char **text, const void *what,
+                 status (*write)(FILE *f, const void *what));
 /* Close a memory stream; 1: it holds all that was printed. */
 int text_memory_end(FILE *f, char **text);
 /* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error

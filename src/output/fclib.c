@@ -39,31 +39,22 @@ typedef struct written {
 
 static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
 
-/* ---- what the layout can hold ---------------------------------------------
- */
-
 static status check_friction(const contact_problem *cp) {
+  const char *why = NULL;
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i)
     if (cp->g0[i] != 0.0)
-      RAISE(ERR_DECK,
-            "*OUTPUT, CONDENSED=FCLIB: the layout holds Coulomb "
-            "friction only, no given sliding limit");
+      why = "holds Coulomb friction only, no given sliding limit";
   for (int i = 0; i < cp->n && cp->B != NULL; ++i)
     for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
       if (cp->B->col[k] != i && cp->B->val[k] != 0.0)
-        RAISE(ERR_DECK,
-              "*OUTPUT, CONDENSED=FCLIB: the layout holds friction of "
-              "each node by itself only, no average");
+        why = "holds friction of each node by itself only, no average";
   for (int k = 0; k < cp->n * (cp->dim - 1) && cp->side_gap != NULL; ++k)
     if (cp->side_gap[k] < HUGE_VAL)
-      RAISE(ERR_DECK,
-            "*OUTPUT, CONDENSED=FCLIB: the layout has no place for "
-            "nodes that touch two obstacles");
+      why = "has no place for nodes that touch two obstacles";
+  if (why != NULL)
+    RAISE(ERR_DECK, "*OUTPUT, CONDENSED=FCLIB: the layout %s", why);
   return OK;
 }
-
-/* ---- the numbers ----------------------------------------------------------
- */
 
 /* gap for the normal, -ut0 for a tangential unknown. */
 static double offset_of(const contact_problem *cp, int dof) {
@@ -75,14 +66,10 @@ static double offset_of(const contact_problem *cp, int dof) {
 /* inv(A) in place of the copy of A, both triangles; 0: A is singular.
  * work[3 m], iwork[m]: workspace. */
 static int invert(int m, double *a, double *work, int *iwork) {
-  double rcond = 0.0, norm = 0.0;
-  size_t n = (size_t)m;
+  double rcond = 0.0;
+  const size_t n = (size_t)m;
   if (m == 0) return 1;
-  for (size_t j = 0; j < n; ++j) {
-    double sum = 0.0;
-    for (size_t i = 0; i < n; ++i) sum += fabs(a[i + n * j]);
-    norm = fmax(norm, sum);
-  }
+  const double norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', m, m, a, m);
   if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', m, a, m) != 0) return 0;
   if (LAPACKE_dpocon_work(LAPACK_COL_MAJOR, 'U', m, a, m, norm, &rcond, work,
                           iwork) != 0 ||
@@ -160,12 +147,13 @@ static status make_solution(written *f, const double *u, const double *r) {
   return OK;
 }
 
-/* ---- datasets -------------------------------------------------------------
- */
-
 static status failed(const written *f, const char *name) {
   return status_fail(ERR_FILE, __func__, __LINE__, "%s: %s cannot be written",
                      f->path, name);
+}
+
+static void end_id(hid_t *id) {
+  if (*id >= 0) H5Idec_ref(*id);
 }
 
 static status put_group(const written *f, const char *name) {
@@ -175,75 +163,55 @@ static status put_group(const written *f, const char *name) {
   return OK;
 }
 
-static status put_data(const written *f, const char *name, hid_t type, size_t n,
-                       const void *data) {
-  hsize_t size = n;
-  hid_t space = H5Screate_simple(1, &size, NULL), set = -1;
-  hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_obj_track_times(plan, 0);
-  if (space >= 0)
-    set =
-        H5Dcreate2(f->file, name, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
-  hid_t as =
-      H5Tget_class(type) == H5T_INTEGER ? H5T_NATIVE_INT : H5T_NATIVE_DOUBLE;
-  int bad = set < 0 || (n > 0 && H5Dwrite(set, as, H5S_ALL, H5S_ALL,
-                                          H5P_DEFAULT, data) < 0);
-  if (set >= 0 && H5Dclose(set) < 0) bad = 1;
-  if (space >= 0) H5Sclose(space);
-  H5Pclose(plan);
-  if (bad) PASS(failed(f, name));
-  return OK;
-}
-
-static status put_reals(const written *f, const char *name, size_t n,
-                        const double *x) {
-  return put_data(f, name, H5T_IEEE_F64LE, n, x);
-}
-
-static status put_int(const written *f, const char *group, const char *name,
-                      int value) {
+/* GROUP/NAME: "data" has the type "as" in memory. */
+static status put_data(const written *f, const char *group, const char *name,
+                       hid_t type, hid_t as, hid_t space, const void *data) {
   char full[80];
+  hid_t plan ENDS_BY(end_id) = H5Pcreate(H5P_DATASET_CREATE);
   snprintf(full, sizeof full, "%s/%s", group, name);
-  return put_data(f, full, H5T_STD_I32LE, 1, &value);
+  H5Pset_obj_track_times(plan, 0);
+  hid_t set =
+      H5Dcreate2(f->file, full, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
+  int bad =
+      set < 0 || (H5Sget_simple_extent_npoints(space) > 0 &&
+                  H5Dwrite(set, as, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0);
+  if (set >= 0 && H5Dclose(set) < 0) bad = 1;
+  return bad ? failed(f, full) : OK;
 }
 
-static status put_text(const written *f, const char *name, const char *text) {
-  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR), set = -1;
+static status put_reals(const written *f, const char *group, const char *name,
+                        size_t n, const double *x) {
+  hid_t space ENDS_BY(end_id) = H5Screate_simple(1, &(hsize_t){n}, NULL);
+  return put_data(f, group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, x);
+}
+
+static status put_ints(const written *f, const char *group, const char *name,
+                       size_t n, const int *x) {
+  hid_t space ENDS_BY(end_id) = H5Screate_simple(1, &(hsize_t){n}, NULL);
+  return put_data(f, group, name, H5T_STD_I32LE, H5T_NATIVE_INT, space, x);
+}
+
+static status put_text(const written *f, const char *group, const char *name,
+                       const char *text) {
+  hid_t type ENDS_BY(end_id) = H5Tcopy(H5T_C_S1);
+  hid_t space ENDS_BY(end_id) = H5Screate(H5S_SCALAR);
   H5Tset_size(type, strlen(text) + 1);
   H5Tset_strpad(type, H5T_STR_NULLTERM);
-  hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
-  H5Pset_obj_track_times(plan, 0);
-  set = H5Dcreate2(f->file, name, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
-  int bad =
-      set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0;
-  if (set >= 0 && H5Dclose(set) < 0) bad = 1;
-  H5Tclose(type);
-  H5Sclose(space);
-  H5Pclose(plan);
-  if (bad) PASS(failed(f, name));
-  return OK;
+  return put_data(f, group, name, type, type, space, text);
 }
 
 static status put_matrix(const written *f, const char *group, int nz, size_t n,
                          const double *x) {
-  char name[80];
-  int m = f->cp->m;
-  size_t n_p = nz == BY_ROW ? (size_t)m + 1 : n;
+  const int m = f->cp->m;
   PASS(put_group(f, group));
-  PASS(put_int(f, group, "nzmax", (int)n));
-  PASS(put_int(f, group, "m", m));
-  PASS(put_int(f, group, "n", m));
-  PASS(put_int(f, group, "nz", nz));
-  snprintf(name, sizeof name, "%s/p", group);
-  PASS(put_data(f, name, H5T_STD_I32LE, n_p, f->start));
-  snprintf(name, sizeof name, "%s/i", group);
-  PASS(put_data(f, name, H5T_STD_I32LE, n, f->col));
-  snprintf(name, sizeof name, "%s/x", group);
-  return put_reals(f, name, n, x);
+  PASS(put_ints(f, group, "nzmax", 1, &(int){(int)n}));
+  PASS(put_ints(f, group, "m", 1, &m));
+  PASS(put_ints(f, group, "n", 1, &m));
+  PASS(put_ints(f, group, "nz", 1, &nz));
+  PASS(put_ints(f, group, "p", nz == BY_ROW ? (size_t)m + 1 : n, f->start));
+  PASS(put_ints(f, group, "i", n, f->col));
+  return put_reals(f, group, "x", n, x);
 }
-
-/* ---- the two kinds --------------------------------------------------------
- */
 
 static status write_local(written *f) {
   size_t m = (size_t)f->cp->m;
@@ -252,11 +220,11 @@ static status write_local(written *f) {
   for (size_t i = 0; i <= m; ++i) f->start[i] = (int)(m * i);
   for (size_t k = 0; k < m * m; ++k) f->col[k] = (int)(k % m);
   PASS(put_group(f, "/fclib_local"));
-  PASS(put_int(f, "/fclib_local", "spacedim", f->cp->dim));
+  PASS(put_ints(f, "/fclib_local", "spacedim", 1, &f->cp->dim));
   PASS(put_matrix(f, "/fclib_local/W", BY_ROW, m * m, f->M));
   PASS(put_group(f, "/fclib_local/vectors"));
-  PASS(put_reals(f, "/fclib_local/vectors/q", m, f->q));
-  return put_reals(f, "/fclib_local/vectors/mu", (size_t)f->cp->n, f->mu);
+  PASS(put_reals(f, "/fclib_local/vectors", "q", m, f->q));
+  return put_reals(f, "/fclib_local/vectors", "mu", (size_t)f->cp->n, f->mu);
 }
 
 /* M and f keep the signs of contact.h: H turns them. */
@@ -268,7 +236,7 @@ static status write_global(written *f) {
   PASS_NEW(f->col, m * m);
   PASS_NEW(h, m);
   PASS(put_group(f, "/fclib_global"));
-  PASS(put_int(f, "/fclib_global", "spacedim", cp->dim));
+  PASS(put_ints(f, "/fclib_global", "spacedim", 1, &cp->dim));
   for (size_t k = 0; k < m * m; ++k) {
     f->start[k] = (int)(k / m);
     f->col[k] = (int)(k % m);
@@ -280,51 +248,49 @@ static status write_global(written *f) {
   }
   PASS(put_matrix(f, "/fclib_global/H", (int)m, m, h));
   PASS(put_group(f, "/fclib_global/vectors"));
-  PASS(put_reals(f, "/fclib_global/vectors/f", m, cp->f));
-  PASS(put_reals(f, "/fclib_global/vectors/w", m, f->q));
-  return put_reals(f, "/fclib_global/vectors/mu", (size_t)cp->n, f->mu);
+  PASS(put_reals(f, "/fclib_global/vectors", "f", m, cp->f));
+  PASS(put_reals(f, "/fclib_global/vectors", "w", m, f->q));
+  return put_reals(f, "/fclib_global/vectors", "mu", (size_t)cp->n, f->mu);
 }
 
 static status write_solution(const written *f, const double *v) {
   size_t m = (size_t)f->cp->m;
   if (f->u == NULL) return OK;
   PASS(put_group(f, "/solution"));
-  PASS(put_reals(f, "/solution/u", m, f->u));
-  PASS(put_reals(f, "/solution/r", m, f->r));
-  if (!f->local) PASS(put_reals(f, "/solution/v", m, v));
+  PASS(put_reals(f, "/solution", "u", m, f->u));
+  PASS(put_reals(f, "/solution", "r", m, f->r));
+  if (!f->local) PASS(put_reals(f, "/solution", "v", m, v));
   return OK;
 }
 
 static status write_info(const written *f, const char *title,
                          const char *description) {
-  char name[64];
   const char *root = f->local ? "/fclib_local/info" : "/fclib_global/info";
   PASS(put_group(f, root));
-  snprintf(name, sizeof name, "%s/title", root);
-  PASS(put_text(f, name, title));
-  snprintf(name, sizeof name, "%s/description", root);
-  PASS(put_text(f, name, description));
-  snprintf(name, sizeof name, "%s/math_info", root);
-  return put_text(f, name,
+  PASS(put_text(f, root, "title", title));
+  PASS(put_text(f, root, "description", description));
+  return put_text(f, root, "math_info",
                   "quasistatic increment: u_N is the gap, u_T the slip of the "
                   "increment, r nodal forces");
 }
 
+static status write_open(written *f, const double *v, const char *title,
+                         const char *description) {
+  PASS(f->local ? write_local(f) : write_global(f));
+  PASS(write_info(f, title, description));
+  PASS(write_solution(f, v));
+  return H5Fflush(f->file, H5F_SCOPE_LOCAL) < 0 ? failed(f, "the file") : OK;
+}
+
 static status write_all(written *f, const double *v, const char *title,
                         const char *description) {
-  status st = OK;
   if (f->local) turn_matrix(f->cp, f->M);
-  TRY(file_clear(f->path));
+  PASS(file_clear(f->path));
   errno = 0;
   f->file = H5Fcreate(f->path, H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT);
-  if (f->file < 0) TRY(text_failed(f->path, "write", errno));
-  TRY(f->local ? write_local(f) : write_global(f));
-  TRY(write_info(f, title, description));
-  TRY(write_solution(f, v));
-  if (H5Fflush(f->file, H5F_SCOPE_LOCAL) < 0) TRY(failed(f, "the file"));
-done:
-  if (f->file >= 0 && H5Fclose(f->file) < 0 && st == OK)
-    st = failed(f, "the file");
+  if (f->file < 0) return text_failed(f->path, "write", errno);
+  status st = write_open(f, v, title, description);
+  if (H5Fclose(f->file) < 0 && st == OK) st = failed(f, "the file");
   return st;
 }
 

@@ -19,15 +19,15 @@
 #include <time.h>
 #include <unistd.h>
 
-/* JOB.stop is removed only if it was made during the run. */
+/* JOB.stop is removed only if it was made during the run. The first N_OLD of
+ * an earlier run must not be taken for results of this one. */
+enum { N_OLD = 8 };
+/* clang-format off */
 static const char *const results[] = {
-    "lst",           "sta",          "cvg",
-    "dat",           "h5",           "h5.tmp",
-    "xdmf",          "xdmf.tmp",     "json",
-    "json.tmp",      "rst.h5",       "lock",
-    "rst.h5.tmp",    "rst.old.h5",   "body.xdmf",
-    "body.xdmf.tmp", "contact.xdmf", "contact.xdmf.tmp",
-    "rst.inc"};
+    "h5", "xdmf", "json", "body.xdmf", "rst.h5", "rst.old.h5", "contact.xdmf",
+    "rst.inc", "lst", "sta", "cvg", "dat", "lock", "h5.tmp", "xdmf.tmp",
+    "json.tmp", "rst.h5.tmp", "body.xdmf.tmp", "contact.xdmf.tmp"};
+/* clang-format on */
 
 static const char middle[] = "_condensed_";
 
@@ -50,32 +50,29 @@ static int is_condensed(const char *name, const char *of) {
   return strncmp(name, of, n) == 0 && strncmp(name + n, middle, k) == 0;
 }
 
+static void close_folder(DIR **folder) {
+  if (*folder != NULL) closedir(*folder);
+}
+
 static status spare_condensed(const model *m, const char *dir) {
-  status st = OK;
-  char *path = NULL;
-  DIR *folder = opendir(dir);
+  DIR *folder ENDS_BY(close_folder) = opendir(dir);
   if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
-  if (folder == NULL) TRY(text_failed(dir, "read", errno));
+  if (folder == NULL) return text_failed(dir, "read", errno);
   for (struct dirent *e; (e = readdir(folder)) != NULL;) {
+    OWNED char *path = NULL;
     if (!is_condensed(e->d_name, m->name.job)) continue;
-    memory_free(path);
-    NEW(path, strlen(dir) + strlen(e->d_name) + 2);
+    PASS_NEW(path, strlen(dir) + strlen(e->d_name) + 2);
     sprintf(path, "%s/%s", dir, e->d_name);
-    TRY(spare(m->deck, path));
+    PASS(spare(m->deck, path));
   }
-done:
-  if (folder != NULL) closedir(folder);
-  memory_free(path);
-  return st;
+  return OK;
 }
 
 status output_spare_inputs(const model *m, const char *dir) {
-  OWNED char *path = NULL;
   if (m->deck == NULL) return OK;
   for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
-    memory_free(path);
-    path = text_path(dir, m->name.job, results[k]);
-    if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+    OWNED char *path = NULL;
+    PASS_GET(path, text_path(dir, m->name.job, results[k]));
     PASS(spare(m->deck, path));
   }
   return spare_condensed(m, dir);
@@ -122,7 +119,8 @@ static status sink_ready(void *ctx, const setup_facts *facts,
                          const contact_surface *surface) {
   output *o = ctx;
   job j = job_of(o);
-  (void)surface;
+  if (o->o.first.ready != NULL)
+    PASS(o->o.first.ready(o->o.first.ctx, facts, surface));
   if (!o->run.facts_known) o->began_at = clock_now();
   o->run.facts_known = 1;
   if (o->quiet) {
@@ -131,10 +129,19 @@ static status sink_ready(void *ctx, const setup_facts *facts,
     return OK;
   }
   o->run.facts = *facts;
-  timer_enter(STAGE_LISTING);
-  status st = listing_ready(&j, &o->lst);
-  timer_leave(STAGE_LISTING);
-  return st;
+  TIMED(STAGE_LISTING);
+  return listing_ready(&j, &o->lst);
+}
+
+static status sink_expect(void *ctx, int n_node,
+                          const stiffness_choice *choice) {
+  const output *o = ctx;
+  return o->o.first.expect(o->o.first.ctx, n_node, choice);
+}
+
+static status sink_checkpoint(void *ctx, const run_memory *memory) {
+  const output *o = ctx;
+  return o->o.first.checkpoint(o->o.first.ctx, memory);
 }
 
 static status sink_start(void *ctx, const start_report *report) {
@@ -144,54 +151,41 @@ static status sink_start(void *ctx, const start_report *report) {
 }
 
 static status write_fields(output *o, const state *s) {
-  status st = OK;
   if (o->h5 == NULL) return OK;
-  timer_enter(STAGE_HDF5);
-  st = hdf5_increment(o->h5, s);
-  if (st == OK) st = show_records(o, 0);
-  timer_leave(STAGE_HDF5);
-  return st;
+  TIMED(STAGE_HDF5);
+  PASS(hdf5_increment(o->h5, s));
+  return show_records(o, 0);
 }
 
 /* The condensed problem, where required; that of a failed attempt without
  * solution is replaced when the increment is solved. */
 static status write_condensed(output *o, const state *s) {
-  status st = OK;
   const step *now = &o->m->steps[s->step_no - 1];
   char name[512], text[200];
-  char *path = NULL;
+  OWNED char *path = NULL;
   if (s->contacts.problem == NULL ||
       !frequency_shows(now->output.condensed, s->increment_no, s->end_of_step))
     return OK;
-  timer_enter(STAGE_FCLIB);
+  TIMED(STAGE_FCLIB);
   snprintf(name, sizeof name, "%s_condensed_%05d", o->m->name.job,
            o->run.n_increment + 1);
   snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
            o->o.version != NULL ? o->o.version : "", s->step_no,
            s->increment_no, s->t);
-  path = text_path(o->o.dir, name, "h5");
-  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(fclib_write(s->contacts.problem, s->settled ? s->contacts.uc : NULL,
-                  s->contacts.rc, o->m->name.title, text, path));
-done:
-  memory_free(path);
-  timer_leave(STAGE_FCLIB);
-  return st;
+  PASS_GET(path, text_path(o->o.dir, name, "h5"));
+  return fclib_write(s->contacts.problem, s->settled ? s->contacts.uc : NULL,
+                     s->contacts.rc, o->m->name.title, text, path);
 }
 
 static status write_tables(output *o, const state *s) {
-  status st = OK;
   job j = job_of(o);
-  timer_enter(STAGE_LISTING);
-  TRY(tabular_increment(o->dat, s));
-  TRY(listing_increment(&j, s, &o->lst));
+  TIMED(STAGE_LISTING);
+  PASS(tabular_increment(o->dat, s));
+  PASS(listing_increment(&j, s, &o->lst));
   cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
-  TRY(text_check(&o->cvg));
-  TRY(output_remember(o, s));
-  TRY(sta_line(&o->o, s, NULL, &o->sta));
-done:
-  timer_leave(STAGE_LISTING);
-  return st;
+  PASS(text_check(&o->cvg));
+  PASS(output_remember(o, s));
+  return sta_line(&o->o, s, NULL, &o->sta);
 }
 
 /* Ten times a second at most: a terminal is slow. */
@@ -206,6 +200,8 @@ static void show_progress(output *o, const state *s) {
 
 static status sink_increment(void *ctx, const state *s) {
   output *o = ctx;
+  if (o->o.first.increment != NULL)
+    PASS(o->o.first.increment(o->o.first.ctx, s));
   PASS(write_fields(o, s));
   PASS(write_condensed(o, s));
   PASS(write_tables(o, s));
@@ -215,14 +211,10 @@ static status sink_increment(void *ctx, const state *s) {
 }
 
 static status sink_between(void *ctx, const state *s) {
-  status st = OK;
   output *o = ctx;
-  timer_enter(STAGE_LISTING);
-  TRY(tabular_increment(o->dat, s));
-  TRY(listing_between(s, &o->lst));
-done:
-  timer_leave(STAGE_LISTING);
-  return st;
+  TIMED(STAGE_LISTING);
+  PASS(tabular_increment(o->dat, s));
+  return listing_between(s, &o->lst);
 }
 
 static void sink_iteration(void *ctx, const solver_step *s) {
@@ -231,23 +223,23 @@ static void sink_iteration(void *ctx, const solver_step *s) {
 }
 
 static status sink_rejected(void *ctx, const state *s, const char *why) {
-  status st = OK;
   output *o = ctx;
   cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
   ++o->run.n_rejected;
   ++o->attempt;
-  timer_enter(STAGE_LISTING);
-  TRY(text_check(&o->cvg));
-  TRY(listing_rejected(s, why, &o->lst));
-  TRY(sta_line(&o->o, s, why, &o->sta));
-  TRY(write_condensed(o, s));
-done:
-  timer_leave(STAGE_LISTING);
-  return st;
+  TIMED(STAGE_LISTING);
+  PASS(text_check(&o->cvg));
+  PASS(listing_rejected(s, why, &o->lst));
+  PASS(sta_line(&o->o, s, why, &o->sta));
+  return write_condensed(o, s);
 }
 
 history_sink output_sink(output *o) {
+  const history_sink *first = &o->o.first;
   return (history_sink){.ctx = o,
+                        .expect = first->expect != NULL ? sink_expect : NULL,
+                        .checkpoint =
+                            first->checkpoint != NULL ? sink_checkpoint : NULL,
                         .ready = sink_ready,
                         .start = sink_start,
                         .increment = sink_increment,
@@ -259,57 +251,38 @@ history_sink output_sink(output *o) {
 static void release(output *o) {
   plan_free(o->plan);
   RELEASE(o->json, o->xdmf);
-  for (int i = 0; i < o->run.n_increment; ++i) {
+  for (int i = 0; i < o->run.n_increment; ++i)
     RELEASE(o->run.increments[i].solutions,
             (void *)o->run.increments[i].theorems.contacts);
-  }
   RELEASE(o->run.ends, o->run.goals, o->run.increments, o->saved.read, o);
 }
 
-/* Files of an earlier run must not be taken for results of this one. */
 static status remove_old(const output *o, const char *suffix) {
-  status st = OK;
-  char *path = text_path(o->o.dir, o->m->name.job, suffix);
-  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  TRY(file_clear(path));
-done:
-  memory_free(path);
-  return st;
+  OWNED char *path = NULL;
+  PASS_GET(path, text_path(o->o.dir, o->m->name.job, suffix));
+  return file_clear(path);
 }
 
 /* length: of the file to continue; -1: a new one. */
 static status open_text(const output *o, const char *suffix, long length,
                         text_file *t) {
-  status st = OK;
-  char *path = text_path(o->o.dir, o->m->name.job, suffix);
-  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
-  if (length < 0)
-    TRY(text_open(t, path, 1));
-  else
-    TRY(text_reopen(t, path, 1, length));
-done:
-  memory_free(path);
-  return st;
+  OWNED char *path = NULL;
+  PASS_GET(path, text_path(o->o.dir, o->m->name.job, suffix));
+  return length < 0 ? text_open(t, path, 1) : text_reopen(t, path, 1, length);
 }
 
 static status open_hdf5(output *o, const hdf5_count *before) {
   if (!model_writes_fields(o->m)) return OK;
-  timer_enter(STAGE_HDF5);
-  status st = hdf5_open(o->m, o->msh, &o->o, before, &o->h5);
-  timer_leave(STAGE_HDF5);
-  return st;
+  TIMED(STAGE_HDF5);
+  return hdf5_open(o->m, o->msh, &o->o, before, &o->h5);
 }
 
 static status open_new(output *o) {
   job j = job_of(o);
-  static const char *const old[] = {"h5",           "xdmf",   "json",
-                                    "body.xdmf",    "rst.h5", "rst.old.h5",
-                                    "contact.xdmf", "rst.inc"};
   PASS(open_text(o, "lst", -1, &o->lst));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
-  for (size_t k = 0; k < sizeof old / sizeof *old; ++k)
-    PASS(remove_old(o, old[k]));
+  for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
   PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
   if (o->dat == NULL) PASS(remove_old(o, "dat"));
   PASS(sta_header(&o->o, &o->sta));
@@ -338,10 +311,8 @@ done:
 }
 
 static status open_all(output *o) {
-  o->json = text_path(o->o.dir, o->m->name.job, "json");
-  o->xdmf = text_path(o->o.dir, o->m->name.job, "xdmf");
-  if (o->json == NULL || o->xdmf == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+  PASS_GET(o->json, text_path(o->o.dir, o->m->name.job, "json"));
+  PASS_GET(o->xdmf, text_path(o->o.dir, o->m->name.job, "xdmf"));
   return o->o.from == NULL ? open_new(o) : open_earlier(o);
 }
 
@@ -396,8 +367,8 @@ static status write_last(const output *o) {
   if (o->h5 == NULL) return OK;
   hdf5_shape_of(o->h5, &shape);
   for (int k = 0; k < 2; ++k) {
-    OWNED char *path = text_path(o->o.dir, o->m->name.job, names[k]);
-    if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+    OWNED char *path = NULL;
+    PASS_GET(path, text_path(o->o.dir, o->m->name.job, names[k]));
     PASS(xdmf_write_last(&shape, k, path));
   }
   return OK;

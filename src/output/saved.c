@@ -25,8 +25,8 @@ static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
 }
 
 static status open_file(output *o, const saved_end *end) {
-  OWNED char *path = text_path(o->o.dir, o->m->name.job, "rst.inc");
-  if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+  OWNED char *path = NULL;
+  PASS_GET(path, text_path(o->o.dir, o->m->name.job, "rst.inc"));
   o->saved.end.checksum = end == NULL ? EMPTY : end->checksum;
   if (end == NULL) return text_open(&o->saved.file, path, 0);
   return text_reopen(&o->saved.file, path, 0, end->length);

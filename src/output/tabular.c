@@ -84,16 +84,13 @@ static status order_by_number(int n, const size_t *no, int **order) {
   return OK;
 }
 
+static int by_id(const void *a, const void *b) {
+  return *(const int *)a - *(const int *)b;
+}
+
 static int in_group(const mesh_group *g, int node_id) {
-  int low = 0, high = g->n_node;
-  while (low < high) {
-    int middle = low + (high - low) / 2;
-    if (g->node_id[middle] < node_id)
-      low = middle + 1;
-    else
-      high = middle;
-  }
-  return low < g->n_node && g->node_id[low] == node_id;
+  return bsearch(&node_id, g->node_id, (size_t)g->n_node, sizeof node_id,
+                 by_id) != NULL;
 }
 
 /* The contact nodes in the order of their node_no. */
@@ -149,11 +146,8 @@ static status write_table(tabular *t, const view *v, const print_request *p) {
 }
 
 static status write_timed(tabular *t, const view *v, const print_request *p) {
-  const stage s = effect_stage(effect_of_table(p->table));
-  timer_enter(s);
-  status st = write_table(t, v, p);
-  timer_leave(s);
-  return st;
+  TIMED(effect_stage(effect_of_table(p->table)));
+  return write_table(t, v, p);
 }
 
 status tabular_increment(tabular *t, const state *s) {
@@ -191,29 +185,27 @@ static status make_orders(tabular *t, unsigned tables) {
   return OK;
 }
 
+static status open_file(tabular *t, const char *dir, long length) {
+  OWNED char *path = NULL;
+  PASS(make_orders(t, tables_asked(t->m)));
+  PASS_GET(path, text_path(dir, t->m->name.job, "dat"));
+  t->n_block = length > 0;
+  return length < 0 ? text_open(&t->dat, path, 0)
+                    : text_reopen(&t->dat, path, 0, length);
+}
+
 status tabular_open(const model *m, const mesh *msh, const char *dir,
                     long length, tabular **out) {
-  status st = OK;
-  tabular *t = NULL;
-  char *path = NULL;
-  unsigned tables = tables_asked(m);
   *out = NULL;
-  if (tables == 0) return OK;
-  path = text_path(dir, m->name.job, "dat");
-  if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the tables");
-  NEW(t, 1);
-  t->m = m;
-  t->msh = msh;
-  TRY(make_orders(t, tables));
-  if (length < 0)
-    TRY(text_open(&t->dat, path, 0));
+  if (tables_asked(m) == 0) return OK;
+  tabular *t = NULL;
+  PASS_NEW(t, 1);
+  *t = (tabular){.m = m, .msh = msh};
+  status st = open_file(t, dir, length);
+  if (st != OK)
+    tabular_close(t);
   else
-    TRY(text_reopen(&t->dat, path, 0, length));
-  t->n_block = length > 0;
-  *out = t;
-done:
-  memory_free(path);
-  if (st != OK) tabular_close(t);
+    *out = t;
   return st;
 }
 

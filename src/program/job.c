@@ -45,20 +45,19 @@ static int find_rounds(const model *m, const char **names) {
 
 /* Numbers of the deck go to a .geo under their own names. */
 static status read_mesh(const job_mesh *other, job_input *in) {
-  status st = OK;
   const model *m = in->m;
   double cpu = timer_cpu();
-  mesh_number *numbers = NULL;
-  const char **rounds = NULL;
+  OWNED mesh_number *numbers = NULL;
+  OWNED const char **rounds = NULL;
   int n = 0;
-  TRY(check_safe_mesh(m));
-  NEW(numbers, m->deck->n_symbol);
+  PASS(check_safe_mesh(m));
+  PASS_NEW(numbers, m->deck->n_symbol);
   for (int i = 0; i < m->deck->n_symbol; ++i)
     if (m->deck->symbols[i].in_geometry)
       numbers[n++] =
           (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
-  NEW(rounds, 2 * m->n.contact);
-  timer_enter(STAGE_MESH);
+  PASS_NEW(rounds, 2 * m->n.contact);
+  TIMED(STAGE_MESH);
   if ((model_has_target(m) || m->steps[0].nested) && job_is_geo(m))
     mesh_gmsh_load();
   in->library_cpu = timer_cpu() - cpu;
@@ -66,53 +65,43 @@ static status read_mesh(const job_mesh *other, job_input *in) {
                         .scale = m->mesh.scale,
                         .n_number = n,
                         .numbers = numbers,
+                        .n_round = find_rounds(m, rounds),
+                        .rounds = rounds,
                         .meets = model_has_pairs(m)};
   if (other != NULL) memcpy(source.sizes, other->sizes, sizeof source.sizes);
-  source.n_round = find_rounds(m, rounds);
-  source.rounds = rounds;
-  st = mesh_read_gmsh(&source, &m->mesh.at, m->log, &in->msh);
-  timer_leave(STAGE_MESH);
-done:
-  RELEASE(numbers, rounds);
-  return st;
+  return mesh_read_gmsh(&source, &m->mesh.at, m->log, &in->msh);
 }
 
 /* A problem from a file instead of a mesh. */
 static status read_problem(model *m, exchange_problem **problem) {
-  status st = OK;
-  timer_enter(STAGE_PROBLEM);
-  st = exchange_read(m->problem.file, m->problem.type, &m->problem.at, m->log,
-                     problem);
-  timer_leave(STAGE_PROBLEM);
-  if (st == OK)
-    model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL,
-                      effects_required);
-  return st;
+  TIMED(STAGE_PROBLEM);
+  PASS(exchange_read(m->problem.file, m->problem.type, &m->problem.at, m->log,
+                     problem));
+  model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL,
+                    effects_required);
+  return OK;
+}
+
+static status read_deck(const command *c, message_log *log, job_input *in) {
+  TIMED(STAGE_DECK);
+  status st = deck_read(c->deck_file, c->n_define, c->defines, log, &in->d);
+  if (st == OK || st == ERR_DECK) st = model_from_deck(in->d, log, &in->m);
+  PASS(st);
+  return message_status(log, ERR_DECK);
 }
 
 status job_read(const command *c, const job_mesh *other, message_log *log,
                 job_input *in) {
-  status st = OK;
-  timer_enter(STAGE_DECK);
-  st = deck_read(c->deck_file, c->n_define, c->defines, log, &in->d);
-  if (st == OK || st == ERR_DECK) st = model_from_deck(in->d, log, &in->m);
-  timer_leave(STAGE_DECK);
-  TRY(st);
-  TRY(message_status(log, ERR_DECK));
-  if (in->m->problem.given) {
-    TRY(read_problem(in->m, &in->problem));
-  } else {
-    if (other != NULL && other->same != NULL)
-      in->msh = other->same;
-    else
-      TRY(read_mesh(other, in));
-    TRY(model_open_cracks(in->m, in->msh));
-    TRY(model_check(in->m, in->msh, effects_required));
-    TRY(plan_leave_out(in->m, in->msh));
-    TRY(setup_adjust(in->m, in->msh));
-  }
-done:
-  return st;
+  PASS(read_deck(c, log, in));
+  if (in->m->problem.given) return read_problem(in->m, &in->problem);
+  if (other != NULL && other->same != NULL)
+    in->msh = other->same;
+  else
+    PASS(read_mesh(other, in));
+  PASS(model_open_cracks(in->m, in->msh));
+  PASS(model_check(in->m, in->msh, effects_required));
+  PASS(plan_leave_out(in->m, in->msh));
+  return setup_adjust(in->m, in->msh);
 }
 
 status job_expect(const job_input *in, int n, const stiffness_choice *choice) {
@@ -144,10 +133,8 @@ void job_input_free(job_input *in) {
   *in = (job_input){0};
 }
 
-/* ---- the outputs and the observer ---------------------------------------- */
-
+/* Called before the outputs are. */
 typedef struct relay {
-  history_sink to;        /* the outputs */
   const job_watch *watch; /* or NULL */
   restart_writer restart;
 } relay;
@@ -160,37 +147,17 @@ static status relay_expect(void *ctx, int n_node,
 
 static status relay_ready(void *ctx, const setup_facts *facts,
                           const contact_surface *surface) {
-  relay *r = ctx;
+  const relay *r = ctx;
+  (void)surface;
   if (r->watch != NULL && r->watch->ready != NULL)
     r->watch->ready(r->watch->ctx, facts);
-  return r->to.ready(r->to.ctx, facts, surface);
-}
-
-static status relay_start(void *ctx, const start_report *s) {
-  relay *r = ctx;
-  return r->to.start(r->to.ctx, s);
+  return OK;
 }
 
 static status relay_increment(void *ctx, const state *s) {
-  relay *r = ctx;
-  if (r->watch != NULL && r->watch->increment != NULL)
-    PASS(r->watch->increment(r->watch->ctx, s));
-  return r->to.increment(r->to.ctx, s);
-}
-
-static status relay_between(void *ctx, const state *s) {
-  relay *r = ctx;
-  return r->to.between(r->to.ctx, s);
-}
-
-static void relay_iteration(void *ctx, const solver_step *s) {
-  relay *r = ctx;
-  r->to.iteration(r->to.ctx, s);
-}
-
-static status relay_rejected(void *ctx, const state *s, const char *why) {
-  relay *r = ctx;
-  return r->to.rejected(r->to.ctx, s, why);
+  const relay *r = ctx;
+  if (r->watch == NULL || r->watch->increment == NULL) return OK;
+  return r->watch->increment(r->watch->ctx, s);
 }
 
 static status relay_checkpoint(void *ctx, const run_memory *memory) {
@@ -201,9 +168,9 @@ static status relay_checkpoint(void *ctx, const run_memory *memory) {
 status job_solve(const command *c, job_input *in, const job_watch *watch,
                  archive *from, int *unsettled) {
   static const mesh no_mesh;
-  status st = OK;
-  output *out = NULL;
-  char *files = NULL;
+  status st;
+  relay r = {watch, {c, in, NULL, NULL}};
+  OWNED char *files = NULL;
   const output_options options = {
       .dir = c->dir,
       .no_timing = c->no_timing,
@@ -213,34 +180,29 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .from = from,
       .n_problem = in->problem != NULL ? in->problem->n : 0,
       .closing = &in->closing,
-      .progress = !c->quiet && isatty(STDERR_FILENO)};
+      .progress = !c->quiet && isatty(STDERR_FILENO),
+      .first = {.ctx = &r,
+                .expect = relay_expect,
+                .ready = relay_ready,
+                .increment = relay_increment,
+                .checkpoint = watch == NULL ? relay_checkpoint : NULL}};
   free(in->closing); /* of the pass before */
   in->closing = NULL;
-  if (watch == NULL && in->problem == NULL) TRY(restart_files(in, &files));
-  TRY(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
-                  &out));
-  relay r = {output_sink(out), watch, {c, in, out, files}};
-  history_sink sink = {.ctx = &r,
-                       .expect = relay_expect,
-                       .ready = relay_ready,
-                       .start = relay_start,
-                       .increment = relay_increment,
-                       .between = relay_between,
-                       .iteration = relay_iteration,
-                       .rejected = relay_rejected,
-                       .checkpoint = watch == NULL ? relay_checkpoint : NULL};
+  if (watch == NULL && in->problem == NULL) PASS(restart_files(in, &files));
+  r.restart.files = files;
+  PASS(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
+                   &r.restart.out));
+  history_sink sink = output_sink(r.restart.out);
   st = in->problem == NULL
            ? history_continue(in->m, in->msh, effect_table, from, &sink,
                               unsettled)
            : condensed_run(in->m, in->problem, &sink, unsettled);
   if (watch != NULL && watch->finished != NULL)
-    st = watch->finished(watch->ctx, st, out);
-  status closed = output_close(out, st, *unsettled);
+    st = watch->finished(watch->ctx, st, r.restart.out);
+  status closed = output_close(r.restart.out, st, *unsettled);
   if (st == OK && closed != ERR_UNSETTLED) st = closed;
-  if (st == OK) TRY(message_status(in->m->log, ERR_INTERNAL));
-done:
-  free(files);
-  return st;
+  PASS(st);
+  return message_status(in->m->log, ERR_INTERNAL);
 }
 
 /* ---- the start from a coarser mesh --------------------------------------- */
@@ -267,17 +229,13 @@ static void simplify(model *m) {
 /* On the mesh with these sizes, into *to. */
 static status solve_first(const command *c, const mesh_sizes *sizes,
                           coarser *to) {
-  status st = OK;
   int unsettled = 0;
-  job_input other = {0};
+  job_input other ENDS_BY(job_input_free) = {0};
   const history_sink sink = {.ctx = to, .increment = keep_first};
-  TRY(message_log_new(&other.log));
-  TRY(job_read(c, &(job_mesh){.sizes = {*sizes}}, other.log, &other));
+  PASS(message_log_new(&other.log));
+  PASS(job_read(c, &(job_mesh){.sizes = {*sizes}}, other.log, &other));
   simplify(other.m);
-  TRY(history_run(other.m, other.msh, effect_table, &sink, &unsettled));
-done:
-  job_input_free(&other);
-  return st;
+  return history_run(other.m, other.msh, effect_table, &sink, &unsettled);
 }
 
 status job_solve_coarser(const command *c, job_input *in) {
@@ -320,18 +278,16 @@ static int is_final(status st) {
 /* A run without the rows that are not back; *again: some are now. */
 static status try_without(watcher *w, const command *c, job_input *in,
                           int *unsettled, int *again) {
-  status st = OK;
   const job_watch watch = {.ctx = w, .increment = see_increment};
   reduction_restore(in->m);
   reduction_leave_out(in->m);
   reduction_free(w->n);
   w->n = NULL;
-  TRY(reduction_new(in->m, in->msh, &w->n));
+  PASS(reduction_new(in->m, in->msh, &w->n));
   w->refuted = 0;
-  st = job_solve(c, in, &watch, NULL, unsettled);
+  const status st = job_solve(c, in, &watch, NULL, unsettled);
   *again = !is_final(st) &&
            reduction_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
-done:
   return st;
 }
 

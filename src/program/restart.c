@@ -54,18 +54,8 @@ static void identify(const command *c, const job_input *in, identity *id) {
   id->mesh = mesh_hash(in->msh);
 }
 
-/* The deck with all its defaults; free it. */
-static status echo_of(const model *m, char **text) {
-  status st = OK;
-  size_t size = 0;
-  FILE *f = open_memstream(text, &size);
-  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-  st = model_echo(m, f);
-  if (!text_memory_end(f, text) && st == OK)
-    FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-done:
-  return st;
-}
+/* The deck with all its defaults. */
+static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
 
 /* ---- warnings reported so far
  * ------------------------------------------------ */
@@ -79,11 +69,9 @@ static int file_no(const deck *d, const char *file) {
 
 /* A line each: number, line, column, number of the file, text; the file in a
  * line before it. */
-static status list_warnings(const job_input *in, char **text) {
-  size_t size = 0;
+static status list_warnings(FILE *f, const void *what) {
+  const job_input *in = what;
   message_view w;
-  FILE *f = open_memstream(text, &size);
-  if (f == NULL) RAISE(ERR_MEMORY, "memory exhausted: warnings so far");
   for (int k = 0; message_get(in->m->log, k, &w); ++k) {
     const char *file = w.at != NULL && w.at->file != NULL ? w.at->file : "";
     if (w.level == WARNING)
@@ -91,8 +79,6 @@ static status list_warnings(const job_input *in, char **text) {
               w.at != NULL ? w.at->line_no : 0,
               w.at != NULL ? w.at->column_no : 0, file_no(in->d, file), w.text);
   }
-  if (!text_memory_end(f, text))
-    RAISE(ERR_MEMORY, "memory exhausted: warnings so far");
   return OK;
 }
 
@@ -107,13 +93,17 @@ static const place *place_in_deck(const deck *d, const place *at) {
   return at;
 }
 
+static status read_text(archive *a, const char *name, char **text) {
+  const size_t n = archive_length(a, name);
+  PASS_NEW(*text, n + 1);
+  return archive_bytes(a, name, *text, n);
+}
+
 /* Messages of the run so far, so that repeated ones are recognised. */
 static status report_warnings(const job_input *in, archive *a) {
-  size_t n = archive_length(a, "warnings");
   OWNED char *text = NULL;
   char *end;
-  PASS_NEW(text, n + 1);
-  PASS(archive_bytes(a, "warnings", text, n));
+  PASS(read_text(a, "warnings", &text));
   for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
     int id, no, used = 0;
     *end = '\0';
@@ -136,53 +126,49 @@ static status report_warnings(const job_input *in, archive *a) {
 
 static status file_names(const command *c, const model *m, char **path,
                          char **before) {
-  *path = text_path(c->dir, m->name.job, "rst.h5");
-  *before = text_path(c->dir, m->name.job, "rst.old.h5");
-  if (*path == NULL || *before == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: name of the restart file");
+  PASS_GET(*path, text_path(c->dir, m->name.job, "rst.h5"));
+  PASS_GET(*before, text_path(c->dir, m->name.job, "rst.old.h5"));
   return OK;
 }
 
+static void free_archive(archive **a) { archive_free(*a); }
+
 status restart_write(void *ctx, const run_memory *memory) {
-  status st = OK;
   const restart_writer *w = ctx;
-  archive *a = NULL;
+  archive *a ENDS_BY(free_archive) = NULL;
   identity id;
-  char *path = NULL, *before = NULL, *text = NULL, *reported = NULL;
-  TRY(file_names(w->c, w->in->m, &path, &before));
-  TRY(echo_of(w->in->m, &text));
-  TRY(list_warnings(w->in, &reported));
+  OWNED char *path = NULL, *before = NULL, *text = NULL, *reported = NULL;
+  PASS(file_names(w->c, w->in->m, &path, &before));
+  PASS(text_made(&text, w->in->m, write_echo));
+  PASS(text_made(&reported, w->in, list_warnings));
   identify(w->c, w->in, &id);
   id.step_no = memory->step_no;
-  TRY(archive_new(&a));
+  PASS(archive_new(&a));
   if (w->c->no_timing) archive_leave_out_cpu(a);
-  TRY(archive_bytes(a, "identity", &id, sizeof id));
-  TRY(archive_bytes(a, "deck", text, strlen(text) + 1));
-  TRY(archive_bytes(a, "warnings", reported, strlen(reported)));
-  TRY(archive_bytes(a, "files", w->files, strlen(w->files)));
-  TRY(output_keep(w->out, a));
-  TRY(memory->keep(memory->run, a));
-  TRY(archive_write(a, path, before));
-done:
-  archive_free(a);
-  free(text);
-  free(reported);
-  RELEASE(path, before);
-  return st;
+  PASS(archive_bytes(a, "identity", &id, sizeof id));
+  PASS(archive_bytes(a, "deck", text, strlen(text) + 1));
+  PASS(archive_bytes(a, "warnings", reported, strlen(reported)));
+  PASS(archive_bytes(a, "files", w->files, strlen(w->files)));
+  PASS(output_keep(w->out, a));
+  PASS(memory->keep(memory->run, a));
+  return archive_write(a, path, before);
 }
 
 /* ---- files the deck names ------------------------------------------------ */
 
 /* Length and checksum (FNV-1a over words) of what stands in a file. */
+static void close_stream(FILE **f) {
+  if (*f != NULL) fclose(*f);
+}
+
 static status add_content(const char *name, const char *path, FILE *out) {
-  status st = OK;
   const char *why = NULL;
   uint64_t part[1024], bytes = 0, h = 14695981039346656037u;
   size_t n;
-  FILE *f = input_stream(path, &why);
+  FILE *f ENDS_BY(close_stream) = input_stream(path, &why);
   if (f == NULL) { /* reported by the card that needs it, with its line */
     fprintf(out, ", FILE=%s, not read\n", name);
-    goto done;
+    return OK;
   }
   do {
     memset(part, 0, sizeof part);
@@ -190,41 +176,37 @@ static status add_content(const char *name, const char *path, FILE *out) {
     for (size_t i = 0; 8 * i < n; ++i) h = (h ^ part[i]) * 1099511628211u;
     bytes += n;
   } while (n == sizeof part);
-  if (ferror(f)) TRY(text_failed(path, "read", errno));
+  if (ferror(f)) return text_failed(path, "read", errno);
   fprintf(out, ", FILE=%s, %" PRIu64 " bytes, checksum %016" PRIx64 "\n", name,
           bytes, h);
-done:
-  if (f != NULL) fclose(f);
-  return st;
+  return OK;
 }
 
 /* Files that a .geo includes, by names as seen from its folder. */
 static status add_geometry(const char *path, FILE *out) {
-  status st = OK;
-  geo_text g;
-  TRY(geo_read(path, &g));
+  geo_text g ENDS_BY(geo_free) = {0};
+  PASS(geo_read(path, &g));
   const char *slash = strrchr(path, '/');
   size_t folder = slash != NULL ? (size_t)(slash - path) + 1 : 0;
   for (int i = 1; i < g.n_file; ++i) {
     size_t pass = strncmp(g.file[i], path, folder) == 0 ? folder : 0;
     fprintf(out, "0 *MESH");
-    TRY(add_content(g.file[i] + pass, g.file[i], out));
+    PASS(add_content(g.file[i] + pass, g.file[i], out));
   }
-done:
-  geo_free(&g);
-  return st;
+  return OK;
 }
 
 /* A line for each card that names one, with its step. */
-static status add_files(const job_input *in, FILE *out) {
+static status add_files(FILE *out, const void *what) {
+  const job_input *in = what;
   int step_no = 0;
   for (int i = 0; i < in->d->n_card; ++i) {
     const card *c = &in->d->cards[i];
     const parameter *file = card_parameter(c, "FILE");
     if (strcmp(c->name, "STEP") == 0) ++step_no;
     if (file == NULL || !file->has_value) continue;
-    const char *path = deck_path(in->d, &file->value);
-    if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
+    const char *path;
+    PASS_GET(path, deck_path(in->d, &file->value));
     fprintf(out, "%d *%s", step_no, c->name);
     PASS(add_content(file->value.text, path, out));
     if (strcmp(c->name, "MESH") == 0 && mesh_is_program(path))
@@ -234,15 +216,7 @@ static status add_files(const job_input *in, FILE *out) {
 }
 
 status restart_files(const job_input *in, char **text) {
-  status st = OK;
-  size_t size = 0;
-  FILE *f = open_memstream(text, &size);
-  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
-  st = add_files(in, f);
-  if (!text_memory_end(f, text) && st == OK)
-    FAIL(ERR_MEMORY, "memory exhausted: files of the deck");
-done:
-  return st;
+  return text_made(text, in, add_files);
 }
 
 /* The decks are the same up to that step: so are the cards of these lines. */
@@ -366,37 +340,23 @@ static status check_identity(const identity *was, const identity *is,
 }
 
 static status check_files(const job_input *in, archive *a, int step_no) {
-  status st = OK;
-  char *was = NULL, *is = NULL;
-  size_t n = archive_length(a, "files");
-  NEW(was, n + 1);
-  TRY(archive_bytes(a, "files", was, n));
-  TRY(restart_files(in, &is));
-  TRY(compare_files(was, is, step_no));
-done:
-  memory_free(was);
-  free(is);
-  return st;
+  OWNED char *was = NULL, *is = NULL;
+  PASS(read_text(a, "files", &was));
+  PASS(restart_files(in, &is));
+  return compare_files(was, is, step_no);
 }
 
 static status check_job(const command *c, const job_input *in, archive *a,
                         const char *path) {
-  status st = OK;
   identity was, is;
-  char *text = NULL, *now = NULL;
-  size_t n = archive_length(a, "deck");
-  TRY(archive_bytes(a, "identity", &was, sizeof was));
-  NEW(text, n + 1);
-  TRY(archive_bytes(a, "deck", text, n));
-  TRY(echo_of(in->m, &now));
+  OWNED char *text = NULL, *now = NULL;
+  PASS(archive_bytes(a, "identity", &was, sizeof was));
+  PASS(read_text(a, "deck", &text));
+  PASS(text_made(&now, in->m, write_echo));
   identify(c, in, &is);
-  TRY(compare_decks(text, now, was.step_no));
-  TRY(check_files(in, a, was.step_no));
-  TRY(check_identity(&was, &is, path));
-done:
-  memory_free(text);
-  free(now);
-  return st;
+  PASS(compare_decks(text, now, was.step_no));
+  PASS(check_files(in, a, was.step_no));
+  return check_identity(&was, &is, path);
 }
 
 /* JOB.rst.h5, or the one before it if that cannot be read. */
@@ -424,33 +384,31 @@ static int is_none(const char *path, const char *before) {
   return 1;
 }
 
-status restart_read(const command *c, const job_input *in, archive **out) {
-  status st = OK;
-  char *path = NULL, *before = NULL;
-  *out = NULL;
+/* ERR_DECK: the whole run is needed. */
+static status check_fits(const job_input *in) {
   if (in->problem != NULL)
-    FAIL(ERR_DECK,
-         "--restart: *CONDENSED PROBLEM is one increment, there is "
-         "nothing to go on with");
+    RAISE(ERR_DECK,
+          "--restart: *CONDENSED PROBLEM is one increment, there is "
+          "nothing to go on with");
   if (model_has_target(in->m))
-    FAIL(ERR_DECK,
-         "--restart: TARGET= makes passes of the whole "
-         "run; such a job starts at its beginning");
+    RAISE(ERR_DECK,
+          "--restart: TARGET= makes passes of the whole "
+          "run; such a job starts at its beginning");
   for (int i = 0; i < in->m->n.step; ++i)
     if (in->m->steps[i].accuracy.theorems)
-      FAIL(ERR_DECK,
-           "--restart: the theorems of *ACCURACY are checked over a "
-           "whole run; such a job starts at its beginning");
-  TRY(file_names(c, in->m, &path, &before));
-  if (is_none(path, before)) goto done;
-  TRY(read_either(path, before, out));
-  TRY(check_job(c, in, *out, path));
-  TRY(report_warnings(in, *out));
-done:
-  if (st != OK) {
-    archive_free(*out);
-    *out = NULL;
-  }
-  RELEASE(path, before);
-  return st;
+      RAISE(ERR_DECK,
+            "--restart: the theorems of *ACCURACY are checked over a "
+            "whole run; such a job starts at its beginning");
+  return OK;
+}
+
+status restart_read(const command *c, const job_input *in, archive **out) {
+  OWNED char *path = NULL, *before = NULL;
+  *out = NULL;
+  PASS(check_fits(in));
+  PASS(file_names(c, in->m, &path, &before));
+  if (is_none(path, before)) return OK;
+  PASS(read_either(path, before, out));
+  PASS(check_job(c, in, *out, path));
+  return report_warnings(in, *out);
 }

@@ -28,7 +28,7 @@ typedef struct restart_writer {
   char *files; /* restart_files when the run was started */
 } restart_writer;
 
-/* Contents of the files that the cards of the deck name; free it. ERR_FILE. */
+/* Contents of the files that the cards of the deck name, new. ERR_FILE. */
 status restart_files(const job_input *in, char **text);
 
 /* history_sink.checkpoint; ctx is a restart_writer. */
@@ -38,7 +38,7 @@ status restart_write(void *ctx, const run_memory *memory);
  * The restart file of a job, found to fit its deck and mesh. ERR_DECK: no
  * restart for such a job, or cards have changed that must not; ERR_FILE: no
  * restart file, damaged, of another version or mesh. Other threads or another
- * kernel: a warning on stderr.
+ * kernel: a warning on stderr. *out is to be freed after a failure too.
  */
 status restart_read(const command *c, const job_input *in, archive **out);
 

@@ -8,7 +8,6 @@
 #include "base/text.h"
 #include "model/keyword/keyword.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 int hdf5_is_history(const hdf5_field *f) {
@@ -104,8 +103,8 @@ static status choose_fields(hdf5_file *h) {
 /* Takes own over, also when it fails. */
 static status add_fixed(hdf5_file *h, const char *path, data_type type,
                         int rows, int columns, const void *data, void *own) {
-  status st = OK;
-  GROW(h->fixed, h->n_fixed, h->cap_fixed);
+  OWNED void *held = own;
+  PASS_GROW(h->fixed, h->n_fixed, h->cap_fixed);
   fixed_data *d = &h->fixed[h->n_fixed++];
   *d = (fixed_data){.type = type,
                     .rows = rows,
@@ -113,10 +112,8 @@ static status add_fixed(hdf5_file *h, const char *path, data_type type,
                     .data = own != NULL ? own : data,
                     .own = own};
   snprintf(d->path, sizeof d->path, "%s", path);
-  own = NULL;
-done:
-  memory_free(own);
-  return st;
+  held = NULL;
+  return OK;
 }
 
 /* Points of some nodes (NULL: all), with 3 components. */
@@ -130,7 +127,6 @@ static status add_points(hdf5_file *h, const char *path, int n,
       own[3 * i + k] =
           h->msh->x[dim * (node_id != NULL ? (size_t)node_id[i] : i) + k];
   return add_fixed(h, path, DATA_REAL, n, 3, NULL, own);
-  return OK;
 }
 
 static int path_known(const hdf5_file *h, const char *path) {
@@ -191,7 +187,6 @@ static status add_faces(hdf5_file *h, const int *place_of) {
   h->n_contact_face = (int)(n / dim);
   return add_fixed(h, "/contact/faces", DATA_INT, h->n_contact_face, s->dim,
                    NULL, faces);
-  return OK;
 }
 
 /* place_of[n_node]: place in contact_node; contact_of[n_node]: the first
@@ -218,16 +213,17 @@ static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
  * viewer that draws no faces). */
 static status add_contact_numbers(hdf5_file *h, const int *contact_of) {
   size_t *no = NULL;
-  int *numbers = NULL, n = h->n_contact_node;
+  int *of = NULL, *index = NULL;
+  const int n = h->n_contact_node;
   PASS_NEW(no, n);
   for (int i = 0; i < n; ++i) no[i] = h->msh->node_no[h->contact_node[i]];
   PASS(add_fixed(h, "/contact/node_no", DATA_NUMBER, n, 1, NULL, no));
-  PASS_NEW(numbers, n);
-  for (int i = 0; i < n; ++i) numbers[i] = contact_of[h->contact_node[i]];
-  PASS(add_fixed(h, "/contact/contact_no", DATA_INT, n, 1, NULL, numbers));
-  PASS_NEW(numbers, n);
-  for (int i = 0; i < n; ++i) numbers[i] = i;
-  return add_fixed(h, "/contact/index", DATA_INT, n, 1, NULL, numbers);
+  PASS_NEW(of, n);
+  for (int i = 0; i < n; ++i) of[i] = contact_of[h->contact_node[i]];
+  PASS(add_fixed(h, "/contact/contact_no", DATA_INT, n, 1, NULL, of));
+  PASS_NEW(index, n);
+  for (int i = 0; i < n; ++i) index[i] = i;
+  return add_fixed(h, "/contact/index", DATA_INT, n, 1, NULL, index);
 }
 
 static status add_contact(hdf5_file *h) {
@@ -243,23 +239,13 @@ static status add_contact(hdf5_file *h) {
   return add_faces(h, place_of);
 }
 
+static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
+
 static status add_deck(hdf5_file *h) {
-  status st = OK;
-  char *text = NULL, *own = NULL;
-  size_t size = 0;
+  char *text = NULL;
   if (h->m->deck == NULL) return OK;
-  FILE *f = open_memstream(&text, &size);
-  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-  st = model_echo(h->m, f);
-  if (!text_memory_end(f, &text) && st == OK)
-    FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-  if (st != OK) goto done;
-  NEW(own, size + 1);
-  memcpy(own, text, size);
-  st = add_fixed(h, "/deck", DATA_TEXT, (int)size + 1, 1, NULL, own);
-done:
-  free(text);
-  return st;
+  PASS(text_made(&text, h->m, write_echo));
+  return add_fixed(h, "/deck", DATA_TEXT, (int)strlen(text) + 1, 1, NULL, text);
 }
 
 status hdf5_content(hdf5_file *h) {

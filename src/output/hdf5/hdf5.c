@@ -354,31 +354,25 @@ static status first_file(hdf5_file *h, const hdf5_count *before) {
   return OK;
 }
 
-static int fields_asked(const model *m) {
-  for (int i = 0; i < m->n.step; ++i)
-    if (m->steps[i].output.frequency >= 0) return 1;
-  return 0;
+static status open_new(hdf5_file *h, const hdf5_count *before) {
+  PASS_GET(h->path, text_path(h->o->dir, h->m->name.job, "h5"));
+  PASS_GET(h->aside, text_path("", h->path, "tmp"));
+  return first_file(h, before);
 }
 
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
                  const hdf5_count *before, hdf5_file **out) {
-  status st = OK;
   hdf5_file *h = NULL;
   *out = NULL;
-  if (!fields_asked(m)) return OK;
+  if (!model_writes_fields(m)) return OK;
   H5dont_atexit(); /* the exit handler crashes after a failed write */
-  NEW(h, 1);
-  h->fd = -1;
-  h->m = m;
-  h->msh = msh;
-  h->o = o;
-  h->path = text_path(o->dir, m->name.job, "h5");
-  if (h->path != NULL) h->aside = text_path("", h->path, "tmp");
-  if (h->aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of JOB.h5");
-  TRY(first_file(h, before));
-  *out = h;
-done:
-  if (st != OK && h != NULL) release(h);
+  PASS_NEW(h, 1);
+  *h = (hdf5_file){.m = m, .msh = msh, .o = o, .fd = -1};
+  status st = open_new(h, before);
+  if (st != OK)
+    release(h);
+  else
+    *out = h;
   return st;
 }
 
@@ -404,21 +398,20 @@ void hdf5_shape_of(const hdf5_file *h, hdf5_shape *shape) {
                         .times = h->times};
 }
 
-status hdf5_close(hdf5_file *h, int finished) {
-  status st = OK;
-  int spare;
-  if (h == NULL) return OK;
-  spare = h->n_row < h->now.n_row || h->n_record < h->now.n_record;
+static status end_file(hdf5_file *h, int finished) {
+  int spare = h->n_row < h->now.n_row || h->n_record < h->now.n_record;
   if (finished && spare && h->n_row > 0 &&
       renew(h, h->n_row, h->n_record) != OK)
     status_clear(); /* no space for the copy: the file is unchanged */
-  if (fsync(h->fd) != 0) TRY(text_failed(h->path, "write", errno));
-  if (close(h->fd) != 0) {
-    h->fd = -1;
-    TRY(text_failed(h->path, "close", errno));
-  }
+  if (fsync(h->fd) != 0) return text_failed(h->path, "write", errno);
+  const int fd = h->fd;
   h->fd = -1;
-done:
+  return close(fd) != 0 ? text_failed(h->path, "close", errno) : OK;
+}
+
+status hdf5_close(hdf5_file *h, int finished) {
+  if (h == NULL) return OK;
+  status st = end_file(h, finished);
   release(h);
   return st;
 }

@@ -22,17 +22,17 @@ static status maker_failed(const maker *k, const char *doing) {
 }
 
 /* The formats that records.c writes, not those of later versions. */
+static void end_id(hid_t *id) {
+  if (*id >= 0) H5Idec_ref(*id);
+}
+
 static status create_file(maker *k) {
-  status st = OK;
-  hid_t formats = H5Pcreate(H5P_FILE_ACCESS);
+  hid_t formats ENDS_BY(end_id) = H5Pcreate(H5P_FILE_ACCESS);
   errno = 0;
   if (formats >= 0 && H5Pset_libver_bounds(formats, H5F_LIBVER_EARLIEST,
                                            H5F_LIBVER_LATEST) >= 0)
     k->file = H5Fcreate(k->path, H5F_ACC_EXCL, H5P_DEFAULT, formats);
-  if (k->file < 0) TRY(maker_failed(k, "create"));
-done:
-  if (formats >= 0) H5Pclose(formats);
-  return st;
+  return k->file < 0 ? maker_failed(k, "create") : OK;
 }
 
 static status open_maker(maker *k) {
@@ -63,47 +63,30 @@ static status close_maker(maker *k, int flush) {
 
 /* *type is new (H5Tclose), -1 after a failure. */
 static status text_type(const maker *k, size_t size, hid_t *type) {
-  status st = OK;
-  hid_t made = H5Tcopy(H5T_C_S1);
-  *type = -1;
-  if (made < 0 || H5Tset_size(made, size) < 0 ||
-      H5Tset_strpad(made, H5T_STR_NULLPAD) < 0)
-    TRY(maker_failed(k, "set up"));
-  *type = made;
-done:
-  if (*type < 0 && made >= 0) H5Tclose(made);
-  return st;
+  *type = H5Tcopy(H5T_C_S1);
+  if (*type < 0 || H5Tset_size(*type, size) < 0 ||
+      H5Tset_strpad(*type, H5T_STR_NULLPAD) < 0)
+    return maker_failed(k, "set up");
+  return OK;
 }
 
 /* An attribute of any type; type is closed. */
 static status attribute(const maker *k, hid_t object, const char *name,
                         hid_t type, const void *value) {
-  status st = OK;
-  hid_t space = H5Screate(H5S_SCALAR);
-  hid_t a = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t space ENDS_BY(end_id) = H5Screate(H5S_SCALAR);
+  hid_t a ENDS_BY(end_id) =
+      H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
   if (a < 0 || H5Awrite(a, type, value) < 0)
-    TRY(maker_failed(k, "write an attribute of"));
-done:
-  if (a >= 0) H5Aclose(a);
-  if (space >= 0) H5Sclose(space);
-  return st;
+    return maker_failed(k, "write an attribute of");
+  return OK;
 }
 
 static status attribute_text(const maker *k, hid_t object, const char *name,
                              const char *value) {
-  status st = OK;
-  hid_t type = -1;
+  hid_t type ENDS_BY(end_id) = -1;
   if (value == NULL) value = "";
-  TRY(text_type(k, strlen(value) + 1, &type));
-  TRY(attribute(k, object, name, type, value));
-done:
-  if (type >= 0) H5Tclose(type);
-  return st;
-}
-
-static status attribute_int(const maker *k, hid_t object, const char *name,
-                            int value) {
-  return attribute(k, object, name, H5T_NATIVE_INT, &value);
+  PASS(text_type(k, strlen(value) + 1, &type));
+  return attribute(k, object, name, type, value);
 }
 
 static status column_attributes(const maker *k, hid_t object, const column *c,
@@ -125,44 +108,34 @@ static status make_group(const maker *k, const char *path, hid_t *group) {
 static status make_dataset(const maker *k, const char *path, hid_t type,
                            const hsize_t dims[2], const column *described,
                            const model *m, off_t *offset) {
-  status st = OK;
-  haddr_t address = 0;
   errno = 0;
-  hid_t space = H5Screate_simple(dims[1] > 1 ? 2 : 1, dims, NULL);
-  hid_t set = H5Dcreate2(k->file, path, type, space, k->with_groups, k->plain,
-                         H5P_DEFAULT);
-  if (set < 0) TRY(maker_failed(k, "make a dataset of"));
-  if (described != NULL) TRY(column_attributes(k, set, described, m));
-  address = H5Dget_offset(set);
-  if (address == HADDR_UNDEF) TRY(maker_failed(k, "reserve a dataset of"));
+  hid_t space ENDS_BY(end_id) =
+      H5Screate_simple(dims[1] > 1 ? 2 : 1, dims, NULL);
+  hid_t set ENDS_BY(end_id) = H5Dcreate2(k->file, path, type, space,
+                                         k->with_groups, k->plain, H5P_DEFAULT);
+  if (set < 0) return maker_failed(k, "make a dataset of");
+  if (described != NULL) PASS(column_attributes(k, set, described, m));
+  haddr_t address = H5Dget_offset(set);
+  if (address == HADDR_UNDEF) return maker_failed(k, "reserve a dataset of");
   *offset = (off_t)address;
-done:
-  if (set >= 0) H5Dclose(set);
-  if (space >= 0) H5Sclose(space);
-  return st;
+  return OK;
 }
 
 static status make_fixed(const maker *k, const hdf5_file *h, hdf5_layout *l) {
-  status st = OK;
+  const hid_t types[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT, H5T_NATIVE_ULLONG};
   for (int i = 0; i < h->n_fixed; ++i) {
     const fixed_data *d = &h->fixed[i];
     hsize_t dims[2] = {(hsize_t)d->rows, (hsize_t)d->columns};
-    hid_t type = d->type == DATA_REAL  ? H5T_NATIVE_DOUBLE
-                 : d->type == DATA_INT ? H5T_NATIVE_INT
-                                       : H5T_NATIVE_ULLONG;
-    hid_t text = -1;
+    hid_t text ENDS_BY(end_id) = -1;
     if (d->rows == 0) continue;
     if (d->type == DATA_TEXT) {
-      TRY(text_type(k, (size_t)d->rows, &text));
+      PASS(text_type(k, (size_t)d->rows, &text));
       dims[0] = 1;
     }
-    st = make_dataset(k, d->path, text >= 0 ? text : type, dims, NULL, h->m,
-                      &l->fixed[i]);
-    if (text >= 0) H5Tclose(text);
-    TRY(st);
+    PASS(make_dataset(k, d->path, text >= 0 ? text : types[d->type], dims, NULL,
+                      h->m, &l->fixed[i]));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Where the header of an object stands: references are addresses. */
@@ -178,25 +151,21 @@ static status find_address(const maker *k, const char *path,
 /* The group and its first record; records.c makes the others. */
 static status make_records(const maker *k, const hdf5_file *h, int field_id,
                            hdf5_layout *l, record_group *g) {
-  status st = OK;
   const hdf5_field *f = &h->fields[field_id];
   char path[400], name[40], first[441];
-  hid_t group = -1;
+  hid_t group ENDS_BY(end_id) = -1;
   hsize_t dims[2] = {(hsize_t)hdf5_items(h, f), (hsize_t)f->n_part};
   snprintf(path, sizeof path, "%s/%s", f->group, f->name);
-  TRY(make_group(k, path, &group));
-  TRY(column_attributes(k, group, f->part[0], h->m));
-  if (dims[0] == 0 || l->n_record == 0) goto done;
+  PASS(make_group(k, path, &group));
+  PASS(column_attributes(k, group, f->part[0], h->m));
+  if (dims[0] == 0 || l->n_record == 0) return OK;
   hdf5_record_name(name, sizeof name, 0);
   snprintf(first, sizeof first, "%s/%s", path, name);
   g->offset = &l->record[(size_t)field_id * (size_t)l->n_record];
   g->bytes = sizeof(double) * (size_t)(dims[0] * dims[1]);
-  TRY(make_dataset(k, first, H5T_NATIVE_DOUBLE, dims, NULL, NULL, g->offset));
-  TRY(find_address(k, path, &g->group));
-  TRY(find_address(k, first, &g->set));
-done:
-  if (group >= 0) H5Gclose(group);
-  return st;
+  PASS(make_dataset(k, first, H5T_NATIVE_DOUBLE, dims, NULL, NULL, g->offset));
+  PASS(find_address(k, path, &g->group));
+  return find_address(k, first, &g->set);
 }
 
 static status make_history(const maker *k, const hdf5_file *h, int field_id,
@@ -221,25 +190,30 @@ static status make_record_times(const maker *k, const hdf5_file *h,
 }
 
 static status root_attributes(const maker *k, const hdf5_file *h) {
-  status st = OK;
   const model *m = h->m;
-  hid_t root = H5Gopen2(k->file, "/", H5P_DEFAULT);
-  if (root < 0) TRY(maker_failed(k, "write an attribute of"));
-  TRY(attribute_text(k, root, "program", "protis"));
-  TRY(attribute_text(k, root, "version", h->o->version));
-  TRY(attribute_text(k, root, "job", m->name.job));
-  TRY(attribute_text(k, root, "title", m->name.title));
-  TRY(attribute_text(k, root, "blas_kernel", h->o->kernel));
-  TRY(attribute_int(k, root, "threads", h->o->threads));
-  TRY(attribute_int(k, root, "dimension", m->dim));
-  TRY(attribute_text(k, root, "length_unit", m->unit.length));
-  TRY(attribute_text(k, root, "force_unit", m->unit.force));
-  TRY(attribute_text(k, root, "time_unit", m->unit.time));
-  TRY(attribute_text(k, root, "note",
-                     "rows and records whose time is NaN were not reached"));
-done:
-  if (root >= 0) H5Gclose(root);
-  return st;
+  const struct {
+    const char *name, *text;
+    const int *number; /* NULL: a text */
+  } row[] = {
+      {"program", "protis", NULL},
+      {"version", h->o->version, NULL},
+      {"job", m->name.job, NULL},
+      {"title", m->name.title, NULL},
+      {"blas_kernel", h->o->kernel, NULL},
+      {"threads", NULL, &h->o->threads},
+      {"dimension", NULL, &m->dim},
+      {"length_unit", m->unit.length, NULL},
+      {"force_unit", m->unit.force, NULL},
+      {"time_unit", m->unit.time, NULL},
+      {"note", "rows and records whose time is NaN were not reached", NULL}};
+  hid_t root ENDS_BY(end_id) = H5Gopen2(k->file, "/", H5P_DEFAULT);
+  if (root < 0) return maker_failed(k, "write an attribute of");
+  for (size_t i = 0; i < sizeof row / sizeof *row; ++i)
+    if (row[i].number != NULL)
+      PASS(attribute(k, root, row[i].name, H5T_NATIVE_INT, row[i].number));
+    else
+      PASS(attribute_text(k, root, row[i].name, row[i].text));
+  return OK;
 }
 
 static status alloc_layout(const hdf5_file *h, int n_row, int n_record,
@@ -251,28 +225,30 @@ static status alloc_layout(const hdf5_file *h, int n_row, int n_record,
   return OK;
 }
 
-status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
-                        hdf5_layout *l) {
-  status st = OK, closed;
-  maker k = {h->aside, -1, -1, -1};
-  record_group *groups = NULL;
-  NEW(groups, h->n_field);
-  TRY(alloc_layout(h, n_row, n_record, l));
-  TRY(open_maker(&k));
-  TRY(root_attributes(&k, h));
-  TRY(make_fixed(&k, h, l));
+static status make_all(maker *k, const hdf5_file *h, hdf5_layout *l,
+                       record_group *groups) {
+  PASS(open_maker(k));
+  PASS(root_attributes(k, h));
+  PASS(make_fixed(k, h, l));
   for (int i = 0; i < h->n_field; ++i)
     if (hdf5_is_history(&h->fields[i]))
-      TRY(make_history(&k, h, i, l));
+      PASS(make_history(k, h, i, l));
     else
-      TRY(make_records(&k, h, i, l, &groups[i]));
-  TRY(make_record_times(&k, h, l));
-done:
-  closed = close_maker(&k, st == OK);
+      PASS(make_records(k, h, i, l, &groups[i]));
+  return make_record_times(k, h, l);
+}
+
+status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
+                        hdf5_layout *l) {
+  maker k = {h->aside, -1, -1, -1};
+  OWNED record_group *groups = NULL;
+  PASS_NEW(groups, h->n_field);
+  status st = alloc_layout(h, n_row, n_record, l);
+  if (st == OK) st = make_all(&k, h, l, groups);
+  status closed = close_maker(&k, st == OK);
   if (st == OK) st = closed;
   if (st == OK && n_record > 1)
     st = hdf5_records_make(h->aside, n_record, h->n_field, groups);
-  memory_free(groups);
   if (st != OK) hdf5_layout_free(l);
   return st;
 }
@@ -283,20 +259,17 @@ done:
  * there is no such dataset. */
 static status read_offset(const hdf5_file *h, hid_t file, const char *path,
                           hsize_t *n, off_t *offset) {
-  status st = OK;
   hsize_t wanted = *n;
-  hid_t set = H5Dopen2(file, path, H5P_DEFAULT);
+  hid_t set ENDS_BY(end_id) = H5Dopen2(file, path, H5P_DEFAULT);
   haddr_t address = set >= 0 ? H5Dget_offset(set) : HADDR_UNDEF;
   *n = 0;
-  if (set < 0 && wanted == 0) goto done;
+  if (set < 0 && wanted == 0) return OK;
   if (set >= 0) *n = H5Dget_storage_size(set) / sizeof(double);
   if (address == HADDR_UNDEF || (wanted > 0 && *n != wanted))
-    FAIL(ERR_FILE, "%s: %s is not that of the run to go on with", h->path,
-         path);
+    RAISE(ERR_FILE, "%s: %s is not that of the run to go on with", h->path,
+          path);
   *offset = (off_t)address;
-done:
-  if (set >= 0) H5Dclose(set);
-  return st;
+  return OK;
 }
 
 static status read_records(const hdf5_file *h, hid_t file, int field_id,
@@ -334,14 +307,11 @@ static status read_fields(const hdf5_file *h, hid_t file, hdf5_layout *l) {
 }
 
 status hdf5_layout_read(const hdf5_file *h, hdf5_layout *l) {
-  status st = OK;
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   errno = 0;
-  hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) FAIL(ERR_FILE, "%s: cannot be read to go on with it", h->path);
-  TRY(read_fields(h, file, l));
-done:
-  if (file >= 0) H5Fclose(file);
+  hid_t file ENDS_BY(end_id) = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) RAISE(ERR_FILE, "%s: cannot be read to go on with it", h->path);
+  status st = read_fields(h, file, l);
   if (st != OK) hdf5_layout_free(l);
   return st;
 }

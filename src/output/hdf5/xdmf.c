@@ -7,10 +7,10 @@
  * JOB.body.xdmf, JOB.contact.xdmf: one grid of the last record, without time,
  * for readers that take nothing else (meshio.read).
  */
+#include "base/memory.h"
 #include "base/text.h"
 #include "output/hdf5/hdf5.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Where the name of a record and its time stand in a text of any record. */
@@ -24,22 +24,15 @@ typedef struct part {
 } part;
 
 static void xml_text(FILE *f, const char *text) {
-  for (; *text != '\0'; ++text) switch (*text) {
-      case '&':
-        fputs("&amp;", f);
-        break;
-      case '<':
-        fputs("&lt;", f);
-        break;
-      case '>':
-        fputs("&gt;", f);
-        break;
-      case '"':
-        fputs("&quot;", f);
-        break;
-      default:
-        fputc((unsigned char)*text >= ' ' || *text == NAME ? *text : '?', f);
-    }
+  static const char marks[] = "&<>\"";
+  static const char *const names[] = {"&amp;", "&lt;", "&gt;", "&quot;"};
+  for (; *text != '\0'; ++text) {
+    const char *mark = strchr(marks, *text);
+    if (mark != NULL)
+      fputs(names[mark - marks], f);
+    else
+      fputc((unsigned char)*text >= ' ' || *text == NAME ? *text : '?', f);
+  }
 }
 
 static void data_item(FILE *f, const char *file, const char *dataset,
@@ -86,8 +79,18 @@ static void write_field(FILE *f, const char *file, const part *p,
   fputs("</Attribute>\n", f);
 }
 
-static void write_pattern(FILE *f, const char *file, const part *p,
-                          const hdf5_shape *s) {
+typedef struct pattern {
+  const part *of;
+  const hdf5_shape *shape;
+} pattern;
+
+/* The text of any record of a part, with NAME and TIME. */
+static status write_pattern(FILE *f, const void *what) {
+  const pattern *all = what;
+  const part *p = all->of;
+  const hdf5_shape *s = all->shape;
+  const char *slash = strrchr(s->path, '/');
+  const char *file = slash != NULL ? slash + 1 : s->path;
   fprintf(f, "<Grid Name=\"%s\" GridType=\"Uniform\">\n", p->name);
   if (!p->alone) fprintf(f, "<Time Value=\"%c\"/>\n", TIME);
   if (!p->alone && p->on_points == PER_CONTACT_NODE)
@@ -101,43 +104,36 @@ static void write_pattern(FILE *f, const char *file, const part *p,
       write_field(f, file, p, &s->fields[k]);
   }
   fputs("</Grid>\n", f);
-}
-
-/* The text of any record of a part, with NAME and TIME; free it. */
-static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
-  size_t size = 0;
-  const char *slash = strrchr(s->path, '/');
-  FILE *f = open_memstream(text, &size);
-  if (f == NULL) RAISE(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
-  write_pattern(f, slash != NULL ? slash + 1 : s->path, p, s);
-  if (!text_memory_end(f, text))
-    RAISE(ERR_MEMORY, "memory exhausted: text of JOB.xdmf");
   return OK;
 }
 
-static void write_record(FILE *f, const char *pattern, int record_id,
+static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
+  return text_made(text, &(pattern){p, s}, write_pattern);
+}
+
+static void write_record(FILE *f, const char *text, int record_id,
                          double t) {
   static const char marks[] = {NAME, TIME, '\0'};
   char name[40], time[NUMBER_SIZE];
   hdf5_record_name(name, sizeof name, record_id);
   text_number(time, t, 16);
-  for (;; ++pattern) {
-    size_t n = strcspn(pattern, marks);
-    fwrite(pattern, 1, n, f);
-    pattern += n;
-    if (*pattern == '\0') break;
-    fputs(*pattern == NAME ? name : time, f);
+  for (;; ++text) {
+    size_t n = strcspn(text, marks);
+    fwrite(text, 1, n, f);
+    text += n;
+    if (*text == '\0') break;
+    fputs(*text == NAME ? name : time, f);
   }
 }
 
-static void write_part(FILE *f, const part *p, const char *pattern,
+static void write_part(FILE *f, const part *p, const char *text,
                        const hdf5_shape *s) {
   fprintf(f,
           "<Grid Name=\"%s\" GridType=\"Collection\" "
           "CollectionType=\"Temporal\">\n",
           p->name);
   for (int i = 0; i < s->n_record; ++i)
-    write_record(f, pattern, i, s->times[i]);
+    write_record(f, text, i, s->times[i]);
   fputs("</Grid>\n", f);
 }
 
@@ -171,7 +167,7 @@ static const char head[] =
 typedef struct content {
   const hdf5_shape *shape;
   part surface, body;
-  char *surface_text, *body_text; /* of a record; the first may be NULL */
+  const char *surface_text, *body_text; /* of a record; the first may be NULL */
 } content;
 
 static void write_all(FILE *f, const void *what) {
@@ -184,16 +180,15 @@ static void write_all(FILE *f, const void *what) {
 }
 
 status xdmf_write(const hdf5_shape *shape, const char *path) {
-  status st = OK;
-  content c = {shape, surface_part(shape), body_part(shape), NULL, NULL};
+  OWNED char *surface = NULL, *body = NULL;
+  content c = {.shape = shape, .surface = surface_part(shape),
+               .body = body_part(shape)};
   if (shape->n_contact_node > 0)
-    TRY(make_pattern(&c.surface, shape, &c.surface_text));
-  TRY(make_pattern(&c.body, shape, &c.body_text));
-  TRY(text_replace(path, &c, write_all));
-done:
-  free(c.surface_text);
-  free(c.body_text);
-  return st;
+    PASS(make_pattern(&c.surface, shape, &surface));
+  PASS(make_pattern(&c.body, shape, &body));
+  c.surface_text = surface;
+  c.body_text = body;
+  return text_replace(path, &c, write_all);
 }
 
 typedef struct snapshot {
@@ -210,13 +205,10 @@ static void write_last(FILE *f, const void *what) {
 
 status xdmf_write_last(const hdf5_shape *shape, int of_contact,
                        const char *path) {
-  char *text = NULL;
+  OWNED char *text = NULL;
   part p = of_contact ? surface_part(shape) : body_part(shape);
   if (shape->n_record == 0 || p.n_point == 0) return OK;
   p.alone = 1;
-  status st = make_pattern(&p, shape, &text);
-  const snapshot last = {text, shape->n_record - 1};
-  if (st == OK) st = text_replace(path, &last, write_last);
-  free(text);
-  return st;
+  PASS(make_pattern(&p, shape, &text));
+  return text_replace(path, &(snapshot){text, shape->n_record - 1}, write_last);
 }
