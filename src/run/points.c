@@ -54,17 +54,22 @@ static int compare_id(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+int visco_point_of(const int *elem, int n, int elem_id) {
+  const int *found =
+      bsearch(&elem_id, elem, (size_t)n, sizeof *elem, compare_id);
+  return found == NULL ? -1 : (int)(found - elem);
+}
+
 /* One line of *INITIAL CONDITIONS into both states. */
 static status take_initial(const run *r, visco *v, const initial *c) {
   const mesh_group *g = &r->msh->group[c->group_id];
   size_t ns = (size_t)r->m->ns, part = (size_t)c->component;
   for (int i = 0; i < g->n_item; ++i) {
     double value;
-    const int *found = bsearch(&g->item_id[i], v->elem, (size_t)v->x.n,
-                               sizeof *v->elem, compare_id);
-    if (found == NULL) continue;
-    size_t k = (size_t)(found - v->elem);
-    PASS(load_initial(r->m, r->msh, c, *found, &value));
+    const int point = visco_point_of(v->elem, v->x.n, g->item_id[i]);
+    const size_t k = (size_t)point;
+    if (point < 0) continue;
+    PASS(load_initial(r->m, r->msh, c, v->elem[k], &value));
     if (c->type == INITIAL_STRAIN)
       v->old.ei[ns * k + part] = v->now.ei[ns * k + part] = value;
     else

@@ -14,7 +14,6 @@
 #include "run/column_row.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* ---- increments with a tolerance ---------------------------------------- */
 
@@ -131,17 +130,8 @@ static status keep(run *r, void *self, archive *a) {
 
 /* ---- its columns ------------------------------------------------------- */
 
-static int compare_id(const void *a, const void *b) {
-  const int x = *(const int *)a, y = *(const int *)b;
-  return (x > y) - (x < y);
-}
-
-/* Point of an element whose law flows, or -1. */
 static int point_of(const view *v, int elem_id) {
-  const int *found =
-      bsearch(&elem_id, v->s->body.flow_elem, (size_t)v->s->body.flow->n,
-              sizeof elem_id, compare_id);
-  return found == NULL ? -1 : (int)(found - v->s->body.flow_elem);
+  return visco_point_of(v->s->body.flow_elem, v->s->body.flow->n, elem_id);
 }
 
 /* Inelastic strain; 0 where no law flows. */

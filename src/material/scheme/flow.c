@@ -86,12 +86,9 @@ status flow_heat(flow_kind *kind, double temperature) {
 status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p) {
   PASS(flow_heat(kind, temperature));
-  *p = (law_point){.law = kind->law,
-                   .elastic = &kind->elastic,
-                   .value = kind->value,
-                   .speed = kind->speed,
-                   .t = t,
-                   .temperature = temperature};
+  *p = flow_kind_point(kind);
+  p->t = t;
+  p->temperature = temperature;
   if (kind->varies != 0) {
     PASS(law_values(kind->law, t, temperature, value));
     p->value = value;

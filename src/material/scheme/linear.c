@@ -48,23 +48,19 @@ static status new_jacobian(const law_point *p, int na, law_jacobian *j) {
   return OK;
 }
 
+static void free_jacobian(law_jacobian *j) { memory_free(j->ei_sigma); }
+
 /* y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
 static status linear_law(const flow_kind *k, double *L, double *G) {
-  status st = OK;
   const law_elastic *el = &k->elastic;
   const int ns = el->ns, na = k->n_alpha, n = ns + na;
-  law_jacobian j = {0};
-  double *zero = NULL, *top = NULL;
-  NEW(zero, n);
-  NEW(top, n * ns);
-  law_point p = {.law = k->law,
-                 .elastic = el,
-                 .value = k->value,
-                 .speed = k->speed,
-                 .sigma = zero,
-                 .ei = zero,
-                 .alpha = zero};
-  TRY(new_jacobian(&p, na, &j));
+  law_point p = flow_kind_point(k);
+  ENDS_BY(free_jacobian) law_jacobian j = {0};
+  OWNED double *zero = NULL, *top = NULL;
+  PASS_NEW(zero, n);
+  PASS_NEW(top, n * ns);
+  p.sigma = p.ei = p.alpha = zero;
+  PASS(new_jacobian(&p, na, &j));
   put_block(ns, ns, j.ei_sigma, top, n);
   put_block(na, ns, j.alpha_sigma, top + ns, n);
   multiply(n, ns, ns, 1.0, top, el->E, G);
@@ -72,9 +68,7 @@ static status linear_law(const flow_kind *k, double *L, double *G) {
   put_block(ns, ns, j.ei_ei, L, n);
   put_block(ns, na, j.ei_alpha, L + n * ns, n);
   put_block(na, na, j.alpha_alpha, L + n * ns + ns, n);
-done:
-  RELEASE(j.ei_sigma, zero, top);
-  return st;
+  return OK;
 }
 
 /* X[n*m] := inv(M) X; M is destroyed. */
@@ -111,7 +105,7 @@ static status theta_map(const flow_kind *k, const scheme_step *p,
 
 /* X = exp(A) - I for A[n*n] of any size: Taylor below 2^-6, then squaring in
  * the form X <- 2 X + X X, which preserves slow rates next to fast ones. */
-status exponential_less_one(int n, const double *A, double *X) {
+static status exponential_less_one(int n, const double *A, double *X) {
   enum { TERMS = 12 };
   OWNED double *power = NULL, *next = NULL;
   double largest = 0.0;
@@ -182,5 +176,411 @@ status general_map(const flow_kind *k, const scheme_step *p, int exact,
   PASS(linear_law(k, L, G));
   PASS(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
   remains(&k->elastic, m, D);
+  return OK;
+}
+
+/*
+ * Maps of laws of springs and dashpots in series (MAXWELL, ZENER, KELVIN,
+ * BURGERS). Each part of the strain (all of it, or deviator and mean by
+ * themselves) has scalar equations for the strains v_k of its units,
+ *   d(v_k)/dt = f_k (e - sum_j v_j - m_k v_k),   e^i = v_0 + v_1 + ...
+ * The matrices of the general case mix the parts and add all rates up in e^i:
+ * of rates that differ by more than 16 decades the slow ones are lost. Here,
+ * with h_k = f_k dt and the change D of a step,
+ *   THETA   D v_k = b_k (x - m_k v_k),  b_k = 1/(1/h_k + theta m_k),
+ *           x = (e_th - sum_j v_j/(1 + theta h_j m_j))/(1 + theta sum_j b_j)
+ *   EXPONENTIAL  exact for e linear over the step: in closed form if one unit
+ *           moves, else by the exponential of the matrix. If a unit is faster
+ *           than MODERATE there, e - e^i is taken as linear over the step, or
+ *           as that of its end for dashpots so fast: order 2 for the others.
+ * All numbers are of the size of 1 for every rate.
+ */
+/*
+ * Maps of laws whose terms follow the strain each by itself (PRONY),
+ *   d(v_k)/dt = (e - w - v_k) r_k,   e^i = w + sum_k W_k v_k,   w constant.
+ * The matrices of the general case contain all rates r_k: of rates that differ
+ * by more than 16 decades the slow ones are lost. Here
+ *   v_k,new - v_k = q0_k e_old + q1_k e_new - a_k (w + v_k),
+ *   a_k = q0_k + q1_k,  z = r_k dt,
+ *   THETA        q0 = (1 - theta) z/(1 + theta z),  q1 = theta z/(1 + theta z)
+ *   EXPONENTIAL  a = 1 - exp(-z),  q1 = 1 - a/z     (e linear over the step)
+ * are of the size of 1 for every rate.
+ *
+ * And the maps of linear laws in plane stress: e_zz is no unknown of the body;
+ * sigma_zz = 0 at both ends of the step eliminates it, so that EXPONENTIAL
+ * takes e_zz too as linear over the step.
+ */
+
+/* q1 of EXPONENTIAL: z/2 - z^2/6 + ... where 1 - a/z would cancel. */
+/* 1 - (1 - exp(-z))/z */
+static double relaxing_late_share(double z) {
+  double sum = 0.0, term = z / 2;
+  if (z > 0.1) return 1.0 + expm1(-z) / z;
+  for (int k = 3; k < 12; ++k) {
+    sum += term;
+    term *= -z / k;
+  }
+  return sum;
+}
+
+static void relaxed_shares(const scheme_step *p, int exact, double rate,
+                           double *q0, double *q1) {
+  const double z = rate * p->dt;
+  if (exact) {
+    *q1 = relaxing_late_share(z);
+    *q0 = -expm1(-z) - *q1;
+    return;
+  }
+  /* z/(1 + theta z) for any z > 0, also one that overflows. */
+  const double a = 1.0 / (1.0 / z + p->theta);
+  *q0 = (1.0 - p->theta) * a;
+  *q1 = p->theta * a;
+}
+
+/* All zero, but 1 in the first n_kept of the diagonal of P. */
+static void clear_map(int ns, int n_kept, linear_map *m) {
+  const size_t n = (size_t)m->n, bytes = n * (size_t)ns * sizeof *m->Q0;
+  memset(m->P, 0, n * n * sizeof *m->P);
+  memset(m->Q0, 0, bytes);
+  memset(m->Q1, 0, bytes);
+  for (int i = 0; i < n_kept; ++i) m->P[i + m->n * i] = 1.0;
+}
+
+/* Rows of term k: from y = (e^i, v), e_old and e_new. */
+static void term_rows(int ns, int k, double q0, double q1, const double *W,
+                      linear_map *m) {
+  const int n = m->n, first = ns * (k + 1), terms = n / ns - 1;
+  const double a = q0 + q1;
+  for (int i = 0; i < ns; ++i) {
+    m->P[first + i + n * i] = -a;
+    m->P[first + i + n * (first + i)] += 1.0 - a;
+    m->Q0[first + i + n * i] = q0;
+    m->Q1[first + i + n * i] = q1;
+  }
+  for (int l = 0; l < terms; ++l)
+    for (int j = 0; j < ns; ++j)
+      for (int i = 0; i < ns; ++i)
+        m->P[first + i + n * (ns * (l + 1) + j)] +=
+            a * W[ns * ns * l + i + ns * j];
+}
+
+/* Rows of e^i: W_k times what v_k changes by. */
+static void add_rows(int ns, int k, const double *W_k, linear_map *m) {
+  const int n = m->n, first = ns * (k + 1);
+  for (int q = 0; q < ns; ++q)
+    for (int i = 0; i < ns; ++i) {
+      const double w = W_k[i + ns * q];
+      const int row = first + q;
+      for (int j = 0; j < n; ++j)
+        m->P[i + n * j] += w * (m->P[row + n * j] - (row == j));
+      for (int j = 0; j < ns; ++j) {
+        m->Q0[i + n * j] += w * m->Q0[row + n * j];
+        m->Q1[i + n * j] += w * m->Q1[row + n * j];
+      }
+    }
+}
+
+/* D = C (I - Q1) with the rows of e^i. */
+static void remains_of_terms(const law_elastic *el, const linear_map *m,
+                             double *D) {
+  const int ns = el->ns;
+  for (int j = 0; j < ns; ++j) {
+    double left[6];
+    for (int i = 0; i < ns; ++i) left[i] = (i == j) - m->Q1[i + m->n * j];
+    tensor_product(ns, el->C, left, D + ns * j);
+  }
+}
+
+status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
+                    linear_map *m, double *D) {
+  const int ns = k->elastic.ns, n = m->n, terms = n / ns - 1;
+  const law_point point = flow_kind_point(k);
+  OWNED double *W = NULL, *rate = NULL;
+  PASS_NEW(W, ns * ns * terms);
+  PASS_NEW(rate, terms);
+  for (int i = 0; i < terms; ++i)
+    rate[i] = k->speed * k->law->ops->relaxing(&point, i, W + ns * ns * i);
+  clear_map(ns, ns, m);
+  for (int i = 0; i < terms; ++i) {
+    double q0, q1;
+    relaxed_shares(p, exact, rate[i], &q0, &q1);
+    term_rows(ns, i, q0, q1, W, m);
+  }
+  for (int i = 0; i < terms; ++i) add_rows(ns, i, W + ns * ns * i, m);
+  remains_of_terms(&k->elastic, m, D);
+  return OK;
+}
+
+/* column[n] of a matrix times row[columns] over pivot goes to A[n*columns]. */
+static void add_outer(int n, int columns, const double *column,
+                      const double *row, double pivot, double *A) {
+  for (int j = 0; j < columns; ++j)
+    for (int i = 0; i < n; ++i) A[i + n * j] += column[i] * row[j] / pivot;
+}
+
+enum { ZZ = 2 };
+
+/* e_zz of the old state out of the map: c (e - e^i) = 0, c the row of C for
+ * sigma_zz. */
+static void eliminate_old(const law_elastic *el, linear_map *m) {
+  const int ns = el->ns, n = m->n;
+  double *column = m->Q0 + n * ZZ, of_e[6], of_ei[6];
+  for (int j = 0; j < ns; ++j) {
+    of_ei[j] = el->C[ZZ + ns * j];
+    of_e[j] = j == ZZ ? 0.0 : -of_ei[j];
+  }
+  add_outer(n, ns, column, of_ei, of_ei[ZZ], m->P);
+  add_outer(n, ns, column, of_e, of_ei[ZZ], m->Q0);
+  memset(column, 0, (size_t)n * sizeof *column);
+}
+
+/* row[columns] = c A for the rows of e^i of A[n*columns]. */
+static void stress_row(const law_elastic *el, const double *A, int n,
+                       int columns, double *row) {
+  for (int j = 0; j < columns; ++j) {
+    row[j] = 0.0;
+    for (int i = 0; i < el->ns; ++i)
+      row[j] += el->C[ZZ + el->ns * i] * A[i + n * j];
+  }
+}
+
+/* e_zz of the new state: d e - c (P y + Q0 e_old) = 0 in the rows of e^i, d the
+ * row of D; row[n] is workspace. */
+static void eliminate_new(const law_elastic *el, const double *D, linear_map *m,
+                          double *row) {
+  const int ns = el->ns, n = m->n;
+  const double pivot = D[ZZ + ns * ZZ];
+  double *column = m->Q1 + n * ZZ, of_e[6];
+  for (int j = 0; j < ns; ++j) of_e[j] = j == ZZ ? 0.0 : -D[ZZ + ns * j];
+  stress_row(el, m->P, n, n, row);
+  add_outer(n, n, column, row, pivot, m->P);
+  stress_row(el, m->Q0, n, ns, row);
+  add_outer(n, ns, column, row, pivot, m->Q0);
+  add_outer(n, ns, column, of_e, pivot, m->Q1);
+  memset(column, 0, (size_t)n * sizeof *column);
+}
+
+/* D of the other components. */
+static void condense(int ns, double *D) {
+  double column[6] = {0}, row[6] = {0};
+  for (int i = 0; i < ns; ++i) {
+    column[i] = D[i + ns * ZZ];
+    row[i] = -D[ZZ + ns * i];
+  }
+  add_outer(ns, ns, column, row, column[ZZ], D);
+  for (int i = 0; i < ns; ++i) D[i + ns * ZZ] = D[ZZ + ns * i] = 0.0;
+}
+
+status plane_stress_map(const law_elastic *el, linear_map *m, double *D) {
+  OWNED double *row = NULL;
+  if (!(D[ZZ + el->ns * ZZ] > 0.0))
+    RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
+  PASS_NEW(row, m->n);
+  eliminate_old(el, m);
+  eliminate_new(el, D, m, row);
+  condense(el->ns, D);
+  return OK;
+}
+
+static const double MODERATE = 1e6, MOST = 1e200; /* of h, - */
+
+/* A part with n units, and its map of them: D v = U v + u0 e_old + u1 e_new;
+ * kept = 1 - sum of u1. */
+typedef struct series {
+  int n;
+  double *h, *m;       /* [n] - */
+  double *U, *u0, *u1; /* [n*n], [n], [n] */
+  double kept;
+  double *work;
+} series;
+
+static status series_new(int n, series *s) {
+  *s = (series){.n = n};
+  PASS_NEW(s->work, n * (n + 4));
+  s->h = s->work;
+  s->m = s->h + n;
+  s->u0 = s->m + n;
+  s->u1 = s->u0 + n;
+  s->U = s->u1 + n;
+  return OK;
+}
+
+static void series_free(series *s) { memory_free(s->work); }
+
+/* All units of a part; LAW_NO_PART: there is none. */
+static int units_of(const law_point *p, int part, double dt, series *s) {
+  int of = LAW_NO_PART;
+  for (int k = 0; k < s->n; ++k) {
+    law_unit unit = {0};
+    of = p->law->ops->series(p, part, k, &unit);
+    s->h[k] = fmin(p->speed * unit.flow * dt, MOST);
+    s->m[k] = unit.spring;
+  }
+  return of;
+}
+
+static void by_theta(double theta, series *s) {
+  double sum = 0.0;
+  for (int k = 0; k < s->n; ++k)
+    sum += s->h[k] > 0.0 ? 1.0 / (1.0 / s->h[k] + theta * s->m[k]) : 0.0;
+  s->kept = 1.0 / (1.0 + theta * sum);
+  for (int k = 0; k < s->n; ++k) {
+    const double b =
+        s->h[k] > 0.0 ? 1.0 / (1.0 / s->h[k] + theta * s->m[k]) : 0.0;
+    for (int j = 0; j < s->n; ++j)
+      s->U[k + s->n * j] = -b * s->kept / (1.0 + theta * s->h[j] * s->m[j]) -
+                           (j == k ? b * s->m[k] : 0.0);
+    s->u0[k] = (1.0 - theta) * b * s->kept;
+    s->u1[k] = theta * b * s->kept;
+  }
+}
+
+/* (1 - exp(-z))/z */
+static double mean_of_decay(double z) { return z > 0.0 ? -expm1(-z) / z : 1.0; }
+
+/* The unit q alone moves. */
+static void by_one(int q, series *s) {
+  const double stiff = 1.0 + s->m[q], z = s->h[q] * stiff, a = -expm1(-z);
+  for (int j = 0; j < s->n; ++j) s->U[q + s->n * j] = j == q ? -a : -a / stiff;
+  s->u1[q] = relaxing_late_share(z) / stiff;
+  s->u0[q] = a / stiff - s->u1[q];
+  s->kept = (s->m[q] + mean_of_decay(z)) / stiff;
+}
+
+static status by_matrix(series *s) {
+  const int n = s->n, N = n + 2;
+  OWNED double *A = NULL, *X = NULL;
+  PASS_NEW(A, N * N);
+  PASS_NEW(X, N * N);
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) A[k + N * j] = -s->h[k];
+    A[k + N * k] -= s->h[k] * s->m[k];
+    A[k + N * n] = s->h[k];
+  }
+  A[n + N * (n + 1)] = 1.0;
+  PASS(exponential_less_one(N, A, X));
+  s->kept = 1.0;
+  for (int k = 0; k < n; ++k) {
+    for (int j = 0; j < n; ++j) s->U[k + n * j] = X[k + N * j];
+    s->u1[k] = X[k + N * (n + 1)];
+    s->u0[k] = X[k + N * n] - s->u1[k];
+    s->kept -= s->u1[k];
+  }
+  return OK;
+}
+
+/* D v = -a v + b0 x_old + b1 x_new of a unit, x = e - e^i. */
+static void term_shares(double h, double m, double *a, double *b0, double *b1) {
+  const double z = h * m;
+  *a = -expm1(-z);
+  *b0 = 0.0;
+  *b1 = h;
+  if (h > MODERATE && z < 1.0) return;
+  *b1 = z > 0.0 ? h / z * relaxing_late_share(z) : h / 2;
+  *b0 = h * mean_of_decay(z) - *b1;
+}
+
+static void by_stress(series *s) {
+  double sum0 = 0.0, sum1 = 0.0, a, b0, b1;
+  for (int k = 0; k < s->n; ++k) {
+    term_shares(s->h[k], s->m[k], &a, &b0, &b1);
+    sum0 += b0;
+    sum1 += b1;
+  }
+  s->kept = 1.0 / (1.0 + sum1);
+  for (int k = 0; k < s->n; ++k) {
+    term_shares(s->h[k], s->m[k], &a, &b0, &b1);
+    s->u1[k] = b1 * s->kept;
+    s->u0[k] = b0 - s->u1[k] * sum0;
+    for (int j = 0; j < s->n; ++j)
+      s->U[k + s->n * j] =
+          -s->u0[k] - s->u1[k] * exp(-s->h[j] * s->m[j]) - (j == k ? a : 0.0);
+  }
+}
+
+static status by_exponential(series *s) {
+  int moving = 0, last = 0;
+  double fastest = 0.0;
+  for (int k = 0; k < s->n; ++k) {
+    if (!(s->h[k] > 0.0)) continue;
+    ++moving;
+    last = k;
+    fastest = fmax(fastest, s->h[k] * (1.0 + s->m[k]));
+  }
+  if (moving <= 1)
+    by_one(last, s);
+  else if (fastest <= MODERATE)
+    PASS(by_matrix(s));
+  else
+    by_stress(s);
+  return OK;
+}
+
+/* Entry (i, j) of the projector on a part of the strain. */
+static double projector(int of, int i, int j) {
+  const double mean = i < 3 && j < 3 ? 1.0 / 3 : 0.0, one = i == j;
+  return of == LAW_WHOLE ? one : of == LAW_MEAN ? mean : one - mean;
+}
+
+/* A row of the map gets a part of the change of unit k: from column j of each
+ * tensor; v_0 is e^i less the other units. */
+static void add_row(const series *s, int k, int ns, int row, int j, double part,
+                    linear_map *m) {
+  const int n = m->n;
+  const double *U = s->U + k;
+  m->P[row + n * j] += part * U[0];
+  for (int q = 1; q < s->n; ++q)
+    m->P[row + n * (ns * q + j)] += part * (U[s->n * q] - U[0]);
+  m->Q0[row + n * j] += part * s->u0[k];
+  m->Q1[row + n * j] += part * s->u1[k];
+}
+
+/* e^i gets the change of all units, alpha that of the units from 1 on. */
+static void add_part(const series *s, int of, int ns, linear_map *m) {
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) {
+      const double part = projector(of, i, j);
+      for (int k = 0; k < s->n && part != 0.0; ++k) {
+        add_row(s, k, ns, i, j, part, m);
+        if (k > 0) add_row(s, k, ns, ns * k + i, j, part, m);
+      }
+    }
+}
+
+/* D[ns*ns] = C (what is left of each part). */
+static void remaining_stiffness(const law_elastic *el, const double kept[3],
+                                int whole, double *D) {
+  const int ns = el->ns;
+  for (int j = 0; j < ns; ++j) {
+    double column[6];
+    for (int i = 0; i < ns; ++i)
+      column[i] = whole ? kept[LAW_WHOLE] * projector(LAW_WHOLE, i, j)
+                        : kept[LAW_DEVIATOR] * projector(LAW_DEVIATOR, i, j) +
+                              kept[LAW_MEAN] * projector(LAW_MEAN, i, j);
+    tensor_product(ns, el->C, column, D + ns * j);
+  }
+}
+
+status series_map(const flow_kind *k, const scheme_step *p, int exact,
+                  linear_map *m, double *D) {
+  const int ns = k->elastic.ns, n = m->n;
+  const law_point point = flow_kind_point(k);
+  double kept[3] = {1.0, 1.0, 1.0};
+  ENDS_BY(series_free) series s = {0};
+  PASS(series_new(n / ns, &s));
+  clear_map(ns, n, m);
+  int of = LAW_NO_PART, whole = 0;
+  for (int part = 0; (of = units_of(&point, part, p->dt, &s)) != LAW_NO_PART;
+       ++part) {
+    memset(s.u0, 0, (size_t)(s.n * (s.n + 2)) * sizeof *s.u0);
+    if (exact)
+      PASS(by_exponential(&s));
+    else
+      by_theta(p->theta, &s);
+    add_part(&s, of, ns, m);
+    kept[of] = s.kept;
+    whole |= of == LAW_WHOLE;
+  }
+  remaining_stiffness(&k->elastic, kept, whole, D);
   return OK;
 }

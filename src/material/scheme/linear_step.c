@@ -1,6 +1,6 @@
 /*
  * Steps of linear laws with constant coefficients: the maps of the points (of
- * linear.c or series.c), applied in blocks that stay in the cache.
+ * linear.c), applied in blocks that stay in the cache.
  */
 #include "material/scheme/work.h"
 
@@ -14,8 +14,7 @@ void linear_map_free(linear_map *m) { RELEASE(m->P, m->Q0, m->Q1, m->Q); }
 /* Deviator and mean are treated separately if the elasticity is isotropic. */
 static int is_series(const flow_kind *k) {
   law_unit unit;
-  const law_point p = {
-      .law = k->law, .elastic = &k->elastic, .value = k->value};
+  const law_point p = flow_kind_point(k);
   if (k->law->ops->series == NULL) return 0;
   return k->elastic.isotropic ||
          k->law->ops->series(&p, 0, 0, &unit) == LAW_WHOLE;
@@ -205,14 +204,10 @@ static inline double middle_power(int ns, const scheme_call *a, int k,
 static inline double follow_points(int ns, const scheme_call *a, int from,
                                    int to) {
   const flow *x = a->x;
-  law_point p = {.dt = a->p->dt};
   double power = 0.0;
   for (int k = from; k < to; ++k) {
-    const flow_kind *kind = &x->kind[x->kind_id[k]];
-    p.law = kind->law;
-    p.elastic = &kind->elastic;
-    p.value = kind->value;
-    p.speed = kind->speed;
+    law_point p = flow_kind_point(&x->kind[x->kind_id[k]]);
+    p.dt = a->p->dt;
     follow(ns, a, k);
     power += middle_power(ns, a, k, &p);
   }

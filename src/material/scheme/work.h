@@ -35,6 +35,13 @@ struct scheme_work {
   int n_kind;
 };
 
+/* The law of a kind at its values; stress and state are to be set. */
+static inline law_point flow_kind_point(const flow_kind *k) {
+  return (law_point){.law = k->law,
+                     .elastic = &k->elastic,
+                     .value = k->value,
+                     .speed = k->speed};
+}
 /* y = x + a v over n components */
 void add_scaled(size_t n, const double *x, double a, const double *v,
                 double *y);
@@ -54,12 +61,11 @@ status linear_advance(const scheme_call *a, int exact);
 status exponential_between(const scheme_call *a, flow_state *mid);
 /* newton.c */
 status newton_advance(const scheme_call *a);
-/* linear.c: by the Jacobian of the law; X = exp(A) - I for A[n*n]. */
+/* linear.c: by the Jacobian of the law. */
 status general_map(const flow_kind *k, const scheme_step *p, int exact,
                    linear_map *m, double *D);
-status exponential_less_one(int n, const double *A, double *X);
-/* series.c: for laws with "series", "relaxing"; m->P, Q0, Q1 are
- * there, D as if e_zz of plane stress were given. */
+/* For laws with "series", "relaxing"; m->P, Q0, Q1 are there, D as if e_zz of
+ * plane stress were given. */
 status series_map(const flow_kind *k, const scheme_step *p, int exact,
                   linear_map *m, double *D);
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
