@@ -79,7 +79,6 @@ status apply_material(reading *r);
 status apply_elastic(reading *r);
 status apply_density(reading *r);
 status apply_expansion(reading *r);
-/* ---- inelastic.c ---- */
 status apply_inelastic(reading *r);
 plugin names_inelastic(const reading *r);
 status apply_creep(reading *r);
@@ -88,8 +87,6 @@ status apply_trs(reading *r);
 /* Once all cards are read: the law of a material together with its
  * elasticity. */
 status material_resolve_law(const model *m, material *mat);
-/* ---- initial.c ---- */
-status apply_initial(reading *r);
 /* ---- reference.c ---- */
 status apply_reference(reading *r);
 status apply_goal(reading *r);
@@ -121,7 +118,7 @@ status apply_dsload(reading *r);
 status apply_dload(reading *r);
 status apply_cload(reading *r);
 status apply_temperature(reading *r);
-/* ---- control.c: solver, accuracy, output ---- */
+status apply_initial(reading *r);
 status apply_solver(reading *r);
 plugin names_solver(const reading *r);
 status apply_accuracy(reading *r);

@@ -1,9 +1,8 @@
 /*
- * Supports and loads.
+ * Supports, loads and initial conditions.
  */
-#include "model/cards/cards.h"
-
 #include "base/memory.h"
+#include "model/cards/cards.h"
 
 #include <math.h>
 
@@ -217,4 +216,84 @@ status apply_temperature(reading *r) {
   PASS(field_file(r, &path));
   return read_loads(r, 1u << LOAD_TEMPERATURE, temperature_line, path,
                     read_temperature);
+}
+
+/* ---- *INITIAL CONDITIONS ------------------------------------------------ */
+
+/* By initial_type. */
+static const struct {
+  const char *line; /* what a line holds */
+  int most;         /* number of the component at most, 0: there is none */
+  const char *what; /* the component */
+  int starts; /* 1: FILE= and INCOMPATIBLE= count, lines need not be there */
+} initial_rows[] = {
+    [INITIAL_TEMPERATURE] = {"group of elements, value", 0, NULL, 0},
+    [INITIAL_DISPLACEMENT] = {"group, dof, value", 3, "dof", 1},
+    [INITIAL_STRAIN] = {"group of elements, component (xx yy zz xy yz zx: 1 to "
+                        "6), value",
+                        6, "component", 0},
+    [INITIAL_INTERNAL] = {"group of elements, number of the internal variable, "
+                          "value",
+                          FLOW_VALUE_MAX, "component", 0}};
+
+/* One line into *c; 0 if fine. */
+static int read_initial(const reading *r, const record *line, initial *c) {
+  const int most = initial_rows[c->type].most, n = most > 0 ? 3 : 2;
+  int number = 1;
+  if (record_fields(r, line, n, n, initial_rows[c->type].line) != 0) return -1;
+  if (most > 0 && field_int(r, &line->fields[1], 1, most,
+                            initial_rows[c->type].what, &number) != 0)
+    return -1;
+  c->component = number - 1;
+  return field_quantity(r, &line->fields[n - 1], &c->value);
+}
+
+/* Parameters of the card besides TYPE=. */
+static status open_initial(reading *r) {
+  const card_options *p = r->param;
+  model *m = r->m;
+  const parameter *file = card_parameter(r->card, "FILE");
+  if (!initial_rows[p->type].starts) {
+    if (file != NULL || p->incompatible)
+      message_add(m->log, P2004, &r->card->at,
+                  "*INITIAL CONDITIONS: FILE= and INCOMPATIBLE= belong to "
+                  "TYPE=DISPLACEMENT");
+    if (r->card->n_record == 0)
+      message_add(m->log, P2007, &r->card->at,
+                  "*INITIAL CONDITIONS needs a data line: %s",
+                  initial_rows[p->type].line);
+    return OK;
+  }
+  if (m->initial.start.given)
+    message_add(m->log, P2011, &r->card->at,
+                "a deck has one *INITIAL CONDITIONS, TYPE=DISPLACEMENT; the "
+                "other is at line %d",
+                m->initial.start.at.line_no);
+  m->initial.start.given = 1;
+  m->initial.start.relax = p->incompatible;
+  m->initial.start.at = r->card->at;
+  if (file == NULL || !file->has_value) return OK;
+  m->initial.start.file_at = file->value.at;
+  m->initial.start.file_name = p->file;
+  return field_file(r, &m->initial.start.file);
+}
+
+status apply_initial(reading *r) {
+  const card_options *p = r->param;
+  model *m = r->m;
+  if (r->misread) return OK;
+  PASS(open_initial(r));
+  for (int i = 0; i < r->card->n_record; ++i) {
+    const record *line = &r->card->records[i];
+    initial c = {.type = p->type, .group_id = -1};
+    if (read_initial(r, line, &c) != 0) continue;
+    c.group = line->fields[0].text;
+    c.at = line->fields[0].at;
+    if (quantity_variables(&c.value) & 8u)
+      message_add(m->log, P2033, &line->fields[line->n_field - 1].at,
+                  "*INITIAL CONDITIONS: the expression must not depend on t");
+    PASS_GROW(m->initial.lines, m->n.initial, m->cap.initial);
+    m->initial.lines[m->n.initial++] = c;
+  }
+  return OK;
 }

@@ -1,7 +1,9 @@
 /*
- * The model against the mesh: kinematics, sections, and the parts in order.
+ * The model against the mesh: kinematics, sections, contacts, goals, pairs of
+ * surfaces, and the parts in order.
  */
 #include "base/memory.h"
+#include "mesh/crack/crack.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
 #include "model/facts.h"
@@ -286,6 +288,296 @@ static void check_entries(const model *m) {
                 reads);
     return;
   }
+}
+
+/* ---- the places of *GOAL ------------------------------------------------ */
+
+static const double NEAR = 1e-6; /* -, of the size of the mesh */
+
+static double distance_to(const mesh *msh, int node_id, const double *x) {
+  double d = 0.0;
+  for (int c = 0; c < msh->dim; ++c)
+    d = hypot(d, msh->x[msh->dim * node_id + c] - x[c]);
+  return d;
+}
+
+/* The node nearest to a point, and how far it is, m. */
+static int nearest_node(const mesh *msh, const double *x, double *distance) {
+  int best = -1;
+  *distance = HUGE_VAL;
+  for (int i = 0; i < msh->n_node; ++i) {
+    const double d = distance_to(msh, i, x);
+    if (d >= *distance) continue;
+    *distance = d;
+    best = i;
+  }
+  return best;
+}
+
+/* The node of point k of a goal. */
+static int find_point(const model *m, const mesh *msh, const goal_card *g,
+                      int k) {
+  double distance;
+  const int id = nearest_node(msh, g->point[k], &distance);
+  const double *x = msh->x + msh->dim * id;
+  if (distance > NEAR * msh->size && g->quantity == GOAL_DISPLACEMENT)
+    message_add(m->log, P2021, &g->point_at[k],
+                "*GOAL %s: no node of the mesh is at this point, the nearest "
+                "is %zu at (%g, %g, %g)%s",
+                g->name, msh->node_no[id], x[0], x[1],
+                msh->dim == 3 ? x[2] : msh->z,
+                model_has_target(m) ? "; TARGET= meshes again: make it a "
+                                      "Point of the .geo"
+                                    : "");
+  return id;
+}
+
+/* The node of the front nearest to the point of a goal; P2021 if the point is
+ * further from it than the next node is. */
+static int find_front(const model *m, const mesh *msh, const goal_card *g) {
+  const mesh_crack *c = &msh->crack[g->crack_id];
+  const int dim = msh->dim, n = c->front_start[c->n_front];
+  int best = -1;
+  double least = HUGE_VAL, reach = NEAR * msh->size;
+  for (int i = 0; i < n; ++i) {
+    const double d = distance_to(msh, c->front_node[i], g->point[0]);
+    if (d < least) best = i;
+    least = fmin(d, least);
+  }
+  for (int i = best < 1 ? 0 : best - 1; dim == 3 && i <= best && i < n - 1; ++i)
+    if (best >= 0 && c->front_face[i] >= 0)
+      reach = fmax(reach, distance_to(msh, c->front_node[i],
+                                      msh->x + dim * c->front_node[i + 1]));
+  if (best >= 0 && least <= reach) return c->front_node[best];
+  message_add(m->log, P2021, &g->point_at[0],
+              "*GOAL %s: the front of *CRACK %s does not pass this point",
+              g->name, m->mesh.cracks[g->crack_id].name);
+  return -1;
+}
+
+/* 1: a mesh of this dimension has the component; in the plane moments turn
+ * about z, and on an axis there are none. */
+static int has_component(const model *m, const mesh *msh, const goal_card *g) {
+  if (g->component - GOAL_TENSOR >= m->ns) return 0;
+  if (g->component >= GOAL_NORMAL) return 1;
+  if (g->quantity == GOAL_MOMENT && msh->dim == 2 && m->n.section > 0)
+    return g->component == 2 && m->sections[0].kin != AXISYMMETRIC;
+  return g->component < msh->dim;
+}
+
+static void check_goal(const model *m, const mesh *msh, goal_card *g) {
+  if (g->quantity == GOAL_SIF && g->crack_id < 0) return;
+  if (g->n_point > 0)
+    g->node_id = g->quantity == GOAL_SIF ? find_front(m, msh, g)
+                                         : find_point(m, msh, g, 0);
+  if (g->n_point > 1) g->from_node_id = find_point(m, msh, g, 1);
+  if (g->from != NULL) g->from_id = check_group(m, msh, g->from, &g->from_at);
+  if (g->group != NULL && g->quantity == GOAL_STRESS)
+    g->group_id = check_group_of(m, msh, g->group, msh->dim, &g->group_at);
+  else if (g->group != NULL)
+    g->group_id = check_group(m, msh, g->group, &g->group_at);
+  if (g->quantity == GOAL_SIF && m->n.section > 0 &&
+      m->sections[0].kin == AXISYMMETRIC)
+    message_add(m->log, P2024, &g->at,
+                "*GOAL %s: there are no stress intensity factors of "
+                "axisymmetric bodies",
+                g->name);
+  else if (!has_component(m, msh, g))
+    message_add(m->log, P2024, &g->at,
+                "*GOAL %s: a mesh in %d-D has no such component", g->name,
+                msh->dim);
+}
+
+static void check_goals(model *m, const mesh *msh) {
+  for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
+}
+
+/* ---- surfaces of *CONTACT PAIR and *TIE, and which is the slave --------- */
+
+/* The deck's card of two surfaces. */
+typedef struct pair_card {
+  const char *card, *name;
+  const place *at;
+} pair_card;
+
+/* From this ratio of the moduli on the softer surface is the slave: a stiff
+ * slave that the pair alone holds costs digits. */
+static const double stiff_ratio = 3.0;
+/* Sizes and moduli that differ less are equal. */
+static const double rounding = 1e-9;
+
+/* Mean over the faces of a group. */
+typedef struct surface_facts {
+  double size;    /* of a face, m */
+  double modulus; /* Pa */
+  int held;       /* 1: supports hold all of it */
+} surface_facts;
+
+/* E of the isotropic material with the means of C over all directions (Voigt
+ * 1889), the same in any axes: K = C_iijj/9, G = (3 C_ijij - C_iijj)/30, Pa. */
+static double mean_young(const double C[36]) {
+  double normal = 0.0, shear = 0.0, diagonal = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) normal += C[i + 6 * j];
+    diagonal += C[7 * i];
+    shear += C[7 * (3 + i)];
+  }
+  const double K = normal / 9.0;
+  const double G = (3.0 * (diagonal + 2.0 * shear) - normal) / 30.0;
+  return 9.0 * K * (G / (3.0 * K + G));
+}
+
+static surface_facts facts_of(const model *m, const mesh *msh,
+                              const unsigned char *fixed, int group_id) {
+  const mesh_group *g = &msh->group[group_id];
+  const int dim = msh->dim;
+  surface_facts f = {.held = 1};
+  double area = 0.0, normal[3];
+  for (int k = 0; k < g->n_item; ++k) {
+    const int face = g->item_id[k];
+    const section *s = &m->sections[m->elem_section[msh->face_elem[face]]];
+    area += mesh_face_normal(msh, face, normal) / g->n_item;
+    f.modulus += mean_young(m->materials[s->material_id].C) / g->n_item;
+  }
+  f.size = dim == 2 ? area : sqrt(area);
+  for (int k = 0; k < g->n_node; ++k)
+    for (int c = 0; c < dim; ++c) f.held &= fixed[dim * g->node_id[k] + c];
+  return f;
+}
+
+static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
+                   const int *group, surface_pair *p) {
+  surface_facts f[2];
+  for (int k = 0; k < 2; ++k) f[k] = facts_of(m, msh, fixed, group[k]);
+  const double ratio = f[1].modulus / f[0].modulus;
+  const char *why = "of equal size: the first";
+  p->slave = 0;
+  if (p->choice != SLAVE_AUTO) {
+    p->slave = p->choice == SLAVE_SECOND;
+    why = "by SLAVE=";
+  } else if (f[0].held != f[1].held) {
+    p->slave = f[0].held;
+    why = "the other is held";
+  } else if (fmax(ratio, 1.0 / ratio) >= stiff_ratio * (1.0 - rounding)) {
+    p->slave = ratio < 1.0;
+    why = "softer";
+  } else if (fabs(f[1].size - f[0].size) > rounding * f[0].size) {
+    p->slave = f[1].size > f[0].size;
+    why = "coarser";
+  }
+  snprintf(p->why, sizeof p->why, "%s", why);
+  p->slave_id = group[p->slave];
+  p->master_id = group[1 - p->slave];
+}
+
+static int shared_faces(const mesh_group *a, const mesh_group *b,
+                        unsigned char *seen) {
+  int n = 0;
+  for (int k = 0; k < a->n_item; ++k) seen[a->item_id[k]] = 1;
+  for (int k = 0; k < b->n_item; ++k) n += seen[b->item_id[k]];
+  return n;
+}
+
+static void check_inner(const model *m, const mesh *msh, const pair_card *c,
+                        int group_id, const place *at) {
+  const mesh_group *g = &msh->group[group_id];
+  for (int k = 0; k < g->n_item; ++k) {
+    const int face = g->item_id[k];
+    if (msh->face_other[face] < 0) continue;
+    message_add(m->log, P4001, at,
+                "*%s %s: a face of group %s lies inside the body, at node %zu",
+                c->card, c->name, g->name,
+                msh->node_no[msh->face[msh->dim * face]]);
+    return;
+  }
+}
+
+/* Groups of the two surfaces into group[2]. */
+static status check_surfaces(const model *m, const mesh *msh,
+                             const pair_card *c, const surface_pair *p,
+                             int *group) {
+  OWNED unsigned char *seen = NULL;
+  PASS_NEW(seen, msh->n_face);
+  for (int k = 0; k < 2; ++k) {
+    if (p->group[k][0] == '\0') return OK;
+    group[k] =
+        check_group_of(m, msh, p->group[k], msh->dim - 1, &p->group_at[k]);
+    if (group[k] < 0) return OK;
+    check_inner(m, msh, c, group[k], &p->group_at[k]);
+  }
+  const mesh_group *a = &msh->group[group[0]], *b = &msh->group[group[1]];
+  const int n = shared_faces(a, b, seen);
+  if (n > 0)
+    message_add(m->log, P2060, c->at,
+                "*%s %s: groups %s and %s have %d common face%s", c->card,
+                c->name, a->name, b->name, n, n == 1 ? "" : "s");
+  return OK;
+}
+
+static int is_lost(const model *m) { return message_count(m->log, ERROR) > 0; }
+
+static void check_same_surfaces(const model *m, int id) {
+  const contact *c = &m->contacts[id];
+  for (int i = 0; i < id; ++i) {
+    const contact *old = &m->contacts[i];
+    const surface_pair *a = &c->pair, *b = &old->pair;
+    if (!old->is_pair ||
+        a->slave_id + a->master_id != b->slave_id + b->master_id)
+      continue;
+    if (a->slave_id == b->slave_id || a->slave_id == b->master_id)
+      message_add(m->log, P2011, &c->at,
+                  "contact pair %s has the surfaces of contact pair %s",
+                  c->name, old->name);
+  }
+}
+
+static status check_contact_pair(model *m, const mesh *msh,
+                                 const unsigned char *fixed, int id) {
+  contact *c = &m->contacts[id];
+  const pair_card of = {"CONTACT PAIR", c->name, &c->at};
+  int group[2] = {-1, -1};
+  if (!c->is_pair) return OK;
+  PASS(check_surfaces(m, msh, &of, &c->pair, group));
+  if (is_lost(m)) return OK;
+  choose(m, msh, fixed, group, &c->pair);
+  c->group_id = c->pair.slave_id;
+  c->group = msh->group[c->group_id].name;
+  c->obstacle_name = msh->group[c->pair.master_id].name;
+  check_same_surfaces(m, id);
+  return OK;
+}
+
+status model_open_cracks(model *m, mesh *msh) {
+  const int n = m->n.crack;
+  OWNED mesh_cut *cut = NULL;
+  if (n == 0 || msh->n_crack > 0) return OK;
+  PASS_NEW(cut, n);
+  for (int i = 0; i < n; ++i) {
+    crack *k = &m->mesh.cracks[i];
+    const int id = check_group(m, msh, k->group, &k->group_at);
+    if (id < 0) return message_status(m->log, ERR_DECK);
+    cut[i] = (mesh_cut){&msh->group[id], &k->group_at};
+  }
+  PASS_NEW(msh->crack, n);
+  msh->n_crack = n;
+  return mesh_open(msh, n, cut, m->log, msh->crack);
+}
+
+static status check_pairs(model *m, const mesh *msh) {
+  OWNED unsigned char *fixed = NULL;
+  if (!model_has_pairs(m)) return OK;
+  PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
+  if (!is_lost(m) && m->n.step > 0) load_fixed(m, msh, &m->steps[0], fixed);
+  for (int i = 0; i < m->n.contact; ++i)
+    PASS(check_contact_pair(m, msh, fixed, i));
+  for (int i = 0; i < m->n.tie; ++i) {
+    tie *t = &m->ties[i];
+    const pair_card of = {"TIE", t->name, &t->at};
+    int group[2] = {-1, -1};
+    PASS(check_surfaces(m, msh, &of, &t->pair, group));
+    if (!is_lost(m)) choose(m, msh, fixed, group, &t->pair);
+  }
+  return OK;
 }
 
 status model_check(model *m, const mesh *msh, effect_finder *find) {

@@ -1,8 +1,10 @@
 /*
- * Values: expressions give numbers where steps begin and end, supports agree
- * where groups meet.
+ * Values: loads and initial conditions against the mesh, expressions that give
+ * numbers where steps begin and end, supports that agree where groups meet;
+ * input without effect; increments of *VISCO steps against the laws.
  */
 #include "base/memory.h"
+#include "model/cards/cards.h"
 #include "model/check/parts.h"
 #include "model/field/field.h"
 
@@ -346,6 +348,347 @@ status check_agreement(const model *m, const mesh *msh, int step_id) {
       owner[dof] = i + 1;
       ud[dof] = value;
     }
+  }
+  return OK;
+}
+
+/* ---- input without effect is seldom intended ---------------------------- */
+
+/* 1 if the temperature changes something of the material. */
+static int feels_heat(const material *mat) {
+  return mat->expand.given || mat->elastic.n > 1 ||
+         (mat->law.ops != NULL &&
+          (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE));
+}
+
+/* Data of a material over temperature where no temperature is given. */
+static void check_material(const model *m, const material *mat) {
+  if (!mat->used || (m->effects & EFFECT_THERMAL)) return;
+  if (mat->expand.given)
+    message_add(m->log, P2058, &mat->at,
+                "material %s: *EXPANSION does nothing, as no temperature is "
+                "given",
+                mat->name);
+  if (mat->law.ops != NULL &&
+      (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE) != 0)
+    message_add(m->log, P2049, &mat->at,
+                "material %s: its law depends on temperature, but no "
+                "temperature is given: what it is at 0 is taken",
+                mat->name);
+}
+
+/* A step in which strains could flow. */
+static void check_flow(const model *m, const step *s) {
+  if (s->kind != STEP_VISCO) return;
+  for (int i = 0; i < m->n.material; ++i)
+    if (m->materials[i].used && m->materials[i].law.ops != NULL) return;
+  message_add(m->log, P2058, &s->at,
+              "*VISCO: no material has a law that flows; the step is "
+              "*QUASISTATIC");
+}
+
+/* 1 if some element of a group depends on the temperature. */
+static int group_feels_heat(const model *m, const mesh_group *g) {
+  for (int k = 0; k < g->n_item; ++k) {
+    const section *s = &m->sections[m->elem_section[g->item_id[k]]];
+    if (feels_heat(&m->materials[s->material_id])) return 1;
+  }
+  return 0;
+}
+
+/* A temperature that a card gives to a group. */
+static void check_heat(const model *m, const mesh *msh, const char *name,
+                       int group_id, const place *at) {
+  if (group_id < 0 || group_feels_heat(m, &msh->group[group_id])) return;
+  message_add(m->log, P2058, at,
+              "*%s on group %s does nothing: no material there has "
+              "*EXPANSION, *TRS or moduli over temperature",
+              name, msh->group[group_id].name);
+}
+
+/* z is zero in the plane, whatever the mesh has. */
+static void check_z(const model *m, const mesh *msh, const quantity *q,
+                    const char *name, const place *at) {
+  if (msh->dim == 3 || (quantity_variables(q) & 4u) == 0) return;
+  message_add(
+      m->log, P2058, at,
+      "*%s: the value depends on z, which is the same everywhere in 2-D", name);
+}
+
+static const char *card_of(const load *l) {
+  switch ((load_kind)l->kind) {
+    case LOAD_PRESSURE:
+    case LOAD_TRACTION:
+      return "DSLOAD";
+    case LOAD_BODY:
+    case LOAD_GRAVITY:
+      return "DLOAD";
+    case LOAD_TEMPERATURE:
+      return "TEMPERATURE";
+    case LOAD_POINT:
+      return "CLOAD";
+    default:
+      return "BOUNDARY";
+  }
+}
+
+/* On the axis u_r = 0, or the hoop strain u_r/r is without limit. */
+static void check_axis(const model *m, const mesh *msh, const step *s,
+                       const load *l) {
+  static const double rounding = 1e-9; /* of the size of the mesh */
+  if (l->kind != LOAD_FIXING || l->component != 0 || l->group_id < 0) return;
+  const mesh_group *g = &msh->group[l->group_id];
+  for (int k = 0; k < g->n_node; ++k) {
+    int node = g->node_id[k];
+    if (msh->x[(size_t)msh->dim * (size_t)node] > rounding * msh->size)
+      continue;
+    double u = load_at_node(l, msh, s, node, s->start + s->total);
+    if (u == 0.0) continue;
+    message_add(m->log, P2059, &l->at,
+                "*BOUNDARY: u_r = %g at node %zu on the axis of symmetry", u,
+                msh->node_no[node]);
+    return;
+  }
+}
+
+/* 1 if a time is in a step that prints at these times. */
+static int is_printed(const model *m, const time_points *p, double t) {
+  for (int i = 0; i < m->n.step; ++i) {
+    const step *s = &m->steps[i];
+    double first = p->total_time ? s->start : 0.0;
+    double rounding = 1e-9 * s->total;
+    if (t < first - rounding || t > first + s->total + rounding) continue;
+    for (int k = 0; k < s->print.n; ++k)
+      if (s->print.requests[k].points == p) return 1;
+  }
+  return 0;
+}
+
+static void check_times(const model *m, const time_points *p) {
+  int missed = 0, first = -1;
+  if (!p->used) return;
+  for (int i = 0; i < p->n; ++i) {
+    if (is_printed(m, p, p->t[i])) continue;
+    if (missed++ == 0) first = i;
+  }
+  if (missed > 0)
+    message_add(m->log, P2058, &p->at,
+                "*TIME POINTS, NAME=%s: %d of %d times, the first %g, in no "
+                "step that prints at them",
+                p->name, missed, p->n, p->t[first]);
+}
+
+static void check_friction(const model *m, const mesh *msh,
+                           const friction_rule *rule) {
+  if (rule->law == NULL) return;
+  check_z(m, msh, &rule->card.value, "FRICTION", &rule->value_at);
+  if (rule->law->value_name != NULL && !rule_has_friction(rule))
+    message_add(m->log, P2058, &rule->value_at,
+                "*FRICTION, LAW=%s: %s = 0 is no friction", rule->law->name,
+                rule->law->value_name);
+}
+
+static void check_contact(const model *m, const mesh *msh, const contact *c) {
+  check_friction(m, msh, &c->friction);
+  if (c->force.given)
+    check_z(m, msh, &c->force.value, "CONTACT FORCE", &c->force.value_at);
+  if (c->change.given)
+    check_z(m, msh, &c->change.value, "CONTACT PAIR", &c->change.at);
+}
+
+static void check_tables(const model *m, const step *s) {
+  const effect_card *wear = model_effect_card(m, "WEAR", -1);
+  if (wear != NULL && s->accuracy.time_balanced)
+    message_add(m->log, P2058, &s->accuracy.at,
+                "*ACCURACY, TIME=BALANCED: the increments stay those of the "
+                "step, as their error under *WEAR, line %d, is not known",
+                wear->at.line_no);
+  for (int k = 0; k < s->print.n; ++k)
+    if (s->print.requests[k].table == PRINT_WEAR &&
+        model_effect_card(m, "WEAR", -1) == NULL)
+      message_add(m->log, P2058, &s->print.requests[k].at,
+                  "*PRINT, WEAR: no contact has *WEAR");
+    else if (s->print.requests[k].table == PRINT_GOALS && m->n.goal == 0)
+      message_add(m->log, P2058, &s->print.requests[k].at,
+                  "*PRINT, GOALS: there is no *GOAL");
+    else if (s->print.requests[k].table == PRINT_SIF && m->n.crack == 0)
+      message_add(m->log, P2058, &s->print.requests[k].at,
+                  "*PRINT, SIF: there is no *CRACK");
+    else if (s->print.requests[k].table == PRINT_SIF &&
+             m->sections[0].kin == AXISYMMETRIC)
+      message_add(m->log, P2058, &s->print.requests[k].at,
+                  "*PRINT, SIF: there are no factors of axisymmetric bodies");
+}
+
+void check_no_effect(const model *m, const mesh *msh) {
+  int axisymmetric = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  for (int i = 0; i < m->n.points; ++i) check_times(m, &m->time.points[i]);
+  for (int i = 0; i < m->n.material; ++i) check_material(m, &m->materials[i]);
+  for (int i = 0; i < m->n.initial; ++i)
+    if (m->initial.lines[i].type == INITIAL_TEMPERATURE)
+      check_heat(m, msh, "INITIAL CONDITIONS", m->initial.lines[i].group_id,
+                 &m->initial.lines[i].at);
+  for (int i = 0; i < m->n.contact; ++i) check_contact(m, msh, &m->contacts[i]);
+  for (int i = 0; i < m->n.step; ++i) {
+    const step *s = &m->steps[i];
+    check_flow(m, s);
+    check_tables(m, s);
+    for (int k = 0; k < s->friction.n; ++k)
+      check_friction(m, msh, &s->friction.changes[k].rule);
+    for (int k = 0; k < s->loads.n; ++k) {
+      const load *l = &s->loads.item[k];
+      if (l->removed) continue;
+      if (l->kind == LOAD_TEMPERATURE)
+        check_heat(m, msh, "TEMPERATURE", l->group_id, &l->at);
+      check_z(m, msh, &l->value, card_of(l), &l->at);
+      if (axisymmetric) check_axis(m, msh, s, l);
+    }
+  }
+}
+
+/* ---- increments of *VISCO steps: stability, ringing, exact integrators,
+ * locking  */
+
+int step_has_limit(const step *s) {
+  return !s->visco.integrator->linear_only && s->visco.theta < 1.0;
+}
+
+/* THETA < 1 turns the sign of what is much faster than dt at each step. */
+static void report_ringing(const model *m, const step *s, double t, double dt,
+                           double rate) {
+  double theta = s->visco.theta, z = rate * dt;
+  if (s->visco.integrator->limit > 0.0 || (1.0 - theta) * z <= 1.0) return;
+  message_add(m->log, P2051, &s->at,
+              "step %d, time %g: dt = %.6g is %.4g times the shortest "
+              "relaxation time: THETA = %g multiplies what relaxes so fast by "
+              "%.4f at each increment",
+              (int)(s - m->steps) + 1, t, dt, z, theta,
+              (1.0 - (1.0 - theta) * z) / (1.0 + theta * z));
+}
+
+int step_level(const model *m, const step *s, double t, double dt, double rate,
+               int notify) {
+  enum { DEEPEST = 30 };
+  int level = 0;
+  double limit = scheme_limit(s->visco.integrator, s->visco.theta) / rate;
+  /* Ends of increments are sums: dt is known to the rounding of the time. */
+  double rounding = 4e-16 * (fabs(t) + dt);
+  if (notify) report_ringing(m, s, t, dt, rate);
+  while (ldexp(dt, -level) > limit + rounding && level < DEEPEST) ++level;
+  if (level == 0 || (s->visco.substeps && level < DEEPEST)) return level;
+  message_add(m->log, P2050, &s->at,
+              "step %d, time %g: %s is stable up to dt = %.9g (fastest rate "
+              "%.9g), not with dt = %.9g%s; give a smaller dt, %sor "
+              "INTEGRATOR=BACKWARD",
+              (int)(s - m->steps) + 1, t, s->visco.integrator->name, limit,
+              rate, dt, s->visco.substeps ? ", nor in 2^29 parts of it" : "",
+              s->visco.substeps ? "" : "SUBSTEPS=AUTO, ");
+  return -1;
+}
+
+static int is_constant(const material *mat) {
+  return mat->law.ops->linear && law_varies(&mat->law) == 0 &&
+         mat->elastic.n == 1;
+}
+
+/* Laws of the bodies under an integrator that is exact for constant ones. */
+static void check_exact(const model *m, int step_id) {
+  const step *s = &m->steps[step_id];
+  for (int i = 0; i < m->n.section; ++i) {
+    const material *mat = &m->materials[m->sections[i].material_id];
+    const law_card *law = &mat->law;
+    if (law->ops == NULL || is_constant(mat)) continue;
+    message_add(m->log, P2054, &s->at,
+                "step %d: INTEGRATOR=%s, but %s of material %s %s", step_id + 1,
+                s->visco.integrator->name, law->ops->name, mat->name,
+                !law->ops->linear ? "is not linear"
+                : law_varies(law) & LAW_VARIES_TIME
+                    ? "has coefficients that vary in time"
+                : law_varies(law) != 0 ? "depends on temperature"
+                                       : "has moduli that do");
+  }
+}
+
+/* The fastest rate of the laws whose Jacobian is the same for ever, 1/s. */
+static status constant_rate(const model *m, double *fastest) {
+  status st = OK;
+  static const double zero[FLOW_VALUE_MAX];
+  flow_kind kind = {0};
+  *fastest = 0.0;
+  for (int i = 0; i < m->n.section; ++i) {
+    const material *mat = &m->materials[m->sections[i].material_id];
+    law_elastic elastic;
+    law_point p;
+    double rate;
+    if (mat->law.ops == NULL || !is_constant(mat)) continue;
+    TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
+                         &elastic));
+    TRY(flow_new_kind(&kind, &mat->law, &elastic));
+    TRY(flow_coefficients(&kind, 0.0, 0.0, NULL, &p));
+    p.sigma = p.ei = p.alpha = zero;
+    TRY(law_fastest_rate(&p, &rate));
+    *fastest = fmax(*fastest, rate);
+    flow_kind_free(&kind);
+  }
+done:
+  flow_kind_free(&kind);
+  return st;
+}
+
+/* 1: a mean stress alone makes nothing flow, as far as a shear does. */
+static status keeps_volume(const section *s, const material *mat, int *answer) {
+  status st = OK;
+  static const double zero[FLOW_VALUE_MAX];
+  double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], ei_rate[6];
+  flow_kind kind = {0};
+  law_elastic elastic;
+  law_point p;
+  TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)s->kin, &elastic));
+  TRY(flow_new_kind(&kind, &mat->law, &elastic));
+  TRY(flow_coefficients(&kind, 0.0, 0.0, value, &p));
+  const double size = 1e-3 * elastic.young;
+  const double mean[6] = {size, size, size}, shear[6] = {0, 0, 0, size};
+  p.ei = p.alpha = zero;
+  p.speed = 1.0; /* whatever the temperature */
+  p.sigma = mean;
+  law_rate(&p, ei_rate, alpha_rate);
+  double swelling = fabs(tensor_trace(ei_rate));
+  p.sigma = shear;
+  law_rate(&p, ei_rate, alpha_rate);
+  *answer = swelling <= 1e-9 * fabs(ei_rate[3]);
+done:
+  flow_kind_free(&kind);
+  return st;
+}
+
+/* Bodies that creep at constant volume become incompressible. */
+static status check_creep(const model *m) {
+  for (int i = 0; i < m->n.section; ++i) {
+    const section *s = &m->sections[i];
+    const material *mat = &m->materials[s->material_id];
+    int locks = 0;
+    if (mat->law.ops == NULL || s->kin == PLANE_STRESS || s->averaged) continue;
+    PASS(keeps_volume(s, mat, &locks));
+    if (locks)
+      message_add(m->log, P2055, &s->at,
+                  "law %s of material %s creeps at constant volume: where its "
+                  "strains outgrow the elastic ones, linear elements lock",
+                  mat->law.ops->name, mat->name);
+  }
+  return OK;
+}
+
+status check_visco(const model *m) {
+  double rate;
+  if (!(m->effects & EFFECT_INELASTIC)) return OK;
+  PASS(constant_rate(m, &rate));
+  if (has_card(m, "VISCO")) PASS(check_creep(m));
+  for (int i = 0; i < m->n.step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->kind != STEP_VISCO) continue;
+    if (s->visco.integrator->linear_only) check_exact(m, i);
+    if (step_has_limit(s) && rate > 0.0)
+      step_level(m, s, s->start, s->dt, rate, 1);
   }
   return OK;
 }

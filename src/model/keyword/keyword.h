@@ -45,6 +45,12 @@ void keyword_parameters(const keyword *row, reading *r, card_options *param,
  */
 status model_from_deck(deck *d, message_log *log, model **out);
 
+/* resolve.c: names to ids once all cards are read. "lost": a card was refused,
+ * missing or unused names are not reported. */
+status model_resolve(model *m, int lost);
+/* 1: an unknown card has NAME= this. */
+int name_is_lost(const model *m, const char *name);
+
 /* The deck with all defaults written out, includes and parameters resolved;
  * reading it gives the same model. */
 status model_echo(const model *m, FILE *out);

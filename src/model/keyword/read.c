@@ -2,7 +2,7 @@
  * From cards to the model: the driver over the keyword table.
  */
 #include "base/memory.h"
-#include "model/keyword/parts.h"
+#include "model/keyword/keyword.h"
 
 #include <stdio.h>
 #include <string.h>

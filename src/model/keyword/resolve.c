@@ -3,7 +3,7 @@
  */
 #include "base/memory.h"
 #include "mesh/msh/geo.h"
-#include "model/keyword/parts.h"
+#include "model/keyword/keyword.h"
 
 #include <float.h>
 #include <math.h>
