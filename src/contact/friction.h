@@ -8,7 +8,7 @@
 #include "base/option.h"
 #include "contact/contact.h"
 #include "contact/surface.h"
-#include "deck/quantity.h"
+#include "deck/expression.h"
 
 typedef struct friction_limit {
   double *g0;             /* [n] N */

@@ -15,7 +15,7 @@
 #ifndef PROTIS_CONTACT_OBSTACLE_H
 #define PROTIS_CONTACT_OBSTACLE_H
 
-#include "deck/quantity.h"
+#include "deck/expression.h"
 
 typedef enum {
   OBSTACLE_CONFORMING, /* follows the body: gap 0 */

@@ -29,7 +29,7 @@
 #define PROTIS_DECK_DECK_H
 
 #include "base/message.h"
-#include "deck/quantity.h"
+#include "deck/expression.h"
 
 typedef struct field {
   const char *text; /* blanks around it cut, <NAME> replaced; "" if empty */

@@ -1,10 +1,10 @@
 /*
  * Private to src/deck: what the stages of the deck reader share.
  *
- *   source.c   physical lines of the files, includes as a stack of sources
- *   line.c     logical lines: comments cut, continuation joined, split at
- *              commas, <NAME> replaced
- *   symbol.c   *PARAMETER, -D, lookup of names
+ *   line.c     physical lines of the files, includes as a stack of sources;
+ *              logical lines: comments cut, continuation joined, split at
+ *              commas
+ *   value.c    *PARAMETER, -D, <NAME> replaced, fields and their values
  *   legacy.c   formats of fixed columns
  *   deck.c     cards and records
  *   store.c    the memory of a deck
@@ -62,7 +62,7 @@ const char *trim(const char *text, size_t n, size_t *length);
 /* Upper case, each run of blanks one blank. */
 char *store_name(deck *d, const char *text, size_t n);
 
-/* source.c --------------------------------------------------------------- */
+/* line.c: physical lines ------------------------------------------------- */
 
 /* A physical line that is neither blank nor comment, as text_shown writes it.
  * Valid until the next call for the same source. */
@@ -79,15 +79,13 @@ status source_open(deck *d, message_log *log, const char *file, const place *at,
                    source **top);
 /* Next line; *line NULL at the end of this file. */
 status source_next(source *s, message_log *log, const physical **line);
-/* Let source_next return the line of the last call once more. */
-void source_hold(source *s);
 void source_pop(source **top);
 /* A place in it. */
 place source_place(const source *s, int line_no, int column, const char *line);
 /* 1: messages show nothing of it. */
 int source_hidden(const source *s);
 
-/* line.c ----------------------------------------------------------------- */
+/* line.c: logical lines -------------------------------------------------- */
 
 typedef struct segment {
   int start; /* of the physical line in the logical one */
@@ -136,11 +134,12 @@ typedef struct piece {
  * Blanks around are cut. */
 piece logical_piece(const logical *l, int from, int nested);
 
-/* A field from a piece: quotes taken off, names replaced. "on_card": value of
- * a parameter, where a quoted name alone is text and not an expression. */
+/* value.c: a field from a piece: quotes taken off, names replaced. "on_card":
+ * value of a parameter, where a quoted name alone is text and not an
+ * expression. */
 status field_read(reader *r, piece p, int on_card, field *out);
 
-/* symbol.c --------------------------------------------------------------- */
+/* value.c ---------------------------------------------------------------- */
 
 /* store.c: the symbol of that name, case ignored, or NULL; symbol_use marks it
  * as used. A new symbol. */
@@ -156,11 +155,6 @@ status symbols_replace(reader *r, const char *text, size_t n, replacing how,
 /* One line under *PARAMETER, in r->line. */
 status symbols_define(reader *r);
 status symbols_from_command(reader *r, const char *define);
-/* Message of an expression that did not compile (the record says why), with
- * the nearest name. "column" is that of the error in text, from 0; the place
- * moves there if the line has the text as it is from byte "start" on. */
-void report_expression(const deck *d, message_log *log, const place *at,
-                       const char *text, int start, int column);
 
 /* legacy.c --------------------------------------------------------------- */
 

@@ -1,13 +1,287 @@
 /*
- * Fields of a line, and their values: numbers, quantities, names of files.
+ * Names of *PARAMETER and -D: definition, and replacement of <NAME>. Fields of
+ * a line, and their values: numbers, quantities, names of files.
  */
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/option.h"
 #include "base/text.h"
 #include "deck/reader.h"
 
 #include <math.h>
 #include <string.h>
+
+enum { ADVICE_MAX = 2000 }; /* names searched for the nearest */
+
+int deck_symbol(const void *deck_, const char *name, double *value) {
+  const symbol *s = symbol_use(deck_, name, strlen(name));
+  if (s != NULL) *value = s->value;
+  return s != NULL;
+}
+
+/* A .geo distinguishes upper and lower case. */
+static status keep_spelling(deck *d, symbol *s, const char *name, size_t n) {
+  PASS_GET(s->typed, store_text(d, name, n));
+  return OK;
+}
+
+static const char *next_symbol(const void *ctx, int i) {
+  const deck *d = ctx;
+  return i < d->n_symbol && i < ADVICE_MAX ? d->symbols[i].name : NULL;
+}
+
+enum { ADVICE_SIZE = 128 };
+
+/* "; did you mean NAME?", the name between two marks, or nothing. */
+static void advise(const deck *d, const message_log *log, const char *name,
+                   const char *marks, char advice[ADVICE_SIZE]) {
+  const char *near = NULL;
+  advice[0] = '\0';
+  if (message_wanted(log, ERROR)) near = nearest_word(name, next_symbol, d);
+  if (near != NULL)
+    snprintf(advice, ADVICE_SIZE, "; did you mean %.1s%s%s?", marks, near,
+             *marks != '\0' ? marks + 1 : "");
+}
+
+static void report_unknown(reader *r, const place *at, const char *name) {
+  char advice[ADVICE_SIZE];
+  advise(r->d, r->log, name, "<>", advice);
+  message_add(r->log, P1020, at, "unknown name <%s>%s", name, advice);
+}
+
+/* Message of an expression that did not compile (the record says why), with
+ * the nearest name. "column" is that of the error in text, from 0; the place
+ * moves there if the line has the text as it is from byte "start" on. */
+static void report_expression(const deck *d, message_log *log, const place *at,
+                              const char *text, int start, int column) {
+  static const char unknown[] = "unknown name ";
+  const char *why = status_message();
+  char advice[ADVICE_SIZE] = "";
+  place there = *at;
+  if (start >= 0 && at->line != NULL && (size_t)start <= strlen(at->line) &&
+      strncmp(at->line + start, text, strlen(text)) == 0)
+    there.column_no = start + column + 1;
+  if (strncmp(why, unknown, sizeof unknown - 1) == 0)
+    advise(d, log, why + sizeof unknown - 1, "", advice);
+  message_add(log, P1022, &there, "%.300s in expression '%.200s'%s", why, text,
+              advice);
+}
+
+/* Length of a name between < and >, or 0. */
+static size_t name_in_brackets(const char *p, const char *end) {
+  const char *q = p + 1;
+  if (q >= end || !is_name_start(*q)) return 0;
+  while (q < end && is_name_part(*q)) ++q;
+  return q < end && *q == '>' ? (size_t)(q - p - 1) : 0;
+}
+
+/* In an expression 0<x>1 is a comparison. */
+static int left_alone(replacing how, const char *name, size_t n) {
+  if (how == REPLACE_LENIENT) return 1;
+  return how == REPLACE_EXPRESSION && n == 1 &&
+         strchr("XYZT", upper_case(*name)) != NULL;
+}
+
+static status add_value(buffer *b, double value, replacing how) {
+  char digits[NUMBER_TEXT_SIZE];
+  const char *p = digits;
+  number_text(value, digits);
+  int in_parentheses = how == REPLACE_EXPRESSION && *p == '-';
+  if (how != REPLACE_EXPRESSION && *p == '-' && b->n == 1 &&
+      (b->text[0] == '-' || b->text[0] == '+')) {
+    p += b->text[0] == '-'; /* - of a negative value */
+    b->n = 0;
+  }
+  if (in_parentheses) PASS(buffer_add(b, "(", 1));
+  PASS(buffer_add(b, p, strlen(p)));
+  if (in_parentheses) PASS(buffer_add(b, ")", 1));
+  return OK;
+}
+
+/* Value of <NAME>; unknown: 1 after the message, so that no other follows. */
+static status add_named(reader *r, const char *name, size_t n, replacing how,
+                        const place *at) {
+  const symbol *s = symbol_use(r->d, name, n);
+  if (s == NULL && left_alone(how, name, n)) {
+    PASS(buffer_add(&r->scratch, name - 1, n + 2));
+  } else if (s == NULL) {
+    const char *unknown = store_name(r->d, name, n);
+    if (unknown == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
+    report_unknown(r, at, unknown);
+    PASS(buffer_add(&r->scratch, "1", 1));
+  } else {
+    PASS(add_value(&r->scratch, s->value, how));
+  }
+  return OK;
+}
+
+status symbols_replace(reader *r, const char *text, size_t n, replacing how,
+                       const place *at, const char **out) {
+  const char *p = text, *end = text + n;
+  const char *open = n > 0 ? memchr(p, '<', n) : NULL;
+  r->scratch.n = 0;
+  while (open != NULL) {
+    size_t length = name_in_brackets(open, end);
+    size_t before = (size_t)(open - p) + (length == 0);
+    PASS(buffer_add(&r->scratch, p, before));
+    p += before;
+    if (length > 0) {
+      place there = *at;
+      there.column_no += (int)(open - text);
+      PASS(add_named(r, open + 1, length, how, &there));
+      p = open + length + 2;
+    }
+    open = p < end ? memchr(p, '<', (size_t)(end - p)) : NULL;
+  }
+  PASS(buffer_add(&r->scratch, p, (size_t)(end - p)));
+  *out = store_text(r->d, r->scratch.text, (size_t)r->scratch.n);
+  if (*out == NULL) RAISE(ERR_MEMORY, "memory exhausted: text");
+  return OK;
+}
+
+typedef enum { NO_EXPRESSION, VARIES, NOT_FINITE, CONSTANT } evaluated;
+
+/* What a text is, with its value if that is a constant; no expression: the
+ * record says why, *column where. ERR_MEMORY. */
+static status evaluate(const deck *d, const char *text, evaluated *what,
+                       double *value, int *column) {
+  const double origin[3] = {0, 0, 0};
+  expression *e = NULL;
+  status st = expression_compile(text, deck_symbol, d, &e, column);
+  *what = NO_EXPRESSION;
+  if (st == ERR_DECK) return OK;
+  PASS(st);
+  const int varies = expression_variables(e) != 0;
+  *value = varies ? 0.0 : expression_value(e, origin, 0);
+  *what = varies ? VARIES : isfinite(*value) ? CONSTANT : NOT_FINITE;
+  expression_free(e);
+  return OK;
+}
+
+/* Value of an expression that must not depend on place and time; 1 after a
+ * message. "start": byte of the text in the line, for the column. */
+static status constant_value(reader *r, const char *text, int start,
+                             const place *at, double *value) {
+  evaluated what;
+  int column;
+  PASS(evaluate(r->d, text, &what, value, &column));
+  if (what == CONSTANT) return OK;
+  *value = 1;
+  if (what == NO_EXPRESSION)
+    report_expression(r->d, r->log, at, text, start, column);
+  else if (what == VARIES)
+    message_add(r->log, P1022, at,
+                "'%.200s' depends on x, y, z or t; a parameter of that name "
+                "is written <NAME>",
+                text);
+  else
+    message_add(r->log, P1023, at, "'%.200s' is not finite", text);
+  return OK;
+}
+
+/* The value part of NAME = VALUE. 1.5+03 alone is a number, as anywhere. */
+static status definition_value(reader *r, const char *text, size_t n,
+                               const place *at, double *value) {
+  const char *replaced, *raw = store_text(r->d, text, n);
+  if (raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: definition");
+  if (strchr(raw, '.') != NULL && number_bare_exponent(raw) &&
+      number_real(raw, value) == NULL)
+    return OK;
+  PASS(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &replaced));
+  return constant_value(r, replaced, at->column_no - 1, at, value);
+}
+
+typedef struct definition {
+  const char *name, *value;
+  size_t n_name, n_value;
+} definition;
+
+/* Cut NAME = VALUE; NULL, or what is wrong. */
+static const char *cut_definition(const char *text, size_t n, definition *d) {
+  const char *end = text + n, *equals = n > 0 ? memchr(text, '=', n) : NULL;
+  if (equals == NULL) return "NAME = VALUE expected";
+  d->name = trim(text, (size_t)(equals - text), &d->n_name);
+  d->value = trim(equals + 1, (size_t)(end - equals - 1), &d->n_value);
+  if (d->n_name == 0) return "no name before the equals sign";
+  for (size_t i = 0; i < d->n_name; ++i)
+    if (!is_name_part(d->name[i]) || !is_name_start(d->name[0]))
+      return "a name is a letter followed by letters, digits and underscores";
+  if (d->n_value > 0 && d->value[0] == '=') return "one equals sign expected";
+  if (d->n_value > 1 && d->value[0] == '"' && d->value[d->n_value - 1] == '"') {
+    ++d->value;
+    d->n_value -= 2;
+  }
+  d->value = trim(d->value, d->n_value, &d->n_value);
+  return d->n_value == 0 ? "no value after the equals sign" : NULL;
+}
+
+static void warn_of_variable(reader *r, const symbol *s, const place *at) {
+  if (strcmp(s->name, "PI") != 0 &&
+      (s->name[1] != '\0' || strchr("XYZT", s->name[0]) == NULL))
+    return;
+  message_add(r->log, P1034, at,
+              "%s keeps its own meaning in expressions; the value is <%s>",
+              s->name, s->name);
+}
+
+static status define_piece(reader *r, piece p) {
+  const char *text = r->line.all.text;
+  definition def;
+  double value = 1;
+  place at = logical_place(&r->line, p.start);
+  const char *wrong = cut_definition(text + p.start, (size_t)p.length, &def);
+  if (wrong != NULL) {
+    message_add(r->log, P1019, &at, "%s", wrong);
+    return OK;
+  }
+  symbol *s = symbol_find(r->d, def.name, def.n_name);
+  if (s != NULL && s->at.file != NULL) {
+    message_add(r->log, P1021, &at, "%s is defined already, in %s:%d", s->name,
+                s->at.file, s->at.line_no);
+    return OK;
+  }
+  place value_at = logical_place(&r->line, (int)(def.value - text));
+  PASS(definition_value(r, def.value, def.n_value, &value_at, &value));
+  if (s == NULL) PASS(symbol_add(r->d, def.name, def.n_name, &s));
+  PASS(keep_spelling(r->d, s, def.name, def.n_name));
+  if (!s->overridden) s->value = value;
+  s->at = at;
+  warn_of_variable(r, s, &at);
+  return OK;
+}
+
+status symbols_define(reader *r) {
+  piece p = {.next = 0};
+  while (p.next >= 0) {
+    p = logical_piece(&r->line, p.next, 1);
+    if (p.length == 0 && p.next < 0) break;
+    PASS(define_piece(r, p));
+  }
+  return OK;
+}
+
+status symbols_from_command(reader *r, const char *define) {
+  definition def;
+  double value = 1;
+  const place at = {.file = "command line"};
+  const char *wrong = cut_definition(define, strlen(define), &def);
+  symbol *s = NULL;
+  if (wrong == NULL) s = symbol_find(r->d, def.name, def.n_name);
+  if (s != NULL) wrong = "the name is defined already";
+  if (wrong != NULL) {
+    message_add(r->log, P1026, &at, "-D %.200s: %s", define, wrong);
+    return OK;
+  }
+  PASS(definition_value(r, def.value, def.n_value, &at, &value));
+  PASS(symbol_add(r->d, def.name, def.n_name, &s));
+  PASS(keep_spelling(r->d, s, def.name, def.n_name));
+  s->value = value;
+  s->overridden = 1;
+  warn_of_variable(r, s, &at);
+  return OK;
+}
+
+/* ---- values ------------------------------------------------------------- */
 
 static int report_number(const field *f, message_log *log, message_id id,
                          const char *kind, const char *why) {
@@ -37,8 +311,9 @@ int deck_int(const field *f, message_log *log, int *out) {
 }
 
 /* Compile; the deck owns the expression. */
-static status compile(deck *d, const char *text, const char *const names[4],
-                      const expression **out, int *column) {
+static status compile_owned(deck *d, const char *text,
+                            const char *const names[4], const expression **out,
+                            int *column) {
   struct deck_text *own = d->own;
   expression *e = NULL;
   *column = -1;
@@ -64,7 +339,7 @@ int deck_formula(deck *d, const field *f, const char *const names[4],
   *out = NULL;
   if (*f->text == '\0')
     return report_number(f, log, P1024, "a number or an expression", "empty");
-  status st = compile(d, f->text, names, out, &column);
+  status st = compile_owned(d, f->text, names, out, &column);
   if (st == OK) return 0;
   if (st == ERR_MEMORY)
     message_memory(log);
@@ -139,25 +414,19 @@ static int is_name_alone(const char *text) {
 }
 
 /* A quoted field without variables becomes the digits of its value; *valid:
- * it is an expression at all. */
+ * it is an expression at all. What is wrong is reported by the caller that
+ * needs a value. */
 static status settle_constant(reader *r, field *f, int *valid) {
-  status st = OK;
-  expression *e = NULL;
+  evaluated what;
   int column;
-  const double origin[3] = {0, 0, 0};
+  double value;
   char digits[NUMBER_TEXT_SIZE];
-  st = expression_compile(f->text, deck_symbol, r->d, &e, &column);
-  if (st == ERR_DECK) st = OK; /* reported by the caller that needs a value */
-  TRY(st);
-  *valid = e != NULL;
-  if (e == NULL || expression_variables(e) != 0) goto done;
-  double value = expression_value(e, origin, 0);
-  if (!isfinite(value)) goto done;
+  PASS(evaluate(r->d, f->text, &what, &value, &column));
+  *valid = what != NO_EXPRESSION;
+  if (what != CONSTANT) return OK;
   number_text(value, digits);
-  GET(f->text, store_text(r->d, digits, strlen(digits)));
-done:
-  expression_free(e);
-  return st;
+  PASS_GET(f->text, store_text(r->d, digits, strlen(digits)));
+  return OK;
 }
 
 /* <NAME>+3 with a number put in would be read as mantissa and exponent. */

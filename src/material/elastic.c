@@ -340,7 +340,7 @@ void elastic_table_free(elastic_table *t) {
   *t = (elastic_table){0};
 }
 
-/* The tables of deck/quantity.h know the temperature as their variable t. */
+/* The tables of deck/expression.h know the temperature as their variable t. */
 static double secant(const value_table *alpha, double T) {
   static const double origin[3];
   return table_value(alpha, origin, T);

@@ -11,7 +11,7 @@
 
 #include "base/message.h"
 #include "base/status.h"
-#include "deck/quantity.h"
+#include "deck/expression.h"
 
 typedef enum { PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC, SOLID_3D } kinematics;
 #define KINEMATICS_WORDS \

@@ -8,7 +8,6 @@
 #include "contact/friction.h"
 #include "contact/surface.h"
 #include "deck/deck.h"
-#include "deck/quantity.h"
 #include "material/law/law.h"
 #include "material/material.h"
 #include "mesh/mesh.h"

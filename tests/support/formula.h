@@ -4,7 +4,7 @@
 #ifndef PROTIS_TESTS_FORMULA_H
 #define PROTIS_TESTS_FORMULA_H
 
-#include "deck/quantity.h"
+#include "deck/expression.h"
 
 /* q = the expression; check fails if it is none. */
 void formula_compile(quantity *q, const char *text);

@@ -546,8 +546,7 @@ void check_no_effect(const model *m, const mesh *msh) {
   }
 }
 
-/* ---- increments of *VISCO steps: stability, ringing, exact integrators,
- * locking  */
+/* ---- increments of *VISCO steps: stability, ringing, locking ------------- */
 
 int step_has_limit(const step *s) {
   return !s->visco.integrator->linear_only && s->visco.theta < 1.0;
