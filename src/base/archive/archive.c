@@ -286,26 +286,24 @@ static status list_items(const archive *a, char **out) {
 
 static status write_dataset(hid_t file, const char *path, const char *name,
                             hid_t type, size_t n, const void *data) {
-  status st = OK;
   hsize_t dims[1] = {n};
-  hid_t space = H5Screate_simple(1, dims, NULL);
-  hid_t links = H5Pcreate(H5P_LINK_CREATE),
-        plain = H5Pcreate(H5P_DATASET_CREATE);
+  HELD hid_t space = H5Screate_simple(1, dims, NULL);
+  HELD hid_t links = H5Pcreate(H5P_LINK_CREATE);
+  HELD hid_t plain = H5Pcreate(H5P_DATASET_CREATE);
   hid_t set = -1;
   errno = 0;
   if (space >= 0 && links >= 0 && plain >= 0 &&
       H5Pset_create_intermediate_group(links, 1) >= 0 &&
       H5Pset_obj_track_times(plain, 0) >= 0)
     set = H5Dcreate2(file, name, type, space, links, plain, H5P_DEFAULT);
-  if (set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
-    TRY(text_failed(path, "write", errno));
-done:
-  if (set >= 0 && H5Dclose(set) < 0 && st == OK)
-    st = text_failed(path, "write", errno);
-  if (plain >= 0) H5Pclose(plain);
-  if (links >= 0) H5Pclose(links);
-  if (space >= 0) H5Sclose(space);
-  return st;
+  int bad =
+      set < 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0;
+  int why = errno;
+  if (set >= 0 && H5Dclose(set) < 0 && !bad) {
+    bad = 1;
+    why = errno;
+  }
+  return bad ? text_failed(path, "write", why) : OK;
 }
 
 static status put_items(const archive *a, hid_t file, const char *path) {
@@ -324,7 +322,8 @@ static status put_items(const archive *a, hid_t file, const char *path) {
 
 static status make_file(const archive *a, const char *path) {
   status st = OK;
-  hid_t file = -1, creation = H5Pcreate(H5P_FILE_CREATE);
+  hid_t file = -1;
+  HELD hid_t creation = H5Pcreate(H5P_FILE_CREATE);
   TRY(file_clear(path));
   errno = 0;
   if (creation >= 0 && H5Pset_userblock(creation, ARCHIVE_SEAL) >= 0)
@@ -337,7 +336,6 @@ static status make_file(const archive *a, const char *path) {
 done:
   if (file >= 0 && H5Fclose(file) < 0 && st == OK)
     st = text_failed(path, "close", errno);
-  if (creation >= 0) H5Pclose(creation);
   return st;
 }
 
@@ -361,42 +359,31 @@ done:
 
 /* ---- reading ------------------------------------------------------------ */
 
-static status damaged(const char *path, const char *why) {
-  return status_fail(ERR_FILE, __func__, __LINE__, "%s: %s", path, why);
-}
-
 /* Length of a dataset of this type, or -1. */
 static hssize_t length_of(hid_t set) {
-  hid_t space = set >= 0 ? H5Dget_space(set) : -1;
-  hssize_t n = space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
-  if (space >= 0) H5Sclose(space);
-  return n;
+  HELD hid_t space = set >= 0 ? H5Dget_space(set) : -1;
+  return space >= 0 ? H5Sget_simple_extent_npoints(space) : -1;
 }
 
 /* n items of "size" bytes into a new array; one byte more, zero. */
 static status get(hid_t file, const char *path, const char *name, hid_t type,
                   size_t size, size_t *n, void **out) {
-  status st = OK;
   const hdf5_source source = {.path = path, .file = file};
-  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  hid_t stored = set >= 0 ? H5Dget_type(set) : -1;
+  HELD hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  HELD hid_t stored = set >= 0 ? H5Dget_type(set) : -1;
   hssize_t length = length_of(set);
   *out = NULL;
   if (length < 0 || (*n > 0 && (size_t)length != *n) ||
       H5Tequal(stored, type) <= 0 ||
       H5Dget_storage_size(set) != size * (hsize_t)length)
-    TRY(damaged(path, "the restart file is damaged: an array is missing"));
+    return refuse(path, "the restart file is damaged: an array is missing");
   if (dataset_check(&source, name, set, (hsize_t)length) != OK)
-    TRY(damaged(path, "the restart file is damaged: an array is elsewhere"));
+    return refuse(path, "the restart file is damaged: an array is elsewhere");
   *n = (size_t)length;
-  *out = memory_new(*n * size + 1, 1);
-  if (*out == NULL) FAIL(ERR_MEMORY, "memory exhausted: %s", path);
+  PASS_GET(*out, memory_new(*n * size + 1, 1));
   if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *out) < 0)
-    TRY(damaged(path, "the restart file is damaged: an array is cut short"));
-done:
-  if (stored >= 0) H5Tclose(stored);
-  if (set >= 0) H5Dclose(set);
-  return st;
+    return refuse(path, "the restart file is damaged: an array is cut short");
+  return OK;
 }
 
 static status get_item(hid_t file, archive *a, const char *line) {
@@ -407,7 +394,7 @@ static status get_item(hid_t file, archive *a, const char *line) {
   archive_item *i = NULL;
   if (sscanf(line, "%d %zu %199[^\n]", &kind, &n, name) != 3 || kind < 0 ||
       kind > ARCHIVE_BYTE || n == 0)
-    PASS(damaged(a->path, "the restart file is damaged: its list"));
+    PASS(refuse(a->path, "the restart file is damaged: its list"));
   PASS(archive_add(a, name, (archive_kind)kind, n, &i));
   snprintf(whole, sizeof whole, "/data/%s", name);
   PASS(get(file, a->path, whole, type_of(i->kind), size[kind], &n, &i->own));
@@ -430,7 +417,7 @@ static status get_items(hid_t file, archive *a) {
 status archive_read(const char *path, archive **out) {
   status st = OK;
   archive *a = NULL;
-  hid_t file = -1;
+  HELD hid_t file = -1;
   *out = NULL;
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
@@ -439,12 +426,11 @@ status archive_read(const char *path, archive **out) {
   NEW(a, 1);
   GET(a->path, memory_text(path));
   file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) TRY(damaged(path, "this is no restart file of Protis"));
+  if (file < 0) TRY(refuse(path, "this is no restart file of Protis"));
   TRY(get_items(file, a));
   *out = a;
   a = NULL;
 done:
-  if (file >= 0) H5Fclose(file);
   archive_free(a);
   return st;
 }

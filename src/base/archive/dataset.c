@@ -18,6 +18,10 @@ enum {
   LARGE_PART = 1 << 20 /* items */
 };
 
+void dataset_leave(hid_t *id) {
+  if (*id >= 0) H5Idec_ref(*id);
+}
+
 /* By the descriptor: the name may refer to another file by now. */
 status dataset_open(const char *path, hdf5_source *s) {
   const char *why = NULL;
@@ -65,18 +69,15 @@ int source_has(const hdf5_source *s, const char *name) {
 /* The library allocates buffers of the size that a damaged type states. */
 static status check_type(const hdf5_source *s, const char *name, int real,
                          hid_t set) {
-  status st = OK;
-  hid_t type = H5Dget_type(set);
+  HELD hid_t type = H5Dget_type(set);
   H5T_class_t kind = H5Tget_class(type);
   if (kind != H5T_INTEGER && !(real && kind == H5T_FLOAT))
-    FAIL(ERR_DECK, "%s: %s does not hold %s", s->path, name,
-         real ? "real numbers" : "integers");
+    RAISE(ERR_DECK, "%s: %s does not hold %s", s->path, name,
+          real ? "real numbers" : "integers");
   if (H5Tget_size(type) > MOST_BYTES)
-    FAIL(ERR_DECK, "%s: %s has numbers of %zu bytes", s->path, name,
-         H5Tget_size(type));
-done:
-  if (type >= 0) H5Tclose(type);
-  return st;
+    RAISE(ERR_DECK, "%s: %s has numbers of %zu bytes", s->path, name,
+          H5Tget_size(type));
+  return OK;
 }
 
 static int may_pack(H5Z_filter_t filter) {
@@ -97,79 +98,64 @@ static hsize_t part_items(hid_t made) {
 /* Where the data are stored, and their filters. */
 static status check_storage(const hdf5_source *s, const char *name, hid_t set,
                             hsize_t items) {
-  status st = OK;
-  hid_t made = H5Dget_create_plist(set);
-  if (made < 0) FAIL(ERR_DECK, "%s: %s is damaged", s->path, name);
+  HELD hid_t made = H5Dget_create_plist(set);
+  if (made < 0) RAISE(ERR_DECK, "%s: %s is damaged", s->path, name);
   if (H5Pget_layout(made) == H5D_VIRTUAL || H5Pget_external_count(made) != 0)
-    FAIL(ERR_DECK, "%s: the data of %s stand in other files", s->path, name);
+    RAISE(ERR_DECK, "%s: the data of %s stand in other files", s->path, name);
   hsize_t part = part_items(made);
   if (part > items && part > LARGE_PART)
-    FAIL(ERR_DECK, "%s: %s has %llu items, but parts of %llu", s->path, name,
-         (unsigned long long)items, (unsigned long long)part);
+    RAISE(ERR_DECK, "%s: %s has %llu items, but parts of %llu", s->path, name,
+          (unsigned long long)items, (unsigned long long)part);
   for (int k = 0; k < H5Pget_nfilters(made); ++k) {
     unsigned flags, info;
     size_t n = 0;
     H5Z_filter_t filter =
         H5Pget_filter2(made, (unsigned)k, &flags, &n, NULL, 0, NULL, &info);
     if (!may_pack(filter))
-      FAIL(ERR_DECK, "%s: %s is packed by filter %d; only deflate is read",
-           s->path, name, (int)filter);
+      RAISE(ERR_DECK, "%s: %s is packed by filter %d; only deflate is read",
+            s->path, name, (int)filter);
   }
-done:
-  if (made >= 0) H5Pclose(made);
-  return st;
+  return OK;
 }
 
 /* The number of items must be possible with the bytes of the file: a dataset
  * that was never written, or is damaged, would be any number of zeros. */
 status dataset_check(const hdf5_source *s, const char *name, hid_t set,
                      hsize_t items) {
-  status st = OK;
-  hid_t type = H5Dget_type(set);
+  HELD hid_t type = H5Dget_type(set);
   hsize_t size = 0, stored = H5Dget_storage_size(set);
   hsize_t bytes = items * (hsize_t)H5Tget_size(type);
-  TRY(check_storage(s, name, set, items));
+  PASS(check_storage(s, name, set, items));
   if (H5Fget_filesize(s->file, &size) < 0 || stored > size ||
       bytes / MOST_PACKED > stored)
-    FAIL(ERR_DECK, "%s: %s has %llu items, and %llu bytes in the file", s->path,
-         name, (unsigned long long)items, (unsigned long long)stored);
-done:
-  if (type >= 0) H5Tclose(type);
-  return st;
+    RAISE(ERR_DECK, "%s: %s has %llu items, and %llu bytes in the file",
+          s->path, name, (unsigned long long)items, (unsigned long long)stored);
+  return OK;
 }
 
-/* The dataset opened, its kind and number of items checked; *set = -1 if it
- * is not there and may be missing. */
+/* The dataset opened, its kind and number of items checked; *set (-1 before)
+ * stays if it is not there and may be missing. */
 static status open_set(const hdf5_source *s, const char *name, int optional,
                        int real, long most, hid_t *set, long *n) {
-  status st = OK;
-  hid_t space = -1;
-  *set = -1;
   *n = 0;
   if (!source_has(s, name)) {
-    if (optional) goto done;
-    FAIL(ERR_DECK, "%s: there is no dataset %s in this file", s->path, name);
+    if (optional) return OK;
+    RAISE(ERR_DECK, "%s: there is no dataset %s in this file", s->path, name);
   }
   *set = H5Dopen2(s->file, name, H5P_DEFAULT);
   if (*set < 0)
-    FAIL(ERR_DECK, "%s: %s is no dataset, or damaged", s->path, name);
-  TRY(check_type(s, name, real, *set));
-  space = H5Dget_space(*set);
+    RAISE(ERR_DECK, "%s: %s is no dataset, or damaged", s->path, name);
+  PASS(check_type(s, name, real, *set));
+  HELD hid_t space = H5Dget_space(*set);
   hssize_t items = H5Sget_simple_extent_npoints(space);
   if (items < 0)
-    FAIL(ERR_DECK, "%s: %s has a size that cannot be used", s->path, name);
+    RAISE(ERR_DECK, "%s: %s has a size that cannot be used", s->path, name);
   if (items > most)
-    FAIL(ERR_DECK, "%s: %s has %lld items, expected at most %ld", s->path, name,
-         (long long)items, most);
-  TRY(dataset_check(s, name, *set, (hsize_t)items));
+    RAISE(ERR_DECK, "%s: %s has %lld items, expected at most %ld", s->path,
+          name, (long long)items, most);
+  PASS(dataset_check(s, name, *set, (hsize_t)items));
   *n = (long)items;
-done:
-  if (space >= 0) H5Sclose(space);
-  if (st != OK && *set >= 0) {
-    H5Dclose(*set);
-    *set = -1;
-  }
-  return st;
+  return OK;
 }
 
 static status read_set(const hdf5_source *s, const char *name, hid_t set,
@@ -182,28 +168,19 @@ static status read_set(const hdf5_source *s, const char *name, hid_t set,
 
 status source_ints(const hdf5_source *s, const char *name, int optional,
                    long most, long *n, int **value) {
-  status st = OK;
-  hid_t set = -1;
-  long long *wide = NULL;
+  HELD hid_t set = -1;
+  OWNED long long *wide = NULL;
   *value = NULL;
-  TRY(open_set(s, name, optional, 0, most, &set, n));
-  NEW(wide, *n);
-  NEW(*value, *n);
-  if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_LLONG, wide));
-  for (long k = 0; k < *n; ++k) {
+  PASS(open_set(s, name, optional, 0, most, &set, n));
+  PASS_NEW(wide, *n);
+  if (*n > 0) PASS(read_set(s, name, set, H5T_NATIVE_LLONG, wide));
+  for (long k = 0; k < *n; ++k)
     if (wide[k] < INT_MIN || wide[k] > INT_MAX)
-      FAIL(ERR_DECK, "%s: %s, item %ld = %lld is too large", s->path, name, k,
-           wide[k]);
-    (*value)[k] = (int)wide[k];
-  }
-done:
-  if (set >= 0) H5Dclose(set);
-  memory_free(wide);
-  if (st != OK) {
-    memory_free(*value);
-    *value = NULL;
-  }
-  return st;
+      RAISE(ERR_DECK, "%s: %s, item %ld = %lld is too large", s->path, name, k,
+            wide[k]);
+  PASS_NEW(*value, *n);
+  for (long k = 0; k < *n; ++k) (*value)[k] = (int)wide[k];
+  return OK;
 }
 
 status source_int(const hdf5_source *s, const char *name, int *value) {
@@ -219,21 +196,17 @@ status source_int(const hdf5_source *s, const char *name, int *value) {
 
 status source_reals(const hdf5_source *s, const char *name, int optional,
                     long most, long *n, double **value) {
-  status st = OK;
-  hid_t set = -1;
+  HELD hid_t set = -1;
+  OWNED double *v = NULL;
   *value = NULL;
-  TRY(open_set(s, name, optional, 1, most, &set, n));
-  NEW(*value, *n);
-  if (*n > 0) TRY(read_set(s, name, set, H5T_NATIVE_DOUBLE, *value));
+  PASS(open_set(s, name, optional, 1, most, &set, n));
+  PASS_NEW(v, *n);
+  if (*n > 0) PASS(read_set(s, name, set, H5T_NATIVE_DOUBLE, v));
   for (long k = 0; k < *n; ++k)
-    if (!isfinite((*value)[k]))
-      FAIL(ERR_DECK, "%s: %s, item %ld is not a finite number", s->path, name,
-           k);
-done:
-  if (set >= 0) H5Dclose(set);
-  if (st != OK) {
-    memory_free(*value);
-    *value = NULL;
-  }
-  return st;
+    if (!isfinite(v[k]))
+      RAISE(ERR_DECK, "%s: %s, item %ld is not a finite number", s->path, name,
+            k);
+  *value = v;
+  v = NULL;
+  return OK;
 }

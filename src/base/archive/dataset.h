@@ -16,6 +16,10 @@ typedef struct hdf5_source {
   void *print_data;
 } hdf5_source;
 
+/* HELD hid_t a = ...: closed where the name ends, whatever it is of. */
+#define HELD __attribute__((cleanup(dataset_leave)))
+void dataset_leave(hid_t *id); /* accepts an invalid one */
+
 /* Largest number of items where nothing else bounds it. */
 enum { MOST_ITEMS = 1 << 30 };
 
