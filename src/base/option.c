@@ -123,6 +123,15 @@ const char *nearest_word(const char *word,
   return longer != NULL && best > 1 ? longer : found;
 }
 
+const char *next_name(const void *names, int i) {
+  const name_list *l = names;
+  const char *p;
+  if (i >= l->n) return NULL;
+  memcpy(&p, (const char *)l->first + (size_t)i * l->size, sizeof p);
+  if (p != NULL && l->behind > 0) memcpy(&p, p + l->behind - 1, sizeof p);
+  return p;
+}
+
 enum { CHOICE_TEXT = 1024, CHOICE_WORDS = 64 };
 
 typedef struct word_list {
@@ -142,18 +151,14 @@ static void split_choices(const char *choices, word_list *list) {
   }
 }
 
-static const char *next_choice(const void *ctx, int i) {
-  const word_list *list = ctx;
-  return i < list->n ? list->word[i] : NULL;
-}
-
 static int read_choice(const option *row, const char *text, int *rank,
                        char *why, size_t why_size) {
   *rank = choice_rank(row->choices, text);
   if (*rank >= 0) return 0;
   word_list list;
   split_choices(row->choices, &list);
-  const char *near = nearest_word(text, next_choice, &list);
+  const char *near = nearest_word(
+      text, next_name, &(name_list){list.word, list.n, sizeof *list.word, 0});
   if (near != NULL)
     snprintf(why, why_size, "'%s' is none of %s; did you mean %s?", text,
              row->choices, near);

@@ -10,6 +10,7 @@
 #ifndef PROTIS_BASE_OPTION_H
 #define PROTIS_BASE_OPTION_H
 
+#include <limits.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -95,5 +96,20 @@ int choice_rank(const char *choices, const char *word);
 const char *nearest_word(const char *word,
                          const char *(*next)(const void *ctx, int i),
                          const void *ctx);
+
+/* Candidates: the member "name" of n rows, or of the rows that pointers of a
+ * list point to; NULL ends both. */
+typedef struct name_list {
+  const void *first;
+  int n;
+  size_t size;   /* of a row */
+  size_t behind; /* 0, or 1 + offset of the name behind the pointer */
+} name_list;
+#define NAMES(rows, n) (&(const name_list){&(rows)->name, n, sizeof *(rows), 0})
+#define LISTED(list)                                   \
+  (&(const name_list){(list), INT_MAX, sizeof *(list), \
+                      1 + offsetof(__typeof__(**(list)), name)})
+/* Name i of a name_list: for nearest_word. */
+const char *next_name(const void *names, int i);
 
 #endif

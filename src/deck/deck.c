@@ -124,10 +124,6 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
 
 /* ---- language cards ---------------------------------------------------- */
 
-static const char *next_name(const void *ctx, int i) {
-  return ((const char *const *)ctx)[i];
-}
-
 /* Refuse parameters that are not among the names (NULL at the end); 1 if
  * there are none. */
 static int check_names(reader *r, const card *c, const char *const *names) {
@@ -137,7 +133,8 @@ static int check_names(reader *r, const card *c, const char *const *names) {
     const char *const *name = names;
     while (*name != NULL && strcmp(*name, p->name) != 0) ++name;
     if (*name != NULL) continue;
-    const char *near = nearest_word(p->name, next_name, names);
+    const char *near = nearest_word(
+        p->name, next_name, &(name_list){names, INT_MAX, sizeof *names, 0});
     message_add(r->log, P2003, &p->at,
                 near != NULL ? "unknown parameter %s of *%s; did you mean %s?"
                              : "unknown parameter %s of *%s",

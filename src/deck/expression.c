@@ -224,11 +224,6 @@ static void read_name(compiler *c, char name[NAME_SIZE]) {
   name[n] = '\0';
 }
 
-static const char *next_function(const void *ctx, int i) {
-  (void)ctx;
-  return i < N_FUNCTION ? functions[i].name : NULL;
-}
-
 static const function *find_function(const char *name) {
   for (int i = 0; i < N_FUNCTION; ++i)
     if (strcmp(functions[i].name, name) == 0) return &functions[i];
@@ -239,7 +234,8 @@ static status read_call(compiler *c, const char *name) {
   waiting w = {.kind = WAIT_CALL, .called = find_function(name)};
   w.column = c->column;
   if (w.called == NULL) {
-    const char *near = nearest_word(name, next_function, NULL);
+    const char *near =
+        nearest_word(name, next_name, NAMES(functions, N_FUNCTION));
     if (near != NULL)
       RAISE(ERR_DECK, "unknown function %s; did you mean %s?", name, near);
     RAISE(ERR_DECK, "unknown function %s", name);

@@ -25,11 +25,6 @@ static status keep_spelling(deck *d, symbol *s, const char *name, size_t n) {
   return OK;
 }
 
-static const char *next_symbol(const void *ctx, int i) {
-  const deck *d = ctx;
-  return i < d->n_symbol && i < ADVICE_MAX ? d->symbols[i].name : NULL;
-}
-
 enum { ADVICE_SIZE = 128 };
 
 /* "; did you mean NAME?", the name between two marks, or nothing. */
@@ -37,7 +32,9 @@ static void advise(const deck *d, const message_log *log, const char *name,
                    const char *marks, char advice[ADVICE_SIZE]) {
   const char *near = NULL;
   advice[0] = '\0';
-  if (message_wanted(log, ERROR)) near = nearest_word(name, next_symbol, d);
+  const int n = d->n_symbol < ADVICE_MAX ? d->n_symbol : ADVICE_MAX;
+  if (message_wanted(log, ERROR))
+    near = nearest_word(name, next_name, NAMES(d->symbols, n));
   if (near != NULL)
     snprintf(advice, ADVICE_SIZE, "; did you mean %.1s%s%s?", marks, near,
              *marks != '\0' ? marks + 1 : "");

@@ -34,13 +34,8 @@ const mesh_group *mesh_find_group(const mesh *m, const char *name) {
   return NULL;
 }
 
-static const char *group_name(const void *ctx, int i) {
-  const mesh *m = ctx;
-  return i < m->n_group ? m->group[i].name : NULL;
-}
-
 const char *mesh_nearest_group(const mesh *m, const char *name) {
-  return nearest_word(name, group_name, m);
+  return nearest_word(name, next_name, NAMES(m->group, m->n_group));
 }
 
 /* d = x[b] - x[a] */

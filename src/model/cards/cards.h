@@ -155,10 +155,11 @@ int name_taken(const reading *r, const char *name, const char *old);
 void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i), const void *ctx);
-/* Id of a name among those of "next", or -1 and an error that names the card to
- * write. */
+/* Id of a name, case ignored, or -1; find_name: and an error that names the
+ * card to write. */
+int rank_of_name(const name_list *names, const char *name);
 int find_name(const model *m, const char *name, const char *title,
-              const char *(*next)(const void *, int), const place *at);
+              const name_list *names, const place *at);
 /* Id of an amplitude, or -1 and an error. */
 int find_amplitude(const model *m, const char *name, const place *at);
 /* The step that is being read. */

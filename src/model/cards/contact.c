@@ -373,11 +373,6 @@ status apply_crack(reading *r) {
 
 /* ---- what a contact has -------------------------------------------------- */
 
-static const char *law_name(const void *ctx, int i) {
-  (void)ctx;
-  return friction_list[i] == NULL ? NULL : friction_list[i]->name;
-}
-
 plugin names_law(const reading *r) {
   const card_options *p = r->param;
   const parameter *law = card_parameter(r->card, "LAW");
@@ -387,24 +382,20 @@ plugin names_law(const reading *r) {
   if (ops != NULL)
     return (plugin){ops->options, ops->param_size, "LAW", ops->name};
   unknown_word(r->m->log, P2012, &law->value.at,
-               "*FRICTION: there is no LAW=", p->law, law_name, NULL);
+               "*FRICTION: there is no LAW=", p->law, next_name,
+               LISTED(friction_list));
   return none;
-}
-
-static const char *contact_name(const void *ctx, int i) {
-  const model *m = ctx;
-  return i < m->n.contact ? m->contacts[i].name : NULL;
 }
 
 int find_contact(const reading *r, const char *name) {
   char text[80];
-  for (int i = 0; i < r->m->n.contact; ++i)
-    if (same_word(name, r->m->contacts[i].name)) return i;
-  if (r->is_lost != NULL && r->is_lost(r->m, name)) return -1;
+  const name_list *names = NAMES(r->m->contacts, r->m->n.contact);
+  const int i = rank_of_name(names, name);
+  if (i >= 0 || (r->is_lost != NULL && r->is_lost(r->m, name))) return i;
   snprintf(text, sizeof text,
            "*%s: before this card there is no *CONTACT, NAME=", r->card->name);
   unknown_word(r->m->log, P2012, value_place(r, "CONTACT"), text, name,
-               contact_name, r->m);
+               next_name, names);
   return -1;
 }
 

@@ -147,24 +147,26 @@ status read_pairs(reading *r, int first_line, int variable, value_table *out) {
   return OK;
 }
 
-int find_name(const model *m, const char *name, const char *title,
-              const char *(*next)(const void *, int), const place *at) {
-  const char *candidate;
-  char text[80];
-  for (int i = 0; (candidate = next(m, i)) != NULL; ++i)
-    if (same_word(candidate, name)) return i;
-  snprintf(text, sizeof text, "there is no *%s, NAME=", title);
-  unknown_word(m->log, P2012, at, text, name, next, m);
+int rank_of_name(const name_list *names, const char *name) {
+  const char *word;
+  for (int i = 0; (word = next_name(names, i)) != NULL; ++i)
+    if (same_word(word, name)) return i;
   return -1;
 }
 
-static const char *amplitude_at(const void *ctx, int i) {
-  const model *m = ctx;
-  return i < m->n.amplitude ? m->time.amplitudes[i].name : NULL;
+int find_name(const model *m, const char *name, const char *title,
+              const name_list *names, const place *at) {
+  char text[80];
+  const int i = rank_of_name(names, name);
+  if (i >= 0) return i;
+  snprintf(text, sizeof text, "there is no *%s, NAME=", title);
+  unknown_word(m->log, P2012, at, text, name, next_name, names);
+  return -1;
 }
 
 int find_amplitude(const model *m, const char *name, const place *at) {
-  int i = find_name(m, name, "AMPLITUDE", amplitude_at, at);
+  int i = find_name(m, name, "AMPLITUDE",
+                    NAMES(m->time.amplitudes, m->n.amplitude), at);
   if (i >= 0) m->time.amplitudes[i].used = 1;
   return i;
 }

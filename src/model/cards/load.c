@@ -7,11 +7,9 @@
 #include <math.h>
 
 /* 0 also where an error was reported for the card. */
-static int known_amplitude(const reading *r, const char *name) {
-  for (int i = 0; i < r->m->n.amplitude; ++i)
-    if (name != NULL && same_word(name, r->m->time.amplitudes[i].name))
-      return 1;
-  return 0;
+static int known_amplitude(const model *m, const char *name) {
+  return name != NULL &&
+         rank_of_name(NAMES(m->time.amplitudes, m->n.amplitude), name) >= 0;
 }
 
 /* Without data lines the card has OP=NEW only. */
@@ -45,7 +43,7 @@ static status add_load(reading *r, const record *line, int own_field,
   l->group = line->fields[0].text;
   l->at = line->fields[0].at;
   l->group_id = l->amplitude_id = -1;
-  if (!r->in_step || known_amplitude(r, name)) l->amplitude_name = name;
+  if (!r->in_step || known_amplitude(r->m, name)) l->amplitude_name = name;
   l->amplitude_at = *value_place(r, "AMPLITUDE");
   if (l->group[0] == '\0')
     message_add(r->m->log, P1037, &l->at,

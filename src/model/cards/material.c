@@ -100,11 +100,6 @@ status apply_expansion(reading *r) {
 
 /* ---- inelastic laws ----------------------------------------------------- */
 
-static const char *law_name(const void *ctx, int i) {
-  (void)ctx;
-  return law_list[i] == NULL ? NULL : law_list[i]->name;
-}
-
 plugin names_inelastic(const reading *r) {
   const card_options *p = r->param;
   const law_ops *ops = p->law == NULL ? NULL : law_find(p->law);
@@ -112,7 +107,8 @@ plugin names_inelastic(const reading *r) {
     return (plugin){ops->options, ops->param_size, "LAW", ops->name};
   if (p->law != NULL)
     unknown_word(r->m->log, P2012, value_place(r, "LAW"),
-                 "*INELASTIC: there is no LAW=", p->law, law_name, NULL);
+                 "*INELASTIC: there is no LAW=", p->law, next_name,
+                 LISTED(law_list));
   return (plugin){NULL, 0, "LAW", NULL};
 }
 

@@ -104,11 +104,6 @@ status apply_quasistatic(reading *r) {
   return OK;
 }
 
-static const char *scheme_name(const void *ctx, int i) {
-  (void)ctx;
-  return scheme_list[i] == NULL ? NULL : scheme_list[i]->name;
-}
-
 /* THETA=, ITERATION= and SUBSTEPS= where they have no effect; the defaults,
  * which the echo writes, are accepted. */
 static void check_visco(const reading *r, const scheme *s) {
@@ -141,7 +136,7 @@ status apply_visco(reading *r) {
     if (p->integrator != NULL)
       unknown_word(r->m->log, P2012, value_place(r, "INTEGRATOR"),
                    "*VISCO: this version has no INTEGRATOR=", p->integrator,
-                   scheme_name, NULL);
+                   next_name, LISTED(scheme_list));
     return OK;
   }
   check_visco(r, s->visco.integrator);

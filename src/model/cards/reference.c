@@ -22,24 +22,10 @@ static const struct {
 
 enum { N_COMPONENT = sizeof components / sizeof *components };
 
-static const char *component_name(const void *ctx, int i) {
-  (void)ctx;
-  return i < N_COMPONENT ? components[i].name : NULL;
-}
-
 int reference_place(const char *name, int dim, int axisymmetric) {
-  for (int i = 0; i < N_COMPONENT; ++i) {
-    if (!same_word(name, components[i].name)) continue;
-    if (dim == 3) return components[i].solid;
-    return axisymmetric ? components[i].axisymmetric : components[i].plane;
-  }
-  return -1;
-}
-
-static int is_component(const char *name) {
-  for (int i = 0; i < N_COMPONENT; ++i)
-    if (same_word(name, components[i].name)) return 1;
-  return 0;
+  const int i = rank_of_name(NAMES(components, N_COMPONENT), name);
+  if (i < 0 || dim == 3) return i < 0 ? -1 : components[i].solid;
+  return axisymmetric ? components[i].axisymmetric : components[i].plane;
 }
 
 status apply_reference(reading *r) {
@@ -55,9 +41,9 @@ status apply_reference(reading *r) {
     const field *f = line->fields;
     quantity value = {0};
     if (record_fields(r, line, 2, 2, "name, value") != 0) continue;
-    if (!is_component(f[0].text)) {
+    if (rank_of_name(NAMES(components, N_COMPONENT), f[0].text) < 0) {
       unknown_word(log, P2012, &f[0].at, "*REFERENCE: there is no component ",
-                   f[0].text, component_name, NULL);
+                   f[0].text, next_name, NAMES(components, N_COMPONENT));
       continue;
     }
     if (field_quantity(r, &f[1], &value) != 0) continue;
@@ -169,17 +155,13 @@ static void read_target(const reading *r, const char *text, goal_card *g) {
                 why);
 }
 
-static const char *crack_name(const void *of, int i) {
-  const model *m = of;
-  return i < m->n.crack ? m->mesh.cracks[i].name : NULL;
-}
-
 static int find_crack(const reading *r, const char *name) {
-  for (int i = 0; i < r->m->n.crack; ++i)
-    if (same_word(name, r->m->mesh.cracks[i].name)) return i;
+  const name_list *names = NAMES(r->m->mesh.cracks, r->m->n.crack);
+  const int i = rank_of_name(names, name);
+  if (i >= 0) return i;
   unknown_word(r->m->log, P2012, value_place(r, "CRACK"),
                "*GOAL: before this card there is no *CRACK, NAME=", name,
-               crack_name, r->m);
+               next_name, names);
   return -1;
 }
 

@@ -78,15 +78,6 @@ static status model_finish_problem(reading *r) {
   return OK;
 }
 
-static const char *keyword_name(const void *ctx, int i) {
-  (void)ctx;
-  return keyword_table[i].name;
-}
-
-static const char *option_name(const void *ctx, int i) {
-  return ((const option *)ctx)[i].name;
-}
-
 /* Name of row i of two tables one after the other. */
 typedef struct two_tables {
   const option *first, *second;
@@ -96,7 +87,7 @@ static const char *either_name(const void *ctx, int i) {
   const two_tables *t = ctx;
   for (const option *o = t->first; o != NULL && o->name != NULL; ++o)
     if (i-- == 0) return o->name;
-  return t->second == NULL ? NULL : option_name(t->second, i);
+  return t->second == NULL ? NULL : t->second[i].name;
 }
 
 /* Read one parameter into the struct its row belongs to. */
@@ -228,9 +219,10 @@ static int right_lines(const reading *r, const keyword *row) {
 
 static void unknown_card(reading *r) {
   const card *c = r->card;
-  const char *near = message_wanted(r->m->log, ERROR)
-                         ? nearest_word(c->name, keyword_name, NULL)
-                         : NULL;
+  const char *near =
+      message_wanted(r->m->log, ERROR)
+          ? nearest_word(c->name, next_name, NAMES(keyword_table, INT_MAX))
+          : NULL;
   place at = c->at; /* a file that is included may be no deck at all */
   at.hidden |= near == NULL && at.from != NULL;
   message_add(r->m->log, P1003, &at, "unknown card *%s%s%s%s", c->name,

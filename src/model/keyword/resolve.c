@@ -9,21 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-static const char *material_at(const void *ctx, int i) {
-  const model *m = ctx;
-  return i < m->n.material ? m->materials[i].name : NULL;
-}
-
-static const char *obstacle_at(const void *ctx, int i) {
-  const model *m = ctx;
-  return i < m->n.obstacle ? m->obstacles[i].name : NULL;
-}
-
-static const char *points_at(const void *ctx, int i) {
-  const model *m = ctx;
-  return i < m->n.points ? m->time.points[i].name : NULL;
-}
-
 int name_is_lost(const model *m, const char *name) {
   for (int i = 0; i < m->deck->n_card; ++i) {
     const card *c = &m->deck->cards[i];
@@ -37,18 +22,17 @@ int name_is_lost(const model *m, const char *name) {
 
 /* find_name, silent if the name is lost. */
 static int find_known(const model *m, const char *name, const char *title,
-                      const char *(*next)(const void *, int), const place *at) {
-  const char *word;
-  for (int i = 0; (word = next(m, i)) != NULL; ++i)
-    if (same_word(name, word)) return i;
-  return name_is_lost(m, name) ? -1 : find_name(m, name, title, next, at);
+                      const name_list *names, const place *at) {
+  const int i = rank_of_name(names, name);
+  if (i >= 0 || name_is_lost(m, name)) return i;
+  return find_name(m, name, title, names, at);
 }
 
 /* The points of a *PRINT that names some; an error if there are none. */
 static void find_points(const model *m, print_request *p) {
   if (p->points_name == NULL) return;
-  int i =
-      find_known(m, p->points_name, "TIME POINTS", points_at, &p->points_at);
+  int i = find_known(m, p->points_name, "TIME POINTS",
+                     NAMES(m->time.points, m->n.points), &p->points_at);
   if (i < 0) return;
   m->time.points[i].used = 1;
   p->points = &m->time.points[i];
@@ -72,8 +56,9 @@ static void resolve_materials(model *m, int lost) {
   for (int i = 0; i < m->n.section; ++i) {
     section *s = &m->sections[i];
     if (s->material_name[0] == '\0') continue;
-    s->material_id = find_known(m, s->material_name, "MATERIAL", material_at,
-                                &s->material_at);
+    s->material_id =
+        find_known(m, s->material_name, "MATERIAL",
+                   NAMES(m->materials, m->n.material), &s->material_at);
     if (s->material_id >= 0) m->materials[s->material_id].used = 1;
   }
   for (int i = 0; i < m->n.material; ++i)
@@ -140,8 +125,9 @@ static void resolve_contacts(model *m) {
     resolve_friction(m, &c->friction);
     resolve_force(m, &c->force);
     if (c->is_pair || c->obstacle_name[0] == '\0') continue;
-    c->obstacle_id = find_known(m, c->obstacle_name, "OBSTACLE", obstacle_at,
-                                &c->obstacle_at);
+    c->obstacle_id =
+        find_known(m, c->obstacle_name, "OBSTACLE",
+                   NAMES(m->obstacles, m->n.obstacle), &c->obstacle_at);
     if (c->obstacle_id < 0) continue;
     m->moves[c->obstacle_id].used = 1;
     resolve_axis(m, c);
