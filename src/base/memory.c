@@ -49,6 +49,15 @@ void *memory_new(size_t n, size_t size) {
   return block + HEADER;
 }
 
+status memory_reals(size_t n, int count, double **const *p) {
+  for (int i = 0; i < count; ++i) {
+    *p[i] = memory_new(n, sizeof **p[i]);
+    if (*p[i] == NULL)
+      RAISE(ERR_MEMORY, "memory exhausted: vector of %zu numbers", n);
+  }
+  return OK;
+}
+
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size) {
   void *grown = memory_new(new_n, size);
   if (grown == NULL) return NULL;

@@ -23,6 +23,14 @@
            (size_t)(n), sizeof *(pointer), #pointer);                     \
   } while (0)
 
+/* NEW_REALS(n, &a, &b, ...): n zeroed numbers for each, or FAIL. */
+#define NEW_REALS(n, ...) TRY(REALS(n, __VA_ARGS__))
+#define PASS_NEW_REALS(n, ...) PASS(REALS(n, __VA_ARGS__))
+#define REALS(n, ...)                                                      \
+  memory_reals((size_t)(n),                                                \
+               (int)(sizeof((double **[]){__VA_ARGS__}) / sizeof(void *)), \
+               (double **[]){__VA_ARGS__})
+
 /* GROW(pointer, n, capacity): space for item n (0-based), doubling as needed;
  * capacity is an int lvalue that belongs to the pointer. */
 #define GROW(pointer, n, capacity) GROW_OR(FAIL, pointer, n, capacity)
@@ -58,6 +66,7 @@
   } while (0)
 
 void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused */
+status memory_reals(size_t n, int count, double **const *p);
 /* Reallocate old_n items, the rest zeroed; on NULL the old block stays
  * valid. */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);

@@ -190,12 +190,9 @@ status force_set_new(const contact_problem *cp, force_set **out) {
   force_set *s = NULL;
   double *v = NULL;
   NEW(s, 1);
-  NEW(s->D, cp->m);
-  NEW(s->origin, cp->m);
+  NEW_REALS(cp->m, &s->D, &s->origin, &s->load, &s->defect);
   NEW(s->part, cp->m);
   NEW(s->rim, cp->n);
-  NEW(s->load, cp->m);
-  NEW(s->defect, cp->m);
   NEW(v, 2 * cp->m);
   scaling(cp, s->D);
   if (cp->op != NULL) {

@@ -175,16 +175,14 @@ const friction_ops none_friction = {
 static status tresca_limit(const friction_card *card, const contact_surface *s,
                            int n_node, const int *node, double t,
                            friction_limit *out) {
-  status st = OK;
   for (int k = 0; k < n_node; ++k) {
     int i = node[k];
     double g;
     if (surface_is_corner(s, i)) continue;
-    TRY(friction_value(card, s, i, t, &g));
+    PASS(friction_value(card, s, i, t, &g));
     out->g0[i] = g * s->area[i];
   }
-done:
-  return st;
+  return OK;
 }
 
 const friction_ops tresca_friction = {
@@ -327,11 +325,10 @@ static void warn(double radius, const char *contact_name,
 static status to_surface(const contact_surface *s, int contact_id,
                          const patch *a, const sparse_rows *G,
                          sparse_rows *out) {
-  status st = OK;
   int n = 0;
-  NEW(out->start, s->n + 1);
-  NEW(out->col, G->start[G->n]);
-  NEW(out->val, G->start[G->n]);
+  PASS_NEW(out->start, s->n + 1);
+  PASS_NEW(out->col, G->start[G->n]);
+  PASS_NEW(out->val, G->start[G->n]);
   out->n = s->n;
   for (int k = 0; k < G->n; ++k) {
     int i = a->contact_node[k];
@@ -345,8 +342,7 @@ static status to_surface(const contact_surface *s, int contact_id,
   }
   for (int i = 0; i < s->n; ++i)
     if (out->start[i + 1] < out->start[i]) out->start[i + 1] = out->start[i];
-done:
-  return st;
+  return OK;
 }
 
 static status nonlocal_average(const friction_card *card,
@@ -393,14 +389,12 @@ static const char *nonlocal_misfit(const void *param, int dim,
 static status nonlocal_limit(const friction_card *card,
                              const contact_surface *s, int n_node,
                              const int *node, double t, friction_limit *out) {
-  status st = OK;
   const nonlocal *own = card->param;
-  TRY(friction_pressure_limit(card, s, n_node, node, t, out));
-  if (!own->zone) goto done;
-  if (out->in_zone == NULL) NEW(out->in_zone, s->n);
+  PASS(friction_pressure_limit(card, s, n_node, node, t, out));
+  if (!own->zone) return OK;
+  if (out->in_zone == NULL) PASS_NEW(out->in_zone, s->n);
   for (int k = 0; k < n_node; ++k) out->in_zone[node[k]] = 1;
-done:
-  return st;
+  return OK;
 }
 
 const friction_ops nonlocal_friction = {

@@ -85,14 +85,8 @@ static status aitken_setup(const contact_problem *cp, const void *par,
   NEW(w, 1);
   TRY(node_blocks_new(cp, &w->blocks));
   TRY(best_iterate_new(cp->m, &w->best));
-  NEW(w->before, m);
-  NEW(w->x, m);
-  NEW(w->y, m);
-  NEW(w->defect, m);
-  NEW(w->diagonal, m);
-  NEW(w->dx, m * depth);
-  NEW(w->dy, m * depth);
-  NEW(w->df, m * depth);
+  NEW_REALS(m, &w->before, &w->x, &w->y, &w->defect, &w->diagonal);
+  NEW_REALS(m * depth, &w->dx, &w->dy, &w->df);
   for (int i = 0; i < cp->m; ++i) w->diagonal[i] = contact_diagonal(cp, i);
   *work = w;
   w = NULL;

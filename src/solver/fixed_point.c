@@ -33,10 +33,7 @@ status fixed_point_new(int n, fixed_point **out) {
   fixed_point *fp = NULL;
   NEW(fp, 1);
   fp->n = n;
-  NEW(fp->g, n);
-  NEW(fp->image, n);
-  NEW(fp->last_g, n);
-  NEW(fp->last_G, n);
+  NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
   NEW(fp->dg, n * DEPTH);
   NEW(fp->dG, n * DEPTH);
   *out = fp;
@@ -246,7 +243,6 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
                          const inner_solver *inner,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep) {
-  status st = OK;
   pass p = {inner, *control};
   course c = {.step = 1.0, .lowest = HUGE_VAL};
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
@@ -258,7 +254,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
   for (int k = 1; k <= passes; ++k) {
     if (!iterations_left(control, rep, &p.control.max_iter)) {
       rep->outcome = STOPPED_ITERATIONS;
-      goto done;
+      return OK;
     }
     rep->limit_updates = p.control.limit_update = k;
     /* not finer than the accuracy of the limit; finer if the last pass had no
@@ -268,27 +264,26 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
     before = rep->iterations;
     wanted = fmax(wanted, fmin(rounding, COARSE * control->tol));
     p.control.tol = fmax(FINEST * control->tol, fmin(1e-3, wanted));
-    TRY(run_pass(&p, cp, fp->g, u, r, rep));
+    PASS(run_pass(&p, cp, fp->g, u, r, rep));
     if (rep->outcome == STOPPED_STAGNATION)
       rounding = fmax(rounding, 2.0 * rep->residual);
     if (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_RAY ||
         rep->outcome == STOPPED_SINGULAR)
-      goto done;
+      return OK;
     outcome inner_outcome = rep->outcome;
     contact_limit(cp, r, fp->image);
     rep->residual = contact_residual(cp, u, r);
     change = relative_change(fp);
     report_pass(control, rep, change);
     rep->outcome = CONVERGED;
-    if (rep->residual <= control->tol) goto done;
+    if (rep->residual <= control->tol) return OK;
     rep->outcome = inner_outcome < 0 ? inner_outcome : STOPPED_STAGNATION;
     int on = advance(fp, &c, rep->residual, k == 1);
     rep->rate = c.rate;
-    if (!on) goto done;
+    if (!on) return OK;
   }
   if (rep->outcome == STOPPED_STAGNATION) rep->outcome = STOPPED_ITERATIONS;
-done:
-  return st;
+  return OK;
 }
 
 /* ---- friction path ----------------------------------------------------- */
@@ -359,7 +354,6 @@ status friction_path_solve(friction_path *path, const contact_problem *cp,
                            const inner_solver *inner,
                            const solver_control *control, double *u, double *r,
                            solver_report *rep) {
-  status st = OK;
   pass p = {inner, *control};
   size_t bytes = (size_t)cp->m * sizeof *u;
   double mu = largest_mu(cp), growth = GROWTH, good = 0.0;
@@ -368,26 +362,25 @@ status friction_path_solve(friction_path *path, const contact_problem *cp,
   for (int k = 1; k <= STAGES; ++k) {
     if (!iterations_left(control, rep, &p.control.max_iter)) {
       rep->outcome = STOPPED_ITERATIONS;
-      goto done;
+      return OK;
     }
     p.control.no_restart = good > 0.0;
     p.control.limit_update = k;
-    TRY(solve_share(path, &p, cp, share, u, r, rep));
+    PASS(solve_share(path, &p, cp, share, u, r, rep));
     if (rep->outcome == CONVERGED) {
-      if (share == 1.0) goto done;
+      if (share == 1.0) return OK;
       memcpy(path->good_u, u, bytes);
       memcpy(path->good_r, r, bytes);
       good = share;
       growth = fmin(GROWTH, growth * growth);
     } else {
-      if (good == 0.0) goto done;
+      if (good == 0.0) return OK;
       growth = sqrt(growth);
       memcpy(u, path->good_u, bytes);
       memcpy(r, path->good_r, bytes);
-      if (growth < LEAST_GROWTH) goto done;
+      if (growth < LEAST_GROWTH) return OK;
     }
     share = fmin(1.0, good * growth);
   }
-done:
-  return st;
+  return OK;
 }

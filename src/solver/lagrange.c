@@ -77,12 +77,7 @@ static status lagrange_setup(const contact_problem *cp, const void *par,
   (void)par;
   NEW(w, 1);
   TRY(force_set_new(cp, &w->set));
-  NEW(w->x, cp->m);
-  NEW(w->old_x, cp->m);
-  NEW(w->y, cp->m);
-  NEW(w->y_x, cp->m);
-  NEW(w->c, cp->m);
-  NEW(w->old_r, cp->m);
+  NEW_REALS(cp->m, &w->x, &w->old_x, &w->y, &w->y_x, &w->c, &w->old_r);
   TRY(best_iterate_new(cp->m, &w->best));
   TRY(force_set_fit(w->set, cp));
   const double largest = force_set_spectrum(w->set, w->y, w->y_x);

@@ -87,15 +87,8 @@ static status pcg_setup(const contact_problem *cp, const void *par,
   (void)par;
   NEW(w, 1);
   TRY(force_set_new(cp, &w->set));
-  NEW(w->x, m);
-  NEW(w->phi, m);
-  NEW(w->beta, m);
-  NEW(w->z, m);
-  NEW(w->p, m);
-  NEW(w->v, m);
-  NEW(w->r0, m);
-  NEW(w->x0, m);
-  NEW(w->e, m);
+  NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0, &w->x0,
+            &w->e);
   NEW(w->turn, cp->n);
   TRY(best_iterate_new(m, &w->best));
   *work = w;

@@ -78,9 +78,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   NEW(b, 1);
   NEW(b->K, cp->n * d * d);
   NEW(b->state, cp->n);
-  NEW(b->weight, cp->m);
-  NEW(b->step, cp->m);
-  NEW(b->strained, cp->m);
+  NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
   double lift = 0.0;
   for (int i = 0; i < cp->m; ++i) {
     b->weight[i] = contact_diagonal(cp, i);

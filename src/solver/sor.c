@@ -210,13 +210,12 @@ static outcome sweeps(relaxation *s, course *c, const solver_control *control,
 static status sor_solve(const contact_problem *cp, const void *par, void *work,
                         const solver_control *control, double *u, double *r,
                         solver_report *rep) {
-  status st = OK;
   const sor *p = par;
   sor_work *w = work;
   if (cp->B != NULL && w->fixed != NULL) {
     inner_solver self = {&sor_solver, par, work};
-    TRY(fixed_point_solve(w->fixed, cp, &self, control, u, r, rep));
-    goto done;
+    PASS(fixed_point_solve(w->fixed, cp, &self, control, u, r, rep));
+    return OK;
   }
   relaxation s = {.cp = cp,
                   .blocks = w->blocks,
@@ -234,8 +233,7 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
   relaxation_start(&s);
   rep->outcome = sweeps(&s, &c, control, rep);
   relaxation_end(&s, &w->best, w->before, rep);
-done:
-  return st;
+  return OK;
 }
 
 /* clang-format off */

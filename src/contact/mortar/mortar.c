@@ -502,9 +502,7 @@ static status set_nodes(builder *b) {
   PASS_NEW(m->node_id, m->n);
   PASS_NEW(m->area, m->n);
   PASS_NEW(m->share, m->n);
-  PASS_NEW(m->lever, dim * m->n);
-  PASS_NEW(m->normal, dim * m->n);
-  PASS_NEW(m->gap, dim * m->n);
+  PASS_NEW_REALS(dim * m->n, &m->lever, &m->normal, &m->gap);
   PASS_NEW(m->to.start, m->n + 1);
   for (int i = 0; i < b->in->mesh->n_node; ++i)
     if (b->state[i] == CARRIES) m->node_id[n++] = i;

@@ -71,9 +71,7 @@ status operated_system_new(const contact_problem *cp, operated_system **out) {
   NEW(s, 1);
   s->m = cp->m;
   s->power = power_of(cp);
-  NEW(s->b, m);
-  NEW(s->x, m);
-  NEW(s->Ax, m);
+  NEW_REALS(m, &s->b, &s->x, &s->Ax);
   NEW(s->added, (size_t)cp->dim * m);
   NEW(s->known, m);
   NEW(s->held, m);

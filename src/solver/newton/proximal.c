@@ -104,12 +104,8 @@ static status new_steps(const contact_problem *cp, proximal_work *w) {
   const size_t m = (size_t)cp->m;
   PASS(operated_system_new(cp, &w->by.system));
   PASS(pattern_new(cp->dim, cp->n, &w->by.guess));
-  PASS_NEW(w->by.hold, m);
-  PASS_NEW(w->by.b, m);
-  PASS_NEW(w->by.du, m);
-  PASS_NEW(w->by.start, m);
-  PASS_NEW(w->by.centre, m);
-  PASS_NEW(w->by.before, m);
+  PASS_NEW_REALS(m, &w->by.hold, &w->by.b, &w->by.du, &w->by.start,
+                 &w->by.centre, &w->by.before);
   return OK;
 }
 
@@ -126,14 +122,8 @@ static status proximal_setup(const contact_problem *cp, const void *par,
     TRY(new_steps(cp, w));
   else
     TRY(step_matrix_new(cp, w->set, &w->J));
-  NEW(w->x, m);
-  NEW(w->F, m);
-  NEW(w->d, m);
-  NEW(w->z, m);
-  NEW(w->weight, m);
-  NEW(w->start, m);
-  NEW(w->centre, m);
-  NEW(w->before, m);
+  NEW_REALS(m, &w->x, &w->F, &w->d, &w->z, &w->weight, &w->start, &w->centre,
+            &w->before);
   NEW(w->acts, m);
   *work = w;
   w = NULL;
@@ -551,7 +541,6 @@ static status trial(run *s, int limit, int closed, outcome *end) {
 static status proximal_solve(const contact_problem *cp, const void *par,
                              void *work, const solver_control *control,
                              double *u, double *r, solver_report *rep) {
-  status st = OK;
   proximal_work *w = work;
   run s = {.cp = cp, .w = w, .control = control, .u = u, .r = r};
   int limit = control->max_iter > 0 ? control->max_iter : STEPS;
@@ -559,7 +548,7 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   s.scale = contact_scale(cp);
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
-  TRY(force_set_fit(w->set, cp));
+  PASS(force_set_fit(w->set, cp));
   set_weights(w, cp);
   memcpy(w->start, r, (size_t)cp->m * sizeof *r);
   if (cp->op != NULL) memcpy(w->by.start, u, (size_t)cp->m * sizeof *u);
@@ -568,8 +557,8 @@ static status proximal_solve(const contact_problem *cp, const void *par,
     int until = s.steps + TRIAL;
     s.stretch = settings[k].stretch;
     s.share = settings[k].share;
-    TRY(trial(&s, until < limit ? until : limit, k == TRIALS - 1,
-              &rep->outcome));
+    PASS(trial(&s, until < limit ? until : limit, k == TRIALS - 1,
+               &rep->outcome));
     if (rep->outcome == STOPPED_NAN) break;
   }
   if (rep->outcome == STOPPED_ITERATIONS && s.steps < limit)
@@ -577,8 +566,7 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   rep->iterations = s.steps;
   rep->residual = w->best.residual;
   solver_take_best(&w->best, cp->m, u, r);
-done:
-  return st;
+  return OK;
 }
 
 /* clang-format off */

@@ -33,9 +33,7 @@ status states_new(const contact_problem *cp, states *s) {
   PASS(pattern_new(cp->dim, cp->n, &s->guess));
   PASS_NEW(s->raw, m);
   PASS_NEW(s->k, m);
-  PASS_NEW(s->c, cp->n);
-  PASS_NEW(s->g, cp->n);
-  PASS_NEW(s->rounding, cp->n);
+  PASS_NEW_REALS(cp->n, &s->c, &s->g, &s->rounding);
   set_stiffness(cp, s);
   return OK;
 }

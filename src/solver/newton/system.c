@@ -420,9 +420,7 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   NEW(s->rows, m * CHUNK);
   NEW(s->product, CHUNK * capacity);
   NEW(s->changed, m);
-  NEW(s->b, m);
-  NEW(s->x, m);
-  NEW(s->du, m);
+  NEW_REALS(m, &s->b, &s->x, &s->du);
   NEW(s->z, capacity);
   NEW(s->weight, capacity);
   NEW(s->inverse.small_pivot, capacity);

@@ -425,21 +425,19 @@ static outcome follow(lemke_run *s, int *count) {
 static status lemke_solve(const contact_problem *cp, const void *par,
                           void *work, const solver_control *control, double *u,
                           double *r, solver_report *rep) {
-  status st = OK;
   lemke_work *w = work;
   lemke_run s = {cp, w, control, contact_matrix(cp)};
   (void)par;
   *rep = (solver_report){.outcome = STOPPED_SINGULAR};
   w->has_ray = 0;
-  if (!prepare(&s)) goto done;
+  if (!prepare(&s)) return OK;
   rep->outcome = STOPPED_RAY;
-  if (!lemke_load_is_held(&s)) goto done;
+  if (!lemke_load_is_held(&s)) return OK;
   rep->outcome = follow(&s, &rep->iterations);
-  if (rep->outcome != CONVERGED) goto done;
+  if (rep->outcome != CONVERGED) return OK;
   lemke_set_solution(&s, u, r);
-  TRY(correct(&s, u, r, rep));
-done:
-  return st;
+  PASS(correct(&s, u, r, rep));
+  return OK;
 }
 
 static status lemke_keep(void *work, archive *a) {
