@@ -15,27 +15,23 @@
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
 typedef struct equilibrium {
-  double t;            /* s */
-  double *u;           /* [dim*n_node] m */
-  double *F;           /* [dim*n_node] loads, N */
-  double *reaction;    /* [dim*n_node] forces of the supports, N */
-  double *uc, *rc;     /* [dim*n] contact frame, m, N */
-  double *motion;      /* [dim*n] displacement of the obstacles at the nodes
-                          since 0 s, summed over the increments, contact frame,
-                          m; NULL: none moves */
+  double t;         /* s */
+  double *u;        /* [dim*n_node] m */
+  double *F;        /* [dim*n_node] loads, N */
+  double *reaction; /* [dim*n_node] forces of the supports, N */
+  double *uc, *rc;  /* [dim*n] contact frame, m, N */
+  double *motion;   /* [dim*n] of the obstacles at the nodes since 0 s, contact
+                       frame, m; NULL: none moves */
   double *temperature; /* [n_elem] or NULL: no thermal strain */
-  double
-      *thermal; /* [ns*n] thermal strains of the elements of r->strains.eigen;
-                   this and the next are empty where nothing but laws
-                   flows: the points have e^i and stress (visco.h) */
-  double *e0, *sigma; /* [ns*n] all their strains without stress;
-                         Pa */
+  /* [ns*n] of r->strains.eigen; NULL where nothing but laws flows: the points
+   * have e^i and stress (visco.h). */
+  double *thermal;    /* thermal strains, - */
+  double *e0, *sigma; /* all strains without stress, -; Pa */
   double *elastic;    /* [ns*n] the rest; NULL: moduli stay */
   energies energy;
-  double peak_energy, peak_stress; /* J, of the strains, Pa; largest so far, the
-                                      stress where rounding was looked at */
-  double kept;                     /* J, of laws that elastic constants
-                                      represent */
+  double peak_energy, peak_stress; /* J, Pa, largest so far; the latter
+                                      where rounding was looked at */
+  double kept;                     /* J, of laws in elastic constants */
 } equilibrium;
 
 typedef struct shadow shadow; /* shadow.c */
@@ -62,12 +58,10 @@ typedef struct matrices {
 /* Progress of the run: the next attempt. */
 typedef struct progress {
   int step_id, level, attempt, increment_no;
-  int cut;         /* of "level", by attempts that failed: the rest is the
-                      stability of an explicit integrator, which may need less
-                      later */
-  long i, part;    /* increment of the step's grid, piece of 2^level of it */
-  double dt;       /* of an adaptive step, to be tried, s */
-  double error;    /* of the increments before the step, sqrt(J) */
+  int cut;      /* of "level", by attempts that failed; the rest: stability */
+  long i, part; /* increment of the step's grid, piece of 2^level of it */
+  double dt;    /* of an adaptive step, to be tried, s */
+  double error; /* of the increments before the step, sqrt(J) */
   double residual; /* -, of the attempt before at the same increment */
   int last;        /* 1: the current increment ends the step */
   int violated;    /* 1: and violates the theorems */
@@ -85,14 +79,13 @@ typedef struct contact_nodes {
  * element whose constants follow its temperature (*ELASTIC with several sets,
  * and temperatures in the deck). */
 typedef struct moduli {
-  int n;                     /* entries: sections, then the elements */
-  int n_own;                 /* elements with an entry of their own */
-  int *elem_id;              /* [n_own] ascending */
-  double *at;                /* [n_own] temperature of their entry */
-  int *section_id;           /* [n_elem] entry of an element, or NULL: its
-                                section */
-  int *origin;               /* [n] section of an entry */
-  kinematics *kin;           /* [n] */
+  int n;           /* entries: sections, then the elements */
+  int n_own;       /* elements with an entry of their own */
+  int *elem_id;    /* [n_own] ascending */
+  double *at;      /* [n_own] temperature of their entry */
+  int *section_id; /* [n_elem] entry, or NULL: section, of an element */
+  int *origin;     /* [n] section of an entry */
+  kinematics *kin; /* [n] */
   double *thickness, *E, *C; /* [n] m, [ns*ns*n], [36*n] Pa */
 } moduli;
 
@@ -113,8 +106,7 @@ typedef struct strain_state {
   visco *visco;               /* NULL: no law flows */
   eigenstrain eigen;          /* e0 is that of the current equilibrium */
   int *elem;                  /* [eigen.n] */
-  const double *temperature0; /* [n_elem] before the first step, borrowed; NULL:
-                                 no thermal strain */
+  const double *temperature0; /* [n_elem] at first, borrowed; or NULL */
   double *load;               /* [dim*n_node] F with the forces of eigen, N */
 } strain_state;
 
@@ -128,16 +120,14 @@ typedef struct contact_faces {
 
 /* Contact problem of the increment. */
 typedef struct posed_problem {
-  double *f_load;             /* [n_row] of f, without the motion of
-                                 supports, N */
+  double *f_load;             /* [n_row] f without motion of supports, N */
   double *f, *gap, *side_gap; /* [n_row], [n], [n*(dim-1)] */
   /* Borrowed from effects, NULL: no friction, no given force. */
   double *ut0;                 /* [n*(dim-1)] m */
   const friction_limit *limit; /* of the time posed last */
   const sparse_rows *B;        /* [n*n] -, of limit, or in its place */
   const double *given;         /* [n] given normal forces, N; < 0: none */
-  double *row[2];  /* [rows*n] workspace of run_rows, NULL where cp has
-                      all */
+  double *row[2];  /* [rows*n] workspace of run_rows; cp has all: NULL */
   reach_part part; /* data of cp where it does not have all nodes */
   contact_problem cp;
   double *f_before; /* [n_row] condensed load of r->old, N */
@@ -154,11 +144,10 @@ typedef struct load_state {
 typedef struct derived {
   double *strain, *stress; /* [ns*n_elem] or NULL */
   double *open_gap, *slip; /* [n], [n*(dim-1)] */
-  double *g;               /* [n] limit, N; this and distance borrowed from
-                              friction */
+  double *g;               /* [n] limit, N, borrowed from friction */
   contact_status *contact; /* [n] */
   contact_total *totals;   /* [n_contact] */
-  double *distance;        /* [n] as in state; NULL: frictionless */
+  double *distance;        /* [n] as in state, borrowed likewise; or NULL */
   double *torque;          /* [n_contact] as in state, or NULL */
 } derived;
 
@@ -168,13 +157,10 @@ typedef struct error_state {
   rounding_loss rounding;
   error_share mesh_error, time_error;
   double *elem_error; /* [n_elem] borrowed, or NULL */
-  double left;        /* -, of an unloaded body: share of the largest
-                         energy so far that its errors are relative to; 0:
-                         its state is rounding */
-  int strained;       /* 1: supports of r->now strain a body, looked at
-                         where motions are far above strains */
-  int evaluated;      /* 1: the errors of mesh and solver are those of
-                         r->now */
+  double left;   /* -, of an unloaded body: part of the largest energy so far,
+                    to which its errors are relative; 0: rounding alone */
+  int strained;  /* 1: supports strain a body, found if motions are large */
+  int evaluated; /* 1: those of mesh and solver are of r->now */
 } error_state;
 
 /* Linear systems of the contact problems so far, without those of shadow runs:
@@ -190,14 +176,12 @@ typedef struct observed_work {
 /* How the contact problem is solved. */
 typedef struct solving {
   solver_report report;
-  double tol;                /* of the contact solver, in force, - */
-  double *guess_u, *guess_r; /* [m] start values that may be nearer than those
-                                of r->old, borrowed; NULL: none */
-  double *start_u, *start_r; /* [m] start values in the place of those of
-                                r->old, borrowed; NULL: none */
+  double tol; /* of the contact solver, in force, - */
+  double *guess_u,
+      *guess_r; /* [m] borrowed, used if nearer than r->old; or NULL */
+  double *start_u, *start_r; /* [m] borrowed, instead of r->old; NULL: none */
   known_rate rate;
-  double known_key; /* of the matrix that "rate" was read for, until in
-                       use */
+  double known_key; /* of the matrix that "rate" was read for */
   long matrix_no;   /* counts the matrices taken into use */
   observed_work seen;
 } solving;
@@ -205,15 +189,12 @@ typedef struct solving {
 /* Counters, messages and saved data of the run. */
 typedef struct course_state {
   int total_no, unsettled;
-  int missed;    /* 1: the increment did not converge to the tolerance of its
-                    step */
-  int shadow;    /* 1: an increment of a finer path is solved, or a copy of the
-                    run: no step of the run */
+  int missed;    /* 1: the increment missed the tolerance of its step */
+  int shadow;    /* 1: no step of the run: a finer path or a copy is solved */
   int relaxing;  /* the current increment relaxes the start to equilibrium */
   int due, kept; /* a checkpoint is due; has just been made */
   archive *from; /* borrowed: what the step in progress starts from, or NULL */
-  /* at the checkpoint */
-  stage_cost costs[STAGE_COUNT];
+  stage_cost costs[STAGE_COUNT]; /* at the checkpoint */
   char note[512]; /* what changed abruptly in the increment, "" or lines */
 } course_state;
 

@@ -18,8 +18,7 @@
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
   double force[3];              /* N, global components */
-  double moment[3];             /* N m, about the origin (2-D: moment[2]
-                                   only) */
+  double moment[3];             /* N m, about the origin; 2-D: [2] */
   double normal, tangential[2]; /* sums in the contact frame, N */
   double area;                  /* closed area, m2 */
   double pressure, penetration; /* the largest of its nodes, Pa, m; >= 0 */
@@ -31,8 +30,7 @@ typedef struct contact_total {
 typedef struct contact_zone {
   int contact_id;
   int kind;                      /* contact_status */
-  int direction;                 /* sign of the slip along t; 0: none, no
-                                    friction, 3-D */
+  int direction;                 /* sign of the slip along t, or 0; 3-D: 0 */
   double from[2], to[2], length; /* ends between the nodes, m; 3-D: 0 */
   double area;                   /* m2; times thickness, or around the axis */
 } contact_zone;
@@ -44,8 +42,7 @@ typedef struct zone_list {
 
 /* One contact as a loop of friction: force (in the totals) against motion. */
 typedef struct contact_loop {
-  double way[2];       /* mean displacement of the obstacle since time 0,
-                          tangents, m */
+  double way[2];       /* mean motion of the obstacle, tangents, m */
   double mean_u_t[2];  /* mean tangential displacement of the nodes, m */
   double angle;        /* of the obstacle, rad */
   double friction;     /* J, dissipated so far, trapezoidal */
@@ -55,33 +52,29 @@ typedef struct contact_loop {
 
 typedef struct energies {
   double strain;       /* J, now */
-  double external;     /* J, work of loads and prescribed displacements so
-                          far */
+  double external;     /* J, work of loads and supports so far */
   double friction;     /* J, dissipated so far, trapezoidal */
-  double friction_end; /* J, dissipated so far, limit of the increment's end; a
-                          static problem starts it again, from the origin */
+  double friction_end; /* J, the same with the limits at the ends of the
+                          increments; a static problem starts it again, from the
+                          origin */
   double normal;       /* J, work of the normal contact forces so far: moving
                           obstacles, and by the trapezoidal rule gaps that open
                           or close within an increment */
   double thermal;      /* J, work of the stresses on thermal strain so far */
-  double inelastic;    /* J, work of the stresses on inelastic strain so far,
-                          trapezoidal */
-  double dissipated;   /* J, of that lost so far by the law, in the quadrature
-                          of the integrator */
-  double stored;       /* J, of that stored by internal variables, now */
-  double start;        /* J, strain energy the run starts with */
-  double defect;       /* J, external + normal - friction - thermal - inelastic
-                          - (strain - start) */
-  double largest;      /* J, largest magnitude of the six so far: the scale of
-                          the defect, also once all is unloaded */
+  double inelastic;    /* J, the same on inelastic strain, trapezoidal */
+  double dissipated; /* J, of that lost, in the quadrature of the integrator */
+  double stored;     /* J, of that stored by internal variables, now */
+  double start;      /* J, strain energy the run starts with */
+  double defect;     /* J, external + normal - friction - thermal - inelastic
+                        - (strain - start) */
+  double largest;    /* J, of the six so far: the scale of the defect */
 } energies;
 
 /* Bound of the error of the contact solver. */
 typedef struct error_bound {
   int asked;
   double energy;   /* J, energy of the error at most; NAN: no bound */
-  double relative; /* -, of the energy norm of the solution; NAN: no bound, or a
-                      solution without deformation */
+  double relative; /* -, of that of the solution; NAN: no bound or no strain */
   double cpu;      /* s, CPU time for it so far */
   double rate;     /* contraction of the sliding limit, -; 0: none */
   const char *why; /* there is no bound; or NULL */
@@ -90,8 +83,7 @@ typedef struct error_bound {
 
 /* Rounding error of a solution (run/history/rounding.c). */
 typedef struct rounding_loss {
-  int found;     /* 0: not evaluated, the condition number is that of a plain
-                    mesh */
+  int found;     /* 0: not evaluated, there is no reason to */
   double norm;   /* sqrt(J), error in the energy norm */
   double energy; /* -, the same over the norm of the solution */
   double stress; /* -, error of the stresses over the largest */
@@ -113,8 +105,7 @@ typedef struct balance_report {
   double wanted; /* -, error of the solver that is enough; NAN: unknown */
   double tol;    /* -, residual required */
   int passes;    /* solves with ever smaller tolerances */
-  /* about; s */
-  double saved_iterations, saved_cpu;
+  double saved_iterations, saved_cpu; /* about, -; s */
 } balance_report;
 
 /* The increment once more, with forces added to its loads. */
@@ -130,57 +121,45 @@ typedef struct what_if {
 typedef struct state_errors {
   error_bound error; /* of the contact solver */
   int in_doubt;      /* 1: its bound is above 10 % */
-  int after_miss;    /* 1: its history holds an increment that is
-                        not settled */
+  int after_miss;    /* 1: after an increment that is not settled */
   rounding_loss rounding;
-  /* of the mesh, of the increments */
-  error_share mesh_error, time_error;
-  const double *elem_error; /* [n_elem] share of each element in the error
-                               of the mesh, -, relative as that; or NULL */
+  error_share mesh_error, time_error; /* of the mesh, the increments */
+  const double *elem_error; /* [n_elem] of that of the mesh, -; or NULL */
   int n_goal;
-  const goal_result *goals;    /* [n_goal] of *GOAL; NULL: none */
-  const double *goal_products; /* [n_goal*n_elem] of each element: product of
-                                  its errors of the solution and of the adjoint,
-                                  unit of the goal; zero: no estimate; or NULL
-                                */
+  const goal_result *goals; /* [n_goal] of *GOAL; NULL: none */
+  const double
+      *goal_products; /* [n_goal*n_elem] errors of solution times adjoint,
+                         unit of the goal; zero: no estimate; or NULL */
   balance_report balance;
   true_error exact;              /* against *REFERENCE */
-  int jumps;                     /* 1: no path of equilibria leads to this
-                                    one */
+  int jumps;                     /* 1: no path of equilibria leads here */
   double jump_t;                 /* s, where the equilibrium jumps then */
   theorems_report theorems;      /* the theorems at work */
   const solution_set *solutions; /* of CHECK=; NULL: not required */
 } state_errors;
 
 typedef struct state_body {
-  const double *u; /* [dim*n_node] m */
-  const double *strain,
-      *stress;               /* [ns*n_elem] -, Pa; NULL if no output needs it */
-  const double *temperature; /* [n_elem] or NULL: no thermal strain */
-  const flow *flow;          /* elements whose law flows; NULL: none */
-  const int *flow_elem;      /* [flow->n] ascending */
-  const flow_state *inelastic; /* their strains and internal variables */
-  const double *reaction;      /* [dim*n_node] N, of the supports; 0 where
-                                  free */
+  const double *u;               /* [dim*n_node] m */
+  const double *strain, *stress; /* [ns*n_elem] -, Pa; NULL: not shown */
+  const double *temperature;     /* [n_elem] or NULL: no thermal strain */
+  const flow *flow;              /* elements whose law flows; NULL: none */
+  const int *flow_elem;          /* [flow->n] ascending */
+  const flow_state *inelastic;   /* their strains and internal variables */
+  const double *reaction;        /* [dim*n_node] N, of the supports */
 } state_body;
 
 typedef struct state_contacts {
-  const contact_problem
-      *problem; /* the problem solved; NULL: no contact, LCP */
-  const contact_surface *surface; /* NULL: no contact. A problem from a file has
-                                     numbers 1 to n and no geometry (x NULL) */
-  const double *uc, *rc;          /* [dim*n] contact frame, m, N */
-  const double *gap;              /* [n] gap left open: gap0 - u_n, m */
-  const double *slip;             /* [(dim-1)*n] slip of the increment, of a
-                                     static problem from the origin, m */
-  const double *limit;            /* [n] sliding limit g, N; NULL:
-                                     frictionless */
-  const contact_status *contact;  /* [n] */
-  const contact_total *totals;    /* [n_contact] */
-  const double *distance;         /* [n] all slip so far, m; NULL:
-                                     frictionless */
-  const double *torque;           /* [n_contact] about its axis, N m; NULL: no
-                                     axis */
+  const contact_problem *problem; /* as solved; NULL: no contact, LCP */
+  const contact_surface
+      *surface;          /* NULL: no contact; of a file: numbers only */
+  const double *uc, *rc; /* [dim*n] contact frame, m, N */
+  const double *gap;     /* [n] gap left open: gap0 - u_n, m */
+  const double *slip;    /* [(dim-1)*n] of the increment; static: of all, m */
+  const double *limit;   /* [n] sliding limit g, N; NULL: no friction */
+  const contact_status *contact; /* [n] */
+  const contact_total *totals;   /* [n_contact] */
+  const double *distance;        /* [n] all slip so far, m; NULL: no friction */
+  const double *torque;          /* [n_contact] about its axis, N m; or NULL */
   int n_open, n_slip, n_stick;
 } state_contacts;
 
@@ -195,16 +174,13 @@ typedef struct state {
   state_body body;
   state_contacts contacts;
   state_errors errors;
-  /* of the run, that are on; or NULL */
-  const struct effect_list *effects;
+  const struct effect_list *effects; /* of the run, or NULL */
   energies energy;
   solver_report report;
   const char *solver_log;
-  const char *note; /* whole lines about what jumps, "" or NULL:
-                       nothing */
+  const char *note; /* lines about what jumps; "", NULL: none */
   double cpu;       /* of this increment, s */
-  int settled;      /* 1: converged to its tolerance, and is not in
-                       doubt */
+  int settled;      /* 1: to its tolerance, and not in doubt */
   what_if again;    /* until the next one */
 } state;
 

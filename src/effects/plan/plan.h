@@ -20,12 +20,10 @@ struct plan_sizes {
   const mesh *msh;                  /* NULL: a condensed problem from a file */
   int dim, ns, is_flat;             /* is_flat: plane or axisymmetric */
   double nodes, elements, unknowns; /* unknowns: of the body */
-  double contact, tangents;         /* nodes, tangential unknowns of the
-                                       contact */
-  double increments;                /* of all steps as the deck has them; of a
-                                       step with a tolerance at most ADAPTED */
-  double shown;                     /* increments that any table or field
-                                       shows */
+  double contact, tangents;         /* nodes, tangential unknowns */
+  double increments;                /* of all steps of the deck, ADAPTED at most
+                                       of one with a tolerance */
+  double shown;                     /* of them, by any table or field */
   int flows_linearly;               /* all laws have a constant Jacobian */
   double equilibria;                /* contact problems solved on the way */
   double factors;                   /* matrices factored */

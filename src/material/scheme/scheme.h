@@ -125,11 +125,9 @@ typedef struct scheme_step {
 
 typedef struct scheme_result {
   int settled;       /* 0: no result to continue with */
-  int stuck;         /* point without a state at the end of the step, from 1; 0:
-                        it was not for a point */
+  int stuck;         /* point that has no state at the end, from 1; or 0 */
   int iterations;    /* linear solves of an implicit step */
-  double error;      /* estimate of the strain error, root mean square; < 0: the
-                        scheme has none of its own */
+  double error;      /* of strains, root mean square, -; < 0: not estimated */
   double dissipated; /* J, in the quadrature of the scheme */
 } scheme_result;
 
@@ -157,8 +155,7 @@ typedef struct scheme {
   int order;
   int linear_only; /* laws with a constant Jacobian only */
   double theta;    /* fixed by the row; 0: THETA=, or no such parameter */
-  double limit;    /* |rate| dt up to which decay is stable; 0: none, or
-                      theta */
+  double limit;    /* stable |rate| dt; 0: none, or theta */
   int has_theta;
   int estimates; /* scheme_result.error is set */
   status (*advance)(const scheme_call *a);
