@@ -22,8 +22,7 @@ typedef struct place {
   int line_no, column_no;   /* from 1; 0: unknown. Columns count bytes */
   const char *line;         /* text of the line for the caret, or NULL */
   const struct place *from; /* place of the *INCLUDE of this file, or NULL */
-  int hidden;               /* 1: messages show nothing of the file, which may
-                               be no deck */
+  int hidden;               /* 1: messages show nothing of it: no deck */
 } place;
 
 typedef enum { NOTE, WARNING, ERROR } severity;

@@ -32,44 +32,32 @@ typedef struct option {
 
 #define OPTION_OFFSET(struct_, field, type) \
   (offsetof(struct_, field) + 0 * sizeof(&((struct_ *)0)->field == (type *)0))
-#define OPTION_INT(struct_, field, name, min, max, initial, unit, help)   \
-  {                                                                       \
-    name, OPT_INT, OPTION_OFFSET(struct_, field, int), min, max, initial, \
-        unit, NULL, help                                                  \
-  }
+/* clang-format off */
+#define OPTION_INT(struct_, field, name, min, max, initial, unit, help)       \
+  {name, OPT_INT, OPTION_OFFSET(struct_, field, int), min, max, initial,      \
+   unit, NULL, help}
 #define OPTION_REAL(struct_, field, name, min, max, initial, unit, help)      \
-  {                                                                           \
-    name, OPT_REAL, OPTION_OFFSET(struct_, field, double), min, max, initial, \
-        unit, NULL, help                                                      \
-  }
+  OPTION_REAL_WORD(struct_, field, name, min, max, initial, unit, NULL, help)
 /* The same, or one of the words of "choices": then OPTION_WORD(rank). */
 #define OPTION_WORD(rank) (-1.0 - (rank))
 #define OPTION_REAL_WORD(struct_, field, name, min, max, initial, unit,       \
                          choices, help)                                       \
-  {                                                                           \
-    name, OPT_REAL, OPTION_OFFSET(struct_, field, double), min, max, initial, \
-        unit, choices, help                                                   \
-  }
+  {name, OPT_REAL, OPTION_OFFSET(struct_, field, double), min, max, initial,  \
+   unit, choices, help}
 /* YES or NO; the bare name means YES. Field: int 0 or 1. */
-#define OPTION_FLAG(struct_, field, name, initial, help)                    \
-  {                                                                         \
-    name, OPT_FLAG, OPTION_OFFSET(struct_, field, int), 0, 1, initial, "-", \
-        NULL, help                                                          \
-  }
+#define OPTION_FLAG(struct_, field, name, initial, help)                      \
+  {name, OPT_FLAG, OPTION_OFFSET(struct_, field, int), 0, 1, initial, "-",    \
+   NULL, help}
 /* Any text, case kept. Field: const char *, borrowed from the caller. */
-#define OPTION_NAME(struct_, field, name, initial, help)               \
-  {                                                                    \
-    name, OPT_NAME, OPTION_OFFSET(struct_, field, const char *), 0, 0, \
-        initial, "-", NULL, help                                       \
-  }
+#define OPTION_NAME(struct_, field, name, initial, help)                      \
+  {name, OPT_NAME, OPTION_OFFSET(struct_, field, const char *), 0, 0,         \
+   initial, "-", NULL, help}
 /* One of the words of "choices", case ignored. Field: int, rank from 0. */
 #define OPTION_CHOICE(struct_, field, name, choices, initial, help)           \
-  {                                                                           \
-    name, OPT_CHOICE, OPTION_OFFSET(struct_, field, int), 0, 0, initial, "-", \
-        choices, help                                                         \
-  }
-#define OPTION_END \
-  { NULL, OPT_INT, 0, 0, 0, NULL, NULL, NULL, NULL }
+  {name, OPT_CHOICE, OPTION_OFFSET(struct_, field, int), 0, 0, initial, "-",  \
+   choices, help}
+#define OPTION_END {NULL, OPT_INT, 0, 0, 0, NULL, NULL, NULL, NULL}
+/* clang-format on */
 
 /* Row of that name (exact, upper case), or NULL. */
 const option *option_find(const option *table, const char *name);

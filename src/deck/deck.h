@@ -57,8 +57,7 @@ typedef struct card {
   parameter *parameters; /* [n_parameter] in the order of the deck */
   record *records;       /* [n_record] */
   const char *format;    /* of the *LEGACY before it, or NULL */
-  int damaged;           /* a parameter was refused: what is missing may be that
-                            one */
+  int damaged;           /* a parameter was refused, it may be a missing one */
   place at;
 } card;
 

@@ -121,8 +121,7 @@ typedef struct compiler {
   symbol_value_fn *symbol;
   const void *ctx;
   expression *e;
-  int depth; /* values on the stack once the code so far has
-                run */
+  int depth; /* values on the stack after the code so far */
   int n_waiting;
   waiting stack[WAITING];
   int column; /* of the error */

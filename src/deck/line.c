@@ -19,13 +19,11 @@ struct source {
   const char *file;
   const place *from; /* of the *INCLUDE, or NULL */
   FILE *stream;
-  dev_t device; /* with inode: which file it is, whatever its
-                   name */
+  dev_t device; /* with inode: which file it is */
   ino_t inode;
   int n_block, at; /* bytes in the block, next one */
   int line_no, held, ended, depth;
-  int hidden; /* messages show nothing of it: no card at its
-                 start */
+  int hidden; /* no card at its start: messages show nothing */
   int begun;
   physical line;
   char text[LINE_MAX_BYTES + 1]; /* as in the file */

@@ -31,8 +31,7 @@ typedef struct builder {
   int *corner;        /* [(dim+1)*n_top] raw nodes */
   int *elem_of_top;   /* [n_top] element id */
   int *face_of_low;   /* [n_low] face id */
-  int *first;         /* [raw->n_block] first top or low element of the
-                         block */
+  int *first;         /* [raw->n_block] its first top or low element */
 } builder;
 
 /* The first few faulty items, for a message. */

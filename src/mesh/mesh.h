@@ -42,10 +42,8 @@ typedef struct mesh {
   int dim; /* 2 or 3 */
   int n_node, n_elem, n_face, n_group;
   double *x;         /* [dim*n_node] coordinates, length */
-  size_t *node_no;   /* [n_node] number in the mesh file; those of copies are
-                        beyond the largest of the file */
-  int *origin;       /* [n_node] node it is a copy of, else itself; NULL: the
-                        mesh has no crack (mesh/crack/crack.h) */
+  size_t *node_no;   /* [n_node] of the mesh file; of copies: beyond them */
+  int *origin;       /* [n_node] node it is a copy of; NULL: no crack */
   int *elem;         /* [(dim+1)*n_elem] node ids, positive orientation */
   size_t *elem_no;   /* [n_elem] number in the mesh file */
   int *face;         /* [dim*n_face] node ids of the faces of the groups; seen

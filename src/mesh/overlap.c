@@ -22,8 +22,7 @@
 typedef struct side_list {
   int n;           /* sides of elements; after check_sides, on the boundary */
   int *start;      /* [n_node+2] sides whose lowest node is i */
-  sort_item *side; /* [n] key: the other nodes, their orientation; id: (dim+1) *
-                      element + side */
+  sort_item *side; /* [n] key: other nodes, turn; id: (dim+1)*elem + side */
 } side_list;
 
 static void side_nodes(const mesh *m, int id, int *v) {
@@ -267,12 +266,11 @@ static int boxes_meet(const box *p, const box *q) {
 typedef struct search {
   const builder *b;
   tree t;
-  double far; /* largest coordinate over the size of the mesh */
-  int *body;  /* [n_elem] when it is needed */
-  int e;      /* the element whose box is "at"; those of the tree from
-                 "from" */
-  int from;   /* on are compared with it */
-  box at;
+  double far;         /* largest coordinate over the size of the mesh */
+  int *body;          /* [n_elem] when it is needed */
+  int e;              /* the element that is compared */
+  int from;           /* leaf of the tree from which on it is */
+  box at;             /* its box */
   faults same, other; /* in one body or group; what may be two bodies */
 } search;
 

@@ -41,8 +41,7 @@ typedef struct material {
   elastic_constants elastic_aside;
   double relaxed[36];  /* [ns*ns] e^i over the stress then, 1/Pa */
   int is_relaxed;      /* 1: they do */
-  int is_still;        /* 1: the law is left out where model.still says
-                          so */
+  int is_still;        /* 1: the law is left out as model.still says */
   int is_abaqus_prony; /* *VISCOELASTIC: long-term moduli if not given */
 } material;
 enum { MODULI_LONG_TERM, MODULI_INSTANTANEOUS };
@@ -123,10 +122,8 @@ typedef struct contact {
   gap_change change;             /* of a pair */
   int update;                    /* 1: UPDATE=STEP of a pair */
   int slave_normal;              /* 1: NORMAL=SLAVE of a pair */
-  int obstacle_normal;           /* 1: NORMAL=OBSTACLE; resolved from -1: not
-                                    given */
-  int has_axis;                  /* line AXIS, or that of ROTATE of the
-                                    obstacle */
+  int obstacle_normal;           /* 1: NORMAL=OBSTACLE; -1: not given */
+  int has_axis;                  /* line AXIS, or ROTATE of the obstacle */
   int axis_of_obstacle;          /* 1: of the obstacle, shifted with it */
   double axis_point[3], axis[3]; /* m, of unit length; for the torque */
   place axis_at;
@@ -160,8 +157,7 @@ typedef struct load {
   int component;       /* 0..dim-1: of TX.., BX.., *CLOAD, *BOUNDARY */
   double direction[3]; /* LOAD_GRAVITY, unit length */
   quantity value, before;
-  int has_before;  /* RUN_RAMP: starts from "before" at before_t, else from
-                      0 */
+  int has_before;  /* RUN_RAMP: from "before" at before_t, else from 0 */
   double before_t; /* s, total time */
   /* *TEMPERATURE, FILE=: nodal field that the value multiplies; NULL: 1 */
   const char *file, *before_file;
@@ -292,8 +288,7 @@ typedef struct step {
     int given;
   } print;
   struct {
-    int frequency; /* HDF5 fields: every n-th increment; 0: last only; -1: no
-                      HDF5 */
+    int frequency; /* HDF5: every n-th increment; 0: last; -1: none */
     int condensed; /* the same of the condensed problems */
     int given;
     place at;
@@ -402,13 +397,11 @@ typedef struct omitted {
   char why[160]; /* reason of the trial */
   double bound;  /* -, of the energy norm of the solution, at most */
   double local;  /* -, stress in one element over the scale of stresses */
-  double change; /* -, largest change of displacements and forces when an
-                    increment was solved again with it, over their largest */
+  double change; /* -, largest change by an increment with it */
   long checked;  /* increments */
   long again;    /* of them solved again */
   int some;      /* > 0: of the law at so many elements only, m->still */
-  double time;   /* s, > 0: the law is at its final state, approached by
-                    exp(-t/time) */
+  double time;   /* s, > 0: the law is near its final state, exp(-t/time) */
   int back;      /* 1: it matters, the run was repeated with it */
   int lost;      /* 1: the run without it was not solved to its tolerance */
 } omitted;
@@ -468,13 +461,10 @@ typedef struct model {
     accuracy_target target;
     closed_form ref;
     goal_card *goals;  /* [n.goal] in the order of the deck */
-    int goal_products; /* 1: their shares of the elements are kept, for sizes of
-                          a mesh */
-    double mesh_price; /* -, expected share of the run, for which the error of
-                          the mesh that no card requires is left out; 0: it is
-                          not */
-    const struct coarser *coarser; /* where contact starts from, borrowed; or
-                                      NULL (run/start/coarser.h) */
+    int goal_products; /* 1: shares of the elements are saved for sizes */
+    double mesh_price; /* -, share of the run for which an error of the mesh
+                          that no card requires is left out; 0: it is not */
+    const struct coarser *coarser; /* start of contact, borrowed; or NULL */
   } accuracy;
   struct {              /* *EFFECTS */
     int given, is_auto; /* is_auto: MODE=AUTO */
@@ -482,8 +472,7 @@ typedef struct model {
     place at;
     int n;
     omitted row[NEGLECT_MAX]; /* [n] */
-    unsigned char *still;     /* [n_elem] as material.is_still says; NULL:
-                                 nowhere, owned */
+    unsigned char *still; /* [n_elem] material.is_still; NULL: nowhere, owned */
   } reduction;
   effect_card *effect_cards; /* [n.effect_card] in the order of the deck */
   unsigned effects;          /* bits EFFECT_*, set by model_check */

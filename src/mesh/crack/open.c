@@ -32,10 +32,8 @@ typedef struct opening {
   int n_elem;        /* near elements */
   int *elem;         /* [n_elem] ascending */
   int *place;        /* [n_elem of the mesh] in elem; -1 */
-  int *across;       /* [per*n_elem] the side behind a side with a node of a
-                        crack; -1: boundary or crack */
-  int *node;         /* [per*n_elem] node of a corner after the opening, -1: no
-                        node of a crack */
+  int *across;       /* [per*n_elem] side behind a side; -1: end or crack */
+  int *node;         /* [per*n_elem] of a corner, opened; -1: no crack */
   int n_copy;
   int *copy_of; /* [n_copy] */
 } opening;
@@ -314,8 +312,7 @@ static void leave_closed(opening *o) {
 /* A mean normal has a part along an axis if it is not below this, -. */
 static const double no_part = 1e-6;
 
-typedef struct walk { /* over one crack; edges (2-D: nodes) are dim * i + k of
-                         face i */
+typedef struct walk { /* over one crack; edge k of face i: dim * i + k */
   opening *o;
   int first, n; /* its faces are first .. first + n */
   int *beyond;  /* [dim*n] edge of the one neighbour there, -1: none or more */

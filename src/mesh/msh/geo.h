@@ -13,10 +13,8 @@ typedef struct geo_text {
   char **file; /* [n_file] paths */
   char **text; /* [n_file] their bytes, a zero after each name */
   int n_name, name_capacity;
-  const char **name;      /* [n_name] in text; a name as often as it stands
-                             there */
-  int is_open;            /* it includes files whose names only gmsh can
-                             evaluate */
+  const char **name;      /* [n_name] in text, as often as they stand there */
+  int is_open;            /* it has files whose names gmsh evaluates */
   char merged[GEO_FILES]; /* [n_file] 1: gmsh executes its options file */
 } geo_text;
 

@@ -36,8 +36,7 @@ typedef struct raw_mesh {
   raw_group *group;
   char **warning;  /* [n_warning] texts of gmsh */
   int n_entity[4]; /* geometric entities by dimension */
-  size_t n_loose;  /* elements of the highest dimension of the groups that are
-                      in no group */
+  size_t n_loose;  /* elements of the highest dimension in no group */
   int meets;       /* as in mesh_source */
   int made;        /* 1: by gmsh from a .geo: centres of arcs are nodes of it */
 } raw_mesh;

@@ -40,8 +40,7 @@ typedef struct reading {
   size_t plugin_size;
   int material_id; /* open *MATERIAL, or -1 */
   int misread;     /* a parameter of the card was refused */
-  int lost;        /* a card or its lines were refused: a missing item may be
-                      that one and is not reported */
+  int lost;        /* a card was refused, it may be what is missing */
   int in_step;     /* inside *STEP ... *END STEP */
   /* names of variables, or NULL */
   const char *const *axisymmetric;

@@ -20,14 +20,19 @@ status apply_material(reading *r) {
   return OK;
 }
 
+/* An open material that has this card already. */
+static void report_twice(const reading *r) {
+  message_add(r->m->log, P2011, &r->card->at, "material %s has *%s twice",
+              r->m->materials[r->material_id].name, r->card->name);
+}
+
 status apply_elastic(reading *r) {
   const card_options *p = r->param;
   const card *c = r->card;
   material *mat = &r->m->materials[r->material_id];
   char text[256];
   if (mat->has_elastic++) {
-    message_add(r->m->log, P2011, &c->at, "material %s has *ELASTIC twice",
-                mat->name);
+    report_twice(r);
     return OK;
   }
   mat->moduli = card_parameter(c, "MODULI") == NULL ? -1 : p->moduli;
@@ -41,9 +46,7 @@ status apply_elastic(reading *r) {
 status apply_density(reading *r) {
   material *mat = &r->m->materials[r->material_id];
   const record *line = &r->card->records[0];
-  if (mat->has_density)
-    message_add(r->m->log, P2011, &r->card->at,
-                "material %s has *DENSITY twice", mat->name);
+  if (mat->has_density) report_twice(r);
   if (record_fields(r, line, 1, 1, "rho") != 0) return OK;
   if (field_real(r, &line->fields[0], 0.0, DBL_MAX, "rho", &mat->density) == 0)
     mat->has_density = 1;
@@ -79,9 +82,7 @@ status apply_expansion(reading *r) {
   expansion *x = &r->m->materials[r->material_id].expand;
   int n = r->card->n_record, lines = 0;
   if (x->given++) {
-    message_add(r->m->log, P2011, &r->card->at,
-                "material %s has *EXPANSION twice",
-                r->m->materials[r->material_id].name);
+    report_twice(r);
     return OK;
   }
   x->type = p->type;
@@ -220,9 +221,7 @@ status apply_trs(reading *r) {
   const record *line = &r->card->records[0];
   material *mat = &r->m->materials[r->material_id];
   law_shift s = {.kind = SHIFT_WLF};
-  if (mat->clock.kind != SHIFT_NONE)
-    message_add(r->m->log, P2011, &r->card->at, "material %s has *TRS twice",
-                mat->name);
+  if (mat->clock.kind != SHIFT_NONE) report_twice(r);
   if (record_fields(r, line, 3, 3, "T_REF, C1, C2") != 0 ||
       deck_real(&line->fields[0], r->m->log, &s.reference) != 0 ||
       field_real(r, &line->fields[1], 0.0, DBL_MAX, "C1", &s.c1) != 0 ||
