@@ -123,7 +123,7 @@ const char *nearest_word(const char *word,
   return longer != NULL && best > 1 ? longer : found;
 }
 
-const char *next_name(const void *names, int i) {
+const char *candidate_name(const void *names, int i) {
   const name_list *l = names;
   const char *p;
   if (i >= l->n) return NULL;
@@ -157,8 +157,9 @@ static int read_choice(const option *row, const char *text, int *rank,
   if (*rank >= 0) return 0;
   word_list list;
   split_choices(row->choices, &list);
-  const char *near = nearest_word(
-      text, next_name, &(name_list){list.word, list.n, sizeof *list.word, 0});
+  const char *near =
+      nearest_word(text, candidate_name,
+                   &(name_list){list.word, list.n, sizeof *list.word, 0});
   if (near != NULL)
     snprintf(why, why_size, "'%s' is none of %s; did you mean %s?", text,
              row->choices, near);

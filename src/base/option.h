@@ -98,6 +98,6 @@ typedef struct name_list {
   (&(const name_list){(list), INT_MAX, sizeof *(list), \
                       1 + offsetof(__typeof__(**(list)), name)})
 /* Name i of a name_list: for nearest_word. */
-const char *next_name(const void *names, int i);
+const char *candidate_name(const void *names, int i);
 
 #endif

@@ -133,8 +133,9 @@ static int check_names(reader *r, const card *c, const char *const *names) {
     const char *const *name = names;
     while (*name != NULL && strcmp(*name, p->name) != 0) ++name;
     if (*name != NULL) continue;
-    const char *near = nearest_word(
-        p->name, next_name, &(name_list){names, INT_MAX, sizeof *names, 0});
+    const char *near =
+        nearest_word(p->name, candidate_name,
+                     &(name_list){names, INT_MAX, sizeof *names, 0});
     message_add(r->log, P2003, &p->at,
                 near != NULL ? "unknown parameter %s of *%s; did you mean %s?"
                              : "unknown parameter %s of *%s",

@@ -234,7 +234,7 @@ static status read_call(compiler *c, const char *name) {
   w.column = c->column;
   if (w.called == NULL) {
     const char *near =
-        nearest_word(name, next_name, NAMES(functions, N_FUNCTION));
+        nearest_word(name, candidate_name, NAMES(functions, N_FUNCTION));
     if (near != NULL)
       RAISE(ERR_DECK, "unknown function %s; did you mean %s?", name, near);
     RAISE(ERR_DECK, "unknown function %s", name);

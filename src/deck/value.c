@@ -34,7 +34,7 @@ static void advise(const deck *d, const message_log *log, const char *name,
   advice[0] = '\0';
   const int n = d->n_symbol < ADVICE_MAX ? d->n_symbol : ADVICE_MAX;
   if (message_wanted(log, ERROR))
-    near = nearest_word(name, next_name, NAMES(d->symbols, n));
+    near = nearest_word(name, candidate_name, NAMES(d->symbols, n));
   if (near != NULL)
     snprintf(advice, ADVICE_SIZE, "; did you mean %.1s%s%s?", marks, near,
              *marks != '\0' ? marks + 1 : "");

@@ -35,7 +35,7 @@ const mesh_group *mesh_find_group(const mesh *m, const char *name) {
 }
 
 const char *mesh_nearest_group(const mesh *m, const char *name) {
-  return nearest_word(name, next_name, NAMES(m->group, m->n_group));
+  return nearest_word(name, candidate_name, NAMES(m->group, m->n_group));
 }
 
 /* d = x[b] - x[a] */

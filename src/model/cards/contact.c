@@ -382,7 +382,7 @@ plugin names_law(const reading *r) {
   if (ops != NULL)
     return (plugin){ops->options, ops->param_size, "LAW", ops->name};
   unknown_word(r->m->log, P2012, &law->value.at,
-               "*FRICTION: there is no LAW=", p->law, next_name,
+               "*FRICTION: there is no LAW=", p->law, candidate_name,
                LISTED(friction_list));
   return none;
 }
@@ -395,7 +395,7 @@ int find_contact(const reading *r, const char *name) {
   snprintf(text, sizeof text,
            "*%s: before this card there is no *CONTACT, NAME=", r->card->name);
   unknown_word(r->m->log, P2012, value_place(r, "CONTACT"), text, name,
-               next_name, names);
+               candidate_name, names);
   return -1;
 }
 

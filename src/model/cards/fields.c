@@ -149,7 +149,7 @@ status read_pairs(reading *r, int first_line, int variable, value_table *out) {
 
 int rank_of_name(const name_list *names, const char *name) {
   const char *word;
-  for (int i = 0; (word = next_name(names, i)) != NULL; ++i)
+  for (int i = 0; (word = candidate_name(names, i)) != NULL; ++i)
     if (same_word(word, name)) return i;
   return -1;
 }
@@ -160,7 +160,7 @@ int find_name(const model *m, const char *name, const char *title,
   const int i = rank_of_name(names, name);
   if (i >= 0) return i;
   snprintf(text, sizeof text, "there is no *%s, NAME=", title);
-  unknown_word(m->log, P2012, at, text, name, next_name, names);
+  unknown_word(m->log, P2012, at, text, name, candidate_name, names);
   return -1;
 }
 

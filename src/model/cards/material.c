@@ -108,7 +108,7 @@ plugin names_inelastic(const reading *r) {
     return (plugin){ops->options, ops->param_size, "LAW", ops->name};
   if (p->law != NULL)
     unknown_word(r->m->log, P2012, value_place(r, "LAW"),
-                 "*INELASTIC: there is no LAW=", p->law, next_name,
+                 "*INELASTIC: there is no LAW=", p->law, candidate_name,
                  LISTED(law_list));
   return (plugin){NULL, 0, "LAW", NULL};
 }

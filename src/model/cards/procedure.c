@@ -136,7 +136,7 @@ status apply_visco(reading *r) {
     if (p->integrator != NULL)
       unknown_word(r->m->log, P2012, value_place(r, "INTEGRATOR"),
                    "*VISCO: this version has no INTEGRATOR=", p->integrator,
-                   next_name, LISTED(scheme_list));
+                   candidate_name, LISTED(scheme_list));
     return OK;
   }
   check_visco(r, s->visco.integrator);

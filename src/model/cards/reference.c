@@ -43,7 +43,7 @@ status apply_reference(reading *r) {
     if (record_fields(r, line, 2, 2, "name, value") != 0) continue;
     if (rank_of_name(NAMES(components, N_COMPONENT), f[0].text) < 0) {
       unknown_word(log, P2012, &f[0].at, "*REFERENCE: there is no component ",
-                   f[0].text, next_name, NAMES(components, N_COMPONENT));
+                   f[0].text, candidate_name, NAMES(components, N_COMPONENT));
       continue;
     }
     if (field_quantity(r, &f[1], &value) != 0) continue;
@@ -161,7 +161,7 @@ static int find_crack(const reading *r, const char *name) {
   if (i >= 0) return i;
   unknown_word(r->m->log, P2012, value_place(r, "CRACK"),
                "*GOAL: before this card there is no *CRACK, NAME=", name,
-               next_name, names);
+               candidate_name, names);
   return -1;
 }
 

@@ -221,7 +221,7 @@ static void unknown_card(reading *r) {
   const card *c = r->card;
   const char *near =
       message_wanted(r->m->log, ERROR)
-          ? nearest_word(c->name, next_name, NAMES(keyword_table, INT_MAX))
+          ? nearest_word(c->name, candidate_name, NAMES(keyword_table, INT_MAX))
           : NULL;
   place at = c->at; /* a file that is included may be no deck at all */
   at.hidden |= near == NULL && at.from != NULL;
