@@ -298,33 +298,34 @@ static void written_free(written *f) {
   RELEASE(f->M, f->q, f->mu, f->start, f->col, f->u, f->r);
 }
 
+static status make_file(written *f, const double *u, const double *r) {
+  if (f->cp->m > 46340)
+    RAISE(ERR_DECK, "%s: %d unknowns are too many for the layout of FCLIB",
+          f->path, f->cp->m);
+  PASS(check_friction(f->cp));
+  PASS(make_matrix(f));
+  PASS(make_vectors(f));
+  return make_solution(f, u, r);
+}
+
 status fclib_write(const contact_problem *cp, const double *u, const double *r,
                    const char *title, const char *description,
                    const char *path) {
-  status st = OK;
-  written f = {.cp = cp, .file = -1};
+  written f ENDS_BY(written_free) = {.cp = cp, .file = -1};
   H5E_auto2_t print;
   void *print_data;
-  char *aside = text_path("", path, "tmp");
+  OWNED char *aside = NULL;
+  PASS_GET(aside, text_path("", path, "tmp"));
+  f.path = path;
+  PASS(make_file(&f, u, r));
+  f.path = aside;
   H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &print, &print_data);
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-  if (aside == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of %s", path);
-  f.path = aside;
-  if (cp->m > 46340)
-    FAIL(ERR_DECK, "%s: %d unknowns are too many for the layout of FCLIB", path,
-         cp->m);
-  TRY(check_friction(cp));
-  TRY(make_matrix(&f));
-  TRY(make_vectors(&f));
-  TRY(make_solution(&f, u, r));
-  errno = 0;
-  TRY(write_all(&f, u, title, description));
-  if (rename(aside, path) != 0) TRY(text_failed(path, "replace", errno));
-done:
-  if (st != OK && aside != NULL) unlink(aside);
+  status st = write_all(&f, u, title, description);
   H5Eset_auto2(H5E_DEFAULT, print, print_data);
-  written_free(&f);
-  memory_free(aside);
+  if (st == OK && rename(aside, path) != 0)
+    st = text_failed(path, "replace", errno);
+  if (st != OK) unlink(aside);
   return st;
 }

@@ -164,20 +164,22 @@ static void write_sizes(json *w, const job *j) {
   json_close(w, '}');
 }
 
+static void json_error(json *w, const budget_row *r, const char *what,
+                       double value) {
+  char name[48];
+  snprintf(name, sizeof name, "%s_error_%s", r->json, what);
+  json_real(w, name, value);
+}
+
 static void write_budget(json *w, const job *j) {
   budget_row rows[BUDGET_ROWS];
-  char name[48];
-  int n = job_budget(j, rows);
-  for (int i = 0; i < n; ++i) {
-    snprintf(name, sizeof name, "%s_error_percent", rows[i].json);
-    json_real(w, name, rows[i].last);
-    snprintf(name, sizeof name, "%s_error_worst_percent", rows[i].json);
-    json_real(w, name, rows[i].worst);
+  const int n = job_budget(j, rows);
+  for (const budget_row *r = rows; r < rows + n; ++r) {
+    json_error(w, r, "percent", r->last);
+    json_error(w, r, "worst_percent", r->worst);
     if (j->o->no_timing) continue;
-    snprintf(name, sizeof name, "%s_error_reached_cpu", rows[i].json);
-    json_real(w, name, rows[i].reached);
-    snprintf(name, sizeof name, "%s_error_estimate_cpu", rows[i].json);
-    json_real(w, name, rows[i].estimated);
+    json_error(w, r, "reached_cpu", r->reached);
+    json_error(w, r, "estimate_cpu", r->estimated);
   }
 }
 

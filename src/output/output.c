@@ -4,7 +4,7 @@
  * which writes into them; closed. JOB.sta is written last: an increment in it
  * is in all files.
  */
-#include "output/open.h"
+#include "output/writers.h"
 
 #include "base/file.h"
 #include "base/memory.h"
@@ -236,16 +236,16 @@ static status sink_rejected(void *ctx, const state *s, const char *why) {
 
 history_sink output_sink(output *o) {
   const history_sink *first = &o->o.first;
-  return (history_sink){.ctx = o,
-                        .expect = first->expect != NULL ? sink_expect : NULL,
-                        .checkpoint =
-                            first->checkpoint != NULL ? sink_checkpoint : NULL,
-                        .ready = sink_ready,
-                        .start = sink_start,
-                        .increment = sink_increment,
-                        .between = sink_between,
-                        .iteration = sink_iteration,
-                        .rejected = sink_rejected};
+  return (history_sink){
+      .ctx = o,
+      .expect = first->expect != NULL ? sink_expect : NULL,
+      .checkpoint = first->checkpoint != NULL ? sink_checkpoint : NULL,
+      .ready = sink_ready,
+      .start = sink_start,
+      .increment = sink_increment,
+      .between = sink_between,
+      .iteration = sink_iteration,
+      .rejected = sink_rejected};
 }
 
 static void release(output *o) {

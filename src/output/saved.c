@@ -7,7 +7,7 @@
  * record: increment_summary without pointers, its reasons (text ended by NUL,
  * where there is one), its solutions.
  */
-#include "output/open.h"
+#include "output/writers.h"
 
 #include "base/memory.h"
 

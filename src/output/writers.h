@@ -1,5 +1,6 @@
 /*
- * The writers of this folder. Private to src/output.
+ * The writers of this folder, and the open job that output.c and saved.c share.
+ * Private to src/output.
  */
 #ifndef PROTIS_OUTPUT_WRITERS_H
 #define PROTIS_OUTPUT_WRITERS_H
@@ -10,6 +11,7 @@
 #include "output/listing/listing.h"
 #include "output/output.h"
 
+#include <stdint.h>
 #include <stdio.h>
 
 /* ---- tabular.c: JOB.dat ----------------------------------------------- */
@@ -56,5 +58,56 @@ status json_write(const job *j, const char *path);
 status fclib_write(const contact_problem *cp, const double *u, const double *r,
                    const char *title, const char *description,
                    const char *path);
+
+/* ---- output.c, saved.c: the open job ----------------------------------- */
+
+/* The end of JOB.rst.inc: bytes, and a checksum of all of them. */
+typedef struct saved_end {
+  long length;
+  uint64_t checksum;
+} saved_end;
+
+/* The summaries of the increments in that file (saved.c). */
+typedef struct saved_increments {
+  text_file file;
+  int n; /* increments in it */
+  saved_end end;
+  char *read; /* what stood in it when the run went on: reasons in
+                 run.increments point into it */
+} saved_increments;
+
+struct output {
+  const model *m;
+  const mesh *msh;
+  output_options o;
+  char *json, *xdmf;
+  text_file lst, sta, cvg;
+  tabular *dat;
+  hdf5_file *h5;
+  run_summary run;
+  effect_plan *plan;
+  int n_xdmf;               /* records named in JOB.xdmf */
+  double xdmf_at, xdmf_cpu; /* when, and the cost so far, s */
+  int attempt;              /* of the increment now tried */
+  int progress;
+  double shown_at, began_at; /* line on the terminal; end of the setup, s */
+  int n_done;                /* increments since then */
+  int quiet;                 /* 1: the first facts stand in the listing
+                                already */
+  saved_increments saved;
+};
+
+/* Lengths of the text files, bytes, -1: there is none; rows of JOB.h5. */
+typedef struct file_ends {
+  long lst, sta, cvg, dat;
+  saved_end increments;
+  int has_h5;
+  hdf5_count h5;
+} file_ends;
+
+/* saved.c: an increment that has ended. */
+status output_remember(output *o, const state *s);
+/* Data saved by output_keep, and the ends of the files then. */
+status output_read(output *o, archive *a, file_ends *ends);
 
 #endif

@@ -21,16 +21,10 @@
 #include <sys/stat.h>
 
 enum {
-  ASK_CHECK = 256,
-  ASK_THREADS,
+  ASK_THREADS = 256,
   ASK_MEMORY,
-  ASK_SAFE,
-  ASK_RESTART,
   ASK_TABLE,
   ASK_FORMAT,
-  ASK_QUIET,
-  ASK_ESTIMATE,
-  ASK_NO_TIMING,
   ASK_KEYWORDS,
   ASK_LIST,
   ASK_EXPLAIN,
@@ -62,38 +56,6 @@ static const char *const help_rows[][2] = {
   {"--manual [CHAPTER]", "a chapter of the manual, or their list"},
   {"--example NAME", "copy an example into the current folder"}};
 
-static const char *const exit_rows[][2] = {
-  {"0", "done"},
-  {"1", "finished, but an increment did not converge to its tolerance"},
-  {"2", "command line or deck not valid"},
-  {"3", "mesh not valid"},
-  {"4", "a file cannot be opened, read or written"},
-  {"5", "memory exhausted"},
-  {"6", "no unique equilibrium: singular, not positive definite, NaN"},
-  {"7", "a defect of the program"},
-  {"130", "interrupted by SIGINT or a file JOB.stop; the files are whole"},
-  {"143", "the same by SIGTERM; 129 SIGHUP, 138 SIGUSR1, 140 SIGUSR2, 152 "
-          "SIGXCPU"}};
-
-static const struct option words[] = {
-  {"check", no_argument, NULL, ASK_CHECK},
-  {"estimate-cost", no_argument, NULL, ASK_ESTIMATE},
-  {"threads", required_argument, NULL, ASK_THREADS},
-  {"max-memory", required_argument, NULL, ASK_MEMORY},
-  {"safe", no_argument, NULL, ASK_SAFE},
-  {"restart", no_argument, NULL, ASK_RESTART},
-  {"table", required_argument, NULL, ASK_TABLE},
-  {"format", required_argument, NULL, ASK_FORMAT},
-  {"quiet", no_argument, NULL, ASK_QUIET},
-  {"no-timing", no_argument, NULL, ASK_NO_TIMING},
-  {"help", no_argument, NULL, 'h'},
-  {"version", no_argument, NULL, 'V'},
-  {"keywords", no_argument, NULL, ASK_KEYWORDS},
-  {"list", required_argument, NULL, ASK_LIST},
-  {"explain", no_argument, NULL, ASK_EXPLAIN},
-  {"manual", no_argument, NULL, ASK_MANUAL},
-  {"example", required_argument, NULL, ASK_EXAMPLE},
-  {NULL, 0, NULL, 0}};
 /* clang-format on */
 
 static void print_help(void) {
@@ -104,24 +66,26 @@ static void print_help(void) {
   puts(
       "\nfiles: JOB.lst listing, JOB.sta a line per increment, JOB.cvg a line "
       "per\niteration, JOB.dat tables, JOB.h5 and JOB.xdmf fields, JOB.json "
-      "figures");
+      "figures;\nall are whole after an interruption");
   puts("exit codes:");
-  for (size_t i = 0; i < sizeof exit_rows / sizeof *exit_rows; ++i)
-    printf("  %-3s %s\n", exit_rows[i][0], exit_rows[i][1]);
+  for (int k = 0; k < STATUS_COUNT; ++k)
+    printf("  %-3d %s\n", status_exit_code((status)k), status_text((status)k));
+}
+
+/* near: what may have been meant, NULL: "seek" lists what there is. */
+static int refuse(const char *what, const char *word, const char *near,
+                  const char *seek) {
+  fprintf(stderr, "protis: error: %s", what);
+  text_put(stderr, word);
+  if (near != NULL)
+    fprintf(stderr, "; did you mean %s%s?\n", word[0] == '-' ? "--" : "", near);
+  else
+    fprintf(stderr, "; see protis %s\n", seek);
+  return 2;
 }
 
 static int wrong(const char *what, const char *word) {
-  fprintf(stderr, "protis: error: %s", what);
-  text_put(stderr, word);
-  fputs("; see protis --help\n", stderr);
-  return 2;
-}
-
-static int mean(const char *what, const char *word, const char *near) {
-  fprintf(stderr, "protis: error: %s", what);
-  text_put(stderr, word);
-  fprintf(stderr, "; did you mean %s%s?\n", word[0] == '-' ? "--" : "", near);
-  return 2;
+  return refuse(what, word, NULL, "--help");
 }
 
 static int no_memory(void) {
@@ -130,32 +94,21 @@ static int no_memory(void) {
 }
 
 static int print_keywords(const char *card) {
-  if (inform_keywords(card)) return 0;
-  const char *near = inform_nearest_card(card);
-  if (near == NULL) return wrong("there is no card ", card);
-  return mean("there is no card ", card, near);
-}
-
-/* Unknown word: the nearest one, or where they are listed. */
-static int unknown(const char *what, const char *word,
-                   const char *(*next)(const void *ctx, int i),
-                   const char *seek) {
-  const char *near = inform_nearest(word, next);
-  fprintf(stderr, "protis: error: there is no %s ", what);
-  text_put(stderr, word);
-  if (near != NULL) fprintf(stderr, "; did you mean %s?\n", near);
-  if (near == NULL) fprintf(stderr, "; see protis %s\n", seek);
-  return 2;
+  const char *near;
+  if (inform_keywords(card, &near)) return 0;
+  return refuse("there is no card ", card, near, "--help");
 }
 
 static int print_list(const char *kind) {
   if (list_print(kind, stdout)) return 0;
-  return unknown("list", kind, list_kind, "--help");
+  return refuse("there is no list ", kind,
+                inform_nearest(kind, list_kind, NULL), "--help");
 }
 
 static int print_manual(const char *chapter) {
   if (manual_print(chapter, stdout)) return 0;
-  int code = unknown("chapter", chapter, manual_chapter, "--manual");
+  int code = refuse("there is no chapter ", chapter,
+                    inform_nearest(chapter, manual_chapter, NULL), "--manual");
   manual_print(NULL, stderr);
   return code;
 }
@@ -163,7 +116,8 @@ static int print_manual(const char *chapter) {
 static int copy_example(const char *name) {
   status st = example_copy(name, stdout);
   if (st == ERR_DECK)
-    return unknown("example", name, example_name, "--list examples");
+    return refuse("there is no example ", name,
+                  inform_nearest(name, example_name, NULL), "--list examples");
   if (st != OK) fprintf(stderr, "protis: error: %s\n", status_message());
   return status_exit_code(st);
 }
@@ -185,9 +139,8 @@ static int read_memory(const char *text, command *c) {
   return number_real(text, &c->max_memory) == NULL && c->max_memory > 0.0;
 }
 
-static const char *long_option(const void *ctx, int i) {
-  (void)ctx;
-  return words[i].name;
+static const char *long_option(const void *words, int i) {
+  return ((const struct option *)words)[i].name;
 }
 
 static int file_exists(const char *name) {
@@ -195,7 +148,7 @@ static int file_exists(const char *name) {
   return stat(name, &info) == 0;
 }
 
-static int unknown_option(const char *given) {
+static int unknown_option(const char *given, const struct option *words) {
   if (file_exists(given)) {
     fprintf(stderr,
             "protis: error: there is no option %s; a deck of that name is "
@@ -203,15 +156,21 @@ static int unknown_option(const char *given) {
             given, given);
     return 2;
   }
-  const char *near = inform_nearest(given + strspn(given, "-"), long_option);
-  if (near == NULL) return wrong("there is no option ", given);
-  return mean("there is no option ", given, near);
+  return refuse("there is no option ", given,
+                inform_nearest(given + strspn(given, "-"), long_option, words),
+                "--help");
 }
 
+/* A word of the command line as getopt has read it. */
+typedef struct given_option {
+  int what;
+  const char *value, *given, *next; /* next: the word after it, or NULL */
+} given_option;
+
 /* Queries without a job: the exit code. */
-static int answer(int what, const char *value, const char *given,
-                  const char *next, const command *c) {
-  switch (what) {
+static int answer(const given_option *o, const struct option *words,
+                  const command *c) {
+  switch (o->what) {
     case 'h':
       print_help();
       return 0;
@@ -219,46 +178,29 @@ static int answer(int what, const char *value, const char *given,
       inform_version(c->commit);
       return 0;
     case ASK_KEYWORDS:
-      return print_keywords(next);
+      return print_keywords(o->next);
     case ASK_LIST:
-      return print_list(value);
+      return print_list(o->value);
     case ASK_EXPLAIN:
-      return print_explain(next);
+      return print_explain(o->next);
     case ASK_MANUAL:
-      return print_manual(next);
+      return print_manual(o->next);
     case ASK_EXAMPLE:
-      return copy_example(value);
+      return copy_example(o->value);
     case ':':
-      return wrong("a value is missing after ", given);
+      return wrong("a value is missing after ", o->given);
     default:
-      return unknown_option(given);
+      return unknown_option(o->given, words);
   }
 }
 
-/* What an option without value sets to 1, or NULL. */
-static int *switch_of(int what, command *c) {
-  switch (what) {
-    case ASK_CHECK:
-      return &c->check_only;
-    case ASK_SAFE:
-      return &c->safe;
-    case ASK_ESTIMATE:
-      return &c->estimate_cost;
-    case ASK_RESTART:
-      return &c->restart;
-    case ASK_QUIET:
-      return &c->quiet;
-    case ASK_NO_TIMING:
-      return &c->no_timing;
-    default:
-      return NULL;
-  }
-}
-
-/* Option "what" as it was given; -1: go on, else the exit code. */
-static int take_option(int what, const char *value, const char *given,
-                       const char *next, command *c) {
-  switch (what) {
+/* -1: go on, else the exit code. */
+static int take_option(const given_option *o, const struct option *words,
+                       command *c) {
+  const char *value = o->value;
+  switch (o->what) {
+    case 0: /* a switch, set by getopt */
+      return -1;
     case 'o':
       memory_free(c->dir);
       c->dir = memory_text(value);
@@ -282,10 +224,7 @@ static int take_option(int what, const char *value, const char *given,
       if (read_memory(value, c)) return -1;
       return wrong("--max-memory needs a number of MB above 0, not ", value);
     default:
-      if (switch_of(what, c) == NULL)
-        return answer(what, value, given, next, c);
-      *switch_of(what, c) = 1;
-      return -1;
+      return answer(o, words, c);
   }
 }
 
@@ -330,17 +269,44 @@ static const char *word_read(int argc, char **argv) {
   return argv[at ? optind : optind - 1];
 }
 
-int command_read(int argc, char **argv, command *c, int *exit_code) {
+/* Options and queries; -1: go on with the job. */
+static int read_options(int argc, char **argv, command *c) {
+  /* clang-format off */
+  const struct option words[] = {
+    {"check", no_argument, &c->check_only, 1},
+    {"estimate-cost", no_argument, &c->estimate_cost, 1},
+    {"threads", required_argument, NULL, ASK_THREADS},
+    {"max-memory", required_argument, NULL, ASK_MEMORY},
+    {"safe", no_argument, &c->safe, 1},
+    {"restart", no_argument, &c->restart, 1},
+    {"table", required_argument, NULL, ASK_TABLE},
+    {"format", required_argument, NULL, ASK_FORMAT},
+    {"quiet", no_argument, &c->quiet, 1},
+    {"no-timing", no_argument, &c->no_timing, 1},
+    {"help", no_argument, NULL, 'h'},
+    {"version", no_argument, NULL, 'V'},
+    {"keywords", no_argument, NULL, ASK_KEYWORDS},
+    {"list", required_argument, NULL, ASK_LIST},
+    {"explain", no_argument, NULL, ASK_EXPLAIN},
+    {"manual", no_argument, NULL, ASK_MANUAL},
+    {"example", required_argument, NULL, ASK_EXAMPLE},
+    {NULL, 0, NULL, 0}};
+  /* clang-format on */
   int what, code = -1;
+  while (code < 0 &&
+         (what = getopt_long(argc, argv, ":o:D:hV", words, NULL)) != -1) {
+    const given_option o = {what, optarg, word_read(argc, argv),
+                            optind < argc ? argv[optind] : NULL};
+    code = take_option(&o, words, c);
+  }
+  return code;
+}
+
+int command_read(int argc, char **argv, command *c, int *exit_code) {
   *c = (command){.commit = c->commit};
   opterr = 0; /* told here */
   c->defines = memory_new((size_t)argc, sizeof *c->defines);
-  if (c->defines == NULL) code = no_memory();
-  while (code < 0 &&
-         (what = getopt_long(argc, argv, ":o:D:hV", words, NULL)) != -1) {
-    const char *next = optind < argc ? argv[optind] : NULL;
-    code = take_option(what, optarg, word_read(argc, argv), next, c);
-  }
+  int code = c->defines == NULL ? no_memory() : read_options(argc, argv, c);
   if (code < 0) code = take_job(argc - optind, argv + optind, c);
   if (code < 0) return 1;
   *exit_code = code;
@@ -373,14 +339,13 @@ static void set_memory(const limits *system, const command *c) {
 }
 
 status command_apply(command *c, message_log *log) {
-  OWNED char *folder = NULL;
   limits system;
   limits_read("", &system);
   set_threads(system.cores, c, log);
   set_memory(&system, c);
   if (!c->safe) return OK;
-  folder = folder_of(c->deck_file);
-  if (folder == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a folder");
+  OWNED char *folder = NULL;
+  PASS_GET(folder, folder_of(c->deck_file));
   return input_confine(folder);
 }
 

@@ -33,20 +33,19 @@ void inform_version(const char *commit) {
   printf("HDF5 %u.%u.%u\n", major, minor, release);
 }
 
-int inform_keywords(const char *name) { return keywords_print(name, stdout); }
+const char *inform_nearest(const char *word, next_word *next, const void *ctx) {
+  return nearest_word(word, next, ctx);
+}
 
 static const char *card_name(const void *ctx, int i) {
   (void)ctx;
   return keyword_table[i].name;
 }
 
-const char *inform_nearest_card(const char *name) {
-  return inform_nearest(name + strspn(name, "*"), card_name);
-}
-
-const char *inform_nearest(const char *word,
-                           const char *(*next)(const void *ctx, int i)) {
-  return nearest_word(word, next, NULL);
+int inform_keywords(const char *name, const char **near) {
+  if (keywords_print(name, stdout)) return 1;
+  *near = nearest_word(name + strspn(name, "*"), card_name, NULL);
+  return 0;
 }
 
 static void print_sizes(const model *m, const mesh *msh) {
@@ -63,18 +62,17 @@ static void print_sizes(const model *m, const mesh *msh) {
            m->steps[i].total / m->steps[i].dt);
 }
 
+static void free_plan(effect_plan **p) { plan_free(*p); }
+
 static status print_plan(const model *m, const mesh *msh, int n) {
-  status st = OK;
-  effect_plan *p = NULL;
-  TRY(plan_new(m, msh, n, &p));
+  effect_plan *p ENDS_BY(free_plan) = NULL;
+  PASS(plan_new(m, msh, n, &p));
   puts("effects");
   plan_print(p, "  ", stdout);
-done:
-  plan_free(p);
-  return st;
+  return OK;
 }
 
-/* How the contact is solved, and what the other way would take. */
+/* Both kinds of the stiffness: which is taken, and why. */
 static void print_choice(const stiffness_choice *c) {
   const stiffness_row *rows[] = {&c->dense, &c->factor};
   static const char *const names[] = {"DENSE", "FACTOR"};
@@ -110,18 +108,16 @@ static status print_memory(const model *m, const mesh *msh) {
 /* Motions that the supports of a step leave; ERR_SINGULAR if nothing at all
  * holds one. */
 static status print_motions(const model *m, const mesh *msh, int step_id) {
-  status st = OK;
   static const char *const held[] = {
       "nothing holds it", "held by friction only", "held by contact only"};
-  free_motion *list = NULL;
+  OWNED free_motion *list = NULL;
   int n = 0;
-  st = history_motions(m, msh, effect_table, step_id, &n, &list);
+  status st = history_motions(m, msh, effect_table, step_id, &n, &list);
   for (int i = 0; i < n; ++i)
     printf("free      step %d, body %d, %s: %s\n", step_id + 1,
            list[i].body_id + 1, list[i].text, held[list[i].held_by]);
   if (n == 0 && st == OK)
     printf("supports  of step %d hold every body\n", step_id + 1);
-  memory_free(list);
   return st;
 }
 

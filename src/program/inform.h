@@ -16,10 +16,14 @@ struct model;
 
 /* "commit" of the sources, or "unknown". */
 void inform_version(const char *commit);
-/* All cards, or one in full; 0 if there is no card of that name. */
-int inform_keywords(const char *name);
-/* The card whose name is nearest, or NULL. */
-const char *inform_nearest_card(const char *name);
+/* All cards, or one in full; 0: there is no card of that name, *near is the one
+ * whose name is nearest, or NULL. */
+int inform_keywords(const char *name, const char **near);
+
+/* nearest_word, for files that include getopt.h: of the words next(ctx, i),
+ * NULL at their end; or NULL. */
+typedef const char *next_word(const void *ctx, int i);
+const char *inform_nearest(const char *word, next_word *next, const void *ctx);
 
 /* protis JOB --check: sizes, memory, effect plan, motions that nothing or only
  * contact holds; solves nothing. ERR_SINGULAR if a body is free. */
@@ -27,9 +31,5 @@ status inform_check(const struct model *m, const struct mesh *msh);
 /* The same for a deck with *CONDENSED PROBLEM: sizes and effect plan. */
 status inform_check_problem(const struct model *m,
                             const struct exchange_problem *p);
-
-/* The nearest of the words next(NULL, i), NULL at their end; or NULL. */
-const char *inform_nearest(const char *word,
-                           const char *(*next)(const void *ctx, int i));
 
 #endif

@@ -322,22 +322,13 @@ static void order_names(int n, int no, int *order, int *used) {
     if (k <= n) order_names(n, (int)k, order, used);
 }
 
-status hdf5_records_make(const char *path, int n, int n_group,
-                         const record_group *groups) {
-  status st = OK;
+/* What HDF5 has made; then the records 2 to n. */
+static status make_records(stream *s, int n, const int *order, int n_group,
+                           const record_group *groups) {
   unsigned char head[SUPERBLOCK];
-  int *order = NULL, used = 0;
-  stream *s = NULL;
-  NEW(s, 1);
-  NEW(order, n);
-  for (int no = 1; no <= n && no < 100000; ++no)
-    order_names(n, no, order, &used);
-  s->path = path;
-  s->fd = open(path, O_RDWR | O_CLOEXEC);
-  if (s->fd < 0) TRY(text_failed(path, "open", errno));
-  TRY(get(s, 0, head, sizeof head));
+  PASS(get(s, 0, head, sizeof head));
   if (memcmp(head, "\211HDF\r\n\032\n", 9) != 0 || head[13] != 8)
-    TRY(other_format(path));
+    return other_format(s->path);
   places p = {.n = n,
               .order = order,
               .per_node = 2 * (int)number(head + K_PLACE, 2),
@@ -345,14 +336,28 @@ status hdf5_records_make(const char *path, int n, int n_group,
               .end = (number(head + EOF_PLACE, 8) + 7) / 8 * 8};
   place_data(&p, n_group, groups);
   for (int i = 0; i < n_group; ++i)
-    if (groups[i].set != 0) TRY(fill_group(s, &p, &groups[i]));
-  TRY(go_to(s, EOF_PLACE));
-  TRY(emit_number(s, 8, p.end));
-  TRY(flush(s));
+    if (groups[i].set != 0) PASS(fill_group(s, &p, &groups[i]));
+  PASS(go_to(s, EOF_PLACE));
+  PASS(emit_number(s, 8, p.end));
+  PASS(flush(s));
   if (ftruncate(s->fd, (off_t)p.end) != 0)
-    TRY(text_failed(path, "write", errno));
-done:
-  if (s != NULL && s->fd > 0) close(s->fd);
-  RELEASE(s, order);
+    return text_failed(s->path, "write", errno);
+  return OK;
+}
+
+status hdf5_records_make(const char *path, int n, int n_group,
+                         const record_group *groups) {
+  OWNED int *order = NULL;
+  OWNED stream *s = NULL;
+  int used = 0;
+  PASS_NEW(s, 1);
+  PASS_NEW(order, n);
+  for (int no = 1; no <= n && no < 100000; ++no)
+    order_names(n, no, order, &used);
+  s->path = path;
+  s->fd = open(path, O_RDWR | O_CLOEXEC);
+  if (s->fd < 0) return text_failed(path, "open", errno);
+  status st = make_records(s, n, order, n_group, groups);
+  close(s->fd);
   return st;
 }
