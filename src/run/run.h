@@ -176,9 +176,8 @@ typedef struct observed_work {
 /* How the contact problem is solved. */
 typedef struct solving {
   solver_report report;
-  double tol; /* of the contact solver, in force, - */
-  double *guess_u,
-      *guess_r; /* [m] borrowed, used if nearer than r->old; or NULL */
+  double tol;                /* of the contact solver, in force, - */
+  double *guess_u, *guess_r; /* [m] borrowed, if nearer than r->old; or NULL */
   double *start_u, *start_r; /* [m] borrowed, instead of r->old; NULL: none */
   known_rate rate;
   double known_key; /* of the matrix that "rate" was read for */
