@@ -4,11 +4,13 @@
  * a block on a rough floor whose force is known from meshes of 54,000 nodes,
  * pushed once, and to and fro (144 times the nodes).
  */
+#include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* A row of the table GOALS, the last one of the job. */
@@ -543,6 +545,42 @@ START_TEST(tangential_force_in_space_is_the_first) {
 }
 END_TEST
 
+/* A clamped block with a round foot, turned as a whole. */
+static told of_turned_block(double angle) {
+  static const char foot[] = "y + 0.05*(1 - y)*(x - 1)^2";
+  const mesh_change change = {.map = {NULL, foot, NULL}, .turn = angle};
+  char path[200];
+  int *number = NULL;
+  job j = job_begin("turned");
+  snprintf(path, sizeof path, "%s/turned.msh", j.dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  ck_assert(scene_mesh_write(f, "rect 8 4 2 1", &change, &number));
+  fclose(f);
+  free(number);
+  job_write(&j, "turned.inp",
+            "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n%.17g, %.17g\n"
+            "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*GOAL, NAME=N, QUANTITY=FORCE, CONTACT=FOOT\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nRIGHT, 1, 2\n*DSLOAD\nTOP, P, 100.\n*PRINT, GOALS\n"
+            "*END STEP\n",
+            -sin(angle), cos(angle));
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  const told g = told_of(&j, 0);
+  job_end(&j);
+  return g;
+}
+
+START_TEST(errors_do_not_depend_on_the_axes) {
+  const told a = of_turned_block(0.0), b = of_turned_block(0.5);
+  ck_assert_double_eq_tol(a.value, b.value, 1e-9 * fabs(a.value));
+  ck_assert_double_eq_tol(a.error, b.error, 1e-6 * fabs(a.error));
+  ck_assert_double_eq_tol(a.band, b.band, 1e-6 * fabs(a.band));
+}
+END_TEST
+
 UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           friction_force_of_the_block, errors_of_earlier_increments_are_in_it,
           work_of_a_zone_of_stick_that_grows,
@@ -552,4 +590,5 @@ UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           means_are_of_volumes_and_of_nodes,
           slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
           means_in_space_go_on_behind_planes_of_symmetry,
-          tangential_force_in_space_is_the_first)
+          tangential_force_in_space_is_the_first,
+          errors_do_not_depend_on_the_axes)

@@ -80,11 +80,13 @@ static status ring_new(const mesh *m, ring *r) {
 }
 
 /* Of the surface at a node of a face with the unit normal own; it goes on
- * smoothly behind a plane that holds the node. */
+ * smoothly behind a plane that holds the node, but not where it is clamped. */
 static void normal_at(const run *r, const ring *rings, int node,
                       const double *own, double *n) {
   const mesh *m = r->msh;
+  const unsigned char *held = r->body.d.fixed + m->dim * node;
   double size = 0.0;
+  int n_held = 0;
   memset(n, 0, 3 * sizeof *n);
   for (int k = rings->start[node]; k < rings->start[node + 1]; ++k) {
     const int face = rings->face[k];
@@ -95,9 +97,10 @@ static void normal_at(const run *r, const ring *rings, int node,
     for (int c = 0; c < m->dim && along >= SMOOTH; ++c)
       n[c] += measure * other[c];
   }
+  for (int c = 0; c < m->dim; ++c) n_held += held[c];
   for (int c = 0; c < m->dim; ++c) {
-    const int held = r->body.d.fixed[m->dim * node + c];
-    if (held && 1.0 - 2.0 * own[c] * own[c] >= SMOOTH) n[c] = 0.0;
+    if (n_held < m->dim && held[c] && 1.0 - 2.0 * own[c] * own[c] >= SMOOTH)
+      n[c] = 0.0;
     size = hypot(size, n[c]);
   }
   for (int c = 0; c < m->dim && size > 0.0; ++c) n[c] /= size;
