@@ -66,7 +66,7 @@ static void put_reals(bytes *b, int n, const double *v) {
 #define SIZES(...)                                                          \
   put_sizes(b, (int)(sizeof((uint64_t[]){__VA_ARGS__}) / sizeof(uint64_t)), \
             (const uint64_t[]){__VA_ARGS__})
-#define REALS(...)                                                      \
+#define DOUBLES(...)                                                    \
   put_reals(b, (int)(sizeof((double[]){__VA_ARGS__}) / sizeof(double)), \
             (const double[]){__VA_ARGS__})
 
@@ -82,7 +82,7 @@ static void binary_22(bytes *b) {
   put_text(b, "$Nodes\n4\n");
   for (int i = 0; i < 4; ++i) {
     INTS(i + 1);
-    REALS(i == 1 || i == 2, i > 1, 0.0);
+    DOUBLES(i == 1 || i == 2, i > 1, 0.0);
   }
   put_text(b, "\n$EndNodes\n$Elements\n4\n");
   INTS(2, 2, 2, 7, 1, 5, 1, 2, 3, 8, 1, 5, 1, 3, 4);
@@ -99,15 +99,15 @@ static void binary_41(bytes *b) {
   put_text(b, "$Entities\n");
   SIZES(1, 1, 1, 0);
   INTS(1);
-  REALS(0.0, 0.0, 0.0);
+  DOUBLES(0.0, 0.0, 0.0);
   SIZES(1);
   INTS(3, 6);
-  REALS(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
+  DOUBLES(0.0, 0.0, 0.0, 1.0, 0.0, 0.0);
   SIZES(1);
   INTS(-2);
   SIZES(0);
   INTS(5);
-  REALS(0.0, 0.0, 0.0, 1.0, 1.0, 0.0);
+  DOUBLES(0.0, 0.0, 0.0, 1.0, 1.0, 0.0);
   SIZES(1);
   INTS(1);
   SIZES(1);
@@ -116,7 +116,7 @@ static void binary_41(bytes *b) {
   SIZES(1, 4, 1, 4);
   INTS(2, 5, 0);
   SIZES(4, 1, 2, 3, 4);
-  REALS(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0);
+  DOUBLES(0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0, 0.0);
   put_text(b, "\n$EndNodes\n$Elements\n");
   SIZES(3, 4, 7, 10);
   INTS(2, 5, 2);
