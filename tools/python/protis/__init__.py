@@ -245,11 +245,11 @@ class Job:
                 return found
         raise KeyError(f"{dat} has no table {name}; it has "
                        f"{', '.join(self.tables()) or 'none'}; *PRINT of the "
-                       "deck asks for others")
+                       "deck requests others")
 
 
 def find_program():
-    """$PROTIS, protis on the PATH, or the one built beside these sources."""
+    """$PROTIS, protis on the PATH, or the one built from these sources."""
     built = pathlib.Path(__file__).resolve().parents[3] / "build/release/protis"
     program = os.environ.get("PROTIS") or shutil.which("protis") or (
         str(built) if built.exists() else None)
