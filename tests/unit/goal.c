@@ -331,6 +331,16 @@ START_TEST(verdicts_change_at_their_limits) {
 }
 END_TEST
 
+/* Elements without error, as in uniform stress under a curved gap. */
+START_TEST(ends_of_rounding_are_no_ends) {
+  const goal_estimate e = {
+      .error = 2.0, .magnitude = 2.0, .product = 1e-15, .ends = 1e-15};
+  const goal_result r = goal_judge(&e, 4);
+  ck_assert_int_eq(r.verdict, GOAL_RELIABLE);
+  ck_assert_double_eq(r.ends, 0.0);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("goal");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -342,5 +352,6 @@ int main(void) {
   tcase_add_loop_test(tests, changes_are_the_transpose_of_the_adjoint, 0, 6);
   tcase_add_loop_test(tests, an_operator_gives_what_its_matrix_does, 0, 6);
   tcase_add_test(tests, verdicts_change_at_their_limits);
+  tcase_add_test(tests, ends_of_rounding_are_no_ends);
   return unit_run("goal", tests);
 }

@@ -302,11 +302,12 @@ double goal_estimator_flux(const goal_estimator *e, const goal_flux *f) {
  * lack. Measured on plane scenes with known goals: the estimate is within a
  * factor of 2 in 91 % of all cases below TRUSTED, and the true value in the
  * band in 91 to 95 % whatever the share. */
-static const double TRUSTED = 0.03; /* -, share of the contact ends */
-static const double LEFT = 0.05;    /* -, of the sum of magnitudes */
-static const double BAND = 0.1;     /* -, the same */
-static const double HOOP = 0.2;     /* -, the same by the hoop strains */
-static const double HISTORY = 0.25; /* -, of what the increments before add */
+static const double TRUSTED = 0.03;  /* -, share of the contact ends */
+static const double LEFT = 0.05;     /* -, of the sum of magnitudes */
+static const double BAND = 0.1;      /* -, the same */
+static const double HOOP = 0.2;      /* -, the same by the hoop strains */
+static const double ROUNDING = 1e-9; /* -, the same: elements without error */
+static const double HISTORY = 0.25;  /* -, of what the increments before add */
 
 static const struct {
   const char *word, *text;
@@ -338,7 +339,9 @@ goal_result goal_judge(const goal_estimate *e, int n_closed) {
   goal_result r = {.error = e->error,
                    .band = BAND * e->magnitude + e->ends +
                            HISTORY * e->history + HOOP * fabs(e->hoop),
-                   .ends = e->product > 0.0 ? e->ends / e->product : 0.0};
+                   .ends = e->product > ROUNDING * e->magnitude
+                               ? e->ends / e->product
+                               : 0.0};
   if (n_closed > 0 && n_closed <= FEW)
     r.verdict = GOAL_FEW_NODES;
   else if (r.ends >= TRUSTED)
