@@ -82,7 +82,7 @@ const scene_row pair_scenes[] = {
      "*DSLOAD\nTOP3, P, 10.\n" END,
    .expect = "NODES u_y = -0.01*y ~ 1e-9; TOTALS normal = 10 ~ 1e-8"},
   {.name = "tied blocks on the floor", .hard = "tie and contact",
-   .mesh = STACK,
+   .mesh = STACK, .flags = QUICK,
    .deck = BODIES("1000.", "1000.", "0.3")
      "*TIE, NAME=T\nTOP, BOTTOM2\n"
      PLANE("C", "BOTTOM", "0., 0.", "0., 1.") STATIC
