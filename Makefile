@@ -123,7 +123,7 @@ help:
 	@echo "make study        error against CPU seconds: pictures"
 	@echo "make bench        benchmarks against the limits of the machine"
 	@echo "make fuzz         hostile input, FUZZ_SECONDS each; needs clang-14"
-	@echo "make bench-big    large contacts, minutes and gigabytes"
+	@echo "make bench-big    large contacts, minutes and gigabytes; ROW=N one of them"
 	@echo "make bench-solvers  what each digit costs, for every solver"
 	@echo "make bench-auto   METHOD=AUTO against the best of the others"
 	@echo "make bench-fclib  the same on problems from files, DIR=FOLDER"
@@ -400,8 +400,9 @@ study: $(program)
 	$(Q)tools/plot goals build/study/goals build/study/goals.png \
 	  $(subst $(comma), ,$(EXACT))
 
-bench-big: $(program) $(out)/tests/bench/size
+bench-big: $(program) $(out)/tests/bench/size $(out)/tests/bench/condense
 	$(Q)BIG=1 PROTIS=$(abspath $(program)) $(out)/tests/bench/size
+	$(if $(ROW),,$(Q)$(out)/tests/bench/condense threads)
 bench-solvers: $(out)/tests/bench/solvers
 	$(Q)$<
 

@@ -4,6 +4,7 @@
  * thread, medians of the runs of this process.
  *
  *   condense [all]   "all" adds the squares with 5e5 and 1e6 nodes (minutes)
+ *   condense threads   the factor of a cube alone, by one thread and by two
  *
  * Plain: the best of AMD, METIS and coordinate cuts on the node graph, contact
  * not set apart; order, symbolic and numeric factor, one solve. Column by
@@ -19,6 +20,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 enum { MAX_RUNS = 5, SAMPLE = 20, METHODS = 3 };
 
@@ -97,11 +99,6 @@ static double plain_run(const stiffness *k, const scene *s, order_method method,
   return cpu;
 }
 
-typedef struct figures {
-  double assembly, factor, condense, plain[METHODS], column_wise;
-  condense_info info;
-} figures;
-
 /* The same stiffness without contact, or without the contact unknowns. */
 static stiffness without_contact(const stiffness *k, int drop) {
   stiffness same = *k;
@@ -115,6 +112,79 @@ static stiffness without_contact(const stiffness *k, int drop) {
   }
   return same;
 }
+
+/* ---- threads --------------------------------------------------------------
+ */
+
+static double seconds(clockid_t clock) {
+  struct timespec t;
+  clock_gettime(clock, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Seconds of the factor without its analysis, which one thread makes: by the
+ * clock on the wall, and of the processor of the first thread, which works or
+ * waits for the other, so that its time is that of an idle machine at most. */
+static void factor_seconds(const stiffness *k, const scene *s, double t[2]) {
+  static const clockid_t clocks[] = {CLOCK_MONOTONIC, CLOCK_THREAD_CPUTIME_ID};
+  const size_t n = (size_t)k->n_node;
+  cholmod_common cm;
+  graph g = {0};
+  long *number = calloc(n * (size_t)k->dim, sizeof *number);
+  cholmod_l_start(&cm);
+  check(graph_of_unknowns(k, &g));
+  t[0] = t[1] = 0;
+  for (int numeric = 0; numeric < 2; ++numeric) {
+    body_factor f = {.node = memory_new(n, sizeof *f.node)};
+    double begin[2];
+    for (int i = 0; i < k->n_node; ++i)
+      if (k->free[i]) f.node[f.n_node++] = i;
+    f.n_inner = f.n_own = f.n_node;
+    check(order_by(ORDER_METIS, &g, k->dim, s->m->x, f.n_node, f.node, &cm));
+    body_factor_number(k, &f, number);
+    for (int c = 0; c < 2; ++c) begin[c] = seconds(clocks[c]);
+    check(numeric ? body_factor_build(k, number, &cm, &f)
+                  : body_factor_analyse(k, number, &cm, &f));
+    for (int c = 0; c < 2; ++c)
+      t[c] += (numeric ? 1 : -1) * (seconds(clocks[c]) - begin[c]);
+    body_factor_release(&f, &cm);
+  }
+  graph_release(&g);
+  cholmod_l_finish(&cm);
+  free(number);
+}
+
+static void compare_threads(void) {
+  enum { RUNS = 3, CELLS = 33 };
+  const bench_case cube = {.dim = 3, .cells = CELLS};
+  double v[4][RUNS], m[4];
+  scene *s = make_case(&cube);
+  stiffness *k;
+  check(stiffness_assemble(&s->d, &k));
+  stiffness same = without_contact(k, 0);
+  for (int q = 0; q < RUNS; ++q)
+    for (int threads = 1; threads <= 2; ++threads) {
+      double t[2];
+      blas_set_threads(threads);
+      factor_seconds(&same, s, t);
+      for (int c = 0; c < 2; ++c) v[2 * (threads - 1) + c][q] = t[c];
+    }
+  for (int i = 0; i < 4; ++i) m[i] = median(RUNS, v[i]);
+  printf("factor of %d nodes, s    one thread   two   times\n", k->n_node);
+  printf("%-24s %10.2f %5.2f %7.2f\n", "wall clock", m[0], m[2], m[0] / m[2]);
+  printf("%-24s %10.2f %5.2f %7.2f\n", "CPU of the first thread", m[1], m[3],
+         m[1] / m[3]);
+  free(same.contact);
+  free(same.first_row);
+  free(same.free);
+  stiffness_free(k);
+  scene_free(s);
+}
+
+typedef struct figures {
+  double assembly, factor, condense, plain[METHODS], column_wise;
+  condense_info info;
+} figures;
 
 static void one_run(const scene *s, int columns, figures *r) {
   stiffness *k;
@@ -198,6 +268,10 @@ int main(int argc, char **argv) {
   const int all = argc > 1 && strcmp(argv[1], "all") == 0;
   const char *only = argc > 2 ? argv[2] : "";
   blas_choose_kernel(argv);
+  if (argc > 1 && strcmp(argv[1], "threads") == 0) {
+    compare_threads();
+    return EXIT_SUCCESS;
+  }
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, -1);
   printf(

@@ -22,21 +22,29 @@
 
 typedef enum { GRADED, UNIFORM } spacing;
 
+enum { KINDS = 4 };
+
 typedef struct bench_case {
   int dim, cells; /* at the contact, along an edge */
   spacing how;
-  const char *kinds[2];
-  int large; /* 1: only with BIG */
+  const char *kinds[KINDS]; /* STIFFNESS=, and METHOD= */
+  int large;                /* 1: only with BIG */
 } bench_case;
 
 #define BOTH \
   { "FACTOR", "DENSE" }
+#define METHODS                                              \
+  {                                                          \
+    "FACTOR", "FACTOR, METHOD=PCG", "FACTOR, METHOD=AUGLAG", \
+        "FACTOR, METHOD=PROXIMAL"                            \
+  }
 static const bench_case cases[] = {
     {2, 512, GRADED, BOTH, 0},         {2, 1024, GRADED, BOTH, 0},
-    {2, 2048, GRADED, BOTH, 0},        {2, 4096, GRADED, {"FACTOR"}, 0},
+    {2, 2048, GRADED, BOTH, 0},        {2, 4096, GRADED, METHODS, 0},
     {2, 32768, GRADED, {"FACTOR"}, 1}, {2, 8192, UNIFORM, {"FACTOR"}, 1},
     {3, 12, UNIFORM, BOTH, 0},         {3, 20, UNIFORM, BOTH, 0},
-    {3, 33, UNIFORM, {"DENSE"}, 1},    {3, 200, GRADED, {"FACTOR"}, 1}};
+    {3, 33, UNIFORM, {"DENSE"}, 1},    {3, 52, UNIFORM, {"DENSE"}, 1},
+    {3, 200, GRADED, {"FACTOR"}, 1}};
 
 enum { LEAST = 8, LAYERS = 122 };
 static const double PROGRAM = 10; /* MB */
@@ -247,7 +255,7 @@ static void foreseen(job *j, const char *kind, double *cpu, double *mega) {
   char key[40];
   *cpu = *mega = 0;
   if (job_run(j, "--check") != 0) return;
-  snprintf(key, sizeof key, "stiffness %s", kind);
+  snprintf(key, sizeof key, "stiffness %.*s", (int)strcspn(kind, ","), kind);
   const char *at = strstr(j->text, key);
   if (at == NULL) return;
   at += strcspn(at, "0123456789");
@@ -262,11 +270,11 @@ static void row_of(const bench_case *c, const char *kind) {
   job j = make_job(c, kind);
   foreseen(&j, kind, &cpu_before, &mega_before);
   if (run(&j, &cpu, &mega))
-    printf("%d-D %-7s %6d %-7s %9.2f %9.1f %12.2g %12.1f\n", c->dim,
+    printf("%d-D %-7s %6d %-23s %9.2f %9.1f %12.2g %12.1f\n", c->dim,
            c->how == GRADED ? "graded" : "uniform", c->cells, kind, cpu, mega,
            cpu_before, mega_before);
   else
-    printf("%d-D %6d %-7s failed\n", c->dim, c->cells, kind);
+    printf("%d-D %6d %-23s failed\n", c->dim, c->cells, kind);
   fflush(stdout);
   job_end(&j);
 }
@@ -275,11 +283,12 @@ START_TEST(both_kinds_of_stiffness) {
   const char *one = getenv("ROW");
   const int all = getenv("BIG") != NULL, only = one != NULL ? atoi(one) : 0;
   puts(
-      "mesh           cells kind        cpu[s]   mem[MB]  foreseen[s] "
+      "mesh           cells kind                        cpu[s]   mem[MB]  "
+      "foreseen[s] "
       "foreseen[MB]");
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     if (only > 0 ? i + 1 != (size_t)only : cases[i].large && !all) continue;
-    for (int k = 0; k < 2 && cases[i].kinds[k] != NULL; ++k)
+    for (int k = 0; k < KINDS && cases[i].kinds[k] != NULL; ++k)
       row_of(&cases[i], cases[i].kinds[k]);
   }
 }
