@@ -413,18 +413,15 @@ typedef struct surface_facts {
   int held;       /* 1: supports hold all of it */
 } surface_facts;
 
-/* E of the isotropic material with the means of C over all directions (Voigt
- * 1889), the same in any axes: K = C_iijj/9, G = (3 C_ijij - C_iijj)/30, Pa. */
-static double mean_young(const double C[36]) {
-  double normal = 0.0, shear = 0.0, diagonal = 0.0;
+/* C_nnnn, the modulus of uniaxial strain, in the mean over all directions n:
+ * (C_iijj + 2 C_ijij)/15, the same in any axes (Voigt 1889), Pa. */
+static double mean_modulus(const double C[36]) {
+  double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) normal += C[i + 6 * j];
-    diagonal += C[7 * i];
-    shear += C[7 * (3 + i)];
+    for (int j = 0; j < 3; ++j) sum += C[i + 6 * j];
+    sum += 2.0 * C[7 * i] + 4.0 * C[7 * (3 + i)];
   }
-  const double K = normal / 9.0;
-  const double G = (3.0 * (diagonal + 2.0 * shear) - normal) / 30.0;
-  return 9.0 * K * (G / (3.0 * K + G));
+  return sum / 15.0;
 }
 
 static surface_facts facts_of(const model *m, const mesh *msh,
@@ -437,7 +434,7 @@ static surface_facts facts_of(const model *m, const mesh *msh,
     const int face = g->item_id[k];
     const section *s = &m->sections[m->elem_section[msh->face_elem[face]]];
     area += mesh_face_normal(msh, face, normal) / g->n_item;
-    f.modulus += mean_young(m->materials[s->material_id].C) / g->n_item;
+    f.modulus += mean_modulus(m->materials[s->material_id].C) / g->n_item;
   }
   f.size = dim == 2 ? area : sqrt(area);
   for (int k = 0; k < g->n_node; ++k)
