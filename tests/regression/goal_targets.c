@@ -284,7 +284,9 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
   const double expected[2] = {foreseen(&j, "PEAK", "0.1"),
                               foreseen(&j, "TOP", "0.1")};
   ck_assert_double_gt(foreseen(&j, "TOP", "0.01"), 3 * expected[1]);
-  ck_assert_double_eq(foreseen(&j, "ALL", "0.01"), 0.0);
+  /* Of formulas on faces the mesh takes .022 % less (499.892 of 500 N). */
+  ck_assert_double_eq(foreseen(&j, "ALL", "0.1"), 0.0);
+  ck_assert_double_gt(foreseen(&j, "ALL", "0.01"), 0.0);
   job_end(&j);
   for (int k = 0; k < 2; ++k) {
     snprintf(cards, sizeof cards, goals, k == 0 ? target : "",
