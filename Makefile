@@ -118,6 +118,7 @@ help:
 	@echo "make effects-cost instructions of builds without an effect; needs valgrind"
 	@echo "make gallery      pictures of all examples for the manual"
 	@echo "make browser-test pages of tools/report in a headless browser"
+	@echo "make sums-update  plans and sums of all examples, where they were meant to change"
 	@echo "make reference    every example against its input/*/reference (-update)"
 	@echo "make viewers      JOB.xdmf read by VTK, pyvista, meshio from PyPI"
 	@echo "make study        error against CPU seconds: pictures"
@@ -249,6 +250,12 @@ unit: $(unit)
 regression: $(program) $(mesher) $(kept) $(regr)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
 	  PROTIS_MESH=$(abspath $(kept)) tools/run_tests $(regr)
+
+# tests/regression/plans and sums again, where examples were meant to change.
+.PHONY: sums-update
+sums-update: $(program) $(mesher) $(kept) $(out)/tests/regression/examples
+	$(Q)PROTIS=$(abspath $(program)) PROTIS_MESH=$(abspath $(kept)) \
+	  PROTIS_SUMS=update $(out)/tests/regression/examples
 
 # Tests of the tools, in Python; in a browser: what tools/report writes.
 tools_py := $(patsubst %.py,$(out)/%,$(wildcard tests/tools/*.py))

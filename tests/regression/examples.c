@@ -2,10 +2,13 @@
  * Every deck of input/ against the table of its folder, reference.txt: values
  * of closed forms, of statics, of publications and of finer meshes. Its effect
  * plan against plans/NAME.txt, the section EFFECTS of JOB.lst without heading.
+ * All its numbers against their sums, sums/NAME.txt: whatever changes a number
+ * of an output is seen here. PROTIS_SUMS=update writes plans and sums again.
  * The runs end at the first invalid operation, division by zero or overflow of
  * floating point (tests/preload).
  */
 #include "support/job.h"
+#include "support/sums.h"
 #include "support/unit.h"
 
 #include <glob.h>
@@ -83,11 +86,22 @@ static char *section(const job *j, const char *heading) {
   return text;
 }
 
+/* 1: what the runs give is to be written, not compared. */
+static int updates(void) { return getenv("PROTIS_SUMS") != NULL; }
+
+static void write_plan(const char *path, const char *text) {
+  FILE *file = fopen(path, "w");
+  ck_assert_msg(file != NULL, "%s cannot be written", path);
+  fputs(text, file);
+  ck_assert_int_eq(fclose(file), 0);
+}
+
 /* The effect plan, to the letter. */
 static void compare_plan(const job *j, const char *name) {
   char path[256], expected[8192];
   char *found = section(j, "EFFECTS");
   snprintf(path, sizeof path, "tests/regression/plans/%s.txt", name);
+  if (updates()) write_plan(path, found);
   FILE *file = fopen(path, "r");
   ck_assert_msg(file != NULL, "%s cannot be read", path);
   size_t n = fread(expected, 1, sizeof expected - 1, file);
@@ -115,6 +129,44 @@ static void check_off(const job *j, const char *name) {
   free(text);
 }
 
+/* Meshes and results are the same on every x86-64: kernels of OpenBLAS and of
+ * the C library that all of them have. */
+static void set_kernels(void) {
+  setenv("OPENBLAS_CORETYPE", "Nehalem", 1);
+  setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX512F,-FMA,-FMA4", 1);
+}
+
+/* Tolerances of sums: what other kernels of OpenBLAS make of the same run. */
+static void spread(sums *s, const char *path) {
+  static const char *const kernels[] = {"Prescott", "Sandybridge", "Haswell",
+                                        "SkylakeX"};
+  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
+    setenv("OPENBLAS_CORETYPE", kernels[i], 1);
+    job j = job_deck(path, "");
+    sums other = sums_of(&j);
+    sums_spread(s, &other);
+    sums_free(&other);
+    job_end(&j);
+  }
+  set_kernels();
+}
+
+static void compare_sums(const job *j, const char *path) {
+#ifdef __x86_64__
+  char file[256];
+  snprintf(file, sizeof file, "tests/regression/sums/%s.txt", j->name);
+  sums s = sums_of(j);
+  if (updates()) {
+    spread(&s, path);
+    sums_write(&s, file);
+  }
+  sums_check(&s, file);
+  sums_free(&s);
+#else
+  (void)j, (void)path;
+#endif
+}
+
 /* Run one deck (path without .inp) and compare its lines. */
 static void run_deck(const char *path, int n, const line *lines) {
   const char *name = strrchr(path, '/') + 1;
@@ -125,6 +177,7 @@ static void run_deck(const char *path, int n, const line *lines) {
   check_balance(&j, path);
   compare_plan(&j, name);
   check_off(&j, name);
+  compare_sums(&j, path);
   for (int k = 0; k < n; ++k) {
     if (strcmp(lines[k].deck, name) != 0) continue;
     compare(&j, &lines[k]);
@@ -146,6 +199,7 @@ static void set_traps(void) {
 START_TEST(every_example_gives_the_values_of_its_table) {
   glob_t decks;
   set_traps();
+  set_kernels();
   ck_assert_int_eq(glob("input/*/*.inp", 0, NULL, &decks), 0);
   for (size_t i = 0; i < decks.gl_pathc; ++i) {
     line lines[MAX];

@@ -645,8 +645,7 @@ START_TEST(options_of_merged_files_are_refused) {
     snprintf(text, sizeof text, "%s\nPhysical Surface(1)={1};\n", ways[i]);
     mesh *m = mesh_file_text(&f, "g.geo", text);
     ck_assert_msg((m != NULL) == (i == 0), "%s", f.messages);
-    ck_assert_int_eq(strstr(f.messages, "options file of gmsh") != NULL,
-                     i > 0);
+    ck_assert_int_eq(strstr(f.messages, "options file of gmsh") != NULL, i > 0);
     mesh_free(m);
   }
   mesh_file_close(&f);

@@ -111,8 +111,7 @@ static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
   return text_made(text, &(pattern){p, s}, write_pattern);
 }
 
-static void write_record(FILE *f, const char *text, int record_id,
-                         double t) {
+static void write_record(FILE *f, const char *text, int record_id, double t) {
   static const char marks[] = {NAME, TIME, '\0'};
   char name[40], time[NUMBER_SIZE];
   hdf5_record_name(name, sizeof name, record_id);
@@ -132,8 +131,7 @@ static void write_part(FILE *f, const part *p, const char *text,
           "<Grid Name=\"%s\" GridType=\"Collection\" "
           "CollectionType=\"Temporal\">\n",
           p->name);
-  for (int i = 0; i < s->n_record; ++i)
-    write_record(f, text, i, s->times[i]);
+  for (int i = 0; i < s->n_record; ++i) write_record(f, text, i, s->times[i]);
   fputs("</Grid>\n", f);
 }
 
@@ -181,8 +179,8 @@ static void write_all(FILE *f, const void *what) {
 
 status xdmf_write(const hdf5_shape *shape, const char *path) {
   OWNED char *surface = NULL, *body = NULL;
-  content c = {.shape = shape, .surface = surface_part(shape),
-               .body = body_part(shape)};
+  content c = {
+      .shape = shape, .surface = surface_part(shape), .body = body_part(shape)};
   if (shape->n_contact_node > 0)
     PASS(make_pattern(&c.surface, shape, &surface));
   PASS(make_pattern(&c.body, shape, &body));
