@@ -395,6 +395,9 @@ static void set_sizes(const child *c) {
   set(c, "Mesh.MeshSizeExtendFromBoundary", 0);
   set(c, "Mesh.MeshSizeFromPoints", 0);
   set(c, "Mesh.MeshSizeFromCurvature", 0);
+  set(c, "Mesh.MeshSizeMin", 0);
+  set(c, "Mesh.MeshSizeMax", 1e22);
+  set(c, "Mesh.MeshSizeFactor", 1);
 }
 
 /* 1: there is an options file (x.geo.opt), which gmsh would execute after the

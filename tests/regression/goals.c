@@ -249,6 +249,21 @@ START_TEST(peak_and_width_of_the_sphere) {
 }
 END_TEST
 
+/* The largest pressure of a node is some edges away from the pole, the largest
+ * mean is not. */
+START_TEST(largest_mean_in_space_is_at_the_pole) {
+  job j = with_goals("input/hertz_sphere/hertz_sphere_3d",
+                     "*GOAL, NAME=MOST, QUANTITY=PRESSURE, CONTACT=POLE\n"
+                     "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=POLE\n"
+                     "0., 0., 0.\n",
+                     "-D NC=9");
+  const told most = told_of(&j, 0), at = told_of(&j, 1);
+  ck_assert_double_eq_tol(most.value, at.value, 1e-3 * at.value);
+  ck_assert_double_eq_tol(most.error, at.error, 1e-3 * at.value);
+  job_end(&j);
+}
+END_TEST
+
 /* A bar under its weight, held at its foot: the displacement of a node is exact
  * (closed form at the top rho g L^2/(2 E)), the energy is not: per area it is
  * (rho g)^2 L^3/(6 E), less by its error in the energy norm. */
@@ -585,6 +600,7 @@ UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           friction_force_of_the_block, errors_of_earlier_increments_are_in_it,
           work_of_a_zone_of_stick_that_grows,
           both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
+          largest_mean_in_space_is_at_the_pole,
           energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
           width_is_that_of_one_zone, means_of_a_pressure_lie_on_its_surface,
           means_are_of_volumes_and_of_nodes,

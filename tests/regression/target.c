@@ -111,20 +111,25 @@ static const char square_deck[] =
     "*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\nTOP, TX, 0.1\n"
     "*ACCURACY, TARGET=8\n*END STEP\n";
 
-/* Transfinite curves and surfaces are set free. */
+/* Transfinite curves and surfaces are set free, and sizes within limits. */
 START_TEST(structured_geometry_is_made_finer) {
+  static const char *const fixed[] = {
+      "Transfinite Curve{1:4}=4;Transfinite Surface{1};",
+      "Mesh.MeshSizeMin=0.3;Mesh.MeshSizeMax=0.3;", "Mesh.MeshSizeFactor=9;"};
   static const char geo[] =
       "Point(1)={0,0,0};Point(2)={1,0,0};Point(3)={1,1,0};Point(4)={0,1,0};\n"
       "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,1};\n"
-      "Curve Loop(1)={1:4};Plane Surface(1)={1};Transfinite Curve{1:4}=4;\n"
-      "Transfinite Surface{1};Physical Surface(\"BODY\")={1};\n"
+      "Curve Loop(1)={1:4};Plane Surface(1)={1};%s\n"
+      "Physical Surface(\"BODY\")={1};\n"
       "Physical Curve(\"BOTTOM\")={1};Physical Curve(\"TOP\")={3};\n";
-  job j = job_begin("square");
-  job_write(&j, "square.geo", "%s", geo);
-  job_write(&j, "square.inp", "*MESH, FILE=square.geo\n%s", square_deck);
-  int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  job_end(&j);
+  for (size_t k = 0; k < sizeof fixed / sizeof *fixed; ++k) {
+    job j = job_begin("square");
+    job_write(&j, "square.geo", geo, fixed[k]);
+    job_write(&j, "square.inp", "*MESH, FILE=square.geo\n%s", square_deck);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "%s: exit %d: %s", fixed[k], code, j.errors);
+    job_end(&j);
+  }
 }
 END_TEST
 

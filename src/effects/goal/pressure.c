@@ -9,7 +9,9 @@
  * which are 1 over all and 0 times t^2: the error for a smooth pressure is of
  * the order rho^4 (Hertz, rho half the half width: 2.6e-4 of the peak). A line
  * where the contact is one, and a disc in space and, within rho of it, on the
- * axis. What is beyond a plane of symmetry is on the other side of it.
+ * axis. What is beyond a plane of symmetry is on the other side of it. The
+ * largest in space is where a paraboloid has its top that fits the pressures
+ * within rho, of which the largest alone may be far from there.
  *
  * The width of a zone is that of the pressure c sqrt(a - x) at its end,
  *
@@ -20,6 +22,7 @@
 #include "base/memory.h"
 #include "effects/goal/parts.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -73,17 +76,25 @@ static double disc_weight(double square, double radius) {
   return 8.0 / (PI * radius * radius) * (1.0 - 2.5 * t2) * q * q;
 }
 
-/* x and its images in the planes of symmetry, each plane a bit of "image". */
-static double on_disc(const weight *w, const double *x) {
-  double sum = 0.0;
-  for (int image = 0; image < 1 << w->dim; ++image) {
-    double square = 0.0;
-    for (int c = 0; c < w->dim; ++c) {
-      const double at = image >> c & 1 ? 2.0 * w->plane[c] - x[c] : x[c];
-      square += (at - w->origin[c]) * (at - w->origin[c]);
-    }
-    sum += disc_weight(square, w->radius); /* 0 where there is no plane */
+/* Square of the distance of x, or of its image in the planes of symmetry of the
+ * bits of "image", to the middle; infinite where there is no plane. away[dim]
+ * from there. */
+static double image_of(const weight *w, const double *x, int image,
+                       double *away) {
+  double square = 0.0;
+  for (int c = 0; c < w->dim; ++c) {
+    const double at = image >> c & 1 ? 2.0 * w->plane[c] - x[c] : x[c];
+    away[c] = at - w->origin[c];
+    square += away[c] * away[c];
   }
+  return square;
+}
+
+/* Of x and its images. */
+static double on_disc(const weight *w, const double *x) {
+  double sum = 0.0, away[3];
+  for (int image = 0; image < 1 << w->dim; ++image)
+    sum += disc_weight(image_of(w, x, image, away), w->radius);
   return -sum;
 }
 
@@ -410,6 +421,9 @@ static status sides_of(const mesh *m, const mesh_group *of, side **out) {
   return OK;
 }
 
+enum { TERMS = 6 };              /* of a paraboloid */
+static const double NEAR = 1e-3; /* -, of the radius, to its top */
+
 /* What a disc meets. */
 typedef struct rim {
   int cut;        /* 1: by a border that carries and is on no plane */
@@ -485,6 +499,54 @@ static status set_half_of_disc(const run *r, const goal_card *g, weight *w,
   return OK;
 }
 
+/* Adds the row 1, s, t, s s, s t, t t of a point with the pressure p to the
+ * normal equations A x = b, places in radii. */
+static void add_point(double s, double t, double p, double *A, double *b) {
+  const double row[TERMS] = {1.0, s, t, s * s, s * t, t * t};
+  for (int i = 0; i < TERMS; ++i) {
+    b[i] += row[i] * p;
+    for (int j = 0; j < TERMS; ++j) A[i + TERMS * j] += row[i] * row[j];
+  }
+}
+
+/* top[2], from the middle to the top of the paraboloid, in radii; 0: none. */
+static int find_top(const run *r, const goal_card *g, const weight *w,
+                    const double *frame, double *top) {
+  double A[TERMS * TERMS] = {0.0}, b[TERMS] = {0.0}, away[3];
+  for (int q = 0; q < r->nodes.n; ++q)
+    for (int image = 0; image < 8 && is_on(r, g, q); ++image) {
+      double at[2] = {0.0};
+      if (!(image_of(w, r->surface->x + 3 * q, image, away) <
+            w->radius * w->radius))
+        continue;
+      for (int a = 0; a < 2; ++a)
+        for (int c = 0; c < 3; ++c)
+          at[a] += away[c] * frame[3 * (a + 1) + c] / w->radius;
+      add_point(at[0], at[1], pressure_of(r, q), A, b);
+    }
+  if (LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', TERMS, 1, A, TERMS, b, TERMS))
+    return 0;
+  const double det = 4.0 * b[3] * b[5] - b[4] * b[4];
+  if (!(b[3] < 0.0 && det > 0.0)) return 0;
+  top[0] = (b[4] * b[2] - 2.0 * b[5] * b[1]) / det;
+  top[1] = (b[4] * b[1] - 2.0 * b[3] * b[2]) / det;
+  return 1;
+}
+
+/* Moves the middle from a contact node to the top. */
+static void climb(const run *r, const goal_card *g, int peak, weight *w) {
+  enum { STEPS = 20 };
+  const double *frame = r->surface->frame + 9 * peak;
+  double top[2], size = 1.0;
+  for (int k = 0; k < STEPS && size > NEAR; ++k) {
+    if (!find_top(r, g, w, frame, top)) return;
+    size = hypot(top[0], top[1]);
+    const double part = w->radius * fmin(1.0, 0.5 / size);
+    for (int c = 0; c < 3; ++c)
+      w->origin[c] += part * (top[0] * frame[3 + c] + top[1] * frame[6 + c]);
+  }
+}
+
 static status place_on_disc(const run *r, const goal_card *g, int peak,
                             weight *w, goal_form *f) {
   const double *at = r->surface->x + 3 * peak;
@@ -494,7 +556,10 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
   w->at = on_disc;
   w->radius = g->radius;
   if (!(g->radius > 0.0)) PASS(set_half_of_disc(r, g, w, f));
-  if (g->n_point > 0) memcpy(w->origin, g->point[0], sizeof w->origin);
+  if (g->n_point > 0)
+    memcpy(w->origin, g->point[0], sizeof w->origin);
+  else
+    climb(r, g, peak, w);
   PASS(look_round(r, g, w->radius, w, &border));
   judge_mean(g, w, at, border.longest, f);
   if (border.cut && f->why == GOAL_RELIABLE) f->why = GOAL_NO_END;
