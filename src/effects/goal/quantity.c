@@ -5,7 +5,10 @@
 #include "base/memory.h"
 #include "effects/goal/parts.h"
 
+#include <cblas.h>
 #include <string.h>
+
+static const double PI = 3.14159265358979323846;
 
 status goal_form_new(const run *r, goal_form *f) {
   PASS_NEW(f->load, r->n_dof);
@@ -58,13 +61,64 @@ static double share_of(const run *r, const goal_card *g, int i, int a) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
   const int side = a > 0 ? s->side_id[(dim - 1) * i + a - 1] : -1;
-  if ((side >= 0 ? side : s->contact_id[i]) != g->contact_id) return 0.0;
+  if ((side >= 0 ? side : s->contact_id[i]) != g->contact_id)
+    return 0.0;
   if (g->quantity == GOAL_MOMENT)
     return moment_of(g, dim, s->x + dim * i,
                      s->frame + dim * dim * i + dim * a);
-  if (g->component == GOAL_NORMAL) return a == 0 || side >= 0 ? -1.0 : 0.0;
-  if (g->component == GOAL_TANGENT) return a == 1 && side < 0 ? 1.0 : 0.0;
+  if (g->component == GOAL_NORMAL)
+    return a == 0 || side >= 0 ? -1.0 : 0.0;
+  if (g->component == GOAL_TANGENT)
+    return a == 1 && side < 0 ? 1.0 : 0.0;
   return s->frame[dim * dim * i + dim * a + g->component];
+}
+
+/* Of the traction at node k of a face that friction has by its other nodes
+ * q[dim], along row a of k: times the integral of the P1 functions of both. */
+static double held_part(const run *r, int face, const int *q, int k, int a) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim;
+  const double *along = s->frame + dim * dim * q[k] + dim * a;
+  double normal[3], sum = 0.0;
+  const double weight = mesh_face_normal(r->msh, face, normal) *
+                        r->faces.face_weight[face] / (dim * (dim + 1));
+  for (int l = 0; l < dim; ++l) {
+    const double turn = r->faces.input.axisymmetric
+                            ? PI * (s->x[dim * q[k]] + s->x[dim * q[l]])
+                            : 1.0;
+    for (int b = 1; b < dim && l != k; ++b)
+      sum +=
+          weight * turn * r->now.rc[dim * q[l] + b] / s->area[q[l]] *
+          cblas_ddot(dim, along, 1, s->frame + dim * dim * q[l] + dim * b, 1);
+  }
+  return sum;
+}
+
+/* A node that a plane of symmetry holds has no friction along its normal, and
+ * its part of the surface up to the other nodes is in no force: that of a
+ * traction that is zero at it and linear. */
+static status add_held(const run *r, const goal_card *g, goal_form *f) {
+  const mesh *m = r->msh;
+  const contact *on = &r->m->contacts[g->contact_id];
+  OWNED int *where = NULL;
+  if (on->is_pair)
+    return OK;
+  const mesh_group *of = &m->group[on->group_id];
+  PASS(goal_places(r, &where));
+  for (int i = 0; i < of->n_item; ++i) {
+    const int *v = m->face + m->dim * of->item_id[i];
+    int q[3] = {0}, all = 1;
+    for (int k = 0; k < m->dim; ++k) {
+      q[k] = where[v[k]];
+      all = all && q[k] >= 0 && r->surface->area[q[k]] > 0.0;
+    }
+    for (int k = 0; k < m->dim && all; ++k)
+      for (int a = 1; a < m->dim; ++a)
+        if (r->surface->held[m->dim * q[k] + a])
+          f->curved +=
+              f->psi[m->dim * q[k] + a] * held_part(r, of->item_id[i], q, k, a);
+  }
+  return OK;
 }
 
 static status set_force(const run *r, const goal_card *g, goal_form *f) {
@@ -74,7 +128,7 @@ static status set_force(const run *r, const goal_card *g, goal_form *f) {
       f->psi[dim * i + a] = share_of(r, g, i, a);
       f->value += f->psi[dim * i + a] * r->now.rc[dim * i + a];
     }
-  return OK;
+  return add_held(r, g, f);
 }
 
 /* Dissipated so far, by the limits at the ends of the increments; its
@@ -88,7 +142,8 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       const int k = (dim - 1) * i + a - 1;
-      if (s->side_id[k] >= 0) continue;
+      if (s->side_id[k] >= 0)
+        continue;
       f->rows[dim * i + a] = -r->now.rc[dim * i + a];
       f->psi[dim * i + a] = -r->result.slip[k];
     }
@@ -129,7 +184,8 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
     const double *E = d->E + ns * ns * (size_t)d->section_id[e];
     f->value +=
         element_weight(d, (int)e) / whole * r->result.stress[ns * e + c];
-    for (size_t i = 0; i < ns; ++i) f->tau[ns * e + i] = E[ns * i + c] / whole;
+    for (size_t i = 0; i < ns; ++i)
+      f->tau[ns * e + i] = E[ns * i + c] / whole;
   }
   f->has_tau = 1;
   return OK;
@@ -152,8 +208,10 @@ status goal_form_set(run *r, const goal_card *g, goal_form *f) {
       [GOAL_STRESS] = set_stress,     [GOAL_ENERGY] = set_energy,
       [GOAL_FRICTION] = set_friction, [GOAL_MOMENT] = set_force};
   clear(r, f);
-  if (g->quantity == GOAL_SIF) return goal_set_factor(r, g, f);
+  if (g->quantity == GOAL_SIF)
+    return goal_set_factor(r, g, f);
   PASS(set[g->quantity](r, g, f));
-  if (f->has_tau) domain_internal_force(&r->body.d, f->tau, f->load);
+  if (f->has_tau)
+    domain_internal_force(&r->body.d, f->tau, f->load);
   return OK;
 }
