@@ -144,19 +144,104 @@ static void swap(int *a, int *b) {
   *b = t;
 }
 
+/* Less than any usable sliver, far above the rounding of coordinates. */
+static int is_flat(const mesh *m, const int *v, double far, double *det) {
+  double edge;
+  *det = determinant(m, v, &edge);
+  const double face = m->dim == 2 ? edge : edge * edge;
+  return fabs(*det) <= fmax(flat * edge, 16.0 * DBL_EPSILON * far) * face;
+}
+
+static const raw_block *block_of(const builder *b, int e) {
+  int i = 0;
+  while (b->raw->block[i].dim != b->m->dim || e < b->first[i] ||
+         (size_t)(e - b->first[i]) >= b->raw->block[i].n)
+    ++i;
+  return &b->raw->block[i];
+}
+
+/* Of an element. */
+static const raw_block *home_of(const builder *b, int elem) {
+  int top = 0;
+  while (b->elem_of_top[top] != elem) ++top;
+  return block_of(b, top);
+}
+
+/* The corner opposite to the longest side of a triangle. */
+static int middle_of(const mesh *m, const int *v) {
+  int best = 0;
+  double most = -1.0;
+  for (int k = 0; k < 3; ++k) {
+    const double *x = m->x + 2 * v[(k + 1) % 3], *y = m->x + 2 * v[(k + 2) % 3];
+    const double length = hypot(x[0] - y[0], x[1] - y[1]);
+    if (length <= most) continue;
+    most = length;
+    best = k;
+  }
+  return best;
+}
+
+static int has_corner(const int *v, int node) {
+  return v[0] == node || v[1] == node || v[2] == node;
+}
+
+/* gmsh leaves triangles between three nodes of a straight line that it embeds:
+ * the one beyond the longest side of triangle e is cut in two at its middle
+ * corner, e becomes a half of it. 1: done. */
+static int cut_beyond(builder *b, int e) {
+  const mesh *m = b->m;
+  int *v = mesh_elem_nodes(m, e), t = 0;
+  const int k = middle_of(m, v);
+  const int o = v[k], p = v[(k + 1) % 3], q = v[(k + 2) % 3];
+  for (; t < m->n_elem; ++t)
+    if (t != e && has_corner(mesh_elem_nodes(m, t), p) &&
+        has_corner(mesh_elem_nodes(m, t), q))
+      break;
+  if (t == m->n_elem || home_of(b, t) != home_of(b, e)) return 0;
+  int *w = mesh_elem_nodes(m, t);
+  for (int i = 0; i < 3; ++i) {
+    v[i] = w[i] == q ? o : w[i];
+    if (w[i] == p) w[i] = o;
+  }
+  return 1;
+}
+
+/* Several of them may lie on each other; all are cut, or none. */
+static status cut_flat(builder *b, double far) {
+  enum { PASSES = 50 };
+  mesh *m = b->m;
+  const size_t n = 3 * (size_t)m->n_elem;
+  OWNED int *was = NULL;
+  double det;
+  int left = 1;
+  for (int pass = 0, cut = 1; pass < PASSES && cut > 0 && left > 0; ++pass) {
+    cut = left = 0;
+    for (int e = 0; e < m->n_elem; ++e) {
+      if (!is_flat(m, mesh_elem_nodes(m, e), far, &det)) continue;
+      ++left;
+      if (was == NULL) {
+        PASS_NEW(was, n);
+        memcpy(was, m->elem, n * sizeof *was);
+      }
+      cut += cut_beyond(b, e);
+    }
+  }
+  if (left > 0) memcpy(m->elem, was, n * sizeof *was);
+  return OK;
+}
+
 /* Turn every element to positive orientation; flat ones are reported. */
 static status orient(builder *b) {
   mesh *m = b->m;
   faults bad = {0};
   int n = m->dim + 1;
-  double far = largest_coordinate(m);
+  double far = largest_coordinate(m), det;
+  if (m->dim == 2) PASS(cut_flat(b, far));
   for (int e = 0; e < m->n_elem; ++e) {
     int *v = mesh_elem_nodes(m, e);
-    double edge, det = determinant(m, v, &edge);
-    double face = m->dim == 2 ? edge : edge * edge;
-    double floor = fmax(flat * edge, 16.0 * DBL_EPSILON * far) * face;
+    const int is_bad = is_flat(m, v, far, &det);
     if (det < 0.0) swap(&v[n - 2], &v[n - 1]);
-    if (fabs(det) > floor) continue;
+    if (!is_bad) continue;
     double centre[3];
     fault_centre(m, n, v, centre);
     fault_at(&bad, m->dim, m->elem_no[e], centre);
@@ -202,14 +287,6 @@ static void fill_keys(builder *b, size_t *no, sort_item *item) {
     sort_few(n, v);
     item[e] = (sort_item){sort_key(v[0], v[1]), e};
   }
-}
-
-static const raw_block *block_of(const builder *b, int e) {
-  int i = 0;
-  while (b->raw->block[i].dim != b->m->dim || e < b->first[i] ||
-         (size_t)(e - b->first[i]) >= b->raw->block[i].n)
-    ++i;
-  return &b->raw->block[i];
 }
 
 static int share_a_group(const raw_block *p, const raw_block *q) {

@@ -397,6 +397,30 @@ START_TEST(order_of_close_nodes_is_that_of_their_coordinates) {
 }
 END_TEST
 
+/* gmsh leaves flat triangles between the nodes of a straight line, some on each
+ * other: the triangle beyond them is cut instead. */
+START_TEST(flat_triangles_on_a_line_are_cut) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *m = mesh_file_text(
+      &f, "a.msh",
+      MSH("1\n2 1 \"B\"\n",
+          "6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 3 0 0\n5 1.5 2 0\n6 1.5 -1 0\n",
+          "6\n1 2 2 1 1 1 2 6\n2 2 2 1 1 2 3 6\n3 2 2 1 1 3 4 6\n"
+          "4 2 2 1 1 2 3 4\n5 2 2 1 1 1 2 4\n6 2 2 1 1 1 4 5\n"));
+  ck_assert_msg(m != NULL, "%s", f.messages);
+  ck_assert_int_eq(m->n_elem, 6);
+  double area = 0.0;
+  for (int e = 0; e < m->n_elem; ++e) {
+    ck_assert_double_gt(mesh_elem_measure(m, e), 0.4);
+    area += mesh_elem_measure(m, e);
+  }
+  ck_assert_double_eq_tol(area, 4.5, 1e-14);
+  mesh_free(m);
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* Neighbours along the curve are near: the mean jump between elements that
  * follow each other is a few nodes, against some 100 row by row. */
 START_TEST(neighbours_are_close_in_memory) {
@@ -548,7 +572,8 @@ UNIT_MAIN("mesh", disc_in_frame_has_its_areas_normals_and_groups,
           sizes_reach_the_geometry, scale_by_a_power_of_two_changes_no_digit,
           order_does_not_depend_on_the_numbers_of_the_file,
           order_of_close_nodes_is_that_of_their_coordinates,
-          neighbours_are_close_in_memory, bodies_are_the_connected_parts,
+          flat_triangles_on_a_line_are_cut, neighbours_are_close_in_memory,
+          bodies_are_the_connected_parts,
           groups_are_found_by_name_and_the_nearest_is_offered,
           reader_gives_back_all_when_refused,
           builder_gives_back_all_when_refused,

@@ -61,15 +61,12 @@ static double share_of(const run *r, const goal_card *g, int i, int a) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
   const int side = a > 0 ? s->side_id[(dim - 1) * i + a - 1] : -1;
-  if ((side >= 0 ? side : s->contact_id[i]) != g->contact_id)
-    return 0.0;
+  if ((side >= 0 ? side : s->contact_id[i]) != g->contact_id) return 0.0;
   if (g->quantity == GOAL_MOMENT)
     return moment_of(g, dim, s->x + dim * i,
                      s->frame + dim * dim * i + dim * a);
-  if (g->component == GOAL_NORMAL)
-    return a == 0 || side >= 0 ? -1.0 : 0.0;
-  if (g->component == GOAL_TANGENT)
-    return a == 1 && side < 0 ? 1.0 : 0.0;
+  if (g->component == GOAL_NORMAL) return a == 0 || side >= 0 ? -1.0 : 0.0;
+  if (g->component == GOAL_TANGENT) return a == 1 && side < 0 ? 1.0 : 0.0;
   return s->frame[dim * dim * i + dim * a + g->component];
 }
 
@@ -101,8 +98,7 @@ static status add_held(const run *r, const goal_card *g, goal_form *f) {
   const mesh *m = r->msh;
   const contact *on = &r->m->contacts[g->contact_id];
   OWNED int *where = NULL;
-  if (on->is_pair)
-    return OK;
+  if (on->is_pair) return OK;
   const mesh_group *of = &m->group[on->group_id];
   PASS(goal_places(r, &where));
   for (int i = 0; i < of->n_item; ++i) {
@@ -142,8 +138,7 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       const int k = (dim - 1) * i + a - 1;
-      if (s->side_id[k] >= 0)
-        continue;
+      if (s->side_id[k] >= 0) continue;
       f->rows[dim * i + a] = -r->now.rc[dim * i + a];
       f->psi[dim * i + a] = -r->result.slip[k];
     }
@@ -184,8 +179,7 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
     const double *E = d->E + ns * ns * (size_t)d->section_id[e];
     f->value +=
         element_weight(d, (int)e) / whole * r->result.stress[ns * e + c];
-    for (size_t i = 0; i < ns; ++i)
-      f->tau[ns * e + i] = E[ns * i + c] / whole;
+    for (size_t i = 0; i < ns; ++i) f->tau[ns * e + i] = E[ns * i + c] / whole;
   }
   f->has_tau = 1;
   return OK;
@@ -208,10 +202,8 @@ status goal_form_set(run *r, const goal_card *g, goal_form *f) {
       [GOAL_STRESS] = set_stress,     [GOAL_ENERGY] = set_energy,
       [GOAL_FRICTION] = set_friction, [GOAL_MOMENT] = set_force};
   clear(r, f);
-  if (g->quantity == GOAL_SIF)
-    return goal_set_factor(r, g, f);
+  if (g->quantity == GOAL_SIF) return goal_set_factor(r, g, f);
   PASS(set[g->quantity](r, g, f));
-  if (f->has_tau)
-    domain_internal_force(&r->body.d, f->tau, f->load);
+  if (f->has_tau) domain_internal_force(&r->body.d, f->tau, f->load);
   return OK;
 }
