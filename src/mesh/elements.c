@@ -187,12 +187,13 @@ static int has_corner(const int *v, int node) {
 
 /* gmsh leaves triangles between three nodes of a straight line that it embeds:
  * the one beyond the longest side of triangle e is cut in two at its middle
- * corner, e becomes a half of it. 1: done. */
-static int cut_beyond(builder *b, int e) {
+ * corner, if neither half is flat, and e becomes one of them. 1: done. */
+static int cut_beyond(builder *b, int e, double far) {
   const mesh *m = b->m;
-  int *v = mesh_elem_nodes(m, e), t = 0;
+  int *v = mesh_elem_nodes(m, e), t = 0, half[2][3];
   const int k = middle_of(m, v);
   const int o = v[k], p = v[(k + 1) % 3], q = v[(k + 2) % 3];
+  double det;
   for (; t < m->n_elem; ++t)
     if (t != e && has_corner(mesh_elem_nodes(m, t), p) &&
         has_corner(mesh_elem_nodes(m, t), q))
@@ -200,21 +201,24 @@ static int cut_beyond(builder *b, int e) {
   if (t == m->n_elem || home_of(b, t) != home_of(b, e)) return 0;
   int *w = mesh_elem_nodes(m, t);
   for (int i = 0; i < 3; ++i) {
-    v[i] = w[i] == q ? o : w[i];
-    if (w[i] == p) w[i] = o;
+    half[0][i] = w[i] == q ? o : w[i];
+    half[1][i] = w[i] == p ? o : w[i];
   }
+  if (is_flat(m, half[0], far, &det) || is_flat(m, half[1], far, &det))
+    return 0;
+  memcpy(v, half[0], sizeof half[0]);
+  memcpy(w, half[1], sizeof half[1]);
   return 1;
 }
 
 /* Several of them may lie on each other; all are cut, or none. */
 static status cut_flat(builder *b, double far) {
-  enum { PASSES = 50 };
   mesh *m = b->m;
   const size_t n = 3 * (size_t)m->n_elem;
   OWNED int *was = NULL;
   double det;
-  int left = 1;
-  for (int pass = 0, cut = 1; pass < PASSES && cut > 0 && left > 0; ++pass) {
+  int left = 0;
+  for (int cut = 1; cut > 0;) {
     cut = left = 0;
     for (int e = 0; e < m->n_elem; ++e) {
       if (!is_flat(m, mesh_elem_nodes(m, e), far, &det)) continue;
@@ -223,7 +227,7 @@ static status cut_flat(builder *b, double far) {
         PASS_NEW(was, n);
         memcpy(was, m->elem, n * sizeof *was);
       }
-      cut += cut_beyond(b, e);
+      cut += cut_beyond(b, e, far);
     }
   }
   if (left > 0) memcpy(m->elem, was, n * sizeof *was);
