@@ -24,6 +24,7 @@
 static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
 static const double BLIND = 0.5; /* -, of the error, without an estimate */
+static const double FAR = 0.1;   /* -, of the error, or it is near */
 enum { BLIND_PASSES = 3 };       /* without one at all, at most */
 static const double ENDS = 2.0;  /* -, of an estimate that is not reliable for
                                     the ends of contact */
@@ -164,12 +165,14 @@ void aims_check(const aims *a, const model *m, char *why, size_t size) {
 /* ---- the next pass ------------------------------------------------------- */
 
 /* Part of the error that the next pass aims at, <= 1: there the estimate is
- * expected to be reliable. */
+ * expected to be reliable. From where the ends of contact are not resolved the
+ * error falls faster than by its order: far from the target a pass between. */
 static double part_of(const pass_goal *g) {
   const double once = sum_of(&g->found, 1.0);
   const double from = once > g->allowed ? once : g->off;
   if (!is_estimate(g)) return BLIND;
-  return from > 0.0 ? fmin(AIM * g->allowed / from, 1.0) : 1.0;
+  const double part = from > 0.0 ? fmin(AIM * g->allowed / from, 1.0) : 1.0;
+  return g->found.verdict == GOAL_CONTACT_END && part < FAR ? sqrt(part) : part;
 }
 
 size_t aims_name(const aims *a, const model *m, char *text, size_t size) {

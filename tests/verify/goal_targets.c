@@ -70,7 +70,7 @@ START_TEST(meshes_for_a_goal_are_smaller) {
     product *= norm / own;
     job_end(&j);
   }
-  ck_assert_double_gt(sqrt(sqrt(product)), 1.3);
+  ck_assert_double_gt(sqrt(sqrt(product)), 2.0);
   job_end(&e);
 }
 END_TEST
