@@ -148,9 +148,6 @@ static const double DENSE = 2.5; /* power of m */
  * of memory in the plane and in space (make bench: tests/bench/forecast.c). */
 static const double DOUBT = 0.1, MEMORY_DOUBT = 0.5;
 static const double LEAST_DOUBT = 2.0, LEAST_MEMORY[2] = {1.5, 2.0};
-/* -, unknowns of the last pass to a goal over those that its error needs, which
- * the last step goes beyond: measured on 12 targets. */
-static const double BEYOND = 1.4;
 /* -, least factor that the seconds of a goal are expected within (1.7
  * measured), and the one more where its parts cancel (tenfold measured). */
 static const double LEAST_GOAL_DOUBT = 1.7, CANCELS_DOUBT = 6.0;
@@ -490,8 +487,8 @@ static void print_level(const model_of_cost *c, const goal_fit *g,
   double order = -exponent(g->coarse->off, g->fine->off, c->coarse.unknowns,
                            c->fine.unknowns);
   order = order > 0.0 ? within(0.5 * full, order, 1.1 * full) : full;
-  double unknowns = BEYOND * c->fine.unknowns * g->share *
-                    pow(g->fine->off / off, 1.0 / order);
+  double unknowns =
+      c->fine.unknowns * g->share * pow(g->fine->off / off, 1.0 / order);
   unknowns = fmax(unknowns, c->deck.unknowns);
   printf("; %g %%: ", percent);
   if (pass_goal_percent(g->now) <= percent)
@@ -583,11 +580,15 @@ status forecast_print(const command *c, job_input *in) {
   status st = OK;
   double *eta = NULL;
   model_of_cost cost = {.dim = in->m != NULL ? in->m->dim : 2};
-  if (in->problem != NULL || !job_is_geo(in->m))
+  if (in->problem != NULL)
     FAIL(ERR_DECK,
-         "--estimate-cost meshes the geometry again: the deck must name "
-         "a .geo in *MESH, FILE=");
-  mesh_gmsh_load();
+         "--estimate-cost refines the mesh: the deck must name one in *MESH, "
+         "FILE=");
+  if (job_keeps_mesh(in->m))
+    FAIL(ERR_DECK,
+         "--estimate-cost refines the mesh: a .msh with values at its nodes "
+         "(FILE=) is not refined, give them as expressions");
+  if (job_is_geo(in->m)) mesh_gmsh_load();
   NEW(eta, in->msh->n_elem);
   if (in->m->n.goal > 0) TRY(aims_new(in->m, 1, &cost.deck.goals));
   TRY(run_trial(in, &cost.deck, eta));

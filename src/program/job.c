@@ -114,6 +114,10 @@ int job_is_geo(const model *m) {
   return m->mesh.file != NULL && mesh_is_program(m->mesh.file);
 }
 
+int job_keeps_mesh(const model *m) {
+  return !job_is_geo(m) && (m->n.field > 0 || m->initial.start.file != NULL);
+}
+
 status job_keep_contact(coarser *to, const state *s) {
   const state_contacts *c = &s->contacts;
   if (c->surface == NULL) return OK;

@@ -39,6 +39,8 @@ void job_input_free(job_input *in);
 status job_expect(const job_input *in, int n, const stiffness_choice *choice);
 
 int job_is_geo(const model *m); /* 1: the mesh is made by gmsh */
+/* 1: it is neither made again nor refined: a .msh with values at its nodes. */
+int job_keeps_mesh(const model *m);
 
 /* Observer of a pass. Any function may be NULL. */
 typedef struct job_watch {

@@ -232,11 +232,6 @@ static void check_known(pass *p) {
     miss(p, why);
 }
 
-/* 1: the deck has values at the nodes of its mesh. */
-static int has_nodal_field(const model *m) {
-  return m->n.field > 0 || m->initial.start.file != NULL;
-}
-
 /* After the increments of a pass: is it the last? */
 static status decide(pass *p) {
   pass_row *row = &p->rows[p->n - 1];
@@ -249,7 +244,7 @@ static status decide(pass *p) {
   int finer = refines(row);
   if (row->change[0] == '\0')
     miss(p, "no error has more than its share, their sum is above the target");
-  else if (finer && !job_is_geo(p->in->m) && has_nodal_field(p->in->m))
+  else if (finer && job_keeps_mesh(p->in->m))
     miss(p,
          "a .msh with values at its nodes (FILE=) is not refined: give them as "
          "expressions");

@@ -301,7 +301,8 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
 }
 END_TEST
 
-/* The mesh of the file is refined; its contact stays on the circle. */
+/* The mesh of the file is refined as foreseen; its contact stays on the circle.
+ */
 START_TEST(msh_of_a_cylinder_is_refined) {
   static const mesh_number few[] = {{"NC", 2}, {"R", 10}, {"A", A_H}};
   const mesh_source source = {.file = "input/hertz_line/hertz_line.geo",
@@ -328,8 +329,14 @@ START_TEST(msh_of_a_cylinder_is_refined) {
             "*STEP\n*STATIC\n*BOUNDARY\nSYMMETRY, 1, 1, 0.\n*DSLOAD\n"
             "TOP, P, 50.\n*PRINT, CONTACT, GOALS\n*OUTPUT, HDF5=NO\n"
             "*END STEP\n");
-  const int code = job_run(&j, "");
+  int code = job_run(&j, "--estimate-cost");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  const double expected = foreseen(&j, "PEAK", "1");
+  code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  const double has = job_told(&j, "unknowns");
+  ck_assert_msg(expected > has / 2.5 && expected < 2.5 * has,
+                "%g unknowns, foreseen %g", has, expected);
   dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
   ck_assert_double_eq_tol(dat_at(&t, 0, "value"), P_H, 0.01 * P_H);
   ck_assert_int_gt(c.n_row, 15);
