@@ -296,6 +296,8 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
     const double has = job_told(&j, "unknowns");
     ck_assert_msg(expected[k] > has / 2.5 && expected[k] < 2.5 * has,
                   "%d: %g unknowns, foreseen %g", k, has, expected[k]);
+    /* A pass between: 3787 of the peak without it. */
+    if (k == 0) ck_assert_double_lt(has, 3000.0);
     job_end(&j);
   }
 }

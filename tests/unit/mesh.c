@@ -417,6 +417,15 @@ START_TEST(flat_triangles_on_a_line_are_cut) {
   }
   ck_assert_double_eq_tol(area, 4.5, 1e-14);
   mesh_free(m);
+  /* Not across the border between two groups. */
+  m = mesh_file_text(
+      &f, "b.msh",
+      MSH("2\n2 1 \"B\"\n2 2 \"C\"\n",
+          "5\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 1 1 0\n5 1 -1 0\n",
+          "4\n1 2 2 1 1 1 2 5\n2 2 2 1 1 2 3 5\n3 2 2 1 1 1 2 3\n"
+          "4 2 2 2 2 1 3 4\n"));
+  ck_assert(m == NULL);
+  ck_assert_ptr_nonnull(strstr(f.messages, "P3022"));
   mesh_file_close(&f);
 }
 END_TEST
