@@ -5,7 +5,10 @@
  *
  *   o = 4 sum over edges of la lb B_ab,  B_ab = (n_b - n_a).(x_b - x_a)/8,
  *
- * and loads given by a formula have their value there. The forces
+ * and loads given by a formula have their value there. In space the rim of a
+ * loaded surface is curved where its edges at a node are smooth: by their
+ * outward normals along the surface a part of the area 2/3 B_ab |x_b - x_a|
+ * lies beyond an edge. The forces
  *
  *   dF v = F(v) - F_h(v) - integral of sigma : e(v) over the part beyond
  *
@@ -15,6 +18,7 @@
 #include "effects/goal/parts.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double PI = 3.14159265358979323846;
@@ -79,14 +83,22 @@ static status ring_new(const mesh *m, ring *r) {
   return OK;
 }
 
-/* Of the surface at a node of a face with the unit normal own; it goes on
- * smoothly behind a plane that holds the node, but not where it is clamped. */
+/* The sum n[dim] of normals like "own" at a node goes on behind a plane that
+ * holds it, but not where it is clamped. */
+static void mirror(int dim, const unsigned char *held, const double *own,
+                   double *n) {
+  int n_held = 0;
+  for (int c = 0; c < dim; ++c) n_held += held[c];
+  for (int c = 0; c < dim && n_held < dim; ++c)
+    if (held[c] && 1.0 - 2.0 * own[c] * own[c] >= SMOOTH) n[c] = 0.0;
+}
+
+/* Of the surface at a node of a face with the unit normal own. */
 static void normal_at(const run *r, const ring *rings, int node,
                       const double *own, double *n) {
   const mesh *m = r->msh;
   const unsigned char *held = r->body.d.fixed + m->dim * node;
   double size = 0.0;
-  int n_held = 0;
   memset(n, 0, 3 * sizeof *n);
   for (int k = rings->start[node]; k < rings->start[node + 1]; ++k) {
     const int face = rings->face[k];
@@ -97,12 +109,8 @@ static void normal_at(const run *r, const ring *rings, int node,
     for (int c = 0; c < m->dim && along >= SMOOTH; ++c)
       n[c] += measure * other[c];
   }
-  for (int c = 0; c < m->dim; ++c) n_held += held[c];
-  for (int c = 0; c < m->dim; ++c) {
-    if (n_held < m->dim && held[c] && 1.0 - 2.0 * own[c] * own[c] >= SMOOTH)
-      n[c] = 0.0;
-    size = hypot(size, n[c]);
-  }
+  mirror(m->dim, held, own, n);
+  for (int c = 0; c < m->dim; ++c) size = hypot(size, n[c]);
   for (int c = 0; c < m->dim && size > 0.0; ++c) n[c] /= size;
 }
 
@@ -227,6 +235,121 @@ static void add_load(const run *r, const load *l, const patch *p, double *dF) {
   }
 }
 
+/* ---- the rim of a loaded surface in space -------------------------------- */
+
+typedef struct rim_edge {
+  int v[2]; /* ascending */
+  int face;
+  double length, out[3]; /* m; unit normal along the face, outward */
+} rim_edge;
+
+static int by_ends(const void *a_, const void *b_) {
+  const rim_edge *a = a_, *b = b_;
+  if (a->v[0] != b->v[0]) return a->v[0] < b->v[0] ? -1 : 1;
+  return (a->v[1] > b->v[1]) - (a->v[1] < b->v[1]);
+}
+
+static double dot(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The edge of a face opposite to corner k. */
+static rim_edge edge_of(const mesh *m, int face, int k) {
+  const int *v = m->face + 3 * face, a = v[(k + 1) % 3], b = v[(k + 2) % 3];
+  rim_edge e = {{a < b ? a : b, a < b ? b : a}, face, 0.0, {0.0}};
+  double along[3], size = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    along[c] = m->x[3 * b + c] - m->x[3 * a + c];
+    e.out[c] = m->x[3 * a + c] - m->x[3 * v[k] + c];
+    e.length = hypot(e.length, along[c]);
+  }
+  const double part = dot(e.out, along) / (e.length * e.length);
+  for (int c = 0; c < 3; ++c) {
+    e.out[c] -= part * along[c];
+    size = hypot(size, e.out[c]);
+  }
+  for (int c = 0; c < 3; ++c) e.out[c] /= size;
+  return e;
+}
+
+/* e[*n] sorted: edges of one face of the group; new. */
+static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
+                      int *n) {
+  int kept = 0;
+  *n = 3 * g->n_item;
+  PASS_NEW(*e, *n);
+  for (int i = 0; i < *n; ++i) (*e)[i] = edge_of(m, g->item_id[i / 3], i % 3);
+  qsort(*e, (size_t)*n, sizeof **e, by_ends);
+  for (int i = 0, last; i < *n; i = last) {
+    for (last = i + 1; last < *n && by_ends(*e + i, *e + last) == 0;) ++last;
+    if (last == i + 1) (*e)[kept++] = (*e)[i];
+  }
+  *n = kept;
+  return OK;
+}
+
+/* Of the rim at end k of an edge, as normal_at; next[2*n] the other end with
+ * the same node in a ring. */
+static void out_at(const run *r, const rim_edge *e, const int *next, int k,
+                   double *out) {
+  const rim_edge *own = e + k / 2;
+  const unsigned char *held = r->body.d.fixed + 3 * own->v[k % 2];
+  double size = 0.0;
+  int at = k;
+  memset(out, 0, 3 * sizeof *out);
+  do {
+    const rim_edge *other = e + at / 2;
+    for (int c = 0; c < 3 && dot(own->out, other->out) >= SMOOTH; ++c)
+      out[c] += other->length * other->out[c];
+    at = next[at];
+  } while (at != k);
+  mirror(3, held, own->out, out);
+  for (int c = 0; c < 3; ++c) size = hypot(size, out[c]);
+  for (int c = 0; c < 3 && size > 0.0; ++c) out[c] /= size;
+}
+
+static void add_beyond_edge(const run *r, const load *l, const rim_edge *e,
+                            const double *turn, double *dF) {
+  const mesh *m = r->msh;
+  double x[3], normal[3], bulge = 0.0;
+  for (int c = 0; c < 3; ++c) {
+    const double *a = m->x + 3 * e->v[0], *b = m->x + 3 * e->v[1];
+    bulge += turn[c] * (b[c] - a[c]) / 8.0;
+    x[c] = 0.5 * (a[c] + b[c]);
+  }
+  const double value = load_at_point(l, r->step, x, r->now.t);
+  if (!(fabs(bulge) > 1e-9 * e->length) || !isfinite(value)) return;
+  mesh_face_normal(m, e->face, normal);
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < 2; ++k)
+      dF[3 * e->v[k] + c] +=
+          bulge * e->length / 3.0 * value *
+          (l->kind == LOAD_PRESSURE ? -normal[c] : c == l->component);
+}
+
+static status add_rim(const run *r, const load *l, double *dF) {
+  const mesh *m = r->msh;
+  OWNED rim_edge *e = NULL;
+  OWNED int *next = NULL, *last = NULL;
+  int n;
+  PASS(rim_new(m, &m->group[l->group_id], &e, &n));
+  PASS_NEW(next, 2 * n);
+  PASS_NEW(last, m->n_node);
+  for (int k = 0; k < 2 * n; ++k) {
+    int *at = &last[e[k / 2].v[k % 2]];
+    next[k] = *at > 0 ? next[*at - 1] : k;
+    if (*at > 0) next[*at - 1] = k;
+    *at = k + 1;
+  }
+  for (int i = 0; i < n; ++i) {
+    double out[2][3];
+    for (int k = 0; k < 2; ++k) out_at(r, e, next, 2 * i + k, out[k]);
+    for (int c = 0; c < 3; ++c) out[1][c] -= out[0][c];
+    add_beyond_edge(r, l, e + i, out[1], dF);
+  }
+  return OK;
+}
+
 static patch element_patch(const run *r, int e) {
   const mesh *m = r->msh;
   patch p = {.n = m->dim + 1};
@@ -235,7 +358,7 @@ static patch element_patch(const run *r, int e) {
   return p;
 }
 
-static void add_loads(const run *r, const ring *rings, double *dF) {
+static status add_loads(const run *r, const ring *rings, double *dF) {
   const load_list *all = &r->step->loads;
   for (int i = 0; i < all->n; ++i) {
     const load *l = &all->item[i];
@@ -247,7 +370,9 @@ static void add_loads(const run *r, const ring *rings, double *dF) {
                                : element_patch(r, g->item_id[k]);
       add_load(r, l, &p, dF);
     }
+    if (on_faces && r->msh->dim == 3) PASS(add_rim(r, l, dF));
   }
+  return OK;
 }
 
 status goal_add_boundary(const run *r, double *dF) {
@@ -258,7 +383,7 @@ status goal_add_boundary(const run *r, double *dF) {
     const patch p = face_patch(r, &rings, f);
     if (p.is_curved) add_part_beyond(r, &p, f, dF);
   }
-  add_loads(r, &rings, dF);
+  TRY(add_loads(r, &rings, dF));
 done:
   RELEASE(rings.start, rings.face);
   return st;

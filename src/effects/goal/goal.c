@@ -283,8 +283,9 @@ static double of_factor(const run *r, const shared *s) {
 static status complete(const run *r, const shared *s, goal_estimate *e) {
   const goal_form *f = &s->form;
   if (f->factor.n > 0) e->error += of_factor(r, s);
-  e->error += f->curved + cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
-  e->magnitude += fabs(f->curved);
+  const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
+  e->error += f->curved + beyond;
+  e->magnitude += fabs(f->curved) + fabs(beyond);
   e->error += f->is_square ? 0.0 : e->hoop;
   if (f->sums) {
     double slips;
