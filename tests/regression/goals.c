@@ -578,6 +578,47 @@ START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
 }
 END_TEST
 
+/* A ring in a wider hole: the contact is all of its outer circle, or the lower
+ * half: what lies above the zone is no part of it. */
+START_TEST(zones_of_closed_curves_are_those_of_an_arc) {
+  told g[2][2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("ring");
+    job_write(&j, "ring.geo",
+              "h = 0.01; Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0, 0.2};\n"
+              "Point(3) = {0, 1, 0, 0.2}; Point(4) = {-1, 0, 0, 0.2};\n"
+              "Point(5) = {0, -1, 0, h}; Point(6) = {0.4, 0, 0, 0.2};\n"
+              "Point(7) = {0, 0.4, 0, 0.2}; Point(8) = {-0.4, 0, 0, 0.2};\n"
+              "Point(9) = {0, -0.4, 0, 0.2};\n"
+              "For k In {0 : 3}\n"
+              "  Circle(k + 1) = {2 + k, 1, 2 + (k + 1) %% 4};\n"
+              "  Circle(k + 5) = {6 + k, 1, 6 + (k + 1) %% 4};\nEndFor\n"
+              "Curve Loop(1) = {1:4}; Curve Loop(2) = {5:8};\n"
+              "Plane Surface(1) = {1, 2}; Physical Surface(\"BODY\") = {1};\n"
+              "Physical Curve(\"OUTER\") = {%s};\n"
+              "Physical Curve(\"HOLE\") = {5:8};\n",
+              k == 0 ? "1:4" : "3, 4");
+    job_write(&j, "ring.inp",
+              "*MESH, FILE=ring.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+              "*OBSTACLE, NAME=O, TYPE=GAP\n\"0.2*(1 + y)\"\n"
+              "*CONTACT, NAME=C, GROUP=OUTER, OBSTACLE=O\n"
+              "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=C\n"
+              "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=C\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nHOLE, 1\nHOLE, 2, 2, -0.02\n"
+              "*PRINT, GOALS\n*END STEP\n");
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    for (int i = 0; i < 2; ++i) g[k][i] = told_of(&j, i);
+    job_end(&j);
+  }
+  for (int i = 0; i < 2; ++i) {
+    ck_assert_double_gt(g[1][i].value, 0.1);
+    ck_assert_double_eq_tol(g[0][i].value, g[1][i].value, 1e-6 * g[1][i].value);
+    ck_assert_double_eq_tol(g[0][i].error, g[1][i].error, 1e-4 * g[1][i].value);
+  }
+}
+END_TEST
+
 START_TEST(tangential_force_in_space_is_the_first) {
   job j = job_begin("cube");
   write_cube(&j,
@@ -641,5 +682,6 @@ UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           means_are_of_volumes_and_of_nodes,
           slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
           means_in_space_go_on_behind_planes_of_symmetry,
+          zones_of_closed_curves_are_those_of_an_arc,
           tangential_force_in_space_is_the_first,
           errors_do_not_depend_on_the_axes)

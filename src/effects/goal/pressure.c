@@ -238,37 +238,65 @@ typedef struct line {
   double *s;   /* [n] m, from the peak */
 } line;
 
-typedef struct placed {
-  double s;
-  int q;
-} placed;
+static void line_free(line *l) { RELEASE(l->node, l->s); }
 
-static int by_place(const void *a_, const void *b_) {
-  const placed *a = a_, *b = b_;
-  return (a->s > b->s) - (a->s < b->s);
+/* next[2*n]: the contact nodes next to each node of the line, or -1. */
+static status find_next(const run *r, const goal_card *g, int *next) {
+  const mesh *m = r->msh;
+  const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
+  OWNED int *where = NULL;
+  PASS(goal_places(r, &where));
+  for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
+  for (int k = 0; k < of->n_item; ++k) {
+    const int *v = m->face + 2 * of->item_id[k];
+    for (int a = 0; a < 2; ++a) {
+      const int q = where[v[a]], other = where[v[1 - a]];
+      if (q >= 0 && other >= 0) next[2 * q + (next[2 * q] >= 0)] = other;
+    }
+  }
+  return OK;
 }
 
-static void line_free(line *l) { RELEASE(l->node, l->s); }
+/* Appends the nodes from the peak on whose places go on in that sense: no
+ * others of a curve that turns back. */
+static void follow(const run *r, const weight *w, const int *next, int peak,
+                   double sense, line *l) {
+  for (int q = peak, to = q; to >= 0; q = to) {
+    const double s = along(w, r->surface->x + 2 * q);
+    to = -1;
+    for (int k = 0; k < 2; ++k) {
+      const int other = next[2 * q + k];
+      if (other < 0) continue;
+      const double at = along(w, r->surface->x + 2 * other);
+      if (!(sense * (at - s) > 0.0)) continue;
+      to = l->node[l->n] = other;
+      l->s[l->n] = at;
+    }
+    l->n += to >= 0;
+  }
+}
 
 static status line_new(const run *r, const goal_card *g, const weight *w,
                        int peak, line *l) {
-  status st = OK;
-  placed *all = NULL;
-  NEW(all, r->nodes.n);
-  NEW(l->node, r->nodes.n);
-  NEW(l->s, r->nodes.n);
-  for (int q = 0; q < r->nodes.n; ++q)
-    if (is_on(r, g, q))
-      all[l->n++] = (placed){along(w, r->surface->x + w->dim * q), q};
-  qsort(all, (size_t)l->n, sizeof *all, by_place);
-  for (int k = 0; k < l->n; ++k) {
-    l->node[k] = all[k].q;
-    l->s[k] = all[k].s;
-    if (all[k].q == peak) l->peak = k;
+  OWNED int *next = NULL;
+  PASS_NEW(next, 2 * r->nodes.n);
+  PASS_NEW(l->node, r->nodes.n);
+  PASS_NEW(l->s, r->nodes.n);
+  PASS(find_next(r, g, next));
+  follow(r, w, next, peak, -1.0, l);
+  for (int k = 0; k < l->n / 2; ++k) {
+    const int node = l->node[k], last = l->n - 1 - k;
+    const double s = l->s[k];
+    l->node[k] = l->node[last];
+    l->s[k] = l->s[last];
+    l->node[last] = node;
+    l->s[last] = s;
   }
-done:
-  memory_free(all);
-  return st;
+  l->peak = l->n;
+  l->node[l->n] = peak;
+  l->s[l->n++] = along(w, r->surface->x + 2 * peak);
+  follow(r, w, next, peak, 1.0, l);
+  return OK;
 }
 
 static int is_closed(const run *r, const line *l, int k) {
