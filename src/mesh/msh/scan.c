@@ -115,9 +115,19 @@ static status word_whole(scan *s, int64_t least, int64_t most, int64_t *value) {
   int n = 0;
   for (; is_digit(*p) && n < DIGITS; ++p, ++n) v = 10 * v + (*p - '0');
   if (*start == '-') v = -v;
-  if (n == 0 || !ends_word(*p) || v < least || v > most)
-    return not_expected(
-        s, least < 0 ? "a whole number" : "a whole number not below zero");
+  if (n == 0 || !ends_word(*p) || v < least || v > most) {
+    char wanted[48];
+    if (is_digit(*p))
+      snprintf(wanted, sizeof wanted, "a whole number of at most %d digits",
+               DIGITS);
+    else if (v > most)
+      snprintf(wanted, sizeof wanted, "a whole number up to %lld",
+               (long long)most);
+    else
+      snprintf(wanted, sizeof wanted, "a whole number%s",
+               least < 0 ? "" : " not below zero");
+    return not_expected(s, wanted);
+  }
   s->at += (size_t)(p - start);
   *value = v;
   return OK;
