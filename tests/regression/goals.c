@@ -363,6 +363,7 @@ static void write_block(job *j, double size, const char *right,
             "Physical Surface(\"RIGHT\") = {2};\n"
             "Physical Surface(\"ALL\") = {1, 2};\n"
             "Physical Point(\"CORNERS\") = {4, 6};\n"
+            "Physical Point(\"END\") = {1};\n"
             "Physical Curve(\"FOOT\") = {1, 2};\n"
             "Physical Curve(\"TOP\") = {4, 5};\n"
             "Physical Curve(\"SIDE\") = {6};\n",
@@ -578,6 +579,29 @@ START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
 }
 END_TEST
 
+/* A support that holds the end of a contact, and no more, is no plane of
+ * symmetry: neither mean nor zone goes on behind it. */
+START_TEST(ends_that_a_point_holds_are_ends) {
+  static const char *const hold[] = {"END", "SIDE"};
+  for (int k = 0; k < 2; ++k) {
+    char cards[500];
+    job j = job_begin("block");
+    snprintf(cards, sizeof cards,
+             "*OBSTACLE, NAME=O, TYPE=GAP\n\"x^2/100\"\n"
+             "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
+             "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.3\n"
+             "0., 0.\n*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
+             "*STEP\n*STATIC\n*BOUNDARY\n%s, 1\nTOP, 2, 2, -0.05\n"
+             "*PRINT, GOALS\n",
+             hold[k]);
+    write_block(&j, 0.1, "", cards);
+    ck_assert_int_eq(isnan(told_of(&j, 0).value), k == 0);
+    ck_assert_int_eq(has_verdict(&j, "WIDE", "no_end"), k == 0);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* A ring in a wider hole: the contact is all of its outer circle, or the lower
  * half: what lies above the zone is no part of it. */
 START_TEST(zones_of_closed_curves_are_those_of_an_arc) {
@@ -682,6 +706,7 @@ UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
           means_are_of_volumes_and_of_nodes,
           slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
           means_in_space_go_on_behind_planes_of_symmetry,
+          ends_that_a_point_holds_are_ends,
           zones_of_closed_curves_are_those_of_an_arc,
           tangential_force_in_space_is_the_first,
           errors_do_not_depend_on_the_axes)

@@ -18,12 +18,28 @@ status goal_places(const run *r, int **where) {
   return OK;
 }
 
+/* 1: a face at a node in the plane is held along its normal, as the node is. */
+static int has_held_face(const run *r, int node) {
+  const mesh *m = r->msh;
+  for (int f = 0; f < m->n_face; ++f) {
+    const int *v = m->face + 2 * f;
+    if ((v[0] != node && v[1] != node) || m->face_other[f] >= 0) continue;
+    for (int c = 0; c < 2; ++c)
+      if (r->body.d.fixed[2 * v[0] + c] && r->body.d.fixed[2 * v[1] + c] &&
+          fabs(m->x[2 * v[0] + c] - m->x[2 * v[1] + c]) <= 1e-9 * m->size)
+        return 1;
+  }
+  return 0;
+}
+
 int goal_is_mirrored(const run *r, int i) {
   const int dim = r->msh->dim;
-  int any = r->faces.input.axisymmetric &&
-            r->surface->x[dim * i] <= 1e-9 * r->msh->size;
+  int any = 0;
+  if (r->faces.input.axisymmetric &&
+      r->surface->x[dim * i] <= 1e-9 * r->msh->size)
+    return 1;
   for (int a = 1; a < dim; ++a) any |= r->surface->held[dim * i + a];
-  return any;
+  return any && (dim == 3 || has_held_face(r, r->surface->node_id[i]));
 }
 
 /* How far the surface of the body, smooth, is beyond the middle of an edge, m:
