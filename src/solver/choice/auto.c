@@ -20,9 +20,10 @@
  * AUGLAG, PROXIMAL, PCG; its entries are formed for SOR and LEMKE alone.
  *
  * Compliance given: in 3-D first sweeps of SOR, while their rate predicts the
- * solution at less cost than the steps of NEWTON. Then the same, with NEWTON
- * for the forces, if the compliance is regular; sweeps again, PCG, PROXIMAL,
- * LAGRANGE, SOR and LEMKE work on a singular one. Of rigid bodies PCG solves
+ * solution at less cost than the steps of NEWTON; of few contacts always. Then
+ * NEWTON for the forces, if the compliance is regular, more sweeps and NEWTON
+ * along a friction path; PCG, PROXIMAL, LAGRANGE, SOR and LEMKE work on a
+ * singular one. Of rigid bodies PCG solves
  * many in some hundred iterations, the others rarely: then PROXIMAL, in some
  * ten to a thousand steps, and PCG without the short limit.
  *
@@ -61,9 +62,9 @@ const char auto_help[] =
   "follow NEWTON, and the entries of the stiffness are formed, if they fit,\n"
   "for SOR and LEMKE. Of a problem that comes as a compliance\n"
   "(*CONDENSED PROBLEM) such sweeps go first in 3-D, while their rate\n"
-  "predicts the solution at less cost than NEWTON; then the same chain with\n"
-  "such sweeps, PCG, PROXIMAL, PCG with more iterations and LAGRANGE before\n"
-  "SOR, for compliances that are singular. A compliance most of which is zero\n"
+  "predicts the solution at less cost than NEWTON; then the same chain, with\n"
+  "such sweeps after NEWTON, and PCG, PROXIMAL, PCG with more iterations and\n"
+  "LAGRANGE before SOR, for singular compliances. A compliance most of which is zero\n"
   "(contacts of many bodies) is kept in sparse blocks: sweeps of AITKEN go\n"
   "first, as many as cost what PROXIMAL or PCG is estimated to cost, while\n"
   "their rate predicts the solution; then these two, the cheaper first, and\n"
@@ -82,6 +83,8 @@ enum {
   SWEEP_SHARE = 4,     /* m over it: sweeps that cost less than an inverse */
   STEPS = 6,           /* of NEWTON, compared with the cost of sweeps */
   LEAST_ROUNDS = 3,    /* least number for a trial */
+  TINY_SIZE = 30,      /* m: up to here they cost less than STEPS of NEWTON */
+  LEAST_TRIAL = 100,   /* sweeps where NEWTON has failed */
   READ = 8,            /* solves whose arithmetic takes the time of reading the
                           matrix */
   FULL_SIZE = 1000,    /* m: up to here a method has all its iterations */
@@ -108,8 +111,8 @@ enum { BY_NEWTON = -1 /* as many sweeps as NEWTON costs */ };
 static const link dense_chain[] = {
     {&sor_solver, WHILE_PROMISING, 1, 0, BY_NEWTON, 1},
     {&newton_solver, PLAIN, 0, 1, 0, 1},
-    {&newton_solver, ALONG_PATH, 0, 1, 0, 0},
     {&sor_solver, WHILE_PROMISING, 1, 0, 0, 0},
+    {&newton_solver, ALONG_PATH, 0, 1, 0, 0},
     {&pcg_solver, PLAIN, 1, 0, 1000, 0},
     {&proximal_solver, PLAIN, 1, 1, 0, 0},
     {&pcg_solver, PLAIN, 1, 0, 0, 0},
@@ -188,7 +191,8 @@ static int sweeps_of_newton(const contact_problem *cp) {
   for (int i = 0; i < cp->n; ++i) n += cp->f[i * cp->dim] > cp->gap[i];
   n *= cp->dim - 1;
   double most = STEPS * 2.0 / 3.0 * n * n * n / (READ * 2.0 * m * m);
-  return most < LEAST_ROUNDS * ROUND ? 0 : (int)most;
+  if (most >= LEAST_ROUNDS * ROUND) return (int)most;
+  return cp->m <= TINY_SIZE ? LEAST_ROUNDS * ROUND : 0;
 }
 
 /* Sweeps at the cost of the cheapest other method. */
@@ -202,7 +206,8 @@ static int sweeps_of_others(const contact_problem *cp) {
 /* Of the sweeps that are watched. */
 static int sweeps_allowed(const contact_problem *cp, const link *l) {
   if (cp->blocks != NULL) return sweeps_of_others(cp);
-  return l->most == BY_NEWTON ? sweeps_of_newton(cp) : cp->m / SWEEP_SHARE;
+  if (l->most == BY_NEWTON) return sweeps_of_newton(cp);
+  return cp->m > LEAST_TRIAL * SWEEP_SHARE ? cp->m / SWEEP_SHARE : LEAST_TRIAL;
 }
 
 /* Limit of the iterations of a method: such that its cost is at most that of a
