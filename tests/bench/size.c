@@ -8,7 +8,8 @@
  *
  * Strips whose cells double in size away from a rough floor, one of cells of
  * one size, cubes, and a block whose cells grow away from the floor, pressed
- * and sheared, from a cold start, mu = 0.3.
+ * and sheared, from a cold start, mu = 0.3. The same problems by GetFEM where
+ * python3-getfem is installed (tests/peers/getfem_contact.py).
  */
 #include "support/job.h"
 #include "support/unit.h"
@@ -22,7 +23,10 @@
 
 typedef enum { GRADED, UNIFORM } spacing;
 
-enum { KINDS = 4 };
+enum { KINDS = 5 };
+
+/* Another program in the place of a kind. */
+#define GETFEM "GetFEM"
 
 typedef struct bench_case {
   int dim, cells; /* at the contact, along an edge */
@@ -36,14 +40,19 @@ typedef struct bench_case {
 #define METHODS                                              \
   {                                                          \
     "FACTOR", "FACTOR, METHOD=PCG", "FACTOR, METHOD=AUGLAG", \
-        "FACTOR, METHOD=PROXIMAL"                            \
+        "FACTOR, METHOD=PROXIMAL", GETFEM                    \
   }
 static const bench_case cases[] = {
-    {2, 512, GRADED, BOTH, 0},         {2, 1024, GRADED, BOTH, 0},
-    {2, 2048, GRADED, BOTH, 0},        {2, 4096, GRADED, METHODS, 0},
-    {2, 32768, GRADED, {"FACTOR"}, 1}, {2, 8192, UNIFORM, {"FACTOR"}, 1},
-    {3, 12, UNIFORM, BOTH, 0},         {3, 20, UNIFORM, BOTH, 0},
-    {3, 33, UNIFORM, {"DENSE"}, 1},    {3, 52, UNIFORM, {"DENSE"}, 1},
+    {2, 512, GRADED, BOTH, 0},
+    {2, 1024, GRADED, BOTH, 0},
+    {2, 2048, GRADED, BOTH, 0},
+    {2, 4096, GRADED, METHODS, 0},
+    {2, 32768, GRADED, {"FACTOR"}, 1},
+    {2, 8192, UNIFORM, {"FACTOR"}, 1},
+    {3, 12, UNIFORM, {"FACTOR", "DENSE", GETFEM}, 0},
+    {3, 20, UNIFORM, BOTH, 0},
+    {3, 33, UNIFORM, {"DENSE", GETFEM}, 1},
+    {3, 52, UNIFORM, {"DENSE"}, 1},
     {3, 200, GRADED, {"FACTOR"}, 1}};
 
 enum { LEAST = 8, LAYERS = 122 };
@@ -224,23 +233,23 @@ static job make_job(const bench_case *c, const char *kind) {
             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
             "*BOUNDARY\nTOP, 1, 1, 0.0015\n%sTOP, %d, %d, -0.004\n"
             "*SOLVER, STIFFNESS=%s\n*ACCURACY, SOLVER=NO, MESH=NO\n"
-            "*OUTPUT, HDF5=NO\n*END STEP\n",
+            "*OUTPUT, HDF5=NO\n*PRINT, TOTALS\n*END STEP\n",
             file, "x", c->dim == 3 ? "*cos(6.283*y)" : "",
             c->dim == 3 ? "TOP, 2, 2, 0.\n" : "", c->dim, c->dim, kind);
   return j;
 }
 
-/* Seconds and megabytes of the process; 0: it failed. */
-static int run(const job *j, double *cpu, double *mega) {
-  char deck[100];
-  const char *program = getenv("PROTIS");
+/* Seconds and megabytes of a process whose output goes into a file; 0: it
+ * failed. */
+static int run(const char *const *words, const char *output, double *cpu,
+               double *mega) {
   struct rusage used;
   int state;
-  snprintf(deck, sizeof deck, "%s/size.inp", j->dir);
-  if (program == NULL) program = "build/release/protis";
+  fflush(stdout); /* or the child prints it again */
   const pid_t child = fork();
   if (child == 0) {
-    execl(program, program, deck, "--quiet", (char *)NULL);
+    if (freopen(output, "w", stdout) != NULL)
+      execv(words[0], (char *const *)words);
     _exit(127);
   }
   wait4(child, &state, 0, &used);
@@ -248,6 +257,48 @@ static int run(const job *j, double *cpu, double *mega) {
          1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
   *mega = (double)used.ru_maxrss * 1024 / 1e6;
   return WIFEXITED(state) && WEXITSTATUS(state) == 0;
+}
+
+static int run_protis(const job *j, double *cpu, double *mega) {
+  char deck[100];
+  const char *program = getenv("PROTIS");
+  snprintf(deck, sizeof deck, "%s/size.inp", j->dir);
+  if (program == NULL) program = "build/release/protis";
+  return run((const char *const[]){program, deck, "--quiet", NULL}, "/dev/null",
+             cpu, mega);
+}
+
+/* Also by how much the normal force differs from that of Protis. */
+static void row_of_getfem(const bench_case *c) {
+  static const char python[] = "/usr/bin/python3";
+  double cpu, mega, force;
+  job j = make_job(c, "AUTO");
+  char msh[100], geo[100], output[100];
+  snprintf(msh, sizeof msh, "%s/size.msh", j.dir);
+  snprintf(geo, sizeof geo, "%s/size.geo", j.dir);
+  snprintf(output, sizeof output, "%s/size.txt", j.dir);
+  if (access(msh, F_OK) != 0) mesh_block(geo, msh);
+  printf("%d-D %-7s %6d %-23s ", c->dim,
+         c->how == GRADED ? "graded" : "uniform", c->cells, GETFEM);
+  if (!run((const char *const[]){python, "-c", "import getfem", NULL},
+           "/dev/null", &cpu, &mega))
+    puts("is not installed");
+  else if (!run_protis(&j, &cpu, &mega) ||
+           !run((const char *const[]){python, "tests/peers/getfem_contact.py",
+                                      msh, NULL},
+                output, &cpu, &mega))
+    puts("failed");
+  else {
+    dat d = job_table(&j, "TOTALS", 0);
+    char *text = job_file(&j, "txt");
+    ck_assert_ptr_nonnull(text);
+    force = strtod(text, NULL);
+    printf("%9.2f %9.1f   force differs by %.1e\n", cpu, mega,
+           force / dat_at(&d, 0, "normal") - 1);
+    free(text);
+    dat_free(&d);
+  }
+  job_end(&j);
 }
 
 /* What --check foresees of a kind, s and MB. */
@@ -267,9 +318,13 @@ static void foreseen(job *j, const char *kind, double *cpu, double *mega) {
 
 static void row_of(const bench_case *c, const char *kind) {
   double cpu, mega, cpu_before, mega_before;
+  if (strcmp(kind, GETFEM) == 0) {
+    row_of_getfem(c);
+    return;
+  }
   job j = make_job(c, kind);
   foreseen(&j, kind, &cpu_before, &mega_before);
-  if (run(&j, &cpu, &mega))
+  if (run_protis(&j, &cpu, &mega))
     printf("%d-D %-7s %6d %-23s %9.2f %9.1f %12.2g %12.1f\n", c->dim,
            c->how == GRADED ? "graded" : "uniform", c->cells, kind, cpu, mega,
            cpu_before, mega_before);
