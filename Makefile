@@ -402,8 +402,8 @@ study: $(program)
 	$(Q)$(STUDY) $(GOALS) -o build/study/goals/energy \
 	  --vary TARGET=6,4,2.5,1.5,1,0.6 --vary N=4
 	$(Q)$(STUDY) $(GOALS) -o build/study/goals/goal --vary N=4 --vary \
-	  GOAL_TARGET=$(subst $(sp),$(comma),$(foreach g,PEAK WIDE SIDE,\
-	  $(foreach t,1% 0.3% 0.1% 0.03% 0.01%,$g:$t)))
+	  GOAL_TARGET=$(subst $(sp),$(comma),$(strip $(foreach g,PEAK WIDE SIDE,\
+	  $(foreach t,1% 0.3% 0.1% 0.03% 0.01%,$g:$t))))
 	$(Q)tools/plot goals build/study/goals build/study/goals.png \
 	  $(subst $(comma), ,$(EXACT))
 

@@ -3,6 +3,7 @@ import json
 import math
 
 from matplotlib import pyplot
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from . import BLUE, GREEN, RED, legend_below, new, plain
 from .results import Missing
@@ -190,6 +191,9 @@ def goals(folder, pairs):
                              color=COLOURS[k % 6], label=path.parent.name)
             panel.set_title(name)
             panel.set_xlabel("CPU time, all passes, s")
+            panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+            panel.xaxis.set_major_formatter("{x:g}")
+            panel.xaxis.set_minor_formatter(NullFormatter())
     axes[0, 0].set_ylabel("true error, relative")
     legend_below(axes[0, len(exact) // 2])
     return figure
