@@ -229,7 +229,7 @@ $(out)/tests/unit/sundials: LDLIBS += -lsundials_cvode -lsundials_nvecserial \
 $(out)/tests/preload/%.so: tests/preload/%.c Makefile
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
-	$(Q)$(CC) -std=gnu11 -O2 -Wall -Wextra -shared -fPIC $< -o $@ -ldl
+	$(Q)$(CC) -std=gnu11 -Isrc -O2 -Wall -Wextra -shared -fPIC $< -o $@ -ldl
 
 # A fresh machine has no pkg-config when make starts: install, then start anew.
 demo test: deps-drawing

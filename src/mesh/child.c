@@ -37,22 +37,9 @@
 #define LIBGMSH \
   "libgmsh.so." TEXT(GMSH_API_VERSION_MAJOR) "." TEXT(GMSH_API_VERSION_MINOR)
 
-/* clang-format off */
-#define CALL_LIST(X)                                                         \
-  X(Initialize) X(Open) X(OptionSetNumber) X(LoggerStart) X(LoggerGet)       \
-  X(LoggerGetLastError) X(ModelGetEntities) X(ModelGetPhysicalGroups)        \
-  X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                 \
-  X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)          \
-  X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                      \
-  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetNumbers)                     \
-  X(ModelMeshFieldSetAsBackgroundMesh)                                       \
-  X(ModelMeshRemoveConstraints) X(Clear) X(Write)                            \
-  X(ViewAdd) X(ViewAddListData) X(Free)
-/* clang-format on */
-
 #define CALL_FIELD(name) __typeof__(&gmsh##name) name;
 typedef struct gmsh_calls {
-  CALL_LIST(CALL_FIELD)
+  GMSH_BEFORE_MESH(CALL_FIELD) GMSH_CALLS(CALL_FIELD)
 } gmsh_calls;
 
 typedef struct child {
@@ -226,7 +213,8 @@ static void load(child *c) {
       give_up(c, ERR_MESH, "%s has no gmsh" #name, LIBGMSH); \
     memcpy(&c->gmsh.name, &symbol_, sizeof symbol_);         \
   } while (0);
-  CALL_LIST(CALL_LOAD)
+  GMSH_BEFORE_MESH(CALL_LOAD)
+  GMSH_CALLS(CALL_LOAD)
   watch_memory(library);
   watch_crashes();
 }

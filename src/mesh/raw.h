@@ -28,6 +28,19 @@
   X(WARNING,   char)                                                          \
   X(FAILURE,   char)    /* reason why there is no mesh; head: status as tag */ \
   X(END,       char)
+
+/* What is called of libgmsh: first those that say what is to be meshed. */
+#define GMSH_BEFORE_MESH(X)                                                   \
+  X(Initialize) X(LoggerStart) X(OptionSetNumber) X(Open)                     \
+  X(ModelGetPhysicalGroups)
+#define GMSH_CALLS(X)                                                         \
+  X(LoggerGet) X(LoggerGetLastError) X(ModelGetEntities)                      \
+  X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                  \
+  X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)           \
+  X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                       \
+  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetNumbers)                      \
+  X(ModelMeshFieldSetAsBackgroundMesh) X(ModelMeshRemoveConstraints)          \
+  X(Clear) X(Write) X(ViewAdd) X(ViewAddListData) X(Free)
 /* clang-format on */
 
 #define WIRE_ENUM(name, type) WIRE_##name,

@@ -150,7 +150,7 @@ void gmshModelGetPhysicalGroups(void) {
 
 #define NEVER(name) \
   void gmsh##name(void) { leave(1); }
-NEVER_LIST(NEVER)
+GMSH_CALLS(NEVER)
 
 /* ---- in the place of the C library's ------------------------------------- */
 

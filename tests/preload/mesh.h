@@ -3,6 +3,8 @@
 #ifndef PROTIS_TESTS_PRELOAD_MESH_H
 #define PROTIS_TESTS_PRELOAD_MESH_H
 
+#include "mesh/raw.h"
+
 #include <stddef.h>
 #include <sys/types.h>
 
@@ -26,19 +28,8 @@ void gmshOpen(const char *name, int *error);
 /* gmshc.h: never returns; the stream is given out, or its name told. */
 void gmshModelGetPhysicalGroups(void);
 
-/* clang-format off */
 /* All others: gmsh itself must do it. */
-#define NEVER_LIST(X)                                                         \
-  X(LoggerGet) X(LoggerGetLastError) X(ModelGetEntities)                      \
-  X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                  \
-  X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)           \
-  X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                       \
-  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetAsBackgroundMesh)             \
-  X(ModelMeshRemoveConstraints) X(Clear) X(Write)                             \
-  X(ViewAdd) X(ViewAddListData) X(Free)
-/* clang-format on */
-
 #define NEVER_DECLARE(name) void gmsh##name(void);
-NEVER_LIST(NEVER_DECLARE)
+GMSH_CALLS(NEVER_DECLARE)
 
 #endif

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double E = 1000.0;
@@ -395,7 +396,30 @@ START_TEST(nearly_incompressible_patches) {
 }
 END_TEST
 
-/* All but the last without and, on fewer meshes, with averages. */
+/* tests/preload/mesh.so, where these programs have it: else each run loads
+ * gmsh, and the suite takes twice its time. */
+START_TEST(a_mesh_is_kept_for_later_runs) {
+  if (getenv("PROTIS_MESH") == NULL || getenv("PROTIS_MESH")[0] == '\0') return;
+  char folder[] = "/tmp/protis-test-XXXXXX", command[128];
+  ck_assert_ptr_nonnull(mkdtemp(folder));
+  setenv("MESH_KEPT", folder, 1);
+  block b = {"square.geo",
+             meshes[0],
+             0.0,
+             "",
+             FLOOR,
+             "",
+             "*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 10.\n",
+             0};
+  job j = run_block(&b, "", 0);
+  snprintf(command, sizeof command, "ls %s | wc -l; rm -r %s", folder, folder);
+  ck_assert_int_eq(job_shell(&j, command), 0);
+  ck_assert_str_eq(j.text, "1\n");
+  job_end(&j);
+}
+END_TEST
+
+/* All but the last two without and, on fewer meshes, with averages. */
 int main(void) {
   const TTest *const both[] = {pressed_block_without_poisson,
                                widening_block_in_all_kinematics,
@@ -412,5 +436,6 @@ int main(void) {
   for (size_t i = 0; i < sizeof both / sizeof *both; ++i)
     tcase_add_loop_test(tests, both[i], 0, 2);
   tcase_add_test(tests, nearly_incompressible_patches);
+  tcase_add_test(tests, a_mesh_is_kept_for_later_runs);
   return unit_run("patch", tests);
 }
