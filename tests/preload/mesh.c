@@ -60,14 +60,6 @@ int fcntl(int fd, int command, ...) {
 
 /* ---- what is asked of gmsh ----------------------------------------------- */
 
-static void leave(int code) __attribute__((noreturn));
-static void leave(int code) {
-  void (*next)(int) __attribute__((noreturn));
-  void *found = real("_exit");
-  memcpy(&next, &found, sizeof next);
-  next(code);
-}
-
 static void mix(const void *data, size_t n) {
   for (const unsigned char *p = data; n > 0; ++p, --n)
     key = (key ^ *p) * 1099511628211u;
@@ -112,7 +104,7 @@ static void have_made(const char *name) {
     if (i % 3 != 1 && end < last)
       end += snprintf(end, (size_t)(last - end), "%s", word[i]) + 1;
   if (end < last && send(fd, text, (size_t)(end - text), MSG_NOSIGNAL) > 0)
-    if (recv(fd, text, 1, 0) < 0) leave(1);
+    if (recv(fd, text, 1, 0) < 0) _exit(1);
 }
 
 void gmshOpen(const char *name, int *error) {
@@ -137,19 +129,19 @@ void gmshModelGetPhysicalGroups(void) {
   static char part[65536];
   char name[4096];
   ssize_t n;
-  if (!may_keep) leave(1);
+  if (!may_keep) _exit(1);
   name_stream(name, "");
   if (access(name, R_OK) != 0) have_made(name);
   int from = open(name, O_RDONLY | O_CLOEXEC), to = sink;
   sink = -1;
-  if (from < 0) leave(write(answer, &key, sizeof key) != sizeof key);
+  if (from < 0) _exit(write(answer, &key, sizeof key) != sizeof key);
   while ((n = read(from, part, sizeof part)) > 0)
     if (write(to, part, (size_t)n) != n) break;
-  leave(0);
+  _exit(0);
 }
 
 #define NEVER(name) \
-  void gmsh##name(void) { leave(1); }
+  void gmsh##name(void) { _exit(1); }
 GMSH_CALLS(NEVER)
 
 /* ---- in the place of the C library's ------------------------------------- */
@@ -175,7 +167,7 @@ static void *ask(void *(*next)(const char *, int), int flags) {
     name_stream(path, own);
     copy = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   } else if (code == 0) {
-    leave(0);
+    _exit(0);
   }
   return NULL;
 }
@@ -191,21 +183,36 @@ void *dlopen(const char *file, int flags) {
   return asked != NULL ? asked : next(file, flags);
 }
 
-ssize_t write(int fd, const void *data, size_t n) {
+/* The last record: the reader may end this process when it has it. */
+static int is_end(const void *data, size_t n) {
+  wire_head head;
+  if (n != sizeof head) return 0;
+  memcpy(&head, data, n);
+  return head.magic == WIRE_MAGIC && head.kind == WIRE_END;
+}
+
+static ssize_t next_write(int fd, const void *data, size_t n) {
   static ssize_t (*next)(int, const void *, size_t);
   void *found = next == NULL ? real("write") : NULL;
   if (found != NULL) memcpy(&next, &found, sizeof next);
-  if (answer >= 0 && fd == sink) leave(1); /* gmsh was not even asked         */
-  ssize_t done = next(fd, data, n);
-  if (copy >= 0 && fd == sink && done > 0 &&
-      next(copy, data, (size_t)done) != done)
-    copy = -1;
-  return done;
+  return next(fd, data, n);
 }
 
-void _exit(int code) {
+static void keep(const void *data, ssize_t n) {
+  if (copy >= 0 && n > 0 && next_write(copy, data, (size_t)n) != n) copy = -1;
+}
+
+ssize_t write(int fd, const void *data, size_t n) {
   char name[4096];
+  if (fd != sink) return next_write(fd, data, n);
+  if (answer >= 0) _exit(1); /* gmsh was not even asked                       */
+  if (!is_end(data, n)) {
+    const ssize_t done = next_write(fd, data, n);
+    keep(data, done);
+    return done;
+  }
+  keep(data, (ssize_t)n);
   name_stream(name, "");
-  if (copy >= 0 && code == 0) rename(path, name);
-  leave(code);
+  if (copy >= 0) rename(path, name);
+  return next_write(fd, data, n);
 }

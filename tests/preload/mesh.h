@@ -12,10 +12,8 @@
 int fcntl(int fd, int command, ...);
 /* libgmsh: gives out the stream and ends, if it is kept. */
 void *dlopen(const char *file, int flags);
-/* Copies the stream. */
+/* Keeps the stream: a copy, renamed at its last record. */
 ssize_t write(int fd, const void *data, size_t n);
-/* Keeps a stream that was sent to its end. */
-void _exit(int code);
 
 /* gmshc.h: the numbers. */
 void gmshInitialize(int argc, char **argv, int ignored, int *error);
