@@ -109,8 +109,7 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
     own.A = A;
     own.op = NULL;
   }
-  NEW(u, cp->m);
-  NEW(r, cp->m);
+  NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
   TRY(lemke->setup(&own, param, &work));
   TRY(lemke->solve(&own, param, work, &control, u, r, &rep));
@@ -132,8 +131,7 @@ static status add_moving(const words *w, const verdict_scene *s,
   int dim = s->cp->dim, opening = 0;
   OWNED double *open = NULL, *slide = NULL;
   double most = 0.0;
-  PASS_NEW(open, s->cp->n);
-  PASS_NEW(slide, s->cp->n);
+  PASS_NEW_REALS(s->cp->n, &open, &slide);
   for (int dof = 0; dof < s->cp->m; ++dof) most = fmax(most, fabs(v[dof]));
   for (int i = 0; i < s->cp->n; ++i) {
     open[i] = fmax(0.0, -v[dim * i]);
@@ -215,8 +213,7 @@ static status add_drive(const words *w, const verdict_scene *s,
                         const double *v) {
   size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
   OWNED double *F = NULL, *u = NULL, *f_c = NULL;
-  PASS_NEW(F, n);
-  PASS_NEW(u, n);
+  PASS_NEW_REALS(n, &F, &u);
   PASS_NEW(f_c, s->cp->m);
   PASS(condense_load(s->c, F, NULL, f_c));
   PASS(condense_recover(s->c, v, u));

@@ -172,17 +172,14 @@ static void set_problem(exchange_problem *p, int stiffness, int floating) {
 /* A matrix of given size, dense. */
 static status read_dense(const hdf5_source *s, const char *name, int rows,
                          int columns, double **a) {
-  status st = OK;
-  triplets t = {0};
-  TRY(triplets_read(s, name, &t));
+  ENDS_BY(triplets_free) triplets t = {0};
+  PASS(triplets_read(s, name, &t));
   if (t.rows != rows || t.columns != columns)
-    FAIL(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
-         s->path, name, t.rows, t.columns, rows, columns);
-  NEW(*a, (size_t)rows * (size_t)columns);
+    RAISE(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
+          s->path, name, t.rows, t.columns, rows, columns);
+  PASS_NEW(*a, (size_t)rows * (size_t)columns);
   triplets_dense(&t, *a);
-done:
-  triplets_free(&t);
-  return st;
+  return OK;
 }
 
 /* V, R and s, both matrices or none. */
@@ -204,36 +201,31 @@ static status read_constraints(const hdf5_source *s, int m, constraints *c) {
 }
 
 static status read_local(const hdf5_source *s, exchange_problem *p) {
-  status st = OK;
-  triplets W = {0};
-  constraints c = {0};
-  double *q = NULL;
+  ENDS_BY(triplets_free) triplets W = {0};
+  ENDS_BY(constraints_free) constraints c = {0};
+  OWNED double *q = NULL;
   p->form = "FCLIB, local";
-  TRY(triplets_size(s, LOCAL "/W", &W));
+  PASS(triplets_size(s, LOCAL "/W", &W));
   if (W.rows != W.columns)
-    FAIL(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
-         s->path, W.rows, W.columns);
-  TRY(set_size(s, LOCAL, W.rows, p));
-  TRY(triplets_read(s, LOCAL "/W", &W));
-  TRY(new_arrays(p));
-  TRY(read_vector(s, LOCAL "/vectors/q", p->m, &q));
-  TRY(read_friction(s, LOCAL "/vectors/mu", p));
+    RAISE(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
+          s->path, W.rows, W.columns);
+  PASS(set_size(s, LOCAL, W.rows, p));
+  PASS(triplets_read(s, LOCAL "/W", &W));
+  PASS(new_arrays(p));
+  PASS(read_vector(s, LOCAL "/vectors/q", p->m, &q));
+  PASS(read_friction(s, LOCAL "/vectors/mu", p));
   memcpy(p->load, q, (size_t)p->m * sizeof *q);
-  TRY(read_constraints(s, p->m, &c));
-  if (c.p == 0) TRY(take_blocks(p, &W));
+  PASS(read_constraints(s, p->m, &c));
+  if (c.p == 0) PASS(take_blocks(p, &W));
   if (p->blocks == NULL) {
-    TRY(new_matrix(s, LOCAL, p));
+    PASS(new_matrix(s, LOCAL, p));
     triplets_dense(&W, p->matrix);
-    TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
+    PASS(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
   }
   turn_signs(p);
   p->unknowns = p->m + c.p;
   set_problem(p, 0, 0);
-done:
-  triplets_free(&W);
-  constraints_free(&c);
-  memory_free(q);
-  return st;
+  return OK;
 }
 
 /* ---- global ---------------------------------------------------------------
@@ -400,46 +392,38 @@ done:
  * H, which leaves constraints on r and l. */
 static status condense_constrained(const hdf5_source *s, const global *g,
                                    exchange_problem *p) {
-  status st = OK;
-  triplets joined = {0};
-  constraints c = {0};
-  double *all = NULL, *vector = NULL;
+  ENDS_BY(triplets_free) triplets joined = {0};
+  ENDS_BY(constraints_free) constraints c = {0};
+  OWNED double *all = NULL, *vector = NULL;
   int size = p->m + g->G.columns;
   if (size > MOST_UNKNOWNS)
-    FAIL(ERR_DECK,
-         "%s: " GLOBAL
-         " has %d unknowns and constraints; at most %d "
-         "can be solved",
-         s->path, size, (int)MOST_UNKNOWNS);
-  TRY(join(g, &joined));
-  NEW(all, (size_t)size * (size_t)size);
-  NEW(vector, size);
+    RAISE(ERR_DECK,
+          "%s: " GLOBAL
+          " has %d unknowns and constraints; at most %d "
+          "can be solved",
+          s->path, size, (int)MOST_UNKNOWNS);
+  PASS(join(g, &joined));
+  PASS_NEW(all, (size_t)size * (size_t)size);
+  PASS_NEW(vector, size);
   memcpy(vector, g->w, (size_t)p->m * sizeof *vector);
   memcpy(vector + p->m, g->b, (size_t)g->G.columns * sizeof *vector);
-  TRY(reduce_held(s, g, &joined, all, vector));
-  TRY(part(all, vector, size, p->m, p, &c));
-  TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
+  PASS(reduce_held(s, g, &joined, all, vector));
+  PASS(part(all, vector, size, p->m, p, &c));
+  PASS(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
   turn_signs(p);
   set_problem(p, 0, 0);
-done:
-  triplets_free(&joined);
-  constraints_free(&c);
-  RELEASE(all, vector);
-  return st;
+  return OK;
 }
 
 /* W in blocks and q without a matrix of all entries; p->blocks NULL: not
  * possible, or most of it is not zero. */
 static status condense_bodies(const global *g, exchange_problem *p) {
-  status st = OK;
-  triplets W = {0};
+  ENDS_BY(triplets_free) triplets W = {0};
   int usable = 0;
   memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
-  TRY(reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
-  if (usable) TRY(take_blocks(p, &W));
-done:
-  triplets_free(&W);
-  return st;
+  PASS(reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
+  if (usable) PASS(take_blocks(p, &W));
+  return OK;
 }
 
 /* W and q, or, of a symmetric and singular M, A and f of the same size. */
@@ -466,34 +450,30 @@ static status condense_global(const hdf5_source *s, global *g,
 }
 
 static status read_global(const hdf5_source *s, exchange_problem *p) {
-  status st = OK;
-  global g = {0};
+  ENDS_BY(global_release) global g = {0};
   p->form = "FCLIB, global";
-  TRY(triplets_size(s, GLOBAL "/H", &g.H));
-  TRY(set_size(s, GLOBAL, g.H.columns, p));
-  TRY(read_matrices(s, &g));
-  TRY(new_arrays(p));
-  TRY(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
-  TRY(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
-  TRY(read_friction(s, GLOBAL "/vectors/mu", p));
+  PASS(triplets_size(s, GLOBAL "/H", &g.H));
+  PASS(set_size(s, GLOBAL, g.H.columns, p));
+  PASS(read_matrices(s, &g));
+  PASS(new_arrays(p));
+  PASS(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
+  PASS(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
+  PASS(read_friction(s, GLOBAL "/vectors/mu", p));
   p->unknowns = g.M.rows + g.G.columns;
-  TRY(find_diagonal(&g));
-  if (g.h == NULL && g.G.columns == 0) TRY(condense_bodies(&g, p));
+  PASS(find_diagonal(&g));
+  if (g.h == NULL && g.G.columns == 0) PASS(condense_bodies(&g, p));
   if (p->blocks != NULL) {
     turn_signs(p);
     set_problem(p, 0, 0);
-    goto done;
+    return OK;
   }
-  TRY(new_matrix(s, GLOBAL, p));
+  PASS(new_matrix(s, GLOBAL, p));
   if (g.G.columns > 0) {
-    TRY(read_vector(s, GLOBAL "/vectors/b", g.G.columns, &g.b));
-    TRY(condense_constrained(s, &g, p));
-    goto done;
+    PASS(read_vector(s, GLOBAL "/vectors/b", g.G.columns, &g.b));
+    PASS(condense_constrained(s, &g, p));
+    return OK;
   }
-  TRY(condense_global(s, &g, p));
-done:
-  global_release(&g);
-  return st;
+  return condense_global(s, &g, p);
 }
 
 /* ---- file -----------------------------------------------------------------

@@ -122,8 +122,7 @@ typedef struct elimination {
 static status elimination_new(int m, const constraints *c, elimination *a) {
   size_t p = (size_t)c->p, all = p * ((size_t)m + 1);
   PASS_NEW(a->R, p * p);
-  PASS_NEW(a->X, all);
-  PASS_NEW(a->rhs, all);
+  PASS_NEW_REALS(all, &a->X, &a->rhs);
   PASS_NEW(a->spread, p);
   memcpy(a->R, c->R, p * p * sizeof *a->R);
   for (size_t k = 0; k < p; ++k) {
@@ -152,28 +151,25 @@ static double contradiction(int m, const constraints *c, elimination *a) {
 
 status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q) {
-  status st = OK;
-  elimination a = {0};
+  ENDS_BY(elimination_free) elimination a = {0};
   lapack_int rank = 0, info;
-  if (c->p == 0) goto done;
-  TRY(elimination_new(m, c, &a));
+  if (c->p == 0) return OK;
+  PASS(elimination_new(m, c, &a));
   info = LAPACKE_dgelsd(LAPACK_COL_MAJOR, c->p, c->p, m + 1, a.R, c->p, a.X,
                         c->p, a.spread, REPEATED_RCOND, &rank);
   if (info != 0)
-    FAIL(info == LAPACK_WORK_MEMORY_ERROR ? ERR_MEMORY : ERR_SINGULAR,
-         "%s: the equality constraints cannot be eliminated", path);
+    RAISE(info == LAPACK_WORK_MEMORY_ERROR ? ERR_MEMORY : ERR_SINGULAR,
+          "%s: the equality constraints cannot be eliminated", path);
   if (!(contradiction(m, c, &a) <= CONSISTENT))
-    FAIL(ERR_SINGULAR,
-         "%s: the equality constraints contradict one another: of %d only %d "
-         "are independent",
-         path, c->p, (int)rank);
+    RAISE(ERR_SINGULAR,
+          "%s: the equality constraints contradict one another: of %d only %d "
+          "are independent",
+          path, c->p, (int)rank);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, m, c->p, -1.0, c->V,
               m, a.X, c->p, 1.0, W, m);
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, c->p, -1.0, c->V, m,
               a.X + (size_t)c->p * (size_t)m, 1, 1.0, q, 1);
-done:
-  elimination_free(&a);
-  return st;
+  return OK;
 }
 
 void constraints_free(constraints *c) { RELEASE(c->V, c->R, c->s); }
@@ -422,19 +418,15 @@ static void reduction_end(reduction *s) {
 
 status reduce_global(const triplets *M, const triplets *H, const double *f,
                      double *W, double *q, int *usable) {
-  status st = OK;
-  reduction s = {.n = M->rows};
-  columns c = {0};
+  ENDS_BY(reduction_end) reduction s = {.n = M->rows};
+  ENDS_BY(columns_free) columns c = {0};
   *usable = 1;
   reduction_begin(&s);
-  if (M->rows == 0) goto done;
-  TRY(columns_new(H, f, &c));
-  TRY(factorise(&s, M, usable));
-  if (*usable) TRY(reduce_sparse(&s, &c, W, q));
-done:
-  columns_free(&c);
-  reduction_end(&s);
-  return st;
+  if (M->rows == 0) return OK;
+  PASS(columns_new(H, f, &c));
+  PASS(factorise(&s, M, usable));
+  if (*usable) PASS(reduce_sparse(&s, &c, W, q));
+  return OK;
 }
 
 /* ---- bodies apart -----------------------------------------------------------
@@ -595,22 +587,19 @@ done:
 
 status reduce_any(const char *path, const triplets *M, const triplets *H,
                   const double *f, double *W, double *q) {
-  status st = OK;
-  columns c = {0};
+  ENDS_BY(columns_free) columns c = {0};
   int singular = 0;
   if (M->rows > MOST_DENSE)
-    FAIL(ERR_SINGULAR,
-         "%s: /fclib_global/M is not symmetric and positive definite, and too "
-         "large (%d) for a dense LU factor",
-         path, M->rows);
-  TRY(columns_new(H, f, &c));
-  TRY(reduce_dense(M, &c, W, q, &singular));
+    RAISE(ERR_SINGULAR,
+          "%s: /fclib_global/M is not symmetric and positive definite, and too "
+          "large (%d) for a dense LU factor",
+          path, M->rows);
+  PASS(columns_new(H, f, &c));
+  PASS(reduce_dense(M, &c, W, q, &singular));
   if (singular)
-    FAIL(ERR_SINGULAR,
-         "%s: /fclib_global/M is singular: v cannot be eliminated", path);
-done:
-  columns_free(&c);
-  return st;
+    RAISE(ERR_SINGULAR,
+          "%s: /fclib_global/M is singular: v cannot be eliminated", path);
+  return OK;
 }
 
 status require_problem_memory(double m) {

@@ -261,11 +261,10 @@ static void set_frame_3d(const fracture *f, int chain, int i) {
 }
 
 status points_find(fracture *f) {
-  status st = OK;
   const mesh *m = f->body.mesh;
   const mesh_crack *c = f->body.crack;
-  obstacles o = {0};
-  TRY(find_obstacles(&f->body, &o));
+  ENDS_BY(release) obstacles o = {0};
+  PASS(find_obstacles(&f->body, &o));
   for (int chain = 0; chain < c->n_front; ++chain)
     for (int i = c->front_start[chain]; i < c->front_start[chain + 1]; ++i) {
       fracture_point *p = &f->point[i];
@@ -284,7 +283,5 @@ status points_find(fracture *f) {
     p->radius = free_radius(m, &o, p, p->radius);
     if (p->radius < fewest * p->size) p->radius = 0;
   }
-done:
-  release(&o);
-  return st;
+  return OK;
 }

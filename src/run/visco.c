@@ -169,8 +169,7 @@ status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
 }
 
 status start_point_new(const run *r, start_point *p) {
-  PASS_NEW(p->uc, r->nodes.n_c);
-  PASS_NEW(p->rc, r->nodes.n_c);
+  PASS_NEW_REALS(r->nodes.n_c, &p->uc, &p->rc);
   if (r->old.motion != NULL) PASS_NEW(p->motion, r->nodes.n_c);
   return OK;
 }

@@ -89,10 +89,7 @@ status contact_adjoint_new(const contact_problem *cp, const double *u,
   NEW(a->slip, cp->n);
   NEW(a->e, cp->m);
   NEW(a->kappa, cp->n);
-  NEW(a->w, cp->m);
-  NEW(a->x, cp->m);
-  NEW(a->Ax, cp->m);
-  NEW(a->stick, cp->m);
+  NEW_REALS(cp->m, &a->w, &a->x, &a->Ax, &a->stick);
   set_states(a);
   a->rows = (linear_rows){cp,        a->n_free, a->free_id, a->place,
                           a->closed, a->slip,   a->e,       a->kappa};

@@ -271,13 +271,11 @@ status linear_system_new(const linear_rows *rows, linear_system **out) {
   NEW(s, 1);
   s->rows = *rows;
   s->bent = is_bent(rows);
-  NEW(s->b, m);
-  NEW(s->Ax, m);
+  NEW_REALS(m, &s->b, &s->Ax);
   if (rows->cp->A != NULL) {
     TRY(factor(s, &singular));
   } else {
-    NEW(s->v, m);
-    NEW(s->zero, m);
+    NEW_REALS(m, &s->v, &s->zero);
     NEW(s->added, (size_t)rows->cp->dim * m);
     NEW(s->known, m);
     TRY(set_rows(s, &singular));

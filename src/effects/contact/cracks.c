@@ -151,8 +151,7 @@ static status cracks_new(run *r, void **self) {
   PASS_NEW(own, 1);
   *self = own;
   PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
-  PASS_NEW(own->traction, r->n_dof);
-  PASS_NEW(own->lumped, r->n_dof);
+  PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped);
   PASS_NEW(own->area, r->msh->n_node);
   PASS_NEW(own->shift, r->n_dof);
   own->step_id = -1;
@@ -306,8 +305,7 @@ static status find_elastic(const run *r, double *u) {
     for (size_t k = 0; k < r->n_dof; ++k) u[k] = NAN;
     return OK;
   }
-  PASS_NEW(f, n);
-  PASS_NEW(uc, n);
+  PASS_NEW_REALS(n, &f, &uc);
   PASS(condense_load(c, r->now.F, NULL, f));
   run_take_rows(r, r->now.rc, uc);
   for (int k = 0; k < n; ++k) f[k] += uc[k];

@@ -332,8 +332,7 @@ static void use_arrays(const friction *own, run *r) {
 
 static status new_arrays(const run *r, friction *own) {
   PASS_NEW(own->stick, r->nodes.n * (r->msh->dim - 1));
-  PASS_NEW(own->g, r->nodes.n);
-  PASS_NEW(own->distance, r->nodes.n);
+  PASS_NEW_REALS(r->nodes.n, &own->g, &own->distance);
   return OK;
 }
 

@@ -409,20 +409,17 @@ static status find_lines(finder *z, int contact_id) {
 }
 
 static status find_zones(run *r, void *self) {
-  status st = OK;
-  finder z = {.out = self};
+  ENDS_BY(finder_free) finder z = {.out = self};
   z.out->n = 0;
-  TRY(finder_new(r, &z));
+  PASS(finder_new(r, &z));
   set_levels(&z);
   for (int i = 0; i < r->m->n.contact && z.dim == 3; ++i) {
     add_slopes(&z, r->faces.pairs[i].group, &z.closed);
     add_slopes(&z, r->faces.pairs[i].group, &z.stick);
   }
   for (int i = 0; i < r->m->n.contact; ++i)
-    TRY(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
-done:
-  finder_free(&z);
-  return st;
+    PASS(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
+  return OK;
 }
 
 /* ---- the row --------------------------------------------------------------

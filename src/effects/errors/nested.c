@@ -51,8 +51,7 @@ static status nested_new(run *r, void **self) {
 
 static status make_arrays(const run *r, nested *x) {
   if (x->u != NULL) return OK;
-  PASS_NEW(x->u, r->nodes.n_c);
-  PASS_NEW(x->rc, r->nodes.n_c);
+  PASS_NEW_REALS(r->nodes.n_c, &x->u, &x->rc);
   PASS_NEW(x->state, r->nodes.n);
   PASS_NEW(x->before, r->nodes.n);
   PASS_NEW(x->nearest, r->nodes.n);

@@ -397,10 +397,9 @@ static void judge_line(const run *r, const goal_card *g, const line *l,
 /* Where the largest pressure may be infinite there is no peak. */
 static status place_on_line(const run *r, const goal_card *g, int peak,
                             weight *w, goal_form *f) {
-  status st = OK;
-  line l = {0};
+  ENDS_BY(line_free) line l = {0};
   int first, last;
-  TRY(line_new(r, g, w, peak, &l));
+  PASS(line_new(r, g, w, peak, &l));
   const int mirrored = goal_is_mirrored(r, peak);
   const int at_border = l.peak == 0 || l.peak == l.n - 1;
   zone_of(r, &l, &first, &last);
@@ -419,9 +418,7 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
   w->at = on_line;
   if (w->axi) set_disc_of_axis(g, w, f);
   judge_line(r, g, &l, w, f);
-done:
-  line_free(&l);
-  return st;
+  return OK;
 }
 
 /* ---- a disc in space ----------------------------------------------------- */
@@ -699,17 +696,13 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
 }
 
 status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
-  status st = OK;
-  line l = {0};
+  ENDS_BY(line_free) line l = {0};
   const int peak = peak_of(r, g);
   f->value = NAN;
   if (r->msh->dim == 3 || !has_one_thickness(r, g)) f->why = GOAL_NOT_COVERED;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (f->why != GOAL_RELIABLE) return OK;
   const weight w = weight_at(r, g, peak);
-  TRY(line_new(r, g, &w, peak, &l));
-  TRY(set_ends(r, g, &l, &w, f));
-done:
-  line_free(&l);
-  return st;
+  PASS(line_new(r, g, &w, peak, &l));
+  return set_ends(r, g, &l, &w, f);
 }

@@ -12,8 +12,7 @@ static const double PI = 3.14159265358979323846;
 
 status goal_form_new(const run *r, goal_form *f) {
   PASS_NEW(f->load, r->n_dof);
-  PASS_NEW(f->rows, r->nodes.n_c);
-  PASS_NEW(f->psi, r->nodes.n_c);
+  PASS_NEW_REALS(r->nodes.n_c, &f->rows, &f->psi);
   for (int i = 0; i < r->m->n.goal; ++i) {
     const goal_quantity q = r->m->accuracy.goals[i].quantity;
     if ((q == GOAL_STRESS || q == GOAL_ENERGY) && f->tau == NULL)

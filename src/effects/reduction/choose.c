@@ -47,9 +47,7 @@ static status find_jump(const model *m, const mesh *msh, int *jumps) {
   OWNED double *T0 = NULL, *before = NULL, *T = NULL;
   const size_t bytes = (size_t)msh->n_elem * sizeof *T;
   *jumps = 0;
-  PASS_NEW(T0, msh->n_elem);
-  PASS_NEW(before, msh->n_elem);
-  PASS_NEW(T, msh->n_elem);
+  PASS_NEW_REALS(msh->n_elem, &T0, &before, &T);
   PASS(load_temperature_initial(m, msh, T0));
   memcpy(before, T0, bytes);
   for (int i = 0; i < m->n.step; ++i) {

@@ -289,8 +289,7 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
   NEW(s->number, n_all);
   NEW(s->flat, n_all);
   NEW(s->sharp, n_all);
-  NEW(s->tangent, 3 * n_all);
-  NEW(s->normal, 3 * n_all);
+  NEW_REALS(3 * n_all, &s->tangent, &s->normal);
   NEW(s->face_normal, 3 * f->n);
   set_face_normals(s);
   TRY(find_edges(s));

@@ -40,8 +40,7 @@ typedef struct discrete {
 static status discrete_new(discrete *d) {
   const exchange_problem *p = d->p;
   PASS_NEW(d->surface.node_no, p->n);
-  PASS_NEW(d->u, p->m);
-  PASS_NEW(d->r, p->m);
+  PASS_NEW_REALS(p->m, &d->u, &d->r);
   PASS_NEW(d->gap, p->n);
   PASS_NEW(d->slip, (size_t)p->n * (size_t)(p->dim - 1));
   PASS_NEW(d->g, p->n);

@@ -58,22 +58,16 @@ static status build(run *r) {
 }
 
 static status new_contact_arrays(run *r) {
-  status st = OK;
   int tangents = r->nodes.n * (r->msh->dim - 1);
-  NEW(r->problem.f, r->nodes.n_row);
-  NEW(r->problem.f_load, r->nodes.n_row);
-  NEW(r->problem.f_before, r->nodes.n_row);
-  NEW(r->problem.gap, r->nodes.n);
-  NEW(r->old.uc, r->nodes.n_c);
-  NEW(r->now.uc, r->nodes.n_c);
-  NEW(r->old.rc, r->nodes.n_c);
-  NEW(r->now.rc, r->nodes.n_c);
-  NEW(r->result.open_gap, r->nodes.n);
-  NEW(r->result.contact, r->nodes.n);
-  if (r->nodes.rows > 1) NEW(r->problem.side_gap, tangents);
-  NEW(r->result.slip, tangents);
-done:
-  return st;
+  PASS_NEW_REALS(r->nodes.n_row, &r->problem.f, &r->problem.f_load,
+                 &r->problem.f_before);
+  PASS_NEW(r->problem.gap, r->nodes.n);
+  PASS_NEW_REALS(r->nodes.n_c, &r->old.uc, &r->now.uc, &r->old.rc, &r->now.rc);
+  PASS_NEW(r->result.open_gap, r->nodes.n);
+  PASS_NEW(r->result.contact, r->nodes.n);
+  if (r->nodes.rows > 1) PASS_NEW(r->problem.side_gap, tangents);
+  PASS_NEW(r->result.slip, tangents);
+  return OK;
 }
 
 /* The force of a node that supports take out of the contact goes to them. */
