@@ -94,8 +94,6 @@ void dense_inverse_fill(dense_inverse *d, double *N, int *done);
  * whose force then balances x. v[m] may be x. */
 void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
 
-/* ---- private to this folder --------------------------------------- */
-
 /* Admissible pair: displacement v and force q of the contact related by its
  * laws. */
 typedef struct pair {

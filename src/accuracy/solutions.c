@@ -40,8 +40,6 @@ void solution_set_free(solution_set *s) {
   *s = (solution_set){0};
 }
 
-/* ---- distance ----------------------------------------------------------- */
-
 /* x' M x of the difference of two states, b NULL: of one; t[2m] workspace. */
 static double energy(const contact_problem *cp, const double *a,
                      const double *b, double *t) {
@@ -69,8 +67,6 @@ static status find_distance(const contact_problem *cp, const double *a,
   *distance = size > 0.0 ? sqrt(apart / size) : 0.0;
   return OK;
 }
-
-/* ---- adding ------------------------------------------------------------- */
 
 static void find_facts(const contact_problem *cp, solution *s) {
   solution_facts *f = &s->facts;

@@ -61,35 +61,28 @@ static int add_nodes(const words *w, const contact_surface *s, double *value) {
   return counted;
 }
 
-/* ---- misfit ------------------------------------------------------------- */
-
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size) {
-  status st = OK;
   words w = {text, size};
-  pair p = {0};
-  double *value = NULL, scale = contact_scale(cp), most = 0.0;
+  ENDS_BY(pair_free) pair p = {0};
+  OWNED double *value = NULL;
+  double scale = contact_scale(cp), most = 0.0;
   text[0] = '\0';
-  NEW(value, cp->n);
-  TRY(pair_new(cp->n, cp->m, &p));
+  PASS_NEW(value, cp->n);
+  PASS(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   for (int dof = 0; dof < cp->m; ++dof) {
     double defect = fabs(p.q[dof] - r[dof]);
     value[dof / cp->dim] = fmax(value[dof / cp->dim], defect);
-    if (isnan(defect)) goto done;
+    if (isnan(defect)) return OK;
     most = fmax(most, defect);
   }
-  if (!(most > MISFIT * scale)) goto done;
+  if (!(most > MISFIT * scale)) return OK;
   add(&w, "the contact conditions are violated most at");
   add_nodes(&w, surface, value);
-done:
-  pair_free(&p);
-  memory_free(value);
-  return st;
+  return OK;
 }
-
-/* ---- motion without resistance ---------------------------------------- */
 
 /* v[m]: the motion; *outcome of complementary pivoting. */
 static status find_motion(const contact_problem *cp, double *v, outcome *end) {

@@ -14,8 +14,7 @@
 
 static const double SPARSE_SHARE = 0.5; /* -, of the blocks, and of entries */
 
-/* ---- what both kinds have --------------------------------------------------
- */
+/* ---- what both kinds have ------------------------------------------------ */
 
 static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
 
@@ -166,8 +165,7 @@ static void set_problem(exchange_problem *p, int stiffness, int floating) {
   p->cp.floating = floating;
 }
 
-/* ---- local ----------------------------------------------------------------
- */
+/* ---- local --------------------------------------------------------------- */
 
 /* A matrix of given size, dense. */
 static status read_dense(const hdf5_source *s, const char *name, int rows,
@@ -228,8 +226,7 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
   return OK;
 }
 
-/* ---- global ---------------------------------------------------------------
- */
+/* ---- global -------------------------------------------------------------- */
 
 typedef struct global {
   triplets M, H, G;  /* G: equality constraints, or none */
@@ -369,23 +366,20 @@ static status part(const double *all, const double *vector, int size, int m,
  * hold the bodies. */
 static status reduce_held(const hdf5_source *s, const global *g,
                           const triplets *joined, double *all, double *vector) {
-  status st = OK;
   int usable = 0;
-  triplets held = {0};
-  double *f = NULL, stiff = 0.0;
-  TRY(reduce_global(&g->M, joined, g->f, all, vector, &usable));
-  if (usable) goto done;
-  TRY(springs_add(&g->M, &g->G, &stiff, &held));
-  NEW(f, g->M.rows);
+  ENDS_BY(triplets_free) triplets held = {0};
+  OWNED double *f = NULL;
+  double stiff = 0.0;
+  PASS(reduce_global(&g->M, joined, g->f, all, vector, &usable));
+  if (usable) return OK;
+  PASS(springs_add(&g->M, &g->G, &stiff, &held));
+  PASS_NEW(f, g->M.rows);
   memcpy(f, g->f, (size_t)g->M.rows * sizeof *f);
   for (long k = 0; k < g->G.n; ++k)
     f[g->G.row[k]] -= stiff * g->G.value[k] * g->b[g->G.column[k]];
-  TRY(reduce_global(&held, joined, f, all, vector, &usable));
-  if (!usable) TRY(reduce_any(s->path, &g->M, joined, g->f, all, vector));
-done:
-  triplets_free(&held);
-  memory_free(f);
-  return st;
+  PASS(reduce_global(&held, joined, f, all, vector, &usable));
+  if (!usable) PASS(reduce_any(s->path, &g->M, joined, g->f, all, vector));
+  return OK;
 }
 
 /* M v = H r + G l + f, G'v + b = 0: v is eliminated with (H, G) in the place of
@@ -476,8 +470,7 @@ static status read_global(const hdf5_source *s, exchange_problem *p) {
   return condense_global(s, &g, p);
 }
 
-/* ---- file -----------------------------------------------------------------
- */
+/* ---- file ---------------------------------------------------------------- */
 
 static status read_source(const hdf5_source *s, exchange_problem *p) {
   const char *rolling = "rolling friction and its moments";
@@ -493,11 +486,7 @@ static status read_source(const hdf5_source *s, exchange_problem *p) {
 }
 
 status fclib_read(const char *path, exchange_problem *p) {
-  status st = OK;
-  hdf5_source s;
-  TRY(dataset_open(path, &s));
-  TRY(read_source(&s, p));
-done:
-  dataset_close(&s);
-  return st;
+  ENDS_BY(dataset_close) hdf5_source s = {0};
+  PASS(dataset_open(path, &s));
+  return read_source(&s, p);
 }

@@ -87,23 +87,21 @@ static int invert(int m, double *W, double *work, int *iwork) {
 
 status springs_condense(const triplets *M, const triplets *H, const double *f,
                         double *A, double *load, int *usable) {
-  status st = OK;
-  triplets held = {0};
-  double *q = NULL, *work = NULL, s = 0.0;
-  int *iwork = NULL, m = H->columns;
-  NEW(q, m);
-  NEW(work, 3 * m);
-  NEW(iwork, m);
-  TRY(springs_add(M, H, &s, &held));
-  TRY(reduce_global(&held, H, f, A, q, usable));
+  ENDS_BY(triplets_free) triplets held = {0};
+  OWNED double *q = NULL, *work = NULL;
+  double s = 0.0;
+  OWNED int *iwork = NULL;
+  int m = H->columns;
+  PASS_NEW(q, m);
+  PASS_NEW(work, 3 * m);
+  PASS_NEW(iwork, m);
+  PASS(springs_add(M, H, &s, &held));
+  PASS(reduce_global(&held, H, f, A, q, usable));
   *usable = *usable && s > 0.0 && invert(m, A, work, iwork);
-  if (!*usable) goto done;
+  if (!*usable) return OK;
   cblas_dsymv(CblasColMajor, CblasLower, m, 1.0, A, m, q, 1, 0.0, load, 1);
   for (size_t i = 0; i < (size_t)m; ++i) A[i * ((size_t)m + 1)] -= s;
-done:
-  triplets_free(&held);
-  RELEASE(q, work, iwork);
-  return st;
+  return OK;
 }
 
 /* ---- equality constraints of FCLIB eliminated:    V'r + R l + s = 0,   u = W
@@ -179,8 +177,7 @@ static const double ASYMMETRY = 1e-10; /* -, of the largest entry */
 static const double RCOND = 1e-14;     /* -, below: singular */
 static const double DEFINITE = 1e-12;  /* -, below: not positive definite */
 
-/* ---- M as a sparse matrix, scaled -----------------------------------------
- */
+/* ---- M as a sparse matrix, scaled ---------------------------------------- */
 
 typedef struct reduction {
   cholmod_common cm;
@@ -271,8 +268,7 @@ static status factorise(reduction *s, const triplets *M, int *usable) {
   return OK;
 }
 
-/* ---- H and f as columns ----------------------------------------------------
- */
+/* ---- H and f as columns -------------------------------------------------- */
 
 /* Column k of (H, f), k = H->columns for f, added into x[rows]. "start" and
  * "entry" list the entries of H column by column. */
@@ -310,8 +306,7 @@ static double *target(const columns *c, int k, double *W, double *q) {
   return k == c->H->columns ? q : W + (size_t)c->H->columns * (size_t)k;
 }
 
-/* ---- Cholesky or LU ---------------------------------------------------------
- */
+/* ---- Cholesky or LU ------------------------------------------------------ */
 
 /* x <- inv(M) x. */
 static status solve_scaled(reduction *s, double *x) {
@@ -556,33 +551,28 @@ static status solve_parts(reduction *s, const columns *c, row_sets *t,
 
 status reduce_bodies(const triplets *M, const triplets *H, const double *f,
                      double share, triplets *W, double *q, int *usable) {
-  status st = OK;
-  reduction s = {.n = M->rows};
-  columns c = {0};
-  row_sets t = {0};
-  double *x = NULL, entries;
+  ENDS_BY(reduction_end) reduction s = {.n = M->rows};
+  ENDS_BY(columns_free) columns c = {0};
+  ENDS_BY(row_sets_free) row_sets t = {0};
+  OWNED double *x = NULL;
+  double entries;
   const double m = H->columns;
   *usable = 0;
   W->rows = W->columns = H->columns;
   reduction_begin(&s);
-  if (M->rows == 0) goto done;
-  TRY(columns_new(H, f, &c));
-  TRY(row_sets_new(M, &c, &t));
+  if (M->rows == 0) return OK;
+  PASS(columns_new(H, f, &c));
+  PASS(row_sets_new(M, &c, &t));
   entries = count_parts(&c, &t);
-  if (entries > share * m * m) goto done;
-  TRY(factorise(&s, M, usable));
-  if (!*usable) goto done;
-  TRY(solve_parts(&s, &c, &t, (long)entries, W));
-  NEW(x, s.n);
+  if (entries > share * m * m) return OK;
+  PASS(factorise(&s, M, usable));
+  if (!*usable) return OK;
+  PASS(solve_parts(&s, &c, &t, (long)entries, W));
+  PASS_NEW(x, s.n);
   put_column(&c, H->columns, x);
-  TRY(solve_scaled(&s, x));
+  PASS(solve_scaled(&s, x));
   take_column(&c, x, q);
-done:
-  memory_free(x);
-  row_sets_free(&t);
-  columns_free(&c);
-  reduction_end(&s);
-  return st;
+  return OK;
 }
 
 status reduce_any(const char *path, const triplets *M, const triplets *H,

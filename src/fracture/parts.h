@@ -20,8 +20,6 @@ struct fracture {
   int *elem_list, *node_list; /* [n_elem], [n_node] */
 };
 
-/* ---- points and places --------------------------------------------------- */
-
 /* All but the search is there: frames, curvature, size and radius. */
 status points_find(fracture *f);
 
@@ -46,8 +44,6 @@ enum { RULE_MOST = 16 };
  * (n = 1) or triangle (2), d the distance from the front, behind[n+1] at the
  * corners, m. */
 int lip_rule(int n, const double *behind, rule_point *to);
-
-/* ---- fields -------------------------------------------------------------- */
 
 typedef struct field_tensor {
   double of[3][3]; /* components in the frame of a place */
@@ -75,8 +71,6 @@ void interaction_flux(const field_tensor *s, const field_tensor *d,
                       const auxiliary *x, field_tensor *P);
 void energy_flux(const field_tensor *s, const field_tensor *d, double share,
                  field_tensor *P);
-
-/* ---- integrals ----------------------------------------------------------- */
 
 typedef struct integrals {
   double I[DOMAINS][MODES + 1]; /* of the modes and, last, the energy */

@@ -32,8 +32,6 @@ void locate(const fracture_point *p, const double x[3], local *at) {
   }
 }
 
-/* ---- quadrature ---------------------------------------------------------- */
-
 /* Gauss, on [0, 1]. */
 enum { GAUSS = 4 };
 static const double gauss_at[GAUSS] = {0.06943184420297371, 0.33000947820757187,

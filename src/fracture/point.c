@@ -43,8 +43,6 @@ static double distance(const mesh *m, int a, int b) {
   return sqrt(dot(x, x));
 }
 
-/* ---- what ends a domain -------------------------------------------------- */
-
 typedef struct obstacles {
   int n;
   int *node;      /* [n] on the boundary, lips too, or between materials */
@@ -160,8 +158,6 @@ static double half_way(const fracture *f, const fracture_point *p,
   }
   return radius;
 }
-
-/* ---- the points ---------------------------------------------------------- */
 
 /* Mean length of the edges at the node; its section, -1 if they differ. */
 static void look_round(const fracture *f, fracture_point *p) {

@@ -161,8 +161,6 @@ done:
   return st;
 }
 
-/* ---- messages of the steps ----------------------------------------------- */
-
 void fault_add(faults *c, const char *format, ...) {
   if (++c->n > SHOWN + 1) return;
   size_t used = strlen(c->text), left = sizeof c->text - used;

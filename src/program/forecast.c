@@ -232,8 +232,7 @@ static double bytes_at(const model_of_cost *c, double unknowns) {
   return c->fine.bytes * pow(ratio, power);
 }
 
-/* ---- passes ---------------------------------------------------------------
- */
+/* ---- passes -------------------------------------------------------------- */
 
 /* The next mesh, whose error is to be "aim". */
 static void refine(const model_of_cost *c, double aim, course *at) {

@@ -152,8 +152,6 @@ static status solve_contact(run *r) {
   return OK;
 }
 
-/* ---- the problem ------------------------------------------------------- */
-
 static int has_held(const contact_surface *s) {
   for (int k = 0; k < s->n * s->dim; ++k)
     if (s->held[k]) return 1;

@@ -13,17 +13,15 @@
 #include <string.h>
 
 static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
-  status st = OK;
   run *r = ctx;
   timer_leave(STAGE_INELASTIC);
-  st = increment_solve(r, s->t);
+  const status st = increment_solve(r, s->t);
   timer_enter(STAGE_INELASTIC);
-  TRY(st);
+  PASS(st);
   visco_temperatures(r, &r->now, s);
   visco_strains(r, &r->now, s);
   *settled = r->solving.report.outcome > 0;
-done:
-  return st;
+  return OK;
 }
 
 static status begin(void *ctx, flow_state *s) {

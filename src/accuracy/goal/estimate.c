@@ -57,8 +57,7 @@ static void gradients(const goal_solution *s, double *q) {
   }
 }
 
-/* ---- the part of u in the bubble of an edge -------------------------------
- */
+/* ---- the part of u in the bubble of an edge ------------------------------ */
 
 static int by_nodes(const void *a_, const void *b_) {
   const contact_edge *a = a_, *b = b_;
@@ -179,8 +178,7 @@ static void bubbles_of(goal_estimator *of, const double *G, int elem_id,
     }
 }
 
-/* ---- what belongs to u ----------------------------------------------------
- */
+/* ---- what belongs to u --------------------------------------------------- */
 
 /* In one region; q[dim*dim*n_elem] gradients, G[dim*dim*n_node] workspace. */
 static status recover_region(goal_estimator *e, int region, const double *q,

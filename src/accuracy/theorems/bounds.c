@@ -116,8 +116,6 @@ double theorems_passes(double x) {
 
 static const double ROUNDING = 1e-8; /* -, of the larger norm */
 
-/* ---- the previous state ------------------------------------------------- */
-
 status state_before_keep(const contact_problem *cp, const double *u,
                          const double *r, state_before *b) {
   size_t m = (size_t)cp->m, n = (size_t)cp->n;
@@ -138,8 +136,6 @@ void state_before_free(state_before *b) {
   RELEASE(b->u, b->r, b->f, b->gap, b->g);
   *b = (state_before){0};
 }
-
-/* ---- the bounds ---------------------------------------------------------- */
 
 /* load less A e, and z less e, in place; workspace in the norm. */
 static void shift(const contact_problem *cp, energy_norm *n, const double *e,
@@ -165,9 +161,9 @@ static void compare(const theorems_contact *all, energy_norm *e,
 status bound_total(const contact_problem *cp, const double *u,
                    const theorems_contact *all, energy_norm *e,
                    theorems_bound *b) {
-  status st = OK;
-  double *w = NULL, *z = NULL, *load = NULL, limit = 0.0;
-  NEW_REALS(cp->m, &w, &z, &load);
+  OWNED double *w = NULL, *z = NULL, *load = NULL;
+  double limit = 0.0;
+  PASS_NEW_REALS(cp->m, &w, &z, &load);
   memcpy(z, u, (size_t)cp->m * sizeof *z);
   memcpy(load, cp->f, (size_t)cp->m * sizeof *load);
   for (int k = 0; k < cp->m; ++k)
@@ -176,9 +172,7 @@ status bound_total(const contact_problem *cp, const double *u,
     limit = hypot(limit, cp->g0[i]);
   shift(cp, e, w, z, load);
   compare(all, e, z, load, limit, 0.0, b);
-done:
-  RELEASE(w, z, load);
-  return st;
+  return OK;
 }
 
 /* e of one unknown: how its bound or its position of stick has moved. */

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- The largest eigenvalue of a symmetric positive semidefinite map ---- */
-
 enum { STEPS = 160, EVERY = 8 };
 static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value */
 
@@ -120,8 +118,6 @@ status largest_eigenvalue(const symmetric_map *map, double *largest) {
 
 static const double MOVES = 1e-8; /* -, of the largest part of a motion */
 
-/* ---- norms -------------------------------------------------------------- */
-
 status energy_norm_new(int m, const double *A, energy_norm *out) {
   *out = (energy_norm){.m = m, .A = A};
   PASS_NEW_REALS(m, &out->x, &out->y);
@@ -150,8 +146,6 @@ double energy_norm_dual(energy_norm *e, const double *f) {
   if (e->dual.square(e->dual.ctx, f, &square) != OK) return NAN;
   return sqrt(square);
 }
-
-/* ---- constants ---------------------------------------------------------- */
 
 /* The unknowns that a map acts on. */
 typedef struct block {

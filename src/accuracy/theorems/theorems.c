@@ -55,8 +55,6 @@ void theorems_free(theorems *t) {
   memory_free(t);
 }
 
-/* ---- data to be computed again ------------------------------------------ */
-
 static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
   for (int i = 0; i < cp->m; ++i)
@@ -82,8 +80,6 @@ static int same_friction(const theorems *t, const contact_problem *cp) {
   if (t->contacts == NULL || t->n_entry != count_entries(cp)) return 0;
   return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
 }
-
-/* ---- contacts ------------------------------------------------------------ */
 
 /* 1 if a node of the contact has a limit that follows pressure; keep[n] marks
  * its nodes. */
@@ -185,8 +181,6 @@ static status measure_contacts(theorems *t, const theorems_scene *s,
   return OK;
 }
 
-/* ---- bounds -------------------------------------------------------------- */
-
 static status check_bounds(theorems *t, const theorems_scene *s,
                            const frozen_problem *p, theorems_report *out) {
   const theorems_contact *all = &t->contacts[t->n_contact - 1];
@@ -206,8 +200,6 @@ static status check_bounds(theorems *t, const theorems_scene *s,
     PASS(bound_change(&p->cp, s->u, &t->before, all, &t->norm, &out->change));
   return OK;
 }
-
-/* ---- the report ---------------------------------------------------------- */
 
 static status check_inequality(const theorems_scene *s,
                                const contact_problem *cp,

@@ -10,8 +10,6 @@ void sparse_blocks_free(sparse_blocks *b) {
   RELEASE(b->start, b->row, b->mate, b->own, b->val, b);
 }
 
-/* ---- pattern ------------------------------------------------------------- */
-
 typedef struct entries {
   long n;
   const int *row, *col;
@@ -130,8 +128,6 @@ done:
   return st;
 }
 
-/* ---- products ------------------------------------------------------------ */
-
 void sparse_blocks_add(const sparse_blocks *b, int j, const double *x,
                        double *y) {
   const double *B = block(b, b->start[j]);
@@ -183,8 +179,6 @@ void sparse_blocks_row(const sparse_blocks *b, int i, const double *x,
     for (int e = 0; e < d * d; ++e) y[e % d] += B[e] * from[e / d];
   }
 }
-
-/* ---- other forms --------------------------------------------------------- */
 
 status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows) {
   int d = b->dim, m = b->n * d, count_all = 0;

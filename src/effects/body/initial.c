@@ -112,8 +112,6 @@ static status start(run *r, void *self) {
   return check_start(r, self);
 }
 
-/* ---- the row ------------------------------------------------------------ */
-
 static status expected(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){s->nodes, "nodes", 2.0,
                      4.0 * s->elements * plan_element_work(s)};

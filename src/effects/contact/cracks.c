@@ -424,8 +424,6 @@ static status find_factors(run *r, void *self) {
   return find_creep(r, own);
 }
 
-/* ---- the row ------------------------------------------------------------- */
-
 static int requires_factors(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.goal; ++i)
     if (m->accuracy.goals[i].quantity == GOAL_SIF)

@@ -390,8 +390,6 @@ static status keep(run *r, void *self, archive *a) {
   return OK;
 }
 
-/* ---- the rows ----------------------------------------------------------- */
-
 static status expected(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){.kind = "nodes", .calls = 1.0};
   status st = plan_rule_nodes(s, rule_has_friction, &w->items);
@@ -494,8 +492,6 @@ DIRECTION("slip_dir_z", SCENE_SOLID, 2),
 {"limit", "force", CON, PRINT_CONTACT | AT(2), F, SCENE_ALL,
  NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
  "sliding limit"}};
-
-/* ---- the rows ----------------------------------------------------------- */
 
 const effect_ops friction_effect = {
   .name = "friction", .bit = EFFECT_BIT_FRICTION, .required = requires_friction,

@@ -33,8 +33,6 @@ typedef struct nonlocal {
   friction_zone zone;
 } nonlocal;
 
-/* ---- averages ----------------------------------------------------------- */
-
 static int has_same_average(const friction_rule *a, const friction_rule *b) {
   if (a == NULL || a->law != b->law) return 0;
   return memcmp(a->card.param, b->card.param, a->law->param_size) == 0;
@@ -73,8 +71,6 @@ static void count_entries(const run *r, const void *self, setup_facts *f) {
     if (own->average[i].rule != NULL)
       f->average_entries += own->average[i].rows.start[r->nodes.n];
 }
-
-/* ---- the zone ----------------------------------------------------------- */
 
 static void zone_free(friction_zone *z) {
   RELEASE(z->off, z->returned, z->B.val);
@@ -151,8 +147,6 @@ static status follow_zone(run *r, void *self, int *again) {
   return OK;
 }
 
-/* ---- its state ---------------------------------------------------------- */
-
 static status nonlocal_new(run *r, void **self) {
   nonlocal *own = *self;
   PASS_NEW(own->average, r->m->n.contact);
@@ -181,8 +175,6 @@ static void release(void *self) {
   zone_free(&own->zone);
   if (!own->borrowed) memory_free(own->average);
 }
-
-/* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){.kind = "nodes", .calls = 1.0};

@@ -289,8 +289,7 @@ static status find_areas(const finder *z, int contact_id) {
   return OK;
 }
 
-/* ---- in the plane: along the contact line --------------------------
- */
+/* ---- in the plane: along the contact line -------------------------------- */
 
 /* Direction of the slip along t; 0 without friction or slip. */
 static int slip_sign(const finder *z, int i) {
@@ -421,9 +420,6 @@ static status find_zones(run *r, void *self) {
     PASS(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
   return OK;
 }
-
-/* ---- the row --------------------------------------------------------------
- */
 
 static int requires_zones(const model *m, char *why, size_t size) {
   return plan_requires_table(m, PRINT_ZONES, why, size);

@@ -273,9 +273,6 @@ done:
   return st;
 }
 
-/* ---- the row --------------------------------------------------------------
- */
-
 /* Jumps are searched where friction makes increments depend on their
  * history. */
 static int requires_check(const model *m, char *why, size_t size) {

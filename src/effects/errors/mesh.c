@@ -89,8 +89,6 @@ static status keep(run *r, void *self, archive *a) {
   return archive_reads(a) && made ? recover(r, self) : OK;
 }
 
-/* ---- the row ------------------------------------------------------------ */
-
 static status expected(const plan_sizes *s, effect_work *w) {
   const double passes = s->is_flat ? 3.0 : 6.0;
   double n = 0.0;

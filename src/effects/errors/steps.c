@@ -437,8 +437,6 @@ static status march(run *r, void *self, int *made) {
   return OK;
 }
 
-/* ---- the row ------------------------------------------------------------ */
-
 static status expected(const plan_sizes *s, effect_work *w) {
   double m = plan_contact_unknowns(s);
   *w = (effect_work){

@@ -59,8 +59,6 @@ static status theorems_scene_new(run *r, const equilibrium *e,
   return OK;
 }
 
-/* ---- inelastic strains ----------------------------------------------- */
-
 typedef struct body_map {
   run *r;
   matrices own; /* where those of the run are of other moduli */
@@ -189,8 +187,6 @@ static status see_path(run *r, const unsigned char *given, checked *own) {
   return OK;
 }
 
-/* ---- of an increment --------------------------------------------------- */
-
 static status see_theory(run *r, checked *own, int at_start) {
   theorems_scene s;
   OWNED double *mu = NULL;
@@ -209,9 +205,6 @@ static status see_theory(run *r, checked *own, int at_start) {
 static status see_increment(run *r, void *own) { return see_theory(r, own, 0); }
 
 static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
-
-/* ---- the row --------------------------------------------------------------
- */
 
 static int requires_theorems(const model *m, char *why, size_t size) {
   if (facts_first_step(m, facts_asks_theory) != NULL && m->n.contact == 0)

@@ -417,8 +417,6 @@ static void show(const void *self, state *s) {
   s->errors.goal_products = own->product;
 }
 
-/* ---- the row ------------------------------------------------------------- */
-
 /* Factor of the contact; passes over the elements and solves of all, of each
  * goal, and of the errors that friction remembers. */
 static status expected(const plan_sizes *s, effect_work *w) {

@@ -41,8 +41,6 @@ static void clear(const run *r, goal_form *f) {
   f->why = GOAL_RELIABLE;
 }
 
-/* ---- forces -------------------------------------------------------------- */
-
 /* Moment about the point of the goal of a unit force f[dim] at x[dim]. */
 static double moment_of(const goal_card *g, int dim, const double *x,
                         const double *f) {
@@ -143,8 +141,6 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
     }
   return OK;
 }
-
-/* ---- displacements, stresses --------------------------------------------- */
 
 /* Adds the mean over a node or a group times a sign. */
 static void add_mean(const run *r, int node_id, int group_id, int component,

@@ -115,9 +115,6 @@ static void add_edge(const run *r, int i, int j, double weight,
   s->edge[s->n_edge++] = e;
 }
 
-/* ---- the lips of a crack --------------------------------------------------
- */
-
 /* An edge of a lip between nodes v[2], opposite other[2], of which each has
  * half of the motion: the weight counts twice on one of them; n_q of its nodes
  * are contact nodes q: the others are at the front, where both lips are one. */
@@ -176,8 +173,6 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
     add_lip_edges(r, where, v, w, bubble_weight(r, near), s);
   }
 }
-
-/* ---- the border ---------------------------------------------------------- */
 
 static int by_nodes(const void *a_, const void *b_) {
   const contact_edge *a = a_, *b = b_;
@@ -246,17 +241,17 @@ static void add_group(const run *r, const mesh_group *g, const int *where,
 }
 
 status goal_surface_new(const run *r, goal_surface *s) {
-  status st = OK;
   const mesh *m = r->msh;
-  int *where = NULL, *seen = NULL, n = 0;
-  NEW(s->ends, m->n_node);
-  NEW(seen, m->n_node);
-  TRY(goal_places(r, &where));
+  OWNED int *where = NULL, *seen = NULL;
+  int n = 0;
+  PASS_NEW(s->ends, m->n_node);
+  PASS_NEW(seen, m->n_node);
+  PASS(goal_places(r, &where));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
       n += m->group[r->m->contacts[k].group_id].n_item;
   for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;
-  NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
+  PASS_NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
       add_group(r, &m->group[r->m->contacts[k].group_id], where, s);
@@ -265,13 +260,11 @@ status goal_surface_new(const run *r, goal_surface *s) {
   if (s->n_edge > 0)
     qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, by_nodes);
   mark_border(r, where, seen, s);
-  TRY(mark_front(m, s));
+  PASS(mark_front(m, s));
   unite_edges(s);
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
-done:
-  RELEASE(where, seen);
-  return st;
+  return OK;
 }
 
 void goal_surface_free(goal_surface *s) {

@@ -24,8 +24,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- thermal strain ----------------------------------------------------- */
-
 /* Largest temperature the deck gives as a number; HUGE_VAL: by other means. */
 static double largest_temperature(const model *m) {
   double most = 0.0;
@@ -97,8 +95,6 @@ static status try_thermal(model *m, const mesh *msh) {
   return OK;
 }
 
-/* ---- nonlocal average --------------------------------------------------- */
-
 /* Shortest distance of two nodes of a contact, length. */
 static double least_distance(const mesh *msh, const mesh_group *g) {
   double least = HUGE_VAL;
@@ -161,8 +157,6 @@ static void try_average(model *m, const mesh *msh) {
              "same as LAW=COULOMB",
              least);
 }
-
-/* ---- friction ----------------------------------------------------------- */
 
 static double all_increments(const model *m) {
   double n = 0.0;
@@ -229,8 +223,6 @@ static status try_friction(model *m, const mesh *msh) {
              "no material expands across its load: no slip expected");
   return OK;
 }
-
-/* ---- all ---------------------------------------------------------------- */
 
 /* 1: needs the problem itself, not its solution, or moves on its own. */
 static int must_stay(const model *m) {

@@ -216,8 +216,6 @@ status apply_temperature(reading *r) {
                     read_temperature);
 }
 
-/* ---- *INITIAL CONDITIONS ------------------------------------------------ */
-
 /* By initial_type. */
 static const struct {
   const char *line; /* what a line holds */

@@ -98,8 +98,6 @@ status apply_expansion(reading *r) {
   return OK;
 }
 
-/* ---- inelastic laws ----------------------------------------------------- */
-
 plugin names_inelastic(const reading *r) {
   const card_options *p = r->param;
   const law_ops *ops = p->law == NULL ? NULL : law_find(p->law);

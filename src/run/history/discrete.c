@@ -127,9 +127,6 @@ static status find_error(const step *s, const contact_problem *cp,
   return OK;
 }
 
-/* ---- contact problems -----------------------------------------------------
- */
-
 static status solve_contact(discrete *d, const history_sink *sink) {
   status st = OK;
   contact_solver *solver = NULL;
@@ -156,9 +153,6 @@ done:
   contact_solver_free(solver);
   return st;
 }
-
-/* ---- linear complementarity problems --------------------------------------
- */
 
 static status solve_lcp(discrete *d) {
   status st = OK;
@@ -187,9 +181,6 @@ done:
   d->report.cpu = timer_cpu() - start;
   return st;
 }
-
-/* ---- data of the outputs --------------------------------------------
- */
 
 static state state_of(const discrete *d) {
   const exchange_problem *p = d->p;

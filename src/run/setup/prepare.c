@@ -66,23 +66,18 @@ static status find_reach(run *r) {
 
 /* The active nodes at the start or the end of the step. */
 static status choose_nodes(run *r, int n_motion) {
-  status st = OK;
-  double *gap = NULL;
+  OWNED double *gap = NULL;
   r->nodes.reach.passes = 0;
   if (!may_leave_out(r, n_motion)) return OK;
-  timer_enter(STAGE_SURFACE);
-  NEW(gap, r->nodes.n);
-  TRY(find_reach(r));
-  TRY(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
-                  gap, NULL));
+  TIMED(STAGE_SURFACE);
+  PASS_NEW(gap, r->nodes.n);
+  PASS(find_reach(r));
+  PASS(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
+                   gap, NULL));
   for (int i = 0; i < r->nodes.n; ++i) gap[i] = fmin(gap[i], r->problem.gap[i]);
-  TRY(reach_choose(&r->nodes.reach, r->nodes.n, gap));
+  PASS(reach_choose(&r->nodes.reach, r->nodes.n, gap));
   run_take_nodes(r);
-  TRY(run_room_for_part(r));
-done:
-  timer_leave(STAGE_SURFACE);
-  memory_free(gap);
-  return st;
+  return run_room_for_part(r);
 }
 
 static status report_ready(run *r) {

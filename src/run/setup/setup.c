@@ -28,14 +28,13 @@ static void free_equilibrium(equilibrium *e) {
 /* Clusters of the sections with FORMULATION=AVERAGED. Sections with variable
  * moduli are averaged like those that flow. */
 static status new_clusters(run *r) {
-  status st = OK;
   const model *m = r->m;
-  double *share = NULL;
+  OWNED double *share = NULL;
   int averaged = 0;
   for (int i = 0; i < m->n.section; ++i) averaged |= m->sections[i].averaged;
   if (!averaged) return OK;
-  timer_enter(STAGE_CLUSTER);
-  NEW(share, m->n.section);
+  TIMED(STAGE_CLUSTER);
+  PASS_NEW(share, m->n.section);
   for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const material *mat = &m->materials[s->material_id];
@@ -46,11 +45,7 @@ static status new_clusters(run *r) {
   }
   const cluster_input in = {r->msh, m->sections[0].kin == AXISYMMETRIC,
                             m->n.section, m->elem_section, share};
-  TRY(cluster_new(&in, &r->body.d.cluster));
-done:
-  timer_leave(STAGE_CLUSTER);
-  memory_free(share);
-  return st;
+  return cluster_new(&in, &r->body.d.cluster);
 }
 
 status setup_face_weights(const model *m, const mesh *msh, double **weight) {

@@ -90,27 +90,23 @@ static status old_state_to_frames(run *r, double *force) {
 }
 
 status run_build_surface(run *r) {
-  status st = OK;
-  double *force = NULL;
-  NEW(force, r->n_dof);
+  OWNED double *force = NULL;
+  PASS_NEW(force, r->n_dof);
   if (r->surface != NULL) surface_spread(r->surface, 1.0, r->old.rc, force);
   run_free_surface(r);
   timer_enter(STAGE_SURFACE);
   node_bits(r);
-  st = build(r);
+  const status st = build(r);
   timer_leave(STAGE_SURFACE);
-  TRY(st);
+  PASS(st);
   r->nodes.n = r->surface->n;
   r->nodes.n_c = r->msh->dim * r->nodes.n;
   r->body.d.rows = r->nodes.rows =
       r->m->effects & EFFECT_TANGENTS ? r->msh->dim : 1;
   r->nodes.n_row = r->nodes.rows * r->nodes.n;
-  TRY(new_contact_arrays(r));
-  TRY(run_room_for_part(r));
-  TRY(old_state_to_frames(r, force));
-  TRY(surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
-                  r->problem.side_gap));
-done:
-  memory_free(force);
-  return st;
+  PASS(new_contact_arrays(r));
+  PASS(run_room_for_part(r));
+  PASS(old_state_to_frames(r, force));
+  return surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
+                     r->problem.side_gap);
 }

@@ -94,9 +94,6 @@ const coarser_state *coarser_at(const coarser *c, double t, int next) {
 double coarser_time(const coarser_state *x) { return x->t; }
 int coarser_nodes(const coarser_state *x) { return x->n; }
 
-/* ---- nearest nodes -------------------------------------------------------
- */
-
 typedef struct along {
   double at; /* m, along the longest extent */
   int id;
