@@ -1,6 +1,4 @@
-/*
- * Error of a solution of the contact solver, and uniqueness of the solution.
- */
+/* Error of a solution of the contact solver, and uniqueness of the solution. */
 #ifndef PROTIS_ACCURACY_ACCURACY_H
 #define PROTIS_ACCURACY_ACCURACY_H
 

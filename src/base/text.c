@@ -1,6 +1,4 @@
-/*
- * Text for files and messages: numbers, columns, text from outside.
- */
+/* Text for files and messages: numbers, columns, text from outside. */
 #include "base/text.h"
 
 #include <ctype.h>

@@ -1,6 +1,4 @@
-/*
- * Choice of the reader, and its failure as a message of the deck.
- */
+/* Choice of the reader, and its failure as a message of the deck. */
 #include "base/file.h"
 #include "exchange/exchange.h"
 

@@ -1,6 +1,4 @@
-/*
- * What the readers of this folder share. Private to src/exchange.
- */
+/* What the readers of this folder share. Private to src/exchange. */
 #ifndef PROTIS_EXCHANGE_PARTS_H
 #define PROTIS_EXCHANGE_PARTS_H
 

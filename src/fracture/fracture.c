@@ -1,6 +1,4 @@
-/*
- * Points and factors: what the caller sees.
- */
+/* Points and factors: what the caller sees. */
 #include "fracture/fracture.h"
 
 #include "fracture/parts.h"

@@ -1,6 +1,4 @@
-/*
- * Coordinates that follow the front, and quadrature on lips that end at it.
- */
+/* Coordinates that follow the front, and quadrature on lips that end at it. */
 #include "fracture/parts.h"
 
 #include <math.h>

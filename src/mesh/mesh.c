@@ -1,6 +1,4 @@
-/*
- * The finished mesh: release, look-up of groups, measures, bodies.
- */
+/* The finished mesh: release, look-up of groups, measures, bodies. */
 #include "mesh/build.h"
 
 #include "base/memory.h"

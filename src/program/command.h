@@ -1,6 +1,4 @@
-/*
- * The command line of protis.
- */
+/* The command line of protis. */
 #ifndef PROTIS_COMMAND_H
 #define PROTIS_COMMAND_H
 

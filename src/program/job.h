@@ -1,6 +1,4 @@
-/*
- * One pass through the stages: deck, model, mesh, history, outputs.
- */
+/* One pass through the stages: deck, model, mesh, history, outputs. */
 #ifndef PROTIS_JOB_H
 #define PROTIS_JOB_H
 

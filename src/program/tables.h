@@ -1,6 +1,4 @@
-/*
- * Tables of a finished job for other programs: JOB.dat as csv or tsv.
- */
+/* Tables of a finished job for other programs: JOB.dat as csv or tsv. */
 #ifndef PROTIS_TABLES_H
 #define PROTIS_TABLES_H
 

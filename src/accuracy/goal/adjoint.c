@@ -1,6 +1,4 @@
-/*
- * The adjoint of a contact problem at its solution (goal.h).
- */
+/* The adjoint of a contact problem at its solution (goal.h). */
 #include "accuracy/goal/goal.h"
 
 #include "accuracy/accuracy.h"

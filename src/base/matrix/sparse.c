@@ -1,6 +1,4 @@
-/*
- * A sparse matrix of square blocks (sparse.h).
- */
+/* A sparse matrix of square blocks (sparse.h). */
 #include "base/sparse.h"
 
 #include <string.h>

@@ -1,6 +1,4 @@
-/*
- * What goals take from the stress intensity factors of the cracks.
- */
+/* What goals take from the stress intensity factors of the cracks. */
 #ifndef PROTIS_CONTACT_EFFECT_CRACKS_H
 #define PROTIS_CONTACT_EFFECT_CRACKS_H
 

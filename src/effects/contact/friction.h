@@ -1,6 +1,4 @@
-/*
- * What friction takes from the nonlocal average.
- */
+/* What friction takes from the nonlocal average. */
 #ifndef PROTIS_CONTACT_EFFECT_FRICTION_H
 #define PROTIS_CONTACT_EFFECT_FRICTION_H
 

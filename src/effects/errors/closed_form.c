@@ -1,6 +1,4 @@
-/*
- * *REFERENCE: the true error of each increment against a closed form.
- */
+/* *REFERENCE: the true error of each increment against a closed form. */
 #include "accuracy/exact_error.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"

@@ -1,6 +1,4 @@
-/*
- * What the error of the mesh shares with the errors of goals.
- */
+/* What the error of the mesh shares with the errors of goals. */
 #ifndef PROTIS_EFFECTS_ERRORS_MESH_H
 #define PROTIS_EFFECTS_ERRORS_MESH_H
 

@@ -1,6 +1,4 @@
-/*
- * Release of a raw mesh; tables of ids.
- */
+/* Release of a raw mesh; tables of ids. */
 #include "mesh/msh/raw_mesh.h"
 
 #include "base/memory.h"

@@ -1,6 +1,4 @@
-/*
- * The scanner. Lines are counted only when a failure names one.
- */
+/* The scanner. Lines are counted only when a failure names one. */
 #include "base/file.h"
 #include "mesh/msh/scan.h"
 

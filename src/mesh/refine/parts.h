@@ -1,6 +1,4 @@
-/*
- * Sizes, surfaces and cells of a refinement. Inside src/mesh/refine only.
- */
+/* Sizes, surfaces and cells of a refinement. Inside src/mesh/refine only. */
 #ifndef PROTIS_REFINE_PARTS_H
 #define PROTIS_REFINE_PARTS_H
 

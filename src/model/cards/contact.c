@@ -1,6 +1,4 @@
-/*
- * Cards of the contact: rigid obstacles, contact pairs, friction laws.
- */
+/* Cards of the contact: rigid obstacles, contact pairs, friction laws. */
 #include "model/cards/cards.h"
 
 #include "base/memory.h"

@@ -1,6 +1,4 @@
-/*
- * Supports, loads and initial conditions.
- */
+/* Supports, loads and initial conditions. */
 #include "base/memory.h"
 #include "model/cards/cards.h"
 

@@ -1,6 +1,4 @@
-/*
- * Cards of the model: title, units, mesh, sections, amplitudes, time points.
- */
+/* Cards of the model: title, units, mesh, sections, amplitudes, time points. */
 #include "model/cards/cards.h"
 
 #include "base/memory.h"

@@ -1,6 +1,4 @@
-/*
- * Nodal fields: $NodeData of gmsh, or two datasets of HDF5.
- */
+/* Nodal fields: $NodeData of gmsh, or two datasets of HDF5. */
 #include "model/field/field.h"
 
 #include "base/memory.h"

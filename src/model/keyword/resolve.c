@@ -1,6 +1,4 @@
-/*
- * Names to ids once all cards are read.
- */
+/* Names to ids once all cards are read. */
 #include "base/memory.h"
 #include "mesh/msh/geo.h"
 #include "model/keyword/keyword.h"

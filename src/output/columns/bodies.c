@@ -1,6 +1,4 @@
-/*
- * Columns of the nodes and of the elements.
- */
+/* Columns of the nodes and of the elements. */
 #include "run/column_row.h"
 
 #include <math.h>
