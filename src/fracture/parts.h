@@ -59,6 +59,18 @@ typedef struct elasticity {
   double G;     /* shear modulus, Pa; 0: not isotropic */
 } elasticity;
 
+/*
+ * Fields of the tip of a crack in a plane (Williams, J. Appl. Mech. 24, 1957):
+ * u[3] and its gradient d[i][l] = du_i/dx_l of K = 1 in a mode (0 .. 2), at x1
+ * ahead of the tip and x2 above the crack; on the lips x2 is +0.0 above and
+ * -0.0 below.
+ *
+ *   kappa  3 - 4 nu (plane strain), (3 - nu)/(1 + nu) (plane stress)
+ *   G      shear modulus, Pa
+ */
+void williams_field(int mode, double kappa, double G, const double x[2],
+                    double u[3], double d[3][2]);
+
 typedef struct auxiliary { /* of K = 1 */
   field_tensor d, s, e;    /* du_i/dx_l; stress; strain by Hooke's law */
   field_tensor X;          /* slope along e1 of what e lacks to be that of d */
