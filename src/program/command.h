@@ -26,4 +26,16 @@ int command_read(int argc, char **argv, command *c, int *exit_code);
 status command_apply(command *c, message_log *log);
 void command_free(command *c);
 
+/*
+ * tables.c, protis JOB --table NAME[:last|:all]: all blocks of that name in
+ * JOB.dat as one table on stdout, a header and a row a line: step, increment,
+ * time, group (if some have one), contact (if they have it), then the other
+ * columns. A column that a block does not have is empty there. Numbers as they
+ * stand.
+ *
+ * Errors: ERR_FILE (no JOB.dat, or stdout cannot be written), ERR_DECK (no such
+ * table; the message names those there are), ERR_MEMORY.
+ */
+status tables_print(const command *c);
+
 #endif

@@ -29,7 +29,7 @@
  * that it needs for itself. The passes of its target cost that of the deck and
  * two like the last one.
  */
-#include "program/forecast.h"
+#include "program/job.h"
 #include "program/aims.h"
 #include "effects/rows.h"
 

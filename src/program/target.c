@@ -10,7 +10,7 @@
  * what gmsh costs to load, the rest like a power of them, 1.2 in the plane and
  * 1.75 in space, measured with the nested dissection of condense.
  */
-#include "program/target.h"
+#include "program/job.h"
 
 #include "program/aims.h"
 #include "accuracy/space.h"

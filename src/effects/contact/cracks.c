@@ -5,9 +5,9 @@
  * good to some percent.
  */
 #include "base/memory.h"
-#include "effects/contact/cracks.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 #include "run/history/loop.h"
 

@@ -7,11 +7,10 @@
  * Any increment may be cut, so that each is one of several: the position of
  * stick is always found from the last equilibrium.
  */
-#include "effects/contact/friction.h"
-
 #include "base/memory.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 #include "run/column_row.h"
 

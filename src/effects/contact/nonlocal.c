@@ -3,11 +3,10 @@
  * it (CPR98, 2.7), and friction confined to the nodes that touch. Averages are
  * kept while surface and options are unchanged.
  */
-#include "effects/contact/friction.h"
-
 #include "base/memory.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 
 #include <string.h>

@@ -6,6 +6,7 @@
 #include "base/timer.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 #include "run/run.h"
 #include "run/column_row.h"

@@ -18,10 +18,10 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "effects/errors/mesh.h"
 #include "effects/goal/parts.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 
 #include <cblas.h>
 #include <math.h>

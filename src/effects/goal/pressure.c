@@ -20,6 +20,7 @@
  * with x0 at three quarters from the middle to a (Hertz: .0016 a too much).
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "effects/goal/parts.h"
 
 #include <lapacke.h>
@@ -427,12 +428,6 @@ typedef struct side {
   int v[2]; /* mesh nodes, ascending */
 } side;
 
-static int by_ends(const void *a_, const void *b_) {
-  const side *a = a_, *b = b_;
-  if (a->v[0] != b->v[0]) return a->v[0] < b->v[0] ? -1 : 1;
-  return (a->v[1] > b->v[1]) - (a->v[1] < b->v[1]);
-}
-
 /* Sides of the faces of a group, sorted; new. */
 static status sides_of(const mesh *m, const mesh_group *of, side **out) {
   PASS_NEW(*out, 3 * of->n_item);
@@ -442,7 +437,7 @@ static status sides_of(const mesh *m, const mesh_group *of, side **out) {
       const int p = v[a], q = v[(a + 1) % 3];
       (*out)[3 * k + a] = (side){{p < q ? p : q, p < q ? q : p}};
     }
-  qsort(*out, 3 * (size_t)of->n_item, sizeof **out, by_ends);
+  qsort(*out, 3 * (size_t)of->n_item, sizeof **out, number_pair_order);
   return OK;
 }
 
@@ -493,7 +488,8 @@ static status look_round(const run *r, const goal_card *g, double radius,
   *out = (rim){0, 0.0};
   for (int k = 0, last; k < n; k = last) {
     const int *v = e[k].v;
-    for (last = k + 1; last < n && by_ends(e + k, e + last) == 0;) ++last;
+    for (last = k + 1; last < n && number_pair_order(e + k, e + last) == 0;)
+      ++last;
     if (!is_near(r, v[0], w, radius) && !is_near(r, v[1], w, radius)) continue;
     double length = 0.0;
     for (int c = 0; c < 3; ++c)

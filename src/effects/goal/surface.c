@@ -3,6 +3,7 @@
  * changes, or it is closed at its border, where stresses may be infinite.
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "effects/goal/parts.h"
 
 #include <math.h>
@@ -174,19 +175,13 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
   }
 }
 
-static int by_nodes(const void *a_, const void *b_) {
-  const contact_edge *a = a_, *b = b_;
-  if (a->a != b->a) return a->a < b->a ? -1 : 1;
-  return (a->b > b->b) - (a->b < b->b);
-}
-
 /* 1: edge k of the sorted edges of all faces is of one face, and not on a plane
  * of symmetry. */
 static int is_border(const run *r, const int *where, const goal_surface *s,
                      int k) {
   const contact_edge *e = &s->edge[k];
-  if (k > 0 && by_nodes(e - 1, e) == 0) return 0;
-  if (k < s->n_edge - 1 && by_nodes(e, e + 1) == 0) return 0;
+  if (k > 0 && number_pair_order(e - 1, e) == 0) return 0;
+  if (k < s->n_edge - 1 && number_pair_order(e, e + 1) == 0) return 0;
   return where[e->a] < 0 || where[e->b] < 0 ||
          !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
 }
@@ -221,7 +216,7 @@ static status mark_front(const mesh *m, goal_surface *s) {
 static void unite_edges(goal_surface *s) {
   int n = 0;
   for (int k = 0; k < s->n_edge; ++k)
-    if (n == 0 || by_nodes(&s->edge[n - 1], &s->edge[k]) != 0)
+    if (n == 0 || number_pair_order(&s->edge[n - 1], &s->edge[k]) != 0)
       s->edge[n++] = s->edge[k];
     else
       s->edge[n - 1].weight += s->edge[k].weight;
@@ -258,7 +253,7 @@ status goal_surface_new(const run *r, goal_surface *s) {
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   if (s->n_edge > 0)
-    qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, by_nodes);
+    qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, number_pair_order);
   mark_border(r, where, seen, s);
   PASS(mark_front(m, s));
   unite_edges(s);
