@@ -147,9 +147,7 @@ static status new_cracks(run *r, crack_state *own) {
 }
 
 static status cracks_new(run *r, void **self) {
-  crack_state *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  crack_state *own = *self;
   PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped);
   PASS_NEW(own->area, r->msh->n_node);
@@ -172,12 +170,11 @@ static status cracks_copy(const run *r, const void *of, run *copy,
 
 static void release(void *self) {
   crack_state *own = self;
-  if (own == NULL) return;
   for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
     fracture_free(own->of[i]);
   RELEASE(own->of, own->elastic, own->rate, own->tips, own->found,
-          own->materials, own->sigma, own->traction, own->lumped, own->area);
-  memory_free(own);
+          own->materials, own->sigma, own->traction, own->lumped, own->area,
+          own->shift);
 }
 
 /* ---- an increment -------------------------------------------------------- */
@@ -532,6 +529,7 @@ const effect_ops cracks_effect = {.name = "stress intensity factors",
                                   .required = requires_factors,
                                   .expected = expected,
                                   .table = {PRINT_SIF, PER_TIP},
+                                  .size = sizeof(crack_state),
                                   .on.create = cracks_new,
                                   .on.due = factors_due,
                                   .on.accept = find_factors,

@@ -50,18 +50,7 @@ static void free_arrays(balance *b) {
   *b = (balance){0};
 }
 
-static void release(void *self) {
-  if (self != NULL) free_arrays(self);
-  memory_free(self);
-}
-
-static status balance_new(run *r, void **self) {
-  balance *b = NULL;
-  (void)r;
-  PASS_NEW(b, 1);
-  *self = b;
-  return OK;
-}
+static void release(void *self) { free_arrays(self); }
 
 static status begin_step(run *r, void *self) {
   balance *b = self;
@@ -239,7 +228,7 @@ const effect_ops balance_effect = {.name = "balance",
                                    .bit = NO_BIT,
                                    .required = requires_balance,
                                    .own = STAGE_NONE,
-                                   .on.create = balance_new,
+                                   .size = sizeof(balance),
                                    .on.begin_step = begin_step,
                                    .on.solve = solve,
                                    .on.accept = learn,

@@ -300,14 +300,6 @@ static status products(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static status checked_new(run *r, void **self) {
-  checked *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *self = own;
-  return OK;
-}
-
 static status begin_step(run *r, void *self) {
   (void)r;
   ((checked *)self)->jumps = 0;
@@ -333,10 +325,7 @@ static status keep(run *r, void *self, archive *a) {
 }
 
 static void release(void *self) {
-  checked *own = self;
-  if (own == NULL) return;
-  solution_set_free(&own->solutions);
-  memory_free(own);
+  solution_set_free(&((checked *)self)->solutions);
 }
 
 /* The hooks enter the stage themselves, where there is something to do. */
@@ -346,7 +335,7 @@ const effect_ops second_solutions_effect = {.name = "second solutions, jumps",
                                             .expected = products,
                                             .own = STAGE_NONE,
                                             .more = {STAGE_CHECK},
-                                            .on.create = checked_new,
+                                            .size = sizeof(checked),
                                             .on.begin_step = begin_step,
                                             .on.examine = look_for_jump,
                                             .on.accept = find_others,

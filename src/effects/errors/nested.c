@@ -30,10 +30,7 @@ static void free_arrays(nested *x) {
   *x = (nested){.missed = -1};
 }
 
-static void release(void *self) {
-  if (self != NULL) free_arrays(self);
-  memory_free(self);
-}
+static void release(void *self) { free_arrays(self); }
 
 static void forget(run *r, void *self) {
   r->solving.start_u = r->solving.start_r = NULL;
@@ -41,11 +38,8 @@ static void forget(run *r, void *self) {
 }
 
 static status nested_new(run *r, void **self) {
-  nested *x = NULL;
   (void)r;
-  PASS_NEW(x, 1);
-  x->missed = -1;
-  *self = x;
+  ((nested *)*self)->missed = -1;
   return OK;
 }
 
@@ -153,6 +147,7 @@ const effect_ops nested_effect = {.name = "nested start",
                                   .bit = NO_BIT,
                                   .required = requires_start,
                                   .own = STAGE_NONE,
+                                  .size = sizeof(nested),
                                   .on.create = nested_new,
                                   .on.pose = pose,
                                   .on.accept = compare,

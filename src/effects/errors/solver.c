@@ -33,14 +33,6 @@ static int choose_inverse(run *r, double *diagonal, inverse_energy *out) {
 }
 
 /* *cpu: s, spent so far. */
-static status cpu_new(run *r, void **cpu) {
-  double *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *cpu = own;
-  return OK;
-}
-
 static status estimate(run *r, void *self) {
   solver_error found = {.norm = NAN, .why = weakly_held};
   inverse_energy inverse;
@@ -106,6 +98,5 @@ const effect_ops solver_error_effect = {.name = "error of solver",
                                         .columns = columns,
                                         .n_column = COLUMNS(columns),
                                         .of_state = 1,
-                                        .on.create = cpu_new,
-                                        .on.estimate = estimate,
-                                        .on.release = memory_free};
+                                        .size = sizeof(double),
+                                        .on.estimate = estimate};

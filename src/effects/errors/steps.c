@@ -273,18 +273,7 @@ static status compare(run *r, void *self) {
 
 /* ---- its state ---------------------------------------------------------- */
 
-static status paths_new(run *r, void **self) {
-  paths *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *self = own;
-  return OK;
-}
-
-static void release(void *self) {
-  if (self != NULL) path_free(((paths *)self)->path);
-  memory_free(self);
-}
+static void release(void *self) { path_free(((paths *)self)->path); }
 
 static void forget(run *r, void *self) {
   (void)r;
@@ -467,7 +456,7 @@ const effect_ops time_error_effect = {.name = "error of steps",
                                       .expected = expected,
                                       .own = STAGE_TIME_ERROR,
                                       .inside = 1,
-                                      .on.create = paths_new,
+                                      .size = sizeof(paths),
                                       .on.begin_step = begin_step,
                                       .on.make_step = march,
                                       .on.attempt = try_path,

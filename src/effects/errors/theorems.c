@@ -220,11 +220,8 @@ static status expected(const plan_sizes *s, effect_work *w) {
 }
 
 static status checked_new(run *r, void **self) {
-  checked *own = NULL;
   (void)r;
-  PASS_NEW(own, 1);
-  *self = own;
-  return theorems_new(&own->at_work);
+  return theorems_new(&((checked *)*self)->at_work);
 }
 
 static int due(const run *r) {
@@ -235,12 +232,7 @@ static void show(const void *self, state *s) {
   s->errors.theorems = ((const checked *)self)->report;
 }
 
-static void release(void *self) {
-  checked *own = self;
-  if (own == NULL) return;
-  theorems_free(own->at_work);
-  memory_free(own);
-}
+static void release(void *self) { theorems_free(((checked *)self)->at_work); }
 
 const effect_ops theorems_effect = {.name = "theory checks",
                                     .bit = EFFECT_BIT_THEORY,
@@ -248,6 +240,7 @@ const effect_ops theorems_effect = {.name = "theory checks",
                                     .expected = expected,
                                     .own = STAGE_THEORY,
                                     .shadow = 1,
+                                    .size = sizeof(checked),
                                     .on.create = checked_new,
                                     .on.due = due,
                                     .on.initial = see_start,

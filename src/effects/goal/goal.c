@@ -48,9 +48,7 @@ typedef struct goal_state {
 } goal_state;
 
 static status goals_new(run *r, void **self) {
-  goal_state *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  goal_state *own = *self;
   own->n = r->m->n.goal;
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
@@ -63,10 +61,9 @@ static status goals_new(run *r, void **self) {
 
 static void release(void *self) {
   goal_state *own = self;
-  if (own == NULL) return;
   space_recovery_free(own->recovery);
   RELEASE(own->before.u, own->before.edge, own->before.sum, own->before.band,
-          own->product, own->result, own);
+          own->product, own->result);
 }
 
 /* ---- what the estimate covers -------------------------------------------- */
@@ -496,6 +493,7 @@ const effect_ops goals_effect = {.name = "errors of goals",
                                  .required = requires_goals,
                                  .expected = expected,
                                  .table = {PRINT_GOALS, PER_GOAL},
+                                 .size = sizeof(goal_state),
                                  .on.create = goals_new,
                                  .on.accept = find_goals,
                                  .on.show = show,
