@@ -6,13 +6,11 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "fem/fem.h"
-#include "program/forecast.h"
 #include "program/inform.h"
 #include "program/job.h"
 #include "program/lock.h"
 #include "program/restart.h"
-#include "program/tables.h"
-#include "program/target.h"
+#include "program/command.h"
 
 #include <fcntl.h>
 #include <stdio.h>

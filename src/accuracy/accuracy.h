@@ -1,6 +1,4 @@
-/*
- * Error of a solution of the contact solver, and uniqueness of the solution.
- */
+/* Error of a solution of the contact solver, and uniqueness of the solution. */
 #ifndef PROTIS_ACCURACY_ACCURACY_H
 #define PROTIS_ACCURACY_ACCURACY_H
 
@@ -93,8 +91,6 @@ void dense_inverse_fill(dense_inverse *d, double *N, int *done);
 /* v = inv(M) x; of a semidefinite M the v that leaves n_kernel unknowns at 0,
  * whose force then balances x. v[m] may be x. */
 void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
-
-/* ---- private to this folder --------------------------------------- */
 
 /* Admissible pair: displacement v and force q of the contact related by its
  * laws. */

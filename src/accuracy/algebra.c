@@ -148,10 +148,7 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
 /* ---- the admissible pair ------------------------------------------------ */
 
 status pair_new(int n, int m, pair *p) {
-  PASS_NEW(p->v, m);
-  PASS_NEW(p->q, m);
-  PASS_NEW(p->d, m);
-  PASS_NEW(p->t, m);
+  PASS_NEW_REALS(m, &p->v, &p->q, &p->d, &p->t);
   PASS_NEW(p->slides, n);
   return OK;
 }
@@ -272,51 +269,46 @@ static void no_bound(solver_error *e, const char *why) {
 static status find_rate(const contact_problem *cp,
                         const contact_problem *stiffness, const double *u,
                         const double *r, known_rate *known, solver_error *e) {
-  status st = OK;
   const contact_problem *of = contact_has_stiffness(cp) ? cp : stiffness;
-  if (cp->B == NULL) goto done;
+  if (cp->B == NULL) return OK;
   if (of == NULL) {
     no_bound(e, "Coulomb friction, and the compliance is singular");
-    goto done;
+    return OK;
   }
-  TRY(contraction_rate(of, u, r, known, &e->rate));
+  PASS(contraction_rate(of, u, r, known, &e->rate));
   if (!(e->rate < 1.0)) no_bound(e, "the sliding limit does not contract here");
-done:
-  return st;
+  return OK;
 }
 
 status solver_error_bound(const contact_problem *cp,
                           const inverse_energy *inverse, const double *u,
                           const double *r, known_rate *known,
                           solver_error *error) {
-  status st = OK;
-  pair p = {0};
+  ENDS_BY(pair_free) pair p = {0};
   double square = 0.0;
   int balanced = 1;
   *error = (solver_error){0};
-  if (cp->m == 0) goto done;
-  TRY(find_rate(cp, inverse->stiffness, u, r, known, error));
-  if (error->why != NULL) goto done;
+  if (cp->m == 0) return OK;
+  PASS(find_rate(cp, inverse->stiffness, u, r, known, error));
+  if (error->why != NULL) return OK;
   if (inverse->condition > 1.0 / DBL_EPSILON) {
     no_bound(error, "without contact the body is weakly held");
-    goto done;
+    return OK;
   }
-  TRY(pair_new(cp->n, cp->m, &p));
+  PASS(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   pair_defect(cp, &p);
   if (inverse->n_kernel > 0) {
-    TRY(pair_balance(cp, inverse, &p, &balanced));
+    PASS(pair_balance(cp, inverse, &p, &balanced));
     if (!balanced) {
       no_bound(error, "the contact forces do not balance the load");
-      goto done;
+      return OK;
     }
   }
-  TRY(inverse->square(inverse->ctx, p.d, &square));
+  PASS(inverse->square(inverse->ctx, p.d, &square));
   error->norm = sqrt(square) + pair_rounding(cp, inverse, &p);
   error->norm /= 1.0 - error->rate;
   error->norm += pair_distance(cp, u, r, &p, p.d);
   if (!(error->norm < HUGE_VAL)) no_bound(error, "the answer is not a number");
-done:
-  pair_free(&p);
-  return st;
+  return OK;
 }

@@ -70,9 +70,7 @@ static status map_new(const contact_problem *cp, linear_map *s) {
   if (cp->op == NULL) return OK;
   PASS_NEW(s->known, cp->m);
   PASS_NEW(s->added, cp->dim * cp->m);
-  PASS_NEW(s->b, cp->m);
-  PASS_NEW(s->full, cp->m);
-  PASS_NEW(s->Ax, cp->m);
+  PASS_NEW_REALS(cp->m, &s->b, &s->full, &s->Ax);
   return OK;
 }
 
@@ -292,16 +290,15 @@ static signed char state_of(const linear_map *s, int dof) {
 /* The known rate of these states comes first, *same = 1; or they replace the
  * least recently used rate. */
 static status compare(const linear_map *s, known_rate *k, int *same) {
-  status st = OK;
   const size_t m = (size_t)s->cp->m;
-  signed char *now = NULL;
+  OWNED signed char *now = NULL;
   int at = 0;
   if (k->state == NULL || k->m != s->cp->m) {
     known_rate_forget(k);
-    NEW(k->state, KNOWN_RATES * m);
+    PASS_NEW(k->state, KNOWN_RATES * m);
     k->m = s->cp->m;
   }
-  NEW(now, m);
+  PASS_NEW(now, m);
   for (int dof = 0; dof < s->cp->m; ++dof) now[dof] = state_of(s, dof);
   while (at < k->n && memcmp(k->state + m * (size_t)at, now, m) != 0) ++at;
   *same = at < k->n;
@@ -312,9 +309,7 @@ static status compare(const linear_map *s, known_rate *k, int *same) {
   memmove(k->rate + 1, k->rate, (size_t)at * sizeof *k->rate);
   memcpy(k->state, now, m);
   k->rate[0] = rate;
-done:
-  memory_free(now);
-  return st;
+  return OK;
 }
 
 /* Mean factor of the last passes of many, independent of the start. */
@@ -338,15 +333,12 @@ static status measure_limit(linear_map *s, const double *r, double *rate) {
 
 status contraction_limit(const contact_problem *cp, const double *u,
                          const double *r, double *rate) {
-  status st = OK;
-  linear_map s = {0};
-  TRY(map_new(cp, &s));
+  ENDS_BY(map_free) linear_map s = {0};
+  PASS(map_new(cp, &s));
   set_state(&s, u, r);
-  TRY(measure(&s, r, rate));
-  if (*rate > 0.0 && *rate < HUGE_VAL) TRY(measure_limit(&s, r, rate));
-done:
-  map_free(&s);
-  return st;
+  PASS(measure(&s, r, rate));
+  if (*rate > 0.0 && *rate < HUGE_VAL) PASS(measure_limit(&s, r, rate));
+  return OK;
 }
 
 status contraction_rate(const contact_problem *cp, const double *u,

@@ -389,11 +389,10 @@ static status check_size(const contact_problem *cp) {
 status solutions_by_statuses(const contact_problem *cp, double tol,
                              const double *u, const double *r,
                              solution_set *out) {
-  status st = OK;
-  search *s = NULL;
+  OWNED search *s = NULL;
   int no;
-  TRY(check_size(cp));
-  NEW(s, 1);
+  PASS(check_size(cp));
+  PASS_NEW(s, 1);
   s->cp = cp;
   s->tol = tol;
   s->force = contact_scale(cp);
@@ -405,10 +404,7 @@ status solutions_by_statuses(const contact_problem *cp, double tol,
       s->base[dof] = cp->f[dof] / stiffness(s, dof, dof);
   }
   contact_reaction(cp, s->base, s->rho0);
-  TRY(solution_set_add(cp, tol, u, r, out, &no));
+  PASS(solution_set_add(cp, tol, u, r, out, &no));
   if (no > 0) out->found[no - 1].facts.patterns = 0;
-  TRY(descend(s, 0));
-done:
-  memory_free(s);
-  return st;
+  return descend(s, 0);
 }

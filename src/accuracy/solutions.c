@@ -40,8 +40,6 @@ void solution_set_free(solution_set *s) {
   *s = (solution_set){0};
 }
 
-/* ---- distance ----------------------------------------------------------- */
-
 /* x' M x of the difference of two states, b NULL: of one; t[2m] workspace. */
 static double energy(const contact_problem *cp, const double *a,
                      const double *b, double *t) {
@@ -70,8 +68,6 @@ static status find_distance(const contact_problem *cp, const double *a,
   return OK;
 }
 
-/* ---- adding ------------------------------------------------------------- */
-
 static void find_facts(const contact_problem *cp, solution *s) {
   solution_facts *f = &s->facts;
   *f = (solution_facts){.residual = contact_residual(cp, s->u, s->r),
@@ -93,8 +89,7 @@ static status copy_solution(const contact_problem *cp, const double *u,
   status st = OK;
   size_t bytes = (size_t)cp->m * sizeof *u;
   *s = (solution){0};
-  NEW(s->u, cp->m);
-  NEW(s->r, cp->m);
+  NEW_REALS(cp->m, &s->u, &s->r);
   NEW(s->status, cp->n);
   memcpy(s->u, u, bytes);
   memcpy(s->r, r, bytes);
@@ -181,14 +176,13 @@ typedef struct trial {
 static status attempt(const contact_problem *cp, double tol,
                       contact_solver *solver, const char *name, start kind,
                       const trial *x, solution_set *s) {
-  status st = OK;
   double *u = x->u, *r = x->r;
   solver_report rep;
   int no = 0;
   set_start(cp, kind, u, r);
-  TRY(contact_solve(solver, cp, NULL, u, r, &rep));
-  if (rep.outcome > 0) TRY(solution_set_add(cp, tol, u, r, s, &no));
-  GROW(s->attempts, s->n_attempt, s->cap_attempt);
+  PASS(contact_solve(solver, cp, NULL, u, r, &rep));
+  if (rep.outcome > 0) PASS(solution_set_add(cp, tol, u, r, s, &no));
+  PASS_GROW(s->attempts, s->n_attempt, s->cap_attempt);
   s->attempts[s->n_attempt++] =
       (solution_attempt){.solver = name,
                          .family = solver_family(name),
@@ -196,8 +190,7 @@ static status attempt(const contact_problem *cp, double tol,
                          .outcome = rep.outcome,
                          .residual = rep.residual,
                          .solution_no = no};
-done:
-  return st;
+  return OK;
 }
 
 static int can_solve(const contact_problem *cp, const solver_ops *ops) {
@@ -237,8 +230,7 @@ status solutions_by_solvers(const contact_problem *cp, double tol,
   status st = OK;
   trial x = {0};
   int no = 0;
-  NEW(x.u, cp->m);
-  NEW(x.r, cp->m);
+  NEW_REALS(cp->m, &x.u, &x.r);
   TRY(solution_set_add(cp, tol, u, r, out, &no));
   GROW(out->attempts, out->n_attempt, out->cap_attempt);
   out->attempts[out->n_attempt++] =

@@ -61,35 +61,28 @@ static int add_nodes(const words *w, const contact_surface *s, double *value) {
   return counted;
 }
 
-/* ---- misfit ------------------------------------------------------------- */
-
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size) {
-  status st = OK;
   words w = {text, size};
-  pair p = {0};
-  double *value = NULL, scale = contact_scale(cp), most = 0.0;
+  ENDS_BY(pair_free) pair p = {0};
+  OWNED double *value = NULL;
+  double scale = contact_scale(cp), most = 0.0;
   text[0] = '\0';
-  NEW(value, cp->n);
-  TRY(pair_new(cp->n, cp->m, &p));
+  PASS_NEW(value, cp->n);
+  PASS(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   for (int dof = 0; dof < cp->m; ++dof) {
     double defect = fabs(p.q[dof] - r[dof]);
     value[dof / cp->dim] = fmax(value[dof / cp->dim], defect);
-    if (isnan(defect)) goto done;
+    if (isnan(defect)) return OK;
     most = fmax(most, defect);
   }
-  if (!(most > MISFIT * scale)) goto done;
+  if (!(most > MISFIT * scale)) return OK;
   add(&w, "the contact conditions are violated most at");
   add_nodes(&w, surface, value);
-done:
-  pair_free(&p);
-  memory_free(value);
-  return st;
+  return OK;
 }
-
-/* ---- motion without resistance ---------------------------------------- */
 
 /* v[m]: the motion; *outcome of complementary pivoting. */
 static status find_motion(const contact_problem *cp, double *v, outcome *end) {
@@ -109,8 +102,7 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
     own.A = A;
     own.op = NULL;
   }
-  NEW(u, cp->m);
-  NEW(r, cp->m);
+  NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
   TRY(lemke->setup(&own, param, &work));
   TRY(lemke->solve(&own, param, work, &control, u, r, &rep));
@@ -132,8 +124,7 @@ static status add_moving(const words *w, const verdict_scene *s,
   int dim = s->cp->dim, opening = 0;
   OWNED double *open = NULL, *slide = NULL;
   double most = 0.0;
-  PASS_NEW(open, s->cp->n);
-  PASS_NEW(slide, s->cp->n);
+  PASS_NEW_REALS(s->cp->n, &open, &slide);
   for (int dof = 0; dof < s->cp->m; ++dof) most = fmax(most, fabs(v[dof]));
   for (int i = 0; i < s->cp->n; ++i) {
     open[i] = fmax(0.0, -v[dim * i]);
@@ -215,8 +206,7 @@ static status add_drive(const words *w, const verdict_scene *s,
                         const double *v) {
   size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
   OWNED double *F = NULL, *u = NULL, *f_c = NULL;
-  PASS_NEW(F, n);
-  PASS_NEW(u, n);
+  PASS_NEW_REALS(n, &F, &u);
   PASS_NEW(f_c, s->cp->m);
   PASS(condense_load(s->c, F, NULL, f_c));
   PASS(condense_recover(s->c, v, u));

@@ -70,8 +70,6 @@ void file_sync_folder(const char *path) {
   close(fd);
 }
 
-/* ---- text files ---------------------------------------------------------- */
-
 char *text_path(const char *dir, const char *name, const char *suffix) {
   const char *slash = "";
   if (dir == NULL) dir = "";
@@ -185,6 +183,14 @@ done:
   }
   memory_free(aside);
   return st;
+}
+
+void file_leave(FILE **f) {
+  if (*f != NULL) fclose(*f);
+}
+
+void descriptor_leave(const int *fd) {
+  if (*fd >= 0) close(*fd);
 }
 
 /* Closing it does not say whether it could not grow before or now. */

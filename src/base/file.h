@@ -9,6 +9,8 @@
 
 #include "base/status.h"
 
+#include <stdio.h>
+
 /* A plain file below the folder (AT_FDCWD: the present one), opened without
  * waiting; -1 and the reason if it is none. */
 int file_descriptor(int folder, const char *path, int flags, const char **why);
@@ -19,6 +21,9 @@ int file_same(const char *a, const char *b);
  * target of the link; none is fine. ERR_FILE: it is neither, or cannot be
  * removed. */
 status file_clear(const char *path);
+/* Close what is open, of locals by ENDS_BY. */
+void file_leave(FILE **f);
+void descriptor_leave(const int *fd);
 /* Synchronise the folder of the file; best effort. */
 void file_sync_folder(const char *path);
 

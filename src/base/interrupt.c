@@ -111,8 +111,6 @@ const char *interrupt_name(void) {
   return file_seen ? file : "";
 }
 
-/* ---- ends by a fault -------------------------------------------- */
-
 static void say(const char *text) {
   ssize_t ignored = write(STDERR_FILENO, text, strlen(text));
   (void)ignored;

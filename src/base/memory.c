@@ -1,6 +1,4 @@
-/*
- * Counted allocation: a header of 16 bytes before each block keeps its size.
- */
+/* Counted allocation: a header of 16 bytes before each block keeps its size. */
 #include "base/memory.h"
 
 #include <SuiteSparse_config.h>

@@ -169,3 +169,14 @@ void number_text(double value, char text[NUMBER_TEXT_SIZE]) {
     if (number_real(text, &back) == NULL && back == value) return;
   }
 }
+
+int number_order(const void *a, const void *b) {
+  const int x = *(const int *)a, y = *(const int *)b;
+  return (x > y) - (x < y);
+}
+
+int number_pair_order(const void *a, const void *b) {
+  const int first = number_order(a, b);
+  return first != 0 ? first
+                    : number_order((const int *)a + 1, (const int *)b + 1);
+}

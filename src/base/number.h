@@ -18,4 +18,8 @@ int number_bare_exponent(const char *text);
 /* Fewest digits that number_real takes back exactly; a point in any locale. */
 void number_text(double value, char text[NUMBER_TEXT_SIZE]);
 
+/* For qsort and bsearch: an int; the two ints an item starts with. */
+int number_order(const void *a, const void *b);
+int number_pair_order(const void *a, const void *b);
+
 #endif

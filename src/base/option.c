@@ -1,6 +1,4 @@
-/*
- * Option tables: reading, writing, words of a choice, nearest word.
- */
+/* Option tables: reading, writing, words of a choice, nearest word. */
 #include "base/option.h"
 
 #include "base/number.h"

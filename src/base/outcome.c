@@ -1,6 +1,4 @@
-/*
- * Texts for the outcomes of an iteration.
- */
+/* Texts for the outcomes of an iteration. */
 #include "base/outcome.h"
 
 const char *outcome_text(outcome o) {

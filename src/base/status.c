@@ -1,6 +1,4 @@
-/*
- * The error record: one message and the functions that passed it up.
- */
+/* The error record: one message and the functions that passed it up. */
 #include "base/status.h"
 
 #include "base/text.h"

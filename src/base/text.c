@@ -1,6 +1,4 @@
-/*
- * Text for files and messages: numbers, columns, text from outside.
- */
+/* Text for files and messages: numbers, columns, text from outside. */
 #include "base/text.h"
 
 #include <ctype.h>
@@ -38,8 +36,6 @@ void text_wrap(FILE *f, const char *text, int indent) {
   }
   fputc('\n', f);
 }
-
-/* ---- text from outside --------------------------------------------------- */
 
 /* Well-formed UTF-8: first byte, and what the second may be (Unicode 3.9,
  * table 3-7); the bytes after those are 80..BF. */

@@ -1,6 +1,4 @@
-/*
- * CPU seconds and bytes by stage, with a small stack of open stages.
- */
+/* CPU seconds and bytes by stage, with a small stack of open stages. */
 #include "base/timer.h"
 
 #include "base/memory.h"

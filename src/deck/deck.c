@@ -1,6 +1,4 @@
-/*
- * The deck reader: cards, their parameters and records; the language cards.
- */
+/* The deck reader: cards, their parameters and records; the language cards. */
 #include "deck/deck.h"
 
 #include "base/memory.h"

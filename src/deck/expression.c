@@ -468,8 +468,7 @@ void expression_free(expression *e) {
   RELEASE(e->code, e);
 }
 
-/* ---- quantities: number or expression, times a table ----------------------
- */
+/* ---- quantities: number or expression, times a table --------------------- */
 
 double table_value(const value_table *p, const double x[3], double t) {
   if (p->n == 0)

@@ -130,8 +130,6 @@ void deck_free(deck *d) {
   memory_free(d);
 }
 
-/* ---- names: a hash table over deck.symbols ------------------------------- */
-
 static unsigned hash_name(const char *name, size_t n) {
   unsigned h = 2166136261u;
   for (size_t i = 0; i < n; ++i)

@@ -1,6 +1,5 @@
-/*
- * Choice of the reader, and its failure as a message of the deck.
- */
+/* Choice of the reader, and its failure as a message of the deck. */
+#include "base/file.h"
 #include "exchange/exchange.h"
 
 #include "base/memory.h"
@@ -144,21 +143,18 @@ static const unsigned char SIGNATURE[8] = {0x89, 'H',  'D',  'F',
 
 /* FCLIB if the file starts as HDF5 does. */
 static status type_of(const char *path, exchange_type *type) {
-  status st = OK;
   unsigned char start[sizeof SIGNATURE];
   const char *why = NULL;
-  FILE *f = input_stream(path, &why);
-  if (f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  ENDS_BY(file_leave) FILE *f = input_stream(path, &why);
+  if (f == NULL) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   errno = 0;
   size_t n = fread(start, 1, sizeof start, f);
-  if (ferror(f)) TRY(text_failed(path, "read", errno));
+  if (ferror(f)) PASS(text_failed(path, "read", errno));
   if (*type == EXCHANGE_BY_CONTENT)
     *type = n == sizeof start && memcmp(start, SIGNATURE, n) == 0
                 ? EXCHANGE_FCLIB
                 : EXCHANGE_LCP;
-done:
-  if (f != NULL) fclose(f);
-  return st;
+  return OK;
 }
 
 status exchange_read(const char *path, exchange_type type, const place *at,

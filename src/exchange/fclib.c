@@ -14,8 +14,7 @@
 
 static const double SPARSE_SHARE = 0.5; /* -, of the blocks, and of entries */
 
-/* ---- what both kinds have --------------------------------------------------
- */
+/* ---- what both kinds have ------------------------------------------------ */
 
 static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
 
@@ -166,23 +165,19 @@ static void set_problem(exchange_problem *p, int stiffness, int floating) {
   p->cp.floating = floating;
 }
 
-/* ---- local ----------------------------------------------------------------
- */
+/* ---- local --------------------------------------------------------------- */
 
 /* A matrix of given size, dense. */
 static status read_dense(const hdf5_source *s, const char *name, int rows,
                          int columns, double **a) {
-  status st = OK;
-  triplets t = {0};
-  TRY(triplets_read(s, name, &t));
+  ENDS_BY(triplets_free) triplets t = {0};
+  PASS(triplets_read(s, name, &t));
   if (t.rows != rows || t.columns != columns)
-    FAIL(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
-         s->path, name, t.rows, t.columns, rows, columns);
-  NEW(*a, (size_t)rows * (size_t)columns);
+    RAISE(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
+          s->path, name, t.rows, t.columns, rows, columns);
+  PASS_NEW(*a, (size_t)rows * (size_t)columns);
   triplets_dense(&t, *a);
-done:
-  triplets_free(&t);
-  return st;
+  return OK;
 }
 
 /* V, R and s, both matrices or none. */
@@ -204,40 +199,34 @@ static status read_constraints(const hdf5_source *s, int m, constraints *c) {
 }
 
 static status read_local(const hdf5_source *s, exchange_problem *p) {
-  status st = OK;
-  triplets W = {0};
-  constraints c = {0};
-  double *q = NULL;
+  ENDS_BY(triplets_free) triplets W = {0};
+  ENDS_BY(constraints_free) constraints c = {0};
+  OWNED double *q = NULL;
   p->form = "FCLIB, local";
-  TRY(triplets_size(s, LOCAL "/W", &W));
+  PASS(triplets_size(s, LOCAL "/W", &W));
   if (W.rows != W.columns)
-    FAIL(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
-         s->path, W.rows, W.columns);
-  TRY(set_size(s, LOCAL, W.rows, p));
-  TRY(triplets_read(s, LOCAL "/W", &W));
-  TRY(new_arrays(p));
-  TRY(read_vector(s, LOCAL "/vectors/q", p->m, &q));
-  TRY(read_friction(s, LOCAL "/vectors/mu", p));
+    RAISE(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
+          s->path, W.rows, W.columns);
+  PASS(set_size(s, LOCAL, W.rows, p));
+  PASS(triplets_read(s, LOCAL "/W", &W));
+  PASS(new_arrays(p));
+  PASS(read_vector(s, LOCAL "/vectors/q", p->m, &q));
+  PASS(read_friction(s, LOCAL "/vectors/mu", p));
   memcpy(p->load, q, (size_t)p->m * sizeof *q);
-  TRY(read_constraints(s, p->m, &c));
-  if (c.p == 0) TRY(take_blocks(p, &W));
+  PASS(read_constraints(s, p->m, &c));
+  if (c.p == 0) PASS(take_blocks(p, &W));
   if (p->blocks == NULL) {
-    TRY(new_matrix(s, LOCAL, p));
+    PASS(new_matrix(s, LOCAL, p));
     triplets_dense(&W, p->matrix);
-    TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
+    PASS(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
   }
   turn_signs(p);
   p->unknowns = p->m + c.p;
   set_problem(p, 0, 0);
-done:
-  triplets_free(&W);
-  constraints_free(&c);
-  memory_free(q);
-  return st;
+  return OK;
 }
 
-/* ---- global ---------------------------------------------------------------
- */
+/* ---- global -------------------------------------------------------------- */
 
 typedef struct global {
   triplets M, H, G;  /* G: equality constraints, or none */
@@ -377,69 +366,58 @@ static status part(const double *all, const double *vector, int size, int m,
  * hold the bodies. */
 static status reduce_held(const hdf5_source *s, const global *g,
                           const triplets *joined, double *all, double *vector) {
-  status st = OK;
   int usable = 0;
-  triplets held = {0};
-  double *f = NULL, stiff = 0.0;
-  TRY(reduce_global(&g->M, joined, g->f, all, vector, &usable));
-  if (usable) goto done;
-  TRY(springs_add(&g->M, &g->G, &stiff, &held));
-  NEW(f, g->M.rows);
+  ENDS_BY(triplets_free) triplets held = {0};
+  OWNED double *f = NULL;
+  double stiff = 0.0;
+  PASS(reduce_global(&g->M, joined, g->f, all, vector, &usable));
+  if (usable) return OK;
+  PASS(springs_add(&g->M, &g->G, &stiff, &held));
+  PASS_NEW(f, g->M.rows);
   memcpy(f, g->f, (size_t)g->M.rows * sizeof *f);
   for (long k = 0; k < g->G.n; ++k)
     f[g->G.row[k]] -= stiff * g->G.value[k] * g->b[g->G.column[k]];
-  TRY(reduce_global(&held, joined, f, all, vector, &usable));
-  if (!usable) TRY(reduce_any(s->path, &g->M, joined, g->f, all, vector));
-done:
-  triplets_free(&held);
-  memory_free(f);
-  return st;
+  PASS(reduce_global(&held, joined, f, all, vector, &usable));
+  if (!usable) PASS(reduce_any(s->path, &g->M, joined, g->f, all, vector));
+  return OK;
 }
 
 /* M v = H r + G l + f, G'v + b = 0: v is eliminated with (H, G) in the place of
  * H, which leaves constraints on r and l. */
 static status condense_constrained(const hdf5_source *s, const global *g,
                                    exchange_problem *p) {
-  status st = OK;
-  triplets joined = {0};
-  constraints c = {0};
-  double *all = NULL, *vector = NULL;
+  ENDS_BY(triplets_free) triplets joined = {0};
+  ENDS_BY(constraints_free) constraints c = {0};
+  OWNED double *all = NULL, *vector = NULL;
   int size = p->m + g->G.columns;
   if (size > MOST_UNKNOWNS)
-    FAIL(ERR_DECK,
-         "%s: " GLOBAL
-         " has %d unknowns and constraints; at most %d "
-         "can be solved",
-         s->path, size, (int)MOST_UNKNOWNS);
-  TRY(join(g, &joined));
-  NEW(all, (size_t)size * (size_t)size);
-  NEW(vector, size);
+    RAISE(ERR_DECK,
+          "%s: " GLOBAL
+          " has %d unknowns and constraints; at most %d "
+          "can be solved",
+          s->path, size, (int)MOST_UNKNOWNS);
+  PASS(join(g, &joined));
+  PASS_NEW(all, (size_t)size * (size_t)size);
+  PASS_NEW(vector, size);
   memcpy(vector, g->w, (size_t)p->m * sizeof *vector);
   memcpy(vector + p->m, g->b, (size_t)g->G.columns * sizeof *vector);
-  TRY(reduce_held(s, g, &joined, all, vector));
-  TRY(part(all, vector, size, p->m, p, &c));
-  TRY(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
+  PASS(reduce_held(s, g, &joined, all, vector));
+  PASS(part(all, vector, size, p->m, p, &c));
+  PASS(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
   turn_signs(p);
   set_problem(p, 0, 0);
-done:
-  triplets_free(&joined);
-  constraints_free(&c);
-  RELEASE(all, vector);
-  return st;
+  return OK;
 }
 
 /* W in blocks and q without a matrix of all entries; p->blocks NULL: not
  * possible, or most of it is not zero. */
 static status condense_bodies(const global *g, exchange_problem *p) {
-  status st = OK;
-  triplets W = {0};
+  ENDS_BY(triplets_free) triplets W = {0};
   int usable = 0;
   memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
-  TRY(reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
-  if (usable) TRY(take_blocks(p, &W));
-done:
-  triplets_free(&W);
-  return st;
+  PASS(reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
+  if (usable) PASS(take_blocks(p, &W));
+  return OK;
 }
 
 /* W and q, or, of a symmetric and singular M, A and f of the same size. */
@@ -466,38 +444,33 @@ static status condense_global(const hdf5_source *s, global *g,
 }
 
 static status read_global(const hdf5_source *s, exchange_problem *p) {
-  status st = OK;
-  global g = {0};
+  ENDS_BY(global_release) global g = {0};
   p->form = "FCLIB, global";
-  TRY(triplets_size(s, GLOBAL "/H", &g.H));
-  TRY(set_size(s, GLOBAL, g.H.columns, p));
-  TRY(read_matrices(s, &g));
-  TRY(new_arrays(p));
-  TRY(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
-  TRY(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
-  TRY(read_friction(s, GLOBAL "/vectors/mu", p));
+  PASS(triplets_size(s, GLOBAL "/H", &g.H));
+  PASS(set_size(s, GLOBAL, g.H.columns, p));
+  PASS(read_matrices(s, &g));
+  PASS(new_arrays(p));
+  PASS(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
+  PASS(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
+  PASS(read_friction(s, GLOBAL "/vectors/mu", p));
   p->unknowns = g.M.rows + g.G.columns;
-  TRY(find_diagonal(&g));
-  if (g.h == NULL && g.G.columns == 0) TRY(condense_bodies(&g, p));
+  PASS(find_diagonal(&g));
+  if (g.h == NULL && g.G.columns == 0) PASS(condense_bodies(&g, p));
   if (p->blocks != NULL) {
     turn_signs(p);
     set_problem(p, 0, 0);
-    goto done;
+    return OK;
   }
-  TRY(new_matrix(s, GLOBAL, p));
+  PASS(new_matrix(s, GLOBAL, p));
   if (g.G.columns > 0) {
-    TRY(read_vector(s, GLOBAL "/vectors/b", g.G.columns, &g.b));
-    TRY(condense_constrained(s, &g, p));
-    goto done;
+    PASS(read_vector(s, GLOBAL "/vectors/b", g.G.columns, &g.b));
+    PASS(condense_constrained(s, &g, p));
+    return OK;
   }
-  TRY(condense_global(s, &g, p));
-done:
-  global_release(&g);
-  return st;
+  return condense_global(s, &g, p);
 }
 
-/* ---- file -----------------------------------------------------------------
- */
+/* ---- file ---------------------------------------------------------------- */
 
 static status read_source(const hdf5_source *s, exchange_problem *p) {
   const char *rolling = "rolling friction and its moments";
@@ -513,11 +486,7 @@ static status read_source(const hdf5_source *s, exchange_problem *p) {
 }
 
 status fclib_read(const char *path, exchange_problem *p) {
-  status st = OK;
-  hdf5_source s;
-  TRY(dataset_open(path, &s));
-  TRY(read_source(&s, p));
-done:
-  dataset_close(&s);
-  return st;
+  ENDS_BY(dataset_close) hdf5_source s = {0};
+  PASS(dataset_open(path, &s));
+  return read_source(&s, p);
 }

@@ -1,6 +1,4 @@
-/*
- * What the readers of this folder share. Private to src/exchange.
- */
+/* What the readers of this folder share. Private to src/exchange. */
 #ifndef PROTIS_EXCHANGE_PARTS_H
 #define PROTIS_EXCHANGE_PARTS_H
 
@@ -12,9 +10,6 @@ enum { MOST_UNKNOWNS = 30000 };
 /* ERR_MEMORY: not enough memory for the matrices of a problem of m unknowns,
  * its own and those of a solver; checked before they are read. */
 status require_problem_memory(double m);
-
-/* ---- triplets.c ----------------------------------------------------------
- */
 
 /* Entries in the order of the file; repeated ones add up. */
 typedef struct triplets {
@@ -37,9 +32,6 @@ status triplets_by_column(const triplets *t, int **start, long **entry);
 /* 1, -1: only the upper, the lower triangle is stored; 0: both or none. */
 int triplets_triangle(const triplets *t);
 
-/* ---- fclib.c --------------------------------------------------------------
- */
-
 /* p is all zero before; release it on failure too. */
 status fclib_read(const char *path, exchange_problem *p);
 
@@ -54,9 +46,6 @@ typedef struct constraints {
 status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q);
 void constraints_free(constraints *c); /* accepts all-zero */
-
-/* ---- reduce.c --------------------------------------------------------------
- */
 
 /*
  * W[m*m] = H' inv(M) H (symmetric) and q[m] = H' inv(M) f + w, both given

@@ -87,23 +87,21 @@ static int invert(int m, double *W, double *work, int *iwork) {
 
 status springs_condense(const triplets *M, const triplets *H, const double *f,
                         double *A, double *load, int *usable) {
-  status st = OK;
-  triplets held = {0};
-  double *q = NULL, *work = NULL, s = 0.0;
-  int *iwork = NULL, m = H->columns;
-  NEW(q, m);
-  NEW(work, 3 * m);
-  NEW(iwork, m);
-  TRY(springs_add(M, H, &s, &held));
-  TRY(reduce_global(&held, H, f, A, q, usable));
+  ENDS_BY(triplets_free) triplets held = {0};
+  OWNED double *q = NULL, *work = NULL;
+  double s = 0.0;
+  OWNED int *iwork = NULL;
+  int m = H->columns;
+  PASS_NEW(q, m);
+  PASS_NEW(work, 3 * m);
+  PASS_NEW(iwork, m);
+  PASS(springs_add(M, H, &s, &held));
+  PASS(reduce_global(&held, H, f, A, q, usable));
   *usable = *usable && s > 0.0 && invert(m, A, work, iwork);
-  if (!*usable) goto done;
+  if (!*usable) return OK;
   cblas_dsymv(CblasColMajor, CblasLower, m, 1.0, A, m, q, 1, 0.0, load, 1);
   for (size_t i = 0; i < (size_t)m; ++i) A[i * ((size_t)m + 1)] -= s;
-done:
-  triplets_free(&held);
-  RELEASE(q, work, iwork);
-  return st;
+  return OK;
 }
 
 /* ---- equality constraints of FCLIB eliminated:    V'r + R l + s = 0,   u = W
@@ -122,8 +120,7 @@ typedef struct elimination {
 static status elimination_new(int m, const constraints *c, elimination *a) {
   size_t p = (size_t)c->p, all = p * ((size_t)m + 1);
   PASS_NEW(a->R, p * p);
-  PASS_NEW(a->X, all);
-  PASS_NEW(a->rhs, all);
+  PASS_NEW_REALS(all, &a->X, &a->rhs);
   PASS_NEW(a->spread, p);
   memcpy(a->R, c->R, p * p * sizeof *a->R);
   for (size_t k = 0; k < p; ++k) {
@@ -152,28 +149,25 @@ static double contradiction(int m, const constraints *c, elimination *a) {
 
 status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q) {
-  status st = OK;
-  elimination a = {0};
+  ENDS_BY(elimination_free) elimination a = {0};
   lapack_int rank = 0, info;
-  if (c->p == 0) goto done;
-  TRY(elimination_new(m, c, &a));
+  if (c->p == 0) return OK;
+  PASS(elimination_new(m, c, &a));
   info = LAPACKE_dgelsd(LAPACK_COL_MAJOR, c->p, c->p, m + 1, a.R, c->p, a.X,
                         c->p, a.spread, REPEATED_RCOND, &rank);
   if (info != 0)
-    FAIL(info == LAPACK_WORK_MEMORY_ERROR ? ERR_MEMORY : ERR_SINGULAR,
-         "%s: the equality constraints cannot be eliminated", path);
+    RAISE(info == LAPACK_WORK_MEMORY_ERROR ? ERR_MEMORY : ERR_SINGULAR,
+          "%s: the equality constraints cannot be eliminated", path);
   if (!(contradiction(m, c, &a) <= CONSISTENT))
-    FAIL(ERR_SINGULAR,
-         "%s: the equality constraints contradict one another: of %d only %d "
-         "are independent",
-         path, c->p, (int)rank);
+    RAISE(ERR_SINGULAR,
+          "%s: the equality constraints contradict one another: of %d only %d "
+          "are independent",
+          path, c->p, (int)rank);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, m, c->p, -1.0, c->V,
               m, a.X, c->p, 1.0, W, m);
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, c->p, -1.0, c->V, m,
               a.X + (size_t)c->p * (size_t)m, 1, 1.0, q, 1);
-done:
-  elimination_free(&a);
-  return st;
+  return OK;
 }
 
 void constraints_free(constraints *c) { RELEASE(c->V, c->R, c->s); }
@@ -183,8 +177,7 @@ static const double ASYMMETRY = 1e-10; /* -, of the largest entry */
 static const double RCOND = 1e-14;     /* -, below: singular */
 static const double DEFINITE = 1e-12;  /* -, below: not positive definite */
 
-/* ---- M as a sparse matrix, scaled -----------------------------------------
- */
+/* ---- M as a sparse matrix, scaled ---------------------------------------- */
 
 typedef struct reduction {
   cholmod_common cm;
@@ -275,8 +268,7 @@ static status factorise(reduction *s, const triplets *M, int *usable) {
   return OK;
 }
 
-/* ---- H and f as columns ----------------------------------------------------
- */
+/* ---- H and f as columns -------------------------------------------------- */
 
 /* Column k of (H, f), k = H->columns for f, added into x[rows]. "start" and
  * "entry" list the entries of H column by column. */
@@ -314,8 +306,7 @@ static double *target(const columns *c, int k, double *W, double *q) {
   return k == c->H->columns ? q : W + (size_t)c->H->columns * (size_t)k;
 }
 
-/* ---- Cholesky or LU ---------------------------------------------------------
- */
+/* ---- Cholesky or LU ------------------------------------------------------ */
 
 /* x <- inv(M) x. */
 static status solve_scaled(reduction *s, double *x) {
@@ -422,19 +413,15 @@ static void reduction_end(reduction *s) {
 
 status reduce_global(const triplets *M, const triplets *H, const double *f,
                      double *W, double *q, int *usable) {
-  status st = OK;
-  reduction s = {.n = M->rows};
-  columns c = {0};
+  ENDS_BY(reduction_end) reduction s = {.n = M->rows};
+  ENDS_BY(columns_free) columns c = {0};
   *usable = 1;
   reduction_begin(&s);
-  if (M->rows == 0) goto done;
-  TRY(columns_new(H, f, &c));
-  TRY(factorise(&s, M, usable));
-  if (*usable) TRY(reduce_sparse(&s, &c, W, q));
-done:
-  columns_free(&c);
-  reduction_end(&s);
-  return st;
+  if (M->rows == 0) return OK;
+  PASS(columns_new(H, f, &c));
+  PASS(factorise(&s, M, usable));
+  if (*usable) PASS(reduce_sparse(&s, &c, W, q));
+  return OK;
 }
 
 /* ---- bodies apart -----------------------------------------------------------
@@ -564,53 +551,45 @@ static status solve_parts(reduction *s, const columns *c, row_sets *t,
 
 status reduce_bodies(const triplets *M, const triplets *H, const double *f,
                      double share, triplets *W, double *q, int *usable) {
-  status st = OK;
-  reduction s = {.n = M->rows};
-  columns c = {0};
-  row_sets t = {0};
-  double *x = NULL, entries;
+  ENDS_BY(reduction_end) reduction s = {.n = M->rows};
+  ENDS_BY(columns_free) columns c = {0};
+  ENDS_BY(row_sets_free) row_sets t = {0};
+  OWNED double *x = NULL;
+  double entries;
   const double m = H->columns;
   *usable = 0;
   W->rows = W->columns = H->columns;
   reduction_begin(&s);
-  if (M->rows == 0) goto done;
-  TRY(columns_new(H, f, &c));
-  TRY(row_sets_new(M, &c, &t));
+  if (M->rows == 0) return OK;
+  PASS(columns_new(H, f, &c));
+  PASS(row_sets_new(M, &c, &t));
   entries = count_parts(&c, &t);
-  if (entries > share * m * m) goto done;
-  TRY(factorise(&s, M, usable));
-  if (!*usable) goto done;
-  TRY(solve_parts(&s, &c, &t, (long)entries, W));
-  NEW(x, s.n);
+  if (entries > share * m * m) return OK;
+  PASS(factorise(&s, M, usable));
+  if (!*usable) return OK;
+  PASS(solve_parts(&s, &c, &t, (long)entries, W));
+  PASS_NEW(x, s.n);
   put_column(&c, H->columns, x);
-  TRY(solve_scaled(&s, x));
+  PASS(solve_scaled(&s, x));
   take_column(&c, x, q);
-done:
-  memory_free(x);
-  row_sets_free(&t);
-  columns_free(&c);
-  reduction_end(&s);
-  return st;
+  return OK;
 }
 
 status reduce_any(const char *path, const triplets *M, const triplets *H,
                   const double *f, double *W, double *q) {
-  status st = OK;
-  columns c = {0};
+  ENDS_BY(columns_free) columns c = {0};
   int singular = 0;
   if (M->rows > MOST_DENSE)
-    FAIL(ERR_SINGULAR,
-         "%s: /fclib_global/M is not symmetric and positive definite, and too "
-         "large (%d) for a dense LU factor",
-         path, M->rows);
-  TRY(columns_new(H, f, &c));
-  TRY(reduce_dense(M, &c, W, q, &singular));
+    RAISE(ERR_SINGULAR,
+          "%s: /fclib_global/M is not symmetric and positive definite, and too "
+          "large (%d) for a dense LU factor",
+          path, M->rows);
+  PASS(columns_new(H, f, &c));
+  PASS(reduce_dense(M, &c, W, q, &singular));
   if (singular)
-    FAIL(ERR_SINGULAR,
-         "%s: /fclib_global/M is singular: v cannot be eliminated", path);
-done:
-  columns_free(&c);
-  return st;
+    RAISE(ERR_SINGULAR,
+          "%s: /fclib_global/M is singular: v cannot be eliminated", path);
+  return OK;
 }
 
 status require_problem_memory(double m) {

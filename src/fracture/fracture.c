@@ -1,6 +1,4 @@
-/*
- * Points and factors: what the caller sees.
- */
+/* Points and factors: what the caller sees. */
 #include "fracture/fracture.h"
 
 #include "fracture/parts.h"
@@ -118,8 +116,7 @@ status fracture_derive(fracture *f, const fracture_state *s, int point,
   *out = (fracture_linear){0};
   integrals_find(f, s, p, &x, &sum);
   share_domains(&sum, mode, factor_of(&x, mode), part);
-  PASS_NEW(out->by_u, n_dof);
-  PASS_NEW(out->by_traction, n_dof);
+  PASS_NEW_REALS(n_dof, &out->by_u, &out->by_traction);
   return integrals_derive(f, s, p, &x, mode, part, out);
 }
 

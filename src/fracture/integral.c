@@ -367,8 +367,7 @@ static void add_lips(work *w) {
   }
 }
 
-/* ---- their derivative by tractions ----------------------------------------
- */
+/* ---- their derivative by tractions --------------------------------------- */
 
 /* What a line takes: by the tractions that it is made of. */
 typedef struct taken {

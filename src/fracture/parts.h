@@ -20,8 +20,6 @@ struct fracture {
   int *elem_list, *node_list; /* [n_elem], [n_node] */
 };
 
-/* ---- points and places --------------------------------------------------- */
-
 /* All but the search is there: frames, curvature, size and radius. */
 status points_find(fracture *f);
 
@@ -47,8 +45,6 @@ enum { RULE_MOST = 16 };
  * corners, m. */
 int lip_rule(int n, const double *behind, rule_point *to);
 
-/* ---- fields -------------------------------------------------------------- */
-
 typedef struct field_tensor {
   double of[3][3]; /* components in the frame of a place */
 } field_tensor;
@@ -63,6 +59,18 @@ typedef struct elasticity {
   double G;     /* shear modulus, Pa; 0: not isotropic */
 } elasticity;
 
+/*
+ * Fields of the tip of a crack in a plane (Williams, J. Appl. Mech. 24, 1957):
+ * u[3] and its gradient d[i][l] = du_i/dx_l of K = 1 in a mode (0 .. 2), at x1
+ * ahead of the tip and x2 above the crack; on the lips x2 is +0.0 above and
+ * -0.0 below.
+ *
+ *   kappa  3 - 4 nu (plane strain), (3 - nu)/(1 + nu) (plane stress)
+ *   G      shear modulus, Pa
+ */
+void williams_field(int mode, double kappa, double G, const double x[2],
+                    double u[3], double d[3][2]);
+
 typedef struct auxiliary { /* of K = 1 */
   field_tensor d, s, e;    /* du_i/dx_l; stress; strain by Hooke's law */
   field_tensor X;          /* slope along e1 of what e lacks to be that of d */
@@ -75,8 +83,6 @@ void interaction_flux(const field_tensor *s, const field_tensor *d,
                       const auxiliary *x, field_tensor *P);
 void energy_flux(const field_tensor *s, const field_tensor *d, double share,
                  field_tensor *P);
-
-/* ---- integrals ----------------------------------------------------------- */
 
 typedef struct integrals {
   double I[DOMAINS][MODES + 1]; /* of the modes and, last, the energy */

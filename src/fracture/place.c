@@ -1,6 +1,4 @@
-/*
- * Coordinates that follow the front, and quadrature on lips that end at it.
- */
+/* Coordinates that follow the front, and quadrature on lips that end at it. */
 #include "fracture/parts.h"
 
 #include <math.h>
@@ -31,8 +29,6 @@ void locate(const fracture_point *p, const double x[3], local *at) {
     at->axis[6 + c] = (a * e3[c] - b * e1[c]) / h;
   }
 }
-
-/* ---- quadrature ---------------------------------------------------------- */
 
 /* Gauss, on [0, 1]. */
 enum { GAUSS = 4 };

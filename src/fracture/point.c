@@ -5,6 +5,7 @@
 #include "fracture/parts.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,17 +22,8 @@ static int same_material(const fracture_material *a,
   return a->E == b->E && a->nu == b->nu && a->plane_stress == b->plane_stress;
 }
 
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *a, const double *b, double *c) {
-  for (int k = 0; k < 3; ++k)
-    c[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
-}
-
 static void scale_to_one(double *a) {
-  const double length = sqrt(dot(a, a));
+  const double length = sqrt(vector_dot(a, a));
   for (int k = 0; k < 3; ++k) a[k] /= length;
 }
 
@@ -40,10 +32,8 @@ static double distance(const mesh *m, int a, int b) {
   place_of(m, a, x);
   place_of(m, b, y);
   for (int k = 0; k < 3; ++k) x[k] -= y[k];
-  return sqrt(dot(x, x));
+  return sqrt(vector_dot(x, x));
 }
-
-/* ---- what ends a domain -------------------------------------------------- */
 
 typedef struct obstacles {
   int n;
@@ -99,7 +89,7 @@ static status find_obstacles(const fracture_body *b, obstacles *o) {
   add_normals(m, sum);
   PASS(find_mixed(b, o));
   for (int i = 0; i < m->n_node; ++i) {
-    double *at = sum + 4 * (size_t)i, length = sqrt(dot(at, at));
+    double *at = sum + 4 * (size_t)i, length = sqrt(vector_dot(at, at));
     const double part = length > rounding * at[3] ? 1 / length : 0;
     for (int k = 0; k < 3; ++k) at[k] *= part;
     o->n += o->mixed[i] || part > 0;
@@ -108,7 +98,7 @@ static status find_obstacles(const fracture_body *b, obstacles *o) {
   PASS_NEW(o->normal, 3 * o->n);
   for (int i = 0; i < m->n_node; ++i) {
     const double *at = sum + 4 * (size_t)i;
-    if (!o->mixed[i] && dot(at, at) == 0) continue;
+    if (!o->mixed[i] && vector_dot(at, at) == 0) continue;
     memcpy(o->normal + 3 * n, at, 3 * sizeof *at);
     o->node[n++] = i;
   }
@@ -121,9 +111,9 @@ static int on_crack(const fracture_point *p, const double *x,
   local at;
   double side[3];
   locate(p, x, &at);
-  cross(normal, p->frame + 3, side);
+  vector_cross(normal, p->frame + 3, side);
   return at.x[0] < away / 2 && fabs(at.x[1]) <= straight * away &&
-         sqrt(dot(side, side)) <= straight;
+         sqrt(vector_dot(side, side)) <= straight;
 }
 
 /* A point between two materials has no others. */
@@ -131,7 +121,7 @@ static int ends_domain(const obstacles *o, int i, const fracture_point *p,
                        const double *x, double away) {
   const double *normal = o->normal + 3 * i;
   if (o->mixed[o->node[i]] && p->section >= 0) return 1;
-  return dot(normal, normal) > 0 && !on_crack(p, x, normal, away);
+  return vector_dot(normal, normal) > 0 && !on_crack(p, x, normal, away);
 }
 
 /* Distance of the nearest obstacle, at most "radius". */
@@ -155,13 +145,12 @@ static double half_way(const fracture *f, const fracture_point *p,
   for (int i = 0; i < f->n; ++i) {
     const fracture_point *other = &f->point[i];
     if (other->node == p->node) continue;
-    if (m->dim == 3 && dot(other->frame + 6, p->frame + 6) > 0.5) continue;
+    if (m->dim == 3 && vector_dot(other->frame + 6, p->frame + 6) > 0.5)
+      continue;
     radius = fmin(radius, distance(m, other->node, p->node) / 2);
   }
   return radius;
 }
-
-/* ---- the points ---------------------------------------------------------- */
 
 /* Mean length of the edges at the node; its section, -1 if they differ. */
 static void look_round(const fracture *f, fracture_point *p) {
@@ -225,7 +214,7 @@ static void fit_circle(const fracture *f, int chain, int i) {
     if (j < 0 || step == 0) continue;
     place_of(m, f->body.crack->front_node[j], x);
     for (int k = 0; k < 3; ++k) x[k] -= p->origin[k];
-    const double y1 = dot(x, p->frame), y3 = dot(x, p->frame + 6);
+    const double y1 = vector_dot(x, p->frame), y3 = vector_dot(x, p->frame + 6);
     s2 += y3 * y3;
     s3 += y3 * y3 * y3;
     s4 += y3 * y3 * y3 * y3;
@@ -238,7 +227,7 @@ static void fit_circle(const fracture *f, int chain, int i) {
   p->curvature = -2 * (r2 * s2 - r1 * s3) / determinant;
   for (int k = 0; k < 3; ++k) p->frame[6 + k] += c * p->frame[k];
   scale_to_one(p->frame + 6);
-  cross(p->frame + 3, p->frame + 6, p->frame);
+  vector_cross(p->frame + 3, p->frame + 6, p->frame);
 }
 
 static void set_frame_3d(const fracture *f, int chain, int i) {
@@ -253,19 +242,18 @@ static void set_frame_3d(const fracture *f, int chain, int i) {
   scale_to_one(e3);
   if (before >= 0) add_normal(f, c->front_face[before], e2);
   if (after >= 0) add_normal(f, c->front_face[after - 1], e2);
-  const double part = dot(e2, e3);
+  const double part = vector_dot(e2, e3);
   for (int k = 0; k < 3; ++k) e2[k] -= part * e3[k];
   scale_to_one(e2);
-  cross(e2, e3, e1);
+  vector_cross(e2, e3, e1);
   fit_circle(f, chain, i);
 }
 
 status points_find(fracture *f) {
-  status st = OK;
   const mesh *m = f->body.mesh;
   const mesh_crack *c = f->body.crack;
-  obstacles o = {0};
-  TRY(find_obstacles(&f->body, &o));
+  ENDS_BY(release) obstacles o = {0};
+  PASS(find_obstacles(&f->body, &o));
   for (int chain = 0; chain < c->n_front; ++chain)
     for (int i = c->front_start[chain]; i < c->front_start[chain + 1]; ++i) {
       fracture_point *p = &f->point[i];
@@ -284,7 +272,5 @@ status points_find(fracture *f) {
     p->radius = free_radius(m, &o, p, p->radius);
     if (p->radius < fewest * p->size) p->radius = 0;
   }
-done:
-  release(&o);
-  return st;
+  return OK;
 }

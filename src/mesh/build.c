@@ -3,6 +3,7 @@
  * is read here; then the steps from the raw mesh to the mesh, and how their
  * messages are made.
  */
+#include "base/file.h"
 #include "mesh/build.h"
 #include "mesh/refine/refine.h"
 
@@ -55,8 +56,6 @@ done:
   return st;
 }
 
-/* ---- the file ------------------------------------------------------------ */
-
 enum { HEAD_SIZE = 4096, TAIL_SIZE = 256 };
 
 static int ends_in(const char *text, const char *end) {
@@ -68,9 +67,8 @@ static int ends_in(const char *text, const char *end) {
  * first bytes go to head, with a zero after them. */
 static status read_head(const char *file, char head[HEAD_SIZE + 1],
                         const place *at, message_log *log) {
-  status st = OK;
   const char *why = NULL;
-  FILE *in = input_stream(file, &why);
+  ENDS_BY(file_leave) FILE *in = input_stream(file, &why);
   if (in != NULL) {
     why = NULL;
     size_t n = fread(head, 1, HEAD_SIZE, in);
@@ -83,11 +81,9 @@ static status read_head(const char *file, char head[HEAD_SIZE + 1],
   if (why != NULL) {
     message_add(log, P3001, at, "mesh file \"%s\" cannot be read: %s", file,
                 why);
-    FAIL(ERR_FILE, "mesh file \"%s\" cannot be read: %s", file, why);
+    RAISE(ERR_FILE, "mesh file \"%s\" cannot be read: %s", file, why);
   }
-done:
-  if (in != NULL) fclose(in);
-  return st;
+  return OK;
 }
 
 /* The version of the format from the head of a .msh, "" if it has none. */
@@ -124,20 +120,17 @@ static status check_format(const char *file, const char *head, const place *at,
 
 /* The last bytes of the file, *n of them, with a zero after. */
 static status read_tail(const char *file, char tail[TAIL_SIZE + 1], size_t *n) {
-  status st = OK;
   const char *why;
-  FILE *in = input_stream(file, &why);
-  if (in == NULL) FAIL(ERR_FILE, "\"%s\": %s", file, why);
+  ENDS_BY(file_leave) FILE *in = input_stream(file, &why);
+  if (in == NULL) RAISE(ERR_FILE, "\"%s\": %s", file, why);
   int sought = fseek(in, -TAIL_SIZE, SEEK_END) == 0;
   int shorter = !sought && errno == EINVAL;
   if (shorter) rewind(in);
   *n = sought || shorter ? fread(tail, 1, TAIL_SIZE, in) : 0;
   tail[*n] = '\0';
   if ((!sought && !shorter) || ferror(in))
-    FAIL(ERR_FILE, "\"%s\": %s", file, strerror(errno));
-done:
-  if (in != NULL) fclose(in);
-  return st;
+    RAISE(ERR_FILE, "\"%s\": %s", file, strerror(errno));
+  return OK;
 }
 
 /* Of a last line without newline gmsh executes the first statement only. */

@@ -1,6 +1,4 @@
-/*
- * Elements: kinds, corners, orientation, order, and those listed twice.
- */
+/* Elements: kinds, corners, orientation, order, and those listed twice. */
 #include "mesh/build.h"
 #include "mesh/sort.h"
 

@@ -173,20 +173,16 @@ static status find_elements(builder *b, face_list *f) {
 }
 
 status faces_finish(builder *b) {
-  status st = OK;
-  face_list f = {.dim = b->m->dim};
+  ENDS_BY(release) face_list f = {.dim = b->m->dim};
   faults alone = {0};
-  TRY(gather(b, &f, &alone));
-  TRY(number_faces(b, &f));
-  TRY(numbers_check(b, "face", b->n_low, f.no, b->face_of_low));
-  TRY(find_elements(b, &f));
+  PASS(gather(b, &f, &alone));
+  PASS(number_faces(b, &f));
+  PASS(numbers_check(b, "face", b->n_low, f.no, b->face_of_low));
+  PASS(find_elements(b, &f));
   for (int i = 0; i < b->m->n_face; ++i)
     if (b->m->face_elem[i] < 0) note_missing(b, f.example[i], &alone);
   if (alone.n > 0)
     message_add(b->log, P3030, b->at, "%d face(s) bound no element: %s",
                 alone.n, alone.text);
-  TRY(build_check(b));
-done:
-  release(&f);
-  return st;
+  return build_check(b);
 }

@@ -1,6 +1,4 @@
-/*
- * Physical groups: names and dimension before, contents after the rest.
- */
+/* Physical groups: names and dimension before, contents after the rest. */
 #include "mesh/build.h"
 #include "mesh/sort.h"
 

@@ -11,6 +11,8 @@
 #include "mesh/sort.h"
 
 #include "base/memory.h"
+#include "base/number.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <math.h>
@@ -141,10 +143,6 @@ static void load_pair(const mesh *m, int a, int b, pair *p) {
     }
 }
 
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void edge(const pair *p, int i, int from, int to, double *d) {
   for (int k = 0; k < 3; ++k) d[k] = p->x[i][to][k] - p->x[i][from][k];
 }
@@ -156,16 +154,17 @@ static int apart(const pair *p, const double *a, const double *b) {
   for (int k = 0; k < 3; ++k)
     axis[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
   for (int i = 0; i < 2; ++i) {
-    lo[i] = hi[i] = dot(axis, p->x[i][0]);
+    lo[i] = hi[i] = vector_dot(axis, p->x[i][0]);
     for (int k = 1; k < p->n; ++k) {
-      double at = dot(axis, p->x[i][k]);
+      double at = vector_dot(axis, p->x[i][k]);
       if (at < lo[i]) lo[i] = at;
       if (at > hi[i]) hi[i] = at;
     }
   }
   double deep = fmin(hi[0] - lo[1], hi[1] - lo[0]);
   double width = fmin(hi[0] - lo[0], hi[1] - lo[1]);
-  double noise = 64.0 * DBL_EPSILON * sqrt(dot(a, a) * dot(b, b)) * p->far;
+  double noise =
+      64.0 * DBL_EPSILON * sqrt(vector_dot(a, a) * vector_dot(b, b)) * p->far;
   return width > noise && deep <= touching * width + noise;
 }
 
@@ -274,11 +273,6 @@ typedef struct search {
   faults same, other; /* in one body or group; what may be two bodies */
 } search;
 
-static int by_id(const void *p, const void *q) {
-  return (*(const int *)p > *(const int *)q) -
-         (*(const int *)p < *(const int *)q);
-}
-
 /* Of x and the side of the first element across from its corner i. */
 static double corner_volume(const pair *p, int i, const double *x) {
   double d[3][3], cross[3];
@@ -292,7 +286,7 @@ static double corner_volume(const pair *p, int i, const double *x) {
   for (int k = 0; k < 3; ++k)
     cross[k] = d[0][(k + 1) % 3] * d[1][(k + 2) % 3] -
                d[0][(k + 2) % 3] * d[1][(k + 1) % 3];
-  return dot(cross, d[2]);
+  return vector_dot(cross, d[2]);
 }
 
 /* 1: the centre of element f lies in element e. Where bodies touch along a
@@ -325,8 +319,8 @@ static status belong_together(search *s, int f, int *together) {
     const mesh_group *g = &m->group[i];
     size_t n = (size_t)g->n_item, size = sizeof(int);
     *together = g->dim == m->dim &&
-                bsearch(&s->e, g->item_id, n, size, by_id) != NULL &&
-                bsearch(&f, g->item_id, n, size, by_id) != NULL;
+                bsearch(&s->e, g->item_id, n, size, number_order) != NULL &&
+                bsearch(&f, g->item_id, n, size, number_order) != NULL;
   }
   return OK;
 }

@@ -1,6 +1,4 @@
-/*
- * Sorting of ids by 64-bit keys in linear time. Inside src/mesh only.
- */
+/* Sorting of ids by 64-bit keys in linear time. Inside src/mesh only. */
 #ifndef PROTIS_MESH_SORT_H
 #define PROTIS_MESH_SORT_H
 

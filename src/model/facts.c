@@ -216,10 +216,9 @@ const char *facts_reads_entries(const model *m, const step *s) {
 }
 
 status model_find_corner(model *m, const mesh *msh) {
-  status st = OK;
-  int *of = NULL;
+  OWNED int *of = NULL;
   m->mesh.corner_id = -1;
-  NEW(of, msh->n_node);
+  PASS_NEW(of, msh->n_node);
   for (int i = 0; i < m->n.contact; ++i) {
     if (m->contacts[i].group_id < 0) continue;
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
@@ -229,9 +228,7 @@ status model_find_corner(model *m, const mesh *msh) {
       *owner = i + 1;
     }
   }
-done:
-  memory_free(of);
-  return st;
+  return OK;
 }
 
 const char *contact_card(const contact *c) {

@@ -1,6 +1,4 @@
-/*
- * The model: what belongs to it, and what its tables show.
- */
+/* The model: what belongs to it, and what its tables show. */
 #include "model/model.h"
 
 #include "base/memory.h"

@@ -138,8 +138,7 @@ static status make_vectors(written *f) {
 static status make_solution(written *f, const double *u, const double *r) {
   const contact_problem *cp = f->cp;
   if (u == NULL) return OK;
-  PASS_NEW(f->u, cp->m);
-  PASS_NEW(f->r, cp->m);
+  PASS_NEW_REALS(cp->m, &f->u, &f->r);
   for (int k = 0; k < cp->m; ++k) {
     f->u[k] = sign_of(cp->dim, k) * u[k] + offset_of(cp, k);
     f->r[k] = sign_of(cp->dim, k) * r[k];

@@ -1,6 +1,4 @@
-/*
- * JOB.json: the outcome and the figures of the run for programs.
- */
+/* JOB.json: the outcome and the figures of the run for programs. */
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/timer.h"

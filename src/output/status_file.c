@@ -157,8 +157,6 @@ void progress_show(const model *m, const state *s, double seconds, int done) {
   progress_line(text);
 }
 
-/* ---- the lines at the end ------------------------------------------------ */
-
 enum { MOST_SHOWN = 20 }; /* contacts */
 
 /* The unit with a blank before it; nothing if *UNITS gives it no label. */

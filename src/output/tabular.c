@@ -9,6 +9,7 @@
  * order of the user's numbers. Seventeen digits read back exactly.
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/timer.h"
 #include "effects/rows.h"
 #include "output/writers.h"
@@ -84,13 +85,9 @@ static status order_by_number(int n, const size_t *no, int **order) {
   return OK;
 }
 
-static int by_id(const void *a, const void *b) {
-  return *(const int *)a - *(const int *)b;
-}
-
 static int in_group(const mesh_group *g, int node_id) {
   return bsearch(&node_id, g->node_id, (size_t)g->n_node, sizeof node_id,
-                 by_id) != NULL;
+                 number_order) != NULL;
 }
 
 /* The contact nodes in the order of their node_no. */

@@ -14,8 +14,6 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* ---- tabular.c: JOB.dat ----------------------------------------------- */
-
 typedef struct tabular tabular;
 /* NULL in *out if no step requires a table. length: of the file to continue;
  * -1: a new one. */
@@ -58,8 +56,6 @@ status json_write(const job *j, const char *path);
 status fclib_write(const contact_problem *cp, const double *u, const double *r,
                    const char *title, const char *description,
                    const char *path);
-
-/* ---- output.c, saved.c: the open job ----------------------------------- */
 
 /* The end of JOB.rst.inc: bytes, and a checksum of all of them. */
 typedef struct saved_end {

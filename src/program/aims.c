@@ -68,8 +68,6 @@ static pass_goal *last_row(const aims *a, int i) {
 
 const pass_goal *aims_rows(const aims *a) { return a != NULL ? a->rows : NULL; }
 
-/* ---- observing ----------------------------------------------------------- */
-
 status aims_begin(aims *a, const mesh *msh) {
   if (a == NULL) return OK;
   memory_free(a->product);
@@ -88,9 +86,6 @@ void aims_see(aims *a, const mesh *msh, const state *s) {
 }
 
 int aims_count(const aims *a) { return a != NULL && a->counts; }
-
-/* ---- evaluating -------------------------------------------------------------
- */
 
 static int is_estimate(const pass_goal *g) {
   return g->found.verdict == GOAL_RELIABLE ||
@@ -161,8 +156,6 @@ void aims_check(const aims *a, const model *m, char *why, size_t size) {
                goal->name);
   }
 }
-
-/* ---- the next pass ------------------------------------------------------- */
 
 /* Part of the error that the next pass aims at, <= 1: there the estimate is
  * expected to be reliable. From where the ends of contact are not resolved the

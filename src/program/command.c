@@ -1,6 +1,4 @@
-/*
- * The command line: options, their help, and queries without a job.
- */
+/* The command line: options, their help, and queries without a job. */
 #include "program/command.h"
 
 #include "base/memory.h"

@@ -1,6 +1,4 @@
-/*
- * The command line of protis.
- */
+/* The command line of protis. */
 #ifndef PROTIS_COMMAND_H
 #define PROTIS_COMMAND_H
 
@@ -27,5 +25,17 @@ int command_read(int argc, char **argv, command *c, int *exit_code);
  * as the only one that is read. ERR_FILE: it cannot be opened. */
 status command_apply(command *c, message_log *log);
 void command_free(command *c);
+
+/*
+ * tables.c, protis JOB --table NAME[:last|:all]: all blocks of that name in
+ * JOB.dat as one table on stdout, a header and a row a line: step, increment,
+ * time, group (if some have one), contact (if they have it), then the other
+ * columns. A column that a block does not have is empty there. Numbers as they
+ * stand.
+ *
+ * Errors: ERR_FILE (no JOB.dat, or stdout cannot be written), ERR_DECK (no such
+ * table; the message names those there are), ERR_MEMORY.
+ */
+status tables_print(const command *c);
 
 #endif

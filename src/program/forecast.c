@@ -29,7 +29,7 @@
  * that it needs for itself. The passes of its target cost that of the deck and
  * two like the last one.
  */
-#include "program/forecast.h"
+#include "program/job.h"
 #include "program/aims.h"
 #include "effects/rows.h"
 
@@ -232,8 +232,7 @@ static double bytes_at(const model_of_cost *c, double unknowns) {
   return c->fine.bytes * pow(ratio, power);
 }
 
-/* ---- passes ---------------------------------------------------------------
- */
+/* ---- passes -------------------------------------------------------------- */
 
 /* The next mesh, whose error is to be "aim". */
 static void refine(const model_of_cost *c, double aim, course *at) {

@@ -1,6 +1,4 @@
-/*
- * Information without solving: version, lists, the check of a deck.
- */
+/* Information without solving: version, lists, the check of a deck. */
 #include "program/inform.h"
 #include "effects/rows.h"
 

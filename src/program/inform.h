@@ -1,6 +1,4 @@
-/*
- * Information without solving: version, lists, the check of a deck.
- */
+/* Information without solving: version, lists, the check of a deck. */
 #ifndef PROTIS_INFORM_H
 #define PROTIS_INFORM_H
 

@@ -1,6 +1,4 @@
-/*
- * One pass through the stages: deck, model, mesh, history, outputs.
- */
+/* One pass through the stages: deck, model, mesh, history, outputs. */
 #ifndef PROTIS_JOB_H
 #define PROTIS_JOB_H
 
@@ -71,5 +69,20 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
  * matter, and the run with them if that is not confirmed
  * (effects/reduction/reduction.h). */
 status job_solve_auto(const command *c, job_input *in, int *unsettled);
+
+/*
+ * target.c, *ACCURACY, TARGET=: the job in passes with a finer mesh, shorter
+ * increments and a tighter solver until the estimated error is reached, or a
+ * limit of the deck. *in holds the first pass, then the last; the files are
+ * those of the last. ERR_UNSETTLED: the target is missed, the record says why;
+ * the errors of job_solve.
+ */
+status target_reach(const command *c, job_input *in, int *unsettled);
+
+/* forecast.c, protis JOB --estimate-cost: run the job twice without results, on
+ * a mesh twice as coarse as that of the deck and on that, and print estimated
+ * unknowns, CPU seconds and memory for finer meshes and for errors from 10 % to
+ * 0.1 %. ERR_DECK: no .geo to mesh again; the errors of history_run. */
+status forecast_print(const command *c, job_input *in);
 
 #endif

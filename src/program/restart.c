@@ -1,4 +1,5 @@
 /* The restart file: its origin, and whether a deck may continue from it. */
+#include "base/file.h"
 #include "program/restart.h"
 
 #include "base/memory.h"
@@ -157,15 +158,11 @@ status restart_write(void *ctx, const run_memory *memory) {
 /* ---- files the deck names ------------------------------------------------ */
 
 /* Length and checksum (FNV-1a over words) of what stands in a file. */
-static void close_stream(FILE **f) {
-  if (*f != NULL) fclose(*f);
-}
-
 static status add_content(const char *name, const char *path, FILE *out) {
   const char *why = NULL;
   uint64_t part[1024], bytes = 0, h = 14695981039346656037u;
   size_t n;
-  FILE *f ENDS_BY(close_stream) = input_stream(path, &why);
+  FILE *f ENDS_BY(file_leave) = input_stream(path, &why);
   if (f == NULL) { /* reported by the card that needs it, with its line */
     fprintf(out, ", FILE=%s, not read\n", name);
     return OK;

@@ -1,4 +1,5 @@
-#include "program/tables.h"
+/* Tables of a finished job for other programs: JOB.dat as csv or tsv. */
+#include "program/command.h"
 
 #include "base/memory.h"
 #include "base/text.h"

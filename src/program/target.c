@@ -10,7 +10,7 @@
  * what gmsh costs to load, the rest like a power of them, 1.2 in the plane and
  * 1.75 in space, measured with the nested dissection of condense.
  */
-#include "program/target.h"
+#include "program/job.h"
 
 #include "program/aims.h"
 #include "accuracy/space.h"
@@ -343,20 +343,17 @@ static status next_contact(pass *p) {
 }
 
 static status run_pass(pass *p, int *unsettled) {
-  status st = OK;
   const job_watch watch = {p, see_increment, see_ready, see_finished};
   RELEASE(p->eta, p->size);
   p->eta = p->size = NULL;
   p->energy = -1.0;
   p->mesh = p->time = p->solver = 0.0;
-  TRY(next_contact(p));
-  NEW(p->eta, p->in->msh->n_elem);
-  TRY(aims_begin(p->goals, p->in->msh));
+  PASS(next_contact(p));
+  PASS_NEW(p->eta, p->in->msh->n_elem);
+  PASS(aims_begin(p->goals, p->in->msh));
   adjust(p, p->in->m);
   *unsettled = 0;
-  st = job_solve(p->c, p->in, &watch, NULL, unsettled);
-done:
-  return st;
+  return job_solve(p->c, p->in, &watch, NULL, unsettled);
 }
 
 /* The input of the next pass in the place of the last. Its messages are those

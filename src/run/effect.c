@@ -1,6 +1,4 @@
-/*
- * The hooks of the active effects, each under the stage of its row.
- */
+/* The hooks of the active effects, each under the stage of its row. */
 #include "run/effect.h"
 
 #include "base/memory.h"

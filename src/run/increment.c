@@ -97,8 +97,7 @@ static status drop_reactions(const run *r, double *residual, double *u,
   OWNED double *q = NULL, *zero = NULL;
   if (r->course.shadow || r->problem.given != NULL || condensed_floating(r->c))
     return OK;
-  PASS_NEW(q, r->nodes.n_row);
-  PASS_NEW(zero, r->nodes.n_row);
+  PASS_NEW_REALS(r->nodes.n_row, &q, &zero);
   PASS(condensed_untouched(r->c, r->problem.cp.f, q));
   double left = contact_residual(&r->problem.cp, q, zero);
   if (!(left <= *residual)) return OK;
@@ -152,8 +151,6 @@ static status solve_contact(run *r) {
   }
   return OK;
 }
-
-/* ---- the problem ------------------------------------------------------- */
 
 static int has_held(const contact_surface *s) {
   for (int k = 0; k < s->n * s->dim; ++k)

@@ -3,6 +3,7 @@
  * initial state, and their state at an equilibrium of the body.
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/timer.h"
 #include "model/check/check.h"
 #include "material/voigt.h"
@@ -49,14 +50,9 @@ static status new_points(run *r, visco *v, const int *kind_of) {
   return OK;
 }
 
-static int compare_id(const void *a, const void *b) {
-  const int x = *(const int *)a, y = *(const int *)b;
-  return (x > y) - (x < y);
-}
-
 int visco_point_of(const int *elem, int n, int elem_id) {
   const int *found =
-      bsearch(&elem_id, elem, (size_t)n, sizeof *elem, compare_id);
+      bsearch(&elem_id, elem, (size_t)n, sizeof *elem, number_order);
   return found == NULL ? -1 : (int)(found - elem);
 }
 

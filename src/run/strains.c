@@ -32,9 +32,7 @@ static status new_strains(const run *r, equilibrium *e) {
            (size_t)r->msh->n_elem * sizeof *e->temperature);
   }
   if (n == 0) return OK;
-  PASS_NEW(e->thermal, n);
-  PASS_NEW(e->e0, n);
-  PASS_NEW(e->sigma, n);
+  PASS_NEW_REALS(n, &e->thermal, &e->e0, &e->sigma);
   if (r->body.moduli.n_own > 0) PASS_NEW(e->elastic, n);
   return OK;
 }

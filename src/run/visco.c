@@ -13,17 +13,15 @@
 #include <string.h>
 
 static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
-  status st = OK;
   run *r = ctx;
   timer_leave(STAGE_INELASTIC);
-  st = increment_solve(r, s->t);
+  const status st = increment_solve(r, s->t);
   timer_enter(STAGE_INELASTIC);
-  TRY(st);
+  PASS(st);
   visco_temperatures(r, &r->now, s);
   visco_strains(r, &r->now, s);
   *settled = r->solving.report.outcome > 0;
-done:
-  return st;
+  return OK;
 }
 
 static status begin(void *ctx, flow_state *s) {
@@ -169,8 +167,7 @@ status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
 }
 
 status start_point_new(const run *r, start_point *p) {
-  PASS_NEW(p->uc, r->nodes.n_c);
-  PASS_NEW(p->rc, r->nodes.n_c);
+  PASS_NEW_REALS(r->nodes.n_c, &p->uc, &p->rc);
   if (r->old.motion != NULL) PASS_NEW(p->motion, r->nodes.n_c);
   return OK;
 }

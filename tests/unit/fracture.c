@@ -1,7 +1,6 @@
 /* src/fracture: K and J from displacements that are known */
 #include "base/memory.h"
 #include "fracture/parts.h"
-#include "fracture/williams.h"
 #include "support/crack_fields.h"
 #include "support/grid.h"
 #include "support/inner_group.h"

@@ -1,5 +1,5 @@
 /*
- * src/accuracy/goal/adjoint.c, linear.c: the adjoint of a contact problem
+ * src/accuracy/goal/adjoint.c: the adjoint of a contact problem
  * against solutions under changed loads and from changed positions of stick,
  * and its error against disturbed solutions; an operator against its matrix.
  */

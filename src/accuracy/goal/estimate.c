@@ -13,6 +13,7 @@
 #include "accuracy/goal/goal.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -57,20 +58,14 @@ static void gradients(const goal_solution *s, double *q) {
   }
 }
 
-/* ---- the part of u in the bubble of an edge -------------------------------
- */
-
-static int by_nodes(const void *a_, const void *b_) {
-  const contact_edge *a = a_, *b = b_;
-  if (a->a != b->a) return a->a < b->a ? -1 : 1;
-  return (a->b > b->b) - (a->b < b->b);
-}
+/* ---- the part of u in the bubble of an edge ------------------------------ */
 
 static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
   const goal_solution *s = &e->s;
   const contact_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
   if (!e->on_surface[a] || !e->on_surface[b]) return NULL;
-  return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key, by_nodes);
+  return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key,
+                 number_pair_order);
 }
 
 /* d[dim] on a closed edge: along n that of the gap, across it as it began to
@@ -179,8 +174,7 @@ static void bubbles_of(goal_estimator *of, const double *G, int elem_id,
     }
 }
 
-/* ---- what belongs to u ----------------------------------------------------
- */
+/* ---- what belongs to u --------------------------------------------------- */
 
 /* In one region; q[dim*dim*n_elem] gradients, G[dim*dim*n_node] workspace. */
 static status recover_region(goal_estimator *e, int region, const double *q,

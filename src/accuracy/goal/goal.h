@@ -50,8 +50,6 @@ typedef struct goal_estimate {
 /* The result of an estimate but for value, solver and cpu; n_closed: nodes. */
 goal_result goal_judge(const goal_estimate *e, int n_closed);
 
-/* ---- adjoint.c ----------------------------------------------------------- */
-
 /*
  * The linearised problem of (u, r): nodes closed, stuck and sliding remain so.
  * On the free unknowns F it is M du_F = df_F,
@@ -79,8 +77,6 @@ const double *contact_adjoint_stick(const contact_adjoint *a);
  * stick[m] further. */
 status contact_adjoint_change(contact_adjoint *a, const double *df,
                               const double *stick, double *du);
-
-/* ---- estimate.c ---------------------------------------------------------- */
 
 /* An edge of the contact surface, node ids a < b. */
 typedef struct contact_edge {

@@ -26,12 +26,11 @@ static int is_given(const unsigned char *given, int i) {
 static status freeze_limit(const contact_problem *cp, const double *r,
                            const unsigned char *keep_row,
                            const unsigned char *given, frozen_problem *out) {
-  status st = OK;
   const sparse_rows *B = cp->B;
   memcpy(out->g0, cp->g0, (size_t)cp->n * sizeof *out->g0);
-  if (B == NULL) goto done;
+  if (B == NULL) return OK;
   out->B = (sparse_rows){B->n, B->start, B->col, NULL};
-  NEW(out->B.val, B->start[B->n]);
+  PASS_NEW(out->B.val, B->start[B->n]);
   for (int i = 0; i < cp->n; ++i)
     for (int e = B->start[i]; e < B->start[i + 1]; ++e) {
       int j = B->col[e];
@@ -42,19 +41,16 @@ static status freeze_limit(const contact_problem *cp, const double *r,
         out->g0[i] += B->val[e] * fmax(0.0, -r[cp->dim * j]);
     }
   out->cp.B = &out->B;
-done:
-  return st;
+  return OK;
 }
 
 status frozen_new(const contact_problem *cp, const double *r,
                   const unsigned char *keep_row, const unsigned char *given,
                   frozen_problem *out) {
-  status st = OK;
   *out = (frozen_problem){.cp = *cp};
-  NEW(out->f, cp->m);
-  NEW(out->gap, cp->n);
-  NEW(out->g0, cp->n);
-  NEW(out->r, cp->m);
+  PASS_NEW(out->f, cp->m);
+  PASS_NEW_REALS(cp->n, &out->gap, &out->g0);
+  PASS_NEW(out->r, cp->m);
   memcpy(out->f, cp->f, (size_t)cp->m * sizeof *out->f);
   memcpy(out->r, r, (size_t)cp->m * sizeof *out->r);
   for (int i = 0; i < cp->n; ++i) {
@@ -65,13 +61,12 @@ status frozen_new(const contact_problem *cp, const double *r,
     out->r[k] = 0.0;
   }
   if (cp->g0 != NULL) {
-    TRY(freeze_limit(cp, r, keep_row, given, out));
+    PASS(freeze_limit(cp, r, keep_row, given, out));
     out->cp.g0 = out->g0;
   }
   out->cp.f = out->f;
   out->cp.gap = out->gap;
-done:
-  return st;
+  return OK;
 }
 
 void frozen_free(frozen_problem *p) {
@@ -121,16 +116,11 @@ double theorems_passes(double x) {
 
 static const double ROUNDING = 1e-8; /* -, of the larger norm */
 
-/* ---- the previous state ------------------------------------------------- */
-
 status state_before_keep(const contact_problem *cp, const double *u,
                          const double *r, state_before *b) {
   size_t m = (size_t)cp->m, n = (size_t)cp->n;
   if (b->u == NULL) {
-    PASS_NEW(b->u, m);
-    PASS_NEW(b->r, m);
-    PASS_NEW(b->f, m);
-    PASS_NEW(b->gap, m);
+    PASS_NEW_REALS(m, &b->u, &b->r, &b->f, &b->gap);
     PASS_NEW(b->g, n);
   }
   memcpy(b->u, u, m * sizeof *u);
@@ -146,8 +136,6 @@ void state_before_free(state_before *b) {
   RELEASE(b->u, b->r, b->f, b->gap, b->g);
   *b = (state_before){0};
 }
-
-/* ---- the bounds ---------------------------------------------------------- */
 
 /* load less A e, and z less e, in place; workspace in the norm. */
 static void shift(const contact_problem *cp, energy_norm *n, const double *e,
@@ -173,11 +161,9 @@ static void compare(const theorems_contact *all, energy_norm *e,
 status bound_total(const contact_problem *cp, const double *u,
                    const theorems_contact *all, energy_norm *e,
                    theorems_bound *b) {
-  status st = OK;
-  double *w = NULL, *z = NULL, *load = NULL, limit = 0.0;
-  NEW(w, cp->m);
-  NEW(z, cp->m);
-  NEW(load, cp->m);
+  OWNED double *w = NULL, *z = NULL, *load = NULL;
+  double limit = 0.0;
+  PASS_NEW_REALS(cp->m, &w, &z, &load);
   memcpy(z, u, (size_t)cp->m * sizeof *z);
   memcpy(load, cp->f, (size_t)cp->m * sizeof *load);
   for (int k = 0; k < cp->m; ++k)
@@ -186,9 +172,7 @@ status bound_total(const contact_problem *cp, const double *u,
     limit = hypot(limit, cp->g0[i]);
   shift(cp, e, w, z, load);
   compare(all, e, z, load, limit, 0.0, b);
-done:
-  RELEASE(w, z, load);
-  return st;
+  return OK;
 }
 
 /* e of one unknown: how its bound or its position of stick has moved. */
@@ -230,17 +214,14 @@ static double limit_change(const contact_problem *cp,
 status bound_change(const contact_problem *cp, const double *u,
                     const state_before *before, const theorems_contact *all,
                     energy_norm *n, theorems_bound *b) {
-  status st = OK;
-  double *e = NULL, *z = NULL, *load = NULL;
+  OWNED double *e = NULL, *z = NULL, *load = NULL;
   double limit = limit_change(cp, before);
   double whole = energy_norm_dual(n, cp->f);
   if (!(limit < HUGE_VAL)) {
     b->why = "friction ends at some nodes";
-    goto done;
+    return OK;
   }
-  NEW(e, cp->m);
-  NEW(z, cp->m);
-  NEW(load, cp->m);
+  PASS_NEW_REALS(cp->m, &e, &z, &load);
   for (int k = 0; k < cp->m; ++k) {
     int known = before->known > 0;
     e[k] = moved(cp, before, k);
@@ -249,7 +230,5 @@ status bound_change(const contact_problem *cp, const double *u,
   }
   shift(cp, n, e, z, load);
   compare(all, n, z, load, limit, whole, b);
-done:
-  RELEASE(e, z, load);
-  return st;
+  return OK;
 }

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- The largest eigenvalue of a symmetric positive semidefinite map ---- */
-
 enum { STEPS = 160, EVERY = 8 };
 static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value */
 
@@ -19,8 +17,7 @@ static status dense_largest(const symmetric_map *map, double *largest) {
   size_t ld = (size_t)n;
   OWNED double *H = NULL, *x = NULL, *w = NULL, *work = NULL;
   PASS_NEW(H, ld * ld);
-  PASS_NEW(x, ld);
-  PASS_NEW(w, ld);
+  PASS_NEW_REALS(ld, &x, &w);
   PASS_NEW(work, 26 * ld);
   PASS_NEW(iwork, 10 * ld);
   for (size_t j = 0; j < ld; ++j) {
@@ -104,10 +101,7 @@ status lanczos_largest(const symmetric_map *map, double *largest) {
   lanczos s = {.n = map->n};
   double *v = NULL;
   NEW(s.Q, (size_t)map->n * STEPS);
-  NEW(s.alpha, STEPS);
-  NEW(s.beta, STEPS);
-  NEW(s.d, STEPS);
-  NEW(s.e, STEPS);
+  NEW_REALS(STEPS, &s.alpha, &s.beta, &s.d, &s.e);
   NEW(s.Z, (size_t)STEPS * STEPS);
   NEW(s.work, 2 * STEPS);
   NEW(v, map->n);
@@ -124,12 +118,9 @@ status largest_eigenvalue(const symmetric_map *map, double *largest) {
 
 static const double MOVES = 1e-8; /* -, of the largest part of a motion */
 
-/* ---- norms -------------------------------------------------------------- */
-
 status energy_norm_new(int m, const double *A, energy_norm *out) {
   *out = (energy_norm){.m = m, .A = A};
-  PASS_NEW(out->x, m);
-  PASS_NEW(out->y, m);
+  PASS_NEW_REALS(m, &out->x, &out->y);
   PASS(dense_inverse_new(m, A, &out->inverse));
   if (out->inverse != NULL) out->dual = dense_inverse_energy(out->inverse);
   return OK;
@@ -155,8 +146,6 @@ double energy_norm_dual(energy_norm *e, const double *f) {
   if (e->dual.square(e->dual.ctx, f, &square) != OK) return NAN;
   return sqrt(square);
 }
-
-/* ---- constants ---------------------------------------------------------- */
 
 /* The unknowns that a map acts on. */
 typedef struct block {

@@ -163,8 +163,7 @@ status inequality_least(const contact_problem *cp, const double *u,
   *least = 0.0;
   *fields = 0;
   if (cp->m == 0) goto done;
-  NEW(s.r, cp->m);
-  NEW(s.w, cp->m);
+  NEW_REALS(cp->m, &s.r, &s.w);
   memcpy(s.w, u, (size_t)cp->m * sizeof *u);
   set_scales(&s);
   try_nodes(&s);

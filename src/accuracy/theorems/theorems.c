@@ -55,8 +55,6 @@ void theorems_free(theorems *t) {
   memory_free(t);
 }
 
-/* ---- data to be computed again ------------------------------------------ */
-
 static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
   for (int i = 0; i < cp->m; ++i)
@@ -82,8 +80,6 @@ static int same_friction(const theorems *t, const contact_problem *cp) {
   if (t->contacts == NULL || t->n_entry != count_entries(cp)) return 0;
   return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
 }
-
-/* ---- contacts ------------------------------------------------------------ */
 
 /* 1 if a node of the contact has a limit that follows pressure; keep[n] marks
  * its nodes. */
@@ -154,20 +150,17 @@ static mu_regime regime_of(const theorems_contact *row) {
  */
 static status measure(const theorems_scene *s, const frozen_problem *p,
                       unsigned char *keep, theorems_contact *row) {
-  status st = OK;
-  frozen_problem part = {0};
+  ENDS_BY(frozen_free) frozen_problem part = {0};
   row->rate = 0.0;
   if (row->contact_id >= 0) {
     mark_contact(s, &p->cp, row->contact_id, keep);
-    TRY(frozen_new(&p->cp, p->r, keep, NULL, &part));
+    PASS(frozen_new(&p->cp, p->r, keep, NULL, &part));
   }
   const contact_problem *cp = row->contact_id >= 0 ? &part.cp : &p->cp;
-  if (cp->B != NULL) TRY(contraction_limit(cp, s->u, p->r, &row->rate));
+  if (cp->B != NULL) PASS(contraction_limit(cp, s->u, p->r, &row->rate));
   row->suggested = row->rate > 0.0 ? row->mu / row->rate : HUGE_VAL;
   row->regime = regime_of(row);
-done:
-  frozen_free(&part);
-  return st;
+  return OK;
 }
 
 /* With one contact the row of all contacts is the same. */
@@ -187,8 +180,6 @@ static status measure_contacts(theorems *t, const theorems_scene *s,
   }
   return OK;
 }
-
-/* ---- bounds -------------------------------------------------------------- */
 
 static status check_bounds(theorems *t, const theorems_scene *s,
                            const frozen_problem *p, theorems_report *out) {
@@ -210,56 +201,46 @@ static status check_bounds(theorems *t, const theorems_scene *s,
   return OK;
 }
 
-/* ---- the report ---------------------------------------------------------- */
-
 static status check_inequality(const theorems_scene *s,
                                const contact_problem *cp,
                                theorems_report *out) {
-  status st = OK;
-  TRY(inequality_least(cp, s->u, &out->inequality, &out->n_field));
+  PASS(inequality_least(cp, s->u, &out->inequality, &out->n_field));
   out->inequality_violated = !(out->inequality >= -s->tol);
-done:
-  return st;
+  return OK;
 }
 
 status theorems_start(theorems *t, const theorems_scene *s) {
-  status st = OK;
-  frozen_problem p = {0};
+  ENDS_BY(frozen_free) frozen_problem p = {0};
   int fields;
-  TRY(frozen_new(s->cp, s->r, NULL, s->given, &p));
-  TRY(know_matrix(t, s->cp));
-  TRY(inequality_least(&p.cp, s->u, &t->start, &fields));
-  TRY(state_before_keep(&p.cp, s->u, p.r, &t->before));
+  PASS(frozen_new(s->cp, s->r, NULL, s->given, &p));
+  PASS(know_matrix(t, s->cp));
+  PASS(inequality_least(&p.cp, s->u, &t->start, &fields));
+  PASS(state_before_keep(&p.cp, s->u, p.r, &t->before));
   t->has_start = t->seen = 1;
-done:
-  frozen_free(&p);
-  return st;
+  return OK;
 }
 
 status theorems_check(theorems *t, const theorems_scene *s,
                       theorems_report *out) {
-  status st = OK;
-  frozen_problem p = {0};
+  ENDS_BY(frozen_free) frozen_problem p = {0};
   *out = (theorems_report){.asked = 1, .has_start = t->has_start};
-  TRY(frozen_new(s->cp, s->r, NULL, s->given, &p));
-  TRY(know_matrix(t, s->cp));
+  PASS(frozen_new(s->cp, s->r, NULL, s->given, &p));
+  PASS(know_matrix(t, s->cp));
   if (!t->seen) t->before.known = -1;
   out->fresh = t->contacts == NULL;
-  TRY(know_friction(t, s, &p));
-  TRY(measure_contacts(t, s, &p));
-  TRY(check_bounds(t, s, &p, out));
-  TRY(check_inequality(s, &p.cp, out));
+  PASS(know_friction(t, s, &p));
+  PASS(measure_contacts(t, s, &p));
+  PASS(check_bounds(t, s, &p, out));
+  PASS(check_inequality(s, &p.cp, out));
   out->start = t->start;
   out->contacts = t->contacts;
   out->n_contact = t->n_contact == 2 ? 1 : t->n_contact;
   if (t->contacts[t->n_contact - 1].factor == 0.0) out->n_contact = 0;
   out->violated =
       out->total.violated || out->change.violated || out->inequality_violated;
-  TRY(state_before_keep(&p.cp, s->u, p.r, &t->before));
+  PASS(state_before_keep(&p.cp, s->u, p.r, &t->before));
   t->seen = 1;
-done:
-  frozen_free(&p);
-  return st;
+  return OK;
 }
 
 void theorems_path_learn(theorems *t, double theta, double dt, double span,

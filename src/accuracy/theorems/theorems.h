@@ -129,8 +129,6 @@ void theorems_path_learn(theorems *t, double theta, double dt, double span,
 /* Least k with x^k/k! < 1. */
 double theorems_passes(double x);
 
-/* ---- private to this folder and its tests ------------------------------- */
-
 /* A and its inverse: the norms. */
 typedef struct energy_norm {
   int m;

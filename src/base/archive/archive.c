@@ -220,18 +220,15 @@ static status write_whole(int fd, const char *path, const char *text) {
 }
 
 status archive_seal(const char *path) {
-  status st = OK;
   content c;
   char text[ARCHIVE_SEAL];
-  int fd = open(path, O_RDWR | O_CLOEXEC);
-  if (fd < 0) TRY(text_failed(path, "open", errno));
-  TRY(sum_up(fd, path, &c));
+  ENDS_BY(descriptor_leave) int fd = open(path, O_RDWR | O_CLOEXEC);
+  if (fd < 0) PASS(text_failed(path, "open", errno));
+  PASS(sum_up(fd, path, &c));
   write_text(&c, text);
-  TRY(write_whole(fd, path, text));
-  if (fsync(fd) != 0) TRY(text_failed(path, "write", errno));
-done:
-  if (fd >= 0) close(fd);
-  return st;
+  PASS(write_whole(fd, path, text));
+  if (fsync(fd) != 0) PASS(text_failed(path, "write", errno));
+  return OK;
 }
 
 static status refuse(const char *path, const char *why) {
@@ -240,28 +237,26 @@ static status refuse(const char *path, const char *why) {
 
 /* ERR_FILE: not there, without a seal, of another layout, not as sealed. */
 static status archive_check_seal(const char *path) {
-  status st = OK;
   content c;
   char text[ARCHIVE_SEAL], wanted[ARCHIVE_SEAL];
   const char *why;
+  ENDS_BY(descriptor_leave)
   int fd = file_descriptor(AT_FDCWD, path, O_RDONLY, &why);
-  if (fd < 0) FAIL(ERR_FILE, "%s: cannot read: %s", path, why);
+  if (fd < 0) RAISE(ERR_FILE, "%s: cannot read: %s", path, why);
   memset(text, 0, sizeof text);
   if (pread(fd, text, sizeof text, 0) < 0)
-    TRY(text_failed(path, "read", errno));
+    PASS(text_failed(path, "read", errno));
   if (strncmp(text, mark, strlen(mark)) != 0)
-    TRY(refuse(path, "this is no restart file of Protis"));
+    PASS(refuse(path, "this is no restart file of Protis"));
   if (strncmp(text + strlen(mark), layout, strlen(layout)) != 0)
-    TRY(refuse(path,
-               "the restart file has the layout of another version of Protis; "
-               "continue with that one, or start the run without --restart"));
-  TRY(sum_up(fd, path, &c));
+    PASS(refuse(path,
+                "the restart file has the layout of another version of Protis; "
+                "continue with that one, or start the run without --restart"));
+  PASS(sum_up(fd, path, &c));
   write_text(&c, wanted);
   if (memcmp(text, wanted, sizeof text) != 0)
-    TRY(refuse(path, "the restart file is damaged: wrong checksum"));
-done:
-  if (fd >= 0) close(fd);
-  return st;
+    PASS(refuse(path, "the restart file is damaged: wrong checksum"));
+  return OK;
 }
 
 static hid_t type_of(archive_kind kind) {

@@ -1,6 +1,4 @@
-/*
- * Datasets of an HDF5 file that others wrote, each call checked.
- */
+/* Datasets of an HDF5 file that others wrote, each call checked. */
 #ifndef PROTIS_ARCHIVE_DATASET_H
 #define PROTIS_ARCHIVE_DATASET_H
 

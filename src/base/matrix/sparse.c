@@ -1,6 +1,4 @@
-/*
- * A sparse matrix of square blocks (sparse.h).
- */
+/* A sparse matrix of square blocks (sparse.h). */
 #include "base/sparse.h"
 
 #include <string.h>
@@ -9,8 +7,6 @@ void sparse_blocks_free(sparse_blocks *b) {
   if (b == NULL) return;
   RELEASE(b->start, b->row, b->mate, b->own, b->val, b);
 }
-
-/* ---- pattern ------------------------------------------------------------- */
 
 typedef struct entries {
   long n;
@@ -130,8 +126,6 @@ done:
   return st;
 }
 
-/* ---- products ------------------------------------------------------------ */
-
 void sparse_blocks_add(const sparse_blocks *b, int j, const double *x,
                        double *y) {
   const double *B = block(b, b->start[j]);
@@ -183,8 +177,6 @@ void sparse_blocks_row(const sparse_blocks *b, int i, const double *x,
     for (int e = 0; e < d * d; ++e) y[e % d] += B[e] * from[e / d];
   }
 }
-
-/* ---- other forms --------------------------------------------------------- */
 
 status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows) {
   int d = b->dim, m = b->n * d, count_all = 0;

@@ -1,6 +1,4 @@
-/*
- * Files that are read.
- */
+/* Files that are read. */
 #define _GNU_SOURCE /* O_PATH */
 #include "base/system/input.h"
 

@@ -42,8 +42,6 @@ static void lower(limits *l, double memory, const char *who) {
   l->who = who;
 }
 
-/* ---- control groups ------------------------------------------------------ */
-
 /* The limits of one group, by its folder. */
 typedef void group_limit(const char *folder, limits *l);
 
@@ -138,8 +136,6 @@ static void read_groups(const char *root, limits *l) {
     read_group(root, line, l);
   if (f != NULL) fclose(f);
 }
-
-/* ---- machine and process ------------------------------------------------- */
 
 static void read_machine(const char *root, limits *l) {
   char path[PATH];

@@ -1,6 +1,4 @@
-/*
- * What the system lets this process have: cores and memory.
- */
+/* What the system lets this process have: cores and memory. */
 #ifndef PROTIS_SYSTEM_LIMITS_H
 #define PROTIS_SYSTEM_LIMITS_H
 

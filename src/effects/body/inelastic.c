@@ -15,8 +15,6 @@
 
 #include <math.h>
 
-/* ---- increments with a tolerance ---------------------------------------- */
-
 static const double ROUNDING = 0x1p-48; /* -, of the time */
 
 /* The next increment after one of length dt with this error; implicit
@@ -105,8 +103,6 @@ static status adapt(run *r, void *self, int *made) {
   return OK;
 }
 
-/* ---- its state ---------------------------------------------------------- */
-
 static int strains(const model *m, int elem_id) {
   return model_flows(m, elem_id);
 }
@@ -127,8 +123,6 @@ static status keep(run *r, void *self, archive *a) {
   (void)self;
   return visco_keep(r, a);
 }
-
-/* ---- its columns ------------------------------------------------------- */
 
 static int point_of(const view *v, int elem_id) {
   return visco_point_of(v->s->body.flow_elem, v->s->body.flow->n, elem_id);
@@ -187,8 +181,6 @@ ALPHA(7), ALPHA(8), ALPHA(9), ALPHA(10), ALPHA(11), ALPHA(12),
  "inelastic_stored", 0, inelastic_stored, NULL,
  "stored of it by the internal variables"}};
 /* clang-format on */
-
-/* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
   double law = s->flows_linearly ? 4.0 : 40.0;

@@ -74,8 +74,7 @@ static status test_start(run *r, start_report *s) {
   OWNED double *R = NULL, *diagonal = NULL;
   double largest = 0.0;
   TIMED(effect_stage(&initial_state_effect));
-  PASS_NEW(R, r->n_dof);
-  PASS_NEW(diagonal, r->n_dof);
+  PASS_NEW_REALS(r->n_dof, &R, &diagonal);
   PASS(increment_pose(r, 0.0));
   PASS(start_forces(r, R, diagonal, &largest));
   ties_share(&r->body.ties, R);
@@ -112,8 +111,6 @@ static status start(run *r, void *self) {
   PASS(test_start(r, self));
   return check_start(r, self);
 }
-
-/* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){s->nodes, "nodes", 2.0,

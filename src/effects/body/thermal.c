@@ -64,8 +64,6 @@ static status heat(run *r, void *T0, double t) {
   return OK;
 }
 
-/* ---- the row ------------------------------------------------------------ */
-
 static status expected(const plan_sizes *s, effect_work *w) {
   double n = 0.0;
   for (int i = 0; s->msh != NULL && i < s->m->n.section; ++i) {

@@ -5,9 +5,9 @@
  * good to some percent.
  */
 #include "base/memory.h"
-#include "effects/contact/cracks.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 #include "run/history/loop.h"
 
@@ -147,12 +147,9 @@ static status new_cracks(run *r, crack_state *own) {
 }
 
 static status cracks_new(run *r, void **self) {
-  crack_state *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  crack_state *own = *self;
   PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
-  PASS_NEW(own->traction, r->n_dof);
-  PASS_NEW(own->lumped, r->n_dof);
+  PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped);
   PASS_NEW(own->area, r->msh->n_node);
   PASS_NEW(own->shift, r->n_dof);
   own->step_id = -1;
@@ -173,12 +170,11 @@ static status cracks_copy(const run *r, const void *of, run *copy,
 
 static void release(void *self) {
   crack_state *own = self;
-  if (own == NULL) return;
   for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
     fracture_free(own->of[i]);
   RELEASE(own->of, own->elastic, own->rate, own->tips, own->found,
-          own->materials, own->sigma, own->traction, own->lumped, own->area);
-  memory_free(own);
+          own->materials, own->sigma, own->traction, own->lumped, own->area,
+          own->shift);
 }
 
 /* ---- an increment -------------------------------------------------------- */
@@ -306,8 +302,7 @@ static status find_elastic(const run *r, double *u) {
     for (size_t k = 0; k < r->n_dof; ++k) u[k] = NAN;
     return OK;
   }
-  PASS_NEW(f, n);
-  PASS_NEW(uc, n);
+  PASS_NEW_REALS(n, &f, &uc);
   PASS(condense_load(c, r->now.F, NULL, f));
   run_take_rows(r, r->now.rc, uc);
   for (int k = 0; k < n; ++k) f[k] += uc[k];
@@ -426,8 +421,6 @@ static status find_factors(run *r, void *self) {
   return find_creep(r, own);
 }
 
-/* ---- the row ------------------------------------------------------------- */
-
 static int requires_factors(const model *m, char *why, size_t size) {
   for (int i = 0; i < m->n.goal; ++i)
     if (m->accuracy.goals[i].quantity == GOAL_SIF)
@@ -536,6 +529,7 @@ const effect_ops cracks_effect = {.name = "stress intensity factors",
                                   .required = requires_factors,
                                   .expected = expected,
                                   .table = {PRINT_SIF, PER_TIP},
+                                  .size = sizeof(crack_state),
                                   .on.create = cracks_new,
                                   .on.due = factors_due,
                                   .on.accept = find_factors,

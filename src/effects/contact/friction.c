@@ -7,11 +7,10 @@
  * Any increment may be cut, so that each is one of several: the position of
  * stick is always found from the last equilibrium.
  */
-#include "effects/contact/friction.h"
-
 #include "base/memory.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 #include "run/column_row.h"
 
@@ -332,8 +331,7 @@ static void use_arrays(const friction *own, run *r) {
 
 static status new_arrays(const run *r, friction *own) {
   PASS_NEW(own->stick, r->nodes.n * (r->msh->dim - 1));
-  PASS_NEW(own->g, r->nodes.n);
-  PASS_NEW(own->distance, r->nodes.n);
+  PASS_NEW_REALS(r->nodes.n, &own->g, &own->distance);
   return OK;
 }
 
@@ -390,8 +388,6 @@ static status keep(run *r, void *self, archive *a) {
   if (archive_reads(a) && known) PASS(update_limit(r, own, r->old.t));
   return OK;
 }
-
-/* ---- the rows ----------------------------------------------------------- */
 
 static status expected(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){.kind = "nodes", .calls = 1.0};
@@ -495,8 +491,6 @@ DIRECTION("slip_dir_z", SCENE_SOLID, 2),
 {"limit", "force", CON, PRINT_CONTACT | AT(2), F, SCENE_ALL,
  NEEDS_SURFACE | NEEDS_LIMIT, "limit", 0, sliding_limit, NULL,
  "sliding limit"}};
-
-/* ---- the rows ----------------------------------------------------------- */
 
 const effect_ops friction_effect = {
   .name = "friction", .bit = EFFECT_BIT_FRICTION, .required = requires_friction,

@@ -129,8 +129,6 @@ static void give(run *r, void *self, contact_problem *cp, double *u,
   if (own->n > 0) given_form_apply(own->form, cp, u, force);
 }
 
-/* ---- the row ------------------------------------------------------------ */
-
 static status expected(const plan_sizes *s, effect_work *w) {
   double n = 0.0;
   for (int i = 0; s->msh != NULL && i < s->m->n.contact; ++i)

@@ -14,8 +14,7 @@
 static status prepare(run *r, void *self) {
   (void)self;
   if (r->nodes.n_c == 0 || r->old.motion != NULL) return OK;
-  PASS_NEW(r->old.motion, r->nodes.n_c);
-  PASS_NEW(r->now.motion, r->nodes.n_c);
+  PASS_NEW_REALS(r->nodes.n_c, &r->old.motion, &r->now.motion);
   surface_drift(r->surface, &r->faces.input, 0.0, r->old.t, r->old.motion);
   return OK;
 }

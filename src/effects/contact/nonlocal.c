@@ -3,11 +3,10 @@
  * it (CPR98, 2.7), and friction confined to the nodes that touch. Averages are
  * kept while surface and options are unchanged.
  */
-#include "effects/contact/friction.h"
-
 #include "base/memory.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 
 #include <string.h>
@@ -32,8 +31,6 @@ typedef struct nonlocal {
   int borrowed;              /* 1: that of another state */
   friction_zone zone;
 } nonlocal;
-
-/* ---- averages ----------------------------------------------------------- */
 
 static int has_same_average(const friction_rule *a, const friction_rule *b) {
   if (a == NULL || a->law != b->law) return 0;
@@ -73,8 +70,6 @@ static void count_entries(const run *r, const void *self, setup_facts *f) {
     if (own->average[i].rule != NULL)
       f->average_entries += own->average[i].rows.start[r->nodes.n];
 }
-
-/* ---- the zone ----------------------------------------------------------- */
 
 static void zone_free(friction_zone *z) {
   RELEASE(z->off, z->returned, z->B.val);
@@ -151,8 +146,6 @@ static status follow_zone(run *r, void *self, int *again) {
   return OK;
 }
 
-/* ---- its state ---------------------------------------------------------- */
-
 static status nonlocal_new(run *r, void **self) {
   nonlocal *own = *self;
   PASS_NEW(own->average, r->m->n.contact);
@@ -181,8 +174,6 @@ static void release(void *self) {
   zone_free(&own->zone);
   if (!own->borrowed) memory_free(own->average);
 }
-
-/* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
   *w = (effect_work){.kind = "nodes", .calls = 1.0};

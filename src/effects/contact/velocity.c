@@ -52,8 +52,6 @@ static void give(run *r, void *self, contact_problem *cp, double *u,
   velocity_form_apply(own->form, &own->before, u);
 }
 
-/* ---- the row ------------------------------------------------------------ */
-
 static int due(const run *r) { return r->step->form == FORM_VELOCITY; }
 
 static status expected(const plan_sizes *s, effect_work *w) {

@@ -88,8 +88,7 @@ static status overshoot(const run *r, const double *root, double *largest) {
   const int m = cp->m;
   OWNED double *x = NULL, *y = NULL;
   double norm = 0.0;
-  PASS_NEW(x, m);
-  PASS_NEW(y, m);
+  PASS_NEW_REALS(m, &x, &y);
   *largest = 0.0;
   for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] = root[i]);
   for (int k = 0; k < PRODUCTS && norm > 0.0; ++k) {

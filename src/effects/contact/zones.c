@@ -18,6 +18,7 @@
 #include "run/history/loop.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -122,16 +123,6 @@ static void difference(const finder *z, int from, int to, double *d) {
     d[c] = x[z->dim * to + c] - x[z->dim * from + c];
 }
 
-static void cross(const double *a, const double *b, double *c) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* Gradient of the P1 function with the values w at the nodes of a triangle,
  * times its area, into g[3]; the area. */
 static double face_gradient(const finder *z, const int *node, const double *w,
@@ -140,11 +131,11 @@ static double face_gradient(const finder *z, const int *node, const double *w,
   memset(g, 0, 3 * sizeof *g);
   difference(z, node[0], node[1], a);
   difference(z, node[0], node[2], b);
-  cross(a, b, normal);
-  double twice = sqrt(dot(normal, normal));
+  vector_cross(a, b, normal);
+  double twice = sqrt(vector_dot(normal, normal));
   for (int k = 0; k < 3; ++k) {
     difference(z, node[(k + 1) % 3], node[(k + 2) % 3], a);
-    cross(normal, a, part);
+    vector_cross(normal, a, part);
     for (int c = 0; c < 3; ++c) g[c] += part[c] / twice * w[node[k]] / 2;
   }
   return twice / 2;
@@ -178,7 +169,7 @@ static double face_reach(const finder *z, const level *l, int i, int j) {
 static double distance(const finder *z, int i, int j) {
   double way[3] = {0};
   difference(z, i, j, way);
-  return sqrt(dot(way, way));
+  return sqrt(vector_dot(way, way));
 }
 
 /* Nodes of the zone from node i at its edge inwards, away from j: as many as
@@ -289,8 +280,7 @@ static status find_areas(const finder *z, int contact_id) {
   return OK;
 }
 
-/* ---- in the plane: along the contact line --------------------------
- */
+/* ---- in the plane: along the contact line -------------------------------- */
 
 /* Direction of the slip along t; 0 without friction or slip. */
 static int slip_sign(const finder *z, int i) {
@@ -409,24 +399,18 @@ static status find_lines(finder *z, int contact_id) {
 }
 
 static status find_zones(run *r, void *self) {
-  status st = OK;
-  finder z = {.out = self};
+  ENDS_BY(finder_free) finder z = {.out = self};
   z.out->n = 0;
-  TRY(finder_new(r, &z));
+  PASS(finder_new(r, &z));
   set_levels(&z);
   for (int i = 0; i < r->m->n.contact && z.dim == 3; ++i) {
     add_slopes(&z, r->faces.pairs[i].group, &z.closed);
     add_slopes(&z, r->faces.pairs[i].group, &z.stick);
   }
   for (int i = 0; i < r->m->n.contact; ++i)
-    TRY(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
-done:
-  finder_free(&z);
-  return st;
+    PASS(z.dim == 3 ? find_areas(&z, i) : find_lines(&z, i));
+  return OK;
 }
-
-/* ---- the row --------------------------------------------------------------
- */
 
 static int requires_zones(const model *m, char *why, size_t size) {
   return plan_requires_table(m, PRINT_ZONES, why, size);

@@ -50,18 +50,7 @@ static void free_arrays(balance *b) {
   *b = (balance){0};
 }
 
-static void release(void *self) {
-  if (self != NULL) free_arrays(self);
-  memory_free(self);
-}
-
-static status balance_new(run *r, void **self) {
-  balance *b = NULL;
-  (void)r;
-  PASS_NEW(b, 1);
-  *self = b;
-  return OK;
-}
+static void release(void *self) { free_arrays(self); }
 
 static status begin_step(run *r, void *self) {
   balance *b = self;
@@ -71,10 +60,7 @@ static status begin_step(run *r, void *self) {
   if (!is_balanced(r) || b->m == r->nodes.n_c) return OK;
   free_arrays(b);
   b->m = r->nodes.n_c;
-  PASS_NEW(b->u, b->m);
-  PASS_NEW(b->rc, b->m);
-  PASS_NEW(b->guess_u, b->m);
-  PASS_NEW(b->guess_r, b->m);
+  PASS_NEW_REALS(b->m, &b->u, &b->rc, &b->guess_u, &b->guess_r);
   return OK;
 }
 
@@ -114,22 +100,20 @@ static double wanted_tolerance(const run *r, const balance *b) {
 
 /* Errors of r->now: 1 if a lower residual is needed, *tol then. */
 static status check_increment(run *r, balance *b, double *tol, int *again) {
-  status st = OK;
   double least = r->step->solver.tol,
          at = fmin(*tol, r->solving.report.residual);
   *again = 0;
-  TRY(estimate_evaluate(r));
+  PASS(estimate_evaluate(r));
   if (isfinite(r->errors.mesh_error.relative))
     b->mesh = r->errors.mesh_error.relative;
   double wanted = wanted_error(r, b), error = r->errors.error.relative;
   int unknown = !isfinite(error);
-  if (!unknown && error <= wanted) goto done;
-  if (*tol <= least || r->solving.report.residual <= least) goto done;
+  if (!unknown && error <= wanted) return OK;
+  if (*tol <= least || r->solving.report.residual <= least) return OK;
   double factor = unknown ? 0.0 : SAFETY * wanted / error;
   *tol = unknown ? least : fmax(least, at * fmax(factor, SHARPEST));
   *again = 1;
-done:
-  return st;
+  return OK;
 }
 
 static status solve(run *r, void *self, double t, int *made) {
@@ -244,7 +228,7 @@ const effect_ops balance_effect = {.name = "balance",
                                    .bit = NO_BIT,
                                    .required = requires_balance,
                                    .own = STAGE_NONE,
-                                   .on.create = balance_new,
+                                   .size = sizeof(balance),
                                    .on.begin_step = begin_step,
                                    .on.solve = solve,
                                    .on.accept = learn,

@@ -49,7 +49,6 @@ static double distance(const run *r, const double *a, const double *b,
 
 /* What the load and the obstacles can move, in the energy norm; room[2*n_c]. */
 static status load_change(run *r, double *room, double *size) {
-  status st = OK;
   double square = 0.0;
   *size = r->now.motion == NULL
               ? 0.0
@@ -67,10 +66,9 @@ static status load_change(run *r, double *room, double *size) {
   if (condensed_floating(r->c))
     square = HUGE_VAL;
   else
-    TRY(condensed_force_energy(r->c, room, &square));
+    PASS(condensed_force_energy(r->c, room, &square));
   *size += sqrt(square);
-done:
-  return st;
+  return OK;
 }
 
 /* ---- slip through the increment ------------------------------------------ */
@@ -109,23 +107,15 @@ static void set_sliding(const contact_problem *cp, const double *before,
 }
 
 static status sliding_rate(run *r, double *rate) {
-  status st = OK;
   const contact_problem *cp = &r->problem.cp;
   size_t m = (size_t)cp->m;
-  double *u = NULL, *q = NULL, *before = NULL;
-  NEW(u, m);
-  NEW(q, m);
-  NEW(before, m);
+  OWNED double *u = NULL, *q = NULL, *before = NULL;
+  PASS_NEW_REALS(m, &u, &q, &before);
   memcpy(before, run_rows(r, 1, r->old.rc), m * sizeof *before);
   memcpy(u, run_rows(r, 0, r->now.uc), m * sizeof *u);
   memcpy(q, run_rows(r, 1, r->now.rc), m * sizeof *q);
   set_sliding(cp, before, u, q);
-  TRY(contraction_rate(cp, u, q, &r->solving.rate, rate));
-done:
-  memory_free(u);
-  memory_free(q);
-  memory_free(before);
-  return st;
+  return contraction_rate(cp, u, q, &r->solving.rate, rate);
 }
 
 /* ---- states in between --------------------------------------------------- */
@@ -156,18 +146,16 @@ static void path_free(path *s) {
 /* The state u, rc as point number "at". */
 static status insert(path *s, int at, double t, const double *u,
                      const double *rc) {
-  status st = OK;
   run *r = s->r;
   memmove(s->p + at + 1, s->p + at, (size_t)(s->n - at) * sizeof *s->p);
   s->p[at] = (point){.t = t};
   ++s->n;
-  NEW(s->p[at].u, r->nodes.n_c);
-  NEW(s->p[at].status, r->nodes.n);
+  PASS_NEW(s->p[at].u, r->nodes.n_c);
+  PASS_NEW(s->p[at].status, r->nodes.n);
   memcpy(s->p[at].u, u, (size_t)r->nodes.n_c * sizeof *u);
   contact_classify(&r->problem.cp, run_rows(r, 0, s->p[at].u),
                    run_rows(r, 1, (double *)rc), s->p[at].status);
-done:
-  return st;
+  return OK;
 }
 
 /* 0 where the statuses at both ends of part k are the same. */
@@ -181,7 +169,6 @@ static void measure(path *s, int k) {
 
 /* Halve what moves most until it is short, *found, or moves by nothing. */
 static status follow(path *s, int *found) {
-  status st = OK;
   run *r = s->r;
   *found = -1;
   while (s->n < POINTS) {
@@ -194,29 +181,25 @@ static status follow(path *s, int *found) {
       break;
     }
     double middle = 0.5 * (s->p[k].t + s->p[k + 1].t);
-    TRY(increment_solve(r, middle));
+    PASS(increment_solve(r, middle));
     if (r->solving.report.outcome <= 0) break;
-    TRY(insert(s, k + 1, middle, r->now.uc, r->now.rc));
+    PASS(insert(s, k + 1, middle, r->now.uc, r->now.rc));
     measure(s, k);
     measure(s, k + 1);
   }
-done:
-  return st;
+  return OK;
 }
 
 /* AUTO in the place of the method of the deck, so that the result does not
  * depend on it, nor on what TOL=BALANCED allows; *own: that of the deck. */
 static status lend_solver(run *r, contact_solver **own) {
-  status st = OK;
   solver_choice choice = r->step->solver;
   choice.ops = NULL;
   choice.param = NULL;
   choice.max_iter = 0;
   *own = r->elastic.solver;
   r->elastic.solver = NULL;
-  TRY(contact_solver_new(&choice, &r->elastic.solver));
-done:
-  return st;
+  return contact_solver_new(&choice, &r->elastic.solver);
 }
 
 static void give_back(run *r, contact_solver *own, double tol) {
@@ -290,9 +273,6 @@ done:
   return st;
 }
 
-/* ---- the row --------------------------------------------------------------
- */
-
 /* Jumps are searched where friction makes increments depend on their
  * history. */
 static int requires_check(const model *m, char *why, size_t size) {
@@ -320,16 +300,6 @@ static status products(const plan_sizes *s, effect_work *w) {
   return OK;
 }
 
-static status checked_new(run *r, void **self) {
-  status st = OK;
-  checked *own = NULL;
-  (void)r;
-  NEW(own, 1);
-  *self = own;
-done:
-  return st;
-}
-
 static status begin_step(run *r, void *self) {
   (void)r;
   ((checked *)self)->jumps = 0;
@@ -355,10 +325,7 @@ static status keep(run *r, void *self, archive *a) {
 }
 
 static void release(void *self) {
-  checked *own = self;
-  if (own == NULL) return;
-  solution_set_free(&own->solutions);
-  memory_free(own);
+  solution_set_free(&((checked *)self)->solutions);
 }
 
 /* The hooks enter the stage themselves, where there is something to do. */
@@ -368,7 +335,7 @@ const effect_ops second_solutions_effect = {.name = "second solutions, jumps",
                                             .expected = products,
                                             .own = STAGE_NONE,
                                             .more = {STAGE_CHECK},
-                                            .on.create = checked_new,
+                                            .size = sizeof(checked),
                                             .on.begin_step = begin_step,
                                             .on.examine = look_for_jump,
                                             .on.accept = find_others,

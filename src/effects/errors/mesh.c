@@ -6,6 +6,7 @@
 #include "base/timer.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 #include "model/facts.h"
 #include "run/run.h"
 #include "run/column_row.h"
@@ -19,9 +20,7 @@ typedef struct mesh_estimate {
 } mesh_estimate;
 
 static status estimate_new(run *r, void **self) {
-  mesh_estimate *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  mesh_estimate *own = *self;
   PASS_NEW(own->elem_error, r->msh->n_elem);
   r->errors.elem_error = own->elem_error;
   return OK;
@@ -29,10 +28,8 @@ static status estimate_new(run *r, void **self) {
 
 static void release(void *self) {
   mesh_estimate *own = self;
-  if (own == NULL) return;
   space_recovery_free(own->recovery);
   memory_free(own->elem_error);
-  memory_free(own);
 }
 
 static int is_recovery_known(const run *r, const mesh_estimate *own) {
@@ -89,8 +86,6 @@ static status keep(run *r, void *self, archive *a) {
   return archive_reads(a) && made ? recover(r, self) : OK;
 }
 
-/* ---- the row ------------------------------------------------------------ */
-
 static status expected(const plan_sizes *s, effect_work *w) {
   const double passes = s->is_flat ? 3.0 : 6.0;
   double n = 0.0;
@@ -140,6 +135,7 @@ const effect_ops mesh_error_effect = {.name = "error of mesh",
                                       .expected = expected,
                                       .own = STAGE_MESH_ERROR,
                                       .inside = 1,
+                                      .size = sizeof(mesh_estimate),
                                       .on.create = estimate_new,
                                       .on.estimate = estimate,
                                       .on.keep = keep,

@@ -30,10 +30,7 @@ static void free_arrays(nested *x) {
   *x = (nested){.missed = -1};
 }
 
-static void release(void *self) {
-  if (self != NULL) free_arrays(self);
-  memory_free(self);
-}
+static void release(void *self) { free_arrays(self); }
 
 static void forget(run *r, void *self) {
   r->solving.start_u = r->solving.start_r = NULL;
@@ -41,18 +38,14 @@ static void forget(run *r, void *self) {
 }
 
 static status nested_new(run *r, void **self) {
-  nested *x = NULL;
   (void)r;
-  PASS_NEW(x, 1);
-  x->missed = -1;
-  *self = x;
+  ((nested *)*self)->missed = -1;
   return OK;
 }
 
 static status make_arrays(const run *r, nested *x) {
   if (x->u != NULL) return OK;
-  PASS_NEW(x->u, r->nodes.n_c);
-  PASS_NEW(x->rc, r->nodes.n_c);
+  PASS_NEW_REALS(r->nodes.n_c, &x->u, &x->rc);
   PASS_NEW(x->state, r->nodes.n);
   PASS_NEW(x->before, r->nodes.n);
   PASS_NEW(x->nearest, r->nodes.n);
@@ -154,6 +147,7 @@ const effect_ops nested_effect = {.name = "nested start",
                                   .bit = NO_BIT,
                                   .required = requires_start,
                                   .own = STAGE_NONE,
+                                  .size = sizeof(nested),
                                   .on.create = nested_new,
                                   .on.pose = pose,
                                   .on.accept = compare,

@@ -33,36 +33,23 @@ static int choose_inverse(run *r, double *diagonal, inverse_energy *out) {
 }
 
 /* *cpu: s, spent so far. */
-static status cpu_new(run *r, void **cpu) {
-  double *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *cpu = own;
-  return OK;
-}
-
 static status estimate(run *r, void *self) {
-  status st = OK;
   solver_error found = {.norm = NAN, .why = weakly_held};
   inverse_energy inverse;
   OWNED double *diagonal = NULL;
   double *spent = self, cpu = timer_cpu();
   r->errors.error = (error_bound){0};
   if (r->nodes.n == 0 || r->step->accuracy.no_solver) return OK;
-  timer_enter(STAGE_ESTIMATE);
-  NEW(diagonal, r->problem.cp.m);
+  TIMED(STAGE_ESTIMATE);
+  PASS_NEW(diagonal, r->problem.cp.m);
   if (choose_inverse(r, diagonal, &inverse))
-    TRY(solver_error_bound(&r->problem.cp, &inverse, run_rows(r, 0, r->now.uc),
-                           run_rows(r, 1, r->now.rc), &r->solving.rate,
-                           &found));
+    PASS(solver_error_bound(&r->problem.cp, &inverse, run_rows(r, 0, r->now.uc),
+                            run_rows(r, 1, r->now.rc), &r->solving.rate,
+                            &found));
   error_bound_set(&found, r->now.energy.strain, &r->errors.error);
   r->errors.error.cpu = *spent += timer_cpu() - cpu;
-done:
-  timer_leave(STAGE_ESTIMATE);
-  return st;
+  return OK;
 }
-
-/* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
   double m = plan_contact_unknowns(s), solve = 0.5 * work_factor_entries(s);
@@ -111,6 +98,5 @@ const effect_ops solver_error_effect = {.name = "error of solver",
                                         .columns = columns,
                                         .n_column = COLUMNS(columns),
                                         .of_state = 1,
-                                        .on.create = cpu_new,
-                                        .on.estimate = estimate,
-                                        .on.release = memory_free};
+                                        .size = sizeof(double),
+                                        .on.estimate = estimate};

@@ -52,12 +52,10 @@ typedef struct paths {
 } paths;
 
 static status waypoint_new(const run *r, waypoint *w) {
-  status st = OK;
-  TRY(start_point_new(r, &w->start));
+  PASS(start_point_new(r, &w->start));
   if (r->strains.visco != NULL)
-    TRY(flow_state_new(&r->strains.visco->x, &w->flow));
-done:
-  return st;
+    PASS(flow_state_new(&r->strains.visco->x, &w->flow));
+  return OK;
 }
 
 static void waypoint_free(waypoint *w) {
@@ -72,23 +70,20 @@ static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
 }
 
 static status path_new(const run *r, finer_path **out) {
-  status st = OK;
   finer_path *p = NULL;
-  NEW(p, 1);
+  PASS_NEW(p, 1);
   *out = p;
   p->flows = r->step->kind == STEP_VISCO;
-  TRY(waypoint_new(r, &p->at));
-  TRY(waypoint_new(r, &p->middle));
-  TRY(waypoint_new(r, &p->end));
-  NEW(p->d, r->nodes.n_c);
-  NEW(p->Ad, r->nodes.n_c);
+  PASS(waypoint_new(r, &p->at));
+  PASS(waypoint_new(r, &p->middle));
+  PASS(waypoint_new(r, &p->end));
+  PASS_NEW_REALS(r->nodes.n_c, &p->d, &p->Ad);
   if (r->strains.visco != NULL) {
-    NEW(p->u, r->n_dof);
-    NEW(p->e0, visco_at(r, r->strains.eigen.n));
+    PASS_NEW(p->u, r->n_dof);
+    PASS_NEW(p->e0, visco_at(r, r->strains.eigen.n));
   }
   waypoint_copy(r, &r->old, &p->at);
-done:
-  return st;
+  return OK;
 }
 
 static void path_free(finer_path *p) {
@@ -134,20 +129,18 @@ static int path_exists(const run *r) {
 /* Both halves of the increment that ends at t; lost where there is no
  * equilibrium. */
 static status try_halves(run *r, finer_path *p, double t) {
-  status st = OK;
   p->measured = 0;
   if (p->lost) return OK;
-  TRY(half(r, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
+  PASS(half(r, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
   p->lost = r->solving.report.outcome <= 0;
   if (p->lost) return OK;
-  TRY(half(r, &p->middle, t, &p->end));
+  PASS(half(r, &p->middle, t, &p->end));
   p->lost = r->solving.report.outcome <= 0;
   if (p->lost || p->u == NULL) return OK;
   memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
   memcpy(p->e0, r->strains.eigen.e0,
          visco_at(r, r->strains.eigen.n) * sizeof *p->e0);
-done:
-  return st;
+  return OK;
 }
 
 static status try_path(run *r, void *self, double t) {
@@ -280,18 +273,7 @@ static status compare(run *r, void *self) {
 
 /* ---- its state ---------------------------------------------------------- */
 
-static status paths_new(run *r, void **self) {
-  paths *own = NULL;
-  (void)r;
-  PASS_NEW(own, 1);
-  *self = own;
-  return OK;
-}
-
-static void release(void *self) {
-  if (self != NULL) path_free(((paths *)self)->path);
-  memory_free(self);
-}
+static void release(void *self) { path_free(((paths *)self)->path); }
 
 static void forget(run *r, void *self) {
   (void)r;
@@ -305,17 +287,15 @@ static status begin_step(run *r, void *self) {
 }
 
 static status keep_waypoint(const run *r, waypoint *w, archive *a) {
-  status st = OK;
   size_t m = (size_t)r->nodes.n_c;
-  TRY(archive_reals(a, "path_t", &w->start.t, 1));
-  TRY(archive_reals(a, "path_uc", w->start.uc, m));
-  TRY(archive_reals(a, "path_rc", w->start.rc, m));
-  TRY(archive_reals(a, "path_motion", w->start.motion,
-                    w->start.motion == NULL ? 0 : m));
+  PASS(archive_reals(a, "path_t", &w->start.t, 1));
+  PASS(archive_reals(a, "path_uc", w->start.uc, m));
+  PASS(archive_reals(a, "path_rc", w->start.rc, m));
+  PASS(archive_reals(a, "path_motion", w->start.motion,
+                     w->start.motion == NULL ? 0 : m));
   if (r->strains.visco != NULL)
-    TRY(visco_keep_flow(&r->strains.visco->x, &w->flow, a, "path_flow"));
-done:
-  return st;
+    PASS(visco_keep_flow(&r->strains.visco->x, &w->flow, a, "path_flow"));
+  return OK;
 }
 
 static status keep(run *r, void *self, archive *a) {
@@ -391,50 +371,46 @@ static double next_length(const run *r, double dt, double part,
 /* The attempt is rejected: r->at.dt the next time. */
 static status refuse(run *r, paths *own, double tried, double dt,
                      const char *why) {
-  status st = OK;
   progress *p = &r->at;
   if (own->path != NULL) own->path->lost = 0;
-  TRY(loop_reject(r, p->attempt, p->increment_no + 1, why));
+  PASS(loop_reject(r, p->attempt, p->increment_no + 1, why));
   p->dt = fmax(r->step->dt_min, fmin(0.5 * tried, dt));
   ++p->attempt;
-done:
-  return st;
+  return OK;
 }
 
 static status attempt_balanced(run *r, paths *own) {
-  status st = OK;
   const step *s = r->step;
   progress *p = &r->at;
   double cpu = timer_cpu(), t = next_end(r), tried = t - r->old.t;
   double before = total_error(own), part, allowed;
   int deeper, attempt = p->attempt;
-  TRY(visco_level(r, tried, &deeper));
+  PASS(visco_level(r, tried, &deeper));
   if (deeper > 0) {
     p->dt = ldexp(tried, -deeper);
-    goto done;
+    return OK;
   }
-  TRY(effects_attempt(r, t));
-  TRY(loop_solve(r, t));
+  PASS(effects_attempt(r, t));
+  PASS(loop_solve(r, t));
   int settled = r->solving.report.outcome > 0, shorter = p->dt > s->dt_min;
   if (!settled && shorter && loop_cut_helps(r)) {
-    TRY(refuse(r, own, tried, 0.0, outcome_text(r->solving.report.outcome)));
-    goto done;
+    PASS(refuse(r, own, tried, 0.0, outcome_text(r->solving.report.outcome)));
+    return OK;
   }
-  if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
-  if (!r->errors.evaluated) TRY(estimate_evaluate(r));
+  if (outcome_is_fatal(r->solving.report.outcome)) PASS(loop_no_equilibrium(r));
+  if (!r->errors.evaluated) PASS(estimate_evaluate(r));
   part = rounding_hides_strains(r) ? 0.0 : measure(r, own) - before;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, part, allowed);
   if (part > allowed && shorter) {
-    TRY(refuse(r, own, tried, dt, "error of the steps above its share"));
-    goto done;
+    PASS(refuse(r, own, tried, dt, "error of the steps above its share"));
+    return OK;
   }
   p->attempt = 1;
   ++p->increment_no;
-  TRY(loop_accept(r, attempt, p->increment_no, t == s->start + s->total, cpu));
+  PASS(loop_accept(r, attempt, p->increment_no, t == s->start + s->total, cpu));
   p->dt = dt;
-done:
-  return st;
+  return OK;
 }
 
 static status march(run *r, void *self, int *made) {
@@ -449,8 +425,6 @@ static status march(run *r, void *self, int *made) {
   }
   return OK;
 }
-
-/* ---- the row ------------------------------------------------------------ */
 
 static status expected(const plan_sizes *s, effect_work *w) {
   double m = plan_contact_unknowns(s);
@@ -482,7 +456,7 @@ const effect_ops time_error_effect = {.name = "error of steps",
                                       .expected = expected,
                                       .own = STAGE_TIME_ERROR,
                                       .inside = 1,
-                                      .on.create = paths_new,
+                                      .size = sizeof(paths),
                                       .on.begin_step = begin_step,
                                       .on.make_step = march,
                                       .on.attempt = try_path,

@@ -41,10 +41,9 @@ static status largest_mu(const run *r, int contact_id, double *mu) {
 static status theorems_scene_new(run *r, const equilibrium *e,
                                  theorems_scene *s, double **mu,
                                  unsigned char **given) {
-  status st = OK;
-  NEW(*mu, r->m->n.contact);
-  NEW(*given, r->nodes.n);
-  for (int c = 0; c < r->m->n.contact; ++c) TRY(largest_mu(r, c, &(*mu)[c]));
+  PASS_NEW(*mu, r->m->n.contact);
+  PASS_NEW(*given, r->nodes.n);
+  for (int c = 0; c < r->m->n.contact; ++c) PASS(largest_mu(r, c, &(*mu)[c]));
   for (int i = 0; i < r->nodes.n; ++i)
     (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
   *s = (theorems_scene){
@@ -57,11 +56,8 @@ static status theorems_scene_new(run *r, const equilibrium *e,
       .given = *given,
       .alone = r->step->kind == STEP_STATIC || r->course.relaxing,
       .tol = r->solving.tol};
-done:
-  return st;
+  return OK;
 }
-
-/* ---- inelastic strains ----------------------------------------------- */
 
 typedef struct body_map {
   run *r;
@@ -77,52 +73,42 @@ typedef struct body_map {
 } body_map;
 
 static status elastic_body(run *r, body_map *b) {
-  status st = OK;
   b->c = r->elastic.c;
-  if (!r->body.stale) goto done;
-  TRY(stiffness_assemble(&r->body.d, &b->own.k));
-  TRY(condense(b->own.k, &r->body.d, &b->own.c));
+  if (!r->body.stale) return OK;
+  PASS(stiffness_assemble(&r->body.d, &b->own.k));
+  PASS(condense(b->own.k, &r->body.d, &b->own.c));
   b->c = b->own.c;
-done:
-  return st;
+  return OK;
 }
 
 /* The contact of the elastic body with a given limit, in the states of the
  * solution. */
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
-  status st = OK;
-  unsigned char *none = NULL;
+  OWNED unsigned char *none = NULL;
   contact_problem cp = r->problem.cp;
-  NEW(none, r->nodes.n);
-  TRY(elastic_body(r, b));
+  PASS_NEW(none, r->nodes.n);
+  PASS(elastic_body(r, b));
   cp.A = condensed_matrix(b->c);
   cp.op = condensed_operator(b->c);
-  TRY(frozen_new(&cp, r->now.rc, none, given, &b->problem));
-  TRY(linear_contact_new(&b->problem.cp, r->now.uc, b->problem.r, &b->contact));
-done:
-  memory_free(none);
-  return st;
+  PASS(frozen_new(&cp, r->now.rc, none, given, &b->problem));
+  return linear_contact_new(&b->problem.cp, r->now.uc, b->problem.r,
+                            &b->contact);
 }
 
 static status body_map_new(run *r, const unsigned char *given, body_map *b) {
-  status st = OK;
   const visco *v = r->strains.visco;
   const size_t ns = (size_t)r->m->ns, n = (size_t)v->x.n;
   b->r = r;
-  NEW(b->Q, ns * ns * n);
-  NEW(b->e0, ns * (size_t)r->strains.eigen.n);
-  NEW(b->sigma, ns * (size_t)r->strains.eigen.n);
-  NEW(b->F, r->n_dof);
-  NEW(b->u, r->n_dof);
-  NEW(b->f, r->nodes.n_c);
-  NEW(b->du, r->nodes.n_c);
-  TRY(linear_body(r, given, b));
+  PASS_NEW(b->Q, ns * ns * n);
+  PASS_NEW_REALS(ns * (size_t)r->strains.eigen.n, &b->e0, &b->sigma);
+  PASS_NEW_REALS(r->n_dof, &b->F, &b->u);
+  PASS_NEW_REALS(r->nodes.n_c, &b->f, &b->du);
+  PASS(linear_body(r, given, b));
   for (int k = 0; k < v->x.n; ++k)
     for (size_t i = 0; i < ns; ++i)
       b->e0[visco_at(r, v->place[k]) + i] =
           sin(1.0 + 2.0 * (double)(visco_at(r, k) + i));
-done:
-  return st;
+  return OK;
 }
 
 static void body_map_free(body_map *b) {
@@ -147,7 +133,6 @@ static void flow_by_law(body_map *b) {
 
 /* sigma of e0 over its size, in the energy of the points. */
 static status answer_of_body(void *ctx, double *size) {
-  status st = OK;
   body_map *b = ctx;
   run *r = b->r;
   const visco *v = r->strains.visco;
@@ -157,9 +142,9 @@ static status answer_of_body(void *ctx, double *size) {
   b->begun = 1;
   memset(b->F, 0, r->n_dof * sizeof *b->F);
   eigen_force(&r->body.d, &x, b->F);
-  TRY(condense_load(b->c, b->F, NULL, b->f));
-  TRY(linear_contact_move(b->contact, b->f, b->du));
-  TRY(condense_recover(b->c, b->du, b->u));
+  PASS(condense_load(b->c, b->F, NULL, b->f));
+  PASS(linear_contact_move(b->contact, b->f, b->du));
+  PASS(condense_recover(b->c, b->du, b->u));
   double *elastic = v->stress;
   eigen_stress(&r->body.d, &x, b->u, elastic, b->sigma);
   for (int k = 0; k < v->x.n; ++k) {
@@ -170,8 +155,7 @@ static status answer_of_body(void *ctx, double *size) {
   *size = sqrt(fmax(square, 0.0));
   for (size_t i = 0; *size > 0.0 && i < visco_at(r, r->strains.eigen.n); ++i)
     b->sigma[i] /= *size;
-done:
-  return st;
+  return OK;
 }
 
 /* theta of the rule: an integrator without takes the middle of the step. */
@@ -183,56 +167,44 @@ static double theta_of(const step *s) {
 
 /* Theorem 3.2 over the increment. */
 static status see_path(run *r, const unsigned char *given, checked *own) {
-  status st = OK;
   visco *v = r->strains.visco;
   theorems_path *out = &own->report.path;
-  body_map b = {0};
+  ENDS_BY(body_map_free) body_map b = {0};
   if (v == NULL || r->step->kind != STEP_VISCO) return OK;
   const scheme_step p = {
       .t = r->now.t, .dt = r->now.t - r->old.t, .theta = theta_of(r->step)};
   const stress_map map = {&b, answer_of_body};
   *out = (theorems_path){.asked = 1};
-  TRY(body_map_new(r, given, &b));
-  TRY(flow_compliance(&v->x, &p, &v->old, &v->now, b.Q, &out->bound));
+  PASS(body_map_new(r, given, &b));
+  PASS(flow_compliance(&v->x, &p, &v->old, &v->now, b.Q, &out->bound));
   if (b.contact == NULL)
     out->why = "nothing holds what is free under given friction";
   else if (out->bound > 0.0)
-    TRY(theorems_path_rate(&map, &out->rate));
+    PASS(theorems_path_rate(&map, &out->rate));
   theorems_path_learn(own->at_work, p.theta, p.dt, r->now.t - r->step->start,
                       out);
   own->report.violated |= out->violated;
-done:
-  body_map_free(&b);
-  return st;
+  return OK;
 }
 
-/* ---- of an increment --------------------------------------------------- */
-
 static status see_theory(run *r, checked *own, int at_start) {
-  status st = OK;
   theorems_scene s;
-  double *mu = NULL;
-  unsigned char *given = NULL;
+  OWNED double *mu = NULL;
+  OWNED unsigned char *given = NULL;
   own->report = (theorems_report){0};
-  TRY(theorems_scene_new(r, at_start ? &r->old : &r->now, &s, &mu, &given));
+  PASS(theorems_scene_new(r, at_start ? &r->old : &r->now, &s, &mu, &given));
   if (at_start)
-    TRY(theorems_start(own->at_work, &s));
+    PASS(theorems_start(own->at_work, &s));
   else
-    TRY(theorems_check(own->at_work, &s, &own->report));
-  if (!at_start) TRY(see_path(r, given, own));
+    PASS(theorems_check(own->at_work, &s, &own->report));
+  if (!at_start) PASS(see_path(r, given, own));
   r->at.violated = own->report.violated;
-done:
-  memory_free(mu);
-  memory_free(given);
-  return st;
+  return OK;
 }
 
 static status see_increment(run *r, void *own) { return see_theory(r, own, 0); }
 
 static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
-
-/* ---- the row --------------------------------------------------------------
- */
 
 static int requires_theorems(const model *m, char *why, size_t size) {
   if (facts_first_step(m, facts_asks_theory) != NULL && m->n.contact == 0)
@@ -248,14 +220,8 @@ static status expected(const plan_sizes *s, effect_work *w) {
 }
 
 static status checked_new(run *r, void **self) {
-  status st = OK;
-  checked *own = NULL;
   (void)r;
-  NEW(own, 1);
-  *self = own;
-  TRY(theorems_new(&own->at_work));
-done:
-  return st;
+  return theorems_new(&((checked *)*self)->at_work);
 }
 
 static int due(const run *r) {
@@ -266,12 +232,7 @@ static void show(const void *self, state *s) {
   s->errors.theorems = ((const checked *)self)->report;
 }
 
-static void release(void *self) {
-  checked *own = self;
-  if (own == NULL) return;
-  theorems_free(own->at_work);
-  memory_free(own);
-}
+static void release(void *self) { theorems_free(((checked *)self)->at_work); }
 
 const effect_ops theorems_effect = {.name = "theory checks",
                                     .bit = EFFECT_BIT_THEORY,
@@ -279,6 +240,7 @@ const effect_ops theorems_effect = {.name = "theory checks",
                                     .expected = expected,
                                     .own = STAGE_THEORY,
                                     .shadow = 1,
+                                    .size = sizeof(checked),
                                     .on.create = checked_new,
                                     .on.due = due,
                                     .on.initial = see_start,

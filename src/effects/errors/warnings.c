@@ -89,17 +89,11 @@ static void end(run *r, void *self) {
 }
 
 static status warnings_new(run *r, void **self) {
-  warnings *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
-  PASS_NEW(own->touched, r->m->n.contact);
+  PASS_NEW(((warnings *)*self)->touched, r->m->n.contact);
   return OK;
 }
 
-static void release(void *self) {
-  if (self != NULL) memory_free(((warnings *)self)->touched);
-  memory_free(self);
-}
+static void release(void *self) { memory_free(((warnings *)self)->touched); }
 
 static status keep(run *r, void *self, archive *a) {
   warnings *own = self;
@@ -118,6 +112,7 @@ const effect_ops warnings_effect = {.name = "warnings",
                                     .bit = NO_BIT,
                                     .required = requires_warnings,
                                     .own = STAGE_NONE,
+                                    .size = sizeof(warnings),
                                     .on.create = warnings_new,
                                     .on.accept = look,
                                     .on.end = end,

@@ -15,6 +15,8 @@
  * are in no residual at the nodes: a goal with the adjoint y lacks dF y.
  */
 #include "base/memory.h"
+#include "base/number.h"
+#include "base/vector.h"
 #include "effects/goal/parts.h"
 
 #include <math.h>
@@ -243,16 +245,6 @@ typedef struct rim_edge {
   double length, out[3]; /* m; unit normal along the face, outward */
 } rim_edge;
 
-static int by_ends(const void *a_, const void *b_) {
-  const rim_edge *a = a_, *b = b_;
-  if (a->v[0] != b->v[0]) return a->v[0] < b->v[0] ? -1 : 1;
-  return (a->v[1] > b->v[1]) - (a->v[1] < b->v[1]);
-}
-
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* The edge of a face opposite to corner k. */
 static rim_edge edge_of(const mesh *m, int face, int k) {
   const int *v = m->face + 3 * face, a = v[(k + 1) % 3], b = v[(k + 2) % 3];
@@ -263,7 +255,7 @@ static rim_edge edge_of(const mesh *m, int face, int k) {
     e.out[c] = m->x[3 * a + c] - m->x[3 * v[k] + c];
     e.length = hypot(e.length, along[c]);
   }
-  const double part = dot(e.out, along) / (e.length * e.length);
+  const double part = vector_dot(e.out, along) / (e.length * e.length);
   for (int c = 0; c < 3; ++c) {
     e.out[c] -= part * along[c];
     size = hypot(size, e.out[c]);
@@ -279,9 +271,10 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   *n = 3 * g->n_item;
   PASS_NEW(*e, *n);
   for (int i = 0; i < *n; ++i) (*e)[i] = edge_of(m, g->item_id[i / 3], i % 3);
-  qsort(*e, (size_t)*n, sizeof **e, by_ends);
+  qsort(*e, (size_t)*n, sizeof **e, number_pair_order);
   for (int i = 0, last; i < *n; i = last) {
-    for (last = i + 1; last < *n && by_ends(*e + i, *e + last) == 0;) ++last;
+    for (last = i + 1; last < *n && number_pair_order(*e + i, *e + last) == 0;)
+      ++last;
     if (last == i + 1) (*e)[kept++] = (*e)[i];
   }
   *n = kept;
@@ -299,7 +292,7 @@ static void out_at(const run *r, const rim_edge *e, const int *next, int k,
   memset(out, 0, 3 * sizeof *out);
   do {
     const rim_edge *other = e + at / 2;
-    for (int c = 0; c < 3 && dot(own->out, other->out) >= SMOOTH; ++c)
+    for (int c = 0; c < 3 && vector_dot(own->out, other->out) >= SMOOTH; ++c)
       out[c] += other->length * other->out[c];
     at = next[at];
   } while (at != k);

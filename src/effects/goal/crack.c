@@ -4,9 +4,9 @@
  * the contact forces on the lips, which are tractions over their areas.
  */
 #include "effects/goal/parts.h"
+#include "effects/shared.h"
 
 #include "base/memory.h"
-#include "effects/contact/cracks.h"
 
 #include <math.h>
 

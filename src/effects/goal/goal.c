@@ -18,10 +18,10 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "effects/errors/mesh.h"
 #include "effects/goal/parts.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
+#include "effects/shared.h"
 
 #include <cblas.h>
 #include <math.h>
@@ -48,15 +48,12 @@ typedef struct goal_state {
 } goal_state;
 
 static status goals_new(run *r, void **self) {
-  goal_state *own = NULL;
-  PASS_NEW(own, 1);
-  *self = own;
+  goal_state *own = *self;
   own->n = r->m->n.goal;
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
     PASS_NEW(own->product, (size_t)own->n * (size_t)r->msh->n_elem);
-  PASS_NEW(own->before.sum, own->n);
-  PASS_NEW(own->before.band, own->n);
+  PASS_NEW_REALS(own->n, &own->before.sum, &own->before.band);
   if (!effect_is_on(&slip_history_effect, r->m)) return OK;
   PASS_NEW(own->before.u, r->n_dof);
   return OK;
@@ -64,10 +61,9 @@ static status goals_new(run *r, void **self) {
 
 static void release(void *self) {
   goal_state *own = self;
-  if (own == NULL) return;
   space_recovery_free(own->recovery);
   RELEASE(own->before.u, own->before.edge, own->before.sum, own->before.band,
-          own->product, own->result, own);
+          own->product, own->result);
 }
 
 /* ---- what the estimate covers -------------------------------------------- */
@@ -188,14 +184,9 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .front = s->surface.front,
                                .has_flux = has_factor(r->m)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
-  PASS_NEW(s->y, r->n_dof);
-  PASS_NEW(s->lacks, r->n_dof);
+  PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));
-  PASS_NEW(s->j, n);
-  PASS_NEW(s->more, n);
-  PASS_NEW(s->psi, n);
-  PASS_NEW(s->y_c, n);
-  PASS_NEW(s->moved, n);
+  PASS_NEW_REALS(n, &s->j, &s->more, &s->psi, &s->y_c, &s->moved);
   if (n == 0) return OK;
   PASS(set_moved(r, own, s));
   return contact_adjoint_new(&r->problem.cp, run_rows(r, 0, r->now.uc),
@@ -378,24 +369,21 @@ static status find_goal(run *r, goal_state *own, shared *s, int id) {
 /* The time that all share counts with the first. */
 static status find_goals(run *r, void *self) {
   goal_state *own = self;
-  shared s = {.estimator = NULL};
+  ENDS_BY(shared_free) shared s = {.estimator = NULL};
   double cpu = timer_cpu();
-  status st = OK;
-  TRY(goal_form_new(r, &s.form));
+  PASS(goal_form_new(r, &s.form));
   forget(r, &own->before, own->n);
   if (!(r->m->effects & EFFECT_REACTION) && !run_finds_mesh_error(r))
     domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
-  if (is_covered(r)) TRY(prepare(r, own, &s));
+  if (is_covered(r)) PASS(prepare(r, own, &s));
   for (int k = 0; k < own->n; ++k) {
-    TRY(find_goal(r, own, &s, k));
+    PASS(find_goal(r, own, &s, k));
     own->result[k].cpu += timer_cpu() - cpu;
     cpu = timer_cpu();
   }
-  TRY(remember(r, own, &s));
+  PASS(remember(r, own, &s));
   own->result[0].cpu += timer_cpu() - cpu;
-done:
-  shared_free(&s);
-  return st;
+  return OK;
 }
 
 static status keep(run *r, void *self, archive *a) {
@@ -425,8 +413,6 @@ static void show(const void *self, state *s) {
   s->errors.goals = own->result;
   s->errors.goal_products = own->product;
 }
-
-/* ---- the row ------------------------------------------------------------- */
 
 /* Factor of the contact; passes over the elements and solves of all, of each
  * goal, and of the errors that friction remembers. */
@@ -507,6 +493,7 @@ const effect_ops goals_effect = {.name = "errors of goals",
                                  .required = requires_goals,
                                  .expected = expected,
                                  .table = {PRINT_GOALS, PER_GOAL},
+                                 .size = sizeof(goal_state),
                                  .on.create = goals_new,
                                  .on.accept = find_goals,
                                  .on.show = show,

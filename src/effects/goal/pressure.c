@@ -20,6 +20,7 @@
  * with x0 at three quarters from the middle to a (Hertz: .0016 a too much).
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "effects/goal/parts.h"
 
 #include <lapacke.h>
@@ -397,10 +398,9 @@ static void judge_line(const run *r, const goal_card *g, const line *l,
 /* Where the largest pressure may be infinite there is no peak. */
 static status place_on_line(const run *r, const goal_card *g, int peak,
                             weight *w, goal_form *f) {
-  status st = OK;
-  line l = {0};
+  ENDS_BY(line_free) line l = {0};
   int first, last;
-  TRY(line_new(r, g, w, peak, &l));
+  PASS(line_new(r, g, w, peak, &l));
   const int mirrored = goal_is_mirrored(r, peak);
   const int at_border = l.peak == 0 || l.peak == l.n - 1;
   zone_of(r, &l, &first, &last);
@@ -419,9 +419,7 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
   w->at = on_line;
   if (w->axi) set_disc_of_axis(g, w, f);
   judge_line(r, g, &l, w, f);
-done:
-  line_free(&l);
-  return st;
+  return OK;
 }
 
 /* ---- a disc in space ----------------------------------------------------- */
@@ -429,12 +427,6 @@ done:
 typedef struct side {
   int v[2]; /* mesh nodes, ascending */
 } side;
-
-static int by_ends(const void *a_, const void *b_) {
-  const side *a = a_, *b = b_;
-  if (a->v[0] != b->v[0]) return a->v[0] < b->v[0] ? -1 : 1;
-  return (a->v[1] > b->v[1]) - (a->v[1] < b->v[1]);
-}
 
 /* Sides of the faces of a group, sorted; new. */
 static status sides_of(const mesh *m, const mesh_group *of, side **out) {
@@ -445,7 +437,7 @@ static status sides_of(const mesh *m, const mesh_group *of, side **out) {
       const int p = v[a], q = v[(a + 1) % 3];
       (*out)[3 * k + a] = (side){{p < q ? p : q, p < q ? q : p}};
     }
-  qsort(*out, 3 * (size_t)of->n_item, sizeof **out, by_ends);
+  qsort(*out, 3 * (size_t)of->n_item, sizeof **out, number_pair_order);
   return OK;
 }
 
@@ -496,7 +488,8 @@ static status look_round(const run *r, const goal_card *g, double radius,
   *out = (rim){0, 0.0};
   for (int k = 0, last; k < n; k = last) {
     const int *v = e[k].v;
-    for (last = k + 1; last < n && by_ends(e + k, e + last) == 0;) ++last;
+    for (last = k + 1; last < n && number_pair_order(e + k, e + last) == 0;)
+      ++last;
     if (!is_near(r, v[0], w, radius) && !is_near(r, v[1], w, radius)) continue;
     double length = 0.0;
     for (int c = 0; c < 3; ++c)
@@ -699,17 +692,13 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
 }
 
 status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
-  status st = OK;
-  line l = {0};
+  ENDS_BY(line_free) line l = {0};
   const int peak = peak_of(r, g);
   f->value = NAN;
   if (r->msh->dim == 3 || !has_one_thickness(r, g)) f->why = GOAL_NOT_COVERED;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (f->why != GOAL_RELIABLE) return OK;
   const weight w = weight_at(r, g, peak);
-  TRY(line_new(r, g, &w, peak, &l));
-  TRY(set_ends(r, g, &l, &w, f));
-done:
-  line_free(&l);
-  return st;
+  PASS(line_new(r, g, &w, peak, &l));
+  return set_ends(r, g, &l, &w, f);
 }

@@ -12,8 +12,7 @@ static const double PI = 3.14159265358979323846;
 
 status goal_form_new(const run *r, goal_form *f) {
   PASS_NEW(f->load, r->n_dof);
-  PASS_NEW(f->rows, r->nodes.n_c);
-  PASS_NEW(f->psi, r->nodes.n_c);
+  PASS_NEW_REALS(r->nodes.n_c, &f->rows, &f->psi);
   for (int i = 0; i < r->m->n.goal; ++i) {
     const goal_quantity q = r->m->accuracy.goals[i].quantity;
     if ((q == GOAL_STRESS || q == GOAL_ENERGY) && f->tau == NULL)
@@ -41,8 +40,6 @@ static void clear(const run *r, goal_form *f) {
   f->has_tau = f->is_square = f->is_coarse = f->sums = 0;
   f->why = GOAL_RELIABLE;
 }
-
-/* ---- forces -------------------------------------------------------------- */
 
 /* Moment about the point of the goal of a unit force f[dim] at x[dim]. */
 static double moment_of(const goal_card *g, int dim, const double *x,
@@ -144,8 +141,6 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
     }
   return OK;
 }
-
-/* ---- displacements, stresses --------------------------------------------- */
 
 /* Adds the mean over a node or a group times a sign. */
 static void add_mean(const run *r, int node_id, int group_id, int component,

@@ -3,6 +3,7 @@
  * changes, or it is closed at its border, where stresses may be infinite.
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "effects/goal/parts.h"
 
 #include <math.h>
@@ -115,9 +116,6 @@ static void add_edge(const run *r, int i, int j, double weight,
   s->edge[s->n_edge++] = e;
 }
 
-/* ---- the lips of a crack --------------------------------------------------
- */
-
 /* An edge of a lip between nodes v[2], opposite other[2], of which each has
  * half of the motion: the weight counts twice on one of them; n_q of its nodes
  * are contact nodes q: the others are at the front, where both lips are one. */
@@ -177,21 +175,13 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
   }
 }
 
-/* ---- the border ---------------------------------------------------------- */
-
-static int by_nodes(const void *a_, const void *b_) {
-  const contact_edge *a = a_, *b = b_;
-  if (a->a != b->a) return a->a < b->a ? -1 : 1;
-  return (a->b > b->b) - (a->b < b->b);
-}
-
 /* 1: edge k of the sorted edges of all faces is of one face, and not on a plane
  * of symmetry. */
 static int is_border(const run *r, const int *where, const goal_surface *s,
                      int k) {
   const contact_edge *e = &s->edge[k];
-  if (k > 0 && by_nodes(e - 1, e) == 0) return 0;
-  if (k < s->n_edge - 1 && by_nodes(e, e + 1) == 0) return 0;
+  if (k > 0 && number_pair_order(e - 1, e) == 0) return 0;
+  if (k < s->n_edge - 1 && number_pair_order(e, e + 1) == 0) return 0;
   return where[e->a] < 0 || where[e->b] < 0 ||
          !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
 }
@@ -226,7 +216,7 @@ static status mark_front(const mesh *m, goal_surface *s) {
 static void unite_edges(goal_surface *s) {
   int n = 0;
   for (int k = 0; k < s->n_edge; ++k)
-    if (n == 0 || by_nodes(&s->edge[n - 1], &s->edge[k]) != 0)
+    if (n == 0 || number_pair_order(&s->edge[n - 1], &s->edge[k]) != 0)
       s->edge[n++] = s->edge[k];
     else
       s->edge[n - 1].weight += s->edge[k].weight;
@@ -246,32 +236,30 @@ static void add_group(const run *r, const mesh_group *g, const int *where,
 }
 
 status goal_surface_new(const run *r, goal_surface *s) {
-  status st = OK;
   const mesh *m = r->msh;
-  int *where = NULL, *seen = NULL, n = 0;
-  NEW(s->ends, m->n_node);
-  NEW(seen, m->n_node);
-  TRY(goal_places(r, &where));
+  OWNED int *where = NULL, *seen = NULL;
+  int n = 0;
+  PASS_NEW(s->ends, m->n_node);
+  PASS_NEW(seen, m->n_node);
+  PASS(goal_places(r, &where));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
       n += m->group[r->m->contacts[k].group_id].n_item;
   for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;
-  NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
+  PASS_NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
       add_group(r, &m->group[r->m->contacts[k].group_id], where, s);
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   if (s->n_edge > 0)
-    qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, by_nodes);
+    qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, number_pair_order);
   mark_border(r, where, seen, s);
-  TRY(mark_front(m, s));
+  PASS(mark_front(m, s));
   unite_edges(s);
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
-done:
-  RELEASE(where, seen);
-  return st;
+  return OK;
 }
 
 void goal_surface_free(goal_surface *s) {

@@ -73,8 +73,7 @@ static status reactions(const plan_sizes *s, effect_work *w) {
   return s->msh == NULL ? OK : plan_held(s, &unknowns, &w->items);
 }
 
-/* ---- the cards that require them ----------------------------------------
- */
+/* ---- the cards that require them ----------------------------------------- */
 
 static int requires_mesh(const model *m, char *why, size_t size) {
   return plan_says(!m->problem.given, why, size, "*MESH, %s:%d",

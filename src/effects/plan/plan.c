@@ -155,9 +155,6 @@ void plan_free(effect_plan *p) {
   memory_free(p);
 }
 
-/* ---- as text --------------------------------------------------------------
- */
-
 stage_cost plan_cost(const plan_row *r) {
   stage_cost sum = {0, 0.0, 0};
   for (int k = 0; k < r->n_stage; ++k) {

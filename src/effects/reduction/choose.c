@@ -24,8 +24,6 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- thermal strain ----------------------------------------------------- */
-
 /* Largest temperature the deck gives as a number; HUGE_VAL: by other means. */
 static double largest_temperature(const model *m) {
   double most = 0.0;
@@ -47,9 +45,7 @@ static status find_jump(const model *m, const mesh *msh, int *jumps) {
   OWNED double *T0 = NULL, *before = NULL, *T = NULL;
   const size_t bytes = (size_t)msh->n_elem * sizeof *T;
   *jumps = 0;
-  PASS_NEW(T0, msh->n_elem);
-  PASS_NEW(before, msh->n_elem);
-  PASS_NEW(T, msh->n_elem);
+  PASS_NEW_REALS(msh->n_elem, &T0, &before, &T);
   PASS(load_temperature_initial(m, msh, T0));
   memcpy(before, T0, bytes);
   for (int i = 0; i < m->n.step; ++i) {
@@ -98,8 +94,6 @@ static status try_thermal(model *m, const mesh *msh) {
            worst);
   return OK;
 }
-
-/* ---- nonlocal average --------------------------------------------------- */
 
 /* Shortest distance of two nodes of a contact, length. */
 static double least_distance(const mesh *msh, const mesh_group *g) {
@@ -163,8 +157,6 @@ static void try_average(model *m, const mesh *msh) {
              "same as LAW=COULOMB",
              least);
 }
-
-/* ---- friction ----------------------------------------------------------- */
 
 static double all_increments(const model *m) {
   double n = 0.0;
@@ -231,8 +223,6 @@ static status try_friction(model *m, const mesh *msh) {
              "no material expands across its load: no slip expected");
   return OK;
 }
-
-/* ---- all ---------------------------------------------------------------- */
 
 /* 1: needs the problem itself, not its solution, or moves on its own. */
 static int must_stay(const model *m) {

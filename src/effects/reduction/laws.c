@@ -23,8 +23,6 @@ static double visco_time(const model *m) {
   return t;
 }
 
-/* ---- inelastic strain --------------------------------------------------- */
-
 /* 1: the rate at the start does not bound later ones. */
 static int hardens(const law_point *p) {
   enum { NORTON_M = 2 };
@@ -47,8 +45,6 @@ static status uniaxial_rate(const material *mat, kinematics kin, double stress,
   if (isnan(ei_rate[0] + ei_rate[1]) || hardens(&x.p)) *rate = HUGE_VAL;
   return OK;
 }
-
-/* ---- below what matters -------------------------------------------------- */
 
 /* *tried: 1 if there is a row. */
 static status try_small(model *m, const mesh *msh, int id, int *tried) {
@@ -74,9 +70,6 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
              mat->law.ops->name);
   return OK;
 }
-
-/* ---- final state -----------------------------------------------------------
- */
 
 /* The shortest increment if the law flows in all steps and the integrator damps
  * fast terms; else 0. */
@@ -142,8 +135,6 @@ static status try_law(model *m, const mesh *msh, int id) {
   if (!tried) PASS(try_relaxed(m, id));
   return OK;
 }
-
-/* ---- elements below their threshold ------------------------------------- */
 
 static const double margin = 1.5; /* of stresses, - */
 enum {

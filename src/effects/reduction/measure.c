@@ -66,19 +66,14 @@ status reduction_new(const model *m, const mesh *msh, reduction **out) {
   PASS_NEW(n->fixed, msh->dim * msh->n_node);
   n->d.fixed = n->fixed;
   PASS_NEW(n->sigma, strains);
-  PASS_NEW(n->T0, msh->n_elem);
-  PASS_NEW(n->T, msh->n_elem);
-  PASS_NEW(n->heat, strains);
-  PASS_NEW(n->flow.strain, strains);
-  PASS_NEW(n->flow.strain_rate, strains);
-  PASS_NEW(n->strain, strains);
+  PASS_NEW_REALS(msh->n_elem, &n->T0, &n->T);
+  PASS_NEW_REALS(strains, &n->heat, &n->flow.strain, &n->flow.strain_rate,
+                 &n->strain);
   PASS_NEW(n->elem_id, msh->n_elem);
   PASS_NEW(n->way, (msh->dim - 1) * msh->n_node);
-  PASS_NEW(n->force, msh->dim * msh->n_node);
-  PASS_NEW(n->u, msh->dim * msh->n_node);
+  PASS_NEW_REALS(msh->dim * msh->n_node, &n->force, &n->u);
   for (int e = 0; e < msh->n_elem; ++e) n->elem_id[e] = e;
-  PASS_NEW(n->flow.stress, msh->n_elem);
-  PASS_NEW(n->flow.rate, msh->n_elem);
+  PASS_NEW_REALS(msh->n_elem, &n->flow.stress, &n->flow.rate);
   return load_temperature_initial(m, msh, n->T0);
 }
 

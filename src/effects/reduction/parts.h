@@ -1,6 +1,4 @@
-/*
- * Sums of the bounds, shared by the files of this folder only.
- */
+/* Sums of the bounds, shared by the files of this folder only. */
 #ifndef PROTIS_REDUCTION_PARTS_H
 #define PROTIS_REDUCTION_PARTS_H
 

@@ -775,23 +775,20 @@ static status fronts_find(opening *o) {
 
 status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
                  mesh_crack *crack) {
-  status st = OK;
+  ENDS_BY(release)
   opening o = {.m = m, .n = n, .cut = cut, .log = log, .crack = crack};
   if (n == 0) return OK;
   o.errors = message_count(log, ERROR);
   for (int k = 0; k < n; ++k) crack[k] = (mesh_crack){0};
-  TRY(take_faces(&o));
-  TRY(gather_elements(&o));
-  TRY(pair_sides(&o));
-  TRY(cut_sides(&o));
-  TRY(find_fans(&o));
+  PASS(take_faces(&o));
+  PASS(gather_elements(&o));
+  PASS(pair_sides(&o));
+  PASS(cut_sides(&o));
+  PASS(find_fans(&o));
   leave_closed(&o);
-  TRY(lips_orient(&o));
-  TRY(opening_check(&o));
-  TRY(lips_store(&o));
-  TRY(groups_open(&o));
-  TRY(fronts_find(&o));
-done:
-  release(&o);
-  return st;
+  PASS(lips_orient(&o));
+  PASS(opening_check(&o));
+  PASS(lips_store(&o));
+  PASS(groups_open(&o));
+  return fronts_find(&o);
 }

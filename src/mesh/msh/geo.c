@@ -2,6 +2,7 @@
  * Words of a .geo. Comments are skipped; text in quotes counts, as in
  * GetNumber("h").
  */
+#include "base/file.h"
 #include "mesh/msh/geo.h"
 
 #include "base/memory.h"
@@ -41,21 +42,18 @@ static status add_file(geo_text *g, const char *folder, size_t n_folder,
 
 /* The whole file as text, NULL if it cannot be opened or is too long. */
 static status load(const char *path, char **text) {
-  status st = OK;
   const char *why;
-  FILE *in = input_stream(path, &why);
+  ENDS_BY(file_leave) FILE *in = input_stream(path, &why);
   if (in == NULL) return OK;
   long size = fseek(in, 0, SEEK_END) == 0 ? ftell(in) : -1;
   if (size < 0 || fseek(in, 0, SEEK_SET) != 0)
-    TRY(text_failed(path, "read", errno));
+    PASS(text_failed(path, "read", errno));
   if (size < MOST_BYTES) {
-    NEW(*text, size + 1);
+    PASS_NEW(*text, size + 1);
     (*text)[fread(*text, 1, (size_t)size, in)] = '\0';
-    if (ferror(in)) TRY(text_failed(path, "read", errno));
+    if (ferror(in)) PASS(text_failed(path, "read", errno));
   }
-done:
-  fclose(in);
-  return st;
+  return OK;
 }
 
 static int starts_name(char c) { return isalpha((unsigned char)c) || c == '_'; }

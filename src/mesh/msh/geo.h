@@ -1,6 +1,4 @@
-/*
- * The text of a .geo and of the files that it includes: which names it has.
- */
+/* The text of a .geo and of the files that it includes: which names it has. */
 #ifndef PROTIS_MSH_GEO_H
 #define PROTIS_MSH_GEO_H
 

@@ -525,31 +525,26 @@ static status msh4_elements(msh *m) {
 
 /* Lines 'dimension tag "name"'. */
 static status read_names(msh *m) {
-  status st = OK;
   scan *s = &m->s;
   size_t n;
   int dim, tag, id;
-  TRY(scan_size(s, &n));
-  TRY(scan_line(s));
-  TRY(scan_fits(s, n, sizeof "1 1 \"\"", 1, "names"));
+  PASS(scan_size(s, &n));
+  PASS(scan_line(s));
+  PASS(scan_fits(s, n, sizeof "1 1 \"\"", 1, "names"));
   for (size_t i = 0; i < n; ++i) {
     msh_name name;
-    TRY(scan_int(s, &dim));
-    TRY(scan_int(s, &tag));
-    TRY(scan_quoted(s, &name.text, &name.length));
-    if (table_find(&m->names, table_key(dim, tag)) >= 0) {
-      st =
-          scan_fail(s, "the group %d of dimension %d is named twice", tag, dim);
-      goto done;
-    }
-    TRY(scan_line(s));
-    TRY(table_add(&m->names, table_key(dim, tag), &id));
-    GROW(m->name, id, m->names_capacity);
+    PASS(scan_int(s, &dim));
+    PASS(scan_int(s, &tag));
+    PASS(scan_quoted(s, &name.text, &name.length));
+    if (table_find(&m->names, table_key(dim, tag)) >= 0)
+      return scan_fail(s, "the group %d of dimension %d is named twice", tag,
+                       dim);
+    PASS(scan_line(s));
+    PASS(table_add(&m->names, table_key(dim, tag), &id));
+    PASS_GROW(m->name, id, m->names_capacity);
     m->name[id] = name;
   }
-  TRY(scan_end(s, "PhysicalNames", "its names"));
-done:
-  return st;
+  return scan_end(s, "PhysicalNames", "its names");
 }
 
 static int by_dim_and_tag(const void *p, const void *q) {

@@ -1,6 +1,4 @@
-/*
- * Release of a raw mesh; tables of ids.
- */
+/* Release of a raw mesh; tables of ids. */
 #include "mesh/msh/raw_mesh.h"
 
 #include "base/memory.h"
@@ -29,10 +27,10 @@ void table_free(key_table *t) {
 }
 
 static status grow(key_table *t) {
-  status st = OK;
+  ENDS_BY(table_free)
   key_table more = {.n = t->n, .n_slot = t->n_slot == 0 ? 16 : 2 * t->n_slot};
-  NEW(more.key, more.n_slot);
-  NEW(more.id, more.n_slot);
+  PASS_NEW(more.key, more.n_slot);
+  PASS_NEW(more.id, more.n_slot);
   for (size_t i = 0; i < t->n_slot; ++i) {
     if (t->id[i] == 0) continue;
     size_t s = slot_of(&more, t->key[i]);
@@ -42,9 +40,7 @@ static status grow(key_table *t) {
   key_table swapped = *t;
   *t = more;
   more = swapped;
-done:
-  table_free(&more);
-  return st;
+  return OK;
 }
 
 status table_add(key_table *t, uint64_t key, int *id) {

@@ -1,6 +1,5 @@
-/*
- * The scanner. Lines are counted only when a failure names one.
- */
+/* The scanner. Lines are counted only when a failure names one. */
+#include "base/file.h"
 #include "mesh/msh/scan.h"
 
 #include "base/memory.h"
@@ -41,24 +40,20 @@ static status read_all(scan *s, int fd) {
 }
 
 status scan_open(scan *s, const char *path, status wrong) {
-  status st = OK;
   struct stat about;
   limits l;
   const char *why;
   *s = (scan){.path = path, .wrong = wrong};
-  int fd = input_open(path, &why);
-  if (fd < 0) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  ENDS_BY(descriptor_leave) int fd = input_open(path, &why);
+  if (fd < 0) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   if (fstat(fd, &about) != 0)
-    FAIL(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
+    RAISE(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
   limits_read("", &l);
   if ((double)about.st_size > l.memory)
-    FAIL(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
-         (long long)about.st_size, l.who);
+    RAISE(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
+          (long long)about.st_size, l.who);
   s->size = (size_t)about.st_size;
-  TRY(read_all(s, fd));
-done:
-  if (fd >= 0) close(fd);
-  return st;
+  return read_all(s, fd);
 }
 
 void scan_close(scan *s) {

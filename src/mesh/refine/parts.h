@@ -1,13 +1,9 @@
-/*
- * Sizes, surfaces and cells of a refinement. Inside src/mesh/refine only.
- */
+/* Sizes, surfaces and cells of a refinement. Inside src/mesh/refine only. */
 #ifndef PROTIS_REFINE_PARTS_H
 #define PROTIS_REFINE_PARTS_H
 
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/refine/refine.h"
-
-/* ---- sizes.c: the size at a place ---------------------------------------- */
 
 typedef struct size_grid size_grid;
 /* *out is new. ERR_MEMORY. */
@@ -15,9 +11,6 @@ status size_grid_new(const refine_sizes *s, size_grid **out);
 void size_grid_free(size_grid *g); /* accepts NULL */
 /* m; beyond the mesh about that of the nearest element. */
 double size_grid_at(const size_grid *g, const double *x);
-
-/* ---- round.c: where the middle of an edge is ----------------------------
- */
 
 /* Faces of groups that may be curved: lines in the plane, triangles. */
 typedef struct surface_faces {

@@ -105,27 +105,24 @@ static status take_block(bisection *b, int block, const key_table *nodes) {
 }
 
 static status take(bisection *b) {
-  status st = OK;
   const raw_mesh *raw = b->raw;
-  key_table nodes = {0};
+  ENDS_BY(table_free) key_table nodes = {0};
   int id;
   for (int i = 0; i < raw->n_block; ++i)
     if (raw->block[i].dim > b->dim) b->dim = raw->block[i].dim;
   b->n_node = (int)raw->n_node;
-  NEW(b->x, 3 * raw->n_node);
-  NEW(b->no, raw->n_node);
-  NEW(b->is_round, raw->n_block);
+  PASS_NEW(b->x, 3 * raw->n_node);
+  PASS_NEW(b->no, raw->n_node);
+  PASS_NEW(b->is_round, raw->n_block);
   for (int i = 0; i < b->n_node; ++i) {
-    TRY(table_add(&nodes, (uint64_t)raw->node_no[i], &id));
-    if (id != i) FAIL(ERR_MESH, "node %zu is there twice", raw->node_no[i]);
+    PASS(table_add(&nodes, (uint64_t)raw->node_no[i], &id));
+    if (id != i) RAISE(ERR_MESH, "node %zu is there twice", raw->node_no[i]);
     b->no[i] = raw->node_no[i];
     for (int k = 0; k < 3; ++k)
       b->x[3 * i + k] = b->q->scale * raw->xyz[3 * i + k];
   }
-  for (int i = 0; i < raw->n_block; ++i) TRY(take_block(b, i, &nodes));
-done:
-  table_free(&nodes);
-  return st;
+  for (int i = 0; i < raw->n_block; ++i) PASS(take_block(b, i, &nodes));
+  return OK;
 }
 
 /* ---- lengths ------------------------------------------------------------- */
@@ -438,18 +435,15 @@ static status give(const bisection *b) {
 }
 
 status raw_refine(raw_mesh *raw, const refine_request *q) {
-  status st = OK;
-  bisection b = {.q = q, .raw = raw};
+  ENDS_BY(release) bisection b = {.q = q, .raw = raw};
   int done = 0;
   if (!is_simple(raw)) return OK;
-  TRY(take(&b));
-  if (b.dim < 2) goto done;
-  TRY(size_grid_new(&q->sizes, &b.sizes));
+  PASS(take(&b));
+  if (b.dim < 2) return OK;
+  PASS(size_grid_new(&q->sizes, &b.sizes));
   double limit = MIDDLE[b.dim];
   for (int round = 0; round < ROUNDS && !done; ++round)
-    TRY(run_round(&b, &limit, &done));
-  if (b.first_mid > 0) TRY(give(&b));
-done:
-  release(&b);
-  return st;
+    PASS(run_round(&b, &limit, &done));
+  if (b.first_mid > 0) PASS(give(&b));
+  return OK;
 }

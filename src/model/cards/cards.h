@@ -125,8 +125,6 @@ status apply_print(reading *r);
 status apply_output(reading *r);
 status apply_restart(reading *r);
 
-/* ---- fields.c: helpers for the data lines ---- */
-
 /* 0 if the line has min..max fields. */
 int record_fields(const reading *r, const record *line, int min, int max,
                   const char *expected);

@@ -1,6 +1,4 @@
-/*
- * Cards of the contact: rigid obstacles, contact pairs, friction laws.
- */
+/* Cards of the contact: rigid obstacles, contact pairs, friction laws. */
 #include "model/cards/cards.h"
 
 #include "base/memory.h"
@@ -525,7 +523,6 @@ status apply_contact_force(reading *r) {
 }
 
 status apply_effect(reading *r) {
-  status st = OK;
   model *m = r->m;
   const card_options *p = r->param;
   int id = p->contact == NULL ? -1 : find_contact(r, p->contact);
@@ -537,10 +534,9 @@ status apply_effect(reading *r) {
                 r->card->name, first->at.line_no);
     return OK;
   }
-  GROW(m->effect_cards, m->n.effect_card, m->cap.effect_card);
+  PASS_GROW(m->effect_cards, m->n.effect_card, m->cap.effect_card);
   effect_card *c = &m->effect_cards[m->n.effect_card++];
   *c = (effect_card){r->card->name, id, {0}, r->card->at};
   memcpy(c->value, p->value, sizeof c->value);
-done:
-  return st;
+  return OK;
 }

@@ -132,8 +132,7 @@ status read_pairs(reading *r, int first_line, int variable, value_table *out) {
     }
     total += c->records[i].n_field / 2;
   }
-  PASS_NEW(out->at, total);
-  PASS_NEW(out->value, total);
+  PASS_NEW_REALS(total, &out->at, &out->value);
   out->variable = variable;
   int n = 0;
   for (int i = first_line; i < c->n_record; ++i)

@@ -1,6 +1,4 @@
-/*
- * Supports, loads and initial conditions.
- */
+/* Supports, loads and initial conditions. */
 #include "base/memory.h"
 #include "model/cards/cards.h"
 
@@ -215,8 +213,6 @@ status apply_temperature(reading *r) {
   return read_loads(r, 1u << LOAD_TEMPERATURE, temperature_line, path,
                     read_temperature);
 }
-
-/* ---- *INITIAL CONDITIONS ------------------------------------------------ */
 
 /* By initial_type. */
 static const struct {

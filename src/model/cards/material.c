@@ -89,8 +89,7 @@ status apply_expansion(reading *r) {
   x->zero = p->zero;
   for (int c = 0; c < 3; ++c) {
     x->alpha[c].variable = TABLE_T;
-    PASS_NEW(x->alpha[c].at, n);
-    PASS_NEW(x->alpha[c].value, n);
+    PASS_NEW_REALS(n, &x->alpha[c].at, &x->alpha[c].value);
   }
   while (lines < n &&
          read_expansion(r, &r->card->records[lines], lines, x) == 0)
@@ -98,8 +97,6 @@ status apply_expansion(reading *r) {
   for (int c = 0; c < 3; ++c) x->alpha[c].n = lines;
   return OK;
 }
-
-/* ---- inelastic laws ----------------------------------------------------- */
 
 plugin names_inelastic(const reading *r) {
   const card_options *p = r->param;

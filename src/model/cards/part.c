@@ -1,6 +1,4 @@
-/*
- * Cards of the model: title, units, mesh, sections, amplitudes, time points.
- */
+/* Cards of the model: title, units, mesh, sections, amplitudes, time points. */
 #include "model/cards/cards.h"
 
 #include "base/memory.h"
@@ -85,8 +83,7 @@ status apply_section(reading *r) {
 
 /* One pair: the same at all times. */
 static status constant_table(double value, value_table *t) {
-  PASS_NEW(t->at, 1);
-  PASS_NEW(t->value, 1);
+  PASS_NEW_REALS(1, &t->at, &t->value);
   t->value[0] = value;
   t->n = 1;
   return OK;

@@ -56,8 +56,6 @@ status apply_reference(reading *r) {
   return OK;
 }
 
-/* ---- *GOAL --------------------------------------------------------------- */
-
 /* What a quantity takes, as bits. */
 enum {
   ON_CONTACT = 1,

@@ -1,6 +1,4 @@
-/*
- * The model against the mesh, after all cards are read.
- */
+/* The model against the mesh, after all cards are read. */
 #ifndef PROTIS_CHECK_CHECK_H
 #define PROTIS_CHECK_CHECK_H
 

@@ -610,9 +610,8 @@ static void check_exact(const model *m, int step_id) {
 
 /* The fastest rate of the laws whose Jacobian is the same for ever, 1/s. */
 static status constant_rate(const model *m, double *fastest) {
-  status st = OK;
   static const double zero[FLOW_VALUE_MAX];
-  flow_kind kind = {0};
+  ENDS_BY(flow_kind_free) flow_kind kind = {0};
   *fastest = 0.0;
   for (int i = 0; i < m->n.section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
@@ -620,31 +619,28 @@ static status constant_rate(const model *m, double *fastest) {
     law_point p;
     double rate;
     if (mat->law.ops == NULL || !is_constant(mat)) continue;
-    TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
-                         &elastic));
-    TRY(flow_new_kind(&kind, &mat->law, &elastic));
-    TRY(flow_coefficients(&kind, 0.0, 0.0, NULL, &p));
+    PASS(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
+                          &elastic));
+    PASS(flow_new_kind(&kind, &mat->law, &elastic));
+    PASS(flow_coefficients(&kind, 0.0, 0.0, NULL, &p));
     p.sigma = p.ei = p.alpha = zero;
-    TRY(law_fastest_rate(&p, &rate));
+    PASS(law_fastest_rate(&p, &rate));
     *fastest = fmax(*fastest, rate);
     flow_kind_free(&kind);
   }
-done:
-  flow_kind_free(&kind);
-  return st;
+  return OK;
 }
 
 /* 1: a mean stress alone makes nothing flow, as far as a shear does. */
 static status keeps_volume(const section *s, const material *mat, int *answer) {
-  status st = OK;
   static const double zero[FLOW_VALUE_MAX];
   double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], ei_rate[6];
-  flow_kind kind = {0};
+  ENDS_BY(flow_kind_free) flow_kind kind = {0};
   law_elastic elastic;
   law_point p;
-  TRY(law_elastic_read(&mat->elastic, 0.0, (kinematics)s->kin, &elastic));
-  TRY(flow_new_kind(&kind, &mat->law, &elastic));
-  TRY(flow_coefficients(&kind, 0.0, 0.0, value, &p));
+  PASS(law_elastic_read(&mat->elastic, 0.0, (kinematics)s->kin, &elastic));
+  PASS(flow_new_kind(&kind, &mat->law, &elastic));
+  PASS(flow_coefficients(&kind, 0.0, 0.0, value, &p));
   const double size = 1e-3 * elastic.young;
   const double mean[6] = {size, size, size}, shear[6] = {0, 0, 0, size};
   p.ei = p.alpha = zero;
@@ -655,9 +651,7 @@ static status keeps_volume(const section *s, const material *mat, int *answer) {
   p.sigma = shear;
   law_rate(&p, ei_rate, alpha_rate);
   *answer = swelling <= 1e-9 * fabs(ei_rate[3]);
-done:
-  flow_kind_free(&kind);
-  return st;
+  return OK;
 }
 
 /* Bodies that creep at constant volume become incompressible. */

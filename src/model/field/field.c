@@ -1,6 +1,4 @@
-/*
- * Nodal fields: $NodeData of gmsh, or two datasets of HDF5.
- */
+/* Nodal fields: $NodeData of gmsh, or two datasets of HDF5. */
 #include "model/field/field.h"
 
 #include "base/memory.h"
@@ -105,22 +103,18 @@ static status read_gmsh(scan *s, pairs *p) {
 }
 
 static status read_hdf5(const char *path, long most, pairs *p) {
-  status st = OK;
-  hdf5_source s;
-  int *number = NULL;
+  ENDS_BY(dataset_close) hdf5_source s = {0};
+  OWNED int *number = NULL;
   long n_value = 0;
-  TRY(dataset_open(path, &s));
-  TRY(source_ints(&s, "/node_no", 0, most, &p->n, &number));
-  TRY(source_reals(&s, "/temperature", 0, most, &n_value, &p->value));
+  PASS(dataset_open(path, &s));
+  PASS(source_ints(&s, "/node_no", 0, most, &p->n, &number));
+  PASS(source_reals(&s, "/temperature", 0, most, &n_value, &p->value));
   if (n_value != p->n)
-    FAIL(ERR_DECK, "%s: /node_no has %ld items, /temperature %ld", path, p->n,
-         n_value);
-  NEW(p->node_no, p->n);
+    RAISE(ERR_DECK, "%s: /node_no has %ld items, /temperature %ld", path, p->n,
+          n_value);
+  PASS_NEW(p->node_no, p->n);
   for (long i = 0; i < p->n; ++i) p->node_no[i] = number[i];
-done:
-  memory_free(number);
-  dataset_close(&s);
-  return st;
+  return OK;
 }
 
 /* A node of the mesh with its place, sorted by number. */

@@ -1,6 +1,4 @@
-/*
- * A value at each node of a mesh, from the file of another program.
- */
+/* A value at each node of a mesh, from the file of another program. */
 #ifndef PROTIS_FIELD_FIELD_H
 #define PROTIS_FIELD_FIELD_H
 

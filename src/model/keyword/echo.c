@@ -1,6 +1,4 @@
-/*
- * What the keyword table prints: the deck with all defaults, and the help.
- */
+/* What the keyword table prints: the deck with all defaults, and the help. */
 #include "base/text.h"
 #include "model/keyword/keyword.h"
 

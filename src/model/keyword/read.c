@@ -1,6 +1,4 @@
-/*
- * From cards to the model: the driver over the keyword table.
- */
+/* From cards to the model: the driver over the keyword table. */
 #include "base/memory.h"
 #include "model/keyword/keyword.h"
 

@@ -1,6 +1,4 @@
-/*
- * Names to ids once all cards are read.
- */
+/* Names to ids once all cards are read. */
 #include "base/memory.h"
 #include "mesh/msh/geo.h"
 #include "model/keyword/keyword.h"
@@ -146,8 +144,7 @@ static void resolve_contacts(model *m) {
 static status make_first_step(model *m) {
   value_table *t = &m->time.first_step;
   if (m->n.step == 0 || (m->n.obstacle == 0 && !model_has_pairs(m))) return OK;
-  PASS_NEW(t->at, 2);
-  PASS_NEW(t->value, 2);
+  PASS_NEW_REALS(2, &t->at, &t->value);
   t->variable = TABLE_T;
   t->n = 2;
   t->at[1] = m->steps[0].total;
@@ -459,20 +456,17 @@ static void report_unused(const model *m, const geo_text *g, const symbol *s) {
 /* Names of *PARAMETER and -D that neither the deck nor the .geo uses
  * are errors; the others learn whether the .geo has them. */
 static status check_symbols(const model *m) {
-  status st = OK;
-  geo_text g = {0};
+  ENDS_BY(geo_free) geo_text g = {0};
   if (m->mesh.file != NULL && mesh_is_program(m->mesh.file))
-    TRY(geo_read(m->mesh.file, &g));
-  for (int i = 1; i < g.n_file; ++i) TRY(deck_input_copy(m->deck, g.file[i]));
+    PASS(geo_read(m->mesh.file, &g));
+  for (int i = 1; i < g.n_file; ++i) PASS(deck_input_copy(m->deck, g.file[i]));
   for (int i = 0; i < m->deck->n_symbol; ++i) {
     symbol *s = &m->deck->symbols[i];
     s->in_geometry = geo_has(&g, s->typed);
     if (!s->used && !s->in_geometry && s->at.from == NULL)
       report_unused(m, &g, s);
   }
-done:
-  geo_free(&g);
-  return st;
+  return OK;
 }
 
 status model_resolve(model *m, int lost) {

@@ -1,7 +1,6 @@
-/*
- * Columns of the nodes and of the elements.
- */
+/* Columns of the nodes and of the elements. */
 #include "run/column_row.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -34,11 +33,7 @@ static double mises(const view *v, int id, int part) {
   return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double length(const double *a) { return sqrt(dot(a, a)); }
+static double length(const double *a) { return sqrt(vector_dot(a, a)); }
 
 /* The larger (sign 1) or the smaller (-1) eigenvalue of [a c; c b]. */
 static double of_two(double a, double b, double c, int sign) {
@@ -47,12 +42,13 @@ static double of_two(double a, double b, double c, int sign) {
 
 /* Of d, symmetric without trace, the eigenvalue farthest from the others. */
 static double lone_value(double d[3][3]) {
-  const double r =
-      sqrt((dot(d[0], d[0]) + dot(d[1], d[1]) + dot(d[2], d[2])) / 6);
+  const double r = sqrt((vector_dot(d[0], d[0]) + vector_dot(d[1], d[1]) +
+                         vector_dot(d[2], d[2])) /
+                        6);
   const double normal[3] = {d[1][1] * d[2][2] - d[1][2] * d[2][1],
                             d[1][2] * d[2][0] - d[1][0] * d[2][2],
                             d[1][0] * d[2][1] - d[1][1] * d[2][0]};
-  const double ratio = dot(d[0], normal) / (2 * r * r * r);
+  const double ratio = vector_dot(d[0], normal) / (2 * r * r * r);
   const double angle = acos(fmax(-1, fmin(1, ratio))) / 3, pi = acos(-1);
   return 2 * r * cos(angle < pi / 6 ? angle : angle + 2 * pi / 3);
 }
@@ -70,7 +66,7 @@ static void plane_of(double d[3][3], double lone, double *s, double *t) {
   double *q = c[(p + 1) % 3], *other = c[(p + 2) % 3];
   const double size = length(c[p]);
   for (int i = 0; i < 3; ++i) s[i] = c[p][i] / size;
-  const double along[2] = {dot(s, q), dot(s, other)};
+  const double along[2] = {vector_dot(s, q), vector_dot(s, other)};
   for (int i = 0; i < 3; ++i) {
     q[i] -= along[0] * s[i];
     other[i] -= along[1] * s[i];
@@ -96,10 +92,11 @@ static double principal_in_space(const double *stress, int part) {
   const double lone = lone_value(d);
   plane_of(d, lone, s, t);
   for (int k = 0; k < 3; ++k) {
-    ds[k] = dot(d[k], s);
-    dt[k] = dot(d[k], t);
+    ds[k] = vector_dot(d[k], s);
+    dt[k] = vector_dot(d[k], t);
   }
-  const double a = dot(s, ds), b = dot(t, dt), c = dot(s, dt);
+  const double a = vector_dot(s, ds), b = vector_dot(t, dt),
+               c = vector_dot(s, dt);
   double e[3] = {lone, of_two(a, b, c, 1), of_two(a, b, c, -1)};
   if (lone < e[1]) {
     e[0] = e[1];

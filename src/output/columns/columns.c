@@ -168,7 +168,7 @@ static unsigned if_there(const void *p, unsigned bits) {
 int column_ready(const column *c, const state *s) {
   const effect_ops *e = effect_of_column(c);
   unsigned have = 0;
-  if (e != NULL && e->on.create != NULL && !e->of_state &&
+  if (e != NULL && (e->on.create != NULL || e->size > 0) && !e->of_state &&
       effect_state(s->effects, e) == NULL)
     return 0;
   have |= if_there(s->body.strain, NEEDS_STRAIN);

@@ -35,8 +35,6 @@ double energy_defect_relative(const energies *e);
 /* Unit with the labels of *UNITS: "force/length^2" -> "N/mm^2". */
 void column_unit(const char *unit, const model *m, char *text, size_t size);
 
-/* ---- table.c ---- */
-
 /* Columns of a table that the model and the state have. */
 typedef struct table {
   int n;

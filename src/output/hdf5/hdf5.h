@@ -1,6 +1,4 @@
-/*
- * JOB.h5 and JOB.xdmf: mesh, fields and histories for viewers and programs.
- */
+/* JOB.h5 and JOB.xdmf: mesh, fields and histories for viewers and programs. */
 #ifndef PROTIS_HDF5_HDF5_H
 #define PROTIS_HDF5_HDF5_H
 

@@ -1,6 +1,4 @@
-/*
- * JOB.lst, block by block. ERR_FILE if it cannot be written.
- */
+/* JOB.lst, block by block. ERR_FILE if it cannot be written. */
 #ifndef PROTIS_LISTING_LISTING_H
 #define PROTIS_LISTING_LISTING_H
 

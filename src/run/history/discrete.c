@@ -40,8 +40,7 @@ typedef struct discrete {
 static status discrete_new(discrete *d) {
   const exchange_problem *p = d->p;
   PASS_NEW(d->surface.node_no, p->n);
-  PASS_NEW(d->u, p->m);
-  PASS_NEW(d->r, p->m);
+  PASS_NEW_REALS(p->m, &d->u, &d->r);
   PASS_NEW(d->gap, p->n);
   PASS_NEW(d->slip, (size_t)p->n * (size_t)(p->dim - 1));
   PASS_NEW(d->g, p->n);
@@ -128,9 +127,6 @@ static status find_error(const step *s, const contact_problem *cp,
   return OK;
 }
 
-/* ---- contact problems -----------------------------------------------------
- */
-
 static status solve_contact(discrete *d, const history_sink *sink) {
   status st = OK;
   contact_solver *solver = NULL;
@@ -157,9 +153,6 @@ done:
   contact_solver_free(solver);
   return st;
 }
-
-/* ---- linear complementarity problems --------------------------------------
- */
 
 static status solve_lcp(discrete *d) {
   status st = OK;
@@ -188,9 +181,6 @@ done:
   d->report.cpu = timer_cpu() - start;
   return st;
 }
-
-/* ---- data of the outputs --------------------------------------------
- */
 
 static state state_of(const discrete *d) {
   const exchange_problem *p = d->p;

@@ -84,8 +84,6 @@ status estimate_increment(run *r) {
   return OK;
 }
 
-/* ---- other solutions ---------------------------------------------------- */
-
 status check_problem(const step *s, const contact_problem *cp,
                      const solver_report *report, const double *u,
                      const double *r, solution_set *out) {

@@ -137,8 +137,7 @@ static status dense_show(run *r, int increment_no) {
   return OK;
 }
 
-/* ---- an increment is accepted or rejected ---------------------------------
- */
+/* ---- an increment is accepted or rejected -------------------------------- */
 
 /* 1 if some output needs the stresses of this increment. */
 static int stress_is_due(const step *s, double t, int increment_no, int last) {
@@ -257,8 +256,7 @@ status loop_no_equilibrium(run *r) {
   return OK;
 }
 
-/* ---- before the increments of a step: effects, sudden loads of *VISCO -----
- */
+/* ---- before the increments of a step: effects, sudden loads of *VISCO ---- */
 
 /* 1 if a is b to rounding. */
 static int same_vector(size_t n, const double *a, const double *b) {

@@ -1,6 +1,4 @@
-/*
- * The loop over steps and increments.
- */
+/* The loop over steps and increments. */
 #ifndef PROTIS_HISTORY_HISTORY_H
 #define PROTIS_HISTORY_HISTORY_H
 

@@ -1,6 +1,4 @@
-/*
- * The loop over increments, shared by the files of this folder only.
- */
+/* The loop over increments, shared by the files of this folder only. */
 #ifndef PROTIS_HISTORY_LOOP_H
 #define PROTIS_HISTORY_LOOP_H
 

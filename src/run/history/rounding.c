@@ -151,8 +151,7 @@ static status misfit_new(const run *r, misfit *x) {
   x->c = r->elastic.c != NULL ? r->elastic.c : r->c;
   x->n_stress = (size_t)r->m->ns * (size_t)r->msh->n_elem;
   PASS_NEW(x->stress, x->n_stress);
-  PASS_NEW(x->rest, r->n_dof);
-  PASS_NEW(x->w, r->n_dof);
+  PASS_NEW_REALS(r->n_dof, &x->rest, &x->w);
   PASS_NEW(x->rc, r->problem.cp.m);
   return OK;
 }

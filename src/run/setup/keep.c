@@ -9,137 +9,114 @@
 
 /* The nodes of a continued run. */
 static status keep_nodes(run *r, archive *a) {
-  status st = OK;
-  contact_reach x = r->nodes.reach;
+  ENDS_BY(reach_free) contact_reach x = r->nodes.reach;
   x.in = NULL;
-  TRY(archive_reals(a, "reach", &x.distance, 1));
-  TRY(archive_ints(a, "reach_passes", &x.passes, 1));
-  TRY(archive_ints(a, "nodes_in", &x.n_in, 1));
+  PASS(archive_reals(a, "reach", &x.distance, 1));
+  PASS(archive_ints(a, "reach_passes", &x.passes, 1));
+  PASS(archive_ints(a, "nodes_in", &x.n_in, 1));
   if (!archive_reads(a))
     return archive_ints(a, "in", r->nodes.reach.in, (size_t)x.n_in);
-  if (x.n_in > 0) NEW(x.in, r->nodes.n);
-  TRY(archive_ints(a, "in", x.in, (size_t)x.n_in));
+  if (x.n_in > 0) PASS_NEW(x.in, r->nodes.n);
+  PASS(archive_ints(a, "in", x.in, (size_t)x.n_in));
   r->nodes.reach.distance = x.distance;
   r->nodes.reach.passes = x.passes;
-  if (reach_is_same(&x, &r->nodes.reach)) goto done;
+  if (reach_is_same(&x, &r->nodes.reach)) return OK;
   contact_reach old = r->nodes.reach;
   r->nodes.reach = x;
   x = old;
-  TRY(run_renew_nodes(r));
-done:
-  reach_free(&x);
-  return st;
+  return run_renew_nodes(r);
 }
 
 static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
-  status st = OK;
   size_t m = (size_t)r->nodes.n_c, strains = strains_kept(r);
   size_t elements = e->temperature == NULL ? 0 : (size_t)r->msh->n_elem;
-  TRY(archive_reals(a, "t", &e->t, 1));
-  TRY(archive_reals(a, "u", e->u, r->n_dof));
-  TRY(archive_reals(a, "F", e->F, r->n_dof));
-  TRY(archive_reals(a, "reaction", e->reaction, r->n_dof));
-  TRY(archive_reals(a, "uc", e->uc, m));
-  TRY(archive_reals(a, "rc", e->rc, m));
-  TRY(archive_reals(a, "motion", e->motion, e->motion == NULL ? 0 : m));
-  TRY(archive_reals(a, "temperature", e->temperature, elements));
-  TRY(archive_reals(a, "thermal", e->thermal, strains));
-  TRY(archive_reals(a, "e0", e->e0, strains));
-  TRY(archive_reals(a, "sigma", e->sigma, strains));
-  TRY(archive_reals(a, "elastic_strain", e->elastic,
-                    e->elastic == NULL ? 0 : strains));
-  TRY(archive_bytes(a, "energy", &e->energy, sizeof e->energy));
-  TRY(archive_reals(a, "peak_energy", &e->peak_energy, 1));
-  TRY(archive_reals(a, "peak_stress", &e->peak_stress, 1));
-done:
-  return st;
+  PASS(archive_reals(a, "t", &e->t, 1));
+  PASS(archive_reals(a, "u", e->u, r->n_dof));
+  PASS(archive_reals(a, "F", e->F, r->n_dof));
+  PASS(archive_reals(a, "reaction", e->reaction, r->n_dof));
+  PASS(archive_reals(a, "uc", e->uc, m));
+  PASS(archive_reals(a, "rc", e->rc, m));
+  PASS(archive_reals(a, "motion", e->motion, e->motion == NULL ? 0 : m));
+  PASS(archive_reals(a, "temperature", e->temperature, elements));
+  PASS(archive_reals(a, "thermal", e->thermal, strains));
+  PASS(archive_reals(a, "e0", e->e0, strains));
+  PASS(archive_reals(a, "sigma", e->sigma, strains));
+  PASS(archive_reals(a, "elastic_strain", e->elastic,
+                     e->elastic == NULL ? 0 : strains));
+  PASS(archive_bytes(a, "energy", &e->energy, sizeof e->energy));
+  PASS(archive_reals(a, "peak_energy", &e->peak_energy, 1));
+  return archive_reals(a, "peak_stress", &e->peak_stress, 1);
 }
 
 /* Temperatures of the moduli, and whether the elastic matrix is theirs. */
 static status keep_moduli(run *r, archive *a) {
-  status st = OK;
   int stale = r->body.stale, changed = 0;
   size_t n = r->body.moduli.n_own == 0 ? 0 : (size_t)r->msh->n_elem;
   double *T = r->now.temperature;
   for (int k = 0; k < r->body.moduli.n_own && !archive_reads(a); ++k)
     T[r->body.moduli.elem_id[k]] = r->body.moduli.at[k];
-  TRY(archive_ints(a, "stale", &stale, 1));
-  TRY(archive_reals(a, "moduli_temperature", T, n));
-  if (!archive_reads(a) || n == 0) goto done;
-  TRY(moduli_heat(&r->body.moduli, r->m, T, &changed));
+  PASS(archive_ints(a, "stale", &stale, 1));
+  PASS(archive_reals(a, "moduli_temperature", T, n));
+  if (!archive_reads(a) || n == 0) return OK;
+  PASS(moduli_heat(&r->body.moduli, r->m, T, &changed));
   r->body.stale = stale || changed;
-  if (!stale) TRY(run_use(r, &r->elastic));
-done:
-  return st;
+  if (!stale) PASS(run_use(r, &r->elastic));
+  return OK;
 }
 
 /* The rates of contraction that are known belong to the matrix in use. */
 static status keep_rate(run *r, archive *a) {
-  status st = OK;
   known_rate *k = &r->solving.rate;
   int n = k->n, m = n == 0 ? 0 : k->m;
-  TRY(archive_ints(a, "rate_size", &m, 1));
-  TRY(archive_ints(a, "rates", &n, 1));
+  PASS(archive_ints(a, "rate_size", &m, 1));
+  PASS(archive_ints(a, "rates", &n, 1));
   if (archive_reads(a)) known_rate_forget(k);
-  if (n < 0 || n > KNOWN_RATES || m <= 0) goto done;
-  if (archive_reads(a)) NEW(k->state, KNOWN_RATES * (size_t)m);
+  if (n < 0 || n > KNOWN_RATES || m <= 0) return OK;
+  if (archive_reads(a)) PASS_NEW(k->state, KNOWN_RATES * (size_t)m);
   k->m = m;
   k->n = n;
-  TRY(archive_bytes(a, "rate_states", k->state, (size_t)m * (size_t)n));
-  TRY(archive_reals(a, "rate", k->rate, (size_t)n));
-done:
-  return st;
+  PASS(archive_bytes(a, "rate_states", k->state, (size_t)m * (size_t)n));
+  return archive_reals(a, "rate", k->rate, (size_t)n);
 }
 
 static status keep_contact(run *r, archive *a) {
-  status st = OK;
-  TRY(keep_nodes(r, a));
-  TRY(archive_reals(a, "f_before", r->problem.f_before,
-                    (size_t)r->nodes.n_row));
+  PASS(keep_nodes(r, a));
+  PASS(archive_reals(a, "f_before", r->problem.f_before,
+                     (size_t)r->nodes.n_row));
   r->problem.n_before = r->nodes.n_row;
   r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
-  TRY(keep_rate(r, a));
-  TRY(matrices_keep(&r->elastic, a, "elastic"));
-done:
-  return st;
+  PASS(keep_rate(r, a));
+  return matrices_keep(&r->elastic, a, "elastic");
 }
 
 static status keep_choice(run *r, archive *a) {
-  status st = OK;
   stiffness_choice *c = &r->body.choice;
-  TRY(archive_ints(a, "stiffness", &c->sparse, 1));
-  TRY(archive_ints(a, "stiffness_exact", &c->exact, 1));
-  TRY(archive_bytes(a, "stiffness_dense", &c->dense, sizeof c->dense));
-  TRY(archive_bytes(a, "stiffness_factor", &c->factor, sizeof c->factor));
-  TRY(archive_bytes(a, "stiffness_why", c->why, sizeof c->why));
-done:
-  return st;
+  PASS(archive_ints(a, "stiffness", &c->sparse, 1));
+  PASS(archive_ints(a, "stiffness_exact", &c->exact, 1));
+  PASS(archive_bytes(a, "stiffness_dense", &c->dense, sizeof c->dense));
+  PASS(archive_bytes(a, "stiffness_factor", &c->factor, sizeof c->factor));
+  return archive_bytes(a, "stiffness_why", c->why, sizeof c->why);
 }
 
 static status keep_counts(run *r, archive *a) {
-  status st = OK;
   observed_work *seen = &r->solving.seen;
-  TRY(keep_choice(r, a));
-  TRY(archive_bytes(a, "observed", seen, sizeof *seen));
-  TRY(archive_bytes(a, "at", &r->at, sizeof r->at));
-  TRY(archive_ints(a, "total_no", &r->course.total_no, 1));
-  TRY(archive_ints(a, "unsettled", &r->course.unsettled, 1));
-  TRY(archive_reals(a, "start", r->loads.start, r->n_dof));
-  TRY(archive_reals(a, "step_load", &r->loads.largest, 1));
-done:
-  return st;
+  PASS(keep_choice(r, a));
+  PASS(archive_bytes(a, "observed", seen, sizeof *seen));
+  PASS(archive_bytes(a, "at", &r->at, sizeof r->at));
+  PASS(archive_ints(a, "total_no", &r->course.total_no, 1));
+  PASS(archive_ints(a, "unsettled", &r->course.unsettled, 1));
+  PASS(archive_reals(a, "start", r->loads.start, r->n_dof));
+  return archive_reals(a, "step_load", &r->loads.largest, 1);
 }
 
 static status keep_costs(run *r, archive *a) {
-  status st = OK;
   for (int i = 0; i < STAGE_COUNT; ++i) {
     r->course.costs[i] = timer_cost((stage)i);
     if (!archive_has_cpu(a)) r->course.costs[i].cpu = 0.0;
   }
-  TRY(archive_bytes(a, "costs", r->course.costs, sizeof r->course.costs));
+  PASS(archive_bytes(a, "costs", r->course.costs, sizeof r->course.costs));
   if (archive_reads(a)) timer_resume(r->course.costs);
-done:
-  return st;
+  return OK;
 }
 
 status run_keep_start(run *r, archive *a) {

@@ -51,39 +51,33 @@ static double least_stiffness(const run *r) {
 
 /* Upper estimate of the displacement of the contact nodes in the step, m. */
 static status find_reach(run *r) {
-  status st = OK;
   double force = 0.0, way = 0.0, end = r->step->start + r->step->total;
-  TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
-  TRY(load_prescribed(r->m, r->msh, r->step, end, r->loads.start, r->loads.ud));
+  PASS(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  PASS(
+      load_prescribed(r->m, r->msh, r->step, end, r->loads.start, r->loads.ud));
   for (size_t k = 0; k < r->n_dof; ++k) {
     force += fabs(r->now.F[k]);
     way = fmax(way, fabs(r->old.u[k]));
     if (r->body.fixed[k]) way = fmax(way, fabs(r->loads.ud[k]));
   }
   r->nodes.reach.distance = 2.0 * way + GENEROUS * force / least_stiffness(r);
-done:
-  return st;
+  return OK;
 }
 
 /* The active nodes at the start or the end of the step. */
 static status choose_nodes(run *r, int n_motion) {
-  status st = OK;
-  double *gap = NULL;
+  OWNED double *gap = NULL;
   r->nodes.reach.passes = 0;
   if (!may_leave_out(r, n_motion)) return OK;
-  timer_enter(STAGE_SURFACE);
-  NEW(gap, r->nodes.n);
-  TRY(find_reach(r));
-  TRY(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
-                  gap, NULL));
+  TIMED(STAGE_SURFACE);
+  PASS_NEW(gap, r->nodes.n);
+  PASS(find_reach(r));
+  PASS(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
+                   gap, NULL));
   for (int i = 0; i < r->nodes.n; ++i) gap[i] = fmin(gap[i], r->problem.gap[i]);
-  TRY(reach_choose(&r->nodes.reach, r->nodes.n, gap));
+  PASS(reach_choose(&r->nodes.reach, r->nodes.n, gap));
   run_take_nodes(r);
-  TRY(run_room_for_part(r));
-done:
-  timer_leave(STAGE_SURFACE);
-  memory_free(gap);
-  return st;
+  return run_room_for_part(r);
 }
 
 static status report_ready(run *r) {
@@ -105,7 +99,6 @@ static const double LEAST = 0x1p-480, MOST = 0x1p480;
 static int in_range(double x) { return x == 0.0 || (x > LEAST && x < MOST); }
 
 static status check_range(const run *r) {
-  status st = OK;
   double least = HUGE_VAL, most = 0.0, width = 1.0;
   for (int e = 0; e < r->msh->n_elem; ++e) {
     least = fmin(least, run_elasticity(r, e)[0]);
@@ -114,45 +107,39 @@ static status check_range(const run *r) {
   for (int k = 2; k < r->msh->dim; ++k) width *= r->msh->size;
   if (!in_range(r->loads.largest) || !in_range(least) || !in_range(most) ||
       !in_range(r->loads.largest / (least * width)))
-    FAIL(
+    RAISE(
         ERR_DECK,
         "step %d: the largest nodal load is %.3g, the moduli are %.3g to %.3g: "
         "their squares leave the range of the numbers; use other units",
         run_step_id(r) + 1, r->loads.largest, least, most);
-done:
-  return st;
+  return OK;
 }
 
 /* The first load of the run that is in range, at the increments of its steps: a
  * step with almost no load is scaled with it. */
 static status find_load_of_run(run *r) {
-  status st = OK;
   for (int k = 0; k < r->m->n.step; ++k) {
     const step *s = r->m->steps + k;
     const double dt = s->dt > 0.0 ? s->dt : s->total;
     for (int i = 1; (i - 0.5) * dt < s->total; ++i) {
-      TRY(load_forces(r->m, r->msh, s, s->start + i * dt, r->now.F));
+      PASS(load_forces(r->m, r->msh, s, s->start + i * dt, r->now.F));
       r->loads.largest =
           fmax(r->loads.largest, increment_free_load(r, r->now.F));
-      if (r->loads.largest > LEAST) goto done;
+      if (r->loads.largest > LEAST) return OK;
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* The largest nodal load at the ends of the step. */
 static status find_load(run *r) {
-  status st = OK;
   const double end = r->step->start + r->step->total;
-  TRY(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  PASS(load_forces(r->m, r->msh, r->step, end, r->now.F));
   r->loads.largest =
       fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
   if (r->loads.largest > 0.0 && r->loads.largest <= LEAST)
-    TRY(find_load_of_run(r));
-  TRY(check_range(r));
-done:
-  return st;
+    PASS(find_load_of_run(r));
+  return check_range(r);
 }
 
 /* 1: pairs are coupled again at the start of the step. */
@@ -197,30 +184,26 @@ static status take_places(run *r) {
 }
 
 status run_prepare(run *r) {
-  status st = OK;
   int fresh, other = 0;
-  unsigned char *fixed = NULL;
-  NEW(fixed, r->n_dof);
+  OWNED unsigned char *fixed = NULL;
+  PASS_NEW(fixed, r->n_dof);
   load_fixed(r->m, r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
   known_rate_forget(&r->solving.rate);
-  TRY(take_places(r));
+  PASS(take_places(r));
   fresh = r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||
           updates_pairs(r);
-  if (!fresh) TRY(run_asks_for_other_stiffness(r, &other));
+  if (!fresh) PASS(run_asks_for_other_stiffness(r, &other));
   if (fresh || other) {
     memcpy(r->body.fixed, fixed, r->n_dof);
-    TRY(make_matrices(r, other));
+    PASS(make_matrices(r, other));
   }
-  TRY(find_load(r));
-  TRY(effects_prepare(r));
-  if (fresh || other) TRY(report_ready(r));
+  PASS(find_load(r));
+  PASS(effects_prepare(r));
+  if (fresh || other) PASS(report_ready(r));
   contact_solver_free(r->elastic.solver);
   r->elastic.solver = NULL;
   r->solving.tol = r->step->solver.tol;
-  TRY(run_use(r, &r->elastic));
-  TRY(effects_begin_step(r));
-done:
-  memory_free(fixed);
-  return st;
+  PASS(run_use(r, &r->elastic));
+  return effects_begin_step(r);
 }

@@ -7,12 +7,8 @@
 #include "base/memory.h"
 
 static status new_equilibrium(const run *r, equilibrium *e) {
-  status st = OK;
-  NEW(e->u, r->n_dof);
-  NEW(e->F, r->n_dof);
-  NEW(e->reaction, r->n_dof);
-done:
-  return st;
+  PASS_NEW_REALS(r->n_dof, &e->u, &e->F, &e->reaction);
+  return OK;
 }
 
 static void free_equilibrium(equilibrium *e) {
@@ -32,14 +28,13 @@ static void free_equilibrium(equilibrium *e) {
 /* Clusters of the sections with FORMULATION=AVERAGED. Sections with variable
  * moduli are averaged like those that flow. */
 static status new_clusters(run *r) {
-  status st = OK;
   const model *m = r->m;
-  double *share = NULL;
+  OWNED double *share = NULL;
   int averaged = 0;
   for (int i = 0; i < m->n.section; ++i) averaged |= m->sections[i].averaged;
   if (!averaged) return OK;
-  timer_enter(STAGE_CLUSTER);
-  NEW(share, m->n.section);
+  TIMED(STAGE_CLUSTER);
+  PASS_NEW(share, m->n.section);
   for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const material *mat = &m->materials[s->material_id];
@@ -50,11 +45,7 @@ static status new_clusters(run *r) {
   }
   const cluster_input in = {r->msh, m->sections[0].kin == AXISYMMETRIC,
                             m->n.section, m->elem_section, share};
-  TRY(cluster_new(&in, &r->body.d.cluster));
-done:
-  timer_leave(STAGE_CLUSTER);
-  memory_free(share);
-  return st;
+  return cluster_new(&in, &r->body.d.cluster);
 }
 
 status setup_face_weights(const model *m, const mesh *msh, double **weight) {
@@ -88,13 +79,12 @@ static void set_partner(const run *r, const contact *c, contact_pair *p) {
 }
 
 static status new_pairs(run *r) {
-  status st = OK;
   const model *m = r->m;
   const mesh *msh = r->msh;
-  NEW(r->faces.pairs, m->n.contact);
-  NEW(r->faces.node_fixed, msh->n_node);
-  NEW(r->result.totals, m->n.contact);
-  if (model_has_axis(m)) NEW(r->result.torque, m->n.contact);
+  PASS_NEW(r->faces.pairs, m->n.contact);
+  PASS_NEW(r->faces.node_fixed, msh->n_node);
+  PASS_NEW(r->result.totals, m->n.contact);
+  if (model_has_axis(m)) PASS_NEW(r->result.torque, m->n.contact);
   for (int i = 0; i < m->n.contact; ++i) {
     const contact *c = &m->contacts[i];
     r->faces.pairs[i].card = contact_card(c);
@@ -110,34 +100,30 @@ static status new_pairs(run *r) {
   r->faces.input.n_pair = m->n.contact;
   r->faces.input.pairs = r->faces.pairs;
   r->faces.input.fixed = r->faces.node_fixed;
-done:
-  return st;
+  return OK;
 }
 
 status run_new(run *r, const effect_ops *const *effects) {
-  status st = OK;
   r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
   r->solving.known_key = RUN_NO_KEY;
   r->body.d.mesh = r->msh;
-  NEW(r->body.fixed, r->n_dof);
+  PASS_NEW(r->body.fixed, r->n_dof);
   r->body.d.fixed = r->body.fixed;
-  TRY(new_equilibrium(r, &r->old));
-  TRY(new_equilibrium(r, &r->now));
-  NEW(r->loads.ud, r->n_dof);
-  NEW(r->loads.start, r->n_dof);
-  TRY(effects_create(r, effects));
-  TRY(strains_new(r));
-  TRY(new_clusters(r));
-  if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0) TRY(new_faces(r));
-  if (r->m->effects & EFFECT_CONTACT) TRY(new_pairs(r));
+  PASS(new_equilibrium(r, &r->old));
+  PASS(new_equilibrium(r, &r->now));
+  PASS_NEW_REALS(r->n_dof, &r->loads.ud, &r->loads.start);
+  PASS(effects_create(r, effects));
+  PASS(strains_new(r));
+  PASS(new_clusters(r));
+  if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0) PASS(new_faces(r));
+  if (r->m->effects & EFFECT_CONTACT) PASS(new_pairs(r));
   if (r->m->n.goal > 0 ||
       (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR |
                         EFFECT_REFERENCE)) != 0)
-    NEW(r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+    PASS_NEW(r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
-    NEW(r->result.strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
-done:
-  return st;
+    PASS_NEW(r->result.strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  return OK;
 }
 
 void run_free(run *r) {

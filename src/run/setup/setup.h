@@ -1,6 +1,4 @@
-/*
- * Setting a run up: once, for each step, and from an archive.
- */
+/* Setting a run up: once, for each step, and from an archive. */
 #ifndef PROTIS_SETUP_SETUP_H
 #define PROTIS_SETUP_SETUP_H
 

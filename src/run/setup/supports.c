@@ -52,11 +52,10 @@ static status is_unheld(const run *r, const free_motion *f, int *unheld) {
 
 /* Motions that nothing resists go to the log and are ERR_SINGULAR. */
 static status refuse_unheld(const run *r, int n, const free_motion *list) {
-  status st = OK;
   int unheld = 0, step_no = run_step_id(r) + 1;
   for (int i = 0; i < n; ++i) {
     int free;
-    TRY(is_unheld(r, &list[i], &free));
+    PASS(is_unheld(r, &list[i], &free));
     if (!free) continue;
     ++unheld;
     message_add(r->m->log, P4011, &r->step->at,
@@ -68,30 +67,22 @@ static status refuse_unheld(const run *r, int n, const free_motion *list) {
                                                     : "contact");
   }
   if (unheld > 0)
-    FAIL(ERR_SINGULAR, "step %d: a body is free to move", step_no);
-done:
-  return st;
+    RAISE(ERR_SINGULAR, "step %d: a body is free to move", step_no);
+  return OK;
 }
 
 status run_check_supports(const run *r, int *n) {
-  status st = OK;
-  free_motion *list = NULL;
-  TRY(domain_free_motions(&r->body.d, n, &list));
-  TRY(refuse_unheld(r, *n, list));
-done:
-  memory_free(list);
-  return st;
+  OWNED free_motion *list = NULL;
+  PASS(domain_free_motions(&r->body.d, n, &list));
+  return refuse_unheld(r, *n, list);
 }
 
 status run_motions(run *r, int *n, free_motion **list) {
-  status st = OK;
   load_fixed(r->m, r->msh, r->step, r->body.fixed);
-  TRY(run_build_ties(r));
-  if (r->m->effects & EFFECT_CONTACT) TRY(run_build_surface(r));
+  PASS(run_build_ties(r));
+  if (r->m->effects & EFFECT_CONTACT) PASS(run_build_surface(r));
   r->body.d.surface = r->surface;
-  TRY(domain_free_motions(&r->body.d, n, list));
-  TRY(refuse_unheld(r, *n, *list));
-  TRY(effects_prepare(r));
-done:
-  return st;
+  PASS(domain_free_motions(&r->body.d, n, list));
+  PASS(refuse_unheld(r, *n, *list));
+  return effects_prepare(r);
 }

@@ -58,22 +58,16 @@ static status build(run *r) {
 }
 
 static status new_contact_arrays(run *r) {
-  status st = OK;
   int tangents = r->nodes.n * (r->msh->dim - 1);
-  NEW(r->problem.f, r->nodes.n_row);
-  NEW(r->problem.f_load, r->nodes.n_row);
-  NEW(r->problem.f_before, r->nodes.n_row);
-  NEW(r->problem.gap, r->nodes.n);
-  NEW(r->old.uc, r->nodes.n_c);
-  NEW(r->now.uc, r->nodes.n_c);
-  NEW(r->old.rc, r->nodes.n_c);
-  NEW(r->now.rc, r->nodes.n_c);
-  NEW(r->result.open_gap, r->nodes.n);
-  NEW(r->result.contact, r->nodes.n);
-  if (r->nodes.rows > 1) NEW(r->problem.side_gap, tangents);
-  NEW(r->result.slip, tangents);
-done:
-  return st;
+  PASS_NEW_REALS(r->nodes.n_row, &r->problem.f, &r->problem.f_load,
+                 &r->problem.f_before);
+  PASS_NEW(r->problem.gap, r->nodes.n);
+  PASS_NEW_REALS(r->nodes.n_c, &r->old.uc, &r->now.uc, &r->old.rc, &r->now.rc);
+  PASS_NEW(r->result.open_gap, r->nodes.n);
+  PASS_NEW(r->result.contact, r->nodes.n);
+  if (r->nodes.rows > 1) PASS_NEW(r->problem.side_gap, tangents);
+  PASS_NEW(r->result.slip, tangents);
+  return OK;
 }
 
 /* The force of a node that supports take out of the contact goes to them. */
@@ -96,27 +90,23 @@ static status old_state_to_frames(run *r, double *force) {
 }
 
 status run_build_surface(run *r) {
-  status st = OK;
-  double *force = NULL;
-  NEW(force, r->n_dof);
+  OWNED double *force = NULL;
+  PASS_NEW(force, r->n_dof);
   if (r->surface != NULL) surface_spread(r->surface, 1.0, r->old.rc, force);
   run_free_surface(r);
   timer_enter(STAGE_SURFACE);
   node_bits(r);
-  st = build(r);
+  const status st = build(r);
   timer_leave(STAGE_SURFACE);
-  TRY(st);
+  PASS(st);
   r->nodes.n = r->surface->n;
   r->nodes.n_c = r->msh->dim * r->nodes.n;
   r->body.d.rows = r->nodes.rows =
       r->m->effects & EFFECT_TANGENTS ? r->msh->dim : 1;
   r->nodes.n_row = r->nodes.rows * r->nodes.n;
-  TRY(new_contact_arrays(r));
-  TRY(run_room_for_part(r));
-  TRY(old_state_to_frames(r, force));
-  TRY(surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
-                  r->problem.side_gap));
-done:
-  memory_free(force);
-  return st;
+  PASS(new_contact_arrays(r));
+  PASS(run_room_for_part(r));
+  PASS(old_state_to_frames(r, force));
+  return surface_gap(r->surface, &r->faces.input, r->old.t, r->problem.gap,
+                     r->problem.side_gap);
 }

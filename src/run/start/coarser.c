@@ -46,8 +46,7 @@ static status new_arrays(const contact_surface *s, coarser_state *x) {
   PASS_NEW(x->x, all);
   PASS_NEW(x->contact_id, n);
   PASS_NEW(x->gap, n);
-  PASS_NEW(x->traction, all);
-  PASS_NEW(x->slip, all);
+  PASS_NEW_REALS(all, &x->traction, &x->slip);
   PASS_NEW(x->contact, n);
   memcpy(x->x, s->x, all * sizeof *x->x);
   memcpy(x->contact_id, s->contact_id, n * sizeof *x->contact_id);
@@ -94,9 +93,6 @@ const coarser_state *coarser_at(const coarser *c, double t, int next) {
 
 double coarser_time(const coarser_state *x) { return x->t; }
 int coarser_nodes(const coarser_state *x) { return x->n; }
-
-/* ---- nearest nodes -------------------------------------------------------
- */
 
 typedef struct along {
   double at; /* m, along the longest extent */

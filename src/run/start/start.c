@@ -131,8 +131,6 @@ status start_displacements(const model *m, const mesh *msh, double *u,
   return OK;
 }
 
-/* ---- is it compatible? -------------------------------------------------- */
-
 /* A start from the end of another run contains its solver's tolerance; one from
  * expressions in equilibrium contains rounding. */
 const double start_tolerance = 1e-6;

@@ -1,11 +1,17 @@
-/*
- * What goals take from the stress intensity factors of the cracks.
- */
-#ifndef PROTIS_CONTACT_EFFECT_CRACKS_H
-#define PROTIS_CONTACT_EFFECT_CRACKS_H
+/* What one effect takes from another. */
+#ifndef PROTIS_EFFECTS_SHARED_H
+#define PROTIS_EFFECTS_SHARED_H
 
 #include "fracture/fracture.h"
 #include "run/run.h"
+
+/* nonlocal.c: [n*n] - of a contact whose law has an average. */
+const sparse_rows *nonlocal_average(const run *r, int contact_id);
+
+/* mesh.c: the patches of elements of r->body.d, made with the elastic matrix of
+ * now; borrowed until that changes. *out NULL: the run has no error of the
+ * mesh. ERR_MEMORY. */
+status mesh_recovery(const run *r, space_recovery **out);
 
 /* The factors of a crack at r->now. */
 typedef struct crack_factors {
