@@ -106,10 +106,8 @@ status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
   if (cp->blocks != NULL) return sparse_blocks_rows(cp->blocks, rows);
   size_t m = (size_t)cp->m, count = entries(cp);
   OWNED int *at = NULL;
-  PASS_NEW(at, m);
-  PASS_NEW(rows->start, m + 1);
-  PASS_NEW(rows->col, count);
-  PASS_NEW(rows->val, count);
+  PASS_NEW_ALL(OF(at, m), OF(rows->start, m + 1), OF(rows->col, count),
+               OF(rows->val, count));
   rows->n = cp->m;
   for (size_t j = 0; j < m; ++j)
     for (size_t i = 0; i < m; ++i)
@@ -191,9 +189,7 @@ status force_set_new(const contact_problem *cp, force_set **out) {
   double *v = NULL;
   NEW(s, 1);
   NEW_REALS(cp->m, &s->D, &s->origin, &s->load, &s->defect);
-  NEW(s->part, cp->m);
-  NEW(s->rim, cp->n);
-  NEW(v, 2 * cp->m);
+  NEW_ALL(OF(s->part, cp->m), OF(s->rim, cp->n), OF(v, 2 * cp->m));
   scaling(cp, s->D);
   if (cp->op != NULL) {
     TRY(step_of_operator(s, cp, v, v + cp->m));

@@ -43,12 +43,8 @@ status velocity_form_new(const contact_problem *cp, velocity_form **out) {
   velocity_form *v = NULL;
   int tangents = cp->n * (cp->dim - 1);
   NEW(v, 1);
-  NEW(v->u_old, cp->m);
-  NEW(v->R, cp->m);
-  NEW(v->gap, cp->n);
-  NEW(v->side, tangents);
-  NEW(v->d, tangents);
-  NEW(v->du, cp->m);
+  NEW_ALL(OF(v->u_old, cp->m), OF(v->R, cp->m), OF(v->gap, cp->n),
+          OF(v->side, tangents), OF(v->d, tangents), OF(v->du, cp->m));
   *out = v;
   v = NULL;
 done:
@@ -142,17 +138,10 @@ void given_form_free(given_form *g) {
 
 static status new_arrays(const contact_problem *cp, given_form *g) {
   size_t n = (size_t)g->n, m = (size_t)cp->m;
-  PASS_NEW(g->node, n);
-  PASS_NEW(g->A, m * m);
-  PASS_NEW(g->L, n * n);
-  PASS_NEW(g->Y, n * m);
-  PASS_NEW(g->f, m);
-  PASS_NEW(g->gap, cp->n);
-  PASS_NEW(g->met, cp->n);
-  PASS_NEW(g->y, n);
-  PASS_NEW(g->force, n);
-  PASS_NEW(g->g0, cp->n);
-  PASS_NEW(g->is, cp->n);
+  PASS_NEW_ALL(OF(g->node, n), OF(g->A, m * m), OF(g->L, n * n),
+               OF(g->Y, n * m), OF(g->f, m), OF(g->gap, cp->n),
+               OF(g->met, cp->n), OF(g->y, n), OF(g->force, n),
+               OF(g->g0, cp->n), OF(g->is, cp->n));
   return OK;
 }
 

@@ -82,8 +82,7 @@ static status add_rows(friction_limit *out, int n, const int *node,
   NEW(all.start, n + 1);
   for (int i = 0; i < n; ++i)
     all.start[i + 1] = all.start[i] + row_length(old, part, row_of[i], i);
-  NEW(all.col, all.start[n]);
-  NEW(all.val, all.start[n]);
+  NEW_ALL(OF(all.col, all.start[n]), OF(all.val, all.start[n]));
   for (int i = 0; i < n; ++i) {
     if (row_of[i] >= 0)
       copy_row(part, row_of[i], &all, i);
@@ -131,8 +130,7 @@ static status friction_pressure_limit(const friction_card *card,
         rows.start[k] + (surface_is_corner(s, node[k])
                              ? 0
                              : average_size(card->average, node[k]));
-  NEW(rows.col, rows.start[n_node]);
-  NEW(rows.val, rows.start[n_node]);
+  NEW_ALL(OF(rows.col, rows.start[n_node]), OF(rows.val, rows.start[n_node]));
   for (int k = 0; k < n_node; ++k) {
     double mu;
     if (surface_is_corner(s, node[k])) continue;
@@ -283,10 +281,9 @@ static status patch_new(const contact_surface *s, const surface_input *in,
   const mesh *m = in->mesh;
   const mesh_group *g = in->pairs[contact_id].group;
   size_t dim = (size_t)m->dim;
-  PASS_NEW(a->x, dim * (size_t)g->n_node);
-  PASS_NEW(a->face, m->dim * g->n_item);
-  PASS_NEW(a->active, g->n_node);
-  PASS_NEW(a->contact_node, g->n_node);
+  PASS_NEW_ALL(OF(a->x, dim * (size_t)g->n_node),
+               OF(a->face, m->dim * g->n_item), OF(a->active, g->n_node),
+               OF(a->contact_node, g->n_node));
   for (int k = 0, i = 0; k < g->n_node; ++k) {
     for (size_t c = 0; c < dim; ++c)
       a->x[dim * (size_t)k + c] = m->x[dim * (size_t)g->node_id[k] + c];
@@ -326,9 +323,8 @@ static status to_surface(const contact_surface *s, int contact_id,
                          const patch *a, const sparse_rows *G,
                          sparse_rows *out) {
   int n = 0;
-  PASS_NEW(out->start, s->n + 1);
-  PASS_NEW(out->col, G->start[G->n]);
-  PASS_NEW(out->val, G->start[G->n]);
+  PASS_NEW_ALL(OF(out->start, s->n + 1), OF(out->col, G->start[G->n]),
+               OF(out->val, G->start[G->n]));
   out->n = s->n;
   for (int k = 0; k < G->n; ++k) {
     int i = a->contact_node[k];

@@ -104,8 +104,7 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
     b->n = cp->op->n_body;
     memcpy(b->of, cp->op->body, (size_t)cp->n * sizeof *b->of);
   } else {
-    NEW(root, cp->n);
-    NEW(list, cp->n);
+    NEW_ALL(OF(root, cp->n), OF(list, cp->n));
     for (int i = 0; i < cp->n; ++i) root[i] = root_of(cp, i);
     if (cp->blocks != NULL)
       find_sparse_bodies(cp, root, list, b);

@@ -151,9 +151,8 @@ static status factor_bodies(condensed *c) {
   unsigned char *seen = NULL;
   long *number = NULL;
   timer_enter(STAGE_ORDERING);
-  NEW(list, k->n_node);
-  NEW(seen, k->n_node);
-  NEW(number, (size_t)k->dim * (size_t)k->n_node);
+  NEW_ALL(OF(list, k->n_node), OF(seen, k->n_node),
+          OF(number, (size_t)k->dim * (size_t)k->n_node));
   TRY(graph_of_unknowns(k, &g));
   c->n_body = count_bodies(k, &g, seen, list);
   NEW(c->body, c->n_body);
@@ -262,8 +261,7 @@ static status find_bodies(condensed *c, int *of) {
   graph g = {0};
   int *list = NULL;
   unsigned char *seen = NULL;
-  NEW(list, k->n_node);
-  NEW(seen, k->n_node);
+  NEW_ALL(OF(list, k->n_node), OF(seen, k->n_node));
   TRY(graph_of_unknowns(k, &g));
   for (int i = 0; i < k->n_node; ++i) {
     if (k->free[i] == 0 || seen[i]) continue;
@@ -284,8 +282,7 @@ static status make_operator(condensed *c) {
   const stiffness *k = c->k;
   OWNED int *body = NULL;
   OWNED unsigned char *held = NULL;
-  PASS_NEW(body, c->m);
-  PASS_NEW(held, c->m);
+  PASS_NEW_ALL(OF(body, c->m), OF(held, c->m));
   PASS(find_bodies(c, body));
   for (int q = 0; q < c->m; ++q) held[q] = (unsigned char)is_held(c, q);
   const operator_data data = {.k = k,
@@ -471,8 +468,7 @@ static status refine(condensed *c, double *u) {
 static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;
-  PASS_NEW(u, n);
-  PASS_NEW(zero, c->m);
+  PASS_NEW_ALL(OF(u, n), OF(zero, c->m));
   if (c->rest == NULL) PASS_NEW(c->rest, n);
   if (c->F == NULL) PASS_NEW(c->F, n);
   memcpy(c->F, F, n * sizeof *F);
@@ -521,8 +517,7 @@ static status solve_rows(const condensed *c, const double *f, double *u,
                          double *square) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *load = NULL, *w = NULL;
-  PASS_NEW(load, n);
-  PASS_NEW(w, n);
+  PASS_NEW_ALL(OF(load, n), OF(w, n));
   for (int q = 0; q < c->m; ++q)
     if (!is_held(c, q)) load[component_of(c, q)] = f[q];
   PASS(want_all_rows(c));
@@ -594,8 +589,7 @@ static status solve_open(const condensed *c, const unsigned char *held,
     u[q] = 0;
     if (!held[q]) open[n++] = q;
   }
-  PASS_NEW(A, (size_t)n * (size_t)n);
-  PASS_NEW(x, n);
+  PASS_NEW_ALL(OF(A, (size_t)n * (size_t)n), OF(x, n));
   for (int b = 0; b < n; ++b) {
     x[b] = f[open[b]];
     for (int a = 0; a < n; ++a)
@@ -615,8 +609,7 @@ status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   double *f_c = NULL, *u_c = NULL;
   int good = 0;
-  NEW(f_c, c->m);
-  NEW(u_c, c->m);
+  NEW_ALL(OF(f_c, c->m), OF(u_c, c->m));
   *square = HUGE_VAL;
   set_prescribed(c, NULL);
   set_load(c, rest);

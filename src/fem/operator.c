@@ -505,15 +505,11 @@ static status order_whole(sparse_operator *o, const double *x,
 /* Arrays by contact row, before there is a factor. */
 static status new_rows(sparse_operator *o) {
   const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
-  PASS_NEW(o->number, (size_t)o->k->dim * (size_t)o->k->n_node);
-  PASS_NEW(o->unknown, m);
-  PASS_NEW(o->held, m);
-  PASS_NEW(o->rows.known, m);
-  PASS_NEW(o->rows.added, size);
-  PASS_NEW(o->diagonal, m);
-  PASS_NEW(o->room, 2 * m);
-  PASS_NEW(o->body, m / (size_t)o->k->rows);
-  PASS_NEW(o->part.node, m / (size_t)o->k->rows);
+  PASS_NEW_ALL(OF(o->number, (size_t)o->k->dim * (size_t)o->k->n_node),
+               OF(o->unknown, m), OF(o->held, m), OF(o->rows.known, m),
+               OF(o->rows.added, size), OF(o->diagonal, m), OF(o->room, 2 * m),
+               OF(o->body, m / (size_t)o->k->rows),
+               OF(o->part.node, m / (size_t)o->k->rows));
   return OK;
 }
 
@@ -616,11 +612,9 @@ static status list_blocks(sparse_operator *o, int n, block_taker *take,
 /* The supernodes in which contact unknowns have part. */
 static status divide(sparse_operator *o) {
   const int count = o->s->count;
-  PASS_NEW(o->part.mark, count);
-  PASS_NEW(o->part.touches, count);
-  PASS_NEW(o->part.all.list, count);
-  PASS_NEW(o->part.contact.list, count);
-  PASS_NEW(o->part.response.list, count);
+  PASS_NEW_ALL(OF(o->part.mark, count), OF(o->part.touches, count),
+               OF(o->part.all.list, count), OF(o->part.contact.list, count),
+               OF(o->part.response.list, count));
   memset(o->part.mark, 1, (size_t)count);
   supernodal_list(o->s, o->part.mark, &o->part.all);
   for (int i = 0; i < n_contact(o); ++i) mark_node(o, i, o->part.touches);
@@ -647,8 +641,7 @@ static status new_columns(sparse_operator *o) {
   const SuiteSparse_long *px = o->f.L->px;
   if (!cholmod_l_change_factor(CHOLMOD_REAL, 1, 1, 1, 1, o->f.L, o->cm))
     RAISE(ERR_MEMORY, "memory exhausted: factor of %ld unknowns", o->f.n);
-  PASS_NEW(o->x, count);
-  PASS_NEW(o->inner, count);
+  PASS_NEW_ALL(OF(o->x, count), OF(o->inner, count));
   for (int q = 0; q < count; ++q)
     if (o->part.touches[q]) o->n_own += supernodal_entries(o->interior, q);
   PASS_NEW(o->own, o->n_own);
@@ -672,8 +665,7 @@ static status factor_both(sparse_operator *o) {
   PASS(list_blocks(o, o->s->count, list_by_column, &o->columns));
   PASS(list_blocks(o, n_contact(o), list_by_contact, &o->touched));
   PASS(divide(o));
-  PASS_NEW(o->v, o->f.n);
-  PASS_NEW(o->y, o->f.n);
+  PASS_NEW_ALL(OF(o->v, o->f.n), OF(o->y, o->f.n));
   PASS(leave_contact_out(o));
   PASS(new_columns(o));
   PASS(sparse_operator_all_rows(o));

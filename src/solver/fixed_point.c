@@ -34,8 +34,7 @@ status fixed_point_new(int n, fixed_point **out) {
   NEW(fp, 1);
   fp->n = n;
   NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
-  NEW(fp->dg, n * DEPTH);
-  NEW(fp->dG, n * DEPTH);
+  NEW_ALL(OF(fp->dg, n * DEPTH), OF(fp->dG, n * DEPTH));
   *out = fp;
   fp = NULL;
 done:
@@ -302,10 +301,9 @@ status friction_path_new(const contact_problem *cp, friction_path **out) {
   status st = OK;
   friction_path *path = NULL;
   NEW(path, 1);
-  NEW(path->g0, cp->n);
-  NEW(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0);
-  NEW(path->good_u, cp->m);
-  NEW(path->good_r, cp->m);
+  NEW_ALL(OF(path->g0, cp->n),
+          OF(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0),
+          OF(path->good_u, cp->m), OF(path->good_r, cp->m));
   *out = path;
   path = NULL;
 done:

@@ -76,9 +76,8 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   node_blocks *b = NULL;
   int d = cp->dim;
   NEW(b, 1);
-  NEW(b->K, cp->n * d * d);
-  NEW(b->state, cp->n);
   NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
+  NEW_ALL(OF(b->K, cp->n * d * d), OF(b->state, cp->n));
   double lift = 0.0;
   for (int i = 0; i < cp->m; ++i) {
     b->weight[i] = contact_diagonal(cp, i);

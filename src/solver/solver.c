@@ -47,8 +47,7 @@ int solver_promises(sweep_promise *p, int k, double residual, double tol) {
 
 status best_iterate_new(int m, best_iterate *best) {
   best->residual = HUGE_VAL;
-  PASS_NEW(best->u, m);
-  PASS_NEW(best->r, m);
+  PASS_NEW_ALL(OF(best->u, m), OF(best->r, m));
   return OK;
 }
 

@@ -52,15 +52,11 @@ static status builder_new(builder *b) {
   PASS(layout_new(b->p, b->rule, &b->at));
   PASS(box_tree_new(dim, b->at.n_face, dim, b->at.corner, &b->faces));
   PASS(box_tree_new(dim, b->at.n_rim, dim - 1, b->at.rim, &b->rim));
-  PASS_NEW(b->share, n);
-  PASS_NEW(b->mass, n);
-  PASS_NEW(b->raw.start, n + 1);
+  PASS_NEW_ALL(OF(b->share, n), OF(b->mass, n), OF(b->raw.start, n + 1));
   b->raw.n = n;
-  PASS_NEW(b->alone, n);
-  PASS_NEW(b->part, n);
-  PASS_NEW(b->found, b->at.n_face + b->at.n_rim);
-  PASS_NEW(b->touched, n);
-  PASS_NEW(b->row, n);
+  PASS_NEW_ALL(OF(b->alone, n), OF(b->part, n),
+               OF(b->found, b->at.n_face + b->at.n_rim), OF(b->touched, n),
+               OF(b->row, n));
   return OK;
 }
 
@@ -258,9 +254,8 @@ static status find_rows(builder *b) {
 
 static status transpose(const sparse_rows *a, sparse_rows *out) {
   OWNED int *start = NULL;
-  PASS_NEW(start, a->n + 2);
-  PASS_NEW(out->col, a->start[a->n]);
-  PASS_NEW(out->val, a->start[a->n]);
+  PASS_NEW_ALL(OF(start, a->n + 2), OF(out->col, a->start[a->n]),
+               OF(out->val, a->start[a->n]));
   for (int k = 0; k < a->start[a->n]; ++k) ++start[a->col[k] + 2];
   for (int i = 0; i < a->n; ++i) start[i + 2] += start[i + 1];
   for (int i = 0; i < a->n; ++i)
@@ -310,8 +305,7 @@ static status symmetrise(builder *b, sparse_rows *out) {
   const average_patch *p = b->p;
   OWNED double *part = NULL;
   double left;
-  PASS_NEW(part, p->n_node);
-  PASS_NEW(out->start, p->n_node + 1);
+  PASS_NEW_ALL(OF(part, p->n_node), OF(out->start, p->n_node + 1));
   out->n = p->n_node;
   for (int i = 0; i < p->n_node; ++i) b->part[i] = 1.0;
   for (int i = 0; i < p->n_node; ++i) {

@@ -22,8 +22,7 @@ static void fans_free(fans *f) { RELEASE(f->start, f->face); }
 
 static status fans_new(const average_patch *p, fans *f) {
   int n = p->dim * p->n_face;
-  PASS_NEW(f->start, p->n_node + 2);
-  PASS_NEW(f->face, n);
+  PASS_NEW_ALL(OF(f->start, p->n_node + 2), OF(f->face, n));
   for (int k = 0; k < n; ++k) ++f->start[p->face[k] + 2];
   for (int i = 0; i < p->n_node; ++i) f->start[i + 2] += f->start[i + 1];
   for (int k = 0; k < n; ++k) f->face[f->start[p->face[k] + 1]++] = k / p->dim;
@@ -199,8 +198,7 @@ static status lay_straight(const average_patch *p, const fans *f, double apart,
                            layout *l) {
   status st = OK;
   walk w = {.p = p, .f = f, .l = l};
-  NEW(w.done, p->n_face);
-  NEW(l->loop, p->n_node);
+  NEW_ALL(OF(w.done, p->n_face), OF(l->loop, p->n_node));
   /* Lines with ends first; what is left is closed. */
   for (int i = 0; i < p->n_node; ++i)
     while (fan_size(f, i) != 2 && next_face(&w, i) >= 0) {

@@ -242,8 +242,7 @@ static status do_face(builder *b, int i) {
 static status set_around(builder *b) {
   const mortar_input *in = b->in;
   const int dim = in->mesh->dim, n = in->n_slave * dim;
-  PASS_NEW(b->start, in->mesh->n_node + 2);
-  PASS_NEW(b->around, n);
+  PASS_NEW_ALL(OF(b->start, in->mesh->n_node + 2), OF(b->around, n));
   for (int i = 0; i < n; ++i)
     ++b->start[nodes_of(b, in->slave[i / dim])[i % dim] + 2];
   for (int i = 0; i < in->mesh->n_node; ++i) b->start[i + 2] += b->start[i + 1];
@@ -473,8 +472,7 @@ static status add_rows(builder *b) {
 static status set_links(builder *b) {
   node_links *l = &b->out->to;
   const size_t dim = (size_t)l->dim;
-  PASS_NEW(l->master, b->n_link);
-  PASS_NEW(l->part, dim * (size_t)b->n_link);
+  PASS_NEW_ALL(OF(l->master, b->n_link), OF(l->part, dim * (size_t)b->n_link));
   for (size_t e = 0; e < (size_t)b->n_link; ++e) {
     l->master[e] = b->links[e].master;
     for (size_t c = 0; c < dim; ++c) l->part[dim * e + c] = b->links[e].part;
@@ -499,11 +497,9 @@ static status set_nodes(builder *b) {
   int n = 0;
   m->to.dim = dim;
   m->to.n = m->n;
-  PASS_NEW(m->node_id, m->n);
-  PASS_NEW(m->area, m->n);
-  PASS_NEW(m->share, m->n);
   PASS_NEW_REALS(dim * m->n, &m->lever, &m->normal, &m->gap);
-  PASS_NEW(m->to.start, m->n + 1);
+  PASS_NEW_ALL(OF(m->node_id, m->n), OF(m->area, m->n), OF(m->share, m->n),
+               OF(m->to.start, m->n + 1));
   for (int i = 0; i < b->in->mesh->n_node; ++i)
     if (b->state[i] == CARRIES) m->node_id[n++] = i;
   PASS(add_rows(b));
@@ -551,11 +547,8 @@ static void sum_up(builder *b) {
 static status builder_new(const mortar_input *in, builder *b) {
   const size_t n = (size_t)in->mesh->n_node;
   *b = (builder){.in = in};
-  PASS_NEW(b->out, 1);
-  PASS_NEW(b->state, n);
-  PASS_NEW(b->face, in->n_slave);
-  PASS_NEW(b->met, in->mesh->n_face);
-  PASS_NEW(b->slot, n);
+  PASS_NEW_ALL(OF(b->out, 1), OF(b->state, n), OF(b->face, in->n_slave),
+               OF(b->met, in->mesh->n_face), OF(b->slot, n));
   for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
   PASS(set_around(b));
   set_states(b);

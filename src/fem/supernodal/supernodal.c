@@ -31,8 +31,7 @@ size_t supernodal_entries(const supernodal *s, int supernode) {
 
 /* Supernodes of the columns and those they update first. */
 static status link_up(supernodal *s) {
-  PASS_NEW(s->of, s->n);
-  PASS_NEW(s->parent, s->count);
+  PASS_NEW_ALL(OF(s->of, s->n), OF(s->parent, s->count));
   for (int q = 0; q < s->count; ++q)
     for (long c = s->first[q]; c < s->first[q + 1]; ++c) s->of[c] = q;
   for (int q = 0; q < s->count; ++q)
@@ -54,15 +53,11 @@ status supernodal_new(const cholmod_factor *L, supernodal **out) {
   s->start = L->pi;
   s->row = L->s;
   TRY(link_up(s));
-  NEW(s->head, s->count);
-  NEW(s->next, s->count);
-  NEW(s->done, s->count);
-  NEW(s->place, s->n);
-  NEW(s->product, L->maxcsize);
+  NEW_ALL(OF(s->head, s->count), OF(s->next, s->count), OF(s->done, s->count),
+          OF(s->place, s->n), OF(s->product, L->maxcsize));
   for (int q = 0; q < s->count; ++q)
     most = n_row(s, q) > most ? n_row(s, q) : most;
-  NEW(s->relative, most);
-  NEW(s->below, most);
+  NEW_ALL(OF(s->relative, most), OF(s->below, most));
 done:
   return st;
 }
@@ -73,8 +68,7 @@ status supernodal_restrict(const supernodal *s, const int *number,
   supernodal *r = NULL;
   const size_t count = (size_t)s->count, rows = (size_t)s->start[count];
   SuiteSparse_long n_rows = 0, *first = NULL;
-  NEW(first, 2 * (count + 1) + rows);
-  NEW(r, 1);
+  NEW_ALL(OF(first, 2 * (count + 1) + rows), OF(r, 1));
   *r = *s;
   r->of = r->parent = NULL;
   r->n = 0;

@@ -45,9 +45,9 @@ typedef struct point_step {
 static status point_step_new(const flow *x, point_step *l) {
   int ns = x->ns, na = x->most_alpha, n = ns + na;
   memset(l, 0, sizeof *l);
-  PASS_NEW(l->pivot, n);
-  PASS_NEW(l->work,
-           na + 5 * n + n * n + n * ns + 2 * ns * ns + 2 * ns * na + na * na);
+  PASS_NEW_ALL(OF(l->pivot, n),
+               OF(l->work, na + 5 * n + n * n + n * ns + 2 * ns * ns +
+                               2 * ns * na + na * na));
   l->alpha = l->work;
   l->y = l->alpha + na;
   l->old = l->y + n;

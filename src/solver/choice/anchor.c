@@ -49,8 +49,7 @@ static status find_stiffness(const contact_problem *cp, double *stiffness) {
   OWNED double *sum = NULL;
   OWNED int *count = NULL;
   double all = 0.0;
-  PASS_NEW(sum, b == NULL ? 1 : b->n);
-  PASS_NEW(count, b == NULL ? 1 : b->n);
+  PASS_NEW_ALL(OF(sum, b == NULL ? 1 : b->n), OF(count, b == NULL ? 1 : b->n));
   for (int i = 0; i < cp->m; ++i) {
     const int of = b == NULL ? 0 : b->of[i / cp->dim];
     sum[of] += contact_diagonal(cp, i) / cp->m;
@@ -69,9 +68,8 @@ static status find_stiffness(const contact_problem *cp, double *stiffness) {
 static status known_modes(const contact_problem *cp, anchor *an) {
   const size_t size = (size_t)cp->m * (size_t)cp->op->n_kernel;
   an->n_mode = cp->op->n_kernel;
-  PASS_NEW(an->R, size);
-  PASS_NEW(an->a, an->n_mode);
-  PASS_NEW(an->step, an->n_mode);
+  PASS_NEW_ALL(OF(an->R, size), OF(an->a, an->n_mode),
+               OF(an->step, an->n_mode));
   if (size > 0) memcpy(an->R, cp->op->kernel, size * sizeof *an->R);
   return OK;
 }
@@ -83,10 +81,7 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
   const size_t size = (size_t)m * (size_t)m;
   if (an->R != NULL) return OK;
   if (cp->op != NULL) return known_modes(cp, an);
-  PASS_NEW(pivot, m);
-  PASS_NEW(work, 2 * m);
-  PASS_NEW(scale, m);
-  PASS_NEW(L, size);
+  PASS_NEW_ALL(OF(pivot, m), OF(work, 2 * m), OF(scale, m), OF(L, size));
   memcpy(L, cp->A, size * sizeof *L);
   /* Pivots of a soft body are no rounding of those of a stiff one. */
   PASS(find_stiffness(cp, work));
@@ -94,9 +89,8 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
   LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, L, m, pivot, &rank,
                       m * NULL_PIVOT, work);
   an->n_mode = m - rank;
-  PASS_NEW(an->R, m * an->n_mode);
-  PASS_NEW(an->a, an->n_mode);
-  PASS_NEW(an->step, an->n_mode);
+  PASS_NEW_ALL(OF(an->R, m * an->n_mode), OF(an->a, an->n_mode),
+               OF(an->step, an->n_mode));
   dense_null(m, rank, L, pivot, work, an->R);
   for (int i = 0; i < m * an->n_mode; ++i) an->R[i] *= scale[i % m];
   orthonormalise(m, an->n_mode, an->R);
@@ -128,8 +122,7 @@ done:
  * by powers of ten. */
 static status choose_springs(const contact_problem *cp, anchor *an) {
   OWNED double *stiffness = NULL;
-  PASS_NEW(stiffness, cp->m);
-  PASS_NEW(an->spring, an->n_mode);
+  PASS_NEW_ALL(OF(stiffness, cp->m), OF(an->spring, an->n_mode));
   PASS(find_stiffness(cp, stiffness));
   for (int k = 0; k < an->n_mode; ++k) {
     const double *v = an->R + (size_t)k * (size_t)cp->m;
@@ -220,8 +213,7 @@ status anchor_make(const contact_problem *cp, anchor *an) {
   PASS(choose_springs(cp, an));
   an->made = 1;
   if (cp->op != NULL) return hold_operator(cp, an);
-  PASS_NEW(an->A, m * m);
-  PASS_NEW(an->W, m * m);
+  PASS_NEW_ALL(OF(an->A, m * m), OF(an->W, m * m));
   return hold(cp, an);
 }
 

@@ -88,8 +88,7 @@ static status fit(contact_solver *s, const contact_problem *cp) {
     TRY(st);
   }
   TRY(contact_bodies_new(cp, &s->bodies));
-  NEW(s->best_u, cp->m);
-  NEW(s->best_r, cp->m);
+  NEW_ALL(OF(s->best_u, cp->m), OF(s->best_r, cp->m));
   s->last = *cp;
 done:
   return st;

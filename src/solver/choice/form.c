@@ -131,8 +131,7 @@ static void condense_tangents(normal_form *nf, const contact_problem *cp) {
 static status factor(normal_form *nf, const contact_problem *cp) {
   size_t nt = (size_t)(cp->m - cp->n);
   if (nf->L != NULL) return OK;
-  PASS_NEW(nf->L, nt * nt);
-  PASS_NEW(nf->y, cp->m);
+  PASS_NEW_ALL(OF(nf->L, nt * nt), OF(nf->y, cp->m));
   nf->missing = !factor_tangents(nf, cp);
   return OK;
 }
@@ -140,11 +139,8 @@ static status factor(normal_form *nf, const contact_problem *cp) {
 static status condense_form(normal_form *nf, const contact_problem *cp) {
   size_t n = (size_t)cp->n, nt = (size_t)cp->m - n;
   if (nf->S != NULL) return OK;
-  PASS_NEW(nf->S, n * n);
-  PASS_NEW(nf->Y, nt * n);
-  PASS_NEW(nf->f, n);
-  PASS_NEW(nf->u, n);
-  PASS_NEW(nf->r, n);
+  PASS_NEW_ALL(OF(nf->S, n * n), OF(nf->Y, nt * n), OF(nf->f, n), OF(nf->u, n),
+               OF(nf->r, n));
   condense_tangents(nf, cp);
   return OK;
 }
@@ -282,19 +278,13 @@ status opened_new(const contact_problem *cp, const tangent_factor *by,
   o->n = cp->n;
   o->dim = cp->dim;
   o->nt = cp->m - cp->n;
-  NEW(o->made, o->n);
-  NEW(o->column, cp->n);
-  NEW(o->Y, (size_t)o->nt * (size_t)o->n);
-  NEW(o->S, (size_t)o->n * (size_t)o->n);
-  NEW(o->F, (size_t)o->n * (size_t)o->n);
-  NEW(o->v, o->n);
-  NEW(o->open, cp->n);
-  NEW(o->is_open, cp->n);
-  NEW(o->u0, cp->m);
-  NEW(o->r0, cp->m);
-  NEW(o->du, cp->m);
-  NEW(o->dr, cp->m);
-  NEW(o->y, o->nt);
+  NEW_ALL(OF(o->made, o->n), OF(o->column, cp->n),
+          OF(o->Y, (size_t)o->nt * (size_t)o->n),
+          OF(o->S, (size_t)o->n * (size_t)o->n),
+          OF(o->F, (size_t)o->n * (size_t)o->n), OF(o->v, o->n),
+          OF(o->open, cp->n), OF(o->is_open, cp->n), OF(o->u0, cp->m),
+          OF(o->r0, cp->m), OF(o->du, cp->m), OF(o->dr, cp->m),
+          OF(o->y, o->nt));
   for (int i = 0; i < cp->n; ++i) o->column[i] = -1;
   *out = o;
   o = NULL;

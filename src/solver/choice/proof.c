@@ -145,10 +145,7 @@ typedef struct balance {
 static status balance_new(balance *s) {
   size_t m = (size_t)s->cp->m;
   PASS(nonnegative_new(s->an->n_mode + 1, &s->sum));
-  PASS_NEW(s->v, m);
-  PASS_NEW(s->c, 3 * m);
-  PASS_NEW(s->force, m);
-  PASS_NEW(s->lift, m);
+  PASS_NEW_ALL(OF(s->v, m), OF(s->c, 3 * m), OF(s->force, m), OF(s->lift, m));
   return OK;
 }
 
@@ -268,11 +265,8 @@ static status find_forces(const contact_problem *cp, int *proved) {
   PASS_NEW(id, m);
   for (int dof = 0; dof < cp->m; ++dof)
     if (contact_bound(cp, dof) < HUGE_VAL) id[n++] = dof;
-  PASS_NEW(M, (size_t)n * (size_t)n);
-  PASS_NEW(q, n);
-  PASS_NEW(y, n);
-  PASS_NEW(l, m);
-  PASS_NEW(work, 3 * m);
+  PASS_NEW_ALL(OF(M, (size_t)n * (size_t)n), OF(q, n), OF(y, n), OF(l, m),
+               OF(work, 3 * m));
   for (int j = 0; j < n; ++j) {
     contact_column(cp, id[j], work);
     for (int i = 0; i < n; ++i)

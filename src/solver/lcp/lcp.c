@@ -500,26 +500,13 @@ status lcp_new(int n, int rank, lcp_work **out) {
   NEW(w, 1);
   int cap = w->cap = (rank < n ? rank : n) + 2;
   w->n = n;
-  NEW(w->K, (size_t)cap * (size_t)cap);
-  NEW(w->P, (size_t)cap * (size_t)cap);
-  NEW(w->lapack, cap);
-  NEW(w->swap, cap);
-  NEW(w->var, cap);
-  NEW(w->row, cap);
-  NEW(w->at_z, n + 1);
-  NEW(w->at_w, n);
-  NEW(w->z, cap);
-  NEW(w->w, n);
-  NEW(w->enter.dz, cap);
-  NEW(w->enter.dw, n);
-  NEW(w->enter.lz, cap);
-  NEW(w->enter.lw, n);
-  NEW(w->gather, cap);
-  NEW(w->line, cap);
-  NEW(w->column, n);
-  NEW(w->q, n);
-  NEW(w->tie, n + cap);
-  NEW(w->key, n + cap);
+  NEW_ALL(
+      OF(w->K, (size_t)cap * (size_t)cap), OF(w->P, (size_t)cap * (size_t)cap),
+      OF(w->lapack, cap), OF(w->swap, cap), OF(w->var, cap), OF(w->row, cap),
+      OF(w->at_z, n + 1), OF(w->at_w, n), OF(w->z, cap), OF(w->w, n),
+      OF(w->enter.dz, cap), OF(w->enter.dw, n), OF(w->enter.lz, cap),
+      OF(w->enter.lw, n), OF(w->gather, cap), OF(w->line, cap),
+      OF(w->column, n), OF(w->q, n), OF(w->tie, n + cap), OF(w->key, n + cap));
   *out = w;
   w = NULL;
 done:

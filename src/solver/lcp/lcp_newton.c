@@ -25,13 +25,8 @@
 status nonnegative_new(int rows, nonnegative *s) {
   size_t n = (size_t)rows;
   *s = (nonnegative){.rows = rows};
-  PASS_NEW(s->b, n);
-  PASS_NEW(s->rest, n);
-  PASS_NEW(s->G, n * n);
-  PASS_NEW(s->Q, n * n);
-  PASS_NEW(s->x, n);
-  PASS_NEW(s->y, n);
-  PASS_NEW(s->work, 4 * n);
+  PASS_NEW_ALL(OF(s->b, n), OF(s->rest, n), OF(s->G, n * n), OF(s->Q, n * n),
+               OF(s->x, n), OF(s->y, n), OF(s->work, 4 * n));
   return OK;
 }
 
@@ -156,11 +151,8 @@ static status run_new(run *s) {
                        &s->b,    &s->d, &s->g, &s->answer, &s->slack};
   for (size_t k = 0; k < sizeof by_row / sizeof *by_row; ++k)
     PASS_NEW(*by_row[k], n);
-  PASS_NEW(s->M, n * n);
-  PASS_NEW(s->J, n * n);
-  PASS_NEW(s->pivot, n);
-  PASS_NEW(s->basis, n);
-  PASS_NEW(s->N, n * n);
+  PASS_NEW_ALL(OF(s->M, n * n), OF(s->J, n * n), OF(s->pivot, n),
+               OF(s->basis, n), OF(s->N, n * n));
   s->lwork = 64 * (s->p->n + 1);
   PASS_NEW(s->work, s->lwork);
   return OK;

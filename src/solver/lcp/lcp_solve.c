@@ -113,14 +113,9 @@ typedef struct run {
 
 static status run_new(run *s) {
   size_t n = (size_t)s->p->n;
-  PASS_NEW(s->try_z, n);
-  PASS_NEW(s->y, 2 * n);
-  PASS_NEW(s->cover, n);
-  PASS_NEW(s->size, n);
-  PASS_NEW(s->M, n * n);
-  PASS_NEW(s->q, n);
-  PASS_NEW(s->work, n);
-  PASS_NEW(s->turned, n);
+  PASS_NEW_ALL(OF(s->try_z, n), OF(s->y, 2 * n), OF(s->cover, n),
+               OF(s->size, n), OF(s->M, n * n), OF(s->q, n), OF(s->work, n),
+               OF(s->turned, n));
   return OK;
 }
 
@@ -262,9 +257,7 @@ static status look_for_proof(run *s, int *proved) {
   size_t n = (size_t)s->p->n, m = 2 * n;
   OWNED double *K = NULL, *k = NULL, *ray = NULL;
   lcp_report rep;
-  PASS_NEW(K, m * m);
-  PASS_NEW(k, m);
-  PASS_NEW(ray, m);
+  PASS_NEW_ALL(OF(K, m * m), OF(k, m), OF(ray, m));
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < n; ++i) {
       double a = s->p->M[i + n * j];

@@ -646,13 +646,10 @@ static status new_matrix(const contact_problem *cp, auglag_work *w) {
   if (cp->op != NULL) {
     PASS(operated_system_new(cp, &w->by.system));
     PASS(pattern_new(cp->dim, cp->n, &w->by.guess));
-    PASS_NEW(w->by.hold, m);
-    PASS_NEW(w->by.b, m);
+    PASS_NEW_ALL(OF(w->by.hold, m), OF(w->by.b, m));
     return OK;
   }
-  PASS_NEW(w->K, m * m);
-  PASS_NEW(w->pivot, m);
-  PASS_NEW(w->free_id, m);
+  PASS_NEW_ALL(OF(w->K, m * m), OF(w->pivot, m), OF(w->free_id, m));
   return OK;
 }
 
@@ -664,14 +661,10 @@ static status auglag_setup(const contact_problem *cp, const void *par,
   (void)par;
   NEW(w, 1);
   w->m = cp->m;
-  NEW(w->part, m);
-  NEW(w->closed, m);
-  NEW(w->mode, cp->n);
-  NEW(w->state, m);
   NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
             &w->du, &w->dy, &w->e);
-  NEW(w->share, cp->n);
-  NEW(w->bonded, cp->n);
+  NEW_ALL(OF(w->part, m), OF(w->closed, m), OF(w->mode, cp->n), OF(w->state, m),
+          OF(w->share, cp->n), OF(w->bonded, cp->n));
   TRY(new_matrix(cp, w));
   TRY(fixed_point_new(cp->n, &w->fixed));
   TRY(best_iterate_new(cp->m, &w->best));

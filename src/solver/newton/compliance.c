@@ -206,21 +206,13 @@ status compliance_system_new(const contact_problem *cp,
   size_t m = (size_t)cp->m;
   int capacity = cp->g0 == NULL && cp->side_gap == NULL ? cp->n : cp->m;
   NEW(s, 1);
-  NEW(s->list, m);
-  NEW(s->place, cp->n);
-  NEW(s->turn, cp->n);
-  NEW(s->dof, m);
-  NEW(s->x, m);
-  NEW(s->y, m);
-  NEW(s->base, m);
-  NEW(s->in_base, m);
-  NEW(s->column, m);
+  NEW_ALL(OF(s->list, m), OF(s->place, cp->n), OF(s->turn, cp->n),
+          OF(s->dof, m), OF(s->x, m), OF(s->y, m), OF(s->base, m),
+          OF(s->in_base, m), OF(s->column, m));
   s->capacity = capacity / SHARE + 1;
-  NEW(s->X, capacity * s->capacity);
-  NEW(s->freed, s->capacity);
-  NEW(s->C, s->capacity * s->capacity);
-  NEW(s->z, s->capacity);
-  NEW(s->pivot, s->capacity);
+  NEW_ALL(OF(s->X, capacity * s->capacity), OF(s->freed, s->capacity),
+          OF(s->C, s->capacity * s->capacity), OF(s->z, s->capacity),
+          OF(s->pivot, s->capacity));
   TRY(dense_new(capacity, &s->K));
   s->power = dense_power(cp->m, cp->W);
   *out = s;

@@ -13,10 +13,8 @@ static const double SUSPECT = 0x1p-20; /* -, smallest over largest pivot */
 
 status dense_new(int capacity, dense *d) {
   size_t m = (size_t)capacity;
-  PASS_NEW(d->a, m * m);
-  PASS_NEW(d->pivot, m);
-  PASS_NEW(d->iwork, m);
-  PASS_NEW(d->work, 4 * m);
+  PASS_NEW_ALL(OF(d->a, m * m), OF(d->pivot, m), OF(d->iwork, m),
+               OF(d->work, 4 * m));
   return OK;
 }
 

@@ -72,17 +72,12 @@ status operated_system_new(const contact_problem *cp, operated_system **out) {
   s->m = cp->m;
   s->power = power_of(cp);
   NEW_REALS(m, &s->b, &s->x, &s->Ax);
-  NEW(s->added, (size_t)cp->dim * m);
-  NEW(s->known, m);
-  NEW(s->held, m);
-  NEW(s->slip.dof, m);
-  NEW(s->slip.x, m);
-  NEW(s->slip.load, m);
-  NEW(s->slip.pressed, m);
-  NEW(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS);
-  NEW(s->krylov.c, DIRECTIONS);
-  NEW(s->krylov.s, DIRECTIONS);
-  NEW(s->krylov.g, DIRECTIONS + 1);
+  NEW_ALL(OF(s->added, (size_t)cp->dim * m), OF(s->known, m), OF(s->held, m),
+          OF(s->slip.dof, m), OF(s->slip.x, m), OF(s->slip.load, m),
+          OF(s->slip.pressed, m),
+          OF(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS),
+          OF(s->krylov.c, DIRECTIONS), OF(s->krylov.s, DIRECTIONS),
+          OF(s->krylov.g, DIRECTIONS + 1));
   *out = s;
   s = NULL;
 done:

@@ -122,9 +122,8 @@ static status proximal_setup(const contact_problem *cp, const void *par,
     TRY(new_steps(cp, w));
   else
     TRY(step_matrix_new(cp, w->set, &w->J));
-  NEW_REALS(m, &w->x, &w->F, &w->d, &w->z, &w->weight, &w->start, &w->centre,
-            &w->before);
-  NEW(w->acts, m);
+  NEW_ALL(OF(w->x, m), OF(w->F, m), OF(w->d, m), OF(w->z, m), OF(w->weight, m),
+          OF(w->start, m), OF(w->centre, m), OF(w->before, m), OF(w->acts, m));
   *work = w;
   w = NULL;
 done:

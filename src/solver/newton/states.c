@@ -31,9 +31,8 @@ static void set_stiffness(const contact_problem *cp, states *s) {
 status states_new(const contact_problem *cp, states *s) {
   size_t m = (size_t)cp->m;
   PASS(pattern_new(cp->dim, cp->n, &s->guess));
-  PASS_NEW(s->raw, m);
-  PASS_NEW(s->k, m);
   PASS_NEW_REALS(cp->n, &s->c, &s->g, &s->rounding);
+  PASS_NEW_ALL(OF(s->raw, m), OF(s->k, m));
   set_stiffness(cp, s);
   return OK;
 }

@@ -48,12 +48,8 @@ status step_matrix_new(const contact_problem *cp, const force_set *set,
   s->m = cp->m;
   s->set = set;
   s->W = &set->rows;
-  NEW(s->place, m);
-  NEW(s->line, m);
-  NEW(s->touched, m);
-  NEW(s->is_touched, m);
-  NEW(s->rhs, m);
-  NEW(s->x, m);
+  NEW_ALL(OF(s->place, m), OF(s->line, m), OF(s->touched, m),
+          OF(s->is_touched, m), OF(s->rhs, m), OF(s->x, m));
   memory_count_suitesparse();
   umfpack_di_defaults(s->control);
   s->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
@@ -63,8 +59,7 @@ status step_matrix_new(const contact_problem *cp, const force_set *set,
   } else {
     TRY(compliance_rows(cp, &s->own));
     s->W = &s->own;
-    NEW(s->full, m * m);
-    NEW(s->pivot, m);
+    NEW_ALL(OF(s->full, m * m), OF(s->pivot, m));
   }
   *out = s;
   s = NULL;

@@ -359,12 +359,8 @@ static const double CHORD =
     0x1p-4; /* -, of it: residual allowed after a 3-D update */
 
 status pattern_new(int dim, int n, pattern *p) {
-  PASS_NEW(p->closed, dim * n);
-  PASS_NEW(p->mode, n);
-  PASS_NEW(p->e, n * (dim - 1));
-  PASS_NEW(p->kappa, n);
-  PASS_NEW(p->free_id, dim * n);
-  PASS_NEW(p->place, dim * n);
+  PASS_NEW_ALL(OF(p->closed, dim * n), OF(p->mode, n), OF(p->e, n * (dim - 1)),
+               OF(p->kappa, n), OF(p->free_id, dim * n), OF(p->place, dim * n));
   return OK;
 }
 
@@ -414,16 +410,11 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   s->inverse.capacity = (int)capacity;
   TRY(dense_new(cp->m, &s->K));
   TRY(pattern_new(cp->dim, cp->n, &s->base));
-  NEW(s->inverse.column, m);
-  NEW(s->inverse.X, m * capacity);
-  NEW(s->inverse.C, capacity * capacity);
-  NEW(s->rows, m * CHUNK);
-  NEW(s->product, CHUNK * capacity);
-  NEW(s->changed, m);
-  NEW_REALS(m, &s->b, &s->x, &s->du);
-  NEW(s->z, capacity);
-  NEW(s->weight, capacity);
-  NEW(s->inverse.small_pivot, capacity);
+  NEW_ALL(OF(s->inverse.column, m), OF(s->inverse.X, m * capacity),
+          OF(s->inverse.C, capacity * capacity), OF(s->rows, m * CHUNK),
+          OF(s->product, CHUNK * capacity), OF(s->changed, m), OF(s->b, m),
+          OF(s->x, m), OF(s->du, m), OF(s->z, capacity),
+          OF(s->weight, capacity), OF(s->inverse.small_pivot, capacity));
   s->power = dense_power(cp->m, cp->A);
   s->symmetric = -1;
   *out = s;

@@ -351,13 +351,10 @@ static status lemke_setup(const contact_problem *cp, const void *par,
     NEW(*by_variable[i], n_var);
   for (size_t i = 0; i < sizeof by_place / sizeof *by_place; ++i)
     NEW(*by_place[i], 2 * m);
-  NEW(w->reduced.S, m * m);
-  NEW(w->reduced.inner, m * m);
+  NEW_ALL(OF(w->reduced.S, m * m), OF(w->reduced.inner, m * m));
   if (cp->floating) NEW(w->spare, m * m);
-  NEW(w->work, 4 * m + 4);
-  NEW(w->reduced.D, cp->n);
-  NEW(w->reduced.tame, cp->n);
-  NEW(w->var, n_var);
+  NEW_ALL(OF(w->work, 4 * m + 4), OF(w->reduced.D, cp->n),
+          OF(w->reduced.tame, cp->n), OF(w->var, n_var));
   TRY(lcp_new(n_var, contact_has_stiffness(cp) ? cp->m : cp->m + 2 * cp->n,
               &w->lcp));
   TRY(set_up_correctors(cp, w));
