@@ -4,6 +4,8 @@
  *
  * Each request checks n*size for overflow, returns zeroed memory (memory_new)
  * and never fails for n = 0: it then returns a block that can be released.
+ *
+ * A failed x_new may leave in *out what it has made: the owner calls x_free.
  */
 #ifndef PROTIS_BASE_MEMORY_H
 #define PROTIS_BASE_MEMORY_H

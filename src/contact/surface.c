@@ -567,25 +567,22 @@ static int has_pair(const surface_input *in) {
 }
 
 static status surface_new(int dim, int n, int pairs, contact_surface **out) {
-  status st = OK;
-  contact_surface *s = NULL;
-  NEW(s, 1);
-  s->dim = dim;
-  NEW_ALL(OF(s->node_id, n), OF(s->node_no, n), OF(s->contact_id, n),
-          OF(s->side_id, n * (dim - 1)), OF(s->side_area, n * (dim - 1)),
-          OF(s->x, n * dim), OF(s->area, n), OF(s->frame, n * dim * dim),
-          OF(s->basis, n * dim * dim), OF(s->gap0, n), OF(s->held, n * dim));
-  if (pairs) {
-    NEW_ALL(OF(s->apart, n * dim), OF(s->share, n * dim),
-            OF(s->lever, n * dim * dim), OF(s->master, 1));
-    s->master->dim = dim;
-    NEW(s->master->start, n + 1);
-  }
+  contact_surface *s;
+  PASS_NEW(s, 1);
   *out = s;
-  s = NULL;
-done:
-  surface_free(s);
-  return st;
+  s->dim = dim;
+  PASS_NEW_ALL(OF(s->node_id, n), OF(s->node_no, n), OF(s->contact_id, n),
+               OF(s->side_id, n * (dim - 1)), OF(s->side_area, n * (dim - 1)),
+               OF(s->x, n * dim), OF(s->area, n), OF(s->frame, n * dim * dim),
+               OF(s->basis, n * dim * dim), OF(s->gap0, n),
+               OF(s->held, n * dim));
+  if (pairs) {
+    PASS_NEW_ALL(OF(s->apart, n * dim), OF(s->share, n * dim),
+                 OF(s->lever, n * dim * dim), OF(s->master, 1));
+    s->master->dim = dim;
+    PASS_NEW(s->master->start, n + 1);
+  }
+  return OK;
 }
 
 status surface_build(const surface_input *in, message_log *log,

@@ -29,17 +29,13 @@ struct fixed_point {
 };
 
 status fixed_point_new(int n, fixed_point **out) {
-  status st = OK;
-  fixed_point *fp = NULL;
-  NEW(fp, 1);
-  fp->n = n;
-  NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
-  NEW_ALL(OF(fp->dg, n * DEPTH), OF(fp->dG, n * DEPTH));
+  fixed_point *fp;
+  PASS_NEW(fp, 1);
   *out = fp;
-  fp = NULL;
-done:
-  fixed_point_free(fp);
-  return st;
+  fp->n = n;
+  PASS_NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
+  PASS_NEW_ALL(OF(fp->dg, n * DEPTH), OF(fp->dG, n * DEPTH));
+  return OK;
 }
 
 void fixed_point_free(fixed_point *fp) {
@@ -298,17 +294,13 @@ struct friction_path {
 };
 
 status friction_path_new(const contact_problem *cp, friction_path **out) {
-  status st = OK;
-  friction_path *path = NULL;
-  NEW(path, 1);
-  NEW_ALL(OF(path->g0, cp->n),
-          OF(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0),
-          OF(path->good_u, cp->m), OF(path->good_r, cp->m));
+  friction_path *path;
+  PASS_NEW(path, 1);
   *out = path;
-  path = NULL;
-done:
-  friction_path_free(path);
-  return st;
+  PASS_NEW_ALL(OF(path->g0, cp->n),
+               OF(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0),
+               OF(path->good_u, cp->m), OF(path->good_r, cp->m));
+  return OK;
 }
 
 void friction_path_free(friction_path *path) {

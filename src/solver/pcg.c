@@ -81,21 +81,17 @@ static void pcg_release(void *work) {
 
 static status pcg_setup(const contact_problem *cp, const void *par,
                         void **work) {
-  status st = OK;
-  pcg_work *w = NULL;
+  pcg_work *w;
   int m = cp->m;
   (void)par;
-  NEW(w, 1);
-  TRY(force_set_new(cp, &w->set));
-  NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0, &w->x0,
-            &w->e);
-  NEW(w->turn, cp->n);
-  TRY(best_iterate_new(m, &w->best));
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  pcg_release(w);
-  return st;
+  PASS(force_set_new(cp, &w->set));
+  PASS_NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
+                 &w->x0, &w->e);
+  PASS_NEW(w->turn, cp->n);
+  PASS(best_iterate_new(m, &w->best));
+  return OK;
 }
 
 /* ---- the set ------------------------------------------------------------- */

@@ -72,12 +72,12 @@ static void lift_block(int d, const double *block, double lift, double *K) {
 }
 
 status node_blocks_new(const contact_problem *cp, node_blocks **out) {
-  status st = OK;
-  node_blocks *b = NULL;
+  node_blocks *b;
   int d = cp->dim;
-  NEW(b, 1);
-  NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
-  NEW_ALL(OF(b->K, cp->n * d * d), OF(b->state, cp->n));
+  PASS_NEW(b, 1);
+  *out = b;
+  PASS_NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
+  PASS_NEW_ALL(OF(b->K, cp->n * d * d), OF(b->state, cp->n));
   double lift = 0.0;
   for (int i = 0; i < cp->m; ++i) {
     b->weight[i] = contact_diagonal(cp, i);
@@ -91,11 +91,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
     else
       invert_block(d, block, lift, K);
   }
-  *out = b;
-  b = NULL;
-done:
-  node_blocks_free(b);
-  return st;
+  return OK;
 }
 
 /* Where x = 0 of a node is: gap and stick position, m. */

@@ -63,20 +63,16 @@ static void sor_release(void *work) {
 
 static status sor_setup(const contact_problem *cp, const void *par,
                         void **work) {
-  status st = OK;
-  sor_work *w = NULL;
+  sor_work *w;
   const sor *p = par;
-  NEW(w, 1);
-  TRY(node_blocks_new(cp, &w->blocks));
-  TRY(best_iterate_new(cp->m, &w->best));
-  NEW(w->before, cp->m);
-  if (p->friction == FRICTION_FIXED_POINT)
-    TRY(fixed_point_new(cp->n, &w->fixed));
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  sor_release(w);
-  return st;
+  PASS(node_blocks_new(cp, &w->blocks));
+  PASS(best_iterate_new(cp->m, &w->best));
+  PASS_NEW(w->before, cp->m);
+  if (p->friction == FRICTION_FIXED_POINT)
+    PASS(fixed_point_new(cp->n, &w->fixed));
+  return OK;
 }
 
 /* ---- control ----------------------------------------------------------- */

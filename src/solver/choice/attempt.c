@@ -293,7 +293,7 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
   if (own.A == cp->A && own.op == cp->op && own.W == cp->W)
     control.scale = s->scale;
   if (s->work[row] == NULL) {
-    TRY(a->ops->setup(&own, a->param, &s->work[row]));
+    TRY(solver_set_up(a->ops, &own, a->param, &s->work[row]));
     TRY(remember(s, row));
   }
   drive_call x = {s, a, cp};

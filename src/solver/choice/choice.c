@@ -15,22 +15,18 @@
 #include <string.h>
 
 status contact_solver_new(const solver_choice *choice, contact_solver **out) {
-  status st = OK;
-  contact_solver *s = NULL;
+  contact_solver *s;
   size_t size = 1;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
+  *out = s;
   s->choice = *choice;
   for (int i = 0; solver_list[i] != NULL; ++i)
     if (solver_list[i]->param_size > size) size = solver_list[i]->param_size;
   s->param = memory_new(1, size);
   s->param_size = size;
   if (s->param == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
-  *out = s;
-  s = NULL;
-done:
-  contact_solver_free(s);
-  return st;
+    RAISE(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
+  return OK;
 }
 
 /* A (or W) has changed: discard factors. */

@@ -83,9 +83,7 @@ int normal_form_applies(const contact_problem *cp) {
 void normal_form_free(normal_form *nf) {
   if (nf->work != NULL) newton_solver.release(nf->work);
   opened_free(nf->opened);
-  double *const arrays[] = {nf->L, nf->Y, nf->S, nf->f, nf->u, nf->r, nf->y};
-  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; ++i)
-    memory_free(arrays[i]);
+  RELEASE(nf->L, nf->Y, nf->S, nf->f, nf->u, nf->r, nf->y);
   *nf = (normal_form){0};
 }
 
@@ -239,7 +237,7 @@ status normal_form_solve(normal_form *nf, const contact_problem *cp,
   }
   option_defaults(newton_solver.options, param);
   if (nf->work == NULL) {
-    TRY(newton_solver.setup(&own, param, &nf->work));
+    TRY(solver_set_up(&newton_solver, &own, param, &nf->work));
     TRY(remember(nf, "work", &there));
     if (there) TRY(newton_solver.keep(nf->work, nf->from));
   }
@@ -271,36 +269,28 @@ struct opened {
 
 status opened_new(const contact_problem *cp, const tangent_factor *by,
                   opened **out) {
-  status st = OK;
-  opened *o = NULL;
-  NEW(o, 1);
+  opened *o;
+  PASS_NEW(o, 1);
+  *out = o;
   o->by = *by;
   o->n = cp->n;
   o->dim = cp->dim;
   o->nt = cp->m - cp->n;
-  NEW_ALL(OF(o->made, o->n), OF(o->column, cp->n),
-          OF(o->Y, (size_t)o->nt * (size_t)o->n),
-          OF(o->S, (size_t)o->n * (size_t)o->n),
-          OF(o->F, (size_t)o->n * (size_t)o->n), OF(o->v, o->n),
-          OF(o->open, cp->n), OF(o->is_open, cp->n), OF(o->u0, cp->m),
-          OF(o->r0, cp->m), OF(o->du, cp->m), OF(o->dr, cp->m),
-          OF(o->y, o->nt));
+  PASS_NEW_ALL(OF(o->made, o->n), OF(o->column, cp->n),
+               OF(o->Y, (size_t)o->nt * (size_t)o->n),
+               OF(o->S, (size_t)o->n * (size_t)o->n),
+               OF(o->F, (size_t)o->n * (size_t)o->n), OF(o->v, o->n),
+               OF(o->open, cp->n), OF(o->is_open, cp->n), OF(o->u0, cp->m),
+               OF(o->r0, cp->m), OF(o->du, cp->m), OF(o->dr, cp->m),
+               OF(o->y, o->nt));
   for (int i = 0; i < cp->n; ++i) o->column[i] = -1;
-  *out = o;
-  o = NULL;
-done:
-  opened_free(o);
-  return st;
+  return OK;
 }
 
 void opened_free(opened *o) {
   if (o == NULL) return;
-  void *const blocks[] = {o->made, o->column, o->Y,       o->S,  o->F,
-                          o->v,    o->open,   o->is_open, o->u0, o->r0,
-                          o->du,   o->dr,     o->y};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
-    memory_free(blocks[i]);
-  memory_free(o);
+  RELEASE(o->made, o->column, o->Y, o->S, o->F, o->v, o->open, o->is_open,
+          o->u0, o->r0, o->du, o->dr, o->y, o);
 }
 
 status opened_keep(opened *o, archive *a) {

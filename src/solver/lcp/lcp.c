@@ -495,23 +495,19 @@ void lcp_free(lcp_work *w) {
 }
 
 status lcp_new(int n, int rank, lcp_work **out) {
-  status st = OK;
-  lcp_work *w = NULL;
-  NEW(w, 1);
+  lcp_work *w;
+  PASS_NEW(w, 1);
+  *out = w;
   int cap = w->cap = (rank < n ? rank : n) + 2;
   w->n = n;
-  NEW_ALL(
+  PASS_NEW_ALL(
       OF(w->K, (size_t)cap * (size_t)cap), OF(w->P, (size_t)cap * (size_t)cap),
       OF(w->lapack, cap), OF(w->swap, cap), OF(w->var, cap), OF(w->row, cap),
       OF(w->at_z, n + 1), OF(w->at_w, n), OF(w->z, cap), OF(w->w, n),
       OF(w->enter.dz, cap), OF(w->enter.dw, n), OF(w->enter.lz, cap),
       OF(w->enter.lw, n), OF(w->gather, cap), OF(w->line, cap),
       OF(w->column, n), OF(w->q, n), OF(w->tie, n + cap), OF(w->key, n + cap));
-  *out = w;
-  w = NULL;
-done:
-  lcp_free(w);
-  return st;
+  return OK;
 }
 
 /* Nothing basic but w. The lexicographic first row: the last of the least. */

@@ -147,10 +147,8 @@ typedef struct run {
 
 static status run_new(run *s) {
   size_t n = (size_t)s->p->n;
-  double **by_row[] = {&s->size, &s->q, &s->z, &s->w,      &s->phi,  &s->a,
-                       &s->b,    &s->d, &s->g, &s->answer, &s->slack};
-  for (size_t k = 0; k < sizeof by_row / sizeof *by_row; ++k)
-    PASS_NEW(*by_row[k], n);
+  PASS_NEW_REALS(n, &s->size, &s->q, &s->z, &s->w, &s->phi, &s->a, &s->b, &s->d,
+                 &s->g, &s->answer, &s->slack);
   PASS_NEW_ALL(OF(s->M, n * n), OF(s->J, n * n), OF(s->pivot, n),
                OF(s->basis, n), OF(s->N, n * n));
   s->lwork = 64 * (s->p->n + 1);
@@ -159,11 +157,8 @@ static status run_new(run *s) {
 }
 
 static void run_free(run *s) {
-  void *const blocks[] = {
-      s->size,   s->q,     s->z, s->w, s->phi,   s->a,     s->b, s->d,   s->g,
-      s->answer, s->slack, s->M, s->J, s->pivot, s->basis, s->N, s->work};
-  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-    memory_free(blocks[k]);
+  RELEASE(s->size, s->q, s->z, s->w, s->phi, s->a, s->b, s->d, s->g, s->answer,
+          s->slack, s->M, s->J, s->pivot, s->basis, s->N, s->work);
 }
 
 /* Units that bring the largest of each row and column near one. */

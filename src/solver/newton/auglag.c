@@ -655,30 +655,26 @@ static status new_matrix(const contact_problem *cp, auglag_work *w) {
 
 static status auglag_setup(const contact_problem *cp, const void *par,
                            void **work) {
-  status st = OK;
-  auglag_work *w = NULL;
+  auglag_work *w;
   size_t m = (size_t)cp->m;
   (void)par;
-  NEW(w, 1);
+  PASS_NEW(w, 1);
+  *work = w;
   w->m = cp->m;
-  NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
-            &w->du, &w->dy, &w->e);
-  NEW_ALL(OF(w->part, m), OF(w->closed, m), OF(w->mode, cp->n), OF(w->state, m),
-          OF(w->share, cp->n), OF(w->bonded, cp->n));
-  TRY(new_matrix(cp, w));
-  TRY(fixed_point_new(cp->n, &w->fixed));
-  TRY(best_iterate_new(cp->m, &w->best));
+  PASS_NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
+                 &w->du, &w->dy, &w->e);
+  PASS_NEW_ALL(OF(w->part, m), OF(w->closed, m), OF(w->mode, cp->n),
+               OF(w->state, m), OF(w->share, cp->n), OF(w->bonded, cp->n));
+  PASS(new_matrix(cp, w));
+  PASS(fixed_point_new(cp->n, &w->fixed));
+  PASS(best_iterate_new(cp->m, &w->best));
   take_diagonal(cp, w->diagonal);
   double largest = 0.0;
   int exponent = 0;
   for (size_t i = 0; i < m; ++i) largest = fmax(largest, w->diagonal[i]);
   if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
   w->power = ldexp(1.0, -exponent);
-  *work = w;
-  w = NULL;
-done:
-  auglag_release(w);
-  return st;
+  return OK;
 }
 
 /* The other variant, the limit updated around it. */

@@ -201,36 +201,28 @@ static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal */
 
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out) {
-  status st = OK;
-  compliance_system *s = NULL;
+  compliance_system *s;
   size_t m = (size_t)cp->m;
   int capacity = cp->g0 == NULL && cp->side_gap == NULL ? cp->n : cp->m;
-  NEW(s, 1);
-  NEW_ALL(OF(s->list, m), OF(s->place, cp->n), OF(s->turn, cp->n),
-          OF(s->dof, m), OF(s->x, m), OF(s->y, m), OF(s->base, m),
-          OF(s->in_base, m), OF(s->column, m));
-  s->capacity = capacity / SHARE + 1;
-  NEW_ALL(OF(s->X, capacity * s->capacity), OF(s->freed, s->capacity),
-          OF(s->C, s->capacity * s->capacity), OF(s->z, s->capacity),
-          OF(s->pivot, s->capacity));
-  TRY(dense_new(capacity, &s->K));
-  s->power = dense_power(cp->m, cp->W);
+  PASS_NEW(s, 1);
   *out = s;
-  s = NULL;
-done:
-  compliance_system_free(s);
-  return st;
+  PASS_NEW_ALL(OF(s->list, m), OF(s->place, cp->n), OF(s->turn, cp->n),
+               OF(s->dof, m), OF(s->x, m), OF(s->y, m), OF(s->base, m),
+               OF(s->in_base, m), OF(s->column, m));
+  s->capacity = capacity / SHARE + 1;
+  PASS_NEW_ALL(OF(s->X, capacity * s->capacity), OF(s->freed, s->capacity),
+               OF(s->C, s->capacity * s->capacity), OF(s->z, s->capacity),
+               OF(s->pivot, s->capacity));
+  PASS(dense_new(capacity, &s->K));
+  s->power = dense_power(cp->m, cp->W);
+  return OK;
 }
 
 void compliance_system_free(compliance_system *s) {
   if (s == NULL) return;
-  void *const blocks[] = {s->list,  s->dof,  s->place,   s->turn,   s->x,
-                          s->y,     s->base, s->in_base, s->column, s->X,
-                          s->freed, s->C,    s->z,       s->pivot};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
-    memory_free(blocks[i]);
   dense_free(&s->K);
-  memory_free(s);
+  RELEASE(s->list, s->dof, s->place, s->turn, s->x, s->y, s->base, s->in_base,
+          s->column, s->X, s->freed, s->C, s->z, s->pivot, s);
 }
 
 void compliance_displace(const contact_problem *cp, const double *r,

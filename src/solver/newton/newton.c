@@ -81,24 +81,20 @@ static void newton_release(void *work) {
 
 static status newton_setup(const contact_problem *cp, const void *par,
                            void **work) {
-  status st = OK;
-  newton_work *w = NULL;
+  newton_work *w;
   (void)par;
-  NEW(w, 1);
-  TRY(states_new(cp, &w->states));
-  if (cp->op != NULL)
-    TRY(operated_system_new(cp, &w->operated));
-  else if (cp->A != NULL)
-    TRY(newton_system_new(cp, &w->system));
-  else
-    TRY(compliance_system_new(cp, &w->compliance));
-  if (cp->op == NULL) TRY(node_blocks_new(cp, &w->blocks));
-  TRY(best_iterate_new(cp->m, &w->best));
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  newton_release(w);
-  return st;
+  PASS(states_new(cp, &w->states));
+  if (cp->op != NULL)
+    PASS(operated_system_new(cp, &w->operated));
+  else if (cp->A != NULL)
+    PASS(newton_system_new(cp, &w->system));
+  else
+    PASS(compliance_system_new(cp, &w->compliance));
+  if (cp->op == NULL) PASS(node_blocks_new(cp, &w->blocks));
+  PASS(best_iterate_new(cp->m, &w->best));
+  return OK;
 }
 
 typedef struct run {

@@ -65,24 +65,20 @@ static double power_of(const contact_problem *cp) {
 }
 
 status operated_system_new(const contact_problem *cp, operated_system **out) {
-  status st = OK;
-  operated_system *s = NULL;
+  operated_system *s;
   const size_t m = (size_t)cp->m;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
+  *out = s;
   s->m = cp->m;
   s->power = power_of(cp);
-  NEW_REALS(m, &s->b, &s->x, &s->Ax);
-  NEW_ALL(OF(s->added, (size_t)cp->dim * m), OF(s->known, m), OF(s->held, m),
-          OF(s->slip.dof, m), OF(s->slip.x, m), OF(s->slip.load, m),
-          OF(s->slip.pressed, m),
-          OF(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS),
-          OF(s->krylov.c, DIRECTIONS), OF(s->krylov.s, DIRECTIONS),
-          OF(s->krylov.g, DIRECTIONS + 1));
-  *out = s;
-  s = NULL;
-done:
-  operated_system_free(s);
-  return st;
+  PASS_NEW_REALS(m, &s->b, &s->x, &s->Ax);
+  PASS_NEW_ALL(OF(s->added, (size_t)cp->dim * m), OF(s->known, m),
+               OF(s->held, m), OF(s->slip.dof, m), OF(s->slip.x, m),
+               OF(s->slip.load, m), OF(s->slip.pressed, m),
+               OF(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS),
+               OF(s->krylov.c, DIRECTIONS), OF(s->krylov.s, DIRECTIONS),
+               OF(s->krylov.g, DIRECTIONS + 1));
+  return OK;
 }
 
 void operated_system_fit(operated_system *s) { s->stepped = 0; }

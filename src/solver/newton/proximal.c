@@ -111,24 +111,21 @@ static status new_steps(const contact_problem *cp, proximal_work *w) {
 
 static status proximal_setup(const contact_problem *cp, const void *par,
                              void **work) {
-  status st = OK;
-  proximal_work *w = NULL;
+  proximal_work *w;
   size_t m = (size_t)cp->m;
   (void)par;
-  NEW(w, 1);
-  TRY(force_set_new(cp, &w->set));
-  TRY(best_iterate_new(cp->m, &w->best));
-  if (cp->op != NULL)
-    TRY(new_steps(cp, w));
-  else
-    TRY(step_matrix_new(cp, w->set, &w->J));
-  NEW_ALL(OF(w->x, m), OF(w->F, m), OF(w->d, m), OF(w->z, m), OF(w->weight, m),
-          OF(w->start, m), OF(w->centre, m), OF(w->before, m), OF(w->acts, m));
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  proximal_release(w);
-  return st;
+  PASS(force_set_new(cp, &w->set));
+  PASS(best_iterate_new(cp->m, &w->best));
+  if (cp->op != NULL)
+    PASS(new_steps(cp, w));
+  else
+    PASS(step_matrix_new(cp, w->set, &w->J));
+  PASS_NEW_ALL(OF(w->x, m), OF(w->F, m), OF(w->d, m), OF(w->z, m),
+               OF(w->weight, m), OF(w->start, m), OF(w->centre, m),
+               OF(w->before, m), OF(w->acts, m));
+  return OK;
 }
 
 typedef struct run {

@@ -381,47 +381,31 @@ void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
 
 void newton_system_free(newton_system *s) {
   if (s == NULL) return;
-  void *const blocks[] = {s->inverse.column,
-                          s->inverse.X,
-                          s->inverse.C,
-                          s->rows,
-                          s->product,
-                          s->changed,
-                          s->b,
-                          s->x,
-                          s->du,
-                          s->z,
-                          s->weight,
-                          s->inverse.small_pivot};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
-    memory_free(blocks[i]);
   dense_free(&s->K);
   pattern_free(&s->base);
-  memory_free(s);
+  RELEASE(s->inverse.column, s->inverse.X, s->inverse.C, s->rows, s->product,
+          s->changed, s->b, s->x, s->du, s->z, s->weight,
+          s->inverse.small_pivot, s);
 }
 
 status newton_system_new(const contact_problem *cp, newton_system **out) {
-  status st = OK;
-  newton_system *s = NULL;
+  newton_system *s;
   size_t m = (size_t)cp->m, capacity = m / SHARE + 1;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
+  *out = s;
   s->m = cp->m;
   s->n_node = (size_t)cp->n;
   s->inverse.capacity = (int)capacity;
-  TRY(dense_new(cp->m, &s->K));
-  TRY(pattern_new(cp->dim, cp->n, &s->base));
-  NEW_ALL(OF(s->inverse.column, m), OF(s->inverse.X, m * capacity),
-          OF(s->inverse.C, capacity * capacity), OF(s->rows, m * CHUNK),
-          OF(s->product, CHUNK * capacity), OF(s->changed, m), OF(s->b, m),
-          OF(s->x, m), OF(s->du, m), OF(s->z, capacity),
-          OF(s->weight, capacity), OF(s->inverse.small_pivot, capacity));
+  PASS(dense_new(cp->m, &s->K));
+  PASS(pattern_new(cp->dim, cp->n, &s->base));
+  PASS_NEW_ALL(OF(s->inverse.column, m), OF(s->inverse.X, m * capacity),
+               OF(s->inverse.C, capacity * capacity), OF(s->rows, m * CHUNK),
+               OF(s->product, CHUNK * capacity), OF(s->changed, m), OF(s->b, m),
+               OF(s->x, m), OF(s->du, m), OF(s->z, capacity),
+               OF(s->weight, capacity), OF(s->inverse.small_pivot, capacity));
   s->power = dense_power(cp->m, cp->A);
   s->symmetric = -1;
-  *out = s;
-  s = NULL;
-done:
-  newton_system_free(s);
-  return st;
+  return OK;
 }
 
 /* FNV-1a of B; 0: none. */

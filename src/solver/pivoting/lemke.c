@@ -284,34 +284,11 @@ static void lemke_release(void *work) {
     memory_free(w->corrector.param[i]);
   }
   lcp_free(w->lcp);
-  void *const blocks[] = {w->reduced.S,
-                          w->reduced.inner,
-                          w->spare,
-                          w->reduced.D,
-                          w->reduced.tame,
-                          w->reduced.base,
-                          w->raw,
-                          w->v,
-                          w->t,
-                          w->ray,
-                          w->work,
-                          w->best_u,
-                          w->best_r,
-                          w->reduced.kept,
-                          w->reduced.free_id,
-                          w->pivot,
-                          w->kind,
-                          w->node.normal,
-                          w->node.slide,
-                          w->node.n_slide,
-                          w->var,
-                          w->q,
-                          w->d,
-                          w->z,
-                          w->dz};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
-    memory_free(blocks[i]);
-  memory_free(w);
+  RELEASE(w->reduced.S, w->reduced.inner, w->spare, w->reduced.D,
+          w->reduced.tame, w->reduced.base, w->raw, w->v, w->t, w->ray, w->work,
+          w->best_u, w->best_r, w->reduced.kept, w->reduced.free_id, w->pivot,
+          w->kind, w->node.normal, w->node.slide, w->node.n_slide, w->var, w->q,
+          w->d, w->z, w->dz, w);
 }
 
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
@@ -331,38 +308,29 @@ static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
 
 static status lemke_setup(const contact_problem *cp, const void *par,
                           void **work) {
-  status st = OK;
-  lemke_work *w = NULL;
+  lemke_work *w;
   const lemke *p = par;
   size_t m = (size_t)cp->m;
-  NEW(w, 1);
+  PASS_NEW(w, 1);
+  *work = w;
   w->m = cp->m;
   w->facets = p->facets >= 4 ? p->facets + p->facets % 2 : 8;
   int n_var = cp->n * (cp->dim == 2 ? 4 : w->facets + 2);
-  double **by_unknown[] = {&w->reduced.base, &w->raw,    &w->v,     &w->t,
-                           &w->ray,          &w->best_u, &w->best_r};
-  double **by_variable[] = {&w->q, &w->d, &w->z, &w->dz};
-  int **by_place[] = {&w->reduced.kept, &w->reduced.free_id, &w->pivot,
-                      &w->kind,         &w->node.normal,     &w->node.slide,
-                      &w->node.n_slide};
-  for (size_t i = 0; i < sizeof by_unknown / sizeof *by_unknown; ++i)
-    NEW(*by_unknown[i], m);
-  for (size_t i = 0; i < sizeof by_variable / sizeof *by_variable; ++i)
-    NEW(*by_variable[i], n_var);
-  for (size_t i = 0; i < sizeof by_place / sizeof *by_place; ++i)
-    NEW(*by_place[i], 2 * m);
-  NEW_ALL(OF(w->reduced.S, m * m), OF(w->reduced.inner, m * m));
-  if (cp->floating) NEW(w->spare, m * m);
-  NEW_ALL(OF(w->work, 4 * m + 4), OF(w->reduced.D, cp->n),
-          OF(w->reduced.tame, cp->n), OF(w->var, n_var));
-  TRY(lcp_new(n_var, contact_has_stiffness(cp) ? cp->m : cp->m + 2 * cp->n,
-              &w->lcp));
-  TRY(set_up_correctors(cp, w));
-  *work = w;
-  w = NULL;
-done:
-  lemke_release(w);
-  return st;
+  PASS_NEW_REALS(m, &w->reduced.base, &w->raw, &w->v, &w->t, &w->ray,
+                 &w->best_u, &w->best_r);
+  PASS_NEW_REALS(n_var, &w->q, &w->d, &w->z, &w->dz);
+  PASS_NEW_ALL(OF(w->reduced.kept, 2 * m), OF(w->reduced.free_id, 2 * m),
+               OF(w->pivot, 2 * m), OF(w->kind, 2 * m),
+               OF(w->node.normal, 2 * m), OF(w->node.slide, 2 * m),
+               OF(w->node.n_slide, 2 * m));
+  PASS_NEW_ALL(OF(w->reduced.S, m * m), OF(w->reduced.inner, m * m),
+               OF(w->spare, cp->floating ? m * m : 0));
+  PASS_NEW_ALL(OF(w->work, 4 * m + 4), OF(w->reduced.D, cp->n),
+               OF(w->reduced.tame, cp->n), OF(w->var, n_var));
+  PASS(lcp_new(n_var, contact_has_stiffness(cp) ? cp->m : cp->m + 2 * cp->n,
+               &w->lcp));
+  PASS(set_up_correctors(cp, w));
+  return OK;
 }
 
 /* The outcome; from the state of a polygon to that of the disc, and from
