@@ -674,22 +674,21 @@ static status factor_both(sparse_operator *o) {
 
 status sparse_operator_new(const operator_data *d, const char **ordering,
                            sparse_operator **out) {
-  status st = OK;
   const stiffness *k = d->k;
   sparse_operator *o = NULL;
-  NEW(o, 1);
+  PASS_NEW(o, 1);
   *out = o;
   o->k = k;
   o->rigid = d->rigid;
   o->cm = d->cm;
   o->pinned = d->pinned;
-  TRY(new_rows(o));
+  PASS(new_rows(o));
   memcpy(o->held, d->held, (size_t)k->n_row);
   memcpy(o->body, d->body, (size_t)(k->n_row / k->rows) * sizeof *o->body);
   number_rows(o);
   fill_diagonal(o);
-  TRY(order_whole(o, d->x, d->order, ordering));
-  TRY(factor_both(o));
+  PASS(order_whole(o, d->x, d->order, ordering));
+  PASS(factor_both(o));
   o->seen = (contact_operator){.ctx = o,
                                .diagonal = o->diagonal,
                                .body = o->body,
@@ -705,8 +704,7 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
                                .solve = solve,
                                .set_response = set_response,
                                .response = response};
-done:
-  return st;
+  return OK;
 }
 
 void sparse_operator_free(sparse_operator *o) {

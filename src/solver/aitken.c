@@ -332,10 +332,7 @@ const solver_ops aitken_solver = {
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
   .entries = "METHOD=AITKEN, which relaxes row by row,",
-  .param_size = sizeof(aitken),
-  .options = aitken_options,
-  .setup = aitken_setup,
-  .solve = aitken_solve,
-  .release = aitken_release
+  .param_size = sizeof(aitken), .options = aitken_options,
+  .setup = aitken_setup, .solve = aitken_solve, .release = aitken_release
 };
 /* clang-format on */

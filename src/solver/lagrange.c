@@ -244,11 +244,8 @@ const solver_ops lagrange_solver = {
     "method that always converges on a Tresca problem; PCG solves the same\n"
     "problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
-  .param_size = sizeof(lagrange),
-  .options = lagrange_options,
-  .setup = lagrange_setup,
-  .solve = lagrange_solve,
-  .release = lagrange_release,
+  .param_size = sizeof(lagrange), .options = lagrange_options,
+  .setup = lagrange_setup, .solve = lagrange_solve, .release = lagrange_release,
   .keep = lagrange_keep
 };
 /* clang-format on */

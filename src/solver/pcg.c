@@ -90,8 +90,7 @@ static status pcg_setup(const contact_problem *cp, const void *par,
   PASS_NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
                  &w->x0, &w->e);
   PASS_NEW(w->turn, cp->n);
-  PASS(best_iterate_new(m, &w->best));
-  return OK;
+  return best_iterate_new(m, &w->best);
 }
 
 /* ---- the set ------------------------------------------------------------- */
@@ -448,10 +447,7 @@ const solver_ops pcg_solver = {
     "problems with many increments on one matrix and small friction.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE,
-  .param_size = sizeof(pcg),
-  .options = pcg_options,
-  .setup = pcg_setup,
-  .solve = pcg_solve,
-  .release = pcg_release
+  .param_size = sizeof(pcg), .options = pcg_options,
+  .setup = pcg_setup, .solve = pcg_solve, .release = pcg_release
 };
 /* clang-format on */

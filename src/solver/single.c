@@ -39,8 +39,7 @@ static void set_problem(single *s) {
   }
   if (cp->g0 == NULL || contact_has_side(cp, 0)) return;
   s->g0 = cp->g0[0];
-  for (int k = 0; cp->B != NULL && k < cp->B->start[1]; ++k)
-    s->mu += cp->B->val[k];
+  s->mu = row_sum(cp->B, 0);
   for (int k = 1; k < m; ++k) {
     if (contact_held(cp, k)) continue;
     s->ut0[s->n_rub] = contact_stick(cp, k);
@@ -69,15 +68,6 @@ static void check(single *s, const double *u, const double *r) {
 
 /* ---- states that are linear ---------------------------------------------- */
 
-/* Power of two that brings the largest of x[m] to order 1. */
-static double power_of(int m, const double *x) {
-  double largest = 0.0;
-  int exponent = 0;
-  for (int i = 0; i < m; ++i) largest = fmax(largest, fabs(x[i]));
-  if (largest > 0.0) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
-}
-
 /* The state with u_i = u[i] of the unknowns in "fixed" (bit i), r_i = 0 of the
  * others. */
 static void try_linear(single *s, unsigned fixed, const double *at) {
@@ -92,7 +82,7 @@ static void try_linear(single *s, unsigned fixed, const double *at) {
     }
   }
   for (int j = 0; j < m; ++j) {
-    power[j] = power_of(m, M + m * j);
+    power[j] = power_to_one(largest_entry((size_t)m, M + m * j));
     for (int i = 0; i < m; ++i) M[i + m * j] *= power[j];
   }
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, m, m, 1, M, m, b, m, pivot, RANK,

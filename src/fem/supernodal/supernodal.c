@@ -42,24 +42,23 @@ static status link_up(supernodal *s) {
 }
 
 status supernodal_new(const cholmod_factor *L, supernodal **out) {
-  status st = OK;
   supernodal *s = NULL;
   int most = 0;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
   *out = s;
   s->n = (int)L->n;
   s->count = (int)L->nsuper;
   s->first = L->super;
   s->start = L->pi;
   s->row = L->s;
-  TRY(link_up(s));
-  NEW_ALL(OF(s->head, s->count), OF(s->next, s->count), OF(s->done, s->count),
-          OF(s->place, s->n), OF(s->product, L->maxcsize));
+  PASS(link_up(s));
+  PASS_NEW_ALL(OF(s->head, s->count), OF(s->next, s->count),
+               OF(s->done, s->count), OF(s->place, s->n),
+               OF(s->product, L->maxcsize));
   for (int q = 0; q < s->count; ++q)
     most = n_row(s, q) > most ? n_row(s, q) : most;
-  NEW_ALL(OF(s->relative, most), OF(s->below, most));
-done:
-  return st;
+  PASS_NEW_ALL(OF(s->relative, most), OF(s->below, most));
+  return OK;
 }
 
 status supernodal_restrict(const supernodal *s, const int *number,

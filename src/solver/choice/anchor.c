@@ -99,23 +99,20 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
 
 /* A_s and its inverse. */
 static status hold(const contact_problem *cp, anchor *an) {
-  status st = OK;
-  dense d = {0};
+  ENDS_BY(dense_free) dense d = {0};
   int m = cp->m, good = 0;
   size_t size = (size_t)m * (size_t)m;
-  TRY(dense_new(m, &d));
+  PASS(dense_new(m, &d));
   memcpy(an->A, cp->A, size * sizeof *an->A);
   for (int k = 0; k < an->n_mode; ++k) {
     const double *v = an->R + (size_t)k * (size_t)m;
     cblas_dger(CblasColMajor, m, m, an->spring[k], v, 1, v, 1, an->A, m);
   }
   memcpy(d.a, an->A, size * sizeof *d.a);
-  TRY(form_invert(m, &d, &good));
+  PASS(form_invert(m, &d, &good));
   an->missing = !good;
   memcpy(an->W, d.a, size * sizeof *d.a);
-done:
-  dense_free(&d);
-  return st;
+  return OK;
 }
 
 /* Of each motion by the stiffness of the bodies that it moves, which may differ
@@ -373,20 +370,19 @@ static contact_problem anchored(const passes *p) {
 status anchor_solve(const anchor *an, const contact_problem *cp,
                     const anchored_solver *inner, const solver_control *control,
                     double *u, double *r, solver_report *rep) {
-  status st = OK;
   passes p = {.an = an, .cp = cp, .lowest = HUGE_VAL};
   solver_control own = *control;
   *rep = (solver_report){.outcome = RUNNING, .residual = 1.0};
   place(an, cp->m, u, an->a);
   memset(an->step, 0, (size_t)an->n_mode * sizeof *an->step);
-  for (int i = 0; i < cp->m; ++i) p.load = fmax(p.load, fabs(cp->f[i]));
+  p.load = largest_entry((size_t)cp->m, cp->f);
   for (int k = 0; k < PASSES && rep->outcome == RUNNING; ++k) {
     solver_report pass;
     contact_problem held = anchored(&p);
     if (control->max_iter > 0)
       own.max_iter = control->max_iter - rep->iterations;
     own.tol = fmax(FINEST * control->tol, fmin(1e-3, 1e-2 * rep->residual));
-    TRY(inner->solve(inner->ctx, &held, &own, u, r, &pass));
+    PASS(inner->solve(inner->ctx, &held, &own, u, r, &pass));
     own.no_restart = control->no_restart || pass.outcome < 0;
     rep->iterations += pass.iterations;
     rep->limit_updates += pass.limit_updates;
@@ -400,6 +396,5 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
       rep->outcome = STOPPED_ITERATIONS;
   }
   if (rep->outcome == RUNNING) rep->outcome = STOPPED_ITERATIONS;
-done:
-  return st;
+  return OK;
 }

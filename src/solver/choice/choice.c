@@ -175,25 +175,23 @@ const contact_bodies *contact_solver_bodies(const contact_solver *s,
 static status solve_apart(contact_solver *s, const contact_problem *cp,
                           const solver_listener *listener, double *u, double *r,
                           solver_report *rep) {
-  status st = OK;
   s->scale = contact_scale(cp);
-  if (known_answer(s, cp, u, r, rep)) goto done;
+  if (known_answer(s, cp, u, r, rep)) return OK;
   if (s->choice.ops == NULL) {
-    TRY(auto_solve(s, cp, listener, u, r, rep));
+    PASS(auto_solve(s, cp, listener, u, r, rep));
   } else {
     attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter,
                  NULL};
-    TRY(attempt_run(s, cp, &a, listener, u, r, rep));
+    PASS(attempt_run(s, cp, &a, listener, u, r, rep));
     attempt_check(s, cp, u, r, rep);
-    TRY(attempt_prove(s, cp, rep));
+    PASS(attempt_prove(s, cp, rep));
   }
   /* A NaN of a method says nothing about the problem. */
   if (isfinite(rep->residual) &&
       (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_SINGULAR))
     rep->outcome = STOPPED_STAGNATION;
-  if (rep->outcome == CONVERGED) TRY(polish(s, cp, u, r, rep));
-done:
-  return st;
+  if (rep->outcome == CONVERGED) PASS(polish(s, cp, u, r, rep));
+  return OK;
 }
 
 status contact_solve(contact_solver *s, const contact_problem *cp,

@@ -11,11 +11,11 @@
  * replaces or removes one row and one column of P; K follows by a rank-one
  * change. Lexicographic rule: q is thought of as q + (e, e^2, ...) with an
  * infinitesimal e; only the columns of the inverse that are needed to break
- * ties are formed. The form with a dense matrix is in plain.c.
+ * ties are formed.
  */
 #include "solver/lcp/lcp.h"
 
-#include "base/memory.h"
+#include "base/sparse.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -66,12 +66,7 @@ status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
   status st = OK;
   lcp_work *w = NULL;
   double *d = NULL;
-  int exponent = 0;
-  double size = 0.0;
-  for (size_t i = 0; i < (size_t)n * (size_t)n; ++i)
-    size = fmax(size, fabs(M[i]));
-  if (size > 0.0 && size < HUGE_VAL) frexp(size, &exponent);
-  plain m = {n, M, ldexp(1.0, -exponent)};
+  plain m = {n, M, power_to_one(largest_entry((size_t)n * (size_t)n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
   TRY(lcp_new(n, n, &w));
   NEW(d, n);

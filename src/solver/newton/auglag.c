@@ -669,11 +669,7 @@ static status auglag_setup(const contact_problem *cp, const void *par,
   PASS(fixed_point_new(cp->n, &w->fixed));
   PASS(best_iterate_new(cp->m, &w->best));
   take_diagonal(cp, w->diagonal);
-  double largest = 0.0;
-  int exponent = 0;
-  for (size_t i = 0; i < m; ++i) largest = fmax(largest, w->diagonal[i]);
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  w->power = ldexp(1.0, -exponent);
+  w->power = power_to_one(largest_entry(m, w->diagonal));
   return OK;
 }
 
@@ -760,11 +756,8 @@ const solver_ops auglag_solver = {
     "contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
-  .param_size = sizeof(auglag),
-  .options = auglag_options,
-  .setup = auglag_setup,
-  .solve = auglag_solve,
-  .release = auglag_release,
+  .param_size = sizeof(auglag), .options = auglag_options,
+  .setup = auglag_setup, .solve = auglag_solve, .release = auglag_release,
   .keep = auglag_keep
 };
 /* clang-format on */

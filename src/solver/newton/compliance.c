@@ -121,8 +121,7 @@ static double on_limit(const compliance_system *s, int node_id,
   for (int k = 0; k < dim - 1; ++k)
     if (s->in_base[first + k] >= 0)
       sum += s->p->e[node_id * (dim - 1) + k] * y[s->in_base[first + k]];
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k)
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k)
     if (s->place[B->col[k]] >= 0)
       sum += B->val[k] * y[s->in_base[B->col[k] * dim]];
   return sum;
@@ -340,8 +339,7 @@ static void set_slip(const compliance_system *s, int node_id, double along,
   const sparse_rows *B = cp->B;
   const double *e = s->p->e + node_id * (cp->dim - 1);
   double g = cp->g0[node_id], *t = r + node_id * cp->dim + 1;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k)
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k)
     if (s->place[B->col[k]] >= 0) g -= B->val[k] * r[B->col[k] * cp->dim];
   for (int k = 0; k < cp->dim - 1; ++k) t[k] = g * e[k];
   if (!turns(s, node_id)) return;

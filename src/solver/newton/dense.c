@@ -1,7 +1,7 @@
 /* Factor of a dense matrix (dense.h). */
 #include "solver/newton/dense.h"
 
-#include "base/memory.h"
+#include "base/sparse.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -42,12 +42,10 @@ void dense_mirror(int m, double *M) {
 
 double dense_power(int m, const double *M) {
   double largest = 0.0;
-  int exponent = 0;
   size_t n = (size_t)m;
   for (size_t i = 0; i < n; ++i)
     if (M[i * n + i] > largest) largest = M[i * n + i];
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
+  return power_to_one(largest);
 }
 
 /* 1: the pivots leave doubt, and the condition number says singular. */

@@ -93,8 +93,7 @@ static status newton_setup(const contact_problem *cp, const void *par,
   else
     PASS(compliance_system_new(cp, &w->compliance));
   if (cp->op == NULL) PASS(node_blocks_new(cp, &w->blocks));
-  PASS(best_iterate_new(cp->m, &w->best));
-  return OK;
+  return best_iterate_new(cp->m, &w->best);
 }
 
 typedef struct run {
@@ -389,11 +388,8 @@ const solver_ops newton_solver = {
     "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              REGULAR_COMPLIANCE | SOLVES_FLOATING,
-  .param_size = sizeof(newton),
-  .options = newton_options,
-  .setup = newton_setup,
-  .solve = newton_solve,
-  .release = newton_release,
+  .param_size = sizeof(newton), .options = newton_options,
+  .setup = newton_setup, .solve = newton_solve, .release = newton_release,
   .keep = newton_keep
 };
 /* clang-format on */

@@ -55,22 +55,13 @@ void operated_system_free(operated_system *s) {
           s->krylov.c, s->krylov.s, s->krylov.g, s);
 }
 
-static double power_of(const contact_problem *cp) {
-  double largest = 0.0;
-  int exponent = 0;
-  for (int i = 0; i < cp->m; ++i)
-    largest = fmax(largest, contact_diagonal(cp, i));
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
-}
-
 status operated_system_new(const contact_problem *cp, operated_system **out) {
   operated_system *s;
   const size_t m = (size_t)cp->m;
   PASS_NEW(s, 1);
   *out = s;
   s->m = cp->m;
-  s->power = power_of(cp);
+  s->power = power_to_one(largest_entry(m, cp->op->diagonal));
   PASS_NEW_REALS(m, &s->b, &s->x, &s->Ax);
   PASS_NEW_ALL(OF(s->added, (size_t)cp->dim * m), OF(s->known, m),
                OF(s->held, m), OF(s->slip.dof, m), OF(s->slip.x, m),
@@ -109,8 +100,7 @@ static void list_slip(operated_system *s, const contact_problem *cp,
     int any = s->drifts;
     if (p->mode[i] != SLIP) continue;
     s->slip.pressed[i * cp->dim + 1] = (unsigned char)any;
-    for (int k = B != NULL ? B->start[i] : 0; B != NULL && k < B->start[i + 1];
-         ++k) {
+    for (int k = row_begin(B, i); k < row_end(B, i); ++k) {
       const int dof = B->col[k] * cp->dim;
       if (!p->closed[dof] || B->val[k] == 0.0) continue;
       s->slip.pressed[dof] = 1;
@@ -130,8 +120,7 @@ static void add_friction(const operated_system *s, const contact_problem *cp,
   for (int t = 0; t < s->slip.n; ++t) {
     const int i = s->slip.dof[t] / cp->dim, c = s->slip.dof[t] % cp->dim - 1;
     double sum = 0.0;
-    for (int k = B != NULL ? B->start[i] : 0; B != NULL && k < B->start[i + 1];
-         ++k) {
+    for (int k = row_begin(B, i); k < row_end(B, i); ++k) {
       const int dof = B->col[k] * cp->dim;
       if (p->closed[dof]) sum += B->val[k] * Ax[dof];
     }

@@ -144,13 +144,8 @@ typedef struct run {
 /* inv(D); friction counts in the pressures that its limit takes, or a limit
  * that grows by far more than they would dominate. */
 static void set_weights(proximal_work *w, const contact_problem *cp) {
-  const sparse_rows *B = cp->B;
   for (int i = 0; i < cp->m; ++i) {
-    double mu = 0.0;
-    int node_id = i / cp->dim, normal = i % cp->dim == 0 || B == NULL;
-    for (int k = normal ? 0 : B->start[node_id];
-         !normal && k < B->start[node_id + 1]; ++k)
-      mu += B->val[k];
+    const double mu = i % cp->dim == 0 ? 0.0 : row_sum(cp->B, i / cp->dim);
     w->weight[i] = 1.0 / (w->set->D[i] * fmax(1.0, mu * mu));
   }
 }
@@ -228,8 +223,7 @@ static void add_slip(const run *s, int node_id, int a, double length) {
 static int is_idle(const run *s, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (contact_node_limit(s->cp, s->r, node_id) > 0.0) return 0;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k) {
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k) {
     int normal = B->col[k] * s->cp->dim;
     if (s->r[normal] < 0.0 || s->w->z[normal] < 0.0) return 0;
   }
@@ -582,10 +576,7 @@ const solver_ops proximal_solver = {
     "for a body on its contact surface NEWTON is faster.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
-  .param_size = 0,
   .options = proximal_options,
-  .setup = proximal_setup,
-  .solve = proximal_solve,
-  .release = proximal_release
+  .setup = proximal_setup, .solve = proximal_solve, .release = proximal_release
 };
 /* clang-format on */

@@ -54,8 +54,7 @@ static const double SPRING = 0x1p-36; /* -, of the diagonal */
 static int couples(const newton_system *s, const pattern *p, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (p->mode[node_id] != SLIP) return 0;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k)
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k)
     if (B->val[k] != 0.0 && p->closed[B->col[k] * s->cp->dim]) return 1;
   return 0;
 }
@@ -133,8 +132,7 @@ static void newton_row(const newton_system *s, const pattern *p, int dof,
   memset(to, 0, (size_t)m * sizeof *to);
   cblas_daxpy(m, s->power, cp->A + stride * (size_t)dof, step, to, 1);
   if (k < 0 || p->mode[node_id] != SLIP) return;
-  for (int j = B == NULL ? 0 : B->start[node_id];
-       B != NULL && j < B->start[node_id + 1]; ++j) {
+  for (int j = row_begin(B, node_id); j < row_end(B, node_id); ++j) {
     int n = B->col[j] * cp->dim;
     double a = s->power * p->e[node_id * tangents + k] * B->val[j];
     if (p->closed[n])
@@ -179,6 +177,17 @@ static void newton_plain_step(newton_system *s) {
   for (int i = 0; i < s->base.n_free; ++i) s->du[i] = s->b[s->base.free_id[i]];
   newton_back(s, 1, s->du);
   newton_expand(s, s->du);
+}
+
+static void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
+  size_t nodes = (size_t)n, m = nodes * (size_t)dim;
+  memcpy(to->closed, from->closed, m * sizeof *to->closed);
+  memcpy(to->mode, from->mode, nodes * sizeof *to->mode);
+  memcpy(to->e, from->e, (m - nodes) * sizeof *to->e);
+  memcpy(to->kappa, from->kappa, nodes * sizeof *to->kappa);
+  memcpy(to->free_id, from->free_id, m * sizeof *to->free_id);
+  memcpy(to->place, from->place, m * sizeof *to->place);
+  to->n_free = from->n_free;
 }
 
 /* The guess becomes the base, without a factor yet. */
@@ -229,8 +238,7 @@ static int same_row(const newton_system *s, const pattern *p, int dof) {
       before = newton_bends(s, base, node_id);
   if (!now || !before) return now == before;
   if (turned(s, p, dof)) return 0;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k) {
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k) {
     int n = B->col[k] * s->cp->dim;
     if (p->closed[n] != base->closed[n]) return 0;
   }
@@ -366,17 +374,6 @@ status pattern_new(int dim, int n, pattern *p) {
 
 void pattern_free(pattern *p) {
   RELEASE(p->closed, p->mode, p->e, p->kappa, p->free_id, p->place);
-}
-
-void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
-  size_t nodes = (size_t)n, m = nodes * (size_t)dim;
-  memcpy(to->closed, from->closed, m * sizeof *to->closed);
-  memcpy(to->mode, from->mode, nodes * sizeof *to->mode);
-  memcpy(to->e, from->e, (m - nodes) * sizeof *to->e);
-  memcpy(to->kappa, from->kappa, nodes * sizeof *to->kappa);
-  memcpy(to->free_id, from->free_id, m * sizeof *to->free_id);
-  memcpy(to->place, from->place, m * sizeof *to->place);
-  to->n_free = from->n_free;
 }
 
 void newton_system_free(newton_system *s) {
