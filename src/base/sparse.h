@@ -18,12 +18,13 @@ typedef struct sparse_rows {
   double *val; /* [start[n]] */
 } sparse_rows;
 
-/* Entries of row i: row_begin to row_end - 1; rows NULL: none. Their sum. */
+/* Entries of row i: row_begin to row_end - 1, none of NULL or all-zero rows;
+ * their sum. */
 static inline int row_begin(const sparse_rows *rows, int i) {
-  return rows == NULL ? 0 : rows->start[i];
+  return rows == NULL || rows->start == NULL ? 0 : rows->start[i];
 }
 static inline int row_end(const sparse_rows *rows, int i) {
-  return rows == NULL ? 0 : rows->start[i + 1];
+  return rows == NULL || rows->start == NULL ? 0 : rows->start[i + 1];
 }
 static inline double row_sum(const sparse_rows *rows, int i) {
   double sum = 0.0;

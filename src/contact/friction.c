@@ -72,17 +72,16 @@ static void copy_row(const sparse_rows *from, int row, sparse_rows *to, int i) {
  * empty. */
 static status add_rows(friction_limit *out, int n, const int *node,
                        const sparse_rows *part) {
-  status st = OK;
   const sparse_rows *old = &out->B;
-  sparse_rows all = {.n = n};
-  int *row_of = NULL;
-  NEW(row_of, n);
+  ENDS_BY(sparse_free) sparse_rows all = {.n = n};
+  OWNED int *row_of = NULL;
+  PASS_NEW(row_of, n);
   for (int i = 0; i < n; ++i) row_of[i] = -1;
   for (int k = 0; k < part->n; ++k) row_of[node[k]] = k;
-  NEW(all.start, n + 1);
+  PASS_NEW(all.start, n + 1);
   for (int i = 0; i < n; ++i)
     all.start[i + 1] = all.start[i] + row_length(old, part, row_of[i], i);
-  NEW_ALL(OF(all.col, all.start[n]), OF(all.val, all.start[n]));
+  PASS_NEW_ALL(OF(all.col, all.start[n]), OF(all.val, all.start[n]));
   for (int i = 0; i < n; ++i) {
     if (row_of[i] >= 0)
       copy_row(part, row_of[i], &all, i);
@@ -92,10 +91,7 @@ static status add_rows(friction_limit *out, int n, const int *node,
   sparse_free(&out->B);
   out->B = all;
   memset(&all, 0, sizeof all);
-done:
-  sparse_free(&all);
-  memory_free(row_of);
-  return st;
+  return OK;
 }
 
 /* Entries of the average at node i, 1 without one. */
@@ -122,25 +118,22 @@ static status friction_pressure_limit(const friction_card *card,
                                       const contact_surface *s, int n_node,
                                       const int *node, double t,
                                       friction_limit *out) {
-  status st = OK;
-  sparse_rows rows = {.n = n_node};
-  NEW(rows.start, n_node + 1);
+  ENDS_BY(sparse_free) sparse_rows rows = {.n = n_node};
+  PASS_NEW(rows.start, n_node + 1);
   for (int k = 0; k < n_node; ++k)
     rows.start[k + 1] =
         rows.start[k] + (surface_is_corner(s, node[k])
                              ? 0
                              : average_size(card->average, node[k]));
-  NEW_ALL(OF(rows.col, rows.start[n_node]), OF(rows.val, rows.start[n_node]));
+  PASS_NEW_ALL(OF(rows.col, rows.start[n_node]),
+               OF(rows.val, rows.start[n_node]));
   for (int k = 0; k < n_node; ++k) {
     double mu;
     if (surface_is_corner(s, node[k])) continue;
-    TRY(friction_value(card, s, node[k], t, &mu));
+    PASS(friction_value(card, s, node[k], t, &mu));
     add_average(card->average, node[k], mu, &rows, rows.start[k]);
   }
-  TRY(add_rows(out, s->n, node, &rows));
-done:
-  sparse_free(&rows);
-  return st;
+  return add_rows(out, s->n, node, &rows);
 }
 
 /*
@@ -346,7 +339,6 @@ static status nonlocal_average(const friction_card *card,
                                const surface_input *in, int contact_id,
                                const place *at, message_log *log,
                                sparse_rows *out) {
-  status st = OK;
   const nonlocal *own = card->param;
   const average_rule rule = {
       .kernel = (kernel)own->kernel,
@@ -355,17 +347,14 @@ static status nonlocal_average(const friction_card *card,
       .geodesic = own->distance,
       .mirror = {(average_mirror)own->mirror_x, (average_mirror)own->mirror_y,
                  (average_mirror)own->mirror_z}};
-  patch a = {.x = NULL};
-  sparse_rows G = {.n = 0};
+  ENDS_BY(patch_free) patch a = {.x = NULL};
+  ENDS_BY(sparse_free) sparse_rows G = {.n = 0};
   average_facts facts;
-  TRY(patch_new(s, in, contact_id, &a));
-  TRY(average_build(&a.p, &rule, &G, &facts));
-  TRY(to_surface(s, contact_id, &a, &G, out));
+  PASS(patch_new(s, in, contact_id, &a));
+  PASS(average_build(&a.p, &rule, &G, &facts));
+  PASS(to_surface(s, contact_id, &a, &G, out));
   warn(own->radius, in->pairs[contact_id].name, &facts, at, log);
-done:
-  sparse_free(&G);
-  patch_free(&a);
-  return st;
+  return OK;
 }
 
 static const char *nonlocal_misfit(const void *param, int dim,

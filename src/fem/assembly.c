@@ -372,7 +372,7 @@ static status list_coupling(stiffness *k) {
 status stiffness_assemble(const domain *d, stiffness **out) {
   status st = OK;
   stiffness *k = NULL;
-  timer_enter(STAGE_ASSEMBLY);
+  TIMED(STAGE_ASSEMBLY);
   NEW(k, 1);
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;
@@ -385,7 +385,6 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   turn_blocks(d, k);
   TRY(list_coupling(k));
 done:
-  timer_leave(STAGE_ASSEMBLY);
   if (st != OK) {
     stiffness_free(k);
     k = NULL;

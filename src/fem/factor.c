@@ -226,10 +226,9 @@ static status begin(const stiffness *k, const long *number, cholmod_common *cm,
 status body_factor_analyse(const stiffness *k, const long *number,
                            cholmod_common *cm, body_factor *f) {
   cholmod_sparse *a = NULL;
-  timer_enter(STAGE_ORDERING);
+  TIMED(STAGE_ORDERING);
   status st = begin(k, number, cm, f, &a);
   cholmod_l_free_sparse(&a, cm);
-  timer_leave(STAGE_ORDERING);
   return st;
 }
 

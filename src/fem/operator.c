@@ -458,7 +458,7 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   memory_count_suitesparse();
   cholmod_l_start(&cm);
   cm.print = 0;
-  timer_enter(STAGE_ORDERING);
+  TIMED(STAGE_ORDERING);
   TRY(graph_of_unknowns(k, &g));
   NEW(o->node, k->n_node);
   for (int i = 0; i < k->n_node; ++i)
@@ -473,7 +473,6 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   o->contact_entries = cost.reached_entries * dim * dim;
   o->interior_entries = interior_entries(k, &cost) * dim * dim;
 done:
-  timer_leave(STAGE_ORDERING);
   graph_release(&g);
   memory_free(mark);
   cholmod_l_finish(&cm);

@@ -3,8 +3,6 @@
  */
 #include "contact/average/kernel.h"
 
-#include "contact/average/face.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -14,10 +12,21 @@ typedef struct gauss_point {
   double at, weight;
 } gauss_point;
 
-extern const gauss_point gauss_coarse[GAUSS_COARSE];
-extern const gauss_point gauss_fine[GAUSS_FINE];
+static const gauss_point gauss_coarse[GAUSS_COARSE] = {
+    {0.069431844202973714, 0.17392742256872687},
+    {0.33000947820757187, 0.32607257743127305},
+    {0.66999052179242813, 0.32607257743127305},
+    {0.93056815579702623, 0.17392742256872687}};
 
-/* ---- * The tables of the rules ------------------------------------------ */
+static const gauss_point gauss_fine[GAUSS_FINE] = {
+    {0.019855071751231856, 0.050614268145188088},
+    {0.10166676129318658, 0.11119051722668723},
+    {0.2372337950418355, 0.15685332293894369},
+    {0.40828267875217511, 0.181341891689181},
+    {0.59171732124782495, 0.181341891689181},
+    {0.7627662049581645, 0.15685332293894369},
+    {0.89833323870681348, 0.11119051722668723},
+    {0.9801449282487682, 0.050614268145188088}};
 
 enum { PANELS = 64 }; /* of [0, 1] for the normalisation: exact to rounding */
 
@@ -69,22 +78,6 @@ double mollifier_value(const mollifier *m, double r2) {
  * Rings: the same with the kernel integrated over the angle. Triangles: sums of
  * sectors around the foot of the point, exact where the disc cuts the face.
  */
-
-const gauss_point gauss_coarse[GAUSS_COARSE] = {
-    {0.069431844202973714, 0.17392742256872687},
-    {0.33000947820757187, 0.32607257743127305},
-    {0.66999052179242813, 0.32607257743127305},
-    {0.93056815579702623, 0.17392742256872687}};
-
-const gauss_point gauss_fine[GAUSS_FINE] = {
-    {0.019855071751231856, 0.050614268145188088},
-    {0.10166676129318658, 0.11119051722668723},
-    {0.2372337950418355, 0.15685332293894369},
-    {0.40828267875217511, 0.181341891689181},
-    {0.59171732124782495, 0.181341891689181},
-    {0.7627662049581645, 0.15685332293894369},
-    {0.89833323870681348, 0.11119051722668723},
-    {0.9801449282487682, 0.050614268145188088}};
 
 static const double PIECE = 0.25;  /* of the radius, longest for a fine rule */
 static const double SHORT = 0.125; /* up to this the coarse rule is enough */

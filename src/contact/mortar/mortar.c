@@ -6,7 +6,6 @@
 #include "contact/mortar/mortar.h"
 
 #include "base/memory.h"
-#include "contact/mortar/dual.h"
 #include "contact/mortar/partner.h"
 
 #include <math.h>
@@ -563,22 +562,50 @@ static void builder_release(builder *b) {
 }
 
 status mortar_couple(const mortar_input *in, mortar **out) {
-  status st = OK;
-  builder b;
-  TRY(builder_new(in, &b));
-  TRY(do_faces(&b));
+  ENDS_BY(builder_release) builder b;
+  PASS(builder_new(in, &b));
+  PASS(do_faces(&b));
   for (int i = 0; i < in->mesh->n_node; ++i) b.slot[i] = -1;
-  TRY(set_nodes(&b));
+  PASS(set_nodes(&b));
   sum_up(&b);
   *out = b.out;
   b.out = NULL;
-done:
-  builder_release(&b);
-  return st;
+  return OK;
 }
 
 void mortar_free(mortar *m) {
   if (m == NULL) return;
   links_release(&m->to);
   RELEASE(m->node_id, m->area, m->share, m->lever, m->normal, m->gap, m);
+}
+
+/* ---- links (links.h) ---- */
+
+/* Component c of row q; 1: there was something to move. */
+static int share(const tie_set *t, int q, int c, double *F) {
+  const node_links *l = &t->to;
+  double *own = F + (ptrdiff_t)l->dim * t->node_id[q] + c, f = *own;
+  int moves = 0;
+  for (size_t e = l->start[q]; e < l->start[q + 1] && f != 0.0; ++e) {
+    const double part = l->part[(size_t)l->dim * e + (size_t)c];
+    F[(ptrdiff_t)l->dim * l->master[e] + c] += part * f;
+    moves |= part != 0.0;
+  }
+  if (moves) *own = 0.0;
+  return moves;
+}
+
+/* Masters that are tied themselves pass it on: a pass for each link of a
+ * chain. */
+void ties_share(const tie_set *t, double *F) {
+  for (int more = 1; more;) {
+    more = 0;
+    for (int k = 0; k < t->to.dim * t->n; ++k)
+      more |= share(t, k / t->to.dim, k % t->to.dim, F);
+  }
+}
+
+void links_release(node_links *l) {
+  RELEASE(l->start, l->master, l->part);
+  *l = (node_links){0};
 }

@@ -226,15 +226,14 @@ static int is_proof(balance *s, double gain) {
 /* *proved: the load on the modes cannot be balanced. */
 static status find_motion(const contact_problem *cp, const anchor *an,
                           int *proved) {
-  status st = OK;
-  balance s = {.cp = cp, .an = an};
+  ENDS_BY(balance_free) balance s = {.cp = cp, .an = an};
   double *column, *b, size, gain, before = HUGE_VAL;
-  TRY(balance_new(&s));
+  PASS(balance_new(&s));
   b = s.sum.b;
   cblas_dgemv(CblasColMajor, CblasTrans, cp->m, an->n_mode, 1.0, an->R, cp->m,
               cp->f, 1, 0.0, b, 1);
   size = cblas_dnrm2(an->n_mode, b, 1);
-  if (!(size > 0.0 && size < HUGE_VAL)) goto done;
+  if (!(size > 0.0 && size < HUGE_VAL)) return OK;
   s.unit = b[an->n_mode] = size;
   set_lift(&s, &gain);
   nonnegative_begin(&s.sum);
@@ -248,9 +247,7 @@ static status find_motion(const contact_problem *cp, const anchor *an,
     *proved = is_proof(&s, gain);
     if (*proved || !(does > 0.0) || !nonnegative_take(&s.sum)) break;
   }
-done:
-  balance_free(&s);
-  return st;
+  return OK;
 }
 
 /* ---- compliance ---------------------------------------------------------- */

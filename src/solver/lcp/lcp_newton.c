@@ -338,11 +338,11 @@ static void start(run *s, int k, unsigned *seed) {
 
 status lcp_newton(const lcp_data *p, const lcp_control *control, double *z,
                   int *steps, int *found) {
-  status st = OK;
+  ENDS_BY(run_free)
   run s = {.p = p, .tol = control->tol, .most = control->max_iter};
   unsigned seed = 7;
   *found = 0;
-  TRY(run_new(&s));
+  PASS(run_new(&s));
   scale(&s);
   double n = p->n, most = WORK / (n * n * n * STEPS);
   int starts = (int)fmin(MOST_STARTS, fmax(LEAST_STARTS, most));
@@ -352,9 +352,7 @@ status lcp_newton(const lcp_data *p, const lcp_control *control, double *z,
     *found = descend(&s, steps);
   }
   if (*found) memcpy(z, s.answer, (size_t)p->n * sizeof *z);
-done:
-  run_free(&s);
-  return st;
+  return OK;
 }
 
 /* Column j of a basis: of w_j, or of z_j, in q = w - M z. */
@@ -395,13 +393,12 @@ static void set_basis(run *s, int set) {
 }
 
 status lcp_all_bases(const lcp_data *p, double tol, double *z, outcome *end) {
-  status st = OK;
-  run s = {.p = p, .tol = tol};
-  nonnegative sum = {0};
+  ENDS_BY(run_free) run s = {.p = p, .tol = tol};
+  ENDS_BY(nonnegative_free) nonnegative sum = {0};
   int found = 0, excluded = 1, n_set = 1 << p->n;
   *end = STOPPED_STAGNATION;
-  TRY(run_new(&s));
-  TRY(nonnegative_new(p->n, &sum));
+  PASS(run_new(&s));
+  PASS(nonnegative_new(p->n, &sum));
   for (int set = 0; set < n_set && !found; ++set) {
     set_basis(&s, set);
     found = basis_solves(&s);
@@ -409,7 +406,7 @@ status lcp_all_bases(const lcp_data *p, double tol, double *z, outcome *end) {
   if (found) {
     *end = CONVERGED;
     memcpy(z, s.answer, (size_t)p->n * sizeof *z);
-    goto done;
+    return OK;
   }
   scale(&s);
   for (int set = 0; set < n_set && excluded; ++set) {
@@ -417,8 +414,5 @@ status lcp_all_bases(const lcp_data *p, double tol, double *z, outcome *end) {
     excluded = excludes(&s, &sum);
   }
   if (excluded) *end = STOPPED_RAY;
-done:
-  nonnegative_free(&sum);
-  run_free(&s);
-  return st;
+  return OK;
 }

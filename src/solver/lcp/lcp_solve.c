@@ -337,15 +337,13 @@ static status follow(run *s) {
 
 status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
                  double *w, lcp_verdict *v) {
-  status st = OK;
+  ENDS_BY(run_free)
   run s = {.p = p, .control = control, .v = v, .z = z, .w = w, .seed = 1};
   *v = (lcp_verdict){.outcome = CONVERGED, .method = "lemke"};
   v->residual = lcp_residual(p, z, w);
-  if (v->residual <= control->tol) goto done;
-  TRY(run_new(&s));
-  TRY(follow(&s));
+  if (v->residual <= control->tol) return OK;
+  PASS(run_new(&s));
+  PASS(follow(&s));
   v->residual = lcp_residual(p, z, w);
-done:
-  run_free(&s);
-  return st;
+  return OK;
 }
