@@ -152,9 +152,6 @@ const friction_ops none_friction = {
     .name = "NONE",
     .reference = "Cocu, Pratt, Raous 1998, (2.6) with F_T = 0",
     .help = "frictionless: the obstacle carries no tangential force",
-    .value_name = NULL,
-    .value_unit = NULL,
-    .param_size = 0,
     .options = friction_no_options,
     .limit = no_limit};
 
@@ -182,7 +179,6 @@ const friction_ops tresca_friction = {
     .help = "given sliding limit g(x, t), whatever the pressure",
     .value_name = "g",
     .value_unit = "force/length^2",
-    .param_size = 0,
     .options = friction_no_options,
     .limit = tresca_limit};
 
@@ -191,10 +187,9 @@ const friction_ops tresca_friction = {
  * the contact pressure by a kernel of radius rho (CPR98, 2.7).
  *
  * Nodal forces and pressures go together by the tributary areas, as in the
- * local law: p_j = -r_n,j / a_j and g_i = mu_i a_i R(p)(x_i), so that
- * B_ij = mu_i a_i G_ij / a_j with G of contact/average/average.h; G = 1 is
- * local friction. p is zero outside of the contact: at its edges R(p) is less
- * than p.
+ * local law: p_j = -r_n,j / a_j and g_i = mu_i a_i R(p)(x_i), so that B_ij =
+ * mu_i a_i G_ij / a_j with G of contact/average/average.h; G = 1 is local
+ * friction. p is zero outside of the contact: at its edges R(p) is less than p.
  */
 
 const friction_ops coulomb_friction = {
@@ -203,7 +198,6 @@ const friction_ops coulomb_friction = {
     .help = "sliding limit mu(x, t) times the normal force of the node",
     .value_name = "mu",
     .value_unit = "-",
-    .param_size = 0,
     .options = friction_no_options,
     .limit = friction_pressure_limit};
 

@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "contact/frame.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -249,12 +250,6 @@ static status collect(builder *b) {
   }
   PASS(message_status(b->log, ERR_DECK));
   return sort_candidates(b);
-}
-
-static double dot(int dim, const double *a, const double *b) {
-  double s = 0;
-  for (int c = 0; c < dim; ++c) s += a[c] * b[c];
-  return s;
 }
 
 /* Do two contacts of one node belong to one smooth surface? */
@@ -684,10 +679,6 @@ void surface_relative(const contact_surface *s, const double *u, double *w) {
                dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
       w[dim * q + a] = sum;
     }
-}
-
-static void add_scaled(int dim, double factor, const double *v, double *to) {
-  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
 }
 
 void surface_spread_row(const contact_surface *s, int q, int a, double force,

@@ -107,9 +107,11 @@ static void put_blocks(columns *w) {
   }
 }
 
-status body_factor_matrix(const stiffness *k, const body_factor *f,
-                          const long *number, cholmod_common *cm,
-                          cholmod_sparse **out) {
+/* Scaled lower triangle in elimination order, f->pinned included; *out is new.
+ */
+static status body_factor_matrix(const stiffness *k, const body_factor *f,
+                                 const long *number, cholmod_common *cm,
+                                 cholmod_sparse **out) {
   status st = OK;
   columns w = {
       .k = k, .f = f, .number = number, .scale = ldexp(1, -f->exponent)};

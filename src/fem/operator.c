@@ -22,8 +22,7 @@ static long place_of(const sparse_operator *o, int node, int c) {
   return o->number[(size_t)o->k->dim * (size_t)node + (size_t)c];
 }
 
-/* ---- the factors ----------------------------------------------------------
- */
+/* ---- the factors --------------------------------------------------------- */
 
 typedef struct filling {
   const sparse_operator *o;
@@ -178,8 +177,7 @@ static status factor_interior(sparse_operator *o) {
   return OK;
 }
 
-/* ---- products and solves --------------------------------------------------
- */
+/* ---- products and solves ------------------------------------------------- */
 
 static void clear(const sparse_operator *o, double *v) {
   const supernodal_part *part = &o->part.contact;
@@ -397,8 +395,7 @@ static void response(void *ctx, const double *b, double *x, double *Ax) {
   }
 }
 
-/* ---- loads and recovery ---------------------------------------------------
- */
+/* ---- loads and recovery -------------------------------------------------- */
 
 /* Forces v by place of load[dim*n_node] in the interior. */
 static void take_load(const sparse_operator *o, const double *load, double *v) {
@@ -436,8 +433,7 @@ void sparse_operator_interior(sparse_operator *o, const double *load,
   for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->v[p];
 }
 
-/* ---- building --------------------------------------------------------------
- */
+/* ---- building ------------------------------------------------------------ */
 
 /* Entries without the rows and columns of the contact unknowns: their share of
  * the rows is taken as that of the columns. */

@@ -111,8 +111,7 @@ typedef struct run {
   int plain;     /* sweeps before the first that is combined */
 } run;
 
-/* ---- combination ----------------------------------------------------------
- */
+/* ---- combination --------------------------------------------------------- */
 
 static double weighted_dot(const run *s, const double *a, const double *b) {
   double sum = 0.0;
@@ -208,8 +207,7 @@ static void accelerate(run *s, int k) {
 /* ---- control ------------------------------------------------------------ */
 
 /* No progress for long: alternate forward and backward sweeps, then shorter
- * steps. 0: no remedy left.
- */
+ * steps. 0: no remedy left. */
 static int cure(run *s) {
   static const double shorter[] = {1.0, 0.6, 0.3};
   forget(s);

@@ -334,8 +334,7 @@ static void add_unknown(const relaxation *s, int dof, const double *d,
 }
 
 /* Distance of a node to its bound or stick position over its step; HUGE_VAL:
- * the step leads to neither.
- */
+ * the step leads to neither. */
 static double steps_of(const relaxation *s, int node_id, const double *d,
                        double most) {
   const contact_problem *cp = s->cp;

@@ -1,5 +1,6 @@
 /* All states of a single node (single.h). */
 #include "solver/single.h"
+#include "base/vector.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -115,15 +116,6 @@ static void try_all_linear(single *s) {
 
 /* ---- slip ---------------------------------------------------------------- */
 
-static void cross(const double *a, const double *b, double *c) {
-  for (int i = 0; i < 3; ++i)
-    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* y += x times column j of M. */
 static void add(const single *s, const double *M, int j, double x, double *y) {
   for (int i = 0; i < s->m; ++i) y[i] += x * M[i + s->m * j];
@@ -152,7 +144,7 @@ static double misfit(const single *s, int closed, double angle) {
   double a[3], b[3], c[3], n[3], e[2] = {cos(angle), sin(angle)};
   set_slip(s, closed, e, a, b, c);
   cross(a, b, n);
-  return dot(n, c);
+  return dot(3, n, c);
 }
 
 static void try_slip(single *s, int closed, double angle) {
@@ -161,11 +153,11 @@ static void try_slip(single *s, int closed, double angle) {
   if (s->n_rub == 1) e[0] = e[0] > 0.0 ? 1.0 : -1.0;
   set_slip(s, closed, e, a, b, c);
   cross(a, b, n);
-  double size = dot(n, n);
+  double size = dot(3, n, n);
   if (!(size > 0.0)) return;
   cross(c, b, x);
   cross(a, c, y);
-  double slip = dot(x, n) / size, other = dot(y, n) / size;
+  double slip = dot(3, x, n) / size, other = dot(3, y, n) / size;
   double g = s->g0 + (closed ? s->mu * other : 0.0);
   for (int i = 0; i < s->m; ++i) u[i] = s->c[i] / s->P[i + s->m * i];
   u[0] = closed ? s->cp->gap[0] : other;

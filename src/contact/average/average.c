@@ -6,6 +6,7 @@
 
 #include "contact/average/box_tree.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -317,9 +318,8 @@ static double triangle_area(const double *x) {
     a[c] = x[3 + c] - x[c];
     b[c] = x[6 + c] - x[c];
   }
-  for (int c = 0; c < 3; ++c)
-    n[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-  return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  cross(a, b, n);
+  return 0.5 * sqrt(dot(3, n, n));
 }
 
 /* Integrals of the P1 functions. */

@@ -2,6 +2,7 @@
  * The table of kernels and their normalisation.
  */
 #include "contact/average/kernel.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -105,15 +106,6 @@ static void subtract(const double *a, const double *b, double *d) {
   for (int c = 0; c < 3; ++c) d[c] = a[c] - b[c];
 }
 
-static double dot3(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *a, const double *b, double *n) {
-  for (int c = 0; c < 3; ++c)
-    n[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-}
-
 double face_segment_distance(int dim, const double *a, const double *b,
                              const double *x) {
   double along2 = distance2(dim, a, b), to = 0.0, s, y[3];
@@ -134,9 +126,9 @@ static double height(const double *corner, const double *x) {
     subtract(corner + 3 * ((k + 1) % 3), corner + 3 * k, a);
     subtract(x, corner + 3 * k, b);
     cross(a, b, side);
-    if (!(dot3(side, n) > 0.0)) return HUGE_VAL;
+    if (!(dot(3, side, n) > 0.0)) return HUGE_VAL;
   }
-  return fabs(dot3(b, n)) / sqrt(dot3(n, n));
+  return fabs(dot(3, b, n)) / sqrt(dot(3, n, n));
 }
 
 double face_distance(int dim, const double *corner, const double *x) {
@@ -364,7 +356,7 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
   subtract(corner + 3, corner, a);
   subtract(corner + 6, corner, b);
   cross(a, b, n);
-  double twice = sqrt(dot3(n, n)), length = sqrt(dot3(a, a));
+  double twice = sqrt(dot(3, n, n)), length = sqrt(dot(3, a, a));
   if (!(twice > 0.0)) return;
   if (is_plain(m, corner, x)) {
     product_rule(m, corner, x, twice, weight);
@@ -376,15 +368,15 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
   }
   cross(n, e0, e1);
   subtract(x, corner, to);
-  double off = dot3(to, n);
+  double off = dot(3, to, n);
   f.off2 = off * off;
   f.rim2 = (m->radius - fabs(off)) * (m->radius + fabs(off));
   if (!(f.rim2 > 0.0)) return;
   for (int k = 0; k < 3; ++k) {
     double d[3];
     subtract(corner + 3 * k, x, d);
-    f.p[k][0] = dot3(d, e0);
-    f.p[k][1] = dot3(d, e1);
+    f.p[k][0] = dot(3, d, e0);
+    f.p[k][1] = dot(3, d, e1);
   }
   for (int k = 0; k < 3; ++k) add_edge(&f, f.p[k], f.p[(k + 1) % 3]);
   to_weights(&f, weight);

@@ -3,6 +3,7 @@
  * ACM 17, 1974) and parted into triangles from its first corner.
  */
 #include "contact/mortar/clip.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,18 +14,6 @@ typedef struct polygon {
   int n;
   double at[MOST][2];
 } polygon;
-
-static double dot(int dim, const double *a, const double *b) {
-  double sum = 0.0;
-  for (int c = 0; c < dim; ++c) sum += a[c] * b[c];
-  return sum;
-}
-
-static void cross(const double *a, const double *b, double *c) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 /* Twice the area of a, b, c in the plane, > 0 if counterclockwise. */
 static double turn(const double *a, const double *b, const double *c) {

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "contact/mortar/partner.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -59,10 +60,6 @@ typedef struct builder {
   int n_link, link_capacity;
   mortar *out;
 } builder;
-
-static void add_scaled(int dim, double factor, const double *v, double *to) {
-  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
-}
 
 static const int *nodes_of(const builder *b, int face) {
   return b->in->mesh->face + (size_t)b->in->mesh->dim * (size_t)face;

@@ -124,8 +124,7 @@ static void grow_section(growth *g, int section) {
   while (join_rest(g) > 0) start_with_element(g);
 }
 
-/* ---- the finished set ------------------------------------------------------
- */
+/* ---- the finished set ---------------------------------------------------- */
 
 static status list_elements(const mesh *m, cluster_set *c) {
   PASS_NEW_ALL(OF(c->start, c->n + 2), OF(c->elem, m->n_elem));

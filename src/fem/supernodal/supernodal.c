@@ -100,8 +100,7 @@ void supernodal_free(supernodal *s) {
   RELEASE(s->of, s->parent, s->pattern, s);
 }
 
-/* ---- supernodes of few columns --------------------------------------------
- */
+/* ---- supernodes of few columns ------------------------------------------- */
 
 typedef struct split {
   SuiteSparse_long count, *first, *start, *at, *row; /* as L has them */
@@ -206,8 +205,7 @@ void supernodal_list(const supernodal *s, const unsigned char *mark,
     if (mark[q]) part->list[part->n++] = q;
 }
 
-/* ---- factor ----------------------------------------------------------------
- */
+/* ---- factor -------------------------------------------------------------- */
 
 /* y[n] += sum of k columns of a, each times what it has in its row 0. */
 static void add_columns(int n, int k, const double *restrict a, size_t lead,
@@ -341,8 +339,7 @@ int supernodal_factor(supernodal *s, const unsigned char *mark,
   return -1;
 }
 
-/* ---- solves ----------------------------------------------------------------
- */
+/* ---- solves -------------------------------------------------------------- */
 
 static int is_zero(int n, const double *v) {
   for (int i = 0; i < n; ++i)

@@ -4,10 +4,9 @@
  * the number of unknowns m.
  *
  * No friction: the tangential unknowns are eliminated and the normal ones are
- * solved for by active sets, of the opening nodes only, and by
- * NEWTON where these do not converge. The full problem is taken for the first
- * steps from a warm start, which often suffice, and where the normal form
- * fails.
+ * solved for by active sets, of the opening nodes only, and by NEWTON where
+ * these do not converge. The full problem is taken for the first steps from a
+ * warm start, which often suffice, and where the normal form fails.
  *
  * Stiffness given: NEWTON. The number of its steps does not grow with m or with
  * the condition of A, and its factor is reused from step to step and from

@@ -233,8 +233,7 @@ static void displace(opened *o, const contact_problem *cp) {
 }
 
 /* The next guess; returns the number of changes, *worst: the largest violation,
- * N.
- */
+ * N. */
 static int next_states(opened *o, const contact_problem *cp, double margin,
                        double *worst) {
   int changes = 0;

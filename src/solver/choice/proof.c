@@ -164,8 +164,7 @@ static void add_friction(const balance *s, int i, double limit) {
   }
 }
 
-/* The normal force of an unknown with a bound, 1, and its friction.
- */
+/* The normal force of an unknown with a bound, 1, and its friction. */
 static void set_push(const balance *s, int dof) {
   const contact_problem *cp = s->cp;
   s->force[dof] = 1.0;

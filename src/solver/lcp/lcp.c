@@ -186,9 +186,8 @@ static double lcp_refresh(lcp_work *w, const lcp_problem *p) {
 }
 
 /* A new inverse; 0: P is singular. */
-static int lcp_invert(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
+static int lcp_invert(lcp_work *w, const lcp_problem *p) {
   int s = w->s;
-  ++rep->factorings;
   if (s == 0) return 1;
   for (int b = 0; b < s; ++b) {
     lcp_row_of(w, p, w->row[b], w->line);
@@ -539,8 +538,8 @@ static void bring_in_z0(lcp_work *w, const lcp_problem *p, int row) {
 
 /* A new inverse and values from it; RUNNING, or CONVERGED if they show that
  * z0 is zero (a degenerate end: z0 stays basic). */
-static outcome renew(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
-  if (!lcp_invert(w, p, rep)) return STOPPED_SINGULAR;
+static outcome renew(lcp_work *w, const lcp_problem *p) {
+  if (!lcp_invert(w, p)) return STOPPED_SINGULAR;
   lcp_refresh(w, p);
   double noise = ROUNDING * w->size_K * fmax(1.0, lcp_largest(w->s, w->z));
   double zero = lcp_zero(TIE, w->z0_start, noise);
@@ -556,7 +555,7 @@ static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
   if (c < 0 && *age == 0) return STOPPED_RAY;
   if (c < 0) {
     *age = 0;
-    return renew(w, p, rep);
+    return renew(w, p);
   }
   lcp_pivot(w, p, c, step);
   ++rep->pivots;
@@ -566,7 +565,7 @@ static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
     p->each(p->ctx, rep->pivots, done ? 0.0 : w->z[0] * w->power);
   if (done || w->z[0] <= NEAR_END * w->z0_start) {
     *age = 0;
-    return renew(w, p, rep);
+    return renew(w, p);
   }
   if (*age % REFRESH == 0) lcp_refresh(w, p);
   return RUNNING;
@@ -575,7 +574,7 @@ static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
 void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   int limit = p->max_pivots, age = 0;
   if (limit <= 0) limit = 50 * p->n > 5000 ? 50 * p->n : 5000;
-  rep->pivots = rep->factorings = 0;
+  rep->pivots = 0;
   rep->outcome = CONVERGED;
   int row = start(w, p);
   for (int i = 0; i < w->n; ++i)

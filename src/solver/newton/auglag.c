@@ -367,8 +367,7 @@ static double shorten(auglag_run *s, double reference) {
   return now;
 }
 
-/* 1: the states changed in step k, and occurred before. FNV-1a.
- */
+/* 1: the states changed in step k, and occurred before. FNV-1a. */
 static int met_before(const auglag_run *s, int k) {
   auglag_work *w = s->w;
   uint64_t h = 1469598103934665603u;
@@ -420,8 +419,7 @@ enum {
   PATIENCE = 20     /* multiplier steps without a lower residual */
 };
 
-/* Cholesky factor of power (A + F' rho); springs where the body is free.
- */
+/* Cholesky factor of power (A + F' rho); springs where the body is free. */
 static int uzawa_factor(auglag_run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;

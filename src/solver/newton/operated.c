@@ -74,8 +74,7 @@ status operated_system_new(const contact_problem *cp, operated_system **out) {
 
 void operated_system_fit(operated_system *s) { s->stepped = 0; }
 
-/* ---- friction that follows pressure ---------------------------------------
- */
+/* ---- friction that follows pressure -------------------------------------- */
 
 /* kappa (I - e e') of a slipping node in space, entry (a, b). */
 static double turning(const pattern *p, int node, int a, int b) {
@@ -130,8 +129,7 @@ static void add_friction(const operated_system *s, const contact_problem *cp,
   }
 }
 
-/* ---- GMRES ----------------------------------------------------------------
- */
+/* ---- GMRES --------------------------------------------------------------- */
 
 /* Room for the directions made and two more. */
 static status grow(operated_system *s) {
@@ -234,8 +232,7 @@ static status gmres(operated_system *s, const contact_problem *cp,
   return OK;
 }
 
-/* ---- a step ---------------------------------------------------------------
- */
+/* ---- a step -------------------------------------------------------------- */
 
 /* Stiffness that the guess adds at a node, block[dim*dim]. */
 static void wanted(const contact_problem *cp, const operated_rows *rows,

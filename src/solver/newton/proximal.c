@@ -138,8 +138,7 @@ typedef struct run {
   int steps;
 } run;
 
-/* ---- the equations --------------------------------------------------------
- */
+/* ---- the equations ------------------------------------------------------- */
 
 /* inv(D); friction counts in the pressures that its limit takes, or a limit
  * that grows by far more than they would dominate. */
@@ -263,8 +262,7 @@ static status fill_matrix(const run *s) {
   return OK;
 }
 
-/* ---- the equations of a step of an operator -------------------------------
- */
+/* ---- the equations of a step of an operator ------------------------------ */
 
 /* Tangents of a node that slips: its turning stiffness and the load. */
 static void put_slip(const run *s, int node_id, double length) {
@@ -325,8 +323,7 @@ static status solve_operator(const run *s, int *singular) {
   return OK;
 }
 
-/* ---- steps ----------------------------------------------------------------
- */
+/* ---- steps --------------------------------------------------------------- */
 
 /* r and, of an operator, u by a part of the step. */
 static void move(run *s, double part) {
