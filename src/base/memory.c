@@ -56,6 +56,17 @@ status memory_reals(size_t n, int count, double **const *p) {
   return OK;
 }
 
+status memory_items(int count, const memory_item *items) {
+  for (const memory_item *i = items; i < items + count; ++i) {
+    void *block = memory_new(i->n, i->size);
+    if (block == NULL)
+      RAISE(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", i->n,
+            i->size, i->name);
+    memcpy(i->at, &block, sizeof block);
+  }
+  return OK;
+}
+
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size) {
   void *grown = memory_new(new_n, size);
   if (grown == NULL) return NULL;

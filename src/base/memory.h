@@ -4,6 +4,8 @@
  *
  * Each request checks n*size for overflow, returns zeroed memory (memory_new)
  * and never fails for n = 0: it then returns a block that can be released.
+ *
+ * A failed x_new may leave in *out what it has made: the owner calls x_free.
  */
 #ifndef PROTIS_BASE_MEMORY_H
 #define PROTIS_BASE_MEMORY_H
@@ -30,6 +32,16 @@
   memory_reals((size_t)(n),                                                \
                (int)(sizeof((double **[]){__VA_ARGS__}) / sizeof(void *)), \
                (double **[]){__VA_ARGS__})
+
+/* NEW_ALL(OF(a, n), OF(b, m), ...): zeroed items for each, or FAIL. */
+#define NEW_ALL(...) TRY(ALL_OF(__VA_ARGS__))
+#define PASS_NEW_ALL(...) PASS(ALL_OF(__VA_ARGS__))
+#define OF(pointer, n) \
+  { &(pointer), #pointer, (size_t)(n), sizeof *(pointer) }
+#define ALL_OF(...)                                                      \
+  memory_items(                                                          \
+      (int)(sizeof((memory_item[]){__VA_ARGS__}) / sizeof(memory_item)), \
+      (memory_item[]){__VA_ARGS__})
 
 /* GROW(pointer, n, capacity): space for item n (0-based), doubling as needed;
  * capacity is an int lvalue that belongs to the pointer. */
@@ -67,6 +79,12 @@
 
 void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused */
 status memory_reals(size_t n, int count, double **const *p);
+typedef struct memory_item {
+  void *at; /* of the pointer */
+  const char *name;
+  size_t n, size; /* items, bytes of one */
+} memory_item;
+status memory_items(int count, const memory_item *items);
 /* Reallocate old_n items, the rest zeroed; on NULL the old block stays
  * valid. */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);

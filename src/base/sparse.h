@@ -18,6 +18,27 @@ typedef struct sparse_rows {
   double *val; /* [start[n]] */
 } sparse_rows;
 
+/* Entries of row i: row_begin to row_end - 1, none of NULL or all-zero rows;
+ * their sum. */
+static inline int row_begin(const sparse_rows *rows, int i) {
+  return rows == NULL || rows->start == NULL ? 0 : rows->start[i];
+}
+static inline int row_end(const sparse_rows *rows, int i) {
+  return rows == NULL || rows->start == NULL ? 0 : rows->start[i + 1];
+}
+static inline double row_sum(const sparse_rows *rows, int i) {
+  double sum = 0.0;
+  for (int k = row_begin(rows, i); k < row_end(rows, i); ++k)
+    sum += rows->val[k];
+  return sum;
+}
+/* The largest of n rows. */
+static inline double largest_row_sum(const sparse_rows *rows, int n) {
+  double most = 0.0;
+  for (int i = 0; i < n; ++i) most = fmax(most, row_sum(rows, i));
+  return most;
+}
+
 /* Frees the arrays and leaves all zero; accepts all-zero. */
 static inline void sparse_free(sparse_rows *rows) {
   memory_free(rows->start);
@@ -67,6 +88,14 @@ static inline double largest_entry(size_t n, const double *v) {
   double most = 0.0;
   for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(v[i]));
   return most;
+}
+
+/* Power of two that brings "largest" to order 1; 1 for 0 and what is no number:
+ * results then keep their bits under a change of units by such powers. */
+static inline double power_to_one(double largest) {
+  int exponent = 0;
+  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
+  return ldexp(1.0, -exponent);
 }
 
 #endif

@@ -1,16 +1,24 @@
-/* Products of vectors in space. */
+/* Vectors of two or three components. */
 #ifndef PROTIS_BASE_VECTOR_H
 #define PROTIS_BASE_VECTOR_H
 
-static inline double vector_dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+static inline double dot(int dim, const double *a, const double *b) {
+  double sum = 0.0;
+  for (int c = 0; c < dim; ++c) sum += a[c] * b[c];
+  return sum;
 }
 
-/* c = a x b; c is neither. */
-static inline void vector_cross(const double *a, const double *b, double *c) {
+/* c = a x b, in space */
+static inline void cross(const double *a, const double *b, double *c) {
   c[0] = a[1] * b[2] - a[2] * b[1];
   c[1] = a[2] * b[0] - a[0] * b[2];
   c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* to += factor v */
+static inline void add_scaled(int dim, double factor, const double *v,
+                              double *to) {
+  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
 }
 
 #endif

@@ -106,10 +106,8 @@ status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
   if (cp->blocks != NULL) return sparse_blocks_rows(cp->blocks, rows);
   size_t m = (size_t)cp->m, count = entries(cp);
   OWNED int *at = NULL;
-  PASS_NEW(at, m);
-  PASS_NEW(rows->start, m + 1);
-  PASS_NEW(rows->col, count);
-  PASS_NEW(rows->val, count);
+  PASS_NEW_ALL(OF(at, m), OF(rows->start, m + 1), OF(rows->col, count),
+               OF(rows->val, count));
   rows->n = cp->m;
   for (size_t j = 0; j < m; ++j)
     for (size_t i = 0; i < m; ++i)
@@ -186,29 +184,22 @@ static status step_of_operator(force_set *s, const contact_problem *cp,
 }
 
 status force_set_new(const contact_problem *cp, force_set **out) {
-  status st = OK;
-  force_set *s = NULL;
-  double *v = NULL;
-  NEW(s, 1);
-  NEW_REALS(cp->m, &s->D, &s->origin, &s->load, &s->defect);
-  NEW(s->part, cp->m);
-  NEW(s->rim, cp->n);
-  NEW(v, 2 * cp->m);
+  force_set *s;
+  OWNED double *v = NULL;
+  PASS_NEW(s, 1);
+  *out = s;
+  PASS_NEW_REALS(cp->m, &s->D, &s->origin, &s->load, &s->defect);
+  PASS_NEW_ALL(OF(s->part, cp->m), OF(s->rim, cp->n), OF(v, 2 * cp->m));
   scaling(cp, s->D);
   if (cp->op != NULL) {
-    TRY(step_of_operator(s, cp, v, v + cp->m));
+    PASS(step_of_operator(s, cp, v, v + cp->m));
   } else {
     s->symmetric = cp->blocks == NULL && is_symmetric(cp->m, cp->W);
     if (cp->blocks != NULL || (double)entries(cp) <= SPARSE * cp->m * cp->m)
-      TRY(compliance_rows(cp, &s->rows));
+      PASS(compliance_rows(cp, &s->rows));
     s->step = 1.0 / spectrum_bound(cp, s->D, v, v + cp->m);
   }
-  *out = s;
-  s = NULL;
-done:
-  force_set_free(s);
-  memory_free(v);
-  return st;
+  return OK;
 }
 
 static void sparse_product(const sparse_rows *rows, const double *x,

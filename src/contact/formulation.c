@@ -39,21 +39,13 @@ struct velocity_form {
 };
 
 status velocity_form_new(const contact_problem *cp, velocity_form **out) {
-  status st = OK;
-  velocity_form *v = NULL;
+  velocity_form *v;
   int tangents = cp->n * (cp->dim - 1);
-  NEW(v, 1);
-  NEW(v->u_old, cp->m);
-  NEW(v->R, cp->m);
-  NEW(v->gap, cp->n);
-  NEW(v->side, tangents);
-  NEW(v->d, tangents);
-  NEW(v->du, cp->m);
+  PASS_NEW(v, 1);
   *out = v;
-  v = NULL;
-done:
-  velocity_form_free(v);
-  return st;
+  PASS_NEW_ALL(OF(v->u_old, cp->m), OF(v->R, cp->m), OF(v->gap, cp->n),
+               OF(v->side, tangents), OF(v->d, tangents), OF(v->du, cp->m));
+  return OK;
 }
 
 void velocity_form_free(velocity_form *v) {
@@ -142,17 +134,10 @@ void given_form_free(given_form *g) {
 
 static status new_arrays(const contact_problem *cp, given_form *g) {
   size_t n = (size_t)g->n, m = (size_t)cp->m;
-  PASS_NEW(g->node, n);
-  PASS_NEW(g->A, m * m);
-  PASS_NEW(g->L, n * n);
-  PASS_NEW(g->Y, n * m);
-  PASS_NEW(g->f, m);
-  PASS_NEW(g->gap, cp->n);
-  PASS_NEW(g->met, cp->n);
-  PASS_NEW(g->y, n);
-  PASS_NEW(g->force, n);
-  PASS_NEW(g->g0, cp->n);
-  PASS_NEW(g->is, cp->n);
+  PASS_NEW_ALL(OF(g->node, n), OF(g->A, m * m), OF(g->L, n * n),
+               OF(g->Y, n * m), OF(g->f, m), OF(g->gap, cp->n),
+               OF(g->met, cp->n), OF(g->y, n), OF(g->force, n),
+               OF(g->g0, cp->n), OF(g->is, cp->n));
   return OK;
 }
 
@@ -203,24 +188,20 @@ static void condense_normals(const contact_problem *cp, given_form *g) {
 
 status given_form_new(const contact_problem *cp, int n, const int *node,
                       given_form **out) {
-  status st = OK;
-  given_form *g = NULL;
-  NEW(g, 1);
+  given_form *g;
+  PASS_NEW(g, 1);
+  *out = g;
   g->n = n;
   g->m = cp->m;
   g->dim = cp->dim;
-  TRY(new_arrays(cp, g));
+  PASS(new_arrays(cp, g));
   for (int k = 0; k < n; ++k) {
     g->node[k] = node[k];
     g->is[node[k]] = 1;
   }
-  TRY(factorise(cp, g));
+  PASS(factorise(cp, g));
   condense_normals(cp, g);
-  *out = g;
-  g = NULL;
-done:
-  given_form_free(g);
-  return st;
+  return OK;
 }
 
 /* g0 and B with the known pressures taken from B to g0; B NULL if none are

@@ -2,24 +2,13 @@
  * Contact frames: tangents, fixed directions, oblique frames of corners.
  */
 #include "contact/frame.h"
+#include "base/vector.h"
 
 #include <math.h>
 
 /* Sine of the angle below which normals count as dependent: the condition of
  * the oblique frame is its inverse. */
 static const double dependent_sine = 1e-3;
-
-static double dot(int dim, const double *a, const double *b) {
-  double s = 0;
-  for (int c = 0; c < dim; ++c) s += a[c] * b[c];
-  return s;
-}
-
-static void cross(const double *a, const double *b, double *c) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
-}
 
 static double normalise(int dim, double *v) {
   double length = sqrt(dot(dim, v, v));

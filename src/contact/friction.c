@@ -72,18 +72,16 @@ static void copy_row(const sparse_rows *from, int row, sparse_rows *to, int i) {
  * empty. */
 static status add_rows(friction_limit *out, int n, const int *node,
                        const sparse_rows *part) {
-  status st = OK;
   const sparse_rows *old = &out->B;
-  sparse_rows all = {.n = n};
-  int *row_of = NULL;
-  NEW(row_of, n);
+  ENDS_BY(sparse_free) sparse_rows all = {.n = n};
+  OWNED int *row_of = NULL;
+  PASS_NEW(row_of, n);
   for (int i = 0; i < n; ++i) row_of[i] = -1;
   for (int k = 0; k < part->n; ++k) row_of[node[k]] = k;
-  NEW(all.start, n + 1);
+  PASS_NEW(all.start, n + 1);
   for (int i = 0; i < n; ++i)
     all.start[i + 1] = all.start[i] + row_length(old, part, row_of[i], i);
-  NEW(all.col, all.start[n]);
-  NEW(all.val, all.start[n]);
+  PASS_NEW_ALL(OF(all.col, all.start[n]), OF(all.val, all.start[n]));
   for (int i = 0; i < n; ++i) {
     if (row_of[i] >= 0)
       copy_row(part, row_of[i], &all, i);
@@ -93,10 +91,7 @@ static status add_rows(friction_limit *out, int n, const int *node,
   sparse_free(&out->B);
   out->B = all;
   memset(&all, 0, sizeof all);
-done:
-  sparse_free(&all);
-  memory_free(row_of);
-  return st;
+  return OK;
 }
 
 /* Entries of the average at node i, 1 without one. */
@@ -123,26 +118,22 @@ static status friction_pressure_limit(const friction_card *card,
                                       const contact_surface *s, int n_node,
                                       const int *node, double t,
                                       friction_limit *out) {
-  status st = OK;
-  sparse_rows rows = {.n = n_node};
-  NEW(rows.start, n_node + 1);
+  ENDS_BY(sparse_free) sparse_rows rows = {.n = n_node};
+  PASS_NEW(rows.start, n_node + 1);
   for (int k = 0; k < n_node; ++k)
     rows.start[k + 1] =
         rows.start[k] + (surface_is_corner(s, node[k])
                              ? 0
                              : average_size(card->average, node[k]));
-  NEW(rows.col, rows.start[n_node]);
-  NEW(rows.val, rows.start[n_node]);
+  PASS_NEW_ALL(OF(rows.col, rows.start[n_node]),
+               OF(rows.val, rows.start[n_node]));
   for (int k = 0; k < n_node; ++k) {
     double mu;
     if (surface_is_corner(s, node[k])) continue;
-    TRY(friction_value(card, s, node[k], t, &mu));
+    PASS(friction_value(card, s, node[k], t, &mu));
     add_average(card->average, node[k], mu, &rows, rows.start[k]);
   }
-  TRY(add_rows(out, s->n, node, &rows));
-done:
-  sparse_free(&rows);
-  return st;
+  return add_rows(out, s->n, node, &rows);
 }
 
 /*
@@ -161,9 +152,6 @@ const friction_ops none_friction = {
     .name = "NONE",
     .reference = "Cocu, Pratt, Raous 1998, (2.6) with F_T = 0",
     .help = "frictionless: the obstacle carries no tangential force",
-    .value_name = NULL,
-    .value_unit = NULL,
-    .param_size = 0,
     .options = friction_no_options,
     .limit = no_limit};
 
@@ -191,7 +179,6 @@ const friction_ops tresca_friction = {
     .help = "given sliding limit g(x, t), whatever the pressure",
     .value_name = "g",
     .value_unit = "force/length^2",
-    .param_size = 0,
     .options = friction_no_options,
     .limit = tresca_limit};
 
@@ -200,10 +187,9 @@ const friction_ops tresca_friction = {
  * the contact pressure by a kernel of radius rho (CPR98, 2.7).
  *
  * Nodal forces and pressures go together by the tributary areas, as in the
- * local law: p_j = -r_n,j / a_j and g_i = mu_i a_i R(p)(x_i), so that
- * B_ij = mu_i a_i G_ij / a_j with G of contact/average/average.h; G = 1 is
- * local friction. p is zero outside of the contact: at its edges R(p) is less
- * than p.
+ * local law: p_j = -r_n,j / a_j and g_i = mu_i a_i R(p)(x_i), so that B_ij =
+ * mu_i a_i G_ij / a_j with G of contact/average/average.h; G = 1 is local
+ * friction. p is zero outside of the contact: at its edges R(p) is less than p.
  */
 
 const friction_ops coulomb_friction = {
@@ -212,7 +198,6 @@ const friction_ops coulomb_friction = {
     .help = "sliding limit mu(x, t) times the normal force of the node",
     .value_name = "mu",
     .value_unit = "-",
-    .param_size = 0,
     .options = friction_no_options,
     .limit = friction_pressure_limit};
 
@@ -283,10 +268,9 @@ static status patch_new(const contact_surface *s, const surface_input *in,
   const mesh *m = in->mesh;
   const mesh_group *g = in->pairs[contact_id].group;
   size_t dim = (size_t)m->dim;
-  PASS_NEW(a->x, dim * (size_t)g->n_node);
-  PASS_NEW(a->face, m->dim * g->n_item);
-  PASS_NEW(a->active, g->n_node);
-  PASS_NEW(a->contact_node, g->n_node);
+  PASS_NEW_ALL(OF(a->x, dim * (size_t)g->n_node),
+               OF(a->face, m->dim * g->n_item), OF(a->active, g->n_node),
+               OF(a->contact_node, g->n_node));
   for (int k = 0, i = 0; k < g->n_node; ++k) {
     for (size_t c = 0; c < dim; ++c)
       a->x[dim * (size_t)k + c] = m->x[dim * (size_t)g->node_id[k] + c];
@@ -326,9 +310,8 @@ static status to_surface(const contact_surface *s, int contact_id,
                          const patch *a, const sparse_rows *G,
                          sparse_rows *out) {
   int n = 0;
-  PASS_NEW(out->start, s->n + 1);
-  PASS_NEW(out->col, G->start[G->n]);
-  PASS_NEW(out->val, G->start[G->n]);
+  PASS_NEW_ALL(OF(out->start, s->n + 1), OF(out->col, G->start[G->n]),
+               OF(out->val, G->start[G->n]));
   out->n = s->n;
   for (int k = 0; k < G->n; ++k) {
     int i = a->contact_node[k];
@@ -350,7 +333,6 @@ static status nonlocal_average(const friction_card *card,
                                const surface_input *in, int contact_id,
                                const place *at, message_log *log,
                                sparse_rows *out) {
-  status st = OK;
   const nonlocal *own = card->param;
   const average_rule rule = {
       .kernel = (kernel)own->kernel,
@@ -359,17 +341,14 @@ static status nonlocal_average(const friction_card *card,
       .geodesic = own->distance,
       .mirror = {(average_mirror)own->mirror_x, (average_mirror)own->mirror_y,
                  (average_mirror)own->mirror_z}};
-  patch a = {.x = NULL};
-  sparse_rows G = {.n = 0};
+  ENDS_BY(patch_free) patch a = {.x = NULL};
+  ENDS_BY(sparse_free) sparse_rows G = {.n = 0};
   average_facts facts;
-  TRY(patch_new(s, in, contact_id, &a));
-  TRY(average_build(&a.p, &rule, &G, &facts));
-  TRY(to_surface(s, contact_id, &a, &G, out));
+  PASS(patch_new(s, in, contact_id, &a));
+  PASS(average_build(&a.p, &rule, &G, &facts));
+  PASS(to_surface(s, contact_id, &a, &G, out));
   warn(own->radius, in->pairs[contact_id].name, &facts, at, log);
-done:
-  sparse_free(&G);
-  patch_free(&a);
-  return st;
+  return OK;
 }
 
 static const char *nonlocal_misfit(const void *param, int dim,

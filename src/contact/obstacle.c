@@ -7,6 +7,7 @@
  *                     cylinder both without their part along the axis
  */
 #include "contact/obstacle.h"
+#include "base/vector.h"
 
 #include <math.h>
 
@@ -15,12 +16,6 @@
 static const double grazing_sine = 1e-6;
 
 enum { TIME_VARIABLE = 8 };
-
-static double dot(int dim, const double *a, const double *b) {
-  double s = 0;
-  for (int c = 0; c < dim; ++c) s += a[c] * b[c];
-  return s;
-}
 
 static double plane_gap(const obstacle *o, int dim, const double *y,
                         const double *n) {
@@ -70,12 +65,6 @@ void obstacle_motion(const obstacle *o, double t, double *d) {
 
 double obstacle_angle(const obstacle *o, double t) {
   return o->turns ? quantity_value(&o->angle, o->point, t) : 0;
-}
-
-static void cross(const double *a, const double *b, double *c) {
-  c[0] = a[1] * b[2] - a[2] * b[1];
-  c[1] = a[2] * b[0] - a[0] * b[2];
-  c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 /* v = R(a, angle) v (Rodrigues). */

@@ -340,8 +340,7 @@ status pairs_check_circles(const contact_surface *s, const surface_input *in,
   OWNED unsigned char *done = NULL;
   char text[480] = "";
   if (s->master == NULL) return OK;
-  PASS_NEW(row, in->mesh->n_node);
-  PASS_NEW(done, s->n);
+  PASS_NEW_ALL(OF(row, in->mesh->n_node), OF(done, s->n));
   for (int i = 0; i < in->mesh->n_node; ++i) row[i] = -1;
   for (int q = 0; q < s->n; ++q) row[s->node_id[q]] = q;
   finder f = {s, in, row, done};

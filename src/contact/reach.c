@@ -84,12 +84,9 @@ status reach_part_new(int n, int dim, reach_part *out) {
   *out = (reach_part){0};
   PASS_NEW(out->gap, n);
   if (dim == 1) return OK;
-  PASS_NEW(out->ut0, n * (dim - 1));
-  PASS_NEW(out->g0, n);
-  PASS_NEW(out->held, n * dim);
-  PASS_NEW(out->B.start, n + 1);
-  PASS_NEW(out->B.col, n);
-  PASS_NEW(out->B.val, n);
+  PASS_NEW_ALL(OF(out->ut0, n * (dim - 1)), OF(out->g0, n),
+               OF(out->held, n * dim), OF(out->B.start, n + 1),
+               OF(out->B.col, n), OF(out->B.val, n));
   return OK;
 }
 

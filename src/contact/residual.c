@@ -94,31 +94,25 @@ static void find_sparse_bodies(const contact_problem *cp, const double *root,
 }
 
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
-  status st = OK;
-  contact_bodies *b = NULL;
-  double *root = NULL;
-  int *list = NULL;
-  NEW(b, 1);
-  NEW(b->of, cp->n);
+  contact_bodies *b;
+  OWNED double *root = NULL;
+  OWNED int *list = NULL;
+  PASS_NEW(b, 1);
+  *out = b;
+  PASS_NEW(b->of, cp->n);
   if (cp->op != NULL) {
     b->n = cp->op->n_body;
     memcpy(b->of, cp->op->body, (size_t)cp->n * sizeof *b->of);
   } else {
-    NEW(root, cp->n);
-    NEW(list, cp->n);
+    PASS_NEW_ALL(OF(root, cp->n), OF(list, cp->n));
     for (int i = 0; i < cp->n; ++i) root[i] = root_of(cp, i);
     if (cp->blocks != NULL)
       find_sparse_bodies(cp, root, list, b);
     else
       find_bodies(cp, root, list, b);
   }
-  NEW(b->size, b->n);
-  *out = b;
-  b = NULL;
-done:
-  contact_bodies_free(b);
-  RELEASE(root, list);
-  return st;
+  PASS_NEW(b->size, b->n);
+  return OK;
 }
 
 static const double ROUNDING = 0x1p-47; /* -, of the terms of a row */

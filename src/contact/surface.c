@@ -11,6 +11,7 @@
 
 #include "base/memory.h"
 #include "contact/frame.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -219,8 +220,7 @@ static status sort_candidates(builder *b) {
   int n_node = b->in->mesh->n_node;
   OWNED int *start = NULL;
   OWNED candidate *sorted = NULL;
-  PASS_NEW(start, n_node + 1);
-  PASS_NEW(sorted, b->n);
+  PASS_NEW_ALL(OF(start, n_node + 1), OF(sorted, b->n));
   for (int i = 0; i < b->n; ++i) ++start[b->list[i].node_id + 1];
   for (int k = 0; k < n_node; ++k) start[k + 1] += start[k];
   for (int i = 0; i < b->n; ++i)
@@ -235,8 +235,7 @@ static status collect(builder *b) {
   const surface_input *in = b->in;
   OWNED int *index = NULL;
   int n = 0;
-  PASS_NEW(b->tallies, in->n_pair);
-  PASS_NEW(index, in->mesh->n_node);
+  PASS_NEW_ALL(OF(b->tallies, in->n_pair), OF(index, in->mesh->n_node));
   for (int p = 0; p < in->n_pair; ++p) n += in->pairs[p].group->n_node;
   PASS_NEW(b->list, n);
   for (int p = 0; p < in->n_pair; ++p) {
@@ -251,12 +250,6 @@ static status collect(builder *b) {
   }
   PASS(message_status(b->log, ERR_DECK));
   return sort_candidates(b);
-}
-
-static double dot(int dim, const double *a, const double *b) {
-  double s = 0;
-  for (int c = 0; c < dim; ++c) s += a[c] * b[c];
-  return s;
 }
 
 /* Do two contacts of one node belong to one smooth surface? */
@@ -569,34 +562,22 @@ static int has_pair(const surface_input *in) {
 }
 
 static status surface_new(int dim, int n, int pairs, contact_surface **out) {
-  status st = OK;
-  contact_surface *s = NULL;
-  NEW(s, 1);
-  s->dim = dim;
-  NEW(s->node_id, n);
-  NEW(s->node_no, n);
-  NEW(s->contact_id, n);
-  NEW(s->side_id, n * (dim - 1));
-  NEW(s->side_area, n * (dim - 1));
-  NEW(s->x, n * dim);
-  NEW(s->area, n);
-  NEW(s->frame, n * dim * dim);
-  NEW(s->basis, n * dim * dim);
-  NEW(s->gap0, n);
-  NEW(s->held, n * dim);
-  if (pairs) {
-    NEW(s->apart, n * dim);
-    NEW(s->share, n * dim);
-    NEW(s->lever, n * dim * dim);
-    NEW(s->master, 1);
-    s->master->dim = dim;
-    NEW(s->master->start, n + 1);
-  }
+  contact_surface *s;
+  PASS_NEW(s, 1);
   *out = s;
-  s = NULL;
-done:
-  surface_free(s);
-  return st;
+  s->dim = dim;
+  PASS_NEW_ALL(OF(s->node_id, n), OF(s->node_no, n), OF(s->contact_id, n),
+               OF(s->side_id, n * (dim - 1)), OF(s->side_area, n * (dim - 1)),
+               OF(s->x, n * dim), OF(s->area, n), OF(s->frame, n * dim * dim),
+               OF(s->basis, n * dim * dim), OF(s->gap0, n),
+               OF(s->held, n * dim));
+  if (pairs) {
+    PASS_NEW_ALL(OF(s->apart, n * dim), OF(s->share, n * dim),
+                 OF(s->lever, n * dim * dim), OF(s->master, 1));
+    s->master->dim = dim;
+    PASS_NEW(s->master->start, n + 1);
+  }
+  return OK;
 }
 
 status surface_build(const surface_input *in, message_log *log,
@@ -698,10 +679,6 @@ void surface_relative(const contact_surface *s, const double *u, double *w) {
                dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
       w[dim * q + a] = sum;
     }
-}
-
-static void add_scaled(int dim, double factor, const double *v, double *to) {
-  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
 }
 
 void surface_spread_row(const contact_surface *s, int q, int a, double force,

@@ -84,9 +84,8 @@ static status find_graph(const domain *d, stiffness *k) {
   int *elem = NULL, *follower = NULL;
   TRY(mesh_node_elements(m, &from, &elem));
   if (k->moved != NULL) TRY(find_followers(k->moved, &first, &follower));
-  NEW(g.seen, m->n_node);
-  NEW(k->start, m->n_node + 1);
-  NEW(k->row, g.capacity);
+  NEW_ALL(OF(g.seen, m->n_node), OF(k->start, m->n_node + 1),
+          OF(k->row, g.capacity));
   for (int j = 0; j < m->n_node; ++j) {
     TRY(add_rows(&g, j, 1, &j)); /* the diagonal first */
     for (size_t q = from[j]; q < from[j + 1]; ++q)
@@ -263,9 +262,8 @@ static status add_clusters(const domain *d, stiffness *k) {
     if (c->first[q + 1] - c->first[q] > most)
       most = c->first[q + 1] - c->first[q];
   if (most == 0) goto done;
-  NEW(x.place, k->n_node);
-  NEW(x.t, k->dim * most);
-  NEW(x.r, k->dim * most);
+  NEW_ALL(OF(x.place, k->n_node), OF(x.t, k->dim * most),
+          OF(x.r, k->dim * most));
   for (int q = 0; q < c->n; ++q) add_cluster(d, q, &x, k);
 done:
   RELEASE(x.place, x.t, x.r);
@@ -315,8 +313,7 @@ static status number_rows(const domain *d, stiffness *k) {
 static status mark_unknowns(const domain *d, stiffness *k) {
   const int dim = k->dim, all = (1 << dim) - 1;
   const contact_surface *s = d->surface;
-  PASS_NEW(k->free, k->n_node);
-  PASS_NEW(k->contact, k->n_node);
+  PASS_NEW_ALL(OF(k->free, k->n_node), OF(k->contact, k->n_node));
   for (int i = 0; i < k->n_node; ++i) {
     k->contact[i] = -1;
     k->free[i] = (unsigned char)all;
@@ -362,8 +359,7 @@ static status list_coupling(stiffness *k) {
   for (int j = 0; j < k->n_node; ++j)
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
       n += (size_t)couples(k, k->row[p], j);
-  PASS_NEW(k->coupling, n);
-  PASS_NEW(k->coupling_column, n);
+  PASS_NEW_ALL(OF(k->coupling, n), OF(k->coupling_column, n));
   for (int j = 0; j < k->n_node; ++j)
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
       if (couples(k, k->row[p], j)) {
@@ -376,7 +372,7 @@ static status list_coupling(stiffness *k) {
 status stiffness_assemble(const domain *d, stiffness **out) {
   status st = OK;
   stiffness *k = NULL;
-  timer_enter(STAGE_ASSEMBLY);
+  TIMED(STAGE_ASSEMBLY);
   NEW(k, 1);
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;
@@ -389,7 +385,6 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   turn_blocks(d, k);
   TRY(list_coupling(k));
 done:
-  timer_leave(STAGE_ASSEMBLY);
   if (st != OK) {
     stiffness_free(k);
     k = NULL;

@@ -144,35 +144,29 @@ static status pin_sets(condensed *c) {
 }
 
 static status factor_bodies(condensed *c) {
-  status st = OK;
   const stiffness *k = c->k;
-  graph g = {0};
-  int *list = NULL, q = 0;
-  unsigned char *seen = NULL;
-  long *number = NULL;
-  timer_enter(STAGE_ORDERING);
-  NEW(list, k->n_node);
-  NEW(seen, k->n_node);
-  NEW(number, (size_t)k->dim * (size_t)k->n_node);
-  TRY(graph_of_unknowns(k, &g));
+  ENDS_BY(graph_release) graph g = {0};
+  OWNED int *list = NULL;
+  OWNED unsigned char *seen = NULL;
+  OWNED long *number = NULL;
+  int q = 0;
+  TIMED(STAGE_ORDERING);
+  PASS_NEW_ALL(OF(list, k->n_node), OF(seen, k->n_node),
+               OF(number, (size_t)k->dim * (size_t)k->n_node));
+  PASS(graph_of_unknowns(k, &g));
   c->n_body = count_bodies(k, &g, seen, list);
-  NEW(c->body, c->n_body);
+  PASS_NEW(c->body, c->n_body);
   for (int i = 0; i < k->n_node; ++i) {
     if (k->free[i] == 0 || seen[i]) continue;
     body_factor *f = &c->body[q++];
     const int n = connected_set(&g, i, seen, list);
     f->bad_node = i;
-    TRY(order_body(c, &g, n, list, f));
+    PASS(order_body(c, &g, n, list, f));
     body_factor_number(k, f, number);
     f->pinned = c->pinned;
-    st = body_factor_build(k, number, c->cm, f);
-    TRY(name_body(c, f, st));
+    PASS(name_body(c, f, body_factor_build(k, number, c->cm, f)));
   }
-done:
-  timer_leave(STAGE_ORDERING);
-  graph_release(&g);
-  RELEASE(list, seen, number);
-  return st;
+  return OK;
 }
 
 /* The contact node of a row of A. */
@@ -242,29 +236,24 @@ static status estimate_condition(condensed *c) {
 }
 
 static status form_matrix(condensed *c) {
-  status st = OK;
   if (c->m == 0) return OK;
-  timer_enter(STAGE_CONDENSE);
-  NEW(c->A, (size_t)c->m * (size_t)c->m);
+  TIMED(STAGE_CONDENSE);
+  PASS_NEW(c->A, (size_t)c->m * (size_t)c->m);
   for (int q = 0; q < c->n_body; ++q)
-    TRY(body_factor_condense(c->k, &c->body[q], c->m, c->A));
-  TRY(rigid_project(&c->rigid, c->A));
+    PASS(body_factor_condense(c->k, &c->body[q], c->m, c->A));
+  PASS(rigid_project(&c->rigid, c->A));
   fill_held(c);
-done:
-  timer_leave(STAGE_CONDENSE);
-  return st;
+  return OK;
 }
 
 /* Body of each row of A by connected sets, of[m/rows]; counts them. */
 static status find_bodies(condensed *c, int *of) {
-  status st = OK;
   const stiffness *k = c->k;
-  graph g = {0};
-  int *list = NULL;
-  unsigned char *seen = NULL;
-  NEW(list, k->n_node);
-  NEW(seen, k->n_node);
-  TRY(graph_of_unknowns(k, &g));
+  ENDS_BY(graph_release) graph g = {0};
+  OWNED int *list = NULL;
+  OWNED unsigned char *seen = NULL;
+  PASS_NEW_ALL(OF(list, k->n_node), OF(seen, k->n_node));
+  PASS(graph_of_unknowns(k, &g));
   for (int i = 0; i < k->n_node; ++i) {
     if (k->free[i] == 0 || seen[i]) continue;
     const int n = connected_set(&g, i, seen, list);
@@ -273,10 +262,7 @@ static status find_bodies(condensed *c, int *of) {
         of[k->first_row[list[q]] / k->rows] = c->n_body;
     ++c->n_body;
   }
-done:
-  graph_release(&g);
-  RELEASE(list, seen);
-  return st;
+  return OK;
 }
 
 /* The whole matrix in the place of those of the bodies. */
@@ -284,8 +270,7 @@ static status make_operator(condensed *c) {
   const stiffness *k = c->k;
   OWNED int *body = NULL;
   OWNED unsigned char *held = NULL;
-  PASS_NEW(body, c->m);
-  PASS_NEW(held, c->m);
+  PASS_NEW_ALL(OF(body, c->m), OF(held, c->m));
   PASS(find_bodies(c, body));
   for (int q = 0; q < c->m; ++q) held[q] = (unsigned char)is_held(c, q);
   const operator_data data = {.k = k,
@@ -471,8 +456,7 @@ static status refine(condensed *c, double *u) {
 static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;
-  PASS_NEW(u, n);
-  PASS_NEW(zero, c->m);
+  PASS_NEW_ALL(OF(u, n), OF(zero, c->m));
   if (c->rest == NULL) PASS_NEW(c->rest, n);
   if (c->F == NULL) PASS_NEW(c->F, n);
   memcpy(c->F, F, n * sizeof *F);
@@ -492,27 +476,21 @@ int condensed_costs_digits(const condensed *c) {
 
 status condense_load(condensed *c, const double *F, const double *ud,
                      double *f_c) {
-  status st = OK;
-  timer_enter(STAGE_RECOVERY);
+  TIMED(STAGE_RECOVERY);
   set_load(c, F);
   rigid_loads(c->k, &c->d, &c->rigid, c->load);
   if (set_prescribed(c, ud)) move_prescribed(c);
-  TRY(forward(c, f_c));
-  if (condensed_costs_digits(c)) TRY(refine_load(c, F, f_c));
+  PASS(forward(c, f_c));
+  if (condensed_costs_digits(c)) PASS(refine_load(c, F, f_c));
   rigid_balance(&c->rigid, f_c);
-done:
-  timer_leave(STAGE_RECOVERY);
-  return st;
+  return OK;
 }
 
 status condense_recover(condensed *c, const double *u_c, double *u) {
-  status st = OK;
-  timer_enter(STAGE_RECOVERY);
-  TRY(back(c, u_c, u));
-  if (c->F != NULL) TRY(refine(c, u));
-done:
-  timer_leave(STAGE_RECOVERY);
-  return st;
+  TIMED(STAGE_RECOVERY);
+  PASS(back(c, u_c, u));
+  if (c->F != NULL) PASS(refine(c, u));
+  return OK;
 }
 
 /* u[m] = inv(A) f by the factors of the whole matrix; *square += u.f of those
@@ -521,8 +499,7 @@ static status solve_rows(const condensed *c, const double *f, double *u,
                          double *square) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *load = NULL, *w = NULL;
-  PASS_NEW(load, n);
-  PASS_NEW(w, n);
+  PASS_NEW_ALL(OF(load, n), OF(w, n));
   for (int q = 0; q < c->m; ++q)
     if (!is_held(c, q)) load[component_of(c, q)] = f[q];
   PASS(want_all_rows(c));
@@ -594,8 +571,7 @@ static status solve_open(const condensed *c, const unsigned char *held,
     u[q] = 0;
     if (!held[q]) open[n++] = q;
   }
-  PASS_NEW(A, (size_t)n * (size_t)n);
-  PASS_NEW(x, n);
+  PASS_NEW_ALL(OF(A, (size_t)n * (size_t)n), OF(x, n));
   for (int b = 0; b < n; ++b) {
     x[b] = f[open[b]];
     for (int a = 0; a < n; ++a)
@@ -611,27 +587,23 @@ static status solve_open(const condensed *c, const unsigned char *held,
 status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
                              const unsigned char *held, double *w,
                              double *square) {
-  status st = OK;
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
-  double *f_c = NULL, *u_c = NULL;
+  OWNED double *f_c = NULL, *u_c = NULL;
   int good = 0;
-  NEW(f_c, c->m);
-  NEW(u_c, c->m);
+  PASS_NEW_ALL(OF(f_c, c->m), OF(u_c, c->m));
   *square = HUGE_VAL;
   set_prescribed(c, NULL);
   set_load(c, rest);
   for (int q = 0; q < c->m; ++q) c->load[component_of(c, q)] += rc[q];
-  TRY(forward(c, f_c));
-  TRY(solve_open(c, held, f_c, u_c, &good));
-  if (!good) goto done;
-  TRY(back(c, u_c, w));
+  PASS(forward(c, f_c));
+  PASS(solve_open(c, held, f_c, u_c, &good));
+  if (!good) return OK;
+  PASS(back(c, u_c, w));
   *square = 0;
   for (size_t i = 0; i < n; ++i) *square += rest[i] * w[i];
   for (int q = 0; q < c->m; ++q) *square += rc[q] * u_c[q];
   *square = fmax(0, *square);
-done:
-  RELEASE(f_c, u_c);
-  return st;
+  return OK;
 }
 
 const double *condensed_matrix(const condensed *c) { return c->A; }

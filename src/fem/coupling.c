@@ -155,11 +155,8 @@ status coupling_new(const domain *d, coupling **out) {
     return OK;
   NEW(b.of, n_node);
   const int n = find_sources(d, b.of);
-  NEW(b.c, 1);
-  NEW(b.place, n_node);
-  NEW(b.c->of, n_node);
-  NEW(b.c->node, n);
-  NEW(b.c->start, n + 1);
+  NEW_ALL(OF(b.c, 1), OF(b.place, n_node));
+  NEW_ALL(OF(b.c->of, n_node), OF(b.c->node, n), OF(b.c->start, n + 1));
   b.c->dim = d->mesh->dim;
   b.c->n_node = n_node;
   for (int i = 0; i < n_node; ++i) b.c->of[i] = -1;

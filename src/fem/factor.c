@@ -107,9 +107,11 @@ static void put_blocks(columns *w) {
   }
 }
 
-status body_factor_matrix(const stiffness *k, const body_factor *f,
-                          const long *number, cholmod_common *cm,
-                          cholmod_sparse **out) {
+/* Scaled lower triangle in elimination order, f->pinned included; *out is new.
+ */
+static status body_factor_matrix(const stiffness *k, const body_factor *f,
+                                 const long *number, cholmod_common *cm,
+                                 cholmod_sparse **out) {
   status st = OK;
   columns w = {
       .k = k, .f = f, .number = number, .scale = ldexp(1, -f->exponent)};
@@ -183,10 +185,8 @@ static status locate(const stiffness *k, const long *number, body_factor *f) {
   const SuiteSparse_long *perm = f->L->Perm;
   OWNED long *position = NULL;
   long q = 0;
-  PASS_NEW(position, f->n);
-  PASS_NEW(f->unknown, f->n);
-  PASS_NEW(f->contact_at, f->nc);
-  PASS_NEW(f->contact_id, f->nc);
+  PASS_NEW_ALL(OF(position, f->n), OF(f->unknown, f->n),
+               OF(f->contact_at, f->nc), OF(f->contact_id, f->nc));
   for (long p = 0; p < f->n; ++p) position[perm[p]] = p;
   for (int t = 0; t < f->n_node; ++t)
     for (int c = 0; c < k->dim; ++c) {
@@ -228,10 +228,9 @@ static status begin(const stiffness *k, const long *number, cholmod_common *cm,
 status body_factor_analyse(const stiffness *k, const long *number,
                            cholmod_common *cm, body_factor *f) {
   cholmod_sparse *a = NULL;
-  timer_enter(STAGE_ORDERING);
+  TIMED(STAGE_ORDERING);
   status st = begin(k, number, cm, f, &a);
   cholmod_l_free_sparse(&a, cm);
-  timer_leave(STAGE_ORDERING);
   return st;
 }
 
@@ -362,8 +361,7 @@ status body_factor_forward(body_factor *f, const double *load, double *f_c,
   OWNED double *in = NULL, *out = NULL;
   double *y = f->y->x;
   const double scale = ldexp(1, -f->exponent), back = ldexp(1, f->exponent);
-  PASS_NEW(in, f->nc);
-  PASS_NEW(out, f->nc);
+  PASS_NEW_ALL(OF(in, f->nc), OF(out, f->nc));
   int any = 0;
   for (long p = 0; p < f->n; ++p) {
     y[p] = scale * load[f->unknown[p]];
@@ -395,8 +393,7 @@ status body_factor_back(const body_factor *f, const double *u_c, double *u,
   status st = OK;
   cholmod_dense *z = NULL;
   double *in = NULL, *out = NULL;
-  NEW(in, f->nc);
-  NEW(out, f->nc);
+  NEW_ALL(OF(in, f->nc), OF(out, f->nc));
   z = cholmod_l_copy_dense(f->y, cm);
   if (z == NULL)
     FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
@@ -572,8 +569,7 @@ status body_factor_condition(const stiffness *k, const body_factor *f,
   const size_t n = (size_t)k->dim * (size_t)k->n_node;
   OWNED double *sum = NULL, *root = NULL;
   double growth = 0;
-  PASS_NEW(sum, n);
-  PASS_NEW(root, n);
+  PASS_NEW_ALL(OF(sum, n), OF(root, n));
   fill_roots(k, f, root);
   PASS(inverse_norm(f, root, cm, &growth));
   *condition = largest_row_sum(k, f, root, sum) * growth;

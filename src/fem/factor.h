@@ -41,11 +41,6 @@ typedef struct body_factor {
 /* Number the unknowns of f->node (set by the caller): sets n, nc and
  * number[dim*n_node], -1 where prescribed. */
 void body_factor_number(const stiffness *k, body_factor *f, long *number);
-/* Scaled lower triangle in elimination order, f->pinned included; *out is new.
- * ERR_MEMORY. */
-status body_factor_matrix(const stiffness *k, const body_factor *f,
-                          const long *number, cholmod_common *cm,
-                          cholmod_sparse **out);
 /* Symbolic factor and places of the unknowns in it. f->exponent too.
  * ERR_SINGULAR, ERR_MEMORY. */
 status body_factor_analyse(const stiffness *k, const long *number,

@@ -22,8 +22,7 @@ static long place_of(const sparse_operator *o, int node, int c) {
   return o->number[(size_t)o->k->dim * (size_t)node + (size_t)c];
 }
 
-/* ---- the factors ----------------------------------------------------------
- */
+/* ---- the factors --------------------------------------------------------- */
 
 typedef struct filling {
   const sparse_operator *o;
@@ -178,8 +177,7 @@ static status factor_interior(sparse_operator *o) {
   return OK;
 }
 
-/* ---- products and solves --------------------------------------------------
- */
+/* ---- products and solves ------------------------------------------------- */
 
 static void clear(const sparse_operator *o, double *v) {
   const supernodal_part *part = &o->part.contact;
@@ -397,8 +395,7 @@ static void response(void *ctx, const double *b, double *x, double *Ax) {
   }
 }
 
-/* ---- loads and recovery ---------------------------------------------------
- */
+/* ---- loads and recovery -------------------------------------------------- */
 
 /* Forces v by place of load[dim*n_node] in the interior. */
 static void take_load(const sparse_operator *o, const double *load, double *v) {
@@ -436,8 +433,7 @@ void sparse_operator_interior(sparse_operator *o, const double *load,
   for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->v[p];
 }
 
-/* ---- building --------------------------------------------------------------
- */
+/* ---- building ------------------------------------------------------------ */
 
 /* Entries without the rows and columns of the contact unknowns: their share of
  * the rows is taken as that of the columns. */
@@ -458,7 +454,7 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   memory_count_suitesparse();
   cholmod_l_start(&cm);
   cm.print = 0;
-  timer_enter(STAGE_ORDERING);
+  TIMED(STAGE_ORDERING);
   TRY(graph_of_unknowns(k, &g));
   NEW(o->node, k->n_node);
   for (int i = 0; i < k->n_node; ++i)
@@ -473,7 +469,6 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o) {
   o->contact_entries = cost.reached_entries * dim * dim;
   o->interior_entries = interior_entries(k, &cost) * dim * dim;
 done:
-  timer_leave(STAGE_ORDERING);
   graph_release(&g);
   memory_free(mark);
   cholmod_l_finish(&cm);
@@ -505,15 +500,11 @@ static status order_whole(sparse_operator *o, const double *x,
 /* Arrays by contact row, before there is a factor. */
 static status new_rows(sparse_operator *o) {
   const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
-  PASS_NEW(o->number, (size_t)o->k->dim * (size_t)o->k->n_node);
-  PASS_NEW(o->unknown, m);
-  PASS_NEW(o->held, m);
-  PASS_NEW(o->rows.known, m);
-  PASS_NEW(o->rows.added, size);
-  PASS_NEW(o->diagonal, m);
-  PASS_NEW(o->room, 2 * m);
-  PASS_NEW(o->body, m / (size_t)o->k->rows);
-  PASS_NEW(o->part.node, m / (size_t)o->k->rows);
+  PASS_NEW_ALL(OF(o->number, (size_t)o->k->dim * (size_t)o->k->n_node),
+               OF(o->unknown, m), OF(o->held, m), OF(o->rows.known, m),
+               OF(o->rows.added, size), OF(o->diagonal, m), OF(o->room, 2 * m),
+               OF(o->body, m / (size_t)o->k->rows),
+               OF(o->part.node, m / (size_t)o->k->rows));
   return OK;
 }
 
@@ -616,11 +607,9 @@ static status list_blocks(sparse_operator *o, int n, block_taker *take,
 /* The supernodes in which contact unknowns have part. */
 static status divide(sparse_operator *o) {
   const int count = o->s->count;
-  PASS_NEW(o->part.mark, count);
-  PASS_NEW(o->part.touches, count);
-  PASS_NEW(o->part.all.list, count);
-  PASS_NEW(o->part.contact.list, count);
-  PASS_NEW(o->part.response.list, count);
+  PASS_NEW_ALL(OF(o->part.mark, count), OF(o->part.touches, count),
+               OF(o->part.all.list, count), OF(o->part.contact.list, count),
+               OF(o->part.response.list, count));
   memset(o->part.mark, 1, (size_t)count);
   supernodal_list(o->s, o->part.mark, &o->part.all);
   for (int i = 0; i < n_contact(o); ++i) mark_node(o, i, o->part.touches);
@@ -647,8 +636,7 @@ static status new_columns(sparse_operator *o) {
   const SuiteSparse_long *px = o->f.L->px;
   if (!cholmod_l_change_factor(CHOLMOD_REAL, 1, 1, 1, 1, o->f.L, o->cm))
     RAISE(ERR_MEMORY, "memory exhausted: factor of %ld unknowns", o->f.n);
-  PASS_NEW(o->x, count);
-  PASS_NEW(o->inner, count);
+  PASS_NEW_ALL(OF(o->x, count), OF(o->inner, count));
   for (int q = 0; q < count; ++q)
     if (o->part.touches[q]) o->n_own += supernodal_entries(o->interior, q);
   PASS_NEW(o->own, o->n_own);
@@ -672,8 +660,7 @@ static status factor_both(sparse_operator *o) {
   PASS(list_blocks(o, o->s->count, list_by_column, &o->columns));
   PASS(list_blocks(o, n_contact(o), list_by_contact, &o->touched));
   PASS(divide(o));
-  PASS_NEW(o->v, o->f.n);
-  PASS_NEW(o->y, o->f.n);
+  PASS_NEW_ALL(OF(o->v, o->f.n), OF(o->y, o->f.n));
   PASS(leave_contact_out(o));
   PASS(new_columns(o));
   PASS(sparse_operator_all_rows(o));
@@ -682,22 +669,21 @@ static status factor_both(sparse_operator *o) {
 
 status sparse_operator_new(const operator_data *d, const char **ordering,
                            sparse_operator **out) {
-  status st = OK;
   const stiffness *k = d->k;
   sparse_operator *o = NULL;
-  NEW(o, 1);
+  PASS_NEW(o, 1);
   *out = o;
   o->k = k;
   o->rigid = d->rigid;
   o->cm = d->cm;
   o->pinned = d->pinned;
-  TRY(new_rows(o));
+  PASS(new_rows(o));
   memcpy(o->held, d->held, (size_t)k->n_row);
   memcpy(o->body, d->body, (size_t)(k->n_row / k->rows) * sizeof *o->body);
   number_rows(o);
   fill_diagonal(o);
-  TRY(order_whole(o, d->x, d->order, ordering));
-  TRY(factor_both(o));
+  PASS(order_whole(o, d->x, d->order, ordering));
+  PASS(factor_both(o));
   o->seen = (contact_operator){.ctx = o,
                                .diagonal = o->diagonal,
                                .body = o->body,
@@ -713,8 +699,7 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
                                .solve = solve,
                                .set_response = set_response,
                                .response = response};
-done:
-  return st;
+  return OK;
 }
 
 void sparse_operator_free(sparse_operator *o) {

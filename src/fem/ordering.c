@@ -22,8 +22,7 @@ static const double work_limit = 5;
 status graph_of_unknowns(const stiffness *k, graph *g) {
   OWNED size_t *at = NULL;
   g->n = k->n_node;
-  PASS_NEW(g->start, k->n_node + 1);
-  PASS_NEW(at, k->n_node + 1);
+  PASS_NEW_ALL(OF(g->start, k->n_node + 1), OF(at, k->n_node + 1));
   for (int pass = 0; pass < 2; ++pass) {
     for (int j = 0; j < k->n_node; ++j)
       for (size_t p = k->start[j] + 1; k->free[j] && p < k->start[j + 1]; ++p) {
@@ -234,8 +233,7 @@ static status order_by_cuts(const graph *g, int dim, const double *x, int n,
                             int *node, double *work) {
   status st = OK;
   dissection w = {.g = g, .dim = dim, .x = x, .n = n};
-  NEW(w.side, g->n);
-  NEW(w.spare, n);
+  NEW_ALL(OF(w.side, g->n), OF(w.spare, n));
   dissect(&w, n, node);
   *work = w.work;
 done:
@@ -287,8 +285,7 @@ static status order_by_pattern(order_method method, const graph *g, int n,
   SuiteSparse_long *perm = NULL;
   int *old = NULL;
   TRY(graph_pattern(g, n, node, cm, &a));
-  NEW(perm, n);
-  NEW(old, n);
+  NEW_ALL(OF(perm, n), OF(old, n));
   const int ordered = method == ORDER_METIS
                           ? cholmod_l_metis(a, NULL, 0, 0, perm, cm)
                           : cholmod_l_amd(a, NULL, 0, perm, cm);
@@ -341,8 +338,7 @@ status order_cost_of(const graph *g, int n, const int *node,
   const size_t size = (size_t)n;
   *cost = (order_cost){0};
   TRY(graph_pattern(g, n, node, cm, &a));
-  NEW(w, 6 * size);
-  NEW(reached, n);
+  NEW_ALL(OF(w, 6 * size), OF(reached, n));
   for (int i = 0; i < n; ++i) w[i] = i;
   if (!cholmod_l_analyze_ordering(a, CHOLMOD_GIVEN, w, NULL, 0, w + size,
                                   w + 2 * size, w + 3 * size, w + 4 * size,

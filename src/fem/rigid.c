@@ -203,8 +203,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
     r->set[t].first = r->k;
     r->k += r->set[t].k;
   }
-  PASS_NEW(r->Q, (size_t)r->m * (size_t)r->k);
-  PASS_NEW(of, r->n_body);
+  PASS_NEW_ALL(OF(r->Q, (size_t)r->m * (size_t)r->k), OF(of, r->n_body));
   for (int t = 0; t < r->n_set; ++t) {
     rigid_set *s = &r->set[t];
     PASS_NEW(s->load, s->n);
@@ -241,9 +240,7 @@ status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned) {
   const int m = r->m, k = s->k;
   OWNED double *rest = NULL, *moved = NULL, *axis = NULL;
-  PASS_NEW(rest, (size_t)m * (size_t)k);
-  PASS_NEW(moved, m);
-  PASS_NEW(axis, k);
+  PASS_NEW_ALL(OF(rest, (size_t)m * (size_t)k), OF(moved, m), OF(axis, k));
   memcpy(rest, r->Q + (size_t)m * (size_t)s->first,
          (size_t)m * (size_t)k * sizeof *rest);
   for (int j = 0; j < k; ++j) {
@@ -263,8 +260,7 @@ status rigid_project(const rigid_motions *r, double *A) {
   const int m = r->m, k = r->k;
   OWNED double *V = NULL, *S = NULL;
   if (m == 0 || k == 0) return OK;
-  PASS_NEW(V, (size_t)m * (size_t)k);
-  PASS_NEW(S, (size_t)k * (size_t)k);
+  PASS_NEW_ALL(OF(V, (size_t)m * (size_t)k), OF(S, (size_t)k * (size_t)k));
   cblas_dsymm(CblasColMajor, CblasLeft, CblasUpper, m, k, 1, A, m, r->Q, m, 0,
               V, m);
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1, r->Q, m, V,

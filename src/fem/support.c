@@ -107,17 +107,10 @@ static status sets_find(const domain *d, body_sets *s) {
   *s = (body_sets){.d = d};
   TRY(pieces_find(d->mesh, &s->p));
   const int n_body = s->p.n_body;
-  NEW(s->first_piece, n_body + 1);
-  NEW(s->at, n_body);
-  NEW(s->body, n_node);
-  NEW(s->contact, n_node);
-  NEW(s->tie, n_node);
-  NEW(s->set, n_body);
-  NEW(s->column, n_body);
-  NEW(s->n, n_body);
-  NEW(s->start, n_body + 2);
-  NEW(s->node, n_node);
-  NEW(box, 6 * n_body);
+  NEW_ALL(OF(s->first_piece, n_body + 1), OF(s->at, n_body),
+          OF(s->body, n_node), OF(s->contact, n_node), OF(s->tie, n_node),
+          OF(s->set, n_body), OF(s->column, n_body), OF(s->n, n_body),
+          OF(s->start, n_body + 2), OF(s->node, n_node), OF(box, 6 * n_body));
   find_pieces(s);
   find_nodes(s);
   measure_bodies(s, box, box + 3 * n_body);
@@ -254,10 +247,8 @@ static status triangle_new(const body_sets *s, int id, int closed,
                            triangle *t) {
   const int n = s->n[id];
   *t = (triangle){.s = s, .id = id, .closed = closed, .n = n, .first = n};
-  PASS_NEW(t->r, (size_t)n * (size_t)n);
-  PASS_NEW(t->end, n);
-  PASS_NEW(t->owner, n);
-  PASS_NEW(t->row, n);
+  PASS_NEW_ALL(OF(t->r, (size_t)n * (size_t)n), OF(t->end, n), OF(t->owner, n),
+               OF(t->row, n));
   for (int b = id, k = 0; k < n; ++b)
     for (int a = s->set[b] == id ? sets_columns(s, b) : 0; a > 0; --a)
       t->owner[k++] = b;
@@ -401,8 +392,7 @@ static status is_regular(const triangle *t, int *regular) {
   OWNED double *work = NULL;
   OWNED lapack_int *number = NULL;
   double one, infinity;
-  PASS_NEW(work, 3 * n);
-  PASS_NEW(number, n);
+  PASS_NEW_ALL(OF(work, 3 * n), OF(number, n));
   if (LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, '1', 'L', 'N', n, t->r, n, &one,
                           work, number) != 0 ||
       LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, 'I', 'L', 'N', n, t->r, n,
@@ -418,9 +408,7 @@ static status find_null_space(const triangle *t, double *u, null_basis *z) {
   const int n = t->n;
   OWNED double *a = NULL, *s = NULL, *work = NULL;
   double none;
-  PASS_NEW(a, (size_t)n * (size_t)n);
-  PASS_NEW(s, n);
-  PASS_NEW(work, 16 * n);
+  PASS_NEW_ALL(OF(a, (size_t)n * (size_t)n), OF(s, n), OF(work, 16 * n));
   memcpy(a, t->r, (size_t)n * (size_t)n * sizeof *a);
   if (LAPACKE_dgesvd_work(LAPACK_COL_MAJOR, 'A', 'N', n, n, a, n, s, u, n,
                           &none, 1, work, 16 * n) != 0)
@@ -563,9 +551,8 @@ static status add_set(const triangle *t, const null_basis *z,
                     .n_motion = z->rank,
                     .k = z->exact,
                     .n_node = s->start[t->id + 1] - s->start[t->id]};
-  PASS_NEW(to->Y, n * (size_t)to->k);
-  PASS_NEW(to->owner, n);
-  PASS_NEW(to->node, to->n_node);
+  PASS_NEW_ALL(OF(to->Y, n * (size_t)to->k), OF(to->owner, n),
+               OF(to->node, to->n_node));
   memcpy(to->Y, z->Z + n * (size_t)(z->rank - z->exact),
          n * (size_t)to->k * sizeof *to->Y);
   memcpy(to->owner, t->owner, n * sizeof *to->owner);
@@ -605,9 +592,7 @@ static status set_motions(const body_sets *s, int id, motion_list *list,
   TRY(null_space(&f.t, &f.of[HELD_BY_FRICTION]));
   add_contact(&f.t, 0);
   TRY(null_space(&f.t, &f.of[HELD_BY_NOTHING]));
-  NEW(f.known, (size_t)n * (size_t)n);
-  NEW(f.rest, n);
-  NEW(f.part, n);
+  NEW_ALL(OF(f.known, (size_t)n * (size_t)n), OF(f.rest, n), OF(f.part, n));
   for (int hold = HELD_BY_NOTHING; hold <= HELD_BY_CONTACT; ++hold)
     TRY(append_motions(&f, (motion_hold)hold, list));
 done:
@@ -650,9 +635,7 @@ static status keep_places(const body_sets *s, rigid_motions *r) {
   const size_t n_body = (size_t)s->p.n_body;
   const int n_node = s->d->mesh->n_node;
   r->n_body = s->p.n_body;
-  PASS_NEW(r->at, n_body);
-  PASS_NEW(r->body, n_node);
-  PASS_NEW(r->column, n_node);
+  PASS_NEW_ALL(OF(r->at, n_body), OF(r->body, n_node), OF(r->column, n_node));
   memcpy(r->at, s->at, n_body * sizeof *r->at);
   memcpy(r->body, s->body, (size_t)n_node * sizeof *r->body);
   for (int i = 0; i < n_node; ++i) r->column[i] = sets_node_column(s, i);

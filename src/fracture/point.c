@@ -23,7 +23,7 @@ static int same_material(const fracture_material *a,
 }
 
 static void scale_to_one(double *a) {
-  const double length = sqrt(vector_dot(a, a));
+  const double length = sqrt(dot(3, a, a));
   for (int k = 0; k < 3; ++k) a[k] /= length;
 }
 
@@ -32,7 +32,7 @@ static double distance(const mesh *m, int a, int b) {
   place_of(m, a, x);
   place_of(m, b, y);
   for (int k = 0; k < 3; ++k) x[k] -= y[k];
-  return sqrt(vector_dot(x, x));
+  return sqrt(dot(3, x, x));
 }
 
 typedef struct obstacles {
@@ -89,7 +89,7 @@ static status find_obstacles(const fracture_body *b, obstacles *o) {
   add_normals(m, sum);
   PASS(find_mixed(b, o));
   for (int i = 0; i < m->n_node; ++i) {
-    double *at = sum + 4 * (size_t)i, length = sqrt(vector_dot(at, at));
+    double *at = sum + 4 * (size_t)i, length = sqrt(dot(3, at, at));
     const double part = length > rounding * at[3] ? 1 / length : 0;
     for (int k = 0; k < 3; ++k) at[k] *= part;
     o->n += o->mixed[i] || part > 0;
@@ -98,7 +98,7 @@ static status find_obstacles(const fracture_body *b, obstacles *o) {
   PASS_NEW(o->normal, 3 * o->n);
   for (int i = 0; i < m->n_node; ++i) {
     const double *at = sum + 4 * (size_t)i;
-    if (!o->mixed[i] && vector_dot(at, at) == 0) continue;
+    if (!o->mixed[i] && dot(3, at, at) == 0) continue;
     memcpy(o->normal + 3 * n, at, 3 * sizeof *at);
     o->node[n++] = i;
   }
@@ -111,9 +111,9 @@ static int on_crack(const fracture_point *p, const double *x,
   local at;
   double side[3];
   locate(p, x, &at);
-  vector_cross(normal, p->frame + 3, side);
+  cross(normal, p->frame + 3, side);
   return at.x[0] < away / 2 && fabs(at.x[1]) <= straight * away &&
-         sqrt(vector_dot(side, side)) <= straight;
+         sqrt(dot(3, side, side)) <= straight;
 }
 
 /* A point between two materials has no others. */
@@ -121,7 +121,7 @@ static int ends_domain(const obstacles *o, int i, const fracture_point *p,
                        const double *x, double away) {
   const double *normal = o->normal + 3 * i;
   if (o->mixed[o->node[i]] && p->section >= 0) return 1;
-  return vector_dot(normal, normal) > 0 && !on_crack(p, x, normal, away);
+  return dot(3, normal, normal) > 0 && !on_crack(p, x, normal, away);
 }
 
 /* Distance of the nearest obstacle, at most "radius". */
@@ -145,8 +145,7 @@ static double half_way(const fracture *f, const fracture_point *p,
   for (int i = 0; i < f->n; ++i) {
     const fracture_point *other = &f->point[i];
     if (other->node == p->node) continue;
-    if (m->dim == 3 && vector_dot(other->frame + 6, p->frame + 6) > 0.5)
-      continue;
+    if (m->dim == 3 && dot(3, other->frame + 6, p->frame + 6) > 0.5) continue;
     radius = fmin(radius, distance(m, other->node, p->node) / 2);
   }
   return radius;
@@ -214,7 +213,7 @@ static void fit_circle(const fracture *f, int chain, int i) {
     if (j < 0 || step == 0) continue;
     place_of(m, f->body.crack->front_node[j], x);
     for (int k = 0; k < 3; ++k) x[k] -= p->origin[k];
-    const double y1 = vector_dot(x, p->frame), y3 = vector_dot(x, p->frame + 6);
+    const double y1 = dot(3, x, p->frame), y3 = dot(3, x, p->frame + 6);
     s2 += y3 * y3;
     s3 += y3 * y3 * y3;
     s4 += y3 * y3 * y3 * y3;
@@ -227,7 +226,7 @@ static void fit_circle(const fracture *f, int chain, int i) {
   p->curvature = -2 * (r2 * s2 - r1 * s3) / determinant;
   for (int k = 0; k < 3; ++k) p->frame[6 + k] += c * p->frame[k];
   scale_to_one(p->frame + 6);
-  vector_cross(p->frame + 3, p->frame + 6, p->frame);
+  cross(p->frame + 3, p->frame + 6, p->frame);
 }
 
 static void set_frame_3d(const fracture *f, int chain, int i) {
@@ -242,10 +241,10 @@ static void set_frame_3d(const fracture *f, int chain, int i) {
   scale_to_one(e3);
   if (before >= 0) add_normal(f, c->front_face[before], e2);
   if (after >= 0) add_normal(f, c->front_face[after - 1], e2);
-  const double part = vector_dot(e2, e3);
+  const double part = dot(3, e2, e3);
   for (int k = 0; k < 3; ++k) e2[k] -= part * e3[k];
   scale_to_one(e2);
-  vector_cross(e2, e3, e1);
+  cross(e2, e3, e1);
   fit_circle(f, chain, i);
 }
 

@@ -54,7 +54,7 @@ double mesh_face_normal(const mesh *m, int face_id, double *normal) {
     return length;
   }
   difference(m, v[0], v[2], b);
-  vector_cross(a, b, c);
+  cross(a, b, c);
   double twice = hypot(hypot(c[0], c[1]), c[2]);
   for (int k = 0; k < 3; ++k) normal[k] = c[k] / twice;
   return 0.5 * twice;
@@ -67,7 +67,7 @@ double mesh_elem_measure(const mesh *m, int elem_id) {
   difference(m, v[0], v[2], b);
   if (m->dim == 2) return 0.5 * (a[0] * b[1] - a[1] * b[0]);
   difference(m, v[0], v[3], c);
-  vector_cross(a, b, ab);
+  cross(a, b, ab);
   return (ab[0] * c[0] + ab[1] * c[1] + ab[2] * c[2]) / 6.0;
 }
 
@@ -88,9 +88,9 @@ double mesh_elem_gradients(const mesh *m, int elem_id, double *g) {
     return two_area;
   }
   for (int k = 0; k < 3; ++k) difference(m, v[0], v[k + 1], e[k]);
-  vector_cross(e[1], e[2], g + 3);
-  vector_cross(e[2], e[0], g + 6);
-  vector_cross(e[0], e[1], g + 9);
+  cross(e[1], e[2], g + 3);
+  cross(e[2], e[0], g + 6);
+  cross(e[0], e[1], g + 9);
   const double six_volume = e[0][0] * g[3] + e[0][1] * g[4] + e[0][2] * g[5];
   for (int i = 3; i < 12; ++i) g[i] /= six_volume;
   for (int c = 0; c < 3; ++c) g[c] = -(g[3 + c] + g[6 + c] + g[9 + c]);

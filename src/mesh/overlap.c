@@ -154,9 +154,9 @@ static int apart(const pair *p, const double *a, const double *b) {
   for (int k = 0; k < 3; ++k)
     axis[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
   for (int i = 0; i < 2; ++i) {
-    lo[i] = hi[i] = vector_dot(axis, p->x[i][0]);
+    lo[i] = hi[i] = dot(3, axis, p->x[i][0]);
     for (int k = 1; k < p->n; ++k) {
-      double at = vector_dot(axis, p->x[i][k]);
+      double at = dot(3, axis, p->x[i][k]);
       if (at < lo[i]) lo[i] = at;
       if (at > hi[i]) hi[i] = at;
     }
@@ -164,7 +164,7 @@ static int apart(const pair *p, const double *a, const double *b) {
   double deep = fmin(hi[0] - lo[1], hi[1] - lo[0]);
   double width = fmin(hi[0] - lo[0], hi[1] - lo[1]);
   double noise =
-      64.0 * DBL_EPSILON * sqrt(vector_dot(a, a) * vector_dot(b, b)) * p->far;
+      64.0 * DBL_EPSILON * sqrt(dot(3, a, a) * dot(3, b, b)) * p->far;
   return width > noise && deep <= touching * width + noise;
 }
 
@@ -286,7 +286,7 @@ static double corner_volume(const pair *p, int i, const double *x) {
   for (int k = 0; k < 3; ++k)
     cross[k] = d[0][(k + 1) % 3] * d[1][(k + 2) % 3] -
                d[0][(k + 2) % 3] * d[1][(k + 1) % 3];
-  return vector_dot(cross, d[2]);
+  return dot(3, cross, d[2]);
 }
 
 /* 1: the centre of element f lies in element e. Where bodies touch along a

@@ -77,22 +77,18 @@ static void aitken_release(void *work) {
 
 static status aitken_setup(const contact_problem *cp, const void *par,
                            void **work) {
-  status st = OK;
-  aitken_work *w = NULL;
+  aitken_work *w;
   const aitken *p = par;
   size_t m = (size_t)cp->m;
   size_t depth = p->acceleration == BY_ANDERSON ? DEPTH : 1;
-  NEW(w, 1);
-  TRY(node_blocks_new(cp, &w->blocks));
-  TRY(best_iterate_new(cp->m, &w->best));
-  NEW_REALS(m, &w->before, &w->x, &w->y, &w->defect, &w->diagonal);
-  NEW_REALS(m * depth, &w->dx, &w->dy, &w->df);
-  for (int i = 0; i < cp->m; ++i) w->diagonal[i] = contact_diagonal(cp, i);
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  aitken_release(w);
-  return st;
+  PASS(node_blocks_new(cp, &w->blocks));
+  PASS(best_iterate_new(cp->m, &w->best));
+  PASS_NEW_REALS(m, &w->before, &w->x, &w->y, &w->defect, &w->diagonal);
+  PASS_NEW_REALS(m * depth, &w->dx, &w->dy, &w->df);
+  for (int i = 0; i < cp->m; ++i) w->diagonal[i] = contact_diagonal(cp, i);
+  return OK;
 }
 
 /* A run: the sweeps and their stored data. */
@@ -115,8 +111,7 @@ typedef struct run {
   int plain;     /* sweeps before the first that is combined */
 } run;
 
-/* ---- combination ----------------------------------------------------------
- */
+/* ---- combination --------------------------------------------------------- */
 
 static double weighted_dot(const run *s, const double *a, const double *b) {
   double sum = 0.0;
@@ -212,8 +207,7 @@ static void accelerate(run *s, int k) {
 /* ---- control ------------------------------------------------------------ */
 
 /* No progress for long: alternate forward and backward sweeps, then shorter
- * steps. 0: no remedy left.
- */
+ * steps. 0: no remedy left. */
 static int cure(run *s) {
   static const double shorter[] = {1.0, 0.6, 0.3};
   forget(s);
@@ -336,10 +330,7 @@ const solver_ops aitken_solver = {
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
   .entries = "METHOD=AITKEN, which relaxes row by row,",
-  .param_size = sizeof(aitken),
-  .options = aitken_options,
-  .setup = aitken_setup,
-  .solve = aitken_solve,
-  .release = aitken_release
+  .param_size = sizeof(aitken), .options = aitken_options,
+  .setup = aitken_setup, .solve = aitken_solve, .release = aitken_release
 };
 /* clang-format on */

@@ -29,18 +29,13 @@ struct fixed_point {
 };
 
 status fixed_point_new(int n, fixed_point **out) {
-  status st = OK;
-  fixed_point *fp = NULL;
-  NEW(fp, 1);
-  fp->n = n;
-  NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
-  NEW(fp->dg, n * DEPTH);
-  NEW(fp->dG, n * DEPTH);
+  fixed_point *fp;
+  PASS_NEW(fp, 1);
   *out = fp;
-  fp = NULL;
-done:
-  fixed_point_free(fp);
-  return st;
+  fp->n = n;
+  PASS_NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
+  PASS_NEW_ALL(OF(fp->dg, n * DEPTH), OF(fp->dG, n * DEPTH));
+  return OK;
 }
 
 void fixed_point_free(fixed_point *fp) {
@@ -128,20 +123,16 @@ static int iterations_left(const solver_control *control,
   return *left > 0;
 }
 
-/* One pass: the Tresca problem with limit g. */
+/* One pass of the solver. */
 typedef struct pass {
   const inner_solver *inner;
   solver_control control;
 } pass;
 
-static status run_pass(const pass *p, const contact_problem *cp,
-                       const double *g, double *u, double *r,
-                       solver_report *rep) {
-  contact_problem tresca = *cp;
+static status run_pass(const pass *p, const contact_problem *cp, double *u,
+                       double *r, solver_report *rep) {
   solver_report inner = {.outcome = RUNNING};
-  tresca.g0 = g;
-  tresca.B = NULL;
-  status st = p->inner->ops->solve(&tresca, p->inner->par, p->inner->work,
+  status st = p->inner->ops->solve(cp, p->inner->par, p->inner->work,
                                    &p->control, u, r, &inner);
   rep->iterations += inner.iterations;
   rep->outcome = inner.outcome;
@@ -245,12 +236,15 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
                          solver_report *rep) {
   pass p = {inner, *control};
   course c = {.step = 1.0, .lowest = HUGE_VAL};
+  contact_problem tresca = *cp;
   int passes = control->limit_max_iter > 0 ? control->limit_max_iter : PASSES;
   double change = 1.0, rounding = 0.0; /* lowest residual of a pass */
   int before = 0;
   fp->kept = 0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
   first_limit(cp, r, fp->g);
+  tresca.g0 = fp->g;
+  tresca.B = NULL;
   for (int k = 1; k <= passes; ++k) {
     if (!iterations_left(control, rep, &p.control.max_iter)) {
       rep->outcome = STOPPED_ITERATIONS;
@@ -264,7 +258,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
     before = rep->iterations;
     wanted = fmax(wanted, fmin(rounding, COARSE * control->tol));
     p.control.tol = fmax(FINEST * control->tol, fmin(1e-3, wanted));
-    PASS(run_pass(&p, cp, fp->g, u, r, rep));
+    PASS(run_pass(&p, &tresca, u, r, rep));
     if (rep->outcome == STOPPED_STAGNATION)
       rounding = fmax(rounding, 2.0 * rep->residual);
     if (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_RAY ||
@@ -299,35 +293,18 @@ struct friction_path {
 };
 
 status friction_path_new(const contact_problem *cp, friction_path **out) {
-  status st = OK;
-  friction_path *path = NULL;
-  NEW(path, 1);
-  NEW(path->g0, cp->n);
-  NEW(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0);
-  NEW(path->good_u, cp->m);
-  NEW(path->good_r, cp->m);
+  friction_path *path;
+  PASS_NEW(path, 1);
   *out = path;
-  path = NULL;
-done:
-  friction_path_free(path);
-  return st;
+  PASS_NEW_ALL(OF(path->g0, cp->n),
+               OF(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0),
+               OF(path->good_u, cp->m), OF(path->good_r, cp->m));
+  return OK;
 }
 
 void friction_path_free(friction_path *path) {
   if (path == NULL) return;
   RELEASE(path->g0, path->val, path->good_u, path->good_r, path);
-}
-
-/* Largest sum of a row of B, -. */
-static double largest_mu(const contact_problem *cp) {
-  double mu = 0.0;
-  for (int i = 0; i < cp->n; ++i) {
-    double sum = 0.0;
-    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
-      sum += cp->B->val[k];
-    if (sum > mu) mu = sum;
-  }
-  return mu;
 }
 
 /* One stage: the problem with that share of the limit. */
@@ -336,18 +313,12 @@ static status solve_share(friction_path *path, const pass *p,
                           double *r, solver_report *rep) {
   contact_problem less = *cp;
   sparse_rows B = *cp->B;
-  solver_report stage = {.outcome = RUNNING};
   for (int i = 0; i < cp->n; ++i) path->g0[i] = share * cp->g0[i];
   for (int k = 0; k < B.start[cp->n]; ++k) path->val[k] = share * cp->B->val[k];
   B.val = path->val;
   less.g0 = path->g0;
   less.B = &B;
-  status st = p->inner->ops->solve(share < 1.0 ? &less : cp, p->inner->par,
-                                   p->inner->work, &p->control, u, r, &stage);
-  rep->iterations += stage.iterations;
-  rep->residual = stage.residual;
-  rep->outcome = stage.outcome;
-  return st;
+  return run_pass(p, share < 1.0 ? &less : cp, u, r, rep);
 }
 
 status friction_path_solve(friction_path *path, const contact_problem *cp,
@@ -356,7 +327,7 @@ status friction_path_solve(friction_path *path, const contact_problem *cp,
                            solver_report *rep) {
   pass p = {inner, *control};
   size_t bytes = (size_t)cp->m * sizeof *u;
-  double mu = largest_mu(cp), growth = GROWTH, good = 0.0;
+  double mu = largest_row_sum(cp->B, cp->n), growth = GROWTH, good = 0.0;
   double share = mu > FIRST_MU ? FIRST_MU / mu : 1.0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
   for (int k = 1; k <= STAGES; ++k) {

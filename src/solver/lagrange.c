@@ -72,21 +72,17 @@ static void lagrange_release(void *work) {
 
 static status lagrange_setup(const contact_problem *cp, const void *par,
                              void **work) {
-  status st = OK;
-  lagrange_work *w = NULL;
+  lagrange_work *w;
   (void)par;
-  NEW(w, 1);
-  TRY(force_set_new(cp, &w->set));
-  NEW_REALS(cp->m, &w->x, &w->old_x, &w->y, &w->y_x, &w->c, &w->old_r);
-  TRY(best_iterate_new(cp->m, &w->best));
-  TRY(force_set_fit(w->set, cp));
+  PASS_NEW(w, 1);
+  *work = w;
+  PASS(force_set_new(cp, &w->set));
+  PASS_NEW_REALS(cp->m, &w->x, &w->old_x, &w->y, &w->y_x, &w->c, &w->old_r);
+  PASS(best_iterate_new(cp->m, &w->best));
+  PASS(force_set_fit(w->set, cp));
   const double largest = force_set_spectrum(w->set, w->y, w->y_x);
   w->step = fmax(w->set->step, largest > 0.0 ? LONGER / largest : 0.0);
-  *work = w;
-  w = NULL;
-done:
-  lagrange_release(w);
-  return st;
+  return OK;
 }
 
 typedef struct run {
@@ -248,11 +244,8 @@ const solver_ops lagrange_solver = {
     "method that always converges on a Tresca problem; PCG solves the same\n"
     "problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
-  .param_size = sizeof(lagrange),
-  .options = lagrange_options,
-  .setup = lagrange_setup,
-  .solve = lagrange_solve,
-  .release = lagrange_release,
+  .param_size = sizeof(lagrange), .options = lagrange_options,
+  .setup = lagrange_setup, .solve = lagrange_solve, .release = lagrange_release,
   .keep = lagrange_keep
 };
 /* clang-format on */

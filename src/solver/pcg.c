@@ -81,21 +81,16 @@ static void pcg_release(void *work) {
 
 static status pcg_setup(const contact_problem *cp, const void *par,
                         void **work) {
-  status st = OK;
-  pcg_work *w = NULL;
+  pcg_work *w;
   int m = cp->m;
   (void)par;
-  NEW(w, 1);
-  TRY(force_set_new(cp, &w->set));
-  NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0, &w->x0,
-            &w->e);
-  NEW(w->turn, cp->n);
-  TRY(best_iterate_new(m, &w->best));
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  pcg_release(w);
-  return st;
+  PASS(force_set_new(cp, &w->set));
+  PASS_NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
+                 &w->x0, &w->e);
+  PASS_NEW(w->turn, cp->n);
+  return best_iterate_new(m, &w->best);
 }
 
 /* ---- the set ------------------------------------------------------------- */
@@ -452,10 +447,7 @@ const solver_ops pcg_solver = {
     "problems with many increments on one matrix and small friction.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE,
-  .param_size = sizeof(pcg),
-  .options = pcg_options,
-  .setup = pcg_setup,
-  .solve = pcg_solve,
-  .release = pcg_release
+  .param_size = sizeof(pcg), .options = pcg_options,
+  .setup = pcg_setup, .solve = pcg_solve, .release = pcg_release
 };
 /* clang-format on */

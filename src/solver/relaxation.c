@@ -72,13 +72,12 @@ static void lift_block(int d, const double *block, double lift, double *K) {
 }
 
 status node_blocks_new(const contact_problem *cp, node_blocks **out) {
-  status st = OK;
-  node_blocks *b = NULL;
+  node_blocks *b;
   int d = cp->dim;
-  NEW(b, 1);
-  NEW(b->K, cp->n * d * d);
-  NEW(b->state, cp->n);
-  NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
+  PASS_NEW(b, 1);
+  *out = b;
+  PASS_NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
+  PASS_NEW_ALL(OF(b->K, cp->n * d * d), OF(b->state, cp->n));
   double lift = 0.0;
   for (int i = 0; i < cp->m; ++i) {
     b->weight[i] = contact_diagonal(cp, i);
@@ -92,11 +91,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
     else
       invert_block(d, block, lift, K);
   }
-  *out = b;
-  b = NULL;
-done:
-  node_blocks_free(b);
-  return st;
+  return OK;
 }
 
 /* Where x = 0 of a node is: gap and stick position, m. */
@@ -339,8 +334,7 @@ static void add_unknown(const relaxation *s, int dof, const double *d,
 }
 
 /* Distance of a node to its bound or stick position over its step; HUGE_VAL:
- * the step leads to neither.
- */
+ * the step leads to neither. */
 static double steps_of(const relaxation *s, int node_id, const double *d,
                        double most) {
   const contact_problem *cp = s->cp;

@@ -1,5 +1,6 @@
 /* All states of a single node (single.h). */
 #include "solver/single.h"
+#include "base/vector.h"
 
 #include <lapacke.h>
 #include <math.h>
@@ -39,8 +40,7 @@ static void set_problem(single *s) {
   }
   if (cp->g0 == NULL || contact_has_side(cp, 0)) return;
   s->g0 = cp->g0[0];
-  for (int k = 0; cp->B != NULL && k < cp->B->start[1]; ++k)
-    s->mu += cp->B->val[k];
+  s->mu = row_sum(cp->B, 0);
   for (int k = 1; k < m; ++k) {
     if (contact_held(cp, k)) continue;
     s->ut0[s->n_rub] = contact_stick(cp, k);
@@ -69,15 +69,6 @@ static void check(single *s, const double *u, const double *r) {
 
 /* ---- states that are linear ---------------------------------------------- */
 
-/* Power of two that brings the largest of x[m] to order 1. */
-static double power_of(int m, const double *x) {
-  double largest = 0.0;
-  int exponent = 0;
-  for (int i = 0; i < m; ++i) largest = fmax(largest, fabs(x[i]));
-  if (largest > 0.0) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
-}
-
 /* The state with u_i = u[i] of the unknowns in "fixed" (bit i), r_i = 0 of the
  * others. */
 static void try_linear(single *s, unsigned fixed, const double *at) {
@@ -92,7 +83,7 @@ static void try_linear(single *s, unsigned fixed, const double *at) {
     }
   }
   for (int j = 0; j < m; ++j) {
-    power[j] = power_of(m, M + m * j);
+    power[j] = power_to_one(largest_entry((size_t)m, M + m * j));
     for (int i = 0; i < m; ++i) M[i + m * j] *= power[j];
   }
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, m, m, 1, M, m, b, m, pivot, RANK,
@@ -125,15 +116,6 @@ static void try_all_linear(single *s) {
 
 /* ---- slip ---------------------------------------------------------------- */
 
-static void cross(const double *a, const double *b, double *c) {
-  for (int i = 0; i < 3; ++i)
-    c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* y += x times column j of M. */
 static void add(const single *s, const double *M, int j, double x, double *y) {
   for (int i = 0; i < s->m; ++i) y[i] += x * M[i + s->m * j];
@@ -162,7 +144,7 @@ static double misfit(const single *s, int closed, double angle) {
   double a[3], b[3], c[3], n[3], e[2] = {cos(angle), sin(angle)};
   set_slip(s, closed, e, a, b, c);
   cross(a, b, n);
-  return dot(n, c);
+  return dot(3, n, c);
 }
 
 static void try_slip(single *s, int closed, double angle) {
@@ -171,11 +153,11 @@ static void try_slip(single *s, int closed, double angle) {
   if (s->n_rub == 1) e[0] = e[0] > 0.0 ? 1.0 : -1.0;
   set_slip(s, closed, e, a, b, c);
   cross(a, b, n);
-  double size = dot(n, n);
+  double size = dot(3, n, n);
   if (!(size > 0.0)) return;
   cross(c, b, x);
   cross(a, c, y);
-  double slip = dot(x, n) / size, other = dot(y, n) / size;
+  double slip = dot(3, x, n) / size, other = dot(3, y, n) / size;
   double g = s->g0 + (closed ? s->mu * other : 0.0);
   for (int i = 0; i < s->m; ++i) u[i] = s->c[i] / s->P[i + s->m * i];
   u[0] = closed ? s->cp->gap[0] : other;

@@ -45,10 +45,18 @@ int solver_promises(sweep_promise *p, int k, double residual, double tol) {
   return k + left <= p->most;
 }
 
+status solver_set_up(const solver_ops *ops, const contact_problem *cp,
+                     const void *par, void **work) {
+  status st = ops->setup(cp, par, work);
+  if (st == OK) return OK;
+  ops->release(*work);
+  *work = NULL;
+  return st;
+}
+
 status best_iterate_new(int m, best_iterate *best) {
   best->residual = HUGE_VAL;
-  PASS_NEW(best->u, m);
-  PASS_NEW(best->r, m);
+  PASS_NEW_ALL(OF(best->u, m), OF(best->r, m));
   return OK;
 }
 

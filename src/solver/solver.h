@@ -94,7 +94,8 @@ typedef struct solver_ops {
                                    suffices */
   size_t param_size;
   const option *options;
-  /* Once per matrix; par: [param_size]. work receives the private state. */
+  /* Once per matrix; par: [param_size]. work (NULL before) receives the private
+   * state, to be released after a failure too (solver_set_up). */
   status (*setup)(const contact_problem *cp, const void *par, void **work);
   /* u[m] start value, then solution; r[m] start value, then reaction. */
   status (*solve)(const contact_problem *cp, const void *par, void *work,
@@ -121,6 +122,10 @@ const char *solver_family(const char *name);
 extern const char auto_help[]; /* manual text of METHOD=AUTO */
 
 /* ---- functions common to the solvers ---- */
+
+/* setup; *work is NULL after a failure. */
+status solver_set_up(const solver_ops *ops, const contact_problem *cp,
+                     const void *par, void **work);
 
 /* 1: the tolerance is so loose (TOL=BALANCED) that an iterate within it is
  * accepted, even where one more step would be exact. */

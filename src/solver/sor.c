@@ -63,20 +63,16 @@ static void sor_release(void *work) {
 
 static status sor_setup(const contact_problem *cp, const void *par,
                         void **work) {
-  status st = OK;
-  sor_work *w = NULL;
+  sor_work *w;
   const sor *p = par;
-  NEW(w, 1);
-  TRY(node_blocks_new(cp, &w->blocks));
-  TRY(best_iterate_new(cp->m, &w->best));
-  NEW(w->before, cp->m);
-  if (p->friction == FRICTION_FIXED_POINT)
-    TRY(fixed_point_new(cp->n, &w->fixed));
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  sor_release(w);
-  return st;
+  PASS(node_blocks_new(cp, &w->blocks));
+  PASS(best_iterate_new(cp->m, &w->best));
+  PASS_NEW(w->before, cp->m);
+  if (p->friction == FRICTION_FIXED_POINT)
+    PASS(fixed_point_new(cp->n, &w->fixed));
+  return OK;
 }
 
 /* ---- control ----------------------------------------------------------- */
@@ -99,13 +95,7 @@ typedef struct course {
 
 /* Largest factor that converged with friction updated in the sweep. */
 static double omega_limit(const contact_problem *cp) {
-  double mu = 0.0;
-  for (int i = 0; cp->B != NULL && i < cp->n; ++i) {
-    double sum = 0.0;
-    for (int k = cp->B->start[i]; k < cp->B->start[i + 1]; ++k)
-      sum += cp->B->val[k];
-    mu = fmax(mu, sum);
-  }
+  double mu = largest_row_sum(cp->B, cp->n);
   return mu == 0.0 ? 1.95 : mu <= 0.3 ? 1.8 : mu <= 0.6 ? 1.65 : 1.4;
 }
 
@@ -260,10 +250,7 @@ const solver_ops sor_solver = {
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
   .entries = "METHOD=SOR, which relaxes row by row,",
-  .param_size = sizeof(sor),
-  .options = sor_options,
-  .setup = sor_setup,
-  .solve = sor_solve,
-  .release = sor_release
+  .param_size = sizeof(sor), .options = sor_options,
+  .setup = sor_setup, .solve = sor_solve, .release = sor_release
 };
 /* clang-format on */

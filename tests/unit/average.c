@@ -2,7 +2,6 @@
  * values: closed forms, and sums over dense regular points that share nothing
  * with the quadrature of the program. */
 #include "contact/average/average.h"
-#include "contact/average/face.h"
 #include "base/memory.h"
 #include "support/unit.h"
 
@@ -89,12 +88,6 @@ static sparse_rows build(const owned *o, kernel k, double radius,
   ck_assert_int_eq(
       average_build(&o->p, &rule, &G, facts == NULL ? &other : facts), OK);
   return G;
-}
-
-static double row_sum(const sparse_rows *G, int i) {
-  double sum = 0.0;
-  for (int k = G->start[i]; k < G->start[i + 1]; ++k) sum += G->val[k];
-  return sum;
 }
 
 static double entry(const sparse_rows *G, int i, int j) {

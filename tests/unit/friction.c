@@ -41,13 +41,6 @@ static status apply(const friction_ops *law, const friction_card *card,
   return law->limit(card, &l->s, 4, node, t, out);
 }
 
-static double row_sum(const sparse_rows *B, int i) {
-  double sum = 0;
-  if (B->start == NULL) return 0;
-  for (int k = B->start[i]; k < B->start[i + 1]; ++k) sum += B->val[k];
-  return sum;
-}
-
 static void expect_sound(const friction_ops *law, const friction_limit *g) {
   for (int i = 0; i < N; ++i) {
     ck_assert(g->g0[i] >= 0);

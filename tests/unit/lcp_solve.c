@@ -1,4 +1,4 @@
-/* src/solver/lcp/lcp_solve.c, lcp_newton.c, lcp_turn.c: plain complementarity
+/* src/solver/lcp/lcp_solve.c: plain complementarity
  * problems of all kinds. */
 #include "base/memory.h"
 #include "solver/lcp/lcp_solve.h"

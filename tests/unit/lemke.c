@@ -565,7 +565,7 @@ START_TEST(every_refused_request_is_reported_without_loss) {
   for (long k = 1;; ++k) {
     void *work = NULL;
     memory_refuse(k, 0);
-    status st = lemke_solver.setup(&c.cp, param, &work);
+    status st = solver_set_up(&lemke_solver, &c.cp, param, &work);
     memory_refuse(0, 0);
     lemke_solver.release(work);
     ck_assert_uint_eq(memory_in_use(), before);

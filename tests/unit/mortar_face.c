@@ -1,7 +1,6 @@
 /* src/contact/mortar: polygons in common and the dual basis. Expected values:
  * closed forms, counted points, and the conditions that define the basis. */
 #include "contact/mortar/clip.h"
-#include "contact/mortar/dual.h"
 #include "support/unit.h"
 
 #include <math.h>

@@ -5,13 +5,257 @@
 #include "contact/average/average.h"
 
 #include "contact/average/box_tree.h"
-#include "contact/average/face.h"
-#include "contact/average/layout.h"
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* ---- where distances are measured: on the patch itself, or on its lines laid
+ * out straight. The straight layout copies the patch; the geodesic one follows
+ * the lines and lays each out on a row of its own, too far apart to interact.
+ */
+
+typedef struct layout {
+  int dim, n_face, n_rim;
+  double *x;      /* [dim*n_node] place of a node, m */
+  double *corner; /* [dim*dim*n_face] corners of the faces, m */
+  double *loop;   /* [n_node] length of the closed line of a node laid out
+                     straight, 0: none; or NULL */
+  double *rim;    /* [dim*(dim-1)*n_rim] end points (edges) of the patch that
+                     lie on no mirror, m */
+  int has_mirror[3];
+  double mirror[3]; /* place of the mirrors by axis, m */
+  double near;      /* nearer to a mirror is on it, m */
+} layout;
+
+/* A node this near to the axis, over the largest radius, is on it. */
+static const double ON_AXIS = 1e-9;
+static const double ON_MIRROR = 1e-9; /* over the radius of the average */
+
+/* Faces around the nodes of a patch. */
+typedef struct fans {
+  int *start, *face; /* [n_node+1], [dim*n_face] */
+} fans;
+
+static void fans_free(fans *f) { RELEASE(f->start, f->face); }
+
+static status fans_new(const average_patch *p, fans *f) {
+  int n = p->dim * p->n_face;
+  PASS_NEW_ALL(OF(f->start, p->n_node + 2), OF(f->face, n));
+  for (int k = 0; k < n; ++k) ++f->start[p->face[k] + 2];
+  for (int i = 0; i < p->n_node; ++i) f->start[i + 2] += f->start[i + 1];
+  for (int k = 0; k < n; ++k) f->face[f->start[p->face[k] + 1]++] = k / p->dim;
+  return OK;
+}
+
+static int fan_size(const fans *f, int node) {
+  return f->start[node + 1] - f->start[node];
+}
+
+static const double *node_at(const average_patch *p, int node) {
+  return p->x + (size_t)p->dim * (size_t)node;
+}
+
+static int on_axis(const average_patch *p, int node) {
+  double largest = 0.0;
+  if (!p->axisymmetric) return 0;
+  for (int i = 0; i < p->n_node; ++i) largest = fmax(largest, node_at(p, i)[0]);
+  return node_at(p, node)[0] <= ON_AXIS * largest;
+}
+
+static status new_arrays(const average_patch *p, layout *l) {
+  size_t dim = (size_t)p->dim;
+  l->dim = p->dim;
+  l->n_face = p->n_face;
+  PASS_NEW(l->x, dim * (size_t)p->n_node);
+  PASS_NEW(l->corner, dim * dim * (size_t)p->n_face);
+  PASS_NEW(l->rim, dim * dim * dim * (size_t)(p->n_face + 1));
+  return OK;
+}
+
+static void layout_free(layout *l) {
+  RELEASE(l->x, l->corner, l->loop, l->rim);
+  memset(l, 0, sizeof *l);
+}
+
+/* 1 if all corners lie on one mirror. */
+static int on_mirror(const layout *l, int corners,
+                     const double *const *corner) {
+  for (int c = 0; c < l->dim; ++c) {
+    int n = 0;
+    for (int k = 0; k < corners && l->has_mirror[c]; ++k)
+      n += fabs(corner[k][c] - l->mirror[c]) <= l->near;
+    if (n == corners) return 1;
+  }
+  return 0;
+}
+
+static void add_rim(layout *l, int corners, const double *const *corner) {
+  size_t dim = (size_t)l->dim;
+  if (on_mirror(l, corners, corner)) return;
+  double *to = l->rim + (dim - 1) * dim * (size_t)l->n_rim++;
+  for (int k = 0; k < corners; ++k)
+    memcpy(to + dim * (size_t)k, corner[k], dim * sizeof *to);
+}
+
+/* Least or largest coordinate of the patch. */
+static double mirror_place(const average_patch *p, int axis,
+                           average_mirror which) {
+  double place = node_at(p, 0)[axis];
+  for (int i = 1; i < p->n_node; ++i) {
+    double x = node_at(p, i)[axis];
+    place = which == MIRROR_MIN ? fmin(place, x) : fmax(place, x);
+  }
+  return place;
+}
+
+static void set_mirrors(const average_patch *p, const average_rule *rule,
+                        layout *l) {
+  l->near = ON_MIRROR * rule->radius;
+  for (int c = 0; c < p->dim && p->n_node > 0; ++c) {
+    l->has_mirror[c] = rule->mirror[c] != MIRROR_NONE;
+    if (l->has_mirror[c]) l->mirror[c] = mirror_place(p, c, rule->mirror[c]);
+  }
+}
+
+/* ---- straight ---------------------------------------------------------- */
+
+/* Faces around node a that hold node b too. */
+static int shared(const average_patch *p, const fans *f, int a, int b) {
+  int n = 0;
+  for (int k = f->start[a]; k < f->start[a + 1]; ++k)
+    for (int c = 0; c < p->dim; ++c) n += p->face[p->dim * f->face[k] + c] == b;
+  return n;
+}
+
+static void lay_as_is(const average_patch *p, const fans *f, layout *l) {
+  size_t dim = (size_t)p->dim;
+  memcpy(l->x, p->x, dim * (size_t)p->n_node * sizeof *l->x);
+  for (int k = 0; k < p->dim * p->n_face; ++k) {
+    int a = p->face[k];
+    int b = k % p->dim == p->dim - 1 ? p->face[k + 1 - p->dim] : p->face[k + 1];
+    const double *ends[2] = {node_at(p, a), node_at(p, b)};
+    memcpy(l->corner + dim * (size_t)k, ends[0], dim * sizeof *l->corner);
+    if (p->dim == 2 && fan_size(f, a) == 1 && !on_axis(p, a))
+      add_rim(l, 1, ends);
+    if (p->dim == 3 && shared(p, f, a, b) == 1) add_rim(l, 2, ends);
+  }
+}
+
+/* ---- along the lines --------------------------------------------------- */
+
+/* Traversal of one line. */
+typedef struct walk {
+  const average_patch *p;
+  const fans *f;
+  layout *l;
+  unsigned char *done; /* [n_face] */
+  double row;          /* second coordinate of this line, m */
+} walk;
+
+static void put(double *to, double along, double row) {
+  to[0] = along;
+  to[1] = row;
+}
+
+/* A face around the node that has not been traversed, or -1. */
+static int next_face(const walk *w, int node) {
+  for (int k = w->f->start[node]; k < w->f->start[node + 1]; ++k)
+    if (!w->done[w->f->face[k]]) return w->f->face[k];
+  return -1;
+}
+
+/* From a node on to the end of its line, or around. */
+static void lay_line(walk *w, int first) {
+  const average_patch *p = w->p;
+  double along = 0.0;
+  int node = first, face;
+  put(w->l->x + 2 * first, along, w->row);
+  while ((face = next_face(w, node)) >= 0) {
+    int turned = p->face[2 * face] != node;
+    int next = p->face[2 * face + !turned];
+    const double *a = node_at(p, node), *b = node_at(p, next);
+    w->done[face] = 1;
+    put(w->l->corner + 4 * face + 2 * turned, along, w->row);
+    along += hypot(b[0] - a[0], b[1] - a[1]);
+    put(w->l->corner + 4 * face + 2 * !turned, along, w->row);
+    node = next;
+    if (node == first || fan_size(w->f, node) != 2) break;
+    put(w->l->x + 2 * node, along, w->row);
+  }
+  if (node == first) return;
+  const double start[2] = {0.0, w->row}, end[2] = {along, w->row};
+  const double *ends[2] = {start, end};
+  put(w->l->x + 2 * node, along, w->row);
+  add_rim(w->l, 1, ends);
+  add_rim(w->l, 1, ends + 1);
+}
+
+/* The length of a closed line to its nodes. */
+static void close_loop(const walk *w, int first) {
+  const average_patch *p = w->p;
+  double length = 0.0;
+  int node = first, face = w->f->face[w->f->start[first]];
+  do {
+    int next = p->face[2 * face + (p->face[2 * face] == node)];
+    const double *a = node_at(p, node), *b = node_at(p, next);
+    const int *fan = w->f->face + w->f->start[next];
+    length += hypot(b[0] - a[0], b[1] - a[1]);
+    face = fan[fan[0] == face];
+    node = next;
+  } while (node != first);
+  do {
+    int next = p->face[2 * face + (p->face[2 * face] == node)];
+    const int *fan = w->f->face + w->f->start[next];
+    w->l->loop[node] = length;
+    face = fan[fan[0] == face];
+    node = next;
+  } while (node != first);
+}
+
+static status lay_straight(const average_patch *p, const fans *f, double apart,
+                           layout *l) {
+  status st = OK;
+  walk w = {.p = p, .f = f, .l = l};
+  NEW_ALL(OF(w.done, p->n_face), OF(l->loop, p->n_node));
+  /* Lines with ends first; what is left is closed. */
+  for (int i = 0; i < p->n_node; ++i)
+    while (fan_size(f, i) != 2 && next_face(&w, i) >= 0) {
+      lay_line(&w, i);
+      w.row += apart;
+    }
+  for (int i = 0; i < p->n_node; ++i)
+    if (next_face(&w, i) >= 0) {
+      lay_line(&w, i);
+      close_loop(&w, i);
+      w.row += apart;
+    }
+done:
+  memory_free(w.done);
+  return st;
+}
+
+static status layout_new(const average_patch *patch, const average_rule *rule,
+                         layout *out) {
+  status st = OK;
+  fans f = {0};
+  memset(out, 0, sizeof *out);
+  TRY(fans_new(patch, &f));
+  TRY(new_arrays(patch, out));
+  set_mirrors(patch, rule, out);
+  if (rule->geodesic)
+    TRY(lay_straight(patch, &f, 4.0 * rule->radius, out));
+  else
+    lay_as_is(patch, &f, out);
+done:
+  fans_free(&f);
+  if (st != OK) layout_free(out);
+  return st;
+}
+
+/* ---- the builder ---- */
 
 /* Of the radius: lengths that differ by less are equal. */
 static const double ROUNDING = 1e-9;
@@ -52,15 +296,11 @@ static status builder_new(builder *b) {
   PASS(layout_new(b->p, b->rule, &b->at));
   PASS(box_tree_new(dim, b->at.n_face, dim, b->at.corner, &b->faces));
   PASS(box_tree_new(dim, b->at.n_rim, dim - 1, b->at.rim, &b->rim));
-  PASS_NEW(b->share, n);
-  PASS_NEW(b->mass, n);
-  PASS_NEW(b->raw.start, n + 1);
+  PASS_NEW_ALL(OF(b->share, n), OF(b->mass, n), OF(b->raw.start, n + 1));
   b->raw.n = n;
-  PASS_NEW(b->alone, n);
-  PASS_NEW(b->part, n);
-  PASS_NEW(b->found, b->at.n_face + b->at.n_rim);
-  PASS_NEW(b->touched, n);
-  PASS_NEW(b->row, n);
+  PASS_NEW_ALL(OF(b->alone, n), OF(b->part, n),
+               OF(b->found, b->at.n_face + b->at.n_rim), OF(b->touched, n),
+               OF(b->row, n));
   return OK;
 }
 
@@ -78,9 +318,8 @@ static double triangle_area(const double *x) {
     a[c] = x[3 + c] - x[c];
     b[c] = x[6 + c] - x[c];
   }
-  for (int c = 0; c < 3; ++c)
-    n[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-  return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  cross(a, b, n);
+  return 0.5 * sqrt(dot(3, n, n));
 }
 
 /* Integrals of the P1 functions. */
@@ -258,9 +497,8 @@ static status find_rows(builder *b) {
 
 static status transpose(const sparse_rows *a, sparse_rows *out) {
   OWNED int *start = NULL;
-  PASS_NEW(start, a->n + 2);
-  PASS_NEW(out->col, a->start[a->n]);
-  PASS_NEW(out->val, a->start[a->n]);
+  PASS_NEW_ALL(OF(start, a->n + 2), OF(out->col, a->start[a->n]),
+               OF(out->val, a->start[a->n]));
   for (int k = 0; k < a->start[a->n]; ++k) ++start[a->col[k] + 2];
   for (int i = 0; i < a->n; ++i) start[i + 2] += start[i + 1];
   for (int i = 0; i < a->n; ++i)
@@ -310,8 +548,7 @@ static status symmetrise(builder *b, sparse_rows *out) {
   const average_patch *p = b->p;
   OWNED double *part = NULL;
   double left;
-  PASS_NEW(part, p->n_node);
-  PASS_NEW(out->start, p->n_node + 1);
+  PASS_NEW_ALL(OF(part, p->n_node), OF(out->start, p->n_node + 1));
   out->n = p->n_node;
   for (int i = 0; i < p->n_node; ++i) b->part[i] = 1.0;
   for (int i = 0; i < p->n_node; ++i) {

@@ -90,9 +90,8 @@ status box_tree_new(int dim, int n, int corners, const double *x,
   memset(out, 0, sizeof *out);
   out->dim = dim;
   out->n = n;
-  NEW(out->item, n);
-  NEW(out->of, size * (size_t)n);
-  NEW(out->box, size * node_count(n));
+  NEW_ALL(OF(out->item, n), OF(out->of, size * (size_t)n),
+          OF(out->box, size * node_count(n)));
   for (int i = 0; i < n; ++i) {
     out->item[i] = i;
     surround(dim, corners, x + (size_t)(dim * corners) * (size_t)i,

@@ -2,8 +2,7 @@
  * The table of kernels and their normalisation.
  */
 #include "contact/average/kernel.h"
-
-#include "contact/average/face.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -14,10 +13,21 @@ typedef struct gauss_point {
   double at, weight;
 } gauss_point;
 
-extern const gauss_point gauss_coarse[GAUSS_COARSE];
-extern const gauss_point gauss_fine[GAUSS_FINE];
+static const gauss_point gauss_coarse[GAUSS_COARSE] = {
+    {0.069431844202973714, 0.17392742256872687},
+    {0.33000947820757187, 0.32607257743127305},
+    {0.66999052179242813, 0.32607257743127305},
+    {0.93056815579702623, 0.17392742256872687}};
 
-/* ---- * The tables of the rules ------------------------------------------ */
+static const gauss_point gauss_fine[GAUSS_FINE] = {
+    {0.019855071751231856, 0.050614268145188088},
+    {0.10166676129318658, 0.11119051722668723},
+    {0.2372337950418355, 0.15685332293894369},
+    {0.40828267875217511, 0.181341891689181},
+    {0.59171732124782495, 0.181341891689181},
+    {0.7627662049581645, 0.15685332293894369},
+    {0.89833323870681348, 0.11119051722668723},
+    {0.9801449282487682, 0.050614268145188088}};
 
 enum { PANELS = 64 }; /* of [0, 1] for the normalisation: exact to rounding */
 
@@ -70,22 +80,6 @@ double mollifier_value(const mollifier *m, double r2) {
  * sectors around the foot of the point, exact where the disc cuts the face.
  */
 
-const gauss_point gauss_coarse[GAUSS_COARSE] = {
-    {0.069431844202973714, 0.17392742256872687},
-    {0.33000947820757187, 0.32607257743127305},
-    {0.66999052179242813, 0.32607257743127305},
-    {0.93056815579702623, 0.17392742256872687}};
-
-const gauss_point gauss_fine[GAUSS_FINE] = {
-    {0.019855071751231856, 0.050614268145188088},
-    {0.10166676129318658, 0.11119051722668723},
-    {0.2372337950418355, 0.15685332293894369},
-    {0.40828267875217511, 0.181341891689181},
-    {0.59171732124782495, 0.181341891689181},
-    {0.7627662049581645, 0.15685332293894369},
-    {0.89833323870681348, 0.11119051722668723},
-    {0.9801449282487682, 0.050614268145188088}};
-
 static const double PIECE = 0.25;  /* of the radius, longest for a fine rule */
 static const double SHORT = 0.125; /* up to this the coarse rule is enough */
 
@@ -112,15 +106,6 @@ static void subtract(const double *a, const double *b, double *d) {
   for (int c = 0; c < 3; ++c) d[c] = a[c] - b[c];
 }
 
-static double dot3(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double *a, const double *b, double *n) {
-  for (int c = 0; c < 3; ++c)
-    n[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-}
-
 double face_segment_distance(int dim, const double *a, const double *b,
                              const double *x) {
   double along2 = distance2(dim, a, b), to = 0.0, s, y[3];
@@ -141,9 +126,9 @@ static double height(const double *corner, const double *x) {
     subtract(corner + 3 * ((k + 1) % 3), corner + 3 * k, a);
     subtract(x, corner + 3 * k, b);
     cross(a, b, side);
-    if (!(dot3(side, n) > 0.0)) return HUGE_VAL;
+    if (!(dot(3, side, n) > 0.0)) return HUGE_VAL;
   }
-  return fabs(dot3(b, n)) / sqrt(dot3(n, n));
+  return fabs(dot(3, b, n)) / sqrt(dot(3, n, n));
 }
 
 double face_distance(int dim, const double *corner, const double *x) {
@@ -371,7 +356,7 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
   subtract(corner + 3, corner, a);
   subtract(corner + 6, corner, b);
   cross(a, b, n);
-  double twice = sqrt(dot3(n, n)), length = sqrt(dot3(a, a));
+  double twice = sqrt(dot(3, n, n)), length = sqrt(dot(3, a, a));
   if (!(twice > 0.0)) return;
   if (is_plain(m, corner, x)) {
     product_rule(m, corner, x, twice, weight);
@@ -383,15 +368,15 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
   }
   cross(n, e0, e1);
   subtract(x, corner, to);
-  double off = dot3(to, n);
+  double off = dot(3, to, n);
   f.off2 = off * off;
   f.rim2 = (m->radius - fabs(off)) * (m->radius + fabs(off));
   if (!(f.rim2 > 0.0)) return;
   for (int k = 0; k < 3; ++k) {
     double d[3];
     subtract(corner + 3 * k, x, d);
-    f.p[k][0] = dot3(d, e0);
-    f.p[k][1] = dot3(d, e1);
+    f.p[k][0] = dot(3, d, e0);
+    f.p[k][1] = dot(3, d, e1);
   }
   for (int k = 0; k < 3; ++k) add_edge(&f, f.p[k], f.p[(k + 1) % 3]);
   to_weights(&f, weight);

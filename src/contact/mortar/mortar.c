@@ -6,8 +6,8 @@
 #include "contact/mortar/mortar.h"
 
 #include "base/memory.h"
-#include "contact/mortar/dual.h"
 #include "contact/mortar/partner.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -60,10 +60,6 @@ typedef struct builder {
   int n_link, link_capacity;
   mortar *out;
 } builder;
-
-static void add_scaled(int dim, double factor, const double *v, double *to) {
-  for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
-}
 
 static const int *nodes_of(const builder *b, int face) {
   return b->in->mesh->face + (size_t)b->in->mesh->dim * (size_t)face;
@@ -242,8 +238,7 @@ static status do_face(builder *b, int i) {
 static status set_around(builder *b) {
   const mortar_input *in = b->in;
   const int dim = in->mesh->dim, n = in->n_slave * dim;
-  PASS_NEW(b->start, in->mesh->n_node + 2);
-  PASS_NEW(b->around, n);
+  PASS_NEW_ALL(OF(b->start, in->mesh->n_node + 2), OF(b->around, n));
   for (int i = 0; i < n; ++i)
     ++b->start[nodes_of(b, in->slave[i / dim])[i % dim] + 2];
   for (int i = 0; i < in->mesh->n_node; ++i) b->start[i + 2] += b->start[i + 1];
@@ -473,8 +468,7 @@ static status add_rows(builder *b) {
 static status set_links(builder *b) {
   node_links *l = &b->out->to;
   const size_t dim = (size_t)l->dim;
-  PASS_NEW(l->master, b->n_link);
-  PASS_NEW(l->part, dim * (size_t)b->n_link);
+  PASS_NEW_ALL(OF(l->master, b->n_link), OF(l->part, dim * (size_t)b->n_link));
   for (size_t e = 0; e < (size_t)b->n_link; ++e) {
     l->master[e] = b->links[e].master;
     for (size_t c = 0; c < dim; ++c) l->part[dim * e + c] = b->links[e].part;
@@ -499,11 +493,9 @@ static status set_nodes(builder *b) {
   int n = 0;
   m->to.dim = dim;
   m->to.n = m->n;
-  PASS_NEW(m->node_id, m->n);
-  PASS_NEW(m->area, m->n);
-  PASS_NEW(m->share, m->n);
   PASS_NEW_REALS(dim * m->n, &m->lever, &m->normal, &m->gap);
-  PASS_NEW(m->to.start, m->n + 1);
+  PASS_NEW_ALL(OF(m->node_id, m->n), OF(m->area, m->n), OF(m->share, m->n),
+               OF(m->to.start, m->n + 1));
   for (int i = 0; i < b->in->mesh->n_node; ++i)
     if (b->state[i] == CARRIES) m->node_id[n++] = i;
   PASS(add_rows(b));
@@ -551,11 +543,8 @@ static void sum_up(builder *b) {
 static status builder_new(const mortar_input *in, builder *b) {
   const size_t n = (size_t)in->mesh->n_node;
   *b = (builder){.in = in};
-  PASS_NEW(b->out, 1);
-  PASS_NEW(b->state, n);
-  PASS_NEW(b->face, in->n_slave);
-  PASS_NEW(b->met, in->mesh->n_face);
-  PASS_NEW(b->slot, n);
+  PASS_NEW_ALL(OF(b->out, 1), OF(b->state, n), OF(b->face, in->n_slave),
+               OF(b->met, in->mesh->n_face), OF(b->slot, n));
   for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
   PASS(set_around(b));
   set_states(b);
@@ -570,22 +559,50 @@ static void builder_release(builder *b) {
 }
 
 status mortar_couple(const mortar_input *in, mortar **out) {
-  status st = OK;
-  builder b;
-  TRY(builder_new(in, &b));
-  TRY(do_faces(&b));
+  ENDS_BY(builder_release) builder b;
+  PASS(builder_new(in, &b));
+  PASS(do_faces(&b));
   for (int i = 0; i < in->mesh->n_node; ++i) b.slot[i] = -1;
-  TRY(set_nodes(&b));
+  PASS(set_nodes(&b));
   sum_up(&b);
   *out = b.out;
   b.out = NULL;
-done:
-  builder_release(&b);
-  return st;
+  return OK;
 }
 
 void mortar_free(mortar *m) {
   if (m == NULL) return;
   links_release(&m->to);
   RELEASE(m->node_id, m->area, m->share, m->lever, m->normal, m->gap, m);
+}
+
+/* ---- links (links.h) ---- */
+
+/* Component c of row q; 1: there was something to move. */
+static int share(const tie_set *t, int q, int c, double *F) {
+  const node_links *l = &t->to;
+  double *own = F + (ptrdiff_t)l->dim * t->node_id[q] + c, f = *own;
+  int moves = 0;
+  for (size_t e = l->start[q]; e < l->start[q + 1] && f != 0.0; ++e) {
+    const double part = l->part[(size_t)l->dim * e + (size_t)c];
+    F[(ptrdiff_t)l->dim * l->master[e] + c] += part * f;
+    moves |= part != 0.0;
+  }
+  if (moves) *own = 0.0;
+  return moves;
+}
+
+/* Masters that are tied themselves pass it on: a pass for each link of a
+ * chain. */
+void ties_share(const tie_set *t, double *F) {
+  for (int more = 1; more;) {
+    more = 0;
+    for (int k = 0; k < t->to.dim * t->n; ++k)
+      more |= share(t, k / t->to.dim, k % t->to.dim, F);
+  }
+}
+
+void links_release(node_links *l) {
+  RELEASE(l->start, l->master, l->part);
+  *l = (node_links){0};
 }

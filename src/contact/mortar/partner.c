@@ -58,9 +58,8 @@ static status plant(const mortar_input *in, int n, const int *face,
 status partner_search_new(const mortar_input *in, partner_search *s) {
   const int n = in->n_master > in->n_slave ? in->n_master : in->n_slave;
   *s = (partner_search){.in = in};
-  PASS_NEW(s->master, in->n_master);
-  PASS_NEW(s->found, n);
-  PASS_NEW(s->group, in->mesh->n_node);
+  PASS_NEW_ALL(OF(s->master, in->n_master), OF(s->found, n),
+               OF(s->group, in->mesh->n_node));
   for (int i = 0; i < in->mesh->n_node; ++i) s->group[i] = -1;
   for (int i = 0; i < in->n_master; ++i)
     if (facet_set(in->mesh->dim, face_nodes(in, in->master[i]), in->x,

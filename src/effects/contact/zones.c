@@ -131,11 +131,11 @@ static double face_gradient(const finder *z, const int *node, const double *w,
   memset(g, 0, 3 * sizeof *g);
   difference(z, node[0], node[1], a);
   difference(z, node[0], node[2], b);
-  vector_cross(a, b, normal);
-  double twice = sqrt(vector_dot(normal, normal));
+  cross(a, b, normal);
+  double twice = sqrt(dot(3, normal, normal));
   for (int k = 0; k < 3; ++k) {
     difference(z, node[(k + 1) % 3], node[(k + 2) % 3], a);
-    vector_cross(normal, a, part);
+    cross(normal, a, part);
     for (int c = 0; c < 3; ++c) g[c] += part[c] / twice * w[node[k]] / 2;
   }
   return twice / 2;
@@ -169,7 +169,7 @@ static double face_reach(const finder *z, const level *l, int i, int j) {
 static double distance(const finder *z, int i, int j) {
   double way[3] = {0};
   difference(z, i, j, way);
-  return sqrt(vector_dot(way, way));
+  return sqrt(dot(3, way, way));
 }
 
 /* Nodes of the zone from node i at its edge inwards, away from j: as many as

@@ -255,7 +255,7 @@ static rim_edge edge_of(const mesh *m, int face, int k) {
     e.out[c] = m->x[3 * a + c] - m->x[3 * v[k] + c];
     e.length = hypot(e.length, along[c]);
   }
-  const double part = vector_dot(e.out, along) / (e.length * e.length);
+  const double part = dot(3, e.out, along) / (e.length * e.length);
   for (int c = 0; c < 3; ++c) {
     e.out[c] -= part * along[c];
     size = hypot(size, e.out[c]);
@@ -292,7 +292,7 @@ static void out_at(const run *r, const rim_edge *e, const int *next, int k,
   memset(out, 0, 3 * sizeof *out);
   do {
     const rim_edge *other = e + at / 2;
-    for (int c = 0; c < 3 && vector_dot(own->out, other->out) >= SMOOTH; ++c)
+    for (int c = 0; c < 3 && dot(3, own->out, other->out) >= SMOOTH; ++c)
       out[c] += other->length * other->out[c];
     at = next[at];
   } while (at != k);

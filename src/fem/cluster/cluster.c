@@ -124,12 +124,10 @@ static void grow_section(growth *g, int section) {
   while (join_rest(g) > 0) start_with_element(g);
 }
 
-/* ---- the finished set ------------------------------------------------------
- */
+/* ---- the finished set ---------------------------------------------------- */
 
 static status list_elements(const mesh *m, cluster_set *c) {
-  PASS_NEW(c->start, c->n + 2);
-  PASS_NEW(c->elem, m->n_elem);
+  PASS_NEW_ALL(OF(c->start, c->n + 2), OF(c->elem, m->n_elem));
   for (int e = 0; e < m->n_elem; ++e)
     if (c->of[e] >= 0) ++c->start[c->of[e] + 2];
   for (int k = 0; k < c->n; ++k) c->start[k + 2] += c->start[k + 1];
@@ -142,9 +140,8 @@ static status list_nodes(const mesh *m, cluster_set *c) {
   const int per = m->dim + 1;
   OWNED int *seen = NULL;
   int n = 0;
-  PASS_NEW(seen, m->n_node);
-  PASS_NEW(c->first, c->n + 1);
-  PASS_NEW(c->node, per * c->start[c->n]);
+  PASS_NEW_ALL(OF(seen, m->n_node), OF(c->first, c->n + 1),
+               OF(c->node, per * c->start[c->n]));
   for (int k = 0; k < c->n; ++k) {
     for (int q = c->start[k]; q < c->start[k + 1]; ++q)
       for (int a = 0; a < per; ++a) {
@@ -168,8 +165,7 @@ static double volume(const cluster_input *in, int e) {
 }
 
 static status weigh(const cluster_input *in, cluster_set *c) {
-  PASS_NEW(c->share, c->n);
-  PASS_NEW(c->weight, in->mesh->n_elem);
+  PASS_NEW_ALL(OF(c->share, c->n), OF(c->weight, in->mesh->n_elem));
   for (int f = CLUSTER_STRAIN; f <= CLUSTER_STRESS; ++f)
     PASS_NEW(c->mean[f], c->n);
   for (int k = 0; k < c->n; ++k) {
@@ -188,10 +184,8 @@ static status grow(const cluster_input *in, cluster_set *c) {
   const mesh *m = in->mesh;
   growth g = {.m = m, .section_id = in->section_id};
   TRY(mesh_node_elements(m, &g.start, &g.elem));
-  NEW(g.size, m->n_elem);
-  NEW(g.outside, m->n_node);
-  NEW(g.taken, m->n_node);
-  NEW(c->of, m->n_elem);
+  NEW_ALL(OF(g.size, m->n_elem), OF(g.outside, m->n_node),
+          OF(g.taken, m->n_node), OF(c->of, m->n_elem));
   g.of = c->of;
   for (int e = 0; e < m->n_elem; ++e) g.of[e] = -1;
   for (int i = 0; i < in->n_section; ++i)

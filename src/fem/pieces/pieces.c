@@ -69,8 +69,7 @@ static status unite_by_faces(const mesh *m, const pieces *p, int *up) {
   for (int j = 0; j < m->n_node; ++j)
     if (p->start[j + 1] - p->start[j] > most)
       most = p->start[j + 1] - p->start[j];
-  PASS_NEW(last, m->n_node);
-  PASS_NEW(list, 3 * most);
+  PASS_NEW_ALL(OF(last, m->n_node), OF(list, 3 * most));
   for (int j = 0; j < m->n_node; ++j)
     if (m->dim == 2)
       unite_round_node_2d(m, p, j, last, up);
@@ -92,10 +91,8 @@ static int number_sets(int n_elem, int *up, int *id) {
 /* Number the pieces body by body; body_of[n_elem]. */
 static status sort_pieces(const mesh *m, const int *body_of, pieces *p) {
   OWNED int *count = NULL, *number = NULL;
-  PASS_NEW(count, p->n_body + 1);
-  PASS_NEW(number, p->n_piece);
-  PASS_NEW(p->body, p->n_piece);
-  PASS_NEW(p->piece_elem, p->n_piece);
+  PASS_NEW_ALL(OF(count, p->n_body + 1), OF(number, p->n_piece),
+               OF(p->body, p->n_piece), OF(p->piece_elem, p->n_piece));
   for (int q = 0; q < p->n_piece; ++q) number[q] = -1;
   for (int pass = 0; pass < 2; ++pass) {
     for (int e = 0; e < m->n_elem; ++e) {
@@ -122,9 +119,7 @@ status pieces_find(const mesh *m, pieces *p) {
   int *up = NULL, *body = NULL;
   *p = (pieces){0};
   TRY(mesh_node_elements(m, &p->start, &p->elem));
-  NEW(up, m->n_elem);
-  NEW(body, m->n_elem);
-  NEW(p->piece, m->n_elem);
+  NEW_ALL(OF(up, m->n_elem), OF(body, m->n_elem), OF(p->piece, m->n_elem));
   for (int e = 0; e < m->n_elem; ++e) up[e] = e;
   TRY(unite_by_faces(m, p, up));
   p->n_piece = number_sets(m->n_elem, up, p->piece);

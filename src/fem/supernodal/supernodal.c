@@ -31,8 +31,7 @@ size_t supernodal_entries(const supernodal *s, int supernode) {
 
 /* Supernodes of the columns and those they update first. */
 static status link_up(supernodal *s) {
-  PASS_NEW(s->of, s->n);
-  PASS_NEW(s->parent, s->count);
+  PASS_NEW_ALL(OF(s->of, s->n), OF(s->parent, s->count));
   for (int q = 0; q < s->count; ++q)
     for (long c = s->first[q]; c < s->first[q + 1]; ++c) s->of[c] = q;
   for (int q = 0; q < s->count; ++q)
@@ -43,28 +42,23 @@ static status link_up(supernodal *s) {
 }
 
 status supernodal_new(const cholmod_factor *L, supernodal **out) {
-  status st = OK;
   supernodal *s = NULL;
   int most = 0;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
   *out = s;
   s->n = (int)L->n;
   s->count = (int)L->nsuper;
   s->first = L->super;
   s->start = L->pi;
   s->row = L->s;
-  TRY(link_up(s));
-  NEW(s->head, s->count);
-  NEW(s->next, s->count);
-  NEW(s->done, s->count);
-  NEW(s->place, s->n);
-  NEW(s->product, L->maxcsize);
+  PASS(link_up(s));
+  PASS_NEW_ALL(OF(s->head, s->count), OF(s->next, s->count),
+               OF(s->done, s->count), OF(s->place, s->n),
+               OF(s->product, L->maxcsize));
   for (int q = 0; q < s->count; ++q)
     most = n_row(s, q) > most ? n_row(s, q) : most;
-  NEW(s->relative, most);
-  NEW(s->below, most);
-done:
-  return st;
+  PASS_NEW_ALL(OF(s->relative, most), OF(s->below, most));
+  return OK;
 }
 
 status supernodal_restrict(const supernodal *s, const int *number,
@@ -73,8 +67,7 @@ status supernodal_restrict(const supernodal *s, const int *number,
   supernodal *r = NULL;
   const size_t count = (size_t)s->count, rows = (size_t)s->start[count];
   SuiteSparse_long n_rows = 0, *first = NULL;
-  NEW(first, 2 * (count + 1) + rows);
-  NEW(r, 1);
+  NEW_ALL(OF(first, 2 * (count + 1) + rows), OF(r, 1));
   *r = *s;
   r->of = r->parent = NULL;
   r->n = 0;
@@ -107,8 +100,7 @@ void supernodal_free(supernodal *s) {
   RELEASE(s->of, s->parent, s->pattern, s);
 }
 
-/* ---- supernodes of few columns --------------------------------------------
- */
+/* ---- supernodes of few columns ------------------------------------------- */
 
 typedef struct split {
   SuiteSparse_long count, *first, *start, *at, *row; /* as L has them */
@@ -213,8 +205,7 @@ void supernodal_list(const supernodal *s, const unsigned char *mark,
     if (mark[q]) part->list[part->n++] = q;
 }
 
-/* ---- factor ----------------------------------------------------------------
- */
+/* ---- factor -------------------------------------------------------------- */
 
 /* y[n] += sum of k columns of a, each times what it has in its row 0. */
 static void add_columns(int n, int k, const double *restrict a, size_t lead,
@@ -348,8 +339,7 @@ int supernodal_factor(supernodal *s, const unsigned char *mark,
   return -1;
 }
 
-/* ---- solves ----------------------------------------------------------------
- */
+/* ---- solves -------------------------------------------------------------- */
 
 static int is_zero(int n, const double *v) {
   for (int i = 0; i < n; ++i)

@@ -73,8 +73,7 @@ typedef struct creep {
   double by_a, a_by_a; /* their slopes in a */
 } creep;
 
-/* ---- NORTON ---------------------------------------------------------------
- */
+/* ---- NORTON -------------------------------------------------------------- */
 
 static int hardening_of(const law_card *law) {
   return ((const norton *)law->param)->hardening;
@@ -130,8 +129,7 @@ static int norton_n_alpha(const law_card *law, int ns) {
   return hardening_of(law) == STRAIN;
 }
 
-/* ---- HYPERBOLIC -----------------------------------------------------------
- */
+/* ---- HYPERBOLIC ---------------------------------------------------------- */
 
 /* dH/(R T) with the absolute temperature; infinite at absolute zero. */
 static double exponent(const law_point *p) {
@@ -171,8 +169,7 @@ static int is_warm(const law_card *law) {
   return warm;
 }
 
-/* ---- USER -----------------------------------------------------------------
- */
+/* ---- USER ---------------------------------------------------------------- */
 
 /* The formula; negative values count as zero, no number stays none. */
 static double formula(const law_point *point, double q, double p) {
@@ -210,8 +207,7 @@ static int user_n_alpha(const law_card *law, int ns) {
   return 1;
 }
 
-/* ---- all ------------------------------------------------------------------
- */
+/* ---- all ----------------------------------------------------------------- */
 
 static creep creep_of(const law_point *p, double q, int slopes) {
   if (p->law->ops == &norton_law) return norton_creep(p, q);

@@ -139,11 +139,10 @@ typedef struct law_ops {
    * 1/Pa; the longest time it may take as exp(-t/time), s, < 0: it never ends
    * (R is not set). NULL: other laws. */
   double (*relaxed)(const law_point *p, double *R);
-  /* Parts of the strain, each a series of units with strains v_k,
-   * e^i = v_0 + v_1 + ..., alpha = v_1, v_2, ...:
-   * d(v_k)/dt = flow_k (e - e^i - spring_k v_k); which part number "part" is
-   * (LAW_WHOLE, or LAW_DEVIATOR and LAW_MEAN in any order) and its unit k, or
-   * LAW_NO_PART. NULL: other laws. */
+  /* Parts of the strain, each a series of units with strains v_k, e^i = v_0 +
+   * v_1 + ..., alpha = v_1, v_2, ...: d(v_k)/dt = flow_k (e - e^i - spring_k
+   * v_k); which part number "part" is (LAW_WHOLE, or LAW_DEVIATOR and LAW_MEAN
+   * in any order) and its unit k, or LAW_NO_PART. NULL: other laws. */
   int (*series)(const law_point *p, int part, int k, law_unit *unit);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);

@@ -28,10 +28,8 @@ status flow_new_kind(flow_kind *k, const law_card *law,
 
 status flow_new_points(flow *x, int n, const int *kind_id) {
   x->n = n;
-  PASS_NEW(x->kind_id, n);
-  PASS_NEW(x->alpha_at, n + 1);
-  PASS_NEW(x->weight, n);
-  PASS_NEW(x->tally, 1);
+  PASS_NEW_ALL(OF(x->kind_id, n), OF(x->alpha_at, n + 1), OF(x->weight, n),
+               OF(x->tally, 1));
   for (int k = 0; k < n; ++k) {
     int n_alpha = x->kind[kind_id[k]].n_alpha;
     x->kind_id[k] = kind_id[k];
@@ -56,11 +54,9 @@ void flow_free(flow *x) {
 static size_t components(const flow *x) { return (size_t)x->ns * (size_t)x->n; }
 
 status flow_state_new(const flow *x, flow_state *s) {
-  PASS_NEW(s->e, components(x));
-  PASS_NEW(s->ei, components(x));
-  PASS_NEW(s->sigma, components(x));
-  PASS_NEW(s->alpha, x->alpha_at[x->n]);
-  PASS_NEW(s->temperature, x->n);
+  PASS_NEW_ALL(OF(s->e, components(x)), OF(s->ei, components(x)),
+               OF(s->sigma, components(x)), OF(s->alpha, x->alpha_at[x->n]),
+               OF(s->temperature, x->n));
   return OK;
 }
 

@@ -57,8 +57,7 @@ static status linear_law(const flow_kind *k, double *L, double *G) {
   law_point p = flow_kind_point(k);
   ENDS_BY(free_jacobian) law_jacobian j = {0};
   OWNED double *zero = NULL, *top = NULL;
-  PASS_NEW(zero, n);
-  PASS_NEW(top, n * ns);
+  PASS_NEW_ALL(OF(zero, n), OF(top, n * ns));
   p.sigma = p.ei = p.alpha = zero;
   PASS(new_jacobian(&p, na, &j));
   put_block(ns, ns, j.ei_sigma, top, n);
@@ -85,8 +84,7 @@ static status theta_map(const flow_kind *k, const scheme_step *p,
   const int n = m->n, ns = k->elastic.ns, columns = n + 2 * ns;
   const double in = p->theta * p->dt, out = (1.0 - p->theta) * p->dt;
   OWNED double *M = NULL, *X = NULL;
-  PASS_NEW(M, n * n);
-  PASS_NEW(X, n * columns);
+  PASS_NEW_ALL(OF(M, n * n), OF(X, n * columns));
   for (int i = 0; i < n * n; ++i) {
     double one = i % (n + 1) == 0;
     M[i] = one - in * L[i];
@@ -111,8 +109,7 @@ static status exponential_less_one(int n, const double *A, double *X) {
   double largest = 0.0;
   size_t square = (size_t)n * (size_t)n;
   int halvings = 0;
-  PASS_NEW(power, square);
-  PASS_NEW(next, square);
+  PASS_NEW_ALL(OF(power, square), OF(next, square));
   for (int i = 0; i < n; ++i) {
     double row = 0.0;
     for (int j = 0; j < n; ++j) row += fabs(A[i + n * j]);
@@ -140,8 +137,7 @@ static status exponential_map(const flow_kind *k, const scheme_step *p,
                               const double *L, const double *G, linear_map *m) {
   const int n = m->n, ns = k->elastic.ns, N = n + 2 * ns;
   OWNED double *A = NULL, *X = NULL;
-  PASS_NEW(A, N * N);
-  PASS_NEW(X, N * N);
+  PASS_NEW_ALL(OF(A, N * N), OF(X, N * N));
   put_block(n, n, L, A, N);
   put_block(n, ns, G, A + N * n, N);
   for (int i = 0; i < N * N; ++i) A[i] *= p->dt;
@@ -171,8 +167,7 @@ static void remains(const law_elastic *el, const linear_map *m, double *D) {
 status general_map(const flow_kind *k, const scheme_step *p, int exact,
                    linear_map *m, double *D) {
   OWNED double *L = NULL, *G = NULL;
-  PASS_NEW(L, m->n * m->n);
-  PASS_NEW(G, m->n * k->elastic.ns);
+  PASS_NEW_ALL(OF(L, m->n * m->n), OF(G, m->n * k->elastic.ns));
   PASS(linear_law(k, L, G));
   PASS(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
   remains(&k->elastic, m, D);
@@ -296,8 +291,7 @@ status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
   const int ns = k->elastic.ns, n = m->n, terms = n / ns - 1;
   const law_point point = flow_kind_point(k);
   OWNED double *W = NULL, *rate = NULL;
-  PASS_NEW(W, ns * ns * terms);
-  PASS_NEW(rate, terms);
+  PASS_NEW_ALL(OF(W, ns * ns * terms), OF(rate, terms));
   for (int i = 0; i < terms; ++i)
     rate[i] = k->speed * k->law->ops->relaxing(&point, i, W + ns * ns * i);
   clear_map(ns, ns, m);
@@ -450,8 +444,7 @@ static void by_one(int q, series *s) {
 static status by_matrix(series *s) {
   const int n = s->n, N = n + 2;
   OWNED double *A = NULL, *X = NULL;
-  PASS_NEW(A, N * N);
-  PASS_NEW(X, N * N);
+  PASS_NEW_ALL(OF(A, N * N), OF(X, N * N));
   for (int k = 0; k < n; ++k) {
     for (int j = 0; j < n; ++j) A[k + N * j] = -s->h[k];
     A[k + N * k] -= s->h[k] * s->m[k];

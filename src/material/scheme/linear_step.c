@@ -41,8 +41,8 @@ status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
   return OK;
 }
 
-status linear_maps(const flow *x, const scheme_step *p, int exact,
-                   scheme_work *w) {
+static status linear_maps(const flow *x, const scheme_step *p, int exact,
+                          scheme_work *w) {
   size_t square = (size_t)(x->ns * x->ns);
   const linear_key key = {p->dt, p->theta, exact};
   if (w->made.dt == key.dt && w->made.theta == key.theta &&

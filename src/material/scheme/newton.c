@@ -45,9 +45,9 @@ typedef struct point_step {
 static status point_step_new(const flow *x, point_step *l) {
   int ns = x->ns, na = x->most_alpha, n = ns + na;
   memset(l, 0, sizeof *l);
-  PASS_NEW(l->pivot, n);
-  PASS_NEW(l->work,
-           na + 5 * n + n * n + n * ns + 2 * ns * ns + 2 * ns * na + na * na);
+  PASS_NEW_ALL(OF(l->pivot, n),
+               OF(l->work, na + 5 * n + n * n + n * ns + 2 * ns * ns +
+                               2 * ns * na + na * na));
   l->alpha = l->work;
   l->y = l->alpha + na;
   l->old = l->y + n;
@@ -324,20 +324,17 @@ static status energy_size(int n, const double *E, const double *Q,
 status flow_compliance(const flow *x, const scheme_step *p,
                        const flow_state *old, const flow_state *now, double *Q,
                        double *largest) {
-  status st = OK;
   const size_t square = (size_t)(x->ns * x->ns);
-  point_step l = {0};
+  ENDS_BY(point_step_free) point_step l = {0};
   *largest = 0.0;
-  TRY(point_step_new(x, &l));
+  PASS(point_step_new(x, &l));
   for (int k = 0; k < x->n; ++k) {
     double size = 0.0, *own = Q + square * (size_t)k;
-    TRY(compliance_at(x, p, k, old, now, &l, own));
-    TRY(energy_size(x->ns, l.E, own, &size));
+    PASS(compliance_at(x, p, k, old, now, &l, own));
+    PASS(energy_size(x->ns, l.E, own, &size));
     *largest = fmax(*largest, size);
   }
-done:
-  point_step_free(&l);
-  return st;
+  return OK;
 }
 
 enum { MOST_TANGENT = 40, MOST_INITIAL = 2000 };
@@ -474,36 +471,33 @@ static status need_workspace(const flow *x, const scheme_step *p,
 }
 
 status newton_advance(const scheme_call *a) {
-  status st = OK;
   const flow *x = a->x;
   const scheme_step *p = a->p;
   const size_t bytes = (size_t)x->ns * (size_t)x->n * sizeof(double);
   const int most = p->initial ? MOST_INITIAL : MOST_TANGENT;
   scheme_work *w = a->w;
   scheme_result *out = a->out;
-  point_work r = {0};
-  TRY(point_step_new(x, &r.l));
-  TRY(need_workspace(x, p, w));
+  ENDS_BY(point_work_free) point_work r = {0};
+  PASS(point_step_new(x, &r.l));
+  PASS(need_workspace(x, p, w));
   a->now->t = p->t;
-  TRY(a->b->begin(a->b->ctx, a->now));
+  PASS(a->b->begin(a->b->ctx, a->now));
   memcpy(a->now->e, a->old->e, bytes);
   flow_tangent law = {
       .elastic = p->initial, .D = w->D, .sigma = w->sigma_k, .e = w->e_k};
-  TRY(solve_points(a, &r));
+  PASS(solve_points(a, &r));
   while (out->settled && out->iterations < most) {
     memcpy(w->sigma_k, a->now->sigma, bytes);
     memcpy(w->e_k, a->now->e, bytes);
-    TRY(a->b->linear(a->b->ctx, &law, a->now, &out->settled));
+    PASS(a->b->linear(a->b->ctx, &law, a->now, &out->settled));
     ++out->iterations;
-    if (!out->settled) goto done;
+    if (!out->settled) return OK;
     double scale = 0.0;
-    TRY(linear_stress(x, &law, a->now, w->linear, &scale));
-    TRY(solve_points(a, &r));
+    PASS(linear_stress(x, &law, a->now, w->linear, &scale));
+    PASS(solve_points(a, &r));
     if (!out->settled || misfit(x, a->now, w->linear, scale) <= p->tol)
-      goto done;
+      return OK;
   }
   out->settled = 0;
-done:
-  point_work_free(&r);
-  return st;
+  return OK;
 }

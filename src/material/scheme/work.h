@@ -52,8 +52,6 @@ status need(double **array, size_t n); /* allocate if NULL */
  * D[ns*ns]; those of all kinds into w, if others are there. */
 status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D);
-status linear_maps(const flow *x, const scheme_step *p, int exact,
-                   scheme_work *w);
 /* y[m->n] of point k from the old state for the new strain e */
 void linear_at(const flow *x, const linear_map *m, int k, const flow_state *old,
                const double *e, double *y);

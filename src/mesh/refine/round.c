@@ -49,7 +49,7 @@ static void add(double *a, double factor, const double *b) {
 
 /* To unit length; 0: it has none. */
 static int normalise(double *a) {
-  const double length = sqrt(vector_dot(a, a));
+  const double length = sqrt(dot(3, a, a));
   for (int k = 0; k < 3 && length > 0.0; ++k) a[k] /= length;
   return length > 0.0;
 }
@@ -57,9 +57,9 @@ static int normalise(double *a) {
 /* Sine of the angle between two directions, 2 beyond a right angle. */
 static double turn(const double *a, const double *b) {
   double c[3];
-  vector_cross(a, b, c);
-  if (!(vector_dot(a, b) > 0.0)) return 2.0;
-  return sqrt(vector_dot(c, c) / (vector_dot(a, a) * vector_dot(b, b)));
+  cross(a, b, c);
+  if (!(dot(3, a, b) > 0.0)) return 2.0;
+  return sqrt(dot(3, c, c) / (dot(3, a, a) * dot(3, b, b)));
 }
 
 static void between(const round_surface *s, int a, int b, double *e) {
@@ -103,7 +103,7 @@ static void find_curves(round_surface *s) {
       if (n == 3 && f[1] >= 0) {
         double other[3];
         memcpy(other, s->face_normal + 3 * f[1], sizeof other);
-        if (vector_dot(other, s->face_normal + 3 * f[0]) < 0.0)
+        if (dot(3, other, s->face_normal + 3 * f[0]) < 0.0)
           for (int k = 0; k < 3; ++k) other[k] = -other[k];
         is_sharp = turn(other, s->face_normal + 3 * f[0]) > SMOOTH;
         if (!is_sharp) continue;
@@ -138,7 +138,7 @@ static void set_tangents(round_surface *s, int n_all) {
     const double sine = turn(e[0], e[1]);
     if (sine > SMOOTH) continue;
     if (sine < FLAT) s->flat[i] |= CURVE_FLAT;
-    for (int k = 0; k < 2; ++k) add(t, 1.0 / vector_dot(e[k], e[k]), e[k]);
+    for (int k = 0; k < 2; ++k) add(t, 1.0 / dot(3, e[k], e[k]), e[k]);
     normalise(t);
   }
   /* Where a curve goes over into a line it has no circle through both. */
@@ -151,7 +151,7 @@ static void set_tangents(round_surface *s, int n_all) {
 /* c less twice its part across: t at the other end of the chord c, both along
  * it. */
 static void mirror(const double *c, double *t) {
-  const double along = vector_dot(t, c);
+  const double along = dot(3, t, c);
   for (int k = 0; k < 3; ++k) t[k] = 2.0 * along * c[k] - t[k];
 }
 
@@ -161,10 +161,10 @@ static int curve_tangent(const round_surface *s, int a, int b, double *t) {
   between(s, a, b, c);
   normalise(c);
   const int other =
-      vector_dot(s->tangent + 3 * a, s->tangent + 3 * a) > 0.0 ? a : b;
+      dot(3, s->tangent + 3 * a, s->tangent + 3 * a) > 0.0 ? a : b;
   memcpy(t, s->tangent + 3 * other, 3 * sizeof *t);
-  if (!(vector_dot(t, t) > 0.0)) return 0;
-  if (vector_dot(t, c) < 0.0)
+  if (!(dot(3, t, t) > 0.0)) return 0;
+  if (dot(3, t, c) < 0.0)
     for (int k = 0; k < 3; ++k) t[k] = -t[k];
   if (other == b) mirror(c, t);
   return 1;
@@ -180,13 +180,13 @@ static void set_normals(round_surface *s, unsigned char *bent) {
       double e[2][3], n[3], *sum = s->normal + 3 * at;
       between(s, at, v[(a + 1) % 3], e[0]);
       between(s, at, v[(a + 2) % 3], e[1]);
-      vector_cross(e[0], e[1], n);
-      const double sign = vector_dot(n, sum) < 0.0 ? -1.0 : 1.0;
-      if (vector_dot(sum, sum) > 0.0) {
+      cross(e[0], e[1], n);
+      const double sign = dot(3, n, sum) < 0.0 ? -1.0 : 1.0;
+      if (dot(3, sum, sum) > 0.0) {
         for (int k = 0; k < 3; ++k) n[k] *= sign;
         if (turn(n, sum) > FLAT) bent[at] = 1;
       }
-      add(sum, 1.0 / (vector_dot(e[0], e[0]) * vector_dot(e[1], e[1])), n);
+      add(sum, 1.0 / (dot(3, e[0], e[0]) * dot(3, e[1], e[1])), n);
     }
 }
 
@@ -200,20 +200,20 @@ static void set_border_normal(round_surface *s, int i) {
   }
   for (int k = 0; k < s->number[i]; ++k)
     known += curve_tangent(s, i, s->next[2 * i + k], t[known]);
-  if (known == 2) vector_cross(t[0], t[1], c);
-  if (vector_dot(c, c) > SMOOTH * SMOOTH)
+  if (known == 2) cross(t[0], t[1], c);
+  if (dot(3, c, c) > SMOOTH * SMOOTH)
     memcpy(n, c, sizeof c);
   else if (known > 0)
-    add(n, -vector_dot(n, t[0]), t[0]);
+    add(n, -dot(3, n, t[0]), t[0]);
   normalise(n);
 }
 
 /* Unit tangent at node a of the surface towards b; 0: none. */
 static int surface_tangent(const round_surface *s, int a, int b, double *t) {
   const double *n = s->normal + 3 * a;
-  if (!(vector_dot(n, n) > 0.0)) return 0;
+  if (!(dot(3, n, n) > 0.0)) return 0;
   between(s, a, b, t);
-  add(t, -vector_dot(t, n), n);
+  add(t, -dot(3, t, n), n);
   return normalise(t);
 }
 
@@ -226,13 +226,13 @@ static void improve_border(round_surface *s, const double *within) {
       for (int b = 0; b < 3; ++b) {
         const double *n = within + 3 * v[b];
         double c[3], m[3];
-        if (s->number[v[a]] == 0 || !(vector_dot(n, n) > 0.0)) continue;
+        if (s->number[v[a]] == 0 || !(dot(3, n, n) > 0.0)) continue;
         between(s, v[a], v[b], c);
         normalise(c);
         memcpy(m, n, sizeof m);
-        add(m, -2.0 * vector_dot(n, c), c);
+        add(m, -2.0 * dot(3, n, c), c);
         double *sum = s->normal + 3 * v[a];
-        add(sum, vector_dot(sum, m) < 0.0 ? -1.0 : 1.0, m);
+        add(sum, dot(3, sum, m) < 0.0 ? -1.0 : 1.0, m);
       }
 }
 
@@ -265,7 +265,7 @@ static void set_face_normals(round_surface *s) {
     double e[2][3];
     between(s, v[0], v[1], e[0]);
     between(s, v[0], v[2], e[1]);
-    vector_cross(e[0], e[1], s->face_normal + 3 * i);
+    cross(e[0], e[1], s->face_normal + 3 * i);
   }
 }
 
@@ -323,11 +323,11 @@ int round_surface_middle(const round_surface *s, int a, int b, double *middle) {
   const int id = s == NULL ? -1 : table_find(&s->edges, key_of(a, b));
   if (id < 0 || !tangents_of(s, id, a, b, ta, tb)) return 0;
   between(s, a, b, c);
-  const double length = sqrt(vector_dot(c, c));
+  const double length = sqrt(dot(3, c, c));
   normalise(c);
-  const double cosine = 0.5 * (vector_dot(ta, c) - vector_dot(tb, c));
+  const double cosine = 0.5 * (dot(3, ta, c) - dot(3, tb, c));
   add(ta, 1.0, tb); /* ta less the tangent at b in the same sense */
-  add(ta, -vector_dot(ta, c), c);
+  add(ta, -dot(3, ta, c), c);
   for (int k = 0; k < 3; ++k)
     middle[k] = 0.5 * (s->x[3 * a + k] + s->x[3 * b + k]) +
                 length / (4.0 * (1.0 + cosine)) * ta[k];

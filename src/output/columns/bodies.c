@@ -33,7 +33,7 @@ static double mises(const view *v, int id, int part) {
   return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
-static double length(const double *a) { return sqrt(vector_dot(a, a)); }
+static double length(const double *a) { return sqrt(dot(3, a, a)); }
 
 /* The larger (sign 1) or the smaller (-1) eigenvalue of [a c; c b]. */
 static double of_two(double a, double b, double c, int sign) {
@@ -42,13 +42,12 @@ static double of_two(double a, double b, double c, int sign) {
 
 /* Of d, symmetric without trace, the eigenvalue farthest from the others. */
 static double lone_value(double d[3][3]) {
-  const double r = sqrt((vector_dot(d[0], d[0]) + vector_dot(d[1], d[1]) +
-                         vector_dot(d[2], d[2])) /
-                        6);
+  const double r =
+      sqrt((dot(3, d[0], d[0]) + dot(3, d[1], d[1]) + dot(3, d[2], d[2])) / 6);
   const double normal[3] = {d[1][1] * d[2][2] - d[1][2] * d[2][1],
                             d[1][2] * d[2][0] - d[1][0] * d[2][2],
                             d[1][0] * d[2][1] - d[1][1] * d[2][0]};
-  const double ratio = vector_dot(d[0], normal) / (2 * r * r * r);
+  const double ratio = dot(3, d[0], normal) / (2 * r * r * r);
   const double angle = acos(fmax(-1, fmin(1, ratio))) / 3, pi = acos(-1);
   return 2 * r * cos(angle < pi / 6 ? angle : angle + 2 * pi / 3);
 }
@@ -66,7 +65,7 @@ static void plane_of(double d[3][3], double lone, double *s, double *t) {
   double *q = c[(p + 1) % 3], *other = c[(p + 2) % 3];
   const double size = length(c[p]);
   for (int i = 0; i < 3; ++i) s[i] = c[p][i] / size;
-  const double along[2] = {vector_dot(s, q), vector_dot(s, other)};
+  const double along[2] = {dot(3, s, q), dot(3, s, other)};
   for (int i = 0; i < 3; ++i) {
     q[i] -= along[0] * s[i];
     other[i] -= along[1] * s[i];
@@ -92,11 +91,10 @@ static double principal_in_space(const double *stress, int part) {
   const double lone = lone_value(d);
   plane_of(d, lone, s, t);
   for (int k = 0; k < 3; ++k) {
-    ds[k] = vector_dot(d[k], s);
-    dt[k] = vector_dot(d[k], t);
+    ds[k] = dot(3, d[k], s);
+    dt[k] = dot(3, d[k], t);
   }
-  const double a = vector_dot(s, ds), b = vector_dot(t, dt),
-               c = vector_dot(s, dt);
+  const double a = dot(3, s, ds), b = dot(3, t, dt), c = dot(3, s, dt);
   double e[3] = {lone, of_two(a, b, c, 1), of_two(a, b, c, -1)};
   if (lone < e[1]) {
     e[0] = e[1];

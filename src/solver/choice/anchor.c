@@ -49,8 +49,7 @@ static status find_stiffness(const contact_problem *cp, double *stiffness) {
   OWNED double *sum = NULL;
   OWNED int *count = NULL;
   double all = 0.0;
-  PASS_NEW(sum, b == NULL ? 1 : b->n);
-  PASS_NEW(count, b == NULL ? 1 : b->n);
+  PASS_NEW_ALL(OF(sum, b == NULL ? 1 : b->n), OF(count, b == NULL ? 1 : b->n));
   for (int i = 0; i < cp->m; ++i) {
     const int of = b == NULL ? 0 : b->of[i / cp->dim];
     sum[of] += contact_diagonal(cp, i) / cp->m;
@@ -69,9 +68,8 @@ static status find_stiffness(const contact_problem *cp, double *stiffness) {
 static status known_modes(const contact_problem *cp, anchor *an) {
   const size_t size = (size_t)cp->m * (size_t)cp->op->n_kernel;
   an->n_mode = cp->op->n_kernel;
-  PASS_NEW(an->R, size);
-  PASS_NEW(an->a, an->n_mode);
-  PASS_NEW(an->step, an->n_mode);
+  PASS_NEW_ALL(OF(an->R, size), OF(an->a, an->n_mode),
+               OF(an->step, an->n_mode));
   if (size > 0) memcpy(an->R, cp->op->kernel, size * sizeof *an->R);
   return OK;
 }
@@ -83,10 +81,7 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
   const size_t size = (size_t)m * (size_t)m;
   if (an->R != NULL) return OK;
   if (cp->op != NULL) return known_modes(cp, an);
-  PASS_NEW(pivot, m);
-  PASS_NEW(work, 2 * m);
-  PASS_NEW(scale, m);
-  PASS_NEW(L, size);
+  PASS_NEW_ALL(OF(pivot, m), OF(work, 2 * m), OF(scale, m), OF(L, size));
   memcpy(L, cp->A, size * sizeof *L);
   /* Pivots of a soft body are no rounding of those of a stiff one. */
   PASS(find_stiffness(cp, work));
@@ -94,9 +89,8 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
   LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', m, L, m, pivot, &rank,
                       m * NULL_PIVOT, work);
   an->n_mode = m - rank;
-  PASS_NEW(an->R, m * an->n_mode);
-  PASS_NEW(an->a, an->n_mode);
-  PASS_NEW(an->step, an->n_mode);
+  PASS_NEW_ALL(OF(an->R, m * an->n_mode), OF(an->a, an->n_mode),
+               OF(an->step, an->n_mode));
   dense_null(m, rank, L, pivot, work, an->R);
   for (int i = 0; i < m * an->n_mode; ++i) an->R[i] *= scale[i % m];
   orthonormalise(m, an->n_mode, an->R);
@@ -105,31 +99,27 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
 
 /* A_s and its inverse. */
 static status hold(const contact_problem *cp, anchor *an) {
-  status st = OK;
-  dense d = {0};
+  ENDS_BY(dense_free) dense d = {0};
   int m = cp->m, good = 0;
   size_t size = (size_t)m * (size_t)m;
-  TRY(dense_new(m, &d));
+  PASS(dense_new(m, &d));
   memcpy(an->A, cp->A, size * sizeof *an->A);
   for (int k = 0; k < an->n_mode; ++k) {
     const double *v = an->R + (size_t)k * (size_t)m;
     cblas_dger(CblasColMajor, m, m, an->spring[k], v, 1, v, 1, an->A, m);
   }
   memcpy(d.a, an->A, size * sizeof *d.a);
-  TRY(form_invert(m, &d, &good));
+  PASS(form_invert(m, &d, &good));
   an->missing = !good;
   memcpy(an->W, d.a, size * sizeof *d.a);
-done:
-  dense_free(&d);
-  return st;
+  return OK;
 }
 
 /* Of each motion by the stiffness of the bodies that it moves, which may differ
  * by powers of ten. */
 static status choose_springs(const contact_problem *cp, anchor *an) {
   OWNED double *stiffness = NULL;
-  PASS_NEW(stiffness, cp->m);
-  PASS_NEW(an->spring, an->n_mode);
+  PASS_NEW_ALL(OF(stiffness, cp->m), OF(an->spring, an->n_mode));
   PASS(find_stiffness(cp, stiffness));
   for (int k = 0; k < an->n_mode; ++k) {
     const double *v = an->R + (size_t)k * (size_t)cp->m;
@@ -220,8 +210,7 @@ status anchor_make(const contact_problem *cp, anchor *an) {
   PASS(choose_springs(cp, an));
   an->made = 1;
   if (cp->op != NULL) return hold_operator(cp, an);
-  PASS_NEW(an->A, m * m);
-  PASS_NEW(an->W, m * m);
+  PASS_NEW_ALL(OF(an->A, m * m), OF(an->W, m * m));
   return hold(cp, an);
 }
 
@@ -381,20 +370,19 @@ static contact_problem anchored(const passes *p) {
 status anchor_solve(const anchor *an, const contact_problem *cp,
                     const anchored_solver *inner, const solver_control *control,
                     double *u, double *r, solver_report *rep) {
-  status st = OK;
   passes p = {.an = an, .cp = cp, .lowest = HUGE_VAL};
   solver_control own = *control;
   *rep = (solver_report){.outcome = RUNNING, .residual = 1.0};
   place(an, cp->m, u, an->a);
   memset(an->step, 0, (size_t)an->n_mode * sizeof *an->step);
-  for (int i = 0; i < cp->m; ++i) p.load = fmax(p.load, fabs(cp->f[i]));
+  p.load = largest_entry((size_t)cp->m, cp->f);
   for (int k = 0; k < PASSES && rep->outcome == RUNNING; ++k) {
     solver_report pass;
     contact_problem held = anchored(&p);
     if (control->max_iter > 0)
       own.max_iter = control->max_iter - rep->iterations;
     own.tol = fmax(FINEST * control->tol, fmin(1e-3, 1e-2 * rep->residual));
-    TRY(inner->solve(inner->ctx, &held, &own, u, r, &pass));
+    PASS(inner->solve(inner->ctx, &held, &own, u, r, &pass));
     own.no_restart = control->no_restart || pass.outcome < 0;
     rep->iterations += pass.iterations;
     rep->limit_updates += pass.limit_updates;
@@ -408,6 +396,5 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
       rep->outcome = STOPPED_ITERATIONS;
   }
   if (rep->outcome == RUNNING) rep->outcome = STOPPED_ITERATIONS;
-done:
-  return st;
+  return OK;
 }

@@ -128,28 +128,24 @@ static int floats(const contact_problem *cp, const solver_ops *ops) {
 static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
                    const char **why) {
-  status st = OK;
   contact_problem formed = *cp;
   *why = unfit(cp, ops);
-  if (*why == NULL) TRY(form_entries(s, &formed, ops, why));
+  if (*why == NULL) PASS(form_entries(s, &formed, ops, why));
   cp = &formed;
   *out = *cp;
-  if (*why != NULL) goto done;
+  if (*why != NULL) return OK;
   int stiffness = lacks_stiffness(s, cp, ops);
   int compliance = lacks_compliance(cp, ops);
-  if (cp->floating && !floats(cp, ops)) {
-    TRY(suit_by_springs(s, cp, out, why));
-    goto done;
-  }
+  if (cp->floating && !floats(cp, ops)) return suit_by_springs(s, cp, out, why);
   if (!stiffness && !compliance) {
-    if (!(ops->handles & SPARSE_COMPLIANCE)) TRY(fill_up(s, out));
-    goto done;
+    if (!(ops->handles & SPARSE_COMPLIANCE)) PASS(fill_up(s, out));
+    return OK;
   }
-  TRY(other_form_make(cp, &s->other));
+  PASS(other_form_make(cp, &s->other));
   if (s->other.matrix == NULL && stiffness) {
     *why = "needs the stiffness, but the compliance is singular";
   } else if (s->other.matrix == NULL) {
-    TRY(suit_by_springs(s, cp, out, why));
+    PASS(suit_by_springs(s, cp, out, why));
   } else if (stiffness) {
     contact_product(cp->m, s->other.matrix, cp->f, s->other.load);
     out->A = s->other.matrix;
@@ -158,8 +154,7 @@ static status suit(contact_solver *s, const contact_problem *cp,
   } else {
     out->W = s->other.matrix;
   }
-done:
-  return st;
+  return OK;
 }
 
 static int row_of(const solver_ops *ops) {
@@ -172,25 +167,23 @@ static int row_of(const solver_ops *ops) {
 static status drive_one(contact_solver *s, const contact_problem *cp,
                         const attempt *a, const solver_control *control,
                         double *u, double *r, solver_report *rep) {
-  status st = OK;
   inner_solver inner = {a->ops, a->param, s->work[row_of(a->ops)]};
   if (a->how == ALONG_PATH) {
     int entries = cp->B->start[cp->n];
     if (s->path == NULL || s->path_capacity < entries) {
       friction_path_free(s->path);
       s->path = NULL;
-      TRY(friction_path_new(cp, &s->path));
+      PASS(friction_path_new(cp, &s->path));
       s->path_capacity = entries;
     }
-    TRY(friction_path_solve(s->path, cp, &inner, control, u, r, rep));
+    PASS(friction_path_solve(s->path, cp, &inner, control, u, r, rep));
   } else if (cp->B != NULL && !(a->ops->handles & SOLVES_COULOMB)) {
-    if (s->fixed == NULL) TRY(fixed_point_new(cp->n, &s->fixed));
-    TRY(fixed_point_solve(s->fixed, cp, &inner, control, u, r, rep));
+    if (s->fixed == NULL) PASS(fixed_point_new(cp->n, &s->fixed));
+    PASS(fixed_point_solve(s->fixed, cp, &inner, control, u, r, rep));
   } else {
-    TRY(a->ops->solve(cp, a->param, inner.work, control, u, r, rep));
+    PASS(a->ops->solve(cp, a->param, inner.work, control, u, r, rep));
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Append to the log. */
@@ -245,11 +238,10 @@ static status drive_form(drive_call *x, const contact_problem *own,
 static status drive_until_met(drive_call *x, const contact_problem *own,
                               solver_control control, double *u, double *r,
                               solver_report *rep) {
-  status st = OK;
   double tol = control.tol;
   int made = 0;
   for (int k = 0; k < TIGHTER; ++k) {
-    TRY(drive_form(x, own, &control, u, r, rep));
+    PASS(drive_form(x, own, &control, u, r, rep));
     made += rep->iterations;
     rep->iterations = made;
     if (contact_has_stiffness(x->given) || !contact_has_stiffness(own) ||
@@ -261,8 +253,7 @@ static status drive_until_met(drive_call *x, const contact_problem *own,
     if (control.max_iter > 0) control.max_iter = x->a->max_iter - made;
     if (x->a->max_iter > 0 && control.max_iter <= 0) break;
   }
-done:
-  return st;
+  return OK;
 }
 
 static int is_number(const contact_problem *cp, const double *u,
@@ -293,7 +284,7 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
   if (own.A == cp->A && own.op == cp->op && own.W == cp->W)
     control.scale = s->scale;
   if (s->work[row] == NULL) {
-    TRY(a->ops->setup(&own, a->param, &s->work[row]));
+    TRY(solver_set_up(a->ops, &own, a->param, &s->work[row]));
     TRY(remember(s, row));
   }
   drive_call x = {s, a, cp};

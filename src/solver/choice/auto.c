@@ -4,10 +4,9 @@
  * the number of unknowns m.
  *
  * No friction: the tangential unknowns are eliminated and the normal ones are
- * solved for by active sets, of the opening nodes only, and by
- * NEWTON where these do not converge. The full problem is taken for the first
- * steps from a warm start, which often suffice, and where the normal form
- * fails.
+ * solved for by active sets, of the opening nodes only, and by NEWTON where
+ * these do not converge. The full problem is taken for the first steps from a
+ * warm start, which often suffice, and where the normal form fails.
  *
  * Stiffness given: NEWTON. The number of its steps does not grow with m or with
  * the condition of A, and its factor is reused from step to step and from
@@ -289,16 +288,14 @@ typedef struct answer {
 static status short_try(contact_solver *s, const contact_problem *cp,
                         const solver_ops *ops, int iterations,
                         const solver_listener *listener, const answer *to) {
-  status st = OK;
   int asked = s->choice.max_iter;
   attempt a = {ops, s->param, PLAIN,
                asked > 0 && asked < iterations ? asked : iterations, NULL};
   memset(s->param, 0, s->param_size);
   option_defaults(ops->options, s->param);
-  TRY(attempt_run(s, cp, &a, listener, to->u, to->r, to->rep));
+  PASS(attempt_run(s, cp, &a, listener, to->u, to->r, to->rep));
   attempt_check(s, cp, to->u, to->r, to->rep);
-done:
-  return st;
+  return OK;
 }
 
 static int is_cold(const contact_problem *cp, const double *r) {
@@ -311,42 +308,39 @@ static int is_cold(const contact_problem *cp, const double *r) {
 static status solve_normal(contact_solver *s, const contact_problem *cp,
                            const solver_listener *listener, double *u,
                            double *r, solver_report *rep, int *done_well) {
-  status st = OK;
   int before = 0;
   solver_control control = {.tol = s->choice.tol,
                             .max_iter = allowance(s, cp, &dense_chain[1]),
                             .listener = listener};
   *done_well = 0;
-  if (!normal_form_applies(cp)) goto done;
+  if (!normal_form_applies(cp)) return OK;
   if (s->normal.wanted++ == 0 && !is_cold(cp, r)) {
-    TRY(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
-                  &(answer){u, r, rep}));
+    PASS(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
+                   &(answer){u, r, rep}));
     *done_well = rep->outcome == CONVERGED;
-    if (*done_well) goto done;
+    if (*done_well) return OK;
     before = rep->iterations;
   }
-  TRY(normal_form_opened(&s->normal, cp, &control, u, r, rep));
+  PASS(normal_form_opened(&s->normal, cp, &control, u, r, rep));
   rep->iterations += before;
   if (rep->outcome == CONVERGED) {
     attempt_check(s, cp, u, r, rep);
     *done_well = rep->outcome == CONVERGED;
-    if (*done_well) goto done;
+    if (*done_well) return OK;
   }
   before = rep->iterations;
-  TRY(normal_form_solve(&s->normal, cp, &control, u, r, rep));
+  PASS(normal_form_solve(&s->normal, cp, &control, u, r, rep));
   rep->iterations += before;
-  if (rep->outcome != CONVERGED) goto done;
+  if (rep->outcome != CONVERGED) return OK;
   attempt_check(s, cp, u, r, rep);
   *done_well = rep->outcome == CONVERGED;
-done:
-  return st;
+  return OK;
 }
 
 /* One method of the chain; its outcome in rep. "first": no other has run. */
 static status run_link(contact_solver *s, const contact_problem *cp,
                        const link *l, int first,
                        const solver_listener *listener, const answer *to) {
-  status st = OK;
   solver_report *rep = to->rep;
   attempt a = {l->ops, s->param, l->how, allowance(s, cp, l), NULL};
   sweep_promise promise = {
@@ -354,7 +348,7 @@ static status run_link(contact_solver *s, const contact_problem *cp,
       .most = (cp->blocks != NULL ? LENIENT : 1.0) * a.max_iter};
   *rep = (solver_report){.outcome = STOPPED_UNFIT, .solver = l->ops->name};
   if (l->how == WHILE_PROMISING) {
-    if (a.max_iter == 0) goto done;
+    if (a.max_iter == 0) return OK;
     a.promise = &promise;
   }
   memset(s->param, 0, s->param_size);
@@ -363,13 +357,12 @@ static status run_link(contact_solver *s, const contact_problem *cp,
   /* With a nearly singular stiffness its start forces are too large. */
   if (a.ops == &proximal_solver)
     memset(to->r, 0, (size_t)cp->m * sizeof *to->r);
-  TRY(attempt_run(s, cp, &a, listener, to->u, to->r, rep));
+  PASS(attempt_run(s, cp, &a, listener, to->u, to->r, rep));
   if (rep->outcome != STOPPED_UNFIT) attempt_check(s, cp, to->u, to->r, rep);
   if (cp->floating || rep->outcome == STOPPED_RAY)
-    TRY(attempt_prove(s, cp, rep));
+    PASS(attempt_prove(s, cp, rep));
   if (!first || rep->outcome != CONVERGED) note(s, rep, &a);
-done:
-  return st;
+  return OK;
 }
 
 /* Sweeps of SOR on a stiffness in 3-D with a loose tolerance. */
@@ -385,20 +378,19 @@ static status coarse_sweeps(contact_solver *s, const contact_problem *cp,
 status auto_solve(contact_solver *s, const contact_problem *cp,
                   const solver_listener *listener, double *u, double *r,
                   solver_report *rep) {
-  status st = OK;
   size_t bytes = (size_t)cp->m * sizeof *u;
   const link *order[MOST_LINKS];
   const answer to = {u, r, rep};
   int n = order_links(cp, order), iterations = 0, first = 1, solved = 0;
   solver_report best = {.outcome = RUNNING};
-  TRY(solve_normal(s, cp, listener, u, r, rep, &solved));
+  PASS(solve_normal(s, cp, listener, u, r, rep, &solved));
   if (!solved) {
-    TRY(coarse_sweeps(s, cp, listener, &to));
+    PASS(coarse_sweeps(s, cp, listener, &to));
     solved = rep->outcome == CONVERGED;
   }
   for (int i = 0; i < n && !solved; ++i) {
     if (is_skipped(cp, order[i])) continue;
-    TRY(run_link(s, cp, order[i], first, listener, &to));
+    PASS(run_link(s, cp, order[i], first, listener, &to));
     iterations += rep->iterations;
     first = first && rep->outcome == STOPPED_UNFIT && s->log[0] == '\0';
     if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
@@ -409,12 +401,11 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
     }
     if (is_final(rep->outcome)) break;
   }
-  if (solved) goto done;
-  TRY(attempt_prove(s, cp, &best));
+  if (solved) return OK;
+  PASS(attempt_prove(s, cp, &best));
   memcpy(u, s->best_u, bytes);
   memcpy(r, s->best_r, bytes);
   *rep = best;
   rep->iterations = iterations;
-done:
-  return st;
+  return OK;
 }

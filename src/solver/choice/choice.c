@@ -15,22 +15,18 @@
 #include <string.h>
 
 status contact_solver_new(const solver_choice *choice, contact_solver **out) {
-  status st = OK;
-  contact_solver *s = NULL;
+  contact_solver *s;
   size_t size = 1;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
+  *out = s;
   s->choice = *choice;
   for (int i = 0; solver_list[i] != NULL; ++i)
     if (solver_list[i]->param_size > size) size = solver_list[i]->param_size;
   s->param = memory_new(1, size);
   s->param_size = size;
   if (s->param == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
-  *out = s;
-  s = NULL;
-done:
-  contact_solver_free(s);
-  return st;
+    RAISE(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
+  return OK;
 }
 
 /* A (or W) has changed: discard factors. */
@@ -88,8 +84,7 @@ static status fit(contact_solver *s, const contact_problem *cp) {
     TRY(st);
   }
   TRY(contact_bodies_new(cp, &s->bodies));
-  NEW(s->best_u, cp->m);
-  NEW(s->best_r, cp->m);
+  NEW_ALL(OF(s->best_u, cp->m), OF(s->best_r, cp->m));
   s->last = *cp;
 done:
   return st;
@@ -180,25 +175,23 @@ const contact_bodies *contact_solver_bodies(const contact_solver *s,
 static status solve_apart(contact_solver *s, const contact_problem *cp,
                           const solver_listener *listener, double *u, double *r,
                           solver_report *rep) {
-  status st = OK;
   s->scale = contact_scale(cp);
-  if (known_answer(s, cp, u, r, rep)) goto done;
+  if (known_answer(s, cp, u, r, rep)) return OK;
   if (s->choice.ops == NULL) {
-    TRY(auto_solve(s, cp, listener, u, r, rep));
+    PASS(auto_solve(s, cp, listener, u, r, rep));
   } else {
     attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter,
                  NULL};
-    TRY(attempt_run(s, cp, &a, listener, u, r, rep));
+    PASS(attempt_run(s, cp, &a, listener, u, r, rep));
     attempt_check(s, cp, u, r, rep);
-    TRY(attempt_prove(s, cp, rep));
+    PASS(attempt_prove(s, cp, rep));
   }
   /* A NaN of a method says nothing about the problem. */
   if (isfinite(rep->residual) &&
       (rep->outcome == STOPPED_NAN || rep->outcome == STOPPED_SINGULAR))
     rep->outcome = STOPPED_STAGNATION;
-  if (rep->outcome == CONVERGED) TRY(polish(s, cp, u, r, rep));
-done:
-  return st;
+  if (rep->outcome == CONVERGED) PASS(polish(s, cp, u, r, rep));
+  return OK;
 }
 
 status contact_solve(contact_solver *s, const contact_problem *cp,

@@ -100,9 +100,7 @@ status polish_touch(const contact_problem *cp, double scale, double tol,
                     double *u, double *r, double *residual) {
   size_t bytes = (size_t)cp->m * sizeof *u;
   OWNED double *v = NULL, *s = NULL, *move = NULL;
-  PASS_NEW(v, cp->m);
-  PASS_NEW(s, cp->m);
-  PASS_NEW(move, cp->m);
+  PASS_NEW_ALL(OF(v, cp->m), OF(s, cp->m), OF(move, cp->m));
   if (!touch(cp, u, r, v, s, move)) return OK;
   double reached = contact_residual_at(cp, scale, v, s);
   if (!(reached <= tol)) return OK;
@@ -120,8 +118,7 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
   double least = slip_misdirection(cp, u, r);
   *sweeps = 0;
   if (!(least > tol) || most <= 0 || cp->op != NULL) goto done;
-  NEW(s.u, cp->m);
-  NEW(s.r, cp->m);
+  NEW_ALL(OF(s.u, cp->m), OF(s.r, cp->m));
   TRY(node_blocks_new(cp, &s.blocks));
   memcpy(s.u, u, bytes);
   memcpy(s.r, r, bytes);

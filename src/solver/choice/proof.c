@@ -145,10 +145,7 @@ typedef struct balance {
 static status balance_new(balance *s) {
   size_t m = (size_t)s->cp->m;
   PASS(nonnegative_new(s->an->n_mode + 1, &s->sum));
-  PASS_NEW(s->v, m);
-  PASS_NEW(s->c, 3 * m);
-  PASS_NEW(s->force, m);
-  PASS_NEW(s->lift, m);
+  PASS_NEW_ALL(OF(s->v, m), OF(s->c, 3 * m), OF(s->force, m), OF(s->lift, m));
   return OK;
 }
 
@@ -167,8 +164,7 @@ static void add_friction(const balance *s, int i, double limit) {
   }
 }
 
-/* The normal force of an unknown with a bound, 1, and its friction.
- */
+/* The normal force of an unknown with a bound, 1, and its friction. */
 static void set_push(const balance *s, int dof) {
   const contact_problem *cp = s->cp;
   s->force[dof] = 1.0;
@@ -229,15 +225,14 @@ static int is_proof(balance *s, double gain) {
 /* *proved: the load on the modes cannot be balanced. */
 static status find_motion(const contact_problem *cp, const anchor *an,
                           int *proved) {
-  status st = OK;
-  balance s = {.cp = cp, .an = an};
+  ENDS_BY(balance_free) balance s = {.cp = cp, .an = an};
   double *column, *b, size, gain, before = HUGE_VAL;
-  TRY(balance_new(&s));
+  PASS(balance_new(&s));
   b = s.sum.b;
   cblas_dgemv(CblasColMajor, CblasTrans, cp->m, an->n_mode, 1.0, an->R, cp->m,
               cp->f, 1, 0.0, b, 1);
   size = cblas_dnrm2(an->n_mode, b, 1);
-  if (!(size > 0.0 && size < HUGE_VAL)) goto done;
+  if (!(size > 0.0 && size < HUGE_VAL)) return OK;
   s.unit = b[an->n_mode] = size;
   set_lift(&s, &gain);
   nonnegative_begin(&s.sum);
@@ -251,9 +246,7 @@ static status find_motion(const contact_problem *cp, const anchor *an,
     *proved = is_proof(&s, gain);
     if (*proved || !(does > 0.0) || !nonnegative_take(&s.sum)) break;
   }
-done:
-  balance_free(&s);
-  return st;
+  return OK;
 }
 
 /* ---- compliance ---------------------------------------------------------- */
@@ -268,11 +261,8 @@ static status find_forces(const contact_problem *cp, int *proved) {
   PASS_NEW(id, m);
   for (int dof = 0; dof < cp->m; ++dof)
     if (contact_bound(cp, dof) < HUGE_VAL) id[n++] = dof;
-  PASS_NEW(M, (size_t)n * (size_t)n);
-  PASS_NEW(q, n);
-  PASS_NEW(y, n);
-  PASS_NEW(l, m);
-  PASS_NEW(work, 3 * m);
+  PASS_NEW_ALL(OF(M, (size_t)n * (size_t)n), OF(q, n), OF(y, n), OF(l, m),
+               OF(work, 3 * m));
   for (int j = 0; j < n; ++j) {
     contact_column(cp, id[j], work);
     for (int i = 0; i < n; ++i)

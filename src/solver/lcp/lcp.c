@@ -11,11 +11,11 @@
  * replaces or removes one row and one column of P; K follows by a rank-one
  * change. Lexicographic rule: q is thought of as q + (e, e^2, ...) with an
  * infinitesimal e; only the columns of the inverse that are needed to break
- * ties are formed. The form with a dense matrix is in plain.c.
+ * ties are formed.
  */
 #include "solver/lcp/lcp.h"
 
-#include "base/memory.h"
+#include "base/sparse.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -66,12 +66,7 @@ status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
   status st = OK;
   lcp_work *w = NULL;
   double *d = NULL;
-  int exponent = 0;
-  double size = 0.0;
-  for (size_t i = 0; i < (size_t)n * (size_t)n; ++i)
-    size = fmax(size, fabs(M[i]));
-  if (size > 0.0 && size < HUGE_VAL) frexp(size, &exponent);
-  plain m = {n, M, ldexp(1.0, -exponent)};
+  plain m = {n, M, power_to_one(largest_entry((size_t)n * (size_t)n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
   TRY(lcp_new(n, n, &w));
   NEW(d, n);
@@ -191,9 +186,8 @@ static double lcp_refresh(lcp_work *w, const lcp_problem *p) {
 }
 
 /* A new inverse; 0: P is singular. */
-static int lcp_invert(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
+static int lcp_invert(lcp_work *w, const lcp_problem *p) {
   int s = w->s;
-  ++rep->factorings;
   if (s == 0) return 1;
   for (int b = 0; b < s; ++b) {
     lcp_row_of(w, p, w->row[b], w->line);
@@ -495,36 +489,19 @@ void lcp_free(lcp_work *w) {
 }
 
 status lcp_new(int n, int rank, lcp_work **out) {
-  status st = OK;
-  lcp_work *w = NULL;
-  NEW(w, 1);
+  lcp_work *w;
+  PASS_NEW(w, 1);
+  *out = w;
   int cap = w->cap = (rank < n ? rank : n) + 2;
   w->n = n;
-  NEW(w->K, (size_t)cap * (size_t)cap);
-  NEW(w->P, (size_t)cap * (size_t)cap);
-  NEW(w->lapack, cap);
-  NEW(w->swap, cap);
-  NEW(w->var, cap);
-  NEW(w->row, cap);
-  NEW(w->at_z, n + 1);
-  NEW(w->at_w, n);
-  NEW(w->z, cap);
-  NEW(w->w, n);
-  NEW(w->enter.dz, cap);
-  NEW(w->enter.dw, n);
-  NEW(w->enter.lz, cap);
-  NEW(w->enter.lw, n);
-  NEW(w->gather, cap);
-  NEW(w->line, cap);
-  NEW(w->column, n);
-  NEW(w->q, n);
-  NEW(w->tie, n + cap);
-  NEW(w->key, n + cap);
-  *out = w;
-  w = NULL;
-done:
-  lcp_free(w);
-  return st;
+  PASS_NEW_ALL(
+      OF(w->K, (size_t)cap * (size_t)cap), OF(w->P, (size_t)cap * (size_t)cap),
+      OF(w->lapack, cap), OF(w->swap, cap), OF(w->var, cap), OF(w->row, cap),
+      OF(w->at_z, n + 1), OF(w->at_w, n), OF(w->z, cap), OF(w->w, n),
+      OF(w->enter.dz, cap), OF(w->enter.dw, n), OF(w->enter.lz, cap),
+      OF(w->enter.lw, n), OF(w->gather, cap), OF(w->line, cap),
+      OF(w->column, n), OF(w->q, n), OF(w->tie, n + cap), OF(w->key, n + cap));
+  return OK;
 }
 
 /* Nothing basic but w. The lexicographic first row: the last of the least. */
@@ -561,8 +538,8 @@ static void bring_in_z0(lcp_work *w, const lcp_problem *p, int row) {
 
 /* A new inverse and values from it; RUNNING, or CONVERGED if they show that
  * z0 is zero (a degenerate end: z0 stays basic). */
-static outcome renew(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
-  if (!lcp_invert(w, p, rep)) return STOPPED_SINGULAR;
+static outcome renew(lcp_work *w, const lcp_problem *p) {
+  if (!lcp_invert(w, p)) return STOPPED_SINGULAR;
   lcp_refresh(w, p);
   double noise = ROUNDING * w->size_K * fmax(1.0, lcp_largest(w->s, w->z));
   double zero = lcp_zero(TIE, w->z0_start, noise);
@@ -578,7 +555,7 @@ static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
   if (c < 0 && *age == 0) return STOPPED_RAY;
   if (c < 0) {
     *age = 0;
-    return renew(w, p, rep);
+    return renew(w, p);
   }
   lcp_pivot(w, p, c, step);
   ++rep->pivots;
@@ -588,7 +565,7 @@ static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
     p->each(p->ctx, rep->pivots, done ? 0.0 : w->z[0] * w->power);
   if (done || w->z[0] <= NEAR_END * w->z0_start) {
     *age = 0;
-    return renew(w, p, rep);
+    return renew(w, p);
   }
   if (*age % REFRESH == 0) lcp_refresh(w, p);
   return RUNNING;
@@ -597,7 +574,7 @@ static outcome advance(lcp_work *w, const lcp_problem *p, lcp_report *rep,
 void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   int limit = p->max_pivots, age = 0;
   if (limit <= 0) limit = 50 * p->n > 5000 ? 50 * p->n : 5000;
-  rep->pivots = rep->factorings = 0;
+  rep->pivots = 0;
   rep->outcome = CONVERGED;
   int row = start(w, p);
   for (int i = 0; i < w->n; ++i)

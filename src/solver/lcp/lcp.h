@@ -21,16 +21,14 @@ typedef struct lcp_report {
                       STOPPED_ITERATIONS, STOPPED_SINGULAR (of the basis),
                       STOPPED_NAN */
   int pivots;      /* with the first, which brings z0 in */
-  int factorings;  /* inverses of the basis made again */
   double residual; /* largest |min(z, w)|, in units of q; plain form only */
 } lcp_report;
 
 /*
  * Plain form: M[n*n] column major, q[n], d = 1. z[n] receives the solution, on
  * STOPPED_RAY the direction of the ray: y >= 0 with M y >= -y0, y0 >= 0; for a
- * positive semidefinite M it proves that there is no z >= 0 with w >= 0
- * (M'y <= 0, q'y < 0). max_pivots 0: chosen by the program.
- * Errors: ERR_MEMORY.
+ * positive semidefinite M it proves that there is no z >= 0 with w >= 0 (M'y <=
+ * 0, q'y < 0). max_pivots 0: chosen by the program. Errors: ERR_MEMORY.
  */
 status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
                  double *z, lcp_report *rep);

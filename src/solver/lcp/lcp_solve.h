@@ -57,19 +57,7 @@ double lcp_residual(const lcp_data *p, const double *z, double *w);
 status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
                  double *w, lcp_verdict *v);
 
-/* ---- lcp_newton.c: private to this folder -------------------------------- */
-
-/* Attempts by Newton's method from many starts. 1 in *found: z is a solution to
- * tol. *steps grows. */
-status lcp_newton(const lcp_data *p, const lcp_control *control, double *z,
-                  int *steps, int *found);
-/* All bases: CONVERGED, z is a solution to tol; STOPPED_RAY: each is excluded,
- * there is none; STOPPED_STAGNATION: not known. */
-status lcp_all_bases(const lcp_data *p, double tol, double *z, outcome *end);
-enum { LCP_MOST_BASES = 14 /* unknowns of which all bases are tried */ };
-
-/* ---- lcp_turn.c: private to this folder -----------------------------------
- */
+/* ---- lcp_turn.c: private to this folder ---------------------------------- */
 
 /*
  * The problem with z_i and w_i exchanged for "want" of the unknowns (principal

@@ -367,8 +367,7 @@ static double shorten(auglag_run *s, double reference) {
   return now;
 }
 
-/* 1: the states changed in step k, and occurred before. FNV-1a.
- */
+/* 1: the states changed in step k, and occurred before. FNV-1a. */
 static int met_before(const auglag_run *s, int k) {
   auglag_work *w = s->w;
   uint64_t h = 1469598103934665603u;
@@ -420,8 +419,7 @@ enum {
   PATIENCE = 20     /* multiplier steps without a lower residual */
 };
 
-/* Cholesky factor of power (A + F' rho); springs where the body is free.
- */
+/* Cholesky factor of power (A + F' rho); springs where the body is free. */
 static int uzawa_factor(auglag_run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
@@ -646,46 +644,31 @@ static status new_matrix(const contact_problem *cp, auglag_work *w) {
   if (cp->op != NULL) {
     PASS(operated_system_new(cp, &w->by.system));
     PASS(pattern_new(cp->dim, cp->n, &w->by.guess));
-    PASS_NEW(w->by.hold, m);
-    PASS_NEW(w->by.b, m);
+    PASS_NEW_ALL(OF(w->by.hold, m), OF(w->by.b, m));
     return OK;
   }
-  PASS_NEW(w->K, m * m);
-  PASS_NEW(w->pivot, m);
-  PASS_NEW(w->free_id, m);
+  PASS_NEW_ALL(OF(w->K, m * m), OF(w->pivot, m), OF(w->free_id, m));
   return OK;
 }
 
 static status auglag_setup(const contact_problem *cp, const void *par,
                            void **work) {
-  status st = OK;
-  auglag_work *w = NULL;
+  auglag_work *w;
   size_t m = (size_t)cp->m;
   (void)par;
-  NEW(w, 1);
-  w->m = cp->m;
-  NEW(w->part, m);
-  NEW(w->closed, m);
-  NEW(w->mode, cp->n);
-  NEW(w->state, m);
-  NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
-            &w->du, &w->dy, &w->e);
-  NEW(w->share, cp->n);
-  NEW(w->bonded, cp->n);
-  TRY(new_matrix(cp, w));
-  TRY(fixed_point_new(cp->n, &w->fixed));
-  TRY(best_iterate_new(cp->m, &w->best));
-  take_diagonal(cp, w->diagonal);
-  double largest = 0.0;
-  int exponent = 0;
-  for (size_t i = 0; i < m; ++i) largest = fmax(largest, w->diagonal[i]);
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  w->power = ldexp(1.0, -exponent);
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  auglag_release(w);
-  return st;
+  w->m = cp->m;
+  PASS_NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
+                 &w->du, &w->dy, &w->e);
+  PASS_NEW_ALL(OF(w->part, m), OF(w->closed, m), OF(w->mode, cp->n),
+               OF(w->state, m), OF(w->share, cp->n), OF(w->bonded, cp->n));
+  PASS(new_matrix(cp, w));
+  PASS(fixed_point_new(cp->n, &w->fixed));
+  PASS(best_iterate_new(cp->m, &w->best));
+  take_diagonal(cp, w->diagonal);
+  w->power = power_to_one(largest_entry(m, w->diagonal));
+  return OK;
 }
 
 /* The other variant, the limit updated around it. */
@@ -771,11 +754,8 @@ const solver_ops auglag_solver = {
     "contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
-  .param_size = sizeof(auglag),
-  .options = auglag_options,
-  .setup = auglag_setup,
-  .solve = auglag_solve,
-  .release = auglag_release,
+  .param_size = sizeof(auglag), .options = auglag_options,
+  .setup = auglag_setup, .solve = auglag_solve, .release = auglag_release,
   .keep = auglag_keep
 };
 /* clang-format on */

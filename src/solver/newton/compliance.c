@@ -121,8 +121,7 @@ static double on_limit(const compliance_system *s, int node_id,
   for (int k = 0; k < dim - 1; ++k)
     if (s->in_base[first + k] >= 0)
       sum += s->p->e[node_id * (dim - 1) + k] * y[s->in_base[first + k]];
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k)
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k)
     if (s->place[B->col[k]] >= 0)
       sum += B->val[k] * y[s->in_base[B->col[k] * dim]];
   return sum;
@@ -201,44 +200,28 @@ static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal */
 
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out) {
-  status st = OK;
-  compliance_system *s = NULL;
+  compliance_system *s;
   size_t m = (size_t)cp->m;
   int capacity = cp->g0 == NULL && cp->side_gap == NULL ? cp->n : cp->m;
-  NEW(s, 1);
-  NEW(s->list, m);
-  NEW(s->place, cp->n);
-  NEW(s->turn, cp->n);
-  NEW(s->dof, m);
-  NEW(s->x, m);
-  NEW(s->y, m);
-  NEW(s->base, m);
-  NEW(s->in_base, m);
-  NEW(s->column, m);
-  s->capacity = capacity / SHARE + 1;
-  NEW(s->X, capacity * s->capacity);
-  NEW(s->freed, s->capacity);
-  NEW(s->C, s->capacity * s->capacity);
-  NEW(s->z, s->capacity);
-  NEW(s->pivot, s->capacity);
-  TRY(dense_new(capacity, &s->K));
-  s->power = dense_power(cp->m, cp->W);
+  PASS_NEW(s, 1);
   *out = s;
-  s = NULL;
-done:
-  compliance_system_free(s);
-  return st;
+  PASS_NEW_ALL(OF(s->list, m), OF(s->place, cp->n), OF(s->turn, cp->n),
+               OF(s->dof, m), OF(s->x, m), OF(s->y, m), OF(s->base, m),
+               OF(s->in_base, m), OF(s->column, m));
+  s->capacity = capacity / SHARE + 1;
+  PASS_NEW_ALL(OF(s->X, capacity * s->capacity), OF(s->freed, s->capacity),
+               OF(s->C, s->capacity * s->capacity), OF(s->z, s->capacity),
+               OF(s->pivot, s->capacity));
+  PASS(dense_new(capacity, &s->K));
+  s->power = dense_power(cp->m, cp->W);
+  return OK;
 }
 
 void compliance_system_free(compliance_system *s) {
   if (s == NULL) return;
-  void *const blocks[] = {s->list,  s->dof,  s->place,   s->turn,   s->x,
-                          s->y,     s->base, s->in_base, s->column, s->X,
-                          s->freed, s->C,    s->z,       s->pivot};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
-    memory_free(blocks[i]);
   dense_free(&s->K);
-  memory_free(s);
+  RELEASE(s->list, s->dof, s->place, s->turn, s->x, s->y, s->base, s->in_base,
+          s->column, s->X, s->freed, s->C, s->z, s->pivot, s);
 }
 
 void compliance_displace(const contact_problem *cp, const double *r,
@@ -356,8 +339,7 @@ static void set_slip(const compliance_system *s, int node_id, double along,
   const sparse_rows *B = cp->B;
   const double *e = s->p->e + node_id * (cp->dim - 1);
   double g = cp->g0[node_id], *t = r + node_id * cp->dim + 1;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k)
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k)
     if (s->place[B->col[k]] >= 0) g -= B->val[k] * r[B->col[k] * cp->dim];
   for (int k = 0; k < cp->dim - 1; ++k) t[k] = g * e[k];
   if (!turns(s, node_id)) return;
@@ -475,8 +457,7 @@ static int project(const compliance_system *s, double *r) {
 }
 
 /* Forces of the guess by the updated factor (freed) or a new one; 0: not
- * solved.
- */
+ * solved. */
 static int solve(compliance_system *s, int by_base, double *r, double *raw) {
   double left = load(s, r, raw), before = HUGE_VAL, first = left;
   for (int k = 0; k < REFINEMENTS && left < 0.5 * before; ++k) {

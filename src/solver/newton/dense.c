@@ -1,7 +1,7 @@
 /* Factor of a dense matrix (dense.h). */
 #include "solver/newton/dense.h"
 
-#include "base/memory.h"
+#include "base/sparse.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -13,10 +13,8 @@ static const double SUSPECT = 0x1p-20; /* -, smallest over largest pivot */
 
 status dense_new(int capacity, dense *d) {
   size_t m = (size_t)capacity;
-  PASS_NEW(d->a, m * m);
-  PASS_NEW(d->pivot, m);
-  PASS_NEW(d->iwork, m);
-  PASS_NEW(d->work, 4 * m);
+  PASS_NEW_ALL(OF(d->a, m * m), OF(d->pivot, m), OF(d->iwork, m),
+               OF(d->work, 4 * m));
   return OK;
 }
 
@@ -44,12 +42,10 @@ void dense_mirror(int m, double *M) {
 
 double dense_power(int m, const double *M) {
   double largest = 0.0;
-  int exponent = 0;
   size_t n = (size_t)m;
   for (size_t i = 0; i < n; ++i)
     if (M[i * n + i] > largest) largest = M[i * n + i];
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
+  return power_to_one(largest);
 }
 
 /* 1: the pivots leave doubt, and the condition number says singular. */

@@ -17,8 +17,7 @@ void dense_free(dense *d);
 int dense_is_symmetric(int m, const double *M, double apart);
 /* The upper triangle of M[m*m] from the lower. */
 void dense_mirror(int m, double *M);
-/* Power of two that brings the largest diagonal entry of M[m*m] to order 1:
- * roots then keep their bits under a change of units by such powers. */
+/* power_to_one of the largest diagonal entry of M[m*m]. */
 double dense_power(int m, const double *M);
 /* N[m*(m-rank)], zero before: null vectors of L[m*m], a factor of rank "rank"
  * in the order "pivot" (from 1): one unknown beyond the rank is 1, those before

@@ -81,24 +81,19 @@ static void newton_release(void *work) {
 
 static status newton_setup(const contact_problem *cp, const void *par,
                            void **work) {
-  status st = OK;
-  newton_work *w = NULL;
+  newton_work *w;
   (void)par;
-  NEW(w, 1);
-  TRY(states_new(cp, &w->states));
-  if (cp->op != NULL)
-    TRY(operated_system_new(cp, &w->operated));
-  else if (cp->A != NULL)
-    TRY(newton_system_new(cp, &w->system));
-  else
-    TRY(compliance_system_new(cp, &w->compliance));
-  if (cp->op == NULL) TRY(node_blocks_new(cp, &w->blocks));
-  TRY(best_iterate_new(cp->m, &w->best));
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  newton_release(w);
-  return st;
+  PASS(states_new(cp, &w->states));
+  if (cp->op != NULL)
+    PASS(operated_system_new(cp, &w->operated));
+  else if (cp->A != NULL)
+    PASS(newton_system_new(cp, &w->system));
+  else
+    PASS(compliance_system_new(cp, &w->compliance));
+  if (cp->op == NULL) PASS(node_blocks_new(cp, &w->blocks));
+  return best_iterate_new(cp->m, &w->best);
 }
 
 typedef struct run {
@@ -393,11 +388,8 @@ const solver_ops newton_solver = {
     "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              REGULAR_COMPLIANCE | SOLVES_FLOATING,
-  .param_size = sizeof(newton),
-  .options = newton_options,
-  .setup = newton_setup,
-  .solve = newton_solve,
-  .release = newton_release,
+  .param_size = sizeof(newton), .options = newton_options,
+  .setup = newton_setup, .solve = newton_solve, .release = newton_release,
   .keep = newton_keep
 };
 /* clang-format on */

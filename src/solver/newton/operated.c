@@ -55,45 +55,26 @@ void operated_system_free(operated_system *s) {
           s->krylov.c, s->krylov.s, s->krylov.g, s);
 }
 
-static double power_of(const contact_problem *cp) {
-  double largest = 0.0;
-  int exponent = 0;
-  for (int i = 0; i < cp->m; ++i)
-    largest = fmax(largest, contact_diagonal(cp, i));
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
-}
-
 status operated_system_new(const contact_problem *cp, operated_system **out) {
-  status st = OK;
-  operated_system *s = NULL;
+  operated_system *s;
   const size_t m = (size_t)cp->m;
-  NEW(s, 1);
-  s->m = cp->m;
-  s->power = power_of(cp);
-  NEW_REALS(m, &s->b, &s->x, &s->Ax);
-  NEW(s->added, (size_t)cp->dim * m);
-  NEW(s->known, m);
-  NEW(s->held, m);
-  NEW(s->slip.dof, m);
-  NEW(s->slip.x, m);
-  NEW(s->slip.load, m);
-  NEW(s->slip.pressed, m);
-  NEW(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS);
-  NEW(s->krylov.c, DIRECTIONS);
-  NEW(s->krylov.s, DIRECTIONS);
-  NEW(s->krylov.g, DIRECTIONS + 1);
+  PASS_NEW(s, 1);
   *out = s;
-  s = NULL;
-done:
-  operated_system_free(s);
-  return st;
+  s->m = cp->m;
+  s->power = power_to_one(largest_entry(m, cp->op->diagonal));
+  PASS_NEW_REALS(m, &s->b, &s->x, &s->Ax);
+  PASS_NEW_ALL(OF(s->added, (size_t)cp->dim * m), OF(s->known, m),
+               OF(s->held, m), OF(s->slip.dof, m), OF(s->slip.x, m),
+               OF(s->slip.load, m), OF(s->slip.pressed, m),
+               OF(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS),
+               OF(s->krylov.c, DIRECTIONS), OF(s->krylov.s, DIRECTIONS),
+               OF(s->krylov.g, DIRECTIONS + 1));
+  return OK;
 }
 
 void operated_system_fit(operated_system *s) { s->stepped = 0; }
 
-/* ---- friction that follows pressure ---------------------------------------
- */
+/* ---- friction that follows pressure -------------------------------------- */
 
 /* kappa (I - e e') of a slipping node in space, entry (a, b). */
 static double turning(const pattern *p, int node, int a, int b) {
@@ -118,8 +99,7 @@ static void list_slip(operated_system *s, const contact_problem *cp,
     int any = s->drifts;
     if (p->mode[i] != SLIP) continue;
     s->slip.pressed[i * cp->dim + 1] = (unsigned char)any;
-    for (int k = B != NULL ? B->start[i] : 0; B != NULL && k < B->start[i + 1];
-         ++k) {
+    for (int k = row_begin(B, i); k < row_end(B, i); ++k) {
       const int dof = B->col[k] * cp->dim;
       if (!p->closed[dof] || B->val[k] == 0.0) continue;
       s->slip.pressed[dof] = 1;
@@ -139,8 +119,7 @@ static void add_friction(const operated_system *s, const contact_problem *cp,
   for (int t = 0; t < s->slip.n; ++t) {
     const int i = s->slip.dof[t] / cp->dim, c = s->slip.dof[t] % cp->dim - 1;
     double sum = 0.0;
-    for (int k = B != NULL ? B->start[i] : 0; B != NULL && k < B->start[i + 1];
-         ++k) {
+    for (int k = row_begin(B, i); k < row_end(B, i); ++k) {
       const int dof = B->col[k] * cp->dim;
       if (p->closed[dof]) sum += B->val[k] * Ax[dof];
     }
@@ -150,8 +129,7 @@ static void add_friction(const operated_system *s, const contact_problem *cp,
   }
 }
 
-/* ---- GMRES ----------------------------------------------------------------
- */
+/* ---- GMRES --------------------------------------------------------------- */
 
 /* Room for the directions made and two more. */
 static status grow(operated_system *s) {
@@ -254,8 +232,7 @@ static status gmres(operated_system *s, const contact_problem *cp,
   return OK;
 }
 
-/* ---- a step ---------------------------------------------------------------
- */
+/* ---- a step -------------------------------------------------------------- */
 
 /* Stiffness that the guess adds at a node, block[dim*dim]. */
 static void wanted(const contact_problem *cp, const operated_rows *rows,

@@ -111,25 +111,21 @@ static status new_steps(const contact_problem *cp, proximal_work *w) {
 
 static status proximal_setup(const contact_problem *cp, const void *par,
                              void **work) {
-  status st = OK;
-  proximal_work *w = NULL;
+  proximal_work *w;
   size_t m = (size_t)cp->m;
   (void)par;
-  NEW(w, 1);
-  TRY(force_set_new(cp, &w->set));
-  TRY(best_iterate_new(cp->m, &w->best));
-  if (cp->op != NULL)
-    TRY(new_steps(cp, w));
-  else
-    TRY(step_matrix_new(cp, w->set, &w->J));
-  NEW_REALS(m, &w->x, &w->F, &w->d, &w->z, &w->weight, &w->start, &w->centre,
-            &w->before);
-  NEW(w->acts, m);
+  PASS_NEW(w, 1);
   *work = w;
-  w = NULL;
-done:
-  proximal_release(w);
-  return st;
+  PASS(force_set_new(cp, &w->set));
+  PASS(best_iterate_new(cp->m, &w->best));
+  if (cp->op != NULL)
+    PASS(new_steps(cp, w));
+  else
+    PASS(step_matrix_new(cp, w->set, &w->J));
+  PASS_NEW_ALL(OF(w->x, m), OF(w->F, m), OF(w->d, m), OF(w->z, m),
+               OF(w->weight, m), OF(w->start, m), OF(w->centre, m),
+               OF(w->before, m), OF(w->acts, m));
+  return OK;
 }
 
 typedef struct run {
@@ -142,19 +138,13 @@ typedef struct run {
   int steps;
 } run;
 
-/* ---- the equations --------------------------------------------------------
- */
+/* ---- the equations ------------------------------------------------------- */
 
 /* inv(D); friction counts in the pressures that its limit takes, or a limit
  * that grows by far more than they would dominate. */
 static void set_weights(proximal_work *w, const contact_problem *cp) {
-  const sparse_rows *B = cp->B;
   for (int i = 0; i < cp->m; ++i) {
-    double mu = 0.0;
-    int node_id = i / cp->dim, normal = i % cp->dim == 0 || B == NULL;
-    for (int k = normal ? 0 : B->start[node_id];
-         !normal && k < B->start[node_id + 1]; ++k)
-      mu += B->val[k];
+    const double mu = i % cp->dim == 0 ? 0.0 : row_sum(cp->B, i / cp->dim);
     w->weight[i] = 1.0 / (w->set->D[i] * fmax(1.0, mu * mu));
   }
 }
@@ -232,8 +222,7 @@ static void add_slip(const run *s, int node_id, int a, double length) {
 static int is_idle(const run *s, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (contact_node_limit(s->cp, s->r, node_id) > 0.0) return 0;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k) {
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k) {
     int normal = B->col[k] * s->cp->dim;
     if (s->r[normal] < 0.0 || s->w->z[normal] < 0.0) return 0;
   }
@@ -273,8 +262,7 @@ static status fill_matrix(const run *s) {
   return OK;
 }
 
-/* ---- the equations of a step of an operator -------------------------------
- */
+/* ---- the equations of a step of an operator ------------------------------ */
 
 /* Tangents of a node that slips: its turning stiffness and the load. */
 static void put_slip(const run *s, int node_id, double length) {
@@ -335,8 +323,7 @@ static status solve_operator(const run *s, int *singular) {
   return OK;
 }
 
-/* ---- steps ----------------------------------------------------------------
- */
+/* ---- steps --------------------------------------------------------------- */
 
 /* r and, of an operator, u by a part of the step. */
 static void move(run *s, double part) {
@@ -586,10 +573,7 @@ const solver_ops proximal_solver = {
     "for a body on its contact surface NEWTON is faster.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
-  .param_size = 0,
   .options = proximal_options,
-  .setup = proximal_setup,
-  .solve = proximal_solve,
-  .release = proximal_release
+  .setup = proximal_setup, .solve = proximal_solve, .release = proximal_release
 };
 /* clang-format on */

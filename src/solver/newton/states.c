@@ -31,9 +31,8 @@ static void set_stiffness(const contact_problem *cp, states *s) {
 status states_new(const contact_problem *cp, states *s) {
   size_t m = (size_t)cp->m;
   PASS(pattern_new(cp->dim, cp->n, &s->guess));
-  PASS_NEW(s->raw, m);
-  PASS_NEW(s->k, m);
   PASS_NEW_REALS(cp->n, &s->c, &s->g, &s->rounding);
+  PASS_NEW_ALL(OF(s->raw, m), OF(s->k, m));
   set_stiffness(cp, s);
   return OK;
 }
@@ -55,8 +54,7 @@ static void clean_slip(const states *s, int node_id) {
     if (!contact_held(cp, node_id * cp->dim + k)) size += r[k] * r[k];
   size = sqrt(size);
   double g = contact_node_limit(cp, s->r, node_id);
-  for (int k = cp->B != NULL ? cp->B->start[node_id] : 0;
-       cp->B != NULL && k < cp->B->start[node_id + 1]; ++k)
+  for (int k = row_begin(cp->B, node_id); k < row_end(cp->B, node_id); ++k)
     if (cp->B->col[k] == node_id) mu = cp->B->val[k];
   if (mu > 1.0 && s->guess.closed[node_id * cp->dim] && r[0] < 0.0) {
     double p = -r[0] + (size - g) / mu;

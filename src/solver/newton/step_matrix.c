@@ -32,45 +32,33 @@ void step_matrix_free(step_matrix *s) {
   if (s == NULL) return;
   sparse_free(&s->own);
   sparse_free(&s->rows);
-  void *const blocks[] = {s->place, s->line, s->touched, s->is_touched,
-                          s->rhs,   s->x,    s->full,    s->pivot};
-  for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k)
-    memory_free(blocks[k]);
-  memory_free(s);
+  RELEASE(s->place, s->line, s->touched, s->is_touched, s->rhs, s->x, s->full,
+          s->pivot, s);
 }
 
 status step_matrix_new(const contact_problem *cp, const force_set *set,
                        step_matrix **out) {
-  status st = OK;
-  step_matrix *s = NULL;
+  step_matrix *s;
   size_t m = (size_t)cp->m;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
+  *out = s;
   s->m = cp->m;
   s->set = set;
   s->W = &set->rows;
-  NEW(s->place, m);
-  NEW(s->line, m);
-  NEW(s->touched, m);
-  NEW(s->is_touched, m);
-  NEW(s->rhs, m);
-  NEW(s->x, m);
+  PASS_NEW_ALL(OF(s->place, m), OF(s->line, m), OF(s->touched, m),
+               OF(s->is_touched, m), OF(s->rhs, m), OF(s->x, m));
   memory_count_suitesparse();
   umfpack_di_defaults(s->control);
   s->control[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
   s->control[UMFPACK_IRSTEP] = 0;
   if (set->rows.start != NULL) {
-    NEW(s->rows.start, m + 1);
+    PASS_NEW(s->rows.start, m + 1);
   } else {
-    TRY(compliance_rows(cp, &s->own));
+    PASS(compliance_rows(cp, &s->own));
     s->W = &s->own;
-    NEW(s->full, m * m);
-    NEW(s->pivot, m);
+    PASS_NEW_ALL(OF(s->full, m * m), OF(s->pivot, m));
   }
-  *out = s;
-  s = NULL;
-done:
-  step_matrix_free(s);
-  return st;
+  return OK;
 }
 
 void step_matrix_begin(step_matrix *s, const unsigned char *acts,

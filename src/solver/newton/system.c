@@ -54,8 +54,7 @@ static const double SPRING = 0x1p-36; /* -, of the diagonal */
 static int couples(const newton_system *s, const pattern *p, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (p->mode[node_id] != SLIP) return 0;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k)
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k)
     if (B->val[k] != 0.0 && p->closed[B->col[k] * s->cp->dim]) return 1;
   return 0;
 }
@@ -133,8 +132,7 @@ static void newton_row(const newton_system *s, const pattern *p, int dof,
   memset(to, 0, (size_t)m * sizeof *to);
   cblas_daxpy(m, s->power, cp->A + stride * (size_t)dof, step, to, 1);
   if (k < 0 || p->mode[node_id] != SLIP) return;
-  for (int j = B == NULL ? 0 : B->start[node_id];
-       B != NULL && j < B->start[node_id + 1]; ++j) {
+  for (int j = row_begin(B, node_id); j < row_end(B, node_id); ++j) {
     int n = B->col[j] * cp->dim;
     double a = s->power * p->e[node_id * tangents + k] * B->val[j];
     if (p->closed[n])
@@ -179,6 +177,17 @@ static void newton_plain_step(newton_system *s) {
   for (int i = 0; i < s->base.n_free; ++i) s->du[i] = s->b[s->base.free_id[i]];
   newton_back(s, 1, s->du);
   newton_expand(s, s->du);
+}
+
+static void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
+  size_t nodes = (size_t)n, m = nodes * (size_t)dim;
+  memcpy(to->closed, from->closed, m * sizeof *to->closed);
+  memcpy(to->mode, from->mode, nodes * sizeof *to->mode);
+  memcpy(to->e, from->e, (m - nodes) * sizeof *to->e);
+  memcpy(to->kappa, from->kappa, nodes * sizeof *to->kappa);
+  memcpy(to->free_id, from->free_id, m * sizeof *to->free_id);
+  memcpy(to->place, from->place, m * sizeof *to->place);
+  to->n_free = from->n_free;
 }
 
 /* The guess becomes the base, without a factor yet. */
@@ -229,8 +238,7 @@ static int same_row(const newton_system *s, const pattern *p, int dof) {
       before = newton_bends(s, base, node_id);
   if (!now || !before) return now == before;
   if (turned(s, p, dof)) return 0;
-  for (int k = B == NULL ? 0 : B->start[node_id];
-       B != NULL && k < B->start[node_id + 1]; ++k) {
+  for (int k = row_begin(B, node_id); k < row_end(B, node_id); ++k) {
     int n = B->col[k] * s->cp->dim;
     if (p->closed[n] != base->closed[n]) return 0;
   }
@@ -359,12 +367,8 @@ static const double CHORD =
     0x1p-4; /* -, of it: residual allowed after a 3-D update */
 
 status pattern_new(int dim, int n, pattern *p) {
-  PASS_NEW(p->closed, dim * n);
-  PASS_NEW(p->mode, n);
-  PASS_NEW(p->e, n * (dim - 1));
-  PASS_NEW(p->kappa, n);
-  PASS_NEW(p->free_id, dim * n);
-  PASS_NEW(p->place, dim * n);
+  PASS_NEW_ALL(OF(p->closed, dim * n), OF(p->mode, n), OF(p->e, n * (dim - 1)),
+               OF(p->kappa, n), OF(p->free_id, dim * n), OF(p->place, dim * n));
   return OK;
 }
 
@@ -372,65 +376,33 @@ void pattern_free(pattern *p) {
   RELEASE(p->closed, p->mode, p->e, p->kappa, p->free_id, p->place);
 }
 
-void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
-  size_t nodes = (size_t)n, m = nodes * (size_t)dim;
-  memcpy(to->closed, from->closed, m * sizeof *to->closed);
-  memcpy(to->mode, from->mode, nodes * sizeof *to->mode);
-  memcpy(to->e, from->e, (m - nodes) * sizeof *to->e);
-  memcpy(to->kappa, from->kappa, nodes * sizeof *to->kappa);
-  memcpy(to->free_id, from->free_id, m * sizeof *to->free_id);
-  memcpy(to->place, from->place, m * sizeof *to->place);
-  to->n_free = from->n_free;
-}
-
 void newton_system_free(newton_system *s) {
   if (s == NULL) return;
-  void *const blocks[] = {s->inverse.column,
-                          s->inverse.X,
-                          s->inverse.C,
-                          s->rows,
-                          s->product,
-                          s->changed,
-                          s->b,
-                          s->x,
-                          s->du,
-                          s->z,
-                          s->weight,
-                          s->inverse.small_pivot};
-  for (size_t i = 0; i < sizeof blocks / sizeof *blocks; ++i)
-    memory_free(blocks[i]);
   dense_free(&s->K);
   pattern_free(&s->base);
-  memory_free(s);
+  RELEASE(s->inverse.column, s->inverse.X, s->inverse.C, s->rows, s->product,
+          s->changed, s->b, s->x, s->du, s->z, s->weight,
+          s->inverse.small_pivot, s);
 }
 
 status newton_system_new(const contact_problem *cp, newton_system **out) {
-  status st = OK;
-  newton_system *s = NULL;
+  newton_system *s;
   size_t m = (size_t)cp->m, capacity = m / SHARE + 1;
-  NEW(s, 1);
+  PASS_NEW(s, 1);
+  *out = s;
   s->m = cp->m;
   s->n_node = (size_t)cp->n;
   s->inverse.capacity = (int)capacity;
-  TRY(dense_new(cp->m, &s->K));
-  TRY(pattern_new(cp->dim, cp->n, &s->base));
-  NEW(s->inverse.column, m);
-  NEW(s->inverse.X, m * capacity);
-  NEW(s->inverse.C, capacity * capacity);
-  NEW(s->rows, m * CHUNK);
-  NEW(s->product, CHUNK * capacity);
-  NEW(s->changed, m);
-  NEW_REALS(m, &s->b, &s->x, &s->du);
-  NEW(s->z, capacity);
-  NEW(s->weight, capacity);
-  NEW(s->inverse.small_pivot, capacity);
+  PASS(dense_new(cp->m, &s->K));
+  PASS(pattern_new(cp->dim, cp->n, &s->base));
+  PASS_NEW_ALL(OF(s->inverse.column, m), OF(s->inverse.X, m * capacity),
+               OF(s->inverse.C, capacity * capacity), OF(s->rows, m * CHUNK),
+               OF(s->product, CHUNK * capacity), OF(s->changed, m), OF(s->b, m),
+               OF(s->x, m), OF(s->du, m), OF(s->z, capacity),
+               OF(s->weight, capacity), OF(s->inverse.small_pivot, capacity));
   s->power = dense_power(cp->m, cp->A);
   s->symmetric = -1;
-  *out = s;
-  s = NULL;
-done:
-  newton_system_free(s);
-  return st;
+  return OK;
 }
 
 /* FNV-1a of B; 0: none. */

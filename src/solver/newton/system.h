@@ -37,7 +37,6 @@ typedef struct pattern {
 } pattern;
 status pattern_new(int dim, int n, pattern *p);
 void pattern_free(pattern *p);
-void pattern_copy(int dim, int n, const pattern *from, pattern *to);
 
 typedef struct newton_system newton_system;
 status newton_system_new(const contact_problem *cp, newton_system **out);
