@@ -18,6 +18,8 @@ static const double inner_part = 0.5;
  * part of the radius if it is less: a line through the others up to "smooth"
  * elements away stands for them. */
 static const double scattering = 4, scattering_part = 0.25, smooth = 16;
+/* Distances that differ by less are equal, as of nodes of a regular mesh, -. */
+static const double rounding = 1e-9;
 
 typedef struct corner {
   double x[3];
@@ -58,7 +60,7 @@ static void set_growth(const work *w, corner *c) {
     const double outer = w->m->dim == 3 ? tube_radius * size : size;
     double q = fmin(1, (outer - r) / (outer * (1 - inner_part)));
     if (w->m->dim == 3) q *= fmax(0, 1 - fabs(at.s) / (tube_length * size));
-    c->q[k] = fmax(0, q);
+    c->q[k] = q > rounding ? q : 0;
     for (int i = 0; i < 3; ++i) c->Q[k][i] = c->q[k] * at.axis[i];
   }
 }
@@ -280,17 +282,23 @@ static void add_to_trend(trend *to, double x, const double t[3]) {
   }
 }
 
+/* 1: a line goes through the tractions at that distance behind the front. */
+static int is_smooth(const work *w, double behind) {
+  return behind >= w->scatter && behind <= (1 + rounding) * smooth * w->p->size;
+}
+
 /* Lines through the tractions that do not scatter, on each side. */
 static void find_trends(work *w) {
   const int dim = w->m->dim;
-  w->scatter = fmin(scattering * w->p->size, scattering_part * w->p->radius);
+  w->scatter = (1 - rounding) *
+               fmin(scattering * w->p->size, scattering_part * w->p->radius);
   for (int i = 0; i < 2 * w->crack->n; ++i) {
     const int face = set_lip(w, i);
     for (int k = 0; k < dim && face >= 0; ++k) {
       local at;
       double t[3];
       locate(w->p, w->at[k].x, &at);
-      if (-at.x[0] < w->scatter || -at.x[0] > smooth * w->p->size) continue;
+      if (!is_smooth(w, -at.x[0])) continue;
       traction_of(w, w->m->face[dim * face + k], &at, t);
       add_to_trend(&w->side[w->above], -at.x[0], t);
     }
@@ -434,7 +442,7 @@ static void derive_trends(work *w, const taken *side, double *by) {
       local at;
       double t[3];
       locate(w->p, w->at[k].x, &at);
-      if (-at.x[0] < w->scatter || -at.x[0] > smooth * w->p->size) continue;
+      if (!is_smooth(w, -at.x[0])) continue;
       for (int c = 0; c < 3; ++c)
         t[c] = from->level[c] + from->slope[c] * (of->n * -at.x[0] - of->x);
       add_turned(w, &at, t, w->m->face[dim * face + k], by);

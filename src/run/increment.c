@@ -182,7 +182,7 @@ static void set_problem(run *r) {
       .side_gap = all && has_side_gap(r->surface) ? r->problem.side_gap : NULL,
       .held = all && has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c),
-      .load = r->loads.largest};
+      .load = fmax(r->loads.largest, increment_strain_load(r))};
   if (r->nodes.reach.in != NULL)
     reach_cut(&r->nodes.reach, &r->problem.part, &r->problem.cp);
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &r->problem.cp);
@@ -220,6 +220,11 @@ double increment_free_load(const run *r, const double *F) {
   for (size_t i = 0; i < r->n_dof; ++i)
     if (!r->body.fixed[i]) most = fmax(most, fabs(F[i]));
   return most;
+}
+
+double increment_strain_load(const run *r) {
+  if (r->strains.eigen.n == 0) return 0.0;
+  return increment_free_load(r, r->strains.load);
 }
 
 status increment_load(run *r, double t) {

@@ -375,6 +375,9 @@ status visco_keep(run *r, archive *a);
 status increment_solve(run *r, double t);
 /* Largest of the loads F[dim*n_node] that no support bears at once, N. */
 double increment_free_load(const run *r, const double *F);
+/* The same with those of heat and inelastic strains, whose rounding is left
+ * where they cancel, N; 0: no such strains. */
+double increment_strain_load(const run *r);
 /* v[dim*n] of the contact frames as a vector of r->problem.cp: v itself, or in
  * r->problem.row[k], k = 0 or 1, where it has not all unknowns. */
 double *run_rows(const run *r, int k, double *v);

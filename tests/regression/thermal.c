@@ -63,6 +63,25 @@ static void balanced(const job *j) {
   dat_free(&e);
 }
 
+/* The forces of a body that expands freely on a floor are the rounding of those
+ * of its heat: they lift nothing. */
+START_TEST(heat_alone_lifts_no_body) {
+  static const char *const size[] = {"N = 3", "N = 4"};
+  scene s = {"square.geo",
+             size[_i],
+             0.3,
+             ALPHA,
+             "CPS3",
+             FLOOR,
+             "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\n" HEAT(
+                 100.) "*PRINT, ELEMENTS\n*END STEP\n"};
+  job j = run_scene(&s);
+  all_equal(&j, "strain_yy", 1.2e-3, 1.2e-3);
+  all_equal(&j, "stress_yy", 0, 240);
+  job_end(&j);
+}
+END_TEST
+
 /* A bar between contacts carries -E alpha dT; the force is its height. */
 START_TEST(bar_between_contacts) {
   scene s = {"square.geo",
@@ -517,6 +536,7 @@ int main(void) {
   tcase_add_test(tests, bar_between_contacts);
   tcase_add_test(tests, held_on_all_sides);
   tcase_add_test(tests, free_expansion_has_no_stress);
+  tcase_add_loop_test(tests, heat_alone_lifts_no_body, 0, 2);
   tcase_add_test(tests, secants_over_the_temperature);
   tcase_add_test(tests, each_element_counts_from_its_own_temperature);
   tcase_add_test(tests, temperatures_run_through_the_steps);

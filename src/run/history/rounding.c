@@ -186,7 +186,7 @@ int rounding_hides_works(const run *r) {
 }
 
 static double largest_force(const run *r) {
-  return fmax(largest_entry(r->n_dof, r->now.F),
+  return fmax(fmax(largest_entry(r->n_dof, r->now.F), increment_strain_load(r)),
               largest_entry((size_t)r->nodes.n_c, r->now.rc));
 }
 
