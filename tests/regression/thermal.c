@@ -82,6 +82,37 @@ START_TEST(heat_alone_lifts_no_body) {
 }
 END_TEST
 
+/* A free bar reaches a wall at the end of an increment: there the force is the
+ * rounding of the gap, and later E (alpha dT - gap / length) by its height. */
+START_TEST(gap_closed_by_heat_at_an_increment) {
+  const double length[] = {1, 2, 5}, alpha[] = {1e-5, 1e-5, 2e-5};
+  for (int n = 1; n <= 4; n *= 2) {
+    const double gap = alpha[_i] * 125 * length[_i];
+    job j = job_begin("wall");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "wall.inp",
+              "*PARAMETER\nN = %d\nLX = %g\nKIND = 1\n"
+              "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+              "1000., 0.\n*EXPANSION\n%g\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n%.12g, 0.\n-1., 0.\n"
+              "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n*STEP\n"
+              "*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
+              "*TEMPERATURE\nBODY, \"500*t\"\n*PRINT, TOTALS\n*END STEP\n",
+              n, length[_i], alpha[_i], length[_i] + gap);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "N = %d: exit %d: %s", n, code, j.errors);
+    for (int k = 0; k < 4; ++k) {
+      dat t = job_table(&j, "TOTALS", k);
+      ck_assert_double_eq_tol(fabs(dat_at(&t, 0, "force_x")),
+                              1000 * alpha[_i] * 125 * k, 1e-9);
+      dat_free(&t);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* A bar between contacts carries -E alpha dT; the force is its height. */
 START_TEST(bar_between_contacts) {
   scene s = {"square.geo",
@@ -537,6 +568,7 @@ int main(void) {
   tcase_add_test(tests, held_on_all_sides);
   tcase_add_test(tests, free_expansion_has_no_stress);
   tcase_add_loop_test(tests, heat_alone_lifts_no_body, 0, 2);
+  tcase_add_loop_test(tests, gap_closed_by_heat_at_an_increment, 0, 3);
   tcase_add_test(tests, secants_over_the_temperature);
   tcase_add_test(tests, each_element_counts_from_its_own_temperature);
   tcase_add_test(tests, temperatures_run_through_the_steps);

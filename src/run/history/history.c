@@ -271,12 +271,11 @@ static int same_vector(size_t n, const double *a, const double *b) {
 /* 1 if a contact that no given force presses has moved the body by no more than
  * the rounding of the coordinates, which its gaps have. */
 static int touched_by_rounding(const run *r) {
-  const size_t n = (size_t)(r->msh->dim * r->msh->n_node);
-  const double far = largest_entry(n, r->msh->x);
+  const double least = rounding_of_gaps(r);
   for (int i = 0; i < r->m->n.contact; ++i)
     if (r->m->contacts[i].force.given) return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
-    if (fabs(r->now.u[i] - r->old.u[i]) > 16 * DBL_EPSILON * far) return 0;
+    if (fabs(r->now.u[i] - r->old.u[i]) > least) return 0;
   return 1;
 }
 

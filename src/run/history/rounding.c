@@ -173,12 +173,6 @@ static double lost(const run *r) {
   return CARRIED * largest_entry(r->n_dof, r->now.u);
 }
 
-int rounding_hides_strains(const run *r) {
-  const double u = lost(r);
-  return r->now.energy.strain <=
-         r->msh->n_node * condensed_stiffest(r->c) * u * u;
-}
-
 int rounding_hides_works(const run *r) {
   const double u = largest_entry(r->n_dof, r->now.u);
   return r->now.energy.largest <=
@@ -207,13 +201,26 @@ static int moves_alone(const run *r) {
          largest_entry((size_t)r->nodes.n_c, r->now.rc) == 0.0;
 }
 
+double rounding_of_gaps(const run *r) {
+  const size_t n = (size_t)(r->msh->dim * r->msh->n_node);
+  return 16 * DBL_EPSILON * largest_entry(n, r->msh->x);
+}
+
+/* 1: an error of the displacements by u explains all strains. */
+static int hides_strains(const run *r, double u) {
+  return r->now.energy.strain <=
+         r->msh->n_node * condensed_stiffest(r->c) * u * u;
+}
+
+int rounding_hides_strains(const run *r) { return hides_strains(r, lost(r)); }
+
 int rounding_is_all(const run *r) {
+  const double force = largest_entry((size_t)r->nodes.n_c, r->now.rc);
   if (forces_hide_strains(r)) return 1;
   if (r->strains.eigen.n == 0 && moves_alone(r)) return 1;
   if (r->errors.strained || increment_free_load(r, r->now.F) > 0.0) return 0;
-  return largest_entry((size_t)r->nodes.n_c, r->now.rc) <=
-             condensed_stiffest(r->c) * lost(r) &&
-         rounding_hides_strains(r);
+  const double u = force > 0.0 ? fmax(lost(r), rounding_of_gaps(r)) : lost(r);
+  return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
 /* Residual of equilibrium without contact forces. */
