@@ -159,7 +159,7 @@ START_TEST(principal_stresses_are_those_of_the_tensor) {
   for (size_t i = 0; i < sizeof tensors / sizeof *tensors; ++i) {
     memcpy(made->array[MADE_STRESS], tensors[i].stress, sizeof(double[6]));
     for (int k = 0; k < 3; ++k) {
-      char name[20];
+      char name[32];
       snprintf(name, sizeof name, "principal_%d", k + 1);
       ck_assert_double_eq_tol(value_of(made, PER_ELEMENT, name, 0),
                               tensors[i].principal[k], 1e-14);
