@@ -2,6 +2,7 @@
  * Contact frames: tangents, fixed directions, oblique frames of corners.
  */
 #include "contact/frame.h"
+
 #include "base/vector.h"
 
 #include <math.h>

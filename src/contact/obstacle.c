@@ -7,6 +7,7 @@
  *                     cylinder both without their part along the axis
  */
 #include "contact/obstacle.h"
+
 #include "base/vector.h"
 
 #include <math.h>

@@ -10,8 +10,8 @@
 #include "contact/pair.h"
 
 #include "base/memory.h"
-#include "contact/frame.h"
 #include "base/vector.h"
+#include "contact/frame.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,6 @@
 /* All states of a single node (single.h). */
 #include "solver/single.h"
+
 #include "base/vector.h"
 
 #include <lapacke.h>

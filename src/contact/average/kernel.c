@@ -2,6 +2,7 @@
  * The table of kernels and their normalisation.
  */
 #include "contact/average/kernel.h"
+
 #include "base/vector.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
  * ACM 17, 1974) and parted into triangles from its first corner.
  */
 #include "contact/mortar/clip.h"
+
 #include "base/vector.h"
 
 #include <math.h>

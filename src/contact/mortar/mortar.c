@@ -6,8 +6,8 @@
 #include "contact/mortar/mortar.h"
 
 #include "base/memory.h"
-#include "contact/mortar/partner.h"
 #include "base/vector.h"
+#include "contact/mortar/partner.h"
 
 #include <math.h>
 #include <stdlib.h>

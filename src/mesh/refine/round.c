@@ -43,10 +43,6 @@ void round_surface_free(round_surface *s) {
 
 /* ---- vectors ------------------------------------------------------------- */
 
-static void add(double *a, double factor, const double *b) {
-  for (int k = 0; k < 3; ++k) a[k] += factor * b[k];
-}
-
 /* To unit length; 0: it has none. */
 static int normalise(double *a) {
   const double length = sqrt(dot(3, a, a));
@@ -138,7 +134,8 @@ static void set_tangents(round_surface *s, int n_all) {
     const double sine = turn(e[0], e[1]);
     if (sine > SMOOTH) continue;
     if (sine < FLAT) s->flat[i] |= CURVE_FLAT;
-    for (int k = 0; k < 2; ++k) add(t, 1.0 / dot(3, e[k], e[k]), e[k]);
+    for (int k = 0; k < 2; ++k)
+      add_scaled(3, 1.0 / dot(3, e[k], e[k]), e[k], t);
     normalise(t);
   }
   /* Where a curve goes over into a line it has no circle through both. */
@@ -186,7 +183,7 @@ static void set_normals(round_surface *s, unsigned char *bent) {
         for (int k = 0; k < 3; ++k) n[k] *= sign;
         if (turn(n, sum) > FLAT) bent[at] = 1;
       }
-      add(sum, 1.0 / (dot(3, e[0], e[0]) * dot(3, e[1], e[1])), n);
+      add_scaled(3, 1.0 / (dot(3, e[0], e[0]) * dot(3, e[1], e[1])), n, sum);
     }
 }
 
@@ -204,7 +201,7 @@ static void set_border_normal(round_surface *s, int i) {
   if (dot(3, c, c) > SMOOTH * SMOOTH)
     memcpy(n, c, sizeof c);
   else if (known > 0)
-    add(n, -dot(3, n, t[0]), t[0]);
+    add_scaled(3, -dot(3, n, t[0]), t[0], n);
   normalise(n);
 }
 
@@ -213,7 +210,7 @@ static int surface_tangent(const round_surface *s, int a, int b, double *t) {
   const double *n = s->normal + 3 * a;
   if (!(dot(3, n, n) > 0.0)) return 0;
   between(s, a, b, t);
-  add(t, -dot(3, t, n), n);
+  add_scaled(3, -dot(3, t, n), n, t);
   return normalise(t);
 }
 
@@ -230,9 +227,9 @@ static void improve_border(round_surface *s, const double *within) {
         between(s, v[a], v[b], c);
         normalise(c);
         memcpy(m, n, sizeof m);
-        add(m, -2.0 * dot(3, n, c), c);
+        add_scaled(3, -2.0 * dot(3, n, c), c, m);
         double *sum = s->normal + 3 * v[a];
-        add(sum, dot(3, sum, m) < 0.0 ? -1.0 : 1.0, m);
+        add_scaled(3, dot(3, sum, m) < 0.0 ? -1.0 : 1.0, m, sum);
       }
 }
 
@@ -326,8 +323,8 @@ int round_surface_middle(const round_surface *s, int a, int b, double *middle) {
   const double length = sqrt(dot(3, c, c));
   normalise(c);
   const double cosine = 0.5 * (dot(3, ta, c) - dot(3, tb, c));
-  add(ta, 1.0, tb); /* ta less the tangent at b in the same sense */
-  add(ta, -dot(3, ta, c), c);
+  add_scaled(3, 1.0, tb, ta); /* ta less the tangent at b in the same sense */
+  add_scaled(3, -dot(3, ta, c), c, ta);
   for (int k = 0; k < 3; ++k)
     middle[k] = 0.5 * (s->x[3 * a + k] + s->x[3 * b + k]) +
                 length / (4.0 * (1.0 + cosine)) * ta[k];

@@ -1,5 +1,6 @@
 /* Columns of the nodes and of the elements. */
 #include "run/column_row.h"
+
 #include "base/vector.h"
 
 #include <math.h>
