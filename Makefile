@@ -338,6 +338,7 @@ layers: $(objects)
 style:
 	$(Q)CC="$(CC)" tools/test_checks build/test_checks
 	$(Q)tools/check_style src tests
+	$(Q)tests/mutants/run --check
 
 bench-run: $(program) $(bench)
 	$(Q)for b in $(filter-out %/auto %/fclib,$(bench)); do $$b || exit 1; done
