@@ -261,9 +261,9 @@ sums-update: $(program) $(mesher) $(kept) $(out)/tests/regression/examples
 tools_py := $(patsubst %.py,$(out)/%,$(wildcard tests/tools/*.py))
 pages    := $(out)/tests/tools/browser
 .PHONY: tool-tests browser-test browser-run gallery gallery-run
-tool-tests: $(program) $(filter-out $(pages),$(tools_py))
-	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) tools/run_tests \
-	  $(filter-out $(program),$^)
+tool-tests: $(program) $(mesher) $(kept) $(filter-out $(pages),$(tools_py))
+	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
+	  PROTIS_MESH=$(abspath $(kept)) tools/run_tests $(filter $(tools_py),$^)
 
 $(out)/tests/tools/%: tests/tools/%.py
 	$(Q)install -D $< $@

@@ -8,9 +8,10 @@
  */
 #include "base/memory.h"
 #include "effects/rows.h"
-#include "run/history/history.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
+#include "run/history/history.h"
+#include "support/folder.h"
 #include "support/grid.h"
 #include "support/points.h"
 #include "support/unit.h"
@@ -197,14 +198,14 @@ static int run_child(const char *path, int dim) {
 
 static int run_mutant(const deck_texts *d, int which, const char *text,
                       int dim) {
-  char path[64];
-  snprintf(path, sizeof path, "/tmp/protis-mutant-%d.inp", (int)getpid());
+  char folder[64], path[80];
+  snprintf(path, sizeof path, "%s/mutant.inp", folder_new(folder));
   FILE *f = fopen(path, "w");
   ck_assert_msg(f != NULL, "%s", path);
   fputs(text, f);
   fclose(f);
   int code = run_child(path, dim);
-  unlink(path);
+  folder_remove(folder);
   if (code != 0 && code != ACCEPTED)
     fprintf(stderr, "---- %s: %d\n%s----\n", d->path[which], code, text);
   return code;

@@ -3,6 +3,7 @@
  */
 #include "support/decks.h"
 
+#include "support/folder.h"
 #include "support/unit.h"
 
 #include <stdio.h>
@@ -24,18 +25,16 @@ void decks_write(const char *name, const char *content) {
 
 /* The tests run in a folder of their own. */
 void decks_enter(void) {
-  char folder[] = "/tmp/protis_deck_XXXXXX";
-  ck_assert_ptr_nonnull(mkdtemp(folder));
+  char folder[64];
+  folder_new(folder);
   ck_assert_int_eq(chdir(folder), 0);
 }
 
 void decks_leave(void) {
   char folder[200];
   ck_assert_ptr_nonnull(getcwd(folder, sizeof folder));
-  ck_assert_int_eq(system("rm -f ./*.inp sub/*; rmdir sub 2>/dev/null; true"),
-                   0);
-  ck_assert_int_eq(chdir("/tmp"), 0);
-  ck_assert_int_eq(rmdir(folder), 0);
+  ck_assert_int_eq(chdir("/"), 0);
+  folder_remove(folder);
 }
 
 char *decks_messages(void) { return text; }

@@ -3,6 +3,8 @@
  */
 #include "support/job.h"
 
+#include "support/folder.h"
+
 #include <check.h>
 #include <ctype.h>
 #include <glob.h>
@@ -19,19 +21,13 @@ enum { PATH = 512, LINE = 8192 };
 
 job job_begin(const char *name) {
   job j = {.dir = ""};
-  const char *room = getenv("TMPDIR");
-  int n = snprintf(j.dir, sizeof j.dir, "%s/protis-test-XXXXXX",
-                   room != NULL ? room : "/tmp");
-  ck_assert_int_lt(n, (int)sizeof j.dir);
+  folder_new(j.dir);
   snprintf(j.name, sizeof j.name, "%s", name);
-  ck_assert_ptr_nonnull(mkdtemp(j.dir));
   return j;
 }
 
 void job_end(job *j) {
-  char command[PATH];
-  snprintf(command, sizeof command, "rm -rf '%s'", j->dir);
-  ck_assert_int_eq(system(command), 0);
+  folder_remove(j->dir);
   free(j->errors);
   free(j->text);
   j->errors = j->text = NULL;
@@ -49,11 +45,7 @@ void job_write(const job *j, const char *file, const char *format, ...) {
   ck_assert_int_eq(fclose(f), 0);
 }
 
-void job_copy(const job *j, const char *path) {
-  char command[2 * PATH];
-  snprintf(command, sizeof command, "cp '%s' '%s/'", path, j->dir);
-  ck_assert_int_eq(system(command), 0);
-}
+void job_copy(const job *j, const char *path) { folder_copy(j->dir, path); }
 
 void job_copy_meshes(const job *j, const char *deck) {
   static const char *const patterns[] = {"*.geo", "*.msh"};
@@ -87,23 +79,10 @@ void job_coarsen(const char *deck, char *words, size_t size) {
   fclose(f);
 }
 
-static char *read_all(const char *path) {
-  FILE *f = fopen(path, "rb");
-  if (f == NULL) return NULL;
-  fseek(f, 0, SEEK_END);
-  long size = ftell(f);
-  rewind(f);
-  char *text = calloc((size_t)size + 1, 1);
-  ck_assert_ptr_nonnull(text);
-  ck_assert_uint_eq(fread(text, 1, (size_t)size, f), (size_t)size);
-  fclose(f);
-  return text;
-}
-
 char *job_deck_text(const char *deck) {
   char path[PATH];
   snprintf(path, sizeof path, "%s.inp", deck);
-  char *text = read_all(path);
+  char *text = file_read(path, NULL);
   ck_assert_msg(text != NULL, "%s", path);
   return text;
 }
@@ -111,7 +90,7 @@ char *job_deck_text(const char *deck) {
 char *job_file(const job *j, const char *suffix) {
   char path[PATH];
   snprintf(path, sizeof path, "%s/%s.%s", j->dir, j->name, suffix);
-  return read_all(path);
+  return file_read(path, NULL);
 }
 
 int job_has(const job *j, const char *suffix) {
@@ -121,10 +100,13 @@ int job_has(const job *j, const char *suffix) {
 }
 
 void job_clear(const job *j) {
-  char command[PATH];
-  snprintf(command, sizeof command, "cd '%s' && rm -f %s.[!ig]*", j->dir,
-           j->name);
-  ck_assert_int_eq(system(command), 0);
+  char files[PATH];
+  glob_t found;
+  snprintf(files, sizeof files, "%s/%s.[!ig]*", j->dir, j->name);
+  if (glob(files, 0, NULL, &found) == 0)
+    for (size_t i = 0; i < found.gl_pathc; ++i)
+      ck_assert_int_eq(remove(found.gl_pathv[i]), 0);
+  globfree(&found);
 }
 
 long job_stage(const job *j, const char *stage, long *bytes) {
@@ -158,10 +140,10 @@ static int run_command(job *j, const char *dir, const char *command) {
   int code = system(line);
   snprintf(path, sizeof path, "%s/stderr.txt", j->dir);
   free(j->errors);
-  j->errors = read_all(path);
+  j->errors = file_read(path, NULL);
   snprintf(path, sizeof path, "%s/stdout.txt", j->dir);
   free(j->text);
-  j->text = read_all(path);
+  j->text = file_read(path, NULL);
   return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
 }
 

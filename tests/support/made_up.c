@@ -199,31 +199,3 @@ void made_up_free(made_up *run) {
   memory_free(run->status);
   memory_free(run);
 }
-
-char *folder_new(char path[64]) {
-  const char *base = getenv("TMPDIR");
-  snprintf(path, 64, "%s/protis-XXXXXX", base != NULL ? base : "/tmp");
-  return mkdtemp(path);
-}
-
-void folder_remove(const char *path) {
-  char command[128];
-  snprintf(command, sizeof command, "chmod -R u+w '%s'; rm -rf '%s'", path,
-           path);
-  if (system(command) != 0) abort();
-}
-
-char *folder_file(const char *path, const char *name, size_t *size) {
-  char full[256];
-  snprintf(full, sizeof full, "%s/%s", path, name);
-  FILE *f = fopen(full, "rb");
-  if (f == NULL) return NULL;
-  fseek(f, 0, SEEK_END);
-  long n = ftell(f);
-  rewind(f);
-  char *text = need(calloc((size_t)n + 1, 1));
-  size_t got = fread(text, 1, (size_t)n, f);
-  fclose(f);
-  if (size != NULL) *size = got;
-  return text;
-}

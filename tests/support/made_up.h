@@ -56,10 +56,4 @@ void made_up_advance(made_up *run, int total_no);
 /* What the state holds in item of an array. */
 double made_up_value(int array, int item, int total_no);
 
-/* A new empty folder below $TMPDIR or /tmp; removed with all in it. */
-char *folder_new(char path[64]);
-void folder_remove(const char *path);
-/* The bytes of PATH/NAME (caller frees) with a zero after them, or NULL. */
-char *folder_file(const char *path, const char *name, size_t *size);
-
 #endif

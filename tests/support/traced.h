@@ -31,7 +31,7 @@ typedef struct traced {
 
 /* protis JOB --no-timing with further words (at most two, ended by NULL);
  * messages go to stderr.txt of the folder and to j->errors. Exit code, or
- * 1000 + signal. */
+ * 1000 + signal. t NULL: without the tracer. */
 int traced_run(job *j, const char *const *words, traced *t);
 
 /* All result files of a and b are equal, byte by byte; else the first that

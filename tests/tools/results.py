@@ -21,6 +21,8 @@ import numpy as np
 sys.path.insert(0, "tools/python")
 import protis  # noqa: E402
 
+# The meshes of all runs are made once (tools/run_tests).
+os.environ["LD_PRELOAD"] = os.environ.get("PROTIS_MESH", "")
 PROGRAM = os.path.abspath(os.environ.get("PROTIS", "build/release/protis"))
 os.environ["PROTIS"] = PROGRAM
 DECK = pathlib.Path("input/greco/greco.inp")

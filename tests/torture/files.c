@@ -38,8 +38,7 @@ static const struct {
 
 /* NULL, or what is wrong after the restart of a run that failed. */
 static const char *restart_fault(const job *whole, job *j) {
-  traced quiet = {.action = TRACE_COUNT};
-  if (traced_run(j, again, &quiet) != 0) return "restart: exit code";
+  if (traced_run(j, again, NULL) != 0) return "restart: exit code";
   return traced_difference(whole, j) == NULL ? NULL : "restart: wrong files";
 }
 

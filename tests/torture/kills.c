@@ -68,7 +68,7 @@ static int run_killed(job *j, int at) {
 
 /* To the end from what a killed run left; NULL or what is wrong. */
 static const char *go_on(const job *whole, job *j) {
-  if (run(j, again, 0, NULL) != 0) return "restart: exit code";
+  if (traced_run(j, again, NULL) != 0) return "restart: exit code";
   return traced_difference(whole, j) == NULL ? NULL : "wrong files";
 }
 

@@ -21,12 +21,9 @@
 static const char *const nothing[] = {NULL, NULL};
 static const char *const again[] = {"--restart", NULL};
 
-static int run(job *j, const char *const *words, int at, int signal_no,
-               int *changes) {
+static int stop(job *j, int at, int signal_no) {
   traced t = {.action = TRACE_SIGNAL, .at = at, .number = signal_no};
-  int code = traced_run(j, words, &t);
-  if (changes != NULL) *changes = t.changes;
-  return code;
+  return traced_run(j, nothing, &t);
 }
 
 /* NULL, or what is wrong with a run that was stopped and went on. A signal
@@ -37,7 +34,7 @@ static const char *fault(const job *whole, job *j, int code, int signal_no,
   int early = stopped == 1000 + signal_no && !job_has(j, "sta");
   if (stopped != 128 + signal_no && !early)
     return stopped == code ? NULL : "stop: exit code";
-  if (run(j, again, 0, 0, NULL) != code) return "restart: exit code";
+  if (traced_run(j, again, NULL) != code) return "restart: exit code";
   return traced_difference(whole, j) == NULL ? NULL : "restart: other files";
 }
 
@@ -45,21 +42,21 @@ static const char *fault(const job *whole, job *j, int code, int signal_no,
  * one of which is not stopped. The answer: 0, the deck is not for this row. */
 static int stop_and_go_on(points *t, job *whole, job *j, const char *what,
                           double mu) {
-  int changes;
+  traced usual = {.action = TRACE_COUNT};
   long n = points_number(1, 0.0003);
   kept_mesh(whole);
-  int code = run(whole, nothing, 0, 0, &changes);
+  int code = traced_run(whole, nothing, &usual);
   int taken = code == 0 || code == 1;
   for (long k = 0; taken && k < n; ++k) {
-    int at = (int)points_spread(k, n, changes);
+    int at = (int)points_spread(k, n, usual.changes);
     int signal_no = t->tried % 2 == 0 ? SIGINT : SIGTERM;
     job_clear(j);
     const char *wrong =
-        fault(whole, j, code, signal_no, run(j, nothing, at, signal_no, NULL));
+        fault(whole, j, code, signal_no, stop(j, at, signal_no));
     points_try(t);
     if (wrong != NULL)
       points_lose(t, "%s, mu %g: stopped at change %d of %d: %s (%s): %.200s",
-                  what, mu, at, changes, wrong,
+                  what, mu, at, usual.changes, wrong,
                   wrong[0] == 'r' && traced_difference(whole, j) != NULL
                       ? traced_difference(whole, j)
                       : "-",

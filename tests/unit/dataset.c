@@ -3,7 +3,7 @@
 #include "base/archive/archive.h"
 
 #include "base/memory.h"
-#include "support/made_up.h"
+#include "support/folder.h"
 #include "support/unit.h"
 #include "base/system/input.h"
 

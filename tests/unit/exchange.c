@@ -4,7 +4,7 @@
 #include "support/contact_case.h"
 #include "support/decks.h"
 #include "support/fclib_file.h"
-#include "support/made_up.h"
+#include "support/folder.h"
 #include "support/unit.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
 #include "output/writers.h"
 #include "support/contact_case.h"
 #include "support/fclib_file.h"
-#include "support/made_up.h"
+#include "support/folder.h"
 #include "support/unit.h"
 
 #include <math.h>

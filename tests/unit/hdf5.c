@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "output/hdf5/file.h"
+#include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 

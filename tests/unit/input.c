@@ -1,7 +1,7 @@
 /* src/base/system/input.c: what is opened, and what is not. */
 #include "base/system/input.h"
 
-#include "support/made_up.h"
+#include "support/folder.h"
 #include "support/unit.h"
 
 #include <stdio.h>

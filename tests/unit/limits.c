@@ -1,7 +1,7 @@
 /* src/base/system/limits.c: groups of a folder that stands for the root. */
 #include "base/system/limits.h"
 
-#include "support/made_up.h"
+#include "support/folder.h"
 #include "support/unit.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/timer.h"
 #include "output/writers.h"
+#include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 

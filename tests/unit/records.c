@@ -5,7 +5,7 @@
 #include <hdf5.h>
 
 #include "output/hdf5/file.h"
-#include "support/made_up.h"
+#include "support/folder.h"
 #include "support/unit.h"
 
 #include <fcntl.h>

@@ -1,6 +1,7 @@
 /* src/output/tabular.c: JOB.dat of a made-up run, read back word by word. */
 #include "base/memory.h"
 #include "output/writers.h"
+#include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 
@@ -11,7 +12,7 @@
 static char *write_tables(made_up *made, int told) {
   char dir[64];
   tabular *t = NULL;
-  ck_assert_ptr_nonnull(folder_new(dir));
+  folder_new(dir);
   ck_assert_int_eq(tabular_open(&made->m, made->msh, dir, -1, &t), OK);
   for (int i = 1; i <= told; ++i) {
     made_up_advance(made, i);

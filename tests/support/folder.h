@@ -1,0 +1,20 @@
+/*
+ * Folders and files of the tests; check fails where the system refuses.
+ */
+#ifndef PROTIS_TESTS_FOLDER_H
+#define PROTIS_TESTS_FOLDER_H
+
+#include <stddef.h>
+
+/* A new empty folder below $TMPDIR or /tmp; removed with all in it. */
+char *folder_new(char path[64]);
+void folder_remove(const char *path);
+/* Copy a file into the folder under its own name. */
+void folder_copy(const char *path, const char *file);
+/* The bytes of a file (caller frees) with a zero after them, or NULL; size may
+ * be NULL. */
+char *file_read(const char *path, size_t *size);
+/* The same of PATH/NAME. */
+char *folder_file(const char *path, const char *name, size_t *size);
+
+#endif
