@@ -29,9 +29,22 @@ double print_next(const print_request *p, const step *s, double after,
   return HUGE_VAL;
 }
 
+enum { ADAPTED = 50 }; /* increments of a step with a tolerance, at most */
+
+static double increments_of(double time, double dt) {
+  return fmax(0.0, ceil(time / fmax(dt, 1e-300) * (1.0 - 1e-9)));
+}
+
 double step_increments(const step *s) {
   if (s->kind == STEP_STATIC || !(s->dt > 0.0)) return 1.0;
-  return fmax(1.0, ceil(s->total / s->dt * (1.0 - 1e-9)));
+  const double n = fmax(1.0, increments_of(s->total, s->dt));
+  return s->visco.tolerance > 0.0 ? fmin(n, ADAPTED) : n;
+}
+
+double step_increments_left(const step *s, double t, double dt, int n_done) {
+  const double n = increments_of(s->start + s->total - t, fmax(dt, s->dt_min));
+  if (!(s->visco.tolerance > 0.0)) return n;
+  return fmin(n, ceil(fmax(ADAPTED - n_done, 0.5 * n_done)));
 }
 
 int frequency_shows(int frequency, int increment_no, int last) {

@@ -514,8 +514,12 @@ const char *contact_card(const contact *c);
 /* 1 if the deck has such a card. */
 int has_card(const model *m, const char *name);
 int model_writes_fields(const model *m); /* 1: JOB.h5 is written */
-/* Increments of a step as the deck has them, at least 1. */
+/* Increments of a step as the deck has them, at least 1; with a tolerance,
+ * which chooses them, no more than 50. */
 double step_increments(const step *s);
+/* Those after time t (s) at its dt, "n_done" being done; with a tolerance no
+ * more than make 50 in all, or half as many again as are done. */
+double step_increments_left(const step *s, double t, double dt, int n_done);
 /* 1: an increment, -1 within one, is shown by "every n-th and the last; 0: the
  * last"; negative: none. */
 int frequency_shows(int frequency, int increment_no, int last);

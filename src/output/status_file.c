@@ -137,11 +137,11 @@ void progress_line(const char *text) {
  */
 static double increments_left(const model *m, const state *s) {
   const step *now = &m->steps[s->step_no - 1];
-  const double rest = now->start + now->total - s->t;
-  double n = fmax(0.0, ceil(rest / fmax(s->dt, now->dt_min) * (1 - 1e-9)));
-  if (s->end_of_step || !(rest > 1e-9 * now->total)) n = 0.0;
+  double n = step_increments_left(now, s->t, s->dt, s->increment_no);
+  if (s->end_of_step || !(now->start + now->total - s->t > 1e-9 * now->total))
+    n = 0.0;
   for (int i = s->step_no; i < m->n.step; ++i)
-    n += ceil(step_increments(&m->steps[i]) * (1 - 1e-9));
+    n += step_increments(&m->steps[i]);
   return n;
 }
 

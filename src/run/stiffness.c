@@ -41,7 +41,8 @@ typedef struct work_ahead {
 
 static double increments_ahead(const run *r) {
   const step *first = r->m->steps, *end = first + r->m->n.step;
-  double n = r->at.step_id == r->step - first ? -(double)r->at.i : 0.0;
+  const int within = r->at.step_id == r->step - first;
+  double n = within ? -fmin((double)r->at.i, step_increments(r->step)) : 0.0;
   for (const step *s = r->step; s < end; ++s) n += step_increments(s);
   return fmax(1.0, n);
 }

@@ -569,6 +569,31 @@ static long size_of(const char *dir, const char *name) {
   return stat(path, &info) == 0 ? (long)info.st_size : -1;
 }
 
+/* The first increment tells nothing of how many there will be. */
+START_TEST(adapted_increments_take_room_as_they_come) {
+  char dir[64];
+  made_up *made = made_up_new(2, 4, 3);
+  hdf5_file *h = NULL;
+  output_options o = plain;
+  o.dir = folder_new(dir);
+  made->m.steps[0].visco.tolerance = 1e-3;
+  made->m.steps[0].dt = 1e-12;
+  made->m.steps[0].total = 1e20;
+  made_up_advance(made, 1);
+  made->s.dt = 1e-12;
+  made->s.end_of_step = 0;
+  ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
+  const long foreseen = size_of(dir, "block.h5");
+  ck_assert_int_lt(foreseen, 1000000);
+  for (int i = 1; i <= 200; ++i)
+    ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
+  ck_assert_int_lt(size_of(dir, "block.h5"), 5 * foreseen);
+  ck_assert_int_eq(hdf5_close(h, 1), OK);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
 START_TEST(disk_full_at_any_size_is_told_and_loses_nothing) {
   char dir[64];
   int dims[2];
@@ -742,6 +767,7 @@ UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
           node_that_leaves_the_surface_has_no_value,
           group_names_with_slashes_and_twins_are_kept,
           killed_at_any_moment_keeps_every_acknowledged_increment,
+          adapted_increments_take_room_as_they_come,
           disk_full_at_any_size_is_told_and_loses_nothing,
           full_file_system_of_any_size_is_told,
           failed_writes_and_copies_are_told, missing_folder_is_told,

@@ -91,7 +91,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
   double n = 0.0;
   for (int i = 0; i < s->m->n.step; ++i) {
     const step *p = &s->m->steps[i];
-    if (p->accuracy.mesh == MESH_ERROR_YES) n += plan_increments(p);
+    if (p->accuracy.mesh == MESH_ERROR_YES) n += step_increments(p);
     n += p->accuracy.mesh == MESH_ERROR_END;
   }
   *w = (effect_work){s->elements, "elements", 1.0 + n,

@@ -83,9 +83,7 @@ stage_cost plan_cost(const plan_row *r);
 /* CPU seconds of all rows so far. */
 double plan_cpu(const effect_plan *p);
 
-/* sizes.c, for the rows. Increments of a step, as in plan_sizes. */
-double plan_increments(const step *s);
-/* Nodes that a set of contacts has, each once; "is"
+/* sizes.c, for the rows. Nodes that a set of contacts has, each once; "is"
  * NULL: all contacts. */
 status plan_contact_nodes(const plan_sizes *s,
                           int (*is)(const friction_rule *rule), double *n);

@@ -17,17 +17,10 @@
 
 #include <math.h>
 
-enum { ADAPTED = 50 }; /* increments of a step with a tolerance, at most */
-
-double plan_increments(const step *s) {
-  double n = step_increments(s);
-  return s->visco.tolerance > 0.0 ? fmin(n, ADAPTED) : n;
-}
-
 /* Increments that an output with this frequency shows. */
 static double shown_of(const step *s, int frequency) {
   if (frequency < 0) return 0.0;
-  return frequency == 0 ? 1.0 : ceil(plan_increments(s) / frequency);
+  return frequency == 0 ? 1.0 : ceil(step_increments(s) / frequency);
 }
 
 double plan_shown(const model *m, int table) {
@@ -67,14 +60,14 @@ static double factors_of(const model *m, const step *s) {
   const scheme *i = s->visco.integrator;
   if (!i->has_theta && i->theta == 0.0 && !i->linear_only) return 0.0;
   if (flows_linearly(m)) return 1.0;
-  return s->visco.initial ? 0.0 : NEWTON_STEPS * plan_increments(s);
+  return s->visco.initial ? 0.0 : NEWTON_STEPS * step_increments(s);
 }
 
 static void count_increments(const model *m, plan_sizes *s) {
   s->factors = 1.0;
   s->flows_linearly = flows_linearly(m);
   for (int i = 0; i < m->n.step; ++i) {
-    double n = plan_increments(&m->steps[i]);
+    double n = step_increments(&m->steps[i]);
     s->increments += n;
     s->equilibria += n * problems_of(m, &m->steps[i]);
     s->factors += factors_of(m, &m->steps[i]);

@@ -182,9 +182,8 @@ done:
 static status grow(hdf5_file *h, const state *s) {
   int rows, records;
   const step *now = &h->m->steps[s->step_no - 1];
-  double left = (now->start + now->total - s->t) / fmax(s->dt, 1e-300);
-  forecast(h->m, s->step_no, fmax(0, ceil(left * (1 - 1e-9))) + 1, &rows,
-           &records);
+  double left = step_increments_left(now, s->t, s->dt, s->increment_no);
+  forecast(h->m, s->step_no, left + 1, &rows, &records);
   rows = h->n_row + (int)fmax(rows, 8 + h->n_row / 2);
   if (h->n_record < h->now.n_record)
     records = h->now.n_record;
