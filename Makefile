@@ -244,8 +244,12 @@ test-run: check
 
 check: unit regression tool-tests torture-slice layers style
 
-unit: $(unit)
-	$(Q)JOBS=$(JOBS) tools/run_tests $^
+# What reads meshes itself, or starts the program by other programs.
+preloads := JOBS=$(JOBS) PROTIS_MESH=$(abspath $(kept)) \
+            TEST_PRELOAD=$(abspath $(kept))
+
+unit: $(mesher) $(kept) $(unit)
+	$(Q)$(preloads) tools/run_tests $(unit)
 
 regression: $(program) $(mesher) $(kept) $(regr)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
@@ -262,8 +266,8 @@ tools_py := $(patsubst %.py,$(out)/%,$(wildcard tests/tools/*.py))
 pages    := $(out)/tests/tools/browser
 .PHONY: tool-tests browser-test browser-run gallery gallery-run
 tool-tests: $(program) $(mesher) $(kept) $(filter-out $(pages),$(tools_py))
-	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
-	  PROTIS_MESH=$(abspath $(kept)) tools/run_tests $(filter $(tools_py),$^)
+	$(Q)$(preloads) PROTIS=$(abspath $(program)) tools/run_tests \
+	  $(filter $(tools_py),$^)
 
 $(out)/tests/tools/%: tests/tools/%.py
 	$(Q)install -D $< $@

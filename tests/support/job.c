@@ -63,16 +63,18 @@ void job_copy_meshes(const job *j, const char *deck) {
 
 void job_coarsen(const char *deck, char *words, size_t size) {
   char line[LINE], name[8];
-  double value;
+  double value, parts;
   FILE *f = fopen(deck, "r");
   ck_assert_ptr_nonnull(f);
   words[0] = '\0';
   while (fgets(line, sizeof line, f) != NULL) {
     const size_t n = strlen(words);
-    if (sscanf(line, "%7[A-Z] = %lf", name, &value) != 2) continue;
+    if (sscanf(line, "DT = \"1/%lf\"", &parts) == 1)
+      snprintf(words + n, size - n, " -D DT=%g", 4 / parts);
+    if (sscanf(line, "%7[A-Z0-9] = %lf", name, &value) != 2) continue;
     if (strcmp(name, "DT") == 0)
       snprintf(words + n, size - n, " -D DT=%g", 4 * value);
-    else if ((strcmp(name, "N") == 0 || strcmp(name, "NC") == 0) && value >= 8)
+    else if (strspn(name, "NC12") == strlen(name) && value >= 8)
       snprintf(words + n, size - n, " -D %s=%g", name,
                value / (value > 30 ? 4 : 2));
   }

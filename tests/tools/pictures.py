@@ -66,8 +66,6 @@ HELD, 1, 3, 0.
 *END STEP
 """
 ROOT = pathlib.Path.cwd()
-# The meshes of all runs are made once (tools/run_tests).
-os.environ["LD_PRELOAD"] = os.environ.get("PROTIS_MESH", "")
 PROGRAM = os.environ.get("PROTIS", str(ROOT / "build/release/protis"))
 SPACE = "{http://www.w3.org/1999/xhtml}"
 

@@ -21,8 +21,6 @@ import numpy as np
 sys.path.insert(0, "tools/python")
 import protis  # noqa: E402
 
-# The meshes of all runs are made once (tools/run_tests).
-os.environ["LD_PRELOAD"] = os.environ.get("PROTIS_MESH", "")
 PROGRAM = os.path.abspath(os.environ.get("PROTIS", "build/release/protis"))
 os.environ["PROTIS"] = PROGRAM
 DECK = pathlib.Path("input/greco/greco.inp")
@@ -169,7 +167,7 @@ class Results(unittest.TestCase):
             text = DECK.read_text() if name != "c" else "*NONSENSE\n"
             (folder / "job.inp").write_text(text)
             decks.append(str(folder / "job.inp"))
-        words = [sys.executable, "tools/batch", *decks, "-o",
+        words = [sys.executable, "tools/batch", *decks, "-j", "1", "-o",
                  str(self.dir / "out"), "--", "-DN=4"]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True,
                               stderr=subprocess.DEVNULL) as first:

@@ -44,13 +44,15 @@ static char *prepare(const source *s, job *j) {
 }
 
 static int run_source(const source *s, const asked *a, job *j, char **deck) {
-  char name[40];
+  char name[40], words[200] = "";
   *deck = prepare(s, j);
   char *text = a == NULL ? NULL : asked_deck(*deck, a);
   snprintf(name, sizeof name, "%s.inp", j->name);
   job_write(j, name, "%s", text == NULL ? *deck : text);
   free(text);
-  return job_run(j, "--no-timing --quiet");
+  if (s->path != NULL) job_coarsen(s->path, words, sizeof words);
+  strcat(words, " --no-timing --quiet");
+  return job_run(j, words);
 }
 
 /* NULL, or what is wrong with a run. Estimates may find what a plain run does

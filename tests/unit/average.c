@@ -145,7 +145,7 @@ END_TEST
 /* The same by a product of midpoint rules. */
 static void triangle_by_sums(const mollifier *m, const double *a,
                              const double *x, double w[3]) {
-  const int steps = unit_whole() ? 600 : 300;
+  const int steps = unit_whole() ? 600 : 150;
   double n[3], area = 0.0;
   for (int c = 0; c < 3; ++c) {
     int d = (c + 1) % 3, e = (c + 2) % 3;
@@ -701,7 +701,7 @@ END_TEST
 
 /* No entry jumps where the mass of a node no longer holds its pairs. */
 START_TEST(entries_are_continuous_in_the_radius) {
-  const int steps = unit_whole() ? 1000 : 300;
+  const int steps = unit_whole() ? 1000 : 150;
   owned o = square(3, 0.4);
   const int n = o.p.n_node;
   sparse_rows before = build(&o, KERNEL_BUMP, 0.4, 0, 0, NULL);

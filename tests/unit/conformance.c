@@ -1,7 +1,7 @@
 /*
  * Every row of the solver table, and AUTO, on the same problems, their
  * stiffness given by its entries and, to the rows that need no more, by its
- * products and solves: 300 of them
+ * products and solves: 150 of them
  * (PROTIS_PROBLEMS: another number; PROTIS_SEED: another thousand), of 1 to 300
  * nodes in two and three dimensions, friction from 0 to 2, a part of them
  * degenerate. Whoever claims an answer must have one by a check of its own;
@@ -27,7 +27,7 @@ static const double CLAIM = 100.0;   /* violation of a claim, of that         */
 static const double AGREE = 1e-8; /* answers of two rows, of the largest u  */
 enum {
   MOST_ROWS = 16,
-  SLICES = 10,
+  SLICES = 4,
   SMALL = 30 /* nodes, by products         */
 };
 
@@ -283,7 +283,7 @@ static void must_solve(const char *name, int solved, int tried) {
 START_TEST(every_row_is_right_or_says_so) {
   tally t = {0};
   const solver_ops *ops;
-  for (int k = _i; k < asked("PROTIS_PROBLEMS", 300); k += SLICES)
+  for (int k = _i; k < asked("PROTIS_PROBLEMS", 150); k += SLICES)
     run_problem(k, &t);
   ck_assert_int_ge(t.listed * 20, t.tried);
   ck_assert_int_ge(t.compared * 3, t.tried);
@@ -324,7 +324,7 @@ START_TEST(planted_answer_of_many_bodies_is_found) {
   static const double mus[] = {0.1, 0.3, 0.7};
   int solved[MOST_ROWS] = {0}, tried = 0;
   const solver_ops *ops;
-  for (int k = _i; k < asked("PROTIS_PROBLEMS", 300) / 6;
+  for (int k = _i; k < asked("PROTIS_PROBLEMS", 150) / 6;
        k += SLICES, ++tried) {
     planted p =
         planted_new((planted_kind)((k + k / SLICES) % 4), 2 + k / 3 % 2,
