@@ -11,6 +11,8 @@ typedef struct points {
   char first[400]; /* what was lost first                                   */
 } points;
 
+/* 1: the long run; 0: the few of the tests. */
+int points_all(void);
 /* PROTIS_POINTS times the share, at least 1; without it the few of the tests.
  */
 long points_number(long few, double share);

@@ -96,7 +96,7 @@ START_TEST(random_decks_hold) {
       "random decks, other methods"};
   const char *text = getenv("DECKS");
   unsigned long long first = getenv("PROTIS_POINTS") == NULL ? 270 : 0;
-  long count = points_number(8, 0.075);
+  long count = points_number(5, 0.075);
   tally t = {.judged.kind = "random decks, judged",
              .restart.kind = "random decks, restarts"};
   for (int k = 0; k < TWINS; ++k) t.twin[k].kind = kind[k];

@@ -86,7 +86,8 @@ START_TEST(file_cannot_be_changed) {
   job cut[] = {small_flat(0.4, cards, "AUTO"), small_solid(0.4, cards, "SOR"),
                small_creep(0.4, cards, "INTEGRATOR=MIDPOINT")};
   for (int k = 0; k < 3; ++k) {
-    disturb(&t, faults[_i].how, &whole[k], &cut[k], n);
+    if (points_all() || k == _i % 3)
+      disturb(&t, faults[_i].how, &whole[k], &cut[k], n);
     job_end(&whole[k]);
     job_end(&cut[k]);
   }

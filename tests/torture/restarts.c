@@ -73,7 +73,7 @@ static int stop_and_go_on(points *t, job *whole, job *j, const char *what,
 /* Of case k: both in the long run; else one of them for the first of every
  * "few" cases. */
 static int takes(int k, int few, double mu) {
-  if (getenv("PROTIS_POINTS") != NULL) return 1;
+  if (points_all()) return 1;
   return k % few == 0 && (k / few % 2 == 0) == (mu < 1.0);
 }
 
