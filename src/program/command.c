@@ -204,12 +204,16 @@ static int refuse_empty(const given_option *o, const struct option *words) {
   return wrong(what, "");
 }
 
+static int take_table(const char *value, command *c) {
+  if (c->table != NULL) return wrong("one --table at a time", "");
+  c->table = value;
+  return -1;
+}
+
 /* -1: go on, else the exit code. */
 static int take_option(const given_option *o, const struct option *words,
                        command *c) {
   const char *value = o->value;
-  int code = refuse_empty(o, words);
-  if (code >= 0) return code;
   switch (o->what) {
     case 0: /* a switch, set by getopt */
       return -1;
@@ -223,9 +227,7 @@ static int take_option(const given_option *o, const struct option *words,
       c->defines[c->n_define++] = value;
       return -1;
     case ASK_TABLE:
-      if (c->table != NULL) return wrong("one --table at a time", "");
-      c->table = value;
-      return -1;
+      return take_table(value, c);
     case ASK_FORMAT:
       c->format = value;
       if (strcmp(value, "csv") == 0 || strcmp(value, "tsv") == 0) return -1;
@@ -323,7 +325,8 @@ static int read_options(int argc, char **argv, command *c) {
          (what = getopt_long(argc, argv, ":o:D:hV", words, NULL)) != -1) {
     const given_option o = {what, optarg, word_read(argc, argv),
                             optind < argc ? argv[optind] : NULL};
-    code = take_option(&o, words, c);
+    code = refuse_empty(&o, words);
+    if (code < 0) code = take_option(&o, words, c);
   }
   return code;
 }
