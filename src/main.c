@@ -79,6 +79,13 @@ static int report(status st, const message_log *log, int unsettled) {
   return status_exit_code(st);
 }
 
+/* What was printed must have left: the tables, a manual, a list. */
+static int flush_output(int exit_code) {
+  if (exit_code != 0 || text_flush_output() == OK) return exit_code;
+  fprintf(stderr, "protis: error: %s\n", status_message());
+  return status_exit_code(ERR_FILE);
+}
+
 /* No file of the job gets the number of a stream that was closed; HDF5 locks
  * no file: the job does (lock.h), and not every file system can. */
 static void prepare_process(void) {
@@ -98,6 +105,7 @@ int main(int argc, char **argv) {
   blas_choose_kernel(argv);
   interrupt_spare_writes();
   if (!command_read(argc, argv, &c, &exit_code)) {
+    exit_code = flush_output(exit_code);
     interrupt_over();
     return exit_code;
   }
@@ -105,7 +113,7 @@ int main(int argc, char **argv) {
   if (st == OK) st = command_apply(&c, log);
   if (st == OK)
     st = c.table != NULL ? tables_print(&c) : run_job(&c, log, &unsettled);
-  exit_code = report(st, log, unsettled);
+  exit_code = flush_output(report(st, log, unsettled));
   message_log_free(log);
   command_free(&c);
   interrupt_over();

@@ -8,11 +8,12 @@
 
 #include "accuracy/space.h"
 #include "base/memory.h"
+#include "material/voigt.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { MAX_NS = 6, RULE = 4, MAX_DOF = 12 };
+enum { MAX_NS = 6, RULE = 4 };
 static const double PART = 1e-3; /* -, of the element, for differences */
 /* Gauss-Legendre on [0, 1]. */
 static const double rule_at[RULE] = {0.06943184420297371, 0.33000947820757187,
@@ -34,7 +35,7 @@ typedef struct element_at_work {
   const double *E; /* [ns*ns] Pa */
   int elem_id;
   double size;           /* m */
-  double strain[MAX_NS]; /* of the solution, - */
+  const double *elastic; /* [ns] stress of all the strain of the solution, Pa */
   squares *sum;
 } element_at_work;
 
@@ -92,30 +93,40 @@ static void add_displacement(const element_at_work *e, const double x[3],
   }
 }
 
+/* Stresses, Pa. */
+static void add_energy(const element_at_work *e, const double *found,
+                       const double *exact, double weight) {
+  const int ns = e->d->ns;
+  double error[MAX_NS];
+  for (int i = 0; i < ns; ++i) error[i] = found[i] - exact[i];
+  e->sum->energy += weight * product(ns, e->S, error);
+  e->sum->energy_all += weight * product(ns, e->S, exact);
+}
+
+/* The stresses that the strains of the closed form have without expansion and
+ * inelastic strains; those of the solution likewise. */
 static void add_strain(const element_at_work *e, const double x[3],
                        double weight) {
-  double exact[MAX_NS], error[MAX_NS];
-  exact_strain(e, x, exact);
-  for (int i = 0; i < e->d->ns; ++i) error[i] = e->strain[i] - exact[i];
-  e->sum->energy += weight * product(e->d->ns, e->E, error);
-  e->sum->energy_all += weight * product(e->d->ns, e->E, exact);
+  double strain[MAX_NS], exact[MAX_NS];
+  exact_strain(e, x, strain);
+  voigt_product(e->d->ns, e->E, strain, exact);
+  add_energy(e, e->elastic, exact, weight);
 }
 
 static void add_stress(const element_at_work *e, const double x[3],
                        double weight) {
   int ns = e->d->ns;
   const double *found = e->a->stress + (size_t)ns * (size_t)e->elem_id;
-  double exact[MAX_NS], error[MAX_NS];
+  double exact[MAX_NS];
   for (int i = 0; i < ns; ++i) {
     const quantity *q = &e->ref->value[REFERENCE_STRESS + i];
     exact[i] = quantity_value(q, x, e->a->t);
-    error[i] = found[i] - exact[i];
+    double error = found[i] - exact[i];
     double twice = i < 3 ? weight : 2.0 * weight;
-    e->sum->stress += twice * error[i] * error[i];
+    e->sum->stress += twice * error * error;
     e->sum->stress_all += twice * exact[i] * exact[i];
   }
-  e->sum->energy += weight * product(ns, e->S, error);
-  e->sum->energy_all += weight * product(ns, e->S, exact);
+  add_energy(e, found, exact, weight);
 }
 
 /* One point of the element: shape functions and share of the measure. */
@@ -159,35 +170,27 @@ static void add_tetrahedron(const element_at_work *e) {
       }
 }
 
-/* Strain of the solution in the element, its size. */
-static void open_element(element_at_work *e, int elem_id) {
-  const mesh *m = e->d->mesh;
-  int dim = m->dim, ns = e->d->ns;
-  double B[MAX_NS * MAX_DOF];
-  e->elem_id = elem_id;
-  e->size = pow(mesh_elem_measure(m, elem_id), 1.0 / dim);
-  memset(e->strain, 0, sizeof e->strain);
-  element_strain(e->d, elem_id, B);
-  for (int v = 0; v <= dim; ++v)
-    for (int c = 0; c < dim; ++c)
-      for (int i = 0; i < ns; ++i)
-        e->strain[i] += B[i + ns * (dim * v + c)] * node_values(e, v)[c];
-}
-
 static status sum_elements(const closed_form *ref, const domain *d,
                            const answer_fields *a, squares *sum) {
-  int n_section = 0, square = d->ns * d->ns;
-  OWNED double *S = NULL;
+  const int ns = d->ns, square = ns * ns;
+  int n_section = 0;
+  domain plain = *d;
+  OWNED double *S = NULL, *elastic = NULL;
   element_at_work e = {.ref = ref, .d = d, .a = a, .sum = sum};
   for (int k = 0; k < d->mesh->n_elem; ++k)
     if (d->section_id[k] >= n_section) n_section = d->section_id[k] + 1;
   PASS_NEW(S, square * n_section);
   for (int i = 0; i < n_section; ++i)
     PASS(space_compliance(d, i, S + square * i));
+  plain.eigen = NULL;
+  PASS_NEW(elastic, (size_t)ns * (size_t)d->mesh->n_elem);
+  domain_stress(&plain, a->u, NULL, elastic);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     e.S = S + square * d->section_id[k];
     e.E = d->E + square * d->section_id[k];
-    open_element(&e, k);
+    e.elem_id = k;
+    e.elastic = elastic + (size_t)ns * (size_t)k;
+    e.size = pow(mesh_elem_measure(d->mesh, k), 1.0 / d->mesh->dim);
     if (d->mesh->dim == 2)
       add_triangle(&e);
     else

@@ -12,7 +12,7 @@
 typedef struct true_error {
   int asked;
   double energy;       /* of the stresses, integral of s' inv(E) s; without
-                          stresses in the card of the strains, e' E e */
+                          stresses in the card of E times all the strain */
   double displacement; /* L2 */
   double stress;       /* L2, all components of the tensor */
   double pressure;     /* L2 on the contact surface, of nodal values */

@@ -88,6 +88,13 @@ status text_failed(const char *path, const char *doing, int error_no) {
                      error_no != 0 ? strerror(error_no) : "unknown reason");
 }
 
+status text_flush_output(void) {
+  errno = 0;
+  if ((fflush(stdout) != 0 || ferror(stdout)) && errno != EPIPE)
+    PASS(text_failed("standard output", "write", errno));
+  return OK;
+}
+
 static status take(text_file *t, const char *path, FILE *f, int by_line) {
   t->f = f;
   PASS_GET(t->path, memory_text(path));

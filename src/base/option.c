@@ -6,6 +6,7 @@
 
 #include <float.h>
 #include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -125,7 +126,8 @@ const char *candidate_name(const void *names, int i) {
   const name_list *l = names;
   const char *p;
   if (i >= l->n) return NULL;
-  memcpy(&p, (const char *)l->first + (size_t)i * l->size, sizeof p);
+  const char *row = (const char *)l->first + (size_t)i * l->size;
+  memcpy(&p, row + l->offset, sizeof p);
   if (p != NULL && l->behind > 0) memcpy(&p, p + l->behind - 1, sizeof p);
   return p;
 }
@@ -157,7 +159,7 @@ static int read_choice(const option *row, const char *text, int *rank,
   split_choices(row->choices, &list);
   const char *near =
       nearest_word(text, candidate_name,
-                   &(name_list){list.word, list.n, sizeof *list.word, 0});
+                   &(name_list){list.word, list.n, sizeof *list.word, 0, 0});
   if (near != NULL)
     snprintf(why, why_size, "'%s' is none of %s; did you mean %s?", text,
              row->choices, near);
@@ -172,7 +174,9 @@ void range_text(double x, double min, double max, char *why, size_t why_size) {
   number_text(x, value);
   number_text(min, low);
   number_text(max, high);
-  if (x <= 0.0 && min == DBL_MIN)
+  if (!isfinite(x))
+    snprintf(why, why_size, "%s is not a finite number", value);
+  else if (x <= 0.0 && min == DBL_MIN)
     snprintf(why, why_size, "%s is not positive", value);
   else if (no_max)
     snprintf(why, why_size, "%s below %s", value, low);

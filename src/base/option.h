@@ -92,11 +92,15 @@ typedef struct name_list {
   int n;
   size_t size;   /* of a row */
   size_t behind; /* 0, or 1 + offset of the name behind the pointer */
+  size_t offset; /* of what a row has to show */
 } name_list;
-#define NAMES(rows, n) (&(const name_list){&(rows)->name, n, sizeof *(rows), 0})
+/* rows may be NULL where there are none. */
+#define NAMES(rows, n)                              \
+  (&(const name_list){(rows), n, sizeof *(rows), 0, \
+                      offsetof(__typeof__(*(rows)), name)})
 #define LISTED(list)                                   \
   (&(const name_list){(list), INT_MAX, sizeof *(list), \
-                      1 + offsetof(__typeof__(**(list)), name)})
+                      1 + offsetof(__typeof__(**(list)), name), 0})
 /* Name i of a name_list: for nearest_word. */
 const char *candidate_name(const void *names, int i);
 

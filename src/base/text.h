@@ -38,6 +38,8 @@ int text_memory_end(FILE *f, char **text);
 /* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error
  * number; 0: none known. */
 status text_failed(const char *path, const char *doing, int error_no);
+/* What was printed has left; no failure if its reader has gone. */
+status text_flush_output(void);
 enum { NUMBER_SIZE = 40 };
 /* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
  * Inf; the text is returned. */

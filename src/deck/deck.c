@@ -133,7 +133,7 @@ static int check_names(reader *r, const card *c, const char *const *names) {
     if (*name != NULL) continue;
     const char *near =
         nearest_word(p->name, candidate_name,
-                     &(name_list){names, INT_MAX, sizeof *names, 0});
+                     &(name_list){names, INT_MAX, sizeof *names, 0, 0});
     message_add(r->log, P2003, &p->at,
                 near != NULL ? "unknown parameter %s of *%s; did you mean %s?"
                              : "unknown parameter %s of *%s",

@@ -192,6 +192,24 @@ static int answer(const given_option *o, const struct option *words,
   }
 }
 
+/* An option whose value is the empty text; -1: it is not. */
+static int refuse_empty(const given_option *o, const struct option *words) {
+  char what[80];
+  if (o->value == NULL || o->value[0] != '\0') return -1;
+  while (words->name != NULL && words->val != o->what) ++words;
+  if (words->name != NULL)
+    snprintf(what, sizeof what, "the value after --%s is empty", words->name);
+  else
+    snprintf(what, sizeof what, "the value after -%c is empty", o->what);
+  return wrong(what, "");
+}
+
+static int take_table(const char *value, command *c) {
+  if (c->table != NULL) return wrong("one --table at a time", "");
+  c->table = value;
+  return -1;
+}
+
 /* -1: go on, else the exit code. */
 static int take_option(const given_option *o, const struct option *words,
                        command *c) {
@@ -209,11 +227,10 @@ static int take_option(const given_option *o, const struct option *words,
       c->defines[c->n_define++] = value;
       return -1;
     case ASK_TABLE:
-      c->table = value;
-      return -1;
+      return take_table(value, c);
     case ASK_FORMAT:
-      c->tabs = strcmp(value, "tsv") == 0;
-      if (c->tabs || strcmp(value, "csv") == 0) return -1;
+      c->format = value;
+      if (strcmp(value, "csv") == 0 || strcmp(value, "tsv") == 0) return -1;
       return wrong("--format knows csv and tsv, not ", value);
     case ASK_THREADS:
       if (read_threads(value, c)) return -1;
@@ -248,6 +265,19 @@ static char *folder_of(const char *file) {
   char *dir = memory_new(length + 1, 1);
   if (dir != NULL) memcpy(dir, file, length);
   return dir;
+}
+
+/* Options of which one would have no effect; -1: there are none. */
+static int check_together(const command *c) {
+  if (c->table == NULL)
+    return c->format == NULL
+               ? -1
+               : wrong("--format is of --table, which is not given", "");
+  if (c->check_only) return wrong("--check has no effect with --table", "");
+  if (c->estimate_cost)
+    return wrong("--estimate-cost has no effect with --table", "");
+  if (c->restart) return wrong("--restart has no effect with --table", "");
+  return -1;
 }
 
 /* The job itself; -1: run it. */
@@ -295,7 +325,8 @@ static int read_options(int argc, char **argv, command *c) {
          (what = getopt_long(argc, argv, ":o:D:hV", words, NULL)) != -1) {
     const given_option o = {what, optarg, word_read(argc, argv),
                             optind < argc ? argv[optind] : NULL};
-    code = take_option(&o, words, c);
+    code = refuse_empty(&o, words);
+    if (code < 0) code = take_option(&o, words, c);
   }
   return code;
 }
@@ -305,6 +336,7 @@ int command_read(int argc, char **argv, command *c, int *exit_code) {
   opterr = 0; /* told here */
   c->defines = memory_new((size_t)argc, sizeof *c->defines);
   int code = c->defines == NULL ? no_memory() : read_options(argc, argv, c);
+  if (code < 0) code = check_together(c);
   if (code < 0) code = take_job(argc - optind, argv + optind, c);
   if (code < 0) return 1;
   *exit_code = code;

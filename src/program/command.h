@@ -11,10 +11,10 @@ typedef struct command {
   int n_define;
   const char **defines; /* [n_define] NAME=VALUE; array owned */
   int check_only, estimate_cost, quiet, no_timing, restart, safe;
-  const char *table; /* NAME[:last|:all] of a finished job; NULL: run it */
-  int tabs;          /* of it: 1: tsv, 0: csv */
-  int threads;       /* of the dense algebra; 0: not given */
-  double max_memory; /* MB the process may hold; 0: not said */
+  const char *table;  /* NAME[:last|:all] of a finished job; NULL: run it */
+  const char *format; /* of it: csv or tsv; NULL: not given, csv */
+  int threads;        /* of the dense algebra; 0: not given */
+  double max_memory;  /* MB the process may hold; 0: not said */
 } command;
 
 /* Read it. 1: run *c. 0: all is done (help, version, lists) or the words are

@@ -181,9 +181,6 @@ static status print_all(extract *e) {
   put_row(e, NULL);
   pass(e, 1);
   if (ferror(e->f)) PASS(text_failed(e->path, "read", errno));
-  errno = 0;
-  if ((fflush(stdout) != 0 || ferror(stdout)) && errno != EPIPE)
-    PASS(text_failed("standard output", "write", errno));
   return OK;
 }
 
@@ -219,7 +216,8 @@ status tables_print(const command *c) {
   PASS_NEW(e, 1);
   PASS(read_name(c->table, e));
   e->path = path;
-  e->separator = c->tabs ? '\t' : ',';
+  e->separator =
+      c->format != NULL && strcmp(c->format, "tsv") == 0 ? '\t' : ',';
   e->f = fopen(path, "r");
   if (e->f == NULL) PASS(text_failed(path, "read", errno));
   st = print_all(e);

@@ -233,6 +233,37 @@ START_TEST(estimate_beside_the_true_error_of_hertz) {
 }
 END_TEST
 
+/* Tube under pressure, radii 1 and 2, nu = 0.4999 (Lame), 8 segments through
+ * its wall: clusters of elements see the mean of their change of volume, and so
+ * does the error. */
+START_TEST(averaged_strains_have_the_error_of_the_law) {
+  const double E = 1e5, nu = 0.4999, p = 100, k = (1 + nu) / E * p / 3;
+  job j = job_begin("tube");
+  job_write(
+      &j, "tube.geo",
+      "Point(1) = {1, 0, 0}; Point(2) = {2, 0, 0}; Point(3) = {0, 2, 0};\n"
+      "Point(4) = {0, 1, 0}; Point(5) = {0, 0, 0};\n"
+      "Line(1) = {1, 2}; Circle(2) = {2, 5, 3}; Line(3) = {3, 4};\n"
+      "Circle(4) = {4, 5, 1}; Curve Loop(1) = {1, 2, 3, 4};\n"
+      "Plane Surface(1) = {1}; MeshSize{:} = 1/8.;\n"
+      "Physical Curve(\"BELOW\") = {1}; Physical Curve(\"LEFT\") = {3};\n"
+      "Physical Curve(\"HOLE\") = {4}; Physical Surface(\"BODY\") = {1};\n");
+  job_write(&j, "tube.inp",
+            "*MESH, FILE=tube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n%g, %g\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, FORMULATION=AVERAGED\n"
+            "*REFERENCE\nu_x, \"%.17g*x + %.17g*x/(x^2 + y^2)\"\n"
+            "u_y, \"%.17g*y + %.17g*y/(x^2 + y^2)\"\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nBELOW, 2\nLEFT, 1\n*DSLOAD\nHOLE, P, %g\n"
+            "*ACCURACY, MESH=YES\n*END STEP\n",
+            E, nu, k * (1 - 2 * nu), 4 * k, k * (1 - 2 * nu), 4 * k, p);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  const double ratio = job_told(&j, "effectivity");
+  ck_assert_msg(ratio > 0.9 && ratio < 1.1, "%g", ratio);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(value_that_is_not_finite_is_an_error) {
   job j = job_begin("truth");
   job_copy(&j, "tests/regression/mesh/square.geo");
@@ -251,4 +282,5 @@ UNIT_MAIN("reference", uniform_stress_has_the_error_of_its_factor,
           integrals_of_a_quadratic_field,
           all_strains_have_the_error_of_their_factor, thick_parts_count_more,
           estimate_beside_the_true_error_of_hertz,
+          averaged_strains_have_the_error_of_the_law,
           value_that_is_not_finite_is_an_error)

@@ -128,6 +128,27 @@ START_TEST(tables_are_read_by_other_programs) {
 }
 END_TEST
 
+START_TEST(what_cannot_be_printed_is_an_error) {
+  static const char *const words[] = {
+      "--help",    "--version",      "--manual deck", "--keywords",
+      "--explain", "--list columns", "$J --check",    "$J --table TOTALS"};
+  char command[120];
+  job j = two_contacts();
+  for (size_t i = 0; i < sizeof words / sizeof *words; ++i) {
+    snprintf(command, sizeof command, "J=%s; protis %s > /dev/full", j.name,
+             words[i]);
+    ck_assert_msg(job_shell(&j, command) == 4, "%s", words[i]);
+    ck_assert_ptr_nonnull(strstr(j.errors, "standard output: cannot write"));
+    snprintf(command, sizeof command,
+             "J=%s; { protis %s; echo $? >&2; } | true", j.name, words[i]);
+    job_shell(&j, command);
+    ck_assert_ptr_null(strstr(j.errors, "error"));
+    ck_assert_str_eq(j.errors + strlen(j.errors) - 2, "0\n");
+  }
+  job_end(&j);
+}
+END_TEST
+
 /* What a run with stderr on a terminal writes there; caller frees. */
 static char *on_a_terminal(const job *j, const char *words) {
   char path[120], *said = calloc(20000, 1);
@@ -183,6 +204,6 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
 END_TEST
 
 UNIT_MAIN("results", run_on_a_terminal_ends_with_what_matters,
-          tables_are_read_by_other_programs,
+          tables_are_read_by_other_programs, what_cannot_be_printed_is_an_error,
           json_has_the_contacts_at_the_end_of_each_step,
           nodes_have_the_name_of_their_contact)

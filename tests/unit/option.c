@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 typedef struct sample {
@@ -183,6 +184,23 @@ START_TEST(nearest_word_is_found_if_it_is_near) {
 }
 END_TEST
 
+START_TEST(no_word_is_near_where_there_are_no_rows) {
+  const option *none = NULL;
+  ck_assert_ptr_null(nearest_word("TOL", candidate_name, NAMES(none, 0)));
+}
+END_TEST
+
+START_TEST(a_value_that_is_not_finite_is_said_to_be_so) {
+  char why[120];
+  range_text(INFINITY, DBL_MIN, DBL_MAX, why, sizeof why);
+  ck_assert_str_eq(why, "inf is not a finite number");
+  range_text(-INFINITY, DBL_MIN, DBL_MAX, why, sizeof why);
+  ck_assert_str_eq(why, "-inf is not a finite number");
+  range_text(NAN, 0, 1, why, sizeof why);
+  ck_assert_str_eq(why, "nan is not a finite number");
+}
+END_TEST
+
 START_TEST(a_very_long_word_is_near_to_none) {
   char word[10000];
   memset(word, 'A', sizeof word - 1);
@@ -196,4 +214,7 @@ UNIT_MAIN("option", rows_are_found_by_their_full_name, defaults_are_stored,
           right_values_are_read,
           a_long_wrong_value_does_not_overrun_the_message,
           what_is_written_is_read_back, words_of_a_choice_have_their_rank,
-          nearest_word_is_found_if_it_is_near, a_very_long_word_is_near_to_none)
+          nearest_word_is_found_if_it_is_near,
+          no_word_is_near_where_there_are_no_rows,
+          a_value_that_is_not_finite_is_said_to_be_so,
+          a_very_long_word_is_near_to_none)

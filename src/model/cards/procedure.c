@@ -44,8 +44,10 @@ status apply_static(reading *r) {
   s->total = 1.0;
   if (r->card->n_record > 0) {
     const record *line = &r->card->records[0];
-    if (record_fields(r, line, 1, 1, "duration") == 0)
-      field_real(r, &line->fields[0], DBL_MIN, DBL_MAX, "duration", &s->total);
+    if (record_fields(r, line, 1, 1, "duration") != 0 ||
+        field_real(r, &line->fields[0], DBL_MIN, DBL_MAX, "duration",
+                   &s->total) != 0)
+      s->total = 1.0;
   }
   s->dt = s->total;
   s->dt_min = s->total;
@@ -73,25 +75,32 @@ static void check_increments(const reading *r, const field *f, const step *s) {
                 "%.3g increments; at most 1e8 are possible", s->total / s->dt);
 }
 
-/* dt, total [, dt_min [, dt_max]] of a step. */
-static void read_increments(const reading *r, step *s) {
+/* dt, total [, dt_min [, dt_max]] of a step; -1: refused. */
+static int take_increments(const reading *r, step *s) {
   const record *line = &r->card->records[0];
-  s->dt = s->total = s->dt_min = 1.0;
-  s->dt_max = HUGE_VAL;
   if (record_fields(r, line, 2, 4, "dt, total [, dt_min [, dt_max]]") != 0)
-    return;
+    return -1;
   const field *f = line->fields;
   if (field_real(r, &f[0], DBL_MIN, DBL_MAX, "dt", &s->dt) != 0 ||
       field_real(r, &f[1], DBL_MIN, DBL_MAX, "total", &s->total) != 0)
-    return;
+    return -1;
   if (line->n_field > 3 &&
       field_real(r, &f[3], DBL_MIN, DBL_MAX, "dt_max", &s->dt_max) != 0)
-    return;
+    return -1;
   s->dt_min = s->dt / 16.0;
   if (line->n_field > 2 && f[2].text[0] != '\0' &&
       field_real(r, &f[2], DBL_MIN, DBL_MAX, "dt_min", &s->dt_min) != 0)
-    return;
+    return -1;
   check_increments(r, f, s);
+  return 0;
+}
+
+/* Of a step whose line was refused nothing more is to be said. */
+static void read_increments(const reading *r, step *s) {
+  s->dt_max = HUGE_VAL;
+  if (take_increments(r, s) == 0) return;
+  s->dt = s->total = s->dt_min = 1.0;
+  s->dt_max = HUGE_VAL;
 }
 
 status apply_quasistatic(reading *r) {
