@@ -21,11 +21,9 @@
 #define PROTIS_COMMIT "unknown"
 #endif
 
-static void free_archive(archive **a) { archive_free(*a); }
-
 static status solve(const command *c, job_input *in, int *unsettled) {
   job_lock lock ENDS_BY(job_lock_release) = {0};
-  archive *from ENDS_BY(free_archive) = NULL;
+  ENDS_BY(archive_free) archive *from = NULL;
   OWNED char *stop = NULL;
   PASS_GET(stop, text_path(c->dir, in->m->name.job, "stop"));
   PASS(output_spare_inputs(in->m, c->dir));

@@ -109,8 +109,7 @@ static status read_numbers(words *w, exchange_problem *p) {
   p->form = "linear complementarity problem";
   PASS(require_problem_memory(p->m));
   size_t m = (size_t)p->m;
-  PASS_NEW(p->matrix, m * m);
-  PASS_NEW(p->load, m);
+  PASS_NEW_ALL(OF(p->matrix, m * m), OF(p->load, m));
   for (size_t i = 0; i < m; ++i)
     for (size_t j = 0; j < m; ++j)
       PASS(next_real(w, "row", (int)i + 1, &p->matrix[i + m * j]));

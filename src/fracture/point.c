@@ -66,8 +66,7 @@ static void add_normals(const mesh *m, double *sum) {
 static status find_mixed(const fracture_body *b, obstacles *o) {
   const mesh *m = b->mesh;
   OWNED int *of = NULL;
-  PASS_NEW(of, m->n_node);
-  PASS_NEW(o->mixed, m->n_node);
+  PASS_NEW_ALL(OF(of, m->n_node), OF(o->mixed, m->n_node));
   for (int i = 0; i < m->n_node; ++i) of[i] = -1;
   for (int e = 0; e < m->n_elem; ++e)
     for (int a = 0; a <= m->dim; ++a) {
@@ -94,8 +93,7 @@ static status find_obstacles(const fracture_body *b, obstacles *o) {
     for (int k = 0; k < 3; ++k) at[k] *= part;
     o->n += o->mixed[i] || part > 0;
   }
-  PASS_NEW(o->node, o->n);
-  PASS_NEW(o->normal, 3 * o->n);
+  PASS_NEW_ALL(OF(o->node, o->n), OF(o->normal, 3 * o->n));
   for (int i = 0; i < m->n_node; ++i) {
     const double *at = sum + 4 * (size_t)i;
     if (!o->mixed[i] && dot(3, at, at) == 0) continue;

@@ -36,8 +36,7 @@ status build_mesh(const raw_mesh *raw, double scale, const place *at,
   builder b = {.raw = raw, .scale = scale, .at = at, .log = log};
   b.errors = message_count(log, ERROR);
   *out = NULL;
-  NEW(b.m, 1);
-  NEW(b.first, raw->n_block);
+  NEW_ALL(OF(b.m, 1), OF(b.first, raw->n_block));
   TRY(groups_check(&b));
   tell_warnings(&b);
   TRY(elements_gather(&b));
@@ -160,27 +159,23 @@ static message_id number_of(const char *text) {
 /* gmsh runs the geometry as a program. */
 static status read_geo(const mesh_source *source, const char *head,
                        const place *at, message_log *log, raw_mesh **raw) {
-  status st = OK;
   int is_solid = strstr(head, "OpenCASCADE") != NULL;
-  TRY(check_geo_tail(source->file, at, log));
-  st = raw_read(&(raw_request){source, is_solid}, raw);
+  PASS(check_geo_tail(source->file, at, log));
+  const status st = raw_read(&(raw_request){source, is_solid}, raw);
   if (st == ERR_MESH)
     message_add(log, number_of(status_message()), at, "mesh file \"%s\": %s",
                 source->file, status_message());
-done:
   return st;
 }
 
 /* A .msh is data only. */
 static status read_msh(const mesh_source *source, const char *head,
                        const place *at, message_log *log, raw_mesh **raw) {
-  status st = OK;
   const char *file = source->file;
-  TRY(check_format(file, head, at, log));
-  st = msh_read(file, raw);
+  PASS(check_format(file, head, at, log));
+  const status st = msh_read(file, raw);
   if (st == ERR_MESH)
     message_add(log, P3006, at, "mesh file %s", status_message());
-done:
   return st;
 }
 

@@ -175,10 +175,8 @@ status groups_fill(builder *b) {
   mesh *m = b->m;
   filling f = {0};
   int n_item = m->n_elem > m->n_face ? m->n_elem : m->n_face;
-  NEW(f.node_mark, m->n_node);
-  NEW(f.item_mark, n_item);
-  NEW(f.node, m->n_node);
-  NEW(f.item, n_item);
+  NEW_ALL(OF(f.node_mark, m->n_node), OF(f.item_mark, n_item),
+          OF(f.node, m->n_node), OF(f.item, n_item));
   for (int i = 0; i < m->n_group; ++i) TRY(fill_group(b, &m->group[i], &f));
   TRY(build_check(b));
 done:

@@ -119,8 +119,7 @@ void forest_join(int *parent, int a, int b) {
 status mesh_bodies(const mesh *m, int *n_body, int *body) {
   OWNED int *parent = NULL, *body_of = NULL;
   int n_corner = m->dim + 1;
-  PASS_NEW(parent, m->n_node);
-  PASS_NEW(body_of, m->n_node);
+  PASS_NEW_ALL(OF(parent, m->n_node), OF(body_of, m->n_node));
   for (int i = 0; i < m->n_node; ++i) parent[i] = i;
   for (int e = 0; e < m->n_elem; ++e) {
     const int *v = mesh_elem_nodes(m, e);
@@ -138,8 +137,7 @@ status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
   const size_t per = (size_t)m->dim + 1, n = per * (size_t)m->n_elem;
   size_t *s = NULL;
   int *e = NULL;
-  NEW(s, m->n_node + 2);
-  NEW(e, n);
+  NEW_ALL(OF(s, m->n_node + 2), OF(e, n));
   for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];
   for (int i = 0; i < m->n_node; ++i) s[i + 2] += s[i + 1];
   for (size_t k = 0; k < n; ++k) e[s[m->elem[k] + 1]++] = (int)(k / per);

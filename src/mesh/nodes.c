@@ -183,8 +183,7 @@ static void fill_keys(const builder *b, const double lo[3], sort_item *item) {
 static status store_nodes(builder *b, const sort_item *item) {
   mesh *m = b->m;
   size_t dim = (size_t)m->dim;
-  PASS_NEW(m->x, dim * (size_t)m->n_node);
-  PASS_NEW(m->node_no, m->n_node);
+  PASS_NEW_ALL(OF(m->x, dim * (size_t)m->n_node), OF(m->node_no, m->n_node));
   for (int i = 0; i < m->n_node; ++i) {
     size_t r = (size_t)item[i].id;
     for (size_t k = 0; k < dim; ++k)

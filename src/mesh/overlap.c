@@ -55,8 +55,7 @@ static status gather_sides(const mesh *m, side_list *s) {
   const int n = m->dim + 1;
   int v[3], low[2];
   s->n = n * m->n_elem;
-  PASS_NEW(s->start, m->n_node + 2);
-  PASS_NEW(s->side, s->n);
+  PASS_NEW_ALL(OF(s->start, m->n_node + 2), OF(s->side, s->n));
   for (int e = 0; e < m->n_elem; ++e) {
     two_lowest(n, m->elem + (size_t)n * (size_t)e, low);
     s->start[low[0] + 2] += m->dim;

@@ -108,8 +108,7 @@ static status make_matrix(written *f) {
     return OK;
   }
   memcpy(a, cp->A, size * sizeof *a);
-  PASS_NEW(work, 3 * (size_t)cp->m);
-  PASS_NEW(iwork, cp->m);
+  PASS_NEW_ALL(OF(work, 3 * (size_t)cp->m), OF(iwork, cp->m));
   if (!cp->floating && invert(cp->m, a, work, iwork)) return OK;
   memcpy(a, cp->A, size * sizeof *a);
   f->local = 0;
@@ -119,8 +118,7 @@ static status make_matrix(written *f) {
 /* q of the local problem; w of the global one. M is still W by columns. */
 static status make_vectors(written *f) {
   const contact_problem *cp = f->cp;
-  PASS_NEW(f->q, cp->m);
-  PASS_NEW(f->mu, cp->n);
+  PASS_NEW_ALL(OF(f->q, cp->m), OF(f->mu, cp->n));
   if (f->local && !contact_has_stiffness(cp))
     memcpy(f->q, cp->f, (size_t)cp->m * sizeof *f->q);
   else if (f->local)
@@ -214,8 +212,7 @@ static status put_matrix(const written *f, const char *group, int nz, size_t n,
 
 static status write_local(written *f) {
   size_t m = (size_t)f->cp->m;
-  PASS_NEW(f->start, m + 1);
-  PASS_NEW(f->col, m * m);
+  PASS_NEW_ALL(OF(f->start, m + 1), OF(f->col, m * m));
   for (size_t i = 0; i <= m; ++i) f->start[i] = (int)(m * i);
   for (size_t k = 0; k < m * m; ++k) f->col[k] = (int)(k % m);
   PASS(put_group(f, "/fclib_local"));
@@ -231,9 +228,7 @@ static status write_global(written *f) {
   const contact_problem *cp = f->cp;
   size_t m = (size_t)cp->m;
   OWNED double *h = NULL;
-  PASS_NEW(f->start, m * m);
-  PASS_NEW(f->col, m * m);
-  PASS_NEW(h, m);
+  PASS_NEW_ALL(OF(f->start, m * m), OF(f->col, m * m), OF(h, m));
   PASS(put_group(f, "/fclib_global"));
   PASS(put_ints(f, "/fclib_global", "spacedim", 1, &cp->dim));
   for (size_t k = 0; k < m * m; ++k) {

@@ -98,9 +98,8 @@ static status new_sections(run *r) {
   visco *v = r->strains.visco;
   const moduli *own = &r->body.moduli;
   int n = own->n + v->x.n;
-  PASS_NEW(v->section_id, r->msh->n_elem);
-  PASS_NEW(v->kin, n);
-  PASS_NEW(v->thickness, n);
+  PASS_NEW_ALL(OF(v->section_id, r->msh->n_elem), OF(v->kin, n),
+               OF(v->thickness, n));
   memcpy(v->section_id, r->body.d.section_id,
          (size_t)r->msh->n_elem * sizeof *v->section_id);
   memcpy(v->kin, own->kin, (size_t)own->n * sizeof *v->kin);

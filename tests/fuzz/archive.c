@@ -57,7 +57,7 @@ static void write_file(arrays *a, const char *path, const char *before) {
   if (archive_new(&out) != OK || serve(out, a) != OK ||
       archive_write(out, path, before) != OK)
     abort();
-  archive_free(out);
+  archive_free(&out);
 }
 
 /* 1: bytes are gone. */
@@ -95,7 +95,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     choose(&other, &b);
     if (serve(in, &other) != OK) status_clear();
   }
-  archive_free(in);
+  archive_free(&in);
   status_clear();
   if (memory_in_use() != 0) abort();
   return 0;

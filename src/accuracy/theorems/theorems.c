@@ -113,9 +113,8 @@ static status know_friction(theorems *t, const theorems_scene *s,
   if (same_friction(t, &p->cp)) return OK;
   forget_friction(t);
   t->n_entry = count_entries(&p->cp);
-  NEW(t->entries, t->n_entry);
-  NEW(t->contacts, s->n_contact + 1);
-  NEW(keep, p->cp.n);
+  NEW_ALL(OF(t->entries, t->n_entry), OF(t->contacts, s->n_contact + 1),
+          OF(keep, p->cp.n));
   if (t->n_entry > 0)
     memcpy(t->entries, p->cp.B->val, (size_t)t->n_entry * sizeof *t->entries);
   TRY(friction_constants(&p->cp, &t->norm, 1, &all));

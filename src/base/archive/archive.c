@@ -48,7 +48,8 @@ status archive_new(archive **out) {
   return OK;
 }
 
-void archive_free(archive *a) {
+void archive_free(archive **p) {
+  archive *a = *p;
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) memory_free(a->item[i].own);
   RELEASE(a->item, a->path, a);
@@ -410,22 +411,16 @@ static status get_items(hid_t file, archive *a) {
 }
 
 status archive_read(const char *path, archive **out) {
-  status st = OK;
-  archive *a = NULL;
   HELD hid_t file = -1;
-  *out = NULL;
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   H5Lunregister(H5L_TYPE_EXTERNAL);
-  TRY(archive_check_seal(path));
-  NEW(a, 1);
-  GET(a->path, memory_text(path));
+  *out = NULL;
+  PASS(archive_check_seal(path));
+  PASS_NEW(*out, 1);
+  archive *a = *out;
+  PASS_GET(a->path, memory_text(path));
   file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) TRY(refuse(path, "this is no restart file of Protis"));
-  TRY(get_items(file, a));
-  *out = a;
-  a = NULL;
-done:
-  archive_free(a);
-  return st;
+  if (file < 0) PASS(refuse(path, "this is no restart file of Protis"));
+  return get_items(file, a);
 }

@@ -17,7 +17,7 @@
 typedef struct archive archive;
 
 status archive_new(archive **out); /* empty, for writing */
-void archive_free(archive *a);     /* accepts NULL */
+void archive_free(archive **a);    /* accepts that of NULL */
 /* 1: the archive was read from a file. */
 int archive_reads(const archive *a);
 

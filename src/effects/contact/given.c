@@ -89,8 +89,7 @@ static status prepare(run *r, void *self) {
   given_forces *own = self;
   if (own->all != NULL) return OK;
   PASS(check_corners(r));
-  PASS_NEW(own->node, r->nodes.n);
-  PASS_NEW(own->all, r->nodes.n);
+  PASS_NEW_ALL(OF(own->node, r->nodes.n), OF(own->all, r->nodes.n));
   for (int i = 0; i < r->nodes.n; ++i) {
     own->all[i] = -1.0;
     if (force_of(r, i)->given) own->node[own->n++] = i;

@@ -47,8 +47,7 @@ static status expected(const plan_sizes *s, effect_work *w) {
 
 static status pairs_new(run *r, void **self) {
   pair_forces *own = *self;
-  PASS_NEW(own->force, r->n_dof);
-  PASS_NEW(own->moment, r->m->n.contact);
+  PASS_NEW_ALL(OF(own->force, r->n_dof), OF(own->moment, r->m->n.contact));
   return OK;
 }
 

@@ -150,8 +150,7 @@ static status insert(path *s, int at, double t, const double *u,
   memmove(s->p + at + 1, s->p + at, (size_t)(s->n - at) * sizeof *s->p);
   s->p[at] = (point){.t = t};
   ++s->n;
-  PASS_NEW(s->p[at].u, r->nodes.n_c);
-  PASS_NEW(s->p[at].status, r->nodes.n);
+  PASS_NEW_ALL(OF(s->p[at].u, r->nodes.n_c), OF(s->p[at].status, r->nodes.n));
   memcpy(s->p[at].u, u, (size_t)r->nodes.n_c * sizeof *u);
   contact_classify(&r->problem.cp, run_rows(r, 0, s->p[at].u),
                    run_rows(r, 1, (double *)rc), s->p[at].status);

@@ -40,12 +40,11 @@ static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
   space_recovery_free(own->recovery);
   own->recovery = NULL;
+  TIMED(STAGE_MESH_ERROR);
+  PASS(space_recovery_new(&r->body.d, &own->recovery));
+  if (r->m->n.goal > 0) PASS(space_keep(own->recovery));
   own->elastic_no = r->body.elastic_no;
-  timer_enter(STAGE_MESH_ERROR);
-  status st = space_recovery_new(&r->body.d, &own->recovery);
-  if (st == OK && r->m->n.goal > 0) st = space_keep(own->recovery);
-  timer_leave(STAGE_MESH_ERROR);
-  return st;
+  return OK;
 }
 
 status mesh_recovery(const run *r, space_recovery **out) {

@@ -74,8 +74,7 @@ typedef struct ring {
 } ring;
 
 static status ring_new(const mesh *m, ring *r) {
-  PASS_NEW(r->start, m->n_node + 1);
-  PASS_NEW(r->face, m->dim * m->n_face);
+  PASS_NEW_ALL(OF(r->start, m->n_node + 1), OF(r->face, m->dim * m->n_face));
   for (int k = 0; k < m->dim * m->n_face; ++k) ++r->start[m->face[k] + 1];
   for (int i = 0; i < m->n_node; ++i) r->start[i + 1] += r->start[i];
   for (int k = 0; k < m->dim * m->n_face; ++k)
@@ -326,8 +325,7 @@ static status add_rim(const run *r, const load *l, double *dF) {
   OWNED int *next = NULL, *last = NULL;
   int n;
   PASS(rim_new(m, &m->group[l->group_id], &e, &n));
-  PASS_NEW(next, 2 * n);
-  PASS_NEW(last, m->n_node);
+  PASS_NEW_ALL(OF(next, 2 * n), OF(last, m->n_node));
   for (int k = 0; k < 2 * n; ++k) {
     int *at = &last[e[k / 2].v[k % 2]];
     next[k] = *at > 0 ? next[*at - 1] : k;

@@ -139,8 +139,8 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
   if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
     space_recovery_free(own->recovery);
     own->recovery = NULL;
-    own->elastic_no = r->body.elastic_no;
     PASS(space_recovery_new(&r->body.d, &own->recovery));
+    own->elastic_no = r->body.elastic_no;
   }
   *out = own->recovery;
   return OK;

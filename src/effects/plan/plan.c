@@ -105,27 +105,21 @@ static void find_shares(effect_plan *p) {
 }
 
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
-  status st = OK;
-  effect_plan *p = NULL;
   int capacity = 0;
-  *out = NULL;
-  NEW(p, 1);
-  TRY(plan_sizes_find(m, msh, n, &p->sizes));
+  PASS_NEW(*out, 1);
+  effect_plan *p = *out;
+  PASS(plan_sizes_find(m, msh, n, &p->sizes));
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;
     if (effect_table[k]->expected == NULL) continue;
-    TRY(row_of(&p->sizes, effect_table[k], &r));
+    PASS(row_of(&p->sizes, effect_table[k], &r));
     if (effect_table[k]->bit == EFFECT_BIT_INELASTIC)
-      TRY(add_laws(m, msh, p, &capacity, &r));
+      PASS(add_laws(m, msh, p, &capacity, &r));
     else
-      TRY(add_row(p, &capacity, &r));
+      PASS(add_row(p, &capacity, &r));
   }
   find_shares(p);
-  *out = p;
-  p = NULL;
-done:
-  plan_free(p);
-  return st;
+  return OK;
 }
 
 static int is_default(const step *s) {
@@ -133,14 +127,13 @@ static int is_default(const step *s) {
 }
 
 status plan_leave_out(model *m, const mesh *msh) {
-  effect_plan *p = NULL;
+  ENDS_BY(plan_free) effect_plan *p = NULL;
   if (facts_first_step(m, is_default) == NULL || model_targeted_goal(m) != NULL)
     return OK;
   PASS(plan_new(m, msh, 0, &p));
   double share = 0.0;
   for (int i = 0; i < p->n; ++i)
     if (p->rows[i].name == mesh_error_effect.name) share = p->rows[i].share;
-  plan_free(p);
   if (share <= PLAN_CHEAP) return OK;
   m->accuracy.mesh_price = share;
   for (int i = 0; i < m->n.step; ++i)
@@ -149,10 +142,8 @@ status plan_leave_out(model *m, const mesh *msh) {
   return OK;
 }
 
-void plan_free(effect_plan *p) {
-  if (p == NULL) return;
-  memory_free(p->rows);
-  memory_free(p);
+void plan_free(effect_plan **p) {
+  if (*p != NULL) RELEASE((*p)->rows, *p);
 }
 
 stage_cost plan_cost(const plan_row *r) {

@@ -138,8 +138,7 @@ static status msh_add_element(msh *m, int block, size_t no, size_t **node) {
 static status msh_new_nodes(msh *m, size_t n) {
   raw_mesh *raw = m->raw;
   raw->n_node = n;
-  PASS_NEW(raw->node_no, n);
-  PASS_NEW(raw->xyz, 3 * n);
+  PASS_NEW_ALL(OF(raw->node_no, n), OF(raw->xyz, 3 * n));
   return OK;
 }
 
@@ -585,8 +584,7 @@ static status finish_blocks(msh *m) {
   raw_mesh *raw = m->raw;
   OWNED block_order *order = NULL;
   OWNED raw_block *sorted = NULL;
-  PASS_NEW(order, raw->n_block);
-  PASS_NEW(sorted, raw->n_block);
+  PASS_NEW_ALL(OF(order, raw->n_block), OF(sorted, raw->n_block));
   for (int i = 0; i < raw->n_block; ++i)
     order[i] =
         (block_order){raw->block[i].dim, m->fill[i].tag, raw->block[i].type, i};

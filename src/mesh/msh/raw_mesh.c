@@ -29,8 +29,7 @@ void table_free(key_table *t) {
 static status grow(key_table *t) {
   ENDS_BY(table_free)
   key_table more = {.n = t->n, .n_slot = t->n_slot == 0 ? 16 : 2 * t->n_slot};
-  PASS_NEW(more.key, more.n_slot);
-  PASS_NEW(more.id, more.n_slot);
+  PASS_NEW_ALL(OF(more.key, more.n_slot), OF(more.id, more.n_slot));
   for (size_t i = 0; i < t->n_slot; ++i) {
     if (t->id[i] == 0) continue;
     size_t s = slot_of(&more, t->key[i]);

@@ -219,9 +219,8 @@ static status root_attributes(const maker *k, const hdf5_file *h) {
 static status alloc_layout(const hdf5_file *h, int n_row, int n_record,
                            hdf5_layout *l) {
   *l = (hdf5_layout){.n_row = n_row, .n_record = n_record};
-  PASS_NEW(l->fixed, h->n_fixed);
-  PASS_NEW(l->history, h->n_field);
-  PASS_NEW(l->record, (size_t)h->n_field * (size_t)n_record);
+  PASS_NEW_ALL(OF(l->fixed, h->n_fixed), OF(l->history, h->n_field),
+               OF(l->record, (size_t)h->n_field * (size_t)n_record));
   return OK;
 }
 

@@ -71,10 +71,9 @@ static status join(run *r, mortar *const *m) {
     n_row += (size_t)m[i]->n;
     n_part += m[i]->to.start[m[i]->n];
   }
-  PASS_NEW(t->node_id, n_row);
-  PASS_NEW(t->to.start, n_row + 1);
-  PASS_NEW(t->to.master, n_part);
-  PASS_NEW(t->to.part, (size_t)r->msh->dim * n_part);
+  PASS_NEW_ALL(OF(t->node_id, n_row), OF(t->to.start, n_row + 1),
+               OF(t->to.master, n_part),
+               OF(t->to.part, (size_t)r->msh->dim * n_part));
   t->to.dim = r->msh->dim;
   while ((size_t)t->n < n_row) {
     int least = -1;
@@ -97,8 +96,7 @@ status run_build_ties(run *r) {
   run_free_ties(r);
   if (n == 0) return OK;
   timer_enter(STAGE_COUPLING);
-  NEW(m, n);
-  NEW(dropped, r->msh->n_node);
+  NEW_ALL(OF(m, n), OF(dropped, r->msh->n_node));
   find_dropped(r, dropped);
   for (int i = 0; i < n; ++i) {
     TRY(couple(r, &r->m->ties[i], dropped, &m[i]));

@@ -85,8 +85,7 @@ done:
 }
 
 status start_report_new(const mesh *msh, start_report *report) {
-  PASS_NEW(report->defect, msh->n_node);
-  PASS_NEW(report->kind, msh->n_node);
+  PASS_NEW_ALL(OF(report->defect, msh->n_node), OF(report->kind, msh->n_node));
   return OK;
 }
 
