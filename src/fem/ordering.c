@@ -231,14 +231,13 @@ static void dissect(dissection *w, int n, int *node) {
 
 static status order_by_cuts(const graph *g, int dim, const double *x, int n,
                             int *node, double *work) {
-  status st = OK;
-  dissection w = {.g = g, .dim = dim, .x = x, .n = n};
-  NEW_ALL(OF(w.side, g->n), OF(w.spare, n));
+  OWNED int *side = NULL, *spare = NULL;
+  PASS_NEW_ALL(OF(side, g->n), OF(spare, n));
+  dissection w = {
+      .g = g, .dim = dim, .x = x, .n = n, .side = side, .spare = spare};
   dissect(&w, n, node);
   *work = w.work;
-done:
-  RELEASE(w.side, w.spare);
-  return st;
+  return OK;
 }
 
 /* Pattern of the graph among node[0..n), upper triangle, new. */

@@ -193,21 +193,17 @@ int mesh_is_program(const char *file) { return ends_in(file, ".geo"); }
 
 status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out) {
-  status st = OK;
   char head[HEAD_SIZE + 1];
-  raw_mesh *raw = NULL;
+  ENDS_BY(raw_free) raw_mesh *raw = NULL;
   *out = NULL;
-  TRY(read_head(source->file, head, at, log));
+  PASS(read_head(source->file, head, at, log));
   if (mesh_is_program(source->file))
-    TRY(read_geo(source, head, at, log, &raw));
+    PASS(read_geo(source, head, at, log, &raw));
   else
-    TRY(read_msh(source, head, at, log, &raw));
+    PASS(read_msh(source, head, at, log, &raw));
   if (source->sizes[0].of != NULL && !mesh_is_program(source->file))
-    TRY(refine(source, raw));
+    PASS(refine(source, raw));
   raw->meets = source->meets;
   raw->made = mesh_is_program(source->file);
-  TRY(build_mesh(raw, source->scale, at, log, out));
-done:
-  raw_free(raw);
-  return st;
+  return build_mesh(raw, source->scale, at, log, out);
 }

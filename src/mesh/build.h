@@ -51,9 +51,6 @@ void fault_pair(faults *c, int dim, size_t one, size_t two, const double *x);
 /* ERR_MESH if errors were added to the log since the start. */
 status build_check(const builder *b);
 
-/* The first of the items with a number, -1: none; numbers may repeat. */
-status numbers_index(number_table *t, int n, const size_t *no);
-int numbers_find(const number_table *t, size_t no);
 /* Two items with one number are reported, but not two with one id. */
 status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id);

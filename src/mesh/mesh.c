@@ -133,23 +133,13 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
 }
 
 status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
-  status st = OK;
   const size_t per = (size_t)m->dim + 1, n = per * (size_t)m->n_elem;
-  size_t *s = NULL;
-  int *e = NULL;
-  NEW_ALL(OF(s, m->n_node + 2), OF(e, n));
+  PASS_NEW_ALL(OF(*start, m->n_node + 2), OF(*elem, n));
+  size_t *s = *start;
   for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];
   for (int i = 0; i < m->n_node; ++i) s[i + 2] += s[i + 1];
-  for (size_t k = 0; k < n; ++k) e[s[m->elem[k] + 1]++] = (int)(k / per);
-done:
-  if (st != OK) {
-    RELEASE(s, e);
-    s = NULL;
-    e = NULL;
-  }
-  *start = s;
-  *elem = e;
-  return st;
+  for (size_t k = 0; k < n; ++k) (*elem)[s[m->elem[k] + 1]++] = (int)(k / per);
+  return OK;
 }
 
 void fault_add(faults *c, const char *format, ...) {

@@ -27,6 +27,8 @@ typedef struct side_list {
   sort_item *side; /* [n] key: other nodes, turn; id: (dim+1)*elem + side */
 } side_list;
 
+static void sides_free(side_list *s) { RELEASE(s->start, s->side); }
+
 static void side_nodes(const mesh *m, int id, int *v) {
   faces_side(m, id / (m->dim + 1), id % (m->dim + 1), v);
 }
@@ -440,12 +442,8 @@ done:
 }
 
 status overlap_check(builder *b) {
-  status st = OK;
-  side_list s = {0};
-  TRY(gather_sides(b->m, &s));
-  TRY(check_sides(b, &s));
-  TRY(check_skins(b, &s));
-done:
-  RELEASE(s.start, s.side);
-  return st;
+  ENDS_BY(sides_free) side_list s = {0};
+  PASS(gather_sides(b->m, &s));
+  PASS(check_sides(b, &s));
+  return check_skins(b, &s);
 }

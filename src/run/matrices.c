@@ -31,14 +31,12 @@ void matrices_free(matrices *m) {
 void run_forget_estimates(run *r) { known_rate_forget(&r->solving.rate); }
 
 static status new_solver(const run *r, matrices *m) {
-  status st = OK;
-  TRY(contact_solver_new(&r->step->solver, &m->solver));
-  if (m->from == NULL) goto done;
+  PASS(contact_solver_new(&r->step->solver, &m->solver));
+  if (m->from == NULL) return OK;
   archive_go(m->from, m->group);
-  st = contact_solver_keep(m->solver, m->from);
+  const status st = contact_solver_keep(m->solver, m->from);
   archive_go(m->from, "");
   m->from = NULL;
-done:
   return st;
 }
 

@@ -249,22 +249,20 @@ static status tangential_constant(block *b, int limits, double *largest) {
 
 status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
                           theorems_contact *out) {
-  status st = OK;
-  block b = {.cp = cp, .e = e};
-  unsigned char *pressed = NULL;
+  OWNED int *dof = NULL;
+  OWNED unsigned char *pressed = NULL;
   double product = 0.0;
-  NEW_ALL(OF(b.dof, cp->m), OF(pressed, cp->n));
+  PASS_NEW_ALL(OF(dof, cp->m), OF(pressed, cp->n));
+  block b = {.cp = cp, .e = e, .dof = dof};
   find_pressed(cp, pressed);
   for (int i = 0; i < cp->n; ++i)
     if (pressed[i]) b.dof[b.n++] = cp->dim * i;
-  TRY(largest_of(&b, apply_stiffness, &out->normal));
+  PASS(largest_of(&b, apply_stiffness, &out->normal));
   b.n = 0;
   for (int i = 0; i < cp->n; ++i)
     if (has_row(cp, i)) b.dof[b.n++] = cp->dim * i;
-  TRY(largest_of(&b, apply_limit, &product));
-  TRY(tangential_constant(&b, limits, &out->tangent));
+  PASS(largest_of(&b, apply_limit, &product));
+  PASS(tangential_constant(&b, limits, &out->tangent));
   out->factor = product > 0.0 ? sqrt(product) * sqrt(out->tangent) : 0.0;
-done:
-  RELEASE(b.dof, pressed);
-  return st;
+  return OK;
 }

@@ -158,20 +158,18 @@ static void test_penetration(trial *s) {
 
 status inequality_least(const contact_problem *cp, const double *u,
                         double *least, int *fields) {
-  status st = OK;
-  trial s = {.cp = cp, .u = u, .least = HUGE_VAL, .seed = 1998};
+  OWNED double *r = NULL, *w = NULL;
   *least = 0.0;
   *fields = 0;
-  if (cp->m == 0) goto done;
-  NEW_REALS(cp->m, &s.r, &s.w);
-  memcpy(s.w, u, (size_t)cp->m * sizeof *u);
+  if (cp->m == 0) return OK;
+  PASS_NEW_REALS(cp->m, &r, &w);
+  trial s = {.cp = cp, .u = u, .r = r, .w = w, .least = HUGE_VAL, .seed = 1998};
+  memcpy(w, u, (size_t)cp->m * sizeof *u);
   set_scales(&s);
   try_nodes(&s);
   try_all(&s);
   test_penetration(&s);
   *least = s.least < HUGE_VAL ? s.least : 0.0;
   *fields = s.n;
-done:
-  RELEASE(s.r, s.w);
-  return st;
+  return OK;
 }

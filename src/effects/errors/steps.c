@@ -100,17 +100,14 @@ static void path_free(finer_path *p) {
 
 /* The equilibrium at t from where "from" stands, into "to". */
 static status half(run *r, waypoint *from, double t, waypoint *to) {
-  status st = OK;
   equilibrium keep = start_point_use(r, &from->start);
-  if (r->step->kind == STEP_VISCO)
-    st = visco_advance_from(r, &from->flow, t, &to->flow);
-  else
-    st = increment_solve(r, t);
+  const status st = r->step->kind == STEP_VISCO
+                        ? visco_advance_from(r, &from->flow, t, &to->flow)
+                        : increment_solve(r, t);
   r->old = keep;
-  TRY(st);
+  PASS(st);
   waypoint_copy(r, &r->now, to);
-done:
-  return st;
+  return OK;
 }
 
 /* The next increment starts from what is in r->old. */

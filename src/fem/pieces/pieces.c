@@ -115,23 +115,18 @@ static status sort_pieces(const mesh *m, const int *body_of, pieces *p) {
 }
 
 status pieces_find(const mesh *m, pieces *p) {
-  status st = OK;
-  int *up = NULL, *body = NULL;
+  OWNED int *up = NULL, *body = NULL;
   *p = (pieces){0};
-  TRY(mesh_node_elements(m, &p->start, &p->elem));
-  NEW_ALL(OF(up, m->n_elem), OF(body, m->n_elem), OF(p->piece, m->n_elem));
+  PASS(mesh_node_elements(m, &p->start, &p->elem));
+  PASS_NEW_ALL(OF(up, m->n_elem), OF(body, m->n_elem), OF(p->piece, m->n_elem));
   for (int e = 0; e < m->n_elem; ++e) up[e] = e;
-  TRY(unite_by_faces(m, p, up));
+  PASS(unite_by_faces(m, p, up));
   p->n_piece = number_sets(m->n_elem, up, p->piece);
   for (int j = 0; j < m->n_node; ++j)
     for (size_t q = p->start[j] + 1; q < p->start[j + 1]; ++q)
       set_unite(up, p->elem[q - 1], p->elem[q]);
   p->n_body = number_sets(m->n_elem, up, body);
-  TRY(sort_pieces(m, body, p));
-done:
-  RELEASE(up, body);
-  if (st != OK) pieces_release(p);
-  return st;
+  return sort_pieces(m, body, p);
 }
 
 void pieces_release(pieces *p) {

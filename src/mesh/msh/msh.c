@@ -653,19 +653,12 @@ static void release(msh *m) {
 }
 
 status msh_read(const char *file, raw_mesh **out) {
-  status st = OK;
-  msh m = {0};
+  ENDS_BY(release) msh m = {0};
   *out = NULL;
-  TRY(scan_open(&m.s, file, ERR_MESH));
-  NEW(m.raw, 1);
-  TRY(read_sections(&m));
-  TRY(finish_groups(&m));
-  TRY(finish_blocks(&m));
-done:
-  release(&m);
-  if (st != OK)
-    raw_free(m.raw);
-  else
-    *out = m.raw;
-  return st;
+  PASS(scan_open(&m.s, file, ERR_MESH));
+  PASS_NEW(*out, 1);
+  m.raw = *out;
+  PASS(read_sections(&m));
+  PASS(finish_groups(&m));
+  return finish_blocks(&m);
 }

@@ -53,7 +53,8 @@ status table_add(key_table *t, uint64_t key, int *id) {
   return OK;
 }
 
-void raw_free(raw_mesh *raw) {
+void raw_free(raw_mesh **p) {
+  raw_mesh *raw = *p;
   if (raw == NULL) return;
   for (int i = 0; i < raw->n_block; ++i) {
     RELEASE(raw->block[i].type_name, raw->block[i].physical, raw->block[i].no,

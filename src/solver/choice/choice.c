@@ -72,22 +72,20 @@ static int fits(const contact_solver *s, const contact_problem *cp) {
 }
 
 static status fit(contact_solver *s, const contact_problem *cp) {
-  status st = OK;
-  if (fits(s, cp)) goto done;
+  if (fits(s, cp)) return OK;
   archive *from = s->best_u == NULL ? s->from : NULL;
   forget_factors(s);
   s->from = from;
   if (from != NULL) {
     archive_go(from, s->group);
-    st = normal_form_keep(&s->normal, from);
+    const status st = normal_form_keep(&s->normal, from);
     archive_go(from, "");
-    TRY(st);
+    PASS(st);
   }
-  TRY(contact_bodies_new(cp, &s->bodies));
-  NEW_ALL(OF(s->best_u, cp->m), OF(s->best_r, cp->m));
+  PASS(contact_bodies_new(cp, &s->bodies));
+  PASS_NEW_ALL(OF(s->best_u, cp->m), OF(s->best_r, cp->m));
   s->last = *cp;
-done:
-  return st;
+  return OK;
 }
 
 /* ---- saved data ------------------------------------------------- */
