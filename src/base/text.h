@@ -14,6 +14,12 @@ typedef struct text_file {
   char *path; /* owned */
 } text_file;
 
+/* ASCII in any locale. */
+static inline char upper_case(char c) {
+  return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+}
+static inline int is_blank(char c) { return c == ' ' || c == '\t'; }
+
 /* file.c: DIR/NAME.SUFFIX, new (memory_free), NULL without memory. */
 char *text_path(const char *dir, const char *name, const char *suffix);
 /* Open for writing; by_line: each line is flushed when it ends. */

@@ -1,6 +1,7 @@
 #include "contact/pair.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "contact/frame.h"
 
 #include <math.h>
@@ -34,11 +35,6 @@ static int is_dependent(int dim, const double *a, const double *b) {
   return frame_complete(dim, 2, 0, frame, held) < 0;
 }
 
-static int by_number(const void *a, const void *b) {
-  const int x = *(const int *)a, y = *(const int *)b;
-  return (x > y) - (x < y);
-}
-
 /* 1: an earlier pair has node q with (nearly) the same normal. */
 static int is_taken(const surface_input *in, int pair_id, int q) {
   const int dim = in->mesh->dim;
@@ -47,7 +43,7 @@ static int is_taken(const surface_input *in, int pair_id, int q) {
     const mortar *old = in->pairs[p].coupled;
     if (old == NULL) continue;
     const int *at = bsearch(&m->node_id[q], old->node_id, (size_t)old->n,
-                            sizeof *old->node_id, by_number);
+                            sizeof *old->node_id, number_order);
     if (at != NULL && is_dependent(dim, old->normal + dim * (at - old->node_id),
                                    m->normal + dim * q))
       return 1;

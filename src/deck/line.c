@@ -5,7 +5,6 @@
  */
 #include "base/memory.h"
 #include "base/system/input.h"
-#include "base/text.h"
 #include "deck/reader.h"
 
 #include <errno.h>

@@ -137,7 +137,7 @@ static component sets_component(const body_sets *s, int i, int c) {
 /* Set of a node, -1: at rest. */
 static int set_of(body_sets *s, int i) {
   const int b = s->body[i];
-  return b < 0 || s->set[b] < 0 ? -1 : set_root(s->set, b);
+  return b < 0 || s->set[b] < 0 ? -1 : forest_root(s->set, b);
 }
 
 /* Join (or not) the sets that a node meets; that of the node or else one of its
@@ -150,7 +150,7 @@ static int join_round(body_sets *s, int i, int join) {
     for (int t = 0; t < n; ++t) {
       if (component_term(&x, t, &node) == 0) continue;
       const int other = set_of(s, node);
-      if (join && id >= 0 && other >= 0) set_unite(s->set, id, other);
+      if (join && id >= 0 && other >= 0) forest_join(s->set, id, other);
       if (id < 0) id = other;
     }
   }
@@ -192,7 +192,7 @@ static void sets_join(body_sets *s, joint by) {
   memset(s->n, 0, (size_t)n_body * sizeof *s->n);
   for (int b = 0; b < n_body; ++b) {
     if (s->set[b] < 0) continue;
-    const int id = s->set[b] = set_root(s->set, b);
+    const int id = s->set[b] = forest_root(s->set, b);
     s->column[b] = s->n[id];
     s->n[id] += sets_columns(s, b);
   }

@@ -68,8 +68,4 @@ status faces_finish(builder *b);    /* ids, elements on both sides */
 void faces_side(const mesh *m, int elem, int side, int *v);
 status overlap_check(builder *b); /* across faces, anywhere */
 
-/* Sets as trees: parent[i] = i for the lowest of each. */
-int forest_root(int *parent, int i);
-void forest_join(int *parent, int a, int b);
-
 #endif

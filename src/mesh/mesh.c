@@ -97,7 +97,7 @@ double mesh_elem_gradients(const mesh *m, int elem_id, double *g) {
   return six_volume;
 }
 
-/* Root of a node in the forest of bodies; the path is halved on each search. */
+/* The path is halved on each search. */
 int forest_root(int *parent, int i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
@@ -106,7 +106,6 @@ int forest_root(int *parent, int i) {
   return i;
 }
 
-/* The lower root wins, so that bodies are numbered by their first node. */
 void forest_join(int *parent, int a, int b) {
   a = forest_root(parent, a);
   b = forest_root(parent, b);

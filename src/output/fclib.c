@@ -12,6 +12,7 @@
  * Only Coulomb friction of each node by itself fits this layout. A prescribed
  * tangential unknown has no force and no motion: q_T = 0 there.
  */
+#include "base/archive/dataset.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "output/writers.h"
@@ -149,10 +150,6 @@ static status failed(const written *f, const char *name) {
                      f->path, name);
 }
 
-static void end_id(hid_t *id) {
-  if (*id >= 0) H5Idec_ref(*id);
-}
-
 static status put_group(const written *f, const char *name) {
   hid_t group =
       H5Gcreate2(f->file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -164,7 +161,7 @@ static status put_group(const written *f, const char *name) {
 static status put_data(const written *f, const char *group, const char *name,
                        hid_t type, hid_t as, hid_t space, const void *data) {
   char full[80];
-  hid_t plan ENDS_BY(end_id) = H5Pcreate(H5P_DATASET_CREATE);
+  HELD hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
   snprintf(full, sizeof full, "%s/%s", group, name);
   H5Pset_obj_track_times(plan, 0);
   hid_t set =
@@ -178,20 +175,20 @@ static status put_data(const written *f, const char *group, const char *name,
 
 static status put_reals(const written *f, const char *group, const char *name,
                         size_t n, const double *x) {
-  hid_t space ENDS_BY(end_id) = H5Screate_simple(1, &(hsize_t){n}, NULL);
+  HELD hid_t space = H5Screate_simple(1, &(hsize_t){n}, NULL);
   return put_data(f, group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, x);
 }
 
 static status put_ints(const written *f, const char *group, const char *name,
                        size_t n, const int *x) {
-  hid_t space ENDS_BY(end_id) = H5Screate_simple(1, &(hsize_t){n}, NULL);
+  HELD hid_t space = H5Screate_simple(1, &(hsize_t){n}, NULL);
   return put_data(f, group, name, H5T_STD_I32LE, H5T_NATIVE_INT, space, x);
 }
 
 static status put_text(const written *f, const char *group, const char *name,
                        const char *text) {
-  hid_t type ENDS_BY(end_id) = H5Tcopy(H5T_C_S1);
-  hid_t space ENDS_BY(end_id) = H5Screate(H5S_SCALAR);
+  HELD hid_t type = H5Tcopy(H5T_C_S1);
+  HELD hid_t space = H5Screate(H5S_SCALAR);
   H5Tset_size(type, strlen(text) + 1);
   H5Tset_strpad(type, H5T_STR_NULLTERM);
   return put_data(f, group, name, type, type, space, text);

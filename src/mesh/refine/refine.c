@@ -8,6 +8,7 @@
 #include "mesh/refine/parts.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -126,10 +127,6 @@ static status take(bisection *b) {
 
 /* ---- lengths ------------------------------------------------------------- */
 
-static uint64_t key_of(int a, int b) {
-  return a < b ? table_key(a, b) : table_key(b, a);
-}
-
 static void vector(const bisection *b, int from, int to, double *e) {
   for (int k = 0; k < 3; ++k) e[k] = b->x[3 * to + k] - b->x[3 * from + k];
 }
@@ -137,7 +134,7 @@ static void vector(const bisection *b, int from, int to, double *e) {
 static double square_of(const bisection *b, int i, int k) {
   double e[3];
   vector(b, i < k ? i : k, i < k ? k : i, e);
-  return e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+  return dot(3, e, e);
 }
 
 /* Signed area of a triangle in the plane, volume of a tetrahedron. */

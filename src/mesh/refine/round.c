@@ -64,10 +64,6 @@ static void between(const round_surface *s, int a, int b, double *e) {
 
 /* ---- edges --------------------------------------------------------------- */
 
-static uint64_t key_of(int a, int b) {
-  return a < b ? table_key(a, b) : table_key(b, a);
-}
-
 static status add_edge(round_surface *s, int face, int a, int b) {
   int id;
   PASS(table_add(&s->edges, key_of(a, b), &id));
