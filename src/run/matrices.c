@@ -41,21 +41,18 @@ static status new_solver(const run *r, matrices *m) {
 }
 
 status matrices_keep(matrices *m, archive *a, const char *group) {
-  status st = OK;
   int there = m->solver != NULL;
   if (!archive_reads(a) && !there && m->from != NULL)
     return archive_pass_on(m->from, m->group, a);
-  archive_enter(a, group);
-  TRY(archive_ints(a, "solver", &there, 1));
-  if (archive_reads(a) && there && m->solver == NULL) {
+  IN_GROUP(a, group);
+  PASS(archive_ints(a, "solver", &there, 1));
+  if (!archive_reads(a) || m->solver != NULL)
+    return there ? contact_solver_keep(m->solver, a) : OK;
+  if (there) {
     m->from = a;
     snprintf(m->group, sizeof m->group, "%s", archive_group(a));
-  } else if (there) {
-    TRY(contact_solver_keep(m->solver, a));
   }
-done:
-  archive_leave(a);
-  return st;
+  return OK;
 }
 
 status run_renew_elastic(run *r) {

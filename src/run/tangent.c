@@ -291,12 +291,11 @@ status tangent_keep(run *r, archive *a) {
     matrices *m = &v->slot[i];
     if (m->c != NULL && m->c == r->c) known = m->key;
     snprintf(name, sizeof name, "slot%d", i);
-    archive_enter(a, name);
+    IN_GROUP(a, name);
     PASS(archive_reals(a, "key", &m->key, 1));
     PASS(archive_ints(a, "exact", &m->exact, 1));
     PASS(archive_bytes(a, "used", &m->used, sizeof m->used));
     PASS(matrices_keep(m, a, "solver"));
-    archive_leave(a);
   }
   if (r->solving.known_key != RUN_NO_KEY) known = r->solving.known_key;
   PASS(keep_fresh(r, a));

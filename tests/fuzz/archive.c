@@ -47,7 +47,7 @@ static status serve(archive *at, arrays *a) {
     if (a->kind[i] == 0) st = archive_reals(at, a->name[i], a->real[i], n);
     if (a->kind[i] == 1) st = archive_ints(at, a->name[i], a->whole[i], n);
     if (a->kind[i] == 2) st = archive_bytes(at, a->name[i], a->real[i], n);
-    if (i % 2 == 1) archive_leave(at);
+    if (i % 2 == 1) archive_leave(&at);
   }
   return st;
 }

@@ -60,15 +60,17 @@ int archive_has_cpu(const archive *a) { return !a->no_cpu; }
 
 int archive_reads(const archive *a) { return a->path != NULL; }
 
-void archive_enter(archive *a, const char *group) {
+archive *archive_enter(archive *a, const char *group) {
   size_t used = strlen(a->group);
   snprintf(a->group + used, sizeof a->group - used, "%s/", group);
+  return a;
 }
 
-void archive_leave(archive *a) {
-  size_t used = strlen(a->group);
-  if (used > 0) a->group[--used] = '\0';
-  while (used > 0 && a->group[used - 1] != '/') a->group[--used] = '\0';
+void archive_leave(archive *const *a) {
+  char *group = (*a)->group;
+  size_t used = strlen(group);
+  if (used > 0) group[--used] = '\0';
+  while (used > 0 && group[used - 1] != '/') group[--used] = '\0';
 }
 
 const char *archive_group(const archive *a) { return a->group; }

@@ -761,16 +761,14 @@ static status lemke_solve(const contact_problem *cp, const void *par,
 }
 
 static status lemke_keep(void *work, archive *a) {
-  status st = OK;
   lemke_work *w = work;
-  for (int i = 0; i < N_CORRECTOR && st == OK; ++i) {
-    if (w->corrector.ops[i] == NULL || w->corrector.ops[i]->keep == NULL)
-      continue;
-    archive_enter(a, w->corrector.ops[i]->name);
-    st = w->corrector.ops[i]->keep(w->corrector.work[i], a);
-    archive_leave(a);
+  for (int i = 0; i < N_CORRECTOR; ++i) {
+    const solver_ops *ops = w->corrector.ops[i];
+    if (ops == NULL || ops->keep == NULL) continue;
+    IN_GROUP(a, ops->name);
+    PASS(ops->keep(w->corrector.work[i], a));
   }
-  return st;
+  return OK;
 }
 
 /* clang-format off */
