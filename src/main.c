@@ -8,7 +8,6 @@
 #include "fem/fem.h"
 #include "program/inform.h"
 #include "program/job.h"
-#include "program/lock.h"
 #include "program/restart.h"
 #include "program/command.h"
 
@@ -78,7 +77,7 @@ static int report(status st, const message_log *log, int unsettled) {
 }
 
 /* No file of the job gets the number of a stream that was closed; HDF5 locks
- * no file: the job does (lock.h), and not every file system can. */
+ * no file: the job does (lock.c), and not every file system can. */
 static void prepare_process(void) {
   int fd;
   do fd = open("/dev/null", O_RDWR);

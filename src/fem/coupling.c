@@ -1,4 +1,4 @@
-#include "fem/coupling.h"
+#include "fem/stiffness.h"
 
 #include "base/memory.h"
 

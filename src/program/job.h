@@ -85,4 +85,17 @@ status target_reach(const command *c, job_input *in, int *unsettled);
  * 0.1 %. ERR_DECK: no .geo to mesh again; the errors of history_run. */
 status forecast_print(const command *c, job_input *in);
 
+/* lock.c: one job of a name in a folder at a time: JOB.lock, held by flock(),
+ * which the system releases however the process ends. A file left behind is no
+ * lock. */
+typedef struct job_lock {
+  char *path; /* owned; NULL: none held */
+  int fd;
+} job_lock;
+
+/* Make the folder if it is not there, and take the lock. ERR_FILE: another
+ * process holds it, or the file cannot be made. */
+status job_lock_take(const char *dir, const char *job, job_lock *l);
+void job_lock_release(job_lock *l); /* accepts one never taken */
+
 #endif

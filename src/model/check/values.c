@@ -6,7 +6,6 @@
 #include "base/memory.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
-#include "model/field/field.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Nodal fields: $NodeData of gmsh, or two datasets of HDF5. */
-#include "model/field/field.h"
+#include "model/check/parts.h"
 
 #include "base/memory.h"
 #include "base/archive/dataset.h"
