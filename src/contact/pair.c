@@ -11,8 +11,6 @@
 
 /* ---- couplings ---------------------------------------------------------- */
 
-static int is_pair(const contact_pair *p) { return p->support == NULL; }
-
 /* 1: the pair is coupled where the bodies are now. */
 static int is_moved(const surface_input *in, const contact_pair *p) {
   return p->update && in->u != NULL;
@@ -163,7 +161,7 @@ static void tell(const surface_input *in, const contact_pair *p, int n_held,
 status pairs_couple(const surface_input *in, message_log *log) {
   for (int p = 0; p < in->n_pair; ++p) {
     int n_held = 0;
-    if (!is_pair(&in->pairs[p])) continue;
+    if (in->pairs[p].support != NULL) continue;
     PASS(couple_kept(in, p, &n_held));
     tell(in, &in->pairs[p], n_held, log);
     tell_facets(in, &in->pairs[p], log);

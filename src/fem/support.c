@@ -199,13 +199,6 @@ static void sets_join(body_sets *s, joint by) {
   list_nodes(s);
 }
 
-/* The bodies of the sets with rest[n_body] 1 are at rest; sets_join before the
- * next use. */
-static void sets_rest(body_sets *s, const unsigned char *rest) {
-  for (int b = 0; b < s->p.n_body; ++b)
-    if (s->set[b] >= 0 && rest[s->set[b]]) s->set[b] = -1;
-}
-
 /* First coefficient of the piece of an element, -1: at rest. */
 static int sets_elem_column(const body_sets *s, int elem_id) {
   const int piece = s->p.piece[elem_id], b = s->p.body[piece];
@@ -616,7 +609,8 @@ static status drop_bodies_at_rest(body_sets *s) {
     sets_join(s, (joint)by);
     for (int id = 0; id < s->p.n_body; ++id)
       if (s->set[id] == id) PASS(is_at_rest(s, id, &rest[id]));
-    sets_rest(s, rest);
+    for (int b = 0; b < s->p.n_body; ++b)
+      if (s->set[b] >= 0 && rest[s->set[b]]) s->set[b] = -1;
   }
   return OK;
 }

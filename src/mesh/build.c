@@ -57,11 +57,6 @@ done:
 
 enum { HEAD_SIZE = 4096, TAIL_SIZE = 256 };
 
-static int ends_in(const char *text, const char *end) {
-  size_t n = strlen(text), k = strlen(end);
-  return n >= k && strcasecmp(text + n - k, end) == 0;
-}
-
 /* gmsh does not distinguish a missing file from an empty one: check first. The
  * first bytes go to head, with a zero after them. */
 static status read_head(const char *file, char head[HEAD_SIZE + 1],
@@ -189,7 +184,10 @@ static status refine(const mesh_source *source, raw_mesh *raw) {
   return raw_refine(raw, &request);
 }
 
-int mesh_is_program(const char *file) { return ends_in(file, ".geo"); }
+int mesh_is_program(const char *file) {
+  size_t n = strlen(file);
+  return n >= 4 && strcasecmp(file + n - 4, ".geo") == 0;
+}
 
 status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out) {

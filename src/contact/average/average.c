@@ -75,11 +75,6 @@ static status new_arrays(const average_patch *p, layout *l) {
   return OK;
 }
 
-static void layout_free(layout *l) {
-  RELEASE(l->x, l->corner, l->loop, l->rim);
-  memset(l, 0, sizeof *l);
-}
-
 /* 1 if all corners lie on one mirror. */
 static int on_mirror(const layout *l, int corners,
                      const double *const *corner) {
@@ -276,7 +271,7 @@ typedef struct builder {
 } builder;
 
 static void builder_free(builder *b) {
-  layout_free(&b->at);
+  RELEASE(b->at.x, b->at.corner, b->at.loop, b->at.rim);
   box_tree_free(&b->faces);
   box_tree_free(&b->rim);
   RELEASE(b->share, b->mass);

@@ -756,11 +756,6 @@ static status find_front(const opening *o, int crack) {
   return OK;
 }
 
-static status fronts_find(opening *o) {
-  for (int k = 0; k < o->n; ++k) PASS(find_front(o, k));
-  return OK;
-}
-
 status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
                  mesh_crack *crack) {
   ENDS_BY(release)
@@ -778,5 +773,6 @@ status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
   PASS(opening_check(&o));
   PASS(lips_store(&o));
   PASS(groups_open(&o));
-  return fronts_find(&o);
+  for (int k = 0; k < o.n; ++k) PASS(find_front(&o, k));
+  return OK;
 }

@@ -5,7 +5,6 @@
 #include "solver/choice/choice.h"
 
 #include "base/memory.h"
-#include "solver/choice/proof.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,8 +6,6 @@
 
 #include "base/memory.h"
 #include "base/timer.h"
-#include "solver/choice/polish.h"
-#include "solver/choice/proof.h"
 
 #include <limits.h>
 #include <math.h>

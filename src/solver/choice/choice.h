@@ -78,4 +78,71 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
                   const solver_listener *listener, double *u, double *r,
                   solver_report *rep);
 
+/*
+ * Proof that a contact problem has no solution: an inequality that is checked
+ * after a method has failed. Without it the failure proves nothing.
+ *
+ * The direction of friction follows the slip, so that only what holds for all
+ * forces within their limits is a proof. With
+ *
+ *   c_k = v_n,k + sum_i B_ik |v_t,i|,   h = sum_i g0_i |v_t,i|
+ *
+ * (at a second obstacle c = v of that unknown), all c <= 0, the contact forces
+ * do at least -h on v: r'v >= -h.
+ *
+ * Stiffness:   A v = 0 and f'v > h. No forces balance the load, since
+ *              f'v + r'v = u'A v = 0.
+ * Compliance:  v = W'l, l >= 0 on the unknowns with a bound b and 0 else, and
+ *              l'(q - b) > h. No forces keep the bodies out of their
+ *              obstacles, since l'u = v'r + l'q > l'b.
+ */
+
+/* 1: v[m] (l[m] of a compliance) is a proof; workspace[3*m]. */
+int proof_holds(const contact_problem *cp, const double *v, double *workspace);
+
+/*
+ * Search for a proof. Stiffness: among the motions of the whole body, by the
+ * forces nearest to balance, so that a proof is found if there is one, to
+ * rounding. Compliance: by complementary pivoting without friction. an: modes
+ * of the matrix, made if need be. Errors: ERR_MEMORY.
+ */
+status proof_find(const contact_problem *cp, anchor *an, int *proved);
+
+/*
+ * Final correction of a solution: pressed nodes lie on the obstacle, and, in
+ * 3-D, friction is opposite to the slip.
+ *
+ * The residual measures forces: in a body soft in bending, as a strip of
+ * slivers, nodes may penetrate far, compared with its displacements, at a
+ * negligible force. Methods that approach the bounds leave them there.
+ *
+ * The residual bounds the errors of forces and displacements. Where a node has
+ * slipped by little, s << |u|, an error d of u still turns the direction of its
+ * slip by d/|s|, and friction is not opposite to it although both are exact to
+ * the tolerance. Sweeps of relaxation solve each node exactly with the others
+ * held, slip and friction opposed: one or two of them suffice on a solution.
+ */
+
+/* Deviation of friction from the direction opposite to the slip: the largest
+ * over the nodes of min(c |s|, |r_t + |r_t| s/|s||), s = u_t - ut0, c the
+ * stiffness of the node, over contact_scale. -; 0 in the plane, where the
+ * residual bounds it. */
+double slip_misdirection(const contact_problem *cp, const double *u,
+                         const double *r);
+/*
+ * Reduce it to tol, or as far as a few sweeps do, at most "most" if that is
+ * less, while the residual stays at tol. u[m], r[m]: a solution with that
+ * residual, unchanged where the sweeps do not improve it. *sweeps: number made.
+ */
+status polish_slip(const contact_problem *cp, double tol, int most, double *u,
+                   double *r, int *sweeps);
+
+/*
+ * Move pressed and sticking nodes exactly to their bounds, if the residual
+ * stays at tol; otherwise u[m], r[m] are unchanged. scale: contact_scale;
+ * *residual: updated if the solution is changed.
+ */
+status polish_touch(const contact_problem *cp, double scale, double tol,
+                    double *u, double *r, double *residual);
+
 #endif

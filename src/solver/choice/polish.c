@@ -1,5 +1,5 @@
 /* Final correction of a solution (polish.h). */
-#include "solver/choice/polish.h"
+#include "solver/choice/choice.h"
 
 #include "base/memory.h"
 #include "solver/local.h"

@@ -10,7 +10,7 @@
  * z from the conditions on the forces of C: zero where open, on the limit where
  * slipping. These rows have few entries; X is kept.
  */
-#include "solver/newton/compliance.h"
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
 #include "solver/newton/dense.h"

@@ -24,9 +24,8 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "solver/newton/compliance.h"
 #include "solver/newton/operated.h"
-#include "solver/newton/states.h"
+#include "solver/newton/system.h"
 #include "solver/local.h"
 #include "solver/single.h"
 

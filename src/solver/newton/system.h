@@ -24,6 +24,8 @@
 #include "contact/contact.h"
 #include "solver/solver.h"
 
+#include <stdint.h>
+
 typedef enum { FREE, STICK, SLIP } tangent;
 
 /* A guess of the states. */
@@ -68,5 +70,65 @@ double newton_load(const contact_problem *cp, const pattern *p, double power,
 /* Slip of a node in the directions friction acts in, slip[2], m. */
 void newton_slip(const contact_problem *cp, const double *u, int node_id,
                  double *slip);
+
+/*
+ * The guess of the states of a run of Newton's method: from the forces and
+ * displacements of the last step, and enforced exactly in the forces
+ * (newton.c).
+ */
+typedef struct states {
+  const contact_problem *cp;
+  pattern guess;
+  double *u;        /* [m] of the caller, m */
+  double *r;        /* [m] of the caller, N */
+  double *raw;      /* [m] A u - f, N; compliance form: W r + q, m */
+  double *k;        /* [m] stiffness of each unknown alone, N/m */
+  double *c;        /* [n] mean of them in the tangent plane, N/m */
+  double *g;        /* [n] sliding limits, N */
+  double *rounding; /* [n] of the forces of each node, N */
+  int careful;      /* one state changed at a time, the least index first */
+  uint64_t dice;    /* not 0: each change is made or postponed at random */
+} states;
+
+/* Arrays for a matrix. */
+status states_new(const contact_problem *cp, states *s);
+void states_free(states *s);
+/* r from raw with the conditions of the guess enforced exactly: no force where
+ * open, |r_t| = g where slipping; compliance form: u from raw, no gap where
+ * closed, no slip where stuck. */
+void states_clean(const states *s);
+/* The next guess from (u, r); returns the number of states that would change;
+ * some may be postponed. fresh: there is no guess before. */
+int states_next(states *s, int fresh);
+/* Every node closed, every node with friction sticks. */
+void states_all_stick(states *s);
+/* FNV-1a over the pattern. */
+uint64_t states_hash(const states *s);
+
+/*
+ * The linear system of one step of Newton's method (newton.c) where only the
+ * compliance is known: the unknowns are the unknown forces of a guess of the
+ * states, u = W r + q.
+ *
+ *   open    r_n = 0                      known
+ *   closed  u_n = gap                    unknown r_n
+ *   stick   u_t = ut0                    unknown r_t
+ *   slip    r_t = g e + s d,  g = g0 - B r_n,  d normal to e
+ *           d.(u_t - ut0) + s/kappa = 0  unknown s, in 3-D
+ *
+ * The system is the smaller, the fewer nodes are closed and the more slip. No
+ * inverse of W is made; W may be unsymmetric.
+ */
+typedef struct compliance_system compliance_system;
+status compliance_system_new(const contact_problem *cp,
+                             compliance_system **out);
+void compliance_system_free(compliance_system *s); /* accepts NULL */
+/* raw = W r + q */
+void compliance_displace(const contact_problem *cp, const double *r,
+                         double *raw);
+/* r becomes the forces of the guess p, raw = W r + q. Returns 1 if the system
+ * is singular: r and raw are then undefined. */
+int compliance_system_step(compliance_system *s, const contact_problem *cp,
+                           const pattern *p, double *r, double *raw);
 
 #endif
