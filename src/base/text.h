@@ -44,10 +44,12 @@ int text_memory_end(FILE *f, char **text);
 /* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error
  * number; 0: none known. */
 status text_failed(const char *path, const char *doing, int error_no);
-enum { NUMBER_SIZE = 40 };
+/* Space for a short text; the same is returned again after 31 others. */
+enum { TEXT_ROOM = 80, TEXT_ROOMS = 32 };
+char *text_room(void);
 /* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
- * Inf; the text is returned. */
-const char *text_number(char text[NUMBER_SIZE], double value, int digits);
+ * Inf; in a text_room. */
+const char *text_number(double value, int digits);
 /* Right-aligned in a field of the width, at least one blank before it. */
 void text_cell(FILE *f, const char *text, int width);
 /* Words in lines of at most 78 columns, from column "indent" on, where the

@@ -251,14 +251,13 @@ static void write_contacts(json *w, const job *j) {
 
 /* Those of the last increment. */
 static void write_goals(json *w, const job *j) {
-  char unit[64];
   if (j->m->n.goal == 0 || job_goal(j, 0) == NULL) return;
   ARRAY(w, "goals");
   for (int i = 0; i < j->m->n.goal; ++i) {
     const goal_result *g = job_goal(j, i);
     ITEM(w);
     json_string(w, "goal", j->m->accuracy.goals[i].name);
-    json_string(w, "unit", job_goal_unit(j->m, i, unit, sizeof unit));
+    json_string(w, "unit", job_goal_unit(j->m, i));
     json_real(w, "value", g->value);
     json_real(w, "error", g->error);
     json_real(w, "corrected", g->value + g->error);
@@ -271,12 +270,11 @@ static void write_goals(json *w, const job *j) {
 }
 
 static void write_pass_goals(json *w, const job *j, const pass_goal *g) {
-  char unit[64];
   ARRAY(w, "goals");
   for (int i = 0; i < j->m->n.goal; ++i) {
     ITEM(w);
     json_string(w, "goal", j->m->accuracy.goals[i].name);
-    json_string(w, "unit", job_goal_unit(j->m, i, unit, sizeof unit));
+    json_string(w, "unit", job_goal_unit(j->m, i));
     json_real(w, "value", g[i].found.value);
     json_real(w, "error", g[i].found.error);
     json_real(w, "band", g[i].found.band);

@@ -206,20 +206,22 @@ int column_items(const column *c, const view *v) {
   }
 }
 
-void column_unit(const char *unit, const model *m, char *text, size_t size) {
+const char *column_unit(const char *unit, const model *m) {
   const char *const words[] = {"length", "force", "time"};
   const char *const labels[] = {m->unit.length, m->unit.force, m->unit.time};
+  char *text = text_room();
   size_t used = 0;
   text[0] = '\0';
-  while (*unit != '\0' && used + 1 < size) {
+  while (*unit != '\0' && used + 1 < TEXT_ROOM) {
     int k = 0;
     while (k < 3 && strncmp(unit, words[k], strlen(words[k])) != 0) ++k;
     int known = k < 3 && labels[k] != NULL;
-    int n = known ? snprintf(text + used, size - used, "%s", labels[k])
-                  : snprintf(text + used, size - used, "%c", *unit);
+    int n = known ? snprintf(text + used, TEXT_ROOM - used, "%s", labels[k])
+                  : snprintf(text + used, TEXT_ROOM - used, "%c", *unit);
     unit += known ? strlen(words[k]) : 1;
     used += (size_t)n;
   }
+  return text;
 }
 
 enum { COLUMNS = sizeof((table *)0)->col / sizeof(column *) };
@@ -228,9 +230,7 @@ static int larger(int a, int b) { return a > b ? a : b; }
 
 static void cell_name(const column *c, const model *m, char *text,
                       size_t size) {
-  char unit[80];
-  column_unit(c->unit, m, unit, sizeof unit);
-  snprintf(text, size, "%s[%s]", c->name, unit);
+  snprintf(text, size, "%s[%s]", c->name, column_unit(c->unit, m));
 }
 
 /* Sign, point, E and three digits of the exponent: digits + 8. */
@@ -269,18 +269,16 @@ void table_header(const table *t, const model *m, const char *lead, FILE *f) {
 
 static void row_cell(const table *t, int k, const view *v, int id, FILE *f) {
   const column *c = t->col[k];
-  char text[NUMBER_SIZE], word[160];
+  char word[160];
   if (c->form == AS_WORD) {
     text_word(word, sizeof word, c->word(v, id));
     text_cell(f, word, t->width[k]);
     return;
   }
   double value = c->value(v, id, c->part);
-  if (c->form == AS_COUNT)
-    snprintf(text, sizeof text, "%.0f", value);
-  else
-    text_number(text, value, t->digits);
-  text_cell(f, text, t->width[k]);
+  if (c->form == AS_COUNT) snprintf(word, sizeof word, "%.0f", value);
+  text_cell(f, c->form == AS_COUNT ? word : text_number(value, t->digits),
+            t->width[k]);
 }
 
 void table_row(const table *t, const view *v, int id, FILE *f) {

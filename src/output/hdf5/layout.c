@@ -88,9 +88,7 @@ static status attribute_text(const maker *k, hid_t object, const char *name,
 
 static status column_attributes(const maker *k, hid_t object, const column *c,
                                 const model *m) {
-  char unit[80];
-  column_unit(c->unit, m, unit, sizeof unit);
-  PASS(attribute_text(k, object, "unit", unit));
+  PASS(attribute_text(k, object, "unit", column_unit(c->unit, m)));
   return attribute_text(k, object, "help", c->help);
 }
 
