@@ -36,7 +36,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <string.h>
 
 /*
  * Equilibrium of a body that contact alone holds: its stiffness has motions R

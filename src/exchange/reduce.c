@@ -14,7 +14,6 @@
 #include <cholmod.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* ---- a global problem whose M is symmetric and singular: bodies that contact

@@ -1,5 +1,6 @@
 /* src/output/columns: over the tables, so that a new row is tested too. */
 #include "base/memory.h"
+#include "base/text.h"
 #include "effects/rows.h"
 #include "output/columns/columns.h"
 #include "support/made_up.h"

@@ -11,7 +11,6 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
-#include "model/facts.h"
 #include "run/column_row.h"
 
 #include <math.h>

@@ -7,7 +7,6 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
-#include "model/facts.h"
 
 #include <string.h>
 

@@ -16,7 +16,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "run/column_row.h"
 

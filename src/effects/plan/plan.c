@@ -10,7 +10,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 int plan_says(int on, char *why, size_t size, const char *format, ...) {
   va_list list;

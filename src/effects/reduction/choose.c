@@ -20,7 +20,6 @@
 #include "base/memory.h"
 #include "fem/fem.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 

@@ -8,7 +8,6 @@
 #include "effects/rows.h"
 #include "run/column_row.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 

@@ -4,8 +4,6 @@
  */
 #include "run/column_row.h"
 
-#include <math.h>
-
 /* Contact nodes: unknowns node by node n, t1[, t2] */
 #define SURFACE (v->s->contacts.surface)
 VALUE(contact_node_no, SURFACE->node_no[id])

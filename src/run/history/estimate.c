@@ -2,7 +2,6 @@
  * Checks of the contact solution at an accepted increment: its errors, by the
  * effects that estimate them, and reasons for doubt.
  */
-#include "base/memory.h"
 #include "base/timer.h"
 #include "run/history/loop.h"
 

@@ -11,7 +11,6 @@
 #include "base/memory.h"
 #include "base/timer.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
