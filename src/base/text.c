@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,6 +11,15 @@ char *text_room(void) {
   static char room[TEXT_ROOMS][TEXT_ROOM];
   static unsigned next;
   return room[next++ % TEXT_ROOMS];
+}
+
+const char *text_of(const char *format, ...) {
+  char *text = text_room();
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, TEXT_ROOM, format, args);
+  va_end(args);
+  return text;
 }
 
 const char *text_number(double value, int digits) {

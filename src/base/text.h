@@ -45,8 +45,10 @@ int text_memory_end(FILE *f, char **text);
  * number; 0: none known. */
 status text_failed(const char *path, const char *doing, int error_no);
 /* Space for a short text; the same is returned again after 31 others. */
-enum { TEXT_ROOM = 80, TEXT_ROOMS = 32 };
+enum { TEXT_ROOM = 128, TEXT_ROOMS = 32 };
 char *text_room(void);
+const char *text_of(const char *format, ...)
+    __attribute__((format(printf, 1, 2)));
 /* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
  * Inf; in a text_room. */
 const char *text_number(double value, int digits);

@@ -15,6 +15,7 @@
 #include "base/archive/dataset.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "output/writers.h"
 
 #include <errno.h>
@@ -160,9 +161,8 @@ static status put_group(const written *f, const char *name) {
 /* GROUP/NAME: "data" has the type "as" in memory. */
 static status put_data(const written *f, const char *group, const char *name,
                        hid_t type, hid_t as, hid_t space, const void *data) {
-  char full[80];
+  const char *full = text_of("%s/%s", group, name);
   HELD hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
-  snprintf(full, sizeof full, "%s/%s", group, name);
   H5Pset_obj_track_times(plan, 0);
   hid_t set =
       H5Dcreate2(f->file, full, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);

@@ -168,9 +168,7 @@ static void write_sizes(json *w, const job *j) {
 
 static void json_error(json *w, const budget_row *r, const char *what,
                        double value) {
-  char name[48];
-  snprintf(name, sizeof name, "%s_error_%s", r->json, what);
-  json_real(w, name, value);
+  json_real(w, text_of("%s_error_%s", r->json, what), value);
 }
 
 static void write_budget(json *w, const job *j) {
@@ -470,13 +468,11 @@ static void write_resting(json *w, const flow_tally *t) {
 
 static void write_warnings(json *w, const message_log *log) {
   message_view v;
-  char number[16];
   ARRAY(w, "warnings");
   for (int k = 0; log != NULL && message_get(log, k, &v); ++k) {
     if (v.level != WARNING) continue;
-    snprintf(number, sizeof number, "P%d", (int)v.id);
     ITEM(w);
-    json_string(w, "number", number);
+    json_string(w, "number", text_of("P%d", (int)v.id));
     json_count(w, "line", v.at != NULL ? v.at->line_no : 0);
     json_string(w, "text", v.text);
   }

@@ -10,6 +10,7 @@
 #include "output/writers.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -301,10 +302,8 @@ static status keep_goals(output *o, archive *a, size_t steps) {
   for (size_t i = 0; i < n; ++i) {
     goal_result *g = &o->run.goals[i];
     const double cpu = g->cpu;
-    char name[32];
-    snprintf(name, sizeof name, "goal%zu", i);
     g->cpu = 0.0;
-    status st = archive_bytes(a, name, g, sizeof *g);
+    status st = archive_bytes(a, text_of("goal%zu", i), g, sizeof *g);
     g->cpu = cpu;
     if (st != OK) return st;
   }

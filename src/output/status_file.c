@@ -109,12 +109,11 @@ static const char *cvg_number(double value) {
 /* Unknown values are "-". */
 void cvg_line(const output_options *o, cvg_place at, const solver_step *s,
               text_file *cvg) {
-  char changes[16] = "-";
-  if (s->status_changes >= 0)
-    snprintf(changes, sizeof changes, "%d", s->status_changes);
+  const int changes = s->status_changes;
   fprintf(cvg->f, "%7d %3d %-9s %6d %6d %10s %8s %12s %5s", at.total_no,
           at.attempt, s->solver != NULL ? s->solver : "-", s->iteration,
-          s->limit_update, cvg_number(s->residual), changes,
+          s->limit_update, cvg_number(s->residual),
+          changes < 0 ? "-" : text_of("%d", changes),
           cvg_number(s->limit_change), s->cycle ? "YES" : "no");
   cvg_linear(o, &s->linear, cvg);
 }
@@ -161,10 +160,7 @@ enum { MOST_SHOWN = 20 }; /* contacts */
 /* The unit with a blank before it; nothing if *UNITS gives it no label. */
 static const char *unit_after(const char *unit, const model *m) {
   const char *label = column_unit(unit, m);
-  if (strcmp(label, unit) == 0) return "";
-  char *text = text_room();
-  snprintf(text, TEXT_ROOM, " %s", label);
-  return text;
+  return strcmp(label, unit) == 0 ? "" : text_of(" %s", label);
 }
 
 /* A contact at the last increment: the values of job_end_column. */

@@ -3,6 +3,7 @@
  * their matrices, of which the constant ones are stored, and loads.
  */
 #include "base/memory.h"
+#include "base/text.h"
 #include "base/timer.h"
 #include "material/voigt.h"
 #include "run/visco.h"
@@ -284,14 +285,12 @@ static status keep_fresh(run *r, archive *a) {
 
 status tangent_keep(run *r, archive *a) {
   visco *v = r->strains.visco;
-  char name[20];
   double known = r->c == r->elastic.c ? r->elastic.key : RUN_OTHER_KEY;
   if (v->fresh.c != NULL && v->fresh.c == r->c) known = v->fresh.key;
   for (int i = 0; i < SLOTS; ++i) {
     matrices *m = &v->slot[i];
     if (m->c != NULL && m->c == r->c) known = m->key;
-    snprintf(name, sizeof name, "slot%d", i);
-    IN_GROUP(a, name);
+    IN_GROUP(a, text_of("slot%d", i));
     PASS(archive_reals(a, "key", &m->key, 1));
     PASS(archive_ints(a, "exact", &m->exact, 1));
     PASS(archive_bytes(a, "used", &m->used, sizeof m->used));

@@ -169,11 +169,9 @@ static status add_law(run *r, friction *own, int contact_id, double t,
   if (rule_has_average(rule)) of.average = nonlocal_average(r, contact_id);
   status st = rule->law->limit(&of, r->surface, n, node, t, &own->limit);
   if (st == ERR_DECK) {
-    char why[256];
-    snprintf(why, sizeof why, "%s", status_message());
-    message_add(r->m->log, P2041, &rule->value_at, "%s", why);
+    message_add(r->m->log, P2041, &rule->value_at, "%s", status_message());
     RAISE(ERR_DECK, "%s:%d: %s", rule->value_at.file, rule->value_at.line_no,
-          why);
+          status_message());
   }
   return st;
 }

@@ -6,6 +6,7 @@
 #include "effects/rows.h"
 #include "model/facts.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -163,10 +164,9 @@ double plan_cpu(const effect_plan *p) {
 }
 
 static void print_name(const plan_row *r, const char *lead, FILE *f) {
-  char text[120];
-  snprintf(text, sizeof text, "%s%s%s", r->name, r->of[0] != '\0' ? ", " : "",
-           r->of);
-  fprintf(f, "%s%-26s %-3s", lead, text, r->on ? "on" : "off");
+  fprintf(f, "%s%-26s %-3s", lead,
+          text_of("%s%s%s", r->name, r->of[0] != '\0' ? ", " : "", r->of),
+          r->on ? "on" : "off");
 }
 
 void plan_print(const effect_plan *p, const char *lead, FILE *f) {
@@ -174,33 +174,29 @@ void plan_print(const effect_plan *p, const char *lead, FILE *f) {
           "cpu[%]", "called for by");
   for (int i = 0; i < p->n; ++i) {
     const plan_row *r = &p->rows[i];
-    char size[40] = "";
     print_name(r, lead, f);
-    if (r->on && r->work.kind != NULL)
-      snprintf(size, sizeof size, "%.0f %s", r->work.items, r->work.kind);
-    fprintf(f, " %18s", size);
-    if (r->on)
-      fprintf(f, " %7.1f", 100 * r->share);
-    else
-      fprintf(f, " %7s", "");
-    fprintf(f, "  %s\n", r->why);
+    fprintf(f, " %18s %7s  %s\n",
+            r->on && r->work.kind != NULL
+                ? text_of("%.0f %s", r->work.items, r->work.kind)
+                : "",
+            r->on ? text_of("%.1f", 100 * r->share) : "", r->why);
   }
 }
 
 static void print_row(const plan_row *r, double cpu, int cost, FILE *f) {
   stage_cost c = plan_cost(r);
-  char calls[24] = "", expected[24] = "";
-  if (r->on) snprintf(expected, sizeof expected, "%.1f", 100 * r->share);
-  if (r->on && r->work.calls >= 0 && r->n_stage > 0)
-    snprintf(calls, sizeof calls, "%.0f", r->work.calls);
   print_name(r, "  ", f);
-  fprintf(f, " %11s", expected);
+  fprintf(f, " %11s", r->on ? text_of("%.1f", 100 * r->share) : "");
   if (r->n_stage == 0 && r->on) {
     fprintf(f, "  part of %s\n", r->within);
     return;
   }
   if (cost) fprintf(f, " %8.1f", cpu > 0.0 ? 100 * c.cpu / cpu : 0.0);
-  fprintf(f, " %9s %7ld", calls, c.calls);
+  fprintf(f, " %9s %7ld",
+          r->on && r->work.calls >= 0 && r->n_stage > 0
+              ? text_of("%.0f", r->work.calls)
+              : "",
+          c.calls);
   if (cost) fprintf(f, " %10.3f %14zu", c.cpu, c.bytes);
   fputc('\n', f);
 }

@@ -208,15 +208,16 @@ int column_items(const column *c, const view *v) {
 const char *column_unit(const char *unit, const model *m) {
   const char *const words[] = {"length", "force", "time"};
   const char *const labels[] = {m->unit.length, m->unit.force, m->unit.time};
+  enum { LABEL = 80 };
   char *text = text_room();
   size_t used = 0;
   text[0] = '\0';
-  while (*unit != '\0' && used + 1 < TEXT_ROOM) {
+  while (*unit != '\0' && used + 1 < LABEL) {
     int k = 0;
     while (k < 3 && strncmp(unit, words[k], strlen(words[k])) != 0) ++k;
     int known = k < 3 && labels[k] != NULL;
-    int n = known ? snprintf(text + used, TEXT_ROOM - used, "%s", labels[k])
-                  : snprintf(text + used, TEXT_ROOM - used, "%c", *unit);
+    int n = known ? snprintf(text + used, LABEL - used, "%s", labels[k])
+                  : snprintf(text + used, LABEL - used, "%c", *unit);
     unit += known ? strlen(words[k]) : 1;
     used += (size_t)n;
   }

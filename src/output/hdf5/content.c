@@ -80,7 +80,7 @@ static status add_field(hdf5_file *h, const column *c, entity of,
 }
 
 static status choose_fields(hdf5_file *h) {
-  char name[100], group[120];
+  char name[100];
   const column *c;
   for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
     if (c->field == NULL || !column_visible(c, h->m)) continue;
@@ -93,8 +93,7 @@ static status choose_fields(hdf5_file *h) {
     }
     for (int i = 0; i < h->m->n.contact; ++i) {
       link_name(name, sizeof name, h->m->contacts[i].name);
-      snprintf(group, sizeof group, "/totals/%s", name);
-      PASS(add_field(h, c, PER_CONTACT, group, i));
+      PASS(add_field(h, c, PER_CONTACT, text_of("/totals/%s", name), i));
     }
   }
   return OK;

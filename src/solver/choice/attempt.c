@@ -5,6 +5,7 @@
 #include "solver/choice/choice.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -29,11 +30,9 @@ const char *solver_family(const char *name) {
 }
 
 status attempt_archive(const contact_solver *s, int row, archive *a) {
-  char name[20];
   const solver_ops *ops = row < N_SOLVER ? solver_list[row] : s->choice.ops;
   if (s->work[row] == NULL || ops->keep == NULL) return OK;
-  snprintf(name, sizeof name, "work%d", row);
-  IN_GROUP(a, name);
+  IN_GROUP(a, text_of("work%d", row));
   return ops->keep(s->work[row], a);
 }
 
