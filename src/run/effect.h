@@ -171,8 +171,8 @@ typedef struct effect_ops {
    * into why[size]; size 0: not needed. */
   int (*required)(const model *m, char *why, size_t size);
   /* Work expected before anything is solved; NULL: none, no row in the plan.
-   * ERR_MEMORY. */
-  status (*expected)(const plan_sizes *s, effect_work *work);
+   */
+  effect_work (*expected)(const plan_sizes *s);
   /* Of the hooks; 0: one of its name is made; STAGE_NONE: they are not timed.
    */
   stage own;

@@ -106,10 +106,9 @@ static status start(run *r, void *self) {
   return check_start(r, self);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->nodes, "nodes", 2.0,
-                     4.0 * s->elements * plan_element_work(s)};
-  return OK;
+static effect_work expected(const plan_sizes *s) {
+  return (effect_work){s->nodes, "nodes", 2.0,
+                       4.0 * s->elements * plan_element_work(s)};
 }
 
 static int requires_start(const model *m, char *why, size_t size) {

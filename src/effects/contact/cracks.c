@@ -427,11 +427,10 @@ static int requires_factors(const model *m, char *why, size_t size) {
   return plan_requires_table(m, PRINT_SIF, why, size);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   const double shown = plan_shown(s->m, PRINT_SIF);
-  *w = (effect_work){s->elements, "elements", shown,
-                     shown * s->elements * plan_element_work(s)};
-  return OK;
+  return (effect_work){s->elements, "elements", shown,
+                       shown * s->elements * plan_element_work(s)};
 }
 
 static int factors_due(const run *r) {

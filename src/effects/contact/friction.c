@@ -386,19 +386,13 @@ static status keep(run *r, void *self, archive *a) {
   return OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){.kind = "nodes", .calls = 1.0};
-  status st = plan_rule_nodes(s, rule_has_friction, &w->items);
-  w->operations = 100.0 * w->items;
-  return st;
+static effect_work expected(const plan_sizes *s) {
+  return (effect_work){s->friction, "nodes", 1.0, 100.0 * s->friction};
 }
 
-static status expected_history(const plan_sizes *s, effect_work *w) {
+static effect_work expected_history(const plan_sizes *s) {
   double times = s->equilibria + s->increments;
-  *w = (effect_work){.kind = "nodes", .calls = times};
-  status st = plan_rule_nodes(s, rule_has_friction, &w->items);
-  w->operations = 20.0 * times * w->items;
-  return st;
+  return (effect_work){s->friction, "nodes", times, 20.0 * times * s->friction};
 }
 
 static int requires_friction(const model *m, char *why, size_t size) {

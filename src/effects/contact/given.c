@@ -128,13 +128,12 @@ static void give(run *r, void *self, contact_problem *cp, double *u,
   if (own->n > 0) given_form_apply(own->form, cp, u, force);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double n = 0.0;
   for (int i = 0; s->msh != NULL && i < s->m->n.contact; ++i)
     if (s->m->contacts[i].force.given)
       n += s->msh->group[s->m->contacts[i].group_id].n_node;
-  *w = (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
-  return OK;
+  return (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
 }
 
 static int requires_given(const model *m, char *why, size_t size) {

@@ -412,11 +412,10 @@ static int requires_zones(const model *m, char *why, size_t size) {
   return plan_requires_table(m, PRINT_ZONES, why, size);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   const double n = plan_rows(s, PRINT_ZONES, s->contact);
   const double shown = plan_shown(s->m, PRINT_ZONES);
-  *w = (effect_work){n, "nodes", shown, shown * n * 100.0};
-  return OK;
+  return (effect_work){n, "nodes", shown, shown * n * 100.0};
 }
 
 static int zones_due(const run *r) {

@@ -85,7 +85,7 @@ static status keep(run *r, void *self, archive *a) {
   return archive_reads(a) && made ? recover(r, self) : OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   const double passes = s->is_flat ? 3.0 : 6.0;
   double n = 0.0;
   for (int i = 0; i < s->m->n.step; ++i) {
@@ -93,9 +93,8 @@ static status expected(const plan_sizes *s, effect_work *w) {
     if (p->accuracy.mesh == MESH_ERROR_YES) n += plan_increments(p);
     n += p->accuracy.mesh == MESH_ERROR_END;
   }
-  *w = (effect_work){s->elements, "elements", 1.0 + n,
-                     n * s->elements * passes * plan_element_work(s)};
-  return OK;
+  return (effect_work){s->elements, "elements", 1.0 + n,
+                       n * s->elements * passes * plan_element_work(s)};
 }
 
 static int is_at_each_increment(const step *s) {

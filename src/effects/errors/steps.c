@@ -423,13 +423,12 @@ static status march(run *r, void *self, int *made) {
   return OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double m = plan_contact_unknowns(s);
-  *w = (effect_work){
+  return (effect_work){
       s->contact, "nodes", s->increments,
       2.0 * s->increments *
           (4.0 * work_factor_entries(s) + PLAN_STEPS * 2.0 * m * m)};
-  return OK;
 }
 
 static int requires_time_error(const model *m, char *why, size_t size) {

@@ -41,7 +41,7 @@ static void say_of_problem(const model *m, const effect_ops *e, plan_row *r) {
     plan_says(1, r->why, sizeof r->why, "not part of a condensed problem");
 }
 
-static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
+static void row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
   const model *m = s->m;
   *r = (plan_row){
       .name = e->name, .on = effect_is_on(e, m), .within = e->within};
@@ -53,9 +53,8 @@ static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
               "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->reduction.at));
   if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
   for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
-  status st = e->expected(s, &r->work);
+  r->work = e->expected(s);
   if (!r->on) r->work = (effect_work){.kind = r->work.kind};
-  return st;
 }
 
 static status add_row(effect_plan *p, int *capacity, const plan_row *r) {
@@ -112,7 +111,7 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;
     if (effect_table[k]->expected == NULL) continue;
-    PASS(row_of(&p->sizes, effect_table[k], &r));
+    row_of(&p->sizes, effect_table[k], &r);
     if (effect_table[k]->bit == EFFECT_BIT_INELASTIC)
       PASS(add_laws(m, msh, p, &capacity, &r));
     else
