@@ -55,8 +55,6 @@ status build_check(const builder *b);
 status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id);
 
-status groups_check(builder *b);             /* names, dimension of the mesh */
-status groups_fill(builder *b);              /* items and nodes */
 status nodes_index(builder *b);              /* raw node by number */
 int nodes_find(const builder *b, size_t no); /* raw node or -1 */
 status nodes_order(builder *b);              /* ids, coordinates, numbers */

@@ -2,7 +2,7 @@
  * The columns of all tables and fields, and tables as text.
  *
  * Adding a column is one row in the table of its entity (columns.c for the
- * increments, bodies.c, contacts.c) or of its effect (src/effects): the
+ * increments, nodes and contacts) or of its effect (src/effects): the
  * tables of JOB.dat and of the listing, the fields and histories of JOB.h5 and
  * JOB.xdmf, and the tests loop over them.
  */
