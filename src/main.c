@@ -8,8 +8,6 @@
 #include "fem/fem.h"
 #include "program/inform.h"
 #include "program/job.h"
-#include "program/lock.h"
-#include "program/restart.h"
 #include "program/command.h"
 
 #include <fcntl.h>
@@ -21,11 +19,9 @@
 #define PROTIS_COMMIT "unknown"
 #endif
 
-static void free_archive(archive **a) { archive_free(*a); }
-
 static status solve(const command *c, job_input *in, int *unsettled) {
   job_lock lock ENDS_BY(job_lock_release) = {0};
-  archive *from ENDS_BY(free_archive) = NULL;
+  ENDS_BY(archive_free) archive *from = NULL;
   OWNED char *stop = NULL;
   PASS_GET(stop, text_path(c->dir, in->m->name.job, "stop"));
   PASS(output_spare_inputs(in->m, c->dir));
@@ -87,7 +83,7 @@ static int flush_output(int exit_code) {
 }
 
 /* No file of the job gets the number of a stream that was closed; HDF5 locks
- * no file: the job does (lock.h), and not every file system can. */
+ * no file: the job does (lock.c), and not every file system can. */
 static void prepare_process(void) {
   int fd;
   do fd = open("/dev/null", O_RDWR);

@@ -36,7 +36,6 @@
 #include <float.h>
 #include <lapacke.h>
 #include <math.h>
-#include <string.h>
 
 /*
  * Equilibrium of a body that contact alone holds: its stiffness has motions R
@@ -119,11 +118,8 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
     *done = 1;
     return OK;
   }
-  PASS_NEW(Z, (size_t)m * (size_t)k);
-  PASS_NEW(G, (size_t)k * (size_t)k);
-  PASS_NEW(y, k);
-  PASS_NEW(root, 5 * k);
-  PASS_NEW(pivot, 2 * k);
+  PASS_NEW_ALL(OF(Z, (size_t)m * (size_t)k), OF(G, (size_t)k * (size_t)k),
+               OF(y, k), OF(root, 5 * k), OF(pivot, 2 * k));
   for (int c = 0; c < k; ++c) {
     double *z = Z + (size_t)m * (size_t)c;
     for (int dof = 0; dof < m; ++dof)

@@ -59,17 +59,11 @@ node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
 
 static status map_new(const contact_problem *cp, linear_map *s) {
   s->cp = cp;
-  PASS_NEW(s->free_id, cp->m);
-  PASS_NEW(s->place, cp->m);
-  PASS_NEW(s->closed, cp->n);
-  PASS_NEW(s->slip, cp->n);
-  PASS_NEW(s->e, cp->m);
-  PASS_NEW(s->kappa, cp->n);
-  PASS_NEW(s->x, cp->m);
-  PASS_NEW(s->dg, cp->n);
+  PASS_NEW_ALL(OF(s->free_id, cp->m), OF(s->place, cp->m), OF(s->closed, cp->n),
+               OF(s->slip, cp->n), OF(s->e, cp->m), OF(s->kappa, cp->n),
+               OF(s->x, cp->m), OF(s->dg, cp->n));
   if (cp->op == NULL) return OK;
-  PASS_NEW(s->known, cp->m);
-  PASS_NEW(s->added, cp->dim * cp->m);
+  PASS_NEW_ALL(OF(s->known, cp->m), OF(s->added, cp->dim * cp->m));
   PASS_NEW_REALS(cp->m, &s->b, &s->full, &s->Ax);
   return OK;
 }
@@ -374,21 +368,17 @@ void linear_contact_free(linear_contact *c) {
 
 status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out) {
-  status st = OK;
-  linear_contact *c = NULL;
   int good = 0;
-  *out = NULL;
-  NEW(c, 1);
+  PASS_NEW(*out, 1);
+  linear_contact *c = *out;
   linear_map *s = &c->map;
-  TRY(map_new(cp, s));
+  PASS(map_new(cp, s));
   set_state(s, u, r);
-  TRY(factor(s, &good));
-  if (!good) goto done;
-  *out = c;
-  c = NULL;
-done:
+  PASS(factor(s, &good));
+  if (good) return OK;
   linear_contact_free(c);
-  return st;
+  *out = NULL;
+  return OK;
 }
 
 status linear_contact_move(linear_contact *c, const double *df, double *du) {

@@ -71,27 +71,17 @@ static status find_kernel(dense_inverse *d) {
 }
 
 status dense_inverse_new(int m, const double *M, dense_inverse **out) {
-  status st = OK;
-  dense_inverse *d = NULL;
-  double *work = NULL;
-  int *iwork = NULL;
-  *out = NULL;
-  NEW(d, 1);
+  OWNED double *work = NULL;
+  OWNED int *iwork = NULL;
+  PASS_NEW(*out, 1);
+  dense_inverse *d = *out;
   d->m = m;
-  NEW(d->L, (size_t)m * (size_t)m);
-  NEW(d->unit, m);
-  NEW(d->pivot, m);
-  NEW(d->y, m);
-  NEW(work, 3 * m);
-  NEW(iwork, m);
-  if (!scale(M, d) || !factor(d, work, iwork)) goto done;
-  TRY(find_kernel(d));
-  *out = d;
-  d = NULL;
-done:
-  RELEASE(work, iwork);
+  PASS_NEW_ALL(OF(d->L, (size_t)m * (size_t)m), OF(d->unit, m), OF(d->pivot, m),
+               OF(d->y, m), OF(work, 3 * m), OF(iwork, m));
+  if (scale(M, d) && factor(d, work, iwork)) return find_kernel(d);
   dense_inverse_free(d);
-  return st;
+  *out = NULL;
+  return OK;
 }
 
 void dense_inverse_free(dense_inverse *d) {

@@ -212,33 +212,25 @@ static void find_centroids(const mesh *m, double *x) {
 }
 
 status space_recovery_new(const domain *d, space_recovery **out) {
-  status st = OK;
-  space_recovery *s = NULL;
   const mesh *m = d->mesh;
-  NEW(s, 1);
+  PASS_NEW(*out, 1);
+  space_recovery *s = *out;
   s->d = d;
   for (int k = 0; k < m->n_elem; ++k)
     if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;
-  NEW(s->region, s->n_section);
-  NEW(s->compliance, d->ns * d->ns * s->n_section);
-  NEW(s->start, m->n_node + 1);
-  NEW(s->elem, (size_t)(m->dim + 1) * (size_t)m->n_elem);
-  NEW(s->patch, m->n_elem);
-  NEW(s->stamp, m->n_elem);
-  NEW(s->weight, m->n_elem);
-  NEW(s->seen, m->n_node);
-  NEW(s->recovered, (size_t)d->ns * (size_t)m->n_node);
-  NEW(s->centroid, m->dim * m->n_elem);
-  NEW(s->measure, m->n_elem);
+  PASS_NEW_ALL(OF(s->region, s->n_section),
+               OF(s->compliance, d->ns * d->ns * s->n_section),
+               OF(s->start, m->n_node + 1),
+               OF(s->elem, (size_t)(m->dim + 1) * (size_t)m->n_elem),
+               OF(s->patch, m->n_elem), OF(s->stamp, m->n_elem),
+               OF(s->weight, m->n_elem), OF(s->seen, m->n_node),
+               OF(s->recovered, (size_t)d->ns * (size_t)m->n_node),
+               OF(s->centroid, m->dim * m->n_elem), OF(s->measure, m->n_elem));
   find_centroids(m, s->centroid);
   for (int k = 0; k < m->n_elem; ++k) s->measure[k] = element_weight(d, k);
   find_regions(s);
   list_neighbours(s);
-  *out = s;
-  s = NULL;
-done:
-  space_recovery_free(s);
-  return st;
+  return OK;
 }
 
 void space_recovery_free(space_recovery *s) {

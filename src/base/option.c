@@ -10,12 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static char upper(char c) {
-  return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
-}
-
-static int is_blank(char c) { return c == ' ' || c == '\t'; }
-
 const option *option_find(const option *table, const char *name) {
   if (table == NULL) return NULL;
   for (const option *row = table; row->name != NULL; ++row)
@@ -35,7 +29,7 @@ static int same_word(const char *a, size_t n, const char *b) {
       if (!is_blank(*b)) return 0;
       while (a < end && is_blank(*a)) ++a;
       while (is_blank(*b)) ++b;
-    } else if (upper(*a++) != upper(*b++)) {
+    } else if (upper_case(*a++) != upper_case(*b++)) {
       return 0;
     }
   }
@@ -77,10 +71,11 @@ static int word_distance(const char *a, int n, const char *b, int m) {
         *older = row[(i + 1) % 3];
     now[0] = i;
     for (int j = 1; j <= m; ++j) {
-      char ca = upper(a[i - 1]), cb = upper(b[j - 1]);
+      char ca = upper_case(a[i - 1]), cb = upper_case(b[j - 1]);
       int d = smaller(before[j], now[j - 1]) + 1;
       d = smaller(d, before[j - 1] + (ca != cb));
-      if (i > 1 && j > 1 && ca == upper(b[j - 2]) && upper(a[i - 2]) == cb)
+      if (i > 1 && j > 1 && ca == upper_case(b[j - 2]) &&
+          upper_case(a[i - 2]) == cb)
         d = smaller(d, older[j - 2] + 1);
       now[j] = d;
     }
@@ -90,7 +85,7 @@ static int word_distance(const char *a, int n, const char *b, int m) {
 
 static int starts_with(const char *word, const char *start, int n) {
   for (int i = 0; i < n; ++i)
-    if (upper(word[i]) != upper(start[i])) return 0;
+    if (upper_case(word[i]) != upper_case(start[i])) return 0;
   return 1;
 }
 

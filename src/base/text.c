@@ -3,16 +3,33 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *text_number(char text[NUMBER_SIZE], double value, int digits) {
-  if (isnan(value)) return strcpy(text, "NaN");
-  if (isinf(value)) return strcpy(text, value > 0 ? "Inf" : "-Inf");
-  snprintf(text, NUMBER_SIZE, "%.*E", digits, value == 0 ? 0.0 : value);
+char *text_room(void) {
+  static _Thread_local char room[TEXT_ROOMS][TEXT_ROOM];
+  static _Thread_local unsigned next;
+  return room[next++ % TEXT_ROOMS];
+}
+
+const char *text_of(const char *format, ...) {
+  char *text = text_room();
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text, TEXT_ROOM, format, args);
+  va_end(args);
+  return text;
+}
+
+const char *text_number(double value, int digits) {
+  if (isnan(value)) return "NaN";
+  if (isinf(value)) return value > 0 ? "Inf" : "-Inf";
+  char *text = text_room();
+  snprintf(text, TEXT_ROOM, "%.*E", digits, value == 0 ? 0.0 : value);
   char *e = strchr(text, 'E');
   int exponent = atoi(e + 1);
-  snprintf(e, (size_t)(text + NUMBER_SIZE - e), "E%c%03d",
+  snprintf(e, (size_t)(text + TEXT_ROOM - e), "E%c%03d",
            exponent < 0 ? '-' : '+', abs(exponent));
   return text;
 }

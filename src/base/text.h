@@ -14,6 +14,12 @@ typedef struct text_file {
   char *path; /* owned */
 } text_file;
 
+/* ASCII in any locale. */
+static inline char upper_case(char c) {
+  return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
+}
+static inline int is_blank(char c) { return c == ' ' || c == '\t'; }
+
 /* file.c: DIR/NAME.SUFFIX, new (memory_free), NULL without memory. */
 char *text_path(const char *dir, const char *name, const char *suffix);
 /* Open for writing; by_line: each line is flushed when it ends. */
@@ -40,10 +46,14 @@ int text_memory_end(FILE *f, char **text);
 status text_failed(const char *path, const char *doing, int error_no);
 /* What was printed has left; no failure if its reader has gone. */
 status text_flush_output(void);
-enum { NUMBER_SIZE = 40 };
+/* Space for a short text; the same is returned again after 31 others. */
+enum { TEXT_ROOM = 128, TEXT_ROOMS = 32 };
+char *text_room(void);
+const char *text_of(const char *format, ...)
+    __attribute__((format(printf, 1, 2)));
 /* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
- * Inf; the text is returned. */
-const char *text_number(char text[NUMBER_SIZE], double value, int digits);
+ * Inf; in a text_room. */
+const char *text_number(double value, int digits);
 /* Right-aligned in a field of the width, at least one blank before it. */
 void text_cell(FILE *f, const char *text, int width);
 /* Words in lines of at most 78 columns, from column "indent" on, where the

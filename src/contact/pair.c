@@ -1,7 +1,7 @@
-#include "contact/pair.h"
 
 #include "base/memory.h"
-#include "contact/frame.h"
+#include "base/number.h"
+#include "contact/parts.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -9,8 +9,6 @@
 #include <string.h>
 
 /* ---- couplings ---------------------------------------------------------- */
-
-static int is_pair(const contact_pair *p) { return p->support == NULL; }
 
 /* 1: the pair is coupled where the bodies are now. */
 static int is_moved(const surface_input *in, const contact_pair *p) {
@@ -34,11 +32,6 @@ static int is_dependent(int dim, const double *a, const double *b) {
   return frame_complete(dim, 2, 0, frame, held) < 0;
 }
 
-static int by_number(const void *a, const void *b) {
-  const int x = *(const int *)a, y = *(const int *)b;
-  return (x > y) - (x < y);
-}
-
 /* 1: an earlier pair has node q with (nearly) the same normal. */
 static int is_taken(const surface_input *in, int pair_id, int q) {
   const int dim = in->mesh->dim;
@@ -47,7 +40,7 @@ static int is_taken(const surface_input *in, int pair_id, int q) {
     const mortar *old = in->pairs[p].coupled;
     if (old == NULL) continue;
     const int *at = bsearch(&m->node_id[q], old->node_id, (size_t)old->n,
-                            sizeof *old->node_id, by_number);
+                            sizeof *old->node_id, number_order);
     if (at != NULL && is_dependent(dim, old->normal + dim * (at - old->node_id),
                                    m->normal + dim * q))
       return 1;
@@ -167,7 +160,7 @@ static void tell(const surface_input *in, const contact_pair *p, int n_held,
 status pairs_couple(const surface_input *in, message_log *log) {
   for (int p = 0; p < in->n_pair; ++p) {
     int n_held = 0;
-    if (!is_pair(&in->pairs[p])) continue;
+    if (in->pairs[p].support != NULL) continue;
     PASS(couple_kept(in, p, &n_held));
     tell(in, &in->pairs[p], n_held, log);
     tell_facets(in, &in->pairs[p], log);

@@ -180,24 +180,19 @@ static void report_waiting(reader *r) {
 }
 
 static status use_legacy(reader *r, const card *c) {
-  status st = OK;
   const parameter *p = needed(r, c, "FORMAT");
   report_waiting(r);
   format_free(r->waiting_format);
   r->waiting_format = NULL;
   r->mode = DATA_REFUSED;
-  if (p == NULL) goto done;
+  if (p == NULL) return OK;
   r->legacy_at = c->at;
   r->waiting_text = p->value.text;
-  st = format_read(p->value.text, &r->waiting_format);
-  if (st == ERR_DECK) {
-    message_add(r->log, P1027, &p->value.at, "%s in '%.200s'", status_message(),
-                p->value.text);
-    st = OK;
-  }
-  TRY(st);
-done:
-  return st;
+  const status st = format_read(p->value.text, &r->waiting_format);
+  if (st != ERR_DECK) return st;
+  message_add(r->log, P1027, &p->value.at, "%s in '%.200s'", status_message(),
+              p->value.text);
+  return OK;
 }
 
 typedef struct language_card {

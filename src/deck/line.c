@@ -5,7 +5,6 @@
  */
 #include "base/memory.h"
 #include "base/system/input.h"
-#include "base/text.h"
 #include "deck/reader.h"
 
 #include <errno.h>
@@ -37,8 +36,6 @@ int source_hidden(const source *s) { return s->hidden; }
 place source_place(const source *s, int line_no, int column, const char *line) {
   return (place){s->file, line_no, column, line, s->from, s->hidden};
 }
-
-static void source_hold(source *s) { s->held = 1; }
 
 void source_pop(source **top) {
   source *s = *top;
@@ -336,7 +333,7 @@ status logical_read(reader *r, const physical *first, line_kind kind) {
     PASS(source_next(r->top, r->log, &next));
     if (next == NULL || first_character(next->text) == '*') {
       place at = logical_place(l, l->all.n - 1);
-      if (next != NULL) source_hold(r->top);
+      if (next != NULL) r->top->held = 1;
       if (is_card)
         message_add(r->log, P1016, &at,
                     "the card ends in a comma and does not go on");

@@ -12,9 +12,8 @@
 #ifndef PROTIS_DECK_READER_H
 #define PROTIS_DECK_READER_H
 
+#include "base/text.h"
 #include "deck/deck.h"
-
-#include <stdio.h>
 
 enum {
   LINE_MAX_BYTES = 4096,
@@ -52,9 +51,6 @@ typedef struct buffer {
 /* Append n bytes; the text stays terminated by a NUL. */
 status buffer_add(buffer *b, const char *text, size_t n);
 
-/* Letters of ASCII only, whatever the locale. */
-char upper_case(char c);
-int is_blank(char c);
 int is_name_start(char c);
 int is_name_part(char c);
 /* Without the blanks at both ends: first character and length. */

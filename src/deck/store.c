@@ -72,12 +72,6 @@ status buffer_add(buffer *b, const char *text, size_t n) {
   return OK;
 }
 
-char upper_case(char c) {
-  return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
-}
-
-int is_blank(char c) { return c == ' ' || c == '\t'; }
-
 int is_name_start(char c) {
   return (upper_case(c) >= 'A' && upper_case(c) <= 'Z') || c == '_';
 }

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "base/number.h"
 #include "base/option.h"
-#include "base/text.h"
 #include "deck/reader.h"
 
 #include <math.h>

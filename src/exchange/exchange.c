@@ -109,8 +109,7 @@ static status read_numbers(words *w, exchange_problem *p) {
   p->form = "linear complementarity problem";
   PASS(require_problem_memory(p->m));
   size_t m = (size_t)p->m;
-  PASS_NEW(p->matrix, m * m);
-  PASS_NEW(p->load, m);
+  PASS_NEW_ALL(OF(p->matrix, m * m), OF(p->load, m));
   for (size_t i = 0; i < m; ++i)
     for (size_t j = 0; j < m; ++j)
       PASS(next_real(w, "row", (int)i + 1, &p->matrix[i + m * j]));
@@ -126,16 +125,11 @@ static status read_numbers(words *w, exchange_problem *p) {
 
 /* The same for a text. */
 static status lcp_text_read(const char *path, exchange_problem *p) {
-  status st = OK;
   const char *why = NULL;
-  words w = {.path = path, .line_no = 1};
-  w.f = input_stream(path, &why);
-  if (w.f == NULL) FAIL(ERR_FILE, "%s: cannot be read: %s", path, why);
+  ENDS_BY(file_leave) FILE *f = input_stream(path, &why);
+  if (f == NULL) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   errno = 0;
-  TRY(read_numbers(&w, p));
-done:
-  if (w.f != NULL) fclose(w.f);
-  return st;
+  return read_numbers(&(words){.path = path, .line_no = 1, .f = f}, p);
 }
 
 static const unsigned char SIGNATURE[8] = {0x89, 'H',  'D',  'F',

@@ -19,13 +19,10 @@ static const double SPARSE_SHARE = 0.5; /* -, of the blocks, and of entries */
 static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
 
 static status new_arrays(exchange_problem *p) {
-  PASS_NEW(p->load, p->m);
-  PASS_NEW(p->gap, p->n);
-  PASS_NEW(p->ut0, (size_t)p->n * (size_t)(p->dim - 1));
-  PASS_NEW(p->g0, p->n);
-  PASS_NEW(p->B.start, p->n + 1);
-  PASS_NEW(p->B.col, p->n);
-  PASS_NEW(p->B.val, p->n);
+  PASS_NEW_ALL(OF(p->load, p->m), OF(p->gap, p->n),
+               OF(p->ut0, (size_t)p->n * (size_t)(p->dim - 1)), OF(p->g0, p->n),
+               OF(p->B.start, p->n + 1), OF(p->B.col, p->n),
+               OF(p->B.val, p->n));
   return OK;
 }
 
@@ -136,9 +133,7 @@ static status thin_out(exchange_problem *p) {
   OWNED int *row = NULL, *column = NULL;
   OWNED double *value = NULL;
   if (!are_few((double)n, p->m)) return OK;
-  PASS_NEW(row, n);
-  PASS_NEW(column, n);
-  PASS_NEW(value, n);
+  PASS_NEW_ALL(OF(row, n), OF(column, n), OF(value, n));
   triplets W = {p->m, p->m, 0, row, column, value};
   for (size_t k = 0; k < m * m; ++k) {
     if (p->matrix[k] == 0.0) continue;
@@ -328,9 +323,8 @@ static status join(const global *g, triplets *all) {
   all->rows = g->H.rows;
   all->columns = g->H.columns + g->G.columns;
   all->n = g->H.n + g->G.n;
-  PASS_NEW(all->row, all->n);
-  PASS_NEW(all->column, all->n);
-  PASS_NEW(all->value, all->n);
+  PASS_NEW_ALL(OF(all->row, all->n), OF(all->column, all->n),
+               OF(all->value, all->n));
   for (long k = 0; k < all->n; ++k) {
     const triplets *from = k < g->H.n ? &g->H : &g->G;
     long at = k < g->H.n ? k : k - g->H.n;
@@ -346,9 +340,7 @@ static status part(const double *all, const double *vector, int size, int m,
                    exchange_problem *p, constraints *c) {
   size_t ld = (size_t)size, rows = (size_t)m, n = (size_t)(size - m);
   c->p = size - m;
-  PASS_NEW(c->V, rows * n);
-  PASS_NEW(c->R, n * n);
-  PASS_NEW(c->s, n);
+  PASS_NEW_ALL(OF(c->V, rows * n), OF(c->R, n * n), OF(c->s, n));
   for (size_t j = 0; j < rows; ++j) {
     p->load[j] = vector[j];
     memcpy(p->matrix + rows * j, all + ld * j, rows * sizeof *all);
@@ -397,8 +389,7 @@ static status condense_constrained(const hdf5_source *s, const global *g,
           "can be solved",
           s->path, size, (int)MOST_UNKNOWNS);
   PASS(join(g, &joined));
-  PASS_NEW(all, (size_t)size * (size_t)size);
-  PASS_NEW(vector, size);
+  PASS_NEW_ALL(OF(all, (size_t)size * (size_t)size), OF(vector, size));
   memcpy(vector, g->w, (size_t)p->m * sizeof *vector);
   memcpy(vector + p->m, g->b, (size_t)g->G.columns * sizeof *vector);
   PASS(reduce_held(s, g, &joined, all, vector));

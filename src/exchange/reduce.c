@@ -14,7 +14,6 @@
 #include <cholmod.h>
 #include <lapacke.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 /* ---- a global problem whose M is symmetric and singular: bodies that contact
@@ -51,9 +50,8 @@ status springs_add(const triplets *M, const triplets *H, double *s,
     count += n * n;
   }
   held->rows = held->columns = M->rows;
-  PASS_NEW(held->row, count);
-  PASS_NEW(held->column, count);
-  PASS_NEW(held->value, count);
+  PASS_NEW_ALL(OF(held->row, count), OF(held->column, count),
+               OF(held->value, count));
   for (; held->n < M->n; ++held->n) {
     held->row[held->n] = M->row[held->n];
     held->column[held->n] = M->column[held->n];
@@ -92,9 +90,7 @@ status springs_condense(const triplets *M, const triplets *H, const double *f,
   double s = 0.0;
   OWNED int *iwork = NULL;
   int m = H->columns;
-  PASS_NEW(q, m);
-  PASS_NEW(work, 3 * m);
-  PASS_NEW(iwork, m);
+  PASS_NEW_ALL(OF(q, m), OF(work, 3 * m), OF(iwork, m));
   PASS(springs_add(M, H, &s, &held));
   PASS(reduce_global(&held, H, f, A, q, usable));
   *usable = *usable && s > 0.0 && invert(m, A, work, iwork);
@@ -374,10 +370,8 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
   double rcond = 0.0;
   OWNED int *pivot = NULL;
   *singular = 1;
-  PASS_NEW(a, size);
-  PASS_NEW(work, 4 * (size_t)n);
-  PASS_NEW(pivot, 2 * (size_t)n);
-  PASS_NEW(x, n);
+  PASS_NEW_ALL(OF(a, size), OF(work, 4 * (size_t)n), OF(pivot, 2 * (size_t)n),
+               OF(x, n));
   triplets_dense(M, a);
   for (long k = 0; k < M->n && mirror; ++k)
     if (M->row[k] != M->column[k])
@@ -450,8 +444,7 @@ static int root(int *parent, int i) {
 
 static status join_rows(const triplets *M, row_sets *t) {
   OWNED int *parent = NULL, *number = NULL;
-  PASS_NEW(parent, M->rows);
-  PASS_NEW(number, M->rows);
+  PASS_NEW_ALL(OF(parent, M->rows), OF(number, M->rows));
   for (int i = 0; i < M->rows; ++i) {
     parent[i] = i;
     number[i] = -1;
@@ -483,8 +476,7 @@ static void count_columns(const columns *c, row_sets *t) {
 static status row_sets_new(const triplets *M, const columns *c, row_sets *t) {
   PASS_NEW(t->of, M->rows);
   PASS(join_rows(M, t));
-  PASS_NEW(t->start, t->n + 2);
-  PASS_NEW(t->current, t->n);
+  PASS_NEW_ALL(OF(t->start, t->n + 2), OF(t->current, t->n));
   count_columns(c, t);
   for (int s = 0; s < t->n; ++s) {
     if (t->start[s + 2] > t->most) t->most = t->start[s + 2];
@@ -536,10 +528,8 @@ static double count_parts(const columns *c, const row_sets *t) {
 static status solve_parts(reduction *s, const columns *c, row_sets *t,
                           long room, triplets *W) {
   OWNED double *x = NULL;
-  PASS_NEW(W->row, room);
-  PASS_NEW(W->column, room);
-  PASS_NEW(W->value, room);
-  PASS_NEW(x, s->n);
+  PASS_NEW_ALL(OF(W->row, room), OF(W->column, room), OF(W->value, room),
+               OF(x, s->n));
   for (int k = 0; k < t->most; ++k) {
     memset(x, 0, (size_t)s->n * sizeof *x);
     put_parts(c, t, k, x);

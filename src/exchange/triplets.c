@@ -22,6 +22,8 @@ typedef struct arrays {
   double *x;
 } arrays;
 
+static void arrays_free(arrays *a) { RELEASE(a->p, a->i, a->x); }
+
 static const char *name_of(char text[NAME], const char *group,
                            const char *item) {
   snprintf(text, NAME, "%s/%s", group, item);
@@ -128,19 +130,14 @@ status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
 }
 
 status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
-  status st = OK;
-  arrays a = {.s = s, .group = group};
-  TRY(triplets_size(s, group, t));
-  TRY(group_int(s, group, "nz", &a.nz));
+  ENDS_BY(arrays_free) arrays a = {.s = s, .group = group};
+  PASS(triplets_size(s, group, t));
+  PASS(group_int(s, group, "nz", &a.nz));
   if (a.nz < BY_ROW)
-    FAIL(ERR_DECK, "%s: %s/nz = %d; expected a number of entries, -1 or -2",
-         s->path, group, a.nz);
-  TRY(read_arrays(&a));
-  TRY(fill(&a, t));
-done:
-  RELEASE(a.p, a.i, a.x);
-  if (st != OK) triplets_free(t);
-  return st;
+    RAISE(ERR_DECK, "%s: %s/nz = %d; expected a number of entries, -1 or -2",
+          s->path, group, a.nz);
+  PASS(read_arrays(&a));
+  return fill(&a, t);
 }
 
 void triplets_free(triplets *t) {

@@ -76,29 +76,27 @@ static status find_followers(const coupling *c, size_t **start, int **node) {
 }
 
 static status find_graph(const domain *d, stiffness *k) {
-  status st = OK;
   const mesh *m = d->mesh;
   node_graph g = {.k = k,
                   .capacity = (size_t)m->n_node * (m->dim == 2 ? 5 : 9)};
-  size_t *from = NULL, *first = NULL;
-  int *elem = NULL, *follower = NULL;
-  TRY(mesh_node_elements(m, &from, &elem));
-  if (k->moved != NULL) TRY(find_followers(k->moved, &first, &follower));
-  NEW_ALL(OF(g.seen, m->n_node), OF(k->start, m->n_node + 1),
-          OF(k->row, g.capacity));
+  OWNED size_t *from = NULL, *first = NULL;
+  OWNED int *elem = NULL, *follower = NULL, *seen = NULL;
+  PASS(mesh_node_elements(m, &from, &elem));
+  if (k->moved != NULL) PASS(find_followers(k->moved, &first, &follower));
+  PASS_NEW_ALL(OF(seen, m->n_node), OF(k->start, m->n_node + 1),
+               OF(k->row, g.capacity));
+  g.seen = seen;
   for (int j = 0; j < m->n_node; ++j) {
-    TRY(add_rows(&g, j, 1, &j)); /* the diagonal first */
+    PASS(add_rows(&g, j, 1, &j)); /* the diagonal first */
     for (size_t q = from[j]; q < from[j + 1]; ++q)
-      TRY(add_element_rows(&g, d, j, elem[q]));
+      PASS(add_element_rows(&g, d, j, elem[q]));
     for (size_t t = first == NULL ? 0 : first[j];
          first != NULL && t < first[j + 1]; ++t)
       for (size_t q = from[follower[t]]; q < from[follower[t] + 1]; ++q)
-        TRY(add_element_rows(&g, d, j, elem[q]));
+        PASS(add_element_rows(&g, d, j, elem[q]));
     k->start[j + 1] = g.n;
   }
-done:
-  RELEASE(from, elem, g.seen, first, follower);
-  return st;
+  return OK;
 }
 
 static status check_element(const domain *d, int e) {
@@ -254,20 +252,18 @@ static void add_cluster(const domain *d, int q, cluster_rows *x, stiffness *k) {
 }
 
 static status add_clusters(const domain *d, stiffness *k) {
-  status st = OK;
   const cluster_set *c = d->cluster;
-  cluster_rows x = {0};
+  OWNED int *at = NULL;
+  OWNED double *t = NULL, *r = NULL;
   int most = 0;
   for (int q = 0; c != NULL && q < c->n; ++q)
     if (c->first[q + 1] - c->first[q] > most)
       most = c->first[q + 1] - c->first[q];
-  if (most == 0) goto done;
-  NEW_ALL(OF(x.place, k->n_node), OF(x.t, k->dim * most),
-          OF(x.r, k->dim * most));
+  if (most == 0) return OK;
+  PASS_NEW_ALL(OF(at, k->n_node), OF(t, k->dim * most), OF(r, k->dim * most));
+  cluster_rows x = {.place = at, .t = t, .r = r};
   for (int q = 0; q < c->n; ++q) add_cluster(d, q, &x, k);
-done:
-  RELEASE(x.place, x.t, x.r);
-  return st;
+  return OK;
 }
 
 /* b <- Ti' b Tj with the bases of the contact nodes (NULL: unit matrix). */

@@ -113,12 +113,9 @@ static status find_motions(condensed *c) {
 
 /* The failure of one body, with the node where it broke down. */
 static status name_body(const condensed *c, const body_factor *f, status code) {
-  char why[160];
   if (code != ERR_SINGULAR) return code;
-  snprintf(why, sizeof why, "%s", status_message());
   RAISE(ERR_SINGULAR, "body with node %zu: %s", c->d.mesh->node_no[f->bad_node],
-        why);
-  return OK;
+        status_message());
 }
 
 /* Springs on contact unknowns of sets of bodies that contact alone holds: as

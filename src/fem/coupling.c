@@ -1,4 +1,4 @@
-#include "fem/coupling.h"
+#include "fem/stiffness.h"
 
 #include "base/memory.h"
 
@@ -147,26 +147,20 @@ static status add_rows(const domain *d, builder *b, int n) {
 }
 
 status coupling_new(const domain *d, coupling **out) {
-  status st = OK;
   const int n_node = d->mesh->n_node;
-  builder b = {0};
+  OWNED source *of = NULL;
+  OWNED int *at = NULL;
   *out = NULL;
   if ((d->surface == NULL || d->surface->master == NULL) && d->ties == NULL)
     return OK;
-  NEW(b.of, n_node);
-  const int n = find_sources(d, b.of);
-  NEW_ALL(OF(b.c, 1), OF(b.place, n_node));
-  NEW_ALL(OF(b.c->of, n_node), OF(b.c->node, n), OF(b.c->start, n + 1));
-  b.c->dim = d->mesh->dim;
-  b.c->n_node = n_node;
-  for (int i = 0; i < n_node; ++i) b.c->of[i] = -1;
-  TRY(add_rows(d, &b, n));
-  *out = b.c;
-  b.c = NULL;
-done:
-  coupling_free(b.c);
-  RELEASE(b.of, b.place);
-  return st;
+  PASS_NEW_ALL(OF(of, n_node), OF(at, n_node), OF(*out, 1));
+  coupling *c = *out;
+  const int n = find_sources(d, of);
+  PASS_NEW_ALL(OF(c->of, n_node), OF(c->node, n), OF(c->start, n + 1));
+  c->dim = d->mesh->dim;
+  c->n_node = n_node;
+  for (int i = 0; i < n_node; ++i) c->of[i] = -1;
+  return add_rows(d, &(builder){.c = c, .of = of, .place = at}, n);
 }
 
 void coupling_free(coupling *c) {

@@ -112,18 +112,17 @@ static void put_blocks(columns *w) {
 static status body_factor_matrix(const stiffness *k, const body_factor *f,
                                  const long *number, cholmod_common *cm,
                                  cholmod_sparse **out) {
-  status st = OK;
   columns w = {
       .k = k, .f = f, .number = number, .scale = ldexp(1, -f->exponent)};
-  SuiteSparse_long total = 0, *count = NULL;
-  cholmod_sparse *a = NULL;
-  NEW(count, f->n + 1);
+  OWNED SuiteSparse_long *count = NULL;
+  long total = 0;
+  PASS_NEW(count, f->n + 1);
   w.start = count;
   put_blocks(&w);
   for (long c = 0; c < f->n; ++c) total += count[c];
-  a = cholmod_l_allocate_sparse((size_t)f->n, (size_t)f->n, (size_t)total, 0, 1,
-                                -1, CHOLMOD_REAL, cm);
-  if (a == NULL) FAIL(ERR_MEMORY, "memory exhausted: %ld unknowns", f->n);
+  cholmod_sparse *a = *out = cholmod_l_allocate_sparse(
+      (size_t)f->n, (size_t)f->n, (size_t)total, 0, 1, -1, CHOLMOD_REAL, cm);
+  if (a == NULL) RAISE(ERR_MEMORY, "memory exhausted: %ld unknowns", f->n);
   SuiteSparse_long *start = a->p;
   for (long c = 0; c < f->n; ++c) {
     start[c + 1] = start[c] + count[c];
@@ -132,10 +131,7 @@ static status body_factor_matrix(const stiffness *k, const body_factor *f,
   w.row = a->i;
   w.value = a->x;
   put_blocks(&w);
-done:
-  memory_free(count);
-  *out = a;
-  return st;
+  return OK;
 }
 
 static status analyse(cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
@@ -236,16 +232,15 @@ status body_factor_analyse(const stiffness *k, const long *number,
 
 status body_factor_build(const stiffness *k, const long *number,
                          cholmod_common *cm, body_factor *f) {
-  status st = OK;
   cholmod_sparse *a = NULL;
-  timer_enter(STAGE_ORDERING);
-  TRY(begin(k, number, cm, f, &a));
-  timer_enter(STAGE_FACTOR);
-  st = factorise(k, number, a, cm, f);
-  timer_leave(STAGE_FACTOR);
-done:
+  TIMED(STAGE_ORDERING);
+  status st = begin(k, number, cm, f, &a);
+  if (st == OK) {
+    timer_enter(STAGE_FACTOR);
+    st = factorise(k, number, a, cm, f);
+    timer_leave(STAGE_FACTOR);
+  }
   cholmod_l_free_sparse(&a, cm);
-  timer_leave(STAGE_ORDERING);
   return st;
 }
 

@@ -231,41 +231,35 @@ static void dissect(dissection *w, int n, int *node) {
 
 static status order_by_cuts(const graph *g, int dim, const double *x, int n,
                             int *node, double *work) {
-  status st = OK;
-  dissection w = {.g = g, .dim = dim, .x = x, .n = n};
-  NEW_ALL(OF(w.side, g->n), OF(w.spare, n));
+  OWNED int *side = NULL, *spare = NULL;
+  PASS_NEW_ALL(OF(side, g->n), OF(spare, n));
+  dissection w = {
+      .g = g, .dim = dim, .x = x, .n = n, .side = side, .spare = spare};
   dissect(&w, n, node);
   *work = w.work;
-done:
-  RELEASE(w.side, w.spare);
-  return st;
+  return OK;
 }
 
 /* Pattern of the graph among node[0..n), upper triangle, new. */
 static status graph_pattern(const graph *g, int n, const int *node,
                             cholmod_common *cm, cholmod_sparse **out) {
-  status st = OK;
-  int *order = NULL;
+  OWNED int *order = NULL;
   size_t edges = 0;
-  cholmod_sparse *a = NULL;
-  NEW(order, g->n);
+  PASS_NEW(order, g->n);
   for (int i = 0; i < n; ++i) order[node[i]] = i + 1;
   for (int i = 0; i < n; ++i)
     for (size_t p = g->start[node[i]]; p < g->start[node[i] + 1]; ++p)
       edges += order[g->next[p]] > i + 1;
-  a = cholmod_l_allocate_sparse((size_t)n, (size_t)n, edges, 0, 1, -1,
-                                CHOLMOD_PATTERN, cm);
-  if (a == NULL) FAIL(ERR_MEMORY, "memory exhausted: graph of %d nodes", n);
+  cholmod_sparse *a = *out = cholmod_l_allocate_sparse(
+      (size_t)n, (size_t)n, edges, 0, 1, -1, CHOLMOD_PATTERN, cm);
+  if (a == NULL) RAISE(ERR_MEMORY, "memory exhausted: graph of %d nodes", n);
   SuiteSparse_long *start = a->p, *row = a->i, k = 0;
   for (int i = 0; i < n; ++i) {
     for (size_t p = g->start[node[i]]; p < g->start[node[i] + 1]; ++p)
       if (order[g->next[p]] > i + 1) row[k++] = order[g->next[p]] - 1;
     start[i + 1] = k;
   }
-done:
-  memory_free(order);
-  *out = a;
-  return st;
+  return OK;
 }
 
 /* METIS without memory returns arbitrary numbers, and CHOLMOD accepts them. */

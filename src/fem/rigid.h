@@ -5,13 +5,28 @@
  * which a contrast of stiffness in the body magnifies. Private to src/fem.
  *
  * R: displacement of all unknowns in the motions, R_c: of the contact ones,
- * which are relative displacements at pairs (contact/mortar/links.h).
+ * which are relative displacements at pairs (contact/mortar/mortar.h).
  */
 #ifndef PROTIS_FEM_RIGID_H
 #define PROTIS_FEM_RIGID_H
 
-#include "fem/pieces/modes.h"
 #include "fem/stiffness.h"
+
+/* Motion of a piece: u(x) = t + w x p, p = (x - centre)/size, as rotations and
+ * translations (2-D: w, tx, ty; axisymmetric: ty; 3-D: wx, wy, wz, tx, ..). */
+typedef struct rigid_modes {
+  int dim, modes; /* coefficients per piece: 3, 1 or 6 */
+  double centre[3], size;
+} rigid_modes;
+
+/* Coefficients of the displacement along "direction" at x: row[modes]. */
+void modes_row(const rigid_modes *r, const double *x, const double *direction,
+               double *row);
+/* The motion y[modes] about the centre and with the size of another, "to". */
+void modes_move(const rigid_modes *from, const rigid_modes *to, double *y);
+/* Name the motion v[modes]: "translation along x", "rotation about (1, 2)". */
+void modes_text(const rigid_modes *at, const double *v, char *text,
+                size_t size);
 
 /* One component of a node: direction . (u(node) - sum part u(master)). */
 typedef struct component {
@@ -70,7 +85,7 @@ status rigid_pin(const rigid_motions *r, const rigid_set *s,
  * read. */
 status rigid_project(const rigid_motions *r, double *A);
 /* Gather R' F for rigid_balance: load[dim*n_node] forces at the unknowns, T'F
- * (coupling.h) in local components. */
+ * (stiffness.h) in local components. */
 void rigid_loads(const stiffness *k, const domain *d, rigid_motions *r,
                  const double *load);
 /* f_c += Q (R' F - Q' f_c). */

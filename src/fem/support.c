@@ -101,24 +101,21 @@ static void measure_bodies(body_sets *s, double *low, double *high) {
 
 /* Bodies and pieces, each body a set. Fails with s empty. */
 static status sets_find(const domain *d, body_sets *s) {
-  status st = OK;
-  double *box = NULL;
+  OWNED double *box = NULL;
   const int n_node = d->mesh->n_node;
   *s = (body_sets){.d = d};
-  TRY(pieces_find(d->mesh, &s->p));
+  PASS(pieces_find(d->mesh, &s->p));
   const int n_body = s->p.n_body;
-  NEW_ALL(OF(s->first_piece, n_body + 1), OF(s->at, n_body),
-          OF(s->body, n_node), OF(s->contact, n_node), OF(s->tie, n_node),
-          OF(s->set, n_body), OF(s->column, n_body), OF(s->n, n_body),
-          OF(s->start, n_body + 2), OF(s->node, n_node), OF(box, 6 * n_body));
+  PASS_NEW_ALL(OF(s->first_piece, n_body + 1), OF(s->at, n_body),
+               OF(s->body, n_node), OF(s->contact, n_node), OF(s->tie, n_node),
+               OF(s->set, n_body), OF(s->column, n_body), OF(s->n, n_body),
+               OF(s->start, n_body + 2), OF(s->node, n_node),
+               OF(box, 6 * n_body));
   find_pieces(s);
   find_nodes(s);
   measure_bodies(s, box, box + 3 * n_body);
   for (int b = 0; b < n_body; ++b) s->set[b] = b;
-done:
-  memory_free(box);
-  if (st != OK) sets_release(s);
-  return st;
+  return OK;
 }
 
 /* 1: some nodes move with others. */
@@ -140,7 +137,7 @@ static component sets_component(const body_sets *s, int i, int c) {
 /* Set of a node, -1: at rest. */
 static int set_of(body_sets *s, int i) {
   const int b = s->body[i];
-  return b < 0 || s->set[b] < 0 ? -1 : set_root(s->set, b);
+  return b < 0 || s->set[b] < 0 ? -1 : forest_root(s->set, b);
 }
 
 /* Join (or not) the sets that a node meets; that of the node or else one of its
@@ -153,7 +150,7 @@ static int join_round(body_sets *s, int i, int join) {
     for (int t = 0; t < n; ++t) {
       if (component_term(&x, t, &node) == 0) continue;
       const int other = set_of(s, node);
-      if (join && id >= 0 && other >= 0) set_unite(s->set, id, other);
+      if (join && id >= 0 && other >= 0) forest_join(s->set, id, other);
       if (id < 0) id = other;
     }
   }
@@ -195,18 +192,11 @@ static void sets_join(body_sets *s, joint by) {
   memset(s->n, 0, (size_t)n_body * sizeof *s->n);
   for (int b = 0; b < n_body; ++b) {
     if (s->set[b] < 0) continue;
-    const int id = s->set[b] = set_root(s->set, b);
+    const int id = s->set[b] = forest_root(s->set, b);
     s->column[b] = s->n[id];
     s->n[id] += sets_columns(s, b);
   }
   list_nodes(s);
-}
-
-/* The bodies of the sets with rest[n_body] 1 are at rest; sets_join before the
- * next use. */
-static void sets_rest(body_sets *s, const unsigned char *rest) {
-  for (int b = 0; b < s->p.n_body; ++b)
-    if (s->set[b] >= 0 && rest[s->set[b]]) s->set[b] = -1;
 }
 
 /* First coefficient of the piece of an element, -1: at rest. */
@@ -254,6 +244,8 @@ static status triangle_new(const body_sets *s, int id, int closed,
       t->owner[k++] = b;
   return OK;
 }
+
+static void basis_free(null_basis *z) { memory_free(z->Z); }
 
 static void triangle_release(triangle *t) {
   RELEASE(t->r, t->end, t->owner, t->row);
@@ -563,19 +555,15 @@ static status add_set(const triangle *t, const null_basis *z,
 /* Store what supports, hinges and ties leave, the gaps of ties counted: their
  * masters pull where they are. */
 static status keep_motions(const finder *f, rigid_motions *r) {
-  status st = OK;
-  triangle t = {0};
-  null_basis z = {0};
+  ENDS_BY(triangle_release) triangle t = {0};
+  ENDS_BY(basis_free) null_basis z = {0};
   if (f->t.s->d->ties == NULL)
     return add_set(&f->t, &f->of[HELD_BY_CONTACT], r);
-  TRY(triangle_new(f->t.s, f->t.id, 0, &t));
+  PASS(triangle_new(f->t.s, f->t.id, 0, &t));
   add_supports(&t);
-  TRY(null_space(&t, &z));
-  if (z.rank > 0) TRY(add_set(&t, &z, r));
-done:
-  triangle_release(&t);
-  memory_free(z.Z);
-  return st;
+  PASS(null_space(&t, &z));
+  if (z.rank > 0) PASS(add_set(&t, &z, r));
+  return OK;
 }
 
 static status set_motions(const body_sets *s, int id, motion_list *list,
@@ -604,17 +592,13 @@ done:
 
 /* 1: supports, hinges and ties leave the set no motion. */
 static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
-  status st = OK;
-  triangle t = {0};
-  null_basis z = {0};
-  TRY(triangle_new(s, id, 1, &t));
+  ENDS_BY(triangle_release) triangle t = {0};
+  ENDS_BY(basis_free) null_basis z = {0};
+  PASS(triangle_new(s, id, 1, &t));
   add_supports(&t);
-  TRY(null_space(&t, &z));
+  PASS(null_space(&t, &z));
   *rest = z.rank == 0;
-done:
-  triangle_release(&t);
-  memory_free(z.Z);
-  return st;
+  return OK;
 }
 
 /* Bodies that their supports hold leave first, then those tied to them. */
@@ -625,7 +609,8 @@ static status drop_bodies_at_rest(body_sets *s) {
     sets_join(s, (joint)by);
     for (int id = 0; id < s->p.n_body; ++id)
       if (s->set[id] == id) PASS(is_at_rest(s, id, &rest[id]));
-    sets_rest(s, rest);
+    for (int b = 0; b < s->p.n_body; ++b)
+      if (s->set[b] >= 0 && rest[s->set[b]]) s->set[b] = -1;
   }
   return OK;
 }

@@ -10,28 +10,18 @@
 static status prepare(fracture *f) {
   const mesh *m = f->body.mesh;
   f->n = f->body.crack->front_start[f->body.crack->n_front];
-  PASS_NEW(f->point, f->n);
-  PASS_NEW(f->elem_seen, m->n_elem);
-  PASS_NEW(f->node_seen, m->n_node);
-  PASS_NEW(f->elem_list, m->n_elem);
-  PASS_NEW(f->node_list, m->n_node);
+  PASS_NEW_ALL(OF(f->point, f->n), OF(f->elem_seen, m->n_elem),
+               OF(f->node_seen, m->n_node), OF(f->elem_list, m->n_elem),
+               OF(f->node_list, m->n_node));
   PASS(mesh_node_elements(m, &f->start, &f->elem));
   return points_find(f);
 }
 
 status fracture_new(const fracture_body *body, fracture **out) {
-  status st = OK;
-  fracture *f = NULL;
-  NEW(f, 1);
+  PASS_NEW(*out, 1);
+  fracture *f = *out;
   f->body = *body;
-  TRY(prepare(f));
-done:
-  if (st != OK) {
-    fracture_free(f);
-    f = NULL;
-  }
-  *out = f;
-  return st;
+  return prepare(f);
 }
 
 void fracture_free(fracture *f) {

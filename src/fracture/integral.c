@@ -550,8 +550,7 @@ status integrals_derive(fracture *f, const fracture_state *s,
   w.state = s;
   w.x = x;
   const int n = gather_elements(f, p);
-  PASS_NEW(out->elem, n);
-  PASS_NEW(out->flux, each * (size_t)n);
+  PASS_NEW_ALL(OF(out->elem, n), OF(out->flux, each * (size_t)n));
   for (int i = 0; i < n; ++i)
     if (derive_element(&w, f->elem_list[i], mode, part, out->by_u,
                        out->flux + each * (size_t)out->n))

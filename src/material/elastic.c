@@ -8,6 +8,7 @@
 #include "material/material.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "deck/deck.h"
 
 #include <math.h>
@@ -275,12 +276,9 @@ status elastic_table_read(const card *c, elastic_type type,
   table->n_constant = constants_of[type];
   for (int i = 0; i < c->n_record && !r.wrong; ++i)
     PASS(add_line(&r, &c->records[i]));
-  if (!r.wrong && r.n > 0) {
-    char found[32];
-    snprintf(found, sizeof found, "%d found", r.n);
+  if (!r.wrong && r.n > 0)
     count_error(&r, table->n == 0 ? &c->at : &c->records[c->n_record - 1].at,
-                found);
-  }
+                text_of("%d found", r.n));
   if (r.wrong)
     elastic_table_free(table);
   else

@@ -51,15 +51,10 @@ void fault_pair(faults *c, int dim, size_t one, size_t two, const double *x);
 /* ERR_MESH if errors were added to the log since the start. */
 status build_check(const builder *b);
 
-/* The first of the items with a number, -1: none; numbers may repeat. */
-status numbers_index(number_table *t, int n, const size_t *no);
-int numbers_find(const number_table *t, size_t no);
 /* Two items with one number are reported, but not two with one id. */
 status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id);
 
-status groups_check(builder *b);             /* names, dimension of the mesh */
-status groups_fill(builder *b);              /* items and nodes */
 status nodes_index(builder *b);              /* raw node by number */
 int nodes_find(const builder *b, size_t no); /* raw node or -1 */
 status nodes_order(builder *b);              /* ids, coordinates, numbers */
@@ -70,9 +65,5 @@ status faces_finish(builder *b);    /* ids, elements on both sides */
 /* Nodes of a side of an element, turned outward, in 3-D the lowest first. */
 void faces_side(const mesh *m, int elem, int side, int *v);
 status overlap_check(builder *b); /* across faces, anywhere */
-
-/* Sets as trees: parent[i] = i for the lowest of each. */
-int forest_root(int *parent, int i);
-void forest_join(int *parent, int a, int b);
 
 #endif

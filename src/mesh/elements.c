@@ -323,8 +323,7 @@ static status store_elements(builder *b, const top_list *t,
                              const sort_item *item) {
   mesh *m = b->m;
   size_t n = (size_t)t->n_corner;
-  PASS_NEW(m->elem, n * (size_t)b->n_top);
-  PASS_NEW(m->elem_no, b->n_top);
+  PASS_NEW_ALL(OF(m->elem, n * (size_t)b->n_top), OF(m->elem_no, b->n_top));
   for (int i = 0; i < b->n_top; ++i) {
     const int id = item[i].id;
     if (i == 0 || !same_corners(t, item[i - 1].id, id)) {
@@ -343,9 +342,8 @@ static status store_elements(builder *b, const top_list *t,
 status elements_finish(builder *b) {
   OWNED sort_item *item = NULL;
   OWNED size_t *no = NULL;
-  PASS_NEW(item, b->n_top);
-  PASS_NEW(no, b->n_top);
-  PASS_NEW(b->elem_of_top, b->n_top);
+  PASS_NEW_ALL(OF(item, b->n_top), OF(no, b->n_top),
+               OF(b->elem_of_top, b->n_top));
   fill_keys(b, no, item);
   top_list t = {b->m->dim + 1, b->corner, no};
   PASS(sort_items(b->n_top, item, by_corners, &t));

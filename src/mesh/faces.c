@@ -58,8 +58,7 @@ static void note_missing(const builder *b, int j, faults *bad) {
 /* Corners as mesh nodes; faces with nodes outside of the mesh go to bad. */
 static status gather(builder *b, face_list *f, faults *bad) {
   size_t dim = (size_t)f->dim;
-  PASS_NEW(f->low, dim * (size_t)b->n_low);
-  PASS_NEW(f->no, b->n_low);
+  PASS_NEW_ALL(OF(f->low, dim * (size_t)b->n_low), OF(f->no, b->n_low));
   for (int i = 0; i < b->raw->n_block; ++i) {
     const raw_block *p = &b->raw->block[i];
     if (p->dim != f->dim - 1) continue;
@@ -83,10 +82,8 @@ static status number_faces(builder *b, face_list *f) {
   mesh *m = b->m;
   OWNED sort_item *item = NULL;
   size_t dim = (size_t)f->dim, bytes = dim * sizeof(int);
-  PASS_NEW(item, b->n_low);
-  PASS_NEW(b->face_of_low, b->n_low);
-  PASS_NEW(f->corner, dim * (size_t)b->n_low);
-  PASS_NEW(f->example, b->n_low);
+  PASS_NEW_ALL(OF(item, b->n_low), OF(b->face_of_low, b->n_low),
+               OF(f->corner, dim * (size_t)b->n_low), OF(f->example, b->n_low));
   int n = 0;
   for (int j = 0; j < b->n_low; ++j) {
     const int *v = f->low + dim * (size_t)j;
@@ -158,10 +155,9 @@ static void meet(mesh *m, face_list *f, int elem, int side) {
 static status find_elements(builder *b, face_list *f) {
   mesh *m = b->m;
   size_t dim = (size_t)f->dim;
-  PASS_NEW(m->face, dim * (size_t)m->n_face);
-  PASS_NEW(m->face_elem, m->n_face);
-  PASS_NEW(m->face_other, m->n_face);
-  PASS_NEW(f->start, m->n_node + 1);
+  PASS_NEW_ALL(OF(m->face, dim * (size_t)m->n_face),
+               OF(m->face_elem, m->n_face), OF(m->face_other, m->n_face),
+               OF(f->start, m->n_node + 1));
   for (int i = 0; i < m->n_face; ++i) {
     m->face_elem[i] = m->face_other[i] = -1;
     ++f->start[f->corner[dim * (size_t)i] + 1];

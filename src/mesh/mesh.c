@@ -97,7 +97,7 @@ double mesh_elem_gradients(const mesh *m, int elem_id, double *g) {
   return six_volume;
 }
 
-/* Root of a node in the forest of bodies; the path is halved on each search. */
+/* The path is halved on each search. */
 int forest_root(int *parent, int i) {
   while (parent[i] != i) {
     parent[i] = parent[parent[i]];
@@ -106,7 +106,6 @@ int forest_root(int *parent, int i) {
   return i;
 }
 
-/* The lower root wins, so that bodies are numbered by their first node. */
 void forest_join(int *parent, int a, int b) {
   a = forest_root(parent, a);
   b = forest_root(parent, b);
@@ -119,8 +118,7 @@ void forest_join(int *parent, int a, int b) {
 status mesh_bodies(const mesh *m, int *n_body, int *body) {
   OWNED int *parent = NULL, *body_of = NULL;
   int n_corner = m->dim + 1;
-  PASS_NEW(parent, m->n_node);
-  PASS_NEW(body_of, m->n_node);
+  PASS_NEW_ALL(OF(parent, m->n_node), OF(body_of, m->n_node));
   for (int i = 0; i < m->n_node; ++i) parent[i] = i;
   for (int e = 0; e < m->n_elem; ++e) {
     const int *v = mesh_elem_nodes(m, e);
@@ -134,24 +132,13 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
 }
 
 status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
-  status st = OK;
   const size_t per = (size_t)m->dim + 1, n = per * (size_t)m->n_elem;
-  size_t *s = NULL;
-  int *e = NULL;
-  NEW(s, m->n_node + 2);
-  NEW(e, n);
+  PASS_NEW_ALL(OF(*start, m->n_node + 2), OF(*elem, n));
+  size_t *s = *start;
   for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];
   for (int i = 0; i < m->n_node; ++i) s[i + 2] += s[i + 1];
-  for (size_t k = 0; k < n; ++k) e[s[m->elem[k] + 1]++] = (int)(k / per);
-done:
-  if (st != OK) {
-    RELEASE(s, e);
-    s = NULL;
-    e = NULL;
-  }
-  *start = s;
-  *elem = e;
-  return st;
+  for (size_t k = 0; k < n; ++k) (*elem)[s[m->elem[k] + 1]++] = (int)(k / per);
+  return OK;
 }
 
 void fault_add(faults *c, const char *format, ...) {

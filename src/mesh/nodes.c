@@ -27,7 +27,9 @@ static size_t slot_of(const number_table *t, size_t no) {
   return s;
 }
 
-status numbers_index(number_table *t, int n, const size_t *no) {
+static void numbers_free(number_table *t) { memory_free(t->slot); }
+
+static status numbers_index(number_table *t, int n, const size_t *no) {
   t->no = no;
   while (((size_t)1 << t->bits) < 2 * (size_t)n + 2) ++t->bits;
   PASS_NEW(t->slot, (size_t)1 << t->bits);
@@ -38,7 +40,8 @@ status numbers_index(number_table *t, int n, const size_t *no) {
   return OK;
 }
 
-int numbers_find(const number_table *t, size_t no) {
+/* The first of the items with the number, -1: none; numbers may repeat. */
+static int numbers_find(const number_table *t, size_t no) {
   return t->slot[slot_of(t, no)] - 1;
 }
 
@@ -50,11 +53,10 @@ static int ascend(int n, const size_t *no) {
 
 status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id) {
-  status st = OK;
-  number_table t = {0};
+  ENDS_BY(numbers_free) number_table t = {0};
   faults bad = {0};
   if (ascend(n, no)) return OK;
-  TRY(numbers_index(&t, n, no));
+  PASS(numbers_index(&t, n, no));
   for (int i = 0; i < n; ++i) {
     int j = numbers_find(&t, no[i]);
     if (j != i && (id == NULL || id[j] != id[i])) fault_add(&bad, "%zu", no[i]);
@@ -63,10 +65,7 @@ status numbers_check(builder *b, const char *what, int n, const size_t *no,
     message_add(b->log, P3029, b->at,
                 "%d %s(s) have the number of another one: %s", bad.n, what,
                 bad.text);
-  TRY(build_check(b));
-done:
-  memory_free(t.slot);
-  return st;
+  return build_check(b);
 }
 
 status nodes_index(builder *b) {
@@ -183,8 +182,7 @@ static void fill_keys(const builder *b, const double lo[3], sort_item *item) {
 static status store_nodes(builder *b, const sort_item *item) {
   mesh *m = b->m;
   size_t dim = (size_t)m->dim;
-  PASS_NEW(m->x, dim * (size_t)m->n_node);
-  PASS_NEW(m->node_no, m->n_node);
+  PASS_NEW_ALL(OF(m->x, dim * (size_t)m->n_node), OF(m->node_no, m->n_node));
   for (int i = 0; i < m->n_node; ++i) {
     size_t r = (size_t)item[i].id;
     for (size_t k = 0; k < dim; ++k)

@@ -27,6 +27,8 @@ typedef struct side_list {
   sort_item *side; /* [n] key: other nodes, turn; id: (dim+1)*elem + side */
 } side_list;
 
+static void sides_free(side_list *s) { RELEASE(s->start, s->side); }
+
 static void side_nodes(const mesh *m, int id, int *v) {
   faces_side(m, id / (m->dim + 1), id % (m->dim + 1), v);
 }
@@ -55,8 +57,7 @@ static status gather_sides(const mesh *m, side_list *s) {
   const int n = m->dim + 1;
   int v[3], low[2];
   s->n = n * m->n_elem;
-  PASS_NEW(s->start, m->n_node + 2);
-  PASS_NEW(s->side, s->n);
+  PASS_NEW_ALL(OF(s->start, m->n_node + 2), OF(s->side, s->n));
   for (int e = 0; e < m->n_elem; ++e) {
     two_lowest(n, m->elem + (size_t)n * (size_t)e, low);
     s->start[low[0] + 2] += m->dim;
@@ -441,12 +442,8 @@ done:
 }
 
 status overlap_check(builder *b) {
-  status st = OK;
-  side_list s = {0};
-  TRY(gather_sides(b->m, &s));
-  TRY(check_sides(b, &s));
-  TRY(check_skins(b, &s));
-done:
-  RELEASE(s.start, s.side);
-  return st;
+  ENDS_BY(sides_free) side_list s = {0};
+  PASS(gather_sides(b->m, &s));
+  PASS(check_sides(b, &s));
+  return check_skins(b, &s);
 }

@@ -122,34 +122,25 @@ static status check_complete(const raw_mesh *raw) {
 status raw_receive(int fd, raw_mesh *raw, int *stopped) {
 #define WIRE_SIZE(name, type) sizeof(type),
   static const size_t item_size[] = {WIRE_LIST(WIRE_SIZE)};
-  status st = OK;
-  char *payload = NULL;
   *stopped = 0;
   for (;;) {
     wire_head head;
     *stopped = read_bytes(fd, &head, sizeof head) != sizeof head;
     if (*stopped)
-      FAIL(ERR_MESH, "the mesh reader stopped before the mesh was complete");
+      RAISE(ERR_MESH, "the mesh reader stopped before the mesh was complete");
     if (head.magic != WIRE_MAGIC || head.kind >= WIRE_COUNT ||
         head.n > (uint64_t)1 << 40)
-      FAIL(ERR_MESH, "the mesh reader sent what is no mesh");
-    if (head.kind == WIRE_END) break;
+      RAISE(ERR_MESH, "the mesh reader sent what is no mesh");
+    if (head.kind == WIRE_END) return check_complete(raw);
+    OWNED void *payload = NULL;
     size_t size = (size_t)head.n * item_size[head.kind];
-    NEW(payload, size + 1); /* texts end in a zero byte */
+    /* texts end in a zero byte */
+    PASS_GET(payload, memory_new(size + 1, 1));
     *stopped = read_bytes(fd, payload, size) != size;
     if (*stopped)
-      FAIL(ERR_MESH, "the mesh reader stopped before the mesh was complete");
-    void *part = payload;
-    st = store(raw, &head, &part);
-    payload = part;
-    if (st != OK) goto done;
-    memory_free(payload);
-    payload = NULL;
+      RAISE(ERR_MESH, "the mesh reader stopped before the mesh was complete");
+    PASS(store(raw, &head, &payload));
   }
-  TRY(check_complete(raw));
-done:
-  memory_free(payload);
-  return st;
 }
 
 /* The last line of gmsh that reports an error, else its last line. */
@@ -208,6 +199,11 @@ static void close_end(int *end) {
   *end = -1;
 }
 
+static void close_ends(int (*ends)[2]) {
+  close_end(&(*ends)[0]);
+  close_end(&(*ends)[1]);
+}
+
 /* Where standard streams are closed, a pipe would get their descriptors. */
 static void leave_standard(int *end) {
   if (*end > STDERR_FILENO) return;
@@ -236,18 +232,17 @@ static int wait_for(pid_t pid, int *code) {
 }
 
 status raw_read(const raw_request *request, raw_mesh **out) {
-  status st = OK;
-  raw_mesh *raw = NULL;
-  int data[2] = {-1, -1}, error[2] = {-1, -1}, stopped = 0, code = 0;
-  pid_t pid = -1, parent = getpid();
-  *out = NULL;
-  NEW(raw, 1);
+  ENDS_BY(close_ends) int data[2] = {-1, -1};
+  ENDS_BY(close_ends) int error[2] = {-1, -1};
+  int stopped = 0, code = 0;
+  pid_t parent = getpid();
+  PASS_NEW(*out, 1);
   if (!open_pipe(data) || !open_pipe(error))
-    FAIL(ERR_MESH, "no pipe for the mesh reader: %s", strerror(errno));
-  pid = fork();
+    RAISE(ERR_MESH, "no pipe for the mesh reader: %s", strerror(errno));
+  pid_t pid = fork();
   if (pid < 0)
-    FAIL(errno == ENOMEM ? ERR_MEMORY : ERR_MESH,
-         "no process for the mesh reader: %s", strerror(errno));
+    RAISE(errno == ENOMEM ? ERR_MEMORY : ERR_MESH,
+          "no process for the mesh reader: %s", strerror(errno));
   if (pid == 0) {
     close(data[0]);
     close(error[0]);
@@ -255,20 +250,9 @@ status raw_read(const raw_request *request, raw_mesh **out) {
   }
   close_end(&data[1]);
   close_end(&error[1]);
-  st = raw_receive(data[0], raw, &stopped);
+  status st = raw_receive(data[0], *out, &stopped);
   close_end(&data[0]);
   if (!stopped) kill(pid, SIGKILL); /* its output has ended */
   int ended = wait_for(pid, &code);
-  if (stopped) st = child_failure(ended, code, error[0]);
-done:
-  close_end(&data[0]);
-  close_end(&data[1]);
-  close_end(&error[0]);
-  close_end(&error[1]);
-  if (st != OK) {
-    raw_free(raw);
-    raw = NULL;
-  }
-  *out = raw;
-  return st;
+  return stopped ? child_failure(ended, code, error[0]) : st;
 }

@@ -150,6 +150,7 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
 static status add_elements(const model *m, const mesh *msh, const load *l,
                            const step *s, double t, double *F) {
   const mesh_group *g = &msh->group[l->group_id];
+  TIMED(STAGE_BODY);
   for (int k = 0; k < g->n_item; ++k) {
     int e = g->item_id[k];
     patch p = {.n = msh->dim + 1, .factor = 1.0};
@@ -181,32 +182,27 @@ static status add_points(const model *m, const mesh *msh, const load *l,
 
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F) {
-  status st = OK;
   memset(F, 0, (size_t)msh->dim * (size_t)msh->n_node * sizeof *F);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     switch ((load_kind)l->kind) {
       case LOAD_PRESSURE:
       case LOAD_TRACTION:
-        TRY(add_faces(m, msh, l, s, t, F));
+        PASS(add_faces(m, msh, l, s, t, F));
         break;
       case LOAD_BODY:
       case LOAD_GRAVITY:
-        timer_enter(STAGE_BODY);
-        st = add_elements(m, msh, l, s, t, F);
-        timer_leave(STAGE_BODY);
-        TRY(st);
+        PASS(add_elements(m, msh, l, s, t, F));
         break;
       case LOAD_POINT:
-        TRY(add_points(m, msh, l, s, t, F));
+        PASS(add_points(m, msh, l, s, t, F));
         break;
       case LOAD_TEMPERATURE:
       case LOAD_FIXING:
         break;
     }
   }
-done:
-  return st;
+  return OK;
 }
 
 /* Remaining share of the start value of a ramp without a value before. */

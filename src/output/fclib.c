@@ -12,8 +12,10 @@
  * Only Coulomb friction of each node by itself fits this layout. A prescribed
  * tangential unknown has no force and no motion: q_T = 0 there.
  */
+#include "base/archive/dataset.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "output/writers.h"
 
 #include <errno.h>
@@ -108,8 +110,7 @@ static status make_matrix(written *f) {
     return OK;
   }
   memcpy(a, cp->A, size * sizeof *a);
-  PASS_NEW(work, 3 * (size_t)cp->m);
-  PASS_NEW(iwork, cp->m);
+  PASS_NEW_ALL(OF(work, 3 * (size_t)cp->m), OF(iwork, cp->m));
   if (!cp->floating && invert(cp->m, a, work, iwork)) return OK;
   memcpy(a, cp->A, size * sizeof *a);
   f->local = 0;
@@ -119,8 +120,7 @@ static status make_matrix(written *f) {
 /* q of the local problem; w of the global one. M is still W by columns. */
 static status make_vectors(written *f) {
   const contact_problem *cp = f->cp;
-  PASS_NEW(f->q, cp->m);
-  PASS_NEW(f->mu, cp->n);
+  PASS_NEW_ALL(OF(f->q, cp->m), OF(f->mu, cp->n));
   if (f->local && !contact_has_stiffness(cp))
     memcpy(f->q, cp->f, (size_t)cp->m * sizeof *f->q);
   else if (f->local)
@@ -151,10 +151,6 @@ static status failed(const written *f, const char *name) {
                      f->path, name);
 }
 
-static void end_id(hid_t *id) {
-  if (*id >= 0) H5Idec_ref(*id);
-}
-
 static status put_group(const written *f, const char *name) {
   hid_t group =
       H5Gcreate2(f->file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -165,9 +161,8 @@ static status put_group(const written *f, const char *name) {
 /* GROUP/NAME: "data" has the type "as" in memory. */
 static status put_data(const written *f, const char *group, const char *name,
                        hid_t type, hid_t as, hid_t space, const void *data) {
-  char full[80];
-  hid_t plan ENDS_BY(end_id) = H5Pcreate(H5P_DATASET_CREATE);
-  snprintf(full, sizeof full, "%s/%s", group, name);
+  const char *full = text_of("%s/%s", group, name);
+  HELD hid_t plan = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_obj_track_times(plan, 0);
   hid_t set =
       H5Dcreate2(f->file, full, type, space, H5P_DEFAULT, plan, H5P_DEFAULT);
@@ -180,20 +175,20 @@ static status put_data(const written *f, const char *group, const char *name,
 
 static status put_reals(const written *f, const char *group, const char *name,
                         size_t n, const double *x) {
-  hid_t space ENDS_BY(end_id) = H5Screate_simple(1, &(hsize_t){n}, NULL);
+  HELD hid_t space = H5Screate_simple(1, &(hsize_t){n}, NULL);
   return put_data(f, group, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, space, x);
 }
 
 static status put_ints(const written *f, const char *group, const char *name,
                        size_t n, const int *x) {
-  hid_t space ENDS_BY(end_id) = H5Screate_simple(1, &(hsize_t){n}, NULL);
+  HELD hid_t space = H5Screate_simple(1, &(hsize_t){n}, NULL);
   return put_data(f, group, name, H5T_STD_I32LE, H5T_NATIVE_INT, space, x);
 }
 
 static status put_text(const written *f, const char *group, const char *name,
                        const char *text) {
-  hid_t type ENDS_BY(end_id) = H5Tcopy(H5T_C_S1);
-  hid_t space ENDS_BY(end_id) = H5Screate(H5S_SCALAR);
+  HELD hid_t type = H5Tcopy(H5T_C_S1);
+  HELD hid_t space = H5Screate(H5S_SCALAR);
   H5Tset_size(type, strlen(text) + 1);
   H5Tset_strpad(type, H5T_STR_NULLTERM);
   return put_data(f, group, name, type, type, space, text);
@@ -214,8 +209,7 @@ static status put_matrix(const written *f, const char *group, int nz, size_t n,
 
 static status write_local(written *f) {
   size_t m = (size_t)f->cp->m;
-  PASS_NEW(f->start, m + 1);
-  PASS_NEW(f->col, m * m);
+  PASS_NEW_ALL(OF(f->start, m + 1), OF(f->col, m * m));
   for (size_t i = 0; i <= m; ++i) f->start[i] = (int)(m * i);
   for (size_t k = 0; k < m * m; ++k) f->col[k] = (int)(k % m);
   PASS(put_group(f, "/fclib_local"));
@@ -231,9 +225,7 @@ static status write_global(written *f) {
   const contact_problem *cp = f->cp;
   size_t m = (size_t)cp->m;
   OWNED double *h = NULL;
-  PASS_NEW(f->start, m * m);
-  PASS_NEW(f->col, m * m);
-  PASS_NEW(h, m);
+  PASS_NEW_ALL(OF(f->start, m * m), OF(f->col, m * m), OF(h, m));
   PASS(put_group(f, "/fclib_global"));
   PASS(put_ints(f, "/fclib_global", "spacedim", 1, &cp->dim));
   for (size_t k = 0; k < m * m; ++k) {

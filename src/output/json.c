@@ -15,6 +15,7 @@ typedef struct json {
   FILE *f;
   int depth;
   int filled[8];
+  char end[8]; /* bracket that closes */
 } json;
 
 static void json_text(FILE *f, const char *text) {
@@ -45,18 +46,27 @@ static void json_next(json *w, const char *name) {
   fputs("\": ", w->f);
 }
 
-/* '{' or '[', closed by '}' or ']'; name NULL: an item of an array. */
-static void json_open(json *w, const char *name, char bracket) {
+/* name NULL: an item of an array. */
+static json *json_open(json *w, const char *name, const char *brackets) {
   if (w->depth > 0) json_next(w, name);
-  fputc(bracket, w->f);
+  fputc(brackets[0], w->f);
   w->filled[++w->depth] = 0;
+  w->end[w->depth] = brackets[1];
+  return w;
 }
 
-static void json_close(json *w, char bracket) {
-  --w->depth;
+static void json_close(json *const *at) {
+  json *w = *at;
+  const char end = w->end[w->depth--];
   json_line(w);
-  fputc(bracket, w->f);
+  fputc(end, w->f);
 }
+
+/* To the end of the block; an item of an array is an object. */
+#define ENDS_JSON __attribute__((cleanup(json_close), unused))
+#define OBJECT(w, name) json *const object_ ENDS_JSON = json_open(w, name, "{}")
+#define ARRAY(w, name) json *const array_ ENDS_JSON = json_open(w, name, "[]")
+#define ITEM(w) json *const item_ ENDS_JSON = json_open(w, NULL, "{}")
 
 static void json_string(json *w, const char *name, const char *text) {
   json_next(w, name);
@@ -90,19 +100,18 @@ static void json_named_count(json *w, const char *name, double value) {
 }
 
 static void write_exit(json *w, const run_summary *run) {
-  json_open(w, "exit", '{');
+  OBJECT(w, "exit");
   json_count(w, "code", status_exit_code(run->verdict));
   json_string(w, "name", status_name(run->verdict));
   json_string(w, "text", status_text(run->verdict));
   json_string(w, "message", run->message);
-  json_close(w, '}');
 }
 
 /* Expected and measured costs of an effect. */
 static void write_effect(json *w, const plan_row *r, double cpu,
                          const output_options *o) {
   stage_cost c = plan_cost(r);
-  json_open(w, NULL, '{');
+  ITEM(w);
   json_string(w, "effect", r->name);
   if (r->of[0] != '\0') json_string(w, "of", r->of);
   json_flag(w, "on", r->on);
@@ -121,24 +130,22 @@ static void write_effect(json *w, const plan_row *r, double cpu,
       json_count(w, "bytes", (double)c.bytes);
     }
   }
-  json_close(w, '}');
 }
 
 static void write_effects(json *w, const job *j) {
   const effect_plan *p = j->plan;
   double cpu = plan_cpu(p);
-  json_open(w, "effects", '[');
+  ARRAY(w, "effects");
   for (int i = 0; i < p->n; ++i) write_effect(w, &p->rows[i], cpu, j->o);
-  json_close(w, ']');
 }
 
 /* What *EFFECTS, MODE=AUTO left out or restored. */
 static void write_omitted(json *w, const model *m) {
   if (!m->reduction.is_auto) return;
-  json_open(w, "left_out", '[');
+  ARRAY(w, "left_out");
   for (int i = 0; i < m->reduction.n; ++i) {
     const omitted *n = &m->reduction.row[i];
-    json_open(w, NULL, '{');
+    ITEM(w);
     json_string(w, "effect", effect_name(n->bit));
     json_string(w, "why", n->why);
     json_flag(w, "taken_back", n->back);
@@ -148,25 +155,20 @@ static void write_omitted(json *w, const model *m) {
     json_real(w, "change", n->change);
     json_count(w, "increments", (double)n->checked);
     json_count(w, "solved_again", (double)n->again);
-    json_close(w, '}');
   }
-  json_close(w, ']');
 }
 
 static void write_sizes(json *w, const job *j) {
   size_row rows[SIZE_ROWS];
   job_sizes(j, rows);
-  json_open(w, "sizes", '{');
+  OBJECT(w, "sizes");
   for (int i = 0; rows[i].name != NULL; ++i)
     json_named_count(w, rows[i].name, rows[i].value);
-  json_close(w, '}');
 }
 
 static void json_error(json *w, const budget_row *r, const char *what,
                        double value) {
-  char name[48];
-  snprintf(name, sizeof name, "%s_error_%s", r->json, what);
-  json_real(w, name, value);
+  json_real(w, text_of("%s_error_%s", r->json, what), value);
 }
 
 static void write_budget(json *w, const job *j) {
@@ -197,7 +199,7 @@ static void write_saved(json *w, const job *j) {
 
 static void write_accuracy(json *w, const job *j) {
   const run_summary *run = j->run;
-  json_open(w, "accuracy", '{');
+  OBJECT(w, "accuracy");
   json_count(w, "increments", run->n_increment);
   json_count(w, "attempts_cut", run->n_rejected);
   json_count(w, "tolerance_missed", run->n_unsettled);
@@ -214,7 +216,6 @@ static void write_accuracy(json *w, const job *j) {
   json_real(w, "energy_defect_worst", run->defect_worst);
   if (run->facts_known) json_real(w, "condition", run->facts.condition);
   if (run->facts_known) json_real(w, "digits_left", run->facts.digits);
-  json_close(w, '}');
 }
 
 /* A contact at the end of a step; returns what follows its values. */
@@ -233,31 +234,28 @@ static const double *write_contact(json *w, const model *m, int id,
 
 static void write_contacts(json *w, const job *j) {
   const size_t size = job_end_size(j->m);
-  json_open(w, "contacts", '[');
+  ARRAY(w, "contacts");
   for (int k = 0; k < j->m->n.step; ++k) {
     const double *end = j->run->ends + (size_t)k * size, *value = end + 2;
     for (int i = 0; i < j->m->n.contact && end[0] > 0; ++i) {
-      json_open(w, NULL, '{');
+      ITEM(w);
       json_count(w, "step", k + 1);
       json_count(w, "increment", end[0]);
       json_real(w, "time", end[1]);
       value = write_contact(w, j->m, i, value);
-      json_close(w, '}');
     }
   }
-  json_close(w, ']');
 }
 
 /* Those of the last increment. */
 static void write_goals(json *w, const job *j) {
-  char unit[64];
   if (j->m->n.goal == 0 || job_goal(j, 0) == NULL) return;
-  json_open(w, "goals", '[');
+  ARRAY(w, "goals");
   for (int i = 0; i < j->m->n.goal; ++i) {
     const goal_result *g = job_goal(j, i);
-    json_open(w, NULL, '{');
+    ITEM(w);
     json_string(w, "goal", j->m->accuracy.goals[i].name);
-    json_string(w, "unit", job_goal_unit(j->m, i, unit, sizeof unit));
+    json_string(w, "unit", job_goal_unit(j->m, i));
     json_real(w, "value", g->value);
     json_real(w, "error", g->error);
     json_real(w, "corrected", g->value + g->error);
@@ -266,18 +264,15 @@ static void write_goals(json *w, const job *j) {
     json_real(w, "contact_ends_percent", 100 * g->ends);
     json_string(w, "verdict", goal_verdict_word(g->verdict));
     if (!j->o->no_timing) json_real(w, "cpu", g->cpu);
-    json_close(w, '}');
   }
-  json_close(w, ']');
 }
 
 static void write_pass_goals(json *w, const job *j, const pass_goal *g) {
-  char unit[64];
-  json_open(w, "goals", '[');
+  ARRAY(w, "goals");
   for (int i = 0; i < j->m->n.goal; ++i) {
-    json_open(w, NULL, '{');
+    ITEM(w);
     json_string(w, "goal", j->m->accuracy.goals[i].name);
-    json_string(w, "unit", job_goal_unit(j->m, i, unit, sizeof unit));
+    json_string(w, "unit", job_goal_unit(j->m, i));
     json_real(w, "value", g[i].found.value);
     json_real(w, "error", g[i].found.error);
     json_real(w, "band", g[i].found.band);
@@ -286,15 +281,13 @@ static void write_pass_goals(json *w, const job *j, const pass_goal *g) {
     if (j->m->accuracy.goals[i].target > 0.0)
       json_real(w, "target", g[i].allowed);
     json_string(w, "verdict", goal_verdict_word(g[i].found.verdict));
-    json_close(w, '}');
   }
-  json_close(w, ']');
 }
 
 static void write_pass(json *w, const job *j, int i) {
   const pass_table *t = &j->run->passes;
   const pass_row *r = &t->rows[i];
-  json_open(w, NULL, '{');
+  ITEM(w);
   json_count(w, "unknowns", r->unknowns);
   json_real(w, "mesh_error_percent", r->mesh);
   json_real(w, "time_error_percent", r->time);
@@ -303,50 +296,46 @@ static void write_pass(json *w, const job *j, int i) {
   if (t->goals != NULL) write_pass_goals(w, j, t->goals + i * j->m->n.goal);
   if (!j->o->no_timing) json_real(w, "cpu", r->cpu);
   json_string(w, "changed_next", r->change);
-  json_close(w, '}');
 }
 
 static void write_passes(json *w, const job *j) {
   const pass_table *t = &j->run->passes;
   if (t->n == 0) return;
-  json_open(w, "target", '{');
+  OBJECT(w, "target");
   if (t->target > 0.0) json_real(w, "percent", t->target);
   json_flag(w, "reached", t->why[0] == '\0');
-  json_open(w, "passes", '[');
+  ARRAY(w, "passes");
   for (int i = 0; i < t->n; ++i) write_pass(w, j, i);
-  json_close(w, ']');
-  json_close(w, '}');
 }
 
-static void write_cost(json *w, const output_options *o) {
-  json_open(w, "cost", '{');
-  json_open(w, "stages", '[');
+static void write_stages(json *w, const output_options *o) {
+  ARRAY(w, "stages");
   for (int i = 0; i < STAGE_COUNT; ++i) {
     if (timer_name((stage)i) == NULL) continue;
     stage_cost c = timer_cost((stage)i);
-    json_open(w, NULL, '{');
+    ITEM(w);
     json_string(w, "stage", timer_name((stage)i));
     json_count(w, "calls", (double)c.calls);
-    if (!o->no_timing) {
-      json_real(w, "cpu", c.cpu);
-      json_count(w, "bytes", (double)c.bytes);
-    }
-    json_close(w, '}');
+    if (o->no_timing) continue;
+    json_real(w, "cpu", c.cpu);
+    json_count(w, "bytes", (double)c.bytes);
   }
-  json_close(w, ']');
-  if (!o->no_timing) {
-    json_real(w, "cpu", timer_cpu());
-    json_count(w, "peak_bytes", (double)memory_peak());
-  }
-  json_close(w, '}');
+}
+
+static void write_cost(json *w, const output_options *o) {
+  OBJECT(w, "cost");
+  write_stages(w, o);
+  if (o->no_timing) return;
+  json_real(w, "cpu", timer_cpu());
+  json_count(w, "peak_bytes", (double)memory_peak());
 }
 
 static void write_solutions(json *w, const increment_summary *s) {
   if (!s->checked) return;
-  json_open(w, "solutions", '[');
+  ARRAY(w, "solutions");
   for (int i = 0; i < s->n_solution; ++i) {
     const solution_facts *a = &s->solutions[i];
-    json_open(w, NULL, '{');
+    ITEM(w);
     json_real(w, "residual", a->residual);
     json_real(w, "distance_percent", 100 * a->distance);
     json_count(w, "open", a->n_open);
@@ -358,29 +347,30 @@ static void write_solutions(json *w, const increment_summary *s) {
     json_real(w, "u_t_highest", a->highest[1]);
     json_count(w, "found_times", a->patterns);
     json_count(w, "continuum_with", a->joined);
-    json_close(w, '}');
   }
-  json_close(w, ']');
 }
 
-static void write_theory_contact(json *w, const model *m,
-                                 const theorems_contact *c) {
-  json_open(w, NULL, '{');
-  json_string(w, "contact",
-              c->contact_id < 0 ? "" : m->contacts[c->contact_id].name);
-  json_real(w, "mu", c->mu);
-  json_real(w, "mu_unique", c->limit);
-  json_real(w, "factor", c->factor);
-  json_real(w, "contraction", c->rate);
-  json_real(w, "mu_contraction", c->suggested);
-  json_real(w, "normal_eigenvalue", c->normal);
-  json_real(w, "tangential_eigenvalue", c->tangent);
-  json_string(w, "mu_is", mu_regime_text(c->regime));
-  json_close(w, '}');
+static void write_theory_contacts(json *w, const model *m,
+                                  const theorems_report *t) {
+  ARRAY(w, "contacts");
+  for (int i = 0; i < t->n_contact; ++i) {
+    const theorems_contact *c = &t->contacts[i];
+    ITEM(w);
+    json_string(w, "contact",
+                c->contact_id < 0 ? "" : m->contacts[c->contact_id].name);
+    json_real(w, "mu", c->mu);
+    json_real(w, "mu_unique", c->limit);
+    json_real(w, "factor", c->factor);
+    json_real(w, "contraction", c->rate);
+    json_real(w, "mu_contraction", c->suggested);
+    json_real(w, "normal_eigenvalue", c->normal);
+    json_real(w, "tangential_eigenvalue", c->tangent);
+    json_string(w, "mu_is", mu_regime_text(c->regime));
+  }
 }
 
 static void write_bound(json *w, const char *name, const theorems_bound *b) {
-  json_open(w, name, '{');
+  OBJECT(w, name);
   if (b->why != NULL) {
     json_string(w, "missing", b->why);
   } else {
@@ -388,12 +378,11 @@ static void write_bound(json *w, const char *name, const theorems_bound *b) {
     json_real(w, "right", b->right);
     json_flag(w, "violated", b->violated);
   }
-  json_close(w, '}');
 }
 
 static void write_path(json *w, const theorems_path *p) {
   if (!p->asked) return;
-  json_open(w, "theorem_3_2", '{');
+  OBJECT(w, "theorem_3_2");
   if (p->why != NULL)
     json_string(w, "missing", p->why);
   else
@@ -404,16 +393,12 @@ static void write_path(json *w, const theorems_path *p) {
   json_real(w, "step_time", p->span);
   json_real(w, "maps_to_contract", p->passes);
   json_flag(w, "violated", p->violated);
-  json_close(w, '}');
 }
 
 static void write_theory(json *w, const model *m, const theorems_report *t) {
   if (!t->asked) return;
-  json_open(w, "theory", '{');
-  json_open(w, "contacts", '[');
-  for (int i = 0; i < t->n_contact; ++i)
-    write_theory_contact(w, m, &t->contacts[i]);
-  json_close(w, ']');
+  OBJECT(w, "theory");
+  write_theory_contacts(w, m, t);
   write_bound(w, "bound_3_9", &t->total);
   write_bound(w, "bound_3_10", &t->change);
   write_path(w, &t->path);
@@ -421,12 +406,11 @@ static void write_theory(json *w, const model *m, const theorems_report *t) {
   json_count(w, "inequality_fields", t->n_field);
   if (t->has_start) json_real(w, "start_least", t->start);
   json_flag(w, "violated", t->violated);
-  json_close(w, '}');
 }
 
 static void write_increment(json *w, const model *m,
                             const increment_summary *s) {
-  json_open(w, NULL, '{');
+  ITEM(w);
   json_count(w, "step", s->step_no);
   json_count(w, "increment", s->increment_no);
   json_count(w, "attempt", s->attempt);
@@ -474,7 +458,6 @@ static void write_increment(json *w, const model *m,
   if (s->jumps) json_real(w, "jump_time", s->jump_t);
   write_solutions(w, s);
   write_theory(w, m, &s->theorems);
-  json_close(w, '}');
 }
 
 static void write_resting(json *w, const flow_tally *t) {
@@ -485,24 +468,24 @@ static void write_resting(json *w, const flow_tally *t) {
 
 static void write_warnings(json *w, const message_log *log) {
   message_view v;
-  char number[16];
-  json_open(w, "warnings", '[');
+  ARRAY(w, "warnings");
   for (int k = 0; log != NULL && message_get(log, k, &v); ++k) {
     if (v.level != WARNING) continue;
-    snprintf(number, sizeof number, "P%d", (int)v.id);
-    json_open(w, NULL, '{');
-    json_string(w, "number", number);
+    ITEM(w);
+    json_string(w, "number", text_of("P%d", (int)v.id));
     json_count(w, "line", v.at != NULL ? v.at->line_no : 0);
     json_string(w, "text", v.text);
-    json_close(w, '}');
   }
-  json_close(w, ']');
 }
 
-static void write_all(FILE *f, const void *what) {
-  const job *j = what;
-  json all = {.f = f}, *w = &all;
-  json_open(w, NULL, '{');
+static void write_increments(json *w, const job *j) {
+  ARRAY(w, "increments");
+  for (int i = 0; i < j->run->n_increment; ++i)
+    write_increment(w, j->m, &j->run->increments[i]);
+}
+
+static void write_job(json *w, const job *j) {
+  ITEM(w);
   json_string(w, "program", "protis");
   json_string(w, "version", j->o->version);
   json_string(w, "job", j->m->name.job);
@@ -520,12 +503,12 @@ static void write_all(FILE *f, const void *what) {
   write_passes(w, j);
   write_cost(w, j->o);
   write_resting(w, &j->run->tally);
-  json_open(w, "increments", '[');
-  for (int i = 0; i < j->run->n_increment; ++i)
-    write_increment(w, j->m, &j->run->increments[i]);
-  json_close(w, ']');
-  json_close(w, '}');
-  fputc('\n', w->f);
+  write_increments(w, j);
+}
+
+static void write_all(FILE *f, const void *what) {
+  write_job(&(json){.f = f}, what);
+  fputc('\n', f);
 }
 
 status json_write(const job *j, const char *path) {

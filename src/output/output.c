@@ -249,7 +249,7 @@ history_sink output_sink(output *o) {
 }
 
 static void release(output *o) {
-  plan_free(o->plan);
+  plan_free(&o->plan);
   RELEASE(o->json, o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i)
     RELEASE(o->run.increments[i].solutions,
@@ -296,7 +296,7 @@ static status open_earlier(output *o) {
   status st = OK;
   archive *a = o->o.from;
   file_ends ends;
-  archive_enter(a, "output");
+  IN_GROUP(a, "output");
   TRY(output_read(o, a, &ends));
   o->quiet = 1;
   TRY(open_text(o, "lst", ends.lst, &o->lst));
@@ -306,7 +306,6 @@ static status open_earlier(output *o) {
   TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
 done:
   if (o->run.increments == NULL) o->run.n_increment = 0;
-  archive_leave(a);
   return st;
 }
 

@@ -10,6 +10,7 @@
 #include "output/writers.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <errno.h>
 #include <math.h>
@@ -301,10 +302,8 @@ static status keep_goals(output *o, archive *a, size_t steps) {
   for (size_t i = 0; i < n; ++i) {
     goal_result *g = &o->run.goals[i];
     const double cpu = g->cpu;
-    char name[32];
-    snprintf(name, sizeof name, "goal%zu", i);
     g->cpu = 0.0;
-    status st = archive_bytes(a, name, g, sizeof *g);
+    status st = archive_bytes(a, text_of("goal%zu", i), g, sizeof *g);
     g->cpu = cpu;
     if (st != OK) return st;
   }
@@ -321,22 +320,18 @@ static status keep_ends(output *o, archive *a) {
 }
 
 status output_keep(output *o, archive *a) {
-  status st = OK;
   file_ends ends;
   memset(&ends, 0, sizeof ends);
-  archive_enter(a, "output");
-  TRY(text_sync(&o->lst, &ends.lst));
-  TRY(text_sync(&o->sta, &ends.sta));
-  TRY(text_sync(&o->cvg, &ends.cvg));
-  TRY(tabular_sync(o->dat, &ends.dat));
+  IN_GROUP(a, "output");
+  PASS(text_sync(&o->lst, &ends.lst));
+  PASS(text_sync(&o->sta, &ends.sta));
+  PASS(text_sync(&o->cvg, &ends.cvg));
+  PASS(tabular_sync(o->dat, &ends.dat));
   ends.has_h5 = o->h5 != NULL;
-  TRY(hdf5_sync(o->h5, &ends.h5));
-  TRY(saved_append(o, &ends.increments));
-  TRY(keep_counts(o, a, &ends));
-  TRY(keep_ends(o, a));
-done:
-  archive_leave(a);
-  return st;
+  PASS(hdf5_sync(o->h5, &ends.h5));
+  PASS(saved_append(o, &ends.increments));
+  PASS(keep_counts(o, a, &ends));
+  return keep_ends(o, a);
 }
 
 status output_read(output *o, archive *a, file_ends *ends) {

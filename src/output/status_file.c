@@ -55,29 +55,27 @@ static void print_reason(const state *s, const char *why, FILE *f) {
 }
 
 /* Error of the solver in %, "-": not required, or no bound. */
-static const char *error_text(const state *s, char text[NUMBER_SIZE]) {
+static const char *error_text(const state *s) {
   if (!s->errors.error.asked || isnan(s->errors.error.relative)) return "-";
-  return text_number(text, 100 * s->errors.error.relative, 1);
+  return text_number(100 * s->errors.error.relative, 1);
 }
 
 /* An estimate in %, "-": not required, or unknown. */
-static const char *share_text(const error_share *e, char text[NUMBER_SIZE]) {
+static const char *share_text(const error_share *e) {
   if (!e->asked || isnan(e->relative)) return "-";
-  return text_number(text, 100 * e->relative, 1);
+  return text_number(100 * e->relative, 1);
 }
 
 status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta) {
-  char t[NUMBER_SIZE], dt[NUMBER_SIZE], residual[NUMBER_SIZE];
-  char error[NUMBER_SIZE], in_mesh[NUMBER_SIZE], in_steps[NUMBER_SIZE];
   const solver_report *r = &s->report;
   fprintf(sta->f, "%6d %5d %3d %11s %11s %7d %7d %7d %-9s %7d %10s %9s %9s %9s",
-          s->step_no, s->increment_no, s->attempt, text_number(t, s->t, 4),
-          text_number(dt, s->dt, 4), s->contacts.n_open, s->contacts.n_slip,
+          s->step_no, s->increment_no, s->attempt, text_number(s->t, 4),
+          text_number(s->dt, 4), s->contacts.n_open, s->contacts.n_slip,
           s->contacts.n_stick, r->solver != NULL ? r->solver : "-",
-          r->iterations, text_number(residual, r->residual, 3),
-          share_text(&s->errors.mesh_error, in_mesh),
-          share_text(&s->errors.time_error, in_steps), error_text(s, error));
+          r->iterations, text_number(r->residual, 3),
+          share_text(&s->errors.mesh_error), share_text(&s->errors.time_error),
+          error_text(s));
   if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
   print_reason(s, why, sta->f);
   return text_check(sta);
@@ -104,28 +102,28 @@ static void cvg_linear(const output_options *o, const linear_work *w,
   fputc('\n', cvg->f);
 }
 
+static const char *cvg_number(double value) {
+  return isnan(value) ? "-" : text_number(value, 3);
+}
+
 /* Unknown values are "-". */
 void cvg_line(const output_options *o, cvg_place at, const solver_step *s,
               text_file *cvg) {
-  char residual[NUMBER_SIZE] = "-", change[NUMBER_SIZE] = "-";
-  char changes[16] = "-";
-  if (!isnan(s->residual)) text_number(residual, s->residual, 3);
-  if (!isnan(s->limit_change)) text_number(change, s->limit_change, 3);
-  if (s->status_changes >= 0)
-    snprintf(changes, sizeof changes, "%d", s->status_changes);
+  const int changes = s->status_changes;
   fprintf(cvg->f, "%7d %3d %-9s %6d %6d %10s %8s %12s %5s", at.total_no,
           at.attempt, s->solver != NULL ? s->solver : "-", s->iteration,
-          s->limit_update, residual, changes, change, s->cycle ? "YES" : "no");
+          s->limit_update, cvg_number(s->residual),
+          changes < 0 ? "-" : text_of("%d", changes),
+          cvg_number(s->limit_change), s->cycle ? "YES" : "no");
   cvg_linear(o, &s->linear, cvg);
 }
 
 void cvg_end(int total_no, int attempt, const state *s, text_file *cvg) {
-  char residual[NUMBER_SIZE];
   if (s->contacts.surface == NULL) return;
   fprintf(cvg->f, "# total %d att %d ended: %s %s (%s), residual %s\n",
           total_no, attempt, s->report.solver != NULL ? s->report.solver : "-",
           outcome_code(s->report.outcome), outcome_text(s->report.outcome),
-          text_number(residual, s->report.residual, 3));
+          text_number(s->report.residual, 3));
 }
 
 void progress_line(const char *text) {
@@ -160,16 +158,14 @@ void progress_show(const model *m, const state *s, double seconds, int done) {
 enum { MOST_SHOWN = 20 }; /* contacts */
 
 /* The unit with a blank before it; nothing if *UNITS gives it no label. */
-static const char *unit_after(const char *unit, const model *m, char text[80]) {
-  text[0] = ' ';
-  column_unit(unit, m, text + 1, 79);
-  return strcmp(text + 1, unit) == 0 ? "" : text;
+static const char *unit_after(const char *unit, const model *m) {
+  const char *label = column_unit(unit, m);
+  return strcmp(label, unit) == 0 ? "" : text_of(" %s", label);
 }
 
 /* A contact at the last increment: the values of job_end_column. */
 static const double *close_contact(const job *j, int id, const double *value,
                                    FILE *f) {
-  char unit[80];
   fprintf(f, "%-9s ", j->m->contacts[id].name);
   const char *before = "";
   const column *c;
@@ -177,7 +173,7 @@ static const double *close_contact(const job *j, int id, const double *value,
        (c = job_end_column(j->m, &w)) != NULL; ++value)
     if (strncmp(c->name, "force_", 6) == 0 || c->form == AS_COUNT) {
       fprintf(f, "%s%s %.6g%s", before, c->name, *value,
-              unit_after(c->unit, j->m, unit));
+              unit_after(c->unit, j->m));
       before = ", ";
     }
   fputc('\n', f);
@@ -200,11 +196,10 @@ static void close_contacts(const job *j, FILE *f) {
 }
 
 static void close_goals(const job *j, FILE *f) {
-  char unit[80];
   for (int i = 0; i < j->m->n.goal && job_goal(j, i) != NULL; ++i) {
     const goal_result *g = job_goal(j, i);
     fprintf(f, "%-9s %.7g %s", j->m->accuracy.goals[i].name, g->value,
-            job_goal_unit(j->m, i, unit, sizeof unit));
+            job_goal_unit(j->m, i));
     if (!isnan(g->error))
       fprintf(f, ", error %.2g: %.7g within %.1g", g->error,
               g->value + g->error, g->band);
@@ -233,7 +228,6 @@ static void close_errors(const job *j, FILE *f) {
 
 void closing_lines(const job *j, const char *files, FILE *f) {
   const run_summary *run = j->run;
-  char unit[80];
   fprintf(f, "%-9s %s\n%-9s %d: %s; increments %d, attempts cut %d\n",
           "results", files, "exit", status_exit_code(run->verdict),
           run->verdict == OK ? "done" : status_text(run->verdict),
@@ -242,7 +236,7 @@ void closing_lines(const job *j, const char *files, FILE *f) {
     close_contacts(j, f);
     fprintf(f, "%-9s residual %.1e, penetration %.2g%s\n", "worst",
             run->residual_worst, run->penetration_worst,
-            unit_after("length", j->m, unit));
+            unit_after("length", j->m));
     close_goals(j, f);
     close_errors(j, f);
   }

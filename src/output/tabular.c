@@ -129,13 +129,12 @@ static status table_rows(const table *columns, tabular *t, const view *v,
 }
 
 static status write_table(tabular *t, const view *v, const print_request *p) {
-  char number[NUMBER_SIZE];
   table columns;
   table_choose(&columns, effect_of_table(p->table)->table.of,
                (unsigned)p->table, v, DIGITS);
   fprintf(t->dat.f, "%s# step %d increment %d time %s table %s%s%s\n",
           t->n_block++ > 0 ? "\n\n" : "", v->s->step_no, v->s->increment_no,
-          text_number(number, v->s->t, DIGITS), print_word(p->table),
+          text_number(v->s->t, DIGITS), print_word(p->table),
           p->group != NULL ? " group " : "", p->group != NULL ? p->group : "");
   table_header(&columns, t->m, "#", t->dat.f);
   PASS(table_rows(&columns, t, v, p));

@@ -11,7 +11,7 @@
  * band), so none is taken for its cancelling. The mesh of the next pass has the
  * smallest size that any goal requires.
  */
-#include "program/aims.h"
+#include "program/job.h"
 
 #include "accuracy/space.h"
 #include "base/memory.h"
@@ -40,21 +40,16 @@ struct aims {
 };
 
 status aims_new(const model *m, int all, aims **out) {
-  status st = OK;
-  aims *a = NULL;
   *out = NULL;
   if (m->n.goal == 0) return OK;
-  NEW(a, 1);
+  PASS_NEW(*out, 1);
+  aims *a = *out;
   a->all = all;
   a->counts = all || model_targeted_goal(m) != NULL;
   a->n = m->n.goal;
   a->least = HUGE_VAL;
-  NEW(a->rows, MAX_PASS_ROWS * a->n);
-  *out = a;
-  a = NULL;
-done:
-  aims_free(a);
-  return st;
+  PASS_NEW(a->rows, MAX_PASS_ROWS * a->n);
+  return OK;
 }
 
 void aims_free(aims *a) {
@@ -216,8 +211,7 @@ static int find_own(const aims *a, const mesh *msh, int i, double *own) {
 
 status aims_share(const aims *a, const mesh *msh, int i, double *share) {
   OWNED double *own = NULL, *size = NULL;
-  PASS_NEW(own, msh->n_elem);
-  PASS_NEW(size, msh->n_node);
+  PASS_NEW_ALL(OF(own, msh->n_elem), OF(size, msh->n_node));
   *share = 1.0;
   if (!find_own(a, msh, i, own)) return OK;
   find_sizes(msh, own, 1.0, size);
@@ -228,8 +222,7 @@ status aims_share(const aims *a, const mesh *msh, int i, double *share) {
 status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
                   double *size) {
   OWNED double *own = NULL, *more = NULL;
-  PASS_NEW(own, msh->n_elem);
-  PASS_NEW(more, msh->n_node);
+  PASS_NEW_ALL(OF(own, msh->n_elem), OF(more, msh->n_node));
   for (int i = 0; i < a->n; ++i) {
     const double part = part_of(last_row(a, i));
     if (!a->all && !(m->accuracy.goals[i].target > 0.0)) continue;

@@ -60,10 +60,8 @@ static void print_sizes(const model *m, const mesh *msh) {
            m->steps[i].total / m->steps[i].dt);
 }
 
-static void free_plan(effect_plan **p) { plan_free(*p); }
-
 static status print_plan(const model *m, const mesh *msh, int n) {
-  effect_plan *p ENDS_BY(free_plan) = NULL;
+  ENDS_BY(plan_free) effect_plan *p = NULL;
   PASS(plan_new(m, msh, n, &p));
   puts("effects");
   plan_print(p, "  ", stdout);

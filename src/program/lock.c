@@ -1,5 +1,5 @@
 /* The lock of a job; the file shows the number of the process. */
-#include "program/lock.h"
+#include "program/job.h"
 
 #include "base/memory.h"
 #include "base/text.h"
@@ -52,7 +52,7 @@ static status check_current(const char *path, int fd, int *current) {
   return OK;
 }
 
-static status refuse(const char *path, int fd, const char *job) {
+static status refuse(const char *path, int fd, const char *name) {
   char text[64];
   read_owner(fd, text);
   return status_fail(
@@ -61,12 +61,12 @@ static status refuse(const char *path, int fd, const char *job) {
       "ended, end it, or give this run another folder with -o. The lock goes "
       "with its process: a file left behind by a kill does not block, it may "
       "be removed",
-      path, job, text[0] != '\0' ? text : "process unknown");
+      path, name, text[0] != '\0' ? text : "process unknown");
 }
 
 /* A file system without locks runs without. *held: the file is ours, to be
  * removed in the end. */
-static status hold(const char *path, const char *job, int *fd, int *held) {
+static status hold(const char *path, const char *name, int *fd, int *held) {
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
   for (int current = 0; !current;) {
     if (*fd >= 0) close(*fd);
@@ -76,7 +76,7 @@ static status hold(const char *path, const char *job, int *fd, int *held) {
     if (*fd < 0) PASS(text_failed(path, "open for writing", errno));
     if (!made) PASS(check_content(path, *fd));
     if (flock(*fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      PASS(refuse(path, *fd, job));
+      PASS(refuse(path, *fd, name));
     *held = 1;
     PASS(check_current(path, *fd, &current));
     *held = current;
@@ -84,14 +84,14 @@ static status hold(const char *path, const char *job, int *fd, int *held) {
   return OK;
 }
 
-status job_lock_take(const char *dir, const char *job, job_lock *l) {
+status job_lock_take(const char *dir, const char *name, job_lock *l) {
   status st = OK;
   int fd = -1, held = 0;
-  char *path = text_path(dir, job, "lock");
+  char *path = text_path(dir, name, "lock");
   if (path == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of the lock");
   if (mkdir(dir, 0777) != 0 && errno != EEXIST)
     FAIL(ERR_FILE, "cannot make the folder %s: %s", dir, strerror(errno));
-  TRY(hold(path, job, &fd, &held));
+  TRY(hold(path, name, &fd, &held));
   if (ftruncate(fd, 0) != 0 || dprintf(fd, "%s%ld\n", head, (long)getpid()) < 0)
     TRY(text_failed(path, "write", errno));
   *l = (job_lock){path, fd};

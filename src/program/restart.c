@@ -1,6 +1,6 @@
 /* The restart file: its origin, and whether a deck may continue from it. */
 #include "base/file.h"
-#include "program/restart.h"
+#include "program/job.h"
 
 #include "base/memory.h"
 #include "base/text.h"
@@ -132,11 +132,9 @@ static status file_names(const command *c, const model *m, char **path,
   return OK;
 }
 
-static void free_archive(archive **a) { archive_free(*a); }
-
 status restart_write(void *ctx, const run_memory *memory) {
   const restart_writer *w = ctx;
-  archive *a ENDS_BY(free_archive) = NULL;
+  ENDS_BY(archive_free) archive *a = NULL;
   identity id;
   OWNED char *path = NULL, *before = NULL, *text = NULL, *reported = NULL;
   PASS(file_names(w->c, w->in->m, &path, &before));
@@ -362,6 +360,7 @@ static status read_either(const char *path, const char *before, archive **a) {
   status st = archive_read(path, a);
   if (st != ERR_FILE) return st;
   snprintf(why, sizeof why, "%s", status_message());
+  archive_free(a);
   if (archive_read(before, a) == OK) {
     fprintf(stderr, "protis: warning: %s; the run goes on from %s\n", why,
             before);

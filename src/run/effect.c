@@ -153,15 +153,13 @@ void effects_show(const run *r, state *s) {
 }
 
 status effects_keep(run *r, archive *a) {
-  status st = OK;
-  for (int k = 0; k < r->effects.n && st == OK; ++k) {
+  for (int k = 0; k < r->effects.n; ++k) {
     const effect_ops *e = r->effects.on[k].ops;
     if (e->on.keep == NULL) continue;
-    archive_enter(a, e->name);
-    st = e->on.keep(r, r->effects.on[k].state, a);
-    archive_leave(a);
+    IN_GROUP(a, e->name);
+    PASS(e->on.keep(r, r->effects.on[k].state, a));
   }
-  return st;
+  return OK;
 }
 
 status effects_copy(const run *from, run *copy) {

@@ -31,33 +31,28 @@ void matrices_free(matrices *m) {
 void run_forget_estimates(run *r) { known_rate_forget(&r->solving.rate); }
 
 static status new_solver(const run *r, matrices *m) {
-  status st = OK;
-  TRY(contact_solver_new(&r->step->solver, &m->solver));
-  if (m->from == NULL) goto done;
+  PASS(contact_solver_new(&r->step->solver, &m->solver));
+  if (m->from == NULL) return OK;
   archive_go(m->from, m->group);
-  st = contact_solver_keep(m->solver, m->from);
+  const status st = contact_solver_keep(m->solver, m->from);
   archive_go(m->from, "");
   m->from = NULL;
-done:
   return st;
 }
 
 status matrices_keep(matrices *m, archive *a, const char *group) {
-  status st = OK;
   int there = m->solver != NULL;
   if (!archive_reads(a) && !there && m->from != NULL)
     return archive_pass_on(m->from, m->group, a);
-  archive_enter(a, group);
-  TRY(archive_ints(a, "solver", &there, 1));
-  if (archive_reads(a) && there && m->solver == NULL) {
+  IN_GROUP(a, group);
+  PASS(archive_ints(a, "solver", &there, 1));
+  if (!archive_reads(a) || m->solver != NULL)
+    return there ? contact_solver_keep(m->solver, a) : OK;
+  if (there) {
     m->from = a;
     snprintf(m->group, sizeof m->group, "%s", archive_group(a));
-  } else if (there) {
-    TRY(contact_solver_keep(m->solver, a));
   }
-done:
-  archive_leave(a);
-  return st;
+  return OK;
 }
 
 status run_renew_elastic(run *r) {

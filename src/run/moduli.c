@@ -46,9 +46,8 @@ static status heat_entry(moduli *x, const model *m, int k, double T,
 /* Elements that follow their temperature get entries behind the sections. */
 static status own_entries(moduli *x, const model *m, const mesh *msh) {
   int n = 0;
-  PASS_NEW(x->section_id, msh->n_elem);
-  PASS_NEW(x->elem_id, x->n_own);
-  PASS_NEW(x->at, x->n_own);
+  PASS_NEW_ALL(OF(x->section_id, msh->n_elem), OF(x->elem_id, x->n_own),
+               OF(x->at, x->n_own));
   for (int e = 0; e < msh->n_elem; ++e) {
     x->section_id[e] = m->elem_section[e];
     if (!moduli_follows(m, e)) continue;
@@ -67,11 +66,9 @@ status moduli_new(const model *m, const mesh *msh, const double *T, moduli *x) {
   for (int e = 0; e < msh->n_elem && T != NULL; ++e)
     x->n_own += moduli_follows(m, e);
   x->n = m->n.section + x->n_own;
-  PASS_NEW(x->origin, x->n);
-  PASS_NEW(x->kin, x->n);
-  PASS_NEW(x->thickness, x->n);
-  PASS_NEW(x->E, (size_t)(m->ns * m->ns) * (size_t)x->n);
-  PASS_NEW(x->C, 36 * (size_t)x->n);
+  PASS_NEW_ALL(OF(x->origin, x->n), OF(x->kin, x->n), OF(x->thickness, x->n),
+               OF(x->E, (size_t)(m->ns * m->ns) * (size_t)x->n),
+               OF(x->C, 36 * (size_t)x->n));
   for (int i = 0; i < m->n.section; ++i) {
     x->origin[i] = i;
     x->kin[i] = (kinematics)m->sections[i].kin;

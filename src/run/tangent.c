@@ -3,6 +3,7 @@
  * their matrices, of which the constant ones are stored, and loads.
  */
 #include "base/memory.h"
+#include "base/text.h"
 #include "base/timer.h"
 #include "material/voigt.h"
 #include "run/visco.h"
@@ -98,9 +99,8 @@ static status new_sections(run *r) {
   visco *v = r->strains.visco;
   const moduli *own = &r->body.moduli;
   int n = own->n + v->x.n;
-  PASS_NEW(v->section_id, r->msh->n_elem);
-  PASS_NEW(v->kin, n);
-  PASS_NEW(v->thickness, n);
+  PASS_NEW_ALL(OF(v->section_id, r->msh->n_elem), OF(v->kin, n),
+               OF(v->thickness, n));
   memcpy(v->section_id, r->body.d.section_id,
          (size_t)r->msh->n_elem * sizeof *v->section_id);
   memcpy(v->kin, own->kin, (size_t)own->n * sizeof *v->kin);
@@ -285,19 +285,16 @@ static status keep_fresh(run *r, archive *a) {
 
 status tangent_keep(run *r, archive *a) {
   visco *v = r->strains.visco;
-  char name[20];
   double known = r->c == r->elastic.c ? r->elastic.key : RUN_OTHER_KEY;
   if (v->fresh.c != NULL && v->fresh.c == r->c) known = v->fresh.key;
   for (int i = 0; i < SLOTS; ++i) {
     matrices *m = &v->slot[i];
     if (m->c != NULL && m->c == r->c) known = m->key;
-    snprintf(name, sizeof name, "slot%d", i);
-    archive_enter(a, name);
+    IN_GROUP(a, text_of("slot%d", i));
     PASS(archive_reals(a, "key", &m->key, 1));
     PASS(archive_ints(a, "exact", &m->exact, 1));
     PASS(archive_bytes(a, "used", &m->used, sizeof m->used));
     PASS(matrices_keep(m, a, "solver"));
-    archive_leave(a);
   }
   if (r->solving.known_key != RUN_NO_KEY) known = r->solving.known_key;
   PASS(keep_fresh(r, a));

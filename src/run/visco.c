@@ -304,18 +304,14 @@ status visco_accept(run *r) {
 
 status visco_keep_flow(const flow *x, flow_state *s, archive *a,
                        const char *group) {
-  status st = OK;
   size_t n = (size_t)x->ns * (size_t)x->n;
-  archive_enter(a, group);
-  TRY(archive_reals(a, "t", &s->t, 1));
-  TRY(archive_reals(a, "e", s->e, n));
-  TRY(archive_reals(a, "ei", s->ei, n));
-  TRY(archive_reals(a, "sigma", s->sigma, n));
-  TRY(archive_reals(a, "alpha", s->alpha, x->alpha_at[x->n]));
-  TRY(archive_reals(a, "temperature", s->temperature, (size_t)x->n));
-done:
-  archive_leave(a);
-  return st;
+  IN_GROUP(a, group);
+  PASS(archive_reals(a, "t", &s->t, 1));
+  PASS(archive_reals(a, "e", s->e, n));
+  PASS(archive_reals(a, "ei", s->ei, n));
+  PASS(archive_reals(a, "sigma", s->sigma, n));
+  PASS(archive_reals(a, "alpha", s->alpha, x->alpha_at[x->n]));
+  return archive_reals(a, "temperature", s->temperature, (size_t)x->n);
 }
 
 status visco_keep(run *r, archive *a) {

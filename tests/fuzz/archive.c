@@ -47,7 +47,7 @@ static status serve(archive *at, arrays *a) {
     if (a->kind[i] == 0) st = archive_reals(at, a->name[i], a->real[i], n);
     if (a->kind[i] == 1) st = archive_ints(at, a->name[i], a->whole[i], n);
     if (a->kind[i] == 2) st = archive_bytes(at, a->name[i], a->real[i], n);
-    if (i % 2 == 1) archive_leave(at);
+    if (i % 2 == 1) archive_leave(&at);
   }
   return st;
 }
@@ -57,7 +57,7 @@ static void write_file(arrays *a, const char *path, const char *before) {
   if (archive_new(&out) != OK || serve(out, a) != OK ||
       archive_write(out, path, before) != OK)
     abort();
-  archive_free(out);
+  archive_free(&out);
 }
 
 /* 1: bytes are gone. */
@@ -95,7 +95,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     choose(&other, &b);
     if (serve(in, &other) != OK) status_clear();
   }
-  archive_free(in);
+  archive_free(&in);
   status_clear();
   if (memory_in_use() != 0) abort();
   return 0;

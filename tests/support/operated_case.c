@@ -1,7 +1,7 @@
 /* A contact problem whose stiffness is an operator (operated_case.h). */
 #include "support/operated_case.h"
 
-#include "solver/choice/anchor.h"
+#include "solver/choice/choice.h"
 #include "support/unit.h"
 
 #include <lapacke.h>

@@ -235,7 +235,7 @@ START_TEST(restart_files_are_not_believed) {
     ck_assert_msg(st == (rows[k].kind == WHOLE ? OK : ERR_FILE),
                   "row %zu: status %d", k, (int)st);
     ck_assert_uint_lt(memory_allocated() - before, 1 << 16);
-    archive_free(a);
+    archive_free(&a);
     end();
   }
 }

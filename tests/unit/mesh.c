@@ -517,7 +517,7 @@ START_TEST(reader_gives_back_all_when_refused) {
     memory_refuse(k, 0);
     status st = raw_read(&request, &raw);
     memory_refuse(0, 0);
-    raw_free(raw);
+    raw_free(&raw);
     ck_assert_uint_eq(memory_in_use(), before);
     if (st == OK) break;
     ck_assert_int_eq(st, ERR_MEMORY);
@@ -551,7 +551,7 @@ START_TEST(builder_gives_back_all_when_refused) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
   ck_assert_int_gt(n, 20);
-  raw_free(raw);
+  raw_free(&raw);
   mesh_file_close(&f);
 }
 END_TEST

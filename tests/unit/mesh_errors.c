@@ -721,7 +721,7 @@ START_TEST(rubbish_from_the_reader_is_refused) {
     raw_mesh *raw = memory_new(1, sizeof *raw);
     ck_assert_int_eq(raw_receive(ends[0], raw, &stopped), ERR_MESH);
     ck_assert_int_eq(stopped, n == 3); /* the last one is cut off */
-    raw_free(raw);
+    raw_free(&raw);
     close(ends[0]);
     ck_assert_uint_eq(memory_in_use(), before);
   }

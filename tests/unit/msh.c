@@ -435,7 +435,7 @@ START_TEST(reader_gives_back_all_when_refused) {
       memory_refuse(k, 0);
       status st = msh_read(mesh_file_path(&f, "m.msh"), &raw);
       memory_refuse(0, 0);
-      raw_free(raw);
+      raw_free(&raw);
       ck_assert_uint_eq(memory_in_use(), before);
       if (st == OK) break;
       ck_assert_int_eq(st, ERR_MEMORY);

@@ -1,5 +1,5 @@
 /* The last touch of an answer: slip too short for the residual to see. */
-#include "solver/choice/polish.h"
+#include "solver/choice/choice.h"
 
 #include "support/solver_rows.h"
 #include "support/unit.h"

@@ -3,7 +3,7 @@
  * it and only there, by every method, on both sides of the limit.
  */
 #include "base/sparse.h"
-#include "solver/choice/proof.h"
+#include "solver/choice/choice.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 

@@ -131,8 +131,7 @@ static status factor(linear_system *s, int *singular) {
   const linear_rows *rows = &s->rows;
   const contact_problem *cp = rows->cp;
   const size_t n = (size_t)rows->n_free;
-  PASS_NEW(s->pivot, n);
-  PASS_NEW(s->M, n * n);
+  PASS_NEW_ALL(OF(s->pivot, n), OF(s->M, n * n));
   for (size_t b = 0; b < n; ++b) {
     const double *column = cp->A + (size_t)cp->m * (size_t)rows->free_id[b];
     for (size_t k = 0; k < n; ++k) s->M[k + n * b] = column[rows->free_id[k]];
@@ -286,29 +285,24 @@ static int is_bent(const linear_rows *rows) {
 
 /* *out is new; NULL if M is singular. ERR_MEMORY. */
 static status linear_system_new(const linear_rows *rows, linear_system **out) {
-  status st = OK;
   const size_t m = (size_t)rows->cp->m;
   int singular = 0;
-  linear_system *s = NULL;
-  *out = NULL;
-  NEW(s, 1);
+  PASS_NEW(*out, 1);
+  linear_system *s = *out;
   s->rows = *rows;
   s->bent = is_bent(rows);
-  NEW_REALS(m, &s->b, &s->Ax);
+  PASS_NEW_REALS(m, &s->b, &s->Ax);
   if (rows->cp->A != NULL) {
-    TRY(factor(s, &singular));
+    PASS(factor(s, &singular));
   } else {
-    NEW_REALS(m, &s->v, &s->zero);
-    NEW(s->added, (size_t)rows->cp->dim * m);
-    NEW(s->known, m);
-    TRY(set_rows(s, &singular));
+    PASS_NEW_REALS(m, &s->v, &s->zero);
+    PASS_NEW_ALL(OF(s->added, (size_t)rows->cp->dim * m), OF(s->known, m));
+    PASS(set_rows(s, &singular));
   }
-  if (singular) goto done;
-  *out = s;
-  s = NULL;
-done:
+  if (!singular) return OK;
   linear_system_free(s);
-  return st;
+  *out = NULL;
+  return OK;
 }
 
 /* x[m], at the known unknowns as given: (A + e B A_n + kappa ..) x = b at the
@@ -409,30 +403,22 @@ static void set_states(contact_adjoint *a) {
 
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out) {
-  status st = OK;
-  contact_adjoint *a = NULL;
-  *out = NULL;
-  NEW(a, 1);
+  PASS_NEW(*out, 1);
+  contact_adjoint *a = *out;
   a->cp = cp;
   a->u = u;
   a->r = r;
-  NEW(a->free_id, cp->m);
-  NEW(a->place, cp->m);
-  NEW(a->closed, cp->n);
-  NEW(a->slip, cp->n);
-  NEW(a->e, cp->m);
-  NEW(a->kappa, cp->n);
-  NEW_REALS(cp->m, &a->w, &a->x, &a->Ax, &a->stick);
+  PASS_NEW_ALL(OF(a->free_id, cp->m), OF(a->place, cp->m), OF(a->closed, cp->n),
+               OF(a->slip, cp->n), OF(a->e, cp->m), OF(a->kappa, cp->n));
+  PASS_NEW_REALS(cp->m, &a->w, &a->x, &a->Ax, &a->stick);
   set_states(a);
   a->rows = (linear_rows){cp,        a->n_free, a->free_id, a->place,
                           a->closed, a->slip,   a->e,       a->kappa};
-  TRY(linear_system_new(&a->rows, &a->linear));
-  if (a->linear == NULL) goto done;
-  *out = a;
-  a = NULL;
-done:
+  PASS(linear_system_new(&a->rows, &a->linear));
+  if (a->linear != NULL) return OK;
   contact_adjoint_free(a);
-  return st;
+  *out = NULL;
+  return OK;
 }
 
 /* 1: the force at the unknown can change with the solution. */

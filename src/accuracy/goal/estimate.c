@@ -195,39 +195,29 @@ static status recover_region(goal_estimator *e, int region, const double *q,
 
 status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
                           goal_estimator **out) {
-  status st = OK;
   const mesh *m = s->d->mesh;
-  goal_estimator *e = NULL;
-  double *q = NULL, *G = NULL;
+  OWNED double *q = NULL, *G = NULL;
   const size_t n = (size_t)(m->dim * m->dim);
-  *out = NULL;
-  NEW(e, 1);
+  PASS_NEW(*out, 1);
+  goal_estimator *e = *out;
   e->s = *s;
   e->recovery = recovery;
-  NEW(q, n * (size_t)m->n_elem);
-  NEW(G, n * (size_t)m->n_node);
+  PASS_NEW_ALL(OF(q, n * (size_t)m->n_elem), OF(G, n * (size_t)m->n_node));
   gradients(s, q);
   e->n_region = space_regions(recovery);
-  NEW(e->stress, e->n_region);
-  NEW(e->own, m->n_elem);
-  NEW(e->edge, m->dim * s->n_edge);
-  NEW(e->on_surface, m->n_node);
+  PASS_NEW_ALL(OF(e->stress, e->n_region), OF(e->own, m->n_elem),
+               OF(e->edge, m->dim * s->n_edge), OF(e->on_surface, m->n_node));
   for (int k = 0; k < s->n_edge; ++k)
     e->on_surface[s->edge[k].a] = e->on_surface[s->edge[k].b] = 1;
-  NEW(e->bubble, (size_t)s->d->ns * (size_t)m->n_elem);
+  PASS_NEW(e->bubble, (size_t)s->d->ns * (size_t)m->n_elem);
   if (s->has_flux || s->d->kin[0] == AXISYMMETRIC)
-    NEW(e->part, (size_t)(edges_of(m->dim) * m->dim) * (size_t)m->n_elem);
-  NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
-  NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
-  TRY(space_moduli(recovery));
-  TRY(space_keep(recovery));
-  for (int k = 0; k < e->n_region; ++k) TRY(recover_region(e, k, q, G));
-  *out = e;
-  e = NULL;
-done:
-  RELEASE(q, G);
-  goal_estimator_free(e);
-  return st;
+    PASS_NEW(e->part, (size_t)(edges_of(m->dim) * m->dim) * (size_t)m->n_elem);
+  PASS_NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
+  PASS_NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
+  PASS(space_moduli(recovery));
+  PASS(space_keep(recovery));
+  for (int k = 0; k < e->n_region; ++k) PASS(recover_region(e, k, q, G));
+  return OK;
 }
 
 /* The stress E e of an element by a strain e[ns]. */

@@ -18,8 +18,7 @@ static status dense_largest(const symmetric_map *map, double *largest) {
   OWNED double *H = NULL, *x = NULL, *w = NULL, *work = NULL;
   PASS_NEW(H, ld * ld);
   PASS_NEW_REALS(ld, &x, &w);
-  PASS_NEW(work, 26 * ld);
-  PASS_NEW(iwork, 10 * ld);
+  PASS_NEW_ALL(OF(work, 26 * ld), OF(iwork, 10 * ld));
   for (size_t j = 0; j < ld; ++j) {
     x[j] = 1.0;
     map->apply(map->ctx, x, H + ld * j);
@@ -102,9 +101,7 @@ status lanczos_largest(const symmetric_map *map, double *largest) {
   double *v = NULL;
   NEW(s.Q, (size_t)map->n * STEPS);
   NEW_REALS(STEPS, &s.alpha, &s.beta, &s.d, &s.e);
-  NEW(s.Z, (size_t)STEPS * STEPS);
-  NEW(s.work, 2 * STEPS);
-  NEW(v, map->n);
+  NEW_ALL(OF(s.Z, (size_t)STEPS * STEPS), OF(s.work, 2 * STEPS), OF(v, map->n));
   TRY(lanczos_run(map, &s, v, largest));
 done:
   RELEASE(s.Q, s.alpha, s.beta, s.d, s.e, s.Z, s.work, v);
@@ -252,23 +249,20 @@ static status tangential_constant(block *b, int limits, double *largest) {
 
 status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
                           theorems_contact *out) {
-  status st = OK;
-  block b = {.cp = cp, .e = e};
-  unsigned char *pressed = NULL;
+  OWNED int *dof = NULL;
+  OWNED unsigned char *pressed = NULL;
   double product = 0.0;
-  NEW(b.dof, cp->m);
-  NEW(pressed, cp->n);
+  PASS_NEW_ALL(OF(dof, cp->m), OF(pressed, cp->n));
+  block b = {.cp = cp, .e = e, .dof = dof};
   find_pressed(cp, pressed);
   for (int i = 0; i < cp->n; ++i)
     if (pressed[i]) b.dof[b.n++] = cp->dim * i;
-  TRY(largest_of(&b, apply_stiffness, &out->normal));
+  PASS(largest_of(&b, apply_stiffness, &out->normal));
   b.n = 0;
   for (int i = 0; i < cp->n; ++i)
     if (has_row(cp, i)) b.dof[b.n++] = cp->dim * i;
-  TRY(largest_of(&b, apply_limit, &product));
-  TRY(tangential_constant(&b, limits, &out->tangent));
+  PASS(largest_of(&b, apply_limit, &product));
+  PASS(tangential_constant(&b, limits, &out->tangent));
   out->factor = product > 0.0 ? sqrt(product) * sqrt(out->tangent) : 0.0;
-done:
-  RELEASE(b.dof, pressed);
-  return st;
+  return OK;
 }

@@ -48,7 +48,8 @@ status archive_new(archive **out) {
   return OK;
 }
 
-void archive_free(archive *a) {
+void archive_free(archive **p) {
+  archive *a = *p;
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) memory_free(a->item[i].own);
   RELEASE(a->item, a->path, a);
@@ -59,15 +60,17 @@ int archive_has_cpu(const archive *a) { return !a->no_cpu; }
 
 int archive_reads(const archive *a) { return a->path != NULL; }
 
-void archive_enter(archive *a, const char *group) {
+archive *archive_enter(archive *a, const char *group) {
   size_t used = strlen(a->group);
   snprintf(a->group + used, sizeof a->group - used, "%s/", group);
+  return a;
 }
 
-void archive_leave(archive *a) {
-  size_t used = strlen(a->group);
-  if (used > 0) a->group[--used] = '\0';
-  while (used > 0 && a->group[used - 1] != '/') a->group[--used] = '\0';
+void archive_leave(archive *const *a) {
+  char *group = (*a)->group;
+  size_t used = strlen(group);
+  if (used > 0) group[--used] = '\0';
+  while (used > 0 && group[used - 1] != '/') group[--used] = '\0';
 }
 
 const char *archive_group(const archive *a) { return a->group; }
@@ -410,22 +413,16 @@ static status get_items(hid_t file, archive *a) {
 }
 
 status archive_read(const char *path, archive **out) {
-  status st = OK;
-  archive *a = NULL;
   HELD hid_t file = -1;
-  *out = NULL;
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   H5Lunregister(H5L_TYPE_EXTERNAL);
-  TRY(archive_check_seal(path));
-  NEW(a, 1);
-  GET(a->path, memory_text(path));
+  *out = NULL;
+  PASS(archive_check_seal(path));
+  PASS_NEW(*out, 1);
+  archive *a = *out;
+  PASS_GET(a->path, memory_text(path));
   file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) TRY(refuse(path, "this is no restart file of Protis"));
-  TRY(get_items(file, a));
-  *out = a;
-  a = NULL;
-done:
-  archive_free(a);
-  return st;
+  if (file < 0) PASS(refuse(path, "this is no restart file of Protis"));
+  return get_items(file, a);
 }

@@ -17,7 +17,7 @@
 typedef struct archive archive;
 
 status archive_new(archive **out); /* empty, for writing */
-void archive_free(archive *a);     /* accepts NULL */
+void archive_free(archive **a);    /* accepts that of NULL */
 /* 1: the archive was read from a file. */
 int archive_reads(const archive *a);
 
@@ -25,9 +25,13 @@ int archive_reads(const archive *a);
 void archive_leave_out_cpu(archive *a);
 int archive_has_cpu(const archive *a);
 
-/* Names below are those of a group; names of groups nest. */
-void archive_enter(archive *a, const char *group);
-void archive_leave(archive *a);
+/* IN_GROUP(a, group): names are those of a group, from here to the end of the
+ * block; names of groups nest. */
+#define IN_GROUP(a, group)                                                   \
+  archive *const in_group_ __attribute__((cleanup(archive_leave), unused)) = \
+      archive_enter(a, group)
+archive *archive_enter(archive *a, const char *group);
+void archive_leave(archive *const *a);
 /* The full name of the present group, to return to: "" at first. */
 const char *archive_group(const archive *a);
 void archive_go(archive *a, const char *group);

@@ -20,6 +20,8 @@ typedef struct places {
   int *row;   /* [start[n]] */
 } places;
 
+static void places_free(places *p) { RELEASE(p->start, p->row); }
+
 static void count(int *start, int column) { ++start[column + 2]; }
 
 static void put(places *p, int row, int column) {
@@ -27,8 +29,7 @@ static void put(places *p, int row, int column) {
 }
 
 static status places_new(int dim, int n, const entries *e, places *p) {
-  PASS_NEW(p->start, n + 2);
-  PASS_NEW(p->row, 2 * e->n + n);
+  PASS_NEW_ALL(OF(p->start, n + 2), OF(p->row, 2 * e->n + n));
   for (long k = 0; k < e->n; ++k) {
     if (e->val[k] == 0.0) continue;
     count(p->start, e->col[k] / dim);
@@ -49,8 +50,7 @@ static status places_new(int dim, int n, const entries *e, places *p) {
  * column of its own number, which makes the rows ascend. */
 static status set_pattern(sparse_blocks *b, const places *p) {
   OWNED int *last = NULL, *next = NULL;
-  PASS_NEW(last, b->n);
-  PASS_NEW(next, b->n);
+  PASS_NEW_ALL(OF(last, b->n), OF(next, b->n));
   for (int i = 0; i < b->n; ++i) last[i] = -1;
   for (int j = 0; j < b->n; ++j)
     for (int k = p->start[j]; k < p->start[j + 1]; ++k) {
@@ -63,10 +63,9 @@ static status set_pattern(sparse_blocks *b, const places *p) {
     next[j] = b->start[j];
     last[j] = -1;
   }
-  PASS_NEW(b->row, b->start[b->n]);
-  PASS_NEW(b->mate, b->start[b->n]);
-  PASS_NEW(b->own, b->n);
-  PASS_NEW(b->val, (size_t)b->start[b->n] * (size_t)(b->dim * b->dim));
+  PASS_NEW_ALL(OF(b->row, b->start[b->n]), OF(b->mate, b->start[b->n]),
+               OF(b->own, b->n),
+               OF(b->val, (size_t)b->start[b->n] * (size_t)(b->dim * b->dim)));
   for (int j = 0; j < b->n; ++j)
     for (int k = p->start[j]; k < p->start[j + 1]; ++k) {
       int i = p->row[k];
@@ -103,27 +102,21 @@ static double *block(const sparse_blocks *b, int place) {
 status sparse_blocks_new(int dim, int n, long count_given, const int *row,
                          const int *col, const double *val,
                          sparse_blocks **out) {
-  status st = OK;
-  sparse_blocks *b = NULL;
-  places p = {0};
+  ENDS_BY(places_free) places p = {0};
   const entries e = {count_given, row, col, val};
-  NEW(b, 1);
+  PASS_NEW(*out, 1);
+  sparse_blocks *b = *out;
   b->dim = dim;
   b->n = n;
-  NEW(b->start, n + 1);
-  TRY(places_new(dim, n, &e, &p));
-  TRY(set_pattern(b, &p));
+  PASS_NEW(b->start, n + 1);
+  PASS(places_new(dim, n, &e, &p));
+  PASS(set_pattern(b, &p));
   for (long k = 0; k < e.n; ++k) {
     if (val[k] == 0.0) continue;
     int place = place_of(b, row[k] / dim, col[k] / dim);
     block(b, place)[row[k] % dim + dim * (col[k] % dim)] += val[k];
   }
-  *out = b;
-  b = NULL;
-done:
-  RELEASE(p.start, p.row);
-  sparse_blocks_free(b);
-  return st;
+  return OK;
 }
 
 void sparse_blocks_add(const sparse_blocks *b, int j, const double *x,
@@ -182,9 +175,8 @@ status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows) {
   int d = b->dim, m = b->n * d, count_all = 0;
   size_t all = (size_t)b->start[b->n] * (size_t)(d * d);
   for (size_t k = 0; k < all; ++k) count_all += b->val[k] != 0.0;
-  PASS_NEW(rows->start, m + 1);
-  PASS_NEW(rows->col, count_all);
-  PASS_NEW(rows->val, count_all);
+  PASS_NEW_ALL(OF(rows->start, m + 1), OF(rows->col, count_all),
+               OF(rows->val, count_all));
   rows->n = m;
   for (int i = 0; i < m; ++i) {
     int at = rows->start[i];

@@ -75,11 +75,6 @@ static status new_arrays(const average_patch *p, layout *l) {
   return OK;
 }
 
-static void layout_free(layout *l) {
-  RELEASE(l->x, l->corner, l->loop, l->rim);
-  memset(l, 0, sizeof *l);
-}
-
 /* 1 if all corners lie on one mirror. */
 static int on_mirror(const layout *l, int corners,
                      const double *const *corner) {
@@ -239,20 +234,16 @@ done:
 
 static status layout_new(const average_patch *patch, const average_rule *rule,
                          layout *out) {
-  status st = OK;
-  fans f = {0};
+  ENDS_BY(fans_free) fans f = {0};
   memset(out, 0, sizeof *out);
-  TRY(fans_new(patch, &f));
-  TRY(new_arrays(patch, out));
+  PASS(fans_new(patch, &f));
+  PASS(new_arrays(patch, out));
   set_mirrors(patch, rule, out);
   if (rule->geodesic)
-    TRY(lay_straight(patch, &f, 4.0 * rule->radius, out));
+    PASS(lay_straight(patch, &f, 4.0 * rule->radius, out));
   else
     lay_as_is(patch, &f, out);
-done:
-  fans_free(&f);
-  if (st != OK) layout_free(out);
-  return st;
+  return OK;
 }
 
 /* ---- the builder ---- */
@@ -280,7 +271,7 @@ typedef struct builder {
 } builder;
 
 static void builder_free(builder *b) {
-  layout_free(&b->at);
+  RELEASE(b->at.x, b->at.corner, b->at.loop, b->at.rim);
   box_tree_free(&b->faces);
   box_tree_free(&b->rim);
   RELEASE(b->share, b->mass);
@@ -573,20 +564,15 @@ static status symmetrise(builder *b, sparse_rows *out) {
 
 status average_build(const average_patch *patch, const average_rule *rule,
                      sparse_rows *out, average_facts *facts) {
-  status st = OK;
-  builder b = {.p = patch, .rule = rule};
-  unsigned char *coarse = NULL;
+  ENDS_BY(builder_free) builder b = {.p = patch, .rule = rule};
+  OWNED unsigned char *coarse = NULL;
   memset(out, 0, sizeof *out);
-  TRY(builder_new(&b));
+  PASS(builder_new(&b));
   find_shares(&b);
-  TRY(find_rows(&b));
-  TRY(transpose(&b.raw, &b.by_column));
-  TRY(symmetrise(&b, out));
-  NEW(coarse, patch->n_node);
+  PASS(find_rows(&b));
+  PASS(transpose(&b.raw, &b.by_column));
+  PASS(symmetrise(&b, out));
+  PASS_NEW(coarse, patch->n_node);
   find_facts(&b, facts, coarse);
-done:
-  memory_free(coarse);
-  builder_free(&b);
-  if (st != OK) sparse_free(out);
-  return st;
+  return OK;
 }

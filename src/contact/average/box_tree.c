@@ -85,22 +85,19 @@ static void surround(int dim, int corners, const double *x, double *box) {
 
 status box_tree_new(int dim, int n, int corners, const double *x,
                     box_tree *out) {
-  status st = OK;
   size_t size = 2 * (size_t)dim;
   memset(out, 0, sizeof *out);
   out->dim = dim;
   out->n = n;
-  NEW_ALL(OF(out->item, n), OF(out->of, size * (size_t)n),
-          OF(out->box, size * node_count(n)));
+  PASS_NEW_ALL(OF(out->item, n), OF(out->of, size * (size_t)n),
+               OF(out->box, size * node_count(n)));
   for (int i = 0; i < n; ++i) {
     out->item[i] = i;
     surround(dim, corners, x + (size_t)(dim * corners) * (size_t)i,
              out->of + size * (size_t)i);
   }
   if (n > 0) build(out, (range){0, 0, n});
-done:
-  if (st != OK) box_tree_free(out);
-  return st;
+  return OK;
 }
 
 void box_tree_free(box_tree *t) {

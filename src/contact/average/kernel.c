@@ -1,7 +1,7 @@
 /*
  * The table of kernels and their normalisation.
  */
-#include "contact/average/kernel.h"
+#include "contact/average/average.h"
 
 #include "base/vector.h"
 

@@ -576,7 +576,7 @@ void mortar_free(mortar *m) {
   RELEASE(m->node_id, m->area, m->share, m->lever, m->normal, m->gap, m);
 }
 
-/* ---- links (links.h) ---- */
+/* ---- links ---- */
 
 /* Component c of row q; 1: there was something to move. */
 static int share(const tie_set *t, int q, int c, double *F) {

@@ -182,11 +182,11 @@ ALPHA(7), ALPHA(8), ALPHA(9), ALPHA(10), ALPHA(11), ALPHA(12),
  "stored of it by the internal variables"}};
 /* clang-format on */
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double law = s->flows_linearly ? 4.0 : 40.0;
-  *w = (effect_work){s->elements, "elements", -1.0,
-                     law * s->equilibria * s->elements * plan_element_work(s)};
-  return OK;
+  return (effect_work){
+      s->elements, "elements", -1.0,
+      law * s->equilibria * s->elements * plan_element_work(s)};
 }
 
 static int requires_inelastic(const model *m, char *why, size_t size) {

@@ -26,12 +26,6 @@ static status start_forces(run *r, double *R, double *diagonal,
   return OK;
 }
 
-/* The start is the old equilibrium of the first increment. */
-static void accept_start(run *r) {
-  memcpy(r->old.F, r->now.F, r->n_dof * sizeof *r->old.F);
-  result_start(r, &r->old);
-}
-
 static status relax_start(run *r) {
   status st = OK;
   double cpu = timer_cpu();
@@ -62,10 +56,10 @@ static status check_start(run *r, start_report *s) {
                 s->n_bad == 1 ? "" : "s", start_tolerance);
     RAISE(ERR_DECK, "the initial displacements are not compatible");
   }
-  if (s->relaxed)
-    PASS(relax_start(r));
-  else
-    accept_start(r);
+  if (s->relaxed) return relax_start(r);
+  /* The start is the old equilibrium of the first increment. */
+  memcpy(r->old.F, r->now.F, r->n_dof * sizeof *r->old.F);
+  result_start(r, &r->old);
   return OK;
 }
 
@@ -112,10 +106,9 @@ static status start(run *r, void *self) {
   return check_start(r, self);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->nodes, "nodes", 2.0,
-                     4.0 * s->elements * plan_element_work(s)};
-  return OK;
+static effect_work expected(const plan_sizes *s) {
+  return (effect_work){s->nodes, "nodes", 2.0,
+                       4.0 * s->elements * plan_element_work(s)};
 }
 
 static int requires_start(const model *m, char *why, size_t size) {

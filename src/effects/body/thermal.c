@@ -64,7 +64,7 @@ static status heat(run *r, void *T0, double t) {
   return OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double n = 0.0;
   for (int i = 0; s->msh != NULL && i < s->m->n.section; ++i) {
     const material *mat = plan_material(s->m, i);
@@ -72,9 +72,8 @@ static status expected(const plan_sizes *s, effect_work *w) {
                               (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE)))
       n += plan_section_elements(s, i);
   }
-  *w = (effect_work){n, "elements", 1.0 + s->equilibria,
-                     s->equilibria * n * 2.0 * plan_element_work(s)};
-  return OK;
+  return (effect_work){n, "elements", 1.0 + s->equilibria,
+                       s->equilibria * n * 2.0 * plan_element_work(s)};
 }
 
 static int requires_thermal(const model *m, char *why, size_t size) {

@@ -137,8 +137,7 @@ static status new_cracks(run *r, crack_state *own) {
     own->n += fracture_count(own->of[i]);
   }
   set_areas(r, own);
-  PASS_NEW(own->tips, own->n);
-  PASS_NEW(own->found, own->n);
+  PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n));
   for (int i = 0, n = 0; i < m->n_crack; ++i)
     for (int k = 0; k < fracture_count(own->of[i]); ++k)
       own->tips[n++] = (tip){.crack_id = i, .point = k};
@@ -150,8 +149,7 @@ static status cracks_new(run *r, void **self) {
   crack_state *own = *self;
   PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped);
-  PASS_NEW(own->area, r->msh->n_node);
-  PASS_NEW(own->shift, r->n_dof);
+  PASS_NEW_ALL(OF(own->area, r->msh->n_node), OF(own->shift, r->n_dof));
   own->step_id = -1;
   own->flows =
       facts_has_inelastic(r->m) || (r->m->effects & EFFECT_THERMAL) != 0;
@@ -429,11 +427,10 @@ static int requires_factors(const model *m, char *why, size_t size) {
   return plan_requires_table(m, PRINT_SIF, why, size);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   const double shown = plan_shown(s->m, PRINT_SIF);
-  *w = (effect_work){s->elements, "elements", shown,
-                     shown * s->elements * plan_element_work(s)};
-  return OK;
+  return (effect_work){s->elements, "elements", shown,
+                       shown * s->elements * plan_element_work(s)};
 }
 
 static int factors_due(const run *r) {

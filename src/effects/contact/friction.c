@@ -11,7 +11,6 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
-#include "model/facts.h"
 #include "run/column_row.h"
 
 #include <math.h>
@@ -170,11 +169,9 @@ static status add_law(run *r, friction *own, int contact_id, double t,
   if (rule_has_average(rule)) of.average = nonlocal_average(r, contact_id);
   status st = rule->law->limit(&of, r->surface, n, node, t, &own->limit);
   if (st == ERR_DECK) {
-    char why[256];
-    snprintf(why, sizeof why, "%s", status_message());
-    message_add(r->m->log, P2041, &rule->value_at, "%s", why);
+    message_add(r->m->log, P2041, &rule->value_at, "%s", status_message());
     RAISE(ERR_DECK, "%s:%d: %s", rule->value_at.file, rule->value_at.line_no,
-          why);
+          status_message());
   }
   return st;
 }
@@ -389,19 +386,13 @@ static status keep(run *r, void *self, archive *a) {
   return OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){.kind = "nodes", .calls = 1.0};
-  status st = plan_rule_nodes(s, rule_has_friction, &w->items);
-  w->operations = 100.0 * w->items;
-  return st;
+static effect_work expected(const plan_sizes *s) {
+  return (effect_work){s->friction, "nodes", 1.0, 100.0 * s->friction};
 }
 
-static status expected_history(const plan_sizes *s, effect_work *w) {
+static effect_work expected_history(const plan_sizes *s) {
   double times = s->equilibria + s->increments;
-  *w = (effect_work){.kind = "nodes", .calls = times};
-  status st = plan_rule_nodes(s, rule_has_friction, &w->items);
-  w->operations = 20.0 * times * w->items;
-  return st;
+  return (effect_work){s->friction, "nodes", times, 20.0 * times * s->friction};
 }
 
 static int requires_friction(const model *m, char *why, size_t size) {

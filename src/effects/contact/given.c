@@ -89,8 +89,7 @@ static status prepare(run *r, void *self) {
   given_forces *own = self;
   if (own->all != NULL) return OK;
   PASS(check_corners(r));
-  PASS_NEW(own->node, r->nodes.n);
-  PASS_NEW(own->all, r->nodes.n);
+  PASS_NEW_ALL(OF(own->node, r->nodes.n), OF(own->all, r->nodes.n));
   for (int i = 0; i < r->nodes.n; ++i) {
     own->all[i] = -1.0;
     if (force_of(r, i)->given) own->node[own->n++] = i;
@@ -129,13 +128,12 @@ static void give(run *r, void *self, contact_problem *cp, double *u,
   if (own->n > 0) given_form_apply(own->form, cp, u, force);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double n = 0.0;
   for (int i = 0; s->msh != NULL && i < s->m->n.contact; ++i)
     if (s->m->contacts[i].force.given)
       n += s->msh->group[s->m->contacts[i].group_id].n_node;
-  *w = (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
-  return OK;
+  return (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
 }
 
 static int requires_given(const model *m, char *why, size_t size) {

@@ -14,9 +14,8 @@ static int requires_loops(const model *m, char *why, size_t size) {
   return plan_requires_table(m, PRINT_LOOP, why, size);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = plan_table(s, PRINT_LOOP, s->m->n.contact);
-  return OK;
+static effect_work expected(const plan_sizes *s) {
+  return plan_table(s, PRINT_LOOP, s->m->n.contact);
 }
 
 static size_t contacts_of(const run *r) { return (size_t)r->m->n.contact; }

@@ -27,10 +27,9 @@ static status pose(run *r, void *self, double t) {
   return OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->contact, "nodes", s->equilibria,
-                     100.0 * s->equilibria * s->contact};
-  return OK;
+static effect_work expected(const plan_sizes *s) {
+  return (effect_work){s->contact, "nodes", s->equilibria,
+                       100.0 * s->equilibria * s->contact};
 }
 
 static int requires_motion(const model *m, char *why, size_t size) {

@@ -7,7 +7,6 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
-#include "model/facts.h"
 
 #include <string.h>
 
@@ -85,8 +84,7 @@ static void zone_apply(const friction_limit *limit, const friction_zone *z) {
 
 static status zone_fit(const run *r, const sparse_rows *B, friction_zone *z) {
   if (z->off == NULL) {
-    PASS_NEW(z->off, r->nodes.n);
-    PASS_NEW(z->returned, r->nodes.n);
+    PASS_NEW_ALL(OF(z->off, r->nodes.n), OF(z->returned, r->nodes.n));
   }
   if (z->B.val == NULL || z->room < B->start[B->n]) {
     memory_free(z->B.val);
@@ -175,11 +173,9 @@ static void release(void *self) {
   if (!own->borrowed) memory_free(own->average);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){.kind = "nodes", .calls = 1.0};
-  status st = plan_rule_nodes(s, rule_has_average, &w->items);
-  w->operations = 1000.0 * w->items + w->items * w->items;
-  return st;
+static effect_work expected(const plan_sizes *s) {
+  const double n = s->averages;
+  return (effect_work){n, "nodes", 1.0, 1000.0 * n + n * n};
 }
 
 static int requires_average(const model *m, char *why, size_t size) {

@@ -36,19 +36,17 @@ static double faces_of(const plan_sizes *s, const surface_pair *p) {
   return s->msh->group[p->slave_id].n_item + s->msh->group[p->master_id].n_item;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double n = 0.0;
   for (int i = 0; i < s->m->n.contact; ++i)
     if (s->m->contacts[i].is_pair) n += faces_of(s, &s->m->contacts[i].pair);
   for (int i = 0; i < s->m->n.tie; ++i) n += faces_of(s, &s->m->ties[i].pair);
-  *w = (effect_work){n, "faces", 1.0, n * (s->is_flat ? 2e3 : 2e4)};
-  return OK;
+  return (effect_work){n, "faces", 1.0, n * (s->is_flat ? 2e3 : 2e4)};
 }
 
 static status pairs_new(run *r, void **self) {
   pair_forces *own = *self;
-  PASS_NEW(own->force, r->n_dof);
-  PASS_NEW(own->moment, r->m->n.contact);
+  PASS_NEW_ALL(OF(own->force, r->n_dof), OF(own->moment, r->m->n.contact));
   return OK;
 }
 

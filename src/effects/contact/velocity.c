@@ -54,21 +54,17 @@ static void give(run *r, void *self, contact_problem *cp, double *u,
 
 static int due(const run *r) { return r->step->form == FORM_VELOCITY; }
 
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->contact, "nodes", s->equilibria,
-                     20.0 * s->equilibria * s->contact};
-  return OK;
+static effect_work expected(const plan_sizes *s) {
+  return (effect_work){s->contact, "nodes", s->equilibria,
+                       20.0 * s->equilibria * s->contact};
 }
 
 static int requires_velocity(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n.step; ++i) {
-    if (m->steps[i].form != FORM_VELOCITY) continue;
-    snprintf(why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
-             PLACE(m->steps[i].at));
-    return 1;
-  }
-  snprintf(why, size, "no *QUASISTATIC, FORM=VELOCITY");
-  return 0;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].form == FORM_VELOCITY)
+      return plan_says(1, why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
+                       PLACE(m->steps[i].at));
+  return plan_says(0, why, size, "no *QUASISTATIC, FORM=VELOCITY");
 }
 
 /* clang-format off */

@@ -16,7 +16,6 @@
 #include "base/memory.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "run/column_row.h"
 
@@ -25,20 +24,16 @@
 
 static int requires_wear(const model *m, char *why, size_t size) {
   const effect_card *c = model_effect_card(m, "WEAR", -1);
-  if (c != NULL)
-    snprintf(why, size, "*WEAR on contact %s, %s:%d",
-             m->contacts[c->contact_id].name, PLACE(c->at));
-  else
-    snprintf(why, size, "no *WEAR card");
-  return c != NULL;
+  if (c == NULL) return plan_says(0, why, size, "no *WEAR card");
+  return plan_says(1, why, size, "*WEAR on contact %s, %s:%d",
+                   m->contacts[c->contact_id].name, PLACE(c->at));
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   enum { PRODUCTS = 20 };
   const double n = s->contact;
-  *w = (effect_work){n, "nodes", s->increments,
-                     s->increments * PRODUCTS * n * n / PLAN_DENSE};
-  return OK;
+  return (effect_work){n, "nodes", s->increments,
+                       s->increments * PRODUCTS * n * n / PLAN_DENSE};
 }
 
 static size_t length_of(const run *r) {

@@ -48,10 +48,8 @@ typedef struct finder {
 } finder;
 
 static status level_new(int dim, int n, level *l) {
-  PASS_NEW(l->in, n);
-  PASS_NEW(l->square, n);
-  PASS_NEW(l->slope, dim * n);
-  PASS_NEW(l->weight, n);
+  PASS_NEW_ALL(OF(l->in, n), OF(l->square, n), OF(l->slope, dim * n),
+               OF(l->weight, n));
   return OK;
 }
 
@@ -80,9 +78,7 @@ static status finder_new(run *r, finder *z) {
   for (int i = 0; i < s->n; ++i) z->index[s->node_id[i]] = i;
   PASS(level_new(z->dim, s->n, &z->closed));
   PASS(level_new(z->dim, s->n, &z->stick));
-  PASS_NEW(z->next, s->n);
-  PASS_NEW(z->next_face, s->n);
-  PASS_NEW(z->before, s->n);
+  PASS_NEW_ALL(OF(z->next, s->n), OF(z->next_face, s->n), OF(z->before, s->n));
   return OK;
 }
 
@@ -416,11 +412,10 @@ static int requires_zones(const model *m, char *why, size_t size) {
   return plan_requires_table(m, PRINT_ZONES, why, size);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   const double n = plan_rows(s, PRINT_ZONES, s->contact);
   const double shown = plan_shown(s->m, PRINT_ZONES);
-  *w = (effect_work){n, "nodes", shown, shown * n * 100.0};
-  return OK;
+  return (effect_work){n, "nodes", shown, shown * n * 100.0};
 }
 
 static int zones_due(const run *r) {

@@ -15,6 +15,7 @@
  * at once when their active set is found (Newton, pivoting) save a step.
  */
 #include "base/memory.h"
+#include "base/text.h"
 #include "base/timer.h"
 #include "effects/rows.h"
 #include "run/history/loop.h"
@@ -203,11 +204,8 @@ static status keep(run *r, void *self, archive *a) {
                       &b->t,         &r->solving.tol};
   if (b->m == 0) return OK;
   PASS(archive_ints(a, "known", &b->known, 1));
-  for (size_t i = 0; i < sizeof learnt / sizeof *learnt; ++i) {
-    char name[20];
-    snprintf(name, sizeof name, "learnt%zu", i);
-    PASS(archive_reals(a, name, learnt[i], 1));
-  }
+  for (size_t i = 0; i < sizeof learnt / sizeof *learnt; ++i)
+    PASS(archive_reals(a, text_of("learnt%zu", i), learnt[i], 1));
   PASS(archive_reals(a, "u", b->u, m));
   return archive_reals(a, "rc", b->rc, m);
 }

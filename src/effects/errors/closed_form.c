@@ -16,11 +16,10 @@ static int requires_reference(const model *m, char *why, size_t size) {
 }
 
 /* Formulas at many points of each element. */
-static status expected(const plan_sizes *s, effect_work *w) {
-  *w =
-      (effect_work){s->elements, "elements", s->increments,
-                    s->increments * s->elements * 600.0 * plan_element_work(s)};
-  return OK;
+static effect_work expected(const plan_sizes *s) {
+  return (effect_work){
+      s->elements, "elements", s->increments,
+      s->increments * s->elements * 600.0 * plan_element_work(s)};
 }
 
 static status exact_new(run *r, void **self) {

@@ -150,8 +150,7 @@ static status insert(path *s, int at, double t, const double *u,
   memmove(s->p + at + 1, s->p + at, (size_t)(s->n - at) * sizeof *s->p);
   s->p[at] = (point){.t = t};
   ++s->n;
-  PASS_NEW(s->p[at].u, r->nodes.n_c);
-  PASS_NEW(s->p[at].status, r->nodes.n);
+  PASS_NEW_ALL(OF(s->p[at].u, r->nodes.n_c), OF(s->p[at].status, r->nodes.n));
   memcpy(s->p[at].u, u, (size_t)r->nodes.n_c * sizeof *u);
   contact_classify(&r->problem.cp, run_rows(r, 0, s->p[at].u),
                    run_rows(r, 1, (double *)rc), s->p[at].status);
@@ -276,28 +275,22 @@ done:
 /* Jumps are searched where friction makes increments depend on their
  * history. */
 static int requires_check(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
-    if (s->check == CHECK_NONE) continue;
-    snprintf(why, size, "*SOLVER, CHECK=, %s:%d", PLACE(s->solver_at));
-    return 1;
-  }
-  for (int i = 0; i < m->n.step && (m->effects & EFFECT_FRICTION); ++i) {
-    const step *s = &m->steps[i];
-    if (s->kind != STEP_QUASISTATIC) continue;
-    snprintf(why, size, "friction in *QUASISTATIC of %s:%d may jump",
-             PLACE(s->at));
-    return 1;
-  }
-  snprintf(why, size, "no *SOLVER, CHECK=, no path of friction");
-  return 0;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].check != CHECK_NONE)
+      return plan_says(1, why, size, "*SOLVER, CHECK=, %s:%d",
+                       PLACE(m->steps[i].solver_at));
+  for (int i = 0; i < m->n.step && (m->effects & EFFECT_FRICTION); ++i)
+    if (m->steps[i].kind == STEP_QUASISTATIC)
+      return plan_says(1, why, size,
+                       "friction in *QUASISTATIC of %s:%d may jump",
+                       PLACE(m->steps[i].at));
+  return plan_says(0, why, size, "no *SOLVER, CHECK=, no path of friction");
 }
 
 /* Products with the condensed matrix in each increment. */
-static status products(const plan_sizes *s, effect_work *w) {
+static effect_work products(const plan_sizes *s) {
   double m = plan_contact_unknowns(s);
-  *w = (effect_work){s->contact, "nodes", -1.0, s->increments * 3.0 * m * m};
-  return OK;
+  return (effect_work){s->contact, "nodes", -1.0, s->increments * 3.0 * m * m};
 }
 
 static status begin_step(run *r, void *self) {

@@ -40,12 +40,11 @@ static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
   space_recovery_free(own->recovery);
   own->recovery = NULL;
+  TIMED(STAGE_MESH_ERROR);
+  PASS(space_recovery_new(&r->body.d, &own->recovery));
+  if (r->m->n.goal > 0) PASS(space_keep(own->recovery));
   own->elastic_no = r->body.elastic_no;
-  timer_enter(STAGE_MESH_ERROR);
-  status st = space_recovery_new(&r->body.d, &own->recovery);
-  if (st == OK && r->m->n.goal > 0) st = space_keep(own->recovery);
-  timer_leave(STAGE_MESH_ERROR);
-  return st;
+  return OK;
 }
 
 status mesh_recovery(const run *r, space_recovery **out) {
@@ -86,7 +85,7 @@ static status keep(run *r, void *self, archive *a) {
   return archive_reads(a) && made ? recover(r, self) : OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   const double passes = s->is_flat ? 3.0 : 6.0;
   double n = 0.0;
   for (int i = 0; i < s->m->n.step; ++i) {
@@ -94,9 +93,8 @@ static status expected(const plan_sizes *s, effect_work *w) {
     if (p->accuracy.mesh == MESH_ERROR_YES) n += step_increments(p);
     n += p->accuracy.mesh == MESH_ERROR_END;
   }
-  *w = (effect_work){s->elements, "elements", 1.0 + n,
-                     n * s->elements * passes * plan_element_work(s)};
-  return OK;
+  return (effect_work){s->elements, "elements", 1.0 + n,
+                       n * s->elements * passes * plan_element_work(s)};
 }
 
 static int is_at_each_increment(const step *s) {

@@ -46,9 +46,8 @@ static status nested_new(run *r, void **self) {
 static status make_arrays(const run *r, nested *x) {
   if (x->u != NULL) return OK;
   PASS_NEW_REALS(r->nodes.n_c, &x->u, &x->rc);
-  PASS_NEW(x->state, r->nodes.n);
-  PASS_NEW(x->before, r->nodes.n);
-  PASS_NEW(x->nearest, r->nodes.n);
+  PASS_NEW_ALL(OF(x->state, r->nodes.n), OF(x->before, r->nodes.n),
+               OF(x->nearest, r->nodes.n));
   return OK;
 }
 

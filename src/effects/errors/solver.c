@@ -51,12 +51,11 @@ static status estimate(run *r, void *self) {
   return OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double m = plan_contact_unknowns(s), solve = 0.5 * work_factor_entries(s);
   double factor = s->tangents > 0.0 ? 0.1 * m * m * m / 3.0 / PLAN_DENSE : 0.0;
-  *w = (effect_work){s->contact, "nodes", s->increments,
-                     s->increments * (3.0 * m * m + solve + factor)};
-  return OK;
+  return (effect_work){s->contact, "nodes", s->increments,
+                       s->increments * (3.0 * m * m + solve + factor)};
 }
 
 static int requires_bound(const model *m, char *why, size_t size) {

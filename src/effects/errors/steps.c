@@ -100,17 +100,14 @@ static void path_free(finer_path *p) {
 
 /* The equilibrium at t from where "from" stands, into "to". */
 static status half(run *r, waypoint *from, double t, waypoint *to) {
-  status st = OK;
   equilibrium keep = start_point_use(r, &from->start);
-  if (r->step->kind == STEP_VISCO)
-    st = visco_advance_from(r, &from->flow, t, &to->flow);
-  else
-    st = increment_solve(r, t);
+  const status st = r->step->kind == STEP_VISCO
+                        ? visco_advance_from(r, &from->flow, t, &to->flow)
+                        : increment_solve(r, t);
   r->old = keep;
-  TRY(st);
+  PASS(st);
   waypoint_copy(r, &r->now, to);
-done:
-  return st;
+  return OK;
 }
 
 /* The next increment starts from what is in r->old. */
@@ -426,13 +423,12 @@ static status march(run *r, void *self, int *made) {
   return OK;
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double m = plan_contact_unknowns(s);
-  *w = (effect_work){
+  return (effect_work){
       s->contact, "nodes", s->increments,
       2.0 * s->increments *
           (4.0 * work_factor_entries(s) + PLAN_STEPS * 2.0 * m * m)};
-  return OK;
 }
 
 static int requires_time_error(const model *m, char *why, size_t size) {

@@ -212,11 +212,10 @@ static int requires_theorems(const model *m, char *why, size_t size) {
   return plan_requires_accuracy(m, "THEORY", facts_asks_theory, why, size);
 }
 
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   double m = plan_contact_unknowns(s), n = s->contact;
-  *w = (effect_work){n, "nodes", s->increments,
-                     m * m * m + s->increments * 80.0 * (m * m + 100.0 * n)};
-  return OK;
+  return (effect_work){n, "nodes", s->increments,
+                       m * m * m + s->increments * 80.0 * (m * m + 100.0 * n)};
 }
 
 static status checked_new(run *r, void **self) {

@@ -73,9 +73,10 @@ typedef struct ring {
   int *start, *face; /* [n_node+1], [dim*n_face] */
 } ring;
 
+static void ring_free(ring *r) { RELEASE(r->start, r->face); }
+
 static status ring_new(const mesh *m, ring *r) {
-  PASS_NEW(r->start, m->n_node + 1);
-  PASS_NEW(r->face, m->dim * m->n_face);
+  PASS_NEW_ALL(OF(r->start, m->n_node + 1), OF(r->face, m->dim * m->n_face));
   for (int k = 0; k < m->dim * m->n_face; ++k) ++r->start[m->face[k] + 1];
   for (int i = 0; i < m->n_node; ++i) r->start[i + 1] += r->start[i];
   for (int k = 0; k < m->dim * m->n_face; ++k)
@@ -326,8 +327,7 @@ static status add_rim(const run *r, const load *l, double *dF) {
   OWNED int *next = NULL, *last = NULL;
   int n;
   PASS(rim_new(m, &m->group[l->group_id], &e, &n));
-  PASS_NEW(next, 2 * n);
-  PASS_NEW(last, m->n_node);
+  PASS_NEW_ALL(OF(next, 2 * n), OF(last, m->n_node));
   for (int k = 0; k < 2 * n; ++k) {
     int *at = &last[e[k / 2].v[k % 2]];
     next[k] = *at > 0 ? next[*at - 1] : k;
@@ -369,15 +369,11 @@ static status add_loads(const run *r, const ring *rings, double *dF) {
 }
 
 status goal_add_boundary(const run *r, double *dF) {
-  status st = OK;
-  ring rings = {0};
-  TRY(ring_new(r->msh, &rings));
+  ENDS_BY(ring_free) ring rings = {0};
+  PASS(ring_new(r->msh, &rings));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
     if (p.is_curved) add_part_beyond(r, &p, f, dF);
   }
-  TRY(add_loads(r, &rings, dF));
-done:
-  RELEASE(rings.start, rings.face);
-  return st;
+  return add_loads(r, &rings, dF);
 }

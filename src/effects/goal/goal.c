@@ -139,8 +139,8 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
   if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
     space_recovery_free(own->recovery);
     own->recovery = NULL;
-    own->elastic_no = r->body.elastic_no;
     PASS(space_recovery_new(&r->body.d, &own->recovery));
+    own->elastic_no = r->body.elastic_no;
   }
   *out = own->recovery;
   return OK;
@@ -416,17 +416,16 @@ static void show(const void *self, state *s) {
 
 /* Factor of the contact; passes over the elements and solves of all, of each
  * goal, and of the errors that friction remembers. */
-static status expected(const plan_sizes *s, effect_work *w) {
+static effect_work expected(const plan_sizes *s) {
   const double m = plan_contact_unknowns(s), n = s->m->n.goal;
   const double passes = s->is_flat ? 6.0 : 12.0;
   const double factor = m * m * m / 3.0 / PLAN_DENSE;
   const double pass = s->elements * passes * plan_element_work(s);
   const double solve = 2.0 * work_factor_entries(s) + 4.0 * m * m;
   const int history = effect_is_on(&slip_history_effect, s->m);
-  *w = (effect_work){
+  return (effect_work){
       n, "goals", s->increments,
       s->increments * (factor + (1.0 + n) * pass + (n + history) * solve)};
-  return OK;
 }
 
 static int requires_goals(const model *m, char *why, size_t size) {

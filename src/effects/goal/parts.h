@@ -1,6 +1,6 @@
 /*
  * The parts of the goals: quantities as functions of displacements and contact
- * forces (quantity.c), those of a pressure (pressure.c) and a crack (crack.c),
+ * forces (quantity.c), those of a pressure (pressure.c),
  * the contact surface as the estimate sees it (surface.c). Private to
  * src/effects/goal.
  */
@@ -37,8 +37,6 @@ status goal_form_set(run *r, const goal_card *g, goal_form *f);
 /* pressure.c: the mean of a pressure round a point; the width of a zone. */
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f);
 status goal_set_width(const run *r, const goal_card *g, goal_form *f);
-/* crack.c: a stress intensity factor. ERR_MEMORY. */
-status goal_set_factor(run *r, const goal_card *g, goal_form *f);
 
 /* boundary.c: adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);

@@ -239,8 +239,7 @@ status goal_surface_new(const run *r, goal_surface *s) {
   const mesh *m = r->msh;
   OWNED int *where = NULL, *seen = NULL;
   int n = 0;
-  PASS_NEW(s->ends, m->n_node);
-  PASS_NEW(seen, m->n_node);
+  PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node));
   PASS(goal_places(r, &where));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)

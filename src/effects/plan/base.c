@@ -9,41 +9,31 @@
 
 #include <math.h>
 
-static status elements(const plan_sizes *s, effect_work *w) {
+static effect_work elements(const plan_sizes *s) {
   double n = s->elements, entries = work_factor_entries(s);
   double assembly = n * (s->is_flat ? 500.0 : 2500.0);
   double ordering = s->nodes * (s->is_flat ? 700.0 : 3000.0);
   double factor = work_factor_flops(s) / PLAN_SPARSE + entries;
   double solves = s->equilibria * 2.0 * entries;
   double energy = s->increments * n * plan_element_work(s);
-  *w = (effect_work){
+  return (effect_work){
       n, "elements", s->factors,
       s->factors * (assembly + ordering + factor) + solves + energy};
-  return OK;
 }
 
-static status unilateral(const plan_sizes *s, effect_work *w) {
+static effect_work unilateral(const plan_sizes *s) {
   double n = s->contact;
-  *w = (effect_work){n, "nodes", s->equilibria,
-                     plan_contact_work(s, n) + 500.0 * n};
-  return OK;
+  return (effect_work){n, "nodes", s->equilibria,
+                       plan_contact_work(s, n) + 500.0 * n};
 }
 
-static status tangents(const plan_sizes *s, effect_work *w) {
+static effect_work tangents(const plan_sizes *s) {
   double all = plan_contact_work(s, plan_contact_unknowns(s));
-  *w = (effect_work){s->tangents, "unknowns", s->equilibria,
-                     all - plan_contact_work(s, s->contact)};
-  return OK;
+  return (effect_work){s->tangents, "unknowns", s->equilibria,
+                       all - plan_contact_work(s, s->contact)};
 }
 
-status plan_rule_nodes(const plan_sizes *s,
-                       int (*is)(const friction_rule *rule), double *n) {
-  if (s->msh != NULL) return plan_contact_nodes(s, is, n);
-  *n = is == rule_has_friction ? s->contact : 0.0;
-  return OK;
-}
-
-static status body(const plan_sizes *s, effect_work *w) {
+static effect_work body(const plan_sizes *s) {
   double n = 0.0;
   for (int i = 0; s->msh != NULL && i < s->m->n.step; ++i) {
     double here = 0.0;
@@ -53,24 +43,18 @@ static status body(const plan_sizes *s, effect_work *w) {
         here += s->msh->group[l->item[k].group_id].n_item;
     n = fmax(n, here);
   }
-  *w = (effect_work){n, "elements", -1.0,
-                     s->equilibria * n * 4.0 * plan_element_work(s)};
-  return OK;
+  return (effect_work){n, "elements", -1.0,
+                       s->equilibria * n * 4.0 * plan_element_work(s)};
 }
 
-static status stresses(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->elements, "elements", s->shown,
-                     s->shown * s->elements * plan_element_work(s)};
-  return OK;
+static effect_work stresses(const plan_sizes *s) {
+  return (effect_work){s->elements, "elements", s->shown,
+                       s->shown * s->elements * plan_element_work(s)};
 }
 
-static status reactions(const plan_sizes *s, effect_work *w) {
-  double unknowns;
-  *w = (effect_work){
-      .kind = "nodes",
-      .calls = s->increments,
-      .operations = s->increments * s->elements * plan_element_work(s)};
-  return s->msh == NULL ? OK : plan_held(s, &unknowns, &w->items);
+static effect_work reactions(const plan_sizes *s) {
+  return (effect_work){s->held, "nodes", s->increments,
+                       s->increments * s->elements * plan_element_work(s)};
 }
 
 /* ---- the cards that require them ----------------------------------------- */
@@ -239,17 +223,13 @@ int plan_requires_table(const model *m, int table, char *why, size_t size) {
   return 0;
 }
 
-static status held_rows(const plan_sizes *s, effect_work *w) {
-  double unknowns, nodes = 0.0;
-  status st = s->msh == NULL ? OK : plan_held(s, &unknowns, &nodes);
-  *w = plan_table(s, PRINT_REACTIONS, nodes);
-  return st;
+static effect_work held_rows(const plan_sizes *s) {
+  return plan_table(s, PRINT_REACTIONS, s->held);
 }
 
-#define TABLE_ROWS(name, bit, all)                                 \
-  static status name##_rows(const plan_sizes *s, effect_work *w) { \
-    *w = plan_table(s, bit, all);                                  \
-    return OK;                                                     \
+#define TABLE_ROWS(name, bit, all)                      \
+  static effect_work name##_rows(const plan_sizes *s) { \
+    return plan_table(s, bit, all);                     \
   }
 TABLE_ROWS(contact, PRINT_CONTACT, s->contact)
 TABLE_ROWS(totals, PRINT_TOTALS, s->m->n.contact)
@@ -279,69 +259,55 @@ TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, PER_NODE,
       held_rows)
 
 static int requires_fields(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
-    if (s->output.frequency < 0) continue;
-    if (s->output.given)
-      snprintf(why, size, "*OUTPUT, %s:%d", PLACE(s->output.at));
-    else
-      snprintf(why, size, "default; *OUTPUT, HDF5=NO leaves them out");
-    return 1;
-  }
-  snprintf(why, size, "*OUTPUT, HDF5=NO");
-  return 0;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].output.frequency >= 0 && m->steps[i].output.given)
+      return plan_says(1, why, size, "*OUTPUT, %s:%d",
+                       PLACE(m->steps[i].output.at));
+    else if (m->steps[i].output.frequency >= 0)
+      return plan_says(1, why, size,
+                       "default; *OUTPUT, HDF5=NO leaves them out");
+  return plan_says(0, why, size, "*OUTPUT, HDF5=NO");
 }
 
 static int requires_condensed(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
-    if (s->output.condensed < 0) continue;
-    snprintf(why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d", PLACE(s->output.at));
-    return 1;
-  }
-  snprintf(why, size, "no *OUTPUT, CONDENSED=FCLIB");
-  return 0;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].output.condensed >= 0)
+      return plan_says(1, why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d",
+                       PLACE(m->steps[i].output.at));
+  return plan_says(0, why, size, "no *OUTPUT, CONDENSED=FCLIB");
 }
 
 static int requires_restart(const model *m, char *why, size_t size) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
-    if (s->restart.frequency < 0) continue;
-    snprintf(why, size, "*RESTART, %s:%d", PLACE(s->restart.at));
-    return 1;
-  }
-  snprintf(why, size, "no *RESTART card");
-  return 0;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].restart.frequency >= 0)
+      return plan_says(1, why, size, "*RESTART, %s:%d",
+                       PLACE(m->steps[i].restart.at));
+  return plan_says(0, why, size, "no *RESTART card");
 }
 
 static int requires_always(const model *m, char *why, size_t size) {
   (void)m;
-  snprintf(why, size, "always");
-  return 1;
+  return plan_says(1, why, size, "always");
 }
 
-static status fields(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->nodes, "nodes", -1.0,
-                     4e6 + s->shown * (4e5 + 20.0 * s->nodes)};
-  return OK;
+static effect_work fields(const plan_sizes *s) {
+  return (effect_work){s->nodes, "nodes", -1.0,
+                       4e6 + s->shown * (4e5 + 20.0 * s->nodes)};
 }
 
-static status condensed_problems(const plan_sizes *s, effect_work *w) {
+static effect_work condensed_problems(const plan_sizes *s) {
   double m = plan_contact_unknowns(s);
-  *w = (effect_work){s->contact, "nodes", -1.0,
-                     s->increments * (1e6 + 3.0 * m * m)};
-  return OK;
+  return (effect_work){s->contact, "nodes", -1.0,
+                       s->increments * (1e6 + 3.0 * m * m)};
 }
 
-static status restart(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){s->nodes, "nodes", -1.0,
-                     s->increments * (1e6 + 50.0 * s->nodes)};
-  return OK;
+static effect_work restart(const plan_sizes *s) {
+  return (effect_work){s->nodes, "nodes", -1.0,
+                       s->increments * (1e6 + 50.0 * s->nodes)};
 }
 
-static status listing(const plan_sizes *s, effect_work *w) {
-  *w = (effect_work){1.0, NULL, -1.0, 2e5 + s->increments * 60.0 * TEXT};
-  return OK;
+static effect_work listing(const plan_sizes *s) {
+  return (effect_work){1.0, NULL, -1.0, 2e5 + s->increments * 60.0 * TEXT};
 }
 
 /* clang-format off */

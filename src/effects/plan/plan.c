@@ -6,11 +6,11 @@
 #include "effects/rows.h"
 #include "model/facts.h"
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <string.h>
 
 int plan_says(int on, char *why, size_t size, const char *format, ...) {
   va_list list;
@@ -41,7 +41,7 @@ static void say_of_problem(const model *m, const effect_ops *e, plan_row *r) {
     plan_says(1, r->why, sizeof r->why, "not part of a condensed problem");
 }
 
-static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
+static void row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
   const model *m = s->m;
   *r = (plan_row){
       .name = e->name, .on = effect_is_on(e, m), .within = e->within};
@@ -53,9 +53,8 @@ static status row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
               "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->reduction.at));
   if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
   for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
-  status st = e->expected(s, &r->work);
+  r->work = e->expected(s);
   if (!r->on) r->work = (effect_work){.kind = r->work.kind};
-  return st;
 }
 
 static status add_row(effect_plan *p, int *capacity, const plan_row *r) {
@@ -105,27 +104,21 @@ static void find_shares(effect_plan *p) {
 }
 
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
-  status st = OK;
-  effect_plan *p = NULL;
   int capacity = 0;
-  *out = NULL;
-  NEW(p, 1);
-  TRY(plan_sizes_find(m, msh, n, &p->sizes));
+  PASS_NEW(*out, 1);
+  effect_plan *p = *out;
+  PASS(plan_sizes_find(m, msh, n, &p->sizes));
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;
     if (effect_table[k]->expected == NULL) continue;
-    TRY(row_of(&p->sizes, effect_table[k], &r));
+    row_of(&p->sizes, effect_table[k], &r);
     if (effect_table[k]->bit == EFFECT_BIT_INELASTIC)
-      TRY(add_laws(m, msh, p, &capacity, &r));
+      PASS(add_laws(m, msh, p, &capacity, &r));
     else
-      TRY(add_row(p, &capacity, &r));
+      PASS(add_row(p, &capacity, &r));
   }
   find_shares(p);
-  *out = p;
-  p = NULL;
-done:
-  plan_free(p);
-  return st;
+  return OK;
 }
 
 static int is_default(const step *s) {
@@ -133,14 +126,13 @@ static int is_default(const step *s) {
 }
 
 status plan_leave_out(model *m, const mesh *msh) {
-  effect_plan *p = NULL;
+  ENDS_BY(plan_free) effect_plan *p = NULL;
   if (facts_first_step(m, is_default) == NULL || model_targeted_goal(m) != NULL)
     return OK;
   PASS(plan_new(m, msh, 0, &p));
   double share = 0.0;
   for (int i = 0; i < p->n; ++i)
     if (p->rows[i].name == mesh_error_effect.name) share = p->rows[i].share;
-  plan_free(p);
   if (share <= PLAN_CHEAP) return OK;
   m->accuracy.mesh_price = share;
   for (int i = 0; i < m->n.step; ++i)
@@ -149,10 +141,8 @@ status plan_leave_out(model *m, const mesh *msh) {
   return OK;
 }
 
-void plan_free(effect_plan *p) {
-  if (p == NULL) return;
-  memory_free(p->rows);
-  memory_free(p);
+void plan_free(effect_plan **p) {
+  if (*p != NULL) RELEASE((*p)->rows, *p);
 }
 
 stage_cost plan_cost(const plan_row *r) {
@@ -173,10 +163,9 @@ double plan_cpu(const effect_plan *p) {
 }
 
 static void print_name(const plan_row *r, const char *lead, FILE *f) {
-  char text[120];
-  snprintf(text, sizeof text, "%s%s%s", r->name, r->of[0] != '\0' ? ", " : "",
-           r->of);
-  fprintf(f, "%s%-26s %-3s", lead, text, r->on ? "on" : "off");
+  fprintf(f, "%s%-26s %-3s", lead,
+          text_of("%s%s%s", r->name, r->of[0] != '\0' ? ", " : "", r->of),
+          r->on ? "on" : "off");
 }
 
 void plan_print(const effect_plan *p, const char *lead, FILE *f) {
@@ -184,33 +173,29 @@ void plan_print(const effect_plan *p, const char *lead, FILE *f) {
           "cpu[%]", "called for by");
   for (int i = 0; i < p->n; ++i) {
     const plan_row *r = &p->rows[i];
-    char size[40] = "";
     print_name(r, lead, f);
-    if (r->on && r->work.kind != NULL)
-      snprintf(size, sizeof size, "%.0f %s", r->work.items, r->work.kind);
-    fprintf(f, " %18s", size);
-    if (r->on)
-      fprintf(f, " %7.1f", 100 * r->share);
-    else
-      fprintf(f, " %7s", "");
-    fprintf(f, "  %s\n", r->why);
+    fprintf(f, " %18s %7s  %s\n",
+            r->on && r->work.kind != NULL
+                ? text_of("%.0f %s", r->work.items, r->work.kind)
+                : "",
+            r->on ? text_of("%.1f", 100 * r->share) : "", r->why);
   }
 }
 
 static void print_row(const plan_row *r, double cpu, int cost, FILE *f) {
   stage_cost c = plan_cost(r);
-  char calls[24] = "", expected[24] = "";
-  if (r->on) snprintf(expected, sizeof expected, "%.1f", 100 * r->share);
-  if (r->on && r->work.calls >= 0 && r->n_stage > 0)
-    snprintf(calls, sizeof calls, "%.0f", r->work.calls);
   print_name(r, "  ", f);
-  fprintf(f, " %11s", expected);
+  fprintf(f, " %11s", r->on ? text_of("%.1f", 100 * r->share) : "");
   if (r->n_stage == 0 && r->on) {
     fprintf(f, "  part of %s\n", r->within);
     return;
   }
   if (cost) fprintf(f, " %8.1f", cpu > 0.0 ? 100 * c.cpu / cpu : 0.0);
-  fprintf(f, " %9s %7ld", calls, c.calls);
+  fprintf(f, " %9s %7ld",
+          r->on && r->work.calls >= 0 && r->n_stage > 0
+              ? text_of("%.0f", r->work.calls)
+              : "",
+          c.calls);
   if (cost) fprintf(f, " %10.3f %14zu", c.cpu, c.bytes);
   fputc('\n', f);
 }

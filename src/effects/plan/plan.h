@@ -21,6 +21,8 @@ struct plan_sizes {
   int dim, ns, is_flat;             /* is_flat: plane or axisymmetric */
   double nodes, elements, unknowns; /* unknowns: of the body */
   double contact, tangents;         /* nodes, tangential unknowns */
+  double friction, averages;        /* contact nodes with such a rule */
+  double held;                      /* nodes with a support */
   double increments;                /* of all steps of the deck, ADAPTED at most
                                        of one with a tolerance */
   double shown;                     /* of them, by any table or field */
@@ -57,7 +59,7 @@ typedef struct effect_plan {
 
 /* msh NULL: a condensed problem from a file, of n contacts. *out is new. */
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out);
-void plan_free(effect_plan *p); /* accepts NULL */
+void plan_free(effect_plan **p); /* accepts that of NULL */
 /* After model_check: the error of the mesh that no card requires is left out
  * where it is expected to take more than PLAN_CHEAP of the run. */
 #define PLAN_CHEAP 0.05
@@ -83,18 +85,9 @@ stage_cost plan_cost(const plan_row *r);
 /* CPU seconds of all rows so far. */
 double plan_cpu(const effect_plan *p);
 
-/* sizes.c, for the rows. Nodes that a set of contacts has, each once; "is"
- * NULL: all contacts. */
-status plan_contact_nodes(const plan_sizes *s,
-                          int (*is)(const friction_rule *rule), double *n);
-/* Nodes with a rule that "is"; of a condensed problem all or none. */
-status plan_rule_nodes(const plan_sizes *s,
-                       int (*is)(const friction_rule *rule), double *n);
 /* The first rule that "is"; "none": there is no such rule. */
 int plan_requires_rule(const model *m, int (*is)(const friction_rule *rule),
                        const char *none, char *why, size_t size);
-/* Displacements that supports hold in the first step, and their nodes. */
-status plan_held(const plan_sizes *s, double *unknowns, double *nodes);
 /* Material of a section; one without anything if it has none. */
 const material *plan_material(const model *m, int section_id);
 /* Elements of a section. */

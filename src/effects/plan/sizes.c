@@ -74,8 +74,9 @@ static void count_increments(const model *m, plan_sizes *s) {
   }
 }
 
-status plan_contact_nodes(const plan_sizes *s,
-                          int (*is)(const friction_rule *rule), double *n) {
+/* Nodes of the contacts with a rule that "is", each once; NULL: of all. */
+static status contact_nodes(const plan_sizes *s,
+                            int (*is)(const friction_rule *rule), double *n) {
   const model *m = s->m;
   const mesh *msh = s->msh;
   OWNED unsigned char *seen = NULL;
@@ -94,7 +95,8 @@ status plan_contact_nodes(const plan_sizes *s,
   return OK;
 }
 
-status plan_held(const plan_sizes *s, double *unknowns, double *nodes) {
+/* Displacements that supports hold in the first step, and their nodes. */
+static status count_held(const plan_sizes *s, double *unknowns, double *nodes) {
   const model *m = s->m;
   const mesh *msh = s->msh;
   int dim = msh->dim;
@@ -149,7 +151,7 @@ double plan_contact_work(const plan_sizes *s, double m) {
 }
 
 status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s) {
-  double held, nodes;
+  double held;
   *s = (plan_sizes){.m = m,
                     .msh = msh,
                     .dim = m->dim,
@@ -157,13 +159,15 @@ status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s) {
                     .is_flat = m->dim < 3,
                     .shown = plan_shown(m, 0)};
   count_increments(m, s);
-  s->contact = n;
+  s->contact = s->friction = n;
   if (msh != NULL) {
     s->nodes = msh->n_node;
     s->elements = msh->n_elem;
-    PASS(plan_held(s, &held, &nodes));
+    PASS(count_held(s, &held, &s->held));
     s->unknowns = (double)msh->dim * msh->n_node - held;
-    PASS(plan_contact_nodes(s, NULL, &s->contact));
+    PASS(contact_nodes(s, NULL, &s->contact));
+    PASS(contact_nodes(s, rule_has_friction, &s->friction));
+    PASS(contact_nodes(s, rule_has_average, &s->averages));
   }
   if (m->effects & EFFECT_TANGENTS) s->tangents = (s->dim - 1) * s->contact;
   return OK;

@@ -20,9 +20,286 @@
 #include "base/memory.h"
 #include "fem/fem.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
+
+/*
+ * Materials to try without their law: it flows too little, or it is always in
+ * its final state, so that elastic constants replace it; and elements of a
+ * material with a threshold (its rate is exactly zero below) that stay below
+ * it. For these a run of the elastic bodies over the same loads, in few
+ * increments, gives the stresses; elements below the threshold with a margin
+ * are tried without the law, since flow elsewhere redistributes stresses. The
+ * run itself checks it: the rate of the law at these elements must be zero, or
+ * adds to the bound as any other.
+ */
+
+static double visco_time(const model *m) {
+  double t = 0.0;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].kind == STEP_VISCO) t += m->steps[i].total;
+  return t;
+}
+
+/* 1: the rate at the start does not bound later ones. */
+static int hardens(const law_point *p) {
+  enum { NORTON_M = 2 };
+  if (p->law->ops == &user_law) return 1;
+  return p->law->ops == &norton_law && p->value[NORTON_M] != 0.0;
+}
+
+/* Largest rate of the law under a uniaxial stress, 1/s. */
+static status uniaxial_rate(const material *mat, kinematics kin, double stress,
+                            double *rate) {
+  ENDS_BY(law_sample_free) law_sample x = {0};
+  double sigma[6] = {0.0, stress}, ei_rate[6] = {0.0};
+  double alpha_rate[FLOW_VALUE_MAX];
+  *rate = 0.0;
+  PASS(law_sample_at(mat, &mat->law, kin, 0.0, &x));
+  x.p.sigma = sigma;
+  law_rate(&x.p, ei_rate, alpha_rate);
+  for (int i = 0; i < x.kind.elastic.ns; ++i)
+    *rate = fmax(*rate, fabs(ei_rate[i]));
+  if (isnan(ei_rate[0] + ei_rate[1]) || hardens(&x.p)) *rate = HUGE_VAL;
+  return OK;
+}
+
+/* *tried: 1 if there is a row. */
+static status try_small(model *m, const mesh *msh, int id, int *tried) {
+  material *mat = &m->materials[id];
+  double rate, young = reduction_young(mat);
+  *tried = 0;
+  double stress = reduction_load_stress(m, msh, young);
+  if (!(stress > 0.0)) return OK;
+  PASS(uniaxial_rate(mat, (kinematics)reduction_kinematics(m, id), stress,
+                     &rate));
+  double share = rate * visco_time(m) * young / stress;
+  if (!(share <= reduction_share * m->reduction.tol)) return OK;
+  omitted *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
+  if (row == NULL) return OK;
+  *tried = 1;
+  if (rate > 0.0)
+    snprintf(row->why, sizeof row->why,
+             "material %s: %.1e of the strain of the loads in all *VISCO steps",
+             mat->name, share);
+  else
+    snprintf(row->why, sizeof row->why,
+             "material %s: the loads are below the threshold of %s", mat->name,
+             mat->law.ops->name);
+  return OK;
+}
+
+/* The shortest increment if the law flows in all steps and the integrator damps
+ * fast terms; else 0. */
+static double damped_increment(const model *m) {
+  double least = HUGE_VAL;
+  for (int i = 0; i < m->n.step; ++i) {
+    const step *s = &m->steps[i];
+    if (s->kind != STEP_VISCO) return 0.0;
+    if (!s->visco.integrator->linear_only && s->visco.theta != 1.0) return 0.0;
+    least = fmin(least, s->dt);
+  }
+  return least;
+}
+
+/* R[ns*ns] of the law under the kinematics and its time; <= 0: it has none. */
+static status relaxed_law(const material *mat, kinematics kin, double *R,
+                          double *time) {
+  ENDS_BY(law_sample_free) law_sample x = {0};
+  *time = 0.0;
+  if (mat->law.ops->relaxed == NULL) return OK;
+  PASS(law_sample_at(mat, &mat->law, kin, 0.0, &x));
+  *time = mat->law.ops->relaxed(&x.p, R) / x.p.speed;
+  return OK;
+}
+
+/* E and nu that go with the compliance S + R[6*6]. */
+static void relaxed_constants(const elastic_constants *from, const double *R,
+                              elastic_constants *to) {
+  const double young = from->constant[0], nu = from->constant[1];
+  *to = *from;
+  to->constant[0] = 1.0 / (1.0 / young + R[0]);
+  to->constant[1] = (nu / young - R[1]) * to->constant[0];
+}
+
+static status try_relaxed(model *m, int id) {
+  material *mat = &m->materials[id];
+  double R[36], time, dt = damped_increment(m);
+  if (!(dt > 0.0) || mat->elastic.type != ELASTIC_ISO) return OK;
+  PASS(relaxed_law(mat, SOLID_3D, R, &time));
+  if (!(time > 0.0) || !(time <= reduction_share * m->reduction.tol * dt))
+    return OK;
+  omitted *row = reduction_row(m, EFFECT_BIT_INELASTIC, id);
+  if (row == NULL) return OK;
+  row->time = time;
+  relaxed_constants(&mat->elastic.set[0], R, &mat->elastic_aside);
+  PASS(relaxed_law(mat, (kinematics)reduction_kinematics(m, id), mat->relaxed,
+                   &time));
+  snprintf(row->why, sizeof row->why,
+           "material %s: %s ends within %.3g, %.1e of an increment; E = %.6g, "
+           "nu = %.6g replace it",
+           mat->name, mat->law.ops->name, time, time / dt,
+           mat->elastic_aside.constant[0], mat->elastic_aside.constant[1]);
+  return OK;
+}
+
+static status try_law(model *m, const mesh *msh, int id) {
+  const material *mat = &m->materials[id];
+  int tried;
+  if (mat->law.ops == NULL || reduction_kinematics(m, id) < 0 ||
+      mat->elastic.n != 1 || law_varies(&mat->law) != 0)
+    return OK;
+  PASS(try_small(m, msh, id, &tried));
+  if (!tried) PASS(try_relaxed(m, id));
+  return OK;
+}
+
+static const double margin = 1.5; /* of stresses, - */
+enum {
+  PIECES = 8,
+  WORTH = 4
+}; /* increments of a step; the run has so many
+      times those of the elastic one */
+
+typedef struct preview {
+  reduction *n;
+  unsigned char *flows; /* [n_elem] 1: near its threshold */
+  status st;
+} preview;
+
+static int is_tried(const model *m, int id) {
+  for (int k = 0; k < m->reduction.n; ++k)
+    if (m->reduction.row[k].bit == EFFECT_BIT_INELASTIC &&
+        m->reduction.row[k].id == id)
+      return 1;
+  return 0;
+}
+
+static int has_threshold(const model *m, int id) {
+  const material *mat = &m->materials[id];
+  return mat->law.ops != NULL && mat->law.ops->flows != NULL &&
+         mat->elastic.n == 1 && law_varies(&mat->law) == 0 &&
+         reduction_kinematics(m, id) >= 0 && !is_tried(m, id);
+}
+
+static double short_step(const step *s) {
+  return fmax(s->dt, s->total / PIECES);
+}
+
+/* 1: the elastic run is short compared with the other. */
+static int is_worth_it(const model *m) {
+  double few = 0.0, all = 0.0;
+  int any = 0;
+  for (int i = 0; i < m->n.material; ++i) any |= has_threshold(m, i);
+  for (int i = 0; i < m->n.step; ++i) {
+    few += reduction_increments(&m->steps[i], short_step(&m->steps[i]));
+    all += reduction_increments(&m->steps[i], m->steps[i].dt);
+  }
+  return any && all >= WORTH * few;
+}
+
+/* Elements of one material whose law flows under the margin of the stresses. */
+static status see_material(preview *p, int id, double t) {
+  const reduction *n = p->n;
+  const model *m = n->m;
+  const material *mat = &m->materials[id];
+  law_card law = mat->law;
+  ENDS_BY(law_sample_free) law_sample x = {0};
+  double sigma[6];
+  law.ops = mat->law_aside;
+  PASS(
+      law_sample_at(mat, &law, (kinematics)reduction_kinematics(m, id), t, &x));
+  x.p.sigma = sigma;
+  for (int e = 0; e < n->msh->n_elem; ++e) {
+    if (p->flows[e] || reduction_material(n, e) != mat) continue;
+    for (int i = 0; i < m->ns; ++i) sigma[i] = margin * n->sigma[m->ns * e + i];
+    p->flows[e] = (unsigned char)law_flows(&x.p);
+  }
+  return OK;
+}
+
+static status see_increment(void *ctx, const state *s) {
+  status st = OK;
+  preview *p = ctx;
+  const model *m = p->n->m;
+  TRY(reduction_stress(p->n, s));
+  for (int i = 0; i < m->n.material; ++i)
+    if (m->materials[i].law_aside != NULL &&
+        m->materials[i].law_aside->flows != NULL)
+      TRY(see_material(p, i, s->t));
+done:
+  p->st = st;
+  return st;
+}
+
+/* Without any law, in few increments. */
+static void make_elastic(model *m) {
+  for (int i = 0; i < m->n.material; ++i) {
+    m->materials[i].law_aside = m->materials[i].law.ops;
+    m->materials[i].law.ops = NULL;
+  }
+  for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
+  m->effects = effects_required(m);
+}
+
+/* The elastic run; *seen 1 if it came to its end. */
+static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
+                          int *seen) {
+  status st = OK;
+  preview p = {.flows = flows};
+  const history_sink sink = {.ctx = &p, .increment = see_increment};
+  double *dt = NULL;
+  int unsettled = 0;
+  NEW(dt, m->n.step);
+  for (int i = 0; i < m->n.step; ++i) dt[i] = m->steps[i].dt;
+  make_elastic(m);
+  TRY(reduction_new(m, msh, &p.n));
+  *seen = history_run(m, msh, effect_table, &sink, &unsettled) == OK;
+  st = p.st;
+done:
+  for (int i = 0; i < m->n.step && dt != NULL; ++i) m->steps[i].dt = dt[i];
+  reduction_restore(m);
+  reduction_free(p.n);
+  memory_free(dt);
+  return st;
+}
+
+static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
+  for (int i = 0; i < m->n.material; ++i) {
+    int n = 0, all = 0;
+    if (!has_threshold(m, i)) continue;
+    for (int e = 0; e < msh->n_elem; ++e) {
+      if (m->sections[m->elem_section[e]].material_id != i) continue;
+      ++all;
+      m->reduction.still[e] = !flows[e];
+      n += m->reduction.still[e];
+    }
+    omitted *row = n > 0 ? reduction_row(m, EFFECT_BIT_INELASTIC, i) : NULL;
+    if (row == NULL) continue;
+    row->some = n < all ? n : 0;
+    snprintf(row->why, sizeof row->why,
+             "material %s: %d of %d elements stay below the threshold of %s",
+             m->materials[i].name, n, all, m->materials[i].law.ops->name);
+  }
+}
+
+static status try_threshold(model *m, const mesh *msh) {
+  OWNED unsigned char *flows = NULL;
+  int seen = 0;
+  if (!is_worth_it(m)) return OK;
+  PASS_NEW(flows, msh->n_elem);
+  PASS(run_elastic(m, msh, flows, &seen));
+  if (!seen) return OK;
+  if (m->reduction.still == NULL) PASS_NEW(m->reduction.still, msh->n_elem);
+  add_rows(m, msh, flows);
+  return OK;
+}
+
+static status reduction_try_laws(model *m, const mesh *msh) {
+  if (!(m->effects & EFFECT_INELASTIC) || reduction_has_initial(m)) return OK;
+  for (int i = 0; i < m->n.material; ++i) PASS(try_law(m, msh, i));
+  return try_threshold(m, msh);
+}
 
 /* Largest temperature the deck gives as a number; HUGE_VAL: by other means. */
 static double largest_temperature(const model *m) {

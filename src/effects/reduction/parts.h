@@ -54,9 +54,6 @@ status law_sample_at(const material *mat, const law_card *law, kinematics kin,
                      double t, law_sample *x);
 void law_sample_free(law_sample *x);
 
-/* laws.c: materials to try without their law. */
-status reduction_try_laws(model *m, const mesh *msh);
-
 /* measure.c */
 const material *reduction_material(const reduction *n, int elem_id);
 /* Stresses of the run into n->sigma: its thermal strains and those of the laws

@@ -197,22 +197,16 @@ done:
 }
 
 status cluster_new(const cluster_input *in, cluster_set **out) {
-  status st = OK;
-  cluster_set *c = NULL;
   int wanted = 0;
   *out = NULL;
   for (int i = 0; i < in->n_section; ++i) wanted |= in->share[i] > 0;
-  if (!wanted) goto done;
-  NEW(c, 1);
-  TRY(grow(in, c));
-  TRY(list_elements(in->mesh, c));
-  TRY(list_nodes(in->mesh, c));
-  TRY(weigh(in, c));
-  *out = c;
-  c = NULL;
-done:
-  cluster_free(c);
-  return st;
+  if (!wanted) return OK;
+  PASS_NEW(*out, 1);
+  cluster_set *c = *out;
+  PASS(grow(in, c));
+  PASS(list_elements(in->mesh, c));
+  PASS(list_nodes(in->mesh, c));
+  return weigh(in, c);
 }
 
 void cluster_free(cluster_set *c) {

@@ -3,23 +3,6 @@
 
 #include "base/memory.h"
 
-int set_root(int *up, int e) {
-  while (up[e] != e) {
-    up[e] = up[up[e]];
-    e = up[e];
-  }
-  return e;
-}
-
-void set_unite(int *up, int a, int b) {
-  a = set_root(up, a);
-  b = set_root(up, b);
-  if (a < b)
-    up[b] = a;
-  else
-    up[a] = b;
-}
-
 /* 2-D: elements round node j that share a second vertex share an edge. */
 static void unite_round_node_2d(const mesh *m, const pieces *p, int j,
                                 int *last, int *up) {
@@ -32,7 +15,7 @@ static void unite_round_node_2d(const mesh *m, const pieces *p, int j,
     for (int a = 0; a < 3; ++a) {
       const int v = m->elem[3 * p->elem[q] + a];
       if (v <= j) continue;
-      if (last[v] >= 0) set_unite(up, last[v], p->elem[q]);
+      if (last[v] >= 0) forest_join(up, last[v], p->elem[q]);
       last[v] = p->elem[q];
     }
 }
@@ -55,7 +38,7 @@ static void unite_round_node_3d(const mesh *m, const pieces *p, int j,
         int k = 0;
         while (k < n && (list[k].v != c.v || list[k].w != c.w)) ++k;
         if (k < n)
-          set_unite(up, list[k].elem, c.elem);
+          forest_join(up, list[k].elem, c.elem);
         else
           list[n++] = c;
       }
@@ -82,7 +65,7 @@ static status unite_by_faces(const mesh *m, const pieces *p, int *up) {
 static int number_sets(int n_elem, int *up, int *id) {
   int n = 0;
   for (int e = 0; e < n_elem; ++e) {
-    const int r = set_root(up, e);
+    const int r = forest_root(up, e);
     id[e] = r == e ? n++ : id[r];
   }
   return n;
@@ -115,23 +98,18 @@ static status sort_pieces(const mesh *m, const int *body_of, pieces *p) {
 }
 
 status pieces_find(const mesh *m, pieces *p) {
-  status st = OK;
-  int *up = NULL, *body = NULL;
+  OWNED int *up = NULL, *body = NULL;
   *p = (pieces){0};
-  TRY(mesh_node_elements(m, &p->start, &p->elem));
-  NEW_ALL(OF(up, m->n_elem), OF(body, m->n_elem), OF(p->piece, m->n_elem));
+  PASS(mesh_node_elements(m, &p->start, &p->elem));
+  PASS_NEW_ALL(OF(up, m->n_elem), OF(body, m->n_elem), OF(p->piece, m->n_elem));
   for (int e = 0; e < m->n_elem; ++e) up[e] = e;
-  TRY(unite_by_faces(m, p, up));
+  PASS(unite_by_faces(m, p, up));
   p->n_piece = number_sets(m->n_elem, up, p->piece);
   for (int j = 0; j < m->n_node; ++j)
     for (size_t q = p->start[j] + 1; q < p->start[j + 1]; ++q)
-      set_unite(up, p->elem[q - 1], p->elem[q]);
+      forest_join(up, p->elem[q - 1], p->elem[q]);
   p->n_body = number_sets(m->n_elem, up, body);
-  TRY(sort_pieces(m, body, p));
-done:
-  RELEASE(up, body);
-  if (st != OK) pieces_release(p);
-  return st;
+  return sort_pieces(m, body, p);
 }
 
 void pieces_release(pieces *p) {

@@ -17,11 +17,7 @@ typedef struct pieces {
   int *elem;       /* [start[n_node]] */
 } pieces;
 
-/* Sets by union-find: up[e] = e before. The smaller root wins, so that a set is
- * named by its first member. */
-int set_root(int *up, int e);
-void set_unite(int *up, int a, int b);
-/* Fill p; on failure it is empty. */
+/* Fill p. */
 status pieces_find(const mesh *m, pieces *p);
 void pieces_release(pieces *p); /* accepts an all-zero object */
 

@@ -132,16 +132,12 @@ static status map_between(const scheme_call *a, int kind, linear_map *m,
 }
 
 status exponential_between(const scheme_call *a, flow_state *mid) {
-  status st = OK;
   double D[36];
   for (int i = 0; i < a->x->n_kind; ++i) {
-    linear_map m = {0};
-    st = map_between(a, i, &m, D, mid);
-    linear_map_free(&m);
-    TRY(st);
+    ENDS_BY(linear_map_free) linear_map m = {0};
+    PASS(map_between(a, i, &m, D, mid));
   }
-done:
-  return st;
+  return OK;
 }
 
 static inline void predict(int ns, const scheme_call *a, int from, int to) {

@@ -107,10 +107,8 @@ static status take_faces(opening *o) {
   OWNED int *owner = NULL;
   int most = 0;
   for (int k = 0; k < o->n; ++k) most += o->cut[k].group->n_item;
-  PASS_NEW(owner, m->n_face);
-  PASS_NEW(o->group_id, o->n);
-  PASS_NEW(o->first, o->n + 1);
-  PASS_NEW(o->face, most);
+  PASS_NEW_ALL(OF(owner, m->n_face), OF(o->group_id, o->n),
+               OF(o->first, o->n + 1), OF(o->face, most));
   for (int k = 0; k < o->n; ++k) {
     o->group_id[k] = (int)(o->cut[k].group - m->group);
     if (has_dimension(o, k)) take_group(o, k, owner);
@@ -121,8 +119,7 @@ static status take_faces(opening *o) {
 
 static status gather_elements(opening *o) {
   const mesh *m = o->m;
-  PASS_NEW(o->on_crack, m->n_node);
-  PASS_NEW(o->place, m->n_elem);
+  PASS_NEW_ALL(OF(o->on_crack, m->n_node), OF(o->place, m->n_elem));
   for (int i = 0; i < o->n_face; ++i)
     for (int k = 0; k < m->dim; ++k)
       o->on_crack[mesh_face_nodes(m, o->face[i])[k]] = 1;
@@ -155,8 +152,7 @@ static status pair_sides(opening *o) {
   OWNED sort_item *side = NULL;
   const int dim = o->m->dim, n_side = (dim + 1) * o->n_elem;
   int n = 0, v[3], w[3];
-  PASS_NEW(side, n_side);
-  PASS_NEW(o->across, n_side);
+  PASS_NEW_ALL(OF(side, n_side), OF(o->across, n_side));
   for (int s = 0; s < n_side; ++s) {
     o->across[s] = -1;
     side_nodes(o, s, v);
@@ -232,9 +228,7 @@ static status find_fans(opening *o) {
   OWNED int *fan = NULL;
   OWNED char *kept = NULL;
   int n = 0;
-  PASS_NEW(fan, n_corner);
-  PASS_NEW(kept, m->n_node);
-  PASS_NEW(o->node, n_corner);
+  PASS_NEW_ALL(OF(fan, n_corner), OF(kept, m->n_node), OF(o->node, n_corner));
   for (int c = 0; c < n_corner; ++c) fan[c] = c;
   join_corners(o, fan);
   for (int c = 0; c < n_corner; ++c) n += forest_root(fan, c) == c;
@@ -398,8 +392,7 @@ static status orient_crack(opening *o, int crack) {
   OWNED int *beyond = NULL, *list = NULL;
   const int first = o->first[crack], n = o->first[crack + 1] - first;
   faults bad = {0};
-  PASS_NEW(beyond, o->m->dim * n);
-  PASS_NEW(list, n);
+  PASS_NEW_ALL(OF(beyond, o->m->dim * n), OF(list, n));
   walk w = {o, first, n, beyond, list};
   PASS(find_neighbours(&w));
   for (int i = 0, end = 0; i < n; ++i) {
@@ -495,8 +488,7 @@ static status add_faces(opening *o) {
   for (int k = 0; k < o->n; ++k) {
     mesh_crack *c = &o->crack[k];
     c->n = o->first[k + 1] - o->first[k];
-    PASS_NEW(c->plus, c->n);
-    PASS_NEW(c->minus, c->n);
+    PASS_NEW_ALL(OF(c->plus, c->n), OF(c->minus, c->n));
     for (int i = 0; i < c->n; ++i)
       part_lips(o, o->first[k] + i, &c->plus[i], &c->minus[i]);
   }
@@ -630,8 +622,7 @@ static status groups_open(opening *o) {
   OWNED char *mark = NULL;
   OWNED int *list = NULL;
   size_t old = (size_t)m->n_group;
-  PASS_NEW(mark, m->n_node);
-  PASS_NEW(list, m->n_node);
+  PASS_NEW_ALL(OF(mark, m->n_node), OF(list, m->n_node));
   PASS_RESIZE(m->group, old, old + 2 * (size_t)o->n);
   for (int k = 0; k < o->n; ++k) {
     PASS(take_lips(o, k));
@@ -742,9 +733,7 @@ static void follow(const edge_list *list, int from, const int *next,
 static status chain_edges(const edge_list *list, mesh_crack *c) {
   OWNED int *next = NULL;
   OWNED char *is_first = NULL, *is_done = NULL;
-  PASS_NEW(next, list->n);
-  PASS_NEW(is_first, list->n);
-  PASS_NEW(is_done, list->n);
+  PASS_NEW_ALL(OF(next, list->n), OF(is_first, list->n), OF(is_done, list->n));
   PASS(link_edges(list, next, is_first));
   for (int closed = 0; closed < 2; ++closed)
     for (int i = 0; i < list->n; ++i)
@@ -757,19 +746,13 @@ static status find_front(const opening *o, int crack) {
   OWNED front_edge *edge = NULL;
   PASS_NEW(edge, o->m->dim * c->n);
   const edge_list list = {gather_edges(o, crack, edge), edge};
-  PASS_NEW(c->front_start, list.n + 1);
-  PASS_NEW(c->front_node, 2 * list.n);
-  PASS_NEW(c->front_face, 2 * list.n);
+  PASS_NEW_ALL(OF(c->front_start, list.n + 1), OF(c->front_node, 2 * list.n),
+               OF(c->front_face, 2 * list.n));
   if (o->m->dim == 3) return chain_edges(&list, c);
   for (int i = 0; i < list.n; ++i) {
     add_node(c, &c->n_front, list.edge[i].node[0], list.edge[i].face);
     c->front_start[c->n_front] = c->n_front;
   }
-  return OK;
-}
-
-static status fronts_find(opening *o) {
-  for (int k = 0; k < o->n; ++k) PASS(find_front(o, k));
   return OK;
 }
 
@@ -790,5 +773,6 @@ status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
   PASS(opening_check(&o));
   PASS(lips_store(&o));
   PASS(groups_open(&o));
-  return fronts_find(&o);
+  for (int k = 0; k < o.n; ++k) PASS(find_front(&o, k));
+  return OK;
 }

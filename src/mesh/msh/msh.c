@@ -138,8 +138,7 @@ static status msh_add_element(msh *m, int block, size_t no, size_t **node) {
 static status msh_new_nodes(msh *m, size_t n) {
   raw_mesh *raw = m->raw;
   raw->n_node = n;
-  PASS_NEW(raw->node_no, n);
-  PASS_NEW(raw->xyz, 3 * n);
+  PASS_NEW_ALL(OF(raw->node_no, n), OF(raw->xyz, 3 * n));
   return OK;
 }
 
@@ -585,8 +584,7 @@ static status finish_blocks(msh *m) {
   raw_mesh *raw = m->raw;
   OWNED block_order *order = NULL;
   OWNED raw_block *sorted = NULL;
-  PASS_NEW(order, raw->n_block);
-  PASS_NEW(sorted, raw->n_block);
+  PASS_NEW_ALL(OF(order, raw->n_block), OF(sorted, raw->n_block));
   for (int i = 0; i < raw->n_block; ++i)
     order[i] =
         (block_order){raw->block[i].dim, m->fill[i].tag, raw->block[i].type, i};
@@ -655,19 +653,12 @@ static void release(msh *m) {
 }
 
 status msh_read(const char *file, raw_mesh **out) {
-  status st = OK;
-  msh m = {0};
+  ENDS_BY(release) msh m = {0};
   *out = NULL;
-  TRY(scan_open(&m.s, file, ERR_MESH));
-  NEW(m.raw, 1);
-  TRY(read_sections(&m));
-  TRY(finish_groups(&m));
-  TRY(finish_blocks(&m));
-done:
-  release(&m);
-  if (st != OK)
-    raw_free(m.raw);
-  else
-    *out = m.raw;
-  return st;
+  PASS(scan_open(&m.s, file, ERR_MESH));
+  PASS_NEW(*out, 1);
+  m.raw = *out;
+  PASS(read_sections(&m));
+  PASS(finish_groups(&m));
+  return finish_blocks(&m);
 }

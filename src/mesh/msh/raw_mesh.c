@@ -29,8 +29,7 @@ void table_free(key_table *t) {
 static status grow(key_table *t) {
   ENDS_BY(table_free)
   key_table more = {.n = t->n, .n_slot = t->n_slot == 0 ? 16 : 2 * t->n_slot};
-  PASS_NEW(more.key, more.n_slot);
-  PASS_NEW(more.id, more.n_slot);
+  PASS_NEW_ALL(OF(more.key, more.n_slot), OF(more.id, more.n_slot));
   for (size_t i = 0; i < t->n_slot; ++i) {
     if (t->id[i] == 0) continue;
     size_t s = slot_of(&more, t->key[i]);
@@ -54,7 +53,8 @@ status table_add(key_table *t, uint64_t key, int *id) {
   return OK;
 }
 
-void raw_free(raw_mesh *raw) {
+void raw_free(raw_mesh **p) {
+  raw_mesh *raw = *p;
   if (raw == NULL) return;
   for (int i = 0; i < raw->n_block; ++i) {
     RELEASE(raw->block[i].type_name, raw->block[i].physical, raw->block[i].no,

@@ -41,7 +41,7 @@ typedef struct raw_mesh {
   int made;        /* 1: by gmsh from a .geo: centres of arcs are nodes of it */
 } raw_mesh;
 
-void raw_free(raw_mesh *raw); /* accepts NULL */
+void raw_free(raw_mesh **raw); /* accepts that of NULL */
 
 /* Read a .msh: data only, every number checked. ERR_MESH with file and line in
  * the record if it is damaged; ERR_FILE, ERR_MEMORY. */

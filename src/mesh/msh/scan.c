@@ -3,6 +3,7 @@
 #include "mesh/msh/scan.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 #include "base/number.h"
 #include "base/system/input.h"
 #include "base/system/limits.h"
@@ -306,9 +307,7 @@ status scan_end(scan *s, const char *name, const char *what) {
     s->at += 4 + strlen(name);
     return scan_line(s);
   }
-  char wanted[128];
-  snprintf(wanted, sizeof wanted, "$End%s (%s are complete)", name, what);
-  return not_expected(s, wanted);
+  return not_expected(s, text_of("$End%s (%s are complete)", name, what));
 }
 
 status scan_skip(scan *s, const char *name) {

@@ -2,7 +2,7 @@
  * Scanner of a file of gmsh: lines of words in ASCII, numbers of fixed size in
  * binary sections. Every number is checked, every count is compared with the
  * bytes that follow it. A failure names the file and the line, or the byte
- * where the file is binary. For src/mesh/msh and src/model/field.
+ * where the file is binary. For src/mesh/msh and src/model/check.
  *
  * Sections stand between $Name and $EndName, each on a line of its own.
  */

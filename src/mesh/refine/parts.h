@@ -5,6 +5,11 @@
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/refine/refine.h"
 
+/* Of the edge a, b. */
+static inline uint64_t key_of(int a, int b) {
+  return a < b ? table_key(a, b) : table_key(b, a);
+}
+
 typedef struct size_grid size_grid;
 /* *out is new. ERR_MEMORY. */
 status size_grid_new(const refine_sizes *s, size_grid **out);

@@ -8,6 +8,7 @@
 #include "mesh/refine/parts.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -111,9 +112,8 @@ static status take(bisection *b) {
   for (int i = 0; i < raw->n_block; ++i)
     if (raw->block[i].dim > b->dim) b->dim = raw->block[i].dim;
   b->n_node = (int)raw->n_node;
-  PASS_NEW(b->x, 3 * raw->n_node);
-  PASS_NEW(b->no, raw->n_node);
-  PASS_NEW(b->is_round, raw->n_block);
+  PASS_NEW_ALL(OF(b->x, 3 * raw->n_node), OF(b->no, raw->n_node),
+               OF(b->is_round, raw->n_block));
   for (int i = 0; i < b->n_node; ++i) {
     PASS(table_add(&nodes, (uint64_t)raw->node_no[i], &id));
     if (id != i) RAISE(ERR_MESH, "node %zu is there twice", raw->node_no[i]);
@@ -127,10 +127,6 @@ static status take(bisection *b) {
 
 /* ---- lengths ------------------------------------------------------------- */
 
-static uint64_t key_of(int a, int b) {
-  return a < b ? table_key(a, b) : table_key(b, a);
-}
-
 static void vector(const bisection *b, int from, int to, double *e) {
   for (int k = 0; k < 3; ++k) e[k] = b->x[3 * to + k] - b->x[3 * from + k];
 }
@@ -138,7 +134,7 @@ static void vector(const bisection *b, int from, int to, double *e) {
 static double square_of(const bisection *b, int i, int k) {
   double e[3];
   vector(b, i < k ? i : k, i < k ? k : i, e);
-  return e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+  return dot(3, e, e);
 }
 
 /* Signed area of a triangle in the plane, volume of a tetrahedron. */
@@ -252,8 +248,7 @@ static status grow(bisection *b) {
   size_t last = 0;
   b->x = NULL;
   b->no = NULL;
-  PASS_NEW(b->x, 3 * all);
-  PASS_NEW(b->no, all);
+  PASS_NEW_ALL(OF(b->x, 3 * all), OF(b->no, all));
   memcpy(b->x, x, 3 * n * sizeof *x);
   memcpy(b->no, no, n * sizeof *no);
   for (size_t i = 0; i < n; ++i) last = no[i] > last ? no[i] : last;
@@ -402,8 +397,7 @@ static status give_block(const bisection *b, raw_block *p, int block) {
   memory_free(p->node);
   p->no = p->node = NULL;
   p->n = 0;
-  PASS_NEW(p->no, n);
-  PASS_NEW(p->node, p->n_per * n);
+  PASS_NEW_ALL(OF(p->no, n), OF(p->node, p->n_per * n));
   for (int i = 0; i < from->n; ++i) {
     const cell *c = &from->item[i];
     if (c->block != block) continue;
@@ -423,8 +417,7 @@ static status give(const bisection *b) {
   raw->node_no = NULL;
   raw->xyz = NULL;
   raw->n_node = 0;
-  PASS_NEW(raw->node_no, n);
-  PASS_NEW(raw->xyz, 3 * n);
+  PASS_NEW_ALL(OF(raw->node_no, n), OF(raw->xyz, 3 * n));
   raw->n_node = n;
   memcpy(raw->node_no, b->no, n * sizeof *b->no);
   for (size_t k = 0; k < 3 * n; ++k) raw->xyz[k] = b->x[k] / b->q->scale;

@@ -64,10 +64,6 @@ static void between(const round_surface *s, int a, int b, double *e) {
 
 /* ---- edges --------------------------------------------------------------- */
 
-static uint64_t key_of(int a, int b) {
-  return a < b ? table_key(a, b) : table_key(b, a);
-}
-
 static status add_edge(round_surface *s, int face, int a, int b) {
   int id;
   PASS(table_add(&s->edges, key_of(a, b), &id));
@@ -111,8 +107,7 @@ static void find_curves(round_surface *s) {
 
 static status find_edges(round_surface *s) {
   const int n = s->f.n_node;
-  PASS_NEW(s->face, 2 * n * s->f.n);
-  PASS_NEW(s->kind, n * s->f.n);
+  PASS_NEW_ALL(OF(s->face, 2 * n * s->f.n), OF(s->kind, n * s->f.n));
   for (int k = 0; k < 2 * n * s->f.n; ++k) s->face[k] = -1;
   for (int i = 0; i < s->f.n; ++i)
     for (int a = 0; a < n; ++a)
@@ -237,8 +232,7 @@ static status set_surface(round_surface *s, int n_all) {
   OWNED unsigned char *bent = NULL;
   OWNED double *within = NULL;
   if (s->f.n_node == 2) return OK;
-  PASS_NEW(bent, n_all);
-  PASS_NEW(within, 3 * n_all);
+  PASS_NEW_ALL(OF(bent, n_all), OF(within, 3 * n_all));
   set_normals(s, bent);
   for (int i = 0; i < n_all; ++i) {
     normalise(s->normal + 3 * i);
@@ -268,28 +262,20 @@ static void set_face_normals(round_surface *s) {
 
 status round_surface_new(const surface_faces *f, int n_all, const double *x,
                          round_surface **out) {
-  status st = OK;
-  round_surface *s = NULL;
   *out = NULL;
   if (f->n == 0) return OK;
-  NEW(s, 1);
+  PASS_NEW(*out, 1);
+  round_surface *s = *out;
   s->f = *f;
   s->x = x;
-  NEW(s->next, 2 * n_all);
-  NEW(s->number, n_all);
-  NEW(s->flat, n_all);
-  NEW(s->sharp, n_all);
-  NEW_REALS(3 * n_all, &s->tangent, &s->normal);
-  NEW(s->face_normal, 3 * f->n);
+  PASS_NEW_ALL(OF(s->next, 2 * n_all), OF(s->number, n_all), OF(s->flat, n_all),
+               OF(s->sharp, n_all));
+  PASS_NEW_REALS(3 * n_all, &s->tangent, &s->normal);
+  PASS_NEW(s->face_normal, 3 * f->n);
   set_face_normals(s);
-  TRY(find_edges(s));
+  PASS(find_edges(s));
   set_tangents(s, n_all);
-  TRY(set_surface(s, n_all));
-  *out = s;
-  s = NULL;
-done:
-  round_surface_free(s);
-  return st;
+  return set_surface(s, n_all);
 }
 
 /* ---- the middle ---------------------------------------------------------- */

@@ -107,17 +107,10 @@ static status build(size_grid *g) {
 }
 
 status size_grid_new(const refine_sizes *s, size_grid **out) {
-  status st = OK;
-  size_grid *g = NULL;
-  *out = NULL;
-  NEW(g, 1);
+  PASS_NEW(*out, 1);
+  size_grid *g = *out;
   g->s = *s;
-  TRY(build(g));
-  *out = g;
-  g = NULL;
-done:
-  size_grid_free(g);
-  return st;
+  return build(g);
 }
 
 /* Six times the volume of corners p[4], or twice the area of p[3]. */

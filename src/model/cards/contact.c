@@ -2,6 +2,7 @@
 #include "model/cards/cards.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -60,9 +61,9 @@ static int read_move(const reading *r, const record *line, obstacle *o) {
  * ay, az. */
 static int read_axis(const reading *r, const record *line, int solid,
                      double *point, double *axis) {
-  char what[80];
-  snprintf(what, sizeof what, "direction of the axis of %s",
-           same_word(line->fields[0].text, "AXIS") ? "the torque" : "ROTATE");
+  const char *what = same_word(line->fields[0].text, "AXIS")
+                         ? "direction of the axis of the torque"
+                         : "direction of the axis of ROTATE";
   for (int c = 0; c < (solid ? 3 : 2); ++c) {
     const field *f = &line->fields[1 + c];
     if (deck_real(f, r->m->log, &point[c]) != 0) return -1;
@@ -386,14 +387,13 @@ plugin names_law(const reading *r) {
 }
 
 int find_contact(const reading *r, const char *name) {
-  char text[80];
   const name_list *names = NAMES(r->m->contacts, r->m->n.contact);
   const int i = rank_of_name(names, name);
   if (i >= 0 || (r->is_lost != NULL && r->is_lost(r->m, name))) return i;
-  snprintf(text, sizeof text,
-           "*%s: before this card there is no *CONTACT, NAME=", r->card->name);
-  unknown_word(r->m->log, P2012, value_place(r, "CONTACT"), text, name,
-               candidate_name, names);
+  unknown_word(r->m->log, P2012, value_place(r, "CONTACT"),
+               text_of("*%s: before this card there is no *CONTACT, NAME=",
+                       r->card->name),
+               name, candidate_name, names);
   return -1;
 }
 

@@ -4,6 +4,7 @@
 #include "model/cards/cards.h"
 
 #include "base/memory.h"
+#include "base/text.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -155,11 +156,10 @@ int rank_of_name(const name_list *names, const char *name) {
 
 int find_name(const model *m, const char *name, const char *title,
               const name_list *names, const place *at) {
-  char text[80];
   const int i = rank_of_name(names, name);
   if (i >= 0) return i;
-  snprintf(text, sizeof text, "there is no *%s, NAME=", title);
-  unknown_word(m->log, P2012, at, text, name, candidate_name, names);
+  unknown_word(m->log, P2012, at, text_of("there is no *%s, NAME=", title),
+               name, candidate_name, names);
   return -1;
 }
 

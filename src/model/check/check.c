@@ -388,10 +388,6 @@ static void check_goal(const model *m, const mesh *msh, goal_card *g) {
                 msh->dim);
 }
 
-static void check_goals(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
-}
-
 /* ---- surfaces of *CONTACT PAIR and *TIE, and which is the slave --------- */
 
 /* The deck's card of two surfaces. */
@@ -591,7 +587,7 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   PASS(check_pairs(m, msh));
   PASS(check_fields(m, msh));
   check_reference(m);
-  check_goals(m, msh);
+  for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
   PASS(model_find_corner(m, msh));
   m->effects = find(m);
   check_moduli(m);

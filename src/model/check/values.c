@@ -6,7 +6,6 @@
 #include "base/memory.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
-#include "model/field/field.h"
 
 #include <math.h>
 #include <string.h>
@@ -160,27 +159,24 @@ static void check_prints(const model *m, const mesh *msh, step *s) {
 /* The field of a file, read once; NULL after a message. */
 static status find_field(model *m, const mesh *msh, const char *file,
                          const place *at, const double **out) {
-  status st = OK;
   *out = NULL;
-  if (file == NULL) goto done;
+  if (file == NULL) return OK;
   for (int i = 0; i < m->n.field && *out == NULL; ++i)
     if (strcmp(m->load.fields[i].file, file) == 0)
       *out = m->load.fields[i].value;
-  if (*out != NULL) goto done;
-  GROW(m->load.fields, m->n.field, m->cap.field);
+  if (*out != NULL) return OK;
+  PASS_GROW(m->load.fields, m->n.field, m->cap.field);
   nodal_field *f = &m->load.fields[m->n.field];
-  st = nodal_field_read(file, msh, &f->value);
+  const status st = nodal_field_read(file, msh, &f->value);
   if (st == ERR_FILE || st == ERR_DECK) {
     message_add(m->log, P2053, at, "%s", status_message());
-    st = OK;
-    goto done;
+    return OK;
   }
-  TRY(st);
+  PASS(st);
   f->file = file;
   *out = f->value;
   ++m->n.field;
-done:
-  return st;
+  return OK;
 }
 
 status check_fields(model *m, const mesh *msh) {
@@ -327,8 +323,7 @@ status check_agreement(const model *m, const mesh *msh, int step_id) {
   OWNED int *owner = NULL;
   OWNED double *ud = NULL;
   size_t n_dof = (size_t)msh->dim * (size_t)msh->n_node;
-  PASS_NEW(owner, n_dof);
-  PASS_NEW(ud, n_dof);
+  PASS_NEW_ALL(OF(owner, n_dof), OF(ud, n_dof));
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     const mesh_group *g = &msh->group[l->group_id];

@@ -103,11 +103,6 @@ static void resolve_friction(const model *m, friction_rule *rule) {
         "*FRICTION, LAW=%s has no value for AMPLITUDE=", rule->law->name);
 }
 
-static void resolve_force(const model *m, given_force *f) {
-  resolve_value(m, "CONTACT FORCE", &f->value, &f->position, f->amplitude_name,
-                &f->amplitude_at);
-}
-
 /* A contact without an axis of its own has that of its obstacle. */
 static void resolve_axis(const model *m, contact *c) {
   const obstacle *o = &m->obstacles[c->obstacle_id];
@@ -121,7 +116,9 @@ static void resolve_contacts(model *m) {
   for (int i = 0; i < m->n.contact; ++i) {
     contact *c = &m->contacts[i];
     resolve_friction(m, &c->friction);
-    resolve_force(m, &c->force);
+    given_force *f = &c->force;
+    resolve_value(m, "CONTACT FORCE", &f->value, &f->position,
+                  f->amplitude_name, &f->amplitude_at);
     if (c->is_pair || c->obstacle_name[0] == '\0') continue;
     c->obstacle_id =
         find_known(m, c->obstacle_name, "OBSTACLE",

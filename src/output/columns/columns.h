@@ -2,7 +2,7 @@
  * The columns of all tables and fields, and tables as text.
  *
  * Adding a column is one row in the table of its entity (columns.c for the
- * increments, bodies.c, contacts.c) or of its effect (src/effects): the
+ * increments, nodes and contacts) or of its effect (src/effects): the
  * tables of JOB.dat and of the listing, the fields and histories of JOB.h5 and
  * JOB.xdmf, and the tests loop over them.
  */
@@ -32,8 +32,9 @@ int column_items(const column *c, const view *v);
 /* The defect over the largest of the energies so far; 0 if nothing moved yet.
  */
 double energy_defect_relative(const energies *e);
-/* Unit with the labels of *UNITS: "force/length^2" -> "N/mm^2". */
-void column_unit(const char *unit, const model *m, char *text, size_t size);
+/* Unit with the labels of *UNITS: "force/length^2" -> "N/mm^2"; in a
+ * text_room. */
+const char *column_unit(const char *unit, const model *m);
 
 /* Columns of a table that the model and the state have. */
 typedef struct table {

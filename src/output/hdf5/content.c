@@ -80,7 +80,7 @@ static status add_field(hdf5_file *h, const column *c, entity of,
 }
 
 static status choose_fields(hdf5_file *h) {
-  char name[100], group[120];
+  char name[100];
   const column *c;
   for (column_walk k = {0}; (c = column_next(&k)) != NULL;) {
     if (c->field == NULL || !column_visible(c, h->m)) continue;
@@ -93,8 +93,7 @@ static status choose_fields(hdf5_file *h) {
     }
     for (int i = 0; i < h->m->n.contact; ++i) {
       link_name(name, sizeof name, h->m->contacts[i].name);
-      snprintf(group, sizeof group, "/totals/%s", name);
-      PASS(add_field(h, c, PER_CONTACT, group, i));
+      PASS(add_field(h, c, PER_CONTACT, text_of("/totals/%s", name), i));
     }
   }
   return OK;
@@ -197,8 +196,7 @@ static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
     for (int i = 0; i < contact_group(h, c)->n_node; ++i)
       contact_of[contact_group(h, c)->node_id[i]] = c + 1;
   for (int i = 0; i < h->msh->n_node; ++i) n += contact_of[i] > 0;
-  PASS_NEW(h->contact_node, n);
-  PASS_NEW(h->surface_id, n);
+  PASS_NEW_ALL(OF(h->contact_node, n), OF(h->surface_id, n));
   h->n_contact_node = n;
   n = 0;
   for (int i = 0; i < h->msh->n_node; ++i) {
@@ -228,8 +226,7 @@ static status add_contact_numbers(hdf5_file *h, const int *contact_of) {
 
 static status add_contact(hdf5_file *h) {
   OWNED int *place_of = NULL, *contact_of = NULL;
-  PASS_NEW(place_of, h->msh->n_node);
-  PASS_NEW(contact_of, h->msh->n_node);
+  PASS_NEW_ALL(OF(place_of, h->msh->n_node), OF(contact_of, h->msh->n_node));
   PASS(list_contact_nodes(h, place_of, contact_of));
   if (h->n_contact_node == 0) return OK;
   PASS(add_points(h, "/contact/points", h->n_contact_node, h->contact_node));

@@ -4,6 +4,7 @@
  */
 #include "output/hdf5/file.h"
 
+#include "base/archive/dataset.h"
 #include "base/file.h"
 #include "base/memory.h"
 
@@ -22,12 +23,8 @@ static status maker_failed(const maker *k, const char *doing) {
 }
 
 /* The formats that records.c writes, not those of later versions. */
-static void end_id(hid_t *id) {
-  if (*id >= 0) H5Idec_ref(*id);
-}
-
 static status create_file(maker *k) {
-  hid_t formats ENDS_BY(end_id) = H5Pcreate(H5P_FILE_ACCESS);
+  HELD hid_t formats = H5Pcreate(H5P_FILE_ACCESS);
   errno = 0;
   if (formats >= 0 && H5Pset_libver_bounds(formats, H5F_LIBVER_EARLIEST,
                                            H5F_LIBVER_LATEST) >= 0)
@@ -73,8 +70,8 @@ static status text_type(const maker *k, size_t size, hid_t *type) {
 /* An attribute of any type; type is closed. */
 static status attribute(const maker *k, hid_t object, const char *name,
                         hid_t type, const void *value) {
-  hid_t space ENDS_BY(end_id) = H5Screate(H5S_SCALAR);
-  hid_t a ENDS_BY(end_id) =
+  HELD hid_t space = H5Screate(H5S_SCALAR);
+  HELD hid_t a =
       H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
   if (a < 0 || H5Awrite(a, type, value) < 0)
     return maker_failed(k, "write an attribute of");
@@ -83,7 +80,7 @@ static status attribute(const maker *k, hid_t object, const char *name,
 
 static status attribute_text(const maker *k, hid_t object, const char *name,
                              const char *value) {
-  hid_t type ENDS_BY(end_id) = -1;
+  HELD hid_t type = -1;
   if (value == NULL) value = "";
   PASS(text_type(k, strlen(value) + 1, &type));
   return attribute(k, object, name, type, value);
@@ -91,9 +88,7 @@ static status attribute_text(const maker *k, hid_t object, const char *name,
 
 static status column_attributes(const maker *k, hid_t object, const column *c,
                                 const model *m) {
-  char unit[80];
-  column_unit(c->unit, m, unit, sizeof unit);
-  PASS(attribute_text(k, object, "unit", unit));
+  PASS(attribute_text(k, object, "unit", column_unit(c->unit, m)));
   return attribute_text(k, object, "help", c->help);
 }
 
@@ -109,10 +104,9 @@ static status make_dataset(const maker *k, const char *path, hid_t type,
                            const hsize_t dims[2], const column *described,
                            const model *m, off_t *offset) {
   errno = 0;
-  hid_t space ENDS_BY(end_id) =
-      H5Screate_simple(dims[1] > 1 ? 2 : 1, dims, NULL);
-  hid_t set ENDS_BY(end_id) = H5Dcreate2(k->file, path, type, space,
-                                         k->with_groups, k->plain, H5P_DEFAULT);
+  HELD hid_t space = H5Screate_simple(dims[1] > 1 ? 2 : 1, dims, NULL);
+  HELD hid_t set = H5Dcreate2(k->file, path, type, space, k->with_groups,
+                              k->plain, H5P_DEFAULT);
   if (set < 0) return maker_failed(k, "make a dataset of");
   if (described != NULL) PASS(column_attributes(k, set, described, m));
   haddr_t address = H5Dget_offset(set);
@@ -126,7 +120,7 @@ static status make_fixed(const maker *k, const hdf5_file *h, hdf5_layout *l) {
   for (int i = 0; i < h->n_fixed; ++i) {
     const fixed_data *d = &h->fixed[i];
     hsize_t dims[2] = {(hsize_t)d->rows, (hsize_t)d->columns};
-    hid_t text ENDS_BY(end_id) = -1;
+    HELD hid_t text = -1;
     if (d->rows == 0) continue;
     if (d->type == DATA_TEXT) {
       PASS(text_type(k, (size_t)d->rows, &text));
@@ -153,7 +147,7 @@ static status make_records(const maker *k, const hdf5_file *h, int field_id,
                            hdf5_layout *l, record_group *g) {
   const hdf5_field *f = &h->fields[field_id];
   char path[400], name[40], first[441];
-  hid_t group ENDS_BY(end_id) = -1;
+  HELD hid_t group = -1;
   hsize_t dims[2] = {(hsize_t)hdf5_items(h, f), (hsize_t)f->n_part};
   snprintf(path, sizeof path, "%s/%s", f->group, f->name);
   PASS(make_group(k, path, &group));
@@ -206,7 +200,7 @@ static status root_attributes(const maker *k, const hdf5_file *h) {
       {"force_unit", m->unit.force, NULL},
       {"time_unit", m->unit.time, NULL},
       {"note", "rows and records whose time is NaN were not reached", NULL}};
-  hid_t root ENDS_BY(end_id) = H5Gopen2(k->file, "/", H5P_DEFAULT);
+  HELD hid_t root = H5Gopen2(k->file, "/", H5P_DEFAULT);
   if (root < 0) return maker_failed(k, "write an attribute of");
   for (size_t i = 0; i < sizeof row / sizeof *row; ++i)
     if (row[i].number != NULL)
@@ -219,9 +213,8 @@ static status root_attributes(const maker *k, const hdf5_file *h) {
 static status alloc_layout(const hdf5_file *h, int n_row, int n_record,
                            hdf5_layout *l) {
   *l = (hdf5_layout){.n_row = n_row, .n_record = n_record};
-  PASS_NEW(l->fixed, h->n_fixed);
-  PASS_NEW(l->history, h->n_field);
-  PASS_NEW(l->record, (size_t)h->n_field * (size_t)n_record);
+  PASS_NEW_ALL(OF(l->fixed, h->n_fixed), OF(l->history, h->n_field),
+               OF(l->record, (size_t)h->n_field * (size_t)n_record));
   return OK;
 }
 
@@ -260,7 +253,7 @@ status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
 static status read_offset(const hdf5_file *h, hid_t file, const char *path,
                           hsize_t *n, off_t *offset) {
   hsize_t wanted = *n;
-  hid_t set ENDS_BY(end_id) = H5Dopen2(file, path, H5P_DEFAULT);
+  HELD hid_t set = H5Dopen2(file, path, H5P_DEFAULT);
   haddr_t address = set >= 0 ? H5Dget_offset(set) : HADDR_UNDEF;
   *n = 0;
   if (set < 0 && wanted == 0) return OK;
@@ -309,7 +302,7 @@ static status read_fields(const hdf5_file *h, hid_t file, hdf5_layout *l) {
 status hdf5_layout_read(const hdf5_file *h, hdf5_layout *l) {
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   errno = 0;
-  hid_t file ENDS_BY(end_id) = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  HELD hid_t file = H5Fopen(h->path, H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file < 0) RAISE(ERR_FILE, "%s: cannot be read to go on with it", h->path);
   status st = read_fields(h, file, l);
   if (st != OK) hdf5_layout_free(l);

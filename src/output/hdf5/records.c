@@ -350,8 +350,7 @@ status hdf5_records_make(const char *path, int n, int n_group,
   OWNED int *order = NULL;
   OWNED stream *s = NULL;
   int used = 0;
-  PASS_NEW(s, 1);
-  PASS_NEW(order, n);
+  PASS_NEW_ALL(OF(s, 1), OF(order, n));
   for (int no = 1; no <= n && no < 100000; ++no)
     order_names(n, no, order, &used);
   s->path = path;

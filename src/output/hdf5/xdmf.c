@@ -113,9 +113,9 @@ static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
 
 static void write_record(FILE *f, const char *text, int record_id, double t) {
   static const char marks[] = {NAME, TIME, '\0'};
-  char name[40], time[NUMBER_SIZE];
+  char name[40];
+  const char *time = text_number(t, 16);
   hdf5_record_name(name, sizeof name, record_id);
-  text_number(time, t, 16);
   for (;; ++text) {
     size_t n = strcspn(text, marks);
     fwrite(text, 1, n, f);

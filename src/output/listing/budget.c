@@ -3,7 +3,7 @@
  * the saving by stopping early; the goals; the passes towards the targets of
  * *ACCURACY and *GOAL; which error to improve next, and its price.
  */
-#include "output/listing/listing.h"
+#include "output/listing/job.h"
 
 #include "base/timer.h"
 #include "effects/rows.h"
@@ -165,7 +165,6 @@ static void print_saved(const job *j, FILE *f) {
 }
 
 static void print_budget(const job *j, FILE *f) {
-  char last[NUMBER_SIZE], worst[NUMBER_SIZE];
   budget_row rows[BUDGET_ROWS];
   int n = job_budget(j, rows), cost = !j->o->no_timing;
   if (n == 0) return;
@@ -173,9 +172,8 @@ static void print_budget(const job *j, FILE *f) {
           "largest[%]");
   fprintf(f, cost ? " %13s %15s\n" : "\n", "work cpu[s]", "estimate cpu[s]");
   for (int i = 0; i < n; ++i) {
-    fprintf(f, "  %-26s %12s %12s", rows[i].name,
-            text_number(last, rows[i].last, 2),
-            text_number(worst, rows[i].worst, 2));
+    fprintf(f, "  %-26s %12s %12s", rows[i].name, text_number(rows[i].last, 2),
+            text_number(rows[i].worst, 2));
     if (cost && rows[i].reached > 0)
       fprintf(f, " %13.3f", rows[i].reached);
     else if (cost)
@@ -277,9 +275,8 @@ static void print_advice(const job *j, FILE *f) {
   fprintf(f, "%s\n", at);
 }
 
-const char *job_goal_unit(const model *m, int id, char *text, size_t size) {
-  column_unit(goal_unit(&m->accuracy.goals[id]), m, text, size);
-  return text;
+const char *job_goal_unit(const model *m, int id) {
+  return column_unit(goal_unit(&m->accuracy.goals[id]), m);
 }
 
 const goal_result *job_goal(const job *j, int id) {
@@ -291,19 +288,16 @@ const goal_result *job_goal(const job *j, int id) {
 
 static void print_goal(const job *j, int id, const goal_result *g, int cost,
                        FILE *f) {
-  char value[NUMBER_SIZE], error[NUMBER_SIZE], band[NUMBER_SIZE];
-  char corrected[NUMBER_SIZE], solver[NUMBER_SIZE], unit[64];
   fprintf(f, "  %-16s %14s", j->m->accuracy.goals[id].name,
-          text_number(value, g->value, 6));
+          text_number(g->value, 6));
   if (!isnan(g->error))
-    fprintf(f, " %12s %14s %10s %10s %6.2g", text_number(error, g->error, 3),
-            text_number(corrected, g->value + g->error, 6),
-            text_number(band, g->band, 1), text_number(solver, g->solver, 1),
-            100 * g->ends);
+    fprintf(f, " %12s %14s %10s %10s %6.2g", text_number(g->error, 3),
+            text_number(g->value + g->error, 6), text_number(g->band, 1),
+            text_number(g->solver, 1), 100 * g->ends);
   else
     fprintf(f, " %12s %14s %10s %10s %6s", "-", "-", "-", "-", "-");
   if (cost) fprintf(f, " %9.3f", g->cpu);
-  fprintf(f, "  %s; %s\n", job_goal_unit(j->m, id, unit, sizeof unit),
+  fprintf(f, "  %s; %s\n", job_goal_unit(j->m, id),
           goal_verdict_text(g->verdict));
 }
 
@@ -339,12 +333,16 @@ static int is_absolute(const goal_card *g) {
   return g->target > 0.0 && !g->in_percent;
 }
 
+static int goal_head(const model *m, int id, char *text, size_t size) {
+  const goal_card *g = &m->accuracy.goals[id];
+  return snprintf(text, size, "%s[%s]", g->name,
+                  is_absolute(g) ? job_goal_unit(m, id) : "%");
+}
+
 void passes_goal_heads(const model *m, FILE *f) {
   for (int i = 0; i < m->n.goal; ++i) {
-    char head[80], unit[64] = "%";
-    if (is_absolute(&m->accuracy.goals[i]))
-      job_goal_unit(m, i, unit, sizeof unit);
-    snprintf(head, sizeof head, "%s[%s]", m->accuracy.goals[i].name, unit);
+    char head[80];
+    goal_head(m, i, head, sizeof head);
     fprintf(f, " %10s", head);
   }
 }
@@ -352,26 +350,22 @@ void passes_goal_heads(const model *m, FILE *f) {
 void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f) {
   for (int i = 0; i < m->n.goal; ++i) {
     const pass_goal *g = &goals[pass * m->n.goal + i];
-    char number[NUMBER_SIZE], head[80], unit[64] = "%";
+    char head[80];
     const int absolute = is_absolute(&m->accuracy.goals[i]);
-    if (absolute) job_goal_unit(m, i, unit, sizeof unit);
-    const int width =
-        snprintf(head, sizeof head, "%s[%s]", m->accuracy.goals[i].name, unit);
+    const int width = goal_head(m, i, head, sizeof head);
     fprintf(f, " %*s", width > 10 ? width : 10,
-            text_number(number, absolute ? g->off : pass_goal_percent(g), 2));
+            text_number(absolute ? g->off : pass_goal_percent(g), 2));
   }
 }
 
 /* Errors in the energy norm, where they have a target. */
 static void print_norm(const pass_row *r, int is_pass, FILE *f) {
-  char number[4][NUMBER_SIZE];
   if (is_pass)
-    fprintf(f, " %10s %10s %10s", text_number(number[0], r->mesh, 2),
-            text_number(number[1], r->time, 2),
-            text_number(number[2], r->solver, 2));
+    fprintf(f, " %10s %10s %10s", text_number(r->mesh, 2),
+            text_number(r->time, 2), text_number(r->solver, 2));
   else
     fprintf(f, " %10s %10s %10s", "", "", "");
-  fprintf(f, " %10s", text_number(number[3], r->total, 2));
+  fprintf(f, " %10s", text_number(r->total, 2));
 }
 
 static void print_pass(const job *j, int no, FILE *f) {
@@ -405,10 +399,9 @@ static void print_targets(const job *j, FILE *f) {
   }
   for (int i = 0; i < j->m->n.goal; ++i) {
     const goal_card *g = &j->m->accuracy.goals[i];
-    char unit[64] = "% of";
     if (!(g->target > 0.0)) continue;
-    if (!g->in_percent) job_goal_unit(j->m, i, unit, sizeof unit);
-    fprintf(f, "%s%g %s %s", comma, g->target, unit, g->name);
+    fprintf(f, "%s%g %s %s", comma, g->target,
+            g->in_percent ? "% of" : job_goal_unit(j->m, i), g->name);
     comma = ", ";
   }
   fprintf(f, ": %s\n", t->why[0] == '\0' ? "reached" : "missed");

@@ -3,7 +3,7 @@
  * CHECK=, theorems of THEORY= (constants, limits of mu, bounds of CPR98),
  * errors, forces, energies.
  */
-#include "output/listing/listing.h"
+#include "output/listing/job.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,28 +23,27 @@ static int next_defect(const start_report *s, int n, int last) {
 
 status listing_start(const job *j, const start_report *s, text_file *lst) {
   FILE *f = lst->f;
-  char text[NUMBER_SIZE], unit[64];
   int node = -1;
-  column_unit("force", j->m, unit, sizeof unit);
+  const char *unit = column_unit("force", j->m);
   fputs("\ninitial state: ", f);
   if (s->source != NULL)
     fprintf(f, "end of %s, time %s\n", s->source,
-            text_number(text, s->source_time, 9));
+            text_number(s->source_time, 9));
   else
     fputs("displacements of the deck\n", f);
   fprintf(f, "  %-24s %14s %s\n", "largest force",
-          text_number(text, s->scale, DIGITS), unit);
+          text_number(s->scale, DIGITS), unit);
   fprintf(f, "  %-24s %14s %s\n", "largest defect",
-          text_number(text, s->worst, DIGITS), unit);
+          text_number(s->worst, DIGITS), unit);
   fprintf(f, "  %-24s %14s -\n", "defect, relative",
-          text_number(text, s->ratio, DIGITS));
+          text_number(s->ratio, DIGITS));
   fprintf(f, "  %-24s %14d, above %s\n", "nodes out of equilibrium", s->n_bad,
-          text_number(text, start_tolerance, 0));
+          text_number(start_tolerance, 0));
   for (int k = 0; k < WORST_NODES && k < s->n_bad; ++k) {
     node = next_defect(s, j->msh->n_node, node);
     if (node < 0) break;
     fprintf(f, "  node %-19zu %14s %s: %s\n", j->msh->node_no[node],
-            text_number(text, s->defect[node], DIGITS), unit,
+            text_number(s->defect[node], DIGITS), unit,
             defect_text(s->kind[node]));
   }
   fprintf(f, "  %s\n",
@@ -55,19 +54,15 @@ status listing_start(const job *j, const start_report *s, text_file *lst) {
 }
 
 static void print_solution(const solution_set *set, int i, FILE *f) {
-  char text[4][NUMBER_SIZE];
   const solution_facts *a = &set->found[i].facts;
   fprintf(f, "    %2d  residual %s  open %d  slip %d  stick %d  ", i + 1,
-          text_number(text[0], a->residual, 1), a->n_open, a->n_slip,
-          a->n_stick);
-  fprintf(f, "u_n %s to %s  u_t %s to %s\n",
-          text_number(text[0], a->lowest[0], 4),
-          text_number(text[1], a->highest[0], 4),
-          text_number(text[2], a->lowest[1], 4),
-          text_number(text[3], a->highest[1], 4));
+          text_number(a->residual, 1), a->n_open, a->n_slip, a->n_stick);
+  fprintf(f, "u_n %s to %s  u_t %s to %s\n", text_number(a->lowest[0], 4),
+          text_number(a->highest[0], 4), text_number(a->lowest[1], 4),
+          text_number(a->highest[1], 4));
   if (i > 0)
     fprintf(f, "        %s %% of the energy norm away from solution 1\n",
-            text_number(text[0], 100 * a->distance, 2));
+            text_number(100 * a->distance, 2));
   if (a->joined > 0)
     fprintf(f,
             "        all states between solutions %d and %d are solutions: a "
@@ -78,27 +73,22 @@ static void print_solution(const solution_set *set, int i, FILE *f) {
 /* Nodal values of one solution of an enumeration. */
 static void print_values(const state *s, const solution *a, FILE *f) {
   static const char *const words[] = {"OPEN", "SLIP", "STICK"};
-  char text[4][NUMBER_SIZE];
   fprintf(f, "        %8s %-6s %12s %12s %12s %12s\n", "node_no", "status",
           "u_n", "u_t", "f_n", "f_t");
   for (int i = 0; i < s->errors.solutions->n; ++i)
     fprintf(f, "        %8zu %-6s %s %s %s %s\n",
             s->contacts.surface->node_no[i], words[a->status[i]],
-            text_number(text[0], a->u[2 * i], 4),
-            text_number(text[1], a->u[2 * i + 1], 4),
-            text_number(text[2], -a->r[2 * i], 4),
-            text_number(text[3], a->r[2 * i + 1], 4));
+            text_number(a->u[2 * i], 4), text_number(a->u[2 * i + 1], 4),
+            text_number(-a->r[2 * i], 4), text_number(a->r[2 * i + 1], 4));
 }
 
 /* Attempts that ended without a solution. */
 static void print_failures(const solution_set *set, FILE *f) {
-  char text[NUMBER_SIZE];
   for (int k = 0; k < set->n_attempt; ++k) {
     const solution_attempt *a = &set->attempts[k];
     if (a->solution_no > 0) continue;
     fprintf(f, "    %s (%s), start %s: %s, residual %s\n", a->solver, a->family,
-            a->start, outcome_text(a->outcome),
-            text_number(text, a->residual, 1));
+            a->start, outcome_text(a->outcome), text_number(a->residual, 1));
   }
 }
 
@@ -148,85 +138,74 @@ static const char *row_name(const model *m, const theorems_contact *c) {
 
 /* The eigenvalues, when they have been found again. */
 static void print_constants(const job *j, const theorems_report *t, FILE *f) {
-  char text[2][NUMBER_SIZE], stiff[64], soft[64];
-  column_unit("force/length", j->m, stiff, sizeof stiff);
-  column_unit("length/force", j->m, soft, sizeof soft);
   for (int i = 0; t->fresh && i < t->n_contact; ++i) {
     const theorems_contact *c = &t->contacts[i];
     fprintf(f, "  theory: %s: largest eigenvalues of A_nn %s %s, ",
-            row_name(j->m, c), text_number(text[0], c->normal, 4), stiff);
+            row_name(j->m, c), text_number(c->normal, 4),
+            column_unit("force/length", j->m));
     if (c->tangent < HUGE_VAL)
-      fprintf(f, "of inv(A)_tt %s %s\n", text_number(text[1], c->tangent, 4),
-              soft);
+      fprintf(f, "of inv(A)_tt %s %s\n", text_number(c->tangent, 4),
+              column_unit("length/force", j->m));
     else
       fputs("inv(A)_tt is not bounded\n", f);
   }
 }
 
 static void print_limits(const job *j, const theorems_report *t, FILE *f) {
-  char text[4][NUMBER_SIZE];
   if (t->n_contact == 0) return;
   fprintf(f, "  %-20s %12s %12s %12s %12s  %s\n", "theory: contact", "mu[-]",
           "1/C_h[-]", "contraction", "mu/contr.[-]", "mu is");
   for (int i = 0; i < t->n_contact; ++i) {
     const theorems_contact *c = &t->contacts[i];
-    fprintf(
-        f, "  %-20s %12s %12s %12s %12s  %s\n", row_name(j->m, c),
-        text_number(text[0], c->mu, 4), text_number(text[1], c->limit, 4),
-        text_number(text[2], c->rate, 4),
-        c->suggested < HUGE_VAL ? text_number(text[3], c->suggested, 4) : "-",
-        mu_regime_text(c->regime));
+    fprintf(f, "  %-20s %12s %12s %12s %12s  %s\n", row_name(j->m, c),
+            text_number(c->mu, 4), text_number(c->limit, 4),
+            text_number(c->rate, 4),
+            c->suggested < HUGE_VAL ? text_number(c->suggested, 4) : "-",
+            mu_regime_text(c->regime));
   }
 }
 
 static void print_bound(const job *j, const char *what, const theorems_bound *b,
                         FILE *f) {
-  char text[2][NUMBER_SIZE], unit[64];
   if (b->why != NULL) {
     fprintf(f, "  theory: %s: no bound, %s\n", what, b->why);
     return;
   }
-  column_unit("force*length", j->m, unit, sizeof unit);
   fprintf(f, "  theory: %s: %s <= %s sqrt(%s)  %s\n", what,
-          text_number(text[0], b->left, 4), text_number(text[1], b->right, 4),
-          unit, b->violated ? "VIOLATED" : "ok");
+          text_number(b->left, 4), text_number(b->right, 4),
+          column_unit("force*length", j->m), b->violated ? "VIOLATED" : "ok");
 }
 
 /* Theorem 3.2: laws that flow under given friction. */
 static void print_path(const job *j, const theorems_path *p, FILE *f) {
   static const char *const word[] = {"ok", "ok, but not below 1", "VIOLATED"};
-  char text[2][NUMBER_SIZE], unit[64], time[64];
   if (!p->asked) return;
-  column_unit("1/time", j->m, unit, sizeof unit);
-  column_unit("time", j->m, time, sizeof time);
   fputs("  theory: (3.2) stress: ", f);
   if (p->why != NULL)
     fprintf(f, "no rate, %s\n", p->why);
   else
-    fprintf(f, "contraction %s <= %s  %s\n", text_number(text[0], p->rate, 4),
-            text_number(text[1], p->bound, 4),
-            word[p->violated ? 2 : p->bound >= 1.0]);
+    fprintf(f, "contraction %s <= %s  %s\n", text_number(p->rate, 4),
+            text_number(p->bound, 4), word[p->violated ? 2 : p->bound >= 1.0]);
   if (p->bound > 0.0)
     fprintf(f,
             "  theory: (3.2) constant of the laws %s %s, below 1 for dt < %s "
             "%s; over the step after %.0f passes\n",
-            text_number(text[0], p->speed, 4), unit,
-            text_number(text[1], p->longest, 4), time, p->passes);
+            text_number(p->speed, 4), column_unit("1/time", j->m),
+            text_number(p->longest, 4), column_unit("time", j->m), p->passes);
 }
 
 static void print_theory(const job *j, const state *s, FILE *f) {
-  char text[NUMBER_SIZE];
   const theorems_report *t = &s->errors.theorems;
   if (!t->asked) return;
   if (t->has_start && s->total_no == 1)
     fprintf(f, "  theory: (3.8) of the initial state: least %s\n",
-            text_number(text, t->start, 1));
+            text_number(t->start, 1));
   print_constants(j, t, f);
   print_limits(j, t, f);
   print_bound(j, "(3.9) |u|", &t->total, f);
   print_bound(j, "(3.10) |du|", &t->change, f);
   fprintf(f, "  theory: S_i^n over %d test fields: least %s  %s\n", t->n_field,
-          text_number(text, t->inequality, 1),
+          text_number(t->inequality, 1),
           t->inequality_violated ? "VIOLATED" : "ok");
   print_path(j, &t->path, f);
 }
@@ -241,75 +220,68 @@ static void print_totals(const job *j, const view *v, FILE *f) {
 
 /* One line per energy; step, increment and time stand above already. */
 static void print_energies(const job *j, const view *v, FILE *f) {
-  char text[NUMBER_SIZE], unit[64];
   table t;
   table_choose(&t, PER_INCREMENT, PRINT_ENERGY, v, DIGITS);
   for (int k = 0; k < t.n; ++k) {
     const column *c = t.col[k];
     if (strstr(c->unit, "force") == NULL && strstr(c->name, "relative") == NULL)
       continue;
-    column_unit(c->unit, j->m, unit, sizeof unit);
     fprintf(f, "  %-24s %14s %s\n", c->name,
-            text_number(text, c->value(v, 0, c->part), DIGITS), unit);
+            text_number(c->value(v, 0, c->part), DIGITS),
+            column_unit(c->unit, j->m));
   }
 }
 
 /* Where the condition number requires it. */
 static void print_rounding(const state *s, FILE *f) {
-  char norm[NUMBER_SIZE], stress[NUMBER_SIZE], u[NUMBER_SIZE];
   if (!s->errors.rounding.found) return;
   fprintf(f,
           "  rounding: %s %% of the energy norm, %s %% of the largest stress, "
           "%s %%\n    of the largest displacement\n",
-          text_number(norm, 100 * s->errors.rounding.energy, 1),
-          text_number(stress, 100 * s->errors.rounding.stress, 1),
-          text_number(u, 100 * s->errors.rounding.u, 1));
+          text_number(100 * s->errors.rounding.energy, 1),
+          text_number(100 * s->errors.rounding.stress, 1),
+          text_number(100 * s->errors.rounding.u, 1));
 }
 
 static void print_hidden(const state *s, FILE *f) {
-  char text[NUMBER_SIZE];
   if (s->errors.in_doubt && s->errors.error.hidden > 0.1)
     fprintf(f, "  rounding of the motion may be %s %% of the contact forces\n",
-            text_number(text, 100 * s->errors.error.hidden, 1));
+            text_number(100 * s->errors.error.hidden, 1));
 }
 
 static void print_error(const job *j, const state *s, FILE *f) {
-  char text[NUMBER_SIZE], unit[64];
   const error_bound *e = &s->errors.error;
   if (!e->asked) return;
   fprintf(f, "  error of the solver: ");
   if (e->why != NULL) {
     fprintf(f, "no bound, %s", e->why);
   } else {
-    column_unit("force*length", j->m, unit, sizeof unit);
     fprintf(f, "at most ");
     if (!isnan(e->relative))
       fprintf(f, "%s %% of the energy norm, ",
-              text_number(text, 100 * e->relative, 1));
-    fprintf(f, "%s %s", text_number(text, e->energy, 1), unit);
+              text_number(100 * e->relative, 1));
+    fprintf(f, "%s %s", text_number(e->energy, 1),
+            column_unit("force*length", j->m));
   }
-  if (e->rate > 0)
-    fprintf(f, "; contraction %s", text_number(text, e->rate, 2));
+  if (e->rate > 0) fprintf(f, "; contraction %s", text_number(e->rate, 2));
   fputc('\n', f);
 }
 
 /* One estimate: "about 1.2E+000 %", or why it is zero or unknown. */
 static void print_share(const char *of, const error_share *e, FILE *f) {
-  char text[NUMBER_SIZE];
   if (!e->asked) return;
   fprintf(f, "  error of the %s: ", of);
   if (isnan(e->relative))
     fputs("unknown", f);
   else
     fprintf(f, "about %s %% of the energy norm",
-            text_number(text, 100 * e->relative, 1));
+            text_number(100 * e->relative, 1));
   fprintf(f, "%s%s\n", e->why != NULL ? ", " : "",
           e->why != NULL ? e->why : "");
 }
 
 /* Against *REFERENCE, as far as it goes. */
 static void print_truth(const state *s, FILE *f) {
-  char text[NUMBER_SIZE];
   const true_error *e = &s->errors.exact;
   const struct {
     const char *text;
@@ -323,13 +295,12 @@ static void print_truth(const state *s, FILE *f) {
   for (size_t i = 0; i < sizeof part / sizeof *part; ++i)
     if (!isnan(part[i].value))
       fprintf(f, "%s%s %s %%", n++ > 0 ? ", " : "  true error: ", part[i].text,
-              text_number(text, 100 * part[i].value, 2));
+              text_number(100 * part[i].value, 2));
   fputs(n > 0 ? "\n" : "", f);
 }
 
 /* TOL=BALANCED: where the solver stopped. */
 static void print_balance(const job *j, const state *s, FILE *f) {
-  char text[2][NUMBER_SIZE];
   const balance_report *b = &s->errors.balance;
   if (!b->asked) return;
   if (isnan(b->wanted)) {
@@ -341,14 +312,13 @@ static void print_balance(const job *j, const state *s, FILE *f) {
   fprintf(f,
           "  balanced: %s %% is enough, stopped below residual %s; saved "
           "about %.0f iterations",
-          text_number(text[0], 100 * b->wanted, 1),
-          text_number(text[1], b->tol, 1), b->saved_iterations);
+          text_number(100 * b->wanted, 1), text_number(b->tol, 1),
+          b->saved_iterations);
   if (!j->o->no_timing) fprintf(f, ", %.3f s", b->saved_cpu);
   fputc('\n', f);
 }
 
 static void print_solver(const job *j, const state *s, FILE *f) {
-  char text[NUMBER_SIZE];
   const solver_report *r = &s->report;
   if (s->contacts.surface == NULL) return;
   if (j->m->dim > 1)
@@ -356,7 +326,7 @@ static void print_solver(const job *j, const state *s, FILE *f) {
             s->contacts.n_open, s->contacts.n_slip, s->contacts.n_stick);
   fprintf(f, "  solver %s: %s, iterations %d, limit updates %d, residual %s",
           r->solver != NULL ? r->solver : "-", outcome_text(r->outcome),
-          r->iterations, r->limit_updates, text_number(text, r->residual, 2));
+          r->iterations, r->limit_updates, text_number(r->residual, 2));
   if (!j->o->no_timing) fprintf(f, ", cpu %.3f s", r->cpu);
   fputc('\n', f);
 }
@@ -382,9 +352,8 @@ static void print_verdict(const job *j, const state *s, FILE *f) {
 }
 
 static void print_when(const state *s, FILE *f) {
-  char t[NUMBER_SIZE], dt[NUMBER_SIZE];
   fprintf(f, "\nstep %d  increment %d  time %s  dt %s", s->step_no,
-          s->increment_no, text_number(t, s->t, 9), text_number(dt, s->dt, 9));
+          s->increment_no, text_number(s->t, 9), text_number(s->dt, 9));
   if (s->attempt > 1) fprintf(f, "  attempt %d", s->attempt);
 }
 
@@ -411,9 +380,8 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
 }
 
 status listing_between(const state *s, text_file *lst) {
-  char t[NUMBER_SIZE];
   fprintf(lst->f, "\nstep %d  within increment %d  time %s  tables%s%s\n",
-          s->step_no, s->increment_no, text_number(t, s->t, 9),
+          s->step_no, s->increment_no, text_number(s->t, 9),
           s->settled ? "" : ", tolerance missed: ",
           s->settled ? "" : outcome_text(s->report.outcome));
   return text_check(lst);

@@ -4,7 +4,7 @@
  * columns (CPU seconds and bytes, which depend on the length of names) are left
  * out on request, and then two runs give the same bytes.
  */
-#include "output/listing/listing.h"
+#include "output/listing/job.h"
 
 #include "base/timer.h"
 #include "effects/rows.h"
@@ -165,7 +165,6 @@ status listing_open(const job *j, text_file *lst) {
 }
 
 status listing_ready(const job *j, text_file *lst) {
-  char text[NUMBER_SIZE];
   const setup_facts *facts = &j->run->facts;
   heading(lst->f, "EQUATIONS");
   print_sizes(j, 1, lst->f);
@@ -176,7 +175,7 @@ status listing_ready(const job *j, text_file *lst) {
             facts->choice.sparse ? "FACTOR" : "DENSE", facts->choice.why);
   if (!isnan(facts->condition))
     fprintf(lst->f, "  %-18s %14s\n", "condition",
-            text_number(text, facts->condition, 1));
+            text_number(facts->condition, 1));
   if (!isnan(facts->condition))
     fprintf(lst->f, "  %-18s %14.1f of 16, at worst\n", "digits left",
             facts->digits);
@@ -187,15 +186,14 @@ status listing_ready(const job *j, text_file *lst) {
 }
 
 static void print_accuracy(const job *j, FILE *f) {
-  char text[NUMBER_SIZE];
   const run_summary *run = j->run;
   fprintf(f, "  %-26s %12d\n", "increments", run->n_increment);
   fprintf(f, "  %-26s %12d\n", "attempts cut", run->n_rejected);
   fprintf(f, "  %-26s %12d\n", "tolerance missed", run->n_unsettled);
   fprintf(f, "  %-26s %12s\n", "largest residual",
-          text_number(text, run->residual_worst, 2));
+          text_number(run->residual_worst, 2));
   fprintf(f, "  %-26s %12s\n", "largest energy defect",
-          text_number(text, run->defect_worst, 2));
+          text_number(run->defect_worst, 2));
 }
 
 /* Stages that were never entered are shown too: 0 calls, 0 bytes. */

@@ -41,10 +41,9 @@ static status discrete_new(discrete *d) {
   const exchange_problem *p = d->p;
   PASS_NEW(d->surface.node_no, p->n);
   PASS_NEW_REALS(p->m, &d->u, &d->r);
-  PASS_NEW(d->gap, p->n);
-  PASS_NEW(d->slip, (size_t)p->n * (size_t)(p->dim - 1));
-  PASS_NEW(d->g, p->n);
-  PASS_NEW(d->contact, p->n);
+  PASS_NEW_ALL(OF(d->gap, p->n),
+               OF(d->slip, (size_t)p->n * (size_t)(p->dim - 1)), OF(d->g, p->n),
+               OF(d->contact, p->n));
   d->surface.dim = p->dim;
   d->surface.n = p->n;
   for (int i = 0; i < p->n; ++i) d->surface.node_no[i] = (size_t)i + 1;
@@ -114,11 +113,12 @@ static status find_error(const step *s, const contact_problem *cp,
   if (cp->m == 0 || s->accuracy.no_solver) return OK;
   TIMED(STAGE_ESTIMATE);
   PASS(condensed_energy(cp, u, r, &energy));
+  status st = OK;
   if (cp->blocks != NULL)
     found.why = "its inverse would need all of a large sparse matrix";
   else
-    PASS(dense_inverse_new(cp->m, contact_matrix(cp), &dense));
-  const status st = dense == NULL ? OK : bound_error(cp, dense, u, r, &found);
+    st = dense_inverse_new(cp->m, contact_matrix(cp), &dense);
+  if (st == OK && dense != NULL) st = bound_error(cp, dense, u, r, &found);
   dense_inverse_free(dense);
   PASS(st);
   const double hidden = e->hidden;

@@ -2,7 +2,6 @@
  * Checks of the contact solution at an accepted increment: its errors, by the
  * effects that estimate them, and reasons for doubt.
  */
-#include "base/memory.h"
 #include "base/timer.h"
 #include "run/history/loop.h"
 
@@ -87,7 +86,6 @@ status estimate_increment(run *r) {
 status check_problem(const step *s, const contact_problem *cp,
                      const solver_report *report, const double *u,
                      const double *r, solution_set *out) {
-  char why[256];
   solution_set_free(out);
   if (s->check == CHECK_NONE || cp->m == 0) return OK;
   TIMED(STAGE_CHECK);
@@ -95,7 +93,6 @@ status check_problem(const step *s, const contact_problem *cp,
     return solutions_by_solvers(cp, s->solver.tol, report, u, r, out);
   const status st = solutions_by_statuses(cp, s->solver.tol, u, r, out);
   if (st != ERR_DECK) return st;
-  snprintf(why, sizeof why, "%s", status_message());
   RAISE(ERR_DECK, "deck line %d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
-        s->solver_at.line_no, why);
+        s->solver_at.line_no, status_message());
 }

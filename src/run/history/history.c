@@ -11,7 +11,6 @@
 #include "base/memory.h"
 #include "base/timer.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -473,10 +472,8 @@ static status run_step(run *r) {
 /* The step in progress. */
 static status read_progress(run *r) {
   if (r->course.from == NULL) return OK;
-  archive_enter(r->course.from, "run");
-  status st = archive_bytes(r->course.from, "at", &r->at, sizeof r->at);
-  archive_leave(r->course.from);
-  PASS(st);
+  IN_GROUP(r->course.from, "run");
+  PASS(archive_bytes(r->course.from, "at", &r->at, sizeof r->at));
   if (r->at.step_id < 0 || r->at.step_id >= r->m->n.step)
     RAISE(ERR_FILE, "the restart file is of a deck with other steps");
   return OK;

@@ -239,8 +239,7 @@ static status find_forces(const run *r, misfit *x) {
   const contact_problem *cp = &r->problem.cp;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
   OWNED double *raw = NULL, *rounding = NULL;
-  PASS_NEW(raw, cp->m);
-  PASS_NEW(rounding, cp->n);
+  PASS_NEW_ALL(OF(raw, cp->m), OF(rounding, cp->n));
   contact_apply(cp, u, raw);
   contact_roundings(cp, u, rc, rounding);
   for (int q = 0; q < cp->m; ++q) {
@@ -280,8 +279,7 @@ static status find_adjacent_contact(run *r, misfit *x) {
   OWNED contact_status *touch = NULL;
   OWNED unsigned char *held = NULL;
   double square = 0.0;
-  PASS_NEW(touch, r->problem.cp.n);
-  PASS_NEW(held, r->problem.cp.m);
+  PASS_NEW_ALL(OF(touch, r->problem.cp.n), OF(held, r->problem.cp.m));
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
                    run_rows(r, 1, r->now.rc), touch);
   find_held(r, touch, held);

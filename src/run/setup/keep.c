@@ -120,29 +120,21 @@ static status keep_costs(run *r, archive *a) {
 }
 
 status run_keep_start(run *r, archive *a) {
-  archive_enter(a, "run");
-  status st = archive_reals(a, "start", r->loads.start, r->n_dof);
-  archive_leave(a);
-  return st;
+  IN_GROUP(a, "run");
+  return archive_reals(a, "start", r->loads.start, r->n_dof);
 }
 
 status run_keep_choice(run *r, archive *a) {
-  archive_enter(a, "run");
-  status st = keep_choice(r, a);
-  archive_leave(a);
-  return st;
+  IN_GROUP(a, "run");
+  return keep_choice(r, a);
 }
 
 status run_keep(run *r, archive *a) {
-  status st = OK;
-  archive_enter(a, "run");
-  TRY(keep_counts(r, a));
-  TRY(keep_equilibrium(r, &r->old, a));
-  TRY(keep_moduli(r, a));
-  if (r->nodes.n > 0) TRY(keep_contact(r, a));
-  TRY(effects_keep(r, a));
-  TRY(keep_costs(r, a));
-done:
-  archive_leave(a);
-  return st;
+  IN_GROUP(a, "run");
+  PASS(keep_counts(r, a));
+  PASS(keep_equilibrium(r, &r->old, a));
+  PASS(keep_moduli(r, a));
+  if (r->nodes.n > 0) PASS(keep_contact(r, a));
+  PASS(effects_keep(r, a));
+  return keep_costs(r, a);
 }

@@ -15,7 +15,7 @@ status setup_face_weights(const model *m, const mesh *msh, double **weight);
 status run_new(run *r, const effect_ops *const *effects);
 void run_free(run *r);
 
-/* supports.c: rigid motions that the supports of r->step leave free, nothing
+/* prepare.c: rigid motions that the supports of r->step leave free, nothing
  * solved: *list is new (memory_free), NULL if there are none. ERR_SINGULAR with
  * the list if nothing at all resists one. */
 status run_motions(run *r, int *n, free_motion **list);
@@ -28,7 +28,7 @@ status run_check_supports(const run *r, int *n);
 status run_build_surface(run *r);
 void run_free_surface(run *r);
 
-/* ties.c: the nodes of *TIE under r->body.fixed, before the surface. */
+/* The nodes of *TIE under r->body.fixed, before the surface. */
 status run_build_ties(run *r);
 void run_free_ties(run *r);
 

@@ -43,9 +43,7 @@ void coarser_free(coarser *c) {
 
 static status new_arrays(const contact_surface *s, coarser_state *x) {
   const size_t n = (size_t)s->n, all = (size_t)s->dim * n;
-  PASS_NEW(x->x, all);
-  PASS_NEW(x->contact_id, n);
-  PASS_NEW(x->gap, n);
+  PASS_NEW_ALL(OF(x->x, all), OF(x->contact_id, n), OF(x->gap, n));
   PASS_NEW_REALS(all, &x->traction, &x->slip);
   PASS_NEW(x->contact, n);
   memcpy(x->x, s->x, all * sizeof *x->x);

@@ -6,6 +6,7 @@
  */
 #include "run/start/start.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "base/archive/dataset.h"
 
 #include <math.h>
@@ -49,14 +50,13 @@ static status check_mesh(const hdf5_source *s, const mesh *msh) {
 
 static status read_last(const hdf5_source *s, const mesh *msh, double *u,
                         double *t) {
-  char name[64];
   OWNED double *time = NULL, *all = NULL;
   size_t width, dim = (size_t)msh->dim;
   long n = 0, items = 0;
   PASS(source_reals(s, "/fields/time", 0, MOST_ITEMS, &n, &time));
   if (n < 1) RAISE(ERR_DECK, "%s has no record of fields", s->path);
   *t = time[n - 1];
-  snprintf(name, sizeof name, "/fields/u/%05ld", n);
+  const char *name = text_of("/fields/u/%05ld", n);
   PASS(source_reals(s, name, 0, 3L * msh->n_node, &items, &all));
   PASS(width_of(s, name, items, msh, &width));
   for (size_t i = 0; i < (size_t)msh->n_node; ++i)
@@ -85,8 +85,7 @@ done:
 }
 
 status start_report_new(const mesh *msh, start_report *report) {
-  PASS_NEW(report->defect, msh->n_node);
-  PASS_NEW(report->kind, msh->n_node);
+  PASS_NEW_ALL(OF(report->defect, msh->n_node), OF(report->kind, msh->n_node));
   return OK;
 }
 

@@ -5,7 +5,7 @@
 #include "solver/choice/choice.h"
 
 #include "base/memory.h"
-#include "solver/choice/proof.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -30,15 +30,10 @@ const char *solver_family(const char *name) {
 }
 
 status attempt_archive(const contact_solver *s, int row, archive *a) {
-  status st = OK;
-  char name[20];
   const solver_ops *ops = row < N_SOLVER ? solver_list[row] : s->choice.ops;
   if (s->work[row] == NULL || ops->keep == NULL) return OK;
-  snprintf(name, sizeof name, "work%d", row);
-  archive_enter(a, name);
-  st = ops->keep(s->work[row], a);
-  archive_leave(a);
-  return st;
+  IN_GROUP(a, text_of("work%d", row));
+  return ops->keep(s->work[row], a);
 }
 
 /* A new workspace reads its saved data. */

@@ -1,5 +1,5 @@
-/* Other form and normal form (form.h). */
-#include "solver/choice/form.h"
+/* Other form and normal form (choice.h). */
+#include "solver/choice/choice.h"
 
 #include "base/memory.h"
 #include "solver/newton/dense.h"
@@ -397,23 +397,19 @@ static void settle(const normal_form *nf, const contact_problem *cp, double *u,
 }
 
 status normal_form_keep(normal_form *nf, archive *a) {
-  status st = OK;
-  archive_enter(a, "normal");
-  TRY(archive_ints(a, "wanted", &nf->wanted, 1));
+  IN_GROUP(a, "normal");
+  PASS(archive_ints(a, "wanted", &nf->wanted, 1));
   if (archive_reads(a)) {
     nf->from = a;
     snprintf(nf->group, sizeof nf->group, "%s", archive_group(a));
-    goto done;
+    return OK;
   }
   int there = nf->work != NULL;
-  TRY(archive_ints(a, "work", &there, 1));
-  if (there) TRY(newton_solver.keep(nf->work, a));
+  PASS(archive_ints(a, "work", &there, 1));
+  if (there) PASS(newton_solver.keep(nf->work, a));
   there = nf->opened != NULL;
-  TRY(archive_ints(a, "opened", &there, 1));
-  if (there) TRY(opened_keep(nf->opened, a));
-done:
-  archive_leave(a);
-  return st;
+  PASS(archive_ints(a, "opened", &there, 1));
+  return there ? opened_keep(nf->opened, a) : OK;
 }
 
 /* Open the group of the saved data; *there = 1: the named array exists. */

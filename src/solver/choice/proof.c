@@ -1,9 +1,9 @@
-/* Proof that a problem has no solution (proof.h). */
-#include "solver/choice/proof.h"
+/* Proof that a problem has no solution (choice.h). */
+#include "solver/choice/choice.h"
 
 #include "base/memory.h"
 #include "solver/lcp/lcp.h"
-#include "solver/lcp/nonnegative.h"
+#include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>
 #include <math.h>
@@ -28,11 +28,6 @@ static double slip_of(const contact_problem *cp, const double *v, int node_id) {
   return sqrt(sum);
 }
 
-/* slip[n] of all nodes. */
-static void set_slip(const contact_problem *cp, const double *v, double *slip) {
-  for (int i = 0; i < cp->n; ++i) slip[i] = slip_of(cp, v, i);
-}
-
 /* c of every unknown with a bound, 0 at the others. c[m], slip[n] */
 static void set_growth(const contact_problem *cp, const double *v,
                        const double *slip, double *c) {
@@ -54,7 +49,7 @@ static double held_by_limit(const contact_problem *cp, const double *slip) {
 static double largest_growth(const contact_problem *cp, const double *v,
                              double *c, double *slip) {
   double most = 0.0;
-  set_slip(cp, v, slip);
+  for (int i = 0; i < cp->n; ++i) slip[i] = slip_of(cp, v, i);
   set_growth(cp, v, slip, c);
   for (int dof = 0; dof < cp->m; ++dof)
     if (!(c[dof] <= most)) most = c[dof];
@@ -128,7 +123,7 @@ int proof_holds(const contact_problem *cp, const double *v, double *workspace) {
  *
  * In the modes R the load b = R'f must be a sum of columns with factors >= 0:
  * of a normal force with its friction; of the friction g0, with factor 1, for
- * which an entry is added to all columns and to b (nonnegative.h). Where no
+ * which an entry is added to all columns and to b (lcp_solve.h). Where no
  * column does work on the rest, it is v.
  */
 

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "contact/contact.h"
 #include "solver/lcp/lcp.h"
-#include "solver/lcp/nonnegative.h"
 
 #include <cblas.h>
 #include <lapacke.h>

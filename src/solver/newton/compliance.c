@@ -1,5 +1,5 @@
 /*
- * A step from the compliance (compliance.h).
+ * A step from the compliance (system.h).
  *
  * A factor without slip is kept as the base, of the plain forces N. Where a
  * later guess frees some of them, C, by opening or slip, the displacements of C
@@ -10,7 +10,7 @@
  * z from the conditions on the forces of C: zero where open, on the limit where
  * slipping. These rows have few entries; X is kept.
  */
-#include "solver/newton/compliance.h"
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
 #include "solver/newton/dense.h"

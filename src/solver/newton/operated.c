@@ -1,5 +1,5 @@
-/* A step by the operator (operated.h). */
-#include "solver/newton/operated.h"
+/* A step by the operator (system.h). */
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
 
@@ -175,11 +175,6 @@ static double rotate(operated_system *s, int j) {
   return fabs(g[j + 1]);
 }
 
-/* s->slip.load: v[slip.n] at the slipping rows. */
-static void set_load(operated_system *s, const double *v) {
-  for (int t = 0; t < s->slip.n; ++t) s->slip.load[s->slip.dof[t]] = v[t];
-}
-
 /* The combination of the directions that leaves least is added to the load, and
  * that solved for. */
 static void combine(operated_system *s, const contact_problem *cp) {
@@ -218,7 +213,7 @@ static status gmres(operated_system *s, const contact_problem *cp,
     PASS(grow(s));
     v = direction(s, s->krylov.n);
     double *w = direction(s, s->krylov.n + 1);
-    set_load(s, v);
+    for (int t = 0; t < s->slip.n; ++t) s->slip.load[s->slip.dof[t]] = v[t];
     cp->op->response(cp->op->ctx, s->slip.load, s->slip.x, s->Ax);
     memcpy(w, v, n * sizeof *w);
     add_friction(s, cp, p, s->slip.x, s->Ax, w);

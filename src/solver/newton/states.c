@@ -1,5 +1,5 @@
-/* States of the nodes: open, closed, stick, slip (states.h). */
-#include "solver/newton/states.h"
+/* States of the nodes: open, closed, stick, slip (system.h). */
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
 

@@ -1,5 +1,5 @@
-/* Matrix of a step of the proximal point iteration (step_matrix.h). */
-#include "solver/newton/step_matrix.h"
+/* Matrix of a step of the proximal point iteration (system.h). */
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
 
@@ -123,21 +123,18 @@ static status put_sparse(step_matrix *s, int row) {
 status step_matrix_put(step_matrix *s, int i) {
   status st = OK;
   int row = s->place[i];
+  double *to = is_sparse(s) ? NULL : s->full + (size_t)row * (size_t)s->k;
   sort_touched(s);
   s->rhs[row] = take_out(s, i);
-  if (is_sparse(s)) {
-    TRY(put_sparse(s, row));
-    goto done;
-  }
-  double *to = s->full + (size_t)row * (size_t)s->k;
-  memset(to, 0, (size_t)s->k * sizeof *to);
-  for (int a = 0; a < s->n_touched; ++a)
-    if (s->place[s->touched[a]] >= 0)
-      to[s->place[s->touched[a]]] = s->line[s->touched[a]];
-done:
+  if (to == NULL)
+    st = put_sparse(s, row);
+  else
+    memset(to, 0, (size_t)s->k * sizeof *to);
   for (int a = 0; a < s->n_touched; ++a) {
-    s->line[s->touched[a]] = 0.0;
-    s->is_touched[s->touched[a]] = 0;
+    const int j = s->touched[a];
+    if (to != NULL && s->place[j] >= 0) to[s->place[j]] = s->line[j];
+    s->line[j] = 0.0;
+    s->is_touched[j] = 0;
   }
   s->n_touched = 0;
   return st;
@@ -155,7 +152,6 @@ static int solve_dense(step_matrix *s) {
 }
 
 static status solve_sparse(step_matrix *s, int *singular) {
-  status st = OK;
   double info[UMFPACK_INFO];
   void *symbolic = NULL, *numeric = NULL;
   const sparse_rows *a = &s->rows;
@@ -168,13 +164,12 @@ static status solve_sparse(step_matrix *s, int *singular) {
   if (end == UMFPACK_OK)
     end = umfpack_di_solve(UMFPACK_At, a->start, a->col, a->val, s->x, s->rhs,
                            numeric, s->control, info);
-  *singular = end != UMFPACK_OK;
-  if (end == UMFPACK_ERROR_out_of_memory)
-    FAIL(ERR_MEMORY, "memory exhausted: factor of %d sparse rows", k);
-done:
   umfpack_di_free_symbolic(&symbolic);
   umfpack_di_free_numeric(&numeric);
-  return st;
+  *singular = end != UMFPACK_OK;
+  if (end == UMFPACK_ERROR_out_of_memory)
+    RAISE(ERR_MEMORY, "memory exhausted: factor of %d sparse rows", k);
+  return OK;
 }
 
 status step_matrix_solve(step_matrix *s, double *d, int *singular) {

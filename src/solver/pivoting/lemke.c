@@ -679,14 +679,13 @@ static status lemke_setup(const contact_problem *cp, const void *par,
   PASS_NEW_REALS(m, &w->reduced.base, &w->raw, &w->v, &w->t, &w->ray,
                  &w->best_u, &w->best_r);
   PASS_NEW_REALS(n_var, &w->q, &w->d, &w->z, &w->dz);
-  PASS_NEW_ALL(OF(w->reduced.kept, 2 * m), OF(w->reduced.free_id, 2 * m),
-               OF(w->pivot, 2 * m), OF(w->kind, 2 * m),
-               OF(w->node.normal, 2 * m), OF(w->node.slide, 2 * m),
-               OF(w->node.n_slide, 2 * m));
-  PASS_NEW_ALL(OF(w->reduced.S, m * m), OF(w->reduced.inner, m * m),
-               OF(w->spare, cp->floating ? m * m : 0));
-  PASS_NEW_ALL(OF(w->work, 4 * m + 4), OF(w->reduced.D, cp->n),
-               OF(w->reduced.tame, cp->n), OF(w->var, n_var));
+  PASS_NEW_ALL(
+      OF(w->reduced.kept, 2 * m), OF(w->reduced.free_id, 2 * m),
+      OF(w->pivot, 2 * m), OF(w->kind, 2 * m), OF(w->node.normal, 2 * m),
+      OF(w->node.slide, 2 * m), OF(w->node.n_slide, 2 * m),
+      OF(w->reduced.S, m * m), OF(w->reduced.inner, m * m),
+      OF(w->spare, cp->floating ? m * m : 0), OF(w->work, 4 * m + 4),
+      OF(w->reduced.D, cp->n), OF(w->reduced.tame, cp->n), OF(w->var, n_var));
   PASS(lcp_new(n_var, contact_has_stiffness(cp) ? cp->m : cp->m + 2 * cp->n,
                &w->lcp));
   return set_up_correctors(cp, w);
@@ -762,16 +761,14 @@ static status lemke_solve(const contact_problem *cp, const void *par,
 }
 
 static status lemke_keep(void *work, archive *a) {
-  status st = OK;
   lemke_work *w = work;
-  for (int i = 0; i < N_CORRECTOR && st == OK; ++i) {
-    if (w->corrector.ops[i] == NULL || w->corrector.ops[i]->keep == NULL)
-      continue;
-    archive_enter(a, w->corrector.ops[i]->name);
-    st = w->corrector.ops[i]->keep(w->corrector.work[i], a);
-    archive_leave(a);
+  for (int i = 0; i < N_CORRECTOR; ++i) {
+    const solver_ops *ops = w->corrector.ops[i];
+    if (ops == NULL || ops->keep == NULL) continue;
+    IN_GROUP(a, ops->name);
+    PASS(ops->keep(w->corrector.work[i], a));
   }
-  return st;
+  return OK;
 }
 
 /* clang-format off */

@@ -1,5 +1,5 @@
 /* Nodal fields: $NodeData of gmsh, or two datasets of HDF5. */
-#include "model/field/field.h"
+#include "model/check/parts.h"
 
 #include "base/memory.h"
 #include "base/archive/dataset.h"
@@ -70,8 +70,7 @@ static status read_node_data(scan *s, pairs *p) {
   PASS(read_tags(s, &n));
   scan_start_binary(s);
   PASS(scan_fits(s, n, sizeof "1 0", 12, "values"));
-  PASS_NEW(p->node_no, n);
-  PASS_NEW(p->value, n);
+  PASS_NEW_ALL(OF(p->node_no, n), OF(p->value, n));
   for (size_t i = 0; i < n; ++i) {
     PASS(scan_int(s, &no));
     PASS(scan_real(s, &p->value[i]));
@@ -132,8 +131,7 @@ static status to_mesh(const char *path, const pairs *p, const mesh *msh,
                       double *value) {
   OWNED numbered *node = NULL;
   OWNED unsigned char *known = NULL;
-  PASS_NEW(node, msh->n_node);
-  PASS_NEW(known, msh->n_node);
+  PASS_NEW_ALL(OF(node, msh->n_node), OF(known, msh->n_node));
   for (int i = 0; i < msh->n_node; ++i)
     node[i] = (numbered){msh->node_no[i], i};
   qsort(node, (size_t)msh->n_node, sizeof *node, compare_no);
