@@ -8,7 +8,6 @@
 #include "fem/fem.h"
 #include "program/inform.h"
 #include "program/job.h"
-#include "program/restart.h"
 #include "program/command.h"
 
 #include <fcntl.h>

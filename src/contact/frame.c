@@ -1,7 +1,7 @@
 /*
  * Contact frames: tangents, fixed directions, oblique frames of corners.
  */
-#include "contact/frame.h"
+#include "contact/parts.h"
 
 #include "base/vector.h"
 

@@ -1,8 +1,7 @@
-#include "contact/pair.h"
 
 #include "base/memory.h"
 #include "base/number.h"
-#include "contact/frame.h"
+#include "contact/parts.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,6 +3,7 @@
 #define PROTIS_CONTACT_PARTS_H
 
 #include "contact/contact.h"
+#include "contact/surface.h"
 
 enum { CHUNK = 64 }; /* rows and columns of a product kept on the stack */
 
@@ -20,5 +21,83 @@ node_step contact_step(const contact_problem *cp, int node_id,
                        double largest_diagonal);
 /* Length of v[n], n = 0, 1 or 2. */
 double contact_length(int n, const double *v);
+
+/*
+ * The contact frame of one node: rows n, t1[, t2] in two or three dimensions,
+ * with the directions that *BOUNDARY fixes as tangents, and with the normals
+ * of a second and third obstacle in place of tangents at a corner.
+ */
+
+/* Take the fixed components (bit c: component c) out of v[dim] and make it a
+ * unit vector. Returns the length that was left over the length before; 0 and
+ * v = 0 if nothing was left. */
+double frame_project(int dim, unsigned fixed, double *v);
+
+/*
+ * Complete a frame whose first n_normal rows are unit normals orthogonal to the
+ * fixed components. held[dim] is set to 1 for the rows that are fixed
+ * directions. Frames of one normal are orthonormal and, but for two fixed
+ * components, right handed. 0; -1 if the normals and the fixed directions are
+ * (nearly) dependent.
+ */
+int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
+                   unsigned char *held);
+
+/* basis[dim*dim], column major: inverse of frame (rows). An orthonormal frame
+ * is its own inverse, transposed: no arithmetic then. */
+void frame_invert(int dim, int orthonormal, const double *frame, double *basis);
+
+/*
+ * Pairs of two surfaces of the mesh in a contact surface: what their nodes are
+ * relative to. Private to src/contact.
+ */
+
+/* Part of the unit normal that must be left when the fixed components are
+ * taken out of it. */
+#define PAIR_FIXED_SINE 1e-3
+
+/* The coupling of which a normal of a node is, and its row there. */
+typedef struct pair_row {
+  const mortar *of; /* NULL: of an obstacle */
+  int row;
+} pair_row;
+
+/* Entries of the rows so far, and room for them; all-zero before. */
+typedef struct pair_links {
+  int n, n_part, capacity, part_capacity;
+} pair_links;
+
+/* The row of contact node i, of the last ones before: rows[n] of its normals.
+ * Its tangents are relative to the master of the first, if it has no other;
+ * those that supports hold, and those at corners, to none. ERR_MEMORY. */
+status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
+                    pair_links *room);
+/* ERR_DECK with an error in the log if slave nodes of pairs move with
+ * each other in a circle; ERR_MEMORY. */
+status pairs_check_circles(const contact_surface *s, const surface_input *in,
+                           message_log *log);
+/* Gap of a row of the coupling along n[dim], at time 0, m. */
+double pair_apart(const surface_input *in, const contact_pair *p, int row,
+                  const double *n);
+
+/* A row of the frame of a contact node. */
+typedef struct surface_row {
+  const contact_pair *of;
+  int dim;
+  const double *x, *normal; /* [dim] place of the node, m; direction */
+  double apart;             /* gap of a pair at time 0, m */
+} surface_row;
+
+/* What a contact is with: an obstacle (surface.c) or the master of a pair. */
+typedef struct partner_ops {
+  const char *kind;                               /* as messages name it */
+  double (*gap)(const surface_row *at, double t); /* m */
+  /* n[dim] of its own at x; 0, and n as it was: it has none. */
+  int (*normal)(const surface_row *at, double *n);
+  int (*moves)(const contact_pair *p); /* 1: its gap can change with time */
+  /* d[3] from t0 to t, m; NULL: it does not move. */
+  void (*drift)(const surface_row *at, double t0, double t, double *d);
+} partner_ops;
+extern const partner_ops pair_partner;
 
 #endif

@@ -7,11 +7,10 @@
  * Candidates of one node are merged (one obstacle, smooth surface) or become
  * the rows of one frame (a corner on two obstacles).
  */
-#include "contact/pair.h"
 
 #include "base/memory.h"
 #include "base/vector.h"
-#include "contact/frame.h"
+#include "contact/parts.h"
 
 #include <math.h>
 #include <string.h>

@@ -11,7 +11,7 @@
  * band), so none is taken for its cancelling. The mesh of the next pass has the
  * smallest size that any goal requires.
  */
-#include "program/aims.h"
+#include "program/job.h"
 
 #include "accuracy/space.h"
 #include "base/memory.h"

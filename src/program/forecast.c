@@ -30,7 +30,6 @@
  * two like the last one.
  */
 #include "program/job.h"
-#include "program/aims.h"
 #include "effects/rows.h"
 
 #include "accuracy/space.h"

@@ -15,7 +15,6 @@
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
 #include "program/inform.h"
-#include "program/restart.h"
 #include "run/setup/setup.h"
 
 #include <stdlib.h>

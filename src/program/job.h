@@ -6,6 +6,7 @@
 #include "run/history/history.h"
 #include "output/output.h"
 #include "run/start/coarser.h"
+#include "output/listing/job.h"
 
 typedef struct job_input {
   deck *d;
@@ -97,5 +98,88 @@ typedef struct job_lock {
  * process holds it, or the file cannot be made. */
 status job_lock_take(const char *dir, const char *job, job_lock *l);
 void job_lock_release(job_lock *l); /* accepts one never taken */
+
+/*
+ * JOB.rst.h5: what a run goes on from with --restart, to the result of the run
+ * that was not interrupted, bit for bit.
+ *
+ * All that an increment starts from is kept (run_keep): the last equilibrium,
+ * slip so far, inelastic strains, the place in the grid of increments. Data of
+ * the contact solver that persist from increment to increment (factors and
+ * exchanged rows) are saved as well (contact_solver_keep), because a new factor
+ * has other last digits; matrices, surfaces and averages are made again, for
+ * they depend on the deck and the mesh alone. Of the files their lengths are
+ * kept: what was written after the restart file is cut and written again. One
+ * of them, JOB.rst.inc, has the summaries of the increments for the end of the
+ * run.
+ *
+ * The last two are there: JOB.rst.h5, and JOB.rst.old.h5 in case the first
+ * cannot be read.
+ */
+
+/* Input of a restart file. */
+typedef struct restart_writer {
+  const command *c;
+  const job_input *in;
+  output *out;
+  char *files; /* restart_files when the run was started */
+} restart_writer;
+
+/* Contents of the files that the cards of the deck name, new. ERR_FILE. */
+status restart_files(const job_input *in, char **text);
+
+/* history_sink.checkpoint; ctx is a restart_writer. */
+status restart_write(void *ctx, const run_memory *memory);
+
+/*
+ * The restart file of a job, found to fit its deck and mesh. ERR_DECK: no
+ * restart for such a job, or cards have changed that must not; ERR_FILE: no
+ * restart file, damaged, of another version or mesh. Other threads or another
+ * kernel: a warning on stderr. *out is to be freed after a failure too.
+ */
+status restart_read(const command *c, const job_input *in, archive **out);
+
+/*
+ * The targets of *GOAL in the passes of target.c: errors against what is
+ * allowed, the sizes of the next mesh.
+ */
+
+typedef struct aims aims;
+
+/* *out is new; NULL: there are no goals. Those with a target count, or all, for
+ * a forecast. ERR_MEMORY. */
+status aims_new(const model *m, int all, aims **out);
+int aims_count(const aims *a); /* 1: some goal counts; NULL: none */
+void aims_free(aims *a);       /* accepts NULL */
+
+/* Of a pass, in this order: before its increments; after each of them; after
+ * the last one. All accept NULL. */
+status aims_begin(aims *a, const mesh *msh);
+void aims_see(aims *a, const mesh *msh, const state *s);
+void aims_evaluate(aims *a, const model *m);
+
+/* Of the last pass; NULL: nothing is wanted. 1: all targets are reached. */
+int aims_are_met(const aims *a, const model *m);
+/* Why no mesh can reach them, or "". */
+void aims_check(const aims *a, const model *m, char *why, size_t size);
+/* 1: the meshes of the last two passes brought the goals no nearer. */
+int aims_stand_still(const aims *a);
+/* Largest error of the contact solver over that share of what is allowed, -. */
+double aims_solver(const aims *a, const model *m, double share);
+/* size[n_node] of the next mesh made smaller where a goal requires that;
+ * eta[n_elem]: errors of the elements in the energy norm, or NULL. ERR_MEMORY.
+ */
+status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
+                  double *size);
+/* In the place of the targets: the errors shall fall to that part. */
+void aims_ask(aims *a, double part);
+/* Elements that goal i alone needs for its error, over those of the mesh of the
+ * last pass, -. ERR_MEMORY. */
+status aims_share(const aims *a, const mesh *msh, int i, double *share);
+/* The goals that require it, after "mesh"; 0: none. */
+size_t aims_name(const aims *a, const model *m, char *text, size_t size);
+
+/* [n*n_goal] of the passes so far; NULL of NULL. */
+const pass_goal *aims_rows(const aims *a);
 
 #endif

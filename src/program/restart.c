@@ -1,6 +1,6 @@
 /* The restart file: its origin, and whether a deck may continue from it. */
 #include "base/file.h"
-#include "program/restart.h"
+#include "program/job.h"
 
 #include "base/memory.h"
 #include "base/text.h"

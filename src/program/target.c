@@ -12,7 +12,6 @@
  */
 #include "program/job.h"
 
-#include "program/aims.h"
 #include "accuracy/space.h"
 #include "base/interrupt.h"
 #include "base/memory.h"

@@ -3,7 +3,7 @@
  * compliance get the problem with springs on the motions of the body. What the
  * obstacle carries follows from statics.
  */
-#include "solver/choice/anchor.h"
+#include "solver/choice/choice.h"
 
 #include "base/memory.h"
 #include "support/operated_case.h"

@@ -1,5 +1,5 @@
 /* METHOD=AUTO, forms of a problem, what is kept from problem to problem. */
-#include "solver/choice/form.h"
+#include "solver/choice/choice.h"
 #include "solver/solver.h"
 #include "support/planted.h"
 #include "support/contact_case.h"

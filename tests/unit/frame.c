@@ -1,5 +1,5 @@
 /* src/contact/frame.c: orthonormal and oblique frames, fixed directions. */
-#include "contact/frame.h"
+#include "contact/parts.h"
 #include "support/unit.h"
 
 #include <math.h>

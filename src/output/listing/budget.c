@@ -3,7 +3,7 @@
  * the saving by stopping early; the goals; the passes towards the targets of
  * *ACCURACY and *GOAL; which error to improve next, and its price.
  */
-#include "output/listing/listing.h"
+#include "output/listing/job.h"
 
 #include "base/timer.h"
 #include "effects/rows.h"

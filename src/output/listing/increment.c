@@ -3,7 +3,7 @@
  * CHECK=, theorems of THEORY= (constants, limits of mu, bounds of CPR98),
  * errors, forces, energies.
  */
-#include "output/listing/listing.h"
+#include "output/listing/job.h"
 
 #include <math.h>
 #include <string.h>

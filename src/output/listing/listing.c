@@ -4,7 +4,7 @@
  * columns (CPU seconds and bytes, which depend on the length of names) are left
  * out on request, and then two runs give the same bytes.
  */
-#include "output/listing/listing.h"
+#include "output/listing/job.h"
 
 #include "base/timer.h"
 #include "effects/rows.h"

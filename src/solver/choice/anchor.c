@@ -1,8 +1,7 @@
-/* Springs that hold a body while its contact forces are found (anchor.h). */
-#include "solver/choice/anchor.h"
+/* Springs that hold a body while its contact forces are found (choice.h). */
+#include "solver/choice/choice.h"
 
 #include "base/memory.h"
-#include "solver/choice/form.h"
 
 #include <cblas.h>
 #include <lapacke.h>

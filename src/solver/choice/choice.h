@@ -5,10 +5,125 @@
 #ifndef PROTIS_CHOICE_CHOICE_H
 #define PROTIS_CHOICE_CHOICE_H
 
-#include "solver/choice/anchor.h"
-#include "solver/choice/form.h"
 #include "solver/fixed_point.h"
 #include "solver/solver.h"
+#include "solver/newton/dense.h"
+
+/*
+ * A body that contact alone holds, for solvers that need the compliance.
+ *
+ * The null vectors R of its stiffness, orthonormal, are motions of the whole
+ * body. Springs of stiffnesses k on them make a problem any solver takes,
+ *
+ *   A_s = A + R k R',   f_s = f + R k a,
+ *
+ * and the place a they are fixed at follows the body, a <- R'u, until they
+ * carry nothing: R'(f + r) = k (R'u - a) = 0. These are the multipliers of the
+ * equilibrium of the whole body (augmented Lagrangian; Dostal 2009, SMALBE),
+ * and the proximal point iteration on its place (Rockafellar 1976): with a
+ * given sliding limit it converges if there is an equilibrium. If there is none
+ * the body drifts off for ever by the same step.
+ */
+
+typedef struct anchor {
+  int made;            /* 1: A_s is there */
+  int missing;         /* 1: the null vectors could not be found */
+  int m, n_mode;       /* unknowns of an operator; null vectors */
+  double *R;           /* [m*n_mode] - */
+  double *spring;      /* [n_mode] k, N/m */
+  double *A, *W;       /* [m*m] A_s and its inverse, where A has entries */
+  contact_operator op; /* A_s, where it is an operator, */
+  const contact_operator *of; /* A, */
+  double *y;                  /* [m] and its work */
+  double *f;                  /* [m] f_s, N */
+  double *a,
+      *step; /* [n_mode] place of the springs, last move of the body, m */
+} anchor;
+
+/* The modes R only, of a problem with its stiffness, if they are not known. */
+status anchor_modes(const contact_problem *cp, anchor *an);
+/* Make it for the matrix of cp, unless it was tried before. */
+status anchor_make(const contact_problem *cp, anchor *an);
+void anchor_free(anchor *an); /* all zero afterwards */
+/* Its matrix in the place of that of cp; 1: cp has it. */
+void anchor_put(const anchor *an, contact_problem *cp);
+int anchor_holds(const anchor *an, const contact_problem *cp);
+
+/* Solves a problem with springs as given, from u, r. */
+typedef struct anchored_solver {
+  status (*solve)(void *ctx, const contact_problem *cp,
+                  const solver_control *control, double *u, double *r,
+                  solver_report *rep);
+  void *ctx;
+} anchored_solver;
+/* Solve cp by passes of "inner" on problems with springs. rep: iterations of
+ * all passes; STOPPED_RAY: the body drifts off. */
+status anchor_solve(const anchor *an, const contact_problem *cp,
+                    const anchored_solver *inner, const solver_control *control,
+                    double *u, double *r, solver_report *rep);
+
+/*
+ * Other forms of a problem, more suitable for a solver.
+ *
+ * The other form: stiffness from compliance, or the reverse, by an inverse that
+ * is made once per matrix.
+ *
+ * The normal form of a problem without friction: the tangential unknowns, which
+ * carry no force, are eliminated once per matrix,
+ *   S = A_nn - A_nt inv(A_tt) A_tn,
+ * and contact is solved in the n normal unknowns.
+ */
+
+/* Powers of two, one of them returned, that bring the diagonal of p S M S near
+ * one, S = diag(scale[m]), but for what may be rounding of the largest; a
+ * factor of M that is a power of two changes p alone. */
+double form_scale(int m, const double *diagonal, double *scale);
+/* M <- p S M S */
+void form_apply_scale(int m, double power, const double *scale, double *M);
+/* inv(M) in place of d->a = M[m*m], scaled so; *good 0: singular to rounding, M
+ * is lost. */
+status form_invert(int m, dense *d, int *good);
+
+typedef struct other_form {
+  double *matrix; /* [m*m] inverse of the one given, or NULL */
+  double *load;   /* [m] load in that form */
+  int missing;    /* 1: it does not exist */
+} other_form;
+/* Make it, unless it was tried before. */
+status other_form_make(const contact_problem *cp, other_form *o);
+void other_form_free(other_form *o); /* all zero afterwards */
+
+typedef struct opened opened;
+
+typedef struct normal_form {
+  int missing;       /* 1: it does not exist */
+  int wanted;        /* problems so far that would have used it */
+  double power;      /* of two: power A has a diagonal of order 1 */
+  double *L;         /* [nt*nt] Cholesky factor of power A_tt */
+  double *Y;         /* [nt*n] inv(L) power A_tn */
+  double *S;         /* [n*n] */
+  double *f, *u, *r; /* [n] of the problem in S */
+  opened *opened;    /* without S */
+  double *y;         /* [m] work */
+  void *work;        /* of the solver */
+  archive *from;     /* borrowed: saved data for the workspace; or NULL */
+  char group[80];    /* in it */
+} normal_form;
+/* Data saved from problem to problem; as contact_solver_keep. */
+status normal_form_keep(normal_form *nf, archive *a);
+/* 1: stiffness known, no friction, no second obstacle, nothing held, matrix
+ * not singular. */
+int normal_form_applies(const contact_problem *cp);
+/* Solve from the closed state by the factor of the tangents. */
+status normal_form_opened(normal_form *nf, const contact_problem *cp,
+                          const solver_control *control, double *u, double *r,
+                          solver_report *rep);
+/* Solve by Newton's method from u[m], r[m]. rep as from a solver; RUNNING if
+ * the form does not exist (u, r untouched). */
+status normal_form_solve(normal_form *nf, const contact_problem *cp,
+                         const solver_control *control, double *u, double *r,
+                         solver_report *rep);
+void normal_form_free(normal_form *nf); /* all zero afterwards */
 
 #define SOLVER_COUNT_ONE(name) +1
 enum { N_SOLVER = 0 SOLVER_LIST(SOLVER_COUNT_ONE), LOG_SIZE = 1024 };
@@ -62,7 +177,7 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
 void attempt_check(const contact_solver *s, const contact_problem *cp,
                    const double *u, const double *r, solver_report *rep);
 /* After a failure: STOPPED_RAY if it is proved that there is no solution
- * (proof.h), and only then; of a large sparse compliance none is sought. */
+ * (proof.c), and only then; of a large sparse compliance none is sought. */
 status attempt_prove(contact_solver *s, const contact_problem *cp,
                      solver_report *rep);
 /* Cold start: stick, no penetration; r = A u - f. */

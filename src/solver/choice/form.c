@@ -1,5 +1,5 @@
-/* Other form and normal form (form.h). */
-#include "solver/choice/form.h"
+/* Other form and normal form (choice.h). */
+#include "solver/choice/choice.h"
 
 #include "base/memory.h"
 #include "solver/newton/dense.h"

@@ -1,4 +1,4 @@
-/* Proof that a problem has no solution (proof.h). */
+/* Proof that a problem has no solution (choice.h). */
 #include "solver/choice/choice.h"
 
 #include "base/memory.h"
@@ -123,7 +123,7 @@ int proof_holds(const contact_problem *cp, const double *v, double *workspace) {
  *
  * In the modes R the load b = R'f must be a sum of columns with factors >= 0:
  * of a normal force with its friction; of the friction g0, with factor 1, for
- * which an entry is added to all columns and to b (nonnegative.h). Where no
+ * which an entry is added to all columns and to b (lcp_solve.h). Where no
  * column does work on the rest, it is v.
  */
 

@@ -30,7 +30,7 @@
  * rho is a multiple of the diagonal of A, equal in the tangents of a node.
  *
  * Of an operator the equations of both variants are solved as those of NEWTON
- * (operated.h). With F' = s (I - e e') where a node slips, s = g/|z|, those of
+ * (system.h). With F' = s (I - e e') where a node slips, s = g/|z|, those of
  * VARIANT=NEWTON are, multiplied by inv(I - F'),
  *
  *   (A_t + rho s/(1 - s) (I - e e') + e B A_n) du = g e - y - ...,
@@ -41,7 +41,7 @@
 #include "contact/force_set.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
-#include "solver/newton/operated.h"
+#include "solver/newton/system.h"
 #include "solver/solver.h"
 
 #include <cblas.h>

@@ -1,5 +1,5 @@
 /*
- * A step from the compliance (compliance.h).
+ * A step from the compliance (system.h).
  *
  * A factor without slip is kept as the base, of the plain forces N. Where a
  * later guess frees some of them, C, by opening or slip, the displacements of C

@@ -20,11 +20,10 @@
  * springs for the step; if the final pattern is singular, that is the outcome.
  *
  * Where only the compliance is known a step solves for the unknown forces of
- * the guess (compliance.h); a singular system then ends the method.
+ * the guess (system.h); a singular system then ends the method.
  */
 #include "base/memory.h"
 #include "base/timer.h"
-#include "solver/newton/operated.h"
 #include "solver/newton/system.h"
 #include "solver/local.h"
 #include "solver/single.h"

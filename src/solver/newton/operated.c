@@ -1,5 +1,5 @@
-/* A step by the operator (operated.h). */
-#include "solver/newton/operated.h"
+/* A step by the operator (system.h). */
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
 

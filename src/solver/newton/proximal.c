@@ -19,7 +19,7 @@
  * solutions.
  *
  * Of an operator u is moved along with r = A u - f, and the step is that of
- * NEWTON (operated.h) with stiffness added where a force acts: with dr = A du,
+ * NEWTON (system.h) with stiffness added where a force acts: with dr = A du,
  * inv(W) = A, e = z_t/|z_t|, P = I - e e' and t = g/|z_t|,
  *
  *   no force      (A du)_i = -F_i
@@ -31,8 +31,7 @@
  */
 #include "base/memory.h"
 #include "contact/force_set.h"
-#include "solver/newton/operated.h"
-#include "solver/newton/step_matrix.h"
+#include "solver/newton/system.h"
 #include "solver/solver.h"
 
 #include <cblas.h>

@@ -1,4 +1,4 @@
-/* States of the nodes: open, closed, stick, slip (states.h). */
+/* States of the nodes: open, closed, stick, slip (system.h). */
 #include "solver/newton/system.h"
 
 #include "base/memory.h"

@@ -1,5 +1,5 @@
-/* Matrix of a step of the proximal point iteration (step_matrix.h). */
-#include "solver/newton/step_matrix.h"
+/* Matrix of a step of the proximal point iteration (system.h). */
+#include "solver/newton/system.h"
 
 #include "base/memory.h"
 

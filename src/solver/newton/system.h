@@ -23,6 +23,7 @@
 #include "base/archive/archive.h"
 #include "contact/contact.h"
 #include "solver/solver.h"
+#include "contact/force_set.h"
 
 #include <stdint.h>
 
@@ -130,5 +131,74 @@ void compliance_displace(const contact_problem *cp, const double *r,
  * is singular: r and raw are then undefined. */
 int compliance_system_step(compliance_system *s, const contact_problem *cp,
                            const pattern *p, double *r, double *raw);
+
+/*
+ * The linear system of one step of the methods of Newton's kind (system.h)
+ * where the stiffness is an operator. The symmetric part of its matrix, without
+ * the friction that follows pressure, is factored for the rows of the guess;
+ * GMRES (Saad, Schultz 1986) preconditioned by it from the right adds the
+ * friction, which has rows at the slipping nodes only.
+ */
+
+typedef struct operated_system operated_system;
+status operated_system_new(const contact_problem *cp, operated_system **out);
+void operated_system_free(operated_system *s); /* accepts NULL */
+/* No step before on the same rows. */
+void operated_system_fit(operated_system *s);
+/* newton_system_step. *singular 1: weak springs held the body. ERR_MEMORY. */
+status operated_system_step(operated_system *s, const contact_problem *cp,
+                            pattern *p, double *u, double *raw, int *singular);
+/* du[m], Adu[m] = A du: the known rows of the guess p (place < 0) as du has
+ * them, at the others
+ *   (A + hold + kappa (I - e e') + e B A_n) du = b,
+ * hold[m] on the diagonal (N/m; NULL: none), the next in slipping nodes alone,
+ * A_n rows of closed unknowns. *singular 1: weak springs held the body.
+ * ERR_MEMORY. */
+typedef struct operated_rows {
+  const pattern *p;
+  const double *hold, *b;
+} operated_rows;
+status operated_system_direction(operated_system *s, const contact_problem *cp,
+                                 const operated_rows *rows, double *du,
+                                 double *Adu, int *singular);
+/* newton_system_work. */
+linear_work operated_system_work(const operated_system *s,
+                                 const contact_problem *cp);
+/* 1: raw of the last step is a sum over steps, not the reaction of u. Accepts
+ * NULL. */
+int operated_system_sums(const operated_system *s);
+/* 1: another step on the same rows may mend the last, which was solved to a few
+ * digits. Accepts NULL. */
+int operated_system_refresh(operated_system *s);
+
+/*
+ * The matrix of a step of Newton's method on the forces (proximal.c), row by
+ * row:
+ *
+ *   J_i = e_i                                         nothing acts on unknown i
+ *   J_i = e_i - sum_j c_ij (e_j (1 - a) - D_j W_j) + ...            the others
+ *
+ * with rows W_j of the compliance. Unknowns of the first kind are eliminated;
+ * what is left is sparse where W is, and then factored by UMFPACK, else by
+ * LAPACK.
+ */
+
+typedef struct step_matrix step_matrix;
+/* set: borrowed. */
+status step_matrix_new(const contact_problem *cp, const force_set *set,
+                       step_matrix **out);
+void step_matrix_free(step_matrix *s); /* accepts NULL */
+/* A new matrix: acts[m], 0: row i is e_i; d[m] the right side, kept by the
+ * caller until the solve. */
+void step_matrix_begin(step_matrix *s, const unsigned char *acts,
+                       const double *d);
+/* Into the current row: value in column j; share times row j of W. */
+void step_matrix_add(step_matrix *s, int j, double value);
+void step_matrix_add_row(step_matrix *s, int j, double share);
+/* It is row i (with acts[i], in ascending order); the next one is empty.
+ * Errors: ERR_MEMORY. */
+status step_matrix_put(step_matrix *s, int i);
+/* d <- inv(J) d; *singular = 1: not found. Errors: ERR_MEMORY. */
+status step_matrix_solve(step_matrix *s, double *d, int *singular);
 
 #endif
