@@ -137,7 +137,7 @@ static void choose_pins(operated_case *o) {
 
 operated_case *operated_new(contact_case *c) {
   operated_case *o = calloc(1, sizeof *o);
-  const contact_problem *dense = &o->of;
+  const contact_problem *full = &o->of;
   const size_t m = (size_t)c->cp.m;
   int exponent;
   o->of = c->cp;
@@ -148,10 +148,10 @@ operated_case *operated_new(contact_case *c) {
   o->room = calloc(2 * m, sizeof *o->room);
   for (size_t i = 0; i < m; ++i)
     o->diagonal[i] =
-        (contact_held(dense, (int)i) ? 1 : LARGER) * dense->A[i * (m + 1)];
+        (contact_held(full, (int)i) ? 1 : LARGER) * full->A[i * (m + 1)];
   frexp(o->diagonal[0], &exponent);
   o->power = ldexp(1, -exponent);
-  ck_assert_int_eq(contact_bodies_new(dense, &o->bodies), OK);
+  ck_assert_int_eq(contact_bodies_new(full, &o->bodies), OK);
   o->op = (contact_operator){.ctx = o,
                              .diagonal = o->diagonal,
                              .body = o->bodies->of,
@@ -163,7 +163,7 @@ operated_case *operated_new(contact_case *c) {
                              .solve = solve,
                              .set_response = set_response,
                              .response = response};
-  if (dense->floating) {
+  if (full->floating) {
     find_kernel(o);
     choose_pins(o);
   }
