@@ -167,7 +167,7 @@ class Results(unittest.TestCase):
             text = DECK.read_text() if name != "c" else "*NONSENSE\n"
             (folder / "job.inp").write_text(text)
             decks.append(str(folder / "job.inp"))
-        words = [sys.executable, "tools/batch", *decks, "-j", "1", "-o",
+        words = [sys.executable, "tools/batch", *decks, "-o",
                  str(self.dir / "out"), "--", "-DN=4"]
         with subprocess.Popen(words, stdout=subprocess.PIPE, text=True,
                               stderr=subprocess.DEVNULL) as first:

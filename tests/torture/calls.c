@@ -177,8 +177,9 @@ static const char *wrong_end(failing_call call, const job *j, int code) {
     return ends[kind].wrong;
   if (has_reason(call) && code != 5 && strstr(j->errors, strerror(EIO)) == NULL)
     return "reason not told";
-  return code != 4 || strstr(j->errors, j->dir) != NULL ? NULL
-                                                        : "file not named";
+  const int named = strstr(j->errors, j->dir) != NULL ||
+                    strstr(j->errors, "standard output: ") != NULL;
+  return code != 4 || named ? NULL : "file not named";
 }
 
 static const char *fault(const job *whole, const job *j, const failing_point *p,
