@@ -108,6 +108,14 @@ static void give_up(const child *c, status code, const char *format, ...) {
  * parent. */
 static void leave_at_once(void) { _exit(LEFT_BY_ITSELF); }
 
+/* End with the parent. The kernel forgets it where the user changes. */
+static void end_with(pid_t parent) {
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
+  if (getppid() != parent) _exit(LEFT_BY_ITSELF);
+}
+
 /* Isolate the process: streams, signals, core files; it ends with the parent.
  * The error output of gmsh goes to error_fd, which never blocks; what does not
  * fit is lost. */
@@ -120,10 +128,7 @@ static void detach(pid_t parent, int fd, int error_fd) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
-#ifdef __linux__
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-#endif
-  if (getppid() != parent) _exit(LEFT_BY_ITSELF);
+  end_with(parent);
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
   fcntl(fd, F_SETFD, FD_CLOEXEC);
   fcntl(error_fd, F_SETFL, O_NONBLOCK);
@@ -243,7 +248,7 @@ static void set(const child *c, const char *option, double value) {
 
 /* Numbers for the .geo are set as on the command line of gmsh, before the file
  * is read: they override DefineConstant. */
-static void start(const child *c) {
+static void start(const child *c, pid_t parent) {
   const mesh_source *r = c->request->source;
   int n = r->n_number, error;
   char **argv = memory_new(3 * (size_t)n + 2, sizeof *argv);
@@ -269,6 +274,7 @@ static void start(const child *c) {
   int changed = user == 0 && seteuid(nobody) == 0;
   c->gmsh.Initialize(argc, argv, 0, &error);
   if (changed && seteuid(user) != 0) _exit(LEFT_BY_ITSELF);
+  end_with(parent);
   check(c, error, "start");
   set(c, "General.Terminal", 1);
   c->gmsh.LoggerStart(&error);
@@ -570,7 +576,7 @@ void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
   detach(parent, fd, error_fd);
   confine();
   load(c);
-  start(c);
+  start(c, parent);
   open_geo(c);
   if (request->source->sizes[0].of != NULL) free_counts(c);
   int dim = send_groups(c);

@@ -466,6 +466,48 @@ START_TEST(reader_that_dies_is_told) {
 }
 END_TEST
 
+/* The process of a file in the folder that a shell writes; 0: none in time. */
+static pid_t told_process(const char *path) {
+  int pid = 0;
+  for (int i = 0; i < 1000 && pid == 0; ++i) {
+    FILE *told = fopen(path, "r");
+    if (told != NULL && fscanf(told, "%d\n", &pid) != 1) pid = 0;
+    if (told != NULL) fclose(told);
+    usleep(10000);
+  }
+  return pid;
+}
+
+/* A program that is killed leaves no mesher: here the shell below it lives
+ * until the mesher does not. */
+START_TEST(reader_dies_with_the_program) {
+  mesh_file f;
+  mesh_file_open(&f);
+  char text[400], path[80];
+  snprintf(path, sizeof path, "%s/pid", f.folder);
+  snprintf(text, sizeof text,
+           "SystemCall \"exec > %s 2>&1; echo $PPID; while kill -0 $PPID; do "
+           "sleep 0.01; "
+           "done\";\n",
+           path);
+  fflush(NULL);
+  const pid_t program = fork();
+  if (program == 0) {
+    mesh_file_text(&f, "waits.geo", text);
+    _exit(0);
+  }
+  const pid_t reader = told_process(path);
+  kill(program, SIGKILL);
+  waitpid(program, NULL, 0);
+  for (int i = 0; i < 1000 && kill(reader, 0) == 0; ++i) usleep(10000);
+  const int lives = kill(reader, 0) == 0;
+  if (lives && reader > 0) kill(reader, SIGKILL);
+  ck_assert_int_gt(reader, 0);
+  ck_assert(!lives);
+  mesh_file_close(&f);
+}
+END_TEST
+
 static void on_alarm(int signal) { (void)signal; }
 
 /* Signals that the program handles must not break the reading, and what is
@@ -772,7 +814,8 @@ UNIT_MAIN("mesh_errors", every_error_has_its_text_and_no_mesh,
           bodies_that_hardly_enter_each_other_touch,
           body_inside_of_another_is_seen, files_that_cannot_be_read_are_told,
           good_file_is_read_after_bad_ones, reader_that_dies_is_told,
-          signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
+          reader_dies_with_the_program, signals_do_not_disturb,
+          want_of_memory_in_gmsh_is_told,
           want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
           geometry_alone_makes_the_mesh, options_of_merged_files_are_refused,
           closed_streams_do_not_disturb,
