@@ -6,6 +6,8 @@
 #define PROTIS_BASE_NUMBER_H
 
 enum { NUMBER_TEXT_SIZE = 32 };
+/* Largest numbers that are computed with: products of two are finite. */
+#define NUMBER_MOST 0x1p480
 
 /* NULL and the value, or what is wrong in a few words ("not a number", ...).
  * The text may have blanks before and after the number. The answer does not

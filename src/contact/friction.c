@@ -4,6 +4,7 @@
 #include "contact/friction.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "contact/average/average.h"
 
 #include <float.h>
@@ -45,10 +46,10 @@ status friction_value(const friction_card *card, const contact_surface *s,
   double x[3];
   coordinates(s, i, x);
   *value = quantity_value(&card->value, x, t);
-  if (!isfinite(*value) || *value < 0)
+  if (!(*value >= 0.0 && *value <= NUMBER_MOST))
     RAISE(ERR_DECK,
           "*FRICTION: value %g at node %zu (%g, %g, %g), time %g; expected a "
-          "number that is not negative",
+          "number that is not negative, up to 3e144",
           *value, s->node_no[i], x[0], x[1], x[2], t);
   return OK;
 }

@@ -4,6 +4,7 @@
  * solution is transformed back.
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "contact/formulation.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
@@ -61,12 +62,13 @@ static status set_forces(run *r, void *self, double t) {
     const given_force *given = force_of(r, i);
     double p = quantity_value(&given->value, x, t);
     f->force[k] = f->all[i] = p * s->area[i];
-    if (isfinite(p) && p >= 0.0) continue;
+    if (p >= 0.0 && p <= NUMBER_MOST) continue;
     message_add(r->m->log, P2041, &given->value_at,
                 "*CONTACT FORCE: value %g at node %zu (%g, %g, %g), time %g; "
-                "expected a number that is not negative",
+                "expected a number that is not negative, up to 3e144",
                 p, s->node_no[i], x[0], x[1], x[2], t);
-    RAISE(ERR_DECK, "%s:%d: a given contact force is negative or no number",
+    RAISE(ERR_DECK,
+          "%s:%d: a given contact force is negative, too large or no number",
           given->value_at.file, given->value_at.line_no);
   }
   r->problem.given = f->all;

@@ -4,6 +4,7 @@
  * input without effect; increments of *VISCO steps against the laws.
  */
 #include "base/memory.h"
+#include "base/number.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
 
@@ -233,13 +234,14 @@ static int contact_finite(const model *m, const mesh *msh, const contact *c,
     size_t node = (size_t)g->node_id[k], dim = (size_t)msh->dim;
     memcpy(x, msh->x + dim * node, dim * sizeof *x);
     double value = quantity_value(v.value, x, t);
-    if (isfinite(value) && value >= 0.0) continue;
+    if (value >= 0.0 && value <= NUMBER_MOST) continue;
     message_add(m->log, P2041, v.at,
                 "*%s: %s is %s at node %zu (%g, %g, %g), time %g", v.card,
                 v.name,
-                isnan(value)  ? "not a number"
-                : value < 0.0 ? "negative"
-                              : "infinite",
+                isnan(value)   ? "not a number"
+                : value < 0.0  ? "negative"
+                : isinf(value) ? "infinite"
+                               : "too large, above 3e144,",
                 msh->node_no[node], x[0], x[1], x[2], t);
     return 0;
   }

@@ -5,6 +5,7 @@
 #include "run/setup/setup.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/timer.h"
 
 #include <math.h>
@@ -95,7 +96,7 @@ static status report_ready(run *r) {
 }
 
 /* Forces, stiffness and displacements are squared and multiplied. */
-static const double LEAST = 0x1p-480, MOST = 0x1p480;
+static const double LEAST = 1.0 / NUMBER_MOST, MOST = NUMBER_MOST;
 static int in_range(double x) { return x == 0.0 || (x > LEAST && x < MOST); }
 
 static status check_range(const run *r) {
