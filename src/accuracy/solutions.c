@@ -210,18 +210,15 @@ static int is_chosen(const contact_problem *cp, int i) {
 static status try_solver(const contact_problem *cp, double tol,
                          const solver_ops *ops, const trial *x,
                          solution_set *s) {
-  status st = OK;
   _Alignas(16) char param[PARAM_SIZE] = {0};
-  contact_solver *solver = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *solver = NULL;
   assert(ops->param_size <= PARAM_SIZE);
   option_defaults(ops->options, param);
   solver_choice choice = {.ops = ops, .param = param, .tol = tol};
-  TRY(contact_solver_new(&choice, &solver));
+  PASS(contact_solver_new(&choice, &solver));
   for (int k = 0; k < N_START; ++k)
-    TRY(attempt(cp, tol, solver, ops->name, (start)k, x, s));
-done:
-  contact_solver_free(solver);
-  return st;
+    PASS(attempt(cp, tol, solver, ops->name, (start)k, x, s));
+  return OK;
 }
 
 status solutions_by_solvers(const contact_problem *cp, double tol,

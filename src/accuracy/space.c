@@ -417,10 +417,6 @@ status space_keep(space_recovery *s) {
 
 int space_regions(const space_recovery *s) { return s->n_region; }
 
-double space_measure(const space_recovery *s, int elem_id) {
-  return s->measure[elem_id];
-}
-
 int space_region(const space_recovery *s, int elem_id) {
   return s->region[s->d->section_id[elem_id]];
 }

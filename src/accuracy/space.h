@@ -41,7 +41,6 @@ status space_estimate(space_recovery *s, const double *sigma, double *eta,
  * q[nq*n_elem] at the nodes of one. */
 int space_regions(const space_recovery *s);
 int space_region(const space_recovery *s, int elem_id);
-double space_measure(const space_recovery *s, int elem_id); /* element_weight */
 void space_recover(space_recovery *s, int region, int nq, const double *q,
                    double *value);
 /* For many of them: the fits are made once. ERR_MEMORY. */

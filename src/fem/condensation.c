@@ -353,21 +353,27 @@ static int set_prescribed(condensed *c, const double *ud) {
   return any;
 }
 
+/* Vectors u of contact nodes by their basis, or forces by its transpose. */
+static void turn_nodes(const condensed *c, int transposed, double *u) {
+  const int dim = c->k->dim;
+  for (int q = 0; q < c->n_contact; ++q) {
+    double *v = u + (size_t)dim * (size_t)c->d.surface->node_id[q], a[3];
+    const double *T = c->d.surface->basis + dim * dim * q;
+    memcpy(a, v, (size_t)dim * sizeof *a);
+    for (int r = 0; r < dim; ++r) {
+      v[r] = 0;
+      for (int s = 0; s < dim; ++s)
+        v[r] += T[transposed ? dim * r + s : dim * s + r] * a[s];
+    }
+  }
+}
+
 /* Forces at the unknowns: what acts on a node acts on those it moves with, and
  * contact nodes turn by their basis. */
 static void set_load(condensed *c, const double *F) {
-  const int dim = c->k->dim;
-  memcpy(c->load, F, (size_t)dim * (size_t)c->k->n_node * sizeof *F);
+  memcpy(c->load, F, (size_t)c->k->dim * (size_t)c->k->n_node * sizeof *F);
   if (c->k->moved != NULL) coupling_load(c->k->moved, c->load);
-  for (int q = 0; q < c->n_contact; ++q) {
-    double *v = c->load + (size_t)dim * (size_t)c->d.surface->node_id[q], f[3];
-    const double *T = c->d.surface->basis + dim * dim * q;
-    memcpy(f, v, (size_t)dim * sizeof *f);
-    for (int a = 0; a < dim; ++a) {
-      v[a] = 0;
-      for (int b = 0; b < dim; ++b) v[a] += T[dim * a + b] * f[b];
-    }
-  }
+  turn_nodes(c, 1, c->load);
 }
 
 /* load -= K prescribed over the blocks that couple them. */
@@ -401,16 +407,7 @@ static status forward(condensed *c, double *f_c) {
 /* Displacements from the unknowns: contact nodes from their frame to global
  * components, relative ones with those of their masters. */
 static void to_global(const condensed *c, double *u) {
-  const int dim = c->k->dim;
-  for (int q = 0; q < c->n_contact; ++q) {
-    double *v = u + (size_t)dim * (size_t)c->d.surface->node_id[q], a[3];
-    const double *T = c->d.surface->basis + dim * dim * q;
-    memcpy(a, v, (size_t)dim * sizeof *a);
-    for (int r = 0; r < dim; ++r) {
-      v[r] = 0;
-      for (int s = 0; s < dim; ++s) v[r] += T[dim * s + r] * a[s];
-    }
-  }
+  turn_nodes(c, 0, u);
   if (c->k->moved != NULL) coupling_move(c->k->moved, u);
 }
 

@@ -22,7 +22,7 @@ void visco_forget(run *r) {
 }
 
 static void forget_solver(matrices *m) {
-  contact_solver_free(m->solver);
+  contact_solver_free(&m->solver);
   m->solver = NULL;
   m->from = NULL;
 }

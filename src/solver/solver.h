@@ -173,7 +173,7 @@ typedef struct solver_choice {
 /* Workspace that persists while A is unchanged. */
 typedef struct contact_solver contact_solver;
 status contact_solver_new(const solver_choice *choice, contact_solver **out);
-void contact_solver_free(contact_solver *s);
+void contact_solver_free(contact_solver **s);
 /* Replace the tolerance of the choice. */
 void contact_solver_tolerance(contact_solver *s, double tol);
 /*

@@ -102,7 +102,7 @@ static double once(const solver_ops *ops, way how, const struct loading *l) {
     must(contact_solve(s, &bench.b.cp, NULL, bench.u, bench.r, &rep));
     if (rep.outcome != CONVERGED) rep.cpu = HUGE_VAL;
   }
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return rep.cpu;
 }
 
@@ -135,7 +135,7 @@ static void reference(const struct loading *l) {
   pressed_block_load(&bench.b, 0.9 * l->side, 0.9 * l->down);
   contact_solver *s = solver_of(NULL, param);
   must(contact_solve(s, &bench.b.cp, NULL, bench.start_u, bench.start_r, &rep));
-  contact_solver_free(s);
+  contact_solver_free(&s);
   pressed_block_load(&bench.b, l->side, l->down);
 }
 

@@ -73,7 +73,7 @@ static void once(const contact_problem *cp, const solver_ops *ops, double *u,
   snprintf(x->tried, sizeof x->tried, "%s", contact_solver_log(s));
   if (x->tried[0] == '\0')
     snprintf(x->tried, sizeof x->tried, "%s", rep.solver);
-  contact_solver_free(s);
+  contact_solver_free(&s);
   x->iterations = rep.iterations;
   x->outcome = rep.outcome;
 }

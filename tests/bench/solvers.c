@@ -108,7 +108,7 @@ static void reference(block *b) {
   print_states(b);
   if (rep.outcome != CONVERGED)
     printf("# reference: residual %.1e only\n", rep.residual);
-  contact_solver_free(s);
+  contact_solver_free(&s);
 }
 
 /* One line: row (ops NULL: AUTO) with an option set, or v NULL. */
@@ -132,7 +132,7 @@ static void line(block *b, const solver_ops *ops, const struct variant *v,
          rep.limit_updates, first.cpu, rep.cpu, rep.residual, error_of(b),
          outcome_text(rep.outcome));
   fflush(stdout);
-  contact_solver_free(s);
+  contact_solver_free(&s);
 }
 
 static void lines(block *b, double mu, double tol) {

@@ -133,7 +133,7 @@ static double run_auto(const struct kernel *k, double tol) {
   double start = cpu();
   must(contact_solver_new(&choice, &s));
   must(contact_solve(s, cp, NULL, peers.u, peers.r, &rep));
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return cpu() - start;
 }
 

@@ -129,7 +129,7 @@ static double run_auto(void *what) {
   double start = cpu();
   must(contact_solver_new(&choice, &s));
   must(contact_solve(s, &cp, NULL, peers.u, peers.r, &rep));
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return rep.outcome == CONVERGED ? cpu() - start : HUGE_VAL;
 }
 

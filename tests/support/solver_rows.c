@@ -30,7 +30,7 @@ solver_report solve_by(const solver_ops *ops, const contact_case *c, double tol,
   ck_assert(ops == NULL || ops->param_size <= sizeof param);
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, u, r, &rep), OK);
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return rep;
 }
 

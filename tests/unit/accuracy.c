@@ -23,7 +23,7 @@ static solver_report solve(contact_case *c, const char *name, double tol) {
   solver_choice choice = {.ops = ops, .param = param, .tol = tol};
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return rep;
 }
 

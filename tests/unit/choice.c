@@ -74,7 +74,7 @@ START_TEST(what_is_kept_changes_no_answer) {
       for (int i = 0; i < c.cp.m; ++i)
         ck_assert_double_eq_tol(c.r[i], r[i], 1e-8);
     }
-    contact_solver_free(s);
+    contact_solver_free(&s);
     free(u);
     free(r);
     case_free(&c);
@@ -142,7 +142,7 @@ START_TEST(unfit_method_is_named_with_the_reason) {
     const char *said = strstr(contact_solver_log(s), ops->name);
     ck_assert_ptr_nonnull(said);
     ck_assert_ptr_nonnull(strstr(said, "the compliance is singular"));
-    contact_solver_free(s);
+    contact_solver_free(&s);
     ++unfit;
   }
   ck_assert_int_ge(unfit, 1);
@@ -230,7 +230,7 @@ START_TEST(limit_holds_for_all_attempts_together) {
       ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
       ck_assert_msg(rep.iterations <= limit, "%s: %d of %d", rows[i]->name,
                     rep.iterations, limit);
-      contact_solver_free(s);
+      contact_solver_free(&s);
       case_free(&c);
     }
 }
@@ -246,7 +246,7 @@ static void tried(const contact_problem *cp, double *u, double *r, int most,
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, cp, NULL, u, r, rep), OK);
   snprintf(text, 512, "%s", contact_solver_log(s));
-  contact_solver_free(s);
+  contact_solver_free(&s);
 }
 
 /* The first methods that were tried are these. */

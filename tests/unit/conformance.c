@@ -311,7 +311,7 @@ static int solves_planted(const solver_ops *ops, const planted *p, int k) {
   memcpy(p->u, p->q, sizeof *p->u * (size_t)p->cp.m);
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &p->cp, NULL, p->u, p->r, &rep), OK);
-  contact_solver_free(s);
+  contact_solver_free(&s);
   if (rep.outcome != CONVERGED) return 0;
   double map = planted_map(p, p->u, p->r);
   ck_assert_msg(map <= CLAIM * TOL_SOFT, "%s: planted %d: natural map %g",

@@ -23,7 +23,7 @@ START_TEST(fixed_point_contracts_by_mu_over_its_critical_value) {
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_int_gt(rep.limit_updates, 2);
     ck_assert_double_eq_tol(rep.rate, mu / 1.8, 1e-6);
-    contact_solver_free(s);
+    contact_solver_free(&s);
     case_free(&c);
   }
 }
@@ -52,7 +52,7 @@ START_TEST(fallback_is_logged) {
   ck_assert_int_eq(rep.outcome, CONVERGED);
   ck_assert_ptr_nonnull(strstr(contact_solver_log(s), "newton: "));
   ck_assert_ptr_nonnull(strstr(contact_solver_log(s), "converged"));
-  contact_solver_free(s);
+  contact_solver_free(&s);
   case_free(&c);
 }
 END_TEST

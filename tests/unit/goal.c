@@ -32,7 +32,8 @@ static void find_adjoint(goal_case *g, const double *u, const double *r) {
   ck_assert_ptr_nonnull(a);
   ck_assert_int_eq(contact_adjoint_solve(a, g->j, g->psi, g->y, &g->solver),
                    OK);
-  memcpy(g->stick, contact_adjoint_stick(a), sizeof g->stick);
+  memcpy(g->stick, contact_adjoint_stick(a),
+         (size_t)g->c.cp.m * sizeof *g->stick);
   contact_adjoint_free(a);
 }
 

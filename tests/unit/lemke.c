@@ -314,7 +314,7 @@ START_TEST(held_sided_and_smooth_nodes_agree_with_newton) {
     memset(c.u, 0, (size_t)m * sizeof *u);
     memset(c.r, 0, (size_t)m * sizeof *u);
     ck_assert_int_eq(contact_solve(s, &c.cp, NULL, c.u, c.r, &rep), OK);
-    contact_solver_free(s);
+    contact_solver_free(&s);
     double apart = 0.0, size = 0.0;
     for (int i = 0; i < m; ++i) {
       apart = fmax(apart, fabs(u[i] - c.u[i]));
@@ -536,7 +536,7 @@ START_TEST(compliance_form_gives_the_same_answer) {
     solver_report rep;
     ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
     ck_assert_int_eq(contact_solve(s, &soft, NULL, u, r, &rep), OK);
-    contact_solver_free(s);
+    contact_solver_free(&s);
     ck_assert_msg(rep.outcome == CONVERGED, "%d: %s, residual %g", k,
                   outcome_text(rep.outcome), rep.residual);
     for (int i = 0; i < m; ++i) {

@@ -50,7 +50,7 @@ static solver_report solve_by(const variant *v, contact_case *c, double tol) {
   memset(c->r, 0, (size_t)c->cp.m * sizeof *c->r);
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return rep;
 }
 
@@ -448,7 +448,7 @@ START_TEST(refused_memory_is_given_back) {
         st = contact_solver_new(&choice, &s);
         if (st == OK) st = contact_solve(s, &c.cp, NULL, c.u, c.r, &rep);
         memory_refuse(0, 0);
-        contact_solver_free(s);
+        contact_solver_free(&s);
         ck_assert(st == OK || st == ERR_MEMORY);
         ck_assert_uint_eq(memory_in_use(), before);
       }

@@ -41,7 +41,7 @@ static status solve(const variant *v, contact_case *c, int max_iter,
   status st = contact_solver_new(&choice, &s);
   if (st == OK) st = contact_solve(s, &c->cp, NULL, c->u, c->r, rep);
   if (st == OK && log != NULL) snprintf(log, 1024, "%s", contact_solver_log(s));
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return st;
 }
 

@@ -274,7 +274,7 @@ START_TEST(large_sparse_compliance_is_not_searched) {
   memory_limit(SIZE_MAX, "");
   ck_assert_msg(st == OK, "%s", status_message());
   ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
-  contact_solver_free(s);
+  contact_solver_free(&s);
   sparse_blocks_free(W);
   free(row);
   free(column);

@@ -17,7 +17,7 @@ static solver_report solve(contact_case *c) {
   solver_choice choice = {.tol = 1e-12};
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
-  contact_solver_free(s);
+  contact_solver_free(&s);
   return rep;
 }
 

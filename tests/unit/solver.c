@@ -496,7 +496,7 @@ START_TEST(solved_state_is_kept_and_a_near_one_is_cheap) {
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_int_le(rep.iterations, 4);
     free(u);
-    contact_solver_free(s);
+    contact_solver_free(&s);
     case_free(&c);
   }
 }
@@ -589,7 +589,7 @@ START_TEST(limit_of_iterations_is_honest_and_heard) {
     ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
     ck_assert(rep.residual > 1e-13);
     ck_assert_msg(heard > 0, "%s", row_name(ops));
-    contact_solver_free(s);
+    contact_solver_free(&s);
     case_free(&c);
   }
 }
@@ -620,7 +620,7 @@ START_TEST(refused_memory_is_told_and_given_back) {
         status st = contact_solver_new(&choice, &s);
         if (st == OK) st = contact_solve(s, &c.cp, NULL, c.u, c.r, &rep);
         memory_refuse(0, 0);
-        contact_solver_free(s);
+        contact_solver_free(&s);
         ck_assert_uint_eq(memory_in_use(), before);
         if (st == OK) break;
         ck_assert_int_eq(st, ERR_MEMORY);

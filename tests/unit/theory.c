@@ -26,7 +26,7 @@ static void solve(contact_case *c) {
   ck_assert_int_eq(contact_solver_new(&choice, &s), OK);
   ck_assert_int_eq(contact_solve(s, &c->cp, NULL, c->u, c->r, &rep), OK);
   ck_assert_int_gt(rep.outcome, 0);
-  contact_solver_free(s);
+  contact_solver_free(&s);
 }
 
 /* All nodes on one contact. */

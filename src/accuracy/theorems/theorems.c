@@ -277,9 +277,8 @@ static void set_limit(theorems_contact *row) {
 static status know_friction(theorems *t, const theorems_scene *s,
                             const frozen_problem *p) {
   status st = OK;
-  unsigned char *keep = NULL;
+  OWNED unsigned char *keep = NULL;
   theorems_contact all = {.contact_id = -1};
-  int found = 0;
   if (same_friction(t, &p->cp)) return OK;
   forget_friction(t);
   t->n_entry = count_entries(&p->cp);
@@ -290,21 +289,17 @@ static status know_friction(theorems *t, const theorems_scene *s,
   TRY(friction_constants(&p->cp, &t->norm, 1, &all));
   for (int c = 0; c < s->n_contact; ++c) {
     theorems_contact row = {.contact_id = c, .mu = s->mu[c]};
-    frozen_problem part = {0};
+    ENDS_BY(frozen_free) frozen_problem part = {0};
     if (!mark_contact(s, &p->cp, c, keep)) continue;
-    ++found;
     all.mu = fmax(all.mu, row.mu);
-    st = frozen_new(&p->cp, p->r, keep, NULL, &part);
-    if (st == OK) st = friction_constants(&part.cp, &t->norm, 0, &row);
-    frozen_free(&part);
-    TRY(st);
+    TRY(frozen_new(&p->cp, p->r, keep, NULL, &part));
+    TRY(friction_constants(&part.cp, &t->norm, 0, &row));
     set_limit(&row);
     add_row(t, &row);
   }
   set_limit(&all);
   add_row(t, &all);
 done:
-  memory_free(keep);
   if (st != OK) forget_friction(t);
   return st;
 }

@@ -202,7 +202,7 @@ static status lend_solver(run *r, contact_solver **own) {
 }
 
 static void give_back(run *r, contact_solver *own, double tol) {
-  contact_solver_free(r->elastic.solver);
+  contact_solver_free(&r->elastic.solver);
   r->solving.tol = tol;
   r->elastic.solver = own;
   r->solver = own;

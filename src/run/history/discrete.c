@@ -128,17 +128,16 @@ static status find_error(const step *s, const contact_problem *cp,
 }
 
 static status solve_contact(discrete *d, const history_sink *sink) {
-  status st = OK;
-  contact_solver *solver = NULL;
+  ENDS_BY(contact_solver_free) contact_solver *solver = NULL;
   contact_problem *cp = &d->cp;
   const solver_listener listener = {sink->iteration, sink->ctx};
-  TRY(contact_bodies_new(cp, &d->bodies));
+  PASS(contact_bodies_new(cp, &d->bodies));
   cp->bodies = d->bodies;
   if (!contact_has_stiffness(cp))
     memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
-  TRY(contact_solver_new(&d->step->solver, &solver));
-  TRY(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
-                    d->r, &d->report));
+  PASS(contact_solver_new(&d->step->solver, &solver));
+  PASS(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
+                     d->r, &d->report));
   snprintf(d->log, sizeof d->log, "%s", contact_solver_log(solver));
   contact_classify(cp, d->u, d->r, d->contact);
   if (cp->g0 != NULL) contact_limit(cp, d->r, d->g);
@@ -149,9 +148,7 @@ static status solve_contact(discrete *d, const history_sink *sink) {
       d->slip[s] = d->u[cp->dim * i + k] - (cp->ut0 == NULL ? 0.0 : cp->ut0[s]);
     }
   }
-done:
-  contact_solver_free(solver);
-  return st;
+  return OK;
 }
 
 static status solve_lcp(discrete *d) {

@@ -202,7 +202,7 @@ status run_prepare(run *r) {
   PASS(find_load(r));
   PASS(effects_prepare(r));
   if (fresh || other) PASS(report_ready(r));
-  contact_solver_free(r->elastic.solver);
+  contact_solver_free(&r->elastic.solver);
   r->elastic.solver = NULL;
   r->solving.tol = r->step->solver.tol;
   PASS(run_use(r, &r->elastic));

@@ -186,7 +186,8 @@ static void forget_factors(contact_solver *s) {
   s->from = NULL;
 }
 
-void contact_solver_free(contact_solver *s) {
+void contact_solver_free(contact_solver **p) {
+  contact_solver *s = *p;
   if (s == NULL) return;
   forget_factors(s);
   RELEASE(s->param, s);

@@ -63,13 +63,12 @@ static double plain_residual(int n, const double *M, const double *q,
 
 status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
                  double *z, lcp_report *rep) {
-  status st = OK;
-  lcp_work *w = NULL;
-  double *d = NULL;
+  ENDS_BY(lcp_free) lcp_work *w = NULL;
+  OWNED double *d = NULL;
   plain m = {n, M, power_to_one(largest_entry((size_t)n * (size_t)n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
-  TRY(lcp_new(n, n, &w));
-  NEW(d, n);
+  PASS(lcp_new(n, n, &w));
+  PASS_NEW(d, n);
   for (int i = 0; i < n; ++i) d[i] = 1.0;
   lcp_problem p = {.n = n,
                    .q = q,
@@ -86,10 +85,7 @@ status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
     for (int i = 0; i < n; ++i) z[i] *= m.factor;
     rep->residual = plain_residual(n, M, q, z);
   }
-done:
-  lcp_free(w);
-  memory_free(d);
-  return st;
+  return OK;
 }
 
 /* Relative to the largest number of the same kind. */
@@ -481,7 +477,8 @@ static const double SPOILT = 0x1p-38;   /* defect that requires a new inverse */
 static const double NEAR_END = 0x1p-30; /* share of z0 that is made exact */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
-void lcp_free(lcp_work *w) {
+void lcp_free(lcp_work **p) {
+  lcp_work *w = *p;
   if (w == NULL) return;
   RELEASE(w->K, w->P, w->lapack, w->swap, w->var, w->row, w->at_z, w->at_w,
           w->z, w->w, w->enter.dz, w->enter.dw, w->enter.lz, w->enter.lw,

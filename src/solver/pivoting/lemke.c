@@ -643,7 +643,7 @@ static void lemke_release(void *work) {
       w->corrector.ops[i]->release(w->corrector.work[i]);
     memory_free(w->corrector.param[i]);
   }
-  lcp_free(w->lcp);
+  lcp_free(&w->lcp);
   RELEASE(w->reduced.S, w->reduced.inner, w->spare, w->reduced.D,
           w->reduced.tame, w->reduced.base, w->raw, w->v, w->t, w->ray, w->work,
           w->best_u, w->best_r, w->reduced.kept, w->reduced.free_id, w->pivot,
