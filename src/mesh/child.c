@@ -20,6 +20,7 @@
 #include <gmshc.h>
 #include <limits.h>
 #include <locale.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -108,18 +109,21 @@ static void give_up(const child *c, status code, const char *format, ...) {
  * parent. */
 static void leave_at_once(void) { _exit(LEFT_BY_ITSELF); }
 
-/* End with the parent. The kernel forgets it where the user changes. */
-static void end_with(pid_t parent) {
+/* End with the parent, which reads what is written to fd. The kernel forgets it
+ * where the user changes. */
+static void end_with_reader(int fd) {
+  struct pollfd pipe = {.fd = fd};
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
-  if (getppid() != parent) _exit(LEFT_BY_ITSELF);
+  if (poll(&pipe, 1, 0) > 0 && (pipe.revents & POLLERR) != 0)
+    _exit(LEFT_BY_ITSELF);
 }
 
 /* Isolate the process: streams, signals, core files; it ends with the parent.
  * The error output of gmsh goes to error_fd, which never blocks; what does not
  * fit is lost. */
-static void detach(pid_t parent, int fd, int error_fd) {
+static void detach(int fd, int error_fd) {
   static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT, SIGPIPE,
                                 SIGCHLD, SIGABRT, SIGSEGV, SIGFPE,  SIGBUS,
                                 SIGILL,  SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU};
@@ -128,7 +132,7 @@ static void detach(pid_t parent, int fd, int error_fd) {
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
-  end_with(parent);
+  end_with_reader(fd);
   setrlimit(RLIMIT_CORE, &(struct rlimit){0, 0});
   fcntl(fd, F_SETFD, FD_CLOEXEC);
   fcntl(error_fd, F_SETFL, O_NONBLOCK);
@@ -248,7 +252,7 @@ static void set(const child *c, const char *option, double value) {
 
 /* Numbers for the .geo are set as on the command line of gmsh, before the file
  * is read: they override DefineConstant. */
-static void start(const child *c, pid_t parent) {
+static void start(const child *c) {
   const mesh_source *r = c->request->source;
   int n = r->n_number, error;
   char **argv = memory_new(3 * (size_t)n + 2, sizeof *argv);
@@ -274,7 +278,7 @@ static void start(const child *c, pid_t parent) {
   int changed = user == 0 && seteuid(nobody) == 0;
   c->gmsh.Initialize(argc, argv, 0, &error);
   if (changed && seteuid(user) != 0) _exit(LEFT_BY_ITSELF);
-  end_with(parent);
+  end_with_reader(c->fd);
   check(c, error, "start");
   set(c, "General.Terminal", 1);
   c->gmsh.LoggerStart(&error);
@@ -571,12 +575,12 @@ static void send_warnings(const child *c, const char *doing) {
   }
 }
 
-void child_run(const raw_request *request, pid_t parent, int fd, int error_fd) {
+void child_run(const raw_request *request, int fd, int error_fd) {
   child here = {.request = request, .fd = fd}, *c = &here;
-  detach(parent, fd, error_fd);
+  detach(fd, error_fd);
   confine();
   load(c);
-  start(c, parent);
+  start(c);
   open_geo(c);
   if (request->source->sizes[0].of != NULL) free_counts(c);
   int dim = send_groups(c);

@@ -235,7 +235,6 @@ status raw_read(const raw_request *request, raw_mesh **out) {
   ENDS_BY(close_ends) int data[2] = {-1, -1};
   ENDS_BY(close_ends) int error[2] = {-1, -1};
   int stopped = 0, code = 0;
-  pid_t parent = getpid();
   PASS_NEW(*out, 1);
   if (!open_pipe(data) || !open_pipe(error))
     RAISE(ERR_MESH, "no pipe for the mesh reader: %s", strerror(errno));
@@ -246,7 +245,7 @@ status raw_read(const raw_request *request, raw_mesh **out) {
   if (pid == 0) {
     close(data[0]);
     close(error[0]);
-    child_run(request, parent, data[1], error[1]);
+    child_run(request, data[1], error[1]);
   }
   close_end(&data[1]);
   close_end(&error[1]);

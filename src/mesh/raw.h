@@ -67,7 +67,7 @@ status raw_read(const raw_request *request, raw_mesh **out);
 status raw_receive(int fd, raw_mesh *raw, int *stopped);
 
 /* Child's end: gmsh from the request to the pipe. Never returns. */
-void child_run(const raw_request *request, pid_t parent, int fd, int error_fd);
+void child_run(const raw_request *request, int fd, int error_fd);
 
 /* Check the raw mesh and make the mesh of it; messages go to the log. */
 status build_mesh(const raw_mesh *raw, double scale, const place *at,

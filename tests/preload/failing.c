@@ -136,8 +136,7 @@ static void copy(int from, int other, int to) {
       _exit(98);
 }
 
-void __real_child_run(const raw_request *request, pid_t parent, int fd,
-                      int error_fd);
+void __real_child_run(const raw_request *request, int fd, int error_fd);
 static uint64_t mix(uint64_t key, const void *data, size_t n) {
   for (const unsigned char *p = data; n > 0; ++p, --n)
     key = (key ^ *p) * 1099511628211u;
@@ -157,11 +156,9 @@ static uint64_t request_key(const raw_request *request) {
   return key;
 }
 
-void __wrap_child_run(const raw_request *request, pid_t parent, int fd,
-                      int error_fd) {
+void __wrap_child_run(const raw_request *request, int fd, int error_fd) {
   char path[300];
   int ends[2];
-  (void)parent;
   in_run = 0;
   snprintf(path, sizeof path, "%s/%016" PRIx64, kept_meshes,
            request_key(request));
@@ -170,12 +167,11 @@ void __wrap_child_run(const raw_request *request, pid_t parent, int fd,
     copy(kept, -1, fd);
     _exit(0);
   }
-  pid_t self = getpid();
   if (pipe(ends) != 0) _exit(98);
   if (fork() == 0) {
     close(ends[0]);
     in_run = 1;
-    __real_child_run(request, self, ends[1], error_fd);
+    __real_child_run(request, ends[1], error_fd);
   }
   close(ends[1]);
   copy(ends[0], __real_open(path, O_WRONLY | O_CREAT | O_TRUNC, 0666), fd);

@@ -141,8 +141,7 @@ double __wrap_expression_value(const expression *e, const double x[3],
                                double t);
 status __wrap_interrupt_asked(void);
 int __wrap_open(const char *path, int flags, ...);
-void __wrap_child_run(const raw_request *request, pid_t parent, int fd,
-                      int error_fd);
+void __wrap_child_run(const raw_request *request, int fd, int error_fd);
 
 /* The program, its main under another name. */
 int protis_main(int argc, char **argv);

@@ -45,7 +45,7 @@ static void make(const char *part, int n, char *const *words) {
   const int to = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   const int nothing = open("/dev/null", O_WRONLY);
   if (to < 0 || nothing < 0 || chdir(words[1]) != 0) _exit(1);
-  child_run(&(raw_request){&source, 0}, getppid(), to, nothing);
+  child_run(&(raw_request){&source, 0}, to, nothing);
 }
 
 /* 1: the stream has a mesh. What fails is left to the program, whose messages
