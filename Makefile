@@ -331,7 +331,7 @@ scenes: $(program) $(scenes)
 
 # Programs of make test that run all their cases here (unit_whole).
 whole    := $(addprefix $(out)/tests/,unit/average unit/conformance \
-              unit/fixed_point unit/mesh_errors regression/partial_slip)
+              unit/fixed_point unit/mesh_reader regression/partial_slip)
 stability: $(program) $(stab) $(whole) scenes
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
 	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes,$^)

@@ -13,6 +13,16 @@
   "$EndPhysicalNames\n$Nodes\n" nodes "$EndNodes\n$Elements\n" elements \
   "$EndElements\n"
 
+/* Its parts for a unit square of two triangles. */
+#define SQUARE "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n"
+#define BODY "1\n2 1 \"BODY\"\n"
+#define TWO "1 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n"
+/* A .geo of a unit square with its upper side outside of everything. */
+#define PLATE                                                               \
+  "Point(1)={0,0,0}; Point(2)={1,0,0}; Point(3)={1,1,0}; Point(4)={0,1,0};" \
+  "Line(1)={1,2}; Line(2)={2,3}; Line(3)={3,4}; Line(4)={4,1};"             \
+  "Curve Loop(1)={1:4}; Plane Surface(1)={1}; Transfinite Curve{1:4}=2;\n"
+
 typedef struct mesh_file {
   char folder[64];
   char messages[4096]; /* of the last reading, without source lines       */
