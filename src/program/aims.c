@@ -223,8 +223,10 @@ status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
                   double *size) {
   OWNED double *own = NULL, *more = NULL;
   PASS_NEW_ALL(OF(own, msh->n_elem), OF(more, msh->n_node));
+  /* What gained nothing was too little: errors scatter from mesh to mesh. */
+  const int tries = isfinite(a->least) ? a->in_vain : 0;
   for (int i = 0; i < a->n; ++i) {
-    const double part = part_of(last_row(a, i));
+    const double part = ldexp(part_of(last_row(a, i)), -tries);
     if (!a->all && !(m->accuracy.goals[i].target > 0.0)) continue;
     const int any = find_own(a, msh, i, own);
     if (!any && eta == NULL) continue;

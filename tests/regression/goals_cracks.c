@@ -257,8 +257,23 @@ START_TEST(target_of_a_factor) {
 }
 END_TEST
 
+/* The error scatters by as much as little finer meshes gain. */
+START_TEST(target_on_meshes_that_scatter) {
+  job j = run_crack("crack", "N = 6\nANGLE = 30.\nGROWTH = 0.2\nW = 200.",
+                    "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n" SIF
+                    "NAME=TWO, COMPONENT=2, TARGET=1 %\n",
+                    HELD "*DSLOAD\nRIGHT, P, 1.\nLEFT, P, 1.\n");
+  const double exact = 0.63456099;
+  dat t = job_table(&j, "GOALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "value"), exact, 0.01 * exact);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("goals_cracks", open_crack_in_a_plate, crack_loaded_on_its_lips,
           crack_that_is_closed_in_part, crack_at_an_edge,
           wide_crack_in_a_coarse_strip, closed_crack_that_slips,
           error_of_the_solver_in_a_factor, crack_that_sticks_is_none,
-          disc_in_space, no_factor_no_estimate, target_of_a_factor)
+          disc_in_space, no_factor_no_estimate, target_of_a_factor,
+          target_on_meshes_that_scatter)
