@@ -180,6 +180,30 @@ START_TEST(echo_reads_back_to_the_same_echo) {
 }
 END_TEST
 
+/* Of any length, also one whose square is no number. */
+START_TEST(directions_have_unit_length) {
+  static const char *const given[] = {"3E-200, 4E-200", "3E200, 4E200",
+                                      "0.3, 0.4"};
+  for (size_t k = 0; k < sizeof given / sizeof *given; ++k) {
+    char text[600];
+    text_model s;
+    snprintf(text, sizeof text,
+             HEAD
+             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n%s\n"
+             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2, 0.\n*END STEP\n",
+             given[k]);
+    text_model_read(&s, text, square());
+    ck_assert_int_eq(s.st, OK);
+    const double *n = s.m->obstacles[0].direction;
+    ck_assert_double_eq_tol(n[0], 0.6, 1e-15);
+    ck_assert_double_eq_tol(n[1], 0.8, 1e-15);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 START_TEST(effects_are_what_the_deck_calls_for) {
   text_model s;
   text_model_read(&s,
@@ -233,5 +257,5 @@ END_TEST
 
 UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
           loads_ramp_stay_change_and_end, echo_reads_back_to_the_same_echo,
-          effects_are_what_the_deck_calls_for,
+          directions_have_unit_length, effects_are_what_the_deck_calls_for,
           every_refused_request_is_reported)
