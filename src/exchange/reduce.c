@@ -9,6 +9,7 @@
  */
 #include "base/memory.h"
 #include "exchange/parts.h"
+#include "mesh/mesh.h"
 
 #include <cblas.h>
 #include <cholmod.h>
@@ -437,11 +438,6 @@ static void row_sets_free(row_sets *t) {
   RELEASE(t->of, t->start, t->column, t->current);
 }
 
-static int root(int *parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 static status join_rows(const triplets *M, row_sets *t) {
   OWNED int *parent = NULL, *number = NULL;
   PASS_NEW_ALL(OF(parent, M->rows), OF(number, M->rows));
@@ -450,10 +446,9 @@ static status join_rows(const triplets *M, row_sets *t) {
     number[i] = -1;
   }
   for (long k = 0; k < M->n; ++k)
-    if (M->value[k] != 0.0)
-      parent[root(parent, M->row[k])] = root(parent, M->column[k]);
+    if (M->value[k] != 0.0) forest_join(parent, M->row[k], M->column[k]);
   for (int i = 0; i < M->rows; ++i) {
-    int *at = &number[root(parent, i)];
+    int *at = &number[forest_root(parent, i)];
     if (*at < 0) *at = t->n++;
     t->of[i] = *at;
   }

@@ -33,7 +33,12 @@ static void leave(exchange_problem *p) {
   folder_remove(folder);
 }
 
-enum { BODIES = 8, CONTACTS = BODIES - 1, ROWS = 2 * BODIES, M = 2 * CONTACTS };
+enum {
+  BODIES = 40,
+  CONTACTS = BODIES - 1,
+  ROWS = 2 * BODIES,
+  M = 2 * CONTACTS
+};
 
 typedef struct row_of_bodies {
   double mass[ROWS * ROWS], H[ROWS * M], f[ROWS], w[M], mu[CONTACTS];
@@ -59,7 +64,8 @@ static void add_body(row_of_bodies *t, int b) {
   }
 }
 
-/* Full masses of two unknowns; a contact between each body and the next. */
+/* Full masses of two unknowns; a contact between the last of each body and the
+ * first of the next: what joins contacts is in the masses alone. */
 static void make_row(row_of_bodies *t) {
   unsigned long long seed = 23;
   memset(t, 0, sizeof *t);
@@ -70,7 +76,7 @@ static void make_row(row_of_bodies *t) {
     m[1] = m[ROWS] = 0.8 * case_random(&seed);
   }
   for (int j = 0; j < M; ++j)
-    for (int i = 0; i < 4; ++i)
+    for (int i = 1; i < 3; ++i)
       t->H[ROWS * j + j / 2 * 2 + i] = 2.0 * case_random(&seed) - 1.0;
   for (int i = 0; i < ROWS; ++i) t->f[i] = case_random(&seed);
   for (int i = 0; i < M; ++i) t->q[i] = t->w[i] = case_random(&seed);
