@@ -280,7 +280,7 @@ static status make_operator(condensed *c) {
                               .rigid = &c->rigid,
                               .cm = c->cm};
   status st = sparse_operator_new(&data, &c->ordering, &c->sparse);
-  return st == OK ? OK : name_body(c, &c->sparse->f, st);
+  return c->sparse == NULL ? st : name_body(c, &c->sparse->f, st);
 }
 
 status condense(const stiffness *k, const domain *d, condensed **out) {

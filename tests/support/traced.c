@@ -66,7 +66,8 @@ static pid_t start(const job *j, const char *const *words, int followed) {
   if (followed && ptrace(PTRACE_TRACEME, 0, NULL, NULL) != 0) _exit(98);
   if (followed) raise(SIGSTOP); /* until the tracer is ready for the calls */
   if (followed && !stop_at_changes()) _exit(97);
-  execl(program(), program(), deck, "--no-timing", words[0], words[1],
+  const char *second = words[0] == NULL ? NULL : words[1];
+  execl(program(), program(), deck, "--no-timing", words[0], second,
         (char *)NULL);
   _exit(99);
 }

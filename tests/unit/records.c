@@ -28,7 +28,7 @@ static uint64_t address_of(hid_t file, const char *name) {
  * goes on elsewhere. */
 static record_group make_group(hid_t file, const char *name, int attributes,
                                off_t *offset) {
-  char first[40], text[20];
+  char first[40], text[32];
   const hsize_t dims[1] = {VALUES};
   hid_t space = H5Screate_simple(1, dims, NULL),
         plain = H5Pcreate(H5P_DATASET_CREATE);
