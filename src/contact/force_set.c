@@ -1,4 +1,3 @@
-
 /* Admissible forces (force_set.h). */
 #include "contact/force_set.h"
 

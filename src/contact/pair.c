@@ -1,4 +1,5 @@
-
+/* Pairs of two surfaces of the mesh in a contact surface: what their nodes are
+ * relative to. */
 #include "base/memory.h"
 #include "base/number.h"
 #include "contact/parts.h"
