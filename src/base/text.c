@@ -170,3 +170,12 @@ void text_word(char *word, size_t size, const char *text) {
     word[i] = isspace((unsigned char)text[i]) ? '_' : text[i];
   word[i] = '\0';
 }
+
+void _gfortran_concat_string(size_t n, char *to, size_t n_a, const char *a,
+                             size_t n_b, const char *b) {
+  if (n_a > n) n_a = n;
+  if (n_b > n - n_a) n_b = n - n_a;
+  memcpy(to, a, n_a);
+  memcpy(to + n_a, b, n_b);
+  memset(to + n_a + n_b, ' ', n - n_a - n_b);
+}

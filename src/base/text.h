@@ -78,4 +78,12 @@ void text_plain(char *text);
 /* The text as one word: blanks become "_". */
 void text_word(char *word, size_t size, const char *text);
 
+/*
+ * a // b in n characters, the one call of LAPACK to the library of Fortran. In
+ * an archive of LAPACK it is answered here: the other would bring libquadmath,
+ * which registers formats of its own and so slows all of printf.
+ */
+void _gfortran_concat_string(size_t n, char *to, size_t n_a, const char *a,
+                             size_t n_b, const char *b);
+
 #endif

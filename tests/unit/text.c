@@ -159,7 +159,18 @@ START_TEST(text_from_outside_is_shown_without_control_characters) {
 }
 END_TEST
 
-UNIT_MAIN("text", text_from_outside_is_shown_without_control_characters,
+/* Fortran: what is longer is cut, what is shorter filled with blanks. */
+START_TEST(joined_as_in_fortran) {
+  for (size_t n = 0; n <= 6; ++n) {
+    char to[] = "-------";
+    _gfortran_concat_string(n, to, 2, "ab", 2, "cd");
+    ck_assert(memcmp(to, "abcd  ", n) == 0 && to[n] == '-');
+  }
+}
+END_TEST
+
+UNIT_MAIN("text", joined_as_in_fortran,
+          text_from_outside_is_shown_without_control_characters,
           seventeen_digits_read_back_exactly,
           exponents_have_three_digits_and_zero_no_sign, a_word_has_no_blank,
           wrapped_words_keep_their_order_and_the_indent, paths_are_joined_once,
