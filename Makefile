@@ -243,18 +243,24 @@ demo-run: $(program)
 
 test-run: check
 
-check: unit regression tool-tests torture-slice layers style
+check: layers style tests-run
 
-# What reads meshes itself, or starts the program by other programs.
-preloads := JOBS=$(JOBS) PROTIS_MESH=$(abspath $(kept)) \
-            TEST_PRELOAD=$(abspath $(kept))
+tools_py := $(patsubst %.py,$(out)/%,$(wildcard tests/tools/*.py))
+pages    := $(out)/tests/tools/browser
+tool     := $(filter-out $(pages),$(tools_py))
+suite    := JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
+            PROTIS_REFUSE=$(abspath $(firstword $(preload))) \
+            PROTIS_MESH=$(abspath $(kept))
 
-unit: $(mesher) $(kept) $(unit)
-	$(Q)$(preloads) tools/run_tests $(unit)
-
-regression: $(program) $(mesher) $(kept) $(regr)
-	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) \
-	  PROTIS_MESH=$(abspath $(kept)) tools/run_tests $(regr)
+# Those of the tools are in Python; torture: a slice of make torture.
+.PHONY: tests-run tool-tests torture-slice
+tests-run:     $(tort) $(tool) $(regr) $(unit)
+unit:          $(unit)
+regression:    $(regr)
+tool-tests:    $(tool)
+torture-slice: $(tort)
+tests-run unit regression tool-tests torture-slice: $(program) $(preload)
+	$(Q)$(suite) tools/run_tests $(filter-out $(program) $(preload),$^)
 
 # tests/regression/plans and sums again, where examples were meant to change.
 .PHONY: sums-update
@@ -262,14 +268,8 @@ sums-update: $(program) $(mesher) $(kept) $(out)/tests/regression/examples
 	$(Q)PROTIS=$(abspath $(program)) PROTIS_MESH=$(abspath $(kept)) \
 	  PROTIS_SUMS=update $(out)/tests/regression/examples
 
-# Tests of the tools, in Python; in a browser: what tools/report writes.
-tools_py := $(patsubst %.py,$(out)/%,$(wildcard tests/tools/*.py))
-pages    := $(out)/tests/tools/browser
-.PHONY: tool-tests browser-test browser-run gallery gallery-run
-tool-tests: $(program) $(mesher) $(kept) $(filter-out $(pages),$(tools_py))
-	$(Q)$(preloads) PROTIS=$(abspath $(program)) tools/run_tests \
-	  $(filter $(tools_py),$^)
-
+# In a browser: what tools/report writes.
+.PHONY: browser-test browser-run gallery gallery-run
 $(out)/tests/tools/%: tests/tools/%.py
 	$(Q)install -D $< $@
 
@@ -288,21 +288,14 @@ gallery-run: $(program)
 	  --program $(program) 2> build/gallery.log || { cat build/gallery.log; exit 1; }
 	$(Q)for f in build/gallery/*.json; do tools/report $$f || exit 1; done
 
-# Memory refused, files that fail, kills: a slice of each in the tests. All of
-# it with random problems and decks in one table; POINTS: of each kind, by
-# and large.
+# Memory refused, files that fail, kills, of which the tests have a slice, with
+# random problems and decks in one table; POINTS: of each kind, by and large.
 POINTS  ?= 20000
-torture := PROTIS=$(abspath $(program)) \
-           PROTIS_REFUSE=$(abspath $(firstword $(preload))) \
-           PROTIS_MESH=$(abspath $(lastword $(preload)))
-.PHONY: torture torture-slice
-torture-slice: $(program) $(preload) $(tort)
-	$(Q)$(torture) JOBS=$(JOBS) tools/run_tests $(tort)
-
+.PHONY: torture
 torture: $(program) $(preload) $(tort) $(out)/tests/unit/conformance \
          $(out)/tests/unit/deck_hostile $(out)/tests/unit/hdf5 \
          $(out)/tests/stability/lcp $(out)/tests/regression/mutants
-	$(Q)$(torture) JOBS=$(JOBS) PROTIS_POINTS=$(POINTS) tools/torture \
+	$(Q)$(suite) PROTIS_POINTS=$(POINTS) tools/torture \
 	  $(filter-out $(program) $(preload),$^)
 
 # Which test sees each single wrong line of tests/mutants/list, built in a copy

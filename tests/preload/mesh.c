@@ -5,6 +5,7 @@
  *
  *   MESH_KEPT  folder of the kept streams, each named by what was asked of
  *              gmsh: its numbers and options, name and text of the .geo
+ *   MESH_MAKER socket of mesher.c, which makes those that are not there
  *
  * What is asked is found by a process forked where libgmsh would be loaded. It
  * gets the calls below in its place, and either gives out a kept stream, which
@@ -32,14 +33,17 @@ static int copy = -1;   /* the stream is being kept                         */
 static int answer = -1; /* of the process that finds the name               */
 static uint64_t key = 14695981039346656037u;
 static int may_keep = 1;
-static const char *kept;
+static const char *kept, *maker;
 static char path[4096]; /* of the stream that is being kept                 */
 
 static void *real(const char *name) { return dlsym(RTLD_NEXT, name); }
 
 /* The reader clears the environment of the process that meshes. */
 static void look(void) __attribute__((constructor));
-static void look(void) { kept = getenv("MESH_KEPT"); }
+static void look(void) {
+  kept = getenv("MESH_KEPT");
+  maker = getenv("MESH_MAKER");
+}
 
 static void name_stream(char name[4096], const char *suffix) {
   snprintf(name, 4096, "%s/%016llx%s", kept, (unsigned long long)key, suffix);
@@ -91,7 +95,8 @@ static void have_made(const char *name) {
   char *const last = text + sizeof text;
   struct sockaddr_un at = {.sun_family = AF_UNIX};
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
-  if (snprintf(at.sun_path, sizeof at.sun_path, "%s/socket", kept) >=
+  if (maker == NULL ||
+      snprintf(at.sun_path, sizeof at.sun_path, "%s", maker) >=
           (int)sizeof at.sun_path ||
       connect(fd, (struct sockaddr *)&at, sizeof at) != 0 ||
       getcwd(end + 17, 4096) == NULL)

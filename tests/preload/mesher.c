@@ -2,7 +2,7 @@
  * Makes meshes for the programs under test: libgmsh is loaded once for all of
  * them, which costs more than most meshes. Each is made in a process of its own
  * by the reader's own code, into the file that mesh.c asks for.
- * usage: mesher FOLDER     listens at FOLDER/socket until its parent ends
+ * usage: mesher FOLDER SOCKET     listens at SOCKET until its parent ends
  *
  * A request: the words key, folder of the program, file, then name and value of
  * each number, each ended by a zero byte. The answer: one byte, the file
@@ -80,8 +80,8 @@ static void serve(const char *folder, int fd) {
 int main(int argc, char **argv) {
   struct sockaddr_un at = {.sun_family = AF_UNIX};
   const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
-  if (argc != 2 || fd < 0) return 1;
-  snprintf(at.sun_path, sizeof at.sun_path, "%s/socket", argv[1]);
+  if (argc != 3 || fd < 0 || strlen(argv[2]) >= sizeof at.sun_path) return 1;
+  snprintf(at.sun_path, sizeof at.sun_path, "%s", argv[2]);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   mesh_gmsh_load();
   if (bind(fd, (struct sockaddr *)&at, sizeof at) != 0 || listen(fd, 16) != 0)
