@@ -7,6 +7,7 @@
 BEGIN {
   MAX_COLUMNS = 80; MAX_LINES = 800; MAX_FILES = 10; MAX_PARAMETERS = 7
   SHORT = 20; LONG = 80; MAX_FUNCTION = 150; MAX_COMPLEXITY = 15
+  MAX_FIELDS = 25
   # Words that are no terms of the field; more of them in src.
   REFUSED = "who answered|nobody listens|every solver is told|" \
     "(^|[^a-z_])(anew|at hand)([^a-z_]|$)"
@@ -118,6 +119,7 @@ function scan(text,    token) {
       if (declaration == "") declared_at = FNR
       declaration = declaration (declaration == "" ? "" : " ") token
     } else if (in_function) body_token(token)
+    else if (in_struct && depth == 1) field_token(token)
   }
 }
 
@@ -127,12 +129,23 @@ function open_brace() {
   if (depth++ > 0) return
   in_function = declaration ~ /\)$/ && declaration !~ /=/
   if (in_function) begin_function()
+  in_struct = declaration ~ /^(typedef )?struct( [A-Za-z_0-9]+)?$/
+  fields = parentheses = 0
 }
 
 function close_brace() {
   if (--depth > 0) return
   if (in_function) { end_function(); declaration = "" }
-  in_function = 0
+  if (in_struct && is_source && fields > MAX_FIELDS)
+    fail(declared_at, declaration ": " fields " fields, expected at most 25")
+  in_function = in_struct = 0
+}
+
+# What stands in braces within is one field.
+function field_token(token) {
+  if (token == "(") ++parentheses
+  else if (token == ")") --parentheses
+  else if (token == ";" || (token == "," && parentheses == 0)) ++fields
 }
 
 function body_token(token) {
@@ -237,7 +250,7 @@ function begin_file(    path) {
   file = FILENAME
   is_header = file ~ /\.h$/
   is_base = file ~ /(^|\/)src\/(base|system)\//
-  depth = in_comment = in_macro = in_function = guarded = 0
+  depth = in_comment = in_macro = in_function = in_struct = guarded = 0
   block = block_comment = 0
   declaration = guard = last_directive = ""
   path = file

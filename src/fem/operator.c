@@ -211,12 +211,12 @@ static void solve_interior(const sparse_operator *o,
   const SuiteSparse_long *first = o->s->first;
   for (int t = 0; t < part->n; ++t)
     for (long p = first[part->list[t]]; p < first[part->list[t] + 1]; ++p)
-      if (o->inside[p] >= 0) o->z[o->inside[p]] = scale * v[p];
-  supernodal_forward(o->interior, o->inner, forces, o->z);
-  supernodal_back(o->interior, o->inner, part, o->z);
+      if (o->inside[p] >= 0) o->work.z[o->inside[p]] = scale * v[p];
+  supernodal_forward(o->interior, o->inner, forces, o->work.z);
+  supernodal_back(o->interior, o->inner, part, o->work.z);
   for (int t = 0; t < part->n; ++t)
     for (long p = first[part->list[t]]; p < first[part->list[t] + 1]; ++p)
-      if (o->inside[p] >= 0) v[p] = o->z[o->inside[p]];
+      if (o->inside[p] >= 0) v[p] = o->work.z[o->inside[p]];
 }
 
 /* w += part * K u of contact unknowns u[m], that of held ones left out. */
@@ -282,25 +282,25 @@ static void project(const sparse_operator *o, double *v) {
   }
 }
 
-/* Au[m] from o->v; held unknowns have u and their own stiffness. */
+/* Au[m] from o->work.v; held unknowns have u and their own stiffness. */
 static void gather(const sparse_operator *o, const double *u, double *Au,
                    double *size) {
   const int rows = o->k->rows;
   for (int i = 0; i < n_contact(o); ++i)
-    gather_node(o, i, o->v, Au + rows * i,
+    gather_node(o, i, o->work.v, Au + rows * i,
                 size != NULL ? size + rows * i : NULL);
   for (int q = 0; q < o->k->n_row; ++q)
     if (o->held[q]) Au[q] = o->diagonal[q] * u[q];
   project(o, Au);
 }
 
-/* The contact unknowns have u[m]: o->v at them and next to them. */
+/* The contact unknowns have u[m]: o->work.v at them and next to them. */
 static void move_contact(sparse_operator *o, const double *u) {
-  clear(o, o->v);
-  spread(o, -1.0, u, o->v);
-  solve_interior(o, &o->part.contact, &o->part.contact, o->v);
+  clear(o, o->work.v);
+  spread(o, -1.0, u, o->work.v);
+  solve_interior(o, &o->part.contact, &o->part.contact, o->work.v);
   for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) o->v[o->number[o->unknown[q]]] = u[q];
+    if (!o->held[q]) o->work.v[o->number[o->unknown[q]]] = u[q];
 }
 
 static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
@@ -339,17 +339,17 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
   const int m = o->k->n_row;
   for (int q = 0; q < m; ++q)
     Ax[q] = o->rows.known[q] && !o->held[q] ? x[q] : 0.0;
-  clear(o, o->v);
-  spread(o, -1.0, Ax, o->v);
+  clear(o, o->work.v);
+  spread(o, -1.0, Ax, o->work.v);
   for (int q = 0; q < m; ++q) {
     if (o->held[q]) continue;
-    double *v = o->v + o->number[o->unknown[q]];
+    double *v = o->work.v + o->number[o->unknown[q]];
     *v = o->rows.known[q] ? 0.0 : *v + b[q];
   }
-  solve_rows(o, &o->part.contact, o->v);
+  solve_rows(o, &o->part.contact, o->work.v);
   for (int q = 0; q < m; ++q) {
     if (o->held[q]) continue;
-    double *v = o->v + o->number[o->unknown[q]];
+    double *v = o->work.v + o->number[o->unknown[q]];
     if (o->rows.known[q])
       *v = x[q];
     else
@@ -382,16 +382,16 @@ static void set_response(void *ctx, const unsigned char *at) {
 static void response(void *ctx, const double *b, double *x, double *Ax) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row, rows = o->k->rows;
-  clear(o, o->v);
+  clear(o, o->work.v);
   for (int q = 0; q < m; ++q)
     if (b[q] != 0.0 && !o->held[q] && !o->rows.known[q])
-      o->v[o->number[o->unknown[q]]] = b[q];
-  solve_rows(o, &o->part.response, o->v);
+      o->work.v[o->number[o->unknown[q]]] = b[q];
+  solve_rows(o, &o->part.response, o->work.v);
   for (int t = 0; t < o->part.n; ++t) {
     const int first = rows * o->part.node[t];
-    gather_node(o, o->part.node[t], o->v, Ax + first, NULL);
+    gather_node(o, o->part.node[t], o->work.v, Ax + first, NULL);
     for (int q = first; q < first + rows; ++q)
-      if (!o->held[q]) x[q] = o->v[o->number[o->unknown[q]]];
+      if (!o->held[q]) x[q] = o->work.v[o->number[o->unknown[q]]];
   }
 }
 
@@ -407,30 +407,31 @@ static void take_load(const sparse_operator *o, const double *load, double *v) {
 void sparse_operator_forward(sparse_operator *o, const double *load,
                              double *f_c) {
   const int rows = o->k->rows;
-  take_load(o, load, o->y);
-  solve_interior(o, &o->part.all, &o->part.all, o->y);
+  take_load(o, load, o->work.y);
+  solve_interior(o, &o->part.all, &o->part.all, o->work.y);
   for (int i = 0; i < n_contact(o); ++i) {
     double f[3];
-    gather_node(o, i, o->y, f, NULL);
+    gather_node(o, i, o->work.y, f, NULL);
     for (int q = rows * i; q < rows * (i + 1); ++q)
       if (!o->held[q]) f_c[q] = load[o->unknown[q]] - f[q - rows * i];
   }
 }
 
 void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
-  memset(o->v, 0, (size_t)o->f.n * sizeof *o->v);
-  spread(o, -1.0, u_c, o->v);
-  solve_interior(o, &o->part.contact, &o->part.all, o->v);
-  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] = o->y[p] + o->v[p];
+  memset(o->work.v, 0, (size_t)o->f.n * sizeof *o->work.v);
+  spread(o, -1.0, u_c, o->work.v);
+  solve_interior(o, &o->part.contact, &o->part.all, o->work.v);
+  for (long p = 0; p < o->f.n; ++p)
+    u[o->f.unknown[p]] = o->work.y[p] + o->work.v[p];
   for (int q = 0; q < o->k->n_row; ++q)
     if (!o->held[q]) u[o->unknown[q]] = u_c[q];
 }
 
 void sparse_operator_interior(sparse_operator *o, const double *load,
                               double *u) {
-  take_load(o, load, o->v);
-  solve_interior(o, &o->part.all, &o->part.all, o->v);
-  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->v[p];
+  take_load(o, load, o->work.v);
+  solve_interior(o, &o->part.all, &o->part.all, o->work.v);
+  for (long p = 0; p < o->f.n; ++p) u[o->f.unknown[p]] += o->work.v[p];
 }
 
 /* ---- building ------------------------------------------------------------ */
@@ -626,7 +627,7 @@ static status leave_contact_out(sparse_operator *o) {
     if (!o->held[q]) o->inside[o->number[o->unknown[q]]] = -1;
   for (long p = 0; p < o->f.n; ++p)
     if (o->inside[p] == 0) o->inside[p] = n++;
-  PASS_NEW(o->z, n);
+  PASS_NEW(o->work.z, n);
   return supernodal_restrict(o->s, o->inside, &o->interior);
 }
 
@@ -660,7 +661,7 @@ static status factor_both(sparse_operator *o) {
   PASS(list_blocks(o, o->s->count, list_by_column, &o->columns));
   PASS(list_blocks(o, n_contact(o), list_by_contact, &o->touched));
   PASS(divide(o));
-  PASS_NEW_ALL(OF(o->v, o->f.n), OF(o->y, o->f.n));
+  PASS_NEW_ALL(OF(o->work.v, o->f.n), OF(o->work.y, o->f.n));
   PASS(leave_contact_out(o));
   PASS(new_columns(o));
   PASS(sparse_operator_all_rows(o));
@@ -710,7 +711,7 @@ void sparse_operator_free(sparse_operator *o) {
   RELEASE(o->columns.start, o->columns.item, o->touched.start, o->touched.item,
           o->part.all.list, o->part.contact.list, o->part.response.list,
           o->part.mark, o->part.touches, o->part.node, o->x, o->inner, o->own,
-          o->rows.known, o->rows.added, o->inside, o->z);
-  RELEASE(o->number, o->unknown, o->held, o->v, o->y, o->diagonal, o->room,
-          o->body, o);
+          o->rows.known, o->rows.added, o->inside, o->work.z);
+  RELEASE(o->number, o->unknown, o->held, o->work.v, o->work.y, o->diagonal,
+          o->room, o->body, o);
 }

@@ -60,12 +60,13 @@ typedef struct sparse_operator {
   long *number;        /* [dim*n_node] place in the factor, -1 */
   size_t *unknown;     /* [m] dim*node + component of a row */
   unsigned char *held; /* [m] 1: prescribed, no unknown */
-  double *v;           /* [unknowns] by place */
-  double *z;           /* [interior] by place inside */
-  double *diagonal;    /* [m] N/m, what seen has */
-  double *y;           /* [unknowns] inv(K_ii) of the load last condensed */
-  double *room;        /* [2*m] what seen has, as the next */
-  int *body;           /* [m/rows] */
+  struct {
+    double *v, *z; /* [unknowns] by place, [interior] by place inside */
+    double *y;     /* [unknowns] inv(K_ii) of the load last condensed */
+  } work;
+  double *diagonal; /* [m] N/m, what seen has */
+  double *room;     /* [2*m] what seen has, as the next */
+  int *body;        /* [m/rows] */
 } sparse_operator;
 
 /* What it is made of, all borrowed until sparse_operator_free but held and

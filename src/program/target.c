@@ -37,26 +37,28 @@ typedef struct pass {
   const accuracy_target *target;
   job_input *in;
   pass_row rows[MAX_PASS_ROWS], forecast;
-  int n;                          /* rows, this pass included */
-  double energy;                  /* J, largest strain energy: the increment
-                                     that counts */
-  double mesh, time, solver;      /* -, errors there */
-  double *eta;                    /* [n_elem] shares of the elements there */
-  double *size;                   /* [n_node] of the next mesh, m */
-  aims *goals;                    /* or NULL: there are none */
-  coarser *contact, *before;      /* of this pass, of the one before */
-  mesh *first;                    /* of the deck, with targets of goals: its
-                                     lengths are the largest of all passes */
-  double *first_size;             /* [first->n_node] m */
-  double unknowns;                /* of this pass */
-  double mesh_cpu, last_mesh_cpu; /* s, of meshing; of the pass before */
-  double dt, tol;                 /* factors on the increments and tolerances of
-                                     the deck */
-  double cpu;                     /* s, of the process when the pass began */
-  double meshed;                  /* s, of that on meshes */
-  int done;                       /* 1: no other pass */
-  char why[256];                  /* the target is missed; "" if it is
-                                     reached */
+  int n;                     /* rows, this pass included */
+  double energy;             /* J, largest strain energy: the increment
+                                that counts */
+  double mesh, time, solver; /* -, errors there */
+  double *eta;               /* [n_elem] shares of the elements there */
+  double *size;              /* [n_node] of the next mesh, m */
+  aims *goals;               /* or NULL: there are none */
+  coarser *contact, *before; /* of this pass, of the one before */
+  mesh *first;               /* of the deck, with targets of goals: its
+                                lengths are the largest of all passes */
+  double *first_size;        /* [first->n_node] m */
+  double unknowns;           /* of this pass */
+  double dt, tol;            /* factors on the increments and tolerances of
+                                the deck */
+  struct {
+    double mesh, last_mesh; /* of meshing; of the pass before */
+    double start;           /* of the process when the pass began */
+    double meshed;          /* of that on meshes */
+  } cpu;                    /* s */
+  int done;                 /* 1: no other pass */
+  char why[256];            /* the target is missed; "" if it is
+                               reached */
 } pass;
 
 /* ---- observing
@@ -130,19 +132,19 @@ static status find_sizes(pass *p, double *factor) {
  * pass to pass, from the first on through zero. */
 static double price_of_mesh(const pass *p, double factor) {
   double last = p->n > 1 ? p->rows[p->n - 2].unknowns : 0.0;
-  double more = p->unknowns - last, later = p->mesh_cpu - p->last_mesh_cpu;
+  double more = p->unknowns - last, later = p->cpu.mesh - p->cpu.last_mesh;
   double slope;
   if (p->n > 1 && more > 0.0 && later >= 0.0)
     slope = later / more;
   else
-    slope = p->mesh_cpu / p->unknowns;
-  return p->mesh_cpu + slope * (factor - 1.0) * p->unknowns;
+    slope = p->cpu.mesh / p->unknowns;
+  return p->cpu.mesh + slope * (factor - 1.0) * p->unknowns;
 }
 
 /* Estimated CPU seconds of a run with that many times the unknowns. */
 static double price(const pass *p, double factor) {
   double power = p->in->m->dim == 2 ? GROWTH_2D : GROWTH_3D;
-  double rest = p->rows[p->n - 1].cpu - p->mesh_cpu - p->in->library_cpu;
+  double rest = p->rows[p->n - 1].cpu - p->cpu.mesh - p->in->library_cpu;
   return price_of_mesh(p, factor) + fmax(rest, 0.0) * pow(factor, power);
 }
 
@@ -302,8 +304,8 @@ static status see_finished(void *ctx, status st, output *out) {
                     .time = 100.0 * p->time,
                     .solver = 100.0 * p->solver,
                     .total = 100.0 * total(p),
-                    .cpu = timer_cpu() - p->cpu};
-  p->mesh_cpu = timer_cost(STAGE_MESH).cpu - p->meshed - p->in->library_cpu;
+                    .cpu = timer_cpu() - p->cpu.start};
+  p->cpu.mesh = timer_cost(STAGE_MESH).cpu - p->cpu.meshed - p->in->library_cpu;
   TRY(decide(p));
   report_pass(p);
   p->forecast = next_digit(p);
@@ -362,9 +364,9 @@ static status read_next(pass *p) {
   job_input next = {0};
   job_mesh other = {0};
   mesh *msh = p->in->msh;
-  p->cpu = timer_cpu();
-  p->meshed = timer_cost(STAGE_MESH).cpu;
-  p->last_mesh_cpu = p->mesh_cpu;
+  p->cpu.start = timer_cpu();
+  p->cpu.meshed = timer_cost(STAGE_MESH).cpu;
+  p->cpu.last_mesh = p->cpu.mesh;
   TRY(message_log_new(&next.log));
   if (refines(&p->rows[p->n - 1])) {
     other = (job_mesh){.sizes = {{msh, p->size}, {p->first, p->first_size}}};

@@ -11,21 +11,46 @@
 /* The options of the cards; the rows of the keyword table say which of them a
  * card has. */
 typedef struct card_options {
-  const char *name, *group, *file, *amplitude, *contact, *crack, *obstacle;
-  const char *length, *force, *units_time; /* labels of *UNITS */
-  const char *elset, *material, *law, *method, *integrator, *points;
-  const char *from, *goal_target; /* of *GOAL */
-  int type, time, mode, normal, slave, adjust, update, side, table;
-  int moduli, formulation, creep_law, incompatible, generate, form;
-  int iteration, substeps, op;
-  int max_iter, limit_max_iter, check, stiffness, nested; /* of *SOLVER */
-  int mesh, max_passes, solver, theorems;                 /* of *ACCURACY */
-  int quantity, component;                                /* of *GOAL */
-  int frequency, hdf5, condensed, print[PRINT_COUNT];
-  double scale, zero, thickness, radius, theta, tolerance, tol, share;
-  double max_memory, max_cpu, target, time_share;
+  const char *name, *group, *file, *amplitude, *contact, *law;
+  int type; /* also MODE, FORM, GENERATE, LAW of *CREEP */
+  int time, op, frequency;
+  double radius, max_memory, tol;
   double value[EFFECT_VALUES]; /* of an effect */
   law_shift shift;
+  struct {
+    const char *length, *force, *time;
+  } units; /* labels */
+  struct {
+    const char *elset, *material;
+    int moduli, formulation, incompatible;
+    double scale, zero, thickness;
+  } body; /* of the mesh, materials, sections and the start */
+  struct {
+    const char *obstacle;
+    int normal, side, slave, adjust, update, table;
+  } surface; /* of obstacles, contacts, pairs, friction */
+  struct {
+    const char *integrator;
+    int iteration, substeps;
+    double theta, tolerance;
+  } visco;
+  struct {
+    const char *method;
+    int max_iter, limit_max_iter, check, stiffness, nested;
+    double share;
+  } solver;
+  struct {
+    int mesh, max_passes, solver, theorems;
+    double max_cpu, target, time_share;
+  } accuracy;
+  struct {
+    const char *crack, *from, *target;
+    int quantity, component;
+  } goal;
+  struct {
+    const char *points;
+    int hdf5, condensed, print[PRINT_COUNT];
+  } output;
 } card_options;
 enum { CREEP_STRAIN, CREEP_TIME, CREEP_NORTON, CREEP_HYPERBOLIC };
 #define CREEP_WORDS "STRAIN|TIME|NORTON|HYPERB"

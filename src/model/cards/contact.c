@@ -167,7 +167,7 @@ static void check_round(const reading *r, const card_options *p) {
   if (!round && radius != NULL)
     message_add(log, P2004, &radius->at,
                 "*OBSTACLE: RADIUS= belongs to CYLINDER and SPHERE only");
-  if (!round && p->side)
+  if (!round && p->surface.side)
     message_add(log, P2004, value_place(r, "SIDE"),
                 "*OBSTACLE: SIDE=INSIDE belongs to CYLINDER and SPHERE only");
 }
@@ -184,7 +184,7 @@ status apply_obstacle(reading *r) {
   obstacle *o = &m->obstacles[m->n.obstacle++];
   o->name = p->name == NULL ? "" : p->name;
   o->shape = p->type;
-  o->inside = p->side;
+  o->inside = p->surface.side;
   o->radius = p->radius;
   m->moves[n].amplitude_name = p->amplitude;
   m->moves[n].at = c->at;
@@ -237,11 +237,11 @@ status apply_contact(reading *r) {
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
   c->group = p->group == NULL ? "" : p->group;
-  c->obstacle_name = p->obstacle == NULL ? "" : p->obstacle;
+  c->obstacle_name = p->surface.obstacle == NULL ? "" : p->surface.obstacle;
   c->group_at = *value_place(r, "GROUP");
   c->obstacle_at = *value_place(r, "OBSTACLE");
   c->obstacle_normal =
-      card_parameter(r->card, "NORMAL") == NULL ? -1 : p->normal;
+      card_parameter(r->card, "NORMAL") == NULL ? -1 : p->surface.normal;
   if (r->card->n_record > 0) read_torque_axis(r, r->card->records, c);
   return OK;
 }
@@ -303,9 +303,9 @@ status apply_contact_pair(reading *r) {
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
   c->is_pair = 1;
-  c->slave_normal = p->normal;
-  c->update = p->update;
-  read_surfaces(r, p->slave, p->adjust, &c->pair);
+  c->slave_normal = p->surface.normal;
+  c->update = p->surface.update;
+  read_surfaces(r, p->surface.slave, p->surface.adjust, &c->pair);
   c->group = c->pair.group[0];
   c->group_at = c->pair.group_at[0];
   c->obstacle_name = c->pair.group[1];
@@ -328,7 +328,7 @@ status apply_tie(reading *r) {
   tie *t = &m->ties[m->n.tie++];
   t->name = p->name == NULL ? "" : p->name;
   t->at = r->card->at;
-  read_surfaces(r, p->slave, p->adjust, &t->pair);
+  read_surfaces(r, p->surface.slave, p->surface.adjust, &t->pair);
   return OK;
 }
 
@@ -493,7 +493,7 @@ status apply_friction(reading *r) {
   rule->amplitude_at = *value_place(r, "AMPLITUDE");
   PASS(copy_options(r, law, &rule->card.param));
   if (law->value_name != NULL)
-    PASS(read_value(r, law->value_name, p->table, &rule->card.value,
+    PASS(read_value(r, law->value_name, p->surface.table, &rule->card.value,
                     &rule->position));
   else if (c->n_record > 0)
     message_add(r->m->log, P2008, &c->records[0].at,
@@ -519,7 +519,7 @@ status apply_contact_force(reading *r) {
   f->at = c->at;
   f->value_at = c->n_record > 0 ? c->records[0].at : c->at;
   f->amplitude_at = *value_place(r, "AMPLITUDE");
-  return read_value(r, "p", p->table, &f->value, &f->position);
+  return read_value(r, "p", p->surface.table, &f->value, &f->position);
 }
 
 status apply_effect(reading *r) {

@@ -248,7 +248,7 @@ static status open_initial(reading *r) {
   model *m = r->m;
   const parameter *file = card_parameter(r->card, "FILE");
   if (!initial_rows[p->type].starts) {
-    if (file != NULL || p->incompatible)
+    if (file != NULL || p->body.incompatible)
       message_add(m->log, P2004, &r->card->at,
                   "*INITIAL CONDITIONS: FILE= and INCOMPATIBLE= belong to "
                   "TYPE=DISPLACEMENT");
@@ -264,7 +264,7 @@ static status open_initial(reading *r) {
                 "other is at line %d",
                 m->initial.start.at.line_no);
   m->initial.start.given = 1;
-  m->initial.start.relax = p->incompatible;
+  m->initial.start.relax = p->body.incompatible;
   m->initial.start.at = r->card->at;
   if (file == NULL || !file->has_value) return OK;
   m->initial.start.file_at = file->value.at;

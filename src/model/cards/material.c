@@ -35,7 +35,7 @@ status apply_elastic(reading *r) {
     report_twice(r);
     return OK;
   }
-  mat->moduli = card_parameter(c, "MODULI") == NULL ? -1 : p->moduli;
+  mat->moduli = card_parameter(c, "MODULI") == NULL ? -1 : p->body.moduli;
   PASS(elastic_table_read(c, (elastic_type)p->type, mat->name, r->m->log,
                           &mat->elastic));
   if (mat->elastic.n > 0)
@@ -86,7 +86,7 @@ status apply_expansion(reading *r) {
     return OK;
   }
   x->type = p->type;
-  x->zero = p->zero;
+  x->zero = p->body.zero;
   for (int c = 0; c < 3; ++c) {
     x->alpha[c].variable = TABLE_T;
     PASS_NEW_REALS(n, &x->alpha[c].at, &x->alpha[c].value);
@@ -176,12 +176,12 @@ status apply_creep(reading *r) {
   _Alignas(16) char words[PARAM_SIZE] = {0};
   char why[64];
   const card_options *p = r->param;
-  if (p->creep_law == CREEP_HYPERBOLIC)
+  if (p->type == CREEP_HYPERBOLIC)
     return read_law(r, &hyperbolic_law, NULL, &p->shift);
   const option *row = option_find(norton_law.options, "HARDENING");
   option_defaults(norton_law.options, words);
-  (void)option_read(row, p->creep_law == CREEP_STRAIN ? "STRAIN" : "TIME",
-                    words, why, sizeof why);
+  (void)option_read(row, p->type == CREEP_STRAIN ? "STRAIN" : "TIME", words,
+                    why, sizeof why);
   return read_law(r, &norton_law, words, &p->shift);
 }
 

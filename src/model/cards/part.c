@@ -17,9 +17,9 @@ status apply_units(reading *r) {
   const card_options *p = r->param;
   if (r->m->unit.given++)
     message_add(r->m->log, P2011, &r->card->at, "a deck has one *UNITS card");
-  r->m->unit.length = p->length;
-  r->m->unit.force = p->force;
-  r->m->unit.time = p->units_time;
+  r->m->unit.length = p->units.length;
+  r->m->unit.force = p->units.force;
+  r->m->unit.time = p->units.time;
   return OK;
 }
 
@@ -32,7 +32,7 @@ status apply_mesh(reading *r) {
   }
   m->mesh.given = 1;
   m->mesh.at = *value_place(r, "FILE");
-  m->mesh.scale = p->scale;
+  m->mesh.scale = p->body.scale;
   return field_file(r, &m->mesh.file);
 }
 
@@ -55,17 +55,17 @@ status apply_section(reading *r) {
   model *m = r->m;
   PASS_GROW(m->sections, m->n.section, m->cap.section);
   section *s = &m->sections[m->n.section++];
-  s->elset = p->elset == NULL ? "" : p->elset;
-  s->material_name = p->material == NULL ? "" : p->material;
+  s->elset = p->body.elset == NULL ? "" : p->body.elset;
+  s->material_name = p->body.material == NULL ? "" : p->body.material;
   s->at = r->card->at;
   s->elset_at = *value_place(r, "ELSET");
   s->material_at = *value_place(r, "MATERIAL");
   s->material_id = -1;
   s->group_id = -1;
-  s->thickness = p->thickness;
+  s->thickness = p->body.thickness;
   /* The words of Abaqus repeat the four kinematics. */
   s->kin = card_parameter(r->card, "TYPE") == NULL ? -1 : p->type % 4;
-  s->averaged = p->formulation;
+  s->averaged = p->body.formulation;
   s->has_thickness =
       r->card->n_record > 0 || card_parameter(r->card, "THICKNESS") != NULL;
   if (r->card->n_record > 0) {
@@ -179,8 +179,8 @@ status apply_time_points(reading *r) {
                        .at = *value_place(r, "NAME")};
   for (int i = 0; i < r->card->n_record; ++i) {
     const record *line = &r->card->records[i];
-    PASS(p->generate ? read_range(r, line, own, &room)
-                     : read_times(r, line, own, &room));
+    PASS(p->type ? read_range(r, line, own, &room)
+                 : read_times(r, line, own, &room));
   }
   return OK;
 }
@@ -191,9 +191,9 @@ status apply_effects(reading *r) {
     message_add(r->m->log, P2011, &r->card->at,
                 "a deck has one *EFFECTS card, this is its second");
   r->m->reduction.given = 1;
-  r->m->reduction.is_auto = p->mode;
+  r->m->reduction.is_auto = p->type;
   r->m->reduction.tol = p->tol;
   r->m->reduction.at = r->card->at;
-  if (!p->mode && p->tol != 1e-3) report_idle(r, "TOL", "MODE=AUTO");
+  if (!p->type && p->tol != 1e-3) report_idle(r, "TOL", "MODE=AUTO");
   return OK;
 }

@@ -108,7 +108,7 @@ status apply_quasistatic(reading *r) {
   const card_options *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_QUASISTATIC;
-  s->form = p->form;
+  s->form = p->type;
   read_increments(r, s);
   return OK;
 }
@@ -117,12 +117,12 @@ status apply_quasistatic(reading *r) {
  * which the echo writes, are accepted. */
 static void check_visco(const reading *r, const scheme *s) {
   const card_options *p = r->param;
-  if (!s->has_theta && p->theta != 0.5)
+  if (!s->has_theta && p->visco.theta != 0.5)
     message_add(r->m->log, P2037, value_place(r, "THETA"),
                 "*VISCO: THETA= counts for INTEGRATOR=THETA only");
-  if (s->limit == 0.0 && !s->has_theta && p->substeps)
+  if (s->limit == 0.0 && !s->has_theta && p->visco.substeps)
     report_idle(r, "SUBSTEPS", "an explicit INTEGRATOR=");
-  if (s->limit > 0.0 && p->iteration != 0)
+  if (s->limit > 0.0 && p->visco.iteration != 0)
     message_add(r->m->log, P2037, value_place(r, "ITERATION"),
                 "*VISCO: INTEGRATOR=%s does not iterate", s->name);
 }
@@ -137,23 +137,23 @@ status apply_visco(reading *r) {
   const card_options *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_VISCO;
-  s->visco.tolerance = p->tolerance;
+  s->visco.tolerance = p->visco.tolerance;
   read_increments(r, s);
   s->visco.integrator =
-      p->integrator == NULL ? NULL : scheme_find(p->integrator);
+      p->visco.integrator == NULL ? NULL : scheme_find(p->visco.integrator);
   if (s->visco.integrator == NULL) {
-    if (p->integrator != NULL)
+    if (p->visco.integrator != NULL)
       unknown_word(r->m->log, P2012, value_place(r, "INTEGRATOR"),
-                   "*VISCO: this version has no INTEGRATOR=", p->integrator,
-                   candidate_name, LISTED(scheme_list));
+                   "*VISCO: this version has no INTEGRATOR=",
+                   p->visco.integrator, candidate_name, LISTED(scheme_list));
     return OK;
   }
   check_visco(r, s->visco.integrator);
-  s->visco.theta =
-      s->visco.integrator->has_theta ? p->theta : s->visco.integrator->theta;
-  s->visco.initial = p->iteration == 1;
-  s->visco.substeps = p->substeps == 1 || p->tolerance > 0.0;
-  if (p->tolerance > 0.0 && !gives_dt_min(r)) s->dt_min = 1e-6 * s->dt;
+  s->visco.theta = s->visco.integrator->has_theta ? p->visco.theta
+                                                  : s->visco.integrator->theta;
+  s->visco.initial = p->visco.iteration == 1;
+  s->visco.substeps = p->visco.substeps == 1 || p->visco.tolerance > 0.0;
+  if (p->visco.tolerance > 0.0 && !gives_dt_min(r)) s->dt_min = 1e-6 * s->dt;
   return OK;
 }
 
@@ -168,15 +168,15 @@ static const char *solver_name(const void *ctx, int i) {
 plugin names_solver(const reading *r) {
   const card_options *p = r->param;
   const parameter *method = card_parameter(r->card, "METHOD");
-  if (method == NULL || same_word(p->method, "AUTO"))
+  if (method == NULL || same_word(p->solver.method, "AUTO"))
     return (plugin){NULL, 0, "METHOD", "AUTO"};
-  const solver_ops *ops = solver_find(p->method);
+  const solver_ops *ops = solver_find(p->solver.method);
   if (ops != NULL)
     return (plugin){ops->options, ops->param_size, "METHOD", ops->name};
   if (method->has_value)
     unknown_word(r->m->log, P2012, &method->value.at,
-                 "*SOLVER: this version has no METHOD=", p->method, solver_name,
-                 NULL);
+                 "*SOLVER: this version has no METHOD=", p->solver.method,
+                 solver_name, NULL);
   return (plugin){NULL, 0, "METHOD", NULL};
 }
 
@@ -186,7 +186,7 @@ static const double TOL_DEFAULT = 1e-10;
 /* The first increment starts from a coarser mesh of a geometry. */
 static void take_nested(const reading *r, const card_options *p, step *s) {
   const char *file = r->m->mesh.file;
-  if (!p->nested) return;
+  if (!p->solver.nested) return;
   s->nested = s == r->m->steps && file != NULL && mesh_is_program(file);
   if (!s->nested)
     report_idle(r, "NESTED", "the first step and a .geo in *MESH");
@@ -201,19 +201,20 @@ status apply_solver(reading *r) {
     return OK;
   }
   s->solver_at = r->card->at;
-  s->solver.ops = solver_find(p->method);
+  s->solver.ops = solver_find(p->solver.method);
   s->balanced = p->tol < 0.0;
-  s->share = p->share;
+  s->share = p->solver.share;
   s->solver.tol = s->balanced ? TOL_DEFAULT : p->tol;
-  s->solver.max_iter = p->max_iter;
-  s->solver.limit_max_iter = p->limit_max_iter;
-  s->solver.stiffness = p->stiffness;
+  s->solver.max_iter = p->solver.max_iter;
+  s->solver.limit_max_iter = p->solver.limit_max_iter;
+  s->solver.stiffness = p->solver.stiffness;
   s->solver.max_memory = p->max_memory;
-  if (p->stiffness != STIFFNESS_AUTO && p->max_memory > 0.0)
+  if (p->solver.stiffness != STIFFNESS_AUTO && p->max_memory > 0.0)
     report_idle(r, "MAX_MEMORY", "STIFFNESS=AUTO");
   take_nested(r, p, s);
-  s->check = p->check;
-  if (!s->balanced && p->share != 0.05) report_idle(r, "SHARE", "TOL=BALANCED");
+  s->check = p->solver.check;
+  if (!s->balanced && p->solver.share != 0.05)
+    report_idle(r, "SHARE", "TOL=BALANCED");
   if (r->plugin == NULL) return OK;
   PASS_GET(s->solver_param, memory_new(1, r->plugin_size));
   memcpy(s->solver_param, r->plugin, r->plugin_size);
@@ -224,16 +225,19 @@ status apply_solver(reading *r) {
 /* Its limits count with a target of the energy norm, or of a *GOAL. */
 static void take_target(const reading *r, const card_options *p) {
   accuracy_target *t = &r->m->accuracy.target;
-  const int limited = p->max_cpu > 0.0 || p->max_memory > 0.0 ||
-                      p->max_passes != MAX_PASSES_DEFAULT;
-  if (p->target > 0.0 || (limited && model_targeted_goal(r->m) != NULL)) {
-    const double percent = p->target > 0.0 ? p->target : t->percent;
-    *t = (accuracy_target){percent, p->max_cpu, p->max_memory, p->max_passes};
+  const int limited = p->accuracy.max_cpu > 0.0 || p->max_memory > 0.0 ||
+                      p->accuracy.max_passes != MAX_PASSES_DEFAULT;
+  if (p->accuracy.target > 0.0 ||
+      (limited && model_targeted_goal(r->m) != NULL)) {
+    const double percent =
+        p->accuracy.target > 0.0 ? p->accuracy.target : t->percent;
+    *t = (accuracy_target){percent, p->accuracy.max_cpu, p->max_memory,
+                           p->accuracy.max_passes};
     return;
   }
-  if (p->max_cpu > 0.0) report_idle(r, "MAX_CPU", "TARGET=");
+  if (p->accuracy.max_cpu > 0.0) report_idle(r, "MAX_CPU", "TARGET=");
   if (p->max_memory > 0.0) report_idle(r, "MAX_MEMORY", "TARGET=");
-  if (p->max_passes != MAX_PASSES_DEFAULT)
+  if (p->accuracy.max_passes != MAX_PASSES_DEFAULT)
     report_idle(r, "MAX_PASSES", "TARGET=");
 }
 
@@ -245,15 +249,15 @@ status apply_accuracy(reading *r) {
                 "a step has one *ACCURACY card, this is its second");
   s->accuracy.given = 1;
   s->accuracy.at = r->card->at;
-  s->accuracy.no_solver = !p->solver;
-  s->accuracy.mesh = p->mesh;
-  s->accuracy.time = p->time > 0 || p->target > 0.0;
+  s->accuracy.no_solver = !p->accuracy.solver;
+  s->accuracy.mesh = p->accuracy.mesh;
+  s->accuracy.time = p->time > 0 || p->accuracy.target > 0.0;
   s->accuracy.time_balanced = p->time == TIME_BALANCED;
-  s->accuracy.time_share = p->time_share;
-  if (s->accuracy.time_balanced || p->target > 0.0)
+  s->accuracy.time_share = p->accuracy.time_share;
+  if (s->accuracy.time_balanced || p->accuracy.target > 0.0)
     s->accuracy.mesh = MESH_ERROR_YES;
-  s->accuracy.theorems = p->theorems;
-  if (!s->accuracy.time_balanced && p->time_share != 0.1)
+  s->accuracy.theorems = p->accuracy.theorems;
+  if (!s->accuracy.time_balanced && p->accuracy.time_share != 0.1)
     report_idle(r, "TIME_SHARE", "TIME=BALANCED");
   take_target(r, p);
   return OK;
@@ -266,7 +270,7 @@ status apply_print(reading *r) {
   int any = 0;
   s->print.given = 1;
   for (int i = 0; i < PRINT_COUNT; ++i) {
-    if (!p->print[i]) continue;
+    if (!p->output.print[i]) continue;
     any = 1;
     PASS_GROW(s->print.requests, s->print.n, s->print.cap);
     print_request *q = &s->print.requests[s->print.n++];
@@ -274,7 +278,7 @@ status apply_print(reading *r) {
     q->group = p->group;
     q->group_id = -1;
     q->frequency = p->frequency;
-    q->points_name = p->points;
+    q->points_name = p->output.points;
     q->points_at = *value_place(r, "TIME POINTS");
     q->at = *value_place(r, "GROUP");
     if (p->group != NULL &&
@@ -282,7 +286,7 @@ status apply_print(reading *r) {
       message_add(r->m->log, P2037, &q->at,
                   "GROUP= counts for NODES, ELEMENTS and REACTIONS only");
   }
-  if (p->points != NULL && p->frequency != 1)
+  if (p->output.points != NULL && p->frequency != 1)
     report_idle(r, "FREQUENCY", "no TIME POINTS=");
   if (!any && !r->misread)
     message_add(r->m->log, P2005, &r->card->at,
@@ -295,9 +299,9 @@ status apply_output(reading *r) {
   step *s = open_step(r);
   s->output.given = 1;
   s->output.at = r->card->at;
-  s->output.frequency = p->hdf5 ? p->frequency : -1;
-  s->output.condensed = p->condensed == 1 ? p->frequency : -1;
-  if (!p->hdf5 && p->condensed != 1 && p->frequency != 1)
+  s->output.frequency = p->output.hdf5 ? p->frequency : -1;
+  s->output.condensed = p->output.condensed == 1 ? p->frequency : -1;
+  if (!p->output.hdf5 && p->output.condensed != 1 && p->frequency != 1)
     report_idle(r, "FREQUENCY", "HDF5=YES or CONDENSED=FCLIB");
   return OK;
 }

@@ -172,23 +172,23 @@ status apply_goal(reading *r) {
   PASS_GROW(m->accuracy.goals, m->n.goal, m->cap.goal);
   goal_card *g = &m->accuracy.goals[m->n.goal++];
   *g = (goal_card){.name = p->name,
-                   .quantity = (goal_quantity)p->quantity,
+                   .quantity = (goal_quantity)p->goal.quantity,
                    .contact_id = -1,
                    .crack_id = -1,
                    .group = p->group,
                    .group_id = -1,
                    .node_id = -1,
-                   .from = p->from,
+                   .from = p->goal.from,
                    .from_id = -1,
                    .from_node_id = -1,
-                   .component = p->component,
+                   .component = p->goal.component,
                    .radius = p->radius,
                    .at = r->card->at,
                    .group_at = *value_place(r, "GROUP"),
                    .from_at = *value_place(r, "FROM")};
   const int takes = quantities[g->quantity].takes;
   read_points(r, g);
-  read_target(r, p->goal_target, g);
+  read_target(r, p->goal.target, g);
   m->accuracy.goal_products |= g->target > 0.0;
   check_parameter(r, g, "CONTACT", takes & ON_CONTACT, takes & ON_CONTACT);
   check_parameter(r, g, "CRACK", takes & ON_CRACK, takes & ON_CRACK);
@@ -198,6 +198,6 @@ status apply_goal(reading *r) {
   check_parameter(r, g, "RADIUS", takes & HAS_RADIUS, 0);
   check_component(r, g);
   if (p->contact != NULL) g->contact_id = find_contact(r, p->contact);
-  if (p->crack != NULL) g->crack_id = find_crack(r, p->crack);
+  if (p->goal.crack != NULL) g->crack_id = find_crack(r, p->goal.crack);
   return OK;
 }

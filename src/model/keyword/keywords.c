@@ -19,13 +19,14 @@
 #define CHOICE(field, ...) OPTION_CHOICE(card_options, field, __VA_ARGS__)
 
 static const option units_options[] = {
-  NAME(length, "LENGTH", OPTION_ABSENT, "label, \"mm\""),
-  NAME(force, "FORCE", OPTION_ABSENT, "label, \"N\""),
-  NAME(units_time, "TIME", OPTION_ABSENT, "label, \"s\""),
+  NAME(units.length, "LENGTH", OPTION_ABSENT, "label, \"mm\""),
+  NAME(units.force, "FORCE", OPTION_ABSENT, "label, \"N\""),
+  NAME(units.time, "TIME", OPTION_ABSENT, "label, \"s\""),
   OPTION_END};
 static const option mesh_options[] = {
   NAME(file, "FILE", NULL, ".msh or .geo, relative to the deck"),
-  REAL(scale, "SCALE", DBL_MIN, DBL_MAX, "1", "-", "factor on all coordinates"),
+  REAL(body.scale, "SCALE", DBL_MIN, DBL_MAX, "1", "-",
+       "factor on all coordinates"),
   OPTION_END};
 static const option problem_options[] = {
   NAME(file, "FILE", NULL,
@@ -40,7 +41,7 @@ static const option step_options[] = {
   OPTION_END};
 static const option elastic_options[] = {
   CHOICE(type, "TYPE", ELASTIC_WORDS, "ISO", "symmetry of the material"),
-  CHOICE(moduli, "MODULI", "LONG TERM|INSTANTANEOUS", OPTION_ABSENT,
+  CHOICE(body.moduli, "MODULI", "LONG TERM|INSTANTANEOUS", OPTION_ABSENT,
          "with a Prony series: after all terms have relaxed, or at once; "
          "absent: LONG TERM with *VISCOELASTIC, INSTANTANEOUS with *INELASTIC"),
   OPTION_END};
@@ -63,7 +64,7 @@ static const option inelastic_options[] = {
   SHIFT_ROWS,
   OPTION_END};
 static const option creep_options[] = {
-  CHOICE(creep_law, "LAW", CREEP_WORDS, "STRAIN",
+  CHOICE(type, "LAW", CREEP_WORDS, "STRAIN",
          "strain hardening, time hardening, m = 0, hyperbolic sine"),
   SHIFT_ROWS,
   OPTION_END};
@@ -78,25 +79,25 @@ static const option trs_options[] = {
 static const option expansion_options[] = {
   CHOICE(type, "TYPE", EXPANSION_WORDS, "ISO",
          "one coefficient, or one for each axis"),
-  REAL(zero, "ZERO", -DBL_MAX, DBL_MAX, "0", "temperature",
+  REAL(body.zero, "ZERO", -DBL_MAX, DBL_MAX, "0", "temperature",
        "from where the coefficients are secants"),
   OPTION_END};
 static const option initial_options[] = {
   CHOICE(type, "TYPE", INITIAL_WORDS, NULL, "what the lines give"),
   NAME(file, "FILE", OPTION_ABSENT, "of displacements: JOB.h5 of a run on the "
        "same mesh; its end is the start, lines override it"),
-  CHOICE(incompatible, "INCOMPATIBLE", "REFUSE|RELAX", "REFUSE",
+  CHOICE(body.incompatible, "INCOMPATIBLE", "REFUSE|RELAX", "REFUSE",
          "displacements out of equilibrium at time 0 (CPR98 3.3): an error, or "
          "relaxed to it as increment 0"),
   OPTION_END};
 static const option section_options[] = {
-  NAME(elset, "ELSET", NULL, "group of elements"),
-  NAME(material, "MATERIAL", NULL, "name of a *MATERIAL"),
+  NAME(body.elset, "ELSET", NULL, "group of elements"),
+  NAME(body.material, "MATERIAL", NULL, "name of a *MATERIAL"),
   CHOICE(type, "TYPE", KINEMATICS_WORDS, OPTION_ABSENT,
          "absent: plane strain in 2-D"),
-  REAL(thickness, "THICKNESS", DBL_MIN, DBL_MAX, "1", "length",
+  REAL(body.thickness, "THICKNESS", DBL_MIN, DBL_MAX, "1", "length",
        "of plane strain and plane stress"),
-  CHOICE(formulation, "FORMULATION", "STANDARD|AVERAGED", "STANDARD",
+  CHOICE(body.formulation, "FORMULATION", "STANDARD|AVERAGED", "STANDARD",
          "AVERAGED: change of volume averaged over clusters of elements, as "
          "far as nu exceeds 0.4, or all of it if the material flows: no "
          "locking"),
@@ -106,25 +107,30 @@ static const option obstacle_options[] = {
   CHOICE(type, "TYPE", OBSTACLE_SHAPES, NULL, "shape"),
   REAL(radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT, "length",
        "of cylinder and sphere"),
-  CHOICE(side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE", "where the body is"),
+  CHOICE(surface.side, "SIDE", "OUTSIDE|INSIDE", "OUTSIDE",
+         "where the body is"),
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
        "factor on MOVE and ROTATE in total time, whatever its TIME="),
   OPTION_END};
 static const option contact_options[] = {
   NAME(name, "NAME", NULL, "name for *FRICTION"),
   NAME(group, "GROUP", NULL, "faces of Gamma_3"),
-  NAME(obstacle, "OBSTACLE", NULL, "name of an *OBSTACLE"),
-  CHOICE(normal, "NORMAL", "BODY|OBSTACLE", OPTION_ABSENT,
+  NAME(surface.obstacle, "OBSTACLE", NULL, "name of an *OBSTACLE"),
+  CHOICE(surface.normal, "NORMAL", "BODY|OBSTACLE", OPTION_ABSENT,
          "whose normal counts; absent: that of a PLANE, else that of the body"),
   OPTION_END};
 static const option pair_options[] = {
   NAME(name, "NAME", NULL, "name for *FRICTION"),
-  CHOICE(slave, "SLAVE", SLAVE_WORDS, "AUTO", "which surface has the contact "
+  CHOICE(surface.slave, "SLAVE", SLAVE_WORDS, "AUTO",
+         "which surface has the contact "
          "nodes; AUTO: the softer from a ratio of 3 on, else the coarser"),
-  CHOICE(normal, "NORMAL", "MEAN|SLAVE", "MEAN", "MEAN: of both surfaces"),
-  CHOICE(adjust, "ADJUST", "NO|YES", "NO", "YES: nodes of the slave are moved "
+  CHOICE(surface.normal, "NORMAL", "MEAN|SLAVE", "MEAN",
+         "MEAN: of both surfaces"),
+  CHOICE(surface.adjust, "ADJUST", "NO|YES", "NO",
+         "YES: nodes of the slave are moved "
          "onto the master before the run, without strain"),
-  CHOICE(update, "UPDATE", "NO|STEP", "NO", "STEP: partners are found again at "
+  CHOICE(surface.update, "UPDATE", "NO|STEP", "NO",
+         "STEP: partners are found again at "
          "the start of each step, at the places the bodies have come to"),
   CHOICE(type, "TYPE", "SURFACE TO SURFACE", "SURFACE TO SURFACE",
          "mortar method; there is no other"),
@@ -137,9 +143,11 @@ static const option crack_options[] = {
   OPTION_END};
 static const option tie_options[] = {
   NAME(name, "NAME", NULL, "name for messages"),
-  CHOICE(slave, "SLAVE", SLAVE_WORDS, "AUTO", "whose nodes move with the "
+  CHOICE(surface.slave, "SLAVE", SLAVE_WORDS, "AUTO",
+         "whose nodes move with the "
          "other; AUTO: the softer from a ratio of 3 on, else the coarser"),
-  CHOICE(adjust, "ADJUST", "NO|YES", "NO", "YES: nodes of the slave are moved "
+  CHOICE(surface.adjust, "ADJUST", "NO|YES", "NO",
+         "YES: nodes of the slave are moved "
          "onto the master before the run, without strain"),
   OPTION_END};
 static const option friction_options[] = {
@@ -147,14 +155,14 @@ static const option friction_options[] = {
   NAME(law, "LAW", NULL, "protis --list friction"),
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
        "factor in total time, whatever the TIME= of the amplitude"),
-  CHOICE(table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
+  CHOICE(surface.table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
          "data lines are pairs coordinate (or total time), value"),
   OPTION_END};
 static const option force_options[] = {
   NAME(contact, "CONTACT", NULL, "name of a *CONTACT"),
   NAME(amplitude, "AMPLITUDE", OPTION_ABSENT,
        "factor in total time, whatever the TIME= of the amplitude"),
-  CHOICE(table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
+  CHOICE(surface.table, "TABLE", "X|Y|Z|T", OPTION_ABSENT,
          "data lines are pairs coordinate (or total time), value"),
   OPTION_END};
 static const option wear_options[] = {
@@ -171,23 +179,24 @@ static const option points_options[] = {
   NAME(name, "NAME", NULL, "name for TIME POINTS="),
   CHOICE(time, "TIME", "STEP TIME|TOTAL TIME", "STEP TIME",
          "which time the points count"),
-  FLAG(generate, "GENERATE", "NO", "lines are first time, last time, interval"),
+  FLAG(type, "GENERATE", "NO", "lines are first time, last time, interval"),
   OPTION_END};
 static const option quasistatic_options[] = {
-  CHOICE(form, "FORM", STEP_FORMS, "DISPLACEMENT",
+  CHOICE(type, "FORM", STEP_FORMS, "DISPLACEMENT",
          "unknown of an increment: N2 or N3 of CPR98, same solution"),
   OPTION_END};
 static const option visco_options[] = {
-  NAME(integrator, "INTEGRATOR", NULL, "protis --list integrators"),
-  REAL(theta, "THETA", DBL_MIN, 1, "0.5", "-",
+  NAME(visco.integrator, "INTEGRATOR", NULL, "protis --list integrators"),
+  REAL(visco.theta, "THETA", DBL_MIN, 1, "0.5", "-",
        "of INTEGRATOR=THETA: where in the step the rates are taken"),
-  REAL(tolerance, "TOLERANCE", 1e-12, 1, OPTION_ABSENT, "-",
+  REAL(visco.tolerance, "TOLERANCE", 1e-12, 1, OPTION_ABSENT, "-",
        "error of inelastic strain in an increment over the largest elastic "
        "strain so far: increments are chosen by it; absent: dt"),
-  CHOICE(iteration, "ITERATION", "TANGENT|INITIAL", "TANGENT",
+  CHOICE(visco.iteration, "ITERATION", "TANGENT|INITIAL", "TANGENT",
          "implicit steps of nonlinear laws: consistent tangent, or initial "
          "stress, which never factors again"),
-  CHOICE(substeps, "SUBSTEPS", "NO|AUTO", "NO", "AUTO cuts increments beyond "
+  CHOICE(visco.substeps, "SUBSTEPS", "NO|AUTO", "NO",
+         "AUTO cuts increments beyond "
          "the stability of an explicit integrator into 2, 4, 8, ..."),
   OPTION_END};
 static const option load_options[] = {
@@ -205,93 +214,96 @@ static const option temperature_options[] = {
        "with /node_no and /temperature; relative to the deck"),
   OPTION_END};
 static const option solver_options[] = {
-  NAME(method, "METHOD", "AUTO", "protis --list solvers"),
+  NAME(solver.method, "METHOD", "AUTO", "protis --list solvers"),
   WORD(tol, "TOL", 1e-14, 0.1, "1E-10", "-", "BALANCED",
        "residual to reach; BALANCED: stop when the error of the solver is "
        "SHARE of those of mesh and increments"),
-  REAL(share, "SHARE", 0.001, 1, "0.05", "-",
+  REAL(solver.share, "SHARE", 0.001, 1, "0.05", "-",
        "of the other errors, with TOL=BALANCED"),
-  INT(max_iter, "MAX_ITER", 0, 100000000, "0", "-",
+  INT(solver.max_iter, "MAX_ITER", 0, 100000000, "0", "-",
       "iterations of the method, restarts and passes together; with AUTO of "
       "each method it tries; 0: its own limit"),
-  INT(limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000", "-",
+  INT(solver.limit_max_iter, "LIMIT_MAX_ITER", 1, 1000000, "1000", "-",
       "passes of the fixed point on the sliding limit"),
-  CHOICE(check, "CHECK", "NO|YES|ALL", "NO", "look for second solutions: YES "
+  CHOICE(solver.check, "CHECK", "NO|YES|ALL", "NO",
+         "look for second solutions: YES "
          "with solvers of all families from several starts; ALL by all "
          "combinations of statuses, up to 10 contact nodes in 2-D"),
-  CHOICE(stiffness, "STIFFNESS", "AUTO|DENSE|FACTOR", "AUTO",
+  CHOICE(solver.stiffness, "STIFFNESS", "AUTO|DENSE|FACTOR", "AUTO",
          "DENSE: the condensed matrix is formed; FACTOR: it is known by solves "
          "with the sparse matrix of the body; AUTO: the cheaper as foreseen "
          "(--check prints both)"),
   REAL(max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
        "that STIFFNESS=AUTO keeps below; 0: 80 % of the memory"),
-  FLAG(nested, "NESTED", "NO", "first step: the first increment is solved on a "
+  FLAG(solver.nested, "NESTED", "NO",
+       "first step: the first increment is solved on a "
        "mesh of elements twice as long before, whose contact is the start"),
   OPTION_END};
 static const option effects_options[] = {
-  CHOICE(mode, "MODE", "CALLED|AUTO", "CALLED",
+  CHOICE(type, "MODE", "CALLED|AUTO", "CALLED",
          "CALLED: all that the deck requires. AUTO: what is proved to change "
          "the solution by less than TOL is left out"),
   REAL(tol, "TOL", DBL_MIN, 0.1, "1e-3", "-",
        "for AUTO: of the energy norm and of the largest stress"),
   OPTION_END};
 static const option goal_options[] = {
-  CHOICE(quantity, "QUANTITY", GOAL_QUANTITIES, NULL,
+  CHOICE(goal.quantity, "QUANTITY", GOAL_QUANTITIES, NULL,
          "what is wanted; PRESSURE: the largest, or that at a point; WIDTH: of "
          "the closed zone; STRESS: mean of a group; SIF: stress intensity "
          "factor, the largest of a front, or that at a point"),
   NAME(name, "NAME", NULL, "name in the results"),
   NAME(contact, "CONTACT", OPTION_ABSENT,
        "of FORCE, PRESSURE, WIDTH, MOMENT: name of a *CONTACT"),
-  NAME(crack, "CRACK", OPTION_ABSENT, "of SIF: name of a *CRACK"),
+  NAME(goal.crack, "CRACK", OPTION_ABSENT, "of SIF: name of a *CRACK"),
   NAME(group, "GROUP", OPTION_ABSENT,
        "of STRESS: elements; of DISPLACEMENT: nodes, whose mean it is"),
-  NAME(from, "FROM", OPTION_ABSENT,
+  NAME(goal.from, "FROM", OPTION_ABSENT,
        "of DISPLACEMENT: nodes whose mean is taken off"),
-  CHOICE(component, "COMPONENT", GOAL_COMPONENTS, OPTION_ABSENT,
+  CHOICE(goal.component, "COMPONENT", GOAL_COMPONENTS, OPTION_ABSENT,
          "of FORCE (NORMAL if absent), DISPLACEMENT, STRESS, of MOMENT the "
          "axis through the point, of SIF the mode"),
   REAL(radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT, "length",
        "of the mean that PRESSURE is; half the half width of the zone if "
        "absent"),
-  NAME(goal_target, "TARGET", OPTION_ABSENT, "error to reach by meshes refined "
+  NAME(goal.target, "TARGET", OPTION_ABSENT, "error to reach by meshes refined "
        "for it: 1 %, of the value, or a number in its unit"),
   OPTION_END};
 static const option accuracy_options[] = {
-  CHOICE(mesh, "MESH", "NO|YES|END", "END",
+  CHOICE(accuracy.mesh, "MESH", "NO|YES|END", "END",
          "estimate of the error of the mesh, from recovered stresses: at each "
          "increment, or the last of the step"),
   CHOICE(time, "TIME", "NO|YES|BALANCED", "NO",
          "estimate of the error of the increments, from increments of half the "
          "length; BALANCED: increments whose error is a share of the mesh's"),
-  REAL(time_share, "TIME_SHARE", 0.001, 1, "0.1", "-",
+  REAL(accuracy.time_share, "TIME_SHARE", 0.001, 1, "0.1", "-",
        "of the error of the mesh, with TIME=BALANCED"),
-  FLAG(solver, "SOLVER", "YES",
+  FLAG(accuracy.solver, "SOLVER", "YES",
        "bound of the error of the contact solver in the energy norm"),
-  FLAG(theorems, "THEORY", "NO",
+  FLAG(accuracy.theorems, "THEORY", "NO",
        "limits of mu, bounds (3.9), (3.10) and inequality of CPR98"),
-  REAL(target, "TARGET", 0, 100, "0", "%",
+  REAL(accuracy.target, "TARGET", 0, 100, "0", "%",
        "error to reach by finer meshes and increments; 0: none"),
-  REAL(max_cpu, "MAX_CPU", 0, 1e12, "0", "s", "CPU time for that; 0: no limit"),
+  REAL(accuracy.max_cpu, "MAX_CPU", 0, 1e12, "0", "s",
+       "CPU time for that; 0: no limit"),
   REAL(max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
        "memory for that; 0: no limit"),
-  INT(max_passes, "MAX_PASSES", 1, 20, "8", "-", "passes for that"),
+  INT(accuracy.max_passes, "MAX_PASSES", 1, 20, "8", "-", "passes for that"),
   OPTION_END};
 static const option print_options[] = {
 #define PRINT_OPTION(name, help) \
-  FLAG(print[PRINT_NUMBER_##name], #name, "NO", help),
+  FLAG(output.print[PRINT_NUMBER_##name], #name, "NO", help),
   PRINT_LIST(PRINT_OPTION)
   INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
       "every n-th increment and the last; 0: the last only"),
   NAME(group, "GROUP", OPTION_ABSENT, "nodes or elements of one group only"),
-  NAME(points, "TIME POINTS", OPTION_ABSENT,
+  NAME(output.points, "TIME POINTS", OPTION_ABSENT,
        "at these times, within increments too, in the place of FREQUENCY="),
   OPTION_END};
 static const option output_options[] = {
-  FLAG(hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
+  FLAG(output.hdf5, "HDF5", "YES", "write JOB.h5 and JOB.xdmf"),
   INT(frequency, "FREQUENCY", 0, 1000000000, "1", "-",
       "fields every n-th increment and the last; 0: the last only"),
-  CHOICE(condensed, "CONDENSED", "NO|FCLIB", "NO",
+  CHOICE(output.condensed, "CONDENSED", "NO|FCLIB", "NO",
          "condensed contact problem and its solution, every n-th increment, "
          "into JOB_condensed_NNNNN.h5 (increment counted from the start)"),
   OPTION_END};
