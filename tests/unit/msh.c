@@ -269,6 +269,9 @@ static const struct { const char *from, *to, *message; } damages[] = {
    ":19: \"3000000000\" where a whole number up to 2147483647"},
   {"1 0 0 0", "-1 0 0 0", ":12: \"-1\" where a whole number not below zero"},
   {"1 0 0 0", "1 0 0 \033[2J", ":12: \"?[2J\" where a number is expected"},
+  /* \001: a zero byte. */
+  {"1 0 0 0", "1 0 0 0\001", ":12: a zero byte where the end of the line is"},
+  {"1 0 0 0", "1 0 \0010 0", ":12: a zero byte where a number is expected"},
   {"2 1 \"BODY\"", "1 2 \"BODY\"", ":8: the group 2 of dimension 1 is named"},
   {"2 1 \"BODY\"", "2 1 \"BODY", ":8: a name has no end"},
   {"7 2 2 1 5 1 2 3", "7 2 2 1 5 1 2", ":19: the line ends where a whole"},
@@ -292,7 +295,10 @@ START_TEST(damage_is_told_with_its_line) {
     ck_assert_ptr_nonnull(at);
     snprintf(text, sizeof text, "%.*s%s%s", (int)(at - text_22), text_22,
              damages[i].to, at + strlen(damages[i].from));
-    ck_assert_ptr_null(mesh_file_text(&f, "d.msh", text));
+    const size_t n = strlen(text);
+    for (char *c = text; (c = strchr(c, 1)) != NULL;) *c = '\0';
+    mesh_file_write(&f, "d.msh", text, n);
+    ck_assert_ptr_null(mesh_file_read(&f, "d.msh", 1.0, 0, NULL));
     snprintf(wanted, sizeof wanted, "P3006: mesh file %s%s",
              mesh_file_path(&f, "d.msh"), damages[i].message);
     ck_assert_msg(strstr(f.messages, wanted) != NULL, "wanted %s\ngot %s",

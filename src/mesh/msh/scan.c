@@ -99,7 +99,10 @@ static status not_expected(const scan *s, const char *wanted) {
   if (n == 0 && s->at + 1 >= s->size)
     return scan_fail(s, "the file ends where %s is expected: it is cut short",
                      wanted);
-  if (n == 0) return scan_fail(s, "the line ends where %s is expected", wanted);
+  if (n == 0)
+    return scan_fail(s, "%s where %s is expected",
+                     s->data[s->at] == '\0' ? "a zero byte" : "the line ends",
+                     wanted);
   return scan_fail(s, "\"%s\" where %s is expected", word, wanted);
 }
 
