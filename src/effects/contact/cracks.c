@@ -484,6 +484,9 @@ static const char *crack_word(const view *v, int id) {
 #define STRESS_ROOT "force/length^1.5"
 static const char scatter_help[] = "half of what the domains differ by: no "
                                    "bound of its error";
+static const char jump_help[] = "from the jump of the lips behind the tip, a "
+                                "check; NaN: fewer than two nodes between two "
+                                "elements and half the radius from it";
 static const column columns[] = {
 {"crack", "-", PER_TIP, AS_WORD, PRINT_SIF, 0, SCENE_ALL, 0, NULL, 0, crack_no,
  crack_word, "name of the *CRACK"},
@@ -514,9 +517,9 @@ static const column columns[] = {
 {"C_t_scatter", "force/length/time", PER_TIP, AS_REAL, PRINT_SIF,
  ON(INELASTIC), CART, 0, NULL, 1, tip_creep, NULL, scatter_help},
 {"K_I_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 0, tip_jump, NULL,
- "from the opening of the lips, a check"},
+ jump_help},
 {"K_II_jump", STRESS_ROOT, TIP, SCENE_PLANE, 0, NULL, 1, tip_jump, NULL,
- "from the sliding of the lips, a check"},
+ jump_help},
 {"radius", "length", TIP, CART, 0, NULL, 0, tip_radius, NULL,
  "of the largest domain"}};
 /* clang-format on */
