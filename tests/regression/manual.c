@@ -71,6 +71,30 @@ START_TEST(every_chapter_of_the_sources_prints) {
 }
 END_TEST
 
+/* With a blank, a comma or a semicolon behind it. */
+START_TEST(every_folder_of_the_sources_has_its_place) {
+  glob_t folders;
+  char *text = source("src/manual/effects.md");
+  const char *from = strstr(text, "## How the sources are ordered");
+  ck_assert_ptr_nonnull(from);
+  ck_assert_int_eq(glob("src/*/*/", 0, NULL, &folders), 0);
+  for (size_t i = 0; i < folders.gl_pathc; ++i) {
+    char *path = folders.gl_pathv[i], *name;
+    path[strlen(path) - 1] = '\0';
+    name = strrchr(path, '/') + 1;
+    if (strcmp(name, "pictures") == 0) continue;
+    const char *at = from;
+    do {
+      at = strstr(at + 1, name);
+      ck_assert_msg(at != NULL, "no %s", path);
+    } while (strchr(" \n", at[-1]) == NULL ||
+             strchr(" ,;\n", at[strlen(name)]) == NULL);
+  }
+  globfree(&folders);
+  free(text);
+}
+END_TEST
+
 START_TEST(every_card_has_an_example) {
   job j = job_begin("manual"), cards = job_begin("cards");
   expect(&j, "protis --manual deck", 0);
@@ -271,6 +295,7 @@ int main(void) {
   TCase *c = tcase_create("manual");
   tcase_set_timeout(c, UNIT_SECONDS);
   tcase_add_test(c, every_chapter_of_the_sources_prints);
+  tcase_add_test(c, every_folder_of_the_sources_has_its_place);
   tcase_add_test(c, every_card_has_an_example);
   tcase_add_test(c, examples_of_the_cards_run_without_a_warning);
   tcase_add_loop_test(c, every_command_runs, 0, COMMANDS);
