@@ -357,7 +357,8 @@ static double node_violation(const contact_case *c, const double *u,
   /* slip only at the limit, and opposite */
   bad = worse(bad, fmin(k * s, fmax(g - t, 0.0)));
   if (s > 0.0) bad = worse(bad, fmin(k * s, fmax(0.0, dot / s + t)));
-  if (s > 0.0) bad = worse(bad, fmin(k * s, cross / s));
+  /* the one turned into the line of the other: the cheaper of the two */
+  if (cross > 0.0) bad = worse(bad, fmin(k * s / t, 1.0) * (cross / s));
   return bad;
 }
 

@@ -11,7 +11,8 @@
  * approximately, by Newton's method with the exact derivative; r is the next
  * centre. At r = c F does not depend on a, and F = 0 is the contact problem.
  * The share makes the problem regular where forces are not unique or W is
- * unsymmetric; it falls while passes converge in few steps and rises otherwise.
+ * unsymmetric; it falls while passes converge in few steps and rises otherwise,
+ * and stays above the one that was hard lately.
  * A step may raise |F| above its last value but not above the largest of the
  * last ones. Where passes converge slowly, with a steady drift of forces in
  * equilibrium with one another, the centre is extrapolated along the last
@@ -53,8 +54,9 @@ enum {
 };
 static const double PASS_GAIN =
     0x1p-2; /* |F|^2 after a pass, over that before, - */
-static const double SLOPE = 0x1p-12;       /* of the descent required, - */
-static const double CREEP = 0.75;          /* residual after a pass, - */
+static const double SLOPE = 0x1p-12; /* of the descent required, - */
+static const double CREEP = 0.75;    /* residual after a pass, - */
+static const double FORGET = 0.9;    /* of the share that was hard, a pass */
 static const double LEAST_SHARE = 0x1p-40; /* - */
 static const double MOST_SHARE = 0x1p10;
 
@@ -134,6 +136,7 @@ typedef struct run {
   double *u, *r;
   double scale;          /* contact_scale */
   double stretch, share; /* s and a */
+  double hard;           /* the share with which a pass was hard lately */
   int steps;
 } run;
 
@@ -385,13 +388,14 @@ static status pass(run *s, double value, int *steps) {
   return OK;
 }
 
-/* The share for the next pass. */
-static double next_share(double share, int steps) {
+/* The share for the next pass, after one of so many steps. */
+static void set_share(run *s, int steps) {
   double factor = 1.0;
-  if (steps <= EASY) factor = 0.25;
+  if (steps <= EASY) factor = fmax(0.25, fmin(2.0 * s->hard / s->share, 1.0));
   if (steps > HARD) factor = 2.0;
   if (steps > PASS) factor = 8.0;
-  return fmax(LEAST_SHARE, fmin(MOST_SHARE, factor * share));
+  s->hard = FORGET * (steps > HARD ? s->share : s->hard);
+  s->share = fmax(LEAST_SHARE, fmin(MOST_SHARE, factor * s->share));
 }
 
 /* The forces that close every gap and let nothing slip, for limits so large
@@ -495,6 +499,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
   size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   double lowest = HUGE_VAL, before = HUGE_VAL;
   int steps = 0, creeps = 0;
+  s->hard = 0.0;
   PASS(begin(s));
   if (closed) PASS(start_closed(s));
   *end = STOPPED_STAGNATION;
@@ -519,7 +524,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
     PASS(pass(s, evaluate(s), &steps));
     if (steps > PASS && s->share >= MOST_SHARE) break; /* would be repeated */
     if (steps > PASS) return_to_centre(s);
-    s->share = next_share(s->share, steps);
+    set_share(s, steps);
   }
   return OK;
 }
