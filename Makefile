@@ -324,7 +324,7 @@ scenes: $(program) $(scenes)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) $(scenes)
 
 # Programs of make test that run all their cases here (unit_whole).
-whole    := $(addprefix $(out)/tests/,unit/average unit/conformance \
+whole    := $(addprefix $(out)/tests/,unit/average unit/conformance unit/history \
               unit/fixed_point unit/mesh_reader regression/partial_slip)
 stability: $(program) $(stab) $(whole) scenes
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \

@@ -118,10 +118,11 @@ void effects_describe(const run *r, setup_facts *f) {
 
 void effects_forget(run *r) {
   for (int k = 0; k < r->effects.n; ++k) {
-    const effect_hooks *on = &r->effects.on[k].ops->on;
+    const effect_ops *e = r->effects.on[k].ops;
     void *own = r->effects.on[k].state;
-    if (on->forget != NULL && (own != NULL || on->create == NULL))
-      on->forget(r, own);
+    const int stateless = e->size == 0 && e->on.create == NULL;
+    if (e->on.forget != NULL && (own != NULL || stateless))
+      e->on.forget(r, own);
   }
 }
 
