@@ -161,9 +161,17 @@ static double contact_miss(int dim, double mu, double c, const double *u,
   double miss = fmax(-u[0], -c * r[0]);
   miss = fmax(miss, fmin(fabs(u[0]), fabs(c * r[0])));
   miss = fmax(miss, c * (r_t - mu * r[0]));
-  /* Slip takes the whole force, against its direction. */
-  for (int k = 1; k < dim && u_t > 0.0; ++k)
-    miss = fmax(miss, fmin(u_t, c * fabs(r[k] + mu * r[0] * u[k] / u_t)));
+  if (!(u_t > 0.0)) return miss;
+  /* Slip takes the whole force, against its direction: no slip, the force of
+   * the slip, or the slip turned to a force at its limit, whatever is nearest.
+   */
+  double force = 0.0, turn = r_t > 0.0 ? 0.0 : HUGE_VAL;
+  for (int k = 1; k < dim; ++k) {
+    force = fmax(force, c * fabs(r[k] + mu * r[0] * u[k] / u_t));
+    if (r_t > 0.0) turn = fmax(turn, fabs(u[k] + u_t * r[k] / r_t));
+  }
+  turn = fmax(turn, c * fabs(mu * r[0] - r_t));
+  miss = fmax(miss, fmin(u_t, fmin(force, turn)));
   return miss;
 }
 

@@ -10,9 +10,7 @@
 #include <string.h>
 
 static const double TOL = 1e-8;
-/* A slip u and the angle by which force and slip miss one another count as
- * min(u, angle) in the violation, as their product in the residual. */
-static const double MISSES = 1e-4;
+static const double MISSES = 1e-7; /* violation of a claim */
 
 static void must_solve(const solver_ops *ops, const rigid_scene *s) {
   contact_case c = rigid_case(s);
