@@ -278,6 +278,23 @@ END_TEST
 /* Two equal increments without friction, f and u in the end: its bound is twice
  * the roots of the work on the slip, sqrt(W/4) + sqrt(W/2) for W the sum of
  * mu f |u|, over the root of twice the strain energy. */
+static void bound_is_that_of_the_work(const job *j, double mu) {
+  dat c = job_table(j, "CONTACT", -1), e = job_table(j, "ENERGY", -1);
+  const int plane = dat_has(&c, "u_t");
+  double work = 0.0;
+  for (int i = 0; i < c.n_row; ++i) {
+    double slip = dat_at(&c, i, plane ? "u_t" : "u_t1");
+    if (!plane) slip = hypot(slip, dat_at(&c, i, "u_t2"));
+    work += mu * dat_at(&c, i, "f_n") * fabs(slip);
+  }
+  work /= 2.0 * dat_at(&e, 0, "strain_energy");
+  ck_assert_int_eq(fate(j, "friction"), 1);
+  ck_assert_double_eq_tol(
+      job_told(j, "bound") / (2.0 * (0.5 + sqrt(0.5)) * sqrt(work)), 1, 1e-6);
+  dat_free(&c);
+  dat_free(&e);
+}
+
 START_TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
   const scene s = {"",
                    "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n1.D-8\n",
@@ -286,16 +303,29 @@ START_TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
                    0.2,
                    "0.5"};
   job j = run_scene(&s);
-  ck_assert_int_eq(fate(&j, "friction"), 1);
-  dat c = job_table(&j, "CONTACT", -1), e = job_table(&j, "ENERGY", -1);
-  double work = 0.0;
-  for (int i = 0; i < c.n_row; ++i)
-    work += 1e-8 * dat_at(&c, i, "f_n") * fabs(dat_at(&c, i, "u_t"));
-  work /= 2.0 * dat_at(&e, 0, "strain_energy");
-  ck_assert_double_eq_tol(
-      job_told(&j, "bound") / (2.0 * (0.5 + sqrt(0.5)) * sqrt(work)), 1, 1e-6);
-  dat_free(&c);
-  dat_free(&e);
+  bound_is_that_of_the_work(&j, 1e-8);
+  job_end(&j);
+}
+END_TEST
+
+/* The same in space, of slip along both directions of the contact. */
+START_TEST(bound_of_friction_is_that_of_the_work_in_space) {
+  job j = job_begin("cube");
+  job_copy(&j, "tests/regression/mesh/cube.geo");
+  job_write(&j, "cube.inp",
+            "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.D-8\n"
+            "*EFFECTS, MODE=AUTO, TOL=0.01\n*AMPLITUDE, NAME=ON\n"
+            "0., 0., 1., 1.\n*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
+            "TOP, 1, 1, 1.D-3, ON\nTOP, 2, 2, 5.D-3, ON\n"
+            "TOP, 3, 3, -0.01, ON\n*PRINT, CONTACT, ENERGY, FREQUENCY=0\n"
+            "*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  bound_is_that_of_the_work(&j, 1e-8);
   job_end(&j);
 }
 END_TEST
@@ -412,6 +442,7 @@ UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           law_below_its_threshold_is_left_out,
           average_within_an_element_is_local, friction_without_slip_is_left_out,
           bound_of_friction_is_that_of_the_work_at_its_nodes,
+          bound_of_friction_is_that_of_the_work_in_space,
           change_is_that_of_the_nodes_it_changes_most,
           change_is_that_of_the_sum_of_friction,
           nothing_is_left_out_unless_asked, random_scenes_agree)
