@@ -7,6 +7,7 @@
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
+#include <cblas.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -218,6 +219,23 @@ START_TEST(forces_without_bound_do_not_hide_a_body_too_thick) {
 }
 END_TEST
 
+/* Forces that move their nodes as they push are none, in any unit. */
+START_TEST(forces_that_move_nodes_prove_nothing) {
+  const double force[] = {1, 0, 1, 0};
+  for (double unit = 0x1p-200; unit <= 0x1p200; unit *= 0x1p100)
+    for (int walls = 0; walls < 2; ++walls) {
+      double workspace[12];
+      contact_case c = between_walls(2, 0.5);
+      if (!walls)
+        for (int i = 0; i < 16; ++i) c.A[i] = fmax(c.A[i], 0.0);
+      cblas_dscal(16, unit, c.A, 1);
+      cblas_dscal(4, unit, c.f, 1);
+      ck_assert_int_eq(proof_holds(&c.cp, force, workspace), walls);
+      case_free(&c);
+    }
+}
+END_TEST
+
 /* Nodes that no force moves, all open: no forces. */
 START_TEST(compliance_of_zero_is_solved_without_forces) {
   const solver_ops *ops;
@@ -291,5 +309,6 @@ UNIT_MAIN("proof", balanced_load_has_no_proof,
           solvable_problem_is_never_said_to_have_no_equilibrium,
           body_too_thick_for_its_gap_has_no_equilibrium,
           forces_without_bound_do_not_hide_a_body_too_thick,
+          forces_that_move_nodes_prove_nothing,
           compliance_of_zero_is_solved_without_forces,
           large_sparse_compliance_is_not_searched)
