@@ -31,7 +31,7 @@ enum { FIT_NODES = 8 };
 /* A set of contact nodes and the traction that vanishes at its edge. */
 typedef struct level {
   unsigned char *in; /* [n] */
-  double *square;    /* [n] its square, Pa^2 */
+  double *square;    /* [n] its square, over a power of two */
   double *slope;     /* [dim*n] 3-D: its gradient over the faces inside */
   double *weight;    /* [n] 3-D: area of these faces */
 } level;
@@ -87,18 +87,30 @@ static double tangential(const run *r, int i) {
   return r->msh->dim == 2 ? fabs(rt[0]) : hypot(rt[0], rt[1]);
 }
 
+/* Values of any size to squares whose largest is about 1. */
+static void level_square(level *l, int n) {
+  double most = 0.0;
+  int power;
+  for (int i = 0; i < n; ++i) most = fmax(most, fabs(l->square[i]));
+  frexp(most, &power);
+  for (int i = 0; i < n; ++i) {
+    const double w = ldexp(l->square[i], -power);
+    l->square[i] = w * w;
+  }
+}
+
 static void set_levels(finder *z) {
   const run *r = z->r;
   for (int i = 0; i < r->nodes.n; ++i) {
     double area = r->surface->area[i], scale = area > 0.0 ? 1.0 / area : 0.0;
-    double p = -scale * r->now.rc[z->dim * i];
-    double left =
-        r->result.g == NULL ? 0.0 : scale * (r->result.g[i] - tangential(r, i));
     z->closed.in[i] = r->result.contact[i] != CONTACT_OPEN;
     z->stick.in[i] = r->result.contact[i] == CONTACT_STICK;
-    z->closed.square[i] = p * p;
-    z->stick.square[i] = left * left;
+    z->closed.square[i] = -scale * r->now.rc[z->dim * i];
+    z->stick.square[i] =
+        r->result.g == NULL ? 0.0 : scale * (r->result.g[i] - tangential(r, i));
   }
+  level_square(&z->closed, r->nodes.n);
+  level_square(&z->stick, r->nodes.n);
 }
 
 /* Contact nodes of a face, node[dim]; 0 if one of them is not in contact. */
