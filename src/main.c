@@ -24,7 +24,7 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   ENDS_BY(archive_free) archive *from = NULL;
   OWNED char *stop = NULL;
   PASS_GET(stop, text_path(c->dir, in->m->name.job, "stop"));
-  PASS(output_spare_inputs(in->m, c->dir));
+  PASS(output_spare(in->m, c->dir));
   PASS(job_lock_take(c->dir, in->m->name.job, &lock));
   interrupt_catch(stop);
   if (c->restart) PASS(restart_read(c, in, &from));

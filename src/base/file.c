@@ -43,17 +43,25 @@ int file_same(const char *a, const char *b) {
   return one.st_dev == other.st_dev && one.st_ino == other.st_ino;
 }
 
-status file_clear(const char *path) {
+status file_may_go(const char *path) {
   struct stat about;
   if (lstat(path, &about) != 0) {
     if (errno == ENOENT) return OK;
     RAISE(ERR_FILE, "%s: cannot be replaced: %s", path, strerror(errno));
   }
-  if (!S_ISREG(about.st_mode) && !S_ISLNK(about.st_mode))
-    RAISE(ERR_FILE,
-          "%s: cannot be replaced: %s; move it away, name the deck otherwise, "
-          "or use -o",
-          path, kind_fault(about.st_mode));
+  const int is_link = S_ISLNK(about.st_mode);
+  if (is_link || (S_ISREG(about.st_mode) && (about.st_mode & 0222) != 0))
+    return OK;
+  RAISE(ERR_FILE,
+        "%s: cannot be replaced: %s; move it away, name the deck otherwise, "
+        "or use -o",
+        path,
+        S_ISREG(about.st_mode) ? "it is write-protected"
+                               : kind_fault(about.st_mode));
+}
+
+status file_clear(const char *path) {
+  PASS(file_may_go(path));
   if (unlink(path) != 0 && errno != ENOENT)
     RAISE(ERR_FILE, "%s: cannot remove the earlier: %s", path, strerror(errno));
   return OK;

@@ -17,9 +17,10 @@ int file_descriptor(int folder, const char *path, int flags, const char **why);
 /* 1: both names refer to one existing file; -1, errno: not known. */
 int file_same(const char *a, const char *b);
 
-/* Remove what has the name of a result: a regular file or a link, not the
- * target of the link; none is fine. ERR_FILE: it is neither, or cannot be
- * removed. */
+/* What has the name of a result may be replaced: a regular file that is not
+ * write-protected, a link; none is fine. ERR_FILE: it is something else. */
+status file_may_go(const char *path);
+/* Remove it, not the target of a link. ERR_FILE: it may or can not go. */
 status file_clear(const char *path);
 /* Close what is open, of locals by ENDS_BY. */
 void file_leave(FILE **f);

@@ -32,6 +32,7 @@ static const char *const results[] = {
 static const char middle[] = "_condensed_";
 
 static status spare(const deck *d, const char *path) {
+  PASS(file_may_go(path));
   for (int i = 0; i < d->n_input; ++i) {
     int same = file_same(d->inputs[i], path);
     if (same < 0) PASS(text_failed(path, "inspect", errno));
@@ -68,7 +69,7 @@ static status spare_condensed(const model *m, const char *dir) {
   return OK;
 }
 
-status output_spare_inputs(const model *m, const char *dir) {
+status output_spare(const model *m, const char *dir) {
   if (m->deck == NULL) return OK;
   for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
     OWNED char *path = NULL;

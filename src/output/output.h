@@ -10,9 +10,10 @@
 
 typedef struct output output;
 
-/* ERR_DECK if a file that the run writes or removes is one that its deck reads,
- * under whatever name. Before anything is touched. */
-status output_spare_inputs(const model *m, const char *dir);
+/* A file that the run writes or removes: ERR_DECK if it is one that its deck
+ * reads, under whatever name, ERR_FILE if it is protected or no file. Before
+ * anything is touched. */
+status output_spare(const model *m, const char *dir);
 /* Open all files of the job: the text files, flushed line by line, and JOB.h5
  * with space for the estimated number of increments. JOB.xdmf and JOB.json of
  * an earlier run, and its restart files, are removed. ERR_FILE names the file.

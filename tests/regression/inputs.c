@@ -225,21 +225,32 @@ START_TEST(no_plain_file_is_no_input) {
 }
 END_TEST
 
+/* Nor is what is protected; the results of before stay. */
 START_TEST(no_plain_file_is_no_result) {
-  static const char *const names[] = {"lst",    "h5",       "json",
+  static const char *const names[] = {"lst",    "h5",       "json", "dat",
                                       "h5.tmp", "json.tmp", "lock"};
+  static const char *const ways[] = {"mkdir", "mkfifo",
+                                     "install -m 444 job.inp"};
   for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
-    for (int folder = 0; folder < 2; ++folder) {
+    for (int way = 0; way < (k == 6 ? 2 : 3); ++way) {
       job j = begin();
-      char command[TEXT];
+      char command[TEXT], name[16];
       write_deck(&j, 2, "one.msh");
-      snprintf(command, sizeof command, "%s job.%s",
-               folder ? "mkdir" : "mkfifo", names[k]);
+      snprintf(name, sizeof name, "job.%s", names[k]);
+      snprintf(command, sizeof command,
+               "for r in lst sta cvg json; do echo old > job.$r; done; "
+               "rm -f %s; %s %s",
+               name, ways[way], name);
       shell(&j, command);
       int code = job_run(&j, "");
-      snprintf(command, sizeof command, "job.%s", names[k]);
-      ck_assert_msg(code == 4 && strstr(j.errors, command) != NULL,
+      ck_assert_msg(code == 4 && strstr(j.errors, name) != NULL,
                     "%s: exit %d: %s", names[k], code, j.errors);
+      for (int old = 0; old < 4; ++old) {
+        const char *result =
+            ((const char *[]){"lst", "sta", "cvg", "json"})[old];
+        snprintf(name, sizeof name, "job.%s", result);
+        if (strcmp(result, names[k]) != 0) still_there(&j, name, "old\n");
+      }
       job_end(&j);
     }
 }

@@ -94,12 +94,9 @@ START_TEST(five_units_of_length) {
 END_TEST
 
 START_TEST(powers_of_two_leave_every_bit) {
-  static const double factor[][2] = {{1.0, 0x1p40},
-                                     {1.0, 0x1p-300},
-                                     {1.0, 0x1p400},
-                                     {1024.0, 1.0},
-                                     {0x1p-160, 1.0},
-                                     {0x1p160, 1.0}};
+  static const double factor[][2] = {{1.0, 0x1p40},   {1.0, 0x1p-300},
+                                     {1.0, 0x1p400},  {1024.0, 1.0},
+                                     {0x1p-160, 1.0}, {0x1p160, 1.0}};
   for (int s = 0; s < 3; ++s) {
     job base = run_scaled(1.0, 1.0, methods[s]);
     for (int k = 0; k < 6; ++k) {
