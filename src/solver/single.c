@@ -20,6 +20,7 @@ typedef struct single {
   double scale, tol;
   double u0[3], r0[3];         /* the start */
   double P[9], Q[9], c[3];     /* [m*m], [m*m], [m] */
+  double to_one[3];            /* powers of two for columns of P, Q and c */
   int m, n_rub, rub[2];        /* tangents with friction */
   double ut0[2], g0, mu;       /* m, N, - */
   contact_status start;        /* its status */
@@ -47,6 +48,13 @@ static void set_problem(single *s) {
     s->ut0[s->n_rub] = contact_stick(cp, k);
     s->rub[s->n_rub++] = k;
   }
+  const double P = largest_entry((size_t)(m * m), s->P);
+  const double Q = largest_entry((size_t)(m * m), s->Q);
+  const double u = fmax(fabs(cp->gap[0]), largest_entry(2, s->ut0));
+  const double c = largest_entry((size_t)m, s->c);
+  s->to_one[0] = power_to_one(P);
+  s->to_one[1] = power_to_one(Q);
+  s->to_one[2] = power_to_one(fmax(c, fmax(P * u, Q * s->g0)));
 }
 
 /* Store a candidate if it is a solution and nearer to the start. */
@@ -122,8 +130,12 @@ static void add(const single *s, const double *M, int j, double x, double *y) {
   for (int i = 0; i < s->m; ++i) y[i] += x * M[i + s->m * j];
 }
 
-/* Columns of s and of p (u_n if open), right side, for slip along e. Rows of
- * unknowns that are held stay zero in all. */
+static void scale(double *x, double factor) {
+  for (int i = 0; i < 3; ++i) x[i] *= factor;
+}
+
+/* Columns of s and of p (u_n if open), right side, for slip along e, each times
+ * its power of two. Rows of unknowns that are held stay zero in all. */
 static void set_slip(const single *s, int closed, const double *e, double *a,
                      double *b, double *c) {
   for (int i = 0; i < 3; ++i) {
@@ -138,6 +150,9 @@ static void set_slip(const single *s, int closed, const double *e, double *a,
     add(s, s->Q, s->rub[k], s->g0 * e[k], c);
     if (closed) add(s, s->Q, s->rub[k], -s->mu * e[k], b);
   }
+  scale(a, s->to_one[0]);
+  scale(b, s->to_one[closed]);
+  scale(c, s->to_one[2]);
 }
 
 /* Determinant for slip at an angle. */
@@ -158,7 +173,8 @@ static void try_slip(single *s, int closed, double angle) {
   if (!(size > 0.0)) return;
   cross(c, b, x);
   cross(a, c, y);
-  double slip = dot(3, x, n) / size, other = dot(3, y, n) / size;
+  double slip = dot(3, x, n) / size * (s->to_one[0] / s->to_one[2]);
+  double other = dot(3, y, n) / size * (s->to_one[closed] / s->to_one[2]);
   double g = s->g0 + (closed ? s->mu * other : 0.0);
   for (int i = 0; i < s->m; ++i) u[i] = s->c[i] / s->P[i + s->m * i];
   u[0] = closed ? s->cp->gap[0] : other;

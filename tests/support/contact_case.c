@@ -51,6 +51,28 @@ contact_case case_new(int dim, int n, double mu) {
   return c;
 }
 
+static void unit(int n, const double *x, int power) {
+  double *own = (double *)x; /* of the case, or of the test */
+  for (int i = 0; own != NULL && i < n; ++i) own[i] = ldexp(own[i], power);
+}
+
+void case_units(contact_case *c, int length, int force) {
+  const contact_problem *cp = &c->cp;
+  const int m = cp->m, sides = m - cp->n, alone = cp->W == c->A;
+  const int stiffness = force - length;
+  unit(m * m, c->A, alone ? -stiffness : stiffness);
+  unit(m, c->f, alone ? length : force);
+  if (!alone) unit(m * m, cp->W, -stiffness);
+  if (cp->f != c->f) unit(m, cp->f, length);
+  unit(cp->n, c->gap, length);
+  unit(sides, c->ut0, length);
+  unit(cp->n, c->g0, force);
+  unit(sides, c->side_gap, length);
+  unit(m, c->u, length);
+  unit(m, c->r, force);
+  c->cp.load = ldexp(cp->load, force);
+}
+
 void case_free(contact_case *c) {
   free(c->A);
   free(c->f);

@@ -19,6 +19,8 @@ typedef struct contact_case {
 
 /* Uniform in [0, 1[, from a seed of one's own. */
 double case_random(unsigned long long *seed);
+/* The problem, u and r in units of length and force that are powers of two. */
+void case_units(contact_case *c, int length, int force);
 /* n nodes, all zero, B = diag(mu); frictionless (g0, ut0, B NULL) if mu = 0. */
 contact_case case_new(int dim, int n, double mu);
 void case_free(contact_case *c);

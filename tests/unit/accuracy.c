@@ -334,13 +334,7 @@ START_TEST(bound_changes_with_the_units_only) {
     for (int b = 0; b < 2; ++b) {
       int force = b ? 18 : 0, length = b ? -8 : 0;
       c[b] = case_any(2 + k % 2, 7, 0.2, k / 2 % 2, 2100ull + (unsigned)k);
-      for (int j = 0; j < c[b].cp.m * c[b].cp.m; ++j)
-        c[b].A[j] = ldexp(c[b].A[j], force - length);
-      for (int j = 0; j < c[b].cp.m; ++j) c[b].f[j] = ldexp(c[b].f[j], force);
-      for (int j = 0; j < c[b].cp.n; ++j)
-        c[b].gap[j] = ldexp(c[b].gap[j], length);
-      for (int j = 0; j < c[b].cp.m - c[b].cp.n; ++j)
-        c[b].ut0[j] = ldexp(c[b].ut0[j], length);
+      case_units(&c[b], length, force);
       solve(&c[b], "sor", 1e-5);
       norm[b] = bound_of(&c[b].cp, c[b].u, c[b].r).norm;
       case_free(&c[b]);

@@ -181,6 +181,28 @@ static double apart(const contact_case *c, const double *u, const double *v) {
   return most > 0.0 ? most / size : 0.0;
 }
 
+/* In other units the row does bit by bit the same. */
+static void same_in_units(const solver_ops *ops, int k, problem *p, double tol,
+                          const solver_report *rep) {
+  static const int powers[][2] = {{-90, 170}, {80, -210}};
+  const int length = powers[k / 4 % 2][0], force = powers[k / 4 % 2][1];
+  const contact_case *c = &p->c;
+  const size_t size = (size_t)c->cp.m * sizeof *c->u;
+  double *answer = malloc(2 * size);
+  memcpy(answer, c->u, size);
+  memcpy(answer + c->cp.m, c->r, size);
+  case_units(&p->c, length, force);
+  case_cold(&p->c);
+  solver_report other = solve_by(ops, c, tol, c->u, c->r);
+  case_units(&p->c, -length, -force);
+  ck_assert_msg(other.outcome == rep->outcome &&
+                    other.iterations == rep->iterations &&
+                    memcmp(answer, c->u, size) == 0 &&
+                    memcmp(answer + c->cp.m, c->r, size) == 0,
+                "%s: problem %d in other units", row_name(ops), k);
+  free(answer);
+}
+
 /* 1: solved, and the claim holds. */
 static int claims(const solver_ops *ops, int k, problem *p) {
   contact_case *c = &p->c;
@@ -189,6 +211,7 @@ static int claims(const solver_ops *ops, int k, problem *p) {
   solver_report rep = solve_by(ops, c, tol, c->u, c->r);
   ck_assert_msg(rep.outcome == CONVERGED || rep.outcome < 0, "%s: problem %d",
                 row_name(ops), k);
+  if (k % 4 == 0 && c->cp.op == NULL) same_in_units(ops, k, p, tol, &rep);
   double residual = contact_residual(&c->cp, c->u, c->r);
   ck_assert(rep.residual == residual || (isnan(residual) && rep.outcome < 0));
   if (rep.outcome != CONVERGED) return 0;
