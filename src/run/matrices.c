@@ -74,6 +74,10 @@ status run_use(run *r, matrices *m) {
   r->c = m->c;
   r->solver = m->solver;
   r->solving.known_key = RUN_NO_KEY;
+  /* An increment may end before it is posed. */
+  r->problem.cp.A = condensed_matrix(r->c);
+  r->problem.cp.op = condensed_operator(r->c);
+  r->problem.cp.bodies = contact_solver_bodies(r->solver, &r->problem.cp);
   return OK;
 }
 

@@ -3,6 +3,7 @@
  * a square in homogeneous stress, exact on its mesh, so that errors are
  * those of time; E = 1000, nu = 0.3 and times near 2 unless said otherwise.
  */
+#include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -358,6 +359,28 @@ START_TEST(locking_creep_is_told) {
 }
 END_TEST
 
+/* No increment of the second step comes as far as its contact. */
+START_TEST(creep_without_a_state_is_not_settled) {
+  job j = job_begin("fast");
+  block_file_write(&j, (int[]){4, 4}, (double[]){1.0, 1.0}, 0);
+  job_write(&j, "fast.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n2.1E5, 0.3\n"
+            "*CREEP, LAW=STRAIN\n1e-5, 10.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 1, 0.\n"
+            "*DSLOAD\nTOP, P, 2e8\n*END STEP\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*PRINT, CONTACT\n"
+            "*END STEP\n");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 1, "exit %d: %s", code, j.errors);
+  ck_assert_ptr_nonnull(strstr(j.errors, "P4017"));
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("laws");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -369,5 +392,6 @@ int main(void) {
   tcase_add_test(tests, a_bar_ratchets);
   tcase_add_test(tests, explicit_limits);
   tcase_add_test(tests, locking_creep_is_told);
+  tcase_add_test(tests, creep_without_a_state_is_not_settled);
   return unit_run("laws", tests);
 }
