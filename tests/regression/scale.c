@@ -172,6 +172,50 @@ START_TEST(forces_beyond_the_range_are_refused) {
 }
 END_TEST
 
+/* A job in each of these ways: exit 0 has numbers alone, 6 says why. */
+START_TEST(motions_and_strains_beyond_the_range_are_no_answer) {
+  static const char *const cards[] = {
+      "*BOUNDARY\nRIGHT, 1, 1, %s\n", "*BOUNDARY\nRIGHT, 1\nTOP, 2, 2, -%s\n",
+      "*BOUNDARY\nRIGHT, 1\n*TEMPERATURE\nBODY, %s\n",
+      "*BOUNDARY\nRIGHT, 1\nTOP, 1, 1, \"%s*t\"\n"};
+  static const char *const sizes[] = {"1E90", "1E140", "1E155", "1E165",
+                                      "1E290"};
+  int refused = 0;
+  for (int k = 0; k < 4 * 5; ++k) {
+    job j = job_begin("range");
+    char card[100];
+    snprintf(card, sizeof card, cards[k / 5], sizes[k % 5]);
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "range.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1E5, 0.2\n*EXPANSION\n1.\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n%s"
+              "*PRINT, CONTACT, ENERGY, NODES, ELEMENTS\n*END STEP\n",
+              card);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 6 || (code == 0 && k % 5 < 2), "%s: exit %d: %s",
+                  card, code, j.errors);
+    const char *says = strstr(j.errors, "protis: error: ");
+    ck_assert_msg(code == 0 || strstr(says, "range of the numbers") ||
+                      strstr(says, "rounding leaves no correct digit"),
+                  "%s: %s", card, j.errors);
+    ck_assert_msg(code == 0 || (!strstr(says, "inf") && !strstr(says, "nan")),
+                  "%s: %s", card, j.errors);
+    char *text = job_file(&j, "dat");
+    ck_assert_ptr_null(strstr(text, "NaN"));
+    ck_assert_ptr_null(strstr(text, "Inf"));
+    refused += code == 6;
+    free(text);
+    job_end(&j);
+  }
+  ck_assert_int_lt(refused, 15);
+}
+END_TEST
+
 /* Between its ends the load of the first step is one of any other job; in the
  * second next to nothing is left of it. */
 START_TEST(a_pulse_that_decays_to_next_to_nothing_is_a_load) {
@@ -297,6 +341,7 @@ int main(void) {
   tcase_add_test(tests, loads_of_any_size);
   tcase_add_test(tests, equal_runs_give_equal_bytes);
   tcase_add_test(tests, forces_beyond_the_range_are_refused);
+  tcase_add_test(tests, motions_and_strains_beyond_the_range_are_no_answer);
   tcase_add_test(tests, a_pulse_that_decays_to_next_to_nothing_is_a_load);
   tcase_add_test(tests, two_bodies_of_any_ratio);
   tcase_add_loop_test(tests, floor_that_travels_far, 0, 4);

@@ -183,6 +183,21 @@ static void count_work(observed_work *seen) {
   seen->now = seen->untold = 0;
 }
 
+/* The energies have the squares of all that is in the state. */
+static status check_finite(const run *r) {
+  const energies *e = &r->now.energy;
+  const double u = largest_entry(r->n_dof, r->now.u);
+  const double rc = largest_entry((size_t)r->nodes.n_c, r->now.rc);
+  if (isfinite(e->strain) && isfinite(e->external + e->defect) &&
+      isfinite(u * u) && isfinite(rc * rc))
+    return OK;
+  RAISE(ERR_SINGULAR,
+        "step %d, time %g: the energies of displacements of %.3g leave the range "
+        "of the numbers; use other units or smaller loads; the last state "
+        "written is that of time %g",
+        run_step_id(r) + 1, r->now.t, u, r->old.t);
+}
+
 status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
   PASS(dense_show(r, increment_no));
@@ -191,7 +206,9 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   r->at.last = last;
   PASS(
       result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
+  PASS(check_finite(r));
   PASS(estimate_increment(r));
+  PASS(check_finite(r));
   r->at.violated = 0;
   note_nodes(r);
   PASS(effects_accept(r));
