@@ -423,6 +423,8 @@ void contact_roundings(const contact_problem *cp, const double *u,
   }
 }
 
+static const double SLIGHT = 0x1p-30; /* -, friction that changes nothing else */
+
 double contact_hidden(const contact_problem *cp, const double *u,
                       const double *r, const double *own) {
   measure x;
@@ -438,6 +440,7 @@ double contact_hidden(const contact_problem *cp, const double *u,
     if (b->load == 0.0 && !(b->contact > node.rounding)) continue;
     if (cp->g0 != NULL && node.q[0] < 0.0)
       side = smaller(1.0, contact_node_limit(cp, r, i) / -node.q[0]);
+    if (side > 0.0) side = larger(side, SLIGHT);
     if (e.n > 0.0) worst = larger(worst, smaller(e.n, node.rounding) / most);
     if (e.t > 0.0 && side > 0.0)
       worst = larger(worst, smaller(e.t, node.rounding) / (side * most));

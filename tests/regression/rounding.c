@@ -7,6 +7,7 @@
  * where nothing is lost; without a digit the run ends with exit code 6.
  */
 #include "scenes/mesh.h"
+#include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -391,6 +392,33 @@ START_TEST(gaps_of_rounding_make_no_increment) {
 }
 END_TEST
 
+/* Friction below the rounding of the pressures is lost, and nothing else is. */
+START_TEST(rounding_may_hide_a_friction_of_next_to_nothing) {
+  static const char *const mu[] = {"0", "1E-300", "1E-20", "1E-14", "1E-12"};
+  double normal = 0.0;
+  for (int k = 0; k < 5; ++k) {
+    job j = job_begin("slight");
+    block_file_write(&j, (int[]){4, 4}, (double[]){1.0, 1.0}, 0);
+    job_write(&j, "slight.inp",
+              "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n2.1E5, 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\nMOVE, 1E-4, 0.\n"
+              "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n%s\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nLEFT, 1, 2, 0.\n*DSLOAD\nTOP, P, 1.\n"
+              "*PRINT, TOTALS\n*END STEP\n",
+              mu[k]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "mu = %s: exit %d: %s", mu[k], code, j.errors);
+    dat d = job_table(&j, "TOTALS", -1);
+    if (k == 0) normal = dat_at(&d, 0, "normal");
+    ck_assert_double_eq_tol(dat_at(&d, 0, "normal") / normal, 1, 1e-9);
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
 START_TEST(nothing_is_told_of_plain_bodies) {
   job j;
   int code = run_layers(&j, "10.", _i == 0 ? "*BOUNDARY\nLEFT, 1\n" : "");
@@ -456,6 +484,7 @@ int main(void) {
   tcase_add_loop_test(tests, no_digit_is_left_of_a_body_led_too_far, 0, 2);
   tcase_add_test(tests, creep_in_free_motion_is_rounding);
   tcase_add_loop_test(tests, gaps_of_rounding_make_no_increment, 0, 2);
+  tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
   tcase_add_loop_test(tests, loss_of_a_body_carried_far_is_told, 0, 4);
