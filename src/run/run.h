@@ -187,7 +187,7 @@ typedef struct solving {
 
 /* Counters, messages and saved data of the run. */
 typedef struct course_state {
-  int total_no, unsettled;
+  int total_no, unsettled, in_a_row; /* in_a_row: the last, not settled */
   int missed;    /* 1: the increment missed the tolerance of its step */
   int shadow;    /* 1: no step of the run: a finer path or a copy is solved */
   int relaxing;  /* the current increment relaxes the start to equilibrium */

@@ -360,7 +360,7 @@ START_TEST(locking_creep_is_told) {
 END_TEST
 
 /* No increment of the second step comes as far as its contact. */
-START_TEST(creep_without_a_state_is_not_settled) {
+static job run_without_state(const char *second) {
   job j = job_begin("fast");
   block_file_write(&j, (int[]){4, 4}, (double[]){1.0, 1.0}, 0);
   job_write(&j, "fast.inp",
@@ -372,12 +372,30 @@ START_TEST(creep_without_a_state_is_not_settled) {
             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
             "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 1, 0.\n"
             "*DSLOAD\nTOP, P, 2e8\n*END STEP\n*STEP\n"
-            "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*PRINT, CONTACT\n"
-            "*END STEP\n");
+            "*VISCO, INTEGRATOR=BACKWARD\n%s\n*PRINT, CONTACT\n*END STEP\n",
+            second);
+  return j;
+}
+
+START_TEST(creep_without_a_state_is_not_settled) {
+  job j = run_without_state("0.5, 1.");
   int code = job_run(&j, "");
   ck_assert_msg(code == 1, "exit %d: %s", code, j.errors);
   ck_assert_ptr_nonnull(strstr(j.errors, "P4017"));
   job_end(&j);
+}
+END_TEST
+
+/* Up to 1e11 increments would follow, or 400. */
+START_TEST(increments_that_never_settle_end) {
+  job j = run_without_state("0.5, 1E5, 1E-6"), k;
+  k = run_without_state("0.5, 100., 0.25");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 6 && strstr(j.errors, "in a row are not settled"),
+                "exit %d: %s", code, j.errors);
+  ck_assert_int_eq(job_run(&k, ""), 1);
+  job_end(&j);
+  job_end(&k);
 }
 END_TEST
 
@@ -393,5 +411,6 @@ int main(void) {
   tcase_add_test(tests, explicit_limits);
   tcase_add_test(tests, locking_creep_is_told);
   tcase_add_test(tests, creep_without_a_state_is_not_settled);
+  tcase_add_test(tests, increments_that_never_settle_end);
   return unit_run("laws", tests);
 }

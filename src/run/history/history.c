@@ -191,11 +191,27 @@ static status check_finite(const run *r) {
   if (isfinite(e->strain) && isfinite(e->external + e->defect) &&
       isfinite(u * u) && isfinite(rc * rc))
     return OK;
+  RAISE(
+      ERR_SINGULAR,
+      "step %d, time %g: the energies of displacements of %.3g leave the range "
+      "of the numbers; use other units or smaller loads; the last state "
+      "written is that of time %g",
+      run_step_id(r) + 1, r->now.t, u, r->old.t);
+}
+
+enum { IN_A_ROW = 100 };
+static const double MOST_INCREMENTS = 1e8; /* as of a deck (P2020) */
+
+/* Increments that do not settle do not go on for ever. */
+static status check_progress(const run *r) {
+  const double end = r->step->start + r->step->total;
+  const double dt = r->now.t - r->old.t, n = (end - r->now.t) / dt;
+  if (r->course.in_a_row < IN_A_ROW || !(n > MOST_INCREMENTS)) return OK;
   RAISE(ERR_SINGULAR,
-        "step %d, time %g: the energies of displacements of %.3g leave the range "
-        "of the numbers; use other units or smaller loads; the last state "
-        "written is that of time %g",
-        run_step_id(r) + 1, r->now.t, u, r->old.t);
+        "step %d, time %g: %d increments in a row are not settled, and there "
+        "are %.2g more of %.3g to the end of the step; a larger dt_min ends "
+        "sooner, smaller loads or rates may settle",
+        run_step_id(r) + 1, r->now.t, r->course.in_a_row, n, dt);
 }
 
 status loop_accept(run *r, int attempt, int increment_no, int last,
@@ -214,11 +230,13 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   PASS(effects_accept(r));
   PASS(note_misfit(r));
   state s = loop_state(r, attempt, increment_no);
-  if (!s.settled) ++r->course.unsettled;
+  r->course.unsettled += !s.settled;
+  r->course.in_a_row = s.settled ? 0 : r->course.in_a_row + 1;
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;
   effects_show(r, &s);
   if (r->sink->increment != NULL) PASS(r->sink->increment(r->sink->ctx, &s));
+  PASS(check_progress(r));
   PASS(result_accept(r));
   r->course.due =
       frequency_shows(r->step->restart.frequency, increment_no, last);
