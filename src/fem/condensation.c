@@ -628,6 +628,11 @@ double condensed_stiffest(const condensed *c) {
   return most;
 }
 
+int condensed_motions(const condensed *c, const double **R) {
+  *R = c->rigid.Q;
+  return c->rigid.k;
+}
+
 int condensed_kernel(const condensed *c, const double **kernel) {
   *kernel = c->rigid.Q;
   return c->just_held ? c->rigid.k : -1;

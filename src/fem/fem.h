@@ -180,6 +180,9 @@ status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
 /* 1: the condition number is far above that of a plain mesh: the residual
  * matters. */
 int condensed_costs_digits(const condensed *c);
+/* The motions of whole bodies that contact alone holds, their number: *R[m*k],
+ * orthonormal, of the contact unknowns, borrowed. */
+int condensed_motions(const condensed *c, const double **R);
 /* The motions of the contact unknowns without energy: kernel[m*n], orthonormal,
  * borrowed; returns n, or -1: the supports of a body are negligible (lever arms
  * below 1e-8 of its size). */

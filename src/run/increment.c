@@ -245,6 +245,19 @@ status increment_pose(run *r, double t) {
   return pose(r, strains_load(r));
 }
 
+/* Displacements of all nodes; a body that no force holds is put to its place.
+ */
+static status recover(run *r, const double *F) {
+  int moved;
+  double *u = run_rows(r, 0, r->now.uc), *f = run_rows(r, 1, r->now.rc);
+  PASS(condense_recover(r->c, u, r->now.u));
+  if (r->nodes.n == 0) return OK;
+  PASS(increment_rest(r, F, u, f, &moved));
+  if (!moved) return OK;
+  put_rows(r, u, f);
+  return condense_recover(r->c, u, r->now.u);
+}
+
 /* With the current contact nodes; *iterations so far. */
 static status solve_with_nodes(run *r, const double *F, int *iterations) {
   PASS(pose(r, F));
@@ -256,7 +269,7 @@ static status solve_with_nodes(run *r, const double *F, int *iterations) {
     PASS(effects_found(r, &again));
     if (!again) break;
   }
-  PASS(condense_recover(r->c, run_rows(r, 0, r->now.uc), r->now.u));
+  PASS(recover(r, F));
   return take_interior(r);
 }
 

@@ -1,0 +1,209 @@
+/*
+ * The place of a body that no force holds.
+ *
+ * Where motions R_c of whole bodies move neither a pressed node along its
+ * normal nor one that friction may hold along its tangent, the equilibrium
+ * u + R_c q is one for every q that leaves the gaps open. Of these places the
+ * body has the one nearest to the last equilibrium, over all nodes:
+ *
+ *   min |u + R q - u_old|^2,   u_n + (R_c q)_n <= gap.
+ *
+ * The least q from that without obstacles is found by least squares without
+ * negative factors (least distance programming; Lawson, Hanson 1974, 23.4).
+ */
+#include "run/run.h"
+
+#include "base/memory.h"
+#include "base/sparse.h"
+#include "solver/lcp/lcp_solve.h"
+
+#include <cblas.h>
+#include <lapacke.h>
+#include <math.h>
+#include <string.h>
+
+static const double FREE = 0x1p-36; /* -, square of what moves with a motion */
+static const double MARGIN = 0x1p-40;   /* -, of the gaps */
+static const double BALANCED = 0x1p-30; /* -, of the work of the loads */
+
+typedef struct rest {
+  run *r;
+  const contact_problem *cp;
+  double *u;             /* [m] of the problem */
+  const double *f;       /* [m] forces */
+  int m, k;              /* unknowns; motions that no force opposes */
+  unsigned char *forced; /* [m] 1: a force acts, or friction may */
+  double *V;             /* [m*k] R_c */
+  double *W;             /* [n_dof*k] R */
+  double *L;             /* [k*k] Cholesky factor of W'W */
+  double *q, *x;         /* [k] factors; x = L'(q - those without obstacles) */
+} rest;
+
+static void rest_free(rest *s) {
+  RELEASE(s->forced, s->V, s->W, s->L, s->q, s->x);
+}
+
+/* ---- motions that no force opposes --------------------------------------- */
+
+static status find_forced(rest *s) {
+  const contact_problem *cp = s->cp;
+  OWNED double *rounding = NULL;
+  PASS_NEW(rounding, cp->n);
+  PASS_NEW(s->forced, s->m);
+  contact_roundings(cp, s->u, s->f, rounding);
+  for (int i = 0; i < s->m; ++i) {
+    const int node = i / cp->dim;
+    const int bounded = contact_bound(cp, i) < HUGE_VAL;
+    s->forced[i] = fabs(s->f[i]) > rounding[node] ||
+                   (!bounded && cp->g0 != NULL &&
+                    contact_node_limit(cp, s->f, node) > rounding[node]);
+  }
+  return OK;
+}
+
+/* V = Q N, N the null vectors of the forced rows of Q[m*n]. */
+static status find_motions(rest *s, const double *Q, int n) {
+  OWNED double *M = NULL, *value = NULL;
+  PASS_NEW_ALL(OF(M, n * n), OF(value, n));
+  for (int i = 0; i < s->m; ++i)
+    if (s->forced[i])
+      cblas_dsyr(CblasColMajor, CblasLower, n, 1.0, Q + i, s->m, M, n);
+  if (LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'L', n, M, n, value) != 0)
+    return OK;
+  while (s->k < n && value[s->k] <= FREE) ++s->k;
+  if (s->k == 0) return OK;
+  PASS_NEW(s->V, s->m * s->k);
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, s->m, s->k, n, 1.0, Q,
+              s->m, M, n, 0.0, s->V, s->m);
+  return OK;
+}
+
+/* W: what u of all nodes is more where that of the contact is V more. */
+static status find_fields(rest *s) {
+  const run *r = s->r;
+  OWNED double *moved = NULL;
+  const double unit = 1.0 / power_to_one(largest_entry((size_t)s->m, s->u));
+  PASS_NEW_ALL(OF(moved, s->m), OF(s->W, r->n_dof * (size_t)s->k));
+  for (int j = 0; j < s->k; ++j) {
+    double *W = s->W + r->n_dof * (size_t)j;
+    memcpy(moved, s->u, (size_t)s->m * sizeof *moved);
+    cblas_daxpy(s->m, unit, s->V + (size_t)s->m * (size_t)j, 1, moved, 1);
+    PASS(condense_recover(r->c, moved, W));
+    for (size_t i = 0; i < r->n_dof; ++i) W[i] = (W[i] - r->now.u[i]) / unit;
+  }
+  return OK;
+}
+
+/* 1: the forces F[n_dof] do work on a motion. */
+static int is_loaded(const rest *s, const double *F) {
+  const size_t n = s->r->n_dof;
+  for (int j = 0; j < s->k; ++j) {
+    double work = 0.0, terms = 0.0;
+    for (size_t i = 0; i < n; ++i) {
+      work += s->W[n * (size_t)j + i] * F[i];
+      terms += fabs(s->W[n * (size_t)j + i] * F[i]);
+    }
+    if (fabs(work) > BALANCED * terms) return 1;
+  }
+  return 0;
+}
+
+/* ---- the nearest place --------------------------------------------------- */
+
+/* q without obstacles; 0: the motions are not independent. */
+static int find_free(rest *s) {
+  const run *r = s->r;
+  const int n = (int)r->n_dof, k = s->k;
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, k, n, 1.0, s->W, n, 0.0,
+              s->L, k);
+  for (int j = 0; j < k; ++j) {
+    const double *W = s->W + r->n_dof * (size_t)j;
+    s->q[j] =
+        cblas_ddot(n, W, 1, r->old.u, 1) - cblas_ddot(n, W, 1, r->now.u, 1);
+  }
+  if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', k, s->L, k) != 0) return 0;
+  return LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', k, 1, s->L, k, s->q, k) == 0;
+}
+
+/* How far q leads beyond the bound of unknown i, m; 0: it has none. */
+static double beyond(const rest *s, int i) {
+  const double bound = contact_bound(s->cp, i);
+  if (s->forced[i] || !(bound < HUGE_VAL)) return -HUGE_VAL;
+  return cblas_ddot(s->k, s->V + i, s->m, s->q, 1) - fmax(0.0, bound - s->u[i]);
+}
+
+/* The column of the bound of unknown i: what pushes back, and how far it is
+ * crossed, over "unit". */
+static void set_column(const rest *s, int i, double unit, double *side) {
+  for (int j = 0; j < s->k; ++j) side[j] = -s->V[i + s->m * j];
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, s->k, s->L,
+              s->k, side, 1);
+  side[s->k] = beyond(s, i) / unit;
+}
+
+/* The column that does the most work on the rest, into "next"; 0: none. */
+static int next_column(const rest *s, double unit, const double *left,
+                       double *side, double *next) {
+  double most = 0.0;
+  for (int i = 0; i < s->m; ++i) {
+    if (!(beyond(s, i) > -HUGE_VAL)) continue;
+    set_column(s, i, unit, side);
+    const double work = cblas_ddot(s->k + 1, side, 1, left, 1);
+    if (!(work > MARGIN * cblas_dnrm2(s->k + 1, side, 1)) || work <= most)
+      continue;
+    most = work;
+    memcpy(next, side, (size_t)(s->k + 1) * sizeof *next);
+  }
+  return most > 0.0;
+}
+
+/* q <- the nearest that no bound forbids. */
+static status keep_out(rest *s) {
+  ENDS_BY(nonnegative_free) nonnegative sum = {0};
+  OWNED double *side = NULL;
+  double unit = 0.0;
+  const int k = s->k;
+  for (int i = 0; i < s->m; ++i) unit = fmax(unit, beyond(s, i));
+  if (!(unit > 0.0)) return OK;
+  PASS(nonnegative_new(k + 1, &sum));
+  PASS_NEW(side, k + 1);
+  sum.b[k] = 1.0;
+  nonnegative_begin(&sum);
+  for (double *next; (next = nonnegative_next(&sum)) != NULL;)
+    if (!next_column(s, unit, sum.rest, side, next) || !nonnegative_take(&sum))
+      break;
+  for (int j = 0; j < k; ++j) s->x[j] = -unit * sum.rest[j] / sum.rest[k];
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, k, s->L, k,
+              s->x, 1);
+  for (int j = 0; j < k; ++j) s->q[j] += s->x[j];
+  return OK;
+}
+
+/* Moves the bodies; what touches then lies on the obstacle. */
+static void put(rest *s) {
+  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, s->k, 1.0, s->V, s->m, s->q, 1,
+              1.0, s->u, 1);
+  for (int i = 0; i < s->m; ++i)
+    if (!s->forced[i]) s->u[i] = fmin(s->u[i], contact_bound(s->cp, i));
+}
+
+status increment_rest(run *r, const double *F, double *u, const double *f,
+                      int *moved) {
+  ENDS_BY(rest_free)
+  rest s = {.r = r, .cp = &r->problem.cp, .u = u, .f = f, .m = r->nodes.n_row};
+  const double *Q;
+  const int n = condensed_motions(r->c, &Q);
+  *moved = 0;
+  if (n == 0 || r->solving.report.outcome <= 0) return OK;
+  PASS(find_forced(&s));
+  PASS(find_motions(&s, Q, n));
+  if (s.k == 0) return OK;
+  PASS(find_fields(&s));
+  if (is_loaded(&s, F)) return OK;
+  PASS_NEW_ALL(OF(s.L, s.k * s.k), OF(s.q, s.k), OF(s.x, s.k));
+  if (!find_free(&s)) return OK;
+  PASS(keep_out(&s));
+  put(&s);
+  *moved = 1;
+  return OK;
+}
