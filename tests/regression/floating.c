@@ -271,10 +271,75 @@ START_TEST(what_is_not_solved_is_not_said_to_be_apart) {
 }
 END_TEST
 
+/* ---- a body that a lid presses and leaves ---------------------------------
+ */
+
+typedef struct lid {
+  const char *mesh; /* square.geo, cube.geo */
+  const char *method;
+  double E;
+} lid;
+
+/* Ends with the lid above the body: its displacement of node 1 into u[3]. */
+static void run_lid(const lid *s, double u[3]) {
+  const int space = strcmp(s->mesh, "cube.geo") == 0;
+  const char *zero = space ? "0., 0., " : "0., ";
+  job j = job_begin("lid");
+  char path[80];
+  snprintf(path, sizeof path, "tests/regression/mesh/%s", s->mesh);
+  job_copy(&j, path);
+  job_write(&j, "lid.inp",
+            "*PARAMETER\nN = 3\n*MESH, FILE=%s\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "%g, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n%s0.\n%s1.\n"
+            "*OBSTACLE, NAME=LID, TYPE=PLANE\n%s1.\n%s-1.\n"
+            "MOVE, %s\"-0.01*(if(t < 1, t, 2 - t)) + 0.005*max(0, t - 1)\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*CONTACT, NAME=L, GROUP=TOP, OBSTACLE=LID\n"
+            "*FRICTION, CONTACT=L, LAW=COULOMB\n0.3\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*SOLVER, METHOD=%s\n*END "
+            "STEP\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.\n*PRINT, NODES, TOTALS, FREQUENCY=0\n*END STEP\n",
+            s->mesh, s->E, zero, zero, zero, zero, zero, s->method);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "E = %g, %s: exit %d: %s", s->E, s->method, code,
+                j.errors);
+  dat d = job_table(&j, "NODES", -1);
+  for (int c = 0; c < 2 + space; ++c)
+    u[c] = dat_at(&d, 0, ((const char *[]){"u_x", "u_y", "u_z"})[c]);
+  dat_free(&d);
+  job_end(&j);
+}
+
+/* Its place is that where it was left, on the floor: motions are given alone,
+ * so it depends neither on the modulus nor on the method. */
+START_TEST(body_that_is_left_stays_where_it_was) {
+  static const char *const methods[] = {"AUTO", "NEWTON", "LEMKE", "SOR",
+                                        "PROXIMAL"};
+  static const double E[] = {1.0, 3.0, 2e5};
+  for (int space = 0; space < 2; ++space) {
+    double first[3] = {0}, u[3];
+    for (int k = 0; k < (space ? 3 : 7); ++k) {
+      const lid s = {space ? "cube.geo" : "square.geo",
+                     methods[k < 3 ? 0 : k - 2], E[k % 3]};
+      run_lid(&s, u);
+      if (k == 0) memcpy(first, u, sizeof u);
+      for (int c = 0; c < 2 + space; ++c) {
+        ck_assert_msg(fabs(u[c]) < 1e-4, "%s, E = %g, %s: u[%d] = %g", s.mesh,
+                      s.E, s.method, c, u[c]);
+        ck_assert_msg(fabs(u[c] - first[c]) < 1e-8, "%s, E = %g, %s: u[%d]",
+                      s.mesh, s.E, s.method, c);
+      }
+    }
+  }
+}
+END_TEST
+
 UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           resultant_through_the_only_node_that_touches,
           body_balanced_on_a_corner_rests,
           every_method_holds_the_body_or_says_that_none_can,
           resultants_are_those_of_statics,
           layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
-          free_motions_are_named)
+          free_motions_are_named, body_that_is_left_stays_where_it_was)
