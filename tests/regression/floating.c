@@ -336,10 +336,46 @@ START_TEST(body_that_is_left_stays_where_it_was) {
 }
 END_TEST
 
+/* The same under a block that is pressed down and lifted, of either side. */
+START_TEST(body_under_another_that_is_lifted_stays) {
+  static const char *const sides[] = {"TOP 1, BOTTOM 2", "BOTTOM 2, TOP 1"};
+  for (int k = 0; k < 4; ++k) {
+    job j = job_begin("pile");
+    job_copy(&j, "tests/regression/mesh/stack.geo");
+    job_write(&j, "pile.inp",
+              "*PARAMETER\nNB = 2\n*MESH, FILE=stack.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n%s, 0.3\n*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM 1, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+              "*CONTACT PAIR, NAME=P\n%s\n"
+              "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n"
+              "*BOUNDARY\nTOP 2, 1, 1, 0.001\nTOP 2, 2, 2, -0.01\n*END STEP\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n"
+              "*BOUNDARY\nTOP 2, 1, 1, 0.\nTOP 2, 2, 2, 0.01\n"
+              "*PRINT, NODES, FREQUENCY=0\n*END STEP\n",
+              k < 2 ? "1." : "3.", sides[k % 2]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat d = job_table(&j, "NODES", -1);
+    for (int i = 0; i < d.n_row; ++i) {
+      const int lower = dat_at(&d, i, "u_y") < 0.005;
+      ck_assert(lower || dat_at(&d, i, "y") > 0.999);
+      ck_assert_double_eq_tol(dat_at(&d, i, "u_y"), lower ? 0 : 0.01, 1e-10);
+      ck_assert_double_eq_tol(dat_at(&d, i, "u_x"), 0, lower ? 1e-3 : 1e-10);
+    }
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           resultant_through_the_only_node_that_touches,
           body_balanced_on_a_corner_rests,
           every_method_holds_the_body_or_says_that_none_can,
           resultants_are_those_of_statics,
           layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
-          free_motions_are_named, body_that_is_left_stays_where_it_was)
+          free_motions_are_named, body_under_another_that_is_lifted_stays,
+          body_that_is_left_stays_where_it_was)
