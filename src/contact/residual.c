@@ -423,7 +423,7 @@ void contact_roundings(const contact_problem *cp, const double *u,
   }
 }
 
-static const double SLIGHT = 0x1p-30; /* -, friction that changes nothing else */
+static const double SLIGHT = 0x1p-30; /* -, friction that moves nothing */
 
 double contact_hidden(const contact_problem *cp, const double *u,
                       const double *r, const double *own) {

@@ -391,11 +391,6 @@ status increment_pose(run *r, double t);
 status increment_load(run *r, double t);
 status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);
-/* rest.c: after a solution u[n_row] with the contact forces f[n_row] under
- * F[n_dof], bodies that none holds are put next to where r->old has them; *moved
- * 1: u has changed. */
-status increment_rest(run *r, const double *F, double *u, const double *f,
-                      int *moved);
 
 /* result.c: stresses, reactions, totals, energies of r->now as far as the
  * effects and "due" require. */

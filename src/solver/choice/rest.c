@@ -1,20 +1,7 @@
-/*
- * The place of a body that no force holds.
- *
- * Where motions R_c of whole bodies move neither a pressed node along its
- * normal nor one that friction may hold along its tangent, the equilibrium
- * u + R_c q is one for every q that leaves the gaps open. Of these places the
- * body has the one nearest to the last equilibrium, over all nodes:
- *
- *   min |u + R q - u_old|^2,   u_n + (R_c q)_n <= gap.
- *
- * The least q from that without obstacles is found by least squares without
- * negative factors (least distance programming; Lawson, Hanson 1974, 23.4).
- */
-#include "run/run.h"
+/* Least distance programming; Lawson, Hanson 1974, 23.4 (rest.h). */
+#include "solver/choice/rest.h"
 
 #include "base/memory.h"
-#include "base/sparse.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>
@@ -27,7 +14,7 @@ static const double MARGIN = 0x1p-40;   /* -, of the gaps */
 static const double BALANCED = 0x1p-30; /* -, of the work of the loads */
 
 typedef struct rest {
-  run *r;
+  const rest_scene *at;
   const contact_problem *cp;
   double *u;             /* [m] of the problem */
   const double *f;       /* [m] forces */
@@ -80,28 +67,28 @@ static status find_motions(rest *s, const double *Q, int n) {
 
 /* W: what u of all nodes is more where that of the contact is V more. */
 static status find_fields(rest *s) {
-  const run *r = s->r;
   OWNED double *moved = NULL;
   const double unit = 1.0 / power_to_one(largest_entry((size_t)s->m, s->u));
-  PASS_NEW_ALL(OF(moved, s->m), OF(s->W, r->n_dof * (size_t)s->k));
+  PASS_NEW_ALL(OF(moved, s->m), OF(s->W, s->at->n_dof * (size_t)s->k));
   for (int j = 0; j < s->k; ++j) {
-    double *W = s->W + r->n_dof * (size_t)j;
+    double *W = s->W + s->at->n_dof * (size_t)j;
     memcpy(moved, s->u, (size_t)s->m * sizeof *moved);
     cblas_daxpy(s->m, unit, s->V + (size_t)s->m * (size_t)j, 1, moved, 1);
-    PASS(condense_recover(r->c, moved, W));
-    for (size_t i = 0; i < r->n_dof; ++i) W[i] = (W[i] - r->now.u[i]) / unit;
+    PASS(condense_recover(s->at->c, moved, W));
+    for (size_t i = 0; i < s->at->n_dof; ++i)
+      W[i] = (W[i] - s->at->now[i]) / unit;
   }
   return OK;
 }
 
-/* 1: the forces F[n_dof] do work on a motion. */
-static int is_loaded(const rest *s, const double *F) {
-  const size_t n = s->r->n_dof;
+/* 1: the forces of the nodes do work on a motion. */
+static int is_loaded(const rest *s) {
+  const size_t n = s->at->n_dof;
   for (int j = 0; j < s->k; ++j) {
     double work = 0.0, terms = 0.0;
     for (size_t i = 0; i < n; ++i) {
-      work += s->W[n * (size_t)j + i] * F[i];
-      terms += fabs(s->W[n * (size_t)j + i] * F[i]);
+      work += s->W[n * (size_t)j + i] * s->at->F[i];
+      terms += fabs(s->W[n * (size_t)j + i] * s->at->F[i]);
     }
     if (fabs(work) > BALANCED * terms) return 1;
   }
@@ -112,14 +99,13 @@ static int is_loaded(const rest *s, const double *F) {
 
 /* q without obstacles; 0: the motions are not independent. */
 static int find_free(rest *s) {
-  const run *r = s->r;
-  const int n = (int)r->n_dof, k = s->k;
+  const int n = (int)s->at->n_dof, k = s->k;
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, k, n, 1.0, s->W, n, 0.0,
               s->L, k);
   for (int j = 0; j < k; ++j) {
-    const double *W = s->W + r->n_dof * (size_t)j;
+    const double *W = s->W + s->at->n_dof * (size_t)j;
     s->q[j] =
-        cblas_ddot(n, W, 1, r->old.u, 1) - cblas_ddot(n, W, 1, r->now.u, 1);
+        cblas_ddot(n, W, 1, s->at->old, 1) - cblas_ddot(n, W, 1, s->at->now, 1);
   }
   if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'L', k, s->L, k) != 0) return 0;
   return LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', k, 1, s->L, k, s->q, k) == 0;
@@ -187,19 +173,18 @@ static void put(rest *s) {
     if (!s->forced[i]) s->u[i] = fmin(s->u[i], contact_bound(s->cp, i));
 }
 
-status increment_rest(run *r, const double *F, double *u, const double *f,
-                      int *moved) {
+status rest_find(const rest_scene *at, double *u, const double *f, int *moved) {
   ENDS_BY(rest_free)
-  rest s = {.r = r, .cp = &r->problem.cp, .u = u, .f = f, .m = r->nodes.n_row};
+  rest s = {.at = at, .cp = at->cp, .u = u, .f = f, .m = at->cp->m};
   const double *Q;
-  const int n = condensed_motions(r->c, &Q);
+  const int n = condensed_motions(at->c, &Q);
   *moved = 0;
-  if (n == 0 || r->solving.report.outcome <= 0) return OK;
+  if (n == 0) return OK;
   PASS(find_forced(&s));
   PASS(find_motions(&s, Q, n));
   if (s.k == 0) return OK;
   PASS(find_fields(&s));
-  if (is_loaded(&s, F)) return OK;
+  if (is_loaded(&s)) return OK;
   PASS_NEW_ALL(OF(s.L, s.k * s.k), OF(s.q, s.k), OF(s.x, s.k));
   if (!find_free(&s)) return OK;
   PASS(keep_out(&s));
