@@ -46,7 +46,7 @@ int file_same(const char *a, const char *b) {
 status file_may_go(const char *path) {
   struct stat about;
   if (lstat(path, &about) != 0) {
-    if (errno == ENOENT) return OK;
+    if (errno == ENOENT || errno == ENOTDIR) return OK;
     RAISE(ERR_FILE, "%s: cannot be replaced: %s", path, strerror(errno));
   }
   const int is_link = S_ISLNK(about.st_mode);
