@@ -137,7 +137,8 @@
   X(2010, ERROR, "value on a data line not valid",                           \
     "The message gives the range allowed.")                                  \
   X(2011, ERROR, "defined twice",                                            \
-    "Names are unique within their kind of card, whatever their case.")      \
+    "Names are unique within their kind of card, whatever their case; of "   \
+    "contacts and goals also in the tables, where a blank is _.")            \
   X(2012, ERROR, "name not defined",                                         \
     "Define it with the card named in the message, or correct the spelling.")  \
   X(2013, ERROR, "elastic constants not valid",                              \

@@ -19,6 +19,7 @@ static const double area = 0.70710678118654752; /* of a tip: half an edge */
 static job two_contacts(void) {
   job j = tips_new(
       500, "",
+      "*UNITS, LENGTH=\"US ft, [long]\"\n"
       "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
       "*CONTACT, NAME=LEFT, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
       "*CONTACT, NAME=\"RIGHT, OUTER\", GROUP=FOOT2, OBSTACLE=O, "
@@ -76,6 +77,7 @@ START_TEST(nodes_have_the_name_of_their_contact) {
   at = strstr(at, " LEFT\n");
   ck_assert_ptr_nonnull(at);
   ck_assert_ptr_nonnull(strstr(at, " RIGHT,_OUTER\n"));
+  ck_assert_ptr_nonnull(strstr(text, " gap[US_ft,__long_] "));
   free(text);
   job_end(&j);
 }
@@ -115,6 +117,7 @@ START_TEST(tables_are_read_by_other_programs) {
       {"CONTACT --format tsv",
        "head -n 1 | tr '\\t' '\\n' | sort | uniq -d | wc -l | tr -d ' '",
        "0\n"},
+      {"CONTACT --format tsv", "wc -l | tr -d ' '", "9\n"},
       {"NODES", "sed 's/.*dat has/has/; s/ \\*PRINT.*//'",
        "has no table NODES; it has CONTACT TOTALS;\n"}};
   job j = two_contacts();

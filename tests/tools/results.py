@@ -268,6 +268,18 @@ class Results(unittest.TestCase):
             self.assertEqual(len(frame), len(contact))
             self.assertEqual(frame.attrs["units"]["x"], "mm")
 
+    def test_words_of_tables_end_at_blanks_alone(self):
+        """Labels of units and names of contacts hold what Python parts at."""
+        for suffix in (".inp", ".geo"):
+            shutil.copy(DECK.with_suffix(suffix), self.dir)
+        deck = self.dir / DECK.name
+        deck.write_text(deck.read_text().replace(
+            "LENGTH=mm", "LENGTH=US\u00a0ft \u2003[x]").replace(
+                "FOOT", "A\u00a0B\u2003C"), encoding="utf-8")
+        contact = protis.run(deck, N=4).table("CONTACT", last=True)
+        self.assertEqual(contact.units["gap"], "US\u00a0ft_\u2003_x_")
+        self.assertEqual(set(contact["contact"]), {"A\u00a0B\u2003C"})
+
     def test_errors_of_the_program_are_exceptions(self):
         with self.assertRaisesRegex(protis.Error, "none.json: no results"):
             protis.Job(self.dir / "none")
