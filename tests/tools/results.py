@@ -222,6 +222,27 @@ class Results(unittest.TestCase):
                               "--error", "GOALS", "--reference", "5", "--vary",
                               "N=4", "-o", self.dir / "goals")[0], 2)
 
+    def test_study_tells_what_has_no_answer(self):
+        def study(*words):
+            return tool("study", DECK, *words, "-o", self.dir / "study")
+        for words, said in (
+                (("--reference", "0"), "the reference is 0"),
+                (("--reference", "nan"), "the reference is nan"),
+                (("--reference", "inf"), "the reference is inf")):
+            code, text = study("--vary", "N=4", *words)
+            self.assertEqual(code, 2, text)
+            self.assertIn(said, text)
+        for words in (("--reference", "2.5"),
+                      ("--response", "TOTALS.force_x")):
+            code, text = study("--vary", "MU=0.5,-1", "--vary", "N=4", *words)
+            self.assertEqual(code, 1, text)
+            rows = [line.split() for line in (
+                self.dir / "study/study.txt").read_text().splitlines()]
+            self.assertEqual([r[0] for r in rows], ["MU", "0.5", "-1"])
+            self.assertIn("exit", rows[0])
+            self.assertNotEqual(rows[2][-1], "0")
+            self.assertIn("study: no answer for MU=-1", text)
+
     def test_study_tells_a_response(self):
         code, said = tool("study", DECK, "--response", "TOTALS.force_x",
                           "--vary", "MU=0.2,0.8", "--vary", "N=4", "-o",
