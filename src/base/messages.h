@@ -238,7 +238,8 @@
   X(2050, ERROR, "increment not stable",                                     \
     "An explicit integrator must not step over about two of the shortest "   \
     "relaxation times of the laws, or its errors grow. Take a smaller dt, "  \
-    "SUBSTEPS=AUTO, or an implicit integrator: MIDPOINT, BACKWARD.")         \
+    "SUBSTEPS=AUTO, or an implicit integrator: MIDPOINT, BACKWARD. Wear "    \
+    "opens gaps after an increment and wants the dt of the message.")        \
   X(2051, WARNING, "stresses that ring",                                     \
     "With THETA < 1 parts that relax much faster than dt change sign from "  \
     "increment to increment and die out slowly. Take a smaller dt, or "      \
