@@ -301,6 +301,15 @@ class Results(unittest.TestCase):
         self.assertEqual(contact.units["gap"], "US\u00a0ft_\u2003_x_")
         self.assertEqual(set(contact["contact"]), {"A\u00a0B\u2003C"})
 
+    def test_rows_of_other_length_are_an_error(self):
+        lines = self.job.file("dat").read_text().splitlines()
+        short, file = lines[3].rpartition(" ")[0], self.dir / "a.dat"
+        file.write_text("\n".join(lines[:3] + [short] + lines[4:]) + "\n")
+        with self.assertRaisesRegex(protis.Error, "a.dat:4: the values"):
+            list(protis.read_blocks(file))
+        file.write_text("\n".join(lines[:3] + [short]) + "\n")
+        self.assertEqual(len(next(protis.read_blocks(file))["rows"]), 1)
+
     def test_errors_of_the_program_are_exceptions(self):
         with self.assertRaisesRegex(protis.Error, "none.json: no results"):
             protis.Job(self.dir / "none")

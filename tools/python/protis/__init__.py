@@ -46,9 +46,12 @@ def words_of(line):
 def read_blocks(path):
     """The blocks of a JOB.dat one after another: a dict with step, increment,
     time, table, group ("" if none), names, units, and rows (lists of words)."""
-    block = None
+    block, wrong = None, 0
     with open(path, encoding="utf-8", errors="surrogateescape") as file:
-        for line in file:
+        for number, line in enumerate(file, 1):
+            if wrong:
+                raise Error(4, f"{path}:{wrong}: the values of the row are not "
+                            "as many as the columns")
             if not line.endswith("\n"):
                 break  # a killed run
             found = HEADING.match(line) if line[0] == "#" else None
@@ -63,7 +66,11 @@ def read_blocks(path):
                 block["names"] = [h[0] for h in heads]
                 block["units"] = [h[2].rstrip("]") for h in heads]
             elif block and line.strip():
-                block["rows"].append(words_of(line))
+                row = words_of(line)
+                if len(row) == len(block["names"] or ()):
+                    block["rows"].append(row)
+                else:
+                    wrong = number
     if block and block["names"] is not None:
         yield block
 
