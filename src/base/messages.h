@@ -334,7 +334,8 @@
   X(3022, ERROR, "elements without area or volume",                          \
     "Their corners are in one line (2-D) or plane (3-D) to rounding. "       \
     "Remesh there: coincident points, curves of length zero or a wrong "     \
-    "transfinite count are usual reasons.")                                  \
+    "transfinite count are usual reasons. Where the coordinates are out of " \
+    "range, use other units, or SCALE= of *MESH.")                           \
   X(3023, ERROR, "coordinates that are no numbers",                          \
     "The file is damaged, or a formula of the geometry divides by "          \
     "zero. Write it again.")                                                 \
