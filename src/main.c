@@ -63,6 +63,11 @@ static int report(status st, const message_log *log, int unsettled) {
   if (st != OK && !reported)
     fprintf(stderr, "protis: %s%s\n",
             status_is_request(st) ? "" : "error: ", status_message());
+  if (st == ERR_MEMORY && memory_hit_limit())
+    fprintf(stderr,
+            "protis: the memory that %s leaves is too little; --max-memory MB "
+            "allows more\n",
+            memory_limit_of());
   if (st == ERR_INTERNAL || st == ERR_MEMORY)
     fprintf(stderr, "protis: in %s\n", status_path());
   if (st == OK && unsettled > 0) {

@@ -234,9 +234,8 @@ status exact_error_find(const closed_form *ref, const domain *d,
   if (!isfinite(sum.energy + sum.u) ||
       (ref->has_pressure && isnan(out->pressure)))
     RAISE(ERR_DECK,
-          "deck line %d: *REFERENCE: a value is not finite at time %g; an "
-          "expression must be so at all points of the body (if(...) for "
-          "singular ones)",
-          ref->at.line_no, a->t);
+          "*REFERENCE: a value is not finite at time %g; an expression must be "
+          "so at all points of the body (if(...) for singular ones)",
+          a->t);
   return OK;
 }

@@ -20,7 +20,7 @@ static size_t in_use, peak, allocated;
 static size_t most = SIZE_MAX;
 static const char *limit_of = "nothing";
 static long requests, refuse_at;
-static int refuse_all;
+static int refuse_all, hit_limit;
 
 static int refused(void) {
   ++requests;
@@ -37,7 +37,10 @@ void *memory_new(size_t n, size_t size) {
   if (refused()) return NULL;
   if (size != 0 && n > (SIZE_MAX - HEADER) / size) return NULL;
   size_t bytes = n * size;
-  if (in_use > most || bytes > most - in_use) return NULL;
+  if (in_use > most || bytes > most - in_use) {
+    hit_limit = 1;
+    return NULL;
+  }
   char *block = calloc(1, bytes + HEADER);
   if (block == NULL) return NULL;
   memcpy(block, &bytes, sizeof bytes);
@@ -137,6 +140,7 @@ void memory_limit(size_t bytes, const char *who) {
 }
 
 const char *memory_limit_of(void) { return limit_of; }
+int memory_hit_limit(void) { return hit_limit; }
 
 double memory_left(void) {
   if (most == SIZE_MAX) return INFINITY;

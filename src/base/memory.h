@@ -120,6 +120,7 @@ long memory_requests(void);    /* requests since the start */
 void memory_limit(size_t bytes, const char *who);
 double memory_left(void); /* bytes; INFINITY without limit */
 const char *memory_limit_of(void);
+int memory_hit_limit(void); /* 1: it has refused a request */
 /* ERR_MEMORY, with advice, if so many bytes more exceed the limit: called
  * before a lot of work. what: "the run", ... */
 status memory_require(double bytes, const char *what);

@@ -137,7 +137,8 @@
   X(2010, ERROR, "value on a data line not valid",                           \
     "The message gives the range allowed.")                                  \
   X(2011, ERROR, "defined twice",                                            \
-    "Names are unique within their kind of card, whatever their case.")      \
+    "Names are unique within their kind of card, whatever their case; of "   \
+    "contacts and goals also in the tables, where a blank is _.")            \
   X(2012, ERROR, "name not defined",                                         \
     "Define it with the card named in the message, or correct the spelling.")  \
   X(2013, ERROR, "elastic constants not valid",                              \
@@ -237,7 +238,8 @@
   X(2050, ERROR, "increment not stable",                                     \
     "An explicit integrator must not step over about two of the shortest "   \
     "relaxation times of the laws, or its errors grow. Take a smaller dt, "  \
-    "SUBSTEPS=AUTO, or an implicit integrator: MIDPOINT, BACKWARD.")         \
+    "SUBSTEPS=AUTO, or an implicit integrator: MIDPOINT, BACKWARD. Wear "    \
+    "opens gaps after an increment and wants the dt of the message.")        \
   X(2051, WARNING, "stresses that ring",                                     \
     "With THETA < 1 parts that relax much faster than dt change sign from "  \
     "increment to increment and die out slowly. Take a smaller dt, or "      \
@@ -332,7 +334,8 @@
   X(3022, ERROR, "elements without area or volume",                          \
     "Their corners are in one line (2-D) or plane (3-D) to rounding. "       \
     "Remesh there: coincident points, curves of length zero or a wrong "     \
-    "transfinite count are usual reasons.")                                  \
+    "transfinite count are usual reasons. Where the coordinates are out of " \
+    "range, use other units, or SCALE= of *MESH.")                           \
   X(3023, ERROR, "coordinates that are no numbers",                          \
     "The file is damaged, or a formula of the geometry divides by "          \
     "zero. Write it again.")                                                 \

@@ -232,6 +232,19 @@ static status cut_flat(builder *b, double far) {
   return OK;
 }
 
+/* A square or cube of larger or smaller lengths is no number. */
+static void report_flat(const builder *b, const faults *bad, double far) {
+  const char *what = b->m->dim == 2 ? "area" : "volume";
+  if (far > 1e-98 && far < 1e100)
+    message_add(b->log, P3022, b->at, "%d element(s) have no %s: %s", bad->n,
+                what, bad->text);
+  else
+    message_add(b->log, P3022, b->at,
+                "the coordinates, up to %g, are out of range: the %s of %d "
+                "element(s) is no number above 0; use other units",
+                far, what, bad->n);
+}
+
 /* Turn every element to positive orientation; flat ones are reported. */
 static status orient(builder *b) {
   mesh *m = b->m;
@@ -248,9 +261,7 @@ static status orient(builder *b) {
     fault_centre(m, n, v, centre);
     fault_at(&bad, m->dim, m->elem_no[e], centre);
   }
-  if (bad.n > 0)
-    message_add(b->log, P3022, b->at, "%d element(s) have no %s: %s", bad.n,
-                m->dim == 2 ? "area" : "volume", bad.text);
+  if (bad.n > 0) report_flat(b, &bad, far);
   return build_check(b);
 }
 

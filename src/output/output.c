@@ -12,9 +12,11 @@
 #include "base/timer.h"
 #include "output/writers.h"
 
+#include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -46,25 +48,39 @@ static status spare(const deck *d, const char *path) {
   return OK;
 }
 
-static int is_condensed(const char *name, const char *of) {
-  size_t n = strlen(of), k = sizeof middle - 1;
-  return strncmp(name, of, n) == 0 && strncmp(name + n, middle, k) == 0;
+/* The increment of a file of that name; 0: it is none of a condensed problem
+ * of the job. */
+static long increment_of(const char *name, const char *job_name) {
+  const size_t n = strlen(job_name), k = sizeof middle - 1;
+  if (strncmp(name, job_name, n) != 0 || strncmp(name + n, middle, k) != 0 ||
+      !isdigit((unsigned char)name[n + k]))
+    return 0;
+  char *end = NULL;
+  const long number = strtol(name + n + k, &end, 10);
+  return strcmp(end, ".h5") == 0 || strcmp(end, ".h5.tmp") == 0 ? number : 0;
 }
 
 static void close_folder(DIR **folder) {
   if (*folder != NULL) closedir(*folder);
 }
 
-static status spare_condensed(const model *m, const char *dir) {
+static status clear(const deck *d, const char *path) {
+  (void)d;
+  return file_clear(path);
+}
+
+/* "act" on all files of condensed problems of increments after that one. */
+static status each_condensed(const model *m, const char *dir, int after,
+                             status (*act)(const deck *d, const char *path)) {
   DIR *folder ENDS_BY(close_folder) = opendir(dir);
   if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
   if (folder == NULL) return text_failed(dir, "read", errno);
   for (struct dirent *e; (e = readdir(folder)) != NULL;) {
     OWNED char *path = NULL;
-    if (!is_condensed(e->d_name, m->name.job)) continue;
+    if (increment_of(e->d_name, m->name.job) <= after) continue;
     PASS_NEW(path, strlen(dir) + strlen(e->d_name) + 2);
     sprintf(path, "%s/%s", dir, e->d_name);
-    PASS(spare(m->deck, path));
+    PASS(act(m->deck, path));
   }
   return OK;
 }
@@ -76,7 +92,7 @@ status output_spare(const model *m, const char *dir) {
     PASS_GET(path, text_path(dir, m->name.job, results[k]));
     PASS(spare(m->deck, path));
   }
-  return spare_condensed(m, dir);
+  return each_condensed(m, dir, 0, spare);
 }
 
 enum { XDMF_PAUSE = 1 };               /* s */
@@ -284,6 +300,7 @@ static status open_new(output *o) {
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
   for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
+  PASS(each_condensed(o->m, o->o.dir, 0, clear));
   PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
   if (o->dat == NULL) PASS(remove_old(o, "dat"));
   PASS(sta_header(&o->o, &o->sta));
@@ -305,6 +322,7 @@ static status open_earlier(output *o) {
   TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
   TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
   TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
+  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, clear));
 done:
   if (o->run.increments == NULL) o->run.n_increment = 0;
   return st;

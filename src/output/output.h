@@ -15,9 +15,9 @@ typedef struct output output;
  * anything is touched. */
 status output_spare(const model *m, const char *dir);
 /* Open all files of the job: the text files, flushed line by line, and JOB.h5
- * with space for the estimated number of increments. JOB.xdmf and JOB.json of
- * an earlier run, and its restart files, are removed. ERR_FILE names the file.
- * The options are copied, their strings borrowed. */
+ * with space for the estimated number of increments. JOB.xdmf, JOB.json and
+ * condensed problems of an earlier run, and its restart files, are removed.
+ * ERR_FILE names the file. The options are copied, their strings borrowed. */
 status output_open(const model *m, const mesh *msh, const output_options *o,
                    output **out);
 history_sink output_sink(output *o);

@@ -78,7 +78,7 @@ static status read_problem(model *m, exchange_problem **problem) {
                      problem));
   model_fit_problem(m, (*problem)->dim, (*problem)->cp.g0 != NULL,
                     effects_required);
-  return OK;
+  return message_status(m->log, ERR_DECK);
 }
 
 static status read_deck(const command *c, message_log *log, job_input *in) {

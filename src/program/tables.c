@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 enum { WORDS = 80, NAME_SIZE = 160 };
 
@@ -26,6 +27,8 @@ typedef struct extract {
   FILE *f;
   char *line; /* of getline */
   size_t size;
+  long line_no;
+  int cut;          /* 1: the last line is not whole */
   heading now, end; /* of the block read, of the last one wanted */
   int n_word;
   char *word[WORDS]; /* of the line; into it */
@@ -53,8 +56,22 @@ static int split(extract *e) {
   return e->n_word;
 }
 
+static int at_end(extract *e) {
+  const int c = getc(e->f);
+  return c == EOF || ungetc(c, e->f) == EOF;
+}
+
+/* 0: no more; the last one that is cut is none. */
 static int next_line(extract *e) {
-  return getline(&e->line, &e->size, e->f) > 0;
+  const ssize_t n = getline(&e->line, &e->size, e->f);
+  ++e->line_no;
+  if (n > 0 && e->line[n - 1] != '\n') e->cut = 1;
+  return n > 0 && !e->cut;
+}
+
+static void begin(extract *e) {
+  rewind(e->f);
+  e->line_no = e->cut = 0;
 }
 
 static int same_time(const heading *a, const heading *b) {
@@ -127,20 +144,29 @@ static void put_row(const extract *e, const char *const *value) {
   putchar('\n');
 }
 
-/* A row that a killed run has cut short is none. */
-static void copy_row(extract *e) {
+/* Blank lines part the blocks. */
+static status copy_row(extract *e) {
   const char *value[WORDS];
-  if (strchr(e->line, '\n') == NULL || split(e) != e->n_place) return;
+  const int n = split(e);
+  if (n == 0) return OK;
+  if (n != e->n_place && at_end(e)) {
+    e->cut = 1;
+    return OK;
+  }
+  if (n != e->n_place)
+    RAISE(ERR_FILE, "%s:%ld: %d values in a row of %d columns", e->path,
+          e->line_no, n, e->n_place);
   for (int k = 0; k < e->n_column; ++k) value[k] = "";
   for (int i = 0; i < e->n_place; ++i)
     if (e->place[i] >= 0) value[e->place[i]] = e->word[i];
   put_row(e, value);
+  return OK;
 }
 
 /* All lines once: to know columns and end ("print" 0), or to print. */
-static void pass(extract *e, int print) {
+static status pass(extract *e, int print) {
   int inside = 0; /* 1: before the names, 2: rows */
-  rewind(e->f);
+  begin(e);
   while (next_line(e))
     if (read_heading(e)) {
       inside = strcasecmp(e->now.table, e->name) == 0;
@@ -151,15 +177,16 @@ static void pass(extract *e, int print) {
       read_columns(e);
       inside = 2;
     } else if (inside == 2 && print) {
-      copy_row(e);
+      PASS(copy_row(e));
     }
+  return OK;
 }
 
 /* The tables of the file, each once. */
 static void list_tables(extract *e, char *text, size_t size) {
   size_t used = 0;
   text[0] = '\0';
-  rewind(e->f);
+  begin(e);
   while (next_line(e)) {
     char word[40];
     if (!read_heading(e)) continue;
@@ -171,7 +198,7 @@ static void list_tables(extract *e, char *text, size_t size) {
 
 static status print_all(extract *e) {
   char there[400];
-  pass(e, 0);
+  PASS(pass(e, 0));
   if (e->end.step[0] == '\0') {
     list_tables(e, there, sizeof there);
     RAISE(ERR_DECK,
@@ -179,7 +206,7 @@ static status print_all(extract *e) {
           e->path, e->name, there[0] != '\0' ? there : " none");
   }
   put_row(e, NULL);
-  pass(e, 1);
+  PASS(pass(e, 1));
   if (ferror(e->f)) PASS(text_failed(e->path, "read", errno));
   return OK;
 }
@@ -207,6 +234,26 @@ static char *job_name(const char *file) {
   return name;
 }
 
+/* JOB.json is written at the end, where the lock goes. */
+static status is_finished(const command *c, const char *name, int *finished) {
+  OWNED char *record = NULL, *lock = NULL;
+  PASS_GET(record, text_path(c->dir, name, "json"));
+  PASS_GET(lock, text_path(c->dir, name, "lock"));
+  *finished = access(record, F_OK) == 0 && access(lock, F_OK) != 0;
+  return OK;
+}
+
+static status tell_end(const command *c, const char *name, const extract *e) {
+  int finished = 0;
+  PASS(is_finished(c, name, &finished));
+  if (!finished)
+    fprintf(stderr, "protis: warning: the run of %s has not finished\n", name);
+  if (e->cut)
+    fprintf(stderr, "protis: warning: %s:%ld: the last row is cut\n", e->path,
+            e->line_no);
+  return OK;
+}
+
 status tables_print(const command *c) {
   status st = OK;
   OWNED extract *e = NULL;
@@ -221,6 +268,7 @@ status tables_print(const command *c) {
   e->f = fopen(path, "r");
   if (e->f == NULL) PASS(text_failed(path, "read", errno));
   st = print_all(e);
+  if (st == OK) st = tell_end(c, name, e);
   fclose(e->f);
   free(e->line);
   return st;

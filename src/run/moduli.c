@@ -35,8 +35,8 @@ static status heat_entry(moduli *x, const model *m, int k, double T,
   const char *wrong = elastic_at(&mat->elastic, T, C, text, (int)sizeof text);
   x->at[k] = T;
   if (wrong != NULL)
-    RAISE(ERR_DECK, "material %s at the temperature %g: %s", mat->name, T,
-          wrong);
+    RAISE(ERR_DECK, "%s:%d: material %s at the temperature %g: %s",
+          PLACE(mat->at), mat->name, T, wrong);
   if (memcmp(C, x->C + 36 * (size_t)i, sizeof C) == 0) return OK;
   put_entry(x, m, i, C);
   *changed = 1;

@@ -4,6 +4,7 @@
  * is refused and not waited for.
  */
 #include "support/job.h"
+#include "support/small_job.h"
 #include "support/unit.h"
 
 #include <stdio.h>
@@ -187,6 +188,25 @@ START_TEST(results_stay_in_their_folder) {
 }
 END_TEST
 
+/* Those of a longer run before are gone, at a restart those after it. */
+START_TEST(condensed_problems_are_of_one_run) {
+  static const char make[] =
+      "touch block_condensed_00009.h5 block_condensed_00042.h5.tmp "
+      "block_condensed_x.h5 block_condensed_7.h5.old; ";
+  static const char count[] =
+      "test \"$(ls | grep condensed | xargs)\" = \"$(echo "
+      "block_condensed_0000[1-8].h5 block_condensed_7.h5.old "
+      "block_condensed_x.h5)\"";
+  job j = small_flat(0.5, "*OUTPUT, CONDENSED=FCLIB\n*RESTART\n", "AUTO");
+  for (int again = 0; again < 2; ++again) {
+    shell(&j, make);
+    ck_assert_msg(job_run(&j, again ? "--restart" : "") == 0, "%s", j.errors);
+    shell(&j, count);
+  }
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(stop_file_of_others_stays) {
   job j = begin();
   write_deck(&j, 3, "job.stop");
@@ -259,5 +279,5 @@ END_TEST
 UNIT_MAIN("inputs", results_named_like_inputs_are_refused,
           inputs_are_known_by_what_they_are,
           what_a_geometry_includes_is_an_input, results_stay_in_their_folder,
-          stop_file_of_others_stays, no_plain_file_is_no_input,
-          no_plain_file_is_no_result)
+          condensed_problems_are_of_one_run, stop_file_of_others_stays,
+          no_plain_file_is_no_input, no_plain_file_is_no_result)

@@ -19,6 +19,7 @@ static const double area = 0.70710678118654752; /* of a tip: half an edge */
 static job two_contacts(void) {
   job j = tips_new(
       500, "",
+      "*UNITS, LENGTH=\"US ft, [long]\"\n"
       "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
       "*CONTACT, NAME=LEFT, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
       "*CONTACT, NAME=\"RIGHT, OUTER\", GROUP=FOOT2, OBSTACLE=O, "
@@ -76,6 +77,7 @@ START_TEST(nodes_have_the_name_of_their_contact) {
   at = strstr(at, " LEFT\n");
   ck_assert_ptr_nonnull(at);
   ck_assert_ptr_nonnull(strstr(at, " RIGHT,_OUTER\n"));
+  ck_assert_ptr_nonnull(strstr(text, " gap[US_ft,__long_] "));
   free(text);
   job_end(&j);
 }
@@ -115,6 +117,7 @@ START_TEST(tables_are_read_by_other_programs) {
       {"CONTACT --format tsv",
        "head -n 1 | tr '\\t' '\\n' | sort | uniq -d | wc -l | tr -d ' '",
        "0\n"},
+      {"CONTACT --format tsv", "wc -l | tr -d ' '", "9\n"},
       {"NODES", "sed 's/.*dat has/has/; s/ \\*PRINT.*//'",
        "has no table NODES; it has CONTACT TOTALS;\n"}};
   job j = two_contacts();
@@ -125,6 +128,39 @@ START_TEST(tables_are_read_by_other_programs) {
     free(said);
   }
   job_end(&j);
+}
+END_TEST
+
+/* What a change of the results makes of --table: its code, the lines of the
+ * table, what it says. */
+START_TEST(tables_that_are_not_whole_are_told) {
+  static const struct {
+    const char *change;
+    int code, lines;
+    const char *said;
+  } cases[] = {
+      {"true", 0, 9, ""},
+      {"rm J.json", 0, 9, "protis: warning: the run of J has not finished\n"},
+      {"touch J.lock", 0, 9, "warning: the run of J has not finished\n"},
+      {"truncate -s -5 J.dat", 0, 8, "the last row is cut\n"},
+      {"sed -i '$s/ [^ ]*$//' J.dat", 0, 8, "the last row is cut\n"},
+      {"sed -i '/table TOTALS/{n;n;s/ [^ ]*$//}' J.dat", 4, 1,
+       " values in a row of "}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+    char command[400];
+    job j = two_contacts();
+    snprintf(command, sizeof command,
+             "for f in %s.*; do mv $f J.${f##*.}; done; %s; "
+             "protis J --table TOTALS 2>said > table; code=$?; "
+             "cat said >&2; "
+             "test $(wc -l < table) = %d && exit $code",
+             j.name, cases[i].change, cases[i].lines);
+    ck_assert_msg(job_shell(&j, command) == cases[i].code &&
+                      strstr(j.errors, cases[i].said) != NULL &&
+                      (cases[i].said[0] != '\0' || j.errors[0] == '\0'),
+                  "%s: %s", cases[i].change, j.errors);
+    job_end(&j);
+  }
 }
 END_TEST
 
@@ -204,6 +240,7 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
 END_TEST
 
 UNIT_MAIN("results", run_on_a_terminal_ends_with_what_matters,
-          tables_are_read_by_other_programs, what_cannot_be_printed_is_an_error,
+          tables_are_read_by_other_programs, tables_that_are_not_whole_are_told,
+          what_cannot_be_printed_is_an_error,
           json_has_the_contacts_at_the_end_of_each_step,
           nodes_have_the_name_of_their_contact)

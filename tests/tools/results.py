@@ -222,6 +222,27 @@ class Results(unittest.TestCase):
                               "--error", "GOALS", "--reference", "5", "--vary",
                               "N=4", "-o", self.dir / "goals")[0], 2)
 
+    def test_study_tells_what_has_no_answer(self):
+        def study(*words):
+            return tool("study", DECK, *words, "-o", self.dir / "study")
+        for words, said in (
+                (("--reference", "0"), "the reference is 0"),
+                (("--reference", "nan"), "the reference is nan"),
+                (("--reference", "inf"), "the reference is inf")):
+            code, text = study("--vary", "N=4", *words)
+            self.assertEqual(code, 2, text)
+            self.assertIn(said, text)
+        for words in (("--reference", "2.5"),
+                      ("--response", "TOTALS.force_x")):
+            code, text = study("--vary", "MU=0.5,-1", "--vary", "N=4", *words)
+            self.assertEqual(code, 1, text)
+            rows = [line.split() for line in (
+                self.dir / "study/study.txt").read_text().splitlines()]
+            self.assertEqual([r[0] for r in rows], ["MU", "0.5", "-1"])
+            self.assertIn("exit", rows[0])
+            self.assertNotEqual(rows[2][-1], "0")
+            self.assertIn("study: no answer for MU=-1", text)
+
     def test_study_tells_a_response(self):
         code, said = tool("study", DECK, "--response", "TOTALS.force_x",
                           "--vary", "MU=0.2,0.8", "--vary", "N=4", "-o",
@@ -267,6 +288,27 @@ class Results(unittest.TestCase):
             frame = contact.to_pandas()
             self.assertEqual(len(frame), len(contact))
             self.assertEqual(frame.attrs["units"]["x"], "mm")
+
+    def test_words_of_tables_end_at_blanks_alone(self):
+        """Labels of units and names of contacts hold what Python parts at."""
+        for suffix in (".inp", ".geo"):
+            shutil.copy(DECK.with_suffix(suffix), self.dir)
+        deck = self.dir / DECK.name
+        deck.write_text(deck.read_text().replace(
+            "LENGTH=mm", "LENGTH=US\u00a0ft \u2003[x]").replace(
+                "FOOT", "A\u00a0B\u2003C"), encoding="utf-8")
+        contact = protis.run(deck, N=4).table("CONTACT", last=True)
+        self.assertEqual(contact.units["gap"], "US\u00a0ft_\u2003_x_")
+        self.assertEqual(set(contact["contact"]), {"A\u00a0B\u2003C"})
+
+    def test_rows_of_other_length_are_an_error(self):
+        lines = self.job.file("dat").read_text().splitlines()
+        short, file = lines[3].rpartition(" ")[0], self.dir / "a.dat"
+        file.write_text("\n".join(lines[:3] + [short] + lines[4:]) + "\n")
+        with self.assertRaisesRegex(protis.Error, "a.dat:4: the values"):
+            list(protis.read_blocks(file))
+        file.write_text("\n".join(lines[:3] + [short]) + "\n")
+        self.assertEqual(len(next(protis.read_blocks(file))["rows"]), 1)
 
     def test_errors_of_the_program_are_exceptions(self):
         with self.assertRaisesRegex(protis.Error, "none.json: no results"):

@@ -96,10 +96,21 @@ static status overshoot(const run *r, const double *root, double *largest) {
   return OK;
 }
 
+static status refuse(const run *r, const effect_card *c, double factor) {
+  const double dt = r->now.t - r->old.t;
+  message_add(r->m->log, P2050, &c->at,
+              "step %d, time %g: the wear of an increment of dt = %g reduces "
+              "the forces of a node by %.3g times their value, above 2 they "
+              "grow without bound: give increments of dt <= %.3g",
+              run_step_id(r) + 1, r->now.t, dt, factor, dt / factor);
+  RAISE(ERR_DECK, "%s:%d: the increment is not stable", PLACE(c->at));
+}
+
 static status wear_off(run *r, void *self) {
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
   OWNED double *root = NULL;
+  const effect_card *worn = NULL;
   double *depth = self, factor = 0.0;
   PASS_NEW(root, r->nodes.n_c);
   for (int i = 0; i < r->nodes.n; ++i) {
@@ -113,18 +124,11 @@ static status wear_off(run *r, void *self) {
       const double per_force = c->value[0] * slip / area_of(s, i, a);
       depth[dim * s->node_id[i] + a] -= per_force * r->now.rc[k];
       root[k] = sqrt(per_force);
+      worn = c;
     }
   }
   PASS(overshoot(r, run_rows(r, 0, root), &factor));
-  if (factor > 2.0)
-    RAISE(ERR_DECK,
-          "step %d, time %g: the wear of an increment of dt = %g reduces the "
-          "forces of a node by %.3g times their value, above 2 they grow "
-          "without bound: give "
-          "increments of dt <= %.3g",
-          run_step_id(r) + 1, r->now.t, r->now.t - r->old.t, factor,
-          (r->now.t - r->old.t) / factor);
-  return OK;
+  return factor > 2.0 ? refuse(r, worn, factor) : OK;
 }
 
 static status keep(run *r, void *self, archive *a) {

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -244,25 +245,6 @@ status law_card_read(deck *d, const card *c, message_log *log, law_card *law) {
   return OK;
 }
 
-status law_card_check(const law_card *law, elastic_type type,
-                      message_log *log) {
-  char text[256];
-  OWNED double *value = NULL;
-  if (law->ops->check == NULL) return OK;
-  PASS_NEW(value, law_n_value(law));
-  for (int i = 0; i < law->n_set; ++i) {
-    const char *wrong = NULL;
-    if (law_values(law, 0, law->temperature[i], value) != OK)
-      wrong = status_message();
-    else
-      wrong = law->ops->check(law, type, value, text, sizeof text);
-    if (wrong == NULL) continue;
-    message_add(log, P2046, &law->at, "law %s: %s", law->ops->name, wrong);
-    break;
-  }
-  return OK;
-}
-
 /* Row of value number i, and the term it belongs to (from 1; 0: none). */
 static const option *row_of(const law_card *law, int i, int *term) {
   const int n_field = law_n_field(law->ops->fields);
@@ -285,8 +267,9 @@ static int find_set(const law_card *law, double temperature, double *weight) {
   return k;
 }
 
-status law_values(const law_card *law, double t, double temperature,
-                  double *value) {
+/* The values; what is wrong with one, or NULL. */
+static const char *find_values(const law_card *law, double t,
+                               double temperature, double *value) {
   static const double origin[3] = {0, 0, 0};
   const int n = law_n_value(law);
   double weight;
@@ -301,9 +284,33 @@ status law_values(const law_card *law, double t, double temperature,
     if (value[i] >= row->min && value[i] <= row->max) continue;
     char why[128];
     range_text(value[i], row->min, row->max, why, sizeof why);
-    RAISE(ERR_DECK, "%s = %s at time %g (data line %d of the law)", row->name,
-          why, t, term + (law->ops->fields != NULL));
+    return text_of("%s = %s at time %g (data line %d of the law)", row->name,
+                   why, t, term + (law->ops->fields != NULL));
   }
+  return NULL;
+}
+
+status law_card_check(const law_card *law, elastic_type type,
+                      message_log *log) {
+  char text[256];
+  OWNED double *value = NULL;
+  if (law->ops->check == NULL) return OK;
+  PASS_NEW(value, law_n_value(law));
+  for (int i = 0; i < law->n_set; ++i) {
+    const char *wrong = find_values(law, 0, law->temperature[i], value);
+    if (wrong == NULL)
+      wrong = law->ops->check(law, type, value, text, sizeof text);
+    if (wrong == NULL) continue;
+    message_add(log, P2046, &law->at, "law %s: %s", law->ops->name, wrong);
+    break;
+  }
+  return OK;
+}
+
+status law_values(const law_card *law, double t, double temperature,
+                  double *value) {
+  const char *wrong = find_values(law, t, temperature, value);
+  if (wrong != NULL) RAISE(ERR_DECK, LAW_FORM "%s", LAW_ARGS(law), wrong);
   return OK;
 }
 

@@ -252,15 +252,20 @@ static status coupled_matrix(const law_point *p, int na, double *M) {
 }
 
 /* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
-static status spectral_radius(double *M, int n, double *radius) {
+static status spectral_radius(const law_point *p, double *M, int n,
+                              double *radius) {
   OWNED double *re = NULL;
   PASS_NEW(re, 6 * n);
   for (int i = 0; i < n * n; ++i)
     if (!isfinite(M[i]))
-      RAISE(ERR_SINGULAR, "derivative of an inelastic law is not a number");
+      RAISE(ERR_SINGULAR,
+            LAW_FORM "the derivative of law %s is not a number at time %g",
+            LAW_ARGS(p->law), p->law->ops->name, p->t);
   if (LAPACKE_dgeev_work(LAPACK_COL_MAJOR, 'N', 'N', n, M, n, re, re + n, NULL,
                          1, NULL, 1, re + 2 * n, 4 * n) != 0)
-    RAISE(ERR_SINGULAR, "no eigenvalues of the rates of an inelastic law");
+    RAISE(ERR_SINGULAR,
+          LAW_FORM "the rates of law %s have no eigenvalues at time %g",
+          LAW_ARGS(p->law), p->law->ops->name, p->t);
   *radius = 0;
   for (int i = 0; i < n; ++i) *radius = fmax(*radius, hypot(re[i], re[n + i]));
   return OK;
@@ -280,5 +285,5 @@ status law_fastest_rate(const law_point *p, double *rate) {
   const int na = law_n_alpha(p->law, el->ns), n = el->ns + na;
   PASS_NEW(M, n * n);
   PASS(coupled_matrix(p, na, M));
-  return spectral_radius(M, n, rate);
+  return spectral_radius(p, M, n, rate);
 }

@@ -69,8 +69,14 @@ typedef struct law_card {
                                 owned */
   const expression *formula; /* rate of the law USER, borrowed; else NULL */
   law_shift shift;
-  place at; /* of the card */
+  place at;             /* of the card */
+  const char *material; /* its name, borrowed; NULL: none */
 } law_card;
+/* For messages: file, line, material. */
+#define LAW_FORM "%s:%d: material %s: "
+#define LAW_ARGS(law)                                              \
+  (law)->at.file != NULL ? (law)->at.file : "", (law)->at.line_no, \
+      (law)->material != NULL ? (law)->material : ""
 
 /* Where a law is evaluated. */
 typedef struct law_point {

@@ -172,6 +172,8 @@ const place *value_place(const reading *r, const char *parameter);
 void report_idle(const reading *r, const char *name, const char *with);
 /* Report NAME= given twice; 1 if "old" has it. */
 int name_taken(const reading *r, const char *name, const char *old);
+/* The same, or that the tables show both as one name. */
+void shown_name_taken(const reading *r, const char *name, const char *old);
 /* Report a word that names nothing, with the nearest of those there are: "text"
  * precedes it, as "there is no *MATERIAL, NAME=". */
 void unknown_word(message_log *log, message_id id, const place *at,

@@ -222,7 +222,7 @@ static void read_torque_axis(const reading *r, const record *line, contact *c) {
 static status new_contact(const reading *r, const char *name, contact **out) {
   model *m = r->m;
   for (int i = 0; i < m->n.contact; ++i)
-    name_taken(r, name, m->contacts[i].name);
+    shown_name_taken(r, name, m->contacts[i].name);
   PASS_GROW(m->contacts, m->n.contact, m->cap.contact);
   contact *c = &m->contacts[m->n.contact++];
   c->name = name == NULL ? "" : name;

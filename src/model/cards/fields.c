@@ -58,6 +58,22 @@ int name_taken(const reading *r, const char *name, const char *old) {
   return 1;
 }
 
+/* 1: the tables, where a blank is "_", show both as one. */
+static int same_shown(const char *a, const char *b) {
+  char first[160], second[160];
+  text_word(first, sizeof first, a);
+  text_word(second, sizeof second, b);
+  return same_word(first, second);
+}
+
+void shown_name_taken(const reading *r, const char *name, const char *old) {
+  if (name_taken(r, name, old) || name == NULL || old == NULL) return;
+  if (same_shown(name, old))
+    message_add(r->m->log, P2011, value_place(r, "NAME"),
+                "*%s, NAME=%s: the tables show it and %s as one name",
+                r->card->name, name, old);
+}
+
 void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i),

@@ -153,6 +153,7 @@ static status read_law(reading *r, const law_ops *ops, const void *words,
   }
   mat->law.ops = ops;
   mat->law.at = r->card->at;
+  mat->law.material = mat->name;
   mat->law.shift = *shift;
   check_shift(r, ops, shift);
   if (ops->param_size > 0) {

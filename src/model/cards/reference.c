@@ -168,7 +168,7 @@ status apply_goal(reading *r) {
   model *m = r->m;
   if (r->misread || p->name == NULL || !is_given(r, "QUANTITY")) return OK;
   for (int i = 0; i < m->n.goal; ++i)
-    name_taken(r, p->name, m->accuracy.goals[i].name);
+    shown_name_taken(r, p->name, m->accuracy.goals[i].name);
   PASS_GROW(m->accuracy.goals, m->n.goal, m->cap.goal);
   goal_card *g = &m->accuracy.goals[m->n.goal++];
   *g = (goal_card){.name = p->name,

@@ -581,6 +581,7 @@ const char *column_unit(const char *unit, const model *m) {
     unit += known ? strlen(words[k]) : 1;
     used += (size_t)n;
   }
+  for (char *p = text; (p = strpbrk(p, " \t\v\f[]")) != NULL;) *p = '_';
   return text;
 }
 

@@ -159,11 +159,6 @@ static status solve_lcp(discrete *d) {
   lcp_data p = {d->p->n, d->p->matrix, d->p->load};
   lcp_control control = {choice->tol, choice->max_iter, ops != NULL};
   lcp_verdict v;
-  if (ops != NULL && strcasecmp(ops->name, "lemke") != 0)
-    FAIL(ERR_DECK,
-         "deck line %d: METHOD=%s does not solve a plain linear "
-         "complementarity problem; use LEMKE or AUTO",
-         d->step->solver_at.line_no, ops->name);
   TRY(lcp_solve(&p, &control, d->r, d->u, &v));
   d->report = (solver_report){.outcome = v.outcome,
                               .iterations = v.iterations,

@@ -93,6 +93,6 @@ status check_problem(const step *s, const contact_problem *cp,
     return solutions_by_solvers(cp, s->solver.tol, report, u, r, out);
   const status st = solutions_by_statuses(cp, s->solver.tol, u, r, out);
   if (st != ERR_DECK) return st;
-  RAISE(ERR_DECK, "deck line %d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
-        s->solver_at.line_no, status_message());
+  RAISE(ERR_DECK, "%s:%d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
+        PLACE(s->solver_at), status_message());
 }

@@ -38,12 +38,20 @@ HEADING = re.compile(r"# step (\d+) increment (\d+) time (\S+) table (\S+)"
                      r"(?: group (.*))?$")
 
 
+def words_of(line):
+    """Its words between blanks: to Python others than blanks part words."""
+    return re.findall(r"[^ \t\r\n]+", line)
+
+
 def read_blocks(path):
     """The blocks of a JOB.dat one after another: a dict with step, increment,
     time, table, group ("" if none), names, units, and rows (lists of words)."""
-    block = None
+    block, wrong = None, 0
     with open(path, encoding="utf-8", errors="surrogateescape") as file:
-        for line in file:
+        for number, line in enumerate(file, 1):
+            if wrong:
+                raise Error(4, f"{path}:{wrong}: the values of the row are not "
+                            "as many as the columns")
             if not line.endswith("\n"):
                 break  # a killed run
             found = HEADING.match(line) if line[0] == "#" else None
@@ -54,11 +62,15 @@ def read_blocks(path):
                          "time": float(found[3]), "table": found[4],
                          "group": found[5] or "", "names": None, "rows": []}
             elif block and block["names"] is None and line[0] == "#":
-                heads = [w.partition("[") for w in line[1:].split()]
+                heads = [w.partition("[") for w in words_of(line[1:])]
                 block["names"] = [h[0] for h in heads]
                 block["units"] = [h[2].rstrip("]") for h in heads]
             elif block and line.strip():
-                block["rows"].append(line.split())
+                row = words_of(line)
+                if len(row) == len(block["names"] or ()):
+                    block["rows"].append(row)
+                else:
+                    wrong = number
     if block and block["names"] is not None:
         yield block
 
