@@ -166,10 +166,10 @@ static void set_sticks(const run *r, const goal_history *h, goal_surface *s) {
     memcpy(s->edge[k].stick, h->edge + dim * (size_t)k, dim * sizeof *h->edge);
 }
 
-static int has_factor(const model *m) {
+static int has_goal_of(const model *m, goal_quantity of) {
   int any = 0;
   for (int i = 0; i < m->n.goal; ++i)
-    any |= m->accuracy.goals[i].quantity == GOAL_SIF;
+    any |= m->accuracy.goals[i].quantity == of;
   return any;
 }
 
@@ -186,7 +186,10 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .edge = s->surface.edge,
                                .ends = s->surface.ends,
                                .front = s->surface.front,
-                               .has_flux = has_factor(r->m)};
+                               .n_given = s->surface.n_given,
+                               .given = s->surface.given,
+                               .has_flux = has_goal_of(r->m, GOAL_SIF),
+                               .has_energy = has_goal_of(r->m, GOAL_ENERGY)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));
@@ -281,17 +284,14 @@ static status complete(const run *r, const shared *s, goal_estimate *e) {
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   e->error += f->curved + beyond;
   e->magnitude += fabs(f->curved) + fabs(beyond);
-  e->error += f->is_square ? 0.0 : e->hoop;
+  e->error += e->hoop;
   if (f->sums) {
     double slips;
     PASS(of_slip(r, s, &slips));
     e->error += slips;
     e->magnitude += fabs(slips);
   }
-  if (f->is_square) {
-    e->error += 0.5 * (goal_estimator_energy(s->estimator) + e->hoop);
-    e->hoop = 0.0;
-  }
+  if (f->is_square) e->hoop = 0.0;
   return OK;
 }
 
@@ -495,7 +495,7 @@ static const column columns[] = {
  "by the contact solver, with its sign"},
 {"contact_ends", "%", GOAL, goal_ends, NULL,
  "share of the elements where the contact ends or changes between slip and "
- "stick"},
+ "stick, or a support ends, or in an inner corner"},
 {"verdict", "-", WORD, goal_no, goal_word,
  "reliable, or why not"}};
 /* clang-format on */

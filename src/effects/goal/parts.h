@@ -44,11 +44,16 @@ status goal_add_boundary(const run *r, double *dF);
 /* surface.c */
 typedef struct goal_surface {
   int n_edge;
-  contact_edge *edge;   /* [n_edge] sorted */
-  unsigned char *ends;  /* [n_node] */
+  contact_edge *edge;  /* [n_edge] sorted */
+  unsigned char *ends; /* [n_node] GOAL_END_OF_CONTACT, _SUPPORT or 0 */
+  int n_given;
+  given_edge *given;    /* [n_given] sorted; NULL: none */
   unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
   int n_closed;         /* closed nodes */
 } goal_surface;
+/* support.c: s->given, then what supports add to s->ends. */
+status goal_add_given(const run *r, goal_surface *s);
+status goal_mark_supports(const run *r, goal_surface *s);
 status goal_surface_new(const run *r, goal_surface *s);
 void goal_surface_free(goal_surface *s); /* accepts all-zero */
 /* where[n_node]: contact node of a mesh node, or -1; new. */
