@@ -122,5 +122,51 @@ START_TEST(ends_of_supports_are_not_reliable) {
 }
 END_TEST
 
-UNIT_MAIN("goals_supports", energies_by_loads_and_by_supports,
+/* All of the base slips, at 0.5 whatever the pressure: the force is 1. A node
+ * that a support holds has a part of it. */
+START_TEST(nodes_of_supports_have_a_part_of_the_force) {
+  static const char *const hold[] = {
+      "LEFT, 2, 2, -0.002\n", "LEFT, 1, 1, 0.05\n", "CORNER, 1, 1, 0.05\n", ""};
+  for (int k = 0; k < 4; ++k) {
+    char cards[500];
+    snprintf(cards, sizeof cards,
+             "*FRICTION, CONTACT=C, LAW=TRESCA\n0.5\n"
+             "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=TANGENT\n"
+             "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.05\n"
+             "TOP, 2, 2, -0.01\n%s",
+             hold[k]);
+    job j = of_block(8, "GAP\n\"-0.005\"", cards);
+    dat t = job_table(&j, "GOALS", -1);
+    const double off = -1.0 - dat_at(&t, 0, "corrected");
+    const double band = dat_at(&t, 0, "band");
+    ck_assert_msg(fabs(off) <= band, "row %d: %g off, band %g", k, off, band);
+    ck_assert_int_eq(has_verdict(&j, "T", "reliable"), k == 3);
+    ck_assert(k < 3 ? band > 0.01 : band < 1e-12 && band > 1e-14);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Where a coarse mesh sticks, and a sum whose terms cancel. */
+START_TEST(zeros_are_not_exact) {
+  job j = of_block(8, PLANE,
+                   "*FRICTION, CONTACT=C, LAW=COULOMB\n5.\n"
+                   "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n"
+                   "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n"
+                   "*DSLOAD\nTOP, P, 10.\n");
+  ck_assert(has_verdict(&j, "W", "no_slip"));
+  job_end(&j);
+  j = of_block(
+      8, PLANE,
+      "*GOAL, NAME=S, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n" CLAMPED);
+  dat t = job_table(&j, "GOALS", -1);
+  ck_assert_double_le(fabs(dat_at(&t, 0, "corrected")), dat_at(&t, 0, "band"));
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
+          zeros_are_not_exact, energies_by_loads_and_by_supports,
           ends_of_supports_are_not_reliable)

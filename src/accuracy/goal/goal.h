@@ -16,6 +16,7 @@ typedef enum {
   GOAL_RELIABLE,
   GOAL_CONTACT_END, /* the mesh is too coarse where the contact ends */
   GOAL_SUPPORT_END, /* the same of a support, or in an inner corner */
+  GOAL_NO_SLIP,     /* work of friction, where no node slips so far */
   GOAL_FEW_NODES,   /* three closed nodes or less */
   GOAL_FRONT,       /* an integral round the front of a crack in space */
   GOAL_CANCELS,     /* parts of opposite sign, of which little is left */

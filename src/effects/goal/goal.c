@@ -27,6 +27,7 @@
 #include <math.h>
 #include <string.h>
 
+static const double DIGITS = 1e-13;   /* -, of the terms: their rounding */
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
 /* Measured on strips whose crack has 0.1 to 0.7 of their width: what the
  * estimate of a factor lacks is up to 0.12 of it and this times the error of
@@ -304,6 +305,15 @@ static double of_coarseness(const run *r, const shared *s,
          fabs(e->error);
 }
 
+/* By what the form of a goal knows. */
+static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
+                               goal_verdict found) {
+  if (found != GOAL_RELIABLE) return found;
+  if (f->is_coarse) return GOAL_FEW_NODES;
+  if (f->held > 0.5 * fabs(e->error)) return GOAL_SUPPORT_END;
+  return f->rough > 0.0 ? GOAL_FRONT : found;
+}
+
 static status estimate(run *r, goal_state *own, shared *s, int id) {
   const goal_form *f = &s->form;
   goal_result *out = &own->result[id];
@@ -321,12 +331,11 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
-  out->band += f->rough + of_coarseness(r, s, &e);
-  if (f->rough > 0.0 && out->verdict == GOAL_RELIABLE)
-    out->verdict = GOAL_FRONT;
-  if (f->is_coarse && out->verdict == GOAL_RELIABLE)
-    out->verdict = GOAL_FEW_NODES;
+  out->band += f->rough + f->held + of_coarseness(r, s, &e) +
+               DIGITS * fmax(f->size, fabs(value));
+  out->verdict = verdict_of(f, &e, out->verdict);
   if (e.magnitude <= ROUNDING * fabs(value)) out->verdict = GOAL_RELIABLE;
+  if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
 }
