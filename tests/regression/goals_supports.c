@@ -17,14 +17,13 @@
 #define PRESSED "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n"
 #define CLAMPED "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n*DSLOAD\nTOP, P, 10.\n"
 
-/* A block of 2 x 1 with n x n squares on an obstacle. */
-static job of_block(int n, const char *on, const char *cards) {
+/* A body of these words (scenes/mesh.h) with contact cards. */
+static job of_body(const char *words, const char *cards) {
   const mesh_change change = {.scale = 1.0};
-  char path[200], words[40];
+  char path[200];
   int *number = NULL;
   job j = job_begin("block");
   snprintf(path, sizeof path, "%s/block.msh", j.dir);
-  snprintf(words, sizeof words, "rect %d %d 2 1 alternate", n, n);
   FILE *f = fopen(path, "w");
   ck_assert_ptr_nonnull(f);
   ck_assert(scene_mesh_write(f, words, &change, &number));
@@ -32,14 +31,22 @@ static job of_block(int n, const char *on, const char *cards) {
   free(number);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
-            "*OBSTACLE, NAME=O, TYPE=%s\n"
-            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "%s*PRINT, GOALS\n*END STEP\n",
-            on, cards);
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=%s*PRINT, GOALS\n*END STEP\n",
+            cards);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
+}
+
+#define CONTACT "\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+
+/* A block of 2 x 1 with n x n squares on an obstacle. */
+static job of_block(int n, const char *on, const char *cards) {
+  char words[40], all[800];
+  snprintf(words, sizeof words, "rect %d %d 2 1 alternate", n, n);
+  snprintf(all, sizeof all, "%s" CONTACT "%s", on, cards);
+  return of_body(words, all);
 }
 
 /* The first goal: its estimate is from "least" to "most" of its error, which is
@@ -122,6 +129,22 @@ START_TEST(ends_of_supports_are_not_reliable) {
 }
 END_TEST
 
+/* The same along the edges of a cube. */
+START_TEST(ends_of_supports_in_space) {
+  static const char on[] = "PLANE\n0., 0., 0.\n0., 0., 1." CONTACT NORMAL;
+  static const char *const hold[] = {"TOP, 1, 2\n", "LEFT, 1\nFRONT, 2\n"};
+  for (int k = 0; k < 2; ++k) {
+    char cards[400];
+    snprintf(cards, sizeof cards,
+             "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, -0.01\n%s", on, hold[k]);
+    job j = of_body("box 4 4 4 1 1 1", cards);
+    ck_assert(has_verdict(&j, "N", k == 0 ? "support_end" : "reliable"));
+    if (k == 0) check(&j, 10.3045, 0.3, 1.0, 3.0);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* All of the base slips, at 0.5 whatever the pressure: the force is 1. A node
  * that a support holds has a part of it. */
 START_TEST(nodes_of_supports_have_a_part_of_the_force) {
@@ -169,4 +192,4 @@ END_TEST
 
 UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           zeros_are_not_exact, energies_by_loads_and_by_supports,
-          ends_of_supports_are_not_reliable)
+          ends_of_supports_are_not_reliable, ends_of_supports_in_space)
