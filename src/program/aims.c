@@ -1,6 +1,7 @@
 /*
  * The error of a goal is at most off = |error| + band + |error of the solver|,
- * the first two twice where too much of them comes from the ends of contact: a
+ * the first two twice where too much of them comes from the ends of contact
+ * (at those of supports the band is wide enough): a
  * pass reaches its target if off is below it.
  *
  * The band goes like the sum of m = |e_u| |e_y| over the elements, which is of
@@ -82,16 +83,22 @@ void aims_see(aims *a, const mesh *msh, const state *s) {
 
 int aims_count(const aims *a) { return a != NULL && a->counts; }
 
+static int is_at_end(const pass_goal *g) {
+  return g->found.verdict == GOAL_CONTACT_END ||
+         g->found.verdict == GOAL_SUPPORT_END;
+}
+
 static int is_estimate(const pass_goal *g) {
   return g->found.verdict == GOAL_RELIABLE ||
          g->found.verdict == GOAL_CANCELS || g->found.verdict == GOAL_FRONT ||
-         g->found.verdict == GOAL_CONTACT_END;
+         is_at_end(g);
 }
 
 /* 1: a finer mesh may have an estimate. */
 static int may_have_estimate(const pass_goal *g) {
   return is_estimate(g) || g->found.verdict == GOAL_FEW_NODES ||
-         g->found.verdict == GOAL_NO_ZONE || g->found.verdict == GOAL_NO_FACTOR;
+         g->found.verdict == GOAL_NO_SLIP || g->found.verdict == GOAL_NO_ZONE ||
+         g->found.verdict == GOAL_NO_FACTOR;
 }
 
 static int is_met(const goal_card *goal, const pass_goal *g) {
@@ -160,7 +167,7 @@ static double part_of(const pass_goal *g) {
   const double from = once > g->allowed ? once : g->off;
   if (!is_estimate(g)) return BLIND;
   const double part = from > 0.0 ? fmin(AIM * g->allowed / from, 1.0) : 1.0;
-  return g->found.verdict == GOAL_CONTACT_END && part < FAR ? sqrt(part) : part;
+  return is_at_end(g) && part < FAR ? sqrt(part) : part;
 }
 
 size_t aims_name(const aims *a, const model *m, char *text, size_t size) {

@@ -314,18 +314,22 @@ END_TEST
 /* Close to each limit, on both sides of it. */
 START_TEST(verdicts_change_at_their_limits) {
   static const struct {
-    double error, ends;
+    double error, ends, supports;
     int n_closed;
     goal_verdict verdict;
-  } cases[] = {
-      {0.051, 0.029, 4, GOAL_RELIABLE},  {-0.051, 0.0, 0, GOAL_RELIABLE},
-      {0.051, 0.029, 3, GOAL_FEW_NODES}, {0.051, 0.031, 4, GOAL_CONTACT_END},
-      {-0.049, 0.029, 4, GOAL_CANCELS},  {0.049, 0.0, 0, GOAL_CANCELS}};
-  for (int k = 0; k < 6; ++k) {
+  } cases[] = {{0.051, 0.029, 0.0, 4, GOAL_RELIABLE},
+               {-0.051, 0.0, 0.0, 0, GOAL_RELIABLE},
+               {0.051, 0.029, 0.0, 3, GOAL_FEW_NODES},
+               {0.051, 0.031, 0.015, 4, GOAL_CONTACT_END},
+               {0.051, 0.031, 0.016, 4, GOAL_SUPPORT_END},
+               {-0.049, 0.029, 0.0, 4, GOAL_CANCELS},
+               {0.049, 0.0, 0.0, 0, GOAL_CANCELS}};
+  for (int k = 0; k < 7; ++k) {
     const goal_estimate e = {.error = 2.0 * cases[k].error,
                              .magnitude = 2.0,
                              .product = 5.0,
-                             .ends = 5.0 * cases[k].ends};
+                             .ends = 5.0 * cases[k].ends,
+                             .supports = 5.0 * cases[k].supports};
     ck_assert_int_eq(goal_judge(&e, cases[k].n_closed).verdict,
                      cases[k].verdict);
   }

@@ -15,6 +15,8 @@
 typedef enum {
   GOAL_RELIABLE,
   GOAL_CONTACT_END, /* the mesh is too coarse where the contact ends */
+  GOAL_SUPPORT_END, /* the same of a support, or in an inner corner */
+  GOAL_NO_SLIP,     /* work of friction, where no node slips so far */
   GOAL_FEW_NODES,   /* three closed nodes or less */
   GOAL_FRONT,       /* an integral round the front of a crack in space */
   GOAL_CANCELS,     /* parts of opposite sign, of which little is left */
@@ -34,7 +36,7 @@ typedef struct goal_result {
   double error;  /* signed, of the mesh: J less J_h */
   double solver; /* the same of the contact solver */
   double band;   /* half of it, round value + error */
-  double ends;   /* -, share of elements where the contact ends */
+  double ends;   /* -, share of elements where the contact or a support ends */
   double cpu;    /* s, CPU time for it so far */
   goal_verdict verdict;
 } goal_result;
@@ -42,7 +44,9 @@ typedef struct goal_estimate {
   double error;     /* J of the solution less J_h, of the mesh, unit of J */
   double magnitude; /* sum of the magnitudes of the parts of elements */
   double product;   /* sum over the elements of |e_u| |e_y| */
-  double ends;      /* the same where the contact ends */
+  double ends;      /* the same where the contact or a support ends */
+  double supports;  /* of that what is not at contact ends */
+  double sharp;     /* of ends what GOAL_END_OF_SUPPORT has */
   double history;   /* sum of the magnitudes by the increments before */
   double hoop;      /* by the hoop strains of axisymmetric elements, which the
                        stiffness takes at their mean radius */
@@ -90,6 +94,13 @@ typedef struct contact_edge {
                         b; -1: on an obstacle */
 } contact_edge;
 
+/* An edge that a support holds, node ids a < b, whose displacement is no linear
+ * function along it. */
+typedef struct given_edge {
+  int a, b;
+  double bend[3]; /* in its middle less the mean of its ends, m */
+} given_edge;
+
 /* A derivative by displacement gradients, of a crack (fracture.h); borrowed. */
 typedef struct goal_flux {
   int n;
@@ -99,6 +110,10 @@ typedef struct goal_flux {
                        volume */
 } goal_flux;
 
+/* Next to a node the contact changes its status; stresses are infinite, by a
+ * support, an inner corner, or the border of a contact that sticks. */
+enum { GOAL_END_OF_CONTACT = 1, GOAL_END_OF_SUPPORT = 2 };
+
 /* The solution. All is borrowed. */
 typedef struct goal_solution {
   const domain *d;
@@ -106,12 +121,14 @@ typedef struct goal_solution {
   const double *sigma; /* [ns*n_elem] Pa */
   int n_edge;
   const contact_edge *edge;   /* [n_edge] sorted by a, b */
-  const unsigned char *ends;  /* [n_node] 1: the contact changes its status next
-                                 to it */
+  const unsigned char *ends;  /* [n_node] bits */
   const unsigned char *front; /* [n_node] 1: of the front of a crack, round
                                  which u goes like the root of the distance;
                                  NULL: no crack */
-  int has_flux;               /* 1: some J has a flux */
+  int n_given;
+  const given_edge *given; /* [n_given] sorted by a, b */
+  int has_flux;            /* 1: some J has a flux */
+  int has_energy;          /* 1: some J is the energy */
 } goal_solution;
 
 typedef struct goal_estimator goal_estimator;
@@ -138,8 +155,9 @@ void goal_estimator_force(goal_estimator *e, double *F);
  * b = 4 la lb the bubble of the edge and d the part of u in it, from recovered
  * gradients; on closed edges d_n is that of the gap, and d_t where they
  * stick what it was when they began to. In axisymmetric elements at points, as
- * strains vary within them. of_u: J is the energy, and tau the stress of u
- * there. product[n_elem] or NULL: the share of each element in out->product.
+ * strains vary within them. of_u: J is the energy, tau the stress of u, and the
+ * error has its square. product[n_elem] or NULL: the share of each element in
+ * out->product.
  */
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           int of_u, double *product, goal_estimate *out);

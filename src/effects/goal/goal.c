@@ -27,6 +27,7 @@
 #include <math.h>
 #include <string.h>
 
+static const double DIGITS = 1e-13;   /* -, of the terms: their rounding */
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
 /* Measured on strips whose crack has 0.1 to 0.7 of their width: what the
  * estimate of a factor lacks is up to 0.12 of it and this times the error of
@@ -166,10 +167,10 @@ static void set_sticks(const run *r, const goal_history *h, goal_surface *s) {
     memcpy(s->edge[k].stick, h->edge + dim * (size_t)k, dim * sizeof *h->edge);
 }
 
-static int has_factor(const model *m) {
+static int has_goal_of(const model *m, goal_quantity of) {
   int any = 0;
   for (int i = 0; i < m->n.goal; ++i)
-    any |= m->accuracy.goals[i].quantity == GOAL_SIF;
+    any |= m->accuracy.goals[i].quantity == of;
   return any;
 }
 
@@ -186,7 +187,10 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .edge = s->surface.edge,
                                .ends = s->surface.ends,
                                .front = s->surface.front,
-                               .has_flux = has_factor(r->m)};
+                               .n_given = s->surface.n_given,
+                               .given = s->surface.given,
+                               .has_flux = has_goal_of(r->m, GOAL_SIF),
+                               .has_energy = has_goal_of(r->m, GOAL_ENERGY)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));
@@ -281,17 +285,14 @@ static status complete(const run *r, const shared *s, goal_estimate *e) {
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   e->error += f->curved + beyond;
   e->magnitude += fabs(f->curved) + fabs(beyond);
-  e->error += f->is_square ? 0.0 : e->hoop;
+  e->error += e->hoop;
   if (f->sums) {
     double slips;
     PASS(of_slip(r, s, &slips));
     e->error += slips;
     e->magnitude += fabs(slips);
   }
-  if (f->is_square) {
-    e->error += 0.5 * (goal_estimator_energy(s->estimator) + e->hoop);
-    e->hoop = 0.0;
-  }
+  if (f->is_square) e->hoop = 0.0;
   return OK;
 }
 
@@ -302,6 +303,15 @@ static double of_coarseness(const run *r, const shared *s,
   if (s->form.factor.n == 0 || r->msh->dim == 3 || !(energy > 0.0)) return 0.0;
   return COARSE * sqrt(goal_estimator_energy(s->estimator) / energy) *
          fabs(e->error);
+}
+
+/* By what the form of a goal knows. */
+static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
+                               goal_verdict found) {
+  if (found != GOAL_RELIABLE) return found;
+  if (f->is_coarse) return GOAL_FEW_NODES;
+  if (f->held > 0.5 * fabs(e->error)) return GOAL_SUPPORT_END;
+  return f->rough > 0.0 ? GOAL_FRONT : found;
 }
 
 static status estimate(run *r, goal_state *own, shared *s, int id) {
@@ -321,12 +331,11 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
-  out->band += f->rough + of_coarseness(r, s, &e);
-  if (f->rough > 0.0 && out->verdict == GOAL_RELIABLE)
-    out->verdict = GOAL_FRONT;
-  if (f->is_coarse && out->verdict == GOAL_RELIABLE)
-    out->verdict = GOAL_FEW_NODES;
+  out->band += f->rough + f->held + of_coarseness(r, s, &e) +
+               DIGITS * fmax(f->size, fabs(value));
+  out->verdict = verdict_of(f, &e, out->verdict);
   if (e.magnitude <= ROUNDING * fabs(value)) out->verdict = GOAL_RELIABLE;
+  if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
 }
@@ -495,7 +504,7 @@ static const column columns[] = {
  "by the contact solver, with its sign"},
 {"contact_ends", "%", GOAL, goal_ends, NULL,
  "share of the elements where the contact ends or changes between slip and "
- "stick"},
+ "stick, or a support ends, or in an inner corner"},
 {"verdict", "-", WORD, goal_no, goal_word,
  "reliable, or why not"}};
 /* clang-format on */

@@ -22,10 +22,13 @@ typedef struct goal_form {
   int has_tau;
   int sums;         /* 1: a sum over the increments, of which rows are the
                        derivative by the motion of the last */
+  int is_still;     /* 1: work of friction where nothing slips so far */
   int is_coarse;    /* 1: a mean over less than two elements to each side */
   int is_square;    /* 1: the energy, whose error has a quadratic part too */
   double curved;    /* contact forces times what psi is between the nodes more
                        than at them */
+  double size;      /* sum of the magnitudes that value is the sum of */
+  double held;      /* what forces of held nodes, in none of them, may be */
   double rough;     /* of a front in space: what its integral lacks */
   goal_verdict why; /* GOAL_RELIABLE: it has a value */
 } goal_form;
@@ -44,11 +47,16 @@ status goal_add_boundary(const run *r, double *dF);
 /* surface.c */
 typedef struct goal_surface {
   int n_edge;
-  contact_edge *edge;   /* [n_edge] sorted */
-  unsigned char *ends;  /* [n_node] */
+  contact_edge *edge;  /* [n_edge] sorted */
+  unsigned char *ends; /* [n_node] GOAL_END_OF_CONTACT, _SUPPORT or 0 */
+  int n_given;
+  given_edge *given;    /* [n_given] sorted; NULL: none */
   unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
   int n_closed;         /* closed nodes */
 } goal_surface;
+/* support.c: s->given, then what supports add to s->ends. */
+status goal_add_given(const run *r, goal_surface *s);
+status goal_mark_supports(const run *r, goal_surface *s);
 status goal_surface_new(const run *r, goal_surface *s);
 void goal_surface_free(goal_surface *s); /* accepts all-zero */
 /* where[n_node]: contact node of a mesh node, or -1; new. */

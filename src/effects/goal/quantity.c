@@ -38,8 +38,8 @@ static void clear(const run *r, goal_form *f) {
     memset(f->tau, 0,
            (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
   fracture_linear_free(&f->factor);
-  f->value = f->curved = f->rough = 0.0;
-  f->has_tau = f->is_square = f->is_coarse = f->sums = 0;
+  f->value = f->curved = f->size = f->held = f->rough = 0.0;
+  f->has_tau = f->is_square = f->is_coarse = f->sums = f->is_still = 0;
   f->why = GOAL_RELIABLE;
 }
 
@@ -90,6 +90,42 @@ static double held_part(const run *r, int face, const int *q, int k, int a) {
   return sum;
 }
 
+/* Of a held row: held_part. Next to slip, and not on a plane of symmetry, the
+ * traction may be that of the neighbours up to the node: up to thrice. */
+static void add_row(const run *r, int face, const int *q, int k, int a,
+                    goal_form *f) {
+  const int row = r->msh->dim * q[k] + a;
+  int open_end = !goal_is_mirrored(r, q[k]);
+  if (!r->surface->held[row]) return;
+  for (int l = 0; l < r->msh->dim; ++l)
+    open_end |= r->result.contact[q[l]] == CONTACT_SLIP;
+  const double part = f->psi[row] * held_part(r, face, q, k, a);
+  f->curved += part;
+  if (open_end) f->held += 3.0 * fabs(part);
+}
+
+/* Nodes that supports hold along the normal are no contact nodes: the traction
+ * of the others of a face up to them is in no force. */
+static void add_lost(const run *r, int face, const int *q, goal_form *f) {
+  const int dim = r->msh->dim;
+  double normal[3];
+  const double weight =
+      mesh_face_normal(r->msh, face, normal) * r->faces.face_weight[face] / dim;
+  int lost = 0, left = 0;
+  for (int k = 0; k < dim; ++k) ++*(q[k] < 0 ? &lost : &left);
+  for (int k = 0; k < dim; ++k) {
+    const double turn = r->faces.input.axisymmetric && q[k] >= 0
+                            ? 2.0 * PI * r->surface->x[dim * q[k]]
+                            : 1.0;
+    for (int a = 0; a < dim && q[k] >= 0; ++a) {
+      const double part = f->psi[dim * q[k] + a] * r->now.rc[dim * q[k] + a] *
+                          weight * turn * lost / left / r->surface->area[q[k]];
+      f->curved += part;
+      f->held += fabs(part);
+    }
+  }
+}
+
 /* A node that a plane of symmetry holds has no friction along its normal, and
  * its part of the surface up to the other nodes is in no force: that of a
  * traction that is zero at it and linear. */
@@ -102,16 +138,15 @@ static status add_held(const run *r, const goal_card *g, goal_form *f) {
   PASS(goal_places(r, &where));
   for (int i = 0; i < of->n_item; ++i) {
     const int *v = m->face + m->dim * of->item_id[i];
-    int q[3] = {0}, all = 1;
+    int q[3] = {0}, all = 1, none = 1;
     for (int k = 0; k < m->dim; ++k) {
       q[k] = where[v[k]];
       all = all && q[k] >= 0 && r->surface->area[q[k]] > 0.0;
+      none = none && (q[k] < 0 || !(r->surface->area[q[k]] > 0.0));
     }
     for (int k = 0; k < m->dim && all; ++k)
-      for (int a = 1; a < m->dim; ++a)
-        if (r->surface->held[m->dim * q[k] + a])
-          f->curved +=
-              f->psi[m->dim * q[k] + a] * held_part(r, of->item_id[i], q, k, a);
+      for (int a = 1; a < m->dim; ++a) add_row(r, of->item_id[i], q, k, a, f);
+    if (!all && !none) add_lost(r, of->item_id[i], q, f);
   }
   return OK;
 }
@@ -121,7 +156,9 @@ static status set_force(const run *r, const goal_card *g, goal_form *f) {
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
       f->psi[dim * i + a] = share_of(r, g, i, a);
-      f->value += f->psi[dim * i + a] * r->now.rc[dim * i + a];
+      const double part = f->psi[dim * i + a] * r->now.rc[dim * i + a];
+      f->value += part;
+      f->size += fabs(part);
     }
   return add_held(r, g, f);
 }
@@ -134,6 +171,7 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   (void)g;
   f->value = r->now.energy.friction_end;
   f->sums = 1;
+  f->is_still = !(f->value > 0.0) && r->problem.cp.g0 != NULL;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       const int k = (dim - 1) * i + a - 1;
@@ -154,6 +192,7 @@ static void add_mean(const run *r, int node_id, int group_id, int component,
     const int at = m->dim * (of == NULL ? node_id : of->node_id[k]) + component;
     f->load[at] += sign / n;
     f->value += sign * r->now.u[at] / n;
+    f->size += fabs(r->now.u[at]) / n;
   }
 }
 
@@ -174,8 +213,10 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   for (int k = 0; k < of->n_item; ++k) {
     const size_t e = (size_t)of->item_id[k];
     const double *E = d->E + ns * ns * (size_t)d->section_id[e];
-    f->value +=
+    const double part =
         element_weight(d, (int)e) / whole * r->result.stress[ns * e + c];
+    f->value += part;
+    f->size += fabs(part);
     for (size_t i = 0; i < ns; ++i) f->tau[ns * e + i] = E[ns * i + c] / whole;
   }
   f->has_tau = 1;

@@ -112,7 +112,8 @@ static void add_edge(const run *r, int i, int j, double weight,
   e.closed = a != CONTACT_OPEN && b != CONTACT_OPEN;
   e.stuck = a == CONTACT_STICK && b == CONTACT_STICK;
   if (e.closed) set_middle(r, q, &e);
-  if (state_of(r, q[0]) != state_of(r, q[1])) s->ends[i] = s->ends[j] = 1;
+  if (state_of(r, q[0]) != state_of(r, q[1]))
+    s->ends[i] = s->ends[j] = GOAL_END_OF_CONTACT;
   s->edge[s->n_edge++] = e;
 }
 
@@ -139,7 +140,7 @@ static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
   for (int c = 0; c < dim; ++c) e.n[c] /= size;
   s->edge[s->n_edge++] = e;
   if (n_q < 2 || state_of(r, q[0]) == state_of(r, q[1])) return;
-  s->ends[e.a] = s->ends[e.b] = 1;
+  s->ends[e.a] = s->ends[e.b] = GOAL_END_OF_CONTACT;
 }
 
 /* Edge a, b of two faces that lie on each other, v[dim] with the contact nodes,
@@ -199,7 +200,8 @@ static void mark_border(const run *r, const int *where, int *seen,
   for (int q = 0; q < r->nodes.n; ++q) {
     const int i = r->surface->node_id[q];
     const int border = flat ? seen[i] == 1 && !goal_is_mirrored(r, q) : seen[i];
-    if (border && r->result.contact[q] != CONTACT_OPEN) s->ends[i] = 1;
+    if (border && r->result.contact[q] != CONTACT_OPEN)
+      s->ends[i] = GOAL_END_OF_CONTACT;
   }
 }
 
@@ -258,10 +260,11 @@ status goal_surface_new(const run *r, goal_surface *s) {
   unite_edges(s);
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
-  return OK;
+  PASS(goal_add_given(r, s));
+  return goal_mark_supports(r, s);
 }
 
 void goal_surface_free(goal_surface *s) {
-  RELEASE(s->edge, s->ends, s->front);
+  RELEASE(s->edge, s->ends, s->front, s->given);
   *s = (goal_surface){0};
 }
