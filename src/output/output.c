@@ -321,8 +321,8 @@ static status open_earlier(output *o) {
   TRY(open_text(o, "sta", ends.sta, &o->sta));
   TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
   TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
-  TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
   TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, clear));
+  TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
 done:
   if (o->run.increments == NULL) o->run.n_increment = 0;
   return st;
