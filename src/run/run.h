@@ -236,6 +236,8 @@ const char *effects_sum_up(const run *r);
 /* history/history.c: 1: slip or inelastic strains of the increments before have
  * a part in this one. */
 int run_remembers(const run *r);
+/* The same, or an effect sums up over the increments. */
+int run_inherits(const run *r);
 /* result.c: 1: the error of the mesh is that of this increment too. */
 int run_finds_mesh_error(const run *r);
 status effects_prepare(run *r);

@@ -70,9 +70,11 @@ typedef struct energies {
   double largest;    /* J, of the six so far: the scale of the defect */
 } energies;
 
-/* Bound of the error of the contact solver. */
+/* Bound of the error of the contact solver; where slip or strains of the
+ * increments before have a part in this one, the bounds of all are added. */
 typedef struct error_bound {
   int asked;
+  double before;   /* sqrt(J), part of the increments before */
   double energy;   /* J, energy of the error at most; NAN: no bound */
   double relative; /* -, of that of the solution; NAN: no bound or no strain */
   double cpu;      /* s, CPU time for it so far */

@@ -29,12 +29,13 @@ static job run_block(const char *law, const char *cards, const char *solver) {
   return j;
 }
 
-/* Column "error[%]" of the only line, NAN for "-". */
+/* Column "error[%]" of the last line, NAN for "-". */
 static double told_error(const job *j) {
   char *sta = job_file(j, "sta"), word[32] = "";
   ck_assert_ptr_nonnull(strstr(sta, " error[%] "));
+  sta[strlen(sta) - 1] = '\0';
   int found =
-      sscanf(strchr(sta, '\n') + 1,
+      sscanf(strrchr(sta, '\n') + 1,
              "%*d %*d %*d %*s %*s %*d %*d %*d %*s %*d %*s %*s %*s %31s", word);
   ck_assert_int_eq(found, 1);
   free(sta);
@@ -82,6 +83,45 @@ START_TEST(told_error_bounds_the_true_one) {
 }
 END_TEST
 
+/* Two steps of sliding, the first to "coarse"; both in two increments. */
+static job run_steps(const char *law, const char *coarse) {
+  job j = job_begin("steps");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "steps.inp",
+            "*PARAMETER\nN = 12\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=%s\n"
+            "*STEP\n*QUASISTATIC\n.5, 1.\n*BOUNDARY\nRIGHT, 1, 2\n"
+            "*DSLOAD\nTOP, P, 10.\nLEFT, P, \"4*y*min(t,1.2-.2*t)\"\n"
+            "*SOLVER, %s\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n.5, 1.\n"
+            "*SOLVER, METHOD=NEWTON, TOL=1E-12\n"
+            "*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            law, coarse);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* What an increment leaves stays in the slip of those after it. */
+START_TEST(told_error_has_the_increments_before) {
+  static const char *const law[] = {"TRESCA\n\"4-3.5*x\"", "COULOMB\n0.3"};
+  for (int k = 0; k < 2; ++k) {
+    job exact = run_steps(law[k], "METHOD=NEWTON, TOL=1E-12");
+    job j = run_steps(law[k], "METHOD=SOR, TOL=1E-2");
+    double bound = told_error(&j), error = true_error(&j, &exact);
+    ck_assert_double_lt(told_error(&exact), 1e-8);
+    ck_assert_msg(error > 1e-6 && bound >= error && bound <= 100 * error,
+                  "case %d: told %g %%, is %g %%", k, bound, error);
+    job_end(&j);
+    job_end(&exact);
+  }
+}
+END_TEST
+
 static void must_say(const job *j, const char *suffix, const char *text) {
   char *all = job_file(j, suffix);
   ck_assert_msg(strstr(all, text) != NULL, "no '%s' in .%s", text, suffix);
@@ -114,4 +154,5 @@ START_TEST(not_asked_for_not_computed) {
 END_TEST
 
 UNIT_MAIN("accuracy", told_error_bounds_the_true_one,
-          error_stands_in_every_result, not_asked_for_not_computed)
+          told_error_has_the_increments_before, error_stands_in_every_result,
+          not_asked_for_not_computed)

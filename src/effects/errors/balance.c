@@ -4,7 +4,8 @@
  * the energy norm, while a solver stops at a residual: the ratio of the two is
  * estimated from the bounds at the increments before. If the bound of a
  * solution is above the share, the solver continues from it to a smaller
- * residual.
+ * residual. Where the errors of the increments add up, each may take of what
+ * is left of the share the part that it has of the time left.
  *
  * An increment starts from the line through the last two equilibria if its
  * residual is lower than that of the last one: with few digits wanted it may be
@@ -32,6 +33,7 @@ static const double SHARPEST = 1e-3;  /* -, change of the residual in a pass */
 
 typedef struct balance {
   double mesh, time;      /* -, errors at the last increment; mesh 0: unknown */
+  double before;          /* -, bound of the solver of the increments so far */
   double per_residual;    /* -, error of the solver over the residual */
   double per_digit;       /* iterations for a digit of the residual */
   double iterations, cpu; /* all so far; s */
@@ -87,15 +89,25 @@ static void go_on(run *r, balance *b) {
   r->solving.guess_r = b->guess_r;
 }
 
-static double wanted_error(const run *r, const balance *b) {
-  return r->step->share * (b->mesh + b->time);
+/* Of the increment that ends at t, after those of the error "before". */
+static double wanted_error(const run *r, const balance *b, double before,
+                           double t) {
+  const step *last = &r->m->steps[r->m->n.step - 1];
+  const double whole = r->step->share * (b->mesh + b->time);
+  if (!run_inherits(r)) return whole;
+  const double left = fmax(0.0, whole - before);
+  return left * (t - r->old.t) / (last->start + last->total - r->old.t);
+}
+
+static double own_error(const error_bound *e) {
+  return e->relative - error_bound_before(e);
 }
 
 /* Residual required: the one that gave that error before. */
-static double wanted_tolerance(const run *r, const balance *b) {
+static double wanted_tolerance(const run *r, const balance *b, double t) {
   double tol = FIRST_TOL;
   if (b->mesh > 0.0 && b->per_residual > 0.0)
-    tol = wanted_error(r, b) / b->per_residual;
+    tol = wanted_error(r, b, b->before, t) / b->per_residual;
   return fmin(fmax(tol, r->step->solver.tol), MOST_TOL);
 }
 
@@ -107,7 +119,9 @@ static status check_increment(run *r, balance *b, double *tol, int *again) {
   PASS(estimate_evaluate(r));
   if (isfinite(r->errors.mesh_error.relative))
     b->mesh = r->errors.mesh_error.relative;
-  double wanted = wanted_error(r, b), error = r->errors.error.relative;
+  const double wanted =
+      wanted_error(r, b, error_bound_before(&r->errors.error), r->now.t);
+  const double error = own_error(&r->errors.error);
   int unknown = !isfinite(error);
   if (!unknown && error <= wanted) return OK;
   if (*tol <= least || r->solving.report.residual <= least) return OK;
@@ -125,7 +139,7 @@ static status solve(run *r, void *self, double t, int *made) {
   if (!is_balanced(r)) return OK;
   *made = 1;
   b->report = (balance_report){.asked = 1};
-  tol = wanted_tolerance(r, b);
+  tol = wanted_tolerance(r, b, t);
   guess(r, b, t);
   for (int k = 1; again && k <= PASSES; ++k) {
     r->solving.tol = k == PASSES ? r->step->solver.tol : tol;
@@ -168,7 +182,10 @@ static double saved_iterations(const run *r, balance *b) {
 static void make_report(const run *r, balance *b) {
   balance_report *out = &b->report;
   out->tol = r->solving.tol;
-  out->wanted = isfinite(r->errors.error.relative) ? wanted_error(r, b) : NAN;
+  const error_bound *e = &r->errors.error;
+  out->wanted = isfinite(e->relative)
+                    ? wanted_error(r, b, error_bound_before(e), r->now.t)
+                    : NAN;
   out->saved_iterations = saved_iterations(r, b);
   out->saved_cpu = b->iterations > 0.0
                        ? out->saved_iterations * b->cpu / b->iterations
@@ -186,9 +203,10 @@ static status learn(run *r, void *self) {
       r->errors.time_error.asked && isfinite(r->errors.time_error.relative)
           ? r->errors.time_error.relative
           : 0.0;
-  double rate = r->errors.error.relative / r->solving.report.residual;
+  const double rate = own_error(&r->errors.error) / r->solving.report.residual;
   if (r->solving.report.residual > 10.0 * r->step->solver.tol && isfinite(rate))
     b->per_residual = rate;
+  b->before = r->errors.error.relative;
   b->t = r->old.t;
   b->known = r->now.t > r->old.t;
   memcpy(b->u, r->old.uc, bytes);
@@ -199,9 +217,9 @@ static status learn(run *r, void *self) {
 static status keep(run *r, void *self, archive *a) {
   balance *b = self;
   size_t m = (size_t)b->m;
-  double *learnt[] = {&b->mesh,      &b->time,       &b->per_residual,
-                      &b->per_digit, &b->iterations, &b->cpu,
-                      &b->t,         &r->solving.tol};
+  double *learnt[] = {&b->mesh,         &b->time,      &b->before,
+                      &b->per_residual, &b->per_digit, &b->iterations,
+                      &b->cpu,          &b->t,         &r->solving.tol};
   if (b->m == 0) return OK;
   PASS(archive_ints(a, "known", &b->known, 1));
   for (size_t i = 0; i < sizeof learnt / sizeof *learnt; ++i)

@@ -3,6 +3,11 @@
  * relative to the energy norm of the body. The interior follows the contact
  * nodes exactly, so that the error of the whole body has the energy of that of
  * the condensed problem.
+ *
+ * An increment starts from the slip and the inelastic strains that the one
+ * before has left, and their errors stay in it: with a given limit of friction
+ * the solution moves, in the energy norm, by no more than where it starts. So
+ * the bounds of the increments are added.
  */
 #include "base/memory.h"
 #include "base/timer.h"
@@ -15,6 +20,14 @@
 
 static const char weakly_held[] =
     "supports hold a body by negligible lever arms";
+
+static const char earlier[] = "an increment before this one has none";
+
+/* Bounds, sqrt(J); NAN: none. */
+typedef struct bounds {
+  double before, now; /* of the increments so far; with the attempt in r->now */
+  double cpu;         /* s, spent so far */
+} bounds;
 
 static status force_energy(void *ctx, const double *d, double *square) {
   return condensed_force_energy(ctx, d, square);
@@ -32,13 +45,14 @@ static int choose_inverse(run *r, double *diagonal, inverse_energy *out) {
   return out->n_kernel >= 0;
 }
 
-/* *cpu: s, spent so far. */
 static status estimate(run *r, void *self) {
   solver_error found = {.norm = NAN, .why = weakly_held};
   inverse_energy inverse;
   OWNED double *diagonal = NULL;
-  double *spent = self, cpu = timer_cpu();
+  bounds *own = self;
+  const double cpu = timer_cpu(), before = run_inherits(r) ? own->before : 0.0;
   r->errors.error = (error_bound){0};
+  own->now = r->nodes.n == 0 ? before : NAN;
   if (r->nodes.n == 0 || r->step->accuracy.no_solver) return OK;
   TIMED(STAGE_ESTIMATE);
   PASS_NEW(diagonal, r->problem.cp.m);
@@ -46,9 +60,26 @@ static status estimate(run *r, void *self) {
     PASS(solver_error_bound(&r->problem.cp, &inverse, run_rows(r, 0, r->now.uc),
                             run_rows(r, 1, r->now.rc), &r->solving.rate,
                             &found));
+  found.norm += before;
+  if (found.why == NULL && isnan(before)) found.why = earlier;
+  own->now = found.why == NULL ? found.norm : NAN;
   error_bound_set(&found, r->now.energy.strain, &r->errors.error);
-  r->errors.error.cpu = *spent += timer_cpu() - cpu;
+  r->errors.error.before = before;
+  r->errors.error.cpu = own->cpu += timer_cpu() - cpu;
   return OK;
+}
+
+static status accept(run *r, void *self) {
+  bounds *own = self;
+  (void)r;
+  own->before = own->now;
+  return OK;
+}
+
+static status keep(run *r, void *self, archive *a) {
+  bounds *own = self;
+  (void)r;
+  return archive_reals(a, "before", &own->before, 1);
 }
 
 static effect_work expected(const plan_sizes *s) {
@@ -80,7 +111,7 @@ VALUE(contraction, v->s->errors.error.rate)
 static const column columns[] = {
 {"solver_error", "%", INC, AT(2), C | ON(ESTIMATES), ANY, "solver_error", 0,
  bound_error, NULL, "bound of the error of the contact solver in the energy "
- "norm, of that of the solution; NaN: no bound"},
+ "norm, with those before it, of that of the solution; NaN: no bound"},
 {"solver_error_energy", J, INC, AT(2), C | ON(ESTIMATES), ANY,
  "solver_error_energy", 0, solver_error_energy, NULL,
  "bound of the energy of that error"},
@@ -97,5 +128,7 @@ const effect_ops solver_error_effect = {.name = "error of solver",
                                         .columns = columns,
                                         .n_column = COLUMNS(columns),
                                         .of_state = 1,
-                                        .size = sizeof(double),
-                                        .on.estimate = estimate};
+                                        .size = sizeof(bounds),
+                                        .on.estimate = estimate,
+                                        .on.accept = accept,
+                                        .on.keep = keep};

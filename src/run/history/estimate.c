@@ -23,9 +23,15 @@ void error_bound_set(const solver_error *found, double energy, error_bound *e) {
     e->relative = energy > 0.0 ? found->norm / sqrt(2.0 * energy) : NAN;
 }
 
+double error_bound_before(const error_bound *e) {
+  return e->before > 0.0 ? e->relative * e->before / sqrt(2.0 * e->energy)
+                         : 0.0;
+}
+
 int error_bound_doubts(const error_bound *e, double share) {
   if (share * e->hidden > DOUBT) return 1;
-  return e->asked && e->why == NULL && share * e->relative > DOUBT;
+  return e->asked && e->why == NULL &&
+         share * (e->relative - error_bound_before(e)) > DOUBT;
 }
 
 static void take_left(run *r, double left) {
@@ -64,13 +70,14 @@ status estimate_evaluate(run *r) {
 
 /* The bound is relative to the exact discrete solution, without rounding. */
 static void add_rounding(run *r) {
-  solver_error e = {.rate = r->errors.error.rate, .why = r->errors.error.why};
-  double cpu = r->errors.error.cpu;
-  if (!r->errors.rounding.found || !r->errors.error.asked || e.why != NULL)
-    return;
-  e.norm = sqrt(2.0 * r->errors.error.energy) + r->errors.rounding.norm;
+  const error_bound was = r->errors.error;
+  const solver_error e = {
+      .norm = sqrt(2.0 * was.energy) + r->errors.rounding.norm,
+      .rate = was.rate};
+  if (!r->errors.rounding.found || !was.asked || was.why != NULL) return;
   error_bound_set(&e, r->now.energy.strain, &r->errors.error);
-  r->errors.error.cpu = cpu;
+  r->errors.error.before = was.before;
+  r->errors.error.cpu = was.cpu;
 }
 
 status estimate_increment(run *r) {

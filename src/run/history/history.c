@@ -52,10 +52,13 @@ int run_remembers(const run *r) {
   return slips && kind == STEP_QUASISTATIC;
 }
 
+int run_inherits(const run *r) {
+  return run_remembers(r) || effects_sum_up(r) != NULL;
+}
+
 /* 1: the start state of this increment contains one that did not converge. */
 static int is_after_miss(const run *r) {
-  return r->course.unsettled > 0 &&
-         (run_remembers(r) || effects_sum_up(r) != NULL);
+  return r->course.unsettled > 0 && run_inherits(r);
 }
 
 /* View of r->now for the outputs. */

@@ -32,9 +32,11 @@ status condensed_run(const model *m, const exchange_problem *p,
 
 /* The reported bound, for a solution of that energy, J. */
 void error_bound_set(const solver_error *found, double energy, error_bound *e);
-/* 1: it, or what rounding hides of contact forces, is above 10 % of the energy
- * norm of an answer under full loads, of which "share" act now: an answer that
- * does not count as one. */
+/* Its part of the increments before, -. */
+double error_bound_before(const error_bound *e);
+/* 1: what the increment adds to it, or what rounding hides of contact forces,
+ * is above 10 % of the energy norm of an answer under full loads, of which
+ * "share" act now: an answer that does not count as one. */
 int error_bound_doubts(const error_bound *e, double share);
 /* The reason where the matrix has no inverse. */
 extern const char *const error_bound_indefinite;
