@@ -249,13 +249,13 @@ status increment_pose(run *r, double t) {
 /* Displacements of all nodes; a body that no force holds is put to its place.
  */
 static status recover(run *r, const double *F) {
-  int moved = 0;
   double *u = run_rows(r, 0, r->now.uc), *f = run_rows(r, 1, r->now.rc);
   const rest_scene at = {&r->problem.cp, r->c, r->n_dof, F, r->old.u, r->now.u};
   PASS(condense_recover(r->c, u, r->now.u));
+  r->solving.placed = 0;
   if (r->nodes.n > 0 && r->solving.report.outcome > 0)
-    PASS(rest_find(&at, u, f, &moved));
-  if (!moved) return OK;
+    PASS(rest_find(&at, u, f, &r->solving.placed));
+  if (!r->solving.placed) return OK;
   put_rows(r, u, f);
   return condense_recover(r->c, u, r->now.u);
 }

@@ -182,6 +182,7 @@ typedef struct solving {
   known_rate rate;
   double known_key; /* of the matrix that "rate" was read for */
   long matrix_no;   /* counts the matrices taken into use */
+  int placed;       /* 1: bodies that no force holds were put to their place */
   observed_work seen;
 } solving;
 

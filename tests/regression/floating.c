@@ -371,6 +371,41 @@ START_TEST(body_under_another_that_is_lifted_stays) {
 }
 END_TEST
 
+/* A free body that a turning block pushes before it goes where the motions say,
+ * whatever the modulus. */
+START_TEST(body_that_is_pushed_along_goes_one_way) {
+  static const double E[] = {1., 3., 7., 1e3, 2e5, 1e9};
+  double first[2] = {0};
+  for (int k = 0; k < 6; ++k) {
+    job j = job_begin("push");
+    job_copy(&j, "tests/regression/mesh/stack.geo");
+    job_write(&j, "push.inp",
+              "*PARAMETER\nNB = 2\n*MESH, FILE=stack.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n%g, 0.3\n*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -0.1\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM 1, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+              "*CONTACT PAIR, NAME=P\nTOP 1, BOTTOM 2\n"
+              "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n"
+              "*BOUNDARY\nTOP 2, 1, 1, 0.01\nTOP 2, 2, 2, \"-0.02-0.01*x\"\n"
+              "*PRINT, NODES, FREQUENCY=0\n*END STEP\n",
+              E[k]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "E = %g: exit %d: %s", E[k], code, j.errors);
+    dat d = job_table(&j, "NODES", -1);
+    const double u[] = {dat_at(&d, 0, "u_x"), dat_at(&d, 0, "u_y")};
+    if (k == 0) memcpy(first, u, sizeof u);
+    ck_assert_double_lt(first[1], -0.01);
+    for (int c = 0; c < 2; ++c)
+      ck_assert_msg(fabs(u[c] - first[c]) < 1e-10, "E = %g: u[%d] = %g for %g",
+                    E[k], c, u[c], first[c]);
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           resultant_through_the_only_node_that_touches,
           body_balanced_on_a_corner_rests,
@@ -378,4 +413,5 @@ UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           resultants_are_those_of_statics,
           layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
           free_motions_are_named, body_under_another_that_is_lifted_stays,
-          body_that_is_left_stays_where_it_was)
+          body_that_is_left_stays_where_it_was,
+          body_that_is_pushed_along_goes_one_way)

@@ -297,9 +297,10 @@ double share_of_step(const run *r) {
 
 /* Where strains are rounding alone they are no loss, nor are displacements
  * right to the tolerance of the solver, or those that contact takes from the
- * loads at once. */
+ * loads at once; nor is the place of bodies that no force holds. */
 static void forget_strains(run *r) {
   rounding_loss *loss = &r->errors.rounding;
+  if (r->solving.placed) loss->u = 0.0;
   const int right = loss->u <= r->solving.tol;
   if (!rounding_is_all(r) && !(right && moves_alone(r))) return;
   loss->energy = loss->stress = loss->norm = 0.0;
