@@ -239,11 +239,12 @@ typedef struct patch {
   double *x;
   int *face;
   unsigned char *active;
+  double *part;
   int *contact_node; /* [n_node] of the surface, or -1 */
 } patch;
 
 static void patch_free(patch *a) {
-  RELEASE(a->x, a->face, a->active, a->contact_node);
+  RELEASE(a->x, a->face, a->active, a->part, a->contact_node);
 }
 
 /* Place of a mesh node in the group, whose ids ascend. */
@@ -272,6 +273,7 @@ static status patch_new(const contact_surface *s, const surface_input *in,
   PASS_NEW_ALL(OF(a->x, dim * (size_t)g->n_node),
                OF(a->face, m->dim * g->n_item), OF(a->active, g->n_node),
                OF(a->contact_node, g->n_node));
+  if (s->covered != NULL) PASS_NEW(a->part, g->n_node);
   for (int k = 0, i = 0; k < g->n_node; ++k) {
     for (size_t c = 0; c < dim; ++c)
       a->x[dim * (size_t)k + c] = m->x[dim * (size_t)g->node_id[k] + c];
@@ -279,6 +281,7 @@ static status patch_new(const contact_surface *s, const surface_input *in,
     int there = i < s->n && s->node_id[i] == g->node_id[k];
     a->contact_node[k] = there ? i : -1;
     a->active[k] = (unsigned char)(there && carries(s, i, contact_id));
+    if (a->part != NULL) a->part[k] = there ? s->covered[i] : 1.0;
   }
   for (int k = 0; k < g->n_item; ++k)
     for (int c = 0; c < m->dim; ++c)
@@ -290,7 +293,8 @@ static status patch_new(const contact_surface *s, const surface_input *in,
                          .n_face = g->n_item,
                          .x = a->x,
                          .face = a->face,
-                         .active = a->active};
+                         .active = a->active,
+                         .part = a->part};
   return OK;
 }
 

@@ -198,12 +198,17 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
+static double covered(const mortar *m, int q) {
+  return fmin(1.0, m->share[q] * m->area[q] / m->whole[q]);
+}
+
 /* Resultant of row c: of its coupling, or of a force at the node. */
 static void set_resultant(contact_surface *s, int i, int c,
                           const pair_row *row) {
   const int dim = s->dim, k = dim * i + c;
   const mortar *of = row == NULL ? NULL : row->of;
   s->share[k] = of == NULL ? 1.0 : of->share[row->row];
+  if (c == 0) s->covered[i] = of == NULL ? 1.0 : covered(of, row->row);
   memcpy(s->lever + dim * k,
          of == NULL ? s->x + dim * i : of->lever + dim * row->row,
          (size_t)dim * sizeof *s->lever);

@@ -572,7 +572,8 @@ static status surface_new(int dim, int n, int pairs, contact_surface **out) {
                OF(s->held, n * dim));
   if (pairs) {
     PASS_NEW_ALL(OF(s->apart, n * dim), OF(s->share, n * dim),
-                 OF(s->lever, n * dim * dim), OF(s->master, 1));
+                 OF(s->covered, n), OF(s->lever, n * dim * dim),
+                 OF(s->master, 1));
     s->master->dim = dim;
     PASS_NEW(s->master->start, n + 1);
   }
@@ -735,7 +736,7 @@ status surface_forces(const contact_surface *s, int n_node, const double *F,
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
   if (s->master != NULL) links_release(s->master);
-  RELEASE(s->master, s->apart, s->share, s->lever, s->node_id, s->node_no,
-          s->contact_id, s->side_id, s->x, s->area, s->side_area, s->frame,
-          s->basis, s->gap0, s->held, s);
+  RELEASE(s->master, s->apart, s->share, s->covered, s->lever, s->node_id,
+          s->node_no, s->contact_id, s->side_id, s->x, s->area, s->side_area,
+          s->frame, s->basis, s->gap0, s->held, s);
 }

@@ -33,6 +33,8 @@ typedef struct contact_surface {
   double *share;       /* [dim*n] resultant on the body of a unit force in a row
                           (a slave node carries for neighbours without a
                           multiplier), -; NULL: no pair */
+  double *covered;     /* [n] part of the faces around the node that its normal
+                          force acts on, -; NULL: no pair */
   double *lever;       /* [dim*dim*n] sum of its forces times their places, as
                           frame, m; NULL: no pair */
   double *apart;       /* [dim*n] gap to the master along the rows that are

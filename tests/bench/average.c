@@ -34,7 +34,7 @@ static average_patch make_line(int axisymmetric, int n) {
     face[2 * i] = i;
     face[2 * i + 1] = i + 1;
   }
-  return (average_patch){2, axisymmetric, n, n - 1, x, face, active};
+  return (average_patch){2, axisymmetric, n, n - 1, x, face, active, NULL};
 }
 
 /* A square of about n nodes. */
@@ -55,7 +55,7 @@ static average_patch make_square(int n) {
     const int corner[6] = {a, a + 1, b + 1, a, b + 1, b};
     for (int k = 0; k < 6; ++k) face[f++] = corner[k];
   }
-  return (average_patch){3, 0, side * side, 2 * cells, x, face, active};
+  return (average_patch){3, 0, side * side, 2 * cells, x, face, active, NULL};
 }
 
 static double cost(const average_patch *p, double radius, int *pairs) {

@@ -627,6 +627,42 @@ START_TEST(law_may_change_from_step_to_step) {
 }
 END_TEST
 
+/* Given pressure p on the length L of an upper block that slides, on a wider
+ * one: with k constant an edge takes mu p rho/4 of the friction, normalised
+ * nothing, whichever surface is the slave and wherever its nodes are; nor where
+ * the mesh is coarser than the radius. */
+START_TEST(slave_may_end_beyond_its_master) {
+  static const char *const ends[] = {"0.25, EDGE=FREE", "0.25, EDGE=NORMALIZED",
+                                     "1E-3"};
+  for (int k = 0; k < 18; ++k) {
+    const double wanted = 0.3 * 2 * (k % 3 > 0 ? 0.6 : 0.6 - 0.5 * 0.25);
+    job j = job_begin("wide");
+    job_copy(&j, "tests/regression/mesh/pair.geo");
+    job_write(&j, "wide.inp",
+              "*PARAMETER\nN = %d\nM = 20\nC = 0.2\n*MESH, FILE=pair.geo\n"
+              "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n"
+              "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+              "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
+              "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
+              "*CONTACT FORCE, CONTACT=P\n2.\n"
+              "*FRICTION, CONTACT=P, LAW=NONLOCAL, KERNEL=CONSTANT,\n"
+              "RADIUS=%s\n0.3\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 0.1\nTOP, 2\n"
+              "*PRINT, TOTALS\n*END STEP\n",
+              (const int[]){31, 33, 34}[k / 6], k / 3 % 2 ? "FIRST" : "SECOND",
+              ends[k % 3]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat t = job_table(&j, "TOTALS", -1);
+    const double is = fabs(dat_at(&t, 0, "tangential"));
+    ck_assert_msg(fabs(is - wanted) < 0.01 * wanted, "%d: %g, not %g", k, is,
+                  wanted);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           mirror_takes_the_edge_away, normalized_edges_keep_a_uniform_pressure,
           limit_is_the_average_of_the_pressures,
@@ -638,4 +674,5 @@ UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           contacts_do_not_see_each_other,
           square_base_has_the_mass_of_the_kernel, cone_is_exact_at_any_angle,
           round_base_has_the_mass_of_the_kernel, given_forces_are_averaged,
-          velocity_form_has_the_same_zone, law_may_change_from_step_to_step)
+          velocity_form_has_the_same_zone, law_may_change_from_step_to_step,
+          slave_may_end_beyond_its_master)

@@ -535,6 +535,20 @@ static int merge_row(const builder *b, int i, int *col, double *val,
   return n;
 }
 
+/* Row val[n] of nodes col[n] for a pressure on parts of their faces; normalised
+ * it keeps a constant pressure. */
+static void cut_row(const builder *b, int n, const int *col, double *val) {
+  double whole = 0.0, left = 0.0;
+  if (b->p->part == NULL) return;
+  for (int k = 0; k < n; ++k) {
+    whole += val[k];
+    if (!b->alone[col[k]]) val[k] *= b->p->part[col[k]];
+    left += val[k];
+  }
+  for (int k = 0; k < n && b->rule->normalized && left > 0.0; ++k)
+    val[k] *= whole / left;
+}
+
 static status symmetrise(builder *b, sparse_rows *out) {
   const average_patch *p = b->p;
   OWNED double *part = NULL;
@@ -558,6 +572,7 @@ static status symmetrise(builder *b, sparse_rows *out) {
     if (b->rule->normalized && b->mass[i] > 0.0) by *= b->mass[i];
     merge_row(b, i, out->col + first, out->val + first, &left);
     for (int k = first; k < first + n; ++k) out->val[k] /= by;
+    cut_row(b, n, out->col + first, out->val + first);
   }
   return OK;
 }

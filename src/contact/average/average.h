@@ -16,6 +16,9 @@
  * exceed its mass they are reduced to it, so that no entry is negative and all
  * change continuously with the radius.
  *
+ * Where p_j acts on a part of the faces of node j alone (a slave node at the
+ * edge of its master), G_ij is times that part.
+ *
  * A node without another node within rho has its own pressure (G_ii = 1): where
  * the mesh is coarser than rho, friction is local.
  */
@@ -86,6 +89,8 @@ typedef struct average_patch {
   const double *x;             /* [dim*n_node] m */
   const int *face;             /* [dim*n_face] nodes */
   const unsigned char *active; /* [n_node] 0: no contact node, p = 0 there */
+  const double *part;          /* [n_node] of its faces where p_j acts, 0 to 1,
+                                  -; NULL: 1 */
 } average_patch;
 
 /* A plane x[axis] = least or largest of the patch behind which the surface

@@ -445,8 +445,8 @@ static void set_resultant(builder *b, int q) {
 static status add_row(builder *b, int q, entry *row) {
   mortar *m = b->out;
   const int node = m->node_id[q];
-  double whole, rounding;
-  m->area[q] = node_area(b, node, &whole);
+  double rounding;
+  m->area[q] = node_area(b, node, &m->whole[q]);
   int n = gather(b, node, m->area[q], row, &rounding);
   n = leave_rounding(row, n, rounding);
   qsort(row, (size_t)n, sizeof *row, by_node);
@@ -494,8 +494,8 @@ static status set_nodes(builder *b) {
   m->to.dim = dim;
   m->to.n = m->n;
   PASS_NEW_REALS(dim * m->n, &m->lever, &m->normal, &m->gap);
-  PASS_NEW_ALL(OF(m->node_id, m->n), OF(m->area, m->n), OF(m->share, m->n),
-               OF(m->to.start, m->n + 1));
+  PASS_NEW_ALL(OF(m->node_id, m->n), OF(m->area, m->n), OF(m->whole, m->n),
+               OF(m->share, m->n), OF(m->to.start, m->n + 1));
   for (int i = 0; i < b->in->mesh->n_node; ++i)
     if (b->state[i] == CARRIES) m->node_id[n++] = i;
   PASS(add_rows(b));
@@ -573,7 +573,8 @@ status mortar_couple(const mortar_input *in, mortar **out) {
 void mortar_free(mortar *m) {
   if (m == NULL) return;
   links_release(&m->to);
-  RELEASE(m->node_id, m->area, m->share, m->lever, m->normal, m->gap, m);
+  RELEASE(m->node_id, m->area, m->whole, m->share, m->lever, m->normal, m->gap,
+          m);
 }
 
 /* ---- links ---- */

@@ -75,6 +75,7 @@ typedef struct mortar {
   int *node_id;   /* [n] ascending */
   double *area;   /* [n] D_j, m2 */
   double *share;  /* [n] int psi_j / D_j, - */
+  double *whole;  /* [n] D_j if all of its faces were covered, m2 */
   double *lever;  /* [dim*n] int psi_j x / D_j, m */
   double *normal; /* [dim*n] outward of the slave, unit length */
   double *gap;    /* [dim*n] sum P_jl x_l - x_j, m */
