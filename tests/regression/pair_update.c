@@ -41,6 +41,7 @@ START_TEST(carried_block_finds_its_partners) {
     ck_assert_double_eq_tol(dat_at(&x, i, "f_n"), dat_at(&y, i, "f_n"), 1e-4);
   }
   ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 2 * 0.4, 1e-9);
+  ck_assert_double_lt(dat_at(&t, 0, "moment_of_both"), 1e-6);
   dat_free(&x);
   dat_free(&y);
   dat_free(&t);

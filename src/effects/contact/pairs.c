@@ -55,22 +55,35 @@ static void release(void *self) {
   RELEASE(own->force, own->moment);
 }
 
+static int contact_of_row(const contact_surface *s, int i, int a) {
+  const int side = a > 0 ? s->side_id[i * (s->dim - 1) + a - 1] : -1;
+  return side >= 0 ? side : s->contact_id[i];
+}
+
+/* arm[dim] += by times the place at which a node was coupled. */
+static void add_place(const run *r, int contact_id, int node_id, double by,
+                      double *arm) {
+  const surface_input *in = &r->faces.input;
+  const int moved = in->pairs[contact_id].update && in->u != NULL;
+  for (int c = 0; c < r->msh->dim; ++c) {
+    const int k = r->msh->dim * node_id + c;
+    arm[c] += by * (r->msh->x[k] + (moved ? in->u[k] : 0.0));
+  }
+}
+
 /* Arm of row a of contact node i, from its master's place to its own, m. */
 static void find_arm(const run *r, int i, int a, double *arm) {
   const contact_surface *s = r->surface;
   const node_links *l = s->master;
-  const int dim = s->dim;
+  const int id = contact_of_row(s, i, a);
   double whole = 0.0;
   memset(arm, 0, 3 * sizeof *arm);
   for (size_t e = l->start[i]; e < l->start[i + 1]; ++e) {
-    const double part = l->part[(size_t)dim * e + (size_t)a];
+    const double part = l->part[(size_t)s->dim * e + (size_t)a];
     whole += part;
-    for (int c = 0; c < dim; ++c)
-      arm[c] -=
-          part * r->msh->x[(size_t)dim * (size_t)l->master[e] + (size_t)c];
+    add_place(r, id, l->master[e], -part, arm);
   }
-  for (int c = 0; c < dim; ++c)
-    arm[c] = whole == 0.0 ? 0.0 : arm[c] + s->x[dim * i + c];
+  if (whole > 0.0) add_place(r, id, s->node_id[i], 1.0, arm);
 }
 
 /* The moment of the forces of one row on both sides. */
@@ -98,11 +111,8 @@ static status find_forces(run *r, void *self) {
   for (int id = 0; id < r->m->n.contact; ++id) {
     double moment[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < r->nodes.n; ++i)
-      for (int a = 0; a < s->dim; ++a) {
-        const int side = a > 0 ? s->side_id[i * (s->dim - 1) + a - 1] : -1;
-        if ((side >= 0 ? side : s->contact_id[i]) == id)
-          add_moment(r, i, a, moment);
-      }
+      for (int a = 0; a < s->dim; ++a)
+        if (contact_of_row(s, i, a) == id) add_moment(r, i, a, moment);
     own->moment[id] = sqrt(moment[0] * moment[0] + moment[1] * moment[1] +
                            moment[2] * moment[2]);
   }
