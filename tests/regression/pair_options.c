@@ -204,6 +204,34 @@ static int press_four(job *j, const char *pairs) {
   return job_run(j, "");
 }
 
+/* Plates of thickness 1 and 3 touch over 1: the friction of a given limit, and
+ * the pressure, whichever is the slave. */
+START_TEST(plates_touch_over_the_thinner_one) {
+  for (int k = 0; k < 4; ++k) {
+    job j = job_begin("plates");
+    job_copy(&j, "tests/regression/mesh/pair.geo");
+    job_write(&j, "plates.inp",
+              "*PARAMETER\nN = 8\nM = 7\nC = 0.2\n*MESH, FILE=pair.geo\n"
+              "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.\n"
+              "*SOLID SECTION, ELSET=LOWER, MATERIAL=A, THICKNESS=%d\n"
+              "*SOLID SECTION, ELSET=UPPER, MATERIAL=A, THICKNESS=%d\n"
+              "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
+              "*FRICTION, CONTACT=P, LAW=TRESCA\n1.\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 0.1\n*DSLOAD\nTOP, P, 10\n"
+              "*PRINT, TOTALS\n*END STEP\n",
+              k % 2 ? 1 : 3, k % 2 ? 3 : 1, k < 2 ? "FIRST" : "SECOND");
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat t = job_table(&j, "TOTALS", -1);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), k % 2 ? 18 : 6, 1e-9);
+    ck_assert_double_eq_tol(fabs(dat_at(&t, 0, "tangential")), 0.6, 1e-9);
+    ck_assert_double_le(dat_at(&t, 0, "closed_area"), 0.6 + 1e-9);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
 #define FIVE(name, groups, options)                                            \
   "*CONTACT PAIR, NAME=" name options "\n" groups "\n*FRICTION, CONTACT=" name \
   ", LAW=COULOMB\n0.3\n"
@@ -352,6 +380,7 @@ int main(void) {
   tcase_add_loop_test(tests, loads_and_energies_balance, 0,
                       sizeof options / sizeof *options);
   tcase_add_test(tests, given_forces_need_supports);
+  tcase_add_test(tests, plates_touch_over_the_thinner_one);
   tcase_add_test(tests, condensed_problem_has_the_same_forces);
   tcase_add_test(tests, error_of_the_mesh_is_estimated);
   tcase_add_loop_test(tests, bodies_between_others_balance, 0, 3);
