@@ -406,6 +406,36 @@ START_TEST(body_that_is_pushed_along_goes_one_way) {
 }
 END_TEST
 
+/* The middle of three blocks, of which a support holds the lowest, which stands
+ * on an obstacle too, is pushed with more than the friction below it, 2, can
+ * hold. */
+START_TEST(block_between_others_slides_away) {
+  static const double push[] = {1.5, 2.2, 4., 6.}, E[] = {300., 1000., 2500.};
+  for (int k = 0; k < 12; ++k) {
+    job j = job_begin("push");
+    job_copy(&j, "tests/regression/mesh/stack.geo");
+    job_write(&j, "push.inp",
+              "*PARAMETER\nNB = 3\n*MESH, FILE=stack.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n%g, 0.3\n"
+              "*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "*CONTACT, NAME=F, GROUP=BOTTOM 1, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=F, LAW=TRESCA\n4.\n"
+              "*CONTACT PAIR, NAME=P\nTOP 1, BOTTOM 2\n"
+              "*FRICTION, CONTACT=P, LAW=TRESCA\n2.\n"
+              "*CONTACT PAIR, NAME=Q\nTOP 2, BOTTOM 3\n"
+              "*FRICTION, CONTACT=Q, LAW=TRESCA\n3.\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nLEFT 1, 1, 2\n"
+              "*DSLOAD\nTOP 3, P, 14.4\nLEFT 2, P, %g\n*END STEP\n",
+              E[k / 4], push[k % 4]);
+    const int wanted = push[k % 4] > 2 ? 6 : 0, code = job_run(&j, "");
+    ck_assert_msg(code == wanted, "%g: exit %d: %s", push[k % 4], code,
+                  j.errors);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           resultant_through_the_only_node_that_touches,
           body_balanced_on_a_corner_rests,
@@ -414,4 +444,5 @@ UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
           free_motions_are_named, body_under_another_that_is_lifted_stays,
           body_that_is_left_stays_where_it_was,
-          body_that_is_pushed_along_goes_one_way)
+          body_that_is_pushed_along_goes_one_way,
+          block_between_others_slides_away)

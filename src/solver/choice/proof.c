@@ -206,7 +206,7 @@ static void set_lift(balance *s, double *gain) {
   *gain = HUGE_VAL;
   for (int dof = 0; dof < m; ++dof)
     if (contact_bound(cp, dof) < HUGE_VAL) *gain = fmin(*gain, -s->c[dof]);
-  *gain = fmax(*gain, 0.0);
+  if (!(*gain > MARGIN)) *gain = 0.0;
 }
 
 /* 1: v is a proof, after a lift by its rounding. */

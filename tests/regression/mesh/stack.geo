@@ -13,6 +13,7 @@ For i In {1 : NB}
   Plane Surface(i) = {i};
   Physical Curve(Sprintf("BOTTOM %g", i)) = {k};
   Physical Curve(Sprintf("TOP %g", i)) = {k + 2};
+  Physical Curve(Sprintf("LEFT %g", i)) = {k + 3};
   all[] += {i};
 EndFor
 Physical Surface("BLOCKS") = {all[]};
