@@ -284,9 +284,9 @@ static int same_card(const echo_card *a, const echo_card *b) {
 
 /* The first line of a card. */
 static void first_line(const echo_card *c, char text[100]) {
-  size_t n = strcspn(c->text, "\n");
-  snprintf(text, 100, "%.*s", n < 90 ? (int)n : 90,
-           c->length > 0 ? c->text : "the end of the deck");
+  const char *from = c->length > 0 ? c->text : "the end of the deck";
+  const size_t n = strcspn(from, "\n");
+  snprintf(text, 100, "%.*s", n < 90 ? (int)n : 90, from);
 }
 
 static status compare_decks(const char *was, const char *is, int step_no) {

@@ -103,6 +103,12 @@ START_TEST(changed_decks_are_refused_by_card) {
   edit(&j, "N = 8", "N = 9");
   refused(&j, 2, "*PARAMETER");
   edit(&j, "N = 9", "N = 8");
+  char *deck = job_file(&j, "inp"), file[40];
+  snprintf(file, sizeof file, "%s.inp", j.name);
+  job_write(&j, file, "%s*STEP\n*STATIC\n*END STEP\n", deck);
+  refused(&j, 2, "the end of the deck is now *STEP; only");
+  job_write(&j, file, "%s", deck);
+  free(deck);
   ck_assert_int_eq(job_run(&j, "--restart"), 2); /* --no-timing is missing */
   ck_assert_ptr_nonnull(strstr(j.errors, "--no-timing"));
   edit(&j, "TOP, 1, 1, -0.01", "TOP, 1, 1, -0.015"); /* of a later step */
