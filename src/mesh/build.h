@@ -62,8 +62,6 @@ status nodes_coincident(builder *b);
 status elements_gather(builder *b); /* types; corners as raw nodes */
 status elements_finish(builder *b); /* orientation, order, repeated ones */
 status faces_finish(builder *b);    /* ids, elements on both sides */
-/* Nodes of a side of an element, turned outward, in 3-D the lowest first. */
-void faces_side(const mesh *m, int elem, int side, int *v);
 status overlap_check(builder *b); /* across faces, anywhere */
 
 #endif

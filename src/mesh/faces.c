@@ -115,12 +115,13 @@ static int find_face(const face_list *f, const int *v) {
   return -1;
 }
 
-void faces_side(const mesh *m, int elem, int side, int *v) {
+void mesh_side_nodes(const mesh *m, int id, int *v) {
   /* clang-format off */
   static const int side_2d[3][2] = {{0, 1}, {1, 2}, {2, 0}};
   static const int side_3d[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
   /* clang-format on */
-  const int *w = m->elem + (size_t)(m->dim + 1) * (size_t)elem;
+  const int *w = mesh_elem_nodes(m, id / (m->dim + 1));
+  const int side = id % (m->dim + 1);
   if (m->dim == 2) {
     for (int k = 0; k < 2; ++k) v[k] = w[side_2d[side][k]];
     return;
@@ -137,7 +138,7 @@ void faces_side(const mesh *m, int elem, int side, int *v) {
 static void meet(mesh *m, face_list *f, int elem, int side) {
   size_t dim = (size_t)f->dim;
   int outward[3], v[3];
-  faces_side(m, elem, side, outward);
+  mesh_side_nodes(m, (m->dim + 1) * elem + side, outward);
   int low = outward[dim == 2 && outward[1] < outward[0]];
   if (f->start[low] == f->start[low + 1]) return;
   memcpy(v, outward, dim * sizeof *v);

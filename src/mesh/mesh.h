@@ -131,6 +131,11 @@ int forest_root(int *parent, int i);
 void forest_join(int *parent, int a, int b);
 /* Bodies: connected sets of elements. body[n_elem] 0..n_body-1. */
 status mesh_bodies(const mesh *m, int *n_body, int *body);
+/* Nodes v[dim] of side id = (dim+1)*elem + place of an element, turned outward,
+ * in 3-D the lowest first. */
+void mesh_side_nodes(const mesh *m, int id, int *v);
+/* side[n], new: sides without an element behind. ERR_MEMORY. */
+status mesh_border(const mesh *m, int *n, int **side);
 /* Elements round each node: elem[start[i] .. start[i+1]). Both are new. */
 status mesh_node_elements(const mesh *m, size_t **start, int **elem);
 

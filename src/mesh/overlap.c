@@ -8,7 +8,7 @@
  * boundary.
  */
 #include "mesh/build.h"
-#include "mesh/sort.h"
+#include "mesh/sides.h"
 
 #include "base/memory.h"
 #include "base/number.h"
@@ -21,99 +21,38 @@
 
 /* ---- both sides of a face ------------------------------------------------ */
 
-typedef struct side_list {
-  int n;           /* sides of elements; after check_sides, on the boundary */
-  int *start;      /* [n_node+2] sides whose lowest node is i */
-  sort_item *side; /* [n] key: other nodes, turn; id: (dim+1)*elem + side */
-} side_list;
-
-static void sides_free(side_list *s) { RELEASE(s->start, s->side); }
-
-static void side_nodes(const mesh *m, int id, int *v) {
-  faces_side(m, id / (m->dim + 1), id % (m->dim + 1), v);
-}
-
-/* The lowest corner stands in all sides of an element but one, whose lowest is
- * the second one. */
-static void two_lowest(int n, const int *w, int low[2]) {
-  low[0] = w[0] < w[1] ? w[0] : w[1];
-  low[1] = w[0] < w[1] ? w[1] : w[0];
-  for (int i = 2; i < n; ++i) {
-    int other = w[i] < low[0] ? low[0] : w[i];
-    if (w[i] < low[0]) low[0] = w[i];
-    if (other < low[1]) low[1] = other;
-  }
-}
-
-/* Two elements on both sides of a face have opposite orientations of it: last
- * bit. */
-static uint64_t side_key(int dim, const int *v) {
-  int a = v[dim - 2], c = v[dim - 1], turn = a < c;
-  uint64_t low = (uint64_t)(turn ? a : c), high = (uint64_t)(turn ? c : a);
-  return (dim == 2 ? 0 : low << 32) | high << 1 | (uint64_t)turn;
-}
-
-static status gather_sides(const mesh *m, side_list *s) {
-  const int n = m->dim + 1;
-  int v[3], low[2];
-  s->n = n * m->n_elem;
-  PASS_NEW_ALL(OF(s->start, m->n_node + 2), OF(s->side, s->n));
-  for (int e = 0; e < m->n_elem; ++e) {
-    two_lowest(n, m->elem + (size_t)n * (size_t)e, low);
-    s->start[low[0] + 2] += m->dim;
-    ++s->start[low[1] + 2];
-  }
-  for (int i = 1; i < m->n_node; ++i) s->start[i + 1] += s->start[i];
-  for (int e = 0; e < m->n_elem; ++e)
-    for (int side = 0; side < n; ++side) {
-      faces_side(m, e, side, v);
-      int to = s->start[(m->dim == 2 && v[1] < v[0] ? v[1] : v[0]) + 1]++;
-      s->side[to] = (sort_item){side_key(m->dim, v), n * e + side};
-    }
-  return OK;
-}
+typedef struct meeting {
+  const mesh *m;
+  faults bad;
+} meeting;
 
 /* The sides [n] of elements at one face. */
-static void check_face(const mesh *m, const sort_item *side, int n,
-                       faults *bad) {
+static void check_face(void *ctx, int n, const sort_item *side) {
+  meeting *t = ctx;
+  const mesh *m = t->m;
   int first[2] = {-1, -1}, v[3];
   for (int i = 0; i < n; ++i) {
-    int t = side[i].key & 1;
-    if (first[t] < 0) {
-      first[t] = side[i].id;
+    int turn = side[i].key & 1;
+    if (first[turn] < 0) {
+      first[turn] = side[i].id;
       continue;
     }
     double x[3];
-    side_nodes(m, side[i].id, v);
+    mesh_side_nodes(m, side[i].id, v);
     fault_centre(m, m->dim, v, x);
-    fault_pair(bad, m->dim, m->elem_no[first[t] / (m->dim + 1)],
+    fault_pair(&t->bad, m->dim, m->elem_no[first[turn] / (m->dim + 1)],
                m->elem_no[side[i].id / (m->dim + 1)], x);
     return;
   }
 }
 
-/* What stays in the list are the sides without an element behind. */
 static status check_sides(const builder *b, side_list *s) {
-  const mesh *m = b->m;
-  faults bad = {0};
-  s->n = 0;
-  for (int i = 0; i < m->n_node; ++i) {
-    int end = s->start[i + 1];
-    PASS(sort_items(end - s->start[i], s->side + s->start[i], NULL, NULL));
-    for (int j = s->start[i], next; j < end; j = next) {
-      const sort_item *side = &s->side[j];
-      for (next = j + 1; next < end && s->side[next].key / 2 == side->key / 2;)
-        ++next;
-      if (next == j + 1)
-        s->side[s->n++] = *side;
-      else
-        check_face(m, side, next - j, &bad);
-    }
-  }
-  if (bad.n > 0)
+  meeting t = {.m = b->m};
+  PASS(sides_outside(b->m, check_face, &t, s));
+  if (t.bad.n > 0)
     message_add(b->log, P3032, b->at,
-                "%d face(s) have two elements on one side: %s", bad.n,
-                bad.text);
+                "%d face(s) have two elements on one side: %s", t.bad.n,
+                t.bad.text);
   return build_check(b);
 }
 
@@ -385,7 +324,7 @@ static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
   PASS_NEW(item, n);
   for (int i = 0; i < n; ++i) {
     int side = i / m->dim, k = i % m->dim;
-    side_nodes(m, sides->side[side].id, v);
+    mesh_side_nodes(m, sides->side[side].id, v);
     int a = v[k], c = m->dim == 2 ? a : v[(k + 1) % 3];
     item[i] = (sort_item){a < c ? sort_key(a, c) : sort_key(c, a), side};
   }
@@ -443,7 +382,6 @@ done:
 
 status overlap_check(builder *b) {
   ENDS_BY(sides_free) side_list s = {0};
-  PASS(gather_sides(b->m, &s));
   PASS(check_sides(b, &s));
   return check_skins(b, &s);
 }

@@ -136,7 +136,7 @@ static status gather_elements(opening *o) {
 /* Ascending nodes of a side of a near element. */
 static void side_nodes(const opening *o, int side, int *v) {
   const int per = o->m->dim + 1;
-  faces_side(o->m, o->elem[side / per], side % per, v);
+  mesh_side_nodes(o->m, per * o->elem[side / per] + side % per, v);
   sort_few(o->m->dim, v);
 }
 
@@ -661,7 +661,7 @@ static int last_side(const opening *o, int lip, const int *edge) {
   for (;;) {
     int first = at - at % per, other = first;
     for (;; ++other) {
-      faces_side(o->m, o->elem[first / per], other - first, v);
+      mesh_side_nodes(o->m, per * o->elem[first / per] + other - first, v);
       if (other != at && holds(o->m, v, edge)) break;
     }
     if (o->across[other] < 0) return other;
