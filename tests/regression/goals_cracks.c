@@ -63,7 +63,9 @@ static void check_goal(const job *j, int row, double exact, double least,
   dat_free(&t);
 }
 
-/* The value is that of the table SIF, at the tip of the point. */
+/* The value is that of the table SIF, at the tip of the point; K_II is that of
+ * the plus lip, which at the left moves back. Of tips that differ in sign alone
+ * the positive one is taken. */
 START_TEST(open_crack_in_a_plate) {
   job j = run_crack("crack", "N = 12\nANGLE = 30.\nGROWTH = 0.2\nW = 200.",
                     SIF "NAME=ONE, COMPONENT=1\n" SIF
@@ -75,7 +77,7 @@ START_TEST(open_crack_in_a_plate) {
   const double c = cos(pi / 6), s = 0.5;
   check_goal(&j, 0, c * c * sqrt(pi), 0.7, 1.3, 1.2);
   check_goal(&j, 1, c * s * sqrt(pi), 0.6, 1.3, 1.2);
-  check_goal(&j, 2, c * s * sqrt(pi), 0.6, 1.3, 1.2);
+  check_goal(&j, 2, -c * s * sqrt(pi), 0.6, 1.3, 1.2);
   ck_assert(has_word(&j, "reliable"));
   dat t = job_table(&j, "SIF", -1), g = job_table(&j, "GOALS", -1);
   const int left = dat_row_near(&t, "x", -c);
@@ -121,6 +123,34 @@ START_TEST(crack_at_an_edge) {
                     "*BOUNDARY\nPIN, 1, 2\nEND, 1\n" PULLED);
   check_goal(&j, 0, 1.12152 * sqrt(pi), 0.7, 1.3, 1.2);
   job_end(&j);
+}
+END_TEST
+
+/* The plate turned by its supports: the same factors and errors. */
+START_TEST(plate_that_turns) {
+  static const char *const supports[] = {
+      "*BOUNDARY\nPIN, 1, 2\nEND, 1\n",
+      "*BOUNDARY\nPIN, 1, 2\nEND, 1, 1, 5.\n"};
+  double value[2][2], error[2][2];
+  for (int k = 0; k < 2; ++k) {
+    char loads[120];
+    snprintf(loads, sizeof loads, "%s%s", supports[k], PULLED);
+    job j = run_crack(
+        "edge", "N = 6\nW = 5.",
+        SIF "NAME=ONE, COMPONENT=1\n" SIF "NAME=TWO, COMPONENT=2\n", loads);
+    dat t = job_table(&j, "GOALS", -1);
+    for (int i = 0; i < 2; ++i) {
+      value[k][i] = dat_at(&t, i, "value");
+      error[k][i] = dat_at(&t, i, "error");
+    }
+    dat_free(&t);
+    job_end(&j);
+  }
+  ck_assert_double_gt(value[0][0], 1.9);
+  for (int i = 0; i < 2; ++i) {
+    ck_assert_double_eq_tol(value[1][i], value[0][i], 1e-9);
+    ck_assert_double_eq_tol(error[1][i], error[0][i], 1e-9);
+  }
 }
 END_TEST
 
@@ -272,7 +302,7 @@ START_TEST(target_on_meshes_that_scatter) {
 END_TEST
 
 UNIT_MAIN("goals_cracks", open_crack_in_a_plate, crack_loaded_on_its_lips,
-          crack_that_is_closed_in_part, crack_at_an_edge,
+          crack_that_is_closed_in_part, crack_at_an_edge, plate_that_turns,
           wide_crack_in_a_coarse_strip, closed_crack_that_slips,
           error_of_the_solver_in_a_factor, crack_that_sticks_is_none,
           disc_in_space, no_factor_no_estimate, target_of_a_factor,

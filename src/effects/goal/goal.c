@@ -273,7 +273,7 @@ static double *product_of(const run *r, const goal_state *own, int id) {
 static double of_factor(const run *r, const shared *s) {
   const fracture_linear *f = &s->form.factor;
   const goal_flux flux = {f->n, f->elem, fracture_corner(r->msh->dim), f->flux};
-  double sum = goal_estimator_flux(s->estimator, &flux);
+  double sum = goal_estimator_flux(s->estimator, &flux) - f->turned;
   for (size_t k = 0; k < r->n_dof; ++k) sum -= f->by_u[k] * r->now.u[k];
   return sum;
 }

@@ -243,6 +243,10 @@ static status set_energy(const run *r, const goal_card *g, goal_form *f) {
  * domain: 0.2 to 0.26 of it for a disc that is pressed apart. */
 static const double ROUGH = 0.25; /* - */
 
+/* K_II and K_III at the two ends of a crack may differ in sign alone: so that
+ * the mesh does not choose, a negative one counts as so much of its size. */
+static const double NEGATIVE = 0.9; /* - */
+
 /* The point at the node of the goal, or that of the largest factor; -1: none
  * has one. */
 static int point_of(const goal_card *g, const crack_factors *k) {
@@ -251,10 +255,11 @@ static int point_of(const goal_card *g, const crack_factors *k) {
   for (int i = 0; i < k->n; ++i) {
     const double K = k->at[i].K[g->component];
     if (isnan(K)) continue;
-    if (g->n_point > 0 ? k->points[i].node != g->node_id : fabs(K) <= most)
+    const double size = K < 0.0 ? -NEGATIVE * K : K;
+    if (g->n_point > 0 ? k->points[i].node != g->node_id : size <= most)
       continue;
     best = i;
-    most = fabs(K);
+    most = size;
   }
   return best;
 }
