@@ -309,9 +309,9 @@ static double of_coarseness(const run *r, const shared *s,
 static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
                                goal_verdict found) {
   if (found != GOAL_RELIABLE) return found;
-  if (f->is_coarse) return GOAL_FEW_NODES;
+  if (f->is_coarse) return f->factor.n > 0 ? GOAL_FEW_ELEMENTS : GOAL_FEW_NODES;
   if (f->held > 0.5 * fabs(e->error)) return GOAL_SUPPORT_END;
-  return f->rough > 0.0 ? GOAL_FRONT : found;
+  return f->is_front ? GOAL_FRONT : found;
 }
 
 static status estimate(run *r, goal_state *own, shared *s, int id) {
