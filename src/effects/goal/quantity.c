@@ -269,10 +269,23 @@ static int point_of(const goal_card *g, const crack_factors *k) {
   return best;
 }
 
+/* 1: an edge of an element of its domains is longer than their radius. */
+static int outgrows(const mesh *m, const fracture_linear *l, double radius) {
+  for (int i = 0; i < l->n; ++i) {
+    const int *v = m->elem + 3 * l->elem[i];
+    for (int a = 0; a < 3; ++a) {
+      const double *x = m->x + 2 * v[a], *y = m->x + 2 * v[(a + 1) % 3];
+      if (hypot(x[0] - y[0], x[1] - y[1]) > radius) return 1;
+    }
+  }
+  return 0;
+}
+
 static void set_rough(const run *r, const fracture_point *p, goal_form *f) {
   const double part = p->size / p->radius;
   f->is_front = r->msh->dim == 3;
-  f->is_coarse = !f->is_front && part * FEWEST > 1.0;
+  f->is_coarse = !f->is_front && (part * FEWEST > 1.0 ||
+                                  outgrows(r->msh, &f->factor, p->radius));
   f->rough = ROUGH * fabs(f->value) * (f->is_front ? part : part * part);
 }
 
