@@ -34,17 +34,18 @@ int fracture_count(const fracture *f) { return f->n; }
 
 const fracture_point *fracture_points(const fracture *f) { return f->point; }
 
-/* Middle and half of the range over the domains. */
+/* Middle and half of the range over the domains; NAN: one has no number. */
 static void compare(const integrals *of, int part, double factor, double *value,
                     double *scatter) {
-  double low = HUGE_VAL, high = -HUGE_VAL;
+  double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
   for (int k = 0; k < DOMAINS; ++k) {
     const double here = factor * of->I[k][part] / of->length[k];
     low = fmin(low, here);
     high = fmax(high, here);
+    sum += here;
   }
-  *value = (low + high) / 2;
-  *scatter = (high - low) / 2;
+  *value = isnan(sum) ? NAN : (low + high) / 2;
+  *scatter = isnan(sum) ? NAN : (high - low) / 2;
 }
 
 static elasticity elasticity_at(const fracture *f, const fracture_point *p) {

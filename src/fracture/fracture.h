@@ -15,7 +15,8 @@
  * quite in equilibrium: both vanish at a straight front (Gosz, Moran, Engng.
  * Fract. Mech. 69 (2002)). t: tractions on the lips. The energy release rate
  * has the fields themselves in place of the auxiliary ones, with half of
- * sig:eps.
+ * sig:eps. u is taken without the rotation of the lips near the point, which
+ * has a part in I by its quadrature alone.
  *
  * A domain holds straight crack alone: its size is the distance to the nearest
  * node of another boundary, kink, branch or material, half of the distance to
@@ -63,8 +64,8 @@ typedef struct fracture_state { /* borrowed */
 typedef struct fracture_point { /* a tip, or a node of the front */
   int node;
   double origin[3]; /* its place, m */
-  double frame[9];  /* rows e1 of growth, e2 normal to the crack, e3 = e1 x e2.
-                       3-D: e2 to the plus side; 2-D: e3 = z, e2 left of e1 */
+  double frame[9];  /* rows e1 of growth, e2 normal to the crack to the plus
+                       side, e3 = e1 x e2; 2-D: e3 is z or -z */
   double curvature; /* of the front, 1/m; > 0: around the crack */
   double size;      /* of the elements there, m */
   double radius;    /* of the largest domain, m; 0: no space for one */
@@ -95,10 +96,12 @@ typedef struct fracture_linear {
   double *by_u;        /* [dim*n_node] Pa m^(-1/2) */
   double *by_traction; /* [dim*n_node] m^(1/2) */
   int n;
-  int *elem;    /* [n] of the domains */
-  double *flux; /* [n*(dim+1)*dim*dim] the derivative by du_i/dx_j, row by row,
-                   at dim + 1 points of each, Pa m^(1/2) per m^dim; point k has
-                   fracture_corner of corner k */
+  int *elem;     /* [n] of the domains */
+  double *flux;  /* [n*(dim+1)*dim*dim] the derivative by du_i/dx_j, row by row,
+                    at dim + 1 points of each, Pa m^(1/2) per m^dim; point k has
+                    fracture_corner of corner k */
+  double turned; /* what flux has in s by the rotation of the lips there, which
+                    is not in K, Pa m^(1/2) */
 } fracture_linear;
 /* Barycentric coordinate of a point of flux in its own corner, those in the
  * others are equal: degree 2 with equal weights. */

@@ -47,9 +47,10 @@ typedef struct work {
   corner at[4];
   double measure;
   double stress[3][3], slope[3][3]; /* and du_i/dx_l, global */
+  double turn[3][3]; /* of the lips near the point, which slope is without */
 } work;
 
-/* ---- elements and faces -------------------------------------------------- */
+/* ---- places and fields --------------------------------------------------- */
 
 static void set_growth(const work *w, corner *c) {
   local at;
@@ -79,27 +80,34 @@ static int set_corners(work *w, int n, const int *node) {
   return grows;
 }
 
-/* Stress and displacement gradient of an element; g: gradients of its P1
- * functions. Returns its measure. */
-static double set_fields(work *w, int elem, double g[12]) {
-  static const int voigt[2][3][3] = {{{0, 3, -1}, {3, 1, -1}, {-1, -1, 2}},
-                                     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};
+/* Displacement gradient of an element; g: gradients of its P1 functions.
+ * Returns its measure. */
+static double set_slope(work *w, int elem, double g[12]) {
   const int dim = w->m->dim;
   const int *v = w->m->elem + (size_t)(dim + 1) * (size_t)elem;
-  const double *sigma = w->state->sigma + (size_t)(2 * dim) * (size_t)elem;
   const double determinant = mesh_elem_gradients(w->m, elem, g);
-  memset(w->slope, 0, sizeof w->slope);
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      const int at = voigt[dim - 2][i][j];
-      w->stress[i][j] = at < 0 ? 0 : sigma[at];
-    }
+    for (int j = 0; j < 3; ++j) w->slope[i][j] = -w->turn[i][j];
   for (int k = 0; k <= dim; ++k) {
     const double *u = w->state->u + (size_t)dim * (size_t)v[k];
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) w->slope[i][j] += u[i] * g[dim * k + j];
   }
   return determinant / (dim == 2 ? 2 : 6);
+}
+
+/* With the stress. */
+static double set_fields(work *w, int elem, double g[12]) {
+  static const int voigt[2][3][3] = {{{0, 3, -1}, {3, 1, -1}, {-1, -1, 2}},
+                                     {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};
+  const int dim = w->m->dim;
+  const double *sigma = w->state->sigma + (size_t)(2 * dim) * (size_t)elem;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int at = voigt[dim - 2][i][j];
+      w->stress[i][j] = at < 0 ? 0 : sigma[at];
+    }
+  return set_slope(w, elem, g);
 }
 
 static void place_at(const work *w, const double *phi, local *at) {
@@ -166,6 +174,108 @@ static void turn_back(const local *at, int dim, double by[3][3], double *out) {
     }
 }
 
+/* ---- rotation of the body ------------------------------------------------ */
+
+/*
+ * A rotation of the whole body has no part in the integrals, but by their
+ * quadrature: the slope of u is taken without that of the lips near the point.
+ * It is the mean over both of du_2/dx_1, du_2/dx_3 and half of du_1/dx_3 less
+ * du_3/dx_1, in which the fields of K and stresses along the lips have none.
+ */
+
+/* A lip that q of the largest domain is on: its part, m^dim, and its element;
+ * -1: another lip. */
+static int set_turning(work *w, int i, double *part) {
+  const mesh_crack *c = w->crack;
+  const int face = i < c->n ? c->plus[i] : c->minus[i - c->n];
+  double normal[3];
+  if (!set_corners(w, w->m->dim, w->m->face + w->m->dim * face)) return -1;
+  *part = 0;
+  for (int k = 0; k < w->n; ++k) *part += w->at[k].q[0];
+  *part *= mesh_face_normal(w->m, face, normal);
+  return w->m->face_elem[face];
+}
+
+static double all_turning(work *w) {
+  double sum = 0, part;
+  for (int i = 0; i < 2 * w->crack->n; ++i)
+    if (set_turning(w, i, &part) >= 0) sum += part;
+  return sum;
+}
+
+/* Rotation of a lip by the slope there, both in the frame of the point. */
+static void turn_of(double d[3][3], double to[3][3]) {
+  memset(to, 0, 9 * sizeof **to);
+  to[1][0] = d[1][0];
+  to[1][2] = d[1][2];
+  to[0][2] = (d[0][2] - d[2][0]) / 2;
+  to[0][1] = -to[1][0];
+  to[2][1] = -to[1][2];
+  to[2][0] = -to[0][2];
+}
+
+/* Its transpose. */
+static void by_turn(double by[3][3], double to[3][3]) {
+  memset(to, 0, 9 * sizeof **to);
+  to[1][0] = by[1][0] - by[0][1];
+  to[1][2] = by[1][2] - by[2][1];
+  to[0][2] = (by[0][2] - by[2][0]) / 2;
+  to[2][0] = -to[0][2];
+}
+
+/* A tensor t[dim*dim] in the frame of the point. */
+static void to_frame(const work *w, const double *t, local *at,
+                     field_tensor *out) {
+  double in[3][3] = {{0}};
+  for (int i = 0; i < w->m->dim; ++i)
+    for (int j = 0; j < w->m->dim; ++j) in[i][j] = t[w->m->dim * i + j];
+  locate(w->p, w->p->origin, at);
+  field_turn(at, in, out);
+}
+
+static void find_turn(work *w) {
+  const int dim = w->m->dim;
+  const double all = all_turning(w);
+  double mean[9] = {0}, turn[3][3], g[12], part;
+  field_tensor own;
+  local at;
+  for (int i = 0; i < 2 * w->crack->n; ++i) {
+    const int elem = set_turning(w, i, &part);
+    if (elem < 0) continue;
+    set_slope(w, elem, g);
+    for (int k = 0; k < dim * dim; ++k)
+      mean[k] += part / all * w->slope[k / dim][k % dim];
+  }
+  to_frame(w, mean, &at, &own);
+  turn_of(own.of, turn);
+  turn_back(&at, dim, turn, mean);
+  for (int k = 0; k < dim * dim; ++k) w->turn[k / dim][k % dim] = mean[k];
+}
+
+/* Takes off by_u what by_slope[dim*dim], a derivative by the slope of all
+ * elements, has by the rotation. */
+static void derive_turn(work *w, const double *by_slope, double *by_u) {
+  const int dim = w->m->dim;
+  const double all = all_turning(w);
+  double turned[3][3], by[9], g[12], part;
+  field_tensor own;
+  local at;
+  to_frame(w, by_slope, &at, &own);
+  by_turn(own.of, turned);
+  turn_back(&at, dim, turned, by);
+  for (int i = 0; i < 2 * w->crack->n; ++i) {
+    const int elem = set_turning(w, i, &part);
+    if (elem < 0) continue;
+    const int *v = w->m->elem + (dim + 1) * elem;
+    mesh_elem_gradients(w->m, elem, g);
+    for (int a = 0; a <= dim; ++a)
+      for (int k = 0; k < dim * dim; ++k)
+        by_u[dim * v[a] + k / dim] -= part / all * by[k] * g[dim * a + k % dim];
+  }
+}
+
+/* ---- elements ------------------------------------------------------------ */
+
 /* The derivative of the integrand by du_i/dx_j, global, out[dim*dim], at a
  * place of the current element, where the stress is that of the slope. */
 static void flux_at(const work *w, const double *phi, const double *g, int mode,
@@ -227,24 +337,32 @@ static void add_element(work *w, int elem) {
   }
 }
 
+/* Sums of derivatives by the slope over the elements, [dim*dim]. */
+typedef struct by_slopes {
+  double centre[9], flux[9]; /* at centroids, and at the points of flux */
+} by_slopes;
+
 /* Adds what an element has; 1: it has a part. */
 static int derive_element(work *w, int elem, int mode, const double *part,
-                          double *by_u, double *flux) {
+                          double *by_u, double *flux, by_slopes *sum) {
   const int dim = w->m->dim, *v = w->m->elem + (dim + 1) * elem;
   const double own = fracture_corner(dim);
   double g[12], slope[9];
   if (!set_corners(w, dim + 1, v)) return 0;
   const double measure = set_fields(w, elem, g);
   flux_at(w, centre[dim - 2], g, mode, part, slope);
+  for (int k = 0; k < dim * dim; ++k) sum->centre[k] += measure * slope[k];
   for (int a = 0; a <= dim; ++a)
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j)
         by_u[dim * v[a] + i] += measure * slope[dim * i + j] * g[dim * a + j];
-  for (int a = 0; a <= dim; ++a) {
+  for (int a = 0; a <= dim; ++a, flux += dim * dim) {
     double phi[4];
     for (int b = 0; b <= dim; ++b) phi[b] = (1 - own) / dim;
     phi[a] = own;
-    flux_at(w, phi, g, mode, part, flux + dim * dim * a);
+    flux_at(w, phi, g, mode, part, flux);
+    for (int k = 0; k < dim * dim; ++k)
+      sum->flux[k] += measure / (dim + 1) * flux[k];
   }
   return 1;
 }
@@ -536,6 +654,7 @@ void integrals_find(fracture *f, const fracture_state *s,
   w.x = x;
   w.sum = out;
   const int n = gather_elements(f, p);
+  find_turn(&w);
   for (int i = 0; i < n; ++i) add_element(&w, f->elem_list[i]);
   if (s->traction != NULL) add_lips(&w);
   measure_front(&w, f->n);
@@ -547,14 +666,19 @@ status integrals_derive(fracture *f, const fracture_state *s,
   work w = {.f = f, .m = f->body.mesh, .crack = f->body.crack, .p = p};
   const int dim = w.m->dim;
   const size_t each = (size_t)((dim + 1) * dim * dim);
+  by_slopes sum = {{0}, {0}};
   w.state = s;
   w.x = x;
   const int n = gather_elements(f, p);
+  find_turn(&w);
   PASS_NEW_ALL(OF(out->elem, n), OF(out->flux, each * (size_t)n));
   for (int i = 0; i < n; ++i)
     if (derive_element(&w, f->elem_list[i], mode, part, out->by_u,
-                       out->flux + each * (size_t)out->n))
+                       out->flux + each * (size_t)out->n, &sum))
       out->elem[out->n++] = f->elem_list[i];
+  derive_turn(&w, sum.centre, out->by_u);
+  for (int k = 0; k < dim * dim; ++k)
+    out->turned += sum.flux[k] * w.turn[k / dim][k % dim];
   if (s->traction != NULL) derive_lips(&w, mode, part, out->by_traction);
   return OK;
 }

@@ -238,19 +238,27 @@ static void look_round(const fracture *f, fracture_point *p) {
   p->size = sum / (double)(f->start[p->node + 1] - f->start[p->node]) / m->dim;
 }
 
+/* That of the minus lip points to the plus side. */
+static void add_normal(const fracture *f, int face, double *sum) {
+  double normal[3];
+  const double area =
+      mesh_face_normal(f->body.mesh, f->body.crack->minus[face], normal);
+  for (int k = 0; k < 3; ++k) sum[k] += area * normal[k];
+}
+
 /* From the other node of the last face to the tip. */
 static void set_frame_2d(const fracture *f, int i) {
   const mesh *m = f->body.mesh;
   const mesh_crack *c = f->body.crack;
   fracture_point *p = &f->point[i];
+  double *e1 = p->frame, *e2 = e1 + 3, *e3 = e1 + 6, x[3];
   const int *v = m->face + 2 * (size_t)c->plus[c->front_face[i]];
-  double x[3];
   place_of(m, v[0] == p->node ? v[1] : v[0], x);
-  for (int k = 0; k < 3; ++k) p->frame[k] = p->origin[k] - x[k];
-  scale_to_one(p->frame);
-  p->frame[3] = -p->frame[1];
-  p->frame[4] = p->frame[0];
-  p->frame[8] = 1;
+  for (int k = 0; k < 3; ++k) e1[k] = p->origin[k] - x[k];
+  scale_to_one(e1);
+  add_normal(f, c->front_face[i], e2);
+  scale_to_one(e2);
+  cross(e1, e2, e3);
 }
 
 /* Positions in front_node of the neighbours "step" away along the chain; -1:
@@ -261,13 +269,6 @@ static int along(const mesh_crack *c, int chain, int i, int step) {
   if (to >= from && to <= last) return to;
   if (c->front_node[from] != c->front_node[last] || n < 1) return -1;
   return from + ((to - from) % n + n) % n;
-}
-
-static void add_normal(const fracture *f, int face, double *sum) {
-  double normal[3];
-  const double area =
-      mesh_face_normal(f->body.mesh, f->body.crack->minus[face], normal);
-  for (int k = 0; k < 3; ++k) sum[k] += area * normal[k];
 }
 
 /* y1 = c y3 - k/2 y3^2 through two neighbours on both sides, by least squares:

@@ -605,6 +605,22 @@ START_TEST(scatter_is_half_of_what_domains_differ_by) {
 }
 END_TEST
 
+/* Stresses that are unknown have neither K nor a scatter. */
+START_TEST(scatter_of_no_number_is_none) {
+  crack_scene s;
+  tip_field f = tip_of(&strain_steel, 1, 0);
+  start_square(&s, 16, &strain_steel, 0);
+  scene_move(&s, tip_displacement, &f);
+  for (int k = 0; k < 2 * s.m->n_node; ++k) s.u[k] = NAN;
+  answer a = ask(&s);
+  for (int mode = 0; mode < 2; ++mode)
+    ck_assert(isnan(a.at[0].K[mode]) && isnan(a.at[0].K_scatter[mode]));
+  ck_assert(isnan(a.at[0].J) && isnan(a.at[0].J_scatter));
+  drop(&a);
+  scene_end(&s);
+}
+END_TEST
+
 /* The first point of a closed front is its last one too. */
 START_TEST(closed_front_has_no_end) {
   static const double stretch[9] = {1.4, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -638,12 +654,13 @@ static void check_linear(const crack_scene *s, int point, double near) {
     size = fmax(size, fabs(a.at[point].K[mode]));
   for (int mode = 0; mode < dim; ++mode) {
     fracture_linear l;
-    double by_u = 0, by_t = 0, by_flux = 0;
+    double by_u = 0, by_t = 0, by_flux;
     ck_assert_int_eq(fracture_derive(f, &state, point, mode, &l), OK);
     for (int k = 0; k < dim * s->m->n_node; ++k) {
       by_u += l.by_u[k] * s->u[k];
       if (s->traction != NULL) by_t += l.by_traction[k] * s->traction[k];
     }
+    by_flux = -l.turned;
     for (int i = 0; i < l.n; ++i) {
       const int *v = s->m->elem + (dim + 1) * l.elem[i];
       double g[12];
@@ -726,6 +743,7 @@ UNIT_MAIN("fracture", fields_are_those_of_complex_functions,
           tip_between_materials_has_the_energy_release_rate_alone,
           factors_of_a_straight_front, factors_of_a_penny,
           factors_of_a_front_that_is_bent_inward,
-          scatter_is_half_of_what_domains_differ_by, closed_front_has_no_end,
+          scatter_is_half_of_what_domains_differ_by,
+          scatter_of_no_number_is_none, closed_front_has_no_end,
           factors_are_linear_functions, factors_of_a_penny_are_linear_functions,
           each_refused_request_is_an_error_and_frees_all)

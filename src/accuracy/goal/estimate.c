@@ -374,6 +374,8 @@ static const struct {
                           "not reliable: end of a support or inner corner"},
     [GOAL_NO_SLIP] = {"no_slip", "not reliable: no node slips"},
     [GOAL_FEW_NODES] = {"few_nodes", "not reliable: few contact nodes"},
+    [GOAL_FEW_ELEMENTS] = {"few_elements",
+                           "not reliable: few elements round the tip"},
     [GOAL_FRONT] = {"crack_front", "not reliable: front of a crack in space"},
     [GOAL_CANCELS] = {"cancels", "not reliable: errors cancel"},
     [GOAL_NO_HISTORY] = {"no_history",

@@ -14,18 +14,19 @@
 /* What an estimate is worth. */
 typedef enum {
   GOAL_RELIABLE,
-  GOAL_CONTACT_END, /* the mesh is too coarse where the contact ends */
-  GOAL_SUPPORT_END, /* the same of a support, or in an inner corner */
-  GOAL_NO_SLIP,     /* work of friction, where no node slips so far */
-  GOAL_FEW_NODES,   /* three closed nodes or less */
-  GOAL_FRONT,       /* an integral round the front of a crack in space */
-  GOAL_CANCELS,     /* parts of opposite sign, of which little is left */
-  GOAL_NO_HISTORY,  /* errors of the increments before are not in it */
-  GOAL_NOT_COVERED, /* by the estimate; the value stands */
-  GOAL_NO_PEAK,     /* the largest pressure is at an edge: it may be infinite */
-  GOAL_NO_END,      /* the contact reaches the end of its surface */
-  GOAL_NO_ZONE,     /* nothing is closed, or too few nodes */
-  GOAL_NO_FACTOR    /* no space for a domain at the front of the crack */
+  GOAL_CONTACT_END,  /* the mesh is too coarse where the contact ends */
+  GOAL_SUPPORT_END,  /* the same of a support, or in an inner corner */
+  GOAL_NO_SLIP,      /* work of friction, where no node slips so far */
+  GOAL_FEW_NODES,    /* three closed nodes or less */
+  GOAL_FEW_ELEMENTS, /* round the tip of a crack */
+  GOAL_FRONT,        /* an integral round the front of a crack in space */
+  GOAL_CANCELS,      /* parts of opposite sign, of which little is left */
+  GOAL_NO_HISTORY,   /* errors of the increments before are not in it */
+  GOAL_NOT_COVERED,  /* by the estimate; the value stands */
+  GOAL_NO_PEAK,  /* the largest pressure is at an edge: it may be infinite */
+  GOAL_NO_END,   /* the contact reaches the end of its surface */
+  GOAL_NO_ZONE,  /* nothing is closed, or too few nodes */
+  GOAL_NO_FACTOR /* no space for a domain at the front of the crack */
 } goal_verdict;
 const char *goal_verdict_word(goal_verdict v); /* one word */
 const char *goal_verdict_text(goal_verdict v);

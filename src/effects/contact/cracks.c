@@ -498,9 +498,11 @@ static const column columns[] = {
 {"K_I", STRESS_ROOT, TIP, CART, 0, NULL, 0, tip_K, NULL,
  "stress intensity factor, opening"},
 {"K_II", STRESS_ROOT, TIP, CART, 0, NULL, 1, tip_K, NULL,
- "the same, sliding; > 0: the plus lip moves ahead"},
+ "the same, sliding; > 0: the plus lip (that of the group GROUP+) moves ahead, "
+ "so that under one shear both ends of a crack differ in sign"},
 {"K_III", STRESS_ROOT, TIP, SCENE_SOLID, 0, NULL, 2, tip_K, NULL,
- "the same, tearing"},
+ "the same, tearing; > 0: the plus lip moves along the growth times the normal "
+ "from the minus lip to it"},
 {"G", "force/length", TIP, CART, 0, NULL, 0, tip_rate, NULL,
  "energy release rate"},
 {"K_I_scatter", STRESS_ROOT, TIP, CART, 0, NULL, 0, tip_scatter, NULL,

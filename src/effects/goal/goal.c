@@ -273,7 +273,7 @@ static double *product_of(const run *r, const goal_state *own, int id) {
 static double of_factor(const run *r, const shared *s) {
   const fracture_linear *f = &s->form.factor;
   const goal_flux flux = {f->n, f->elem, fracture_corner(r->msh->dim), f->flux};
-  double sum = goal_estimator_flux(s->estimator, &flux);
+  double sum = goal_estimator_flux(s->estimator, &flux) - f->turned;
   for (size_t k = 0; k < r->n_dof; ++k) sum -= f->by_u[k] * r->now.u[k];
   return sum;
 }
@@ -309,9 +309,9 @@ static double of_coarseness(const run *r, const shared *s,
 static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
                                goal_verdict found) {
   if (found != GOAL_RELIABLE) return found;
-  if (f->is_coarse) return GOAL_FEW_NODES;
+  if (f->is_coarse) return f->factor.n > 0 ? GOAL_FEW_ELEMENTS : GOAL_FEW_NODES;
   if (f->held > 0.5 * fabs(e->error)) return GOAL_SUPPORT_END;
-  return f->rough > 0.0 ? GOAL_FRONT : found;
+  return f->is_front ? GOAL_FRONT : found;
 }
 
 static status estimate(run *r, goal_state *own, shared *s, int id) {

@@ -23,13 +23,15 @@ typedef struct goal_form {
   int sums;         /* 1: a sum over the increments, of which rows are the
                        derivative by the motion of the last */
   int is_still;     /* 1: work of friction where nothing slips so far */
-  int is_coarse;    /* 1: a mean over less than two elements to each side */
+  int is_coarse;    /* 1: a mean over less than two elements to each side, or
+                       few elements round a tip */
+  int is_front;     /* 1: a factor in space */
   int is_square;    /* 1: the energy, whose error has a quadratic part too */
   double curved;    /* contact forces times what psi is between the nodes more
                        than at them */
   double size;      /* sum of the magnitudes that value is the sum of */
   double held;      /* what forces of held nodes, in none of them, may be */
-  double rough;     /* of a front in space: what its integral lacks */
+  double rough;     /* what the integral of a factor lacks */
   goal_verdict why; /* GOAL_RELIABLE: it has a value */
 } goal_form;
 

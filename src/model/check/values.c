@@ -13,12 +13,25 @@
 
 /* ---- names of groups to their ids in the mesh ---------------------------- */
 
+/* The lip that is meant by the name of a *CRACK with a sign; NULL: none. */
+static const char *lip_meant(const model *m, const char *name) {
+  for (int i = 0; i < m->n.crack; ++i) {
+    const crack *k = &m->mesh.cracks[i];
+    const size_t n = strlen(k->name);
+    if (strncmp(name, k->name, n) != 0) continue;
+    if (strcmp(name + n, "-") == 0) return k->lip[0];
+    if (strcmp(name + n, "+") == 0) return k->lip[1];
+  }
+  return NULL;
+}
+
 int check_group(const model *m, const mesh *msh, const char *name,
                 const place *at) {
   const mesh_group *g = mesh_find_group(msh, name);
   if (g != NULL) return (int)(g - msh->group);
-  const char *near =
-      message_wanted(m->log, ERROR) ? mesh_nearest_group(msh, name) : NULL;
+  const char *near = lip_meant(m, name);
+  if (near == NULL && message_wanted(m->log, ERROR))
+    near = mesh_nearest_group(msh, name);
   if (near != NULL) {
     message_add(m->log, P2021, at, "the mesh has no group %s; did you mean %s?",
                 name, near);

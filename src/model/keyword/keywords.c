@@ -377,8 +377,8 @@ const keyword keyword_table[] = {
    "unilateral contact of two bodies, or of two surfaces of one: groups of "
    "faces whose meshes need not match"},
   {"CRACK", IN_MODEL, crack_options, NULL, apply_crack, 0, 0, "",
-   "opens the mesh along a group; its lips, the groups NAME+ and NAME-, are a "
-   "contact pair"},
+   "opens the mesh along a group; its lips, the groups GROUP+ and GROUP-, are "
+   "a contact pair"},
   {"TIE", IN_MODEL, tie_options, NULL, apply_tie, 1, 1, "surface, surface",
    "joins two surfaces whose meshes need not match"},
   {"FRICTION", IN_MODEL | IN_STEP, friction_options, names_law,
