@@ -49,12 +49,14 @@ typedef struct goal_state {
   double *product;          /* [n*n_elem] of goal_estimate_find, or NULL */
   space_recovery *recovery; /* its own; NULL: not needed so far */
   long elastic_no;          /* of the run, that it is made of */
+  goal_border border;
   goal_history before;
 } goal_state;
 
 static status goals_new(run *r, void **self) {
   goal_state *own = *self;
   own->n = r->m->n.goal;
+  PASS(goal_border_new(r->msh, &own->border));
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
     PASS_NEW(own->product, (size_t)own->n * (size_t)r->msh->n_elem);
@@ -67,6 +69,7 @@ static status goals_new(run *r, void **self) {
 static void release(void *self) {
   goal_state *own = self;
   space_recovery_free(own->recovery);
+  goal_border_free(&own->border);
   RELEASE(own->before.u, own->before.edge, own->before.sum, own->before.band,
           own->product, own->result);
 }
@@ -177,7 +180,7 @@ static int has_goal_of(const model *m, goal_quantity of) {
 static status prepare(run *r, goal_state *own, shared *s) {
   space_recovery *recovery;
   const int n = r->nodes.n_row;
-  PASS(goal_surface_new(r, &s->surface));
+  PASS(goal_surface_new(r, &own->border, &s->surface));
   set_sticks(r, &own->before, &s->surface);
   PASS(recover(r, own, &recovery));
   const goal_solution found = {.d = &r->body.d,

@@ -46,6 +46,14 @@ status goal_set_width(const run *r, const goal_card *g, goal_form *f);
 /* boundary.c: adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
 
+/* The border of the bodies, of a mesh. */
+typedef struct goal_border {
+  int n, *side;  /* [n] of mesh_border */
+  double *angle; /* [n_node] of the body at the nodes, rad; in space NULL */
+} goal_border;
+status goal_border_new(const mesh *m, goal_border *b); /* support.c */
+void goal_border_free(goal_border *b);                 /* accepts all-zero */
+
 /* surface.c */
 typedef struct goal_surface {
   int n_edge;
@@ -58,8 +66,10 @@ typedef struct goal_surface {
 } goal_surface;
 /* support.c: s->given, then what supports add to s->ends. */
 status goal_add_given(const run *r, goal_surface *s);
-status goal_mark_supports(const run *r, goal_surface *s);
-status goal_surface_new(const run *r, goal_surface *s);
+status goal_mark_supports(const run *r, const goal_border *border,
+                          goal_surface *s);
+status goal_surface_new(const run *r, const goal_border *border,
+                        goal_surface *s);
 void goal_surface_free(goal_surface *s); /* accepts all-zero */
 /* where[n_node]: contact node of a mesh node, or -1; new. */
 status goal_places(const run *r, int **where);

@@ -109,10 +109,14 @@ status goal_add_given(const run *r, goal_surface *s) {
 
 typedef enum { FREE, CLAMPED, ROLLER, ACROSS, SLANTED } kind;
 
-/* An edge of the border; a < b. */
-typedef struct border {
+/* a < b. */
+typedef struct edge {
   int a, b;
-} border;
+} edge;
+
+static edge between(int a, int b) {
+  return (edge){a < b ? a : b, a < b ? b : a};
+}
 
 /* The body at a node. */
 typedef struct corner {
@@ -131,38 +135,15 @@ static double angle_at(const mesh *m, const int *v, int k) {
   return atan2(fabs(a[0] * b[1] - a[1] * b[0]), a[0] * b[0] + a[1] * b[1]);
 }
 
-static int is_inside(const corner *c) { return c->angle > 2.0 * PI - 1e-6; }
-
-/* *out: edges of one element alone; new. */
-static status border_new(const mesh *m, const corner *c, border **out, int *n) {
-  int kept = 0;
-  *n = 0;
-  PASS_NEW(*out, 3 * m->n_elem);
-  border *e = *out;
-  for (int k = 0; k < 3 * m->n_elem; ++k) {
-    const int a = m->elem[k], b = m->elem[k - k % 3 + (k + 1) % 3];
-    if (is_inside(&c[a]) || is_inside(&c[b])) continue;
-    e[(*n)++] = (border){a < b ? a : b, a < b ? b : a};
-  }
-  if (*n > 0) qsort(e, (size_t)*n, sizeof *e, number_pair_order);
-  for (int i = 0, last; i < *n; i = last) {
-    for (last = i + 1; last < *n && number_pair_order(e + i, e + last) == 0;)
-      ++last;
-    if (last == i + 1) e[kept++] = e[i];
-  }
-  *n = kept;
-  return OK;
-}
-
 /* By the one component of an edge that is held. */
-static kind held_kind(const mesh *m, const border *e, int component) {
+static kind held_kind(const mesh *m, const edge *e, int component) {
   const double d[2] = {fabs(m->x[2 * e->b] - m->x[2 * e->a]),
                        fabs(m->x[2 * e->b + 1] - m->x[2 * e->a + 1])};
   if (d[component] <= 1e-6 * d[1 - component]) return ROLLER;
   return d[1 - component] <= 1e-6 * d[component] ? ACROSS : SLANTED;
 }
 
-static kind contact_kind(const goal_surface *s, const border *e) {
+static kind contact_kind(const goal_surface *s, const edge *e) {
   const contact_edge *found = s->n_edge == 0
                                   ? NULL
                                   : bsearch(e, s->edge, (size_t)s->n_edge,
@@ -171,7 +152,7 @@ static kind contact_kind(const goal_surface *s, const border *e) {
   return found->stuck ? CLAMPED : ROLLER;
 }
 
-static void add_border(const run *r, const goal_surface *s, const border *e,
+static void add_border(const run *r, const goal_surface *s, const edge *e,
                        corner *c) {
   const unsigned char *fixed = r->body.d.fixed;
   const int held[2] = {fixed[2 * e->a] && fixed[2 * e->b],
@@ -217,11 +198,6 @@ static int is_point(const unsigned char *fixed, const corner *c) {
 
 /* ---- where they end, in space -------------------------------------------- */
 
-/* A face of the border, v ascending; the node of its element behind it. */
-typedef struct side {
-  int v[3], behind;
-} side;
-
 /* An edge of a face of the border; a < b. */
 typedef struct rim {
   int a, b, other; /* the third node of the face */
@@ -230,72 +206,14 @@ typedef struct rim {
   double n[3]; /* outward normal */
 } rim;
 
-/* A tetrahedron as its node k sees it, steradian (Van Oosterom, Strackee
- * 1983). */
-static double solid_angle(const mesh *m, const int *v, int k) {
-  double d[3][3], l[3];
-  for (int i = 0; i < 3; ++i) {
+/* v[3]: turned outward. */
+static void outward(const mesh *m, const int *v, double *n) {
+  double d[2][3];
+  for (int i = 0; i < 2; ++i)
     for (int c = 0; c < 3; ++c)
-      d[i][c] = m->x[3 * v[(k + i + 1) % 4] + c] - m->x[3 * v[k] + c];
-    l[i] = sqrt(dot(3, d[i], d[i]));
-  }
-  double n[3];
-  cross(d[1], d[2], n);
-  return 2.0 * atan2(fabs(dot(3, d[0], n)),
-                     l[0] * l[1] * l[2] + dot(3, d[0], d[1]) * l[2] +
-                         dot(3, d[0], d[2]) * l[1] + dot(3, d[1], d[2]) * l[0]);
-}
-
-static int side_order(const void *a, const void *b) {
-  const int *p = ((const side *)a)->v, *q = ((const side *)b)->v;
-  for (int k = 0; k < 3; ++k)
-    if (p[k] != q[k]) return p[k] < q[k] ? -1 : 1;
-  return 0;
-}
-
-static side side_of(const int *v, int k) {
-  side f = {.behind = v[k]};
-  for (int i = 0, n = 0; i < 4; ++i) {
-    if (i == k) continue;
-    int at = n++;
-    for (; at > 0 && f.v[at - 1] > v[i]; --at) f.v[at] = f.v[at - 1];
-    f.v[at] = v[i];
-  }
-  return f;
-}
-
-/* *out: faces of one element alone; new. round[n_node]: solid angles. */
-static status sides_new(const mesh *m, const double *round, side **out,
-                        int *n) {
-  const double inside = 4.0 * PI - 1e-6;
-  int kept = 0;
-  *n = 0;
-  PASS_NEW(*out, 4 * m->n_elem);
-  side *f = *out;
-  for (int k = 0; k < 4 * m->n_elem; ++k) {
-    f[*n] = side_of(m->elem + k - k % 4, k % 4);
-    const int *v = f[*n].v;
-    *n += round[v[0]] < inside && round[v[1]] < inside && round[v[2]] < inside;
-  }
-  if (*n > 0) qsort(f, (size_t)*n, sizeof *f, side_order);
-  for (int i = 0, last; i < *n; i = last) {
-    for (last = i + 1; last < *n && side_order(f + i, f + last) == 0;) ++last;
-    if (last == i + 1) f[kept++] = f[i];
-  }
-  *n = kept;
-  return OK;
-}
-
-static void outward(const mesh *m, const side *f, double *n) {
-  double d[3][3];
-  for (int c = 0; c < 3; ++c) {
-    const double x = m->x[3 * f->v[0] + c];
-    d[0][c] = m->x[3 * f->v[1] + c] - x;
-    d[1][c] = m->x[3 * f->v[2] + c] - x;
-    d[2][c] = m->x[3 * f->behind + c] - x;
-  }
+      d[i][c] = m->x[3 * v[i + 1] + c] - m->x[3 * v[0] + c];
   cross(d[0], d[1], n);
-  const double size = sqrt(dot(3, n, n)) * (dot(3, n, d[2]) > 0.0 ? -1.0 : 1.0);
+  const double size = sqrt(dot(3, n, n));
   for (int c = 0; c < 3; ++c) n[c] /= size;
 }
 
@@ -307,10 +225,10 @@ static kind side_kind(const double *n, int n_held, int component) {
   return along <= 1e-6 ? ACROSS : SLANTED;
 }
 
-static kind side_contact(const goal_surface *s, const side *f) {
+static kind side_contact(const goal_surface *s, const int *v) {
   kind of = CLAMPED;
   for (int k = 0; k < 3; ++k) {
-    const border e = {f->v[k == 2], f->v[k == 0 ? 1 : 2]};
+    const edge e = between(v[k], v[(k + 1) % 3]);
     const kind at = contact_kind(s, &e);
     if (at == FREE) return FREE;
     if (at == ROLLER) of = ROLLER;
@@ -319,28 +237,29 @@ static kind side_contact(const goal_surface *s, const side *f) {
 }
 
 /* The three edges of a face; held[3*n_node] += what it holds. */
-static void add_side(const run *r, const goal_surface *s, const side *f,
+static void add_side(const run *r, const goal_surface *s, const int *v,
                      unsigned char *held, rim *e) {
   const unsigned char *fixed = r->body.d.fixed;
   int n_held = 0, component = 0;
   double n[3];
-  outward(r->msh, f, n);
+  outward(r->msh, v, n);
   for (int c = 0; c < 3; ++c) {
-    if (!fixed[3 * f->v[0] + c] || !fixed[3 * f->v[1] + c] ||
-        !fixed[3 * f->v[2] + c])
+    if (!fixed[3 * v[0] + c] || !fixed[3 * v[1] + c] || !fixed[3 * v[2] + c])
       continue;
     ++n_held;
     component = c;
-    for (int k = 0; k < 3; ++k) held[3 * f->v[k] + c] = 1;
+    for (int k = 0; k < 3; ++k) held[3 * v[k] + c] = 1;
   }
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < 3; ++k) {
+    const edge of = between(v[(k + 1) % 3], v[(k + 2) % 3]);
     e[k] = (rim){
-        .a = f->v[k == 0],
-        .b = f->v[k == 2 ? 1 : 2],
-        .other = f->v[k],
-        .of = n_held > 0 ? side_kind(n, n_held, component) : side_contact(s, f),
+        .a = of.a,
+        .b = of.b,
+        .other = v[k],
+        .of = n_held > 0 ? side_kind(n, n_held, component) : side_contact(s, v),
         .support = n_held > 0,
         .n = {n[0], n[1], n[2]}};
+  }
 }
 
 /* 1: stresses are infinite along an edge of "count" faces. */
@@ -371,35 +290,35 @@ static void mark_edges(const mesh *m, rim *e, int n, goal_surface *s) {
   }
 }
 
-static status mark_space(const run *r, goal_surface *s) {
+static status mark_space(const run *r, const goal_border *border,
+                         goal_surface *s) {
   const mesh *m = r->msh;
-  OWNED double *round = NULL;
-  OWNED side *f = NULL;
   OWNED rim *e = NULL;
   OWNED unsigned char *held = NULL;
-  int n;
-  PASS_NEW_ALL(OF(round, m->n_node), OF(held, 3 * m->n_node));
-  for (int k = 0; k < 4 * m->n_elem; ++k)
-    round[m->elem[k]] += solid_angle(m, m->elem + k - k % 4, k % 4);
-  PASS(sides_new(m, round, &f, &n));
-  PASS_NEW(e, 3 * n);
-  for (int k = 0; k < n; ++k) add_side(r, s, &f[k], held, e + 3 * k);
-  mark_edges(m, e, 3 * n, s);
+  PASS_NEW_ALL(OF(e, 3 * border->n), OF(held, 3 * m->n_node));
+  for (int k = 0; k < border->n; ++k) {
+    int v[3];
+    mesh_side_nodes(m, border->side[k], v);
+    add_side(r, s, v, held, e + 3 * k);
+  }
+  mark_edges(m, e, 3 * border->n, s);
   for (int k = 0; k < 3 * m->n_node; ++k)
     if (r->body.d.fixed[k] && !held[k]) s->ends[k / 3] |= GOAL_END_OF_SUPPORT;
   return OK;
 }
 
-static status mark_plane(const run *r, goal_surface *s) {
+static status mark_plane(const run *r, const goal_border *border,
+                         goal_surface *s) {
   const mesh *m = r->msh;
   OWNED corner *c = NULL;
-  OWNED border *e = NULL;
-  int n;
   PASS_NEW(c, m->n_node);
-  for (int k = 0; k < 3 * m->n_elem; ++k)
-    c[m->elem[k]].angle += angle_at(m, m->elem + k - k % 3, k % 3);
-  PASS(border_new(m, c, &e, &n));
-  for (int k = 0; k < n; ++k) add_border(r, s, &e[k], c);
+  for (int i = 0; i < m->n_node; ++i) c[i].angle = border->angle[i];
+  for (int k = 0; k < border->n; ++k) {
+    int v[2];
+    mesh_side_nodes(m, border->side[k], v);
+    const edge e = between(v[0], v[1]);
+    add_border(r, s, &e, c);
+  }
   for (int i = 0; i < m->n_node; ++i)
     if ((s->front == NULL || !s->front[i]) &&
         (is_singular(&c[i]) || is_point(r->body.d.fixed + 2 * i, &c[i])))
@@ -407,6 +326,18 @@ static status mark_plane(const run *r, goal_surface *s) {
   return OK;
 }
 
-status goal_mark_supports(const run *r, goal_surface *s) {
-  return r->msh->dim == 2 ? mark_plane(r, s) : mark_space(r, s);
+status goal_border_new(const mesh *m, goal_border *b) {
+  PASS(mesh_border(m, &b->n, &b->side));
+  if (m->dim == 3) return OK;
+  PASS_NEW(b->angle, m->n_node);
+  for (int k = 0; k < 3 * m->n_elem; ++k)
+    b->angle[m->elem[k]] += angle_at(m, m->elem + k - k % 3, k % 3);
+  return OK;
+}
+
+void goal_border_free(goal_border *b) { RELEASE(b->side, b->angle); }
+
+status goal_mark_supports(const run *r, const goal_border *border,
+                          goal_surface *s) {
+  return r->msh->dim == 2 ? mark_plane(r, border, s) : mark_space(r, border, s);
 }

@@ -237,7 +237,8 @@ static void add_group(const run *r, const mesh_group *g, const int *where,
   }
 }
 
-status goal_surface_new(const run *r, goal_surface *s) {
+status goal_surface_new(const run *r, const goal_border *border,
+                        goal_surface *s) {
   const mesh *m = r->msh;
   OWNED int *where = NULL, *seen = NULL;
   int n = 0;
@@ -261,7 +262,7 @@ status goal_surface_new(const run *r, goal_surface *s) {
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
   PASS(goal_add_given(r, s));
-  return goal_mark_supports(r, s);
+  return goal_mark_supports(r, border, s);
 }
 
 void goal_surface_free(goal_surface *s) {
