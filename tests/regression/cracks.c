@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 static const double pi = 3.14159265358979324;
 
 /* A deck on a mesh of input/crack or of tests/regression/mesh: what stands

@@ -12,6 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 static const mesh_change wavy = {
     .map = {"x + 0.05*sin(3.14159265358979*x)*sin(9*y)",
             "y + 0.05*sin(6.28318530717959*y)*cos(7*x)"}};

@@ -10,6 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 /* Unit square on a floor with friction mu, no *BOUNDARY; the cards of the step
  * and what stands before it. */
 static job run_free(double mu, const char *before, const char *loads,

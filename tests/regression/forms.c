@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 enum { LINE = 512 };
 
 /* Copy of a deck in the folder of the job: each *QUASISTATIC in the form asked

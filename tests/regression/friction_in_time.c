@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 #define PRESS                                                             \
   "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1\n" \
   "*PRINT, CONTACT, TOTALS\n*END STEP\n"

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 static const double pi = 3.14159265358979324;
 
 /* A deck on a mesh of input/crack or of tests/regression/mesh: numbers for it,

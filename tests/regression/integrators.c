@@ -13,6 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 typedef struct scheme_row {
   const char *integrator;
   double (*factor)(double z); /* stress after a step z = dt/tau, held strain  */

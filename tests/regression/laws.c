@@ -11,6 +11,8 @@
 #include <stdio.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 typedef struct scene {
   const char *elastic, *law; /* line of *ELASTIC; cards of the law            */
   const char *section;       /* TYPE=                                         */

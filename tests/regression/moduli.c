@@ -12,6 +12,8 @@
 #include <stdio.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 typedef struct scene {
   const char *geo, *elastic, *more; /* mesh; lines of *ELASTIC; cards         */
   const char *section, *model;      /* TYPE=; cards before the first step     */

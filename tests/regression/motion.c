@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 /* ---- one node ----------------------------------------------------------- */
 
 /* The free vertex at the origin of a triangle (area 1) or tetrahedron (volume

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 /* Block [0, 1] x [0, height] with n segments along its base, TYPE as given. */
 typedef struct block {
   int n;

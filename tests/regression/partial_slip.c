@@ -9,6 +9,8 @@
 #include <math.h>
 #include <stdio.h>
 
+const int job_without_fields = 1;
+
 static const double young = 210e3, radius = 10;
 
 /* Half-width of Hertz under P, plane. */

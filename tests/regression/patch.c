@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 static const double E = 1000.0;
 
 /* u_c = k[c][0] + k[c][1] x + k[c][2] y + k[c][3] z */

@@ -9,6 +9,8 @@
 #include <math.h>
 #include <stdio.h>
 
+const int job_without_fields = 1;
+
 static const double young = 1000;
 
 /* Half disc of radius 30 (plane) or quarter of 60 (axisymmetric); the punch is

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 /* Half block pressed from above and from the side, mu = 1, in four increments:
  * open, slipping and sticking nodes. Length unit: 1/length of the base unit;
  * force unit likewise. */
@@ -308,7 +310,7 @@ END_TEST
 
 /* A block pressed by 1 on a floor that passes below it. */
 START_TEST(floor_that_travels_far) {
-  static const double way[] = {1.0, 1e4, 1e6, 1e8};
+  static const double way[] = {1.0, 1e6, 1e8};
   for (size_t m = 0; m < sizeof all / sizeof *all; ++m) {
     job j = job_begin("belt");
     job_copy(&j, "tests/regression/mesh/square.geo");
@@ -344,6 +346,6 @@ int main(void) {
   tcase_add_test(tests, motions_and_strains_beyond_the_range_are_no_answer);
   tcase_add_test(tests, a_pulse_that_decays_to_next_to_nothing_is_a_load);
   tcase_add_test(tests, two_bodies_of_any_ratio);
-  tcase_add_loop_test(tests, floor_that_travels_far, 0, 4);
+  tcase_add_loop_test(tests, floor_that_travels_far, 0, 3);
   return unit_run("scale", tests);
 }

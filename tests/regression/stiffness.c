@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 #define DENSE "*SOLVER, METHOD=NEWTON, STIFFNESS=DENSE, TOL=1E-12\n"
 #define FACTOR "*SOLVER, METHOD=NEWTON, STIFFNESS=FACTOR, TOL=1E-12\n"
 

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 enum { LINE = 512, MESH_BYTES = 400000 };
 
 /* ---- a block of crossed squares ----------------------------------------- */

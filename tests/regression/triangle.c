@@ -15,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 static const char mesh_text[] =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
     "0 1 \"CLAMPED\"\n0 2 \"TIP\"\n1 3 \"FOOT\"\n2 4 \"BODY\"\n"

@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+const int job_without_fields = 1;
+
 #define WALLS SYMMETRY "RIGHT, 1\n"
 #define PULL(t) "*DSLOAD\nTOP, TY, " #t "\n"
 

@@ -33,15 +33,29 @@ void job_end(job *j) {
   j->errors = j->text = NULL;
 }
 
+static void write_deck(FILE *f, const char *deck) {
+  const char *end = strstr(deck, "*END STEP");
+  if (&job_without_fields == NULL || strstr(deck, "*OUTPUT") != NULL)
+    end = NULL;
+  if (end == NULL) end = deck;
+  fwrite(deck, 1, (size_t)(end - deck), f);
+  if (end > deck) fputs("*OUTPUT, HDF5=NO\n", f);
+  fputs(end, f);
+}
+
 void job_write(const job *j, const char *file, const char *format, ...) {
-  char path[PATH];
+  char path[PATH], *text = NULL;
+  size_t size;
   va_list args;
   snprintf(path, sizeof path, "%s/%s", j->dir, file);
-  FILE *f = fopen(path, "w");
-  ck_assert_ptr_nonnull(f);
+  FILE *f = fopen(path, "w"), *memory = open_memstream(&text, &size);
+  ck_assert(f != NULL && memory != NULL);
   va_start(args, format);
-  vfprintf(f, format, args);
+  vfprintf(memory, format, args);
   va_end(args);
+  fclose(memory);
+  write_deck(f, text);
+  free(text);
   ck_assert_int_eq(fclose(f), 0);
 }
 

@@ -30,6 +30,9 @@ void job_preload(const char *name);
 /* A new empty folder; check fails if that is not possible. */
 job job_begin(const char *name);
 void job_end(job *j);
+/* Defined by programs whose decks write no fields, a third of a small run,
+ * unless they say *OUTPUT. */
+extern const int job_without_fields __attribute__((weak));
 /* Write a file of the folder; printf format. */
 void job_write(const job *j, const char *file, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
