@@ -471,7 +471,8 @@ void contact_classify(const contact_problem *cp, const double *u,
     double push = node.c.n * (u[n] - cp->gap[i]) - r[n];
     double g = contact_node_limit(cp, r, i);
     double trial = trial_friction(&x, i, node.c.t);
-    if (!(push > STATUS_MARGIN * forces_of(&x, &node, b, node.c.n)))
+    const double least = STATUS_MARGIN * forces_of(&x, &node, b, node.c.n);
+    if (!(push > larger(least, node.rounding)))
       state[i] = CONTACT_OPEN;
     else if (g == 0.0 ||
              trial - g > STATUS_MARGIN * forces_of(&x, &node, b, node.c.t))

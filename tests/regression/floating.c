@@ -438,6 +438,40 @@ START_TEST(block_between_others_slides_away) {
 }
 END_TEST
 
+/* A block that creeps on a floor that rises and is unloaded at once lies on it
+ * without force: no node is closed by rounding, whatever modulus and time. */
+START_TEST(touch_without_force_is_open) {
+  static const double E[] = {1000, 1700, 3000, 7777, 2e5};
+  for (int k = 0; k < 10; ++k) {
+    const char *tau = k % 2 ? "1E9" : "1.";
+    job j = job_begin("rest");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "rest.inp",
+              "*PARAMETER\nN = 6\nTAU = %s\nH = 0.3*TAU\n"
+              "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n%g, 0.3\n*INELASTIC, LAW=MAXWELL\n<TAU>\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "MOVE, \"0.001*sin(3*t/%s)\", \"1e-4*t/%s\"\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+              "*AMPLITUDE, NAME=S, TIME=STEP TIME\n0., 0., %s, 1.\n"
+              "*STEP\n*QUASISTATIC\n<H>, <TAU>\n*BOUNDARY\nLEFT, 1\n"
+              "*DSLOAD\nTOP, P, 10.\n*END STEP\n"
+              "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n<H>, <TAU>\n"
+              "*DSLOAD\nTOP, P, 10., S\n*PRINT, TOTALS\n*END STEP\n",
+              tau, E[k / 2], tau, tau, tau);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat t = job_table(&j, "TOTALS", 0);
+    ck_assert_msg(dat_at(&t, 0, "open") == 7.0, "E = %g, times %s: %g open",
+                  E[k / 2], tau, dat_at(&t, 0, "open"));
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           resultant_through_the_only_node_that_touches,
           body_balanced_on_a_corner_rests,
@@ -447,4 +481,4 @@ UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
           free_motions_are_named, body_under_another_that_is_lifted_stays,
           body_that_is_left_stays_where_it_was,
           body_that_is_pushed_along_goes_one_way,
-          block_between_others_slides_away)
+          block_between_others_slides_away, touch_without_force_is_open)
