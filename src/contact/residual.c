@@ -412,6 +412,12 @@ double contact_mismatch(const contact_problem *cp, double scale,
 
 /* ---- status ------------------------------------------------------------ */
 
+/* 1: no load acts on the body of a node, and its contact forces are rounding.
+ */
+static int has_no_force(const body_size *b, const measured *node) {
+  return b->load == 0.0 && !(b->contact > node->rounding);
+}
+
 void contact_roundings(const contact_problem *cp, const double *u,
                        const double *r, double *rounding) {
   measure x;
@@ -437,7 +443,7 @@ double contact_hidden(const contact_problem *cp, const double *u,
     const node_step e = map_errors(&x, i, &node);
     double most = larger(b->load, b->contact), side = 1.0;
     if (own != NULL) most = larger(most, own[i]);
-    if (b->load == 0.0 && !(b->contact > node.rounding)) continue;
+    if (has_no_force(b, &node)) continue;
     if (cp->g0 != NULL && node.q[0] < 0.0)
       side = smaller(1.0, contact_node_limit(cp, r, i) / -node.q[0]);
     if (side > 0.0) side = larger(side, SLIGHT);
@@ -472,7 +478,7 @@ void contact_classify(const contact_problem *cp, const double *u,
     double g = contact_node_limit(cp, r, i);
     double trial = trial_friction(&x, i, node.c.t);
     const double least = STATUS_MARGIN * forces_of(&x, &node, b, node.c.n);
-    if (!(push > larger(least, node.rounding)))
+    if (!(push > least) || has_no_force(b, &node))
       state[i] = CONTACT_OPEN;
     else if (g == 0.0 ||
              trial - g > STATUS_MARGIN * forces_of(&x, &node, b, node.c.t))
