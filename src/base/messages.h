@@ -282,11 +282,7 @@
     "With STIFFNESS=FACTOR of *SOLVER the matrix is known by its products "  \
     "and solves alone. What is named needs its entries: write "              \
     "STIFFNESS=DENSE or AUTO, or leave that out; of the methods take "       \
-    "METHOD=AUTO, NEWTON, AUGLAG, PROXIMAL, PCG or LAGRANGE.")               \
-  X(2062, ERROR, "thickness of a contact not known",                         \
-    "Bodies of a pair touch over the smaller of their thicknesses. Where a "  \
-    "surface has several, or meets several, make it a surface and a pair for " \
-    "each.")
+    "METHOD=AUTO, NEWTON, AUGLAG, PROXIMAL, PCG or LAGRANGE.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

@@ -322,8 +322,7 @@ static int find_node(finder *f) {
 static void add_names(const finder *f, int q, char *text, size_t size) {
   const contact_surface *s = f->s;
   for (int k = 0; k < s->dim; ++k) {
-    const int id =
-        k == 0 ? s->contact_id[q] : s->side_id[(s->dim - 1) * q + k - 1];
+    const int id = surface_normal_of(s, q, k);
     char name[80];
     if (id < 0 || f->in->pairs[id].support != NULL) continue;
     snprintf(name, sizeof name, ", %s of line %d", f->in->pairs[id].name,

@@ -127,6 +127,10 @@ void surface_spread_row(const contact_surface *s, int q, int a, double force,
  * contact nodes. ERR_MEMORY. */
 status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r);
+/* The contact whose normal row a of node i is; -1: a tangent. */
+static inline int surface_normal_of(const contact_surface *s, int i, int a) {
+  return a == 0 ? s->contact_id[i] : s->side_id[(s->dim - 1) * i + a - 1];
+}
 /* 1 if node i touches a second obstacle: it has no friction. */
 int surface_is_corner(const contact_surface *s, int i);
 void surface_free(contact_surface *s); /* accepts NULL */

@@ -83,7 +83,6 @@ typedef struct surface_pair {
   int choice;              /* SLAVE=: SLAVE_... */
   int slave_id, master_id; /* groups; -1: not known */
   int slave;               /* 0 or 1: which of the two is the slave */
-  double thinnest[2];      /* thickness at slave, master at least, m */
   double moved;            /* by ADJUST=YES at most, m */
   int adjust;              /* 1: slave nodes are moved onto the master */
   char why[64];            /* reason of the choice */

@@ -630,9 +630,9 @@ START_TEST(law_may_change_from_step_to_step) {
 END_TEST
 
 /* Given pressure p on the length L of an upper block that slides, on a wider
- * one: with k constant an edge takes mu p rho/4 of the friction, normalised
- * nothing, whichever surface is the slave and wherever its nodes are; nor where
- * the mesh is coarser than the radius. */
+ * and thicker one: with k constant an edge takes mu p rho/4 of the friction,
+ * normalised nothing, whichever surface is the slave and wherever its nodes
+ * are; nor where the mesh is coarser than the radius. */
 START_TEST(slave_may_end_beyond_its_master) {
   static const char *const ends[] = {"0.25, EDGE=FREE", "0.25, EDGE=NORMALIZED",
                                      "1E-3"};
@@ -643,7 +643,7 @@ START_TEST(slave_may_end_beyond_its_master) {
     job_write(&j, "wide.inp",
               "*PARAMETER\nN = %d\nM = 20\nC = 0.2\n*MESH, FILE=pair.geo\n"
               "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n"
-              "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+              "*SOLID SECTION, ELSET=LOWER, MATERIAL=A, THICKNESS=3.\n"
               "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
               "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
               "*CONTACT FORCE, CONTACT=P\n2.\n"

@@ -218,7 +218,7 @@ START_TEST(plates_touch_over_the_thinner_one) {
               "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
               "*FRICTION, CONTACT=P, LAW=TRESCA\n1.\n*STEP\n*STATIC\n"
               "*BOUNDARY\nBOTTOM, 1, 2\nTOP, 1, 1, 0.1\n*DSLOAD\nTOP, P, 10\n"
-              "*PRINT, TOTALS\n*END STEP\n",
+              "*PRINT, TOTALS, ZONES\n*END STEP\n",
               k % 2 ? 1 : 3, k % 2 ? 3 : 1, k < 2 ? "FIRST" : "SECOND");
     int code = job_run(&j, "");
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
@@ -227,6 +227,11 @@ START_TEST(plates_touch_over_the_thinner_one) {
     ck_assert_double_eq_tol(fabs(dat_at(&t, 0, "tangential")), 0.6, 1e-9);
     ck_assert_double_le(dat_at(&t, 0, "closed_area"), 0.6 + 1e-9);
     dat_free(&t);
+    dat z = job_table(&j, "ZONES", -1);
+    for (int i = 0; i < z.n_row; ++i)
+      ck_assert_double_eq_tol(dat_at(&z, i, "area"), dat_at(&z, i, "extent"),
+                              1e-9);
+    dat_free(&z);
     job_end(&j);
   }
 }

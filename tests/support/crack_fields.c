@@ -2,6 +2,7 @@
 
 #include <complex.h>
 #include <math.h>
+#include <stdlib.h>
 
 typedef double complex number;
 
@@ -144,4 +145,15 @@ void disc_traction(const void *field, const double *y, int side, double *t) {
   if (d->mode == 0) t[2] = -M_PI / 2;
   if (d->mode == 1) t[0] = p.rz * e[0], t[1] = p.rz * e[1];
   if (d->mode == 2) t[0] = p.rz * e[1], t[1] = -p.rz * e[0];
+}
+
+answer ask(const crack_scene *s) {
+  answer a;
+  a.at = scene_factors(s, &a.n, &a.point);
+  return a;
+}
+
+void drop(answer *a) {
+  free(a->at);
+  free(a->point);
 }

@@ -35,4 +35,13 @@ typedef struct disc_field {
 void disc_displacement(const void *field, const double *y, int side, double *u);
 void disc_traction(const void *field, const double *y, int side, double *t);
 
+/* Results at the points of one scene. */
+typedef struct answer {
+  int n;
+  fracture_point *point;
+  fracture_factors *at;
+} answer;
+answer ask(const crack_scene *s);
+void drop(answer *a);
+
 #endif

@@ -24,24 +24,6 @@ static double stiffness_of(const fracture_material *x) {
   return x->plane_stress ? x->E : x->E / (1 - x->nu * x->nu);
 }
 
-/* Results at the points of one scene. */
-typedef struct answer {
-  int n;
-  fracture_point *point;
-  fracture_factors *at;
-} answer;
-
-static answer ask(const crack_scene *s) {
-  answer a;
-  a.at = scene_factors(s, &a.n, &a.point);
-  return a;
-}
-
-static void drop(answer *a) {
-  free(a->at);
-  free(a->point);
-}
-
 /* ---- the auxiliary fields --------------------------------------------------
  */
 

@@ -10,23 +10,6 @@
 static const fracture_material steel = {1000, 0.3, 0};
 static const double G = 1000 / 2.6;
 
-typedef struct answer {
-  int n;
-  fracture_point *point;
-  fracture_factors *at;
-} answer;
-
-static answer ask(const crack_scene *s) {
-  answer a;
-  a.at = scene_factors(s, &a.n, &a.point);
-  return a;
-}
-
-static void drop(answer *a) {
-  free(a->at);
-  free(a->point);
-}
-
 /* 1: a side in the middle of the height, from "low" on to low + 0.5. */
 static int in_middle(const mesh *m, const int *v, double low) {
   int all = 1;

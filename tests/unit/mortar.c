@@ -211,6 +211,29 @@ START_TEST(thickness_weighs_areas_and_not_parts) {
 }
 END_TEST
 
+/* A slave of thickness 2 on masters of 1 and 3: 1 on the left half, 2 on the
+ * right one, at the face across the step too; whole where it is covered. */
+START_TEST(bodies_touch_over_the_smaller_thickness) {
+  for (int n = 2; n <= 5; ++n) {
+    pair p = two_new(2);
+    two_add_line(&p, 1, n, 0, 1, 0);
+    two_add_line(&p, 0, 2, 0, 1, 0);
+    for (int k = 0; k < p.m.n_face; ++k) p.weight[k] = 2;
+    p.weight[p.master[0]] = 1;
+    p.weight[p.master[1]] = 3;
+    mortar *m = two_couple(&p);
+    const int low = m->area[0] < m->area[n] ? 0 : n;
+    ck_assert_double_eq_tol(area_sum(m), 0.5 * 1 + 0.5 * 2, 1e-13);
+    ck_assert_double_eq_tol(m->area[low], 1 * 0.5 / n, 1e-13);
+    ck_assert_double_eq_tol(m->area[n - low], 2 * 0.5 / n, 1e-13);
+    for (int q = 0; q <= n && n % 2 == 0; ++q)
+      ck_assert_double_eq_tol(m->whole[q], m->area[q], 1e-13);
+    mortar_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
 /* ---- nodes without multiplier -------------------------------------------- */
 
 /* A constant pressure gives the masters of a line int phi_l over the part
@@ -532,6 +555,7 @@ UNIT_MAIN("mortar", planes_reproduce_linear_fields_and_constant_pressure,
           an_edge_on_two_has_the_parts_of_the_closed_form,
           axisymmetric_faces_are_weighted_with_the_radius,
           thickness_weighs_areas_and_not_parts,
+          bodies_touch_over_the_smaller_thickness,
           nodes_of_partly_covered_edges_have_the_covered_area,
           nodes_covered_by_less_than_a_hundredth_are_left_out,
           dropped_nodes_leave_their_part_to_the_neighbours,

@@ -37,6 +37,7 @@ typedef struct face_part {
   double rounding; /* relative size of rounding, - */
   double share[3]; /* [dim] int phi_j over the whole face, m2 */
   double d[3];     /* [dim] over the covered part, m2 */
+  double thin;     /* thickness of that over its own, - */
   double masters;  /* int size of the master faces, m3 */
   double more[3];  /* [dim] int psi_j phi of the nodes without multiplier, m2 */
   double lever[9]; /* [dim*dim] the same times their places, m3 */
@@ -78,6 +79,12 @@ static double thickness(const builder *b, int face, const double *phi) {
          (phi[0] * place_of(b, node[0])[0] + phi[1] * place_of(b, node[1])[0]);
 }
 
+/* Thickness that a slave face and its partner number k share, over its own. */
+static double thinner(const builder *b, int face, int k) {
+  const double *w = b->in->face_weight;
+  return fmin(1.0, w[b->search.list[k].face] / w[face]);
+}
+
 /* Rules exact for degree 3 on a segment, 2 on a triangle. */
 static void rule_point(int dim, int k, double *bary) {
   if (dim == 2) {
@@ -110,7 +117,7 @@ static status add_points(builder *b, int face, const facet *f, int of,
     cell_functions(dim, &f->in_plane, at, s.phi);
     s.partner = of;
     cell_functions(dim, other, at, s.other);
-    s.weight *= thickness(b, face, s.phi);
+    s.weight *= thickness(b, face, s.phi) * thinner(b, face, of);
     if (!(s.weight > 0)) continue;
     PASS_GROW(b->points, b->n_point, b->point_capacity);
     b->points[b->n_point++] = s;
@@ -207,6 +214,16 @@ static void set_shares(const builder *b, int face, const facet *f,
   }
 }
 
+/* Mean of thinner over the points of a face. */
+static double mean_thinner(const builder *b, int face) {
+  double both = 0.0, own = 0.0;
+  for (int k = 0; k < b->n_point; ++k) {
+    both += b->points[k].weight;
+    own += b->points[k].weight / thinner(b, face, b->points[k].partner);
+  }
+  return both / own;
+}
+
 /* The integrals of slave face number i. */
 static status do_face(builder *b, int i) {
   const int face = b->in->slave[i];
@@ -226,6 +243,7 @@ static status do_face(builder *b, int i) {
   PASS(set_points(b, face, &f, &corner));
   const int n_kept = set_kept(b, face, kept);
   if (b->n_point == 0) return OK;
+  part->thin = mean_thinner(b, face);
   dual_basis(f.dim, &corner, kept, b->n_point, b->points, part->d);
   if (n_kept == 0) return OK;
   PASS(add_masters(b, part));
@@ -270,16 +288,18 @@ static int corner_of(const builder *b, int i, int node) {
   return k;
 }
 
-/* D of a node, and what it were if all were covered. */
+/* D of a node, and what it were if all were covered as thick. */
 static double node_area(const builder *b, int node, double *whole) {
-  double sum = 0.0;
+  double sum = 0.0, own = 0.0;
   *whole = 0.0;
   for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
     const face_part *f = &b->face[b->around[a]];
     const int k = corner_of(b, b->around[a], node);
     sum += f->d[k];
+    if (f->thin > 0.0) own += f->d[k] / f->thin;
     *whole += f->share[k];
   }
+  if (own > 0.0) *whole *= sum / own;
   return sum;
 }
 
@@ -529,7 +549,7 @@ static void sum_up(builder *b) {
     double area = 0.0;
     for (int k = 0; k < dim; ++k) {
       m->slave_area += f->share[k];
-      area += f->d[k];
+      if (f->thin > 0.0) area += f->d[k] / f->thin;
     }
     m->covered += area;
     m->n_bare += area > 0 && f->end == f->first;

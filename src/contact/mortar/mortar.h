@@ -19,6 +19,8 @@
  * hold the faces in between. Nothing is a partner beyond the diagonal of the
  * box round the larger surface.
  *
+ * Where the bodies differ in thickness they touch over the smaller one.
+ *
  * A node carries no multiplier if the caller says so, if both surfaces have it,
  * or if less than 1 % of its area is covered. On the faces around it the
  * multipliers of the other nodes take over (sum psi = 1), and it is in P

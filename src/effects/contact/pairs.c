@@ -56,8 +56,8 @@ static void release(void *self) {
 }
 
 static int contact_of_row(const contact_surface *s, int i, int a) {
-  const int side = a > 0 ? s->side_id[i * (s->dim - 1) + a - 1] : -1;
-  return side >= 0 ? side : s->contact_id[i];
+  const int id = surface_normal_of(s, i, a);
+  return id >= 0 ? id : s->contact_id[i];
 }
 
 /* arm[dim] += by times the place at which a node was coupled. */

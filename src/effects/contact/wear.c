@@ -40,11 +40,6 @@ static size_t length_of(const run *r) {
   return (size_t)r->msh->dim * (size_t)r->msh->n_node;
 }
 
-/* The contact whose normal row a of node i is, or -1: a tangent. */
-static int normal_of(const contact_surface *s, int i, int a) {
-  return a == 0 ? s->contact_id[i] : s->side_id[(s->dim - 1) * i + a - 1];
-}
-
 /* Tributary area of that normal, m2. */
 static double area_of(const contact_surface *s, int i, int a) {
   return a == 0 ? s->area[i] : s->side_area[(s->dim - 1) * i + a - 1];
@@ -56,7 +51,7 @@ static status open_gaps(run *r, void *self, double t) {
   (void)t;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
-      if (normal_of(r->surface, i, a) < 0) continue;
+      if (surface_normal_of(r->surface, i, a) < 0) continue;
       double *gap = a == 0 ? &r->problem.gap[i]
                            : &r->problem.side_gap[(dim - 1) * i + a - 1];
       *gap += depth[dim * r->surface->node_id[i] + a];
@@ -70,7 +65,7 @@ static double slip_of(const run *r, int i) {
   const int dim = r->msh->dim;
   double sum = 0.0;
   for (int a = 1; a < dim; ++a)
-    if (normal_of(r->surface, i, a) < 0)
+    if (surface_normal_of(r->surface, i, a) < 0)
       sum = hypot(sum, run_motion_over(r, dim * i + a));
   return sum;
 }
@@ -116,7 +111,7 @@ static status wear_off(run *r, void *self) {
   for (int i = 0; i < r->nodes.n; ++i) {
     const double slip = slip_of(r, i);
     for (int a = 0; a < dim; ++a) {
-      const int id = normal_of(s, i, a), k = dim * i + a;
+      const int id = surface_normal_of(s, i, a), k = dim * i + a;
       const effect_card *c =
           id < 0 ? NULL : model_effect_card(r->m, "WEAR", id);
       if (c == NULL || !(r->now.rc[k] < 0.0)) continue;
@@ -148,7 +143,7 @@ static double volume_of(const view *v, int i, int contact_id) {
   const contact_surface *s = v->s->contacts.surface;
   double sum = 0.0;
   for (int a = 0; a < s->dim; ++a) {
-    const int id = normal_of(s, i, a);
+    const int id = surface_normal_of(s, i, a);
     if (id >= 0 && (contact_id < 0 || id == contact_id))
       sum += area_of(s, i, a) * depth_of(v, i, a);
   }

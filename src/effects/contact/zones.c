@@ -313,6 +313,16 @@ static int same_zone(const finder *z, int i, int j) {
          slip_sign(z, i) == slip_sign(z, j);
 }
 
+/* Of the piece after node i; bodies of a pair touch over the smaller one. */
+static double thickness_at(const finder *z, int i) {
+  const run *r = z->r;
+  const mesh_group *g = r->faces.pairs[r->surface->contact_id[i]].master;
+  double w = r->faces.face_weight[z->next_face[i]];
+  for (int k = 0; g != NULL && k < g->n_item; ++k)
+    w = fmin(w, r->faces.face_weight[g->item_id[k]]);
+  return w;
+}
+
 /* Add the piece from part a to part b of the distance from node i to the
  * next. */
 static void add_piece(const finder *z, int i, double a, double b,
@@ -323,9 +333,8 @@ static void add_piece(const finder *z, int i, double a, double b,
   double length = distance(z, i, z->next[i]) * (b - a);
   double radius = r->surface->x[2 * i] + 0.5 * (a + b) * way[0];
   zone->length += length;
-  zone->area += length * (r->faces.input.axisymmetric
-                              ? 2 * acos(-1.0) * radius
-                              : r->faces.face_weight[z->next_face[i]]);
+  zone->area += length * (r->faces.input.axisymmetric ? 2 * acos(-1.0) * radius
+                                                      : thickness_at(z, i));
 }
 
 static void set_point(const finder *z, int i, double part, double *x) {

@@ -402,12 +402,11 @@ static const double stiff_ratio = 3.0;
 /* Sizes and moduli that differ less are equal. */
 static const double rounding = 1e-9;
 
-/* Means over the faces of a group. */
+/* Mean over the faces of a group. */
 typedef struct surface_facts {
-  double size;           /* of a face, m */
-  double modulus;        /* Pa */
-  int held;              /* 1: supports hold all of it */
-  double thinnest, most; /* thickness, m */
+  double size;    /* of a face, m */
+  double modulus; /* Pa */
+  int held;       /* 1: supports hold all of it */
 } surface_facts;
 
 /* C_nnnn, the modulus of uniaxial strain, in the mean over all directions n:
@@ -425,15 +424,13 @@ static surface_facts facts_of(const model *m, const mesh *msh,
                               const unsigned char *fixed, int group_id) {
   const mesh_group *g = &msh->group[group_id];
   const int dim = msh->dim;
-  surface_facts f = {.held = 1, .thinnest = HUGE_VAL};
+  surface_facts f = {.held = 1};
   double area = 0.0, normal[3];
   for (int k = 0; k < g->n_item; ++k) {
     const int face = g->item_id[k];
     const section *s = &m->sections[m->elem_section[msh->face_elem[face]]];
     area += mesh_face_normal(msh, face, normal) / g->n_item;
     f.modulus += mean_modulus(m->materials[s->material_id].C) / g->n_item;
-    f.thinnest = fmin(f.thinnest, s->thickness);
-    f.most = fmax(f.most, s->thickness);
   }
   f.size = dim == 2 ? area : sqrt(area);
   for (int k = 0; k < g->n_node; ++k)
@@ -441,21 +438,8 @@ static surface_facts facts_of(const model *m, const mesh *msh,
   return f;
 }
 
-/* Faces touch over the smaller thickness, which must be one for each face. */
-static void check_thickness(const model *m, const pair_card *c,
-                            const surface_facts f[2]) {
-  for (int k = 0; k < 2; ++k)
-    if (f[k].thinnest < f[k].most && f[k].thinnest < f[1 - k].most)
-      message_add(m->log, P2062, c->at,
-                  "*%s %s: a surface of thickness %g to %g is with one of %g "
-                  "to %g",
-                  c->card, c->name, f[k].thinnest, f[k].most, f[1 - k].thinnest,
-                  f[1 - k].most);
-}
-
-/* c: of a contact; NULL: a tie. */
 static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
-                   const int *group, const pair_card *c, surface_pair *p) {
+                   const int *group, surface_pair *p) {
   surface_facts f[2];
   for (int k = 0; k < 2; ++k) f[k] = facts_of(m, msh, fixed, group[k]);
   const double ratio = f[1].modulus / f[0].modulus;
@@ -477,9 +461,6 @@ static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
   snprintf(p->why, sizeof p->why, "%s", why);
   p->slave_id = group[p->slave];
   p->master_id = group[1 - p->slave];
-  p->thinnest[0] = f[p->slave].thinnest;
-  p->thinnest[1] = f[1 - p->slave].thinnest;
-  if (c != NULL) check_thickness(m, c, f);
 }
 
 static int shared_faces(const mesh_group *a, const mesh_group *b,
@@ -551,39 +532,11 @@ static status check_contact_pair(model *m, const mesh *msh,
   if (!c->is_pair) return OK;
   PASS(check_surfaces(m, msh, &of, &c->pair, group));
   if (is_lost(m)) return OK;
-  choose(m, msh, fixed, group, &of, &c->pair);
+  choose(m, msh, fixed, group, &c->pair);
   c->group_id = c->pair.slave_id;
   c->group = msh->group[c->group_id].name;
   c->obstacle_name = msh->group[c->pair.master_id].name;
   check_same_surfaces(m, id);
-  return OK;
-}
-
-/* A face of several pairs has one thickness in all of them. */
-static status check_common_faces(const model *m, const mesh *msh) {
-  OWNED double *w = NULL;
-  PASS_NEW(w, msh->n_face);
-  for (int i = 0; i < m->n.contact; ++i) {
-    const contact *c = &m->contacts[i];
-    const int group[] = {c->pair.slave_id, c->pair.master_id};
-    int differ = 0;
-    for (int k = 0; c->is_pair && k < 2; ++k) {
-      const mesh_group *g = &msh->group[group[k]];
-      for (int q = 0; q < g->n_item; ++q) {
-        const int face = g->item_id[q];
-        const double own =
-            m->sections[m->elem_section[msh->face_elem[face]]].thickness;
-        const double both = fmin(own, c->pair.thinnest[1 - k]);
-        differ |= w[face] > 0.0 && w[face] != both;
-        w[face] = both;
-      }
-    }
-    if (differ)
-      message_add(m->log, P2062, &c->at,
-                  "*CONTACT PAIR %s: a face is with another thickness in a "
-                  "pair before it",
-                  c->name);
-  }
   return OK;
 }
 
@@ -615,9 +568,9 @@ static status check_pairs(model *m, const mesh *msh) {
     const pair_card of = {"TIE", t->name, &t->at};
     int group[2] = {-1, -1};
     PASS(check_surfaces(m, msh, &of, &t->pair, group));
-    if (!is_lost(m)) choose(m, msh, fixed, group, NULL, &t->pair);
+    if (!is_lost(m)) choose(m, msh, fixed, group, &t->pair);
   }
-  return is_lost(m) ? OK : check_common_faces(m, msh);
+  return OK;
 }
 
 status model_check(model *m, const mesh *msh, effect_finder *find) {

@@ -6,8 +6,6 @@
 
 #include "base/memory.h"
 
-#include <math.h>
-
 static status new_equilibrium(const run *r, equilibrium *e) {
   PASS_NEW_REALS(r->n_dof, &e->u, &e->F, &e->reaction);
   return OK;
@@ -50,24 +48,10 @@ static status new_clusters(run *r) {
   return cluster_new(&in, &r->body.d.cluster);
 }
 
-/* Faces of a pair touch over the smaller thickness. */
-static void thin_out(const mesh *msh, const surface_pair *p, double *weight) {
-  const int group[] = {p->slave_id, p->master_id};
-  for (int k = 0; k < 2; ++k) {
-    const mesh_group *g = &msh->group[group[k]];
-    for (int i = 0; i < g->n_item; ++i) {
-      double *w = &weight[g->item_id[i]];
-      *w = fmin(*w, p->thinnest[1 - k]);
-    }
-  }
-}
-
 status setup_face_weights(const model *m, const mesh *msh, double **weight) {
   PASS_NEW(*weight, msh->n_face);
   for (int i = 0; i < msh->n_face; ++i)
     (*weight)[i] = m->sections[m->elem_section[msh->face_elem[i]]].thickness;
-  for (int i = 0; i < m->n.contact; ++i)
-    if (m->contacts[i].is_pair) thin_out(msh, &m->contacts[i].pair, *weight);
   return OK;
 }
 

@@ -10,8 +10,7 @@
 status setup_adjust(model *m, mesh *msh);
 
 /* setup.c */
-/* weight[n_face], new: thickness of the elements at the faces, of pairs the
- * smaller one, m. */
+/* weight[n_face], new: thickness of the elements at the faces, m. */
 status setup_face_weights(const model *m, const mesh *msh, double **weight);
 status run_new(run *r, const effect_ops *const *effects);
 void run_free(run *r);
