@@ -68,6 +68,7 @@ typedef struct energies {
   double defect;     /* J, external + normal - friction - thermal - inelastic
                         - (strain - start) */
   double largest;    /* J, of the six so far: the scale of the defect */
+  double rounding;   /* J, of the works in free motion so far */
 } energies;
 
 /* Bound of the error of the contact solver; where slip or strains of the

@@ -369,6 +369,32 @@ START_TEST(creep_in_free_motion_is_rounding) {
 }
 END_TEST
 
+/* Led through the air, back and left there, where it has no displacement that
+ * could have a rounding. */
+START_TEST(works_of_free_motion_stay_rounding_at_its_origin) {
+  job j;
+  begin(&j, "rect 4 4 1 1", &(mesh_change){.map = {wavy_x, wavy_y}});
+  job_write(
+      &j, "pressed.inp",
+      "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n59351., 0.177\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+      "*BOUNDARY\nTOP, 1, 1, 1.E-4\nTOP, 2, 2, -3.795E-4\n"
+      "*PRINT, ENERGY\n*END STEP\n*STEP\n*QUASISTATIC\n1., 3.\n"
+      "*BOUNDARY\nTOP, 1, 1, \"3.E-4*max(3 - t, 0)*(t - 1.3)\"\n"
+      "TOP, 2, 2, \"-3.795E-4*max(3 - t, 0)\"\n*PRINT, ENERGY\n*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  for (int k = 0; k < 4; ++k) {
+    dat e = job_table(&j, "ENERGY", k);
+    ck_assert_msg(dat_at(&e, 0, "energy_defect_relative") == 0.0,
+                  "time %g: defect %g", dat_at(&e, 0, "time"),
+                  dat_at(&e, 0, "energy_defect_relative"));
+    dat_free(&e);
+  }
+  job_end(&j);
+}
+END_TEST
+
 /* A block that reaches into the one below by the last digit of the coordinates
  * presses nothing at the start. */
 START_TEST(gaps_of_rounding_make_no_increment) {
@@ -483,6 +509,7 @@ int main(void) {
   tcase_add_loop_test(tests, loss_of_a_body_led_far_is_told, 0, 4);
   tcase_add_loop_test(tests, no_digit_is_left_of_a_body_led_too_far, 0, 2);
   tcase_add_test(tests, creep_in_free_motion_is_rounding);
+  tcase_add_test(tests, works_of_free_motion_stay_rounding_at_its_origin);
   tcase_add_loop_test(tests, gaps_of_rounding_make_no_increment, 0, 2);
   tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);

@@ -51,7 +51,8 @@ static void estimate_unloaded(run *r) {
     take_left(r, 0.0);
     if (r->errors.error.why == NULL) r->errors.error.relative = 0.0;
     r->errors.error.hidden = 0.0;
-    if (rounding_hides_works(r)) e->defect = 0.0;
+    e->rounding = fmax(e->rounding, rounding_of_works(r));
+    if (e->largest <= e->rounding) e->defect = 0.0;
     return;
   }
   if (!(e->strain < UNLOADED * e->largest)) return;

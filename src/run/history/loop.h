@@ -41,9 +41,8 @@ status rounding_hidden(const run *r, double *part);
 int rounding_hides_strains(const run *r);
 /* What gaps, differences of coordinates, have as rounding, m. */
 double rounding_of_gaps(const run *r);
-/* 1: the energies so far are no more than the rounding of the forces that this
- * motion takes times the motion. */
-int rounding_hides_works(const run *r);
+/* Rounding of the forces that this motion takes times the motion, J. */
+double rounding_of_works(const run *r);
 /* 1: no load acts on it either, contact forces are no more than that, and its
  * supports do not strain it (gaps that close with no other force have their
  * rounding too); or contact carries the load straight, and strains
