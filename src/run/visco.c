@@ -12,6 +12,9 @@
 #include <math.h>
 #include <string.h>
 
+/* The error of the midpoint rule in its difference to the trapezoidal one. */
+static const double SIMPSON = 3.0;
+
 static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
   run *r = ctx;
   timer_leave(STAGE_INELASTIC);
@@ -220,16 +223,28 @@ static status two_halves(run *r, double t) {
   return OK;
 }
 
+int visco_order(const step *s) {
+  const scheme *of = s->visco.integrator;
+  return of->has_theta && s->visco.theta == 0.5 ? 2 : of->order;
+}
+
 /* The difference to the halves, with Richardson's factor. */
 static double halves_error(const run *r) {
   visco *v = r->strains.visco;
-  double power = ldexp(
-      1.0, r->step->visco.theta == 0.5 && r->step->visco.integrator->has_theta
-               ? 2
-               : r->step->visco.integrator->order);
+  double power = ldexp(1.0, visco_order(r->step));
   size_t n = visco_at(r, v->x.n);
   for (size_t i = 0; i < n; ++i) v->fine[i] -= v->now.ei[i];
   return power / (power - 1.0) * flow_norm(&v->x, v->fine);
+}
+
+status visco_turning(run *r, double *d) {
+  visco *v = r->strains.visco;
+  const scheme *of = r->step->visco.integrator;
+  const int blind = of->limit > 0.0
+                        ? of->order == 1
+                        : !of->linear_only && r->step->visco.theta < 1.0;
+  memset(d, 0, visco_at(r, v->x.n) * sizeof *d);
+  return blind ? flow_turning(&v->x, &v->old, &v->now, d) : OK;
 }
 
 /* Root mean square of the elastic strains of v->now. */
@@ -252,8 +267,17 @@ status visco_try(run *r, double t, double *error) {
   if (!estimates && r->solving.report.outcome <= 0) return OK;
   PASS(advance(r, t));
   if (r->solving.report.outcome <= 0) return OK;
-  *error = estimates ? v->result.error : halves_error(r);
   double norm = 0.0;
+  if (estimates) {
+    *error = v->result.error;
+  } else {
+    OWNED double *turning = NULL;
+    PASS_NEW(turning, visco_at(r, v->x.n));
+    PASS(visco_turning(r, turning));
+    *error =
+        fmax(halves_error(r), flow_norm(&v->x, turning) /
+                                  (visco_order(r->step) > 1 ? SIMPSON : 1.0));
+  }
   PASS(elastic_norm(v, &norm));
   if (*error > 0.0) *error /= fmax(v->largest, norm);
   return OK;

@@ -34,7 +34,7 @@ static accepted accepted_in(const job *j, int step_no) {
   while ((line = strchr(line, '\n')) != NULL && *++line != '\0') {
     int step, increment, tries;
     double t, dt;
-    const char *end = strchr(line, '\n'), *why = strstr(line, "TOLERANCE");
+    const char *end = strchr(line, '\n'), *why = strstr(line, " CUT ");
     if (sscanf(line, "%d %d %d %lf %lf", &step, &increment, &tries, &t, &dt) !=
             5 ||
         step != step_no || !(dt > 0) ||
@@ -224,6 +224,70 @@ START_TEST(increments_grow_over_thirty_decades) {
 }
 END_TEST
 
+/*
+ * A stress of 1.2 at the end of the only increment passes a threshold of 1
+ * after all times at which integrators take rates but the end; one that falls
+ * from 1.2 to 0.2 passes it before all of them but the start: the strain
+ * (1.2 - 1)^2 / (2 eta |d stress/dt|) flows, E = 1000, eta = 10.
+ */
+static const struct {
+  const char *before, *load;
+  double stress, flow; /* at the end; strain that flows */
+} passes[] = {{SYMMETRY, "-1.2", 1.2, 0.2 * 0.2 / (2 * 10 * 1.2)},
+              {SYMMETRY "*DSLOAD\nTOP, P, -1.2\n", "-0.2", 0.2,
+               0.2 * 0.2 / (2 * 10 * 1.0)}};
+static const char *const blind[] = {
+    "EULER", "HEUN", "RK4", "MIDPOINT", "THETA, THETA=0.2", "BACKWARD"};
+enum { BLIND = sizeof blind / sizeof *blind };
+static const double UNIAXIAL = 1.08628; /* sqrt(1 + 2 nu^2), nu = 0.3 */
+
+static job run_past(int k, const char *visco) {
+  char cards[300];
+  snprintf(cards, sizeof cards, "%s*DSLOAD\nTOP, P, %s\n", visco,
+           passes[k].load);
+  const square_case s = {
+      STEEL, "*INELASTIC, LAW=BINGHAM\n1., 10.\n", "CPS3", "", passes[k].before,
+      cards};
+  return square_run(&s, 0);
+}
+
+/* Error of the strain at the end. */
+static double error_past(const job *j, int k) {
+  dat d = job_table(j, "NODES", -1);
+  const double found = dat_max(&d, "u_y");
+  dat_free(&d);
+  return fabs(found - 1e-3 * passes[k].stress - passes[k].flow);
+}
+
+START_TEST(flow_that_passes_its_threshold_is_seen) {
+  char visco[200];
+  const int k = _i / BLIND;
+  const double tol = 1e-3, each = tol * 1.2e-3 * UNIAXIAL;
+  snprintf(visco, sizeof visco, "*VISCO, INTEGRATOR=%s, TOLERANCE=%g\n1., 1.\n",
+           blind[_i % BLIND], tol);
+  job j = run_past(k, visco);
+  const double error = error_past(&j, k);
+  const int n = accepted_of(&j).n;
+  ck_assert_msg(error <= n * each, "%s: error %g, %d increments of %g",
+                blind[_i % BLIND], error, n, each);
+  job_end(&j);
+}
+END_TEST
+
+/* The same of the error of the steps, whose truth is 81 % for EULER. */
+START_TEST(flow_that_begins_late_is_an_error_of_the_steps) {
+  char visco[200];
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=%s\n1., 1.\n*ACCURACY, TIME=YES\n", blind[_i]);
+  job j = run_past(0, visco);
+  const double error = error_past(&j, 0) / 1.2e-3,
+               told = 0.01 * job_told(&j, "time_error_percent");
+  ck_assert_msg(told >= 0.5 * error / sqrt(1 + error * error),
+                "%s: told %g, error %g", blind[_i], told, error);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("adaptive");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -236,5 +300,9 @@ int main(void) {
   tcase_add_test(tests, strains_from_nothing_count);
   tcase_add_test(tests, increments_are_as_long_as_is_stable);
   tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
+  tcase_add_loop_test(tests, flow_that_passes_its_threshold_is_seen, 0,
+                      2 * BLIND);
+  tcase_add_loop_test(tests, flow_that_begins_late_is_an_error_of_the_steps, 0,
+                      BLIND);
   return unit_run("adaptive", tests);
 }

@@ -21,9 +21,8 @@ static const double ROUNDING = 0x1p-48; /* -, of the time */
  * integrators keep to halves and doubles, which they have factored. */
 static double next_length(const step *s, double dt, double error) {
   const scheme *of = s->visco.integrator;
-  int order = of->estimates ? 1 : of->order;
+  const int order = of->estimates ? 1 : visco_order(s);
   double factor = 4.0;
-  if (s->visco.theta == 0.5 && of->has_theta) order = 2;
   if (error > 0.0)
     factor = 0.9 * pow(s->visco.tolerance / error, 1.0 / (order + 1));
   factor = fmin(4.0, fmax(0.2, factor));

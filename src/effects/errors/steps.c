@@ -179,14 +179,31 @@ static double field_norm(const run *r, const double *u, const double *e0) {
   return sqrt(2.0 * fmax(domain_strain_energy(&d, u), 0.0));
 }
 
-/* The same with them: as large as the larger relative difference. p->u and
- * p->e0 become differences. */
+/* p->e0 becomes the difference of the strains; where there is none, flow that
+ * begins so late in the increment that neither path has it. */
+static status subtract_strains(run *r, finer_path *p) {
+  visco *v = r->strains.visco;
+  const size_t ns = visco_at(r, 1);
+  OWNED double *turning = NULL;
+  for (size_t k = 0; k < visco_at(r, r->strains.eigen.n); ++k)
+    p->e0[k] -= r->strains.eigen.e0[k];
+  if (r->step->kind != STEP_VISCO) return OK;
+  PASS_NEW(turning, visco_at(r, v->x.n));
+  PASS(visco_turning(r, turning));
+  for (int k = 0; k < v->x.n; ++k) {
+    double *e0 = p->e0 + visco_at(r, v->place[k]), largest = 0.0;
+    for (size_t i = 0; i < ns; ++i) largest = fmax(largest, fabs(e0[i]));
+    if (largest == 0.0) memcpy(e0, turning + visco_at(r, k), ns * sizeof *e0);
+  }
+  return OK;
+}
+
+/* The same with them: as large as the larger relative difference. p->u becomes
+ * a difference, p->e0 is one. */
 static double field_difference(const run *r, finer_path *p) {
   double stress = sqrt(2.0 * fmax(r->now.energy.strain, 0.0));
   double strain = field_norm(r, r->now.u, NULL);
   for (size_t k = 0; k < r->n_dof; ++k) p->u[k] -= r->now.u[k];
-  for (size_t k = 0; k < visco_at(r, r->strains.eigen.n); ++k)
-    p->e0[k] -= r->strains.eigen.e0[k];
   double of_stress = field_norm(r, p->u, p->e0);
   double of_strain = field_norm(r, p->u, NULL);
   return strain > 0.0 ? fmax(of_stress, of_strain * (stress / strain))
@@ -195,11 +212,9 @@ static double field_difference(const run *r, finer_path *p) {
 
 /* From the difference to half the increments to the error. */
 static double extrapolation(const run *r) {
-  const scheme *of = r->step->visco.integrator;
   if (r->step->kind != STEP_VISCO || r->strains.visco == NULL)
     return EXTRAPOLATION;
-  int order = of->has_theta && r->step->visco.theta == 0.5 ? 2 : of->order;
-  if (order < 2) return 2.0;
+  if (visco_order(r->step) < 2) return 2.0;
   return r->problem.ut0 != NULL ? EXTRAPOLATION : 4.0 / 3.0;
 }
 
@@ -221,35 +236,41 @@ static const char *why_no_path(const run *r) {
  * whose energy is known. HUGE_VAL: the path is lost. */
 static double total_error(const paths *own) { return own->before + own->now; }
 
-static double measure(const run *r, paths *own) {
+static status measure(run *r, paths *own, double *norm) {
   finer_path *p = own->path;
-  if (p == NULL || p->lost) return HUGE_VAL;
-  if (!p->measured)
-    p->error = extrapolation(r) * (p->u != NULL ? field_difference(r, p)
-                                                : condensed_difference(r, p));
+  *norm = HUGE_VAL;
+  if (p == NULL || p->lost) return OK;
+  if (!p->measured && p->u != NULL) {
+    PASS(subtract_strains(r, p));
+    p->error = extrapolation(r) * field_difference(r, p);
+  } else if (!p->measured) {
+    p->error = extrapolation(r) * condensed_difference(r, p);
+  }
   p->measured = 1;
-  return own->before + p->error;
+  *norm = own->before + p->error;
+  return OK;
 }
 
 /* The path at the end of an accepted increment. */
-static void compare_path(const run *r, paths *own, error_share *e) {
+static status compare_path(run *r, paths *own, error_share *e) {
   finer_path *p = own->path;
   if (p == NULL || (!p->lost && p->end.start.t != r->now.t)) {
     e->why = "the body answers at once";
-    return;
+    return OK;
   }
   if (p->lost) {
     e->relative = NAN;
     e->why = "no equilibrium in half an increment";
-    return;
+    return OK;
   }
-  double energy = r->now.energy.strain;
-  double norm = measure(r, own);
+  double energy = r->now.energy.strain, norm;
+  PASS(measure(r, own, &norm));
   own->now = p->error;
   if (norm > 0.0) e->relative = norm / sqrt(norm * norm + 2.0 * energy);
   if (e->relative <= STRAIGHT * r->solving.tol)
     e->why = "the path is straight: half the increments give the same";
   advance(p);
+  return OK;
 }
 
 static status compare(run *r, void *self) {
@@ -262,7 +283,7 @@ static status compare(run *r, void *self) {
     e->why = why_no_path(r);
     if (effects_sum_up(r) != NULL) e->relative = NAN;
   } else {
-    compare_path(r, self, e);
+    PASS(compare_path(r, self, e));
   }
   e->relative = r->errors.left > 0.0 ? e->relative * r->errors.left : 0.0;
   return OK;
@@ -396,7 +417,8 @@ static status attempt_balanced(run *r, paths *own) {
   }
   if (outcome_is_fatal(r->solving.report.outcome)) PASS(loop_no_equilibrium(r));
   if (!r->errors.evaluated) PASS(estimate_evaluate(r));
-  part = rounding_hides_strains(r) ? 0.0 : measure(r, own) - before;
+  PASS(measure(r, own, &part));
+  part = rounding_hides_strains(r) ? 0.0 : part - before;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, part, allowed);
   if (part > allowed && shorter) {

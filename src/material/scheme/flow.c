@@ -131,6 +131,28 @@ status flow_rates(const flow *x, const flow_state *s, double dt,
   return OK;
 }
 
+status flow_turning(const flow *x, const flow_state *old, const flow_state *now,
+                    double *d) {
+  double value[2][FLOW_VALUE_MAX];
+  const double dt = now->t - old->t;
+  OWNED double *alpha_rate = NULL;
+  PASS_NEW(alpha_rate, x->alpha_at[x->n]);
+  for (int k = 0; k < x->n; ++k) {
+    const size_t at = (size_t)x->ns * (size_t)k;
+    law_point from, to;
+    if (x->kind[x->kind_id[k]].law->ops->flows == NULL) continue;
+    PASS(flow_point(x, k, old, dt, value[0], &from));
+    const int flowed = law_flows(&from);
+    PASS(flow_point(x, k, now, dt, value[1], &to));
+    if (law_flows(&to) == flowed) continue;
+    if (flowed) PASS(flow_point(x, k, old, dt, value[0], &from));
+    law_rate(flowed ? &from : &to, d + at, alpha_rate + x->alpha_at[k]);
+    for (size_t i = at; i < at + (size_t)x->ns; ++i)
+      d[i] = 0.5 * dt * d[i] - now->ei[i] + old->ei[i];
+  }
+  return OK;
+}
+
 status flow_fastest(const flow *x, const flow_state *s, double dt,
                     double *rate) {
   double value[FLOW_VALUE_MAX];

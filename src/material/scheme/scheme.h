@@ -72,6 +72,10 @@ int flow_goes_on(const flow *x, const law_point *p);
  * dissipated, W. dt: step being made. */
 status flow_rates(const flow *x, const flow_state *s, double dt,
                   double *ei_rate, double *alpha_rate, double *power);
+/* Points that flow at one end of a step alone: the trapezoidal rule less what
+ * has flowed, d[ns*n], -; zero elsewhere. */
+status flow_turning(const flow *x, const flow_state *old, const flow_state *now,
+                    double *d);
 /* The fastest rate of all points for a step dt, 1/s. */
 status flow_fastest(const flow *x, const flow_state *s, double dt,
                     double *rate);
