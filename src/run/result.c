@@ -238,7 +238,8 @@ status result_evaluate(run *r, int due) {
   return OK;
 }
 
-void result_start(const run *r, equilibrium *e) {
+void result_start(run *r, equilibrium *e) {
+  strains_start(r, e);
   double strain = domain_strain_energy(&r->body.d, e->u);
   e->energy = (energies){.strain = strain, .start = strain, .largest = strain};
 }

@@ -237,7 +237,7 @@ const char *effects_sum_up(const run *r);
 /* history/history.c: 1: slip or inelastic strains of the increments before have
  * a part in this one. */
 int run_remembers(const run *r);
-/* The same, or an effect sums up over the increments. */
+/* The same, or steps before in strains that are held or an effect sums up. */
 int run_inherits(const run *r);
 /* result.c: 1: the error of the mesh is that of this increment too. */
 int run_finds_mesh_error(const run *r);
@@ -333,6 +333,8 @@ void strains_collect(run *r);
 /* The loads with the forces of the strains of r->now: r->now.F itself if there
  * are none. */
 const double *strains_load(run *r);
+/* Strains of r->now and stresses of e, from which the works count. */
+void strains_start(run *r, equilibrium *e);
 /* Stresses of these elements, and the work on their strains since r->old, J;
  * e->largest at least what the strains would store if they were held. */
 void strains_work(run *r, energies *e);
@@ -415,7 +417,7 @@ static inline double run_drift(const equilibrium *e, int k) {
 /* Motion of a contact unknown against the obstacle in the increment, m. */
 double run_motion_over(const run *r, int k);
 /* Energies of e as those the run starts with. */
-void result_start(const run *r, equilibrium *e);
+void result_start(run *r, equilibrium *e);
 /* r->now becomes r->old. */
 status result_accept(run *r);
 

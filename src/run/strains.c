@@ -157,6 +157,17 @@ static void rest_work(run *r, energies *e, double *held) {
     items_work(r, from, r->strains.eigen.n, e, held);
 }
 
+void strains_start(run *r, equilibrium *e) {
+  const size_t bytes = strains_kept(r) * sizeof *e->e0;
+  if (bytes == 0) return;
+  if (e != &r->now) {
+    memcpy(e->e0, r->now.e0, bytes);
+    memcpy(e->thermal, r->now.thermal, bytes);
+  }
+  const eigenstrain x = {r->strains.eigen.n, r->strains.elem, e->e0};
+  eigen_stress(&r->body.d, &x, e->u, e->elastic, e->sigma);
+}
+
 void strains_work(run *r, energies *e) {
   const visco *v = r->strains.visco;
   const int known = v != NULL && v->sums.known;

@@ -381,7 +381,51 @@ START_TEST(wrong_files_are_refused) {
 }
 END_TEST
 
-UNIT_MAIN("start", compatible_start_goes_on, start_remembers_where_the_foot_is,
+/* The square held at its top, E = 1000: from a start under strain, relaxed or
+ * not, or by an inelastic strain under no stress, to a strain of -1.5e-3, less
+ * 1.5e-4 of heat, in half of a relaxation time by the midpoint rule. */
+static const struct {
+  const char *start, *law, *step;
+  double stress, work; /* mean of both ends; on the inelastic strain, J */
+} held[] = {{"\nBODY, 2, \"-0.001*y\"\n", "", "QUASISTATIC", -1.325, 0},
+            {", INCOMPATIBLE=RELAX\nBODY, 2, \"-0.001*y*y\"\n", "",
+             "QUASISTATIC", -1.325, 0},
+            {"\nBODY, 2, \"-0.001*y\"\n", "*INELASTIC, LAW=MAXWELL\n1.\n",
+             "VISCO, INTEGRATOR=MIDPOINT", -1.06, 5.618e-4},
+            {"\nBODY, 2, \"0.001*y\"\n"
+             "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 2, 0.001\n",
+             "*INELASTIC, LAW=MAXWELL\n1.\n", "VISCO, INTEGRATOR=MIDPOINT",
+             -1.06, 5.618e-4}};
+
+START_TEST(works_count_from_the_stress_of_the_start) {
+  for (size_t k = 0; k < sizeof held / sizeof *held; ++k) {
+    job j = job_begin("held");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "held.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1000., 0.\n*EXPANSION\n1.E-5\n%s"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+              "*INITIAL CONDITIONS, TYPE=DISPLACEMENT%s*STEP\n*%s\n0.5, 0.5\n"
+              "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\nTOP, 2, 2, -0.0015\n"
+              "*TEMPERATURE\nBODY, 15.\n*PRINT, ENERGY\n*END STEP\n",
+              held[k].law, held[k].start, held[k].step);
+    const int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "%zu: exit %d: %s", k, code, j.errors);
+    dat e = job_table(&j, "ENERGY", -1);
+    ck_assert_double_eq_tol(dat_at(&e, 0, "thermal_work"),
+                            held[k].stress * 1.5e-4, 1e-15);
+    if (held[k].work > 0)
+      ck_assert_double_eq_tol(dat_at(&e, 0, "inelastic_work"), held[k].work,
+                              1e-15);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-12);
+    dat_free(&e);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("start", works_count_from_the_stress_of_the_start,
+          compatible_start_goes_on, start_remembers_where_the_foot_is,
           given_force_goes_on, walls_of_a_corner_have_gaps_of_their_own,
           incompatible_start_is_refused_with_its_defect,
           incompatible_start_is_relaxed, start_without_load_is_relaxed_to_rest,

@@ -147,6 +147,15 @@ START_TEST(what_goes_on_from_a_miss_says_so) {
   ck_after_a_miss("", friction, "*QUASISTATIC\n0.5, 1.", 2, 2);
   ck_after_a_miss("", friction, "*STATIC", 1, 0);
   ck_after_a_miss(law, "", "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.", 2, 2);
+  ck_after_a_miss(law, "",
+                  "*QUASISTATIC\n0.5, 1.\n*SOLVER, METHOD=AUTO\n*END STEP\n"
+                  "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 1.",
+                  3, 1);
+  ck_after_a_miss(law, "",
+                  "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n"
+                  "*SOLVER, METHOD=AUTO\n*END STEP\n*STEP\n"
+                  "*QUASISTATIC\n1., 1.",
+                  3, 3);
 }
 END_TEST
 

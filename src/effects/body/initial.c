@@ -11,15 +11,18 @@
 #include <math.h>
 #include <string.h>
 
-/* K u_0 - F into R, the largest of both into *largest; diagonal of K. */
+/* K u_0 - F into R; the largest of both, and of the forces that hold strains
+ * back, into *largest; diagonal of K. */
 static status start_forces(run *r, double *R, double *diagonal,
                            double *largest) {
   OWNED double *sigma = NULL;
+  const double *all = strains_load(r);
   PASS_NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   domain_stress(&r->body.d, r->old.u, NULL, sigma);
   domain_internal_force(&r->body.d, sigma, R);
   for (size_t k = 0; k < r->n_dof; ++k) {
-    *largest = fmax(*largest, fmax(fabs(R[k]), fabs(r->now.F[k])));
+    const double force = fmax(fabs(r->now.F[k]), fabs(all[k]));
+    *largest = fmax(*largest, fmax(fabs(R[k]), force));
     R[k] -= r->now.F[k];
   }
   start_stiffness(&r->body.d, diagonal);

@@ -52,8 +52,15 @@ int run_remembers(const run *r) {
   return slips && kind == STEP_QUASISTATIC;
 }
 
+/* 1: inelastic strains are those of a step before, which this one holds. */
+static int holds_strains(const run *r) {
+  for (int i = 0; i < run_step_id(r) && r->strains.visco != NULL; ++i)
+    if (r->m->steps[i].kind == STEP_VISCO) return 1;
+  return 0;
+}
+
 int run_inherits(const run *r) {
-  return run_remembers(r) || effects_sum_up(r) != NULL;
+  return run_remembers(r) || holds_strains(r) || effects_sum_up(r) != NULL;
 }
 
 /* 1: the start state of this increment contains one that did not converge. */
