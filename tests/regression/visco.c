@@ -423,6 +423,77 @@ START_TEST(initial_hardening_counts) {
 }
 END_TEST
 
+/* What changes at once at the start of a *VISCO step: temperatures of a body
+ * that is held, its modulus, the end of a support, the rate of a law;
+ * relaxation time 1, E = 1000, 2000 when hot. */
+#define ONE_SECOND "*INELASTIC, LAW=MAXWELL\n1.\n"
+#define SUDDEN "*AMPLITUDE, NAME=ON\n\"1\"\n"
+#define HEAT_AT_ONCE "*TEMPERATURE\nBODY, 100., ON\n"
+static const struct {
+  square_case scene;
+  const char *column;
+  double expected;
+} sudden[] = {
+    {{"1000., 0.", "*EXPANSION\n1.E-5\n" ONE_SECOND, "CPS3", SUDDEN,
+      SYMMETRY "TOP, 2\n", "*VISCO, INTEGRATOR=HEUN\n0.01, 1.\n" HEAT_AT_ONCE},
+     "stress_yy",
+     -0.3678794},
+    {{"1000., 0., 0.\n2000., 0., 100.", ONE_SECOND, "CPS3", SUDDEN, HELD,
+      "*VISCO, INTEGRATOR=HEUN\n0.01, 1.\n" HEAT_AT_ONCE},
+     "stress_yy",
+     2 * 0.3678794},
+    {{"1000., 0.", ONE_SECOND, "CPS3", "", HELD,
+      "*VISCO, INTEGRATOR=HEUN\n0.5, 1.\n*BOUNDARY, OP=NEW\nLEFT, 1\n"
+      "BOTTOM, 2\n"},
+     "strain_yy",
+     0.0},
+    {{"1000., 0.",
+      "*INELASTIC, LAW=MAXWELL, SHIFT=WLF, T_REF=50., C1=2., C2=50.\n10.\n",
+      "CPS3", SUDDEN "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 50.\n",
+      SYMMETRY "*DSLOAD\nTOP, P, -1.\n",
+      "*VISCO, INTEGRATOR=HEUN\n0.5, 1.\n*DSLOAD\nTOP, P, -1., "
+      "ON\n" HEAT_AT_ONCE},
+     "strain_yy",
+     2e-3}};
+
+START_TEST(what_is_sudden_acts_at_once) {
+  job j = square_run(&sudden[_i].scene, 0);
+  dat d = job_table(&j, "ELEMENTS", -1);
+  for (int i = 0; i < d.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&d, i, sudden[_i].column),
+                            sudden[_i].expected,
+                            3e-5 * fmax(fabs(sudden[_i].expected), 1e-3));
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+/* A foot that stuck slips at once where its friction falls: creep of few
+ * increments is that of many. */
+START_TEST(sudden_slip_acts_at_once) {
+  double shear[2];
+  for (int k = 0; k < 2; ++k) {
+    char visco[200];
+    snprintf(visco, sizeof visco,
+             "*VISCO, INTEGRATOR=HEUN\n%g, 1.\n"
+             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.05\n",
+             k == 0 ? 0.1 : 0.01);
+    const square_case s = {STEEL,
+                           ONE_SECOND,
+                           "CPE3",
+                           FLOOR(0.8),
+                           "*BOUNDARY\nTOP, 1, 1, 0.004\nTOP, 2, 2, -0.01\n",
+                           visco};
+    job j = square_run(&s, 0);
+    dat d = job_table(&j, "ELEMENTS", -1);
+    shear[k] = dat_max(&d, "gamma_xy");
+    dat_free(&d);
+    job_end(&j);
+  }
+  ck_assert_double_eq_tol(shear[0], shear[1], 0.005 * shear[1]);
+}
+END_TEST
+
 /* Relaxation time 4 at 0 degrees and 1 at 100: at 50 it is 2.5, without any
  * thermal expansion. */
 START_TEST(temperature_sets_the_relaxation_time) {
@@ -519,6 +590,9 @@ int main(void) {
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
   tcase_add_test(tests, initial_hardening_counts);
   tcase_add_test(tests, temperature_sets_the_relaxation_time);
+  tcase_add_loop_test(tests, what_is_sudden_acts_at_once, 0,
+                      (int)(sizeof sudden / sizeof *sudden));
+  tcase_add_test(tests, sudden_slip_acts_at_once);
   tcase_add_test(tests, steady_creep_of_a_tube);
   tcase_add_test(tests, factors_are_kept);
   tcase_add_test(tests, increments_of_one_length_share_a_factor);

@@ -323,16 +323,22 @@ static int touched_by_rounding(const run *r) {
   return 1;
 }
 
-/* 1 if no load acts at the start of the step that did not act before. */
+/* 1: temperatures of laws, moduli or strains jump at the start of the step. */
+static int starts_hotter(const run *r) {
+  return r->now.temperature != NULL &&
+         !same_vector((size_t)r->msh->n_elem, r->now.temperature,
+                      r->old.temperature);
+}
+
+/* 1 if no load acts at the start of the step that did not act before, and no
+ * support, load or friction has ended. */
 static int starts_smoothly(const run *r) {
+  if (starts_hotter(r) || r->step->renewed != 0 || r->step->friction.n > 0)
+    return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->body.fixed[i] &&
         fabs(r->loads.ud[i] - r->old.u[i]) > 1e-12 * fabs(r->loads.ud[i]))
       return 0;
-  if (r->body.moduli.n_own > 0 &&
-      !same_vector((size_t)r->msh->n_elem, r->now.temperature,
-                   r->old.temperature))
-    return 0;
   return same_vector(r->n_dof, r->now.F, r->old.F) &&
          same_vector(strains_kept(r), r->now.e0, r->old.e0);
 }
@@ -359,8 +365,9 @@ static status start_visco(run *r, int *increment_no) {
     PASS(increment_solve(r, r->step->start));
     if (outcome_is_fatal(r->solving.report.outcome))
       PASS(loop_no_equilibrium(r));
-    if (!same_vector(r->n_dof, r->now.u, r->old.u) &&
-        !(smooth && touched_by_rounding(r)))
+    const int moved = !same_vector(r->n_dof, r->now.u, r->old.u) &&
+                      !(smooth && touched_by_rounding(r));
+    if (moved || starts_hotter(r))
       PASS(loop_accept(r, 1, ++*increment_no, 0, cpu));
   }
   return visco_begin_step(r);
