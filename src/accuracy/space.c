@@ -122,6 +122,10 @@ double space_growth(const mesh *m, const double *size) {
   return sum / m->n_elem;
 }
 
+/* Measured on cubes and squares of known solutions: estimates of meshes with
+ * less elements along an edge had 0.55 to 0.95 of the error. */
+static const double DEEP = 9.0;
+
 enum { MAX_BASIS = 4, MAX_NS = 6 };
 static const double FLAT = 1e-6; /* -, pivot of a fit without enough points */
 
@@ -146,6 +150,8 @@ struct space_recovery {
   double *measure;    /* [n_elem] element_weight */
   fit_weights *kept;  /* [n_region] after space_keep, else NULL */
   double *recovered;  /* [ns*n_node] of the current region, Pa */
+  double depth;       /* elements along the edge of a cube or square that has
+                         the same share of nodes inside; 0: not known */
 };
 
 /* ---- set-up -------------------------------------------------------------- */
@@ -285,6 +291,26 @@ static int gather(space_recovery *s, int node, int region) {
     for (int a = 0; a <= m->dim; ++a)
       n = add_ring(s, m->elem[(m->dim + 1) * s->patch[k] + a], region, n);
   return n;
+}
+
+/* 1: the elements of one region close round the node. */
+static int is_inside(space_recovery *s, int node) {
+  const int first = s->start[node];
+  if (first == s->start[node + 1]) return 0;
+  ++s->last;
+  const int n = add_ring(s, node, space_region(s, s->elem[first]), 0);
+  return n == s->start[node + 1] - first && is_closed(s, node, n);
+}
+
+int space_is_coarse(space_recovery *s) {
+  const mesh *m = s->d->mesh;
+  int inside = 0;
+  if (s->depth == 0.0) {
+    for (int i = 0; i < m->n_node; ++i) inside += is_inside(s, i);
+    const double side = pow((double)inside / m->n_node, 1.0 / m->dim);
+    s->depth = (1.0 + side) / (1.0 - side);
+  }
+  return s->depth < DEEP;
 }
 
 /* ---- the fit ------------------------------------------------------------- */

@@ -36,6 +36,10 @@ void space_recovery_free(space_recovery *s); /* accepts NULL */
 status space_estimate(space_recovery *s, const double *sigma, double *eta,
                       space_error *out);
 
+/* 1: few nodes lie inside the body, so that most fits lie on one side of their
+ * node; the estimate may have half of the error. */
+int space_is_coarse(space_recovery *s);
+
 /* For other errors by the same patches. Sets of sections of one material, which
  * an element belongs to; nodal values value[nq*n_node] recovered from
  * q[nq*n_elem] at the nodes of one. */

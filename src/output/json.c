@@ -423,6 +423,8 @@ static void write_increment(json *w, const model *m,
   json_real(w, "residual", s->residual);
   if (s->mesh_error.asked)
     json_real(w, "mesh_error_percent", 100 * s->mesh_error.relative);
+  if (s->mesh_error.asked && s->mesh_error.why != NULL)
+    json_flag(w, "coarse_mesh", 1);
   if (s->time_error.asked)
     json_real(w, "time_error_percent", 100 * s->time_error.relative);
   if (s->balance.asked) {

@@ -27,6 +27,7 @@ static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
 static const double AIM = 0.93;
 /* -, of the error, or a pass had no effect. */
 static const double LEAST_GAIN = 0.95;
+static const double COARSE = 2.0; /* -, on what a coarse mesh estimates */
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
 static const double LEAST_TOL = 1e-14, SHORTEST = 1.0 / 16; /* - */
@@ -41,6 +42,7 @@ typedef struct pass {
   double energy;             /* J, largest strain energy: the increment
                                 that counts */
   double mesh, time, solver; /* -, errors there */
+  int coarse;                /* 1: that of the mesh may be twice as large */
   double *eta;               /* [n_elem] shares of the elements there */
   double *size;              /* [n_node] of the next mesh, m */
   aims *goals;               /* or NULL: there are none */
@@ -76,6 +78,7 @@ static status see_increment(void *ctx, const state *s) {
   if (!s->errors.mesh_error.asked || s->energy.strain < p->energy) return OK;
   p->energy = s->energy.strain;
   p->mesh = s->errors.mesh_error.relative;
+  p->coarse = s->errors.mesh_error.why != NULL;
   p->time = s->errors.time_error.relative;
   p->solver = s->errors.error.asked ? s->errors.error.relative : 0.0;
   memcpy(p->eta, s->errors.elem_error,
@@ -83,7 +86,12 @@ static status see_increment(void *ctx, const state *s) {
   return OK;
 }
 
-static double total(const pass *p) { return p->mesh + p->time + p->solver; }
+/* What the mesh may have in error. */
+static double at_most(const pass *p) {
+  return p->coarse ? COARSE * p->mesh : p->mesh;
+}
+
+static double total(const pass *p) { return at_most(p) + p->time + p->solver; }
 
 /* 1: the energy norm has a target. */
 static int has_norm(const pass *p) { return p->target->percent > 0.0; }
@@ -109,13 +117,13 @@ static double mesh_goal(const pass *p) {
 }
 
 static int norm_wants_mesh(const pass *p) {
-  return has_norm(p) && p->mesh > mesh_goal(p);
+  return has_norm(p) && at_most(p) > mesh_goal(p);
 }
 
 /* Sizes of the next mesh, and the factor by which the unknowns grow. */
 static status find_sizes(pass *p, double *factor) {
   const mesh *msh = p->in->msh;
-  const double wanted = AIM * mesh_goal(p);
+  const double wanted = AIM * mesh_goal(p) / (p->coarse ? COARSE : 1.0);
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
@@ -214,7 +222,7 @@ static int refines(const pass_row *row) {
 /* 1: the last pass gained nothing although the mesh was to change. */
 static int was_in_vain(const pass *p) {
   if (p->n < 2 || !refines(&p->rows[p->n - 2])) return 0;
-  if (norm_wants_mesh(p) &&
+  if (norm_wants_mesh(p) && !p->coarse &&
       p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh)
     return 1;
   return aims_stand_still(p->goals);

@@ -98,7 +98,7 @@ typedef struct error_share {
   int asked;
   double relative; /* -, of the energy norm of the solution; NAN: unknown */
   double cpu;      /* s, CPU time for it so far */
-  const char *why; /* why it is zero or unknown; or NULL */
+  const char *why; /* why it is zero, unknown or too small; or NULL */
 } error_share;
 
 /* *SOLVER, TOL=BALANCED: where the solver stopped, and what that saved against

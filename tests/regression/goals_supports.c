@@ -119,7 +119,7 @@ START_TEST(ends_of_supports_are_not_reliable) {
   ck_assert(has_verdict(&j, "U", "support_end"));
   check(&j, 0.0070721533, 0.3, 1.0, 3.0);
   job_end(&j);
-  j = of_block(8, PLANE,
+  j = of_block(16, PLANE,
                ENERGY
                "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
                "TOP, P, \"10*(1+cos(pi*x/2))\"\n");

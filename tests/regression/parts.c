@@ -41,7 +41,7 @@ START_TEST(target_counts_all_errors_of_the_largest_increment) {
   job j = job_begin("block");
   double error[3], largest[3] = {0}, most = 0, sum = 0;
   int at = 0;
-  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, 30.0}, 0);
+  block_file_write(&j, (int[]){16, 12}, (double[]){40.0, 30.0}, 0);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"

@@ -82,6 +82,73 @@ START_TEST(target_is_reached_in_truth) {
 }
 END_TEST
 
+#define CUBE_SIDE \
+  "(-3.1245736543072164E-6*cosh(K*z) + 3.4326728826486094E-6*z*sinh(K*z))"
+static const char cube_field[] =
+    "*REFERENCE\nu_x, \"-pi*" CUBE_SIDE
+    "*sin(pi*x)*cos(pi*y)\"\n"
+    "u_y, \"-pi*" CUBE_SIDE
+    "*cos(pi*x)*sin(pi*y)\"\n"
+    "u_z, \"-z*0.74285714285714286E-3 + (A*sinh(K*z) + B*z*cosh(K*z))"
+    "*cos(pi*x)*cos(pi*y)\"\n";
+
+/* A cube on a smooth floor between smooth walls, pressed by 1 + cos(pi x)
+ * cos(pi y)/2, E = 1000, nu = 0.3, of few tetrahedra: with k = pi sqrt(2) the
+ * deflection is -z/(lambda + 2 G) + (A sinh kz + B z cosh kz) cos cos. */
+static int press_cube(job *j, int n, const char *goal, const char *accuracy) {
+  *j = job_begin("cube");
+  job_copy(j, "tests/regression/mesh/cube.geo");
+  job_write(
+      j, "cube.inp",
+      "*PARAMETER\nN = %d\nK = \"pi*sqrt(2)\"\nA = -2.0060926166508162E-5\n"
+      "B = 1.5250963782598403E-5\n*MESH, FILE=cube.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s%s*STEP\n*STATIC\n"
+      "*BOUNDARY\nLEFT, 1\nRIGHT, 1\nFRONT, 2\nBACK, 2\n*DSLOAD\n"
+      "TOP, P, \"1 + 0.5*cos(pi*x)*cos(pi*y)\"\n%s*PRINT, GOALS\n"
+      "*END STEP\n",
+      n, cube_field, goal, accuracy);
+  return job_run(j, "");
+}
+
+/* Its estimate is 0.6 of the error. */
+START_TEST(estimate_of_a_coarse_mesh_counts_twice) {
+  static const double target[] = {14.0, 8.0};
+  for (int k = 0; k < 2; ++k) {
+    char accuracy[80];
+    job j;
+    snprintf(accuracy, sizeof accuracy, "*ACCURACY, TARGET=%g\n", target[k]);
+    const int code = press_cube(&j, 1, "", accuracy);
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    ck_assert_double_le(job_told(&j, "true_error_percent"), target[k]);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* Half of the work of the pressure. */
+START_TEST(goal_of_a_coarse_mesh_is_not_reliable) {
+  const double k = M_PI * sqrt(2.0);
+  const double top = -2.0060926166508162e-5 * sinh(k) +
+                     1.5250963782598403e-5 * cosh(k),
+               exact = 0.5 * (0.74285714285714286e-3 - top / 8.0);
+  job j;
+  const int code = press_cube(&j, 4, "*GOAL, NAME=E, QUANTITY=ENERGY\n", "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  char *json = job_file(&j, "json");
+  ck_assert_ptr_nonnull(strstr(json, "\"coarse_mesh\""));
+  ck_assert_double_le(
+      fabs(exact - dat_at(&t, 0, "value") - dat_at(&t, 0, "error")),
+      dat_at(&t, 0, "band"));
+  free(json);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* Exit 1, why, and the files of the last pass. */
 static void must_miss(int nc, const char *accuracy, const char *why) {
   job j;
@@ -425,7 +492,8 @@ START_TEST(unloaded_body_has_no_large_error) {
 }
 END_TEST
 
-UNIT_MAIN("target", target_is_reached_in_truth,
+UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
+          goal_of_a_coarse_mesh_is_not_reliable, target_is_reached_in_truth,
           limits_stop_with_the_best_there_is, structured_geometry_is_made_finer,
           mesh_without_geometry_is_refined, values_at_nodes_keep_the_mesh,
           forecast_is_near_the_truth, increments_are_made_shorter,

@@ -335,6 +335,20 @@ START_TEST(one_layer_of_elements_has_an_estimate) {
 }
 END_TEST
 
+/* Where fewer than nine elements are along an edge. */
+START_TEST(few_nodes_inside_are_told) {
+  for (int n = 8; n <= 10; n += 2) {
+    scene *s = box(_i == 0 ? PLANE_STRAIN : SOLID_3D, n, 0);
+    space_recovery *recovery;
+    ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+    ck_assert_int_eq(space_is_coarse(recovery), n < 9);
+    ck_assert_int_eq(space_is_coarse(recovery), n < 9);
+    space_recovery_free(recovery);
+    scene_free(s);
+  }
+}
+END_TEST
+
 static int shares_node(const mesh *m, int a, int b) {
   const int v = m->dim + 1;
   for (int i = 0; i < v; ++i)
@@ -476,6 +490,7 @@ int main(void) {
   tcase_add_test(tests, sizes_give_the_target_and_grow_slowly);
   tcase_add_loop_test(tests, linear_stress_is_recovered, 0, 3);
   tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
+  tcase_add_loop_test(tests, few_nodes_inside_are_told, 0, 2);
   tcase_add_test(tests, an_estimate_has_no_unit);
   return unit_run("space", tests);
 }

@@ -70,6 +70,10 @@ static status estimate(run *r, void *self) {
   timer_leave(STAGE_MESH_ERROR);
   if (st != OK) return st;
   r->errors.mesh_error.relative = found.relative;
+  r->errors.mesh_error.why =
+      found.relative > 0.0 && space_is_coarse(own->recovery)
+          ? "few nodes inside the body: it may be twice as large"
+          : NULL;
   double whole = hypot(found.norm, found.error);
   for (int e = 0; e < r->msh->n_elem; ++e)
     own->elem_error[e] = whole > 0.0 ? own->elem_error[e] / whole : 0.0;

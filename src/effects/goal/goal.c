@@ -317,6 +317,16 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
   return f->is_front ? GOAL_FRONT : found;
 }
 
+/* Half of the error may be missing. */
+static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
+  space_recovery *recovery;
+  PASS(recover(r, own, &recovery));
+  if (out->verdict != GOAL_RELIABLE || !space_is_coarse(recovery)) return OK;
+  out->verdict = GOAL_COARSE;
+  out->band += fabs(out->error);
+  return OK;
+}
+
 static status estimate(run *r, goal_state *own, shared *s, int id) {
   const goal_form *f = &s->form;
   goal_result *out = &own->result[id];
@@ -337,6 +347,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->band += f->rough + f->held + of_coarseness(r, s, &e) +
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
+  PASS(doubt_of_mesh(r, own, out));
   if (e.magnitude <= ROUNDING * fabs(value)) out->verdict = GOAL_RELIABLE;
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
