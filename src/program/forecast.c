@@ -48,7 +48,8 @@ typedef struct trial {
   double *eta; /* [n_elem] shares of the elements there, or
                   NULL; borrowed */
   int n_elem;
-  aims *goals; /* or NULL */
+  int is_coarse; /* its estimate may have half of the error */
+  aims *goals;   /* or NULL */
 } trial;
 
 static status see_sizes(void *ctx, int n_node, const stiffness_choice *choice) {
@@ -71,6 +72,7 @@ static status see_increment(void *ctx, const state *s) {
   if (s->energy.strain < t->energy) return OK;
   t->energy = s->energy.strain;
   t->error = s->errors.mesh_error.relative;
+  t->is_coarse = s->errors.mesh_error.why != NULL;
   if (t->eta != NULL)
     memcpy(t->eta, s->errors.elem_error, (size_t)t->n_elem * sizeof *t->eta);
   t->time = isfinite(s->errors.time_error.relative)
@@ -293,7 +295,7 @@ static void find_doubt(const model_of_cost *c, double error, const course *end,
 
 static void print_row(const model_of_cost *c, double error) {
   course end = go(c, error);
-  int there = end.unknowns <= c->deck.unknowns;
+  const int there = !c->deck.is_coarse && c->deck.error + c->deck.time <= error;
   if (end.unknowns > MOST_UNKNOWNS) {
     printf("  %8.3g %12s\n", 100 * error, "out of reach");
     return;
@@ -301,9 +303,14 @@ static void print_row(const model_of_cost *c, double error) {
   double bytes = there ? c->deck.bytes : bytes_at(c, end.unknowns);
   double doubt[2];
   find_doubt(c, error, &end, &doubt[0], &doubt[1]);
-  printf("  %8.3g %12.3g %12.3g %10.3g %12.3g %9.2g %9.2g%s\n", 100 * error,
-         end.unknowns, end.times, end.cpu, bytes / 1048576.0, doubt[0],
-         doubt[1], there ? "  the mesh of the deck does" : "");
+  printf("  %8.3g %12.3g %12.3g %10.3g %12.3g", 100 * error, end.unknowns,
+         end.times, end.cpu, bytes / 1048576.0);
+  for (int k = 0; k < 2; ++k)
+    if (c->fine.is_coarse)
+      printf(" %9s", "-");
+    else
+      printf(" %9.2g", doubt[k]);
+  puts(there ? "  the mesh of the deck does" : "");
 }
 
 /* In 3-D, where a digit is expensive, the levels are closer. */
@@ -321,6 +328,10 @@ static void print_table(const model_of_cost *c) {
       "and memory:\n    the factor within which they are expected\n"
       "  mesh of the deck: %.3g %% with %.0f unknowns; increments: %.3g %%\n",
       100 * c->deck.error, c->deck.unknowns, 100 * c->deck.time);
+  if (c->fine.is_coarse)
+    puts(
+        "  few nodes inside the body: the factors are not known, the mesh may "
+        "have twice the error");
 }
 
 /* Basis of the rows. */

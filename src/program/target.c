@@ -27,7 +27,8 @@ static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
 static const double AIM = 0.93;
 /* -, of the error, or a pass had no effect. */
 static const double LEAST_GAIN = 0.95;
-static const double COARSE = 2.0; /* -, on what a coarse mesh estimates */
+/* -, of what a coarse mesh estimates; what the next one is to have of it. */
+static const double COARSE = 2.0, FINER = 0.6;
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
 static const double LEAST_TOL = 1e-14, SHORTEST = 1.0 / 16; /* - */
@@ -123,7 +124,8 @@ static int norm_wants_mesh(const pass *p) {
 /* Sizes of the next mesh, and the factor by which the unknowns grow. */
 static status find_sizes(pass *p, double *factor) {
   const mesh *msh = p->in->msh;
-  const double wanted = AIM * mesh_goal(p) / (p->coarse ? COARSE : 1.0);
+  const double most = p->coarse ? FINER * p->mesh : HUGE_VAL,
+               wanted = fmin(AIM * mesh_goal(p), most);
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;

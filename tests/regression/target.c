@@ -95,7 +95,8 @@ static const char cube_field[] =
 /* A cube on a smooth floor between smooth walls, pressed by 1 + cos(pi x)
  * cos(pi y)/2, E = 1000, nu = 0.3, of few tetrahedra: with k = pi sqrt(2) the
  * deflection is -z/(lambda + 2 G) + (A sinh kz + B z cosh kz) cos cos. */
-static int press_cube(job *j, int n, const char *goal, const char *accuracy) {
+static int press_cube(job *j, int n, const char *goal, const char *accuracy,
+                      const char *words) {
   *j = job_begin("cube");
   job_copy(j, "tests/regression/mesh/cube.geo");
   job_write(
@@ -110,7 +111,7 @@ static int press_cube(job *j, int n, const char *goal, const char *accuracy) {
       "TOP, P, \"1 + 0.5*cos(pi*x)*cos(pi*y)\"\n%s*PRINT, GOALS\n"
       "*END STEP\n",
       n, cube_field, goal, accuracy);
-  return job_run(j, "");
+  return job_run(j, words);
 }
 
 /* Its estimate is 0.6 of the error. */
@@ -120,11 +121,24 @@ START_TEST(estimate_of_a_coarse_mesh_counts_twice) {
     char accuracy[80];
     job j;
     snprintf(accuracy, sizeof accuracy, "*ACCURACY, TARGET=%g\n", target[k]);
-    const int code = press_cube(&j, 1, "", accuracy);
+    const int code = press_cube(&j, 1, "", accuracy, "");
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
     ck_assert_double_le(job_told(&j, "true_error_percent"), target[k]);
     job_end(&j);
   }
+}
+END_TEST
+
+/* A factor of 2 was 4. */
+START_TEST(forecast_of_a_coarse_mesh_has_no_factor) {
+  job j;
+  ck_assert_int_eq(press_cube(&j, 3, "", "", "--estimate-cost"), 0);
+  ck_assert_ptr_nonnull(strstr(j.text, "the factors are not known"));
+  const char *row = strstr(j.text, "\n         3 ");
+  ck_assert_ptr_nonnull(row);
+  ck_assert_int_eq(
+      strncmp(strchr(row + 1, '\n') - 20, "         -         -", 20), 0);
+  job_end(&j);
 }
 END_TEST
 
@@ -135,7 +149,8 @@ START_TEST(goal_of_a_coarse_mesh_is_not_reliable) {
                      1.5250963782598403e-5 * cosh(k),
                exact = 0.5 * (0.74285714285714286e-3 - top / 8.0);
   job j;
-  const int code = press_cube(&j, 4, "*GOAL, NAME=E, QUANTITY=ENERGY\n", "");
+  const int code =
+      press_cube(&j, 4, "*GOAL, NAME=E, QUANTITY=ENERGY\n", "", "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   dat t = job_table(&j, "GOALS", -1);
   char *json = job_file(&j, "json");
@@ -493,7 +508,8 @@ START_TEST(unloaded_body_has_no_large_error) {
 END_TEST
 
 UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
-          goal_of_a_coarse_mesh_is_not_reliable, target_is_reached_in_truth,
+          goal_of_a_coarse_mesh_is_not_reliable,
+          forecast_of_a_coarse_mesh_has_no_factor, target_is_reached_in_truth,
           limits_stop_with_the_best_there_is, structured_geometry_is_made_finer,
           mesh_without_geometry_is_refined, values_at_nodes_keep_the_mesh,
           forecast_is_near_the_truth, increments_are_made_shorter,

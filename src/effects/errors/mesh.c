@@ -13,6 +13,8 @@
 
 #include <math.h>
 
+static const double EXACT = 1e-10; /* -, errors of rounding alone */
+
 typedef struct mesh_estimate {
   space_recovery *recovery; /* NULL until the first estimate */
   long elastic_no;          /* of the run, that it is made of */
@@ -71,7 +73,7 @@ static status estimate(run *r, void *self) {
   if (st != OK) return st;
   r->errors.mesh_error.relative = found.relative;
   r->errors.mesh_error.why =
-      found.relative > 0.0 && space_is_coarse(own->recovery)
+      found.relative > EXACT && space_is_coarse(own->recovery)
           ? "few nodes inside the body: it may be twice as large"
           : NULL;
   double whole = hypot(found.norm, found.error);
