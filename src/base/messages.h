@@ -282,7 +282,11 @@
     "With STIFFNESS=FACTOR of *SOLVER the matrix is known by its products "  \
     "and solves alone. What is named needs its entries: write "              \
     "STIFFNESS=DENSE or AUTO, or leave that out; of the methods take "       \
-    "METHOD=AUTO, NEWTON, AUGLAG, PROXIMAL, PCG or LAGRANGE.")
+    "METHOD=AUTO, NEWTON, AUGLAG, PROXIMAL, PCG or LAGRANGE.")               \
+  X(2062, ERROR, "temperature not above absolute zero",                      \
+    "Rates with an activation energy depend on the temperature above "       \
+    "T_ZERO=, absolute zero, which is 0 if it is absent: T_ZERO=-273.15 "    \
+    "for degrees Celsius. Where no card gives a temperature it is 0.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

@@ -506,6 +506,46 @@ START_TEST(temperature_sets_the_relaxation_time) {
 }
 END_TEST
 
+/* Temperatures that a rate with an activation energy cannot have: known before
+ * the run, but for what an expression does within a step. */
+#define ARRHENIUS \
+  "*INELASTIC, LAW=MAXWELL, SHIFT=ARRHENIUS, T_REF=300., ACTIVATION=1000."
+#define STARTS_AT(T) "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, " #T "\n"
+#define BACKWARD "*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
+static const struct {
+  square_case scene;
+  int early;
+  const char *text;
+} cold[] = {
+    {{STEEL, ARRHENIUS "\n10.\n", "CPS3", STARTS_AT(-10.), HELD, BACKWARD},
+     1,
+     "error P2062: material M, step 2, time 1, element "},
+    {{STEEL, ARRHENIUS ", T_ZERO=-273.15\n10.\n", "CPS3", STARTS_AT(20.), HELD,
+      BACKWARD "*TEMPERATURE\nBODY, -273.15\n"},
+     1,
+     ": the temperature -273.15 is not above absolute zero, T_ZERO = -273.15"},
+    {{STEEL, "*INELASTIC, LAW=HYPERBOLIC\n1.E-4, 0.01, 3., 100.\n", "CPS3", "",
+      HELD, BACKWARD},
+     1,
+     ": the temperature 0 is not above absolute zero, T_ZERO = 0"},
+    {{STEEL, ARRHENIUS "\n10.\n", "CPS3", STARTS_AT(300.), HELD,
+      BACKWARD "*TEMPERATURE\nBODY, \"300 - 700*(t > 1.4)*(t < 1.6)\"\n"},
+     0,
+     "material M: time 1.5: the temperature -400 is not above absolute zero"},
+    {{STEEL, ARRHENIUS "\n10.\n", "CPS3", STARTS_AT(300.), HELD,
+      "*VISCO, INTEGRATOR=HEUN\n0.25, 1.\n"
+      "*TEMPERATURE\nBODY, \"300 - 700*(t > 1.4)*(t < 1.6)\"\n"},
+     0,
+     "material M: time 1.5: the temperature -400 is not above absolute zero"}};
+
+START_TEST(laws_refuse_what_is_not_above_absolute_zero) {
+  job j = square_run(&cold[_i].scene, 2);
+  ck_assert_msg(strstr(j.errors, cold[_i].text) != NULL, "%s", j.errors);
+  ck_assert_int_eq(job_run(&j, "--check"), cold[_i].early ? 2 : 0);
+  job_end(&j);
+}
+END_TEST
+
 /* A group without a law: the answer is that of elasticity, and its elements
  * are neither integrated nor stored. */
 START_TEST(elastic_groups_cost_nothing) {
@@ -590,6 +630,8 @@ int main(void) {
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
   tcase_add_test(tests, initial_hardening_counts);
   tcase_add_test(tests, temperature_sets_the_relaxation_time);
+  tcase_add_loop_test(tests, laws_refuse_what_is_not_above_absolute_zero, 0,
+                      (int)(sizeof cold / sizeof *cold));
   tcase_add_loop_test(tests, what_is_sudden_acts_at_once, 0,
                       (int)(sizeof sudden / sizeof *sudden));
   tcase_add_test(tests, sudden_slip_acts_at_once);

@@ -193,6 +193,9 @@ status law_values(const law_card *law, double t, double temperature,
                   double *value);
 /* 1/a of the shift; infinite or 0 only if the deck requires it. */
 double law_speed(const law_card *law, double temperature);
+/* What is wrong with a temperature for a law whose rates depend on the absolute
+ * one: it is not above T_ZERO of the card; NULL: nothing. */
+const char *law_too_cold(const law_card *law, double temperature);
 enum { LAW_VARIES_TIME = 1, LAW_VARIES_TEMPERATURE = 2 };
 /* What the values and the speed depend on: bits; 0: the same for ever. */
 unsigned law_varies(const law_card *law);
