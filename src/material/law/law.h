@@ -150,6 +150,11 @@ typedef struct law_ops {
    * v_k); which part number "part" is (LAW_WHOLE, or LAW_DEVIATOR and LAW_MEAN
    * in any order) and its unit k, or LAW_NO_PART. NULL: other laws. */
   int (*series)(const law_point *p, int part, int k, law_unit *unit);
+  /* Adds the strains of the units in alpha, whose sum e^i is, to sum[ns]: 1 if
+   * its rest is that of a dashpot, 0: none. "only", alpha again or NULL: gets
+   * e^i first if there is but one unit and no dashpot. NULL: no such strains.
+   */
+  int (*units)(const law_point *p, double *only, double *sum);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);
   /* Power lost, >= 0, W/m3; energy stored by alpha and e^i, J/m3 (NULL: none):
