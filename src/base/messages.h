@@ -282,7 +282,17 @@
     "With STIFFNESS=FACTOR of *SOLVER the matrix is known by its products "  \
     "and solves alone. What is named needs its entries: write "              \
     "STIFFNESS=DENSE or AUTO, or leave that out; of the methods take "       \
-    "METHOD=AUTO, NEWTON, AUGLAG, PROXIMAL, PCG or LAGRANGE.")
+    "METHOD=AUTO, NEWTON, AUGLAG, PROXIMAL, PCG or LAGRANGE.")               \
+  X(2062, ERROR, "temperature not above absolute zero",                      \
+    "Rates with an activation energy depend on the temperature above "       \
+    "T_ZERO=, absolute zero, which is 0 if it is absent: T_ZERO=-273.15 "    \
+    "for degrees Celsius. Where no card gives a temperature it is 0.")       \
+  X(2063, ERROR, "inelastic strain that the units do not make",              \
+    "The inelastic strain of KELVIN and PRONY is the sum of the strains of " \
+    "their units, of a Prony series each times g_i and k_i. These are the "  \
+    "internal variables, unit after unit. Give them by TYPE=INTERNAL, from " \
+    "which TYPE=INELASTIC STRAIN follows; it is enough by itself with one "  \
+    "unit.")
 
 #define MESSAGE_LIST_MESH(X)                                                 \
   X(3001, ERROR, "mesh file cannot be read",                                 \

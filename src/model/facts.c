@@ -146,9 +146,19 @@ static const initial *first_initial(const model *m, int type) {
   return NULL;
 }
 
+int facts_starts_strained(const model *m) {
+  int units = 0;
+  for (int i = 0; i < m->n.material; ++i) {
+    const material *mat = &m->materials[i];
+    units |= mat->used && mat->law.ops != NULL && mat->law.ops->units != NULL;
+  }
+  return first_initial(m, INITIAL_STRAIN) != NULL ||
+         (units && first_initial(m, INITIAL_INTERNAL) != NULL);
+}
+
 int facts_has_inelastic(const model *m) {
   return facts_first_inelastic(m) != NULL &&
-         (has_card(m, "VISCO") || first_initial(m, INITIAL_STRAIN) != NULL);
+         (has_card(m, "VISCO") || facts_starts_strained(m));
 }
 
 int model_flows(const model *m, int elem_id) {

@@ -34,6 +34,8 @@ const char *facts_reads_entries(const model *m, const step *s);
 /* Section whose material has an inelastic law. */
 const section *facts_first_inelastic(const model *m);
 int facts_has_inelastic(const model *m); /* 1: its strains may change */
+/* 1: inelastic strains before the first step, given or by their units. */
+int facts_starts_strained(const model *m);
 int facts_has_expansion(const model *m); /* 1: a material in use has it */
 /* Material whose law depends on temperature; whose moduli do. */
 const material *facts_first_warm_law(const model *m);

@@ -100,32 +100,47 @@ static void add_row(const run *r, int i, int a, contact_total *t) {
   t->moment[2] += x[0] * force[1] - x[1] * force[0];
 }
 
+/* What the force of a normal closes of its contact, and presses on it. */
+static void add_normal(double rc, double share, double area, int closed,
+                       contact_total *t) {
+  t->normal += share * rc;
+  if (closed) t->area += share * area;
+  if (area > 0) t->pressure = fmax(t->pressure, -rc / area);
+}
+
+/* Row a of node i is the normal of another contact than its first. */
+static void add_side(const run *r, int i, int a, contact_total *t) {
+  const contact_surface *s = r->surface;
+  const int k = s->dim * i + a, at = (s->dim - 1) * i + a - 1;
+  const double rc = r->now.rc[k];
+  add_normal(rc, share_of(s, i, a), s->side_area[at], rc != 0.0, t);
+  t->n_open += rc == 0.0;
+  t->n_slip += rc != 0.0;
+  if (r->problem.side_gap != NULL)
+    t->penetration =
+        fmax(t->penetration, r->now.uc[k] - r->problem.side_gap[at]);
+}
+
 static void add_node(const run *r, int i) {
   const contact_surface *s = r->surface;
-  int dim = s->dim;
+  const int dim = s->dim;
+  const contact_status now = r->result.contact[i];
+  contact_total *own = &r->result.totals[s->contact_id[i]];
   for (int a = 0; a < dim; ++a) {
     contact_total *t = &r->result.totals[row_contact(s, i, a)];
-    double rc = share_of(s, i, a) * r->now.rc[dim * i + a];
-    int side = a > 0 && s->side_id[(dim - 1) * i + a - 1] >= 0;
+    const double rc = r->now.rc[dim * i + a];
     add_row(r, i, a, t);
-    if (a == 0 || side)
-      t->normal += rc;
+    if (a == 0)
+      add_normal(rc, share_of(s, i, a), s->area[i], now != CONTACT_OPEN, t);
+    else if (surface_normal_of(s, i, a) >= 0)
+      add_side(r, i, a, t);
     else
-      t->tangential[a - 1] += rc;
-    if (side) {
-      t->n_open += rc == 0.0;
-      t->n_slip += rc != 0.0;
-    }
+      t->tangential[a - 1] += share_of(s, i, a) * rc;
   }
-  contact_total *t = &r->result.totals[s->contact_id[i]];
-  t->n_open += r->result.contact[i] == CONTACT_OPEN;
-  t->n_slip += r->result.contact[i] == CONTACT_SLIP;
-  t->n_stick += r->result.contact[i] == CONTACT_STICK;
-  if (r->result.contact[i] != CONTACT_OPEN)
-    t->area += share_of(s, i, 0) * s->area[i];
-  t->penetration = fmax(t->penetration, -r->result.open_gap[i]);
-  if (s->area[i] > 0)
-    t->pressure = fmax(t->pressure, -r->now.rc[dim * i] / s->area[i]);
+  own->n_open += now == CONTACT_OPEN;
+  own->n_slip += now == CONTACT_SLIP;
+  own->n_stick += now == CONTACT_STICK;
+  own->penetration = fmax(own->penetration, -r->result.open_gap[i]);
 }
 
 static void find_totals(run *r) {

@@ -5,6 +5,7 @@
  */
 #include "base/memory.h"
 #include "base/timer.h"
+#include "model/facts.h"
 #include "run/visco.h"
 
 #include <math.h>
@@ -13,9 +14,8 @@
 static size_t at(const run *r, int k) { return (size_t)r->m->ns * (size_t)k; }
 
 size_t strains_kept(const run *r) {
-  int all = r->strains.temperature0 != NULL;
-  for (int i = 0; i < r->m->n.initial; ++i) /* the first work is from zero */
-    all |= r->m->initial.lines[i].type == INITIAL_STRAIN;
+  /* The first work is from zero. */
+  int all = r->strains.temperature0 != NULL || facts_starts_strained(r->m);
   return all ? at(r, r->strains.eigen.n) : 0;
 }
 

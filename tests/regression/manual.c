@@ -107,6 +107,28 @@ START_TEST(every_card_has_an_example) {
 }
 END_TEST
 
+/* Each form of them, as the help writes it. */
+START_TEST(lines_of_loads_begin_with_their_group) {
+  static const char *const cards[] = {"BOUNDARY", "CLOAD", "DLOAD", "DSLOAD",
+                                      "TEMPERATURE"};
+  for (size_t i = 0; i < sizeof cards / sizeof *cards; ++i) {
+    char command[80];
+    job j = job_begin("cards");
+    snprintf(command, sizeof command, "protis --keywords %s", cards[i]);
+    expect(&j, command, 0);
+    const char *line = strstr(j.text, "data lines: ");
+    ck_assert_ptr_nonnull(line);
+    for (line += 12; line != NULL; line = strstr(line, "; ")) {
+      if (*line == ';') line += 2;
+      if (strncmp(line, "or ", 3) == 0) line += 3;
+      if (strncmp(line, "with FILE= ", 11) == 0) line += 11;
+      ck_assert_msg(strncmp(line, "group", 5) == 0, "%s: %s", cards[i], line);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 START_TEST(examples_of_the_cards_run_without_a_warning) {
   glob_t files;
   job j = job_begin("pattern");
@@ -297,6 +319,7 @@ int main(void) {
   tcase_add_test(c, every_chapter_of_the_sources_prints);
   tcase_add_test(c, every_folder_of_the_sources_has_its_place);
   tcase_add_test(c, every_card_has_an_example);
+  tcase_add_test(c, lines_of_loads_begin_with_their_group);
   tcase_add_test(c, examples_of_the_cards_run_without_a_warning);
   tcase_add_loop_test(c, every_command_runs, 0, COMMANDS);
   tcase_add_test(c, version_is_the_newest_of_the_changes);

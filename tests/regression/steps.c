@@ -85,6 +85,28 @@ START_TEST(corner_forces_belong_to_their_contacts) {
 }
 END_TEST
 
+/* Both contacts have all of their face, pressure and zone, corner and all. */
+START_TEST(corner_belongs_to_the_areas_of_both_contacts) {
+  job j = run_cards(
+      "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+      "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+      "*CONTACT, NAME=W, GROUP=LEFT, OBSTACLE=O\n"
+      "*STEP\n*STATIC\n*DSLOAD\nTOP, P, 10.\nRIGHT, P, \"20+10*(y<1E-9)\"\n"
+      "*PRINT, TOTALS, ZONES\n*END STEP\n",
+      0);
+  dat t = job_table(&j, "TOTALS", -1), z = job_table(&j, "ZONES", -1);
+  ck_assert_int_eq(z.n_row, 2);
+  for (int i = 0; i < 2; ++i) {
+    ck_assert_double_eq_tol(dat_at(&t, i, "closed_area"), 1.0, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&z, i, "extent"), 1.0, 1e-12);
+  }
+  ck_assert_double_ge(dat_at(&t, 1, "pressure_max"), 22.0);
+  dat_free(&z);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* Pressed on a floor, then the foot is fixed where it is: what the floor bore
  * is left to the support, and the energies still balance. */
 START_TEST(support_takes_over_from_contact) {
@@ -233,6 +255,7 @@ END_TEST
 UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           gravity_turns_from_one_direction_to_the_other,
           corner_forces_belong_to_their_contacts,
+          corner_belongs_to_the_areas_of_both_contacts,
           supports_of_contact_nodes_balance, support_takes_over_from_contact,
           balance_is_that_of_the_largest_work,
           slip_distance_goes_on_with_other_supports,

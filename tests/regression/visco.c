@@ -401,6 +401,56 @@ START_TEST(initial_strain_is_a_stress_that_relaxes) {
 }
 END_TEST
 
+/* A body free of forces: each unit goes back by itself, and what the deck does
+ * not give follows from the rest. E = 1000, e^i_yy after 1 s. */
+#define INTERNAL(lines) "*INITIAL CONDITIONS, TYPE=INTERNAL\n" lines
+#define STRAINED(lines) "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\n" lines
+#define ONE_UNIT "*INELASTIC, LAW=KELVIN\n700., 500.\n"
+#define TWO_UNITS ONE_UNIT "700., 1000.\n"
+#define ONE_TERM "*INELASTIC, LAW=PRONY\n0.4, 0.4, 2.\n"
+#define BURGERS "*INELASTIC, LAW=BURGERS\n1.E4, 700., 500.\n"
+static const struct {
+  const char *law, *start;
+  double expected; /* / 1e-3; < 0: refused */
+} units[] = {
+    {"*INELASTIC, LAW=ZENER\n700., 500.\n", STRAINED("BODY, 2, 1.E-3\n"),
+     0.246596963941606},
+    {ONE_UNIT, STRAINED("BODY, 2, 1.E-3\n"), 0.246596963941606},
+    {ONE_UNIT, INTERNAL("BODY, 2, 1.E-3\n"), 0.246596963941606},
+    {ONE_TERM, STRAINED("BODY, 2, 1.E-3\n"), 0.740818220681718},
+    {ONE_TERM, INTERNAL("BODY, 2, 2.5E-3\n"), 0.740818220681718},
+    /* 0.4 and 0.6 of it in the two units: 0.4 exp(-1.4) + 0.6 exp(-0.7) */
+    {TWO_UNITS, INTERNAL("BODY, 2, 4.E-4\nBODY, 6, 6.E-4\n"),
+     0.396589967857488},
+    {TWO_UNITS,
+     STRAINED("BODY, 2, 1.E-3\n") INTERNAL("BODY, 2, 4.E-4\nBODY, 6, 6.E-4\n"),
+     0.396589967857488},
+    {BURGERS, INTERNAL("BODY, 2, 1.E-3\n"), 0.246596963941606},
+    {BURGERS, STRAINED("BODY, 2, 1.E-3\n"), 1},
+    {BURGERS, STRAINED("BODY, 2, 1.E-3\n") INTERNAL("BODY, 2, 4.E-4\n"),
+     0.6 + 0.4 * 0.246596963941606},
+    {TWO_UNITS, STRAINED("BODY, 2, 1.E-3\n"), -1},
+    {TWO_UNITS, STRAINED("BODY, 2, 1.E-3\n") INTERNAL("BODY, 2, 4.E-4\n"), -1},
+    {"*INELASTIC, LAW=PRONY\n0.4, 0., 2.\n",
+     STRAINED("BODY, 1, 1.E-3\nBODY, 2, 1.E-3\nBODY, 3, 1.E-3\n"), -1}};
+
+START_TEST(strains_of_units_and_their_sum_agree) {
+  const int refused = units[_i].expected < 0;
+  const square_case s = {"1000., 0.", units[_i].law,
+                         "CPE3",      units[_i].start,
+                         SYMMETRY,    "*VISCO, INTEGRATOR=RK4\n0.01, 1.\n"};
+  job j = square_run(&s, refused ? 2 : 0);
+  if (refused) {
+    ck_assert_ptr_nonnull(strstr(j.errors, "error P2063: *INITIAL CONDITIONS"));
+    ck_assert_int_eq(job_run(&j, "--check"), 2);
+  } else {
+    square_all_have(&j, 100, "ei_yy", 1e-3 * units[_i].expected, 1e-12);
+    square_all_have(&j, 100, "stress_yy", 0, 1e-12);
+  }
+  job_end(&j);
+}
+END_TEST
+
 /* A threshold of 100 that hardens by 1e4 p: with p = 0.01 from before 150 does
  * not flow. */
 START_TEST(initial_hardening_counts) {
@@ -506,6 +556,46 @@ START_TEST(temperature_sets_the_relaxation_time) {
 }
 END_TEST
 
+/* Temperatures that a rate with an activation energy cannot have: known before
+ * the run, but for what an expression does within a step. */
+#define ARRHENIUS \
+  "*INELASTIC, LAW=MAXWELL, SHIFT=ARRHENIUS, T_REF=300., ACTIVATION=1000."
+#define STARTS_AT(T) "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, " #T "\n"
+#define BACKWARD "*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
+static const struct {
+  square_case scene;
+  int early;
+  const char *text;
+} cold[] = {
+    {{STEEL, ARRHENIUS "\n10.\n", "CPS3", STARTS_AT(-10.), HELD, BACKWARD},
+     1,
+     "error P2062: material M, step 2, time 1, element "},
+    {{STEEL, ARRHENIUS ", T_ZERO=-273.15\n10.\n", "CPS3", STARTS_AT(20.), HELD,
+      BACKWARD "*TEMPERATURE\nBODY, -273.15\n"},
+     1,
+     ": the temperature -273.15 is not above absolute zero, T_ZERO = -273.15"},
+    {{STEEL, "*INELASTIC, LAW=HYPERBOLIC\n1.E-4, 0.01, 3., 100.\n", "CPS3", "",
+      HELD, BACKWARD},
+     1,
+     ": the temperature 0 is not above absolute zero, T_ZERO = 0"},
+    {{STEEL, ARRHENIUS "\n10.\n", "CPS3", STARTS_AT(300.), HELD,
+      BACKWARD "*TEMPERATURE\nBODY, \"300 - 700*(t > 1.4)*(t < 1.6)\"\n"},
+     0,
+     "material M: time 1.5: the temperature -400 is not above absolute zero"},
+    {{STEEL, ARRHENIUS "\n10.\n", "CPS3", STARTS_AT(300.), HELD,
+      "*VISCO, INTEGRATOR=HEUN\n0.25, 1.\n"
+      "*TEMPERATURE\nBODY, \"300 - 700*(t > 1.4)*(t < 1.6)\"\n"},
+     0,
+     "material M: time 1.5: the temperature -400 is not above absolute zero"}};
+
+START_TEST(laws_refuse_what_is_not_above_absolute_zero) {
+  job j = square_run(&cold[_i].scene, 2);
+  ck_assert_msg(strstr(j.errors, cold[_i].text) != NULL, "%s", j.errors);
+  ck_assert_int_eq(job_run(&j, "--check"), cold[_i].early ? 2 : 0);
+  job_end(&j);
+}
+END_TEST
+
 /* A group without a law: the answer is that of elasticity, and its elements
  * are neither integrated nor stored. */
 START_TEST(elastic_groups_cost_nothing) {
@@ -588,8 +678,12 @@ int main(void) {
   tcase_add_test(tests, elastic_groups_cost_nothing);
   tcase_add_test(tests, points_at_rest_are_counted);
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
+  tcase_add_loop_test(tests, strains_of_units_and_their_sum_agree, 0,
+                      (int)(sizeof units / sizeof *units));
   tcase_add_test(tests, initial_hardening_counts);
   tcase_add_test(tests, temperature_sets_the_relaxation_time);
+  tcase_add_loop_test(tests, laws_refuse_what_is_not_above_absolute_zero, 0,
+                      (int)(sizeof cold / sizeof *cold));
   tcase_add_loop_test(tests, what_is_sudden_acts_at_once, 0,
                       (int)(sizeof sudden / sizeof *sudden));
   tcase_add_test(tests, sudden_slip_acts_at_once);

@@ -290,9 +290,11 @@ static status find_areas(const finder *z, int contact_id) {
 
 /* ---- in the plane: along the contact line -------------------------------- */
 
-/* Direction of the slip along t; 0 without friction or slip. */
+/* Direction of the slip along t; 0 without friction or slip, as at a corner. */
 static int slip_sign(const finder *z, int i) {
-  if (z->r->result.contact[i] != CONTACT_SLIP) return 0;
+  if (z->r->result.contact[i] != CONTACT_SLIP ||
+      surface_is_corner(z->r->surface, i))
+    return 0;
   double rt = z->r->now.rc[2 * i + 1];
   return (rt < 0.0) - (rt > 0.0);
 }

@@ -186,6 +186,15 @@ static int series(const law_point *p, int part, int k, law_unit *u) {
                                                                   : LAW_WHOLE;
 }
 
+static int units(const law_point *p, double *only, double *sum) {
+  const chain c = chain_of(p);
+  const int dashpot = c.fluidity > 0;
+  for (int i = 0; i < c.ns && only != NULL && c.n == 1 && !dashpot; ++i)
+    only[i] = p->ei[i];
+  for (int i = 0; i < c.ns * c.n; ++i) sum[i % c.ns] += c.a[i];
+  return dashpot;
+}
+
 /* x . unit stiffness . y, J/m3 over Pa: isotropic, or the whole of it. */
 static double unit_energy(const law_point *p, const double *x,
                           const double *y) {
@@ -243,11 +252,11 @@ const law_ops kelvin_law = {
   .name = "KELVIN", .reference = "Thomson 1865; Voigt 1892",
   .help = "a spring and Kelvin-Voigt units in series, a unit a line",
   .example = "5E4, 1E5\n2E5, 3E6",
-  .terms = kelvin_terms, .min_term = 1, CHAIN_COMMON};
+  .terms = kelvin_terms, .min_term = 1, .units = units, CHAIN_COMMON};
 
 const law_ops burgers_law = {
   .name = "BURGERS", .reference = "Burgers 1935",
   .help = "a spring, a dashpot and a Kelvin-Voigt unit in series",
   .example = "2E6, 5E4, 1E5",
-  .fields = burgers_fields, CHAIN_COMMON};
+  .fields = burgers_fields, .units = units, CHAIN_COMMON};
 /* clang-format on */

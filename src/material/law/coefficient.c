@@ -327,6 +327,17 @@ double law_speed(const law_card *law, double temperature) {
   return 1;
 }
 
+const char *law_too_cold(const law_card *law, double temperature) {
+  const law_shift *s = &law->shift;
+  const int absolute = (s->kind == SHIFT_ARRHENIUS && s->activation > 0) ||
+                       (law->ops->is_warm != NULL && law->ops->is_warm(law));
+  if (!absolute || temperature > s->zero) return NULL;
+  return text_of(
+      "the temperature %.9g is not above absolute zero, T_ZERO = "
+      "%.9g",
+      temperature, s->zero);
+}
+
 unsigned law_varies(const law_card *law) {
   unsigned bits = 0;
   const int n = law->n_set * law_n_value(law);

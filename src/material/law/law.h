@@ -150,6 +150,11 @@ typedef struct law_ops {
    * v_k); which part number "part" is (LAW_WHOLE, or LAW_DEVIATOR and LAW_MEAN
    * in any order) and its unit k, or LAW_NO_PART. NULL: other laws. */
   int (*series)(const law_point *p, int part, int k, law_unit *unit);
+  /* Adds the strains of the units in alpha, whose sum e^i is, to sum[ns]: 1 if
+   * its rest is that of a dashpot, 0: none. "only", alpha again or NULL: gets
+   * e^i first if there is but one unit and no dashpot. NULL: no such strains.
+   */
+  int (*units)(const law_point *p, double *only, double *sum);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);
   /* Power lost, >= 0, W/m3; energy stored by alpha and e^i, J/m3 (NULL: none):
@@ -193,6 +198,9 @@ status law_values(const law_card *law, double t, double temperature,
                   double *value);
 /* 1/a of the shift; infinite or 0 only if the deck requires it. */
 double law_speed(const law_card *law, double temperature);
+/* What is wrong with a temperature for a law whose rates depend on the absolute
+ * one: it is not above T_ZERO of the card; NULL: nothing. */
+const char *law_too_cold(const law_card *law, double temperature);
 enum { LAW_VARIES_TIME = 1, LAW_VARIES_TEMPERATURE = 2 };
 /* What the values and the speed depend on: bits; 0: the same for ever. */
 unsigned law_varies(const law_card *law);

@@ -40,18 +40,33 @@ static void add_share(int ns, const prony_term *term, const double *v,
     out[i] += i < 3 ? term->g * (v[i] - mean) + term->k * mean : term->g * v[i];
 }
 
-/* The inelastic strain of the terms. */
+/* Adds the inelastic strain of the terms. */
 static void shares(const law_point *p, double *ei) {
   const int ns = p->elastic->ns;
-  for (int i = 0; i < ns; ++i) ei[i] = 0;
   for (int k = 0; k < p->law->n_term; ++k)
     add_share(ns, &terms_of(p)[k], p->alpha + ns * k, ei);
+}
+
+/* v of the only term: without what e^i has of a part that the term has not. */
+static void set_only(const law_point *p, double *v) {
+  const prony_term *term = terms_of(p);
+  const double g = term->g > 0 ? 1 / term->g : 0;
+  const double k = term->k > 0 ? 1 / term->k : 0;
+  const double mean = tensor_trace(p->ei) / 3;
+  for (int i = 0; i < p->elastic->ns; ++i)
+    v[i] = i < 3 ? g * (p->ei[i] - mean) + k * mean : g * p->ei[i];
+}
+
+static int units(const law_point *p, double *only, double *sum) {
+  if (only != NULL && p->law->n_term == 1) set_only(p, only);
+  shares(p, sum);
+  return 0;
 }
 
 /* Total strain less the part of e^i that is not in the terms. */
 static void total_strain(const law_point *p, double *e) {
   const int ns = p->elastic->ns;
-  double ei[6];
+  double ei[6] = {0};
   shares(p, ei);
   tensor_product(ns, p->elastic->S, p->sigma, e);
   for (int i = 0; i < ns; ++i) e[i] += ei[i];
@@ -167,7 +182,7 @@ static double dissipation(const law_point *p) {
 /* The energy of the springs less 1/2 (e - e^i) C (e - e^i). */
 static double stored(const law_point *p) {
   const int ns = p->elastic->ns;
-  double ei[6], stress[6], kept = 0;
+  double ei[6] = {0}, stress[6], kept = 0;
   shares(p, ei);
   tensor_product(ns, p->elastic->C, ei, stress);
   for (int k = 0; k < p->law->n_term; ++k)
@@ -201,7 +216,7 @@ const law_ops prony_law = {
   .help = "generalised Maxwell body in shear and bulk, a term a line",
   .example = "0.3, 0.1, 0.5\n0.2, 0., 10.\n0.25, 0.3, 200.",
   .terms = terms, .min_term = 1, .linear = 1, .n_alpha = n_alpha, .rate = rate,
-  .jacobian = jacobian, .fastest_rate = fastest_rate, .relaxing = relaxing,
-  .relaxed = relaxed, .dissipation = dissipation, .stored = stored,
-  .check = check};
+  .units = units, .jacobian = jacobian, .fastest_rate = fastest_rate,
+  .relaxing = relaxing, .relaxed = relaxed, .dissipation = dissipation,
+  .stored = stored, .check = check};
 /* clang-format on */

@@ -93,16 +93,33 @@ status flow_coefficients(flow_kind *kind, double t, double temperature,
   return OK;
 }
 
-/* Point k of a state for the law. */
-static status flow_point(const flow *x, int k, const flow_state *s, double dt,
-                         double *value, law_point *p) {
+status flow_at_point(flow_kind *kind, double t, double temperature,
+                     double *value, law_point *p) {
+  const law_card *law = kind->law;
+  const char *wrong = kind->varies & LAW_VARIES_TEMPERATURE
+                          ? law_too_cold(law, temperature)
+                          : NULL;
+  if (wrong != NULL)
+    RAISE(ERR_DECK, LAW_FORM "time %g: %s", LAW_ARGS(law), t, wrong);
+  return flow_coefficients(kind, t, temperature, value, p);
+}
+
+/* Point k of a state into p. */
+static void take_state(const flow *x, int k, const flow_state *s,
+                       law_point *p) {
   size_t at = (size_t)x->ns * (size_t)k;
-  PASS(flow_coefficients(&x->kind[x->kind_id[k]], s->t, s->temperature[k],
-                         value, p));
-  p->dt = dt;
   p->sigma = s->sigma + at;
   p->ei = s->ei + at;
   p->alpha = s->alpha + x->alpha_at[k];
+}
+
+/* Point k of a state for the law. */
+static status flow_point(const flow *x, int k, const flow_state *s, double dt,
+                         double *value, law_point *p) {
+  PASS(flow_at_point(&x->kind[x->kind_id[k]], s->t, s->temperature[k], value,
+                     p));
+  p->dt = dt;
+  take_state(x, k, s, p);
   return OK;
 }
 
@@ -175,8 +192,10 @@ status flow_add_stored(const flow *x, const flow_state *s, int from, int to,
   double value[FLOW_VALUE_MAX];
   for (int k = from; k < to; ++k) {
     law_point p;
-    if (x->kind[x->kind_id[k]].law->ops->stored == NULL) continue;
-    PASS(flow_point(x, k, s, 0.0, value, &p));
+    flow_kind *kind = &x->kind[x->kind_id[k]];
+    if (kind->law->ops->stored == NULL) continue;
+    PASS(flow_coefficients(kind, s->t, s->temperature[k], value, &p));
+    take_state(x, k, s, &p);
     *energy += x->weight[k] * law_stored(&p);
   }
   return OK;

@@ -76,7 +76,7 @@ static status point_step_begin(const flow *x, const scheme_step *p, int k,
   double T = (1 - th) * old->temperature[k] + th * now->temperature[k];
   PASS(flow_heat(kind, now->temperature[k]));
   memcpy(l->E, kind->elastic.E, (size_t)(x->ns * x->ns) * sizeof *l->E);
-  PASS(flow_coefficients(kind, old->t + th * p->dt, T, l->value, &l->p));
+  PASS(flow_at_point(kind, old->t + th * p->dt, T, l->value, &l->p));
   l->p.dt = p->dt;
   l->ns = x->ns;
   l->na = kind->n_alpha;

@@ -66,6 +66,10 @@ status flow_heat(flow_kind *kind, double temperature);
 status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p);
 enum { FLOW_VALUE_MAX = 512 };
+/* The same at the temperature of a point; ERR_DECK: it is not above absolute
+ * zero, which the law counts from. */
+status flow_at_point(flow_kind *kind, double t, double temperature,
+                     double *value, law_point *p);
 /* Test of a point: 1 if it flows, counted. */
 int flow_goes_on(const flow *x, const law_point *p);
 /* Rates at a state: ei_rate[ns*n], alpha_rate[alpha_at[n]]; *power gets what is

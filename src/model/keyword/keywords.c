@@ -340,11 +340,11 @@ const keyword keyword_table[] = {
    "number, or an expression of t in quotes",
    "inelastic law of CPR98 (3.14-3.16), flows in *VISCO steps"},
   {"CREEP", IN_MATERIAL, creep_options, NULL, apply_creep, 1, ANY,
-   "A, n [, m] [, temperature]; HYPERB A, B, n, dH, R [, temperature]",
+   "A, n [, m] [, temperature]; HYPERB A, B, n [, dH, R] [, temperature]",
    "creep, the same as *INELASTIC, LAW=NORTON or LAW=HYPERBOLIC"},
   {"VISCOELASTIC", IN_MATERIAL, viscoelastic_options, NULL,
    apply_viscoelastic, 1, ANY,
-   "g_i, k_i, tau_i",
+   "g_i, k_i, tau_i [, temperature]",
    "Prony series, the same as *INELASTIC, LAW=PRONY"},
   {"TRS", IN_MATERIAL, trs_options, NULL, apply_trs, 1, 1,
    "T_REF, C1, C2",
@@ -422,7 +422,7 @@ const keyword keyword_table[] = {
    "group, P or TX TY TZ, value [, amplitude]",
    "pressure (pushes into the body) or traction on faces"},
   {"DLOAD", IN_STEP, load_options, NULL, apply_dload, 0, ANY,
-   "group, BX BY BZ, value [, amplitude]; or GRAV, g, gx, gy [, gz "
+   "group, BX BY BZ, value [, amplitude]; or group, GRAV, g, gx, gy [, gz "
    "[, amplitude]]",
    "body force per volume, gravity"},
   {"CLOAD", IN_STEP, load_options, NULL, apply_cload, 0, ANY,
@@ -436,7 +436,8 @@ const keyword keyword_table[] = {
   {"ACCURACY", IN_STEP, accuracy_options, NULL, apply_accuracy, 0, 0,
    "", "error estimates"},
   {"GOAL", IN_MODEL, goal_options, NULL, apply_goal, 0, 2,
-   "[x, y[, z]] of PRESSURE, DISPLACEMENT, MOMENT; a second taken off",
+   "[x, y[, z]] of PRESSURE, DISPLACEMENT, MOMENT, SIF; of DISPLACEMENT a "
+   "second, whose value is taken off",
    "a quantity whose value, error by the mesh and its band are wanted"},
   {"EFFECTS", IN_MODEL | IN_STEP, effects_options, NULL, apply_effects, 0, 0,
    "", "which effects of the deck are simulated; for all steps"},

@@ -114,6 +114,7 @@ status run_new(run *r, const effect_ops *const *effects) {
   PASS_NEW_REALS(r->n_dof, &r->loads.ud, &r->loads.start);
   PASS(effects_create(r, effects));
   PASS(strains_new(r));
+  PASS(setup_flow(r));
   PASS(new_clusters(r));
   if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0) PASS(new_faces(r));
   if (r->m->effects & EFFECT_CONTACT) PASS(new_pairs(r));

@@ -9,6 +9,12 @@
  * ERR_MEMORY. */
 status setup_adjust(model *m, mesh *msh);
 
+/* flow.c: the start of the points whose law flows, after strains_new: what the
+ * deck does not give of inelastic strains and the units that make them.
+ * ERR_DECK with an error in the log: they do not agree; a temperature of a
+ * *VISCO step is not above the absolute zero of a law. ERR_MEMORY. */
+status setup_flow(const run *r);
+
 /* setup.c */
 /* weight[n_face], new: thickness of the elements at the faces, m. */
 status setup_face_weights(const model *m, const mesh *msh, double **weight);
