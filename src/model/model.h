@@ -370,7 +370,7 @@ typedef struct goal_card {
   int crack_id;          /* of SIF; -1: none */
   const char *group;     /* or NULL */
   int group_id, node_id; /* set by model_check; -1: none */
-  /* Of a difference of displacements: nodes whose mean is taken off. */
+  /* Of a difference of displacements: place whose mean is taken off. */
   const char *from;          /* group, or NULL */
   int from_id, from_node_id; /* as above */
   int component;

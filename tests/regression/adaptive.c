@@ -21,6 +21,7 @@ static job run_deck(const char *contact, const char *load, const char *visco,
 
 static const char *const rows[] = {"EULER",    "HEUN",     "RK4",
                                    "MIDPOINT", "BACKWARD", "EXPONENTIAL"};
+enum { ROWS = sizeof rows / sizeof *rows };
 
 /* The accepted increments of a step: how many, and the first of them. */
 typedef struct accepted {
@@ -288,11 +289,145 @@ START_TEST(flow_that_begins_late_is_an_error_of_the_steps) {
 }
 END_TEST
 
+/*
+ * A stress of 0.012 with a pulse of 1.2, from 6.33 to 6.37 of 10 s, under
+ * Norton's law with A, n: the strain A times the integral of sigma^n flows; the
+ * linear law is that of MAXWELL. No time of the increments that a smooth
+ * load allows sees it.
+ */
+#define PULSE(name)        \
+  "*AMPLITUDE, NAME=" name \
+  "\n0., 0.01, 6.33, 0.01, 6.34, 1., 6.36, 1., 6.37, 0.01, 10., 0.01\n"
+
+static double pulse_flow(double A, double n) {
+  const double low = 0.012, high = 1.2, rise = (high - low) / 0.01;
+  return A * (9.96 * pow(low, n) + 0.02 * pow(high, n) +
+              2 * (pow(high, n + 1) - pow(low, n + 1)) / (rise * (n + 1)));
+}
+
+/* The strain that flows in the second step is right to "most", a part of it. */
+static void check_pulse(const char *cards, double most, int linear) {
+  const square_case s = {
+      STEEL,    linear ? PROPORTIONAL : "*INELASTIC, LAW=NORTON\n1.E-3, 3.\n",
+      "CPS3",   PULSE("PULSE"),
+      SYMMETRY, cards};
+  job j = square_run(&s, 0);
+  dat d = job_table(&j, "NODES", -1);
+  const double found = dat_max(&d, "u_y") - 1.2e-5,
+               flow = pulse_flow(linear ? 5e-4 : 1e-3, linear ? 1 : 3);
+  ck_assert_msg(fabs(found - flow) <= most * flow, "%s: %g, right %g", cards,
+                found, flow);
+  dat_free(&d);
+  job_end(&j);
+}
+
+START_TEST(pulse_of_a_table_is_seen) {
+  char cards[300];
+  snprintf(cards, sizeof cards,
+           "*VISCO, INTEGRATOR=%s, TOLERANCE=1.E-5\n0.01, 10.\n"
+           "*DSLOAD\nTOP, TY, 1.2, PULSE\n",
+           rows[_i]);
+  check_pulse(cards, 2e-3, strcmp(rows[_i], "EXPONENTIAL") == 0);
+}
+END_TEST
+
+START_TEST(pulse_of_a_table_is_seen_by_balanced_steps) {
+  char cards[300];
+  snprintf(cards, sizeof cards,
+           "*VISCO, INTEGRATOR=%s\n0.01, 10.\n*DSLOAD\nTOP, TY, 1.2, PULSE\n"
+           "*ACCURACY, TIME=BALANCED, MESH=YES\n",
+           rows[_i]);
+  check_pulse(cards, 0.1, strcmp(rows[_i], "EXPONENTIAL") == 0);
+}
+END_TEST
+
+/* Pulses of supports, temperatures, obstacles, given forces and friction end
+ * increments where they begin; some count the 1 s of the first step. */
+static const struct {
+  const char *model, *load, *cards;
+  const char *begins; /* s, as in JOB.sta */
+} pulses[] = {
+    {"", SYMMETRY, "*BOUNDARY, AMPLITUDE=PULSE\nTOP, 2, 2, 1.E-3\n",
+     " 7.3300E+000 "},
+    {"", SYMMETRY, "*TEMPERATURE, AMPLITUDE=PULSE\nBODY, 10.\n",
+     " 7.3300E+000 "},
+    {"*OBSTACLE, NAME=O, TYPE=PLANE, AMPLITUDE=PULSE\n0., 0.\n0., 1.\n"
+     "MOVE, 0., 1.E-3\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n",
+     "*BOUNDARY\nLEFT, 1\nTOP, 2\n", "", " 6.3300E+000 "},
+    {FLOOR(0.1) "*CONTACT FORCE, CONTACT=C, AMPLITUDE=PULSE\n1.\n",
+     "*BOUNDARY\nLEFT, 1\nTOP, 2\n", "", " 6.3300E+000 "},
+    {FLOOR(0.1), PRESS(10.),
+     "*FRICTION, CONTACT=C, LAW=COULOMB, AMPLITUDE=PULSE\n0.3\n",
+     " 6.3300E+000 "}};
+enum { N_PULSE = sizeof pulses / sizeof *pulses };
+
+START_TEST(pulses_of_all_tables_end_increments) {
+  char model[400], cards[300];
+  snprintf(model, sizeof model, "%s%s", PULSE("PULSE"), pulses[_i].model);
+  snprintf(cards, sizeof cards,
+           "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-3\n0.01, 10.\n%s",
+           pulses[_i].cards);
+  const square_case s = {STEEL,           DEVIATORIC "*EXPANSION\n1.E-5\n",
+                         "CPS3",          model,
+                         pulses[_i].load, cards};
+  job j = square_run(&s, 0);
+  char *sta = job_file(&j, "sta");
+  const int found = strstr(sta, pulses[_i].begins) != NULL;
+  free(sta);
+  ck_assert_msg(found, "no increment ends at %s", pulses[_i].begins);
+  job_end(&j);
+}
+END_TEST
+
+/* A smooth course in 400 points takes about as many increments as the same in
+ * an expression. */
+static int count_of_wave(const char *integrator, int in_points) {
+  char model[16000] = "*AMPLITUDE, NAME=WAVE\n", cards[300];
+  size_t used = strlen(model);
+  for (int i = 0; i <= 400 && in_points; ++i)
+    used += (size_t)snprintf(model + used, sizeof model - used, "%g, %.12g\n",
+                             0.025 * i, sin(0.2 * acos(-1.0) * 0.025 * i));
+  if (!in_points) strcat(model, "\"sin(0.2*pi*t)\"\n");
+  snprintf(cards, sizeof cards,
+           "*VISCO, INTEGRATOR=%s, TOLERANCE=1.E-4\n0.01, 10.\n"
+           "*DSLOAD\nTOP, TY, 1.2, WAVE\n",
+           integrator);
+  const square_case s = {STEEL, DEVIATORIC, "CPS3", model, SYMMETRY, cards};
+  job j = square_run(&s, 0);
+  const int n = accepted_of(&j).n;
+  job_end(&j);
+  return n;
+}
+
+/* After a corner increments go on with the length they had. */
+START_TEST(corners_do_not_shorten_what_follows) {
+  const square_case s = {
+      STEEL,
+      PROPORTIONAL,
+      "CPS3",
+      "*AMPLITUDE, NAME=A\n0., 1., 0.09, 1., 0.091, 1.1, 10., 1.1\n",
+      SYMMETRY "*DSLOAD\nTOP, TY, 1.\n",
+      "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-3\n0.0899, 10.\n"
+      "*DSLOAD\nTOP, TY, 1., A\n"};
+  job j = square_run(&s, 0);
+  ck_assert_int_le(accepted_of(&j).n, 9);
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(dense_tables_are_smooth) {
+  const int smooth = count_of_wave(rows[_i], 0);
+  const int points = count_of_wave(rows[_i], 1);
+  ck_assert_msg(2 * points <= 3 * smooth, "%s: %d increments, not %d", rows[_i],
+                points, smooth);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("adaptive");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, error_is_below_the_sum_of_what_is_allowed, 0,
-                      (int)(sizeof rows / sizeof *rows));
+                      ROWS);
   tcase_add_test(tests, rejected_increments_leave_nothing_behind);
   tcase_add_loop_test(tests, strains_of_other_steps_count, 0, 2);
   tcase_add_test(tests, missed_tolerance_is_told);
@@ -304,5 +439,11 @@ int main(void) {
                       2 * BLIND);
   tcase_add_loop_test(tests, flow_that_begins_late_is_an_error_of_the_steps, 0,
                       BLIND);
+  tcase_add_loop_test(tests, pulse_of_a_table_is_seen, 0, ROWS);
+  tcase_add_loop_test(tests, pulse_of_a_table_is_seen_by_balanced_steps, 0,
+                      ROWS);
+  tcase_add_loop_test(tests, pulses_of_all_tables_end_increments, 0, N_PULSE);
+  tcase_add_test(tests, corners_do_not_shorten_what_follows);
+  tcase_add_loop_test(tests, dense_tables_are_smooth, 0, ROWS);
   return unit_run("adaptive", tests);
 }

@@ -257,7 +257,7 @@ static status new_bubbles(const goal_solution *s, int parts, bubbles *b) {
 static status new_fields(goal_estimator *e) {
   const goal_solution *s = &e->s;
   const int axi = s->d->kin[0] == AXISYMMETRIC;
-  PASS(new_bubbles(s, s->has_flux || axi, &e->all));
+  PASS(new_bubbles(s, s->has_flux || s->has_mean || axi, &e->all));
   if (!s->has_energy) return OK;
   PASS_NEW(e->w, s->d->mesh->dim * s->d->mesh->n_node);
   return new_bubbles(s, axi, &e->given);
@@ -307,6 +307,18 @@ void goal_estimator_force(goal_estimator *e, double *F) {
               e->sigma_y + ns * (size_t)k);
   domain_internal_force(d, e->sigma_y, F);
   for (int k = 0; k < d->mesh->dim * d->mesh->n_node; ++k) F[k] = -F[k];
+}
+
+void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
+                           double *d) {
+  const mesh *m = e->s.d->mesh;
+  const int dim = m->dim, *v = m->elem + (dim + 1) * elem_id;
+  const double *of =
+      e->all.part + (size_t)(edges_of(dim) * dim) * (size_t)elem_id;
+  for (int i = 0; i < dim; ++i)
+    for (int k = i + 1; k <= dim; ++k, of += dim)
+      if ((v[i] == a && v[k] == b) || (v[i] == b && v[k] == a))
+        memcpy(d, of, (size_t)dim * sizeof *d);
 }
 
 /* At a point of an element: T : grad of u, that in the bubbles too, by the

@@ -130,6 +130,7 @@ typedef struct goal_solution {
   int n_given;
   const given_edge *given; /* [n_given] sorted by a, b */
   int has_flux;            /* 1: some J has a flux */
+  int has_mean;            /* 1: some J may be a mean of displacements */
   int has_energy;          /* 1: some J is the energy */
 } goal_solution;
 
@@ -143,6 +144,10 @@ double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
 /* [dim*n_edge] what u is in the bubbles of the contact edges, m; of a crack,
  * less the mean of both lips. */
 const double *goal_estimator_edges(const goal_estimator *e);
+/* d[dim] what u is in the bubble of the edge from node a to b of an element, m;
+ * has_mean. */
+void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
+                           double *d);
 /* J of u, what u is in the bubbles too, by its derivative f. */
 double goal_estimator_flux(const goal_estimator *e, const goal_flux *f);
 /* F[dim*n_node]: forces that what u is in the bubbles exerts on the mesh; under

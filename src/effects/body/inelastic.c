@@ -17,17 +17,20 @@
 
 static const double ROUNDING = 0x1p-48; /* -, of the time */
 
-/* The next increment after one of length dt with this error; implicit
- * integrators keep to halves and doubles, which they have factored. */
-static double next_length(const step *s, double dt, double error) {
+/* The next increment after one of length dt with this error, of length
+ * "planned" but for the points of a table; implicit integrators keep to halves
+ * and doubles of that, which they have factored. */
+static double next_length(const step *s, double dt, double planned,
+                          double error) {
   const scheme *of = s->visco.integrator;
   const int order = of->estimates ? 1 : visco_order(s);
-  double factor = 4.0;
+  const double most = fmax(4.0, planned / dt);
+  double factor = most;
   if (error > 0.0)
     factor = 0.9 * pow(s->visco.tolerance / error, 1.0 / (order + 1));
-  factor = fmin(4.0, fmax(0.2, factor));
+  factor = fmin(most, fmax(0.2, factor)) * (dt / planned);
   if (of->limit == 0.0) factor = ldexp(1.0, (int)floor(log2(factor)));
-  return fmin(dt * factor, s->dt_max);
+  return fmin(planned * factor, s->dt_max);
 }
 
 /* The smallest increment: one that moves the time. */
@@ -58,10 +61,12 @@ static status attempt_adapted(run *r) {
   progress *p = &r->at;
   const double least = least_length(r);
   double end = s->start + s->total, error = 0.0;
-  double cpu = timer_cpu(), t = next_end(r, p->dt), tried;
+  double cpu = timer_cpu(), t = next_end(r, p->dt), planned, tried;
   int deeper, attempt = p->attempt;
   TRY(visco_level(r, t - r->old.t, &deeper));
   if (deeper > 0) t = next_end(r, ldexp(t - r->old.t, -deeper));
+  planned = t - r->old.t;
+  t = loop_end(r, t, s->visco.tolerance);
   tried = t - r->old.t;
   TRY(effects_attempt(r, t));
   TRY(visco_try(r, t, &error));
@@ -74,7 +79,7 @@ static status attempt_adapted(run *r) {
     TRY(loop_reject(r, attempt, p->increment_no + 1,
                     settled ? "strain error above TOLERANCE"
                             : outcome_text(r->solving.report.outcome)));
-    p->dt = fmax(least, fmin(0.5 * tried, next_length(s, tried, error)));
+    p->dt = fmax(least, fmin(0.5 * tried, next_length(s, tried, tried, error)));
     ++p->attempt;
     goto done;
   }
@@ -82,7 +87,8 @@ static status attempt_adapted(run *r) {
   p->attempt = 1;
   ++p->increment_no;
   TRY(loop_accept(r, attempt, p->increment_no, t == end, cpu));
-  p->dt = fmax(least_length(r), settled ? next_length(s, tried, error) : tried);
+  p->dt = fmax(least_length(r),
+               settled ? next_length(s, tried, planned, error) : tried);
 done:
   r->course.missed = 0;
   return st;

@@ -345,6 +345,7 @@ static status keep(run *r, void *self, archive *a) {
  */
 static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* - */
 static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm */
+static const double FLAT = 1e-3;        /* -, of tables that count as smooth */
 
 /* End of the next increment: not a sliver before the end of the step. */
 static double next_end(const run *r) {
@@ -374,16 +375,24 @@ static double allowed_part(const run *r, double before) {
               ROUNDING * sqrt(2.0 * largest));
 }
 
-/* Length of the next increment after one of dt; implicit integrators keep to
- * halves and doubles, which they have factored. */
-static double next_length(const run *r, double dt, double part,
+/* What of its loads an increment may miss, -, as of its error. */
+static double share_of_loads(const run *r) {
+  return fmax(FLAT,
+              r->step->accuracy.time_share * r->errors.mesh_error.relative);
+}
+
+/* Length of the next increment after one of dt, of "planned" but for the points
+ * of a table; implicit integrators keep to halves and doubles of that, which
+ * they have factored. */
+static double next_length(const run *r, double dt, double planned, double part,
                           double allowed) {
   const step *s = r->step;
-  double factor = part > 0.0 ? SAFETY * sqrt(allowed / part) : LONGER;
-  factor = fmin(LONGER, fmax(SHORTER, factor));
+  const double most = fmax(LONGER, planned / dt);
+  double factor = part > 0.0 ? SAFETY * sqrt(allowed / part) : most;
+  factor = fmin(most, fmax(SHORTER, factor)) * (dt / planned);
   if (s->visco.integrator != NULL && s->visco.integrator->limit == 0.0)
     factor = ldexp(1.0, (int)floor(log2(factor)));
-  return fmax(s->dt_min, fmin(dt * factor, s->dt_max));
+  return fmax(s->dt_min, fmin(planned * factor, s->dt_max));
 }
 
 /* The attempt is rejected: r->at.dt the next time. */
@@ -400,14 +409,16 @@ static status refuse(run *r, paths *own, double tried, double dt,
 static status attempt_balanced(run *r, paths *own) {
   const step *s = r->step;
   progress *p = &r->at;
-  double cpu = timer_cpu(), t = next_end(r), tried = t - r->old.t;
+  double cpu = timer_cpu(), t = next_end(r), planned = t - r->old.t;
   double before = total_error(own), part, allowed;
   int deeper, attempt = p->attempt;
-  PASS(visco_level(r, tried, &deeper));
+  PASS(visco_level(r, planned, &deeper));
   if (deeper > 0) {
-    p->dt = ldexp(tried, -deeper);
+    p->dt = ldexp(planned, -deeper);
     return OK;
   }
+  t = loop_end(r, t, share_of_loads(r));
+  const double tried = t - r->old.t;
   PASS(effects_attempt(r, t));
   PASS(loop_solve(r, t));
   int settled = r->solving.report.outcome > 0, shorter = p->dt > s->dt_min;
@@ -420,7 +431,7 @@ static status attempt_balanced(run *r, paths *own) {
   PASS(measure(r, own, &part));
   part = rounding_hides_strains(r) ? 0.0 : part - before;
   allowed = allowed_part(r, before);
-  double dt = next_length(r, tried, part, allowed);
+  double dt = next_length(r, tried, planned, part, allowed);
   if (part > allowed && shorter) {
     PASS(refuse(r, own, tried, dt, "error of the steps above its share"));
     return OK;

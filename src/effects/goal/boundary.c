@@ -377,3 +377,59 @@ status goal_add_boundary(const run *r, double *dF) {
   }
   return add_loads(r, &rings, dF);
 }
+
+/* ---- means --------------------------------------------------------------- */
+
+static double slope_of(const mesh *m, int elem, const double *u, int component,
+                       const double *along) {
+  const int *v = m->elem + (m->dim + 1) * elem;
+  double g[12], sum = 0.0;
+  mesh_elem_gradients(m, elem, g);
+  for (int a = 0; a <= m->dim; ++a)
+    for (int c = 0; c < m->dim; ++c)
+      sum += u[m->dim * v[a] + component] * g[m->dim * a + c] * along[c];
+  return sum;
+}
+
+/* The integral of u less its mean over the surface less that over a face; of a
+ * volume, over what is beyond it. */
+static double beyond_face(const run *r, const patch *p, int face,
+                          const goal_mean *w, double mean) {
+  const mesh *m = r->msh;
+  const int of_faces = m->group[w->group_id].dim < m->dim;
+  const double rise =
+      slope_of(m, m->face_elem[face], r->now.u, w->component, p->normal);
+  double sum = 0.0;
+  for (int k = 0; k < p->n; ++k) {
+    const spot s = spot_at(m, p, k);
+    double u = -mean, slope = 0.0;
+    for (int i = 0; i < p->n; ++i)
+      u += s.b[i] * r->now.u[m->dim * p->node[i] + w->component];
+    for (int c = 0; c < m->dim; ++c) slope += s.slope[c] * s.slope[c];
+    const double more =
+        sqrt(1.0 + slope) * turn_of(r, s.on[0]) - turn_of(r, s.x[0]);
+    sum +=
+        s.weight * (of_faces ? u * more + s.beyond * rise * turn_of(r, s.x[0])
+                             : u * s.beyond * turn_of(r, s.x[0]));
+  }
+  return sum;
+}
+
+status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
+                        double *sum) {
+  const mesh *m = r->msh;
+  const mesh_group *g = &m->group[w->group_id];
+  ENDS_BY(ring_free) ring rings = {0};
+  OWNED unsigned char *in = NULL;
+  *sum = 0.0;
+  PASS(ring_new(m, &rings));
+  PASS_NEW(in, m->n_face + m->n_elem);
+  for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
+  for (int f = 0; f < m->n_face; ++f) {
+    if (m->face_other[f] >= 0 || !in[g->dim < m->dim ? f : m->face_elem[f]])
+      continue;
+    const patch p = face_patch(r, &rings, f);
+    if (p.is_curved) *sum += w->factor * beyond_face(r, &p, f, w, mean);
+  }
+  return OK;
+}

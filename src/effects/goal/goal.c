@@ -193,6 +193,7 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .n_given = s->surface.n_given,
                                .given = s->surface.given,
                                .has_flux = has_goal_of(r->m, GOAL_SIF),
+                               .has_mean = has_goal_of(r->m, GOAL_DISPLACEMENT),
                                .has_energy = has_goal_of(r->m, GOAL_ENERGY)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
@@ -286,8 +287,9 @@ static status complete(const run *r, const shared *s, goal_estimate *e) {
   const goal_form *f = &s->form;
   if (f->factor.n > 0) e->error += of_factor(r, s);
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
-  e->error += f->curved + beyond;
-  e->magnitude += fabs(f->curved) + fabs(beyond);
+  const double between = goal_mean_bubbles(r, s->estimator, f);
+  e->error += f->curved + beyond + between;
+  e->magnitude += fabs(f->curved) + fabs(beyond) + fabs(between);
   e->error += e->hoop;
   if (f->sums) {
     double slips;

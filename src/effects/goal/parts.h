@@ -1,6 +1,6 @@
 /*
  * The parts of the goals: quantities as functions of displacements and contact
- * forces (quantity.c), those of a pressure (pressure.c),
+ * forces (quantity.c), those of a pressure (pressure.c), means (mean.c),
  * the contact surface as the estimate sees it (surface.c). Private to
  * src/effects/goal.
  */
@@ -11,6 +11,12 @@
 #include "fracture/fracture.h"
 #include "run/run.h"
 
+/* A mean over the area or the volume of a group. */
+typedef struct goal_mean {
+  int group_id, component;
+  double factor; /* of the integral, sign included, 1/m2 */
+} goal_mean;
+
 /* A quantity J at r->now, with its derivatives. */
 typedef struct goal_form {
   double value;
@@ -19,6 +25,8 @@ typedef struct goal_form {
   double *psi;  /* [dim*n] by contact forces, contact frame */
   double *tau;  /* [ns*n_elem] by strains, per volume; NULL: of no goal */
   fracture_linear factor; /* of a stress intensity factor; all-zero: of none */
+  int n_mean;
+  goal_mean mean[2]; /* [n_mean] of a displacement */
   int has_tau;
   int sums;         /* 1: a sum over the increments, of which rows are the
                        derivative by the motion of the last */
@@ -43,8 +51,18 @@ status goal_form_set(run *r, const goal_card *g, goal_form *f);
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f);
 status goal_set_width(const run *r, const goal_card *g, goal_form *f);
 
+/* mean.c: adds a mean times a sign; what of the means is in the bubbles.
+ * ERR_MEMORY. */
+status goal_add_mean(const run *r, int group_id, int component, double sign,
+                     goal_form *f);
+double goal_mean_bubbles(const run *r, const goal_estimator *e,
+                         const goal_form *f);
+
 /* boundary.c: adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
+/* What a mean, without its sign, has by the surface beyond the faces. */
+status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
+                        double *sum);
 
 /* The border of the bodies, of a mesh. */
 typedef struct goal_border {

@@ -39,6 +39,7 @@ static void clear(const run *r, goal_form *f) {
            (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
   fracture_linear_free(&f->factor);
   f->value = f->curved = f->size = f->held = f->rough = 0.0;
+  f->n_mean = 0;
   f->has_tau = f->is_square = f->is_coarse = f->is_front = f->sums =
       f->is_still = 0;
   f->why = GOAL_RELIABLE;
@@ -184,24 +185,21 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   return OK;
 }
 
-/* Adds the mean over a node or a group times a sign. */
-static void add_mean(const run *r, int node_id, int group_id, int component,
-                     double sign, goal_form *f) {
-  const mesh *m = r->msh;
-  const mesh_group *of = node_id < 0 ? &m->group[group_id] : NULL;
-  const int n = of == NULL ? 1 : of->n_node;
-  for (int k = 0; k < n; ++k) {
-    const int at = m->dim * (of == NULL ? node_id : of->node_id[k]) + component;
-    f->load[at] += sign / n;
-    f->value += sign * r->now.u[at] / n;
-    f->size += fabs(r->now.u[at]) / n;
-  }
+/* Adds the displacement of a node or the mean of a group times a sign. */
+static status add_place(const run *r, int node_id, int group_id, int component,
+                        double sign, goal_form *f) {
+  if (node_id < 0) return goal_add_mean(r, group_id, component, sign, f);
+  const int at = r->msh->dim * node_id + component;
+  f->load[at] += sign;
+  f->value += sign * r->now.u[at];
+  f->size += fabs(r->now.u[at]);
+  return OK;
 }
 
 static status set_displacement(const run *r, const goal_card *g, goal_form *f) {
-  add_mean(r, g->node_id, g->group_id, g->component, 1.0, f);
+  PASS(add_place(r, g->node_id, g->group_id, g->component, 1.0, f));
   if (g->from_node_id >= 0 || g->from_id >= 0)
-    add_mean(r, g->from_node_id, g->from_id, g->component, -1.0, f);
+    PASS(add_place(r, g->from_node_id, g->from_id, g->component, -1.0, f));
   return OK;
 }
 

@@ -258,7 +258,7 @@ static const option goal_options[] = {
   NAME(group, "GROUP", OPTION_ABSENT,
        "of STRESS: elements; of DISPLACEMENT: nodes, whose mean it is"),
   NAME(goal.from, "FROM", OPTION_ABSENT,
-       "of DISPLACEMENT: nodes whose mean is taken off"),
+       "of DISPLACEMENT: group whose mean is taken off"),
   CHOICE(goal.component, "COMPONENT", GOAL_COMPONENTS, OPTION_ABSENT,
          "of FORCE (NORMAL if absent), DISPLACEMENT, STRESS, of MOMENT the "
          "axis through the point, of SIF the mode"),

@@ -1,0 +1,132 @@
+/*
+ * *GOAL, QUANTITY=DISPLACEMENT, GROUP=: the mean over the area of faces, the
+ * volume of elements, on meshes whose edges are 1:8, of fields that all the
+ * border prescribes.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* The unit square, and the cube on it; fine at one corner. */
+#define SQUARE                                                              \
+  "Point(1) = {0, 0, 0, 0.05}; Point(2) = {1, 0, 0, 0.4};\n"                \
+  "Point(3) = {1, 1, 0, 0.4}; Point(4) = {0, 1, 0, 0.05};\n"                \
+  "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};" \
+  "\nCurve Loop(1) = {1:4}; Plane Surface(1) = {1};\n"
+#define PLANE                                                             \
+  SQUARE                                                                  \
+  "Physical Surface(\"BODY\") = {1}; Physical Curve(\"BORDER\") = {1:4};" \
+  "\nPhysical Curve(\"TOP\") = {3};\n"
+#define CUBE                                                            \
+  SQUARE                                                                \
+  "e[] = Extrude {0, 0, 1} { Surface{1}; };\n"                          \
+  "Physical Volume(\"BODY\") = {e[1]};\n"                               \
+  "Physical Surface(\"BORDER\") = {1, e[0], e[2], e[3], e[4], e[5]};\n" \
+  "Physical Surface(\"TOP\") = {e[4]};\n"
+/* A quarter of a ring from radius 1 to 2. */
+#define RING                                                                 \
+  "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {2, 0, 0};\n"      \
+  "Point(4) = {0, 2, 0}; Point(5) = {0, 1, 0};\n"                            \
+  "Line(1) = {2, 3}; Circle(2) = {3, 1, 4}; Line(3) = {4, 5};\n"             \
+  "Circle(4) = {5, 1, 2}; Curve Loop(1) = {1:4};\n"                          \
+  "Plane Surface(1) = {1}; Mesh.MeshSizeMax = 0.25;\n"                       \
+  "Transfinite Curve{4} = 9 Using Progression 1.2;\n"                        \
+  "Physical Surface(\"BODY\") = {1}; Physical Curve(\"BORDER\") = {2, 4};\n" \
+  "Physical Curve(\"TOP\") = {4}; Physical Curve(\"BOTTOM\") = {1};\n"       \
+  "Physical Curve(\"LEFT\") = {3};\n"
+
+/* A body, u_x on its border, the others zero or as told; means of u_x over
+ * TOP and BODY (NAN: not known). */
+typedef struct field {
+  const char *geo, *section, *cards;
+  double top, body;
+} field;
+
+static job run_field(const field *f) {
+  job j = job_begin("means");
+  job_write(&j, "means.geo", "%s", f->geo);
+  job_write(&j, "means.inp",
+            "*MESH, FILE=means.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*EXPANSION\n1.E-3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
+            "*GOAL, NAME=T, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=TOP\n"
+            "*GOAL, NAME=B, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=BODY\n"
+            "*GOAL, NAME=D, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=TOP, "
+            "FROM=BODY\n"
+            "*STEP\n*STATIC\n%s*PRINT, GOALS\n*END STEP\n",
+            f->section, f->cards);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+#define GIVEN(u, last) \
+  "*BOUNDARY\nBORDER, 1, 1, \"" u "\"\nBORDER, 2, " #last ", 0\n"
+static const field linear[] = {
+    {PLANE, ", TYPE=CPE3", GIVEN("0.3*x+0.1*y", 2), 0.25, 0.2},
+    {PLANE, ", TYPE=CAX3", GIVEN("0.3*x", 2), 0.2, 0.2},
+    {CUBE, "", GIVEN("0.3*x+0.1*z", 3), 0.2, 0.2}};
+
+START_TEST(means_of_linear_fields_are_exact) {
+  job j = run_field(&linear[_i]);
+  dat t = job_table(&j, "GOALS", -1);
+  const double is[3] = {linear[_i].top, linear[_i].body,
+                        linear[_i].top - linear[_i].body};
+  for (int k = 0; k < 3; ++k) {
+    ck_assert_double_eq_tol(dat_at(&t, k, "value"), is[k], 1e-10);
+    ck_assert_double_eq_tol(dat_at(&t, k, "error"), 0.0, 1e-10);
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* What the border prescribes between the nodes is in the error. */
+static const field square[] = {
+    {PLANE, ", TYPE=CPE3", GIVEN("x^2", 2), 1.0 / 3.0, NAN},
+    {PLANE, ", TYPE=CAX3", GIVEN("x^2", 2), 0.5, NAN},
+    {CUBE, "", GIVEN("x^2+z^2", 3), 2.0 / 3.0, NAN}};
+
+START_TEST(errors_of_means_have_what_is_between_the_nodes) {
+  job j = run_field(&square[_i]);
+  dat t = job_table(&j, "GOALS", -1);
+  const double found = dat_at(&t, 0, "value"), is = square[_i].top;
+  ck_assert_double_gt(fabs(found - is), 1e-3);
+  ck_assert_double_eq_tol(found + dat_at(&t, 0, "error"), is, 1e-10);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* A ring that is warmed grows by u = x/100, which elements have: the mean over
+ * an arc, not over its chords. */
+#define WARMED "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*TEMPERATURE\nBODY, 10.\n"
+static const field round_ones[] = {
+    {RING, ", TYPE=CPS3", WARMED, 0.02 / M_PI, 0.28 / 9.0 / M_PI},
+    {RING, ", TYPE=CAX3", WARMED, M_PI / 400.0, 0.45 * M_PI / 112.0}};
+
+START_TEST(errors_of_means_have_what_is_beyond_chords) {
+  job j = run_field(&round_ones[_i]);
+  dat t = job_table(&j, "GOALS", -1);
+  for (int k = 0; k < 2; ++k) {
+    const double is = k == 0 ? round_ones[_i].top : round_ones[_i].body;
+    const double lacks = is - dat_at(&t, k, "value");
+    ck_assert_double_gt(fabs(lacks), 1e-6);
+    ck_assert_double_eq_tol(dat_at(&t, k, "error"), lacks, 0.08 * fabs(lacks));
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("goals_means");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, means_of_linear_fields_are_exact, 0, 3);
+  tcase_add_loop_test(tests, errors_of_means_have_what_is_between_the_nodes, 0,
+                      3);
+  tcase_add_loop_test(tests, errors_of_means_have_what_is_beyond_chords, 0, 2);
+  return unit_run("goals_means", tests);
+}
