@@ -78,11 +78,6 @@ static int row_contact(const contact_surface *s, int i, int a) {
   return side >= 0 ? side : s->contact_id[i];
 }
 
-/* Resultant on the body of a unit force in row a of a contact node. */
-static double share_of(const contact_surface *s, int i, int a) {
-  return s->share == NULL ? 1.0 : s->share[s->dim * i + a];
-}
-
 /* Force and moment of one row of a contact node. */
 static void add_row(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
@@ -93,7 +88,7 @@ static void add_row(const run *r, int i, int a, contact_total *t) {
   for (int c = 0; c < dim; ++c) {
     x[c] = at[c];
     force[c] = s->frame[dim * dim * i + dim * a + c] * r->now.rc[dim * i + a];
-    t->force[c] += share_of(s, i, a) * force[c];
+    t->force[c] += surface_share(s, i, a) * force[c];
   }
   t->moment[0] += x[1] * force[2] - x[2] * force[1];
   t->moment[1] += x[2] * force[0] - x[0] * force[2];
@@ -105,7 +100,7 @@ static void add_node(const run *r, int i) {
   int dim = s->dim;
   for (int a = 0; a < dim; ++a) {
     contact_total *t = &r->result.totals[row_contact(s, i, a)];
-    double rc = share_of(s, i, a) * r->now.rc[dim * i + a];
+    double rc = surface_share(s, i, a) * r->now.rc[dim * i + a];
     int side = a > 0 && s->side_id[(dim - 1) * i + a - 1] >= 0;
     add_row(r, i, a, t);
     if (a == 0 || side)
@@ -122,7 +117,7 @@ static void add_node(const run *r, int i) {
   t->n_slip += r->result.contact[i] == CONTACT_SLIP;
   t->n_stick += r->result.contact[i] == CONTACT_STICK;
   if (r->result.contact[i] != CONTACT_OPEN)
-    t->area += share_of(s, i, 0) * s->area[i];
+    t->area += surface_share(s, i, 0) * s->area[i];
   t->penetration = fmax(t->penetration, -r->result.open_gap[i]);
   if (s->area[i] > 0)
     t->pressure = fmax(t->pressure, -r->now.rc[dim * i] / s->area[i]);
