@@ -127,6 +127,10 @@ void surface_spread_row(const contact_surface *s, int q, int a, double force,
  * contact nodes. ERR_MEMORY. */
 status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r);
+/* Resultant on the body of a unit force in row a of contact node i, -. */
+static inline double surface_share(const contact_surface *s, int i, int a) {
+  return s->share == NULL ? 1.0 : s->share[s->dim * i + a];
+}
 /* The contact whose normal row a of node i is; -1: a tangent. */
 static inline int surface_normal_of(const contact_surface *s, int i, int a) {
   return a == 0 ? s->contact_id[i] : s->side_id[(s->dim - 1) * i + a - 1];

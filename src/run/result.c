@@ -78,11 +78,6 @@ static int row_contact(const contact_surface *s, int i, int a) {
   return side >= 0 ? side : s->contact_id[i];
 }
 
-/* Resultant on the body of a unit force in row a of a contact node. */
-static double share_of(const contact_surface *s, int i, int a) {
-  return s->share == NULL ? 1.0 : s->share[s->dim * i + a];
-}
-
 /* Force and moment of one row of a contact node. */
 static void add_row(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
@@ -93,7 +88,7 @@ static void add_row(const run *r, int i, int a, contact_total *t) {
   for (int c = 0; c < dim; ++c) {
     x[c] = at[c];
     force[c] = s->frame[dim * dim * i + dim * a + c] * r->now.rc[dim * i + a];
-    t->force[c] += share_of(s, i, a) * force[c];
+    t->force[c] += surface_share(s, i, a) * force[c];
   }
   t->moment[0] += x[1] * force[2] - x[2] * force[1];
   t->moment[1] += x[2] * force[0] - x[0] * force[2];
@@ -113,7 +108,7 @@ static void add_side(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
   const int k = s->dim * i + a, at = (s->dim - 1) * i + a - 1;
   const double rc = r->now.rc[k];
-  add_normal(rc, share_of(s, i, a), s->side_area[at], rc != 0.0, t);
+  add_normal(rc, surface_share(s, i, a), s->side_area[at], rc != 0.0, t);
   t->n_open += rc == 0.0;
   t->n_slip += rc != 0.0;
   if (r->problem.side_gap != NULL)
@@ -131,11 +126,12 @@ static void add_node(const run *r, int i) {
     const double rc = r->now.rc[dim * i + a];
     add_row(r, i, a, t);
     if (a == 0)
-      add_normal(rc, share_of(s, i, a), s->area[i], now != CONTACT_OPEN, t);
+      add_normal(rc, surface_share(s, i, a), s->area[i], now != CONTACT_OPEN,
+                 t);
     else if (surface_normal_of(s, i, a) >= 0)
       add_side(r, i, a, t);
     else
-      t->tangential[a - 1] += share_of(s, i, a) * rc;
+      t->tangential[a - 1] += surface_share(s, i, a) * rc;
   }
   own->n_open += now == CONTACT_OPEN;
   own->n_slip += now == CONTACT_SLIP;

@@ -379,6 +379,90 @@ START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
 }
 END_TEST
 
+/* ---- nodes that are left out ----------------------------------------------
+ */
+
+/* A block on another, of which slave nodes carry nothing themselves: one that
+ * supports hold, those outside of the master but for 1e-4 of an edge. */
+static int leave_out(job *j, const char *shift, const char *more) {
+  *j = job_begin("left");
+  job_copy(j, "tests/regression/mesh/pair.geo");
+  job_write(j, "left.inp",
+            "*PARAMETER\nN = 4\nM = 7\nC = %s\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=A\n*ELASTIC\n1000, 0.3\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+            "*FRICTION, CONTACT=P, LAW=COULOMB\n0.1\n"
+            "*WEAR, CONTACT=P, COEFFICIENT=1.E-4\n*STEP\n*QUASISTATIC\n1., 1.\n"
+            "*BOUNDARY\nBOTTOM, 1, 2\n%s*DSLOAD\nTOP, P, \"3 + 2*x\"\n"
+            "TOP, TX, 0.8\n*PRINT, CONTACT, TOTALS, WEAR\n*END STEP\n",
+            shift, more);
+  return job_run(j, "");
+}
+
+static void check_sum(const dat *rows, const char *column, const dat *all,
+                      const char *total) {
+  ck_assert_double_eq_tol(dat_sum(rows, column), dat_at(all, 0, total),
+                          1e-12 * (1 + fabs(dat_at(all, 0, "normal"))));
+}
+
+/* Rows add up to the resultants, and have the law of friction and of wear
+ * each. */
+static void check_rows(const job *j) {
+  dat c = job_table(j, "CONTACT", -1), all = job_table(j, "TOTALS", -1);
+  dat w = job_table(j, "WEAR", -1);
+  check_sum(&c, "f_n", &all, "normal");
+  check_sum(&c, "f_t", &all, "tangential");
+  check_sum(&c, "f_x", &all, "force_x");
+  check_sum(&c, "f_y", &all, "force_y");
+  ck_assert_double_eq_tol(dat_max(&c, "pressure"),
+                          dat_at(&all, 0, "pressure_max"), 1e-12);
+  double volume = 0.0;
+  for (int i = 0; i < c.n_row; ++i) {
+    const double f = dat_at(&c, i, "f_n"), limit = dat_at(&c, i, "limit");
+    const double slip = dat_at(&c, i, "slip_distance");
+    ck_assert_double_eq_tol(limit, 0.1 * f, 1e-9);
+    ck_assert_double_le(fabs(dat_at(&c, i, "f_t")), limit + 1e-9);
+    ck_assert_double_eq_tol(dat_at(&w, i, "volume"), 1e-4 * f * slip, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&c, i, "traction_t") * f,
+                            dat_at(&c, i, "pressure") * dat_at(&c, i, "f_t"),
+                            1e-9);
+    volume += 1e-4 * f * slip;
+  }
+  ck_assert_double_gt(volume, 1e-8);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), volume, 1e-12);
+  dat_free(&w);
+  dat_free(&c);
+  dat_free(&all);
+}
+
+START_TEST(rows_add_up_to_the_resultant) {
+  static const struct {
+    const char *shift, *more;
+  } scenes[] = {{"0.2499", "TOP, 1, 1, 0.03\n"}, {"0.", "LEFT, 1, 2\n"}};
+  job j;
+  const int code = leave_out(&j, scenes[_i].shift, scenes[_i].more);
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  check_rows(&j);
+  job_end(&j);
+}
+END_TEST
+
+/* The nodes of a tip have no row. */
+START_TEST(rows_of_a_crack_add_up_to_its_resultant) {
+  job j;
+  ck_assert_int_eq(job_run_with(&j, "input/crack/partly_closed", "", 0, ""), 0);
+  dat c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
+  ck_assert_double_gt(dat_at(&all, 0, "normal"), 0.1);
+  check_sum(&c, "f_n", &all, "normal");
+  check_sum(&c, "f_y", &all, "force_y");
+  dat_free(&c);
+  dat_free(&all);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("pair_options");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -393,5 +477,7 @@ int main(void) {
   tcase_add_test(tests, dovetail_holds_one_way);
   tcase_add_loop_test(tests, modulus_of_a_surface_is_the_mean_of_its_faces, 0,
                       6);
+  tcase_add_loop_test(tests, rows_add_up_to_the_resultant, 0, 2);
+  tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);
 }

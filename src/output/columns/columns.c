@@ -23,11 +23,18 @@ static const char *contact_name(const view *v, int id) {
   return v->m->contacts[SURFACE->contact_id[id]].name;
 }
 
+/* Of row a, with what the node carries for neighbours that are left out: rows
+ * of a contact add up to its resultant. */
+static double row_force(const view *v, int id, int a) {
+  return surface_share(SURFACE, id, a) *
+         v->s->contacts.rc[at(SURFACE->dim, id, a)];
+}
+
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
 VALUE(contact_u_n, v->s->contacts.uc[at(SURFACE->dim, id, 0)])
 VALUE(contact_u_t, v->s->contacts.uc[at(SURFACE->dim, id, part + 1)])
 VALUE(contact_gap, v->s->contacts.gap[id])
-VALUE(contact_f_n, -v->s->contacts.rc[at(SURFACE->dim, id, 0)])
+VALUE(contact_f_n, -row_force(v, id, 0))
 /* The side row of a corner node is a normal force of another obstacle. A
  * problem from a file has no corners. */
 static int is_side(const view *v, int id, int part) {
@@ -35,11 +42,9 @@ static int is_side(const view *v, int id, int part) {
   return side != NULL && side[at(SURFACE->dim - 1, id, part)] >= 0;
 }
 
-VALUE(contact_f_t, is_side(v, id, part)
-                       ? 0
-                       : v->s->contacts.rc[at(SURFACE->dim, id, part + 1)])
+VALUE(contact_f_t, is_side(v, id, part) ? 0 : row_force(v, id, part + 1))
 VALUE(contact_normal, SURFACE->frame[at(SURFACE->dim * SURFACE->dim, id, part)])
-VALUE(contact_area, SURFACE->area[id])
+VALUE(contact_area, SURFACE->area[id] * surface_share(SURFACE, id, 0))
 VALUE(contact_state, v->s->contacts.contact[id])
 
 /* A plain LCP: z stands for r, w for u. */
@@ -48,7 +53,7 @@ VALUE(lcp_w, v->s->contacts.uc[id])
 
 /* Force over tributary area; a node without area carries none. */
 static double per_area(const view *v, int id, double force) {
-  double area = SURFACE->area[id];
+  double area = contact_area(v, id, 0);
   return area > 0 ? force / area : 0;
 }
 
@@ -59,9 +64,9 @@ VALUE(contact_traction, per_area(v, id, contact_f_t(v, id, part)))
 static double contact_force(const view *v, int id, int part) {
   int dim = SURFACE->dim;
   const double *frame = SURFACE->frame + at(dim * dim, id, 0);
-  const double *r = v->s->contacts.rc + at(dim, id, 0);
   double sum = 0;
-  for (int k = 0; k < dim; ++k) sum += frame[dim * k + part] * r[k];
+  for (int k = 0; k < dim; ++k)
+    sum += frame[dim * k + part] * row_force(v, id, k);
   return sum;
 }
 
@@ -92,7 +97,7 @@ static const column contact_node_columns[] = {
 VECTOR("", "length", CON, PLACES, C, NEEDS_PLACE, NULL, contact_x,
        "coordinate"),
 {"area", "length^2", CON, 0, C, PLACED, "area", 0, contact_area, NULL,
- "tributary area"},
+ "tributary area, that of neighbours that it carries for included"},
 VECTOR("n_", "-", CON, 0, C, NEEDS_PLACE, "normal", contact_normal,
        "outward normal"),
 {"u_n", "length", CON, PRINT_CONTACT, C, SUR, "u_n", 0, contact_u_n, NULL,
