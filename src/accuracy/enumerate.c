@@ -360,12 +360,29 @@ static status descend(search *s, int i) {
   return OK;
 }
 
-static status check_size(const contact_problem *cp) {
-  if (cp->dim != 2 || cp->n > ENUMERATED_NODES)
+status solutions_can_try(int dim, int n, int corner) {
+  if (dim != 2 || n > ENUMERATED_NODES)
     RAISE(ERR_DECK,
           "all statuses can be tried for up to %d contact nodes in 2-D, the "
           "problem has %d in %d-D",
-          ENUMERATED_NODES, cp->n, cp->dim);
+          ENUMERATED_NODES, n, dim);
+  if (corner)
+    RAISE(ERR_DECK,
+          "all statuses cannot be tried where a contact node "
+          "touches two obstacles");
+  return OK;
+}
+
+/* 1: a node touches a second obstacle. */
+static int has_corner(const contact_problem *cp) {
+  int any = 0;
+  for (int dof = 1; dof < cp->m && cp->dim == 2; dof += 2)
+    any |= contact_bound(cp, dof) < HUGE_VAL;
+  return any;
+}
+
+static status check_size(const contact_problem *cp) {
+  PASS(solutions_can_try(cp->dim, cp->n, has_corner(cp)));
   if (!contact_has_stiffness(cp))
     RAISE(ERR_DECK,
           "all statuses can be tried where the stiffness is known; "
@@ -378,11 +395,6 @@ static status check_size(const contact_problem *cp) {
           "%.0f combinations of statuses are too many: the limit of friction "
           "needs no pressure here, and the statuses of open nodes count too",
           patterns);
-  for (int dof = 0; dof < cp->m; ++dof)
-    if (dof % 2 > 0 && contact_bound(cp, dof) < HUGE_VAL)
-      RAISE(ERR_DECK,
-            "all statuses cannot be tried where a contact node "
-            "touches two obstacles");
   return OK;
 }
 

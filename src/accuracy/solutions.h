@@ -70,6 +70,7 @@ enum { ENUMERATED_NODES = 10 };
  * ENUMERATED_NODES nodes; (u, r) is the solution of the run. ERR_DECK, with the
  * reason in the record: the problem is larger or of another kind.
  */
+status solutions_can_try(int dim, int n, int corner); /* the same of its size */
 status solutions_by_statuses(const contact_problem *cp, double tol,
                              const double *u, const double *r,
                              solution_set *out);

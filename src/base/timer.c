@@ -59,6 +59,11 @@ void timer_enter_whole(stage s) {
   if (whole == 0) whole = depth;
 }
 
+void timer_enter_more(stage s) {
+  if (whole == 0) --cost[s].calls;
+  timer_enter_whole(s);
+}
+
 void timer_leave(stage s) {
   (void)s;
   if (inner > 0) {

@@ -87,6 +87,7 @@ const char *effects_sum_up(const run *r) {
     return OK;                                    \
   }
 
+EACH(check, (run * r), 0, 1, e->on.check(r, own))
 EACH(prepare, (run * r), 0, 1, e->on.prepare(r, own))
 EACH(begin_step, (run * r), 1, 1, e->on.begin_step(r, own))
 EACH(start, (run * r), 1, 1, e->on.start(r, own))

@@ -108,6 +108,9 @@ typedef struct effect_hooks {
   /* 0: initial, accept, show, rewrite have nothing to do at this increment, and
    * are not counted. */
   int (*due)(const struct run *r);
+  /* Nothing is solved yet: r->step with its surface, r->loads.start where it is
+   * known, else NaN: what of it the run could not solve. */
+  status (*check)(struct run *r, void *own);
   /* A step begins, its supports are checked: what is made of r->surface. */
   status (*prepare)(struct run *r, void *own);
   /* Output to the listing before the first increment. */

@@ -241,6 +241,7 @@ int run_remembers(const run *r);
 int run_inherits(const run *r);
 /* result.c: 1: the error of the mesh is that of this increment too. */
 int run_finds_mesh_error(const run *r);
+status effects_check(run *r);
 status effects_prepare(run *r);
 void effects_describe(const run *r, setup_facts *f);
 status effects_begin_step(run *r);

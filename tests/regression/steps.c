@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Unit square, nu = 0, E = 1000, density 1; the cards after the material. */
@@ -252,6 +253,69 @@ START_TEST(supports_of_contact_nodes_balance) {
 }
 END_TEST
 
+/* What deck and mesh tell of a later step ends --check, and a run before its
+ * first increment. A cube on a rough floor, its sides held along x. */
+#define SIDES "*BOUNDARY\nLEFT, 1\nRIGHT, 1\n*DSLOAD\nTOP, P, 3.\n"
+#define ONE "*STEP\n*QUASISTATIC\n.5, 1.\n"
+#define TWO "*END STEP\n" ONE
+static const struct {
+  int dim;
+  const char *obstacle, *cards; /* MOVE; of the steps */
+  const char *text;             /* NULL: the run is fine */
+  int checked, code;
+} late[] = {
+    {3, "MOVE, \"0.001*max(t-1,0)\", 0, 0\n", ONE SIDES TWO "*END STEP\n",
+     "error P4015: ", 2, 2},
+    /* back at the end of the step */
+    {3, "MOVE, \"0.001*max(t-1,0)*max(2-t,0)\", 0, 0\n",
+     ONE SIDES TWO "*END STEP\n", "error P4015: ", 2, 2},
+    {3, "", ONE SIDES TWO "*BOUNDARY\nRIGHT, 1, 1, .001\n*END STEP\n",
+     "error P4015: ", 2, 2},
+    /* along what nothing holds; supports that stay */
+    {3, "MOVE, 0, \"0.001*max(t-1,0)\", 0\n", ONE SIDES TWO "*END STEP\n", NULL,
+     0, 0},
+    {3, "", ONE SIDES "*BOUNDARY\nFRONT, 2\n" TWO "*END STEP\n", NULL, 0, 0},
+    /* to 0 from where it is, which only the run tells */
+    {3, "", ONE SIDES TWO "*BOUNDARY\nFRONT, 2, 2, 0.\n*END STEP\n",
+     "error P4015: ", 0, 2},
+    {3, "", ONE SIDES TWO "*SOLVER, CHECK=ALL\n*END STEP\n",
+     "late.inp:24: *SOLVER, CHECK=ALL: all statuses can be tried for up to 10",
+     2, 2},
+    {2, "", ONE SIDES TWO "*SOLVER, CHECK=ALL\n*END STEP\n", NULL, 0, 0},
+    {2, "", ONE SIDES TWO "*BOUNDARY, OP=NEW\nBOTTOM, 2\n*END STEP\n",
+     "error P4010: ", 2, 2}};
+
+static void check_late(size_t i) {
+  job j = job_begin("late");
+  const char *solid = late[i].dim == 3 ? "cube" : "square";
+  char file[80];
+  snprintf(file, sizeof file, "tests/regression/mesh/%s.geo", solid);
+  job_copy(&j, file);
+  job_write(&j, "late.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n%s"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n%s",
+            solid, late[i].obstacle, late[i].cards);
+  const int checked = job_run(&j, "--check"), code = job_run(&j, "");
+  ck_assert_msg(checked == late[i].checked && code == late[i].code,
+                "case %zu: exit %d, %d: %s", i, checked, code, j.errors);
+  if (late[i].text != NULL)
+    ck_assert_msg(strstr(j.errors, late[i].text) != NULL, "%s", j.errors);
+  if (checked != 0) {
+    char *sta = job_file(&j, "sta");
+    ck_assert_ptr_null(strstr(sta, "\n     1     1 "));
+    free(sta);
+  }
+  job_end(&j);
+}
+
+START_TEST(later_steps_are_checked_before_the_first) {
+  for (size_t i = 0; i < sizeof late / sizeof *late; ++i) check_late(i);
+}
+END_TEST
+
 UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           gravity_turns_from_one_direction_to_the_other,
           corner_forces_belong_to_their_contacts,
@@ -259,4 +323,5 @@ UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           supports_of_contact_nodes_balance, support_takes_over_from_contact,
           balance_is_that_of_the_largest_work,
           slip_distance_goes_on_with_other_supports,
-          static_problem_slips_from_the_origin, same_contact_twice_is_refused)
+          static_problem_slips_from_the_origin, same_contact_twice_is_refused,
+          later_steps_are_checked_before_the_first)

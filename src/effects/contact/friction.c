@@ -198,14 +198,15 @@ static status update_limit(run *r, friction *own, double t) {
 
 /* ---- the history of slip ------------------------------------------------ */
 
-/* A contact unknown that *BOUNDARY prescribes: its value now, m. */
-static double held_value(const run *r, int i, int a) {
+/* A contact unknown that *BOUNDARY prescribes: its value of ud[dim*n_node],
+ * m. */
+static double held_value(const run *r, const double *ud, int i, int a) {
   const contact_surface *s = r->surface;
   int dim = s->dim;
   double u = 0.0;
   for (int c = 0; c < dim; ++c)
-    u += s->frame[dim * dim * i + dim * a + c] *
-         r->loads.ud[dim * s->node_id[i] + c];
+    if (r->body.fixed[dim * s->node_id[i] + c])
+      u += s->frame[dim * dim * i + dim * a + c] * ud[dim * s->node_id[i] + c];
   return u;
 }
 
@@ -241,24 +242,31 @@ static const load *holder(const run *r, int i, int a) {
   return best;
 }
 
+/* 1: axis a of node i is held, the other tangent is not. */
+static int is_half_held(const contact_surface *s, int i, int a) {
+  return s->dim == 3 && s->held[3 * i + a] && !s->held[3 * i + 3 - a];
+}
+
 /*
  * Friction along t2 where t1 is made to move: the slip direction would depend
  * on the prescribed motion, which the condensed problem does not contain.
  */
-static status check_held(const run *r, const friction *own, int i, int a,
-                         double from, double to) {
-  const contact_surface *s = r->surface;
-  int other = s->dim == 3 ? 3 - a : a;
-  if (s->dim < 3 || from == to || s->held[3 * i + other] ||
-      !can_stick(&own->limit, i))
-    return OK;
+static status refuse_held(const run *r, int i, int a) {
   const load *l = holder(r, i, a);
   message_add(r->m->log, P4015, l == NULL ? &r->step->at : &l->at,
               "contact node %zu has one prescribed tangential displacement "
               "while friction acts in the other direction",
-              s->node_no[i]);
+              r->surface->node_no[i]);
   RAISE(ERR_DECK, "*BOUNDARY moves contact node %zu against friction",
-        s->node_no[i]);
+        r->surface->node_no[i]);
+}
+
+static status check_held(const run *r, const friction *own, int i, int a,
+                         double from, double to) {
+  if (from == to || !is_half_held(r->surface, i, a) ||
+      !can_stick(&own->limit, i))
+    return OK;
+  return refuse_held(r, i, a);
 }
 
 /*
@@ -275,13 +283,78 @@ static status find_stick(run *r, const friction *own) {
       double from = fresh ? 0.0 : r->old.uc[k] - run_drift(&r->old, k);
       double stick = from + run_drift(&r->now, k);
       if (r->surface->held[k]) {
-        double to = held_value(r, i, a);
+        double to = held_value(r, r->loads.ud, i, a);
         PASS(check_held(r, own, i, a, stick, to));
         stick = to;
       }
       own->stick[(dim - 1) * i + a - 1] = stick;
     }
   return OK;
+}
+
+/* ---- before the run -------------------------------------------------------
+ */
+
+/* Supports ud[dim*n_node] before and at t, drift[dim*n] of the obstacles in
+ * between. What is not known is NaN and moves nothing. */
+typedef struct travel {
+  double t, *before, *now, *drift;
+} travel;
+
+static int is_moved(const run *r, const travel *x, int i, int a) {
+  static const double rounding = 1e-12;
+  const double from = held_value(r, x->before, i, a);
+  const double to = held_value(r, x->now, i, a);
+  const double drift = x->drift[r->msh->dim * i + a];
+  return fabs(to - from - drift) >
+         rounding * (fabs(to) + fabs(from) + fabs(drift));
+}
+
+static status check_travel(const run *r, const travel *x) {
+  const contact_surface *s = r->surface;
+  for (int k = 0; k < 2 * s->n; ++k) {
+    const int i = k / 2, a = 1 + k % 2;
+    if (is_half_held(s, i, a) && !surface_is_corner(s, i) &&
+        is_moved(r, x, i, a) &&
+        value_at(r, rule_of(r, s->contact_id[i]), i, x->t) > 0.0)
+      return refuse_held(r, i, a);
+  }
+  return OK;
+}
+
+/* From one of up to MOST times of the step to the next; of one static problem
+ * from the origin to its end. */
+static status check_travels(const run *r, travel *x, const double *none) {
+  enum { MOST = 64 };
+  const step *s = r->step;
+  const int fresh = s->kind == STEP_STATIC;
+  const int n = fresh ? 1 : (int)fmin(MOST, ceil(step_increments(s)));
+  const size_t bytes = r->n_dof * sizeof *x->now;
+  x->t = fresh ? 0.0 : s->start;
+  memcpy(x->before, fresh ? none : r->loads.start, bytes);
+  for (int k = 1; k <= n; ++k) {
+    const double t = s->start + s->total * k / n, before = x->t;
+    x->t = k < n ? t : s->start + s->total;
+    memset(x->drift, 0, (size_t)r->nodes.n_c * sizeof *x->drift);
+    surface_drift(r->surface, &r->faces.input, before, x->t, x->drift);
+    PASS(load_prescribed(r->m, r->msh, s, x->t, k < n ? r->loads.start : none,
+                         x->now));
+    PASS(check_travel(r, x));
+    memcpy(x->before, x->now, bytes);
+  }
+  return OK;
+}
+
+static status check_step(run *r, void *self) {
+  int any = 0;
+  OWNED double *before = NULL, *now = NULL, *drift = NULL, *none = NULL;
+  (void)self;
+  for (int k = 0; k < 2 * r->nodes.n && r->msh->dim == 3; ++k)
+    any |= is_half_held(r->surface, k / 2, 1 + k % 2);
+  if (!any) return OK;
+  PASS_NEW_REALS(r->n_dof, &before, &now, &none);
+  PASS_NEW(drift, r->nodes.n_c);
+  return check_travels(r, &(travel){0.0, before, now, drift}, none);
 }
 
 /* The stage of the history, where there is one. */
@@ -488,7 +561,8 @@ const effect_ops friction_effect = {
   .name = "friction", .bit = EFFECT_BIT_FRICTION, .required = requires_friction,
   .expected = expected, .own = STAGE_LIMIT, .inside = 1, .of_state = 1,
   .size = sizeof(friction),
-  .on = {.create = friction_new, .prepare = prepare, .pose = pose,
+  .on = {.create = friction_new, .check = check_step, .prepare = prepare,
+         .pose = pose,
          .accept = add_distance, .forget = forget, .keep = keep,
          .copy = friction_copy, .release = release},
   COLUMNS_OF(columns)};

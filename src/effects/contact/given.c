@@ -38,7 +38,8 @@ static int forced_corner(const run *r, int i) {
 }
 
 /* Two contacts at one node take its normals for unilateral conditions. */
-static status check_corners(const run *r) {
+static status check_corners(run *r, void *self) {
+  (void)self;
   for (int i = 0; i < r->nodes.n; ++i) {
     int id = forced_corner(r, i);
     if (id < 0) continue;
@@ -90,7 +91,7 @@ static void forget(run *r, void *self) {
 static status prepare(run *r, void *self) {
   given_forces *own = self;
   if (own->all != NULL) return OK;
-  PASS(check_corners(r));
+  PASS(check_corners(r, own));
   PASS_NEW_ALL(OF(own->node, r->nodes.n), OF(own->all, r->nodes.n));
   for (int i = 0; i < r->nodes.n; ++i) {
     own->all[i] = -1.0;
@@ -150,7 +151,7 @@ const effect_ops given_forces_effect = {
   .name = "given contact forces", .bit = EFFECT_BIT_GIVEN,
   .required = requires_given, .expected = expected, .inside = 1, .far = 1,
   .size = sizeof(given_forces),
-  .on = {.prepare = prepare, .pose = set_forces,
+  .on = {.check = check_corners, .prepare = prepare, .pose = set_forces,
          .rewrite = take, .restore = give, .forget = forget, .copy = given_copy,
          .release = release}};
 /* clang-format on */

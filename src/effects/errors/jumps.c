@@ -16,6 +16,7 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "run/history/loop.h"
+#include "run/setup/setup.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -299,6 +300,16 @@ static status begin_step(run *r, void *self) {
   return OK;
 }
 
+static status check_asked(run *r, void *self) {
+  int corner = 0;
+  (void)self;
+  for (int i = 0; i < r->nodes.n; ++i)
+    corner |= surface_is_corner(r->surface, i);
+  return check_possible(r->step, r->msh->dim,
+                        r->msh->dim == 3 ? r->nodes.n : run_least_nodes(r),
+                        corner);
+}
+
 static status find_others(run *r, void *self) {
   ((checked *)self)->asked = r->step->check != CHECK_NONE;
   return check_problem(r->step, &r->problem.cp, &r->solving.report, r->now.uc,
@@ -329,6 +340,7 @@ const effect_ops second_solutions_effect = {.name = "second solutions, jumps",
                                             .own = STAGE_NONE,
                                             .more = {STAGE_CHECK},
                                             .size = sizeof(checked),
+                                            .on.check = check_asked,
                                             .on.begin_step = begin_step,
                                             .on.examine = look_for_jump,
                                             .on.accept = find_others,

@@ -91,6 +91,18 @@ status estimate_increment(run *r) {
   return OK;
 }
 
+/* What solutions_by_statuses refuses, at its card. */
+static status refuse_all(const step *s, status st) {
+  if (st != ERR_DECK) return st;
+  RAISE(ERR_DECK, "%s:%d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
+        PLACE(s->solver_at), status_message());
+}
+
+status check_possible(const step *s, int dim, int n, int corner) {
+  if (s->check != CHECK_ALL || n == 0) return OK;
+  return refuse_all(s, solutions_can_try(dim, n, corner));
+}
+
 status check_problem(const step *s, const contact_problem *cp,
                      const solver_report *report, const double *u,
                      const double *r, solution_set *out) {
@@ -99,8 +111,5 @@ status check_problem(const step *s, const contact_problem *cp,
   TIMED(STAGE_CHECK);
   if (s->check == CHECK_SOLVERS)
     return solutions_by_solvers(cp, s->solver.tol, report, u, r, out);
-  const status st = solutions_by_statuses(cp, s->solver.tol, u, r, out);
-  if (st != ERR_DECK) return st;
-  RAISE(ERR_DECK, "%s:%d: *SOLVER, CHECK=ALL: %s; use CHECK=YES",
-        PLACE(s->solver_at), status_message());
+  return refuse_all(s, solutions_by_statuses(cp, s->solver.tol, u, r, out));
 }

@@ -537,6 +537,7 @@ status history_continue(const model *m, const mesh *msh,
   status st = OK;
   run r = {.m = m, .msh = msh, .sink = sink, .course.from = from};
   *unsettled = 0;
+  TRY(history_check(m, msh, effects));
   TRY(run_new(&r, effects));
   TRY(read_progress(&r));
   for (int i = r.at.step_id; i < m->n.step; ++i) {

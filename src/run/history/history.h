@@ -47,6 +47,16 @@ status check_problem(const step *s, const contact_problem *cp,
                      const solver_report *report, const double *u,
                      const double *r, solution_set *out);
 
+/* The same before anything is solved, of at least n contact nodes; corner: one
+ * of them touches two obstacles. */
+status check_possible(const step *s, int dim, int n, int corner);
+
+/* All steps, nothing solved (ahead.c): supports, contact surfaces, and what the
+ * effects tell of them. Errors are in the log or name their place: those that
+ * the run would end with, ERR_DECK, ERR_SINGULAR; ERR_MEMORY. */
+status history_check(const model *m, const mesh *msh,
+                     const effect_ops *const *effects);
+
 /* How the first step would know the condensed stiffness, nothing solved. */
 status history_stiffness(const model *m, const mesh *msh,
                          const effect_ops *const *effects,

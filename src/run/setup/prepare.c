@@ -33,6 +33,10 @@ static int may_leave_out(const run *r, int n_motion) {
          r->m->n.points == 0 && r->m->reduction.n == 0;
 }
 
+int run_least_nodes(const run *r) {
+  return may_leave_out(r, 0) ? 0 : r->nodes.n;
+}
+
 /* Least diagonal entry of the moduli, Pa, times the section's thickness or the
  * size of the mesh: a body of that size deforms by force over this, N/m. */
 static double least_stiffness(const run *r) {

@@ -28,6 +28,9 @@ status run_motions(run *r, int *n, free_motion **list);
 /* The same of the current surface; *n: those that contact alone holds. */
 status run_check_supports(const run *r, int *n);
 
+/* Contact nodes that the problems of r->step have at least; 0: not known. */
+int run_least_nodes(const run *r);
+
 /* surface.c: the surface of r->body.fixed, with or without the state of the old
  * one.
  */
