@@ -256,7 +256,7 @@ static const option goal_options[] = {
        "of FORCE, PRESSURE, WIDTH, MOMENT: name of a *CONTACT"),
   NAME(goal.crack, "CRACK", OPTION_ABSENT, "of SIF: name of a *CRACK"),
   NAME(group, "GROUP", OPTION_ABSENT,
-       "of STRESS: elements; of DISPLACEMENT: nodes, whose mean it is"),
+       "of STRESS: elements; of DISPLACEMENT: what it is the mean over"),
   NAME(goal.from, "FROM", OPTION_ABSENT,
        "of DISPLACEMENT: group whose mean is taken off"),
   CHOICE(goal.component, "COMPONENT", GOAL_COMPONENTS, OPTION_ABSENT,

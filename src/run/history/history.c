@@ -330,11 +330,17 @@ static int starts_hotter(const run *r) {
                       r->old.temperature);
 }
 
-/* 1 if no load acts at the start of the step that did not act before, and no
- * support, load or friction has ended. */
+/* 1: temperatures jump, or supports, loads or friction end: at once, whether
+ * the body moves or not, or would with effects that are left out. */
+static int starts_anew(const run *r) {
+  const int ends = r->step->renewed != 0 || r->step->friction.n > 0;
+  return starts_hotter(r) || (ends && run_step_id(r) > 0);
+}
+
+/* 1 if no load acts at the start of the step that did not act before, and
+ * nothing ends. */
 static int starts_smoothly(const run *r) {
-  if (starts_hotter(r) || r->step->renewed != 0 || r->step->friction.n > 0)
-    return 0;
+  if (starts_anew(r)) return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->body.fixed[i] &&
         fabs(r->loads.ud[i] - r->old.u[i]) > 1e-12 * fabs(r->loads.ud[i]))
@@ -367,7 +373,7 @@ static status start_visco(run *r, int *increment_no) {
       PASS(loop_no_equilibrium(r));
     const int moved = !same_vector(r->n_dof, r->now.u, r->old.u) &&
                       !(smooth && touched_by_rounding(r));
-    if (moved || starts_hotter(r))
+    if (moved || starts_anew(r))
       PASS(loop_accept(r, 1, ++*increment_no, 0, cpu));
   }
   return visco_begin_step(r);
