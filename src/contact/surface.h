@@ -135,6 +135,11 @@ static inline double surface_share(const contact_surface *s, int i, int a) {
 static inline int surface_normal_of(const contact_surface *s, int i, int a) {
   return a == 0 ? s->contact_id[i] : s->side_id[(s->dim - 1) * i + a - 1];
 }
+/* The same; of a tangent that of the first normal. */
+static inline int surface_contact_of(const contact_surface *s, int i, int a) {
+  const int id = surface_normal_of(s, i, a);
+  return id >= 0 ? id : s->contact_id[i];
+}
 /* 1 if node i touches a second obstacle: it has no friction. */
 int surface_is_corner(const contact_surface *s, int i);
 void surface_free(contact_surface *s); /* accepts NULL */

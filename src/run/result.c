@@ -71,13 +71,6 @@ static void find_contact(run *r) {
                                : CONTACT_OPEN;
 }
 
-/* The *CONTACT whose force row a of a node is: at a corner the side rows are
- * the normal forces of other obstacles. */
-static int row_contact(const contact_surface *s, int i, int a) {
-  int side = a == 0 ? -1 : s->side_id[(s->dim - 1) * i + a - 1];
-  return side >= 0 ? side : s->contact_id[i];
-}
-
 /* Force and moment of one row of a contact node. */
 static void add_row(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
@@ -122,7 +115,7 @@ static void add_node(const run *r, int i) {
   const contact_status now = r->result.contact[i];
   contact_total *own = &r->result.totals[s->contact_id[i]];
   for (int a = 0; a < dim; ++a) {
-    contact_total *t = &r->result.totals[row_contact(s, i, a)];
+    contact_total *t = &r->result.totals[surface_contact_of(s, i, a)];
     const double rc = r->now.rc[dim * i + a];
     add_row(r, i, a, t);
     if (a == 0)

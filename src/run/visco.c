@@ -237,14 +237,27 @@ static double halves_error(const run *r) {
   return power / (power - 1.0) * flow_norm(&v->x, v->fine);
 }
 
-status visco_turning(run *r, double *d) {
-  visco *v = r->strains.visco;
+status visco_turning(const run *r, double **d) {
+  const visco *v = r->strains.visco;
   const scheme *of = r->step->visco.integrator;
   const int blind = of->limit > 0.0
                         ? of->order == 1
                         : !of->linear_only && r->step->visco.theta < 1.0;
-  memset(d, 0, visco_at(r, v->x.n) * sizeof *d);
-  return blind ? flow_turning(&v->x, &v->old, &v->now, d) : OK;
+  *d = NULL;
+  if (!blind) return OK;
+  PASS_NEW(*d, visco_at(r, v->x.n));
+  return flow_turning(&v->x, &v->old, &v->now, *d);
+}
+
+/* The larger of both differences. */
+static status blind_error(const run *r, double *error) {
+  OWNED double *d = NULL;
+  *error = halves_error(r);
+  PASS(visco_turning(r, &d));
+  if (d != NULL)
+    *error = fmax(*error, flow_norm(&r->strains.visco->x, d) /
+                              (visco_order(r->step) > 1 ? SIMPSON : 1.0));
+  return OK;
 }
 
 /* Root mean square of the elastic strains of v->now. */
@@ -268,16 +281,10 @@ status visco_try(run *r, double t, double *error) {
   PASS(advance(r, t));
   if (r->solving.report.outcome <= 0) return OK;
   double norm = 0.0;
-  if (estimates) {
+  if (estimates)
     *error = v->result.error;
-  } else {
-    OWNED double *turning = NULL;
-    PASS_NEW(turning, visco_at(r, v->x.n));
-    PASS(visco_turning(r, turning));
-    *error =
-        fmax(halves_error(r), flow_norm(&v->x, turning) /
-                                  (visco_order(r->step) > 1 ? SIMPSON : 1.0));
-  }
+  else
+    PASS(blind_error(r, error));
   PASS(elastic_norm(v, &norm));
   if (*error > 0.0) *error /= fmax(v->largest, norm);
   return OK;

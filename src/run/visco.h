@@ -82,10 +82,10 @@ equilibrium start_point_use(run *r, const start_point *p);
 status visco_advance_from(run *r, flow_state *from, double t, flow_state *to);
 /* Order of the integrator of a *VISCO step: that of THETA depends on theta. */
 int visco_order(const step *s);
-/* The trapezoidal rule less r->now of points that flow at one end of the
- * increment alone, where its integrator takes no rate at the end; else zero:
- * d[ns*x.n]. */
-status visco_turning(run *r, double *d);
+/* (*d)[ns*x.n], new: the trapezoidal rule less r->now of points that flow at
+ * one end of the increment alone, else zero; NULL where the integrator takes a
+ * rate at the end. */
+status visco_turning(const run *r, double **d);
 status visco_keep_flow(const flow *x, flow_state *s, archive *a,
                        const char *group);
 

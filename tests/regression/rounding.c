@@ -391,6 +391,9 @@ START_TEST(works_of_free_motion_stay_rounding_at_its_origin) {
                   dat_at(&e, 0, "energy_defect_relative"));
     dat_free(&e);
   }
+  char *json = job_file(&j, "json");
+  ck_assert_ptr_null(strstr(json, "coarse_mesh"));
+  free(json);
   job_end(&j);
 }
 END_TEST

@@ -55,11 +55,6 @@ static void release(void *self) {
   RELEASE(own->force, own->moment);
 }
 
-static int contact_of_row(const contact_surface *s, int i, int a) {
-  const int id = surface_normal_of(s, i, a);
-  return id >= 0 ? id : s->contact_id[i];
-}
-
 /* arm[dim] += by times the place at which a node was coupled. */
 static void add_place(const run *r, int contact_id, int node_id, double by,
                       double *arm) {
@@ -75,7 +70,7 @@ static void add_place(const run *r, int contact_id, int node_id, double by,
 static void find_arm(const run *r, int i, int a, double *arm) {
   const contact_surface *s = r->surface;
   const node_links *l = s->master;
-  const int id = contact_of_row(s, i, a);
+  const int id = surface_contact_of(s, i, a);
   double whole = 0.0;
   memset(arm, 0, 3 * sizeof *arm);
   for (size_t e = l->start[i]; e < l->start[i + 1]; ++e) {
@@ -112,7 +107,7 @@ static status find_forces(run *r, void *self) {
     double moment[3] = {0.0, 0.0, 0.0};
     for (int i = 0; i < r->nodes.n; ++i)
       for (int a = 0; a < s->dim; ++a)
-        if (contact_of_row(s, i, a) == id) add_moment(r, i, a, moment);
+        if (surface_contact_of(s, i, a) == id) add_moment(r, i, a, moment);
     own->moment[id] = sqrt(moment[0] * moment[0] + moment[1] * moment[1] +
                            moment[2] * moment[2]);
   }

@@ -188,9 +188,8 @@ static status subtract_strains(run *r, finer_path *p) {
   for (size_t k = 0; k < visco_at(r, r->strains.eigen.n); ++k)
     p->e0[k] -= r->strains.eigen.e0[k];
   if (r->step->kind != STEP_VISCO) return OK;
-  PASS_NEW(turning, visco_at(r, v->x.n));
-  PASS(visco_turning(r, turning));
-  for (int k = 0; k < v->x.n; ++k) {
+  PASS(visco_turning(r, &turning));
+  for (int k = 0; k < v->x.n && turning != NULL; ++k) {
     double *e0 = p->e0 + visco_at(r, v->place[k]), largest = 0.0;
     for (size_t i = 0; i < ns; ++i) largest = fmax(largest, fabs(e0[i]));
     if (largest == 0.0) memcpy(e0, turning + visco_at(r, k), ns * sizeof *e0);

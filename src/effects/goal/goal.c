@@ -177,6 +177,16 @@ static int has_goal_of(const model *m, goal_quantity of) {
   return any;
 }
 
+/* 1: displacements of groups. */
+static int has_mean(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n.goal; ++i)
+    any |= m->accuracy.goals[i].quantity == GOAL_DISPLACEMENT &&
+           (m->accuracy.goals[i].group_id >= 0 ||
+            m->accuracy.goals[i].from_id >= 0);
+  return any;
+}
+
 static status prepare(run *r, goal_state *own, shared *s) {
   space_recovery *recovery;
   const int n = r->nodes.n_row;
@@ -193,7 +203,7 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .n_given = s->surface.n_given,
                                .given = s->surface.given,
                                .has_flux = has_goal_of(r->m, GOAL_SIF),
-                               .has_mean = has_goal_of(r->m, GOAL_DISPLACEMENT),
+                               .has_mean = has_mean(r->m),
                                .has_energy = has_goal_of(r->m, GOAL_ENERGY)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);

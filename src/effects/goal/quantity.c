@@ -61,14 +61,13 @@ static double moment_of(const goal_card *g, int dim, const double *x,
 static double share_of(const run *r, const goal_card *g, int i, int a) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
-  const int normal_of = surface_normal_of(s, i, a);
-  const int id = normal_of >= 0 ? normal_of : s->contact_id[i];
-  if (id != g->contact_id) return 0.0;
+  const int is_normal = surface_normal_of(s, i, a) >= 0;
+  if (surface_contact_of(s, i, a) != g->contact_id) return 0.0;
   if (g->quantity == GOAL_MOMENT)
     return moment_of(g, dim, s->x + dim * i,
                      s->frame + dim * dim * i + dim * a);
-  if (g->component == GOAL_NORMAL) return normal_of >= 0 ? -1.0 : 0.0;
-  if (g->component == GOAL_TANGENT) return a == 1 && normal_of < 0 ? 1.0 : 0.0;
+  if (g->component == GOAL_NORMAL) return is_normal ? -1.0 : 0.0;
+  if (g->component == GOAL_TANGENT) return a == 1 && !is_normal ? 1.0 : 0.0;
   return s->frame[dim * dim * i + dim * a + g->component];
 }
 

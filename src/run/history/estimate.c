@@ -38,6 +38,7 @@ static void take_left(run *r, double left) {
   double *whole = &r->errors.mesh_error.relative, *part = r->errors.elem_error;
   r->errors.left = left;
   *whole = left > 0.0 ? left * *whole : 0.0;
+  if (!(left > 0.0)) r->errors.mesh_error.why = NULL;
   for (int e = 0; r->errors.mesh_error.asked && e < r->msh->n_elem; ++e)
     part[e] = left > 0.0 ? left * part[e] : 0.0;
 }

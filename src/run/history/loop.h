@@ -26,7 +26,7 @@ status loop_no_equilibrium(run *r);
  * effect; the first alone. */
 status loop_solve(run *r, double t);
 status loop_solve_once(run *r, double t);
-/* corners.c: the end of an increment that the program has chosen to end at t:
+/* tables.c: the end of an increment that the program has chosen to end at t:
  * there, or at a point of a table of the loads, supports, temperatures,
  * obstacles or contacts in force, before one of them differs from what the
  * increment sees of it by more than a share, -, of its largest magnitude in
