@@ -54,6 +54,20 @@ class Results(unittest.TestCase):
         for suffix in ("dat", "sta", "json", "h5"):
             code, said = tool("compare", a.file(suffix), b.file(suffix))
             self.assertEqual(code, 0, said)
+        # Sentences with seconds or percent of CPU, and digits of rounding.
+        for key, old, new, wanted in (
+                ("improve_next", "is 5e+11 times more exact",
+                 "is 4e+11 times more exact, TOL=BALANCED saves up to 21 % of "
+                 "the CPU", 0),
+                ("message", "would end after about 3.2 s of CPU",
+                 "would end after about 2.9e-5 s of CPU", 0),
+                ("message", "lacks 3.2 s of CPU", "needs 3.2 s of CPU", 1)):
+            for name, text in (("new", new), ("old", old)):
+                (self.dir / f"{name}.json").write_text(
+                    json.dumps({"accuracy": {key: text}}))
+            code, said = tool("compare", self.dir / "new.json",
+                              self.dir / "old.json")
+            self.assertEqual(code, wanted, said)
         # Words and counts of a row: changed, and by how much of what.
         changes = [
             ("CONTACT", "f_n", lambda v, s: v + 1e-4 * s, 1),
