@@ -199,7 +199,7 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
 }
 
 static double covered(const mortar *m, int q) {
-  return fmin(1.0, m->share[q] * m->area[q] / m->whole[q]);
+  return fmin(1.0, m->area[q] / m->whole[q]);
 }
 
 /* Resultant of row c: of its coupling, or of a force at the node. */
@@ -247,11 +247,10 @@ double pair_apart(const surface_input *in, const contact_pair *p, int row,
   const int moved = is_moved(in, p);
   double gap = 0.0;
   for (size_t c = 0; c < dim; ++c) {
-    double apart = m->gap[dim * (size_t)row + c];
-    if (moved) apart += in->u[dim * (size_t)m->node_id[row] + c];
+    double by = moved ? in->u[dim * (size_t)m->node_id[row] + c] : 0.0;
     for (size_t e = m->to.start[row]; moved && e < m->to.start[row + 1]; ++e)
-      apart -= m->to.part[dim * e] * in->u[dim * (size_t)m->to.master[e] + c];
-    gap += apart * n[c];
+      by -= m->to.part[dim * e] * in->u[dim * (size_t)m->to.master[e] + c];
+    gap += (m->gap[dim * (size_t)row + c] + by / m->share[row]) * n[c];
   }
   return gap;
 }

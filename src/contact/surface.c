@@ -463,7 +463,11 @@ static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
     rows[k] = (pair_row){p->coupled, kept[k]->row};
     if (rows[k].of != NULL) s->apart[dim * i + k] = kept[k]->gap;
   }
-  return pair_add_row(s, i, n_kept, rows, &b->links);
+  PASS(pair_add_row(s, i, n_kept, rows, &b->links));
+  for (int a = 0; a < dim; ++a)
+    for (int c = 0; c < dim; ++c)
+      s->basis[dim * (dim * i + a) + c] *= surface_share(s, i, a);
+  return OK;
 }
 
 static status set_node(builder *b, contact_surface *s, int n_kept,
@@ -677,7 +681,7 @@ void surface_relative(const contact_surface *s, const double *u, double *w) {
            l != NULL && e < l->start[q + 1]; ++e)
         sum -= l->part[(size_t)dim * e + (size_t)a] *
                dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
-      w[dim * q + a] = sum;
+      w[dim * q + a] = sum / surface_share(s, q, a);
     }
 }
 
@@ -686,6 +690,7 @@ void surface_spread_row(const contact_surface *s, int q, int a, double force,
   const int dim = s->dim;
   const node_links *l = s->master;
   const double *row = &s->frame[dim * (dim * q + a)];
+  force /= surface_share(s, q, a);
   add_scaled(dim, force, row, F + (size_t)dim * (size_t)s->node_id[q]);
   for (size_t e = l == NULL ? 0 : l->start[q]; l != NULL && e < l->start[q + 1];
        ++e)

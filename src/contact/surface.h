@@ -18,8 +18,8 @@ typedef struct contact_surface {
                           -1 */
   double *x;           /* [dim*n] m */
   double *area;        /* [n] tributary area (integral of the P1 function over
-                          the faces of contact_id), m2; 2-D: times thickness;
-                          axisymmetric: whole turn */
+                          the faces of contact_id, of a pair what it carries),
+                          m2; 2-D: times thickness; axisymmetric: whole turn */
   double *side_area;   /* [n*(dim-1)] the same of side_id, 0 where it is -1 */
   double *frame;       /* [dim*dim*n] rows n, t1[, t2]: a = frame u; orthonormal
                           except where side_id >= 0 (then that row is the normal
@@ -30,13 +30,13 @@ typedef struct contact_surface {
                         *BOUNDARY (never the normal one) */
   node_links *master;  /* row q: contact node q, whose unknowns are relative to
                           the master surface of a pair; NULL: no pair */
-  double *share;       /* [dim*n] resultant on the body of a unit force in a row
-                          (a slave node carries for neighbours without a
-                          multiplier), -; NULL: no pair */
+  double *share;       /* [dim*n] a row is divided by it: unknowns are averages
+                          over what a slave node carries, for neighbours without
+                          a multiplier too, -; NULL: no pair */
   double *covered;     /* [n] part of the faces around the node that its normal
                           force acts on, -; NULL: no pair */
-  double *lever;       /* [dim*dim*n] sum of its forces times their places, as
-                          frame, m; NULL: no pair */
+  double *lever;       /* [dim*dim*n] where the resultant of a row acts, m;
+                          NULL: no pair */
   double *apart;       /* [dim*n] gap to the master along the rows that are
                           normals of pairs, at time 0, m; NULL: no pair */
 } contact_surface;
@@ -114,7 +114,7 @@ status surface_gap(const contact_surface *s, const surface_input *in, double t,
 void surface_drift(const contact_surface *s, const surface_input *in, double t0,
                    double t, double *motion);
 /* w[dim*n], the contact unknowns of the displacements u[dim*n_node]: relative
- * to the masters of pairs. */
+ * to the masters of pairs, F_a . (u - sum part u(master)) / share. */
 void surface_relative(const contact_surface *s, const double *u, double *w);
 /* F[dim*n_node] += factor times the forces r[dim*n] dual to those, on
  * both sides of pairs: r'w = F'u. */
@@ -127,9 +127,15 @@ void surface_spread_row(const contact_surface *s, int q, int a, double force,
  * contact nodes. ERR_MEMORY. */
 status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r);
-/* Resultant on the body of a unit force in row a of contact node i, -. */
+/* What row a of contact node i is divided by, -. */
 static inline double surface_share(const contact_surface *s, int i, int a) {
   return s->share == NULL ? 1.0 : s->share[s->dim * i + a];
+}
+/* Where the force of row a of contact node i acts, [dim] m. */
+static inline const double *surface_place(const contact_surface *s, int i,
+                                          int a) {
+  return s->lever == NULL ? s->x + s->dim * i
+                          : s->lever + s->dim * (s->dim * i + a);
 }
 /* The contact whose normal row a of node i is; -1: a tangent. */
 static inline int surface_normal_of(const contact_surface *s, int i, int a) {

@@ -9,6 +9,7 @@ typedef struct source {
   const node_links *links; /* NULL: none */
   int row;
   const double *frame, *basis; /* NULL: unit matrices */
+  const double *share;         /* [dim] of contact_surface; NULL: 1 */
 } source;
 
 typedef struct builder {
@@ -30,12 +31,13 @@ static int find_sources(const domain *d, source *of) {
   int n = 0;
   for (int q = 0; s != NULL && s->master != NULL && q < s->n; ++q) {
     source *x = &of[s->node_id[q]];
-    *x = (source){s->master, q, s->frame + nb * q, s->basis + nb * q};
+    *x = (source){s->master, q, s->frame + nb * q, s->basis + nb * q,
+                  s->share == NULL ? NULL : s->share + s->dim * q};
     n += has_masters(x);
   }
   for (int q = 0; d->ties != NULL && q < d->ties->n; ++q) {
     source *x = &of[d->ties->node_id[q]];
-    *x = (source){&d->ties->to, q, NULL, NULL};
+    *x = (source){&d->ties->to, q, NULL, NULL, NULL};
     n += has_masters(x);
   }
   return n;
@@ -45,11 +47,12 @@ static int find_sources(const domain *d, source *of) {
 static void find_block(const source *s, int dim, size_t e, double *C) {
   memset(C, 0, 9 * sizeof *C);
   for (int c = 0; c < dim; ++c) {
-    const double part = s->links->part[(size_t)dim * e + (size_t)c];
+    double part = s->links->part[(size_t)dim * e + (size_t)c];
     if (s->frame == NULL) {
       C[c * (dim + 1)] = part;
       continue;
     }
+    if (s->share != NULL) part /= s->share[c];
     for (int j = 0; j < dim; ++j)
       for (int i = 0; i < dim; ++i)
         C[dim * j + i] += s->basis[dim * c + i] * part * s->frame[dim * c + j];

@@ -26,8 +26,9 @@ component node_component(const domain *d, int i, int q, int c) {
   component x = {.node = i, .c = c};
   x.direction[c] = 1;
   if (q < 0) return x;
-  memcpy(x.direction, d->surface->frame + dim * (dim * q + c),
-         (size_t)dim * sizeof *x.direction);
+  for (int k = 0; k < dim; ++k)
+    x.direction[k] = d->surface->frame[dim * (dim * q + c) + k] /
+                     surface_share(d->surface, q, c);
   x.links = d->surface->master;
   x.row = q;
   return x;

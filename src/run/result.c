@@ -75,13 +75,12 @@ static void find_contact(run *r) {
 static void add_row(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
   int dim = s->dim;
-  const double *at =
-      s->lever == NULL ? s->x + dim * i : s->lever + dim * (dim * i + a);
+  const double *at = surface_place(s, i, a);
   double force[3] = {0.0, 0.0, 0.0}, x[3] = {0.0, 0.0, 0.0};
   for (int c = 0; c < dim; ++c) {
     x[c] = at[c];
     force[c] = s->frame[dim * dim * i + dim * a + c] * r->now.rc[dim * i + a];
-    t->force[c] += surface_share(s, i, a) * force[c];
+    t->force[c] += force[c];
   }
   t->moment[0] += x[1] * force[2] - x[2] * force[1];
   t->moment[1] += x[2] * force[0] - x[0] * force[2];
@@ -89,10 +88,9 @@ static void add_row(const run *r, int i, int a, contact_total *t) {
 }
 
 /* What the force of a normal closes of its contact, and presses on it. */
-static void add_normal(double rc, double share, double area, int closed,
-                       contact_total *t) {
-  t->normal += share * rc;
-  if (closed) t->area += share * area;
+static void add_normal(double rc, double area, int closed, contact_total *t) {
+  t->normal += rc;
+  if (closed) t->area += area;
   if (area > 0) t->pressure = fmax(t->pressure, -rc / area);
 }
 
@@ -101,7 +99,7 @@ static void add_side(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
   const int k = s->dim * i + a, at = (s->dim - 1) * i + a - 1;
   const double rc = r->now.rc[k];
-  add_normal(rc, surface_share(s, i, a), s->side_area[at], rc != 0.0, t);
+  add_normal(rc, s->side_area[at], rc != 0.0, t);
   t->n_open += rc == 0.0;
   t->n_slip += rc != 0.0;
   if (r->problem.side_gap != NULL)
@@ -119,12 +117,11 @@ static void add_node(const run *r, int i) {
     const double rc = r->now.rc[dim * i + a];
     add_row(r, i, a, t);
     if (a == 0)
-      add_normal(rc, surface_share(s, i, a), s->area[i], now != CONTACT_OPEN,
-                 t);
+      add_normal(rc, s->area[i], now != CONTACT_OPEN, t);
     else if (surface_normal_of(s, i, a) >= 0)
       add_side(r, i, a, t);
     else
-      t->tangential[a - 1] += surface_share(s, i, a) * rc;
+      t->tangential[a - 1] += rc;
   }
   own->n_open += now == CONTACT_OPEN;
   own->n_slip += now == CONTACT_SLIP;

@@ -330,11 +330,11 @@ END_TEST
 
 /* The error scatters by as much as little finer meshes gain. */
 START_TEST(target_on_meshes_that_scatter) {
-  job j = run_crack("crack", "N = 5\nANGLE = 30.\nGROWTH = 0.2\nW = 200.",
+  job j = run_crack("crack", "N = 5\nANGLE = 40.\nGROWTH = 0.2\nW = 200.",
                     "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n" SIF
                     "NAME=TWO, COMPONENT=2, TARGET=1 %\n",
                     HELD "*DSLOAD\nRIGHT, P, 1.\nLEFT, P, 1.\n");
-  const double exact = 0.63456099;
+  const double exact = 0.65306258;
   dat t = job_table(&j, "GOALS", -1);
   ck_assert_double_eq_tol(dat_at(&t, 0, "value"), exact, 0.01 * exact);
   dat_free(&t);

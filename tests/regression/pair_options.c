@@ -449,6 +449,79 @@ START_TEST(rows_add_up_to_the_resultant) {
 }
 END_TEST
 
+/* Rows with what they carry for a node that a support holds at its place: gap,
+ * motion, pressure, wear are those of the others. Blocks of height 1, E = 1000,
+ * nu = 0, apart in the mesh; the upper one is moved by (along, up). */
+START_TEST(rows_beside_a_held_node_are_as_others) {
+  static const struct {
+    const char *line, *more;
+    double mesh, gap, along, up;
+  } cases[] = {{"INTERFERENCE, 0.002\n", "", 0, -0.002, 0.4, 0},
+               {"CLEARANCE, 0.001\n", "", 0.001, 0.002, 0.4, -0.003},
+               {"CLEARANCE, 0.001\n", "", 0.001, 0.002, 0.4, 0.002},
+               {"", ", UPDATE=STEP", 0.001, 0.001, 0, 0.002},
+               {"INTERFERENCE, 0.102\n*FRICTION, CONTACT=P, LAW=COULOMB\n0.1\n",
+                "", 0.1, -0.002, 0.4, 0}};
+  const double apart = fmax(0.0, cases[_i].gap + cases[_i].up);
+  const double p = 500.0 * (apart - cases[_i].gap - cases[_i].up);
+  const double low = 1.0 + cases[_i].mesh;
+  const int step = strlen(cases[_i].more) > 0;
+  job j = job_begin("beside");
+  job_write(&j, "beside.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
+            "$PhysicalNames\n7\n0 1 \"HELD\"\n1 2 \"BOTTOM\"\n"
+            "1 3 \"UNDER\"\n1 4 \"OVER\"\n1 5 \"TOP\"\n"
+            "2 6 \"LOWER\"\n2 7 \"UPPER\"\n$EndPhysicalNames\n"
+            "$Nodes\n12\n1 0 0 0\n2 1 0 0\n3 2 0 0\n"
+            "4 0 1 0\n5 1 1 0\n6 2 1 0\n7 0 %g 0\n8 1 %g 0\n9 2 %g 0\n"
+            "10 0 %g 0\n11 1 %g 0\n12 2 %g 0\n$EndNodes\n$Elements\n17\n"
+            "1 15 2 1 1 4\n2 1 2 2 2 1 2\n3 1 2 2 2 2 3\n"
+            "4 1 2 3 3 6 5\n5 1 2 3 3 5 4\n6 1 2 4 4 7 8\n"
+            "7 1 2 4 4 8 9\n8 1 2 5 5 12 11\n9 1 2 5 5 11 10\n"
+            "10 2 2 6 6 1 2 5\n11 2 2 6 6 1 5 4\n12 2 2 6 6 2 3 6\n"
+            "13 2 2 6 6 2 6 5\n14 2 2 7 7 7 8 11\n15 2 2 7 7 7 11 10\n"
+            "16 2 2 7 7 8 9 12\n17 2 2 7 7 8 12 11\n$EndElements\n",
+            low, low, low, low + 1.0, low + 1.0, low + 1.0);
+  job_write(&j, "beside.inp",
+            "*MESH, FILE=beside.msh\n*MATERIAL, NAME=A\n*ELASTIC\n1000., 0\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST%s\nUNDER, OVER\n%s"
+            "*WEAR, CONTACT=P, COEFFICIENT=1E-4\n*STEP\n*QUASISTATIC\n"
+            "1., 1.\n*BOUNDARY\nBOTTOM, 1, 2\nHELD, 2, 2, %.17g\n"
+            "TOP, 1, 1, %g\nTOP, 2, 2, %g\n*PRINT, CONTACT, TOTALS, WEAR, "
+            "REACTIONS\n*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n*END STEP\n",
+            cases[_i].more, cases[_i].line, -p / 1000.0, cases[_i].along,
+            cases[_i].up);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat c = job_table(&j, "CONTACT", step), all = job_table(&j, "TOTALS", step);
+  dat w = job_table(&j, "WEAR", step), f = job_table(&j, "REACTIONS", step);
+  const int slides = strstr(cases[_i].line, "FRICTION") != NULL;
+  const double shear = fabs(dat_at(&all, 0, "tangential"));
+  ck_assert_int_eq(c.n_row, 2);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "moment_of_both"),
+                          cases[_i].mesh * shear, 1e-12);
+  ck_assert_int_eq(shear > 0.1, slides);
+  if (!slides) ck_assert_double_eq_tol(dat_at(&all, 0, "normal"), 2 * p, 1e-12);
+  for (int i = 0; i < c.n_row && !slides; ++i) {
+    ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), p, 1e-12);
+    ck_assert_double_eq_tol(dat_at(&c, i, "gap"), apart, 1e-15);
+    ck_assert_double_eq_tol(fabs(dat_at(&c, i, "u_t")), cases[_i].along, 1e-14);
+    ck_assert_double_eq_tol(dat_at(&w, i, "depth"), 4e-5 * p, 1e-15);
+  }
+  if (!slides)
+    ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), 8e-5 * p, 1e-15);
+  for (int i = 0; i < f.n_row && !slides; ++i)
+    if (dat_at(&f, i, "node_no") == 4)
+      ck_assert_double_eq_tol(dat_at(&f, i, "reaction_y"), 0, 1e-12);
+  dat_free(&f);
+  dat_free(&w);
+  dat_free(&all);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 /* The nodes of a tip have no row. */
 START_TEST(rows_of_a_crack_add_up_to_its_resultant) {
   job j;
@@ -478,6 +551,7 @@ int main(void) {
   tcase_add_loop_test(tests, modulus_of_a_surface_is_the_mean_of_its_faces, 0,
                       6);
   tcase_add_loop_test(tests, rows_add_up_to_the_resultant, 0, 2);
+  tcase_add_loop_test(tests, rows_beside_a_held_node_are_as_others, 0, 5);
   tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);
 }

@@ -236,7 +236,7 @@ START_TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
     ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
     area += c.s->area[q];
   }
-  ck_assert_double_eq_tol(area, 0.75, 1e-14); /* less their own shares */
+  ck_assert_double_eq_tol(area, 1, 1e-14);
   ck_assert_int_eq(c.pair[0].coupled->n_dropped, 2);
   scene_free(&c);
 }

@@ -446,18 +446,23 @@ static size_t longest_row(const builder *b) {
 }
 
 /* What the slave gets of the multiplier of a node: D_j at the node, and what
- * it carries for neighbours without a multiplier. */
+ * it carries for neighbours without a multiplier; the gap is their mean. */
 static void set_resultant(builder *b, int q) {
   mortar *m = b->out;
   const int dim = b->in->mesh->dim, node = m->node_id[q];
+  const double own = m->area[q];
   double *lever = m->lever + (size_t)dim * (size_t)q;
-  m->share[q] = 1.0;
-  add_scaled(dim, 1.0, place_of(b, node), lever);
+  add_scaled(dim, own, place_of(b, node), lever);
   for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
     const face_part *f = &b->face[b->around[a]];
     const int k = corner_of(b, b->around[a], node);
-    m->share[q] += f->more[k] / m->area[q];
-    add_scaled(dim, 1.0 / m->area[q], f->lever + dim * k, lever);
+    m->area[q] += f->more[k];
+    add_scaled(dim, 1.0, f->lever + dim * k, lever);
+  }
+  m->share[q] = m->area[q] / own;
+  for (int c = 0; c < dim; ++c) {
+    lever[c] /= m->area[q];
+    m->gap[dim * q + c] /= m->share[q];
   }
 }
 

@@ -24,8 +24,9 @@
  * A node carries no multiplier if the caller says so, if both surfaces have it,
  * or if less than 1 % of its area is covered. On the faces around it the
  * multipliers of the other nodes take over (sum psi = 1), and it is in P
- * among the masters: int psi_j is then more than D_j. A face without any node
- * left carries nothing.
+ * among the masters: int psi_j is then more than D_j, and what a node is
+ * relative to, as an average, is (u_j - sum_l P_jl u_l) D_j / int psi_j. A face
+ * without any node left carries nothing.
  */
 #ifndef PROTIS_MORTAR_MORTAR_H
 #define PROTIS_MORTAR_MORTAR_H
@@ -75,12 +76,12 @@ typedef struct mortar_input {
 typedef struct mortar {
   int n;          /* slave nodes with a multiplier; 0: nothing in common */
   int *node_id;   /* [n] ascending */
-  double *area;   /* [n] D_j, m2 */
+  double *area;   /* [n] int psi_j, m2 */
   double *share;  /* [n] int psi_j / D_j, - */
   double *whole;  /* [n] D_j if all of its faces were covered, m2 */
-  double *lever;  /* [dim*n] int psi_j x / D_j, m */
+  double *lever;  /* [dim*n] int psi_j x / int psi_j, m */
   double *normal; /* [dim*n] outward of the slave, unit length */
-  double *gap;    /* [dim*n] sum P_jl x_l - x_j, m */
+  double *gap;    /* [dim*n] (sum P_jl x_l - x_j) D_j / int psi_j, m */
   node_links to;  /* row q: node_id[q]; parts alike for all components */
   /* For messages */
   int n_dropped;   /* slave nodes left out: said by the caller, or common */

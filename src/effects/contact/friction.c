@@ -495,8 +495,7 @@ VALUE(friction_work, v->s->energy.friction)
 VALUE(friction_end, v->s->energy.friction_end)
 VALUE(contact_slip, v->s->contacts.slip[at(SURFACE->dim - 1, id, part)])
 VALUE(slip_distance, v->s->contacts.distance[id])
-VALUE(sliding_limit,
-      surface_share(v->s->contacts.surface, id, 0) * v->s->contacts.limit[id])
+VALUE(sliding_limit, v->s->contacts.limit[id])
 
 /* The slip in global components. */
 static double contact_slide(const view *v, int id, int part) {

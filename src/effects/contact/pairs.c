@@ -88,7 +88,8 @@ static void add_moment(const run *r, int i, int a, double *moment) {
   double arm[3], f[3] = {0.0, 0.0, 0.0};
   find_arm(r, i, a, arm);
   for (int c = 0; c < dim; ++c)
-    f[c] = s->frame[dim * (dim * i + a) + c] * r->now.rc[dim * i + a];
+    f[c] = s->frame[dim * (dim * i + a) + c] * r->now.rc[dim * i + a] /
+           surface_share(s, i, a);
   for (int c = 0; c < 3; ++c) {
     const int j = (c + 1) % 3, k = (c + 2) % 3;
     moment[c] += arm[j] * f[k] - arm[k] * f[j];

@@ -145,7 +145,7 @@ static double volume_of(const view *v, int i, int contact_id) {
   for (int a = 0; a < s->dim; ++a) {
     const int id = surface_normal_of(s, i, a);
     if (id >= 0 && (contact_id < 0 || id == contact_id))
-      sum += surface_share(s, i, a) * area_of(s, i, a) * depth_of(v, i, a);
+      sum += area_of(s, i, a) * depth_of(v, i, a);
   }
   return sum;
 }

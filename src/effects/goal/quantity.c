@@ -64,7 +64,7 @@ static double share_of(const run *r, const goal_card *g, int i, int a) {
   const int is_normal = surface_normal_of(s, i, a) >= 0;
   if (surface_contact_of(s, i, a) != g->contact_id) return 0.0;
   if (g->quantity == GOAL_MOMENT)
-    return moment_of(g, dim, s->x + dim * i,
+    return moment_of(g, dim, surface_place(s, i, a),
                      s->frame + dim * dim * i + dim * a);
   if (g->component == GOAL_NORMAL) return is_normal ? -1.0 : 0.0;
   if (g->component == GOAL_TANGENT) return a == 1 && !is_normal ? 1.0 : 0.0;

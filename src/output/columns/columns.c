@@ -23,18 +23,11 @@ static const char *contact_name(const view *v, int id) {
   return v->m->contacts[SURFACE->contact_id[id]].name;
 }
 
-/* Of row a, with what the node carries for neighbours that are left out: rows
- * of a contact add up to its resultant. */
-static double row_force(const view *v, int id, int a) {
-  return surface_share(SURFACE, id, a) *
-         v->s->contacts.rc[at(SURFACE->dim, id, a)];
-}
-
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
 VALUE(contact_u_n, v->s->contacts.uc[at(SURFACE->dim, id, 0)])
 VALUE(contact_u_t, v->s->contacts.uc[at(SURFACE->dim, id, part + 1)])
 VALUE(contact_gap, v->s->contacts.gap[id])
-VALUE(contact_f_n, -row_force(v, id, 0))
+VALUE(contact_f_n, -v->s->contacts.rc[at(SURFACE->dim, id, 0)])
 /* The side row of a corner node is a normal force of another obstacle. A
  * problem from a file has no corners. */
 static int is_side(const view *v, int id, int part) {
@@ -42,9 +35,11 @@ static int is_side(const view *v, int id, int part) {
   return side != NULL && side[at(SURFACE->dim - 1, id, part)] >= 0;
 }
 
-VALUE(contact_f_t, is_side(v, id, part) ? 0 : row_force(v, id, part + 1))
+VALUE(contact_f_t, is_side(v, id, part)
+                       ? 0
+                       : v->s->contacts.rc[at(SURFACE->dim, id, part + 1)])
 VALUE(contact_normal, SURFACE->frame[at(SURFACE->dim * SURFACE->dim, id, part)])
-VALUE(contact_area, SURFACE->area[id] * surface_share(SURFACE, id, 0))
+VALUE(contact_area, SURFACE->area[id])
 VALUE(contact_state, v->s->contacts.contact[id])
 
 /* A plain LCP: z stands for r, w for u. */
@@ -66,7 +61,7 @@ static double contact_force(const view *v, int id, int part) {
   const double *frame = SURFACE->frame + at(dim * dim, id, 0);
   double sum = 0;
   for (int k = 0; k < dim; ++k)
-    sum += frame[dim * k + part] * row_force(v, id, k);
+    sum += frame[dim * k + part] * v->s->contacts.rc[at(dim, id, k)];
   return sum;
 }
 

@@ -79,9 +79,8 @@ static void print_values(const state *s, const solution *a, FILE *f) {
   for (int i = 0; i < s->errors.solutions->n; ++i)
     fprintf(f, "        %8zu %-6s %s %s %s %s\n", of->node_no[i],
             words[a->status[i]], text_number(a->u[2 * i], 4),
-            text_number(a->u[2 * i + 1], 4),
-            text_number(-surface_share(of, i, 0) * a->r[2 * i], 4),
-            text_number(surface_share(of, i, 1) * a->r[2 * i + 1], 4));
+            text_number(a->u[2 * i + 1], 4), text_number(-a->r[2 * i], 4),
+            text_number(a->r[2 * i + 1], 4));
 }
 
 /* Attempts that ended without a solution. */
