@@ -536,7 +536,16 @@
   X(4030, WARNING, "interference as small as the gaps of facets",            \
     "Two meshes of one curved surface have facets at different places: they " \
     "are apart here and enter each other there by about h^2/8R, which adds "  \
-    "to the interference. ADJUST=YES on *CONTACT PAIR takes it away.")
+    "to the interference. ADJUST=YES on *CONTACT PAIR takes it away.")        \
+  X(4031, WARNING, "slave that supports hold, and its master not",            \
+    "What supports hold of a slave node is relative to its place. The master " \
+    "that moves along it is not seen to slide, and has no friction; where "   \
+    "the normal leans, nor is it seen to come nearer. Choose the other "      \
+    "side with SLAVE=, or hold the body away from the contact.")              \
+  X(4032, WARNING, "tie that supports open",                                  \
+    "A component of a slave node that a support holds does not follow the "   \
+    "master: the tie is open there. Choose the other side with SLAVE=, or "   \
+    "let the support hold the nodes of both.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

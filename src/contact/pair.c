@@ -132,6 +132,21 @@ static void tell_facets(const surface_input *in, const contact_pair *p,
       p->card, p->name, gap, p->change->number);
 }
 
+/* 1: a support holds a component of slave node q that it holds of none of its
+ * masters. */
+static int is_held_alone(const mortar *m, int q, const unsigned char *fixed) {
+  unsigned masters = 0;
+  for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e)
+    masters |= fixed[m->to.master[e]];
+  return (fixed[m->node_id[q]] & ~masters) != 0;
+}
+
+int surfaces_held_alone(const mortar *m, const unsigned char *fixed) {
+  int n = 0;
+  for (int q = 0; q < m->n; ++q) n += is_held_alone(m, q, fixed);
+  return n;
+}
+
 static void tell(const surface_input *in, const contact_pair *p, int n_held,
                  message_log *log) {
   enum { CURVED = 2, FLAT = 4 };
@@ -141,6 +156,14 @@ static void tell(const surface_input *in, const contact_pair *p, int n_held,
                 "%s %s: nodes of group %s are also fixed in the "
                 "normal direction, or tied, and left out of contact: %d",
                 p->card, p->name, p->group->name, n_held);
+  if (m->n > 0 && 2 * surfaces_held_alone(m, in->fixed) > m->n)
+    message_add(log, P4031, &p->at,
+                "%s %s: supports hold %d of %d nodes of the slave %s along a "
+                "direction in which they do not hold the master %s: no motion "
+                "of the master along it, nor friction, is seen there: SLAVE= "
+                "takes the other surface",
+                p->card, p->name, surfaces_held_alone(m, in->fixed), m->n,
+                p->group->name, p->master->name);
   if (m->n == 0 && m->covered == 0.0)
     message_add(log, P4023, &p->at,
                 "%s %s: no face of %s meets a face of %s along its "

@@ -77,6 +77,9 @@ status surfaces_couple(const surface_input *in, const double *x,
                        const mesh_group *slave, const mesh_group *master,
                        int slave_normal, const unsigned char *dropped,
                        mortar **out);
+/* pair.c: slave nodes of which supports, fixed[n_node] as below, hold a
+ * component that they hold of no master. */
+int surfaces_held_alone(const mortar *m, const unsigned char *fixed);
 /*
  * pair.c: the coupling of each pair under the supports of the input, without
  * the slave nodes that supports hold along the normal, and those that an

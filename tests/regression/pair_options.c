@@ -359,17 +359,18 @@ START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
             "8 2 2 5 5 2 3 6\n9 2 2 5 5 2 6 5\n"
             "10 2 2 6 6 7 8 9\n11 2 2 6 6 7 9 10\n"
             "$EndElements\n");
-  job_write(&j, "mean.inp",
-            "*MESH, FILE=mean.msh\n*MATERIAL, NAME=L\n*ELASTIC\n%g, 0\n"
-            "*MATERIAL, NAME=R\n*ELASTIC\n%g, 0\n"
-            "*MATERIAL, NAME=U\n*ELASTIC\n1., 0\n"
-            "*SOLID SECTION, ELSET=LEFT, MATERIAL=L\n"
-            "*SOLID SECTION, ELSET=RIGHT, MATERIAL=R\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=U\n"
-            "*CONTACT PAIR, NAME=P\nUNDER, OVER\n*STEP\n*STATIC\n"
-            "*BOUNDARY\nBOTTOM, 1, 2\nUPPER, 1\n*DLOAD\nUPPER, BY, -1e-3\n"
-            "*END STEP\n",
-            cases[_i].left, cases[_i].right);
+  job_write(
+      &j, "mean.inp",
+      "*MESH, FILE=mean.msh\n*MATERIAL, NAME=L\n*ELASTIC\n%g, 0\n"
+      "*MATERIAL, NAME=R\n*ELASTIC\n%g, 0\n"
+      "*MATERIAL, NAME=U\n*ELASTIC\n1., 0\n"
+      "*SOLID SECTION, ELSET=LEFT, MATERIAL=L\n"
+      "*SOLID SECTION, ELSET=RIGHT, MATERIAL=R\n"
+      "*SOLID SECTION, ELSET=UPPER, MATERIAL=U\n"
+      "*CONTACT PAIR, NAME=P\nUNDER, OVER\n*STEP\n*STATIC\n"
+      "*BOUNDARY\nBOTTOM, 1, 2\nUNDER, 1\nUPPER, 1\n*DLOAD\nUPPER, BY, -1e-3\n"
+      "*END STEP\n",
+      cases[_i].left, cases[_i].right);
   ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
   char *text = job_file(&j, "lst");
   ck_assert_msg(strstr(text, cases[_i].told) != NULL, "%s: %.60s",

@@ -362,7 +362,24 @@ START_TEST(slave_is_chosen) {
        {9, 1},
        ", SLAVE=FIRST",
        ROLLERS,
+       "slave UNDER (by SLAVE=)"},
+      {"N = 4\nM = 5",
+       {1, 9},
+       "",
+       "LOWER, 1\nBOTTOM, 2\nTOP, 1\n",
+       "slave OVER (the other is held)"},
+      {"N = 5\nM = 4",
+       {9, 1},
+       "",
+       "UPPER, 1\nBOTTOM, 1, 2\n",
+       "slave UNDER (the other is held)"},
+      {"N = 4\nM = 5",
+       {1, 9},
+       ", SLAVE=FIRST",
+       "LOWER, 1\nBOTTOM, 2\nTOP, 1\n",
        "slave UNDER (by SLAVE=)"}};
+  const int led = strcmp(cases[_i / 2].card, ", SLAVE=FIRST") == 0 &&
+                  cases[_i / 2].E[1] > 1;
   char joint[80];
   snprintf(joint, sizeof joint, "*%s, NAME=P%s\nUNDER, OVER\n",
            _i % 2 ? "TIE" : "CONTACT PAIR", cases[_i / 2].card);
@@ -378,6 +395,8 @@ START_TEST(slave_is_chosen) {
   char *text = job_file(&j, "lst");
   ck_assert_msg(strstr(text, cases[_i / 2].told) != NULL, "%s: %s",
                 cases[_i / 2].told, strstr(text, "slave"));
+  ck_assert_msg(led == (strstr(text, _i % 2 ? "P4032" : "P4031") != NULL), "%s",
+                j.errors);
   free(text);
   job_end(&j);
 }
@@ -675,7 +694,7 @@ int main(void) {
   tcase_add_loop_test(
       tests, initial_displacements_of_tied_bodies_are_compatible, 0, 2);
   tcase_add_loop_test(tests, node_of_two_ties_is_of_the_first, 0, 2);
-  tcase_add_loop_test(tests, slave_is_chosen, 0, 22);
+  tcase_add_loop_test(tests, slave_is_chosen, 0, 28);
   tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
   tcase_add_test(tests, restart_is_bit_for_bit);
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);

@@ -58,6 +58,8 @@ status setup_face_weights(const model *m, const mesh *msh, double **weight) {
 /* What contact and ties know of the faces. */
 static status new_faces(run *r) {
   PASS(setup_face_weights(r->m, r->msh, &r->faces.face_weight));
+  PASS_NEW(r->faces.node_fixed, r->msh->n_node);
+  r->faces.input.fixed = r->faces.node_fixed;
   r->faces.input.mesh = r->msh;
   r->faces.input.face_weight = r->faces.face_weight;
   r->faces.input.axisymmetric = r->m->sections[0].kin == AXISYMMETRIC;
@@ -82,7 +84,6 @@ static status new_pairs(run *r) {
   const model *m = r->m;
   const mesh *msh = r->msh;
   PASS_NEW(r->faces.pairs, m->n.contact);
-  PASS_NEW(r->faces.node_fixed, msh->n_node);
   PASS_NEW(r->result.totals, m->n.contact);
   if (model_has_axis(m)) PASS_NEW(r->result.torque, m->n.contact);
   for (int i = 0; i < m->n.contact; ++i) {
@@ -99,7 +100,6 @@ static status new_pairs(run *r) {
   }
   r->faces.input.n_pair = m->n.contact;
   r->faces.input.pairs = r->faces.pairs;
-  r->faces.input.fixed = r->faces.node_fixed;
   return OK;
 }
 

@@ -141,6 +141,13 @@ static status couple(const run *r, const tie *t, const unsigned char *dropped,
                    *master = &r->msh->group[t->pair.master_id];
   PASS(surfaces_couple(&r->faces.input, r->msh->x, slave, master, 1, dropped,
                        out));
+  const int alone = surfaces_held_alone(*out, r->faces.node_fixed);
+  if (alone > 0)
+    message_add(r->m->log, P4032, &t->at,
+                "*TIE %s: supports hold a component of %d of %d nodes of the "
+                "slave %s, but not of the master %s: it is not tied there: "
+                "SLAVE= takes the other surface, or the support holds both",
+                t->name, alone, (*out)->n, slave->name, master->name);
   if ((*out)->n == 0)
     message_add(r->m->log, P4023, &t->at,
                 "*TIE %s: no face of %s meets a face of %s along its normal",
@@ -205,6 +212,7 @@ status run_build_ties(run *r) {
   unsigned char *dropped = NULL;
   run_free_ties(r);
   if (n == 0) return OK;
+  node_bits(r);
   timer_enter(STAGE_COUPLING);
   NEW_ALL(OF(m, n), OF(dropped, r->msh->n_node));
   find_dropped(r, dropped);
