@@ -2,6 +2,7 @@
  * relative to. */
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/vector.h"
 #include "contact/parts.h"
 
 #include <math.h>
@@ -10,6 +11,10 @@
 #include <string.h>
 
 /* ---- couplings ---------------------------------------------------------- */
+
+/* Slave nodes: left out, as supports hold them or an earlier pair has them;
+ * rows of this pair and of an earlier one. */
+enum { HELD = 1, TAKEN, SHARED };
 
 /* 1: the pair is coupled where the bodies are now. */
 static int is_moved(const surface_input *in, const contact_pair *p) {
@@ -24,8 +29,7 @@ static int is_held(const surface_input *in, const mortar *m, int q) {
   return !(frame_project(dim, in->fixed[m->node_id[q]], n) > PAIR_FIXED_SINE);
 }
 
-/* 1: the normals of two nodes are too near to each other for one frame. */
-static int is_dependent(int dim, const double *a, const double *b) {
+int pair_same_normal(int dim, const double *a, const double *b) {
   double frame[9];
   unsigned char held[3] = {0};
   memcpy(frame, a, (size_t)dim * sizeof *frame);
@@ -42,11 +46,46 @@ static int is_taken(const surface_input *in, int pair_id, int q) {
     if (old == NULL) continue;
     const int *at = bsearch(&m->node_id[q], old->node_id, (size_t)old->n,
                             sizeof *old->node_id, number_order);
-    if (at != NULL && is_dependent(dim, old->normal + dim * (at - old->node_id),
-                                   m->normal + dim * q))
+    if (at != NULL &&
+        pair_same_normal(dim, old->normal + dim * (at - old->node_id),
+                         m->normal + dim * q))
       return 1;
   }
   return 0;
+}
+
+/* 1: CLEARANCE or INTERFERENCE of two pairs are one, or none. */
+static int same_change(const contact_pair *a, const contact_pair *b) {
+  if (a->change == NULL || b->change == NULL) return a->change == b->change;
+  return a->change->formula == NULL && b->change->formula == NULL &&
+         a->change->factor == b->change->factor &&
+         a->change_sign * a->change->number ==
+             b->change_sign * b->change->number;
+}
+
+/* 1: an earlier pair with the same slave may share nodes with this one. */
+static int has_other_master(const surface_input *in, int pair_id) {
+  const contact_pair *now = &in->pairs[pair_id];
+  int any = 0;
+  for (const contact_pair *p = in->pairs; p < now; ++p)
+    any |= p->coupled != NULL && p->group == now->group && same_change(p, now);
+  return any;
+}
+
+/* Where two masters meet within a face of the slave its nodes act on both: the
+ * nodes of such faces that an earlier pair has are shared; how many are new. */
+static int share_nodes(const surface_input *in, int pair_id,
+                       unsigned char *dropped) {
+  const mesh *m = in->mesh;
+  const mortar *now = in->pairs[pair_id].coupled;
+  int more = 0;
+  for (int k = 0; k < now->n_cut && has_other_master(in, pair_id); ++k)
+    for (int c = 0; c < m->dim; ++c) {
+      unsigned char *is = &dropped[m->face[m->dim * now->cut[k] + c]];
+      more += *is == TAKEN;
+      if (*is == TAKEN) *is = SHARED;
+    }
+  return more;
 }
 
 status surfaces_couple(const surface_input *in, const double *x,
@@ -72,25 +111,29 @@ status surfaces_couple(const surface_input *in, const double *x,
 static status couple_kept(const surface_input *in, int pair_id, int *n_held) {
   contact_pair *p = &in->pairs[pair_id];
   const size_t n = (size_t)in->mesh->dim * (size_t)in->mesh->n_node;
-  OWNED unsigned char *dropped = NULL;
+  OWNED unsigned char *dropped = NULL, *left_out = NULL;
   OWNED double *x = NULL;
   int more = 1;
   PASS_NEW(x, n);
   for (size_t k = 0; k < n; ++k)
     x[k] = in->mesh->x[k] + (is_moved(in, p) ? in->u[k] : 0.0);
-  PASS_NEW(dropped, in->mesh->n_node);
+  PASS_NEW_ALL(OF(dropped, in->mesh->n_node), OF(left_out, in->mesh->n_node));
   *n_held = 0;
   while (more > 0) {
     more = 0;
-    PASS(surfaces_couple(in, x, p->group, p->master, p->slave_normal, dropped,
+    for (int i = 0; i < in->mesh->n_node; ++i)
+      left_out[i] = dropped[i] == HELD || dropped[i] == TAKEN;
+    PASS(surfaces_couple(in, x, p->group, p->master, p->slave_normal, left_out,
                          &p->coupled));
     for (int q = 0; q < p->coupled->n; ++q) {
+      unsigned char *is = &dropped[p->coupled->node_id[q]];
       const int held = is_held(in, p->coupled, q);
-      if (!held && !is_taken(in, pair_id, q)) continue;
-      dropped[p->coupled->node_id[q]] = 1;
+      if (!held && (*is == SHARED || !is_taken(in, pair_id, q))) continue;
+      *is = held ? HELD : TAKEN;
       *n_held += held;
       ++more;
     }
+    if (more == 0) more = share_nodes(in, pair_id, dropped);
   }
   return OK;
 }
@@ -221,41 +264,54 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
-static double covered(const mortar *m, int q) {
-  return fmin(1.0, m->area[q] / m->whole[q]);
-}
-
-/* Resultant of row c: of its coupling, or of a force at the node. */
-static void set_resultant(contact_surface *s, int i, int c,
-                          const pair_row *row) {
+/* Resultant of row c: of its couplings, or of a force at the node. */
+static void set_resultant(contact_surface *s, int i, int c, int normal, int m,
+                          const pair_row *rows) {
   const int dim = s->dim, k = dim * i + c;
-  const mortar *of = row == NULL ? NULL : row->of;
-  s->share[k] = of == NULL ? 1.0 : of->share[row->row];
-  if (c == 0) s->covered[i] = of == NULL ? 1.0 : covered(of, row->row);
-  memcpy(s->lever + dim * k,
-         of == NULL ? s->x + dim * i : of->lever + dim * row->row,
-         (size_t)dim * sizeof *s->lever);
+  double area = 0.0, own = 0.0, whole = 0.0, lever[3] = {0.0, 0.0, 0.0};
+  for (int e = 0; e < m; ++e) {
+    const mortar *of = rows[e].of;
+    if (rows[e].normal != normal || of == NULL) continue;
+    const int q = rows[e].row;
+    area += of->area[q];
+    own += of->area[q] / of->share[q];
+    whole = fmax(whole, of->whole[q]);
+    add_scaled(dim, of->area[q], of->lever + dim * q, lever);
+  }
+  s->share[k] = own > 0.0 ? area / own : 1.0;
+  if (c == 0) s->covered[i] = whole > 0.0 ? fmin(1.0, area / whole) : 1.0;
+  for (int a = 0; a < dim; ++a)
+    s->lever[dim * k + a] = area > 0.0 ? lever[a] / area : s->x[dim * i + a];
 }
 
-status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
-                    pair_links *room) {
+/* Of its normal's rows, by the area of the node alone. */
+static double weight_of(const pair_row *row, int m, const pair_row *rows) {
+  double sum = 0.0;
+  for (int e = 0; e < m; ++e)
+    if (rows[e].normal == row->normal && rows[e].of != NULL)
+      sum += rows[e].of->area[rows[e].row] / rows[e].of->share[rows[e].row];
+  return row->of->area[row->row] / row->of->share[row->row] / sum;
+}
+
+status pair_add_row(contact_surface *s, int i, int n, int m,
+                    const pair_row *rows, pair_links *room) {
   node_links *l = s->master;
   const int dim = s->dim, first = room->n;
-  for (int k = 0; k < n; ++k) {
-    const node_links *to = rows[k].of == NULL ? NULL : &rows[k].of->to;
-    for (size_t e = to == NULL ? 0 : to->start[rows[k].row];
-         to != NULL && e < to->start[rows[k].row + 1]; ++e) {
+  for (int k = 0; k < m; ++k) {
+    if (rows[k].of == NULL) continue;
+    const node_links *to = &rows[k].of->to;
+    const double by = weight_of(&rows[k], m, rows);
+    for (size_t e = to->start[rows[k].row]; e < to->start[rows[k].row + 1];
+         ++e) {
       int at;
       PASS(place_of(l, first, to->master[e], room, &at));
       for (int c = 0; c < dim; ++c)
-        if (source_of(s, i, n, c) == k)
-          l->part[dim * at + c] = to->part[(size_t)dim * e];
+        if (source_of(s, i, n, c) == rows[k].normal)
+          l->part[dim * at + c] += by * to->part[(size_t)dim * e];
     }
   }
-  for (int c = 0; c < dim; ++c) {
-    const int k = source_of(s, i, n, c);
-    set_resultant(s, i, c, k < 0 ? NULL : &rows[k]);
-  }
+  for (int c = 0; c < dim; ++c)
+    set_resultant(s, i, c, source_of(s, i, n, c), m, rows);
   l->n = i + 1;
   l->start[i + 1] = (size_t)room->n;
   return OK;

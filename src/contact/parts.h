@@ -60,18 +60,24 @@ void frame_invert(int dim, int orthonormal, const double *frame, double *basis);
 typedef struct pair_row {
   const mortar *of; /* NULL: of an obstacle */
   int row;
+  int normal; /* which of the node's */
 } pair_row;
+
+/* 1: the normals of two nodes are too near to each other for one frame. */
+int pair_same_normal(int dim, const double *a, const double *b);
 
 /* Entries of the rows so far, and room for them; all-zero before. */
 typedef struct pair_links {
   int n, n_part, capacity, part_capacity;
 } pair_links;
 
-/* The row of contact node i, of the last ones before: rows[n] of its normals.
- * Its tangents are relative to the master of the first, if it has no other;
- * those that supports hold, and those at corners, to none. ERR_MEMORY. */
-status pair_add_row(contact_surface *s, int i, int n, const pair_row *rows,
-                    pair_links *room);
+/* The row of contact node i, of the last ones before: its n normals, rows[m] of
+ * which those of one normal are for two masters side by side, their mean by
+ * area. Its tangents are relative to the master of the first, if it has no
+ * other; those that supports hold, and those at corners, to none. ERR_MEMORY.
+ */
+status pair_add_row(contact_surface *s, int i, int n, int m,
+                    const pair_row *rows, pair_links *room);
 /* ERR_DECK with an error in the log if slave nodes of pairs move with
  * each other in a circle; ERR_MEMORY. */
 status pairs_check_circles(const contact_surface *s, const surface_input *in,

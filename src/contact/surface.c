@@ -35,6 +35,8 @@ typedef struct candidate {
   double held;      /* 1 - what supports leave of the normal's length */
   double area;      /* m2 */
   double gap;       /* at time 0, m */
+  int also;         /* of a pair: another candidate, with another master side by
+                       side, + 1; 0: none */
 } candidate;
 
 /* Messages given once per contact. */
@@ -62,6 +64,7 @@ typedef struct builder {
   candidate *list;        /* [n] by node, then by contact */
   tally *tallies;         /* [n_pair] */
   pair_links links;       /* room for the masters of the surface */
+  pair_row *rows;         /* [n_pair] of one node */
 } builder;
 
 /* Position of a node as text for a message. */
@@ -234,7 +237,8 @@ static status collect(builder *b) {
   const surface_input *in = b->in;
   OWNED int *index = NULL;
   int n = 0;
-  PASS_NEW_ALL(OF(b->tallies, in->n_pair), OF(index, in->mesh->n_node));
+  PASS_NEW_ALL(OF(b->tallies, in->n_pair), OF(b->rows, in->n_pair),
+               OF(index, in->mesh->n_node));
   for (int p = 0; p < in->n_pair; ++p) n += in->pairs[p].group->n_node;
   PASS_NEW(b->list, n);
   for (int p = 0; p < in->n_pair; ++p) {
@@ -274,6 +278,33 @@ static void merge_smooth(builder *b, int first, int end) {
       y->left_out = 1;
       ++b->tallies[y->pair_id].n_kept;
     }
+}
+
+/* 1: the node acts on the masters of two pairs, side by side. */
+static int is_shared(const builder *b, const candidate *x, const candidate *y) {
+  const mortar *m = b->in->pairs[x->pair_id].coupled,
+               *n = b->in->pairs[y->pair_id].coupled;
+  return m != NULL && n != NULL &&
+         pair_same_normal(b->dim, m->normal + b->dim * x->row,
+                          n->normal + b->dim * y->row);
+}
+
+static void merge_masters(builder *b, int first, int end) {
+  for (int i = first; i < end; ++i)
+    for (int j = i + 1, last = i; j < end && !b->list[i].left_out; ++j) {
+      candidate *x = &b->list[i], *y = &b->list[j];
+      if (y->left_out || !is_shared(b, x, y)) continue;
+      for (int c = 0; c < b->dim; ++c) x->normal[c] += y->normal[c];
+      x->area += y->area;
+      b->list[last].also = j + 1;
+      last = j;
+      y->left_out = 1;
+      ++b->tallies[y->pair_id].n_kept;
+    }
+}
+
+static const candidate *next_of(const builder *b, const candidate *c) {
+  return c->also > 0 ? &b->list[c->also - 1] : NULL;
 }
 
 /* The normal of the obstacle instead of that of the body; 0 where the body
@@ -380,6 +411,16 @@ static void compare_normals(const builder *b, const candidate *c) {
   t->turned_node = c->node_id;
 }
 
+/* The gap of a pair at time 0, or of pairs side by side by their area. */
+static double mean_apart(const builder *b, const candidate *c) {
+  double sum = 0.0;
+  for (const candidate *k = c; k != NULL; k = next_of(b, k)) {
+    const contact_pair *p = &b->in->pairs[k->pair_id];
+    sum += p->coupled->area[k->row] * pair_apart(b->in, p, k->row, c->normal);
+  }
+  return sum / c->area;
+}
+
 /* Gap at time 0, or left out. */
 static void measure(builder *b, candidate *c) {
   const mesh *m = b->in->mesh;
@@ -387,8 +428,7 @@ static void measure(builder *b, candidate *c) {
   tally *t = &b->tallies[c->pair_id];
   const partner_ops *with = partner_of(p);
   const surface_row at = row_of(b, c);
-  c->gap = p->coupled != NULL ? pair_apart(b->in, p, c->row, c->normal)
-                              : with->gap(&at, 0);
+  c->gap = p->coupled != NULL ? mean_apart(b, c) : with->gap(&at, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
     message_add(b->log, P4007, &p->at, "%s %s: gap is %s at %s, time 0",
                 p->card, p->name, isnan(c->gap) ? "not a number" : "-inf",
@@ -411,6 +451,7 @@ static void measure(builder *b, candidate *c) {
 static int gather(builder *b, int first, int end, const candidate **kept) {
   int n = 0;
   merge_smooth(b, first, end);
+  merge_masters(b, first, end);
   for (int i = first; i < end; ++i) {
     candidate *c = &b->list[i];
     if (!c->left_out) orient(b, c);
@@ -456,14 +497,15 @@ static void note_corner(builder *b, int n_kept, const candidate *const *kept) {
 static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
                           const candidate *const *kept) {
   const int dim = b->dim;
-  pair_row rows[3];
+  int n = 0;
   if (s->master == NULL) return OK;
   for (int k = 0; k < n_kept; ++k) {
-    const contact_pair *p = &b->in->pairs[kept[k]->pair_id];
-    rows[k] = (pair_row){p->coupled, kept[k]->row};
-    if (rows[k].of != NULL) s->apart[dim * i + k] = kept[k]->gap;
+    for (const candidate *c = kept[k]; c != NULL; c = next_of(b, c))
+      b->rows[n++] = (pair_row){b->in->pairs[c->pair_id].coupled, c->row, k};
+    if (b->in->pairs[kept[k]->pair_id].coupled != NULL)
+      s->apart[dim * i + k] = kept[k]->gap;
   }
-  PASS(pair_add_row(s, i, n_kept, rows, &b->links));
+  PASS(pair_add_row(s, i, n_kept, n, b->rows, &b->links));
   for (int a = 0; a < dim; ++a)
     for (int c = 0; c < dim; ++c)
       s->basis[dim * (dim * i + a) + c] *= surface_share(s, i, a);
@@ -607,7 +649,7 @@ status surface_build(const surface_input *in, message_log *log,
   s = NULL;
 done:
   surface_free(s);
-  RELEASE(b.list, b.tallies);
+  RELEASE(b.list, b.tallies, b.rows);
   return st;
 }
 

@@ -523,6 +523,35 @@ START_TEST(rows_beside_a_held_node_are_as_others) {
 }
 END_TEST
 
+/* Where two masters meet within a face of the slave, its nodes act on both: a
+ * block of nu = 0 on held floors, 0.001 lower, has one pressure. */
+START_TEST(masters_side_by_side_are_one_floor) {
+  static const double ends[] = {0.81, 0.9, 0.95, 1.0, 1.19, 1.2};
+  const char *more = _i % 2 ? "CLEARANCE, 0.001\n" : "";
+  job j = job_begin("floors");
+  job_copy(&j, "tests/regression/mesh/floors.geo");
+  job_write(&j, "floors.inp",
+            "*PARAMETER\nC = %g\n*MESH, FILE=floors.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BLOCK, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=FLOORS, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, LEFT FLOOR\n%s"
+            "*CONTACT PAIR, NAME=Q, SLAVE=FIRST\nUNDER, RIGHT FLOOR\n%s"
+            "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nFLOORS, 1, 2\n"
+            "TOP, 1\nTOP, 2, 2, %g\n*PRINT, CONTACT, TOTALS\n*END STEP\n",
+            ends[_i], more, more, _i % 2 ? -3e-3 : -2e-3);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_sum(&c, "f_n"), 2, 1e-12);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 1, 1e-11);
+  ck_assert_double_eq_tol(dat_sum(&all, "closed_area"), 2, 1e-12);
+  ck_assert_double_eq_tol(dat_sum(&all, "moment_z"), 2, 1e-12);
+  dat_free(&all);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 /* The nodes of a tip have no row. */
 START_TEST(rows_of_a_crack_add_up_to_its_resultant) {
   job j;
@@ -553,6 +582,7 @@ int main(void) {
                       6);
   tcase_add_loop_test(tests, rows_add_up_to_the_resultant, 0, 2);
   tcase_add_loop_test(tests, rows_beside_a_held_node_are_as_others, 0, 5);
+  tcase_add_loop_test(tests, masters_side_by_side_are_one_floor, 0, 6);
   tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);
 }

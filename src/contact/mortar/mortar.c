@@ -15,6 +15,8 @@
 
 /* Least part of its area that gives a node a multiplier, - . */
 static const double scant = 0.01;
+/* Part of a face with, or without, a partner that is more than rounding. */
+static const double seen = 1e-9;
 
 enum { CARRIES = 0, NO_SLAVE, DROPPED, SCANT, UNCOVERED };
 
@@ -545,24 +547,29 @@ static double master_area(const builder *b, int i) {
 }
 
 /* What messages need. */
-static void sum_up(builder *b) {
+static status sum_up(builder *b) {
   const int dim = b->in->mesh->dim;
   mortar *m = b->out;
   double masters = 0.0, slaves = 0.0;
+  PASS_NEW(m->cut, b->in->n_slave);
   for (int i = 0; i < b->in->n_slave; ++i) {
     const face_part *f = &b->face[i];
-    double area = 0.0;
+    double area = 0.0, whole = 0.0;
     for (int k = 0; k < dim; ++k) {
-      m->slave_area += f->share[k];
+      whole += f->share[k];
       if (f->thin > 0.0) area += f->d[k] / f->thin;
     }
+    m->slave_area += whole;
     m->covered += area;
+    if (area > seen * whole && area < (1.0 - seen) * whole)
+      m->cut[m->n_cut++] = b->in->slave[i];
     m->n_bare += area > 0 && f->end == f->first;
     masters += f->masters;
     slaves += f->end > f->first ? area * f->size : 0;
   }
   for (int i = 0; i < b->in->n_master; ++i) m->master_area += master_area(b, i);
   m->size_ratio = slaves > 0 ? masters / slaves : 0;
+  return OK;
 }
 
 static status builder_new(const mortar_input *in, builder *b) {
@@ -589,7 +596,7 @@ status mortar_couple(const mortar_input *in, mortar **out) {
   PASS(do_faces(&b));
   for (int i = 0; i < in->mesh->n_node; ++i) b.slot[i] = -1;
   PASS(set_nodes(&b));
-  sum_up(&b);
+  PASS(sum_up(&b));
   *out = b.out;
   b.out = NULL;
   return OK;
@@ -599,7 +606,7 @@ void mortar_free(mortar *m) {
   if (m == NULL) return;
   links_release(&m->to);
   RELEASE(m->node_id, m->area, m->whole, m->share, m->lever, m->normal, m->gap,
-          m);
+          m->cut, m);
 }
 
 /* ---- links ---- */
