@@ -1,5 +1,7 @@
 """Decks and tables of protis for the tools: cards changed, JOB.dat read."""
+import hashlib
 import json
+import math
 import os
 import pathlib
 import re
@@ -8,7 +10,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "python"))
-from protis import read_blocks  # noqa: E402
+from protis import compared, read_blocks  # noqa: E402, F401
 
 CARDS = {"METHOD": ("SOLVER", "METHOD"), "TOL": ("SOLVER", "TOL"),
          "FORM": ("QUASISTATIC", "FORM"),
@@ -234,7 +236,38 @@ def stop(signal_no, _frame):
     os._exit(128 + signal_no)
 
 
+def program_of(name):
+    """Path of a program and checksum of its bytes."""
+    path = shutil.which(name) or fail(
+        f"{name}: no program; build it with make")
+    return path, hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+
+
+def key_of(result, *parts, since=math.inf):
+    """Checksum of parts and of all files that the run of this JOB.json has
+    read. None, which no results have: there is no JOB.json, or a file of them
+    is gone or has changed since that time."""
+    key = hashlib.sha256(json.dumps(parts).encode())
+    try:
+        for name in json.loads(result.read_text(encoding="utf-8"))["files"]:
+            content = pathlib.Path(name).read_bytes()
+            if os.stat(name).st_ctime > since:
+                return None
+            key.update(name.encode() + hashlib.sha256(content).digest())
+    except (OSError, ValueError, KeyError):
+        return None
+    return key.hexdigest()[:16]
+
+
+def is_done(entry, key):
+    """The results in a folder, whose last line is entry, are those of key; a
+    run that a signal ended (-9, 137; 143 with its files whole) is not done."""
+    return (entry is not None and key is not None and entry["key"] == key
+            and 0 <= entry["exit"] < 128)
+
+
 def load_done(file):
+    """The last line of each folder, whose results it tells."""
     done = {}
     if file.exists():
         text = file.read_text(encoding="utf-8")
@@ -244,7 +277,7 @@ def load_done(file):
         for line in text.splitlines():
             try:
                 entry = json.loads(line)
-                done[entry["key"]] = entry
+                done[entry["folder"]] = entry
             except (json.JSONDecodeError, KeyError):
                 continue  # the line a kill cut short
     return done

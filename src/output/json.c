@@ -480,6 +480,12 @@ static void write_warnings(json *w, const message_log *log) {
   }
 }
 
+/* Those that the deck names, itself first, as they were opened. */
+static void write_files(json *w, const deck *d) {
+  ARRAY(w, "files");
+  for (int i = 0; i < d->n_input; ++i) json_string(w, NULL, d->inputs[i]);
+}
+
 static void write_increments(json *w, const job *j) {
   ARRAY(w, "increments");
   for (int i = 0; i < j->run->n_increment; ++i)
@@ -495,6 +501,7 @@ static void write_job(json *w, const job *j) {
   json_string(w, "blas_kernel", j->o->kernel);
   json_count(w, "threads", j->o->threads);
   write_exit(w, j->run);
+  write_files(w, j->m->deck);
   write_warnings(w, j->m->log);
   write_effects(w, j);
   write_omitted(w, j->m);

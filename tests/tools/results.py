@@ -202,7 +202,8 @@ class Results(unittest.TestCase):
         self.assertEqual(len({entry["folder"] for entry in lines}), 3)
         third = subprocess.run(words, capture_output=True, text=True,
                                check=False)
-        self.assertEqual((third.returncode, third.stdout), (1, ""))
+        self.assertEqual(third.returncode, 1)  # what was refused is read again
+        self.assertEqual(json.loads(third.stdout)["deck"], decks[2])
         self.assertIn("1 of 3 runs did not end with 0", third.stderr)
 
     def test_batch_repeats_what_a_signal_ended(self):
@@ -215,6 +216,51 @@ class Results(unittest.TestCase):
             lines = self.dir / "batch.jsonl"
             lines.write_text(lines.read_text().replace(
                 '"exit": 0', f'"exit": {code or -15}'))
+
+    def test_what_has_changed_is_run_again(self):
+        """A deck, back to what it was before too; files of other folders that
+        the deck or its mesh names; not what is as in the last run."""
+        (self.dir / "deck").mkdir()
+        deck, geo = self.dir / "deck/job.inp", self.dir / DECK.stem
+        (self.dir / "deck/job.geo").write_text(f'Merge "../{geo.name}.geo";\n')
+        geo, normal = geo.with_suffix(".geo"), []
+        for load, more, runs in (("50.", "", 1), ("50.", "", 0),
+                                 ("100.", "", 1), ("50.", "", 1),
+                                 ("50.", "// another", 1)):
+            geo.write_text(DECK.with_suffix(".geo").read_text() + more)
+            deck.write_text(DECK.read_text().replace("greco.geo", "job.geo")
+                            .replace("TOP, P, 50.", f"TOP, P, {load}"))
+            done = tool("batch", deck, "-o", self.dir / "b", "--", *SMALL)
+            self.assertEqual((done[0], done[1].count("\n")), (0, runs), done)
+            total = protis.Job(self.dir / "b/job/job").table("TOTALS")
+            self.assertAlmostEqual(total["normal"][0], 40 * float(load), 6)
+            code, said = tool("study", deck, "--response", "TOTALS.normal:foot",
+                              "--vary", "N=4", "-o", self.dir / "s")
+            self.assertEqual((code, said.count("1/1 N=4")), (0, runs), said)
+            normal.append(float(re.search(r"^ *4 +(\S+)", said, re.M)[1]))
+        np.testing.assert_allclose(normal, [2000, 2000, 4000, 2000, 2000])
+
+    def test_each_deck_has_its_folder_and_its_exit_code(self):
+        decks = []
+        for folder, name, text in (("d1", "a", "*STEP\n*STATIC\n*END STEP\n"),
+                                   ("d2", "a", "*NONSENSE\n"),
+                                   ("d1", "a_2", "*STEP\n*STATIC\n"
+                                    "*PRINT, CONTACT\n*END STEP\n")):
+            (self.dir / folder).mkdir(exist_ok=True)
+            (self.dir / folder / "p.lcp").write_text("1\n2.\n-4.\n")
+            decks.append(self.dir / folder / f"{name}.inp")
+            decks[-1].write_text("*CONDENSED PROBLEM, FILE=p.lcp\n" + text)
+        code, said = tool("batch", *decks, "-o", self.dir / "out")
+        self.assertEqual(code, 1, said)
+        lines = [json.loads(text) for text in (
+            self.dir / "out/batch.jsonl").read_text().splitlines()]
+        self.assertEqual(len({line["folder"] for line in lines}), 3)
+        for words in ([], ["--update"]):
+            done = subprocess.run(
+                ["tools/reference", *words, "-o", self.dir / "out", *decks],
+                capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("two decks have the name a", done.stderr)
 
     def test_batch_tells_a_deck_that_is_not_there(self):
         code, said = tool("batch", self.dir / "none.inp", "-o", self.dir)
@@ -315,6 +361,32 @@ class Results(unittest.TestCase):
         self.assertEqual(contact.units["gap"], "US\u00a0ft_\u2003_x_")
         self.assertEqual(set(contact["contact"]), {"A\u00a0B\u2003C"})
 
+    def test_times_and_names_are_what_they_are(self):
+        """Times are numbers, names are words, which decks compare."""
+        for suffix in (".inp", ".geo"):
+            shutil.copy(DECK.with_suffix(suffix), self.dir)
+        deck = self.dir / DECK.name
+        for name, word in (("1 2", "1_2"), ("nan", "nan"),
+                           ("Left  Foot", "Left__Foot")):
+            deck.write_text(DECK.read_text().replace("FOOT", name).replace(
+                "ENERGY, FREQUENCY=0", "ENERGY"))
+            job = protis.run(deck, self.dir / "out", SMALL)
+            total = job.table("TOTALS")
+            times = [b["time"] for b in protis.read_blocks(job.file("dat"))
+                     if b["table"] == "TOTALS"]
+            self.assertEqual([float(t) for t in total["time"]], times)
+            self.assertEqual(len(total.where(time=times[0])), 1)
+            self.assertEqual(set(total["contact"]), {word})
+            for wanted in (name, word, name.upper()):
+                self.assertEqual(len(total.where(contact=wanted)), len(times))
+            with self.assertRaisesRegex(KeyError, f"no contact TOE; .*{word}"):
+                total.where(contact="TOE")
+            file = self.dir / "other.dat"
+            file.write_text(job.file("dat").read_text().replace(
+                f" {word} ", f" {word.replace('_', '')} "))
+            self.assertEqual(tool("compare", file, job.file("dat"))[0],
+                             int("_" in word))
+
     def test_rows_of_other_length_are_an_error(self):
         lines = self.job.file("dat").read_text().splitlines()
         short, file = lines[3].rpartition(" ")[0], self.dir / "a.dat"
@@ -367,7 +439,7 @@ class Results(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    result = unittest.main(exit=False, argv=["results"]).result
+    result = unittest.main(exit=False, argv=["results", *sys.argv[1:]]).result
     bad = len(result.failures) + len(result.errors)
     run = result.testsRun
     print(f"{100 * (run - bad) // max(run, 1)}%: Checks: {run}, "

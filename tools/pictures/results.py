@@ -48,10 +48,8 @@ def read_blocks(path):
         columns = {}
         for i, name in enumerate(b["names"]):
             words = [row[i] for row in b["rows"]]
-            try:
-                columns[name] = np.array(words, float)
-            except ValueError:
-                columns[name] = words
+            columns[name] = (words if name in protis.WORDS
+                             else np.array(words, float))
         found.append(Block(b["step"], b["increment"], b["time"], b["table"],
                            columns, dict(zip(b["names"], b["units"]))))
     return found
