@@ -19,6 +19,8 @@ import unittest
 import numpy as np
 
 sys.path.insert(0, "tools/python")
+sys.path.insert(1, "tools")
+import deck_tools  # noqa: E402
 import protis  # noqa: E402
 
 PROGRAM = os.path.abspath(os.environ.get("PROTIS", "build/release/protis"))
@@ -169,6 +171,10 @@ class Results(unittest.TestCase):
         code, said = reference()
         self.assertEqual(code, 1)
         self.assertRegex(said, r"CONTACT\.\w+, step 1 increment 5 node_no \d+")
+        broken = kept.read_text()
+        deck.write_text("*NONSENSE\n")  # the results of the run before are there
+        self.assertEqual(reference("--update")[0], 1)
+        self.assertEqual(kept.read_text(), broken)
 
     # ---- batch and study ---------------------------------------------------
 
@@ -222,13 +228,13 @@ class Results(unittest.TestCase):
         the deck or its mesh names; not what is as in the last run."""
         (self.dir / "deck").mkdir()
         deck, geo = self.dir / "deck/job.inp", self.dir / DECK.stem
-        (self.dir / "deck/job.geo").write_text(f'Merge "../{geo.name}.geo";\n')
+        (self.dir / "deck/my, job.geo").write_text(f'Merge "../{geo.name}.geo";\n')
         geo, normal = geo.with_suffix(".geo"), []
         for load, more, runs in (("50.", "", 1), ("50.", "", 0),
                                  ("100.", "", 1), ("50.", "", 1),
                                  ("50.", "// another", 1)):
             geo.write_text(DECK.with_suffix(".geo").read_text() + more)
-            deck.write_text(DECK.read_text().replace("greco.geo", "job.geo")
+            deck.write_text(DECK.read_text().replace("greco.geo", '"my, job.geo"')
                             .replace("TOP, P, 50.", f"TOP, P, {load}"))
             done = tool("batch", deck, "-o", self.dir / "b", "--", *SMALL)
             self.assertEqual((done[0], done[1].count("\n")), (0, runs), done)
@@ -265,6 +271,30 @@ class Results(unittest.TestCase):
     def test_batch_tells_a_deck_that_is_not_there(self):
         code, said = tool("batch", self.dir / "none.inp", "-o", self.dir)
         self.assertEqual(code, 2, said)
+
+    def test_decks_of_a_study_have_what_is_varied(self):
+        lines = ["*STEP", "*SOLVER, METHOD=SOR", "*END STEP", "*STEP",
+                 "*VISCO", "1., 2.", "*END STEP"]
+        self.assertEqual(  # later steps have the solver of the first
+            deck_tools.set_card(lines, "SOLVER", "TOL", "1e-5"),
+            [lines[0], lines[1] + ", TOL=1e-5", *lines[2:]])
+        self.assertEqual(deck_tools.set_card(lines[3:], "SOLVER", "TOL", "1")
+                         [-2:], ["*SOLVER, TOL=1", "*END STEP"])
+        goal = ['*GOAL, NAME="A, B", TARGET="1 + 1"']
+        self.assertEqual(deck_tools.set_goal(goal, "a, b:5%"),
+                         ['*GOAL, NAME="A, B", TARGET=5%'])
+        (self.dir / "a.inp").write_text(
+            '*STEP\n*VISCO,\n** why\n\nINTEGRATOR=EULER\n\n** dt\n1., 2.\n'
+            '*TEMPERATURE, FILE=a b.h5 , X=1\n')
+        self.assertEqual(deck_tools.set_dt(
+            deck_tools.read_deck(self.dir / "a.inp"), "0.1"),
+            ["*STEP", "*VISCO, INTEGRATOR=EULER", "0.1,  2.",
+             f'*TEMPERATURE, X=1, FILE="{self.dir / "a b.h5"}"'])
+        for change in ((deck_tools.set_card, "QUASISTATIC", "FORM", "VELOCITY"),
+                       (deck_tools.set_goal, "5%"), (deck_tools.set_dt, "1."),
+                       (deck_tools.set_goal, "C:5%")):
+            with self.assertRaises(SystemExit):  # nothing would change
+                change[0](goal * (change[1] == "C:5%"), *change[1:])
 
     def test_study_tells_errors_of_goals(self):
         """Of the peak of Hertz, with a target of its own: within it."""

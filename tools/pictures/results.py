@@ -59,9 +59,9 @@ def cards(deck, name):
     """Of each such card of a deck: {parameter: value}, names in capitals."""
     found = []
     for line in re.sub(r",\s*\n", ", ", deck).splitlines():
-        words = [w.strip() for w in line.split(",")]
-        if words[0].upper() == "*" + name:
-            found.append({k.strip().upper(): v.strip() for k, _, v in
+        words = re.findall(r'(?:"[^"]*"|[^,"])+', line)
+        if words and words[0].strip().upper() == "*" + name:
+            found.append({k.strip().upper(): v.strip(' "') for k, _, v in
                           (w.partition("=") for w in words[1:])})
     return found
 
