@@ -130,6 +130,14 @@ class Results(unittest.TestCase):
                          [0], 1)
         self.assertEqual(tool("compare", "--part", a.file("dat"),
                               self.dir / "short.dat")[0], 0)
+        text = a.file("dat").read_text()
+        (self.dir / "short.dat").write_text(
+            text[:text.index("# step", text.index("table TOTALS"))])
+        code, said = tool("compare", a.file("dat"), self.dir / "short.dat")
+        self.assertEqual(code, 1, said)
+        self.assertIn("ENERGY.strain_energy: not in", said)
+        self.assertEqual(tool("compare", "--part", a.file("dat"),
+                              self.dir / "short.dat")[0], 0)
         for words in ((self.dir / "none.dat", a.file("dat")), (
                 a.file("lst"), a.file("lst")), (a.file("dat"),), (
                     a.file("dat"), a.file("dat"), "--atol-of", "f_q")):
@@ -359,10 +367,13 @@ class Results(unittest.TestCase):
         self.assertEqual(set(contact["contact"]), {"FOOT"})
         total = job.table("TOTALS", last=True)
         self.assertAlmostEqual(contact["f_n"].sum(), total["normal"][0], 8)
-        self.assertEqual(len(contact.where(status="STICK")), total["stick"][0])
+        for word in ("STICK", "stick"):
+            self.assertEqual(len(contact.where(status=word)), total["stick"][0])
         nodes = job.table("NODES")  # no *PRINT: of JOB.h5, five increments
         self.assertEqual(len(nodes) % 5, 0)
         self.assertEqual(nodes.units["u_x"], "mm")
+        with self.assertRaisesRegex(TypeError, "node_no of NODES has numbers"):
+            nodes.where(node_no="1")
         self.assertEqual(len(job.table("NODES", last=True)), len(nodes) // 5)
         stress = job.table("ELEMENTS", last=True)
         xx, yy, zz, xy = (stress[f"stress_{c}"] for c in

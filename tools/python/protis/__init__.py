@@ -34,8 +34,8 @@ class Error(RuntimeError):
 
 # ---- tables ------------------------------------------------------------------
 
-WORDS = ("contact", "crack", "goal", "group", "status", "unit", "verdict",
-         "zone")  # columns that have no numbers, whatever their words look like
+NAMES = ("contact", "crack", "goal", "group")  # columns of names of the deck
+WORDS = (*NAMES, "status", "unit", "verdict", "zone")  # columns without numbers
 HEADING = re.compile(r"# step (\d+) increment (\d+) time (\S+) table (\S+)"
                      r"(?: group (.*))?$")
 
@@ -91,29 +91,31 @@ class Table(dict):
         super().__init__(columns)
         self.name = name
         self.units = units
-        self.contacts = set(self.get("contact", ()))
+        self.names = {n: set(self[n]) for n in NAMES if n in self}
 
     def __len__(self):
         return len(next(iter(self.values()))) if self.keys() else 0
 
     def where(self, **wanted):
-        """The rows in which these columns have these values; contacts are
-        compared as decks compare names."""
+        """The rows in which these columns have these values; words are compared
+        as decks compare names."""
         import numpy
         keep = numpy.ones(len(self), bool)
         for name, value in wanted.items():
             found = self[name]
-            if name == "contact":
-                value = compared(value)
-                found = numpy.array([compared(v) for v in found])
-                if value not in map(compared, self.contacts):
-                    raise KeyError(
-                        f"{self.name} has no contact {wanted[name]}; it has "
-                        f"{', '.join(sorted(self.contacts)) or 'none'}")
+            if found.dtype.kind == "U":
+                value, there = compared(str(value)), self.names.get(name)
+                if there and value not in map(compared, there):
+                    raise KeyError(f"{self.name} has no {name} {wanted[name]}; "
+                                   f"it has {', '.join(sorted(there))}")
+                found = numpy.array([compared(v) for v in found], str)
+            elif isinstance(value, str):
+                raise TypeError(f"{name} of {self.name} has numbers, as "
+                                f"{found[:1]}, not {value}")
             keep &= found == value
         kept = Table(self.name, {k: v[keep] for k, v in self.items()},
                      self.units)
-        kept.contacts = self.contacts
+        kept.names = self.names
         return kept
 
     def to_pandas(self):
