@@ -55,12 +55,12 @@ def read_blocks(path):
     return found
 
 
-def cards(deck, name):
+def cards(deck, *names):
     """Of each such card of a deck: {parameter: value}, names in capitals."""
     found = []
     for line in re.sub(r",\s*\n", ", ", deck).splitlines():
         words = re.findall(r'(?:"[^"]*"|[^,"])+', line)
-        if words and words[0].strip().upper() == "*" + name:
+        if words and words[0].strip().upper()[1:] in names:
             found.append({k.strip().upper(): v.strip(' "') for k, _, v in
                           (w.partition("=") for w in words[1:])})
     return found
@@ -243,7 +243,7 @@ class Results:
         node = self.h5["contact/node"][...]
         known = ~np.isnan(field("status"))  # supports hold the others
         numbers = self.h5["contact/contact_no"][...]
-        asked = cards(self.deck, "CONTACT")
+        asked = cards(self.deck, "CONTACT", "CONTACT PAIR", "CRACK")
         found = []
         for no in np.unique(numbers[known]):
             mine = (numbers == no) & known
