@@ -260,15 +260,16 @@ def program_of(name):
     return path, hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
 
 
-def key_of(result, *parts, since=math.inf):
+def key_of(result, folder, *parts, since=math.inf):
     """Checksum of parts and of all files that the run of this JOB.json has
-    read. None, which no results have: there is no JOB.json, or a file of them
+    read, of a deck in that folder. None, which no results have: there is no JOB.json, or a file of them
     is gone or has changed since that time."""
     key = hashlib.sha256(json.dumps(parts).encode())
     try:
         for name in json.loads(result.read_text(encoding="utf-8"))["files"]:
-            content = pathlib.Path(name).read_bytes()
-            if os.stat(name).st_ctime > since:
+            path = folder / name
+            content = path.read_bytes()
+            if path.stat().st_ctime > since:
                 return None
             key.update(name.encode() + hashlib.sha256(content).digest())
     except (OSError, ValueError, KeyError):

@@ -480,10 +480,15 @@ static void write_warnings(json *w, const message_log *log) {
   }
 }
 
-/* Those that the deck names, itself first, as they were opened. */
+/* All that the run has read, the deck first, as seen from its folder. */
 static void write_files(json *w, const deck *d) {
+  const char *slash = strrchr(d->inputs[0], '/');
+  const size_t n = slash != NULL ? (size_t)(slash - d->inputs[0]) + 1 : 0;
   ARRAY(w, "files");
-  for (int i = 0; i < d->n_input; ++i) json_string(w, NULL, d->inputs[i]);
+  for (int i = 0; i < d->n_input; ++i) {
+    const int within = strncmp(d->inputs[i], d->inputs[0], n) == 0;
+    json_string(w, NULL, d->inputs[i] + (within ? n : 0));
+  }
 }
 
 static void write_increments(json *w, const job *j) {
