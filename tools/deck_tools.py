@@ -1,5 +1,7 @@
 """Decks and tables of protis for the tools: cards changed, JOB.dat read."""
+import hashlib
 import json
+import math
 import os
 import pathlib
 import re
@@ -8,7 +10,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent / "python"))
-from protis import read_blocks  # noqa: E402
+from protis import compared, read_blocks  # noqa: E402, F401
 
 CARDS = {"METHOD": ("SOLVER", "METHOD"), "TOL": ("SOLVER", "TOL"),
          "FORM": ("QUASISTATIC", "FORM"),
@@ -52,15 +54,24 @@ def parameters(lines):
     return names
 
 
+VALUE = r'(?:"[^"]*"|[^,"])*'
+
+
+def value_of(line, name):
+    """Value of a parameter of a card without its quotes; None: it has none."""
+    found = re.search(rf",\s*{name}\s*=\s*({VALUE})", line, re.IGNORECASE)
+    return found and found[1].strip().strip('"')
+
+
 def set_parameter(line, name, value):
     """A card line with NAME=value instead of what it had."""
-    pattern = re.compile(r",\s*" + name + r"\s*=\s*[^,\s]+", re.IGNORECASE)
+    pattern = re.compile(rf",\s*{name}\s*={VALUE}", re.IGNORECASE)
     return pattern.sub("", line.rstrip(",")) + f", {name}={value}"
 
 
 def set_card(lines, card, name, value):
-    """Set it on every such card; a missing *SOLVER or *ACCURACY is put into each
-    step."""
+    """Set it on every such card; a *SOLVER or *ACCURACY that is missing in the
+    first step is put there: later steps have those of the step before."""
     out, found = [], False
     for line in lines:
         if card_name(line) == card:
@@ -68,31 +79,35 @@ def set_card(lines, card, name, value):
         elif card_name(line) == "END STEP" and not found and card in (
                 "SOLVER", "ACCURACY"):
             out.append(f"*{card}, {name}={value}")
-        if card_name(line) == "END STEP":
-            found = False
+            found = True
         out.append(line)
+    if not found:
+        fail(f"the deck has no *{card} that {name}={value} could be set of")
     return out
 
 
 def set_goal(lines, value):
     """X or NAME:X: TARGET=X of every *GOAL or of that name."""
     name, _, target = value.rpartition(":")
-    word = re.compile(r",\s*NAME\s*=\s*" + re.escape(name) + r"\s*(,|$)",
-                      re.IGNORECASE)
-    return [set_parameter(line, "TARGET", target)
-            if card_name(line) == "GOAL" and (not name or word.search(line))
-            else line for line in lines]
+    goals = [i for i, line in enumerate(lines) if card_name(line) == "GOAL"
+             and (not name or compared(value_of(line, "NAME") or "")
+                  == compared(name))]
+    if not goals:
+        fail(f"the deck has no *GOAL {name}")
+    return [set_parameter(line, "TARGET", target) if i in goals else line
+            for i, line in enumerate(lines)]
 
 
 def set_dt(lines, value):
-    out, after = [], False
+    out, after, found = [], False, False
     for line in lines:
         if after and not line.startswith("*"):
             line = ", ".join([value] + line.split(",")[1:])
-            after = False
-        if card_name(line) in ("QUASISTATIC", "VISCO"):
-            after = True
+            found = True
+        after = card_name(line) in ("QUASISTATIC", "VISCO")
         out.append(line)
+    if not found:
+        fail("the deck has no *QUASISTATIC or *VISCO with increments")
     return out
 
 
@@ -100,22 +115,26 @@ def absolute_files(lines, folder):
     """Files named by cards, found from anywhere."""
     out = []
     for line in lines:
-        if card_name(line) in FILES:
-            line = re.sub(r"((?:FILE|INPUT)\s*=\s*)([^,\s]+)",
-                          lambda m: m[1] + str((folder / m[2]).resolve()),
-                          line, flags=re.IGNORECASE)
+        for name in ("FILE", "INPUT") if card_name(line) in FILES else ():
+            file = value_of(line, name)
+            if file:
+                line = set_parameter(line, name,
+                                     f'"{(folder / file).resolve()}"')
         out.append(line)
     return out
 
 
 def joined(lines):
-    """A card that ends in a comma goes on in the next line."""
+    """Cards and data lines; a card that ends in a comma goes on in the next
+    line."""
     out = []
-    for line in lines:
+    for line in map(str.strip, lines):
+        if not line or line.startswith("**"):
+            continue
         if out and card_name(out[-1]) and out[-1].endswith(","):
-            out[-1] += " " + line.strip()
+            out[-1] += " " + line
         else:
-            out.append(line.strip())
+            out.append(line)
     return out
 
 
@@ -130,10 +149,10 @@ def read_deck(path, within=()):
     lines = joined(path.read_text(encoding="utf-8-sig").splitlines())
     for line in absolute_files(lines, path.parent):
         if card_name(line) == "INCLUDE":
-            name = re.search(r"INPUT\s*=\s*([^,\s]+)", line, re.IGNORECASE)
-            if name is None:
+            name = value_of(line, "INPUT")
+            if not name:
                 fail(f"{path}: {line}: no INPUT=")
-            out += read_deck(pathlib.Path(name[1]), within + (path,))
+            out += read_deck(pathlib.Path(name), within + (path,))
         else:
             out.append(line)
     return out
@@ -194,7 +213,7 @@ def drop_cards(lines, names):
 
 def drop_parameter(lines, card, name):
     """Every such card without NAME=."""
-    pattern = re.compile(r",\s*" + name + r"\s*(=\s*[^,\s]+)?(?=,|\s*$)",
+    pattern = re.compile(rf",\s*{name}\s*(={VALUE})?(?=,|\s*$)",
                          re.IGNORECASE)
     return [pattern.sub("", line) if card_name(line) == card else line
             for line in lines]
@@ -234,7 +253,39 @@ def stop(signal_no, _frame):
     os._exit(128 + signal_no)
 
 
+def program_of(name):
+    """Path of a program and checksum of its bytes."""
+    path = shutil.which(name) or fail(
+        f"{name}: no program; build it with make")
+    return path, hashlib.sha256(pathlib.Path(path).read_bytes()).hexdigest()
+
+
+def key_of(result, folder, *parts, since=math.inf):
+    """Checksum of parts and of all files that the run of this JOB.json has
+    read, of a deck in that folder. None, which no results have: there is no JOB.json, or a file of them
+    is gone or has changed since that time."""
+    key = hashlib.sha256(json.dumps(parts).encode())
+    try:
+        for name in json.loads(result.read_text(encoding="utf-8"))["files"]:
+            path = folder / name
+            content = path.read_bytes()
+            if path.stat().st_ctime > since:
+                return None
+            key.update(name.encode() + hashlib.sha256(content).digest())
+    except (OSError, ValueError, KeyError):
+        return None
+    return key.hexdigest()[:16]
+
+
+def is_done(entry, key):
+    """The results in a folder, whose last line is entry, are those of key; a
+    run that a signal ended (-9, 137; 143 with its files whole) is not done."""
+    return (entry is not None and key is not None and entry["key"] == key
+            and 0 <= entry["exit"] < 128)
+
+
 def load_done(file):
+    """The last line of each folder, whose results it tells."""
     done = {}
     if file.exists():
         text = file.read_text(encoding="utf-8")
@@ -244,7 +295,7 @@ def load_done(file):
         for line in text.splitlines():
             try:
                 entry = json.loads(line)
-                done[entry["key"]] = entry
+                done[entry["folder"]] = entry
             except (json.JSONDecodeError, KeyError):
                 continue  # the line a kill cut short
     return done

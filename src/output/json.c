@@ -480,6 +480,17 @@ static void write_warnings(json *w, const message_log *log) {
   }
 }
 
+/* All that the run has read, the deck first, as seen from its folder. */
+static void write_files(json *w, const deck *d) {
+  const char *slash = strrchr(d->inputs[0], '/');
+  const size_t n = slash != NULL ? (size_t)(slash - d->inputs[0]) + 1 : 0;
+  ARRAY(w, "files");
+  for (int i = 0; i < d->n_input; ++i) {
+    const int within = strncmp(d->inputs[i], d->inputs[0], n) == 0;
+    json_string(w, NULL, d->inputs[i] + (within ? n : 0));
+  }
+}
+
 static void write_increments(json *w, const job *j) {
   ARRAY(w, "increments");
   for (int i = 0; i < j->run->n_increment; ++i)
@@ -495,6 +506,7 @@ static void write_job(json *w, const job *j) {
   json_string(w, "blas_kernel", j->o->kernel);
   json_count(w, "threads", j->o->threads);
   write_exit(w, j->run);
+  write_files(w, j->m->deck);
   write_warnings(w, j->m->log);
   write_effects(w, j);
   write_omitted(w, j->m);

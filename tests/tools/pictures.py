@@ -123,6 +123,21 @@ class Walls(unittest.TestCase):
             np.testing.assert_allclose(contact.shear, np.tile(
                 shear, (len(contact.shear), 1)), atol=1e-6)
 
+    def test_contacts_have_the_names_of_their_cards(self):
+        """Pairs too, which here precede the obstacles."""
+        text = (ROOT / "input/arch/arch.inp").read_text(encoding="utf-8")
+        a, b, c = (text.index(t) for t in (
+            "*CONTACT, NAME=RIGHT", "*CONTACT PAIR, NAME=JOINT 1", "*STEP"))
+        deck = self.job.with_name("arch.inp")
+        deck.write_text((text[:a] + text[b:c] + text[a:b] + text[c:]).replace(
+            "arch.geo", f"{ROOT}/input/arch/arch.geo"), encoding="utf-8")
+        run(PROGRAM, str(deck), "-o", self.folder.name, "--quiet")
+        job = results.Results(deck)
+        self.assertEqual(
+            [(c.name, len(c.group) > 0) for c in job.contacts],
+            [(c["contact"], c["contact"] in ("RIGHT", "LEFT"))
+             for c in job.json["contacts"]])
+
     def test_normal_force_of_a_second_obstacle_is_no_shear(self):
         shear = results.shears(np.array([[214.0, 0, 123], [0, 5, 1]]),
                                np.array([[0.0, 0, -1], [0, 0, -1]]),

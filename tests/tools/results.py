@@ -19,6 +19,8 @@ import unittest
 import numpy as np
 
 sys.path.insert(0, "tools/python")
+sys.path.insert(1, "tools")
+import deck_tools  # noqa: E402
 import protis  # noqa: E402
 
 PROGRAM = os.path.abspath(os.environ.get("PROTIS", "build/release/protis"))
@@ -128,6 +130,14 @@ class Results(unittest.TestCase):
                          [0], 1)
         self.assertEqual(tool("compare", "--part", a.file("dat"),
                               self.dir / "short.dat")[0], 0)
+        text = a.file("dat").read_text()
+        (self.dir / "short.dat").write_text(
+            text[:text.index("# step", text.index("table TOTALS"))])
+        code, said = tool("compare", a.file("dat"), self.dir / "short.dat")
+        self.assertEqual(code, 1, said)
+        self.assertIn("ENERGY.strain_energy: not in", said)
+        self.assertEqual(tool("compare", "--part", a.file("dat"),
+                              self.dir / "short.dat")[0], 0)
         for words in ((self.dir / "none.dat", a.file("dat")), (
                 a.file("lst"), a.file("lst")), (a.file("dat"),), (
                     a.file("dat"), a.file("dat"), "--atol-of", "f_q")):
@@ -169,6 +179,10 @@ class Results(unittest.TestCase):
         code, said = reference()
         self.assertEqual(code, 1)
         self.assertRegex(said, r"CONTACT\.\w+, step 1 increment 5 node_no \d+")
+        broken = kept.read_text()
+        deck.write_text("*NONSENSE\n")  # the results of the run before are there
+        self.assertEqual(reference("--update")[0], 1)
+        self.assertEqual(kept.read_text(), broken)
 
     # ---- batch and study ---------------------------------------------------
 
@@ -202,7 +216,8 @@ class Results(unittest.TestCase):
         self.assertEqual(len({entry["folder"] for entry in lines}), 3)
         third = subprocess.run(words, capture_output=True, text=True,
                                check=False)
-        self.assertEqual((third.returncode, third.stdout), (1, ""))
+        self.assertEqual(third.returncode, 1)  # what was refused is read again
+        self.assertEqual(json.loads(third.stdout)["deck"], decks[2])
         self.assertIn("1 of 3 runs did not end with 0", third.stderr)
 
     def test_batch_repeats_what_a_signal_ended(self):
@@ -216,9 +231,78 @@ class Results(unittest.TestCase):
             lines.write_text(lines.read_text().replace(
                 '"exit": 0', f'"exit": {code or -15}'))
 
+    def test_what_has_changed_is_run_again(self):
+        """A deck, back to what it was before too; files of other folders that
+        the deck or its mesh names; not what is as in the last run."""
+        (self.dir / "deck").mkdir()
+        deck, geo = self.dir / "deck/job.inp", self.dir / DECK.stem
+        (self.dir / "deck/my, job.geo").write_text(f'Merge "../{geo.name}.geo";\n')
+        geo, normal = geo.with_suffix(".geo"), []
+        for load, more, runs in (("50.", "", 1), ("50.", "", 0),
+                                 ("100.", "", 1), ("50.", "", 1),
+                                 ("50.", "// another", 1)):
+            geo.write_text(DECK.with_suffix(".geo").read_text() + more)
+            deck.write_text(DECK.read_text().replace("greco.geo", '"my, job.geo"')
+                            .replace("TOP, P, 50.", f"TOP, P, {load}"))
+            done = tool("batch", deck, "-o", self.dir / "b", "--", *SMALL)
+            self.assertEqual((done[0], done[1].count("\n")), (0, runs), done)
+            total = protis.Job(self.dir / "b/job/job").table("TOTALS")
+            self.assertAlmostEqual(total["normal"][0], 40 * float(load), 6)
+            code, said = tool("study", deck, "--response", "TOTALS.normal:foot",
+                              "--vary", "N=4", "-o", self.dir / "s")
+            self.assertEqual((code, said.count("1/1 N=4")), (0, runs), said)
+            normal.append(float(re.search(r"^ *4 +(\S+)", said, re.M)[1]))
+        np.testing.assert_allclose(normal, [2000, 2000, 4000, 2000, 2000])
+
+    def test_each_deck_has_its_folder_and_its_exit_code(self):
+        decks = []
+        for folder, name, text in (("d1", "a", "*STEP\n*STATIC\n*END STEP\n"),
+                                   ("d2", "a", "*NONSENSE\n"),
+                                   ("d1", "a_2", "*STEP\n*STATIC\n"
+                                    "*PRINT, CONTACT\n*END STEP\n")):
+            (self.dir / folder).mkdir(exist_ok=True)
+            (self.dir / folder / "p.lcp").write_text("1\n2.\n-4.\n")
+            decks.append(self.dir / folder / f"{name}.inp")
+            decks[-1].write_text("*CONDENSED PROBLEM, FILE=p.lcp\n" + text)
+        code, said = tool("batch", *decks, "-o", self.dir / "out")
+        self.assertEqual(code, 1, said)
+        lines = [json.loads(text) for text in (
+            self.dir / "out/batch.jsonl").read_text().splitlines()]
+        self.assertEqual(len({line["folder"] for line in lines}), 3)
+        for words in ([], ["--update"]):
+            done = subprocess.run(
+                ["tools/reference", *words, "-o", self.dir / "out", *decks],
+                capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("two decks have the name a", done.stderr)
+
     def test_batch_tells_a_deck_that_is_not_there(self):
         code, said = tool("batch", self.dir / "none.inp", "-o", self.dir)
         self.assertEqual(code, 2, said)
+
+    def test_decks_of_a_study_have_what_is_varied(self):
+        lines = ["*STEP", "*SOLVER, METHOD=SOR", "*END STEP", "*STEP",
+                 "*VISCO", "1., 2.", "*END STEP"]
+        self.assertEqual(  # later steps have the solver of the first
+            deck_tools.set_card(lines, "SOLVER", "TOL", "1e-5"),
+            [lines[0], lines[1] + ", TOL=1e-5", *lines[2:]])
+        self.assertEqual(deck_tools.set_card(lines[3:], "SOLVER", "TOL", "1")
+                         [-2:], ["*SOLVER, TOL=1", "*END STEP"])
+        goal = ['*GOAL, NAME="A, B", TARGET="1 + 1"']
+        self.assertEqual(deck_tools.set_goal(goal, "a, b:5%"),
+                         ['*GOAL, NAME="A, B", TARGET=5%'])
+        (self.dir / "a.inp").write_text(
+            '*STEP\n*VISCO,\n** why\n\nINTEGRATOR=EULER\n\n** dt\n1., 2.\n'
+            '*TEMPERATURE, FILE=a b.h5 , X=1\n')
+        self.assertEqual(deck_tools.set_dt(
+            deck_tools.read_deck(self.dir / "a.inp"), "0.1"),
+            ["*STEP", "*VISCO, INTEGRATOR=EULER", "0.1,  2.",
+             f'*TEMPERATURE, X=1, FILE="{self.dir / "a b.h5"}"'])
+        for change in ((deck_tools.set_card, "QUASISTATIC", "FORM", "VELOCITY"),
+                       (deck_tools.set_goal, "5%"), (deck_tools.set_dt, "1."),
+                       (deck_tools.set_goal, "C:5%")):
+            with self.assertRaises(SystemExit):  # nothing would change
+                change[0](goal * (change[1] == "C:5%"), *change[1:])
 
     def test_study_tells_errors_of_goals(self):
         """Of the peak of Hertz, with a target of its own: within it."""
@@ -283,10 +367,13 @@ class Results(unittest.TestCase):
         self.assertEqual(set(contact["contact"]), {"FOOT"})
         total = job.table("TOTALS", last=True)
         self.assertAlmostEqual(contact["f_n"].sum(), total["normal"][0], 8)
-        self.assertEqual(len(contact.where(status="STICK")), total["stick"][0])
+        for word in ("STICK", "stick"):
+            self.assertEqual(len(contact.where(status=word)), total["stick"][0])
         nodes = job.table("NODES")  # no *PRINT: of JOB.h5, five increments
         self.assertEqual(len(nodes) % 5, 0)
         self.assertEqual(nodes.units["u_x"], "mm")
+        with self.assertRaisesRegex(TypeError, "node_no of NODES has numbers"):
+            nodes.where(node_no="1")
         self.assertEqual(len(job.table("NODES", last=True)), len(nodes) // 5)
         stress = job.table("ELEMENTS", last=True)
         xx, yy, zz, xy = (stress[f"stress_{c}"] for c in
@@ -314,6 +401,32 @@ class Results(unittest.TestCase):
         contact = protis.run(deck, N=4).table("CONTACT", last=True)
         self.assertEqual(contact.units["gap"], "US\u00a0ft_\u2003_x_")
         self.assertEqual(set(contact["contact"]), {"A\u00a0B\u2003C"})
+
+    def test_times_and_names_are_what_they_are(self):
+        """Times are numbers, names are words, which decks compare."""
+        for suffix in (".inp", ".geo"):
+            shutil.copy(DECK.with_suffix(suffix), self.dir)
+        deck = self.dir / DECK.name
+        for name, word in (("1 2", "1_2"), ("nan", "nan"),
+                           ("Left  Foot", "Left__Foot")):
+            deck.write_text(DECK.read_text().replace("FOOT", name).replace(
+                "ENERGY, FREQUENCY=0", "ENERGY"))
+            job = protis.run(deck, self.dir / "out", SMALL)
+            total = job.table("TOTALS")
+            times = [b["time"] for b in protis.read_blocks(job.file("dat"))
+                     if b["table"] == "TOTALS"]
+            self.assertEqual([float(t) for t in total["time"]], times)
+            self.assertEqual(len(total.where(time=times[0])), 1)
+            self.assertEqual(set(total["contact"]), {word})
+            for wanted in (name, word, name.upper()):
+                self.assertEqual(len(total.where(contact=wanted)), len(times))
+            with self.assertRaisesRegex(KeyError, f"no contact TOE; .*{word}"):
+                total.where(contact="TOE")
+            file = self.dir / "other.dat"
+            file.write_text(job.file("dat").read_text().replace(
+                f" {word} ", f" {word.replace('_', '')} "))
+            self.assertEqual(tool("compare", file, job.file("dat"))[0],
+                             int("_" in word))
 
     def test_rows_of_other_length_are_an_error(self):
         lines = self.job.file("dat").read_text().splitlines()
@@ -367,7 +480,7 @@ class Results(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    result = unittest.main(exit=False, argv=["results"]).result
+    result = unittest.main(exit=False, argv=["results", *sys.argv[1:]]).result
     bad = len(result.failures) + len(result.errors)
     run = result.testsRun
     print(f"{100 * (run - bad) // max(run, 1)}%: Checks: {run}, "

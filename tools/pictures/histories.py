@@ -1,7 +1,7 @@
 """Curves over time, loops, forces, and what errors and stages cost."""
-import json
 import math
 
+from deck_tools import compared, load_done
 from matplotlib import pyplot
 from matplotlib.ticker import LogLocator, NullFormatter
 
@@ -51,10 +51,10 @@ def loop(job, contact, x, y, title=None):
                               f"{', '.join(block.columns)}")
         for row, name in enumerate(block.columns["contact"]):
             names.add(name)
-            if name == contact:
+            if compared(name) == compared(contact):
                 for key in (x, y):
                     found[key].append(block.columns[key][row])
-    if contact not in names:
+    if not found[x]:
         raise Missing(f"no contact {contact} in the LOOP tables, which have "
                       f"{', '.join(sorted(names))}")
     units = job.tables("LOOP")[0].units
@@ -178,7 +178,7 @@ def goals(folder, pairs):
         raise Missing(f"{folder}: no folders of tools/study in it")
     figure, axes = new(3.4 * len(exact) + 0.4, 4.2, len(exact))
     for k, path in enumerate(studies):
-        runs = [json.loads(line) for line in open(path, encoding="utf-8")]
+        runs = load_done(path).values()
         for panel, (name, value) in zip(axes[0], exact.items()):
             points = sorted(
                 (r["costs"][0]["all"], abs(g["value"] / value - 1.0))

@@ -48,22 +48,20 @@ def read_blocks(path):
         columns = {}
         for i, name in enumerate(b["names"]):
             words = [row[i] for row in b["rows"]]
-            try:
-                columns[name] = np.array(words, float)
-            except ValueError:
-                columns[name] = words
+            columns[name] = (words if name in protis.WORDS
+                             else np.array(words, float))
         found.append(Block(b["step"], b["increment"], b["time"], b["table"],
                            columns, dict(zip(b["names"], b["units"]))))
     return found
 
 
-def cards(deck, name):
+def cards(deck, *names):
     """Of each such card of a deck: {parameter: value}, names in capitals."""
     found = []
     for line in re.sub(r",\s*\n", ", ", deck).splitlines():
-        words = [w.strip() for w in line.split(",")]
-        if words[0].upper() == "*" + name:
-            found.append({k.strip().upper(): v.strip() for k, _, v in
+        words = re.findall(r'(?:"[^"]*"|[^,"])+', line)
+        if words and words[0].strip().upper()[1:] in names:
+            found.append({k.strip().upper(): v.strip(' "') for k, _, v in
                           (w.partition("=") for w in words[1:])})
     return found
 
@@ -245,7 +243,7 @@ class Results:
         node = self.h5["contact/node"][...]
         known = ~np.isnan(field("status"))  # supports hold the others
         numbers = self.h5["contact/contact_no"][...]
-        asked = cards(self.deck, "CONTACT")
+        asked = cards(self.deck, "CONTACT", "CONTACT PAIR", "CRACK")
         found = []
         for no in np.unique(numbers[known]):
             mine = (numbers == no) & known

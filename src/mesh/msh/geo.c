@@ -59,12 +59,12 @@ static status load(const char *path, char **text) {
 static int starts_name(char c) { return isalpha((unsigned char)c) || c == '_'; }
 static int in_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
 
-/* After Include or Merge: the file, if its name is in quotes. */
+/* After Include, Merge or ShapeFromFile: the file, if its name is in quotes. */
 static status include(geo_text *g, const char *path, const char *p,
                       int merged) {
   OWNED char *name = NULL;
   const char *slash = strrchr(path, '/');
-  p += strspn(p, " \t\r\n");
+  p += strspn(p, " \t\r\n(");
   size_t n = *p == '"' ? strcspn(p + 1, "\"\n") : 0;
   g->is_open |= n == 0;
   if (n == 0) return OK;
@@ -104,7 +104,8 @@ static status find_names(geo_text *g, const char *path, char *text) {
     PASS_GROW(g->name, g->n_name, g->name_capacity);
     g->name[g->n_name++] = p;
     int merged = strcmp(p, "Merge") == 0 || strcmp(p, "MergeFile") == 0;
-    int loads = merged || strcmp(p, "Include") == 0;
+    int loads =
+        merged || strcmp(p, "Include") == 0 || strcmp(p, "ShapeFromFile") == 0;
     if (after == '"') g->is_open |= loads;
     if (loads && after != '\0' && after != '"')
       PASS(include(g, path, q + 1, merged));

@@ -34,6 +34,8 @@ class Error(RuntimeError):
 
 # ---- tables ------------------------------------------------------------------
 
+NAMES = ("contact", "crack", "goal", "group")  # columns of names of the deck
+WORDS = (*NAMES, "status", "unit", "verdict", "zone")  # columns without numbers
 HEADING = re.compile(r"# step (\d+) increment (\d+) time (\S+) table (\S+)"
                      r"(?: group (.*))?$")
 
@@ -75,6 +77,12 @@ def read_blocks(path):
         yield block
 
 
+def compared(name):
+    """A name as decks compare it, with the blanks of a deck or the "_" that
+    tables have for them."""
+    return re.sub(r"\s", "_", name).upper()
+
+
 class Table(dict):
     """Columns by name, numpy arrays of one length: numbers as int or float,
     words as str; units[name] is the unit of a column, "-" for none."""
@@ -83,18 +91,32 @@ class Table(dict):
         super().__init__(columns)
         self.name = name
         self.units = units
+        self.names = {n: set(self[n]) for n in NAMES if n in self}
 
     def __len__(self):
         return len(next(iter(self.values()))) if self.keys() else 0
 
     def where(self, **wanted):
-        """The rows in which these columns have these values."""
+        """The rows in which these columns have these values; words are compared
+        as decks compare names."""
         import numpy
         keep = numpy.ones(len(self), bool)
         for name, value in wanted.items():
-            keep &= self[name] == value
-        return Table(self.name, {k: v[keep] for k, v in self.items()},
+            found = self[name]
+            if found.dtype.kind == "U":
+                value, there = compared(str(value)), self.names.get(name)
+                if there and value not in map(compared, there):
+                    raise KeyError(f"{self.name} has no {name} {wanted[name]}; "
+                                   f"it has {', '.join(sorted(there))}")
+                found = numpy.array([compared(v) for v in found], str)
+            elif isinstance(value, str):
+                raise TypeError(f"{name} of {self.name} has numbers, as "
+                                f"{found[:1]}, not {value}")
+            keep &= found == value
+        kept = Table(self.name, {k: v[keep] for k, v in self.items()},
                      self.units)
+        kept.names = self.names
+        return kept
 
     def to_pandas(self):
         """A pandas.DataFrame; its attrs["units"] are the units."""
@@ -104,16 +126,17 @@ class Table(dict):
         return frame
 
 
-def as_array(values):
-    """Words as whole numbers, numbers, or what they are; "" is NaN."""
+def as_array(name, values):
+    """A column: numbers as they are, their words as whole numbers or numbers,
+    "" as NaN; WORDS as what they are."""
     import numpy
-    for kind in (int, float):
-        try:
-            return numpy.array([kind(v) if v != "" or kind is int
-                                else numpy.nan for v in values])
-        except ValueError:
-            continue
-    return numpy.array(values, dtype=str)
+    if name in WORDS:
+        return numpy.array(values, dtype=str)
+    try:
+        return numpy.array([int(v) if isinstance(v, str) else v
+                            for v in values])
+    except ValueError:
+        return numpy.array([float(v or "nan") for v in values])
 
 
 def joined(name, blocks):
@@ -133,7 +156,7 @@ def joined(name, blocks):
                 values += [row[place[n]] for row in b["rows"]]
             else:
                 values += [""] * len(b["rows"])
-    return Table(name, {n: as_array(v) for n, v in columns.items()}, units)
+    return Table(name, {n: as_array(n, v) for n, v in columns.items()}, units)
 
 
 # ---- fields of JOB.h5 --------------------------------------------------------
