@@ -431,6 +431,7 @@ static const struct {
      0.6 + 0.4 * 0.246596963941606},
     {TWO_UNITS, STRAINED("BODY, 2, 1.E-3\n"), -1},
     {TWO_UNITS, STRAINED("BODY, 2, 1.E-3\n") INTERNAL("BODY, 2, 4.E-4\n"), -1},
+    {TWO_UNITS, STRAINED("BODY, 2, 1.E-3\n") INTERNAL("BODY, 2, 1.4E-3\n"), -1},
     {"*INELASTIC, LAW=PRONY\n0.4, 0., 2.\n",
      STRAINED("BODY, 1, 1.E-3\nBODY, 2, 1.E-3\nBODY, 3, 1.E-3\n"), -1}};
 

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "effects/rows.h"
 #include "model/check/check.h"
+#include "model/facts.h"
 #include "model/keyword/keyword.h"
 #include "support/text_model.h"
 #include "support/unit.h"
@@ -221,6 +222,35 @@ START_TEST(effects_are_what_the_deck_calls_for) {
 }
 END_TEST
 
+/* Of a step, or of the last of two: held at rest, moved, let go, taken later.
+ */
+START_TEST(supports_that_move_are_found) {
+  static const struct {
+    const char *first, *last;
+    int moves;
+  } cases[] = {{"*BOUNDARY\nTOP, 1, 2\n", "", 0},
+               {"*BOUNDARY\nTOP, 1, 2, 0.1\n", "", 1},
+               {"*BOUNDARY\nTOP, 1, 2, \"t - 1\"\n", "", 1},
+               {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY\nTOP, 1, 1, 0.1\n", 1},
+               {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY, OP=NEW\n", 1},
+               {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY\nLEFT, 1\n", 1}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char text[1000];
+    text_model s;
+    snprintf(text, sizeof text,
+             HEAD
+             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+             "*STEP\n*STATIC\n%s*END STEP\n*STEP\n*STATIC\n%s*END STEP\n",
+             cases[k].first, cases[k].last);
+    text_model_read(&s, text, square());
+    ck_assert_int_eq(s.st, OK);
+    ck_assert_msg((facts_moving_support(s.m) != NULL) == cases[k].moves, "%s",
+                  text);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 START_TEST(every_refused_request_is_reported) {
   static const char text[] = HEAD
       "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -258,4 +288,4 @@ END_TEST
 UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
           loads_ramp_stay_change_and_end, echo_reads_back_to_the_same_echo,
           directions_have_unit_length, effects_are_what_the_deck_calls_for,
-          every_refused_request_is_reported)
+          supports_that_move_are_found, every_refused_request_is_reported)
