@@ -68,6 +68,8 @@ static const good_deck good_decks[] = {
    "*B\n1,2\n", "*A[TOP|12.34|1|2|.015E2]*B[1|2]"},
   {"*legacy, format=( 2X , 2( i1 , 2( 1X , a1 ) ) )\n*A\nzz1 a b2 c d\n",
    "*A[1|a|b|2|c|d]"},
+  {"*LEGACY, FORMAT=(A2,I2,F3.1,E3.1,D3.1,G3.1,1X,i1,d4.1)\n*A\n"
+   "AB 1 21 32 43 54 6 1D1\n", "*A[AB|1|2.1|3.2|4.3|5.4|6|.1D1]"},
   {"*LEGACY, FORMAT=(3F4.3)\n*A\n   1       3\n  -1\n +12\n",
    "*A[.001|0|.003][-.001][+.012]"},
   {"*PARAMETER\nH=3\n*LEGACY, FORMAT=(2F5.1)\n*A\n <H>    20\n",
