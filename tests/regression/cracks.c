@@ -393,6 +393,34 @@ START_TEST(crack_in_a_body_that_creeps) {
 }
 END_TEST
 
+/* A *VISCO step of a body that does not flow is *QUASISTATIC. */
+START_TEST(elastic_crack_in_a_visco_step) {
+  static const char *const steps[] = {"*QUASISTATIC",
+                                      "*VISCO, INTEGRATOR=BACKWARD"};
+  double K[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("rigid");
+    job_copy(&j, "input/crack/crack.geo");
+    job_write(&j, "rigid.inp",
+              "*PARAMETER\nN = 8\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+              "*CRACK, NAME=C, GROUP=LINE\n"
+              "*STEP\n%s\n0.5, 1.\n*BOUNDARY\n" HELD "*DSLOAD\n" PULLED
+              "*PRINT, SIF\n*OUTPUT, HDF5=NO\n*END STEP\n",
+              steps[k]);
+    const int code = job_run(&j, "--no-timing");
+    ck_assert_msg(code == 0, "%s: exit %d: %s", steps[k], code, j.errors);
+    dat t = job_table(&j, "SIF", -1);
+    K[k] = dat_at(&t, 0, "K_I");
+    dat_free(&t);
+    job_end(&j);
+  }
+  ck_assert_double_gt(K[0], 0);
+  ck_assert_double_eq(K[0], K[1]);
+}
+END_TEST
+
 /* A crack is no pair of its own kind: the lips are equal and opposite, and the
  * energies balance with loads on them. */
 START_TEST(lips_balance) {
@@ -426,6 +454,7 @@ int main(void) {
   tcase_add_loop_test(tests, crack_in_a_warm_body, 0, 2);
   tcase_add_test(tests, rate_integral_of_power_law_creep);
   tcase_add_loop_test(tests, crack_in_a_body_that_creeps, 0, 3);
+  tcase_add_test(tests, elastic_crack_in_a_visco_step);
   tcase_add_test(tests, little_heat_that_varies_leaves_K);
   tcase_add_test(tests, creeping_body_with_supports_that_move_has_no_K);
   tcase_add_test(tests, lips_balance);

@@ -105,6 +105,29 @@ START_TEST(stiff_points_lie_between_the_ends) {
 }
 END_TEST
 
+/* The strains of two Kelvin units are internal variables, their sum is that of
+ * the body: at the points as at the ends of the increments. */
+START_TEST(units_add_up_at_points) {
+  square_case s = {STEEL,
+                   "*INELASTIC, LAW=KELVIN\n700., 500.\n700., 1000.\n",
+                   "CPS3",
+                   "*TIME POINTS, NAME=T, GENERATE\n0.05, 0.5, 0.05\n",
+                   SYMMETRY "*DSLOAD\nTOP, TY, 1.\n",
+                   "*VISCO, INTEGRATOR=MIDPOINT\n0.25, 0.5\n"
+                   "*PRINT, ELEMENTS, TIME POINTS=T\n"};
+  job j = square_run(&s, 0);
+  for (int k = 1; k <= 10; ++k) {
+    dat d = job_table(&j, "ELEMENTS", k);
+    const double sum = dat_at(&d, 0, "ei_yy");
+    ck_assert_double_gt(sum, 1e-5);
+    ck_assert_double_eq_tol(dat_at(&d, 0, "alpha_2") + dat_at(&d, 0, "alpha_6"),
+                            sum, 1e-9 * sum);
+    dat_free(&d);
+  }
+  job_end(&j);
+}
+END_TEST
+
 #define SLIDES "*DSLOAD\nRIGHT, P, 6.\n"
 
 static char *contact_table(const job *j, int k) {
@@ -198,6 +221,7 @@ int main(void) {
   tcase_add_loop_test(tests, points_have_the_order_of_the_integrator, 0, N_ROW);
   tcase_add_test(tests, energies_balance_at_points);
   tcase_add_test(tests, stiff_points_lie_between_the_ends);
+  tcase_add_test(tests, units_add_up_at_points);
   tcase_add_test(tests, friction_at_a_point_is_that_of_a_shorter_increment);
   tcase_add_test(tests, moduli_at_a_point_are_those_of_its_time);
   tcase_add_test(tests, points_leave_the_run_alone);

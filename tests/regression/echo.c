@@ -111,6 +111,22 @@ START_TEST(echo_of_odd_spellings_reads_back) {
 }
 END_TEST
 
+/* An absolute name in an include in a folder of its own is left as it is. */
+START_TEST(echo_leaves_absolute_names_alone) {
+  char path[TEXT], sub[TEXT];
+  job j = job_begin("absolute");
+  snprintf(sub, sizeof sub, "mkdir '%s/sub'", j.dir);
+  ck_assert_int_eq(system(sub), 0);
+  job_write(&j, "sub/problem.inc", "*CONDENSED PROBLEM, FILE=/a/b.txt\n");
+  job_write(&j, "absolute.inp", "*INCLUDE, INPUT=sub/problem.inc\n");
+  snprintf(path, sizeof path, "%s/absolute.inp", j.dir);
+  char *echo = echo_of(path);
+  ck_assert_msg(strstr(echo, "FILE=/a/b.txt") != NULL, "%s", echo);
+  free(echo);
+  job_end(&j);
+}
+END_TEST
+
 /* The part of a listing that is the deck; the caller frees it. */
 static char *listed_deck(const job *j) {
   static const char start[] = "DECK\n----\n", end[] = "\nMODEL\n-----\n";
@@ -177,5 +193,5 @@ START_TEST(running_the_echo_gives_the_same_tables) {
 END_TEST
 
 UNIT_MAIN("echo", echo_of_every_example_reads_back,
-          echo_of_odd_spellings_reads_back,
+          echo_of_odd_spellings_reads_back, echo_leaves_absolute_names_alone,
           running_the_echo_gives_the_same_tables)

@@ -262,6 +262,8 @@ START_TEST(friction_without_slip_is_left_out) {
   stays(&expands, "friction");
   compare(&small, "friction", -1, 1e-12);
   stays(&twice, "friction");
+  small.loads = "*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n"; /* five of them */
+  stays(&small, "friction");
 }
 END_TEST
 

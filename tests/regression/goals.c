@@ -406,6 +406,39 @@ START_TEST(width_is_that_of_one_zone) {
 }
 END_TEST
 
+/* Materials in any order: estimates are the same but for rounding. */
+START_TEST(order_of_materials_changes_no_estimate) {
+  static const char soft[] = "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n",
+                    hard[] = "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n";
+  told is[2][2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("layers");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(
+        &j, "layers.inp",
+        "*MESH, FILE=layers.geo\n*MATERIAL, NAME=S\n*ELASTIC\n100., 0.3\n"
+        "*MATERIAL, NAME=H\n*ELASTIC\n1000., 0.3\n%s%s"
+        "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+        "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+        "*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.2\n0.5, 0.\n"
+        "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=HARD\n"
+        "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.01\n"
+        "*DSLOAD\nTOP, TX, 2.\n*PRINT, GOALS\n*END STEP\n",
+        k == 0 ? soft : hard, k == 0 ? hard : soft);
+    const int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    for (int i = 0; i < 2; ++i) is[k][i] = told_of(&j, i);
+    job_end(&j);
+  }
+  for (int i = 0; i < 2; ++i) {
+    ck_assert_double_gt(fabs(is[0][i].error), 0);
+    ck_assert_double_eq_tol(is[1][i].error, is[0][i].error,
+                            1e-7 * fabs(is[0][i].error));
+    ck_assert_double_eq_tol(is[1][i].band, is[0][i].band, 1e-7 * is[0][i].band);
+  }
+}
+END_TEST
+
 /* A uniform pressure, by means that an end of the surface cuts, that are
  * shorter than an edge, off the surface, and of two thicknesses. */
 START_TEST(means_of_a_pressure_lie_on_its_surface) {
@@ -697,18 +730,16 @@ START_TEST(errors_do_not_depend_on_the_axes) {
 }
 END_TEST
 
-UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
-          friction_force_of_the_block, friction_force_of_a_slice,
-          errors_of_earlier_increments_are_in_it,
-          work_of_a_zone_of_stick_that_grows,
-          both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
-          largest_mean_in_space_is_at_the_pole,
-          energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
-          width_is_that_of_one_zone, means_of_a_pressure_lie_on_its_surface,
-          means_are_of_volumes_and_of_nodes,
-          slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
-          means_in_space_go_on_behind_planes_of_symmetry,
-          ends_that_a_point_holds_are_ends,
-          zones_of_closed_curves_are_those_of_an_arc,
-          tangential_force_in_space_is_the_first,
-          errors_do_not_depend_on_the_axes)
+UNIT_MAIN(
+    "goals", goals_of_the_half_plane_of_hertz, friction_force_of_the_block,
+    friction_force_of_a_slice, errors_of_earlier_increments_are_in_it,
+    work_of_a_zone_of_stick_that_grows, both_kinds_of_stiffness_give_the_same,
+    peak_and_width_of_the_sphere, largest_mean_in_space_is_at_the_pole,
+    energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
+    order_of_materials_changes_no_estimate, width_is_that_of_one_zone,
+    means_of_a_pressure_lie_on_its_surface, means_are_of_volumes_and_of_nodes,
+    slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
+    means_in_space_go_on_behind_planes_of_symmetry,
+    ends_that_a_point_holds_are_ends,
+    zones_of_closed_curves_are_those_of_an_arc,
+    tangential_force_in_space_is_the_first, errors_do_not_depend_on_the_axes)

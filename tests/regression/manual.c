@@ -307,8 +307,21 @@ START_TEST(columns_are_listed_by_table) {
   ck_assert_ptr_nonnull(strstr(j.text, "\nCONTACT: "));
   ck_assert_ptr_nonnull(
       strstr(j.text, "\n  pressure           force/length^2 "));
-  expect(&j, "protis --list solver", 2);
-  ck_assert_ptr_nonnull(strstr(j.errors, "did you mean solvers?"));
+  job_end(&j);
+}
+END_TEST
+
+START_TEST(every_list_is_found_by_a_word_near_it) {
+  static const char *const kinds[] = {"solvers",     "materials", "friction",
+                                      "integrators", "columns",   "examples"};
+  job j = job_begin("list");
+  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i) {
+    char line[80], near[80];
+    snprintf(line, sizeof line, "protis --list x%s", kinds[i]);
+    snprintf(near, sizeof near, "did you mean %s?", kinds[i]);
+    expect(&j, line, 2);
+    ck_assert_msg(strstr(j.errors, near) != NULL, "%s", j.errors);
+  }
   job_end(&j);
 }
 END_TEST
@@ -327,5 +340,6 @@ int main(void) {
   tcase_add_test(c, an_installed_program_works_and_is_removed);
   tcase_add_test(c, axisymmetric_expressions_know_r_and_z);
   tcase_add_test(c, columns_are_listed_by_table);
+  tcase_add_test(c, every_list_is_found_by_a_word_near_it);
   return unit_run("manual", c);
 }

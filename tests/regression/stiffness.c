@@ -281,6 +281,35 @@ START_TEST(verdicts_are_the_same) {
 }
 END_TEST
 
+/* What --list solvers says of a method is what the check of a deck does. */
+START_TEST(list_says_which_methods_take_factors) {
+  static const char *const all[] = {"NEWTON", "LEMKE",  "SOR",      "PCG",
+                                    "AUGLAG", "AITKEN", "LAGRANGE", "PROXIMAL"};
+  job j = job_begin("list");
+  ck_assert_int_eq(job_shell(&j, "protis --list solvers"), 0);
+  for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+    char name[40], card[100];
+    snprintf(name, sizeof name, "\n%s  (", all[i]);
+    char *at = strstr(j.text, name), *end;
+    ck_assert_ptr_nonnull(at);
+    end = strstr(at, "\n\n");
+    if (end != NULL) *end = '\0';
+    const int told =
+        strstr(at, "works with STIFFNESS=DENSE and FACTOR") != NULL;
+    ck_assert_int_ne(told, strstr(at, "needs the entries") != NULL);
+    if (end != NULL) *end = '\n';
+    snprintf(card, sizeof card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR\n",
+             all[i]);
+    job deck = job_begin("deck");
+    ck_assert_int_eq(
+        job_run_with(&deck, "input/greco/greco", card, 0, "--check -D N=4"),
+        told ? 0 : 2);
+    job_end(&deck);
+  }
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("stiffness");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -290,6 +319,7 @@ int main(void) {
   tcase_add_test(tests, verdicts_are_the_same);
   tcase_add_loop_test(tests, every_method_finds_no_equilibrium, 1, METHODS);
   tcase_add_test(tests, iterations_tell_their_linear_systems);
+  tcase_add_test(tests, list_says_which_methods_take_factors);
   tcase_add_test(tests, kind_is_chosen_by_cost);
   tcase_add_test(tests, kind_is_chosen_by_memory);
   tcase_add_test(tests, contact_of_most_of_the_body_is_not_condensed);

@@ -204,6 +204,21 @@ static const char led[] =
     "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, -0.01\n"
     "TOP, 2, 2, -0.01\n*END STEP\n";
 
+/* The sides of the inequalities of a listing, in its digits. */
+static void sides_are_shown_in_order(const job *j, int n) {
+  char *listing = job_file(j, "lst");
+  int found = 0;
+  for (char *at = listing; (at = strstr(at, "  theory: (3.")) != NULL; ++at) {
+    double left, right;
+    if (sscanf(at, "  theory: (3.%*d) %*s %lf <= %lf", &left, &right) != 2)
+      continue;
+    ck_assert_double_le(left, right);
+    ++found;
+  }
+  ck_assert_int_eq(found, n);
+  free(listing);
+}
+
 START_TEST(bounds_hold_at_every_increment) {
   static const char *const laws[] = {
       "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n",
@@ -226,6 +241,7 @@ START_TEST(bounds_hold_at_every_increment) {
       idle += !(left > 0.01 * right);
     }
     ck_assert_int_le(idle, 3);
+    sides_are_shown_in_order(&j, 16);
     job_end(&j);
   }
 }

@@ -160,6 +160,8 @@ static int run_command(job *j, const char *dir, const char *command) {
   snprintf(path, sizeof path, "%s/stdout.txt", j->dir);
   free(j->text);
   j->text = file_read(path, NULL);
+  const char *none = j->errors == NULL ? NULL : strstr(j->errors, "(null)");
+  ck_assert_msg(none == NULL, "a name is missing: %s", j->errors);
   return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
 }
 

@@ -1,6 +1,7 @@
 /* src/fem/cluster and the averaged elements of src/fem. */
 #include "fem/cluster/cluster.h"
 
+#include "base/memory.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
@@ -167,6 +168,25 @@ static void fix_all_round(scene *s) {
     for (int c = 0; c < s->m->dim; ++c) scene_fix(s, side[k], c);
 }
 
+/* Clusters couple so many nodes that the lists of a mesh grow. */
+START_TEST(every_refused_request_of_the_stiffness_is_told) {
+  scene *s = averaged_box(averaged_kinematics[_i], 6, 0.3, 1);
+  for (long r = 1, reached = 1; reached; ++r) {
+    stiffness *k = NULL;
+    const size_t before = memory_in_use();
+    const long seen = memory_requests();
+    memory_refuse(r, 0);
+    status st = stiffness_assemble(&s->d, &k);
+    memory_refuse(0, 0);
+    reached = memory_requests() - seen >= r;
+    ck_assert_int_eq(st, reached ? ERR_MEMORY : OK);
+    stiffness_free(k);
+    ck_assert_uint_eq(memory_in_use(), before);
+  }
+  scene_free(s);
+}
+END_TEST
+
 START_TEST(uniform_strain_is_reproduced_at_4999) {
   const kinematics kin = averaged_kinematics[_i / 2];
   scene *s = averaged_box(kin, 5, 0.4999, _i % 2);
@@ -327,6 +347,8 @@ int main(void) {
   tcase_add_test(tests, no_clusters_where_the_option_does_nothing);
   tcase_add_loop_test(tests, clusters_part_their_sections_and_hang_together, 0,
                       2 * KINDS);
+  tcase_add_loop_test(tests, every_refused_request_of_the_stiffness_is_told, 0,
+                      KINDS);
   tcase_add_loop_test(tests, uniform_strain_is_reproduced_at_4999, 0,
                       2 * KINDS);
   tcase_add_loop_test(tests, forces_energy_and_stiffness_agree, 0, 2 * KINDS);

@@ -104,6 +104,24 @@ START_TEST(columns_follow_the_effects) {
 }
 END_TEST
 
+/* Of all effects that have one: without it no column is read. */
+START_TEST(columns_of_an_effect_wait_for_its_state) {
+  int n = 0;
+  made_up *made = made_up_new(3, 2, 3);
+  made_up_advance(made, 2);
+  made->s.effects = NULL;
+  for (int k = 0; effect_table[k] != NULL; ++k) {
+    const effect_ops *e = effect_table[k];
+    if (e->size == 0 || e->of_state) continue;
+    for (int i = 0; i < e->n_column; ++i, ++n)
+      ck_assert_msg(!column_ready(&e->columns[i], &made->s), "%s of %s",
+                    e->columns[i].name, e->name);
+  }
+  ck_assert_int_gt(n, 0);
+  made_up_free(made);
+}
+END_TEST
+
 static const column *named(const made_up *made, entity of, const char *name) {
   const column *c;
   for (column_walk k = {0}; (c = column_next(&k)) != NULL;)
@@ -431,7 +449,8 @@ UNIT_MAIN("columns", every_row_has_unit_help_scene_and_value,
           every_column_of_an_effect_is_listed_once,
           names_are_unique_within_entity_and_scene,
           fields_have_distinct_components, every_value_is_finite,
-          columns_follow_the_effects, contact_signs_and_directions,
+          columns_follow_the_effects, columns_of_an_effect_wait_for_its_state,
+          contact_signs_and_directions,
           principal_stresses_are_those_of_the_tensor,
           force_of_a_second_obstacle_is_no_friction, mises_of_simple_states,
           internal_variables_of_unlike_laws, slip_has_a_direction,

@@ -1,5 +1,6 @@
 /* src/contact/contact.c */
 #include "contact/contact.h"
+#include "contact/reach.h"
 #include "support/planted.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
@@ -380,7 +381,44 @@ START_TEST(blocks_give_the_residual_of_all_entries) {
 }
 END_TEST
 
-UNIT_MAIN("contact", blocks_give_the_residual_of_all_entries,
+/* Every value is its own place in the whole problem. */
+START_TEST(active_nodes_take_their_own_data) {
+  enum { N = 6, IN = 2 };
+  const double gap[N] = {9, 1, 8, 7, 2, 6};
+  const int in[IN] = {1, 4};
+  for (int dim = 2; dim <= 3; ++dim) {
+    contact_case c = case_new(dim, N, 0.5);
+    contact_reach x = {.distance = 3.0};
+    reach_part part;
+    memcpy(c.gap, gap, sizeof gap);
+    unsigned char held[3 * N];
+    for (int k = 0; k < dim * N; ++k) held[k] = (unsigned char)k;
+    for (int k = 0; k < (dim - 1) * N; ++k) c.ut0[k] = 10 + k;
+    for (int i = 0; i < N; ++i) c.g0[i] = c.B->val[i] = 100 + i;
+    c.cp.held = held;
+    ck_assert_int_eq(reach_choose(&x, N, c.gap), OK);
+    ck_assert_int_eq(reach_count(&x, N), IN);
+    ck_assert_int_eq(reach_part_new(IN, dim, &part), OK);
+    reach_cut(&x, &part, &c.cp);
+    for (int k = 0; k < IN; ++k) {
+      ck_assert_double_eq(c.cp.gap[k], gap[in[k]]);
+      ck_assert_double_eq(c.cp.g0[k], 100 + in[k]);
+      ck_assert_double_eq(c.cp.B->val[c.cp.B->start[k]], 100 + in[k]);
+      for (int a = 0; a < dim; ++a)
+        ck_assert_int_eq(c.cp.held[dim * k + a], dim * in[k] + a);
+      for (int a = 0; a < dim - 1; ++a)
+        ck_assert_double_eq(c.cp.ut0[(dim - 1) * k + a],
+                            10 + (dim - 1) * in[k] + a);
+    }
+    reach_part_free(&part);
+    reach_free(&x);
+    case_free(&c);
+  }
+}
+END_TEST
+
+UNIT_MAIN("contact", active_nodes_take_their_own_data,
+          blocks_give_the_residual_of_all_entries,
           residual_is_zero_for_solved_node,
           each_broken_condition_shows_by_its_size,
           weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,

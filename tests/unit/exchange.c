@@ -342,6 +342,25 @@ START_TEST(singular_mass_that_contact_holds_is_a_stiffness) {
 }
 END_TEST
 
+/* The last entry of H comes in two halves: A = inv(H) M inv(H). */
+START_TEST(entries_of_a_diagonal_given_twice_are_added) {
+  const double M[] = {8.0, 0.0, 0.0, 16.0}, H[] = {2.0, 0.0, 0.0, 4.0};
+  const double f[] = {6.0, 20.0}, w[] = {0.25, 0.5}, mu[] = {0.3};
+  const fclib_global_data g = {2, 1, 2, M, H, f, w, mu};
+  enter();
+  fclib_global(path, STORE_TRIPLET, &g);
+  answer a = read_as(EXCHANGE_FCLIB);
+  ck_assert_msg(a.st == OK, "%s", a.text);
+  ck_assert_ptr_nonnull(a.p->cp.A);
+  ck_assert_double_eq(a.p->cp.A[0], 2.0);
+  ck_assert_double_eq(a.p->cp.A[3], 1.0);
+  ck_assert_double_eq(a.p->cp.f[0], -3.0);
+  ck_assert_double_eq(a.p->cp.f[1], 5.0);
+  exchange_free(a.p);
+  leave();
+}
+END_TEST
+
 START_TEST(no_contact_is_a_problem) {
   const double M[] = {2.0, 0.0, 0.0, 1.0}, f[] = {1.0, 1.0};
   const fclib_global_data g = {.dim = 2, .n_v = 2, .M = M, .f = f};
@@ -751,9 +770,9 @@ UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
           unsymmetric_mass_is_eliminated_too,
           singular_mass_that_contact_does_not_hold_is_refused,
           singular_mass_that_contact_holds_is_a_stiffness,
-          no_contact_is_a_problem, defect_names_file_and_dataset,
-          what_is_not_available_is_said, local_constraints_are_eliminated,
-          global_constraints_are_eliminated, half_of_the_constraints_is_refused,
-          file_cut_short_is_refused,
+          entries_of_a_diagonal_given_twice_are_added, no_contact_is_a_problem,
+          defect_names_file_and_dataset, what_is_not_available_is_said,
+          local_constraints_are_eliminated, global_constraints_are_eliminated,
+          half_of_the_constraints_is_refused, file_cut_short_is_refused,
           numbers_that_are_not_in_the_file_are_refused, text_is_read_by_rows,
           defect_of_text_is_named, every_refused_request_is_reported)

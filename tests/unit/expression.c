@@ -247,6 +247,10 @@ START_TEST(values_on_the_stack_are_bounded) {
   for (int n = 1; n < 300; ++n)
     ck_assert_int_eq(compile_nested("if(x,y,", ")", n),
                      2 * n < 64 ? OK : ERR_DECK);
+  /* what is worked out takes one place */
+  for (int n = 1; n < 300; ++n)
+    ck_assert_int_eq(compile_nested("if(-x*x,y,", ")", n),
+                     2 * n < 64 ? OK : ERR_DECK);
 }
 END_TEST
 

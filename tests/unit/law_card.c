@@ -142,6 +142,19 @@ START_TEST(every_field_is_checked) {
 }
 END_TEST
 
+START_TEST(a_threshold_may_fall) {
+  static const char *const cards[] = {
+      "*INELASTIC, LAW=PERZYNA\n60., 150., 0., 3., -20., 5.",
+      "*INELASTIC, LAW=CHABOCHE\n60., 150., 3., -20., 5.\n2E4, 100."};
+  for (int i = 0; i < 2; ++i) {
+    text_model s;
+    read_deck(&s, "", cards[i]);
+    ck_assert_msg(s.st == OK, "%s", cards[i]);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 START_TEST(tables_are_linear_in_temperature) {
   double value[VALUES];
   text_model s;
@@ -290,7 +303,8 @@ START_TEST(every_refused_request_is_reported) {
 END_TEST
 
 UNIT_MAIN("law_card", every_example_reads_as_it_is, every_field_is_checked,
-          tables_are_linear_in_temperature, coefficients_may_vary_in_time,
-          creep_cards_of_abaqus, long_term_moduli_between_two_sets,
+          a_threshold_may_fall, tables_are_linear_in_temperature,
+          coefficients_may_vary_in_time, creep_cards_of_abaqus,
+          long_term_moduli_between_two_sets,
           moduli_after_all_terms_have_relaxed,
           every_refused_request_is_reported)

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "effects/rows.h"
 #include "model/check/check.h"
+#include "model/facts.h"
 #include "model/keyword/keyword.h"
 #include "support/text_model.h"
 #include "support/unit.h"
@@ -221,6 +222,55 @@ START_TEST(effects_are_what_the_deck_calls_for) {
 }
 END_TEST
 
+/* Of a step, or of the last of two: held at rest, moved, let go, taken later.
+ */
+START_TEST(supports_that_move_are_found) {
+  static const struct {
+    const char *first, *last;
+    int moves;
+  } cases[] = {{"*BOUNDARY\nTOP, 1, 2\n", "", 0},
+               {"*BOUNDARY\nTOP, 1, 2, 0.1\n", "", 1},
+               {"*BOUNDARY\nTOP, 1, 2, \"t - 1\"\n", "", 1},
+               {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY\nTOP, 1, 1, 0.1\n", 1},
+               {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY, OP=NEW\n", 1},
+               {"*BOUNDARY\nTOP, 1, 2\n", "*BOUNDARY\nLEFT, 1\n", 1}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char text[1000];
+    text_model s;
+    snprintf(text, sizeof text,
+             HEAD
+             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+             "*STEP\n*STATIC\n%s*END STEP\n*STEP\n*STATIC\n%s*END STEP\n",
+             cases[k].first, cases[k].last);
+    text_model_read(&s, text, square());
+    ck_assert_int_eq(s.st, OK);
+    ck_assert_msg((facts_moving_support(s.m) != NULL) == cases[k].moves, "%s",
+                  text);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
+/* xx yy zz xy yz zx. */
+START_TEST(initial_strains_have_the_components_of_the_space) {
+  for (int c = 0; c <= 7; ++c) {
+    char text[1000];
+    text_model s;
+    snprintf(text, sizeof text,
+             HEAD
+             "*INELASTIC, LAW=MAXWELL\n2.\n"
+             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+             "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, %d, 1.E-3\n"
+             "*STEP\n*VISCO, INTEGRATOR=RK4\n0.5, 1.\n*BOUNDARY\nTOP, 1, "
+             "3\n*END STEP\n",
+             c);
+    text_model_read(&s, text, box());
+    ck_assert_int_eq(s.st, c >= 1 && c <= 6 ? OK : ERR_DECK);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 START_TEST(every_refused_request_is_reported) {
   static const char text[] = HEAD
       "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -258,4 +308,6 @@ END_TEST
 UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
           loads_ramp_stay_change_and_end, echo_reads_back_to_the_same_echo,
           directions_have_unit_length, effects_are_what_the_deck_calls_for,
+          supports_that_move_are_found,
+          initial_strains_have_the_components_of_the_space,
           every_refused_request_is_reported)

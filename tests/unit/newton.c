@@ -1,4 +1,5 @@
 /* src/solver/newton: the steps of Newton's method on the states. */
+#include "solver/newton/system.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
@@ -148,6 +149,28 @@ START_TEST(nodes_of_uneven_tangents_do_not_cycle) {
 }
 END_TEST
 
-UNIT_MAIN("newton", nodes_of_uneven_tangents_do_not_cycle,
+/* A cycle is one only if a guess comes back: all of two nodes in the plane. */
+START_TEST(every_guess_has_a_hash_of_its_own) {
+  enum { EACH = 8, ALL = EACH * EACH }; /* open or closed; free, stuck, slips */
+  contact_case c = case_new(2, 2, 0.5);
+  uint64_t hash[ALL];
+  states s = {.cp = &c.cp};
+  ck_assert_int_eq(states_new(&c.cp, &s), OK);
+  for (int k = 0; k < ALL; ++k) {
+    for (int i = 0, of = k; i < 2; ++i, of /= EACH) {
+      s.guess.closed[2 * i] = (unsigned char)(of % 2);
+      s.guess.mode[i] = (unsigned char)(of / 2 == 3 ? SLIP : of / 2);
+      s.guess.e[i] = of / 2 == 3 ? -1.0 : of / 2 == 2 ? 1.0 : 0.0;
+    }
+    hash[k] = states_hash(&s);
+    for (int l = 0; l < k; ++l) ck_assert(hash[k] != hash[l]);
+  }
+  states_free(&s);
+  case_free(&c);
+}
+END_TEST
+
+UNIT_MAIN("newton", every_guess_has_a_hash_of_its_own,
+          nodes_of_uneven_tangents_do_not_cycle,
           front_of_slip_is_followed_to_its_end, front_goes_on_from_where_it_was,
           front_of_slip_is_found_from_the_compliance)

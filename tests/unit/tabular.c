@@ -8,20 +8,30 @@
 #include <math.h>
 #include <string.h>
 
-/* The whole JOB.dat of "told" increments; caller frees. */
-static char *write_tables(made_up *made, int told) {
+/* The whole JOB.dat of "told" increments, closed after "cut" of them and opened
+ * again where it ended; caller frees. */
+static char *write_cut(made_up *made, int told, int cut) {
   char dir[64];
+  long length = -1;
   tabular *t = NULL;
   folder_new(dir);
-  ck_assert_int_eq(tabular_open(&made->m, made->msh, dir, -1, &t), OK);
-  for (int i = 1; i <= told; ++i) {
-    made_up_advance(made, i);
-    ck_assert_int_eq(tabular_increment(t, &made->s), OK);
+  for (int from = 0, to = cut; from < told; from = to, to = told) {
+    ck_assert_int_eq(tabular_open(&made->m, made->msh, dir, length, &t), OK);
+    for (int i = from + 1; i <= to; ++i) {
+      made_up_advance(made, i);
+      ck_assert_int_eq(tabular_increment(t, &made->s), OK);
+    }
+    ck_assert_int_eq(tabular_sync(t, &length), OK);
+    ck_assert_int_eq(tabular_close(t), OK);
+    if (to == told) break;
   }
-  ck_assert_int_eq(tabular_close(t), OK);
   char *text = folder_file(dir, "block.dat", NULL);
   folder_remove(dir);
   return text;
+}
+
+static char *write_tables(made_up *made, int told) {
+  return write_cut(made, told, told);
 }
 
 /* Text of block number k of a kind, ended by the first empty line. */
@@ -245,6 +255,22 @@ START_TEST(every_line_keeps_blanks_between_fields) {
 }
 END_TEST
 
+/* Also where nothing had been written yet. */
+START_TEST(a_file_that_goes_on_is_that_of_one_run) {
+  enum { TOLD = 3 };
+  made_up *made = made_up_new(2, 1, TOLD);
+  char *whole = write_tables(made, TOLD);
+  ck_assert_ptr_nonnull(strstr(whole, " table CONTACT"));
+  for (int cut = 0; cut < TOLD; ++cut) {
+    char *text = write_cut(made, TOLD, cut);
+    ck_assert_msg(strcmp(text, whole) == 0, "cut after %d", cut);
+    free(text);
+  }
+  free(whole);
+  made_up_free(made);
+}
+END_TEST
+
 START_TEST(no_print_no_file) {
   made_up *made = made_up_new(2, 1, 1);
   tabular *t = NULL;
@@ -263,4 +289,5 @@ UNIT_MAIN("tabular", nodes_read_back_exactly_in_the_order_of_their_numbers,
           frequency_means_every_nth_and_the_last,
           groups_and_supports_choose_the_rows,
           missing_arrays_leave_their_columns_out,
-          every_line_keeps_blanks_between_fields, no_print_no_file)
+          every_line_keeps_blanks_between_fields,
+          a_file_that_goes_on_is_that_of_one_run, no_print_no_file)

@@ -1,8 +1,10 @@
 /*
- * src/effects/plan/sizes.c: entries and operations of the factor foreseen from
- * the number of unknowns besides those that CHOLMOD counts for blocks in the
- * plane and in space, the contact last.
+ * src/effects/plan: what a row has cost; entries and operations of the factor
+ * foreseen from the number of unknowns besides those that CHOLMOD counts for
+ * blocks in the plane and in space, the contact last.
  */
+#include "base/memory.h"
+#include "base/timer.h"
 #include "fem/fem.h"
 #include "effects/plan/plan.h"
 #include "support/pressed_block.h"
@@ -35,4 +37,27 @@ START_TEST(factor_has_the_size_that_was_foreseen) {
 }
 END_TEST
 
-UNIT_MAIN("work", factor_has_the_size_that_was_foreseen)
+static void request(stage s, size_t n) {
+  timer_enter(s);
+  memory_free(memory_new(n, 1));
+  timer_leave(s);
+}
+
+/* Two stages of a row, the first entered twice. */
+START_TEST(cost_of_a_row_is_that_of_its_stages) {
+  const plan_row row = {.n_stage = 2, .stages = {STAGE_LOAD, STAGE_BODY}};
+  timer_reset();
+  request(STAGE_LOAD, 3000);
+  request(STAGE_BODY, 500);
+  request(STAGE_LOAD, 1000);
+  request(STAGE_FACTOR, 10000);
+  const stage_cost one = timer_cost(STAGE_LOAD), two = timer_cost(STAGE_BODY);
+  const stage_cost c = plan_cost(&row);
+  ck_assert_int_eq(c.calls, 2);
+  ck_assert_uint_eq(c.bytes, 4500);
+  ck_assert_double_eq(c.cpu, one.cpu + two.cpu);
+}
+END_TEST
+
+UNIT_MAIN("work", cost_of_a_row_is_that_of_its_stages,
+          factor_has_the_size_that_was_foreseen)

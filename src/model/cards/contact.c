@@ -529,9 +529,10 @@ status apply_effect(reading *r) {
   if (p->contact != NULL && id < 0) return OK;
   const effect_card *first = model_effect_card(m, r->card->name, id);
   if (first != NULL) {
-    message_add(m->log, P2011, &r->card->at,
-                "contact %s has its *%s already, at line %d", p->contact,
-                r->card->name, first->at.line_no);
+    message_add(
+        m->log, P2011, &r->card->at, "%s%s has its *%s already, at line %d",
+        p->contact == NULL ? "the deck" : "contact ",
+        p->contact == NULL ? "" : p->contact, r->card->name, first->at.line_no);
     return OK;
   }
   PASS_GROW(m->effect_cards, m->n.effect_card, m->cap.effect_card);
