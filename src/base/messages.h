@@ -418,7 +418,12 @@
   X(3055, NOTE, "group of nodes on a crack",                                 \
     "The group gets the nodes of all sides of the crack: a support holds, "  \
     "and a concentrated load acts on each of them. To hold or load one "     \
-    "side, name a group of curves (2-D) or surfaces (3-D).")
+    "side, name a group of curves (2-D) or surfaces (3-D).")                 \
+  X(3056, WARNING, "crack that branches",                                     \
+    "A contact node has one normal for a lip, at a branch that of none: "    \
+    "stresses there were wrong by a third on closed cracks, on any mesh. "   \
+    "Give each line (2-D) or surface (3-D) a group and a *CRACK of its own; " \
+    "a branch that stays open is right as it is.")
 
 #define MESSAGE_LIST_CONTACT(X)                                              \
   X(4001, ERROR, "contact group is not made of boundary faces",              \
@@ -526,7 +531,8 @@
     "A slave node follows the nodes of its master. Where bodies meet at one "  \
     "corner, each the slave of the next, no node of the corner is left that "  \
     "the others follow: give one of the pairs the other side as slave, with "  \
-    "SLAVE=FIRST or SECOND.")                                                 \
+    "SLAVE=FIRST or SECOND. Cracks that meet in a corner: one *CRACK for "   \
+    "both.")                                                                 \
   X(4028, WARNING, "crack that ends between two materials",                  \
     "The stress oscillates there: it has no stress intensity factors. The "  \
     "table SIF gives the energy release rate alone.")                        \

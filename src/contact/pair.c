@@ -15,6 +15,8 @@
 /* Slave nodes: left out, as supports hold them or an earlier pair has them;
  * rows of this pair and of an earlier one. */
 enum { HELD = 1, TAKEN, SHARED };
+/* Forces that are left of those of a chain, over the first. */
+static const double rounding = 1e-9;
 
 /* 1: the pair is coupled where the bodies are now. */
 static int is_moved(const surface_input *in, const contact_pair *p) {
@@ -355,6 +357,77 @@ static int stays(const contact_pair *p) {
 
 const partner_ops pair_partner = {"surface", gap_at, no_normal, stays, NULL};
 
+/* ---- motions and forces of the rows ---------------------------------------
+ */
+
+void surface_relative(const contact_surface *s, const double *u, double *w) {
+  const int dim = s->dim;
+  const node_links *l = s->master;
+  for (int q = 0; q < s->n; ++q)
+    for (int a = 0; a < dim; ++a) {
+      const double *row = &s->frame[dim * (dim * q + a)];
+      double sum = dot(dim, row, u + (size_t)dim * (size_t)s->node_id[q]);
+      for (size_t e = l == NULL ? 0 : l->start[q];
+           l != NULL && e < l->start[q + 1]; ++e)
+        sum -= l->part[(size_t)dim * e + (size_t)a] *
+               dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
+      w[dim * q + a] = sum / surface_share(s, q, a);
+    }
+}
+
+void surface_spread_row(const contact_surface *s, int q, int a, double force,
+                        double *F) {
+  const int dim = s->dim;
+  const node_links *l = s->master;
+  const double *row = &s->frame[dim * (dim * q + a)];
+  force /= surface_share(s, q, a);
+  add_scaled(dim, force, row, F + (size_t)dim * (size_t)s->node_id[q]);
+  for (size_t e = l == NULL ? 0 : l->start[q]; l != NULL && e < l->start[q + 1];
+       ++e)
+    add_scaled(dim, -force * l->part[(size_t)dim * e + (size_t)a], row,
+               F + (size_t)dim * (size_t)l->master[e]);
+}
+
+void surface_spread(const contact_surface *s, double factor, const double *r,
+                    double *F) {
+  for (int k = 0; k < s->dim * s->n; ++k)
+    surface_spread_row(s, k / s->dim, k % s->dim, factor * r[k], F);
+}
+
+/* r += basis' F; the largest addition. */
+static double add_forces(const contact_surface *s, const double *F, double *r) {
+  const int dim = s->dim;
+  double most = 0;
+  for (int q = 0; q < s->n; ++q)
+    for (int a = 0; a < dim; ++a) {
+      const double more = dot(dim, &s->basis[dim * (dim * q + a)],
+                              F + (size_t)dim * (size_t)s->node_id[q]);
+      r[dim * q + a] += more;
+      most = fmax(most, fabs(more));
+    }
+  return most;
+}
+
+/* Slave nodes that are masters of other pairs have the forces of those too:
+ * each pass finds those of the next pair in a chain. */
+status surface_forces(const contact_surface *s, int n_node, const double *F,
+                      double *r) {
+  enum { LONGEST = 100 };
+  const size_t n = (size_t)s->dim * (size_t)n_node;
+  OWNED double *rest = NULL;
+  memset(r, 0, (size_t)(s->dim * s->n) * sizeof *r);
+  const double first = add_forces(s, F, r);
+  double more = first;
+  if (s->master == NULL) return OK;
+  PASS_NEW(rest, n);
+  for (int k = 0; k < LONGEST && more > rounding * first; ++k) {
+    memcpy(rest, F, n * sizeof *rest);
+    surface_spread(s, -1, r, rest);
+    more = add_forces(s, rest, r);
+  }
+  return OK;
+}
+
 /* ---- circles --------------------------------------------------------------
  * Nodes all of whose masters have their place are done, from pass to pass; who
  * waits for ever waits for a node of a circle.
@@ -424,9 +497,11 @@ status pairs_check_circles(const contact_surface *s, const surface_input *in,
   if (first < 0) return OK;
   for (int q = first, k = 0; k == 0 || q != first; q = waits_for(&f, q), ++k)
     add_names(&f, q, text, sizeof text);
-  message_add(log, P4027, &in->pairs[s->contact_id[first]].at,
-              "nodes of the slaves move with each other in a circle, node %zu "
-              "among them: pairs %s; give one of them the other slave (SLAVE=)",
-              s->node_no[first], text + 2);
+  message_add(
+      log, P4027, &in->pairs[s->contact_id[first]].at,
+      "nodes of the slaves move with each other in a circle, node %zu "
+      "among them: pairs %s; give one of them the other slave (SLAVE=), "
+      "cracks that meet one *CRACK",
+      s->node_no[first], text + 2);
   return message_status(log, ERR_DECK);
 }

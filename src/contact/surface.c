@@ -9,10 +9,12 @@
  */
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/vector.h"
 #include "contact/parts.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Normals of two contacts on one obstacle nearer than this (45 degrees) are
@@ -180,27 +182,99 @@ static void check_axis(const builder *b, const contact_pair *p) {
                 p->name, o->name, o->point[0]);
 }
 
+/* The row of a node of *TIE, -1: it is none. */
+static int tied_row(const surface_input *in, int node_id) {
+  const tie_set *t = in->ties;
+  const int *at = t == NULL || t->n == 0
+                      ? NULL
+                      : bsearch(&node_id, t->node_id, (size_t)t->n,
+                                sizeof *t->node_id, number_order);
+  return at == NULL ? -1 : (int)(at - t->node_id);
+}
+
+/* One contact while its faces are added. */
+typedef struct adder {
+  const surface_input *in;
+  const mesh_group *group;
+  candidate *first; /* [group->n_node] */
+  int *index;       /* [n_node] place of a node, if it is in the group */
+} adder;
+
+/* The candidate of a node that moves by itself, NULL: there is none. */
+static candidate *find(const adder *a, int node_id) {
+  const int k = a->index[node_id];
+  return k < a->group->n_node && a->group->node_id[k] == node_id &&
+                 tied_row(a->in, node_id) < 0
+             ? &a->first[k]
+             : NULL;
+}
+
+static void give(int dim, candidate *to, double w, const double *normal) {
+  to->area += w;
+  for (int c = 0; c < dim; ++c) to->normal[c] += w * normal[c];
+}
+
+/* What a node of *TIE has of a face goes to the masters that are in the group,
+ * by their parts along the normal; 0: none is. */
+static int give_masters(const adder *a, int row, double w,
+                        const double *normal) {
+  const node_links *l = &a->in->ties->to;
+  const int dim = l->dim;
+  double sum = 0.0;
+  for (int pass = 0; pass < 2; ++pass)
+    for (size_t e = l->start[row]; e < l->start[row + 1]; ++e) {
+      candidate *to = find(a, l->master[e]);
+      double part = 0.0;
+      for (int c = 0; c < dim; ++c)
+        part += normal[c] * normal[c] * l->part[(size_t)dim * e + (size_t)c];
+      if (to == NULL || !(part > 0.0)) continue;
+      if (pass == 0)
+        sum += part;
+      else
+        give(dim, to, w * part / sum, normal);
+    }
+  return sum > 0.0;
+}
+
+/* The parts w[dim] of a face: those of nodes of *TIE go to their masters, or to
+ * the others of the face. */
+static void add_face(const adder *a, const int *node, const double *w,
+                     const double *normal) {
+  const int dim = a->in->mesh->dim;
+  double left = 0.0;
+  int n = 0;
+  for (int j = 0; j < dim; ++j) {
+    candidate *to = find(a, node[j]);
+    n += to != NULL;
+    if (to != NULL)
+      give(dim, to, w[j], normal);
+    else if (!give_masters(a, tied_row(a->in, node[j]), w[j], normal))
+      left += w[j];
+  }
+  for (int j = 0; j < dim && left > 0.0; ++j) {
+    candidate *to = find(a, node[j]);
+    if (to != NULL) give(dim, to, left / n, normal);
+  }
+}
+
 /* Add the faces of one contact to its candidates first[0..group->n_node);
  * index[node_id] receives their place. */
 static void add_faces(const builder *b, int pair_id, candidate *first,
                       int *index) {
-  const surface_input *in = b->in;
-  const mesh *m = in->mesh;
-  const mesh_group *g = in->pairs[pair_id].group;
+  const mesh *m = b->in->mesh;
+  const mesh_group *g = b->in->pairs[pair_id].group;
+  const adder a = {b->in, g, first, index};
   for (int k = 0; k < g->n_node; ++k) {
     index[g->node_id[k]] = k;
     first[k].node_id = g->node_id[k];
     first[k].pair_id = pair_id;
+    first[k].left_out = tied_row(b->in, g->node_id[k]) >= 0;
   }
   for (int k = 0; k < g->n_item; ++k) {
     double normal[3], w[3];
     int face_id = g->item_id[k];
-    face_shares(in, face_id, mesh_face_normal(m, face_id, normal), w);
-    for (int j = 0; j < b->dim; ++j) {
-      candidate *c = &first[index[m->face[b->dim * face_id + j]]];
-      c->area += w[j];
-      for (int d = 0; d < b->dim; ++d) c->normal[d] += w[j] * normal[d];
-    }
+    face_shares(b->in, face_id, mesh_face_normal(m, face_id, normal), w);
+    add_face(&a, &m->face[m->dim * face_id], w, normal);
   }
 }
 
@@ -710,74 +784,6 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
   for (int i = 0; i < s->n; ++i)
     for (int k = 0; k < s->dim; ++k)
       row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
-}
-
-void surface_relative(const contact_surface *s, const double *u, double *w) {
-  const int dim = s->dim;
-  const node_links *l = s->master;
-  for (int q = 0; q < s->n; ++q)
-    for (int a = 0; a < dim; ++a) {
-      const double *row = &s->frame[dim * (dim * q + a)];
-      double sum = dot(dim, row, u + (size_t)dim * (size_t)s->node_id[q]);
-      for (size_t e = l == NULL ? 0 : l->start[q];
-           l != NULL && e < l->start[q + 1]; ++e)
-        sum -= l->part[(size_t)dim * e + (size_t)a] *
-               dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
-      w[dim * q + a] = sum / surface_share(s, q, a);
-    }
-}
-
-void surface_spread_row(const contact_surface *s, int q, int a, double force,
-                        double *F) {
-  const int dim = s->dim;
-  const node_links *l = s->master;
-  const double *row = &s->frame[dim * (dim * q + a)];
-  force /= surface_share(s, q, a);
-  add_scaled(dim, force, row, F + (size_t)dim * (size_t)s->node_id[q]);
-  for (size_t e = l == NULL ? 0 : l->start[q]; l != NULL && e < l->start[q + 1];
-       ++e)
-    add_scaled(dim, -force * l->part[(size_t)dim * e + (size_t)a], row,
-               F + (size_t)dim * (size_t)l->master[e]);
-}
-
-void surface_spread(const contact_surface *s, double factor, const double *r,
-                    double *F) {
-  for (int k = 0; k < s->dim * s->n; ++k)
-    surface_spread_row(s, k / s->dim, k % s->dim, factor * r[k], F);
-}
-
-/* r += basis' F; the largest addition. */
-static double add_forces(const contact_surface *s, const double *F, double *r) {
-  const int dim = s->dim;
-  double most = 0;
-  for (int q = 0; q < s->n; ++q)
-    for (int a = 0; a < dim; ++a) {
-      const double more = dot(dim, &s->basis[dim * (dim * q + a)],
-                              F + (size_t)dim * (size_t)s->node_id[q]);
-      r[dim * q + a] += more;
-      most = fmax(most, fabs(more));
-    }
-  return most;
-}
-
-/* Slave nodes that are masters of other pairs have the forces of those too:
- * each pass finds those of the next pair in a chain. */
-status surface_forces(const contact_surface *s, int n_node, const double *F,
-                      double *r) {
-  enum { LONGEST = 100 };
-  const size_t n = (size_t)s->dim * (size_t)n_node;
-  OWNED double *rest = NULL;
-  memset(r, 0, (size_t)(s->dim * s->n) * sizeof *r);
-  const double first = add_forces(s, F, r);
-  double more = first;
-  if (s->master == NULL) return OK;
-  PASS_NEW(rest, n);
-  for (int k = 0; k < LONGEST && more > rounding * first; ++k) {
-    memcpy(rest, F, n * sizeof *rest);
-    surface_spread(s, -1, r, rest);
-    more = add_forces(s, rest, r);
-  }
-  return OK;
 }
 
 void surface_free(contact_surface *s) {

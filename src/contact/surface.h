@@ -64,6 +64,7 @@ typedef struct surface_input {
   int n_pair;
   contact_pair *pairs;        /* [n_pair] */
   const unsigned char *fixed; /* [n_node] */
+  const tie_set *ties;        /* its nodes are no contact nodes */
   const double *face_weight;  /* [n_face] thickness; 1 in 3-D */
   const double *u; /* [dim*n_node] displacements for pairs with update, m; NULL:
                       none yet */
@@ -116,8 +117,8 @@ status surface_gap(const contact_surface *s, const surface_input *in, double t,
  * t0 to t (obstacle_drift) in the contact frame, m. */
 void surface_drift(const contact_surface *s, const surface_input *in, double t0,
                    double t, double *motion);
-/* w[dim*n], the contact unknowns of the displacements u[dim*n_node]: relative
- * to the masters of pairs, F_a . (u - sum part u(master)) / share. */
+/* pair.c: w[dim*n], the contact unknowns of the displacements u[dim*n_node]:
+ * relative to the masters of pairs, F_a . (u - sum part u(master)) / share. */
 void surface_relative(const contact_surface *s, const double *u, double *w);
 /* F[dim*n_node] += factor times the forces r[dim*n] dual to those, on
  * both sides of pairs: r'w = F'u. */

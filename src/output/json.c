@@ -482,6 +482,7 @@ static void write_warnings(json *w, const message_log *log) {
 
 /* All that the run has read, the deck first, as seen from its folder. */
 static void write_files(json *w, const deck *d) {
+  if (d == NULL) return;
   const char *slash = strrchr(d->inputs[0], '/');
   const size_t n = slash != NULL ? (size_t)(slash - d->inputs[0]) + 1 : 0;
   ARRAY(w, "files");

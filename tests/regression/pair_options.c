@@ -552,6 +552,43 @@ START_TEST(masters_side_by_side_are_one_floor) {
 }
 END_TEST
 
+/* Two blocks tied side by side on a plane, as one: the area of the tied nodes
+ * is that of their masters, or of the others of the face where the masters are
+ * not in the contact. */
+START_TEST(tied_nodes_leave_their_area_in_a_contact) {
+  static const char *const tied[] = {"SLAVE=FIRST", "SLAVE=SECOND",
+                                     "SLAVE=FIRST"};
+  const int alone = _i == 2;
+  job j = job_begin("side");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "side.geo",
+            "Include \"pair.geo\";\nPhysical Curve(\"FOOT\") = {2};\n");
+  job_write(&j, "side.inp",
+            "*PARAMETER\nA = -90\nN = 4\nM = 4\n*MESH, FILE=side.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n*TIE, NAME=T, %s\n"
+            "UNDER, OVER\n*OBSTACLE, NAME=O, TYPE=PLANE\n0, -1\n0, 1\n"
+            "*CONTACT, NAME=C, GROUP=%s, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=TRESCA\n0.25\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nLEFT, 1\n%s*DSLOAD\nLEFT, P, 1.\n"
+            "*PRINT, CONTACT, TOTALS\n*END STEP\n",
+            tied[_i], alone ? "FOOT" : "RIGHT", alone ? "TOP, 2\n" : "");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  ck_assert_ptr_null(strstr(j.errors, "P4002"));
+  dat c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
+  ck_assert_int_eq(c.n_row, alone ? 4 : 9);
+  for (int i = 0; i < c.n_row && !alone; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "pressure"), 1, 1e-11);
+  if (!alone) ck_assert_double_eq_tol(dat_sum(&c, "f_n"), 2, 1e-11);
+  ck_assert_double_eq_tol(dat_sum(&c, "limit"), alone ? 0.25 : 0.5, 1e-12);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "closed_area"), alone ? 1 : 2, 1e-12);
+  dat_free(&all);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 /* The nodes of a tip have no row. */
 START_TEST(rows_of_a_crack_add_up_to_its_resultant) {
   job j;
@@ -583,6 +620,7 @@ int main(void) {
   tcase_add_loop_test(tests, rows_add_up_to_the_resultant, 0, 2);
   tcase_add_loop_test(tests, rows_beside_a_held_node_are_as_others, 0, 5);
   tcase_add_loop_test(tests, masters_side_by_side_are_one_floor, 0, 6);
+  tcase_add_loop_test(tests, tied_nodes_leave_their_area_in_a_contact, 0, 3);
   tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);
 }

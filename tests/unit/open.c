@@ -363,6 +363,9 @@ START_TEST(cracks_of_all_kinds_open) {
                   "bodies, %d at one place",
                   c->name, k->n, o.m->n_node - o.n_node, k->n_front,
                   k->front_start[k->n_front], n_body, most_copies(o.m));
+    const int branches = c->most > 2 && strstr(c->name, "mouth") == NULL;
+    ck_assert_msg((strstr(o.messages, "P3056") != NULL) == branches, "%s: %s",
+                  c->name, o.messages);
     free(body);
     close_opened(&o);
   }

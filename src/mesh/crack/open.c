@@ -320,8 +320,9 @@ static int start_of(const walk *w, int edge) {
                          w->o->face[w->first + edge / m->dim])[edge % m->dim];
 }
 
-/* Neighbours across edges that two faces of the crack have in common. */
-static status find_neighbours(walk *w) {
+/* Neighbours across edges that two faces of the crack have in common; *branch:
+ * a node of an edge of more, -1: there is none. */
+static status find_neighbours(walk *w, int *branch) {
   const int dim = w->o->m->dim, n = dim * w->n;
   OWNED sort_item *edge = NULL;
   PASS_NEW(edge, n);
@@ -335,6 +336,7 @@ static status find_neighbours(walk *w) {
   PASS(sort_items(n, edge, NULL, NULL));
   for (int i = 0, end; i < n; i = end) {
     end = sort_run_end(n, edge, i);
+    if (end > i + 2) *branch = start_of(w, edge[i].id);
     if (end != i + 2) continue;
     w->beyond[edge[i].id] = edge[i + 1].id;
     w->beyond[edge[i + 1].id] = edge[i].id;
@@ -394,7 +396,14 @@ static status orient_crack(opening *o, int crack) {
   faults bad = {0};
   PASS_NEW_ALL(OF(beyond, o->m->dim * n), OF(list, n));
   walk w = {o, first, n, beyond, list};
-  PASS(find_neighbours(&w));
+  int branch = -1;
+  PASS(find_neighbours(&w, &branch));
+  if (branch >= 0)
+    message_add(
+        o->log, P3056, o->cut[crack].at,
+        "crack along %s branches at node %zu: where it closes, pressures "
+        "there have one normal for all branches: a *CRACK for each",
+        o->cut[crack].group->name, o->m->node_no[branch]);
   for (int i = 0, end = 0; i < n; ++i) {
     if (o->sign[first + i] != 0) continue;
     int from = end;

@@ -60,6 +60,7 @@ static status new_faces(run *r) {
   PASS(setup_face_weights(r->m, r->msh, &r->faces.face_weight));
   PASS_NEW(r->faces.node_fixed, r->msh->n_node);
   r->faces.input.fixed = r->faces.node_fixed;
+  r->faces.input.ties = &r->body.ties;
   r->faces.input.mesh = r->msh;
   r->faces.input.face_weight = r->faces.face_weight;
   r->faces.input.axisymmetric = r->m->sections[0].kin == AXISYMMETRIC;
