@@ -198,7 +198,6 @@ status check_fields(model *m, const mesh *msh) {
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       load *l = &m->steps[i].loads.item[k];
       PASS(find_field(m, msh, l->file, &l->file_at, &l->field));
-      PASS(find_field(m, msh, l->before_file, &l->file_at, &l->before_field));
     }
   return OK;
 }
