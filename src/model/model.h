@@ -286,7 +286,8 @@ typedef struct step {
   struct {
     int n, cap;
     print_request *requests; /* [n] owned */
-    int given;
+    int given; /* 1: those of the step before end */
+    int ended; /* bits of PRINT_*: or these alone, by =NO */
   } print;
   struct {
     int frequency; /* HDF5: every n-th increment; 0: last; -1: none */

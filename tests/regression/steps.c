@@ -77,6 +77,23 @@ START_TEST(values_start_from_those_of_the_step_before) {
 }
 END_TEST
 
+/* Pulled by 20, then by 40: u_x = 0.04, strain energy 0.8. */
+START_TEST(a_table_ends_and_the_others_stay) {
+  job j = run_cards(
+      "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n"
+      "*DSLOAD\nRIGHT, TX, 20.\n*PRINT, NODES, ENERGY\n*END STEP\n"
+      "*STEP\n*STATIC\n*DSLOAD\nRIGHT, TX, 40.\n"
+      "*PRINT, NODES=NO\n*END STEP\n",
+      0);
+  dat n = job_table(&j, "NODES", -1), e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_eq_tol(dat_max(&n, "u_x"), 0.02, 1e-12);
+  ck_assert_double_eq_tol(dat_at(&e, 0, "strain_energy"), 0.8, 1e-12);
+  dat_free(&n);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* Weight 8 down, then 8 to the right: half way the one has half gone. */
 START_TEST(gravity_turns_from_one_direction_to_the_other) {
   job j = run_cards(
@@ -351,6 +368,7 @@ END_TEST
 
 UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           values_start_from_those_of_the_step_before,
+          a_table_ends_and_the_others_stay,
           gravity_turns_from_one_direction_to_the_other,
           corner_forces_belong_to_their_contacts,
           corner_belongs_to_the_areas_of_both_contacts,

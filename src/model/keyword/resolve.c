@@ -367,6 +367,7 @@ static status carry_choices(const step *old, step *s) {
   }
   if (!s->restart.given) s->restart.frequency = old->restart.frequency;
   for (int i = 0; i < old->print.n && !s->print.given; ++i) {
+    if (old->print.requests[i].table & s->print.ended) continue;
     PASS_GROW(s->print.requests, s->print.n, s->print.cap);
     s->print.requests[s->print.n++] = old->print.requests[i];
   }
