@@ -3,6 +3,7 @@
 
 #include "accuracy/accuracy.h"
 #include "base/memory.h"
+#include "contact/formulation.h"
 #include "solver/pivoting/lemke.h"
 #include "solver/solver.h"
 
@@ -84,8 +85,28 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
   return OK;
 }
 
+/* *cp with the given normal forces in the place of unilateral contact. */
+static status put_given(const verdict_scene *s, given_form **form,
+                        contact_problem *cp) {
+  const contact_problem before = *cp;
+  OWNED int *node = NULL;
+  OWNED double *force = NULL, *u = NULL, *r = NULL;
+  int n = 0;
+  if (s->given == NULL) return OK;
+  PASS_NEW(node, cp->n);
+  PASS_NEW_REALS(cp->m, &force, &u, &r);
+  for (int i = 0; i < cp->n; ++i)
+    if (s->given[i] >= 0.0) {
+      force[n] = s->given[i];
+      node[n++] = i;
+    }
+  PASS(given_form_new(&before, n, node, form));
+  return given_form_set(*form, &before, force, s->msh->size, u, r, cp);
+}
+
 /* v[m]: the motion; *outcome of complementary pivoting. */
-static status find_motion(const contact_problem *cp, double *v, outcome *end) {
+static status find_motion(const verdict_scene *s, double *v, outcome *end) {
+  const contact_problem *cp = s->cp;
   status st = OK;
   _Alignas(16) char param[PARAM_SIZE] = {0};
   const solver_ops *lemke = solver_find("lemke");
@@ -93,6 +114,7 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
   solver_report rep = {.outcome = RUNNING};
   void *work = NULL;
   double *u = NULL, *r = NULL, *A = NULL;
+  given_form *form = NULL;
   *end = RUNNING;
   if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) goto done;
   contact_problem own = *cp;
@@ -102,6 +124,7 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
     own.A = A;
     own.op = NULL;
   }
+  TRY(put_given(s, &form, &own));
   NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
   TRY(lemke->setup(&own, param, &work));
@@ -112,7 +135,9 @@ static status find_motion(const contact_problem *cp, double *v, outcome *end) {
     memcpy(v, ray, (size_t)cp->m * sizeof *v);
   else if (rep.outcome == STOPPED_RAY)
     *end = STOPPED_STAGNATION;
+  if (form != NULL) given_form_move(form, v);
 done:
+  given_form_free(form);
   if (work != NULL) lemke->release(work);
   RELEASE(u, r, A);
   return st;
@@ -178,21 +203,44 @@ static status forces_of(const verdict_scene *s, int k, double *F) {
   return load_forces(s->m, s->msh, &one, s->t, F);
 }
 
-/* The loads that do work on the motion u[n_dof] of the body. */
+/* Work of the given forces of a contact on the motion v[m]; adds what obstacles
+ * exert to sum[3]. */
+static double work_of_given(const verdict_scene *s, int contact_id,
+                            const double *v, double *sum) {
+  const contact_surface *on = s->surface;
+  double work = 0.0;
+  for (int i = 0; s->given != NULL && i < on->n; ++i) {
+    if (on->contact_id[i] != contact_id || s->given[i] < 0.0) continue;
+    work -= s->given[i] * v[on->dim * i];
+    for (int k = 0; k < on->dim && !s->m->contacts[contact_id].is_pair; ++k)
+      sum[k] -= s->given[i] * on->frame[on->dim * on->dim * i + k];
+  }
+  return work;
+}
+
+/* The loads and given forces that do work on the motion u[n_dof] of the body,
+ * v[m] of the contact nodes. */
 static status add_loads(const words *w, const verdict_scene *s, const double *u,
-                        double *F) {
+                        const double *v, double *F) {
   size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
   int listed = 0;
-  double sum[3] = {0.0};
+  double sum[3] = {0.0}, none[3];
   PASS(load_forces(s->m, s->msh, s->step, s->t, F));
   double work = dot(n, F, u);
   for (size_t i = 0; i < n; ++i) sum[i % (size_t)s->msh->dim] += F[i];
+  for (int k = 0; k < s->m->n.contact; ++k) work += work_of_given(s, k, v, sum);
   for (int k = 0; k < s->step->loads.n && listed < LISTED; ++k) {
     const load *l = &s->step->loads.item[k];
     PASS(forces_of(s, k, F));
     if (!(dot(n, F, u) > PART * fabs(work))) continue;
     add(w, listed++ == 0 ? ", driven by " : ", ");
     add(w, "%s on %s (line %d)", card_of(l), l->group, l->at.line_no);
+  }
+  for (int k = 0; k < s->m->n.contact && listed < LISTED; ++k) {
+    const contact *c = &s->m->contacts[k];
+    if (!(work_of_given(s, k, v, none) > PART * fabs(work))) continue;
+    add(w, listed++ == 0 ? ", driven by " : ", ");
+    add(w, "*CONTACT FORCE on %s (line %d)", c->name, c->force.at.line_no);
   }
   add(w, "; resultant of all loads (");
   for (int k = 0; k < s->msh->dim; ++k)
@@ -210,7 +258,7 @@ static status add_drive(const words *w, const verdict_scene *s,
   PASS_NEW(f_c, s->cp->m);
   PASS(condense_load(s->c, F, NULL, f_c));
   PASS(condense_recover(s->c, v, u));
-  return add_loads(w, s, u, F);
+  return add_loads(w, s, u, v, F);
 }
 
 /* A load or gap that is no number: which node. */
@@ -234,7 +282,7 @@ status verdict_text(const verdict_scene *s, char *text, size_t size) {
   text[0] = '\0';
   if (add_bad_number(&w, s)) return OK;
   PASS_NEW(v, s->cp->m);
-  PASS(find_motion(s->cp, v, &end));
+  PASS(find_motion(s, v, &end));
   if (end == STOPPED_RAY) {
     PASS(add_moving(&w, s, v));
     PASS(add_drive(&w, s, v));

@@ -17,8 +17,9 @@ typedef struct verdict_scene {
   double t; /* s */
   const contact_surface *surface;
   const contact_problem *cp; /* with A */
-  const double *u, *r;       /* [m] last iterate of the solver */
-  condensed *c;              /* the load condensed last is lost */
+  const double *given; /* [n] given normal forces, N; < 0: none; or NULL */
+  const double *u, *r; /* [m] last iterate of the solver */
+  condensed *c;        /* the load condensed last is lost */
 } verdict_scene;
 
 /*

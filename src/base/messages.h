@@ -107,9 +107,11 @@
     "value can be had as <NAME> only; a longer name avoids the ambiguity.")  \
   X(1035, ERROR, "comment inside a definition",                              \
     "** starts a comment. A power is written with ^.")                       \
-  X(1036, ERROR, "exponent after a name",                                    \
+  X(1036, ERROR, "exponent without a letter, or a sum",                      \
     "A number put in for <NAME> and the sign behind it would read as "       \
-    "mantissa and exponent. Write an expression in quotes.")                 \
+    "mantissa and exponent. Write an expression in quotes. 2.5-1 in the "    \
+    "place of a value of *PARAMETER or -D can be 0.25 or 1.5: write "        \
+    "2.5E-1, or 2.5 - 1.")                                                   \
   X(1037, ERROR, "empty field",                                              \
     "A number is needed here. Fields are separated by commas.")              \
   X(1038, ERROR, "text of an included file",                                 \

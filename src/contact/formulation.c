@@ -261,17 +261,27 @@ status given_form_set(given_form *g, const contact_problem *cp,
   return OK;
 }
 
-void given_form_apply(given_form *g, contact_problem *cp, double *u,
-                      double *r) {
+/* u of the normals, inv(L') (y - Y u). */
+static void put_normals(given_form *g, double *u) {
   cblas_dgemv(CblasColMajor, CblasNoTrans, g->n, g->m, -1.0, g->Y, g->n, u, 1,
               1.0, g->y, 1);
   cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, g->n, g->L,
               g->n, g->y, 1);
+  for (int k = 0; k < g->n; ++k) u[normal(g, k)] = g->y[k];
+}
+
+void given_form_move(given_form *g, double *u) {
+  memset(g->y, 0, (size_t)g->n * sizeof *g->y);
+  put_normals(g, u);
+}
+
+void given_form_apply(given_form *g, contact_problem *cp, double *u,
+                      double *r) {
+  put_normals(g, u);
   memmove(g->met, cp->gap, (size_t)cp->n * sizeof *g->met);
   for (int k = 0; k < g->n; ++k) {
-    size_t row = normal(g, k);
-    u[row] = g->met[g->node[k]] = g->y[k];
-    r[row] = -g->force[k];
+    g->met[g->node[k]] = g->y[k];
+    r[normal(g, k)] = -g->force[k];
   }
   cp->gap = g->met;
 }

@@ -48,6 +48,8 @@ status given_form_set(given_form *g, const contact_problem *cp,
  * from g) that are closed at these nodes, so that (u, r) solves cp itself.
  */
 void given_form_apply(given_form *g, contact_problem *cp, double *u, double *r);
+/* To a motion u[m] without force: the normal displacements of the nodes. */
+void given_form_move(given_form *g, double *u);
 void given_form_free(given_form *g); /* accepts NULL */
 
 #endif

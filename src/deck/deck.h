@@ -14,8 +14,8 @@
  *   before the end of its file just ends. Under *HEADING each line is a record
  *   of one field, commas and quotes are text, and unknown <NAME> are unchanged.
  * - *INCLUDE does not end a card: the file may continue its data lines.
- * - NAME = VALUE under *PARAMETER is an expression: 3+1 is 4. Only the whole
- *   of a value that has a point, as 1.5+03, is read as a number by itself.
+ * - NAME = VALUE under *PARAMETER is an expression: 3+1 is 4. A value such as
+ *   1.5+03, which could be a number with exponent, is an error.
  * - The text of a quoted field without x y z t is its value, in full digits.
  *   On a card what is no expression, or a name alone, is taken as it is: so a
  *   name of a file may have commas and blanks.

@@ -175,22 +175,28 @@ static status constant_value(reader *r, const char *text, int start,
   return OK;
 }
 
-/* The value part of NAME = VALUE. 1.5+03 alone is a number, as anywhere. */
-static status definition_value(reader *r, const char *text, size_t n,
-                               const place *at, double *value) {
-  const char *replaced, *raw = store_text(r->d, text, n);
-  if (raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: definition");
-  if (strchr(raw, '.') != NULL && number_bare_exponent(raw) &&
-      number_real(raw, value) == NULL)
-    return OK;
-  PASS(symbols_replace(r, text, n, REPLACE_EXPRESSION, at, &replaced));
-  return constant_value(r, replaced, at->column_no - 1, at, value);
-}
-
 typedef struct definition {
   const char *name, *value;
   size_t n_name, n_value;
+  int quoted; /* the value stood in quotes */
 } definition;
+
+/* The value part of NAME = VALUE: an expression. */
+static status definition_value(reader *r, const definition *def,
+                               const place *at, double *value) {
+  const char *replaced, *raw = store_text(r->d, def->value, def->n_value);
+  if (raw == NULL) RAISE(ERR_MEMORY, "memory exhausted: definition");
+  if (!def->quoted && strchr(raw, '.') != NULL && number_bare_exponent(raw)) {
+    message_add(r->log, P1036, at,
+                "'%s' is a sum and a number with exponent; write E before the "
+                "exponent, or a blank before the sign of a sum",
+                raw);
+    return OK;
+  }
+  PASS(symbols_replace(r, def->value, def->n_value, REPLACE_EXPRESSION, at,
+                       &replaced));
+  return constant_value(r, replaced, at->column_no - 1, at, value);
+}
 
 /* Cut NAME = VALUE; NULL, or what is wrong. */
 static const char *cut_definition(const char *text, size_t n, definition *d) {
@@ -198,12 +204,14 @@ static const char *cut_definition(const char *text, size_t n, definition *d) {
   if (equals == NULL) return "NAME = VALUE expected";
   d->name = trim(text, (size_t)(equals - text), &d->n_name);
   d->value = trim(equals + 1, (size_t)(end - equals - 1), &d->n_value);
+  d->quoted = 0;
   if (d->n_name == 0) return "no name before the equals sign";
   for (size_t i = 0; i < d->n_name; ++i)
     if (!is_name_part(d->name[i]) || !is_name_start(d->name[0]))
       return "a name is a letter followed by letters, digits and underscores";
   if (d->n_value > 0 && d->value[0] == '=') return "one equals sign expected";
   if (d->n_value > 1 && d->value[0] == '"' && d->value[d->n_value - 1] == '"') {
+    d->quoted = 1;
     ++d->value;
     d->n_value -= 2;
   }
@@ -237,7 +245,7 @@ static status define_piece(reader *r, piece p) {
     return OK;
   }
   place value_at = logical_place(&r->line, (int)(def.value - text));
-  PASS(definition_value(r, def.value, def.n_value, &value_at, &value));
+  PASS(definition_value(r, &def, &value_at, &value));
   if (s == NULL) PASS(symbol_add(r->d, def.name, def.n_name, &s));
   PASS(keep_spelling(r->d, s, def.name, def.n_name));
   if (!s->overridden) s->value = value;
@@ -268,7 +276,7 @@ status symbols_from_command(reader *r, const char *define) {
     message_add(r->log, P1026, &at, "-D %.200s: %s", define, wrong);
     return OK;
   }
-  PASS(definition_value(r, def.value, def.n_value, &at, &value));
+  PASS(definition_value(r, &def, &at, &value));
   PASS(symbol_add(r->d, def.name, def.n_name, &s));
   PASS(keep_spelling(r->d, s, def.name, def.n_name));
   s->value = value;

@@ -3,6 +3,7 @@
  * the exact integrals of data that is linear between the nodes (CPR98 2.5:
  * phi_1 in the body, phi_2 on Gamma_2).
  */
+#include "base/memory.h"
 #include "base/timer.h"
 #include "model/model.h"
 
@@ -16,11 +17,19 @@ static double value_time(const load *l, double t) {
   return l->run == RUN_HELD ? l->before_t : t;
 }
 
+double step_end(const step *s) { return s->start + s->total; }
+
+/* Share of its own value that a load has reached at t. */
+static double share_at(const load *l, const step *s, double t) {
+  if (l->run != RUN_RAMP || t >= step_end(s)) return 1.0;
+  return (t - s->start) / s->total;
+}
+
 double load_at_point(const load *l, const step *s, const double x[3],
                      double t) {
-  double now = quantity_value(&l->value, x, value_time(l, t));
-  if (l->run != RUN_RAMP || t >= s->start + s->total) return now;
-  double w = (t - s->start) / s->total;
+  const double now = quantity_value(&l->value, x, value_time(l, t));
+  const double w = share_at(l, s, t);
+  if (w >= 1.0) return now;
   double from =
       l->has_before ? quantity_value(&l->before, x, l->before_t) : 0.0;
   return (1.0 - w) * from + w * now;
@@ -205,23 +214,20 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
   return OK;
 }
 
-/* Remaining share of the start value of a ramp without a value before. */
-static double start_share(const load *l, const step *s, double t) {
-  if (l->run != RUN_RAMP || l->has_before || t >= s->start + s->total) return 0;
-  return 1.0 - (t - s->start) / s->total;
-}
-
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud) {
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     if (l->kind != LOAD_FIXING) continue;
     const mesh_group *g = &msh->group[l->group_id];
+    const double w = share_at(l, s, t);
     for (int k = 0; k < g->n_node; ++k) {
+      double own;
       size_t dof =
           (size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component;
-      PASS(node_value(m, msh, l, s, t, g->node_id[k], &ud[dof]));
-      ud[dof] += start_share(l, s, t) * start[dof];
+      PASS(node_value(m, msh, l, s, l->run == RUN_RAMP ? step_end(s) : t,
+                      g->node_id[k], &own));
+      ud[dof] = w < 1.0 ? (1.0 - w) * start[dof] + w * own : own;
     }
   }
   return OK;
@@ -277,29 +283,29 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T) {
   return OK;
 }
 
-/* A temperature starts from the initial one, and OP=NEW returns to it. */
-static double temperature_of(const load *l, const mesh *msh, const step *s,
-                             double t, int elem_id, double T0) {
-  double now = elem_mean(&l->value, l->field, msh, elem_id, value_time(l, t));
-  if (l->removed) now = T0;
-  if (l->run != RUN_RAMP || t >= s->start + s->total) return now;
-  double w = (t - s->start) / s->total;
-  double from = l->has_before ? elem_mean(&l->before, l->before_field, msh,
-                                          elem_id, l->before_t)
-                              : T0;
-  return (1.0 - w) * from + w * now;
+/* What a load gives an element; OP=NEW returns to the initial temperature. */
+static double temperature_of(const load *l, const mesh *msh, double t,
+                             int elem_id, double T0) {
+  if (l->removed) return T0;
+  return elem_mean(&l->value, l->field, msh, elem_id, value_time(l, t));
 }
 
 status load_temperature(const model *m, const mesh *msh, const step *s,
                         double t, const double *T0, double *T) {
+  OWNED double *start = NULL;
+  PASS_NEW(start, msh->n_elem);
+  memcpy(start, T0, (size_t)msh->n_elem * sizeof *T);
   memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
+  if (s > m->steps && t < step_end(s))
+    PASS(load_temperature(m, msh, s - 1, step_end(s - 1), T0, start));
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     if (l->kind != LOAD_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[l->group_id];
+    const double w = share_at(l, s, t);
     for (int k = 0; k < g->n_item; ++k) {
       int e = g->item_id[k];
-      T[e] = temperature_of(l, msh, s, t, e, T0[e]);
+      T[e] = (1.0 - w) * start[e] + w * temperature_of(l, msh, t, e, T0[e]);
       if (!isfinite(T[e])) PASS(refuse_temperature(m, msh, &l->at, e));
     }
   }

@@ -157,12 +157,13 @@ typedef struct load {
   int component;       /* 0..dim-1: of TX.., BX.., *CLOAD, *BOUNDARY */
   double direction[3]; /* LOAD_GRAVITY, unit length */
   quantity value, before;
-  int has_before;  /* RUN_RAMP: from "before" at before_t, else from 0 */
+  /* RUN_RAMP: from "before" at before_t, else from 0; *TEMPERATURE and
+   * *BOUNDARY from what elements and nodes have at the start of the step */
+  int has_before;
   double before_t; /* s, total time */
   /* *TEMPERATURE, FILE=: nodal field that the value multiplies; NULL: 1 */
-  const char *file, *before_file;
-  /* [n_node] borrowed from the model */
-  const double *field, *before_field;
+  const char *file;
+  const double *field; /* [n_node] borrowed from the model */
   place file_at;
   const char *amplitude_name;
   int amplitude_id; /* -1: none */
@@ -285,7 +286,8 @@ typedef struct step {
   struct {
     int n, cap;
     print_request *requests; /* [n] owned */
-    int given;
+    int given; /* 1: those of the step before end */
+    int ended; /* bits of PRINT_*: or these alone, by =NO */
   } print;
   struct {
     int frequency; /* HDF5: every n-th increment; 0: last; -1: none */
@@ -570,6 +572,8 @@ void model_free(model *m);
  * ERR_DECK if a value is not finite (the record names card, node and time). */
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F);
+/* Total time at the end of a step. */
+double step_end(const step *s);
 /* Value of a load at a point, at a node, and total time t of the step. */
 double load_at_point(const load *l, const step *s, const double x[3], double t);
 double load_at_node(const load *l, const mesh *msh, const step *s, int node,
@@ -581,7 +585,7 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
 
 /* Prescribed displacements ud[dim*n_node] at t, written where fixed; errors as
  * load_forces. start[dim*n_node]: displacements at the start of the step, from
- * which a component that is fixed again moves to its value. */
+ * which all move to their values; not read at its end. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud);
 /* Value of an initial condition in an element, mean of its nodes; ERR_DECK if
@@ -591,7 +595,8 @@ status load_initial(const model *m, const mesh *msh, const initial *c,
 /* Temperatures T[n_elem] before the first step, mean of the nodes. ERR_DECK if
  * one is not finite. */
 status load_temperature_initial(const model *m, const mesh *msh, double *T);
-/* Temperatures T[n_elem] at t from those at the start, T0; errors as above. */
+/* Temperatures T[n_elem] at time t of a step of the model, T0[n_elem] before
+ * the first step; errors as above. */
 status load_temperature(const model *m, const mesh *msh, const step *s,
                         double t, const double *T0, double *T);
 /* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */

@@ -8,6 +8,7 @@
  *   /fclib_global   where A is singular (contact alone holds a body): M = A,
  *                   H = S, f, w = d; v is the displacement
  *   /solution       u, r [, v] if the increment reached its tolerance
+ *   /node_no        of the contacts; not of the layout, whose readers skip it
  *
  * Only Coulomb friction of each node by itself fits this layout. A prescribed
  * tangential unknown has no force and no motion: q_T = 0 there.
@@ -30,6 +31,7 @@ enum { TRIPLETS = 0, BY_ROW = -2 };
 /* What is written; arrays owned. */
 typedef struct written {
   const contact_problem *cp;
+  const size_t *node_no; /* [n] or NULL */
   const char *path;
   hid_t file;
   int local;
@@ -185,6 +187,13 @@ static status put_ints(const written *f, const char *group, const char *name,
   return put_data(f, group, name, H5T_STD_I32LE, H5T_NATIVE_INT, space, x);
 }
 
+static status put_numbers(const written *f) {
+  HELD hid_t space = H5Screate_simple(1, &(hsize_t){(hsize_t)f->cp->n}, NULL);
+  if (f->node_no == NULL) return OK;
+  return put_data(f, "", "node_no", H5T_STD_I64LE, H5T_NATIVE_ULONG, space,
+                  f->node_no);
+}
+
 static status put_text(const written *f, const char *group, const char *name,
                        const char *text) {
   HELD hid_t type = H5Tcopy(H5T_C_S1);
@@ -269,6 +278,7 @@ static status write_open(written *f, const double *v, const char *title,
                          const char *description) {
   PASS(f->local ? write_local(f) : write_global(f));
   PASS(write_info(f, title, description));
+  PASS(put_numbers(f));
   PASS(write_solution(f, v));
   return H5Fflush(f->file, H5F_SCOPE_LOCAL) < 0 ? failed(f, "the file") : OK;
 }
@@ -299,10 +309,10 @@ static status make_file(written *f, const double *u, const double *r) {
   return make_solution(f, u, r);
 }
 
-status fclib_write(const contact_problem *cp, const double *u, const double *r,
-                   const char *title, const char *description,
-                   const char *path) {
-  written f ENDS_BY(written_free) = {.cp = cp, .file = -1};
+status fclib_write(const contact_problem *cp, const size_t *node_no,
+                   const double *u, const double *r, const char *title,
+                   const char *description, const char *path) {
+  written f ENDS_BY(written_free) = {.cp = cp, .node_no = node_no, .file = -1};
   H5E_auto2_t print;
   void *print_data;
   OWNED char *aside = NULL;

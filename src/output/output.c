@@ -190,8 +190,9 @@ static status write_condensed(output *o, const state *s) {
            o->o.version != NULL ? o->o.version : "", s->step_no,
            s->increment_no, s->t);
   PASS_GET(path, text_path(o->o.dir, name, "h5"));
-  return fclib_write(s->contacts.problem, s->settled ? s->contacts.uc : NULL,
-                     s->contacts.rc, o->m->name.title, text, path);
+  return fclib_write(s->contacts.problem, s->contacts.surface->node_no,
+                     s->settled ? s->contacts.uc : NULL, s->contacts.rc,
+                     o->m->name.title, text, path);
 }
 
 static status write_tables(output *o, const state *s) {

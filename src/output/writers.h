@@ -50,12 +50,12 @@ void closing_lines(const job *j, const char *files, FILE *f);
 status json_write(const job *j, const char *path);
 
 /* ---- fclib.c ---------------------------------------------------------- */
-/* The problem cp, and its solution u[m], r[m] unless NULL. Written to a
- * temporary file and renamed. ERR_DECK: the layout has no place for such a
+/* The problem cp; node_no[n], and its solution u[m], r[m], unless NULL. Written
+ * to a temporary file and renamed. ERR_DECK: the layout has no place for such a
  * problem. */
-status fclib_write(const contact_problem *cp, const double *u, const double *r,
-                   const char *title, const char *description,
-                   const char *path);
+status fclib_write(const contact_problem *cp, const size_t *node_no,
+                   const double *u, const double *r, const char *title,
+                   const char *description, const char *path);
 
 /* The end of JOB.rst.inc: bytes, and a checksum of all of them. */
 typedef struct saved_end {

@@ -151,9 +151,24 @@ static void check_bound(job *j, const char *file) {
   free(W), free(r);
 }
 
+/* The forces of a file are those of the table at the same nodes. */
+static void check_nodes(const job *j, const char *file) {
+  int n, m;
+  double *no = take(j, file, "/node_no", &n),
+         *r = take(j, file, "/solution/r", &m);
+  dat t = job_table(j, "CONTACT", -1);
+  ck_assert(n == t.n_row && m == 2 * n);
+  for (int i = 0; i < n; ++i)
+    ck_assert_double_eq_tol(
+        dat_at(&t, dat_row_near(&t, "node_no", no[i]), "f_n"), r[2 * i], 1e-12);
+  dat_free(&t);
+  free(no), free(r);
+}
+
 START_TEST(problem_written_and_read_has_the_same_solution) {
   job j = run_square("LEFT, 1, 1, 0.001\nTOP, 2, 2, -0.004\n", COULOMB);
   check_file(&j, "square_condensed_00002.h5", 2);
+  check_nodes(&j, "square_condensed_00002.h5");
   round_trip(&j, "");
   check_bound(&j, "square_condensed_00002.h5");
   job_end(&j);

@@ -334,9 +334,40 @@ START_TEST(unheld_body_is_refused) {
 }
 END_TEST
 
+/* 3 of 8 * 0.375 pushes up, the load 1 down, and the heel can only push up. */
+START_TEST(given_force_that_lifts_the_body_is_named) {
+  job j = job_begin("lift");
+  job_write(&j, "lift.geo",
+            "h = 0.25;\nPoint(1) = {0, 0, 0, h};\nPoint(2) = {0.5, 0, 0, h};\n"
+            "Point(3) = {1, 0, 0, h};\nPoint(4) = {1, 1, 0, h};\n"
+            "Point(5) = {0, 1, 0, h};\nLine(1) = {1, 2};\nLine(2) = {2, 3};\n"
+            "Line(3) = {3, 4};\nLine(4) = {4, 5};\nLine(5) = {5, 1};\n"
+            "Curve Loop(1) = {1 : 5};\nPlane Surface(1) = {1};\n"
+            "Physical Curve(\"HEEL\") = {1};\nPhysical Curve(\"TOE\") = {2};\n"
+            "Physical Curve(\"TOP\") = {4};\nPhysical Curve(\"LEFT\") = {5};\n"
+            "Physical Surface(\"BODY\") = {1};\n");
+  job_write(&j, "lift.inp",
+            "*MESH, FILE=lift.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=HEEL, GROUP=HEEL, OBSTACLE=O\n"
+            "*CONTACT, NAME=TOE, GROUP=TOE, OBSTACLE=O\n"
+            "*CONTACT FORCE, CONTACT=TOE\n8.\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 6);
+  ck_assert_msg(strstr(j.errors, "1 at (0, 0)") != NULL &&
+                    strstr(j.errors,
+                           " separate, driven by *CONTACT FORCE on "
+                           "TOE (line ") != NULL &&
+                    strstr(j.errors, "all loads (0, 2)") != NULL,
+                "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("given force", slip_under_a_given_force_by_every_method,
           stick_under_a_given_force, given_force_without_friction,
           pressures_of_contact_given_back,
           slip_in_space_is_opposite_to_the_drag, given_beside_unilateral,
           given_beside_a_zone_that_grows, slip_while_the_body_softens,
-          unheld_body_is_refused)
+          unheld_body_is_refused, given_force_that_lifts_the_body_is_named)

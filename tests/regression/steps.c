@@ -44,6 +44,56 @@ START_TEST(component_fixed_anew_starts_where_it_is) {
 }
 END_TEST
 
+/* nu = 0: PART and SIDE are BODY and RIGHT under other names. Each temperature
+ * and displacement runs from what the body has to the new value. */
+START_TEST(values_start_from_those_of_the_step_before) {
+  job j = job_begin("steps");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "two.geo",
+            "Include \"square.geo\";\nPhysical Surface(\"PART\") = {1};\n"
+            "Physical Curve(\"SIDE\") = {2};\n");
+  job_write(&j, "steps.inp",
+            "*MESH, FILE=two.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*EXPANSION\n1.E-3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n"
+            "RIGHT, 1, 1, 0.1\n*TEMPERATURE\nBODY, 100.\n*PRINT, NODES\n"
+            "*END STEP\n*STEP\n*QUASISTATIC\n0.5, 1.\n"
+            "*BOUNDARY\nSIDE, 1, 1, 0.05\n*TEMPERATURE\nPART, 50.\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n"
+            "*BOUNDARY\nRIGHT, 1, 1, 0.08\n*TEMPERATURE\nPART, 0.\nBODY, 80.\n"
+            "*END STEP\n*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE, OP=NEW\n"
+            "*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  static const double u[][2] = {{0.05, 0.05}, {0.1, 0.1},     {0.075, 0.075},
+                                {0.05, 0.05}, {0.065, 0.065}, {0.08, 0.08},
+                                {0.08, 0.04}, {0.08, 0.0}};
+  for (int k = 0; k < 8; ++k) {
+    dat n = job_table(&j, "NODES", k);
+    ck_assert_double_eq_tol(dat_max(&n, "u_x"), u[k][0], 1e-12);
+    ck_assert_double_eq_tol(dat_max(&n, "u_y"), u[k][1], 1e-12);
+    dat_free(&n);
+  }
+  job_end(&j);
+}
+END_TEST
+
+/* Pulled by 20, then by 40: u_x = 0.04, strain energy 0.8. */
+START_TEST(a_table_ends_and_the_others_stay) {
+  job j = run_cards(
+      "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n"
+      "*DSLOAD\nRIGHT, TX, 20.\n*PRINT, NODES, ENERGY\n*END STEP\n"
+      "*STEP\n*STATIC\n*DSLOAD\nRIGHT, TX, 40.\n"
+      "*PRINT, NODES=NO\n*END STEP\n",
+      0);
+  dat n = job_table(&j, "NODES", -1), e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_eq_tol(dat_max(&n, "u_x"), 0.02, 1e-12);
+  ck_assert_double_eq_tol(dat_at(&e, 0, "strain_energy"), 0.8, 1e-12);
+  dat_free(&n);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* Weight 8 down, then 8 to the right: half way the one has half gone. */
 START_TEST(gravity_turns_from_one_direction_to_the_other) {
   job j = run_cards(
@@ -317,6 +367,8 @@ START_TEST(later_steps_are_checked_before_the_first) {
 END_TEST
 
 UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
+          values_start_from_those_of_the_step_before,
+          a_table_ends_and_the_others_stay,
           gravity_turns_from_one_direction_to_the_other,
           corner_forces_belong_to_their_contacts,
           corner_belongs_to_the_areas_of_both_contacts,

@@ -53,13 +53,14 @@ static const good_deck good_decks[] = {
   {"*PARAMETER\nH=1/3\n*A\n<H>\n", "*A[0.3333333333333333]"},
   {"*PARAMETER\nA=1+1, B=max(A,\n 7), C=A^2\n*X\n<A>,<B>,<C>\n",
    "*X[2|7|4]"},
-  {"*PARAMETER\nA=1.5+03\nB=3+1\nC=1.D3\nD= -2\n*X\n<A>,<B>,<C>,-<D>,+<D>\n",
+  {"*PARAMETER\nA=1.5E+03\nB=3+1\nC=1.D3\nD= -2\n*X\n<A>,<B>,<C>,-<D>,+<D>\n",
    "*X[1500|4|1000|2|-2]"},
   {"*PARAMETER\nD=-2\n*X\n\"x^2-<D>\", \"<D>^2\", \"D^2\",\"0<x\"\n",
    "*X[\"x^2-(-2)\"|\"4\"|\"4\"|\"0<x\"]"},
   {"*PARAMETER\nK=2 ** two\nM=3, ** of them\n*X\n<K>,<M>\n", "*X[2|3]"},
   {"*PARAMETER\n_a1 = \"2*3\"\n*X\n<_A1>,a<b,c>d,<>,< A>\n",
    "*X[6|a<b|c>d|<>|< A>]"},
+  {"*PARAMETER\nA = 2.5 -1, B = \"2.5-1\"\n*A\n<A>,<B>\n", "*A[1.5|1.5]"},
   /* Fixed columns. */
   {"*LEGACY, FORMAT=(I5,3F10.0)\n*A\n    1       2.5     1.D-1      -3."
    "\n    2        7.\n",
@@ -146,6 +147,9 @@ static const wrong_deck wrong_decks[] = {
   {"*PARAMETER\nN=32\n*A\n<N>-1\n",
    "a.inp:4:1: error P1036: '<N>-1' becomes '32-1', a number with exponent",
    "1 error"},
+  {"*PARAMETER\nA = 2.5-1\n*A\n",
+   "a.inp:2:5: error P1036: '2.5-1' is a sum and a number with exponent; write "
+   "E before the exponent, or a blank before the sign of a sum", "1 error"},
   {"*PARAMETER\nfoo\n*A\n", "a.inp:2:1: error P1019: NAME = VALUE expected",
    "1 error"},
   {"*PARAMETER\n=3\n*A\n",
@@ -467,13 +471,13 @@ START_TEST(includes_are_bounded_in_depth_and_number) {
 END_TEST
 
 START_TEST(the_command_line_wins) {
-  static const char *const defines[] = {"h=0.025", "Q = 2*h", "Big=1.5+03"};
+  static const char *const defines[] = {"h=0.025", "Q = 2*h", "Big=1.5 +03"};
   double value;
   decks_enter();
   decks_write("a.inp", "*PARAMETER\nH=1\nN=<H>*2\n*A\n<H>,<N>,<Q>,<BIG>\n");
   read_deck r = decks_read("a.inp", 3, defines);
   ck_assert_str_eq(decks_messages(), "");
-  ck_assert_str_eq(decks_shape(r.d), "*A[0.025|0.05|0.05|1500]");
+  ck_assert_str_eq(decks_shape(r.d), "*A[0.025|0.05|0.05|4.5]");
   ck_assert_int_eq(r.d->n_symbol, 4);
   ck_assert_str_eq(r.d->symbols[0].name, "H");
   ck_assert_int_eq(r.d->symbols[0].overridden, 1);
@@ -500,6 +504,9 @@ START_TEST(wrong_definitions_of_the_command_line_are_refused) {
        "command line: error P1026: -D 2=3: a name is a letter followed by "
        "letters, digits and underscores"},
       {"A=5", "command line: error P1026: -D A=5: the name is defined already"},
+      {"H=10.+5",
+       "command line: error P1036: '10.+5' is a sum and a number with exponent;"
+       " write E before the exponent, or a blank before the sign of a sum"},
       {"H=foo",
        "command line: error P1022: unknown name FOO in expression 'foo'"},
       {"H=<foo>", "command line: error P1020: unknown name <FOO>"},

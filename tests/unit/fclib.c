@@ -54,7 +54,10 @@ static void expect(const char *name, int n, const double *value) {
 START_TEST(signs_are_those_of_the_layout) {
   enter();
   contact_case c = one_node();
-  ck_assert_int_eq(fclib_write(&c.cp, c.u, c.r, "title", "about", path), OK);
+  const size_t number = 17;
+  ck_assert_int_eq(
+      fclib_write(&c.cp, &number, c.u, c.r, "title", "about", path), OK);
+  EXPECT("/node_no", 17);
   EXPECT("/fclib_local/spacedim", 2);
   EXPECT("/fclib_local/W/nz", -2);
   EXPECT("/fclib_local/W/m", 2);
@@ -76,7 +79,7 @@ START_TEST(singular_stiffness_is_written_as_global) {
   contact_case c = one_node();
   c.A[0] = 0.0;
   c.cp.floating = 1;
-  ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, "", "", path), OK);
+  ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, NULL, "", "", path), OK);
   EXPECT("/fclib_global/M/nz", 4);
   EXPECT("/fclib_global/M/x", 0, 0, 0, 2);
   EXPECT("/fclib_global/H/p", 0, 1);
@@ -112,14 +115,16 @@ START_TEST(problems_without_a_place_are_refused) {
     if (k == 1) c.B->col[0] = 1;
     double side[2] = {HUGE_VAL, 1.0};
     if (k == 2) c.cp.side_gap = side;
-    ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, "", "", path), ERR_DECK);
+    ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, NULL, "", "", path),
+                     ERR_DECK);
     ck_assert_ptr_nonnull(strstr(status_message(), "CONDENSED=FCLIB"));
     ck_assert_ptr_null(folder_file(folder, "out.h5.tmp", &(size_t){0}));
     case_free(&c);
   }
   contact_case c = one_node();
-  ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, "", "", "/nowhere/at/all.h5"),
-                   ERR_FILE);
+  ck_assert_int_eq(
+      fclib_write(&c.cp, NULL, NULL, NULL, "", "", "/nowhere/at/all.h5"),
+      ERR_FILE);
   ck_assert_ptr_nonnull(strstr(status_message(), "/nowhere/at/all.h5"));
   case_free(&c);
   leave();
@@ -134,7 +139,7 @@ START_TEST(every_refused_request_is_reported) {
     for (long k = 1;; ++k) {
       size_t before = memory_in_use();
       memory_refuse(k, 0);
-      status st = fclib_write(&c.cp, c.u, c.r, "", "", path);
+      status st = fclib_write(&c.cp, NULL, c.u, c.r, "", "", path);
       memory_refuse(0, 0);
       ck_assert_uint_eq(memory_in_use(), before);
       if (st == OK) {

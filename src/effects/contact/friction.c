@@ -337,8 +337,7 @@ static status check_travels(const run *r, travel *x, const double *none) {
     x->t = k < n ? t : s->start + s->total;
     memset(x->drift, 0, (size_t)r->nodes.n_c * sizeof *x->drift);
     surface_drift(r->surface, &r->faces.input, before, x->t, x->drift);
-    PASS(load_prescribed(r->m, r->msh, s, x->t, k < n ? r->loads.start : none,
-                         x->now));
+    PASS(load_prescribed(r->m, r->msh, s, x->t, r->loads.start, x->now));
     PASS(check_travel(r, x));
     memcpy(x->before, x->now, bytes);
   }

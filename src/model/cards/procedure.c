@@ -268,10 +268,12 @@ status apply_print(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
   int any = 0;
-  s->print.given = 1;
   for (int i = 0; i < PRINT_COUNT; ++i) {
+    const int named = card_parameter(r->card, print_word(1 << i)) != NULL;
+    any |= named;
+    if (named && !p->output.print[i]) s->print.ended |= 1 << i;
     if (!p->output.print[i]) continue;
-    any = 1;
+    s->print.given = 1;
     PASS_GROW(s->print.requests, s->print.n, s->print.cap);
     print_request *q = &s->print.requests[s->print.n++];
     q->table = 1 << i;

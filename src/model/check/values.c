@@ -198,7 +198,6 @@ status check_fields(model *m, const mesh *msh) {
     for (int k = 0; k < m->steps[i].loads.n; ++k) {
       load *l = &m->steps[i].loads.item[k];
       PASS(find_field(m, msh, l->file, &l->file_at, &l->field));
-      PASS(find_field(m, msh, l->before_file, &l->file_at, &l->before_field));
     }
   return OK;
 }
@@ -461,13 +460,22 @@ static void check_axis(const model *m, const mesh *msh, const step *s,
   }
 }
 
-/* 1 if a time is in a step that prints at these times. */
+/* 1: an increment may end at time t of the step, counted from "first" on, or
+ * pass it; at its start where the state jumps there. */
+static int is_reached(const model *m, const step *s, double first, double t) {
+  const double rounding = 1e-12 * (fabs(s->start) + s->total);
+  const int jumps =
+      s->kind == STEP_VISCO || (s == m->steps && m->initial.start.given);
+  if (fabs(t - first) <= rounding) return jumps;
+  return fabs(t - first - s->total) <= rounding ||
+         (s->kind != STEP_STATIC && t > first && t < first + s->total);
+}
+
+/* 1 if a step that prints at these times reaches one. */
 static int is_printed(const model *m, const time_points *p, double t) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
-    double first = p->total_time ? s->start : 0.0;
-    double rounding = 1e-9 * s->total;
-    if (t < first - rounding || t > first + s->total + rounding) continue;
+    if (!is_reached(m, s, p->total_time ? s->start : 0.0, t)) continue;
     for (int k = 0; k < s->print.n; ++k)
       if (s->print.requests[k].points == p) return 1;
   }
@@ -483,8 +491,8 @@ static void check_times(const model *m, const time_points *p) {
   }
   if (missed > 0)
     message_add(m->log, P2058, &p->at,
-                "*TIME POINTS, NAME=%s: %d of %d times, the first %g, in no "
-                "step that prints at them",
+                "*TIME POINTS, NAME=%s: %d of %d times, the first %g, that no "
+                "increment of a step with these tables ends at or passes",
                 p->name, missed, p->n, p->t[first]);
 }
 

@@ -417,7 +417,7 @@ const keyword keyword_table[] = {
    "quasistatic increments in which inelastic strains flow"},
   {"BOUNDARY", IN_STEP | IN_MODEL, load_options, NULL, apply_boundary, 0, ANY,
    "group, first dof [, last dof [, value [, amplitude]]]",
-   "supports and prescribed displacements"},
+   "supports, displacements; from those at the start of the step, linear"},
   {"DSLOAD", IN_STEP, load_options, NULL, apply_dsload, 0, ANY,
    "group, P or TX TY TZ, value [, amplitude]",
    "pressure (pushes into the body) or traction on faces"},
@@ -430,7 +430,7 @@ const keyword keyword_table[] = {
   {"TEMPERATURE", IN_STEP, temperature_options, NULL, apply_temperature, 0,
    ANY, "group of elements, value [, amplitude]; with FILE= group "
    "[, factor [, amplitude]]",
-   "temperatures; from the initial ones, linear over the step"},
+   "temperatures; from those at the start of the step, linear over it"},
   {"SOLVER", IN_STEP, solver_options, names_solver, apply_solver, 0, 0,
    "", "method for the contact problem and its options"},
   {"ACCURACY", IN_STEP, accuracy_options, NULL, apply_accuracy, 0, 0,

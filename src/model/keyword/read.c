@@ -69,7 +69,7 @@ static status model_finish_problem(reading *r) {
   s->dt = s->dt_min = s->total;
   s->output.frequency = -1;
   s->restart.frequency = -1;
-  if (s->print.n > 0) return OK;
+  if (s->print.n > 0 || (s->print.ended & PRINT_CONTACT)) return OK;
   PASS_GROW(s->print.requests, s->print.n, s->print.cap);
   s->print.requests[s->print.n++] = (print_request){
       .table = PRINT_CONTACT, .group_id = -1, .frequency = 1, .at = s->at};

@@ -208,8 +208,6 @@ static void warn_unused(const model *m) {
 
 static const double CLOCK = 0x1p-42; /* -, least increment of the time */
 
-static double step_end(const step *s) { return s->start + s->total; }
-
 /* Loads of one place and kind: gravity may have another direction. */
 static int same_place(const load *a, const load *b) {
   return a->kind == b->kind && a->component == b->component &&
@@ -248,10 +246,10 @@ static load kept_load(const model *m, const step *old, const load *l) {
   return kept;
 }
 
-/* Start value of a load that replaces "l" (or ends it). */
+/* Start value of a load that replaces "l" (or ends it); temperatures and
+ * displacements start from what elements and nodes have. */
 static void set_before(load *now, const step *old, const load *l) {
   now->before = l->value;
-  now->before_file = l->file;
   now->has_before = 1;
   now->before_t = l->run == RUN_HELD ? l->before_t : step_end(old);
 }
@@ -369,6 +367,7 @@ static status carry_choices(const step *old, step *s) {
   }
   if (!s->restart.given) s->restart.frequency = old->restart.frequency;
   for (int i = 0; i < old->print.n && !s->print.given; ++i) {
+    if (old->print.requests[i].table & s->print.ended) continue;
     PASS_GROW(s->print.requests, s->print.n, s->print.cap);
     s->print.requests[s->print.n++] = old->print.requests[i];
   }

@@ -49,10 +49,8 @@ static status build_step(run *r) {
 
 /* The displacements that the next step starts from: those of supports. */
 static status pass_step(run *r) {
-  const double end = r->step->start + r->step->total;
-  OWNED double *none = NULL;
-  PASS_NEW(none, r->n_dof);
-  PASS(load_prescribed(r->m, r->msh, r->step, end, none, r->loads.start));
+  PASS(load_prescribed(r->m, r->msh, r->step, step_end(r->step), NULL,
+                       r->loads.start));
   for (size_t k = 0; k < r->n_dof; ++k)
     if (!r->body.fixed[k]) r->loads.start[k] = NAN;
   return OK;

@@ -281,6 +281,7 @@ status loop_no_equilibrium(run *r) {
                          .t = r->now.t,
                          .surface = r->surface,
                          .cp = &r->problem.cp,
+                         .given = r->problem.given,
                          .u = run_rows(r, 0, r->now.uc),
                          .r = run_rows(r, 1, r->now.rc),
                          .c = r->c};
