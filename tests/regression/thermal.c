@@ -450,12 +450,13 @@ static void write_hdf5_field(const char *path) {
 }
 
 /* Temperatures of a file, half of them in half the step; elements have the
- * mean of their nodes: 1 2 5 make the first. */
+ * mean of their nodes: 1 2 5 make the first, 2 3 6 the third. Copies that a
+ * crack makes, the last time, have those of their nodes. */
 START_TEST(temperatures_from_a_file) {
-  static const char *const name[] = {"t.msh", "b.msh", "t.h5"};
+  static const char *const name[] = {"t.msh", "b.msh", "t.h5", "t.msh"};
   static void (*const write[])(const char *) = {
-      write_text_field, write_binary_field, write_hdf5_field};
-  for (int k = 0; k < 3; ++k) {
+      write_text_field, write_binary_field, write_hdf5_field, write_text_field};
+  for (int k = 0; k < 4; ++k) {
     char path[128];
     job j = job_begin("field");
     job_copy(&j, "tests/regression/bad/square.msh");
@@ -463,21 +464,24 @@ START_TEST(temperatures_from_a_file) {
     write[k](path);
     job_write(&j, "field.inp",
               "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.\n"
-              "*EXPANSION\n1.E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*EXPANSION\n1.E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s"
               "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1, 2\n"
+              "RIGHT, 1, 2\n"
               "*TEMPERATURE, FILE=%s\nBODY\n*PRINT, ELEMENTS\n*END STEP\n"
               "*STEP\n*QUASISTATIC\n0.5, 1.\n*TEMPERATURE\nBODY, 0.\n"
               "*END STEP\n"
               "*STEP\n*STATIC\n*TEMPERATURE, FILE=%s\nBODY, 2.\n*END STEP\n",
-              name[k], name[k]);
+              k == 3 ? "*CRACK, NAME=C, GROUP=MIDDLE\n" : "", name[k], name[k]);
     int code = job_run(&j, "");
     ck_assert_msg(code == 0, "%s: exit %d: %s", name[k], code, j.errors);
-    const double mean = 100 + 10 * (1 + 2 + 5) / 3.0;
+    const double mean[] = {100 + 10 * (1 + 2 + 5) / 3.0,
+                           100 + 10 * (2 + 3 + 6) / 3.0};
     static const double part[] = {0.5, 1.0, 0.5, 0.0, 2.0};
-    for (int i = 0; i < 5; ++i) {
-      dat d = job_table(&j, "ELEMENTS", i);
-      double found = dat_at(&d, dat_row_near(&d, "elem_no", 12), "temperature");
-      ck_assert_double_eq_tol(found, part[i] * mean, 1e-11);
+    for (int i = 0; i < 10; ++i) {
+      dat d = job_table(&j, "ELEMENTS", i / 2);
+      double found = dat_at(&d, dat_row_near(&d, "elem_no", 12 + i % 2 * 2),
+                            "temperature");
+      ck_assert_double_eq_tol(found, part[i / 2] * mean[i % 2], 1e-11);
       dat_free(&d);
     }
     job_end(&j);

@@ -148,10 +148,13 @@ static status to_mesh(const char *path, const pairs *p, const mesh *msh,
     value[at->id] = p->value[i];
     known[at->id] = 1;
   }
-  for (int i = 0; i < msh->n_node; ++i)
-    if (!known[i])
+  for (int i = 0; i < msh->n_node; ++i) {
+    const int from = msh->origin == NULL ? i : msh->origin[i];
+    if (!known[from])
       RAISE(ERR_DECK, "%s: node %zu of the mesh has no value", path,
-            msh->node_no[i]);
+            msh->node_no[from]);
+    if (!known[i]) value[i] = value[from];
+  }
   return OK;
 }
 
