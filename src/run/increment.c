@@ -250,7 +250,8 @@ status increment_pose(run *r, double t) {
  */
 static status recover(run *r, const double *F) {
   double *u = run_rows(r, 0, r->now.uc), *f = run_rows(r, 1, r->now.rc);
-  const rest_scene at = {&r->problem.cp, r->c, r->n_dof, F, r->old.u, r->now.u};
+  const rest_scene at = {&r->problem.cp, r->c,     r->n_dof,      F,
+                         r->old.u,       r->now.u, r->solving.tol};
   PASS(condense_recover(r->c, u, r->now.u));
   r->solving.placed = 0;
   if (r->nodes.n > 0 && r->solving.report.outcome > 0)

@@ -472,7 +472,40 @@ START_TEST(touch_without_force_is_open) {
 }
 END_TEST
 
-UNIT_MAIN("floating", what_is_not_solved_is_not_said_to_be_apart,
+/* A square on rollers, pressed by 0.1 from the side, swells by nu (1 + nu) 0.1
+ * = 0.039; no force holds it up or down. It stays where its mean was, or rests
+ * on the floor. */
+START_TEST(swelling_body_has_its_place_by_every_method) {
+  static const char *const methods[] = {"NEWTON", "LEMKE",  "PCG",  "SOR",
+                                        "AITKEN", "AUGLAG", "AUTO", "LAGRANGE"};
+  for (int k = 0; k < 16; ++k) {
+    const double floor_at = k % 2 ? -0.05 : -0.01;
+    job j = job_begin("swelling");
+    job_copy(&j, "tests/regression/bad/square.msh");
+    job_write(&j, "swelling.inp",
+              "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0, %g\n0, 1\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+              "1., 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nRIGHT, TX, -0.1\n"
+              "*SOLVER, METHOD=%s\n*PRINT, CONTACT\n*END STEP\n",
+              floor_at, methods[k / 2]);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    dat c = job_table(&j, "CONTACT", -1);
+    for (int i = 0; i < c.n_row; ++i) {
+      ck_assert_double_eq_tol(dat_at(&c, i, "gap"),
+                              fmax(0.0, -floor_at - 0.039 / 2), 1e-9);
+      ck_assert_double_eq_tol(dat_at(&c, i, "f_n"), 0, 1e-11);
+    }
+    dat_free(&c);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("floating", swelling_body_has_its_place_by_every_method,
+          what_is_not_solved_is_not_said_to_be_apart,
           resultant_through_the_only_node_that_touches,
           body_balanced_on_a_corner_rests,
           every_method_holds_the_body_or_says_that_none_can,

@@ -32,18 +32,29 @@ static void rest_free(rest *s) {
 
 /* ---- motions that no force opposes --------------------------------------- */
 
+static int body_of(const contact_problem *cp, int node) {
+  return cp->bodies == NULL ? 0 : cp->bodies->of[node];
+}
+
+/* Forces that the rounding, or the tolerance of the solver, hides are none. */
 static status find_forced(rest *s) {
   const contact_problem *cp = s->cp;
-  OWNED double *rounding = NULL;
-  PASS_NEW(rounding, cp->n);
+  OWNED double *rounding = NULL, *load = NULL;
+  PASS_NEW_REALS(cp->n, &rounding, &load); /* as many bodies, at most */
   PASS_NEW(s->forced, s->m);
   contact_roundings(cp, s->u, s->f, rounding);
   for (int i = 0; i < s->m; ++i) {
+    double *own = &load[body_of(cp, i / cp->dim)];
+    *own = fmax(*own, fabs(cp->f[i]));
+  }
+  for (int i = 0; i < s->m; ++i) {
     const int node = i / cp->dim;
     const int bounded = contact_bound(cp, i) < HUGE_VAL;
-    s->forced[i] = fabs(s->f[i]) > rounding[node] ||
-                   (!bounded && cp->g0 != NULL &&
-                    contact_node_limit(cp, s->f, node) > rounding[node]);
+    const double noise =
+        fmax(rounding[node], s->at->tol * load[body_of(cp, node)]);
+    s->forced[i] =
+        fabs(s->f[i]) > noise || (!bounded && cp->g0 != NULL &&
+                                  contact_node_limit(cp, s->f, node) > noise);
   }
   return OK;
 }
@@ -85,12 +96,15 @@ static status find_fields(rest *s) {
 static int is_loaded(const rest *s) {
   const size_t n = s->at->n_dof;
   for (int j = 0; j < s->k; ++j) {
-    double work = 0.0, terms = 0.0;
-    for (size_t i = 0; i < n; ++i) {
-      work += s->W[n * (size_t)j + i] * s->at->F[i];
-      terms += fabs(s->W[n * (size_t)j + i] * s->at->F[i]);
+    const double *W = s->W + n * (size_t)j, most = largest_entry(n, W);
+    const size_t dim = (size_t)s->cp->dim;
+    double work = 0.0, load = 0.0;
+    for (size_t i = 0; i < n; i += dim) { /* the nodes that move */
+      if (!(largest_entry(dim, W + i) > BALANCED * most)) continue;
+      work += cblas_ddot((int)dim, W + i, 1, s->at->F + i, 1);
+      load += cblas_dasum((int)dim, s->at->F + i, 1);
     }
-    if (fabs(work) > BALANCED * terms) return 1;
+    if (fabs(work) > BALANCED * most * load) return 1;
   }
   return 0;
 }

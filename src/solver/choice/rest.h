@@ -21,6 +21,7 @@ typedef struct rest_scene {
   size_t n_dof;
   const double *F;         /* [n_dof] forces without those of contact, N */
   const double *old, *now; /* [n_dof] last equilibrium, this one, m */
+  double tol;              /* of the solver, -, of the load of a body */
 } rest_scene;
 
 /* The solution u[m] with the forces f[m] is put there; *moved 1: u has changed.
