@@ -124,6 +124,9 @@ def absolute_files(lines, folder):
     return out
 
 
+COMMENT = re.compile(r'\s*\*\*(?=(?:[^"]*"[^"]*")*[^"]*$).*')
+
+
 def joined(lines):
     """Cards and data lines; a card that ends in a comma goes on in the next
     line."""
@@ -135,6 +138,8 @@ def joined(lines):
             out[-1] += " " + line
         else:
             out.append(line)
+        if card_name(out[-1]):
+            out[-1] = COMMENT.sub("", out[-1])
     return out
 
 
@@ -261,12 +266,14 @@ def program_of(name):
 
 
 def key_of(result, folder, *parts, since=math.inf):
-    """Checksum of parts and of all files that the run of this JOB.json has
-    read, of a deck in that folder. None, which no results have: there is no JOB.json, or a file of them
-    is gone or has changed since that time."""
+    """Checksum of parts, of this JOB.json and of all files that its run has
+    read, of a deck in that folder. None, which no results have: there is no
+    JOB.json, or a file is gone or has changed since that time."""
     key = hashlib.sha256(json.dumps(parts).encode())
     try:
-        for name in json.loads(result.read_text(encoding="utf-8"))["files"]:
+        content = result.read_bytes()
+        key.update(content)
+        for name in json.loads(content)["files"]:
             path = folder / name
             content = path.read_bytes()
             if path.stat().st_ctime > since:

@@ -553,7 +553,15 @@
   X(4032, WARNING, "tie that supports open",                                  \
     "A component of a slave node that a support holds does not follow the "   \
     "master: the tie is open there. Choose the other side with SLAVE=, or "   \
-    "let the support hold the nodes of both.")
+    "let the support hold the nodes of both.")                               \
+  X(4033, WARNING, "faces of a slave that has tied nodes alone",              \
+    "A tied node has no contact; its neighbours on the face carry its part, " \
+    "and here there are none. Refine the surface, or choose the other side "  \
+    "of the *TIE or the *CONTACT PAIR with SLAVE=.")                         \
+  X(4034, NOTE, "masters that meet within a face of the slave",               \
+    "The nodes of the face have one contact with both masters, right while "  \
+    "these stay level; they belong to the first pair. Where the masters move " \
+    "apart, mesh the slave so that one of its nodes is at the joint.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

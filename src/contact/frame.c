@@ -79,6 +79,14 @@ int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
   return fabs(determinant(dim, frame)) < dependent_sine ? -1 : 0;
 }
 
+/* Normals nearer than this (45 degrees) are those of one smooth surface. */
+static const double smooth_cosine = 0.70710678;
+
+int frame_is_smooth(int dim, const double *a, const double *b) {
+  const double cosine = dot(dim, a, b) / sqrt(dot(dim, a, a) * dot(dim, b, b));
+  return cosine > smooth_cosine;
+}
+
 void frame_invert(int dim, int orthonormal, const double *frame,
                   double *basis) {
   if (orthonormal) {

@@ -15,7 +15,7 @@
 /* Slave nodes: left out, as supports hold them or an earlier pair has them;
  * rows of this pair and of an earlier one. */
 enum { HELD = 1, TAKEN, SHARED };
-/* Forces that are left of those of a chain, over the first. */
+/* Of places over the size of the mesh; of forces over the first of a chain. */
 static const double rounding = 1e-9;
 
 /* 1: the pair is coupled where the bodies are now. */
@@ -31,26 +31,28 @@ static int is_held(const surface_input *in, const mortar *m, int q) {
   return !(frame_project(dim, in->fixed[m->node_id[q]], n) > PAIR_FIXED_SINE);
 }
 
-int pair_same_normal(int dim, const double *a, const double *b) {
+int pair_same_normal(int dim, const contact_pair *a, int q,
+                     const contact_pair *b, int r) {
+  const double *m = a->coupled->normal + dim * q;
+  const double *n = b->coupled->normal + dim * r;
   double frame[9];
   unsigned char held[3] = {0};
-  memcpy(frame, a, (size_t)dim * sizeof *frame);
-  memcpy(frame + dim, b, (size_t)dim * sizeof *frame);
+  if (a->group == b->group && frame_is_smooth(dim, m, n)) return 1;
+  memcpy(frame, m, (size_t)dim * sizeof *frame);
+  memcpy(frame + dim, n, (size_t)dim * sizeof *frame);
   return frame_complete(dim, 2, 0, frame, held) < 0;
 }
 
 /* 1: an earlier pair has node q with (nearly) the same normal. */
 static int is_taken(const surface_input *in, int pair_id, int q) {
-  const int dim = in->mesh->dim;
-  const mortar *m = in->pairs[pair_id].coupled;
-  for (int p = 0; p < pair_id; ++p) {
-    const mortar *old = in->pairs[p].coupled;
+  const contact_pair *now = &in->pairs[pair_id];
+  for (const contact_pair *p = in->pairs; p < now; ++p) {
+    const mortar *old = p->coupled;
     if (old == NULL) continue;
-    const int *at = bsearch(&m->node_id[q], old->node_id, (size_t)old->n,
-                            sizeof *old->node_id, number_order);
+    const int *at = bsearch(&now->coupled->node_id[q], old->node_id,
+                            (size_t)old->n, sizeof *old->node_id, number_order);
     if (at != NULL &&
-        pair_same_normal(dim, old->normal + dim * (at - old->node_id),
-                         m->normal + dim * q))
+        pair_same_normal(in->mesh->dim, p, (int)(at - old->node_id), now, q))
       return 1;
   }
   return 0;
@@ -65,12 +67,28 @@ static int same_change(const contact_pair *a, const contact_pair *b) {
              b->change_sign * b->change->number;
 }
 
+/* 1: nodes of two surfaces coincide: no step is between them. */
+static int surfaces_meet(const mesh *m, const mesh_group *a,
+                         const mesh_group *b) {
+  const size_t dim = (size_t)m->dim;
+  for (int i = 0; i < a->n_node; ++i)
+    for (int k = 0; k < b->n_node; ++k) {
+      const double *x = m->x + dim * (size_t)a->node_id[i];
+      const double *y = m->x + dim * (size_t)b->node_id[k];
+      double far = 0.0;
+      for (size_t c = 0; c < dim; ++c) far = fmax(far, fabs(x[c] - y[c]));
+      if (far <= rounding * m->size) return 1;
+    }
+  return 0;
+}
+
 /* 1: an earlier pair with the same slave may share nodes with this one. */
 static int has_other_master(const surface_input *in, int pair_id) {
   const contact_pair *now = &in->pairs[pair_id];
   int any = 0;
-  for (const contact_pair *p = in->pairs; p < now; ++p)
-    any |= p->coupled != NULL && p->group == now->group && same_change(p, now);
+  for (const contact_pair *p = in->pairs; p < now && !any; ++p)
+    any = p->coupled != NULL && p->group == now->group && same_change(p, now) &&
+          surfaces_meet(in->mesh, p->master, now->master);
   return any;
 }
 
@@ -81,7 +99,8 @@ static int share_nodes(const surface_input *in, int pair_id,
   const mesh *m = in->mesh;
   const mortar *now = in->pairs[pair_id].coupled;
   int more = 0;
-  for (int k = 0; k < now->n_cut && has_other_master(in, pair_id); ++k)
+  if (now->n_cut == 0 || !has_other_master(in, pair_id)) return 0;
+  for (int k = 0; k < now->n_cut; ++k)
     for (int c = 0; c < m->dim; ++c) {
       unsigned char *is = &dropped[m->face[m->dim * now->cut[k] + c]];
       more += *is == TAKEN;
@@ -110,7 +129,8 @@ status surfaces_couple(const surface_input *in, const double *x,
 }
 
 /* Couple without nodes that cannot carry a multiplier, until all can. */
-static status couple_kept(const surface_input *in, int pair_id, int *n_held) {
+static status couple_kept(const surface_input *in, int pair_id, int *n_held,
+                          int *n_shared) {
   contact_pair *p = &in->pairs[pair_id];
   const size_t n = (size_t)in->mesh->dim * (size_t)in->mesh->n_node;
   OWNED unsigned char *dropped = NULL, *left_out = NULL;
@@ -120,7 +140,7 @@ static status couple_kept(const surface_input *in, int pair_id, int *n_held) {
   for (size_t k = 0; k < n; ++k)
     x[k] = in->mesh->x[k] + (is_moved(in, p) ? in->u[k] : 0.0);
   PASS_NEW_ALL(OF(dropped, in->mesh->n_node), OF(left_out, in->mesh->n_node));
-  *n_held = 0;
+  *n_held = *n_shared = 0;
   while (more > 0) {
     more = 0;
     for (int i = 0; i < in->mesh->n_node; ++i)
@@ -135,7 +155,7 @@ static status couple_kept(const surface_input *in, int pair_id, int *n_held) {
       *n_held += held;
       ++more;
     }
-    if (more == 0) more = share_nodes(in, pair_id, dropped);
+    if (more == 0) *n_shared += more = share_nodes(in, pair_id, dropped);
   }
   return OK;
 }
@@ -192,6 +212,28 @@ int surfaces_held_alone(const mortar *m, const unsigned char *fixed) {
   return n;
 }
 
+int surface_tied(const surface_input *in, int node_id) {
+  const tie_set *t = in->ties;
+  const int *at = t == NULL || t->n == 0
+                      ? NULL
+                      : bsearch(&node_id, t->node_id, (size_t)t->n,
+                                sizeof *t->node_id, number_order);
+  return at == NULL ? -1 : (int)(at - t->node_id);
+}
+
+/* Faces of the slave all of whose nodes are tied. */
+static int tied_faces(const surface_input *in, const contact_pair *p) {
+  const int dim = in->mesh->dim;
+  int n = 0;
+  for (int k = 0; k < p->group->n_item; ++k) {
+    const int *node = &in->mesh->face[dim * p->group->item_id[k]];
+    int tied = 0;
+    for (int c = 0; c < dim; ++c) tied += surface_tied(in, node[c]) >= 0;
+    n += tied == dim;
+  }
+  return n;
+}
+
 static void tell(const surface_input *in, const contact_pair *p, int n_held,
                  message_log *log) {
   enum { CURVED = 2, FLAT = 4 };
@@ -209,6 +251,12 @@ static void tell(const surface_input *in, const contact_pair *p, int n_held,
                 "takes the other surface",
                 p->card, p->name, surfaces_held_alone(m, in->fixed), m->n,
                 p->group->name, p->master->name);
+  if (tied_faces(in, p) > 0)
+    message_add(
+        log, P4033, &p->at,
+        "%s %s: %d of %d faces of the slave %s have tied nodes alone: no "
+        "contact there",
+        p->card, p->name, tied_faces(in, p), p->group->n_item, p->group->name);
   if (m->n == 0 && m->covered == 0.0)
     message_add(log, P4023, &p->at,
                 "%s %s: no face of %s meets a face of %s along its "
@@ -228,9 +276,17 @@ static void tell(const surface_input *in, const contact_pair *p, int n_held,
 
 status pairs_couple(const surface_input *in, message_log *log) {
   for (int p = 0; p < in->n_pair; ++p) {
-    int n_held = 0;
+    int n_held = 0, n_shared = 0;
     if (in->pairs[p].support != NULL) continue;
-    PASS(couple_kept(in, p, &n_held));
+    PASS(couple_kept(in, p, &n_held, &n_shared));
+    if (n_shared > 0)
+      message_add(
+          log, P4034, &in->pairs[p].at,
+          "%s %s: the master %s and that of an earlier pair meet within "
+          "faces of the slave %s: %d nodes have contact with the mean "
+          "of both",
+          in->pairs[p].card, in->pairs[p].name, in->pairs[p].master->name,
+          in->pairs[p].group->name, n_shared);
     tell(in, &in->pairs[p], n_held, log);
     tell_facets(in, &in->pairs[p], log);
   }
@@ -246,10 +302,30 @@ void pairs_release(const surface_input *in) {
 
 /* ---- rows of the surface ------------------------------------------------ */
 
+/* 1: supports hold all masters of the first normal along the axis that
+ * component c of node i is, if it is held. */
+static int masters_held(const contact_surface *s, const surface_input *in,
+                        int i, int c, int m, const pair_row *rows) {
+  const int dim = s->dim;
+  unsigned all = (1u << dim) - 1, axis = 0;
+  for (int e = 0; e < m; ++e) {
+    const node_links *l = rows[e].of == NULL ? NULL : &rows[e].of->to;
+    if (l == NULL || rows[e].normal > 0) continue;
+    for (size_t k = l->start[rows[e].row]; k < l->start[rows[e].row + 1]; ++k)
+      all &= in->fixed[l->master[k]];
+  }
+  for (int b = 0; b < dim; ++b)
+    if (fabs(s->frame[dim * (dim * i + c) + b]) > 0.5) axis |= 1u << b;
+  return (all & axis) == axis;
+}
+
 /* Which normal of the node component c is relative to as: -1 none. */
-static int source_of(const contact_surface *s, int i, int n, int c) {
+static int source_of(const contact_surface *s, const surface_input *in, int i,
+                     int n, int c, int m, const pair_row *rows) {
   if (c < n) return c;
-  return n > 1 || s->held[s->dim * i + c] ? -1 : 0;
+  if (n > 1) return -1;
+  return s->held[s->dim * i + c] && !masters_held(s, in, i, c, m, rows) ? -1
+                                                                        : 0;
 }
 
 /* The place of a master in the row that starts at "first", new if need be. */
@@ -295,10 +371,12 @@ static double weight_of(const pair_row *row, int m, const pair_row *rows) {
   return row->of->area[row->row] / row->of->share[row->row] / sum;
 }
 
-status pair_add_row(contact_surface *s, int i, int n, int m,
-                    const pair_row *rows, pair_links *room) {
+status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
+                    int m, const pair_row *rows, pair_links *room) {
   node_links *l = s->master;
   const int dim = s->dim, first = room->n;
+  int source[3];
+  for (int c = 0; c < dim; ++c) source[c] = source_of(s, in, i, n, c, m, rows);
   for (int k = 0; k < m; ++k) {
     if (rows[k].of == NULL) continue;
     const node_links *to = &rows[k].of->to;
@@ -308,12 +386,11 @@ status pair_add_row(contact_surface *s, int i, int n, int m,
       int at;
       PASS(place_of(l, first, to->master[e], room, &at));
       for (int c = 0; c < dim; ++c)
-        if (source_of(s, i, n, c) == rows[k].normal)
+        if (source[c] == rows[k].normal)
           l->part[dim * at + c] += by * to->part[(size_t)dim * e];
     }
   }
-  for (int c = 0; c < dim; ++c)
-    set_resultant(s, i, c, source_of(s, i, n, c), m, rows);
+  for (int c = 0; c < dim; ++c) set_resultant(s, i, c, source[c], m, rows);
   l->n = i + 1;
   l->start[i + 1] = (size_t)room->n;
   return OK;
@@ -373,6 +450,22 @@ void surface_relative(const contact_surface *s, const double *u, double *w) {
                dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
       w[dim * q + a] = sum / surface_share(s, q, a);
     }
+}
+
+double surface_prescribed(const contact_surface *s, const unsigned char *fixed,
+                          const double *ud, int q, int a) {
+  const int dim = s->dim;
+  const node_links *l = s->master;
+  const double *row = &s->frame[dim * (dim * q + a)];
+  const size_t at = (size_t)dim * (size_t)s->node_id[q];
+  double sum = 0.0;
+  for (int c = 0; c < dim; ++c)
+    if (fixed[at + (size_t)c]) sum += row[c] * ud[at + (size_t)c];
+  for (size_t e = l == NULL ? 0 : l->start[q]; l != NULL && e < l->start[q + 1];
+       ++e)
+    sum -= l->part[(size_t)dim * e + (size_t)a] *
+           dot(dim, row, ud + (size_t)dim * (size_t)l->master[e]);
+  return sum / surface_share(s, q, a);
 }
 
 void surface_spread_row(const contact_surface *s, int q, int a, double force,

@@ -43,6 +43,9 @@ double frame_project(int dim, unsigned fixed, double *v);
 int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
                    unsigned char *held);
 
+/* 1: two normals, not of unit length, less than 45 degrees apart. */
+int frame_is_smooth(int dim, const double *a, const double *b);
+
 /* basis[dim*dim], column major: inverse of frame (rows). An orthonormal frame
  * is its own inverse, transposed: no arithmetic then. */
 void frame_invert(int dim, int orthonormal, const double *frame, double *basis);
@@ -63,8 +66,12 @@ typedef struct pair_row {
   int normal; /* which of the node's */
 } pair_row;
 
-/* 1: the normals of two nodes are too near to each other for one frame. */
-int pair_same_normal(int dim, const double *a, const double *b);
+/* The row of a node of *TIE, -1: it is none. */
+int surface_tied(const surface_input *in, int node_id);
+/* 1: the normals of two pairs at one node, their rows q and r, are too near to
+ * each other for one frame; of one slave surface: smooth. */
+int pair_same_normal(int dim, const contact_pair *a, int q,
+                     const contact_pair *b, int r);
 
 /* Entries of the rows so far, and room for them; all-zero before. */
 typedef struct pair_links {
@@ -74,10 +81,10 @@ typedef struct pair_links {
 /* The row of contact node i, of the last ones before: its n normals, rows[m] of
  * which those of one normal are for two masters side by side, their mean by
  * area. Its tangents are relative to the master of the first, if it has no
- * other; those that supports hold, and those at corners, to none. ERR_MEMORY.
- */
-status pair_add_row(contact_surface *s, int i, int n, int m,
-                    const pair_row *rows, pair_links *room);
+ * other; to none at corners, and where supports hold them but not the masters.
+ * ERR_MEMORY. */
+status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
+                    int m, const pair_row *rows, pair_links *room);
 /* ERR_DECK with an error in the log if slave nodes of pairs move with
  * each other in a circle; ERR_MEMORY. */
 status pairs_check_circles(const contact_surface *s, const surface_input *in,

@@ -17,9 +17,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Normals of two contacts on one obstacle nearer than this (45 degrees) are
- * one smooth surface. */
-static const double smooth_cosine = 0.70710678;
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
  * the normals of the faces around a node over their area. */
 static const double rounding = 1e-9;
@@ -182,16 +179,6 @@ static void check_axis(const builder *b, const contact_pair *p) {
                 p->name, o->name, o->point[0]);
 }
 
-/* The row of a node of *TIE, -1: it is none. */
-static int tied_row(const surface_input *in, int node_id) {
-  const tie_set *t = in->ties;
-  const int *at = t == NULL || t->n == 0
-                      ? NULL
-                      : bsearch(&node_id, t->node_id, (size_t)t->n,
-                                sizeof *t->node_id, number_order);
-  return at == NULL ? -1 : (int)(at - t->node_id);
-}
-
 /* One contact while its faces are added. */
 typedef struct adder {
   const surface_input *in;
@@ -204,7 +191,7 @@ typedef struct adder {
 static candidate *find(const adder *a, int node_id) {
   const int k = a->index[node_id];
   return k < a->group->n_node && a->group->node_id[k] == node_id &&
-                 tied_row(a->in, node_id) < 0
+                 surface_tied(a->in, node_id) < 0
              ? &a->first[k]
              : NULL;
 }
@@ -248,7 +235,7 @@ static void add_face(const adder *a, const int *node, const double *w,
     n += to != NULL;
     if (to != NULL)
       give(dim, to, w[j], normal);
-    else if (!give_masters(a, tied_row(a->in, node[j]), w[j], normal))
+    else if (!give_masters(a, surface_tied(a->in, node[j]), w[j], normal))
       left += w[j];
   }
   for (int j = 0; j < dim && left > 0.0; ++j) {
@@ -268,7 +255,7 @@ static void add_faces(const builder *b, int pair_id, candidate *first,
     index[g->node_id[k]] = k;
     first[k].node_id = g->node_id[k];
     first[k].pair_id = pair_id;
-    first[k].left_out = tied_row(b->in, g->node_id[k]) >= 0;
+    first[k].left_out = surface_tied(b->in, g->node_id[k]) >= 0;
   }
   for (int k = 0; k < g->n_item; ++k) {
     double normal[3], w[3];
@@ -332,12 +319,9 @@ static status collect(builder *b) {
 /* Do two contacts of one node belong to one smooth surface? */
 static int is_smooth(const builder *b, const candidate *x, const candidate *y) {
   const contact_pair *p = b->in->pairs;
-  double cosine = dot(b->dim, x->normal, y->normal) /
-                  sqrt(dot(b->dim, x->normal, x->normal) *
-                       dot(b->dim, y->normal, y->normal));
   return p[x->pair_id].support != NULL &&
          p[x->pair_id].support == p[y->pair_id].support &&
-         cosine > smooth_cosine;
+         frame_is_smooth(b->dim, x->normal, y->normal);
 }
 
 /* Candidates first..end are those of one node: move the faces of the later ones
@@ -356,11 +340,10 @@ static void merge_smooth(builder *b, int first, int end) {
 
 /* 1: the node acts on the masters of two pairs, side by side. */
 static int is_shared(const builder *b, const candidate *x, const candidate *y) {
-  const mortar *m = b->in->pairs[x->pair_id].coupled,
-               *n = b->in->pairs[y->pair_id].coupled;
-  return m != NULL && n != NULL &&
-         pair_same_normal(b->dim, m->normal + b->dim * x->row,
-                          n->normal + b->dim * y->row);
+  const contact_pair *p = &b->in->pairs[x->pair_id],
+                     *q = &b->in->pairs[y->pair_id];
+  return p->coupled != NULL && q->coupled != NULL &&
+         pair_same_normal(b->dim, p, x->row, q, y->row);
 }
 
 static void merge_masters(builder *b, int first, int end) {
@@ -579,7 +562,7 @@ static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
     if (b->in->pairs[kept[k]->pair_id].coupled != NULL)
       s->apart[dim * i + k] = kept[k]->gap;
   }
-  PASS(pair_add_row(s, i, n_kept, n, b->rows, &b->links));
+  PASS(pair_add_row(s, b->in, i, n_kept, n, b->rows, &b->links));
   for (int a = 0; a < dim; ++a)
     for (int c = 0; c < dim; ++c)
       s->basis[dim * (dim * i + a) + c] *= surface_share(s, i, a);

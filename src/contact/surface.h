@@ -120,6 +120,10 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
 /* pair.c: w[dim*n], the contact unknowns of the displacements u[dim*n_node]:
  * relative to the masters of pairs, F_a . (u - sum part u(master)) / share. */
 void surface_relative(const contact_surface *s, const double *u, double *w);
+/* w of row a of node q, which supports hold (fixed[dim*n_node]) at
+ * ud[dim*n_node], and its masters if it is relative to them, m. */
+double surface_prescribed(const contact_surface *s, const unsigned char *fixed,
+                          const double *ud, int q, int a);
 /* F[dim*n_node] += factor times the forces r[dim*n] dual to those, on
  * both sides of pairs: r'w = F'u. */
 void surface_spread(const contact_surface *s, double factor, const double *r,

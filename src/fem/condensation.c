@@ -342,10 +342,8 @@ static int set_prescribed(condensed *c, const double *ud) {
       if (k->contact[i] < 0) {
         p[a] = fixed[a] ? u[a] : 0;
       } else {
-        const double *row =
-            c->d.surface->frame + dim * (dim * k->contact[i] + a);
-        for (int b = 0; b < dim; ++b)
-          if (fixed[b]) p[a] += row[b] * u[b];
+        p[a] =
+            surface_prescribed(c->d.surface, c->d.fixed, ud, k->contact[i], a);
       }
       any |= p[a] != 0;
     }

@@ -66,6 +66,14 @@ typedef struct view {
   const state *s;
 } view;
 
+/* Motion of contact node id along row a over that of its row, -: next to the
+ * tip of a crack, which does not open, the row is a mean with it. */
+static inline double view_opening(const view *v, int id, int a) {
+  const contact_surface *s = v->s->contacts.surface;
+  if (s->share == NULL || !v->m->contacts[s->contact_id[id]].is_crack) return 1;
+  return surface_share(s, id, a);
+}
+
 typedef enum { AS_REAL, AS_COUNT, AS_WORD } column_form;
 
 /* Of "tables": bits of PRINT_*; above them the place of an effect's column. */

@@ -552,6 +552,33 @@ START_TEST(masters_side_by_side_are_one_floor) {
 }
 END_TEST
 
+/* Over a step the lower floor, which is not touched, changes nothing. */
+START_TEST(lower_master_beyond_a_step_is_not_met) {
+  double normal[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("step");
+    job_copy(&j, "tests/regression/mesh/floors.geo");
+    job_write(
+        &j, "step.inp",
+        "*PARAMETER\nC = 0.7\nS = 0.01\n*MESH, FILE=floors.geo\n"
+        "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+        "*SOLID SECTION, ELSET=BLOCK, MATERIAL=M\n"
+        "*SOLID SECTION, ELSET=FLOORS, MATERIAL=M\n"
+        "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, LEFT FLOOR\n%s"
+        "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nFLOORS, 1, 2\n"
+        "TOP, 1\nTOP, 2, 2, -2E-3\n*PRINT, TOTALS\n*END STEP\n",
+        k ? "*CONTACT PAIR, NAME=Q, SLAVE=FIRST\nUNDER, RIGHT FLOOR\n" : "");
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    dat all = job_table(&j, "TOTALS", -1);
+    normal[k] = dat_at(&all, 0, "normal");
+    dat_free(&all);
+    job_end(&j);
+  }
+  ck_assert_double_gt(normal[0], 0.5);
+  ck_assert_double_eq_tol(normal[1], normal[0], 1e-12);
+}
+END_TEST
+
 /* Two blocks tied side by side on a plane, as one: the area of the tied nodes
  * is that of their masters, or of the others of the face where the masters are
  * not in the contact. */
@@ -589,6 +616,55 @@ START_TEST(tied_nodes_leave_their_area_in_a_contact) {
 }
 END_TEST
 
+/* A slider that its side, or all of it, drives over an elastic body drags it by
+ * mu N; two bodies held along the contact wear by their motion, whichever is
+ * the slave. */
+START_TEST(driven_bodies_slide_on_each_other) {
+  static const struct {
+    const char *pair, *supports;
+    double drag, depth;
+  } cases[] = {
+      {"", "TOP, 1, 2\nFOOT, 1, 1, 0.02\n", 0.15, 0},
+      {"", "TOP, 1, 2\nLOWER, 1, 1, 0.02\n", 0.15, 0},
+      {", SLAVE=FIRST", "TOP, 2\nUPPER, 1\nLOWER, 1, 1, 0.02\n", 0, 1e-5},
+      {", SLAVE=SECOND", "TOP, 2\nUPPER, 1\nLOWER, 1, 1, 0.02\n", 0, 1e-5},
+      {", SLAVE=FIRST", "TOP, 2\nUPPER, 1, 1, 0.02\nLOWER, 1\n", 0, 1e-5}};
+  const int wears = cases[_i].depth > 0;
+  job j = job_begin("driven");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "driven.geo",
+            "Include \"pair.geo\";\nPhysical Curve(\"FOOT\") = {2};\n");
+  job_write(&j, "driven.inp",
+            "*PARAMETER\nN = 3\nM = 8\n*MESH, FILE=driven.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P%s\nUNDER, OVER\n%s*STEP\n*QUASISTATIC\n"
+            "1., 1.\n*BOUNDARY\n%s*DSLOAD\nBOTTOM, P, 0.5\n"
+            "*PRINT, TOTALS, CONTACT%s\n*END STEP\n",
+            cases[_i].pair,
+            wears ? "*WEAR, CONTACT=P, COEFFICIENT=1E-3\n"
+                  : "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n",
+            cases[_i].supports, wears ? ", WEAR" : "");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+  ck_assert_double_eq_tol(fabs(dat_at(&all, 0, "tangential")), cases[_i].drag,
+                          1e-9);
+  if (wears) {
+    dat w = job_table(&j, "WEAR", -1);
+    for (int i = 0; i < w.n_row; ++i) {
+      ck_assert_double_eq_tol(dat_at(&w, i, "depth"), cases[_i].depth, 1e-13);
+      ck_assert_double_eq_tol(fabs(dat_at(&c, i, "u_t")), 0.02, 1e-14);
+    }
+    ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), 1e-5, 1e-13);
+    dat_free(&w);
+  }
+  dat_free(&c);
+  dat_free(&all);
+  job_end(&j);
+}
+END_TEST
+
 /* The nodes of a tip have no row. */
 START_TEST(rows_of_a_crack_add_up_to_its_resultant) {
   job j;
@@ -620,7 +696,9 @@ int main(void) {
   tcase_add_loop_test(tests, rows_add_up_to_the_resultant, 0, 2);
   tcase_add_loop_test(tests, rows_beside_a_held_node_are_as_others, 0, 5);
   tcase_add_loop_test(tests, masters_side_by_side_are_one_floor, 0, 6);
+  tcase_add_test(tests, lower_master_beyond_a_step_is_not_met);
   tcase_add_loop_test(tests, tied_nodes_leave_their_area_in_a_contact, 0, 3);
+  tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 5);
   tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);
 }

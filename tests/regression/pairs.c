@@ -374,6 +374,11 @@ START_TEST(slave_is_chosen) {
        "UPPER, 1\nBOTTOM, 1, 2\n",
        "slave UNDER (the other is held)"},
       {"N = 4\nM = 5",
+       {1, 1},
+       "",
+       "LOWER, 1, 2\nLEFT, 1\nRIGHT, 2\n",
+       "slave OVER (the other is held)"},
+      {"N = 4\nM = 5",
        {1, 9},
        ", SLAVE=FIRST",
        "LOWER, 1\nBOTTOM, 2\nTOP, 1\n",
@@ -694,7 +699,7 @@ int main(void) {
   tcase_add_loop_test(
       tests, initial_displacements_of_tied_bodies_are_compatible, 0, 2);
   tcase_add_loop_test(tests, node_of_two_ties_is_of_the_first, 0, 2);
-  tcase_add_loop_test(tests, slave_is_chosen, 0, 28);
+  tcase_add_loop_test(tests, slave_is_chosen, 0, 30);
   tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
   tcase_add_test(tests, restart_is_bit_for_bit);
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);

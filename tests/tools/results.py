@@ -230,6 +230,12 @@ class Results(unittest.TestCase):
             lines = self.dir / "batch.jsonl"
             lines.write_text(lines.read_text().replace(
                 '"exit": 0', f'"exit": {code or -15}'))
+        for hand in (False, True):  # of another run in the folder, too
+            if hand:
+                protis.run(DECK, lines.parent / DECK.stem, N=5)
+            done = subprocess.run(words, capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(json.loads(done.stdout)["exit"], 0)
 
     def test_what_has_changed_is_run_again(self):
         """A deck, back to what it was before too; files of other folders that
@@ -293,7 +299,7 @@ class Results(unittest.TestCase):
                          ['*GOAL, NAME="A, B", TARGET=5%'])
         (self.dir / "a.inp").write_text(
             '*STEP\n*VISCO,\n** why\n\nINTEGRATOR=EULER\n\n** dt\n1., 2.\n'
-            '*TEMPERATURE, FILE=a b.h5 , X=1\n')
+            '*TEMPERATURE, FILE=a b.h5 , X=1 ** of "a"\n')
         self.assertEqual(deck_tools.set_dt(
             deck_tools.read_deck(self.dir / "a.inp"), "0.1"),
             ["*STEP", "*VISCO, INTEGRATOR=EULER", "0.1,  2.",

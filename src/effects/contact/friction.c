@@ -198,16 +198,8 @@ static status update_limit(run *r, friction *own, double t) {
 
 /* ---- the history of slip ------------------------------------------------ */
 
-/* A contact unknown that *BOUNDARY prescribes: its value of ud[dim*n_node],
- * m. */
 static double held_value(const run *r, const double *ud, int i, int a) {
-  const contact_surface *s = r->surface;
-  int dim = s->dim;
-  double u = 0.0;
-  for (int c = 0; c < dim; ++c)
-    if (r->body.fixed[dim * s->node_id[i] + c])
-      u += s->frame[dim * dim * i + dim * a + c] * ud[dim * s->node_id[i] + c];
-  return u;
+  return surface_prescribed(r->surface, r->body.fixed, ud, i, a);
 }
 
 /* 1 if the sliding limit of a node can be above zero. */
@@ -492,8 +484,9 @@ static int requires_history(const model *m, char *why, size_t size) {
 VALUE(limit_updates, v->s->report.limit_updates)
 VALUE(friction_work, v->s->energy.friction)
 VALUE(friction_end, v->s->energy.friction_end)
-VALUE(contact_slip, v->s->contacts.slip[at(SURFACE->dim - 1, id, part)])
-VALUE(slip_distance, v->s->contacts.distance[id])
+VALUE(contact_slip, view_opening(v, id, part + 1) *
+                        v->s->contacts.slip[at(SURFACE->dim - 1, id, part)])
+VALUE(slip_distance, view_opening(v, id, 1) * v->s->contacts.distance[id])
 VALUE(sliding_limit, v->s->contacts.limit[id])
 
 /* The slip in global components. */
@@ -503,7 +496,7 @@ static double contact_slide(const view *v, int id, int part) {
   const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
   double sum = 0;
   for (int k = 1; k < dim; ++k) sum += frame[dim * k + part] * slip[k - 1];
-  return sum;
+  return view_opening(v, id, 1) * sum;
 }
 
 /* Unit vector of the slip, global components; 0 where the node does not slip */

@@ -404,10 +404,9 @@ static const double rounding = 1e-9;
 
 /* Mean over the faces of a group. */
 typedef struct surface_facts {
-  double size;    /* of a face, m */
-  double modulus; /* Pa */
-  unsigned held;  /* bit c: supports hold component c of all its nodes; of a
-                     tie: of any */
+  double size;       /* of a face, m */
+  double modulus;    /* Pa */
+  unsigned all, any; /* bit c: supports hold component c of all nodes; of one */
 } surface_facts;
 
 /* C_nnnn, the modulus of uniaxial strain, in the mean over all directions n:
@@ -422,11 +421,10 @@ static double mean_modulus(const double C[36]) {
 }
 
 static surface_facts facts_of(const model *m, const mesh *msh,
-                              const unsigned char *fixed, int tied,
-                              int group_id) {
+                              const unsigned char *fixed, int group_id) {
   const mesh_group *g = &msh->group[group_id];
   const int dim = msh->dim;
-  surface_facts f = {.held = tied ? 0 : (1u << dim) - 1};
+  surface_facts f = {.all = (1u << dim) - 1};
   double area = 0.0, normal[3];
   for (int k = 0; k < g->n_item; ++k) {
     const int face = g->item_id[k];
@@ -439,30 +437,37 @@ static surface_facts facts_of(const model *m, const mesh *msh,
     unsigned own = 0;
     for (int c = 0; c < dim; ++c)
       own |= (unsigned)(fixed[dim * g->node_id[k] + c] != 0) << c;
-    f.held = tied ? f.held | own : f.held & own;
+    f.all &= own;
+    f.any |= own;
   }
   return f;
 }
 
-/* Supports hold more of the first surface than of the second: what they hold
- * of a slave is relative to its place, not to the master. */
-static int is_held_more(const surface_facts *f) {
-  return (f[0].held & f[1].held) == f[1].held && f[0].held != f[1].held;
+/* 1: a has all bits of b and more; -1: the other way. */
+static int has_more(unsigned a, unsigned b) {
+  if (a == b) return 0;
+  return (a & b) == b ? 1 : (a & b) == a ? -1 : 0;
+}
+
+/* Supports hold more of the first surface, 1, or of the second, -1: what they
+ * hold of a slave is relative to its place, not to the master. */
+static int held_more(const surface_facts *f) {
+  const int all = has_more(f[0].all, f[1].all);
+  return all != 0 ? all : has_more(f[0].any, f[1].any);
 }
 
 static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
-                   int tied, const int *group, surface_pair *p) {
+                   const int *group, surface_pair *p) {
   surface_facts f[2];
-  for (int k = 0; k < 2; ++k) f[k] = facts_of(m, msh, fixed, tied, group[k]);
-  const surface_facts turned[2] = {f[1], f[0]};
+  for (int k = 0; k < 2; ++k) f[k] = facts_of(m, msh, fixed, group[k]);
   const double ratio = f[1].modulus / f[0].modulus;
   const char *why = "of equal size: the first";
   p->slave = 0;
   if (p->choice != SLAVE_AUTO) {
     p->slave = p->choice == SLAVE_SECOND;
     why = "by SLAVE=";
-  } else if (is_held_more(f) || is_held_more(turned)) {
-    p->slave = is_held_more(f);
+  } else if (held_more(f) != 0) {
+    p->slave = held_more(f) > 0;
     why = "the other is held";
   } else if (fmax(ratio, 1.0 / ratio) >= stiff_ratio * (1.0 - rounding)) {
     p->slave = ratio < 1.0;
@@ -545,7 +550,7 @@ static status check_contact_pair(model *m, const mesh *msh,
   if (!c->is_pair) return OK;
   PASS(check_surfaces(m, msh, &of, &c->pair, group));
   if (is_lost(m)) return OK;
-  choose(m, msh, fixed, 0, group, &c->pair);
+  choose(m, msh, fixed, group, &c->pair);
   c->group_id = c->pair.slave_id;
   c->group = msh->group[c->group_id].name;
   c->obstacle_name = msh->group[c->pair.master_id].name;
@@ -581,7 +586,7 @@ static status check_pairs(model *m, const mesh *msh) {
     const pair_card of = {"TIE", t->name, &t->at};
     int group[2] = {-1, -1};
     PASS(check_surfaces(m, msh, &of, &t->pair, group));
-    if (!is_lost(m)) choose(m, msh, fixed, 1, group, &t->pair);
+    if (!is_lost(m)) choose(m, msh, fixed, group, &t->pair);
   }
   return OK;
 }

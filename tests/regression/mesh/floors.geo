@@ -1,6 +1,6 @@
 // A block [0, 2] x [0, 1] with N edges below, over two floors [0, C] x [-1, 0]
-// and [C, 2] x [-1, 0] of one edge each, 0.001 lower.
-DefineConstant[ N = 5, C = 0.9 ];
+// and [C, 2] x [-1, 0] of one edge each, 0.001 lower, the right one by S more.
+DefineConstant[ N = 5, C = 0.9, S = 0 ];
 Macro Square
   Point(k) = {x0, y0, 0};
   Point(k + 1) = {x1, y0, 0};
@@ -17,7 +17,7 @@ k = 1; n = N; x0 = 0; x1 = 2; y0 = 0;
 Call Square;
 k = 11; n = 1; x1 = C; y0 = -1.001;
 Call Square;
-k = 21; x0 = C; x1 = 2;
+k = 21; x0 = C; x1 = 2; y0 = y0 - S;
 Call Square;
 Physical Curve("UNDER") = {1};
 Physical Curve("TOP") = {3};

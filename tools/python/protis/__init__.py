@@ -307,7 +307,7 @@ def run(deck, out=None, options=(), program=None, **parameters):
     deck = pathlib.Path(deck)
     folder = pathlib.Path(out or tempfile.mkdtemp(prefix="protis_"))
     folder.mkdir(parents=True, exist_ok=True)
-    words = [f"-D{k}={v!r}" if isinstance(v, float) else f"-D{k}={v}"
+    words = [f"-D{k}={float(v)!r}" if isinstance(v, float) else f"-D{k}={v}"
              for k, v in parameters.items()]
     done = subprocess.run(
         [program or find_program(), str(deck), "-o", str(folder), "--quiet",
