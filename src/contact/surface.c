@@ -42,6 +42,7 @@ typedef struct candidate {
 typedef struct tally {
   /* nodes */
   int n_fixed, n_unreached, n_corner, n_kept;
+  int n_stray; /* faces with a tied node that also moves others */
   int fixed_node, corner_node; /* the first of them */
   /* first node and pair */
   int n_dependent, dependent_node, dependent_on;
@@ -185,6 +186,7 @@ typedef struct adder {
   const mesh_group *group;
   candidate *first; /* [group->n_node] */
   int *index;       /* [n_node] place of a node, if it is in the group */
+  tally *t;
 } adder;
 
 /* The candidate of a node that moves by itself, NULL: there is none. */
@@ -220,6 +222,7 @@ static int give_masters(const adder *a, int row, double w,
       else
         give(dim, to, w * part / sum, normal);
     }
+  a->t->n_stray += sum > 0.0 && fabs(sum - 1.0) > rounding;
   return sum > 0.0;
 }
 
@@ -250,7 +253,7 @@ static void add_faces(const builder *b, int pair_id, candidate *first,
                       int *index) {
   const mesh *m = b->in->mesh;
   const mesh_group *g = b->in->pairs[pair_id].group;
-  const adder a = {b->in, g, first, index};
+  const adder a = {b->in, g, first, index, &b->tallies[pair_id]};
   for (int k = 0; k < g->n_node; ++k) {
     index[g->node_id[k]] = k;
     first[k].node_id = g->node_id[k];
@@ -613,6 +616,12 @@ static void say(const builder *b, int pair_id) {
                 "direction and left out of contact: %d, the first is %s",
                 p->name, p->group->name, t->n_fixed,
                 describe(m, t->fixed_node).text);
+  if (t->n_stray > 0)
+    message_add(b->log, P4035, &p->at,
+                "%s %s: tied nodes of group %s move with masters that are not "
+                "in the contact: forces next to the joint are wrong: SLAVE= of "
+                "the *TIE takes the other surface, the finer one",
+                p->card, p->name, p->group->name);
   if (t->n_unreached > 0 && t->n_kept > 0)
     message_add(b->log, P4003, &p->at,
                 "*CONTACT %s: %d nodes cannot reach obstacle %s along their "
