@@ -566,7 +566,12 @@
     "The contact force of a tied node acts on all masters it moves with, "    \
     "those within the body too, as no pressure does: stresses at the joint "  \
     "were wrong by up to 30 % on any mesh. With the finer surface as slave "  \
-    "of the *TIE (SLAVE=), or meshes that match, they are right.")
+    "of the *TIE (SLAVE=), or meshes that match, they are right.")           \
+  X(4036, WARNING, "friction of nodes that supports move",                    \
+    "The force of a contact node along what a support prescribes is that of " \
+    "the support, which has no law of friction: what the node drags, and the " \
+    "work of it, is missing. Move the body at other nodes, or the obstacle "  \
+    "or the other body.")
 
 #define MESSAGE_LIST_FILES(X)                                                \
   X(5001, ERROR, "file of a condensed problem cannot be read",               \

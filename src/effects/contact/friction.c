@@ -24,6 +24,7 @@ typedef struct friction {
   double *g;        /* [n] limit of r->now, N */
   double *distance; /* [n] all slip so far, m */
   double *left;     /* [n_node] that of a released surface, m */
+  int told;         /* 1: that friction of held nodes is left out */
 } friction;
 
 enum { T_BIT = 8, HALVINGS = 40 };
@@ -253,12 +254,28 @@ static status refuse_held(const run *r, int i, int a) {
         r->surface->node_no[i]);
 }
 
-static status check_held(const run *r, const friction *own, int i, int a,
-                         double from, double to) {
-  if (from == to || !is_half_held(r->surface, i, a) ||
+/* Of the motion of supports, which the differences of masters round. */
+static const double rounding = 1e-12;
+
+static void tell_held(const run *r, friction *own, int i, int a) {
+  const load *l = holder(r, i, a);
+  if (own->told) return;
+  own->told = 1;
+  message_add(
+      r->m->log, P4036, l == NULL ? &r->step->at : &l->at,
+      "contact node %zu slides as its support moves it: its friction is "
+      "left out, also of the reactions",
+      r->surface->node_no[i]);
+}
+
+static status check_held(const run *r, friction *own, int i, int a, double from,
+                         double to) {
+  if (!(fabs(to - from) > rounding * (fabs(to) + fabs(from))) ||
       !can_stick(&own->limit, i))
     return OK;
-  return refuse_held(r, i, a);
+  if (is_half_held(r->surface, i, a)) return refuse_held(r, i, a);
+  tell_held(r, own, i, a);
+  return OK;
 }
 
 /*
@@ -266,7 +283,7 @@ static status check_held(const run *r, const friction *own, int i, int a,
  * along by the obstacle (CPR98 S_i^n); for one static problem the origin (P2).
  * A prescribed unknown sticks where it is put: its force is the support's.
  */
-static status find_stick(run *r, const friction *own) {
+static status find_stick(run *r, friction *own) {
   int dim = r->msh->dim;
   int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
   for (int i = 0; i < r->nodes.n; ++i)
@@ -294,7 +311,6 @@ typedef struct travel {
 } travel;
 
 static int is_moved(const run *r, const travel *x, int i, int a) {
-  static const double rounding = 1e-12;
   const double from = held_value(r, x->before, i, a);
   const double to = held_value(r, x->now, i, a);
   const double drift = x->drift[r->msh->dim * i + a];
@@ -445,6 +461,7 @@ static status keep(run *r, void *self, archive *a) {
   friction *own = self;
   int known = own->known;
   PASS(archive_ints(a, "limit_known", &known, 1));
+  PASS(archive_ints(a, "held_told", &own->told, 1));
   PASS(archive_reals(a, "distance", own->distance, (size_t)r->nodes.n));
   if (archive_reads(a) && known) PASS(update_limit(r, own, r->old.t));
   return OK;
