@@ -347,6 +347,38 @@ START_TEST(stress_contracts_with_the_rate_of_a_bar) {
 }
 END_TEST
 
+/* Elements that expand without a law come before those that creep: as long as
+ * their temperature does not change, the rates are those without expansion. */
+START_TEST(rates_beside_a_group_that_expands) {
+  double rate[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("layers");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "layers.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+              "*INELASTIC, LAW=MAXWELL\n4.\n"
+              "*MATERIAL, NAME=E\n*ELASTIC\n200.D3, 0.1\n%s"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=E\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nSOFT, 20.\n"
+              "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n"
+              "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -1.E-3\n"
+              "*TEMPERATURE\nSOFT, 20.\n*ACCURACY, THEORY=YES\n*END STEP\n",
+              k == 0 ? "" : "*EXPANSION\n1.E-5\n");
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    rate[k] = result(&j, "stress_contraction", 0);
+    job_end(&j);
+  }
+  ck_assert_double_gt(rate[0], 0.05);
+  ck_assert_double_lt(rate[0], 0.25);
+  ck_assert_double_eq_tol(rate[1], rate[0], 1e-6);
+}
+END_TEST
+
 /* A triangle in plane stress with a determinate support: its stress does not
  * depend on its strains, s does not move, until a contact closes; then there is
  * one stress without load, with the rate of a bar. */
@@ -522,6 +554,7 @@ UNIT_MAIN("theory, whole runs", greco_has_the_guaranteed_limits_of_the_table,
           bounds_hold_at_every_increment, average_raises_the_guaranteed_limit,
           two_contacts_have_rows_of_their_own,
           stress_contracts_with_the_rate_of_a_bar,
+          rates_beside_a_group_that_expands,
           closed_contact_makes_the_stress_depend_on_strains,
           longer_times_need_more_passes,
           power_law_is_bounded_at_its_largest_stress,
