@@ -698,6 +698,39 @@ START_TEST(creep_beside_a_group_that_expands) {
 }
 END_TEST
 
+/* Elements that do not flow come before those that do, and are colder: the law
+ * has the coefficients of its own elements. */
+START_TEST(laws_have_the_temperature_of_their_elements) {
+  static const char *const laws[] = {"1.\n", "9., , 20.\n1., , 60.\n"};
+  double last[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("visco");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "visco.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n"
+              "*INELASTIC, LAW=MAXWELL\n%s"
+              "*MATERIAL, NAME=E\n*ELASTIC\n200., 0.1\n"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=E\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=M\n"
+              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nSOFT, 20.\nHARD, 60.\n"
+              "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n0.25, 1.\n"
+              "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
+              "*TEMPERATURE\nSOFT, 20.\nHARD, 60.\n"
+              "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
+              laws[k]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat d = job_table(&j, "ELEMENTS", -1);
+    last[k] = dat_max(&d, "ei_yy");
+    dat_free(&d);
+    job_end(&j);
+  }
+  ck_assert_double_gt(last[0], 1e-5);
+  ck_assert_double_eq_tol(last[1], last[0], 1e-12 * last[0]);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("visco");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -710,6 +743,7 @@ int main(void) {
   tcase_add_test(tests, elastic_groups_cost_nothing);
   tcase_add_test(tests, points_at_rest_are_counted);
   tcase_add_test(tests, creep_beside_a_group_that_expands);
+  tcase_add_test(tests, laws_have_the_temperature_of_their_elements);
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
   tcase_add_loop_test(tests, strains_of_units_and_their_sum_agree, 0,
                       (int)(sizeof units / sizeof *units));
