@@ -731,6 +731,33 @@ START_TEST(laws_have_the_temperature_of_their_elements) {
 }
 END_TEST
 
+/* Of two groups the one that comes last creeps at constant volume: it locks
+ * unless its own volume is averaged. */
+START_TEST(averaged_groups_do_not_lock) {
+  for (int k = 0; k < 4; ++k) {
+    static const char *const averaged = ", FORMULATION=AVERAGED";
+    job j = job_begin("visco");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "visco.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n"
+              "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n0.01\n"
+              "*MATERIAL, NAME=E\n*ELASTIC\n200., 0.1\n"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=E%s\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=M%s\n"
+              "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
+              "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
+              "*OUTPUT, HDF5=NO\n*END STEP\n",
+              k % 2 == 1 ? averaged : "", k / 2 == 1 ? averaged : "");
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    ck_assert_msg((strstr(j.errors, "P4016") != NULL) == (k / 2 == 0), "%d: %s",
+                  k, j.errors);
+    job_end(&j);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("visco");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -742,6 +769,7 @@ int main(void) {
   tcase_add_loop_test(tests, laws_that_store_dissipate, 0, N_LAW);
   tcase_add_test(tests, elastic_groups_cost_nothing);
   tcase_add_test(tests, points_at_rest_are_counted);
+  tcase_add_test(tests, averaged_groups_do_not_lock);
   tcase_add_test(tests, creep_beside_a_group_that_expands);
   tcase_add_test(tests, laws_have_the_temperature_of_their_elements);
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
