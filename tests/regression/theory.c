@@ -480,6 +480,37 @@ START_TEST(given_forces_are_loads) {
 }
 END_TEST
 
+/* Friction under a given force beside a contact has a given limit, wherever the
+ * obstacle is: limits and bounds are those of Tresca friction. */
+START_TEST(given_forces_of_one_contact_are_loads) {
+  static const double gap[] = {0.0, 0.5, -0.01};
+  static const char *const law[] = {"COULOMB\n0.3", "TRESCA\n6.",
+                                    "COULOMB\n0.3"};
+  double found[3][3];
+  for (int k = 0; k < 3; ++k) {
+    char cards[2 * LINE];
+    snprintf(cards, sizeof cards,
+             "*OBSTACLE, NAME=P, TYPE=GAP\n%g\n"
+             "*CONTACT, NAME=LID, GROUP=TOP, OBSTACLE=P\n"
+             "*CONTACT FORCE, CONTACT=LID\n20.\n"
+             "*FRICTION, CONTACT=LID, LAW=%s\n"
+             "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n"
+             "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nSYMMETRY, 1, 2\n"
+             "*DSLOAD\nLEFT, P, 5.\n*ACCURACY, THEORY=YES\n*END STEP\n",
+             gap[k], law[k]);
+    job j = run_text(6, cards, "");
+    ck_assert_int_eq(count(&j, "lst", "VIOLATED"), 0);
+    found[k][0] = result(&j, "factor", -1);
+    found[k][1] = result(&j, "left", 0);
+    found[k][2] = result(&j, "right", 0);
+    job_end(&j);
+  }
+  for (int k = 1; k < 3; ++k)
+    for (int i = 0; i < 3; ++i)
+      ck_assert_double_eq_tol(found[k][i] / found[0][i], 1, 1e-9);
+}
+END_TEST
+
 START_TEST(nothing_is_done_unless_asked_for) {
   char cards[2 * LINE], *card;
   long bytes;
@@ -559,4 +590,5 @@ UNIT_MAIN("theory, whole runs", greco_has_the_guaranteed_limits_of_the_table,
           longer_times_need_more_passes,
           power_law_is_bounded_at_its_largest_stress,
           initial_state_is_tested_against_3_8, given_forces_are_loads,
+          given_forces_of_one_contact_are_loads,
           nothing_is_done_unless_asked_for, inequality_holds_on_every_example)
