@@ -276,13 +276,18 @@ START_TEST(given_beside_unilateral) {
 }
 END_TEST
 
-/* The zone of friction is found by solving again: with the same gaps. */
+/* The zone of friction is found by solving again: with the same gaps. No limit
+ * where nothing touches. */
 START_TEST(given_beside_a_zone_that_grows) {
   mirrored = _i;
   job j = run_halves("GAP\n\"0.04*(x - 0.5)^2\"",
                      "NONLOCAL, RADIUS=0.3, ZONE=CONTACT");
   int first = check_halves(&j, 0), last = check_halves(&j, -1);
   ck_assert_int_lt(first, last);
+  dat c = job_table(&j, "CONTACT", 0);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_int_eq(dat_at(&c, i, "limit") > 0.0, dat_at(&c, i, "f_n") > 0.0);
+  dat_free(&c);
   job_end(&j);
 }
 END_TEST
