@@ -82,6 +82,18 @@ START_TEST(plan_names_file_and_line) {
 }
 END_TEST
 
+/* Not of nodes that are loaded: 9 on the side that is held. */
+START_TEST(reactions_are_of_supports_alone) {
+  job j = block("", "*PRINT, REACTIONS\n", "");
+  dat r = job_table(&j, "REACTIONS", -1);
+  ck_assert_int_eq(r.n_row, 9);
+  for (int i = 0; i < r.n_row; ++i)
+    ck_assert_double_eq(dat_at(&r, i, "x"), 40.0);
+  dat_free(&r);
+  job_end(&j);
+}
+END_TEST
+
 /* The card that counts, of several. */
 START_TEST(plan_names_the_reason) {
   static const struct {
@@ -391,6 +403,7 @@ END_TEST
 
 UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
           plan_names_file_and_line, plan_names_the_reason,
-          no_stage_runs_uncalled, every_effect_is_called_for,
-          no_friction_no_tangential_unknown, nothing_rubs_no_loop_one_factor,
-          calls_are_as_foreseen, no_timing_leaves_calls_alone)
+          reactions_are_of_supports_alone, no_stage_runs_uncalled,
+          every_effect_is_called_for, no_friction_no_tangential_unknown,
+          nothing_rubs_no_loop_one_factor, calls_are_as_foreseen,
+          no_timing_leaves_calls_alone)

@@ -110,6 +110,18 @@ START_TEST(cold_elements_are_named) {
 }
 END_TEST
 
+/* What the listing says of a section. */
+static int is_listed_averaged(const job *j, const char *section) {
+  char *text = job_file(j, "lst"), key[40];
+  snprintf(key, sizeof key, "\n  section  %s ", section);
+  const char *at = strstr(text, key), *word = ", volume averaged\n";
+  ck_assert_ptr_nonnull(at);
+  at += 1 + strcspn(at + 1, "\n") - strlen(", volume averaged");
+  const int found = strncmp(at, word, strlen(word)) == 0;
+  free(text);
+  return found;
+}
+
 /* What creeps at constant volume locks unless its own volume is averaged. */
 START_TEST(averaged_groups_do_not_lock) {
   static const char *const averaged = ", FORMULATION=AVERAGED";
@@ -123,6 +135,8 @@ START_TEST(averaged_groups_do_not_lock) {
     job j = run_layers(&s, "", 0);
     ck_assert_msg((strstr(j.errors, "P4016") != NULL) == (k / 2 == 0), "%d: %s",
                   k, j.errors);
+    ck_assert_int_eq(is_listed_averaged(&j, "SOFT"), k % 2);
+    ck_assert_int_eq(is_listed_averaged(&j, "HARD"), k / 2);
     job_end(&j);
   }
 }
