@@ -82,6 +82,63 @@ START_TEST(plan_names_file_and_line) {
 }
 END_TEST
 
+/* Not of nodes that are loaded: 9 on the side that is held. */
+START_TEST(reactions_are_of_supports_alone) {
+  job j = block("", "*PRINT, REACTIONS\n", "");
+  dat r = job_table(&j, "REACTIONS", -1);
+  ck_assert_int_eq(r.n_row, 9);
+  for (int i = 0; i < r.n_row; ++i)
+    ck_assert_double_eq(dat_at(&r, i, "x"), 40.0);
+  dat_free(&r);
+  job_end(&j);
+}
+END_TEST
+
+/* The card that counts, of several. */
+START_TEST(plan_names_the_reason) {
+  static const struct {
+    const char *step, *words; /* the cards of the step from line 21 on */
+    const char *effect, *reason;
+  } rows[] = {
+      {"", "-D MU=0", "tangential unknowns",
+       "mu = 0: only normals are condensed"},
+      {"*SOLVER, CHECK=YES\n", "-D MU=0", "tangential unknowns",
+       "*SOLVER, CHECK=, block.inp:21"},
+      {"*ACCURACY, THEORY=YES\n", "-D MU=0", "tangential unknowns",
+       "*ACCURACY, THEORY=YES, block.inp:21"},
+      {"*ACCURACY, THEORY=YES\n*SOLVER, CHECK=YES\n"
+       "*OUTPUT, CONDENSED=FCLIB\n",
+       "-D MU=0", "tangential unknowns",
+       "*OUTPUT, CONDENSED=FCLIB, block.inp:23"},
+      {"", "", "fields in JOB.h5", "default; *OUTPUT, HDF5=NO leaves them out"},
+      {"*OUTPUT, HDF5=NO\n", "", "fields in JOB.h5", "*OUTPUT, HDF5=NO"},
+      {"*OUTPUT, HDF5=NO\n*END STEP\n*STEP\n*STATIC\n*OUTPUT\n", "",
+       "fields in JOB.h5", "*OUTPUT, block.inp:25"},
+      {"*DLOAD\nBODY, BX, 1.\n", "", "body forces",
+       "*DLOAD on group BODY, block.inp:22"},
+      {"", "", "body forces", "no *DLOAD card"},
+      {"*OUTPUT, HDF5=NO\n*ACCURACY, MESH=NO\n", "", "stresses",
+       "no output requires them"},
+      {"*OUTPUT, HDF5=NO\n*PRINT, NODES\n*PRINT, ELEMENTS\n", "", "stresses",
+       "*PRINT, block.inp:23"},
+      {"*BOUNDARY\nTOP, 2, 2, -1E-3\n", "", "reactions",
+       "work of the support TOP, block.inp:22, that moves or is released"}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+    char words[40], name[40];
+    snprintf(words, sizeof words, "--check %s", rows[i].words);
+    job j = block("", rows[i].step, words);
+    snprintf(name, sizeof name, "\n  %s  ", rows[i].effect);
+    const char *at = strstr(j.text, name);
+    ck_assert_msg(at != NULL, "%s", rows[i].effect);
+    char *line = strndup(at + 1, strcspn(at + 1, "\n"));
+    ck_assert_msg(strstr(line, rows[i].reason) != NULL, "%s\n%s",
+                  rows[i].reason, line);
+    free(line);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Calls and bytes of an effect in the closing table, whose lines end with
  * calls, seconds, bytes; its line. */
 static char *cost_of(const job *j, const char *effect, long *calls,
@@ -345,7 +402,8 @@ START_TEST(no_timing_leaves_calls_alone) {
 END_TEST
 
 UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
-          plan_names_file_and_line, no_stage_runs_uncalled,
+          plan_names_file_and_line, plan_names_the_reason,
+          reactions_are_of_supports_alone, no_stage_runs_uncalled,
           every_effect_is_called_for, no_friction_no_tangential_unknown,
           nothing_rubs_no_loop_one_factor, calls_are_as_foreseen,
           no_timing_leaves_calls_alone)

@@ -21,22 +21,25 @@ typedef struct scene {
   const char *dt; /* NULL: 0.25                                               */
 } scene;
 
+static const char *touching = "CONTACT"; /* group of the contact            */
+static double height = 30.0;
+
 static job run_scene(const scene *s) {
   job j = job_begin("block");
-  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, 30.0}, 0);
+  block_file_write(&j, (int[]){8, 6}, (double[]){40.0, height}, 0);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"
             "130.D3, %.17g\n%s"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=STEEL, TYPE=CPE3\n"
             "*AMPLITUDE, NAME=ON\n0., 1., 1., 1.\n"
             "*OBSTACLE, NAME=FLOOR, TYPE=CONFORMING\n"
-            "*CONTACT, NAME=FOOT, GROUP=CONTACT, OBSTACLE=FLOOR\n%s%s"
+            "*CONTACT, NAME=FOOT, GROUP=%s, OBSTACLE=FLOOR\n%s%s"
             "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n%s, 1.0\n"
             "*BOUNDARY\nSYMMETRY, 1, 1\n*DSLOAD\nTOP, P, 50.\n%s"
             "*PRINT, CONTACT, TOTALS, ENERGY, FREQUENCY=0\n"
             "*OUTPUT, HDF5=NO\n*END STEP\n",
-            s->nu, s->material, s->law == NULL ? "" : s->law, s->effects,
-            s->dt == NULL ? "0.25" : s->dt, s->loads);
+            s->nu, s->material, touching, s->law == NULL ? "" : s->law,
+            s->effects, s->dt == NULL ? "0.25" : s->dt, s->loads);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
@@ -231,7 +234,7 @@ START_TEST(elements_below_the_threshold_are_left_out) {
 }
 END_TEST
 
-/* Nodes are 5 apart. */
+/* Nodes are 5 apart, those of the side of a high block 10. */
 START_TEST(average_within_an_element_is_local) {
   const scene within = {
       "",
@@ -244,6 +247,12 @@ START_TEST(average_within_an_element_is_local) {
   beyond.law = "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=5.1\n0.3\n";
   compare(&within, "nonlocal average", 1, 1e-12);
   stays(&beyond, "nonlocal average");
+  scene side = within;
+  side.law = "*FRICTION, CONTACT=FOOT, LAW=NONLOCAL, RADIUS=9.9\n0.3\n";
+  side.loads = "*BOUNDARY\nCONTACT, 2\n";
+  touching = "LEFT";
+  height = 60.0;
+  compare(&side, "nonlocal average", 1, 1e-12);
 }
 END_TEST
 

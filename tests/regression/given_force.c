@@ -203,6 +203,9 @@ START_TEST(slip_in_space_is_opposite_to_the_drag) {
 }
 END_TEST
 
+static int mirrored; /* left and right are exchanged: other nodes are first */
+static double from_left(double x) { return mirrored ? 1.0 - x : x; }
+
 /* Given on the left half of the foot (JET), a contact with friction on the
  * right (FOOT). */
 static job run_halves(const char *floor, const char *law) {
@@ -212,8 +215,9 @@ static job run_halves(const char *floor, const char *law) {
             "Point(3)={1,0,0,h};Point(4)={1,1,0,h};Point(5)={0,1,0,h};"
             "Line(1)={1,2};Line(2)={2,3};Line(3)={3,4};Line(4)={4,5};"
             "Line(5)={5,1};\nCurve Loop(1)={1:5};Plane Surface(1)={1};"
-            "Physical Surface(\"BODY\")={1};Physical Curve(\"JET\")={1};"
-            "Physical Curve(\"FOOT\")={2};Physical Curve(\"TOP\")={4};\n");
+            "Physical Surface(\"BODY\")={1};Physical Curve(\"JET\")={%d};"
+            "Physical Curve(\"FOOT\")={%d};Physical Curve(\"TOP\")={4};\n",
+            mirrored ? 2 : 1, mirrored ? 1 : 2);
   job_write(&j, "halves.inp",
             "*MESH, FILE=halves.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -222,10 +226,10 @@ static job run_halves(const char *floor, const char *law) {
             "*CONTACT, NAME=B, GROUP=FOOT, OBSTACLE=O\n"
             "*FRICTION, CONTACT=A, LAW=COULOMB\n0.4\n"
             "*FRICTION, CONTACT=B, LAW=%s\n0.2\n"
-            "*CONTACT FORCE, CONTACT=A\n\"3+x\"\n*STEP\n*QUASISTATIC\n"
-            "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1, 0.02\n"
+            "*CONTACT FORCE, CONTACT=A\n\"%s\"\n*STEP\n*QUASISTATIC\n"
+            "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1, %g\n"
             "*PRINT, CONTACT, ENERGY\n*END STEP\n",
-            floor, law);
+            floor, law, mirrored ? "4-x" : "3+x", mirrored ? -0.02 : 0.02);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   return j;
 }
@@ -236,7 +240,7 @@ static int check_halves(const job *j, int k) {
   dat c = job_table(j, "CONTACT", k), e = job_table(j, "ENERGY", k);
   int given = 0, touching = 0;
   for (int i = 0; i < c.n_row; ++i) {
-    double x = dat_at(&c, i, "x"), n = dat_at(&c, i, "f_n");
+    double x = from_left(dat_at(&c, i, "x")), n = dat_at(&c, i, "f_n");
     double gap = dat_at(&c, i, "gap");
     if (x < 0.51) {
       ++given;
@@ -258,11 +262,12 @@ static int check_halves(const job *j, int k) {
 }
 
 START_TEST(given_beside_unilateral) {
+  mirrored = _i;
   job j = run_halves("CONFORMING", "COULOMB");
   check_halves(&j, -1);
   dat c = job_table(&j, "CONTACT", -1);
   for (int i = 0; i < c.n_row; ++i) {
-    double mu = dat_at(&c, i, "x") > 0.51 ? 0.2 : 0.4;
+    double mu = from_left(dat_at(&c, i, "x")) > 0.51 ? 0.2 : 0.4;
     ck_assert_double_le(fabs(dat_at(&c, i, "f_t")),
                         mu * dat_at(&c, i, "f_n") + 1e-9);
   }
@@ -271,12 +276,18 @@ START_TEST(given_beside_unilateral) {
 }
 END_TEST
 
-/* The zone of friction is found by solving again: with the same gaps. */
+/* The zone of friction is found by solving again: with the same gaps. No limit
+ * where nothing touches. */
 START_TEST(given_beside_a_zone_that_grows) {
+  mirrored = _i;
   job j = run_halves("GAP\n\"0.04*(x - 0.5)^2\"",
                      "NONLOCAL, RADIUS=0.3, ZONE=CONTACT");
   int first = check_halves(&j, 0), last = check_halves(&j, -1);
   ck_assert_int_lt(first, last);
+  dat c = job_table(&j, "CONTACT", 0);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_int_eq(dat_at(&c, i, "limit") > 0.0, dat_at(&c, i, "f_n") > 0.0);
+  dat_free(&c);
   job_end(&j);
 }
 END_TEST
@@ -365,9 +376,18 @@ START_TEST(given_force_that_lifts_the_body_is_named) {
 }
 END_TEST
 
-UNIT_MAIN("given force", slip_under_a_given_force_by_every_method,
-          stick_under_a_given_force, given_force_without_friction,
-          pressures_of_contact_given_back,
-          slip_in_space_is_opposite_to_the_drag, given_beside_unilateral,
-          given_beside_a_zone_that_grows, slip_while_the_body_softens,
-          unheld_body_is_refused, given_force_that_lifts_the_body_is_named)
+int main(void) {
+  TCase *tests = tcase_create("given force");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, slip_under_a_given_force_by_every_method);
+  tcase_add_test(tests, stick_under_a_given_force);
+  tcase_add_test(tests, given_force_without_friction);
+  tcase_add_test(tests, pressures_of_contact_given_back);
+  tcase_add_test(tests, slip_in_space_is_opposite_to_the_drag);
+  tcase_add_loop_test(tests, given_beside_unilateral, 0, 2);
+  tcase_add_loop_test(tests, given_beside_a_zone_that_grows, 0, 2);
+  tcase_add_test(tests, slip_while_the_body_softens);
+  tcase_add_test(tests, unheld_body_is_refused);
+  tcase_add_test(tests, given_force_that_lifts_the_body_is_named);
+  return unit_run("given force", tests);
+}

@@ -347,6 +347,38 @@ START_TEST(stress_contracts_with_the_rate_of_a_bar) {
 }
 END_TEST
 
+/* Elements that expand without a law come before those that creep: as long as
+ * their temperature does not change, the rates are those without expansion. */
+START_TEST(rates_beside_a_group_that_expands) {
+  double rate[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("layers");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "layers.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
+              "*INELASTIC, LAW=MAXWELL\n4.\n"
+              "*MATERIAL, NAME=E\n*ELASTIC\n200.D3, 0.1\n%s"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=E\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nSOFT, 20.\n"
+              "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n"
+              "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -1.E-3\n"
+              "*TEMPERATURE\nSOFT, 20.\n*ACCURACY, THEORY=YES\n*END STEP\n",
+              k == 0 ? "" : "*EXPANSION\n1.E-5\n");
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    rate[k] = result(&j, "stress_contraction", 0);
+    job_end(&j);
+  }
+  ck_assert_double_gt(rate[0], 0.05);
+  ck_assert_double_lt(rate[0], 0.25);
+  ck_assert_double_eq_tol(rate[1], rate[0], 1e-6);
+}
+END_TEST
+
 /* A triangle in plane stress with a determinate support: its stress does not
  * depend on its strains, s does not move, until a contact closes; then there is
  * one stress without load, with the rate of a bar. */
@@ -448,6 +480,37 @@ START_TEST(given_forces_are_loads) {
 }
 END_TEST
 
+/* Friction under a given force beside a contact has a given limit, wherever the
+ * obstacle is: limits and bounds are those of Tresca friction. */
+START_TEST(given_forces_of_one_contact_are_loads) {
+  static const double gap[] = {0.0, 0.5, -0.01};
+  static const char *const law[] = {"COULOMB\n0.3", "TRESCA\n6.",
+                                    "COULOMB\n0.3"};
+  double found[3][3];
+  for (int k = 0; k < 3; ++k) {
+    char cards[2 * LINE];
+    snprintf(cards, sizeof cards,
+             "*OBSTACLE, NAME=P, TYPE=GAP\n%g\n"
+             "*CONTACT, NAME=LID, GROUP=TOP, OBSTACLE=P\n"
+             "*CONTACT FORCE, CONTACT=LID\n20.\n"
+             "*FRICTION, CONTACT=LID, LAW=%s\n"
+             "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n"
+             "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nSYMMETRY, 1, 2\n"
+             "*DSLOAD\nLEFT, P, 5.\n*ACCURACY, THEORY=YES\n*END STEP\n",
+             gap[k], law[k]);
+    job j = run_text(6, cards, "");
+    ck_assert_int_eq(count(&j, "lst", "VIOLATED"), 0);
+    found[k][0] = result(&j, "factor", -1);
+    found[k][1] = result(&j, "left", 0);
+    found[k][2] = result(&j, "right", 0);
+    job_end(&j);
+  }
+  for (int k = 1; k < 3; ++k)
+    for (int i = 0; i < 3; ++i)
+      ck_assert_double_eq_tol(found[k][i] / found[0][i], 1, 1e-9);
+}
+END_TEST
+
 START_TEST(nothing_is_done_unless_asked_for) {
   char cards[2 * LINE], *card;
   long bytes;
@@ -522,8 +585,10 @@ UNIT_MAIN("theory, whole runs", greco_has_the_guaranteed_limits_of_the_table,
           bounds_hold_at_every_increment, average_raises_the_guaranteed_limit,
           two_contacts_have_rows_of_their_own,
           stress_contracts_with_the_rate_of_a_bar,
+          rates_beside_a_group_that_expands,
           closed_contact_makes_the_stress_depend_on_strains,
           longer_times_need_more_passes,
           power_law_is_bounded_at_its_largest_stress,
           initial_state_is_tested_against_3_8, given_forces_are_loads,
+          given_forces_of_one_contact_are_loads,
           nothing_is_done_unless_asked_for, inequality_holds_on_every_example)

@@ -667,37 +667,6 @@ START_TEST(points_at_rest_are_counted) {
 }
 END_TEST
 
-/* Elements that expand without a law come before those that creep: as long as
- * their temperature does not change, the answer is that without expansion. */
-START_TEST(creep_beside_a_group_that_expands) {
-  double last[2];
-  for (int k = 0; k < 2; ++k) {
-    job j = job_begin("visco");
-    job_copy(&j, "tests/regression/mesh/layers.geo");
-    job_write(&j, "visco.inp",
-              "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
-              "*MATERIAL, NAME=M\n*ELASTIC\n" STEEL "\n" DEVIATORIC
-              "*MATERIAL, NAME=E\n*ELASTIC\n200., 0.1\n%s"
-              "*SOLID SECTION, ELSET=SOFT, MATERIAL=E\n"
-              "*SOLID SECTION, ELSET=HARD, MATERIAL=M\n"
-              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nSOFT, 20.\n"
-              "*STEP\n*VISCO, INTEGRATOR=HEUN\n0.25, 1.\n"
-              "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
-              "*TEMPERATURE\nSOFT, 20.\n"
-              "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
-              k == 0 ? "" : "*EXPANSION\n1.E-5\n");
-    int code = job_run(&j, "");
-    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    dat d = job_table(&j, "ELEMENTS", -1);
-    last[k] = dat_max(&d, "ei_yy");
-    dat_free(&d);
-    job_end(&j);
-  }
-  ck_assert_double_gt(last[0], 1e-5);
-  ck_assert_double_eq_tol(last[1], last[0], 1e-12 * last[0]);
-}
-END_TEST
-
 int main(void) {
   TCase *tests = tcase_create("visco");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -709,7 +678,6 @@ int main(void) {
   tcase_add_loop_test(tests, laws_that_store_dissipate, 0, N_LAW);
   tcase_add_test(tests, elastic_groups_cost_nothing);
   tcase_add_test(tests, points_at_rest_are_counted);
-  tcase_add_test(tests, creep_beside_a_group_that_expands);
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
   tcase_add_loop_test(tests, strains_of_units_and_their_sum_agree, 0,
                       (int)(sizeof units / sizeof *units));

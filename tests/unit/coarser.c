@@ -64,13 +64,25 @@ static double square(const cloud *a, int i, const cloud *b, int k) {
   return sum;
 }
 
+/* Long along y. */
+static void swap_axes(cloud *c) {
+  for (int i = 0; i < c->s.n; ++i) {
+    double *x = c->x + c->s.dim * i, along = x[0];
+    x[0] = x[1];
+    x[1] = along;
+  }
+}
+
 START_TEST(node_is_the_nearest_of_its_contact) {
   static cloud coarse, fine;
-  for (int dim = 2; dim <= 3; ++dim) {
+  for (int turn = 0; turn < 4; ++turn) {
+    const int dim = 2 + turn % 2;
     coarser *c = NULL;
     int nearest[MOST];
     make_cloud(&coarse, dim, 60);
     make_cloud(&fine, dim, MOST);
+    if (turn >= 2) swap_axes(&coarse);
+    if (turn >= 2) swap_axes(&fine);
     for (int i = 0; i < 10; ++i) coarse.contact_id[i] = 0;
     fine.contact_id[0] = 7;
     ck_assert_int_eq(coarser_new(&c), OK);

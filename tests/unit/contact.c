@@ -39,6 +39,28 @@ START_TEST(residual_is_zero_for_solved_node) {
 }
 END_TEST
 
+/* The last of any number of nodes counts, what stands behind it does not. */
+START_TEST(residual_is_that_of_all_nodes) {
+  enum { MOST = 140, BEHIND = 2 * MOST };
+  for (int n = 1; n <= MOST; ++n) {
+    contact_case c = case_new(2, BEHIND, 0.5);
+    double u[2 * BEHIND], r[2 * BEHIND];
+    for (int i = 0; i < 2 * BEHIND; ++i) {
+      u[i] = 0.0;
+      r[i] = i >= 2 * n ? NAN : i % 2 == 0 ? -8.0 : 0.0;
+      c.f[i] = -r[i];
+    }
+    c.cp.n = n;
+    c.cp.m = 2 * n;
+    for (int i = 0; i < 2 * n; ++i) c.A[i * (2 * n + 1)] = 4.0;
+    ck_assert_msg(contact_residual(&c.cp, u, r) == 0.0, "%d nodes", n);
+    r[2 * n - 2] = -7.2;
+    ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.1, 1e-13);
+    case_free(&c);
+  }
+}
+END_TEST
+
 START_TEST(each_broken_condition_shows_by_its_size) {
   contact_case c = one_node(4.0, 2.0, 0.5);
   c.f[0] = 8.0;
@@ -419,7 +441,7 @@ END_TEST
 
 UNIT_MAIN("contact", active_nodes_take_their_own_data,
           blocks_give_the_residual_of_all_entries,
-          residual_is_zero_for_solved_node,
+          residual_is_zero_for_solved_node, residual_is_that_of_all_nodes,
           each_broken_condition_shows_by_its_size,
           weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
           scale_is_above_rounding_of_loads_and_of_the_way,

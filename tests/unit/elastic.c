@@ -128,6 +128,9 @@ START_TEST(constants_that_are_not_elliptic_are_refused) {
   k[20] = 1;
   k[19] = 1.5; /* D1323 */
   refused(ELASTIC_ANISO, 21, k, "order 6");
+  k[19] = 0;
+  k[0] = 1e20; /* D1111: each is compared with its own stiffness */
+  ck_assert_ptr_null(matrix(ELASTIC_ANISO, 21, k, C));
 }
 END_TEST
 

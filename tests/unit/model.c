@@ -151,6 +151,46 @@ START_TEST(loads_ramp_stay_change_and_end) {
 }
 END_TEST
 
+/* In axisymmetry r and z are the coordinates, as x and y of the mesh are; r of
+ * a *PARAMETER is that; elsewhere r is no name. */
+START_TEST(expressions_have_the_coordinates_of_the_section) {
+  static const struct {
+    const char *parameter, *type, *expression;
+    double value; /* at (2, 3) after 5 s; NAN: refused */
+  } rows[] = {{"", "CAX3", "r + 10*z + 100*t", 532},
+              {"", "CAX3", "x + 10*y", 32},
+              {"*PARAMETER\nR = 7\n", "CAX3", "r + 10*z", 37},
+              {"*PARAMETER\nR = 7\n", "CAX3", "x + 10*z + 0*r", 32},
+              {"", "CPE3", "x + 10*y + 100*t", 532},
+              {"", "CPE3", "r", NAN},
+              {"", "CAX3", "10*q", NAN}};
+  static const double at[3] = {2, 3, 0};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+    char text[800];
+    text_model s;
+    snprintf(text, sizeof text,
+             "%s" HEAD
+             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+             "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+             "*CONTACT, NAME=C, GROUP=LEFT, OBSTACLE=O\n"
+             "*FRICTION, CONTACT=C, LAW=COULOMB, TABLE=%s\n"
+             "0., 0., 6., 3.\n"
+             "*STEP\n*STATIC\n*DSLOAD\nBOTTOM, P, \"%s\"\n*END STEP\n",
+             rows[i].parameter, rows[i].type,
+             strcmp(rows[i].type, "CAX3") == 0 ? "Z" : "Y", rows[i].expression);
+    text_model_read(&s, text, square());
+    ck_assert_int_eq(s.st, isnan(rows[i].value) ? ERR_DECK : OK);
+    if (s.st == OK) {
+      const quantity *q = &s.m->steps[0].loads.item[0].value;
+      const value_table *mu = &s.m->contacts[0].friction.position;
+      ck_assert_double_eq(quantity_value(q, at, 5), rows[i].value);
+      ck_assert_double_eq(table_value(mu, at, 5), 1.5);
+    }
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 START_TEST(echo_reads_back_to_the_same_echo) {
   static const char text[] =
       "*HEADING\nA title, with a comma\n*PARAMETER\nH = 0.1\n"
@@ -306,8 +346,9 @@ START_TEST(every_refused_request_is_reported) {
 END_TEST
 
 UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
-          loads_ramp_stay_change_and_end, echo_reads_back_to_the_same_echo,
-          directions_have_unit_length, effects_are_what_the_deck_calls_for,
-          supports_that_move_are_found,
+          loads_ramp_stay_change_and_end,
+          expressions_have_the_coordinates_of_the_section,
+          echo_reads_back_to_the_same_echo, directions_have_unit_length,
+          effects_are_what_the_deck_calls_for, supports_that_move_are_found,
           initial_strains_have_the_components_of_the_space,
           every_refused_request_is_reported)

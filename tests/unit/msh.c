@@ -398,7 +398,7 @@ START_TEST(tags_choose_the_groups) {
 }
 END_TEST
 
-/* Correctly rounded, whatever the number of digits. */
+/* Correctly rounded, whatever the number of digits; with a sign or without. */
 START_TEST(coordinates_are_the_nearest_doubles) {
   mesh_file f;
   mesh_file_open(&f);
@@ -411,7 +411,8 @@ START_TEST(coordinates_are_the_nearest_doubles) {
     random = random * 6364136223846793005u + 1442695040888963407u;
     double v = (double)(random >> 11) * ldexp(1.0, (int)(random % 200) - 150);
     int digits = i % 7 == 0 ? 300 : 1 + i % 22;
-    snprintf(word, sizeof word, i % 3 ? "%.*e" : "%.*g",
+    word[0] = i % 4 == 0 ? '+' : '-';
+    snprintf(word + (i % 2 == 0), sizeof word - 1, i % 3 ? "%.*e" : "%.*g",
              digits > 100 ? 100 : digits, i % 5 ? v : 0.5 + 1.0 / (i + 1));
     wanted[i] = strtod(word, NULL);
     n += snprintf(line + n, sizeof line - (size_t)n, "%s ", word);

@@ -277,31 +277,38 @@ static void check_forces(const contact_surface *s, int n_node) {
   for (int i = 0; i < n; ++i) ck_assert_double_eq_tol(again[i], r[i], 1e-13);
 }
 
-/* The edge of a floor and a leaning wall: each normal has its own partner, the
- * tangent along the edge none. */
-START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
+static const double lean[3] = {-0.3, 0, 1};
+
+/* The edge along y of a floor, which begins at x = "from", and a leaning wall
+ * or an obstacle in its place. The first node of the floor, of the wall. */
+static void build_edge(scene *c, int with_wall, double from, int first[2]) {
   static const double ex[3] = {1, 0, 0}, ey[3] = {0, 1, 0};
-  static const double lean[3] = {-0.3, 0, 1};
+  scene_init(c, 3);
+  add_square(c, 2, (double[]){0, 0, 0}, ey, ex);
+  const mesh_group *below = group_from(c, "BELOW", 0);
+  add_square(c, 2, (double[]){0, 0, 0}, lean, ey);
+  const mesh_group *side = group_from(c, "SIDE", 8);
+  first[0] = c->m.n_node;
+  add_square(c, 3, (double[]){from, 0, -0.1}, ex, ey);
+  add_pair(c, below, group_from(c, "FLOOR", 16));
+  first[1] = c->m.n_node;
+  add_square(c, 3, (double[]){-0.2, 0, 0}, ey, lean);
+  const mesh_group *beside = group_from(c, "WALL", 34);
+  add_pair(c, side, with_wall ? beside : NULL);
+  ck_assert_int_eq(build(c), OK);
+}
+
+/* Each normal has its own partner, the tangent along the edge none. */
+START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
   static const double floor[3] = {1, 2, 3}, wall[3] = {4, 5, 6};
   const double length = sqrt(1.09);
   const int with_wall = _i;
+  int first[2];
   scene c;
-  scene_init(&c, 3);
-  add_square(&c, 2, (double[]){0, 0, 0}, ey, ex);
-  const mesh_group *below = group_from(&c, "BELOW", 0);
-  add_square(&c, 2, (double[]){0, 0, 0}, lean, ey);
-  const mesh_group *side = group_from(&c, "SIDE", 8);
-  const int n_slave = c.m.n_node;
-  add_square(&c, 3, (double[]){0, 0, -0.1}, ex, ey);
-  add_pair(&c, below, group_from(&c, "FLOOR", 16));
-  const int n_floor = c.m.n_node;
-  add_square(&c, 3, (double[]){-0.2, 0, 0}, ey, lean);
-  const mesh_group *beside = group_from(&c, "WALL", 34);
-  add_pair(&c, side, with_wall ? beside : NULL);
-  ck_assert_int_eq(build(&c), OK);
+  build_edge(&c, with_wall, 0, first);
   double u[3 * MOST] = {0}, w[3 * MOST];
-  for (int i = n_slave; i < c.m.n_node; ++i)
-    memcpy(u + 3 * i, i < n_floor ? floor : wall, sizeof floor);
+  for (int i = first[0]; i < c.m.n_node; ++i)
+    memcpy(u + 3 * i, i < first[1] ? floor : wall, sizeof floor);
   surface_relative(c.s, u, w);
   int n_edge = 0;
   for (int q = 0; q < c.s->n; ++q) {
@@ -321,6 +328,29 @@ START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
   ck_assert_int_eq(n_edge, 3);
   check_forces(c.s, c.m.n_node);
   scene_free(&c);
+}
+END_TEST
+
+/* What the floor covers of a node, and where the force of its row acts, are the
+ * same with a wall beside it. */
+START_TEST(floor_covers_what_it_does_without_a_wall) {
+  scene c[2];
+  int first[2], n_edge = 0;
+  for (int k = 0; k < 2; ++k) build_edge(&c[k], k, 0.25, first);
+  ck_assert_int_eq(c[0].s->n, c[1].s->n);
+  for (int q = 0; q < c[0].s->n; ++q) {
+    const contact_surface *a = c[0].s, *b = c[1].s;
+    ck_assert_int_eq(a->node_id[q], b->node_id[q]);
+    if (a->side_id[2 * q] < 0 || b->side_id[2 * q] < 0) continue;
+    ++n_edge;
+    ck_assert_double_lt(a->covered[q], 0.9);
+    ck_assert_double_eq_tol(a->covered[q], b->covered[q], 1e-14);
+    ck_assert_double_eq_tol(a->share[3 * q], b->share[3 * q], 1e-14);
+    for (int x = 0; x < 3; ++x)
+      ck_assert_double_eq_tol(a->lever[9 * q + x], b->lever[9 * q + x], 1e-14);
+  }
+  ck_assert_int_eq(n_edge, 3);
+  for (int k = 0; k < 2; ++k) scene_free(&c[k]);
 }
 END_TEST
 
@@ -401,6 +431,7 @@ int main(void) {
   tcase_add_test(tests, held_tangent_is_relative_to_none);
   tcase_add_loop_test(tests, rows_at_an_edge_are_relative_to_their_own_partner,
                       0, 2);
+  tcase_add_test(tests, floor_covers_what_it_does_without_a_wall);
   tcase_add_loop_test(tests, normal_is_the_mean_or_that_of_the_slave, 0, 2);
   tcase_add_loop_test(tests, coarse_masters_are_told, 0, 4);
   tcase_add_test(tests, surfaces_that_do_not_meet_are_an_error);

@@ -156,6 +156,25 @@ static contact_case planted(int n, double share, unsigned long long *seed) {
   return c;
 }
 
+/* Node 0 slides away under no pressure, but the limit of its friction grows
+ * with the pressure at node 1, which moves away by 0.2 only: a force there
+ * holds both from a share of 0.2 on. */
+START_TEST(pressure_elsewhere_holds_a_slip) {
+  const double v[] = {-1.0, 1.0, -0.2, 0.0};
+  double workspace[3 * 4];
+  contact_case c = case_new(2, 2, 0.3);
+  c.cp.floating = 1;
+  c.f[1] = 1.0;
+  c.B->col[0] = 1;
+  c.B->col[1] = 0;
+  for (int k = 0; k < 8; ++k) {
+    c.B->val[0] = 0.05 * k;
+    ck_assert_int_eq(proof_holds(&c.cp, v, workspace), k <= 4);
+  }
+  case_free(&c);
+}
+END_TEST
+
 START_TEST(solvable_problem_is_never_said_to_have_no_equilibrium) {
   const solver_ops *ops;
   unsigned long long seed = 11;
@@ -306,6 +325,7 @@ END_TEST
 
 UNIT_MAIN("proof", balanced_load_has_no_proof,
           limit_of_friction_is_met_from_both_sides,
+          pressure_elsewhere_holds_a_slip,
           solvable_problem_is_never_said_to_have_no_equilibrium,
           body_too_thick_for_its_gap_has_no_equilibrium,
           forces_without_bound_do_not_hide_a_body_too_thick,

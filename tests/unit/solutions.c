@@ -165,6 +165,24 @@ START_TEST(one_family_alone_confirms_nothing) {
 }
 END_TEST
 
+/* What a run that did not converge stopped with is no solution. */
+START_TEST(last_iterate_confirms_nothing) {
+  contact_case c = case_any(2, 4, 0.2, 0, 11);
+  solver_report rep = solve(&c);
+  solution_set some = {0};
+  c.u[0] += 1e-3;
+  rep.outcome = STOPPED_STAGNATION;
+  ck_assert_int_eq(solutions_by_solvers(&c.cp, 1e-10, &rep, c.u, c.r, &some),
+                   OK);
+  ck_assert_int_eq(some.n_found, 1);
+  ck_assert_int_eq(some.attempts[0].solution_no, 0);
+  ck_assert_int_eq(some.attempts[0].outcome, STOPPED_STAGNATION);
+  ck_assert_int_eq(some.attempts[1].solution_no, 1);
+  solution_set_free(&some);
+  case_free(&c);
+}
+END_TEST
+
 /* One solver of each family of the table, supports or none. */
 START_TEST(every_family_is_tried_once) {
   for (int floating = 0; floating < 2; ++floating) {
@@ -199,5 +217,6 @@ END_TEST
 
 UNIT_MAIN("solutions", every_family_is_tried_once,
           triangle_has_the_three_solutions, one_family_alone_confirms_nothing,
-          small_friction_has_one_solution, enumeration_finds_what_solvers_find,
-          ten_nodes_are_enumerated, larger_problems_are_refused)
+          last_iterate_confirms_nothing, small_friction_has_one_solution,
+          enumeration_finds_what_solvers_find, ten_nodes_are_enumerated,
+          larger_problems_are_refused)

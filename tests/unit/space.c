@@ -421,6 +421,39 @@ START_TEST(stress_jumps_between_unlike_sections) {
 }
 END_TEST
 
+/* Sections of one material and elements whose moduli follow their temperature
+ * are of the region of their material. */
+START_TEST(regions_are_those_of_the_materials) {
+  static const int origin[] = {0, 1, 2, 3, 2, 3, 1},
+                   wanted[] = {0, 0, 1, 2, 1, 2, 0};
+  enum { SECTIONS = sizeof origin / sizeof *origin };
+  scene *s =
+      scene_new(make_grid_2d((int[]){4, 4}, (double[]){1, 1}), PLANE_STRAIN, 3);
+  double E[16 * SECTIONS], C[36 * SECTIONS], thickness[SECTIONS];
+  kinematics kin[SECTIONS];
+  space_recovery *recovery;
+  for (int k = 0; k < SECTIONS; ++k) {
+    kin[k] = PLANE_STRAIN;
+    thickness[k] = origin[k] == 3 ? 2 : 1;
+    memcpy(C + 36 * k, s->C, 36 * sizeof *C);
+    for (int i = 0; i < 16; ++i)
+      E[16 * k + i] = s->E[i] * (k > 3 ? 3 + k : origin[k] == 2 ? 2 : 1);
+  }
+  s->d.E = E;
+  s->d.C = C;
+  s->d.kin = kin;
+  s->d.thickness = thickness;
+  s->d.origin = origin;
+  for (int e = 0; e < s->m->n_elem; ++e) s->section_id[e] = e % SECTIONS;
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  ck_assert_int_eq(space_regions(recovery), 3);
+  for (int e = 0; e < s->m->n_elem; ++e)
+    ck_assert_int_eq(space_region(recovery, e), wanted[e % SECTIONS]);
+  space_recovery_free(recovery);
+  scene_free(s);
+}
+END_TEST
+
 /* Even errors 4 times the target: an error eta r for each element, r = 1/4,
  * with the edge of a regular triangle of the same area. One element whose error
  * is large: sizes grow from there by no more than 0.4 of the distance. */
@@ -487,6 +520,7 @@ int main(void) {
   tcase_add_loop_test(tests, inner_nodes_see_the_elements_that_meet_there, 2,
                       4);
   tcase_add_loop_test(tests, stress_jumps_between_unlike_sections, 0, 4);
+  tcase_add_test(tests, regions_are_those_of_the_materials);
   tcase_add_test(tests, sizes_give_the_target_and_grow_slowly);
   tcase_add_loop_test(tests, linear_stress_is_recovered, 0, 3);
   tcase_add_test(tests, one_layer_of_elements_has_an_estimate);

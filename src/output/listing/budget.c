@@ -333,10 +333,12 @@ static int is_absolute(const goal_card *g) {
   return g->target > 0.0 && !g->in_percent;
 }
 
+/* The width of its column. */
 static int goal_head(const model *m, int id, char *text, size_t size) {
   const goal_card *g = &m->accuracy.goals[id];
-  return snprintf(text, size, "%s[%s]", g->name,
-                  is_absolute(g) ? job_goal_unit(m, id) : "%");
+  const int width = snprintf(text, size, "%s[%s]", g->name,
+                             is_absolute(g) ? job_goal_unit(m, id) : "%");
+  return width > 10 ? width : 10;
 }
 
 void passes_goal_heads(const model *m, FILE *f) {
@@ -353,7 +355,7 @@ void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f) {
     char head[80];
     const int absolute = is_absolute(&m->accuracy.goals[i]);
     const int width = goal_head(m, i, head, sizeof head);
-    fprintf(f, " %*s", width > 10 ? width : 10,
+    fprintf(f, " %*s", width,
             text_number(absolute ? g->off : pass_goal_percent(g), 2));
   }
 }
@@ -380,10 +382,11 @@ static void print_pass(const job *j, int no, FILE *f) {
 
 static void print_forecast(const job *j, FILE *f) {
   const pass_table *t = &j->run->passes;
+  char head[80];
   fprintf(f, "  %-10s %10.0f", "next digit", t->forecast->unknowns);
   if (t->target > 0.0) print_norm(t->forecast, 0, f);
   for (int i = 0; t->goals != NULL && i < j->m->n.goal; ++i)
-    fprintf(f, " %10s", "");
+    fprintf(f, " %*s", goal_head(j->m, i, head, sizeof head), "");
   if (!j->o->no_timing) fprintf(f, " %9.3g", t->forecast->cpu);
   fprintf(f, "  forecast\n");
 }

@@ -1,0 +1,147 @@
+/*
+ * Two layers, SOFT below and first in the mesh, HARD above with an inelastic
+ * law: points, temperatures, clusters and laws of the second are its own.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const int job_without_fields = 1;
+
+typedef struct layers {
+  const char *soft, *hard;       /* cards of the materials below *ELASTIC */
+  const char *of_soft, *of_hard; /* parameters of the sections */
+  double at[2];                  /* temperature of SOFT, HARD */
+  const char *integrator;
+} layers;
+
+static job run_layers(const layers *s, const char *words, int wanted) {
+  job j = job_begin("layers");
+  job_copy(&j, "tests/regression/mesh/layers.geo");
+  job_write(&j, "layers.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n200., 0.3\n%s"
+            "*MATERIAL, NAME=E\n*ELASTIC\n200., 0.1\n%s"
+            "*SOLID SECTION, ELSET=SOFT, MATERIAL=E%s\n"
+            "*SOLID SECTION, ELSET=HARD, MATERIAL=M%s\n"
+            "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nSOFT, %g\nHARD, %g\n"
+            "*STEP\n*VISCO, INTEGRATOR=%s\n0.25, 1.\n"
+            "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2, 2, 1.E-3\n"
+            "*TEMPERATURE\nSOFT, %g\nHARD, %g\n"
+            "*OUTPUT, HDF5=NO\n*PRINT, ELEMENTS, GROUP=HARD\n*END STEP\n",
+            s->hard, s->soft, s->of_soft, s->of_hard, s->at[0], s->at[1],
+            s->integrator, s->at[0], s->at[1]);
+  int code = job_run(&j, words);
+  ck_assert_msg(code == wanted, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* The largest inelastic strain across the layers; it is not zero. */
+static double creep_of(const layers *s) {
+  job j = run_layers(s, "", 0);
+  dat d = job_table(&j, "ELEMENTS", -1);
+  const double most = dat_max(&d, "ei_yy");
+  ck_assert_double_gt(most, 1e-5);
+  dat_free(&d);
+  job_end(&j);
+  return most;
+}
+
+static void same_creep(const layers *a, const layers *b) {
+  const double of_a = creep_of(a), of_b = creep_of(b);
+  ck_assert_double_eq_tol(of_a, of_b, 1e-12 * of_b);
+}
+
+/* Elements that expand without a law: as long as their temperature does not
+ * change, the answer is that without expansion. */
+START_TEST(creep_beside_a_group_that_expands) {
+  layers plain = {.hard = "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n2.\n",
+                  .soft = "",
+                  .of_soft = "",
+                  .of_hard = "",
+                  .at = {20, 20},
+                  .integrator = "HEUN"};
+  layers expands = plain;
+  expands.soft = "*EXPANSION\n1.E-5\n";
+  same_creep(&expands, &plain);
+}
+END_TEST
+
+/* The relaxation time is that at 60, not at 20 or between. */
+START_TEST(laws_have_the_temperature_of_their_elements) {
+  layers plain = {.hard = "*INELASTIC, LAW=MAXWELL\n1.\n",
+                  .soft = "",
+                  .of_soft = "",
+                  .of_hard = "",
+                  .at = {20, 60},
+                  .integrator = "MIDPOINT"};
+  layers table = plain;
+  table.hard = "*INELASTIC, LAW=MAXWELL\n9., , 20.\n1., , 60.\n";
+  same_creep(&table, &plain);
+}
+END_TEST
+
+/* The law and the element that are too cold, whether those before them flow or
+ * not. */
+START_TEST(cold_elements_are_named) {
+  layers s = {.hard =
+                  "*INELASTIC, LAW=MAXWELL, SHIFT=ARRHENIUS, T_REF=300., "
+                  "ACTIVATION=1000.\n10.\n",
+              .of_soft = "",
+              .of_hard = "",
+              .at = {-5, -10},
+              .integrator = "BACKWARD"};
+  char *told[2];
+  for (int k = 0; k < 2; ++k) {
+    s.soft = k == 0 ? "" : "*INELASTIC, LAW=MAXWELL\n4.\n";
+    job j = run_layers(&s, "--check", 2);
+    const char *at =
+        strstr(j.errors, "P2062: material M, step 1, time 0, element ");
+    ck_assert_msg(at != NULL && strstr(at, "temperature -10 is") != NULL, "%s",
+                  j.errors);
+    told[k] = strndup(at, strcspn(at, "\n"));
+    job_end(&j);
+  }
+  ck_assert_str_eq(told[0], told[1]);
+  for (int k = 0; k < 2; ++k) free(told[k]);
+}
+END_TEST
+
+/* What the listing says of a section. */
+static int is_listed_averaged(const job *j, const char *section) {
+  char *text = job_file(j, "lst"), key[40];
+  snprintf(key, sizeof key, "\n  section  %s ", section);
+  const char *at = strstr(text, key), *word = ", volume averaged\n";
+  ck_assert_ptr_nonnull(at);
+  at += 1 + strcspn(at + 1, "\n") - strlen(", volume averaged");
+  const int found = strncmp(at, word, strlen(word)) == 0;
+  free(text);
+  return found;
+}
+
+/* What creeps at constant volume locks unless its own volume is averaged. */
+START_TEST(averaged_groups_do_not_lock) {
+  static const char *const averaged = ", FORMULATION=AVERAGED";
+  for (int k = 0; k < 4; ++k) {
+    const layers s = {
+        .hard = "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n0.01\n",
+        .soft = "",
+        .of_soft = k % 2 == 1 ? averaged : "",
+        .of_hard = k / 2 == 1 ? averaged : "",
+        .integrator = "BACKWARD"};
+    job j = run_layers(&s, "", 0);
+    ck_assert_msg((strstr(j.errors, "P4016") != NULL) == (k / 2 == 0), "%d: %s",
+                  k, j.errors);
+    ck_assert_int_eq(is_listed_averaged(&j, "SOFT"), k % 2);
+    ck_assert_int_eq(is_listed_averaged(&j, "HARD"), k / 2);
+    job_end(&j);
+  }
+}
+END_TEST
+
+UNIT_MAIN("layers", creep_beside_a_group_that_expands,
+          laws_have_the_temperature_of_their_elements, cold_elements_are_named,
+          averaged_groups_do_not_lock)

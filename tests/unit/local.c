@@ -1,0 +1,80 @@
+/*
+ * src/solver/local.c: the contact problem of one node, against its conditions
+ * (local.h): random stiffness with normal and tangents coupled, friction below
+ * the limit of uniqueness, starts near to the answer and far from it.
+ */
+#include "solver/local.h"
+#include "support/contact_case.h"
+#include "support/unit.h"
+
+#include <math.h>
+
+static double centred(unsigned long long *seed) {
+  return 2.0 * case_random(seed) - 1.0;
+}
+
+/* K = G G' + 1; at a distance from gap and stick position of "far". */
+static local_problem any_problem(int dim, double far,
+                                 unsigned long long *seed) {
+  local_problem lp = {.dim = dim};
+  double G[9];
+  for (int i = 0; i < dim * dim; ++i) G[i] = centred(seed);
+  for (int i = 0; i < dim; ++i)
+    for (int j = 0; j < dim; ++j) {
+      lp.K[i + dim * j] = i == j;
+      for (int k = 0; k < dim; ++k)
+        lp.K[i + dim * j] += G[i + dim * k] * G[j + dim * k];
+    }
+  for (int i = 0; i < dim; ++i) {
+    lp.b[i] = 3.0 * centred(seed);
+    lp.at[i] = (i == 0 ? 1.0 : far) * centred(seed);
+    lp.bound[i] = i == 0 ? 0.0 : HUGE_VAL;
+  }
+  lp.g0 = case_random(seed) < 0.5 ? 0.0 : case_random(seed);
+  lp.mu = 0.3 * case_random(seed);
+  return lp;
+}
+
+/* Where the state says so: forces to rounding of the largest. */
+static void check(const local_problem *lp, local_state is, const double *d,
+                  const double *r, int no) {
+  double x[3], g = lp->g0 - lp->mu * r[0], slip = 0.0, force = 0.0, size = 0.0;
+  for (int i = 0; i < lp->dim; ++i) {
+    double defect = -lp->b[i] - r[i];
+    x[i] = lp->at[i] + d[i];
+    for (int j = 0; j < lp->dim; ++j) {
+      defect += lp->K[i + lp->dim * j] * d[j];
+      size = fmax(size, fabs(lp->K[i + lp->dim * j] * d[j]));
+    }
+    size = fmax(size, fabs(lp->b[i]));
+    ck_assert_msg(fabs(defect) <= 1e-14 * size, "%d: defect %g", no, defect);
+    if (i > 0) slip = hypot(slip, x[i]);
+    if (i > 0) force = hypot(force, r[i]);
+  }
+  const double tol = 1e-14 * size;
+  ck_assert_msg(r[0] <= tol && x[0] <= tol, "%d: r %g, x %g", no, r[0], x[0]);
+  ck_assert_msg(r[0] == 0.0 || fabs(x[0]) <= tol, "%d: x %g", no, x[0]);
+  ck_assert_msg(force <= g + tol, "%d: %g, limit %g", no, force, g);
+  if (is == LOCAL_STICK) ck_assert_msg(slip <= tol, "%d: slip %g", no, slip);
+  if (slip <= tol) return;
+  for (int i = 1; i < lp->dim; ++i)
+    ck_assert_msg(fabs(r[i] + g * x[i] / slip) <= tol, "%d: %g, not %g", no,
+                  r[i], -g * x[i] / slip);
+}
+
+START_TEST(node_meets_its_conditions) {
+  static const double far[] = {1.0, 1e-3, 10.0, 1e4, 1e8};
+  unsigned long long seed = 3;
+  int found[3] = {0};
+  for (int k = 0; k < 6000; ++k) {
+    double d[3], r[3];
+    local_problem lp = any_problem(2 + k % 2, far[k / 2 % 5], &seed);
+    const local_state is = local_solve(&lp, (local_state)(k / 10 % 3), d, r);
+    ++found[is];
+    check(&lp, is, d, r, k);
+  }
+  for (int i = 0; i < 3; ++i) ck_assert_int_gt(found[i], 100);
+}
+END_TEST
+
+UNIT_MAIN("local", node_meets_its_conditions)
