@@ -312,7 +312,7 @@ static int masters_held(const contact_surface *s, const surface_input *in,
     const node_links *l = rows[e].of == NULL ? NULL : &rows[e].of->to;
     if (l == NULL || rows[e].normal > 0) continue;
     for (size_t k = l->start[rows[e].row]; k < l->start[rows[e].row + 1]; ++k)
-      all &= in->fixed[l->master[k]];
+      all &= surface_tied(in, l->master[k]) < 0 ? in->fixed[l->master[k]] : 0u;
   }
   for (int b = 0; b < dim; ++b)
     if (fabs(s->frame[dim * (dim * i + c) + b]) > 0.5) axis |= 1u << b;
