@@ -554,7 +554,7 @@
     "A component of a slave node that a support holds does not follow the "   \
     "master: the tie is open there. Choose the other side with SLAVE=, or "   \
     "let the support hold the nodes of both.")                               \
-  X(4033, WARNING, "faces of a slave that has tied nodes alone",              \
+  X(4033, WARNING, "faces of a slave with only tied nodes",              \
     "A tied node has no contact; its neighbours on the face carry its part, " \
     "and here there are none. Refine the surface, or choose the other side "  \
     "of the *TIE or the *CONTACT PAIR with SLAVE=.")                         \

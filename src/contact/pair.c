@@ -12,11 +12,25 @@
 
 /* ---- couplings ---------------------------------------------------------- */
 
-/* Slave nodes: left out, as supports hold them or an earlier pair has them;
- * rows of this pair and of an earlier one. */
-enum { HELD = 1, TAKEN, SHARED };
+/* Slave nodes that are left out: supports hold them, an earlier pair has them.
+ */
+enum { HELD = 1, TAKEN };
 /* Of places over the size of the mesh; of forces over the first of a chain. */
 static const double rounding = 1e-9;
+
+int surface_tied(const surface_input *in, int node_id) {
+  const tie_set *t = in->ties;
+  const int *at = t == NULL || t->n == 0
+                      ? NULL
+                      : bsearch(&node_id, t->node_id, (size_t)t->n,
+                                sizeof *t->node_id, number_order);
+  return at == NULL ? -1 : (int)(at - t->node_id);
+}
+
+/* Bit c: supports hold component c; of a tied node none. */
+static unsigned held_bits(const surface_input *in, int node_id) {
+  return surface_tied(in, node_id) < 0 ? in->fixed[node_id] : 0u;
+}
 
 /* 1: the pair is coupled where the bodies are now. */
 static int is_moved(const surface_input *in, const contact_pair *p) {
@@ -95,16 +109,18 @@ static int has_other_master(const surface_input *in, int pair_id) {
 /* Where two masters meet within a face of the slave its nodes act on both: the
  * nodes of such faces that an earlier pair has are shared; how many are new. */
 static int share_nodes(const surface_input *in, int pair_id,
-                       unsigned char *dropped) {
+                       unsigned char *dropped, unsigned char *shared) {
   const mesh *m = in->mesh;
   const mortar *now = in->pairs[pair_id].coupled;
   int more = 0;
   if (now->n_cut == 0 || !has_other_master(in, pair_id)) return 0;
   for (int k = 0; k < now->n_cut; ++k)
     for (int c = 0; c < m->dim; ++c) {
-      unsigned char *is = &dropped[m->face[m->dim * now->cut[k] + c]];
-      more += *is == TAKEN;
-      if (*is == TAKEN) *is = SHARED;
+      const int node = m->face[m->dim * now->cut[k] + c];
+      if (dropped[node] != TAKEN) continue;
+      dropped[node] = 0;
+      shared[node] = 1;
+      ++more;
     }
   return more;
 }
@@ -133,29 +149,28 @@ static status couple_kept(const surface_input *in, int pair_id, int *n_held,
                           int *n_shared) {
   contact_pair *p = &in->pairs[pair_id];
   const size_t n = (size_t)in->mesh->dim * (size_t)in->mesh->n_node;
-  OWNED unsigned char *dropped = NULL, *left_out = NULL;
+  OWNED unsigned char *dropped = NULL, *shared = NULL;
   OWNED double *x = NULL;
   int more = 1;
   PASS_NEW(x, n);
   for (size_t k = 0; k < n; ++k)
     x[k] = in->mesh->x[k] + (is_moved(in, p) ? in->u[k] : 0.0);
-  PASS_NEW_ALL(OF(dropped, in->mesh->n_node), OF(left_out, in->mesh->n_node));
+  PASS_NEW_ALL(OF(dropped, in->mesh->n_node), OF(shared, in->mesh->n_node));
   *n_held = *n_shared = 0;
   while (more > 0) {
     more = 0;
-    for (int i = 0; i < in->mesh->n_node; ++i)
-      left_out[i] = dropped[i] == HELD || dropped[i] == TAKEN;
-    PASS(surfaces_couple(in, x, p->group, p->master, p->slave_normal, left_out,
+    PASS(surfaces_couple(in, x, p->group, p->master, p->slave_normal, dropped,
                          &p->coupled));
     for (int q = 0; q < p->coupled->n; ++q) {
-      unsigned char *is = &dropped[p->coupled->node_id[q]];
+      const int node = p->coupled->node_id[q];
       const int held = is_held(in, p->coupled, q);
-      if (!held && (*is == SHARED || !is_taken(in, pair_id, q))) continue;
-      *is = held ? HELD : TAKEN;
+      if (!held && (shared[node] || !is_taken(in, pair_id, q))) continue;
+      dropped[node] = held ? HELD : TAKEN;
       *n_held += held;
       ++more;
     }
-    if (more == 0) *n_shared += more = share_nodes(in, pair_id, dropped);
+    if (more == 0)
+      *n_shared += more = share_nodes(in, pair_id, dropped, shared);
   }
   return OK;
 }
@@ -199,26 +214,17 @@ static void tell_facets(const surface_input *in, const contact_pair *p,
 
 /* 1: a support holds a component of slave node q that it holds of none of its
  * masters. */
-static int is_held_alone(const mortar *m, int q, const unsigned char *fixed) {
+static int is_held_alone(const surface_input *in, const mortar *m, int q) {
   unsigned masters = 0;
   for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e)
-    masters |= fixed[m->to.master[e]];
-  return (fixed[m->node_id[q]] & ~masters) != 0;
+    masters |= held_bits(in, m->to.master[e]);
+  return (held_bits(in, m->node_id[q]) & ~masters) != 0;
 }
 
-int surfaces_held_alone(const mortar *m, const unsigned char *fixed) {
+int surfaces_held_alone(const surface_input *in, const mortar *m) {
   int n = 0;
-  for (int q = 0; q < m->n; ++q) n += is_held_alone(m, q, fixed);
+  for (int q = 0; q < m->n; ++q) n += is_held_alone(in, m, q);
   return n;
-}
-
-int surface_tied(const surface_input *in, int node_id) {
-  const tie_set *t = in->ties;
-  const int *at = t == NULL || t->n == 0
-                      ? NULL
-                      : bsearch(&node_id, t->node_id, (size_t)t->n,
-                                sizeof *t->node_id, number_order);
-  return at == NULL ? -1 : (int)(at - t->node_id);
 }
 
 /* Faces of the slave all of whose nodes are tied. */
@@ -238,25 +244,25 @@ static void tell(const surface_input *in, const contact_pair *p, int n_held,
                  message_log *log) {
   enum { CURVED = 2, FLAT = 4 };
   const mortar *m = p->coupled;
+  const int alone = surfaces_held_alone(in, m), tied = tied_faces(in, p);
   if (n_held > 0)
     message_add(log, P4002, &p->at,
                 "%s %s: nodes of group %s are also fixed in the "
                 "normal direction, or tied, and left out of contact: %d",
                 p->card, p->name, p->group->name, n_held);
-  if (m->n > 0 && 2 * surfaces_held_alone(m, in->fixed) > m->n)
+  if (2 * alone > m->n)
     message_add(log, P4031, &p->at,
                 "%s %s: supports hold %d of %d nodes of the slave %s along a "
-                "direction in which they do not hold the master %s: no motion "
-                "of the master along it, nor friction, is seen there: SLAVE= "
-                "takes the other surface",
-                p->card, p->name, surfaces_held_alone(m, in->fixed), m->n,
-                p->group->name, p->master->name);
-  if (tied_faces(in, p) > 0)
+                "direction in which they do not hold the master %s: the motion "
+                "of the master along it and friction are left out there; "
+                "SLAVE= takes the other surface",
+                p->card, p->name, alone, m->n, p->group->name, p->master->name);
+  if (tied > 0)
     message_add(
         log, P4033, &p->at,
-        "%s %s: %d of %d faces of the slave %s have tied nodes alone: no "
+        "%s %s: %d of %d faces of the slave %s have only tied nodes: no "
         "contact there",
-        p->card, p->name, tied_faces(in, p), p->group->n_item, p->group->name);
+        p->card, p->name, tied, p->group->n_item, p->group->name);
   if (m->n == 0 && m->covered == 0.0)
     message_add(log, P4023, &p->at,
                 "%s %s: no face of %s meets a face of %s along its "
@@ -312,7 +318,7 @@ static int masters_held(const contact_surface *s, const surface_input *in,
     const node_links *l = rows[e].of == NULL ? NULL : &rows[e].of->to;
     if (l == NULL || rows[e].normal > 0) continue;
     for (size_t k = l->start[rows[e].row]; k < l->start[rows[e].row + 1]; ++k)
-      all &= surface_tied(in, l->master[k]) < 0 ? in->fixed[l->master[k]] : 0u;
+      all &= held_bits(in, l->master[k]);
   }
   for (int b = 0; b < dim; ++b)
     if (fabs(s->frame[dim * (dim * i + c) + b]) > 0.5) axis |= 1u << b;
@@ -342,6 +348,12 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
+/* Area of the node of a coupling, without what it carries for neighbours, m2.
+ */
+static double own_area(const pair_row *row) {
+  return row->of->area[row->row] / row->of->share[row->row];
+}
+
 /* Resultant of row c: of its couplings, or of a force at the node. */
 static void set_resultant(contact_surface *s, int i, int c, int normal, int m,
                           const pair_row *rows) {
@@ -352,7 +364,7 @@ static void set_resultant(contact_surface *s, int i, int c, int normal, int m,
     if (rows[e].normal != normal || of == NULL) continue;
     const int q = rows[e].row;
     area += of->area[q];
-    own += of->area[q] / of->share[q];
+    own += own_area(&rows[e]);
     whole = fmax(whole, of->whole[q]);
     add_scaled(dim, of->area[q], of->lever + dim * q, lever);
   }
@@ -362,13 +374,13 @@ static void set_resultant(contact_surface *s, int i, int c, int normal, int m,
     s->lever[dim * k + a] = area > 0.0 ? lever[a] / area : s->x[dim * i + a];
 }
 
-/* Of its normal's rows, by the area of the node alone. */
+/* Part of a row in those of its normal. */
 static double weight_of(const pair_row *row, int m, const pair_row *rows) {
   double sum = 0.0;
   for (int e = 0; e < m; ++e)
     if (rows[e].normal == row->normal && rows[e].of != NULL)
-      sum += rows[e].of->area[rows[e].row] / rows[e].of->share[rows[e].row];
-  return row->of->area[row->row] / row->of->share[row->row] / sum;
+      sum += own_area(&rows[e]);
+  return own_area(row) / sum;
 }
 
 status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,

@@ -9,12 +9,10 @@
  */
 
 #include "base/memory.h"
-#include "base/number.h"
 #include "base/vector.h"
 #include "contact/parts.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of

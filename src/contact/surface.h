@@ -71,6 +71,9 @@ typedef struct surface_input {
   int axisymmetric;
 } surface_input;
 
+/* pair.c: how many slave nodes supports hold along a component that they hold
+ * of no master. */
+int surfaces_held_alone(const surface_input *in, const mortar *m);
 /* pair.c: the coupling of two surfaces at the places x[dim*n_node], without the
  * nodes of dropped[n_node] (or NULL): *out, NULL or an old one that is freed.
  * ERR_MEMORY. */
@@ -78,9 +81,6 @@ status surfaces_couple(const surface_input *in, const double *x,
                        const mesh_group *slave, const mesh_group *master,
                        int slave_normal, const unsigned char *dropped,
                        mortar **out);
-/* pair.c: slave nodes of which supports, fixed[n_node] as below, hold a
- * component that they hold of no master. */
-int surfaces_held_alone(const mortar *m, const unsigned char *fixed);
 /*
  * pair.c: the coupling of each pair under the supports of the input, without
  * the slave nodes that supports hold along the normal, and those that an

@@ -244,18 +244,28 @@ END_TEST
 
 /* ---- rows ---------------------------------------------------------------- */
 
+/* It is where supports hold the masters too, and do not tie them. */
 START_TEST(held_tangent_is_relative_to_none) {
-  scene c;
-  flat_pair(&c);
-  c.fixed[0] = 1;
-  ck_assert_int_eq(build(&c), OK);
-  ck_assert_int_eq(c.s->n, 5);
-  for (int q = 0; q < 5; ++q) {
-    ck_assert_int_eq(c.s->held[2 * q + 1], q == 0);
-    ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
-    ck_assert_double_eq_tol(part_sum(&c, q, 1), q != 0, 1e-14);
+  for (int k = 0; k < 3; ++k) { /* masters are free, held, tied */
+    scene c;
+    int tied[MOST];
+    flat_pair(&c);
+    c.fixed[0] = 1;
+    tie_set ties = {.node_id = tied};
+    for (int i = 5; i < c.m.n_node && k > 0; ++i) {
+      c.fixed[i] = k == 1 ? 1 : 0xff;
+      if (k == 2) tied[ties.n++] = i;
+    }
+    c.in.ties = &ties;
+    ck_assert_int_eq(build(&c), OK);
+    ck_assert_int_eq(c.s->n, 5);
+    for (int q = 0; q < 5; ++q) {
+      ck_assert_int_eq(c.s->held[2 * q + 1], q == 0);
+      ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
+      ck_assert_double_eq_tol(part_sum(&c, q, 1), q != 0 || k == 1, 1e-14);
+    }
+    scene_free(&c);
   }
-  scene_free(&c);
 }
 END_TEST
 

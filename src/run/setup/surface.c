@@ -141,7 +141,7 @@ static status couple(const run *r, const tie *t, const unsigned char *dropped,
                    *master = &r->msh->group[t->pair.master_id];
   PASS(surfaces_couple(&r->faces.input, r->msh->x, slave, master, 1, dropped,
                        out));
-  const int alone = surfaces_held_alone(*out, r->faces.node_fixed);
+  const int alone = surfaces_held_alone(&r->faces.input, *out);
   if (alone > 0)
     message_add(r->m->log, P4032, &t->at,
                 "*TIE %s: supports hold a component of %d of %d nodes of the "
