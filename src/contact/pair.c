@@ -480,6 +480,14 @@ double surface_prescribed(const contact_surface *s, const unsigned char *fixed,
   return sum / surface_share(s, q, a);
 }
 
+int surface_is_mutual(const contact_surface *s, int q, int a) {
+  const node_links *l = s->master;
+  if (l == NULL || l->start[q] == l->start[q + 1]) return 1;
+  for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
+    if (l->part[(size_t)s->dim * e + (size_t)a] != 0.0) return 1;
+  return 0;
+}
+
 void surface_spread_row(const contact_surface *s, int q, int a, double force,
                         double *F) {
   const int dim = s->dim;

@@ -717,6 +717,10 @@ done:
   return st;
 }
 
+int surface_has_held(const contact_surface *s) {
+  return memchr(s->held, 1, (size_t)(s->dim * s->n)) != NULL;
+}
+
 int surface_is_corner(const contact_surface *s, int i) {
   return s->side_id[i * (s->dim - 1)] >= 0;
 }

@@ -124,6 +124,9 @@ void surface_relative(const contact_surface *s, const double *u, double *w);
  * ud[dim*n_node], and its masters if it is relative to them, m. */
 double surface_prescribed(const contact_surface *s, const unsigned char *fixed,
                           const double *ud, int q, int a);
+/* pair.c: 1: a force of row a of node q acts on all that the node touches; 0:
+ * supports hold the node, but not the master of its pair. */
+int surface_is_mutual(const contact_surface *s, int q, int a);
 /* F[dim*n_node] += factor times the forces r[dim*n] dual to those, on
  * both sides of pairs: r'w = F'u. */
 void surface_spread(const contact_surface *s, double factor, const double *r,
@@ -154,6 +157,8 @@ static inline int surface_contact_of(const contact_surface *s, int i, int a) {
   const int id = surface_normal_of(s, i, a);
   return id >= 0 ? id : s->contact_id[i];
 }
+/* 1: some contact unknown is held. */
+int surface_has_held(const contact_surface *s);
 /* 1 if node i touches a second obstacle: it has no friction. */
 int surface_is_corner(const contact_surface *s, int i);
 void surface_free(contact_surface *s); /* accepts NULL */

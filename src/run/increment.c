@@ -24,14 +24,17 @@ void run_take_rows(const run *r, const double *v, double *rows) {
 }
 
 double *run_rows(const run *r, int k, double *v) {
-  if (r->nodes.n_row == r->nodes.n_c) return v;
-  run_take_rows(r, v, r->problem.row[k]);
-  return r->problem.row[k];
+  double *rows = r->problem.row[k];
+  if (rows == NULL) return v;
+  run_take_rows(r, v, rows);
+  for (int i = 0; k == 1 && i < r->nodes.n_row; ++i)
+    if (r->surface->held[unknown_of(r, i)]) rows[i] = 0.0;
+  return rows;
 }
 
 /* The solution u, r of r->problem.cp: other forces are zero. */
 static void put_rows(const run *r, const double *u, const double *force) {
-  if (r->nodes.n_row == r->nodes.n_c) return;
+  if (u == r->now.uc) return;
   memset(r->now.rc, 0, (size_t)r->nodes.n_c * sizeof *r->now.rc);
   for (int i = 0; i < r->nodes.n_row; ++i) {
     r->now.uc[unknown_of(r, i)] = u[i];
@@ -153,12 +156,6 @@ static status solve_contact(run *r) {
   return OK;
 }
 
-static int has_held(const contact_surface *s) {
-  for (int k = 0; k < s->n * s->dim; ++k)
-    if (s->held[k]) return 1;
-  return 0;
-}
-
 static int has_side_gap(const contact_surface *s) {
   for (int i = 0; i < s->n * (s->dim - 1); ++i)
     if (s->side_id[i] >= 0) return 1;
@@ -181,7 +178,7 @@ static void set_problem(run *r) {
       .g0 = r->problem.limit == NULL ? NULL : r->problem.limit->g0,
       .B = r->problem.B,
       .side_gap = all && has_side_gap(r->surface) ? r->problem.side_gap : NULL,
-      .held = all && has_held(r->surface) ? r->surface->held : NULL,
+      .held = all && surface_has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c),
       .load = fmax(r->loads.largest, increment_strain_load(r))};
   if (r->nodes.reach.in != NULL)

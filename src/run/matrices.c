@@ -88,8 +88,9 @@ void run_take_nodes(run *r) {
 }
 
 status run_room_for_part(run *r) {
-  for (int k = 0;
-       k < 2 && r->nodes.n_row < r->nodes.n_c && r->problem.row[k] == NULL; ++k)
+  const int apart =
+      r->nodes.n_row < r->nodes.n_c || surface_has_held(r->surface);
+  for (int k = 0; k < 2 && apart && r->problem.row[k] == NULL; ++k)
     PASS_NEW(r->problem.row[k], r->nodes.rows * r->nodes.n);
   if (r->nodes.reach.in != NULL && r->problem.part.gap == NULL)
     PASS(reach_part_new(r->nodes.n, r->nodes.rows, &r->problem.part));

@@ -50,6 +50,46 @@ static double slip_of(const run *r, int k) {
   return run_motion_over(r, k);
 }
 
+/* 1: supports hold node i along its contact, whatever it touches there. */
+static int is_carried(const contact_surface *s, int i) {
+  for (int a = 1; a < s->dim; ++a)
+    if (!s->held[s->dim * i + a] || !surface_is_mutual(s, i, a)) return 0;
+  return 1;
+}
+
+/* Slip of such a node, m; 0 where it is rounding of what moves. */
+static double carried_slip(const run *r, int k, const double *slip) {
+  static const double rounding = 1e-12;
+  double length = 0.0, moves = 0.0;
+  for (int a = 0; a < r->msh->dim - 1; ++a) {
+    length = hypot(length, slip[a]);
+    moves += fabs(r->now.uc[k + a]) + fabs(r->old.uc[k + a]) +
+             fabs(run_drift(&r->now, k + a)) + fabs(run_drift(&r->old, k + a));
+  }
+  return length > rounding * moves ? length : 0.0;
+}
+
+/*
+ * Friction on a node that supports hold along its contact is no unknown of the
+ * contact problem, but a force on the supports: against their motion, or what
+ * it was, within the limit, where nothing moves.
+ */
+static void find_carried(run *r, int i) {
+  const int tangents = r->msh->dim - 1, k = r->msh->dim * i + 1;
+  const int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
+  const double *slip = &r->result.slip[tangents * i], g = r->result.g[i];
+  const double length = carried_slip(r, k, slip);
+  double *force = &r->now.rc[k], size = 0.0;
+  for (int a = 0; a < tangents; ++a) {
+    force[a] = length > 0.0 ? -slip[a] : fresh ? 0.0 : r->old.rc[k + a];
+    size = hypot(size, force[a]);
+  }
+  for (int a = 0; a < tangents && (length > 0.0 || size > g); ++a)
+    force[a] *= g / size;
+  if (length > 0.0 && r->result.contact[i] == CONTACT_STICK)
+    r->result.contact[i] = CONTACT_SLIP;
+}
+
 /* Slip against the obstacle, gap left, status. */
 static void find_contact(run *r) {
   int dim = r->msh->dim;
@@ -69,6 +109,8 @@ static void find_contact(run *r) {
     r->result.contact[i] = k >= 0 && r->nodes.reach.in[k] == i
                                ? r->result.contact[k--]
                                : CONTACT_OPEN;
+  for (int i = 0; i < r->nodes.n && r->result.g != NULL; ++i)
+    if (is_carried(r->surface, i)) find_carried(r, i);
 }
 
 /* Force and moment of one row of a contact node. */
@@ -228,8 +270,8 @@ status result_evaluate(run *r, int due) {
   int needed = run_finds_mesh_error(r) || r->m->accuracy.ref.has_stress;
   if (shown || (needed && !(effects & EFFECT_REACTION)))
     find_stresses(r, shown);
-  if (effects & EFFECT_REACTION) find_reactions(r, shown);
   if (r->nodes.n > 0) find_contact(r);
+  if (effects & EFFECT_REACTION) find_reactions(r, shown);
   if (r->m->n.contact > 0) find_totals(r);
   find_torques(r);
   if (r->course.relaxing)

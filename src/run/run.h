@@ -127,7 +127,7 @@ typedef struct posed_problem {
   const friction_limit *limit; /* of the time posed last */
   const sparse_rows *B;        /* [n*n] -, of limit, or in its place */
   const double *given;         /* [n] given normal forces, N; < 0: none */
-  double *row[2];  /* [rows*n] workspace of run_rows; cp has all: NULL */
+  double *row[2];  /* [rows*n] workspace of run_rows, or NULL */
   reach_part part; /* data of cp where it does not have all nodes */
   contact_problem cp;
   double *f_before; /* [n_row] condensed load of r->old, N */
@@ -384,8 +384,9 @@ double increment_free_load(const run *r, const double *F);
 /* The same with those of heat and inelastic strains, whose rounding is left
  * where they cancel, N; 0: no such strains. */
 double increment_strain_load(const run *r);
-/* v[dim*n] of the contact frames as a vector of r->problem.cp: v itself, or in
- * r->problem.row[k], k = 0 or 1, where it has not all unknowns. */
+/* v[dim*n] of the contact frames, displacements (k = 0) or forces (1), as a
+ * vector of r->problem.cp: v itself, or in r->problem.row[k] where that has not
+ * all unknowns, or not the friction of those that supports hold. */
 double *run_rows(const run *r, int k, double *v);
 /* The same into rows[n_row]. */
 void run_take_rows(const run *r, const double *v, double *rows);

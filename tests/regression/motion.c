@@ -267,6 +267,79 @@ START_TEST(cone_is_round_for_every_direction_of_slip) {
 }
 END_TEST
 
+/* ---- supports that hold contact nodes ------------------------------------ */
+
+/* A block (side 1) pressed by t: friction on nodes that supports hold along the
+ * floor is mu N of them too, against their motion; what stops keeps it. */
+typedef struct carried {
+  int dim;
+  const char *floor, *law, *supports;
+  double end;        /* of the step, s; N then */
+  double x, y, work; /* NAN: not known */
+} carried;
+
+#define COULOMB "COULOMB\n0.3\n"
+static const carried carried_blocks[] = {
+    {2, "MOVE, \"0.02*t\", 0.\n", COULOMB, "LEFT, 1\n", 1, 0.3, 0, NAN},
+    {2, "", COULOMB, "RIGHT, 1, 1, 0.02\n", 1, -0.3, 0, NAN},
+    {2, "", COULOMB, "BODY, 1, 1, 0.02\n", 1, -0.3, 0, 3e-3},
+    {2, "MOVE, \"0.02*min(t,2-t)\", 0.\n", COULOMB, "BODY, 1\n", 2, -0.6, 0,
+     NAN},
+    {2, "MOVE, \"0.02*min(t,1)\", 0.\n", COULOMB, "BODY, 1\n", 2, 0.3, 0, 3e-3},
+    {2, "MOVE, \"0.02*t\", 0.\n", "TRESCA\n0.2\n", "BODY, 1\n", 1, 0.2, 0, NAN},
+    {3, "MOVE, \"0.02*t\", \"0.01*t\", 0.\n", COULOMB, "BODY, 1, 2\n", 1,
+     0.26832815729997476, 0.13416407864998738, NAN}};
+
+static void check_carried(const carried *c, const char *kind,
+                          const char *method) {
+  const int solid = c->dim == 3;
+  job j = job_begin("carried");
+  job_copy(&j, solid ? "tests/regression/mesh/cube.geo"
+                     : "tests/regression/mesh/square.geo");
+  job_write(&j, "carried.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.%s\n%s*CONTACT, NAME=C, "
+            "GROUP=BOTTOM, OBSTACLE=O\n*FRICTION, CONTACT=C, LAW=%s"
+            "*AMPLITUDE, NAME=RISE\n0., 0., 9., 9.\n*STEP\n*%s"
+            "*BOUNDARY\n%s*DSLOAD\nTOP, P, 1., RISE\n*SOLVER, METHOD=%s\n"
+            "*PRINT, TOTALS, CONTACT, ENERGY, REACTIONS\n*END STEP\n",
+            solid ? "cube" : "square", solid ? ", 0.\n0., 0., 1." : "\n0., 1.",
+            c->floor, c->law, kind, c->supports, method);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  ck_assert_ptr_null(strstr(j.errors, "warning"));
+  dat all = job_table(&j, "TOTALS", -1), n = job_table(&j, "CONTACT", -1);
+  dat e = job_table(&j, "ENERGY", -1), s = job_table(&j, "REACTIONS", -1);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "force_x"), c->x, 1e-12);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "force_y"), solid ? c->y : c->end,
+                          1e-12);
+  ck_assert_double_eq_tol(dat_sum(&s, "reaction_x"), -c->x, 1e-12);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-12);
+  if (!isnan(c->work) && strstr(kind, "STATIC\n") != kind)
+    ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work"), c->work, 1e-12);
+  for (int i = 0; i < n.n_row; ++i)
+    ck_assert_double_eq(dat_at(&n, i, "status"),
+                        strstr(c->floor, "min(t,1)") == NULL ? 1 : 2);
+  dat_free(&all);
+  dat_free(&n);
+  dat_free(&e);
+  dat_free(&s);
+  job_end(&j);
+}
+
+START_TEST(supports_bear_the_friction_of_the_nodes_they_hold) {
+  const carried *c = &carried_blocks[_i];
+  char kind[80];
+  for (int velocity = 0; velocity < 2; ++velocity) {
+    snprintf(kind, sizeof kind, "QUASISTATIC%s\n0.25, %g\n",
+             velocity ? ", FORM=VELOCITY" : "", c->end);
+    check_carried(c, kind, "AUTO");
+  }
+  if (_i < 2) check_carried(c, kind, _i ? "SOR" : "LEMKE");
+  if (_i < 3) check_carried(c, "STATIC\n1.\n", "AUTO");
+}
+END_TEST
+
 /* ---- long motions -------------------------------------------------------- */
 
 /* A block pressed by p onto a floor, E = 300 (elastic motion 1e-3), mu = 0.3:
@@ -428,9 +501,18 @@ START_TEST(bodies_and_laws_count_by_their_own_forces) {
 }
 END_TEST
 
-UNIT_MAIN("motion", loop_of_a_force, loop_of_an_obstacle, node_on_a_turntable,
-          scene_turned_as_a_whole_gives_the_answer_turned,
-          cone_is_round_for_every_direction_of_slip,
-          long_motions_leave_the_forces_right,
-          forces_lost_to_rounding_are_never_ok,
-          bodies_and_laws_count_by_their_own_forces)
+int main(void) {
+  TCase *tests = tcase_create("motion");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, loop_of_a_force);
+  tcase_add_test(tests, loop_of_an_obstacle);
+  tcase_add_test(tests, node_on_a_turntable);
+  tcase_add_test(tests, scene_turned_as_a_whole_gives_the_answer_turned);
+  tcase_add_test(tests, cone_is_round_for_every_direction_of_slip);
+  tcase_add_loop_test(tests, supports_bear_the_friction_of_the_nodes_they_hold,
+                      0, 7);
+  tcase_add_test(tests, long_motions_leave_the_forces_right);
+  tcase_add_test(tests, forces_lost_to_rounding_are_never_ok);
+  tcase_add_test(tests, bodies_and_laws_count_by_their_own_forces);
+  return unit_run("motion", tests);
+}

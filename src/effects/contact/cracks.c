@@ -302,8 +302,8 @@ static status find_elastic(const run *r, double *u) {
   }
   PASS_NEW_REALS(n, &f, &uc);
   PASS(condense_load(c, r->now.F, NULL, f));
-  run_take_rows(r, r->now.rc, uc);
-  for (int k = 0; k < n; ++k) f[k] += uc[k];
+  const double *rc = run_rows(r, 1, r->now.rc);
+  for (int k = 0; k < n; ++k) f[k] += rc[k];
   if (n > 0) PASS(condensed_untouched(c, f, uc));
   return condense_recover(c, uc, u);
 }

@@ -274,7 +274,7 @@ static status check_held(const run *r, friction *own, int i, int a, double from,
       !can_stick(&own->limit, i))
     return OK;
   if (is_half_held(r->surface, i, a)) return refuse_held(r, i, a);
-  tell_held(r, own, i, a);
+  if (!surface_is_mutual(r->surface, i, a)) tell_held(r, own, i, a);
   return OK;
 }
 

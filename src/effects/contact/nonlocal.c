@@ -130,7 +130,8 @@ static status follow_zone(run *r, void *self, int *again) {
   const friction_limit *limit = r->problem.limit;
   int changes = 0;
   if (z->off == NULL || r->solving.report.outcome <= 0) return OK;
-  contact_classify(&r->problem.cp, r->now.uc, r->now.rc, r->result.contact);
+  contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
+                   run_rows(r, 1, r->now.rc), r->result.contact);
   for (int i = 0; i < r->nodes.n; ++i) {
     int open = is_open(r, i);
     if (!limit->in_zone[i] || open == z->off[i] || (!open && z->returned[i]))

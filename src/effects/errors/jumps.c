@@ -312,8 +312,9 @@ static status check_asked(run *r, void *self) {
 
 static status find_others(run *r, void *self) {
   ((checked *)self)->asked = r->step->check != CHECK_NONE;
-  return check_problem(r->step, &r->problem.cp, &r->solving.report, r->now.uc,
-                       r->now.rc, &((checked *)self)->solutions);
+  return check_problem(r->step, &r->problem.cp, &r->solving.report,
+                       run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
+                       &((checked *)self)->solutions);
 }
 
 static void show(const void *self, state *s) {

@@ -90,9 +90,9 @@ static status linear_body(run *r, const unsigned char *given, body_map *b) {
   PASS(elastic_body(r, b));
   cp.A = condensed_matrix(b->c);
   cp.op = condensed_operator(b->c);
-  PASS(frozen_new(&cp, r->now.rc, none, given, &b->problem));
-  return linear_contact_new(&b->problem.cp, r->now.uc, b->problem.r,
-                            &b->contact);
+  PASS(frozen_new(&cp, run_rows(r, 1, r->now.rc), none, given, &b->problem));
+  return linear_contact_new(&b->problem.cp, run_rows(r, 0, r->now.uc),
+                            b->problem.r, &b->contact);
 }
 
 static status body_map_new(run *r, const unsigned char *given, body_map *b) {
