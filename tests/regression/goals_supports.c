@@ -146,7 +146,7 @@ START_TEST(ends_of_supports_in_space) {
 END_TEST
 
 /* All of the base slips, at 0.5 whatever the pressure: the force is 1. A node
- * that a support holds has a part of it. */
+ * that a support holds has a part of it, which along the normal is lost. */
 START_TEST(nodes_of_supports_have_a_part_of_the_force) {
   static const char *const hold[] = {
       "LEFT, 2, 2, -0.002\n", "LEFT, 1, 1, 0.05\n", "CORNER, 1, 1, 0.05\n", ""};
@@ -163,8 +163,8 @@ START_TEST(nodes_of_supports_have_a_part_of_the_force) {
     const double off = -1.0 - dat_at(&t, 0, "corrected");
     const double band = dat_at(&t, 0, "band");
     ck_assert_msg(fabs(off) <= band, "row %d: %g off, band %g", k, off, band);
-    ck_assert_int_eq(has_verdict(&j, "T", "reliable"), k == 3);
-    ck_assert(k < 3 ? band > 0.01 : band < 1e-12 && band > 1e-14);
+    ck_assert_int_eq(has_verdict(&j, "T", "reliable"), k > 0);
+    ck_assert(k == 0 ? band > 0.01 : band < 1e-12 && band > 1e-14);
     dat_free(&t);
     job_end(&j);
   }

@@ -301,15 +301,22 @@ static void check_carried(const carried *c, const char *kind,
             "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.%s\n%s*CONTACT, NAME=C, "
             "GROUP=BOTTOM, OBSTACLE=O\n*FRICTION, CONTACT=C, LAW=%s"
-            "*AMPLITUDE, NAME=RISE\n0., 0., 9., 9.\n*STEP\n*%s"
+            "*AMPLITUDE, NAME=RISE\n0., 0., 9., 9.\n"
+            "*GOAL, QUANTITY=FORCE, NAME=DRAG, CONTACT=C, COMPONENT=1\n"
+            "*STEP\n*%s"
             "*BOUNDARY\n%s*DSLOAD\nTOP, P, 1., RISE\n*SOLVER, METHOD=%s\n"
-            "*PRINT, TOTALS, CONTACT, ENERGY, REACTIONS\n*END STEP\n",
+            "*PRINT, TOTALS, CONTACT, ENERGY, REACTIONS, GOALS\n*END STEP\n",
             solid ? "cube" : "square", solid ? ", 0.\n0., 0., 1." : "\n0., 1.",
             c->floor, c->law, kind, c->supports, method);
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   ck_assert_ptr_null(strstr(j.errors, "warning"));
   dat all = job_table(&j, "TOTALS", -1), n = job_table(&j, "CONTACT", -1);
   dat e = job_table(&j, "ENERGY", -1), s = job_table(&j, "REACTIONS", -1);
+  dat drag = job_table(&j, "GOALS", -1);
+  ck_assert_double_eq_tol(dat_at(&drag, 0, "value"), c->x, 1e-12);
+  ck_assert_double_le(fabs(dat_at(&drag, 0, "error")), 1e-12);
+  ck_assert_double_le(dat_at(&drag, 0, "band"), 1e-10);
+  dat_free(&drag);
   ck_assert_double_eq_tol(dat_at(&all, 0, "force_x"), c->x, 1e-12);
   ck_assert_double_eq_tol(dat_at(&all, 0, "force_y"), solid ? c->y : c->end,
                           1e-12);

@@ -215,12 +215,29 @@ static status prepare(run *r, goal_state *own, shared *s) {
                              run_rows(r, 1, r->now.rc), &s->adjoint);
 }
 
+/* Friction of sliding nodes that supports hold is no unknown: psi of it on the
+ * normal forces that its limit follows. */
+static void spread_held(const run *r, double *psi) {
+  const sparse_rows *B = r->problem.B;
+  const int dim = r->msh->dim;
+  for (int i = 0; B != NULL && i < r->nodes.n; ++i) {
+    double along = 0.0;
+    if (r->result.contact[i] != CONTACT_SLIP || !(r->result.g[i] > 0.0))
+      continue;
+    for (int k = dim * i + 1; k < dim * (i + 1); ++k)
+      if (r->surface->held[k]) along += psi[k] * r->now.rc[k] / r->result.g[i];
+    for (int e = B->start[i]; e < B->start[i + 1]; ++e)
+      psi[dim * B->col[e]] -= along * B->val[e];
+  }
+}
+
 /* The adjoint of s->form: s->y, *solver. */
 static status solve(run *r, shared *s, double *solver) {
   *solver = 0.0;
   PASS(condense_load(r->c, s->form.load, NULL, s->j));
   if (s->adjoint != NULL) {
     run_take_rows(r, s->form.rows, s->more);
+    spread_held(r, s->form.psi);
     run_take_rows(r, s->form.psi, s->psi);
     for (int k = 0; k < r->nodes.n_row; ++k) s->j[k] += s->more[k];
     PASS(contact_adjoint_solve(s->adjoint, s->j, s->psi, s->y_c, solver));

@@ -92,13 +92,14 @@ static double held_part(const run *r, int face, const int *q, int k, int a) {
   return sum;
 }
 
-/* Of a held row: held_part. Next to slip, and not on a plane of symmetry, the
- * traction may be that of the neighbours up to the node: up to thrice. */
+/* Of a held row without a force of its own: held_part. Next to slip, and not on
+ * a plane of symmetry, the traction may be that of the neighbours up to the
+ * node: up to thrice. */
 static void add_row(const run *r, int face, const int *q, int k, int a,
                     goal_form *f) {
   const int row = r->msh->dim * q[k] + a;
   int open_end = !goal_is_mirrored(r, q[k]);
-  if (!r->surface->held[row]) return;
+  if (!r->surface->held[row] || r->now.rc[row] != 0.0) return;
   for (int l = 0; l < r->msh->dim; ++l)
     open_end |= r->result.contact[q[l]] == CONTACT_SLIP;
   const double part = f->psi[row] * held_part(r, face, q, k, a);
