@@ -587,9 +587,9 @@ END_TEST
  * is that of their masters, or of the others of the face where the masters are
  * not in the contact. */
 START_TEST(tied_nodes_leave_their_area_in_a_contact) {
-  static const char *const tied[] = {"SLAVE=FIRST", "SLAVE=SECOND",
-                                     "SLAVE=FIRST", "SLAVE=FIRST",
-                                     "SLAVE=SECOND"};
+  static const char *const tied[] = {"SLAVE=FIRST",  "SLAVE=SECOND",
+                                     "SLAVE=FIRST",  "SLAVE=FIRST",
+                                     "SLAVE=SECOND", "SLAVE=AUTO"};
   const int alone = _i == 2, coarse = _i == 3, m = _i < 3 ? 4 : 8;
   job j = job_begin("side");
   job_copy(&j, "tests/regression/mesh/pair.geo");
@@ -707,7 +707,7 @@ int main(void) {
   tcase_add_loop_test(tests, rows_beside_a_held_node_are_as_others, 0, 5);
   tcase_add_loop_test(tests, masters_side_by_side_are_one_floor, 0, 6);
   tcase_add_test(tests, lower_master_beyond_a_step_is_not_met);
-  tcase_add_loop_test(tests, tied_nodes_leave_their_area_in_a_contact, 0, 5);
+  tcase_add_loop_test(tests, tied_nodes_leave_their_area_in_a_contact, 0, 6);
   tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 8);
   tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);

@@ -456,11 +456,13 @@ static int held_more(const surface_facts *f) {
   return all != 0 ? all : has_more(f[0].any, f[1].any);
 }
 
+/* touching: of a tie, 1 where it meets a contact. */
 static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
-                   const int *group, surface_pair *p) {
+                   const int *group, int touching, surface_pair *p) {
   surface_facts f[2];
   for (int k = 0; k < 2; ++k) f[k] = facts_of(m, msh, fixed, group[k]);
   const double ratio = f[1].modulus / f[0].modulus;
+  const int differ = fabs(f[1].size - f[0].size) > rounding * f[0].size;
   const char *why = "of equal size: the first";
   p->slave = 0;
   if (p->choice != SLAVE_AUTO) {
@@ -469,10 +471,13 @@ static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
   } else if (held_more(f) != 0) {
     p->slave = held_more(f) > 0;
     why = "the other is held";
+  } else if (touching && differ) {
+    p->slave = f[1].size < f[0].size;
+    why = "finer, at a contact";
   } else if (fmax(ratio, 1.0 / ratio) >= stiff_ratio * (1.0 - rounding)) {
     p->slave = ratio < 1.0;
     why = "softer";
-  } else if (fabs(f[1].size - f[0].size) > rounding * f[0].size) {
+  } else if (differ) {
     p->slave = f[1].size > f[0].size;
     why = "coarser";
   }
@@ -550,7 +555,7 @@ static status check_contact_pair(model *m, const mesh *msh,
   if (!c->is_pair) return OK;
   PASS(check_surfaces(m, msh, &of, &c->pair, group));
   if (is_lost(m)) return OK;
-  choose(m, msh, fixed, group, &c->pair);
+  choose(m, msh, fixed, group, 0, &c->pair);
   c->group_id = c->pair.slave_id;
   c->group = msh->group[c->group_id].name;
   c->obstacle_name = msh->group[c->pair.master_id].name;
@@ -574,6 +579,42 @@ status model_open_cracks(model *m, mesh *msh) {
   return mesh_open(msh, n, cut, m->log, msh->crack);
 }
 
+/* 1: a surface of a tie has a node of a contact, whose forces at the joint need
+ * the finer side as slave (P4035). */
+static int meets_contact(const mesh *msh, const int *group,
+                         const unsigned char *touches) {
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < msh->group[group[k]].n_node; ++i)
+      if (touches[msh->group[group[k]].node_id[i]]) return 1;
+  return 0;
+}
+
+static void mark_nodes(const mesh_group *g, unsigned char *touches) {
+  for (int i = 0; i < g->n_node; ++i) touches[g->node_id[i]] = 1;
+}
+
+static status check_ties(model *m, const mesh *msh,
+                         const unsigned char *fixed) {
+  OWNED unsigned char *touches = NULL;
+  if (m->n.tie == 0) return OK;
+  PASS_NEW(touches, msh->n_node);
+  for (int i = 0; i < m->n.contact && !is_lost(m); ++i) {
+    const contact *c = &m->contacts[i];
+    mark_nodes(&msh->group[c->group_id], touches);
+    if (c->is_pair) mark_nodes(&msh->group[c->pair.master_id], touches);
+  }
+  for (int i = 0; i < m->n.tie; ++i) {
+    tie *t = &m->ties[i];
+    const pair_card of = {"TIE", t->name, &t->at};
+    int group[2] = {-1, -1};
+    PASS(check_surfaces(m, msh, &of, &t->pair, group));
+    if (!is_lost(m))
+      choose(m, msh, fixed, group, meets_contact(msh, group, touches),
+             &t->pair);
+  }
+  return OK;
+}
+
 static status check_pairs(model *m, const mesh *msh) {
   OWNED unsigned char *fixed = NULL;
   if (!model_has_pairs(m)) return OK;
@@ -581,14 +622,7 @@ static status check_pairs(model *m, const mesh *msh) {
   if (!is_lost(m) && m->n.step > 0) load_fixed(m, msh, &m->steps[0], fixed);
   for (int i = 0; i < m->n.contact; ++i)
     PASS(check_contact_pair(m, msh, fixed, i));
-  for (int i = 0; i < m->n.tie; ++i) {
-    tie *t = &m->ties[i];
-    const pair_card of = {"TIE", t->name, &t->at};
-    int group[2] = {-1, -1};
-    PASS(check_surfaces(m, msh, &of, &t->pair, group));
-    if (!is_lost(m)) choose(m, msh, fixed, group, &t->pair);
-  }
-  return OK;
+  return check_ties(m, msh, fixed);
 }
 
 status model_check(model *m, const mesh *msh, effect_finder *find) {

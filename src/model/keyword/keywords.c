@@ -145,7 +145,7 @@ static const option tie_options[] = {
   NAME(name, "NAME", NULL, "name for messages"),
   CHOICE(surface.slave, "SLAVE", SLAVE_WORDS, "AUTO",
          "whose nodes move with the "
-         "other; AUTO: the softer from a ratio of 3 on, else the coarser"),
+         "other; AUTO: at a contact the finer, else as of a pair"),
   CHOICE(surface.adjust, "ADJUST", "NO|YES", "NO",
          "YES: nodes of the slave are moved "
          "onto the master before the run, without strain"),
