@@ -95,27 +95,52 @@ static void set_along(int dim, const double *n, double part, double *v) {
   for (int k = 0; k < dim; ++k) v[k] += (part - along) * n[k];
 }
 
-/* d[dim] on a closed edge: along n that of the gap, across it as it began to
- * stick; x[dim] what of it is given. */
-static void hold(const contact_edge *c, int dim, double *d, double *x) {
+/* u[dim] at the surface of the body less that in the middle of its edge a, b,
+ * by the recovered gradient G. */
+static void outside(const goal_solution *s, const double *G, int a, int b,
+                    const double *out, double *u) {
+  const int dim = s->d->mesh->dim, n = dim * dim;
+  const double *ga = G + (size_t)n * (size_t)a, *gb = G + (size_t)n * (size_t)b;
+  for (int c = 0; c < dim; ++c) {
+    u[c] = 0.0;
+    for (int k = 0; k < dim; ++k)
+      u[c] += 0.5 * (ga[c * dim + k] + gb[c * dim + k]) * out[k];
+  }
+}
+
+/* d[dim] on a closed edge: along n that of the gap at the surface, across it as
+ * it began to stick; x[dim] what of it is given. */
+static void hold(const goal_solution *s, const double *G, const contact_edge *c,
+                 double *d, double *x) {
+  const int dim = s->d->mesh->dim;
+  double u[3], along = c->excess;
+  outside(s, G, c->a, c->b, c->out, u);
+  for (int k = 0; k < dim; ++k) along -= c->n[k] * u[k];
   for (int k = 0; k < dim && c->stuck; ++k) d[k] = x[k] = c->stick[k];
-  set_along(dim, c->n, c->excess, d);
-  set_along(dim, c->n, c->excess, x);
+  set_along(dim, c->n, along, d);
+  set_along(dim, c->n, along, x);
 }
 
 /* d[dim], x[dim] where a support holds both ends of an edge. */
-static void support(const goal_solution *s, int a, int b, double *d,
-                    double *x) {
-  const int dim = s->d->mesh->dim;
-  const given_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
+static void support(const goal_solution *s, const double *G, int a, int b,
+                    double *d, double *x) {
+  const int dim = s->d->mesh->dim, v[2] = {a < b ? a : b, a < b ? b : a};
   const given_edge *g = NULL;
-  for (int c = 0; c < dim; ++c) {
-    if (!s->d->fixed[dim * a + c] || !s->d->fixed[dim * b + c]) continue;
-    if (g == NULL && s->n_given > 0)
-      g = bsearch(&key, s->given, (size_t)s->n_given, sizeof key,
-                  number_pair_order);
-    d[c] = x[c] = g != NULL ? g->bend[c] : 0.0;
-  }
+  const bent_edge *bent = NULL;
+  double u[3] = {0.0};
+  int any = 0;
+  for (int c = 0; c < dim; ++c)
+    any |= s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c];
+  if (!any) return;
+  if (s->n_given > 0)
+    g = bsearch(v, s->given, (size_t)s->n_given, sizeof *g, number_pair_order);
+  if (s->n_bent > 0)
+    bent =
+        bsearch(v, s->bent, (size_t)s->n_bent, sizeof *bent, number_pair_order);
+  if (bent != NULL) outside(s, G, a, b, bent->out, u);
+  for (int c = 0; c < dim; ++c)
+    if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c])
+      d[c] = x[c] = (g != NULL ? g->bend[c] : 0.0) - u[c];
 }
 
 /* From the front of a crack at node a to b, u is a root of the distance and
@@ -169,12 +194,12 @@ static void bubble_of(goal_estimator *e, const double *G, int a, int b,
       for (int c = 0; c < dim; ++c) rest[c] = 0.5 * (rest[c] + d[c]);
     }
     for (int c = 0; c < dim; ++c) d[c] -= rest[c];
-    if (contact->closed) hold(contact, dim, d, x);
+    if (contact->closed) hold(s, G, contact, d, x);
     memcpy(e->edge + (size_t)dim * (size_t)(contact - s->edge), d,
            (size_t)dim * sizeof *d);
     for (int c = 0; c < dim; ++c) d[c] += rest[c];
   }
-  support(s, a, b, d, x);
+  support(s, G, a, b, d, x);
 }
 
 /* Mean radius of an element, m. */

@@ -89,12 +89,20 @@ typedef struct contact_edge {
   int a, b;
   int closed, stuck; /* both ends are */
   double n[3];       /* unit normal, the mean of its ends */
-  double excess;     /* gap in its middle less the mean of its ends, m */
+  double out[3];     /* from its middle to the surface of the body, m */
+  double excess;     /* what u along n is there more than the mean of its ends,
+                        m */
   double stick[3];   /* what u was in its bubble where it began to stick, m */
   double weight;     /* integral of its bubble over the surface, m2 */
   int other[2];      /* nodes of the opposite lip of a crack, in the order of a,
                         b; -1: on an obstacle */
 } contact_edge;
+
+/* An edge of the border of the body that is curved, node ids a < b. */
+typedef struct bent_edge {
+  int a, b;
+  double out[3]; /* from its middle to the surface of the body, m */
+} bent_edge;
 
 /* An edge that a support holds, node ids a < b, whose displacement is no linear
  * function along it. */
@@ -127,8 +135,10 @@ typedef struct goal_solution {
   const unsigned char *front; /* [n_node] 1: of the front of a crack, round
                                  which u goes like the root of the distance;
                                  NULL: no crack */
+  int n_bent;
+  const bent_edge *bent; /* [n_bent] sorted by a, b */
   int n_given;
-  const given_edge *given; /* [n_given] sorted by a, b */
+  const given_edge *given; /* the same */
   int has_flux;            /* 1: some J has a flux */
   int has_mean;            /* 1: some J may be a mean of displacements */
   int has_energy;          /* 1: some J is the energy */

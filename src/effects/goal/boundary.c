@@ -29,6 +29,7 @@ static const double SMOOTH = 0.86; /* -, cosine between faces of a surface */
 /* A face, or an element for a load in the body. */
 typedef struct patch {
   int n, node[4]; /* its corners */
+  int elem;       /* of a face */
   double weight;  /* measure times thickness */
   double normal[3];
   double B[3][3]; /* of the edges of a face, m */
@@ -68,14 +69,9 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
 
 /* ---- faces --------------------------------------------------------------- */
 
-/* Faces round each node. */
-typedef struct ring {
-  int *start, *face; /* [n_node+1], [dim*n_face] */
-} ring;
+void goal_ring_free(goal_ring *r) { RELEASE(r->start, r->face); }
 
-static void ring_free(ring *r) { RELEASE(r->start, r->face); }
-
-static status ring_new(const mesh *m, ring *r) {
+status goal_ring_new(const mesh *m, goal_ring *r) {
   PASS_NEW_ALL(OF(r->start, m->n_node + 1), OF(r->face, m->dim * m->n_face));
   for (int k = 0; k < m->dim * m->n_face; ++k) ++r->start[m->face[k] + 1];
   for (int i = 0; i < m->n_node; ++i) r->start[i + 1] += r->start[i];
@@ -97,7 +93,7 @@ static void mirror(int dim, const unsigned char *held, const double *own,
 }
 
 /* Of the surface at a node of a face with the unit normal own. */
-static void normal_at(const run *r, const ring *rings, int node,
+static void normal_at(const run *r, const goal_ring *rings, int node,
                       const double *own, double *n) {
   const mesh *m = r->msh;
   const unsigned char *held = r->body.d.fixed + m->dim * node;
@@ -117,7 +113,59 @@ static void normal_at(const run *r, const ring *rings, int node,
   for (int c = 0; c < m->dim && size > 0.0; ++c) n[c] /= size;
 }
 
-static void set_bulges(const run *r, const ring *rings, patch *p) {
+void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
+                double *out) {
+  const mesh *m = r->msh;
+  double own[3] = {0.0}, n[2][3], turn = 0.0, chord = 0.0, size = 0.0;
+  mesh_face_normal(m, face, own);
+  for (int k = 0; k < 2; ++k) normal_at(r, rings, v[k], own, n[k]);
+  for (int c = 0; c < m->dim; ++c) {
+    const double d = m->x[m->dim * v[1] + c] - m->x[m->dim * v[0] + c];
+    turn += 0.5 * (n[1][c] - n[0][c]) * d;
+    chord = hypot(chord, d);
+    out[c] = n[0][c] + n[1][c];
+    size = hypot(size, out[c]);
+  }
+  turn /= chord; /* the sine of half the angle of an arc */
+  const double height =
+      0.5 * chord * turn / (1.0 + sqrt(fmax(0.0, 1.0 - turn * turn)));
+  for (int c = 0; c < m->dim; ++c)
+    out[c] *= fabs(turn) > 1e-9 && size > 0.0 ? height / size : 0.0;
+}
+
+/* The edges of face f that are curved, to e; their number. */
+static int bent_edges(const run *r, const goal_ring *rings, int f,
+                      bent_edge *e) {
+  const int dim = r->msh->dim, *node = r->msh->face + dim * f;
+  int n = 0;
+  for (int a = 0; a < dim; ++a)
+    for (int b = a + 1; b < dim; ++b) {
+      const int first = node[a] < node[b] ? a : b;
+      const int v[2] = {node[first], node[a + b - first]};
+      bent_edge now = {.a = v[0], .b = v[1]};
+      double size = 0.0;
+      goal_bulge(r, rings, f, v, now.out);
+      for (int c = 0; c < dim; ++c) size = fmax(size, fabs(now.out[c]));
+      if (size > 0.0) e[n++] = now;
+    }
+  return n;
+}
+
+status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s) {
+  const mesh *m = r->msh;
+  int kept = 0, n = 0;
+  PASS_NEW(s->bent, m->n_face * (m->dim == 3 ? 3 : 1));
+  for (int f = 0; f < m->n_face; ++f)
+    if (m->face_other[f] < 0) n += bent_edges(r, rings, f, s->bent + n);
+  if (n > 0) qsort(s->bent, (size_t)n, sizeof *s->bent, number_pair_order);
+  for (int k = 0; k < n; ++k)
+    if (kept == 0 || number_pair_order(&s->bent[kept - 1], &s->bent[k]) != 0)
+      s->bent[kept++] = s->bent[k];
+  s->n_bent = kept;
+  return OK;
+}
+
+static void set_bulges(const run *r, const goal_ring *rings, patch *p) {
   const mesh *m = r->msh;
   double n[3][3], length = 0.0, most = 0.0;
   for (int i = 0; i < p->n; ++i)
@@ -139,9 +187,9 @@ static double thickness_of(const run *r, int elem_id) {
   return r->m->sections[r->m->elem_section[elem_id]].thickness;
 }
 
-static patch face_patch(const run *r, const ring *rings, int face) {
+static patch face_patch(const run *r, const goal_ring *rings, int face) {
   const mesh *m = r->msh;
-  patch p = {.n = m->dim};
+  patch p = {.n = m->dim, .elem = m->face_elem[face]};
   const int *v = m->elem + (m->dim + 1) * m->face_elem[face];
   double g[12];
   memcpy(p.node, m->face + m->dim * face, (size_t)m->dim * sizeof *p.node);
@@ -170,22 +218,79 @@ static double turn_of(const run *r, double radius) {
   return is_axisymmetric(r) ? 2.0 * PI * radius : 1.0;
 }
 
+/* What lies beyond a face, m3. */
+static double volume_beyond(const run *r, const patch *p) {
+  double volume = 0.0;
+  for (int k = 0; k < p->n && p->is_curved; ++k) {
+    const spot s = spot_at(r->msh, p, k);
+    volume += s.weight * s.beyond * turn_of(r, s.x[0]);
+  }
+  return volume;
+}
+
+status goal_volumes_beyond(const run *r, double *volume) {
+  ENDS_BY(goal_ring_free) goal_ring rings = {0};
+  PASS(goal_ring_new(r->msh, &rings));
+  for (int f = 0; f < r->msh->n_face; ++f) {
+    const patch p = face_patch(r, &rings, f);
+    volume[r->msh->face_elem[f]] += volume_beyond(r, &p);
+  }
+  return OK;
+}
+
+status goal_places(const run *r, int **where) {
+  PASS_NEW(*where, r->msh->n_node);
+  for (int i = 0; i < r->msh->n_node; ++i) (*where)[i] = -1;
+  for (int q = 0; q < r->nodes.n; ++q) (*where)[r->surface->node_id[q]] = q;
+  return OK;
+}
+
+/* T less its traction on the face along a direction a, along which the motion
+ * of the surface is prescribed: T:grad y without y beyond the face. */
+static void take_traction(int dim, const double *n, const double *a,
+                          double T[3][3]) {
+  double traction = 0.0;
+  for (int c = 0; c < dim; ++c)
+    for (int k = 0; k < dim; ++k) traction += a[c] * T[c][k] * n[k];
+  for (int c = 0; c < dim; ++c)
+    for (int k = 0; k < dim; ++k) T[c][k] -= traction * a[c] * n[k];
+}
+
+/* Of the supports and the closed contact of a face; where[n_node]. */
+static void take_given(const run *r, const patch *p, const int *where,
+                       double T[3][3]) {
+  const int dim = r->msh->dim;
+  int closed = 1;
+  for (int c = 0; c < dim; ++c) {
+    double a[3] = {c == 0, c == 1, c == 2};
+    int held = 1;
+    for (int i = 0; i < p->n; ++i)
+      held &= r->body.d.fixed[dim * p->node[i] + c];
+    if (held) take_traction(dim, p->normal, a, T);
+  }
+  for (int i = 0; i < p->n; ++i) {
+    const int q = where[p->node[i]];
+    closed &= q >= 0 && r->result.contact[q] != CONTACT_OPEN;
+  }
+  if (closed) take_traction(dim, p->normal, p->normal, T);
+}
+
 /* Less the stress of the element times the strains over what is beyond a face.
  */
 static void add_part_beyond(const run *r, const patch *p, int face,
-                            double *dF) {
+                            const int *where, double *dF) {
   const mesh *m = r->msh;
   const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
   const double *t = r->result.stress + (size_t)r->body.d.ns * (size_t)e;
-  const double T[3][3] = {{t[0], t[3], dim == 3 ? t[5] : 0.0},
-                          {t[3], t[1], dim == 3 ? t[4] : 0.0},
-                          {dim == 3 ? t[5] : 0.0, dim == 3 ? t[4] : 0.0, t[2]}};
-  double g[12], volume = 0.0;
+  double T[3][3] = {{t[0], t[3], dim == 3 ? t[5] : 0.0},
+                    {t[3], t[1], dim == 3 ? t[4] : 0.0},
+                    {dim == 3 ? t[5] : 0.0, dim == 3 ? t[4] : 0.0, t[2]}};
+  const double volume = volume_beyond(r, p);
+  double g[12];
+  take_given(r, p, where, T);
   mesh_elem_gradients(m, e, g);
-  for (int k = 0; k < p->n; ++k) {
+  for (int k = 0; k < p->n && is_axisymmetric(r); ++k) {
     const spot s = spot_at(m, p, k);
-    volume += s.weight * s.beyond * turn_of(r, s.x[0]);
-    if (!is_axisymmetric(r)) continue;
     for (int i = 0; i < p->n; ++i)
       dF[2 * p->node[i]] -= s.weight * s.beyond * 2.0 * PI * s.b[i] * t[2];
   }
@@ -216,9 +321,23 @@ static void directions(const load *l, int dim, const patch *p, const spot *s,
   }
 }
 
+/* A force at the surface beyond a point of a curved patch: the functions of all
+ * nodes of its element have changed from the patch on. */
+static void add_beyond(const mesh *m, const patch *p, const spot *s,
+                       const double *force, double *dF) {
+  const int *v = m->elem + (m->dim + 1) * p->elem;
+  double g[12];
+  if (!p->is_curved) return;
+  mesh_elem_gradients(m, p->elem, g);
+  for (int a = 0; a <= m->dim; ++a)
+    for (int c = 0; c < m->dim; ++c)
+      dF[m->dim * v[a] + c] +=
+          force[c] * s->beyond * dot(m->dim, g + m->dim * a, p->normal);
+}
+
 static void add_load(const run *r, const load *l, const patch *p, double *dF) {
   const mesh *m = r->msh;
-  double value[4], flat[3], bent[3];
+  double value[4], flat[3], bent[3], force[3];
   if (!p->is_curved && !varies(l)) return;
   for (int i = 0; i < p->n; ++i)
     value[i] = load_at_node(l, m, r->step, p->node[i], r->now.t);
@@ -229,11 +348,14 @@ static void add_load(const run *r, const load *l, const patch *p, double *dF) {
     const double there = load_at_point(l, r->step, s.on, r->now.t);
     if (!isfinite(there)) continue;
     directions(l, m->dim, p, &s, flat, bent);
+    for (int c = 0; c < m->dim; ++c)
+      force[c] = s.weight * there * bent[c] * turn_of(r, s.on[0]);
+    add_beyond(m, p, &s, force, dF);
     for (int c = 0; c < m->dim; ++c) {
-      const double more = there * bent[c] * turn_of(r, s.on[0]) -
-                          linear * flat[c] * turn_of(r, s.x[0]);
+      const double more =
+          force[c] - s.weight * linear * flat[c] * turn_of(r, s.x[0]);
       for (int i = 0; i < p->n; ++i)
-        dF[m->dim * p->node[i] + c] += s.weight * s.b[i] * more;
+        dF[m->dim * p->node[i] + c] += s.b[i] * more;
     }
   }
 }
@@ -351,7 +473,7 @@ static patch element_patch(const run *r, int e) {
   return p;
 }
 
-static status add_loads(const run *r, const ring *rings, double *dF) {
+static status add_loads(const run *r, const goal_ring *rings, double *dF) {
   const load_list *all = &r->step->loads;
   for (int i = 0; i < all->n; ++i) {
     const load *l = &all->item[i];
@@ -369,11 +491,13 @@ static status add_loads(const run *r, const ring *rings, double *dF) {
 }
 
 status goal_add_boundary(const run *r, double *dF) {
-  ENDS_BY(ring_free) ring rings = {0};
-  PASS(ring_new(r->msh, &rings));
+  ENDS_BY(goal_ring_free) goal_ring rings = {0};
+  OWNED int *where = NULL;
+  PASS(goal_ring_new(r->msh, &rings));
+  PASS(goal_places(r, &where));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
-    if (p.is_curved) add_part_beyond(r, &p, f, dF);
+    if (p.is_curved) add_part_beyond(r, &p, f, where, dF);
   }
   return add_loads(r, &rings, dF);
 }
@@ -419,10 +543,10 @@ status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum) {
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
-  ENDS_BY(ring_free) ring rings = {0};
+  ENDS_BY(goal_ring_free) goal_ring rings = {0};
   OWNED unsigned char *in = NULL;
   *sum = 0.0;
-  PASS(ring_new(m, &rings));
+  PASS(goal_ring_new(m, &rings));
   PASS_NEW(in, m->n_face + m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
   for (int f = 0; f < m->n_face; ++f) {

@@ -200,6 +200,8 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .edge = s->surface.edge,
                                .ends = s->surface.ends,
                                .front = s->surface.front,
+                               .n_bent = s->surface.n_bent,
+                               .bent = s->surface.bent,
                                .n_given = s->surface.n_given,
                                .given = s->surface.given,
                                .has_flux = has_goal_of(r->m, GOAL_SIF),
@@ -309,14 +311,30 @@ static double of_factor(const run *r, const shared *s) {
   return sum;
 }
 
+/* What contact forces do between the nodes: to the adjoint, and to what they
+ * are summed with. */
+static status of_curvature(const run *r, const shared *s, double *sum) {
+  const int dim = r->msh->dim;
+  OWNED double *y = NULL;
+  PASS_NEW(y, r->n_dof);
+  memcpy(y, s->y, r->n_dof * sizeof *y);
+  for (int k = 0; k < dim * r->nodes.n && s->form.is_field; ++k)
+    for (int c = 0; c < dim; ++c)
+      y[dim * r->surface->node_id[k / dim] + c] +=
+          s->form.psi[k] * r->surface->basis[dim * k + c];
+  return goal_work_between(r, &s->surface, y, sum);
+}
+
 /* What the residual of the elements has not. */
 static status complete(const run *r, const shared *s, goal_estimate *e) {
   const goal_form *f = &s->form;
+  double along;
+  PASS(of_curvature(r, s, &along));
   if (f->factor.n > 0) e->error += of_factor(r, s);
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   const double between = goal_mean_bubbles(r, s->estimator, f);
-  e->error += f->curved + beyond + between;
-  e->magnitude += fabs(f->curved) + fabs(beyond) + fabs(between);
+  e->error += f->curved + along + beyond + between;
+  e->magnitude += fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between);
   e->error += e->hoop;
   if (f->sums) {
     double slips;

@@ -30,6 +30,8 @@ typedef struct goal_form {
   int has_tau;
   int sums;         /* 1: a sum over the increments, of which rows are the
                        derivative by the motion of the last */
+  int is_field;     /* 1: psi are the components of a vector that is smooth
+                       along the surface */
   int is_still;     /* 1: work of friction where nothing slips so far */
   int is_coarse;    /* 1: a mean over less than two elements to each side, or
                        few elements round a tip */
@@ -58,8 +60,24 @@ status goal_add_mean(const run *r, int group_id, int component, double sign,
 double goal_mean_bubbles(const run *r, const goal_estimator *e,
                          const goal_form *f);
 
-/* boundary.c: adds dF[dim*n_node] of its head. ERR_MEMORY. */
+/* boundary.c: faces round each node. */
+typedef struct goal_ring {
+  int *start, *face; /* [n_node+1], [dim*n_face] */
+} goal_ring;
+/* All-zero r is new. ERR_MEMORY. */
+status goal_ring_new(const mesh *m, goal_ring *r);
+void goal_ring_free(goal_ring *r); /* accepts all-zero */
+/* out[dim]: from the middle of an edge of nodes v[2] of a face to the surface
+ * of the body, m. */
+void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
+                double *out);
+/* where[n_node]: contact node of a mesh node, or -1; new. */
+status goal_places(const run *r, int **where);
+/* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
+/* volume[n_elem] += what of the body is beyond the faces of each element, m3.
+ * ERR_MEMORY. */
+status goal_volumes_beyond(const run *r, double *volume);
 /* What a mean, without its sign, has by the surface beyond the faces. */
 status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum);
@@ -78,10 +96,14 @@ typedef struct goal_surface {
   contact_edge *edge;  /* [n_edge] sorted */
   unsigned char *ends; /* [n_node] GOAL_END_OF_CONTACT, _SUPPORT or 0 */
   int n_given;
+  int n_bent;
+  bent_edge *bent;      /* [n_bent] sorted */
   given_edge *given;    /* [n_given] sorted; NULL: none */
   unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
   int n_closed;         /* closed nodes */
 } goal_surface;
+/* boundary.c: s->bent. */
+status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
 /* support.c: s->given, then what supports add to s->ends. */
 status goal_add_given(const run *r, goal_surface *s);
 status goal_mark_supports(const run *r, const goal_border *border,
@@ -89,8 +111,10 @@ status goal_mark_supports(const run *r, const goal_border *border,
 status goal_surface_new(const run *r, const goal_border *border,
                         goal_surface *s);
 void goal_surface_free(goal_surface *s); /* accepts all-zero */
-/* where[n_node]: contact node of a mesh node, or -1; new. */
-status goal_places(const run *r, int **where);
+/* Work of the tractions of closed edges on a field y[dim*n_node] along the
+ * surface less that of their nodes. */
+status goal_work_between(const run *r, const goal_surface *s, const double *y,
+                         double *work);
 /* 1: node i of the surface stands on a plane of symmetry along tangent a, or on
  * the axis. */
 int goal_is_mirrored(const run *r, int i);

@@ -7,6 +7,7 @@
 #include "effects/shared.h"
 
 #include <cblas.h>
+#include <lapacke.h>
 #include <math.h>
 #include <string.h>
 
@@ -40,8 +41,8 @@ static void clear(const run *r, goal_form *f) {
   fracture_linear_free(&f->factor);
   f->value = f->curved = f->size = f->held = f->rough = 0.0;
   f->n_mean = 0;
-  f->has_tau = f->is_square = f->is_coarse = f->is_front = f->sums =
-      f->is_still = 0;
+  f->has_tau = f->is_field = f->is_square = f->is_coarse = f->is_front =
+      f->sums = f->is_still = 0;
   f->why = GOAL_RELIABLE;
 }
 
@@ -156,6 +157,7 @@ static status add_held(const run *r, const goal_card *g, goal_form *f) {
 
 static status set_force(const run *r, const goal_card *g, goal_form *f) {
   const int dim = r->msh->dim;
+  f->is_field = g->quantity == GOAL_MOMENT || g->component < GOAL_NORMAL;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
       f->psi[dim * i + a] = share_of(r, g, i, a);
@@ -208,6 +210,9 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   const mesh_group *of = &r->msh->group[g->group_id];
   const size_t ns = (size_t)d->ns, c = (size_t)(g->component - GOAL_TENSOR);
   double whole = 0.0;
+  OWNED double *beyond = NULL;
+  PASS_NEW(beyond, r->msh->n_elem);
+  PASS(goal_volumes_beyond(r, beyond));
   for (int k = 0; k < of->n_item; ++k)
     whole += element_weight(d, of->item_id[k]);
   for (int k = 0; k < of->n_item; ++k) {
@@ -219,12 +224,35 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
     f->size += fabs(part);
     for (size_t i = 0; i < ns; ++i) f->tau[ns * e + i] = E[ns * i + c] / whole;
   }
+  for (int k = 0; k < of->n_item; ++k) {
+    const size_t e = (size_t)of->item_id[k];
+    f->curved += beyond[e] / whole * (r->result.stress[ns * e + c] - f->value);
+  }
   f->has_tau = 1;
   return OK;
 }
 
+/* 1/2 sigma : inv(E) sigma of an element, J/m3; 0 where E is singular. */
+static double energy_density(const run *r, int elem_id) {
+  const domain *d = &r->body.d;
+  const size_t ns = (size_t)d->ns;
+  const double *sigma = r->result.stress + ns * (size_t)elem_id;
+  double E[36], strain[6];
+  memcpy(E, d->E + ns * ns * (size_t)d->section_id[elem_id],
+         ns * ns * sizeof *E);
+  memcpy(strain, sigma, ns * sizeof *strain);
+  if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', d->ns, 1, E, d->ns, strain, d->ns))
+    return 0.0;
+  return 0.5 * cblas_ddot(d->ns, sigma, 1, strain, 1);
+}
+
 static status set_energy(const run *r, const goal_card *g, goal_form *f) {
+  OWNED double *beyond = NULL;
   (void)g;
+  PASS_NEW(beyond, r->msh->n_elem);
+  PASS(goal_volumes_beyond(r, beyond));
+  for (int e = 0; e < r->msh->n_elem; ++e)
+    if (beyond[e] != 0.0) f->curved += beyond[e] * energy_density(r, e);
   f->value = r->now.energy.strain;
   f->has_tau = f->is_square = 1;
   memcpy(f->tau, r->result.stress,

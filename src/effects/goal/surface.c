@@ -8,16 +8,9 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const double PI = 3.14159265358979323846;
-static const double SMOOTH = 0.5; /* -, sine of the turn of a curved surface */
-
-status goal_places(const run *r, int **where) {
-  PASS_NEW(*where, r->msh->n_node);
-  for (int i = 0; i < r->msh->n_node; ++i) (*where)[i] = -1;
-  for (int q = 0; q < r->nodes.n; ++q) (*where)[r->surface->node_id[q]] = q;
-  return OK;
-}
 
 /* 1: a face at a node in the plane is held along its normal, as the node is. */
 static int has_held_face(const run *r, int node) {
@@ -43,25 +36,6 @@ int goal_is_mirrored(const run *r, int i) {
   return any && (dim == 3 || has_held_face(r, r->surface->node_id[i]));
 }
 
-/* How far the surface of the body, smooth, is beyond the middle of an edge, m:
- * half the chord times half the turn of its normals. */
-static double bulge(const run *r, const int *q) {
-  const contact_surface *s = r->surface;
-  const int dim = s->dim;
-  const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
-  double along = 0.0, chord = 0.0;
-  if (p->obstacle_normal || p->support->shape == OBSTACLE_CONFORMING)
-    return 0.0;
-  for (int c = 0; c < dim; ++c) {
-    const double d = s->x[dim * q[1] + c] - s->x[dim * q[0] + c];
-    const double *n[2] = {s->frame + dim * dim * q[0],
-                          s->frame + dim * dim * q[1]};
-    along += (n[1][c] - n[0][c]) * d;
-    chord = hypot(chord, d);
-  }
-  return fabs(along) <= SMOOTH * chord ? along / 8.0 : 0.0;
-}
-
 /* Integral of the bubble of an edge over a face. */
 static double bubble_weight(const run *r, int face) {
   const mesh *m = r->msh;
@@ -74,22 +48,24 @@ static double bubble_weight(const run *r, int face) {
   return weight * 2.0 / 3.0 * PI * (m->x[2 * v[0]] + m->x[2 * v[1]]);
 }
 
-/* Normal and gap in the middle of an edge between contact nodes q[2]. */
+/* Normal and gap in the middle of an edge between contact nodes q[2], at the
+ * surface of the body; of the obstacle's normal that there. */
 static void set_middle(const run *r, const int *q, contact_edge *e) {
   const contact_surface *s = r->surface;
   const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
   const int dim = s->dim;
   double x[3] = {0.0}, size = 0.0;
   for (int c = 0; c < dim; ++c) {
-    x[c] = 0.5 * (s->x[dim * q[0] + c] + s->x[dim * q[1] + c]);
+    x[c] = 0.5 * (s->x[dim * q[0] + c] + s->x[dim * q[1] + c]) + e->out[c];
     e->n[c] = s->frame[dim * dim * q[0] + c] + s->frame[dim * dim * q[1] + c];
     size = hypot(size, e->n[c]);
   }
   for (int c = 0; c < dim; ++c) e->n[c] /= size;
-  if (p->support == NULL) return;
   if (p->obstacle_normal) obstacle_normal(p->support, dim, x, e->n);
-  e->excess = obstacle_gap(p->support, dim, x, e->n, r->now.t) -
-              0.5 * (r->problem.gap[q[0]] + r->problem.gap[q[1]]) - bulge(r, q);
+  e->excess = obstacle_gap(p->support, dim, x, e->n, r->now.t);
+  for (int c = 0; c < dim; ++c)
+    e->excess -=
+        0.5 * e->n[c] * (r->now.u[dim * e->a + c] + r->now.u[dim * e->b + c]);
   if (!isfinite(e->excess)) e->excess = 0.0;
 }
 
@@ -100,17 +76,19 @@ static int state_of(const run *r, int q) {
   return k == 1 && r->result.slip[q] < 0.0 ? -1 : CONTACT_SLIP;
 }
 
-static void add_edge(const run *r, int i, int j, double weight,
-                     const int *where, goal_surface *s) {
-  const int q[2] = {where[i], where[j]};
+/* Edge v[2] of a face. */
+static void add_edge(const run *r, const goal_ring *rings, int face,
+                     const int *v, const int *where, goal_surface *s) {
+  const int i = v[0], j = v[1], q[2] = {where[i], where[j]};
   if (q[0] < 0 || q[1] < 0) return;
   contact_edge e = {.a = i < j ? i : j,
                     .b = i < j ? j : i,
-                    .weight = weight,
+                    .weight = bubble_weight(r, face),
                     .other = {-1, -1}};
   const contact_status a = r->result.contact[q[0]], b = r->result.contact[q[1]];
   e.closed = a != CONTACT_OPEN && b != CONTACT_OPEN;
   e.stuck = a == CONTACT_STICK && b == CONTACT_STICK;
+  goal_bulge(r, rings, face, v, e.out);
   if (e.closed) set_middle(r, q, &e);
   if (state_of(r, q[0]) != state_of(r, q[1]))
     s->ends[i] = s->ends[j] = GOAL_END_OF_CONTACT;
@@ -226,14 +204,16 @@ static void unite_edges(goal_surface *s) {
 }
 
 /* The edges of a contact on an obstacle. */
-static void add_group(const run *r, const mesh_group *g, const int *where,
-                      goal_surface *s) {
+static void add_group(const run *r, const goal_ring *rings, const mesh_group *g,
+                      const int *where, goal_surface *s) {
   const int dim = r->msh->dim;
   for (int i = 0; i < g->n_item; ++i) {
     const int *v = r->msh->face + dim * g->item_id[i];
     for (int a = 0; a < dim; ++a)
-      for (int b = a + 1; b < dim; ++b)
-        add_edge(r, v[a], v[b], bubble_weight(r, g->item_id[i]), where, s);
+      for (int b = a + 1; b < dim; ++b) {
+        const int ends[2] = {v[a], v[b]};
+        add_edge(r, rings, g->item_id[i], ends, where, s);
+      }
   }
 }
 
@@ -241,7 +221,9 @@ status goal_surface_new(const run *r, const goal_border *border,
                         goal_surface *s) {
   const mesh *m = r->msh;
   OWNED int *where = NULL, *seen = NULL;
+  ENDS_BY(goal_ring_free) goal_ring rings = {0};
   int n = 0;
+  PASS(goal_ring_new(m, &rings));
   PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node));
   PASS(goal_places(r, &where));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
@@ -251,7 +233,7 @@ status goal_surface_new(const run *r, const goal_border *border,
   PASS_NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
-      add_group(r, &m->group[r->m->contacts[k].group_id], where, s);
+      add_group(r, &rings, &m->group[r->m->contacts[k].group_id], where, s);
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   if (s->n_edge > 0)
@@ -261,11 +243,65 @@ status goal_surface_new(const run *r, const goal_border *border,
   unite_edges(s);
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
+  PASS(goal_add_bent(r, &rings, s));
   PASS(goal_add_given(r, s));
   return goal_mark_supports(r, border, s);
 }
 
+/* Direction v[dim] of the traction of contact node q along its normal, or along
+ * its slip; returns it, Pa. */
+static double traction_of(const run *r, int q, int along, double *v) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim, first = along ? 1 : 0, last = along ? dim : 1;
+  double size = 0.0;
+  memset(v, 0, 3 * sizeof *v);
+  for (int a = first; a < last; ++a) {
+    const double part = r->now.rc[dim * q + a] / s->area[q];
+    for (int c = 0; c < dim; ++c)
+      v[c] += part * s->frame[dim * (dim * q + a) + c];
+  }
+  for (int c = 0; c < dim; ++c) size = hypot(size, v[c]);
+  for (int c = 0; c < dim && size > 0.0; ++c) v[c] /= size;
+  return size;
+}
+
+/* v[2][dim] at the ends: v in the middle times the mean of y less the mean of
+ * both at the ends; 0 where v turns by a right angle. */
+static double product_between(int dim, double v[2][3], const double *ya,
+                              const double *yb) {
+  double middle[3] = {0.0}, size = 0.0, sum = 0.0;
+  for (int c = 0; c < dim; ++c) {
+    middle[c] = 0.5 * (v[0][c] + v[1][c]);
+    size = hypot(size, middle[c]);
+  }
+  if (!(size > 0.7)) return 0.0;
+  for (int c = 0; c < dim; ++c)
+    sum += 0.5 * middle[c] / size * (ya[c] + yb[c]) -
+           0.5 * (v[0][c] * ya[c] + v[1][c] * yb[c]);
+  return sum;
+}
+
+status goal_work_between(const run *r, const goal_surface *s, const double *y,
+                         double *work) {
+  const int dim = r->msh->dim;
+  OWNED int *where = NULL;
+  *work = 0.0;
+  PASS(goal_places(r, &where));
+  for (int k = 0; k < s->n_edge; ++k) {
+    const contact_edge *e = &s->edge[k];
+    if (!e->closed || e->other[0] >= 0) continue;
+    for (int along = 0; along < (e->stuck ? 1 : 2); ++along) {
+      double v[2][3];
+      const double traction = 0.5 * (traction_of(r, where[e->a], along, v[0]) +
+                                     traction_of(r, where[e->b], along, v[1]));
+      *work += e->weight * traction *
+               product_between(dim, v, y + dim * e->a, y + dim * e->b);
+    }
+  }
+  return OK;
+}
+
 void goal_surface_free(goal_surface *s) {
-  RELEASE(s->edge, s->ends, s->front, s->given);
+  RELEASE(s->edge, s->ends, s->front, s->bent, s->given);
   *s = (goal_surface){0};
 }
