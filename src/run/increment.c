@@ -124,7 +124,7 @@ static void see_iteration(void *ctx, const solver_step *s) {
 }
 
 /* r->problem.cp solved as the effects rewrite it, from r->old into r->now. */
-static status solve_contact(run *r) {
+static status solve_posed(run *r) {
   const solver_listener listener = {see_iteration, r};
   const int before = r->solving.seen.now;
   contact_problem cp = r->problem.cp;
@@ -154,6 +154,64 @@ static status solve_contact(run *r) {
     put_rows(r, own_u, rc);
   }
   return OK;
+}
+
+/* 1: a body that contact alone holds has lost all of its contact forces. */
+static int is_let_go(const run *r) {
+  static const double rounding = 1e-9;
+  const contact_problem *cp = &r->problem.cp;
+  const size_t n = (size_t)r->nodes.n_c;
+  return cp->floating && cp->B != NULL && r->solving.report.outcome > 0 &&
+         r->problem.n_before == r->nodes.n_row &&
+         largest_entry(n, r->now.rc) < rounding * largest_entry(n, r->old.rc);
+}
+
+/* r->now from the state u, rc [n_c]. */
+static status solve_from(run *r, double *u, double *rc) {
+  double *const start_u = r->solving.start_u, *const start_r =
+                                                  r->solving.start_r;
+  r->solving.start_u = u;
+  r->solving.start_r = rc;
+  const status st = solve_posed(r);
+  r->solving.start_u = start_u;
+  r->solving.start_r = start_r;
+  return st;
+}
+
+/*
+ * Friction may keep a body jammed without any load, where it is in equilibrium
+ * without contact too. The state that belongs to the path of loads is the one
+ * next to that of almost the same load.
+ */
+static status follow_load(run *r) {
+  static const double almost = 0x1p-20;
+  const double *f = r->problem.cp.f;
+  const solver_report empty = r->solving.report;
+  const size_t bytes = (size_t)r->nodes.n_c * sizeof *r->now.uc;
+  OWNED double *near = NULL, *u = NULL, *rc = NULL;
+  PASS_NEW(near, r->nodes.n_row);
+  PASS_NEW_REALS(r->nodes.n_c, &u, &rc);
+  for (int i = 0; i < r->nodes.n_row; ++i)
+    near[i] = f[i] + almost * (r->problem.f_before[i] - f[i]);
+  memcpy(u, r->now.uc, bytes);
+  memcpy(rc, r->now.rc, bytes);
+  r->problem.cp.f = near;
+  const status st = solve_posed(r);
+  r->problem.cp.f = f;
+  PASS(st);
+  const int steps = empty.iterations + r->solving.report.iterations;
+  if (r->solving.report.outcome > 0) {
+    memcpy(u, r->now.uc, bytes);
+    memcpy(rc, r->now.rc, bytes);
+  }
+  PASS(solve_from(r, u, rc));
+  r->solving.report.iterations += steps;
+  return OK;
+}
+
+static status solve_contact(run *r) {
+  PASS(solve_posed(r));
+  return is_let_go(r) ? follow_load(r) : OK;
 }
 
 static int has_side_gap(const contact_surface *s) {

@@ -504,14 +504,82 @@ START_TEST(swelling_body_has_its_place_by_every_method) {
 }
 END_TEST
 
-UNIT_MAIN("floating", swelling_body_has_its_place_by_every_method,
-          what_is_not_solved_is_not_said_to_be_apart,
-          resultant_through_the_only_node_that_touches,
-          body_balanced_on_a_corner_rests,
-          every_method_holds_the_body_or_says_that_none_can,
-          resultants_are_those_of_statics,
-          layers_of_any_contrast_weigh_the_same, no_equilibrium_is_a_verdict,
-          free_motions_are_named, body_under_another_that_is_lifted_stays,
-          body_that_is_left_stays_where_it_was,
-          body_that_is_pushed_along_goes_one_way,
-          block_between_others_slides_away, touch_without_force_is_open)
+/* N of a wedge of half the angle between two planes, pressed in by 10 and
+ * unloaded to p. */
+static double unload(double angle, double mu, const char *law, const char *kind,
+                     double p) {
+  const double a = angle * M_PI / 180.0;
+  job j = job_begin("wedge");
+  job_write(&j, "wedge.geo",
+            "Point(1) = {-.5, 0, 0}; Point(2) = {.5, 0, 0};\n"
+            "Point(3) = {%.17g, 1, 0}; Point(4) = {-%.17g, 1, 0};\n"
+            "For i In {1:4}\n  Line(i) = {i, i %% 4 + 1};\n"
+            "  Transfinite Curve{i} = i %% 2 ? 9 : 7;\nEndFor\n"
+            "Curve Loop(1) = {1:4}; Plane Surface(1) = {1};\n"
+            "Transfinite Surface{1};\nPhysical Curve(\"RIGHT\") = {2};\n"
+            "Physical Curve(\"TOP\") = {3};\nPhysical Curve(\"LEFT\") = {4};\n"
+            "Physical Surface(\"BODY\") = {1};\n",
+            0.5 + tan(a), 0.5 + tan(a));
+  job_write(&j, "wedge.inp",
+            "*PARAMETER\nC = %.17g\nS = %.17g\nMU = %g\n*MESH, FILE=wedge.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=L, TYPE=PLANE\n-0.5, 0.\n<C>, <S>\n"
+            "*OBSTACLE, NAME=R, TYPE=PLANE\n0.5, 0.\n\"-C\", <S>\n"
+            "*CONTACT, NAME=CL, GROUP=LEFT, OBSTACLE=L\n"
+            "*CONTACT, NAME=CR, GROUP=RIGHT, OBSTACLE=R\n"
+            "*FRICTION, CONTACT=CL, LAW=COULOMB\n<MU>\n"
+            "*FRICTION, CONTACT=CR, LAW=COULOMB\n<MU>\n"
+            "*STEP\n*QUASISTATIC\n0.1, 1.\n*DSLOAD\nTOP, P, 10.\n*END STEP\n"
+            "*STEP\n*%s\n0.1, 1.\n*DSLOAD\nTOP, P, %g\n"
+            "*PRINT, TOTALS\n*END STEP\n",
+            cos(a), sin(a), mu, law, kind, p);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  const double normal = dat_at(&t, 0, "normal");
+  dat_free(&t);
+  job_end(&j);
+  return normal;
+}
+
+/* Without load a wedge is in equilibrium jammed as well as free of contact: it
+ * stays as it is under next to no load, where friction holds it at all. */
+START_TEST(jammed_wedge_stays_where_it_was) {
+  static const char creeps[] = "*INELASTIC, LAW=MAXWELL\n2000.\n";
+  static const struct {
+    double angle, mu;
+    const char *law, *kind;
+  } cases[] = {{25, 0.5, "", "QUASISTATIC"},
+               {27, 0.6, "", "QUASISTATIC"},
+               {25, 0.5, "", "QUASISTATIC, FORM=VELOCITY"},
+               {25, 0.5, creeps, "VISCO, INTEGRATOR=BACKWARD"},
+               {25, 0.5, creeps, "VISCO, INTEGRATOR=EULER"},
+               {20, 0.3, "", "QUASISTATIC"}};
+  const double angle = cases[_i].angle, mu = cases[_i].mu;
+  const double rest = unload(angle, mu, cases[_i].law, cases[_i].kind, 1e-9);
+  const double none = unload(angle, mu, cases[_i].law, cases[_i].kind, 0);
+  ck_assert_double_eq_tol(none, rest, 1e-6);
+  ck_assert(mu > tan(angle * M_PI / 180) ? none > 0.5 : none < 1e-9);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("floating");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_test(tests, swelling_body_has_its_place_by_every_method);
+  tcase_add_test(tests, what_is_not_solved_is_not_said_to_be_apart);
+  tcase_add_test(tests, resultant_through_the_only_node_that_touches);
+  tcase_add_test(tests, body_balanced_on_a_corner_rests);
+  tcase_add_test(tests, every_method_holds_the_body_or_says_that_none_can);
+  tcase_add_test(tests, resultants_are_those_of_statics);
+  tcase_add_test(tests, layers_of_any_contrast_weigh_the_same);
+  tcase_add_test(tests, no_equilibrium_is_a_verdict);
+  tcase_add_test(tests, free_motions_are_named);
+  tcase_add_test(tests, body_under_another_that_is_lifted_stays);
+  tcase_add_test(tests, body_that_is_left_stays_where_it_was);
+  tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);
+  tcase_add_test(tests, block_between_others_slides_away);
+  tcase_add_test(tests, touch_without_force_is_open);
+  tcase_add_loop_test(tests, jammed_wedge_stays_where_it_was, 0, 6);
+  return unit_run("floating", tests);
+}
