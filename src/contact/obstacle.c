@@ -43,6 +43,18 @@ static double circle_gap(double a, double b, double c, int inside) {
   return c < 0 ? -(b + root) / a : HUGE_VAL;
 }
 
+/* |y|^2 - R^2, whose digits of a large circle that an axis meets near y are
+ * kept: its largest component and R are taken off each other first. */
+static double power_of(int dim, const double *y, double radius) {
+  double rest = 0;
+  int most = 0;
+  for (int c = 1; c < dim; ++c)
+    if (fabs(y[c]) > fabs(y[most])) most = c;
+  for (int c = 0; c < dim; ++c)
+    if (c != most) rest += y[c] * y[c];
+  return (fabs(y[most]) - radius) * (fabs(y[most]) + radius) + rest;
+}
+
 static double round_gap(const obstacle *o, int dim, const double *y,
                         const double *n) {
   double across[3] = {0, 0, 0}, m[3] = {0, 0, 0};
@@ -55,9 +67,8 @@ static double round_gap(const obstacle *o, int dim, const double *y,
     across[c] = y[c] - y_axis * o->direction[c];
     m[c] = n[c] - n_axis * o->direction[c];
   }
-  double distance = sqrt(dot(dim, across, across));
   return circle_gap(dot(dim, m, m), dot(dim, across, m),
-                    (distance - o->radius) * (distance + o->radius), o->inside);
+                    power_of(dim, across, o->radius), o->inside);
 }
 
 void obstacle_motion(const obstacle *o, double t, double *d) {

@@ -132,6 +132,25 @@ START_TEST(flat_sphere_keeps_the_digits_of_the_gap) {
 }
 END_TEST
 
+/* Above (1, 0) a circle of radius R that touches (0, 0) is R - sqrt(R^2 - 1)
+ * away, which is 1/(2 R) to 16 digits. */
+START_TEST(flat_circle_keeps_the_digits_of_the_gap) {
+  static const double radius[] = {1e8, 1e10, 0x1p40};
+  for (int k = 0; k < 3; ++k)
+    for (int axis = 0; axis < 3; ++axis) {
+      obstacle o = {.shape = axis == 2 ? OBSTACLE_SPHERE : OBSTACLE_CYLINDER,
+                    .radius = radius[k]};
+      double x[3] = {0.0}, n[3] = {0.0};
+      o.point[axis] = -radius[k];
+      x[(axis + 1) % (axis == 2 ? 3 : 2)] = 1.0;
+      n[axis] = -1.0;
+      ck_assert_double_eq_tol(
+          obstacle_gap(&o, axis == 2 ? 3 : 2, x, n, 0) * 2.0 * radius[k], 1.0,
+          1e-12);
+    }
+}
+END_TEST
+
 START_TEST(lengths_times_a_power_of_two_scale_every_bit) {
   for (int k = 0; k < 300; ++k) {
     int dim = 2 + k % 2, power = k % 81 - 40;
@@ -388,6 +407,7 @@ UNIT_MAIN("obstacle", plane_is_met_where_it_was_left,
           gap_of_a_disc_above_a_cylinder_by_hand,
           line_along_the_axis_misses_the_cylinder,
           flat_sphere_keeps_the_digits_of_the_gap,
+          flat_circle_keeps_the_digits_of_the_gap,
           lengths_times_a_power_of_two_scale_every_bit,
           normal_of_the_obstacle_is_the_shortest_way_to_it,
           shapes_without_a_normal_leave_it_alone, obstacle_shifts_with_time,
