@@ -111,14 +111,8 @@ void visco_free(visco *v) {
   memory_free(v->fine);
   scheme_work_free(v->work);
   flow_free(&v->x);
-  memory_free(v->place);
-  memory_free(v->elem);
-  memory_free(v->E);
-  memory_free(v->stress);
-  memory_free(v->section_id);
-  memory_free(v->kin);
-  memory_free(v->thickness);
-  memory_free(v);
+  RELEASE(v->place, v->elem, v->E, v->stress, v->section_id, v->kin,
+          v->thickness, v);
 }
 
 void visco_add_strains(const run *r, double *e0) {

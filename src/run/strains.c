@@ -63,8 +63,7 @@ status strains_new(run *r) {
 
 void strains_free(run *r) {
   visco_free(r->strains.visco);
-  memory_free(r->strains.elem);
-  memory_free(r->strains.load);
+  RELEASE(r->strains.elem, r->strains.load);
 }
 
 void strains_collect(run *r) {

@@ -240,14 +240,10 @@ static int requires_balance(const model *m, char *why, size_t size) {
   return any;
 }
 
-const effect_ops balance_effect = {.name = "balance",
-                                   .bit = NO_BIT,
-                                   .required = requires_balance,
-                                   .own = STAGE_NONE,
-                                   .size = sizeof(balance),
-                                   .on.begin_step = begin_step,
-                                   .on.solve = solve,
-                                   .on.accept = learn,
-                                   .on.show = show,
-                                   .on.keep = keep,
-                                   .on.release = release};
+/* clang-format off */
+const effect_ops balance_effect = {
+  .name = "balance", .bit = NO_BIT, .required = requires_balance,
+  .own = STAGE_NONE, .size = sizeof(balance),
+  .on = {.begin_step = begin_step, .solve = solve, .accept = learn,
+         .show = show, .keep = keep, .release = release}};
+/* clang-format on */

@@ -131,18 +131,12 @@ static const column columns[] = {
 {"mesh_error", "%", INC, 0, ON(MESH_ERROR), ANY, "mesh_error", 0, mesh_error,
  NULL, "estimate of the error of the mesh in the energy norm, of that of the "
  "solution; NaN: not required"}};
-/* clang-format on */
 
-const effect_ops mesh_error_effect = {.name = "error of mesh",
-                                      .bit = EFFECT_BIT_MESH_ERROR,
-                                      .required = requires_mesh_error,
-                                      .expected = expected,
-                                      .own = STAGE_MESH_ERROR,
-                                      .inside = 1,
-                                      .size = sizeof(mesh_estimate),
-                                      .on.create = estimate_new,
-                                      .on.estimate = estimate,
-                                      .on.keep = keep,
-                                      .on.release = release,
-                                      .columns = columns,
-                                      .n_column = COLUMNS(columns)};
+const effect_ops mesh_error_effect = {
+  .name = "error of mesh", .bit = EFFECT_BIT_MESH_ERROR,
+  .required = requires_mesh_error, .expected = expected,
+  .own = STAGE_MESH_ERROR, .inside = 1, .size = sizeof(mesh_estimate),
+  .on = {.create = estimate_new, .estimate = estimate, .keep = keep,
+         .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */

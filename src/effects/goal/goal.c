@@ -533,19 +533,12 @@ static const column columns[] = {
  "stick, or a support ends, or in an inner corner"},
 {"verdict", "-", WORD, goal_no, goal_word,
  "reliable, or why not"}};
-/* clang-format on */
 
-const effect_ops goals_effect = {.name = "errors of goals",
-                                 .bit = NO_BIT,
-                                 .required = requires_goals,
-                                 .expected = expected,
-                                 .table = {PRINT_GOALS, PER_GOAL},
-                                 .size = sizeof(goal_state),
-                                 .on.create = goals_new,
-                                 .on.accept = find_goals,
-                                 .on.show = show,
-                                 .on.keep = keep,
-                                 .on.release = release,
-                                 .columns = columns,
-                                 .n_column = COLUMNS(columns),
-                                 .items = goal_items};
+const effect_ops goals_effect = {
+  .name = "errors of goals", .bit = NO_BIT, .required = requires_goals,
+  .expected = expected, .table = {PRINT_GOALS, PER_GOAL},
+  .size = sizeof(goal_state), .items = goal_items,
+  .on = {.create = goals_new, .accept = find_goals, .show = show, .keep = keep,
+         .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */
