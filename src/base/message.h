@@ -29,7 +29,8 @@ typedef enum { NOTE, WARNING, ERROR } severity;
 
 typedef struct message_log message_log;
 
-/* Number, severity and manual entry of each message: messages.h */
+/* MESSAGE_LIST(X), a row X(number, severity, title, remedy) each: made of
+ * src/manual/messages.md by tools/list_messages. */
 #include "base/messages.h"
 #define MESSAGE_ENUM(number, severity, title, remedy) P##number = number,
 typedef enum { MESSAGE_LIST(MESSAGE_ENUM) P_END } message_id;

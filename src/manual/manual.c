@@ -4,7 +4,6 @@
  */
 #include "manual/manual.h"
 
-#include "base/message.h"
 #include "base/option.h"
 #include "base/text.h"
 #include "manual/embedded.h"
@@ -296,12 +295,6 @@ static void print_columns(FILE *out) {
   fputs("```\n", out);
 }
 
-static void print_messages(FILE *out) {
-  fputs("\n```\n", out);
-  message_explain(NULL, out);
-  fputs("```\n", out);
-}
-
 static const struct {
   const char *name, *file;
   void (*more)(FILE *out); /* what follows the file, or NULL */
@@ -315,7 +308,7 @@ static const struct {
                 {"batch", "batch.md", NULL},
                 {"abaqus", "abaqus.md", NULL},
                 {"trouble", "trouble.md", NULL},
-                {"messages", "messages.md", print_messages},
+                {"messages", "messages.md", NULL},
                 {"gallery", "gallery.md", NULL},
                 {"verification", "verification.md", NULL},
                 {"changes", "changes.md", NULL}};
