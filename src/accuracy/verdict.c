@@ -127,7 +127,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   TRY(put_given(s, &form, &own));
   NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
-  TRY(lemke->setup(&own, param, &work));
+  TRY(solver_set_up(lemke, &own, param, &work));
   TRY(lemke->solve(&own, param, work, &control, u, r, &rep));
   *end = rep.outcome;
   const double *ray = lemke_ray(work);
@@ -138,7 +138,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   if (form != NULL) given_form_move(form, v);
 done:
   given_form_free(form);
-  if (work != NULL) lemke->release(work);
+  solver_release(lemke, work);
   RELEASE(u, r, A);
   return st;
 }

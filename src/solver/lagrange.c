@@ -63,19 +63,15 @@ typedef struct lagrange_work {
 
 static void lagrange_release(void *work) {
   lagrange_work *w = work;
-  if (w == NULL) return;
   force_set_free(w->set);
   RELEASE(w->x, w->old_x, w->y, w->y_x, w->c, w->old_r);
   best_iterate_free(&w->best);
-  memory_free(w);
 }
 
 static status lagrange_setup(const contact_problem *cp, const void *par,
-                             void **work) {
-  lagrange_work *w;
+                             void *work) {
+  lagrange_work *w = work;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(force_set_new(cp, &w->set));
   PASS_NEW_REALS(cp->m, &w->x, &w->old_x, &w->y, &w->y_x, &w->c, &w->old_r);
   PASS(best_iterate_new(cp->m, &w->best));
@@ -244,8 +240,8 @@ const solver_ops lagrange_solver = {
     "method that always converges on a Tresca problem; PCG solves the same\n"
     "problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
-  .param_size = sizeof(lagrange), .options = lagrange_options,
-  .setup = lagrange_setup, .solve = lagrange_solve, .release = lagrange_release,
-  .keep = lagrange_keep
+  .param_size = sizeof(lagrange), .work_size = sizeof(lagrange_work),
+  .options = lagrange_options, .setup = lagrange_setup, .solve = lagrange_solve,
+  .release = lagrange_release, .keep = lagrange_keep
 };
 /* clang-format on */

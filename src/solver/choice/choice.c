@@ -167,7 +167,7 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
 static void forget_factors(contact_solver *s) {
   for (int i = 0; i <= N_SOLVER; ++i) {
     const solver_ops *ops = i < N_SOLVER ? solver_list[i] : s->choice.ops;
-    if (s->work[i] != NULL) ops->release(s->work[i]);
+    solver_release(ops, s->work[i]);
     s->work[i] = NULL;
   }
   fixed_point_free(s->fixed);

@@ -609,7 +609,6 @@ enum { UZAWA_STEPS = 1000 /* Newton steps of all multiplier steps */ };
 
 static void auglag_release(void *work) {
   auglag_work *w = work;
-  if (w == NULL) return;
   RELEASE(w->part, w->closed, w->mode, w->state, w->origin, w->diagonal,
           w->lambda, w->z, w->F, w->y, w->du, w->dy, w->e, w->share, w->bonded,
           w->K, w->pivot, w->free_id, w->by.hold, w->by.b);
@@ -617,7 +616,6 @@ static void auglag_release(void *work) {
   pattern_free(&w->by.guess);
   fixed_point_free(w->fixed);
   best_iterate_free(&w->best);
-  memory_free(w);
 }
 
 /* Of A, also where a rigid motion makes it zero. */
@@ -652,12 +650,10 @@ static status new_matrix(const contact_problem *cp, auglag_work *w) {
 }
 
 static status auglag_setup(const contact_problem *cp, const void *par,
-                           void **work) {
-  auglag_work *w;
+                           void *work) {
+  auglag_work *w = work;
   size_t m = (size_t)cp->m;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   w->m = cp->m;
   PASS_NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
                  &w->du, &w->dy, &w->e);
@@ -754,8 +750,8 @@ const solver_ops auglag_solver = {
     "contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
-  .param_size = sizeof(auglag), .options = auglag_options,
-  .setup = auglag_setup, .solve = auglag_solve, .release = auglag_release,
-  .keep = auglag_keep
+  .param_size = sizeof(auglag), .work_size = sizeof(auglag_work),
+  .options = auglag_options, .setup = auglag_setup, .solve = auglag_solve,
+  .release = auglag_release, .keep = auglag_keep
 };
 /* clang-format on */

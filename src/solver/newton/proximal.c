@@ -88,7 +88,6 @@ typedef struct proximal_work {
 
 static void proximal_release(void *work) {
   proximal_work *w = work;
-  if (w == NULL) return;
   force_set_free(w->set);
   best_iterate_free(&w->best);
   step_matrix_free(w->J);
@@ -97,7 +96,7 @@ static void proximal_release(void *work) {
   RELEASE(w->x, w->F, w->d, w->z, w->weight, w->start, w->centre, w->before,
           w->acts);
   RELEASE(w->by.hold, w->by.b, w->by.du, w->by.start, w->by.centre,
-          w->by.before, w);
+          w->by.before);
 }
 
 /* Workspace of the steps of an operator. */
@@ -111,12 +110,10 @@ static status new_steps(const contact_problem *cp, proximal_work *w) {
 }
 
 static status proximal_setup(const contact_problem *cp, const void *par,
-                             void **work) {
-  proximal_work *w;
+                             void *work) {
+  proximal_work *w = work;
   size_t m = (size_t)cp->m;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(force_set_new(cp, &w->set));
   PASS(best_iterate_new(cp->m, &w->best));
   if (cp->op != NULL)
@@ -577,7 +574,7 @@ const solver_ops proximal_solver = {
     "for a body on its contact surface NEWTON is faster.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
-  .options = proximal_options,
+  .work_size = sizeof(proximal_work), .options = proximal_options,
   .setup = proximal_setup, .solve = proximal_solve, .release = proximal_release
 };
 /* clang-format on */

@@ -637,10 +637,8 @@ static const solver_ops *const correctors[N_CORRECTOR] = {&newton_solver,
 
 static void lemke_release(void *work) {
   lemke_work *w = work;
-  if (w == NULL) return;
   for (int i = 0; i < N_CORRECTOR; ++i) {
-    if (w->corrector.ops[i] != NULL)
-      w->corrector.ops[i]->release(w->corrector.work[i]);
+    solver_release(w->corrector.ops[i], w->corrector.work[i]);
     memory_free(w->corrector.param[i]);
   }
   lcp_free(&w->lcp);
@@ -648,7 +646,7 @@ static void lemke_release(void *work) {
           w->reduced.tame, w->reduced.base, w->raw, w->v, w->t, w->ray, w->work,
           w->best_u, w->best_r, w->reduced.kept, w->reduced.free_id, w->pivot,
           w->kind, w->node.normal, w->node.slide, w->node.n_slide, w->var, w->q,
-          w->d, w->z, w->dz, w);
+          w->d, w->z, w->dz);
 }
 
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
@@ -661,18 +659,16 @@ static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
     w->corrector.param[i] = param;
     w->corrector.ops[i] = ops;
     option_defaults(ops->options, param);
-    PASS(ops->setup(cp, param, &w->corrector.work[i]));
+    PASS(solver_set_up(ops, cp, param, &w->corrector.work[i]));
   }
   return OK;
 }
 
 static status lemke_setup(const contact_problem *cp, const void *par,
-                          void **work) {
-  lemke_work *w;
+                          void *work) {
+  lemke_work *w = work;
   const lemke *p = par;
   size_t m = (size_t)cp->m;
-  PASS_NEW(w, 1);
-  *work = w;
   w->m = cp->m;
   w->facets = p->facets >= 4 ? p->facets + p->facets % 2 : 8;
   int n_var = cp->n * (cp->dim == 2 ? 4 : w->facets + 2);
@@ -789,8 +785,8 @@ const solver_ops lemke_solver = {
     "methods disagree or fail.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .entries = "METHOD=LEMKE, which pivots on columns,",
-  .param_size = sizeof(lemke), .options = lemke_options,
-  .setup = lemke_setup, .solve = lemke_solve, .release = lemke_release,
-  .keep = lemke_keep
+  .param_size = sizeof(lemke), .work_size = sizeof(lemke_work),
+  .options = lemke_options, .setup = lemke_setup, .solve = lemke_solve,
+  .release = lemke_release, .keep = lemke_keep
 };
 /* clang-format on */
