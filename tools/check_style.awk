@@ -201,11 +201,16 @@ function end_function(    length_) {
     fail(start, name ": cyclomatic complexity " complexity ", expected under 15")
 }
 
-function end_declaration(    text, before_value) {
+function end_declaration(    text, before_value, word, i) {
   text = declaration
   declaration = ""
   sub(/^(END_TEST )+/, "", text)
+  if (text ~ /^typedef [^(]* \( [^*]/) function_type[declared_name(text)] = 1
   if (text == "" || text ~ /^typedef / || text ~ /^_Static_assert/) return
+  if (split(text, word, /[ ,]+/) > 1 && word[1] in function_type) {
+    for (i in word) exported[word[i]] = 1
+    return
+  }
   before_value = text
   sub(/ *=.*/, "", before_value)
   if (before_value ~ /\(/) {

@@ -9,46 +9,15 @@
 #include "run/effect.h"
 
 /* clang-format off */
-#define EFFECT_ROWS(X)   \
-  X(finite_elements)     \
-  X(unilateral_contact)  \
-  X(pairs)               \
-  X(moving_obstacle)     \
-  X(friction)            \
-  X(tangents)            \
-  X(nonlocal)            \
-  X(given_forces)        \
-  X(slip_history)        \
-  X(wear)                \
-  X(velocity)            \
-  X(initial_state)       \
-  X(inelastic)           \
-  X(thermal)             \
-  X(body_forces)         \
-  X(stresses)            \
-  X(reactions)           \
-  X(second_solutions)    \
-  X(theorems)            \
-  X(mesh_error)          \
-  X(time_error)          \
-  X(solver_error)        \
-  X(closed_form)         \
-  X(goals)               \
-  X(contact_table)       \
-  X(totals_table)        \
-  X(nodes_table)         \
-  X(elements_table)      \
-  X(energy_table)        \
-  X(reactions_table)     \
-  X(zones)               \
-  X(loops)               \
-  X(cracks)              \
-  X(fields)              \
-  X(condensed_problems)  \
-  X(restart)             \
-  X(listing)             \
-  X(balance)             \
-  X(nested)              \
+#define EFFECT_ROWS(X) \
+  X(finite_elements) X(unilateral_contact) X(pairs) X(moving_obstacle) \
+  X(friction) X(tangents) X(nonlocal) X(given_forces) X(slip_history) \
+  X(wear) X(velocity) X(initial_state) X(inelastic) X(thermal) \
+  X(body_forces) X(stresses) X(reactions) X(second_solutions) X(theorems) \
+  X(mesh_error) X(time_error) X(solver_error) X(closed_form) X(goals) \
+  X(contact_table) X(totals_table) X(nodes_table) X(elements_table) \
+  X(energy_table) X(reactions_table) X(zones) X(loops) X(cracks) X(fields) \
+  X(condensed_problems) X(restart) X(listing) X(balance) X(nested) \
   X(warnings)
 /* clang-format on */
 

@@ -66,7 +66,6 @@ static status node_value(const model *m, const mesh *msh, const load *l,
   if (isfinite(*value)) return OK;
   report_value(m, msh, l, t, node, *value);
   RAISE(ERR_DECK, "%s:%d: a value is not finite", l->at.file, l->at.line_no);
-  return OK;
 }
 
 int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
@@ -257,7 +256,6 @@ status load_initial(const model *m, const mesh *msh, const initial *c,
               msh->elem_no[elem_id]);
   RAISE(ERR_DECK, "%s:%d: an initial value is not finite", c->at.file,
         c->at.line_no);
-  return OK;
 }
 
 static status refuse_temperature(const model *m, const mesh *msh,
@@ -266,7 +264,6 @@ static status refuse_temperature(const model *m, const mesh *msh,
               "the temperature of element %zu is not a finite number",
               msh->elem_no[elem_id]);
   RAISE(ERR_DECK, "%s:%d: a temperature is not finite", at->file, at->line_no);
-  return OK;
 }
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {

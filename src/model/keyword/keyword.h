@@ -24,9 +24,9 @@ typedef struct keyword {
   const option *options; /* of card_options, or NULL */
   /* Options of what the card names; an unknown name goes to the log. */
   plugin (*names)(const reading *r);
-  status (*apply)(reading *r); /* ERR_MEMORY only: the rest goes to the log */
-  int min_line, max_line;      /* data lines; max -1: any number */
-  const char *data;            /* what the data lines hold */
+  apply_card *apply;      /* ERR_MEMORY only: the rest goes to the log */
+  int min_line, max_line; /* data lines; max -1: any number */
+  const char *data;       /* what the data lines hold */
   const char *help;
 } keyword;
 

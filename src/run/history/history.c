@@ -298,7 +298,6 @@ status loop_no_equilibrium(run *r) {
         tried[0] == '\0' ? "" : "tried ",
         tried[0] == '\0' ? outcome_text(r->solving.report.outcome) : tried,
         r->old.t);
-  return OK;
 }
 
 /* ---- before the increments of a step: effects, sudden loads of *VISCO ---- */
