@@ -13,6 +13,11 @@
 #include "base/status.h"
 
 #include <stddef.h>
+#include <string.h>
+
+/* n items of what "to" points to. */
+#define COPY(to, from, n) memcpy((to), (from), (size_t)(n) * sizeof *(to))
+#define CLEAR(to, n) memset((to), 0, (size_t)(n) * sizeof *(to))
 
 /* NEW(pointer, n): n zeroed items of what the pointer points to, or FAIL. */
 #define NEW(pointer, n) NEW_OR(FAIL, pointer, n)

@@ -4,6 +4,7 @@
  * No function allocates: products with the matrix run over blocks of CHUNK
  * rows and columns kept on the stack.
  */
+#include "base/memory.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
@@ -71,13 +72,11 @@ void contact_block(const contact_problem *cp, int node_id, double *block) {
   const int d = cp->dim;
   const size_t m = (size_t)cp->m, first = (size_t)(node_id * d) * (m + 1);
   if (cp->blocks != NULL) {
-    memcpy(block, sparse_blocks_own(cp->blocks, node_id),
-           (size_t)(d * d) * sizeof *block);
+    COPY(block, sparse_blocks_own(cp->blocks, node_id), d * d);
     return;
   }
   for (int j = 0; j < d; ++j)
-    memcpy(block + d * j, contact_matrix(cp) + first + m * (size_t)j,
-           (size_t)d * sizeof *block);
+    COPY(block + d * j, contact_matrix(cp) + first + m * (size_t)j, d);
 }
 
 /* Column by column; symmetric to the last bit. */

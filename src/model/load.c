@@ -142,8 +142,7 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
     int face = g->item_id[k];
     double normal[3];
     patch p = {.n = msh->dim, .factor = 1.0};
-    memcpy(p.node, msh->face + (size_t)msh->dim * (size_t)face,
-           (size_t)msh->dim * sizeof *p.node);
+    COPY(p.node, msh->face + (size_t)msh->dim * (size_t)face, msh->dim);
     p.measure = mesh_face_normal(msh, face, normal) *
                 elem_thickness(m, msh->face_elem[face]);
     for (int c = 0; c < msh->dim; ++c)
@@ -162,8 +161,7 @@ static status add_elements(const model *m, const mesh *msh, const load *l,
   for (int k = 0; k < g->n_item; ++k) {
     int e = g->item_id[k];
     patch p = {.n = msh->dim + 1, .factor = 1.0};
-    memcpy(p.node, msh->elem + (size_t)p.n * (size_t)e,
-           (size_t)p.n * sizeof *p.node);
+    COPY(p.node, msh->elem + (size_t)p.n * (size_t)e, p.n);
     p.measure = mesh_elem_measure(msh, e) * elem_thickness(m, e);
     if (l->kind == LOAD_GRAVITY) {
       const section *sec = &m->sections[m->elem_section[e]];

@@ -256,8 +256,8 @@ status output_remember(output *o, const state *s) {
   PASS(remember_theory(&s->errors.theorems, i));
   remember_contacts(o, s);
   if (s->errors.goals != NULL)
-    memcpy(run->goals + (size_t)((s->step_no - 1) * s->errors.n_goal),
-           s->errors.goals, (size_t)s->errors.n_goal * sizeof *run->goals);
+    COPY(run->goals + (size_t)((s->step_no - 1) * s->errors.n_goal),
+         s->errors.goals, s->errors.n_goal);
   if (!s->settled) ++run->n_unsettled;
   return OK;
 }

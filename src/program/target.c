@@ -82,8 +82,7 @@ static status see_increment(void *ctx, const state *s) {
   p->coarse = s->errors.mesh_error.why != NULL;
   p->time = s->errors.time_error.relative;
   p->solver = s->errors.error.asked ? s->errors.error.relative : 0.0;
-  memcpy(p->eta, s->errors.elem_error,
-         (size_t)p->in->msh->n_elem * sizeof *p->eta);
+  COPY(p->eta, s->errors.elem_error, p->in->msh->n_elem);
   return OK;
 }
 

@@ -64,7 +64,6 @@ static double residual_of(run *r, double *u, double *rc) {
 /* Start values: the last equilibrium, or what is put in its place, or the guess
  * if it is nearer. */
 static void take_start(run *r) {
-  size_t bytes = (size_t)r->nodes.n_c * sizeof *r->now.uc;
   const int own = r->course.shadow;
   double *u = r->old.uc, *rc = r->old.rc;
   if (r->solving.start_u != NULL && !own) {
@@ -77,8 +76,8 @@ static void take_start(run *r) {
     u = r->solving.guess_u;
     rc = r->solving.guess_r;
   }
-  memcpy(r->now.uc, u, bytes);
-  memcpy(r->now.rc, rc, bytes);
+  COPY(r->now.uc, u, r->nodes.n_c);
+  COPY(r->now.rc, rc, r->nodes.n_c);
 }
 
 static int is_open(const run *r, const double *uc) {

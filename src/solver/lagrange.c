@@ -166,7 +166,6 @@ static int turns(const run *s) {
 
 static outcome steps(run *s, solver_report *rep) {
   lagrange_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   int limit = s->control->max_iter > 0 ? s->control->max_iter : STEPS;
   double theta = 0.0;
   force_set_project(w->set, 0.0, s->r);
@@ -175,11 +174,11 @@ static outcome steps(run *s, solver_report *rep) {
   for (int k = 1; k <= limit && o == RUNNING; ++k) {
     rep->iterations = k;
     extrapolate(s, theta);
-    memcpy(w->old_r, s->r, bytes);
-    memcpy(w->old_x, w->x, bytes);
+    COPY(w->old_r, s->r, s->cp->m);
+    COPY(w->old_x, w->x, s->cp->m);
     if (!project_step(s)) {
-      memcpy(s->r, w->old_r, bytes);
-      memcpy(w->x, w->old_x, bytes);
+      COPY(s->r, w->old_r, s->cp->m);
+      COPY(w->x, w->old_x, s->cp->m);
       s->t = 1.0;
       theta = 0.0;
       continue;

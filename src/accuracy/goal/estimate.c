@@ -170,8 +170,7 @@ static void bubble_of(goal_estimator *e, const double *G, int a, int b,
     }
     for (int c = 0; c < dim; ++c) d[c] -= rest[c];
     if (contact->closed) hold(contact, dim, d, x);
-    memcpy(e->edge + (size_t)dim * (size_t)(contact - s->edge), d,
-           (size_t)dim * sizeof *d);
+    COPY(e->edge + (size_t)dim * (size_t)(contact - s->edge), d, dim);
     for (int c = 0; c < dim; ++c) d[c] += rest[c];
   }
   support(s, a, b, d, x);

@@ -11,7 +11,6 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Faces that are seen at less than this sine, from their edge, - . */
 static const double edge_on = 1e-6;
@@ -49,9 +48,8 @@ static status plant(const mortar_input *in, int n, const int *face,
   PASS_NEW(corner, size * (size_t)n);
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < dim; ++k)
-      memcpy(corner + size * (size_t)i + dim * k,
-             place_of(in, face_nodes(in, face[i])[k]),
-             (size_t)dim * sizeof *corner);
+      COPY(corner + size * (size_t)i + dim * k,
+           place_of(in, face_nodes(in, face[i])[k]), dim);
   return box_tree_new(dim, n, dim, corner, out);
 }
 

@@ -194,7 +194,6 @@ static void make_report(const run *r, balance *b) {
 
 static status learn(run *r, void *self) {
   balance *b = self;
-  size_t bytes = (size_t)b->m * sizeof *b->u;
   if (!is_balanced(r)) return OK;
   make_report(r, b);
   if (isfinite(r->errors.mesh_error.relative))
@@ -209,8 +208,8 @@ static status learn(run *r, void *self) {
   b->before = r->errors.error.relative;
   b->t = r->old.t;
   b->known = r->now.t > r->old.t;
-  memcpy(b->u, r->old.uc, bytes);
-  memcpy(b->rc, r->old.rc, bytes);
+  COPY(b->u, r->old.uc, b->m);
+  COPY(b->rc, r->old.rc, b->m);
   return OK;
 }
 

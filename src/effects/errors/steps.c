@@ -131,8 +131,7 @@ static status try_halves(run *r, finer_path *p, double t) {
   p->lost = r->solving.report.outcome <= 0;
   if (p->lost || p->u == NULL) return OK;
   memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
-  memcpy(p->e0, r->strains.eigen.e0,
-         visco_at(r, r->strains.eigen.n) * sizeof *p->e0);
+  COPY(p->e0, r->strains.eigen.e0, visco_at(r, r->strains.eigen.n));
   return OK;
 }
 

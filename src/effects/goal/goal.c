@@ -110,9 +110,7 @@ static int remembers(const run *r, const goal_state *own) {
 /* A static problem starts from the origin. */
 static void forget(const run *r, goal_history *h, int n) {
   if (r->step->kind != STEP_STATIC || r->course.relaxing) return;
-  if (h->edge != NULL)
-    memset(h->edge, 0,
-           (size_t)r->msh->dim * (size_t)h->n_edge * sizeof *h->edge);
+  if (h->edge != NULL) CLEAR(h->edge, (size_t)r->msh->dim * (size_t)h->n_edge);
   memset(h->sum, 0, (size_t)n * sizeof *h->sum);
   memset(h->band, 0, (size_t)n * sizeof *h->band);
   h->lost = 0;
@@ -394,8 +392,8 @@ static status remember(run *r, goal_state *own, shared *s) {
     h->n_edge = s->surface.n_edge;
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   }
-  memcpy(h->edge, goal_estimator_edges(s->estimator),
-         (size_t)r->msh->dim * (size_t)h->n_edge * sizeof *h->edge);
+  COPY(h->edge, goal_estimator_edges(s->estimator),
+       (size_t)r->msh->dim * (size_t)h->n_edge);
   return move_nodes(r, own, s);
 }
 

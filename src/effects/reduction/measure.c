@@ -316,8 +316,7 @@ static void take_friction(reduction *n, const state *s) {
 
 static void take_forces(reduction *n, const state *s, const omitted *row) {
   const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
-  memset(n->force, 0,
-         (size_t)(n->msh->dim * n->msh->n_node) * sizeof *n->force);
+  CLEAR(n->force, n->msh->dim * n->msh->n_node);
   if (row->bit == EFFECT_BIT_FRICTION) {
     take_friction(n, s);
     return;

@@ -120,8 +120,7 @@ static void split_one(const cholmod_factor *L, size_t q, int most, split *p) {
       p->first[p->count] = first[q] + from;
       p->start[p->count] = p->n_row;
       p->at[p->count] = p->n_entry;
-      memcpy(p->row + p->n_row, row + start[q] + from,
-             (size_t)(rows - from) * sizeof *row);
+      COPY(p->row + p->n_row, row + start[q] + from, rows - from);
     }
     ++p->count;
     p->n_row += rows - from;

@@ -6,8 +6,6 @@
 
 #include "base/memory.h"
 
-#include <string.h>
-
 void run_free_surface(run *r) {
   effects_forget(r);
   run_forget_estimates(r);

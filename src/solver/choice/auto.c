@@ -43,6 +43,7 @@
  */
 #include "solver/choice/choice.h"
 
+#include "base/memory.h"
 #include "base/option.h"
 
 #include <math.h>
@@ -378,7 +379,6 @@ static status coarse_sweeps(contact_solver *s, const contact_problem *cp,
 status auto_solve(contact_solver *s, const contact_problem *cp,
                   const solver_listener *listener, double *u, double *r,
                   solver_report *rep) {
-  size_t bytes = (size_t)cp->m * sizeof *u;
   const link *order[MOST_LINKS];
   const answer to = {u, r, rep};
   int n = order_links(cp, order), iterations = 0, first = 1, solved = 0;
@@ -396,15 +396,15 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
     if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
         says_more(cp, rep, &best)) {
       best = *rep;
-      memcpy(s->best_u, u, bytes);
-      memcpy(s->best_r, r, bytes);
+      COPY(s->best_u, u, cp->m);
+      COPY(s->best_r, r, cp->m);
     }
     if (is_final(rep->outcome)) break;
   }
   if (solved) return OK;
   PASS(attempt_prove(s, cp, &best));
-  memcpy(u, s->best_u, bytes);
-  memcpy(r, s->best_r, bytes);
+  COPY(u, s->best_u, cp->m);
+  COPY(r, s->best_r, cp->m);
   *rep = best;
   rep->iterations = iterations;
   return OK;

@@ -546,17 +546,16 @@ static outcome minimise(auglag_run *s) {
 /* The same from u and r, for a limit that does not follow the pressure. */
 static outcome auglag_uzawa(auglag_run *s) {
   auglag_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *s->u;
   double mark = HUGE_VAL;
   int since = 0;
   outcome o;
   s->rho = RHO_UZAWA;
   s->cycle = 0;
   s->factored = 0;
-  memcpy(w->lambda, s->r, bytes);
+  COPY(w->lambda, s->r, s->cp->m);
   contact_reaction(s->cp, s->u, w->y);
   while ((o = minimise(s)) == RUNNING) {
-    memcpy(w->lambda, w->F, bytes);
+    COPY(w->lambda, w->F, s->cp->m);
     ++since;
     if (w->best.residual < PROGRESS * mark) {
       mark = w->best.residual;

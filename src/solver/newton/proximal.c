@@ -457,9 +457,8 @@ static void set_centre(run *s, int creeps) {
 
 /* The pass failed: where it began. */
 static void return_to_centre(run *s) {
-  const size_t bytes = (size_t)s->cp->m * sizeof *s->r;
-  memcpy(s->r, s->w->centre, bytes);
-  if (s->cp->op != NULL) memcpy(s->u, s->w->by.centre, bytes);
+  COPY(s->r, s->w->centre, s->cp->m);
+  if (s->cp->op != NULL) COPY(s->u, s->w->by.centre, s->cp->m);
 }
 
 /* The start forces, of an operator with their displacements; of a body that
@@ -467,12 +466,11 @@ static void return_to_centre(run *s) {
 static status begin(run *s) {
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
-  const size_t bytes = (size_t)cp->m * sizeof *s->r;
-  memcpy(s->r, w->start, bytes);
+  COPY(s->r, w->start, cp->m);
   if (cp->op == NULL) return OK;
   operated_system_fit(w->by.system);
   if (cp->floating) {
-    memcpy(s->u, w->by.start, bytes);
+    COPY(s->u, w->by.start, cp->m);
     contact_reaction(cp, s->u, s->r);
     return OK;
   }
@@ -493,7 +491,6 @@ static double residual_of(const run *s) {
 /* Passes from the start forces. */
 static status trial(run *s, int limit, int closed, outcome *end) {
   proximal_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   double lowest = HUGE_VAL, before = HUGE_VAL;
   int steps = 0, creeps = 0;
   s->hard = 0.0;
@@ -501,7 +498,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
   if (closed) PASS(start_closed(s));
   *end = STOPPED_STAGNATION;
   for (int idle = 0; idle < PATIENCE; ++idle) {
-    memcpy(w->centre, s->r, bytes);
+    COPY(w->centre, s->r, s->cp->m);
     evaluate(s);
     double residual = residual_of(s);
     solver_keep_best(&w->best, s->cp->m, residual, s->u, s->r);

@@ -691,17 +691,16 @@ static status lemke_setup(const contact_problem *cp, const void *par,
  * rounding where obstacles travel far, by a solver of the problem itself. */
 static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
   lemke_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *u;
   rep->residual = contact_residual(s->cp, u, r);
   if (rep->residual <= s->control->tol) return OK;
   rep->outcome = STOPPED_STAGNATION;
-  memcpy(w->best_u, u, bytes);
-  memcpy(w->best_r, r, bytes);
+  COPY(w->best_u, u, s->cp->m);
+  COPY(w->best_r, r, s->cp->m);
   for (int i = 0; i < N_CORRECTOR && rep->outcome != CONVERGED; ++i) {
     solver_report inner = {.outcome = RUNNING};
     if (w->corrector.ops[i] == NULL) continue;
-    memcpy(u, w->best_u, bytes);
-    memcpy(r, w->best_r, bytes);
+    COPY(u, w->best_u, s->cp->m);
+    COPY(r, w->best_r, s->cp->m);
     PASS(w->corrector.ops[i]->solve(s->cp, w->corrector.param[i],
                                     w->corrector.work[i], s->control, u, r,
                                     &inner));
