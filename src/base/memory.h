@@ -7,8 +7,7 @@
  *
  * A failed x_new may leave in *out what it has made: the owner calls x_free.
  */
-#ifndef PROTIS_BASE_MEMORY_H
-#define PROTIS_BASE_MEMORY_H
+#pragma once
 
 #include "base/status.h"
 
@@ -132,5 +131,3 @@ status memory_require(double bytes, const char *what);
 /* Refuse request number k (1 = the next) and, if "all", every later one. k = 0
  * switches it off. For tests of the recovery from a refusal. */
 void memory_refuse(long k, int all);
-
-#endif

@@ -10,8 +10,7 @@
  * P1: grammar of the deck; P2: cards and model; P3: mesh; P4: contact and
  * supports; P5: results and files.
  */
-#ifndef PROTIS_BASE_MESSAGE_H
-#define PROTIS_BASE_MESSAGE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -68,5 +67,3 @@ void message_list(const message_log *log, severity s, FILE *out);
 int message_explain(const char *number, FILE *out);
 /* OK without errors; else "code" (the record then gives the number). */
 status message_status(const message_log *log, status code);
-
-#endif

@@ -2,8 +2,7 @@
  * Numbers as the Fortran codes write them: 1  1.  .5  1.5E3  1.5D+03  1.5+03.
  * Refused: nan, inf, hexadecimal, trailing letters, overflow, empty text.
  */
-#ifndef PROTIS_BASE_NUMBER_H
-#define PROTIS_BASE_NUMBER_H
+#pragma once
 
 enum { NUMBER_TEXT_SIZE = 32 };
 /* Largest numbers that are computed with: products of two are finite. */
@@ -23,5 +22,3 @@ void number_text(double value, char text[NUMBER_TEXT_SIZE]);
 /* For qsort and bsearch: an int; the two ints an item starts with. */
 int number_order(const void *a, const void *b);
 int number_pair_order(const void *a, const void *b);
-
-#endif

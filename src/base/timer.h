@@ -3,8 +3,7 @@
  * bytes requested. Stages nest; a stage is charged for its own work only, not
  * for the stages entered inside it.
  */
-#ifndef PROTIS_BASE_TIMER_H
-#define PROTIS_BASE_TIMER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -84,5 +83,3 @@ void timer_reset(void);
 /* The process continues the run of another one, which had spent this: its calls
  * are those of the whole from here on, the rest is added. */
 void timer_resume(const stage_cost before[STAGE_COUNT]);
-
-#endif

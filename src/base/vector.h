@@ -1,6 +1,5 @@
 /* Vectors of two or three components. */
-#ifndef PROTIS_BASE_VECTOR_H
-#define PROTIS_BASE_VECTOR_H
+#pragma once
 
 static inline double dot(int dim, const double *a, const double *b) {
   double sum = 0.0;
@@ -20,5 +19,3 @@ static inline void add_scaled(int dim, double factor, const double *v,
                               double *to) {
   for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
 }
-
-#endif

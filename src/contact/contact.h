@@ -11,8 +11,7 @@
  * g affine in p, Tresca (B = NULL), local (B diagonal) and nonlocal Coulomb
  * friction are one problem.
  */
-#ifndef PROTIS_CONTACT_CONTACT_H
-#define PROTIS_CONTACT_CONTACT_H
+#pragma once
 
 #include "base/sparse.h"
 #include "base/status.h"
@@ -175,5 +174,3 @@ void contact_product(int m, const double *M, const double *x, double *y);
 /* Sliding limit of one node, N. */
 double contact_node_limit(const contact_problem *cp, const double *r,
                           int node_id);
-
-#endif

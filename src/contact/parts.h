@@ -1,6 +1,5 @@
 /* What the files of the contact problem share. */
-#ifndef PROTIS_CONTACT_PARTS_H
-#define PROTIS_CONTACT_PARTS_H
+#pragma once
 
 #include "contact/contact.h"
 #include "contact/surface.h"
@@ -112,5 +111,3 @@ typedef struct partner_ops {
   void (*drift)(const surface_row *at, double t0, double t, double *d);
 } partner_ops;
 extern const partner_ops pair_partner;
-
-#endif

@@ -3,8 +3,7 @@
  * and NAME_effect in a file of its own. Plan, run, outputs and columns go
  * through them in this order.
  */
-#ifndef PROTIS_EFFECTS_ROWS_H
-#define PROTIS_EFFECTS_ROWS_H
+#pragma once
 
 #include "run/effect.h"
 
@@ -36,5 +35,3 @@ const effect_ops *effect_of_column(const column *c);
 /* The effect whose table it is, PRINT_*. */
 const effect_ops *effect_of_table(int bit);
 stage effect_stage(const effect_ops *e);
-
-#endif

@@ -2,8 +2,7 @@
  * The files that the program carries with it: chapters of the manual, decks and
  * geometries of the examples. The table is made by tools/embed.
  */
-#ifndef PROTIS_MANUAL_EMBEDDED_H
-#define PROTIS_MANUAL_EMBEDDED_H
+#pragma once
 
 #include <stddef.h>
 
@@ -16,5 +15,3 @@ typedef struct embedded_file {
 
 /* Folder after folder; folder NULL at the end. */
 extern const embedded_file embedded_files[];
-
-#endif

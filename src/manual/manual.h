@@ -3,8 +3,7 @@
  * file of this folder, NAME.md, and for some what the tables of the program
  * add: cards, laws, methods, columns, messages.
  */
-#ifndef PROTIS_MANUAL_MANUAL_H
-#define PROTIS_MANUAL_MANUAL_H
+#pragma once
 
 #include "base/status.h"
 
@@ -27,5 +26,3 @@ const char *example_name(const void *ctx, int i);
  * their names. ERR_DECK: no such example; ERR_FILE: one of the files is there
  * already, then none is written, or cannot be written. */
 status example_copy(const char *name, FILE *out);
-
-#endif

@@ -1,6 +1,5 @@
 /* Sides of elements at the same face. Inside src/mesh only. */
-#ifndef PROTIS_MESH_SIDES_H
-#define PROTIS_MESH_SIDES_H
+#pragma once
 
 #include "mesh/mesh.h"
 #include "mesh/sort.h"
@@ -17,5 +16,3 @@ typedef void sides_met(void *ctx, int n, const sort_item *side);
  * each of the other faces. ERR_MEMORY. */
 status sides_outside(const mesh *m, sides_met *met, void *ctx, side_list *s);
 void sides_free(side_list *s);
-
-#endif

@@ -2,8 +2,7 @@
  * The model: the contents of the deck, checked. Names and strings are
  * borrowed from the deck, which must outlive it.
  */
-#ifndef PROTIS_MODEL_MODEL_H
-#define PROTIS_MODEL_MODEL_H
+#pragma once
 
 #include "contact/friction.h"
 #include "contact/surface.h"
@@ -602,5 +601,3 @@ status load_temperature(const model *m, const mesh *msh, const step *s,
 /* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */
 void load_fixed(const model *m, const mesh *msh, const step *s,
                 unsigned char *fixed);
-
-#endif

@@ -2,8 +2,7 @@
  * The writers of this folder, and the open job that output.c and saved.c share.
  * Private to src/output.
  */
-#ifndef PROTIS_OUTPUT_WRITERS_H
-#define PROTIS_OUTPUT_WRITERS_H
+#pragma once
 
 #include "base/text.h"
 #include "output/hdf5/hdf5.h"
@@ -105,5 +104,3 @@ typedef struct file_ends {
 status output_remember(output *o, const state *s);
 /* Data saved by output_keep, and the ends of the files then. */
 status output_read(output *o, archive *a, file_ends *ends);
-
-#endif

@@ -1,6 +1,5 @@
 /* One pass through the stages: deck, model, mesh, history, outputs. */
-#ifndef PROTIS_JOB_H
-#define PROTIS_JOB_H
+#pragma once
 
 #include "program/command.h"
 #include "run/history/history.h"
@@ -181,5 +180,3 @@ size_t aims_name(const aims *a, const model *m, char *text, size_t size);
 
 /* [n*n_goal] of the passes so far; NULL of NULL. */
 const pass_goal *aims_rows(const aims *a);
-
-#endif

@@ -2,8 +2,7 @@
  * The running state of history_run, shared by the files of this folder, of
  * src/run/setup and of src/run/history.
  */
-#ifndef PROTIS_RUN_RUN_H
-#define PROTIS_RUN_RUN_H
+#pragma once
 
 #include "accuracy/accuracy.h"
 #include "accuracy/space.h"
@@ -421,5 +420,3 @@ double run_motion_over(const run *r, int k);
 void result_start(run *r, equilibrium *e);
 /* r->now becomes r->old. */
 status result_accept(run *r);
-
-#endif

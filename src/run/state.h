@@ -2,8 +2,7 @@
  * Data of the loop over increments for the outputs: an accepted increment, the
  * facts before the first one, and the sinks.
  */
-#ifndef PROTIS_RUN_STATE_H
-#define PROTIS_RUN_STATE_H
+#pragma once
 
 #include "accuracy/accuracy.h"
 #include "accuracy/goal/goal.h"
@@ -237,5 +236,3 @@ typedef struct history_sink {
    * and at an interruption. memory.keep names all its arrays. */
   status (*checkpoint)(void *ctx, const run_memory *memory);
 } history_sink;
-
-#endif

@@ -4,8 +4,7 @@
  * the sliding limit where the solver handles Tresca friction only (CPR98, 2.3),
  * the check by contact_residual, the fallback chain of AUTO.
  */
-#ifndef PROTIS_SOLVER_SOLVER_H
-#define PROTIS_SOLVER_SOLVER_H
+#pragma once
 
 #include "base/archive/archive.h"
 #include "base/option.h"
@@ -193,5 +192,3 @@ const contact_bodies *contact_solver_bodies(const contact_solver *s,
                                             const contact_problem *cp);
 /* The methods tried, "newton: cycle, sor: converged"; "" if only one. */
 const char *contact_solver_log(const contact_solver *s);
-
-#endif

@@ -2,8 +2,7 @@
  * The partners of a slave face among the master faces, and the parts of it that
  * each covers (the rule stands in mortar.h). Inside src/contact/mortar only.
  */
-#ifndef PROTIS_MORTAR_PARTNER_H
-#define PROTIS_MORTAR_PARTNER_H
+#pragma once
 
 #include "contact/average/box_tree.h"
 #include "contact/mortar/clip.h"
@@ -47,5 +46,3 @@ void partner_search_release(partner_search *s); /* accepts all-zero */
 double partner_rounding(const partner_search *s, const facet *f);
 /* list and cells of this slave face. */
 status partner_find(partner_search *s, int face, const facet *f);
-
-#endif

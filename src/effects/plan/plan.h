@@ -7,8 +7,7 @@
  * Shares are of all that follows the mesh: deck, mesh and what gmsh takes are
  * not part of them.
  */
-#ifndef PROTIS_PLAN_PLAN_H
-#define PROTIS_PLAN_PLAN_H
+#pragma once
 
 #include "run/effect.h"
 
@@ -117,5 +116,3 @@ status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s);
 
 enum { PLAN_STEPS = 5 };                   /* of Newton's method a problem */
 enum { PLAN_SPARSE = 4, PLAN_DENSE = 10 }; /* flops an operation */
-
-#endif

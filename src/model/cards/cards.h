@@ -3,8 +3,7 @@
  * card as the keyword table (model/keyword/keyword.h) describes it. Errors of
  * the deck go to the log; a status is of memory.
  */
-#ifndef PROTIS_CARDS_CARDS_H
-#define PROTIS_CARDS_CARDS_H
+#pragma once
 
 #include "model/model.h"
 
@@ -161,5 +160,3 @@ int find_name(const model *m, const char *name, const char *title,
 int find_amplitude(const model *m, const char *name, const place *at);
 /* The step that is being read. */
 step *open_step(const reading *r);
-
-#endif

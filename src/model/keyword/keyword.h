@@ -3,8 +3,7 @@
  * A card is one row of keyword_table; most rows need a function for their data
  * lines (model/cards/cards.h).
  */
-#ifndef PROTIS_KEYWORD_KEYWORD_H
-#define PROTIS_KEYWORD_KEYWORD_H
+#pragma once
 
 #include "model/cards/cards.h"
 
@@ -57,5 +56,3 @@ status model_echo(const model *m, FILE *out);
 /* Help from the keyword table: all cards in short, or one in full; 0 if there
  * is no card of that name. */
 int keywords_print(const char *name, FILE *out);
-
-#endif

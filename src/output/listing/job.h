@@ -2,8 +2,7 @@
  * Data of a run for the listing and JOB.json: options, increments, passes,
  * sizes, error budget.
  */
-#ifndef PROTIS_LISTING_JOB_H
-#define PROTIS_LISTING_JOB_H
+#pragma once
 
 #include "base/archive/archive.h"
 #include "run/history/history.h"
@@ -168,5 +167,3 @@ status listing_verdict(const job *j, text_file *lst);
  * budget of the errors, goals, what to improve, passes. */
 void listing_goals_now(const job *j, const state *s, FILE *f);
 void listing_accuracy(const job *j, FILE *f);
-
-#endif
