@@ -10,7 +10,6 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/timer.h"
-#include "output/writers.h"
 
 #include <ctype.h>
 #include <dirent.h>
@@ -153,7 +152,7 @@ static status sink_ready(void *ctx, const setup_facts *facts,
 static status sink_expect(void *ctx, int n_node,
                           const stiffness_choice *choice) {
   const output *o = ctx;
-  return o->o.first.expect(o->o.first.ctx, n_node, choice);
+  return plan_expect(o->m, o->msh, n_node, choice);
 }
 
 static status sink_checkpoint(void *ctx, const run_memory *memory) {
@@ -256,7 +255,7 @@ history_sink output_sink(output *o) {
   const history_sink *first = &o->o.first;
   return (history_sink){
       .ctx = o,
-      .expect = first->expect != NULL ? sink_expect : NULL,
+      .expect = sink_expect,
       .checkpoint = first->checkpoint != NULL ? sink_checkpoint : NULL,
       .ready = sink_ready,
       .start = sink_start,

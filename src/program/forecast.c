@@ -54,7 +54,7 @@ typedef struct trial {
 
 static status see_sizes(void *ctx, int n_node, const stiffness_choice *choice) {
   const trial *t = ctx;
-  return job_expect(t->in, n_node, choice);
+  return plan_expect(t->in->m, t->in->msh, n_node, choice);
 }
 
 static status see_ready(void *ctx, const setup_facts *facts,

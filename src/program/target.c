@@ -67,9 +67,12 @@ typedef struct pass {
 /* ---- observing
  * ------------------------------------------------------------ */
 
-static void see_ready(void *ctx, const setup_facts *facts) {
+static status see_ready(void *ctx, const setup_facts *facts,
+                        const contact_surface *surface) {
   pass *p = ctx;
+  (void)surface;
   p->unknowns = (double)facts->info.unknowns;
+  return OK;
 }
 
 static status see_increment(void *ctx, const state *s) {
@@ -353,7 +356,8 @@ static status next_contact(pass *p) {
 }
 
 static status run_pass(pass *p, int *unsettled) {
-  const job_watch watch = {p, see_increment, see_ready, see_finished};
+  const job_watch watch = {
+      {.ctx = p, .increment = see_increment, .ready = see_ready}, see_finished};
   RELEASE(p->eta, p->size);
   p->eta = p->size = NULL;
   p->energy = -1.0;

@@ -72,6 +72,9 @@ typedef struct plan_bytes {
 } plan_bytes;
 status plan_memory(const model *m, const mesh *msh, double nodes,
                    const stiffness_choice *choice, plan_bytes *b);
+/* ERR_MEMORY: n contact nodes would need more than the available memory. */
+status plan_expect(const model *m, const mesh *msh, int n,
+                   const stiffness_choice *choice);
 
 /* The plan as a table; lead before each line. */
 void plan_print(const effect_plan *p, const char *lead, FILE *f);

@@ -199,3 +199,10 @@ status plan_memory(const model *m, const mesh *msh, double nodes,
     b->rest += s.elements * STAGES * real * s.ns;
   return OK;
 }
+
+status plan_expect(const model *m, const mesh *msh, int n,
+                   const stiffness_choice *choice) {
+  plan_bytes b;
+  PASS(plan_memory(m, msh, n, choice, &b));
+  return memory_require(b.factor + b.contact + b.rest, "the run");
+}

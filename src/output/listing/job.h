@@ -22,7 +22,7 @@ typedef struct output_options {
   archive *from;       /* continue the files of an earlier run; NULL: new
                           ones */
   int n_problem;       /* contacts of a *CONDENSED PROBLEM */
-  history_sink first;  /* called before the writers; of its functions expect,
+  history_sink first;  /* called before the writers; of its functions
                           checkpoint, ready, increment, each may be NULL */
 } output_options;
 
