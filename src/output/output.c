@@ -97,11 +97,6 @@ status output_spare(const model *m, const char *dir) {
 enum { XDMF_PAUSE = 1 };               /* s */
 static const double XDMF_SHARE = 0.02; /* of the CPU time at most */
 
-/* What the writers take, borrowed from o. */
-static job job_of(const output *o) {
-  return (job){o->m, o->msh, &o->o, &o->run, o->plan};
-}
-
 /* Wall clock, s; only its differences count. */
 static double clock_now(void) {
   struct timespec now;
@@ -134,7 +129,6 @@ static status show_records(output *o, int all) {
 static status sink_ready(void *ctx, const setup_facts *facts,
                          const contact_surface *surface) {
   output *o = ctx;
-  job j = job_of(o);
   if (o->o.first.ready != NULL)
     PASS(o->o.first.ready(o->o.first.ctx, facts, surface));
   if (!o->run.facts_known) o->began_at = clock_now();
@@ -146,7 +140,7 @@ static status sink_ready(void *ctx, const setup_facts *facts,
   }
   o->run.facts = *facts;
   TIMED(STAGE_LISTING);
-  return listing_ready(&j, &o->lst);
+  return listing_ready(&o->job, &o->lst);
 }
 
 static status sink_expect(void *ctx, int n_node,
@@ -162,8 +156,7 @@ static status sink_checkpoint(void *ctx, const run_memory *memory) {
 
 static status sink_start(void *ctx, const start_report *report) {
   output *o = ctx;
-  job j = job_of(o);
-  return listing_start(&j, report, &o->lst);
+  return listing_start(&o->job, report, &o->lst);
 }
 
 static status write_fields(output *o, const state *s) {
@@ -195,10 +188,9 @@ static status write_condensed(output *o, const state *s) {
 }
 
 static status write_tables(output *o, const state *s) {
-  job j = job_of(o);
   TIMED(STAGE_LISTING);
   PASS(tabular_increment(o->dat, s));
-  PASS(listing_increment(&j, s, &o->lst));
+  PASS(listing_increment(&o->job, s, &o->lst));
   cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
   PASS(text_check(&o->cvg));
   PASS(output_remember(o, s));
@@ -295,7 +287,6 @@ static status open_hdf5(output *o, const hdf5_count *before) {
 }
 
 static status open_new(output *o) {
-  job j = job_of(o);
   PASS(open_text(o, "lst", -1, &o->lst));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
@@ -306,7 +297,7 @@ static status open_new(output *o) {
   PASS(sta_header(&o->o, &o->sta));
   cvg_header(&o->o, &o->cvg);
   PASS(text_check(&o->cvg));
-  PASS(listing_open(&j, &o->lst));
+  PASS(listing_open(&o->job, &o->lst));
   return open_hdf5(o, NULL);
 }
 
@@ -349,6 +340,7 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   NEW(o->run.ends, (size_t)m->n.step * job_end_size(m));
   if (m->n.goal > 0) NEW(o->run.goals, m->n.step * m->n.goal);
   TRY(plan_new(m, m->problem.given ? NULL : msh, opt->n_problem, &o->plan));
+  o->job = (job){m, msh, &o->o, &o->run, o->plan};
   TRY(open_all(o));
   *out = o;
 done:
@@ -394,7 +386,6 @@ static status write_last(const output *o) {
 
 /* Without memory there are none. */
 static void make_closing(const output *o) {
-  const job j = job_of(o);
   char *path = text_path(o->o.dir, o->m->name.job, "lst"), **to = o->o.closing;
   size_t size = 0;
   FILE *f = to != NULL && o->progress ? open_memstream(to, &size) : NULL;
@@ -402,7 +393,7 @@ static void make_closing(const output *o) {
     char files[4096];
     snprintf(files, sizeof files, "%s .sta .cvg%s%s .json", path,
              o->dat != NULL ? " .dat" : "", o->h5 != NULL ? " .h5 .xdmf" : "");
-    closing_lines(&j, files, f);
+    closing_lines(&o->job, files, f);
   }
   if (f != NULL) text_memory_end(f, to);
   memory_free(path);
@@ -412,7 +403,6 @@ status output_close(output *o, status run, int unsettled) {
   char message[2048] = "";
   status kept = OK;
   if (o == NULL) return verdict_of(run, unsettled);
-  job j = job_of(o);
   if (o->progress) progress_line("");
   first_of(&kept, message, sizeof message, run);
   first_of(&kept, message, sizeof message, show_records(o, 1));
@@ -424,10 +414,10 @@ status output_close(output *o, status run, int unsettled) {
   first_of(&kept, message, sizeof message, text_close(&o->sta));
   o->run.message = message;
   o->run.verdict = verdict_of(kept, unsettled);
-  first_of(&kept, message, sizeof message, listing_verdict(&j, &o->lst));
+  first_of(&kept, message, sizeof message, listing_verdict(&o->job, &o->lst));
   first_of(&kept, message, sizeof message, text_close(&o->lst));
   o->run.verdict = verdict_of(kept, unsettled);
-  first_of(&kept, message, sizeof message, json_write(&j, o->json));
+  first_of(&kept, message, sizeof message, json_write(&o->job, o->json));
   o->run.verdict = verdict_of(kept, unsettled);
   make_closing(o);
   release(o);

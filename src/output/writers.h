@@ -81,6 +81,7 @@ struct output {
   hdf5_file *h5;
   run_summary run;
   effect_plan *plan;
+  job job;                  /* what the writers take of these */
   int n_xdmf;               /* records named in JOB.xdmf */
   double xdmf_at, xdmf_cpu; /* when, and the cost so far, s */
   int attempt;              /* of the increment now tried */
