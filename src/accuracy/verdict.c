@@ -177,18 +177,6 @@ static status add_moving(const words *w, const verdict_scene *s,
   return OK;
 }
 
-static const char *card_of(const load *l) {
-  switch ((load_kind)l->kind) {
-    case LOAD_PRESSURE:
-    case LOAD_TRACTION:
-      return "*DSLOAD";
-    case LOAD_POINT:
-      return "*CLOAD";
-    default:
-      return "*DLOAD";
-  }
-}
-
 static double dot(size_t n, const double *a, const double *b) {
   double sum = 0.0;
   for (size_t i = 0; i < n; ++i) sum += a[i] * b[i];
@@ -234,7 +222,7 @@ static status add_loads(const words *w, const verdict_scene *s, const double *u,
     PASS(forces_of(s, k, F));
     if (!(dot(n, F, u) > PART * fabs(work))) continue;
     add(w, listed++ == 0 ? ", driven by " : ", ");
-    add(w, "%s on %s (line %d)", card_of(l), l->group, l->at.line_no);
+    add(w, "*%s on %s (line %d)", load_card(l), l->group, l->at.line_no);
   }
   for (int k = 0; k < s->m->n.contact && listed < LISTED; ++k) {
     const contact *c = &s->m->contacts[k];

@@ -4,6 +4,9 @@
  */
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
+
 enum { NUMBER_TEXT_SIZE = 32 };
 /* Largest numbers that are computed with: products of two are finite. */
 #define NUMBER_MOST 0x1p480
@@ -18,6 +21,10 @@ const char *number_int(const char *text, int *value);
 int number_bare_exponent(const char *text);
 /* Fewest digits that number_real takes back exactly; a point in any locale. */
 void number_text(double value, char text[NUMBER_TEXT_SIZE]);
+
+/* FNV-1a of n bytes, after those of h or HASH_START. */
+#define HASH_START 14695981039346656037u
+uint64_t number_hash(uint64_t h, const void *data, size_t n);
 
 /* For qsort and bsearch: an int; the two ints an item starts with. */
 int number_order(const void *a, const void *b);

@@ -157,16 +157,22 @@ double contact_largest_diagonal(const contact_problem *cp) {
   return d;
 }
 
-node_step contact_step(const contact_problem *cp, int node_id,
-                       double largest_diagonal) {
+double contact_tangent_diagonal(const contact_problem *cp, int node_id,
+                                double none) {
   int first = node_id * cp->dim, counted = 0;
-  double n = contact_diagonal(cp, first), t = 0.0;
+  double sum = 0.0;
   for (int k = 1; k < cp->dim; ++k)
     if (!contact_held(cp, first + k)) {
-      t += contact_diagonal(cp, first + k);
+      sum += contact_diagonal(cp, first + k);
       ++counted;
     }
-  if (counted > 0) t /= counted;
+  return counted > 0 ? sum / counted : none;
+}
+
+node_step contact_step(const contact_problem *cp, int node_id,
+                       double largest_diagonal) {
+  double n = contact_diagonal(cp, node_id * cp->dim);
+  double t = contact_tangent_diagonal(cp, node_id, 0.0);
   /* Where no force moves anything, any step serves. */
   if (!(largest_diagonal > 0.0)) largest_diagonal = 1.0;
   if (!(n > 0.0)) n = largest_diagonal;

@@ -169,6 +169,9 @@ int contact_has_side(const contact_problem *cp, int node_id);
 /* Diagonal of A (of an operator: of the stiffness it is condensed from), or of
  * W where that alone is known. */
 double contact_diagonal(const contact_problem *cp, int dof);
+/* Its mean over the tangents of a node that are not held, or "none". */
+double contact_tangent_diagonal(const contact_problem *cp, int node_id,
+                                double none);
 /* y = M x, M[m*m] column major. */
 void contact_product(int m, const double *M, const double *x, double *y);
 /* Sliding limit of one node, N. */

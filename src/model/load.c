@@ -12,6 +12,23 @@
 
 enum { MAX_NODE = 4 };
 
+const char *load_card(const load *l) {
+  switch ((load_kind)l->kind) {
+    case LOAD_PRESSURE:
+    case LOAD_TRACTION:
+      return "DSLOAD";
+    case LOAD_BODY:
+    case LOAD_GRAVITY:
+      return "DLOAD";
+    case LOAD_TEMPERATURE:
+      return "TEMPERATURE";
+    case LOAD_POINT:
+      return "CLOAD";
+    default:
+      return "BOUNDARY";
+  }
+}
+
 /* Time at which the value of a load of an earlier step counts. */
 static double value_time(const load *l, double t) {
   return l->run == RUN_HELD ? l->before_t : t;

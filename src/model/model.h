@@ -573,6 +573,7 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F);
 /* Total time at the end of a step. */
 double step_end(const step *s);
+const char *load_card(const load *l); /* "DLOAD" */
 /* Value of a load at a point, at a node, and total time t of the step. */
 double load_at_point(const load *l, const step *s, const double x[3], double t);
 double load_at_node(const load *l, const mesh *msh, const step *s, int node,

@@ -10,6 +10,7 @@
 #include "output/writers.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/text.h"
 
 #include <errno.h>
@@ -17,18 +18,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static const uint64_t EMPTY = 14695981039346656037u; /* FNV-1a */
-
-static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
-  const unsigned char *at = data;
-  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
-  return h;
-}
-
 static status open_file(output *o, const saved_end *end) {
   OWNED char *path = NULL;
   PASS_GET(path, text_path(o->o.dir, o->m->name.job, "rst.inc"));
-  o->saved.end.checksum = end == NULL ? EMPTY : end->checksum;
+  o->saved.end.checksum = end == NULL ? HASH_START : end->checksum;
   if (end == NULL) return text_open(&o->saved.file, path, 0);
   return text_reopen(&o->saved.file, path, 0, end->length);
 }
@@ -51,7 +44,7 @@ static void leave_out_cpu(increment_summary *s) {
 }
 
 static void append(saved_increments *to, const void *data, size_t n) {
-  to->end.checksum = add_bytes(to->end.checksum, data, n);
+  to->end.checksum = number_hash(to->end.checksum, data, n);
   fwrite(data, 1, n, to->file.f); /* checked by text_sync */
 }
 
@@ -150,7 +143,8 @@ static status saved_read(output *o, const saved_end *end) {
   run->n_increment = 0; /* those that "release" may look at */
   PASS(open_file(o, end));
   PASS(read_file(o, n));
-  if (add_bytes(EMPTY, o->saved.read, n) != end->checksum) return damaged(o);
+  if (number_hash(HASH_START, o->saved.read, n) != end->checksum)
+    return damaged(o);
   reader r = {o->saved.read, o->saved.read + n};
   PASS_NEW(run->increments, count);
   run->capacity = count;

@@ -3,6 +3,7 @@
 #include "program/job.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/text.h"
 #include "fem/fem.h"
 #include "program/inform.h"
@@ -27,21 +28,15 @@ typedef struct identity {
   uint64_t mesh;
 } identity;
 
-static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
-  const unsigned char *at = data;
-  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
-  return h;
-}
-
 /* Nodes, elements and groups in their order. */
 static uint64_t mesh_hash(const mesh *s) {
   size_t dim = (size_t)s->dim;
-  uint64_t h = add_bytes(14695981039346656037u, s->x,
-                         dim * (size_t)s->n_node * sizeof *s->x);
-  h = add_bytes(h, s->elem, (dim + 1) * (size_t)s->n_elem * sizeof *s->elem);
+  uint64_t h =
+      number_hash(HASH_START, s->x, dim * (size_t)s->n_node * sizeof *s->x);
+  h = number_hash(h, s->elem, (dim + 1) * (size_t)s->n_elem * sizeof *s->elem);
   for (int i = 0; i < s->n_group; ++i)
-    h = add_bytes(h, s->group[i].node_id,
-                  (size_t)s->group[i].n_node * sizeof *s->group[i].node_id);
+    h = number_hash(h, s->group[i].node_id,
+                    (size_t)s->group[i].n_node * sizeof *s->group[i].node_id);
   return h;
 }
 
@@ -158,7 +153,7 @@ status restart_write(void *ctx, const run_memory *memory) {
 /* Length and checksum (FNV-1a over words) of what stands in a file. */
 static status add_content(const char *name, const char *path, FILE *out) {
   const char *why = NULL;
-  uint64_t part[1024], bytes = 0, h = 14695981039346656037u;
+  uint64_t part[1024], bytes = 0, h = HASH_START;
   size_t n;
   FILE *f ENDS_BY(file_leave) = input_stream(path, &why);
   if (f == NULL) { /* reported by the card that needs it, with its line */

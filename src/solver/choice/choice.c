@@ -154,10 +154,8 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
   s->choice = *choice;
   for (int i = 0; solver_list[i] != NULL; ++i)
     if (solver_list[i]->param_size > size) size = solver_list[i]->param_size;
-  s->param = memory_new(1, size);
   s->param_size = size;
-  if (s->param == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
+  PASS_GET(s->param, memory_new(1, size));
   return OK;
 }
 
