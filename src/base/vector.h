@@ -1,10 +1,16 @@
-/* Vectors of two or three components. */
+/* Vectors, most of two or three components. */
 #pragma once
 
 static inline double dot(int dim, const double *a, const double *b) {
   double sum = 0.0;
   for (int c = 0; c < dim; ++c) sum += a[c] * b[c];
   return sum;
+}
+
+static inline int is_zero(int n, const double *v) {
+  for (int i = 0; i < n; ++i)
+    if (v[i] != 0.0) return 0;
+  return 1;
 }
 
 /* c = a x b, in space */

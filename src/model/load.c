@@ -148,7 +148,7 @@ static status add_patch(const model *m, const mesh *msh, const load *l,
   return OK;
 }
 
-static double elem_thickness(const model *m, int elem_id) {
+double model_thickness(const model *m, int elem_id) {
   return m->sections[m->elem_section[elem_id]].thickness;
 }
 
@@ -161,7 +161,7 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
     patch p = {.n = msh->dim, .factor = 1.0};
     COPY(p.node, msh->face + (size_t)msh->dim * (size_t)face, msh->dim);
     p.measure = mesh_face_normal(msh, face, normal) *
-                elem_thickness(m, msh->face_elem[face]);
+                model_thickness(m, msh->face_elem[face]);
     for (int c = 0; c < msh->dim; ++c)
       p.direction[c] = l->kind == LOAD_PRESSURE ? -normal[c]
                        : c == l->component      ? 1.0
@@ -179,7 +179,7 @@ static status add_elements(const model *m, const mesh *msh, const load *l,
     int e = g->item_id[k];
     patch p = {.n = msh->dim + 1, .factor = 1.0};
     COPY(p.node, msh->elem + (size_t)p.n * (size_t)e, p.n);
-    p.measure = mesh_elem_measure(msh, e) * elem_thickness(m, e);
+    p.measure = mesh_elem_measure(msh, e) * model_thickness(m, e);
     if (l->kind == LOAD_GRAVITY) {
       const section *sec = &m->sections[m->elem_section[e]];
       p.factor = m->materials[sec->material_id].density;

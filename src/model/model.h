@@ -537,6 +537,9 @@ double print_next(const print_request *p, const step *s, double after,
                   double before);
 /* 1: *CONTACT PAIR or *TIE: surfaces of the mesh meet. */
 int model_has_pairs(const model *m);
+/* 1: some are coupled again at each step, where the bodies are then. */
+int model_updates_pairs(const model *m);
+double model_thickness(const model *m, int elem_id); /* m */
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
 /* "force", "length", ... */

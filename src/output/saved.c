@@ -156,9 +156,6 @@ static status saved_read(output *o, const saved_end *end) {
   return OK;
 }
 
-/* The larger; NaN wins, so that it is seen. */
-static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
-
 const column *job_end_column(const model *m, column_walk *w) {
   const column *c;
   do c = column_next(w);
@@ -186,8 +183,8 @@ static void remember_contacts(output *o, const state *s) {
          (c = job_end_column(o->m, &w)) != NULL;)
       *to++ = column_ready(c, s) ? c->value(&v, i, c->part) : NAN;
     if (s->contacts.totals != NULL)
-      o->run.penetration_worst =
-          worse(o->run.penetration_worst, s->contacts.totals[i].penetration);
+      o->run.penetration_worst = job_worse(o->run.penetration_worst,
+                                           s->contacts.totals[i].penetration);
   }
 }
 
@@ -243,8 +240,8 @@ status output_remember(output *o, const state *s) {
                            .jump_t = s->errors.jump_t,
                            .defect = energy_defect_relative(&s->energy)};
   if (s->contacts.surface != NULL)
-    run->residual_worst = worse(run->residual_worst, s->report.residual);
-  run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+    run->residual_worst = job_worse(run->residual_worst, s->report.residual);
+  run->defect_worst = job_worse(run->defect_worst, fabs(i->defect));
   if (s->body.flow != NULL) run->tally = *s->body.flow->tally;
   PASS(remember_solutions(s->errors.solutions, i));
   PASS(remember_theory(&s->errors.theorems, i));

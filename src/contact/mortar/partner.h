@@ -8,6 +8,14 @@
 #include "contact/mortar/clip.h"
 #include "contact/mortar/mortar.h"
 
+/* Nodes of a face; place of a node, m. */
+static inline const int *mortar_nodes(const mortar_input *in, int face) {
+  return mesh_face_nodes(in->mesh, face);
+}
+static inline const double *mortar_place(const mortar_input *in, int node) {
+  return in->x + (size_t)in->mesh->dim * (size_t)node;
+}
+
 /* A face over or below the slave face: a partner, or one that hides what is
  * behind it, a master that does not oppose or a face of the slave. */
 enum { PARTNER = 0, HIDING_MASTER, HIDING_SLAVE };

@@ -76,10 +76,6 @@ static void release(void *self) {
 
 /* ---- what the estimate covers -------------------------------------------- */
 
-static int has_stiffness(const run *r) {
-  return r->problem.cp.A != NULL || r->problem.cp.op != NULL;
-}
-
 /* 1: of pairs there are cracks alone, each within one material. */
 static int has_cracks_alone(const run *r) {
   const mesh *m = r->msh;
@@ -97,7 +93,8 @@ static int is_covered(const run *r) {
   return has_cracks_alone(r) && r->body.d.cluster == NULL &&
          r->strains.visco == NULL && effects_sum_up(r) == NULL &&
          r->problem.given == NULL && r->m->mesh.corner_id < 0 &&
-         (r->nodes.n == 0 || has_stiffness(r)) && r->solving.report.outcome > 0;
+         (r->nodes.n == 0 || contact_has_stiffness(&r->problem.cp)) &&
+         r->solving.report.outcome > 0;
 }
 
 /* ---- the increments before ----------------------------------------------- */

@@ -108,6 +108,8 @@ typedef struct job {
  * each step run_summary.ends has the number (0: none) and the time of its last
  * increment so far, then contact by contact the values of these columns. */
 const column *job_end_column(const model *m, column_walk *w);
+/* The larger; NaN, an increment without estimate, stays: it is seen. */
+double job_worse(double a, double b);
 /* Numbers of a step there. */
 size_t job_end_size(const model *m);
 /* goals.c: goal "id" at the last increment so far of the last step that has

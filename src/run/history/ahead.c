@@ -21,13 +21,6 @@ static int effects_have_to_look(const model *m) {
   return any || facts_moving_support(m) != NULL;
 }
 
-/* Pairs that are coupled where the bodies are: not known ahead. */
-static int updates_pairs(const model *m) {
-  int any = 0;
-  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].update;
-  return any;
-}
-
 /* The supports of r->step; *other: they are not those of the step before. */
 static status take_supports(run *r, int *other) {
   OWNED unsigned char *fixed = NULL;
@@ -87,7 +80,7 @@ status history_check(const model *m, const mesh *msh,
                      const effect_ops *const *effects) {
   static const history_sink nobody;
   const int look = effects_have_to_look(m);
-  const int n = updates_pairs(m) && m->n.step > 1 ? 1 : m->n.step;
+  const int n = model_updates_pairs(m) && m->n.step > 1 ? 1 : m->n.step;
   int any = look;
   ENDS_BY(run_free)
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};

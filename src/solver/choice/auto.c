@@ -45,6 +45,7 @@
 
 #include "base/memory.h"
 #include "base/option.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -299,12 +300,6 @@ static status short_try(contact_solver *s, const contact_problem *cp,
   return OK;
 }
 
-static int is_cold(const contact_problem *cp, const double *r) {
-  for (int i = 0; i < cp->m; ++i)
-    if (r[i] != 0.0) return 0;
-  return 1;
-}
-
 /* Without friction: in the normal unknowns. *done_well = 1: solved. */
 static status solve_normal(contact_solver *s, const contact_problem *cp,
                            const solver_listener *listener, double *u,
@@ -315,7 +310,7 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
                             .listener = listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) return OK;
-  if (s->normal.wanted++ == 0 && !is_cold(cp, r)) {
+  if (s->normal.wanted++ == 0 && !is_zero(cp->m, r)) {
     PASS(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
                    &(answer){u, r, rep}));
     *done_well = rep->outcome == CONVERGED;
