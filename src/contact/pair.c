@@ -434,8 +434,7 @@ double pair_gap(const surface_row *at, double t) {
   return at->apart + p->change_sign * quantity_value(p->change, x, t);
 }
 
-/* ---- motions and forces of the rows ---------------------------------------
- */
+/* ---- motions and forces of the rows -------------------------------------- */
 
 void surface_relative(const contact_surface *s, const double *u, double *w) {
   const int dim = s->dim;

@@ -63,14 +63,10 @@ static void close_folder(DIR **folder) {
   if (*folder != NULL) closedir(*folder);
 }
 
-static status clear(const deck *d, const char *path) {
-  (void)d;
-  return file_clear(path);
-}
-
-/* "act" on all files of condensed problems of increments after that one. */
+/* All files of condensed problems of increments after that one are spared, or
+ * cleared. */
 static status each_condensed(const model *m, const char *dir, int after,
-                             status (*act)(const deck *d, const char *path)) {
+                             int cleared) {
   DIR *folder ENDS_BY(close_folder) = opendir(dir);
   if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
   if (folder == NULL) return text_failed(dir, "read", errno);
@@ -79,7 +75,7 @@ static status each_condensed(const model *m, const char *dir, int after,
     if (increment_of(e->d_name, m->name.job) <= after) continue;
     PASS_NEW(path, strlen(dir) + strlen(e->d_name) + 2);
     sprintf(path, "%s/%s", dir, e->d_name);
-    PASS(act(m->deck, path));
+    PASS(cleared ? file_clear(path) : spare(m->deck, path));
   }
   return OK;
 }
@@ -91,7 +87,7 @@ status output_spare(const model *m, const char *dir) {
     PASS_GET(path, text_path(dir, m->name.job, results[k]));
     PASS(spare(m->deck, path));
   }
-  return each_condensed(m, dir, 0, spare);
+  return each_condensed(m, dir, 0, 0);
 }
 
 enum { XDMF_PAUSE = 1 };               /* s */
@@ -149,9 +145,9 @@ static status sink_expect(void *ctx, int n_node,
   return plan_expect(o->m, o->msh, n_node, choice);
 }
 
-static status sink_checkpoint(void *ctx, const run_memory *memory) {
+static status sink_checkpoint(void *ctx, struct run *r) {
   const output *o = ctx;
-  return o->o.first.checkpoint(o->o.first.ctx, memory);
+  return o->o.first.checkpoint(o->o.first.ctx, r);
 }
 
 static status sink_start(void *ctx, const start_report *report) {
@@ -291,7 +287,7 @@ static status open_new(output *o) {
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
   for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
-  PASS(each_condensed(o->m, o->o.dir, 0, clear));
+  PASS(each_condensed(o->m, o->o.dir, 0, 1));
   PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
   if (o->dat == NULL) PASS(remove_old(o, "dat"));
   PASS(sta_header(&o->o, &o->sta));
@@ -312,7 +308,7 @@ static status open_earlier(output *o) {
   TRY(open_text(o, "sta", ends.sta, &o->sta));
   TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
   TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
-  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, clear));
+  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, 1));
   TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
 done:
   if (o->run.increments == NULL) o->run.n_increment = 0;

@@ -122,7 +122,7 @@ typedef struct restart_writer {
 status restart_files(const job_input *in, char **text);
 
 /* history_sink.checkpoint; ctx is a restart_writer. */
-status restart_write(void *ctx, const run_memory *memory);
+status restart_write(void *ctx, struct run *r);
 
 /*
  * The restart file of a job, found to fit its deck and mesh. ERR_DECK: no

@@ -9,6 +9,7 @@
 #include "program/inform.h"
 #include "model/keyword/keyword.h"
 #include "mesh/msh/geo.h"
+#include "run/setup/setup.h"
 #include "base/system/input.h"
 
 #include <errno.h>
@@ -53,8 +54,7 @@ static void identify(const command *c, const job_input *in, identity *id) {
 /* The deck with all its defaults. */
 static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
 
-/* ---- warnings reported so far
- * ------------------------------------------------ */
+/* ---- warnings reported so far -------------------------------------------- */
 
 /* Number of a file of the deck, which another name may lead to, or -1. */
 static int file_no(const deck *d, const char *file) {
@@ -127,7 +127,7 @@ static status file_names(const command *c, const model *m, char **path,
   return OK;
 }
 
-status restart_write(void *ctx, const run_memory *memory) {
+status restart_write(void *ctx, run *r) {
   const restart_writer *w = ctx;
   ENDS_BY(archive_free) archive *a = NULL;
   identity id;
@@ -136,7 +136,7 @@ status restart_write(void *ctx, const run_memory *memory) {
   PASS(text_made(&text, w->in->m, write_echo));
   PASS(text_made(&reported, w->in, list_warnings));
   identify(w->c, w->in, &id);
-  id.step_no = memory->step_no;
+  id.step_no = r->at.step_id + 1;
   PASS(archive_new(&a));
   if (w->c->no_timing) archive_leave_out_cpu(a);
   PASS(archive_bytes(a, "identity", &id, sizeof id));
@@ -144,7 +144,7 @@ status restart_write(void *ctx, const run_memory *memory) {
   PASS(archive_bytes(a, "warnings", reported, strlen(reported)));
   PASS(archive_bytes(a, "files", w->files, strlen(w->files)));
   PASS(output_keep(w->out, a));
-  PASS(memory->keep(memory->run, a));
+  PASS(run_keep(r, a));
   return archive_write(a, path, before);
 }
 

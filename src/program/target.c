@@ -64,8 +64,7 @@ typedef struct pass {
                                reached */
 } pass;
 
-/* ---- observing
- * ------------------------------------------------------------ */
+/* ---- observing ----------------------------------------------------------- */
 
 static status see_ready(void *ctx, const setup_facts *facts,
                         const contact_surface *surface) {

@@ -301,8 +301,7 @@ static status find_stick(run *r, friction *own) {
   return OK;
 }
 
-/* ---- before the run -------------------------------------------------------
- */
+/* ---- before the run ------------------------------------------------------ */
 
 /* Supports ud[dim*n_node] before and at t, drift[dim*n] of the obstacles in
  * between. What is not known is NaN and moves nothing. */

@@ -158,8 +158,7 @@ done:
   return st;
 }
 
-/* ---- what is estimated
- * ------------------------------------------------------ */
+/* ---- what is estimated --------------------------------------------------- */
 
 static int ends_at_once(const solver_report *rep) {
   const char *family = solver_family(rep->solver);

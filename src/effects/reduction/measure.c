@@ -389,7 +389,7 @@ static status solve_again(reduction *n, const state *s, int k, double bound,
   if (s->contacts.surface != NULL)
     PASS_NEW(rc, s->contacts.surface->dim * s->contacts.surface->n);
   take_forces(n, s, row);
-  PASS(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
+  PASS(shadow_with(s->again, n->force, n->u, rc, &solved));
   double change = solved ? part_of(distance(dofs, n->u, s->body.u),
                                    largest_entry(dofs, s->body.u))
                          : HUGE_VAL;

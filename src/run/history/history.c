@@ -86,7 +86,7 @@ static state loop_state(run *r, int attempt, int increment_no) {
                    .distance = d->distance, .torque = d->torque},
       .effects = &r->effects, .report = r->solving.report,
       .note = r->course.note, .solver_log = contact_solver_log(r->solver),
-      .settled = is_settled(r), .again = {r, shadow_with},
+      .settled = is_settled(r), .again = r,
       .errors = {.error = r->errors.error, .rounding = r->errors.rounding,
                  .mesh_error = r->errors.mesh_error,
                  .time_error = r->errors.time_error,
@@ -387,15 +387,12 @@ static status start_step(run *r) {
 
 /* ---- between two attempts ------------------------------------------------ */
 
-static status keep_all(void *run_, archive *a) { return run_keep(run_, a); }
-
 static status checkpoint(run *r) {
-  const run_memory memory = {r, keep_all, r->at.step_id + 1};
   int planned = r->course.due; /* others are no stage of the continued run */
   r->course.due = 0;
   if (r->sink->checkpoint == NULL) return OK;
   TIMED(planned ? STAGE_RESTART : STAGE_NONE);
-  return r->sink->checkpoint(r->sink->ctx, &memory);
+  return r->sink->checkpoint(r->sink->ctx, r);
 }
 
 static status stop(run *r, status why) {

@@ -155,9 +155,8 @@ static status solve_with(run *r, run *b, const double *more) {
   return increment_equilibrium(b, strains_load(b));
 }
 
-status shadow_with(void *run_, const double *more, double *u, double *rc,
+status shadow_with(run *r, const double *more, double *u, double *rc,
                    int *solved) {
-  run *r = run_;
   ENDS_BY(shadow_leave) shadow *b = NULL;
   TIMED(STAGE_BETWEEN);
   PASS(shadow_new(r, &b));

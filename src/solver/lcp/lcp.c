@@ -24,8 +24,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* ---- The plain form of the problem: a dense matrix, covering vector 1. ----
- */
+/* ---- the plain form of the problem: a dense matrix, covering vector 1 ---- */
 
 typedef struct plain {
   int n;
