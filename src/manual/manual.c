@@ -6,7 +6,6 @@
 
 #include "base/option.h"
 #include "base/text.h"
-#include "manual/embedded.h"
 #include "model/keyword/keyword.h"
 #include "output/columns/columns.h"
 #include "run/run.h"

@@ -7,6 +7,7 @@
 
 #include "base/status.h"
 
+#include <stddef.h>
 #include <stdio.h>
 
 /* A chapter as Markdown, or, with NULL, the names and titles of all; 0 if there
@@ -26,3 +27,14 @@ const char *example_name(const void *ctx, int i);
  * their names. ERR_DECK: no such example; ERR_FILE: one of the files is there
  * already, then none is written, or cannot be written. */
 status example_copy(const char *name, FILE *out);
+
+/* The files: chapters, decks and geometries, a table made by tools/embed. */
+typedef struct embedded_file {
+  const char *folder; /* where it stands: "manual", or name of the example */
+  const char *name;   /* "deck.md" */
+  const char *text;   /* ends with a NUL that does not count */
+  size_t size;        /* bytes */
+} embedded_file;
+
+/* Folder after folder; folder NULL at the end. */
+extern const embedded_file embedded_files[];
