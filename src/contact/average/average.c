@@ -92,8 +92,7 @@ static void add_rim(layout *l, int corners, const double *const *corner) {
   size_t dim = (size_t)l->dim;
   if (on_mirror(l, corners, corner)) return;
   double *to = l->rim + (dim - 1) * dim * (size_t)l->n_rim++;
-  for (int k = 0; k < corners; ++k)
-    memcpy(to + dim * (size_t)k, corner[k], dim * sizeof *to);
+  for (int k = 0; k < corners; ++k) COPY(to + dim * (size_t)k, corner[k], dim);
 }
 
 /* Least or largest coordinate of the patch. */

@@ -397,8 +397,7 @@ static status remember(run *r, goal_state *own, shared *s) {
 static status find_goal(run *r, goal_state *own, shared *s, int id) {
   goal_result *out = &own->result[id];
   double *product = product_of(r, own, id);
-  if (product != NULL)
-    memset(product, 0, (size_t)r->msh->n_elem * sizeof *product);
+  if (product != NULL) CLEAR(product, r->msh->n_elem);
   PASS(goal_form_set(r, &r->m->accuracy.goals[id], &s->form));
   *out =
       (goal_result){s->form.value, NAN, NAN, NAN, NAN, out->cpu, s->form.why};

@@ -286,8 +286,7 @@ static status compliance_at(const flow *x, const scheme_step *p, int k,
   point_matrix(p, NULL, l);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, ns, l->M, n, l->pivot, l->X, n) != 0)
     RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
-  for (int j = 0; j < ns; ++j)
-    memcpy(Q + ns * j, l->X + n * j, (size_t)ns * sizeof *Q);
+  for (int j = 0; j < ns; ++j) COPY(Q + ns * j, l->X + n * j, ns);
   return OK;
 }
 

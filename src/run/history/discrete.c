@@ -133,8 +133,7 @@ static status solve_contact(discrete *d, const history_sink *sink) {
   const solver_listener listener = {sink->iteration, sink->ctx};
   PASS(contact_bodies_new(cp, &d->bodies));
   cp->bodies = d->bodies;
-  if (!contact_has_stiffness(cp))
-    memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
+  if (!contact_has_stiffness(cp)) COPY(d->u, cp->f, cp->m);
   PASS(contact_solver_new(&d->step->solver, &solver));
   PASS(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
                      d->r, &d->report));

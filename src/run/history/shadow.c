@@ -163,8 +163,7 @@ status shadow_with(run *r, const double *more, double *u, double *rc,
   PASS(solve_with(r, &b->r, more));
   *solved = b->r.solving.report.outcome > 0;
   memcpy(u, b->r.now.u, r->n_dof * sizeof *u);
-  if (r->nodes.n_c > 0)
-    memcpy(rc, b->r.now.rc, (size_t)r->nodes.n_c * sizeof *rc);
+  if (r->nodes.n_c > 0) COPY(rc, b->r.now.rc, r->nodes.n_c);
   return OK;
 }
 

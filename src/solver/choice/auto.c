@@ -351,8 +351,7 @@ static status run_link(contact_solver *s, const contact_problem *cp,
   option_defaults(a.ops->options, s->param);
   if (!l->warm) cold_start(cp, to->u, to->r);
   /* With a nearly singular stiffness its start forces are too large. */
-  if (a.ops == &proximal_solver)
-    memset(to->r, 0, (size_t)cp->m * sizeof *to->r);
+  if (a.ops == &proximal_solver) CLEAR(to->r, cp->m);
   PASS(attempt_run(s, cp, &a, listener, to->u, to->r, rep));
   if (rep->outcome != STOPPED_UNFIT) attempt_check(s, cp, to->u, to->r, rep);
   if (cp->floating || rep->outcome == STOPPED_RAY)
