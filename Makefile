@@ -64,7 +64,7 @@ checklib := $(shell pkg-config --libs check 2>/dev/null)
 
 sources  := $(filter-out src/main.c,$(wildcard src/*/*.c src/*/*/*.c))
 embedded := $(sort $(wildcard src/manual/*.md src/manual/*.inp \
-              input/*/*.inp input/*/*.geo))
+              src/manual/*.txt input/*/*.inp input/*/*.geo))
 objects  := $(sources:%.c=$(out)/%.o) $(out)/embedded.o
 library  := $(out)/libprotis.a
 program  := $(out)/protis

@@ -318,6 +318,10 @@ const char *manual_chapter(const void *ctx, int i) {
   return i < CHAPTERS ? chapters[i].name : NULL;
 }
 
+void manual_file(const char *name, FILE *out) {
+  fputs(embedded_find("manual", name)->text, out);
+}
+
 /* Name and title, which is the first line. */
 static void print_title(int i, FILE *out) {
   const embedded_file *f = embedded_find("manual", chapters[i].file);
@@ -331,7 +335,7 @@ int manual_print(const char *chapter, FILE *out) {
   for (int i = 0; i < CHAPTERS; ++i) {
     if (chapter == NULL) print_title(i, out);
     if (chapter == NULL || strcasecmp(chapter, chapters[i].name) != 0) continue;
-    fputs(embedded_find("manual", chapters[i].file)->text, out);
+    manual_file(chapters[i].file, out);
     if (chapters[i].more != NULL) chapters[i].more(out);
     return 1;
   }

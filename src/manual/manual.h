@@ -16,6 +16,9 @@ int manual_print(const char *chapter, FILE *out);
 /* Name of chapter i, from 0; NULL at the end. For nearest_word. */
 const char *manual_chapter(const void *ctx, int i);
 
+/* A file of this folder as it is. */
+void manual_file(const char *name, FILE *out);
+
 /* What --list can show, one after another for nearest_word; NULL at the end. */
 const char *list_kind(const void *ctx, int i);
 /* One of them; 0 if there is no such kind. */
