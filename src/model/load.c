@@ -324,9 +324,7 @@ status load_temperature(const model *m, const mesh *msh, const step *s,
   return OK;
 }
 
-void load_fixed(const model *m, const mesh *msh, const step *s,
-                unsigned char *fixed) {
-  (void)m;
+void load_fixed(const mesh *msh, const step *s, unsigned char *fixed) {
   memset(fixed, 0, (size_t)msh->dim * (size_t)msh->n_node);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];

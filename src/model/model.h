@@ -603,5 +603,4 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T);
 status load_temperature(const model *m, const mesh *msh, const step *s,
                         double t, const double *T0, double *T);
 /* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */
-void load_fixed(const model *m, const mesh *msh, const step *s,
-                unsigned char *fixed);
+void load_fixed(const mesh *msh, const step *s, unsigned char *fixed);

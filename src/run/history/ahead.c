@@ -25,7 +25,7 @@ static int effects_have_to_look(const model *m) {
 static status take_supports(run *r, int *other) {
   OWNED unsigned char *fixed = NULL;
   PASS_NEW(fixed, r->n_dof);
-  load_fixed(r->m, r->msh, r->step, fixed);
+  load_fixed(r->msh, r->step, fixed);
   *other = memcmp(fixed, r->body.fixed, r->n_dof) != 0;
   memcpy(r->body.fixed, fixed, r->n_dof);
   return OK;
@@ -54,9 +54,9 @@ static status change_supports(const model *m, const mesh *msh, int *any) {
   const size_t n = (size_t)msh->dim * (size_t)msh->n_node;
   OWNED unsigned char *first = NULL, *fixed = NULL;
   PASS_NEW_ALL(OF(first, n), OF(fixed, n));
-  load_fixed(m, msh, &m->steps[0], first);
+  load_fixed(msh, &m->steps[0], first);
   for (int i = 1; i < m->n.step && !*any; ++i) {
-    load_fixed(m, msh, &m->steps[i], fixed);
+    load_fixed(msh, &m->steps[i], fixed);
     *any = memcmp(first, fixed, n) != 0;
   }
   return OK;

@@ -568,7 +568,7 @@ status history_stiffness(const model *m, const mesh *msh,
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
   *choice = (stiffness_choice){0};
   PASS(run_new(&r, effects));
-  load_fixed(m, msh, r.step, r.body.fixed);
+  load_fixed(msh, r.step, r.body.fixed);
   PASS(run_build_ties(&r));
   if (m->effects & EFFECT_CONTACT) PASS(run_build_surface(&r));
   r.body.d.surface = r.surface;

@@ -185,7 +185,7 @@ status run_prepare(run *r) {
   int fresh, other = 0;
   OWNED unsigned char *fixed = NULL;
   PASS_NEW(fixed, r->n_dof);
-  load_fixed(r->m, r->msh, r->step, fixed);
+  load_fixed(r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
   known_rate_forget(&r->solving.rate);
   PASS(take_places(r));
@@ -280,7 +280,7 @@ status run_check_supports(const run *r, int *n) {
 }
 
 status run_motions(run *r, int *n, free_motion **list) {
-  load_fixed(r->m, r->msh, r->step, r->body.fixed);
+  load_fixed(r->msh, r->step, r->body.fixed);
   PASS(run_build_ties(r));
   if (r->m->effects & EFFECT_CONTACT) PASS(run_build_surface(r));
   r->body.d.surface = r->surface;
