@@ -72,6 +72,14 @@ void timer_leave(stage s); /* must match the last timer_enter */
 #define TIMED(s)                                                   \
   const stage timed_ __attribute__((cleanup(timer_end), unused)) = \
       timer_begin(s)
+/* PASS of a call in stage s. */
+#define PASS_TIMED(s, call)         \
+  do {                              \
+    timer_enter(s);                 \
+    const status in_time_ = (call); \
+    timer_leave(s);                 \
+    PASS(in_time_);                 \
+  } while (0)
 stage timer_begin(stage s);
 void timer_end(const stage *s);
 stage_cost timer_cost(stage s);  /* so far, running stages included */

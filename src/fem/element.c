@@ -372,7 +372,7 @@ double domain_energy_without(const domain *d, int n, const int *elem_id,
   double sum = 0;
   int next = 0, skip = 0;
   if (n == d->mesh->n_elem) return 0;
-  timer_enter(STAGE_ENERGY);
+  TIMED(STAGE_ENERGY);
   mean_strains(d, d->mesh->n_elem, NULL, u);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     const double *e0 = eigen_at(d, k, &next);
@@ -388,7 +388,6 @@ double domain_energy_without(const domain *d, int n, const int *elem_id,
     stress_at(d, k, e, t);
     sum += 0.5 * s.weight * voigt_dot(d->ns, e, t);
   }
-  timer_leave(STAGE_ENERGY);
   return sum;
 }
 

@@ -165,6 +165,7 @@ status body_factor_broke(body_factor *f, int node) {
 
 static status factorise(const stiffness *k, const long *number,
                         cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
+  TIMED(STAGE_FACTOR);
   const int done_ok = cholmod_l_factorize(a, f->L, cm);
   if (!done_ok || cm->status < 0)
     RAISE(ERR_MEMORY, "memory exhausted: factor of %ld unknowns (%.3g bytes)",
@@ -235,11 +236,7 @@ status body_factor_build(const stiffness *k, const long *number,
   cholmod_sparse *a = NULL;
   TIMED(STAGE_ORDERING);
   status st = begin(k, number, cm, f, &a);
-  if (st == OK) {
-    timer_enter(STAGE_FACTOR);
-    st = factorise(k, number, a, cm, f);
-    timer_leave(STAGE_FACTOR);
-  }
+  if (st == OK) st = factorise(k, number, a, cm, f);
   cholmod_l_free_sparse(&a, cm);
   return st;
 }

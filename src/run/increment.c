@@ -132,12 +132,10 @@ static status solve_contact(run *r) {
       largest_entry((size_t)r->nodes.n_c, r->old.rc) == 0.0)
     PASS(drop_reactions(r, &tol, u, rc));
   PASS(effects_rewrite(r, &cp, &u, rc));
-  timer_enter(STAGE_CONTACT);
   contact_solver_tolerance(r->solver, r->solving.tol);
-  status st = contact_solve(r->solver, &cp, r->course.shadow ? NULL : &listener,
-                            u, rc, &r->solving.report);
-  timer_leave(STAGE_CONTACT);
-  PASS(st);
+  PASS_TIMED(STAGE_CONTACT,
+             contact_solve(r->solver, &cp, r->course.shadow ? NULL : &listener,
+                           u, rc, &r->solving.report));
   if (!r->course.shadow && r->solving.report.iterations > 0 &&
       r->solving.seen.now == before)
     r->solving.seen.untold = 1;
@@ -195,11 +193,8 @@ static status load_at(run *r, double t) {
 }
 
 static status pose_contact(run *r, double t) {
-  timer_enter(STAGE_SURFACE);
-  status st = surface_gap(r->surface, &r->faces.input, t, r->problem.gap,
-                          r->problem.side_gap);
-  timer_leave(STAGE_SURFACE);
-  PASS(st);
+  PASS_TIMED(STAGE_SURFACE, surface_gap(r->surface, &r->faces.input, t,
+                                        r->problem.gap, r->problem.side_gap));
   PASS(effects_pose(r, t));
   set_problem(r);
   return OK;

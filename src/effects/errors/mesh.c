@@ -66,11 +66,8 @@ static status estimate(run *r, void *self) {
   r->errors.mesh_error.asked = run_finds_mesh_error(r);
   if (!r->errors.mesh_error.asked) return OK;
   PASS(recover(r, own));
-  timer_enter(STAGE_MESH_ERROR);
-  status st =
-      space_estimate(own->recovery, r->result.stress, own->elem_error, &found);
-  timer_leave(STAGE_MESH_ERROR);
-  if (st != OK) return st;
+  PASS_TIMED(STAGE_MESH_ERROR, space_estimate(own->recovery, r->result.stress,
+                                              own->elem_error, &found));
   r->errors.mesh_error.relative = found.relative;
   r->errors.mesh_error.why =
       found.relative > EXACT && space_is_coarse(own->recovery)

@@ -240,10 +240,8 @@ status condensed_run(const model *m, const exchange_problem *p,
   *unsettled = 0;
   PASS(discrete_new(&d));
   PASS(report_ready(&d, sink));
-  timer_enter(STAGE_CONTACT);
-  const status st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
-  timer_leave(STAGE_CONTACT);
-  PASS(st);
+  PASS_TIMED(STAGE_CONTACT,
+             p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink));
   if (p->dim > 1 && !outcome_is_fatal(d.report.outcome)) {
     PASS(fill_up(&d));
     PASS(find_error(d.step, &d.whole, d.u, d.r, &d.error));
