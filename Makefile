@@ -37,7 +37,7 @@ optimise_cover   := -O0 -g1 --coverage
 optimise := $(optimise_$(BUILD))
 $(if $(optimise),,$(error BUILD=$(BUILD): release, debug, asan or cover))
 
-CPPFLAGS += -Isrc -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE \
+CPPFLAGS += -Isrc -Ibuild -D_POSIX_C_SOURCE=200809L -D_DEFAULT_SOURCE \
             $(shell pkg-config --cflags hdf5-serial 2>/dev/null) \
             -I/usr/include/suitesparse
 CPPFLAGS += $(DEFINES)
@@ -64,7 +64,7 @@ checklib := $(shell pkg-config --libs check 2>/dev/null)
 
 sources  := $(filter-out src/main.c,$(wildcard src/*/*.c src/*/*/*.c))
 embedded := $(sort $(wildcard src/manual/*.md src/manual/*.inp \
-              input/*/*.inp input/*/*.geo))
+              src/manual/*.txt input/*/*.inp input/*/*.geo))
 objects  := $(sources:%.c=$(out)/%.o) $(out)/embedded.o
 library  := $(out)/libprotis.a
 program  := $(out)/protis
@@ -161,7 +161,13 @@ ifeq ($(dpkg),)
 	  "belong to (Debian: $(packages))" >&2; exit 1; }
 endif
 
-$(out)/%.o: %.c Makefile
+# The numbers, titles and remedies of the messages, as the manual has them.
+messages := build/base/messages.h
+$(messages): src/manual/messages.md tools/list_messages
+	@mkdir -p $(@D)
+	$(Q)tools/list_messages $< > $@.new && mv $@.new $@
+
+$(out)/%.o: %.c Makefile | $(messages)
 	@mkdir -p $(@D)
 	@echo "  CC   $<"
 	$(Q)$(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c $< -o $@
@@ -227,10 +233,10 @@ $(out)/tests/unit/sundials: LDLIBS += -lsundials_cvode -lsundials_nvecserial \
               -lsundials_sunlinsoldense -lsundials_sunmatrixdense
 
 # Stands between a program under test and the C library.
-$(out)/tests/preload/%.so: tests/preload/%.c Makefile
+$(out)/tests/preload/%.so: tests/preload/%.c Makefile | $(messages)
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
-	$(Q)$(CC) -std=gnu11 -Isrc -O2 -Wall -Wextra -shared -fPIC $< -o $@ -ldl
+	$(Q)$(CC) -std=gnu11 -Isrc -Ibuild -O2 -Wall -Wextra -shared -fPIC $< -o $@ -ldl
 
 # A fresh machine has no pkg-config when make starts: install, then start anew.
 demo test: deps-drawing
@@ -464,7 +470,7 @@ fuzz: $(fuzzers)
 	  echo "$$f: $$(grep number_of_executed_units $$f.log)"; \
 	done
 
-build/fuzz/%.o: %.c
+build/fuzz/%.o: %.c | $(messages)
 	@mkdir -p $(@D)
 	@echo "  CC   $<"
 	$(Q)clang-14 $(fuzz_c) -MMD -MP \

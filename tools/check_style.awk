@@ -100,9 +100,7 @@ function blank_comments(line,    out, i, c, two, n) {
 function directive(text) {
   if (text ~ /^[ ]*#[ ]*if[ ]+0([^-0-9A-Za-z.]|$)/) fail(FNR, "#if 0")
   if (!is_header) return
-  if (guard == "" && text ~ /^#ifndef /) { split(text, word, " "); guard = word[2] }
-  else if (guard != "" && text == "#define " guard) guarded = 1
-  last_directive = text
+  if (text ~ /^#pragma once$/) once = 1
 }
 
 # ---- declarations and functions --------------------------------------------
@@ -201,11 +199,16 @@ function end_function(    length_) {
     fail(start, name ": cyclomatic complexity " complexity ", expected under 15")
 }
 
-function end_declaration(    text, before_value) {
+function end_declaration(    text, before_value, word, i) {
   text = declaration
   declaration = ""
   sub(/^(END_TEST )+/, "", text)
+  if (text ~ /^typedef [^(]* \( [^*]/) function_type[declared_name(text)] = 1
   if (text == "" || text ~ /^typedef / || text ~ /^_Static_assert/) return
+  if (split(text, word, /[ ,]+/) > 1 && word[1] in function_type) {
+    for (i in word) exported[word[i]] = 1
+    return
+  }
   before_value = text
   sub(/ *=.*/, "", before_value)
   if (before_value ~ /\(/) {
@@ -250,27 +253,21 @@ function begin_file(    path) {
   file = FILENAME
   is_header = file ~ /\.h$/
   is_base = file ~ /(^|\/)src\/(base|system)\//
-  depth = in_comment = in_macro = in_function = in_struct = guarded = 0
+  depth = in_comment = in_macro = in_function = in_struct = once = 0
   block = block_comment = 0
-  declaration = guard = last_directive = ""
+  declaration = ""
   path = file
   sub(/\/[^\/]*$/, "", path)
   if (!is_header) ++in_folder[path]
 }
 
-function end_file(    stem, wanted) {
+function end_file() {
   lines = last_line
   if (lines > MAX_LINES) fail(lines, "file over 800 lines")
   if (depth != 0) fail(lines, "braces do not match")
   if (!is_header) return
   end_block()
-  stem = file
-  sub(/.*\//, "", stem)
-  sub(/\.h$/, "", stem)
-  wanted = toupper(stem) "_H"
-  if (!guarded || last_directive !~ /^#endif/ || guard !~ /^PROTIS_/ ||
-      substr(guard, length(guard) - length(wanted) + 1) != wanted)
-    fail(1, "header guard PROTIS_..._" wanted " missing")
+  if (!once) fail(1, "#pragma once missing")
 }
 
 { last_line = FNR }

@@ -1,6 +1,5 @@
 /* Error of a solution of the contact solver, and uniqueness of the solution. */
-#ifndef PROTIS_ACCURACY_ACCURACY_H
-#define PROTIS_ACCURACY_ACCURACY_H
+#pragma once
 
 #include "contact/contact.h"
 
@@ -123,5 +122,3 @@ typedef struct node_stiffness {
 node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id);
 /* 1: friction can act on the unknown: tangential, not held, no side bound. */
 int accuracy_rubs(const contact_problem *cp, int dof);
-
-#endif

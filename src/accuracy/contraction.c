@@ -45,14 +45,8 @@ int accuracy_rubs(const contact_problem *cp, int dof) {
 }
 
 node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
-  int first = node_id * cp->dim, counted = 0;
-  double n = contact_diagonal(cp, first), t = 0.0;
-  for (int k = 1; k < cp->dim; ++k)
-    if (!contact_held(cp, first + k)) {
-      t += contact_diagonal(cp, first + k);
-      ++counted;
-    }
-  t = counted > 0 ? t / counted : n;
+  const double n = contact_diagonal(cp, node_id * cp->dim);
+  const double t = contact_tangent_diagonal(cp, node_id, n);
   if (contact_has_stiffness(cp)) return (node_stiffness){n, t};
   return (node_stiffness){1.0 / n, 1.0 / t};
 }

@@ -2,8 +2,7 @@
  * Difference between the solution of an increment and the closed form of
  * *REFERENCE: the true error, in the norms of the estimates.
  */
-#ifndef PROTIS_ACCURACY_EXACT_ERROR_H
-#define PROTIS_ACCURACY_EXACT_ERROR_H
+#pragma once
 
 #include "fem/fem.h"
 #include "model/model.h"
@@ -31,5 +30,3 @@ typedef struct answer_fields {
  * the closed form is not finite (the record says where); ERR_MEMORY. */
 status exact_error_find(const closed_form *ref, const domain *d,
                         const answer_fields *a, true_error *out);
-
-#endif

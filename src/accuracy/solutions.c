@@ -87,12 +87,11 @@ static void find_facts(const contact_problem *cp, solution *s) {
 static status copy_solution(const contact_problem *cp, const double *u,
                             const double *r, solution *s) {
   status st = OK;
-  size_t bytes = (size_t)cp->m * sizeof *u;
   *s = (solution){0};
   NEW_REALS(cp->m, &s->u, &s->r);
   NEW(s->status, cp->n);
-  memcpy(s->u, u, bytes);
-  memcpy(s->r, r, bytes);
+  COPY(s->u, u, cp->m);
+  COPY(s->r, r, cp->m);
   contact_classify(cp, u, r, s->status);
   find_facts(cp, s);
 done:

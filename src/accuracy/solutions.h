@@ -2,8 +2,7 @@
  * Whether a contact problem with friction has more than one solution: several
  * methods from several starts, or all combinations of statuses.
  */
-#ifndef PROTIS_ACCURACY_SOLUTIONS_H
-#define PROTIS_ACCURACY_SOLUTIONS_H
+#pragma once
 
 #include "contact/contact.h"
 #include "solver/solver.h"
@@ -74,5 +73,3 @@ status solutions_can_try(int dim, int n, int corner); /* the same of its size */
 status solutions_by_statuses(const contact_problem *cp, double tol,
                              const double *u, const double *r,
                              solution_set *out);
-
-#endif

@@ -6,8 +6,7 @@
  * 1365-1382). Fits stay on one side of an interface between materials, where
  * the stress of the solution jumps itself.
  */
-#ifndef PROTIS_ACCURACY_SPACE_H
-#define PROTIS_ACCURACY_SPACE_H
+#pragma once
 
 #include "fem/fem.h"
 
@@ -72,5 +71,3 @@ void space_sizes(const mesh *m, const double *eta, double target, double *size);
 void space_lengths(const mesh *m, double *size);
 /* How many times the elements a mesh of these sizes has, about, -. */
 double space_growth(const mesh *m, const double *size);
-
-#endif

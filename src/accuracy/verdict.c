@@ -127,7 +127,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   TRY(put_given(s, &form, &own));
   NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
-  TRY(lemke->setup(&own, param, &work));
+  TRY(solver_set_up(lemke, &own, param, &work));
   TRY(lemke->solve(&own, param, work, &control, u, r, &rep));
   *end = rep.outcome;
   const double *ray = lemke_ray(work);
@@ -138,7 +138,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   if (form != NULL) given_form_move(form, v);
 done:
   given_form_free(form);
-  if (work != NULL) lemke->release(work);
+  solver_release(lemke, work);
   RELEASE(u, r, A);
   return st;
 }
@@ -175,18 +175,6 @@ static status add_moving(const words *w, const verdict_scene *s,
       break;
     }
   return OK;
-}
-
-static const char *card_of(const load *l) {
-  switch ((load_kind)l->kind) {
-    case LOAD_PRESSURE:
-    case LOAD_TRACTION:
-      return "*DSLOAD";
-    case LOAD_POINT:
-      return "*CLOAD";
-    default:
-      return "*DLOAD";
-  }
 }
 
 static double dot(size_t n, const double *a, const double *b) {
@@ -234,7 +222,7 @@ static status add_loads(const words *w, const verdict_scene *s, const double *u,
     PASS(forces_of(s, k, F));
     if (!(dot(n, F, u) > PART * fabs(work))) continue;
     add(w, listed++ == 0 ? ", driven by " : ", ");
-    add(w, "%s on %s (line %d)", card_of(l), l->group, l->at.line_no);
+    add(w, "*%s on %s (line %d)", load_card(l), l->group, l->at.line_no);
   }
   for (int k = 0; k < s->m->n.contact && listed < LISTED; ++k) {
     const contact *c = &s->m->contacts[k];

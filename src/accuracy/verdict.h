@@ -3,8 +3,7 @@
  * the loads that drive them, or the nodes where the contact conditions are
  * violated most.
  */
-#ifndef PROTIS_ACCURACY_VERDICT_H
-#define PROTIS_ACCURACY_VERDICT_H
+#pragma once
 
 #include "contact/surface.h"
 #include "fem/fem.h"
@@ -33,5 +32,3 @@ status verdict_text(const verdict_scene *s, char *text, size_t size);
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size);
-
-#endif

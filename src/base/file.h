@@ -4,8 +4,7 @@
  * a run writes stays in its folder: links are not followed, and a file with the
  * name of a result is replaced, not overwritten.
  */
-#ifndef PROTIS_BASE_FILE_H
-#define PROTIS_BASE_FILE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -27,5 +26,3 @@ void file_leave(FILE **f);
 void descriptor_leave(const int *fd);
 /* Synchronise the folder of the file; best effort. */
 void file_sync_folder(const char *path);
-
-#endif

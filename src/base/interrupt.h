@@ -3,8 +3,7 @@
  * SIGUSR2, or a file. They only set a flag that the run reads between two
  * increments; the second SIGINT or SIGTERM ends the process at once.
  */
-#ifndef PROTIS_BASE_INTERRUPT_H
-#define PROTIS_BASE_INTERRUPT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -30,5 +29,3 @@ const char *interrupt_name(void);
 void interrupt_crashes(void);
 /* The program ends by itself now. */
 void interrupt_over(void);
-
-#endif

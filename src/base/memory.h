@@ -7,12 +7,16 @@
  *
  * A failed x_new may leave in *out what it has made: the owner calls x_free.
  */
-#ifndef PROTIS_BASE_MEMORY_H
-#define PROTIS_BASE_MEMORY_H
+#pragma once
 
 #include "base/status.h"
 
 #include <stddef.h>
+#include <string.h>
+
+/* n items of what "to" points to. */
+#define COPY(to, from, n) memcpy((to), (from), (size_t)(n) * sizeof *(to))
+#define CLEAR(to, n) memset((to), 0, (size_t)(n) * sizeof *(to))
 
 /* NEW(pointer, n): n zeroed items of what the pointer points to, or FAIL. */
 #define NEW(pointer, n) NEW_OR(FAIL, pointer, n)
@@ -127,5 +131,3 @@ status memory_require(double bytes, const char *what);
 /* Refuse request number k (1 = the next) and, if "all", every later one. k = 0
  * switches it off. For tests of the recovery from a refusal. */
 void memory_refuse(long k, int all);
-
-#endif

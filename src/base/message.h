@@ -10,8 +10,7 @@
  * P1: grammar of the deck; P2: cards and model; P3: mesh; P4: contact and
  * supports; P5: results and files.
  */
-#ifndef PROTIS_BASE_MESSAGE_H
-#define PROTIS_BASE_MESSAGE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -29,7 +28,8 @@ typedef enum { NOTE, WARNING, ERROR } severity;
 
 typedef struct message_log message_log;
 
-/* Number, severity and manual entry of each message: messages.h */
+/* MESSAGE_LIST(X), a row X(number, severity, title, remedy) each: made of
+ * src/manual/messages.md by tools/list_messages. */
 #include "base/messages.h"
 #define MESSAGE_ENUM(number, severity, title, remedy) P##number = number,
 typedef enum { MESSAGE_LIST(MESSAGE_ENUM) P_END } message_id;
@@ -67,5 +67,3 @@ void message_list(const message_log *log, severity s, FILE *out);
 int message_explain(const char *number, FILE *out);
 /* OK without errors; else "code" (the record then gives the number). */
 status message_status(const message_log *log, status code);
-
-#endif

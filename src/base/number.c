@@ -181,3 +181,9 @@ int number_pair_order(const void *a, const void *b) {
   return first != 0 ? first
                     : number_order((const int *)a + 1, (const int *)b + 1);
 }
+
+uint64_t number_hash(uint64_t h, const void *data, size_t n) {
+  const unsigned char *at = data;
+  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
+  return h;
+}

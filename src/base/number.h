@@ -2,8 +2,10 @@
  * Numbers as the Fortran codes write them: 1  1.  .5  1.5E3  1.5D+03  1.5+03.
  * Refused: nan, inf, hexadecimal, trailing letters, overflow, empty text.
  */
-#ifndef PROTIS_BASE_NUMBER_H
-#define PROTIS_BASE_NUMBER_H
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
 
 enum { NUMBER_TEXT_SIZE = 32 };
 /* Largest numbers that are computed with: products of two are finite. */
@@ -20,8 +22,10 @@ int number_bare_exponent(const char *text);
 /* Fewest digits that number_real takes back exactly; a point in any locale. */
 void number_text(double value, char text[NUMBER_TEXT_SIZE]);
 
+/* FNV-1a of n bytes, after those of h or HASH_START. */
+#define HASH_START 14695981039346656037u
+uint64_t number_hash(uint64_t h, const void *data, size_t n);
+
 /* For qsort and bsearch: an int; the two ints an item starts with. */
 int number_order(const void *a, const void *b);
 int number_pair_order(const void *a, const void *b);
-
-#endif

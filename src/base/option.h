@@ -7,8 +7,7 @@
  * kin; the macro compares pointer types inside sizeof, so a row whose field has
  * another type does not compile.
  */
-#ifndef PROTIS_BASE_OPTION_H
-#define PROTIS_BASE_OPTION_H
+#pragma once
 
 #include <limits.h>
 #include <stddef.h>
@@ -103,5 +102,3 @@ typedef struct name_list {
                       1 + offsetof(__typeof__(**(list)), name), 0})
 /* Name i of a name_list: for nearest_word. */
 const char *candidate_name(const void *names, int i);
-
-#endif

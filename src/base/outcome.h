@@ -2,8 +2,7 @@
  * How an iteration ended: above zero the result is usable, below zero the
  * reason why not.
  */
-#ifndef PROTIS_BASE_OUTCOME_H
-#define PROTIS_BASE_OUTCOME_H
+#pragma once
 
 /* clang-format off */
 #define OUTCOME_LIST(X)                                                       \
@@ -29,5 +28,3 @@ const char *outcome_code(outcome o);
 /* 1 if there is no result to continue with: a ray, singular, not a number, a
  * method that does not apply. */
 int outcome_is_fatal(outcome o);
-
-#endif

@@ -2,8 +2,7 @@
  * Sparse matrices, by rows and by square blocks, and a vector that has all
  * entries.
  */
-#ifndef PROTIS_BASE_SPARSE_H
-#define PROTIS_BASE_SPARSE_H
+#pragma once
 
 #include "base/memory.h"
 #include "base/status.h"
@@ -97,5 +96,3 @@ static inline double power_to_one(double largest) {
   if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
   return ldexp(1.0, -exponent);
 }
-
-#endif

@@ -8,8 +8,7 @@
  * function that declares "status st = OK;". Only main prints the record and
  * turns the code into the exit code of the process.
  */
-#ifndef PROTIS_BASE_STATUS_H
-#define PROTIS_BASE_STATUS_H
+#pragma once
 
 /* clang-format off */
 #define STATUS_LIST(X)                                                       \
@@ -76,5 +75,3 @@ const char *status_text(status s);
 int status_exit_code(status s);
 int status_is_request(status s); /* 1: to end early, see base/interrupt.h */
 void status_clear(void);
-
-#endif

@@ -2,8 +2,7 @@
  * Text files of the results, every write checked, and the one format of the
  * numbers in them.
  */
-#ifndef PROTIS_BASE_TEXT_H
-#define PROTIS_BASE_TEXT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -85,5 +84,3 @@ void text_word(char *word, size_t size, const char *text);
  */
 void _gfortran_concat_string(size_t n, char *to, size_t n_a, const char *a,
                              size_t n_b, const char *b);
-
-#endif

@@ -3,8 +3,7 @@
  * bytes requested. Stages nest; a stage is charged for its own work only, not
  * for the stages entered inside it.
  */
-#ifndef PROTIS_BASE_TIMER_H
-#define PROTIS_BASE_TIMER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -73,6 +72,14 @@ void timer_leave(stage s); /* must match the last timer_enter */
 #define TIMED(s)                                                   \
   const stage timed_ __attribute__((cleanup(timer_end), unused)) = \
       timer_begin(s)
+/* PASS of a call in stage s. */
+#define PASS_TIMED(s, call)         \
+  do {                              \
+    timer_enter(s);                 \
+    const status in_time_ = (call); \
+    timer_leave(s);                 \
+    PASS(in_time_);                 \
+  } while (0)
 stage timer_begin(stage s);
 void timer_end(const stage *s);
 stage_cost timer_cost(stage s);  /* so far, running stages included */
@@ -84,5 +91,3 @@ void timer_reset(void);
 /* The process continues the run of another one, which had spent this: its calls
  * are those of the whole from here on, the rest is added. */
 void timer_resume(const stage_cost before[STAGE_COUNT]);
-
-#endif

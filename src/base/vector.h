@@ -1,11 +1,16 @@
-/* Vectors of two or three components. */
-#ifndef PROTIS_BASE_VECTOR_H
-#define PROTIS_BASE_VECTOR_H
+/* Vectors, most of two or three components. */
+#pragma once
 
 static inline double dot(int dim, const double *a, const double *b) {
   double sum = 0.0;
   for (int c = 0; c < dim; ++c) sum += a[c] * b[c];
   return sum;
+}
+
+static inline int is_zero(int n, const double *v) {
+  for (int i = 0; i < n; ++i)
+    if (v[i] != 0.0) return 0;
+  return 1;
 }
 
 /* c = a x b, in space */
@@ -20,5 +25,3 @@ static inline void add_scaled(int dim, double factor, const double *v,
                               double *to) {
   for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
 }
-
-#endif

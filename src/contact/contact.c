@@ -4,6 +4,7 @@
  * No function allocates: products with the matrix run over blocks of CHUNK
  * rows and columns kept on the stack.
  */
+#include "base/memory.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
@@ -71,13 +72,11 @@ void contact_block(const contact_problem *cp, int node_id, double *block) {
   const int d = cp->dim;
   const size_t m = (size_t)cp->m, first = (size_t)(node_id * d) * (m + 1);
   if (cp->blocks != NULL) {
-    memcpy(block, sparse_blocks_own(cp->blocks, node_id),
-           (size_t)(d * d) * sizeof *block);
+    COPY(block, sparse_blocks_own(cp->blocks, node_id), d * d);
     return;
   }
   for (int j = 0; j < d; ++j)
-    memcpy(block + d * j, contact_matrix(cp) + first + m * (size_t)j,
-           (size_t)d * sizeof *block);
+    COPY(block + d * j, contact_matrix(cp) + first + m * (size_t)j, d);
 }
 
 /* Column by column; symmetric to the last bit. */
@@ -158,16 +157,22 @@ double contact_largest_diagonal(const contact_problem *cp) {
   return d;
 }
 
-node_step contact_step(const contact_problem *cp, int node_id,
-                       double largest_diagonal) {
+double contact_tangent_diagonal(const contact_problem *cp, int node_id,
+                                double none) {
   int first = node_id * cp->dim, counted = 0;
-  double n = contact_diagonal(cp, first), t = 0.0;
+  double sum = 0.0;
   for (int k = 1; k < cp->dim; ++k)
     if (!contact_held(cp, first + k)) {
-      t += contact_diagonal(cp, first + k);
+      sum += contact_diagonal(cp, first + k);
       ++counted;
     }
-  if (counted > 0) t /= counted;
+  return counted > 0 ? sum / counted : none;
+}
+
+node_step contact_step(const contact_problem *cp, int node_id,
+                       double largest_diagonal) {
+  double n = contact_diagonal(cp, node_id * cp->dim);
+  double t = contact_tangent_diagonal(cp, node_id, 0.0);
   /* Where no force moves anything, any step serves. */
   if (!(largest_diagonal > 0.0)) largest_diagonal = 1.0;
   if (!(n > 0.0)) n = largest_diagonal;

@@ -11,8 +11,7 @@
  * g affine in p, Tresca (B = NULL), local (B diagonal) and nonlocal Coulomb
  * friction are one problem.
  */
-#ifndef PROTIS_CONTACT_CONTACT_H
-#define PROTIS_CONTACT_CONTACT_H
+#pragma once
 
 #include "base/sparse.h"
 #include "base/status.h"
@@ -170,10 +169,11 @@ int contact_has_side(const contact_problem *cp, int node_id);
 /* Diagonal of A (of an operator: of the stiffness it is condensed from), or of
  * W where that alone is known. */
 double contact_diagonal(const contact_problem *cp, int dof);
+/* Its mean over the tangents of a node that are not held, or "none". */
+double contact_tangent_diagonal(const contact_problem *cp, int node_id,
+                                double none);
 /* y = M x, M[m*m] column major. */
 void contact_product(int m, const double *M, const double *x, double *y);
 /* Sliding limit of one node, N. */
 double contact_node_limit(const contact_problem *cp, const double *r,
                           int node_id);
-
-#endif

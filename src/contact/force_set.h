@@ -2,8 +2,7 @@
  * Admissible contact forces of a problem whose compliance is known, by its
  * entries or by solves with an operator: common parts of the methods for them.
  */
-#ifndef PROTIS_CONTACT_FORCE_SET_H
-#define PROTIS_CONTACT_FORCE_SET_H
+#pragma once
 
 #include "contact/contact.h"
 
@@ -49,5 +48,3 @@ double force_set_spectrum(const force_set *s, double *v, double *z);
 status compliance_rows(const contact_problem *cp, sparse_rows *rows);
 /* u = W (r + f), mended once by A; without A: u = W r + q. */
 void force_set_displacement(const force_set *s, const double *r, double *u);
-
-#endif

@@ -169,8 +169,7 @@ static void condense_normals(const contact_problem *cp, given_form *g) {
   for (size_t j = 0; j < m; ++j)
     for (size_t k = 0; k < n; ++k)
       g->Y[k + n * j] = cp->A[normal(g, (int)k) + m * j];
-  for (size_t k = 0; k < n; ++k)
-    memset(g->Y + n * normal(g, (int)k), 0, n * sizeof *g->Y);
+  for (size_t k = 0; k < n; ++k) CLEAR(g->Y + n * normal(g, (int)k), n);
   cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit,
               g->n, cp->m, 1.0, g->L, g->n, g->Y, g->n);
   memcpy(g->A, cp->A, m * m * sizeof *g->A);

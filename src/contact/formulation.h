@@ -3,8 +3,7 @@
  * (CPR98, problem N3) and with given normal forces (problem D3). Each is again
  * a contact problem for any solver; its solution is transformed back.
  */
-#ifndef PROTIS_CONTACT_FORMULATION_H
-#define PROTIS_CONTACT_FORMULATION_H
+#pragma once
 
 #include "contact/contact.h"
 
@@ -51,5 +50,3 @@ void given_form_apply(given_form *g, contact_problem *cp, double *u, double *r);
 /* To a motion u[m] without force: the normal displacements of the nodes. */
 void given_form_move(given_form *g, double *u);
 void given_form_free(given_form *g); /* accepts NULL */
-
-#endif

@@ -9,6 +9,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -249,15 +250,9 @@ static void patch_free(patch *a) {
 
 /* Place of a mesh node in the group, whose ids ascend. */
 static int place_in(const mesh_group *g, int node_id) {
-  int first = 0, last = g->n_node - 1;
-  while (first < last) {
-    int half = first + (last - first) / 2;
-    if (g->node_id[half] < node_id)
-      first = half + 1;
-    else
-      last = half;
-  }
-  return first;
+  const int *at = bsearch(&node_id, g->node_id, (size_t)g->n_node,
+                          sizeof node_id, number_order);
+  return (int)(at - g->node_id);
 }
 
 /* A node whose normal force belongs to another contact has none for this. */

@@ -2,8 +2,7 @@
  * Friction laws: each fills the sliding limit g = g0 + B p of the contact
  * nodes for a surface at time t. One law per file, one row in FRICTION_LIST.
  */
-#ifndef PROTIS_CONTACT_FRICTION_H
-#define PROTIS_CONTACT_FRICTION_H
+#pragma once
 
 #include "base/option.h"
 #include "contact/contact.h"
@@ -67,5 +66,3 @@ extern const option friction_no_options[]; /* a law without options */
 /* Value of the card at contact node i, not negative; ERR_DECK otherwise. */
 status friction_value(const friction_card *card, const contact_surface *s,
                       int i, double t, double *value);
-
-#endif

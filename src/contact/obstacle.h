@@ -12,8 +12,7 @@
  *   v = d' + angle' a x (y - c - d)
  * at the point y where the normal of the node meets it.
  */
-#ifndef PROTIS_CONTACT_OBSTACLE_H
-#define PROTIS_CONTACT_OBSTACLE_H
+#pragma once
 
 #include "deck/expression.h"
 
@@ -75,5 +74,3 @@ void obstacle_drift(const obstacle *o, int dim, const double *x,
                     const double *n, double t0, double t, double *d);
 /* 1 if the gap can change with time. */
 int obstacle_moves(const obstacle *o);
-
-#endif

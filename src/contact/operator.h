@@ -3,8 +3,7 @@
  * its entries are not formed: A = K_cc - K_ci inv(K_ii) K_ic of a body with
  * unknowns c in contact and i in the interior.
  */
-#ifndef PROTIS_CONTACT_OPERATOR_H
-#define PROTIS_CONTACT_OPERATOR_H
+#pragma once
 
 #include "base/status.h"
 
@@ -41,5 +40,3 @@ typedef struct contact_operator {
    * alone: cheaper where they and the forces b[m] are few. */
   void (*response)(void *ctx, const double *b, double *x, double *Ax);
 } contact_operator;
-
-#endif

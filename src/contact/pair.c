@@ -426,7 +426,7 @@ double pair_apart(const surface_input *in, const contact_pair *p, int row,
 }
 
 /* With what CLEARANCE or INTERFERENCE adds. */
-static double gap_at(const surface_row *at, double t) {
+double pair_gap(const surface_row *at, double t) {
   const contact_pair *p = at->of;
   double x[3] = {0.0, 0.0, 0.0};
   if (p->change == NULL) return at->apart;
@@ -434,20 +434,7 @@ static double gap_at(const surface_row *at, double t) {
   return at->apart + p->change_sign * quantity_value(p->change, x, t);
 }
 
-static int no_normal(const surface_row *at, double *n) {
-  (void)at, (void)n;
-  return 0;
-}
-
-static int stays(const contact_pair *p) {
-  (void)p;
-  return 0;
-}
-
-const partner_ops pair_partner = {"surface", gap_at, no_normal, stays, NULL};
-
-/* ---- motions and forces of the rows ---------------------------------------
- */
+/* ---- motions and forces of the rows -------------------------------------- */
 
 void surface_relative(const contact_surface *s, const double *u, double *w) {
   const int dim = s->dim;

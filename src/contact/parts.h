@@ -1,6 +1,5 @@
 /* What the files of the contact problem share. */
-#ifndef PROTIS_CONTACT_PARTS_H
-#define PROTIS_CONTACT_PARTS_H
+#pragma once
 
 #include "contact/contact.h"
 #include "contact/surface.h"
@@ -101,16 +100,5 @@ typedef struct surface_row {
   double apart;             /* gap of a pair at time 0, m */
 } surface_row;
 
-/* What a contact is with: an obstacle (surface.c) or the master of a pair. */
-typedef struct partner_ops {
-  const char *kind;                               /* as messages name it */
-  double (*gap)(const surface_row *at, double t); /* m */
-  /* n[dim] of its own at x; 0, and n as it was: it has none. */
-  int (*normal)(const surface_row *at, double *n);
-  int (*moves)(const contact_pair *p); /* 1: its gap can change with time */
-  /* d[3] from t0 to t, m; NULL: it does not move. */
-  void (*drift)(const surface_row *at, double t0, double t, double *d);
-} partner_ops;
-extern const partner_ops pair_partner;
-
-#endif
+/* Gap of the row of a pair, m. */
+double pair_gap(const surface_row *at, double t);

@@ -3,8 +3,7 @@
  * left out of the contact problem, as free interior nodes without force, while
  * none of them penetrates; otherwise more are taken.
  */
-#ifndef PROTIS_CONTACT_REACH_H
-#define PROTIS_CONTACT_REACH_H
+#pragma once
 
 #include "contact/contact.h"
 
@@ -43,5 +42,3 @@ void reach_cut(const contact_reach *x, reach_part *part, contact_problem *cp);
 void reach_spread(const contact_reach *x, int n, double *a);
 /* 1: the same nodes. */
 int reach_is_same(const contact_reach *a, const contact_reach *b);
-
-#endif

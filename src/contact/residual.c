@@ -15,8 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- Parts of the contact problem that its matrix does not join (contact.h).
- */
+/* ---- parts that the matrix of the problem does not join (contact.h) ------ */
 
 static const double JOINED = 0x1p-30; /* -, entry over those of the diagonal */
 

@@ -82,35 +82,22 @@ static node_text describe(const mesh *m, int node_id) {
   return d;
 }
 
-static double gap_of_obstacle(const surface_row *at, double t) {
+/* Gap of a row, to its obstacle or to the master of its pair, m. */
+static double gap_of(const surface_row *at, double t) {
+  if (at->of->support == NULL) return pair_gap(at, t);
   return obstacle_gap(at->of->support, at->dim, at->x, at->normal, t);
 }
 
-static int normal_of_obstacle(const surface_row *at, double *n) {
-  return obstacle_normal(at->of->support, at->dim, at->x, n);
-}
-
-static int obstacle_of_moves(const contact_pair *p) {
-  return obstacle_moves(p->support);
-}
-
-static void drift_of_obstacle(const surface_row *at, double t0, double t,
-                              double *d) {
-  obstacle_drift(at->of->support, at->dim, at->x, at->normal, t0, t, d);
-}
-
-static const partner_ops obstacle_partner = {
-    "obstacle", gap_of_obstacle, normal_of_obstacle, obstacle_of_moves,
-    drift_of_obstacle};
-
-static const partner_ops *partner_of(const contact_pair *p) {
-  return p->support != NULL ? &obstacle_partner : &pair_partner;
+/* 1: its gap can change with time. */
+static int moves(const contact_pair *p) {
+  return p->support != NULL && obstacle_moves(p->support);
 }
 
 /* What a contact is with. */
 static node_text partner(const contact_pair *p) {
   node_text d;
-  snprintf(d.text, sizeof d.text, "%s %s", partner_of(p)->kind,
+  snprintf(d.text, sizeof d.text, "%s %s",
+           p->support != NULL ? "obstacle" : "surface",
            p->support != NULL ? p->support->name : p->master->name);
   return d;
 }
@@ -371,7 +358,8 @@ static int take_obstacle_normal(const builder *b, candidate *c) {
   const surface_row at = row_of(b, c);
   double body[3];
   memcpy(body, c->normal, sizeof body);
-  partner_of(at.of)->normal(&at, c->normal);
+  if (at.of->support != NULL)
+    obstacle_normal(at.of->support, b->dim, at.x, c->normal);
   return dot(b->dim, body, c->normal) >=
          -PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
@@ -453,7 +441,7 @@ static void compare_normals(const builder *b, const candidate *c) {
   tally *t = &b->tallies[c->pair_id];
   const surface_row at = row_of(b, c);
   double n[3], square = 0;
-  if (!partner_of(p)->normal(&at, n)) {
+  if (p->support == NULL || !obstacle_normal(p->support, b->dim, at.x, n)) {
     note_held(b, c, c->held);
     return;
   }
@@ -484,16 +472,15 @@ static void measure(builder *b, candidate *c) {
   const mesh *m = b->in->mesh;
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
-  const partner_ops *with = partner_of(p);
   const surface_row at = row_of(b, c);
-  c->gap = p->coupled != NULL ? mean_apart(b, c) : with->gap(&at, 0);
+  c->gap = p->coupled != NULL ? mean_apart(b, c) : gap_of(&at, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
     message_add(b->log, P4007, &p->at, "%s %s: gap is %s at %s, time 0",
                 p->card, p->name, isnan(c->gap) ? "not a number" : "-inf",
                 describe(m, c->node_id).text);
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
-    if (with->moves(p)) {
+    if (moves(p)) {
       c->gap = m->size;
     } else {
       c->left_out = 1;
@@ -733,7 +720,7 @@ static status row_gap(const contact_surface *s, const contact_pair *p, int i,
   const surface_row at = {p, dim, &s->x[dim * i],
                           &s->frame[dim * dim * i + dim * k],
                           s->apart == NULL ? 0.0 : s->apart[dim * i + k]};
-  *gap = partner_of(p)->gap(&at, t);
+  *gap = gap_of(&at, t);
   if (isnan(*gap) || *gap == -HUGE_VAL)
     RAISE(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
           p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
@@ -766,9 +753,9 @@ static void row_drift(const contact_surface *s, const contact_pair *pairs,
   const contact_pair *p = &pairs[side >= 0 ? side : s->contact_id[i]];
   const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
   double drift[3];
-  if (!partner_of(p)->moves(p)) return;
-  const surface_row at = {p, dim, &s->x[dim * i], side >= 0 ? row : frame, 0};
-  partner_of(p)->drift(&at, times[0], times[1], drift);
+  if (!moves(p)) return;
+  obstacle_drift(p->support, dim, &s->x[dim * i], side >= 0 ? row : frame,
+                 times[0], times[1], drift);
   *motion += dot(dim, row, drift);
 }
 

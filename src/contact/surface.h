@@ -2,8 +2,7 @@
  * The contact surface Gamma_3: contact nodes with normal, tangents, tributary
  * area and gap to their rigid obstacle.
  */
-#ifndef PROTIS_CONTACT_SURFACE_H
-#define PROTIS_CONTACT_SURFACE_H
+#pragma once
 
 #include "contact/mortar/mortar.h"
 #include "contact/obstacle.h"
@@ -162,5 +161,3 @@ int surface_has_held(const contact_surface *s);
 /* 1 if node i touches a second obstacle: it has no friction. */
 int surface_is_corner(const contact_surface *s, int i);
 void surface_free(contact_surface *s); /* accepts NULL */
-
-#endif

@@ -25,8 +25,7 @@
  *
  * All strings belong to the deck and are valid until deck_free.
  */
-#ifndef PROTIS_DECK_DECK_H
-#define PROTIS_DECK_DECK_H
+#pragma once
 
 #include "base/message.h"
 #include "deck/expression.h"
@@ -112,5 +111,3 @@ status deck_input(deck *d, const char *path);
 status deck_input_copy(deck *d, const char *path); /* the text is copied */
 /* Symbol by name for expressions: a symbol_value_fn whose ctx is the deck. */
 int deck_symbol(const void *deck_, const char *name, double *value);
-
-#endif

@@ -296,7 +296,6 @@ static status missing_value(compiler *c) {
   if ((unsigned char)*c->p > ' ' && (unsigned char)*c->p < 127)
     RAISE(ERR_DECK, "a value is missing before '%c'", *c->p);
   RAISE(ERR_DECK, "a character that has no meaning here");
-  return OK;
 }
 
 /* Where a value must start. *complete: 1 if it is there, 0 if after a sign,

@@ -7,8 +7,7 @@
  * min max floor ceil mod step; constant pi. Numbers as in number.h. Names are
  * not case sensitive. An unknown name is an error, never zero.
  */
-#ifndef PROTIS_DECK_EXPRESSION_H
-#define PROTIS_DECK_EXPRESSION_H
+#pragma once
 
 #include "base/status.h"
 
@@ -60,5 +59,3 @@ typedef struct quantity {
 double quantity_value(const quantity *q, const double x[3], double t);
 /* Bits of expression_variables that the quantity depends on. */
 unsigned quantity_variables(const quantity *q);
-
-#endif

@@ -9,8 +9,7 @@
  *   deck.c     cards and records
  *   store.c    the memory of a deck
  */
-#ifndef PROTIS_DECK_READER_H
-#define PROTIS_DECK_READER_H
+#pragma once
 
 #include "base/text.h"
 #include "deck/deck.h"
@@ -162,5 +161,3 @@ void format_free(format *f);
 /* Cut a physical line into a record. */
 status format_record(reader *r, const format *f, const physical *line,
                      record *out);
-
-#endif

@@ -3,52 +3,20 @@
  * and NAME_effect in a file of its own. Plan, run, outputs and columns go
  * through them in this order.
  */
-#ifndef PROTIS_EFFECTS_ROWS_H
-#define PROTIS_EFFECTS_ROWS_H
+#pragma once
 
 #include "run/effect.h"
 
 /* clang-format off */
-#define EFFECT_ROWS(X)   \
-  X(finite_elements)     \
-  X(unilateral_contact)  \
-  X(pairs)               \
-  X(moving_obstacle)     \
-  X(friction)            \
-  X(tangents)            \
-  X(nonlocal)            \
-  X(given_forces)        \
-  X(slip_history)        \
-  X(wear)                \
-  X(velocity)            \
-  X(initial_state)       \
-  X(inelastic)           \
-  X(thermal)             \
-  X(body_forces)         \
-  X(stresses)            \
-  X(reactions)           \
-  X(second_solutions)    \
-  X(theorems)            \
-  X(mesh_error)          \
-  X(time_error)          \
-  X(solver_error)        \
-  X(closed_form)         \
-  X(goals)               \
-  X(contact_table)       \
-  X(totals_table)        \
-  X(nodes_table)         \
-  X(elements_table)      \
-  X(energy_table)        \
-  X(reactions_table)     \
-  X(zones)               \
-  X(loops)               \
-  X(cracks)              \
-  X(fields)              \
-  X(condensed_problems)  \
-  X(restart)             \
-  X(listing)             \
-  X(balance)             \
-  X(nested)              \
+#define EFFECT_ROWS(X) \
+  X(finite_elements) X(unilateral_contact) X(pairs) X(moving_obstacle) \
+  X(friction) X(tangents) X(nonlocal) X(given_forces) X(slip_history) \
+  X(wear) X(velocity) X(initial_state) X(inelastic) X(thermal) \
+  X(body_forces) X(stresses) X(reactions) X(second_solutions) X(theorems) \
+  X(mesh_error) X(time_error) X(solver_error) X(closed_form) X(goals) \
+  X(contact_table) X(totals_table) X(nodes_table) X(elements_table) \
+  X(energy_table) X(reactions_table) X(zones) X(loops) X(cracks) X(fields) \
+  X(condensed_problems) X(restart) X(listing) X(balance) X(nested) \
   X(warnings)
 /* clang-format on */
 
@@ -67,5 +35,3 @@ const effect_ops *effect_of_column(const column *c);
 /* The effect whose table it is, PRINT_*. */
 const effect_ops *effect_of_table(int bit);
 stage effect_stage(const effect_ops *e);
-
-#endif

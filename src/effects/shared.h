@@ -1,6 +1,5 @@
 /* What one effect takes from another. */
-#ifndef PROTIS_EFFECTS_SHARED_H
-#define PROTIS_EFFECTS_SHARED_H
+#pragma once
 
 #include "fracture/fracture.h"
 #include "run/run.h"
@@ -29,5 +28,3 @@ status cracks_derive(const run *r, int crack_id, int point, int mode,
 /* by[dim*n_node]: a derivative by tractions at the lips becomes that by the
  * forces there. */
 void cracks_by_forces(const run *r, double *by);
-
-#endif

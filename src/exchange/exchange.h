@@ -17,8 +17,7 @@
  * LCP as text: n, the matrix by rows, q; blanks, commas or line ends between
  * the numbers, # starts a comment.  w = q + M z,  w >= 0, z >= 0, w'z = 0.
  */
-#ifndef PROTIS_EXCHANGE_EXCHANGE_H
-#define PROTIS_EXCHANGE_EXCHANGE_H
+#pragma once
 
 #include "base/message.h"
 #include "contact/contact.h"
@@ -53,5 +52,3 @@ typedef struct exchange_problem {
 status exchange_read(const char *path, exchange_type type, const place *at,
                      message_log *log, exchange_problem **out);
 void exchange_free(exchange_problem *p); /* accepts NULL */
-
-#endif

@@ -1,6 +1,5 @@
 /* What the readers of this folder share. Private to src/exchange. */
-#ifndef PROTIS_EXCHANGE_PARTS_H
-#define PROTIS_EXCHANGE_PARTS_H
+#pragma once
 
 #include "base/archive/dataset.h"
 #include "exchange/exchange.h"
@@ -72,5 +71,3 @@ status springs_add(const triplets *M, const triplets *H, double *s,
 /* A[m*m], load[m] of a singular M; *usable = 0: not possible. */
 status springs_condense(const triplets *M, const triplets *H, const double *f,
                         double *A, double *load, int *usable);
-
-#endif

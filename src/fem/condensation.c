@@ -411,8 +411,7 @@ static void to_global(const condensed *c, double *u) {
 
 /* Interior displacements from the stored forward solve. */
 static status back(const condensed *c, const double *u_c, double *u) {
-  memcpy(u, c->prescribed,
-         (size_t)c->k->dim * (size_t)c->k->n_node * sizeof *u);
+  COPY(u, c->prescribed, (size_t)c->k->dim * (size_t)c->k->n_node);
   if (c->sparse != NULL) sparse_operator_back(c->sparse, u_c, u);
   for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
     PASS(body_factor_back(&c->body[q], u_c, u, c->cm));

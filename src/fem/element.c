@@ -6,6 +6,7 @@
  */
 #include "fem/element.h"
 
+#include "base/memory.h"
 #include "base/timer.h"
 #include "material/voigt.h"
 
@@ -75,8 +76,7 @@ void element_rest(const domain *d, int elem_id, double *E, double *m_E,
   const size_t ns = (size_t)d->ns;
   const int k = d->cluster == NULL ? -1 : d->cluster->of[elem_id];
   const double part = k < 0 ? 0 : d->cluster->share[k] / 3;
-  memcpy(E, d->E + ns * ns * (size_t)d->section_id[elem_id],
-         ns * ns * sizeof *E);
+  COPY(E, d->E + ns * ns * (size_t)d->section_id[elem_id], ns * ns);
   if (k < 0) return;
   for (size_t i = 0; i < ns; ++i) m_E[i] = E[i] + E[ns + i] + E[2 * ns + i];
   *bulk = m_E[0] + m_E[1] + m_E[2];
@@ -351,8 +351,7 @@ void domain_residual(const domain *d, const double *u, const double *F,
   const int n = d->mesh->n_elem;
   element_shape s;
   double t[6];
-  memcpy(rest, F,
-         (size_t)d->mesh->dim * (size_t)d->mesh->n_node * sizeof *rest);
+  COPY(rest, F, (size_t)d->mesh->dim * (size_t)d->mesh->n_node);
   mean_strains(d, n, NULL, u);
   cluster_begin(d->cluster, CLUSTER_STRESS);
   for (int k = 0; k < n && d->cluster != NULL; ++k) {
@@ -373,7 +372,7 @@ double domain_energy_without(const domain *d, int n, const int *elem_id,
   double sum = 0;
   int next = 0, skip = 0;
   if (n == d->mesh->n_elem) return 0;
-  timer_enter(STAGE_ENERGY);
+  TIMED(STAGE_ENERGY);
   mean_strains(d, d->mesh->n_elem, NULL, u);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     const double *e0 = eigen_at(d, k, &next);
@@ -389,7 +388,6 @@ double domain_energy_without(const domain *d, int n, const int *elem_id,
     stress_at(d, k, e, t);
     sum += 0.5 * s.weight * voigt_dot(d->ns, e, t);
   }
-  timer_leave(STAGE_ENERGY);
   return sum;
 }
 

@@ -2,8 +2,7 @@
  * One P1 element: gradients of its shape functions and its stiffness. Private
  * to src/fem.
  */
-#ifndef PROTIS_FEM_ELEMENT_H
-#define PROTIS_FEM_ELEMENT_H
+#pragma once
 
 #include "fem/fem.h"
 
@@ -20,5 +19,3 @@ void element_stiffness(const domain *d, int elem_id, double *blocks);
  * are not lost. */
 void domain_residual(const domain *d, const double *u, const double *F,
                      double *rest);
-
-#endif

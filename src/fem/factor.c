@@ -165,6 +165,7 @@ status body_factor_broke(body_factor *f, int node) {
 
 static status factorise(const stiffness *k, const long *number,
                         cholmod_sparse *a, cholmod_common *cm, body_factor *f) {
+  TIMED(STAGE_FACTOR);
   const int done_ok = cholmod_l_factorize(a, f->L, cm);
   if (!done_ok || cm->status < 0)
     RAISE(ERR_MEMORY, "memory exhausted: factor of %ld unknowns (%.3g bytes)",
@@ -235,11 +236,7 @@ status body_factor_build(const stiffness *k, const long *number,
   cholmod_sparse *a = NULL;
   TIMED(STAGE_ORDERING);
   status st = begin(k, number, cm, f, &a);
-  if (st == OK) {
-    timer_enter(STAGE_FACTOR);
-    st = factorise(k, number, a, cm, f);
-    timer_leave(STAGE_FACTOR);
-  }
+  if (st == OK) st = factorise(k, number, a, cm, f);
   cholmod_l_free_sparse(&a, cm);
   return st;
 }
@@ -351,6 +348,18 @@ status body_factor_condense(const stiffness *k, const body_factor *f, int m,
   return OK;
 }
 
+/* x becomes inv(L) x or, transposed, inv(L') x; by position. */
+static status solve_lower(const body_factor *f, int transposed, double *x,
+                          cholmod_common *cm) {
+  const size_t n = (size_t)f->n;
+  cholmod_dense z = {n, 1, n, n, x, NULL, CHOLMOD_REAL, CHOLMOD_DOUBLE};
+  if (!(transposed ? cholmod_l_super_ltsolve(f->L, &z, f->work, cm)
+                   : cholmod_l_super_lsolve(f->L, &z, f->work, cm)))
+    RAISE(ERR_INTERNAL, "%s solve of %ld unknowns failed",
+          transposed ? "back" : "forward", f->n);
+  return OK;
+}
+
 status body_factor_forward(body_factor *f, const double *load, double *f_c,
                            cholmod_common *cm) {
   OWNED double *in = NULL, *out = NULL;
@@ -362,8 +371,7 @@ status body_factor_forward(body_factor *f, const double *load, double *f_c,
     y[p] = scale * load[f->unknown[p]];
     any |= y[p] != 0.0;
   }
-  if (any && !cholmod_l_super_lsolve(f->L, f->y, f->work, cm))
-    RAISE(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
+  if (any) PASS(solve_lower(f, 0, y, cm));
   for (long q = 0; q < f->nc; ++q) in[q] = y[f->contact_at[q]];
   multiply_cc(f, 0, in, out);
   for (long q = 0; q < f->nc; ++q) f_c[f->contact_id[q]] = back * out[q];
@@ -385,47 +393,31 @@ double body_factor_least_pivot(const stiffness *k, const body_factor *f) {
 
 status body_factor_back(const body_factor *f, const double *u_c, double *u,
                         cholmod_common *cm) {
-  status st = OK;
-  cholmod_dense *z = NULL;
-  double *in = NULL, *out = NULL;
-  NEW_ALL(OF(in, f->nc), OF(out, f->nc));
-  z = cholmod_l_copy_dense(f->y, cm);
-  if (z == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
-  double *x = z->x;
+  OWNED double *in = NULL, *out = NULL, *x = NULL;
+  PASS_NEW_ALL(OF(in, f->nc), OF(out, f->nc), OF(x, f->n));
+  COPY(x, f->y->x, f->n);
   for (long q = 0; q < f->nc; ++q) in[q] = u_c[f->contact_id[q]];
   multiply_cc(f, 1, in, out);
   for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = out[q];
-  if (!cholmod_l_super_ltsolve(f->L, z, f->work, cm))
-    FAIL(ERR_INTERNAL, "back solve of %ld unknowns failed", f->n);
+  PASS(solve_lower(f, 1, x, cm));
   for (long p = 0; p < f->n; ++p) u[f->unknown[p]] = x[p];
   for (long q = 0; q < f->nc; ++q) u[f->unknown[f->contact_at[q]]] = in[q];
-done:
-  cholmod_l_free_dense(&z, cm);
-  RELEASE(in, out);
-  return st;
+  return OK;
 }
 
 status body_factor_interior(const body_factor *f, const double *load, double *u,
                             cholmod_common *cm) {
-  status st = OK;
+  OWNED double *x = NULL;
   const double scale = ldexp(1, -f->exponent);
-  cholmod_dense *z = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
-  if (z == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
-  double *x = z->x;
+  PASS_NEW(x, f->n);
   for (long p = 0; p < f->n; ++p) x[p] = scale * load[f->unknown[p]];
   for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = 0;
-  if (!cholmod_l_super_lsolve(f->L, z, f->work, cm))
-    FAIL(ERR_INTERNAL, "forward solve of %ld unknowns failed", f->n);
+  PASS(solve_lower(f, 0, x, cm));
   for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = 0;
-  if (!cholmod_l_super_ltsolve(f->L, z, f->work, cm))
-    FAIL(ERR_INTERNAL, "back solve of %ld unknowns failed", f->n);
+  PASS(solve_lower(f, 1, x, cm));
   for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = 0;
   for (long p = 0; p < f->n; ++p) u[f->unknown[p]] += x[p];
-done:
-  cholmod_l_free_dense(&z, cm);
-  return st;
+  return OK;
 }
 
 status body_factor_energy(const body_factor *f, const double *d,
@@ -450,30 +442,22 @@ status body_factor_energy(const body_factor *f, const double *d,
 
 status body_factor_solve(const body_factor *f, const double *d, double *w,
                          double *square, cholmod_common *cm) {
-  status st = OK;
+  OWNED double *x = NULL;
   const double scale = ldexp(1, -f->exponent);
   double sum = 0;
-  cholmod_dense *z = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
-  if (z == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
-  double *x = z->x;
+  PASS_NEW(x, f->n);
   for (long p = 0; p < f->n; ++p) x[p] = scale * d[f->unknown[p]];
-  if (!cholmod_l_super_lsolve(f->L, z, f->work, cm) ||
-      !cholmod_l_super_ltsolve(f->L, z, f->work, cm))
-    FAIL(ERR_INTERNAL, "solve of %ld unknowns failed", f->n);
+  PASS(solve_lower(f, 0, x, cm));
+  PASS(solve_lower(f, 1, x, cm));
   for (long p = 0; p < f->n; ++p) {
     w[f->unknown[p]] = x[p];
     sum += d[f->unknown[p]] * x[p];
   }
   *square += fmax(0, sum);
-done:
-  cholmod_l_free_dense(&z, cm);
-  return st;
+  return OK;
 }
 
-/* ---- condition
- * ----------------------------------------------------------------
- *
+/*
  * Condition number of a factored body, its unknowns scaled to a unit diagonal:
  * that of inv(D) K inv(D), D^2 the diagonal. The rounding of a Cholesky factor
  * does not depend on such a scaling, so that contrasts of stiffness count only
@@ -539,24 +523,18 @@ static double norm(long n, const double *v) {
 static status inverse_norm(const body_factor *f, const double *root,
                            cholmod_common *cm, double *growth) {
   enum { PASSES = 2 };
-  status st = OK;
-  cholmod_dense *v = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
-  if (v == NULL)
-    FAIL(ERR_MEMORY, "memory exhausted: condition of %ld unknowns", f->n);
-  double *x = v->x;
+  OWNED double *x = NULL;
+  PASS_NEW(x, f->n);
   for (long p = 0; p < f->n; ++p) x[p] = 1 + 0.25 * (double)(f->unknown[p] % 7);
   for (int pass = 0; pass < PASSES; ++pass) {
     const double size = norm(f->n, x);
     for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]] / size;
-    if (!cholmod_l_super_lsolve(f->L, v, f->work, cm) ||
-        !cholmod_l_super_ltsolve(f->L, v, f->work, cm))
-      FAIL(ERR_INTERNAL, "solve of %ld unknowns failed", f->n);
+    PASS(solve_lower(f, 0, x, cm));
+    PASS(solve_lower(f, 1, x, cm));
     for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]];
     *growth = norm(f->n, x);
   }
-done:
-  cholmod_l_free_dense(&v, cm);
-  return st;
+  return OK;
 }
 
 status body_factor_condition(const stiffness *k, const body_factor *f,

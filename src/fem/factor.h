@@ -5,8 +5,7 @@
  * The matrix is scaled by 2^-exponent so that its largest diagonal entry lies
  * in [0.5, 1): moduli times any power of two give the same factor bit by bit.
  */
-#ifndef PROTIS_FEM_FACTOR_H
-#define PROTIS_FEM_FACTOR_H
+#pragma once
 
 #include "fem/ordering.h"
 #include "fem/stiffness.h"
@@ -86,5 +85,3 @@ status body_factor_solve(const body_factor *f, const double *d, double *w,
  * diagonal. ERR_MEMORY. */
 status body_factor_condition(const stiffness *k, const body_factor *f,
                              cholmod_common *cm, double *condition);
-
-#endif

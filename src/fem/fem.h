@@ -6,8 +6,7 @@
  * Degrees of freedom: dim per node, global components, except that a contact
  * node counts in its contact frame (n, t1[, t2]; u = basis a).
  */
-#ifndef PROTIS_FEM_FEM_H
-#define PROTIS_FEM_FEM_H
+#pragma once
 
 #include "fem/cluster/cluster.h"
 #include "contact/operator.h"
@@ -225,5 +224,3 @@ int blas_kernel_changed(void); /* 1: changed at start-up */
 /* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1. The environment
  * (OPENBLAS_NUM_THREADS and similar) has no effect. */
 void blas_set_threads(int n);
-
-#endif

@@ -85,10 +85,8 @@ static void put_columns(void *ctx, int supernode, const int *position,
 static long factor(sparse_operator *o, supernodal *s, const int *inside,
                    double **x) {
   filling w = {o, s, inside, ldexp(1.0, -o->f.exponent)};
-  timer_enter(STAGE_FACTOR);
-  const int bad = supernodal_factor(s, o->part.mark, put_columns, &w, x);
-  timer_leave(STAGE_FACTOR);
-  return bad;
+  TIMED(STAGE_FACTOR);
+  return supernodal_factor(s, o->part.mark, put_columns, &w, x);
 }
 
 static status broke(sparse_operator *o, long at) {

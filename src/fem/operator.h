@@ -4,8 +4,7 @@
  * one all contact unknowns are known (the interior alone), the other follows
  * the rows that are known at the time. Private to src/fem.
  */
-#ifndef PROTIS_FEM_OPERATOR_H
-#define PROTIS_FEM_OPERATOR_H
+#pragma once
 
 #include "contact/operator.h"
 #include "fem/factor.h"
@@ -100,5 +99,3 @@ void sparse_operator_interior(sparse_operator *o, const double *load,
                               double *u);
 /* The factor of all rows, with springs. ERR_SINGULAR, ERR_MEMORY. */
 status sparse_operator_all_rows(sparse_operator *o);
-
-#endif

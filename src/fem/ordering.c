@@ -218,8 +218,7 @@ static void dissect(dissection *w, int n, int *node) {
     n_left = keep_inner(w, half, node, c.right);
     memcpy(w->spare, node + n_left, (size_t)(half - n_left) * sizeof *node);
     memmove(node + n_left, node + half, (size_t)n_right * sizeof *node);
-    memcpy(node + n_left + n_right, w->spare,
-           (size_t)(half - n_left) * sizeof *node);
+    COPY(node + n_left + n_right, w->spare, half - n_left);
   } else {
     n_right = keep_inner(w, n - half, node + half, c.left);
   }

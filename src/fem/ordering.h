@@ -1,8 +1,7 @@
 /*
  * Fill-reducing orders of a node graph. Private to src/fem.
  */
-#ifndef PROTIS_FEM_ORDERING_H
-#define PROTIS_FEM_ORDERING_H
+#pragma once
 
 #include "fem/stiffness.h"
 
@@ -41,5 +40,3 @@ status order_cost_of(const graph *g, int n, const int *node,
  */
 status order_nodes(const graph *g, int dim, const double *x, int n, int *node,
                    cholmod_common *cm, const char **name);
-
-#endif

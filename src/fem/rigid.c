@@ -243,8 +243,7 @@ status rigid_pin(const rigid_motions *r, const rigid_set *s,
   const int m = r->m, k = s->k;
   OWNED double *rest = NULL, *moved = NULL, *axis = NULL;
   PASS_NEW_ALL(OF(rest, (size_t)m * (size_t)k), OF(moved, m), OF(axis, k));
-  memcpy(rest, r->Q + (size_t)m * (size_t)s->first,
-         (size_t)m * (size_t)k * sizeof *rest);
+  COPY(rest, r->Q + (size_t)m * (size_t)s->first, (size_t)m * (size_t)k);
   for (int j = 0; j < k; ++j) {
     const int at = most_moved(m, k, rest);
     cblas_dcopy(k, rest + at, m, axis, 1);

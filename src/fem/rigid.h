@@ -7,8 +7,7 @@
  * R: displacement of all unknowns in the motions, R_c: of the contact ones,
  * which are relative displacements at pairs (contact/mortar/mortar.h).
  */
-#ifndef PROTIS_FEM_RIGID_H
-#define PROTIS_FEM_RIGID_H
+#pragma once
 
 #include "fem/stiffness.h"
 
@@ -90,5 +89,3 @@ void rigid_loads(const stiffness *k, const domain *d, rigid_motions *r,
                  const double *load);
 /* f_c += Q (R' F - Q' f_c). */
 void rigid_balance(const rigid_motions *r, double *f_c);
-
-#endif

@@ -2,8 +2,7 @@
  * The assembled stiffness: lower triangle of the node graph, one dense block
  * per pair of neighbours, contact nodes in their frame. Private to src/fem.
  */
-#ifndef PROTIS_FEM_STIFFNESS_H
-#define PROTIS_FEM_STIFFNESS_H
+#pragma once
 
 #include "fem/fem.h"
 
@@ -58,5 +57,3 @@ struct stiffness {
 
 /* Row of the condensed matrix of component c of node i, -1: of the interior. */
 int contact_row(const stiffness *k, int i, int c);
-
-#endif

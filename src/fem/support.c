@@ -545,8 +545,7 @@ static status add_set(const triangle *t, const null_basis *z,
                     .n_node = s->start[t->id + 1] - s->start[t->id]};
   PASS_NEW_ALL(OF(to->Y, n * (size_t)to->k), OF(to->owner, n),
                OF(to->node, to->n_node));
-  memcpy(to->Y, z->Z + n * (size_t)(z->rank - z->exact),
-         n * (size_t)to->k * sizeof *to->Y);
+  COPY(to->Y, z->Z + n * (size_t)(z->rank - z->exact), n * (size_t)to->k);
   memcpy(to->owner, t->owner, n * sizeof *to->owner);
   memcpy(to->node, node, (size_t)to->n_node * sizeof *node);
   return OK;

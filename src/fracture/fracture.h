@@ -29,8 +29,7 @@
  * Not treated: axisymmetry; strains without stress that vary within the domain;
  * crack surfaces that are curved in it.
  */
-#ifndef PROTIS_FRACTURE_FRACTURE_H
-#define PROTIS_FRACTURE_FRACTURE_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -111,5 +110,3 @@ double fracture_corner(int dim);
 status fracture_derive(fracture *f, const fracture_state *s, int point,
                        int mode, fracture_linear *out);
 void fracture_linear_free(fracture_linear *l); /* accepts all-zero */
-
-#endif

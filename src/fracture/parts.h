@@ -1,8 +1,7 @@
 /*
  * Points, their coordinates, fields in them and integrals. Inside src/fracture.
  */
-#ifndef PROTIS_FRACTURE_PARTS_H
-#define PROTIS_FRACTURE_PARTS_H
+#pragma once
 
 #include "fracture/fracture.h"
 
@@ -97,5 +96,3 @@ void integrals_find(fracture *f, const fracture_state *s,
 status integrals_derive(fracture *f, const fracture_state *s,
                         const fracture_point *p, const elasticity *x, int mode,
                         const double *part, fracture_linear *out);
-
-#endif

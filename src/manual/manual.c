@@ -4,10 +4,8 @@
  */
 #include "manual/manual.h"
 
-#include "base/message.h"
 #include "base/option.h"
 #include "base/text.h"
-#include "manual/embedded.h"
 #include "model/keyword/keyword.h"
 #include "output/columns/columns.h"
 #include "run/run.h"
@@ -296,12 +294,6 @@ static void print_columns(FILE *out) {
   fputs("```\n", out);
 }
 
-static void print_messages(FILE *out) {
-  fputs("\n```\n", out);
-  message_explain(NULL, out);
-  fputs("```\n", out);
-}
-
 static const struct {
   const char *name, *file;
   void (*more)(FILE *out); /* what follows the file, or NULL */
@@ -315,7 +307,7 @@ static const struct {
                 {"batch", "batch.md", NULL},
                 {"abaqus", "abaqus.md", NULL},
                 {"trouble", "trouble.md", NULL},
-                {"messages", "messages.md", print_messages},
+                {"messages", "messages.md", NULL},
                 {"gallery", "gallery.md", NULL},
                 {"verification", "verification.md", NULL},
                 {"changes", "changes.md", NULL}};
@@ -324,6 +316,10 @@ enum { CHAPTERS = sizeof chapters / sizeof *chapters };
 const char *manual_chapter(const void *ctx, int i) {
   (void)ctx;
   return i < CHAPTERS ? chapters[i].name : NULL;
+}
+
+void manual_file(const char *name, FILE *out) {
+  fputs(embedded_find("manual", name)->text, out);
 }
 
 /* Name and title, which is the first line. */
@@ -339,7 +335,7 @@ int manual_print(const char *chapter, FILE *out) {
   for (int i = 0; i < CHAPTERS; ++i) {
     if (chapter == NULL) print_title(i, out);
     if (chapter == NULL || strcasecmp(chapter, chapters[i].name) != 0) continue;
-    fputs(embedded_find("manual", chapters[i].file)->text, out);
+    manual_file(chapters[i].file, out);
     if (chapters[i].more != NULL) chapters[i].more(out);
     return 1;
   }

@@ -3,11 +3,11 @@
  * file of this folder, NAME.md, and for some what the tables of the program
  * add: cards, laws, methods, columns, messages.
  */
-#ifndef PROTIS_MANUAL_MANUAL_H
-#define PROTIS_MANUAL_MANUAL_H
+#pragma once
 
 #include "base/status.h"
 
+#include <stddef.h>
 #include <stdio.h>
 
 /* A chapter as Markdown, or, with NULL, the names and titles of all; 0 if there
@@ -15,6 +15,9 @@
 int manual_print(const char *chapter, FILE *out);
 /* Name of chapter i, from 0; NULL at the end. For nearest_word. */
 const char *manual_chapter(const void *ctx, int i);
+
+/* A file of this folder as it is. */
+void manual_file(const char *name, FILE *out);
 
 /* What --list can show, one after another for nearest_word; NULL at the end. */
 const char *list_kind(const void *ctx, int i);
@@ -28,4 +31,13 @@ const char *example_name(const void *ctx, int i);
  * already, then none is written, or cannot be written. */
 status example_copy(const char *name, FILE *out);
 
-#endif
+/* The files: chapters, decks and geometries, a table made by tools/embed. */
+typedef struct embedded_file {
+  const char *folder; /* where it stands: "manual", or name of the example */
+  const char *name;   /* "deck.md" */
+  const char *text;   /* ends with a NUL that does not count */
+  size_t size;        /* bytes */
+} embedded_file;
+
+/* Folder after folder; folder NULL at the end. */
+extern const embedded_file embedded_files[];

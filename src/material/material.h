@@ -6,8 +6,7 @@
  * zz, theta, rz); 3-D ns = 6: xx, yy, zz, xy, yz, zx. Shear strain is the
  * engineering one.
  */
-#ifndef PROTIS_MATERIAL_MATERIAL_H
-#define PROTIS_MATERIAL_MATERIAL_H
+#pragma once
 
 #include "base/message.h"
 #include "base/status.h"
@@ -79,5 +78,3 @@ typedef struct expansion {
 } expansion;
 /* Strain e[3] (no shear) at temperature T of what has none at T0, -. */
 void expansion_strain(const expansion *x, double T, double T0, double e[3]);
-
-#endif

@@ -3,8 +3,7 @@
  * space, for what is done once per element: two components at a time, and no
  * loop whose length is not known. Sums of each component as in a plain loop.
  */
-#ifndef PROTIS_MATERIAL_VOIGT_H
-#define PROTIS_MATERIAL_VOIGT_H
+#pragma once
 
 /* Two adjacent components in any array of double. */
 typedef double voigt_pair
@@ -51,5 +50,3 @@ static inline double voigt_strain_square(int ns, const double *e) {
   for (int i = 0; i < ns; ++i) sum += (i < 3 ? 1.0 : 0.5) * e[i] * e[i];
   return sum;
 }
-
-#endif

@@ -289,7 +289,6 @@ static status check_format(const char *file, const char *head, const place *at,
     message_add(log, P3002, at,
                 "\"%s\" is no .geo and does not start with $MeshFormat", file);
   RAISE(ERR_MESH, "\"%s\" is not a mesh of gmsh", file);
-  return OK;
 }
 
 /* The last bytes of the file, *n of them, with a zero after. */

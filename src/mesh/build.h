@@ -5,8 +5,7 @@
  * "Top" elements are those of the dimension of the mesh, "low" ones those of
  * one dimension less: each in the order of the file, block after block.
  */
-#ifndef PROTIS_MESH_BUILD_H
-#define PROTIS_MESH_BUILD_H
+#pragma once
 
 #include "mesh/raw.h"
 
@@ -63,5 +62,3 @@ status elements_gather(builder *b); /* types; corners as raw nodes */
 status elements_finish(builder *b); /* orientation, order, repeated ones */
 status faces_finish(builder *b);    /* ids, elements on both sides */
 status overlap_check(builder *b); /* across faces, anywhere */
-
-#endif

@@ -338,8 +338,7 @@ static status store_elements(builder *b, const top_list *t,
   for (int i = 0; i < b->n_top; ++i) {
     const int id = item[i].id;
     if (i == 0 || !same_corners(t, item[i - 1].id, id)) {
-      memcpy(m->elem + n * (size_t)m->n_elem, t->corner + n * (size_t)id,
-             n * sizeof(int));
+      COPY(m->elem + n * (size_t)m->n_elem, t->corner + n * (size_t)id, n);
       m->elem_no[m->n_elem++] = t->no[id];
     }
     b->elem_of_top[id] = m->n_elem - 1;

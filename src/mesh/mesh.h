@@ -5,8 +5,7 @@
  * memory; node_no and elem_no are the numbers of the mesh file, the only ones
  * shown to the user. Nodes that no element uses are not stored.
  */
-#ifndef PROTIS_MESH_MESH_H
-#define PROTIS_MESH_MESH_H
+#pragma once
 
 #include "base/message.h"
 
@@ -138,5 +137,3 @@ void mesh_side_nodes(const mesh *m, int id, int *v);
 status mesh_border(const mesh *m, int *n, int **side);
 /* Elements round each node: elem[start[i] .. start[i+1]). Both are new. */
 status mesh_node_elements(const mesh *m, size_t **start, int **elem);
-
-#endif

@@ -191,7 +191,6 @@ static status child_failure(int ended, int code, int error_fd) {
           strsignal(WTERMSIG(code)), said, last);
   RAISE(ERR_MESH, "gmsh ended by itself before the mesh was complete%s%s", said,
         last);
-  return OK;
 }
 
 static void close_end(int *end) {

@@ -5,8 +5,7 @@
  * out of memory or exit by itself, and its libraries take no memory later. The
  * child sends records through a pipe: a head, then n items of one size.
  */
-#ifndef PROTIS_MESH_RAW_H
-#define PROTIS_MESH_RAW_H
+#pragma once
 
 #include "mesh/mesh.h"
 #include "mesh/msh/raw_mesh.h"
@@ -72,5 +71,3 @@ void child_run(const raw_request *request, int fd, int error_fd);
 /* Check the raw mesh and make the mesh of it; messages go to the log. */
 status build_mesh(const raw_mesh *raw, double scale, const place *at,
                   message_log *log, mesh **out);
-
-#endif

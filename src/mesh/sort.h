@@ -1,6 +1,5 @@
 /* Sorting of ids by 64-bit keys in linear time. Inside src/mesh only. */
-#ifndef PROTIS_MESH_SORT_H
-#define PROTIS_MESH_SORT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -28,5 +27,3 @@ int sort_run_end(int n, const sort_item *item, int i);
 status sort_ids(int n, int *id);
 /* Sort a few numbers, as the nodes of an element. */
 void sort_few(int n, int *v);
-
-#endif

@@ -252,6 +252,12 @@ int model_has_pairs(const model *m) {
   return any;
 }
 
+int model_updates_pairs(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].update;
+  return any;
+}
+
 const step *facts_first_whole(const model *m) {
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];

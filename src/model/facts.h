@@ -2,8 +2,7 @@
  * Queries of the rows of the effects about the deck. "First" is in the order of
  * the deck, NULL if there is none.
  */
-#ifndef PROTIS_MODEL_FACTS_H
-#define PROTIS_MODEL_FACTS_H
+#pragma once
 
 #include "model/model.h"
 
@@ -45,5 +44,3 @@ int facts_has_warm_moduli(const model *m);
 
 /* 1: *EFFECTS leaves friction out and bounds what it would have changed. */
 int facts_omits_friction(const model *m);
-
-#endif

@@ -12,6 +12,23 @@
 
 enum { MAX_NODE = 4 };
 
+const char *load_card(const load *l) {
+  switch ((load_kind)l->kind) {
+    case LOAD_PRESSURE:
+    case LOAD_TRACTION:
+      return "DSLOAD";
+    case LOAD_BODY:
+    case LOAD_GRAVITY:
+      return "DLOAD";
+    case LOAD_TEMPERATURE:
+      return "TEMPERATURE";
+    case LOAD_POINT:
+      return "CLOAD";
+    default:
+      return "BOUNDARY";
+  }
+}
+
 /* Time at which the value of a load of an earlier step counts. */
 static double value_time(const load *l, double t) {
   return l->run == RUN_HELD ? l->before_t : t;
@@ -66,7 +83,6 @@ static status node_value(const model *m, const mesh *msh, const load *l,
   if (isfinite(*value)) return OK;
   report_value(m, msh, l, t, node, *value);
   RAISE(ERR_DECK, "%s:%d: a value is not finite", l->at.file, l->at.line_no);
-  return OK;
 }
 
 int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
@@ -132,7 +148,7 @@ static status add_patch(const model *m, const mesh *msh, const load *l,
   return OK;
 }
 
-static double elem_thickness(const model *m, int elem_id) {
+double model_thickness(const model *m, int elem_id) {
   return m->sections[m->elem_section[elem_id]].thickness;
 }
 
@@ -143,10 +159,9 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
     int face = g->item_id[k];
     double normal[3];
     patch p = {.n = msh->dim, .factor = 1.0};
-    memcpy(p.node, msh->face + (size_t)msh->dim * (size_t)face,
-           (size_t)msh->dim * sizeof *p.node);
+    COPY(p.node, msh->face + (size_t)msh->dim * (size_t)face, msh->dim);
     p.measure = mesh_face_normal(msh, face, normal) *
-                elem_thickness(m, msh->face_elem[face]);
+                model_thickness(m, msh->face_elem[face]);
     for (int c = 0; c < msh->dim; ++c)
       p.direction[c] = l->kind == LOAD_PRESSURE ? -normal[c]
                        : c == l->component      ? 1.0
@@ -163,9 +178,8 @@ static status add_elements(const model *m, const mesh *msh, const load *l,
   for (int k = 0; k < g->n_item; ++k) {
     int e = g->item_id[k];
     patch p = {.n = msh->dim + 1, .factor = 1.0};
-    memcpy(p.node, msh->elem + (size_t)p.n * (size_t)e,
-           (size_t)p.n * sizeof *p.node);
-    p.measure = mesh_elem_measure(msh, e) * elem_thickness(m, e);
+    COPY(p.node, msh->elem + (size_t)p.n * (size_t)e, p.n);
+    p.measure = mesh_elem_measure(msh, e) * model_thickness(m, e);
     if (l->kind == LOAD_GRAVITY) {
       const section *sec = &m->sections[m->elem_section[e]];
       p.factor = m->materials[sec->material_id].density;
@@ -257,7 +271,6 @@ status load_initial(const model *m, const mesh *msh, const initial *c,
               msh->elem_no[elem_id]);
   RAISE(ERR_DECK, "%s:%d: an initial value is not finite", c->at.file,
         c->at.line_no);
-  return OK;
 }
 
 static status refuse_temperature(const model *m, const mesh *msh,
@@ -266,7 +279,6 @@ static status refuse_temperature(const model *m, const mesh *msh,
               "the temperature of element %zu is not a finite number",
               msh->elem_no[elem_id]);
   RAISE(ERR_DECK, "%s:%d: a temperature is not finite", at->file, at->line_no);
-  return OK;
 }
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {
@@ -312,9 +324,7 @@ status load_temperature(const model *m, const mesh *msh, const step *s,
   return OK;
 }
 
-void load_fixed(const model *m, const mesh *msh, const step *s,
-                unsigned char *fixed) {
-  (void)m;
+void load_fixed(const mesh *msh, const step *s, unsigned char *fixed) {
   memset(fixed, 0, (size_t)msh->dim * (size_t)msh->n_node);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];

@@ -2,8 +2,7 @@
  * The model: the contents of the deck, checked. Names and strings are
  * borrowed from the deck, which must outlive it.
  */
-#ifndef PROTIS_MODEL_MODEL_H
-#define PROTIS_MODEL_MODEL_H
+#pragma once
 
 #include "contact/friction.h"
 #include "contact/surface.h"
@@ -538,6 +537,9 @@ double print_next(const print_request *p, const step *s, double after,
                   double before);
 /* 1: *CONTACT PAIR or *TIE: surfaces of the mesh meet. */
 int model_has_pairs(const model *m);
+/* 1: some are coupled again at each step, where the bodies are then. */
+int model_updates_pairs(const model *m);
+double model_thickness(const model *m, int elem_id); /* m */
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
 /* "force", "length", ... */
@@ -574,6 +576,7 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F);
 /* Total time at the end of a step. */
 double step_end(const step *s);
+const char *load_card(const load *l); /* "DLOAD" */
 /* Value of a load at a point, at a node, and total time t of the step. */
 double load_at_point(const load *l, const step *s, const double x[3], double t);
 double load_at_node(const load *l, const mesh *msh, const step *s, int node,
@@ -600,7 +603,4 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T);
 status load_temperature(const model *m, const mesh *msh, const step *s,
                         double t, const double *T0, double *T);
 /* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */
-void load_fixed(const model *m, const mesh *msh, const step *s,
-                unsigned char *fixed);
-
-#endif
+void load_fixed(const mesh *msh, const step *s, unsigned char *fixed);

@@ -10,7 +10,6 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "base/timer.h"
-#include "output/writers.h"
 
 #include <ctype.h>
 #include <dirent.h>
@@ -64,14 +63,10 @@ static void close_folder(DIR **folder) {
   if (*folder != NULL) closedir(*folder);
 }
 
-static status clear(const deck *d, const char *path) {
-  (void)d;
-  return file_clear(path);
-}
-
-/* "act" on all files of condensed problems of increments after that one. */
+/* All files of condensed problems of increments after that one are spared, or
+ * cleared. */
 static status each_condensed(const model *m, const char *dir, int after,
-                             status (*act)(const deck *d, const char *path)) {
+                             int cleared) {
   DIR *folder ENDS_BY(close_folder) = opendir(dir);
   if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
   if (folder == NULL) return text_failed(dir, "read", errno);
@@ -80,7 +75,7 @@ static status each_condensed(const model *m, const char *dir, int after,
     if (increment_of(e->d_name, m->name.job) <= after) continue;
     PASS_NEW(path, strlen(dir) + strlen(e->d_name) + 2);
     sprintf(path, "%s/%s", dir, e->d_name);
-    PASS(act(m->deck, path));
+    PASS(cleared ? file_clear(path) : spare(m->deck, path));
   }
   return OK;
 }
@@ -92,16 +87,11 @@ status output_spare(const model *m, const char *dir) {
     PASS_GET(path, text_path(dir, m->name.job, results[k]));
     PASS(spare(m->deck, path));
   }
-  return each_condensed(m, dir, 0, spare);
+  return each_condensed(m, dir, 0, 0);
 }
 
 enum { XDMF_PAUSE = 1 };               /* s */
 static const double XDMF_SHARE = 0.02; /* of the CPU time at most */
-
-/* What the writers take, borrowed from o. */
-static job job_of(const output *o) {
-  return (job){o->m, o->msh, &o->o, &o->run, o->plan};
-}
 
 /* Wall clock, s; only its differences count. */
 static double clock_now(void) {
@@ -135,7 +125,6 @@ static status show_records(output *o, int all) {
 static status sink_ready(void *ctx, const setup_facts *facts,
                          const contact_surface *surface) {
   output *o = ctx;
-  job j = job_of(o);
   if (o->o.first.ready != NULL)
     PASS(o->o.first.ready(o->o.first.ctx, facts, surface));
   if (!o->run.facts_known) o->began_at = clock_now();
@@ -147,24 +136,23 @@ static status sink_ready(void *ctx, const setup_facts *facts,
   }
   o->run.facts = *facts;
   TIMED(STAGE_LISTING);
-  return listing_ready(&j, &o->lst);
+  return listing_ready(&o->job, &o->lst);
 }
 
 static status sink_expect(void *ctx, int n_node,
                           const stiffness_choice *choice) {
   const output *o = ctx;
-  return o->o.first.expect(o->o.first.ctx, n_node, choice);
+  return plan_expect(o->m, o->msh, n_node, choice);
 }
 
-static status sink_checkpoint(void *ctx, const run_memory *memory) {
+static status sink_checkpoint(void *ctx, struct run *r) {
   const output *o = ctx;
-  return o->o.first.checkpoint(o->o.first.ctx, memory);
+  return o->o.first.checkpoint(o->o.first.ctx, r);
 }
 
 static status sink_start(void *ctx, const start_report *report) {
   output *o = ctx;
-  job j = job_of(o);
-  return listing_start(&j, report, &o->lst);
+  return listing_start(&o->job, report, &o->lst);
 }
 
 static status write_fields(output *o, const state *s) {
@@ -196,10 +184,9 @@ static status write_condensed(output *o, const state *s) {
 }
 
 static status write_tables(output *o, const state *s) {
-  job j = job_of(o);
   TIMED(STAGE_LISTING);
   PASS(tabular_increment(o->dat, s));
-  PASS(listing_increment(&j, s, &o->lst));
+  PASS(listing_increment(&o->job, s, &o->lst));
   cvg_end(o->run.n_increment + 1, o->attempt, s, &o->cvg);
   PASS(text_check(&o->cvg));
   PASS(output_remember(o, s));
@@ -256,7 +243,7 @@ history_sink output_sink(output *o) {
   const history_sink *first = &o->o.first;
   return (history_sink){
       .ctx = o,
-      .expect = first->expect != NULL ? sink_expect : NULL,
+      .expect = sink_expect,
       .checkpoint = first->checkpoint != NULL ? sink_checkpoint : NULL,
       .ready = sink_ready,
       .start = sink_start,
@@ -296,18 +283,17 @@ static status open_hdf5(output *o, const hdf5_count *before) {
 }
 
 static status open_new(output *o) {
-  job j = job_of(o);
   PASS(open_text(o, "lst", -1, &o->lst));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
   for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
-  PASS(each_condensed(o->m, o->o.dir, 0, clear));
+  PASS(each_condensed(o->m, o->o.dir, 0, 1));
   PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
   if (o->dat == NULL) PASS(remove_old(o, "dat"));
   PASS(sta_header(&o->o, &o->sta));
   cvg_header(&o->o, &o->cvg);
   PASS(text_check(&o->cvg));
-  PASS(listing_open(&j, &o->lst));
+  PASS(listing_open(&o->job, &o->lst));
   return open_hdf5(o, NULL);
 }
 
@@ -322,7 +308,7 @@ static status open_earlier(output *o) {
   TRY(open_text(o, "sta", ends.sta, &o->sta));
   TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
   TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
-  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, clear));
+  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, 1));
   TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
 done:
   if (o->run.increments == NULL) o->run.n_increment = 0;
@@ -350,6 +336,7 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   NEW(o->run.ends, (size_t)m->n.step * job_end_size(m));
   if (m->n.goal > 0) NEW(o->run.goals, m->n.step * m->n.goal);
   TRY(plan_new(m, m->problem.given ? NULL : msh, opt->n_problem, &o->plan));
+  o->job = (job){m, msh, &o->o, &o->run, o->plan};
   TRY(open_all(o));
   *out = o;
 done:
@@ -395,7 +382,6 @@ static status write_last(const output *o) {
 
 /* Without memory there are none. */
 static void make_closing(const output *o) {
-  const job j = job_of(o);
   char *path = text_path(o->o.dir, o->m->name.job, "lst"), **to = o->o.closing;
   size_t size = 0;
   FILE *f = to != NULL && o->progress ? open_memstream(to, &size) : NULL;
@@ -403,7 +389,7 @@ static void make_closing(const output *o) {
     char files[4096];
     snprintf(files, sizeof files, "%s .sta .cvg%s%s .json", path,
              o->dat != NULL ? " .dat" : "", o->h5 != NULL ? " .h5 .xdmf" : "");
-    closing_lines(&j, files, f);
+    closing_lines(&o->job, files, f);
   }
   if (f != NULL) text_memory_end(f, to);
   memory_free(path);
@@ -413,7 +399,6 @@ status output_close(output *o, status run, int unsettled) {
   char message[2048] = "";
   status kept = OK;
   if (o == NULL) return verdict_of(run, unsettled);
-  job j = job_of(o);
   if (o->progress) progress_line("");
   first_of(&kept, message, sizeof message, run);
   first_of(&kept, message, sizeof message, show_records(o, 1));
@@ -425,10 +410,10 @@ status output_close(output *o, status run, int unsettled) {
   first_of(&kept, message, sizeof message, text_close(&o->sta));
   o->run.message = message;
   o->run.verdict = verdict_of(kept, unsettled);
-  first_of(&kept, message, sizeof message, listing_verdict(&j, &o->lst));
+  first_of(&kept, message, sizeof message, listing_verdict(&o->job, &o->lst));
   first_of(&kept, message, sizeof message, text_close(&o->lst));
   o->run.verdict = verdict_of(kept, unsettled);
-  first_of(&kept, message, sizeof message, json_write(&j, o->json));
+  first_of(&kept, message, sizeof message, json_write(&o->job, o->json));
   o->run.verdict = verdict_of(kept, unsettled);
   make_closing(o);
   release(o);

@@ -2,8 +2,7 @@
  * The files of a run. Every writer is a sink of history_run; the columns of
  * all tables and fields stand once, in src/output/columns.
  */
-#ifndef PROTIS_OUTPUT_OUTPUT_H
-#define PROTIS_OUTPUT_OUTPUT_H
+#pragma once
 
 #include "output/columns/columns.h"
 #include "output/listing/job.h"
@@ -34,5 +33,3 @@ void output_passes(output *o, const pass_table *passes);
  * converge to their tolerance; else OK. The record has the message of run.
  */
 status output_close(output *o, status run, int unsettled);
-
-#endif

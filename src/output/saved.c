@@ -10,6 +10,7 @@
 #include "output/writers.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/text.h"
 
 #include <errno.h>
@@ -17,18 +18,10 @@
 #include <stdio.h>
 #include <string.h>
 
-static const uint64_t EMPTY = 14695981039346656037u; /* FNV-1a */
-
-static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
-  const unsigned char *at = data;
-  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
-  return h;
-}
-
 static status open_file(output *o, const saved_end *end) {
   OWNED char *path = NULL;
   PASS_GET(path, text_path(o->o.dir, o->m->name.job, "rst.inc"));
-  o->saved.end.checksum = end == NULL ? EMPTY : end->checksum;
+  o->saved.end.checksum = end == NULL ? HASH_START : end->checksum;
   if (end == NULL) return text_open(&o->saved.file, path, 0);
   return text_reopen(&o->saved.file, path, 0, end->length);
 }
@@ -51,7 +44,7 @@ static void leave_out_cpu(increment_summary *s) {
 }
 
 static void append(saved_increments *to, const void *data, size_t n) {
-  to->end.checksum = add_bytes(to->end.checksum, data, n);
+  to->end.checksum = number_hash(to->end.checksum, data, n);
   fwrite(data, 1, n, to->file.f); /* checked by text_sync */
 }
 
@@ -150,7 +143,8 @@ static status saved_read(output *o, const saved_end *end) {
   run->n_increment = 0; /* those that "release" may look at */
   PASS(open_file(o, end));
   PASS(read_file(o, n));
-  if (add_bytes(EMPTY, o->saved.read, n) != end->checksum) return damaged(o);
+  if (number_hash(HASH_START, o->saved.read, n) != end->checksum)
+    return damaged(o);
   reader r = {o->saved.read, o->saved.read + n};
   PASS_NEW(run->increments, count);
   run->capacity = count;
@@ -161,9 +155,6 @@ static status saved_read(output *o, const saved_end *end) {
   o->saved.n = count;
   return OK;
 }
-
-/* The larger; NaN wins, so that it is seen. */
-static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
 const column *job_end_column(const model *m, column_walk *w) {
   const column *c;
@@ -192,8 +183,8 @@ static void remember_contacts(output *o, const state *s) {
          (c = job_end_column(o->m, &w)) != NULL;)
       *to++ = column_ready(c, s) ? c->value(&v, i, c->part) : NAN;
     if (s->contacts.totals != NULL)
-      o->run.penetration_worst =
-          worse(o->run.penetration_worst, s->contacts.totals[i].penetration);
+      o->run.penetration_worst = job_worse(o->run.penetration_worst,
+                                           s->contacts.totals[i].penetration);
   }
 }
 
@@ -249,15 +240,15 @@ status output_remember(output *o, const state *s) {
                            .jump_t = s->errors.jump_t,
                            .defect = energy_defect_relative(&s->energy)};
   if (s->contacts.surface != NULL)
-    run->residual_worst = worse(run->residual_worst, s->report.residual);
-  run->defect_worst = worse(run->defect_worst, fabs(i->defect));
+    run->residual_worst = job_worse(run->residual_worst, s->report.residual);
+  run->defect_worst = job_worse(run->defect_worst, fabs(i->defect));
   if (s->body.flow != NULL) run->tally = *s->body.flow->tally;
   PASS(remember_solutions(s->errors.solutions, i));
   PASS(remember_theory(&s->errors.theorems, i));
   remember_contacts(o, s);
   if (s->errors.goals != NULL)
-    memcpy(run->goals + (size_t)((s->step_no - 1) * s->errors.n_goal),
-           s->errors.goals, (size_t)s->errors.n_goal * sizeof *run->goals);
+    COPY(run->goals + (size_t)((s->step_no - 1) * s->errors.n_goal),
+         s->errors.goals, s->errors.n_goal);
   if (!s->settled) ++run->n_unsettled;
   return OK;
 }

@@ -2,8 +2,7 @@
  * The writers of this folder, and the open job that output.c and saved.c share.
  * Private to src/output.
  */
-#ifndef PROTIS_OUTPUT_WRITERS_H
-#define PROTIS_OUTPUT_WRITERS_H
+#pragma once
 
 #include "base/text.h"
 #include "output/hdf5/hdf5.h"
@@ -82,6 +81,7 @@ struct output {
   hdf5_file *h5;
   run_summary run;
   effect_plan *plan;
+  job job;                  /* what the writers take of these */
   int n_xdmf;               /* records named in JOB.xdmf */
   double xdmf_at, xdmf_cpu; /* when, and the cost so far, s */
   int attempt;              /* of the increment now tried */
@@ -105,5 +105,3 @@ typedef struct file_ends {
 status output_remember(output *o, const state *s);
 /* Data saved by output_keep, and the ends of the files then. */
 status output_read(output *o, archive *a, file_ends *ends);
-
-#endif

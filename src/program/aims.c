@@ -77,8 +77,8 @@ void aims_see(aims *a, const mesh *msh, const state *s) {
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) last_row(a, i)->found = s->errors.goals[i];
   if (a->counts)
-    memcpy(a->product, s->errors.goal_products,
-           (size_t)a->n * (size_t)msh->n_elem * sizeof *a->product);
+    COPY(a->product, s->errors.goal_products,
+         (size_t)a->n * (size_t)msh->n_elem);
 }
 
 int aims_count(const aims *a) { return a != NULL && a->counts; }

@@ -30,42 +30,8 @@ enum {
   ASK_EXAMPLE
 };
 
-/* clang-format off */
-static const char *const help_rows[][2] = {
-  {"-o DIR", "folder of the results; default: where the deck is"},
-  {"-D NAME=VALUE", "set a *PARAMETER, overrides the deck; may be repeated"},
-  {"--check", "read and check everything, print sizes and plan, solve nothing"},
-  {"--estimate-cost", "what finer meshes and smaller errors would cost"},
-  {"--threads N", "threads of the dense algebra, default 1"},
-  {"--max-memory MB", "memory the run may take, instead of the available "
-                      "memory"},
-  {"--safe", "for decks from outside: no .geo, only files below the deck"},
-  {"--no-timing", "no CPU seconds in the files: equal runs give equal bytes"},
-  {"--restart", "continue an interrupted run, from JOB.rst.h5"},
-  {"--table NAME[:last]", "a table of the finished job as csv, to stdout"},
-  {"--format csv|tsv", "of --table"},
-  {"--quiet", "on a terminal: neither progress line nor lines at the end"},
-  {"-h, --help", "this text"},
-  {"-V, --version", "version, commit, libraries, BLAS kernel"},
-  {"--keywords [CARD]", "cards of the deck, or one card in full"},
-  {"--list KIND", "solvers, materials, friction, integrators, columns, "
-   "examples"},
-  {"--explain [NUMBER]", "what a message such as P1003 means and what to do"},
-  {"--manual [CHAPTER]", "a chapter of the manual, or their list"},
-  {"--example NAME", "copy an example into the current folder"}};
-
-/* clang-format on */
-
 static void print_help(void) {
-  puts("protis: quasistatic frictional contact of elastic bodies");
-  puts("usage: protis JOB[.inp] [options]\n");
-  for (size_t i = 0; i < sizeof help_rows / sizeof *help_rows; ++i)
-    printf("  %-20s %s\n", help_rows[i][0], help_rows[i][1]);
-  puts(
-      "\nfiles: JOB.lst listing, JOB.sta a line per increment, JOB.cvg a line "
-      "per\niteration, JOB.dat tables, JOB.h5 and JOB.xdmf fields, JOB.json "
-      "figures;\nall are whole after an interruption");
-  puts("exit codes:");
+  manual_file("help.txt", stdout);
   for (int k = 0; k < STATUS_COUNT; ++k)
     printf("  %-3d %s\n", status_exit_code((status)k), status_text((status)k));
 }

@@ -1,6 +1,5 @@
 /* The command line of protis. */
-#ifndef PROTIS_COMMAND_H
-#define PROTIS_COMMAND_H
+#pragma once
 
 #include "base/message.h"
 
@@ -37,5 +36,3 @@ void command_free(command *c);
  * table; the message names those there are), ERR_MEMORY.
  */
 status tables_print(const command *c);
-
-#endif

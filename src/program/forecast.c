@@ -54,7 +54,7 @@ typedef struct trial {
 
 static status see_sizes(void *ctx, int n_node, const stiffness_choice *choice) {
   const trial *t = ctx;
-  return job_expect(t->in, n_node, choice);
+  return plan_expect(t->in->m, t->in->msh, n_node, choice);
 }
 
 static status see_ready(void *ctx, const setup_facts *facts,
@@ -73,8 +73,7 @@ static status see_increment(void *ctx, const state *s) {
   t->energy = s->energy.strain;
   t->error = s->errors.mesh_error.relative;
   t->is_coarse = s->errors.mesh_error.why != NULL;
-  if (t->eta != NULL)
-    memcpy(t->eta, s->errors.elem_error, (size_t)t->n_elem * sizeof *t->eta);
+  if (t->eta != NULL) COPY(t->eta, s->errors.elem_error, t->n_elem);
   t->time = isfinite(s->errors.time_error.relative)
                 ? s->errors.time_error.relative
                 : 0.0;

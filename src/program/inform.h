@@ -1,6 +1,5 @@
 /* Information without solving: version, lists, the check of a deck. */
-#ifndef PROTIS_INFORM_H
-#define PROTIS_INFORM_H
+#pragma once
 
 #include "base/status.h"
 
@@ -29,5 +28,3 @@ status inform_check(const struct model *m, const struct mesh *msh);
 /* The same for a deck with *CONDENSED PROBLEM: sizes and effect plan. */
 status inform_check_problem(const struct model *m,
                             const struct exchange_problem *p);
-
-#endif

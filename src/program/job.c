@@ -103,12 +103,6 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
   return setup_adjust(in->m, in->msh);
 }
 
-status job_expect(const job_input *in, int n, const stiffness_choice *choice) {
-  plan_bytes b;
-  PASS(plan_memory(in->m, in->msh, n, choice, &b));
-  return memory_require(b.factor + b.contact + b.rest, "the run");
-}
-
 int job_is_geo(const model *m) {
   return m->mesh.file != NULL && mesh_is_program(m->mesh.file);
 }
@@ -136,43 +130,11 @@ void job_input_free(job_input *in) {
   *in = (job_input){0};
 }
 
-/* Called before the outputs are. */
-typedef struct relay {
-  const job_watch *watch; /* or NULL */
-  restart_writer restart;
-} relay;
-
-static status relay_expect(void *ctx, int n_node,
-                           const stiffness_choice *choice) {
-  const relay *r = ctx;
-  return job_expect(r->restart.in, n_node, choice);
-}
-
-static status relay_ready(void *ctx, const setup_facts *facts,
-                          const contact_surface *surface) {
-  const relay *r = ctx;
-  (void)surface;
-  if (r->watch != NULL && r->watch->ready != NULL)
-    r->watch->ready(r->watch->ctx, facts);
-  return OK;
-}
-
-static status relay_increment(void *ctx, const state *s) {
-  const relay *r = ctx;
-  if (r->watch == NULL || r->watch->increment == NULL) return OK;
-  return r->watch->increment(r->watch->ctx, s);
-}
-
-static status relay_checkpoint(void *ctx, const run_memory *memory) {
-  relay *r = ctx;
-  return restart_write(&r->restart, memory);
-}
-
 status job_solve(const command *c, job_input *in, const job_watch *watch,
                  archive *from, int *unsettled) {
   static const mesh no_mesh;
   status st;
-  relay r = {watch, {c, in, NULL, NULL}};
+  restart_writer restart = {c, in, NULL, NULL};
   OWNED char *files = NULL;
   const output_options options = {
       .dir = c->dir,
@@ -184,25 +146,23 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
       .n_problem = in->problem != NULL ? in->problem->n : 0,
       .closing = &in->closing,
       .progress = !c->quiet && isatty(STDERR_FILENO),
-      .first = {.ctx = &r,
-                .expect = relay_expect,
-                .ready = relay_ready,
-                .increment = relay_increment,
-                .checkpoint = watch == NULL ? relay_checkpoint : NULL}};
+      .first = watch != NULL ? watch->first
+                             : (history_sink){.ctx = &restart,
+                                              .checkpoint = restart_write}};
   free(in->closing); /* of the pass before */
   in->closing = NULL;
   if (watch == NULL && in->problem == NULL) PASS(restart_files(in, &files));
-  r.restart.files = files;
+  restart.files = files;
   PASS(output_open(in->m, in->problem == NULL ? in->msh : &no_mesh, &options,
-                   &r.restart.out));
-  history_sink sink = output_sink(r.restart.out);
+                   &restart.out));
+  history_sink sink = output_sink(restart.out);
   st = in->problem == NULL
            ? history_continue(in->m, in->msh, effect_table, from, &sink,
                               unsettled)
            : condensed_run(in->m, in->problem, &sink, unsettled);
   if (watch != NULL && watch->finished != NULL)
-    st = watch->finished(watch->ctx, st, r.restart.out);
-  status closed = output_close(r.restart.out, st, *unsettled);
+    st = watch->finished(watch->first.ctx, st, restart.out);
+  status closed = output_close(restart.out, st, *unsettled);
   if (st == OK && closed != ERR_UNSETTLED) st = closed;
   PASS(st);
   return message_status(in->m->log, ERR_INTERNAL);
@@ -281,7 +241,7 @@ static int is_final(status st) {
 /* A run without the rows that are not back; *again: some are now. */
 static status try_without(watcher *w, const command *c, job_input *in,
                           int *unsettled, int *again) {
-  const job_watch watch = {.ctx = w, .increment = see_increment};
+  const job_watch watch = {.first = {.ctx = w, .increment = see_increment}};
   reduction_restore(in->m);
   reduction_leave_out(in->m);
   reduction_free(w->n);

@@ -1,6 +1,5 @@
 /* One pass through the stages: deck, model, mesh, history, outputs. */
-#ifndef PROTIS_JOB_H
-#define PROTIS_JOB_H
+#pragma once
 
 #include "program/command.h"
 #include "run/history/history.h"
@@ -34,21 +33,15 @@ status job_read(const command *c, const job_mesh *other, message_log *log,
                 job_input *in);
 void job_input_free(job_input *in);
 
-/* ERR_MEMORY: n contact nodes would need more than the available memory. */
-status job_expect(const job_input *in, int n, const stiffness_choice *choice);
-
 int job_is_geo(const model *m); /* 1: the mesh is made by gmsh */
 /* 1: it is neither made again nor refined: a .msh with values at its nodes. */
 int job_keeps_mesh(const model *m);
 
-/* Observer of a pass. Any function may be NULL. */
+/* Observer of a pass. */
 typedef struct job_watch {
-  void *ctx;
-  /* Any status but OK ends the pass. */
-  status (*increment)(void *ctx, const state *s);
-  void (*ready)(void *ctx, const setup_facts *facts);
+  history_sink first; /* of output_options */
   /* After the last increment, before the files are closed: additional output;
-   * returns the status of the run. */
+   * returns the status of the run. NULL: none. */
   status (*finished)(void *ctx, status run, output *out);
 } job_watch;
 
@@ -129,7 +122,7 @@ typedef struct restart_writer {
 status restart_files(const job_input *in, char **text);
 
 /* history_sink.checkpoint; ctx is a restart_writer. */
-status restart_write(void *ctx, const run_memory *memory);
+status restart_write(void *ctx, struct run *r);
 
 /*
  * The restart file of a job, found to fit its deck and mesh. ERR_DECK: no
@@ -181,5 +174,3 @@ size_t aims_name(const aims *a, const model *m, char *text, size_t size);
 
 /* [n*n_goal] of the passes so far; NULL of NULL. */
 const pass_goal *aims_rows(const aims *a);
-
-#endif

@@ -3,11 +3,13 @@
 #include "program/job.h"
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/text.h"
 #include "fem/fem.h"
 #include "program/inform.h"
 #include "model/keyword/keyword.h"
 #include "mesh/msh/geo.h"
+#include "run/setup/setup.h"
 #include "base/system/input.h"
 
 #include <errno.h>
@@ -27,21 +29,15 @@ typedef struct identity {
   uint64_t mesh;
 } identity;
 
-static uint64_t add_bytes(uint64_t h, const void *data, size_t n) {
-  const unsigned char *at = data;
-  for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;
-  return h;
-}
-
 /* Nodes, elements and groups in their order. */
 static uint64_t mesh_hash(const mesh *s) {
   size_t dim = (size_t)s->dim;
-  uint64_t h = add_bytes(14695981039346656037u, s->x,
-                         dim * (size_t)s->n_node * sizeof *s->x);
-  h = add_bytes(h, s->elem, (dim + 1) * (size_t)s->n_elem * sizeof *s->elem);
+  uint64_t h =
+      number_hash(HASH_START, s->x, dim * (size_t)s->n_node * sizeof *s->x);
+  h = number_hash(h, s->elem, (dim + 1) * (size_t)s->n_elem * sizeof *s->elem);
   for (int i = 0; i < s->n_group; ++i)
-    h = add_bytes(h, s->group[i].node_id,
-                  (size_t)s->group[i].n_node * sizeof *s->group[i].node_id);
+    h = number_hash(h, s->group[i].node_id,
+                    (size_t)s->group[i].n_node * sizeof *s->group[i].node_id);
   return h;
 }
 
@@ -58,8 +54,7 @@ static void identify(const command *c, const job_input *in, identity *id) {
 /* The deck with all its defaults. */
 static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
 
-/* ---- warnings reported so far
- * ------------------------------------------------ */
+/* ---- warnings reported so far -------------------------------------------- */
 
 /* Number of a file of the deck, which another name may lead to, or -1. */
 static int file_no(const deck *d, const char *file) {
@@ -132,7 +127,7 @@ static status file_names(const command *c, const model *m, char **path,
   return OK;
 }
 
-status restart_write(void *ctx, const run_memory *memory) {
+status restart_write(void *ctx, run *r) {
   const restart_writer *w = ctx;
   ENDS_BY(archive_free) archive *a = NULL;
   identity id;
@@ -141,7 +136,7 @@ status restart_write(void *ctx, const run_memory *memory) {
   PASS(text_made(&text, w->in->m, write_echo));
   PASS(text_made(&reported, w->in, list_warnings));
   identify(w->c, w->in, &id);
-  id.step_no = memory->step_no;
+  id.step_no = r->at.step_id + 1;
   PASS(archive_new(&a));
   if (w->c->no_timing) archive_leave_out_cpu(a);
   PASS(archive_bytes(a, "identity", &id, sizeof id));
@@ -149,7 +144,7 @@ status restart_write(void *ctx, const run_memory *memory) {
   PASS(archive_bytes(a, "warnings", reported, strlen(reported)));
   PASS(archive_bytes(a, "files", w->files, strlen(w->files)));
   PASS(output_keep(w->out, a));
-  PASS(memory->keep(memory->run, a));
+  PASS(run_keep(r, a));
   return archive_write(a, path, before);
 }
 
@@ -158,7 +153,7 @@ status restart_write(void *ctx, const run_memory *memory) {
 /* Length and checksum (FNV-1a over words) of what stands in a file. */
 static status add_content(const char *name, const char *path, FILE *out) {
   const char *why = NULL;
-  uint64_t part[1024], bytes = 0, h = 14695981039346656037u;
+  uint64_t part[1024], bytes = 0, h = HASH_START;
   size_t n;
   FILE *f ENDS_BY(file_leave) = input_stream(path, &why);
   if (f == NULL) { /* reported by the card that needs it, with its line */

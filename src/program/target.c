@@ -64,12 +64,14 @@ typedef struct pass {
                                reached */
 } pass;
 
-/* ---- observing
- * ------------------------------------------------------------ */
+/* ---- observing ----------------------------------------------------------- */
 
-static void see_ready(void *ctx, const setup_facts *facts) {
+static status see_ready(void *ctx, const setup_facts *facts,
+                        const contact_surface *surface) {
   pass *p = ctx;
+  (void)surface;
   p->unknowns = (double)facts->info.unknowns;
+  return OK;
 }
 
 static status see_increment(void *ctx, const state *s) {
@@ -82,8 +84,7 @@ static status see_increment(void *ctx, const state *s) {
   p->coarse = s->errors.mesh_error.why != NULL;
   p->time = s->errors.time_error.relative;
   p->solver = s->errors.error.asked ? s->errors.error.relative : 0.0;
-  memcpy(p->eta, s->errors.elem_error,
-         (size_t)p->in->msh->n_elem * sizeof *p->eta);
+  COPY(p->eta, s->errors.elem_error, p->in->msh->n_elem);
   return OK;
 }
 
@@ -354,7 +355,8 @@ static status next_contact(pass *p) {
 }
 
 static status run_pass(pass *p, int *unsettled) {
-  const job_watch watch = {p, see_increment, see_ready, see_finished};
+  const job_watch watch = {
+      {.ctx = p, .increment = see_increment, .ready = see_ready}, see_finished};
   RELEASE(p->eta, p->size);
   p->eta = p->size = NULL;
   p->energy = -1.0;

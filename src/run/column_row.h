@@ -4,8 +4,7 @@
  * of the obstacle on the body, so f_n = -r_n >= 0 presses, and f_t is opposite
  * to the slip.
  */
-#ifndef PROTIS_RUN_COLUMN_ROW_H
-#define PROTIS_RUN_COLUMN_ROW_H
+#pragma once
 
 #include "run/effect.h"
 
@@ -60,5 +59,3 @@ static inline const char *status_word(unsigned k) {
 #define AT(k) ((unsigned)(k) << COLUMN_PLACE)
 #define NO_COLUMN {NULL, NULL, INC, 0, 0, 0, 0, NULL, 0, NULL, NULL, NULL}
 /* clang-format on */
-
-#endif

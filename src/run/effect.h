@@ -10,8 +10,7 @@
  * and in COST OF THE EFFECTS, its part of the restart and its columns follow
  * from the row. Any hook may be NULL.
  */
-#ifndef PROTIS_RUN_EFFECT_H
-#define PROTIS_RUN_EFFECT_H
+#pragma once
 
 #include "base/archive/archive.h"
 #include "base/timer.h"
@@ -233,5 +232,3 @@ struct effect_list {
 };
 /* NULL: not on. */
 void *effect_state(const effect_list *list, const effect_ops *e);
-
-#endif

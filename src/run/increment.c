@@ -67,7 +67,6 @@ static double residual_of(run *r, double *u, double *rc) {
 /* Start values: the last equilibrium, or what is put in its place, or the guess
  * if it is nearer. */
 static void take_start(run *r) {
-  size_t bytes = (size_t)r->nodes.n_c * sizeof *r->now.uc;
   const int own = r->course.shadow;
   double *u = r->old.uc, *rc = r->old.rc;
   if (r->solving.start_u != NULL && !own) {
@@ -80,8 +79,8 @@ static void take_start(run *r) {
     u = r->solving.guess_u;
     rc = r->solving.guess_r;
   }
-  memcpy(r->now.uc, u, bytes);
-  memcpy(r->now.rc, rc, bytes);
+  COPY(r->now.uc, u, r->nodes.n_c);
+  COPY(r->now.rc, rc, r->nodes.n_c);
 }
 
 static int is_open(const run *r, const double *uc) {
@@ -136,12 +135,10 @@ static status solve_posed(run *r) {
       largest_entry((size_t)r->nodes.n_c, r->old.rc) == 0.0)
     PASS(drop_reactions(r, &tol, u, rc));
   PASS(effects_rewrite(r, &cp, &u, rc));
-  timer_enter(STAGE_CONTACT);
   contact_solver_tolerance(r->solver, r->solving.tol);
-  status st = contact_solve(r->solver, &cp, r->course.shadow ? NULL : &listener,
-                            u, rc, &r->solving.report);
-  timer_leave(STAGE_CONTACT);
-  PASS(st);
+  PASS_TIMED(STAGE_CONTACT,
+             contact_solve(r->solver, &cp, r->course.shadow ? NULL : &listener,
+                           u, rc, &r->solving.report));
   if (!r->course.shadow && r->solving.report.iterations > 0 &&
       r->solving.seen.now == before)
     r->solving.seen.untold = 1;
@@ -251,11 +248,8 @@ static status load_at(run *r, double t) {
 }
 
 static status pose_contact(run *r, double t) {
-  timer_enter(STAGE_SURFACE);
-  status st = surface_gap(r->surface, &r->faces.input, t, r->problem.gap,
-                          r->problem.side_gap);
-  timer_leave(STAGE_SURFACE);
-  PASS(st);
+  PASS_TIMED(STAGE_SURFACE, surface_gap(r->surface, &r->faces.input, t,
+                                        r->problem.gap, r->problem.side_gap));
   PASS(effects_pose(r, t));
   set_problem(r);
   return OK;

@@ -83,14 +83,8 @@ status moduli_new(const model *m, const mesh *msh, const double *T, moduli *x) {
 }
 
 void moduli_free(moduli *x) {
-  memory_free(x->elem_id);
-  memory_free(x->at);
-  memory_free(x->section_id);
-  memory_free(x->origin);
-  memory_free(x->kin);
-  memory_free(x->thickness);
-  memory_free(x->E);
-  memory_free(x->C);
+  RELEASE(x->elem_id, x->at, x->section_id, x->origin, x->kin, x->thickness,
+          x->E, x->C);
   *x = (moduli){0};
 }
 

@@ -111,14 +111,8 @@ void visco_free(visco *v) {
   memory_free(v->fine);
   scheme_work_free(v->work);
   flow_free(&v->x);
-  memory_free(v->place);
-  memory_free(v->elem);
-  memory_free(v->E);
-  memory_free(v->stress);
-  memory_free(v->section_id);
-  memory_free(v->kin);
-  memory_free(v->thickness);
-  memory_free(v);
+  RELEASE(v->place, v->elem, v->E, v->stress, v->section_id, v->kin,
+          v->thickness, v);
 }
 
 void visco_add_strains(const run *r, double *e0) {
@@ -141,8 +135,8 @@ void visco_strains(run *r, const equilibrium *e, flow_state *s) {
   for (int k = 0; k < v->x.n; ++k) {
     const double *E = run_elasticity(r, v->elem[k]);
     double elastic[6];
-    memcpy(s->e + visco_at(r, k), v->stress + visco_at(r, v->place[k]),
-           visco_at(r, 1) * sizeof *s->e);
+    COPY(s->e + visco_at(r, k), v->stress + visco_at(r, v->place[k]),
+         visco_at(r, 1));
     for (size_t i = 0; i < visco_at(r, 1); ++i)
       elastic[i] = s->e[visco_at(r, k) + i] - s->ei[visco_at(r, k) + i];
     tensor_product(r->m->ns, E, elastic, s->sigma + visco_at(r, k));
@@ -172,8 +166,8 @@ static void to_points(const run *r, const visco_part *p, const double *from,
                       double *to) {
   const int *item = r->strains.visco->place;
   for (int k = p->point; k < p->point + p->n_point; ++k)
-    memcpy(to + visco_at(r, k), from + visco_at(r, item[k] - p->item),
-           visco_at(r, 1) * sizeof *to);
+    COPY(to + visco_at(r, k), from + visco_at(r, item[k] - p->item),
+         visco_at(r, 1));
 }
 
 void visco_part_strains(run *r, const visco_part *p) {
@@ -333,9 +327,8 @@ status visco_part_sums(run *r, const visco_part *p) {
   const int end = p->point + p->n_point;
   point_sums sum = v->sums;
   if (p->n_point < p->n_item)
-    memcpy(r->now.e0 + visco_at(r, p->item),
-           r->now.thermal + visco_at(r, p->item),
-           visco_at(r, p->n_item) * sizeof(double));
+    COPY(r->now.e0 + visco_at(r, p->item),
+         r->now.thermal + visco_at(r, p->item), visco_at(r, p->n_item));
   if (r->m->ns == 4)
     add_points(4, r, p, &sum);
   else

@@ -172,8 +172,7 @@ static void add_node(const run *r, int i) {
 }
 
 static void find_totals(run *r) {
-  memset(r->result.totals, 0,
-         (size_t)r->m->n.contact * sizeof *r->result.totals);
+  CLEAR(r->result.totals, r->m->n.contact);
   for (int i = 0; i < r->nodes.n; ++i) add_node(r, i);
 }
 
@@ -288,9 +287,7 @@ void result_start(run *r, equilibrium *e) {
 }
 
 status result_accept(run *r) {
-  if (r->nodes.n > 0)
-    memcpy(r->problem.f_before, r->problem.f,
-           (size_t)r->nodes.n_row * sizeof *r->problem.f);
+  if (r->nodes.n > 0) COPY(r->problem.f_before, r->problem.f, r->nodes.n_row);
   r->problem.n_before = r->nodes.n_row;
   equilibrium e = r->old;
   r->course.note[0] = '\0';

@@ -2,8 +2,7 @@
  * The running state of history_run, shared by the files of this folder, of
  * src/run/setup and of src/run/history.
  */
-#ifndef PROTIS_RUN_RUN_H
-#define PROTIS_RUN_RUN_H
+#pragma once
 
 #include "accuracy/accuracy.h"
 #include "accuracy/space.h"
@@ -407,8 +406,10 @@ status result_evaluate(run *r, int due);
  * *out is new. Read its report. */
 status shadow_at(run *r, double t, shadow **out);
 run *shadow_run(shadow *b);
-/* what_if.solve of the increment in r->now. */
-status shadow_with(void *run, const double *more, double *u, double *rc,
+/* The increment in r->now once more, with forces added to its loads:
+ * more[dim*n_node] N; u[dim*n_node] m, rc[dim*n] N of the contact frame;
+ * *solved 0: not to its tolerance. The run itself is unchanged. */
+status shadow_with(run *r, const double *more, double *u, double *rc,
                    int *solved);
 void shadow_leave(shadow **b); /* frees it; accepts NULL */
 
@@ -422,5 +423,3 @@ double run_motion_over(const run *r, int k);
 void result_start(run *r, equilibrium *e);
 /* r->now becomes r->old. */
 status result_accept(run *r);
-
-#endif

@@ -2,8 +2,7 @@
  * Data of the loop over increments for the outputs: an accepted increment, the
  * facts before the first one, and the sinks.
  */
-#ifndef PROTIS_RUN_STATE_H
-#define PROTIS_RUN_STATE_H
+#pragma once
 
 #include "accuracy/accuracy.h"
 #include "accuracy/goal/goal.h"
@@ -14,6 +13,8 @@
 #include "run/start/start.h"
 #include "accuracy/theorems/theorems.h"
 #include "accuracy/exact_error.h"
+
+struct run;
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {
@@ -111,15 +112,6 @@ typedef struct balance_report {
   double saved_iterations, saved_cpu; /* about, -; s */
 } balance_report;
 
-/* The increment once more, with forces added to its loads. */
-typedef struct what_if {
-  void *run;
-  /* more[dim*n_node] N; u[dim*n_node] m, rc[dim*n] N of the contact frame;
-   * *solved 0: not to its tolerance. The run itself is unchanged. */
-  status (*solve)(void *run, const double *more, double *u, double *rc,
-                  int *solved);
-} what_if;
-
 /* Its errors. */
 typedef struct state_errors {
   error_bound error; /* of the contact solver */
@@ -181,10 +173,10 @@ typedef struct state {
   energies energy;
   solver_report report;
   const char *solver_log;
-  const char *note; /* lines about what jumps; "", NULL: none */
-  double cpu;       /* of this increment, s */
-  int settled;      /* 1: to its tolerance, and not in doubt */
-  what_if again;    /* until the next one */
+  const char *note;  /* lines about what jumps; "", NULL: none */
+  double cpu;        /* of this increment, s */
+  int settled;       /* 1: to its tolerance, and not in doubt */
+  struct run *again; /* the run, for shadow_with; until the next one */
 } state;
 
 /* How the contact solver knows the condensed stiffness. */
@@ -211,13 +203,6 @@ typedef struct setup_facts {
   double average_entries; /* of the nonlocal averages */
 } setup_facts;
 
-/* The state of a run, for an archive. */
-typedef struct run_memory {
-  void *run;
-  status (*keep)(void *run, archive *a);
-  int step_no; /* the one in progress, from 1 */
-} run_memory;
-
 /* Sinks of the run. Any function may be NULL. */
 typedef struct history_sink {
   void *ctx;
@@ -234,8 +219,6 @@ typedef struct history_sink {
   /* An attempt that failed and is cut or abandoned. */
   status (*rejected)(void *ctx, const state *s, const char *why);
   /* A state for a restart, between two attempts: where *RESTART requires it,
-   * and at an interruption. memory.keep names all its arrays. */
-  status (*checkpoint)(void *ctx, const run_memory *memory);
+   * and at an interruption. run_keep names all its arrays. */
+  status (*checkpoint)(void *ctx, struct run *r);
 } history_sink;
-
-#endif

@@ -28,8 +28,7 @@ static status new_strains(const run *r, equilibrium *e) {
   size_t n = strains_kept(r);
   if (r->strains.temperature0 != NULL) {
     PASS_NEW(e->temperature, r->msh->n_elem);
-    memcpy(e->temperature, r->strains.temperature0,
-           (size_t)r->msh->n_elem * sizeof *e->temperature);
+    COPY(e->temperature, r->strains.temperature0, r->msh->n_elem);
   }
   if (n == 0) return OK;
   PASS_NEW_REALS(n, &e->thermal, &e->e0, &e->sigma);
@@ -63,8 +62,7 @@ status strains_new(run *r) {
 
 void strains_free(run *r) {
   visco_free(r->strains.visco);
-  memory_free(r->strains.elem);
-  memory_free(r->strains.load);
+  RELEASE(r->strains.elem, r->strains.load);
 }
 
 void strains_collect(run *r) {
@@ -74,8 +72,7 @@ void strains_collect(run *r) {
     r->strains.eigen.e0 = r->strains.visco->now.ei;
     return;
   }
-  memcpy(now->e0, now->thermal,
-         (size_t)r->m->ns * (size_t)r->strains.eigen.n * sizeof *now->e0);
+  COPY(now->e0, now->thermal, (size_t)r->m->ns * (size_t)r->strains.eigen.n);
   if (r->strains.visco != NULL) visco_add_strains(r, now->e0);
   r->strains.eigen.e0 = now->e0;
 }

@@ -63,13 +63,11 @@ static status constant_domain(run *r, const flow_tangent *law, domain *d) {
   if (v->E == NULL)
     PASS_NEW(v->E, square * (size_t)(r->body.moduli.n + v->x.n));
   v->E_is_fresh = 0;
-  memcpy(v->E, r->body.moduli.E,
-         square * (size_t)r->body.moduli.n * sizeof *v->E);
+  COPY(v->E, r->body.moduli.E, square * (size_t)r->body.moduli.n);
   for (int i = 0; i < r->m->n.section; ++i) {
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     if (mat->law.ops == NULL) continue;
-    memcpy(v->E + square * (size_t)i, law->D + square * (size_t)kind++,
-           square * sizeof *v->E);
+    COPY(v->E + square * (size_t)i, law->D + square * (size_t)kind++, square);
   }
   *d = r->body.d;
   d->E = v->E;
@@ -101,8 +99,7 @@ static status new_sections(run *r) {
   int n = own->n + v->x.n;
   PASS_NEW_ALL(OF(v->section_id, r->msh->n_elem), OF(v->kin, n),
                OF(v->thickness, n));
-  memcpy(v->section_id, r->body.d.section_id,
-         (size_t)r->msh->n_elem * sizeof *v->section_id);
+  COPY(v->section_id, r->body.d.section_id, r->msh->n_elem);
   memcpy(v->kin, own->kin, (size_t)own->n * sizeof *v->kin);
   memcpy(v->thickness, own->thickness, (size_t)own->n * sizeof *v->thickness);
   for (int k = 0; k < v->x.n; ++k) {

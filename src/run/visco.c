@@ -178,12 +178,11 @@ status start_point_new(const run *r, start_point *p) {
 void start_point_free(start_point *p) { RELEASE(p->uc, p->rc, p->motion); }
 
 void start_point_copy(const run *r, const equilibrium *e, start_point *p) {
-  size_t bytes = (size_t)r->nodes.n_c * sizeof *p->uc;
   p->t = e->t;
   if (r->nodes.n_c == 0) return;
-  memcpy(p->uc, e->uc, bytes);
-  memcpy(p->rc, e->rc, bytes);
-  if (p->motion != NULL) memcpy(p->motion, e->motion, bytes);
+  COPY(p->uc, e->uc, r->nodes.n_c);
+  COPY(p->rc, e->rc, r->nodes.n_c);
+  if (p->motion != NULL) COPY(p->motion, e->motion, r->nodes.n_c);
 }
 
 equilibrium start_point_use(run *r, const start_point *p) {

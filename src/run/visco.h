@@ -2,8 +2,7 @@
  * Elements whose law flows, in the running state; shared by points.c,
  * tangent.c, visco.c, shadow.c, path.c and src/run/history/theorems.c only.
  */
-#ifndef PROTIS_RUN_VISCO_H
-#define PROTIS_RUN_VISCO_H
+#pragma once
 
 #include "run/run.h"
 
@@ -119,5 +118,3 @@ status tangent_step(run *r, const flow_tangent *law, const scheme_call *a);
 /* The keys of the constant tangents, which are made again when they are used,
  * and which of the matrices is in use. */
 status tangent_keep(run *r, archive *a);
-
-#endif

@@ -68,21 +68,17 @@ typedef struct aitken_work {
 
 static void aitken_release(void *work) {
   aitken_work *w = work;
-  if (w == NULL) return;
   node_blocks_free(w->blocks);
   best_iterate_free(&w->best);
-  RELEASE(w->before, w->x, w->y, w->defect, w->diagonal, w->dx, w->dy, w->df,
-          w);
+  RELEASE(w->before, w->x, w->y, w->defect, w->diagonal, w->dx, w->dy, w->df);
 }
 
 static status aitken_setup(const contact_problem *cp, const void *par,
-                           void **work) {
-  aitken_work *w;
+                           void *work) {
+  aitken_work *w = work;
   const aitken *p = par;
   size_t m = (size_t)cp->m;
   size_t depth = p->acceleration == BY_ANDERSON ? DEPTH : 1;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(node_blocks_new(cp, &w->blocks));
   PASS(best_iterate_new(cp->m, &w->best));
   PASS_NEW_REALS(m, &w->before, &w->x, &w->y, &w->defect, &w->diagonal);
@@ -330,7 +326,8 @@ const solver_ops aitken_solver = {
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
   .entries = "METHOD=AITKEN, which relaxes row by row,",
-  .param_size = sizeof(aitken), .options = aitken_options,
-  .setup = aitken_setup, .solve = aitken_solve, .release = aitken_release
+  .param_size = sizeof(aitken), .work_size = sizeof(aitken_work),
+  .options = aitken_options, .setup = aitken_setup, .solve = aitken_solve,
+  .release = aitken_release
 };
 /* clang-format on */

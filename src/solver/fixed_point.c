@@ -175,12 +175,11 @@ typedef struct course {
 
 /* Accept the pass just made. */
 static void accept(fixed_point *fp, course *c, double defect, int first) {
-  size_t bytes = (size_t)fp->n * sizeof *fp->g;
   double seen = first ? 0.0 : keep_difference(fp, fp->last_g, fp->last_G);
   if (seen > 0.0) c->rate = seen;
   c->defect = defect;
-  memcpy(fp->last_g, fp->g, bytes);
-  memcpy(fp->last_G, fp->image, bytes);
+  COPY(fp->last_g, fp->g, fp->n);
+  COPY(fp->last_G, fp->image, fp->n);
 }
 
 /* Check the pass just made; set the limit of the next one in fp->g. 0: no
@@ -198,9 +197,8 @@ static int advance(fixed_point *fp, course *c, double residual, int first) {
   if (c->since > PATIENCE) return 0;
   int grew = !first && !(defect < c->defect);
   if (c->mixed && grew) {
-    size_t bytes = (size_t)fp->n * sizeof *fp->g;
-    memcpy(fp->g, fp->last_g, bytes);
-    memcpy(fp->image, fp->last_G, bytes);
+    COPY(fp->g, fp->last_g, fp->n);
+    COPY(fp->image, fp->last_G, fp->n);
     fp->kept = 0;
     c->mixed = 0;
   } else {
@@ -326,7 +324,6 @@ status friction_path_solve(friction_path *path, const contact_problem *cp,
                            const solver_control *control, double *u, double *r,
                            solver_report *rep) {
   pass p = {inner, *control};
-  size_t bytes = (size_t)cp->m * sizeof *u;
   double mu = largest_row_sum(cp->B, cp->n), growth = GROWTH, good = 0.0;
   double share = mu > FIRST_MU ? FIRST_MU / mu : 1.0;
   *rep = (solver_report){.outcome = STOPPED_ITERATIONS};
@@ -340,15 +337,15 @@ status friction_path_solve(friction_path *path, const contact_problem *cp,
     PASS(solve_share(path, &p, cp, share, u, r, rep));
     if (rep->outcome == CONVERGED) {
       if (share == 1.0) return OK;
-      memcpy(path->good_u, u, bytes);
-      memcpy(path->good_r, r, bytes);
+      COPY(path->good_u, u, cp->m);
+      COPY(path->good_r, r, cp->m);
       good = share;
       growth = fmin(GROWTH, growth * growth);
     } else {
       if (good == 0.0) return OK;
       growth = sqrt(growth);
-      memcpy(u, path->good_u, bytes);
-      memcpy(r, path->good_r, bytes);
+      COPY(u, path->good_u, cp->m);
+      COPY(r, path->good_r, cp->m);
       if (growth < LEAST_GROWTH) return OK;
     }
     share = fmin(1.0, good * growth);

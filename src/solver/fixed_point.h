@@ -9,8 +9,7 @@
  * is followed from a small share to 1, each solution the start of the next. For
  * large friction, where a solver fails from a cold start.
  */
-#ifndef PROTIS_SOLVER_FIXED_POINT_H
-#define PROTIS_SOLVER_FIXED_POINT_H
+#pragma once
 
 #include "solver/solver.h"
 
@@ -51,5 +50,3 @@ status friction_path_solve(friction_path *path, const contact_problem *cp,
                            const inner_solver *inner,
                            const solver_control *control, double *u, double *r,
                            solver_report *rep);
-
-#endif

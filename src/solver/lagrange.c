@@ -63,19 +63,15 @@ typedef struct lagrange_work {
 
 static void lagrange_release(void *work) {
   lagrange_work *w = work;
-  if (w == NULL) return;
   force_set_free(w->set);
   RELEASE(w->x, w->old_x, w->y, w->y_x, w->c, w->old_r);
   best_iterate_free(&w->best);
-  memory_free(w);
 }
 
 static status lagrange_setup(const contact_problem *cp, const void *par,
-                             void **work) {
-  lagrange_work *w;
+                             void *work) {
+  lagrange_work *w = work;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(force_set_new(cp, &w->set));
   PASS_NEW_REALS(cp->m, &w->x, &w->old_x, &w->y, &w->y_x, &w->c, &w->old_r);
   PASS(best_iterate_new(cp->m, &w->best));
@@ -170,7 +166,6 @@ static int turns(const run *s) {
 
 static outcome steps(run *s, solver_report *rep) {
   lagrange_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   int limit = s->control->max_iter > 0 ? s->control->max_iter : STEPS;
   double theta = 0.0;
   force_set_project(w->set, 0.0, s->r);
@@ -179,11 +174,11 @@ static outcome steps(run *s, solver_report *rep) {
   for (int k = 1; k <= limit && o == RUNNING; ++k) {
     rep->iterations = k;
     extrapolate(s, theta);
-    memcpy(w->old_r, s->r, bytes);
-    memcpy(w->old_x, w->x, bytes);
+    COPY(w->old_r, s->r, s->cp->m);
+    COPY(w->old_x, w->x, s->cp->m);
     if (!project_step(s)) {
-      memcpy(s->r, w->old_r, bytes);
-      memcpy(w->x, w->old_x, bytes);
+      COPY(s->r, w->old_r, s->cp->m);
+      COPY(w->x, w->old_x, s->cp->m);
       s->t = 1.0;
       theta = 0.0;
       continue;
@@ -244,8 +239,8 @@ const solver_ops lagrange_solver = {
     "method that always converges on a Tresca problem; PCG solves the same\n"
     "problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
-  .param_size = sizeof(lagrange), .options = lagrange_options,
-  .setup = lagrange_setup, .solve = lagrange_solve, .release = lagrange_release,
-  .keep = lagrange_keep
+  .param_size = sizeof(lagrange), .work_size = sizeof(lagrange_work),
+  .options = lagrange_options, .setup = lagrange_setup, .solve = lagrange_solve,
+  .release = lagrange_release, .keep = lagrange_keep
 };
 /* clang-format on */

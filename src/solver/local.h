@@ -9,8 +9,7 @@
  * K symmetric positive definite. It is posed in the step d of the node: d and r
  * do not lose digits to a large distance to the gap or to the stick position.
  */
-#ifndef PROTIS_SOLVER_LOCAL_H
-#define PROTIS_SOLVER_LOCAL_H
+#pragma once
 
 #include "solver/solver.h"
 
@@ -84,5 +83,3 @@ int relaxation_fly(relaxation *s, const double *from);
  * holds and that drifts off. work[m]: work. */
 void relaxation_end(relaxation *s, const best_iterate *best, double *work,
                     solver_report *rep);
-
-#endif

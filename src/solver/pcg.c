@@ -72,20 +72,16 @@ typedef struct pcg_work {
 
 static void pcg_release(void *work) {
   pcg_work *w = work;
-  if (w == NULL) return;
   force_set_free(w->set);
   RELEASE(w->x, w->phi, w->beta, w->z, w->p, w->v, w->r0, w->x0, w->e, w->turn);
   best_iterate_free(&w->best);
-  memory_free(w);
 }
 
 static status pcg_setup(const contact_problem *cp, const void *par,
-                        void **work) {
-  pcg_work *w;
+                        void *work) {
+  pcg_work *w = work;
   int m = cp->m;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(force_set_new(cp, &w->set));
   PASS_NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
                  &w->x0, &w->e);
@@ -447,7 +443,8 @@ const solver_ops pcg_solver = {
     "problems with many increments on one matrix and small friction.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE,
-  .param_size = sizeof(pcg), .options = pcg_options,
-  .setup = pcg_setup, .solve = pcg_solve, .release = pcg_release
+  .param_size = sizeof(pcg), .work_size = sizeof(pcg_work),
+  .options = pcg_options, .setup = pcg_setup, .solve = pcg_solve,
+  .release = pcg_release
 };
 /* clang-format on */

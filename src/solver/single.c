@@ -1,6 +1,7 @@
 /* All states of a single node (single.h). */
 #include "solver/single.h"
 
+#include "base/memory.h"
 #include "base/vector.h"
 
 #include <lapacke.h>
@@ -235,9 +236,8 @@ static void try_all_slips(single *s, int closed) {
 int single_solve(const contact_problem *cp, double scale, double tol, double *u,
                  double *r, double *residual) {
   single s = {.cp = cp, .scale = scale, .tol = tol, .distance = HUGE_VAL};
-  size_t bytes = (size_t)cp->m * sizeof *u;
-  memcpy(s.u0, u, bytes);
-  memcpy(s.r0, r, bytes);
+  COPY(s.u0, u, cp->m);
+  COPY(s.r0, r, cp->m);
   contact_classify(cp, u, r, &s.start);
   set_problem(&s);
   try_all_linear(&s);
@@ -246,8 +246,8 @@ int single_solve(const contact_problem *cp, double scale, double tol, double *u,
     if (s.g0 > 0.0) try_all_slips(&s, 0);
   }
   if (!(s.distance < HUGE_VAL)) return 0;
-  memcpy(u, s.u, bytes);
-  memcpy(r, s.r, bytes);
+  COPY(u, s.u, cp->m);
+  COPY(r, s.r, cp->m);
   *residual = s.residual;
   return 1;
 }

@@ -10,8 +10,7 @@
  * polynomial of degree 3, vanishes at the directions of slip. The matrix may be
  * semidefinite or unsymmetric, mu of any size.
  */
-#ifndef PROTIS_SOLVER_SINGLE_H
-#define PROTIS_SOLVER_SINGLE_H
+#pragma once
 
 #include "contact/contact.h"
 
@@ -23,5 +22,3 @@
  */
 int single_solve(const contact_problem *cp, double scale, double tol, double *u,
                  double *r, double *residual);
-
-#endif

@@ -47,11 +47,18 @@ int solver_promises(sweep_promise *p, int k, double residual, double tol) {
 
 status solver_set_up(const solver_ops *ops, const contact_problem *cp,
                      const void *par, void **work) {
-  status st = ops->setup(cp, par, work);
-  if (st == OK) return OK;
-  ops->release(*work);
-  *work = NULL;
+  char *own = NULL;
+  PASS_NEW(own, ops->work_size);
+  const status st = ops->setup(cp, par, own);
+  *work = st == OK ? own : NULL;
+  if (st != OK) solver_release(ops, own);
   return st;
+}
+
+void solver_release(const solver_ops *ops, void *work) {
+  if (work == NULL) return;
+  ops->release(work);
+  memory_free(work);
 }
 
 status best_iterate_new(int m, best_iterate *best) {

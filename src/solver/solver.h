@@ -4,8 +4,7 @@
  * the sliding limit where the solver handles Tresca friction only (CPR98, 2.3),
  * the check by contact_residual, the fallback chain of AUTO.
  */
-#ifndef PROTIS_SOLVER_SOLVER_H
-#define PROTIS_SOLVER_SOLVER_H
+#pragma once
 
 #include "base/archive/archive.h"
 #include "base/option.h"
@@ -92,16 +91,16 @@ typedef struct solver_ops {
   const char *entries;          /* the method and why it needs the entries of
                                    A; NULL: an operator (contact/operator.h)
                                    suffices */
-  size_t param_size;
+  size_t param_size, work_size;
   const option *options;
-  /* Once per matrix; par: [param_size]. work (NULL before) receives the private
-   * state, to be released after a failure too (solver_set_up). */
-  status (*setup)(const contact_problem *cp, const void *par, void **work);
+  /* Once per matrix; par: [param_size]; work: the private state, [work_size]
+   * zeroed (solver_set_up). */
+  status (*setup)(const contact_problem *cp, const void *par, void *work);
   /* u[m] start value, then solution; r[m] start value, then reaction. */
   status (*solve)(const contact_problem *cp, const void *par, void *work,
                   const solver_control *control, double *u, double *r,
                   solver_report *rep);
-  void (*release)(void *work); /* accepts NULL */
+  void (*release)(void *work); /* what it owns (solver_release) */
   /* Save or read the data of the workspace that persist from one solve to the
    * next and do not follow from the matrix; NULL: none. */
   status (*keep)(void *work, archive *a);
@@ -123,9 +122,10 @@ extern const char auto_help[]; /* manual text of METHOD=AUTO */
 
 /* ---- functions common to the solvers ---- */
 
-/* setup; *work is NULL after a failure. */
+/* A new workspace; *work is NULL after a failure. */
 status solver_set_up(const solver_ops *ops, const contact_problem *cp,
                      const void *par, void **work);
+void solver_release(const solver_ops *ops, void *work); /* accepts NULL */
 
 /* 1: the tolerance is so loose (TOL=BALANCED) that an iterate within it is
  * accepted, even where one more step would be exact. */
@@ -192,5 +192,3 @@ const contact_bodies *contact_solver_bodies(const contact_solver *s,
                                             const contact_problem *cp);
 /* The methods tried, "newton: cycle, sor: converged"; "" if only one. */
 const char *contact_solver_log(const contact_solver *s);
-
-#endif

@@ -53,20 +53,16 @@ typedef struct sor_work {
 
 static void sor_release(void *work) {
   sor_work *w = work;
-  if (w == NULL) return;
   node_blocks_free(w->blocks);
   best_iterate_free(&w->best);
   memory_free(w->before);
   fixed_point_free(w->fixed);
-  memory_free(w);
 }
 
 static status sor_setup(const contact_problem *cp, const void *par,
-                        void **work) {
-  sor_work *w;
+                        void *work) {
+  sor_work *w = work;
   const sor *p = par;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(node_blocks_new(cp, &w->blocks));
   PASS(best_iterate_new(cp->m, &w->best));
   PASS_NEW(w->before, cp->m);
@@ -250,7 +246,8 @@ const solver_ops sor_solver = {
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
   .entries = "METHOD=SOR, which relaxes row by row,",
-  .param_size = sizeof(sor), .options = sor_options,
-  .setup = sor_setup, .solve = sor_solve, .release = sor_release
+  .param_size = sizeof(sor), .work_size = sizeof(sor_work),
+  .options = sor_options, .setup = sor_setup, .solve = sor_solve,
+  .release = sor_release
 };
 /* clang-format on */

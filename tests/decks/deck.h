@@ -2,8 +2,7 @@
  * A random deck as data: what the text of its cards says and what the checks
  * recompute. Base units; the text may be in others.
  */
-#ifndef PROTIS_TESTS_DECKS_DECK_H
-#define PROTIS_TESTS_DECKS_DECK_H
+#pragma once
 
 #include "support/job.h"
 
@@ -235,5 +234,3 @@ void deck_write_mesh(const random_deck *d, const deck_text *how, FILE *f);
 void deck_write_field(const random_deck *d, const deck_text *how, FILE *f);
 /* Numbers in the file, from 1, of n items: [n], the caller frees. */
 int *deck_numbers(int n, unsigned shuffle);
-
-#endif

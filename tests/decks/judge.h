@@ -2,8 +2,7 @@
  * Is the answer of a random deck one? All is recomputed from the tables and
  * the data of the deck, by P1 elements and contact geometry of the test.
  */
-#ifndef PROTIS_TESTS_DECKS_JUDGE_H
-#define PROTIS_TESTS_DECKS_JUDGE_H
+#pragma once
 
 #include "decks/deck.h"
 #include "decks/tables.h"
@@ -81,5 +80,3 @@ typedef struct averaged_contact {
  * edge of the contact. */
 void judge_average(const averaged_contact *in, double *mean,
                    unsigned char *open);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * All tables of a JOB.dat, read in one pass.
  */
-#ifndef PROTIS_TESTS_DECKS_TABLES_H
-#define PROTIS_TESTS_DECKS_TABLES_H
+#pragma once
 
 #include "support/job.h"
 
@@ -44,5 +43,3 @@ int table_column(const table *t, const char *name); /* -1: absent             */
 double table_at(const table *t, int row, int col);
 /* Row of each number of the first column, [most + 1], -1 where absent. */
 int *table_rows(const table *t, int most);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * The same deck said otherwise: its answer must be the same.
  */
-#ifndef PROTIS_TESTS_DECKS_TWIN_H
-#define PROTIS_TESTS_DECKS_TWIN_H
+#pragma once
 
 #include "decks/judge.h"
 
@@ -27,5 +26,3 @@ twin_answer twin_check(const random_deck *d, twin_kind kind, const tables *own,
                        char what[400]);
 /* Stops a run in its middle and goes on: all files equal. 1: they are. */
 int twin_restart(const random_deck *d, char what[400]);
-
-#endif

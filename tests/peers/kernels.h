@@ -1,6 +1,5 @@
 /* Kernels of Siconos that need no other product. */
-#ifndef PROTIS_PEERS_KERNELS_H
-#define PROTIS_PEERS_KERNELS_H
+#pragma once
 
 #include <Friction_cst.h>
 #include <SolverOptions.h>
@@ -108,5 +107,3 @@ static inline result kernel_apart(kernel_try *attempt, const struct kernel *k,
   if (child > 0) waitpid(child, NULL, 0);
   return a;
 }
-
-#endif

@@ -9,8 +9,7 @@
  * kept if a return address is in it that no point had before, so that every
  * way on which a failure can be handed up is gone once.
  */
-#ifndef PROTIS_TESTS_PRELOAD_FAILING_H
-#define PROTIS_TESTS_PRELOAD_FAILING_H
+#pragma once
 
 #include "base/archive/archive.h"
 #include "deck/expression.h"
@@ -160,5 +159,3 @@ int failing_points(const failing_point **list);
 void failing_at(const failing_point *p);
 const char *failing_name(failing_call c);
 failing_kind failing_kind_of(failing_call c);
-
-#endif

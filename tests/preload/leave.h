@@ -1,6 +1,5 @@
 /* What leave.c puts in the place of the C library's; names of the linker. */
-#ifndef PROTIS_TESTS_PRELOAD_LEAVE_H
-#define PROTIS_TESTS_PRELOAD_LEAVE_H
+#pragma once
 
 /* Writes the counts; of the compiler. */
 void __gcov_dump(void);
@@ -8,5 +7,3 @@ void __gcov_dump(void);
 void __real__exit(int code) __attribute__((noreturn));
 /* _exit, with the counts written first. */
 void __wrap__exit(int code) __attribute__((noreturn));
-
-#endif

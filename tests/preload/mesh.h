@@ -1,7 +1,6 @@
 /* What mesh.c puts before the C library's: each calls the one it hides; and
  * before those of libgmsh, which it stands for until they are needed. */
-#ifndef PROTIS_TESTS_PRELOAD_MESH_H
-#define PROTIS_TESTS_PRELOAD_MESH_H
+#pragma once
 
 #include "mesh/raw.h"
 
@@ -29,5 +28,3 @@ void gmshModelGetPhysicalGroups(void);
 /* All others: gmsh itself must do it. */
 #define NEVER_DECLARE(name) void gmsh##name(void);
 GMSH_CALLS(NEVER_DECLARE)
-
-#endif

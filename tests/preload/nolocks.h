@@ -1,6 +1,5 @@
 /* What nolocks.c puts in the place of the C library's: locks fail. */
-#ifndef PROTIS_TESTS_PRELOAD_NOLOCKS_H
-#define PROTIS_TESTS_PRELOAD_NOLOCKS_H
+#pragma once
 
 #include <sys/types.h>
 
@@ -10,5 +9,3 @@ int flock(int fd, int how);
 int lockf(int fd, int how, off_t bytes);
 /* Locks fail, other commands go to the C library. */
 int fcntl(int fd, int command, ...);
-
-#endif

@@ -1,6 +1,5 @@
 /* What refuse.c puts in the place of the C library's. */
-#ifndef PROTIS_TESTS_REFUSE_H
-#define PROTIS_TESTS_REFUSE_H
+#pragma once
 
 #include <stddef.h>
 
@@ -22,5 +21,3 @@ void free(void *p);
 int __libc_start_main(int (*f)(int, char **, char **), int argc, char **argv,
                       void (*init)(void), void (*fini)(void), void (*end)(void),
                       void *stack);
-
-#endif

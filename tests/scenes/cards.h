@@ -1,8 +1,7 @@
 /*
  * Cards that many scenes share.
  */
-#ifndef PROTIS_TESTS_SCENES_CARDS_H
-#define PROTIS_TESTS_SCENES_CARDS_H
+#pragma once
 
 #define MATERIAL(E, nu)                     \
   "*MATERIAL, NAME=M\n*ELASTIC\n" E ", " nu \
@@ -21,5 +20,3 @@
 #define PRINT "*PRINT, CONTACT, NODES, TOTALS, ENERGY\n"
 #define END PRINT "*END STEP\n"
 #define LAST "*PRINT, CONTACT, NODES, TOTALS, ENERGY, FREQUENCY=0\n*END STEP\n"
-
-#endif

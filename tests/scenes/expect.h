@@ -10,8 +10,7 @@
  * row; the tolerance is absolute; VALUE may also be "<" or ">" and a bound.
  * FILE is errors, lst, sta, json, cvg or dat.
  */
-#ifndef PROTIS_TESTS_SCENES_EXPECT_H
-#define PROTIS_TESTS_SCENES_EXPECT_H
+#pragma once
 
 #include "support/job.h"
 
@@ -22,5 +21,3 @@ int expect_all(const job *j, const char *tests, char *why);
 /* Contact laws of the last table CONTACT: no pull, no penetration, one of the
  * two zero, tangential force within its limit. */
 int expect_laws(const job *j, char *why);
-
-#endif

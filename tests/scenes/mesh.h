@@ -12,8 +12,7 @@
  * vertex, FOOT the side from vertex 1 to it, SIDE that from vertex 2. From the
  * second body on the names end in its number.
  */
-#ifndef PROTIS_TESTS_SCENES_MESH_H
-#define PROTIS_TESTS_SCENES_MESH_H
+#pragma once
 
 #include <stdio.h>
 
@@ -31,5 +30,3 @@ typedef struct mesh_change {
  * 0: the words are not understood. */
 int scene_mesh_write(FILE *f, const char *words, const mesh_change *change,
                      int **number);
-
-#endif

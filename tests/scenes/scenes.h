@@ -3,8 +3,7 @@
  * every method, form and integrator that applies, through the program in a
  * folder of its own.
  */
-#ifndef PROTIS_TESTS_SCENES_H
-#define PROTIS_TESTS_SCENES_H
+#pragma once
 
 #include "scenes/mesh.h"
 #include "support/job.h"
@@ -54,5 +53,3 @@ void scene_prepare(const scene_row *s, const job *j, char text[SCENE_DECK]);
  * wrong. Number of fails. $SCENE: only scenes whose name has that in it;
  * $METHOD: only the column of that label; $JOBS: that many rows at a time. */
 int scenes_run(int quick, FILE *out);
-
-#endif

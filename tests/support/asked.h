@@ -1,8 +1,7 @@
 /*
  * Decks that ask for other tables, fields and estimates: the answer stays.
  */
-#ifndef PROTIS_TESTS_ASKED_H
-#define PROTIS_TESTS_ASKED_H
+#pragma once
 
 #include "support/job.h"
 
@@ -28,5 +27,3 @@ char *asked_answer(const job *j);
  * estimates of the increments share the contact solver with them, and balanced
  * ones decide. */
 int asked_keeps(const char *deck, const asked *a);
-
-#endif

@@ -4,13 +4,10 @@
  * Groups: CONTACT (below), TOP, LEFT, SYMMETRY (right), BODY; with "two" the
  * upper half of the elements is UPPER instead.
  */
-#ifndef PROTIS_TESTS_BLOCK_FILE_H
-#define PROTIS_TESTS_BLOCK_FILE_H
+#pragma once
 
 #include "support/job.h"
 
 /* Into the folder of the job. */
 void block_file_write(const job *j, const int n[2], const double length[2],
                       int two);
-
-#endif

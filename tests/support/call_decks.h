@@ -2,8 +2,7 @@
  * Decks of small runs that between them call for most effects, methods and
  * files: for tests of what happens when a call fails.
  */
-#ifndef PROTIS_TESTS_CALL_DECKS_H
-#define PROTIS_TESTS_CALL_DECKS_H
+#pragma once
 
 #include "support/job.h"
 
@@ -19,5 +18,3 @@ extern const int n_call_deck;
 
 /* A folder with both decks and all they read. */
 job call_deck_write(const call_deck *d);
-
-#endif

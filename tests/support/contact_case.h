@@ -3,8 +3,7 @@
  * block on a floor, and a check of the contact conditions that shares nothing
  * with the program.
  */
-#ifndef PROTIS_TESTS_CONTACT_CASE_H
-#define PROTIS_TESTS_CONTACT_CASE_H
+#pragma once
 
 #include "contact/contact.h"
 
@@ -59,5 +58,3 @@ int case_inverse(int m, const double *A, double *W);
  * law with the slip direction.
  */
 double case_violation(const contact_case *c, const double *u, const double *r);
-
-#endif

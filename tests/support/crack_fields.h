@@ -2,8 +2,7 @@
  * Displacements round cracks in closed form, in complex functions; the crack is
  * in the plane where the last coordinate is 0 (2-D: y, 3-D: z).
  */
-#ifndef PROTIS_TESTS_CRACK_FIELDS_H
-#define PROTIS_TESTS_CRACK_FIELDS_H
+#pragma once
 
 #include "support/crack_scene.h"
 
@@ -43,5 +42,3 @@ typedef struct answer {
 } answer;
 answer ask(const crack_scene *s);
 void drop(answer *a);
-
-#endif

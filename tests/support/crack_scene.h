@@ -1,8 +1,7 @@
 /*
  * Bodies with a plane crack and displacements that are known on both sides.
  */
-#ifndef PROTIS_TESTS_CRACK_SCENE_H
-#define PROTIS_TESTS_CRACK_SCENE_H
+#pragma once
 
 #include "fracture/fracture.h"
 
@@ -35,5 +34,3 @@ void scene_load(crack_scene *s, crack_field *field, const void *ctx);
 fracture_factors *scene_factors(const crack_scene *s, int *n,
                                 fracture_point **points);
 void scene_end(crack_scene *s);
-
-#endif

@@ -4,8 +4,7 @@
  * pressed at once at t = 1, then left to creep. The cube is held in y, so that
  * its slip keeps its direction, unless it is said to be free. Run in memory.
  */
-#ifndef PROTIS_TESTS_CREEP_CASE_H
-#define PROTIS_TESTS_CREEP_CASE_H
+#pragma once
 
 typedef struct creep_case {
   const char *elastic;  /* line of *ELASTIC                                   */
@@ -37,5 +36,3 @@ double creep_distance(const creep_end *a, const creep_end *b);
 /* Order from the displacements with n, 2 n, 4 n increments; check fails where
  * nodes do not stick and slip, all of them as they did at the start. */
 double creep_case_order(const creep_case *c, const char *integrator, int n);
-
-#endif

@@ -2,8 +2,7 @@
  * Decks for the tests: written into a folder of their own under /tmp and read
  * from there.
  */
-#ifndef PROTIS_TESTS_DECKS_H
-#define PROTIS_TESTS_DECKS_H
+#pragma once
 
 #include "deck/deck.h"
 
@@ -33,5 +32,3 @@ void decks_done(read_deck *r);
 
 /* Cards as text: *NAME{P=V}{Q}[field|field][field]; quoted fields in "". */
 const char *decks_shape(const deck *d);
-
-#endif

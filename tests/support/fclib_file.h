@@ -2,8 +2,7 @@
  * Files in the layout of FCLIB for the tests, written and read back without
  * the program, and a check of a solution in the convention of that layout.
  */
-#ifndef PROTIS_TESTS_FCLIB_FILE_H
-#define PROTIS_TESTS_FCLIB_FILE_H
+#pragma once
 
 #include <hdf5.h>
 
@@ -40,5 +39,3 @@ double *fclib_take(const char *path, const char *name, int *n);
  */
 double fclib_violation(int dim, int n, const double *W, const double *q,
                        const double *mu, const double *u, const double *r);
-
-#endif

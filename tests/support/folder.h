@@ -1,8 +1,7 @@
 /*
  * Folders and files of the tests; check fails where the system refuses.
  */
-#ifndef PROTIS_TESTS_FOLDER_H
-#define PROTIS_TESTS_FOLDER_H
+#pragma once
 
 #include <stddef.h>
 
@@ -16,5 +15,3 @@ void folder_copy(const char *path, const char *file);
 char *file_read(const char *path, size_t *size);
 /* The same of PATH/NAME. */
 char *folder_file(const char *path, const char *name, size_t *size);
-
-#endif

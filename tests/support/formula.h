@@ -1,13 +1,10 @@
 /*
  * Quantities of expressions, without a deck.
  */
-#ifndef PROTIS_TESTS_FORMULA_H
-#define PROTIS_TESTS_FORMULA_H
+#pragma once
 
 #include "deck/expression.h"
 
 /* q = the expression; check fails if it is none. */
 void formula_compile(quantity *q, const char *text);
 void formula_release(quantity *q);
-
-#endif

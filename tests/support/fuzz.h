@@ -2,8 +2,7 @@
  * Entry of a libFuzzer program (make fuzz): any bytes; a broken promise of the
  * code under test ends in abort().
  */
-#ifndef PROTIS_TESTS_FUZZ_H
-#define PROTIS_TESTS_FUZZ_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -12,5 +11,3 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 /* What HDF5 leaves behind on damaged files is not ours. */
 const char *__lsan_default_suppressions(void);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * Bytes of a fuzzer as a file in memory, and as choices.
  */
-#ifndef PROTIS_TESTS_FUZZ_FILE_H
-#define PROTIS_TESTS_FUZZ_FILE_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -23,5 +22,3 @@ int fuzz_int(fuzz_bytes *b);          /* mostly small, sometimes any         */
 double fuzz_real(fuzz_bytes *b);      /* mostly plain, sometimes any bits    */
 /* Change bytes of a file of at most 64 kB, three choices for each; 1 if any. */
 int fuzz_damage(const char *path, fuzz_bytes *b);
-
-#endif

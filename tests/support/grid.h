@@ -5,8 +5,7 @@
  * Groups: BODY (all elements) and the sides LEFT, RIGHT (x), BOTTOM, TOP (y),
  * FRONT, BACK (z, 3-D only), each with faces (outward) and nodes.
  */
-#ifndef PROTIS_TESTS_GRID_H
-#define PROTIS_TESTS_GRID_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -17,5 +16,3 @@ mesh *make_grid_3d(const int n[3], const double length[3]);
 /* Both meshes side by side in one, nodes of b (moved by shift[dim]) after
  * those of a; BODY covers both, no other group. a and b stay the caller's. */
 mesh *grid_join(const mesh *a, const mesh *b, const double *shift);
-
-#endif

@@ -2,8 +2,7 @@
  * Groups of inner faces for meshes made in memory (grid.h): the sides of
  * elements that a function takes.
  */
-#ifndef PROTIS_TESTS_INNER_GROUP_H
-#define PROTIS_TESTS_INNER_GROUP_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -15,5 +14,3 @@ typedef int take_side(const mesh *m, const int *node);
 void add_side_group(mesh *m, const char *name, take_side *take);
 /* Add a group of n nodes, of dimension 0. */
 void add_node_group(mesh *m, const char *name, int n, const int *node);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * The program is $PROTIS, else build/release/protis.
  */
-#ifndef PROTIS_TESTS_JOB_H
-#define PROTIS_TESTS_JOB_H
+#pragma once
 
 #include <stddef.h>
 
@@ -89,5 +88,3 @@ double dat_at(const dat *d, int row, const char *name);
 int dat_row_near(const dat *d, const char *name, double value);
 double dat_sum(const dat *d, const char *name);
 double dat_max(const dat *d, const char *name); /* largest magnitude          */
-
-#endif

@@ -2,8 +2,7 @@
  * Runs of a small job whose mesh is read once: with PROTIS_MESH, the path of
  * tests/preload/mesh.so, later runs get what the mesh reader sent the first.
  */
-#ifndef PROTIS_TESTS_KEPT_MESH_H
-#define PROTIS_TESTS_KEPT_MESH_H
+#pragma once
 
 #include "support/job.h"
 
@@ -14,5 +13,3 @@ void kept_mesh(const job *j);
 /* In the process that becomes the program: load other libraries, "" or their
  * paths joined by colons, and that of the mesh if there is need. */
 void kept_mesh_preload(const char *others);
-
-#endif

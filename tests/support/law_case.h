@@ -2,8 +2,7 @@
  * Inelastic laws for the tests: cards from the example line of a row, points,
  * and the history of a material point under given strains and stresses.
  */
-#ifndef PROTIS_TESTS_LAW_CASE_H
-#define PROTIS_TESTS_LAW_CASE_H
+#pragma once
 
 #include "material/law/law.h"
 
@@ -41,5 +40,3 @@ typedef struct law_drive {
 void law_case_jump(law_case *c, const law_drive *d);
 /* n steps of the classical Runge-Kutta method of order 4 over "time". */
 void law_case_run(law_case *c, const law_drive *d, double time, int n);
-
-#endif

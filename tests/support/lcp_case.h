@@ -2,8 +2,7 @@
  * Linear complementarity problems w = q + M z of all kinds, for the tests of
  * the solvers, and a check of an answer that shares nothing with the program.
  */
-#ifndef PROTIS_TESTS_LCP_CASE_H
-#define PROTIS_TESTS_LCP_CASE_H
+#pragma once
 
 typedef enum {
   LCP_TIES_IN_TURN, /* 1 and 2 beside it, q = -1: first-index rules cycle   */
@@ -40,5 +39,3 @@ const char *lcp_name(lcp_family family);
 /* Largest violation of w = q + M z, w >= 0, z >= 0, w z = 0; w in units of
  * the largest |q|, z in those of the largest |q| over that of |M|. */
 double lcp_violation(const lcp_case *c, const double *z);
-
-#endif

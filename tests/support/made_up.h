@@ -4,8 +4,7 @@
  * formulas of the increment, so that what stands in a file can be checked
  * without a solver. Node numbers run against the ids.
  */
-#ifndef PROTIS_TESTS_MADE_UP_H
-#define PROTIS_TESTS_MADE_UP_H
+#pragma once
 
 #include "run/effect.h"
 #include "run/history/history.h"
@@ -55,5 +54,3 @@ void made_up_free(made_up *run);
 void made_up_advance(made_up *run, int total_no);
 /* What the state holds in item of an array. */
 double made_up_value(int array, int item, int total_no);
-
-#endif

@@ -2,8 +2,7 @@
  * Mesh files for the tests: texts written to a folder of their own, read with
  * mesh_read_gmsh, and the messages as one text.
  */
-#ifndef PROTIS_TESTS_MESH_FILE_H
-#define PROTIS_TESTS_MESH_FILE_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -47,5 +46,3 @@ mesh *mesh_file_text(mesh_file *f, const char *name, const char *text);
  * numbers them again), coordinates to digits*size (ASCII files have 16 digits);
  * "what" tells the first difference. */
 int mesh_same(const mesh *a, const mesh *b, double digits, const char **what);
-
-#endif

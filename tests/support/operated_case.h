@@ -2,8 +2,7 @@
  * A contact problem whose stiffness is an operator, made of its entries: for
  * tests of the methods that work by products and solves.
  */
-#ifndef PROTIS_TESTS_OPERATED_CASE_H
-#define PROTIS_TESTS_OPERATED_CASE_H
+#pragma once
 
 #include "contact/operator.h"
 #include "support/contact_case.h"
@@ -23,5 +22,3 @@ typedef struct operated_case {
  * than it is; also of a body that contact alone holds. */
 operated_case *operated_new(contact_case *c);
 void operated_free(operated_case *o, contact_case *c); /* A as before */
-
-#endif

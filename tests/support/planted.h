@@ -2,8 +2,7 @@
  * Problems of many bodies whose answer is planted, given as a compliance in
  * sparse blocks, and a natural map that shares nothing with the program.
  */
-#ifndef PROTIS_TESTS_PLANTED_H
-#define PROTIS_TESTS_PLANTED_H
+#pragma once
 
 #include "contact/contact.h"
 
@@ -33,5 +32,3 @@ void planted_free(planted *p);
  * own diagonal, over the forces its displacements without contact would take;
  * the largest |u - (W r + q)| in the same measure. */
 double planted_map(const planted *p, const double *u, const double *r);
-
-#endif

@@ -3,8 +3,7 @@
  * components of the strain that are held follow it in time, the others carry
  * given stresses.
  */
-#ifndef PROTIS_TESTS_POINT_BODY_H
-#define PROTIS_TESTS_POINT_BODY_H
+#pragma once
 
 #include "material/scheme/scheme.h"
 #include "support/law_case.h"
@@ -38,5 +37,3 @@ void point_body_free(point_body *b);
 /* n steps of one length up to time t; of estimates[n], if any, the errors. */
 void point_body_run(point_body *b, const scheme *s, double theta, double t,
                     int n, double *estimates);
-
-#endif

@@ -2,8 +2,7 @@
  * Points of torture: how many are tried, which, and one line in the end that
  * "make torture" collects: "TALLY kind | tried | survived | lost".
  */
-#ifndef PROTIS_TESTS_POINTS_H
-#define PROTIS_TESTS_POINTS_H
+#pragma once
 
 typedef struct points {
   const char *kind;
@@ -25,5 +24,3 @@ void points_lose(points *t, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 /* Print the line; check fails if one was lost or none was tried. */
 void points_end(const points *t);
-
-#endif

@@ -4,8 +4,7 @@
  * and pushed from one side, so that a part of the floor opens, a part slips and
  * a part sticks. Ends the program where memory or data fail.
  */
-#ifndef PROTIS_TESTS_PRESSED_BLOCK_H
-#define PROTIS_TESTS_PRESSED_BLOCK_H
+#pragma once
 
 #include "contact/contact.h"
 #include "support/scene.h"
@@ -30,5 +29,3 @@ void pressed_block_free(pressed_block *b);
  */
 void pressed_block_load(pressed_block *b, double side, double down);
 void pressed_block_friction(pressed_block *b, double mu);
-
-#endif

@@ -8,8 +8,7 @@
  * There are more contacts than bodies can move: W is semidefinite, the forces
  * are not unique, the velocities nearly always are.
  */
-#ifndef PROTIS_TESTS_RIGID_SCENE_H
-#define PROTIS_TESTS_RIGID_SCENE_H
+#pragma once
 
 #include "support/contact_case.h"
 
@@ -42,5 +41,3 @@ contact_case rigid_case(const rigid_scene *s);
 /* How far u, r of that case miss the conditions in the signs of FCLIB
  * (fclib_violation). */
 double rigid_violation(const rigid_scene *s, const contact_case *c);
-
-#endif

@@ -2,8 +2,7 @@
  * A domain built by hand for the tests of src/fem: one section on a mesh,
  * supports and contact nodes as wanted.
  */
-#ifndef PROTIS_TESTS_SCENE_H
-#define PROTIS_TESTS_SCENE_H
+#pragma once
 
 #include "fem/fem.h"
 #include "support/grid.h"
@@ -37,5 +36,3 @@ void scene_dense(const scene *s, double *K);
 void scene_unknowns(const scene *s, unsigned char *unknown);
 /* Reproducible numbers in [-1, 1]. */
 double scene_random(unsigned *seed);
-
-#endif

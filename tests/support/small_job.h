@@ -2,8 +2,7 @@
  * Small jobs for runs that are killed, starved and disturbed: a few dozen nodes
  * and increments, every kind of result file, a restart file.
  */
-#ifndef PROTIS_TESTS_SMALL_JOB_H
-#define PROTIS_TESTS_SMALL_JOB_H
+#pragma once
 
 #include "support/job.h"
 
@@ -15,5 +14,3 @@ job small_solid(double mu, const char *cards, const char *method);
 /* A Maxwell block that is pressed and then flows; its method is the integrator,
  * as in "INTEGRATOR=MIDPOINT". */
 job small_creep(double mu, const char *cards, const char *method);
-
-#endif

@@ -2,8 +2,7 @@
  * The rows of the solver table, and AUTO after the last, for tests that loop
  * over them: a new row is tested without a new line.
  */
-#ifndef PROTIS_TESTS_SOLVER_ROWS_H
-#define PROTIS_TESTS_SOLVER_ROWS_H
+#pragma once
 
 #include "solver/solver.h"
 #include "support/contact_case.h"
@@ -26,5 +25,3 @@ void case_cold(contact_case *c);
 /* Every row that takes the problem, from a cold start, must solve it and
  * satisfy the conditions to "bad"; the answer of AUTO is left in c. */
 void all_rows_solve(contact_case *c, const char *what, double bad);
-
-#endif

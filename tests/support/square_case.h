@@ -3,8 +3,7 @@
  * and the steps from *VISCO on; E = 1000, nu = 0.3, relaxation time 2 unless
  * said otherwise.
  */
-#ifndef PROTIS_TESTS_SQUARE_CASE_H
-#define PROTIS_TESTS_SQUARE_CASE_H
+#pragma once
 
 #include "support/job.h"
 
@@ -35,5 +34,3 @@ void square_all_have(const job *j, int k, const char *column, double expected,
                      double tolerance);
 /* Column of table number k of the energies. */
 double square_energy(const job *j, int k, const char *column);
-
-#endif

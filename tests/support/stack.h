@@ -6,8 +6,7 @@
  *      side below                             O  obstacle; -  nothing
  * The displacement of the other side is interpolated linearly.
  */
-#ifndef PROTIS_TESTS_STACK_H
-#define PROTIS_TESTS_STACK_H
+#pragma once
 
 #include "support/scene.h"
 
@@ -26,5 +25,3 @@ stack *stack_new(const char *joints, const int *cells, double gap);
 void stack_free(stack *k);
 /* Fix the lower side of the first block. */
 void stack_fix(stack *k, int c);
-
-#endif

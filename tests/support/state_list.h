@@ -2,8 +2,7 @@
  * All answers of a small plane problem, by trying every state (open, stick,
  * slip to either side) of every node: nothing shared with the program.
  */
-#ifndef PROTIS_TESTS_STATE_LIST_H
-#define PROTIS_TESTS_STATE_LIST_H
+#pragma once
 
 #include "support/contact_case.h"
 
@@ -18,5 +17,3 @@ typedef struct state_list {
  * form, without held nodes or second obstacles. */
 int state_list_new(const contact_case *c, state_list *list);
 void state_list_free(state_list *list);
-
-#endif

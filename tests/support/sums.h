@@ -7,8 +7,7 @@
  *
  * each; tolerance is absolute, in the unit of the numbers.
  */
-#ifndef PROTIS_TESTS_SUMS_H
-#define PROTIS_TESTS_SUMS_H
+#pragma once
 
 #include "support/job.h"
 
@@ -33,5 +32,3 @@ void sums_write(const sums *s, const char *path);
 /* Check fails, naming the numbers that differ, if s is not what the file
  * holds. */
 void sums_check(const sums *s, const char *path);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * A model from the text of a deck, checked against a mesh made in memory.
  */
-#ifndef PROTIS_TESTS_TEXT_MODEL_H
-#define PROTIS_TESTS_TEXT_MODEL_H
+#pragma once
 
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
@@ -19,5 +18,3 @@ typedef struct text_model {
 /* Reads it; messages go to stdout if it fails. "msh" is then its own. */
 void text_model_read(text_model *s, const char *text, mesh *msh);
 void text_model_close(text_model *s);
-
-#endif

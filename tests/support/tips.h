@@ -6,8 +6,7 @@
  * Groups: CLAMPED, TIPS (nodes), FOOT1 and FOOT2 (one edge each), SIDE1 (the
  * other edge of the first), BODY.
  */
-#ifndef PROTIS_TESTS_TIPS_H
-#define PROTIS_TESTS_TIPS_H
+#pragma once
 
 #include "support/job.h"
 
@@ -16,5 +15,3 @@
 job tips_new(double G, const char *mesh, const char *cards);
 /* Cards below *MATERIAL of that deck. */
 void tips_material(const job *j, const char *cards);
-
-#endif

@@ -4,8 +4,7 @@
  * time. Changes are opening for writing, writing, syncing, closing what was
  * written, renaming, cutting and removing; what goes to stderr does not count.
  */
-#ifndef PROTIS_TESTS_TRACED_H
-#define PROTIS_TESTS_TRACED_H
+#pragma once
 
 #include "support/job.h"
 
@@ -37,5 +36,3 @@ int traced_run(job *j, const char *const *words, traced *t);
 /* All result files of a and b are equal, byte by byte; else the first that
  * differs. NULL: all are. */
 const char *traced_difference(const job *a, const job *b);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * Scenes turned in space as a whole: vectors and the mesh file of a grid.
  */
-#ifndef PROTIS_TESTS_TURNED_MESH_H
-#define PROTIS_TESTS_TURNED_MESH_H
+#pragma once
 
 #include "mesh/mesh.h"
 #include "support/job.h"
@@ -16,5 +15,3 @@ void turn_vector(const turn *t, double v[3]);
 /* The grid turned as turned.msh in the folder of the job, with its groups BODY,
  * FOOT (below: BOTTOM in the plane, FRONT in space) and HEAD (opposite). */
 void turned_mesh_write(const job *j, const mesh *m, const turn *t);
-
-#endif

@@ -2,8 +2,7 @@
  * Two surfaces without bodies behind them, for the tests of src/contact/mortar:
  * faces of one mesh.
  */
-#ifndef PROTIS_TESTS_TWO_SURFACES_H
-#define PROTIS_TESTS_TWO_SURFACES_H
+#pragma once
 
 #include "contact/mortar/mortar.h"
 
@@ -35,5 +34,3 @@ double two_noise(void);
 void two_seed(unsigned n);
 /* The sum of the parts of row q. */
 double two_part_sum(const mortar *m, int q);
-
-#endif

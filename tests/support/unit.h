@@ -3,8 +3,7 @@
  * each START_TEST of check, and ends with check's closing line; UNIT_LOOP(name,
  * test, times) runs one test for _i = 0, 1, ...
  */
-#ifndef PROTIS_TESTS_UNIT_H
-#define PROTIS_TESTS_UNIT_H
+#pragma once
 
 #include "fem/fem.h"
 
@@ -47,5 +46,3 @@ static inline int unit_run(const char *name, TCase *tests) {
     tcase_add_loop_test(case_, test, 0, (times)); \
     return unit_run(name, case_);                 \
   }
-
-#endif

@@ -82,7 +82,7 @@ START_TEST(rounding_of_the_inner_solver_is_met_once) {
   solver_control control = {.tol = 1e-10};
   solver_report rep;
   option_defaults(newton_solver.options, param);
-  ck_assert_int_eq(newton_solver.setup(&c.cp, param, &work), OK);
+  ck_assert_int_eq(solver_set_up(&newton_solver, &c.cp, param, &work), OK);
   ck_assert_int_eq(fixed_point_new(c.cp.n, &fp), OK);
   inner_solver inner = {&rough, param, work};
   ck_assert_int_eq(
@@ -90,7 +90,7 @@ START_TEST(rounding_of_the_inner_solver_is_met_once) {
   ck_assert_int_eq(rep.outcome, CONVERGED);
   ck_assert_int_gt(rep.iterations, 1000);
   ck_assert_int_lt(rep.iterations, 2000);
-  newton_solver.release(work);
+  solver_release(&newton_solver, work);
   fixed_point_free(fp);
   case_free(&c);
 }

@@ -221,14 +221,14 @@ static solver_report solve_direct(const contact_case *c, int max_iter,
   solver_report rep;
   void *work = NULL;
   ck_assert(lemke_solver.param_size <= sizeof param);
-  ck_assert_int_eq(lemke_solver.setup(&c->cp, param, &work), OK);
+  ck_assert_int_eq(solver_set_up(&lemke_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
       lemke_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
   const double *ray = lemke_ray(work);
   ck_assert_int_eq(ray != NULL, rep.outcome == STOPPED_RAY);
   if (ray != NULL && motion != NULL)
     memcpy(motion, ray, (size_t)c->cp.m * sizeof *motion);
-  lemke_solver.release(work);
+  solver_release(&lemke_solver, work);
   return rep;
 }
 
@@ -567,7 +567,7 @@ START_TEST(every_refused_request_is_reported_without_loss) {
     memory_refuse(k, 0);
     status st = solver_set_up(&lemke_solver, &c.cp, param, &work);
     memory_refuse(0, 0);
-    lemke_solver.release(work);
+    solver_release(&lemke_solver, work);
     ck_assert_uint_eq(memory_in_use(), before);
     if (st == OK) break;
     ck_assert_int_eq(st, ERR_MEMORY);

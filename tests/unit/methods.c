@@ -326,10 +326,10 @@ START_TEST(cycle_is_told_from_stagnation) {
                                   .listener = &listener};
         solver_report rep;
         void *work = NULL;
-        ck_assert_int_eq(ops->setup(&c.cp, param, &work), OK);
+        ck_assert_int_eq(solver_set_up(ops, &c.cp, param, &work), OK);
         ck_assert_int_eq(
             ops->solve(&c.cp, param, work, &control, c.u, c.r, &rep), OK);
-        ops->release(work);
+        solver_release(ops, work);
         if (rounding) ck_assert_int_eq(rep.outcome, CONVERGED);
         if (rep.outcome == STOPPED_CYCLE) ck_assert_int_gt(heard, 10);
         cycles += rep.outcome == STOPPED_CYCLE;
@@ -367,10 +367,10 @@ static outcome run_auglag(contact_case *c, double tol, int passes, heard *h) {
   memset(c->u, 0, bytes);
   memset(c->r, 0, bytes);
   option_defaults(auglag_solver.options, param);
-  ck_assert_int_eq(auglag_solver.setup(&c->cp, param, &work), OK);
+  ck_assert_int_eq(solver_set_up(&auglag_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
       auglag_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
-  auglag_solver.release(work);
+  solver_release(&auglag_solver, work);
   return rep.outcome;
 }
 

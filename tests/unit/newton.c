@@ -36,10 +36,10 @@ static solver_report solve(contact_case *c) {
   void *work = NULL;
   ck_assert(newton_solver.param_size <= sizeof param);
   option_defaults(newton_solver.options, param);
-  ck_assert_int_eq(newton_solver.setup(&c->cp, param, &work), OK);
+  ck_assert_int_eq(solver_set_up(&newton_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
       newton_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
-  newton_solver.release(work);
+  solver_release(&newton_solver, work);
   return rep;
 }
 

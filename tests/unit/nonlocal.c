@@ -110,7 +110,7 @@ START_TEST(friction_path_follows_averages) {
     ck_assert_int_eq(solve_by(NULL, &c, 1e-12, c.u, c.r).outcome, CONVERGED);
     memcpy(u, c.u, (size_t)c.cp.m * sizeof *u);
     option_defaults(ops->options, param);
-    ck_assert_int_eq(ops->setup(&c.cp, param, &work), OK);
+    ck_assert_int_eq(solver_set_up(ops, &c.cp, param, &work), OK);
     ck_assert_int_eq(friction_path_new(&c.cp, &path), OK);
     inner_solver inner = {ops, param, work};
     case_cold(&c);
@@ -120,7 +120,7 @@ START_TEST(friction_path_follows_averages) {
     ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-9);
     if (k == 0) ck_assert_double_lt(apart(&c, u), 1e-8);
     friction_path_free(path);
-    ops->release(work);
+    solver_release(ops, work);
     free(u);
     case_free(&c);
   }

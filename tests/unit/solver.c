@@ -15,7 +15,7 @@ START_TEST(table_is_complete) {
     ck_assert_str_eq(solver_family(s->name), s->family);
     ck_assert(s->setup != NULL && s->solve != NULL && s->release != NULL);
     ck_assert(s->handles & SOLVES_TRESCA);
-    s->release(NULL);
+    solver_release(s, NULL);
   }
   ck_assert_ptr_null(solver_find("nosuch"));
   ck_assert_str_eq(solver_family(NULL), "direct");

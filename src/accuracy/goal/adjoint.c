@@ -181,18 +181,17 @@ static void precondition(linear_system *s, int transposed, const double *v,
                          double *y) {
   const linear_rows *rows = &s->rows;
   const contact_operator *op = rows->cp->op;
-  const size_t bytes = (size_t)rows->cp->m * sizeof *y;
   if (transposed) {
-    memcpy(s->v, v, bytes);
+    COPY(s->v, v, rows->cp->m);
     linear_spread_friction(rows, s->v);
     op->solve(op->ctx, s->zero, s->v, s->Ax);
     for (int k = 0; k < rows->cp->m; ++k)
       y[k] = rows->place[k] < 0 ? 0.0 : v[k] - s->v[k];
     return;
   }
-  memset(s->v, 0, bytes);
+  CLEAR(s->v, rows->cp->m);
   op->solve(op->ctx, v, s->v, s->Ax);
-  memcpy(y, v, bytes);
+  COPY(y, v, rows->cp->m);
   linear_add_friction(rows, s->Ax, y);
 }
 
@@ -253,14 +252,13 @@ static status gmres(linear_system *s, int transposed, double *x) {
 static status solve_operated(linear_system *s, const double *b, double *x) {
   const linear_rows *rows = &s->rows;
   const contact_operator *op = rows->cp->op;
-  const size_t bytes = (size_t)rows->cp->m * sizeof *x;
   double *known = x;
   op->solve(op->ctx, b, known, s->Ax);
   if (!s->bent) return OK;
-  memset(s->b, 0, bytes);
+  CLEAR(s->b, rows->cp->m);
   linear_add_friction(rows, s->Ax, s->b);
   PASS(gmres(s, 0, s->b));
-  memset(s->v, 0, bytes);
+  CLEAR(s->v, rows->cp->m);
   op->solve(op->ctx, s->b, s->v, s->Ax);
   for (int k = 0; k < rows->cp->m; ++k)
     if (rows->place[k] >= 0) x[k] -= s->v[k];

@@ -195,8 +195,7 @@ static void bubble_of(goal_estimator *e, const double *G, int a, int b,
     }
     for (int c = 0; c < dim; ++c) d[c] -= rest[c];
     if (contact->closed) hold(s, G, contact, d, x);
-    memcpy(e->edge + (size_t)dim * (size_t)(contact - s->edge), d,
-           (size_t)dim * sizeof *d);
+    COPY(e->edge + (size_t)dim * (size_t)(contact - s->edge), d, dim);
     for (int c = 0; c < dim; ++c) d[c] += rest[c];
   }
   support(s, G, a, b, d, x);
@@ -227,8 +226,7 @@ static void add_bubble(const domain *d, int elem_id, const int *edge,
   double *e = to->strain + (size_t)d->ns * (size_t)elem_id;
   double grad[3] = {0.0};
   const size_t at = (size_t)(edges_of(dim) * elem_id + edge[2]);
-  if (to->part != NULL)
-    memcpy(to->part + (size_t)dim * at, of, (size_t)dim * sizeof *of);
+  if (to->part != NULL) COPY(to->part + (size_t)dim * at, of, dim);
   for (int k = 0; k < dim; ++k)
     grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
   add_strain(dim, grad, of, e);

@@ -5,8 +5,7 @@
  * Calcolo 37, 65-77, for contact). The adjoint is that of the contact problem
  * linearised at its solution, with the unsymmetric rows of Coulomb's law.
  */
-#ifndef PROTIS_ACCURACY_GOAL_H
-#define PROTIS_ACCURACY_GOAL_H
+#pragma once
 
 #include "accuracy/space.h"
 #include "contact/contact.h"
@@ -178,5 +177,3 @@ void goal_estimator_force(goal_estimator *e, double *F);
  */
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           int of_u, double *product, goal_estimate *out);
-
-#endif

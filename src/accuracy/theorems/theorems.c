@@ -284,8 +284,7 @@ static status know_friction(theorems *t, const theorems_scene *s,
   t->n_entry = count_entries(&p->cp);
   NEW_ALL(OF(t->entries, t->n_entry), OF(t->contacts, s->n_contact + 1),
           OF(keep, p->cp.n));
-  if (t->n_entry > 0)
-    memcpy(t->entries, p->cp.B->val, (size_t)t->n_entry * sizeof *t->entries);
+  if (t->n_entry > 0) COPY(t->entries, p->cp.B->val, t->n_entry);
   TRY(friction_constants(&p->cp, &t->norm, 1, &all));
   for (int c = 0; c < s->n_contact; ++c) {
     theorems_contact row = {.contact_id = c, .mu = s->mu[c]};

@@ -26,8 +26,7 @@
  * projection, the second from the laws, whose constant is L. Over a time T the
  * path of s contracts after k maps if (L T)^k/k! < 1.
  */
-#ifndef PROTIS_THEOREMS_THEOREMS_H
-#define PROTIS_THEOREMS_THEOREMS_H
+#pragma once
 
 #include "accuracy/accuracy.h"
 
@@ -208,5 +207,3 @@ status bound_change(const contact_problem *cp, const double *u,
  */
 status inequality_least(const contact_problem *cp, const double *u,
                         double *least, int *fields);
-
-#endif

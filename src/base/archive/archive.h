@@ -7,8 +7,7 @@
  * The file is HDF5 with one dataset per array, a list of them in the order they
  * were named, and a checksum of all.
  */
-#ifndef PROTIS_ARCHIVE_ARCHIVE_H
-#define PROTIS_ARCHIVE_ARCHIVE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -61,5 +60,3 @@ status archive_read(const char *path, archive **out);
 enum { ARCHIVE_SEAL = 512 };
 /* Write the seal of a complete file and synchronise it. ERR_FILE. */
 status archive_seal(const char *path);
-
-#endif

@@ -1,6 +1,5 @@
 /* Datasets of an HDF5 file that others wrote, each call checked. */
-#ifndef PROTIS_ARCHIVE_DATASET_H
-#define PROTIS_ARCHIVE_DATASET_H
+#pragma once
 
 #include "base/status.h"
 
@@ -44,5 +43,3 @@ status source_ints(const hdf5_source *s, const char *name, int optional,
                    long most, long *n, int **value);
 status source_reals(const hdf5_source *s, const char *name, int optional,
                     long most, long *n, double **value);
-
-#endif

@@ -1,5 +1,6 @@
 /* A sparse matrix of square blocks (sparse.h). */
 #include "base/sparse.h"
+#include "base/vector.h"
 
 #include <string.h>
 
@@ -137,12 +138,6 @@ void sparse_blocks_add(const sparse_blocks *b, int j, const double *x,
     for (int c = 0; c < d; ++c)
       for (int r = 0; r < d; ++r) to[r] += B[r + d * c] * x[c];
   }
-}
-
-static int is_zero(int d, const double *x) {
-  for (int k = 0; k < d; ++k)
-    if (x[k] != 0.0) return 0;
-  return 1;
 }
 
 void sparse_blocks_product(const sparse_blocks *b, const double *x, double *y) {

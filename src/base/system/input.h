@@ -6,8 +6,7 @@
  * links: each folder of the path is opened from the one before, so that a
  * change in between cannot lead elsewhere.
  */
-#ifndef PROTIS_SYSTEM_INPUT_H
-#define PROTIS_SYSTEM_INPUT_H
+#pragma once
 
 #include "base/status.h"
 
@@ -22,5 +21,3 @@ FILE *input_stream(const char *path, const char **why);
  * NULL: no limit. ERR_FILE: it cannot be opened. */
 status input_confine(const char *folder);
 int input_is_confined(void);
-
-#endif

@@ -52,20 +52,18 @@ static double group_number(const char *folder, const char *file,
   return number_in(path, word, none);
 }
 
-static const char *const group_name = "its control group";
-
-static void memory_of_group_1(const char *folder, limits *l) {
-  double most = group_number(folder, "memory.limit_in_bytes", "", INFINITY);
-  double used = group_number(folder, "memory.usage_in_bytes", "", 0.0);
-  double files = group_number(folder, "memory.stat", "total_cache ", 0.0);
-  lower(l, most - fmax(used - files, 0.0), group_name);
+/* The names of its files, and the word before what files hold of it. */
+static void memory_of_group(const char *folder, const char *limit,
+                            const char *usage, const char *word, limits *l) {
+  double most = group_number(folder, limit, "", INFINITY);
+  double used = group_number(folder, usage, "", 0.0);
+  double files = group_number(folder, "memory.stat", word, 0.0);
+  lower(l, most - fmax(used - files, 0.0), "its control group");
 }
 
-static void memory_of_group_2(const char *folder, limits *l) {
-  double most = group_number(folder, "memory.max", "", INFINITY);
-  double used = group_number(folder, "memory.current", "", 0.0);
-  double files = group_number(folder, "memory.stat", "file ", 0.0);
-  lower(l, most - fmax(used - files, 0.0), group_name);
+static void memory_of_group_1(const char *folder, limits *l) {
+  memory_of_group(folder, "memory.limit_in_bytes", "memory.usage_in_bytes",
+                  "total_cache ", l);
 }
 
 static void lower_cores(double quota, double period, limits *l) {
@@ -90,7 +88,7 @@ static void cores_of_group_2(const char *folder, limits *l) {
 }
 
 static void of_group_2(const char *folder, limits *l) {
-  memory_of_group_2(folder, l);
+  memory_of_group(folder, "memory.max", "memory.current", "file ", l);
   cores_of_group_2(folder, l);
 }
 

@@ -1,6 +1,5 @@
 /* What the system lets this process have: cores and memory. */
-#ifndef PROTIS_SYSTEM_LIMITS_H
-#define PROTIS_SYSTEM_LIMITS_H
+#pragma once
 
 typedef struct limits {
   int cores;       /* of the affinity and the quota of the control groups */
@@ -15,5 +14,3 @@ double limits_held(void);
 /* All processors of the process, which has one until the first call: OpenBLAS
  * starts no thread when it is loaded. */
 void limits_release_processors(void);
-
-#endif

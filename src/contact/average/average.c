@@ -6,6 +6,7 @@
 
 #include "contact/average/box_tree.h"
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/vector.h"
 
 #include <math.h>
@@ -91,8 +92,7 @@ static void add_rim(layout *l, int corners, const double *const *corner) {
   size_t dim = (size_t)l->dim;
   if (on_mirror(l, corners, corner)) return;
   double *to = l->rim + (dim - 1) * dim * (size_t)l->n_rim++;
-  for (int k = 0; k < corners; ++k)
-    memcpy(to + dim * (size_t)k, corner[k], dim * sizeof *to);
+  for (int k = 0; k < corners; ++k) COPY(to + dim * (size_t)k, corner[k], dim);
 }
 
 /* Least or largest coordinate of the patch. */
@@ -439,10 +439,6 @@ static int meets_rim(builder *b, int i) {
   return 0;
 }
 
-static int by_number(const void *a, const void *b) {
-  return *(const int *)a - *(const int *)b;
-}
-
 static status add_entry(sparse_rows *rows, int *n, int cap[2], int col,
                         double val) {
   PASS_GROW(rows->col, *n, cap[0]);
@@ -457,7 +453,7 @@ static status keep_row(builder *b, int i, int cap[2]) {
   const average_patch *p = b->p;
   double seen = 0.0;
   int n = b->raw.start[i];
-  qsort(b->touched, (size_t)b->n_touched, sizeof *b->touched, by_number);
+  qsort(b->touched, (size_t)b->n_touched, sizeof *b->touched, number_order);
   for (int k = 0; k < b->n_touched; ++k) {
     int j = b->touched[k];
     if (p->active[j]) seen += b->row[j];

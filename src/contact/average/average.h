@@ -22,8 +22,7 @@
  * A node without another node within rho has its own pressure (G_ii = 1): where
  * the mesh is coarser than rho, friction is local.
  */
-#ifndef PROTIS_AVERAGE_AVERAGE_H
-#define PROTIS_AVERAGE_AVERAGE_H
+#pragma once
 
 #include "base/sparse.h"
 #include "base/status.h"
@@ -121,5 +120,3 @@ typedef struct average_facts {
  */
 status average_build(const average_patch *patch, const average_rule *rule,
                      sparse_rows *out, average_facts *facts);
-
-#endif

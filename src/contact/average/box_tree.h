@@ -2,8 +2,7 @@
  * Search for the items (faces, edges, points) near a point or along a line: a
  * balanced tree of bounding boxes, which serves items of any size.
  */
-#ifndef PROTIS_AVERAGE_BOX_TREE_H
-#define PROTIS_AVERAGE_BOX_TREE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -31,5 +30,3 @@ typedef struct box_beam {
 
 /* The items whose boxes meet each slab: found[n], their number. */
 int box_tree_along(const box_tree *t, const box_beam *beam, int *found);
-
-#endif

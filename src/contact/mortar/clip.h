@@ -2,8 +2,7 @@
  * One slave face in its plane, master faces projected into it, and what both
  * have in common. Inside src/contact/mortar only.
  */
-#ifndef PROTIS_MORTAR_CLIP_H
-#define PROTIS_MORTAR_CLIP_H
+#pragma once
 
 /* A segment or triangle in the plane of the slave face; 2-D: at[.][0] alone. */
 typedef struct cell {
@@ -63,5 +62,3 @@ typedef struct sample {
  */
 void dual_basis(int dim, const cell *corner, const int *kept, int n,
                 sample *points, double *d);
-
-#endif

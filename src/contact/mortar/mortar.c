@@ -64,21 +64,14 @@ typedef struct builder {
   mortar *out;
 } builder;
 
-static const int *nodes_of(const builder *b, int face) {
-  return b->in->mesh->face + (size_t)b->in->mesh->dim * (size_t)face;
-}
-
-static const double *place_of(const builder *b, int node) {
-  return b->in->x + (size_t)b->in->mesh->dim * (size_t)node;
-}
-
 /* Weight of the area of a slave face where its P1 functions are phi. */
 static double thickness(const builder *b, int face, const double *phi) {
   const double w = b->in->face_weight[face];
   if (!b->in->axisymmetric) return w;
-  const int *node = nodes_of(b, face);
+  const int *node = mortar_nodes(b->in, face);
   return 2 * acos(-1.0) * w *
-         (phi[0] * place_of(b, node[0])[0] + phi[1] * place_of(b, node[1])[0]);
+         (phi[0] * mortar_place(b->in, node[0])[0] +
+          phi[1] * mortar_place(b->in, node[1])[0]);
 }
 
 /* Thickness that a slave face and its partner number k share, over its own. */
@@ -160,7 +153,7 @@ static status entry_of(builder *b, const face_part *part, int node,
 static status add_dropped(builder *b, int face, face_part *part,
                           const int *kept) {
   const int dim = b->in->mesh->dim;
-  const int *node = nodes_of(b, face);
+  const int *node = mortar_nodes(b->in, face);
   for (int z = 0; z < dim; ++z) {
     entry *e;
     if (kept[z]) continue;
@@ -171,7 +164,7 @@ static status add_dropped(builder *b, int face, face_part *part,
         sum += b->points[k].weight * b->points[k].psi[j] * b->points[k].phi[z];
       e->part[j] -= sum;
       part->more[j] += sum;
-      add_scaled(dim, sum, place_of(b, node[z]), part->lever + dim * j);
+      add_scaled(dim, sum, mortar_place(b->in, node[z]), part->lever + dim * j);
     }
   }
   return OK;
@@ -182,7 +175,7 @@ static status add_masters(builder *b, face_part *part) {
   for (int k = 0; k < b->n_point; ++k) {
     const sample *p = &b->points[k];
     const partner *m = &b->search.list[p->partner];
-    const int *node = nodes_of(b, m->face);
+    const int *node = mortar_nodes(b->in, m->face);
     b->met[m->face] = 1;
     part->masters += p->weight * face_size(dim, m->size);
     for (int l = 0; l < dim; ++l) {
@@ -196,7 +189,7 @@ static status add_masters(builder *b, face_part *part) {
 }
 
 static int set_kept(const builder *b, int face, int *kept) {
-  const int *node = nodes_of(b, face);
+  const int *node = mortar_nodes(b->in, face);
   int n = 0;
   for (int k = 0; k < b->in->mesh->dim; ++k)
     n += kept[k] = b->state[node[k]] == CARRIES;
@@ -235,7 +228,7 @@ static status do_face(builder *b, int i) {
   int kept[3];
   memset(part, 0, sizeof *part);
   part->first = part->end = (size_t)b->n_entry;
-  if (facet_set(b->in->mesh->dim, nodes_of(b, face), b->in->x, &f) != 0)
+  if (facet_set(b->in->mesh->dim, mortar_nodes(b->in, face), b->in->x, &f) != 0)
     return OK;
   memcpy(part->normal, f.normal, sizeof part->normal);
   part->size = face_size(f.dim, f.measure);
@@ -260,11 +253,11 @@ static status set_around(builder *b) {
   const int dim = in->mesh->dim, n = in->n_slave * dim;
   PASS_NEW_ALL(OF(b->start, in->mesh->n_node + 2), OF(b->around, n));
   for (int i = 0; i < n; ++i)
-    ++b->start[nodes_of(b, in->slave[i / dim])[i % dim] + 2];
+    ++b->start[mortar_nodes(b->in, in->slave[i / dim])[i % dim] + 2];
   for (int i = 0; i < in->mesh->n_node; ++i) b->start[i + 2] += b->start[i + 1];
   for (int i = 0; i < n; ++i)
-    b->around[b->start[nodes_of(b, in->slave[i / dim])[i % dim] + 1]++] =
-        i / dim;
+    b->around[b->start[mortar_nodes(b->in, in->slave[i / dim])[i % dim] +
+                       1]++] = i / dim;
   return OK;
 }
 
@@ -277,14 +270,14 @@ static void set_states(builder *b) {
     b->state[i] = !is_slave ? NO_SLAVE : is_dropped ? DROPPED : CARRIES;
   }
   for (int i = 0; i < in->n_master * dim; ++i) {
-    const int node = nodes_of(b, in->master[i / dim])[i % dim];
+    const int node = mortar_nodes(b->in, in->master[i / dim])[i % dim];
     if (b->state[node] == CARRIES) b->state[node] = DROPPED;
   }
 }
 
 /* Place of a node among those of a slave face. */
 static int corner_of(const builder *b, int i, int node) {
-  const int *v = nodes_of(b, b->in->slave[i]);
+  const int *v = mortar_nodes(b->in, b->in->slave[i]);
   int k = 0;
   while (v[k] != node) ++k;
   return k;
@@ -330,7 +323,7 @@ static status do_faces(builder *b) {
   for (int i = 0; i < b->in->n_slave; ++i) PASS(do_face(b, i));
   leave_out(b);
   for (int i = 0; i < b->in->n_slave; ++i) {
-    const int *node = nodes_of(b, b->in->slave[i]);
+    const int *node = mortar_nodes(b->in, b->in->slave[i]);
     int redo = 0;
     for (int k = 0; k < dim; ++k) redo |= b->state[node[k]] == SCANT;
     if (redo) PASS(do_face(b, i));
@@ -357,14 +350,14 @@ static status set_node_normals(builder *b) {
   PASS_NEW(b->normal, (size_t)dim * n);
   for (int i = 0; i < in->n_master * dim; ++i) {
     const facet *f = &b->search.master[i / dim];
-    const int node = nodes_of(b, in->master[i / dim])[i % dim];
+    const int node = mortar_nodes(b->in, in->master[i / dim])[i % dim];
     b->slot[node] = 0;
     if (b->met[in->master[i / dim]])
       add_scaled(dim, f->measure, f->normal,
                  b->normal + (size_t)dim * (size_t)node);
   }
   for (int i = 0; i < in->n_slave * dim; ++i) {
-    const int node = nodes_of(b, in->slave[i / dim])[i % dim];
+    const int node = mortar_nodes(b->in, in->slave[i / dim])[i % dim];
     const face_part *f = &b->face[i / dim];
     if (b->slot[node] != 0)
       add_scaled(dim, -f->share[i % dim], f->normal,
@@ -454,7 +447,7 @@ static void set_resultant(builder *b, int q) {
   const int dim = b->in->mesh->dim, node = m->node_id[q];
   const double own = m->area[q];
   double *lever = m->lever + (size_t)dim * (size_t)q;
-  add_scaled(dim, own, place_of(b, node), lever);
+  add_scaled(dim, own, mortar_place(b->in, node), lever);
   for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
     const face_part *f = &b->face[b->around[a]];
     const int k = corner_of(b, b->around[a], node);
@@ -506,12 +499,12 @@ static status set_links(builder *b) {
 static void set_gap(builder *b, int q) {
   const int dim = b->in->mesh->dim;
   const node_links *l = &b->out->to;
-  const double *x = place_of(b, b->out->node_id[q]);
+  const double *x = mortar_place(b->in, b->out->node_id[q]);
   double *gap = b->out->gap + (size_t)dim * (size_t)q;
   for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
     for (int c = 0; c < dim; ++c)
-      gap[c] +=
-          l->part[(size_t)dim * e] * (place_of(b, l->master[e])[c] - x[c]);
+      gap[c] += l->part[(size_t)dim * e] *
+                (mortar_place(b->in, l->master[e])[c] - x[c]);
 }
 
 static status set_nodes(builder *b) {

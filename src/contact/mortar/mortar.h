@@ -28,8 +28,7 @@
  * relative to, as an average, is (u_j - sum_l P_jl u_l) D_j / int psi_j. A face
  * without any node left carries nothing.
  */
-#ifndef PROTIS_MORTAR_MORTAR_H
-#define PROTIS_MORTAR_MORTAR_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -101,5 +100,3 @@ typedef struct mortar {
 /* *out is new, also if n = 0. ERR_MEMORY. */
 status mortar_couple(const mortar_input *in, mortar **out);
 void mortar_free(mortar *m); /* accepts NULL */
-
-#endif

@@ -11,18 +11,9 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 /* Faces that are seen at less than this sine, from their edge, - . */
 static const double edge_on = 1e-6;
-
-static const int *face_nodes(const mortar_input *in, int face) {
-  return in->mesh->face + (size_t)in->mesh->dim * (size_t)face;
-}
-
-static const double *place_of(const mortar_input *in, int node) {
-  return in->x + (size_t)in->mesh->dim * (size_t)node;
-}
 
 /* Diagonal of the box round n faces, m; largest |coordinate| so far. */
 static double extent(const mortar_input *in, int n, const int *face,
@@ -30,7 +21,8 @@ static double extent(const mortar_input *in, int n, const int *face,
   const int dim = in->mesh->dim;
   double low[3] = {0}, high[3] = {0}, sum = 0.0;
   for (int i = 0; i < n * dim; ++i) {
-    const double *x = place_of(in, face_nodes(in, face[i / dim])[i % dim]);
+    const double *x =
+        mortar_place(in, mortar_nodes(in, face[i / dim])[i % dim]);
     for (int c = 0; c < dim; ++c) {
       low[c] = i == 0 ? x[c] : fmin(low[c], x[c]);
       high[c] = i == 0 ? x[c] : fmax(high[c], x[c]);
@@ -49,9 +41,8 @@ static status plant(const mortar_input *in, int n, const int *face,
   PASS_NEW(corner, size * (size_t)n);
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < dim; ++k)
-      memcpy(corner + size * (size_t)i + dim * k,
-             place_of(in, face_nodes(in, face[i])[k]),
-             (size_t)dim * sizeof *corner);
+      COPY(corner + size * (size_t)i + dim * k,
+           mortar_place(in, mortar_nodes(in, face[i])[k]), dim);
   return box_tree_new(dim, n, dim, corner, out);
 }
 
@@ -62,7 +53,7 @@ status partner_search_new(const mortar_input *in, partner_search *s) {
                OF(s->group, in->mesh->n_node));
   for (int i = 0; i < in->mesh->n_node; ++i) s->group[i] = -1;
   for (int i = 0; i < in->n_master; ++i)
-    if (facet_set(in->mesh->dim, face_nodes(in, in->master[i]), in->x,
+    if (facet_set(in->mesh->dim, mortar_nodes(in, in->master[i]), in->x,
                   &s->master[i]) != 0)
       s->master[i].measure = 0;
   s->reach = fmax(extent(in, in->n_slave, in->slave, &s->largest),
@@ -136,7 +127,7 @@ static double cells_measure(int dim, int n, const cell *cells) {
 static status try_face(partner_search *s, const facet *f, partner p) {
   const int dim = f->dim;
   cell common[CLIP_CELLS];
-  facet_project(f, face_nodes(s->in, p.face), s->in->x, &p.s);
+  facet_project(f, mortar_nodes(s->in, p.face), s->in->x, &p.s);
   ++s->clips;
   p.n = cell_common(dim, &f->in_plane, &p.s.in_plane, common);
   const double negligible =
@@ -164,7 +155,7 @@ static int are_joined(partner_search *s, int dim) {
   int n_group = s->n;
   for (int i = 0; i < s->n; ++i) s->list[i].group = i;
   for (int i = 0; i < s->n * dim; ++i) {
-    const int node = face_nodes(s->in, s->list[i / dim].face)[i % dim];
+    const int node = mortar_nodes(s->in, s->list[i / dim].face)[i % dim];
     const int a = root(s->list, i / dim);
     if (s->group[node] < 0) s->group[node] = a;
     const int b = root(s->list, s->group[node]);
@@ -173,7 +164,7 @@ static int are_joined(partner_search *s, int dim) {
     --n_group;
   }
   for (int i = 0; i < s->n * dim; ++i)
-    s->group[face_nodes(s->in, s->list[i / dim].face)[i % dim]] = -1;
+    s->group[mortar_nodes(s->in, s->list[i / dim].face)[i % dim]] = -1;
   return n_group <= 1;
 }
 
@@ -223,8 +214,8 @@ static status take_out(partner_search *s, int dim, int first,
 static int may_hide(const partner_search *s, int dim, const partner *q,
                     const partner *p) {
   if (q->hides) return (q->height < 0) == (p->height < 0);
-  return !share_node(dim, face_nodes(s->in, p->face),
-                     face_nodes(s->in, q->face));
+  return !share_node(dim, mortar_nodes(s->in, p->face),
+                     mortar_nodes(s->in, q->face));
 }
 
 /* The cells of partner i less what those before it in the list cover. */
@@ -313,7 +304,7 @@ static int is_listed(const partner_search *s, int n, int face) {
 /* Other faces of the slave that stand between f and its partners. */
 static status add_slaves(partner_search *s, int face, const facet *f) {
   const int dim = f->dim, n_master = s->n;
-  const int *node = face_nodes(s->in, face);
+  const int *node = mortar_nodes(s->in, face);
   double low = 0.0, high = 0.0;
   for (int i = 0; i < s->n; ++i) {
     low = fmin(low, s->list[i].height);
@@ -324,7 +315,7 @@ static status add_slaves(partner_search *s, int face, const facet *f) {
   for (int i = 0; i < n; ++i) {
     const partner p = {.face = s->in->slave[s->found[i]],
                        .hides = HIDING_SLAVE};
-    if (share_node(dim, node, face_nodes(s->in, p.face))) continue;
+    if (share_node(dim, node, mortar_nodes(s->in, p.face))) continue;
     if (!is_listed(s, n_master, p.face)) PASS(try_face(s, f, p));
   }
   return OK;

@@ -2,12 +2,19 @@
  * The partners of a slave face among the master faces, and the parts of it that
  * each covers (the rule stands in mortar.h). Inside src/contact/mortar only.
  */
-#ifndef PROTIS_MORTAR_PARTNER_H
-#define PROTIS_MORTAR_PARTNER_H
+#pragma once
 
 #include "contact/average/box_tree.h"
 #include "contact/mortar/clip.h"
 #include "contact/mortar/mortar.h"
+
+/* Nodes of a face; place of a node, m. */
+static inline const int *mortar_nodes(const mortar_input *in, int face) {
+  return mesh_face_nodes(in->mesh, face);
+}
+static inline const double *mortar_place(const mortar_input *in, int node) {
+  return in->x + (size_t)in->mesh->dim * (size_t)node;
+}
 
 /* A face over or below the slave face: a partner, or one that hides what is
  * behind it, a master that does not oppose or a face of the slave. */
@@ -47,5 +54,3 @@ void partner_search_release(partner_search *s); /* accepts all-zero */
 double partner_rounding(const partner_search *s, const facet *f);
 /* list and cells of this slave face. */
 status partner_find(partner_search *s, int face, const facet *f);
-
-#endif

@@ -524,19 +524,13 @@ static const column columns[] = {
  jump_help},
 {"radius", "length", TIP, CART, 0, NULL, 0, tip_radius, NULL,
  "of the largest domain"}};
-/* clang-format on */
 
-const effect_ops cracks_effect = {.name = "stress intensity factors",
-                                  .bit = NO_BIT,
-                                  .required = requires_factors,
-                                  .expected = expected,
-                                  .table = {PRINT_SIF, PER_TIP},
-                                  .size = sizeof(crack_state),
-                                  .on.create = cracks_new,
-                                  .on.due = factors_due,
-                                  .on.accept = find_factors,
-                                  .on.copy = cracks_copy,
-                                  .on.release = release,
-                                  .columns = columns,
-                                  .n_column = COLUMNS(columns),
-                                  .items = tips_items};
+const effect_ops cracks_effect = {
+  .name = "stress intensity factors", .bit = NO_BIT,
+  .required = requires_factors, .expected = expected,
+  .table = {PRINT_SIF, PER_TIP}, .size = sizeof(crack_state),
+  .items = tips_items,
+  .on = {.create = cracks_new, .due = factors_due, .accept = find_factors,
+         .copy = cracks_copy, .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -301,8 +301,7 @@ static status find_stick(run *r, friction *own) {
   return OK;
 }
 
-/* ---- before the run -------------------------------------------------------
- */
+/* ---- before the run ------------------------------------------------------ */
 
 /* Supports ud[dim*n_node] before and at t, drift[dim*n] of the obstacles in
  * between. What is not known is NaN and moves nothing. */
@@ -337,17 +336,16 @@ static status check_travels(const run *r, travel *x, const double *none) {
   const step *s = r->step;
   const int fresh = s->kind == STEP_STATIC;
   const int n = fresh ? 1 : (int)fmin(MOST, ceil(step_increments(s)));
-  const size_t bytes = r->n_dof * sizeof *x->now;
   x->t = fresh ? 0.0 : s->start;
-  memcpy(x->before, fresh ? none : r->loads.start, bytes);
+  COPY(x->before, fresh ? none : r->loads.start, r->n_dof);
   for (int k = 1; k <= n; ++k) {
     const double t = s->start + s->total * k / n, before = x->t;
     x->t = k < n ? t : s->start + s->total;
-    memset(x->drift, 0, (size_t)r->nodes.n_c * sizeof *x->drift);
+    CLEAR(x->drift, r->nodes.n_c);
     surface_drift(r->surface, &r->faces.input, before, x->t, x->drift);
     PASS(load_prescribed(r->m, r->msh, s, x->t, r->loads.start, x->now));
     PASS(check_travel(r, x));
-    memcpy(x->before, x->now, bytes);
+    COPY(x->before, x->now, r->n_dof);
   }
   return OK;
 }

@@ -8,8 +8,6 @@
 #include "effects/rows.h"
 #include "run/run.h"
 
-#include <string.h>
-
 /* Those of a new surface. */
 static status prepare(run *r, void *self) {
   (void)self;
@@ -21,8 +19,7 @@ static status prepare(run *r, void *self) {
 
 static status pose(run *r, void *self, double t) {
   (void)self;
-  memcpy(r->now.motion, r->old.motion,
-         (size_t)r->nodes.n_c * sizeof *r->now.motion);
+  COPY(r->now.motion, r->old.motion, r->nodes.n_c);
   surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
   return OK;
 }

@@ -54,19 +54,13 @@ static status level_new(int dim, int n, level *l) {
 }
 
 static void level_free(level *l) {
-  memory_free(l->in);
-  memory_free(l->square);
-  memory_free(l->slope);
-  memory_free(l->weight);
+  RELEASE(l->in, l->square, l->slope, l->weight);
 }
 
 static void finder_free(finder *z) {
   level_free(&z->closed);
   level_free(&z->stick);
-  memory_free(z->index);
-  memory_free(z->next);
-  memory_free(z->next_face);
-  memory_free(z->before);
+  RELEASE(z->index, z->next, z->next_face, z->before);
 }
 
 static status finder_new(run *r, finder *z) {

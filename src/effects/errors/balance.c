@@ -158,8 +158,7 @@ done:
   return st;
 }
 
-/* ---- what is estimated
- * ------------------------------------------------------ */
+/* ---- what is estimated --------------------------------------------------- */
 
 static int ends_at_once(const solver_report *rep) {
   const char *family = solver_family(rep->solver);
@@ -194,7 +193,6 @@ static void make_report(const run *r, balance *b) {
 
 static status learn(run *r, void *self) {
   balance *b = self;
-  size_t bytes = (size_t)b->m * sizeof *b->u;
   if (!is_balanced(r)) return OK;
   make_report(r, b);
   if (isfinite(r->errors.mesh_error.relative))
@@ -209,8 +207,8 @@ static status learn(run *r, void *self) {
   b->before = r->errors.error.relative;
   b->t = r->old.t;
   b->known = r->now.t > r->old.t;
-  memcpy(b->u, r->old.uc, bytes);
-  memcpy(b->rc, r->old.rc, bytes);
+  COPY(b->u, r->old.uc, b->m);
+  COPY(b->rc, r->old.rc, b->m);
   return OK;
 }
 
@@ -240,14 +238,10 @@ static int requires_balance(const model *m, char *why, size_t size) {
   return any;
 }
 
-const effect_ops balance_effect = {.name = "balance",
-                                   .bit = NO_BIT,
-                                   .required = requires_balance,
-                                   .own = STAGE_NONE,
-                                   .size = sizeof(balance),
-                                   .on.begin_step = begin_step,
-                                   .on.solve = solve,
-                                   .on.accept = learn,
-                                   .on.show = show,
-                                   .on.keep = keep,
-                                   .on.release = release};
+/* clang-format off */
+const effect_ops balance_effect = {
+  .name = "balance", .bit = NO_BIT, .required = requires_balance,
+  .own = STAGE_NONE, .size = sizeof(balance),
+  .on = {.begin_step = begin_step, .solve = solve, .accept = learn,
+         .show = show, .keep = keep, .release = release}};
+/* clang-format on */

@@ -71,16 +71,11 @@ static const column columns[] = {
 {"true_pressure_error", "%", INC, 0, ON(REFERENCE), ANY,
  "true_pressure_error", 0, true_pressure, NULL,
  "the same of the contact pressure in the L2 norm"}};
-/* clang-format on */
 
-const effect_ops closed_form_effect = {.name = "closed form",
-                                       .bit = EFFECT_BIT_REFERENCE,
-                                       .required = requires_reference,
-                                       .expected = expected,
-                                       .own = STAGE_REFERENCE,
-                                       .size = sizeof(true_error),
-                                       .on.create = exact_new,
-                                       .on.accept = find,
-                                       .on.show = show,
-                                       .columns = columns,
-                                       .n_column = COLUMNS(columns)};
+const effect_ops closed_form_effect = {
+  .name = "closed form", .bit = EFFECT_BIT_REFERENCE,
+  .required = requires_reference, .expected = expected, .own = STAGE_REFERENCE,
+  .size = sizeof(true_error),
+  .on = {.create = exact_new, .accept = find, .show = show},
+  COLUMNS_OF(columns)};
+/* clang-format on */

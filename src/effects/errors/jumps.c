@@ -138,8 +138,7 @@ typedef struct path {
 
 static void path_free(path *s) {
   for (int k = 0; k < s->n; ++k) {
-    memory_free(s->p[k].u);
-    memory_free(s->p[k].status);
+    RELEASE(s->p[k].u, s->p[k].status);
   }
   memory_free(s->room);
 }
@@ -334,17 +333,12 @@ static void release(void *self) {
 }
 
 /* The hooks enter the stage themselves, where there is something to do. */
-const effect_ops second_solutions_effect = {.name = "second solutions, jumps",
-                                            .bit = NO_BIT,
-                                            .required = requires_check,
-                                            .expected = products,
-                                            .own = STAGE_NONE,
-                                            .more = {STAGE_CHECK},
-                                            .size = sizeof(checked),
-                                            .on.check = check_asked,
-                                            .on.begin_step = begin_step,
-                                            .on.examine = look_for_jump,
-                                            .on.accept = find_others,
-                                            .on.show = show,
-                                            .on.keep = keep,
-                                            .on.release = release};
+/* clang-format off */
+const effect_ops second_solutions_effect = {
+  .name = "second solutions, jumps", .bit = NO_BIT, .required = requires_check,
+  .expected = products, .own = STAGE_NONE, .more = {STAGE_CHECK},
+  .size = sizeof(checked),
+  .on = {.check = check_asked, .begin_step = begin_step,
+         .examine = look_for_jump, .accept = find_others, .show = show,
+         .keep = keep, .release = release}};
+/* clang-format on */

@@ -66,11 +66,8 @@ static status estimate(run *r, void *self) {
   r->errors.mesh_error.asked = run_finds_mesh_error(r);
   if (!r->errors.mesh_error.asked) return OK;
   PASS(recover(r, own));
-  timer_enter(STAGE_MESH_ERROR);
-  status st =
-      space_estimate(own->recovery, r->result.stress, own->elem_error, &found);
-  timer_leave(STAGE_MESH_ERROR);
-  if (st != OK) return st;
+  PASS_TIMED(STAGE_MESH_ERROR, space_estimate(own->recovery, r->result.stress,
+                                              own->elem_error, &found));
   r->errors.mesh_error.relative = found.relative;
   r->errors.mesh_error.why =
       found.relative > EXACT && space_is_coarse(own->recovery)
@@ -131,18 +128,12 @@ static const column columns[] = {
 {"mesh_error", "%", INC, 0, ON(MESH_ERROR), ANY, "mesh_error", 0, mesh_error,
  NULL, "estimate of the error of the mesh in the energy norm, of that of the "
  "solution; NaN: not required"}};
-/* clang-format on */
 
-const effect_ops mesh_error_effect = {.name = "error of mesh",
-                                      .bit = EFFECT_BIT_MESH_ERROR,
-                                      .required = requires_mesh_error,
-                                      .expected = expected,
-                                      .own = STAGE_MESH_ERROR,
-                                      .inside = 1,
-                                      .size = sizeof(mesh_estimate),
-                                      .on.create = estimate_new,
-                                      .on.estimate = estimate,
-                                      .on.keep = keep,
-                                      .on.release = release,
-                                      .columns = columns,
-                                      .n_column = COLUMNS(columns)};
+const effect_ops mesh_error_effect = {
+  .name = "error of mesh", .bit = EFFECT_BIT_MESH_ERROR,
+  .required = requires_mesh_error, .expected = expected,
+  .own = STAGE_MESH_ERROR, .inside = 1, .size = sizeof(mesh_estimate),
+  .on = {.create = estimate_new, .estimate = estimate, .keep = keep,
+         .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */

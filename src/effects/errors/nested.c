@@ -142,13 +142,10 @@ static int requires_start(const model *m, char *why, size_t size) {
   return m->accuracy.coarser != NULL;
 }
 
-const effect_ops nested_effect = {.name = "nested start",
-                                  .bit = NO_BIT,
-                                  .required = requires_start,
-                                  .own = STAGE_NONE,
-                                  .size = sizeof(nested),
-                                  .on.create = nested_new,
-                                  .on.pose = pose,
-                                  .on.accept = compare,
-                                  .on.forget = forget,
-                                  .on.release = release};
+/* clang-format off */
+const effect_ops nested_effect = {
+  .name = "nested start", .bit = NO_BIT, .required = requires_start,
+  .own = STAGE_NONE, .size = sizeof(nested),
+  .on = {.create = nested_new, .pose = pose, .accept = compare,
+         .forget = forget, .release = release}};
+/* clang-format on */

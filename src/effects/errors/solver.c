@@ -117,18 +117,11 @@ static const column columns[] = {
  "bound of the energy of that error"},
 {"contraction", "-", INC, AT(2), F | ON(ESTIMATES), ANY, "contraction", 0,
  contraction, NULL, "rate of the fixed point on the sliding limit"}};
-/* clang-format on */
 
-const effect_ops solver_error_effect = {.name = "error of solver",
-                                        .bit = EFFECT_BIT_ESTIMATES,
-                                        .required = requires_bound,
-                                        .expected = expected,
-                                        .own = STAGE_ESTIMATE,
-                                        .inside = 1,
-                                        .columns = columns,
-                                        .n_column = COLUMNS(columns),
-                                        .of_state = 1,
-                                        .size = sizeof(bounds),
-                                        .on.estimate = estimate,
-                                        .on.accept = accept,
-                                        .on.keep = keep};
+const effect_ops solver_error_effect = {
+  .name = "error of solver", .bit = EFFECT_BIT_ESTIMATES,
+  .required = requires_bound, .expected = expected, .own = STAGE_ESTIMATE,
+  .inside = 1, .of_state = 1, .size = sizeof(bounds),
+  .on = {.estimate = estimate, .accept = accept, .keep = keep},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -91,11 +91,7 @@ static void path_free(finer_path *p) {
   waypoint_free(&p->at);
   waypoint_free(&p->middle);
   waypoint_free(&p->end);
-  memory_free(p->d);
-  memory_free(p->Ad);
-  memory_free(p->u);
-  memory_free(p->e0);
-  memory_free(p);
+  RELEASE(p->d, p->Ad, p->u, p->e0, p);
 }
 
 /* The equilibrium at t from where "from" stands, into "to". */
@@ -135,8 +131,7 @@ static status try_halves(run *r, finer_path *p, double t) {
   p->lost = r->solving.report.outcome <= 0;
   if (p->lost || p->u == NULL) return OK;
   memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
-  memcpy(p->e0, r->strains.eigen.e0,
-         visco_at(r, r->strains.eigen.n) * sizeof *p->e0);
+  COPY(p->e0, r->strains.eigen.e0, visco_at(r, r->strains.eigen.n));
   return OK;
 }
 
@@ -476,21 +471,12 @@ static const column columns[] = {
 {"time_error", "%", INC, 0, ON(TIME_ERROR), ANY, "time_error", 0, time_error,
  NULL, "estimate of the error of the increments in that norm; NaN: not "
  "required, or unknown"}};
-/* clang-format on */
 
-const effect_ops time_error_effect = {.name = "error of steps",
-                                      .bit = EFFECT_BIT_TIME_ERROR,
-                                      .required = requires_time_error,
-                                      .expected = expected,
-                                      .own = STAGE_TIME_ERROR,
-                                      .inside = 1,
-                                      .size = sizeof(paths),
-                                      .on.begin_step = begin_step,
-                                      .on.make_step = march,
-                                      .on.attempt = try_path,
-                                      .on.accept = compare,
-                                      .on.forget = forget,
-                                      .on.keep = keep,
-                                      .on.release = release,
-                                      .columns = columns,
-                                      .n_column = COLUMNS(columns)};
+const effect_ops time_error_effect = {
+  .name = "error of steps", .bit = EFFECT_BIT_TIME_ERROR,
+  .required = requires_time_error, .expected = expected,
+  .own = STAGE_TIME_ERROR, .inside = 1, .size = sizeof(paths),
+  .on = {.begin_step = begin_step, .make_step = march, .attempt = try_path,
+         .accept = compare, .forget = forget, .keep = keep, .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */

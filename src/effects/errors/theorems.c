@@ -115,9 +115,7 @@ static void body_map_free(body_map *b) {
   matrices_free(&b->own);
   frozen_free(&b->problem);
   linear_contact_free(b->contact);
-  double *owned[] = {b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du};
-  for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i)
-    memory_free(owned[i]);
+  RELEASE(b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du);
 }
 
 /* e0 = Q sigma of all points. */
@@ -233,16 +231,11 @@ static void show(const void *self, state *s) {
 
 static void release(void *self) { theorems_free(((checked *)self)->at_work); }
 
-const effect_ops theorems_effect = {.name = "theory checks",
-                                    .bit = EFFECT_BIT_THEORY,
-                                    .required = requires_theorems,
-                                    .expected = expected,
-                                    .own = STAGE_THEORY,
-                                    .shadow = 1,
-                                    .size = sizeof(checked),
-                                    .on.create = checked_new,
-                                    .on.due = due,
-                                    .on.initial = see_start,
-                                    .on.accept = see_increment,
-                                    .on.show = show,
-                                    .on.release = release};
+/* clang-format off */
+const effect_ops theorems_effect = {
+  .name = "theory checks", .bit = EFFECT_BIT_THEORY,
+  .required = requires_theorems, .expected = expected, .own = STAGE_THEORY,
+  .shadow = 1, .size = sizeof(checked),
+  .on = {.create = checked_new, .due = due, .initial = see_start,
+         .accept = see_increment, .show = show, .release = release}};
+/* clang-format on */

@@ -108,13 +108,10 @@ static int requires_warnings(const model *m, char *why, size_t size) {
   return !m->problem.given;
 }
 
-const effect_ops warnings_effect = {.name = "warnings",
-                                    .bit = NO_BIT,
-                                    .required = requires_warnings,
-                                    .own = STAGE_NONE,
-                                    .size = sizeof(warnings),
-                                    .on.create = warnings_new,
-                                    .on.accept = look,
-                                    .on.end = end,
-                                    .on.keep = keep,
-                                    .on.release = release};
+/* clang-format off */
+const effect_ops warnings_effect = {
+  .name = "warnings", .bit = NO_BIT, .required = requires_warnings,
+  .own = STAGE_NONE, .size = sizeof(warnings),
+  .on = {.create = warnings_new, .accept = look, .end = end, .keep = keep,
+         .release = release}};
+/* clang-format on */

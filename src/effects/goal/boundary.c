@@ -183,18 +183,14 @@ static void set_bulges(const run *r, const goal_ring *rings, patch *p) {
   p->is_curved = most > 1e-9 * length;
 }
 
-static double thickness_of(const run *r, int elem_id) {
-  return r->m->sections[r->m->elem_section[elem_id]].thickness;
-}
-
 static patch face_patch(const run *r, const goal_ring *rings, int face) {
   const mesh *m = r->msh;
   patch p = {.n = m->dim, .elem = m->face_elem[face]};
   const int *v = m->elem + (m->dim + 1) * m->face_elem[face];
   double g[12];
   memcpy(p.node, m->face + m->dim * face, (size_t)m->dim * sizeof *p.node);
-  p.weight =
-      mesh_face_normal(m, face, p.normal) * thickness_of(r, m->face_elem[face]);
+  p.weight = mesh_face_normal(m, face, p.normal) *
+             model_thickness(r->m, m->face_elem[face]);
   if (m->face_other[face] >= 0) return p;
   set_bulges(r, rings, &p);
   if (!p.is_curved) return p;
@@ -469,7 +465,7 @@ static patch element_patch(const run *r, int e) {
   const mesh *m = r->msh;
   patch p = {.n = m->dim + 1};
   memcpy(p.node, m->elem + p.n * e, (size_t)p.n * sizeof *p.node);
-  p.weight = mesh_elem_measure(m, e) * thickness_of(r, e);
+  p.weight = mesh_elem_measure(m, e) * model_thickness(r->m, e);
   return p;
 }
 

@@ -76,10 +76,6 @@ static void release(void *self) {
 
 /* ---- what the estimate covers -------------------------------------------- */
 
-static int has_stiffness(const run *r) {
-  return r->problem.cp.A != NULL || r->problem.cp.op != NULL;
-}
-
 /* 1: of pairs there are cracks alone, each within one material. */
 static int has_cracks_alone(const run *r) {
   const mesh *m = r->msh;
@@ -97,7 +93,8 @@ static int is_covered(const run *r) {
   return has_cracks_alone(r) && r->body.d.cluster == NULL &&
          r->strains.visco == NULL && effects_sum_up(r) == NULL &&
          r->problem.given == NULL && r->m->mesh.corner_id < 0 &&
-         (r->nodes.n == 0 || has_stiffness(r)) && r->solving.report.outcome > 0;
+         (r->nodes.n == 0 || contact_has_stiffness(&r->problem.cp)) &&
+         r->solving.report.outcome > 0;
 }
 
 /* ---- the increments before ----------------------------------------------- */
@@ -110,9 +107,7 @@ static int remembers(const run *r, const goal_state *own) {
 /* A static problem starts from the origin. */
 static void forget(const run *r, goal_history *h, int n) {
   if (r->step->kind != STEP_STATIC || r->course.relaxing) return;
-  if (h->edge != NULL)
-    memset(h->edge, 0,
-           (size_t)r->msh->dim * (size_t)h->n_edge * sizeof *h->edge);
+  if (h->edge != NULL) CLEAR(h->edge, (size_t)r->msh->dim * (size_t)h->n_edge);
   memset(h->sum, 0, (size_t)n * sizeof *h->sum);
   memset(h->band, 0, (size_t)n * sizeof *h->band);
   h->lost = 0;
@@ -429,16 +424,15 @@ static status remember(run *r, goal_state *own, shared *s) {
     h->n_edge = s->surface.n_edge;
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   }
-  memcpy(h->edge, goal_estimator_edges(s->estimator),
-         (size_t)r->msh->dim * (size_t)h->n_edge * sizeof *h->edge);
+  COPY(h->edge, goal_estimator_edges(s->estimator),
+       (size_t)r->msh->dim * (size_t)h->n_edge);
   return move_nodes(r, own, s);
 }
 
 static status find_goal(run *r, goal_state *own, shared *s, int id) {
   goal_result *out = &own->result[id];
   double *product = product_of(r, own, id);
-  if (product != NULL)
-    memset(product, 0, (size_t)r->msh->n_elem * sizeof *product);
+  if (product != NULL) CLEAR(product, r->msh->n_elem);
   PASS(goal_form_set(r, &r->m->accuracy.goals[id], &s->form));
   *out =
       (goal_result){s->form.value, NAN, NAN, NAN, NAN, out->cpu, s->form.why};
@@ -568,19 +562,12 @@ static const column columns[] = {
  "stick, or a support ends, or in an inner corner"},
 {"verdict", "-", WORD, goal_no, goal_word,
  "reliable, or why not"}};
-/* clang-format on */
 
-const effect_ops goals_effect = {.name = "errors of goals",
-                                 .bit = NO_BIT,
-                                 .required = requires_goals,
-                                 .expected = expected,
-                                 .table = {PRINT_GOALS, PER_GOAL},
-                                 .size = sizeof(goal_state),
-                                 .on.create = goals_new,
-                                 .on.accept = find_goals,
-                                 .on.show = show,
-                                 .on.keep = keep,
-                                 .on.release = release,
-                                 .columns = columns,
-                                 .n_column = COLUMNS(columns),
-                                 .items = goal_items};
+const effect_ops goals_effect = {
+  .name = "errors of goals", .bit = NO_BIT, .required = requires_goals,
+  .expected = expected, .table = {PRINT_GOALS, PER_GOAL},
+  .size = sizeof(goal_state), .items = goal_items,
+  .on = {.create = goals_new, .accept = find_goals, .show = show, .keep = keep,
+         .release = release},
+  COLUMNS_OF(columns)};
+/* clang-format on */

@@ -4,8 +4,7 @@
  * the contact surface as the estimate sees it (surface.c). Private to
  * src/effects/goal.
  */
-#ifndef PROTIS_EFFECTS_GOAL_PARTS_H
-#define PROTIS_EFFECTS_GOAL_PARTS_H
+#pragma once
 
 #include "accuracy/goal/goal.h"
 #include "fracture/fracture.h"
@@ -118,5 +117,3 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
 /* 1: node i of the surface stands on a plane of symmetry along tangent a, or on
  * the axis. */
 int goal_is_mirrored(const run *r, int i);
-
-#endif

@@ -35,9 +35,7 @@ static void clear(const run *r, goal_form *f) {
   memset(f->load, 0, r->n_dof * sizeof *f->load);
   memset(f->rows, 0, n_c * sizeof *f->rows);
   memset(f->psi, 0, n_c * sizeof *f->psi);
-  if (f->has_tau)
-    memset(f->tau, 0,
-           (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
+  if (f->has_tau) CLEAR(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   fracture_linear_free(&f->factor);
   f->value = f->curved = f->size = f->held = f->rough = 0.0;
   f->n_mean = 0;
@@ -255,8 +253,7 @@ static status set_energy(const run *r, const goal_card *g, goal_form *f) {
     if (beyond[e] != 0.0) f->curved += beyond[e] * energy_density(r, e);
   f->value = r->now.energy.strain;
   f->has_tau = f->is_square = 1;
-  memcpy(f->tau, r->result.stress,
-         (size_t)r->m->ns * (size_t)r->msh->n_elem * sizeof *f->tau);
+  COPY(f->tau, r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   return OK;
 }
 

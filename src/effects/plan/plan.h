@@ -7,8 +7,7 @@
  * Shares are of all that follows the mesh: deck, mesh and what gmsh takes are
  * not part of them.
  */
-#ifndef PROTIS_PLAN_PLAN_H
-#define PROTIS_PLAN_PLAN_H
+#pragma once
 
 #include "run/effect.h"
 
@@ -73,6 +72,9 @@ typedef struct plan_bytes {
 } plan_bytes;
 status plan_memory(const model *m, const mesh *msh, double nodes,
                    const stiffness_choice *choice, plan_bytes *b);
+/* ERR_MEMORY: n contact nodes would need more than the available memory. */
+status plan_expect(const model *m, const mesh *msh, int n,
+                   const stiffness_choice *choice);
 
 /* The plan as a table; lead before each line. */
 void plan_print(const effect_plan *p, const char *lead, FILE *f);
@@ -117,5 +119,3 @@ status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s);
 
 enum { PLAN_STEPS = 5 };                   /* of Newton's method a problem */
 enum { PLAN_SPARSE = 4, PLAN_DENSE = 10 }; /* flops an operation */
-
-#endif

@@ -103,7 +103,7 @@ static status count_held(const plan_sizes *s, double *unknowns, double *nodes) {
   OWNED unsigned char *fixed = NULL;
   *unknowns = *nodes = 0.0;
   PASS_NEW(fixed, dim * msh->n_node);
-  if (m->n.step > 0) load_fixed(m, msh, &m->steps[0], fixed);
+  if (m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i) {
     int any = 0;
     for (int c = 0; c < dim; ++c) any += fixed[dim * i + c] != 0;
@@ -198,4 +198,11 @@ status plan_memory(const model *m, const mesh *msh, double nodes,
   if (m->effects & EFFECT_INELASTIC)
     b->rest += s.elements * STAGES * real * s.ns;
   return OK;
+}
+
+status plan_expect(const model *m, const mesh *msh, int n,
+                   const stiffness_choice *choice) {
+  plan_bytes b;
+  PASS(plan_memory(m, msh, n, choice, &b));
+  return memory_require(b.factor + b.contact + b.rest, "the run");
 }

@@ -320,11 +320,10 @@ static double largest_temperature(const model *m) {
  * before, to which a body that creeps responds at once, by an increment. */
 static status find_jump(const model *m, const mesh *msh, int *jumps) {
   OWNED double *T0 = NULL, *before = NULL, *T = NULL;
-  const size_t bytes = (size_t)msh->n_elem * sizeof *T;
   *jumps = 0;
   PASS_NEW_REALS(msh->n_elem, &T0, &before, &T);
   PASS(load_temperature_initial(m, msh, T0));
-  memcpy(before, T0, bytes);
+  COPY(before, T0, msh->n_elem);
   for (int i = 0; i < m->n.step; ++i) {
     const step *s = &m->steps[i];
     PASS(load_temperature(m, msh, s, s->start, T0, T));

@@ -316,8 +316,7 @@ static void take_friction(reduction *n, const state *s) {
 
 static void take_forces(reduction *n, const state *s, const omitted *row) {
   const eigenstrain x = {n->msh->n_elem, n->elem_id, n->strain};
-  memset(n->force, 0,
-         (size_t)(n->msh->dim * n->msh->n_node) * sizeof *n->force);
+  CLEAR(n->force, n->msh->dim * n->msh->n_node);
   if (row->bit == EFFECT_BIT_FRICTION) {
     take_friction(n, s);
     return;
@@ -390,7 +389,7 @@ static status solve_again(reduction *n, const state *s, int k, double bound,
   if (s->contacts.surface != NULL)
     PASS_NEW(rc, s->contacts.surface->dim * s->contacts.surface->n);
   take_forces(n, s, row);
-  PASS(s->again.solve(s->again.run, n->force, n->u, rc, &solved));
+  PASS(shadow_with(s->again, n->force, n->u, rc, &solved));
   double change = solved ? part_of(distance(dofs, n->u, s->body.u),
                                    largest_entry(dofs, s->body.u))
                          : HUGE_VAL;

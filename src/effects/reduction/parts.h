@@ -1,6 +1,5 @@
 /* Sums of the bounds, shared by the files of this folder only. */
-#ifndef PROTIS_REDUCTION_PARTS_H
-#define PROTIS_REDUCTION_PARTS_H
+#pragma once
 
 #include "effects/reduction/reduction.h"
 #include "run/run.h"
@@ -59,5 +58,3 @@ const material *reduction_material(const reduction *n, int elem_id);
 /* Stresses of the run into n->sigma: its thermal strains and those of the laws
  * in force carry none. */
 status reduction_stress(reduction *n, const state *s);
-
-#endif

@@ -10,8 +10,7 @@
  * TOL and the second below TOL at every increment; else the run is repeated
  * with that effect, until all bounds hold.
  */
-#ifndef PROTIS_REDUCTION_REDUCTION_H
-#define PROTIS_REDUCTION_REDUCTION_H
+#pragma once
 
 #include "run/history/history.h"
 
@@ -36,5 +35,3 @@ int reduction_refuted(const model *m);
 /* Restore those above the tolerance or never measured; with "all" all, as the
  * run without them was not solved. Their number. */
 int reduction_take_back(model *m, int all);
-
-#endif

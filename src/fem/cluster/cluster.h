@@ -19,8 +19,7 @@
  * modulus: cluster_share(). Stability is unaffected, and pressures are more
  * accurate.
  */
-#ifndef PROTIS_CLUSTER_CLUSTER_H
-#define PROTIS_CLUSTER_CLUSTER_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -58,5 +57,3 @@ void cluster_begin(cluster_set *c, cluster_field f);
 void cluster_add(cluster_set *c, cluster_field f, int elem_id, const double *t);
 void cluster_smooth(const cluster_set *c, cluster_field f, int elem_id,
                     double *t);
-
-#endif

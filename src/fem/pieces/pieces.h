@@ -3,8 +3,7 @@
  * piece when nothing is strained; pieces that share less (a vertex, in 3-D an
  * edge) form one body with a hinge. Private to src/fem.
  */
-#ifndef PROTIS_FEM_PIECES_H
-#define PROTIS_FEM_PIECES_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -20,5 +19,3 @@ typedef struct pieces {
 /* Fill p. */
 status pieces_find(const mesh *m, pieces *p);
 void pieces_release(pieces *p); /* accepts an all-zero object */
-
-#endif

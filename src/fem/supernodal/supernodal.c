@@ -2,6 +2,7 @@
 #include "fem/supernodal/supernodal.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -120,8 +121,7 @@ static void split_one(const cholmod_factor *L, size_t q, int most, split *p) {
       p->first[p->count] = first[q] + from;
       p->start[p->count] = p->n_row;
       p->at[p->count] = p->n_entry;
-      memcpy(p->row + p->n_row, row + start[q] + from,
-             (size_t)(rows - from) * sizeof *row);
+      COPY(p->row + p->n_row, row + start[q] + from, rows - from);
     }
     ++p->count;
     p->n_row += rows - from;
@@ -340,12 +340,6 @@ int supernodal_factor(supernodal *s, const unsigned char *mark,
 }
 
 /* ---- solves -------------------------------------------------------------- */
-
-static int is_zero(int n, const double *v) {
-  for (int i = 0; i < n; ++i)
-    if (v[i] != 0.0) return 0;
-  return 1;
-}
 
 /* own[columns] = inv of the diagonal block, below[rows] the rest times it. */
 static void forward_few(int rows, int columns, const double *x, double *own,

@@ -7,8 +7,7 @@
  * The columns of supernode s stand in x[s], those of L from their diagonal
  * block down, with as many rows as the supernode has.
  */
-#ifndef PROTIS_FEM_SUPERNODAL_H
-#define PROTIS_FEM_SUPERNODAL_H
+#pragma once
 
 #include "base/status.h"
 
@@ -70,5 +69,3 @@ void supernodal_forward(const supernodal *s, double *const *x,
 /* v[n] = inv(L') v at the columns of the part; others are not read. */
 void supernodal_back(const supernodal *s, double *const *x,
                      const supernodal_part *part, double *v);
-
-#endif

@@ -130,14 +130,13 @@ void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
                      law_elastic *out) {
   double full[36];
   const int ns = kin == SOLID_3D ? 6 : 4;
-  const size_t bytes = (size_t)(ns * ns) * sizeof(double);
   memset(out, 0, sizeof *out);
   out->ns = ns;
   out->kin = kin;
   out->isotropic = type == ELASTIC_ISO;
   out->plane_stress = kin == PLANE_STRESS;
   elastic_reduce(C6, kin, out->E);
-  memcpy(out->S, out->E, bytes);
+  COPY(out->S, out->E, ns * ns);
   if (kin == PLANE_STRESS) {
     memcpy(full, C6, sizeof full);
     invert(6, full);
@@ -145,11 +144,11 @@ void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
   } else {
     invert(ns, out->S);
   }
-  memcpy(out->C, out->S, bytes);
+  COPY(out->C, out->S, ns * ns);
   if (kin == PLANE_STRESS)
     invert(ns, out->C);
   else
-    memcpy(out->C, out->E, bytes);
+    COPY(out->C, out->E, ns * ns);
   out->young = 1 / out->S[0];
   out->shear = out->C[3 + ns * 3];
 }

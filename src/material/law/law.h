@@ -9,8 +9,7 @@
  * Components and engineering shear strain as in material.h; sigma_zz and
  * e^i_zz are always carried (ns = 4 or 6). Every alpha starts from zero.
  */
-#ifndef PROTIS_LAW_LAW_H
-#define PROTIS_LAW_LAW_H
+#pragma once
 
 #include "base/option.h"
 #include "deck/deck.h"
@@ -238,5 +237,3 @@ void tensor_add_flow(int ns, const double *n, double a, double b, double *J,
  * "deviatoric", or its complement Q += a (V' S V) for the mean stress. */
 void tensor_add_part(int ns, const double *S, int deviatoric, double a,
                      double *Q);
-
-#endif

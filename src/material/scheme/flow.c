@@ -66,13 +66,12 @@ void flow_state_free(flow_state *s) {
 }
 
 void flow_state_copy(const flow *x, const flow_state *from, flow_state *to) {
-  size_t bytes = components(x) * sizeof(double);
   to->t = from->t;
-  memcpy(to->e, from->e, bytes);
-  memcpy(to->ei, from->ei, bytes);
-  memcpy(to->sigma, from->sigma, bytes);
-  memcpy(to->alpha, from->alpha, x->alpha_at[x->n] * sizeof(double));
-  memcpy(to->temperature, from->temperature, (size_t)x->n * sizeof(double));
+  COPY(to->e, from->e, components(x));
+  COPY(to->ei, from->ei, components(x));
+  COPY(to->sigma, from->sigma, components(x));
+  COPY(to->alpha, from->alpha, x->alpha_at[x->n]);
+  COPY(to->temperature, from->temperature, x->n);
 }
 
 status flow_heat(flow_kind *kind, double temperature) {

@@ -86,8 +86,7 @@ static status point_step_begin(const flow *x, const scheme_step *p, int k,
   l->p.alpha = l->alpha;
   memcpy(l->e, now->e + at, (size_t)l->ns * sizeof *l->e);
   memcpy(l->old, old->ei + at, (size_t)l->ns * sizeof *l->old);
-  memcpy(l->old + l->ns, old->alpha + x->alpha_at[k],
-         (size_t)l->na * sizeof *l->old);
+  COPY(l->old + l->ns, old->alpha + x->alpha_at[k], l->na);
   memcpy(l->y, l->old, (size_t)l->n * sizeof *l->y);
   return OK;
 }
@@ -212,20 +211,19 @@ static int point_newton(const scheme_step *p, const double *sigma_old,
  */
 static int point_follow(const scheme_step *p, const double *sigma_old,
                         point_step *l) {
-  const size_t bytes = (size_t)l->n * sizeof *l->y;
   scheme_step part = *p;
   double grow = 10.0, done = 0.0;
-  memcpy(l->y, l->old, bytes);
+  COPY(l->y, l->old, l->n);
   double first = point_residual(p, sigma_old, l->y, l, l->f);
   if (!(first < HUGE_VAL)) return 0;
   part.dt *= fmin(1.0, 0.01 * point_scale(l) / first);
   for (int k = 0; k < MOST_PARTS && grow > 1.01; ++k) {
-    memcpy(l->kept, l->y, bytes);
+    COPY(l->kept, l->y, l->n);
     if (point_newton(&part, sigma_old, l)) {
       if (part.dt == p->dt) return 1;
       done = part.dt;
     } else {
-      memcpy(l->y, l->kept, bytes);
+      COPY(l->y, l->kept, l->n);
       grow = sqrt(grow);
     }
     part.dt = done > 0.0 ? fmin(p->dt, grow * done) : part.dt / 10.0;
@@ -288,8 +286,7 @@ static status compliance_at(const flow *x, const scheme_step *p, int k,
   point_matrix(p, NULL, l);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, ns, l->M, n, l->pivot, l->X, n) != 0)
     RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
-  for (int j = 0; j < ns; ++j)
-    memcpy(Q + ns * j, l->X + n * j, (size_t)ns * sizeof *Q);
+  for (int j = 0; j < ns; ++j) COPY(Q + ns * j, l->X + n * j, ns);
   return OK;
 }
 
@@ -413,8 +410,7 @@ static status solve_points(const scheme_call *a, point_work *r) {
     if (!a->out->settled) return OK;
     a->out->dissipated += a->p->dt * x->weight[k] * law_dissipation(&l->p);
     memcpy(a->now->ei + at, l->y, ns * sizeof *l->y);
-    memcpy(a->now->alpha + x->alpha_at[k], l->y + ns,
-           (size_t)l->na * sizeof *l->y);
+    COPY(a->now->alpha + x->alpha_at[k], l->y + ns, l->na);
     for (size_t i = 0; i < ns; ++i) elastic[i] = l->e[i] - l->y[i];
     tensor_product(x->ns, l->E, elastic, a->now->sigma + at);
   }
@@ -473,7 +469,6 @@ static status need_workspace(const flow *x, const scheme_step *p,
 status newton_advance(const scheme_call *a) {
   const flow *x = a->x;
   const scheme_step *p = a->p;
-  const size_t bytes = (size_t)x->ns * (size_t)x->n * sizeof(double);
   const int most = p->initial ? MOST_INITIAL : MOST_TANGENT;
   scheme_work *w = a->w;
   scheme_result *out = a->out;
@@ -482,13 +477,13 @@ status newton_advance(const scheme_call *a) {
   PASS(need_workspace(x, p, w));
   a->now->t = p->t;
   PASS(a->b->begin(a->b->ctx, a->now));
-  memcpy(a->now->e, a->old->e, bytes);
+  COPY(a->now->e, a->old->e, (size_t)x->ns * (size_t)x->n);
   flow_tangent law = {
       .elastic = p->initial, .D = w->D, .sigma = w->sigma_k, .e = w->e_k};
   PASS(solve_points(a, &r));
   while (out->settled && out->iterations < most) {
-    memcpy(w->sigma_k, a->now->sigma, bytes);
-    memcpy(w->e_k, a->now->e, bytes);
+    COPY(w->sigma_k, a->now->sigma, (size_t)x->ns * (size_t)x->n);
+    COPY(w->e_k, a->now->e, (size_t)x->ns * (size_t)x->n);
     PASS(a->b->linear(a->b->ctx, &law, a->now, &out->settled));
     ++out->iterations;
     if (!out->settled) return OK;

@@ -8,8 +8,7 @@
  *
  * One row in scheme_list per integrator.
  */
-#ifndef PROTIS_SCHEME_SCHEME_H
-#define PROTIS_SCHEME_SCHEME_H
+#pragma once
 
 #include "material/law/law.h"
 
@@ -191,5 +190,3 @@ status flow_compliance(const flow *x, const scheme_step *p,
                        double *largest);
 /* 1 if all laws of the points are linear with constant coefficients. */
 int flow_is_constant(const flow *x);
-
-#endif

@@ -2,8 +2,7 @@
  * Workspace of the integrators and what their files share. Private to
  * src/material/scheme.
  */
-#ifndef PROTIS_SCHEME_WORK_H
-#define PROTIS_SCHEME_WORK_H
+#pragma once
 
 #include "material/scheme/scheme.h"
 
@@ -71,5 +70,3 @@ status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
 /* The map and D for the strains in the plane, sigma_zz = 0.
  * ERR_SINGULAR: nothing resists e_zz. */
 status plane_stress_map(const law_elastic *el, linear_map *m, double *D);
-
-#endif

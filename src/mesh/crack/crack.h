@@ -14,8 +14,7 @@
  * piece of the crack up to branches; in a closed one (all parts are zero) minus
  * is the side of face_elem of its first face.
  */
-#ifndef PROTIS_MESH_CRACK_CRACK_H
-#define PROTIS_MESH_CRACK_CRACK_H
+#pragma once
 
 #include "mesh/mesh.h"
 
@@ -43,5 +42,3 @@ typedef struct mesh_cut { /* a crack to be opened */
  */
 status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
                  mesh_crack *crack);
-
-#endif

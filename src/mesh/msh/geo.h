@@ -1,6 +1,5 @@
 /* The text of a .geo and of the files that it includes: which names it has. */
-#ifndef PROTIS_MSH_GEO_H
-#define PROTIS_MSH_GEO_H
+#pragma once
 
 #include "base/status.h"
 
@@ -24,5 +23,3 @@ void geo_free(geo_text *g); /* accepts an all-zero object */
 int geo_has(const geo_text *g, const char *name);
 /* Name number i, or NULL: for nearest_word. */
 const char *geo_name(const void *geo, int i);
-
-#endif

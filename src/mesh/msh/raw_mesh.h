@@ -2,8 +2,7 @@
  * The mesh as a file or gmsh gives it, before its contents are checked: numbers
  * of the file, elements by entity and type, three coordinates.
  */
-#ifndef PROTIS_MSH_RAW_MESH_H
-#define PROTIS_MSH_RAW_MESH_H
+#pragma once
 
 #include "base/status.h"
 
@@ -60,5 +59,3 @@ int table_find(const key_table *t, uint64_t key); /* id or -1 */
 /* The id of the key; a new key gets the id "n" of before. */
 status table_add(key_table *t, uint64_t key, int *id);
 void table_free(key_table *t);
-
-#endif

@@ -72,7 +72,6 @@ status scan_fail(const scan *s, const char *format, ...) {
   for (size_t i = 0; i < s->at; ++i) line += s->data[i] == '\n';
   if (s->binary_file) RAISE(s->wrong, "%s: byte %zu: %s", s->path, s->at, text);
   RAISE(s->wrong, "%s:%ld: %s", s->path, line, text);
-  return OK;
 }
 
 /* ---- words --------------------------------------------------------------- */

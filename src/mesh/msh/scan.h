@@ -6,8 +6,7 @@
  *
  * Sections stand between $Name and $EndName, each on a line of its own.
  */
-#ifndef PROTIS_MSH_SCAN_H
-#define PROTIS_MSH_SCAN_H
+#pragma once
 
 #include "base/status.h"
 
@@ -53,5 +52,3 @@ status scan_fits(const scan *s, size_t n, size_t text_bytes,
                  size_t binary_bytes, const char *what);
 /* "text" to the end of the line, without the quotes; borrowed. */
 status scan_quoted(scan *s, const char **text, size_t *length);
-
-#endif

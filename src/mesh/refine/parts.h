@@ -1,6 +1,5 @@
 /* Sizes, surfaces and cells of a refinement. Inside src/mesh/refine only. */
-#ifndef PROTIS_REFINE_PARTS_H
-#define PROTIS_REFINE_PARTS_H
+#pragma once
 
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/refine/refine.h"
@@ -30,5 +29,3 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
 void round_surface_free(round_surface *s); /* accepts NULL */
 /* middle[3] of the edge a, b; 1: it is not the mean of both. */
 int round_surface_middle(const round_surface *s, int a, int b, double *middle);
-
-#endif

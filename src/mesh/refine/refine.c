@@ -393,8 +393,7 @@ static status give_block(const bisection *b, raw_block *p, int block) {
   const cell_list *from = &b->cells[p->dim];
   size_t n = 0;
   for (int i = 0; i < from->n; ++i) n += from->item[i].block == block;
-  memory_free(p->no);
-  memory_free(p->node);
+  RELEASE(p->no, p->node);
   p->no = p->node = NULL;
   p->n = 0;
   PASS_NEW_ALL(OF(p->no, n), OF(p->node, p->n_per * n));

@@ -3,8 +3,7 @@
  * (Rivara, Int. J. Num. Meth. Engng. 20 (1984)), before it is checked: groups
  * of all dimensions are split with it, all nodes of the mesh stay.
  */
-#ifndef PROTIS_MESH_REFINE_H
-#define PROTIS_MESH_REFINE_H
+#pragma once
 
 #include "mesh/msh/raw_mesh.h"
 
@@ -32,5 +31,3 @@ typedef struct refine_request {
  * end of an edge stays flat. ERR_MEMORY.
  */
 status raw_refine(raw_mesh *raw, const refine_request *q);
-
-#endif

@@ -237,8 +237,7 @@ static status set_surface(round_surface *s, int n_all) {
   for (int i = 0; i < n_all; ++i) {
     normalise(s->normal + 3 * i);
     if (!bent[i]) s->flat[i] |= SURFACE_FLAT;
-    if (s->number[i] == 0)
-      memcpy(within + 3 * i, s->normal + 3 * i, 3 * sizeof *within);
+    if (s->number[i] == 0) COPY(within + 3 * i, s->normal + 3 * i, 3);
   }
   /* Only neighbours count, if there are any. */
   for (int i = 0; i < n_all; ++i)

@@ -3,8 +3,7 @@
  * card as the keyword table (model/keyword/keyword.h) describes it. Errors of
  * the deck go to the log; a status is of memory.
  */
-#ifndef PROTIS_CARDS_CARDS_H
-#define PROTIS_CARDS_CARDS_H
+#pragma once
 
 #include "model/model.h"
 
@@ -89,66 +88,39 @@ typedef struct plugin {
 
 enum { PARAM_SIZE = 512 }; /* space for the options of any plug-in */
 
-/* ---- part.c: title, units, mesh, sections, amplitudes, times ---- */
-status apply_heading(reading *r);
-status apply_units(reading *r);
-status apply_mesh(reading *r);
-status apply_condensed_problem(reading *r);
-status apply_section(reading *r);
-status apply_amplitude(reading *r);
-status apply_time_points(reading *r);
-status apply_effects(reading *r);
-/* ---- material.c ---- */
-status apply_material(reading *r);
-status apply_elastic(reading *r);
-status apply_density(reading *r);
-status apply_expansion(reading *r);
-status apply_inelastic(reading *r);
+/* What a card means, of which the options are r->param. */
+typedef status apply_card(reading *r);
+/* part.c: title, units, mesh, sections, amplitudes, times */
+apply_card apply_heading, apply_units, apply_mesh, apply_condensed_problem,
+    apply_section, apply_amplitude, apply_time_points, apply_effects;
+/* material.c */
+apply_card apply_material, apply_elastic, apply_density, apply_expansion,
+    apply_inelastic, apply_creep, apply_viscoelastic, apply_trs;
+/* reference.c */
+apply_card apply_reference, apply_goal;
+/* contact.c; apply_effect: any whose options are CONTACT= and numbers */
+apply_card apply_obstacle, apply_contact, apply_contact_pair, apply_tie,
+    apply_crack, apply_friction, apply_contact_force, apply_effect;
+/* procedure.c */
+apply_card apply_step, apply_end_step, apply_static, apply_quasistatic,
+    apply_visco, apply_solver, apply_accuracy, apply_print, apply_output,
+    apply_restart;
+/* load.c */
+apply_card apply_boundary, apply_dsload, apply_dload, apply_cload,
+    apply_temperature, apply_initial;
+
+/* The options of what a card names. */
 plugin names_inelastic(const reading *r);
-status apply_creep(reading *r);
-status apply_viscoelastic(reading *r);
-status apply_trs(reading *r);
+plugin names_law(const reading *r);
+plugin names_solver(const reading *r);
 /* Once all cards are read: the law of a material together with its
  * elasticity. */
 status material_resolve_law(const model *m, material *mat);
-/* ---- reference.c ---- */
-status apply_reference(reading *r);
-status apply_goal(reading *r);
 /* Place of a component of *REFERENCE in "value", -1: there is none of that name
  * in such a model. */
 int reference_place(const char *name, int dim, int axisymmetric);
-/* ---- contact.c ---- */
-status apply_obstacle(reading *r);
-status apply_contact(reading *r);
-status apply_friction(reading *r);
-status apply_contact_force(reading *r);
-/* Of any effect whose options are CONTACT= and numbers. */
-status apply_effect(reading *r);
 /* Id of a contact, or -1 and the error that this card names none. */
 int find_contact(const reading *r, const char *name);
-plugin names_law(const reading *r);
-status apply_contact_pair(reading *r);
-status apply_tie(reading *r);
-status apply_crack(reading *r);
-/* ---- procedure.c ---- */
-status apply_step(reading *r);
-status apply_end_step(reading *r);
-status apply_static(reading *r);
-status apply_quasistatic(reading *r);
-status apply_visco(reading *r);
-/* ---- load.c ---- */
-status apply_boundary(reading *r);
-status apply_dsload(reading *r);
-status apply_dload(reading *r);
-status apply_cload(reading *r);
-status apply_temperature(reading *r);
-status apply_initial(reading *r);
-status apply_solver(reading *r);
-plugin names_solver(const reading *r);
-status apply_accuracy(reading *r);
-status apply_print(reading *r);
-status apply_output(reading *r);
-status apply_restart(reading *r);
 
 /* 0 if the line has min..max fields. */
 int record_fields(const reading *r, const record *line, int min, int max,
@@ -188,5 +160,3 @@ int find_name(const model *m, const char *name, const char *title,
 int find_amplitude(const model *m, const char *name, const place *at);
 /* The step that is being read. */
 step *open_step(const reading *r);
-
-#endif

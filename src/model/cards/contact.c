@@ -354,10 +354,8 @@ status apply_crack(reading *r) {
   k->at = c->at;
   k->group_at = *value_place(r, "GROUP");
   k->contact_id = m->n.contact - 1;
-  k->lip[0] = lip_name(k->group, '-');
-  k->lip[1] = lip_name(k->group, '+');
-  if (k->lip[0] == NULL || k->lip[1] == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: *CRACK");
+  PASS_GET(k->lip[0], lip_name(k->group, '-'));
+  PASS_GET(k->lip[1], lip_name(k->group, '+'));
   c->is_pair = c->is_crack = 1;
   c->pair = (surface_pair){.slave_id = -1, .master_id = -1};
   for (int i = 0; i < 2; ++i) {

@@ -619,7 +619,7 @@ static status check_pairs(model *m, const mesh *msh) {
   OWNED unsigned char *fixed = NULL;
   if (!model_has_pairs(m)) return OK;
   PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
-  if (!is_lost(m) && m->n.step > 0) load_fixed(m, msh, &m->steps[0], fixed);
+  if (!is_lost(m) && m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < m->n.contact; ++i)
     PASS(check_contact_pair(m, msh, fixed, i));
   return check_ties(m, msh, fixed);

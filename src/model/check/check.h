@@ -1,6 +1,5 @@
 /* The model against the mesh, after all cards are read. */
-#ifndef PROTIS_CHECK_CHECK_H
-#define PROTIS_CHECK_CHECK_H
+#pragma once
 
 #include "model/model.h"
 
@@ -26,5 +25,3 @@ int step_has_limit(const step *s);
  */
 int step_level(const model *m, const step *s, double t, double dt, double rate,
                int notify);
-
-#endif

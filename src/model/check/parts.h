@@ -2,8 +2,7 @@
  * The parts of model_check that are in values.c. Errors go to the log; a status
  * is of memory. Private to src/model/check.
  */
-#ifndef PROTIS_CHECK_PARTS_H
-#define PROTIS_CHECK_PARTS_H
+#pragma once
 
 #include "model/check/check.h"
 
@@ -39,5 +38,3 @@ status check_visco(const model *m);
  * a value that is not finite.
  */
 status nodal_field_read(const char *path, const mesh *msh, double **value);
-
-#endif

@@ -424,23 +424,6 @@ static void check_z(const model *m, const mesh *msh, const quantity *q,
       "*%s: the value depends on z, which is the same everywhere in 2-D", name);
 }
 
-static const char *card_of(const load *l) {
-  switch ((load_kind)l->kind) {
-    case LOAD_PRESSURE:
-    case LOAD_TRACTION:
-      return "DSLOAD";
-    case LOAD_BODY:
-    case LOAD_GRAVITY:
-      return "DLOAD";
-    case LOAD_TEMPERATURE:
-      return "TEMPERATURE";
-    case LOAD_POINT:
-      return "CLOAD";
-    default:
-      return "BOUNDARY";
-  }
-}
-
 /* On the axis u_r = 0, or the hoop strain u_r/r is without limit. */
 static void check_axis(const model *m, const mesh *msh, const step *s,
                        const load *l) {
@@ -558,7 +541,7 @@ void check_no_effect(const model *m, const mesh *msh) {
       if (l->removed) continue;
       if (l->kind == LOAD_TEMPERATURE)
         check_heat(m, msh, "TEMPERATURE", l->group_id, &l->at);
-      check_z(m, msh, &l->value, card_of(l), &l->at);
+      check_z(m, msh, &l->value, load_card(l), &l->at);
       if (axisymmetric) check_axis(m, msh, s, l);
     }
   }

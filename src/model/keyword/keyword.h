@@ -3,8 +3,7 @@
  * A card is one row of keyword_table; most rows need a function for their data
  * lines (model/cards/cards.h).
  */
-#ifndef PROTIS_KEYWORD_KEYWORD_H
-#define PROTIS_KEYWORD_KEYWORD_H
+#pragma once
 
 #include "model/cards/cards.h"
 
@@ -24,9 +23,9 @@ typedef struct keyword {
   const option *options; /* of card_options, or NULL */
   /* Options of what the card names; an unknown name goes to the log. */
   plugin (*names)(const reading *r);
-  status (*apply)(reading *r); /* ERR_MEMORY only: the rest goes to the log */
-  int min_line, max_line;      /* data lines; max -1: any number */
-  const char *data;            /* what the data lines hold */
+  apply_card *apply;      /* ERR_MEMORY only: the rest goes to the log */
+  int min_line, max_line; /* data lines; max -1: any number */
+  const char *data;       /* what the data lines hold */
   const char *help;
 } keyword;
 
@@ -57,5 +56,3 @@ status model_echo(const model *m, FILE *out);
 /* Help from the keyword table: all cards in short, or one in full; 0 if there
  * is no card of that name. */
 int keywords_print(const char *name, FILE *out);
-
-#endif

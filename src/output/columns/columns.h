@@ -6,8 +6,7 @@
  * tables of JOB.dat and of the listing, the fields and histories of JOB.h5 and
  * JOB.xdmf, and the tests loop over them.
  */
-#ifndef PROTIS_COLUMNS_COLUMNS_H
-#define PROTIS_COLUMNS_COLUMNS_H
+#pragma once
 
 #include "run/effect.h"
 
@@ -49,5 +48,3 @@ void table_choose(table *t, entity of, unsigned print_bit, const view *v,
 /* The header with "lead" before it ("#", " "), and one record. */
 void table_header(const table *t, const model *m, const char *lead, FILE *f);
 void table_row(const table *t, const view *v, int id, FILE *f);
-
-#endif

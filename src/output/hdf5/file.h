@@ -8,8 +8,7 @@
  * kill at any moment. The time of a row or record is NaN until all of it is
  * written.
  */
-#ifndef PROTIS_HDF5_FILE_H
-#define PROTIS_HDF5_FILE_H
+#pragma once
 
 #include "base/text.h"
 #include "output/hdf5/hdf5.h"
@@ -90,5 +89,3 @@ status hdf5_records_make(const char *path, int n, int n_group,
 /* That of the file "path"; without the fixed data. */
 status hdf5_layout_read(const hdf5_file *h, hdf5_layout *l);
 void hdf5_layout_free(hdf5_layout *l);
-
-#endif

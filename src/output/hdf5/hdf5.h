@@ -1,6 +1,5 @@
 /* JOB.h5 and JOB.xdmf: mesh, fields and histories for viewers and programs. */
-#ifndef PROTIS_HDF5_HDF5_H
-#define PROTIS_HDF5_HDF5_H
+#pragma once
 
 #include "output/columns/columns.h"
 #include "output/listing/job.h"
@@ -49,5 +48,3 @@ status xdmf_write(const hdf5_shape *shape, const char *path);
  * there is none. */
 status xdmf_write_last(const hdf5_shape *shape, int of_contact,
                        const char *path);
-
-#endif

@@ -31,8 +31,7 @@ static double cpu_of(const stage *list, size_t n) {
 
 #define STAGES(list) list, sizeof list / sizeof *list
 
-/* NAN, an increment without estimate, stays. */
-static double worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
+double job_worse(double a, double b) { return isnan(a) || a >= b ? a : b; }
 
 typedef error_share share_of(const increment_summary *i);
 
@@ -70,7 +69,7 @@ static int collect(const run_summary *run, share_of *of, budget_row *row) {
     error_share e = of(&run->increments[k]);
     if (!e.asked) continue;
     row->last = 100 * e.relative;
-    row->worst = n++ == 0 ? row->last : worse(row->worst, row->last);
+    row->worst = n++ == 0 ? row->last : job_worse(row->worst, row->last);
     row->estimated = e.cpu;
   }
   return n > 0;
@@ -90,7 +89,7 @@ static const struct {
 /* clang-format on */
 
 /* 1: the steps make no error, whoever asked. */
-static int is_zero(const job *j, share_of *const *of) {
+static int has_no_error(const job *j, share_of *const *of) {
   return *of == time_share && j->run->n_increment > 0 && !j->m->problem.given &&
          !job_path_counts(j->m);
 }
@@ -103,7 +102,7 @@ int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
         .json = budget_table[k].json,
         .reached = cpu_of(budget_table[k].stages, budget_table[k].n_stage)};
     n += collect(j->run, budget_table[k].of, &rows[n]) ||
-         is_zero(j, &budget_table[k].of);
+         has_no_error(j, &budget_table[k].of);
     if (n == BUDGET_ROWS) break;
   }
   return n;

@@ -2,8 +2,7 @@
  * Data of a run for the listing and JOB.json: options, increments, passes,
  * sizes, error budget.
  */
-#ifndef PROTIS_LISTING_JOB_H
-#define PROTIS_LISTING_JOB_H
+#pragma once
 
 #include "base/archive/archive.h"
 #include "run/history/history.h"
@@ -23,7 +22,7 @@ typedef struct output_options {
   archive *from;       /* continue the files of an earlier run; NULL: new
                           ones */
   int n_problem;       /* contacts of a *CONDENSED PROBLEM */
-  history_sink first;  /* called before the writers; of its functions expect,
+  history_sink first;  /* called before the writers; of its functions
                           checkpoint, ready, increment, each may be NULL */
 } output_options;
 
@@ -109,6 +108,8 @@ typedef struct job {
  * each step run_summary.ends has the number (0: none) and the time of its last
  * increment so far, then contact by contact the values of these columns. */
 const column *job_end_column(const model *m, column_walk *w);
+/* The larger; NaN, an increment without estimate, stays: it is seen. */
+double job_worse(double a, double b);
 /* Numbers of a step there. */
 size_t job_end_size(const model *m);
 /* goals.c: goal "id" at the last increment so far of the last step that has
@@ -168,5 +169,3 @@ status listing_verdict(const job *j, text_file *lst);
  * budget of the errors, goals, what to improve, passes. */
 void listing_goals_now(const job *j, const state *s, FILE *f);
 void listing_accuracy(const job *j, FILE *f);
-
-#endif

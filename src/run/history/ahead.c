@@ -21,18 +21,11 @@ static int effects_have_to_look(const model *m) {
   return any || facts_moving_support(m) != NULL;
 }
 
-/* Pairs that are coupled where the bodies are: not known ahead. */
-static int updates_pairs(const model *m) {
-  int any = 0;
-  for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].update;
-  return any;
-}
-
 /* The supports of r->step; *other: they are not those of the step before. */
 static status take_supports(run *r, int *other) {
   OWNED unsigned char *fixed = NULL;
   PASS_NEW(fixed, r->n_dof);
-  load_fixed(r->m, r->msh, r->step, fixed);
+  load_fixed(r->msh, r->step, fixed);
   *other = memcmp(fixed, r->body.fixed, r->n_dof) != 0;
   memcpy(r->body.fixed, fixed, r->n_dof);
   return OK;
@@ -61,9 +54,9 @@ static status change_supports(const model *m, const mesh *msh, int *any) {
   const size_t n = (size_t)msh->dim * (size_t)msh->n_node;
   OWNED unsigned char *first = NULL, *fixed = NULL;
   PASS_NEW_ALL(OF(first, n), OF(fixed, n));
-  load_fixed(m, msh, &m->steps[0], first);
+  load_fixed(msh, &m->steps[0], first);
   for (int i = 1; i < m->n.step && !*any; ++i) {
-    load_fixed(m, msh, &m->steps[i], fixed);
+    load_fixed(msh, &m->steps[i], fixed);
     *any = memcmp(first, fixed, n) != 0;
   }
   return OK;
@@ -87,7 +80,7 @@ status history_check(const model *m, const mesh *msh,
                      const effect_ops *const *effects) {
   static const history_sink nobody;
   const int look = effects_have_to_look(m);
-  const int n = updates_pairs(m) && m->n.step > 1 ? 1 : m->n.step;
+  const int n = model_updates_pairs(m) && m->n.step > 1 ? 1 : m->n.step;
   int any = look;
   ENDS_BY(run_free)
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};

@@ -133,8 +133,7 @@ static status solve_contact(discrete *d, const history_sink *sink) {
   const solver_listener listener = {sink->iteration, sink->ctx};
   PASS(contact_bodies_new(cp, &d->bodies));
   cp->bodies = d->bodies;
-  if (!contact_has_stiffness(cp))
-    memcpy(d->u, cp->f, (size_t)cp->m * sizeof *d->u);
+  if (!contact_has_stiffness(cp)) COPY(d->u, cp->f, cp->m);
   PASS(contact_solver_new(&d->step->solver, &solver));
   PASS(contact_solve(solver, cp, listener.step == NULL ? NULL : &listener, d->u,
                      d->r, &d->report));
@@ -241,10 +240,8 @@ status condensed_run(const model *m, const exchange_problem *p,
   *unsettled = 0;
   PASS(discrete_new(&d));
   PASS(report_ready(&d, sink));
-  timer_enter(STAGE_CONTACT);
-  const status st = p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink);
-  timer_leave(STAGE_CONTACT);
-  PASS(st);
+  PASS_TIMED(STAGE_CONTACT,
+             p->dim == 1 ? solve_lcp(&d) : solve_contact(&d, sink));
   if (p->dim > 1 && !outcome_is_fatal(d.report.outcome)) {
     PASS(fill_up(&d));
     PASS(find_error(d.step, &d.whole, d.u, d.r, &d.error));

@@ -86,7 +86,7 @@ static state loop_state(run *r, int attempt, int increment_no) {
                    .distance = d->distance, .torque = d->torque},
       .effects = &r->effects, .report = r->solving.report,
       .note = r->course.note, .solver_log = contact_solver_log(r->solver),
-      .settled = is_settled(r), .again = {r, shadow_with},
+      .settled = is_settled(r), .again = r,
       .errors = {.error = r->errors.error, .rounding = r->errors.rounding,
                  .mesh_error = r->errors.mesh_error,
                  .time_error = r->errors.time_error,
@@ -298,7 +298,6 @@ status loop_no_equilibrium(run *r) {
         tried[0] == '\0' ? "" : "tried ",
         tried[0] == '\0' ? outcome_text(r->solving.report.outcome) : tried,
         r->old.t);
-  return OK;
 }
 
 /* ---- before the increments of a step: effects, sudden loads of *VISCO ---- */
@@ -388,15 +387,12 @@ static status start_step(run *r) {
 
 /* ---- between two attempts ------------------------------------------------ */
 
-static status keep_all(void *run_, archive *a) { return run_keep(run_, a); }
-
 static status checkpoint(run *r) {
-  const run_memory memory = {r, keep_all, r->at.step_id + 1};
   int planned = r->course.due; /* others are no stage of the continued run */
   r->course.due = 0;
   if (r->sink->checkpoint == NULL) return OK;
   TIMED(planned ? STAGE_RESTART : STAGE_NONE);
-  return r->sink->checkpoint(r->sink->ctx, &memory);
+  return r->sink->checkpoint(r->sink->ctx, r);
 }
 
 static status stop(run *r, status why) {
@@ -572,7 +568,7 @@ status history_stiffness(const model *m, const mesh *msh,
   run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
   *choice = (stiffness_choice){0};
   PASS(run_new(&r, effects));
-  load_fixed(m, msh, r.step, r.body.fixed);
+  load_fixed(msh, r.step, r.body.fixed);
   PASS(run_build_ties(&r));
   if (m->effects & EFFECT_CONTACT) PASS(run_build_surface(&r));
   r.body.d.surface = r.surface;

@@ -1,6 +1,5 @@
 /* The loop over steps and increments. */
-#ifndef PROTIS_HISTORY_HISTORY_H
-#define PROTIS_HISTORY_HISTORY_H
+#pragma once
 
 #include "exchange/exchange.h"
 #include "run/effect.h"
@@ -68,5 +67,3 @@ status history_stiffness(const model *m, const mesh *msh,
 status history_motions(const model *m, const mesh *msh,
                        const effect_ops *const *effects, int step_id, int *n,
                        free_motion **list);
-
-#endif

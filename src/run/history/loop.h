@@ -1,6 +1,5 @@
 /* The loop over increments, shared by the files of this folder only. */
-#ifndef PROTIS_HISTORY_LOOP_H
-#define PROTIS_HISTORY_LOOP_H
+#pragma once
 
 #include "run/history/history.h"
 #include "run/run.h"
@@ -60,5 +59,3 @@ int rounding_is_all(const run *r);
 status estimate_increment(run *r);
 /* Those of solver and mesh alone, from r->now.u; read r->errors.evaluated. */
 status estimate_evaluate(run *r);
-
-#endif

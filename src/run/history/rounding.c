@@ -46,7 +46,6 @@ static status check(const run *r, double share, const condensed *c) {
         "motions far above the elastic ones lose digits",
         run_step_id(r) + 1, r->now.t, loss->energy, loss->stress, loss->u,
         condensed_condition(c));
-  return OK;
 }
 
 /*

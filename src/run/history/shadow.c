@@ -155,17 +155,15 @@ static status solve_with(run *r, run *b, const double *more) {
   return increment_equilibrium(b, strains_load(b));
 }
 
-status shadow_with(void *run_, const double *more, double *u, double *rc,
+status shadow_with(run *r, const double *more, double *u, double *rc,
                    int *solved) {
-  run *r = run_;
   ENDS_BY(shadow_leave) shadow *b = NULL;
   TIMED(STAGE_BETWEEN);
   PASS(shadow_new(r, &b));
   PASS(solve_with(r, &b->r, more));
   *solved = b->r.solving.report.outcome > 0;
   memcpy(u, b->r.now.u, r->n_dof * sizeof *u);
-  if (r->nodes.n_c > 0)
-    memcpy(rc, b->r.now.rc, (size_t)r->nodes.n_c * sizeof *rc);
+  if (r->nodes.n_c > 0) COPY(rc, b->r.now.rc, r->nodes.n_c);
   return OK;
 }
 

@@ -64,7 +64,7 @@ static status adjust(const model *m, const surface_input *in, surface_pair *p,
 static status find_fixed(const model *m, const mesh *msh, unsigned char *bits) {
   OWNED unsigned char *fixed = NULL;
   PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
-  load_fixed(m, msh, &m->steps[0], fixed);
+  load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i)
     for (int c = 0; c < msh->dim; ++c)
       bits[i] |= (unsigned char)((fixed[msh->dim * i + c] != 0) << c);

@@ -11,8 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- temperatures ---------------------------------------------------------
- */
+/* ---- temperatures -------------------------------------------------------- */
 
 /* 1: rates of some law depend on the absolute temperature. */
 static int counts_from_zero(const flow *x) {

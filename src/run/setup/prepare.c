@@ -147,13 +147,6 @@ static status find_load(run *r) {
   return check_range(r);
 }
 
-/* 1: pairs are coupled again at the start of the step. */
-static int updates_pairs(const run *r) {
-  int any = 0;
-  for (int i = 0; i < r->m->n.contact; ++i) any |= r->m->contacts[i].update;
-  return any && run_step_id(r) > 0;
-}
-
 /* Surface and matrices for r->body.fixed; chosen: of the kind of
  * r->body.choice. */
 static status make_matrices(run *r, int chosen) {
@@ -182,7 +175,7 @@ static status make_matrices(run *r, int chosen) {
  * the archive where the run goes on within it, as the kind of stiffness is. */
 static status take_places(run *r) {
   if (r->course.from != NULL) PASS(run_keep_choice(r, r->course.from));
-  if (!updates_pairs(r)) return OK;
+  if (run_step_id(r) == 0 || !model_updates_pairs(r->m)) return OK;
   if (r->course.from != NULL) PASS(run_keep_start(r, r->course.from));
   r->faces.input.u = r->loads.start;
   return OK;
@@ -192,12 +185,12 @@ status run_prepare(run *r) {
   int fresh, other = 0;
   OWNED unsigned char *fixed = NULL;
   PASS_NEW(fixed, r->n_dof);
-  load_fixed(r->m, r->msh, r->step, fixed);
+  load_fixed(r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
   known_rate_forget(&r->solving.rate);
   PASS(take_places(r));
   fresh = r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||
-          updates_pairs(r);
+          (run_step_id(r) > 0 && model_updates_pairs(r->m));
   if (!fresh) PASS(run_asks_for_other_stiffness(r, &other));
   if (fresh || other) {
     memcpy(r->body.fixed, fixed, r->n_dof);
@@ -287,7 +280,7 @@ status run_check_supports(const run *r, int *n) {
 }
 
 status run_motions(run *r, int *n, free_motion **list) {
-  load_fixed(r->m, r->msh, r->step, r->body.fixed);
+  load_fixed(r->msh, r->step, r->body.fixed);
   PASS(run_build_ties(r));
   if (r->m->effects & EFFECT_CONTACT) PASS(run_build_surface(r));
   r->body.d.surface = r->surface;

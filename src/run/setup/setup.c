@@ -12,17 +12,8 @@ static status new_equilibrium(const run *r, equilibrium *e) {
 }
 
 static void free_equilibrium(equilibrium *e) {
-  memory_free(e->u);
-  memory_free(e->F);
-  memory_free(e->reaction);
-  memory_free(e->uc);
-  memory_free(e->rc);
-  memory_free(e->motion);
-  memory_free(e->temperature);
-  memory_free(e->thermal);
-  memory_free(e->e0);
-  memory_free(e->elastic);
-  memory_free(e->sigma);
+  RELEASE(e->u, e->F, e->reaction, e->uc, e->rc, e->motion, e->temperature,
+          e->thermal, e->e0, e->elastic, e->sigma);
 }
 
 /* Clusters of the sections with FORMULATION=AVERAGED. Sections with variable
@@ -138,14 +129,7 @@ void run_free(run *r) {
   strains_free(r);
   moduli_free(&r->body.moduli);
   cluster_free(r->body.d.cluster);
-  memory_free(r->body.fixed);
-  memory_free(r->faces.pairs);
-  memory_free(r->faces.node_fixed);
-  memory_free(r->faces.face_weight);
-  memory_free(r->result.totals);
-  memory_free(r->result.torque);
-  memory_free(r->loads.ud);
-  memory_free(r->loads.start);
-  memory_free(r->result.strain);
-  memory_free(r->result.stress);
+  RELEASE(r->body.fixed, r->faces.pairs, r->faces.node_fixed,
+          r->faces.face_weight, r->result.totals, r->result.torque, r->loads.ud,
+          r->loads.start, r->result.strain, r->result.stress);
 }

@@ -1,6 +1,5 @@
 /* Setting a run up: once, for each step, and from an archive. */
-#ifndef PROTIS_SETUP_SETUP_H
-#define PROTIS_SETUP_SETUP_H
+#pragma once
 
 #include "run/run.h"
 
@@ -50,5 +49,3 @@ status run_keep(run *r, archive *a);
 /* r->loads.start alone; r->body.choice. */
 status run_keep_start(run *r, archive *a);
 status run_keep_choice(run *r, archive *a);
-
-#endif

@@ -6,8 +6,6 @@
 
 #include "base/memory.h"
 
-#include <string.h>
-
 void run_free_surface(run *r) {
   effects_forget(r);
   run_forget_estimates(r);
@@ -46,17 +44,12 @@ static void node_bits(run *r) {
     r->faces.node_fixed[r->body.ties.node_id[q]] = (unsigned char)0xff;
 }
 
-/* Pairs of this run are coupled for the surface alone. */
 static status build(run *r) {
-  status st = OK;
-  if (model_has_pairs(r->m)) {
-    timer_enter(STAGE_COUPLING);
-    st = pairs_couple(&r->faces.input, r->m->log);
-    timer_leave(STAGE_COUPLING);
-  }
-  if (st == OK) st = surface_build(&r->faces.input, r->m->log, &r->surface);
-  pairs_release(&r->faces.input);
-  return st;
+  TIMED(STAGE_SURFACE);
+  node_bits(r);
+  if (model_has_pairs(r->m))
+    PASS_TIMED(STAGE_COUPLING, pairs_couple(&r->faces.input, r->m->log));
+  return surface_build(&r->faces.input, r->m->log, &r->surface);
 }
 
 static status new_contact_arrays(run *r) {
@@ -96,10 +89,8 @@ status run_build_surface(run *r) {
   PASS_NEW(force, r->n_dof);
   if (r->surface != NULL) surface_spread(r->surface, 1.0, r->old.rc, force);
   run_free_surface(r);
-  timer_enter(STAGE_SURFACE);
-  node_bits(r);
   const status st = build(r);
-  timer_leave(STAGE_SURFACE);
+  pairs_release(&r->faces.input); /* coupled for the surface alone */
   PASS(st);
   r->nodes.n = r->surface->n;
   r->nodes.n_c = r->msh->dim * r->nodes.n;

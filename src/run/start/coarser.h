@@ -2,8 +2,7 @@
  * The contact of a run on a coarser mesh of the same deck, increment by
  * increment: where the contact problems of a finer mesh may start.
  */
-#ifndef PROTIS_START_COARSER_H
-#define PROTIS_START_COARSER_H
+#pragma once
 
 #include "contact/contact.h"
 #include "contact/surface.h"
@@ -45,5 +44,3 @@ typedef struct coarser_node {
 } coarser_node;
 void coarser_read(const coarser_state *x, int node, const contact_surface *s,
                   int i, coarser_node *out);
-
-#endif

@@ -90,8 +90,7 @@ status start_report_new(const mesh *msh, start_report *report) {
 }
 
 void start_report_free(start_report *report) {
-  memory_free(report->defect);
-  memory_free(report->kind);
+  RELEASE(report->defect, report->kind);
   memset(report, 0, sizeof *report);
 }
 

@@ -7,8 +7,7 @@
  *   contact    r = K u_0 - F: u_n <= gap, r_n <= 0, r_n (u_n - gap) = 0,
  *              |r_t| <= g
  */
-#ifndef PROTIS_START_START_H
-#define PROTIS_START_START_H
+#pragma once
 
 #include "contact/contact.h"
 #include "fem/fem.h"
@@ -65,5 +64,3 @@ void start_stiffness(const domain *d, double *diagonal);
  * are there. Either array is NULL without contact or use. */
 status start_test(const start_input *in, double *rc, double *reaction,
                   start_report *report);
-
-#endif

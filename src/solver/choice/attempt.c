@@ -211,7 +211,7 @@ static int wants_inverse(contact_solver *s, const contact_problem *cp,
       contact_has_stiffness(cp) || !(a->ops->handles & REGULAR_COMPLIANCE) ||
       s->inverse_wanted)
     return 0;
-  a->ops->release(s->work[row]);
+  solver_release(a->ops, s->work[row]);
   s->work[row] = NULL;
   s->inverse_wanted = 1;
   return a->max_iter == 0 || a->max_iter > rep->iterations;

@@ -43,7 +43,9 @@
  */
 #include "solver/choice/choice.h"
 
+#include "base/memory.h"
 #include "base/option.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -298,12 +300,6 @@ static status short_try(contact_solver *s, const contact_problem *cp,
   return OK;
 }
 
-static int is_cold(const contact_problem *cp, const double *r) {
-  for (int i = 0; i < cp->m; ++i)
-    if (r[i] != 0.0) return 0;
-  return 1;
-}
-
 /* Without friction: in the normal unknowns. *done_well = 1: solved. */
 static status solve_normal(contact_solver *s, const contact_problem *cp,
                            const solver_listener *listener, double *u,
@@ -314,7 +310,7 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
                             .listener = listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) return OK;
-  if (s->normal.wanted++ == 0 && !is_cold(cp, r)) {
+  if (s->normal.wanted++ == 0 && !is_zero(cp->m, r)) {
     PASS(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
                    &(answer){u, r, rep}));
     *done_well = rep->outcome == CONVERGED;
@@ -355,8 +351,7 @@ static status run_link(contact_solver *s, const contact_problem *cp,
   option_defaults(a.ops->options, s->param);
   if (!l->warm) cold_start(cp, to->u, to->r);
   /* With a nearly singular stiffness its start forces are too large. */
-  if (a.ops == &proximal_solver)
-    memset(to->r, 0, (size_t)cp->m * sizeof *to->r);
+  if (a.ops == &proximal_solver) CLEAR(to->r, cp->m);
   PASS(attempt_run(s, cp, &a, listener, to->u, to->r, rep));
   if (rep->outcome != STOPPED_UNFIT) attempt_check(s, cp, to->u, to->r, rep);
   if (cp->floating || rep->outcome == STOPPED_RAY)
@@ -378,7 +373,6 @@ static status coarse_sweeps(contact_solver *s, const contact_problem *cp,
 status auto_solve(contact_solver *s, const contact_problem *cp,
                   const solver_listener *listener, double *u, double *r,
                   solver_report *rep) {
-  size_t bytes = (size_t)cp->m * sizeof *u;
   const link *order[MOST_LINKS];
   const answer to = {u, r, rep};
   int n = order_links(cp, order), iterations = 0, first = 1, solved = 0;
@@ -396,15 +390,15 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
     if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
         says_more(cp, rep, &best)) {
       best = *rep;
-      memcpy(s->best_u, u, bytes);
-      memcpy(s->best_r, r, bytes);
+      COPY(s->best_u, u, cp->m);
+      COPY(s->best_r, r, cp->m);
     }
     if (is_final(rep->outcome)) break;
   }
   if (solved) return OK;
   PASS(attempt_prove(s, cp, &best));
-  memcpy(u, s->best_u, bytes);
-  memcpy(r, s->best_r, bytes);
+  COPY(u, s->best_u, cp->m);
+  COPY(r, s->best_r, cp->m);
   *rep = best;
   rep->iterations = iterations;
   return OK;

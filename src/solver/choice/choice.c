@@ -106,15 +106,14 @@ static int touch(const contact_problem *cp, const double *u, const double *r,
 
 status polish_touch(const contact_problem *cp, double scale, double tol,
                     double *u, double *r, double *residual) {
-  size_t bytes = (size_t)cp->m * sizeof *u;
   OWNED double *v = NULL, *s = NULL, *move = NULL;
   PASS_NEW_ALL(OF(v, cp->m), OF(s, cp->m), OF(move, cp->m));
   if (!touch(cp, u, r, v, s, move)) return OK;
   double reached = contact_residual_at(cp, scale, v, s);
   if (!(reached <= tol)) return OK;
   *residual = reached;
-  memcpy(u, v, bytes);
-  memcpy(r, s, bytes);
+  COPY(u, v, cp->m);
+  COPY(r, s, cp->m);
   return OK;
 }
 
@@ -122,14 +121,13 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
                    double *r, int *sweeps) {
   status st = OK;
   relaxation s = {.cp = cp, .omega = 1.0};
-  size_t bytes = (size_t)cp->m * sizeof *u;
   double least = slip_misdirection(cp, u, r);
   *sweeps = 0;
   if (!(least > tol) || most <= 0 || cp->op != NULL) goto done;
   NEW_ALL(OF(s.u, cp->m), OF(s.r, cp->m));
   TRY(node_blocks_new(cp, &s.blocks));
-  memcpy(s.u, u, bytes);
-  memcpy(s.r, r, bytes);
+  COPY(s.u, u, cp->m);
+  COPY(s.r, r, cp->m);
   relaxation_start(&s);
   relaxation_refresh(&s);
   while (least > tol && *sweeps < SWEEPS && *sweeps < most) {
@@ -139,8 +137,8 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
     double now = slip_misdirection(cp, s.u, s.r);
     if (!(now < least) || !(contact_residual(cp, s.u, s.r) <= tol)) continue;
     least = now;
-    memcpy(u, s.u, bytes);
-    memcpy(r, s.r, bytes);
+    COPY(u, s.u, cp->m);
+    COPY(r, s.r, cp->m);
   }
 done:
   node_blocks_free(s.blocks);
@@ -156,10 +154,8 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
   s->choice = *choice;
   for (int i = 0; solver_list[i] != NULL; ++i)
     if (solver_list[i]->param_size > size) size = solver_list[i]->param_size;
-  s->param = memory_new(1, size);
   s->param_size = size;
-  if (s->param == NULL)
-    RAISE(ERR_MEMORY, "memory exhausted: %zu bytes for solver options", size);
+  PASS_GET(s->param, memory_new(1, size));
   return OK;
 }
 
@@ -167,7 +163,7 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
 static void forget_factors(contact_solver *s) {
   for (int i = 0; i <= N_SOLVER; ++i) {
     const solver_ops *ops = i < N_SOLVER ? solver_list[i] : s->choice.ops;
-    if (s->work[i] != NULL) ops->release(s->work[i]);
+    solver_release(ops, s->work[i]);
     s->work[i] = NULL;
   }
   fixed_point_free(s->fixed);

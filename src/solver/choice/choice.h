@@ -2,8 +2,7 @@
  * Parts of contact_solve (solver/solver.h): one attempt with one solver in a
  * form it can use, and AUTO, the choice among them.
  */
-#ifndef PROTIS_CHOICE_CHOICE_H
-#define PROTIS_CHOICE_CHOICE_H
+#pragma once
 
 #include "solver/fixed_point.h"
 #include "solver/solver.h"
@@ -259,5 +258,3 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
  */
 status polish_touch(const contact_problem *cp, double scale, double tol,
                     double *u, double *r, double *residual);
-
-#endif

@@ -314,7 +314,7 @@ int normal_form_applies(const contact_problem *cp) {
 }
 
 void normal_form_free(normal_form *nf) {
-  if (nf->work != NULL) newton_solver.release(nf->work);
+  solver_release(&newton_solver, nf->work);
   opened_free(nf->opened);
   RELEASE(nf->L, nf->Y, nf->S, nf->f, nf->u, nf->r, nf->y);
   *nf = (normal_form){0};

@@ -8,8 +8,7 @@
  *
  *   min |u + R q - u_old|^2,   u_n + (R_c q)_n <= gap.
  */
-#ifndef PROTIS_CHOICE_REST_H
-#define PROTIS_CHOICE_REST_H
+#pragma once
 
 #include "contact/contact.h"
 #include "fem/fem.h"
@@ -27,5 +26,3 @@ typedef struct rest_scene {
 /* The solution u[m] with the forces f[m] is put there; *moved 1: u has changed.
  * Motions that F works on are left. ERR_MEMORY. */
 status rest_find(const rest_scene *at, double *u, const double *f, int *moved);
-
-#endif

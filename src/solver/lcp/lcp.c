@@ -15,6 +15,7 @@
  */
 #include "solver/lcp/lcp.h"
 
+#include "base/memory.h"
 #include "base/sparse.h"
 
 #include <cblas.h>
@@ -23,8 +24,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* ---- The plain form of the problem: a dense matrix, covering vector 1. ----
- */
+/* ---- the plain form of the problem: a dense matrix, covering vector 1 ---- */
 
 typedef struct plain {
   int n;
@@ -210,8 +210,7 @@ static double lcp_direction(lcp_work *w, const lcp_problem *p) {
     for (int b = 0; b < s; ++b) w->gather[b] = -w->column[w->row[b]];
     lcp_apply_inverse(w, w->gather, w->enter.dz);
   } else {
-    memcpy(w->enter.dz, w->K + (size_t)w->at_w[-1 - k] * (size_t)w->cap,
-           (size_t)s * sizeof *w->enter.dz);
+    COPY(w->enter.dz, w->K + (size_t)w->at_w[-1 - k] * (size_t)w->cap, s);
   }
   for (int pass = 0; pass < 2; ++pass) {
     lcp_expand(w, p, w->enter.dz, w->enter.dw);
@@ -440,8 +439,7 @@ static void shrink(lcp_work *w, int b, int a) {
   swap_columns(w, a, last);
   w->at_w[w->row[b]] = -1;
   if (b != last) {
-    memcpy(w->K + (size_t)b * ld, w->K + (size_t)last * ld,
-           (size_t)last * sizeof *w->K);
+    COPY(w->K + (size_t)b * ld, w->K + (size_t)last * ld, last);
     w->row[b] = w->row[last];
     w->at_w[w->row[b]] = b;
   }

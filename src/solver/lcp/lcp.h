@@ -10,8 +10,7 @@
  * that differ from the start only (at most rank + 1) and updated: a pivot costs
  * two products with it, one rank-one change and one product with M.
  */
-#ifndef PROTIS_LCP_LCP_H
-#define PROTIS_LCP_LCP_H
+#pragma once
 
 #include "base/outcome.h"
 #include "base/status.h"
@@ -63,5 +62,3 @@ double lcp_ray(const lcp_work *w, double *y);
 int lcp_row_is_tight(const lcp_work *w, int i);
 /* dz[n]: change of the basic z that takes defect[n] out of the tight rows. */
 void lcp_correction(lcp_work *w, const double *defect, double *dz);
-
-#endif

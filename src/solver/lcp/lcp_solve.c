@@ -556,11 +556,10 @@ static void note(lcp_verdict *v, const char *who, outcome o) {
 
 /* Keep the attempt if it is better; 1: it solves the problem. */
 static int keep(run *s) {
-  size_t bytes = (size_t)s->p->n * sizeof *s->z;
   double residual = lcp_residual(s->p, s->try_z, s->w);
   if (residual < s->v->residual || isnan(s->v->residual)) {
     s->v->residual = residual;
-    memcpy(s->z, s->try_z, bytes);
+    COPY(s->z, s->try_z, s->p->n);
   }
   return residual <= s->control->tol;
 }

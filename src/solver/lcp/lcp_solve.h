@@ -16,8 +16,7 @@
  * covering vectors and from other vertices. The first attempt ends early where
  * these follow.
  */
-#ifndef PROTIS_LCP_LCP_SOLVE_H
-#define PROTIS_LCP_LCP_SOLVE_H
+#pragma once
 
 #include "base/outcome.h"
 #include "base/status.h"
@@ -90,5 +89,3 @@ void nonnegative_begin(nonnegative *s);
 double *nonnegative_next(const nonnegative *s);
 /* Take it, drop those with factor zero. 0: no progress. */
 int nonnegative_take(nonnegative *s);
-
-#endif

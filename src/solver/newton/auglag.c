@@ -546,17 +546,16 @@ static outcome minimise(auglag_run *s) {
 /* The same from u and r, for a limit that does not follow the pressure. */
 static outcome auglag_uzawa(auglag_run *s) {
   auglag_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *s->u;
   double mark = HUGE_VAL;
   int since = 0;
   outcome o;
   s->rho = RHO_UZAWA;
   s->cycle = 0;
   s->factored = 0;
-  memcpy(w->lambda, s->r, bytes);
+  COPY(w->lambda, s->r, s->cp->m);
   contact_reaction(s->cp, s->u, w->y);
   while ((o = minimise(s)) == RUNNING) {
-    memcpy(w->lambda, w->F, bytes);
+    COPY(w->lambda, w->F, s->cp->m);
     ++since;
     if (w->best.residual < PROGRESS * mark) {
       mark = w->best.residual;
@@ -609,7 +608,6 @@ enum { UZAWA_STEPS = 1000 /* Newton steps of all multiplier steps */ };
 
 static void auglag_release(void *work) {
   auglag_work *w = work;
-  if (w == NULL) return;
   RELEASE(w->part, w->closed, w->mode, w->state, w->origin, w->diagonal,
           w->lambda, w->z, w->F, w->y, w->du, w->dy, w->e, w->share, w->bonded,
           w->K, w->pivot, w->free_id, w->by.hold, w->by.b);
@@ -617,7 +615,6 @@ static void auglag_release(void *work) {
   pattern_free(&w->by.guess);
   fixed_point_free(w->fixed);
   best_iterate_free(&w->best);
-  memory_free(w);
 }
 
 /* Of A, also where a rigid motion makes it zero. */
@@ -652,12 +649,10 @@ static status new_matrix(const contact_problem *cp, auglag_work *w) {
 }
 
 static status auglag_setup(const contact_problem *cp, const void *par,
-                           void **work) {
-  auglag_work *w;
+                           void *work) {
+  auglag_work *w = work;
   size_t m = (size_t)cp->m;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   w->m = cp->m;
   PASS_NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
                  &w->du, &w->dy, &w->e);
@@ -754,8 +749,8 @@ const solver_ops auglag_solver = {
     "contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
-  .param_size = sizeof(auglag), .options = auglag_options,
-  .setup = auglag_setup, .solve = auglag_solve, .release = auglag_release,
-  .keep = auglag_keep
+  .param_size = sizeof(auglag), .work_size = sizeof(auglag_work),
+  .options = auglag_options, .setup = auglag_setup, .solve = auglag_solve,
+  .release = auglag_release, .keep = auglag_keep
 };
 /* clang-format on */

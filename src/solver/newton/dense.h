@@ -1,6 +1,5 @@
 /* A dense matrix and its factor in the same array: Cholesky or LU. */
-#ifndef PROTIS_NEWTON_DENSE_H
-#define PROTIS_NEWTON_DENSE_H
+#pragma once
 
 #include "base/status.h"
 
@@ -30,5 +29,3 @@ int dense_factor(dense *d, int doubt);
 int dense_invert(dense *d);
 /* x[n, n_rhs], distance ld, from the right sides. */
 void dense_solve(const dense *d, int n_rhs, double *x, int ld);
-
-#endif

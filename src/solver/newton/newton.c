@@ -67,22 +67,18 @@ typedef struct newton_work {
 
 static void newton_release(void *work) {
   newton_work *w = work;
-  if (w == NULL) return;
   states_free(&w->states);
   newton_system_free(w->system);
   operated_system_free(w->operated);
   compliance_system_free(w->compliance);
   node_blocks_free(w->blocks);
   best_iterate_free(&w->best);
-  memory_free(w);
 }
 
 static status newton_setup(const contact_problem *cp, const void *par,
-                           void **work) {
-  newton_work *w;
+                           void *work) {
+  newton_work *w = work;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(states_new(cp, &w->states));
   if (cp->op != NULL)
     PASS(operated_system_new(cp, &w->operated));
@@ -386,8 +382,8 @@ const solver_ops newton_solver = {
     "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              REGULAR_COMPLIANCE | SOLVES_FLOATING,
-  .param_size = sizeof(newton), .options = newton_options,
-  .setup = newton_setup, .solve = newton_solve, .release = newton_release,
-  .keep = newton_keep
+  .param_size = sizeof(newton), .work_size = sizeof(newton_work),
+  .options = newton_options, .setup = newton_setup, .solve = newton_solve,
+  .release = newton_release, .keep = newton_keep
 };
 /* clang-format on */

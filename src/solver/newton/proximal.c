@@ -88,7 +88,6 @@ typedef struct proximal_work {
 
 static void proximal_release(void *work) {
   proximal_work *w = work;
-  if (w == NULL) return;
   force_set_free(w->set);
   best_iterate_free(&w->best);
   step_matrix_free(w->J);
@@ -97,7 +96,7 @@ static void proximal_release(void *work) {
   RELEASE(w->x, w->F, w->d, w->z, w->weight, w->start, w->centre, w->before,
           w->acts);
   RELEASE(w->by.hold, w->by.b, w->by.du, w->by.start, w->by.centre,
-          w->by.before, w);
+          w->by.before);
 }
 
 /* Workspace of the steps of an operator. */
@@ -111,12 +110,10 @@ static status new_steps(const contact_problem *cp, proximal_work *w) {
 }
 
 static status proximal_setup(const contact_problem *cp, const void *par,
-                             void **work) {
-  proximal_work *w;
+                             void *work) {
+  proximal_work *w = work;
   size_t m = (size_t)cp->m;
   (void)par;
-  PASS_NEW(w, 1);
-  *work = w;
   PASS(force_set_new(cp, &w->set));
   PASS(best_iterate_new(cp->m, &w->best));
   if (cp->op != NULL)
@@ -460,9 +457,8 @@ static void set_centre(run *s, int creeps) {
 
 /* The pass failed: where it began. */
 static void return_to_centre(run *s) {
-  const size_t bytes = (size_t)s->cp->m * sizeof *s->r;
-  memcpy(s->r, s->w->centre, bytes);
-  if (s->cp->op != NULL) memcpy(s->u, s->w->by.centre, bytes);
+  COPY(s->r, s->w->centre, s->cp->m);
+  if (s->cp->op != NULL) COPY(s->u, s->w->by.centre, s->cp->m);
 }
 
 /* The start forces, of an operator with their displacements; of a body that
@@ -470,12 +466,11 @@ static void return_to_centre(run *s) {
 static status begin(run *s) {
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
-  const size_t bytes = (size_t)cp->m * sizeof *s->r;
-  memcpy(s->r, w->start, bytes);
+  COPY(s->r, w->start, cp->m);
   if (cp->op == NULL) return OK;
   operated_system_fit(w->by.system);
   if (cp->floating) {
-    memcpy(s->u, w->by.start, bytes);
+    COPY(s->u, w->by.start, cp->m);
     contact_reaction(cp, s->u, s->r);
     return OK;
   }
@@ -496,7 +491,6 @@ static double residual_of(const run *s) {
 /* Passes from the start forces. */
 static status trial(run *s, int limit, int closed, outcome *end) {
   proximal_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *s->r;
   double lowest = HUGE_VAL, before = HUGE_VAL;
   int steps = 0, creeps = 0;
   s->hard = 0.0;
@@ -504,7 +498,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
   if (closed) PASS(start_closed(s));
   *end = STOPPED_STAGNATION;
   for (int idle = 0; idle < PATIENCE; ++idle) {
-    memcpy(w->centre, s->r, bytes);
+    COPY(w->centre, s->r, s->cp->m);
     evaluate(s);
     double residual = residual_of(s);
     solver_keep_best(&w->best, s->cp->m, residual, s->u, s->r);
@@ -577,7 +571,7 @@ const solver_ops proximal_solver = {
     "for a body on its contact surface NEWTON is faster.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
-  .options = proximal_options,
+  .work_size = sizeof(proximal_work), .options = proximal_options,
   .setup = proximal_setup, .solve = proximal_solve, .release = proximal_release
 };
 /* clang-format on */

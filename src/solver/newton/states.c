@@ -2,6 +2,7 @@
 #include "solver/newton/system.h"
 
 #include "base/memory.h"
+#include "base/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -109,13 +110,6 @@ static void set_slip(states *s, int node_id, const double *z, double size,
       size - g > 0x1p-20 * g ? c * g / (size - g) : 0x1p20 * c;
 }
 
-/* 1: no force is known: the state of friction cannot be determined. */
-static int unloaded(const states *s) {
-  for (int i = 0; i < s->cp->m; ++i)
-    if (s->r[i] != 0.0) return 0;
-  return 1;
-}
-
 /* Forces that push each node back by its own stiffness, to compare its slip
  * with: the cheapest guess of stick or slip. */
 static void presume_pressure(states *s) {
@@ -207,7 +201,7 @@ static int next_bounds(states *s, int node_id, int fresh, int changes) {
 
 int states_next(states *s, int fresh) {
   const contact_problem *cp = s->cp;
-  int changes = 0, bonded = fresh && unloaded(s);
+  int changes = 0, bonded = fresh && is_zero(s->cp->m, s->r);
   if (bonded && !contact_has_stiffness(cp)) {
     presume_pressure(s);
     bonded = 0;

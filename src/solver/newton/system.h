@@ -17,8 +17,7 @@
  * factor, a new factor is made: of M, or, with few slipping nodes, of the
  * symmetric matrix without their friction (Cholesky), friction being an update.
  */
-#ifndef PROTIS_NEWTON_SYSTEM_H
-#define PROTIS_NEWTON_SYSTEM_H
+#pragma once
 
 #include "base/archive/archive.h"
 #include "contact/contact.h"
@@ -200,5 +199,3 @@ void step_matrix_add_row(step_matrix *s, int j, double share);
 status step_matrix_put(step_matrix *s, int i);
 /* d <- inv(J) d; *singular = 1: not found. Errors: ERR_MEMORY. */
 status step_matrix_solve(step_matrix *s, double *d, int *singular);
-
-#endif

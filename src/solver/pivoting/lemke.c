@@ -637,10 +637,8 @@ static const solver_ops *const correctors[N_CORRECTOR] = {&newton_solver,
 
 static void lemke_release(void *work) {
   lemke_work *w = work;
-  if (w == NULL) return;
   for (int i = 0; i < N_CORRECTOR; ++i) {
-    if (w->corrector.ops[i] != NULL)
-      w->corrector.ops[i]->release(w->corrector.work[i]);
+    solver_release(w->corrector.ops[i], w->corrector.work[i]);
     memory_free(w->corrector.param[i]);
   }
   lcp_free(&w->lcp);
@@ -648,7 +646,7 @@ static void lemke_release(void *work) {
           w->reduced.tame, w->reduced.base, w->raw, w->v, w->t, w->ray, w->work,
           w->best_u, w->best_r, w->reduced.kept, w->reduced.free_id, w->pivot,
           w->kind, w->node.normal, w->node.slide, w->node.n_slide, w->var, w->q,
-          w->d, w->z, w->dz, w);
+          w->d, w->z, w->dz);
 }
 
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
@@ -661,18 +659,16 @@ static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
     w->corrector.param[i] = param;
     w->corrector.ops[i] = ops;
     option_defaults(ops->options, param);
-    PASS(ops->setup(cp, param, &w->corrector.work[i]));
+    PASS(solver_set_up(ops, cp, param, &w->corrector.work[i]));
   }
   return OK;
 }
 
 static status lemke_setup(const contact_problem *cp, const void *par,
-                          void **work) {
-  lemke_work *w;
+                          void *work) {
+  lemke_work *w = work;
   const lemke *p = par;
   size_t m = (size_t)cp->m;
-  PASS_NEW(w, 1);
-  *work = w;
   w->m = cp->m;
   w->facets = p->facets >= 4 ? p->facets + p->facets % 2 : 8;
   int n_var = cp->n * (cp->dim == 2 ? 4 : w->facets + 2);
@@ -695,17 +691,16 @@ static status lemke_setup(const contact_problem *cp, const void *par,
  * rounding where obstacles travel far, by a solver of the problem itself. */
 static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
   lemke_work *w = s->w;
-  size_t bytes = (size_t)s->cp->m * sizeof *u;
   rep->residual = contact_residual(s->cp, u, r);
   if (rep->residual <= s->control->tol) return OK;
   rep->outcome = STOPPED_STAGNATION;
-  memcpy(w->best_u, u, bytes);
-  memcpy(w->best_r, r, bytes);
+  COPY(w->best_u, u, s->cp->m);
+  COPY(w->best_r, r, s->cp->m);
   for (int i = 0; i < N_CORRECTOR && rep->outcome != CONVERGED; ++i) {
     solver_report inner = {.outcome = RUNNING};
     if (w->corrector.ops[i] == NULL) continue;
-    memcpy(u, w->best_u, bytes);
-    memcpy(r, w->best_r, bytes);
+    COPY(u, w->best_u, s->cp->m);
+    COPY(r, w->best_r, s->cp->m);
     PASS(w->corrector.ops[i]->solve(s->cp, w->corrector.param[i],
                                     w->corrector.work[i], s->control, u, r,
                                     &inner));
@@ -789,8 +784,8 @@ const solver_ops lemke_solver = {
     "methods disagree or fail.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .entries = "METHOD=LEMKE, which pivots on columns,",
-  .param_size = sizeof(lemke), .options = lemke_options,
-  .setup = lemke_setup, .solve = lemke_solve, .release = lemke_release,
-  .keep = lemke_keep
+  .param_size = sizeof(lemke), .work_size = sizeof(lemke_work),
+  .options = lemke_options, .setup = lemke_setup, .solve = lemke_solve,
+  .release = lemke_release, .keep = lemke_keep
 };
 /* clang-format on */

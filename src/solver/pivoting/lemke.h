@@ -1,8 +1,7 @@
 /*
  * METHOD=LEMKE: interface besides the row of the solver.
  */
-#ifndef PROTIS_PIVOTING_LEMKE_H
-#define PROTIS_PIVOTING_LEMKE_H
+#pragma once
 
 /*
  * work: of its setup. The motion [m] that ended the last solve with
@@ -10,5 +9,3 @@
  * it than friction. NULL: the last solve ended otherwise.
  */
 const double *lemke_ray(const void *work);
-
-#endif
