@@ -106,3 +106,51 @@ void frame_invert(int dim, int orthonormal, const double *frame,
     for (int c = 0; c < 3; ++c) basis[3 * k + c] /= det;
   }
 }
+
+/* ---- planes of symmetry ------------------------------------------------- */
+
+/* Of the size of the mesh. */
+static const double rounding = 1e-9;
+
+/* Nodes of the mesh in the plane x_c = at, a node that is not held in it: -1.
+ */
+static int held_in_plane(const surface_input *in, int c, double at) {
+  const mesh *m = in->mesh;
+  int n = 0;
+  for (int i = 0; i < m->n_node; ++i) {
+    if (fabs(m->x[in->mesh->dim * i + c] - at) > rounding * m->size) continue;
+    if (!(in->fixed[i] >> c & 1)) return -1;
+    ++n;
+  }
+  return n;
+}
+
+void mirrors_find(const surface_input *in, mirrors *out) {
+  const mesh *m = in->mesh;
+  for (int c = 0; c < in->mesh->dim; ++c) {
+    unsigned all = 1u << c;
+    out->low[c] = HUGE_VAL, out->high[c] = -HUGE_VAL;
+    for (int i = 0; i < m->n_node; ++i) {
+      all &= in->fixed[i];
+      out->low[c] = fmin(out->low[c], m->x[in->mesh->dim * i + c]);
+      out->high[c] = fmax(out->high[c], m->x[in->mesh->dim * i + c]);
+    }
+    if (all != 0) continue;
+    if (held_in_plane(in, c, out->low[c]) >= in->mesh->dim)
+      out->planes |= 1u << 2 * c;
+    if (held_in_plane(in, c, out->high[c]) >= in->mesh->dim)
+      out->planes |= 2u << 2 * c;
+  }
+}
+
+int mirrors_have(const mirrors *s, const surface_input *in, int node_id) {
+  const double *x = &in->mesh->x[(size_t)in->mesh->dim * (size_t)node_id];
+  const double near = rounding * in->mesh->size;
+  for (int c = 0; c < in->mesh->dim; ++c) {
+    if (!(in->fixed[node_id] >> c & 1)) continue;
+    if ((s->planes >> 2 * c & 1) && x[c] - s->low[c] <= near) continue;
+    if ((s->planes >> 2 * c & 2) && s->high[c] - x[c] <= near) continue;
+    return 0;
+  }
+  return 1;
+}

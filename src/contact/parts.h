@@ -49,6 +49,17 @@ int frame_is_smooth(int dim, const double *a, const double *b);
  * is its own inverse, transposed: no arithmetic then. */
 void frame_invert(int dim, int orthonormal, const double *frame, double *basis);
 
+/* Planes at an end of the mesh that hold all their nodes, at least a face,
+ * where not all of the mesh is held. */
+typedef struct mirrors {
+  unsigned planes; /* bit 2c, 2c+1: least, greatest x_c is one */
+  double low[3], high[3];
+} mirrors;
+void mirrors_find(const surface_input *in, mirrors *out);
+/* 1: what holds the node is a plane of symmetry, where the normals of its own
+ * faces, half of those around it, lean. */
+int mirrors_have(const mirrors *s, const surface_input *in, int node_id);
+
 /*
  * Pairs of two surfaces of the mesh in a contact surface: what their nodes are
  * relative to. Private to src/contact.

@@ -29,6 +29,8 @@ typedef struct candidate {
   int row; /* of a pair: in its coupling */
   int left_out;
   double normal[3]; /* [dim] sum of w n, then the unit normal */
+  double lean[3];   /* [dim] the normal before over its part along that after
+                       supports */
   double held;      /* 1 - what supports leave of the normal's length */
   double area;      /* m2 */
   double gap;       /* at time 0, m */
@@ -56,13 +58,11 @@ typedef struct builder {
   const surface_input *in;
   message_log *log;
   int dim, n;
-  unsigned mirrors;       /* bit 2c, 2c+1: least, greatest x_c is a mirror
-                             plane */
-  double low[3], high[3]; /* [dim] box of the mesh, m */
-  candidate *list;        /* [n] by node, then by contact */
-  tally *tallies;         /* [n_pair] */
-  pair_links links;       /* room for the masters of the surface */
-  pair_row *rows;         /* [n_pair] of one node */
+  mirrors mirrors;
+  candidate *list;  /* [n] by node, then by contact */
+  tally *tallies;   /* [n_pair] */
+  pair_links links; /* room for the masters of the surface */
+  pair_row *rows;   /* [n_pair] of one node */
 } builder;
 
 /* Position of a node as text for a message. */
@@ -364,45 +364,15 @@ static int take_obstacle_normal(const builder *b, candidate *c) {
          -PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
 
-/* Nodes of the mesh in the plane x_c = at, a node that is not held in it: -1.
- */
-static int held_in_plane(const builder *b, int c, double at) {
-  const mesh *m = b->in->mesh;
-  int n = 0;
-  for (int i = 0; i < m->n_node; ++i) {
-    if (fabs(m->x[b->dim * i + c] - at) > rounding * m->size) continue;
-    if (!(b->in->fixed[i] >> c & 1)) return -1;
-    ++n;
-  }
-  return n;
-}
-
-/* Planes at an end of the mesh that hold all their nodes, at least a face. */
-static void find_mirrors(builder *b) {
-  const mesh *m = b->in->mesh;
-  for (int c = 0; c < b->dim; ++c) {
-    b->low[c] = HUGE_VAL, b->high[c] = -HUGE_VAL;
-    for (int i = 0; i < m->n_node; ++i) {
-      b->low[c] = fmin(b->low[c], m->x[b->dim * i + c]);
-      b->high[c] = fmax(b->high[c], m->x[b->dim * i + c]);
-    }
-    if (held_in_plane(b, c, b->low[c]) >= b->dim) b->mirrors |= 1u << 2 * c;
-    if (held_in_plane(b, c, b->high[c]) >= b->dim) b->mirrors |= 2u << 2 * c;
-  }
-}
-
-/* 1: what holds the node is a mirror, where the normals of its own faces, half
- * of those around it, lean. */
-static int at_mirror(const builder *b, int node_id) {
-  const double *x = &b->in->mesh->x[(size_t)b->dim * (size_t)node_id];
-  const double near = rounding * b->in->mesh->size;
-  for (int c = 0; c < b->dim; ++c) {
-    if (!(b->in->fixed[node_id] >> c & 1)) continue;
-    if ((b->mirrors >> 2 * c & 1) && x[c] - b->low[c] <= near) continue;
-    if ((b->mirrors >> 2 * c & 2) && b->high[c] - x[c] <= near) continue;
-    return 0;
-  }
-  return 1;
+/* 1: the obstacle has a normal of its own there, of which supports hold a part:
+ * it is not that of its image. */
+static int leans(const builder *b, const candidate *c) {
+  static const double told = 1e-6; /* -, of its length: an angle of 1.4e-3 */
+  const contact_pair *p = &b->in->pairs[c->pair_id];
+  double n[3];
+  return p->support != NULL &&
+         obstacle_normal(p->support, b->dim, row_of(b, c).x, n) &&
+         1.0 - frame_project(b->dim, b->in->fixed[c->node_id], n) > told;
 }
 
 /* Unit normal orthogonal to the fixed components, or left out. */
@@ -421,8 +391,14 @@ static void orient(builder *b, candidate *c) {
     return;
   }
   unsigned fixed = b->in->fixed[c->node_id];
+  COPY(c->lean, c->normal, 3);
   double left = frame_project(b->dim, fixed, c->normal);
-  if (!at_mirror(b, c->node_id)) c->held = 1.0 - left;
+  if (mirrors_have(&b->mirrors, b->in, c->node_id) && !leans(b, c))
+    COPY(c->lean, c->normal, 3);
+  else
+    c->held = 1.0 - left;
+  const double along = dot(b->dim, c->lean, c->normal);
+  for (int k = 0; k < b->dim; ++k) c->lean[k] /= along;
   if (left > PAIR_FIXED_SINE) return;
   c->left_out = 1;
   if (t->n_fixed++ == 0) t->fixed_node = c->node_id;
@@ -528,6 +504,20 @@ static int set_frame(builder *b, contact_surface *s, int i, int n_kept,
   return bad;
 }
 
+/* Of a node with one normal: rows that supports hold and the normal is not
+ * orthogonal to. */
+static status set_lean(const builder *b, const candidate *c, int i,
+                       contact_surface *s) {
+  const int dim = b->dim;
+  for (int a = 1; a < dim; ++a) {
+    const double lean = dot(dim, c->lean, &s->frame[dim * (dim * i + a)]);
+    if (!s->held[dim * i + a] || fabs(lean) <= rounding) continue;
+    if (s->lean == NULL) PASS_NEW(s->lean, dim * b->n);
+    s->lean[dim * i + a] = lean;
+  }
+  return OK;
+}
+
 /* A corner has no friction: noted for each of its contacts. */
 static void note_corner(builder *b, int n_kept, const candidate *const *kept) {
   int friction = 0;
@@ -575,6 +565,7 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
   s->area[i] = c->area;
   s->gap0[i] = c->gap;
   if (!set_frame(b, s, i, n_kept, kept)) note_corner(b, n_kept, kept);
+  if (n_kept == 1) PASS(set_lean(b, c, i, s));
   return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
@@ -684,7 +675,7 @@ status surface_build(const surface_input *in, message_log *log,
   contact_surface *s = NULL;
   *out = NULL;
   TRY(collect(&b));
-  find_mirrors(&b);
+  mirrors_find(in, &b.mirrors);
   TRY(surface_new(b.dim, b.n, has_pair(in), &s));
   for (int first = 0, end; first < b.n; first = end) {
     const candidate *kept[3];
@@ -770,7 +761,7 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
   if (s->master != NULL) links_release(s->master);
-  RELEASE(s->master, s->apart, s->share, s->covered, s->lever, s->node_id,
-          s->node_no, s->contact_id, s->side_id, s->x, s->area, s->side_area,
-          s->frame, s->basis, s->gap0, s->held, s);
+  RELEASE(s->master, s->lean, s->apart, s->share, s->covered, s->lever,
+          s->node_id, s->node_no, s->contact_id, s->side_id, s->x, s->area,
+          s->side_area, s->frame, s->basis, s->gap0, s->held, s);
 }

@@ -143,7 +143,7 @@ static status make_solution(written *f, const double *u, const double *r) {
   PASS_NEW_REALS(cp->m, &f->u, &f->r);
   for (int k = 0; k < cp->m; ++k) {
     f->u[k] = sign_of(cp->dim, k) * u[k] + offset_of(cp, k);
-    f->r[k] = sign_of(cp->dim, k) * r[k];
+    f->r[k] = contact_held(cp, k) ? 0.0 : sign_of(cp->dim, k) * r[k];
   }
   return OK;
 }

@@ -6,6 +6,7 @@
 #include "base/timer.h"
 #include "run/run.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -59,14 +60,13 @@ static int is_carried(const contact_surface *s, int i) {
 
 /* Slip of such a node, m; 0 where it is rounding of what moves. */
 static double carried_slip(const run *r, int k, const double *slip) {
-  static const double rounding = 1e-12;
   double length = 0.0, moves = 0.0;
   for (int a = 0; a < r->msh->dim - 1; ++a) {
     length = hypot(length, slip[a]);
     moves += fabs(r->now.uc[k + a]) + fabs(r->old.uc[k + a]) +
              fabs(run_drift(&r->now, k + a)) + fabs(run_drift(&r->old, k + a));
   }
-  return length > rounding * moves ? length : 0.0;
+  return length > run_still(r, moves) ? length : 0.0;
 }
 
 /*
@@ -81,13 +81,39 @@ static void find_carried(run *r, int i) {
   const double length = carried_slip(r, k, slip);
   double *force = &r->now.rc[k], size = 0.0;
   for (int a = 0; a < tangents; ++a) {
-    force[a] = length > 0.0 ? -slip[a] : fresh ? 0.0 : r->old.rc[k + a];
+    force[a] = length > 0.0 ? -slip[a]
+               : fresh      ? 0.0
+                            : run_friction(r, &r->old, k + a);
     size = hypot(size, force[a]);
   }
   for (int a = 0; a < tangents && (length > 0.0 || size > g); ++a)
     force[a] *= g / size;
   if (length > 0.0 && r->result.contact[i] == CONTACT_STICK)
     r->result.contact[i] = CONTACT_SLIP;
+}
+
+double run_still(const run *r, double moves) {
+  static const double rounding = 1e-12;
+  return rounding * (moves + largest_entry(r->n_dof, r->now.u)) +
+         4.0 * DBL_EPSILON * r->msh->size;
+}
+
+double run_friction(const run *r, const equilibrium *e, int k) {
+  const int dim = r->msh->dim, i = k / dim;
+  return e->rc[k] - surface_lean(r->surface, i, k % dim) * e->rc[dim * i];
+}
+
+/* The part of the normal force of node i that supports bear, with the friction
+ * that they bear; contact_solve leaves them zero. */
+static void lean(run *r, int i) {
+  const int dim = r->msh->dim,
+            borne = r->result.g != NULL && is_carried(r->surface, i);
+  for (int a = 1; a < dim; ++a) {
+    double *force = &r->now.rc[dim * i + a];
+    if (!r->surface->held[dim * i + a]) continue;
+    *force = (borne ? *force : 0.0) +
+             surface_lean(r->surface, i, a) * r->now.rc[dim * i];
+  }
 }
 
 /* Slip against the obstacle, gap left, status. */
@@ -111,6 +137,7 @@ static void find_contact(run *r) {
                                : CONTACT_OPEN;
   for (int i = 0; i < r->nodes.n && r->result.g != NULL; ++i)
     if (is_carried(r->surface, i)) find_carried(r, i);
+  for (int i = 0; i < r->nodes.n && r->surface->lean != NULL; ++i) lean(r, i);
 }
 
 /* Force and moment of one row of a contact node. */
@@ -240,8 +267,9 @@ static status find_energies(run *r) {
       work += 0.5 * (a->rc[k] + b->rc[k]) * (b->uc[k] - a->uc[k]);
       /* The side of a corner is a second obstacle, no friction. */
       if (c == 0 || r->surface->side_id[(dim - 1) * i + c - 1] >= 0) continue;
-      friction -= 0.5 * (a->rc[k] + b->rc[k]) * run_motion_over(r, k);
-      e.friction_end -= b->rc[k] * slip_of(r, k);
+      friction -= 0.5 * (run_friction(r, a, k) + run_friction(r, b, k)) *
+                  run_motion_over(r, k);
+      e.friction_end -= run_friction(r, b, k) * slip_of(r, k);
     }
   }
   e.friction += friction;

@@ -126,8 +126,8 @@ typedef struct posed_problem {
   const friction_limit *limit; /* of the time posed last */
   const sparse_rows *B;        /* [n*n] -, of limit, or in its place */
   const double *given;         /* [n] given normal forces, N; < 0: none */
-  double *row[2];  /* [rows*n] workspace of run_rows, or NULL */
-  reach_part part; /* data of cp where it does not have all nodes */
+  double *row[2];              /* [rows*n] workspace of run_rows, or NULL */
+  reach_part part;             /* data of cp where it does not have all nodes */
   contact_problem cp;
   double *f_before; /* [n_row] condensed load of r->old, N */
   int n_before;     /* its n_row */
@@ -419,6 +419,12 @@ static inline double run_drift(const equilibrium *e, int k) {
 }
 /* Motion of a contact unknown against the obstacle in the increment, m. */
 double run_motion_over(const run *r, int k);
+/* Motion that is rounding of others of the size "moves", of displacements and
+ * of places, m. */
+double run_still(const run *r, double moves);
+/* Friction of contact unknown k: its force without what supports bear of the
+ * normal one there, N. */
+double run_friction(const run *r, const equilibrium *e, int k);
 /* Energies of e as those the run starts with. */
 void result_start(run *r, equilibrium *e);
 /* r->now becomes r->old. */

@@ -63,14 +63,16 @@ static void check_file(const job *j, const char *file, int dim) {
 }
 
 /* Sums of gaps, slip and forces: a file has its nodes in another order. Slip in
- * space only, where no node of the scene is held. */
-static void compare_tables(const dat *a, const dat *b) {
+ * space only, where no node of the scene is held; carried: nodes that slide
+ * with their supports, whose friction is in no condensed problem. */
+static void compare_tables(const dat *a, const dat *b, int carried) {
   static const char *const name[] = {"gap",  "slip_1", "slip_2", "f_n",
                                      "f_t1", "f_t2",   "f_t",    "limit"};
   int compared = 0;
   ck_assert_int_eq(a->n_row, b->n_row);
   for (size_t k = 0; k < sizeof name / sizeof *name; ++k) {
     if (!dat_has(a, name[k]) || !dat_has(b, name[k])) continue;
+    if (carried > 0 && strcmp(name[k], "f_t") == 0) continue;
     ++compared;
     double scale = fmax(dat_max(a, name[k]), dat_max(a, k < 3 ? "u_n" : "f_n"));
     ck_assert_msg(
@@ -81,10 +83,12 @@ static void compare_tables(const dat *a, const dat *b) {
 }
 
 /* The second increment of a deck, solved again from its file. */
-static void round_trip(job *j, const char *solver) {
+static void round_trip(job *j, const char *solver, int carried) {
   static const char *const counted[] = {"open", "slip", "stick"};
   double count[3];
   for (int c = 0; c < 3; ++c) count[c] = job_told(j, counted[c]);
+  count[1] -= carried;
+  count[2] += carried;
   dat was = job_table(j, "CONTACT", -1);
   job_write(j, "back.inp",
             "*CONDENSED PROBLEM, FILE=%s_condensed_00002.h5\n*STEP\n"
@@ -99,7 +103,7 @@ static void round_trip(job *j, const char *solver) {
   for (int c = 0; c < 3; ++c)
     ck_assert_double_eq(job_told(j, counted[c]), count[c]);
   dat now = job_table(j, "CONTACT", -1);
-  compare_tables(&was, &now);
+  compare_tables(&was, &now, carried);
   dat_free(&was);
   dat_free(&now);
   strcpy(j->name, name);
@@ -169,15 +173,15 @@ START_TEST(problem_written_and_read_has_the_same_solution) {
   job j = run_square("LEFT, 1, 1, 0.001\nTOP, 2, 2, -0.004\n", COULOMB);
   check_file(&j, "square_condensed_00002.h5", 2);
   check_nodes(&j, "square_condensed_00002.h5");
-  round_trip(&j, "");
+  round_trip(&j, "", 1);
   check_bound(&j, "square_condensed_00002.h5");
   job_end(&j);
   j = run_square("RIGHT, 1\n", COULOMB); /* its corner node is held          */
-  round_trip(&j, "");
+  round_trip(&j, "", 0);
   job_end(&j);
   j = run_square("RIGHT, 1\nRIGHT, 2\n", "");
   check_file(&j, "square_condensed_00002.h5", 2);
-  round_trip(&j, ", METHOD=SOR");
+  round_trip(&j, ", METHOD=SOR", 0);
   job_end(&j);
 }
 END_TEST
@@ -197,7 +201,7 @@ START_TEST(problem_of_three_dimensions_comes_back) {
             "*OUTPUT, HDF5=NO, CONDENSED=FCLIB\n*PRINT, CONTACT\n*END STEP\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   check_file(&j, "block_condensed_00002.h5", 3);
-  round_trip(&j, "");
+  round_trip(&j, "", 0);
   job_end(&j);
 }
 END_TEST

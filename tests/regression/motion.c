@@ -347,6 +347,100 @@ START_TEST(supports_bear_the_friction_of_the_nodes_they_hold) {
 }
 END_TEST
 
+/* A block on a slope, carried over it by its supports or the slope below it,
+ * which follows the body or is a plane of its own: it rises by the slope times
+ * the way, and the supports bear the part of the normal force along them. */
+START_TEST(supports_carry_a_block_up_a_slope) {
+  static const struct {
+    const char *supports, *moves;
+    int follows;
+  } cases[] = {{"BODY, 1, 1, 0.02\n", "", 0},
+               {"BODY, 1\n", "MOVE, \"-0.02*t\", 0.\n", 0},
+               {"BODY, 1, 1, 0.02\n", "", 1},
+               {"BODY, 1\n", "MOVE, \"-0.02*t\", 0.\n", 1},
+               {"RIGHT, 1, 1, 0.02\n", "", 0},
+               {"RIGHT, 1\n", "MOVE, \"-0.02*t\", 0.\n", 0},
+               {"BODY, 1\n", "", 0},
+               {"LEFT, 1\n", "", 0}};
+  double rise[8], force[8];
+  for (int k = 0; k < 8; ++k) {
+    job j = job_begin("slope");
+    job_write(
+        &j, "slope.geo",
+        "Point(1) = {0, 0, 0}; Point(2) = {1, 0.05, 0};\n"
+        "Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};\n"
+        "For i In {1:4}\n  Line(i) = {i, i %% 4 + 1};\n"
+        "  Transfinite Curve{i} = 3;\nEndFor\n"
+        "Curve Loop(1) = {1:4}; Plane Surface(1) = {1};\n"
+        "Transfinite Surface{1};\nPhysical Curve(\"FOOT\") = {1};\n"
+        "Physical Curve(\"RIGHT\") = {2};\nPhysical Curve(\"TOP\") = {3};\n"
+        "Physical Curve(\"LEFT\") = {4};\n"
+        "Physical Surface(\"BODY\") = {1};\n");
+    job_write(&j, "slope.inp",
+              "*MESH, FILE=slope.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=%s%s*CONTACT, NAME=C, GROUP=FOOT, "
+              "OBSTACLE=O\n%s*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\n%s"
+              "*DSLOAD\nTOP, P, 1.\n*PRINT, TOTALS, NODES, REACTIONS, ENERGY\n"
+              "*END STEP\n",
+              cases[k].follows ? "GAP\n0.\n" : "PLANE\n0., 0.\n-0.05, 1.\n",
+              cases[k].moves,
+              _i ? "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n" : "",
+              cases[k].supports);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    dat all = job_table(&j, "TOTALS", -1), u = job_table(&j, "NODES", -1);
+    dat s = job_table(&j, "REACTIONS", -1), e = job_table(&j, "ENERGY", -1);
+    rise[k] = dat_sum(&u, "u_y") / u.n_row;
+    force[k] = dat_at(&all, 0, "force_x");
+    ck_assert_double_eq_tol(dat_sum(&s, "reaction_x"), -force[k], 1e-12);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-11);
+    if (_i && k < 4)
+      ck_assert_double_eq_tol(dat_at(&e, 0, "friction_work"), 0.2 * 0.01,
+                              1e-12);
+    dat_free(&all);
+    dat_free(&u);
+    dat_free(&s);
+    dat_free(&e);
+    job_end(&j);
+  }
+  for (int k = 0; k < 4; ++k) {
+    ck_assert_double_eq_tol(rise[k], rise[6] + 0.001, 1e-12);
+    ck_assert_double_eq_tol(force[k], -0.05 - 0.2 * _i, 1e-12);
+  }
+  ck_assert_double_eq_tol(rise[4], rise[5], 1e-12);
+  ck_assert_double_eq_tol(force[4], force[5], 1e-12);
+  ck_assert_double_eq_tol(force[6], -0.05, 1e-12);
+  if (!_i) ck_assert_double_eq_tol(force[7], -0.05, 1e-12);
+}
+END_TEST
+
+/* Where an obstacle is back at its place up to rounding nothing has slid. */
+START_TEST(rounding_of_a_motion_is_no_slip) {
+  static const char *const ways[] = {"0.02*sin(2*pi*t)", "0.1*t+0.2*t-0.3*t",
+                                     "3*(t/3)-t"};
+  for (int k = 0; k < 3; ++k) {
+    job j = job_begin("still");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "still.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1E9, 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "MOVE, \"%s\", 0.\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.9\n*STEP\n*QUASISTATIC\n"
+              "%s, 1.\n*BOUNDARY\nBODY, 1\n*DSLOAD\nTOP, P, 1.\n"
+              "*PRINT, TOTALS\n*END STEP\n",
+              ways[k], k == 0 ? "0.5" : "0.1");
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    for (int b = 0; b < (k == 0 ? 2 : 10); ++b) {
+      dat all = job_table(&j, "TOTALS", b);
+      ck_assert_double_eq(dat_at(&all, 0, "force_x"), 0);
+      dat_free(&all);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* ---- long motions -------------------------------------------------------- */
 
 /* A block pressed by p onto a floor, E = 300 (elastic motion 1e-3), mu = 0.3:
@@ -518,6 +612,8 @@ int main(void) {
   tcase_add_test(tests, cone_is_round_for_every_direction_of_slip);
   tcase_add_loop_test(tests, supports_bear_the_friction_of_the_nodes_they_hold,
                       0, 7);
+  tcase_add_loop_test(tests, supports_carry_a_block_up_a_slope, 0, 2);
+  tcase_add_test(tests, rounding_of_a_motion_is_no_slip);
   tcase_add_test(tests, long_motions_leave_the_forces_right);
   tcase_add_test(tests, forces_lost_to_rounding_are_never_ok);
   tcase_add_test(tests, bodies_and_laws_count_by_their_own_forces);

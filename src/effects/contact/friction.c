@@ -254,9 +254,6 @@ static status refuse_held(const run *r, int i, int a) {
         r->surface->node_no[i]);
 }
 
-/* Of the motion of supports, which the differences of masters round. */
-static const double rounding = 1e-12;
-
 static void tell_held(const run *r, friction *own, int i, int a) {
   const load *l = holder(r, i, a);
   if (own->told) return;
@@ -270,7 +267,7 @@ static void tell_held(const run *r, friction *own, int i, int a) {
 
 static status check_held(const run *r, friction *own, int i, int a, double from,
                          double to) {
-  if (!(fabs(to - from) > rounding * (fabs(to) + fabs(from))) ||
+  if (!(fabs(to - from) > run_still(r, fabs(to) + fabs(from))) ||
       !can_stick(&own->limit, i))
     return OK;
   if (is_half_held(r->surface, i, a)) return refuse_held(r, i, a);
@@ -314,7 +311,7 @@ static int is_moved(const run *r, const travel *x, int i, int a) {
   const double to = held_value(r, x->now, i, a);
   const double drift = x->drift[r->msh->dim * i + a];
   return fabs(to - from - drift) >
-         rounding * (fabs(to) + fabs(from) + fabs(drift));
+         run_still(r, fabs(to) + fabs(from) + fabs(drift));
 }
 
 static status check_travel(const run *r, const travel *x) {
