@@ -358,11 +358,16 @@ static const struct {
      "*BOUNDARY\nLEFT, 1\nTOP, 2\n", "", " 6.3300E+000 "},
     {FLOOR(0.1), PRESS(10.),
      "*FRICTION, CONTACT=C, LAW=COULOMB, AMPLITUDE=PULSE\n0.3\n",
-     " 6.3300E+000 "}};
+     " 6.3300E+000 "},
+    /* small to what the table had before the step */
+    {"*AMPLITUDE, NAME=LATE\n0., 1.E6, 0.5, 0.01, 6.33, 0.01, 6.34, 1., "
+     "6.36, 1., 6.37, 0.01, 10., 0.01\n" FLOOR(
+         0.1) "*CONTACT FORCE, CONTACT=C, AMPLITUDE=LATE\n1.\n",
+     "*BOUNDARY\nLEFT, 1\nTOP, 2\n", "", " 6.3300E+000 "}};
 enum { N_PULSE = sizeof pulses / sizeof *pulses };
 
 START_TEST(pulses_of_all_tables_end_increments) {
-  char model[400], cards[300];
+  char model[600], cards[300];
   snprintf(model, sizeof model, "%s%s", PULSE("PULSE"), pulses[_i].model);
   snprintf(cards, sizeof cards,
            "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-3\n0.01, 10.\n%s",
