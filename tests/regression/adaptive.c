@@ -148,6 +148,19 @@ START_TEST(missed_tolerance_is_told) {
 }
 END_TEST
 
+/* Without dt_min increments go down to 1e-6 dt: tau = 2. */
+START_TEST(increments_are_as_short_as_is_right) {
+  job j = run_deck(
+      "", HELD, "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-5\n1E3, 1E3\n", 0);
+  job_end(&j);
+  j = run_deck("", HELD,
+               "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-5\n"
+               "1E3, 1E3, 1.\n",
+               1);
+  job_end(&j);
+}
+END_TEST
+
 /* Explicit integrators are kept below their limit, tau = 2, at any tolerance.
  */
 START_TEST(increments_stay_stable) {
@@ -436,6 +449,7 @@ int main(void) {
   tcase_add_test(tests, rejected_increments_leave_nothing_behind);
   tcase_add_loop_test(tests, strains_of_other_steps_count, 0, 2);
   tcase_add_test(tests, missed_tolerance_is_told);
+  tcase_add_test(tests, increments_are_as_short_as_is_right);
   tcase_add_test(tests, increments_stay_stable);
   tcase_add_test(tests, strains_from_nothing_count);
   tcase_add_test(tests, increments_are_as_long_as_is_stable);
