@@ -372,8 +372,8 @@ START_TEST(later_steps_are_checked_before_the_first) {
 }
 END_TEST
 
-/* A load is checked on all of its group: FLOOR and the face between two layers,
- * both layers, of which one has no density. */
+/* A load is checked on all of its group: the bottom and the face between two
+ * layers, both layers, of which one has no density. */
 START_TEST(loads_are_checked_on_all_of_a_group) {
   static const struct {
     const char *soft, *hard, *load, *text; /* density; NULL: fine */
@@ -383,19 +383,15 @@ START_TEST(loads_are_checked_on_all_of_a_group) {
                "error P2014: GRAV on group ALL: material H has no *DENSITY"},
               {"", "*DENSITY\n1.\n", "*DLOAD\nALL, GRAV, 9.81, 0., -1.",
                "error P2014: GRAV on group ALL: material S has no *DENSITY"},
-              {"", "", "*DSLOAD\nFLOOR, P, 1.", NULL},
+              {"", "", "*DSLOAD\nBOTTOM, P, 1.", NULL},
               {"", "", "*DSLOAD\nWALLS, P, 1.",
                "error P2035: P on group WALLS: a face "},
               {"", "", "*DSLOAD\nWALLS, TX, 1.", NULL}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
     job j = job_begin("layers");
     job_copy(&j, "tests/regression/mesh/layers.geo");
-    job_write(&j, "walls.geo",
-              "Include \"layers.geo\";\nPhysical Curve(\"FLOOR\") = {1};\n"
-              "Physical Curve(\"WALLS\") = {1, 3};\n"
-              "Physical Surface(\"ALL\") = {1, 2};\n");
     job_write(&j, "layers.inp",
-              "*PARAMETER\nN = 2\n*MESH, FILE=walls.geo\n"
+              "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
               "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n%s"
               "*MATERIAL, NAME=H\n*ELASTIC\n2., 0.\n%s"
               "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"
