@@ -148,6 +148,19 @@ START_TEST(missed_tolerance_is_told) {
 }
 END_TEST
 
+/* Without dt_min increments go down to 1e-6 dt: tau = 2. */
+START_TEST(increments_are_as_short_as_is_right) {
+  job j = run_deck(
+      "", HELD, "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-5\n1E3, 1E3\n", 0);
+  job_end(&j);
+  j = run_deck("", HELD,
+               "*VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-5\n"
+               "1E3, 1E3, 1.\n",
+               1);
+  job_end(&j);
+}
+END_TEST
+
 /* Explicit integrators are kept below their limit, tau = 2, at any tolerance.
  */
 START_TEST(increments_stay_stable) {
@@ -358,11 +371,16 @@ static const struct {
      "*BOUNDARY\nLEFT, 1\nTOP, 2\n", "", " 6.3300E+000 "},
     {FLOOR(0.1), PRESS(10.),
      "*FRICTION, CONTACT=C, LAW=COULOMB, AMPLITUDE=PULSE\n0.3\n",
-     " 6.3300E+000 "}};
+     " 6.3300E+000 "},
+    /* small to what the table had before the step */
+    {"*AMPLITUDE, NAME=LATE\n0., 1.E6, 0.5, 0.01, 6.33, 0.01, 6.34, 1., "
+     "6.36, 1., 6.37, 0.01, 10., 0.01\n" FLOOR(
+         0.1) "*CONTACT FORCE, CONTACT=C, AMPLITUDE=LATE\n1.\n",
+     "*BOUNDARY\nLEFT, 1\nTOP, 2\n", "", " 6.3300E+000 "}};
 enum { N_PULSE = sizeof pulses / sizeof *pulses };
 
 START_TEST(pulses_of_all_tables_end_increments) {
-  char model[400], cards[300];
+  char model[600], cards[300];
   snprintf(model, sizeof model, "%s%s", PULSE("PULSE"), pulses[_i].model);
   snprintf(cards, sizeof cards,
            "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-3\n0.01, 10.\n%s",
@@ -431,6 +449,7 @@ int main(void) {
   tcase_add_test(tests, rejected_increments_leave_nothing_behind);
   tcase_add_loop_test(tests, strains_of_other_steps_count, 0, 2);
   tcase_add_test(tests, missed_tolerance_is_told);
+  tcase_add_test(tests, increments_are_as_short_as_is_right);
   tcase_add_test(tests, increments_stay_stable);
   tcase_add_test(tests, strains_from_nothing_count);
   tcase_add_test(tests, increments_are_as_long_as_is_stable);

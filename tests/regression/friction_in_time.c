@@ -219,13 +219,18 @@ START_TEST(mu_by_group) {
             "*FRICTION, CONTACT=A, LAW=COULOMB\n0.05\n"
             "*FRICTION, CONTACT=B, LAW=COULOMB\n0.7\n*STEP\n*QUASISTATIC\n"
             "0.5, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1, 0.1\n"
-            "*PRINT, TOTALS\n*END STEP\n");
+            "*PRINT, TOTALS\n*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n"
+            "*FRICTION, CONTACT=B, LAW=COULOMB\n0.6\n"
+            "*BOUNDARY\nTOP, 1, 1, 0.2\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, ""), 0);
+  ck_assert(
+      listing_has(&j, "  mu of contact B jumps at t = 1 from 0.7 to 0.6"));
+  ck_assert(!listing_has(&j, "contact A jumps"));
   dat t = job_table(&j, "TOTALS", -1);
   for (int k = 0; k < 2; ++k) {
     ck_assert_double_gt(dat_at(&t, k, "normal"), 1.0);
     ck_assert_double_eq_tol(dat_at(&t, k, "tangential"),
-                            -(k == 0 ? 0.05 : 0.7) * dat_at(&t, k, "normal"),
+                            -(k == 0 ? 0.05 : 0.6) * dat_at(&t, k, "normal"),
                             1e-9);
   }
   dat_free(&t);

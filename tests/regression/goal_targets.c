@@ -38,7 +38,7 @@ static int run_with(job *j, const char *deck, const char *cards,
 
 /* A goal after a pass, as JSON has it. */
 typedef struct told {
-  double error, band, solver, off, target;
+  double value, error, band, solver, off, target;
   int at_end; /* 1: not reliable for the contact ends */
 } told;
 
@@ -60,6 +60,7 @@ static int ladder(const job *j, told *t, int most) {
     char *close = strchr(at, '}');
     *close = '\0';
     t[n++] = (told){
+        .value = number(at, "\"value\""),
         .error = number(at, "\"error\""),
         .band = number(at, "\"band\""),
         .solver = number(at, "\"solver_error\""),
@@ -94,6 +95,18 @@ static void ck_ladder(const job *j, int n_goal) {
   }
 }
 
+/* A target in percent is one of what is expected of a finer mesh. */
+static void ck_percent(const job *j, int n_goal, int row, double percent) {
+  enum { MOST = 60 };
+  told t[MOST];
+  const int n = ladder(j, t, MOST);
+  for (int k = row; k < n; k += n_goal) {
+    const double exact = percent / 100 * fabs(t[k].value + t[k].error);
+    if (k + n_goal < n && isnan(exact)) continue;
+    ck_assert_double_eq_tol(t[k].target, exact, 1e-12 * exact);
+  }
+}
+
 /* The true error of goal "row" is within its target. */
 static void ck_true(const job *j, int row, double exact, double most) {
   dat t = job_table(j, "GOALS", -1);
@@ -120,6 +133,7 @@ START_TEST(every_goal_is_within_its_target) {
                             "*ACCURACY, MAX_CPU=20\n", "");
   OK_OR_STOP(code, j);
   ck_ladder(&j, 4);
+  for (int i = 0; i < 2; ++i) ck_percent(&j, 4, i, 0.5);
   ck_true(&j, 0, 1.00026235 * P_H, 0.005 * P_H);
   ck_true(&j, 1, 1.00157562 * A_H, 0.005 * A_H);
   ck_true(&j, 3, -0.00204203522 * L_H, 4e-6);

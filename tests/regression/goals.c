@@ -249,6 +249,46 @@ START_TEST(work_of_a_zone_of_stick_that_grows) {
 }
 END_TEST
 
+/* A corner that has slid sticks where it is while a part of the load goes: it
+ * keeps its displacement, and the error of that. */
+static void check_stays(const char *type) {
+  job j = job_begin("stays");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "stays.inp",
+            "*PARAMETER\nN = 5\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+            "TYPE=%s\n*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n*GOAL, NAME=CORNER, "
+            "QUANTITY=DISPLACEMENT, COMPONENT=1\n1., 0.\n"
+            "*STEP\n*QUASISTATIC\n1., 2.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
+            "TOP, P, \"10*min(t,1)\"\nRIGHT, TX, \"if(t<1.5, 10, 9)\"\n"
+            "*PRINT, GOALS, CONTACT\n*END STEP\n",
+            type);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  double value[2], error[2];
+  for (int k = 0; k < 2; ++k) {
+    dat t = job_table(&j, "GOALS", k), c = job_table(&j, "CONTACT", k);
+    const int corner = dat_row_near(&c, "node_no", 2);
+    ck_assert_double_eq(dat_at(&c, corner, "status"), k == 0 ? 1.0 : 2.0);
+    value[k] = dat_at(&t, 0, "value");
+    error[k] = dat_at(&t, 0, "error");
+    dat_free(&c);
+    dat_free(&t);
+  }
+  ck_assert_double_eq_tol(value[1], value[0], 1e-12);
+  ck_assert_double_gt(fabs(error[0]), 1e-3 * fabs(value[0]));
+  ck_assert_double_eq_tol(error[1], error[0], 1e-9 * fabs(error[0]));
+  job_end(&j);
+}
+
+START_TEST(node_that_stays_where_it_slid_keeps_its_error) {
+  check_stays("CPE3");
+  check_stays("CPS3");
+  check_stays("CAX3");
+}
+END_TEST
+
 /* The condensed stiffness is formed, or known by products and solves. */
 START_TEST(both_kinds_of_stiffness_give_the_same) {
   job dense = to_and_fro("DENSE"), factor = to_and_fro("FACTOR");
@@ -730,16 +770,20 @@ START_TEST(errors_do_not_depend_on_the_axes) {
 }
 END_TEST
 
-UNIT_MAIN(
-    "goals", goals_of_the_half_plane_of_hertz, friction_force_of_the_block,
-    friction_force_of_a_slice, errors_of_earlier_increments_are_in_it,
-    work_of_a_zone_of_stick_that_grows, both_kinds_of_stiffness_give_the_same,
-    peak_and_width_of_the_sphere, largest_mean_in_space_is_at_the_pole,
-    energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
-    order_of_materials_changes_no_estimate, width_is_that_of_one_zone,
-    means_of_a_pressure_lie_on_its_surface, means_are_of_volumes_and_of_nodes,
-    slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
-    means_in_space_go_on_behind_planes_of_symmetry,
-    ends_that_a_point_holds_are_ends,
-    zones_of_closed_curves_are_those_of_an_arc,
-    tangential_force_in_space_is_the_first, errors_do_not_depend_on_the_axes)
+UNIT_MAIN("goals", goals_of_the_half_plane_of_hertz,
+          friction_force_of_the_block, friction_force_of_a_slice,
+          errors_of_earlier_increments_are_in_it,
+          work_of_a_zone_of_stick_that_grows,
+          node_that_stays_where_it_slid_keeps_its_error,
+          both_kinds_of_stiffness_give_the_same, peak_and_width_of_the_sphere,
+          largest_mean_in_space_is_at_the_pole,
+          energy_of_a_bar_under_its_weight, goals_that_are_not_covered_say_so,
+          order_of_materials_changes_no_estimate, width_is_that_of_one_zone,
+          means_of_a_pressure_lie_on_its_surface,
+          means_are_of_volumes_and_of_nodes,
+          slip_that_changes_its_sense_is_an_end, goals_of_a_ring_count_the_hoop,
+          means_in_space_go_on_behind_planes_of_symmetry,
+          ends_that_a_point_holds_are_ends,
+          zones_of_closed_curves_are_those_of_an_arc,
+          tangential_force_in_space_is_the_first,
+          errors_do_not_depend_on_the_axes)

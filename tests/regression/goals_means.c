@@ -1,13 +1,16 @@
 /*
  * *GOAL, QUANTITY=DISPLACEMENT, GROUP=: the mean over the area of faces, the
  * volume of elements, on meshes whose edges are 1:8, of fields that all the
- * border prescribes.
+ * border prescribes; goals of mirror images.
  */
+#include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* The unit square, and the cube on it; fine at one corner. */
 #define SQUARE                                                              \
@@ -121,6 +124,94 @@ START_TEST(errors_of_means_have_what_is_beyond_chords) {
 }
 END_TEST
 
+/* ---- mirror images ------------------------------------------------------- */
+
+enum { GOALS = 19 };
+
+/* The verdicts of all goals, one after the other. */
+static void take_verdicts(const job *j, char *text, size_t size) {
+  static const char name[] = "\"verdict\": ";
+  char *json = job_file(j, "json");
+  text[0] = '\0';
+  for (char *at = json; (at = strstr(at, name)) != NULL;) {
+    at += strlen(name);
+    snprintf(text + strlen(text), size - strlen(text), "%.*s ",
+             (int)strcspn(at, ",}\n"), at);
+  }
+  free(json);
+}
+
+/* A block between two planes of symmetry, pressed on its foot, with pressures
+ * next to the planes and to the edges, or its image in x, y or both: other
+ * nodes are first. */
+static void mirrored(int image, double of[GOALS][4], char verdicts[999]) {
+  static const char *const columns[] = {"value", "error", "band",
+                                        "contact_ends"};
+  const int flip[2] = {image % 2, image / 2};
+  const mesh_change change = {
+      .map = {flip[0] ? "1-x^1.3" : "x^1.3", flip[1] ? "1-y^1.2" : "y^1.2"}};
+  char path[100], goals[GOALS * 100] = "";
+  int *number = NULL;
+  job j = job_begin("mirrored");
+  snprintf(path, sizeof path, "%s/mirrored.msh", j.dir);
+  FILE *f = fopen(path, "w");
+  ck_assert_ptr_nonnull(f);
+  ck_assert(scene_mesh_write(f, "box 6 6 2 1 1 0.5", &change, &number));
+  fclose(f);
+  free(number);
+  for (int i = 0; i < GOALS - 3; ++i) {
+    const double x = 0.26 * (i % 4) + 0.05, y = 0.95 - 0.26 * (i / 4);
+    snprintf(goals + strlen(goals), sizeof goals - strlen(goals),
+             "*GOAL, NAME=P%d, QUANTITY=PRESSURE, CONTACT=C, RADIUS=%g\n"
+             "%g, %g, 0.\n",
+             i, 0.24 + 0.012 * i, flip[0] ? 1 - x : x, flip[1] ? 1 - y : y);
+  }
+  /* half the radius of a disc of which a quarter is the foot, all of it closed
+   */
+  for (int i = 0; i < 2; ++i)
+    snprintf(goals + strlen(goals), sizeof goals - strlen(goals),
+             "*GOAL, NAME=H%d, QUANTITY=PRESSURE, CONTACT=C%s\n%d, %d, 0.\n", i,
+             i == 0 ? "" : ", RADIUS=\"1/sqrt(pi)\"", flip[0], !flip[1]);
+  job_write(&j, "mirrored.inp",
+            "*MESH, FILE=mirrored.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+            "*GOAL, NAME=N, QUANTITY=FORCE, CONTACT=C\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nLEFT, 1\nBACK, 2\n*DSLOAD\nTOP, P, \"1+(%s)*(%s)\"\n"
+            "*PRINT, GOALS\n*END STEP\n",
+            goals, flip[0] ? "1-x" : "x", flip[1] ? "1-y" : "y");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  ck_assert_int_eq(t.n_row, GOALS);
+  take_verdicts(&j, verdicts, 999);
+  for (int i = 0; i < GOALS; ++i)
+    for (int k = 0; k < 4; ++k) of[i][k] = dat_at(&t, i, columns[k]);
+  dat_free(&t);
+  job_end(&j);
+}
+
+START_TEST(goals_of_mirror_images_are_the_same) {
+  double of[4][GOALS][4];
+  char verdicts[4][999];
+  int known = 0;
+  for (int k = 0; k < 4; ++k) mirrored(k, of[k], verdicts[k]);
+  for (int k = 1; k < 4; ++k) ck_assert_str_eq(verdicts[0], verdicts[k]);
+  for (int i = 0; i < GOALS * 4; ++i) {
+    const double a = of[0][i / 4][i % 4];
+    known += i % 4 == 1 && !isnan(a);
+    for (int k = 1; k < 4; ++k) {
+      const double b = of[k][i / 4][i % 4];
+      ck_assert_msg((isnan(a) && isnan(b)) || fabs(a - b) <= 1e-8 * fabs(a),
+                    "goal %d, number %d: %.12g, %.12g", i / 4, i % 4, a, b);
+    }
+  }
+  ck_assert_int_ge(known, GOALS / 3);
+  for (int k = 0; k < 3; ++k)
+    ck_assert_double_eq_tol(of[0][GOALS - 3][k], of[0][GOALS - 2][k], 1e-12);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("goals_means");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -128,5 +219,6 @@ int main(void) {
   tcase_add_loop_test(tests, errors_of_means_have_what_is_between_the_nodes, 0,
                       3);
   tcase_add_loop_test(tests, errors_of_means_have_what_is_beyond_chords, 0, 2);
+  tcase_add_test(tests, goals_of_mirror_images_are_the_same);
   return unit_run("goals_means", tests);
 }

@@ -153,15 +153,21 @@ START_TEST(rough_nodes_that_reach_are_taken_too) {
 END_TEST
 
 /* Limits given whatever the pressure, or from the pressure around, act on nodes
- * that do not touch: all stay. */
+ * that do not touch, points of time and halved increments have other loads: all
+ * stay. */
 START_TEST(other_laws_keep_all_nodes) {
-  static const char *const laws[] = {
-      "*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n",
-      "*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=2.\n0.3\n"};
-  for (int k = 0; k < 2; ++k) {
-    job j = on_cylinder(laws[k], "");
+  static const struct {
+    const char *law, *more;
+    double unknowns;
+  } rows[] = {
+      {"*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n", "", 162},
+      {"*FRICTION, CONTACT=C, LAW=NONLOCAL, RADIUS=2.\n0.3\n", "", 162},
+      {"*TIME POINTS, NAME=T\n0.3\n", "*PRINT, CONTACT, TIME POINTS=T\n", 81},
+      {rough, "*ACCURACY, TIME=YES\n", 162}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    job j = on_cylinder(rows[k].law, rows[k].more);
     run(&j, 0);
-    ck_assert_double_eq(job_told(&j, "contact_unknowns"), 162.0);
+    ck_assert_double_eq(job_told(&j, "contact_unknowns"), rows[k].unknowns);
     job_end(&j);
   }
 }

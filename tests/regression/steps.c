@@ -306,6 +306,7 @@ END_TEST
 /* What deck and mesh tell of a later step ends --check, and a run before its
  * first increment. A cube on a rough floor, its sides held along x. */
 #define SIDES "*BOUNDARY\nLEFT, 1\nRIGHT, 1\n*DSLOAD\nTOP, P, 3.\n"
+#define LEFT_HALF "*FRICTION, CONTACT=C, LAW=COULOMB\n\"if(x < 0.6, 0.3, 0)\"\n"
 #define ONE "*STEP\n*QUASISTATIC\n.5, 1.\n"
 #define TWO "*END STEP\n" ONE
 static const struct {
@@ -325,6 +326,11 @@ static const struct {
     {3, "MOVE, 0, \"0.001*max(t-1,0)\", 0\n", ONE SIDES TWO "*END STEP\n", NULL,
      0, 0},
     {3, "", ONE SIDES "*BOUNDARY\nFRONT, 2\n" TWO "*END STEP\n", NULL, 0, 0},
+    /* friction in one half, motion in the other, or in the same */
+    {3, "", ONE LEFT_HALF SIDES TWO "*BOUNDARY\nRIGHT, 1, 1, .001\n*END STEP\n",
+     NULL, 0, 0},
+    {3, "", ONE LEFT_HALF SIDES TWO "*BOUNDARY\nLEFT, 1, 1, .001\n*END STEP\n",
+     "error P4015: ", 2, 2},
     /* to 0 from where it is, which only the run tells */
     {3, "", ONE SIDES TWO "*BOUNDARY\nFRONT, 2, 2, 0.\n*END STEP\n",
      "error P4015: ", 0, 2},
@@ -366,6 +372,42 @@ START_TEST(later_steps_are_checked_before_the_first) {
 }
 END_TEST
 
+/* A load is checked on all of its group: the bottom and the face between two
+ * layers, both layers, of which one has no density. */
+START_TEST(loads_are_checked_on_all_of_a_group) {
+  static const struct {
+    const char *soft, *hard, *load, *text; /* density; NULL: fine */
+  } rows[] = {{"*DENSITY\n1.\n", "*DENSITY\n1.\n",
+               "*DLOAD\nALL, GRAV, 9.81, 0., -1.", NULL},
+              {"*DENSITY\n1.\n", "", "*DLOAD\nALL, GRAV, 9.81, 0., -1.",
+               "error P2014: GRAV on group ALL: material H has no *DENSITY"},
+              {"", "*DENSITY\n1.\n", "*DLOAD\nALL, GRAV, 9.81, 0., -1.",
+               "error P2014: GRAV on group ALL: material S has no *DENSITY"},
+              {"", "", "*DSLOAD\nBOTTOM, P, 1.", NULL},
+              {"", "", "*DSLOAD\nWALLS, P, 1.",
+               "error P2035: P on group WALLS: a face "},
+              {"", "", "*DSLOAD\nWALLS, TX, 1.", NULL}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
+    job j = job_begin("layers");
+    job_copy(&j, "tests/regression/mesh/layers.geo");
+    job_write(&j, "layers.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=layers.geo\n"
+              "*MATERIAL, NAME=S\n*ELASTIC\n1., 0.\n%s"
+              "*MATERIAL, NAME=H\n*ELASTIC\n2., 0.\n%s"
+              "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n"
+              "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nTOP, 1, 2\n%s\n*END STEP\n",
+              rows[i].soft, rows[i].hard, rows[i].load);
+    const int code = job_run(&j, "--check");
+    ck_assert_msg(code == (rows[i].text == NULL ? 0 : 2), "case %zu: %d: %s", i,
+                  code, j.errors);
+    if (rows[i].text != NULL)
+      ck_assert_msg(strstr(j.errors, rows[i].text) != NULL, "%s", j.errors);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           values_start_from_those_of_the_step_before,
           a_table_ends_and_the_others_stay,
@@ -376,4 +418,5 @@ UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           balance_is_that_of_the_largest_work,
           slip_distance_goes_on_with_other_supports,
           static_problem_slips_from_the_origin, same_contact_twice_is_refused,
-          later_steps_are_checked_before_the_first)
+          later_steps_are_checked_before_the_first,
+          loads_are_checked_on_all_of_a_group)

@@ -427,26 +427,30 @@ static void write_binary_field(const char *path) {
   fclose(f);
 }
 
-static void write_hdf5_field(const char *path) {
-  int no[N_NODE];
-  double value[N_NODE];
-  const hsize_t n = N_NODE;
-  for (int i = 0; i < N_NODE; ++i) {
-    no[i] = i + 1;
-    value[i] = 110 + 10 * i;
-  }
-  hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  hid_t space = H5Screate_simple(1, &n, NULL);
-  hid_t a = H5Dcreate2(file, "node_no", H5T_NATIVE_INT, space, H5P_DEFAULT,
-                       H5P_DEFAULT, H5P_DEFAULT);
-  hid_t b = H5Dcreate2(file, "temperature", H5T_NATIVE_DOUBLE, space,
-                       H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  H5Dwrite(a, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, no);
-  H5Dwrite(b, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, value);
-  H5Dclose(a);
-  H5Dclose(b);
+static void write_items(hid_t file, const char *name, hid_t type, int n,
+                        const void *items) {
+  const hsize_t size = (hsize_t)n;
+  hid_t space = H5Screate_simple(1, &size, NULL);
+  hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT,
+                         H5P_DEFAULT);
+  H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, items);
+  H5Dclose(set);
   H5Sclose(space);
+}
+
+static void write_temperatures(const char *path, int n) {
+  int no[N_NODE];
+  double value[N_NODE + 1];
+  for (int i = 0; i < n; ++i) value[i] = 110 + 10 * i;
+  for (int i = 0; i < N_NODE; ++i) no[i] = i + 1;
+  hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  write_items(file, "node_no", H5T_NATIVE_INT, N_NODE, no);
+  write_items(file, "temperature", H5T_NATIVE_DOUBLE, n, value);
   H5Fclose(file);
+}
+
+static void write_hdf5_field(const char *path) {
+  write_temperatures(path, N_NODE);
 }
 
 /* Temperatures of a file, half of them in half the step; elements have the
@@ -539,6 +543,14 @@ START_TEST(damaged_fields_are_refused) {
               cases[i].values);
     ck_assert_int_eq(job_run(&j, "--check"), 2);
     ck_assert_msg(strstr(j.errors, cases[i].message) != NULL, "%s", j.errors);
+  }
+  for (int n = N_NODE - 1; n <= N_NODE + 1; n += 2) {
+    char message[80];
+    snprintf(message, sizeof message, "/node_no has %d items, /temperature %d",
+             N_NODE, n);
+    write_temperatures(path, n);
+    ck_assert_int_eq(job_run(&j, "--check"), 2);
+    ck_assert_msg(strstr(j.errors, message) != NULL, "%s", j.errors);
   }
   job_end(&j);
 }

@@ -412,7 +412,9 @@ END_TEST
 
 /*
  * A law that is not in the table: a dashpot of cubic viscosity with a recovery
- * of its own, d(e^i)/dt = A (1 + J^2/S^2) 3/2 s, d(w)/dt = J(e^i') - w/tau.
+ * of its own, d(e^i)/dt = A (1 + J^2/S^2) 3/2 s, d(w)/dt = J(e^i') - w/tau,
+ * and a pair that swings faster than all else, d(a)/dt = k b, d(b)/dt = w - k
+ * a.
  */
 typedef struct trial_value {
   double A, S, tau;
@@ -427,8 +429,10 @@ static const option trial_fields[] = {
 static int trial_n_alpha(const law_card *law, int ns) {
   (void)law;
   (void)ns;
-  return 1;
+  return 3;
 }
+
+static const double swing = 100; /* k tau */
 
 /* J and dp/dt = A (J + J^3/S^2), with its slope. */
 static double trial_flow(const law_point *p, double *n, double *q,
@@ -449,7 +453,10 @@ static void trial_rate(const law_point *p, double *ei_rate,
   double n[6], q, slope;
   const double rate = trial_flow(p, n, &q, &slope);
   for (int i = 0; i < p->elastic->ns; ++i) ei_rate[i] = rate * n[i];
-  alpha_rate[0] = rate - p->alpha[0] / ((const double *)p->value)[2];
+  const double tau = ((const double *)p->value)[2], *alpha = p->alpha;
+  alpha_rate[0] = rate - alpha[0] / tau;
+  alpha_rate[1] = swing / tau * alpha[2];
+  alpha_rate[2] = alpha[0] - swing / tau * alpha[1];
 }
 
 static void trial_jacobian(const law_point *p, law_jacobian *j) {
@@ -457,8 +464,12 @@ static void trial_jacobian(const law_point *p, law_jacobian *j) {
   double n[6], q, slope;
   const double rate = trial_flow(p, n, &q, &slope);
   tensor_add_flow(ns, n, q > 0 ? rate / q : slope, slope, j->ei_sigma, ns);
-  for (int i = 0; i < ns; ++i) j->alpha_sigma[i] = slope * n[i];
-  j->alpha_alpha[0] = -1 / ((const double *)p->value)[2];
+  const double tau = ((const double *)p->value)[2];
+  for (int i = 0; i < ns; ++i) j->alpha_sigma[3 * i] = slope * n[i];
+  j->alpha_alpha[0] = -1 / tau;
+  j->alpha_alpha[2] = 1;
+  j->alpha_alpha[5] = -swing / tau;
+  j->alpha_alpha[7] = swing / tau;
 }
 
 static double trial_dissipation(const law_point *p) {

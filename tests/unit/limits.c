@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 
@@ -112,6 +113,32 @@ START_TEST(limits_of_the_process_count) {
 }
 END_TEST
 
+/* "ulimit -d" counts no address space that a file or nothing fills. */
+START_TEST(limit_of_the_data_counts_data_alone) {
+#if defined(__SANITIZE_ADDRESS__)
+  return; /* the sanitiser holds terabytes */
+#endif
+  const size_t size = (size_t)48 << 30;
+  struct rlimit old, less;
+  begin();
+  put("/proc/meminfo", "");
+  void *p = mmap(NULL, size, PROT_NONE,
+                 MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  ck_assert(p != MAP_FAILED);
+  ck_assert_int_eq(getrlimit(RLIMIT_DATA, &old), 0);
+  less = old;
+  less.rlim_cur = (rlim_t)64 << 30;
+  ck_assert_int_eq(setrlimit(RLIMIT_DATA, &less), 0);
+  limits l = read_limits();
+  setrlimit(RLIMIT_DATA, &old);
+  munmap(p, size);
+  ck_assert_double_lt(l.memory, (double)less.rlim_cur);
+  ck_assert_double_gt(l.memory, 0.5 * (double)less.rlim_cur);
+  ck_assert_str_eq(l.who, "ulimit -d");
+  folder_remove(root);
+}
+END_TEST
+
 UNIT_MAIN("limits", machine_counts_what_is_available,
           groups_of_version_2_are_climbed, groups_of_version_1_count_too,
-          limits_of_the_process_count)
+          limits_of_the_process_count, limit_of_the_data_counts_data_alone)

@@ -76,11 +76,11 @@ START_TEST(messages_come_in_the_order_of_the_input) {
   message_log *log = new_log();
   place include = {"a", 5, 2, NULL, NULL, 0},
         deeper = {"b", 2, 1, NULL, &include, 0};
-  place at[] = {{"a", 9, 1, NULL, NULL, 0},     {"a", 4, 7, NULL, NULL, 0},
-                {"b", 8, 1, NULL, &include, 0}, {"b", 1, 1, NULL, &include, 0},
-                {"c", 90, 1, NULL, &deeper, 0}, {"a", 4, 2, NULL, NULL, 0},
-                {"a", 5, 1, NULL, NULL, 0},     {"m.msh", 1, 1, NULL, NULL, 0}};
-  static const char *const names[] = {"7", "2", "6", "4", "5", "1", "3", "8"};
+  place at[] = {{"a", 5, 3, NULL, NULL, 0},     {"a", 9, 1, NULL, NULL, 0},
+                {"a", 4, 7, NULL, NULL, 0},     {"b", 8, 1, NULL, &include, 0},
+                {"b", 1, 1, NULL, &include, 0}, {"c", 90, 1, NULL, &deeper, 0},
+                {"a", 4, 2, NULL, NULL, 0},     {"m.msh", 1, 1, NULL, NULL, 0}};
+  static const char *const names[] = {"3", "7", "2", "6", "4", "5", "1", "8"};
   for (size_t i = 0; i < sizeof at / sizeof *at; ++i)
     message_add(log, P1003, &at[i], "[%s]", names[i]);
   const char *p = printed(log);

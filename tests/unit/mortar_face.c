@@ -55,6 +55,39 @@ START_TEST(common_part_of_triangles_is_that_of_closed_forms) {
 }
 END_TEST
 
+/* What of 0..4, in either direction, another segment leaves: one end, both, all
+ * or nothing. */
+START_TEST(common_part_of_segments_is_between_their_ends) {
+  static const struct {
+    double at[2], rest[2][2]; /* ends of both rests; no length: none */
+  } rows[] = {{{1, 2}, {{0, 1}, {2, 4}}},  {{3, 1}, {{0, 1}, {3, 4}}},
+              {{-1, 1}, {{1, 4}, {0, 0}}}, {{3, 7}, {{0, 3}, {0, 0}}},
+              {{-1, 5}, {{0, 0}, {0, 0}}}, {{5, 6}, {{0, 4}, {0, 0}}},
+              {{-2, -1}, {{0, 4}, {0, 0}}}};
+  for (int turned = 0; turned < 2; ++turned)
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+      const cell a = {{{turned ? 4 : 0, 0}, {turned ? 0 : 4, 0}}};
+      const cell b = {{{rows[k].at[0], 0}, {rows[k].at[1], 0}}};
+      cell both[CLIP_CELLS], rest[CLIP_REST];
+      double left = 0;
+      const int n = cell_without(2, &a, &b, rest);
+      int wanted = 0;
+      for (int i = 0; i < 2; ++i) {
+        const double *end = rows[k].rest[i];
+        left += end[1] - end[0];
+        if (!(end[1] > end[0])) continue;
+        ck_assert_int_lt(wanted, n);
+        ck_assert_double_eq(rest[wanted].at[0][0], end[0]);
+        ck_assert_double_eq(rest[wanted++].at[1][0], end[1]);
+      }
+      ck_assert_int_eq(n, wanted);
+      const int n_both = cell_common(2, &a, &b, both);
+      ck_assert_int_eq(n_both, left < 4);
+      if (n_both > 0) ck_assert_double_eq(cell_measure(2, both), 4 - left);
+    }
+}
+END_TEST
+
 /* Points of a fine grid, counted: the error of the area is below the length of
  * the outline times the spacing. */
 START_TEST(common_part_of_triangles_is_what_is_inside_both) {
@@ -155,6 +188,7 @@ START_TEST(dual_functions_are_biorthogonal_and_sum_to_one) {
 }
 END_TEST
 
-UNIT_MAIN("mortar_face", common_part_of_triangles_is_that_of_closed_forms,
+UNIT_MAIN("mortar_face", common_part_of_segments_is_between_their_ends,
+          common_part_of_triangles_is_that_of_closed_forms,
           common_part_of_triangles_is_what_is_inside_both,
           dual_functions_are_biorthogonal_and_sum_to_one)

@@ -225,6 +225,19 @@ START_TEST(body_too_thick_for_its_gap_has_no_equilibrium) {
 }
 END_TEST
 
+/* Nor does it matter how far it slides. */
+START_TEST(slip_is_no_part_of_the_proof) {
+  static const double off[] = {1.0, 1e-3, -1e-3};
+  for (int k = 0; k < 12; ++k) {
+    contact_case c = between_walls(2 + k / 6, off[k % 3]);
+    for (int i = 0; i < c.cp.m; ++i)
+      if (i % c.cp.dim > 0) c.f[i] = k / 3 % 2 ? 5.0 : -5.0;
+    ck_assert_msg(is_proved(&c) == (off[k % 3] > 0.0), "%d", k);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* Forces so large that they lose the penetration in r - c (u - gap). */
 START_TEST(forces_without_bound_do_not_hide_a_body_too_thick) {
   for (double size = 0x1p10; size <= 0x1p80; size *= 2.0) {
@@ -328,6 +341,7 @@ UNIT_MAIN("proof", balanced_load_has_no_proof,
           pressure_elsewhere_holds_a_slip,
           solvable_problem_is_never_said_to_have_no_equilibrium,
           body_too_thick_for_its_gap_has_no_equilibrium,
+          slip_is_no_part_of_the_proof,
           forces_without_bound_do_not_hide_a_body_too_thick,
           forces_that_move_nodes_prove_nothing,
           compliance_of_zero_is_solved_without_forces,

@@ -192,6 +192,29 @@ START_TEST(exponential_is_exact_for_linear_laws) {
 }
 END_TEST
 
+/* The equations of any elasticity give what those of an isotropic one do, of
+ * the whole stress and of its deviator. */
+START_TEST(steps_of_any_elasticity_are_those_of_an_isotropic_one) {
+  static const char *const law[] = {"MAXWELL", "ZENER", "KELVIN", "BURGERS"};
+  static const double theta[] = {0.5, 0.6, 1, 1}; /* the last EXPONENTIAL */
+  for (int i = 0; i < 32; ++i) {
+    const point_input in = {law[i % 4], NULL, i / 4 % 2, 1000, 0.3, 0};
+    const scheme *s = scheme_find(i / 8 < 3 ? "THETA" : "EXPONENTIAL");
+    double ei[2][6];
+    for (int k = 0; k < 2; ++k) {
+      point_body_new(&in, &growing, &b);
+      if (k == 1) b.x.kind[0].elastic.isotropic = 0;
+      point_body_run(&b, s, theta[i / 8], 1, 3, NULL);
+      memcpy(ei[k], b.now.ei, sizeof ei[k]);
+      point_body_free(&b);
+    }
+    for (int c = 0; c < 6; ++c)
+      ck_assert_msg(fabs(ei[0][c] - ei[1][c]) <= 1e-12 * fabs(ei[0][0]),
+                    "%s %d: %g, %g", law[i % 4], i, ei[0][c], ei[1][c]);
+  }
+}
+END_TEST
+
 enum { TERMS = 20 };
 static int decade(int k) { return -15 + 30 * k / (TERMS - 1); }
 
@@ -287,6 +310,8 @@ UNIT_MAIN("scheme", loss_has_the_order_of_its_row,
           held_stress_has_the_factor_of_its_row,
           limits_are_where_the_factor_is_one, rows_have_their_order,
           heun_estimates_by_euler, midpoint_and_backward_are_theta,
-          exponential_is_exact_for_linear_laws, thirty_decades_in_one_body,
+          exponential_is_exact_for_linear_laws,
+          steps_of_any_elasticity_are_those_of_an_isotropic_one,
+          thirty_decades_in_one_body,
           high_powers_without_a_threshold_are_solved,
           a_rejected_step_leaves_nothing_behind)

@@ -9,6 +9,7 @@
 #include "support/contact_case.h"
 #include "support/unit.h"
 
+#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -197,6 +198,49 @@ START_TEST(factor_bounds_what_friction_can_do) {
     ck_assert_double_le(worst, q);
     ck_assert_double_gt(worst, 0.05 * q);
     look_away(&l);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* The largest eigenvalue of M[n*n], which is destroyed. */
+static double largest_of(int n, double *M) {
+  double w[30];
+  ck_assert_int_eq(LAPACKE_dsyev(LAPACK_COL_MAJOR, 'N', 'L', n, M, n, w), 0);
+  return w[n - 1];
+}
+
+/* Limits by the pressure of neighbours: B A_nn B' and inv(A)_tt entry by entry,
+ * q the root of the product of their largest eigenvalues. */
+START_TEST(factor_is_that_of_the_matrices) {
+  for (int dim = 2; dim < 4; ++dim) {
+    enum { N = 5 };
+    const int m = dim * N, tangents = (dim - 1) * N;
+    double W[15 * 15], B[N * N] = {0.0}, nn[N * N] = {0.0}, tt[10 * 10];
+    contact_case c = case_any(dim, N, 0.4, 0, 4200ull + (unsigned)dim);
+    theorems_contact found = {0};
+    energy_norm e;
+    case_average(&c, 2, 0.4);
+    c.B->val[0] = 0.7; /* not symmetric */
+    ck_assert(case_inverse(m, c.A, W));
+    for (int i = 0; i < N; ++i)
+      for (int k = c.B->start[i]; k < c.B->start[i + 1]; ++k)
+        B[i + N * c.B->col[k]] = c.B->val[k];
+    for (int k = 0; k < N * N * N * N; ++k) {
+      const int i = k % N, j = k / N % N, a = k / (N * N) % N,
+                b = k / (N * N * N);
+      nn[i + N * j] += B[i + N * a] * c.A[dim * a + m * dim * b] * B[j + N * b];
+    }
+    for (int i = 0; i < tangents; ++i)
+      for (int j = 0; j < tangents; ++j) {
+        const int at = i + i / (dim - 1) + 1, to = j + j / (dim - 1) + 1;
+        tt[i + tangents * j] = W[at + m * to];
+      }
+    ck_assert_int_eq(energy_norm_new(m, c.A, &e), OK);
+    ck_assert_int_eq(friction_constants(&c.cp, &e, 1, &found), OK);
+    const double exact = sqrt(largest_of(N, nn) * largest_of(tangents, tt));
+    ck_assert_double_eq_tol(found.factor, exact, 1e-11 * exact);
+    energy_norm_free(&e);
     case_free(&c);
   }
 }
@@ -413,7 +457,7 @@ END_TEST
 UNIT_MAIN("theory", largest_eigenvalues_are_those_of_closed_forms,
           triangle_has_its_constants,
           above_the_critical_mu_it_does_not_contract,
-          factor_bounds_what_friction_can_do,
+          factor_bounds_what_friction_can_do, factor_is_that_of_the_matrices,
           tangent_counts_given_limits_if_told,
           bounds_hold_under_the_guaranteed_limit,
           wrong_answers_violate_the_bounds, inequality_tells_wrong_states,

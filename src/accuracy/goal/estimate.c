@@ -34,7 +34,7 @@
 
 /* A field in the bubbles. */
 typedef struct bubbles {
-  double *strain; /* [ns*n_elem] its mean strains, - */
+  double *strain; /* [ns*n_elem] its mean strains, but for the hoop, - */
   double *part;   /* [edges*dim*n_elem] at each edge, m; NULL: not needed */
 } bubbles;
 
@@ -230,8 +230,6 @@ static void add_bubble(const domain *d, int elem_id, const int *edge,
   for (int k = 0; k < dim; ++k)
     grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
   add_strain(dim, grad, of, e);
-  if (d->kin[d->section_id[elem_id]] == AXISYMMETRIC)
-    e[2] += of[0] / (3.0 * radius_of(d->mesh, elem_id));
 }
 
 /* The bubbles of the edges of an element. */
@@ -320,16 +318,6 @@ static void stress_by(const domain *d, int elem_id, const double *e,
     t[i] = 0.0;
     for (int j = 0; j < ns; ++j) t[i] += E[i + ns * j] * e[j];
   }
-}
-
-void goal_estimator_force(goal_estimator *e, double *F) {
-  const domain *d = e->s.d;
-  const size_t ns = (size_t)d->ns;
-  for (int k = 0; k < d->mesh->n_elem; ++k)
-    stress_by(d, k, e->all.strain + ns * (size_t)k,
-              e->sigma_y + ns * (size_t)k);
-  domain_internal_force(d, e->sigma_y, F);
-  for (int k = 0; k < d->mesh->dim * d->mesh->n_node; ++k) F[k] = -F[k];
 }
 
 void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
@@ -590,6 +578,37 @@ static double hoop_of(const goal_estimator *e, int elem_id, const double *y) {
   }
   return element_weight(d, elem_id) * d->E[16 * d->section_id[elem_id] + 10] *
          (mean[0] * mean[1] / mean[2] - sum) / mean[2];
+}
+
+/* Of an axisymmetric element: F'y is what the estimate has by y. zero[2*n_node]
+ * stays so. */
+static void add_axi_force(const goal_estimator *e, int elem_id, double *zero,
+                          double *F) {
+  const int *v = e->s.d->mesh->elem + 3 * elem_id;
+  for (int k = 0; k < 6; ++k) {
+    const int dof = 2 * v[k / 2] + k % 2;
+    zero[dof] = 1.0;
+    F[dof] += axi_residual(e, elem_id, zero, NULL, 0, &e->all) +
+              hoop_of(e, elem_id, zero);
+    zero[dof] = 0.0;
+  }
+}
+
+void goal_estimator_force(goal_estimator *e, double *F) {
+  const domain *d = e->s.d;
+  const size_t ns = (size_t)d->ns;
+  const size_t n = (size_t)d->mesh->dim * (size_t)d->mesh->n_node;
+  if (d->kin[0] == AXISYMMETRIC) {
+    memset(F, 0, n * sizeof *F);
+    memset(e->node_y, 0, n * sizeof *e->node_y);
+    for (int k = 0; k < d->mesh->n_elem; ++k) add_axi_force(e, k, e->node_y, F);
+    return;
+  }
+  for (int k = 0; k < d->mesh->n_elem; ++k)
+    stress_by(d, k, e->all.strain + ns * (size_t)k,
+              e->sigma_y + ns * (size_t)k);
+  domain_internal_force(d, e->sigma_y, F);
+  for (size_t k = 0; k < n; ++k) F[k] = -F[k];
 }
 
 /* e->by_given: 1 - a(y, u)/a(u, u). */

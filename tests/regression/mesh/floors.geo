@@ -1,6 +1,7 @@
 // A block [0, 2] x [0, 1] with N edges below, over two floors [0, C] x [-1, 0]
 // and [C, 2] x [-1, 0] of one edge each, 0.001 lower, the right one by S more.
-DefineConstant[ N = 5, C = 0.9, S = 0 ];
+// TURN: all of it by a right angle.
+DefineConstant[ N = 5, C = 0.9, S = 0, TURN = 0 ];
 Macro Square
   Point(k) = {x0, y0, 0};
   Point(k + 1) = {x1, y0, 0};
@@ -19,6 +20,9 @@ k = 11; n = 1; x1 = C; y0 = -1.001;
 Call Square;
 k = 21; x0 = C; x1 = 2; y0 = y0 - S;
 Call Square;
+If (TURN)
+  Rotate {{0, 0, 1}, {0, 0, 0}, Pi / 2} { Surface{1, 11, 21}; }
+EndIf
 Physical Curve("UNDER") = {1};
 Physical Curve("TOP") = {3};
 Physical Curve("LEFT FLOOR") = {13};

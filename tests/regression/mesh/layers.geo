@@ -1,4 +1,5 @@
-// Unit square of two layers, SOFT below, HARD above, N segments along a side.
+// Unit square of two layers, SOFT below, HARD above, N segments along a side;
+// WALLS: the bottom and what lies between the layers.
 DefineConstant[ N = 8 ];
 Point(1) = {0, 0, 0, 1 / N};
 Point(2) = {1, 0, 0, 1 / N};
@@ -22,3 +23,5 @@ Physical Curve("TOP") = {6};
 Physical Curve("LEFT") = {4, 7};
 Physical Surface("SOFT") = {1};
 Physical Surface("HARD") = {2};
+Physical Curve("WALLS") = {1, 3};
+Physical Surface("ALL") = {1, 2};
