@@ -55,8 +55,15 @@ static double power_of(int dim, const double *y, double radius) {
   return (fabs(y[most]) - radius) * (fabs(y[most]) + radius) + rest;
 }
 
+/* a - b less what is rounded of it (Knuth 1997, 4.2.2). */
+static double lost_of(double a, double b) {
+  const double s = a - b, back = s - a;
+  return (a - (s - back)) - (b + back);
+}
+
+/* lost[3]: what y was rounded by. */
 static double round_gap(const obstacle *o, int dim, const double *y,
-                        const double *n) {
+                        const double *lost, const double *n) {
   double across[3] = {0, 0, 0}, m[3] = {0, 0, 0};
   double y_axis = 0, n_axis = 0;
   if (o->shape == OBSTACLE_CYLINDER && dim == 3) {
@@ -67,8 +74,10 @@ static double round_gap(const obstacle *o, int dim, const double *y,
     across[c] = y[c] - y_axis * o->direction[c];
     m[c] = n[c] - n_axis * o->direction[c];
   }
-  return circle_gap(dot(dim, m, m), dot(dim, across, m),
-                    power_of(dim, across, o->radius), o->inside);
+  return circle_gap(
+      dot(dim, m, m), dot(dim, across, m),
+      power_of(dim, across, o->radius) + 2.0 * dot(dim, across, lost),
+      o->inside);
 }
 
 void obstacle_motion(const obstacle *o, double t, double *d) {
@@ -146,13 +155,16 @@ int obstacle_moves(const obstacle *o) {
 
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t) {
-  double d[3], y[3], point[3] = {0, 0, 0};
+  double d[3], y[3], lost[3], point[3] = {0, 0, 0};
   double at[3] = {0, 0, 0}, m[3] = {0, 0, 0};
   for (int c = 0; c < dim; ++c) at[c] = x[c], m[c] = n[c];
   obstacle_motion(o, t, d);
   if (o->turns) turn_back(o, at, t, d, m);
   double along = dot(dim, n, d);
-  for (int c = 0; c < 3; ++c) y[c] = at[c] - d[c] - o->point[c];
+  for (int c = 0; c < 3; ++c) {
+    y[c] = at[c] - d[c] - o->point[c];
+    lost[c] = lost_of(at[c] - d[c], o->point[c]);
+  }
   for (int c = 0; c < dim; ++c) point[c] = x[c] - (d[c] - along * n[c]);
   switch ((obstacle_shape)o->shape) {
     case OBSTACLE_CONFORMING:
@@ -161,7 +173,7 @@ double obstacle_gap(const obstacle *o, int dim, const double *x,
       return plane_gap(o, dim, y, m);
     case OBSTACLE_CYLINDER:
     case OBSTACLE_SPHERE:
-      return round_gap(o, dim, y, m);
+      return round_gap(o, dim, y, lost, m);
     case OBSTACLE_GAP:
       return quantity_value(&o->gap, point, t) + along;
   }

@@ -398,7 +398,7 @@ static void orient(builder *b, candidate *c) {
   else
     c->held = 1.0 - left;
   const double along = dot(b->dim, c->lean, c->normal);
-  for (int k = 0; k < b->dim; ++k) c->lean[k] /= along;
+  for (int k = 0; k < b->dim && along > 0.0; ++k) c->lean[k] /= along;
   if (left > PAIR_FIXED_SINE) return;
   c->left_out = 1;
   if (t->n_fixed++ == 0) t->fixed_node = c->node_id;

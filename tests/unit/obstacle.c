@@ -147,6 +147,11 @@ START_TEST(flat_circle_keeps_the_digits_of_the_gap) {
       ck_assert_double_eq_tol(
           obstacle_gap(&o, axis == 2 ? 3 : 2, x, n, 0) * 2.0 * radius[k], 1.0,
           1e-12);
+      /* The body, or the circle by as much, has come nearer. */
+      x[axis] = -1e-5;
+      x[(axis + 1) % (axis == 2 ? 3 : 2)] = 0.0;
+      ck_assert_double_eq_tol(obstacle_gap(&o, axis == 2 ? 3 : 2, x, n, 0),
+                              -1e-5, 1e-19);
     }
 }
 END_TEST
