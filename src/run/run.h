@@ -44,6 +44,8 @@ typedef struct matrices {
   long used;  /* when it was last used */
   stiffness *k;
   condensed *c;
+  double *E;              /* [ns*ns*body.moduli.n] of a constant tangent, which
+                             c goes on reading, Pa; NULL: those of others */
   contact_solver *solver; /* NULL until needed */
   archive *from;          /* borrowed: saved data of the solver, or NULL */
   char group[40];         /* in it */
@@ -127,8 +129,8 @@ typedef struct posed_problem {
   const friction_limit *limit; /* of the time posed last */
   const sparse_rows *B;        /* [n*n] -, of limit, or in its place */
   const double *given;         /* [n] given normal forces, N; < 0: none */
-  double *row[2];  /* [rows*n] workspace of run_rows, or NULL */
-  reach_part part; /* data of cp where it does not have all nodes */
+  double *row[2];              /* [rows*n] workspace of run_rows, or NULL */
+  reach_part part;             /* data of cp where it does not have all nodes */
   contact_problem cp;
   double *f_before; /* [n_row] condensed load of r->old, N */
   int n_before;     /* its n_row */

@@ -185,6 +185,29 @@ START_TEST(creep_iteration_has_the_contact_as_exact_as_it_requires) {
 }
 END_TEST
 
+/* Increments of two lengths in turn have each its matrix. Near nu = 1/2, where
+ * solutions are refined, so have the residuals. Strains at a constant stress,
+ * (1 - nu^2)/E (1 + t/2). */
+START_TEST(increments_of_several_lengths_have_each_its_moduli) {
+  static const double time[] = {0, 2, 3, 5, 7, 8};
+  const double nu = 0.499999;
+  square_case s = {"1000., 0.499999",
+                   PROPORTIONAL,
+                   "CPE3",
+                   "",
+                   SYMMETRY "*DSLOAD\nTOP, TY, 1.\n",
+                   "*VISCO, INTEGRATOR=BACKWARD\n2., 2.\n*END STEP\n*STEP\n"
+                   "*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n*END STEP\n*STEP\n"
+                   "*VISCO, INTEGRATOR=BACKWARD\n2., 4.\n*END STEP\n*STEP\n"
+                   "*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n"};
+  job j = square_run(&s, 0);
+  for (int k = 0; k < 6; ++k)
+    square_all_have(&j, k, "strain_yy",
+                    1e-3 * (1 - nu * nu) * (1 + time[k] / 2), 1e-9);
+  job_end(&j);
+}
+END_TEST
+
 /* dt ten times the relaxation time: MIDPOINT says so, BACKWARD is quiet. */
 START_TEST(ringing_is_told) {
   square_case s = {STEEL,  PROPORTIONAL,
@@ -230,6 +253,7 @@ int main(void) {
                       4);
   tcase_add_test(tests,
                  creep_iteration_has_the_contact_as_exact_as_it_requires);
+  tcase_add_test(tests, increments_of_several_lengths_have_each_its_moduli);
   tcase_add_test(tests, ringing_is_told);
   tcase_add_loop_test(tests, order_of_convergence_with_contact_and_friction, 0,
                       N_SCHEME);
