@@ -327,7 +327,7 @@ status visco_accept(run *r) {
   if (!flows) take_strains(r, &r->old);
   PASS(elastic_norm(v, &norm));
   v->largest = fmax(v->largest, norm);
-  if (flows) visco_warn_locking(r);
+  if (flows && r->errors.left > 0.0) visco_warn_locking(r);
   const flow_state old = v->old;
   v->old = v->now;
   v->now = old; /* to be overwritten */

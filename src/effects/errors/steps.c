@@ -410,7 +410,7 @@ static status attempt_balanced(run *r, paths *own) {
   progress *p = &r->at;
   double cpu = timer_cpu(), t = next_end(r), planned = t - r->old.t;
   double before = total_error(own), part, allowed;
-  int deeper, attempt = p->attempt;
+  int deeper, hides, attempt = p->attempt;
   PASS(visco_level(r, planned, &deeper));
   if (deeper > 0) {
     p->dt = ldexp(planned, -deeper);
@@ -428,7 +428,8 @@ static status attempt_balanced(run *r, paths *own) {
   if (outcome_is_fatal(r->solving.report.outcome)) PASS(loop_no_equilibrium(r));
   if (!r->errors.evaluated) PASS(estimate_evaluate(r));
   PASS(measure(r, own, &part));
-  part = rounding_hides_strains(r) ? 0.0 : part - before;
+  PASS(rounding_hides_strains(r, &hides));
+  part = hides ? 0.0 : part - before;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);
   if (part > allowed && shorter) {
