@@ -207,10 +207,14 @@ double rounding_of_gaps(const run *r) {
   return 16 * DBL_EPSILON * largest_entry(n, r->msh->x);
 }
 
-/* 1: an error of the displacements by u explains all strains. */
+/* What an error of the displacements by u stores, J. */
+static double motion_energy(const run *r, double u) {
+  return r->msh->n_node * condensed_stiffest(r->c) * u * u;
+}
+
+/* 1: such an error explains all strains. */
 static int hides_strains(const run *r, double u) {
-  return r->now.energy.strain <=
-         r->msh->n_node * condensed_stiffest(r->c) * u * u;
+  return r->now.energy.strain <= motion_energy(r, u);
 }
 
 int rounding_is_all(const run *r) {
@@ -371,6 +375,14 @@ status rounding_hides_strains(const run *r, int *hides) {
   PASS(find_error(r, &x, &square));
   *hides = is_noise(r, square);
   return OK;
+}
+
+double rounding_strain_left(const run *r) {
+  domain plain = r->body.d;
+  plain.eigen = NULL;
+  if (r->strains.visco == NULL) return 0.0;
+  const double energy = domain_strain_energy(&plain, r->now.u);
+  return energy > FAR * motion_energy(r, lost(r)) ? energy : 0.0;
 }
 
 /* Strains that flow, of a body that nothing loads now. */
