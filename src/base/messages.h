@@ -244,8 +244,10 @@
     "opens gaps after an increment and wants the dt of the message.")        \
   X(2051, WARNING, "stresses that ring",                                     \
     "With THETA < 1 parts that relax much faster than dt change sign from "  \
-    "increment to increment and die out slowly. Take a smaller dt, or "      \
-    "INTEGRATOR=BACKWARD, which damps them at once.")                        \
+    "increment to increment and die out slowly. Where the law has a "        \
+    "threshold they may end below it and stay wrong, as may a contact that " \
+    "they open. Take a smaller dt, or INTEGRATOR=BACKWARD, which damps them " \
+    "at once.")                                                              \
   X(2052, WARNING, "plane tilted far",                                       \
     "Displacements are small: contact acts along the normals of time 0. "    \
     "Start from the tilted plane, or turn it in its own plane.")             \
