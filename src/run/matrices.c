@@ -25,6 +25,7 @@ void matrices_free(matrices *m) {
   contact_solver_free(&m->solver);
   condensed_free(m->c);
   stiffness_free(m->k);
+  memory_free(m->E);
   *m = (matrices){0};
 }
 

@@ -43,6 +43,8 @@ typedef struct matrices {
   long used;  /* when it was last used */
   stiffness *k;
   condensed *c;
+  double *E;              /* [ns*ns*body.moduli.n] of a constant tangent, which
+                             c goes on reading, Pa; NULL: those of others */
   contact_solver *solver; /* NULL until needed */
   archive *from;          /* borrowed: saved data of the solver, or NULL */
   char group[40];         /* in it */
@@ -159,6 +161,7 @@ typedef struct error_state {
   double left;   /* -, of an unloaded body: part of the largest energy so far,
                     to which its errors are relative; 0: rounding alone */
   int strained;  /* 1: supports strain a body, found if motions are large */
+  int noise;     /* 1: strains are rounding of the motion, found likewise */
   int evaluated; /* 1: those of mesh and solver are of r->now */
 } error_state;
 

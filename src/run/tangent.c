@@ -36,7 +36,9 @@ void visco_new_solvers(run *r) {
 
 static status factor(const domain *d, matrices *m) {
   matrices keep = *m;
+  m->E = NULL;
   matrices_free(m);
+  m->E = keep.E;
   if (keep.c == NULL) { /* as it was before a restart */
     m->from = keep.from;
     memcpy(m->group, keep.group, sizeof m->group);
@@ -55,31 +57,29 @@ static status factor_again(const domain *d, matrices *m) {
   return st;
 }
 
-/* Sections as they are, with the tangents of their kinds. */
-static status constant_domain(run *r, const flow_tangent *law, domain *d) {
-  visco *v = r->strains.visco;
-  size_t square = visco_at(r, r->m->ns);
+/* Sections as they are, with the tangents of their kinds, in *E, which the
+ * matrices of the domain go on reading. */
+static status constant_domain(const run *r, const flow_tangent *law, double **E,
+                              domain *d) {
+  size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
   int kind = 0;
-  if (v->E == NULL)
-    PASS_NEW(v->E, square * (size_t)(r->body.moduli.n + v->x.n));
-  v->E_is_fresh = 0;
-  COPY(v->E, r->body.moduli.E, square * (size_t)r->body.moduli.n);
+  if (*E == NULL) PASS_NEW(*E, square * n);
+  COPY(*E, r->body.moduli.E, square * n);
   for (int i = 0; i < r->m->n.section; ++i) {
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     if (mat->law.ops == NULL) continue;
-    COPY(v->E + square * (size_t)i, law->D + square * (size_t)kind++, square);
+    COPY(*E + square * (size_t)i, law->D + square * (size_t)kind++, square);
   }
   *d = r->body.d;
-  d->E = v->E;
+  d->E = *E;
   return OK;
 }
 
-/* The matrices of v->E. A group that has relaxed within the step may be so soft
+/* The matrices of m->E. A group that has relaxed within the step may be so soft
  * that the others are free to rounding: it gets a small share of its elasticity
  * in the matrix, not in its stresses. The error of that is found by
  * rounding_find as a residual of equilibrium. */
 static status factor_constant(run *r, int again, const domain *d, matrices *m) {
-  visco *v = r->strains.visco;
   const size_t square = visco_at(r, r->m->ns);
   status st = again ? factor_again(d, m) : factor(d, m);
   if (st != ERR_SINGULAR) return st;
@@ -87,7 +87,7 @@ static status factor_constant(run *r, int again, const domain *d, matrices *m) {
     const size_t at = square * (size_t)i;
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     for (size_t k = at; k < at + square && mat->law.ops != NULL; ++k)
-      v->E[k] += TRACE * r->body.moduli.E[k];
+      m->E[k] += TRACE * r->body.moduli.E[k];
   }
   return again ? factor_again(d, m) : factor(d, m);
 }
@@ -171,7 +171,7 @@ static status find_matrices(run *r, const flow_tangent *law, matrices **out) {
   }
   if (!there) m->from = NULL;
   if (!there || m->c == NULL) {
-    PASS(constant_domain(r, law, &d));
+    PASS(constant_domain(r, law, &m->E, &d));
     if (r->c == m->c) r->c = NULL;
     PASS(factor_constant(r, there, &d, m));
     m->key = law->key;

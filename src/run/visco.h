@@ -43,7 +43,7 @@ struct visco {
   long clock;
   double length[SLOTS]; /* of the last different steps, s */
   unsigned n_length;
-  double *E;            /* [ns*ns*(r->body.moduli.n + x.n)] of a tangent */
+  double *E;            /* [ns*ns*(r->body.moduli.n + x.n)] of "fresh" */
   double *stress;       /* [ns*r->strains.eigen.n] Pa */
   int E_is_fresh;       /* that of "fresh" */
   int *section_id;      /* [n_elem] sections of their own for the points */

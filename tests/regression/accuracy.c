@@ -153,6 +153,62 @@ START_TEST(not_asked_for_not_computed) {
 }
 END_TEST
 
+/* A creeping block, pressed and moved on a rough floor and raised again. */
+static job run_raised(const char *solver) {
+  job j = job_begin("raised");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "raised.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n2.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD\n0.2, 2.\n"
+            "*BOUNDARY\nTOP, 2, 2, -0.01\nTOP, 1, 1, 0.002\n"
+            "*SOLVER, %s\n*PRINT, NODES\n*END STEP\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD\n0.2, 2.\n*BOUNDARY\nTOP, 2\n"
+            "*END STEP\n",
+            solver);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code <= 1, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* Largest difference of u_y over the largest u_y, %. */
+static double raised_error(const job *a, const job *b) {
+  dat x = job_table(a, "NODES", -1), y = job_table(b, "NODES", -1);
+  double most = 0.0, worst = 0.0;
+  for (int i = 0; i < x.n_row; ++i) {
+    const double right = dat_at(&y, i, "u_y");
+    most = fmax(most, fabs(right));
+    worst = fmax(worst, fabs(dat_at(&x, i, "u_y") - right));
+  }
+  dat_free(&x);
+  dat_free(&y);
+  return 100 * worst / most;
+}
+
+/* What a loose TOL= has left is in the strains that the block keeps when it has
+ * no stress. */
+START_TEST(strain_that_is_left_has_the_bound_of_the_solver) {
+  static const char *const loose[] = {"METHOD=SOR, TOL=0.1",
+                                      "METHOD=LAGRANGE, TOL=0.1"};
+  job b = run_raised("METHOD=AUTO");
+  ck_assert_double_le(told_error(&b), 1e-6);
+  for (int i = 0; i < 2; ++i) {
+    job a = run_raised(loose[i]);
+    const double error = raised_error(&a, &b), told = told_error(&a);
+    ck_assert_double_gt(error, 0.01);
+    ck_assert_msg(told >= error, "told %g %%, error %g %%", told, error);
+    job_end(&a);
+  }
+  job_end(&b);
+}
+END_TEST
+
 UNIT_MAIN("accuracy", told_error_bounds_the_true_one,
           told_error_has_the_increments_before, error_stands_in_every_result,
-          not_asked_for_not_computed)
+          not_asked_for_not_computed,
+          strain_that_is_left_has_the_bound_of_the_solver)

@@ -302,6 +302,65 @@ START_TEST(flow_that_begins_late_is_an_error_of_the_steps) {
 }
 END_TEST
 
+/* A block pressed at a constant rate by 0.01 within the relaxation time 2 and
+ * raised again: it lifts off when its stress is zero, at t = 2 + 2 ln(2 - 1/e),
+ * and keeps the strain by which the top is still below, without a stress. Its
+ * error is that of the increments. */
+START_TEST(strain_that_is_left_has_the_error_of_the_steps) {
+  static const char *const by[] = {"BACKWARD", "MIDPOINT"};
+  static const double dt[] = {1.0, 0.5, 0.2, 0.1};
+  const double left = 0.01 * (1 - log(2 - exp(-1)));
+  char visco[400];
+  const int steps = 1 + _i % 2;
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=%s\n%g, %d.\n*BOUNDARY\nTOP, 2, 2, -0.01%s\n"
+           "*ACCURACY, TIME=YES\n%s",
+           by[_i / 2 % 2], dt[_i / 4], 4 / steps, steps == 1 ? ", UP" : "",
+           steps == 1 ? "*PRINT, ELEMENTS, NODES\n" : "*END STEP\n*STEP\n");
+  if (steps == 2)
+    snprintf(visco + strlen(visco), sizeof visco - strlen(visco),
+             "*VISCO, INTEGRATOR=%s\n%g, 2.\n*BOUNDARY\nTOP, 2\n",
+             by[_i / 2 % 2], dt[_i / 4]);
+  const square_case s = {
+      STEEL,
+      PROPORTIONAL,
+      "CPS3",
+      FLOOR(0.) "*AMPLITUDE, NAME=UP\n0., 0., 2., 1., 4., 0.\n",
+      "*BOUNDARY\nLEFT, 1\nTOP, 2\n",
+      visco};
+  job j = square_run(&s, 0);
+  dat d = job_table(&j, "NODES", -1);
+  const double error = fabs(dat_max(&d, "u_y") / left - 1),
+               told = 0.01 * job_told(&j, "time_error_percent");
+  ck_assert_msg(told >= 0.5 * error && told <= 2.0 * error,
+                "%s, dt %g, %d steps: told %g, error %g", by[_i / 2 % 2],
+                dt[_i / 4], steps, told, error);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+/* A held strain relaxes for its relaxation time in two increments; in the step
+ * after that the stress is still wrong by as much. */
+START_TEST(strains_that_a_step_holds_keep_their_error) {
+  static const char *const after[] = {"*STATIC\n", "*QUASISTATIC\n1., 1.\n"};
+  char visco[200];
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=BACKWARD\n1., 2.\n*ACCURACY, TIME=YES\n"
+           "*END STEP\n*STEP\n%s",
+           after[_i]);
+  const square_case s = {STEEL, PROPORTIONAL, "CPS3", "", HELD, visco};
+  job j = square_run(&s, 0);
+  const double right = exp(-1.0), found = 1 / 2.25,
+               error = (found - right) / found,
+               told = 0.01 * job_told(&j, "time_error_percent");
+  square_all_have(&j, -1, "stress_yy", found, 1e-9);
+  ck_assert_msg(told >= 0.5 * error && told <= 2.0 * error, "told %g, error %g",
+                told, error);
+  job_end(&j);
+}
+END_TEST
+
 /*
  * A stress of 0.012 with a pulse of 1.2, from 6.33 to 6.37 of 10 s, under
  * Norton's law with A, n: the strain A times the integral of sigma^n flows; the
@@ -458,6 +517,9 @@ int main(void) {
                       2 * BLIND);
   tcase_add_loop_test(tests, flow_that_begins_late_is_an_error_of_the_steps, 0,
                       BLIND);
+  tcase_add_loop_test(tests, strains_that_a_step_holds_keep_their_error, 0, 2);
+  tcase_add_loop_test(tests, strain_that_is_left_has_the_error_of_the_steps, 0,
+                      16);
   tcase_add_loop_test(tests, pulse_of_a_table_is_seen, 0, ROWS);
   tcase_add_loop_test(tests, pulse_of_a_table_is_seen_by_balanced_steps, 0,
                       ROWS);

@@ -143,6 +143,71 @@ START_TEST(little_creep_before_does_not_make_the_rate_large) {
 }
 END_TEST
 
+/* Power creep, n = 3, in one increment of BACKWARD: of a held strain the stress
+ * x from 1 with x + 4 x^3 = 1, A = 4e-3; under a stress of 1 the strain 1e-3 +
+ * A. TOL= is that of the contact, which the floor makes exact. */
+START_TEST(tolerance_of_the_contact_is_not_that_of_creep) {
+  static const char *const iterate[] = {"", ", ITERATION=INITIAL"};
+  static const char *const load[] = {"TOP, 2, 2, -1.E-3\n",
+                                     "*DSLOAD\nTOP, P, 1.\n"};
+  static const double value[] = {-0.5, -5e-3};
+  const int pressed = _i % 2;
+  char first[80], visco[160];
+  snprintf(first, sizeof first, "*BOUNDARY\nLEFT, 1\n%s", load[pressed]);
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=BACKWARD%s\n1., 1.\n*SOLVER, TOL=0.1\n",
+           iterate[_i / 2]);
+  square_case s = {STEEL,  "*INELASTIC, LAW=NORTON\n4.E-3, 3.\n",
+                   "CPS3", FLOOR(0.),
+                   first,  visco};
+  job j = square_run(&s, 0);
+  square_all_have(&j, -1, pressed ? "strain_yy" : "stress_yy", value[pressed],
+                  1e-9);
+  job_end(&j);
+}
+END_TEST
+
+/* A block that slides: what TOL=0.1 leaves at its foot differs with each
+ * iteration on the stresses, which requires less. No increment is cut. */
+START_TEST(creep_iteration_has_the_contact_as_exact_as_it_requires) {
+  square_case s = {STEEL,
+                   "*INELASTIC, LAW=NORTON\n0.1, 3.\n",
+                   "CPS3",
+                   FLOOR(0.2),
+                   "*BOUNDARY\nTOP, 1, 1, 2.E-3\nTOP, 2, 2, -1.E-3\n",
+                   "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n0.5, 1.\n"
+                   "*SOLVER, METHOD=LAGRANGE, TOL=0.1\n"};
+  job j = square_run(&s, 0);
+  char *sta = job_file(&j, "sta");
+  ck_assert_msg(strstr(sta, "CUT") == NULL, "%s", sta);
+  free(sta);
+  job_end(&j);
+}
+END_TEST
+
+/* Increments of two lengths in turn have each its matrix. Near nu = 1/2, where
+ * solutions are refined, so have the residuals. Strains at a constant stress,
+ * (1 - nu^2)/E (1 + t/2). */
+START_TEST(increments_of_several_lengths_have_each_its_moduli) {
+  static const double time[] = {0, 2, 3, 5, 7, 8};
+  const double nu = 0.499999;
+  square_case s = {"1000., 0.499999",
+                   PROPORTIONAL,
+                   "CPE3",
+                   "",
+                   SYMMETRY "*DSLOAD\nTOP, TY, 1.\n",
+                   "*VISCO, INTEGRATOR=BACKWARD\n2., 2.\n*END STEP\n*STEP\n"
+                   "*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n*END STEP\n*STEP\n"
+                   "*VISCO, INTEGRATOR=BACKWARD\n2., 4.\n*END STEP\n*STEP\n"
+                   "*VISCO, INTEGRATOR=BACKWARD\n1., 1.\n"};
+  job j = square_run(&s, 0);
+  for (int k = 0; k < 6; ++k)
+    square_all_have(&j, k, "strain_yy",
+                    1e-3 * (1 - nu * nu) * (1 + time[k] / 2), 1e-9);
+  job_end(&j);
+}
+END_TEST
+
 /* dt ten times the relaxation time: MIDPOINT says so, BACKWARD is quiet. */
 START_TEST(ringing_is_told) {
   square_case s = {STEEL,  PROPORTIONAL,
@@ -184,6 +249,11 @@ int main(void) {
   tcase_add_loop_test(tests, little_creep_before_does_not_make_the_rate_large,
                       0, 8);
   tcase_add_test(tests, substeps_are_as_long_as_what_they_start_from_allows);
+  tcase_add_loop_test(tests, tolerance_of_the_contact_is_not_that_of_creep, 0,
+                      4);
+  tcase_add_test(tests,
+                 creep_iteration_has_the_contact_as_exact_as_it_requires);
+  tcase_add_test(tests, increments_of_several_lengths_have_each_its_moduli);
   tcase_add_test(tests, ringing_is_told);
   tcase_add_loop_test(tests, order_of_convergence_with_contact_and_friction, 0,
                       N_SCHEME);

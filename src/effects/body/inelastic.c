@@ -49,9 +49,12 @@ static double next_end(const run *r, double dt) {
 
 /* A body in free motion, or barely touching: its strains, and their error, are
  * rounding. */
-static int strains_are_rounding(run *r) {
+static status forget_rounding(run *r, double *error) {
+  int hides = 0;
   r->now.energy.strain = domain_strain_energy(&r->body.d, r->now.u);
-  return rounding_hides_strains(r);
+  PASS(rounding_hides_strains(r, &hides));
+  if (hides) *error = 0.0;
+  return OK;
 }
 
 /* One attempt at an increment of a step with a tolerance. */
@@ -71,8 +74,7 @@ static status attempt_adapted(run *r) {
   TRY(effects_attempt(r, t));
   TRY(visco_try(r, t, &error));
   int settled = r->solving.report.outcome > 0;
-  if (settled && error > s->visco.tolerance && strains_are_rounding(r))
-    error = 0.0;
+  if (settled && error > s->visco.tolerance) TRY(forget_rounding(r, &error));
   r->course.missed = settled && error > s->visco.tolerance;
   if ((!settled || r->course.missed) && fmin(tried, p->dt) > least &&
       loop_cut_helps(r)) {

@@ -8,7 +8,8 @@
  * condensed stiffness. With them the stresses differ by E (B du - de^i), whose
  * energy is relative to that of the stresses, and the strains by B du, relative
  * to the strains: at constant stress a body still creeps. The larger of the two
- * relative differences is reported.
+ * relative differences is reported; of a body that has no stress left, that of
+ * the strains, with those of the steps before.
  *
  * The error of the run is that difference times 2^p/(2^p - 1) for an integrator
  * of order p (Richardson), without friction; zones of stick and slip that grow
@@ -35,10 +36,16 @@ typedef struct waypoint {
   flow_state flow; /* of the points whose law flows; empty: none */
 } waypoint;
 
+/* Errors, sqrt(J). */
+typedef struct path_error {
+  double norm;   /* of the stresses, or as large relative to them */
+  double strain; /* of the strains, of laws that flow */
+} path_error;
+
 typedef struct finer_path {
-  int lost;                 /* 1: it found no equilibrium */
-  int measured;             /* 1: "error" is that of the attempt */
-  double error;             /* sqrt(J) */
+  int lost;     /* 1: it found no equilibrium */
+  int measured; /* 1: "error" is that of the attempt */
+  path_error error;
   int flows;                /* 1: made in a *VISCO step */
   waypoint at, middle, end; /* accepted; of the attempt now made */
   double *d, *Ad;           /* [m] difference of the paths, m; N */
@@ -47,8 +54,8 @@ typedef struct finer_path {
 } finer_path;
 
 typedef struct paths {
-  finer_path *path;   /* NULL: none made */
-  double before, now; /* sqrt(J), error of finished paths; of this one */
+  finer_path *path;       /* NULL: none made */
+  path_error before, now; /* of finished paths; of this one */
 } paths;
 
 static status waypoint_new(const run *r, waypoint *w) {
@@ -110,8 +117,9 @@ static status half(run *r, waypoint *from, double t, waypoint *to) {
 static void restart(paths *own) {
   path_free(own->path);
   own->path = NULL;
-  own->before += own->now;
-  own->now = 0.0;
+  own->before.norm += own->now.norm;
+  own->before.strain += own->now.strain;
+  own->now = (path_error){0};
 }
 
 /* Only slip in increments and inelastic strains depend on their path. */
@@ -192,16 +200,17 @@ static status subtract_strains(run *r, finer_path *p) {
   return OK;
 }
 
-/* The same with them: as large as the larger relative difference. p->u becomes
- * a difference, p->e0 is one. */
-static double field_difference(const run *r, finer_path *p) {
+/* The same with them: "norm" as large as the larger relative difference. p->u
+ * becomes a difference, p->e0 is one. */
+static path_error field_difference(const run *r, finer_path *p) {
   double stress = sqrt(2.0 * fmax(r->now.energy.strain, 0.0));
   double strain = field_norm(r, r->now.u, NULL);
   for (size_t k = 0; k < r->n_dof; ++k) p->u[k] -= r->now.u[k];
   double of_stress = field_norm(r, p->u, p->e0);
   double of_strain = field_norm(r, p->u, NULL);
-  return strain > 0.0 ? fmax(of_stress, of_strain * (stress / strain))
-                      : of_stress;
+  const double larger =
+      strain > 0.0 ? fmax(of_stress, of_strain * (stress / strain)) : of_stress;
+  return (path_error){larger, of_strain};
 }
 
 /* From the difference to half the increments to the error. */
@@ -228,26 +237,30 @@ static const char *why_no_path(const run *r) {
 
 /* Error of the increments so far, sqrt(J); that with the attempt in r->now,
  * whose energy is known. HUGE_VAL: the path is lost. */
-static double total_error(const paths *own) { return own->before + own->now; }
+static double total_error(const paths *own) {
+  return own->before.norm + own->now.norm;
+}
 
 static status measure(run *r, paths *own, double *norm) {
   finer_path *p = own->path;
   *norm = HUGE_VAL;
   if (p == NULL || p->lost) return OK;
-  if (!p->measured && p->u != NULL) {
-    PASS(subtract_strains(r, p));
-    p->error = extrapolation(r) * field_difference(r, p);
-  } else if (!p->measured) {
-    p->error = extrapolation(r) * condensed_difference(r, p);
+  if (!p->measured) {
+    if (p->u != NULL) PASS(subtract_strains(r, p));
+    p->error = p->u != NULL ? field_difference(r, p)
+                            : (path_error){condensed_difference(r, p), 0.0};
+    p->error.norm *= extrapolation(r);
+    p->error.strain *= extrapolation(r);
   }
   p->measured = 1;
-  *norm = own->before + p->error;
+  *norm = own->before.norm + p->error.norm;
   return OK;
 }
 
 /* The path at the end of an accepted increment. */
 static status compare_path(run *r, paths *own, error_share *e) {
   finer_path *p = own->path;
+  double norm;
   if (p == NULL || (!p->lost && p->end.start.t != r->now.t)) {
     e->why = "the body answers at once";
     return OK;
@@ -257,14 +270,28 @@ static status compare_path(run *r, paths *own, error_share *e) {
     e->why = "no equilibrium in half an increment";
     return OK;
   }
-  double energy = r->now.energy.strain, norm;
   PASS(measure(r, own, &norm));
   own->now = p->error;
-  if (norm > 0.0) e->relative = norm / sqrt(norm * norm + 2.0 * energy);
-  if (e->relative <= STRAIGHT * r->solving.tol)
-    e->why = "the path is straight: half the increments give the same";
   advance(p);
   return OK;
+}
+
+/* An error in a norm over the solution with it, whose energy is known. */
+static double share_of(double norm, double energy) {
+  return norm > 0.0 ? norm / sqrt(norm * norm + 2.0 * energy) : 0.0;
+}
+
+/* That of all paths so far; of the strains if they are left without stress. */
+static double share_of_paths(const run *r, const paths *own) {
+  const double left = r->errors.left;
+  double share = share_of(total_error(own), r->now.energy.strain);
+  if (left >= 1.0) return share;
+  share = left > 0.0 ? left * share : 0.0;
+  const double strain = rounding_strain_left(r);
+  return strain > 0.0
+             ? fmax(share,
+                    share_of(own->before.strain + own->now.strain, strain))
+             : share;
 }
 
 static status compare(run *r, void *self) {
@@ -273,13 +300,17 @@ static status compare(run *r, void *self) {
   e->relative = 0.0;
   e->why = NULL;
   if (!e->asked) return OK;
-  if (!path_exists(r)) {
-    e->why = why_no_path(r);
-    if (effects_sum_up(r) != NULL) e->relative = NAN;
-  } else {
+  if (effects_sum_up(r) != NULL) e->relative = NAN;
+  if (path_exists(r))
     PASS(compare_path(r, self, e));
-  }
-  e->relative = r->errors.left > 0.0 ? e->relative * r->errors.left : 0.0;
+  else
+    e->why = why_no_path(r);
+  if (!run_inherits(r) || isnan(e->relative)) return OK;
+  e->relative = share_of_paths(r, self);
+  if (e->relative > STRAIGHT * r->solving.tol)
+    e->why = NULL;
+  else if (e->why == NULL)
+    e->why = "the path is straight: half the increments give the same";
   return OK;
 }
 
@@ -315,8 +346,10 @@ static status keep(run *r, void *self, archive *a) {
   int there = own->path != NULL;
   PASS(archive_ints(a, "path", &there, 1));
   if (archive_reads(a)) restart(own);
-  PASS(archive_reals(a, "path_before", &own->before, 1));
-  PASS(archive_reals(a, "path_error", &own->now, 1));
+  PASS(archive_reals(a, "path_before", &own->before.norm, 1));
+  PASS(archive_reals(a, "path_error", &own->now.norm, 1));
+  PASS(archive_reals(a, "path_strain_before", &own->before.strain, 1));
+  PASS(archive_reals(a, "path_strain", &own->now.strain, 1));
   if (!there) return OK;
   if (own->path == NULL) PASS(path_new(r, &own->path));
   PASS(archive_ints(a, "path_lost", &own->path->lost, 1));
@@ -405,7 +438,7 @@ static status attempt_balanced(run *r, paths *own) {
   progress *p = &r->at;
   double cpu = timer_cpu(), t = next_end(r), planned = t - r->old.t;
   double before = total_error(own), part, allowed;
-  int deeper, attempt = p->attempt;
+  int deeper, hides, attempt = p->attempt;
   PASS(visco_level(r, planned, &deeper));
   if (deeper > 0) {
     p->dt = ldexp(planned, -deeper);
@@ -423,7 +456,8 @@ static status attempt_balanced(run *r, paths *own) {
   if (outcome_is_fatal(r->solving.report.outcome)) PASS(loop_no_equilibrium(r));
   if (!r->errors.evaluated) PASS(estimate_evaluate(r));
   PASS(measure(r, own, &part));
-  part = rounding_hides_strains(r) ? 0.0 : part - before;
+  PASS(rounding_hides_strains(r, &hides));
+  part = hides ? 0.0 : part - before;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);
   if (part > allowed && shorter) {

@@ -102,6 +102,8 @@ typedef struct flow_tangent {
   const double *D;         /* key > 0: [ns*ns*n_kind], else [ns*ns*n]; Pa */
   const double *sigma, *e; /* [ns*n] sigma_k, e_k; key > 0: those that
                               linear_predict makes, and of scheme_call.old */
+  double tol;              /* that the contact is solved to at least, -; 0: that
+                              of the deck */
 } flow_tangent;
 
 struct scheme_call;
@@ -127,7 +129,7 @@ typedef struct scheme_step {
   double t;         /* end of the step: old->t + dt to rounding, s */
   double dt, theta; /* s, - */
   int initial;      /* 1: iterate with the elastic matrix */
-  double tol;       /* of the iteration on stresses, - */
+  double tol;       /* of the contact; most of the iteration on stresses, - */
 } scheme_step;
 
 typedef struct scheme_result {

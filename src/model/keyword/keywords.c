@@ -216,8 +216,8 @@ static const option temperature_options[] = {
 static const option solver_options[] = {
   NAME(solver.method, "METHOD", "AUTO", "protis --list solvers"),
   WORD(tol, "TOL", 1e-14, 0.1, "1E-10", "-", "BALANCED",
-       "residual to reach; BALANCED: stop when the error of the solver is "
-       "SHARE of those of mesh and increments"),
+       "residual of the contact to reach; BALANCED: stop when the error of the "
+       "solver is SHARE of those of mesh and increments"),
   REAL(solver.share, "SHARE", 0.001, 1, "0.05", "-",
        "of the other errors, with TOL=BALANCED"),
   INT(solver.max_iter, "MAX_ITER", 0, 100000000, "0", "-",

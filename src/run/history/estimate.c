@@ -43,14 +43,24 @@ static void take_left(run *r, double left) {
     part[e] = left > 0.0 ? left * part[e] : 0.0;
 }
 
+/* The bound of a body without stress, of that energy: relative to the strains
+ * that it has left, by all increments so far; 0: it has none. */
+static double bound_of_strains(const run *r, double energy) {
+  const double left = rounding_strain_left(r),
+               scale = left > 0.0 ? fmin(left, r->now.energy.largest) : 0.0;
+  return scale > 0.0 ? sqrt(energy / scale) : 0.0;
+}
+
 /* Those of an unloaded body, whose state is rounding, are relative to the
- * largest energy so far; a body in free motion has none. */
+ * largest energy so far; a body in free motion has none. Inelastic strains that
+ * are left have the errors of the increments before. */
 static void estimate_unloaded(run *r) {
   energies *e = &r->now.energy;
   r->errors.left = 1.0;
   if (rounding_is_all(r)) {
     take_left(r, 0.0);
-    if (r->errors.error.why == NULL) r->errors.error.relative = 0.0;
+    if (r->errors.error.why == NULL)
+      r->errors.error.relative = bound_of_strains(r, r->errors.error.energy);
     r->errors.error.hidden = 0.0;
     e->rounding = fmax(e->rounding, rounding_of_works(r));
     if (e->largest <= e->rounding) e->defect = 0.0;
@@ -59,7 +69,9 @@ static void estimate_unloaded(run *r) {
   if (!(e->strain < UNLOADED * e->largest)) return;
   take_left(r, sqrt(fmax(e->strain, 0.0) / e->largest));
   if (r->errors.error.asked && r->errors.error.why == NULL)
-    r->errors.error.relative = sqrt(r->errors.error.energy / e->largest);
+    r->errors.error.relative =
+        fmax(sqrt(r->errors.error.energy / e->largest),
+             bound_of_strains(r, r->errors.error.energy));
 }
 
 status estimate_evaluate(run *r) {

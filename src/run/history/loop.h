@@ -42,8 +42,12 @@ status rounding_find(run *r);
 /* Contact forces that may be below the rounding of the motion: contact_hidden,
  * own forces by the stresses next to the node. */
 status rounding_hidden(const run *r, double *part);
-/* 1: the strains of the body are no more than the rounding of its motion. */
-int rounding_hides_strains(const run *r);
+/* *hides = 1: the strains of the body are no more than the rounding of its
+ * motion. */
+status rounding_hides_strains(const run *r, int *hides);
+/* Energy that the elasticity would give the strains of a body whose law flows,
+ * J; 0: it has none, or no more than the rounding of its motion. */
+double rounding_strain_left(const run *r);
 /* What gaps, differences of coordinates, have as rounding, m. */
 double rounding_of_gaps(const run *r);
 /* Rounding of the forces that this motion takes times the motion, J. */

@@ -27,6 +27,8 @@ static const double CARRIED = 4 * DBL_EPSILON;
 /* -, work of creep over the strain energy; motion of the body, or forces that
  * contact carries at once, over those of the strains */
 static const double FAR = 1e6;
+/* -, of the energy norm, the error where the strains are nothing else */
+static const double ALL = 0.5;
 
 /* share: of the solution in one that the loss counts against. */
 static int leaves_none(const rounding_loss *loss, double share,
@@ -204,30 +206,30 @@ double rounding_of_gaps(const run *r) {
   return 16 * DBL_EPSILON * largest_entry(n, r->msh->x);
 }
 
-/* 1: an error of the displacements by u explains all strains. */
-static int hides_strains(const run *r, double u) {
-  return r->now.energy.strain <=
-         r->msh->n_node * condensed_stiffest(r->c) * u * u;
+/* What an error of the displacements by u stores, J. */
+static double motion_energy(const run *r, double u) {
+  return r->msh->n_node * condensed_stiffest(r->c) * u * u;
 }
 
-int rounding_hides_strains(const run *r) { return hides_strains(r, lost(r)); }
+/* 1: such an error explains all strains. */
+static int hides_strains(const run *r, double u) {
+  return r->now.energy.strain <= motion_energy(r, u);
+}
 
 int rounding_is_all(const run *r) {
   const double force = largest_entry((size_t)r->nodes.n_c, r->now.rc);
   if (forces_hide_strains(r)) return 1;
-  if (r->strains.eigen.n == 0 && moves_alone(r)) return 1;
+  if ((r->strains.eigen.n == 0 || r->errors.noise) && moves_alone(r)) return 1;
   if (r->errors.strained || increment_free_load(r, r->now.F) > 0.0) return 0;
   const double u = force > 0.0 ? fmax(lost(r), rounding_of_gaps(r)) : lost(r);
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
 /* Residual of equilibrium without contact forces. */
-static void find_rest(run *r, misfit *x) {
+static void find_rest(const run *r, misfit *x) {
   domain_stress(&r->body.d, r->now.u, NULL, x->stress);
   domain_internal_force(&r->body.d, x->stress, x->rest);
   for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
-  r->now.peak_stress =
-      fmax(r->now.peak_stress, largest_entry(x->n_stress, x->stress));
 }
 
 /* The contact forces of the answer. Where they differ from those of its
@@ -245,6 +247,18 @@ static status find_forces(const run *r, misfit *x) {
     x->rc[q] = fabs(rc[q] - by_u) > rounding[q / cp->dim] ? by_u : rc[q];
   }
   return OK;
+}
+
+/* w; *square: twice its energy, J. */
+static status find_error(const run *r, misfit *x, double *square) {
+  find_rest(r, x);
+  PASS(find_forces(r, x));
+  return condensed_misfit(x->c, x->rest, x->rc, x->w, square);
+}
+
+/* 1: an error of that square explains all strains. */
+static int is_noise(const run *r, double square) {
+  return square > ALL * ALL * 2.0 * r->now.energy.strain;
 }
 
 /* The loss by the error w of the displacements. */
@@ -310,9 +324,10 @@ static status find(run *r) {
   const double share = share_of_step(r);
   double square = 0.0;
   PASS(misfit_new(r, &x));
-  find_rest(r, &x);
-  PASS(find_forces(r, &x));
-  PASS(condensed_misfit(x.c, x.rest, x.rc, x.w, &square));
+  PASS(find_error(r, &x, &square));
+  r->now.peak_stress =
+      fmax(r->now.peak_stress, largest_entry(x.n_stress, x.stress));
+  r->errors.noise = is_noise(r, square);
   take_loss(r, &x, square);
   if (leaves_none(&r->errors.rounding, 1.0, x.c) && r->nodes.n_row > 0)
     PASS(find_adjacent_contact(r, &x));
@@ -342,6 +357,38 @@ static double farthest_work(const run *r) {
   const double k = condensed_stiffest(r->c), force = largest_force(r),
                u = largest_entry(r->n_dof, r->now.u);
   return fmax(k * u * u, k > 0.0 ? force / k * force : 0.0);
+}
+
+/* 1: the strains are so far below the motion that they may be rounding. */
+static int may_be_noise(const run *r) {
+  return farthest_work(r) > FAR * FAR * r->now.energy.strain;
+}
+
+status rounding_hides_strains(const run *r, int *hides) {
+  ENDS_BY(misfit_free) misfit x = {0};
+  double square = 0.0;
+  *hides = hides_strains(r, lost(r));
+  if (*hides || !may_be_noise(r)) return OK;
+  TIMED(STAGE_RECOVERY);
+  PASS(misfit_new(r, &x));
+  PASS(find_error(r, &x, &square));
+  *hides = is_noise(r, square);
+  return OK;
+}
+
+double rounding_strain_left(const run *r) {
+  domain plain = r->body.d;
+  plain.eigen = NULL;
+  if (r->strains.visco == NULL) return 0.0;
+  const double energy = domain_strain_energy(&plain, r->now.u);
+  return energy > FAR * motion_energy(r, lost(r)) ? energy : 0.0;
+}
+
+/* Strains that flow, of a body that nothing loads now. */
+static status find_noise(run *r) {
+  if (r->strains.eigen.n == 0 || !moves_alone(r) || !may_be_noise(r)) return OK;
+  PASS(supports_strain(r, &r->errors.strained));
+  return r->errors.strained ? OK : rounding_hides_strains(r, &r->errors.noise);
 }
 
 /* Largest stress next to each contact node times its area, own[n], N. */
@@ -388,12 +435,12 @@ static int is_doubtful(const run *r) {
 
 status rounding_find(run *r) {
   r->errors.rounding = (rounding_loss){0};
-  r->errors.strained = 0;
+  r->errors.strained = r->errors.noise = 0;
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
   PASS(check_touch(r));
-  if (!is_doubtful(r)) return OK;
+  if (!is_doubtful(r)) return find_noise(r);
   PASS(supports_strain(r, &r->errors.strained));
   TIMED(STAGE_RECOVERY);
   return find(r);
