@@ -38,6 +38,15 @@ typedef struct bubbles {
   double *part;   /* [edges*dim*n_elem] at each edge, m; NULL: not needed */
 } bubbles;
 
+/* An edge of elements of several regions, node ids a < b. What u is in its
+ * bubble is one field: the mean of what the regions find. */
+typedef struct joint_edge {
+  int a, b;
+  int n, region;             /* regions so far, the last of them */
+  double whole[3], given[3]; /* sums of bubble_of, m */
+  double contact[3];         /* the same of goal_estimator.edge */
+} joint_edge;
+
 struct goal_estimator {
   goal_solution s;
   space_recovery *recovery; /* borrowed */
@@ -49,6 +58,9 @@ struct goal_estimator {
   double by_given; /* -, share of the energy that z has */
   double *edge;    /* [dim*n_edge] u in the bubbles of contact edges, m */
   double *own;     /* [n_elem] |e_u|^2, J */
+  int n_joint;
+  joint_edge *joint;         /* [n_joint] sorted by a, b */
+  unsigned char *is_joint;   /* [n_node] 1: of elements of several regions */
   unsigned char *on_surface; /* [n_node] 1: of an edge of the contact */
   double *sigma_y;           /* [ns*n_elem] of the adjoint; workspace */
   double *node_y;            /* [ns*n_node] recovered; workspace */
@@ -59,7 +71,8 @@ void goal_estimator_free(goal_estimator *e) {
   for (int k = 0; k < e->n_region && e->stress != NULL; ++k)
     memory_free(e->stress[k]);
   RELEASE(e->all.strain, e->all.part, e->given.strain, e->given.part, e->w);
-  RELEASE(e->stress, e->edge, e->own, e->on_surface, e->sigma_y, e->node_y, e);
+  RELEASE(e->stress, e->edge, e->own, e->on_surface, e->sigma_y, e->node_y);
+  RELEASE(e->joint, e->is_joint, e);
 }
 
 /* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
@@ -236,20 +249,138 @@ static void add_bubble(const domain *d, int elem_id, const int *edge,
     e[2] += of[0] / (3.0 * radius_of(d->mesh, elem_id));
 }
 
-/* The bubbles of the edges of an element. */
+/* ---- edges of several regions -------------------------------------------- */
+
+/* NULL: all elements of the edge are of one region. */
+static joint_edge *find_joint(const goal_estimator *e, int a, int b) {
+  const joint_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
+  if (e->n_joint == 0 || !e->is_joint[a] || !e->is_joint[b]) return NULL;
+  return bsearch(&key, e->joint, (size_t)e->n_joint, sizeof key,
+                 number_pair_order);
+}
+
+static void mark_joints(goal_estimator *e, int *region) {
+  const mesh *m = e->s.d->mesh;
+  for (int k = 0; k < (m->dim + 1) * m->n_elem; ++k) {
+    const int of = space_region(e->recovery, k / (m->dim + 1)) + 1;
+    int *at = &region[m->elem[k]];
+    if (*at != 0 && *at != of) e->is_joint[m->elem[k]] = 1;
+    *at = of;
+  }
+}
+
+/* Writes the edges between marked nodes, element by element, or counts them. */
+static int list_joints(const goal_estimator *e, joint_edge *to) {
+  const mesh *m = e->s.d->mesh;
+  int n = 0;
+  for (int k = 0; k < m->n_elem; ++k) {
+    const int *v = m->elem + (m->dim + 1) * k;
+    for (int a = 0; a < m->dim; ++a)
+      for (int b = a + 1; b <= m->dim; ++b) {
+        if (!e->is_joint[v[a]] || !e->is_joint[v[b]]) continue;
+        if (to != NULL)
+          to[n] = (joint_edge){.a = v[a] < v[b] ? v[a] : v[b],
+                               .b = v[a] < v[b] ? v[b] : v[a],
+                               .region = space_region(e->recovery, k)};
+        ++n;
+      }
+  }
+  return n;
+}
+
+/* Keeps one of each edge that has several regions. */
+static int unite_joints(joint_edge *j, int n) {
+  int kept = 0;
+  for (int i = 0, last; i < n; i = last) {
+    int several = 0;
+    for (last = i; last < n && number_pair_order(j + i, j + last) == 0; ++last)
+      several |= j[last].region != j[i].region;
+    if (several) j[kept++] = j[i];
+  }
+  return kept;
+}
+
+static status find_joints(goal_estimator *e) {
+  const int n_node = e->s.d->mesh->n_node;
+  OWNED int *region = NULL;
+  PASS_NEW_ALL(OF(e->is_joint, n_node), OF(region, n_node));
+  mark_joints(e, region);
+  const int n = list_joints(e, NULL);
+  if (n == 0) return OK;
+  PASS_NEW(e->joint, n);
+  list_joints(e, e->joint);
+  qsort(e->joint, (size_t)n, sizeof *e->joint, number_pair_order);
+  e->n_joint = unite_joints(e->joint, n);
+  return OK;
+}
+
+static void add_to(const double *d, double *sum) {
+  for (int c = 0; c < 3; ++c) sum[c] += d[c];
+}
+
+/* Once by each region. */
+static void add_joint(goal_estimator *e, const double *G, int region,
+                      joint_edge *j) {
+  const int dim = e->s.d->mesh->dim;
+  double whole[3] = {0.0}, given[3], contact[3] = {0.0};
+  if (j->n > 0 && j->region == region) return;
+  j->region = region;
+  ++j->n;
+  bubble_of(e, G, j->a, j->b, whole, given);
+  add_to(whole, j->whole);
+  add_to(given, j->given);
+  const contact_edge *of = find_edge(e, j->a, j->b);
+  if (of == NULL) return;
+  memcpy(contact, e->edge + (size_t)dim * (size_t)(of - e->s.edge),
+         (size_t)dim * sizeof *contact);
+  add_to(contact, j->contact);
+}
+
+/* From sums to means. */
+static void finish_joint(goal_estimator *e, joint_edge *j) {
+  const int dim = e->s.d->mesh->dim;
+  for (int c = 0; c < 3; ++c) {
+    j->whole[c] /= j->n;
+    j->given[c] /= j->n;
+    j->contact[c] /= j->n;
+  }
+  const contact_edge *of = find_edge(e, j->a, j->b);
+  if (of != NULL)
+    memcpy(e->edge + (size_t)dim * (size_t)(of - e->s.edge), j->contact,
+           (size_t)dim * sizeof *j->contact);
+}
+
+/* The bubbles of the edges of an element; G NULL: of those of several
+ * regions, which else count for later. */
 static void bubbles_of(goal_estimator *of, const double *G, int elem_id) {
   const domain *d = of->s.d;
   const int dim = d->mesh->dim, *v = d->mesh->elem + (dim + 1) * elem_id;
+  const int region = space_region(of->recovery, elem_id);
   double g[12], whole[3], given[3];
   int edge[3] = {0};
   mesh_elem_gradients(d->mesh, elem_id, g);
   for (edge[0] = 0; edge[0] < dim; ++edge[0])
     for (edge[1] = edge[0] + 1; edge[1] <= dim; ++edge[1], ++edge[2]) {
-      bubble_of(of, G, v[edge[0]], v[edge[1]], whole, given);
-      add_bubble(d, elem_id, edge, g, whole, &of->all);
+      joint_edge *j = find_joint(of, v[edge[0]], v[edge[1]]);
+      if (G != NULL && j != NULL) add_joint(of, G, region, j);
+      if ((G != NULL) == (j != NULL)) continue;
+      if (j == NULL) bubble_of(of, G, v[edge[0]], v[edge[1]], whole, given);
+      add_bubble(d, elem_id, edge, g, j != NULL ? j->whole : whole, &of->all);
       if (of->given.strain != NULL)
-        add_bubble(d, elem_id, edge, g, given, &of->given);
+        add_bubble(d, elem_id, edge, g, j != NULL ? j->given : given,
+                   &of->given);
     }
+}
+
+static void add_joints(goal_estimator *e) {
+  const mesh *m = e->s.d->mesh;
+  for (int k = 0; k < e->n_joint; ++k) finish_joint(e, &e->joint[k]);
+  for (int k = 0; k < m->n_elem && e->n_joint > 0; ++k) {
+    int n = 0;
+    for (int a = 0; a <= m->dim; ++a)
+      n += e->is_joint[m->elem[(m->dim + 1) * k + a]];
+    if (n > 1) bubbles_of(e, NULL, k);
+  }
 }
 
 /* ---- what belongs to u --------------------------------------------------- */
@@ -309,7 +440,9 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   PASS_NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
   PASS(space_moduli(recovery));
   PASS(space_keep(recovery));
+  PASS(find_joints(e));
   for (int k = 0; k < e->n_region; ++k) PASS(recover_region(e, k, q, G));
+  add_joints(e);
   return OK;
 }
 

@@ -190,9 +190,9 @@ static int has_mean(const model *m) {
 static status prepare(run *r, goal_state *own, shared *s) {
   space_recovery *recovery;
   const int n = r->nodes.n_row;
-  PASS(goal_surface_new(r, &own->border, &s->surface));
-  set_sticks(r, &own->before, &s->surface);
   PASS(recover(r, own, &recovery));
+  PASS(goal_surface_new(r, &own->border, recovery, &s->surface));
+  set_sticks(r, &own->before, &s->surface);
   const goal_solution found = {.d = &r->body.d,
                                .u = r->now.u,
                                .sigma = r->result.stress,
