@@ -326,6 +326,42 @@ START_TEST(temperatures_that_do_not_meet) {
 }
 END_TEST
 
+#define BOTH "*TEMPERATURE\nSOFT, 10.\nHARD, 10.\n"
+#define SLOPES "*TEMPERATURE\nSOFT, \"20*(1-x)\"\nHARD, \"5*x-7.5\"\n"
+
+/* Strains without stress count as what supports prescribe: they make the energy
+ * of a mesh too large, loads too small, and one does no work on the other. */
+START_TEST(energies_by_loads_and_by_temperatures) {
+  static const struct {
+    layers of;
+    const char *cards;
+    expected is;
+  } rows[] = {
+      {{1.0, 1e-3, "CPE3", NULL},
+       SIDES LOAD HEAT,
+       {5, 0.23426385, 0.7, 0.85, 1}},
+      {{1.0, 1e-3, "CAX3", NULL},
+       SIDES LOAD HEAT,
+       {5, 0.70167593, 0.7, 0.85, 1}},
+      {{1.0, 1e-3, "CPE3", NULL},
+       "*BOUNDARY\nBOTTOM, 1, 2\n" LOAD BOTH,
+       {5, 0.23977081, 0.7, 0.85, 2}},
+      {{1.0, 1e-3, "CPE3", NULL}, WALLS SLOPES, {5, 0.11457827, 0.85, 1.0, 3}},
+      {{1.0, 1e-3, "CAX3", NULL},
+       WALLS "TOP, 2, 2, \"-0.005*(1+cos(pi*x))\"\n" BOTH,
+       {5, 1.458333, 0.9, 1.1, 0.5}},
+      {{1.0, 1e-3, "CPE3", NULL},
+       WALLS WAVE SLOPES,
+       {5, 0.31954276, 0.9, 1, 0.3}}};
+  for (int k = 0; k < 6; ++k) {
+    job j = of_layers(rows[k].of, rows[k].cards);
+    const expected *e = &rows[k].is;
+    check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* A prism from z = 0 to 1 with an interface at y = 1/2, in the middle at
  * "height". */
 #define PRISM                                                                  \
@@ -377,4 +413,5 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           zeros_are_not_exact, energies_by_loads_and_by_supports,
           ends_of_supports_are_not_reliable, ends_of_supports_in_space,
           materials_that_meet_at_a_free_side, materials_that_meet_smoothly,
-          temperatures_that_do_not_meet, materials_that_meet_in_space)
+          temperatures_that_do_not_meet, energies_by_loads_and_by_temperatures,
+          materials_that_meet_in_space)

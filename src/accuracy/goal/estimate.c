@@ -19,9 +19,14 @@
  * x what is prescribed between the nodes. The error is half of a(e_w, e) with
  * w = 2 y - u_h, by recovered stresses, and half of what x does to u_h - w:
  * loads alone (w = u_h) make the energy of the mesh too small by a(e, e)/2,
- * supports alone (w = -u_h) too large by it. That counts as far as z has the
- * energy; else the residual of z in the bubbles does, for friction makes z
- * singular too.
+ * supports alone (w = -u_h) too large by it. Where nodes slip by friction that
+ * follows the pressure, z is singular too: that counts as far as z has the
+ * energy, and else the residual of z in the bubbles.
+ *
+ * Strains without stress e0 count with z: its stress s_z is that of u_h, E (e -
+ * e0), less that of y, and the same holds for it. Where they vary within an
+ * element by d0 from their mean there, the error e_z of its stress has a part
+ * E d0, which does no work on the mean: less the integral of e_z : d0.
  */
 #include "accuracy/goal/goal.h"
 
@@ -56,8 +61,10 @@ struct goal_estimator {
   bubbles given;   /* what supports and contact give of it; NULL: no energy */
   double *w;       /* [dim*n_node] of the energy; workspace, NULL: none */
   double by_given; /* -, share of the energy that z has */
-  double *edge;    /* [dim*n_edge] u in the bubbles of contact edges, m */
-  double *own;     /* [n_elem] |e_u|^2, J */
+  double *eigen;   /* [ns*n_elem] E e0 of the energy, Pa; NULL: none */
+  double *node_eigen; /* [ns*n_node] recovered; workspace */
+  double *edge;       /* [dim*n_edge] u in the bubbles of contact edges, m */
+  double *own;        /* [n_elem] |e_u|^2, J */
   int n_joint;
   joint_edge *joint;         /* [n_joint] sorted by a, b */
   unsigned char *is_joint;   /* [n_node] 1: of elements of several regions */
@@ -72,7 +79,7 @@ void goal_estimator_free(goal_estimator *e) {
     memory_free(e->stress[k]);
   RELEASE(e->all.strain, e->all.part, e->given.strain, e->given.part, e->w);
   RELEASE(e->stress, e->edge, e->own, e->on_surface, e->sigma_y, e->node_y);
-  RELEASE(e->joint, e->is_joint, e);
+  RELEASE(e->joint, e->is_joint, e->eigen, e->node_eigen, e);
 }
 
 /* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
@@ -410,12 +417,25 @@ static status new_bubbles(const goal_solution *s, int parts, bubbles *b) {
   return OK;
 }
 
+/* E e0: the stress of all strains less that of u. */
+static status new_eigen(goal_estimator *e) {
+  domain d = *e->s.d;
+  const size_t n = (size_t)d.ns * (size_t)d.mesh->n_elem;
+  if (d.eigen == NULL) return OK;
+  PASS_NEW_ALL(OF(e->eigen, n), OF(e->node_eigen, d.ns * d.mesh->n_node));
+  d.eigen = NULL;
+  domain_stress(&d, e->s.u, NULL, e->eigen);
+  for (size_t k = 0; k < n; ++k) e->eigen[k] -= e->s.sigma[k];
+  return OK;
+}
+
 static status new_fields(goal_estimator *e) {
   const goal_solution *s = &e->s;
   const int axi = s->d->kin[0] == AXISYMMETRIC;
   PASS(new_bubbles(s, s->has_flux || s->has_mean || axi, &e->all));
   if (!s->has_energy) return OK;
   PASS_NEW(e->w, s->d->mesh->dim * s->d->mesh->n_node);
+  PASS(new_eigen(e));
   return new_bubbles(s, axi, &e->given);
 }
 
@@ -520,70 +540,6 @@ double goal_estimator_flux(const goal_estimator *e, const goal_flux *f) {
   return sum;
 }
 
-/* ---- what it is worth ---------------------------------------------------- */
-
-/* HOOP, measured on a tube, is for what the elements of it next to the border
- * lack. Measured on plane scenes with known goals: the estimate is within a
- * factor of 2 in 91 % of all cases below TRUSTED, and the true value in the
- * band in 91 to 95 % whatever the share. */
-static const double TRUSTED = 0.03; /* -, share of the contact ends */
-/* What the estimate lacks by infinite stresses was up to 3.4 of their share. */
-static const double SHARP = 4.0;     /* -, band by it */
-static const double LEFT = 0.05;     /* -, of the sum of magnitudes */
-static const double BAND = 0.1;      /* -, the same */
-static const double HOOP = 0.2;      /* -, the same by the hoop strains */
-static const double ROUNDING = 1e-9; /* -, the same: elements without error */
-static const double HISTORY = 0.25;  /* -, of what the increments before add */
-
-static const struct {
-  const char *word, *text;
-} verdicts[] = {
-    [GOAL_RELIABLE] = {"reliable", "reliable"},
-    [GOAL_CONTACT_END] = {"contact_end", "not reliable: contact end"},
-    [GOAL_SUPPORT_END] = {"support_end",
-                          "not reliable: end of a support or inner corner"},
-    [GOAL_NO_SLIP] = {"no_slip", "not reliable: no node slips"},
-    [GOAL_FEW_NODES] = {"few_nodes", "not reliable: few contact nodes"},
-    [GOAL_FEW_ELEMENTS] = {"few_elements",
-                           "not reliable: few elements round the tip"},
-    [GOAL_COARSE] = {"coarse_mesh", "not reliable: few nodes inside the body"},
-    [GOAL_FRONT] = {"crack_front", "not reliable: front of a crack in space"},
-    [GOAL_CANCELS] = {"cancels", "not reliable: errors cancel"},
-    [GOAL_NO_HISTORY] = {"no_history",
-                         "without history: errors of earlier "
-                         "increments are not in it"},
-    [GOAL_NOT_COVERED] = {"not_covered", "no estimate: not covered"},
-    [GOAL_NO_PEAK] = {"no_peak",
-                      "none: the largest pressure is at an edge, "
-                      "where it may be infinite"},
-    [GOAL_NO_END] = {"no_end",
-                     "none: the contact reaches the end of its "
-                     "surface"},
-    [GOAL_NO_ZONE] = {"no_zone", "none: too few closed nodes"},
-    [GOAL_NO_FACTOR] = {"no_factor",
-                        "none: no space for an integral at the front"}};
-
-const char *goal_verdict_word(goal_verdict v) { return verdicts[v].word; }
-const char *goal_verdict_text(goal_verdict v) { return verdicts[v].text; }
-
-goal_result goal_judge(const goal_estimate *e, int n_closed) {
-  enum { FEW = 3 };
-  goal_result r = {
-      .error = e->error,
-      .band = BAND * e->magnitude + e->ends + (SHARP - 1.0) * e->sharp +
-              HISTORY * e->history + HOOP * fabs(e->hoop),
-      .ends =
-          e->product > ROUNDING * e->magnitude ? e->ends / e->product : 0.0};
-  if (n_closed > 0 && n_closed <= FEW)
-    r.verdict = GOAL_FEW_NODES;
-  else if (r.ends >= TRUSTED)
-    r.verdict =
-        2.0 * e->supports > e->ends ? GOAL_SUPPORT_END : GOAL_CONTACT_END;
-  else if (fabs(e->error) < fmax(LEFT * e->magnitude, HOOP * fabs(e->hoop)))
-    r.verdict = GOAL_CANCELS;
-  return r;
-}
-
 const double *goal_estimator_edges(const goal_estimator *e) { return e->edge; }
 
 double goal_estimator_energy(const goal_estimator *e) {
@@ -637,11 +593,14 @@ static double axi_strains(const goal_estimator *e, int elem_id, int point,
 }
 
 /* Integral of (tau - sigma(y)) : e(b) over an axisymmetric element, where hoop
- * strains and the turn vary; tau[4] of it, that of u at each point, or NULL. */
+ * strains and the turn vary; tau[4] of it, that of u and w at each point, or
+ * NULL. */
 static double axi_residual(const goal_estimator *e, int elem_id,
                            const double *y, const double *tau, int of_u,
                            const bubbles *b) {
   const domain *d = e->s.d;
+  const double *eigen =
+      of_u && e->eigen != NULL ? e->eigen + 4 * elem_id : NULL;
   const double share =
       element_weight(d, elem_id) / (3.0 * radius_of(d->mesh, elem_id));
   double sum = 0.0;
@@ -651,9 +610,11 @@ static double axi_residual(const goal_estimator *e, int elem_id,
     if (of_u) axi_strains(e, elem_id, p, e->s.u, b, of_own, of_b);
     for (int k = 0; k < 4; ++k) of_y[k] -= of_u ? of_own[k] : 0.0;
     stress_by(d, elem_id, of_y, t);
-    for (int k = 0; k < 4; ++k)
-      sum +=
-          share * r * ((tau != NULL && !of_u ? tau[k] : 0.0) - t[k]) * of_b[k];
+    for (int k = 0; k < 4; ++k) {
+      if (tau != NULL && !of_u) t[k] -= tau[k];
+      if (eigen != NULL) t[k] += 2.0 * eigen[k];
+      sum -= share * r * t[k] * of_b[k];
+    }
   }
   return sum;
 }
@@ -676,6 +637,16 @@ static double residual_of(const goal_estimator *e, int elem_id, const double *y,
   return sum * element_weight(e->s.d, elem_id);
 }
 
+/* Twice less the integral of e_z : d0 of the head of this file. */
+static double eigen_product(const goal_estimator *e, int elem_id,
+                            const space_field *u, const space_field *of_w) {
+  const space_field eigen = {e->eigen, e->node_eigen};
+  double square;
+  if (e->eigen == NULL) return 0.0;
+  return space_product(e->recovery, elem_id, of_w, &eigen, &square) -
+         space_product(e->recovery, elem_id, u, &eigen, &square);
+}
+
 /* Returns |e_u| |e_y| of the element. */
 static double add_element(goal_estimator *e, int elem_id, const double *y,
                           const double *tau, int of_u, goal_estimate *out) {
@@ -689,9 +660,10 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   const double residual = residual_of(e, elem_id, y, tau, of_u, &e->all);
   if (of_u) {
     const double given = residual_of(e, elem_id, y, tau, of_u, &e->given);
-    out->error += 0.5 * e->by_given * (given + product) +
+    const double varied = eigen_product(e, elem_id, &u, &of_y);
+    out->error += 0.5 * e->by_given * (given + product + varied) +
                   0.5 * (1.0 - e->by_given) * (residual + e->own[elem_id]);
-    out->magnitude += fabs(given);
+    out->magnitude += fabs(given) + fabs(varied);
   } else {
     out->error += residual;
   }
@@ -727,14 +699,16 @@ static double hoop_of(const goal_estimator *e, int elem_id, const double *y) {
          (mean[0] * mean[1] / mean[2] - sum) / mean[2];
 }
 
-/* e->by_given: 1 - a(y, u)/a(u, u). */
+/* e->by_given: where friction rubs 1 - integral of sigma : e(y) over twice the
+ * energy. */
 static void set_share(goal_estimator *e, const double *y) {
-  double whole = 0.0, loads = 0.0;
+  const double whole = 2.0 * domain_strain_energy(e->s.d, e->s.u);
+  e->by_given = 1.0;
+  if (!e->s.rubs) return;
+  double loads = 0.0;
   domain_internal_force(e->s.d, e->s.sigma, e->w);
-  for (int k = 0; k < e->s.d->mesh->dim * e->s.d->mesh->n_node; ++k) {
-    whole += e->w[k] * e->s.u[k];
+  for (int k = 0; k < e->s.d->mesh->dim * e->s.d->mesh->n_node; ++k)
     loads += e->w[k] * y[k];
-  }
   e->by_given = whole > 0.0 ? 1.0 - loads / whole : 0.0;
   e->by_given = fmax(0.0, fmin(1.0, e->by_given));
 }
@@ -760,6 +734,8 @@ status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
   set_adjoint(e, of_u, &y);
   for (int region = 0; region < e->n_region; ++region) {
     space_recover(e->recovery, region, e->s.d->ns, e->sigma_y, e->node_y);
+    if (of_u && e->eigen != NULL)
+      space_recover(e->recovery, region, e->s.d->ns, e->eigen, e->node_eigen);
     for (int k = 0; k < m->n_elem; ++k) {
       if (space_region(e->recovery, k) != region) continue;
       const double both = add_element(e, k, y, tau, of_u, out);
