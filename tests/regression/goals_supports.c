@@ -1,7 +1,8 @@
 /*
  * *GOAL under prescribed displacements, next to ends of supports, and in bodies
  * of two materials or temperatures, against limits of meshes, each with four
- * times the elements of the one before.
+ * times the elements of the one before; the radius of a pressure next to a
+ * plane of symmetry.
  */
 #include "scenes/mesh.h"
 #include "support/job.h"
@@ -409,9 +410,78 @@ START_TEST(materials_that_meet_in_space) {
 }
 END_TEST
 
+/* ---- pressures next to a plane of symmetry ------------------------------- */
+
+static job of_peak(const char *words, const char *gap, const char *radius,
+                   const char *hold) {
+  char on[100], cards[400];
+  snprintf(on, sizeof on, "GAP\n\"%s\"" CONTACT, gap);
+  snprintf(cards, sizeof cards,
+           "%s*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C%s\n*STEP\n*STATIC\n"
+           "*BOUNDARY\nRIGHT, 1\n%s*PRINT, CONTACT\n",
+           on, radius, hold);
+  return of_body(words, cards);
+}
+
+/* The largest pressure is inside, and the zone grows to the plane at RIGHT: the
+ * mean is the same part of it before and after. */
+START_TEST(peaks_do_not_jump_where_a_zone_reaches_a_plane) {
+  static const char *const hold[] = {"TOP, 2, 2, -0.029\n",
+                                     "TOP, 2, 2, -0.030\n"};
+  double part[2];
+  for (int k = 0; k < 2; ++k) {
+    job j =
+        of_peak("rect 40 20 1 0.5 alternate", "0.1*(x-0.75)^2", "", hold[k]);
+    dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
+    const double end = dat_at(&c, dat_row_near(&c, "x", 1.0), "pressure");
+    ck_assert_int_eq(end > 0.0, k == 1);
+    part[k] = dat_at(&t, 0, "corrected") / dat_max(&c, "pressure");
+    dat_free(&t);
+    dat_free(&c);
+    job_end(&j);
+  }
+  ck_assert_double_eq_tol(part[1], part[0], 0.003);
+}
+END_TEST
+
+/* In space the area is larger by what of it is behind each plane: as much as
+ * the pressure there is of the largest. */
+START_TEST(radius_of_a_zone_that_planes_halve) {
+  static const char words[] = "box 8 8 3 1 1 0.5";
+  static const char gap[] = "0.1*((x-0.7)^2+y^2)";
+  static const char hold[] = "FRONT, 2\nTOP, 3, 3, -0.04\n";
+  char radius[40];
+  job j = of_peak(words, gap, "", hold);
+  dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
+  const double value = dat_at(&t, 0, "value");
+  double area = 0.0, most = 0.0, at[2] = {0.0};
+  for (int i = 0; i < c.n_row; ++i) {
+    const double p = dat_at(&c, i, "pressure");
+    if (p > 0.0) area += fabs(dat_at(&c, i, "f_n")) / p;
+    most = fmax(most, p);
+    if (dat_at(&c, i, "x") > 0.999) at[0] = fmax(at[0], p);
+    if (dat_at(&c, i, "y") < 0.001) at[1] = fmax(at[1], p);
+  }
+  ck_assert(at[0] > 0.05 * most && at[0] < 0.9 * most);
+  snprintf(
+      radius, sizeof radius, ", RADIUS=%.15g",
+      0.5 * sqrt(area / M_PI * (1.0 + at[0] / most) * (1.0 + at[1] / most)));
+  dat_free(&t);
+  dat_free(&c);
+  job_end(&j);
+  j = of_peak(words, gap, radius, hold);
+  t = job_table(&j, "GOALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "value"), value, 1e-8 * value);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           zeros_are_not_exact, energies_by_loads_and_by_supports,
           ends_of_supports_are_not_reliable, ends_of_supports_in_space,
           materials_that_meet_at_a_free_side, materials_that_meet_smoothly,
           temperatures_that_do_not_meet, energies_by_loads_and_by_temperatures,
-          materials_that_meet_in_space)
+          materials_that_meet_in_space,
+          peaks_do_not_jump_where_a_zone_reaches_a_plane,
+          radius_of_a_zone_that_planes_halve)
