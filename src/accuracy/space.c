@@ -139,7 +139,8 @@ typedef struct fit_weights {
 struct space_recovery {
   const domain *d;
   int n_section, n_region;
-  int *region;        /* [n_section] sections of one material have one */
+  int *region;        /* [n_elem] elements of one material, and of one zone of
+                         temperatures, have one */
   double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E) of the estimate */
   int *start, *elem;  /* [n_node+1], elements round each node */
   int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
@@ -164,17 +165,36 @@ static int same_material(const domain *d, int a, int b) {
                 size * sizeof *d->E) == 0;
 }
 
-static void find_regions(space_recovery *s) {
+/* of[n_section]: the first section of the same material. */
+static void find_materials(const space_recovery *s, int *of) {
   const int *origin = s->d->origin;
   for (int i = 0; i < s->n_section; ++i) {
     int first = 0;
     if (origin != NULL && origin[i] < i) {
-      s->region[i] = s->region[origin[i]];
+      of[i] = of[origin[i]];
       continue;
     }
     while (first < i && !same_material(s->d, first, i)) ++first;
-    s->region[i] = first < i ? s->region[first] : s->n_region++;
+    of[i] = first < i ? of[first] : i;
   }
+}
+
+static status find_regions(space_recovery *s) {
+  const domain *d = s->d;
+  OWNED int *material = NULL, *region = NULL;
+  int n_zone = 1;
+  for (int k = 0; k < d->mesh->n_elem && d->zone != NULL; ++k)
+    if (d->zone[k] >= n_zone) n_zone = d->zone[k] + 1;
+  PASS_NEW_ALL(OF(material, s->n_section),
+               OF(region, (size_t)s->n_section * (size_t)n_zone));
+  find_materials(s, material);
+  for (int k = 0; k < d->mesh->n_elem; ++k) {
+    int *at = &region[material[d->section_id[k]] * n_zone +
+                      (d->zone != NULL ? d->zone[k] : 0)];
+    if (*at == 0) *at = ++s->n_region;
+    s->region[k] = *at - 1;
+  }
+  return OK;
 }
 
 status space_compliance(const domain *d, int section, double *S) {
@@ -224,7 +244,7 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   s->d = d;
   for (int k = 0; k < m->n_elem; ++k)
     if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;
-  PASS_NEW_ALL(OF(s->region, s->n_section),
+  PASS_NEW_ALL(OF(s->region, m->n_elem),
                OF(s->compliance, d->ns * d->ns * s->n_section),
                OF(s->start, m->n_node + 1),
                OF(s->elem, (size_t)(m->dim + 1) * (size_t)m->n_elem),
@@ -234,7 +254,7 @@ status space_recovery_new(const domain *d, space_recovery **out) {
                OF(s->centroid, m->dim * m->n_elem), OF(s->measure, m->n_elem));
   find_centroids(m, s->centroid);
   for (int k = 0; k < m->n_elem; ++k) s->measure[k] = element_weight(d, k);
-  find_regions(s);
+  PASS(find_regions(s));
   list_neighbours(s);
   return OK;
 }
@@ -254,8 +274,7 @@ void space_recovery_free(space_recovery *s) {
 static int add_ring(space_recovery *s, int node, int region, int n) {
   for (int k = s->start[node]; k < s->start[node + 1]; ++k) {
     int e = s->elem[k];
-    if (s->stamp[e] == s->last || s->region[s->d->section_id[e]] != region)
-      continue;
+    if (s->stamp[e] == s->last || s->region[e] != region) continue;
     s->stamp[e] = s->last;
     s->patch[n++] = e;
   }
@@ -444,7 +463,7 @@ status space_keep(space_recovery *s) {
 int space_regions(const space_recovery *s) { return s->n_region; }
 
 int space_region(const space_recovery *s, int elem_id) {
-  return s->region[s->d->section_id[elem_id]];
+  return s->region[elem_id];
 }
 
 void space_recover(space_recovery *s, int region, int nq, const double *q,

@@ -40,6 +40,8 @@ typedef struct domain {
   const int *section_id;          /* [n_elem] */
   const int *origin;              /* [n_section] one it is of one material with,
                                      itself or before it; NULL: not known */
+  const int *zone;                /* [n_elem] from 0: thermal strains may jump
+                                     where it changes; NULL: nowhere */
   const kinematics *kin;          /* [n_section] */
   const double *thickness;        /* [n_section] m; 1 in 3-D and axisymmetric */
   const double *E;                /* [ns*ns*n_section] Pa */

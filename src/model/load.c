@@ -324,6 +324,101 @@ status load_temperature(const model *m, const mesh *msh, const step *s,
   return OK;
 }
 
+static int same_table(const value_table *a, const value_table *b) {
+  if (a->n != b->n || a->formula != b->formula) return 0;
+  for (int k = 0; k < a->n; ++k)
+    if (a->at[k] != b->at[k] || a->value[k] != b->value[k]) return 0;
+  return 1;
+}
+
+static int same_expansion(const expansion *a, const expansion *b) {
+  if (!a->given || !b->given) return a->given == b->given;
+  if (a->type != b->type || a->zero != b->zero) return 0;
+  for (int c = 0; c < 3; ++c)
+    if (!same_table(&a->alpha[c], &b->alpha[c])) return 0;
+  return 1;
+}
+
+/* The first section that expands as section i. */
+static int first_expansion(const model *m, int i) {
+  int k = 0;
+  while (!same_expansion(&m->materials[m->sections[k].material_id].expand,
+                         &m->materials[m->sections[i].material_id].expand))
+    ++k;
+  return k;
+}
+
+static int same_quantity(const quantity *a, const quantity *b) {
+  return a->formula == b->formula && a->factor == b->factor &&
+         (a->formula != NULL || a->number == b->number);
+}
+
+/* last[n_elem]: from 1 the cards of step s that an element has its temperature
+ * from, those of equal numbers as one; 0: none. */
+static void cards_of_step(const mesh *msh, const step *s, int *last) {
+  memset(last, 0, (size_t)msh->n_elem * sizeof *last);
+  for (int i = 0; i < s->loads.n; ++i) {
+    const load *l = &s->loads.item[i];
+    if (l->kind != LOAD_TEMPERATURE) continue;
+    const mesh_group *g = &msh->group[l->group_id];
+    int first = 0;
+    for (; first < i; ++first) {
+      const load *o = &s->loads.item[first];
+      if (o->kind == l->kind && o->removed == l->removed &&
+          o->field == l->field && o->run == l->run &&
+          same_quantity(&o->value, &l->value))
+        break;
+    }
+    for (int k = 0; k < g->n_item; ++k) last[g->item_id[k]] = first + 1;
+  }
+}
+
+/* The same of the initial conditions. */
+static void initial_cards(const model *m, const mesh *msh, int *last) {
+  memset(last, 0, (size_t)msh->n_elem * sizeof *last);
+  for (int i = 0; i < m->n.initial; ++i) {
+    const initial *c = &m->initial.lines[i];
+    if (c->type != INITIAL_TEMPERATURE) continue;
+    const mesh_group *g = &msh->group[c->group_id];
+    int first = 0;
+    while (m->initial.lines[first].type != c->type ||
+           !same_quantity(&m->initial.lines[first].value, &c->value))
+      ++first;
+    for (int k = 0; k < g->n_item; ++k) last[g->item_id[k]] = first + 1;
+  }
+}
+
+/* zone[n] from 0 becomes that of the pair of it and by[n], below n_by. */
+static status split_zones(int n, const int *by, int n_by, int *zone) {
+  int n_zone = 0, n_new = 0;
+  OWNED int *of = NULL;
+  for (int k = 0; k < n; ++k)
+    if (zone[k] >= n_zone) n_zone = zone[k] + 1;
+  PASS_NEW(of, (size_t)n_zone * (size_t)n_by);
+  for (int k = 0; k < n; ++k) {
+    int *at = &of[(size_t)n_by * (size_t)zone[k] + (size_t)by[k]];
+    if (*at == 0) *at = ++n_new;
+    zone[k] = *at - 1;
+  }
+  return OK;
+}
+
+status load_temperature_zones(const model *m, const mesh *msh, int *zone) {
+  OWNED int *by = NULL;
+  PASS_NEW(by, msh->n_elem);
+  memset(zone, 0, (size_t)msh->n_elem * sizeof *zone);
+  for (int k = 0; k < msh->n_elem; ++k)
+    by[k] = first_expansion(m, m->elem_section[k]);
+  PASS(split_zones(msh->n_elem, by, m->n.section, zone));
+  initial_cards(m, msh, by);
+  PASS(split_zones(msh->n_elem, by, m->n.initial + 1, zone));
+  for (int i = 0; i < m->n.step; ++i) {
+    cards_of_step(msh, &m->steps[i], by);
+    PASS(split_zones(msh->n_elem, by, m->steps[i].loads.n + 1, zone));
+  }
+  return OK;
+}
+
 void load_fixed(const mesh *msh, const step *s, unsigned char *fixed) {
   memset(fixed, 0, (size_t)msh->dim * (size_t)msh->n_node);
   for (int i = 0; i < s->loads.n; ++i) {

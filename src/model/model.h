@@ -602,5 +602,9 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T);
  * the first step; errors as above. */
 status load_temperature(const model *m, const mesh *msh, const step *s,
                         double t, const double *T0, double *T);
+/* zone[n_elem] from 0: within one all elements expand alike and have their
+ * temperatures from the same cards, or equal numbers, in all steps; between two
+ * of them temperature and thermal strain may jump. ERR_MEMORY. */
+status load_temperature_zones(const model *m, const mesh *msh, int *zone);
 /* fixed[dim*n_node] = 1 where a *BOUNDARY of the step holds the component. */
 void load_fixed(const mesh *msh, const step *s, unsigned char *fixed);

@@ -141,6 +141,7 @@ typedef struct goal_solution {
   int has_flux;            /* 1: some J has a flux */
   int has_mean;            /* 1: some J may be a mean of displacements */
   int has_energy;          /* 1: some J is the energy */
+  int rubs;                /* 1: nodes slip whose friction follows pressures */
 } goal_solution;
 
 typedef struct goal_estimator goal_estimator;

@@ -9,13 +9,23 @@
 #include "run/run.h"
 #include "run/column_row.h"
 
-/* *T: [n_elem] before the first step. */
-static status temperatures_new(run *r, void **T) {
-  double *own = NULL;
-  PASS_NEW(own, r->msh->n_elem);
-  *T = own;
-  r->strains.temperature0 = own;
-  return load_temperature_initial(r->m, r->msh, own);
+typedef struct thermal_state {
+  double *T0; /* [n_elem] before the first step */
+  int *zone;  /* [n_elem] of the domain */
+} thermal_state;
+
+static status temperatures_new(run *r, void **self) {
+  thermal_state *own = *self;
+  PASS_NEW_ALL(OF(own->T0, r->msh->n_elem), OF(own->zone, r->msh->n_elem));
+  r->strains.temperature0 = own->T0;
+  r->body.d.zone = own->zone;
+  PASS(load_temperature_zones(r->m, r->msh, own->zone));
+  return load_temperature_initial(r->m, r->msh, own->T0);
+}
+
+static void release(void *self) {
+  thermal_state *own = self;
+  RELEASE(own->T0, own->zone);
 }
 
 static int expands(const model *m, int elem_id) {
@@ -54,7 +64,8 @@ static void strain(run *r, const double *T0) {
 }
 
 /* Temperatures, moduli and thermal strains of r->now at t. */
-static status heat(run *r, void *T0, double t) {
+static status heat(run *r, void *self, double t) {
+  const double *T0 = ((const thermal_state *)self)->T0;
   int changed = 0;
   if (r->strains.eigen.n == 0) return OK;
   PASS(load_temperature(r->m, r->msh, r->step, t, T0, r->now.temperature));
@@ -104,7 +115,7 @@ static const column columns[] = {
 const effect_ops thermal_effect = {
   .name = "thermal strain", .bit = EFFECT_BIT_THERMAL,
   .required = requires_thermal, .expected = expected, .own = STAGE_THERMAL,
-  .far = 1, .strains = strains, .of_state = 1,
-  .on = {.create = temperatures_new, .load = heat, .release = memory_free},
+  .far = 1, .strains = strains, .of_state = 1, .size = sizeof(thermal_state),
+  .on = {.create = temperatures_new, .load = heat, .release = release},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -182,12 +182,20 @@ static int has_mean(const model *m) {
   return any;
 }
 
+/* 1: nodes slip, and their friction follows the pressures. */
+static int rubs(const run *r) {
+  int any = 0;
+  for (int i = 0; i < r->nodes.n && r->problem.B != NULL; ++i)
+    any |= r->result.contact[i] == CONTACT_SLIP && r->result.g[i] > 0.0;
+  return any;
+}
+
 static status prepare(run *r, goal_state *own, shared *s) {
   space_recovery *recovery;
   const int n = r->nodes.n_row;
-  PASS(goal_surface_new(r, &own->border, &s->surface));
-  set_sticks(r, &own->before, &s->surface);
   PASS(recover(r, own, &recovery));
+  PASS(goal_surface_new(r, &own->border, recovery, &s->surface));
+  set_sticks(r, &own->before, &s->surface);
   const goal_solution found = {.d = &r->body.d,
                                .u = r->now.u,
                                .sigma = r->result.stress,
@@ -201,7 +209,8 @@ static status prepare(run *r, goal_state *own, shared *s) {
                                .given = s->surface.given,
                                .has_flux = has_goal_of(r->m, GOAL_SIF),
                                .has_mean = has_mean(r->m),
-                               .has_energy = has_goal_of(r->m, GOAL_ENERGY)};
+                               .has_energy = has_goal_of(r->m, GOAL_ENERGY),
+                               .rubs = rubs(r)};
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));

@@ -103,12 +103,13 @@ typedef struct goal_surface {
 } goal_surface;
 /* boundary.c: s->bent. */
 status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
-/* support.c: s->given, then what supports add to s->ends. */
+/* support.c: s->given, then what supports and interfaces between the regions
+ * "of" add to s->ends. */
 status goal_add_given(const run *r, goal_surface *s);
 status goal_mark_supports(const run *r, const goal_border *border,
-                          goal_surface *s);
+                          const space_recovery *of, goal_surface *s);
 status goal_surface_new(const run *r, const goal_border *border,
-                        goal_surface *s);
+                        const space_recovery *of, goal_surface *s);
 void goal_surface_free(goal_surface *s); /* accepts all-zero */
 /* Work of the tractions of closed edges on a field y[dim*n_node] along the
  * surface less that of their nodes. */

@@ -349,11 +349,23 @@ static void set_mirrors(const run *r, const line *l, weight *w) {
         goal_is_mirrored(r, l->node[end[k]]) ? l->s[end[k]] : HUGE_VAL;
 }
 
+/* Behind a plane of symmetry a zone goes on as far as the pressure of its node
+ * there is the largest, and not where it is zero, as if it had opened; -. */
+static double part_behind(const run *r, int q, double largest) {
+  return largest > 0.0 ? fmax(0.0, fmin(1.0, pressure_of(r, q) / largest))
+                       : 0.0;
+}
+
 /* Half the half width of a zone, m. */
 static double half_of(const run *r, const line *l, int first, int last) {
-  const int half =
-      goal_is_mirrored(r, l->node[first]) || goal_is_mirrored(r, l->node[last]);
-  return (half ? 0.5 : 0.25) * (l->s[last] - l->s[first]);
+  const int end[2] = {l->node[first], l->node[last]};
+  double largest = 0.0, behind = 0.0;
+  for (int k = first; k <= last; ++k)
+    largest = fmax(largest, pressure_of(r, l->node[k]));
+  for (int k = 0; k < 2; ++k)
+    if (goal_is_mirrored(r, end[k]))
+      behind = fmax(behind, part_behind(r, end[k], largest));
+  return 0.25 * (1.0 + behind) * (l->s[last] - l->s[first]);
 }
 
 /* Near the axis the mean is over a disc, which has its middle there. */
@@ -449,16 +461,20 @@ typedef struct rim {
   double longest; /* side of a face, m */
 } rim;
 
-/* The planes of symmetry that a side of the border lies in; 0: none. */
-static int add_planes(const run *r, const side *e, weight *w) {
+/* 1: a side of the border lies in a plane of symmetry normal to axis c. */
+static int lies_in_plane(const run *r, const side *e, int c) {
   const mesh *m = r->msh;
   const unsigned char *fixed = r->body.d.fixed;
+  const int i = 3 * e->v[0] + c, j = 3 * e->v[1] + c;
+  return fixed[i] && fixed[j] && fabs(m->x[i] - m->x[j]) <= 1e-9 * m->size;
+}
+
+/* The planes of symmetry that a side of the border lies in; 0: none. */
+static int add_planes(const run *r, const side *e, weight *w) {
   int any = 0;
   for (int c = 0; c < 3; ++c) {
-    const int i = 3 * e->v[0] + c, j = 3 * e->v[1] + c;
-    if (!fixed[i] || !fixed[j] || fabs(m->x[i] - m->x[j]) > 1e-9 * m->size)
-      continue;
-    w->plane[c] = m->x[i];
+    if (!lies_in_plane(r, e, c)) continue;
+    w->plane[c] = r->msh->x[3 * e->v[0] + c];
     any = 1;
   }
   return any;
@@ -500,22 +516,40 @@ static status look_round(const run *r, const goal_card *g, double radius,
   return OK;
 }
 
+/* behind[3]: part_behind of the planes of symmetry normal to each axis. */
+static status parts_behind(const run *r, const goal_card *g, double largest,
+                           double *behind) {
+  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  OWNED side *e = NULL;
+  OWNED int *where = NULL;
+  PASS(sides_of(r->msh, of, &e));
+  PASS(goal_places(r, &where));
+  for (int k = 0; k < 3 * of->n_item; ++k)
+    for (int c = 0; c < 3; ++c) {
+      if (!lies_in_plane(r, e + k, c)) continue;
+      for (int i = 0; i < 2; ++i)
+        if (where[e[k].v[i]] >= 0)
+          behind[c] =
+              fmax(behind[c], part_behind(r, where[e[k].v[i]], largest));
+    }
+  return OK;
+}
+
 /* Half the radius of a disc of the area that is closed, m. */
 static status set_half_of_disc(const run *r, const goal_card *g, weight *w,
                                goal_form *f) {
   int closed = 0;
-  double area = 0.0;
-  rim border;
+  double area = 0.0, largest = 0.0, behind[3] = {0.0};
   for (int q = 0; q < r->nodes.n; ++q)
     if (is_on(r, g, q) && r->result.contact[q] != CONTACT_OPEN) {
       area += r->surface->area[q];
+      largest = fmax(largest, pressure_of(r, q));
       ++closed;
     }
   if (closed < 6) f->why = GOAL_NO_ZONE;
+  PASS(parts_behind(r, g, largest, behind));
   w->radius = 0.5 * sqrt(area / PI);
-  PASS(look_round(r, g, w->radius, w, &border));
-  for (int c = 0; c < 3; ++c)
-    if (isfinite(w->plane[c])) w->radius *= sqrt(2.0);
+  for (int c = 0; c < 3; ++c) w->radius *= sqrt(1.0 + behind[c]);
   return OK;
 }
 
@@ -576,6 +610,7 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
   w->at = on_disc;
   w->radius = g->radius;
   if (!(g->radius > 0.0)) PASS(set_half_of_disc(r, g, w, f));
+  PASS(look_round(r, g, w->radius, w, &border));
   if (g->n_point > 0)
     memcpy(w->origin, g->point[0], sizeof w->origin);
   else

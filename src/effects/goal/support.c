@@ -5,6 +5,10 @@
  * in space at an edge, and what its two faces there are (Williams 1952, J Appl
  * Mech 19, 526-528): between the clamp and a free face from 45 degrees on,
  * between two of a kind from 180, else from 90.
+ *
+ * The same where two materials, or zones of temperature, meet at the border
+ * (Bogy 1971, J Appl Mech 38, 377-386), unless it is a plane of symmetry that
+ * their interface is normal to, and where their interface turns within.
  */
 #include "base/memory.h"
 #include "base/number.h"
@@ -105,6 +109,31 @@ status goal_add_given(const run *r, goal_surface *s) {
   return OK;
 }
 
+/* ---- materials that meet ------------------------------------------------- */
+
+/* Regions at a node in the plane. */
+typedef struct joint {
+  int n, first, second; /* how many, of three or more 3; from 1 */
+  double angle;         /* of the first, rad */
+} joint;
+
+static void add_region(int region, double angle, joint *j) {
+  if (j->n == 0) j->first = region;
+  if (region == j->first) {
+    j->angle += angle;
+    j->n = j->n == 0 ? 1 : j->n;
+    return;
+  }
+  if (j->n == 1) j->second = region;
+  j->n = region == j->second ? (j->n == 1 ? 2 : j->n) : 3;
+}
+
+/* 1: stresses are infinite where regions meet: all of the body or its half are
+ * in the angle "whole". */
+static int is_bent(int n, double angle, double whole) {
+  return n > 2 || fabs(angle - 0.5 * whole) > 2.0 * SLACK;
+}
+
 /* ---- where they end, in the plane ---------------------------------------- */
 
 typedef enum { FREE, CLAMPED, ROLLER, ACROSS, SLANTED } kind;
@@ -191,6 +220,15 @@ static int is_singular(const corner *c) {
   return c->angle > (a == FREE && b == CLAMPED ? PI / 4 : PI / 2 + SLACK);
 }
 
+/* 1: the same by the regions that meet at a node. */
+static int is_singular_joint(const corner *c, const joint *j) {
+  const int mirrored = c->n == 2 && c->of[0] == ROLLER && c->of[1] == ROLLER &&
+                       fabs(c->angle - PI) < SLACK;
+  if (j->n < 2) return 0;
+  if (c->n == 0) return is_bent(j->n, j->angle, 2.0 * PI);
+  return !mirrored || is_bent(j->n, j->angle, PI);
+}
+
 /* 1: a support holds the node and no edge at it. */
 static int is_point(const unsigned char *fixed, const corner *c) {
   return (fixed[0] && !c->held[0]) || (fixed[1] && !c->held[1]);
@@ -201,6 +239,7 @@ static int is_point(const unsigned char *fixed, const corner *c) {
 /* An edge of a face of the border; a < b. */
 typedef struct rim {
   int a, b, other; /* the third node of the face */
+  int region;
   kind of;
   int support;
   double n[3]; /* outward normal */
@@ -238,7 +277,7 @@ static kind side_contact(const goal_surface *s, const int *v) {
 
 /* The three edges of a face; held[3*n_node] += what it holds. */
 static void add_side(const run *r, const goal_surface *s, const int *v,
-                     unsigned char *held, rim *e) {
+                     int region, unsigned char *held, rim *e) {
   const unsigned char *fixed = r->body.d.fixed;
   int n_held = 0, component = 0;
   double n[3];
@@ -256,6 +295,7 @@ static void add_side(const run *r, const goal_surface *s, const int *v,
         .a = of.a,
         .b = of.b,
         .other = v[k],
+        .region = region,
         .of = n_held > 0 ? side_kind(n, n_held, component) : side_contact(s, v),
         .support = n_held > 0,
         .n = {n[0], n[1], n[2]}};
@@ -275,6 +315,8 @@ static int is_singular_edge(const mesh *m, const rim *e, int count) {
     if (e[k].support) at.support = 1;
     if (!e[k].support && e[k].of != FREE) at.contact = 1;
   }
+  if (e[0].region != e[1].region)
+    return at.of[0] != ROLLER || at.of[1] != ROLLER || turn > SLACK;
   return is_singular(&at);
 }
 
@@ -290,7 +332,77 @@ static void mark_edges(const mesh *m, rim *e, int n, goal_surface *s) {
   }
 }
 
+/* An edge of an element between nodes where regions meet; a < b. */
+typedef struct inner {
+  int a, b, region;
+  double angle; /* rad */
+} inner;
+
+/* Between the two faces of an element at its edge from corner i to k. */
+static double angle_between(const mesh *m, const int *v, int i, int k) {
+  double d[3], away[2][3], square = 0.0;
+  int n = 0;
+  for (int c = 0; c < 3; ++c) d[c] = m->x[3 * v[k] + c] - m->x[3 * v[i] + c];
+  square = dot(3, d, d);
+  for (int l = 0; l < 4; ++l) {
+    if (l == i || l == k) continue;
+    for (int c = 0; c < 3; ++c)
+      away[n][c] = m->x[3 * v[l] + c] - m->x[3 * v[i] + c];
+    const double along = dot(3, away[n], d) / square;
+    for (int c = 0; c < 3; ++c) away[n][c] -= along * d[c];
+    ++n;
+  }
+  return acos(fmax(-1.0, fmin(1.0, dot(3, away[0], away[1]) /
+                                       sqrt(dot(3, away[0], away[0]) *
+                                            dot(3, away[1], away[1])))));
+}
+
+/* Writes them, or counts them. */
+static int inner_edges(const mesh *m, const space_recovery *of, const joint *at,
+                       inner *to) {
+  int n = 0;
+  for (int e = 0; e < m->n_elem; ++e) {
+    const int *v = m->elem + 4 * e;
+    for (int i = 0; i < 3; ++i)
+      for (int k = i + 1; k < 4; ++k) {
+        if (at[v[i]].n < 2 || at[v[k]].n < 2) continue;
+        const edge is = between(v[i], v[k]);
+        if (to != NULL)
+          to[n] = (inner){is.a, is.b, space_region(of, e) + 1,
+                          angle_between(m, v, i, k)};
+        ++n;
+      }
+  }
+  return n;
+}
+
+/* Where the interface turns within the body. */
+static status mark_inner(const mesh *m, const space_recovery *of,
+                         const joint *at, unsigned char *ends) {
+  const int n = inner_edges(m, of, at, NULL);
+  OWNED inner *e = NULL;
+  if (n == 0) return OK;
+  PASS_NEW(e, n);
+  inner_edges(m, of, at, e);
+  qsort(e, (size_t)n, sizeof *e, number_pair_order);
+  for (int i = 0, last; i < n; i = last) {
+    joint j = {.n = 0};
+    double whole = 0.0;
+    for (last = i; last < n && number_pair_order(e + i, e + last) == 0;
+         ++last) {
+      add_region(e[last].region, e[last].angle, &j);
+      whole += e[last].angle;
+    }
+    if (j.n < 2 || whole < 2.0 * PI - SLACK || !is_bent(j.n, j.angle, whole))
+      continue;
+    ends[e[i].a] |= GOAL_END_OF_SUPPORT;
+    ends[e[i].b] |= GOAL_END_OF_SUPPORT;
+  }
+  return OK;
+}
+
 static status mark_space(const run *r, const goal_border *border,
+                         const space_recovery *of, const joint *at,
                          goal_surface *s) {
   const mesh *m = r->msh;
   OWNED rim *e = NULL;
@@ -299,16 +411,16 @@ static status mark_space(const run *r, const goal_border *border,
   for (int k = 0; k < border->n; ++k) {
     int v[3];
     mesh_side_nodes(m, border->side[k], v);
-    add_side(r, s, v, held, e + 3 * k);
+    add_side(r, s, v, space_region(of, border->side[k] / 4), held, e + 3 * k);
   }
   mark_edges(m, e, 3 * border->n, s);
   for (int k = 0; k < 3 * m->n_node; ++k)
     if (r->body.d.fixed[k] && !held[k]) s->ends[k / 3] |= GOAL_END_OF_SUPPORT;
-  return OK;
+  return mark_inner(m, of, at, s->ends);
 }
 
 static status mark_plane(const run *r, const goal_border *border,
-                         goal_surface *s) {
+                         const joint *at, goal_surface *s) {
   const mesh *m = r->msh;
   OWNED corner *c = NULL;
   PASS_NEW(c, m->n_node);
@@ -321,7 +433,8 @@ static status mark_plane(const run *r, const goal_border *border,
   }
   for (int i = 0; i < m->n_node; ++i)
     if ((s->front == NULL || !s->front[i]) &&
-        (is_singular(&c[i]) || is_point(r->body.d.fixed + 2 * i, &c[i])))
+        (is_singular(&c[i]) || is_point(r->body.d.fixed + 2 * i, &c[i]) ||
+         is_singular_joint(&c[i], &at[i])))
       s->ends[i] |= GOAL_END_OF_SUPPORT;
   return OK;
 }
@@ -338,6 +451,15 @@ status goal_border_new(const mesh *m, goal_border *b) {
 void goal_border_free(goal_border *b) { RELEASE(b->side, b->angle); }
 
 status goal_mark_supports(const run *r, const goal_border *border,
-                          goal_surface *s) {
-  return r->msh->dim == 2 ? mark_plane(r, border, s) : mark_space(r, border, s);
+                          const space_recovery *of, goal_surface *s) {
+  const mesh *m = r->msh;
+  const int n = m->dim + 1;
+  OWNED joint *at = NULL;
+  PASS_NEW(at, m->n_node);
+  for (int k = 0; k < n * m->n_elem; ++k)
+    add_region(space_region(of, k / n) + 1,
+               m->dim == 2 ? angle_at(m, m->elem + k - k % n, k % n) : 0.0,
+               &at[m->elem[k]]);
+  return m->dim == 2 ? mark_plane(r, border, at, s)
+                     : mark_space(r, border, of, at, s);
 }

@@ -218,7 +218,7 @@ static void add_group(const run *r, const goal_ring *rings, const mesh_group *g,
 }
 
 status goal_surface_new(const run *r, const goal_border *border,
-                        goal_surface *s) {
+                        const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
   OWNED int *where = NULL, *seen = NULL;
   ENDS_BY(goal_ring_free) goal_ring rings = {0};
@@ -245,7 +245,7 @@ status goal_surface_new(const run *r, const goal_border *border,
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
   PASS(goal_add_bent(r, &rings, s));
   PASS(goal_add_given(r, s));
-  return goal_mark_supports(r, border, s);
+  return goal_mark_supports(r, border, of, s);
 }
 
 /* Direction v[dim] of the traction of contact node q along its normal, or along
