@@ -126,7 +126,7 @@ END_TEST
 
 /* ---- mirror images ------------------------------------------------------- */
 
-enum { GOALS = 19 };
+enum { GOALS = 18 };
 
 /* The verdicts of all goals, one after the other. */
 static void take_verdicts(const job *j, char *text, size_t size) {
@@ -159,19 +159,16 @@ static void mirrored(int image, double of[GOALS][4], char verdicts[999]) {
   ck_assert(scene_mesh_write(f, "box 6 6 2 1 1 0.5", &change, &number));
   fclose(f);
   free(number);
-  for (int i = 0; i < GOALS - 3; ++i) {
+  for (int i = 0; i < GOALS - 2; ++i) {
     const double x = 0.26 * (i % 4) + 0.05, y = 0.95 - 0.26 * (i / 4);
     snprintf(goals + strlen(goals), sizeof goals - strlen(goals),
              "*GOAL, NAME=P%d, QUANTITY=PRESSURE, CONTACT=C, RADIUS=%g\n"
              "%g, %g, 0.\n",
              i, 0.24 + 0.012 * i, flip[0] ? 1 - x : x, flip[1] ? 1 - y : y);
   }
-  /* half the radius of a disc of which a quarter is the foot, all of it closed
-   */
-  for (int i = 0; i < 2; ++i)
-    snprintf(goals + strlen(goals), sizeof goals - strlen(goals),
-             "*GOAL, NAME=H%d, QUANTITY=PRESSURE, CONTACT=C%s\n%d, %d, 0.\n", i,
-             i == 0 ? "" : ", RADIUS=\"1/sqrt(pi)\"", flip[0], !flip[1]);
+  snprintf(goals + strlen(goals), sizeof goals - strlen(goals),
+           "*GOAL, NAME=H, QUANTITY=PRESSURE, CONTACT=C\n%d, %d, 0.\n", flip[0],
+           !flip[1]);
   job_write(&j, "mirrored.inp",
             "*MESH, FILE=mirrored.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
             "1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -207,8 +204,6 @@ START_TEST(goals_of_mirror_images_are_the_same) {
     }
   }
   ck_assert_int_ge(known, GOALS / 3);
-  for (int k = 0; k < 3; ++k)
-    ck_assert_double_eq_tol(of[0][GOALS - 3][k], of[0][GOALS - 2][k], 1e-12);
 }
 END_TEST
 
