@@ -128,7 +128,9 @@ typedef struct shared {
   goal_form form;
   double *y;                    /* [dim*n_node] */
   double *j, *more, *psi, *y_c; /* [n_row] */
-  double *lacks;                /* [dim*n_node] forces of boundary.c, N */
+  double *lacks;                /* [dim*n_node] forces of boundary.c,
+                                   heat.c, N */
+  double *rest;                 /* [3*n_elem] of goal_add_thermal, or NULL */
   double *moved; /* [n_row] errors of the positions of stick, m */
 } shared;
 
@@ -137,7 +139,7 @@ static void shared_free(shared *s) {
   goal_estimator_free(s->estimator);
   contact_adjoint_free(s->adjoint);
   goal_form_free(&s->form);
-  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->moved);
+  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->rest, s->moved);
 }
 
 /* That of the error of the mesh, or its own. */
@@ -219,6 +221,8 @@ static status prepare(run *r, goal_state *own, shared *s) {
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));
+  PASS(goal_add_thermal(r, s->lacks, &s->rest));
+  s->form.rest = s->rest;
   PASS_NEW_REALS(n, &s->j, &s->more, &s->psi, &s->y_c, &s->moved);
   if (n == 0) return OK;
   PASS(set_moved(r, own, s));

@@ -227,6 +227,8 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   for (int k = 0; k < of->n_item; ++k) {
     const size_t e = (size_t)of->item_id[k];
     f->curved += beyond[e] / whole * (r->result.stress[ns * e + c] - f->value);
+    if (f->rest != NULL)
+      f->curved -= goal_thermal_rest(r, (int)e, f->rest, (int)c) / whole;
   }
   f->has_tau = 1;
   return OK;
@@ -251,8 +253,12 @@ static status set_energy(const run *r, const goal_card *g, goal_form *f) {
   (void)g;
   PASS_NEW(beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
-  for (int e = 0; e < r->msh->n_elem; ++e)
+  for (int e = 0; e < r->msh->n_elem; ++e) {
     if (beyond[e] != 0.0) f->curved += beyond[e] * energy_density(r, e);
+    if (f->rest != NULL)
+      f->curved -=
+          cblas_ddot(3, r->result.stress + r->m->ns * e, 1, f->rest + 3 * e, 1);
+  }
   f->value = r->now.energy.strain;
   f->has_tau = f->is_square = 1;
   memcpy(f->tau, r->result.stress,
