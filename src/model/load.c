@@ -247,24 +247,27 @@ status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
   return OK;
 }
 
-/* Mean of a quantity at the nodes of an element, times a nodal field
- * times[n_node] if it is not NULL; it is P1 like the rest. */
-static double elem_mean(const quantity *q, const double *times, const mesh *msh,
-                        int elem_id, double t) {
-  int n = msh->dim + 1;
-  double sum = 0.0;
+/* A quantity in an element times a nodal field times[n_node] if it is not NULL:
+ * its value at the point of barycentric coordinates b[dim+1], with that of the
+ * field, which is P1; b NULL: the mean of its nodes. */
+static double elem_value(const quantity *q, const double *times,
+                         const mesh *msh, int elem_id, const double *b,
+                         double t) {
+  const int n = msh->dim + 1, *v = msh->elem + n * elem_id;
+  double sum = 0.0, x[3], at[3] = {0.0}, scale = 0.0;
   for (int a = 0; a < n; ++a) {
-    double x[3];
-    int node = msh->elem[(size_t)n * (size_t)elem_id + (size_t)a];
-    node_position(msh, node, x);
-    sum += quantity_value(q, x, t) * (times != NULL ? times[node] : 1.0);
+    const double factor = times != NULL ? times[v[a]] : 1.0;
+    node_position(msh, v[a], x);
+    if (b == NULL) sum += quantity_value(q, x, t) * factor / n;
+    for (int c = 0; c < 3 && b != NULL; ++c) at[c] += b[a] * x[c];
+    scale += b != NULL ? b[a] * factor : 0.0;
   }
-  return sum / n;
+  return b != NULL ? quantity_value(q, at, t) * scale : sum;
 }
 
 status load_initial(const model *m, const mesh *msh, const initial *c,
                     int elem_id, double *value) {
-  *value = elem_mean(&c->value, NULL, msh, elem_id, 0.0);
+  *value = elem_value(&c->value, NULL, msh, elem_id, NULL, 0.0);
   if (isfinite(*value)) return OK;
   message_add(m->log, P2041, &c->at,
               "the initial value in element %zu is not a finite number",
@@ -279,6 +282,19 @@ static status refuse_temperature(const model *m, const mesh *msh,
               "the temperature of element %zu is not a finite number",
               msh->elem_no[elem_id]);
   RAISE(ERR_DECK, "%s:%d: a temperature is not finite", at->file, at->line_no);
+}
+
+void load_temperature_initial_at(const model *m, const mesh *msh,
+                                 const double *b, double *T) {
+  memset(T, 0, (size_t)msh->n_elem * sizeof *T);
+  for (int i = 0; i < m->n.initial; ++i) {
+    const initial *c = &m->initial.lines[i];
+    if (c->type != INITIAL_TEMPERATURE) continue;
+    const mesh_group *g = &msh->group[c->group_id];
+    for (int k = 0; k < g->n_item; ++k)
+      T[g->item_id[k]] =
+          elem_value(&c->value, NULL, msh, g->item_id[k], b, 0.0);
+  }
 }
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {
@@ -297,19 +313,20 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T) {
 
 /* What a load gives an element; OP=NEW returns to the initial temperature. */
 static double temperature_of(const load *l, const mesh *msh, double t,
-                             int elem_id, double T0) {
+                             int elem_id, const double *b, double T0) {
   if (l->removed) return T0;
-  return elem_mean(&l->value, l->field, msh, elem_id, value_time(l, t));
+  return elem_value(&l->value, l->field, msh, elem_id, b, value_time(l, t));
 }
 
-status load_temperature(const model *m, const mesh *msh, const step *s,
-                        double t, const double *T0, double *T) {
+status load_temperature_at(const model *m, const mesh *msh, const step *s,
+                           double t, const double *b, const double *T0,
+                           double *T) {
   OWNED double *start = NULL;
   PASS_NEW(start, msh->n_elem);
   memcpy(start, T0, (size_t)msh->n_elem * sizeof *T);
   memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
   if (s > m->steps && t < step_end(s))
-    PASS(load_temperature(m, msh, s - 1, step_end(s - 1), T0, start));
+    PASS(load_temperature_at(m, msh, s - 1, step_end(s - 1), b, T0, start));
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     if (l->kind != LOAD_TEMPERATURE) continue;
@@ -317,11 +334,17 @@ status load_temperature(const model *m, const mesh *msh, const step *s,
     const double w = share_at(l, s, t);
     for (int k = 0; k < g->n_item; ++k) {
       int e = g->item_id[k];
-      T[e] = (1.0 - w) * start[e] + w * temperature_of(l, msh, t, e, T0[e]);
-      if (!isfinite(T[e])) PASS(refuse_temperature(m, msh, &l->at, e));
+      T[e] = (1.0 - w) * start[e] + w * temperature_of(l, msh, t, e, b, T0[e]);
+      if (!isfinite(T[e]) && b == NULL)
+        PASS(refuse_temperature(m, msh, &l->at, e));
     }
   }
   return OK;
+}
+
+status load_temperature(const model *m, const mesh *msh, const step *s,
+                        double t, const double *T0, double *T) {
+  return load_temperature_at(m, msh, s, t, NULL, T0, T);
 }
 
 static int same_table(const value_table *a, const value_table *b) {

@@ -602,6 +602,13 @@ status load_temperature_initial(const model *m, const mesh *msh, double *T);
  * the first step; errors as above. */
 status load_temperature(const model *m, const mesh *msh, const step *s,
                         double t, const double *T0, double *T);
+/* The same at a point of each element, by its barycentric coordinates b[dim+1];
+ * not finite where a formula is not. ERR_MEMORY. */
+void load_temperature_initial_at(const model *m, const mesh *msh,
+                                 const double *b, double *T);
+status load_temperature_at(const model *m, const mesh *msh, const step *s,
+                           double t, const double *b, const double *T0,
+                           double *T);
 /* zone[n_elem] from 0: within one all elements expand alike and have their
  * temperatures from the same cards, or equal numbers, in all steps; between two
  * of them temperature and thermal strain may jump. ERR_MEMORY. */

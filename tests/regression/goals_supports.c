@@ -363,6 +363,40 @@ START_TEST(energies_by_loads_and_by_temperatures) {
 }
 END_TEST
 
+/* What temperatures are within the elements more than their means: T(y) between
+ * walls all round and T(r) of a cylinder between two have closed forms. */
+START_TEST(temperatures_that_vary_within_elements) {
+  static const struct {
+    layers of;
+    const char *cards;
+    expected is[3];
+  } rows[] = {
+      {{1.0, 1e-3, "CPE3", NULL},
+       WALLS "TOP, 2\n*TEMPERATURE\nSOFT, \"100*y^2\"\n"
+             "HARD, \"100*y^2\"\n",
+       {{2, -0.013541667, 0.9, 1.1, 0.5}, {3, -119.047619, 0.9, 1.1, 0.5}}},
+      {{3.0, 1e-3, "CPE3", NULL},
+       WALLS WAVE "*TEMPERATURE\nSOFT, \"10*cos(pi*x)\"\n"
+                  "HARD, \"-5*cos(pi*x)\"\n",
+       {{5, 0.18727039, 0.9, 1.1, 0.5}}},
+      {{1.0, 1e-3, "CAX3", NULL},
+       SIDES "TOP, 2\n*TEMPERATURE\nSOFT, \"20*(1-x)\"\n"
+             "HARD, \"20*(1-x)\"\n",
+       {{1, 0.026 / 3.0, 0.9, 1.1, 0.5}}},
+      {{2.0, 1e-3, "CAX3", NULL},
+       WALLS WAVE SLOPES,
+       {{0, -0.0043053987, 0.9, 1.1, 0.5}, {2, 0.00088629567, 0.5, 1.5, 3.0}}}};
+  for (int k = 0; k < 4; ++k) {
+    job j = of_layers(rows[k].of, rows[k].cards);
+    for (int i = 0; i < 3 && rows[k].is[i].wide > 0.0; ++i) {
+      const expected *e = &rows[k].is[i];
+      check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* A prism from z = 0 to 1 with an interface at y = 1/2, in the middle at
  * "height". */
 #define PRISM                                                                  \
@@ -482,6 +516,6 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           ends_of_supports_are_not_reliable, ends_of_supports_in_space,
           materials_that_meet_at_a_free_side, materials_that_meet_smoothly,
           temperatures_that_do_not_meet, energies_by_loads_and_by_temperatures,
-          materials_that_meet_in_space,
+          temperatures_that_vary_within_elements, materials_that_meet_in_space,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
           radius_of_a_zone_that_planes_halve)

@@ -268,7 +268,8 @@ static void take_given(const run *r, const patch *p, const int *where,
     const int q = where[p->node[i]];
     closed &= q >= 0 && r->result.contact[q] != CONTACT_OPEN;
   }
-  if (closed) take_traction(dim, p->normal, p->normal, T);
+  for (int c = 0; c < dim && closed; ++c)
+    take_traction(dim, p->normal, (double[3]){c == 0, c == 1, c == 2}, T);
 }
 
 /* Less the stress of the element times the strains over what is beyond a face.

@@ -123,7 +123,9 @@ typedef struct shared {
   goal_form form;
   double *y;                    /* [dim*n_node] */
   double *j, *more, *psi, *y_c; /* [n_row] */
-  double *lacks;                /* [dim*n_node] forces of boundary.c, N */
+  double *lacks;                /* [dim*n_node] forces of boundary.c,
+                                   heat.c, N */
+  double *rest;                 /* [3*n_elem] of goal_add_thermal, or NULL */
   double *moved; /* [n_row] errors of the positions of stick, m */
 } shared;
 
@@ -132,7 +134,7 @@ static void shared_free(shared *s) {
   goal_estimator_free(s->estimator);
   contact_adjoint_free(s->adjoint);
   goal_form_free(&s->form);
-  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->moved);
+  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->rest, s->moved);
 }
 
 /* That of the error of the mesh, or its own. */
@@ -214,6 +216,8 @@ static status prepare(run *r, goal_state *own, shared *s) {
   PASS(goal_estimator_new(&found, recovery, &s->estimator));
   PASS_NEW_REALS(r->n_dof, &s->y, &s->lacks);
   PASS(goal_add_boundary(r, s->lacks));
+  PASS(goal_add_thermal(r, s->lacks, &s->rest));
+  s->form.rest = s->rest;
   PASS_NEW_REALS(n, &s->j, &s->more, &s->psi, &s->y_c, &s->moved);
   if (n == 0) return OK;
   PASS(set_moved(r, own, s));
@@ -319,20 +323,24 @@ static double of_factor(const run *r, const shared *s) {
  * are summed with. */
 static status of_curvature(const run *r, const shared *s, double *sum) {
   const int dim = r->msh->dim;
-  OWNED double *y = NULL;
-  PASS_NEW(y, r->n_dof);
-  memcpy(y, s->y, r->n_dof * sizeof *y);
-  for (int k = 0; k < dim * r->nodes.n && s->form.is_field; ++k)
+  double turn, area;
+  OWNED double *z = NULL;
+  PASS_NEW(z, r->n_dof);
+  COPY(z, s->y, r->n_dof);
+  for (int k = 0; k < dim * r->nodes.n; ++k)
     for (int c = 0; c < dim; ++c)
-      y[dim * r->surface->node_id[k / dim] + c] +=
+      z[dim * r->surface->node_id[k / dim] + c] +=
           s->form.psi[k] * r->surface->basis[dim * k + c];
-  return goal_work_between(r, &s->surface, y, sum);
+  PASS(goal_work_between(r, &s->surface, s->form.is_field ? z : s->y, z,
+                         s->form.spin, &turn, &area));
+  *sum = turn + area;
+  return OK;
 }
 
 /* What the residual of the elements has not. */
 static status complete(const run *r, const shared *s, goal_estimate *e) {
   const goal_form *f = &s->form;
-  double along;
+  double along = 0.0;
   PASS(of_curvature(r, s, &along));
   if (f->factor.n > 0) e->error += of_factor(r, s);
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);

@@ -27,21 +27,23 @@ typedef struct goal_form {
   int n_mean;
   goal_mean mean[2]; /* [n_mean] of a displacement */
   int has_tau;
-  int sums;         /* 1: a sum over the increments, of which rows are the
-                       derivative by the motion of the last */
-  int is_field;     /* 1: psi are the components of a vector that is smooth
-                       along the surface */
-  int is_still;     /* 1: work of friction where nothing slips so far */
-  int is_coarse;    /* 1: a mean over less than two elements to each side, or
-                       few elements round a tip */
-  int is_front;     /* 1: a factor in space */
-  int is_square;    /* 1: the energy, whose error has a quadratic part too */
-  double curved;    /* contact forces times what psi is between the nodes more
-                       than at them */
-  double size;      /* sum of the magnitudes that value is the sum of */
-  double held;      /* what forces of held nodes, in none of them, may be */
-  double rough;     /* what the integral of a factor lacks */
-  goal_verdict why; /* GOAL_RELIABLE: it has a value */
+  int sums;           /* 1: a sum over the increments, of which rows are the
+                         derivative by the motion of the last */
+  int is_field;       /* 1: psi are the components of a vector that is smooth
+                         along the surface */
+  double spin[3];     /* the axis of a moment, else 0 */
+  int is_still;       /* 1: work of friction where nothing slips so far */
+  int is_coarse;      /* 1: a mean over less than two elements to each side, or
+                         few elements round a tip */
+  int is_front;       /* 1: a factor in space */
+  int is_square;      /* 1: the energy, whose error has a quadratic part too */
+  double curved;      /* contact forces times what psi is between the nodes more
+                         than at them */
+  double size;        /* sum of the magnitudes that value is the sum of */
+  double held;        /* what forces of held nodes, in none of them, may be */
+  double rough;       /* what the integral of a factor lacks */
+  const double *rest; /* of goal_add_thermal, borrowed; NULL: none */
+  goal_verdict why;   /* GOAL_RELIABLE: it has a value */
 } goal_form;
 
 status goal_form_new(const run *r, goal_form *f);
@@ -81,6 +83,12 @@ status goal_volumes_beyond(const run *r, double *volume);
 status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum);
 
+/* heat.c: adds dF[dim*n_node] of its head; *rest[3*n_elem], new: integrals
+ * of d0 over the elements; NULL: no thermal strain. ERR_MEMORY. */
+status goal_add_thermal(const run *r, double *dF, double **rest);
+/* Component c of the integral of E d0 over an element. */
+double goal_thermal_rest(const run *r, int elem_id, const double *rest, int c);
+
 /* The border of the bodies, of a mesh. */
 typedef struct goal_border {
   int n, *side;  /* [n] of mesh_border */
@@ -111,10 +119,14 @@ status goal_mark_supports(const run *r, const goal_border *border,
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
 void goal_surface_free(goal_surface *s); /* accepts all-zero */
-/* Work of the tractions of closed edges on a field y[dim*n_node] along the
- * surface less that of their nodes. */
+/* Work of the tractions of closed edges along the surface less that of their
+ * nodes: *turn, that of their directions on y[dim*n_node], which beyond the
+ * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of
+ * a given friction on z by the length of the surface more than that of the
+ * chords. */
 status goal_work_between(const run *r, const goal_surface *s, const double *y,
-                         double *work);
+                         const double *z, const double *spin, double *turn,
+                         double *area);
 /* 1: node i of the surface stands on a plane of symmetry along tangent a, or on
  * the axis. */
 int goal_is_mirrored(const run *r, int i);

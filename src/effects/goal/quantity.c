@@ -37,6 +37,7 @@ static void clear(const run *r, goal_form *f) {
   memset(f->psi, 0, n_c * sizeof *f->psi);
   if (f->has_tau) CLEAR(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   fracture_linear_free(&f->factor);
+  memset(f->spin, 0, sizeof f->spin);
   f->value = f->curved = f->size = f->held = f->rough = 0.0;
   f->n_mean = 0;
   f->has_tau = f->is_field = f->is_square = f->is_coarse = f->is_front =
@@ -156,6 +157,7 @@ static status add_held(const run *r, const goal_card *g, goal_form *f) {
 static status set_force(const run *r, const goal_card *g, goal_form *f) {
   const int dim = r->msh->dim;
   f->is_field = g->quantity == GOAL_MOMENT || g->component < GOAL_NORMAL;
+  if (g->quantity == GOAL_MOMENT) f->spin[g->component] = 1.0;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
       f->psi[dim * i + a] = share_of(r, g, i, a);
@@ -225,6 +227,8 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   for (int k = 0; k < of->n_item; ++k) {
     const size_t e = (size_t)of->item_id[k];
     f->curved += beyond[e] / whole * (r->result.stress[ns * e + c] - f->value);
+    if (f->rest != NULL)
+      f->curved -= goal_thermal_rest(r, (int)e, f->rest, (int)c) / whole;
   }
   f->has_tau = 1;
   return OK;
@@ -249,8 +253,12 @@ static status set_energy(const run *r, const goal_card *g, goal_form *f) {
   (void)g;
   PASS_NEW(beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
-  for (int e = 0; e < r->msh->n_elem; ++e)
+  for (int e = 0; e < r->msh->n_elem; ++e) {
     if (beyond[e] != 0.0) f->curved += beyond[e] * energy_density(r, e);
+    if (f->rest != NULL)
+      f->curved -=
+          cblas_ddot(3, r->result.stress + r->m->ns * e, 1, f->rest + 3 * e, 1);
+  }
   f->value = r->now.energy.strain;
   f->has_tau = f->is_square = 1;
   COPY(f->tau, r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);

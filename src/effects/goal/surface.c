@@ -4,6 +4,7 @@
  */
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/vector.h"
 #include "effects/goal/parts.h"
 
 #include <math.h>
@@ -265,10 +266,10 @@ static double traction_of(const run *r, int q, int along, double *v) {
   return size;
 }
 
-/* v[2][dim] at the ends: v in the middle times the mean of y less the mean of
- * both at the ends; 0 where v turns by a right angle. */
+/* v[2][dim] at the ends: v in the middle times the mean of y and "more" less
+ * the mean of both at the ends; 0 where v turns by a right angle. */
 static double product_between(int dim, double v[2][3], const double *ya,
-                              const double *yb) {
+                              const double *yb, const double *more) {
   double middle[3] = {0.0}, size = 0.0, sum = 0.0;
   for (int c = 0; c < dim; ++c) {
     middle[c] = 0.5 * (v[0][c] + v[1][c]);
@@ -276,26 +277,45 @@ static double product_between(int dim, double v[2][3], const double *ya,
   }
   if (!(size > 0.7)) return 0.0;
   for (int c = 0; c < dim; ++c)
-    sum += 0.5 * middle[c] / size * (ya[c] + yb[c]) -
+    sum += middle[c] / size * (0.5 * (ya[c] + yb[c]) + more[c]) -
            0.5 * (v[0][c] * ya[c] + v[1][c] * yb[c]);
   return sum;
 }
 
+/* Length of an arc less that of its chord, over the integral of its bubble. */
+static double longer(const mesh *m, const contact_edge *e) {
+  double out = 0.0, chord = 0.0;
+  for (int c = 0; c < m->dim; ++c) {
+    out = hypot(out, e->out[c]);
+    chord = hypot(chord, m->x[m->dim * e->b + c] - m->x[m->dim * e->a + c]);
+  }
+  return m->dim == 2 ? 4.0 * (out / chord) * (out / chord) : 0.0;
+}
+
 status goal_work_between(const run *r, const goal_surface *s, const double *y,
-                         double *work) {
+                         const double *z, const double *spin, double *turn,
+                         double *area) {
   const int dim = r->msh->dim;
   OWNED int *where = NULL;
-  *work = 0.0;
+  *turn = *area = 0.0;
   PASS(goal_places(r, &where));
   for (int k = 0; k < s->n_edge; ++k) {
     const contact_edge *e = &s->edge[k];
     if (!e->closed || e->other[0] >= 0) continue;
     for (int along = 0; along < (e->stuck ? 1 : 2); ++along) {
-      double v[2][3];
-      const double traction = 0.5 * (traction_of(r, where[e->a], along, v[0]) +
-                                     traction_of(r, where[e->b], along, v[1]));
-      *work += e->weight * traction *
-               product_between(dim, v, y + dim * e->a, y + dim * e->b);
+      double v[2][3], more[3] = {0.0}, sum = 0.0;
+      const double force = 0.5 * e->weight *
+                           (traction_of(r, where[e->a], along, v[0]) +
+                            traction_of(r, where[e->b], along, v[1]));
+      if (along) cross(spin, e->out, more);
+      *turn +=
+          force * product_between(dim, v, y + dim * e->a, y + dim * e->b, more);
+      const friction_limit *limit = r->problem.limit;
+      const int is_given = along && limit->g0[where[e->a]] > 0.0;
+      for (int c = 0; c < dim && is_given; ++c)
+        sum +=
+            0.5 * (v[0][c] * z[dim * e->a + c] + v[1][c] * z[dim * e->b + c]);
+      *area += force * longer(r->msh, e) * sum;
     }
   }
   return OK;
