@@ -49,21 +49,102 @@ static double bubble_weight(const run *r, int face) {
   return weight * 2.0 / 3.0 * PI * (m->x[2 * v[0]] + m->x[2 * v[1]]);
 }
 
+/* Gradients of the gap along the surface. */
+typedef struct gap_slopes {
+  double *of;  /* [3*n] at contact nodes, - */
+  int *n_face; /* [n] of them round each */
+} gap_slopes;
+
+static void gap_slopes_free(gap_slopes *g) { RELEASE(g->of, g->n_face); }
+
+/* g[3] of the linear gap on a face between contact nodes q[dim]; returns its
+ * weight, with which gradients of a parabola are exact in the plane; 0: a gap
+ * out of reach. */
+static double face_slope(const run *r, int face, const int *q, double *g) {
+  const mesh *m = r->msh;
+  const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
+  double shape[12], normal[3] = {0.0}, along = 0.0;
+  const double measure = mesh_face_normal(m, face, normal);
+  memset(g, 0, 3 * sizeof *g);
+  mesh_elem_gradients(m, e, shape);
+  for (int i = 0; i < dim; ++i) {
+    if (!(r->problem.gap[q[i]] < m->size)) return 0.0;
+    for (int a = 0; a <= dim; ++a)
+      for (int c = 0; c < dim && v[a] == r->surface->node_id[q[i]]; ++c)
+        g[c] += shape[dim * a + c] * r->problem.gap[q[i]];
+  }
+  for (int c = 0; c < dim; ++c) along += g[c] * normal[c];
+  for (int c = 0; c < dim; ++c) g[c] -= along * normal[c];
+  return dim == 2 ? 1.0 / measure : measure;
+}
+
+static status gap_slopes_new(const run *r, const int *where, gap_slopes *out) {
+  const mesh *m = r->msh;
+  const int dim = m->dim;
+  OWNED double *weight = NULL;
+  PASS_NEW_ALL(OF(out->of, 3 * r->nodes.n), OF(out->n_face, r->nodes.n),
+               OF(weight, r->nodes.n));
+  for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k) {
+    const mesh_group *of = &m->group[r->m->contacts[k].group_id];
+    for (int i = 0; i < of->n_item && !r->m->contacts[k].is_pair; ++i) {
+      int q[3], all = 1;
+      double g[3];
+      for (int c = 0; c < dim; ++c) {
+        q[c] = where[m->face[dim * of->item_id[i] + c]];
+        all = all && q[c] >= 0;
+      }
+      const double by = all ? face_slope(r, of->item_id[i], q, g) : 0.0;
+      for (int c = 0; c < dim && by > 0.0; ++c) {
+        weight[q[c]] += by;
+        ++out->n_face[q[c]];
+        for (int a = 0; a < 3; ++a) out->of[3 * q[c] + a] += by * g[a];
+      }
+    }
+  }
+  for (int a = 0; a < 3 * r->nodes.n; ++a)
+    if (weight[a / 3] > 0.0) out->of[a] /= weight[a / 3];
+  return OK;
+}
+
+/* What the gap in the middle of an edge of contact nodes q[2] is more than the
+ * mean of its ends: by the gaps of the nodes around, where bodies that fit each
+ * other have none that their curvature, which is not known as well, would hide.
+ * Beyond an end of the surface in the plane the curvature goes on. */
+static double gap_between(const run *r, const gap_slopes *slopes,
+                          const int *q) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim;
+  double d[3] = {0.0}, at[2] = {0.0, 0.0};
+  for (int c = 0; c < dim; ++c)
+    d[c] = s->x[dim * q[1] + c] - s->x[dim * q[0] + c];
+  const double rise = r->problem.gap[q[1]] - r->problem.gap[q[0]];
+  for (int k = 0; k < 2; ++k)
+    for (int c = 0; c < dim; ++c) at[k] += slopes->of[3 * q[k] + c] * d[c];
+  for (int k = 0; k < 2 && dim == 2; ++k)
+    if (slopes->n_face[q[k]] == 1) at[k] = 2.0 * rise - at[1 - k];
+  return (at[0] - at[1]) / 8.0;
+}
+
 /* Normal and gap in the middle of an edge between contact nodes q[2], at the
  * surface of the body; of the obstacle's normal that there. */
-static void set_middle(const run *r, const int *q, contact_edge *e) {
+static void set_middle(const run *r, const gap_slopes *slopes, const int *q,
+                       contact_edge *e) {
   const contact_surface *s = r->surface;
   const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
   const int dim = s->dim;
   double x[3] = {0.0}, size = 0.0;
   for (int c = 0; c < dim; ++c) {
-    x[c] = 0.5 * (s->x[dim * q[0] + c] + s->x[dim * q[1] + c]) + e->out[c];
+    x[c] = 0.5 * (s->x[dim * q[0] + c] + s->x[dim * q[1] + c]);
     e->n[c] = s->frame[dim * dim * q[0] + c] + s->frame[dim * dim * q[1] + c];
     size = hypot(size, e->n[c]);
   }
   for (int c = 0; c < dim; ++c) e->n[c] /= size;
   if (p->obstacle_normal) obstacle_normal(p->support, dim, x, e->n);
-  e->excess = obstacle_gap(p->support, dim, x, e->n, r->now.t);
+  double out = 0.0;
+  for (int c = 0; c < dim; ++c) out = hypot(out, e->out[c]);
+  e->excess = out > 0.0 ? 0.5 * (r->problem.gap[q[0]] + r->problem.gap[q[1]]) +
+                              gap_between(r, slopes, q)
+                        : obstacle_gap(p->support, dim, x, e->n, r->now.t);
   for (int c = 0; c < dim; ++c)
     e->excess -=
         0.5 * e->n[c] * (r->now.u[dim * e->a + c] + r->now.u[dim * e->b + c]);
@@ -78,8 +159,9 @@ static int state_of(const run *r, int q) {
 }
 
 /* Edge v[2] of a face. */
-static void add_edge(const run *r, const goal_ring *rings, int face,
-                     const int *v, const int *where, goal_surface *s) {
+static void add_edge(const run *r, const goal_ring *rings,
+                     const gap_slopes *slopes, int face, const int *v,
+                     const int *where, goal_surface *s) {
   const int i = v[0], j = v[1], q[2] = {where[i], where[j]};
   if (q[0] < 0 || q[1] < 0) return;
   contact_edge e = {.a = i < j ? i : j,
@@ -90,7 +172,7 @@ static void add_edge(const run *r, const goal_ring *rings, int face,
   e.closed = a != CONTACT_OPEN && b != CONTACT_OPEN;
   e.stuck = a == CONTACT_STICK && b == CONTACT_STICK;
   goal_bulge(r, rings, face, v, e.out);
-  if (e.closed) set_middle(r, q, &e);
+  if (e.closed) set_middle(r, slopes, q, &e);
   if (state_of(r, q[0]) != state_of(r, q[1]))
     s->ends[i] = s->ends[j] = GOAL_END_OF_CONTACT;
   s->edge[s->n_edge++] = e;
@@ -205,7 +287,8 @@ static void unite_edges(goal_surface *s) {
 }
 
 /* The edges of a contact on an obstacle. */
-static void add_group(const run *r, const goal_ring *rings, const mesh_group *g,
+static void add_group(const run *r, const goal_ring *rings,
+                      const gap_slopes *slopes, const mesh_group *g,
                       const int *where, goal_surface *s) {
   const int dim = r->msh->dim;
   for (int i = 0; i < g->n_item; ++i) {
@@ -213,7 +296,7 @@ static void add_group(const run *r, const goal_ring *rings, const mesh_group *g,
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b) {
         const int ends[2] = {v[a], v[b]};
-        add_edge(r, rings, g->item_id[i], ends, where, s);
+        add_edge(r, rings, slopes, g->item_id[i], ends, where, s);
       }
   }
 }
@@ -227,6 +310,8 @@ status goal_surface_new(const run *r, const goal_border *border,
   PASS(goal_ring_new(m, &rings));
   PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node));
   PASS(goal_places(r, &where));
+  ENDS_BY(gap_slopes_free) gap_slopes slopes = {0};
+  PASS(gap_slopes_new(r, where, &slopes));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
       n += m->group[r->m->contacts[k].group_id].n_item;
@@ -234,7 +319,8 @@ status goal_surface_new(const run *r, const goal_border *border,
   PASS_NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
-      add_group(r, &rings, &m->group[r->m->contacts[k].group_id], where, s);
+      add_group(r, &rings, &slopes, &m->group[r->m->contacts[k].group_id],
+                where, s);
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   if (s->n_edge > 0)
@@ -311,7 +397,8 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
       *turn +=
           force * product_between(dim, v, y + dim * e->a, y + dim * e->b, more);
       const friction_limit *limit = r->problem.limit;
-      const int is_given = along && limit->g0[where[e->a]] > 0.0;
+      const int is_given =
+          along && limit != NULL && limit->g0[where[e->a]] > 0.0;
       for (int c = 0; c < dim && is_given; ++c)
         sum +=
             0.5 * (v[0][c] * z[dim * e->a + c] + v[1][c] * z[dim * e->b + c]);
