@@ -9,10 +9,12 @@
  */
 
 #include "base/memory.h"
+#include "base/number.h"
 #include "base/vector.h"
 #include "contact/parts.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
@@ -60,6 +62,7 @@ typedef struct builder {
   int dim, n;
   mirrors mirrors;
   candidate *list;  /* [n] by node, then by contact */
+  int *first;       /* [n_pair] its first candidate, while unsorted */
   tally *tallies;   /* [n_pair] */
   pair_links links; /* room for the masters of the surface */
   pair_row *rows;   /* [n_pair] of one node */
@@ -127,8 +130,8 @@ static void face_shares(const surface_input *in, int face_id, double measure,
   }
 }
 
-/* 0 if the group consists of boundary faces; else a message and -1. */
-static int check_group(const builder *b, const contact_pair *p) {
+/* The group consists of boundary faces; else a message. */
+static void check_group(const builder *b, const contact_pair *p) {
   const mesh *m = b->in->mesh;
   const mesh_group *g = p->group;
   if (g->dim != m->dim - 1 || g->n_item == 0) {
@@ -136,7 +139,7 @@ static int check_group(const builder *b, const contact_pair *p) {
                 "*CONTACT %s: group %s has dimension %d, expected faces of "
                 "dimension %d",
                 p->name, g->name, g->dim, m->dim - 1);
-    return -1;
+    return;
   }
   for (int k = 0; k < g->n_item; ++k) {
     int face_id = g->item_id[k];
@@ -144,9 +147,8 @@ static int check_group(const builder *b, const contact_pair *p) {
     message_add(b->log, P4001, &p->at,
                 "*CONTACT %s: a face of group %s lies inside the body, at %s",
                 p->name, g->name, describe(m, m->face[m->dim * face_id]).text);
-    return -1;
+    return;
   }
-  return 0;
 }
 
 /* The circle of a sphere has its centre on the axis, that of a ring not. */
@@ -165,22 +167,17 @@ static void check_axis(const builder *b, const contact_pair *p) {
                 p->name, o->name, o->point[0]);
 }
 
-/* One contact while its faces are added. */
-typedef struct adder {
-  const surface_input *in;
-  const mesh_group *group;
-  candidate *first; /* [group->n_node] */
-  int *index;       /* [n_node] place of a node, if it is in the group */
-  tally *t;
-} adder;
-
-/* The candidate of a node that moves by itself, NULL: there is none. */
-static candidate *find(const adder *a, int node_id) {
-  const int k = a->index[node_id];
-  return k < a->group->n_node && a->group->node_id[k] == node_id &&
-                 surface_tied(a->in, node_id) < 0
-             ? &a->first[k]
-             : NULL;
+/* The candidate of a node that moves by itself, in a contact with an obstacle;
+ * NULL: there is none. */
+static candidate *find(const builder *b, int pair_id, int node_id) {
+  const contact_pair *p = &b->in->pairs[pair_id];
+  const int *at =
+      p->support == NULL || surface_tied(b->in, node_id) >= 0
+          ? NULL
+          : bsearch(&node_id, p->group->node_id, (size_t)p->group->n_node,
+                    sizeof *p->group->node_id, number_order);
+  return at == NULL ? NULL
+                    : &b->list[b->first[pair_id] + (at - p->group->node_id)];
 }
 
 static void give(int dim, candidate *to, double w, const double *normal) {
@@ -188,16 +185,36 @@ static void give(int dim, candidate *to, double w, const double *normal) {
   for (int c = 0; c < dim; ++c) to->normal[c] += w * normal[c];
 }
 
-/* What a node of *TIE has of a face goes to the masters that are in the group,
- * by their parts along the normal; 0: none is. */
-static int give_masters(const adder *a, int row, double w,
+/* The candidate of a master that has parts of a contact: its own there, else
+ * one with the same obstacle on a smooth surface, else with another obstacle
+ * and nearly that normal. */
+static candidate *find_near(const builder *b, int pair_id, int node_id,
+                            const double *normal) {
+  static const double near_cosine[] = {0.7071, 0.985}; /* 45, 10 degrees */
+  const contact_pair *p = b->in->pairs;
+  const int n = b->in->n_pair;
+  candidate *c = find(b, pair_id, node_id);
+  for (int k = 0; k < 2 * n && c == NULL; ++k) {
+    const int other = p[k % n].support != p[pair_id].support;
+    if (other == k / n) c = find(b, k % n, node_id);
+    if (c != NULL &&
+        !(dot(b->dim, c->normal, normal) >
+          near_cosine[other] * sqrt(dot(b->dim, c->normal, c->normal))))
+      c = NULL;
+  }
+  return c;
+}
+
+/* What a node of *TIE has of a face goes to the masters that are in a contact
+ * there, by their parts along the normal; 0: none is. */
+static int give_masters(const builder *b, int pair_id, int row, double w,
                         const double *normal) {
-  const node_links *l = &a->in->ties->to;
+  const node_links *l = &b->in->ties->to;
   const int dim = l->dim;
   double sum = 0.0;
   for (int pass = 0; pass < 2; ++pass)
     for (size_t e = l->start[row]; e < l->start[row + 1]; ++e) {
-      candidate *to = find(a, l->master[e]);
+      candidate *to = find_near(b, pair_id, l->master[e], normal);
       double part = 0.0;
       for (int c = 0; c < dim; ++c)
         part += normal[c] * normal[c] * l->part[(size_t)dim * e + (size_t)c];
@@ -207,50 +224,52 @@ static int give_masters(const adder *a, int row, double w,
       else
         give(dim, to, w * part / sum, normal);
     }
-  a->t->n_stray += sum > 0.0 && fabs(sum - 1.0) > rounding;
+  b->tallies[pair_id].n_stray += sum > 0.0 && fabs(sum - 1.0) > rounding;
   return sum > 0.0;
 }
 
-/* The parts w[dim] of a face: those of nodes of *TIE go to their masters, or to
- * the others of the face. */
-static void add_face(const adder *a, const int *node, const double *w,
-                     const double *normal) {
-  const int dim = a->in->mesh->dim;
-  double left = 0.0;
+/* A face of a contact: the parts of nodes of *TIE, tied = 1, go to their
+ * masters, or to the others of the face; tied = 0: the parts of the others. */
+static void add_face(const builder *b, int pair_id, int face_id, int tied) {
+  const mesh *m = b->in->mesh;
+  const int dim = b->dim, *node = &m->face[dim * face_id];
+  candidate *own[3];
+  double normal[3], w[3], left = 0.0;
   int n = 0;
+  face_shares(b->in, face_id, mesh_face_normal(m, face_id, normal), w);
   for (int j = 0; j < dim; ++j) {
-    candidate *to = find(a, node[j]);
-    n += to != NULL;
-    if (to != NULL)
-      give(dim, to, w[j], normal);
-    else if (!give_masters(a, surface_tied(a->in, node[j]), w[j], normal))
+    own[j] = find(b, pair_id, node[j]);
+    n += own[j] != NULL;
+    if (own[j] != NULL && !tied)
+      give(dim, own[j], w[j], normal);
+    else if (own[j] == NULL && tied &&
+             !give_masters(b, pair_id, surface_tied(b->in, node[j]), w[j],
+                           normal))
       left += w[j];
   }
-  for (int j = 0; j < dim && left > 0.0; ++j) {
-    candidate *to = find(a, node[j]);
-    if (to != NULL) give(dim, to, left / n, normal);
-  }
+  for (int j = 0; j < dim && left > 0.0; ++j)
+    if (own[j] != NULL) give(dim, own[j], left / n, normal);
 }
 
-/* Add the faces of one contact to its candidates first[0..group->n_node);
- * index[node_id] receives their place. */
-static void add_faces(const builder *b, int pair_id, candidate *first,
-                      int *index) {
-  const mesh *m = b->in->mesh;
+/* The nodes of a contact with an obstacle. */
+static int add_nodes(const builder *b, int pair_id, candidate *first) {
   const mesh_group *g = b->in->pairs[pair_id].group;
-  const adder a = {b->in, g, first, index, &b->tallies[pair_id]};
   for (int k = 0; k < g->n_node; ++k) {
-    index[g->node_id[k]] = k;
     first[k].node_id = g->node_id[k];
     first[k].pair_id = pair_id;
     first[k].left_out = surface_tied(b->in, g->node_id[k]) >= 0;
   }
-  for (int k = 0; k < g->n_item; ++k) {
-    double normal[3], w[3];
-    int face_id = g->item_id[k];
-    face_shares(b->in, face_id, mesh_face_normal(m, face_id, normal), w);
-    add_face(&a, &m->face[m->dim * face_id], w, normal);
-  }
+  return g->n_node;
+}
+
+/* Its faces; those of nodes of *TIE last, once the normals of all are known. */
+static void add_faces(const builder *b) {
+  const surface_input *in = b->in;
+  for (int tied = 0; tied < 2; ++tied)
+    for (int p = 0; p < in->n_pair; ++p)
+      for (int k = 0;
+           in->pairs[p].support != NULL && k < in->pairs[p].group->n_item; ++k)
+        add_face(b, p, in->pairs[p].group->item_id[k], tied);
 }
 
 /* The nodes that the coupling of a pair has. */
@@ -284,23 +303,23 @@ static status sort_candidates(builder *b) {
 
 static status collect(builder *b) {
   const surface_input *in = b->in;
-  OWNED int *index = NULL;
   int n = 0;
   PASS_NEW_ALL(OF(b->tallies, in->n_pair), OF(b->rows, in->n_pair),
-               OF(index, in->mesh->n_node));
-  for (int p = 0; p < in->n_pair; ++p) n += in->pairs[p].group->n_node;
-  PASS_NEW(b->list, n);
+               OF(b->first, in->n_pair));
   for (int p = 0; p < in->n_pair; ++p) {
-    if (in->pairs[p].coupled != NULL) {
-      b->n += add_coupled(b, p, &b->list[b->n]);
-      continue;
-    }
+    n += in->pairs[p].group->n_node;
+    if (in->pairs[p].coupled != NULL) continue;
     check_axis(b, &in->pairs[p]);
-    if (check_group(b, &in->pairs[p]) != 0) continue;
-    add_faces(b, p, &b->list[b->n], index);
-    b->n += in->pairs[p].group->n_node;
+    check_group(b, &in->pairs[p]);
   }
   PASS(message_status(b->log, ERR_DECK));
+  PASS_NEW(b->list, n);
+  for (int p = 0; p < in->n_pair; ++p) {
+    b->first[p] = b->n;
+    b->n += in->pairs[p].coupled != NULL ? add_coupled(b, p, &b->list[b->n])
+                                         : add_nodes(b, p, &b->list[b->n]);
+  }
+  add_faces(b);
   return sort_candidates(b);
 }
 
@@ -691,7 +710,7 @@ status surface_build(const surface_input *in, message_log *log,
   s = NULL;
 done:
   surface_free(s);
-  RELEASE(b.list, b.tallies, b.rows);
+  RELEASE(b.list, b.first, b.tallies, b.rows);
   return st;
 }
 

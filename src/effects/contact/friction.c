@@ -8,6 +8,7 @@
  * stick is always found from the last equilibrium.
  */
 #include "base/memory.h"
+#include "base/vector.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
@@ -24,7 +25,7 @@ typedef struct friction {
   double *g;        /* [n] limit of r->now, N */
   double *distance; /* [n] all slip so far, m */
   double *left;     /* [n_node] that of a released surface, m */
-  int told;         /* 1: that friction of held nodes is left out */
+  int *told;        /* [n.contact] 1: friction of held nodes is left out */
 } friction;
 
 enum { T_BIT = 8, HALVINGS = 40 };
@@ -254,25 +255,12 @@ static status refuse_held(const run *r, int i, int a) {
         r->surface->node_no[i]);
 }
 
-static void tell_held(const run *r, friction *own, int i, int a) {
-  const load *l = holder(r, i, a);
-  if (own->told) return;
-  own->told = 1;
-  message_add(
-      r->m->log, P4036, l == NULL ? &r->step->at : &l->at,
-      "contact node %zu slides as its support moves it: its friction is "
-      "left out, also of the reactions",
-      r->surface->node_no[i]);
-}
-
 static status check_held(const run *r, friction *own, int i, int a, double from,
                          double to) {
-  if (!(fabs(to - from) > run_still(r, fabs(to) + fabs(from))) ||
-      !can_stick(&own->limit, i))
-    return OK;
-  if (is_half_held(r->surface, i, a)) return refuse_held(r, i, a);
-  if (!surface_is_mutual(r->surface, i, a)) tell_held(r, own, i, a);
-  return OK;
+  const int moved = fabs(to - from) > run_still(r, fabs(to) + fabs(from));
+  return moved && is_half_held(r->surface, i, a) && can_stick(&own->limit, i)
+             ? refuse_held(r, i, a)
+             : OK;
 }
 
 /*
@@ -373,8 +361,67 @@ static status pose(run *r, void *self, double t) {
   return find_stick(r, own);
 }
 
+/* ---- friction of held nodes that is left out ----------------------------- */
+
+/* Of the largest motion of a master against a slave node, and of the largest
+ * displacement: below, what slides is a plane of symmetry, or rounding. */
+static const double least_slide = 0.3, least_motion = 1e-9;
+
+/* Motion along d that friction opposes: that of the increment, or of a static
+ * problem from the origin, m. */
+static double motion_along(const run *r, const double *d, int node_id) {
+  const int dim = r->msh->dim;
+  const int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
+  const size_t at = (size_t)dim * (size_t)node_id;
+  const double now = dot(dim, d, &r->now.u[at]);
+  return fresh ? now : now - dot(dim, d, &r->old.u[at]);
+}
+
+/* 1: node i, which is held along row a, and the surface of its masters, which
+ * are not, or not all, slide on each other. */
+static int masters_slide(const run *r, int i, int a) {
+  const contact_surface *s = r->surface;
+  const node_links *l = s->master;
+  const double *d = &s->frame[s->dim * (s->dim * i + a)];
+  const double own = motion_along(r, d, s->node_id[i]);
+  double mean = 0.0, most = 0.0;
+  for (size_t e = l->start[i]; e < l->start[i + 1]; ++e) {
+    const double by = motion_along(r, d, l->master[e]) - own;
+    mean += l->part[(size_t)s->dim * e] * by;
+    most = fmax(most, fabs(by));
+  }
+  if (!(fabs(mean) > least_slide * most)) return 0;
+  for (size_t k = 0; k < r->n_dof; ++k)
+    if (!(most > least_motion * fabs(r->now.u[k]))) return 0;
+  return 1;
+}
+
+static void tell_held(const run *r, friction *own, int i, int a) {
+  const load *l = holder(r, i, a);
+  const int id = r->surface->contact_id[i];
+  own->told[id] = 1;
+  message_add(r->m->log, P4036, l == NULL ? &r->step->at : &l->at,
+              "contact %s: supports hold node %zu of the slave along the "
+              "contact, but not the master, which slides on it: the friction "
+              "of such nodes is left out, also of the reactions",
+              r->m->contacts[id].name, r->surface->node_no[i]);
+}
+
+/* Once for each contact. */
+static void check_masters(const run *r, friction *own) {
+  const contact_surface *s = r->surface;
+  for (int k = 0; k < r->nodes.n * (s->dim - 1) && s->master != NULL; ++k) {
+    const int i = k / (s->dim - 1), a = 1 + k % (s->dim - 1);
+    if (s->held[s->dim * i + a] && !surface_is_mutual(s, i, a) &&
+        !surface_is_corner(s, i) && !own->told[s->contact_id[i]] &&
+        r->result.contact[i] != CONTACT_OPEN && own->g[i] > 0.0 &&
+        masters_slide(r, i, a))
+      tell_held(r, own, i, a);
+  }
+}
+
 /* Slip is summed while a node is closed. */
-static status add_distance(run *r, void *self) {
+static status accept(run *r, void *self) {
   friction *own = self;
   int dim = r->msh->dim;
   TIMED(history_of(r));
@@ -384,6 +431,7 @@ static status add_distance(run *r, void *self) {
     if (r->result.contact[i] == CONTACT_SLIP)
       own->distance[i] += hypot(s[0], s[1]);
   }
+  check_masters(r, own);
   return OK;
 }
 
@@ -392,7 +440,7 @@ static status add_distance(run *r, void *self) {
 static void free_arrays(friction *own) {
   friction_limit_free(&own->limit);
   RELEASE(own->stick, own->g, own->distance);
-  *own = (friction){.left = own->left};
+  *own = (friction){.left = own->left, .told = own->told};
 }
 
 static void use_arrays(const friction *own, run *r) {
@@ -409,7 +457,7 @@ static status new_arrays(const run *r, friction *own) {
 
 static status friction_new(run *r, void **self) {
   friction *own = *self;
-  PASS_NEW(own->left, r->msh->n_node);
+  PASS_NEW_ALL(OF(own->left, r->msh->n_node), OF(own->told, r->m->n.contact));
   return OK;
 }
 
@@ -439,6 +487,8 @@ static status friction_copy(const run *r, const void *of, run *copy,
   friction *own = *self;
   const double *distance = ((const friction *)of)->distance;
   PASS(new_arrays(r, own));
+  PASS_NEW(own->told, r->m->n.contact);
+  COPY(own->told, ((const friction *)of)->told, r->m->n.contact);
   memcpy(own->distance, distance, (size_t)r->nodes.n * sizeof *distance);
   use_arrays(own, copy);
   return OK;
@@ -447,7 +497,7 @@ static status friction_copy(const run *r, const void *of, run *copy,
 static void release(void *self) {
   friction *own = self;
   free_arrays(own);
-  memory_free(own->left);
+  RELEASE(own->left, own->told);
 }
 
 /* A limit that holds for all times of the step is made now, so that the costs
@@ -456,7 +506,7 @@ static status keep(run *r, void *self, archive *a) {
   friction *own = self;
   int known = own->known;
   PASS(archive_ints(a, "limit_known", &known, 1));
-  PASS(archive_ints(a, "held_told", &own->told, 1));
+  PASS(archive_ints(a, "held_told", own->told, (size_t)r->m->n.contact));
   PASS(archive_reals(a, "distance", own->distance, (size_t)r->nodes.n));
   if (archive_reads(a) && known) PASS(update_limit(r, own, r->old.t));
   return OK;
@@ -566,7 +616,7 @@ const effect_ops friction_effect = {
   .size = sizeof(friction),
   .on = {.create = friction_new, .check = check_step, .prepare = prepare,
          .pose = pose,
-         .accept = add_distance, .forget = forget, .keep = keep,
+         .accept = accept, .forget = forget, .keep = keep,
          .copy = friction_copy, .release = release},
   COLUMNS_OF(columns)};
 /* clang-format on */

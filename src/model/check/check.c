@@ -404,9 +404,9 @@ static const double rounding = 1e-9;
 
 /* Mean over the faces of a group. */
 typedef struct surface_facts {
-  double size;       /* of a face, m */
-  double modulus;    /* Pa */
-  unsigned all, any; /* bit c: supports hold component c of all nodes; of one */
+  double size;    /* of a face, m */
+  double modulus; /* Pa */
+  unsigned all;   /* bit c: supports hold component c of all nodes */
 } surface_facts;
 
 /* C_nnnn, the modulus of uniaxial strain, in the mean over all directions n:
@@ -418,6 +418,15 @@ static double mean_modulus(const double C[36]) {
     sum += 2.0 * C[7 * i] + 4.0 * C[7 * (3 + i)];
   }
   return sum / 15.0;
+}
+
+/* Bit c: supports hold component c of a node. */
+static unsigned held_bits(const mesh *msh, const unsigned char *fixed,
+                          int node_id) {
+  unsigned bits = 0;
+  for (int c = 0; c < msh->dim; ++c)
+    bits |= (unsigned)(fixed[msh->dim * node_id + c] != 0) << c;
+  return bits;
 }
 
 static surface_facts facts_of(const model *m, const mesh *msh,
@@ -433,13 +442,8 @@ static surface_facts facts_of(const model *m, const mesh *msh,
     f.modulus += mean_modulus(m->materials[s->material_id].C) / g->n_item;
   }
   f.size = dim == 2 ? area : sqrt(area);
-  for (int k = 0; k < g->n_node; ++k) {
-    unsigned own = 0;
-    for (int c = 0; c < dim; ++c)
-      own |= (unsigned)(fixed[dim * g->node_id[k] + c] != 0) << c;
-    f.all &= own;
-    f.any |= own;
-  }
+  for (int k = 0; k < g->n_node; ++k)
+    f.all &= held_bits(msh, fixed, g->node_id[k]);
   return f;
 }
 
@@ -449,11 +453,37 @@ static int has_more(unsigned a, unsigned b) {
   return (a & b) == b ? 1 : (a & b) == a ? -1 : 0;
 }
 
+/* Nodes of which supports hold a component that they do not hold of the other
+ * surface there: of its node next to it, no further than "near". */
+static int held_alone(const mesh *msh, const unsigned char *fixed,
+                      const mesh_group *of, const mesh_group *other,
+                      double near) {
+  int n = 0;
+  for (int i = 0; i < of->n_node; ++i) {
+    const unsigned own = held_bits(msh, fixed, of->node_id[i]);
+    const double *x = &msh->x[(size_t)msh->dim * (size_t)of->node_id[i]];
+    double least = near;
+    int best = -1;
+    for (int k = 0; own != 0 && k < other->n_node; ++k) {
+      const double d = distance_to(msh, other->node_id[k], x);
+      if (d <= least) best = other->node_id[k], least = d;
+    }
+    n += best >= 0 && (own & ~held_bits(msh, fixed, best)) != 0;
+  }
+  return n;
+}
+
 /* Supports hold more of the first surface, 1, or of the second, -1: what they
  * hold of a slave is relative to its place, not to the master. */
-static int held_more(const surface_facts *f) {
+static int held_more(const mesh *msh, const unsigned char *fixed,
+                     const int *group, const surface_facts *f) {
+  const double near = fmax(f[0].size, f[1].size);
+  const mesh_group *a = &msh->group[group[0]], *b = &msh->group[group[1]];
   const int all = has_more(f[0].all, f[1].all);
-  return all != 0 ? all : has_more(f[0].any, f[1].any);
+  if (all != 0) return all;
+  const int more =
+      held_alone(msh, fixed, a, b, near) - held_alone(msh, fixed, b, a, near);
+  return (more > 0) - (more < 0);
 }
 
 /* touching: of a tie, 1 where it meets a contact. */
@@ -462,14 +492,16 @@ static void choose(const model *m, const mesh *msh, const unsigned char *fixed,
   surface_facts f[2];
   for (int k = 0; k < 2; ++k) f[k] = facts_of(m, msh, fixed, group[k]);
   const double ratio = f[1].modulus / f[0].modulus;
+  const int held =
+      p->choice == SLAVE_AUTO ? held_more(msh, fixed, group, f) : 0;
   const int differ = fabs(f[1].size - f[0].size) > rounding * f[0].size;
   const char *why = "of equal size: the first";
   p->slave = 0;
   if (p->choice != SLAVE_AUTO) {
     p->slave = p->choice == SLAVE_SECOND;
     why = "by SLAVE=";
-  } else if (held_more(f) != 0) {
-    p->slave = held_more(f) > 0;
+  } else if (held != 0) {
+    p->slave = held > 0;
     why = "the other is held";
   } else if (touching && differ) {
     p->slave = f[1].size < f[0].size;

@@ -1,7 +1,7 @@
 // Two blocks on each other: [0, 1] x [0, 1], N segments an edge, and
-// [C + D, 1 - C + D] x [1, 2], M segments, its lower left corner higher by L;
-// turned about (0, 0) by A degrees.
-DefineConstant[ N = 4, M = 7, A = 0, C = 0, D = 0, L = 0 ];
+// [C + D, 1 - C + D] x [1, 2], M segments, higher by G, its lower left corner by
+// L more; turned about (0, 0) by A degrees.
+DefineConstant[ N = 4, M = 7, A = 0, C = 0, D = 0, L = 0, G = 0 ];
 c = Cos(A * Pi / 180);
 s = Sin(A * Pi / 180);
 Macro Square
@@ -22,7 +22,7 @@ Macro Square
 Return
 k = 1; n = N; x0 = 0; x1 = 1; y0 = 0; lift = 0;
 Call Square;
-k = 11; n = M; x0 = C + D; x1 = 1 - C + D; y0 = 1; lift = L;
+k = 11; n = M; x0 = C + D; x1 = 1 - C + D; y0 = 1 + G; lift = L;
 Call Square;
 Physical Curve("BOTTOM") = {1};
 Physical Curve("RIGHT") = {2, 12};

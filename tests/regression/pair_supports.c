@@ -1,0 +1,119 @@
+/*
+ * Pairs of bodies that supports hold or drive along the contact: friction, wear
+ * and the slave that AUTO chooses.
+ */
+#include "support/job.h"
+#include "support/unit.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A slider that its side, or all of it, drives over an elastic body drags it by
+ * mu N; two bodies held along the contact wear by their motion, whichever is
+ * the slave. */
+START_TEST(driven_bodies_slide_on_each_other) {
+  static const struct {
+    const char *pair, *supports;
+    double drag, depth;
+  } cases[] = {
+      {"", "TOP, 1, 2\nFOOT, 1, 1, 0.02\n", 0.15, 0},
+      {"", "TOP, 1, 2\nLOWER, 1, 1, 0.02\n", 0.15, 0},
+      {", SLAVE=FIRST", "TOP, 2\nUPPER, 1\nLOWER, 1, 1, 0.02\n", 0, 1e-5},
+      {", SLAVE=SECOND", "TOP, 2\nUPPER, 1\nLOWER, 1, 1, 0.02\n", 0, 1e-5},
+      {", SLAVE=FIRST", "TOP, 2\nUPPER, 1, 1, 0.02\nLOWER, 1\n", 0, 1e-5},
+      {", SLAVE=FIRST", "TOP, 2\nUPPER, 1, 1, 0.02\nLOWER, 1\n", 0.15, 0},
+      {", SLAVE=SECOND", "TOP, 1, 2\nLOWER, 1, 1, 0.02\n", 0.15, 0},
+      {", SLAVE=FIRST", "TOP, 1, 2\nLOWER, 1, 1, 0.02\n", 0, 0}};
+  const int wears = cases[_i].depth > 0;
+  job j = job_begin("driven");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "driven.geo",
+            "Include \"pair.geo\";\nPhysical Curve(\"FOOT\") = {2};\n");
+  job_write(&j, "driven.inp",
+            "*PARAMETER\nN = 3\nM = 8\n*MESH, FILE=driven.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P%s\nUNDER, OVER\n%s*STEP\n*QUASISTATIC\n"
+            "1., 1.\n*BOUNDARY\n%s*DSLOAD\nBOTTOM, P, 0.5\n"
+            "*PRINT, TOTALS, CONTACT%s\n*END STEP\n",
+            cases[_i].pair,
+            wears ? "*WEAR, CONTACT=P, COEFFICIENT=1E-3\n"
+                  : "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n",
+            cases[_i].supports, wears ? ", WEAR" : "");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  const char *told = strstr(j.errors, "P4036:");
+  ck_assert_int_eq(told != NULL, _i == 7);
+  if (told != NULL) ck_assert_ptr_null(strstr(told + 1, "P4036:"));
+  dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+  ck_assert_double_eq_tol(fabs(dat_at(&all, 0, "tangential")), cases[_i].drag,
+                          1e-9);
+  if (wears) {
+    dat w = job_table(&j, "WEAR", -1);
+    for (int i = 0; i < w.n_row; ++i) {
+      ck_assert_double_eq_tol(dat_at(&w, i, "depth"), cases[_i].depth, 1e-13);
+      ck_assert_double_eq_tol(fabs(dat_at(&c, i, "u_t")), 0.02, 1e-14);
+    }
+    ck_assert_double_eq_tol(dat_at(&all, 0, "worn_volume"), 1e-5, 1e-13);
+    dat_free(&w);
+  }
+  dat_free(&c);
+  dat_free(&all);
+  job_end(&j);
+}
+END_TEST
+
+/* Two blocks on a plane of symmetry, the upper one also against a wall, past
+ * which the lower one expands: nodes that supports hold have friction if they
+ * are those of the master, else it is told. A plane of symmetry is not told,
+ * what supports hold beyond the other surface does not choose the slave, what
+ * they hold wholly is the master across a gap too. */
+START_TEST(blocks_slide_past_a_wall) {
+  static const struct {
+    const char *sizes, *pair, *wall;
+    double modulus; /* of the upper one, Pa */
+    int lower, told;
+  } cases[] = {
+      {"", "AUTO", "WALL, 1\n", 300, 1, 0},
+      {"", "FIRST", "WALL, 1\n", 300, 1, 0},
+      {"", "SECOND", "WALL, 1\n", 300, 0, 1},
+      {"", "FIRST", "", 300, 1, 0},
+      {"C = 0.2\nD = -0.2\n", "AUTO", "FOOT, 1\n", 5000, 1, 0},
+      {"G = 0.5\n", "AUTO", "UPPER, 1\nTOP, 2, 2, -0.51\n", 300, 1, 0}};
+  job j = job_begin("wall");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "wall.geo",
+            "Include \"pair.geo\";\nPhysical Curve(\"WALL\") = {12};\n"
+            "Physical Curve(\"FOOT\") = {2};\n");
+  job_write(&j, "wall.inp",
+            "*PARAMETER\nN = 4\nM = 6\n%s*MESH, FILE=wall.geo\n"
+            "*MATERIAL, NAME=A\n*ELASTIC\n1000., 0.45\n"
+            "*MATERIAL, NAME=B\n*ELASTIC\n%g, 0.3\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=B\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n"
+            "*FRICTION, CONTACT=P, LAW=COULOMB\n0.5\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n%s*DSLOAD\n"
+            "TOP, P, 10.\n*PRINT, CONTACT\n*END STEP\n",
+            cases[_i].sizes, cases[_i].modulus, cases[_i].pair, cases[_i].wall);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  ck_assert_int_eq(strstr(j.errors, "P4036:") != NULL, cases[_i].told);
+  dat c = job_table(&j, "CONTACT", -1);
+  ck_assert_int_eq(c.n_row <= 5, cases[_i].lower);
+  for (int i = 0; i < c.n_row && _i < 3; ++i)
+    if (dat_at(&c, i, "x") > 0.99)
+      ck_assert_double_eq_tol(fabs(dat_at(&c, i, "f_t")),
+                              cases[_i].told ? 0 : 0.5 * dat_at(&c, i, "f_n"),
+                              1e-9);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+int main(void) {
+  TCase *tests = tcase_create("pair_supports");
+  tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 8);
+  tcase_add_loop_test(tests, blocks_slide_past_a_wall, 0, 6);
+  return unit_run("pair_supports", tests);
+}
