@@ -165,8 +165,8 @@ static int is_let_go(const run *r) {
 
 /* r->now from the state u, rc [n_c]. */
 static status solve_from(run *r, double *u, double *rc) {
-  double *const start_u = r->solving.start_u, *const start_r =
-                                                  r->solving.start_r;
+  double *const start_u = r->solving.start_u;
+  double *const start_r = r->solving.start_r;
   r->solving.start_u = u;
   r->solving.start_r = rc;
   const status st = solve_posed(r);

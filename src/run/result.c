@@ -59,14 +59,15 @@ static int is_carried(const contact_surface *s, int i) {
 }
 
 /* Slip of such a node, m; 0 where it is rounding of what moves. */
-static double carried_slip(const run *r, int k, const double *slip) {
+static double carried_slip(const run *r, int k, double still,
+                           const double *slip) {
   double length = 0.0, moves = 0.0;
   for (int a = 0; a < r->msh->dim - 1; ++a) {
     length = hypot(length, slip[a]);
     moves += fabs(r->now.uc[k + a]) + fabs(r->old.uc[k + a]) +
              fabs(run_drift(&r->now, k + a)) + fabs(run_drift(&r->old, k + a));
   }
-  return length > run_still(r, moves) ? length : 0.0;
+  return length > still + RUN_ROUNDING * moves ? length : 0.0;
 }
 
 /*
@@ -74,11 +75,11 @@ static double carried_slip(const run *r, int k, const double *slip) {
  * contact problem, but a force on the supports: against their motion, or what
  * it was, within the limit, where nothing moves.
  */
-static void find_carried(run *r, int i) {
+static void find_carried(run *r, int i, double still) {
   const int tangents = r->msh->dim - 1, k = r->msh->dim * i + 1;
   const int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
   const double *slip = &r->result.slip[tangents * i], g = r->result.g[i];
-  const double length = carried_slip(r, k, slip);
+  const double length = carried_slip(r, k, still, slip);
   double *force = &r->now.rc[k], size = 0.0;
   for (int a = 0; a < tangents; ++a) {
     force[a] = length > 0.0 ? -slip[a]
@@ -92,9 +93,8 @@ static void find_carried(run *r, int i) {
     r->result.contact[i] = CONTACT_SLIP;
 }
 
-double run_still(const run *r, double moves) {
-  static const double rounding = 1e-12;
-  return rounding * (moves + largest_entry(r->n_dof, r->now.u)) +
+double run_still(const run *r) {
+  return RUN_ROUNDING * largest_entry(r->n_dof, r->now.u) +
          4.0 * DBL_EPSILON * r->msh->size;
 }
 
@@ -116,6 +116,15 @@ static void lean(run *r, int i) {
   }
 }
 
+/* Forces of contact nodes that are no unknowns, as supports bear them. */
+static void find_borne(run *r) {
+  const int rubs = r->result.g != NULL && surface_has_held(r->surface);
+  const double still = rubs ? run_still(r) : 0.0;
+  for (int i = 0; i < r->nodes.n && rubs; ++i)
+    if (is_carried(r->surface, i)) find_carried(r, i, still);
+  for (int i = 0; i < r->nodes.n && r->surface->lean != NULL; ++i) lean(r, i);
+}
+
 /* Slip against the obstacle, gap left, status. */
 static void find_contact(run *r) {
   int dim = r->msh->dim;
@@ -135,9 +144,7 @@ static void find_contact(run *r) {
     r->result.contact[i] = k >= 0 && r->nodes.reach.in[k] == i
                                ? r->result.contact[k--]
                                : CONTACT_OPEN;
-  for (int i = 0; i < r->nodes.n && r->result.g != NULL; ++i)
-    if (is_carried(r->surface, i)) find_carried(r, i);
-  for (int i = 0; i < r->nodes.n && r->surface->lean != NULL; ++i) lean(r, i);
+  find_borne(r);
 }
 
 /* Force and moment of one row of a contact node. */

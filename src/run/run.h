@@ -422,9 +422,11 @@ static inline double run_drift(const equilibrium *e, int k) {
 }
 /* Motion of a contact unknown against the obstacle in the increment, m. */
 double run_motion_over(const run *r, int k);
-/* Motion that is rounding of others of the size "moves", of displacements and
- * of places, m. */
-double run_still(const run *r, double moves);
+/* Of motions, that of their differences. */
+#define RUN_ROUNDING 1e-12
+/* Motion that is rounding of displacements and places, m: to it comes that of
+ * the motions it is the difference of. */
+double run_still(const run *r);
 /* Friction of contact unknown k: its force without what supports bear of the
  * normal one there, N. */
 double run_friction(const run *r, const equilibrium *e, int k);

@@ -255,12 +255,13 @@ static status refuse_held(const run *r, int i, int a) {
         r->surface->node_no[i]);
 }
 
-static status check_held(const run *r, friction *own, int i, int a, double from,
-                         double to) {
-  const int moved = fabs(to - from) > run_still(r, fabs(to) + fabs(from));
-  return moved && is_half_held(r->surface, i, a) && can_stick(&own->limit, i)
-             ? refuse_held(r, i, a)
-             : OK;
+/* 1: the support of axis a of node i, held alone, moves it from one place to
+ * the other against friction; still: the part of rounding of all. */
+static int is_rubbed(const run *r, const friction *own, int i, int a,
+                     double still, double from, double to) {
+  return is_half_held(r->surface, i, a) &&
+         fabs(to - from) > still + RUN_ROUNDING * (fabs(to) + fabs(from)) &&
+         can_stick(&own->limit, i);
 }
 
 /*
@@ -271,6 +272,8 @@ static status check_held(const run *r, friction *own, int i, int a, double from,
 static status find_stick(run *r, friction *own) {
   int dim = r->msh->dim;
   int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
+  const double still =
+      dim == 3 && surface_has_held(r->surface) ? run_still(r) : 0.0;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       int k = dim * i + a;
@@ -278,7 +281,8 @@ static status find_stick(run *r, friction *own) {
       double stick = from + run_drift(&r->now, k);
       if (r->surface->held[k]) {
         double to = held_value(r, r->loads.ud, i, a);
-        PASS(check_held(r, own, i, a, stick, to));
+        if (is_rubbed(r, own, i, a, still, stick, to))
+          return refuse_held(r, i, a);
         stick = to;
       }
       own->stick[(dim - 1) * i + a - 1] = stick;
@@ -291,7 +295,7 @@ static status find_stick(run *r, friction *own) {
 /* Supports ud[dim*n_node] before and at t, drift[dim*n] of the obstacles in
  * between. What is not known is NaN and moves nothing. */
 typedef struct travel {
-  double t, *before, *now, *drift;
+  double t, still, *before, *now, *drift; /* still: run_still */
 } travel;
 
 static int is_moved(const run *r, const travel *x, int i, int a) {
@@ -299,7 +303,7 @@ static int is_moved(const run *r, const travel *x, int i, int a) {
   const double to = held_value(r, x->now, i, a);
   const double drift = x->drift[r->msh->dim * i + a];
   return fabs(to - from - drift) >
-         run_still(r, fabs(to) + fabs(from) + fabs(drift));
+         x->still + RUN_ROUNDING * (fabs(to) + fabs(from) + fabs(drift));
 }
 
 static status check_travel(const run *r, const travel *x) {
@@ -344,7 +348,8 @@ static status check_step(run *r, void *self) {
   if (!any) return OK;
   PASS_NEW_REALS(r->n_dof, &before, &now, &none);
   PASS_NEW(drift, r->nodes.n_c);
-  return check_travels(r, &(travel){0.0, before, now, drift}, none);
+  return check_travels(r, &(travel){0.0, run_still(r), before, now, drift},
+                       none);
 }
 
 /* The stage of the history, where there is one. */
@@ -378,8 +383,8 @@ static double motion_along(const run *r, const double *d, int node_id) {
 }
 
 /* 1: node i, which is held along row a, and the surface of its masters, which
- * are not, or not all, slide on each other. */
-static int masters_slide(const run *r, int i, int a) {
+ * are not, or not all, slide on each other, by more than least, m. */
+static int masters_slide(const run *r, int i, int a, double least) {
   const contact_surface *s = r->surface;
   const node_links *l = s->master;
   const double *d = &s->frame[s->dim * (s->dim * i + a)];
@@ -390,10 +395,7 @@ static int masters_slide(const run *r, int i, int a) {
     mean += l->part[(size_t)s->dim * e] * by;
     most = fmax(most, fabs(by));
   }
-  if (!(fabs(mean) > least_slide * most)) return 0;
-  for (size_t k = 0; k < r->n_dof; ++k)
-    if (!(most > least_motion * fabs(r->now.u[k]))) return 0;
-  return 1;
+  return fabs(mean) > least_slide * most && most > least;
 }
 
 static void tell_held(const run *r, friction *own, int i, int a) {
@@ -410,12 +412,14 @@ static void tell_held(const run *r, friction *own, int i, int a) {
 /* Once for each contact. */
 static void check_masters(const run *r, friction *own) {
   const contact_surface *s = r->surface;
-  for (int k = 0; k < r->nodes.n * (s->dim - 1) && s->master != NULL; ++k) {
+  if (s->master == NULL || !surface_has_held(s)) return;
+  const double least = least_motion * largest_entry(r->n_dof, r->now.u);
+  for (int k = 0; k < r->nodes.n * (s->dim - 1); ++k) {
     const int i = k / (s->dim - 1), a = 1 + k % (s->dim - 1);
     if (s->held[s->dim * i + a] && !surface_is_mutual(s, i, a) &&
         !surface_is_corner(s, i) && !own->told[s->contact_id[i]] &&
         r->result.contact[i] != CONTACT_OPEN && own->g[i] > 0.0 &&
-        masters_slide(r, i, a))
+        masters_slide(r, i, a, least))
       tell_held(r, own, i, a);
   }
 }

@@ -247,8 +247,11 @@ static status solve(run *r, shared *s, double *solver) {
   PASS(condense_load(r->c, s->form.load, NULL, s->j));
   if (s->adjoint != NULL) {
     run_take_rows(r, s->form.rows, s->more);
-    spread_held(r, s->form.psi);
-    run_take_rows(r, s->form.psi, s->psi);
+    OWNED double *psi = NULL;
+    PASS_NEW(psi, r->nodes.n_c);
+    COPY(psi, s->form.psi, r->nodes.n_c);
+    spread_held(r, psi);
+    run_take_rows(r, psi, s->psi);
     for (int k = 0; k < r->nodes.n_row; ++k) s->j[k] += s->more[k];
     PASS(contact_adjoint_solve(s->adjoint, s->j, s->psi, s->y_c, solver));
   }
