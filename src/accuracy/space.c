@@ -321,7 +321,7 @@ static int is_inside(space_recovery *s, int node) {
   return n == s->start[node + 1] - first && is_closed(s, node, n);
 }
 
-int space_is_coarse(space_recovery *s) {
+double space_depth(space_recovery *s) {
   const mesh *m = s->d->mesh;
   int inside = 0;
   if (s->depth == 0.0) {
@@ -329,8 +329,10 @@ int space_is_coarse(space_recovery *s) {
     const double side = pow((double)inside / m->n_node, 1.0 / m->dim);
     s->depth = (1.0 + side) / (1.0 - side);
   }
-  return s->depth < DEEP;
+  return s->depth;
 }
+
+int space_is_coarse(double depth) { return depth < DEEP; }
 
 /* ---- the fit ------------------------------------------------------------- */
 

@@ -35,9 +35,11 @@ void space_recovery_free(space_recovery *s); /* accepts NULL */
 status space_estimate(space_recovery *s, const double *sigma, double *eta,
                       space_error *out);
 
-/* 1: few nodes lie inside the body, so that most fits lie on one side of their
- * node; the estimate may have half of the error. */
-int space_is_coarse(space_recovery *s);
+/* Elements across the body, by the share of the nodes inside it; 1: so few that
+ * most fits lie on one side of their node, the estimate may have half of the
+ * error. */
+double space_depth(space_recovery *s);
+int space_is_coarse(double depth);
 
 /* For other errors by the same patches. Sets of sections of one material, which
  * an element belongs to; nodal values value[nq*n_node] recovered from

@@ -11,7 +11,8 @@
  * error of that mesh. In space, where the first errors do not resolve the
  * edges, later passes also redistribute unknowns: the same share holds for
  * them, and the error falls from the one before by the order of the element
- * size.
+ * size. Meshes with few elements across the body, a number that goes like
+ * N^(1/dim), count their error twice as there.
  *
  * CPU seconds of a pass: those of the stages of the fine run, each by its own
  * size. The factor and its solves go with N (1.2 and 1.05 in the plane, 1.75
@@ -49,6 +50,7 @@ typedef struct trial {
                   NULL; borrowed */
   int n_elem;
   int is_coarse; /* its estimate may have half of the error */
+  double depth;  /* elements across the body */
   aims *goals;   /* or NULL */
 } trial;
 
@@ -73,6 +75,7 @@ static status see_increment(void *ctx, const state *s) {
   t->energy = s->energy.strain;
   t->error = s->errors.mesh_error.relative;
   t->is_coarse = s->errors.mesh_error.why != NULL;
+  t->depth = s->errors.mesh_error.depth;
   if (t->eta != NULL) COPY(t->eta, s->errors.elem_error, t->n_elem);
   t->time = isfinite(s->errors.time_error.relative)
                 ? s->errors.time_error.relative
@@ -135,7 +138,7 @@ static int is_of_run(int s) {
 }
 
 /* As in target.c: the share of the increments in the target, the aim of the
- * mesh, the limit of a pass. */
+ * next pass, its limit. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, AIM = 0.93;
 static const double REACH = 8.0, FINEST = 0.25, FINEST_LAST = 0.1;
 static const double SHORTEST = 1.0 / 16;
@@ -163,6 +166,7 @@ typedef struct model_of_cost {
 /* Passes towards a target. */
 typedef struct course {
   double unknowns, error, time; /* of the last pass */
+  int is_coarse;                /* its mesh, as in trial */
   double times;                 /* the increments of the deck */
   double cpu;                   /* s, all passes */
 } course;
@@ -245,16 +249,27 @@ static void refine(const model_of_cost *c, double aim, course *at) {
   double error = c->fine.error * pow(c->fine.unknowns / at->unknowns, c->order);
   if (!first && moves) error = fmin(error, moved);
   at->error = fmin(error, at->error);
+  at->is_coarse = space_is_coarse(
+      c->fine.depth * pow(at->unknowns / c->fine.unknowns, 1.0 / c->dim));
+}
+
+static double error_of(const course *at) {
+  return target_at_most(at->error, at->is_coarse);
 }
 
 /* All passes to that error. */
 static course go(const model_of_cost *c, double goal) {
-  course at = {c->deck.unknowns, c->deck.error, c->deck.time, 1.0,
-               sum_of(&c->deck)};
-  for (int k = 1; at.error + at.time > goal && k < MOST_PASSES; ++k) {
+  course at = {.unknowns = c->deck.unknowns,
+               .error = c->deck.error,
+               .time = c->deck.time,
+               .is_coarse = c->deck.is_coarse,
+               .times = 1.0,
+               .cpu = sum_of(&c->deck)};
+  for (int k = 1; error_of(&at) + at.time > goal && k < MOST_PASSES; ++k) {
     int late = at.time > TIME_SHARE * goal;
     double mesh_goal = late ? MESH_SHARE * goal : goal - at.time;
-    if (at.error > mesh_goal) refine(c, AIM * mesh_goal, &at);
+    if (error_of(&at) > mesh_goal)
+      refine(c, target_next(at.error, at.is_coarse, mesh_goal), &at);
     if (late) {
       double shorter = fmax(AIM * TIME_SHARE * goal / at.time, SHORTEST);
       at.times /= shorter;
@@ -292,9 +307,26 @@ static void find_doubt(const model_of_cost *c, double error, const course *end,
   }
 }
 
-static void print_row(const model_of_cost *c, double error) {
-  course end = go(c, error);
-  const int there = !c->deck.is_coarse && c->deck.error + c->deck.time <= error;
+/* In 3-D, where a digit is expensive, the levels are closer. */
+static const double wanted_errors[] = {0.1,  0.07,  0.05, 0.03,
+                                       0.01, 0.003, 0.001};
+enum { N_WANTED = sizeof wanted_errors / sizeof *wanted_errors };
+
+/* Passes to a smaller error do too: those of coarse meshes leap. */
+static course cheapest(const model_of_cost *c, int level) {
+  course best = go(c, wanted_errors[level]);
+  for (int k = level + 1; k < N_WANTED; ++k) {
+    const course other = go(c, wanted_errors[k]);
+    if (other.cpu < best.cpu) best = other;
+  }
+  return best;
+}
+
+static void print_row(const model_of_cost *c, int level) {
+  const double error = wanted_errors[level];
+  const course end = cheapest(c, level);
+  const int there =
+      target_at_most(c->deck.error, c->deck.is_coarse) + c->deck.time <= error;
   if (end.unknowns > MOST_UNKNOWNS) {
     printf("  %8.3g %12s\n", 100 * error, "out of reach");
     return;
@@ -312,16 +344,11 @@ static void print_row(const model_of_cost *c, double error) {
   puts(there ? "  the mesh of the deck does" : "");
 }
 
-/* In 3-D, where a digit is expensive, the levels are closer. */
-static const double wanted_errors[] = {0.1,  0.07,  0.05, 0.03,
-                                       0.01, 0.003, 0.001};
-enum { N_WANTED = sizeof wanted_errors / sizeof *wanted_errors };
-
 static void print_table(const model_of_cost *c) {
   printf("  %8s %12s %12s %10s %12s %9s %9s\n", "error[%]", "unknowns",
          "increments*", "cpu[s]", "memory[MB]", "cpu:", "memory:");
   for (int k = 0; k < N_WANTED; ++k)
-    if (c->dim == 3 || k == 0 || k > 2) print_row(c, wanted_errors[k]);
+    if (c->dim == 3 || k == 0 || k > 2) print_row(c, k);
   printf(
       "  * times those of the deck. CPU of all passes of TARGET=. Behind cpu: "
       "and memory:\n    the factor within which they are expected\n"

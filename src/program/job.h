@@ -73,10 +73,16 @@ status job_solve_auto(const command *c, job_input *in, int *unsettled);
  */
 status target_reach(const command *c, job_input *in, int *unsettled);
 
-/* forecast.c, protis JOB --estimate-cost: run the job twice without results, on
- * a mesh twice as coarse as that of the deck and on that, and print estimated
- * unknowns, CPU seconds and memory for finer meshes and for errors from 10 % to
- * 0.1 %. ERR_DECK: no .geo to mesh again; the errors of history_run. */
+/* What a mesh has in error at most, -, by the estimate of one that is coarse
+ * (space_is_coarse) or not; the estimate that the next one is to have so that
+ * the goal is met. */
+double target_at_most(double estimate, int is_coarse);
+double target_next(double estimate, int is_coarse, double goal);
+
+/* forecast.c, protis JOB --estimate-cost: run the job without results on the
+ * mesh of the deck and on two finer ones (two more for *GOAL), and print
+ * estimated unknowns, CPU seconds and memory for errors from 10 % to 0.1 %.
+ * ERR_DECK: no mesh to refine; the errors of history_run. */
 status forecast_print(const command *c, job_input *in);
 
 /* lock.c: one job of a name in a folder at a time: JOB.lock, held by flock(),

@@ -88,9 +88,16 @@ static status see_increment(void *ctx, const state *s) {
   return OK;
 }
 
-/* What the mesh may have in error. */
+double target_at_most(double estimate, int is_coarse) {
+  return is_coarse ? COARSE * estimate : estimate;
+}
+
+double target_next(double estimate, int is_coarse, double goal) {
+  return fmin(AIM * goal, is_coarse ? FINER * estimate : HUGE_VAL);
+}
+
 static double at_most(const pass *p) {
-  return p->coarse ? COARSE * p->mesh : p->mesh;
+  return target_at_most(p->mesh, p->coarse);
 }
 
 static double total(const pass *p) { return at_most(p) + p->time + p->solver; }
@@ -125,8 +132,7 @@ static int norm_wants_mesh(const pass *p) {
 /* Sizes of the next mesh, and the factor by which the unknowns grow. */
 static status find_sizes(pass *p, double *factor) {
   const mesh *msh = p->in->msh;
-  const double most = p->coarse ? FINER * p->mesh : HUGE_VAL,
-               wanted = fmin(AIM * mesh_goal(p), most);
+  const double wanted = target_next(p->mesh, p->coarse, mesh_goal(p));
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;

@@ -100,6 +100,7 @@ typedef struct error_share {
   double relative; /* -, of the energy norm of the solution; NAN: unknown */
   double cpu;      /* s, CPU time for it so far */
   const char *why; /* why it is zero, unknown or too small; or NULL */
+  double depth;    /* -, of the mesh: elements across the body */
 } error_share;
 
 /* *SOLVER, TOL=BALANCED: where the solver stopped, and what that saved against

@@ -69,8 +69,9 @@ static status estimate(run *r, void *self) {
   PASS_TIMED(STAGE_MESH_ERROR, space_estimate(own->recovery, r->result.stress,
                                               own->elem_error, &found));
   r->errors.mesh_error.relative = found.relative;
+  r->errors.mesh_error.depth = space_depth(own->recovery);
   r->errors.mesh_error.why =
-      found.relative > EXACT && space_is_coarse(own->recovery)
+      found.relative > EXACT && space_is_coarse(r->errors.mesh_error.depth)
           ? "few nodes inside the body: it may be twice as large"
           : NULL;
   double whole = hypot(found.norm, found.error);

@@ -383,7 +383,8 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
 static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   space_recovery *recovery;
   PASS(recover(r, own, &recovery));
-  if (out->verdict != GOAL_RELIABLE || !space_is_coarse(recovery)) return OK;
+  if (out->verdict != GOAL_RELIABLE || !space_is_coarse(space_depth(recovery)))
+    return OK;
   out->verdict = GOAL_COARSE;
   out->band += fabs(out->error);
   return OK;

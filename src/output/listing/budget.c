@@ -45,12 +45,14 @@ static error_share time_share(const increment_summary *i) {
 
 static error_share true_share(const increment_summary *i) {
   int asked = i->exact.asked && !isnan(i->exact.energy);
-  return (error_share){asked, i->exact.energy, i->exact.cpu, NULL};
+  return (error_share){
+      .asked = asked, .relative = i->exact.energy, .cpu = i->exact.cpu};
 }
 
 static error_share solver_share(const increment_summary *i) {
   const error_bound *e = &i->error;
-  return (error_share){e->asked, e->relative, e->cpu, e->why};
+  return (error_share){
+      .asked = e->asked, .relative = e->relative, .cpu = e->cpu, .why = e->why};
 }
 
 int job_path_counts(const model *m) {
