@@ -143,6 +143,44 @@ void mirrors_find(const surface_input *in, mirrors *out) {
   }
 }
 
+/* Length of what is fixed of a unit normal. */
+static double fixed_part(int dim, unsigned fixed, const double *n) {
+  double square = 0.0;
+  for (int c = 0; c < dim; ++c)
+    if (fixed >> c & 1) square += n[c] * n[c];
+  return sqrt(square);
+}
+
+static int has_node(const mesh *m, int face_id, int node_id) {
+  for (int k = 0; k < m->dim; ++k)
+    if (m->face[m->dim * face_id + k] == node_id) return 1;
+  return 0;
+}
+
+/* The most that faces at the nodes of a face lean. */
+static double most_beside(const mesh *m, const mesh_group *g, int face_id,
+                          unsigned fixed) {
+  double most = 0.0, n[3];
+  for (int k = 0; k < g->n_item; ++k)
+    for (int a = 0; a < m->dim; ++a) {
+      if (!has_node(m, g->item_id[k], m->face[m->dim * face_id + a])) continue;
+      mesh_face_normal(m, g->item_id[k], n);
+      most = fmax(most, fixed_part(m->dim, fixed, n));
+    }
+  return most;
+}
+
+int mirrors_bend(const mesh *m, const mesh_group *g, int node_id,
+                 unsigned fixed, const double *n) {
+  static const double bent =
+      1.5; /* 2 on a curve of equal edges, 1 on a plane */
+  double most = 0.0;
+  for (int k = 0; k < g->n_item; ++k)
+    if (has_node(m, g->item_id[k], node_id))
+      most = fmax(most, most_beside(m, g, g->item_id[k], fixed));
+  return most >= bent * fixed_part(m->dim, fixed, n);
+}
+
 int mirrors_have(const mirrors *s, const surface_input *in, int node_id) {
   const double *x = &in->mesh->x[(size_t)in->mesh->dim * (size_t)node_id];
   const double near = rounding * in->mesh->size;

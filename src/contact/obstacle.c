@@ -129,7 +129,7 @@ static double direction_to_shape(const obstacle *o, int dim, const double *y,
 
 int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
   double d[3], y[3] = {0, 0, 0}, v[3] = {0, 0, 0}, unused[3] = {0, 0, 0};
-  if (obstacle_follows(o)) return 0;
+  if (o->shape == OBSTACLE_CONFORMING || o->shape == OBSTACLE_GAP) return 0;
   for (int c = 0; c < dim; ++c) y[c] = x[c];
   obstacle_motion(o, 0, d);
   if (o->turns) turn_back(o, y, 0, d, unused);
@@ -139,10 +139,6 @@ int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
   if (o->turns) turn(o->axis, obstacle_angle(o, 0), v);
   for (int c = 0; c < dim; ++c) n[c] = v[c] / length;
   return 1;
-}
-
-int obstacle_follows(const obstacle *o) {
-  return o->shape == OBSTACLE_CONFORMING || o->shape == OBSTACLE_GAP;
 }
 
 int obstacle_moves(const obstacle *o) {

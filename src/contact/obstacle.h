@@ -73,6 +73,4 @@ double obstacle_tilt(const obstacle *o, double t);
 void obstacle_drift(const obstacle *o, int dim, const double *x,
                     const double *n, double t0, double t, double *d);
 /* 1 if the gap can change with time. */
-/* 1: the gap is given along the body, not by a shape at its place. */
-int obstacle_follows(const obstacle *o);
 int obstacle_moves(const obstacle *o);

@@ -23,17 +23,17 @@ static const double rounding = 1e-9;
 /* The sine of the angle between the normals of body and obstacle where they
  * touch that is worth a note. */
 static const double told_sine = 1e-3;
-/* Of a contact force, what supports may take unseen. */
-static const double told_share = 0.01;
+/* 1 - the cosine of the angle between a contact with friction and what supports
+ * hold that is worth a warning: 0.05 rad. */
+static const double told_lean = 1.25e-3;
 
 typedef struct candidate {
   int node_id, pair_id;
   int row; /* of a pair: in its coupling */
   int left_out;
   double normal[3]; /* [dim] sum of w n, then the unit normal */
-  double lean[3];   /* [dim] the normal before over its part along that after
-                       supports */
-  double held;      /* 1 - what supports leave of the normal's length */
+  double across[3]; /* [dim] its part that supports leave, of unit length */
+  int leans;        /* 1: they differ, not at a plane of symmetry */
   double area;      /* m2 */
   double gap;       /* at time 0, m */
   int also;         /* of a pair: another candidate, with another master side by
@@ -383,18 +383,20 @@ static int take_obstacle_normal(const builder *b, candidate *c) {
          -PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
 
-/* 1: the obstacle has a normal of its own there, of which supports hold a part:
- * it is not that of its image. */
+/* 1: the contact leans where it meets a plane of symmetry: the obstacle, if it
+ * has a normal of its own, else the body, if it does not bend. */
 static int leans(const builder *b, const candidate *c) {
   static const double told = 1e-6; /* -, of its length: an angle of 1.4e-3 */
   const contact_pair *p = &b->in->pairs[c->pair_id];
+  const unsigned fixed = b->in->fixed[c->node_id];
   double n[3];
-  return p->support != NULL &&
-         obstacle_normal(p->support, b->dim, row_of(b, c).x, n) &&
-         1.0 - frame_project(b->dim, b->in->fixed[c->node_id], n) > told;
+  if (p->support == NULL ||
+      !obstacle_normal(p->support, b->dim, row_of(b, c).x, n))
+    return !mirrors_bend(b->in->mesh, p->group, c->node_id, fixed, c->normal);
+  return 1.0 - frame_project(b->dim, fixed, n) > told;
 }
 
-/* Unit normal orthogonal to the fixed components, or left out. */
+/* Unit normal and its part orthogonal to the fixed components, or left out. */
 static void orient(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
@@ -410,21 +412,22 @@ static void orient(builder *b, candidate *c) {
     return;
   }
   unsigned fixed = b->in->fixed[c->node_id];
-  COPY(c->lean, c->normal, 3);
-  double left = frame_project(b->dim, fixed, c->normal);
-  if (mirrors_have(&b->mirrors, b->in, c->node_id) && !leans(b, c))
-    COPY(c->lean, c->normal, 3);
-  else
-    c->held = 1.0 - left;
-  const double along = dot(b->dim, c->lean, c->normal);
-  for (int k = 0; k < b->dim && along > 0.0; ++k) c->lean[k] /= along;
+  frame_project(b->dim, 0, c->normal);
+  COPY(c->across, c->normal, 3);
+  const double left = frame_project(b->dim, fixed, c->across);
+  double held = 0.0;
+  for (int k = 0; k < b->dim; ++k)
+    if (fixed >> k & 1) held = fmax(held, fabs(c->normal[k]));
+  c->leans = held > rounding &&
+             !(mirrors_have(&b->mirrors, b->in, c->node_id) && !leans(b, c));
+  if (!c->leans) COPY(c->normal, c->across, 3);
   if (left > PAIR_FIXED_SINE) return;
   c->left_out = 1;
   if (t->n_fixed++ == 0) t->fixed_node = c->node_id;
 }
 
-/* What supports hold of the normal: of the obstacle's, or of the body's where
- * the obstacle has none of its own. */
+/* 1 - the length that supports leave of the normal: of the obstacle's, or of
+ * the body's where the obstacle has none of its own. */
 static void note_held(const builder *b, const candidate *c, double held) {
   tally *t = &b->tallies[c->pair_id];
   if (held > t->held) t->held = held, t->held_node = c->node_id;
@@ -437,10 +440,14 @@ static void compare_normals(const builder *b, const candidate *c) {
   const surface_row at = row_of(b, c);
   double n[3], square = 0;
   if (p->support == NULL || !obstacle_normal(p->support, b->dim, at.x, n)) {
-    note_held(b, c, c->held);
+    if (c->leans) note_held(b, c, 1.0 - dot(b->dim, c->normal, c->across));
     return;
   }
-  note_held(b, c, 1.0 - frame_project(b->dim, b->in->fixed[c->node_id], n));
+  double across[3];
+  memcpy(across, n, sizeof n);
+  note_held(b, c,
+            1.0 - frame_project(b->dim, b->in->fixed[c->node_id], across));
+  if (!c->leans) memcpy(n, across, sizeof n);
   if (fabs(c->gap) > rounding * b->in->mesh->size) return;
   double cosine = dot(b->dim, n, c->normal);
   for (int k = 0; k < b->dim; ++k) {
@@ -487,14 +494,25 @@ static void measure(builder *b, candidate *c) {
   }
 }
 
+/* The normals of a corner are across what supports hold. */
+static void stand_upright(candidate *c) {
+  COPY(c->normal, c->across, 3);
+  c->leans = 0;
+}
+
 /* Move the candidates of one node that stay to kept[]; their number. */
 static int gather(builder *b, int first, int end, const candidate **kept) {
   int n = 0;
+  int n_oriented = 0;
   merge_smooth(b, first, end);
   merge_masters(b, first, end);
   for (int i = first; i < end; ++i) {
+    if (!b->list[i].left_out) orient(b, &b->list[i]);
+    n_oriented += !b->list[i].left_out;
+  }
+  for (int i = first; i < end; ++i) {
     candidate *c = &b->list[i];
-    if (!c->left_out) orient(b, c);
+    if (n_oriented > 1 && c->leans) stand_upright(c);
     if (!c->left_out) measure(b, c);
     if (c->left_out) continue;
     compare_normals(b, c);
@@ -512,29 +530,17 @@ static int set_frame(builder *b, contact_surface *s, int i, int n_kept,
   double *frame = &s->frame[dim * dim * i];
   unsigned fixed = b->in->fixed[node_id] & ((1u << dim) - 1);
   for (int k = 0; k < n_kept && k < dim; ++k)
-    memcpy(frame + dim * k, kept[k]->normal, (size_t)dim * sizeof *frame);
+    memcpy(frame + dim * k, kept[k]->across, (size_t)dim * sizeof *frame);
   bad = bad || frame_complete(dim, n_kept, fixed, frame, &s->held[dim * i]) < 0;
+  memcpy(frame, kept[0]->normal, (size_t)dim * sizeof *frame);
   tally *t = &b->tallies[kept[bad ? 1 : 0]->pair_id];
   if (bad && t->n_dependent++ == 0) {
     t->dependent_node = node_id;
     t->dependent_on = kept[0]->pair_id;
   }
-  frame_invert(dim, n_kept == 1 || bad, frame, &s->basis[dim * dim * i]);
+  frame_invert(dim, (n_kept == 1 && !kept[0]->leans) || bad, frame,
+               &s->basis[dim * dim * i]);
   return bad;
-}
-
-/* Of a node with one normal: rows that supports hold and the normal is not
- * orthogonal to. */
-static status set_lean(const builder *b, const candidate *c, int i,
-                       contact_surface *s) {
-  const int dim = b->dim;
-  for (int a = 1; a < dim; ++a) {
-    const double lean = dot(dim, c->lean, &s->frame[dim * (dim * i + a)]);
-    if (!s->held[dim * i + a] || fabs(lean) <= rounding) continue;
-    if (s->lean == NULL) PASS_NEW(s->lean, dim * b->n);
-    s->lean[dim * i + a] = lean;
-  }
-  return OK;
 }
 
 /* A corner has no friction: noted for each of its contacts. */
@@ -584,7 +590,6 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
   s->area[i] = c->area;
   s->gap0[i] = c->gap;
   if (!set_frame(b, s, i, n_kept, kept)) note_corner(b, n_kept, kept);
-  if (n_kept == 1) PASS(set_lean(b, c, i, s));
   return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
@@ -635,12 +640,12 @@ static void say(const builder *b, int pair_id) {
                 "contact forces acts along the obstacle",
                 p->name, p->support->name, asin(fmin(t->sine, 1)),
                 describe(m, t->turned_node).text);
-  if (t->held > told_share)
+  if (p->friction && t->held > told_lean)
     message_add(b->log, P4022, &p->at,
-                "%s %s: supports hold a part of the normal at %s: only %.3g of "
-                "a contact force acts, also for friction, at %s",
-                p->card, p->name, partner(p).text, 1.0 - t->held,
-                describe(m, t->held_node).text);
+                "%s %s: supports hold nodes in a direction that leans by %.2g "
+                "rad from %s: their friction acts along it, at %s",
+                p->card, p->name, acos(fmax(1.0 - t->held, 0.0)),
+                partner(p).text, describe(m, t->held_node).text);
   if (t->n_corner > 0)
     message_add(b->log, P4005, &p->at,
                 "%s %s: %d node(s) may touch a second obstacle and have no "
@@ -780,7 +785,7 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
 void surface_free(contact_surface *s) {
   if (s == NULL) return;
   if (s->master != NULL) links_release(s->master);
-  RELEASE(s->master, s->lean, s->apart, s->share, s->covered, s->lever,
-          s->node_id, s->node_no, s->contact_id, s->side_id, s->x, s->area,
-          s->side_area, s->frame, s->basis, s->gap0, s->held, s);
+  RELEASE(s->master, s->apart, s->share, s->covered, s->lever, s->node_id,
+          s->node_no, s->contact_id, s->side_id, s->x, s->area, s->side_area,
+          s->frame, s->basis, s->gap0, s->held, s);
 }

@@ -22,24 +22,23 @@ typedef struct contact_surface {
   double *side_area;   /* [n*(dim-1)] the same of side_id, 0 where it is -1 */
   double *frame;       /* [dim*dim*n] rows n, t1[, t2]: a = frame u; orthonormal
                           except where side_id >= 0 (then that row is the normal
-                          of the second obstacle) */
+                          of the second obstacle) or held (then that row is what
+                          supports hold, oblique to a normal that leans) */
   double *basis;       /* [dim*dim*n] its inverse: u = basis a, column major */
   double *gap0;        /* [n] gap along the normal at time 0, m */
   unsigned char *held; /* [dim*n] 1: this contact unknown is prescribed by
                         *BOUNDARY (never the normal one) */
-  double *lean;       /* [dim*n] of a held row: the contact normal along it over
-                         that along row 0, -; NULL: all are orthogonal */
-  node_links *master; /* row q: contact node q, whose unknowns are relative to
-                         the master surface of a pair; NULL: no pair */
-  double *share;      /* [dim*n] a row is divided by it: unknowns are averages
-                         over what a slave node carries, for neighbours without
-                         a multiplier too, -; NULL: no pair */
-  double *covered;    /* [n] part of the faces around the node that its normal
-                         force acts on, -; NULL: no pair */
-  double *lever;      /* [dim*dim*n] where the resultant of a row acts, m;
-                         NULL: no pair */
-  double *apart;      /* [dim*n] gap to the master along the rows that are
-                         normals of pairs, at time 0, m; NULL: no pair */
+  node_links *master;  /* row q: contact node q, whose unknowns are relative to
+                          the master surface of a pair; NULL: no pair */
+  double *share;       /* [dim*n] a row is divided by it: unknowns are averages
+                          over what a slave node carries, for neighbours without
+                          a multiplier too, -; NULL: no pair */
+  double *covered;     /* [n] part of the faces around the node that its normal
+                          force acts on, -; NULL: no pair */
+  double *lever;       /* [dim*dim*n] where the resultant of a row acts, m;
+                          NULL: no pair */
+  double *apart;       /* [dim*n] gap to the master along the rows that are
+                          normals of pairs, at time 0, m; NULL: no pair */
 } contact_surface;
 
 /* A *CONTACT or *CONTACT PAIR as the surface sees it. */
@@ -142,10 +141,6 @@ status surface_forces(const contact_surface *s, int n_node, const double *F,
 /* What row a of contact node i is divided by, -. */
 static inline double surface_share(const contact_surface *s, int i, int a) {
   return s->share == NULL ? 1.0 : s->share[s->dim * i + a];
-}
-/* What a force along the normal of contact node i has along row a, of it. */
-static inline double surface_lean(const contact_surface *s, int i, int a) {
-  return s->lean == NULL ? 0.0 : s->lean[s->dim * i + a];
 }
 /* Where the force of row a of contact node i acts, [dim] m. */
 static inline const double *surface_place(const contact_surface *s, int i,

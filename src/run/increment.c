@@ -247,28 +247,10 @@ static status load_at(run *r, double t) {
   return load_prescribed(r->m, r->msh, r->step, t, r->loads.start, r->loads.ud);
 }
 
-/* Supports that move a node along a row to which the contact normal is not
- * orthogonal open the gap, or close it. Planes and circles are measured where
- * they have moved to; what follows the body is met by what it has moved by. */
-static void move_leaning(const run *r) {
-  const contact_surface *s = r->surface;
-  const int dim = s->dim;
-  for (int k = 0; s->lean != NULL && k < dim * s->n; ++k) {
-    const contact_pair *p = &r->faces.pairs[s->contact_id[k / dim]];
-    if (s->lean[k] == 0.0) continue;
-    double by =
-        surface_prescribed(s, r->body.fixed, r->loads.ud, k / dim, k % dim);
-    if (p->support != NULL && obstacle_follows(p->support))
-      by -= run_drift(&r->now, k);
-    r->problem.gap[k / dim] -= s->lean[k] * by;
-  }
-}
-
 static status pose_contact(run *r, double t) {
   PASS_TIMED(STAGE_SURFACE, surface_gap(r->surface, &r->faces.input, t,
                                         r->problem.gap, r->problem.side_gap));
   PASS(effects_pose(r, t));
-  move_leaning(r);
   set_problem(r);
   return OK;
 }

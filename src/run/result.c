@@ -82,9 +82,7 @@ static void find_carried(run *r, int i, double still) {
   const double length = carried_slip(r, k, still, slip);
   double *force = &r->now.rc[k], size = 0.0;
   for (int a = 0; a < tangents; ++a) {
-    force[a] = length > 0.0 ? -slip[a]
-               : fresh      ? 0.0
-                            : run_friction(r, &r->old, k + a);
+    force[a] = length > 0.0 ? -slip[a] : fresh ? 0.0 : r->old.rc[k + a];
     size = hypot(size, force[a]);
   }
   for (int a = 0; a < tangents && (length > 0.0 || size > g); ++a)
@@ -98,31 +96,12 @@ double run_still(const run *r) {
          4.0 * DBL_EPSILON * r->msh->size;
 }
 
-double run_friction(const run *r, const equilibrium *e, int k) {
-  const int dim = r->msh->dim, i = k / dim;
-  return e->rc[k] - surface_lean(r->surface, i, k % dim) * e->rc[dim * i];
-}
-
-/* The part of the normal force of node i that supports bear, with the friction
- * that they bear; contact_solve leaves them zero. */
-static void lean(run *r, int i) {
-  const int dim = r->msh->dim,
-            borne = r->result.g != NULL && is_carried(r->surface, i);
-  for (int a = 1; a < dim; ++a) {
-    double *force = &r->now.rc[dim * i + a];
-    if (!r->surface->held[dim * i + a]) continue;
-    *force = (borne ? *force : 0.0) +
-             surface_lean(r->surface, i, a) * r->now.rc[dim * i];
-  }
-}
-
 /* Forces of contact nodes that are no unknowns, as supports bear them. */
 static void find_borne(run *r) {
   const int rubs = r->result.g != NULL && surface_has_held(r->surface);
   const double still = rubs ? run_still(r) : 0.0;
   for (int i = 0; i < r->nodes.n && rubs; ++i)
     if (is_carried(r->surface, i)) find_carried(r, i, still);
-  for (int i = 0; i < r->nodes.n && r->surface->lean != NULL; ++i) lean(r, i);
 }
 
 /* Slip against the obstacle, gap left, status. */
@@ -274,9 +253,8 @@ static status find_energies(run *r) {
       work += 0.5 * (a->rc[k] + b->rc[k]) * (b->uc[k] - a->uc[k]);
       /* The side of a corner is a second obstacle, no friction. */
       if (c == 0 || r->surface->side_id[(dim - 1) * i + c - 1] >= 0) continue;
-      friction -= 0.5 * (run_friction(r, a, k) + run_friction(r, b, k)) *
-                  run_motion_over(r, k);
-      e.friction_end -= run_friction(r, b, k) * slip_of(r, k);
+      friction -= 0.5 * (a->rc[k] + b->rc[k]) * run_motion_over(r, k);
+      e.friction_end -= b->rc[k] * slip_of(r, k);
     }
   }
   e.friction += friction;

@@ -427,9 +427,6 @@ double run_motion_over(const run *r, int k);
 /* Motion that is rounding of displacements and places, m: to it comes that of
  * the motions it is the difference of. */
 double run_still(const run *r);
-/* Friction of contact unknown k: its force without what supports bear of the
- * normal one there, N. */
-double run_friction(const run *r, const equilibrium *e, int k);
 /* Energies of e as those the run starts with. */
 void result_start(run *r, equilibrium *e);
 /* r->now becomes r->old. */

@@ -8,6 +8,55 @@
 #include <math.h>
 #include <string.h>
 
+/* Two wedges without friction on each other, the lower one held at its right
+ * side and its foot, the upper one at its left side: action is reaction, and
+ * the supports bear the slope of the load. */
+START_TEST(wedges_between_walls_bear_the_slope_of_the_load) {
+  const double slope = 0.1, load = 5.0;
+  job j = job_begin("wedges");
+  job_write(&j, "wedges.geo",
+            "Macro Quad\n"
+            "  q = newp; Point(q) = {0, y[0], 0}; Point(q+1) = {1, y[1], 0};\n"
+            "  Point(q+2) = {1, y[2], 0}; Point(q+3) = {0, y[3], 0};\n"
+            "  l = newl; For i In {0:3}\n"
+            "    Line(l+i) = {q+i, q+(i+1)%%4};\n"
+            "    Transfinite Curve{l+i} = n + 1;\n  EndFor\n"
+            "  Curve Loop(l) = {l:l+3}; Plane Surface(l) = {l};\n"
+            "  Transfinite Surface{l};\nReturn\n"
+            "y[] = {-1, -1, %g, 0}; n = 4;\nCall Quad;\na = l;\n"
+            "y[] = {0, %g, 1, 1}; n = 3;\nCall Quad;\nb = l;\n"
+            "Physical Surface(\"LOWER\") = {a};\n"
+            "Physical Surface(\"UPPER\") = {b};\n"
+            "Physical Curve(\"FOOT\") = {a};\n"
+            "Physical Curve(\"RIGHT\") = {a+1};\n"
+            "Physical Curve(\"UNDER\") = {a+2};\n"
+            "Physical Curve(\"OVER\") = {b};\n"
+            "Physical Curve(\"TOP\") = {b+2};\n"
+            "Physical Curve(\"LEFT\") = {b+3};\n",
+            slope, slope);
+  job_write(&j, "wedges.inp",
+            "*MESH, FILE=wedges.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=%s\nUNDER, OVER\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nFOOT, 2\nRIGHT, 1\nLEFT, 1\n*DSLOAD\nTOP, P, %g\n"
+            "*PRINT, TOTALS, NODES, REACTIONS\n*END STEP\n",
+            _i ? "SECOND" : "FIRST", load);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat all = job_table(&j, "TOTALS", -1), s = job_table(&j, "REACTIONS", -1);
+  ck_assert_double_eq_tol(dat_sum(&s, "reaction_x"), 0.0, 1e-11);
+  ck_assert_double_eq_tol(fabs(dat_at(&all, 0, "force_x")), slope * load,
+                          1e-11);
+  ck_assert_double_eq_tol(dat_sum(&s, "reaction_y"), load, 1e-11);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "normal"), load * hypot(1, slope),
+                          1e-11);
+  ck_assert_double_eq_tol(dat_at(&all, 0, "tangential"), 0.0, 1e-11);
+  dat_free(&all);
+  dat_free(&s);
+  job_end(&j);
+}
+END_TEST
+
 /* A slider that its side, or all of it, drives over an elastic body drags it by
  * mu N; two bodies held along the contact wear by their motion, whichever is
  * the slave. */
@@ -113,6 +162,8 @@ END_TEST
 int main(void) {
   TCase *tests = tcase_create("pair_supports");
   tcase_set_timeout(tests, UNIT_SECONDS);
+  tcase_add_loop_test(tests, wedges_between_walls_bear_the_slope_of_the_load, 0,
+                      2);
   tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 8);
   tcase_add_loop_test(tests, blocks_slide_past_a_wall, 0, 6);
   return unit_run("pair_supports", tests);

@@ -202,10 +202,11 @@ START_TEST(a_restart_at_the_end_loses_no_line) {
 END_TEST
 
 /* The slanted side of a triangle on a conforming obstacle: where its end at
- * (1, 0) is held in x, 0.707 of a force is left; y = 0, a side that is held as
- * a whole, is a mirror, which takes nothing. */
-START_TEST(a_held_part_of_the_bodys_normal_is_told) {
-  for (int axis = 1; axis <= 2; ++axis) {
+ * (1, 0) is held in x or y: its friction acts along that, 45 degrees from the
+ * side. */
+START_TEST(friction_along_a_held_direction_is_told) {
+  for (int k = 0; k < 4; ++k) {
+    const int axis = 1 + k % 2, rubs = k / 2;
     job j = job_begin("slope");
     job_write(&j, "slope.msh",
               "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n"
@@ -216,13 +217,13 @@ START_TEST(a_held_part_of_the_bodys_normal_is_told) {
               "*MESH, FILE=slope.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., .3\n"
               "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
               "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
-              "*CONTACT, NAME=FOOT, GROUP=SIDE, OBSTACLE=O\n"
+              "*CONTACT, NAME=FOOT, GROUP=SIDE, OBSTACLE=O\n%s"
               "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, %d\n"
               "*DSLOAD\nBOTTOM, P, 1.\n*END STEP\n",
-              axis);
+              rubs ? "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.1\n" : "", axis);
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
-    ck_told(&j, "P4022", "only 0.707 of a contact force acts", axis == 1);
-    ck_told(&j, "P4022", "at node 2 at (1, 0)", axis == 1);
+    ck_told(&j, "P4022", "leans by 0.79 rad from obstacle O", rubs);
+    ck_told(&j, "P4022", "at node 2 at (1, 0)", rubs);
     job_end(&j);
   }
 }
@@ -236,7 +237,7 @@ int main(void) {
   tcase_add_test(tests, a_contact_that_never_touched_is_told);
   tcase_add_test(tests, a_touch_of_an_increment_that_does_not_count_is_one);
   tcase_add_test(tests, what_goes_on_from_a_miss_says_so);
-  tcase_add_test(tests, a_held_part_of_the_bodys_normal_is_told);
+  tcase_add_test(tests, friction_along_a_held_direction_is_told);
   tcase_add_test(tests, the_first_touch_is_told);
   tcase_add_loop_test(tests, a_restart_at_the_end_loses_no_line, 0, 2);
   return unit_run("warnings", tests);

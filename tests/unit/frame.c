@@ -119,9 +119,30 @@ START_TEST(dependent_normals_are_refused) {
 }
 END_TEST
 
+/* Faces from x = 0, lengths in the ratio "grow", on a parabola or a slope. */
+START_TEST(parabola_bends_at_its_axis_a_slope_does_not) {
+  static const double grow[] = {0.25, 1.0, 4.0};
+  for (int k = 0; k < 6; ++k) {
+    double x[10] = {0.0}, n[3], h = 0.1;
+    int face[8], id[4];
+    for (int i = 0; i < 4; ++i, h *= grow[k / 2]) {
+      x[2 * i + 2] = x[2 * i] + h;
+      x[2 * i + 3] = 0.1 * (k % 2 ? x[2 * i + 2] : pow(x[2 * i + 2], 2));
+      face[2 * i] = i, face[2 * i + 1] = i + 1, id[i] = i;
+    }
+    const mesh m = {.dim = 2, .n_node = 5, .x = x, .n_face = 4, .face = face};
+    const mesh_group g = {.dim = 1, .n_item = 4, .item_id = id};
+    mesh_face_normal(&m, 0, n);
+    ck_assert_int_eq(mirrors_bend(&m, &g, 0, 1, n), k % 2 == 0);
+    ck_assert_int_eq(mirrors_bend(&m, &g, 0, 3, n), 0);
+  }
+}
+END_TEST
+
 UNIT_MAIN("frame", one_normal_gives_a_right_handed_orthonormal_frame,
           tangent_of_the_plane_is_the_normal_turned_left,
           fixed_components_leave_the_normal_and_become_tangents,
           what_is_left_of_a_fixed_normal_is_measured,
           corner_frames_are_inverted, edge_along_a_fixed_axis_is_held_along_it,
-          dependent_normals_are_refused)
+          dependent_normals_are_refused,
+          parabola_bends_at_its_axis_a_slope_does_not)

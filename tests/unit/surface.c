@@ -1,7 +1,5 @@
-/*
- * src/contact/surface.c on boundary meshes made by hand: closed forms of
- * areas, normals and gaps, corners, fixed nodes and every message.
- */
+/* src/contact/surface.c on boundary meshes made by hand: closed forms of areas,
+ * normals and gaps, corners, fixed nodes and every message. */
 #include "base/memory.h"
 #include "contact/surface.h"
 #include "support/formula.h"
@@ -278,9 +276,11 @@ START_TEST(fixed_direction_is_held_as_tangent) {
   c.fixed[4] = c.fixed[add_node(&c, 1, 1, 0)] = 1;
   add_contact(&c, "FOOT", 0, 4);
   ck_assert_int_eq(build(&c), OK);
-  static const double frame[] = {0, -1, 1, 0};
-  for (int k = 0; k < 4; ++k)
-    ck_assert_double_eq(c.s->frame[4 * 4 + k], frame[k]);
+  const double x = 0.1 / hypot(0.1, 0.25), y = -2.5 * x; /* of its face */
+  const double both[] = {x, y, 1, 0, 0, 1 / y, 1, -x / y};
+  for (int k = 0; k < 8; ++k)
+    ck_assert_double_eq_tol((k < 4 ? c.s->frame : c.s->basis)[16 + k % 4],
+                            both[k], 1e-15);
   for (int i = 0; i < c.s->n; ++i) {
     ck_assert_int_eq(c.s->held[2 * i], 0);
     ck_assert_int_eq(c.s->held[2 * i + 1], i == 4);

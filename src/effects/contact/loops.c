@@ -47,10 +47,9 @@ static status find_loops(run *r, void *self) {
         l->way[a] += s->area[k] * (run_drift(&r->now, c) - l->way[a]) / weight;
         l->mean_u_t[a] += s->area[k] * (r->now.uc[c] - l->mean_u_t[a]) / weight;
         if (s->side_id[(dim - 1) * k + a] >= 0) continue;
-        const double now = run_friction(r, &r->now, c);
-        const double mean = 0.5 * (run_friction(r, &r->old, c) + now);
+        const double mean = 0.5 * (r->old.rc[c] + r->now.rc[c]);
         l->friction -= mean * run_motion_over(r, c);
-        l->friction_end -= now * run_motion_over(r, c);
+        l->friction_end -= r->now.rc[c] * run_motion_over(r, c);
       }
     }
   }
