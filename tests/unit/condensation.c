@@ -253,7 +253,12 @@ START_TEST(condensed_matrix_is_the_schur_complement) {
       else
         ck_assert(B[i + m * j] > 0 && B[i + m * j] <= scale * (1 + 1e-12));
     }
-  ck_assert_int_eq((int)condensed_info(c).unknowns, p.ni + p.nc);
+  const condense_info info = condensed_info(c);
+  ck_assert_int_eq((int)info.unknowns, p.ni + p.nc);
+  /* Reals of the matrix and the factor, whose places take no more than they. */
+  const double reals = (double)(m * m), factor = (double)info.factor_entries;
+  ck_assert_double_ge((double)info.bytes, 8 * (reals + factor));
+  ck_assert_double_le((double)info.bytes, 8 * (reals + 2 * factor));
   ck_assert_double_gt(condensed_condition(c), 1);
   free(A);
   release(&p);
