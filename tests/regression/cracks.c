@@ -339,7 +339,8 @@ START_TEST(creeping_body_with_supports_that_move_has_no_K) {
             "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
             "*CRACK, NAME=C, GROUP=LINE\n"
             "*STEP\n*STATIC\n*BOUNDARY\nPIN, 1, 1\nBOTTOM, 2\n"
-            "TOP, 2, 2, 0.01\n*PRINT, SIF\n*OUTPUT, HDF5=NO\n*END STEP\n"
+            "TOP, 2, 2, 1E-5\n*DSLOAD\nRIGHT, P, -1.\nLEFT, P, -1.\n"
+            "*PRINT, SIF\n*OUTPUT, HDF5=NO\n*END STEP\n"
             "*STEP\n*VISCO, INTEGRATOR=RK4\n0.5, 1.\n*END STEP\n");
   int code = job_run(&j, "--no-timing");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
