@@ -125,12 +125,16 @@ START_TEST(small_thermal_strain_is_left_out) {
                        "",
                        0.2,
                        NULL};
-  scene above = small, large = small;
+  scene above = small, large = small, beside = small;
   above.loads = "*TEMPERATURE\nBODY, 2.5D-3\n";
   large.loads = "*TEMPERATURE\nBODY, 1.D-2\n";
   compare(&small, "thermal strain", 1, 1e-3);
   compare(&above, "thermal strain", -1, 1e-12);
   stays(&large, "thermal strain");
+  /* Heat is taken back, the law is not. */
+  beside.material = "*EXPANSION\n1.2D-5\n*INELASTIC, LAW=MAXWELL\n1.D6\n";
+  beside.loads = above.loads;
+  compare(&beside, "inelastic strain", 1, 1e-5);
 }
 END_TEST
 
