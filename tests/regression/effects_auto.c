@@ -177,6 +177,10 @@ START_TEST(slow_relaxation_is_left_out) {
   fast.material = "*INELASTIC, LAW=MAXWELL\n1.D2\n";
   compare(&slow, "inelastic strain", 1, 1e-3);
   stays(&fast, "inelastic strain");
+  /* What has crept before stays with its law. */
+  scene crept = slow;
+  crept.law = "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 1, 1.E-6\n";
+  stays(&crept, "inelastic strain");
 }
 END_TEST
 
