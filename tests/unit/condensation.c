@@ -435,8 +435,8 @@ static scene *weakly_held(void) {
 static scene *one_node(void) {
   scene *s =
       scene_new(make_grid_2d((int[]){1, 1}, (double[]){1, 1}), PLANE_STRAIN, 1);
-  for (int i = 1; i < 4; ++i)
-    for (int c = 0; c < 2; ++c) scene_fix_node(s, i, c);
+  for (int i = 0; i < 4; ++i)
+    for (int c = 0; c < 2 && i != 1; ++c) scene_fix_node(s, i, c);
   return s;
 }
 
