@@ -234,7 +234,7 @@ static job run_norton(double load, double total) {
             "*DSLOAD\nTOP, P, %g\nBOTTOM, P, %g\n"
             "*PRINT, SIF\n*OUTPUT, HDF5=NO\n*END STEP\n"
             "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n%g, %g\n*END STEP\n",
-            -load, -load, total / 8, total);
+            -load, -load, total / 4, total);
   int code = job_run(&j, "--no-timing");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
