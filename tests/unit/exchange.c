@@ -7,7 +7,6 @@
 #include "support/folder.h"
 #include "support/unit.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -738,21 +737,6 @@ START_TEST(defect_of_text_is_named) {
 }
 END_TEST
 
-/* A file that opens and cannot be read: nothing is at address 0. */
-START_TEST(reading_that_fails_is_no_end) {
-  message_log *log = NULL;
-  exchange_problem *p = NULL;
-  const place at = {.file = "a.inp", .line_no = 1};
-  ck_assert_int_eq(message_log_new(&log), OK);
-  ck_assert_int_eq(exchange_read("/proc/self/mem", EXCHANGE_LCP, &at, log, &p),
-                   ERR_FILE);
-  ck_assert_msg(strstr(status_message(), strerror(EIO)) != NULL, "%s",
-                status_message());
-  ck_assert_ptr_null(p);
-  message_log_free(log);
-}
-END_TEST
-
 /* ---- memory ---- */
 
 static void refuse_all(void) {
@@ -806,5 +790,4 @@ UNIT_MAIN("exchange", every_storage_gives_the_same_problem,
           local_constraints_are_eliminated, global_constraints_are_eliminated,
           half_of_the_constraints_is_refused, file_cut_short_is_refused,
           numbers_that_are_not_in_the_file_are_refused, text_is_read_by_rows,
-          defect_of_text_is_named, reading_that_fails_is_no_end,
-          every_refused_request_is_reported)
+          defect_of_text_is_named, every_refused_request_is_reported)
