@@ -8,7 +8,7 @@
  *   > words                   the command line behind "protis" (bad)
  *   -line                     this line is taken away
  *   +line                     put there; "^" and "$" before: start, end of file
- *   ! first line of stderr
+ *   ! first line of stderr; absent: there is none
  *   = exit code
  */
 #include "base/message.h"
@@ -200,8 +200,9 @@ static int run_case(const bad_case *c, const char *more, seen *s) {
   snprintf(words, sizeof words, "%s%s", prepare(&j, c), more);
   int code = job_run(&j, words);
   note_numbers(s, j.errors);
-  int good = code == c->exit_code && c->expected != NULL &&
-             has_line(j.errors, c->expected);
+  int good = code == c->exit_code &&
+             (c->expected == NULL ? j.errors[0] == '\0'
+                                  : has_line(j.errors, c->expected));
   if (!good)
     fprintf(stderr, "%s%s\n  expected %d: %s\n  found    %d: %s\n", c->title,
             more, c->exit_code, c->expected == NULL ? "" : c->expected, code,

@@ -125,12 +125,16 @@ START_TEST(small_thermal_strain_is_left_out) {
                        "",
                        0.2,
                        NULL};
-  scene above = small, large = small;
+  scene above = small, large = small, beside = small;
   above.loads = "*TEMPERATURE\nBODY, 2.5D-3\n";
   large.loads = "*TEMPERATURE\nBODY, 1.D-2\n";
   compare(&small, "thermal strain", 1, 1e-3);
   compare(&above, "thermal strain", -1, 1e-12);
   stays(&large, "thermal strain");
+  /* Heat is taken back, the law is not. */
+  beside.material = "*EXPANSION\n1.2D-5\n*INELASTIC, LAW=MAXWELL\n1.D6\n";
+  beside.loads = above.loads;
+  compare(&beside, "inelastic strain", 1, 1e-5);
 }
 END_TEST
 
@@ -173,6 +177,10 @@ START_TEST(slow_relaxation_is_left_out) {
   fast.material = "*INELASTIC, LAW=MAXWELL\n1.D2\n";
   compare(&slow, "inelastic strain", 1, 1e-3);
   stays(&fast, "inelastic strain");
+  /* What has crept before stays with its law. */
+  scene crept = slow;
+  crept.law = "*INITIAL CONDITIONS, TYPE=INELASTIC STRAIN\nBODY, 1, 1.E-6\n";
+  stays(&crept, "inelastic strain");
 }
 END_TEST
 
@@ -319,8 +327,7 @@ START_TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
 }
 END_TEST
 
-/* The same in space, of slip along both directions of the contact. */
-START_TEST(bound_of_friction_is_that_of_the_work_in_space) {
+static job run_cube(const char *effects) {
   job j = job_begin("cube");
   job_copy(&j, "tests/regression/mesh/cube.geo");
   job_write(&j, "cube.inp",
@@ -329,15 +336,35 @@ START_TEST(bound_of_friction_is_that_of_the_work_in_space) {
             "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
             "*FRICTION, CONTACT=C, LAW=COULOMB\n1.D-8\n"
-            "*EFFECTS, MODE=AUTO, TOL=0.01\n*AMPLITUDE, NAME=ON\n"
+            "%s*AMPLITUDE, NAME=ON\n"
             "0., 0., 1., 1.\n*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
             "TOP, 1, 1, 1.D-3, ON\nTOP, 2, 2, 5.D-3, ON\n"
             "TOP, 3, 3, -0.01, ON\n*PRINT, CONTACT, ENERGY, FREQUENCY=0\n"
-            "*END STEP\n");
+            "*END STEP\n",
+            effects);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+/* The same in space, of slip along both directions of the contact. The change
+ * is that of the nodes that slip, over the largest motion, 0.01. */
+START_TEST(bound_of_friction_is_that_of_the_work_in_space) {
+  static const char *const columns[] = {"u_t1", "u_t2"};
+  job j = run_cube("*EFFECTS, MODE=AUTO, TOL=0.01\n"), called = run_cube("");
+  dat without = job_table(&j, "CONTACT", -1),
+      with = job_table(&called, "CONTACT", -1);
+  double most = 0;
   bound_is_that_of_the_work(&j, 1e-8);
+  for (int i = 0; i < with.n_row; ++i)
+    for (int k = 0; k < 2; ++k)
+      most = fmax(most, fabs(dat_at(&with, i, columns[k]) -
+                             dat_at(&without, i, columns[k])));
+  ck_assert_double_eq_tol(job_told(&j, "change") / (most / 0.01), 1, 0.01);
+  dat_free(&with);
+  dat_free(&without);
   job_end(&j);
+  job_end(&called);
 }
 END_TEST
 

@@ -638,8 +638,11 @@ START_TEST(bad_pairs_are_told) {
       {"*PARAMETER\nN = 20\nM = 2\n*CONTACT PAIR, NAME=P, SLAVE=FIRST\n"
        "UNDER, OVER\n",
        "P4024", 0},
-      {"*PARAMETER\nC = 0.3\n*TIE, NAME=P, SLAVE=FIRST\nUNDER, OVER\n", "P4025",
-       0},
+      {"*PARAMETER\nC = 0.3\n*TIE, NAME=P, SLAVE=FIRST\nUNDER, OVER\n",
+       "P4025: *TIE P: 2 of 5 nodes of UNDER have no partner on OVER", 0},
+      /* a share of 0.16 % of the area of the nodes at the ends */
+      {"*PARAMETER\nC = 0.24\n*TIE, NAME=P, SLAVE=FIRST\nUNDER, OVER\n",
+       "P4025: *TIE P: 2 of 5 nodes of UNDER have no partner on OVER", 0},
       {"*CONTACT PAIR, NAME=P, ADJUST=YES\nLEFT, RIGHT\n", "are up to 1 apart",
        2},
       {"*CONTACT PAIR, NAME=P, ADJUST=YES\nRIGHT, LEFT\n", "are up to 1 apart",
@@ -708,6 +711,6 @@ int main(void) {
   tcase_add_loop_test(tests, facets_in_a_fit_are_told, 0, 2);
   tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
   tcase_add_loop_test(tests, moment_in_space_is_about_any_axis, 0, 2);
-  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 15);
+  tcase_add_loop_test(tests, bad_pairs_are_told, 0, 16);
   return unit_run("pairs", tests);
 }

@@ -92,16 +92,18 @@ static job stopped_at(int tenths) {
 START_TEST(changed_decks_are_refused_by_card) {
   job j = stopped_at(4);
   edit(&j, "130.D3", "131.D3");
-  refused(&j, 2, "*ELASTIC");
+  refused(&j, 2, "changed: *ELASTIC, TYPE=ISO has other data; only");
   edit(&j, "131.D3", "130.D3");
   edit(&j, "TOP, 2, 2, -0.02", "TOP, 2, 2, -0.03");
-  refused(&j, 2, "step 1, *BOUNDARY");
+  refused(&j, 2, "changed: step 1, *BOUNDARY, OP=MOD has other data; only");
   edit(&j, "TOP, 2, 2, -0.03", "TOP, 2, 2, -0.02");
   edit(&j, "*END STEP\n*STEP", "*END STEP\n*STEP\n*STATIC\n*END STEP\n*STEP");
-  refused(&j, 2, "*QUASISTATIC");
+  refused(
+      &j, 2,
+      "changed: step 2, *QUASISTATIC, FORM=DISPLACEMENT is now *STATIC; only");
   edit(&j, "*STATIC\n*END STEP\n*STEP\n", "");
   edit(&j, "N = 8", "N = 9");
-  refused(&j, 2, "*PARAMETER");
+  refused(&j, 2, "changed: *PARAMETER has other data; only");
   edit(&j, "N = 9", "N = 8");
   char *deck = job_file(&j, "inp"), file[40];
   snprintf(file, sizeof file, "%s.inp", j.name);

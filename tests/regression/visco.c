@@ -634,6 +634,32 @@ START_TEST(elastic_groups_cost_nothing) {
 }
 END_TEST
 
+/* Heat in a group that creeps and, below or above it, in one that does not. */
+START_TEST(works_beside_an_elastic_group_balance) {
+  job j = job_begin("visco");
+  job_copy(&j, "tests/regression/mesh/layers.geo");
+  job_write(&j, "visco.inp",
+            "*MESH, FILE=layers.geo\n*MATERIAL, NAME=M\n*ELASTIC\n" STEEL
+            "\n*EXPANSION\n2E-5\n" DEVIATORIC
+            "*MATERIAL, NAME=E\n*ELASTIC\n" STEEL
+            "\n*EXPANSION\n1E-5\n"
+            "*SOLID SECTION, ELSET=SOFT, MATERIAL=%s\n"
+            "*SOLID SECTION, ELSET=HARD, MATERIAL=%s\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n"
+            "*BOUNDARY\nLEFT, 1\nBOTTOM, 2\nTOP, 2\n"
+            "*TEMPERATURE\nSOFT, \"20*x+10\"\nHARD, \"30-10*y\"\n"
+            "*OUTPUT, HDF5=NO\n*PRINT, ENERGY\n*END STEP\n",
+            _i == 0 ? "M" : "E", _i == 0 ? "E" : "M");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-12);
+  ck_assert_double_gt(fabs(dat_at(&e, 0, "thermal_work")), 1e-9);
+  ck_assert_double_gt(dat_at(&e, 0, "viscous_dissipation"), 1e-9);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* A pull that grows to 10 in four increments, whose rates are taken at 0, 2.5,
  * 5 and 7.5: below the threshold of 4 in two of them. Elements of an elastic
  * group are not looked at. */
@@ -678,6 +704,7 @@ int main(void) {
   tcase_add_loop_test(tests, laws_that_store_dissipate, 0, N_LAW);
   tcase_add_test(tests, elastic_groups_cost_nothing);
   tcase_add_test(tests, points_at_rest_are_counted);
+  tcase_add_loop_test(tests, works_beside_an_elastic_group_balance, 0, 2);
   tcase_add_test(tests, initial_strain_is_a_stress_that_relaxes);
   tcase_add_loop_test(tests, strains_of_units_and_their_sum_agree, 0,
                       (int)(sizeof units / sizeof *units));

@@ -88,8 +88,10 @@ START_TEST(opened_nodes_are_kept_and_change_no_answer) {
   unsigned long long seed = 77;
   for (int k = 0; k < 8; ++k) {
     contact_case c = case_any(2 + k % 2, 20, 0.0, 0, 300u + (unsigned)k);
-    solver_control control = {.tol = 1e-12};
+    solver_control control = {.tol = 1e-12},
+                   once = {.tol = 1e-12, .max_iter = 1};
     normal_form nf = {0};
+    int limited = 0;
     double *u = calloc((size_t)c.cp.m, sizeof *u),
            *r = calloc((size_t)c.cp.m, sizeof *r);
     c.cp.g0 = c.cp.ut0 = NULL;
@@ -97,6 +99,13 @@ START_TEST(opened_nodes_are_kept_and_change_no_answer) {
     for (int step = 0; step < 6; ++step) {
       solver_report rep;
       for (int i = 0; i < c.cp.m; ++i) c.f[i] += case_random(&seed) - 0.5;
+      memcpy(u, c.u, (size_t)c.cp.m * sizeof *u);
+      ck_assert_int_eq(normal_form_opened(&nf, &c.cp, &once, c.u, c.r, &rep),
+                       OK);
+      ck_assert_int_le(rep.iterations, 1);
+      limited += rep.outcome != CONVERGED;
+      if (rep.outcome != CONVERGED)
+        ck_assert_mem_eq(u, c.u, (size_t)c.cp.m * sizeof *u);
       ck_assert_int_eq(normal_form_opened(&nf, &c.cp, &control, c.u, c.r, &rep),
                        OK);
       ck_assert_int_eq(rep.outcome, CONVERGED);
@@ -109,6 +118,7 @@ START_TEST(opened_nodes_are_kept_and_change_no_answer) {
         ck_assert_double_eq_tol(c.u[i], u[i], 1e-9);
       }
     }
+    ck_assert_int_gt(limited, 0);
     normal_form_free(&nf);
     free(u);
     free(r);

@@ -390,6 +390,15 @@ START_TEST(blocks_give_the_residual_of_all_entries) {
     for (int i = 0; i < p.cp.n; ++i)
       for (int j = 0; j < i; ++j)
         ck_assert((one->of[i] == one->of[j]) == (two->of[i] == two->of[j]));
+    for (int i = 0; i < p.cp.n; ++i) {
+      const int dim = p.cp.dim;
+      double block[9];
+      contact_block(&p.cp, i, block);
+      for (int e = 0; e < dim * dim; ++e) {
+        const int row = dim * i + e % dim, column = dim * i + e / dim;
+        ck_assert_double_eq(block[e], p.W[row + p.cp.m * column]);
+      }
+    }
     for (int i = 0; i < p.cp.m; ++i)
       p.u[i] += (k % 3 == 0 ? 0.0 : case_random(&seed)) * p.W[0];
     double have = contact_residual(&p.cp, p.u, p.r);

@@ -730,6 +730,26 @@ START_TEST(missing_folder_is_told) {
 }
 END_TEST
 
+/* A run goes on after two of its rows, in its file alone. */
+START_TEST(file_of_another_mesh_is_refused) {
+  for (int cells = 2; cells <= 3; ++cells) {
+    char dir[64];
+    output_options o = plain;
+    hdf5_file *h = NULL;
+    made_up *made = made_up_new(2, 2, 3), *now = made_up_new(2, cells, 3);
+    o.dir = folder_new(dir);
+    ck_assert_int_eq(write_file(made, dir, 3, 1), OK);
+    const status st = hdf5_open(&now->m, now->msh, &o, &(hdf5_count){2, 2}, &h);
+    ck_assert_int_eq(st, cells == 2 ? OK : ERR_FILE);
+    ck_assert(st == OK || strstr(status_message(), "is not that of the run"));
+    ck_assert_int_eq(hdf5_close(h, 0), OK);
+    made_up_free(made);
+    made_up_free(now);
+    folder_remove(dir);
+  }
+}
+END_TEST
+
 /* ---- memory ----------------------------------------------------------- */
 
 START_TEST(every_refused_request_is_told_and_leaves_nothing) {
@@ -771,4 +791,5 @@ UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
           disk_full_at_any_size_is_told_and_loses_nothing,
           full_file_system_of_any_size_is_told,
           failed_writes_and_copies_are_told, missing_folder_is_told,
+          file_of_another_mesh_is_refused,
           every_refused_request_is_told_and_leaves_nothing)

@@ -3,6 +3,7 @@
  * is there twice, as they are to be read.
  */
 #include "output/listing/job.h"
+#include "output/writers.h"
 #include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
@@ -20,7 +21,12 @@ static void must_print(status (*write)(const job *j, text_file *to),
   static const output_options plain = {.no_timing = 1};
   char dir[64], path[128];
   text_file to = {0};
-  job j = {.m = &made->m, .msh = made->msh, .o = &plain, .run = &summary};
+  static effect_plan none;
+  job j = {.m = &made->m,
+           .msh = made->msh,
+           .o = &plain,
+           .run = &summary,
+           .plan = &none};
   folder_new(dir);
   snprintf(path, sizeof path, "%s/text", dir);
   ck_assert_int_eq(text_open(&to, path, 0), OK);
@@ -281,6 +287,35 @@ static status write_accuracy(const job *j, text_file *to) {
   return OK;
 }
 
+static status write_closing(const job *j, text_file *to) {
+  closing_lines(j, "files", to->f);
+  return OK;
+}
+
+START_TEST(counts_of_the_run) {
+  static increment_summary all[11];
+  made = made_up_new(2, 1, 1);
+  summary = (run_summary){.n_increment = 11,
+                          .n_rejected = 12,
+                          .n_unsettled = 13,
+                          .residual_worst = 1.4e-11,
+                          .penetration_worst = 0.15,
+                          .defect_worst = 1.6e-12,
+                          .increments = all,
+                          .message = "",
+                          .verdict = ERR_UNSETTLED};
+  must_print(listing_verdict,
+             "  increments                           11\n"
+             "  attempts cut                         12\n"
+             "  tolerance missed                     13\n"
+             "  largest residual              1.40E-011\n"
+             "  largest energy defect         1.60E-012\n");
+  summary.n_increment = 0;
+  must_print(write_closing, "; increments 0, attempts cut 12\n");
+  made_up_free(made);
+}
+END_TEST
+
 START_TEST(budget_goals_and_passes) {
   static goal_card cards[2] = {
       {.name = "SINK",
@@ -364,4 +399,4 @@ END_TEST
 
 UNIT_MAIN("listing", errors_of_an_increment, solutions_of_an_increment,
           theorems_of_an_increment, initial_state_has_its_worst_nodes,
-          budget_goals_and_passes)
+          counts_of_the_run, budget_goals_and_passes)

@@ -281,11 +281,15 @@ START_TEST(flatness_has_no_unit) {
   static const struct {
     double y, height;
     int good;
-  } cases[] = {{0, 1e-4, 1}, {0, 6e-13, 0}, {1e6, 1e-4, 1}, {1e6, 1.2e-10, 0}};
+  } cases[] = {{0, 1e-4, 1},
+               {0, 6e-13, 0},
+               {1e6, 1e-4, 1},
+               {1e6, 1.2e-10, 0},
+               {-1e6, 1.2e-10, 0}};
   mesh_file f;
   mesh_file_open(&f);
   for (int power = -40; power <= 40; power += 40)
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < 5; ++k) {
       char text[1024];
       double unit =
           power < 0 ? 1.0 / (double)(1L << -power) : (double)(1L << power);

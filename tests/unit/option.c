@@ -128,6 +128,10 @@ START_TEST(what_is_written_is_read_back) {
   }
   ck_assert(back.omega == s.omega && back.tol == s.tol);
   ck_assert(back.count == 17 && back.symmetric == 1 && back.kind == 2);
+  char none[] = "none";
+  s.name = NULL;
+  option_write(&table[5], &s, none, sizeof none);
+  ck_assert_str_eq(none, "");
 }
 END_TEST
 

@@ -290,6 +290,38 @@ START_TEST(json_is_valid_whatever_the_texts_and_numbers) {
 }
 END_TEST
 
+/* No number is there twice. */
+START_TEST(json_tells_what_was_left_out) {
+  static const char *const row[] = {
+      "\"why\": \"small\",\n      \"taken_back\": true,\n"
+      "      \"not_solved\": false,\n      \"bound\": 0.125,\n"
+      "      \"stress\": 0.25,\n      \"change\": 0.375,\n"
+      "      \"increments\": 4,\n      \"solved_again\": 5\n",
+      "\"why\": \"none\",\n      \"taken_back\": false,\n"
+      "      \"not_solved\": true,\n      \"bound\": 1.5,\n"
+      "      \"stress\": 2.5,\n      \"change\": 3.5,\n"
+      "      \"increments\": 8,\n      \"solved_again\": 9\n"};
+  char dir[64];
+  folder_new(dir);
+  made_up *made = made_up_new(2, 1, 1);
+  output_options o = quiet(dir);
+  model *m = &made->m;
+  m->reduction.is_auto = 1;
+  m->reduction.n = 2;
+  m->reduction.row[0] = (omitted){
+      EFFECT_BIT_THERMAL, -1, "small", 0.125, 0.25, 0.375, 4, 5, 6, 7.0, 1, 0};
+  m->reduction.row[1] = (omitted){
+      EFFECT_BIT_FRICTION, -1, "none", 1.5, 2.5, 3.5, 8, 9, 0, 0.0, 0, 1};
+  ck_assert_int_eq(run(made, &o, 1), OK);
+  char *text = checked_json(dir);
+  ck_assert_ptr_nonnull(strstr(text, row[0]));
+  ck_assert_ptr_nonnull(strstr(text, row[1]));
+  free(text);
+  made_up_free(made);
+  folder_remove(dir);
+}
+END_TEST
+
 START_TEST(cost_is_shown_unless_left_out) {
   char dir[64];
   folder_new(dir);
@@ -624,7 +656,8 @@ UNIT_MAIN("output", two_runs_give_the_same_bytes,
           unsettled_increment_is_seen_everywhere,
           reasons_of_stopping_are_told_apart,
           json_is_valid_whatever_the_texts_and_numbers,
-          cost_is_shown_unless_left_out, xdmf_names_every_record_of_its_file,
+          json_tells_what_was_left_out, cost_is_shown_unless_left_out,
+          xdmf_names_every_record_of_its_file,
           files_of_an_earlier_run_do_not_stay,
           run_that_never_became_ready_has_a_verdict,
           full_disk_of_any_text_file_is_told_and_the_others_are_kept,

@@ -45,6 +45,13 @@ START_TEST(short_slip_gets_its_direction) {
   ck_assert_double_le(contact_residual(&c.cp, u, r), 0.1 * TOL);
   ck_assert_double_gt(fabs(angle_of(u) - ANGLE), 0.9 * ASIDE / SHORT);
   ck_assert_double_gt(slip_misdirection(&c.cp, u, r), 10 * TOL);
+  for (int k = 1; k < 3; ++k) { /* one tangent alone has no direction to miss */
+    unsigned char held[M] = {0};
+    held[k] = 1;
+    c.cp.held = held;
+    ck_assert(slip_misdirection(&c.cp, u, r) == 0);
+    c.cp.held = NULL;
+  }
   ck_assert_int_eq(polish_slip(&c.cp, TOL, 0, u, r, &sweeps), OK);
   ck_assert_int_eq(sweeps, 0);
   ck_assert_int_eq(polish_slip(&c.cp, TOL, 20, u, r, &sweeps), OK);
@@ -58,21 +65,29 @@ START_TEST(short_slip_gets_its_direction) {
 END_TEST
 
 /* Sticking nodes entered the obstacle and slid by no more than the residual can
- * see: they are put back, and only then; the one that slips stays. */
+ * see: they are put back, and only then; the one that slips stays, and the
+ * last, which is open, keeps no force. */
 START_TEST(held_nodes_lie_on_the_obstacle) {
   double u[M], r[M];
   contact_case c = short_slip(u, r);
+  enum { OPEN = M - 3 };
+  u[OPEN] -= 1;
+  memset(r + OPEN, 0, 3 * sizeof *r);
+  contact_product(M, c.A, u, c.f);
+  for (int i = 0; i < M; ++i) c.f[i] -= r[i];
   double residual = -1, scale = contact_scale(&c.cp);
   ck_assert_int_eq(polish_touch(&c.cp, scale, TOL, u, r, &residual), OK);
   ck_assert(residual == -1);
-  for (int i = 3; i < M; ++i) u[i] += 1e-3 * TOL * (i % 2 == 0 ? 1 : -1);
+  for (int i = 3; i < OPEN; ++i) u[i] += 1e-3 * TOL * (i % 2 == 0 ? 1 : -1);
   contact_reaction(&c.cp, u, r);
+  memset(r + OPEN, 0, 3 * sizeof *r);
   ck_assert_double_le(contact_residual(&c.cp, u, r), TOL);
   ck_assert_int_eq(polish_touch(&c.cp, scale, TOL, u, r, &residual), OK);
   ck_assert(residual == contact_residual(&c.cp, u, r));
   ck_assert_double_le(residual, TOL);
   residual = -1;
-  for (int i = 0; i < NODES; ++i) {
+  for (int k = 0; k < 3; ++k) ck_assert(r[OPEN + k] == 0);
+  for (int i = 0; i < NODES - 1; ++i) {
     ck_assert(u[3 * i] == c.gap[i]);
     ck_assert(u[3 * i + 1] == (i == 0 ? SHORT * cos(ANGLE) : 0));
   }

@@ -306,8 +306,21 @@ START_TEST(a_rejected_step_leaves_nothing_behind) {
 }
 END_TEST
 
-UNIT_MAIN("scheme", loss_has_the_order_of_its_row,
-          held_stress_has_the_factor_of_its_row,
+/* Units of laws side by side: places in one list, and the most of any point. */
+START_TEST(points_have_room_for_the_units_of_their_law) {
+  flow_kind kind[] = {{.n_alpha = 4}, {.n_alpha = 7}, {.n_alpha = 1}};
+  flow x = {.kind = kind};
+  ck_assert_int_eq(flow_new_points(&x, 4, (const int[]){0, 1, 2, 0}), OK);
+  static const size_t at[] = {0, 4, 11, 12, 16};
+  for (int k = 0; k <= 4; ++k) ck_assert_uint_eq(x.alpha_at[k], at[k]);
+  ck_assert_int_eq(x.most_alpha, 7);
+  x.kind = NULL;
+  flow_free(&x);
+}
+END_TEST
+
+UNIT_MAIN("scheme", points_have_room_for_the_units_of_their_law,
+          loss_has_the_order_of_its_row, held_stress_has_the_factor_of_its_row,
           limits_are_where_the_factor_is_one, rows_have_their_order,
           heun_estimates_by_euler, midpoint_and_backward_are_theta,
           exponential_is_exact_for_linear_laws,

@@ -39,10 +39,11 @@ static scene *patch(kinematics kin) {
   return s;
 }
 
+static const double G[3][3] = {{.3, -.2, .5}, {.7, .4, -.6}, {.1, .9, -.8}};
+
 /* Linear displacement; turned bodies u_r = a r, u_z = b z (the only uniform
  * stress in equilibrium). */
 static void linear(const mesh *m, kinematics kin, int node, double *u) {
-  static const double G[3][3] = {{.3, -.2, .5}, {.7, .4, -.6}, {.1, .9, -.8}};
   const double *x = m->x + m->dim * node;
   for (int r = 0; r < m->dim; ++r) {
     u[r] = 0;
@@ -100,6 +101,44 @@ START_TEST(patch_of_constant_strain_is_reproduced) {
   free(t);
   condensed_free(c);
   stiffness_free(k);
+  scene_free(s);
+}
+END_TEST
+
+static double det(double A[3][3]) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    sum += A[0][i] * (A[1][j] * A[2][k] - A[1][k] * A[2][j]);
+  }
+  return sum;
+}
+
+START_TEST(deformation_is_that_of_the_gradient) {
+  const kinematics kin = all_kinematics[_i];
+  scene *s = patch(kin);
+  const int dim = s->m->dim;
+  double *u = calloc((size_t)(dim * s->m->n_node), sizeof *u);
+  for (int sign = -1; sign <= 1; sign += 2) {
+    deformation x;
+    double A[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, e[6], square = 0;
+    for (int i = 0; i < s->m->n_node; ++i) {
+      linear(s->m, kin, i, u + dim * i);
+      for (int c = 0; c < dim; ++c) u[dim * i + c] *= 0.5 * sign;
+    }
+    for (int r = 0; r < dim; ++r)
+      for (int c = 0; c < dim; ++c)
+        if (kin != AXISYMMETRIC || r == c) A[r][c] += 0.5 * sign * G[r][c];
+    if (kin == AXISYMMETRIC) A[2][2] = A[0][0];
+    linear_strain(kin, e);
+    if (kin == PLANE_STRESS) e[2] = 0; /* of the elastic law alone */
+    for (int k = 0; k < (dim == 3 ? 6 : 4); ++k)
+      square += 0.25 * (k < 3 ? 1 : 0.5) * e[k] * e[k];
+    domain_deformation(&s->d, u, &x);
+    ck_assert_double_eq_tol(x.strain, sqrt(square), 1e-12);
+    ck_assert_double_eq_tol(x.volume, fmin(1, det(A)), 1e-12);
+  }
+  free(u);
   scene_free(s);
 }
 END_TEST
@@ -214,6 +253,7 @@ int main(void) {
   TCase *tests = tcase_create("stress");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, patch_of_constant_strain_is_reproduced, 0, 4);
+  tcase_add_loop_test(tests, deformation_is_that_of_the_gradient, 0, 4);
   tcase_add_loop_test(tests, weights_add_up_to_the_volume, 0, 4);
   tcase_add_loop_test(tests, internal_force_is_stiffness_times_displacement, 0,
                       4);

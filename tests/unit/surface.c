@@ -16,11 +16,11 @@ typedef struct scene {
   mesh m;
   double x[3 * MAX], weight[MAX];
   size_t node_no[MAX];
-  int face[3 * MAX], face_other[MAX], item[3][MAX], group_node[3][MAX];
+  int face[3 * MAX], face_other[MAX], item[4][MAX], group_node[4][MAX];
   unsigned char fixed[MAX];
-  mesh_group group[3];
-  contact_pair pair[3];
-  obstacle support[3];
+  mesh_group group[4];
+  contact_pair pair[4];
+  obstacle support[4];
   surface_input in;
   message_log *log;
   contact_surface *s;
@@ -397,27 +397,27 @@ START_TEST(parallel_normals_on_two_obstacles_are_an_error) {
 }
 END_TEST
 
-/* Corner of a box on three obstacles, edges on two, each with its area. */
+/* Corner of a box on three obstacles, one in two contacts; edges on two. */
 START_TEST(cube_corner_stands_on_three_obstacles) {
   scene c;
   scene_init(&c, 3);
   int o = add_node(&c, 0, 0, 0), x = add_node(&c, 1, 0, 0);
   int y = add_node(&c, 0, 1, 0), z = add_node(&c, 0, 0, 0.5);
+  int m = add_node(&c, 0.5, 0.5, 0);
   add_face(&c, o, z, y);
   add_face(&c, o, x, z);
-  add_face(&c, o, y, x);
-  add_contact(&c, "X", 0, 1);
-  add_contact(&c, "Y", 1, 2);
-  add_contact(&c, "Z", 2, 3);
+  add_face(&c, o, y, m);
+  add_face(&c, o, m, x);
+  static const char *const name[] = {"X", "Y", "Z", "ZX"};
+  for (int k = 0; k < 4; ++k) add_contact(&c, name[k], k, k + 1);
+  c.pair[3].support = c.pair[2].support;
   ck_assert_int_eq(build(&c), OK);
-  ck_assert_int_eq(c.s->n, 4);
+  ck_assert_int_eq(c.s->n, 5);
   for (int k = 0; k < 9; ++k)
     ck_assert_double_eq(c.s->frame[k], k % 4 == 0 ? -1 : 0);
-  ck_assert_int_eq(c.s->side_id[0], 1);
-  ck_assert_int_eq(c.s->side_id[1], 2);
+  ck_assert(c.s->side_id[0] == 1 && c.s->side_id[1] == 2);
   ck_assert_int_eq(c.s->contact_id[x], 1);
-  ck_assert_int_eq(c.s->side_id[2 * x], 2);
-  ck_assert_int_eq(c.s->side_id[2 * x + 1], -1);
+  ck_assert(c.s->side_id[2 * x] == 3 && c.s->side_id[2 * x + 1] == -1);
   ck_assert_double_eq(fabs(c.s->frame[9 * x + 6]), 1);
   ck_assert_double_eq_tol(c.s->area[0], 0.25 / 3, 1e-16);
   ck_assert_double_eq_tol(c.s->side_area[1], 0.5 / 3, 1e-16);
