@@ -127,7 +127,7 @@ static int share_nodes(const surface_input *in, int pair_id,
 
 status surfaces_couple(const surface_input *in, const double *x,
                        const mesh_group *slave, const mesh_group *master,
-                       int slave_normal, const unsigned char *dropped,
+                       unsigned how, const unsigned char *dropped,
                        mortar **out) {
   const mortar_input of = {.mesh = in->mesh,
                            .n_slave = slave->n_item,
@@ -137,7 +137,8 @@ status surfaces_couple(const surface_input *in, const double *x,
                            .x = x,
                            .face_weight = in->face_weight,
                            .axisymmetric = in->axisymmetric,
-                           .slave_normal = slave_normal,
+                           .slave_normal = (how & COUPLE_SLAVE_NORMAL) != 0,
+                           .flat = (how & COUPLE_FLAT) != 0,
                            .dropped = dropped};
   mortar_free(*out);
   *out = NULL;
@@ -159,7 +160,7 @@ static status couple_kept(const surface_input *in, int pair_id, int *n_held,
   *n_held = *n_shared = 0;
   while (more > 0) {
     more = 0;
-    PASS(surfaces_couple(in, x, p->group, p->master, p->slave_normal, dropped,
+    PASS(surfaces_couple(in, x, p->group, p->master, p->how, dropped,
                          &p->coupled));
     for (int q = 0; q < p->coupled->n; ++q) {
       const int node = p->coupled->node_id[q];
@@ -182,34 +183,6 @@ static int is_curved(int dim, const mortar *m) {
       if (fabs(m->normal[dim * q + c] - m->normal[c]) > PAIR_FIXED_SINE)
         return 1;
   return 0;
-}
-
-/* The largest distance along the normals that facets leave, m. */
-static double facet_gap(int dim, const mortar *m) {
-  double most = 0.0;
-  for (int q = 0; q < m->n; ++q) {
-    double gap = 0.0;
-    for (int c = 0; c < dim; ++c)
-      gap += m->gap[dim * q + c] * m->normal[dim * q + c];
-    most = fmax(most, fabs(gap));
-  }
-  return most;
-}
-
-/* A fit of curved surfaces whose facets are as far apart as it is tight. */
-static void tell_facets(const surface_input *in, const contact_pair *p,
-                        message_log *log) {
-  static const double share = 0.1;
-  const double gap = facet_gap(in->mesh->dim, p->coupled);
-  if (p->change == NULL || p->change_sign > 0.0 || p->change->formula != NULL ||
-      !is_curved(in->mesh->dim, p->coupled) ||
-      !(gap > share * p->change->number))
-    return;
-  message_add(
-      log, P4030, &p->at,
-      "%s %s: the facets of the surfaces are up to %.3g apart, the "
-      "interference is %.3g: ADJUST=YES moves the slave onto the master",
-      p->card, p->name, gap, p->change->number);
 }
 
 /* 1: a support holds a component of slave node q that it holds of none of its
@@ -294,7 +267,6 @@ status pairs_couple(const surface_input *in, message_log *log) {
           in->pairs[p].card, in->pairs[p].name, in->pairs[p].master->name,
           in->pairs[p].group->name, n_shared);
     tell(in, &in->pairs[p], n_held, log);
-    tell_facets(in, &in->pairs[p], log);
   }
   return message_status(log, ERR_DECK);
 }

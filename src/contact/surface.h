@@ -47,8 +47,7 @@ typedef struct contact_pair {
   const mesh_group *group;  /* of a pair: the slave */
   const obstacle *support;  /* NULL: a pair */
   const mesh_group *master; /* of a pair */
-  int slave_normal;         /* 1: n is that of the slave, not the mean of both
-                               surfaces */
+  unsigned how;             /* of a pair, see surfaces_couple */
   const quantity *change;   /* added to the gap of a pair, m, or NULL */
   double change_sign;       /* -1: it is an interference */
   int update;               /* 1: of a pair, coupled at the places x + u */
@@ -76,10 +75,12 @@ typedef struct surface_input {
 int surfaces_held_alone(const surface_input *in, const mortar *m);
 /* pair.c: the coupling of two surfaces at the places x[dim*n_node], without the
  * nodes of dropped[n_node] (or NULL): *out, NULL or an old one that is freed.
- * ERR_MEMORY. */
+ * ERR_MEMORY. how: the normals are those of the slave; the gaps those of the
+ * faces as they are. */
+enum { COUPLE_SLAVE_NORMAL = 1, COUPLE_FLAT = 2 };
 status surfaces_couple(const surface_input *in, const double *x,
                        const mesh_group *slave, const mesh_group *master,
-                       int slave_normal, const unsigned char *dropped,
+                       unsigned how, const unsigned char *dropped,
                        mortar **out);
 /*
  * pair.c: the coupling of each pair under the supports of the input, without

@@ -389,6 +389,63 @@ START_TEST(matching_lips_move_with_their_copies) {
 }
 END_TEST
 
+/* ---- curved surfaces ----------------------------------------------------- */
+
+/* The places of a plane pair on a circle or sphere of radius 2, or on two
+ * planes. */
+static void bend(pair *p, int kinked) {
+  const int dim = p->m.dim;
+  for (int i = 0; i < p->m.n_node; ++i) {
+    double *x = p->m.x + dim * i, *z = x + dim - 1;
+    if (kinked) {
+      *z = 0.2 * fabs(x[0] - 0.5);
+      continue;
+    }
+    double square = 4;
+    for (int c = 0; c < dim - 1; ++c) square -= (x[c] - 0.5) * (x[c] - 0.5);
+    *z = -sqrt(square);
+  }
+}
+
+/* Of nodes further inside than "rim". */
+static double largest_gap(const pair *p, const mortar *m, double rim) {
+  double most = 0;
+  for (int q = 0; q < m->n; ++q) {
+    const double *x = p->m.x + m->to.dim * m->node_id[q];
+    double gap = 0, off = fabs(x[0] - 0.5);
+    if (m->to.dim == 3) off = fmax(off, fabs(x[1] - 0.5));
+    if (off > 0.5 - rim) continue;
+    for (int c = 0; c < m->to.dim; ++c)
+      gap += m->gap[m->to.dim * q + c] * m->normal[m->to.dim * q + c];
+    most = fmax(most, fabs(gap));
+  }
+  return most;
+}
+
+/* Two meshes of one curve have no gap where their faces are h^2/8R apart; those
+ * of two planes none at all. */
+START_TEST(gaps_are_those_of_the_curve) {
+  for (int dim = 2; dim <= 3; ++dim)
+    for (int kinked = 0; kinked < 2; ++kinked)
+      for (int flat = 0; flat < 2; ++flat) {
+        pair p = plane_pair(dim, 8, 12, dim == 2 && !kinked ? 0.3 : 0);
+        bend(&p, kinked);
+        p.in.flat = flat;
+        mortar *m = two_couple(&p);
+        const double apart = largest_gap(&p, m, dim == 3 ? 0.1 : 0),
+                     facets = 1.0 / 64 / 16;
+        if (kinked)
+          ck_assert_double_le(apart, 1e-14);
+        else if (flat)
+          ck_assert_double_ge(apart, 0.2 * facets);
+        else
+          ck_assert_double_le(apart, (dim == 2 ? 0.02 : 0.1) * facets);
+        mortar_free(m);
+        two_free(&p);
+      }
+}
+END_TEST
+
 /* ---- normals, places, units ---------------------------------------------- */
 
 /* Slave at an angle to the master: the mean is half way. */
@@ -562,7 +619,7 @@ UNIT_MAIN("mortar", planes_reproduce_linear_fields_and_constant_pressure,
           nodes_covered_by_less_than_a_hundredth_are_left_out,
           dropped_nodes_leave_their_part_to_the_neighbours,
           dropped_nodes_in_space_keep_linear_fields_and_forces,
-          matching_lips_move_with_their_copies,
+          matching_lips_move_with_their_copies, gaps_are_those_of_the_curve,
           normals_are_the_mean_of_both_sides_or_those_of_the_slave,
           normals_beside_a_node_left_out_are_the_mean_too,
           rows_sum_to_one_far_from_the_origin, ratio_of_the_sizes_has_no_unit,

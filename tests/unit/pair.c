@@ -371,7 +371,8 @@ START_TEST(normal_is_the_mean_or_that_of_the_slave) {
   add_line(&c, 4, (double[]){0, 0.1}, (double[]){1, 0.1 + slope});
   const mesh_group *slave = group_from(&c, "SLAVE", 0);
   add_line(&c, 5, (double[]){1.1, 0}, (double[]){-0.1, 0});
-  add_pair(&c, slave, group_from(&c, "MASTER", 4))->slave_normal = _i;
+  add_pair(&c, slave, group_from(&c, "MASTER", 4))->how =
+      _i ? COUPLE_SLAVE_NORMAL : 0;
   ck_assert_int_eq(build(&c), OK);
   ck_assert_int_eq(c.s->n, 5);
   for (int q = 0; q < 5; ++q) {

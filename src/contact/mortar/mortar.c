@@ -43,6 +43,8 @@ typedef struct face_part {
   double masters;  /* int size of the master faces, m3 */
   double more[3];  /* [dim] int psi_j phi of the nodes without multiplier, m2 */
   double lever[9]; /* [dim*dim] the same times their places, m3 */
+  double bulge[3]; /* [dim] int psi_j times what both surfaces have beyond their
+                      faces, m3 */
 } face_part;
 
 typedef struct builder {
@@ -56,6 +58,7 @@ typedef struct builder {
   int n_point, point_capacity;
   int *slot;      /* [n_node] -1, or place among the entries of a face or row */
   double *normal; /* [dim*n_node] of the masters and dropped nodes */
+  double *bulge;  /* of bulge_find, both surfaces */
   size_t *start;  /* [n_node+1] slave faces of a node: .. */
   int *around;    /* .. places in the list */
   unsigned char *met; /* [mesh->n_face] 1: partner of a slave face */
@@ -188,6 +191,20 @@ static status add_masters(builder *b, face_part *part) {
   return OK;
 }
 
+/* Of surfaces that are one in truth both heights cancel. */
+static void add_bulges(const builder *b, int face, face_part *part) {
+  const int dim = b->in->mesh->dim;
+  for (int k = 0; k < b->n_point && b->bulge != NULL; ++k) {
+    const sample *p = &b->points[k];
+    const double own = bulge_height(dim, b->bulge, face, p->phi),
+                 other = bulge_height(
+                     dim, b->bulge, b->search.list[p->partner].face, p->other);
+    if (fabs(own + other) <= seen * (fabs(own) + fabs(other))) continue;
+    for (int j = 0; j < dim; ++j)
+      part->bulge[j] += p->weight * p->psi[j] * (own + other);
+  }
+}
+
 static int set_kept(const builder *b, int face, int *kept) {
   const int *node = mortar_nodes(b->in, face);
   int n = 0;
@@ -243,6 +260,7 @@ static status do_face(builder *b, int i) {
   if (n_kept == 0) return OK;
   PASS(add_masters(b, part));
   PASS(add_dropped(b, face, part, kept));
+  add_bulges(b, face, part);
   part->end = (size_t)b->n_entry;
   return OK;
 }
@@ -497,14 +515,20 @@ static status set_links(builder *b) {
 }
 
 static void set_gap(builder *b, int q) {
-  const int dim = b->in->mesh->dim;
+  const int dim = b->in->mesh->dim, node = b->out->node_id[q];
   const node_links *l = &b->out->to;
-  const double *x = mortar_place(b->in, b->out->node_id[q]);
+  const double *x = mortar_place(b->in, node);
   double *gap = b->out->gap + (size_t)dim * (size_t)q;
   for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
     for (int c = 0; c < dim; ++c)
       gap[c] += l->part[(size_t)dim * e] *
                 (mortar_place(b->in, l->master[e])[c] - x[c]);
+  for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
+    const face_part *f = &b->face[b->around[a]];
+    add_scaled(dim,
+               -f->bulge[corner_of(b, b->around[a], node)] / b->out->area[q],
+               b->out->normal + (size_t)dim * (size_t)q, gap);
+  }
 }
 
 static status set_nodes(builder *b) {
@@ -522,8 +546,8 @@ static status set_nodes(builder *b) {
   PASS(set_links(b));
   PASS(set_node_normals(b));
   for (int q = 0; q < m->n; ++q) {
-    set_gap(b, q);
     set_normal(b, q);
+    set_gap(b, q);
     set_resultant(b, q);
   }
   return OK;
@@ -573,6 +597,11 @@ static status builder_new(const mortar_input *in, builder *b) {
   for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
   PASS(set_around(b));
   set_states(b);
+  if (!in->flat) {
+    PASS_NEW(b->bulge, 3 * in->mesh->n_face);
+    PASS(bulge_find(in, in->n_slave, in->slave, b->bulge));
+    PASS(bulge_find(in, in->n_master, in->master, b->bulge));
+  }
   return partner_search_new(in, &b->search);
 }
 
@@ -580,7 +609,7 @@ static void builder_release(builder *b) {
   partner_search_release(&b->search);
   mortar_free(b->out);
   RELEASE(b->state, b->face, b->met, b->entries, b->points, b->slot, b->normal,
-          b->start, b->around, b->links);
+          b->bulge, b->start, b->around, b->links);
 }
 
 status mortar_couple(const mortar_input *in, mortar **out) {

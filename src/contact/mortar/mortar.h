@@ -19,7 +19,10 @@
  * hold the faces in between. Nothing is a partner beyond the diagonal of the
  * box round the larger surface.
  *
- * Where the bodies differ in thickness they touch over the smaller one.
+ * Where the bodies differ in thickness they touch over the smaller one. The gap
+ * is that of curved surfaces, if the faces are those of one (bulge.c): two
+ * meshes of one circle have none, up to h^4/R^3, where their faces are apart by
+ * h^2/8R.
  *
  * A node carries no multiplier if the caller says so, if both surfaces have it,
  * or if less than 1 % of its area is covered. On the faces around it the
@@ -69,6 +72,7 @@ typedef struct mortar_input {
   int axisymmetric;          /* once around the axis: weight 2 pi r */
   int slave_normal;          /* 1: normals of the slave alone; 0: mean of both
                                 sides */
+  int flat;                  /* 1: the gap is that of the faces as they are */
   const unsigned char *dropped; /* [n_node] 1: carries no multiplier; NULL */
 } mortar_input;
 
@@ -80,8 +84,9 @@ typedef struct mortar {
   double *whole;  /* [n] D_j if all of its faces were covered, m2 */
   double *lever;  /* [dim*n] int psi_j x / int psi_j, m */
   double *normal; /* [dim*n] outward of the slave, unit length */
-  double *gap;    /* [dim*n] (sum P_jl x_l - x_j) D_j / int psi_j, m */
-  node_links to;  /* row q: node_id[q]; parts alike for all components */
+  double *gap;   /* [dim*n] (sum P_jl x_l - x_j) D_j / int psi_j, less what both
+                    surfaces have beyond their faces, along the normal, m */
+  node_links to; /* row q: node_id[q]; parts alike for all components */
   /* For messages */
   int n_dropped;   /* slave nodes left out: said by the caller, or common */
   int n_scant;     /* covered, but by less than 1 % */

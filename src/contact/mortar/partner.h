@@ -54,3 +54,13 @@ void partner_search_release(partner_search *s); /* accepts all-zero */
 double partner_rounding(const partner_search *s, const facet *f);
 /* list and cells of this slave face. */
 status partner_find(partner_search *s, int face, const facet *f);
+
+/*
+ * bulge.c: heights of a curved surface over its flat faces, m, outwards.
+ * bulge[edges*n_face], 1 edge of a face in 2-D, 3 in 3-D, is zero and gets
+ * those of the n faces of a surface. ERR_MEMORY.
+ */
+status bulge_find(const mortar_input *in, int n, const int *face,
+                  double *bulge);
+/* Of a face where its P1 functions are phi[dim]. */
+double bulge_height(int dim, const double *bulge, int face, const double *phi);

@@ -19,7 +19,7 @@ static status move_slave(const surface_input *in, surface_pair *p, double *x) {
   const int dim = msh->dim;
   mortar *m = NULL;
   PASS(surfaces_couple(in, msh->x, &msh->group[p->slave_id],
-                       &msh->group[p->master_id], 0, NULL, &m));
+                       &msh->group[p->master_id], COUPLE_FLAT, NULL, &m));
   memcpy(x, msh->x, (size_t)dim * (size_t)msh->n_node * sizeof *x);
   for (int q = 0; q < m->n; ++q)
     for (int c = 0; c < dim; ++c) {

@@ -130,8 +130,8 @@ static status couple(const run *r, const tie *t, const unsigned char *dropped,
                      mortar **out) {
   const mesh_group *slave = &r->msh->group[t->pair.slave_id],
                    *master = &r->msh->group[t->pair.master_id];
-  PASS(surfaces_couple(&r->faces.input, r->msh->x, slave, master, 1, dropped,
-                       out));
+  PASS(surfaces_couple(&r->faces.input, r->msh->x, slave, master,
+                       COUPLE_SLAVE_NORMAL | COUPLE_FLAT, dropped, out));
   const int alone = surfaces_held_alone(&r->faces.input, *out);
   if (alone > 0)
     message_add(r->m->log, P4032, &t->at,
