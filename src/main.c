@@ -2,17 +2,14 @@
  * protis: reads the command line, runs the stages in order, prints what went
  * wrong and chooses the exit code.
  */
+#include "base/base.h"
 #include "base/interrupt.h"
-#include "base/memory.h"
-#include "base/text.h"
 #include "fem/fem.h"
+#include "program/command.h"
 #include "program/inform.h"
 #include "program/job.h"
-#include "program/command.h"
 
 #include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #ifndef PROTIS_COMMIT /* of the sources: told by the Makefile */

@@ -8,13 +8,11 @@
  */
 #include "accuracy/accuracy.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { PASSES = 12, LONG_RUN = 90, AVERAGED = 30 };
 

@@ -5,13 +5,11 @@
  */
 #include "accuracy/accuracy.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { TILE = 32 };
 static const double SYMMETRY = 0x1p-40; /* -, of the diagonal */

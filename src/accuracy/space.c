@@ -10,11 +10,9 @@
  */
 #include "accuracy/space.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /*
  * Sizes for a new mesh from the errors of the elements of an old one. An

@@ -1,11 +1,9 @@
 /* Admissible forces (force_set.h). */
 #include "contact/force_set.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   SHARPENINGS = 4,  /* of the bound of the spectrum */

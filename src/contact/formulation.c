@@ -10,12 +10,12 @@
  * with the sliding limit g = g0 + B p of the total forces, as in N2. Solved in
  * these variables and added to u_old.
  */
-#include "base/memory.h"
 #include "contact/formulation.h"
+
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <string.h>
 
 /*
  * Given normal forces F at some nodes in the place of the unilateral conditions

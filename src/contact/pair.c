@@ -1,14 +1,7 @@
 /* Pairs of two surfaces of the mesh in a contact surface: what their nodes are
  * relative to. */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "contact/parts.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- couplings ---------------------------------------------------------- */
 

@@ -6,14 +6,11 @@
  * Products with the matrix run over blocks of CHUNK rows, so that nothing but
  * the search of the bodies allocates.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/contact.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
-#include <float.h>
-#include <math.h>
-#include <string.h>
 
 /* ---- parts that the matrix of the problem does not join (contact.h) ------ */
 

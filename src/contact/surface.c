@@ -8,14 +8,8 @@
  * the rows of one frame (a corner on two obstacles).
  */
 
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "contact/parts.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
  * the normals of the faces around a node over their area. */

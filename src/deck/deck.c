@@ -1,11 +1,9 @@
 /* The deck reader: cards, their parameters and records; the language cards. */
 #include "deck/deck.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/option.h"
 #include "deck/reader.h"
-
-#include <string.h>
 
 /* How data lines are read. */
 enum {
@@ -153,7 +151,6 @@ static const parameter *needed(reader *r, const card *c, const char *name) {
 }
 
 static status use_parameter(reader *r, const card *c) {
-  (void)c;
   r->mode = DATA_DEFINITION;
   return OK;
 }

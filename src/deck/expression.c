@@ -6,13 +6,8 @@
  */
 #include "deck/expression.h"
 
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "base/option.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { STACK = 64, WAITING = 128, NAME_SIZE = 64 };
 

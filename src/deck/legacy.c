@@ -3,11 +3,8 @@
  * into the fields of a record. Groups are unrolled with a stack of their own;
  * each repetition of a group must use columns, so that the work is bounded.
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "deck/reader.h"
-
-#include <string.h>
 
 enum { GROUP_MAX = 8, COUNT_MAX = 1000000 };
 

@@ -3,12 +3,11 @@
  * skipped. Logical lines: comments cut, lines that end in a comma joined with
  * the next, cut into pieces at commas.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/system/input.h"
 #include "deck/reader.h"
 
 #include <errno.h>
-#include <string.h>
 #include <sys/stat.h>
 
 enum { BLOCK = 1 << 16 };

@@ -2,11 +2,8 @@
  * The memory of a deck: chunks that are never moved, so that what points into
  * them stays valid, and small helpers for texts.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "deck/reader.h"
-
-#include <stdint.h>
-#include <string.h>
 
 enum { CHUNK_BYTES = 1 << 16, ALIGN = 16 };
 

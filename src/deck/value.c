@@ -2,13 +2,9 @@
  * Names of *PARAMETER and -D: definition, and replacement of <NAME>. Fields of
  * a line, and their values: numbers, quantities, names of files.
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "base/option.h"
 #include "deck/reader.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { ADVICE_MAX = 2000 }; /* names searched for the nearest */
 

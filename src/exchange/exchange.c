@@ -1,15 +1,12 @@
 /* Choice of the reader, and its failure as a message of the deck. */
-#include "base/file.h"
 #include "exchange/exchange.h"
 
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
+#include "base/file.h"
 #include "base/system/input.h"
-#include "base/text.h"
 #include "exchange/parts.h"
 
 #include <errno.h>
-#include <string.h>
 
 /*
  * A linear complementarity problem as text: n, the matrix M by rows, q. Numbers

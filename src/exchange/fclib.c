@@ -2,11 +2,9 @@
  * Contact problems in the layout of FCLIB: signs turned to those of contact.h
  * (exchange.h), everything checked.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "exchange/parts.h"
 
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 #define LOCAL "/fclib_local"

@@ -2,12 +2,10 @@
  * Assembly in three passes without triplets: elements round the nodes, the
  * lower node graph, the values. Cost and memory are linear in the elements.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "fem/element.h"
 #include "fem/stiffness.h"
-
-#include <string.h>
 
 /* The lower node graph, grown column by column. */
 typedef struct node_graph {

@@ -4,7 +4,7 @@
  * contact unknown prescribed by *BOUNDARY has an uncoupled row in A, with f_c
  * such that r = 0 gives the prescribed value.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "fem/element.h"
 #include "fem/factor.h"
@@ -12,11 +12,7 @@
 #include "fem/rigid.h"
 
 #include <cblas.h>
-#include <float.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* The condition number of a plain mesh is a few times to 200 times its number
  * of unknowns. Beyond this multiple, digits are lost by contrast, slivers or

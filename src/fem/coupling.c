@@ -1,8 +1,6 @@
 #include "fem/stiffness.h"
 
-#include "base/memory.h"
-
-#include <string.h>
+#include "base/base.h"
 
 /* What a node that moves with others has: its row of links, its frame. */
 typedef struct source {

@@ -1,11 +1,8 @@
 /* The condensed stiffness as an operator (operator.h). */
 #include "fem/operator.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
-
-#include <math.h>
-#include <string.h>
 
 static const double NO_PIVOT = 0x1p-42; /* -, of the diagonal: singular */
 

@@ -7,13 +7,10 @@
  */
 #include "fem/rigid.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/factor.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* Motions that move the contact unknowns less than this part of what they
  * share with the motions before them are left out. */
@@ -154,7 +151,7 @@ static void contact_motions(const stiffness *k, const domain *d,
   }
 }
 
-static double dot(int n, const double *a, const double *b) {
+static double inner(int n, const double *a, const double *b) {
   return cblas_ddot(n, a, 1, b, 1);
 }
 
@@ -167,13 +164,13 @@ static void gram_schmidt(const rigid_motions *r, rigid_set *s) {
     double *q = Q + m * (size_t)kept, *y = s->Y + n * (size_t)kept;
     memmove(q, Q + m * (size_t)j, m * sizeof *q);
     memmove(y, s->Y + n * (size_t)j, n * sizeof *y);
-    const double before = dot(r->m, q, q);
+    const double before = inner(r->m, q, q);
     for (int i = 0; i < kept; ++i) {
-      const double part = dot(r->m, Q + m * (size_t)i, q);
+      const double part = inner(r->m, Q + m * (size_t)i, q);
       cblas_daxpy(r->m, -part, Q + m * (size_t)i, 1, q, 1);
       cblas_daxpy(s->n, -part, s->Y + n * (size_t)i, 1, y, 1);
     }
-    const double norm = sqrt(dot(r->m, q, q));
+    const double norm = sqrt(inner(r->m, q, q));
     if (!(norm > least_part * sqrt(before))) continue;
     cblas_dscal(r->m, 1 / norm, q, 1);
     cblas_dscal(s->n, 1 / norm, y, 1);
@@ -312,8 +309,9 @@ void rigid_balance(const rigid_motions *r, double *f_c) {
     const rigid_set *s = &r->set[t];
     const double *Q = r->Q + (size_t)r->m * (size_t)s->first;
     for (int j = 0; j < s->k; ++j, Q += r->m) {
-      const double given = dot(s->n, s->Y + (size_t)s->n * (size_t)j, s->load);
-      cblas_daxpy(r->m, given - dot(r->m, Q, f_c), Q, 1, f_c, 1);
+      const double given =
+          inner(s->n, s->Y + (size_t)s->n * (size_t)j, s->load);
+      cblas_daxpy(r->m, given - inner(r->m, Q, f_c), Q, 1, f_c, 1);
     }
   }
 }

@@ -1,11 +1,8 @@
 /* Points and factors: what the caller sees. */
 #include "fracture/fracture.h"
 
+#include "base/base.h"
 #include "fracture/parts.h"
-
-#include "base/memory.h"
-
-#include <math.h>
 
 static status prepare(fracture *f) {
   const mesh *m = f->body.mesh;

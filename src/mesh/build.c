@@ -3,19 +3,15 @@
  * is read here; then the steps from the raw mesh to the mesh, and how their
  * messages are made.
  */
-#include "base/file.h"
 #include "mesh/build.h"
-#include "mesh/refine/refine.h"
 
-#include "base/memory.h"
+#include "base/base.h"
+#include "base/file.h"
 #include "base/system/input.h"
+#include "mesh/refine/refine.h"
 #include "mesh/sort.h"
-#include "base/text.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 /* ---- groups: names and dimension before, contents after the rest ---- */

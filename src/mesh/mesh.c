@@ -1,14 +1,10 @@
 /* The finished mesh: release, look-up of groups, measures, bodies. */
 #include "mesh/build.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "base/option.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 const char *const mesh_words[4] = {"points", "curves", "surfaces", "volumes"};
 

@@ -1,10 +1,8 @@
 /* The model: what belongs to it, and what its tables show. */
 #include "model/model.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
-#include <math.h>
-#include <string.h>
 #include <strings.h>
 
 int has_card(const model *m, const char *name) {

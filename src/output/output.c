@@ -6,17 +6,13 @@
  */
 #include "output/writers.h"
 
+#include "base/base.h"
 #include "base/file.h"
-#include "base/memory.h"
-#include "base/text.h"
 #include "base/timer.h"
 
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 

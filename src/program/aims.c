@@ -15,12 +15,7 @@
 #include "program/job.h"
 
 #include "accuracy/space.h"
-#include "base/memory.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */

@@ -29,16 +29,11 @@
  * that it needs for itself. The passes of its target cost that of the deck and
  * two like the last one.
  */
-#include "program/job.h"
-#include "effects/rows.h"
-
 #include "accuracy/space.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "effects/rows.h"
+#include "program/job.h"
 
 typedef struct trial {
   double unknowns, contact;       /* of the body, of the contact */
@@ -60,7 +55,6 @@ static status see_sizes(void *ctx, int n_node, const stiffness_choice *choice) {
 static status see_ready(void *ctx, const setup_facts *facts,
                         const contact_surface *surface) {
   trial *t = ctx;
-  (void)surface;
   t->unknowns = (double)facts->info.unknowns;
   t->contact = (double)facts->info.contact_unknowns;
   return OK;

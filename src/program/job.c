@@ -5,7 +5,7 @@
 #include "program/job.h"
 
 #include "accuracy/space.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/system/input.h"
 #include "base/timer.h"
 #include "effects/plan/plan.h"
@@ -17,8 +17,6 @@
 #include "program/inform.h"
 #include "run/setup/setup.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* --safe: a mesh that is a program is not run. */

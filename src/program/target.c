@@ -13,13 +13,9 @@
 #include "program/job.h"
 
 #include "accuracy/space.h"
+#include "base/base.h"
 #include "base/interrupt.h"
-#include "base/memory.h"
 #include "base/timer.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* Shares of the target, -: errors allowed to the mesh, the increments and the
  * solver; the next pass aims at AIM of that. */
@@ -69,7 +65,6 @@ typedef struct pass {
 static status see_ready(void *ctx, const setup_facts *facts,
                         const contact_surface *surface) {
   pass *p = ctx;
-  (void)surface;
   p->unknowns = (double)facts->info.unknowns;
   return OK;
 }

@@ -1,10 +1,8 @@
 /* The hooks of the active effects, each under the stage of its row. */
 #include "run/effect.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "run/run.h"
-
-#include <string.h>
 
 int effect_is_on(const effect_ops *e, const model *m) {
   if (e->bit != NO_BIT) return (m->effects >> e->bit & 1u) != 0;

@@ -3,9 +3,7 @@
  */
 #include "run/run.h"
 
-#include "base/memory.h"
-
-#include <stdio.h>
+#include "base/base.h"
 
 int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
 

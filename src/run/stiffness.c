@@ -6,12 +6,8 @@
  */
 #include "run/run.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/facts.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum {
   COLD = 14,    /* linear systems of the first increment */

@@ -5,12 +5,10 @@
  * last accepted increment).
  */
 #include "run/visco.h"
-#include "base/memory.h"
+
+#include "base/base.h"
 #include "base/timer.h"
 #include "model/check/check.h"
-
-#include <math.h>
-#include <string.h>
 
 /* The error of the midpoint rule in its difference to the trapezoidal one. */
 static const double SIMPSON = 3.0;

@@ -19,13 +19,11 @@
  *
  * A combination after which a sweep moves farther than before is rejected.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/local.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 typedef enum { BY_AITKEN, BY_ANDERSON, BY_NOTHING } acceleration_kind;
 

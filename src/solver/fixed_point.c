@@ -1,10 +1,7 @@
 /* Fixed point on the sliding limit, with Anderson mixing (fixed_point.h). */
 #include "solver/fixed_point.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum {
   MOST = 200000, /* iterations of all passes, by default */

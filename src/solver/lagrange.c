@@ -21,12 +21,9 @@
  *
  * and shortens rho, never below the bound of Collatz and Wielandt.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct lagrange {
   int acceleration; /* acceleration_kind */
@@ -71,7 +68,6 @@ static void lagrange_release(void *work) {
 static status lagrange_setup(const contact_problem *cp, const void *par,
                              void *work) {
   lagrange_work *w = work;
-  (void)par;
   PASS(force_set_new(cp, &w->set));
   PASS_NEW_REALS(cp->m, &w->x, &w->old_x, &w->y, &w->y_x, &w->c, &w->old_r);
   PASS(best_iterate_new(cp->m, &w->best));

@@ -27,13 +27,11 @@
  * operator a product with W is a solve with the factor of all rows, and a
  * product with A one with that of the interior.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 typedef struct pcg {
   int preconditioner; /* preconditioner_kind */
@@ -81,7 +79,6 @@ static status pcg_setup(const contact_problem *cp, const void *par,
                         void *work) {
   pcg_work *w = work;
   int m = cp->m;
-  (void)par;
   PASS(force_set_new(cp, &w->set));
   PASS_NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
                  &w->x0, &w->e);

@@ -4,11 +4,9 @@
  */
 #include "solver/local.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 enum { DRIFT_SWEEPS = 20 };
 static const double RIGID = 0x1p-5;     /* -, of a drift: counts as no strain */

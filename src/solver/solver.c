@@ -1,10 +1,7 @@
 /* Functions common to the solvers (solver.h). */
 #include "solver/solver.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 

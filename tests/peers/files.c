@@ -127,7 +127,6 @@ static double run_auto(const struct kernel *k, double tol) {
   solver_report rep;
   contact_solver *s = NULL;
   const contact_problem *cp = peers.cp;
-  (void)k;
   memset(peers.r, 0, (size_t)cp->m * sizeof *peers.r);
   memcpy(peers.u, cp->f, (size_t)cp->m * sizeof *peers.u);
   double start = cpu();

@@ -22,7 +22,6 @@ char *folder_new(char path[64]) {
 /* Folders that cannot be written are in some tests. */
 static int allow(const char *path, const struct stat *is, int kind,
                  struct FTW *at) {
-  (void)at;
   return kind == FTW_D || kind == FTW_DNR ? chmod(path, is->st_mode | 0700) : 0;
 }
 

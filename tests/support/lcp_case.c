@@ -128,7 +128,6 @@ static void make_random(const maker *m, lcp_family family) {
 
 /* w_i = -1 + g_i g'z with g of both signs. */
 static void make_flat(const maker *m, lcp_family family) {
-  (void)family;
   int n = m->c->n;
   for (int i = 0; i < n; ++i)
     m->c->z[i] = i == 0 ? 1.0 : i == n - 1 ? -1.0 : number(m);
@@ -139,7 +138,6 @@ static void make_flat(const maker *m, lcp_family family) {
 
 /* Contacts with (p, b+, b-, y) each, W of rank n/4 of n/2, mu = 0.7. */
 static void make_friction(const maker *m, lcp_family family) {
-  (void)family;
   int n = m->c->n, contacts = n / 4, rank = contacts;
   double *H = calloc((size_t)(2 * contacts * rank) + 1, sizeof *H);
   for (int k = 0; k < 2 * contacts * rank; ++k) H[k] = number(m);

@@ -93,10 +93,7 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
   apply(ctx, x, Ax);
 }
 
-static void set_response(void *ctx, const unsigned char *at) {
-  (void)ctx;
-  (void)at;
-}
+static void set_response(void *ctx, const unsigned char *at) {}
 
 static void response(void *ctx, const double *b, double *x, double *Ax) {
   const operated_case *o = ctx;

@@ -69,11 +69,7 @@ static status equilibrium(void *ctx, flow_state *s, int *settled) {
   return OK;
 }
 
-static status begin(void *ctx, flow_state *s) {
-  (void)ctx;
-  (void)s;
-  return OK;
-}
+static status begin(void *ctx, flow_state *s) { return OK; }
 
 static status linear(void *ctx, const flow_tangent *law, flow_state *s,
                      int *settled) {

@@ -10,7 +10,6 @@
 static const double X = 0.7, Y = -1.3, Z = 2.5, T = 0.4;
 
 static int symbol(const void *ctx, const char *name, double *value) {
-  (void)ctx;
   if (strcmp(name, "H") == 0) *value = 0.05;
   if (strcmp(name, "LONG_NAME_2") == 0) *value = 7;
   return strcmp(name, "H") == 0 || strcmp(name, "LONG_NAME_2") == 0;

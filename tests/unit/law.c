@@ -426,11 +426,7 @@ static const option trial_fields[] = {
     OPTION_REAL(trial_value, tau, "tau", 1e-9, 1e9, "5", "time", "recovery"),
     OPTION_END};
 
-static int trial_n_alpha(const law_card *law, int ns) {
-  (void)law;
-  (void)ns;
-  return 3;
-}
+static int trial_n_alpha(const law_card *law, int ns) { return 3; }
 
 static const double swing = 100; /* k tau */
 

@@ -39,7 +39,6 @@ static status write_increment(const job *j, text_file *to) {
 }
 
 static status write_others(const job *j, text_file *to) {
-  (void)j;
   listing_between(&made->s, to);
   return listing_rejected(&made->s, "too long", to);
 }

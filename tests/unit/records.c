@@ -83,7 +83,6 @@ typedef struct walk {
 static herr_t next_name(hid_t group, const char *name, const H5L_info_t *info,
                         void *ctx) {
   walk *w = ctx;
-  (void)group;
   w->wrong += info->type != H5L_TYPE_HARD || strcmp(name, w->before) <= 0;
   snprintf(w->before, sizeof w->before, "%s", name);
   ++w->n;

@@ -51,14 +51,8 @@ static double near_in_space(const double *x) {
 static double finer_in_space(const double *x) {
   return 0.02 + 0.2 * hypot(x[0], hypot(x[1], x[2]));
 }
-static double fine(const double *x) {
-  (void)x;
-  return 0.03;
-}
-static double large(const double *x) {
-  (void)x;
-  return 9.0;
-}
+static double fine(const double *x) { return 0.03; }
+static double large(const double *x) { return 9.0; }
 
 /* ---- what holds of every mesh ----------------------------------------------
  */

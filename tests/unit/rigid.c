@@ -27,8 +27,6 @@ static void plane_motion(const double *x, int k, double *u) {
 }
 
 static void lift(const double *x, int k, double *u) {
-  (void)x;
-  (void)k;
   u[0] = 0;
   u[1] = 1;
 }

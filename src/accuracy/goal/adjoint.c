@@ -15,12 +15,10 @@
 #include "accuracy/goal/goal.h"
 
 #include "accuracy/accuracy.h"
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /* What each unknown does; all is borrowed. */
 typedef struct linear_rows {

@@ -30,12 +30,7 @@
  */
 #include "accuracy/goal/goal.h"
 
-#include "base/memory.h"
-#include "base/number.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 /* A field in the bubbles. */
 typedef struct bubbles {

@@ -1,11 +1,9 @@
 /* Norms in the energy of A, and the constants of friction in them. */
 #include "accuracy/theorems/theorems.h"
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { STEPS = 160, EVERY = 8 };
 static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value */

@@ -1,10 +1,7 @@
 /* The report on an increment from its parts (theorems.h). */
 #include "accuracy/theorems/theorems.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 /*
  * The variational inequality S_i^n of CPR98 over random test fields. The convex

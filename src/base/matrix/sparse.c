@@ -1,8 +1,6 @@
 /* A sparse matrix of square blocks (sparse.h). */
+#include "base/base.h"
 #include "base/sparse.h"
-#include "base/vector.h"
-
-#include <string.h>
 
 void sparse_blocks_free(sparse_blocks *b) {
   if (b == NULL) return;

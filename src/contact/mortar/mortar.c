@@ -5,13 +5,8 @@
  */
 #include "contact/mortar/mortar.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "contact/mortar/partner.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Least part of its area that gives a node a multiplier, - . */
 static const double scant = 0.01;

@@ -2,14 +2,11 @@
  * *INITIAL CONDITIONS, TYPE=DISPLACEMENT: the displacements a run starts from,
  * and their test for equilibrium with loads and contact of time 0.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "run/history/loop.h"
-
-#include <math.h>
-#include <string.h>
 
 /* K u_0 - F into R; the largest of both, and of the forces that hold strains
  * back, into *largest; diagonal of K. */

@@ -4,15 +4,12 @@
  * opening and sliding of the lips behind them (Williams 1957), a check that is
  * good to some percent.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
 #include "model/facts.h"
 #include "run/history/loop.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { MODES = 3 };
 
@@ -161,8 +158,6 @@ static status cracks_new(run *r, void **self) {
 
 static status cracks_copy(const run *r, const void *of, run *copy,
                           void **self) {
-  (void)of;
-  (void)copy;
   return cracks_new((run *)r, self);
 }
 

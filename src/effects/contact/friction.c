@@ -7,16 +7,11 @@
  * Any increment may be cut, so that each is one of several: the position of
  * stick is always found from the last equilibrium.
  */
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
 #include "run/column_row.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct friction {
   friction_limit limit;
@@ -342,7 +337,6 @@ static status check_travels(const run *r, travel *x, const double *none) {
 static status check_step(run *r, void *self) {
   int any = 0;
   OWNED double *before = NULL, *now = NULL, *drift = NULL, *none = NULL;
-  (void)self;
   for (int k = 0; k < 2 * r->nodes.n && r->msh->dim == 3; ++k)
     any |= is_half_held(r->surface, k / 2, 1 + k % 2);
   if (!any) return OK;

@@ -3,16 +3,12 @@
  * (CPR98, problem D3). The solver takes a problem without those normals; its
  * solution is transformed back.
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "contact/formulation.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/facts.h"
 #include "run/run.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct given_forces {
   int n, *node;     /* [n] contact nodes with a given normal force */
@@ -39,7 +35,6 @@ static int forced_corner(const run *r, int i) {
 
 /* Two contacts at one node take its normals for unilateral conditions. */
 static status check_corners(run *r, void *self) {
-  (void)self;
   for (int i = 0; i < r->nodes.n; ++i) {
     int id = forced_corner(r, i);
     if (id < 0) continue;
@@ -102,8 +97,6 @@ static status prepare(run *r, void *self) {
 }
 
 static status given_copy(const run *r, const void *of, run *copy, void **self) {
-  (void)r;
-  (void)of;
   return prepare(copy, *self);
 }
 
@@ -127,7 +120,6 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
 static void give(run *r, void *self, contact_problem *cp, double *u,
                  double *force) {
   given_forces *own = self;
-  (void)r;
   if (own->n > 0) given_form_apply(own->form, cp, u, force);
 }
 

@@ -10,7 +10,6 @@
 
 /* Those of a new surface. */
 static status prepare(run *r, void *self) {
-  (void)self;
   if (r->nodes.n_c == 0 || r->old.motion != NULL) return OK;
   PASS_NEW_REALS(r->nodes.n_c, &r->old.motion, &r->now.motion);
   surface_drift(r->surface, &r->faces.input, 0.0, r->old.t, r->old.motion);
@@ -18,7 +17,6 @@ static status prepare(run *r, void *self) {
 }
 
 static status pose(run *r, void *self, double t) {
-  (void)self;
   COPY(r->now.motion, r->old.motion, r->nodes.n_c);
   surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
   return OK;

@@ -3,12 +3,10 @@
  * it (CPR98, 2.7), and friction confined to the nodes that touch. Averages are
  * kept while surface and options are unchanged.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
-
-#include <string.h>
 
 /* The average of one contact and the rule it was made for. */
 typedef struct friction_average {
@@ -100,7 +98,6 @@ static status zone_start(run *r, void *self, double t) {
   friction_zone *z = &((nonlocal *)self)->zone;
   const friction_limit *limit = r->problem.limit;
   int dim = r->msh->dim, touched = 0;
-  (void)t;
   if (limit->in_zone == NULL) {
     zone_free(z);
     return OK;
@@ -162,8 +159,6 @@ static void forget(run *r, void *self) {
 
 static status nonlocal_copy(const run *r, const void *of, run *copy,
                             void **self) {
-  (void)r;
-  (void)copy;
   *(nonlocal *)*self = (nonlocal){((const nonlocal *)of)->average, 1, {0}};
   return OK;
 }

@@ -30,7 +30,6 @@ static void put_old(run *r, double *u_old) {
 static status take(run *r, void *self, contact_problem *cp, double **u,
                    double *force) {
   velocity *own = self;
-  (void)force;
   own->before = *cp;
   if (own->m != cp->m) { /* other nodes, by the supports or within reach */
     velocity_form_free(own->form);
@@ -46,9 +45,6 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
 static void give(run *r, void *self, contact_problem *cp, double *u,
                  double *force) {
   const velocity *own = self;
-  (void)r;
-  (void)cp;
-  (void)force;
   velocity_form_apply(own->form, &own->before, u);
 }
 

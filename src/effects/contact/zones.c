@@ -13,15 +13,10 @@
  * inside, or with values that grow outwards, the end is put half way to the
  * next node.
  */
+#include "base/base.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "run/history/loop.h"
-
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
 
 #include "run/column_row.h"
 

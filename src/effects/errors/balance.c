@@ -15,15 +15,10 @@
  * to the default, and the iterations that a digit took so far; methods that end
  * at once when their active set is found (Newton, pivoting) save a step.
  */
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "effects/rows.h"
 #include "run/history/loop.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { PASSES = 8 };
 static const double FIRST_TOL = 3e-2; /* -, before an error is known */
@@ -232,8 +227,6 @@ static void show(const void *self, state *s) {
 
 static int requires_balance(const model *m, char *why, size_t size) {
   int any = 0;
-  (void)why;
-  (void)size;
   for (int i = 0; i < m->n.step; ++i) any |= m->steps[i].balanced;
   return any;
 }

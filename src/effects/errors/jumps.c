@@ -12,15 +12,11 @@
  * where the method of the deck did not converge; an increment that starts from
  * a state far from equilibrium is not examined.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "run/history/loop.h"
 #include "run/setup/setup.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct checked {
   int asked;              /* 1: by CHECK= of the step */
@@ -294,14 +290,12 @@ static effect_work products(const plan_sizes *s) {
 }
 
 static status begin_step(run *r, void *self) {
-  (void)r;
   ((checked *)self)->jumps = 0;
   return OK;
 }
 
 static status check_asked(run *r, void *self) {
   int corner = 0;
-  (void)self;
   for (int i = 0; i < r->nodes.n; ++i)
     corner |= surface_is_corner(r->surface, i);
   return check_possible(r->step, r->msh->dim,
@@ -324,7 +318,6 @@ static void show(const void *self, state *s) {
 }
 
 static status keep(run *r, void *self, archive *a) {
-  (void)r;
   return archive_ints(a, "lost", &((checked *)self)->lost, 1);
 }
 

@@ -2,16 +2,15 @@
  * *ACCURACY, MESH=: the error of the mesh by recovered stresses, of the body
  * and of each element.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "effects/shared.h"
 #include "model/facts.h"
 #include "run/run.h"
-#include "run/column_row.h"
 
-#include <math.h>
+#include "run/column_row.h"
 
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
 

@@ -7,14 +7,10 @@
  * one where fewer nodes were found in another state than on the coarser mesh at
  * the increment before than change their state there within this one.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "run/run.h"
 #include "run/start/coarser.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct nested {
   double *u, *rc;          /* [n_c] m, N; NULL: none yet */
@@ -38,7 +34,6 @@ static void forget(run *r, void *self) {
 }
 
 static status nested_new(run *r, void **self) {
-  (void)r;
   ((nested *)*self)->missed = -1;
   return OK;
 }
@@ -137,8 +132,6 @@ static status compare(run *r, void *self) {
 }
 
 static int requires_start(const model *m, char *why, size_t size) {
-  (void)why;
-  (void)size;
   return m->accuracy.coarser != NULL;
 }
 

@@ -15,17 +15,15 @@
  * of order p (Richardson), without friction; zones of stick and slip that grow
  * lie between order 1 and 2: 5/3, or more for an integrator of order 1.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/facts.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
-#include "run/column_row.h"
 
-#include <math.h>
-#include <string.h>
+#include "run/column_row.h"
 
 static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones */
 static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver */
@@ -318,10 +316,7 @@ static status compare(run *r, void *self) {
 
 static void release(void *self) { path_free(((paths *)self)->path); }
 
-static void forget(run *r, void *self) {
-  (void)r;
-  restart(self);
-}
+static void forget(run *r, void *self) { restart(self); }
 
 /* Sudden loads at the start of a *VISCO step is no part of a path. */
 static status begin_step(run *r, void *self) {

@@ -5,15 +5,12 @@
  * stresses of the points changes their e^i by the law over the increment, that
  * is a load on the elastic body, whose motion changes the stresses again.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/facts.h"
 #include "run/run.h"
 #include "run/visco.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct checked {
   theorems *at_work;
@@ -217,7 +214,6 @@ static effect_work expected(const plan_sizes *s) {
 }
 
 static status checked_new(run *r, void **self) {
-  (void)r;
   return theorems_new(&((checked *)*self)->at_work);
 }
 

@@ -3,13 +3,9 @@
  * that are not small, elements turned inside out by the displacements, a
  * contact that no node ever touched. Each is reported once a run.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "run/run.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct warnings {
   int strain, folded; /* 1: told */
@@ -103,8 +99,6 @@ static status keep(run *r, void *self, archive *a) {
 }
 
 static int requires_warnings(const model *m, char *why, size_t size) {
-  (void)why;
-  (void)size;
   return !m->problem.given;
 }
 

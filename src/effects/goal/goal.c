@@ -16,7 +16,7 @@
  * before further: one solve an increment for all goals at all times, the
  * transpose of a chain of adjoints backwards through the increments.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "effects/goal/parts.h"
 #include "effects/plan/plan.h"
@@ -24,8 +24,6 @@
 #include "effects/shared.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 static const double DIGITS = 1e-13;   /* -, of the terms: their rounding */
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */

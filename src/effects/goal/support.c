@@ -10,13 +10,8 @@
  * (Bogy 1971, J Appl Mech 38, 377-386), unless it is a plane of symmetry that
  * their interface is normal to, and where their interface turns within.
  */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
-
-#include <math.h>
-#include <stdlib.h>
 
 static const double PI = 3.14159265358979323846;
 /* Of a face that is a chord of a smooth surface, rad: half of what it turns. */

@@ -5,9 +5,10 @@
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/facts.h"
-#include "run/column_row.h"
 
 #include <math.h>
+
+#include "run/column_row.h"
 
 static effect_work elements(const plan_sizes *s) {
   double n = s->elements, entries = work_factor_entries(s);
@@ -286,7 +287,6 @@ static int requires_restart(const model *m, char *why, size_t size) {
 }
 
 static int requires_always(const model *m, char *why, size_t size) {
-  (void)m;
   return plan_says(1, why, size, "always");
 }
 

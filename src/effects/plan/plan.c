@@ -3,14 +3,12 @@
  * the plan as text, and the measured costs of the run.
  */
 #include "effects/plan/plan.h"
+
+#include "base/base.h"
 #include "effects/rows.h"
 #include "model/facts.h"
-#include "base/memory.h"
-#include "base/text.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
 
 int plan_says(int on, char *why, size_t size, const char *format, ...) {
   va_list list;

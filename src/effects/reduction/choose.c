@@ -14,14 +14,10 @@
  *                      or no lateral expansion (nu = 0), where no motion of a
  *                      body is held by friction
  */
+#include "base/base.h"
 #include "effects/reduction/parts.h"
 #include "effects/rows.h"
-
-#include "base/memory.h"
 #include "fem/fem.h"
-
-#include <math.h>
-#include <string.h>
 
 /*
  * Materials to try without their law: it flows too little, or it is always in

@@ -17,12 +17,9 @@
  */
 #include "effects/reduction/parts.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/sparse.h"
 #include "fem/fem.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { SAFETY = 2 };
 

@@ -6,10 +6,7 @@
  */
 #include "fem/cluster/cluster.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 /* The current section. */
 typedef struct growth {

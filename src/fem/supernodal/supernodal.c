@@ -1,13 +1,10 @@
 /* Cholesky factors of which parts change (supernodal.h). */
 #include "fem/supernodal/supernodal.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   FEW_COLUMNS = 16,   /* BLAS costs more than it saves */

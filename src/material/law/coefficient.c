@@ -5,13 +5,7 @@
  */
 #include "material/law/law.h"
 
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/text.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "base/base.h"
 
 int law_n_field(const option *table) {
   int n = 0;

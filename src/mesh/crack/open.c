@@ -6,14 +6,10 @@
  * per * place + k with per = dim + 1, place the one in "elem" and k the side or
  * corner of the element.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/build.h"
 #include "mesh/crack/crack.h"
 #include "mesh/sort.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct opening {
   mesh *m;             /* borrowed */

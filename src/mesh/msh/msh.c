@@ -10,12 +10,9 @@
  * nodes and elements come in blocks on an entity. Partitions have a list of
  * entities of their own.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
-
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct element_type { /* of gmsh, its number is the row */
   int dim, n_node;

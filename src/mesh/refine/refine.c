@@ -7,11 +7,7 @@
  */
 #include "mesh/refine/parts.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { ROUNDS = 100, EDGES = 6 };
 /* Elements are bisected whose length over that required is above the middle of

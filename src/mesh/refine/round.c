@@ -7,11 +7,7 @@
  */
 #include "mesh/refine/parts.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double SMOOTH = 0.5; /* -, sine of the largest turn */
 static const double FLAT = 1e-6;  /* -, the same of what is flat */

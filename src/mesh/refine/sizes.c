@@ -4,10 +4,7 @@
  */
 #include "mesh/refine/parts.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { FEW = 12, DEEPEST = 48 };
 static const double SHARED = 1.6; /* -, elements of both halves over those of

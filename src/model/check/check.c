@@ -2,14 +2,11 @@
  * The model against the mesh: kinematics, sections, contacts, goals, pairs of
  * surfaces, and the parts in order.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/crack/crack.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
 #include "model/facts.h"
-
-#include <math.h>
-#include <stdio.h>
 
 /* ---- *REFERENCE: components to their places ------------------------------ */
 

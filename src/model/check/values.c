@@ -3,13 +3,9 @@
  * numbers where steps begin and end, supports that agree where groups meet;
  * input without effect; increments of *VISCO steps against the laws.
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
-
-#include <math.h>
-#include <string.h>
 
 /* ---- names of groups to their ids in the mesh ---------------------------- */
 

@@ -1,9 +1,6 @@
 /* From cards to the model: the driver over the keyword table. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/keyword/keyword.h"
-
-#include <stdio.h>
-#include <string.h>
 
 /* ---- decks with *CONDENSED PROBLEM: what is allowed with it ------------- */
 

@@ -4,13 +4,10 @@
  */
 #include "run/history/history.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "solver/lcp/lcp_solve.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
 enum {

@@ -5,10 +5,7 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { PASSES = 3 };
 

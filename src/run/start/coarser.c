@@ -4,11 +4,7 @@
  */
 #include "run/start/coarser.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 struct coarser_state {
   int dim, n;

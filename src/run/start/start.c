@@ -5,13 +5,9 @@
  * N.
  */
 #include "run/start/start.h"
-#include "base/memory.h"
-#include "base/text.h"
-#include "base/archive/dataset.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "base/archive/dataset.h"
+#include "base/base.h"
 
 static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh */
 

@@ -4,12 +4,8 @@
  */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
 enum { TIGHTER = 3 };                /* tolerances tried on another form */

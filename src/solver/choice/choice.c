@@ -4,14 +4,9 @@
  */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
 #include "solver/local.h"
-
-#include <limits.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- final correction of a solution ---- */
 

@@ -1,14 +1,11 @@
 /* Other form and normal form (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- Contact without friction from the closed state --------------------- */
 

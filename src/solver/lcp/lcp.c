@@ -15,14 +15,11 @@
  */
 #include "solver/lcp/lcp.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/sparse.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stddef.h>
-#include <string.h>
 
 /* ---- the plain form of the problem: a dense matrix, covering vector 1 ---- */
 

@@ -37,7 +37,7 @@
  *
  * the very step of NEWTON for these states.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
@@ -46,9 +46,6 @@
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 enum {
   NEWTON_STEPS = 60, /* of the generalised Newton method */
@@ -652,7 +649,6 @@ static status auglag_setup(const contact_problem *cp, const void *par,
                            void *work) {
   auglag_work *w = work;
   size_t m = (size_t)cp->m;
-  (void)par;
   w->m = cp->m;
   PASS_NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
                  &w->du, &w->dy, &w->e);

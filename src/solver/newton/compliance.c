@@ -12,13 +12,11 @@
  */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /* An unknown force: of one degree of freedom, or along d in the tangent plane
  * of a slipping node. */

@@ -22,14 +22,11 @@
  * Where only the compliance is known a step solves for the unknown forces of
  * the guess (system.h); a singular system then ends the method.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/timer.h"
-#include "solver/newton/system.h"
 #include "solver/local.h"
+#include "solver/newton/system.h"
 #include "solver/single.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct newton {
   int steps; /* of one attempt; 0: chosen by the program */
@@ -78,7 +75,6 @@ static void newton_release(void *work) {
 static status newton_setup(const contact_problem *cp, const void *par,
                            void *work) {
   newton_work *w = work;
-  (void)par;
   PASS(states_new(cp, &w->states));
   if (cp->op != NULL)
     PASS(operated_system_new(cp, &w->operated));

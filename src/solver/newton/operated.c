@@ -1,11 +1,9 @@
 /* A step by the operator (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   DIRECTIONS = 60, /* of GMRES, without a new start */

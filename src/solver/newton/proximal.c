@@ -30,14 +30,12 @@
  *
  * A body that contact alone holds needs no compliance so.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/newton/system.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 static const option proximal_options[] = {OPTION_END};
 
@@ -113,7 +111,6 @@ static status proximal_setup(const contact_problem *cp, const void *par,
                              void *work) {
   proximal_work *w = work;
   size_t m = (size_t)cp->m;
-  (void)par;
   PASS(force_set_new(cp, &w->set));
   PASS(best_iterate_new(cp->m, &w->best));
   if (cp->op != NULL)
@@ -529,7 +526,6 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   proximal_work *w = work;
   run s = {.cp = cp, .w = w, .control = control, .u = u, .r = r};
   int limit = control->max_iter > 0 ? control->max_iter : STEPS;
-  (void)par;
   s.scale = contact_scale(cp);
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;

@@ -1,11 +1,7 @@
 /* States of the nodes: open, closed, stick, slip (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
                                             start */

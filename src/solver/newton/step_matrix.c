@@ -1,10 +1,9 @@
 /* Matrix of a step of the proximal point iteration (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <lapacke.h>
-#include <string.h>
 #include <umfpack.h>
 
 struct step_matrix {

@@ -1,14 +1,11 @@
 /* A step: by an updated factor, or by a new one (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 enum {
   CHUNK = 32, /* rows gathered at a time */

@@ -21,15 +21,14 @@
  * Tangential unknowns without friction are eliminated first. In 3-D the state
  * found is the start of a solver with the exact disc of friction.
  */
-#include "base/memory.h"
-#include "solver/lcp/lcp.h"
 #include "solver/pivoting/lemke.h"
+
+#include "base/base.h"
+#include "solver/lcp/lcp.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { N_CORRECTOR = 2 };
 
@@ -743,7 +742,6 @@ static status lemke_solve(const contact_problem *cp, const void *par,
                           double *r, solver_report *rep) {
   lemke_work *w = work;
   lemke_run s = {cp, w, control, contact_matrix(cp)};
-  (void)par;
   *rep = (solver_report){.outcome = STOPPED_SINGULAR};
   w->has_ray = 0;
   if (!prepare(&s)) return OK;
