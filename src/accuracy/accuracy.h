@@ -67,8 +67,34 @@ status contraction_limit(const contact_problem *cp, const double *u,
                          const double *r, double *rate);
 
 /*
- * The contact linearised at (u, r), its limit being given (cp->B is not read):
- * the states closed, stick and slip persist. cp is borrowed.
+ * The contact linearised at (u, r): the states closed, stick and slip persist.
+ * Friction of a sliding node acts along e and, in space, turns with its slip
+ * by kappa (I - e e'), kappa = g/|slip|.
+ */
+typedef struct linear_states {
+  const contact_problem *cp; /* borrowed */
+  int n_free, n_slip, n_closed;
+  int *free_id, *place;         /* [m] unknowns that can move; place among them,
+                                   or -1 */
+  unsigned char *closed, *slip; /* [n] */
+  double *e;                    /* [m] direction of friction on slip */
+  double *kappa;                /* [n] N/m */
+  unsigned char *known;         /* known_rows of an operator */
+  double *added;
+} linear_states;
+/* out: all-zero. ERR_MEMORY. */
+status linear_states_new(const contact_problem *cp, const double *u,
+                         const double *r, linear_states *out);
+void linear_states_free(linear_states *s);
+/* Entry of kappa (I - e e') of two tangents of one sliding node, N/m. */
+double linear_turn(const linear_states *s, int a, int b);
+/* The factor of the operator for these states; it keeps one, so again before
+ * each use. ERR_MEMORY. */
+status linear_set_rows(const linear_states *s, int *singular);
+
+/*
+ * Changes of the contact linearised at (u, r), its limit being given (cp->B is
+ * not read). cp is borrowed.
  */
 typedef struct linear_contact linear_contact;
 /* *out is NULL if nothing holds the free unknowns. ERR_MEMORY. */
