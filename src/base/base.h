@@ -1,12 +1,13 @@
 /*
- * What nearly every source file uses: status, memory, numbers, text, vectors,
- * and of the C library what goes with them.
+ * What nearly every source file uses: status, memory, numbers, text, timers,
+ * vectors, and of the C library what goes with them.
  */
 #pragma once
 
 #include "base/memory.h"
 #include "base/number.h"
 #include "base/text.h"
+#include "base/timer.h"
 #include "base/vector.h"
 
 #include <float.h>

@@ -3,7 +3,6 @@
  * lower node graph, the values. Cost and memory are linear in the elements.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "fem/element.h"
 #include "fem/stiffness.h"
 

@@ -5,7 +5,6 @@
  * such that r = 0 gives the prescribed value.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "fem/element.h"
 #include "fem/factor.h"
 #include "fem/operator.h"

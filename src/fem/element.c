@@ -7,7 +7,6 @@
 #include "fem/element.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 #include "material/voigt.h"
 
 typedef struct element_shape {

@@ -10,7 +10,6 @@
 #include "fem/factor.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 #include "fem/supernodal/supernodal.h"
 
 #include <lapacke.h>

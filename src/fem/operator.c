@@ -2,7 +2,6 @@
 #include "fem/operator.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 
 static const double NO_PIVOT = 0x1p-42; /* -, of the diagonal: singular */
 

@@ -4,7 +4,6 @@
  * phi_1 in the body, phi_2 on Gamma_2).
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "model/model.h"
 
 enum { MAX_NODE = 4 };

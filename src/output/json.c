@@ -1,6 +1,5 @@
 /* JOB.json: the outcome and the figures of the run for programs. */
 #include "base/base.h"
-#include "base/timer.h"
 #include "effects/rows.h"
 #include "output/writers.h"
 

@@ -8,7 +8,6 @@
 
 #include "base/base.h"
 #include "base/file.h"
-#include "base/timer.h"
 
 #include <ctype.h>
 #include <dirent.h>

@@ -4,7 +4,6 @@
  * The line on the terminal, and those at the end.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "output/writers.h"
 
 status sta_header(const output_options *o, text_file *sta) {

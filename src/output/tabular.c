@@ -9,7 +9,6 @@
  * order of the user's numbers. Seventeen digits read back exactly.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "effects/rows.h"
 #include "output/writers.h"
 

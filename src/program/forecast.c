@@ -31,7 +31,6 @@
  */
 #include "accuracy/space.h"
 #include "base/base.h"
-#include "base/timer.h"
 #include "effects/rows.h"
 #include "program/job.h"
 

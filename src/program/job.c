@@ -7,7 +7,6 @@
 #include "accuracy/space.h"
 #include "base/base.h"
 #include "base/system/input.h"
-#include "base/timer.h"
 #include "effects/plan/plan.h"
 #include "effects/reduction/reduction.h"
 #include "effects/rows.h"

@@ -15,7 +15,6 @@
 #include "accuracy/space.h"
 #include "base/base.h"
 #include "base/interrupt.h"
-#include "base/timer.h"
 
 /* Shares of the target, -: errors allowed to the mesh, the increments and the
  * solver; the next pass aims at AIM of that. */

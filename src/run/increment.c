@@ -4,7 +4,6 @@
  */
 #include "base/base.h"
 #include "base/sparse.h"
-#include "base/timer.h"
 #include "run/run.h"
 #include "solver/choice/rest.h"
 

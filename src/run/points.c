@@ -3,7 +3,6 @@
  * initial state, and their state at an equilibrium of the body.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "material/voigt.h"
 #include "model/check/check.h"
 #include "run/visco.h"

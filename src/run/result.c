@@ -3,7 +3,6 @@
  * resultants of the contacts, energies and their balance.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "run/run.h"
 
 int run_finds_mesh_error(const run *r) {

@@ -4,7 +4,6 @@
  * have any.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "model/facts.h"
 #include "run/visco.h"
 

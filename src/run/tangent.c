@@ -3,7 +3,6 @@
  * their matrices, of which the constant ones are stored, and loads.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "material/voigt.h"
 #include "run/visco.h"
 

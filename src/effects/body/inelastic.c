@@ -5,14 +5,9 @@
  * requires are those of the run (run/visco.h): states within an increment, the
  * error of the steps and theorem 3.2 need them too.
  */
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
-
-#include <math.h>
 
 #include "run/column_row.h"
 

@@ -2,10 +2,7 @@
  * *INITIAL CONDITIONS, TYPE=DISPLACEMENT: the displacements a run starts from,
  * and their test for equilibrium with loads and contact of time 0.
  */
-#include "base/base.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 
 /* K u_0 - F into R; the largest of both, and of the forces that hold strains

@@ -2,11 +2,8 @@
  * Thermal strain: temperatures of the elements at each time, the strains of
  * their expansion, the moduli that follow them.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
+
 #include "run/column_row.h"
 
 typedef struct thermal_state {

@@ -4,11 +4,8 @@
  * opening and sliding of the lips behind them (Williams 1957), a check that is
  * good to some percent.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
-#include "model/facts.h"
 #include "run/history/loop.h"
 
 enum { MODES = 3 };

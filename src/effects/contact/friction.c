@@ -7,10 +7,9 @@
  * Any increment may be cut, so that each is one of several: the position of
  * stick is always found from the last equilibrium.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
+
 #include "run/column_row.h"
 
 typedef struct friction {

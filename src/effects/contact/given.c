@@ -3,12 +3,8 @@
  * (CPR98, problem D3). The solver takes a problem without those normals; its
  * solution is transformed back.
  */
-#include "base/base.h"
 #include "contact/formulation.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 typedef struct given_forces {
   int n, *node;     /* [n] contact nodes with a given normal force */

@@ -3,10 +3,7 @@
  * along their normals, since time 0 (contact/obstacle.h). The arrays are part
  * of the two equilibria of the run; without a moving obstacle they are NULL.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 /* Those of a new surface. */
 static status prepare(run *r, void *self) {

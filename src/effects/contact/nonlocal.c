@@ -3,9 +3,7 @@
  * it (CPR98, 2.7), and friction confined to the nodes that touch. Averages are
  * kept while surface and options are unchanged.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
 
 /* The average of one contact and the rule it was made for. */

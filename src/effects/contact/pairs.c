@@ -4,10 +4,7 @@
  * moment that is left of the forces on both sides. They act at places a gap
  * apart; only where a tangential force crosses a gap is there a moment.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 

@@ -3,9 +3,7 @@
  * increment (CPR98, problem N3).
  */
 #include "contact/formulation.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 typedef struct velocity {
   velocity_form *form;    /* NULL until needed */

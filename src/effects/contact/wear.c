@@ -9,10 +9,7 @@
  * forces r by A D r, and their error is multiplied by I - A D: it grows once an
  * eigenvalue of A D is above 2, which is refused.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 

@@ -13,9 +13,7 @@
  * inside, or with values that grow outwards, the end is put half way to the
  * next node.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 
 #include "run/column_row.h"

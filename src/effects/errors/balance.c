@@ -15,9 +15,7 @@
  * to the default, and the iterations that a digit took so far; methods that end
  * at once when their active set is found (Newton, pivoting) save a step.
  */
-#include "base/base.h"
-#include "base/timer.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 
 enum { PASSES = 8 };

@@ -12,9 +12,7 @@
  * where the method of the deck did not converge; an increment that starts from
  * a state far from equilibrium is not examined.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 #include "run/setup/setup.h"
 

@@ -2,13 +2,8 @@
  * *ACCURACY, MESH=: the error of the mesh by recovered stresses, of the body
  * and of each element.
  */
-#include "base/base.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
-#include "model/facts.h"
-#include "run/run.h"
 
 #include "run/column_row.h"
 

@@ -7,9 +7,7 @@
  * one where fewer nodes were found in another state than on the coarser mesh at
  * the increment before than change their state there within this one.
  */
-#include "base/base.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 #include "run/start/coarser.h"
 
 typedef struct nested {

@@ -9,10 +9,7 @@
  * the solution moves, in the energy norm, by no more than where it starts. So
  * the bounds of the increments are added.
  */
-#include "base/base.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 
 #include "run/column_row.h"

@@ -15,11 +15,7 @@
  * of order p (Richardson), without friction; zones of stick and slip that grow
  * lie between order 1 and 2: 5/3, or more for an integrator of order 1.
  */
-#include "base/base.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
 

@@ -5,11 +5,7 @@
  * stresses of the points changes their e^i by the law over the increment, that
  * is a load on the elastic body, whose motion changes the stresses again.
  */
-#include "base/base.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 #include "run/visco.h"
 
 typedef struct checked {

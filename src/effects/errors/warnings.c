@@ -3,9 +3,7 @@
  * that are not small, elements turned inside out by the displacements, a
  * contact that no node ever touched. Each is reported once a run.
  */
-#include "base/base.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 typedef struct warnings {
   int strain, folded; /* 1: told */

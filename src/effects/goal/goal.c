@@ -16,11 +16,8 @@
  * before further: one solve an increment for all goals at all times, the
  * transpose of a chain of adjoints backwards through the increments.
  */
-#include "base/base.h"
-#include "base/timer.h"
 #include "effects/goal/parts.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
 
 #include <cblas.h>

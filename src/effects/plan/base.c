@@ -2,11 +2,7 @@
  * Rows of every body, of tables, fields and files, and of effects in other
  * files of the run: their expected work and their stages.
  */
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-
-#include <math.h>
+#include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 

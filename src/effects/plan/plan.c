@@ -4,9 +4,7 @@
  */
 #include "effects/plan/plan.h"
 
-#include "base/base.h"
-#include "effects/rows.h"
-#include "model/facts.h"
+#include "effects/plan/effect.h"
 
 #include <stdarg.h>
 

@@ -14,9 +14,8 @@
  *                      or no lateral expansion (nu = 0), where no motion of a
  *                      body is held by friction
  */
-#include "base/base.h"
+#include "effects/plan/effect.h"
 #include "effects/reduction/parts.h"
-#include "effects/rows.h"
 #include "fem/fem.h"
 
 /*

@@ -21,7 +21,7 @@
 
 /* now = old + sum of factor[i] times the rates of stage i, at old->t + dt, and
  * its equilibrium. */
-static status stage(const scheme_call *a, double dt, const double *factor) {
+static status add_stage(const scheme_call *a, double dt, const double *factor) {
   const scheme_work *w = a->w;
   size_t n = (size_t)a->x->ns * (size_t)a->x->n, na = a->x->alpha_at[a->x->n];
   int settled = 1;
@@ -54,7 +54,7 @@ static status rates(const scheme_call *a, const flow_state *s, int i,
 static status euler_advance(const scheme_call *a) {
   const double h = a->p->dt;
   PASS(rates(a, a->old, 0, h));
-  return stage(a, h, (double[STAGES]){h});
+  return add_stage(a, h, (double[STAGES]){h});
 }
 
 static status heun_advance(const scheme_call *a) {
@@ -62,10 +62,10 @@ static status heun_advance(const scheme_call *a) {
   const size_t n = (size_t)a->x->ns * (size_t)a->x->n;
   scheme_work *w = a->w;
   PASS(rates(a, a->old, 0, h / 2));
-  PASS(stage(a, h, (double[STAGES]){h}));
+  PASS(add_stage(a, h, (double[STAGES]){h}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 1, h / 2));
-  PASS(stage(a, h, (double[STAGES]){h / 2, h / 2}));
+  PASS(add_stage(a, h, (double[STAGES]){h / 2, h / 2}));
   PASS(need(&w->e_k, n));
   sum_scaled(n, w->ei_rate[1], -1, w->ei_rate[0], w->e_k);
   a->out->error = h / 2 * flow_norm(a->x, w->e_k);
@@ -75,16 +75,16 @@ static status heun_advance(const scheme_call *a) {
 static status rk4_advance(const scheme_call *a) {
   const double h = a->p->dt;
   PASS(rates(a, a->old, 0, h / 6));
-  PASS(stage(a, h / 2, (double[STAGES]){h / 2}));
+  PASS(add_stage(a, h / 2, (double[STAGES]){h / 2}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 1, h / 3));
-  PASS(stage(a, h / 2, (double[STAGES]){0, h / 2}));
+  PASS(add_stage(a, h / 2, (double[STAGES]){0, h / 2}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 2, h / 3));
-  PASS(stage(a, h, (double[STAGES]){0, 0, h}));
+  PASS(add_stage(a, h, (double[STAGES]){0, 0, h}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 3, h / 6));
-  return stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6});
+  return add_stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6});
 }
 
 /*

@@ -6,7 +6,6 @@
 #include "output/listing/job.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 #include "effects/rows.h"
 #include "output/columns/columns.h"
 

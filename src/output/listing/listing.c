@@ -7,7 +7,6 @@
 #include "output/listing/job.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 #include "effects/rows.h"
 #include "model/keyword/keyword.h"
 

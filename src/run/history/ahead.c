@@ -3,7 +3,6 @@
  * of each that the run would end with, after the steps before it.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "model/facts.h"
 #include "run/history/history.h"
 #include "run/setup/setup.h"

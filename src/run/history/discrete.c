@@ -5,7 +5,6 @@
 #include "run/history/history.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <strings.h>

@@ -3,7 +3,6 @@
  * effects that estimate them, and reasons for doubt.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "run/history/loop.h"
 
 const char *const error_bound_indefinite =

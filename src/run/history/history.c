@@ -5,7 +5,6 @@
 #include "accuracy/verdict.h"
 #include "base/base.h"
 #include "base/interrupt.h"
-#include "base/timer.h"
 #include "run/history/loop.h"
 #include "run/setup/setup.h"
 #include "run/visco.h"

@@ -13,7 +13,6 @@
  */
 #include "base/base.h"
 #include "base/sparse.h"
-#include "base/timer.h"
 #include "run/history/loop.h"
 
 static const double LAST_DIGIT = 0.1; /* -, error without a correct digit */

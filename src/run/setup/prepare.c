@@ -5,7 +5,6 @@
 #include "run/setup/setup.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 
 /*
  * Contact nodes whose gap is wider than what the step can close are left out of

@@ -5,7 +5,6 @@
 #include "solver/choice/choice.h"
 
 #include "base/base.h"
-#include "base/timer.h"
 #include "solver/local.h"
 
 /* ---- final correction of a solution ---- */

@@ -23,7 +23,6 @@
  * the guess (system.h); a singular system then ends the method.
  */
 #include "base/base.h"
-#include "base/timer.h"
 #include "solver/local.h"
 #include "solver/newton/system.h"
 #include "solver/single.h"
