@@ -135,7 +135,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   if (form != NULL) given_form_move(form, v);
 done:
   given_form_free(form);
-  solver_release(lemke, work);
+  memory_free(work);
   RELEASE(u, r, A);
   return st;
 }

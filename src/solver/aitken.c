@@ -64,13 +64,6 @@ typedef struct aitken_work {
   double gram[DEPTH][DEPTH]; /* (dF_i . dF_j)_D by place in the ring */
 } aitken_work;
 
-static void aitken_release(void *work) {
-  aitken_work *w = work;
-  node_blocks_free(w->blocks);
-  best_iterate_free(&w->best);
-  RELEASE(w->before, w->x, w->y, w->defect, w->diagonal, w->dx, w->dy, w->df);
-}
-
 static status aitken_setup(const contact_problem *cp, const void *par,
                            void *work) {
   aitken_work *w = work;
@@ -325,7 +318,6 @@ const solver_ops aitken_solver = {
              SPARSE_COMPLIANCE,
   .entries = "METHOD=AITKEN, which relaxes row by row,",
   .param_size = sizeof(aitken), .work_size = sizeof(aitken_work),
-  .options = aitken_options, .setup = aitken_setup, .solve = aitken_solve,
-  .release = aitken_release
+  .options = aitken_options, .setup = aitken_setup, .solve = aitken_solve
 };
 /* clang-format on */

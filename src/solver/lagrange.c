@@ -58,13 +58,6 @@ typedef struct lagrange_work {
   best_iterate best;
 } lagrange_work;
 
-static void lagrange_release(void *work) {
-  lagrange_work *w = work;
-  force_set_free(w->set);
-  RELEASE(w->x, w->old_x, w->y, w->y_x, w->c, w->old_r);
-  best_iterate_free(&w->best);
-}
-
 static status lagrange_setup(const contact_problem *cp, const void *par,
                              void *work) {
   lagrange_work *w = work;
@@ -237,6 +230,6 @@ const solver_ops lagrange_solver = {
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = sizeof(lagrange), .work_size = sizeof(lagrange_work),
   .options = lagrange_options, .setup = lagrange_setup, .solve = lagrange_solve,
-  .release = lagrange_release, .keep = lagrange_keep
+  .keep = lagrange_keep
 };
 /* clang-format on */

@@ -68,13 +68,6 @@ typedef struct pcg_work {
   best_iterate best;
 } pcg_work;
 
-static void pcg_release(void *work) {
-  pcg_work *w = work;
-  force_set_free(w->set);
-  RELEASE(w->x, w->phi, w->beta, w->z, w->p, w->v, w->r0, w->x0, w->e, w->turn);
-  best_iterate_free(&w->best);
-}
-
 static status pcg_setup(const contact_problem *cp, const void *par,
                         void *work) {
   pcg_work *w = work;
@@ -441,7 +434,6 @@ const solver_ops pcg_solver = {
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE,
   .param_size = sizeof(pcg), .work_size = sizeof(pcg_work),
-  .options = pcg_options, .setup = pcg_setup, .solve = pcg_solve,
-  .release = pcg_release
+  .options = pcg_options, .setup = pcg_setup, .solve = pcg_solve
 };
 /* clang-format on */

@@ -48,14 +48,6 @@ typedef struct sor_work {
   fixed_point *fixed; /* for FRICTION_FIXED_POINT */
 } sor_work;
 
-static void sor_release(void *work) {
-  sor_work *w = work;
-  node_blocks_free(w->blocks);
-  best_iterate_free(&w->best);
-  memory_free(w->before);
-  fixed_point_free(w->fixed);
-}
-
 static status sor_setup(const contact_problem *cp, const void *par,
                         void *work) {
   sor_work *w = work;
@@ -244,7 +236,6 @@ const solver_ops sor_solver = {
              SPARSE_COMPLIANCE,
   .entries = "METHOD=SOR, which relaxes row by row,",
   .param_size = sizeof(sor), .work_size = sizeof(sor_work),
-  .options = sor_options, .setup = sor_setup, .solve = sor_solve,
-  .release = sor_release
+  .options = sor_options, .setup = sor_setup, .solve = sor_solve
 };
 /* clang-format on */

@@ -90,8 +90,8 @@ START_TEST(rounding_of_the_inner_solver_is_met_once) {
   ck_assert_int_eq(rep.outcome, CONVERGED);
   ck_assert_int_gt(rep.iterations, 1000);
   ck_assert_int_lt(rep.iterations, 2000);
-  solver_release(&newton_solver, work);
-  fixed_point_free(fp);
+  memory_free(work);
+  memory_free(fp);
   case_free(&c);
 }
 END_TEST

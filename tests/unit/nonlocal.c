@@ -119,8 +119,8 @@ START_TEST(friction_path_follows_averages) {
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-9);
     if (k == 0) ck_assert_double_lt(apart(&c, u), 1e-8);
-    friction_path_free(path);
-    solver_release(ops, work);
+    memory_free(path);
+    memory_free(work);
     free(u);
     case_free(&c);
   }

@@ -215,13 +215,6 @@ status compliance_system_new(const contact_problem *cp,
   return OK;
 }
 
-void compliance_system_free(compliance_system *s) {
-  if (s == NULL) return;
-  dense_free(&s->K);
-  RELEASE(s->list, s->dof, s->place, s->turn, s->x, s->y, s->base, s->in_base,
-          s->column, s->X, s->freed, s->C, s->z, s->pivot, s);
-}
-
 void compliance_displace(const contact_problem *cp, const double *r,
                          double *raw) {
   size_t m = (size_t)cp->m;

@@ -47,13 +47,6 @@ struct operated_system {
   } krylov;
 };
 
-void operated_system_free(operated_system *s) {
-  if (s == NULL) return;
-  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->held, s->slip.dof,
-          s->slip.x, s->slip.load, s->slip.pressed, s->krylov.V, s->krylov.H,
-          s->krylov.c, s->krylov.s, s->krylov.g, s);
-}
-
 status operated_system_new(const contact_problem *cp, operated_system **out) {
   operated_system *s;
   const size_t m = (size_t)cp->m;
@@ -133,6 +126,7 @@ static void add_friction(const operated_system *s, const contact_problem *cp,
 /* Room for the directions made and two more. */
 static status grow(operated_system *s) {
   const size_t n = (size_t)s->slip.n, have = s->krylov.capacity;
+  OWNS(s);
   if (n * (size_t)(s->krylov.n + 2) <= have) return OK;
   const size_t want = n * (size_t)(s->krylov.n + 10);
   double *more = memory_resize(s->krylov.V, have, want, sizeof *more);

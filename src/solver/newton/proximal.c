@@ -84,19 +84,6 @@ typedef struct proximal_work {
   } by;
 } proximal_work;
 
-static void proximal_release(void *work) {
-  proximal_work *w = work;
-  force_set_free(w->set);
-  best_iterate_free(&w->best);
-  step_matrix_free(w->J);
-  operated_system_free(w->by.system);
-  pattern_free(&w->by.guess);
-  RELEASE(w->x, w->F, w->d, w->z, w->weight, w->start, w->centre, w->before,
-          w->acts);
-  RELEASE(w->by.hold, w->by.b, w->by.du, w->by.start, w->by.centre,
-          w->by.before);
-}
-
 /* Workspace of the steps of an operator. */
 static status new_steps(const contact_problem *cp, proximal_work *w) {
   const size_t m = (size_t)cp->m;
@@ -568,6 +555,6 @@ const solver_ops proximal_solver = {
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
   .work_size = sizeof(proximal_work), .options = proximal_options,
-  .setup = proximal_setup, .solve = proximal_solve, .release = proximal_release
+  .setup = proximal_setup, .solve = proximal_solve
 };
 /* clang-format on */

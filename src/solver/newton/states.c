@@ -34,11 +34,6 @@ status states_new(const contact_problem *cp, states *s) {
   return OK;
 }
 
-void states_free(states *s) {
-  pattern_free(&s->guess);
-  RELEASE(s->raw, s->k, s->c, s->g, s->rounding);
-}
-
 /* ---- reaction ------------------------------------------------------------ */
 
 /* |r_t| = g at a slipping node: the force along e is set to the limit, or,

@@ -369,19 +369,6 @@ status pattern_new(int dim, int n, pattern *p) {
   return OK;
 }
 
-void pattern_free(pattern *p) {
-  RELEASE(p->closed, p->mode, p->e, p->kappa, p->free_id, p->place);
-}
-
-void newton_system_free(newton_system *s) {
-  if (s == NULL) return;
-  dense_free(&s->K);
-  pattern_free(&s->base);
-  RELEASE(s->inverse.column, s->inverse.X, s->inverse.C, s->rows, s->product,
-          s->changed, s->b, s->x, s->du, s->z, s->weight,
-          s->inverse.small_pivot, s);
-}
-
 status newton_system_new(const contact_problem *cp, newton_system **out) {
   newton_system *s;
   size_t m = (size_t)cp->m, capacity = m / SHARE + 1;
