@@ -112,7 +112,7 @@ int main(int argc, char **argv) {
   if (st == OK)
     st = c.table != NULL ? tables_print(&c) : run_job(&c, log, &unsettled);
   exit_code = flush_output(report(st, log, unsettled));
-  message_log_free(log);
+  memory_free(log);
   command_free(&c);
   interrupt_over();
   return exit_code;

@@ -100,16 +100,14 @@ typedef struct linear_contact linear_contact;
 /* *out is NULL if nothing holds the free unknowns. ERR_MEMORY. */
 status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out);
-void linear_contact_free(linear_contact *c); /* accepts NULL */
 /* du[m] of a change df[m] of the load, N. */
 status linear_contact_move(linear_contact *c, const double *df, double *du);
 
 /* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
- * without another inverse. *out is new (dense_inverse_free), NULL if M is not
+ * without another inverse. *out is new (memory_free), NULL if M is not
  * symmetric and positive semidefinite. */
 typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
-void dense_inverse_free(dense_inverse *d); /* accepts NULL */
 inverse_energy dense_inverse_energy(dense_inverse *d);
 /* N[m*m] = inv(M); *done = 0: M is semidefinite. */
 void dense_inverse_fill(dense_inverse *d, double *N, int *done);

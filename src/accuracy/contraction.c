@@ -264,22 +264,15 @@ done:
   return st;
 }
 
-/* ---- a change of the load ------------------------------------------------ */
-
-void linear_contact_free(linear_contact *c) {
-  if (c == NULL) return;
-  map_free(c);
-  memory_free(c);
-}
-
 status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out) {
   int good = 0;
   PASS_NEW(*out, 1);
+  OWNS(*out);
   PASS(map_new(cp, u, r, *out));
   PASS(factor(*out, &good));
   if (good) return OK;
-  linear_contact_free(*out);
+  memory_free(*out);
   *out = NULL;
   return OK;
 }

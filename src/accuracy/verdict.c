@@ -134,7 +134,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
     *end = STOPPED_STAGNATION;
   if (form != NULL) given_form_move(form, v);
 done:
-  given_form_free(form);
+  memory_free(form);
   memory_free(work);
   RELEASE(u, r, A);
   return st;

@@ -132,7 +132,7 @@ status surfaces_couple(const surface_input *in, const double *x,
                            .axisymmetric = in->axisymmetric,
                            .slave_normal = slave_normal,
                            .dropped = dropped};
-  mortar_free(*out);
+  memory_free(*out);
   *out = NULL;
   return mortar_couple(&of, out);
 }
@@ -294,7 +294,7 @@ status pairs_couple(const surface_input *in, message_log *log) {
 
 void pairs_release(const surface_input *in) {
   for (int p = 0; p < in->n_pair; ++p) {
-    mortar_free(in->pairs[p].coupled);
+    memory_free(in->pairs[p].coupled);
     in->pairs[p].coupled = NULL;
   }
 }

@@ -690,6 +690,7 @@ status surface_build(const surface_input *in, message_log *log,
   TRY(collect(&b));
   mirrors_find(in, &b.mirrors);
   TRY(surface_new(b.dim, b.n, has_pair(in), &s));
+  OWNS(s);
   for (int first = 0, end; first < b.n; first = end) {
     const candidate *kept[3];
     for (end = first + 1; end < b.n; ++end)
@@ -703,7 +704,7 @@ status surface_build(const surface_input *in, message_log *log,
   *out = s;
   s = NULL;
 done:
-  surface_free(s);
+  memory_free(s);
   RELEASE(b.list, b.first, b.tallies, b.rows);
   return st;
 }
@@ -769,12 +770,4 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
   for (int i = 0; i < s->n; ++i)
     for (int k = 0; k < s->dim; ++k)
       row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
-}
-
-void surface_free(contact_surface *s) {
-  if (s == NULL) return;
-  if (s->master != NULL) links_release(s->master);
-  RELEASE(s->master, s->lean, s->apart, s->share, s->covered, s->lever,
-          s->node_id, s->node_no, s->contact_id, s->side_id, s->x, s->area,
-          s->side_area, s->frame, s->basis, s->gap0, s->held, s);
 }

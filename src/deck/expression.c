@@ -428,12 +428,13 @@ status expression_compile_in(const char *text, const char *const names[4],
   *out = NULL;
   *column = 0;
   NEW(c.e, 1);
+  OWNS(c.e);
   TRY(compile(&c));
   *out = c.e;
   c.e = NULL;
 done:
   *column = c.column;
-  expression_free(c.e);
+  memory_free(c.e);
   return st;
 }
 
@@ -456,11 +457,6 @@ double expression_value(const expression *e, const double x[3], double t) {
 }
 
 unsigned expression_variables(const expression *e) { return e->variables; }
-
-void expression_free(expression *e) {
-  if (e == NULL) return;
-  RELEASE(e->code, e);
-}
 
 /* ---- quantities: number or expression, times a table --------------------- */
 

@@ -32,11 +32,6 @@ typedef struct unroller {
   group groups[GROUP_MAX];
 } unroller;
 
-void format_free(format *f) {
-  if (f == NULL) return;
-  RELEASE(f->fields, f);
-}
-
 static void skip(unroller *u) {
   while (is_blank(*u->p)) ++u->p;
 }
@@ -149,6 +144,7 @@ status format_read(const char *text, format **out) {
   unroller u = {.text = text, .p = text};
   *out = NULL;
   NEW(u.f, 1);
+  OWNS(u.f);
   skip(&u);
   if (*u.p != '(') FAIL(ERR_DECK, "'(' expected at the start");
   TRY(open_group(&u, 1));
@@ -158,7 +154,7 @@ status format_read(const char *text, format **out) {
   *out = u.f;
   u.f = NULL;
 done:
-  format_free(u.f);
+  memory_free(u.f);
   return st;
 }
 

@@ -194,6 +194,7 @@ static status note_file(deck *d, const char *file) {
 status deck_input(deck *d, const char *path) {
   for (int i = 0; i < d->n_input; ++i)
     if (strcmp(d->inputs[i], path) == 0) return OK;
+  OWNS(d);
   PASS_GROW(d->inputs, d->n_input, d->own->input_capacity);
   d->inputs[d->n_input++] = path;
   return OK;

@@ -154,6 +154,7 @@ status exchange_read(const char *path, exchange_type type, const place *at,
   exchange_problem *p = NULL;
   *out = NULL;
   NEW(p, 1);
+  OWNS(p);
   TRY(type_of(path, &type));
   if (type == EXCHANGE_FCLIB)
     TRY(fclib_read(path, p));
@@ -163,13 +164,6 @@ status exchange_read(const char *path, exchange_type type, const place *at,
 done:
   if (st == ERR_FILE) message_add(log, P5001, at, "%s", status_message());
   if (st == ERR_DECK) message_add(log, P5002, at, "%s", status_message());
-  if (st != OK) exchange_free(p);
+  if (st != OK) memory_free(p);
   return st;
-}
-
-void exchange_free(exchange_problem *p) {
-  if (p == NULL) return;
-  sparse_blocks_free(p->blocks);
-  RELEASE(p->matrix, p->load, p->gap, p->ut0, p->g0, p->B.start, p->B.col,
-          p->B.val, p);
 }

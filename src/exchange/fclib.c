@@ -118,7 +118,7 @@ static status take_blocks(exchange_problem *p, const triplets *W) {
   PASS(sparse_blocks_new(p->dim, p->n, W->n, W->row, W->column, W->value,
                          &p->blocks));
   if (are_few(p->blocks->start[p->n], p->n)) return OK;
-  sparse_blocks_free(p->blocks);
+  memory_free(p->blocks);
   p->blocks = NULL;
   return OK;
 }

@@ -367,6 +367,7 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   stiffness *k = NULL;
   TIMED(STAGE_ASSEMBLY);
   NEW(k, 1);
+  OWNS(k);
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;
   k->n_node = d->mesh->n_node;
@@ -379,16 +380,9 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   TRY(list_coupling(k));
 done:
   if (st != OK) {
-    stiffness_free(k);
+    memory_free(k);
     k = NULL;
   }
   *out = k;
   return st;
-}
-
-void stiffness_free(stiffness *k) {
-  if (k == NULL) return;
-  coupling_free(k->moved);
-  RELEASE(k->start, k->row, k->block, k->free, k->contact, k->first_row,
-          k->coupling, k->coupling_column, k);
 }

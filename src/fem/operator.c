@@ -699,8 +699,8 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
 
 void sparse_operator_free(sparse_operator *o) {
   if (o == NULL) return;
-  supernodal_free(o->interior);
-  supernodal_free(o->s);
+  memory_free(o->interior);
+  memory_free(o->s);
   body_factor_release(&o->f, o->cm);
   RELEASE(o->columns.start, o->columns.item, o->touched.start, o->touched.item,
           o->part.all.list, o->part.contact.list, o->part.response.list,

@@ -249,7 +249,7 @@ history_sink output_sink(output *o) {
 }
 
 static void release(output *o) {
-  plan_free(&o->plan);
+  memory_free(o->plan);
   RELEASE(o->json, o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i)
     RELEASE(o->run.increments[i].solutions,

@@ -597,7 +597,7 @@ status forecast_print(const command *c, job_input *in) {
   TRY(forecast_norm(c, in, eta, &cost));
   if (in->m->n.goal > 0) TRY(forecast_goals(c, in, &cost.deck));
 done:
-  aims_free(cost.deck.goals);
+  memory_free(cost.deck.goals);
   memory_free(eta);
   return st;
 }

@@ -57,7 +57,7 @@ static void print_sizes(const model *m, const mesh *msh) {
 }
 
 static status print_plan(const model *m, const mesh *msh, int n) {
-  ENDS_BY(plan_free) effect_plan *p = NULL;
+  OWNED effect_plan *p = NULL;
   PASS(plan_new(m, msh, n, &p));
   puts("effects");
   plan_print(p, "  ", stdout);

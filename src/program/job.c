@@ -116,13 +116,13 @@ status job_keep_contact(coarser *to, const state *s) {
 }
 
 void job_input_free(job_input *in) {
-  exchange_free(in->problem);
-  coarser_free(in->contact);
+  memory_free(in->problem);
+  memory_free(in->contact);
   mesh_free(in->msh);
   model_free(in->m);
-  deck_free(in->d);
-  deck_free(in->first);
-  message_log_free(in->log);
+  memory_free(in->d);
+  memory_free(in->first);
+  memory_free(in->log);
   free(in->closing);
   *in = (job_input){0};
 }
@@ -241,7 +241,7 @@ static status try_without(watcher *w, const command *c, job_input *in,
   const job_watch watch = {.first = {.ctx = w, .increment = see_increment}};
   reduction_restore(in->m);
   reduction_leave_out(in->m);
-  reduction_free(w->n);
+  memory_free(w->n);
   w->n = NULL;
   PASS(reduction_new(in->m, in->msh, &w->n));
   w->refuted = 0;
@@ -270,7 +270,7 @@ status job_solve_auto(const command *c, job_input *in, int *unsettled) {
     st = job_solve(c, in, NULL, NULL, unsettled);
   }
 done:
-  reduction_free(w.n);
+  memory_free(w.n);
   reduction_restore(in->m);
   return st;
 }

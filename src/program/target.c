@@ -341,7 +341,7 @@ static void adjust(const pass *p, model *m) {
 
 /* The contact of the last pass is the start of this one. */
 static status next_contact(pass *p) {
-  coarser_free(p->before);
+  memory_free(p->before);
   p->before = p->contact;
   p->contact = NULL;
   if (p->before != NULL) p->in->m->accuracy.coarser = p->before;
@@ -420,8 +420,8 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
 done:
   if (p.first != in->msh) mesh_free(p.first);
   RELEASE(p.eta, p.size, p.first_size);
-  coarser_free(p.before);
-  coarser_free(p.contact);
-  aims_free(p.goals);
+  memory_free(p.before);
+  memory_free(p.contact);
+  memory_free(p.goals);
   return st;
 }

@@ -119,7 +119,7 @@ static status make_order(run *r) {
   forget_order(r);
   status st = stiffness_assemble(&r->body.d, &k);
   if (st == OK) st = stiffness_order(k, r->msh->x, &r->body.order);
-  stiffness_free(k);
+  memory_free(k);
   PASS(st);
   r->body.d.order = &r->body.order;
   return OK;

@@ -106,7 +106,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (m != NULL) use_mesh(m);
   mesh_free(m);
   raw_free(&raw);
-  message_log_free(log);
+  memory_free(log);
   status_clear();
   if (memory_in_use() != 0) abort();
   return 0;

@@ -5,16 +5,14 @@
  * whole, above an obstacle that moves and turns, touch it and partly leave it.
  * The same runs stopped and gone on with.
  */
+#include "base/base.h"
 #include "support/grid.h"
 #include "support/job.h"
 #include "support/traced.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { INCREMENTS = 10, NODES = 64 };
 static const double mu = 0.4, angle_rate = 0.3;

@@ -3,14 +3,11 @@
  * out, his sphere) and against the block whose values are known from meshes of
  * 54,000 nodes; what stops the passes, and what they tell.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/mesh_file.h"
 #include "support/msh_write.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #define A_H 0.2348908547
 #define P_H 2710.278943

@@ -3,16 +3,12 @@
  * form, a node on a turntable, whole scenes turned in space, and the round cone
  * of friction for every direction of slip.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/grid.h"
 #include "support/job.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -2,11 +2,9 @@
  * Pairs of bodies that supports hold or drive along the contact: friction, wear
  * and the slave that AUTO chooses.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A slider that its side, or all of it, drives over an elastic body drags it by
  * mu N; two bodies held along the contact wear by their motion, whichever is

@@ -3,15 +3,12 @@
  * bounds of effects left out under loads that rise and fall, zones of a ring,
  * each component of a stress in the true error.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/grid.h"
 #include "support/tips.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double G = 500;
 

@@ -3,15 +3,12 @@
  * static problems, starts of inelastic strains and internal variables, heat
  * with coefficients that vary, works that balance.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/grid.h"
 #include "support/tips.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double G = 500, area = 0.70710678118654752; /* half an edge */
 

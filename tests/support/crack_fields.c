@@ -1,8 +1,8 @@
 #include "support/crack_fields.h"
 
+#include "base/base.h"
+
 #include <complex.h>
-#include <math.h>
-#include <stdlib.h>
 
 typedef double complex number;
 

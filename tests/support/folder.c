@@ -2,11 +2,10 @@
 #define _GNU_SOURCE /* nftw */
 #include "support/folder.h"
 
+#include "base/base.h"
+
 #include <check.h>
 #include <ftw.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -1,10 +1,7 @@
 /* Rectangles and boxes; every block comes from base/memory.h. */
 #include "support/grid.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const char *const side_names[] = {"LEFT", "RIGHT", "BOTTOM",
                                          "TOP",  "FRONT", "BACK"};

@@ -1,9 +1,6 @@
 #include "support/inner_group.h"
 
-#include "base/memory.h"
-
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static void *must(void *p) {
   if (p == NULL) abort();

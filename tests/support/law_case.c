@@ -115,7 +115,7 @@ int law_case_new(const law_ops *ops, int words, const char *data, double young,
 
 void law_case_free(law_case *c) {
   law_card_free(&c->card);
-  expression_free(c->formula);
+  memory_free(c->formula);
   c->formula = NULL;
 }
 

@@ -1,11 +1,8 @@
 /* Linear complementarity problems (lcp_case.h). */
 #include "support/lcp_case.h"
 
+#include "base/base.h"
 #include "support/contact_case.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct maker {
   lcp_case *c;

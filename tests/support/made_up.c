@@ -1,13 +1,8 @@
-#include "support/made_up.h"
+#include "base/base.h"
 #include "effects/rows.h"
-
-#include "base/memory.h"
 #include "support/grid.h"
+#include "support/made_up.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 double made_up_value(int array, int item, int total_no) {

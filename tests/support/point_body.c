@@ -3,11 +3,9 @@
  */
 #include "support/point_body.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <check.h>
-#include <math.h>
-#include <string.h>
 
 /* x := inv(A) x, A[n*n] column major, by elimination with pivots. */
 static void solve(int n, double *A, double *x) {

@@ -1,7 +1,6 @@
 #include "support/stack.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static void *get(size_t n, size_t size) {
   void *p = calloc(n + 1, size);

@@ -1,10 +1,8 @@
 /* src/solver/fixed_point.c: the loops on the sliding limit. */
+#include "base/base.h"
 #include "solver/fixed_point.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* The contraction of the fixed point on the limit is mu/mu_crit while the node
  * slips against its coupling; mu_crit = (2 (1-nu) gt^2 + (1-2 nu) gn^2)/|gt

@@ -1,10 +1,8 @@
 /* tests/support/grid.c: the meshes the other tests rest on. */
 #include "support/grid.h"
 
+#include "base/base.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 static double elem_measure(const mesh *m, int e) {
   const int *v = m->elem + (m->dim + 1) * e;

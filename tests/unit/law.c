@@ -2,12 +2,11 @@
  * Every inelastic law, by its row: what any law must satisfy. The states come
  * from random histories of stress, so that alpha is one that can be reached.
  */
+#include "base/base.h"
 #include "support/law_case.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 static const double young = 1e5, nu = 0.3, stress = 150;
 

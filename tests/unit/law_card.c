@@ -3,14 +3,10 @@
  * every law wrong in turn, tables over temperature, expressions of time, the
  * spellings of Abaqus, moduli after all terms have relaxed.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/law_case.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { TEXT = 4000, VALUES = 64 };
 

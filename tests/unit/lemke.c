@@ -1,13 +1,10 @@
 /* src/solver/lcp.c, lemke.c: complementary pivoting. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/pivoting/lemke.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* ---- plain problems ------------------------------------------------------ */
 

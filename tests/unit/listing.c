@@ -2,14 +2,11 @@
  * src/output/listing: blocks of the listing of a made-up run in which no number
  * is there twice, as they are to be read.
  */
+#include "base/base.h"
 #include "output/listing/job.h"
 #include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static made_up *made;
 static run_summary summary;

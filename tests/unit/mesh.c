@@ -1,12 +1,8 @@
 /* src/mesh: what is read, in every format, and its geometry */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* A disc of radius 1 glued into a square of side 4: two bodies, one mesh. */
 static const char disc_geo[] =
@@ -547,7 +543,7 @@ START_TEST(builder_gives_back_all_when_refused) {
     if (st == OK) st = message_status(log, ERR_MESH); /* a message was lost */
     ck_assert_int_eq(st, k == 0 ? OK : ERR_MEMORY);
     mesh_free(m);
-    message_log_free(log);
+    memory_free(log);
     ck_assert_uint_eq(memory_in_use(), before);
   }
   ck_assert_int_gt(n, 20);

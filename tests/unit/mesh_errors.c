@@ -1,14 +1,11 @@
 /* src/mesh: what is wrong with a mesh or its file, and how it is told */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
 
 #include <dirent.h>
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -432,7 +429,7 @@ START_TEST(builder_trusts_nothing) {
                          "faces",
                 40) == 0,
         "%s", text);
-    message_log_free(log);
+    memory_free(log);
   }
 }
 END_TEST

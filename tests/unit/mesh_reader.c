@@ -1,6 +1,6 @@
 /* src/mesh/child.c, raw.c: the process in which gmsh reads and meshes: how it
  * ends, what it leaves, what it must not do. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
@@ -8,9 +8,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,13 +1,10 @@
 /* src/solver: the options of the rows. What every row must do with its
  * defaults is tested in solver.c. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { PARAM_SIZE = 512 };
 

@@ -1,15 +1,11 @@
 /* src/model: decks to models, loads of the steps, the echo of a deck. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "model/check/check.h"
 #include "model/facts.h"
 #include "model/keyword/keyword.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static mesh *square(void) {
   const int n[] = {3, 2};

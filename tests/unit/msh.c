@@ -1,15 +1,11 @@
 /* src/mesh: the reader of .msh files takes what the format says and no more */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A unit square of two triangles, its lower side and a corner, twice. */
 static const char text_22[] =

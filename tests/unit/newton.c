@@ -1,12 +1,9 @@
 /* src/solver/newton: the steps of Newton's method on the states. */
+#include "base/base.h"
 #include "solver/newton/system.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { NODES = 100, SLIPPING = 60 };
 

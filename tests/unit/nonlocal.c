@@ -2,16 +2,12 @@
  * src/contact/nonlocal.c: the law on surfaces of a mesh, closed forms of Hertz;
  * and every solver row on problems whose limit is an average (B not diagonal).
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/friction.h"
 #include "solver/fixed_point.h"
 #include "support/grid.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- solver rows -------------------------------------------------------- */
 
@@ -197,8 +193,8 @@ static void scene_open(scene *c, mesh *m, double thickness, int axisymmetric) {
 }
 
 static void scene_close(scene *c) {
-  surface_free(c->s);
-  message_log_free(c->log);
+  memory_free(c->s);
+  memory_free(c->log);
   free(c->fixed);
   free(c->weight);
   mesh_free(c->m);

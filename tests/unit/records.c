@@ -2,16 +2,13 @@
  * src/output/hdf5/records.c: groups of many records, read with the library:
  * every name once, in order, found, with the data where the offsets say.
  */
-#include <hdf5.h>
-
+#include "base/base.h"
 #include "output/hdf5/file.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
+#include <hdf5.h>
 #include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 static char dir[64], path[100];

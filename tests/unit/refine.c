@@ -3,14 +3,11 @@
  * the same measure where they are polyhedra, on circles and spheres where they
  * were, and no worse in shape than half of the smallest angle.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/grid.h"
 #include "support/mesh_file.h"
 #include "support/msh_write.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
 
 /* ---- scenes -----------------------------------------------------------------
  */
@@ -364,7 +361,7 @@ START_TEST(each_refused_request_is_an_error_and_frees_all) {
     mesh_free(r);
     ck_assert_uint_eq(memory_in_use(), before);
   }
-  message_log_free(log);
+  memory_free(log);
   mesh_free(m);
   mesh_free(grid);
   mesh_file_close(&f);

@@ -1,11 +1,7 @@
 /* src/solver: every row of the table on the same problems. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 START_TEST(table_is_complete) {
   for (int i = 0; solver_list[i] != NULL; ++i) {

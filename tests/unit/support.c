@@ -1,12 +1,9 @@
 /* src/fem/support.c, pieces: free motions by name and by what holds them. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/stack.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 #define NOTHING HELD_BY_NOTHING
 #define FRICTION HELD_BY_FRICTION
@@ -54,7 +51,7 @@ START_TEST(free_square_has_three_motions) {
   ck_assert_ptr_null(c);
   ck_assert_ptr_nonnull(strstr(status_message(), "body 1"));
   ck_assert_ptr_nonnull(strstr(status_message(), "translation along x"));
-  stiffness_free(k);
+  memory_free(k);
   scene_free(s);
 }
 END_TEST

@@ -33,11 +33,6 @@ typedef struct linear_system {
   int bent;                  /* 1: some friction follows pressure */
 } linear_system;
 
-static void linear_system_free(linear_system *s) {
-  if (s == NULL) return;
-  RELEASE(s->M, s->pivot, s->b, s->Ax, s->v, s->zero, s);
-}
-
 /* ---- rows of friction ---------------------------------------------------- */
 
 /* y[m] += e B v_n of the closed normals of v[m], at the sliding unknowns. */
@@ -248,6 +243,7 @@ static status linear_system_new(const linear_states *rows,
   int singular = 0;
   PASS_NEW(*out, 1);
   linear_system *s = *out;
+  OWNS(s);
   s->rows = rows;
   s->bent = is_bent(rows);
   PASS_NEW_REALS(m, &s->b, &s->Ax);
@@ -258,7 +254,7 @@ static status linear_system_new(const linear_states *rows,
     PASS(linear_set_rows(rows, &singular));
   }
   if (!singular) return OK;
-  linear_system_free(s);
+  memory_free(s);
   *out = NULL;
   return OK;
 }
@@ -304,17 +300,11 @@ struct contact_adjoint {
   double *stick;      /* [m] derivative by the positions of stick */
 };
 
-void contact_adjoint_free(contact_adjoint *a) {
-  if (a == NULL) return;
-  linear_system_free(a->linear);
-  linear_states_free(&a->rows);
-  RELEASE(a->w, a->x, a->Ax, a->stick, a);
-}
-
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out) {
   PASS_NEW(*out, 1);
   contact_adjoint *a = *out;
+  OWNS(a);
   a->cp = cp;
   a->u = u;
   a->r = r;
@@ -322,7 +312,7 @@ status contact_adjoint_new(const contact_problem *cp, const double *u,
   PASS(linear_states_new(cp, u, r, &a->rows));
   PASS(linear_system_new(&a->rows, &a->linear));
   if (a->linear != NULL) return OK;
-  contact_adjoint_free(a);
+  memory_free(a);
   *out = NULL;
   return OK;
 }

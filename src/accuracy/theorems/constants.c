@@ -122,7 +122,7 @@ status energy_norm_new(int m, const double *A, energy_norm *out) {
 }
 
 void energy_norm_free(energy_norm *e) {
-  dense_inverse_free(e->inverse);
+  memory_free(e->inverse);
   RELEASE(e->x, e->y);
   *e = (energy_norm){0};
 }

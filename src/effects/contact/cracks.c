@@ -161,7 +161,7 @@ static status cracks_copy(const run *r, const void *of, run *copy,
 static void release(void *self) {
   crack_state *own = self;
   for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
-    fracture_free(own->of[i]);
+    memory_free(own->of[i]);
   RELEASE(own->of, own->elastic, own->rate, own->tips, own->found,
           own->materials, own->sigma, own->traction, own->lumped, own->area,
           own->shift);

@@ -69,7 +69,7 @@ static status set_forces(run *r, void *self, double t) {
 
 static void release(void *self) {
   given_forces *own = self;
-  given_form_free(own->form);
+  memory_free(own->form);
   RELEASE(own->node, own->force, own->all);
   *own = (given_forces){0};
 }
@@ -103,7 +103,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   if (own->n == 0) return OK;
   TIMED(effect_stage(&given_forces_effect));
   if (own->matrix_no != r->solving.matrix_no) {
-    given_form_free(own->form);
+    memory_free(own->form);
     own->form = NULL;
   }
   own->matrix_no = r->solving.matrix_no;

@@ -11,9 +11,7 @@ typedef struct velocity {
   contact_problem before; /* what was rewritten last */
 } velocity;
 
-static void release(void *self) {
-  velocity_form_free(((velocity *)self)->form);
-}
+static void release(void *self) { memory_free(((velocity *)self)->form); }
 
 /* The last equilibrium, from which the increment and its slip are counted:
  * start values may be others. Normals with a given force are uncoupled, at
@@ -30,7 +28,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   velocity *own = self;
   own->before = *cp;
   if (own->m != cp->m) { /* other nodes, by the supports or within reach */
-    velocity_form_free(own->form);
+    memory_free(own->form);
     own->form = NULL;
   }
   own->m = cp->m;

@@ -24,7 +24,7 @@ static status estimate_new(run *r, void **self) {
 
 static void release(void *self) {
   mesh_estimate *own = self;
-  space_recovery_free(own->recovery);
+  memory_free(own->recovery);
   memory_free(own->elem_error);
 }
 
@@ -34,7 +34,7 @@ static int is_recovery_known(const run *r, const mesh_estimate *own) {
 
 static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
-  space_recovery_free(own->recovery);
+  memory_free(own->recovery);
   own->recovery = NULL;
   TIMED(STAGE_MESH_ERROR);
   PASS(space_recovery_new(&r->body.d, &own->recovery));

@@ -63,7 +63,7 @@ static status goals_new(run *r, void **self) {
 
 static void release(void *self) {
   goal_state *own = self;
-  space_recovery_free(own->recovery);
+  memory_free(own->recovery);
   goal_border_free(&own->border);
   RELEASE(own->before.u, own->before.edge, own->before.sum, own->before.band,
           own->product, own->result);
@@ -126,8 +126,8 @@ typedef struct shared {
 
 static void shared_free(shared *s) {
   goal_surface_free(&s->surface);
-  goal_estimator_free(s->estimator);
-  contact_adjoint_free(s->adjoint);
+  memory_free(s->estimator);
+  memory_free(s->adjoint);
   goal_form_free(&s->form);
   RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->rest, s->moved);
 }
@@ -137,7 +137,7 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
   PASS(mesh_recovery(r, out));
   if (*out != NULL) return OK;
   if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
-    space_recovery_free(own->recovery);
+    memory_free(own->recovery);
     own->recovery = NULL;
     PASS(space_recovery_new(&r->body.d, &own->recovery));
     own->elastic_no = r->body.elastic_no;

@@ -254,7 +254,7 @@ static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
 done:
   for (int i = 0; i < m->n.step && dt != NULL; ++i) m->steps[i].dt = dt[i];
   reduction_restore(m);
-  reduction_free(p.n);
+  memory_free(p.n);
   memory_free(dt);
   return st;
 }

@@ -50,8 +50,8 @@ static void release(bisection *b) {
   table_free(&b->by_no);
   table_free(&b->parts);
   table_free(&b->marked);
-  size_grid_free(b->sizes);
-  round_surface_free(b->surface);
+  memory_free(b->sizes);
+  memory_free(b->surface);
   RELEASE(b->x, b->no, b->is_round, b->bent);
 }
 
@@ -231,7 +231,7 @@ static status find_surface(bisection *b) {
     ++f.n;
   }
   f.node = node;
-  round_surface_free(b->surface);
+  memory_free(b->surface);
   b->surface = NULL;
   return round_surface_new(&f, b->n_node, b->x, &b->surface);
 }

@@ -30,13 +30,6 @@ struct round_surface {
   double *face_normal;   /* [3*f.n] times twice the area */
 };
 
-void round_surface_free(round_surface *s) {
-  if (s == NULL) return;
-  table_free(&s->edges);
-  RELEASE(s->face, s->kind, s->next, s->number, s->flat, s->sharp, s->tangent,
-          s->normal, s->face_normal, s);
-}
-
 /* ---- vectors ------------------------------------------------------------- */
 
 /* To unit length; 0: it has none. */
@@ -261,6 +254,7 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
   if (f->n == 0) return OK;
   PASS_NEW(*out, 1);
   round_surface *s = *out;
+  OWNS(s);
   s->f = *f;
   s->x = x;
   PASS_NEW_ALL(OF(s->next, 2 * n_all), OF(s->number, n_all), OF(s->flat, n_all),

@@ -27,16 +27,6 @@ status coarser_new(coarser **out) {
   return OK;
 }
 
-static void state_free(coarser_state *x) {
-  RELEASE(x->x, x->contact_id, x->gap, x->traction, x->slip, x->contact);
-}
-
-void coarser_free(coarser *c) {
-  if (c == NULL) return;
-  for (int i = 0; i < c->n; ++i) state_free(&c->state[i]);
-  RELEASE(c->state, c);
-}
-
 static status new_arrays(const contact_surface *s, coarser_state *x) {
   const size_t n = (size_t)s->n, all = (size_t)s->dim * n;
   PASS_NEW_ALL(OF(x->x, all), OF(x->contact_id, n), OF(x->gap, n));
@@ -65,6 +55,7 @@ static void fill_node(const contact_surface *s, const contact_view *v, int i,
 
 status coarser_add(coarser *c, const contact_surface *s,
                    const contact_view *v) {
+  OWNS(c);
   PASS_GROW(c->state, c->n, c->capacity);
   coarser_state *x = &c->state[c->n++];
   *x = (coarser_state){.dim = s->dim, .n = s->n, .t = v->t};

@@ -165,7 +165,7 @@ static void forget_factors(contact_solver *s) {
   s->inverse_wanted = 0;
   normal_form_free(&s->normal);
   anchor_free(&s->held);
-  contact_bodies_free(s->bodies);
+  memory_free(s->bodies);
   s->bodies = NULL;
   RELEASE(s->best_u, s->best_r, s->full);
   s->best_u = s->best_r = s->full = NULL;
