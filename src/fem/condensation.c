@@ -283,6 +283,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   condensed *c = NULL;
   memory_count_suitesparse();
   NEW(c, 1);
+  OWNS(c);
   NEW(c->cm, 1);
   cholmod_l_start(c->cm);
   c->cm->print = 0;
@@ -317,9 +318,7 @@ void condensed_free(condensed *c) {
     body_factor_release(&c->body[q], c->cm);
   sparse_operator_free(c->sparse);
   if (c->cm != NULL) cholmod_l_finish(c->cm);
-  RELEASE(c->cm, c->A, c->body);
-  rigid_release(&c->rigid);
-  RELEASE(c->pinned, c->load, c->prescribed, c->F, c->rest, c);
+  memory_free(c);
 }
 
 /* The local components of the prescribed displacements: prescribed[]. */
@@ -443,6 +442,7 @@ static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;
   PASS_NEW_ALL(OF(u, n), OF(zero, c->m));
+  OWNS(c);
   if (c->rest == NULL) PASS_NEW(c->rest, n);
   if (c->F == NULL) PASS_NEW(c->F, n);
   memcpy(c->F, F, n * sizeof *F);

@@ -668,6 +668,7 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
   sparse_operator *o = NULL;
   PASS_NEW(o, 1);
   *out = o;
+  OWNS(o);
   o->k = k;
   o->rigid = d->rigid;
   o->cm = d->cm;
@@ -699,13 +700,6 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
 
 void sparse_operator_free(sparse_operator *o) {
   if (o == NULL) return;
-  memory_free(o->interior);
-  memory_free(o->s);
   body_factor_release(&o->f, o->cm);
-  RELEASE(o->columns.start, o->columns.item, o->touched.start, o->touched.item,
-          o->part.all.list, o->part.contact.list, o->part.response.list,
-          o->part.mark, o->part.touches, o->part.node, o->x, o->inner, o->own,
-          o->rows.known, o->rows.added, o->inside, o->work.z);
-  RELEASE(o->number, o->unknown, o->held, o->work.v, o->work.y, o->diagonal,
-          o->room, o->body, o);
+  memory_free(o);
 }

@@ -46,13 +46,6 @@ double component_term(const component *x, int t, int *node) {
   return -l->part[(size_t)l->dim * e + (size_t)x->c];
 }
 
-void rigid_release(rigid_motions *r) {
-  for (int t = 0; t < r->n_set; ++t)
-    RELEASE(r->set[t].Y, r->set[t].owner, r->set[t].node, r->set[t].load);
-  RELEASE(r->at, r->body, r->column, r->set, r->Q);
-  *r = (rigid_motions){0};
-}
-
 /* Is component c of node i unknown? Prescribed ones do not move. */
 static int is_unknown(const stiffness *k, int i, int c) {
   return k->free[i] >> c & 1;

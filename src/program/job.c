@@ -119,7 +119,7 @@ void job_input_free(job_input *in) {
   memory_free(in->problem);
   memory_free(in->contact);
   mesh_free(in->msh);
-  model_free(in->m);
+  memory_free(in->m);
   memory_free(in->d);
   memory_free(in->first);
   memory_free(in->log);

@@ -27,7 +27,7 @@ static char *echo_of(const char *path) {
   FILE *out = open_memstream(&text, &size);
   model_echo(m, out);
   fclose(out);
-  model_free(m);
+  memory_free(m);
   memory_free(d);
   memory_free(log);
   return text;

@@ -158,7 +158,7 @@ static status check_deck(const char *path, message_log *log, mesh *msh) {
     echo_nowhere(m);
   }
   memory_free(list);
-  model_free(m);
+  memory_free(m);
   memory_free(d);
   return st;
 }

@@ -26,7 +26,7 @@ void text_model_read(text_model *s, const char *text, mesh *msh) {
 }
 
 void text_model_close(text_model *s) {
-  model_free(s->m);
+  memory_free(s->m);
   memory_free(s->d);
   memory_free(s->log);
   mesh_free(s->msh);

@@ -281,7 +281,7 @@ START_TEST(every_refused_request_is_reported) {
       const size_t before = memory_in_use();
       text_model s;
       read_deck(&s, "", cards[i]);
-      model_free(s.m);
+      memory_free(s.m);
       s.m = NULL;
       memory_refuse(k, 0);
       s.st = model_from_deck(s.d, s.log, &s.m);

@@ -285,6 +285,7 @@ static status try_threshold(model *m, const mesh *msh) {
   PASS_NEW(flows, msh->n_elem);
   PASS(run_elastic(m, msh, flows, &seen));
   if (!seen) return OK;
+  OWNS(m);
   if (m->reduction.still == NULL) PASS_NEW(m->reduction.still, msh->n_elem);
   add_rows(m, msh, flows);
   return OK;

@@ -346,8 +346,3 @@ unsigned law_varies(const law_card *law) {
   return bits;
 }
 
-void law_card_free(law_card *law) {
-  if (law == NULL) return;
-  RELEASE((void *)law->param, law->temperature, law->value);
-  memset(law, 0, sizeof *law);
-}

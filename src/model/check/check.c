@@ -228,6 +228,7 @@ static void check_radius(const model *m, const mesh *msh) {
 
 /* Each element in one section. */
 static status check_sections(model *m, const mesh *msh) {
+  OWNS(m);
   PASS_NEW(m->elem_section, msh->n_elem);
   for (int e = 0; e < msh->n_elem; ++e) m->elem_section[e] = -1;
   for (int i = 0; i < m->n.section; ++i) {

@@ -175,6 +175,7 @@ static status find_field(model *m, const mesh *msh, const char *file,
     if (strcmp(m->load.fields[i].file, file) == 0)
       *out = m->load.fields[i].value;
   if (*out != NULL) return OK;
+  OWNS(m);
   PASS_GROW(m->load.fields, m->n.field, m->cap.field);
   nodal_field *f = &m->load.fields[m->n.field];
   const status st = nodal_field_read(file, msh, &f->value);

@@ -293,6 +293,7 @@ status model_from_deck(deck *d, message_log *log, model **out) {
   model *m = NULL;
   PASS_NEW(m, 1);
   *out = m;
+  OWNS(m);
   m->deck = d;
   m->log = log;
   m->name.title = "";
