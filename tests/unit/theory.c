@@ -55,7 +55,7 @@ static const theorems_report *look(looker *l) {
 }
 
 static void look_away(looker *l) {
-  theorems_free(l->t);
+  memory_free(l->t);
   free(l->id);
 }
 

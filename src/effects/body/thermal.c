@@ -20,11 +20,6 @@ static status temperatures_new(run *r, void **self) {
   return load_temperature_initial(r->m, r->msh, own->T0);
 }
 
-static void release(void *self) {
-  thermal_state *own = self;
-  RELEASE(own->T0, own->zone);
-}
-
 static int expands(const model *m, int elem_id) {
   const section *s = &m->sections[m->elem_section[elem_id]];
   return m->materials[s->material_id].expand.given;
@@ -113,6 +108,6 @@ const effect_ops thermal_effect = {
   .name = "thermal strain", .bit = EFFECT_BIT_THERMAL,
   .required = requires_thermal, .expected = expected, .own = STAGE_THERMAL,
   .far = 1, .strains = strains, .of_state = 1, .size = sizeof(thermal_state),
-  .on = {.create = temperatures_new, .load = heat, .release = release},
+  .on = {.create = temperatures_new, .load = heat},
   COLUMNS_OF(columns)};
 /* clang-format on */

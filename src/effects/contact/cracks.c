@@ -158,15 +158,6 @@ static status cracks_copy(const run *r, const void *of, run *copy,
   return cracks_new((run *)r, self);
 }
 
-static void release(void *self) {
-  crack_state *own = self;
-  for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
-    memory_free(own->of[i]);
-  RELEASE(own->of, own->elastic, own->rate, own->tips, own->found,
-          own->materials, own->sigma, own->traction, own->lumped, own->area,
-          own->shift);
-}
-
 /* ---- an increment -------------------------------------------------------- */
 
 /* The gradient of P1 function "node" along the shift of another, -. */
@@ -523,6 +514,6 @@ const effect_ops cracks_effect = {
   .table = {PRINT_SIF, PER_TIP}, .size = sizeof(crack_state),
   .items = tips_items,
   .on = {.create = cracks_new, .due = factors_due, .accept = find_factors,
-         .copy = cracks_copy, .release = release},
+         .copy = cracks_copy},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -67,15 +67,10 @@ static status set_forces(run *r, void *self, double t) {
   return OK;
 }
 
-static void release(void *self) {
-  given_forces *own = self;
-  memory_free(own->form);
-  RELEASE(own->node, own->force, own->all);
-  *own = (given_forces){0};
-}
-
 static void forget(run *r, void *self) {
-  release(self);
+  given_forces *own = self;
+  RELEASE(own->form, own->node, own->force, own->all);
+  *own = (given_forces){0};
   r->problem.given = NULL;
 }
 
@@ -83,6 +78,7 @@ static status prepare(run *r, void *self) {
   given_forces *own = self;
   if (own->all != NULL) return OK;
   PASS(check_corners(r, own));
+  OWNS(own);
   PASS_NEW_ALL(OF(own->node, r->nodes.n), OF(own->all, r->nodes.n));
   for (int i = 0; i < r->nodes.n; ++i) {
     own->all[i] = -1.0;
@@ -107,6 +103,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
     own->form = NULL;
   }
   own->matrix_no = r->solving.matrix_no;
+  OWNS(own);
   if (own->form == NULL)
     PASS(given_form_new(cp, own->n, own->node, &own->form));
   return given_form_set(own->form, &before, own->force, r->msh->size, *u, force,
@@ -140,6 +137,6 @@ const effect_ops given_forces_effect = {
   .required = requires_given, .expected = expected, .inside = 1, .far = 1,
   .size = sizeof(given_forces),
   .on = {.check = check_corners, .prepare = prepare, .pose = set_forces,
-         .rewrite = take, .restore = give, .forget = forget, .copy = given_copy,
-         .release = release}};
+         .rewrite = take, .restore = give, .forget = forget,
+         .copy = given_copy}};
 /* clang-format on */

@@ -100,6 +100,7 @@ static status zone_start(run *r, void *self, double t) {
     zone_free(z);
     return OK;
   }
+  OWNS(self);
   PASS(zone_fit(r, &limit->B, z));
   for (int i = 0; i < r->nodes.n; ++i) touched |= r->old.rc[dim * i] < 0.0;
   for (int i = 0; i < r->nodes.n; ++i) {
@@ -161,12 +162,6 @@ static status nonlocal_copy(const run *r, const void *of, run *copy,
   return OK;
 }
 
-static void release(void *self) {
-  nonlocal *own = self;
-  zone_free(&own->zone);
-  if (!own->borrowed) memory_free(own->average);
-}
-
 static effect_work expected(const plan_sizes *s) {
   const double n = s->averages;
   return (effect_work){n, "nodes", 1.0, 1000.0 * n + n * n};
@@ -184,5 +179,5 @@ const effect_ops nonlocal_effect = {
   .inside = 1, .size = sizeof(nonlocal),
   .on = {.create = nonlocal_new, .prepare = make_averages,
          .describe = count_entries, .pose = zone_start, .found = follow_zone,
-         .forget = forget, .copy = nonlocal_copy, .release = release}};
+         .forget = forget, .copy = nonlocal_copy}};
 /* clang-format on */

@@ -44,11 +44,6 @@ static status pairs_new(run *r, void **self) {
   return OK;
 }
 
-static void release(void *self) {
-  pair_forces *own = self;
-  RELEASE(own->force, own->moment);
-}
-
 /* arm[dim] += by times the place at which a node was coupled. */
 static void add_place(const run *r, int contact_id, int node_id, double by,
                       double *arm) {
@@ -134,6 +129,6 @@ const effect_ops pairs_effect = {
   .name = "bodies in contact", .bit = NO_BIT, .required = requires_pairs,
   .expected = expected, .own = STAGE_COUPLING,
   .size = sizeof(pair_forces), .copy_as = COPY_IS_NEW,
-  .on = {.create = pairs_new, .accept = find_forces, .release = release},
+  .on = {.create = pairs_new, .accept = find_forces},
   COLUMNS_OF(columns)};
 /* clang-format on */

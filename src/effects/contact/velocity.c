@@ -11,8 +11,6 @@ typedef struct velocity {
   contact_problem before; /* what was rewritten last */
 } velocity;
 
-static void release(void *self) { memory_free(((velocity *)self)->form); }
-
 /* The last equilibrium, from which the increment and its slip are counted:
  * start values may be others. Normals with a given force are uncoupled, at
  * 0. */
@@ -32,6 +30,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
     own->form = NULL;
   }
   own->m = cp->m;
+  OWNS(own);
   if (own->form == NULL) PASS(velocity_form_new(cp, &own->form));
   put_old(r, velocity_form_old(own->form));
   velocity_form_set(own->form, &own->before, cp, u);
@@ -64,5 +63,5 @@ const effect_ops velocity_effect = {
   .name = "velocity form", .bit = NO_BIT, .required = requires_velocity,
   .expected = expected, .own = STAGE_VELOCITY,
   .size = sizeof(velocity), .copy_as = COPY_IS_NEW,
-  .on = {.due = due, .rewrite = take, .restore = give, .release = release}};
+  .on = {.due = due, .rewrite = take, .restore = give}};
 /* clang-format on */

@@ -41,21 +41,15 @@ static int is_balanced(const run *r) {
   return r->step->balanced && r->nodes.n > 0;
 }
 
-static void free_arrays(balance *b) {
-  RELEASE(b->u, b->rc, b->guess_u, b->guess_r);
-  *b = (balance){0};
-}
-
-static void release(void *self) { free_arrays(self); }
-
 static status begin_step(run *r, void *self) {
   balance *b = self;
   r->solving.guess_u = r->solving.guess_r = NULL;
   b->known = 0;
   b->report = (balance_report){0};
   if (!is_balanced(r) || b->m == r->nodes.n_c) return OK;
-  free_arrays(b);
-  b->m = r->nodes.n_c;
+  RELEASE(b->u, b->rc, b->guess_u, b->guess_r);
+  *b = (balance){.m = r->nodes.n_c};
+  OWNS(b);
   PASS_NEW_REALS(b->m, &b->u, &b->rc, &b->guess_u, &b->guess_r);
   return OK;
 }
@@ -234,5 +228,5 @@ const effect_ops balance_effect = {
   .name = "balance", .bit = NO_BIT, .required = requires_balance,
   .own = STAGE_NONE, .size = sizeof(balance),
   .on = {.begin_step = begin_step, .solve = solve, .accept = learn,
-         .show = show, .keep = keep, .release = release}};
+         .show = show, .keep = keep}};
 /* clang-format on */

@@ -302,6 +302,7 @@ static status check_asked(run *r, void *self) {
 }
 
 static status find_others(run *r, void *self) {
+  OWNS(self);
   ((checked *)self)->asked = r->step->check != CHECK_NONE;
   return check_problem(r->step, &r->problem.cp, &r->solving.report,
                        run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
@@ -319,10 +320,6 @@ static status keep(run *r, void *self, archive *a) {
   return archive_ints(a, "lost", &((checked *)self)->lost, 1);
 }
 
-static void release(void *self) {
-  solution_set_free(&((checked *)self)->solutions);
-}
-
 /* The hooks enter the stage themselves, where there is something to do. */
 /* clang-format off */
 const effect_ops second_solutions_effect = {
@@ -331,5 +328,5 @@ const effect_ops second_solutions_effect = {
   .size = sizeof(checked),
   .on = {.check = check_asked, .begin_step = begin_step,
          .examine = look_for_jump, .accept = find_others, .show = show,
-         .keep = keep, .release = release}};
+         .keep = keep}};
 /* clang-format on */

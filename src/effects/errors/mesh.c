@@ -22,12 +22,6 @@ static status estimate_new(run *r, void **self) {
   return OK;
 }
 
-static void release(void *self) {
-  mesh_estimate *own = self;
-  memory_free(own->recovery);
-  memory_free(own->elem_error);
-}
-
 static int is_recovery_known(const run *r, const mesh_estimate *own) {
   return own->recovery != NULL && own->elastic_no == r->body.elastic_no;
 }
@@ -37,6 +31,7 @@ static status recover(const run *r, mesh_estimate *own) {
   memory_free(own->recovery);
   own->recovery = NULL;
   TIMED(STAGE_MESH_ERROR);
+  OWNS(own);
   PASS(space_recovery_new(&r->body.d, &own->recovery));
   if (r->m->n.goal > 0) PASS(space_keep(own->recovery));
   own->elastic_no = r->body.elastic_no;
@@ -127,7 +122,6 @@ const effect_ops mesh_error_effect = {
   .name = "error of mesh", .bit = EFFECT_BIT_MESH_ERROR,
   .required = requires_mesh_error, .expected = expected,
   .own = STAGE_MESH_ERROR, .inside = 1, .size = sizeof(mesh_estimate),
-  .on = {.create = estimate_new, .estimate = estimate, .keep = keep,
-         .release = release},
+  .on = {.create = estimate_new, .estimate = estimate, .keep = keep},
   COLUMNS_OF(columns)};
 /* clang-format on */

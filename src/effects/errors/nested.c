@@ -19,16 +19,11 @@ typedef struct nested {
   int missed;              /* nodes in another state at r->old; -1: unknown */
 } nested;
 
-static void free_arrays(nested *x) {
+static void forget(run *r, void *self) {
+  nested *x = self;
+  r->solving.start_u = r->solving.start_r = NULL;
   RELEASE(x->u, x->rc, x->state, x->before, x->nearest);
   *x = (nested){.missed = -1};
-}
-
-static void release(void *self) { free_arrays(self); }
-
-static void forget(run *r, void *self) {
-  r->solving.start_u = r->solving.start_r = NULL;
-  free_arrays(self);
 }
 
 static status nested_new(run *r, void **self) {
@@ -138,5 +133,5 @@ const effect_ops nested_effect = {
   .name = "nested start", .bit = NO_BIT, .required = requires_start,
   .own = STAGE_NONE, .size = sizeof(nested),
   .on = {.create = nested_new, .pose = pose, .accept = compare,
-         .forget = forget, .release = release}};
+         .forget = forget}};
 /* clang-format on */

@@ -59,11 +59,6 @@ static status waypoint_new(const run *r, waypoint *w) {
   return OK;
 }
 
-static void waypoint_free(waypoint *w) {
-  start_point_free(&w->start);
-  flow_state_free(&w->flow);
-}
-
 static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
   if (e == &r->old && r->strains.visco != NULL)
     flow_state_copy(&r->strains.visco->x, &r->strains.visco->old, &w->flow);
@@ -87,14 +82,6 @@ static status path_new(const run *r, finer_path **out) {
   return OK;
 }
 
-static void path_free(finer_path *p) {
-  if (p == NULL) return;
-  waypoint_free(&p->at);
-  waypoint_free(&p->middle);
-  waypoint_free(&p->end);
-  RELEASE(p->d, p->Ad, p->u, p->e0, p);
-}
-
 /* The equilibrium at t from where "from" stands, into "to". */
 static status half(run *r, waypoint *from, double t, waypoint *to) {
   equilibrium keep = start_point_use(r, &from->start);
@@ -109,7 +96,7 @@ static status half(run *r, waypoint *from, double t, waypoint *to) {
 
 /* The next increment starts from what is in r->old. */
 static void restart(paths *own) {
-  path_free(own->path);
+  memory_free(own->path);
   own->path = NULL;
   own->before.norm += own->now.norm;
   own->before.strain += own->now.strain;
@@ -147,6 +134,7 @@ static status try_path(run *r, void *self, double t) {
   if (own->path != NULL && (own->path->at.start.t != r->old.t ||
                             own->path->flows != (r->step->kind == STEP_VISCO)))
     restart(own);
+  OWNS(own);
   if (own->path == NULL) TRY(path_new(r, &own->path));
   TRY(try_halves(r, own->path, t));
 done:
@@ -308,10 +296,6 @@ static status compare(run *r, void *self) {
   return OK;
 }
 
-/* ---- its state ---------------------------------------------------------- */
-
-static void release(void *self) { path_free(((paths *)self)->path); }
-
 static void forget(run *r, void *self) { restart(self); }
 
 /* Sudden loads at the start of a *VISCO step is no part of a path. */
@@ -342,6 +326,7 @@ static status keep(run *r, void *self, archive *a) {
   PASS(archive_reals(a, "path_strain_before", &own->before.strain, 1));
   PASS(archive_reals(a, "path_strain", &own->now.strain, 1));
   if (!there) return OK;
+  OWNS(own);
   if (own->path == NULL) PASS(path_new(r, &own->path));
   PASS(archive_ints(a, "path_lost", &own->path->lost, 1));
   return keep_waypoint(r, &own->path->at, a);
@@ -502,6 +487,6 @@ const effect_ops time_error_effect = {
   .required = requires_time_error, .expected = expected,
   .own = STAGE_TIME_ERROR, .inside = 1, .size = sizeof(paths),
   .on = {.begin_step = begin_step, .make_step = march, .attempt = try_path,
-         .accept = compare, .forget = forget, .keep = keep, .release = release},
+         .accept = compare, .forget = forget, .keep = keep},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -221,13 +221,11 @@ static void show(const void *self, state *s) {
   s->errors.theorems = ((const checked *)self)->report;
 }
 
-static void release(void *self) { theorems_free(((checked *)self)->at_work); }
-
 /* clang-format off */
 const effect_ops theorems_effect = {
   .name = "theory checks", .bit = EFFECT_BIT_THEORY,
   .required = requires_theorems, .expected = expected, .own = STAGE_THEORY,
   .shadow = 1, .size = sizeof(checked),
   .on = {.create = checked_new, .due = due, .initial = see_start,
-         .accept = see_increment, .show = show, .release = release}};
+         .accept = see_increment, .show = show}};
 /* clang-format on */

@@ -87,8 +87,6 @@ static status warnings_new(run *r, void **self) {
   return OK;
 }
 
-static void release(void *self) { memory_free(((warnings *)self)->touched); }
-
 static status keep(run *r, void *self, archive *a) {
   warnings *own = self;
   PASS(archive_ints(a, "told_strain", &own->strain, 1));
@@ -104,6 +102,5 @@ static int requires_warnings(const model *m, char *why, size_t size) {
 const effect_ops warnings_effect = {
   .name = "warnings", .bit = NO_BIT, .required = requires_warnings,
   .own = STAGE_NONE, .size = sizeof(warnings),
-  .on = {.create = warnings_new, .accept = look, .end = end, .keep = keep,
-         .release = release}};
+  .on = {.create = warnings_new, .accept = look, .end = end, .keep = keep}};
 /* clang-format on */

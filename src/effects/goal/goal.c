@@ -61,14 +61,6 @@ static status goals_new(run *r, void **self) {
   return OK;
 }
 
-static void release(void *self) {
-  goal_state *own = self;
-  memory_free(own->recovery);
-  goal_border_free(&own->border);
-  RELEASE(own->before.u, own->before.edge, own->before.sum, own->before.band,
-          own->product, own->result);
-}
-
 /* ---- what the estimate covers -------------------------------------------- */
 
 /* 1: of pairs there are cracks alone, each within one material. */
@@ -139,6 +131,7 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
   if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
     memory_free(own->recovery);
     own->recovery = NULL;
+    OWNS(own);
     PASS(space_recovery_new(&r->body.d, &own->recovery));
     own->elastic_no = r->body.elastic_no;
   }
@@ -436,6 +429,7 @@ static status remember(run *r, goal_state *own, shared *s) {
     return OK;
   }
   if (h->edge == NULL) {
+    OWNS(own);
     h->n_edge = s->surface.n_edge;
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   }
@@ -490,6 +484,7 @@ static status keep(run *r, void *self, archive *a) {
   if (h->u == NULL) return OK;
   PASS(archive_ints(a, "lost", &h->lost, 1));
   PASS(archive_ints(a, "edges", &h->n_edge, 1));
+  OWNS(own);
   if (h->edge == NULL && h->n_edge > 0)
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   PASS(archive_reals(a, "edge", h->edge,
@@ -582,7 +577,6 @@ const effect_ops goals_effect = {
   .name = "errors of goals", .bit = NO_BIT, .required = requires_goals,
   .expected = expected, .table = {PRINT_GOALS, PER_GOAL},
   .size = sizeof(goal_state), .items = goal_items,
-  .on = {.create = goals_new, .accept = find_goals, .show = show, .keep = keep,
-         .release = release},
+  .on = {.create = goals_new, .accept = find_goals, .show = show, .keep = keep},
   COLUMNS_OF(columns)};
 /* clang-format on */

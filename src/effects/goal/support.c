@@ -443,8 +443,6 @@ status goal_border_new(const mesh *m, goal_border *b) {
   return OK;
 }
 
-void goal_border_free(goal_border *b) { RELEASE(b->side, b->angle); }
-
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;

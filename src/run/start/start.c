@@ -85,11 +85,6 @@ status start_report_new(const mesh *msh, start_report *report) {
   return OK;
 }
 
-void start_report_free(start_report *report) {
-  RELEASE(report->defect, report->kind);
-  memset(report, 0, sizeof *report);
-}
-
 static status set_line(const model *m, const mesh *msh, const initial *line,
                        double *u) {
   const mesh_group *g = &msh->group[line->group_id];
