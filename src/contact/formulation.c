@@ -198,6 +198,7 @@ status given_form_new(const contact_problem *cp, int n, const int *node,
  * left. */
 static status set_limit(given_form *g, const contact_problem *cp,
                         contact_problem *out) {
+  OWNS(g);
   const sparse_rows *B = cp->B;
   int left = 0;
   if (B == NULL) return OK;
