@@ -112,7 +112,7 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define ENDS_BY(function) __attribute__((cleanup(function)))
 
 /* Of what is requested from here to the end of the block the object is the
- * owner; NULL: none. */
+ * owner; NULL: none. Not behind a jump to "done:" of the same block. */
 #define OWNS(object)                                                 \
   void *before_ __attribute__((cleanup(memory_own_again), unused)) = \
       memory_own(object)

@@ -562,6 +562,7 @@ static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
 
 static status set_node(builder *b, contact_surface *s, int n_kept,
                        const candidate *const *kept) {
+  OWNS(s);
   const mesh *m = b->in->mesh;
   int dim = b->dim, i = s->n++;
   const candidate *c = kept[0];
@@ -691,7 +692,6 @@ status surface_build(const surface_input *in, message_log *log,
   TRY(collect(&b));
   mirrors_find(in, &b.mirrors);
   TRY(surface_new(b.dim, b.n, has_pair(in), &s));
-  OWNS(s);
   for (int first = 0, end; first < b.n; first = end) {
     const candidate *kept[3];
     for (end = first + 1; end < b.n; ++end)

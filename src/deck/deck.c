@@ -405,7 +405,7 @@ status deck_read(const char *file, int n_define, const char *const *defines,
   status st = OK;
   reader r = {.log = log, .mode = DATA_EARLY};
   *out = NULL;
-  NEW(r.d, 1);
+  PASS_NEW(r.d, 1);
   OWNS(r.d);
   NEW(r.d->own, 1);
   TRY(source_open(r.d, log, file, NULL, &r.top));

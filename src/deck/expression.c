@@ -427,7 +427,7 @@ status expression_compile_in(const char *text, const char *const names[4],
       .text = text, .p = text, .names = names, .symbol = symbol, .ctx = ctx};
   *out = NULL;
   *column = 0;
-  NEW(c.e, 1);
+  PASS_NEW(c.e, 1);
   OWNS(c.e);
   TRY(compile(&c));
   *out = c.e;

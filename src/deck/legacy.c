@@ -143,7 +143,7 @@ status format_read(const char *text, format **out) {
   status st = OK;
   unroller u = {.text = text, .p = text};
   *out = NULL;
-  NEW(u.f, 1);
+  PASS_NEW(u.f, 1);
   OWNS(u.f);
   skip(&u);
   if (*u.p != '(') FAIL(ERR_DECK, "'(' expected at the start");

@@ -153,7 +153,7 @@ status exchange_read(const char *path, exchange_type type, const place *at,
   status st = OK;
   exchange_problem *p = NULL;
   *out = NULL;
-  NEW(p, 1);
+  PASS_NEW(p, 1);
   OWNS(p);
   TRY(type_of(path, &type));
   if (type == EXCHANGE_FCLIB)

@@ -365,8 +365,9 @@ static status list_coupling(stiffness *k) {
 status stiffness_assemble(const domain *d, stiffness **out) {
   status st = OK;
   stiffness *k = NULL;
+  *out = NULL;
   TIMED(STAGE_ASSEMBLY);
-  NEW(k, 1);
+  PASS_NEW(k, 1);
   OWNS(k);
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;

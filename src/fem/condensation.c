@@ -281,8 +281,9 @@ static status make_operator(condensed *c) {
 status condense(const stiffness *k, const domain *d, condensed **out) {
   status st = OK;
   condensed *c = NULL;
+  *out = NULL;
   memory_count_suitesparse();
-  NEW(c, 1);
+  PASS_NEW(c, 1);
   OWNS(c);
   NEW(c->cm, 1);
   cholmod_l_start(c->cm);

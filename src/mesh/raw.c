@@ -121,6 +121,7 @@ status raw_receive(int fd, raw_mesh *raw, int *stopped) {
 #define WIRE_SIZE(name, type) sizeof(type),
   static const size_t item_size[] = {WIRE_LIST(WIRE_SIZE)};
   *stopped = 0;
+  OWNS(raw);
   for (;;) {
     wire_head head;
     *stopped = read_bytes(fd, &head, sizeof head) != sizeof head;

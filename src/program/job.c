@@ -118,7 +118,7 @@ status job_keep_contact(coarser *to, const state *s) {
 void job_input_free(job_input *in) {
   memory_free(in->problem);
   memory_free(in->contact);
-  mesh_free(in->msh);
+  memory_free(in->msh);
   memory_free(in->m);
   memory_free(in->d);
   memory_free(in->first);

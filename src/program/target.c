@@ -418,7 +418,7 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
     TRY(read_next(&p));
   }
 done:
-  if (p.first != in->msh) mesh_free(p.first);
+  if (p.first != in->msh) memory_free(p.first);
   RELEASE(p.eta, p.size, p.first_size);
   memory_free(p.before);
   memory_free(p.contact);

@@ -110,7 +110,7 @@ static job scene_new_job(int dim, double *area) {
   mesh *m = dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
   turned_mesh_write(&j, m, &whole_turn[dim - 2]);
   foot_areas(m, area);
-  mesh_free(m);
+  memory_free(m);
   write_deck(&j, dim);
   return j;
 }

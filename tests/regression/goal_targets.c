@@ -332,7 +332,7 @@ START_TEST(msh_of_a_cylinder_is_refined) {
   ck_assert_msg(m != NULL, "%s", f.messages);
   snprintf(path, sizeof path, "%s/line.msh", j.dir);
   msh_write(path, m);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
   job_write(&j, "line.inp",
             "*MESH, FILE=line.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"

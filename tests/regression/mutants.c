@@ -178,7 +178,7 @@ static int judge(const char *path, int dim) {
   if (st == OK && errors) return 3;
   if (st != OK && !errors) return 4;
   memory_free(log);
-  mesh_free(msh);
+  memory_free(msh);
   return st == OK ? ACCEPTED : 0;
 }
 

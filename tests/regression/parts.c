@@ -281,7 +281,7 @@ START_TEST(zones_of_revolution_are_rings) {
   job j = job_begin("turned");
   mesh *m = make_grid_2d((int[]){12, 4}, (double[]){2, 1});
   turned_mesh_write(&j, m, &none);
-  mesh_free(m);
+  memory_free(m);
   job_write(&j, "turned.inp",
             "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
@@ -329,7 +329,7 @@ START_TEST(directions_of_slip_part_where_there_is_none) {
   job j = job_begin("turned");
   mesh *m = make_grid_2d((int[]){8, 4}, (double[]){2, 1});
   turned_mesh_write(&j, m, &none);
-  mesh_free(m);
+  memory_free(m);
   job_write(&j, "turned.inp",
             "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.25\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"

@@ -48,7 +48,6 @@ void scene_start(crack_scene *s, mesh *m, double height,
   must(message_log_new(&log) == OK, "log");
   must(mesh_open(m, cut[1].group ? 2 : 1, cut, log, crack) == OK, "opening");
   s->crack = crack[0];
-  mesh_crack_free(&crack[1]);
   memory_free(log);
   s->y = zeroed(3 * m->n_node, sizeof *s->y);
   for (int i = 0; i < m->n_node; ++i) {
@@ -138,8 +137,7 @@ fracture_factors *scene_factors(const crack_scene *s, int *n,
 }
 
 void scene_end(crack_scene *s) {
-  mesh_crack_free(&s->crack);
-  mesh_free(s->m);
+  memory_free(s->m);
   free(s->section);
   free(s->y);
   free(s->side);

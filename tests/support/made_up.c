@@ -183,7 +183,7 @@ void made_up_advance(made_up *run, int total_no) {
 }
 
 void made_up_free(made_up *run) {
-  mesh_free(run->msh);
+  memory_free(run->msh);
   memory_free(run->surface.node_id);
   memory_free(run->surface.node_no);
   memory_free(run->surface.contact_id);

@@ -45,7 +45,7 @@ void scene_free(scene *s) {
   free(c->held);
   free(s->section_id);
   free(s->fixed);
-  mesh_free(s->m);
+  memory_free(s->m);
   free(s);
 }
 

@@ -24,8 +24,8 @@ static mesh *make_mesh(stack *k, double gap) {
     if (both == NULL) abort();
     k->first[b + 1] = both->n_node;
     if (b > 0) {
-      mesh_free(all);
-      mesh_free(one);
+      memory_free(all);
+      memory_free(one);
     }
     all = both;
   }

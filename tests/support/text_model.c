@@ -29,5 +29,5 @@ void text_model_close(text_model *s) {
   memory_free(s->m);
   memory_free(s->d);
   memory_free(s->log);
-  mesh_free(s->msh);
+  memory_free(s->msh);
 }

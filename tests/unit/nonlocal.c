@@ -197,7 +197,7 @@ static void scene_close(scene *c) {
   memory_free(c->log);
   free(c->fixed);
   free(c->weight);
-  mesh_free(c->m);
+  memory_free(c->m);
 }
 
 static void *law_options(const char *radius) {

@@ -45,7 +45,7 @@ static scene *two_bodies(void) {
     scene_fix_node(s, 15, c);
   }
   scene_fix_node(s, 16, 0);
-  mesh_free(a);
+  memory_free(a);
   return s;
 }
 

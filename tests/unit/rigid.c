@@ -121,7 +121,7 @@ static void hinged(layers *l, double contrast) {
   l->n_motion = 4;
   l->motion = hinged_motion;
   two_moduli(l, contrast, (double[]){1, 1, 1.5});
-  mesh_free(a);
+  memory_free(a);
 }
 
 /* Two contact nodes close together and far from the origin. */

@@ -479,7 +479,7 @@ START_TEST(sizes_give_the_target_and_grow_slowly) {
     }
   ck_assert_double_gt(most, 1.9 * edge);
   ck_assert_double_lt(least, 0.6 * edge);
-  mesh_free(m);
+  memory_free(m);
   free(eta);
   free(size);
 }

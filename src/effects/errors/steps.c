@@ -65,10 +65,8 @@ static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
   start_point_copy(r, e, &w->start);
 }
 
-static status path_new(const run *r, finer_path **out) {
-  finer_path *p = NULL;
-  PASS_NEW(p, 1);
-  *out = p;
+static status path_new(const run *r, finer_path *p) {
+  OWNS(p);
   p->flows = r->step->kind == STEP_VISCO;
   PASS(waypoint_new(r, &p->at));
   PASS(waypoint_new(r, &p->middle));
@@ -80,6 +78,13 @@ static status path_new(const run *r, finer_path **out) {
   }
   waypoint_copy(r, &r->old, &p->at);
   return OK;
+}
+
+static status path_begin(const run *r, paths *own) {
+  if (own->path != NULL) return OK;
+  OWNS(own);
+  PASS_NEW(own->path, 1);
+  return path_new(r, own->path);
 }
 
 /* The equilibrium at t from where "from" stands, into "to". */
@@ -134,8 +139,7 @@ static status try_path(run *r, void *self, double t) {
   if (own->path != NULL && (own->path->at.start.t != r->old.t ||
                             own->path->flows != (r->step->kind == STEP_VISCO)))
     restart(own);
-  OWNS(own);
-  if (own->path == NULL) TRY(path_new(r, &own->path));
+  TRY(path_begin(r, own));
   TRY(try_halves(r, own->path, t));
 done:
   r->course.shadow = 0;
@@ -326,8 +330,7 @@ static status keep(run *r, void *self, archive *a) {
   PASS(archive_reals(a, "path_strain_before", &own->before.strain, 1));
   PASS(archive_reals(a, "path_strain", &own->now.strain, 1));
   if (!there) return OK;
-  OWNS(own);
-  if (own->path == NULL) PASS(path_new(r, &own->path));
+  PASS(path_begin(r, own));
   PASS(archive_ints(a, "path_lost", &own->path->lost, 1));
   return keep_waypoint(r, &own->path->at, a);
 }

@@ -655,6 +655,7 @@ status msh_read(const char *file, raw_mesh **out) {
   PASS(scan_open(&m.s, file, ERR_MESH));
   PASS_NEW(*out, 1);
   m.raw = *out;
+  OWNS(m.raw);
   PASS(read_sections(&m));
   PASS(finish_groups(&m));
   return finish_blocks(&m);

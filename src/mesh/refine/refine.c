@@ -426,6 +426,7 @@ status raw_refine(raw_mesh *raw, const refine_request *q) {
   ENDS_BY(release) bisection b = {.q = q, .raw = raw};
   int done = 0;
   if (!is_simple(raw)) return OK;
+  OWNS(raw);
   PASS(take(&b));
   if (b.dim < 2) return OK;
   PASS(size_grid_new(&q->sizes, &b.sizes));

@@ -604,6 +604,7 @@ status model_open_cracks(model *m, mesh *msh) {
     if (id < 0) return message_status(m->log, ERR_DECK);
     cut[i] = (mesh_cut){&msh->group[id], &k->group_at};
   }
+  OWNS(msh);
   PASS_NEW(msh->crack, n);
   msh->n_crack = n;
   return mesh_open(msh, n, cut, m->log, msh->crack);
