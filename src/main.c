@@ -2,17 +2,14 @@
  * protis: reads the command line, runs the stages in order, prints what went
  * wrong and chooses the exit code.
  */
+#include "base/base.h"
 #include "base/interrupt.h"
-#include "base/memory.h"
-#include "base/text.h"
 #include "fem/fem.h"
+#include "program/command.h"
 #include "program/inform.h"
 #include "program/job.h"
-#include "program/command.h"
 
 #include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #ifndef PROTIS_COMMIT /* of the sources: told by the Makefile */
@@ -115,7 +112,7 @@ int main(int argc, char **argv) {
   if (st == OK)
     st = c.table != NULL ? tables_print(&c) : run_job(&c, log, &unsettled);
   exit_code = flush_output(report(st, log, unsettled));
-  message_log_free(log);
+  memory_free(log);
   command_free(&c);
   interrupt_over();
   return exit_code;

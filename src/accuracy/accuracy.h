@@ -67,23 +67,47 @@ status contraction_limit(const contact_problem *cp, const double *u,
                          const double *r, double *rate);
 
 /*
- * The contact linearised at (u, r), its limit being given (cp->B is not read):
- * the states closed, stick and slip persist. cp is borrowed.
+ * The contact linearised at (u, r): the states closed, stick and slip persist.
+ * Friction of a sliding node acts along e and, in space, turns with its slip
+ * by kappa (I - e e'), kappa = g/|slip|.
+ */
+typedef struct linear_states {
+  const contact_problem *cp; /* borrowed */
+  int n_free, n_slip, n_closed;
+  int *free_id, *place;         /* [m] unknowns that can move; place among them,
+                                   or -1 */
+  unsigned char *closed, *slip; /* [n] */
+  double *e;                    /* [m] direction of friction on slip */
+  double *kappa;                /* [n] N/m */
+  unsigned char *known;         /* known_rows of an operator */
+  double *added;
+} linear_states;
+/* out: all-zero. ERR_MEMORY. */
+status linear_states_new(const contact_problem *cp, const double *u,
+                         const double *r, linear_states *out);
+void linear_states_free(linear_states *s);
+/* Entry of kappa (I - e e') of two tangents of one sliding node, N/m. */
+double linear_turn(const linear_states *s, int a, int b);
+/* The factor of the operator for these states; it keeps one, so again before
+ * each use. ERR_MEMORY. */
+status linear_set_rows(const linear_states *s, int *singular);
+
+/*
+ * Changes of the contact linearised at (u, r), its limit being given (cp->B is
+ * not read). cp is borrowed.
  */
 typedef struct linear_contact linear_contact;
 /* *out is NULL if nothing holds the free unknowns. ERR_MEMORY. */
 status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out);
-void linear_contact_free(linear_contact *c); /* accepts NULL */
 /* du[m] of a change df[m] of the load, N. */
 status linear_contact_move(linear_contact *c, const double *df, double *du);
 
 /* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
- * without another inverse. *out is new (dense_inverse_free), NULL if M is not
+ * without another inverse. *out is new (memory_free), NULL if M is not
  * symmetric and positive semidefinite. */
 typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
-void dense_inverse_free(dense_inverse *d); /* accepts NULL */
 inverse_energy dense_inverse_energy(dense_inverse *d);
 /* N[m*m] = inv(M); *done = 0: M is semidefinite. */
 void dense_inverse_fill(dense_inverse *d, double *N, int *done);

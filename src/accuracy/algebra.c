@@ -29,13 +29,11 @@
  * that the rate is the same.
  */
 #include "accuracy/accuracy.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
-#include <float.h>
 #include <lapacke.h>
-#include <math.h>
 
 /*
  * Equilibrium of a body that contact alone holds: its stiffness has motions R

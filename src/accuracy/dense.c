@@ -5,13 +5,11 @@
  */
 #include "accuracy/accuracy.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { TILE = 32 };
 static const double SYMMETRY = 0x1p-40; /* -, of the diagonal */
@@ -75,18 +73,14 @@ status dense_inverse_new(int m, const double *M, dense_inverse **out) {
   OWNED int *iwork = NULL;
   PASS_NEW(*out, 1);
   dense_inverse *d = *out;
+  OWNS(d);
   d->m = m;
   PASS_NEW_ALL(OF(d->L, (size_t)m * (size_t)m), OF(d->unit, m), OF(d->pivot, m),
                OF(d->y, m), OF(work, 3 * m), OF(iwork, m));
   if (scale(M, d) && factor(d, work, iwork)) return find_kernel(d);
-  dense_inverse_free(d);
+  memory_free(d);
   *out = NULL;
   return OK;
-}
-
-void dense_inverse_free(dense_inverse *d) {
-  if (d == NULL) return;
-  RELEASE(d->L, d->unit, d->pivot, d->y, d->kernel, d);
 }
 
 /* y = inv(L) x in the order of the pivots. */

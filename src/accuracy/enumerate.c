@@ -14,12 +14,9 @@
  */
 #include "accuracy/accuracy.h"
 #include "accuracy/solutions.h"
-
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   ROWS = 2 * ENUMERATED_NODES,

@@ -7,11 +7,8 @@
 #include "accuracy/exact_error.h"
 
 #include "accuracy/space.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "material/voigt.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { MAX_NS = 6, RULE = 4 };
 static const double PART = 1e-3; /* -, of the element, for differences */

@@ -1,12 +1,10 @@
 /* The set of solutions found, distinguished by their distance in energy. */
 #include "accuracy/solutions.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <assert.h>
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 /*
  * Solutions by several solvers: one of each family, from different starts:

@@ -10,11 +10,9 @@
  */
 #include "accuracy/space.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /*
  * Sizes for a new mesh from the errors of the elements of an old one. An
@@ -241,6 +239,7 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   const mesh *m = d->mesh;
   PASS_NEW(*out, 1);
   space_recovery *s = *out;
+  OWNS(s);
   s->d = d;
   for (int k = 0; k < m->n_elem; ++k)
     if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;
@@ -257,15 +256,6 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   PASS(find_regions(s));
   list_neighbours(s);
   return OK;
-}
-
-void space_recovery_free(space_recovery *s) {
-  if (s == NULL) return;
-  for (int k = 0; k < s->n_region && s->kept != NULL; ++k)
-    RELEASE(s->kept[k].start, s->kept[k].elem, s->kept[k].weight);
-  RELEASE(s->region, s->compliance, s->start, s->elem, s->patch, s->stamp,
-          s->weight, s->seen, s->recovered, s->centroid, s->measure, s->kept,
-          s);
 }
 
 /* ---- patches ------------------------------------------------------------- */
@@ -457,6 +447,7 @@ static status keep_region(space_recovery *s, int region, fit_weights *w) {
 
 status space_keep(space_recovery *s) {
   if (s->kept != NULL) return OK;
+  OWNS(s);
   PASS_NEW(s->kept, s->n_region);
   for (int k = 0; k < s->n_region; ++k) PASS(keep_region(s, k, &s->kept[k]));
   return OK;

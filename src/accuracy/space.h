@@ -25,7 +25,6 @@ status space_compliance(const domain *d, int section, double *S);
 
 /* Patches of elements for the domain (borrowed); *out is new. ERR_MEMORY. */
 status space_recovery_new(const domain *d, space_recovery **out);
-void space_recovery_free(space_recovery *s); /* accepts NULL */
 
 /*
  * Estimate for the stresses sigma[ns*n_elem] (domain_stress), Pa, with the

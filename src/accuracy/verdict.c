@@ -2,15 +2,12 @@
 #include "accuracy/verdict.h"
 
 #include "accuracy/accuracy.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/formulation.h"
 #include "solver/pivoting/lemke.h"
 #include "solver/solver.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { LISTED = 5, LARGEST = 2000, PARAM_SIZE = 512 };
 static const double PART = 0.01;   /* -, of the largest: does not count */
@@ -137,8 +134,8 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
     *end = STOPPED_STAGNATION;
   if (form != NULL) given_form_move(form, v);
 done:
-  given_form_free(form);
-  solver_release(lemke, work);
+  memory_free(form);
+  memory_free(work);
   RELEASE(u, r, A);
   return st;
 }
@@ -177,12 +174,6 @@ static status add_moving(const words *w, const verdict_scene *s,
   return OK;
 }
 
-static double dot(size_t n, const double *a, const double *b) {
-  double sum = 0.0;
-  for (size_t i = 0; i < n; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
 /* Forces of load k alone, F[n_dof]. */
 static status forces_of(const verdict_scene *s, int k, double *F) {
   step one = *s->step;
@@ -210,12 +201,12 @@ static double work_of_given(const verdict_scene *s, int contact_id,
  * v[m] of the contact nodes. */
 static status add_loads(const words *w, const verdict_scene *s, const double *u,
                         const double *v, double *F) {
-  size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
+  const int dim = s->msh->dim, n = dim * s->msh->n_node;
   int listed = 0;
   double sum[3] = {0.0}, none[3];
   PASS(load_forces(s->m, s->msh, s->step, s->t, F));
   double work = dot(n, F, u);
-  for (size_t i = 0; i < n; ++i) sum[i % (size_t)s->msh->dim] += F[i];
+  for (int i = 0; i < n; ++i) sum[i % dim] += F[i];
   for (int k = 0; k < s->m->n.contact; ++k) work += work_of_given(s, k, v, sum);
   for (int k = 0; k < s->step->loads.n && listed < LISTED; ++k) {
     const load *l = &s->step->loads.item[k];

@@ -1,4 +1,5 @@
-/* Counted allocation: a header of 16 bytes before each block keeps its size. */
+/* Counted allocation: a header before each block keeps its size, and what it
+ * owns. */
 #include "base/memory.h"
 
 #include <SuiteSparse_config.h>
@@ -10,8 +11,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+typedef struct header header;
+struct header {
+  size_t bytes;
+  header *first;        /* of the blocks it owns */
+  header *next, **link; /* with the same owner; what points to this one */
+};
+
 enum {
-  HEADER = 16,
+  HEADER = 48,     /* bytes, alignment kept */
   MAPPED = 1 << 25 /* bytes: glibc maps larger blocks, and no smaller ones that
                       it has seen freed */
 };
@@ -21,6 +29,25 @@ static size_t most = SIZE_MAX;
 static const char *limit_of = "nothing";
 static long requests, refuse_at;
 static int refuse_all, hit_limit;
+static header *owner; /* of what is requested, or NULL */
+
+static header *header_of(const void *p) {
+  return p == NULL ? NULL : (header *)(void *)((char *)p - HEADER);
+}
+
+static void join(header *h, header **first) {
+  h->next = *first;
+  h->link = first;
+  if (h->next != NULL) h->next->link = &h->next;
+  *first = h;
+}
+
+static void part(header *h) {
+  if (h->link != NULL) *h->link = h->next;
+  if (h->next != NULL) h->next->link = h->link;
+  h->link = NULL;
+  h->next = NULL;
+}
 
 static int refused(void) {
   ++requests;
@@ -43,7 +70,9 @@ void *memory_new(size_t n, size_t size) {
   }
   char *block = calloc(1, bytes + HEADER);
   if (block == NULL) return NULL;
-  memcpy(block, &bytes, sizeof bytes);
+  header *h = header_of(block + HEADER);
+  h->bytes = bytes;
+  if (owner != NULL) join(h, &owner->first);
   allocated += bytes;
   in_use += bytes;
   if (in_use > peak) peak = in_use;
@@ -73,7 +102,11 @@ status memory_items(int count, const memory_item *items) {
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size) {
   void *grown = memory_new(new_n, size);
   if (grown == NULL) return NULL;
-  if (p != NULL) memcpy(grown, p, (old_n < new_n ? old_n : new_n) * size);
+  if (p == NULL) return grown;
+  header *old = header_of(p), *h = header_of(grown);
+  memcpy(grown, p, (old_n < new_n ? old_n : new_n) * size);
+  part(h);
+  if (old->link != NULL) join(h, old->link);
   memory_free(p);
   return grown;
 }
@@ -85,18 +118,22 @@ char *memory_text(const char *text) {
   return copy;
 }
 
-/* Bytes requested for this block. */
-static size_t memory_size(const void *p) {
-  size_t bytes;
-  memcpy(&bytes, (const char *)p - HEADER, sizeof bytes);
-  return bytes;
-}
-
 void memory_free(void *p) {
   if (p == NULL) return;
-  in_use -= memory_size(p);
-  free((char *)p - HEADER);
+  header *h = header_of(p);
+  while (h->first != NULL) memory_free((char *)h->first + HEADER);
+  part(h);
+  in_use -= h->bytes;
+  free(h);
 }
+
+void *memory_own(void *p) {
+  header *before = owner;
+  owner = header_of(p);
+  return before;
+}
+
+void memory_own_again(void *const *before) { owner = *before; }
 
 void memory_free_all(int n, void *const *p) {
   for (int i = 0; i < n; ++i) memory_free(p[i]);
@@ -108,15 +145,25 @@ void memory_leave(void *p) {
   memory_free(block);
 }
 
-static void *malloc_counted(size_t bytes) { return memory_new(bytes, 1); }
+/* Blocks of SuiteSparse may outlast the object that is made. */
+static void *malloc_counted(size_t bytes) {
+  OWNS(NULL);
+  return memory_new(bytes, 1);
+}
+
+static void *calloc_counted(size_t n, size_t size) {
+  OWNS(NULL);
+  return memory_new(n, size);
+}
 
 static void *realloc_counted(void *p, size_t bytes) {
-  return memory_resize(p, p == NULL ? 0 : memory_size(p), bytes, 1);
+  OWNS(NULL);
+  return memory_resize(p, p == NULL ? 0 : header_of(p)->bytes, bytes, 1);
 }
 
 void memory_count_suitesparse(void) {
   SuiteSparse_config.malloc_func = malloc_counted;
-  SuiteSparse_config.calloc_func = memory_new;
+  SuiteSparse_config.calloc_func = calloc_counted;
   SuiteSparse_config.realloc_func = realloc_counted;
   SuiteSparse_config.free_func = memory_free;
 }

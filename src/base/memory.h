@@ -5,7 +5,11 @@
  * Each request checks n*size for overflow, returns zeroed memory (memory_new)
  * and never fails for n = 0: it then returns a block that can be released.
  *
- * A failed x_new may leave in *out what it has made: the owner calls x_free.
+ * A failed x_new may leave in *out what it has made: its owner frees it.
+ *
+ * OWNS(object): what is requested from here to the end of the block belongs to
+ * the object, a block itself, and goes with it, unless it is freed before. So
+ * memory_free is all that an object needs whose x_new has this line.
  */
 #pragma once
 
@@ -93,7 +97,7 @@ status memory_items(int count, const memory_item *items);
  * valid. */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
 char *memory_text(const char *text); /* copy of a string; NULL if refused */
-void memory_free(void *p);           /* accepts NULL */
+void memory_free(void *p);           /* and what it owns; accepts NULL */
 void memory_free_all(int n, void *const *p);
 void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 
@@ -106,6 +110,14 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNED __attribute__((cleanup(memory_leave)))
 /* The same by a function of a pointer to the local. */
 #define ENDS_BY(function) __attribute__((cleanup(function)))
+
+/* Of what is requested from here to the end of the block the object is the
+ * owner; NULL: none. Not behind a jump to "done:" of the same block. */
+#define OWNS(object)                                                 \
+  void *before_ __attribute__((cleanup(memory_own_again), unused)) = \
+      memory_own(object)
+void *memory_own(void *p); /* the owner before, for memory_own_again */
+void memory_own_again(void *const *before);
 
 /* From here on all blocks of SuiteSparse come from here too. Called before
  * its first use; further calls change nothing. */

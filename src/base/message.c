@@ -96,15 +96,6 @@ status message_log_new(message_log **log) {
   return OK;
 }
 
-void message_log_free(message_log *log) {
-  if (log == NULL) return;
-  for (int i = 0; i < log->n; ++i) {
-    RELEASE(log->items[i].at, log->items[i].text);
-  }
-  for (int i = 0; i < log->n_file; ++i) memory_free(log->files[i]);
-  RELEASE(log->files, log->items, log);
-}
-
 /* Place in the outermost file; NULL if the message has no file. */
 static const place *outermost(const place *p) {
   while (p != NULL && p->from != NULL) p = p->from;
@@ -184,6 +175,7 @@ void message_add(message_log *log, message_id id, const place *at,
   va_end(args);
   if (m.level == WARNING && is_there(log, &m, at, text)) return;
   ++log->count[m.level];
+  OWNS(log);
   m.text = memory_text(text);
   if (at != NULL) m.at = place_copy(at);
   if (m.text == NULL || (at != NULL && m.at == NULL) || keep(log, &m) != OK) {

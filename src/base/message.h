@@ -35,7 +35,6 @@ typedef struct message_log message_log;
 typedef enum { MESSAGE_LIST(MESSAGE_ENUM) P_END } message_id;
 
 status message_log_new(message_log **log);
-void message_log_free(message_log *log);
 /* Add one; the texts are copied. "at" may be NULL (no place). A warning that is
  * there already, with its place and text, is not added again. After 100 of a
  * severity the rest is only counted. Never fails: without memory the message is

@@ -63,7 +63,6 @@ typedef struct sparse_blocks {
 status sparse_blocks_new(int dim, int n, long entries, const int *row,
                          const int *col, const double *val,
                          sparse_blocks **out);
-void sparse_blocks_free(sparse_blocks *b); /* accepts NULL */
 /* The block (i, i), [dim*dim]. */
 static inline const double *sparse_blocks_own(const sparse_blocks *b, int i) {
   return b->val + (size_t)b->own[i] * (size_t)(b->dim * b->dim);

@@ -65,7 +65,6 @@ void timer_enter_more(stage s) {
 }
 
 void timer_leave(stage s) {
-  (void)s;
   if (inner > 0) {
     --inner;
     return;

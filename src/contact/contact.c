@@ -4,12 +4,10 @@
  * No function allocates: products with the matrix run over blocks of CHUNK
  * rows and columns kept on the stack.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 static const double ROUNDING_FLOOR = 0x1p-14; /* -, contact_scale */
 

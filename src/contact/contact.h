@@ -76,7 +76,6 @@ const double *contact_matrix(const contact_problem *cp);
 
 /* The parts of a problem that its matrix couples weakly or not at all. */
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out);
-void contact_bodies_free(contact_bodies *b); /* accepts NULL */
 
 /* y[m] = A x, or W x where that alone is known. */
 void contact_apply(const contact_problem *cp, const double *x, double *y);

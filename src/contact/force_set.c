@@ -1,11 +1,9 @@
 /* Admissible forces (force_set.h). */
 #include "contact/force_set.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   SHARPENINGS = 4,  /* of the bound of the spectrum */
@@ -14,15 +12,7 @@ enum {
 };
 static const double SURE = 2.0;   /* -, times an estimate: a bound */
 static const double SPARSE = 0.1; /* -, share of entries that are not zero */
-static const double NOTHING = 0x1p-40; /* -, diagonal over its column */
-
-void force_set_free(force_set *s) {
-  if (s == NULL) return;
-  RELEASE(s->D, s->origin, s->part, s->rim, s->load, s->defect, s->image);
-  sparse_free(&s->rows);
-  memory_free(s);
-}
-
+static const double NOTHING = 0x1p-40;
 static double largest_of_column(const contact_problem *cp, int dof) {
   const sparse_blocks *b = cp->blocks;
   const size_t d = (size_t)cp->dim, m = (size_t)cp->m;
@@ -187,6 +177,7 @@ status force_set_new(const contact_problem *cp, force_set **out) {
   OWNED double *v = NULL;
   PASS_NEW(s, 1);
   *out = s;
+  OWNS(s);
   PASS_NEW_REALS(cp->m, &s->D, &s->origin, &s->load, &s->defect);
   PASS_NEW_ALL(OF(s->part, cp->m), OF(s->rim, cp->n), OF(v, 2 * cp->m));
   scaling(cp, s->D);

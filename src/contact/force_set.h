@@ -32,7 +32,6 @@ typedef struct force_set {
   double *image;             /* [m] the same, of an operator */
 } force_set;
 status force_set_new(const contact_problem *cp, force_set **out);
-void force_set_free(force_set *s); /* accepts NULL */
 /* Parts and origins of a problem with the same W; an operator is prepared for
  * products until its rows are set otherwise. Errors: ERR_MEMORY. */
 status force_set_fit(force_set *s, const contact_problem *cp);

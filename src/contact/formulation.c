@@ -10,12 +10,12 @@
  * with the sliding limit g = g0 + B p of the total forces, as in N2. Solved in
  * these variables and added to u_old.
  */
-#include "base/memory.h"
 #include "contact/formulation.h"
+
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <string.h>
 
 /*
  * Given normal forces F at some nodes in the place of the unilateral conditions
@@ -43,14 +43,10 @@ status velocity_form_new(const contact_problem *cp, velocity_form **out) {
   int tangents = cp->n * (cp->dim - 1);
   PASS_NEW(v, 1);
   *out = v;
+  OWNS(v);
   PASS_NEW_ALL(OF(v->u_old, cp->m), OF(v->R, cp->m), OF(v->gap, cp->n),
                OF(v->side, tangents), OF(v->d, tangents), OF(v->du, cp->m));
   return OK;
-}
-
-void velocity_form_free(velocity_form *v) {
-  if (v == NULL) return;
-  RELEASE(v->u_old, v->R, v->gap, v->side, v->d, v->du, v);
 }
 
 double *velocity_form_old(velocity_form *v) { return v->u_old; }
@@ -126,12 +122,6 @@ struct given_form {
   sparse_rows B;     /* borrows start and col of the problem's */
 };
 
-void given_form_free(given_form *g) {
-  if (g == NULL) return;
-  RELEASE(g->node, g->A, g->L, g->Y, g->f, g->gap, g->met, g->y, g->force,
-          g->g0, g->mu, g->is, g);
-}
-
 static status new_arrays(const contact_problem *cp, given_form *g) {
   size_t n = (size_t)g->n, m = (size_t)cp->m;
   PASS_NEW_ALL(OF(g->node, n), OF(g->A, m * m), OF(g->L, n * n),
@@ -190,6 +180,7 @@ status given_form_new(const contact_problem *cp, int n, const int *node,
   given_form *g;
   PASS_NEW(g, 1);
   *out = g;
+  OWNS(g);
   g->n = n;
   g->m = cp->m;
   g->dim = cp->dim;
@@ -207,6 +198,7 @@ status given_form_new(const contact_problem *cp, int n, const int *node,
  * left. */
 static status set_limit(given_form *g, const contact_problem *cp,
                         contact_problem *out) {
+  OWNS(g);
   const sparse_rows *B = cp->B;
   int left = 0;
   if (B == NULL) return OK;

@@ -21,7 +21,6 @@ void velocity_form_set(velocity_form *v, const contact_problem *cp,
 /* u[m] = u_old + du; cp as given to velocity_form_set. */
 void velocity_form_apply(const velocity_form *v, const contact_problem *cp,
                          double *u);
-void velocity_form_free(velocity_form *v); /* accepts NULL */
 
 typedef struct given_form given_form;
 /*
@@ -49,4 +48,3 @@ status given_form_set(given_form *g, const contact_problem *cp,
 void given_form_apply(given_form *g, contact_problem *cp, double *u, double *r);
 /* To a motion u[m] without force: the normal displacements of the nodes. */
 void given_form_move(given_form *g, double *u);
-void given_form_free(given_form *g); /* accepts NULL */

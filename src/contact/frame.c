@@ -3,9 +3,7 @@
  */
 #include "contact/parts.h"
 
-#include "base/vector.h"
-
-#include <math.h>
+#include "base/base.h"
 
 /* Sine of the angle below which normals count as dependent: the condition of
  * the oblique frame is its inverse. */

@@ -3,14 +3,9 @@
  */
 #include "contact/friction.h"
 
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "contact/average/average.h"
 
-#include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 /* ---- * No friction: the sliding limit is zero --------------------------- */
@@ -146,7 +141,6 @@ static status friction_pressure_limit(const friction_card *card,
 static status no_limit(const friction_card *card, const contact_surface *s,
                        int n_node, const int *node, double t,
                        friction_limit *out) {
-  (void)card, (void)s, (void)n_node, (void)node, (void)t, (void)out;
   return OK;
 }
 

@@ -8,9 +8,7 @@
  */
 #include "contact/obstacle.h"
 
-#include "base/vector.h"
-
-#include <math.h>
+#include "base/base.h"
 
 /* Sine of the angle between line and plane (or line and axis) below which the
  * line does not meet the obstacle. */

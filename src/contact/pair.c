@@ -1,14 +1,7 @@
 /* Pairs of two surfaces of the mesh in a contact surface: what their nodes are
  * relative to. */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "contact/parts.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- couplings ---------------------------------------------------------- */
 
@@ -140,7 +133,7 @@ status surfaces_couple(const surface_input *in, const double *x,
                            .slave_normal = (how & COUPLE_SLAVE_NORMAL) != 0,
                            .flat = (how & COUPLE_FLAT) != 0,
                            .dropped = dropped};
-  mortar_free(*out);
+  memory_free(*out);
   *out = NULL;
   return mortar_couple(&of, out);
 }
@@ -273,7 +266,7 @@ status pairs_couple(const surface_input *in, message_log *log) {
 
 void pairs_release(const surface_input *in) {
   for (int p = 0; p < in->n_pair; ++p) {
-    mortar_free(in->pairs[p].coupled);
+    memory_free(in->pairs[p].coupled);
     in->pairs[p].coupled = NULL;
   }
 }

@@ -1,9 +1,7 @@
 /* Active contact nodes (reach.h). */
 #include "contact/reach.h"
 
-#include "base/memory.h"
-
-#include <string.h>
+#include "base/base.h"
 
 enum { MOST_PASSES = 2 };
 static const double LONGER = 4.0; /* -, after a distance that was too short */

@@ -6,25 +6,16 @@
  * Products with the matrix run over blocks of CHUNK rows, so that nothing but
  * the search of the bodies allocates.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/contact.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
-#include <float.h>
-#include <math.h>
-#include <string.h>
 
 /* ---- parts that the matrix of the problem does not join (contact.h) ------ */
 
-static const double JOINED = 0x1p-30; /* -, entry over those of the diagonal */
-
-void contact_bodies_free(contact_bodies *b) {
-  if (b == NULL) return;
-  RELEASE(b->of, b->size, b);
-}
-
-/* Root of the largest diagonal entry of a node. */
+static const double JOINED =
+    0x1p-30; /* Root of the largest diagonal entry of a node. */
 static double root_of(const contact_problem *cp, int node_id) {
   double most = 0.0;
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i)
@@ -98,6 +89,7 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   OWNED int *list = NULL;
   PASS_NEW(b, 1);
   *out = b;
+  OWNS(b);
   PASS_NEW(b->of, cp->n);
   if (cp->op != NULL) {
     b->n = cp->op->n_body;
@@ -388,7 +380,7 @@ double contact_residual(const contact_problem *cp, const double *u,
   if (cp->bodies == NULL && contact_bodies_new(cp, &found) == OK)
     apart.bodies = found;
   double residual = contact_residual_at(&apart, contact_scale(cp), u, r);
-  contact_bodies_free(found);
+  memory_free(found);
   return residual;
 }
 

@@ -8,14 +8,8 @@
  * the rows of one frame (a corner on two obstacles).
  */
 
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "contact/parts.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
  * the normals of the faces around a node over their area. */
@@ -574,6 +568,7 @@ static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
 
 static status set_node(builder *b, contact_surface *s, int n_kept,
                        const candidate *const *kept) {
+  OWNS(s);
   const mesh *m = b->in->mesh;
   int dim = b->dim, i = s->n++;
   const candidate *c = kept[0];
@@ -676,6 +671,7 @@ static status surface_new(int dim, int n, int pairs, contact_surface **out) {
   contact_surface *s;
   PASS_NEW(s, 1);
   *out = s;
+  OWNS(s);
   s->dim = dim;
   PASS_NEW_ALL(OF(s->node_id, n), OF(s->node_no, n), OF(s->contact_id, n),
                OF(s->side_id, n * (dim - 1)), OF(s->side_area, n * (dim - 1)),
@@ -714,7 +710,7 @@ status surface_build(const surface_input *in, message_log *log,
   *out = s;
   s = NULL;
 done:
-  surface_free(s);
+  memory_free(s);
   RELEASE(b.list, b.first, b.tallies, b.rows);
   return st;
 }
@@ -780,12 +776,4 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
   for (int i = 0; i < s->n; ++i)
     for (int k = 0; k < s->dim; ++k)
       row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
-}
-
-void surface_free(contact_surface *s) {
-  if (s == NULL) return;
-  if (s->master != NULL) links_release(s->master);
-  RELEASE(s->master, s->apart, s->share, s->covered, s->lever, s->node_id,
-          s->node_no, s->contact_id, s->side_id, s->x, s->area, s->side_area,
-          s->frame, s->basis, s->gap0, s->held, s);
 }

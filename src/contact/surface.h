@@ -162,4 +162,3 @@ static inline int surface_contact_of(const contact_surface *s, int i, int a) {
 int surface_has_held(const contact_surface *s);
 /* 1 if node i touches a second obstacle: it has no friction. */
 int surface_is_corner(const contact_surface *s, int i);
-void surface_free(contact_surface *s); /* accepts NULL */

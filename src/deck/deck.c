@@ -1,11 +1,9 @@
 /* The deck reader: cards, their parameters and records; the language cards. */
 #include "deck/deck.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/option.h"
 #include "deck/reader.h"
-
-#include <string.h>
 
 /* How data lines are read. */
 enum {
@@ -153,7 +151,6 @@ static const parameter *needed(reader *r, const card *c, const char *name) {
 }
 
 static status use_parameter(reader *r, const card *c) {
-  (void)c;
   r->mode = DATA_DEFINITION;
   return OK;
 }
@@ -182,7 +179,7 @@ static void report_waiting(reader *r) {
 static status use_legacy(reader *r, const card *c) {
   const parameter *p = needed(r, c, "FORMAT");
   report_waiting(r);
-  format_free(r->waiting_format);
+  memory_free(r->waiting_format);
   r->waiting_format = NULL;
   r->mode = DATA_REFUSED;
   if (p == NULL) return OK;
@@ -224,7 +221,7 @@ static const language_card *find_language(const char *name) {
 static status add_card(reader *r, card *c) {
   deck *d = r->d;
   PASS_GROW(d->cards, d->n_card, d->own->card_capacity);
-  format_free(r->format);
+  memory_free(r->format);
   r->format = r->waiting_format;
   r->waiting_format = NULL;
   c->format = r->format != NULL ? r->waiting_text : NULL;
@@ -399,8 +396,8 @@ static void reader_free(reader *r) {
   while (r->top != NULL) source_pop(&r->top);
   logical_free(&r->line);
   memory_free(r->scratch.text);
-  format_free(r->format);
-  format_free(r->waiting_format);
+  memory_free(r->format);
+  memory_free(r->waiting_format);
 }
 
 status deck_read(const char *file, int n_define, const char *const *defines,
@@ -408,7 +405,8 @@ status deck_read(const char *file, int n_define, const char *const *defines,
   status st = OK;
   reader r = {.log = log, .mode = DATA_EARLY};
   *out = NULL;
-  NEW(r.d, 1);
+  PASS_NEW(r.d, 1);
+  OWNS(r.d);
   NEW(r.d->own, 1);
   TRY(source_open(r.d, log, file, NULL, &r.top));
   if (r.top == NULL) FAIL(ERR_FILE, "cannot read %s", file);
@@ -419,6 +417,6 @@ status deck_read(const char *file, int n_define, const char *const *defines,
   r.d = NULL;
 done:
   reader_free(&r);
-  deck_free(r.d);
+  memory_free(r.d);
   return st;
 }

@@ -23,7 +23,7 @@
  *   with its last filled field; blanks inside a number are an error; a real
  *   without a point gets that of Fw.d. Text after the last column: warning.
  *
- * All strings belong to the deck and are valid until deck_free.
+ * All strings belong to the deck and are valid until memory_free.
  */
 #pragma once
 
@@ -89,7 +89,6 @@ typedef struct deck {
  * message in the log too). The status is OK with grammar errors. */
 status deck_read(const char *file, int n_define, const char *const *defines,
                  message_log *log, deck **out);
-void deck_free(deck *d);
 
 const parameter *card_parameter(const card *c, const char *name); /* or NULL */
 /* Value field as number or expression: a quoted field is compiled with the

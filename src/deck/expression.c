@@ -6,13 +6,8 @@
  */
 #include "deck/expression.h"
 
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "base/option.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { STACK = 64, WAITING = 128, NAME_SIZE = 64 };
 
@@ -432,13 +427,14 @@ status expression_compile_in(const char *text, const char *const names[4],
       .text = text, .p = text, .names = names, .symbol = symbol, .ctx = ctx};
   *out = NULL;
   *column = 0;
-  NEW(c.e, 1);
+  PASS_NEW(c.e, 1);
+  OWNS(c.e);
   TRY(compile(&c));
   *out = c.e;
   c.e = NULL;
 done:
   *column = c.column;
-  expression_free(c.e);
+  memory_free(c.e);
   return st;
 }
 
@@ -461,11 +457,6 @@ double expression_value(const expression *e, const double x[3], double t) {
 }
 
 unsigned expression_variables(const expression *e) { return e->variables; }
-
-void expression_free(expression *e) {
-  if (e == NULL) return;
-  RELEASE(e->code, e);
-}
 
 /* ---- quantities: number or expression, times a table --------------------- */
 

@@ -30,7 +30,6 @@ status expression_compile_in(const char *text, const char *const names[4],
 double expression_value(const expression *e, const double x[3], double t);
 /* Bits 1 x, 2 y, 4 z, 8 t: the variables that occur. */
 unsigned expression_variables(const expression *e);
-void expression_free(expression *e);
 
 /*
  * Values of the deck that may vary: a number or an expression of x y z t, times

@@ -3,11 +3,8 @@
  * into the fields of a record. Groups are unrolled with a stack of their own;
  * each repetition of a group must use columns, so that the work is bounded.
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "deck/reader.h"
-
-#include <string.h>
 
 enum { GROUP_MAX = 8, COUNT_MAX = 1000000 };
 
@@ -34,11 +31,6 @@ typedef struct unroller {
   int n_group;
   group groups[GROUP_MAX];
 } unroller;
-
-void format_free(format *f) {
-  if (f == NULL) return;
-  RELEASE(f->fields, f);
-}
 
 static void skip(unroller *u) {
   while (is_blank(*u->p)) ++u->p;
@@ -151,7 +143,8 @@ status format_read(const char *text, format **out) {
   status st = OK;
   unroller u = {.text = text, .p = text};
   *out = NULL;
-  NEW(u.f, 1);
+  PASS_NEW(u.f, 1);
+  OWNS(u.f);
   skip(&u);
   if (*u.p != '(') FAIL(ERR_DECK, "'(' expected at the start");
   TRY(open_group(&u, 1));
@@ -161,7 +154,7 @@ status format_read(const char *text, format **out) {
   *out = u.f;
   u.f = NULL;
 done:
-  format_free(u.f);
+  memory_free(u.f);
   return st;
 }
 

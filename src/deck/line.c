@@ -3,12 +3,11 @@
  * skipped. Logical lines: comments cut, lines that end in a comma joined with
  * the next, cut into pieces at commas.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/system/input.h"
 #include "deck/reader.h"
 
 #include <errno.h>
-#include <string.h>
 #include <sys/stat.h>
 
 enum { BLOCK = 1 << 16 };
@@ -195,6 +194,7 @@ static status note_file(deck *d, const char *file) {
 status deck_input(deck *d, const char *path) {
   for (int i = 0; i < d->n_input; ++i)
     if (strcmp(d->inputs[i], path) == 0) return OK;
+  OWNS(d);
   PASS_GROW(d->inputs, d->n_input, d->own->input_capacity);
   d->inputs[d->n_input++] = path;
   return OK;

@@ -31,11 +31,9 @@ struct deck_text {
   int card_capacity, symbol_capacity, file_capacity, input_capacity;
   int n_slot; /* size of the hash table: a power of two, or 0 */
   int *slot;  /* [n_slot] symbol number from 1; 0: free */
-  int n_expression, expression_capacity;
-  expression **expressions;
 };
 
-/* Zeroed memory that is valid until deck_free; NULL if refused. */
+/* Zeroed memory that is valid until memory_free; NULL if refused. */
 void *store_new(deck *d, size_t n, size_t size);
 /* Copy of n bytes, terminated by a NUL; NULL if refused. */
 char *store_text(deck *d, const char *text, size_t n);
@@ -157,7 +155,6 @@ typedef struct format format;
 
 /* ERR_DECK: the record says what is wrong. */
 status format_read(const char *text, format **out);
-void format_free(format *f);
 /* Cut a physical line into a record. */
 status format_record(reader *r, const format *f, const physical *line,
                      record *out);

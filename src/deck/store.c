@@ -2,11 +2,8 @@
  * The memory of a deck: chunks that are never moved, so that what points into
  * them stays valid, and small helpers for texts.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "deck/reader.h"
-
-#include <stdint.h>
-#include <string.h>
 
 enum { CHUNK_BYTES = 1 << 16, ALIGN = 16 };
 
@@ -17,6 +14,7 @@ struct chunk {
 };
 
 static chunk *new_chunk(deck *d, size_t size) {
+  OWNS(d);
   chunk *c = memory_new(1, sizeof *c);
   if (c == NULL) return NULL;
   c->size = size > CHUNK_BYTES ? size : CHUNK_BYTES;
@@ -102,28 +100,6 @@ char *store_name(deck *d, const char *text, size_t n) {
   return name;
 }
 
-static void free_chunks(chunk *c) {
-  while (c != NULL) {
-    chunk *next = c->next;
-    RELEASE(c->bytes, c);
-    c = next;
-  }
-}
-
-void deck_free(deck *d) {
-  if (d == NULL) return;
-  for (int i = 0; i < d->n_card; ++i) memory_free(d->cards[i].records);
-  RELEASE(d->cards, d->symbols, (void *)d->files, (void *)d->inputs);
-  if (d->own != NULL) {
-    for (int i = 0; i < d->own->n_expression; ++i)
-      expression_free(d->own->expressions[i]);
-    RELEASE(d->own->expressions, d->own->slot);
-    free_chunks(d->own->last);
-    memory_free(d->own);
-  }
-  memory_free(d);
-}
-
 static unsigned hash_name(const char *name, size_t n) {
   unsigned h = 2166136261u;
   for (size_t i = 0; i < n; ++i)
@@ -175,6 +151,7 @@ static status grow_table(deck *d) {
 }
 
 status symbol_add(deck *d, const char *name, size_t n, symbol **out) {
+  OWNS(d);
   PASS_GROW(d->symbols, d->n_symbol, d->own->symbol_capacity);
   PASS(grow_table(d));
   symbol *s = &d->symbols[d->n_symbol];

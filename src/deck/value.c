@@ -2,13 +2,9 @@
  * Names of *PARAMETER and -D: definition, and replacement of <NAME>. Fields of
  * a line, and their values: numbers, quantities, names of files.
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "base/option.h"
 #include "deck/reader.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { ADVICE_MAX = 2000 }; /* names searched for the nearest */
 
@@ -150,7 +146,7 @@ static status evaluate(const deck *d, const char *text, evaluated *what,
   const int varies = expression_variables(e) != 0;
   *value = varies ? 0.0 : expression_value(e, origin, 0);
   *what = varies ? VARIES : isfinite(*value) ? CONSTANT : NOT_FINITE;
-  expression_free(e);
+  memory_free(e);
   return OK;
 }
 
@@ -318,12 +314,10 @@ int deck_int(const field *f, message_log *log, int *out) {
 static status compile_owned(deck *d, const char *text,
                             const char *const names[4], const expression **out,
                             int *column) {
-  struct deck_text *own = d->own;
   expression *e = NULL;
   *column = -1;
-  PASS_GROW(own->expressions, own->n_expression, own->expression_capacity);
+  OWNS(d);
   PASS(expression_compile_in(text, names, deck_symbol, d, &e, column));
-  own->expressions[own->n_expression++] = e;
   *out = e;
   return OK;
 }

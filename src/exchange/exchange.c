@@ -1,15 +1,12 @@
 /* Choice of the reader, and its failure as a message of the deck. */
-#include "base/file.h"
 #include "exchange/exchange.h"
 
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
+#include "base/file.h"
 #include "base/system/input.h"
-#include "base/text.h"
 #include "exchange/parts.h"
 
 #include <errno.h>
-#include <string.h>
 
 /*
  * A linear complementarity problem as text: n, the matrix M by rows, q. Numbers
@@ -156,7 +153,8 @@ status exchange_read(const char *path, exchange_type type, const place *at,
   status st = OK;
   exchange_problem *p = NULL;
   *out = NULL;
-  NEW(p, 1);
+  PASS_NEW(p, 1);
+  OWNS(p);
   TRY(type_of(path, &type));
   if (type == EXCHANGE_FCLIB)
     TRY(fclib_read(path, p));
@@ -166,13 +164,6 @@ status exchange_read(const char *path, exchange_type type, const place *at,
 done:
   if (st == ERR_FILE) message_add(log, P5001, at, "%s", status_message());
   if (st == ERR_DECK) message_add(log, P5002, at, "%s", status_message());
-  if (st != OK) exchange_free(p);
+  if (st != OK) memory_free(p);
   return st;
-}
-
-void exchange_free(exchange_problem *p) {
-  if (p == NULL) return;
-  sparse_blocks_free(p->blocks);
-  RELEASE(p->matrix, p->load, p->gap, p->ut0, p->g0, p->B.start, p->B.col,
-          p->B.val, p);
 }

@@ -51,4 +51,3 @@ typedef struct exchange_problem {
  */
 status exchange_read(const char *path, exchange_type type, const place *at,
                      message_log *log, exchange_problem **out);
-void exchange_free(exchange_problem *p); /* accepts NULL */

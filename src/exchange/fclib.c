@@ -2,11 +2,9 @@
  * Contact problems in the layout of FCLIB: signs turned to those of contact.h
  * (exchange.h), everything checked.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "exchange/parts.h"
 
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 #define LOCAL "/fclib_local"
@@ -120,7 +118,7 @@ static status take_blocks(exchange_problem *p, const triplets *W) {
   PASS(sparse_blocks_new(p->dim, p->n, W->n, W->row, W->column, W->value,
                          &p->blocks));
   if (are_few(p->blocks->start[p->n], p->n)) return OK;
-  sparse_blocks_free(p->blocks);
+  memory_free(p->blocks);
   p->blocks = NULL;
   return OK;
 }

@@ -7,15 +7,13 @@
  * positive definite or not symmetric gets a dense LU factor, if it is small
  * enough.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "exchange/parts.h"
 #include "mesh/mesh.h"
 
 #include <cblas.h>
 #include <cholmod.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /* ---- a global problem whose M is symmetric and singular: bodies that contact
  * alone holds. Springs s between the contact points and their obstacles hold

@@ -5,11 +5,8 @@
  * nz = -2   by rows: p[m+1] starts of the rows, i = columns
  * Indices count from 0.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "exchange/parts.h"
-
-#include <stdio.h>
-#include <string.h>
 
 enum { NAME = 240, BY_COLUMN = -1, BY_ROW = -2 };
 

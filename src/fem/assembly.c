@@ -2,12 +2,9 @@
  * Assembly in three passes without triplets: elements round the nodes, the
  * lower node graph, the values. Cost and memory are linear in the elements.
  */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "fem/element.h"
 #include "fem/stiffness.h"
-
-#include <string.h>
 
 /* The lower node graph, grown column by column. */
 typedef struct node_graph {
@@ -368,8 +365,10 @@ static status list_coupling(stiffness *k) {
 status stiffness_assemble(const domain *d, stiffness **out) {
   status st = OK;
   stiffness *k = NULL;
+  *out = NULL;
   TIMED(STAGE_ASSEMBLY);
-  NEW(k, 1);
+  PASS_NEW(k, 1);
+  OWNS(k);
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;
   k->n_node = d->mesh->n_node;
@@ -382,16 +381,9 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   TRY(list_coupling(k));
 done:
   if (st != OK) {
-    stiffness_free(k);
+    memory_free(k);
     k = NULL;
   }
   *out = k;
   return st;
-}
-
-void stiffness_free(stiffness *k) {
-  if (k == NULL) return;
-  coupling_free(k->moved);
-  RELEASE(k->start, k->row, k->block, k->free, k->contact, k->first_row,
-          k->coupling, k->coupling_column, k);
 }

@@ -6,13 +6,11 @@
  */
 #include "fem/fem.h"
 
+#include "base/base.h"
 #include "base/system/limits.h"
 
 #include <cblas.h>
 #include <dlfcn.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>

@@ -4,19 +4,14 @@
  * contact unknown prescribed by *BOUNDARY has an uncoupled row in A, with f_c
  * such that r = 0 gives the prescribed value.
  */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "fem/element.h"
 #include "fem/factor.h"
 #include "fem/operator.h"
 #include "fem/rigid.h"
 
 #include <cblas.h>
-#include <float.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* The condition number of a plain mesh is a few times to 200 times its number
  * of unknowns. Beyond this multiple, digits are lost by contrast, slivers or
@@ -286,8 +281,10 @@ static status make_operator(condensed *c) {
 status condense(const stiffness *k, const domain *d, condensed **out) {
   status st = OK;
   condensed *c = NULL;
+  *out = NULL;
   memory_count_suitesparse();
-  NEW(c, 1);
+  PASS_NEW(c, 1);
+  OWNS(c);
   NEW(c->cm, 1);
   cholmod_l_start(c->cm);
   c->cm->print = 0;
@@ -322,9 +319,7 @@ void condensed_free(condensed *c) {
     body_factor_release(&c->body[q], c->cm);
   sparse_operator_free(c->sparse);
   if (c->cm != NULL) cholmod_l_finish(c->cm);
-  RELEASE(c->cm, c->A, c->body);
-  rigid_release(&c->rigid);
-  RELEASE(c->pinned, c->load, c->prescribed, c->F, c->rest, c);
+  memory_free(c);
 }
 
 /* The local components of the prescribed displacements: prescribed[]. */
@@ -448,6 +443,7 @@ static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;
   PASS_NEW_ALL(OF(u, n), OF(zero, c->m));
+  OWNS(c);
   if (c->rest == NULL) PASS_NEW(c->rest, n);
   if (c->F == NULL) PASS_NEW(c->F, n);
   memcpy(c->F, F, n * sizeof *F);

@@ -1,8 +1,6 @@
 #include "fem/stiffness.h"
 
-#include "base/memory.h"
-
-#include <string.h>
+#include "base/base.h"
 
 /* What a node that moves with others has: its row of links, its frame. */
 typedef struct source {
@@ -158,17 +156,13 @@ status coupling_new(const domain *d, coupling **out) {
     return OK;
   PASS_NEW_ALL(OF(of, n_node), OF(at, n_node), OF(*out, 1));
   coupling *c = *out;
+  OWNS(c);
   const int n = find_sources(d, of);
   PASS_NEW_ALL(OF(c->of, n_node), OF(c->node, n), OF(c->start, n + 1));
   c->dim = d->mesh->dim;
   c->n_node = n_node;
   for (int i = 0; i < n_node; ++i) c->of[i] = -1;
   return add_rows(d, &(builder){.c = c, .of = of, .place = at}, n);
-}
-
-void coupling_free(coupling *c) {
-  if (c == NULL) return;
-  RELEASE(c->of, c->node, c->start, c->part, c);
 }
 
 /* A row is taken before what it gets of later ones, which have it in theirs. */

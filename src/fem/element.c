@@ -6,12 +6,8 @@
  */
 #include "fem/element.h"
 
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "material/voigt.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct element_shape {
   double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m */

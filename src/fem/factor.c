@@ -9,13 +9,10 @@
  */
 #include "fem/factor.h"
 
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "fem/supernodal/supernodal.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { MOST_COLUMNS = 1024 }; /* of a supernode: with less the BLAS is slower */
 

@@ -73,10 +73,9 @@ double element_weight(const domain *d, int elem_id);
 typedef struct stiffness stiffness; /* sparse K of the free unknowns */
 typedef struct condensed condensed; /* factor and condensed matrix */
 
-/* The stiffness of the domain; *out is new (stiffness_free), NULL on failure.
+/* The stiffness of the domain; *out is new (memory_free), NULL on failure.
  * ERR_MESH: an element beyond the axis or without volume. ERR_MEMORY. */
 status stiffness_assemble(const domain *d, stiffness **out);
-void stiffness_free(stiffness *k); /* accepts NULL */
 
 /* Order of all nodes with unknowns, contact or not; x[dim*n_node]. o->node is
  * new (memory_free). ERR_MEMORY. */

@@ -1,11 +1,7 @@
 /* The condensed stiffness as an operator (operator.h). */
 #include "fem/operator.h"
 
-#include "base/memory.h"
-#include "base/timer.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double NO_PIVOT = 0x1p-42; /* -, of the diagonal: singular */
 
@@ -672,6 +668,7 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
   sparse_operator *o = NULL;
   PASS_NEW(o, 1);
   *out = o;
+  OWNS(o);
   o->k = k;
   o->rigid = d->rigid;
   o->cm = d->cm;
@@ -703,13 +700,6 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
 
 void sparse_operator_free(sparse_operator *o) {
   if (o == NULL) return;
-  supernodal_free(o->interior);
-  supernodal_free(o->s);
   body_factor_release(&o->f, o->cm);
-  RELEASE(o->columns.start, o->columns.item, o->touched.start, o->touched.item,
-          o->part.all.list, o->part.contact.list, o->part.response.list,
-          o->part.mark, o->part.touches, o->part.node, o->x, o->inner, o->own,
-          o->rows.known, o->rows.added, o->inside, o->work.z);
-  RELEASE(o->number, o->unknown, o->held, o->work.v, o->work.y, o->diagonal,
-          o->room, o->body, o);
+  memory_free(o);
 }

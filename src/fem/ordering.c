@@ -8,10 +8,7 @@
  */
 #include "fem/ordering.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { LEAF = 24, LARGE_BODY = 200000, LARGE_PARTS = 16 };
 

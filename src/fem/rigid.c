@@ -7,13 +7,10 @@
  */
 #include "fem/rigid.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/factor.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* Motions that move the contact unknowns less than this part of what they
  * share with the motions before them are left out. */
@@ -47,13 +44,6 @@ double component_term(const component *x, int t, int *node) {
   const size_t e = l->start[x->row] + (size_t)t - 1;
   *node = l->master[e];
   return -l->part[(size_t)l->dim * e + (size_t)x->c];
-}
-
-void rigid_release(rigid_motions *r) {
-  for (int t = 0; t < r->n_set; ++t)
-    RELEASE(r->set[t].Y, r->set[t].owner, r->set[t].node, r->set[t].load);
-  RELEASE(r->at, r->body, r->column, r->set, r->Q);
-  *r = (rigid_motions){0};
 }
 
 /* Is component c of node i unknown? Prescribed ones do not move. */
@@ -154,7 +144,7 @@ static void contact_motions(const stiffness *k, const domain *d,
   }
 }
 
-static double dot(int n, const double *a, const double *b) {
+static double inner(int n, const double *a, const double *b) {
   return cblas_ddot(n, a, 1, b, 1);
 }
 
@@ -167,13 +157,13 @@ static void gram_schmidt(const rigid_motions *r, rigid_set *s) {
     double *q = Q + m * (size_t)kept, *y = s->Y + n * (size_t)kept;
     memmove(q, Q + m * (size_t)j, m * sizeof *q);
     memmove(y, s->Y + n * (size_t)j, n * sizeof *y);
-    const double before = dot(r->m, q, q);
+    const double before = inner(r->m, q, q);
     for (int i = 0; i < kept; ++i) {
-      const double part = dot(r->m, Q + m * (size_t)i, q);
+      const double part = inner(r->m, Q + m * (size_t)i, q);
       cblas_daxpy(r->m, -part, Q + m * (size_t)i, 1, q, 1);
       cblas_daxpy(s->n, -part, s->Y + n * (size_t)i, 1, y, 1);
     }
-    const double norm = sqrt(dot(r->m, q, q));
+    const double norm = sqrt(inner(r->m, q, q));
     if (!(norm > least_part * sqrt(before))) continue;
     cblas_dscal(r->m, 1 / norm, q, 1);
     cblas_dscal(s->n, 1 / norm, y, 1);
@@ -312,8 +302,9 @@ void rigid_balance(const rigid_motions *r, double *f_c) {
     const rigid_set *s = &r->set[t];
     const double *Q = r->Q + (size_t)r->m * (size_t)s->first;
     for (int j = 0; j < s->k; ++j, Q += r->m) {
-      const double given = dot(s->n, s->Y + (size_t)s->n * (size_t)j, s->load);
-      cblas_daxpy(r->m, given - dot(r->m, Q, f_c), Q, 1, f_c, 1);
+      const double given =
+          inner(s->n, s->Y + (size_t)s->n * (size_t)j, s->load);
+      cblas_daxpy(r->m, given - inner(r->m, Q, f_c), Q, 1, f_c, 1);
     }
   }
 }

@@ -72,7 +72,6 @@ typedef struct rigid_motions {
 status support_motions(const domain *d, int *n, free_motion **list,
                        rigid_motions *r);
 
-void rigid_release(rigid_motions *r); /* accepts an all-zero object */
 /* Choose the motions Y so that their R_c is orthonormal, and store it. */
 status rigid_orthonormalise(const stiffness *k, const domain *d,
                             rigid_motions *r);

@@ -29,10 +29,9 @@ typedef struct coupling {
   coupled_part *part; /* [start[n]] other nodes, each once a row */
 } coupling;
 
-/* *out is new (coupling_free), NULL if no node moves with others. ERR_MESH:
+/* *out is new (memory_free), NULL if no node moves with others. ERR_MESH:
  * nodes that move with each other in a circle. */
 status coupling_new(const domain *d, coupling **out);
-void coupling_free(coupling *c); /* accepts NULL */
 /* F <- T'F, [dim*n_node]: what acts on a node acts on its masters too. */
 void coupling_load(const coupling *c, double *F);
 /* v <- T v, [dim*n_node]. */

@@ -10,14 +10,12 @@
  *
  * Bodies that supports and ties hold are at rest and leave the sets.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/pieces/pieces.h"
 #include "fem/rigid.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /* Lever arms below this part of the body's size give no support. */
 static const double rank_limit = 1e-8;

@@ -11,8 +11,7 @@
  */
 #include "fracture/parts.h"
 
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double two_pi = 6.283185307179586476925286766559;
 

@@ -1,11 +1,8 @@
 /* Points and factors: what the caller sees. */
 #include "fracture/fracture.h"
 
+#include "base/base.h"
 #include "fracture/parts.h"
-
-#include "base/memory.h"
-
-#include <math.h>
 
 static status prepare(fracture *f) {
   const mesh *m = f->body.mesh;
@@ -20,14 +17,9 @@ static status prepare(fracture *f) {
 status fracture_new(const fracture_body *body, fracture **out) {
   PASS_NEW(*out, 1);
   fracture *f = *out;
+  OWNS(f);
   f->body = *body;
   return prepare(f);
-}
-
-void fracture_free(fracture *f) {
-  if (f == NULL) return;
-  RELEASE(f->point, f->start, f->elem, f->elem_seen, f->node_seen, f->elem_list,
-          f->node_list, f);
 }
 
 int fracture_count(const fracture *f) { return f->n; }

@@ -83,7 +83,6 @@ typedef struct fracture fracture;
 /* Points in the order of crack->front_node, and their domains. *out is new.
  * ERR_MEMORY. */
 status fracture_new(const fracture_body *body, fracture **out);
-void fracture_free(fracture *f); /* accepts NULL */
 int fracture_count(const fracture *f);
 const fracture_point *fracture_points(const fracture *f); /* borrowed */
 /* out[fracture_count]. Cost: that of the elements in the domains. */

@@ -3,10 +3,7 @@
  */
 #include "fracture/parts.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 /* Size of the domains over the radius. In 3-D a domain is a tube, whose radius
  * and half length are the sides of a right angle. */

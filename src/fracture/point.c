@@ -5,11 +5,7 @@
  */
 #include "fracture/parts.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 void place_of(const mesh *m, int node, double x[3]) {
   x[2] = 0;

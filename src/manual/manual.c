@@ -4,8 +4,8 @@
  */
 #include "manual/manual.h"
 
+#include "base/base.h"
 #include "base/option.h"
-#include "base/text.h"
 #include "model/keyword/keyword.h"
 #include "output/columns/columns.h"
 #include "run/run.h"
@@ -13,8 +13,6 @@
 #include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -27,7 +25,6 @@ static int is_main_deck(const embedded_file *f) {
 }
 
 const char *example_name(const void *ctx, int i) {
-  (void)ctx;
   for (const embedded_file *f = embedded_files; f->folder != NULL; ++f)
     if (is_main_deck(f) && i-- == 0) return f->folder;
   return NULL;
@@ -214,7 +211,6 @@ static const struct {
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
 const char *list_kind(const void *ctx, int i) {
-  (void)ctx;
   return i < KINDS ? kinds[i].name : NULL;
 }
 
@@ -314,7 +310,6 @@ static const struct {
 enum { CHAPTERS = sizeof chapters / sizeof *chapters };
 
 const char *manual_chapter(const void *ctx, int i) {
-  (void)ctx;
   return i < CHAPTERS ? chapters[i].name : NULL;
 }
 

@@ -7,13 +7,8 @@
  */
 #include "material/material.h"
 
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 #include "deck/deck.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /*
  * Constants of *ELASTIC over the temperature: read from the data lines, linear

@@ -3,19 +3,15 @@
  * is read here; then the steps from the raw mesh to the mesh, and how their
  * messages are made.
  */
-#include "base/file.h"
 #include "mesh/build.h"
-#include "mesh/refine/refine.h"
 
-#include "base/memory.h"
+#include "base/base.h"
+#include "base/file.h"
 #include "base/system/input.h"
+#include "mesh/refine/refine.h"
 #include "mesh/sort.h"
-#include "base/text.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 /* ---- groups: names and dimension before, contents after the rest ---- */
@@ -216,7 +212,9 @@ status build_mesh(const raw_mesh *raw, double scale, const place *at,
   builder b = {.raw = raw, .scale = scale, .at = at, .log = log};
   b.errors = message_count(log, ERROR);
   *out = NULL;
-  NEW_ALL(OF(b.m, 1), OF(b.first, raw->n_block));
+  PASS_NEW(b.m, 1);
+  OWNS(b.m);
+  NEW(b.first, raw->n_block);
   TRY(groups_check(&b));
   tell_warnings(&b);
   TRY(elements_gather(&b));
@@ -229,7 +227,7 @@ status build_mesh(const raw_mesh *raw, double scale, const place *at,
 done:
   release(&b);
   if (st != OK)
-    mesh_free(b.m);
+    memory_free(b.m);
   else
     *out = b.m;
   return st;
@@ -371,7 +369,7 @@ int mesh_is_program(const char *file) {
 status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out) {
   char head[HEAD_SIZE + 1];
-  ENDS_BY(raw_free) raw_mesh *raw = NULL;
+  OWNED raw_mesh *raw = NULL;
   *out = NULL;
   PASS(read_head(source->file, head, at, log));
   if (mesh_is_program(source->file))

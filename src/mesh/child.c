@@ -10,22 +10,18 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "mesh/raw.h"
 
-#include "base/memory.h"
-#include "mesh/msh/geo.h"
+#include "base/base.h"
 #include "base/system/limits.h"
+#include "mesh/msh/geo.h"
 
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <gmshc.h>
-#include <limits.h>
 #include <locale.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>

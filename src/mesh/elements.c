@@ -1,12 +1,7 @@
 /* Elements: kinds, corners, orientation, order, and those listed twice. */
+#include "base/base.h"
 #include "mesh/build.h"
 #include "mesh/sort.h"
-
-#include "base/memory.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
 
 /* An element whose measure is below this part of (longest edge)^dim is flat:
  * far below any usable sliver, far above rounding. */

@@ -2,12 +2,9 @@
  * Faces of the groups: one id for each set of nodes, turned outward from the
  * element they bound, with the element on the other side.
  */
+#include "base/base.h"
 #include "mesh/build.h"
 #include "mesh/sort.h"
-
-#include "base/memory.h"
-
-#include <string.h>
 
 typedef struct face_list {
   int dim;

@@ -1,31 +1,12 @@
 /* The finished mesh: release, look-up of groups, measures, bodies. */
 #include "mesh/build.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "base/option.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <string.h>
 
 const char *const mesh_words[4] = {"points", "curves", "surfaces", "volumes"};
-
-void mesh_crack_free(mesh_crack *c) {
-  RELEASE(c->plus, c->minus, c->front_start, c->front_node, c->front_face);
-  *c = (mesh_crack){0};
-}
-
-void mesh_free(mesh *m) {
-  if (m == NULL) return;
-  for (int i = 0; i < m->n_group && m->group != NULL; ++i) {
-    RELEASE((void *)m->group[i].name, m->group[i].item_id, m->group[i].node_id);
-  }
-  for (int i = 0; i < m->n_crack; ++i) mesh_crack_free(&m->crack[i]);
-  RELEASE(m->crack, m->group, m->x, m->node_no, m->origin, m->elem, m->elem_no,
-          m->face, m->face_elem, m->face_other, m);
-}
 
 const mesh_group *mesh_find_group(const mesh *m, const char *name) {
   for (int i = 0; i < m->n_group; ++i)

@@ -95,8 +95,6 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
  * of its own, which otherwise loads it again (0.2 s). Failures are not
  * reported. */
 void mesh_gmsh_load(void);
-void mesh_free(mesh *m);
-void mesh_crack_free(mesh_crack *c); /* accepts all-zero */
 
 /* "points", "curves", "surfaces", "volumes". */
 extern const char *const mesh_words[4];

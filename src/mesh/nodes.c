@@ -5,12 +5,9 @@
  * coincide). Curve: J. Skilling, Programming the Hilbert curve, AIP Conf.
  * Proc. 707 (2004) 381.
  */
+#include "base/base.h"
 #include "mesh/build.h"
 #include "mesh/sort.h"
-
-#include "base/memory.h"
-
-#include <math.h>
 
 enum { CURVE_BITS = 20 };
 

@@ -8,17 +8,9 @@
  * the boundary lies wholly inside of other elements: the cost is that of the
  * boundary.
  */
+#include "base/base.h"
 #include "mesh/build.h"
 #include "mesh/sort.h"
-
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
-
-#include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- sides of elements at the same face ---------------------------------- */
 

@@ -4,13 +4,11 @@
  */
 #include "mesh/raw.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -123,6 +121,7 @@ status raw_receive(int fd, raw_mesh *raw, int *stopped) {
 #define WIRE_SIZE(name, type) sizeof(type),
   static const size_t item_size[] = {WIRE_LIST(WIRE_SIZE)};
   *stopped = 0;
+  OWNS(raw);
   for (;;) {
     wire_head head;
     *stopped = read_bytes(fd, &head, sizeof head) != sizeof head;

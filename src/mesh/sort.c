@@ -5,10 +5,7 @@
 #define _GNU_SOURCE /* qsort_r */
 #include "mesh/sort.h"
 
-#include "base/memory.h"
-
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS, FEW = 128 };
 

@@ -4,9 +4,7 @@
  */
 #include "model/facts.h"
 
-#include "base/memory.h"
-
-#include <string.h>
+#include "base/base.h"
 
 const char *place_file(const place *at) {
   const char *file = at->file != NULL ? at->file : "deck";

@@ -3,12 +3,8 @@
  * the exact integrals of data that is linear between the nodes (CPR98 2.5:
  * phi_1 in the body, phi_2 on Gamma_2).
  */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "model/model.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { MAX_NODE = 4 };
 

@@ -1,10 +1,8 @@
 /* The model: what belongs to it, and what its tables show. */
 #include "model/model.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
-#include <math.h>
-#include <string.h>
 #include <strings.h>
 
 int has_card(const model *m, const char *name) {
@@ -69,46 +67,6 @@ int print_shows(const print_request *p, const step *s, double t,
   for (int i = 0; i < q->n; ++i)
     if (same_time(s, q->total_time ? q->t[i] : s->start + q->t[i], t)) return 1;
   return 0;
-}
-
-static void table_release(value_table *t) { RELEASE(t->at, t->value); }
-
-static void rule_release(friction_rule *rule) {
-  table_release(&rule->position);
-  memory_free((void *)rule->card.param);
-}
-
-void model_free(model *m) {
-  if (m == NULL) return;
-  table_release(&m->time.first_step);
-  for (int i = 0; i < m->n.amplitude; ++i)
-    table_release(&m->time.amplitudes[i].table);
-  for (int i = 0; i < m->n.points; ++i) memory_free(m->time.points[i].t);
-  for (int i = 0; i < m->n.contact; ++i) {
-    rule_release(&m->contacts[i].friction);
-    table_release(&m->contacts[i].force.position);
-  }
-  for (int i = 0; i < m->n.material; ++i)
-    for (int k = 0; k < 3; ++k) table_release(&m->materials[i].expand.alpha[k]);
-  for (int i = 0; i < m->n.step; ++i) {
-    RELEASE(m->steps[i].loads.item, m->steps[i].print.requests);
-    for (int k = 0; k < m->steps[i].friction.n; ++k)
-      rule_release(&m->steps[i].friction.changes[k].rule);
-    RELEASE(m->steps[i].friction.changes, m->steps[i].solver_param);
-  }
-  RELEASE(m->load.supports.item, m->initial.lines);
-  for (int i = 0; i < m->n.field; ++i) memory_free(m->load.fields[i].value);
-  memory_free(m->load.fields);
-  for (int i = 0; i < m->n.crack; ++i)
-    RELEASE(m->mesh.cracks[i].lip[0], m->mesh.cracks[i].lip[1]);
-  for (int i = 0; i < m->n.material; ++i) {
-    law_card_free(&m->materials[i].law);
-    elastic_table_free(&m->materials[i].elastic);
-  }
-  RELEASE(m->time.amplitudes, m->time.points, m->materials, m->sections,
-          m->obstacles, m->moves, m->contacts, m->ties, m->mesh.cracks,
-          m->steps, m->reduction.still, m->elem_section, m->name.job,
-          m->effect_cards, m->accuracy.goals, m);
 }
 
 /* Of a plain complementarity problem. */

@@ -566,7 +566,6 @@ status model_find_corner(model *m, const mesh *msh);
 /* In the place of model_check for a deck with *CONDENSED PROBLEM, once it is
  * read: dimension (1: LCP), 1 if it has friction. */
 void model_fit_problem(model *m, int dim, int friction, effect_finder *find);
-void model_free(model *m);
 
 /* load.c */
 /* Nodal forces F[dim*n_node] (global components, N) of a step at total time t:

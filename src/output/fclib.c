@@ -14,16 +14,13 @@
  * tangential unknown has no force and no motion: q_T = 0 there.
  */
 #include "base/archive/dataset.h"
+#include "base/base.h"
 #include "base/file.h"
-#include "base/memory.h"
-#include "base/text.h"
 #include "output/writers.h"
 
 #include <errno.h>
 #include <hdf5.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { TRIPLETS = 0, BY_ROW = -2 };

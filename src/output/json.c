@@ -1,13 +1,7 @@
 /* JOB.json: the outcome and the figures of the run for programs. */
-#include "base/memory.h"
-#include "base/text.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "output/writers.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* RFC 8259, UTF-8, one value after the other. A comma is due: a flag a depth.
  */

@@ -6,17 +6,12 @@
  */
 #include "output/writers.h"
 
+#include "base/base.h"
 #include "base/file.h"
-#include "base/memory.h"
-#include "base/text.h"
-#include "base/timer.h"
 
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -254,7 +249,7 @@ history_sink output_sink(output *o) {
 }
 
 static void release(output *o) {
-  plan_free(&o->plan);
+  memory_free(o->plan);
   RELEASE(o->json, o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i)
     RELEASE(o->run.increments[i].solutions,

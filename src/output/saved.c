@@ -9,14 +9,9 @@
  */
 #include "output/writers.h"
 
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/text.h"
+#include "base/base.h"
 
 #include <errno.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static status open_file(output *o, const saved_end *end) {
   OWNED char *path = NULL;

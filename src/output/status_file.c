@@ -3,12 +3,8 @@
  * JOB.cvg: one line per contact iteration.
  * The line on the terminal, and those at the end.
  */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "output/writers.h"
-
-#include <math.h>
-#include <string.h>
 
 status sta_header(const output_options *o, text_file *sta) {
   fprintf(sta->f,

@@ -8,14 +8,9 @@
  * Blocks are separated by two empty lines (gnuplot: index). Rows are in the
  * order of the user's numbers. Seventeen digits read back exactly.
  */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "output/writers.h"
-
-#include <stdlib.h>
-#include <string.h>
 
 enum { DIGITS = 16 };
 

@@ -15,12 +15,7 @@
 #include "program/job.h"
 
 #include "accuracy/space.h"
-#include "base/memory.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
@@ -45,17 +40,13 @@ status aims_new(const model *m, int all, aims **out) {
   if (m->n.goal == 0) return OK;
   PASS_NEW(*out, 1);
   aims *a = *out;
+  OWNS(a);
   a->all = all;
   a->counts = all || model_targeted_goal(m) != NULL;
   a->n = m->n.goal;
   a->least = HUGE_VAL;
   PASS_NEW(a->rows, MAX_PASS_ROWS * a->n);
   return OK;
-}
-
-void aims_free(aims *a) {
-  if (a == NULL) return;
-  RELEASE(a->rows, a->product, a);
 }
 
 static pass_goal *last_row(const aims *a, int i) {
@@ -66,6 +57,7 @@ const pass_goal *aims_rows(const aims *a) { return a != NULL ? a->rows : NULL; }
 
 status aims_begin(aims *a, const mesh *msh) {
   if (a == NULL) return OK;
+  OWNS(a);
   memory_free(a->product);
   a->product = NULL;
   ++a->n_pass;

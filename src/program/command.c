@@ -1,20 +1,14 @@
 /* The command line: options, their help, and queries without a job. */
 #include "program/command.h"
 
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/text.h"
+#include "base/base.h"
+#include "base/system/input.h"
+#include "base/system/limits.h"
 #include "fem/fem.h"
 #include "manual/manual.h"
 #include "program/inform.h"
-#include "base/system/input.h"
-#include "base/system/limits.h"
 
 #include <getopt.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 

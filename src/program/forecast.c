@@ -30,16 +30,10 @@
  * that it needs for itself. The passes of its target cost that of the deck and
  * two like the last one.
  */
-#include "program/job.h"
-#include "effects/rows.h"
-
 #include "accuracy/space.h"
-#include "base/memory.h"
-#include "base/timer.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "base/base.h"
+#include "effects/rows.h"
+#include "program/job.h"
 
 typedef struct trial {
   double unknowns, contact;       /* of the body, of the contact */
@@ -62,7 +56,6 @@ static status see_sizes(void *ctx, int n_node, const stiffness_choice *choice) {
 static status see_ready(void *ctx, const setup_facts *facts,
                         const contact_surface *surface) {
   trial *t = ctx;
-  (void)surface;
   t->unknowns = (double)facts->info.unknowns;
   t->contact = (double)facts->info.contact_unknowns;
   return OK;
@@ -631,7 +624,7 @@ status forecast_print(const command *c, job_input *in) {
   TRY(forecast_norm(c, in, eta, &cost));
   if (in->m->n.goal > 0) TRY(forecast_goals(c, in, &cost.deck));
 done:
-  aims_free(cost.deck.goals);
+  memory_free(cost.deck.goals);
   memory_free(eta);
   return st;
 }

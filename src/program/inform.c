@@ -1,20 +1,17 @@
 /* Information without solving: version, lists, the check of a deck. */
 #include "program/inform.h"
-#include "effects/rows.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/option.h"
+#include "effects/plan/plan.h"
+#include "effects/rows.h"
 #include "exchange/exchange.h"
 #include "fem/fem.h"
-#include "run/history/history.h"
 #include "model/keyword/keyword.h"
-#include "effects/plan/plan.h"
+#include "run/history/history.h"
 
 #include <cholmod.h>
 #include <hdf5.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 extern char *openblas_get_config(void);
 
@@ -36,7 +33,6 @@ const char *inform_nearest(const char *word, next_word *next, const void *ctx) {
 }
 
 static const char *card_name(const void *ctx, int i) {
-  (void)ctx;
   return keyword_table[i].name;
 }
 
@@ -61,7 +57,7 @@ static void print_sizes(const model *m, const mesh *msh) {
 }
 
 static status print_plan(const model *m, const mesh *msh, int n) {
-  ENDS_BY(plan_free) effect_plan *p = NULL;
+  OWNED effect_plan *p = NULL;
   PASS(plan_new(m, msh, n, &p));
   puts("effects");
   plan_print(p, "  ", stdout);

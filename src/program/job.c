@@ -5,9 +5,8 @@
 #include "program/job.h"
 
 #include "accuracy/space.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/system/input.h"
-#include "base/timer.h"
 #include "effects/plan/plan.h"
 #include "effects/reduction/reduction.h"
 #include "effects/rows.h"
@@ -17,8 +16,6 @@
 #include "program/inform.h"
 #include "run/setup/setup.h"
 
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* --safe: a mesh that is a program is not run. */
@@ -119,13 +116,13 @@ status job_keep_contact(coarser *to, const state *s) {
 }
 
 void job_input_free(job_input *in) {
-  exchange_free(in->problem);
-  coarser_free(in->contact);
-  mesh_free(in->msh);
-  model_free(in->m);
-  deck_free(in->d);
-  deck_free(in->first);
-  message_log_free(in->log);
+  memory_free(in->problem);
+  memory_free(in->contact);
+  memory_free(in->msh);
+  memory_free(in->m);
+  memory_free(in->d);
+  memory_free(in->first);
+  memory_free(in->log);
   free(in->closing);
   *in = (job_input){0};
 }
@@ -244,7 +241,7 @@ static status try_without(watcher *w, const command *c, job_input *in,
   const job_watch watch = {.first = {.ctx = w, .increment = see_increment}};
   reduction_restore(in->m);
   reduction_leave_out(in->m);
-  reduction_free(w->n);
+  memory_free(w->n);
   w->n = NULL;
   PASS(reduction_new(in->m, in->msh, &w->n));
   w->refuted = 0;
@@ -273,7 +270,7 @@ status job_solve_auto(const command *c, job_input *in, int *unsettled) {
     st = job_solve(c, in, NULL, NULL, unsettled);
   }
 done:
-  reduction_free(w.n);
+  memory_free(w.n);
   reduction_restore(in->m);
   return st;
 }

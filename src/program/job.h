@@ -149,7 +149,6 @@ typedef struct aims aims;
  * a forecast. ERR_MEMORY. */
 status aims_new(const model *m, int all, aims **out);
 int aims_count(const aims *a); /* 1: some goal counts; NULL: none */
-void aims_free(aims *a);       /* accepts NULL */
 
 /* Of a pass, in this order: before its increments; after each of them; after
  * the last one. All accept NULL. */

@@ -1,23 +1,16 @@
 /* The restart file: its origin, and whether a deck may continue from it. */
+#include "base/base.h"
 #include "base/file.h"
-#include "program/job.h"
-
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/text.h"
-#include "fem/fem.h"
-#include "program/inform.h"
-#include "model/keyword/keyword.h"
-#include "mesh/msh/geo.h"
-#include "run/setup/setup.h"
 #include "base/system/input.h"
+#include "fem/fem.h"
+#include "mesh/msh/geo.h"
+#include "model/keyword/keyword.h"
+#include "program/inform.h"
+#include "program/job.h"
+#include "run/setup/setup.h"
 
 #include <errno.h>
 #include <inttypes.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 /* ---- origin -------------------------------------------------------- */

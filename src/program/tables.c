@@ -1,13 +1,9 @@
 /* Tables of a finished job for other programs: JOB.dat as csv or tsv. */
 #include "program/command.h"
 
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 #include <unistd.h>
 

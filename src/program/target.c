@@ -13,13 +13,8 @@
 #include "program/job.h"
 
 #include "accuracy/space.h"
+#include "base/base.h"
 #include "base/interrupt.h"
-#include "base/memory.h"
-#include "base/timer.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* Shares of the target, -: errors allowed to the mesh, the increments and the
  * solver; the next pass aims at AIM of that. */
@@ -69,7 +64,6 @@ typedef struct pass {
 static status see_ready(void *ctx, const setup_facts *facts,
                         const contact_surface *surface) {
   pass *p = ctx;
-  (void)surface;
   p->unknowns = (double)facts->info.unknowns;
   return OK;
 }
@@ -353,7 +347,7 @@ static void adjust(const pass *p, model *m) {
 
 /* The contact of the last pass is the start of this one. */
 static status next_contact(pass *p) {
-  coarser_free(p->before);
+  memory_free(p->before);
   p->before = p->contact;
   p->contact = NULL;
   if (p->before != NULL) p->in->m->accuracy.coarser = p->before;
@@ -430,10 +424,10 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
     TRY(read_next(&p));
   }
 done:
-  if (p.first != in->msh) mesh_free(p.first);
+  if (p.first != in->msh) memory_free(p.first);
   RELEASE(p.eta, p.size, p.first_size);
-  coarser_free(p.before);
-  coarser_free(p.contact);
-  aims_free(p.goals);
+  memory_free(p.before);
+  memory_free(p.contact);
+  memory_free(p.goals);
   return st;
 }

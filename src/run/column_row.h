@@ -11,7 +11,6 @@
 /* A value is one expression of the view v, the item id and the component. */
 #define VALUE(name, expression)                         \
   static double name(const view *v, int id, int part) { \
-    (void)v, (void)id, (void)part;                      \
     return (double)(expression);                        \
   }
 

@@ -1,10 +1,8 @@
 /* The hooks of the active effects, each under the stage of its row. */
 #include "run/effect.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "run/run.h"
-
-#include <string.h>
 
 int effect_is_on(const effect_ops *e, const model *m) {
   if (e->bit != NO_BIT) return (m->effects >> e->bit & 1u) != 0;
@@ -59,6 +57,7 @@ status effects_create(run *r, const effect_ops *const *table) {
         e->own != 0 ? e->own : timer_own_stage(k, e->name);
     void **own = &list->on[list->n++].state;
     PASS(new_state(r, e, own));
+    OWNS(*own);
     if (e->on.create != NULL) PASS(e->on.create(r, own));
   }
   return OK;
@@ -174,6 +173,7 @@ status effects_copy(const run *from, run *copy) {
     list->on[k].borrowed = e->copy_as == COPY_BORROWS && e->on.copy == NULL;
     if (list->on[k].borrowed) continue;
     PASS(new_state(from, e, own));
+    OWNS(*own);
     if (e->copy_as == COPY_IS_NEW && e->on.create != NULL)
       PASS(e->on.create(copy, own));
     if (e->copy_as == COPY_IS_EQUAL) memcpy(*own, of, size_of(from, e));
@@ -183,12 +183,7 @@ status effects_copy(const run *from, run *copy) {
 }
 
 void effects_release(run *r) {
-  for (int k = 0; k < r->effects.n; ++k) {
-    const effect_ops *e = r->effects.on[k].ops;
-    void *own = r->effects.on[k].state;
-    if (r->effects.on[k].borrowed || own == NULL) continue;
-    if (e->on.release != NULL) e->on.release(own);
-    if (e->size > 0) memory_free(own);
-  }
+  for (int k = 0; k < r->effects.n; ++k)
+    if (!r->effects.on[k].borrowed) memory_free(r->effects.on[k].state);
   r->effects.n = 0;
 }

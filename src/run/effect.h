@@ -3,7 +3,7 @@
  * src/effects and one row of effect_table. The run calls the hooks of the
  * active effects, in the order of the table:
  *
- *   create -> (begin_step -> (pose -> solve -> found)* -> accept)* -> release
+ *   create -> (begin_step -> (pose -> solve -> found)* -> accept)*
  *
  * Effects that the model does not require are not in the list: nothing of them
  * is allocated, called or counted. Its stage of the timer, its rows in the plan
@@ -109,8 +109,8 @@ typedef enum { COPY_BORROWS, COPY_IS_NEW, COPY_IS_EQUAL } effect_copy;
 
 /* Any may be NULL. The stage of the effect is entered around those marked T. */
 typedef struct effect_hooks {
-  /* *own is new and not NULL, or has been made with the size of the row; it is
-   * released also after a failure. */
+  /* *own is new and not NULL, or has been made with the size of the row and is
+   * the owner of what is requested here; freed also after a failure. */
   status (*create)(struct run *r, void **own);
   /* 0: initial, accept, show, rewrite have nothing to do at this increment, and
    * are not counted. */
@@ -167,7 +167,6 @@ typedef struct effect_hooks {
   /* *out: the state for "copy" of the run, of the size of the row. */
   status (*copy)(const struct run *r, const void *own, struct run *copy,
                  void **out);
-  void (*release)(void *own); /* what a state with a size owns, or all */
 } effect_hooks;
 
 typedef struct effect_ops {

@@ -2,15 +2,10 @@
  * One equilibrium: loads and obstacles at time t, condensed load, contact
  * problem, contact solver, recovery of the interior (CPR98, problem S_i^n).
  */
+#include "base/base.h"
+#include "base/sparse.h"
 #include "run/run.h"
 #include "solver/choice/rest.h"
-
-#include "base/memory.h"
-#include "base/sparse.h"
-#include "base/timer.h"
-
-#include <math.h>
-#include <string.h>
 
 /* The unknown of a row of r->problem.cp among those of all contact nodes. */
 static int unknown_of(const run *r, int row) {

@@ -3,9 +3,7 @@
  */
 #include "run/run.h"
 
-#include "base/memory.h"
-
-#include <stdio.h>
+#include "base/base.h"
 
 int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
 
@@ -24,7 +22,7 @@ const double *run_elasticity(const run *r, int elem_id) {
 void matrices_free(matrices *m) {
   contact_solver_free(&m->solver);
   condensed_free(m->c);
-  stiffness_free(m->k);
+  memory_free(m->k);
   memory_free(m->E);
   *m = (matrices){0};
 }

@@ -2,16 +2,10 @@
  * The elements whose law flows, as points of src/material/scheme: their laws,
  * initial state, and their state at an equilibrium of the body.
  */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/timer.h"
-#include "model/check/check.h"
+#include "base/base.h"
 #include "material/voigt.h"
+#include "model/check/check.h"
 #include "run/visco.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* One kind for each section whose material has a law. */
 static status new_kinds(const run *r, flow *x, int *kind_of) {

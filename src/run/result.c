@@ -2,13 +2,8 @@
  * What is derived from an equilibrium: stresses, reactions of the supports,
  * resultants of the contacts, energies and their balance.
  */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "run/run.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
 
 int run_finds_mesh_error(const run *r) {
   const int at = r->step->accuracy.mesh;

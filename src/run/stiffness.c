@@ -6,12 +6,8 @@
  */
 #include "run/run.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/facts.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum {
   COLD = 14,    /* linear systems of the first increment */
@@ -123,7 +119,7 @@ static status make_order(run *r) {
   forget_order(r);
   status st = stiffness_assemble(&r->body.d, &k);
   if (st == OK) st = stiffness_order(k, r->msh->x, &r->body.order);
-  stiffness_free(k);
+  memory_free(k);
   PASS(st);
   r->body.d.order = &r->body.order;
   return OK;

@@ -3,13 +3,9 @@
  * inelastic laws, sigma = E (e - e0): stored only for the elements that can
  * have any.
  */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "model/facts.h"
 #include "run/visco.h"
-
-#include <math.h>
-#include <string.h>
 
 static size_t at(const run *r, int k) { return (size_t)r->m->ns * (size_t)k; }
 

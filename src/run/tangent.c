@@ -2,14 +2,9 @@
  * Equilibria of the body with the linear laws of the implicit integrators:
  * their matrices, of which the constant ones are stored, and loads.
  */
-#include "base/memory.h"
-#include "base/text.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "material/voigt.h"
 #include "run/visco.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static const double TRACE = 0x1p-40; /* -, of the elasticity */
 

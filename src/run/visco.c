@@ -5,12 +5,9 @@
  * last accepted increment).
  */
 #include "run/visco.h"
-#include "base/memory.h"
-#include "base/timer.h"
-#include "model/check/check.h"
 
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
+#include "model/check/check.h"
 
 /* The error of the midpoint rule in its difference to the trapezoidal one. */
 static const double SIMPSON = 3.0;

@@ -19,13 +19,11 @@
  *
  * A combination after which a sweep moves farther than before is rejected.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/local.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 typedef enum { BY_AITKEN, BY_ANDERSON, BY_NOTHING } acceleration_kind;
 
@@ -65,13 +63,6 @@ typedef struct aitken_work {
   double *dx, *dy, *df;      /* [m*depth] differences, a ring */
   double gram[DEPTH][DEPTH]; /* (dF_i . dF_j)_D by place in the ring */
 } aitken_work;
-
-static void aitken_release(void *work) {
-  aitken_work *w = work;
-  node_blocks_free(w->blocks);
-  best_iterate_free(&w->best);
-  RELEASE(w->before, w->x, w->y, w->defect, w->diagonal, w->dx, w->dy, w->df);
-}
 
 static status aitken_setup(const contact_problem *cp, const void *par,
                            void *work) {
@@ -327,7 +318,6 @@ const solver_ops aitken_solver = {
              SPARSE_COMPLIANCE,
   .entries = "METHOD=AITKEN, which relaxes row by row,",
   .param_size = sizeof(aitken), .work_size = sizeof(aitken_work),
-  .options = aitken_options, .setup = aitken_setup, .solve = aitken_solve,
-  .release = aitken_release
+  .options = aitken_options, .setup = aitken_setup, .solve = aitken_solve
 };
 /* clang-format on */

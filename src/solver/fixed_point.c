@@ -1,10 +1,7 @@
 /* Fixed point on the sliding limit, with Anderson mixing (fixed_point.h). */
 #include "solver/fixed_point.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum {
   MOST = 200000, /* iterations of all passes, by default */
@@ -32,15 +29,11 @@ status fixed_point_new(int n, fixed_point **out) {
   fixed_point *fp;
   PASS_NEW(fp, 1);
   *out = fp;
+  OWNS(fp);
   fp->n = n;
   PASS_NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
   PASS_NEW_ALL(OF(fp->dg, n * DEPTH), OF(fp->dG, n * DEPTH));
   return OK;
-}
-
-void fixed_point_free(fixed_point *fp) {
-  if (fp == NULL) return;
-  RELEASE(fp->g, fp->image, fp->last_g, fp->last_G, fp->dg, fp->dG, fp);
 }
 
 static double norm(int n, const double *x) {
@@ -294,15 +287,11 @@ status friction_path_new(const contact_problem *cp, friction_path **out) {
   friction_path *path;
   PASS_NEW(path, 1);
   *out = path;
+  OWNS(path);
   PASS_NEW_ALL(OF(path->g0, cp->n),
                OF(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0),
                OF(path->good_u, cp->m), OF(path->good_r, cp->m));
   return OK;
-}
-
-void friction_path_free(friction_path *path) {
-  if (path == NULL) return;
-  RELEASE(path->g0, path->val, path->good_u, path->good_r, path);
 }
 
 /* One stage: the problem with that share of the limit. */

@@ -23,7 +23,6 @@ typedef struct inner_solver {
 typedef struct fixed_point fixed_point;
 
 status fixed_point_new(int n, fixed_point **out); /* for n contact nodes */
-void fixed_point_free(fixed_point *fp);           /* accepts NULL */
 /*
  * Solve cp (with B) by passes of inner on problems without B. Passes:
  * control->limit_max_iter, 200 if 0; iterations of all passes: at most
@@ -41,7 +40,6 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
 typedef struct friction_path friction_path;
 
 status friction_path_new(const contact_problem *cp, friction_path **out);
-void friction_path_free(friction_path *path); /* accepts NULL */
 /* u[m], r[m]: start of the first problem, then the solution. If a share cannot
  * be reached from the last one even by short steps, its outcome is returned,
  * with u and r of the last share solved. cp: as in friction_path_new but for

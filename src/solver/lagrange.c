@@ -21,12 +21,9 @@
  *
  * and shortens rho, never below the bound of Collatz and Wielandt.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct lagrange {
   int acceleration; /* acceleration_kind */
@@ -61,17 +58,9 @@ typedef struct lagrange_work {
   best_iterate best;
 } lagrange_work;
 
-static void lagrange_release(void *work) {
-  lagrange_work *w = work;
-  force_set_free(w->set);
-  RELEASE(w->x, w->old_x, w->y, w->y_x, w->c, w->old_r);
-  best_iterate_free(&w->best);
-}
-
 static status lagrange_setup(const contact_problem *cp, const void *par,
                              void *work) {
   lagrange_work *w = work;
-  (void)par;
   PASS(force_set_new(cp, &w->set));
   PASS_NEW_REALS(cp->m, &w->x, &w->old_x, &w->y, &w->y_x, &w->c, &w->old_r);
   PASS(best_iterate_new(cp->m, &w->best));
@@ -241,6 +230,6 @@ const solver_ops lagrange_solver = {
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = sizeof(lagrange), .work_size = sizeof(lagrange_work),
   .options = lagrange_options, .setup = lagrange_setup, .solve = lagrange_solve,
-  .release = lagrange_release, .keep = lagrange_keep
+  .keep = lagrange_keep
 };
 /* clang-format on */

@@ -47,7 +47,6 @@ local_state local_solve(const local_problem *lp, local_state before, double *d,
  */
 typedef struct node_blocks node_blocks; /* what belongs to one matrix */
 status node_blocks_new(const contact_problem *cp, node_blocks **out);
-void node_blocks_free(node_blocks *b); /* accepts NULL */
 
 typedef struct relaxation {
   const contact_problem *cp;

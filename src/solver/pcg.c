@@ -27,13 +27,11 @@
  * operator a product with W is a solve with the factor of all rows, and a
  * product with A one with that of the interior.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 typedef struct pcg {
   int preconditioner; /* preconditioner_kind */
@@ -70,18 +68,10 @@ typedef struct pcg_work {
   best_iterate best;
 } pcg_work;
 
-static void pcg_release(void *work) {
-  pcg_work *w = work;
-  force_set_free(w->set);
-  RELEASE(w->x, w->phi, w->beta, w->z, w->p, w->v, w->r0, w->x0, w->e, w->turn);
-  best_iterate_free(&w->best);
-}
-
 static status pcg_setup(const contact_problem *cp, const void *par,
                         void *work) {
   pcg_work *w = work;
   int m = cp->m;
-  (void)par;
   PASS(force_set_new(cp, &w->set));
   PASS_NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
                  &w->x0, &w->e);
@@ -444,7 +434,6 @@ const solver_ops pcg_solver = {
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE,
   .param_size = sizeof(pcg), .work_size = sizeof(pcg_work),
-  .options = pcg_options, .setup = pcg_setup, .solve = pcg_solve,
-  .release = pcg_release
+  .options = pcg_options, .setup = pcg_setup, .solve = pcg_solve
 };
 /* clang-format on */

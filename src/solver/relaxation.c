@@ -4,11 +4,9 @@
  */
 #include "solver/local.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 enum { DRIFT_SWEEPS = 20 };
 static const double RIGID = 0x1p-5;     /* -, of a drift: counts as no strain */
@@ -22,11 +20,6 @@ struct node_blocks {
   double *weight;          /* [m] diagonal of the matrix */
   double *step, *strained; /* [m] of a sweep, m; A times it, N */
 };
-
-void node_blocks_free(node_blocks *b) {
-  if (b == NULL) return;
-  RELEASE(b->K, b->state, b->weight, b->step, b->strained, b);
-}
 
 /* Inverse of a d*d block by elimination without pivoting: the block is positive
  * definite, else a share of "lift" is added to its diagonal (the fixed point of
@@ -76,6 +69,7 @@ status node_blocks_new(const contact_problem *cp, node_blocks **out) {
   int d = cp->dim;
   PASS_NEW(b, 1);
   *out = b;
+  OWNS(b);
   PASS_NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
   PASS_NEW_ALL(OF(b->K, cp->n * d * d), OF(b->state, cp->n));
   double lift = 0.0;

@@ -1,12 +1,9 @@
 /* All states of a single node (single.h). */
 #include "solver/single.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   ANGLES = 256, /* of slip, searched; there are at most 6 roots */

@@ -1,10 +1,7 @@
 /* Functions common to the solvers (solver.h). */
 #include "solver/solver.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 
@@ -49,27 +46,17 @@ status solver_set_up(const solver_ops *ops, const contact_problem *cp,
                      const void *par, void **work) {
   char *own = NULL;
   PASS_NEW(own, ops->work_size);
+  OWNS(own);
   const status st = ops->setup(cp, par, own);
   *work = st == OK ? own : NULL;
-  if (st != OK) solver_release(ops, own);
+  if (st != OK) memory_free(own);
   return st;
-}
-
-void solver_release(const solver_ops *ops, void *work) {
-  if (work == NULL) return;
-  ops->release(work);
-  memory_free(work);
 }
 
 status best_iterate_new(int m, best_iterate *best) {
   best->residual = HUGE_VAL;
   PASS_NEW_ALL(OF(best->u, m), OF(best->r, m));
   return OK;
-}
-
-void best_iterate_free(best_iterate *best) {
-  RELEASE(best->u, best->r);
-  best->u = best->r = NULL;
 }
 
 void solver_keep_best(best_iterate *best, int m, double residual,

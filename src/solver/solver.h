@@ -94,13 +94,12 @@ typedef struct solver_ops {
   size_t param_size, work_size;
   const option *options;
   /* Once per matrix; par: [param_size]; work: the private state, [work_size]
-   * zeroed (solver_set_up). */
+   * zeroed (solver_set_up), and the owner of all that is requested here. */
   status (*setup)(const contact_problem *cp, const void *par, void *work);
   /* u[m] start value, then solution; r[m] start value, then reaction. */
   status (*solve)(const contact_problem *cp, const void *par, void *work,
                   const solver_control *control, double *u, double *r,
                   solver_report *rep);
-  void (*release)(void *work); /* what it owns (solver_release) */
   /* Save or read the data of the workspace that persist from one solve to the
    * next and do not follow from the matrix; NULL: none. */
   status (*keep)(void *work, archive *a);
@@ -122,10 +121,9 @@ extern const char auto_help[]; /* manual text of METHOD=AUTO */
 
 /* ---- functions common to the solvers ---- */
 
-/* A new workspace; *work is NULL after a failure. */
+/* A new workspace (memory_free); *work is NULL after a failure. */
 status solver_set_up(const solver_ops *ops, const contact_problem *cp,
                      const void *par, void **work);
-void solver_release(const solver_ops *ops, void *work); /* accepts NULL */
 
 /* 1: the tolerance is so loose (TOL=BALANCED) that an iterate within it is
  * accepted, even where one more step would be exact. */
@@ -145,7 +143,6 @@ typedef struct best_iterate {
   double *u, *r;   /* [m] */
 } best_iterate;
 status best_iterate_new(int m, best_iterate *best);
-void best_iterate_free(best_iterate *best);
 void solver_keep_best(best_iterate *best, int m, double residual,
                       const double *u, const double *r);
 /* Copy it to u, r if there is one. */

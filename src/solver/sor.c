@@ -8,13 +8,10 @@
  * q is carried along with the columns of W. Both see the same
  * problem of a node,  K d = b + r,  K = A_ii or inv(W_ii),  b = -r now.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
 #include "solver/solver.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct sor {
   double omega; /* relaxation factor, -; 0: chosen by the program */
@@ -50,14 +47,6 @@ typedef struct sor_work {
   double *before;     /* [m] u before a sweep that is checked; work */
   fixed_point *fixed; /* for FRICTION_FIXED_POINT */
 } sor_work;
-
-static void sor_release(void *work) {
-  sor_work *w = work;
-  node_blocks_free(w->blocks);
-  best_iterate_free(&w->best);
-  memory_free(w->before);
-  fixed_point_free(w->fixed);
-}
 
 static status sor_setup(const contact_problem *cp, const void *par,
                         void *work) {
@@ -247,7 +236,6 @@ const solver_ops sor_solver = {
              SPARSE_COMPLIANCE,
   .entries = "METHOD=SOR, which relaxes row by row,",
   .param_size = sizeof(sor), .work_size = sizeof(sor_work),
-  .options = sor_options, .setup = sor_setup, .solve = sor_solve,
-  .release = sor_release
+  .options = sor_options, .setup = sor_setup, .solve = sor_solve
 };
 /* clang-format on */

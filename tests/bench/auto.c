@@ -17,15 +17,10 @@
  * load, and, where that was so for all cases of a block, of larger blocks. Last
  * column: AUTO over the best row.
  */
-#include "base/timer.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "solver/solver.h"
 #include "support/pressed_block.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { PARAM_SIZE = 512, MAX_ROWS = 16, INCREMENTS = 10, MAX_REPEATS = 15 };
 typedef enum { COLD, WARM, SEQUENCE, N_WAY } way;

@@ -3,12 +3,8 @@
  * with the same neighbours for each, the ratio (4 if the cost is linear), and
  * the time per pair. Medians of the runs of this process.
  */
+#include "base/base.h"
 #include "contact/average/average.h"
-#include "base/timer.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { RUNS = 5 };
 

@@ -4,13 +4,9 @@
  * default, and the worst errors that are left, of the mesh and of the solver.
  * Runs $PROTIS, else build/release/protis.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { RUNS = 3 };
 

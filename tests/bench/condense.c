@@ -11,15 +11,11 @@
  * column: the factor of K_ii and one solve per contact unknown, measured on a
  * sample of columns and extrapolated.
  */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "fem/factor.h"
 #include "support/scene.h"
 
 #include <malloc.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
 enum { MAX_RUNS = 5, SAMPLE = 20, METHODS = 3 };
@@ -177,7 +173,7 @@ static void compare_threads(void) {
   free(same.contact);
   free(same.first_row);
   free(same.free);
-  stiffness_free(k);
+  memory_free(k);
   scene_free(s);
 }
 
@@ -216,7 +212,7 @@ static void one_run(const scene *s, int columns, figures *r) {
     free(same.first_row);
     free(same.free);
   }
-  stiffness_free(k);
+  memory_free(k);
 }
 
 static void warm_up(const scene *s) {
@@ -227,7 +223,7 @@ static void warm_up(const scene *s) {
   plain_run(&same, s, ORDER_CUTS, 1, &solve);
   free(same.contact);
   free(same.free);
-  stiffness_free(k);
+  memory_free(k);
 }
 
 static void run_case(const bench_case *b) {

@@ -10,15 +10,12 @@
  * the table; what AUTO tried. At the end the geometric mean and the largest of
  * AUTO's ratios.
  */
+#include "base/base.h"
 #include "exchange/exchange.h"
 #include "fem/fem.h"
 #include "solver/solver.h"
 #include "support/natural_map.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -162,8 +159,8 @@ static void file(const char *path) {
     printf("%s: not read: %s\n", path, status_message());
   else if (p->n > 0)
     problem(path, &p->cp);
-  exchange_free(p);
-  message_log_free(log);
+  memory_free(p);
+  memory_free(log);
 }
 
 int main(int argc, char **argv) {

@@ -3,13 +3,9 @@
  * memory, their ratio, and the factor within which the forecast expects them.
  * Runs $PROTIS, else build/release/protis.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const struct {
   const char *deck, *words;

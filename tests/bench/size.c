@@ -11,12 +11,10 @@
  * and sheared, from a cold start, mu = 0.3. The same problems by GetFEM where
  * python3-getfem is installed (tests/peers/getfem_contact.py).
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

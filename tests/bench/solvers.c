@@ -10,16 +10,12 @@
  * matrix, residual, and the largest error of u over the largest u, against the
  * solution at a residual of 1e-13. Rows start from zero each time.
  */
-#include "base/timer.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "solver/solver.h"
 #include "support/pressed_block.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { PARAM_SIZE = 512 };
 static const double FREE_SIDE = 0.15; /* pressure that pushes over E          */

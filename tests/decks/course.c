@@ -5,8 +5,7 @@
  */
 #include "decks/deck.h"
 
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static double between(int n, const double *t, const double *a, double at) {
   if (at <= t[0]) return a[0];

@@ -4,9 +4,7 @@
  */
 #include "decks/deck.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 /* How the bodies are held. */
 typedef enum { CLAMPED, PRESSED, HELD_LEFT, LYING } hold;

@@ -3,9 +3,7 @@
  */
 #include "decks/deck.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 /* Box of a group of faces. */
 static void find_box(const solid *s, int group, double low[3], double high[3]) {

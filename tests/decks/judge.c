@@ -3,9 +3,7 @@
  */
 #include "decks/judge.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 const char *const check_name[CHECKS] = {[OF_TEMPERATURE] = "temperature",
                                         [OF_STRAIN] = "strain",

@@ -7,9 +7,7 @@
  */
 #include "decks/judge.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 enum {
   LINE_PIECES = 64,

@@ -4,9 +4,7 @@
  */
 #include "decks/judge.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 int simplex_gauss(int n, double weight[GAUSS_MOST], double at[GAUSS_MOST][4]) {
   static const double x[3] = {0.11270166537925831, 0.5, 0.88729833462074169};

@@ -3,9 +3,7 @@
  */
 #include "decks/deck.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static void *grow(void *p, size_t n, size_t size) {
   p = realloc(p, (n + 1) * size);

@@ -1,9 +1,6 @@
 #include "decks/tables.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static const char *const kinds[TABLES] = {"CONTACT",  "TOTALS",    "NODES",
                                           "ELEMENTS", "REACTIONS", "ENERGY"};

@@ -3,13 +3,11 @@
  */
 #include "decks/twin.h"
 
+#include "base/base.h"
 #include "support/traced.h"
 
 #include <check.h>
-#include <math.h>
 #include <signal.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 
 const char *const twin_name[TWINS] = {"threads", "units, powers of two",

@@ -3,10 +3,9 @@
  */
 #include "decks/deck.h"
 
+#include "base/base.h"
+
 #include <check.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct writer {
   FILE *f;

@@ -44,8 +44,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   use_deck(d, log);
   message_print(log, sink);
   message_list(log, WARNING, sink);
-  deck_free(d);
-  message_log_free(log);
+  memory_free(d);
+  memory_free(log);
   if (memory_in_use() != 0) abort();
   return 0;
 }

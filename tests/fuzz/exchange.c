@@ -99,8 +99,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if ((st == OK) != (p != NULL)) abort();
   if (st != OK && message_count(log, ERROR) == 0 && st != ERR_SINGULAR) abort();
   if (p != NULL) use(p);
-  exchange_free(p);
-  message_log_free(log);
+  memory_free(p);
+  memory_free(log);
   status_clear();
   if (memory_in_use() != 0) abort();
   return 0;

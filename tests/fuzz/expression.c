@@ -10,7 +10,6 @@
 #include <string.h>
 
 static int symbol(const void *ctx, const char *name, double *value) {
-  (void)ctx;
   *value = 3;
   return name[0] == 'H';
 }
@@ -29,7 +28,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   } else if (e != NULL || column < 0 || (size_t)column > strlen(text)) {
     abort();
   }
-  expression_free(e);
+  memory_free(e);
   if (memory_in_use() != 0) abort();
   free(text);
   return 0;

@@ -104,9 +104,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (is_msh && st == ERR_MEMORY) abort();
   if ((st == OK) != (m != NULL)) abort();
   if (m != NULL) use_mesh(m);
-  mesh_free(m);
-  raw_free(&raw);
-  message_log_free(log);
+  memory_free(m);
+  memory_free(raw);
+  memory_free(log);
   status_clear();
   if (memory_in_use() != 0) abort();
   return 0;

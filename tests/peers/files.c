@@ -11,6 +11,7 @@
  * process of its own. At the end the geometric mean of AUTO over the best
  * kernel, of all and of those where the kernel takes 0.1 ms or more.
  */
+#include "base/base.h"
 #include "base/sparse.h"
 #include "exchange/exchange.h"
 #include "fem/fem.h"
@@ -22,10 +23,6 @@
 #include <NonSmoothDrivers.h>
 #include <NumericsMatrix.h>
 #include <SparseBlockMatrix.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { LADDER = 9, MAX_REPEATS = 200 };
 static const double TOL = 1e-8, ENOUGH = 0.2, SHORT = 1e-4; /* -; s; s */
@@ -127,7 +124,6 @@ static double run_auto(const struct kernel *k, double tol) {
   solver_report rep;
   contact_solver *s = NULL;
   const contact_problem *cp = peers.cp;
-  (void)k;
   memset(peers.r, 0, (size_t)cp->m * sizeof *peers.r);
   memcpy(peers.u, cp->f, (size_t)cp->m * sizeof *peers.u);
   double start = cpu();
@@ -227,8 +223,8 @@ static void file(const char *path) {
     hand_over(&p->cp);
     line(at == NULL ? path : at + 1);
   }
-  exchange_free(p);
-  message_log_free(log);
+  memory_free(p);
+  memory_free(log);
 }
 
 static void tell(const char *what, const struct sum *s) {

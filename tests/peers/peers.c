@@ -20,10 +20,10 @@
  *   strict  the best kernel without the making of W, over AUTO with A
  * Without friction only the part W_nn is made.
  */
-#include "base/timer.h"
+#include "base/base.h"
 #include "fem/fem.h"
-#include "solver/solver.h"
 #include "peers/kernels.h"
+#include "solver/solver.h"
 #include "support/pressed_block.h"
 
 #include <FrictionContactProblem.h>
@@ -32,10 +32,6 @@
 #include <NumericsMatrix.h>
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
   LARGE = 300,

@@ -4,12 +4,9 @@
  * A u = f + r, so that the energy of the error is (u - u*)'(r - r*)/2, from
  * the tables.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static job run_block(const char *law, const char *cards, const char *solver) {
   job j = job_begin("block");

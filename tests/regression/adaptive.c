@@ -3,13 +3,9 @@
  * each integrator, a rejected increment leaves nothing behind, a smallest
  * increment that is too long is told by the exit code.
  */
+#include "base/base.h"
 #include "support/square_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

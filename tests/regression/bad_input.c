@@ -11,14 +11,13 @@
  *   ! first line of stderr; absent: there is none
  *   = exit code
  */
+#include "base/base.h"
 #include "base/message.h"
 #include "model/keyword/keyword.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <dirent.h>
-#include <stdio.h>
-#include <string.h>
 
 static const char folder[] = "tests/regression/bad";
 

@@ -2,12 +2,9 @@
  * The error budget of a run against the true errors: of the increments against
  * a path of many, of the mesh against a fine one by the potential energy.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -3,14 +3,12 @@
  * contact node, whose answers are closed forms, in many increments, and stopped
  * within a step and gone on with.
  */
+#include "base/base.h"
 #include "support/tips.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double G = 500, N = 10, mu = 0.3;
 

@@ -3,11 +3,9 @@
  * partly closed cracks, an edge crack, a disc in space, a cut through a body,
  * lips that stick as if there were no crack.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -6,14 +6,11 @@
  *
  * Unit cube or square, nu = 0, E = 1000, G = 500, relaxation time 2.
  */
-#include <hdf5.h>
-
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include <hdf5.h>
 
 #define ANGLE (17.0 * acos(-1.0) / 180.0)
 

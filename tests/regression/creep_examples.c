@@ -2,11 +2,9 @@
  * Examples of input/ whose bodies creep, over time: against closed forms, and
  * against ordinary differential equations solved by SciPy to 1e-8 or better.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
 
 static job run_example(const char *name, const char *words) {
   char deck[96];

@@ -3,12 +3,9 @@
  * integrator, what contact and friction do there, stiff laws, and that the run
  * itself stays as it is. E = 1000, nu = 0.3, relaxation time 2.
  */
+#include "base/base.h"
 #include "support/square_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const struct {
   const char *integrator;

@@ -5,16 +5,14 @@
  * whole, above an obstacle that moves and turns, touch it and partly leave it.
  * The same runs stopped and gone on with.
  */
+#include "base/base.h"
 #include "support/grid.h"
 #include "support/job.h"
 #include "support/traced.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { INCREMENTS = 10, NODES = 64 };
 static const double mu = 0.4, angle_rate = 0.3;
@@ -112,7 +110,7 @@ static job scene_new_job(int dim, double *area) {
   mesh *m = dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
   turned_mesh_write(&j, m, &whole_turn[dim - 2]);
   foot_areas(m, area);
-  mesh_free(m);
+  memory_free(m);
   write_deck(&j, dim);
   return j;
 }

@@ -3,13 +3,12 @@
  * read back to the same echo, and running it gives the same tables to the last
  * byte.
  */
+#include "base/base.h"
 #include "model/keyword/keyword.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <glob.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { TEXT = 4096 };
 
@@ -28,9 +27,9 @@ static char *echo_of(const char *path) {
   FILE *out = open_memstream(&text, &size);
   model_echo(m, out);
   fclose(out);
-  model_free(m);
-  deck_free(d);
-  message_log_free(log);
+  memory_free(m);
+  memory_free(d);
+  memory_free(log);
   return text;
 }
 

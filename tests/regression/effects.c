@@ -2,14 +2,10 @@
  * The effect plan: the same before a run and in its listing, in JSON, off where
  * nothing calls for an effect, and what is foreseen against what is counted.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A block, pressed and pushed, with further cards in its model and step. */
 static job block(const char *model, const char *step, const char *words) {

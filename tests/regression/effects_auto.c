@@ -2,14 +2,10 @@
  * *EFFECTS, MODE=AUTO: the answer is that of MODE=CALLED within TOL, with what
  * was left out and what was taken back.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A block of one material, pressed with 50 MPa from above in a *VISCO step. */
 typedef struct scene {

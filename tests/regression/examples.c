@@ -7,15 +7,12 @@
  * The runs end at the first invalid operation, division by zero or overflow of
  * floating point (tests/preload).
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/sums.h"
 #include "support/unit.h"
 
 #include <glob.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { MAX = 64 };

@@ -2,15 +2,12 @@
  * Discrete problems: written by one run and read by another, made here in the
  * layout of FCLIB, plain LCPs; their verdicts.
  */
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/fclib_file.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const char *in_folder(const job *j, const char *file) {
   static char path[256];

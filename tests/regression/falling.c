@@ -4,13 +4,10 @@
  * forces are those of the load to what rounding of the motion leaves, and
  * increments do not follow that rounding.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

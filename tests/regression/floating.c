@@ -2,13 +2,10 @@
  * Bodies that nothing or contact alone holds: equilibrium where there is one,
  * a verdict with exit 6 where there is none, never numbers.
  */
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

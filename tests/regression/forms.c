@@ -3,15 +3,12 @@
  * (N2) and in its change (N3), and one static problem (P2). Where theory says
  * that they have one answer, they must give it.
  */
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <glob.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -6,13 +6,9 @@
  * u_x = U at the top while its foot slips: sigma_xy = mu p everywhere (the side
  * faces carry it), the foot is at U - mu p / G.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -6,13 +6,10 @@
  * and u_x = U; p pushes from below: u_y = p (1 - y) / E, and the foot is at
  * U - mu p / G where it slips (the sides carry mu p), at 0 where it sticks.
  */
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static job run_block(const char *cards, const char *step, const char *method) {
   job j = job_begin("block");

@@ -3,14 +3,11 @@
  * out, his sphere) and against the block whose values are known from meshes of
  * 54,000 nodes; what stops the passes, and what they tell.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/mesh_file.h"
 #include "support/msh_write.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #define A_H 0.2348908547
 #define P_H 2710.278943
@@ -335,7 +332,7 @@ START_TEST(msh_of_a_cylinder_is_refined) {
   ck_assert_msg(m != NULL, "%s", f.messages);
   snprintf(path, sizeof path, "%s/line.msh", j.dir);
   msh_write(path, m);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
   job_write(&j, "line.inp",
             "*MESH, FILE=line.msh\n*MATERIAL, NAME=STEEL\n*ELASTIC\n"

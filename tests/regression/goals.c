@@ -4,14 +4,10 @@
  * a block on a rough floor whose force is known from meshes of 54,000 nodes,
  * pushed once, and to and fro (144 times the nodes).
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

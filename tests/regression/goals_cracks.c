@@ -3,12 +3,9 @@
  * closed forms: open cracks in the middle of a plate and at its edge, a slanted
  * one that slips with friction, the unit disc in space; a target for one.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -3,11 +3,9 @@
  * a mesh takes at its nodes: thick rings, tubes and shells under a pressure
  * (Lame) and a column under its own load.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
 
 /* A quarter of a ring from radius 1 to 2; in space a slice of it. */
 #define RING                                                                 \

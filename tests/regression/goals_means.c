@@ -3,14 +3,10 @@
  * volume of elements, on meshes whose edges are 1:8, of fields that all the
  * border prescribes; goals of mirror images.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* The unit square, and the cube on it; fine at one corner. */
 #define SQUARE                                                              \

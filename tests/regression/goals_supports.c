@@ -4,14 +4,10 @@
  * times the elements of the one before; the radius of a pressure next to a
  * plane of symmetry.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define PLANE "PLANE\n0., 0.\n0., 1."
 #define ENERGY "*GOAL, NAME=E, QUANTITY=ENERGY\n"

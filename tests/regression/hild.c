@@ -3,13 +3,9 @@
  * state on several meshes, friction and Poisson's ratios, the solutions beyond
  * the critical friction mu_c = sqrt((1 - nu)/nu), and the continuum at it.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double P0 = 0.01, A = 0.002, C = -0.02;
 

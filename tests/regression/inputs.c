@@ -3,12 +3,10 @@
  * input, whatever its name; results stay in their folder; what is no plain file
  * is refused and not waited for.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/small_job.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <string.h>
 
 enum { TEXT = 4096 };
 

@@ -4,14 +4,10 @@
  * for a block that creeps on a floor with friction. E = 1000, nu = 0.3,
  * relaxation time 2.
  */
+#include "base/base.h"
 #include "support/creep_case.h"
 #include "support/square_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -3,13 +3,10 @@
  * a square in homogeneous stress, exact on its mesh, so that errors are
  * those of time; E = 1000, nu = 0.3 and times near 2 unless said otherwise.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

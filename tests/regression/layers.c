@@ -2,12 +2,9 @@
  * Two layers, SOFT below and first in the mesh, HARD above with an inelastic
  * law: points, temperatures, clusters and laws of the second are its own.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

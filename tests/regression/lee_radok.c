@@ -8,11 +8,9 @@
  *                              (1/(3 K) - 1/(3 K + G)) exp(-3 K t/((3 K + G)
  * tau))) E = 1000, nu = 0.3, tau = 2, R = 10, P = 1; edges to 1 %.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
 
 static const double young = 1000, nu = 0.3, tau = 2;
 

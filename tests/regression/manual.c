@@ -3,12 +3,11 @@
  * runs, every card has an example and these are decks that run, version and
  * examples are those of the sources.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <glob.h>
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { TEXT = 2048 };

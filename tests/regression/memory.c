@@ -2,11 +2,10 @@
  * Memory is foreseen: a run that would need more than there is ends at once
  * with exit code 5 and says what to do; what is foreseen is what a run takes.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/resource.h>
 
 static void must_be_refused(const job *j, int code, const char *whose) {

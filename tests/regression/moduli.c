@@ -5,12 +5,9 @@
  *
  * E falls from 2e5 at 0 to 1e5 at 200 degrees, nu = 0.3, unless said otherwise.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

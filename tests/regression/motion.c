@@ -3,16 +3,12 @@
  * form, a node on a turntable, whole scenes turned in space, and the round cone
  * of friction for every direction of slip.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/grid.h"
 #include "support/job.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 
@@ -190,7 +186,7 @@ static job run_turned(int dim, const turn *t) {
   mesh *m = dim == 3 ? make_grid_3d(n3, length3) : make_grid_2d(n2, length2);
   ck_assert_ptr_nonnull(m);
   turned_mesh_write(&j, m, t);
-  mesh_free(m);
+  memory_free(m);
   write_deck(&j, dim, t);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);

@@ -6,7 +6,7 @@
  *
  *   MUTANTS=20000 MUTANT_SEED=7 mutants    many instead of the few of the tests
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
@@ -17,8 +17,6 @@
 #include "support/unit.h"
 
 #include <glob.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -160,8 +158,8 @@ static status check_deck(const char *path, message_log *log, mesh *msh) {
     echo_nowhere(m);
   }
   memory_free(list);
-  model_free(m);
-  deck_free(d);
+  memory_free(m);
+  memory_free(d);
   return st;
 }
 
@@ -179,8 +177,8 @@ static int judge(const char *path, int dim) {
   if (st == ERR_INTERNAL || st == ERR_MEMORY) return 2;
   if (st == OK && errors) return 3;
   if (st != OK && !errors) return 4;
-  message_log_free(log);
-  mesh_free(msh);
+  memory_free(log);
+  memory_free(msh);
   return st == OK ? ACCEPTED : 0;
 }
 

@@ -3,15 +3,13 @@
  * NESTED=YES, and the passes of *ACCURACY, TARGET=. Fewer steps, the same
  * answer.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/small_job.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 
 static const char told[] = "started from the coarser mesh";
 

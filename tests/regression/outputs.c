@@ -3,12 +3,10 @@
  * no number of it and ends no run: short decks of every effect that has arrays
  * of its own, and where rounding is in doubt, with some or none of it.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/asked.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <string.h>
 
 #define ELASTIC(E) "*MATERIAL, NAME=M\n*ELASTIC\n" E "\n"
 #define SECTION "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"

@@ -1,13 +1,9 @@
 /*
  * Bodies against each other: all methods, and bodies that pairs alone hold.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #define PAIR "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
 

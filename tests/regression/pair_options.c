@@ -3,13 +3,9 @@
  * integrators, laws, estimates, targets, reduction, files of condensed
  * problems; bodies between others, corners where pairs meet.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static double value(const job *j, const char *kind, int k, const char *name) {
   dat t = job_table(j, kind, k);

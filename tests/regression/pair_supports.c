@@ -2,11 +2,9 @@
  * Pairs of bodies that supports hold or drive along the contact: friction, wear
  * and the slave that AUTO chooses.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* Two wedges without friction on each other, the lower one held at its right
  * side and its foot, the upper one at its left side: action is reaction, and

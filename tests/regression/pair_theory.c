@@ -3,12 +3,9 @@
  * two half planes with friction, the rigid obstacle as limit, Lame's rings
  * under heat, creep and a course of the interference, a tied cantilever.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -3,15 +3,12 @@
  * ties, a held master against the rigid plane, interference, and what is
  * refused.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Two blocks of pair.geo or pair3.geo: E and nu of both, cards of the contact,
  * supports, loads. */

@@ -3,11 +3,9 @@
  * Poisson's ratios and friction coefficients than the examples: indentation
  * (Spence), shear (Cattaneo, Mindlin), torsion (Lubkin), sliding (Johnson 8.3).
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
 
 const int job_without_fields = 1;
 

@@ -3,15 +3,12 @@
  * bounds of effects left out under loads that rise and fall, zones of a ring,
  * each component of a stress in the true error.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/grid.h"
 #include "support/tips.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double G = 500;
 
@@ -284,7 +281,7 @@ START_TEST(zones_of_revolution_are_rings) {
   job j = job_begin("turned");
   mesh *m = make_grid_2d((int[]){12, 4}, (double[]){2, 1});
   turned_mesh_write(&j, m, &none);
-  mesh_free(m);
+  memory_free(m);
   job_write(&j, "turned.inp",
             "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
@@ -332,7 +329,7 @@ START_TEST(directions_of_slip_part_where_there_is_none) {
   job j = job_begin("turned");
   mesh *m = make_grid_2d((int[]){8, 4}, (double[]){2, 1});
   turned_mesh_write(&j, m, &none);
-  mesh_free(m);
+  memory_free(m);
   job_write(&j, "turned.inp",
             "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.25\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"

@@ -3,14 +3,10 @@
  * unilateral contact with and without friction. Expected values are the
  * closed forms of homogeneous elasticity (E = 1000, load 10), derived below.
  */
+#include "base/base.h"
 #include "support/folder.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

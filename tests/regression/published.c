@@ -2,11 +2,9 @@
  * Problems with published or closed solutions: the GRECO block (test SSNV128),
  * Hertz line and sphere, Spence's indentation against its one-step shortcut.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
 
 /* u_x at the base in mm; converged values of crossed meshes of 256 squares. */
 static const double greco_x[] = {0.0, 1.25, 5.0, 7.5, 11.25};

@@ -3,11 +3,9 @@
  * friction and bonded (friction that always sticks), plane and axisymmetric, in
  * closed form; a ball with friction (Spence).
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
 
 const int job_without_fields = 1;
 

@@ -4,16 +4,13 @@
  * second pass. The answer is that of the whole problem, which is what is solved
  * where the condensed problem is written (*OUTPUT, CONDENSED=FCLIB).
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char head[] =
     "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"

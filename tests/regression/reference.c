@@ -5,13 +5,9 @@
  * integrals of polynomials, below. Hertz's half plane, whose stresses the
  * example has in closed form: the estimate beside the true error.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct scene {
   const char *geo, *section, *nu, *reference, *supports;

@@ -3,15 +3,13 @@
  * that was not: all files equal, byte by byte. The points of interruption are
  * counted in writes (the run is traced), so that nothing depends on time.
  */
+#include "base/base.h"
 #include "support/small_job.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
 #include <hdf5.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 static const char *const nothing[] = {NULL, NULL};

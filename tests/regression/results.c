@@ -2,13 +2,12 @@
  * What other programs and people read of a run: the contacts by name in tables
  * and JOB.json, tables as csv, the lines on a terminal.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/tips.h"
 #include "support/unit.h"
 
 #include <pty.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

@@ -6,15 +6,11 @@
  * What the listing tells is the error within a factor of ten; nothing is told
  * where nothing is lost; without a digit the run ends with exit code 6.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char wavy_x[] = "x + 0.05*sin(3.14159265358979*x)*sin(9*y)";
 static const char wavy_y[] = "y + 0.05*sin(6.28318530717959*y)*cos(7*x)";

@@ -2,12 +2,11 @@
  * protis --safe: what a deck names is read only where it is a plain file below
  * the folder of the deck, and never runs.
  */
+#include "base/base.h"
 #include "support/fclib_file.h"
 #include "support/job.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

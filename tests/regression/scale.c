@@ -3,14 +3,10 @@
  * the forces or the lengths leave every bit. Bodies of one scene may differ by
  * any power of ten.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

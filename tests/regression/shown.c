@@ -3,11 +3,9 @@
  * listing, tables, JSON, XDMF or HDF5, and nothing of a file that *INCLUDE
  * names but that is no deck.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <string.h>
 
 /* ESC, C1 as UTF-8 and as a byte, a mark of direction, Latin-1, DEL; what stays
  * is the e with its accent. */

@@ -6,14 +6,11 @@
  * Unit square, nu = 0, E = 1000, G = 500, pressed by 10 on a floor with
  * mu = 0.4: u_y = -0.01 y.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <hdf5.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Cards before the steps, the steps; the exit code. */
 static int write_and_run(job *j, int n, const char *before, const char *steps) {

@@ -2,13 +2,9 @@
  * What changes from step to step: supports set again, gravity that turns, force
  * left to a support, a contact whose body has no friction of its own.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Unit square, nu = 0, E = 1000, density 1; the cards after the material. */
 static job run_cards(const char *cards, int expected) {

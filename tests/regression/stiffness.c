@@ -2,13 +2,9 @@
  * STIFFNESS= of *SOLVER: the condensed matrix by its entries (DENSE) or by
  * products and solves (FACTOR) gives the same answers; AUTO takes the cheaper.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

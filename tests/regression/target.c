@@ -2,13 +2,10 @@
  * *ACCURACY, TARGET=: the error reached against a fine mesh, what stops the
  * passes, and what they tell.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* Hertz's block, frictionless, of NC segments on the half contact. */
 static int press(job *j, int nc, const char *accuracy, const char *words) {

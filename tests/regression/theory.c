@@ -3,14 +3,11 @@
  * of the triangle, bounds of increments, the rate of inelastic laws under given
  * friction (Theorem 3.2), the inequality on every example.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
 
 #include <glob.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -2,12 +2,9 @@
  * Thresholds and verdicts tried on both sides closely: what is just below is
  * taken, what is just above is refused.
  */
+#include "base/base.h"
 #include "support/tips.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double G = 500;
 

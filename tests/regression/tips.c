@@ -3,15 +3,12 @@
  * static problems, starts of inelastic strains and internal variables, heat
  * with coefficients that vary, works that balance.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/grid.h"
 #include "support/tips.h"
 #include "support/turned_mesh.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double G = 500, area = 0.70710678118654752; /* half an edge */
 
@@ -71,7 +68,7 @@ START_TEST(given_pressure_goes_by_area) {
   job j = job_begin("turned");
   mesh *m = make_grid_2d((int[]){4, 2}, (double[]){2, 1});
   turned_mesh_write(&j, m, &none);
-  mesh_free(m);
+  memory_free(m);
   job_write(&j, "turned.inp",
             "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"

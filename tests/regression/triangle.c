@@ -4,16 +4,13 @@
  * friction. K = area [(lambda + G) g g' + G |g|^2 I], g = grad of the P1
  * function of the free vertex.
  */
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/job.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

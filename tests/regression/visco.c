@@ -3,13 +3,9 @@
  * (E = 1000, nu = 0.3, relaxation time 2 unless said otherwise), energies, and
  * what elastic groups cost.
  */
+#include "base/base.h"
 #include "support/square_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 const int job_without_fields = 1;
 

@@ -3,12 +3,10 @@
  * on stderr, in the listing, in JSON, each once. A run that is gone on with
  * after its last increment writes the same listing.
  */
+#include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <string.h>
 
 /* A block held in x above a plane, pressed in ten increments; E is 1000. */
 static job run_block(double gap, const char *law, const char *cards,

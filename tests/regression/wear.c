@@ -2,14 +2,11 @@
  * *WEAR against closed forms: depth k p v t under a block that a belt passes,
  * and the flat that a cylinder gets.
  */
+#include "base/base.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A body pressed by 3 on a belt, E = 1000, nu = 0, 1 s at rest and 10 s at
  * "way"/10 a second; k = 1e-4. "cards" before the

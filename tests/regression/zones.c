@@ -2,12 +2,9 @@
  * Reading the result: zones with their ends between the nodes, slip distance
  * and direction, torque about an axis, loops of friction per contact.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* a = sqrt(4 P R / (pi E*)) of the line, cbrt(3 P R / (4 E*)) of the sphere. */
 START_TEST(radius_of_hertz_is_found_between_the_nodes) {

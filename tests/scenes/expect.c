@@ -3,12 +3,8 @@
  */
 #include "scenes/expect.h"
 
+#include "base/base.h"
 #include "deck/expression.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct expectation {
   char table[16], column[40], key[16], value[200];
@@ -29,7 +25,7 @@ static int one_holds(const char *text, double found, const double *x,
   char relation = *text == '<' || *text == '>' ? *text++ : '=';
   if (expression_compile(text, NULL, NULL, &e, &column) != OK) return 0;
   double value = expression_value(e, x, 0.0);
-  expression_free(e);
+  memory_free(e);
   if (relation == '<') return found <= value + tol;
   if (relation == '>') return found >= value - tol;
   return fabs(found - value) <= tol;

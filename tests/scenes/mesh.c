@@ -3,11 +3,8 @@
  */
 #include "scenes/mesh.h"
 
+#include "base/base.h"
 #include "deck/expression.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { GROUPS = 64, NAME = 24 };
 
@@ -210,7 +207,7 @@ static int map_nodes(grid_file *g, const mesh_change *c) {
     if (expression_compile(c->map[k], NULL, NULL, &e, &column) != OK) return 0;
     for (int i = 0; i < g->n_node; ++i)
       g->x[3 * i + k] = expression_value(e, &g->x[3 * i], 0.0);
-    expression_free(e);
+    memory_free(e);
   }
   return 1;
 }

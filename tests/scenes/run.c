@@ -1,14 +1,12 @@
 /*
  * Rows times columns: decks, runs, verdicts, the matrix.
  */
+#include "base/base.h"
+#include "material/scheme/scheme.h"
 #include "scenes/expect.h"
 #include "scenes/scenes.h"
-#include "material/scheme/scheme.h"
 #include "solver/solver.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -9,15 +9,12 @@
  *
  * EFFECTS_SCENES=n,first: how many, from which on.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { ROOM = 6000 };
 

@@ -3,10 +3,9 @@
  */
 #include "support/asked.h"
 
+#include "base/base.h"
+
 #include <check.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char *const prints[] = {NULL,       "",          "CONTACT, TOTALS",
                                      "ELEMENTS", "REACTIONS", "ZONES, LOOP",

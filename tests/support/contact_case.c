@@ -1,11 +1,10 @@
 /* Contact problems for the tests of the solvers. */
 #include "support/contact_case.h"
 
+#include "base/base.h"
+
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 double case_random(unsigned long long *seed) {
   *seed ^= *seed << 13;

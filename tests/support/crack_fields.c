@@ -1,8 +1,8 @@
 #include "support/crack_fields.h"
 
+#include "base/base.h"
+
 #include <complex.h>
-#include <math.h>
-#include <stdlib.h>
 
 typedef double complex number;
 
@@ -34,8 +34,6 @@ void tip_displacement(const void *field, const double *y, int side, double *u) {
 
 void tip_traction(const void *field, const double *y, int side, double *t) {
   const tip_field *f = field;
-  (void)y;
-  (void)side;
   t[0] = f->stress[1];
   t[f->dim - 1] = f->stress[0];
 }
@@ -137,7 +135,6 @@ void disc_displacement(const void *field, const double *y, int side,
 void disc_traction(const void *field, const double *y, int side, double *t) {
   const disc_field *d = field;
   double rho, e[2];
-  (void)side;
   axes(y, &rho, e);
   if (rho > 1 - 1e-9) return;
   const family f = functions(rho, 0);

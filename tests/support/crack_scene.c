@@ -1,11 +1,7 @@
 #include "support/crack_scene.h"
 
+#include "base/base.h"
 #include "mesh/crack/crack.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static void must(int held, const char *what) {
   if (held) return;
@@ -52,8 +48,7 @@ void scene_start(crack_scene *s, mesh *m, double height,
   must(message_log_new(&log) == OK, "log");
   must(mesh_open(m, cut[1].group ? 2 : 1, cut, log, crack) == OK, "opening");
   s->crack = crack[0];
-  mesh_crack_free(&crack[1]);
-  message_log_free(log);
+  memory_free(log);
   s->y = zeroed(3 * m->n_node, sizeof *s->y);
   for (int i = 0; i < m->n_node; ++i) {
     for (int c = 0; c < dim; ++c) s->y[3 * i + c] = m->x[dim * i + c];
@@ -137,13 +132,12 @@ fracture_factors *scene_factors(const crack_scene *s, int *n,
   *points = zeroed(*n, sizeof **points);
   memcpy(*points, fracture_points(f), (size_t)*n * sizeof **points);
   fracture_find(f, &state, out);
-  fracture_free(f);
+  memory_free(f);
   return out;
 }
 
 void scene_end(crack_scene *s) {
-  mesh_crack_free(&s->crack);
-  mesh_free(s->m);
+  memory_free(s->m);
   free(s->section);
   free(s->y);
   free(s->side);

@@ -1,16 +1,12 @@
 /*
  * The deck of the creeping block and its runs.
  */
-#include "support/creep_case.h"
+#include "base/base.h"
 #include "effects/rows.h"
-
 #include "run/history/history.h"
+#include "support/creep_case.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct follower {
   creep_end *end;

@@ -3,11 +3,10 @@
  */
 #include "support/decks.h"
 
+#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 static char text[60000]; /* messages of the last deck */
@@ -55,8 +54,8 @@ read_deck decks_read(const char *file, int n, const char *const *define) {
 }
 
 void decks_done(read_deck *r) {
-  deck_free(r->d);
-  message_log_free(r->log);
+  memory_free(r->d);
+  memory_free(r->log);
 }
 
 read_deck decks_read_text(const char *content) {

@@ -1,10 +1,7 @@
 #include "support/fclib_file.h"
 
+#include "base/base.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 hid_t fclib_begin(const char *path) {
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);

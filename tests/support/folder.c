@@ -2,11 +2,10 @@
 #define _GNU_SOURCE /* nftw */
 #include "support/folder.h"
 
+#include "base/base.h"
+
 #include <check.h>
 #include <ftw.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -22,7 +21,6 @@ char *folder_new(char path[64]) {
 /* Folders that cannot be written are in some tests. */
 static int allow(const char *path, const struct stat *is, int kind,
                  struct FTW *at) {
-  (void)at;
   return kind == FTW_D || kind == FTW_DNR ? chmod(path, is->st_mode | 0700) : 0;
 }
 

@@ -1,6 +1,7 @@
 /* Quantities of expressions. */
 #include "support/formula.h"
 
+#include "base/base.h"
 #include "deck/expression.h"
 
 #include <check.h>
@@ -13,6 +14,6 @@ void formula_compile(quantity *q, const char *text) {
 }
 
 void formula_release(quantity *q) {
-  expression_free((expression *)q->formula);
+  memory_free((expression *)q->formula);
   q->formula = NULL;
 }

@@ -3,11 +3,9 @@
  */
 #include "support/fuzz_file.h"
 
+#include "base/base.h"
 #include "support/fuzz.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 const char *__lsan_default_suppressions(void) { return "leak:libhdf5"; }

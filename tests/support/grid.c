@@ -1,10 +1,7 @@
 /* Rectangles and boxes; every block comes from base/memory.h. */
 #include "support/grid.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const char *const side_names[] = {"LEFT", "RIGHT", "BOTTOM",
                                          "TOP",  "FRONT", "BACK"};
@@ -13,6 +10,7 @@ static mesh *new_mesh(int dim, int n_node, int n_elem, int n_face,
                       int n_group) {
   mesh *m = memory_new(1, sizeof *m);
   if (m == NULL) return NULL;
+  OWNS(m);
   m->dim = dim;
   m->n_node = n_node;
   m->n_elem = n_elem;
@@ -33,7 +31,7 @@ static mesh *new_mesh(int dim, int n_node, int n_elem, int n_face,
     for (int f = 0; f < n_face; ++f) m->face_other[f] = -1;
     return m;
   }
-  mesh_free(m);
+  memory_free(m);
   return NULL;
 }
 
@@ -52,6 +50,7 @@ static void set_size(mesh *m) {
 static int set_group(mesh *m, int id, const char *name, int first_item,
                      int n_item) {
   mesh_group *g = &m->group[id];
+  OWNS(m);
   const int body = id == 0, per = body ? m->dim + 1 : m->dim;
   const int *nodes = body ? m->elem : m->face;
   unsigned char *used = memory_new((size_t)m->n_node, 1);
@@ -113,7 +112,7 @@ static mesh *with_sides(mesh *m, const double *length) {
     done = set_group(m, side + 1, side_names[side], first, n_face - first);
   }
   if (done) return m;
-  mesh_free(m);
+  memory_free(m);
   return NULL;
 }
 
@@ -179,6 +178,6 @@ mesh *grid_join(const mesh *a, const mesh *b, const double *shift) {
     m->elem[per * a->n_elem + i] = b->elem[i] + a->n_node;
   set_size(m);
   if (set_group(m, 0, "BODY", 0, m->n_elem)) return m;
-  mesh_free(m);
+  memory_free(m);
   return NULL;
 }

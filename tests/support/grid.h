@@ -10,7 +10,7 @@
 #include "mesh/mesh.h"
 
 /* n[d] cells over [0, length[d]] in each of dim directions; NULL without
- * memory. Free with mesh_free. */
+ * memory. Free with memory_free. */
 mesh *make_grid_2d(const int n[2], const double length[2]);
 mesh *make_grid_3d(const int n[3], const double length[3]);
 /* Both meshes side by side in one, nodes of b (moved by shift[dim]) after

@@ -1,9 +1,6 @@
 #include "support/inner_group.h"
 
-#include "base/memory.h"
-
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static void *must(void *p) {
   if (p == NULL) abort();
@@ -80,6 +77,7 @@ static int *sorted(int *n, const int *list) {
 }
 
 void add_side_group(mesh *m, const char *name, take_side *take) {
+  OWNS(m);
   mesh_group *g = new_group(m, name, m->dim - 1);
   const size_t most = (size_t)((m->dim + 1) * m->n_elem);
   int *item = must(memory_new(most, sizeof *item)), n = 0, v[3];
@@ -101,6 +99,7 @@ void add_side_group(mesh *m, const char *name, take_side *take) {
 }
 
 void add_node_group(mesh *m, const char *name, int n, const int *node) {
+  OWNS(m);
   mesh_group *g = new_group(m, name, 0);
   g->n_node = n;
   g->node_id = sorted(&g->n_node, node);

@@ -3,8 +3,7 @@
  */
 #include "support/kept_mesh.h"
 
-#include <stdio.h>
-#include <stdlib.h>
+#include "base/base.h"
 
 void kept_mesh(const job *j) {
   const char *all = getenv("PROTIS_MESHES"); /* of tools/run_tests */

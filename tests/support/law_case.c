@@ -114,8 +114,9 @@ int law_case_new(const law_ops *ops, int words, const char *data, double young,
 }
 
 void law_case_free(law_case *c) {
-  law_card_free(&c->card);
-  expression_free(c->formula);
+  RELEASE((void *)c->card.param, c->card.temperature, c->card.value,
+          c->formula);
+  c->card = (law_card){0};
   c->formula = NULL;
 }
 

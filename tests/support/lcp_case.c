@@ -1,11 +1,8 @@
 /* Linear complementarity problems (lcp_case.h). */
 #include "support/lcp_case.h"
 
+#include "base/base.h"
 #include "support/contact_case.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct maker {
   lcp_case *c;
@@ -128,7 +125,6 @@ static void make_random(const maker *m, lcp_family family) {
 
 /* w_i = -1 + g_i g'z with g of both signs. */
 static void make_flat(const maker *m, lcp_family family) {
-  (void)family;
   int n = m->c->n;
   for (int i = 0; i < n; ++i)
     m->c->z[i] = i == 0 ? 1.0 : i == n - 1 ? -1.0 : number(m);
@@ -139,7 +135,6 @@ static void make_flat(const maker *m, lcp_family family) {
 
 /* Contacts with (p, b+, b-, y) each, W of rank n/4 of n/2, mu = 0.7. */
 static void make_friction(const maker *m, lcp_family family) {
-  (void)family;
   int n = m->c->n, contacts = n / 4, rank = contacts;
   double *H = calloc((size_t)(2 * contacts * rank) + 1, sizeof *H);
   for (int k = 0; k < 2 * contacts * rank; ++k) H[k] = number(m);

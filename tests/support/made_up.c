@@ -1,13 +1,8 @@
-#include "support/made_up.h"
+#include "base/base.h"
 #include "effects/rows.h"
-
-#include "base/memory.h"
 #include "support/grid.h"
+#include "support/made_up.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 double made_up_value(int array, int item, int total_no) {
@@ -188,7 +183,7 @@ void made_up_advance(made_up *run, int total_no) {
 }
 
 void made_up_free(made_up *run) {
-  mesh_free(run->msh);
+  memory_free(run->msh);
   memory_free(run->surface.node_id);
   memory_free(run->surface.node_no);
   memory_free(run->surface.contact_id);

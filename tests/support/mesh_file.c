@@ -1,11 +1,7 @@
 #include "support/mesh_file.h"
 
+#include "base/base.h"
 #include "support/folder.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static void must(int held, const char *what) {
   if (held) return;
@@ -54,7 +50,7 @@ mesh *mesh_file_from(mesh_file *f, const mesh_source *source) {
   must(out != NULL, "text");
   message_print(log, out);
   fclose(out);
-  message_log_free(log);
+  memory_free(log);
   return m;
 }
 

@@ -1,7 +1,6 @@
 #include "support/msh_write.h"
 
-#include <stdio.h>
-#include <stdlib.h>
+#include "base/base.h"
 
 static void write_element(FILE *to, const mesh *m, const mesh_group *g,
                           int id) {

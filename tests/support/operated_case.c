@@ -1,13 +1,11 @@
 /* A contact problem whose stiffness is an operator (operated_case.h). */
 #include "support/operated_case.h"
 
+#include "base/base.h"
 #include "solver/choice/choice.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double LARGER = 1.7; /* -, diagonal said over the true one       */
 
@@ -93,10 +91,7 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
   apply(ctx, x, Ax);
 }
 
-static void set_response(void *ctx, const unsigned char *at) {
-  (void)ctx;
-  (void)at;
-}
+static void set_response(void *ctx, const unsigned char *at) {}
 
 static void response(void *ctx, const double *b, double *x, double *Ax) {
   const operated_case *o = ctx;
@@ -175,7 +170,7 @@ operated_case *operated_new(contact_case *c) {
 void operated_free(operated_case *o, contact_case *c) {
   c->cp.A = o->of.A;
   c->cp.op = NULL;
-  contact_bodies_free(o->bodies);
+  memory_free(o->bodies);
   free(o->known);
   free(o->M);
   free(o->y);

@@ -1,11 +1,9 @@
 #include "support/planted.h"
 
+#include "base/base.h"
 #include "support/contact_case.h"
 
 #include <check.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static double *numbers(int n) {
   double *x = calloc((size_t)n + 1, sizeof *x);
@@ -111,7 +109,7 @@ void planted_free(planted *p) {
   free(p->B->start);
   free(p->B->col);
   free(p->B);
-  sparse_blocks_free(p->blocks);
+  memory_free(p->blocks);
 }
 
 /* Natural map of a contact, in metres: the error of its forces over the step.

@@ -3,11 +3,9 @@
  */
 #include "support/point_body.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <check.h>
-#include <math.h>
-#include <string.h>
 
 /* x := inv(A) x, A[n*n] column major, by elimination with pivots. */
 static void solve(int n, double *A, double *x) {
@@ -69,11 +67,7 @@ static status equilibrium(void *ctx, flow_state *s, int *settled) {
   return OK;
 }
 
-static status begin(void *ctx, flow_state *s) {
-  (void)ctx;
-  (void)s;
-  return OK;
-}
+static status begin(void *ctx, flow_state *s) { return OK; }
 
 static status linear(void *ctx, const flow_tangent *law, flow_state *s,
                      int *settled) {

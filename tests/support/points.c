@@ -3,11 +3,10 @@
  */
 #include "support/points.h"
 
+#include "base/base.h"
+
 #include <check.h>
 #include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 int points_all(void) { return getenv("PROTIS_POINTS") != NULL; }
 

@@ -1,9 +1,6 @@
 #include "support/pressed_block.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static void must(status st) {
   if (st == OK) return;
@@ -65,7 +62,7 @@ void pressed_block_new(pressed_block *b, int dim, int nodes, int layers) {
 
 void pressed_block_free(pressed_block *b) {
   condensed_free(b->c);
-  stiffness_free(b->k);
+  memory_free(b->k);
   scene_free(b->s);
   free(b->F);
   free(b->ud);

@@ -1,11 +1,8 @@
 /* Rigid bodies in contact (rigid_scene.h). */
 #include "support/rigid_scene.h"
 
+#include "base/base.h"
 #include "support/fclib_file.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A body: mass, moment of inertia, centre; a contact: body above, body below or
  * FLOOR, point, normal from below to above and tangents. */

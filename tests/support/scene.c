@@ -1,9 +1,7 @@
 /* Domains for tests; memory failures end the test program. */
 #include "support/scene.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static void *get(size_t n, size_t size) {
   void *p = calloc(n + 1, size);
@@ -47,7 +45,7 @@ void scene_free(scene *s) {
   free(c->held);
   free(s->section_id);
   free(s->fixed);
-  mesh_free(s->m);
+  memory_free(s->m);
   free(s);
 }
 

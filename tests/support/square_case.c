@@ -3,10 +3,8 @@
  */
 #include "support/square_case.h"
 
+#include "base/base.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 job square_run(const square_case *s, int expected) {
   const int contact = strstr(s->model, "*CONTACT") != NULL;

@@ -1,7 +1,6 @@
 #include "support/stack.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static void *get(size_t n, size_t size) {
   void *p = calloc(n + 1, size);
@@ -25,8 +24,8 @@ static mesh *make_mesh(stack *k, double gap) {
     if (both == NULL) abort();
     k->first[b + 1] = both->n_node;
     if (b > 0) {
-      mesh_free(all);
-      mesh_free(one);
+      memory_free(all);
+      memory_free(one);
     }
     all = both;
   }

@@ -1,10 +1,9 @@
 /* Answers of a plane problem by trying all states (state_list.h). */
 #include "support/state_list.h"
 
+#include "base/base.h"
+
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { STATES = 4, MOST = 2 * MOST_LISTED_NODES };
 typedef enum { OPEN, STICK, SLIP_UP, SLIP_DOWN } node_state;

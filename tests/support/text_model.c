@@ -1,12 +1,11 @@
 /*
  * A model from the text of a deck, checked against a mesh made in memory.
  */
-#include "support/text_model.h"
+#include "base/base.h"
 #include "effects/rows.h"
+#include "support/text_model.h"
 
 #include <check.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 void text_model_read(text_model *s, const char *text, mesh *msh) {
@@ -27,8 +26,8 @@ void text_model_read(text_model *s, const char *text, mesh *msh) {
 }
 
 void text_model_close(text_model *s) {
-  model_free(s->m);
-  deck_free(s->d);
-  message_log_free(s->log);
-  mesh_free(s->msh);
+  memory_free(s->m);
+  memory_free(s->d);
+  memory_free(s->log);
+  memory_free(s->msh);
 }

@@ -1,7 +1,6 @@
 #include "support/tips.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 static const char triangles[] =
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n6\n"

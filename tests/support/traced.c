@@ -4,6 +4,7 @@
 #define _GNU_SOURCE /* process_vm_readv */
 #include "support/traced.h"
 
+#include "base/base.h"
 #include "support/kept_mesh.h"
 
 #include <check.h>
@@ -12,11 +13,7 @@
 #include <linux/filter.h>
 #include <linux/seccomp.h>
 #include <signal.h>
-#include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/prctl.h>
 #include <sys/ptrace.h>
 #include <sys/syscall.h>

@@ -1,9 +1,8 @@
 #include "support/turned_mesh.h"
 
+#include "base/base.h"
+
 #include <check.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 void turn_vector(const turn *t, double v[3]) {
   const double *a = t->axis;

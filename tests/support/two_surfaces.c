@@ -1,8 +1,8 @@
 #include "support/two_surfaces.h"
 
+#include "base/base.h"
+
 #include <check.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { MOST_NODES = 4000, MOST_FACES = 8000 };
 

@@ -7,6 +7,7 @@
  * library may do without (then all files are those of an undisturbed run) or
  * give up: 4, 5 or 7 with a message.
  */
+#include "base/base.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
 #include "support/small_job.h"
@@ -14,8 +15,6 @@
 #include "support/unit.h"
 
 #include <fcntl.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

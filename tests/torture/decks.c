@@ -7,12 +7,10 @@
  * DECKS=count,first: how many, from which seed on; DECKS_KEEP=1: what is lost
  * stays in its folder.
  */
+#include "base/base.h"
 #include "decks/twin.h"
 #include "support/points.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <string.h>
 
 typedef struct tally {
   points judged, twin[TWINS], restart;

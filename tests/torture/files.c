@@ -7,6 +7,7 @@
  * memory), or it did without and all files are those of an undisturbed run.
  * After a failure --restart gives these files too.
  */
+#include "base/base.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
 #include "support/small_job.h"
@@ -14,8 +15,6 @@
 #include "support/unit.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <string.h>
 
 static const char *const nothing[] = {NULL, NULL};
 static const char *const again[] = {"--restart", NULL};

@@ -3,6 +3,7 @@
  * --restart, killed itself or not, ends with the files of a run that nobody
  * disturbed. So it is after a second SIGINT, which ends a run at once.
  */
+#include "base/base.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
 #include "support/small_job.h"
@@ -10,10 +11,7 @@
 #include "support/unit.h"
 
 #include <hdf5.h>
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { MOST = 1000 };
 

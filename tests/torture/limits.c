@@ -3,13 +3,12 @@
  * any size ends with exit code 5 and says so, or with the files of a run
  * without limit; more increments than five digits come to their end.
  */
+#include "base/base.h"
 #include "support/block_file.h"
 #include "support/points.h"
 #include "support/traced.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/wait.h>
 
 static job block(int squares, int increments) {

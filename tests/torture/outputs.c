@@ -3,14 +3,13 @@
  * with other tables, fields and error estimates. The run ends as it does with
  * those of the deck, and its increments are the same to the last bit.
  */
+#include "base/base.h"
 #include "scenes/scenes.h"
 #include "support/asked.h"
 #include "support/points.h"
 #include "support/unit.h"
 
 #include <glob.h>
-#include <stdio.h>
-#include <string.h>
 
 /* An example (its path) or a scene. */
 typedef struct source {

@@ -5,6 +5,7 @@
  * friction. The stops are counted in changes of files, so that nothing depends
  * on time.
  */
+#include "base/base.h"
 #include "material/scheme/scheme.h"
 #include "support/kept_mesh.h"
 #include "support/points.h"
@@ -15,8 +16,6 @@
 
 #include <ctype.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 
 static const char *const nothing[] = {NULL, NULL};
 static const char *const again[] = {"--restart", NULL};

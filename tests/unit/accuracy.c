@@ -3,14 +3,10 @@
  * another method has brought to rounding, at every level of error.
  */
 #include "accuracy/accuracy.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { PARAM_SIZE = 512 };
 
@@ -51,7 +47,7 @@ static solver_error bound_of(const contact_problem *cp, const double *u,
   stiff.A = A;
   if (made) energy.stiffness = &stiff;
   ck_assert_int_eq(solver_error_bound(cp, &energy, u, r, NULL, &e), OK);
-  dense_inverse_free(inverse);
+  memory_free(inverse);
   free(A);
   return e;
 }

@@ -5,13 +5,10 @@
  */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/operated_case.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { NODES = 12, MODES = 6 };
 

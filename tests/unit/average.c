@@ -1,12 +1,9 @@
 /* src/contact/average: kernels, search, rows of the nonlocal average. Expected
  * values: closed forms, and sums over dense regular points that share nothing
  * with the quadrature of the program. */
+#include "base/base.h"
 #include "contact/average/average.h"
-#include "base/memory.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A patch that owns its arrays. */
 typedef struct owned {

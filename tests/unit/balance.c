@@ -4,13 +4,11 @@
  * geometry: nodes at x = 0, 1, 2, ... on y = 0, unknowns -y and x.
  */
 #include "accuracy/accuracy.h"
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { COLUMNS = 12, NODES = COLUMNS + 1, M = 2 * NODES };
 
@@ -49,7 +47,7 @@ static scene scene_new(double shear, int given) {
 
 static void scene_free(scene *s) {
   pair_free(&s->p);
-  dense_inverse_free(s->dense);
+  memory_free(s->dense);
   case_free(&s->c);
 }
 

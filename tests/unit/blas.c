@@ -1,10 +1,9 @@
 /* src/fem/blas.c: a lesser kernel is replaced once, the user's choice stays;
  * threads of the environment do not count. */
+#include "base/base.h"
 #include "fem/fem.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 int openblas_get_num_threads(void);

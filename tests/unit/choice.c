@@ -1,13 +1,11 @@
 /* METHOD=AUTO, forms of a problem, what is kept from problem to problem. */
+#include "base/base.h"
 #include "solver/choice/choice.h"
 #include "solver/solver.h"
-#include "support/planted.h"
 #include "support/contact_case.h"
+#include "support/planted.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A frictionless problem in stiffness form (form 0) or compliance form. */
 static solver_report solve_form(contact_case *c, int form) {

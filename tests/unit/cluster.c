@@ -1,15 +1,12 @@
 /* src/fem/cluster and the averaged elements of src/fem. */
 #include "fem/cluster/cluster.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const kinematics averaged_kinematics[] = {PLANE_STRAIN, AXISYMMETRIC,
                                                  SOLID_3D};
@@ -47,7 +44,7 @@ static scene *averaged_box(kinematics kin, int n, double nu, int flows) {
 }
 
 static void free_box(scene *s) {
-  cluster_free(s->d.cluster);
+  memory_free(s->d.cluster);
   scene_free(s);
 }
 
@@ -104,7 +101,7 @@ START_TEST(clusters_part_their_sections_and_hang_together) {
     ck_assert_double_eq(c->share[k], share[section]);
     ck_assert(_i % 2 || hangs_together(m, c, k));
   }
-  cluster_free(c);
+  memory_free(c);
   scene_free(s);
 }
 END_TEST
@@ -158,7 +155,7 @@ static void solve(scene *s, solved *v, const double *ud) {
   ck_assert_int_eq(condense_load(c, v->F, ud, NULL), OK);
   ck_assert_int_eq(condense_recover(c, NULL, v->u), OK);
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
 }
 
 static void fix_all_round(scene *s) {
@@ -180,7 +177,7 @@ START_TEST(every_refused_request_of_the_stiffness_is_told) {
     memory_refuse(0, 0);
     reached = memory_requests() - seen >= r;
     ck_assert_int_eq(st, reached ? ERR_MEMORY : OK);
-    stiffness_free(k);
+    memory_free(k);
     ck_assert_uint_eq(memory_in_use(), before);
   }
   scene_free(s);

@@ -1,13 +1,11 @@
 /* src/run/start/coarser.c, effects/errors/nested.c: contact problems that start
  * from the solution on a coarser mesh. */
+#include "base/base.h"
 #include "effects/rows.h"
 #include "run/history/history.h"
 #include "run/start/coarser.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { MOST = 400 };
 
@@ -100,7 +98,7 @@ START_TEST(node_is_the_nearest_of_its_contact) {
       ck_assert_int_eq(coarse.contact_id[nearest[i]], fine.contact_id[i]);
       ck_assert_double_eq(square(&fine, i, &coarse, nearest[i]), best);
     }
-    coarser_free(c);
+    memory_free(c);
   }
 }
 END_TEST
@@ -138,7 +136,7 @@ START_TEST(tractions_and_slip_are_those_in_space) {
         node.slip[0], slips ? 0.01 * (from[2] * f[2] + from[3] * f[3]) : 0,
         1e-16);
   }
-  coarser_free(c);
+  memory_free(c);
 }
 END_TEST
 
@@ -155,7 +153,7 @@ START_TEST(increments_are_found_by_their_time) {
   ck_assert_ptr_null(coarser_at(c, 0.25, 0));
   ck_assert_double_eq(coarser_time(coarser_at(c, 0.15, 1)), 0.2);
   ck_assert_ptr_null(coarser_at(c, 0.4, 1));
-  coarser_free(c);
+  memory_free(c);
 }
 END_TEST
 
@@ -250,10 +248,10 @@ START_TEST(coarser_mesh_saves_steps) {
   trace again = run_on(to_and_fro, 4, cold.kept, NULL);
   ck_assert_int_eq(again.iterations[0], 1);
   ck_assert_double_lt(far_apart(&cold, &again), 1e-12);
-  coarser_free(coarse.kept);
-  coarser_free(cold.kept);
-  coarser_free(fine.kept);
-  coarser_free(again.kept);
+  memory_free(coarse.kept);
+  memory_free(cold.kept);
+  memory_free(fine.kept);
+  memory_free(again.kept);
 }
 END_TEST
 
@@ -265,9 +263,9 @@ START_TEST(later_increments_start_from_what_is_nearer) {
   ck_assert_int_eq(fine.started, 1);
   for (int k = 1; k < 4; ++k)
     ck_assert_int_eq(fine.iterations[k], cold.iterations[k]);
-  coarser_free(coarse.kept);
-  coarser_free(cold.kept);
-  coarser_free(fine.kept);
+  memory_free(coarse.kept);
+  memory_free(cold.kept);
+  memory_free(fine.kept);
 }
 END_TEST
 
@@ -307,10 +305,10 @@ START_TEST(wrong_start_changes_no_answer) {
     ck_assert_int_ge(fine.started, 1);
     ck_assert_msg(far_apart(&cold, &fine) < 1e-12, "start %d: %g", k,
                   far_apart(&cold, &fine));
-    coarser_free(wrong.kept);
-    coarser_free(fine.kept);
+    memory_free(wrong.kept);
+    memory_free(fine.kept);
   }
-  coarser_free(cold.kept);
+  memory_free(cold.kept);
 }
 END_TEST
 

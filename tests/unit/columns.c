@@ -1,14 +1,9 @@
 /* src/output/columns: over the tables, so that a new row is tested too. */
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "output/columns/columns.h"
 #include "support/made_up.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 START_TEST(every_row_has_unit_help_scene_and_value) {
   const column *c;

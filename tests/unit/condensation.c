@@ -1,12 +1,10 @@
 /* src/fem: condensation against dense elimination, recovery, bits. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 static scene *square(kinematics kin) {
   scene *s = scene_new(make_grid_2d((int[]){5, 4}, (double[]){1.5, 1}), kin, 7);
@@ -52,7 +50,7 @@ static scene *two_bodies(void) {
     scene_fix_node(s, 15, c);
   }
   scene_fix_node(s, 16, 0);
-  mesh_free(a);
+  memory_free(a);
   return s;
 }
 
@@ -227,7 +225,7 @@ static void solve(const scene *s, stiffness **k, condensed **c) {
 
 static void end(scene *s, stiffness *k, condensed *c) {
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
   scene_free(s);
 }
 
@@ -519,7 +517,7 @@ static status whole_way(const scene *s, double *work) {
   if (st == OK) st = condense_recover(c, work + N, work + 2 * N);
   if (st == OK) work[3 * N] = condensed_condition(c);
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
   return st;
 }
 
@@ -559,7 +557,7 @@ static void is_singular(scene *s, const char *part) {
   ck_assert_int_eq(condense(k, &s->d, &c), ERR_SINGULAR);
   ck_assert_ptr_null(c);
   ck_assert_msg(strstr(status_message(), part) != NULL, "%s", status_message());
-  stiffness_free(k);
+  memory_free(k);
   scene_free(s);
 }
 

@@ -9,6 +9,7 @@
  * of many bodies, with a sparse compliance that may be singular or badly
  * scaled, have a planted answer and a natural map of their own.
  */
+#include "base/base.h"
 #include "support/operated_case.h"
 #include "support/planted.h"
 #include "support/points.h"
@@ -17,8 +18,6 @@
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 static const double TOL = 1e-11; /* asked of the rows                     */
 static const double TOL_SOFT = 1e-10; /* by an inverse for some of them */

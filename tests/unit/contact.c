@@ -1,13 +1,10 @@
 /* src/contact/contact.c */
+#include "base/base.h"
 #include "contact/contact.h"
 #include "contact/reach.h"
-#include "support/planted.h"
 #include "support/contact_case.h"
+#include "support/planted.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* One node, K = diag(kn, kt), pushed by fn onto the floor and sheared by ft. */
 static contact_case one_node(double kn, double kt, double mu) {
@@ -405,8 +402,8 @@ START_TEST(blocks_give_the_residual_of_all_entries) {
     double want = contact_residual(&all, p.u, p.r);
     ck_assert_double_le(fabs(have - want), 1e-12 * fmax(1.0, want));
     ck_assert((want > 1e-6) == (k % 3 > 0));
-    contact_bodies_free(one);
-    contact_bodies_free(two);
+    memory_free(one);
+    memory_free(two);
     planted_free(&p);
   }
 }

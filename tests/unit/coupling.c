@@ -1,12 +1,10 @@
 /* src/fem/coupling.c and the stiffness of nodes that move with others: against
  * the definition of their displacements, row by row, and works by both. */
+#include "base/base.h"
 #include "fem/cluster/cluster.h"
 #include "fem/stiffness.h"
 #include "support/scene.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* Nodes of a grid that move with others, whatever their places: contact nodes
  * whose frames are oblique and whose components have parts of their own, and
@@ -132,7 +130,7 @@ START_TEST(displacements_are_relative_to_the_masters) {
   ck_assert_int_eq(c->n, _i < 2 ? 4 : 7);
   coupling_move(c, u);
   check_rows(&l, u, v);
-  coupling_free(c);
+  memory_free(c);
   free(u);
   free(v);
   scene_free(l.s);
@@ -156,7 +154,7 @@ START_TEST(loads_do_the_same_work_on_the_unknowns) {
     moved += to[i] * v[i];
   }
   ck_assert_double_eq_tol(moved, work, 1e-13);
-  coupling_free(c);
+  memory_free(c);
   free(to);
   free(u);
   free(F);
@@ -183,7 +181,7 @@ START_TEST(tied_nodes_pass_on_what_acts_on_them) {
     const int tied = c->of[i / dim] >= 0 && i != held;
     ck_assert_double_eq_tol(F[i], tied ? 0 : to[i], 1e-14);
   }
-  coupling_free(c);
+  memory_free(c);
   free(to);
   free(F);
   scene_free(l.s);
@@ -253,9 +251,9 @@ START_TEST(stiffness_does_the_same_work_on_the_unknowns) {
       free(a[i]);
     }
   }
-  stiffness_free(plain);
-  stiffness_free(k);
-  cluster_free(clusters);
+  memory_free(plain);
+  memory_free(k);
+  memory_free(clusters);
   scene_free(l.s);
 }
 END_TEST
@@ -268,7 +266,7 @@ START_TEST(nodes_that_move_with_each_other_are_an_error) {
   linked_new(&l, 2, NULL, circle);
   ck_assert_int_eq(coupling_new(&l.s->d, &c), ERR_MESH);
   ck_assert_ptr_nonnull(strstr(status_message(), "node 7 moves with"));
-  coupling_free(c);
+  memory_free(c);
   scene_free(l.s);
 }
 END_TEST

@@ -1,14 +1,11 @@
 /* src/base/archive: what an HDF5 file may not do, and what it may. */
-#include "base/archive/dataset.h"
 #include "base/archive/archive.h"
-
-#include "base/memory.h"
+#include "base/archive/dataset.h"
+#include "base/base.h"
+#include "base/system/input.h"
 #include "support/folder.h"
 #include "support/unit.h"
-#include "base/system/input.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { N = 1000 };

@@ -1,11 +1,9 @@
 /* src/deck: the grammar of the deck, good and wrong; each wrong deck with the
  * first line it is answered with. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/decks.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 
 /* ---- good decks -------------------------------------------------------- */

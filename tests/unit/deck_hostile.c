@@ -1,12 +1,8 @@
 /* src/deck on hostile input: mutated decks, refused memory, large decks. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/decks.h"
 #include "support/points.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const char seed_deck[] =
     "*HEADING\nBlock <N>\n*PARAMETER\nN = 32\nH = 1/<N> ** size\n"
@@ -85,11 +81,11 @@ START_TEST(a_refused_request_leaves_nothing_behind) {
     else
       ck_assert_int_eq(st, OK);
     ck_assert_int_eq(d != NULL, st == OK);
-    deck_free(d);
-    message_log_free(log);
+    memory_free(d);
+    memory_free(log);
     ck_assert_uint_eq(memory_in_use(), before);
   }
-  deck_free(NULL);
+  memory_free(NULL);
   decks_leave();
 }
 END_TEST

@@ -1,11 +1,8 @@
 /* src/material/elastic.c against numbers derived by hand or by inversion. */
 #include "material/material.h"
 
+#include "base/base.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static char why[200];
 

@@ -1,5 +1,5 @@
 /* src/exchange: problems of every storage, files of every defect. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "exchange/exchange.h"
 #include "support/contact_case.h"
 #include "support/decks.h"
@@ -7,9 +7,6 @@
 #include "support/folder.h"
 #include "support/unit.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 static char folder[64], path[128];
@@ -38,7 +35,7 @@ static answer read_as(exchange_type type) {
   if (a.st != OK) snprintf(a.text, sizeof a.text, "%s", status_message());
   if (a.st == ERR_DECK || a.st == ERR_FILE)
     ck_assert_int_eq(message_count(log, ERROR), 1);
-  message_log_free(log);
+  memory_free(log);
   return a;
 }
 
@@ -114,7 +111,7 @@ START_TEST(compliance_of_few_blocks_is_kept_in_them) {
       ck_assert_int_eq(a.p->cp.blocks != NULL, few);
       ck_assert_int_eq(a.p->cp.W == NULL, few);
       check_local(a.p, dim, 4, W, q, mu, 1e-15);
-      exchange_free(a.p);
+      memory_free(a.p);
     }
   }
   leave();
@@ -135,7 +132,7 @@ START_TEST(every_storage_gives_the_same_problem) {
       answer a = read_as(k == 0 ? EXCHANGE_BY_CONTENT : EXCHANGE_FCLIB);
       ck_assert_msg(a.st == OK, "%s", a.text);
       check_local(a.p, dim, 3, W, q, mu, 1e-15);
-      exchange_free(a.p);
+      memory_free(a.p);
     }
   leave();
 }
@@ -222,7 +219,7 @@ START_TEST(global_problem_is_its_local_condensation) {
         ck_assert_msg(a.st == OK, "%s", a.text);
         ck_assert_int_eq(a.p->unknowns, NV);
         check_local(a.p, dim, NC, g->W, g->q, g->mu, 1e-9);
-        exchange_free(a.p);
+        memory_free(a.p);
       }
   leave();
   free(g);
@@ -246,7 +243,7 @@ START_TEST(unsymmetric_mass_is_eliminated_too) {
     answer a = read_as(EXCHANGE_FCLIB);
     ck_assert_msg(a.st == OK, "%s", a.text);
     check_local(a.p, 2, NC, g->W, g->q, g->mu, 1e-8);
-    exchange_free(a.p);
+    memory_free(a.p);
   }
   leave();
   free(g);
@@ -350,7 +347,7 @@ START_TEST(singular_mass_that_contact_holds_is_a_stiffness) {
     check_massless(a.p, W0, q0, h, f);
     for (int i = 0; i < NC; ++i)
       ck_assert_double_eq(a.p->cp.gap[i], g->w[3 * i]);
-    exchange_free(a.p);
+    memory_free(a.p);
   }
   leave();
   free(g);
@@ -371,7 +368,7 @@ START_TEST(entries_of_a_diagonal_given_twice_are_added) {
   ck_assert_double_eq(a.p->cp.A[3], 1.0);
   ck_assert_double_eq(a.p->cp.f[0], -3.0);
   ck_assert_double_eq(a.p->cp.f[1], 5.0);
-  exchange_free(a.p);
+  memory_free(a.p);
   leave();
 }
 END_TEST
@@ -388,7 +385,7 @@ START_TEST(no_contact_is_a_problem) {
     answer a = read_as(EXCHANGE_FCLIB);
     ck_assert_msg(a.st == OK, "%s", a.text);
     ck_assert_int_eq(a.p->m, 0);
-    exchange_free(a.p);
+    memory_free(a.p);
   }
   leave();
 }
@@ -549,7 +546,7 @@ START_TEST(local_constraints_are_eliminated) {
       ck_assert_msg(a.st == OK, "%s", a.text);
       ck_assert_int_eq(a.p->unknowns, m + LINKS);
       check_links(a.p, m, W, q, V, l, r);
-      exchange_free(a.p);
+      memory_free(a.p);
       if (!twice) continue;
       s[2] += 1.0;
       file = reopen();
@@ -607,7 +604,7 @@ START_TEST(global_constraints_are_eliminated) {
         got += a.p->cp.W[i + m * j] * (j % dim == 0 ? -r[j] : r[j]);
       ck_assert_double_eq_tol(i % dim == 0 ? -got : got, want, 1e-8);
     }
-    exchange_free(a.p);
+    memory_free(a.p);
   }
   leave();
   free(g);
@@ -704,10 +701,10 @@ START_TEST(text_is_read_by_rows) {
   ck_assert_mem_eq(a.p->matrix, M, sizeof M);
   ck_assert_double_eq(a.p->load[0], 5.0);
   ck_assert_double_eq(a.p->load[1], 6.0);
-  exchange_free(a.p);
+  memory_free(a.p);
   a = read_text("0\n");
   ck_assert_int_eq(a.st, OK);
-  exchange_free(a.p);
+  memory_free(a.p);
   leave();
 }
 END_TEST
@@ -749,7 +746,7 @@ static void refuse_all(void) {
     memory_refuse(k, 0);
     status st = exchange_read(path, EXCHANGE_BY_CONTENT, &at, log, &p);
     memory_refuse(0, 0);
-    exchange_free(p);
+    memory_free(p);
     ck_assert_uint_eq(memory_in_use(), before);
     if (st == OK) {
       ck_assert_int_gt(k, 3);
@@ -758,7 +755,7 @@ static void refuse_all(void) {
     ck_assert_int_eq(st, ERR_MEMORY);
     ck_assert_ptr_null(p);
   }
-  message_log_free(log);
+  memory_free(log);
 }
 
 START_TEST(every_refused_request_is_reported) {

@@ -1,16 +1,11 @@
 /* src/deck/expression.c against the same formulas written in C. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "deck/expression.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double X = 0.7, Y = -1.3, Z = 2.5, T = 0.4;
 
 static int symbol(const void *ctx, const char *name, double *value) {
-  (void)ctx;
   if (strcmp(name, "H") == 0) *value = 0.05;
   if (strcmp(name, "LONG_NAME_2") == 0) *value = 7;
   return strcmp(name, "H") == 0 || strcmp(name, "LONG_NAME_2") == 0;
@@ -23,7 +18,7 @@ static double value_of(const char *text) {
   status st = expression_compile(text, symbol, NULL, &e, &column);
   ck_assert_msg(st == OK, "%s: %s", text, status_message());
   double v = expression_value(e, x, T);
-  expression_free(e);
+  memory_free(e);
   return v;
 }
 
@@ -204,7 +199,7 @@ START_TEST(variables_are_those_that_occur) {
     ck_assert_int_eq(
         expression_compile(cases[i].text, symbol, NULL, &e, &column), OK);
     ck_assert_uint_eq(expression_variables(e), cases[i].bits);
-    expression_free(e);
+    memory_free(e);
   }
 }
 END_TEST
@@ -222,7 +217,7 @@ static status compile_nested(const char *open, const char *close, int n) {
   const double x[3] = {0, 0, 0};
   status st = expression_compile(text, NULL, NULL, &e, &column);
   if (st == OK) (void)expression_value(e, x, 0);
-  expression_free(e);
+  memory_free(e);
   free(text);
   return st;
 }
@@ -273,10 +268,10 @@ START_TEST(a_refused_request_leaves_nothing_behind) {
     refused = k <= memory_requests() - start;
     memory_refuse(0, 0);
     ck_assert_int_eq(st, refused ? ERR_MEMORY : OK);
-    expression_free(e);
+    memory_free(e);
     ck_assert_uint_eq(memory_in_use(), before);
   }
-  expression_free(NULL);
+  memory_free(NULL);
 }
 END_TEST
 

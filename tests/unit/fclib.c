@@ -1,15 +1,11 @@
 /* src/output/fclib.c: what stands in the file, what is refused. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "exchange/exchange.h"
 #include "output/writers.h"
 #include "support/contact_case.h"
 #include "support/fclib_file.h"
 #include "support/folder.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static char folder[64], path[128];
 
@@ -98,8 +94,8 @@ START_TEST(singular_stiffness_is_written_as_global) {
   ck_assert_mem_eq(p->cp.f, c.f, 2 * sizeof *c.f);
   ck_assert_double_eq(p->cp.gap[0], 0.5);
   ck_assert_double_eq(p->cp.ut0[0], 0.25);
-  exchange_free(p);
-  message_log_free(log);
+  memory_free(p);
+  memory_free(log);
   case_free(&c);
   leave();
 }

@@ -1,10 +1,8 @@
 /* src/solver/fixed_point.c: the loops on the sliding limit. */
+#include "base/base.h"
 #include "solver/fixed_point.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* The contraction of the fixed point on the limit is mu/mu_crit while the node
  * slips against its coupling; mu_crit = (2 (1-nu) gt^2 + (1-2 nu) gn^2)/|gt
@@ -90,8 +88,8 @@ START_TEST(rounding_of_the_inner_solver_is_met_once) {
   ck_assert_int_eq(rep.outcome, CONVERGED);
   ck_assert_int_gt(rep.iterations, 1000);
   ck_assert_int_lt(rep.iterations, 2000);
-  solver_release(&newton_solver, work);
-  fixed_point_free(fp);
+  memory_free(work);
+  memory_free(fp);
   case_free(&c);
 }
 END_TEST

@@ -1,15 +1,11 @@
 /* src/fracture: K and J from displacements that are known */
-#include "base/memory.h"
+#include "base/base.h"
 #include "fracture/parts.h"
 #include "support/crack_fields.h"
 #include "support/grid.h"
 #include "support/inner_group.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const fracture_material strain_steel = {1000, 0.3, 0};
 static const fracture_material stress_steel = {1000, 0.3, 1};
@@ -658,7 +654,7 @@ static void check_linear(const crack_scene *s, int point, double near) {
     ck_assert_double_eq_tol(by_flux, by_u, near * size);
     fracture_linear_free(&l);
   }
-  fracture_free(f);
+  memory_free(f);
   drop(&a);
 }
 
@@ -707,7 +703,7 @@ START_TEST(each_refused_request_is_an_error_and_frees_all) {
     refused = k <= memory_requests() - start;
     memory_refuse(0, 0);
     ck_assert_int_eq(st, refused ? ERR_MEMORY : OK);
-    fracture_free(f);
+    memory_free(f);
     ck_assert_uint_eq(memory_in_use(), before);
   }
   scene_end(&s);

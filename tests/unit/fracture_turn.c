@@ -1,11 +1,10 @@
 /* src/fracture: bodies that turn, and the sides of a crack */
+#include "base/base.h"
 #include "fracture/parts.h"
 #include "support/crack_fields.h"
 #include "support/grid.h"
 #include "support/inner_group.h"
 #include "support/unit.h"
-
-#include <math.h>
 
 static const fracture_material steel = {1000, 0.3, 0};
 static const double G = 1000 / 2.6;
@@ -92,7 +91,7 @@ static void check_derivative(const crack_scene *s, int point, const double *K) {
     ck_assert_double_eq_tol(sum, K[mode], 1e-11);
     fracture_linear_free(&l);
   }
-  fracture_free(f);
+  memory_free(f);
 }
 
 /* The same stresses in a body that is turned: the same K and J, with tractions

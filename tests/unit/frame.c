@@ -1,9 +1,7 @@
 /* src/contact/frame.c: orthonormal and oblique frames, fixed directions. */
+#include "base/base.h"
 #include "contact/parts.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 static double entry(int dim, const double *frame, const double *basis, int r,
                     int a) {

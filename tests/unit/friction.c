@@ -1,11 +1,8 @@
 /* src/contact/friction.c, none.c, tresca.c, coulomb.c: every law of the list.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/friction.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { N = 5 };
 
@@ -124,7 +121,7 @@ START_TEST(tresca_limit_is_traction_times_area) {
   ck_assert_double_eq(g.g0[4], 44 * 0.25);
   ck_assert_ptr_null(g.B.start);
   friction_limit_free(&g);
-  expression_free(e);
+  memory_free(e);
 }
 END_TEST
 

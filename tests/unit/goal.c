@@ -4,12 +4,11 @@
  * and its error against disturbed solutions; an operator against its matrix.
  */
 #include "accuracy/goal/goal.h"
+#include "base/base.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { NODES = 12, MOST = 3 * NODES };
 static const double TOL = 1e-14;
@@ -34,7 +33,7 @@ static void find_adjoint(goal_case *g, const double *u, const double *r) {
                    OK);
   memcpy(g->stick, contact_adjoint_stick(a),
          (size_t)g->c.cp.m * sizeof *g->stick);
-  contact_adjoint_free(a);
+  memory_free(a);
 }
 
 /* 1: a force acts on the unknown. */
@@ -178,7 +177,7 @@ static double change_of(const goal_case *g, const double *df, const double *ds,
   double sum = 0.0, dr[MOST];
   ck_assert_int_eq(contact_adjoint_new(&g->c.cp, g->c.u, g->c.r, &a), OK);
   ck_assert_int_eq(contact_adjoint_change(a, df, ds, du), OK);
-  contact_adjoint_free(a);
+  memory_free(a);
   contact_apply(&g->c.cp, du, dr);
   for (int k = 0; k < g->c.cp.m; ++k)
     sum += g->j[k] * du[k] + g->psi[k] * (dr[k] - df[k]);

@@ -1,10 +1,8 @@
 /* tests/support/grid.c: the meshes the other tests rest on. */
 #include "support/grid.h"
 
+#include "base/base.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 static double elem_measure(const mesh *m, int e) {
   const int *v = m->elem + (m->dim + 1) * e;
@@ -34,8 +32,8 @@ START_TEST(elements_fill_the_box_with_positive_measure) {
   measures_add_up(a, 10);
   measures_add_up(b, 6);
   ck_assert_double_eq(b->size, 3);
-  mesh_free(a);
-  mesh_free(b);
+  memory_free(a);
+  memory_free(b);
 }
 END_TEST
 
@@ -77,7 +75,7 @@ START_TEST(side_faces_point_outward_and_have_the_area_of_the_side) {
                                           : area,
                                 1e-12);
     }
-    mesh_free(m[k]);
+    memory_free(m[k]);
   }
 }
 END_TEST
@@ -90,8 +88,8 @@ START_TEST(joined_meshes_keep_both_bodies_apart) {
   measures_add_up(m, 2);
   for (int e = 8; e < 16; ++e)
     for (int k = 0; k < 3; ++k) ck_assert_int_ge(m->elem[3 * e + k], 9);
-  mesh_free(a);
-  mesh_free(m);
+  memory_free(a);
+  memory_free(m);
 }
 END_TEST
 

@@ -2,21 +2,17 @@
  * src/output/hdf5: JOB.h5 read back with the library; growth
  * and cutting; kills, full disks and refused memory.
  */
-#include <hdf5.h>
-
-#include "base/memory.h"
+#include "base/base.h"
 #include "output/hdf5/file.h"
 #include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
 
+#include <hdf5.h>
 #include <dirent.h>
 #include <fcntl.h>
 #include <linux/sched.h>
-#include <math.h>
 #include <signal.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

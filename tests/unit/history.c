@@ -1,14 +1,9 @@
 /* src/run/history: increments that are cut, rolled back, given up; energies. */
-#include "run/history/history.h"
+#include "base/base.h"
 #include "effects/rows.h"
-#include "base/memory.h"
+#include "run/history/history.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Pressed on a rough floor and pushed to and fro: path dependent. */
 #define DECK(dt)                                                    \

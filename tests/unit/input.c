@@ -1,11 +1,10 @@
 /* src/base/system/input.c: what is opened, and what is not. */
 #include "base/system/input.h"
 
+#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

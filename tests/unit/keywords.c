@@ -3,16 +3,13 @@
  * friction laws and inelastic laws: ranges and defaults as the manual and
  * physics demand, in a list of their own.
  */
+#include "base/base.h"
 #include "contact/friction.h"
 #include "material/law/law.h"
 #include "model/keyword/keyword.h"
 #include "solver/solver.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <float.h>
-#include <stdio.h>
-#include <string.h>
 
 #define ANY DBL_MAX
 #define POSITIVE DBL_MIN

@@ -2,12 +2,11 @@
  * Every inelastic law, by its row: what any law must satisfy. The states come
  * from random histories of stress, so that alpha is one that can be reached.
  */
+#include "base/base.h"
 #include "support/law_case.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 static const double young = 1e5, nu = 0.3, stress = 150;
 
@@ -426,11 +425,7 @@ static const option trial_fields[] = {
     OPTION_REAL(trial_value, tau, "tau", 1e-9, 1e9, "5", "time", "recovery"),
     OPTION_END};
 
-static int trial_n_alpha(const law_card *law, int ns) {
-  (void)law;
-  (void)ns;
-  return 3;
-}
+static int trial_n_alpha(const law_card *law, int ns) { return 3; }
 
 static const double swing = 100; /* k tau */
 

@@ -3,14 +3,10 @@
  * every law wrong in turn, tables over temperature, expressions of time, the
  * spellings of Abaqus, moduli after all terms have relaxed.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/law_case.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { TEXT = 4000, VALUES = 64 };
 
@@ -285,7 +281,7 @@ START_TEST(every_refused_request_is_reported) {
       const size_t before = memory_in_use();
       text_model s;
       read_deck(&s, "", cards[i]);
-      model_free(s.m);
+      memory_free(s.m);
       s.m = NULL;
       memory_refuse(k, 0);
       s.st = model_from_deck(s.d, s.log, &s.m);

@@ -1,12 +1,9 @@
 /* src/solver/lcp/lcp_solve.c: plain complementarity
  * problems of all kinds. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/lcp/lcp_solve.h"
 #include "support/lcp_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 static lcp_verdict solve(lcp_case *c, const lcp_control *control) {
   lcp_data p = {c->n, c->M, c->q};

@@ -1,13 +1,10 @@
 /* src/solver/lcp.c, lemke.c: complementary pivoting. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/pivoting/lemke.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* ---- plain problems ------------------------------------------------------ */
 
@@ -228,7 +225,7 @@ static solver_report solve_direct(const contact_case *c, int max_iter,
   ck_assert_int_eq(ray != NULL, rep.outcome == STOPPED_RAY);
   if (ray != NULL && motion != NULL)
     memcpy(motion, ray, (size_t)c->cp.m * sizeof *motion);
-  solver_release(&lemke_solver, work);
+  memory_free(work);
   return rep;
 }
 
@@ -567,7 +564,7 @@ START_TEST(every_refused_request_is_reported_without_loss) {
     memory_refuse(k, 0);
     status st = solver_set_up(&lemke_solver, &c.cp, param, &work);
     memory_refuse(0, 0);
-    solver_release(&lemke_solver, work);
+    memory_free(work);
     ck_assert_uint_eq(memory_in_use(), before);
     if (st == OK) break;
     ck_assert_int_eq(st, ERR_MEMORY);

@@ -1,12 +1,10 @@
 /* src/base/system/limits.c: groups of a folder that stands for the root. */
 #include "base/system/limits.h"
 
+#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

@@ -2,15 +2,12 @@
  * src/output/listing: blocks of the listing of a made-up run in which no number
  * is there twice, as they are to be read.
  */
+#include "base/base.h"
 #include "output/listing/job.h"
 #include "output/writers.h"
 #include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static made_up *made;
 static run_summary summary;
@@ -45,7 +42,6 @@ static status write_increment(const job *j, text_file *to) {
 }
 
 static status write_others(const job *j, text_file *to) {
-  (void)j;
   listing_between(&made->s, to);
   return listing_rejected(&made->s, "too long", to);
 }

@@ -1,11 +1,9 @@
 /* src/base/memory.c, status.c, timer.c */
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "support/unit.h"
 
 #include <SuiteSparse_config.h>
 #include <stdint.h>
-#include <string.h>
 
 START_TEST(bytes_in_use_return_to_the_start) {
   size_t before = memory_in_use();

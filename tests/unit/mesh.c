@@ -1,12 +1,8 @@
 /* src/mesh: what is read, in every format, and its geometry */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* A disc of radius 1 glued into a square of side 4: two bodies, one mesh. */
 static const char disc_geo[] =
@@ -146,7 +142,7 @@ START_TEST(disc_in_frame_has_its_areas_normals_and_groups) {
   check_closed(m, 1, (const char *[]){"12"}, 16.0);
   check_outward(m);
   check_order(m);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -180,7 +176,7 @@ START_TEST(cubes_have_their_volumes_normals_and_groups) {
   check_closed(m, 3, (const char *[]){"FOOT", "HEAD", "SIDES"}, 2.0);
   check_outward(m);
   check_order(m);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -210,10 +206,10 @@ static void check_formats(const char *geo) {
     ck_assert_msg(m != NULL, "%s: %s", name[i], f.messages);
     ck_assert_msg(mesh_same(direct, m, i % 2 ? 0.0 : 1e-15, &what), "%s: %s",
                   name[i], what);
-    mesh_free(m);
+    memory_free(m);
   }
-  mesh_free(direct);
-  mesh_free(plain);
+  memory_free(direct);
+  memory_free(plain);
   mesh_file_close(&f);
 }
 
@@ -237,9 +233,9 @@ START_TEST(meshing_twice_gives_the_same_bytes) {
   ck_assert_mem_eq(a->elem_no, b->elem_no,
                    (size_t)a->n_elem * sizeof *a->elem_no);
   ck_assert_int_gt(a->n_node, coarse->n_node);
-  mesh_free(a);
-  mesh_free(b);
-  mesh_free(coarse);
+  memory_free(a);
+  memory_free(b);
+  memory_free(coarse);
   mesh_file_close(&f);
 }
 END_TEST
@@ -263,7 +259,7 @@ START_TEST(numbers_reach_the_geometry) {
   for (int i = 0; i < m->n_node; ++i)
     for (int k = 0; k < 2; ++k) top[k] = fmax(top[k], m->x[2 * i + k]);
   ck_assert(top[0] == 1.0 / 3.0 && top[1] == 2e-5);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -303,8 +299,8 @@ START_TEST(sizes_reach_the_geometry) {
   }
   ck_assert_int_eq(m->n_group, old->n_group);
   free(size);
-  mesh_free(old);
-  mesh_free(m);
+  memory_free(old);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -324,9 +320,9 @@ START_TEST(scale_by_a_power_of_two_changes_no_digit) {
     ck_assert_mem_eq(a->elem, b->elem, 4 * (size_t)a->n_elem * sizeof(int));
     ck_assert_mem_eq(a->face, b->face, 3 * (size_t)a->n_face * sizeof(int));
     ck_assert(b->size == a->size * scale);
-    mesh_free(b);
+    memory_free(b);
   }
-  mesh_free(a);
+  memory_free(a);
   mesh_file_close(&f);
 }
 END_TEST
@@ -370,8 +366,8 @@ START_TEST(order_does_not_depend_on_the_numbers_of_the_file) {
   ck_assert_mem_eq(a->x, b->x, 2 * 441 * sizeof(double));
   ck_assert_mem_eq(a->elem, b->elem, 3 * (size_t)a->n_elem * sizeof(int));
   ck_assert(memcmp(a->node_no, b->node_no, 441 * sizeof(size_t)) != 0);
-  mesh_free(a);
-  mesh_free(b);
+  memory_free(a);
+  memory_free(b);
   mesh_file_close(&f);
 }
 END_TEST
@@ -391,8 +387,8 @@ START_TEST(order_of_close_nodes_is_that_of_their_coordinates) {
   ck_assert_msg(a != NULL && b != NULL, "%s", f.messages);
   ck_assert_mem_eq(a->x, b->x, 8 * sizeof(double));
   ck_assert_mem_eq(a->elem, b->elem, 6 * sizeof(int));
-  mesh_free(a);
-  mesh_free(b);
+  memory_free(a);
+  memory_free(b);
   mesh_file_close(&f);
 }
 END_TEST
@@ -416,7 +412,7 @@ START_TEST(flat_triangles_on_a_line_are_cut) {
     area += mesh_elem_measure(m, e);
   }
   ck_assert_double_eq_tol(area, 4.5, 1e-14);
-  mesh_free(m);
+  memory_free(m);
   /* Not across the border between two groups. */
   m = mesh_file_text(
       &f, "b.msh",
@@ -448,7 +444,7 @@ START_TEST(neighbours_are_close_in_memory) {
   }
   ck_assert_int_gt(m->n_node, 2000);
   ck_assert_double_lt(jump / m->n_elem, 0.06 * m->n_node);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -474,7 +470,7 @@ START_TEST(bodies_are_the_connected_parts) {
       ck_assert_int_eq(body[e] == body[o], left == other);
     }
   }
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -488,8 +484,8 @@ START_TEST(groups_are_found_by_name_and_the_nearest_is_offered) {
   ck_assert_str_eq(mesh_nearest_group(m, "FRAMES"), "FRAME");
   ck_assert_str_eq(mesh_nearest_group(m, "CENTER"), "CENTRE");
   ck_assert_ptr_null(mesh_nearest_group(m, "QUITE_DIFFERENT"));
-  mesh_free(m);
-  mesh_free(NULL);
+  memory_free(m);
+  memory_free(NULL);
   mesh_file_close(&f);
 }
 END_TEST
@@ -517,7 +513,7 @@ START_TEST(reader_gives_back_all_when_refused) {
     memory_refuse(k, 0);
     status st = raw_read(&request, &raw);
     memory_refuse(0, 0);
-    raw_free(&raw);
+    memory_free(raw);
     ck_assert_uint_eq(memory_in_use(), before);
     if (st == OK) break;
     ck_assert_int_eq(st, ERR_MEMORY);
@@ -546,12 +542,12 @@ START_TEST(builder_gives_back_all_when_refused) {
     if (k == 0) n = memory_requests() - first;
     if (st == OK) st = message_status(log, ERR_MESH); /* a message was lost */
     ck_assert_int_eq(st, k == 0 ? OK : ERR_MEMORY);
-    mesh_free(m);
-    message_log_free(log);
+    memory_free(m);
+    memory_free(log);
     ck_assert_uint_eq(memory_in_use(), before);
   }
   ck_assert_int_gt(n, 20);
-  raw_free(&raw);
+  memory_free(raw);
   mesh_file_close(&f);
 }
 END_TEST
@@ -569,7 +565,7 @@ START_TEST(bodies_give_back_all_when_refused) {
     ck_assert_uint_eq(memory_in_use(), before);
   }
   memory_refuse(0, 0);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST

@@ -1,14 +1,11 @@
 /* src/mesh: what is wrong with a mesh or its file, and how it is told */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
 
 #include <dirent.h>
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -268,7 +265,7 @@ START_TEST(every_remark_has_its_text_and_a_mesh) {
     mesh *m = mesh_file_text(&f, remarks[i].name, remarks[i].text);
     check_message(&f, &remarks[i]);
     ck_assert_msg(m != NULL && f.n_error == 0, "%s", f.messages);
-    mesh_free(m);
+    memory_free(m);
   }
   mesh_file_close(&f);
 }
@@ -304,7 +301,7 @@ START_TEST(flatness_has_no_unit) {
       ck_assert_msg((m != NULL) == cases[k].good, "2^%d, case %d: %s", power, k,
                     f.messages);
       ck_assert((strstr(f.messages, "P3022") == NULL) == cases[k].good);
-      mesh_free(m);
+      memory_free(m);
     }
   mesh_file_close(&f);
 }
@@ -327,7 +324,7 @@ START_TEST(bodies_that_hardly_enter_each_other_touch) {
     mesh *m = mesh_file_text(&f, "t.msh", text);
     const int told = strstr(f.messages, "overlap") != NULL;
     ck_assert_msg(told == (k > 2), "%g: %s", part[k], f.messages);
-    mesh_free(m);
+    memory_free(m);
   }
   mesh_file_close(&f);
 }
@@ -347,7 +344,7 @@ START_TEST(body_inside_of_another_is_seen) {
           "7 2 2 1 1 4 1 5\n8 2 2 1 1 4 5 8\n9 2 2 1 1 5 6 7\n"
           "10 2 2 1 1 5 7 8\n11 2 2 1 1 9 10 11\n"));
   ck_assert_ptr_nonnull(strstr(f.messages, "overlap"));
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -372,7 +369,7 @@ START_TEST(bodies_that_touch_do_not_overlap) {
     mesh *m = mesh_file_text(&f, "t.msh", text);
     ck_assert_msg(m != NULL && strstr(f.messages, "P3034") == NULL, "%d: %s", k,
                   f.messages);
-    mesh_free(m);
+    memory_free(m);
   }
   mesh_file_close(&f);
 }
@@ -436,7 +433,7 @@ START_TEST(builder_trusts_nothing) {
                          "faces",
                 40) == 0,
         "%s", text);
-    message_log_free(log);
+    memory_free(log);
   }
 }
 END_TEST

@@ -1,6 +1,6 @@
 /* src/mesh/child.c, raw.c: the process in which gmsh reads and meshes: how it
  * ends, what it leaves, what it must not do. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
@@ -8,9 +8,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,7 +26,7 @@ START_TEST(good_file_is_read_after_bad_ones) {
     ck_assert_int_eq(f.answer, ERR_MESH);
     mesh *m = mesh_file_text(&f, "good.msh", good_msh);
     ck_assert_msg(m != NULL && m->n_elem == 2, "%s", f.messages);
-    mesh_free(m);
+    memory_free(m);
   }
   mesh_file_close(&f);
 }
@@ -128,12 +125,12 @@ START_TEST(signals_do_not_disturb) {
   mesh *m = mesh_file_text(&f, "w.geo", wait_geo);
   ualarm(0, 0);
   ck_assert_msg(m != NULL && m->n_elem > 0, "%s", f.messages);
-  mesh_free(m);
+  memory_free(m);
   signal(SIGCHLD, SIG_IGN);
   m = mesh_file_text(&f, "w.geo", wait_geo);
   signal(SIGCHLD, SIG_DFL);
   ck_assert_msg(m != NULL && m->n_elem > 0, "%s", f.messages);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -208,7 +205,7 @@ START_TEST(want_of_memory_is_never_taken_for_a_bad_mesh) {
     in_gmsh += strstr(status_message(), "gmsh ran out of memory") != NULL;
     ck_assert_msg(answer == OK || answer == ERR_MEMORY, "%d MB: %s", (int)mb,
                   f.messages);
-    mesh_free(m);
+    memory_free(m);
   }
   ck_assert_int_eq(answer, OK);
   ck_assert_int_gt(in_gmsh, 0);
@@ -237,7 +234,7 @@ START_TEST(nothing_is_printed) {
   size_t n = fread(text, 1, sizeof text - 1, log);
   ck_assert_uint_eq(n, 4);
   ck_assert_str_eq(text, "mine");
-  mesh_free(m);
+  memory_free(m);
   fclose(log);
   close(out);
   close(err);
@@ -266,7 +263,7 @@ START_TEST(geometry_alone_makes_the_mesh) {
       "If (StrFind(GetEnv(\"HOME\"), \"protis\")) Error(\"home\"); EndIf\n");
   setenv("HOME", home, 1);
   ck_assert_msg(m != NULL && f.messages[0] == '\0', "%s", f.messages);
-  mesh_free(m);
+  memory_free(m);
   ck_assert_int_ne(access(ran, F_OK), 0);
   int n = 0;
   DIR *folder = opendir(f.folder);
@@ -292,7 +289,7 @@ START_TEST(options_of_merged_files_are_refused) {
     mesh *m = mesh_file_text(&f, "g.geo", text);
     ck_assert_msg((m != NULL) == (i == 0), "%s", f.messages);
     ck_assert_int_eq(strstr(f.messages, "options file of gmsh") != NULL, i > 0);
-    mesh_free(m);
+    memory_free(m);
   }
   mesh_file_close(&f);
 }
@@ -313,7 +310,7 @@ START_TEST(closed_streams_do_not_disturb) {
     close(kept[i]);
   }
   ck_assert_msg(m != NULL && m->n_elem > 0, "%s", f.messages);
-  mesh_free(m);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -367,7 +364,7 @@ START_TEST(rubbish_from_the_reader_is_refused) {
     raw_mesh *raw = memory_new(1, sizeof *raw);
     ck_assert_int_eq(raw_receive(ends[0], raw, &stopped), ERR_MESH);
     ck_assert_int_eq(stopped, n == 3); /* the last one is cut off */
-    raw_free(&raw);
+    memory_free(raw);
     close(ends[0]);
     ck_assert_uint_eq(memory_in_use(), before);
   }

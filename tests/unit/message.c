@@ -1,10 +1,7 @@
 /* src/base/message.c: order, caret, chain of includes, totals, manual. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/message.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static char text[20000]; /* what was printed last                             */
 
@@ -31,7 +28,7 @@ START_TEST(a_message_shows_place_line_and_caret) {
                    "      14 | *FRICTON, CONTACT=FOOT\n"
                    "         |            ^\n"
                    "1 error; protis --explain P1003 says what to do\n");
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -49,7 +46,7 @@ START_TEST(the_caret_stands_below_tabs_and_letters_of_two_bytes) {
                    "       1 | \tA\xC3\xA4,\tB\n"
                    "         | \t   \t ^\n"
                    "2 errors; protis --explain P1003 says what to do\n");
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -66,7 +63,7 @@ START_TEST(a_place_may_lack_column_line_or_file) {
                    "       3 | text\n"
                    "error P1003: three\n"
                    "3 errors; protis --explain P1003 says what to do\n");
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -95,7 +92,7 @@ START_TEST(messages_come_in_the_order_of_the_input) {
                                "c:90:1: error P1003: [5]\n"
                                "           included from b:2\n"
                                "           included from a:5\n"));
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -108,7 +105,7 @@ START_TEST(the_texts_are_copies) {
   memset(line, '#', sizeof line - 1);
   ck_assert_ptr_nonnull(strstr(printed(log), "a.inp:1:1"));
   ck_assert_ptr_nonnull(strstr(text, "| *STEP\n"));
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -125,7 +122,7 @@ START_TEST(a_long_line_is_cut_around_the_column) {
   ck_assert_ptr_nonnull(strstr(shown, "..."));
   ck_assert_int_eq((int)(hash - shown), (int)(strchr(below, '^') - below));
   ck_assert_uint_lt(strlen(text), 500);
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -135,7 +132,7 @@ START_TEST(control_characters_are_not_printed) {
   message_add(log, P1003, &at, "bad \x1b[31m");
   for (const char *p = printed(log); *p != '\0'; ++p)
     ck_assert((unsigned char)*p >= ' ' || *p == '\n');
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -146,7 +143,7 @@ START_TEST(a_text_longer_than_the_room_is_cut) {
   name[sizeof name - 1] = '\0';
   message_add(log, P1003, NULL, "unknown card *%s", name);
   ck_assert_ptr_nonnull(strstr(printed(log), "NNN...\n"));
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -168,7 +165,7 @@ START_TEST(after_a_hundred_errors_the_rest_is_counted) {
                                "--explain P1003 says what to do\n"));
   ck_assert_int_eq(message_status(log, ERR_MESH), ERR_MESH);
   ck_assert_str_eq(status_message(), "250 errors in the input");
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -179,8 +176,8 @@ START_TEST(an_empty_log_prints_nothing_and_is_ok) {
   message_add(log, P1030, NULL, "only a warning");
   ck_assert_int_eq(message_status(log, ERR_DECK), OK);
   ck_assert_str_eq(printed(log), "warning P1030: only a warning\n1 warning\n");
-  message_log_free(log);
-  message_log_free(NULL);
+  memory_free(log);
+  memory_free(NULL);
 }
 END_TEST
 
@@ -195,7 +192,7 @@ START_TEST(the_list_for_the_listing_has_no_folder_and_no_source) {
   message_list(log, WARNING, f);
   fclose(f);
   ck_assert_str_eq(text, "a.inp:2:3: warning P1030: one\n");
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 
@@ -256,7 +253,7 @@ START_TEST(without_memory_messages_are_counted_and_reported) {
     ck_assert_int_eq(message_status(log, ERR_DECK),
                      refused ? ERR_MEMORY : ERR_DECK);
     ck_assert_ptr_nonnull(strstr(printed(log), "20 errors"));
-    message_log_free(log);
+    memory_free(log);
     ck_assert_uint_eq(memory_in_use(), before);
   }
 }
@@ -268,7 +265,7 @@ START_TEST(printing_does_without_memory) {
   memory_refuse(1, 1);
   ck_assert_str_eq(printed(log), "error P1003: one\n1 error\n");
   memory_refuse(0, 0);
-  message_log_free(log);
+  memory_free(log);
 }
 END_TEST
 

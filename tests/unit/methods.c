@@ -1,13 +1,10 @@
 /* src/solver: the options of the rows. What every row must do with its
  * defaults is tested in solver.c. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { PARAM_SIZE = 512 };
 
@@ -190,7 +187,7 @@ START_TEST(displacements_are_refined_by_the_stiffness) {
       scale = fmax(scale, fabs(c.f[i] + c.r[i]));
     }
     ck_assert_double_le(most, 1e-10 * scale);
-    force_set_free(s);
+    memory_free(s);
     free(W);
     free(u);
     free(Au);
@@ -329,7 +326,7 @@ START_TEST(cycle_is_told_from_stagnation) {
         ck_assert_int_eq(solver_set_up(ops, &c.cp, param, &work), OK);
         ck_assert_int_eq(
             ops->solve(&c.cp, param, work, &control, c.u, c.r, &rep), OK);
-        solver_release(ops, work);
+        memory_free(work);
         if (rounding) ck_assert_int_eq(rep.outcome, CONVERGED);
         if (rep.outcome == STOPPED_CYCLE) ck_assert_int_gt(heard, 10);
         cycles += rep.outcome == STOPPED_CYCLE;
@@ -370,7 +367,7 @@ static outcome run_auglag(contact_case *c, double tol, int passes, heard *h) {
   ck_assert_int_eq(solver_set_up(&auglag_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
       auglag_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
-  solver_release(&auglag_solver, work);
+  memory_free(work);
   return rep.outcome;
 }
 

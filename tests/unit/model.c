@@ -1,15 +1,11 @@
 /* src/model: decks to models, loads of the steps, the echo of a deck. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "model/check/check.h"
 #include "model/facts.h"
 #include "model/keyword/keyword.h"
 #include "support/text_model.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static mesh *square(void) {
   const int n[] = {3, 2};
@@ -324,7 +320,7 @@ START_TEST(every_refused_request_is_reported) {
   text_model s;
   text_model_read(&s, text, square());
   ck_assert_int_eq(s.st, OK);
-  model_free(s.m);
+  memory_free(s.m);
   size_t before = memory_in_use();
   int refused = 0, done = 0;
   for (long k = 1; !done; ++k) {
@@ -336,7 +332,7 @@ START_TEST(every_refused_request_is_reported) {
     memory_refuse(0, 0);
     refused += st == ERR_MEMORY;
     ck_assert(st == OK || st == ERR_MEMORY);
-    model_free(s.m);
+    memory_free(s.m);
   }
   s.m = NULL;
   ck_assert_int_gt(refused, 10);

@@ -1,11 +1,8 @@
 /* src/contact/mortar: coupling of two surfaces. Expected values: closed forms,
  * properties of the method, and quadrature and polygons made here. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/two_surfaces.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* x -> place + R x, R a rotation. */
 static void move(pair *p, const double R[9], const double *by) {
@@ -120,7 +117,7 @@ START_TEST(planes_reproduce_linear_fields_and_constant_pressure) {
         ck_assert_double_eq_tol(m->covered, 1, 1e-13);
         check_rows(&p, m, 1e-13);
         check_forces(&p, m, 0);
-        mortar_free(m);
+        memory_free(m);
         two_free(&p);
       }
 }
@@ -158,7 +155,7 @@ START_TEST(an_edge_on_two_has_the_parts_of_the_closed_form) {
     }
   }
   ck_assert_double_eq_tol(m->size_ratio, 0.5, 1e-15);
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -192,7 +189,7 @@ START_TEST(axisymmetric_faces_are_weighted_with_the_radius) {
     ck_assert_double_eq_tol(force[i], expected, 1e-13);
   }
   free(force);
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -206,8 +203,8 @@ START_TEST(thickness_weighs_areas_and_not_parts) {
     ck_assert_double_eq_tol(b->area[q], 2.5 * a->area[q], 1e-15);
   for (size_t e = 0; e < a->to.start[a->n]; ++e)
     ck_assert_double_eq_tol(a->to.part[2 * e], b->to.part[2 * e], 1e-15);
-  mortar_free(a);
-  mortar_free(b);
+  memory_free(a);
+  memory_free(b);
   two_free(&p);
   two_free(&t);
 }
@@ -230,7 +227,7 @@ START_TEST(bodies_touch_over_the_smaller_thickness) {
     ck_assert_double_eq_tol(m->area[n - low], 2 * 0.5 / n, 1e-13);
     for (int q = 0; q <= n && n % 2 == 0; ++q)
       ck_assert_double_eq_tol(m->whole[q], m->area[q], 1e-13);
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -285,7 +282,7 @@ START_TEST(nodes_of_partly_covered_edges_have_the_covered_area) {
   ck_assert_double_eq_tol(m->master_area, 1.5, 1e-15);
   check_rows(&p, m, 1e-14);
   check_line_forces(&p, m, 0, 0.5);
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -304,7 +301,7 @@ START_TEST(nodes_covered_by_less_than_a_hundredth_are_left_out) {
     check_line_forces(&p, m, 0, p.m.x[2 * 15]);
     /* The node left out is among the masters of its neighbour. */
     ck_assert_int_eq(part_of(m, 2, 3) < -1e-4, !above);
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -327,13 +324,13 @@ START_TEST(dropped_nodes_leave_their_part_to_the_neighbours) {
   ck_assert_double_eq(m->share[0], 1);
   ck_assert_double_eq_tol(m->share[1], 1.5, 1e-15);
   ck_assert_double_eq_tol(m->lever[2], (1 + 0.5 * 2) / 1.5, 1e-15);
-  mortar_free(m);
+  memory_free(m);
   p.dropped[0] = p.dropped[1] = 1;
   m = two_couple(&p);
   ck_assert_int_eq(m->n, 0);
   ck_assert_int_eq(m->n_bare, 2);
   ck_assert_double_eq_tol(m->covered, 2, 1e-15);
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -351,7 +348,7 @@ START_TEST(dropped_nodes_in_space_keep_linear_fields_and_forces) {
     ck_assert_int_eq(m->n_dropped, n);
     check_rows(&p, m, 1e-13);
     if (m->n_bare == 0) check_forces(&p, m, 25);
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -383,7 +380,7 @@ START_TEST(matching_lips_move_with_their_copies) {
       ck_assert_int_eq(m->to.master[q], m->node_id[q] + N + 1);
       ck_assert_double_eq_tol(m->to.part[2 * q], 1, 1e-13);
     }
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -462,7 +459,7 @@ START_TEST(normals_are_the_mean_of_both_sides_or_those_of_the_slave) {
       ck_assert_double_eq_tol(m->normal[2 * q], sin(a), 1e-14);
       ck_assert_double_eq_tol(m->normal[2 * q + 1], -cos(a), 1e-14);
     }
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -487,7 +484,7 @@ START_TEST(normals_beside_a_node_left_out_are_the_mean_too) {
   ck_assert_double_eq_tol(z, -1, 1e-14);
   for (int c = 0; c < 2; ++c)
     ck_assert_double_eq_tol(m->normal[c], n[c] / hypot(n[0], n[1]), 1e-14);
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -509,7 +506,7 @@ START_TEST(rows_sum_to_one_far_from_the_origin) {
       ck_assert_uint_eq(m->to.start[q + 1] - m->to.start[q], 1);
       ck_assert_double_eq_tol(two_part_sum(m, q), 1, 1e-14);
     }
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -523,7 +520,7 @@ START_TEST(ratio_of_the_sizes_has_no_unit) {
     two_add_line(&p, 0, 2, 0, k ? 1e3 : 1, 0);
     mortar *m = two_couple(&p);
     ck_assert_double_eq_tol(m->size_ratio, 3, 1e-13);
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -566,10 +563,10 @@ START_TEST(units_change_nothing) {
     for (int i = 0; i < 3 * s.m.n_node; ++i) s.m.x[i] *= units[k];
     mortar *b = two_couple(&s);
     check_same(a, b, units[k], units[k] * units[k]);
-    mortar_free(b);
+    memory_free(b);
     two_free(&s);
   }
-  mortar_free(a);
+  memory_free(a);
   two_free(&p);
 }
 END_TEST
@@ -584,8 +581,8 @@ START_TEST(places_are_those_given) {
   p.in.x = x;
   ck_assert_int_eq(mortar_couple(&p.in, &b), OK);
   check_same(a, b, 1, 1);
-  mortar_free(a);
-  mortar_free(b);
+  memory_free(a);
+  memory_free(b);
   free(x);
   two_free(&p);
 }
@@ -593,10 +590,10 @@ END_TEST
 
 START_TEST(refused_memory_is_an_error_without_leak) {
   pair p = bowls();
-  mortar_free(two_couple(&p));
+  memory_free(two_couple(&p));
   const size_t before = memory_in_use();
   const long start = memory_requests();
-  mortar_free(two_couple(&p));
+  memory_free(two_couple(&p));
   const long n = memory_requests() - start;
   for (long k = 1; k <= n; ++k) {
     mortar *m = NULL;

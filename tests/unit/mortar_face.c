@@ -1,10 +1,8 @@
 /* src/contact/mortar: polygons in common and the dual basis. Expected values:
  * closed forms, counted points, and the conditions that define the basis. */
+#include "base/base.h"
 #include "contact/mortar/clip.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 static unsigned seed = 1;
 

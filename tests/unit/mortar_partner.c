@@ -1,10 +1,8 @@
 /* src/contact/mortar/partner.c: which faces of two surfaces meet, where several
  * are one behind the other. */
+#include "base/base.h"
 #include "support/two_surfaces.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A circle of n edges; outward: the body is inside. */
 static void add_circle(pair *p, int of_slave, int n, double r, double turn,
@@ -55,7 +53,7 @@ START_TEST(rings_have_no_partner_on_the_far_side) {
       ck_assert_double_eq_tol(n[0] * m->gap[2 * q] + n[1] * m->gap[2 * q + 1],
                               0.05, 4e-3);
     }
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -88,7 +86,7 @@ START_TEST(plates_see_the_next_plate_and_not_what_is_behind) {
     ck_assert_double_eq_tol(m->gap[2 * q + 1], top ? 0.05 : -0.05, 1e-13);
     ck_assert_double_eq_tol(m->normal[2 * q + 1], top ? 1 : -1, 1e-13);
   }
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -112,7 +110,7 @@ START_TEST(the_nearest_of_two_masters_is_the_partner) {
     ck_assert_double_eq_tol(two_part_sum(m, q), 1, 1e-13);
   }
   ck_assert_double_eq_tol(sum, -0.4 * 0.75 - 0.1 * 0.25, 1e-13);
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -132,7 +130,7 @@ START_TEST(overlapping_bodies_are_partners) {
       ck_assert_double_eq_tol(m->gap[2 * q + 1], 0.1, 1e-13);
       ck_assert_double_eq_tol(m->normal[2 * q + 1], -1, 1e-13);
     }
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -158,7 +156,7 @@ START_TEST(surfaces_with_nothing_in_common_have_no_rows) {
     ck_assert_uint_eq(m->to.start[0], 0);
     ck_assert_double_eq(m->covered, 0);
     ck_assert_double_eq(m->size_ratio, 0);
-    mortar_free(m);
+    memory_free(m);
     two_free(all[i]);
   }
 }
@@ -180,7 +178,7 @@ START_TEST(masters_apart_hide_each_other) {
   ck_assert_double_eq_tol(m->covered, 0.4, 1e-15);
   for (int q = 0; q < 2; ++q)
     ck_assert_double_eq_tol(m->gap[2 * q + 1], -0.1, 1e-14);
-  mortar_free(m);
+  memory_free(m);
   two_free(&p);
 }
 END_TEST
@@ -196,7 +194,7 @@ START_TEST(partners_are_within_the_extent_of_the_surfaces) {
       p.m.x[2 * i + 1] = -middle + slope * (0.5 - p.m.x[2 * i]);
     mortar *m = two_couple(&p);
     ck_assert_double_eq_tol(m->covered, !above, 1e-15);
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -217,7 +215,7 @@ START_TEST(bodies_overlap_by_half_the_slave) {
           m->normal[2 * q + 1] < -0.99)
         below += m->area[q];
     ck_assert_double_eq_tol(below, above ? 0 : 7.0 / 8, 1e-13);
-    mortar_free(m);
+    memory_free(m);
     two_free(&p);
   }
 }

@@ -1,15 +1,11 @@
 /* src/mesh: the reader of .msh files takes what the format says and no more */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
 
-#include <math.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A unit square of two triangles, its lower side and a corner, twice. */
 static const char text_22[] =
@@ -158,9 +154,9 @@ START_TEST(all_variants_give_the_same_mesh) {
     ck_assert_uint_eq(m->elem_no[0] + m->elem_no[1], 7 + 8);
     if (first == NULL) first = m;
     ck_assert_msg(mesh_same(first, m, 0.0, &what), "%d: %s", i, what);
-    if (m != first) mesh_free(m);
+    if (m != first) memory_free(m);
   }
-  mesh_free(first);
+  memory_free(first);
   mesh_file_close(&f);
 }
 END_TEST
@@ -222,7 +218,7 @@ START_TEST(counts_are_compared_with_the_file_first) {
         snprintf(text, sizeof text, "%.*s%s%s", (int)at, texts[i], word[k],
                  texts[i] + at + n);
         size_t before = memory_allocated();
-        mesh_free(mesh_file_text(&f, "n.msh", text));
+        memory_free(mesh_file_text(&f, "n.msh", text));
         ck_assert_msg(memory_allocated() - before < 200000, "%s", text);
       }
     }
@@ -241,7 +237,7 @@ START_TEST(damaged_bytes_take_no_memory) {
       b.data[at] = (char)~b.data[at];
       size_t before = memory_allocated();
       mesh_file_write(&f, "bits.msh", b.data, b.n);
-      mesh_free(mesh_file_read(&f, "bits.msh", 1.0, 0, NULL));
+      memory_free(mesh_file_read(&f, "bits.msh", 1.0, 0, NULL));
       ck_assert_uint_lt(memory_allocated() - before, 200000);
       b.data[at] = (char)~b.data[at];
     }
@@ -333,9 +329,9 @@ START_TEST(what_is_no_mesh_is_passed_over) {
   const char *what;
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
   ck_assert_msg(mesh_same(plain, dos, 0.0, &what), "%s", what);
-  mesh_free(plain);
-  mesh_free(m);
-  mesh_free(dos);
+  memory_free(plain);
+  memory_free(m);
+  memory_free(dos);
   mesh_file_close(&f);
 }
 END_TEST
@@ -358,8 +354,8 @@ START_TEST(partitions_have_their_groups) {
   ck_assert_msg(m != NULL, "%s", f.messages);
   const char *what;
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
-  mesh_free(plain);
-  mesh_free(m);
+  memory_free(plain);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -379,7 +375,7 @@ START_TEST(tags_choose_the_groups) {
   ck_assert_msg(m != NULL, "%s", f.messages);
   const char *what;
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
-  mesh_free(m);
+  memory_free(m);
   char text[4096];
   const char *at = strstr(text_41, "1 -2 0\n");
   snprintf(text, sizeof text, "%.*s2 -2 3 0\n%s", (int)(at - text_41), text_41,
@@ -392,8 +388,8 @@ START_TEST(tags_choose_the_groups) {
     if (m->group[i].dim == 1) ck_assert_int_eq(m->group[i].n_node, 2);
   }
   ck_assert_int_eq(lines, 2);
-  mesh_free(plain);
-  mesh_free(m);
+  memory_free(plain);
+  memory_free(m);
   mesh_file_close(&f);
 }
 END_TEST
@@ -442,7 +438,7 @@ START_TEST(reader_gives_back_all_when_refused) {
       memory_refuse(k, 0);
       status st = msh_read(mesh_file_path(&f, "m.msh"), &raw);
       memory_refuse(0, 0);
-      raw_free(&raw);
+      memory_free(raw);
       ck_assert_uint_eq(memory_in_use(), before);
       if (st == OK) break;
       ck_assert_int_eq(st, ERR_MEMORY);

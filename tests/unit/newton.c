@@ -1,12 +1,9 @@
 /* src/solver/newton: the steps of Newton's method on the states. */
+#include "base/base.h"
 #include "solver/newton/system.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { NODES = 100, SLIPPING = 60 };
 
@@ -39,7 +36,7 @@ static solver_report solve(contact_case *c) {
   ck_assert_int_eq(solver_set_up(&newton_solver, &c->cp, param, &work), OK);
   ck_assert_int_eq(
       newton_solver.solve(&c->cp, param, work, &control, c->u, c->r, &rep), OK);
-  solver_release(&newton_solver, work);
+  memory_free(work);
   return rep;
 }
 
@@ -154,6 +151,8 @@ START_TEST(every_guess_has_a_hash_of_its_own) {
   enum { EACH = 8, ALL = EACH * EACH }; /* open or closed; free, stuck, slips */
   contact_case c = case_new(2, 2, 0.5);
   uint64_t hash[ALL];
+  OWNED char *owner = memory_new(1, 1);
+  OWNS(owner);
   states s = {.cp = &c.cp};
   ck_assert_int_eq(states_new(&c.cp, &s), OK);
   for (int k = 0; k < ALL; ++k) {
@@ -165,7 +164,6 @@ START_TEST(every_guess_has_a_hash_of_its_own) {
     hash[k] = states_hash(&s);
     for (int l = 0; l < k; ++l) ck_assert(hash[k] != hash[l]);
   }
-  states_free(&s);
   case_free(&c);
 }
 END_TEST

@@ -2,16 +2,12 @@
  * src/contact/nonlocal.c: the law on surfaces of a mesh, closed forms of Hertz;
  * and every solver row on problems whose limit is an average (B not diagonal).
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/friction.h"
 #include "solver/fixed_point.h"
 #include "support/grid.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- solver rows -------------------------------------------------------- */
 
@@ -119,8 +115,8 @@ START_TEST(friction_path_follows_averages) {
     ck_assert_int_eq(rep.outcome, CONVERGED);
     ck_assert_double_lt(case_violation(&c, c.u, c.r), 1e-9);
     if (k == 0) ck_assert_double_lt(apart(&c, u), 1e-8);
-    friction_path_free(path);
-    solver_release(ops, work);
+    memory_free(path);
+    memory_free(work);
     free(u);
     case_free(&c);
   }
@@ -197,11 +193,11 @@ static void scene_open(scene *c, mesh *m, double thickness, int axisymmetric) {
 }
 
 static void scene_close(scene *c) {
-  surface_free(c->s);
-  message_log_free(c->log);
+  memory_free(c->s);
+  memory_free(c->log);
   free(c->fixed);
   free(c->weight);
-  mesh_free(c->m);
+  memory_free(c->m);
 }
 
 static void *law_options(const char *radius) {

@@ -1,14 +1,9 @@
 /* src/base/number.c: the number forms of the deck, correctly rounded, in any
  * locale. Expected values are literals of the compiler. */
-#include "base/number.h"
+#include "base/base.h"
 #include "support/unit.h"
 
-#include <float.h>
-#include <limits.h>
 #include <locale.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct good_real {
   const char *text;

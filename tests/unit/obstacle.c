@@ -306,7 +306,7 @@ START_TEST(given_gap_turns_about_the_normal_and_tilts_a_little) {
   o.gap.formula = e;
   /* From the pivot (3, 5), a quarter back: (5, -3), so the point (6, -1). */
   ck_assert_double_eq_tol(obstacle_gap(&o, 3, x, down, 0), 6 - 10, 1e-13);
-  expression_free(e);
+  memory_free(e);
   obstacle c = {.shape = OBSTACLE_CONFORMING, .turns = 1, .axis = {0, 1, 0}};
   c.angle.number = 1e-6;
   ck_assert_double_eq_tol(obstacle_gap(&c, 3, x, down, 0), 4e-6, 1e-11);

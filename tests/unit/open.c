@@ -111,13 +111,11 @@ static void open_groups(opened *o, mesh *m, int n, const char *const *names) {
   FILE *out = fmemopen(o->messages, sizeof o->messages - 1, "w");
   message_print(log, out);
   fclose(out);
-  message_log_free(log);
+  memory_free(log);
 }
 
 static void close_opened(opened *o) {
-  mesh_crack_free(&o->crack[0]);
-  mesh_crack_free(&o->crack[1]);
-  mesh_free(o->m);
+  memory_free(o->m);
   free(o->elem);
   free(o->measure);
 }
@@ -509,8 +507,8 @@ START_TEST(no_crack_leaves_the_mesh_alone) {
   ck_assert_int_eq(mesh_open(m, 0, NULL, log, NULL), OK);
   ck_assert_ptr_null(m->origin);
   ck_assert_int_eq(m->n_group, 5);
-  message_log_free(log);
-  mesh_free(m);
+  memory_free(log);
+  memory_free(m);
 }
 END_TEST
 
@@ -673,9 +671,8 @@ START_TEST(each_refused_request_is_an_error_and_frees_all) {
       refused = k <= memory_requests() - start;
       memory_refuse(0, 0);
       if (!refused || st != OK) ck_assert_int_eq(st, refused ? ERR_MEMORY : OK);
-      mesh_crack_free(&crack);
-      message_log_free(log);
-      mesh_free(m);
+      memory_free(log);
+      memory_free(m);
       ck_assert_uint_eq(memory_in_use(), before);
     }
 }

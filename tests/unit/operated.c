@@ -3,13 +3,10 @@
  * next to unit/conformance: options, held unknowns, the order of AUTO, refused
  * memory.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/operated_case.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A method with an option of it, or without. */
 typedef struct variant {

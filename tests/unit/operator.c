@@ -1,12 +1,10 @@
 /* src/fem: the condensed stiffness as an operator, against its entries. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 static scene *plain_2d(void) {
   scene *s = scene_new(make_grid_2d((int[]){6, 4}, (double[]){1.5, 1}),
@@ -47,7 +45,7 @@ static scene *two_bodies(void) {
     scene_fix_node(s, 15, c);
   }
   scene_fix_node(s, 16, 0);
-  mesh_free(a);
+  memory_free(a);
   return s;
 }
 
@@ -108,7 +106,7 @@ static both both_new(int i) {
 static void both_free(both *b) {
   condensed_free(b->dense);
   condensed_free(b->sparse);
-  stiffness_free(b->k);
+  memory_free(b->k);
   scene_free(b->s);
 }
 
@@ -429,7 +427,7 @@ START_TEST(power_of_two_in_the_moduli_leaves_every_bit) {
     free(Ax);
     memory_free(known);
     condensed_free(c);
-    stiffness_free(K);
+    memory_free(K);
     scene_free(s);
   }
   free(found[0]);
@@ -449,7 +447,7 @@ static status whole_way(const scene *s) {
   if (st == OK) st = condense_load(c, work, NULL, work + n);
   if (st == OK) st = condense_recover(c, work + n, work + 2 * n);
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
   free(work);
   return st;
 }
@@ -501,7 +499,7 @@ START_TEST(interior_is_foreseen_without_the_contact) {
                         (rows == 1 ? 0.9 : 0.7) * order.contact_entries);
     memory_free(order.node);
     condensed_free(c);
-    stiffness_free(k);
+    memory_free(k);
     scene_free(s);
   }
 }

@@ -1,11 +1,7 @@
 /* src/base/option.c: option tables and the nearest word. */
+#include "base/base.h"
 #include "base/option.h"
 #include "support/unit.h"
-
-#include <float.h>
-#include <limits.h>
-#include <math.h>
-#include <string.h>
 
 typedef struct sample {
   int count, symmetric, kind;

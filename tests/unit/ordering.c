@@ -1,12 +1,9 @@
 /* src/fem/ordering.c: orders are permutations of few operations. */
 #include "fem/ordering.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/scene.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct setting {
   scene *s;
@@ -31,7 +28,7 @@ static void end(setting *t) {
   free(t->node);
   graph_release(&t->g);
   cholmod_l_finish(&t->cm);
-  stiffness_free(t->k);
+  memory_free(t->k);
   scene_free(t->s);
 }
 

@@ -1,8 +1,7 @@
 /* src/output: all files of a made-up run, and what happens when one fails. */
 #include "output/output.h"
 
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "output/writers.h"
 #include "support/folder.h"
 #include "support/made_up.h"
@@ -10,9 +9,6 @@
 
 #include <ctype.h>
 #include <fcntl.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>

@@ -1,11 +1,8 @@
 /* src/contact/pair.c: which nodes of two surfaces are in a pair, what the rows
  * of the contact surface are relative to, messages. Surfaces without bodies. */
+#include "base/base.h"
 #include "contact/surface.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { MOST = 200, GROUPS = 8, PAIRS = 3 };
 
@@ -42,8 +39,8 @@ static void scene_init(scene *c, int dim) {
 
 static void scene_free(scene *c) {
   pairs_release(&c->in);
-  surface_free(c->s);
-  message_log_free(c->log);
+  memory_free(c->s);
+  memory_free(c->log);
 }
 
 /* The node at a place, new if there is none. */

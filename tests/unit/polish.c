@@ -1,11 +1,9 @@
 /* The last touch of an answer: slip too short for the residual to see. */
 #include "solver/choice/choice.h"
 
+#include "base/base.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 static const double TOL = 1e-11;   /* residual of the answers             */
 static const double SHORT = 1e-8;  /* slip of the first node, of |u| ~ 1  */

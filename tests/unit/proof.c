@@ -2,15 +2,13 @@
  * src/solver/choice/proof.c: no equilibrium is said where an inequality proves
  * it and only there, by every method, on both sides of the limit.
  */
+#include "base/base.h"
 #include "base/sparse.h"
 #include "solver/choice/choice.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- bodies -------------------------------------------------------------- */
 
@@ -325,7 +323,7 @@ START_TEST(large_sparse_compliance_is_not_searched) {
   ck_assert_msg(st == OK, "%s", status_message());
   ck_assert_int_eq(rep.outcome, STOPPED_ITERATIONS);
   contact_solver_free(&s);
-  sparse_blocks_free(W);
+  memory_free(W);
   free(row);
   free(column);
   free(value);

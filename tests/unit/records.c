@@ -2,16 +2,13 @@
  * src/output/hdf5/records.c: groups of many records, read with the library:
  * every name once, in order, found, with the data where the offsets say.
  */
-#include <hdf5.h>
-
+#include "base/base.h"
 #include "output/hdf5/file.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
+#include <hdf5.h>
 #include <fcntl.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 static char dir[64], path[100];
@@ -83,7 +80,6 @@ typedef struct walk {
 static herr_t next_name(hid_t group, const char *name, const H5L_info_t *info,
                         void *ctx) {
   walk *w = ctx;
-  (void)group;
   w->wrong += info->type != H5L_TYPE_HARD || strcmp(name, w->before) <= 0;
   snprintf(w->before, sizeof w->before, "%s", name);
   ++w->n;

@@ -1,4 +1,5 @@
 /* src/exchange/reduce.c: global problems whose bodies touch few others. */
+#include "base/base.h"
 #include "base/sparse.h"
 #include "exchange/exchange.h"
 #include "support/contact_case.h"
@@ -6,9 +7,6 @@
 #include "support/fclib_file.h"
 #include "support/folder.h"
 #include "support/unit.h"
-
-#include <stdio.h>
-#include <string.h>
 
 static char folder[64], path[128];
 
@@ -19,7 +17,7 @@ static exchange_problem *read_problem(void) {
   ck_assert_int_eq(message_log_new(&log), OK);
   status st = exchange_read(path, EXCHANGE_FCLIB, &at, log, &p);
   ck_assert_msg(st == OK, "%s", status_message());
-  message_log_free(log);
+  memory_free(log);
   return p;
 }
 
@@ -29,7 +27,7 @@ static void enter(void) {
 }
 
 static void leave(exchange_problem *p) {
-  exchange_free(p);
+  memory_free(p);
   folder_remove(folder);
 }
 

@@ -3,14 +3,11 @@
  * the same measure where they are polyhedra, on circles and spheres where they
  * were, and no worse in shape than half of the smallest angle.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/grid.h"
 #include "support/mesh_file.h"
 #include "support/msh_write.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
 
 /* ---- scenes -----------------------------------------------------------------
  */
@@ -51,14 +48,8 @@ static double near_in_space(const double *x) {
 static double finer_in_space(const double *x) {
   return 0.02 + 0.2 * hypot(x[0], hypot(x[1], x[2]));
 }
-static double fine(const double *x) {
-  (void)x;
-  return 0.03;
-}
-static double large(const double *x) {
-  (void)x;
-  return 9.0;
-}
+static double fine(const double *x) { return 0.03; }
+static double large(const double *x) { return 9.0; }
 
 /* ---- what holds of every mesh ----------------------------------------------
  */
@@ -189,10 +180,10 @@ START_TEST(square_is_refined_to_its_sizes) {
     ck_assert_double_eq(twice->x[2 * k], m->x[2 * i]);
     ck_assert_double_eq(twice->x[2 * k + 1], m->x[2 * i + 1]);
   }
-  mesh_free(twice);
-  mesh_free(once);
-  mesh_free(m);
-  mesh_free(grid);
+  memory_free(twice);
+  memory_free(once);
+  memory_free(m);
+  memory_free(grid);
   mesh_file_close(&f);
 }
 END_TEST
@@ -210,10 +201,10 @@ START_TEST(angles_keep_half_of_the_smallest) {
   mesh *more = refine(&f, r, finer_there);
   check_conforming(more);
   ck_assert_double_ge(sharpest(more), 0.5 * sharpest(m) - 1e-12);
-  mesh_free(more);
-  mesh_free(r);
-  mesh_free(m);
-  mesh_free(grid);
+  memory_free(more);
+  memory_free(r);
+  memory_free(m);
+  memory_free(grid);
   mesh_file_close(&f);
 }
 END_TEST
@@ -226,9 +217,9 @@ START_TEST(nothing_gets_larger) {
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
   mesh *m = read_again(&f, grid, NULL), *same = refine(&f, m, large);
   ck_assert_msg(mesh_same(m, same, 0.0, &what), "%s", what);
-  mesh_free(same);
-  mesh_free(m);
-  mesh_free(grid);
+  memory_free(same);
+  memory_free(m);
+  memory_free(grid);
   mesh_file_close(&f);
 }
 END_TEST
@@ -247,10 +238,10 @@ START_TEST(box_is_refined) {
   ck_assert_double_eq_tol(measure_of(twice, "LEFT"), 0.84, 1e-13);
   ck_assert_int_gt(twice->n_elem, 2 * once->n_elem);
   ck_assert_double_ge(worst_shape(twice), 0.2 * worst_shape(m));
-  mesh_free(twice);
-  mesh_free(once);
-  mesh_free(m);
-  mesh_free(grid);
+  memory_free(twice);
+  memory_free(once);
+  memory_free(m);
+  memory_free(grid);
   mesh_file_close(&f);
 }
 END_TEST
@@ -294,9 +285,9 @@ START_TEST(surfaces_in_contact_are_followed) {
     ck_assert_double_eq(r->x[2 * side->node_id[k]], 2.0);
   /* The line, not in a group that may be curved, is what it was. */
   ck_assert_double_eq_tol(measure_of(r, "LEFT"), measure_of(m, "LEFT"), 1e-14);
-  mesh_free(r);
-  mesh_free(m);
-  mesh_free(grid);
+  memory_free(r);
+  memory_free(m);
+  memory_free(grid);
   mesh_file_close(&f);
 }
 END_TEST
@@ -336,9 +327,9 @@ START_TEST(sphere_is_followed) {
   ck_assert_double_le(worst, 0.01 * chord);
   for (int k = 0; k < plane->n_node; ++k)
     ck_assert_double_eq_tol(r->x[3 * plane->node_id[k]], 0.0, 1e-15);
-  mesh_free(r);
-  mesh_free(m);
-  mesh_free(grid);
+  memory_free(r);
+  memory_free(m);
+  memory_free(grid);
   mesh_file_close(&f);
 }
 END_TEST
@@ -367,12 +358,12 @@ START_TEST(each_refused_request_is_an_error_and_frees_all) {
     memory_refuse(0, 0);
     ck_assert_int_eq(st, refused ? ERR_MEMORY : OK);
     ck_assert((r == NULL) == refused);
-    mesh_free(r);
+    memory_free(r);
     ck_assert_uint_eq(memory_in_use(), before);
   }
-  message_log_free(log);
-  mesh_free(m);
-  mesh_free(grid);
+  memory_free(log);
+  memory_free(m);
+  memory_free(grid);
   mesh_file_close(&f);
 }
 END_TEST

@@ -1,14 +1,11 @@
 /* src/fem/rigid.c and the refinement of condensation.c: bodies with a contrast
  * of moduli. Where contact alone holds them, no force for a rigid motion and
  * the resultants of the loads kept; solutions to rounding everywhere. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/stack.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* A scene of two moduli and the rigid motions that its supports leave. */
 typedef struct layers {
@@ -27,8 +24,6 @@ static void plane_motion(const double *x, int k, double *u) {
 }
 
 static void lift(const double *x, int k, double *u) {
-  (void)x;
-  (void)k;
   u[0] = 0;
   u[1] = 1;
 }
@@ -126,7 +121,7 @@ static void hinged(layers *l, double contrast) {
   l->n_motion = 4;
   l->motion = hinged_motion;
   two_moduli(l, contrast, (double[]){1, 1, 1.5});
-  mesh_free(a);
+  memory_free(a);
 }
 
 /* Two contact nodes close together and far from the origin. */
@@ -227,7 +222,7 @@ static void drop(layers *l) {
 
 static void end(layers *l, stiffness *k, condensed *c) {
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
   drop(l);
 }
 
@@ -480,7 +475,7 @@ static status whole_way(const scene *s, double *work) {
   if (st == OK) st = condense_load(c, work, NULL, work + N);
   if (st == OK) st = condense_recover(c, work + N, work + 2 * N);
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
   return st;
 }
 

@@ -5,12 +5,9 @@
  * states within a step, and that the state a step starts from stays. E = 1000,
  * nu = 0.3.
  */
+#include "base/base.h"
 #include "support/point_body.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static point_body b;
 

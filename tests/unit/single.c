@@ -1,11 +1,8 @@
 /* src/solver/single.c: the problem of one node, solved directly. */
+#include "base/base.h"
 #include "solver/single.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double TOL = 1e-12;
 

@@ -3,13 +3,10 @@
  * of statuses.
  */
 #include "accuracy/solutions.h"
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static solver_report solve(contact_case *c) {
   contact_solver *s = NULL;

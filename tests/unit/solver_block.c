@@ -1,9 +1,7 @@
 /* src/solver: blocks on a floor, sliding, as published, and lying free. */
+#include "base/base.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* ---- blocks ------------------------------------------------------------- */
 

@@ -5,11 +5,9 @@
  * nodes inside moved at random.
  */
 #include "accuracy/space.h"
+#include "base/base.h"
 #include "support/scene.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* Displacement and its gradient at a point: u[dim], G[3*3] row major. In
  * axisymmetry x = r, y = z and G[8] = u_r / r. */
@@ -248,9 +246,9 @@ static double effectivity(const problem *p, int n, space_error *found) {
   ck_assert_double_eq_tol(found->norm, sqrt(2 * domain_strain_energy(&s->d, u)),
                           1e-10 * found->norm);
   const double right = sqrt(true_error(p, s, sigma));
-  space_recovery_free(recovery);
+  memory_free(recovery);
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
   scene_free(s);
   free(F);
   free(u);
@@ -307,7 +305,7 @@ START_TEST(linear_stress_is_recovered) {
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
   ck_assert_double_eq_tol(found.error / sqrt(true_error(&p, s, sigma)), 1,
                           1e-10);
-  space_recovery_free(recovery);
+  memory_free(recovery);
   scene_free(s);
   free(sigma);
 }
@@ -330,7 +328,7 @@ START_TEST(one_layer_of_elements_has_an_estimate) {
   s->d.E = hot;
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
   ck_assert_double_eq_tol(found.error, sqrt(square / 4), 1e-12);
-  space_recovery_free(recovery);
+  memory_free(recovery);
   scene_free(s);
 }
 END_TEST
@@ -344,7 +342,7 @@ START_TEST(few_nodes_inside_are_told) {
     for (int again = 0; again < 2; ++again)
       ck_assert_double_eq_tol(space_depth(recovery), n, 1e-12 * n);
     ck_assert_int_eq(space_is_coarse(space_depth(recovery)), n < 9);
-    space_recovery_free(recovery);
+    memory_free(recovery);
     scene_free(s);
   }
 }
@@ -378,7 +376,7 @@ START_TEST(inner_nodes_see_the_elements_that_meet_there) {
       ck_assert_double_gt(eta[e], 1e-6 * found.error);
     else
       ck_assert_double_le(eta[e], 1e-12 * found.error);
-  space_recovery_free(recovery);
+  memory_free(recovery);
   scene_free(s);
   free(sigma);
   free(eta);
@@ -416,7 +414,7 @@ START_TEST(stress_jumps_between_unlike_sections) {
     ck_assert_double_gt(found.relative, 0.01);
   else
     ck_assert_double_le(found.relative, 1e-12);
-  space_recovery_free(recovery);
+  memory_free(recovery);
   free(sigma);
   scene_free(s);
 }
@@ -450,7 +448,7 @@ START_TEST(regions_are_those_of_the_materials) {
   ck_assert_int_eq(space_regions(recovery), 3);
   for (int e = 0; e < s->m->n_elem; ++e)
     ck_assert_int_eq(space_region(recovery, e), wanted[e % SECTIONS]);
-  space_recovery_free(recovery);
+  memory_free(recovery);
   scene_free(s);
 }
 END_TEST
@@ -482,7 +480,7 @@ START_TEST(sizes_give_the_target_and_grow_slowly) {
     }
   ck_assert_double_gt(most, 1.9 * edge);
   ck_assert_double_lt(least, 0.6 * edge);
-  mesh_free(m);
+  memory_free(m);
   free(eta);
   free(size);
 }
@@ -499,7 +497,7 @@ START_TEST(an_estimate_has_no_unit) {
   for (size_t i = 0; i < T; ++i) sigma[i] = scene_random(&seed);
   ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &a), OK);
-  space_recovery_free(recovery);
+  memory_free(recovery);
   for (int i = 0; i < 2 * s->m->n_node; ++i) s->m->x[i] = ldexp(s->m->x[i], 30);
   for (int i = 0; i < 16; ++i) s->E[i] = ldexp(s->E[i], 40);
   for (size_t i = 0; i < T; ++i) sigma[i] = ldexp(sigma[i], -20);
@@ -507,7 +505,7 @@ START_TEST(an_estimate_has_no_unit) {
   ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &b), OK);
   ck_assert_double_eq(a.relative, b.relative);
   ck_assert_double_gt(a.relative, 0);
-  space_recovery_free(recovery);
+  memory_free(recovery);
   free(sigma);
   scene_free(s);
 }

@@ -1,11 +1,9 @@
 /* src/base/matrix/sparse.c: products with blocks against those with all
  * entries. */
+#include "base/base.h"
 #include "base/sparse.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { N = 7, MOST = 3 * N };
 
@@ -47,7 +45,7 @@ START_TEST(products_are_those_of_all_entries) {
       ck_assert(fabs(row[i % d] - sum) <= 1e-14);
       ck_assert(sparse_blocks_own(b, i / d)[i % d * (d + 1)] == D[i * (m + 1)]);
     }
-    sparse_blocks_free(b);
+    memory_free(b);
   }
 }
 END_TEST
@@ -68,7 +66,7 @@ START_TEST(rows_ascend_and_hold_what_is_not_zero) {
         ck_assert(fabs(rows.val[e] - M[i + m * rows.col[e]]) <= 1e-15);
       }
     sparse_free(&rows);
-    sparse_blocks_free(b);
+    memory_free(b);
   }
 }
 END_TEST

@@ -1,11 +1,9 @@
 /* src/fem/element.c: patch tests, forces, energy. */
+#include "base/base.h"
 #include "fem/fem.h"
 #include "run/start/start.h"
 #include "support/scene.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 static const kinematics all_kinematics[] = {PLANE_STRAIN, PLANE_STRESS,
                                             AXISYMMETRIC, SOLID_3D};
@@ -100,7 +98,7 @@ START_TEST(patch_of_constant_strain_is_reproduced) {
   free(e);
   free(t);
   condensed_free(c);
-  stiffness_free(k);
+  memory_free(k);
   scene_free(s);
 }
 END_TEST

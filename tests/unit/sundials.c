@@ -6,14 +6,12 @@
  * their order, under given strains, given stresses, and a bar that is pulled
  * and twisted.
  */
+#include "base/base.h"
 #include "support/point_body.h"
 #include "support/unit.h"
 
 #include <cvode/cvode.h>
-#include <math.h>
 #include <nvector/nvector_serial.h>
-#include <stdio.h>
-#include <string.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 

@@ -1,10 +1,7 @@
 /* src/fem/supernodal: factors of which parts are made again. */
+#include "base/base.h"
 #include "fem/supernodal/supernodal.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* A grid with unknowns that are coupled to the next ones, and its diagonal. */
 enum { SIDE = 40, N = SIDE * SIDE };
@@ -88,7 +85,7 @@ static grid *grid_new_of(int most) {
 static grid *grid_new(void) { return grid_new_of(0); }
 
 static void grid_free(grid *g) {
-  supernodal_free(g->s);
+  memory_free(g->s);
   cholmod_l_free_factor(&g->L, &g->cm);
   cholmod_l_finish(&g->cm);
   free(g->mark);
@@ -179,7 +176,7 @@ START_TEST(restricted_factors_are_of_the_other_unknowns) {
   ck_assert_int_gt(emptied, 0);
   ck_assert_int_eq(factor_whole(g), -1);
   ck_assert_double_le(left_by_solve(g), 1e-13);
-  supernodal_free(g->s);
+  memory_free(g->s);
   g->s = whole;
   grid_free(g);
 }

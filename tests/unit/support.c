@@ -1,12 +1,9 @@
 /* src/fem/support.c, pieces: free motions by name and by what holds them. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "fem/fem.h"
 #include "support/scene.h"
 #include "support/stack.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 #define NOTHING HELD_BY_NOTHING
 #define FRICTION HELD_BY_FRICTION
@@ -54,7 +51,7 @@ START_TEST(free_square_has_three_motions) {
   ck_assert_ptr_null(c);
   ck_assert_ptr_nonnull(strstr(status_message(), "body 1"));
   ck_assert_ptr_nonnull(strstr(status_message(), "translation along x"));
-  stiffness_free(k);
+  memory_free(k);
   scene_free(s);
 }
 END_TEST
@@ -239,7 +236,7 @@ START_TEST(second_body_is_named) {
   ck_assert_uint_eq(list[0].elem_no, 9);
   ck_assert_str_eq(list[0].text, "rotation about (2, 0)");
   memory_free(list);
-  mesh_free(a);
+  memory_free(a);
   scene_free(s);
 }
 END_TEST
@@ -263,7 +260,7 @@ START_TEST(piece_on_a_hinge_is_found) {
   memory_free(list);
   scene_fix_node(s, 17, 0);
   motions_are(s, (expected[]){{NOTHING, NULL}});
-  mesh_free(a);
+  memory_free(a);
   scene_free(s);
 }
 END_TEST
@@ -276,10 +273,10 @@ static scene *chain(int n) {
     mesh *more = grid_join(m, one, (double[]){b, b});
     for (int k = 3 * m->n_elem; k < 3 * more->n_elem; ++k)
       if (more->elem[k] == 4 * b) more->elem[k] = 4 * b - 1;
-    mesh_free(m);
+    memory_free(m);
     m = more;
   }
-  mesh_free(one);
+  memory_free(one);
   return scene_new(m, PLANE_STRAIN, 1);
 }
 
@@ -399,7 +396,7 @@ START_TEST(cube_on_a_cube_is_held_like_on_the_ground) {
                               {CONTACT, "rotation about x through (1, 1, 3)"},
                               {CONTACT, "rotation about y through (1, 1, 3)"},
                               {NOTHING, NULL}});
-  mesh_free(a);
+  memory_free(a);
   scene_free(s);
 }
 END_TEST

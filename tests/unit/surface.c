@@ -1,13 +1,9 @@
 /* src/contact/surface.c on boundary meshes made by hand: closed forms of areas,
  * normals and gaps, corners, fixed nodes and every message. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/surface.h"
 #include "support/formula.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { MAX = 600 };
 
@@ -43,8 +39,8 @@ static void scene_init(scene *c, int dim) {
 }
 
 static void scene_free(scene *c) {
-  surface_free(c->s);
-  message_log_free(c->log);
+  memory_free(c->s);
+  memory_free(c->log);
 }
 
 static int add_node(scene *c, double x, double y, double z) {

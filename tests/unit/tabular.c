@@ -1,12 +1,9 @@
 /* src/output/tabular.c: JOB.dat of a made-up run, read back word by word. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "output/writers.h"
 #include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <string.h>
 
 /* The whole JOB.dat of "told" increments, closed after "cut" of them and opened
  * again where it ended; caller frees. */

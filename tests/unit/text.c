@@ -1,14 +1,9 @@
 /* src/base/text.c */
-#include "base/text.h"
-
-#include "base/memory.h"
+#include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
 #include <fcntl.h>
-#include <float.h>
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 START_TEST(seventeen_digits_read_back_exactly) {

@@ -4,15 +4,12 @@
  * states, which must be told.
  */
 #include "accuracy/theorems/theorems.h"
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { PARAM_SIZE = 512 };
 
@@ -58,7 +55,7 @@ static const theorems_report *look(looker *l) {
 }
 
 static void look_away(looker *l) {
-  theorems_free(l->t);
+  memory_free(l->t);
   free(l->id);
 }
 

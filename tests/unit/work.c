@@ -3,14 +3,11 @@
  * foreseen from the number of unknowns besides those that CHOLMOD counts for
  * blocks in the plane and in space, the contact last.
  */
-#include "base/memory.h"
-#include "base/timer.h"
-#include "fem/fem.h"
+#include "base/base.h"
 #include "effects/plan/plan.h"
+#include "fem/fem.h"
 #include "support/pressed_block.h"
 #include "support/unit.h"
-
-#include <math.h>
 
 /* Segments on the floor of a square; elements along the edges of a cube. */
 static const struct {

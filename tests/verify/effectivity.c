@@ -13,12 +13,9 @@
  *   solid    u = a (sin x cos y cos z, ...)
  *   layers   sigma_yy = -10 cos y, E = 1000 below y = 1/2, 4000 above
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct problem {
   const char *name, *mesh, *section, *friction, *reference, *step;

@@ -3,12 +3,9 @@
  * to 1 %, and the unknowns of meshes for a goal beside those of meshes for the
  * energy norm, both with the same |error| + band.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* The deck of an example with some text replaced. */
 static job run_deck(const char *deck, const char *old, const char *by,

@@ -13,13 +13,9 @@
  * ends of contact: also within [0.8, 1.25] in 7 of 10, the right sign in 98 %,
  * the truth in the band in 9 of 10.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { GOALS = 5 };
 typedef struct scene {

@@ -7,12 +7,9 @@
  *     against a program of quadratic displacements and linear pressures
  *   a half plane pressed against a parabola (Hertz), with contact
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { MESHES = 4 };
 static const char *const form[] = {"STANDARD", "AVERAGED"};

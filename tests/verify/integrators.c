@@ -11,14 +11,11 @@
  * reason: there it is the slope of the errors over four octaves of n, for it
  * depends on where in its increment a kink falls.
  */
+#include "base/base.h"
 #include "material/scheme/scheme.h"
 #include "support/creep_case.h"
 #include "support/law_case.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { N_ROW = 7, FINE = 128, FINEST = 2048, OCTAVES = 4 };
 /* clang-format off */

@@ -13,12 +13,9 @@
  * ends: 3/2 or more for the displacement of the surface, 1 for the tractions at
  * its nodes, the ends of the zones and the dissipation.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { MESHES = 4, WIDTHS = 4, RUNS = MESHES * WIDTHS, COARSEST = 10 };
 enum { NODES = 2 * COARSEST + 1 };

@@ -11,12 +11,9 @@
  * their ratios, 1.5 at most beside brute force, 2 beside the forecast; small
  * meshes, whose time is that of starting gmsh, are shown too.
  */
+#include "base/base.h"
 #include "support/job.h"
 #include "support/unit.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static const double greco_energy = 108.2577;
 

@@ -15,46 +15,28 @@
 #include "accuracy/goal/goal.h"
 
 #include "accuracy/accuracy.h"
-#include "base/memory.h"
+#include "base/base.h"
+#include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
-
-/* What each unknown does; all is borrowed. */
-typedef struct linear_rows {
-  const contact_problem *cp;
-  int n_free;
-  const int *free_id, *place; /* [n_free], [m] place among them, or -1 */
-  const unsigned char *closed, *slip; /* [n] */
-  const double *e;                    /* [m] direction of friction on slip */
-  const double *kappa;                /* [n] N/m */
-} linear_rows;
 
 enum { DIRECTIONS = 80 };
 static const double ENOUGH = 1e-13; /* -, of the right side, left by GMRES */
 
 typedef struct linear_system {
-  linear_rows rows;
-  double *M;            /* [n_free^2] its factor; NULL: an operator */
-  lapack_int *pivot;    /* [n_free] */
-  double *b, *Ax;       /* [m] workspace */
-  double *v, *zero;     /* [m] of an operator */
-  double *added;        /* [dim*m] known_rows.added */
-  unsigned char *known; /* [m] */
-  int bent;             /* 1: some friction follows pressure */
+  const linear_states *rows; /* borrowed */
+  double *M;                 /* [n_free^2] its factor; NULL: an operator */
+  lapack_int *pivot;         /* [n_free] */
+  double *b, *Ax;            /* [m] workspace */
+  double *v, *zero;          /* [m] of an operator */
+  int bent;                  /* 1: some friction follows pressure */
 } linear_system;
-
-static void linear_system_free(linear_system *s) {
-  if (s == NULL) return;
-  RELEASE(s->M, s->pivot, s->b, s->Ax, s->v, s->zero, s->added, s->known, s);
-}
 
 /* ---- rows of friction ---------------------------------------------------- */
 
 /* y[m] += e B v_n of the closed normals of v[m], at the sliding unknowns. */
-static void linear_add_friction(const linear_rows *rows, const double *v,
+static void linear_add_friction(const linear_states *rows, const double *v,
                                 double *y) {
   const contact_problem *cp = rows->cp;
   for (int i = 0; cp->B != NULL && i < cp->n; ++i) {
@@ -69,7 +51,7 @@ static void linear_add_friction(const linear_rows *rows, const double *v,
 }
 
 /* w_n += B' (e.w_t) on the closed normals of w[m], of its sliding unknowns. */
-static void linear_spread_friction(const linear_rows *rows, double *w) {
+static void linear_spread_friction(const linear_states *rows, double *w) {
   const contact_problem *cp = rows->cp;
   for (int i = 0; i < cp->n && cp->B != NULL; ++i) {
     double along = 0.0;
@@ -83,7 +65,7 @@ static void linear_spread_friction(const linear_rows *rows, double *w) {
 }
 
 /* y[m] += kappa (I - e e') v at the sliding unknowns, in space. */
-static void linear_add_turn(const linear_rows *rows, const double *v,
+static void linear_add_turn(const linear_states *rows, const double *v,
                             double *y) {
   const contact_problem *cp = rows->cp;
   for (int i = 0; cp->dim == 3 && i < cp->n; ++i) {
@@ -92,7 +74,7 @@ static void linear_add_turn(const linear_rows *rows, const double *v,
     for (int a = t; a < t + 2; ++a)
       for (int b = t; b < t + 2; ++b)
         if (rows->place[a] >= 0 && rows->place[b] >= 0)
-          y[a] += rows->kappa[i] * ((a == b) - rows->e[a] * rows->e[b]) * v[b];
+          y[a] += linear_turn(rows, a, b) * v[b];
   }
 }
 
@@ -100,7 +82,7 @@ static void linear_add_turn(const linear_rows *rows, const double *v,
 
 /* Row of M of a sliding unknown: e B A_n. */
 static void add_slip(linear_system *s, int dof) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const contact_problem *cp = rows->cp;
   const int i = dof / cp->dim, n = rows->n_free;
   double *row = s->M + rows->place[dof];
@@ -118,17 +100,17 @@ static void add_slip(linear_system *s, int dof) {
 
 /* The columns of M of what a sliding unknown in space turns. */
 static void add_turn(linear_system *s, int dof) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const size_t n = (size_t)rows->n_free;
   const int i = dof / 3;
   for (int t = 3 * i + 1; t < 3 * i + 3; ++t)
     if (rows->place[t] >= 0)
       s->M[(size_t)rows->place[dof] + n * (size_t)rows->place[t]] +=
-          rows->kappa[i] * ((t == dof) - rows->e[dof] * rows->e[t]);
+          linear_turn(rows, dof, t);
 }
 
 static status factor(linear_system *s, int *singular) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const contact_problem *cp = rows->cp;
   const size_t n = (size_t)rows->n_free;
   PASS_NEW_ALL(OF(s->pivot, n), OF(s->M, n * n));
@@ -150,7 +132,7 @@ static status factor(linear_system *s, int *singular) {
 
 static void solve_factored(linear_system *s, char how, const double *b,
                            double *x) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const int n = rows->n_free;
   for (int k = 0; k < n; ++k) s->b[k] = b[rows->free_id[k]];
   if (n > 0)
@@ -161,25 +143,10 @@ static void solve_factored(linear_system *s, char how, const double *b,
 
 /* ---- an operator --------------------------------------------------------- */
 
-static status set_rows(linear_system *s, int *singular) {
-  const linear_rows *rows = &s->rows;
-  const contact_problem *cp = rows->cp;
-  const known_rows known = {s->known, s->added};
-  for (int k = 0; k < cp->m; ++k) s->known[k] = rows->place[k] < 0;
-  for (int i = 0; cp->dim == 3 && i < cp->n; ++i)
-    for (int a = 0; a < 2 && rows->slip[i]; ++a)
-      for (int b = 0; b < 2; ++b) {
-        const int t = 3 * i + 1;
-        s->added[9 * i + 3 * (1 + a) + 1 + b] =
-            rows->kappa[i] * ((a == b) - rows->e[t + a] * rows->e[t + b]);
-      }
-  return cp->op->set_rows(cp->op->ctx, &known, singular);
-}
-
 /* y = (I + e B A_n inv(S)) v, or (I + inv(S) A_Fn B' e) v. */
 static void precondition(linear_system *s, int transposed, const double *v,
                          double *y) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const contact_operator *op = rows->cp->op;
   if (transposed) {
     COPY(s->v, v, rows->cp->m);
@@ -210,21 +177,9 @@ static void orthogonalise(int m, int j, double *V, double *h) {
   if (h[j + 1] > 0.0) cblas_dscal(m, 1.0 / h[j + 1], w, 1);
 }
 
-/* The rotations c, s so far and one more on column h; returns what is left of
- * the right side g. */
-static double rotate(int j, double *h, double *c, double *s, double *g) {
-  for (int i = 0; i < j; ++i) cblas_drot(1, h + i, 1, h + i + 1, 1, c[i], s[i]);
-  double a = h[j], b = h[j + 1];
-  cblas_drotg(&a, &b, c + j, s + j);
-  h[j] = a;
-  h[j + 1] = g[j + 1] = 0.0;
-  cblas_drot(1, g + j, 1, g + j + 1, 1, c[j], s[j]);
-  return fabs(g[j + 1]);
-}
-
 /* x[m] of the preconditioned system by its right side x[m]. */
 static status gmres(linear_system *s, int transposed, double *x) {
-  const int m = s->rows.cp->m;
+  const int m = s->rows->cp->m;
   const double size = cblas_dnrm2(m, x, 1);
   double H[DIRECTIONS * (DIRECTIONS + 1)] = {0.0};
   double c[DIRECTIONS], t[DIRECTIONS], g[DIRECTIONS + 1] = {size};
@@ -238,7 +193,7 @@ static status gmres(linear_system *s, int transposed, double *x) {
     double *v = V + (size_t)m * (size_t)n;
     precondition(s, transposed, v, v + m);
     orthogonalise(m, n, V, h);
-    left = rotate(n, h, c, t, g);
+    left = dense_rotate(n, h, c, t, g);
     ++n;
   }
   cblas_dtrsv(CblasColMajor, CblasUpper, CblasNoTrans, CblasNonUnit, n, H,
@@ -250,7 +205,7 @@ static status gmres(linear_system *s, int transposed, double *x) {
 /* The free rows of b[m] less those of friction of the known x: by S, then by
  * GMRES. */
 static status solve_operated(linear_system *s, const double *b, double *x) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const contact_operator *op = rows->cp->op;
   double *known = x;
   op->solve(op->ctx, b, known, s->Ax);
@@ -266,7 +221,7 @@ static status solve_operated(linear_system *s, const double *b, double *x) {
 }
 
 static status transpose_operated(linear_system *s, const double *b, double *w) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const contact_operator *op = rows->cp->op;
   memset(w, 0, (size_t)rows->cp->m * sizeof *w);
   op->solve(op->ctx, b, w, s->Ax);
@@ -275,30 +230,31 @@ static status transpose_operated(linear_system *s, const double *b, double *w) {
 
 /* ---- both ---------------------------------------------------------------- */
 
-static int is_bent(const linear_rows *rows) {
+static int is_bent(const linear_states *rows) {
   for (int i = 0; rows->cp->B != NULL && i < rows->cp->n; ++i)
     if (rows->slip[i]) return 1;
   return 0;
 }
 
 /* *out is new; NULL if M is singular. ERR_MEMORY. */
-static status linear_system_new(const linear_rows *rows, linear_system **out) {
+static status linear_system_new(const linear_states *rows,
+                                linear_system **out) {
   const size_t m = (size_t)rows->cp->m;
   int singular = 0;
   PASS_NEW(*out, 1);
   linear_system *s = *out;
-  s->rows = *rows;
+  OWNS(s);
+  s->rows = rows;
   s->bent = is_bent(rows);
   PASS_NEW_REALS(m, &s->b, &s->Ax);
   if (rows->cp->A != NULL) {
     PASS(factor(s, &singular));
   } else {
     PASS_NEW_REALS(m, &s->v, &s->zero);
-    PASS_NEW_ALL(OF(s->added, (size_t)rows->cp->dim * m), OF(s->known, m));
-    PASS(set_rows(s, &singular));
+    PASS(linear_set_rows(rows, &singular));
   }
   if (!singular) return OK;
-  linear_system_free(s);
+  memory_free(s);
   *out = NULL;
   return OK;
 }
@@ -306,7 +262,7 @@ static status linear_system_new(const linear_rows *rows, linear_system **out) {
 /* x[m], at the known unknowns as given: (A + e B A_n + kappa ..) x = b at the
  * free ones, b[m]. ERR_MEMORY. */
 static status linear_solve(linear_system *s, const double *b, double *x) {
-  const linear_rows *rows = &s->rows;
+  const linear_states *rows = s->rows;
   const int m = rows->cp->m;
   OWNED double *rest = NULL;
   if (s->M == NULL) return solve_operated(s, b, x);
@@ -326,95 +282,37 @@ static status linear_solve(linear_system *s, const double *b, double *x) {
  * ERR_MEMORY. */
 static status linear_solve_transposed(linear_system *s, const double *b,
                                       double *w) {
-  memset(w, 0, (size_t)s->rows.cp->m * sizeof *w);
+  memset(w, 0, (size_t)s->rows->cp->m * sizeof *w);
   if (s->M == NULL)
     PASS(transpose_operated(s, b, w));
   else
     solve_factored(s, 'T', b, w);
-  linear_spread_friction(&s->rows, w);
+  linear_spread_friction(s->rows, w);
   return OK;
 }
 
 struct contact_adjoint {
   const contact_problem *cp;
-  const double *u, *r;          /* [m] borrowed */
-  int n_free, *free_id, *place; /* [m] free unknowns; their place or -1 */
-  unsigned char *closed, *slip; /* [n] */
-  double *e;        /* [m] direction of the friction force on slip */
-  double *kappa;    /* [n] N/m */
-  linear_rows rows; /* of all these */
+  const double *u, *r; /* [m] borrowed */
+  linear_states rows;
   linear_system *linear;
   double *w, *x, *Ax; /* [m] w of goal.h; workspace */
   double *stick;      /* [m] derivative by the positions of stick */
 };
 
-void contact_adjoint_free(contact_adjoint *a) {
-  if (a == NULL) return;
-  linear_system_free(a->linear);
-  RELEASE(a->free_id, a->place, a->closed, a->slip, a->e, a->kappa, a->w, a->x,
-          a->Ax, a->stick, a);
-}
-
-/* Friction of node i: slip, e, kappa. */
-static void set_friction(contact_adjoint *a, int i) {
-  const contact_problem *cp = a->cp;
-  const int first = i * cp->dim;
-  const double g = contact_node_limit(cp, a->r, i);
-  const double c = accuracy_stiffness(cp, i).t;
-  double size = 0.0;
-  for (int dof = first + 1; dof < first + cp->dim; ++dof) {
-    if (!accuracy_rubs(cp, dof)) continue;
-    a->e[dof] = a->r[dof] - c * (a->u[dof] - contact_stick(cp, dof));
-    size = hypot(size, a->e[dof]);
-  }
-  a->slip[i] = size > g && g > 0.0;
-  for (int dof = first + 1; dof < first + cp->dim; ++dof)
-    a->e[dof] = a->slip[i] ? a->e[dof] / size : 0.0;
-  if (a->slip[i]) a->kappa[i] = c * g / (size - g);
-}
-
-/* 1: the unknown can move. */
-static int is_free(const contact_adjoint *a, int dof) {
-  const contact_problem *cp = a->cp;
-  const int i = dof / cp->dim;
-  const double bound = contact_bound(cp, dof);
-  if (contact_held(cp, dof)) return 0;
-  if (bound < HUGE_VAL) {
-    const node_stiffness c = accuracy_stiffness(cp, i);
-    const double step = dof % cp->dim == 0 ? c.n : c.t;
-    return !(a->r[dof] - step * (a->u[dof] - bound) < 0.0);
-  }
-  if (!accuracy_rubs(cp, dof)) return 1;
-  return a->slip[i] || contact_node_limit(cp, a->r, i) == 0.0;
-}
-
-static void set_states(contact_adjoint *a) {
-  const contact_problem *cp = a->cp;
-  for (int i = 0; i < cp->n; ++i) set_friction(a, i);
-  for (int dof = 0; dof < cp->m; ++dof) {
-    const int moves = is_free(a, dof);
-    a->place[dof] = moves ? a->n_free : -1;
-    if (moves) a->free_id[a->n_free++] = dof;
-    if (dof % cp->dim == 0) a->closed[dof / cp->dim] = !moves;
-  }
-}
-
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out) {
   PASS_NEW(*out, 1);
   contact_adjoint *a = *out;
+  OWNS(a);
   a->cp = cp;
   a->u = u;
   a->r = r;
-  PASS_NEW_ALL(OF(a->free_id, cp->m), OF(a->place, cp->m), OF(a->closed, cp->n),
-               OF(a->slip, cp->n), OF(a->e, cp->m), OF(a->kappa, cp->n));
   PASS_NEW_REALS(cp->m, &a->w, &a->x, &a->Ax, &a->stick);
-  set_states(a);
-  a->rows = (linear_rows){cp,        a->n_free, a->free_id, a->place,
-                          a->closed, a->slip,   a->e,       a->kappa};
+  PASS(linear_states_new(cp, u, r, &a->rows));
   PASS(linear_system_new(&a->rows, &a->linear));
   if (a->linear != NULL) return OK;
-  contact_adjoint_free(a);
+  memory_free(a);
   *out = NULL;
   return OK;
 }
@@ -423,7 +321,8 @@ status contact_adjoint_new(const contact_problem *cp, const double *u,
 static int carries(const contact_adjoint *a, int dof) {
   const contact_problem *cp = a->cp;
   if (contact_held(cp, dof)) return 0;
-  return a->place[dof] < 0 || (dof % cp->dim > 0 && a->slip[dof / cp->dim]);
+  return a->rows.place[dof] < 0 ||
+         (dof % cp->dim > 0 && a->rows.slip[dof / cp->dim]);
 }
 
 /* Force of friction on a sliding unknown by its slip, N: opposite to it. */
@@ -441,7 +340,7 @@ static double friction_of(const contact_adjoint *a, int dof) {
 
 /* 1: it is held by friction where it sticks. */
 static int sticks(const contact_adjoint *a, int dof) {
-  return dof % a->cp->dim > 0 && a->place[dof] < 0 &&
+  return dof % a->cp->dim > 0 && a->rows.place[dof] < 0 &&
          !contact_held(a->cp, dof) && !(contact_bound(a->cp, dof) < HUGE_VAL);
 }
 
@@ -456,11 +355,11 @@ static double misses(const contact_adjoint *a, const double *j,
     const int i = k / cp->dim, tangent = k % cp->dim > 0;
     if (contact_held(cp, k)) continue;
     sum += y[k] * (cp->f[k] + a->r[k] - a->x[k]);
-    if (a->place[k] < 0)
+    if (a->rows.place[k] < 0)
       sum += (j[k] - a->Ax[k]) *
              ((sticks(a, k) ? contact_stick(cp, k) : contact_bound(cp, k)) -
               a->u[k]);
-    else if (tangent && a->slip[i])
+    else if (tangent && a->rows.slip[i])
       sum += a->w[k] * (friction_of(a, k) - a->r[k]);
     else
       sum -= a->w[k] * a->r[k];
@@ -489,7 +388,7 @@ status contact_adjoint_solve(contact_adjoint *a, const double *j,
   contact_apply(cp, a->x, a->Ax);
   for (int k = 0; k < cp->m; ++k) y[k] = -a->x[k];
   for (int k = 0; k < cp->m; ++k)
-    a->x[k] = a->place[k] < 0 ? 0.0 : j[k] + a->Ax[k];
+    a->x[k] = a->rows.place[k] < 0 ? 0.0 : j[k] + a->Ax[k];
   PASS(linear_solve_transposed(a->linear, a->x, a->w));
   for (int k = 0; k < cp->m; ++k) y[k] += a->w[k];
   contact_apply(cp, y, a->Ax);

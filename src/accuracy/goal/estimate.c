@@ -30,12 +30,7 @@
  */
 #include "accuracy/goal/goal.h"
 
-#include "base/memory.h"
-#include "base/number.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 /* A field in the bubbles. */
 typedef struct bubbles {
@@ -72,15 +67,6 @@ struct goal_estimator {
   double *sigma_y;           /* [ns*n_elem] of the adjoint; workspace */
   double *node_y;            /* [ns*n_node] recovered; workspace */
 };
-
-void goal_estimator_free(goal_estimator *e) {
-  if (e == NULL) return;
-  for (int k = 0; k < e->n_region && e->stress != NULL; ++k)
-    memory_free(e->stress[k]);
-  RELEASE(e->all.strain, e->all.part, e->given.strain, e->given.part, e->w);
-  RELEASE(e->stress, e->edge, e->own, e->on_surface, e->sigma_y, e->node_y);
-  RELEASE(e->joint, e->is_joint, e->eigen, e->node_eigen, e);
-}
 
 /* q[dim*dim*n_elem]: du_c/dx_k at c*dim + k. */
 static void gradients(const goal_solution *s, double *q) {
@@ -442,6 +428,7 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   const size_t n = (size_t)(m->dim * m->dim);
   PASS_NEW(*out, 1);
   goal_estimator *e = *out;
+  OWNS(e);
   e->s = *s;
   e->recovery = recovery;
   PASS_NEW_ALL(OF(q, n * (size_t)m->n_elem), OF(G, n * (size_t)m->n_node));

@@ -71,7 +71,6 @@ typedef struct contact_adjoint contact_adjoint;
  * has its matrix or operator. ERR_MEMORY. */
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out);
-void contact_adjoint_free(contact_adjoint *a); /* accepts NULL */
 /* y[m] of j[m], psi[m]; psi counts where a force can change. *solver: J of the
  * discrete solution less J of (u, r), to first order. NAN: not solved. */
 status contact_adjoint_solve(contact_adjoint *a, const double *j,
@@ -146,10 +145,9 @@ typedef struct goal_solution {
 
 typedef struct goal_estimator goal_estimator;
 /* Recovers what belongs to the solution; s and all in it are borrowed until
- * goal_estimator_free. ERR_MEMORY, ERR_INTERNAL as space_estimate. */
+ * memory_free. ERR_MEMORY, ERR_INTERNAL as space_estimate. */
 status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
                           goal_estimator **out);
-void goal_estimator_free(goal_estimator *e);           /* accepts NULL */
 double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
 /* [dim*n_edge] what u is in the bubbles of the contact edges, m; of a crack,
  * less the mean of both lips. */

@@ -10,10 +10,7 @@
  * Both give |z| <= (|load|_* + c)/(1 - q).
  */
 #include "accuracy/theorems/theorems.h"
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 /* A contact problem with part of its sliding limit and of its normal forces
  * given (theorems.h). */

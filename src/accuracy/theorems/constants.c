@@ -1,11 +1,9 @@
 /* Norms in the energy of A, and the constants of friction in them. */
 #include "accuracy/theorems/theorems.h"
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { STEPS = 160, EVERY = 8 };
 static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value */
@@ -124,7 +122,7 @@ status energy_norm_new(int m, const double *A, energy_norm *out) {
 }
 
 void energy_norm_free(energy_norm *e) {
-  dense_inverse_free(e->inverse);
+  memory_free(e->inverse);
   RELEASE(e->x, e->y);
   *e = (energy_norm){0};
 }

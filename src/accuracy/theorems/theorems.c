@@ -1,10 +1,7 @@
 /* The report on an increment from its parts (theorems.h). */
 #include "accuracy/theorems/theorems.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 /*
  * The variational inequality S_i^n of CPR98 over random test fields. The convex
@@ -219,12 +216,6 @@ static void forget_matrix(theorems *t) {
   state_before_free(&t->before);
 }
 
-void theorems_free(theorems *t) {
-  if (t == NULL) return;
-  forget_matrix(t);
-  memory_free(t);
-}
-
 static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
   for (int i = 0; i < cp->m; ++i)
@@ -373,6 +364,7 @@ static status check_inequality(const theorems_scene *s,
 }
 
 status theorems_start(theorems *t, const theorems_scene *s) {
+  OWNS(t);
   ENDS_BY(frozen_free) frozen_problem p = {0};
   int fields;
   PASS(frozen_new(s->cp, s->r, NULL, s->given, &p));
@@ -385,6 +377,7 @@ status theorems_start(theorems *t, const theorems_scene *s) {
 
 status theorems_check(theorems *t, const theorems_scene *s,
                       theorems_report *out) {
+  OWNS(t);
   ENDS_BY(frozen_free) frozen_problem p = {0};
   *out = (theorems_report){.asked = 1, .has_start = t->has_start};
   PASS(frozen_new(s->cp, s->r, NULL, s->given, &p));

@@ -102,7 +102,6 @@ typedef struct theorems_report {
 
 typedef struct theorems theorems;
 status theorems_new(theorems **out); /* ERR_MEMORY */
-void theorems_free(theorems *t);     /* accepts NULL */
 /* The initial state: (3.8), and where the first increment starts. */
 status theorems_start(theorems *t, const theorems_scene *s);
 /*

@@ -2,17 +2,13 @@
 #include "base/archive/archive.h"
 
 #include "base/archive/dataset.h"
+#include "base/base.h"
 #include "base/file.h"
-#include "base/memory.h"
-#include "base/text.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <hdf5.h>
 #include <inttypes.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { ARCHIVE_NAME = 200 };

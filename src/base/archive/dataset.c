@@ -3,13 +3,11 @@
  * library's own error stack stays silent; messages name the file and the
  * dataset.
  */
-#include "base/memory.h"
 #include "base/archive/dataset.h"
+
+#include "base/base.h"
 #include "base/system/input.h"
 
-#include <limits.h>
-#include <math.h>
-#include <string.h>
 #include <unistd.h>
 
 enum {

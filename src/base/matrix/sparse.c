@@ -1,13 +1,6 @@
 /* A sparse matrix of square blocks (sparse.h). */
+#include "base/base.h"
 #include "base/sparse.h"
-#include "base/vector.h"
-
-#include <string.h>
-
-void sparse_blocks_free(sparse_blocks *b) {
-  if (b == NULL) return;
-  RELEASE(b->start, b->row, b->mate, b->own, b->val, b);
-}
 
 typedef struct entries {
   long n;
@@ -107,6 +100,7 @@ status sparse_blocks_new(int dim, int n, long count_given, const int *row,
   const entries e = {count_given, row, col, val};
   PASS_NEW(*out, 1);
   sparse_blocks *b = *out;
+  OWNS(b);
   b->dim = dim;
   b->n = n;
   PASS_NEW(b->start, n + 1);

@@ -2,13 +2,11 @@
 #define _GNU_SOURCE /* O_PATH */
 #include "base/system/input.h"
 
+#include "base/base.h"
 #include "base/file.h"
-#include "base/memory.h"
-#include "base/text.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <string.h>
 #include <unistd.h>
 
 enum { DEEPEST = 64 }; /* folders below the one of the deck */

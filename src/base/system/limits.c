@@ -7,11 +7,9 @@
 #define _GNU_SOURCE /* sched_getaffinity, sched_getcpu */
 #include "base/system/limits.h"
 
-#include <math.h>
+#include "base/base.h"
+
 #include <sched.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 

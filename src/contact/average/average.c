@@ -4,14 +4,8 @@
  */
 #include "contact/average/average.h"
 
+#include "base/base.h"
 #include "contact/average/box_tree.h"
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- where distances are measured: on the patch itself, or on its lines laid
  * out straight. The straight layout copies the patch; the geodesic one follows

@@ -4,10 +4,7 @@
  */
 #include "contact/average/box_tree.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { LEAF = 4, DEEPEST = 32 };
 

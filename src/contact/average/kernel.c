@@ -3,10 +3,7 @@
  */
 #include "contact/average/average.h"
 
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { GAUSS_COARSE = 4, GAUSS_FINE = 8 };
 
@@ -43,10 +40,7 @@ static double wendland(double s2) {
   return a * a * a * a * (1.0 + 4.0 * s);
 }
 
-static double constant(double s2) {
-  (void)s2;
-  return 1.0;
-}
+static double constant(double s2) { return 1.0; }
 
 #define KERNEL_PROFILE(name, function, help) function,
 static double (*const profiles[])(double) = {KERNEL_LIST(KERNEL_PROFILE)};

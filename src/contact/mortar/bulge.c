@@ -7,13 +7,8 @@
  * (1999) 1). The smaller angle counts for both, so that a surface of flat parts
  * stays flat at its kinks.
  */
+#include "base/base.h"
 #include "contact/mortar/partner.h"
-
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
 
 /* Angles, -, from which on an edge is no edge of a curve; of rounding. */
 static const double sharp = 0.3, flat = 1e-9;

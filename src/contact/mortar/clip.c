@@ -4,10 +4,7 @@
  */
 #include "contact/mortar/clip.h"
 
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { MOST = 8 }; /* corners of a polygon */
 

@@ -5,13 +5,8 @@
  */
 #include "contact/mortar/mortar.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "contact/mortar/partner.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* Least part of its area that gives a node a multiplier, - . */
 static const double scant = 0.01;
@@ -607,14 +602,14 @@ static status builder_new(const mortar_input *in, builder *b) {
 
 static void builder_release(builder *b) {
   partner_search_release(&b->search);
-  mortar_free(b->out);
   RELEASE(b->state, b->face, b->met, b->entries, b->points, b->slot, b->normal,
-          b->bulge, b->start, b->around, b->links);
+          b->bulge, b->start, b->around, b->links, b->out);
 }
 
 status mortar_couple(const mortar_input *in, mortar **out) {
   ENDS_BY(builder_release) builder b;
   PASS(builder_new(in, &b));
+  OWNS(b.out);
   PASS(do_faces(&b));
   for (int i = 0; i < in->mesh->n_node; ++i) b.slot[i] = -1;
   PASS(set_nodes(&b));
@@ -622,13 +617,6 @@ status mortar_couple(const mortar_input *in, mortar **out) {
   *out = b.out;
   b.out = NULL;
   return OK;
-}
-
-void mortar_free(mortar *m) {
-  if (m == NULL) return;
-  links_release(&m->to);
-  RELEASE(m->node_id, m->area, m->whole, m->share, m->lever, m->normal, m->gap,
-          m->cut, m);
 }
 
 /* ---- links ---- */

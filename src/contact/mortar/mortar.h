@@ -104,4 +104,3 @@ typedef struct mortar {
 
 /* *out is new, also if n = 0. ERR_MEMORY. */
 status mortar_couple(const mortar_input *in, mortar **out);
-void mortar_free(mortar *m); /* accepts NULL */

@@ -6,11 +6,7 @@
  */
 #include "contact/mortar/partner.h"
 
-#include "base/memory.h"
-
-#include <float.h>
-#include <math.h>
-#include <stdlib.h>
+#include "base/base.h"
 
 /* Faces that are seen at less than this sine, from their edge, - . */
 static const double edge_on = 1e-6;

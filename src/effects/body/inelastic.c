@@ -5,15 +5,11 @@
  * requires are those of the run (run/visco.h): states within an increment, the
  * error of the steps and theorem 3.2 need them too.
  */
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
-#include "run/column_row.h"
 
-#include <math.h>
+#include "run/column_row.h"
 
 static const double ROUNDING = 0x1p-48; /* -, of the time */
 
@@ -98,7 +94,6 @@ done:
 
 static status adapt(run *r, void *self, int *made) {
   double end = r->step->start + r->step->total;
-  (void)self;
   /* TIME=BALANCED goes before TOLERANCE=, where it can. */
   int balanced = r->step->accuracy.time_balanced && effects_sum_up(r) == NULL;
   if (balanced || !(r->step->visco.tolerance > 0.0)) return OK;
@@ -116,20 +111,13 @@ static int strains(const model *m, int elem_id) {
 
 /* Solvers are those of the step. */
 static status prepare(run *r, void *self) {
-  (void)self;
   visco_new_solvers(r);
   return OK;
 }
 
-static void forget(run *r, void *self) {
-  (void)self;
-  visco_forget(r);
-}
+static void forget(run *r, void *self) { visco_forget(r); }
 
-static status keep(run *r, void *self, archive *a) {
-  (void)self;
-  return visco_keep(r, a);
-}
+static status keep(run *r, void *self, archive *a) { return visco_keep(r, a); }
 
 static int point_of(const view *v, int elem_id) {
   return visco_point_of(v->s->body.flow_elem, v->s->body.flow->n, elem_id);

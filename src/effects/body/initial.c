@@ -2,14 +2,8 @@
  * *INITIAL CONDITIONS, TYPE=DISPLACEMENT: the displacements a run starts from,
  * and their test for equilibrium with loads and contact of time 0.
  */
-#include "base/memory.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
-
-#include <math.h>
-#include <string.h>
 
 /* K u_0 - F into R; the largest of both, and of the forces that hold strains
  * back, into *largest; diagonal of K. */
@@ -101,8 +95,6 @@ static status report_new(run *r, void **self) {
   return start_displacements(r->m, r->msh, r->old.u, own);
 }
 
-static void release(void *self) { start_report_free(self); }
-
 static status start(run *r, void *self) {
   if (run_step_id(r) > 0) return OK;
   PASS(test_start(r, self));
@@ -126,5 +118,5 @@ static int requires_start(const model *m, char *why, size_t size) {
 const effect_ops initial_state_effect = {
   .name = "initial state", .bit = EFFECT_BIT_START, .required = requires_start,
   .expected = expected, .inside = 1, .far = 1, .size = sizeof(start_report),
-  .on = {.create = report_new, .start = start, .release = release}};
+  .on = {.create = report_new, .start = start}};
 /* clang-format on */

@@ -2,11 +2,8 @@
  * Thermal strain: temperatures of the elements at each time, the strains of
  * their expansion, the moduli that follow them.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
+
 #include "run/column_row.h"
 
 typedef struct thermal_state {
@@ -21,11 +18,6 @@ static status temperatures_new(run *r, void **self) {
   r->body.d.zone = own->zone;
   PASS(load_temperature_zones(r->m, r->msh, own->zone));
   return load_temperature_initial(r->m, r->msh, own->T0);
-}
-
-static void release(void *self) {
-  thermal_state *own = self;
-  RELEASE(own->T0, own->zone);
 }
 
 static int expands(const model *m, int elem_id) {
@@ -116,6 +108,6 @@ const effect_ops thermal_effect = {
   .name = "thermal strain", .bit = EFFECT_BIT_THERMAL,
   .required = requires_thermal, .expected = expected, .own = STAGE_THERMAL,
   .far = 1, .strains = strains, .of_state = 1, .size = sizeof(thermal_state),
-  .on = {.create = temperatures_new, .load = heat, .release = release},
+  .on = {.create = temperatures_new, .load = heat},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -4,15 +4,9 @@
  * opening and sliding of the lips behind them (Williams 1957), a check that is
  * good to some percent.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
-#include "model/facts.h"
 #include "run/history/loop.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { MODES = 3 };
 
@@ -161,18 +155,7 @@ static status cracks_new(run *r, void **self) {
 
 static status cracks_copy(const run *r, const void *of, run *copy,
                           void **self) {
-  (void)of;
-  (void)copy;
   return cracks_new((run *)r, self);
-}
-
-static void release(void *self) {
-  crack_state *own = self;
-  for (int i = 0; own->of != NULL && i < own->n_crack; ++i)
-    fracture_free(own->of[i]);
-  RELEASE(own->of, own->elastic, own->rate, own->tips, own->found,
-          own->materials, own->sigma, own->traction, own->lumped, own->area,
-          own->shift);
 }
 
 /* ---- an increment -------------------------------------------------------- */
@@ -531,6 +514,6 @@ const effect_ops cracks_effect = {
   .table = {PRINT_SIF, PER_TIP}, .size = sizeof(crack_state),
   .items = tips_items,
   .on = {.create = cracks_new, .due = factors_due, .accept = find_factors,
-         .copy = cracks_copy, .release = release},
+         .copy = cracks_copy},
   COLUMNS_OF(columns)};
 /* clang-format on */

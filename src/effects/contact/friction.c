@@ -7,16 +7,10 @@
  * Any increment may be cut, so that each is one of several: the position of
  * stick is always found from the last equilibrium.
  */
-#include "base/memory.h"
-#include "base/vector.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
-#include "run/column_row.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "run/column_row.h"
 
 typedef struct friction {
   friction_limit limit;
@@ -181,6 +175,7 @@ static status add_law(run *r, friction *own, int contact_id, double t,
 static status find_limit(run *r, friction *own, double t) {
   OWNED int *node = NULL;
   TIMED(STAGE_LIMIT);
+  OWNS(own);
   friction_limit_free(&own->limit);
   PASS(friction_limit_new(r->nodes.n, &own->limit));
   PASS_NEW(node, r->nodes.n);
@@ -342,7 +337,6 @@ static status check_travels(const run *r, travel *x, const double *none) {
 static status check_step(run *r, void *self) {
   int any = 0;
   OWNED double *before = NULL, *now = NULL, *drift = NULL, *none = NULL;
-  (void)self;
   for (int k = 0; k < 2 * r->nodes.n && r->msh->dim == 3; ++k)
     any |= is_half_held(r->surface, k / 2, 1 + k % 2);
   if (!any) return OK;
@@ -439,14 +433,6 @@ static status accept(run *r, void *self) {
   return OK;
 }
 
-/* ---- its arrays --------------------------------------------------------- */
-
-static void free_arrays(friction *own) {
-  friction_limit_free(&own->limit);
-  RELEASE(own->stick, own->g, own->distance);
-  *own = (friction){.left = own->left, .told = own->told};
-}
-
 static void use_arrays(const friction *own, run *r) {
   r->problem.ut0 = own->stick;
   r->result.g = own->g;
@@ -454,6 +440,7 @@ static void use_arrays(const friction *own, run *r) {
 }
 
 static status new_arrays(const run *r, friction *own) {
+  OWNS(own);
   PASS_NEW(own->stick, r->nodes.n * (r->msh->dim - 1));
   PASS_NEW_REALS(r->nodes.n, &own->g, &own->distance);
   return OK;
@@ -482,7 +469,9 @@ static void forget(run *r, void *self) {
   memset(own->left, 0, (size_t)r->msh->n_node * sizeof *own->left);
   for (int i = 0; i < r->nodes.n; ++i)
     own->left[r->surface->node_id[i]] = own->distance[i];
-  free_arrays(own);
+  friction_limit_free(&own->limit);
+  RELEASE(own->stick, own->g, own->distance);
+  *own = (friction){.left = own->left, .told = own->told};
   use_arrays(own, r);
 }
 
@@ -491,17 +480,12 @@ static status friction_copy(const run *r, const void *of, run *copy,
   friction *own = *self;
   const double *distance = ((const friction *)of)->distance;
   PASS(new_arrays(r, own));
+  OWNS(own);
   PASS_NEW(own->told, r->m->n.contact);
   COPY(own->told, ((const friction *)of)->told, r->m->n.contact);
   memcpy(own->distance, distance, (size_t)r->nodes.n * sizeof *distance);
   use_arrays(own, copy);
   return OK;
-}
-
-static void release(void *self) {
-  friction *own = self;
-  free_arrays(own);
-  RELEASE(own->left, own->told);
 }
 
 /* A limit that holds for all times of the step is made now, so that the costs
@@ -621,7 +605,7 @@ const effect_ops friction_effect = {
   .on = {.create = friction_new, .check = check_step, .prepare = prepare,
          .pose = pose,
          .accept = accept, .forget = forget, .keep = keep,
-         .copy = friction_copy, .release = release},
+         .copy = friction_copy},
   COLUMNS_OF(columns)};
 /* clang-format on */
 

@@ -3,16 +3,8 @@
  * (CPR98, problem D3). The solver takes a problem without those normals; its
  * solution is transformed back.
  */
-#include "base/memory.h"
-#include "base/number.h"
 #include "contact/formulation.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "run/run.h"
-
-#include <math.h>
-#include <string.h>
+#include "effects/plan/effect.h"
 
 typedef struct given_forces {
   int n, *node;     /* [n] contact nodes with a given normal force */
@@ -39,7 +31,6 @@ static int forced_corner(const run *r, int i) {
 
 /* Two contacts at one node take its normals for unilateral conditions. */
 static status check_corners(run *r, void *self) {
-  (void)self;
   for (int i = 0; i < r->nodes.n; ++i) {
     int id = forced_corner(r, i);
     if (id < 0) continue;
@@ -76,15 +67,10 @@ static status set_forces(run *r, void *self, double t) {
   return OK;
 }
 
-static void release(void *self) {
-  given_forces *own = self;
-  given_form_free(own->form);
-  RELEASE(own->node, own->force, own->all);
-  *own = (given_forces){0};
-}
-
 static void forget(run *r, void *self) {
-  release(self);
+  given_forces *own = self;
+  RELEASE(own->form, own->node, own->force, own->all);
+  *own = (given_forces){0};
   r->problem.given = NULL;
 }
 
@@ -92,6 +78,7 @@ static status prepare(run *r, void *self) {
   given_forces *own = self;
   if (own->all != NULL) return OK;
   PASS(check_corners(r, own));
+  OWNS(own);
   PASS_NEW_ALL(OF(own->node, r->nodes.n), OF(own->all, r->nodes.n));
   for (int i = 0; i < r->nodes.n; ++i) {
     own->all[i] = -1.0;
@@ -102,8 +89,6 @@ static status prepare(run *r, void *self) {
 }
 
 static status given_copy(const run *r, const void *of, run *copy, void **self) {
-  (void)r;
-  (void)of;
   return prepare(copy, *self);
 }
 
@@ -114,10 +99,11 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   if (own->n == 0) return OK;
   TIMED(effect_stage(&given_forces_effect));
   if (own->matrix_no != r->solving.matrix_no) {
-    given_form_free(own->form);
+    memory_free(own->form);
     own->form = NULL;
   }
   own->matrix_no = r->solving.matrix_no;
+  OWNS(own);
   if (own->form == NULL)
     PASS(given_form_new(cp, own->n, own->node, &own->form));
   return given_form_set(own->form, &before, own->force, r->msh->size, *u, force,
@@ -127,7 +113,6 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
 static void give(run *r, void *self, contact_problem *cp, double *u,
                  double *force) {
   given_forces *own = self;
-  (void)r;
   if (own->n > 0) given_form_apply(own->form, cp, u, force);
 }
 
@@ -152,6 +137,6 @@ const effect_ops given_forces_effect = {
   .required = requires_given, .expected = expected, .inside = 1, .far = 1,
   .size = sizeof(given_forces),
   .on = {.check = check_corners, .prepare = prepare, .pose = set_forces,
-         .rewrite = take, .restore = give, .forget = forget, .copy = given_copy,
-         .release = release}};
+         .rewrite = take, .restore = give, .forget = forget,
+         .copy = given_copy}};
 /* clang-format on */

@@ -2,11 +2,7 @@
  * *PRINT, LOOP: each contact as a loop of friction, force against motion: mean
  * motions of obstacle and nodes, and what friction dissipates.
  */
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
-
-#include <string.h>
+#include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 

@@ -3,14 +3,10 @@
  * along their normals, since time 0 (contact/obstacle.h). The arrays are part
  * of the two equilibria of the run; without a moving obstacle they are NULL.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 /* Those of a new surface. */
 static status prepare(run *r, void *self) {
-  (void)self;
   if (r->nodes.n_c == 0 || r->old.motion != NULL) return OK;
   PASS_NEW_REALS(r->nodes.n_c, &r->old.motion, &r->now.motion);
   surface_drift(r->surface, &r->faces.input, 0.0, r->old.t, r->old.motion);
@@ -18,7 +14,6 @@ static status prepare(run *r, void *self) {
 }
 
 static status pose(run *r, void *self, double t) {
-  (void)self;
   COPY(r->now.motion, r->old.motion, r->nodes.n_c);
   surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
   return OK;

@@ -3,12 +3,8 @@
  * it (CPR98, 2.7), and friction confined to the nodes that touch. Averages are
  * kept while surface and options are unchanged.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
-
-#include <string.h>
 
 /* The average of one contact and the rule it was made for. */
 typedef struct friction_average {
@@ -100,11 +96,11 @@ static status zone_start(run *r, void *self, double t) {
   friction_zone *z = &((nonlocal *)self)->zone;
   const friction_limit *limit = r->problem.limit;
   int dim = r->msh->dim, touched = 0;
-  (void)t;
   if (limit->in_zone == NULL) {
     zone_free(z);
     return OK;
   }
+  OWNS(self);
   PASS(zone_fit(r, &limit->B, z));
   for (int i = 0; i < r->nodes.n; ++i) touched |= r->old.rc[dim * i] < 0.0;
   for (int i = 0; i < r->nodes.n; ++i) {
@@ -162,16 +158,8 @@ static void forget(run *r, void *self) {
 
 static status nonlocal_copy(const run *r, const void *of, run *copy,
                             void **self) {
-  (void)r;
-  (void)copy;
   *(nonlocal *)*self = (nonlocal){((const nonlocal *)of)->average, 1, {0}};
   return OK;
-}
-
-static void release(void *self) {
-  nonlocal *own = self;
-  zone_free(&own->zone);
-  if (!own->borrowed) memory_free(own->average);
 }
 
 static effect_work expected(const plan_sizes *s) {
@@ -191,5 +179,5 @@ const effect_ops nonlocal_effect = {
   .inside = 1, .size = sizeof(nonlocal),
   .on = {.create = nonlocal_new, .prepare = make_averages,
          .describe = count_entries, .pose = zone_start, .found = follow_zone,
-         .forget = forget, .copy = nonlocal_copy, .release = release}};
+         .forget = forget, .copy = nonlocal_copy}};
 /* clang-format on */

@@ -4,13 +4,7 @@
  * moment that is left of the forces on both sides. They act at places a gap
  * apart; only where a tangential force crosses a gap is there a moment.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
-
-#include <math.h>
-#include <string.h>
+#include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 
@@ -48,11 +42,6 @@ static status pairs_new(run *r, void **self) {
   pair_forces *own = *self;
   PASS_NEW_ALL(OF(own->force, r->n_dof), OF(own->moment, r->m->n.contact));
   return OK;
-}
-
-static void release(void *self) {
-  pair_forces *own = self;
-  RELEASE(own->force, own->moment);
 }
 
 /* arm[dim] += by times the place at which a node was coupled. */
@@ -140,6 +129,6 @@ const effect_ops pairs_effect = {
   .name = "bodies in contact", .bit = NO_BIT, .required = requires_pairs,
   .expected = expected, .own = STAGE_COUPLING,
   .size = sizeof(pair_forces), .copy_as = COPY_IS_NEW,
-  .on = {.create = pairs_new, .accept = find_forces, .release = release},
+  .on = {.create = pairs_new, .accept = find_forces},
   COLUMNS_OF(columns)};
 /* clang-format on */

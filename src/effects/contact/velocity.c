@@ -3,19 +3,13 @@
  * increment (CPR98, problem N3).
  */
 #include "contact/formulation.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 
 typedef struct velocity {
   velocity_form *form;    /* NULL until needed */
   int m;                  /* unknowns that form is made for */
   contact_problem before; /* what was rewritten last */
 } velocity;
-
-static void release(void *self) {
-  velocity_form_free(((velocity *)self)->form);
-}
 
 /* The last equilibrium, from which the increment and its slip are counted:
  * start values may be others. Normals with a given force are uncoupled, at
@@ -30,13 +24,13 @@ static void put_old(run *r, double *u_old) {
 static status take(run *r, void *self, contact_problem *cp, double **u,
                    double *force) {
   velocity *own = self;
-  (void)force;
   own->before = *cp;
   if (own->m != cp->m) { /* other nodes, by the supports or within reach */
-    velocity_form_free(own->form);
+    memory_free(own->form);
     own->form = NULL;
   }
   own->m = cp->m;
+  OWNS(own);
   if (own->form == NULL) PASS(velocity_form_new(cp, &own->form));
   put_old(r, velocity_form_old(own->form));
   velocity_form_set(own->form, &own->before, cp, u);
@@ -46,9 +40,6 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
 static void give(run *r, void *self, contact_problem *cp, double *u,
                  double *force) {
   const velocity *own = self;
-  (void)r;
-  (void)cp;
-  (void)force;
   velocity_form_apply(own->form, &own->before, u);
 }
 
@@ -72,5 +63,5 @@ const effect_ops velocity_effect = {
   .name = "velocity form", .bit = NO_BIT, .required = requires_velocity,
   .expected = expected, .own = STAGE_VELOCITY,
   .size = sizeof(velocity), .copy_as = COPY_IS_NEW,
-  .on = {.due = due, .rewrite = take, .restore = give, .release = release}};
+  .on = {.due = due, .rewrite = take, .restore = give}};
 /* clang-format on */

@@ -9,13 +9,7 @@
  * forces r by A D r, and their error is multiplied by I - A D: it grows once an
  * eigenvalue of A D is above 2, which is refused.
  */
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
-
-#include "base/memory.h"
-
-#include <math.h>
+#include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 
@@ -48,7 +42,6 @@ static double area_of(const contact_surface *s, int i, int a) {
 static status open_gaps(run *r, void *self, double t) {
   const double *depth = self;
   const int dim = r->msh->dim;
-  (void)t;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
       if (surface_normal_of(r->surface, i, a) < 0) continue;
@@ -152,7 +145,6 @@ static double volume_of(const view *v, int i, int contact_id) {
 
 static double contact_volume(const view *v, int id, int part) {
   double sum = 0.0;
-  (void)part;
   for (int i = 0; i < v->s->contacts.surface->n; ++i)
     sum += volume_of(v, i, id);
   return sum;

@@ -13,15 +13,8 @@
  * inside, or with values that grow outwards, the end is put half way to the
  * next node.
  */
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
-
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
 
 #include "run/column_row.h"
 
@@ -256,6 +249,7 @@ static double part_of_face(const finder *z, const level *l, const int *node) {
 }
 
 static status add_zone(zone_list *out, const contact_zone *zone) {
+  OWNS(out);
   PASS_GROW(out->zone, out->n, out->cap);
   out->zone[out->n++] = *zone;
   return OK;
@@ -442,8 +436,6 @@ static int zones_due(const run *r) {
                                         within ? 0 : r->at.last);
 }
 
-static void zones_free(void *self) { memory_free(((zone_list *)self)->zone); }
-
 static int zones_items(const void *self) {
   return ((const zone_list *)self)->n;
 }
@@ -497,6 +489,6 @@ const effect_ops zones_effect = {
   .name = "table of zones", .bit = NO_BIT, .required = requires_zones,
   .expected = expected, .own = STAGE_ZONES, .table = {PRINT_ZONES, PER_ZONE},
   .items = zones_items, .size = sizeof(zone_list), .copy_as = COPY_IS_NEW,
-  .on = {.due = zones_due, .accept = find_zones, .release = zones_free},
+  .on = {.due = zones_due, .accept = find_zones},
   COLUMNS_OF(columns)};
 /* clang-format on */

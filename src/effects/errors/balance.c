@@ -15,15 +15,8 @@
  * to the default, and the iterations that a digit took so far; methods that end
  * at once when their active set is found (Newton, pivoting) save a step.
  */
-#include "base/memory.h"
-#include "base/text.h"
-#include "base/timer.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { PASSES = 8 };
 static const double FIRST_TOL = 3e-2; /* -, before an error is known */
@@ -48,21 +41,15 @@ static int is_balanced(const run *r) {
   return r->step->balanced && r->nodes.n > 0;
 }
 
-static void free_arrays(balance *b) {
-  RELEASE(b->u, b->rc, b->guess_u, b->guess_r);
-  *b = (balance){0};
-}
-
-static void release(void *self) { free_arrays(self); }
-
 static status begin_step(run *r, void *self) {
   balance *b = self;
   r->solving.guess_u = r->solving.guess_r = NULL;
   b->known = 0;
   b->report = (balance_report){0};
   if (!is_balanced(r) || b->m == r->nodes.n_c) return OK;
-  free_arrays(b);
-  b->m = r->nodes.n_c;
+  RELEASE(b->u, b->rc, b->guess_u, b->guess_r);
+  *b = (balance){.m = r->nodes.n_c};
+  OWNS(b);
   PASS_NEW_REALS(b->m, &b->u, &b->rc, &b->guess_u, &b->guess_r);
   return OK;
 }
@@ -232,8 +219,6 @@ static void show(const void *self, state *s) {
 
 static int requires_balance(const model *m, char *why, size_t size) {
   int any = 0;
-  (void)why;
-  (void)size;
   for (int i = 0; i < m->n.step; ++i) any |= m->steps[i].balanced;
   return any;
 }
@@ -243,5 +228,5 @@ const effect_ops balance_effect = {
   .name = "balance", .bit = NO_BIT, .required = requires_balance,
   .own = STAGE_NONE, .size = sizeof(balance),
   .on = {.begin_step = begin_step, .solve = solve, .accept = learn,
-         .show = show, .keep = keep, .release = release}};
+         .show = show, .keep = keep}};
 /* clang-format on */

@@ -1,10 +1,6 @@
 /* *REFERENCE: the true error of each increment against a closed form. */
 #include "accuracy/exact_error.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "run/run.h"
-
-#include "base/memory.h"
+#include "effects/plan/effect.h"
 
 #include "run/column_row.h"
 
@@ -23,7 +19,6 @@ static effect_work expected(const plan_sizes *s) {
 }
 
 static status exact_new(run *r, void **self) {
-  (void)r;
   ((true_error *)*self)->asked = 1;
   return OK;
 }

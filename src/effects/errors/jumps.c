@@ -12,15 +12,9 @@
  * where the method of the deck did not converge; an increment that starts from
  * a state far from equilibrium is not examined.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 #include "run/setup/setup.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct checked {
   int asked;              /* 1: by CHECK= of the step */
@@ -294,14 +288,12 @@ static effect_work products(const plan_sizes *s) {
 }
 
 static status begin_step(run *r, void *self) {
-  (void)r;
   ((checked *)self)->jumps = 0;
   return OK;
 }
 
 static status check_asked(run *r, void *self) {
   int corner = 0;
-  (void)self;
   for (int i = 0; i < r->nodes.n; ++i)
     corner |= surface_is_corner(r->surface, i);
   return check_possible(r->step, r->msh->dim,
@@ -310,6 +302,7 @@ static status check_asked(run *r, void *self) {
 }
 
 static status find_others(run *r, void *self) {
+  OWNS(self);
   ((checked *)self)->asked = r->step->check != CHECK_NONE;
   return check_problem(r->step, &r->problem.cp, &r->solving.report,
                        run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
@@ -324,12 +317,7 @@ static void show(const void *self, state *s) {
 }
 
 static status keep(run *r, void *self, archive *a) {
-  (void)r;
   return archive_ints(a, "lost", &((checked *)self)->lost, 1);
-}
-
-static void release(void *self) {
-  solution_set_free(&((checked *)self)->solutions);
 }
 
 /* The hooks enter the stage themselves, where there is something to do. */
@@ -340,5 +328,5 @@ const effect_ops second_solutions_effect = {
   .size = sizeof(checked),
   .on = {.check = check_asked, .begin_step = begin_step,
          .examine = look_for_jump, .accept = find_others, .show = show,
-         .keep = keep, .release = release}};
+         .keep = keep}};
 /* clang-format on */

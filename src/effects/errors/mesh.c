@@ -2,16 +2,10 @@
  * *ACCURACY, MESH=: the error of the mesh by recovered stresses, of the body
  * and of each element.
  */
-#include "base/memory.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
-#include "model/facts.h"
-#include "run/run.h"
-#include "run/column_row.h"
 
-#include <math.h>
+#include "run/column_row.h"
 
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
 
@@ -28,21 +22,16 @@ static status estimate_new(run *r, void **self) {
   return OK;
 }
 
-static void release(void *self) {
-  mesh_estimate *own = self;
-  space_recovery_free(own->recovery);
-  memory_free(own->elem_error);
-}
-
 static int is_recovery_known(const run *r, const mesh_estimate *own) {
   return own->recovery != NULL && own->elastic_no == r->body.elastic_no;
 }
 
 static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
-  space_recovery_free(own->recovery);
+  memory_free(own->recovery);
   own->recovery = NULL;
   TIMED(STAGE_MESH_ERROR);
+  OWNS(own);
   PASS(space_recovery_new(&r->body.d, &own->recovery));
   if (r->m->n.goal > 0) PASS(space_keep(own->recovery));
   own->elastic_no = r->body.elastic_no;
@@ -134,7 +123,6 @@ const effect_ops mesh_error_effect = {
   .name = "error of mesh", .bit = EFFECT_BIT_MESH_ERROR,
   .required = requires_mesh_error, .expected = expected,
   .own = STAGE_MESH_ERROR, .inside = 1, .size = sizeof(mesh_estimate),
-  .on = {.create = estimate_new, .estimate = estimate, .keep = keep,
-         .release = release},
+  .on = {.create = estimate_new, .estimate = estimate, .keep = keep},
   COLUMNS_OF(columns)};
 /* clang-format on */

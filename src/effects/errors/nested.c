@@ -7,14 +7,8 @@
  * one where fewer nodes were found in another state than on the coarser mesh at
  * the increment before than change their state there within this one.
  */
-#include "base/memory.h"
-#include "effects/rows.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 #include "run/start/coarser.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct nested {
   double *u, *rc;          /* [n_c] m, N; NULL: none yet */
@@ -25,20 +19,14 @@ typedef struct nested {
   int missed;              /* nodes in another state at r->old; -1: unknown */
 } nested;
 
-static void free_arrays(nested *x) {
+static void forget(run *r, void *self) {
+  nested *x = self;
+  r->solving.start_u = r->solving.start_r = NULL;
   RELEASE(x->u, x->rc, x->state, x->before, x->nearest);
   *x = (nested){.missed = -1};
 }
 
-static void release(void *self) { free_arrays(self); }
-
-static void forget(run *r, void *self) {
-  r->solving.start_u = r->solving.start_r = NULL;
-  free_arrays(self);
-}
-
 static status nested_new(run *r, void **self) {
-  (void)r;
   ((nested *)*self)->missed = -1;
   return OK;
 }
@@ -137,8 +125,6 @@ static status compare(run *r, void *self) {
 }
 
 static int requires_start(const model *m, char *why, size_t size) {
-  (void)why;
-  (void)size;
   return m->accuracy.coarser != NULL;
 }
 
@@ -147,5 +133,5 @@ const effect_ops nested_effect = {
   .name = "nested start", .bit = NO_BIT, .required = requires_start,
   .own = STAGE_NONE, .size = sizeof(nested),
   .on = {.create = nested_new, .pose = pose, .accept = compare,
-         .forget = forget, .release = release}};
+         .forget = forget}};
 /* clang-format on */

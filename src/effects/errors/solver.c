@@ -9,14 +9,10 @@
  * the solution moves, in the energy norm, by no more than where it starts. So
  * the bounds of the increments are added.
  */
-#include "base/memory.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
-#include "run/column_row.h"
 
-#include <math.h>
+#include "run/column_row.h"
 
 static const char weakly_held[] =
     "supports hold a body by negligible lever arms";
@@ -71,14 +67,12 @@ static status estimate(run *r, void *self) {
 
 static status accept(run *r, void *self) {
   bounds *own = self;
-  (void)r;
   own->before = own->now;
   return OK;
 }
 
 static status keep(run *r, void *self, archive *a) {
   bounds *own = self;
-  (void)r;
   return archive_reals(a, "before", &own->before, 1);
 }
 

@@ -15,17 +15,11 @@
  * of order p (Richardson), without friction; zones of stick and slip that grow
  * lie between order 1 and 2: 5/3, or more for an integrator of order 1.
  */
-#include "base/memory.h"
-#include "base/timer.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
+#include "effects/plan/effect.h"
 #include "run/history/loop.h"
 #include "run/visco.h"
-#include "run/column_row.h"
 
-#include <math.h>
-#include <string.h>
+#include "run/column_row.h"
 
 static const double EXTRAPOLATION = 5.0 / 3.0; /* -, of growing zones */
 static const double STRAIGHT = 10.0; /* -, of the tolerance of the solver */
@@ -65,21 +59,14 @@ static status waypoint_new(const run *r, waypoint *w) {
   return OK;
 }
 
-static void waypoint_free(waypoint *w) {
-  start_point_free(&w->start);
-  flow_state_free(&w->flow);
-}
-
 static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
   if (e == &r->old && r->strains.visco != NULL)
     flow_state_copy(&r->strains.visco->x, &r->strains.visco->old, &w->flow);
   start_point_copy(r, e, &w->start);
 }
 
-static status path_new(const run *r, finer_path **out) {
-  finer_path *p = NULL;
-  PASS_NEW(p, 1);
-  *out = p;
+static status path_new(const run *r, finer_path *p) {
+  OWNS(p);
   p->flows = r->step->kind == STEP_VISCO;
   PASS(waypoint_new(r, &p->at));
   PASS(waypoint_new(r, &p->middle));
@@ -93,12 +80,11 @@ static status path_new(const run *r, finer_path **out) {
   return OK;
 }
 
-static void path_free(finer_path *p) {
-  if (p == NULL) return;
-  waypoint_free(&p->at);
-  waypoint_free(&p->middle);
-  waypoint_free(&p->end);
-  RELEASE(p->d, p->Ad, p->u, p->e0, p);
+static status path_begin(const run *r, paths *own) {
+  if (own->path != NULL) return OK;
+  OWNS(own);
+  PASS_NEW(own->path, 1);
+  return path_new(r, own->path);
 }
 
 /* The equilibrium at t from where "from" stands, into "to". */
@@ -115,7 +101,7 @@ static status half(run *r, waypoint *from, double t, waypoint *to) {
 
 /* The next increment starts from what is in r->old. */
 static void restart(paths *own) {
-  path_free(own->path);
+  memory_free(own->path);
   own->path = NULL;
   own->before.norm += own->now.norm;
   own->before.strain += own->now.strain;
@@ -153,7 +139,7 @@ static status try_path(run *r, void *self, double t) {
   if (own->path != NULL && (own->path->at.start.t != r->old.t ||
                             own->path->flows != (r->step->kind == STEP_VISCO)))
     restart(own);
-  if (own->path == NULL) TRY(path_new(r, &own->path));
+  TRY(path_begin(r, own));
   TRY(try_halves(r, own->path, t));
 done:
   r->course.shadow = 0;
@@ -314,14 +300,7 @@ static status compare(run *r, void *self) {
   return OK;
 }
 
-/* ---- its state ---------------------------------------------------------- */
-
-static void release(void *self) { path_free(((paths *)self)->path); }
-
-static void forget(run *r, void *self) {
-  (void)r;
-  restart(self);
-}
+static void forget(run *r, void *self) { restart(self); }
 
 /* Sudden loads at the start of a *VISCO step is no part of a path. */
 static status begin_step(run *r, void *self) {
@@ -351,7 +330,7 @@ static status keep(run *r, void *self, archive *a) {
   PASS(archive_reals(a, "path_strain_before", &own->before.strain, 1));
   PASS(archive_reals(a, "path_strain", &own->now.strain, 1));
   if (!there) return OK;
-  if (own->path == NULL) PASS(path_new(r, &own->path));
+  PASS(path_begin(r, own));
   PASS(archive_ints(a, "path_lost", &own->path->lost, 1));
   return keep_waypoint(r, &own->path->at, a);
 }
@@ -511,6 +490,6 @@ const effect_ops time_error_effect = {
   .required = requires_time_error, .expected = expected,
   .own = STAGE_TIME_ERROR, .inside = 1, .size = sizeof(paths),
   .on = {.begin_step = begin_step, .make_step = march, .attempt = try_path,
-         .accept = compare, .forget = forget, .keep = keep, .release = release},
+         .accept = compare, .forget = forget, .keep = keep},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -5,15 +5,8 @@
  * stresses of the points changes their e^i by the law over the increment, that
  * is a load on the elastic body, whose motion changes the stresses again.
  */
-#include "base/memory.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "run/run.h"
+#include "effects/plan/effect.h"
 #include "run/visco.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct checked {
   theorems *at_work;
@@ -114,7 +107,7 @@ static status body_map_new(run *r, const unsigned char *given, body_map *b) {
 static void body_map_free(body_map *b) {
   matrices_free(&b->own);
   frozen_free(&b->problem);
-  linear_contact_free(b->contact);
+  memory_free(b->contact);
   RELEASE(b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du);
 }
 
@@ -217,7 +210,6 @@ static effect_work expected(const plan_sizes *s) {
 }
 
 static status checked_new(run *r, void **self) {
-  (void)r;
   return theorems_new(&((checked *)*self)->at_work);
 }
 
@@ -229,13 +221,11 @@ static void show(const void *self, state *s) {
   s->errors.theorems = ((const checked *)self)->report;
 }
 
-static void release(void *self) { theorems_free(((checked *)self)->at_work); }
-
 /* clang-format off */
 const effect_ops theorems_effect = {
   .name = "theory checks", .bit = EFFECT_BIT_THEORY,
   .required = requires_theorems, .expected = expected, .own = STAGE_THEORY,
   .shadow = 1, .size = sizeof(checked),
   .on = {.create = checked_new, .due = due, .initial = see_start,
-         .accept = see_increment, .show = show, .release = release}};
+         .accept = see_increment, .show = show}};
 /* clang-format on */

@@ -3,13 +3,7 @@
  * that are not small, elements turned inside out by the displacements, a
  * contact that no node ever touched. Each is reported once a run.
  */
-#include "base/memory.h"
-#include "effects/rows.h"
-#include "run/run.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "effects/plan/effect.h"
 
 typedef struct warnings {
   int strain, folded; /* 1: told */
@@ -93,8 +87,6 @@ static status warnings_new(run *r, void **self) {
   return OK;
 }
 
-static void release(void *self) { memory_free(((warnings *)self)->touched); }
-
 static status keep(run *r, void *self, archive *a) {
   warnings *own = self;
   PASS(archive_ints(a, "told_strain", &own->strain, 1));
@@ -103,8 +95,6 @@ static status keep(run *r, void *self, archive *a) {
 }
 
 static int requires_warnings(const model *m, char *why, size_t size) {
-  (void)why;
-  (void)size;
   return !m->problem.given;
 }
 
@@ -112,6 +102,5 @@ static int requires_warnings(const model *m, char *why, size_t size) {
 const effect_ops warnings_effect = {
   .name = "warnings", .bit = NO_BIT, .required = requires_warnings,
   .own = STAGE_NONE, .size = sizeof(warnings),
-  .on = {.create = warnings_new, .accept = look, .end = end, .keep = keep,
-         .release = release}};
+  .on = {.create = warnings_new, .accept = look, .end = end, .keep = keep}};
 /* clang-format on */

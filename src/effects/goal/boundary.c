@@ -14,14 +14,8 @@
  *
  * are in no residual at the nodes: a goal with the adjoint y lacks dF y.
  */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 static const double SMOOTH = 0.86; /* -, cosine between faces of a surface */

@@ -16,16 +16,11 @@
  * before further: one solve an increment for all goals at all times, the
  * transpose of a chain of adjoints backwards through the increments.
  */
-#include "base/memory.h"
-#include "base/timer.h"
 #include "effects/goal/parts.h"
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
+#include "effects/plan/effect.h"
 #include "effects/shared.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 static const double DIGITS = 1e-13;   /* -, of the terms: their rounding */
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
@@ -64,14 +59,6 @@ static status goals_new(run *r, void **self) {
   if (!effect_is_on(&slip_history_effect, r->m)) return OK;
   PASS_NEW(own->before.u, r->n_dof);
   return OK;
-}
-
-static void release(void *self) {
-  goal_state *own = self;
-  space_recovery_free(own->recovery);
-  goal_border_free(&own->border);
-  RELEASE(own->before.u, own->before.edge, own->before.sum, own->before.band,
-          own->product, own->result);
 }
 
 /* ---- what the estimate covers -------------------------------------------- */
@@ -131,8 +118,8 @@ typedef struct shared {
 
 static void shared_free(shared *s) {
   goal_surface_free(&s->surface);
-  goal_estimator_free(s->estimator);
-  contact_adjoint_free(s->adjoint);
+  memory_free(s->estimator);
+  memory_free(s->adjoint);
   goal_form_free(&s->form);
   RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->rest, s->moved);
 }
@@ -142,8 +129,9 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
   PASS(mesh_recovery(r, out));
   if (*out != NULL) return OK;
   if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
-    space_recovery_free(own->recovery);
+    memory_free(own->recovery);
     own->recovery = NULL;
+    OWNS(own);
     PASS(space_recovery_new(&r->body.d, &own->recovery));
     own->elastic_no = r->body.elastic_no;
   }
@@ -442,6 +430,7 @@ static status remember(run *r, goal_state *own, shared *s) {
     return OK;
   }
   if (h->edge == NULL) {
+    OWNS(own);
     h->n_edge = s->surface.n_edge;
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   }
@@ -496,6 +485,7 @@ static status keep(run *r, void *self, archive *a) {
   if (h->u == NULL) return OK;
   PASS(archive_ints(a, "lost", &h->lost, 1));
   PASS(archive_ints(a, "edges", &h->n_edge, 1));
+  OWNS(own);
   if (h->edge == NULL && h->n_edge > 0)
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   PASS(archive_reals(a, "edge", h->edge,
@@ -588,7 +578,6 @@ const effect_ops goals_effect = {
   .name = "errors of goals", .bit = NO_BIT, .required = requires_goals,
   .expected = expected, .table = {PRINT_GOALS, PER_GOAL},
   .size = sizeof(goal_state), .items = goal_items,
-  .on = {.create = goals_new, .accept = find_goals, .show = show, .keep = keep,
-         .release = release},
+  .on = {.create = goals_new, .accept = find_goals, .show = show, .keep = keep},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -7,10 +7,8 @@
  * are in no residual at the nodes, as those of boundary.c, the mean of a stress
  * is less by that of E d0, and the energy by that of sigma : d0.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
-
-#include <math.h>
 
 static const double PI = 3.14159265358979323846;
 

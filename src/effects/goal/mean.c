@@ -3,10 +3,8 @@
  * of its elements, as a unit traction over it would do work; over the nodes of
  * a group that has nothing else.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
-
-#include <math.h>
 
 static const double PI = 3.14159265358979323846;
 

@@ -95,7 +95,6 @@ typedef struct goal_border {
   double *angle; /* [n_node] of the body at the nodes, rad; in space NULL */
 } goal_border;
 status goal_border_new(const mesh *m, goal_border *b); /* support.c */
-void goal_border_free(goal_border *b);                 /* accepts all-zero */
 
 /* surface.c */
 typedef struct goal_surface {

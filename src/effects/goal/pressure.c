@@ -19,14 +19,10 @@
  *
  * with x0 at three quarters from the middle to a (Hertz: .0016 a too much).
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 

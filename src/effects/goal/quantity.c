@@ -2,14 +2,12 @@
  * The quantities of *GOAL and their derivatives; those of a pressure are in
  * pressure.c.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
 #include "effects/shared.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -173,7 +171,6 @@ static status set_force(const run *r, const goal_card *g, goal_form *f) {
 static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
-  (void)g;
   f->value = r->now.energy.friction_end;
   f->sums = 1;
   f->is_still = !(f->value > 0.0) && r->problem.cp.g0 != NULL;
@@ -250,7 +247,6 @@ static double energy_density(const run *r, int elem_id) {
 
 static status set_energy(const run *r, const goal_card *g, goal_form *f) {
   OWNED double *beyond = NULL;
-  (void)g;
   PASS_NEW(beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
   for (int e = 0; e < r->msh->n_elem; ++e) {

@@ -10,13 +10,8 @@
  * (Bogy 1971, J Appl Mech 38, 377-386), unless it is a plane of symmetry that
  * their interface is normal to, and where their interface turns within.
  */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
-
-#include <math.h>
-#include <stdlib.h>
 
 static const double PI = 3.14159265358979323846;
 /* Of a face that is a chord of a smooth surface, rad: half of what it turns. */
@@ -447,8 +442,6 @@ status goal_border_new(const mesh *m, goal_border *b) {
     b->angle[m->elem[k]] += angle_at(m, m->elem + k - k % 3, k % 3);
   return OK;
 }
-
-void goal_border_free(goal_border *b) { RELEASE(b->side, b->angle); }
 
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s) {

@@ -2,14 +2,8 @@
  * Edges of the contact surface: closed, stuck, curved; where its status
  * changes, or it is closed at its border, where stresses may be infinite.
  */
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/vector.h"
+#include "base/base.h"
 #include "effects/goal/parts.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 static const double PI = 3.14159265358979323846;
 

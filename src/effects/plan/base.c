@@ -2,12 +2,9 @@
  * Rows of every body, of tables, fields and files, and of effects in other
  * files of the run: their expected work and their stages.
  */
-#include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "run/column_row.h"
+#include "effects/plan/effect.h"
 
-#include <math.h>
+#include "run/column_row.h"
 
 static effect_work elements(const plan_sizes *s) {
   double n = s->elements, entries = work_factor_entries(s);
@@ -286,7 +283,6 @@ static int requires_restart(const model *m, char *why, size_t size) {
 }
 
 static int requires_always(const model *m, char *why, size_t size) {
-  (void)m;
   return plan_says(1, why, size, "always");
 }
 

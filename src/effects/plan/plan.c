@@ -3,14 +3,10 @@
  * the plan as text, and the measured costs of the run.
  */
 #include "effects/plan/plan.h"
-#include "effects/rows.h"
-#include "model/facts.h"
-#include "base/memory.h"
-#include "base/text.h"
 
-#include <math.h>
+#include "effects/plan/effect.h"
+
 #include <stdarg.h>
-#include <stdio.h>
 
 int plan_says(int on, char *why, size_t size, const char *format, ...) {
   va_list list;
@@ -107,6 +103,7 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   int capacity = 0;
   PASS_NEW(*out, 1);
   effect_plan *p = *out;
+  OWNS(p);
   PASS(plan_sizes_find(m, msh, n, &p->sizes));
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;
@@ -126,7 +123,7 @@ static int is_default(const step *s) {
 }
 
 status plan_leave_out(model *m, const mesh *msh) {
-  ENDS_BY(plan_free) effect_plan *p = NULL;
+  OWNED effect_plan *p = NULL;
   if (facts_first_step(m, is_default) == NULL || model_targeted_goal(m) != NULL)
     return OK;
   PASS(plan_new(m, msh, 0, &p));
@@ -139,10 +136,6 @@ status plan_leave_out(model *m, const mesh *msh) {
     if (is_default(&m->steps[i])) m->steps[i].accuracy.mesh = MESH_ERROR_NO;
   m->effects = effects_required(m);
   return OK;
-}
-
-void plan_free(effect_plan **p) {
-  if (*p != NULL) RELEASE((*p)->rows, *p);
 }
 
 stage_cost plan_cost(const plan_row *r) {

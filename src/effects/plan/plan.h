@@ -58,7 +58,6 @@ typedef struct effect_plan {
 
 /* msh NULL: a condensed problem from a file, of n contacts. *out is new. */
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out);
-void plan_free(effect_plan **p); /* accepts that of NULL */
 /* After model_check: the error of the mesh that no card requires is left out
  * where it is expected to take more than PLAN_CHEAP of the run. */
 #define PLAN_CHEAP 0.05

@@ -13,9 +13,7 @@
  */
 #include "effects/plan/plan.h"
 
-#include "base/memory.h"
-
-#include <math.h>
+#include "base/base.h"
 
 /* Increments that an output with this frequency shows. */
 static double shown_of(const step *s, int frequency) {

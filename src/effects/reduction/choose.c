@@ -14,14 +14,9 @@
  *                      or no lateral expansion (nu = 0), where no motion of a
  *                      body is held by friction
  */
+#include "effects/plan/effect.h"
 #include "effects/reduction/parts.h"
-#include "effects/rows.h"
-
-#include "base/memory.h"
 #include "fem/fem.h"
-
-#include <math.h>
-#include <string.h>
 
 /*
  * Materials to try without their law: it flows too little, or it is always in
@@ -259,7 +254,7 @@ static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
 done:
   for (int i = 0; i < m->n.step && dt != NULL; ++i) m->steps[i].dt = dt[i];
   reduction_restore(m);
-  reduction_free(p.n);
+  memory_free(p.n);
   memory_free(dt);
   return st;
 }
@@ -290,6 +285,7 @@ static status try_threshold(model *m, const mesh *msh) {
   PASS_NEW(flows, msh->n_elem);
   PASS(run_elastic(m, msh, flows, &seen));
   if (!seen) return OK;
+  OWNS(m);
   if (m->reduction.still == NULL) PASS_NEW(m->reduction.still, msh->n_elem);
   add_rows(m, msh, flows);
   return OK;

@@ -17,12 +17,9 @@
  */
 #include "effects/reduction/parts.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/sparse.h"
 #include "fem/fem.h"
-
-#include <math.h>
-#include <string.h>
 
 enum { SAFETY = 2 };
 
@@ -58,6 +55,7 @@ status reduction_new(const model *m, const mesh *msh, reduction **out) {
   reduction *n = NULL;
   PASS_NEW(n, 1);
   *out = n;
+  OWNS(n);
   n->m = m;
   n->msh = msh;
   n->d.mesh = msh;
@@ -75,14 +73,6 @@ status reduction_new(const model *m, const mesh *msh, reduction **out) {
   for (int e = 0; e < msh->n_elem; ++e) n->elem_id[e] = e;
   PASS_NEW_REALS(msh->n_elem, &n->flow.stress, &n->flow.rate);
   return load_temperature_initial(m, msh, n->T0);
-}
-
-void reduction_free(reduction *n) {
-  if (n == NULL) return;
-  moduli_free(&n->moduli);
-  RELEASE(n->fixed, n->sigma, n->T0, n->T, n->heat, n->flow.stress,
-          n->flow.rate, n->flow.strain, n->flow.strain_rate, n->strain,
-          n->elem_id, n->way, n->force, n->u, n);
 }
 
 /* ---- scales ------------------------------------------------------------- */

@@ -2,10 +2,8 @@
  * The model as the trials read it: scales of the deck, laws at a point; effects
  * out of it for a run, and back into it.
  */
+#include "effects/plan/effect.h"
 #include "effects/reduction/parts.h"
-#include "effects/rows.h"
-
-#include <math.h>
 
 const double reduction_share = 0.1;
 

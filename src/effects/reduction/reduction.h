@@ -27,7 +27,6 @@ void reduction_restore(model *m);
 
 typedef struct reduction reduction; /* sums of the bounds */
 status reduction_new(const model *m, const mesh *msh, reduction **out);
-void reduction_free(reduction *n); /* accepts NULL */
 /* An accepted increment into the rows[m->n_omitted] of m. */
 status reduction_measure(reduction *n, const state *s, omitted *rows);
 /* 1: a row is already above the tolerance; the run can end. */

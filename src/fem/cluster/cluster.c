@@ -6,10 +6,7 @@
  */
 #include "fem/cluster/cluster.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 /* The current section. */
 typedef struct growth {
@@ -203,18 +200,11 @@ status cluster_new(const cluster_input *in, cluster_set **out) {
   if (!wanted) return OK;
   PASS_NEW(*out, 1);
   cluster_set *c = *out;
+  OWNS(c);
   PASS(grow(in, c));
   PASS(list_elements(in->mesh, c));
   PASS(list_nodes(in->mesh, c));
   return weigh(in, c);
-}
-
-void cluster_free(cluster_set *c) {
-  if (c == NULL) return;
-  RELEASE(c->of, c->start, c->elem, c->first, c->node, c->share, c->weight);
-  for (int f = CLUSTER_STRAIN; f <= CLUSTER_STRESS; ++f)
-    memory_free(c->mean[f]);
-  memory_free(c);
 }
 
 double cluster_share(int ns, const double *E, int flows) {

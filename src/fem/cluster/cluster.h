@@ -43,7 +43,6 @@ typedef struct cluster_input {
 
 /* *out is new, NULL if no section has any. ERR_MEMORY. */
 status cluster_new(const cluster_input *in, cluster_set **out);
-void cluster_free(cluster_set *c); /* accepts NULL */
 
 /* The share for the elasticity E[ns*ns], Pa: what exceeds the ratio of bulk to
  * shear modulus that nu = 0.4 has; all of it if the section flows. */

@@ -1,13 +1,10 @@
 /* Cholesky factors of which parts change (supernodal.h). */
 #include "fem/supernodal/supernodal.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   FEW_COLUMNS = 16,   /* BLAS costs more than it saves */
@@ -47,6 +44,7 @@ status supernodal_new(const cholmod_factor *L, supernodal **out) {
   int most = 0;
   PASS_NEW(s, 1);
   *out = s;
+  OWNS(s);
   s->n = (int)L->n;
   s->count = (int)L->nsuper;
   s->first = L->super;
@@ -64,16 +62,15 @@ status supernodal_new(const cholmod_factor *L, supernodal **out) {
 
 status supernodal_restrict(const supernodal *s, const int *number,
                            supernodal **out) {
-  status st = OK;
   supernodal *r = NULL;
   const size_t count = (size_t)s->count, rows = (size_t)s->start[count];
   SuiteSparse_long n_rows = 0, *first = NULL;
-  NEW_ALL(OF(first, 2 * (count + 1) + rows), OF(r, 1));
+  PASS_NEW(r, 1);
   *r = *s;
-  r->of = r->parent = NULL;
   r->n = 0;
-  r->pattern = first;
   *out = r;
+  OWNS(r);
+  PASS_NEW(first, 2 * (count + 1) + rows);
   SuiteSparse_long *start = first + count + 1, *row = start + count + 1;
   for (size_t q = 0; q < count; ++q) {
     first[q] = r->n;
@@ -87,18 +84,7 @@ status supernodal_restrict(const supernodal *s, const int *number,
   r->first = first;
   r->start = start;
   r->row = row;
-  TRY(link_up(r));
-done:
-  if (r == NULL) memory_free(first);
-  return st;
-}
-
-void supernodal_free(supernodal *s) {
-  if (s == NULL) return;
-  if (s->pattern == NULL)
-    RELEASE(s->head, s->next, s->done, s->place, s->relative, s->product,
-            s->below);
-  RELEASE(s->of, s->parent, s->pattern, s);
+  return link_up(r);
 }
 
 /* ---- supernodes of few columns ------------------------------------------- */

@@ -26,8 +26,6 @@ typedef struct supernodal {
   int *relative;                 /* [most rows] of the rows of another */
   double *product;               /* [largest update] */
   double *below;                 /* [most rows] of a solve */
-  SuiteSparse_long *pattern;     /* its own first, start and row; NULL: they are
-                                    borrowed, and the workspace is its own */
 } supernodal;
 
 /* Supernodes of some columns and all that follow from them. */
@@ -46,7 +44,6 @@ status supernodal_new(const cholmod_factor *L, supernodal **out);
  * ERR_MEMORY. */
 status supernodal_restrict(const supernodal *s, const int *number,
                            supernodal **out);
-void supernodal_free(supernodal *s); /* accepts NULL */
 /* Entries of the columns of a supernode. */
 size_t supernodal_entries(const supernodal *s, int supernode);
 /* mark[count]: those above one with a mark get it too. */

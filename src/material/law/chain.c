@@ -10,9 +10,7 @@
  */
 #include "material/law/law.h"
 
-#include <float.h>
-#include <math.h>
-#include <stdio.h>
+#include "base/base.h"
 
 typedef struct chain_param {
   int type;
@@ -227,7 +225,6 @@ static double stored(const law_point *p) {
 
 static const char *check(const law_card *law, elastic_type type,
                          const double *value, char *text, size_t size) {
-  (void)value;
   if (type == ELASTIC_ISO ||
       ((const chain_param *)law->param)->type == PROPORTIONAL)
     return NULL;

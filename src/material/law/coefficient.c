@@ -5,13 +5,7 @@
  */
 #include "material/law/law.h"
 
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/text.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "base/base.h"
 
 int law_n_field(const option *table) {
   int n = 0;
@@ -352,8 +346,3 @@ unsigned law_varies(const law_card *law) {
   return bits;
 }
 
-void law_card_free(law_card *law) {
-  if (law == NULL) return;
-  RELEASE((void *)law->param, law->temperature, law->value);
-  memset(law, 0, sizeof *law);
-}

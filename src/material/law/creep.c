@@ -21,8 +21,7 @@
  */
 #include "material/law/law.h"
 
-#include <float.h>
-#include <math.h>
+#include "base/base.h"
 
 const char *const law_formula_names[4] = {"Q", "P", "TEMP", "T"};
 
@@ -125,7 +124,6 @@ static creep norton_creep(const law_point *p, double q) {
 }
 
 static int norton_n_alpha(const law_card *law, int ns) {
-  (void)ns;
   return hardening_of(law) == STRAIN;
 }
 
@@ -201,11 +199,7 @@ static creep user_creep(const law_point *p, double q, int slopes) {
   return c;
 }
 
-static int user_n_alpha(const law_card *law, int ns) {
-  (void)law;
-  (void)ns;
-  return 1;
-}
+static int user_n_alpha(const law_card *law, int ns) { return 1; }
 
 /* ---- all ----------------------------------------------------------------- */
 

@@ -4,12 +4,11 @@
  * evaluation at a point.
  */
 #include "material/law/law.h"
-#include "base/memory.h"
+
+#include "base/base.h"
 #include "material/voigt.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 #include <strings.h>
 
 double tensor_trace(const double *v) { return v[0] + v[1] + v[2]; }

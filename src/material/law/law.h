@@ -203,7 +203,6 @@ const char *law_too_cold(const law_card *law, double temperature);
 enum { LAW_VARIES_TIME = 1, LAW_VARIES_TEMPERATURE = 2 };
 /* What the values and the speed depend on: bits; 0: the same for ever. */
 unsigned law_varies(const law_card *law);
-void law_card_free(law_card *law); /* accepts an all-zero card, NULL */
 
 /* Evaluation with the speed; results are overwritten. */
 int law_n_alpha(const law_card *law, int ns);

@@ -5,12 +5,9 @@
  * with deviator s and mean stress m of sigma. Held strain: the stress, or its
  * parts, decay as exp(-t/tau).
  */
+#include "base/base.h"
 #include "material/law/law.h"
 #include "material/voigt.h"
-
-#include <float.h>
-#include <math.h>
-#include <stdio.h>
 
 typedef struct maxwell {
   int type;
@@ -58,7 +55,6 @@ static void add_fluidity(const law_point *p, double *Q) {
 
 static void rate(const law_point *p, double *ei_rate, double *alpha_rate) {
   double Q[36] = {0};
-  (void)alpha_rate;
   add_fluidity(p, Q);
   tensor_product(p->elastic->ns, Q, p->sigma, ei_rate);
 }
@@ -83,7 +79,6 @@ static double square(const law_elastic *el, const double *x) {
 
 static int series(const law_point *p, int part, int k, law_unit *unit) {
   const maxwell_value *v = values(p);
-  (void)k;
   const double tau = part == 0 ? v->tau : v->tau_bulk;
   if (part > 1 || !(tau > 0)) return LAW_NO_PART;
   unit->flow = 1 / tau;
@@ -105,7 +100,6 @@ static double dissipation(const law_point *p) {
 
 static const char *check(const law_card *law, elastic_type type,
                          const double *value, char *text, size_t size) {
-  (void)type;
   if (is_deviatoric(law) || !(value[1] > 0)) return NULL;
   snprintf(text, size, "tau_bulk needs TYPE=DEVIATORIC");
   return text;

@@ -7,9 +7,7 @@
  */
 #include "material/law/law.h"
 
-#include <float.h>
-#include <math.h>
-#include <stdio.h>
+#include "base/base.h"
 
 typedef struct prony_term {
   double g, k, tau;

@@ -10,9 +10,9 @@
  */
 #include "material/law/law.h"
 
-#include <float.h>
+#include "base/base.h"
+
 #include <lapacke.h>
-#include <math.h>
 
 /* Fields in the order of the line; those a law lacks are zero. */
 typedef struct yield {

@@ -3,11 +3,8 @@
  */
 #include "material/scheme/work.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "material/voigt.h"
-
-#include <math.h>
-#include <string.h>
 
 status flow_new_kind(flow_kind *k, const law_card *law,
                      const law_elastic *elastic) {
@@ -238,7 +235,7 @@ int flow_is_constant(const flow *x) {
   return 1;
 }
 
-void add_scaled(size_t n, const double *x, double a, const double *v,
+void sum_scaled(size_t n, const double *x, double a, const double *v,
                 double *y) {
   for (size_t i = 0; i < n; ++i) y[i] = x[i] + a * v[i];
 }

@@ -13,11 +13,9 @@
  */
 #include "material/scheme/work.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /* C[n*m] += a A[n*k] B[k*m], column major */
 static void multiply(int n, int k, int m, double a, const double *A,

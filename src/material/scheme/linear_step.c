@@ -4,10 +4,8 @@
  */
 #include "material/scheme/work.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "material/voigt.h"
-
-#include <string.h>
 
 void linear_map_free(linear_map *m) { RELEASE(m->P, m->Q0, m->Q1, m->Q); }
 
@@ -37,7 +35,7 @@ status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
     PASS(general_map(k, p, exact, m, D));
   if (!general && k->elastic.plane_stress)
     PASS(plane_stress_map(&k->elastic, m, D));
-  add_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
+  sum_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
   return OK;
 }
 

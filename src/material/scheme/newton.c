@@ -8,12 +8,10 @@
  * laws whose coefficients vary have the map of the step instead (linear.c) with
  * those of the theta-point, unless their elasticity varies too.
  */
+#include "base/base.h"
 #include "material/scheme/work.h"
-#include "base/memory.h"
 
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /*
  * A point: for a given strain e the unknowns y = (e^i, alpha) follow from a
@@ -439,7 +437,7 @@ static status linear_stress(const flow *x, const flow_tangent *law,
       step[i] = now->e[at + i] - law->e[at + i];
     tensor_product(ns, D, step, change);
     tensor_product(ns, E, now->e + at, whole);
-    add_scaled((size_t)ns, law->sigma + at, 1.0, change, linear + at);
+    sum_scaled((size_t)ns, law->sigma + at, 1.0, change, linear + at);
     sum += x->weight[k] * (tensor_dot(ns, whole, whole) +
                            tensor_dot(ns, linear + at, linear + at));
   }

@@ -5,11 +5,10 @@
  * + theta x_new: theta = 1/2 is the implicit midpoint rule on the line between
  * the ends of the step (MIDPOINT), theta = 1 implicit Euler (BACKWARD).
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "material/scheme/work.h"
 #include "material/voigt.h"
 
-#include <math.h>
 #include <strings.h>
 
 /*
@@ -22,16 +21,16 @@
 
 /* now = old + sum of factor[i] times the rates of stage i, at old->t + dt, and
  * its equilibrium. */
-static status stage(const scheme_call *a, double dt, const double *factor) {
+static status add_stage(const scheme_call *a, double dt, const double *factor) {
   const scheme_work *w = a->w;
   size_t n = (size_t)a->x->ns * (size_t)a->x->n, na = a->x->alpha_at[a->x->n];
   int settled = 1;
-  add_scaled(n, a->old->ei, factor[0], w->ei_rate[0], a->now->ei);
-  add_scaled(na, a->old->alpha, factor[0], w->alpha_rate[0], a->now->alpha);
+  sum_scaled(n, a->old->ei, factor[0], w->ei_rate[0], a->now->ei);
+  sum_scaled(na, a->old->alpha, factor[0], w->alpha_rate[0], a->now->alpha);
   for (int i = 1; i < STAGES; ++i) {
     if (factor[i] == 0.0) continue;
-    add_scaled(n, a->now->ei, factor[i], w->ei_rate[i], a->now->ei);
-    add_scaled(na, a->now->alpha, factor[i], w->alpha_rate[i], a->now->alpha);
+    sum_scaled(n, a->now->ei, factor[i], w->ei_rate[i], a->now->ei);
+    sum_scaled(na, a->now->alpha, factor[i], w->alpha_rate[i], a->now->alpha);
   }
   a->now->t = dt == a->p->dt ? a->p->t : a->old->t + dt;
   PASS(a->b->equilibrium(a->b->ctx, a->now, &settled));
@@ -55,7 +54,7 @@ static status rates(const scheme_call *a, const flow_state *s, int i,
 static status euler_advance(const scheme_call *a) {
   const double h = a->p->dt;
   PASS(rates(a, a->old, 0, h));
-  return stage(a, h, (double[STAGES]){h});
+  return add_stage(a, h, (double[STAGES]){h});
 }
 
 static status heun_advance(const scheme_call *a) {
@@ -63,12 +62,12 @@ static status heun_advance(const scheme_call *a) {
   const size_t n = (size_t)a->x->ns * (size_t)a->x->n;
   scheme_work *w = a->w;
   PASS(rates(a, a->old, 0, h / 2));
-  PASS(stage(a, h, (double[STAGES]){h}));
+  PASS(add_stage(a, h, (double[STAGES]){h}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 1, h / 2));
-  PASS(stage(a, h, (double[STAGES]){h / 2, h / 2}));
+  PASS(add_stage(a, h, (double[STAGES]){h / 2, h / 2}));
   PASS(need(&w->e_k, n));
-  add_scaled(n, w->ei_rate[1], -1, w->ei_rate[0], w->e_k);
+  sum_scaled(n, w->ei_rate[1], -1, w->ei_rate[0], w->e_k);
   a->out->error = h / 2 * flow_norm(a->x, w->e_k);
   return OK;
 }
@@ -76,16 +75,16 @@ static status heun_advance(const scheme_call *a) {
 static status rk4_advance(const scheme_call *a) {
   const double h = a->p->dt;
   PASS(rates(a, a->old, 0, h / 6));
-  PASS(stage(a, h / 2, (double[STAGES]){h / 2}));
+  PASS(add_stage(a, h / 2, (double[STAGES]){h / 2}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 1, h / 3));
-  PASS(stage(a, h / 2, (double[STAGES]){0, h / 2}));
+  PASS(add_stage(a, h / 2, (double[STAGES]){0, h / 2}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 2, h / 3));
-  PASS(stage(a, h, (double[STAGES]){0, 0, h}));
+  PASS(add_stage(a, h, (double[STAGES]){0, 0, h}));
   if (!a->out->settled) return OK;
   PASS(rates(a, a->now, 3, h / 6));
-  return stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6});
+  return add_stage(a, h, (double[STAGES]){h / 6, h / 3, h / 3, h / 6});
 }
 
 /*

@@ -42,7 +42,7 @@ static inline law_point flow_kind_point(const flow_kind *k) {
                      .speed = k->speed};
 }
 /* y = x + a v over n components */
-void add_scaled(size_t n, const double *x, double a, const double *v,
+void sum_scaled(size_t n, const double *x, double a, const double *v,
                 double *y);
 void linear_map_free(linear_map *m);
 status need(double **array, size_t n); /* allocate if NULL */

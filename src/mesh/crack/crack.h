@@ -34,7 +34,7 @@ typedef struct mesh_cut { /* a crack to be opened */
  *
  *   m       in,out  after a failure only to be freed
  *   n, cut  in      [n]
- *   crack   out     [n] mesh_crack_free each, also after a failure
+ *   crack   out     [n] their arrays belong to the mesh
  *
  * ERR_MESH with errors in the log: P2022, P3012, P3050 to P3053. ERR_MEMORY.
  * Cost: a few passes over the mesh, else linear in the elements round the

@@ -6,14 +6,10 @@
  * per * place + k with per = dim + 1, place the one in "elem" and k the side or
  * corner of the element.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/build.h"
 #include "mesh/crack/crack.h"
 #include "mesh/sort.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 typedef struct opening {
   mesh *m;             /* borrowed */
@@ -770,6 +766,7 @@ status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
   ENDS_BY(release)
   opening o = {.m = m, .n = n, .cut = cut, .log = log, .crack = crack};
   if (n == 0) return OK;
+  OWNS(m);
   o.errors = message_count(log, ERROR);
   for (int k = 0; k < n; ++k) crack[k] = (mesh_crack){0};
   PASS(take_faces(&o));

@@ -2,17 +2,14 @@
  * Words of a .geo. Comments are skipped; text in quotes counts, as in
  * GetNumber("h").
  */
-#include "base/file.h"
 #include "mesh/msh/geo.h"
 
-#include "base/memory.h"
+#include "base/base.h"
+#include "base/file.h"
 #include "base/system/input.h"
-#include "base/text.h"
 
 #include <ctype.h>
 #include <errno.h>
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
 enum { MOST_BYTES = 1 << 26 };

@@ -10,12 +10,9 @@
  * nodes and elements come in blocks on an entity. Partitions have a list of
  * entities of their own.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
-
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct element_type { /* of gmsh, its number is the row */
   int dim, n_node;
@@ -658,6 +655,7 @@ status msh_read(const char *file, raw_mesh **out) {
   PASS(scan_open(&m.s, file, ERR_MESH));
   PASS_NEW(*out, 1);
   m.raw = *out;
+  OWNS(m.raw);
   PASS(read_sections(&m));
   PASS(finish_groups(&m));
   return finish_blocks(&m);

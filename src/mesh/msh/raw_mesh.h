@@ -40,8 +40,6 @@ typedef struct raw_mesh {
   int made;        /* 1: by gmsh from a .geo: centres of arcs are nodes of it */
 } raw_mesh;
 
-void raw_free(raw_mesh **raw); /* accepts that of NULL */
-
 /* Read a .msh: data only, every number checked. ERR_MESH with file and line in
  * the record if it is damaged; ERR_FILE, ERR_MEMORY. */
 status msh_read(const char *file, raw_mesh **out);

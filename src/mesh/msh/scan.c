@@ -1,23 +1,14 @@
 /* The scanner. Lines are counted only when a failure names one. */
-#include "base/file.h"
 #include "mesh/msh/scan.h"
 
-#include "base/memory.h"
-#include "base/text.h"
-#include "base/number.h"
+#include "base/base.h"
+#include "base/file.h"
 #include "base/system/input.h"
 #include "base/system/limits.h"
 
 #include <ctype.h>
 #include <errno.h>
-#include <float.h>
-#include <limits.h>
-#include <math.h>
 #include <stdarg.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -12,7 +12,6 @@ static inline uint64_t key_of(int a, int b) {
 typedef struct size_grid size_grid;
 /* *out is new. ERR_MEMORY. */
 status size_grid_new(const refine_sizes *s, size_grid **out);
-void size_grid_free(size_grid *g); /* accepts NULL */
 /* m; beyond the mesh about that of the nearest element. */
 double size_grid_at(const size_grid *g, const double *x);
 
@@ -26,6 +25,5 @@ typedef struct round_surface round_surface;
 /* x[3*n_all]; *out is new. ERR_MEMORY. */
 status round_surface_new(const surface_faces *f, int n_all, const double *x,
                          round_surface **out);
-void round_surface_free(round_surface *s); /* accepts NULL */
 /* middle[3] of the edge a, b; 1: it is not the mean of both. */
 int round_surface_middle(const round_surface *s, int a, int b, double *middle);

@@ -7,11 +7,7 @@
  */
 #include "mesh/refine/parts.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { ROUNDS = 100, EDGES = 6 };
 /* Elements are bisected whose length over that required is above the middle of
@@ -54,8 +50,8 @@ static void release(bisection *b) {
   table_free(&b->by_no);
   table_free(&b->parts);
   table_free(&b->marked);
-  size_grid_free(b->sizes);
-  round_surface_free(b->surface);
+  memory_free(b->sizes);
+  memory_free(b->surface);
   RELEASE(b->x, b->no, b->is_round, b->bent);
 }
 
@@ -235,7 +231,7 @@ static status find_surface(bisection *b) {
     ++f.n;
   }
   f.node = node;
-  round_surface_free(b->surface);
+  memory_free(b->surface);
   b->surface = NULL;
   return round_surface_new(&f, b->n_node, b->x, &b->surface);
 }
@@ -430,6 +426,7 @@ status raw_refine(raw_mesh *raw, const refine_request *q) {
   ENDS_BY(release) bisection b = {.q = q, .raw = raw};
   int done = 0;
   if (!is_simple(raw)) return OK;
+  OWNS(raw);
   PASS(take(&b));
   if (b.dim < 2) return OK;
   PASS(size_grid_new(&q->sizes, &b.sizes));

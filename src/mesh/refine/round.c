@@ -7,11 +7,7 @@
  */
 #include "mesh/refine/parts.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double SMOOTH = 0.5; /* -, sine of the largest turn */
 static const double FLAT = 1e-6;  /* -, the same of what is flat */
@@ -33,13 +29,6 @@ struct round_surface {
   double *normal;        /* [3*n_all] of the surface; 0: none */
   double *face_normal;   /* [3*f.n] times twice the area */
 };
-
-void round_surface_free(round_surface *s) {
-  if (s == NULL) return;
-  table_free(&s->edges);
-  RELEASE(s->face, s->kind, s->next, s->number, s->flat, s->sharp, s->tangent,
-          s->normal, s->face_normal, s);
-}
 
 /* ---- vectors ------------------------------------------------------------- */
 
@@ -265,6 +254,7 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
   if (f->n == 0) return OK;
   PASS_NEW(*out, 1);
   round_surface *s = *out;
+  OWNS(s);
   s->f = *f;
   s->x = x;
   PASS_NEW_ALL(OF(s->next, 2 * n_all), OF(s->number, n_all), OF(s->flat, n_all),

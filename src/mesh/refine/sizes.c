@@ -4,10 +4,7 @@
  */
 #include "mesh/refine/parts.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { FEW = 12, DEEPEST = 48 };
 static const double SHARED = 1.6; /* -, elements of both halves over those of
@@ -26,12 +23,6 @@ struct size_grid {
   int n, cap;
   box *item; /* [n] 0 is the whole */
 };
-
-void size_grid_free(size_grid *g) {
-  if (g == NULL) return;
-  for (int i = 0; i < g->n; ++i) memory_free(g->item[i].elem);
-  RELEASE(g->item, g);
-}
 
 /* Least and largest coordinate of an element along an axis. */
 static void range_of(const refine_sizes *s, int elem, int axis, double *range) {
@@ -109,6 +100,7 @@ static status build(size_grid *g) {
 status size_grid_new(const refine_sizes *s, size_grid **out) {
   PASS_NEW(*out, 1);
   size_grid *g = *out;
+  OWNS(g);
   g->s = *s;
   return build(g);
 }

@@ -1,12 +1,7 @@
 /* Cards of the contact: rigid obstacles, contact pairs, friction laws. */
 #include "model/cards/cards.h"
 
-#include "base/memory.h"
-#include "base/text.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "base/base.h"
 
 static int read_point(const reading *r, const record *line, const char *what,
                       double x[3]) {

@@ -3,11 +3,8 @@
  */
 #include "model/cards/cards.h"
 
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
 int same_word(const char *a, const char *b) { return strcasecmp(a, b) == 0; }

@@ -1,8 +1,6 @@
 /* Supports, loads and initial conditions. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/cards/cards.h"
-
-#include <math.h>
 
 /* 0 also where an error was reported for the card. */
 static int known_amplitude(const model *m, const char *name) {

@@ -2,11 +2,8 @@
  * Cards of a material: elasticity, density, thermal strain, inelastic laws and
  * their time-temperature shift.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/cards/cards.h"
-
-#include <float.h>
-#include <string.h>
 
 status apply_material(reading *r) {
   const card_options *p = r->param;

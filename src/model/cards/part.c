@@ -1,10 +1,7 @@
 /* Cards of the model: title, units, mesh, sections, amplitudes, time points. */
 #include "model/cards/cards.h"
 
-#include "base/memory.h"
-
-#include <float.h>
-#include <math.h>
+#include "base/base.h"
 
 status apply_heading(reading *r) {
   const card *c = r->card;

@@ -2,12 +2,8 @@
  * Steps: procedure, increments and integrator; what they are solved by and what
  * they write: solver, accuracy, tables, fields.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/cards/cards.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
 
 status apply_step(reading *r) {
   const card_options *p = r->param;
@@ -160,7 +156,6 @@ status apply_visco(reading *r) {
 /* ---- solver, accuracy, output ------------------------------------------- */
 
 static const char *solver_name(const void *ctx, int i) {
-  (void)ctx;
   if (i == 0) return "AUTO";
   return solver_list[i - 1] == NULL ? NULL : solver_list[i - 1]->name;
 }

@@ -2,11 +2,8 @@
  * *REFERENCE: the components of a closed form. *GOAL: a quantity whose error is
  * wanted.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/cards/cards.h"
-
-#include <float.h>
-#include <string.h>
 
 /* clang-format off */
 static const struct {

@@ -2,14 +2,11 @@
  * The model against the mesh: kinematics, sections, contacts, goals, pairs of
  * surfaces, and the parts in order.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/crack/crack.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
 #include "model/facts.h"
-
-#include <math.h>
-#include <stdio.h>
 
 /* ---- *REFERENCE: components to their places ------------------------------ */
 
@@ -231,6 +228,7 @@ static void check_radius(const model *m, const mesh *msh) {
 
 /* Each element in one section. */
 static status check_sections(model *m, const mesh *msh) {
+  OWNS(m);
   PASS_NEW(m->elem_section, msh->n_elem);
   for (int e = 0; e < msh->n_elem; ++e) m->elem_section[e] = -1;
   for (int i = 0; i < m->n.section; ++i) {
@@ -606,6 +604,7 @@ status model_open_cracks(model *m, mesh *msh) {
     if (id < 0) return message_status(m->log, ERR_DECK);
     cut[i] = (mesh_cut){&msh->group[id], &k->group_at};
   }
+  OWNS(msh);
   PASS_NEW(msh->crack, n);
   msh->n_crack = n;
   return mesh_open(msh, n, cut, m->log, msh->crack);

@@ -1,16 +1,10 @@
 /* Nodal fields: $NodeData of gmsh, or two datasets of HDF5. */
 #include "model/check/parts.h"
 
-#include "base/memory.h"
 #include "base/archive/dataset.h"
-#include "mesh/msh/scan.h"
+#include "base/base.h"
 #include "base/system/input.h"
-
-#include <math.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "mesh/msh/scan.h"
 
 /* Values beyond those of the mesh that a file may have: FOREIGN a node, and
  * FEW. */

@@ -3,13 +3,9 @@
  * numbers where steps begin and end, supports that agree where groups meet;
  * input without effect; increments of *VISCO steps against the laws.
  */
-#include "base/memory.h"
-#include "base/number.h"
+#include "base/base.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
-
-#include <math.h>
-#include <string.h>
 
 /* ---- names of groups to their ids in the mesh ---------------------------- */
 
@@ -179,6 +175,7 @@ static status find_field(model *m, const mesh *msh, const char *file,
     if (strcmp(m->load.fields[i].file, file) == 0)
       *out = m->load.fields[i].value;
   if (*out != NULL) return OK;
+  OWNS(m);
   PASS_GROW(m->load.fields, m->n.field, m->cap.field);
   nodal_field *f = &m->load.fields[m->n.field];
   const status st = nodal_field_read(file, msh, &f->value);

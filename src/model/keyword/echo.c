@@ -1,11 +1,8 @@
 /* What the keyword table prints: the deck with all defaults, and the help. */
-#include "base/text.h"
+#include "base/base.h"
 #include "model/keyword/keyword.h"
 
 #include <ctype.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 enum { WIDTH = 78, TEXT = 512 };

@@ -5,8 +5,7 @@
  */
 #include "model/keyword/keyword.h"
 
-#include <float.h>
-#include <string.h>
+#include "base/base.h"
 
 #define ANY (-1)
 

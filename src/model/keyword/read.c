@@ -1,9 +1,6 @@
 /* From cards to the model: the driver over the keyword table. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/keyword/keyword.h"
-
-#include <stdio.h>
-#include <string.h>
 
 /* ---- decks with *CONDENSED PROBLEM: what is allowed with it ------------- */
 
@@ -296,6 +293,7 @@ status model_from_deck(deck *d, message_log *log, model **out) {
   model *m = NULL;
   PASS_NEW(m, 1);
   *out = m;
+  OWNS(m);
   m->deck = d;
   m->log = log;
   m->name.title = "";

@@ -1,11 +1,7 @@
 /* Names to ids once all cards are read. */
-#include "base/memory.h"
+#include "base/base.h"
 #include "mesh/msh/geo.h"
 #include "model/keyword/keyword.h"
-
-#include <float.h>
-#include <math.h>
-#include <string.h>
 
 int name_is_lost(const model *m, const char *name) {
   for (int i = 0; i < m->deck->n_card; ++i) {

@@ -4,14 +4,9 @@
  */
 #include "output/columns/columns.h"
 
-#include "base/text.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "run/column_row.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- contact nodes, rows of a plain LCP, resultants of contacts ---- */
 
@@ -225,7 +220,6 @@ VALUE(stress, v->s->body.stress[at(v->m->ns, id, part)])
 
 static double mises(const view *v, int id, int part) {
   const double *s = v->s->body.stress + at(v->m->ns, id, 0);
-  (void)part;
   double shear = s[3] * s[3];
   if (v->m->ns == 6) shear += s[4] * s[4] + s[5] * s[5];
   double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];

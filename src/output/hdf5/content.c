@@ -4,11 +4,8 @@
  */
 #include "output/hdf5/file.h"
 
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 #include "model/keyword/keyword.h"
-
-#include <string.h>
 
 int hdf5_is_history(const hdf5_field *f) {
   return f->of == PER_INCREMENT || f->of == PER_CONTACT;

@@ -5,12 +5,11 @@
 #include "output/hdf5/file.h"
 
 #include "base/archive/dataset.h"
+#include "base/base.h"
 #include "base/file.h"
-#include "base/memory.h"
 
 #include <errno.h>
 #include <hdf5.h>
-#include <string.h>
 
 /* The file while it is made. */
 typedef struct maker {

@@ -12,12 +12,10 @@
  */
 #include "output/hdf5/file.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdint.h>
-#include <string.h>
 #include <unistd.h>
 
 enum {

@@ -7,11 +7,8 @@
  * JOB.body.xdmf, JOB.contact.xdmf: one grid of the last record, without time,
  * for readers that take nothing else (meshio.read).
  */
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 #include "output/hdf5/hdf5.h"
-
-#include <string.h>
 
 /* Where the name of a record and its time stand in a text of any record. */
 enum { NAME = 1, TIME = 2 };

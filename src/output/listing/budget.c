@@ -5,13 +5,11 @@
  */
 #include "output/listing/job.h"
 
-#include "base/timer.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "output/columns/columns.h"
 
-#include <math.h>
 #include <stdarg.h>
-#include <string.h>
 
 static const stage mesh_stages[] = {
     STAGE_MESH,     STAGE_SURFACE, STAGE_COUPLING, STAGE_ASSEMBLY,

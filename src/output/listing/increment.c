@@ -5,8 +5,7 @@
  */
 #include "output/listing/job.h"
 
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { WORST_NODES = 10, DIGITS = 5 /* after the point */ };
 

@@ -6,12 +6,9 @@
  */
 #include "output/listing/job.h"
 
-#include "base/timer.h"
+#include "base/base.h"
 #include "effects/rows.h"
 #include "model/keyword/keyword.h"
-
-#include <math.h>
-#include <string.h>
 
 int job_sizes(const job *j, size_row rows[SIZE_ROWS]) {
   const condense_info *info = &j->run->facts.info;

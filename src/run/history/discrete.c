@@ -4,13 +4,9 @@
  */
 #include "run/history/history.h"
 
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "solver/lcp/lcp_solve.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
 enum {
@@ -53,7 +49,7 @@ static status discrete_new(discrete *d) {
 static void discrete_free(discrete *d) {
   RELEASE(d->surface.node_no, d->u, d->r, d->gap, d->slip, d->g, d->contact,
           d->full);
-  contact_bodies_free(d->bodies);
+  memory_free(d->bodies);
   solution_set_free(&d->solutions);
 }
 
@@ -119,7 +115,7 @@ static status find_error(const step *s, const contact_problem *cp,
   else
     st = dense_inverse_new(cp->m, contact_matrix(cp), &dense);
   if (st == OK && dense != NULL) st = bound_error(cp, dense, u, r, &found);
-  dense_inverse_free(dense);
+  memory_free(dense);
   PASS(st);
   const double hidden = e->hidden;
   error_bound_set(&found, energy, e);

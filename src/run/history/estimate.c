@@ -2,12 +2,8 @@
  * Checks of the contact solution at an accepted increment: its errors, by the
  * effects that estimate them, and reasons for doubt.
  */
-#include "base/timer.h"
+#include "base/base.h"
 #include "run/history/loop.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 const char *const error_bound_indefinite =
     "the matrix is not symmetric and positive semidefinite";

@@ -3,17 +3,11 @@
  * with exact rollback, outcome of each increment, outputs.
  */
 #include "accuracy/verdict.h"
+#include "base/base.h"
+#include "base/interrupt.h"
 #include "run/history/loop.h"
 #include "run/setup/setup.h"
 #include "run/visco.h"
-
-#include "base/interrupt.h"
-#include "base/memory.h"
-#include "base/timer.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 enum { DEEPEST_CUT = 30 };
 

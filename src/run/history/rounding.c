@@ -11,13 +11,9 @@
  * solution without a correct digit ends the run; loads that grow from zero
  * count with their final size.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/sparse.h"
-#include "base/timer.h"
 #include "run/history/loop.h"
-
-#include <float.h>
-#include <math.h>
 
 static const double LAST_DIGIT = 0.1; /* -, error without a correct digit */
 /* -, the same where the condition number makes the measuring factor useless */

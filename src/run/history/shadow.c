@@ -5,10 +5,8 @@
  * with arrays of its own, solves it; the increment is unchanged. Shared arrays
  * are those that result_evaluate computes again.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "run/visco.h"
-
-#include <string.h>
 
 struct shadow {
   run r;

@@ -5,10 +5,7 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 enum { PASSES = 3 };
 
@@ -29,7 +26,7 @@ static status move_slave(const surface_input *in, surface_pair *p, double *x) {
       x[k] += d;
       p->moved = fmax(p->moved, fabs(d));
     }
-  mortar_free(m);
+  memory_free(m);
   return OK;
 }
 

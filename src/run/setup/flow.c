@@ -3,13 +3,10 @@
  * those of the units of their laws, of which they are the sum; temperatures of
  * the steps in which they flow.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "model/facts.h"
 #include "run/setup/setup.h"
 #include "run/visco.h"
-
-#include <math.h>
-#include <string.h>
 
 /* ---- temperatures -------------------------------------------------------- */
 

@@ -4,12 +4,7 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-#include "base/number.h"
-#include "base/timer.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 /*
  * Contact nodes whose gap is wider than what the step can close are left out of

@@ -10,7 +10,7 @@ void run_free_surface(run *r) {
   effects_forget(r);
   run_forget_estimates(r);
   matrices_free(&r->elastic);
-  surface_free(r->surface);
+  memory_free(r->surface);
   r->solver = NULL;
   r->c = NULL;
   r->surface = NULL;
@@ -215,7 +215,7 @@ status run_build_ties(run *r) {
   r->body.d.ties = &r->body.ties;
 done:
   timer_leave(STAGE_COUPLING);
-  for (int i = 0; m != NULL && i < n; ++i) mortar_free(m[i]);
+  for (int i = 0; m != NULL && i < n; ++i) memory_free(m[i]);
   RELEASE(m, dropped);
   return st;
 }

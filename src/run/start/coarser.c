@@ -4,11 +4,7 @@
  */
 #include "run/start/coarser.h"
 
-#include "base/memory.h"
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/base.h"
 
 struct coarser_state {
   int dim, n;
@@ -29,16 +25,6 @@ struct coarser {
 status coarser_new(coarser **out) {
   PASS_NEW(*out, 1);
   return OK;
-}
-
-static void state_free(coarser_state *x) {
-  RELEASE(x->x, x->contact_id, x->gap, x->traction, x->slip, x->contact);
-}
-
-void coarser_free(coarser *c) {
-  if (c == NULL) return;
-  for (int i = 0; i < c->n; ++i) state_free(&c->state[i]);
-  RELEASE(c->state, c);
 }
 
 static status new_arrays(const contact_surface *s, coarser_state *x) {
@@ -69,6 +55,7 @@ static void fill_node(const contact_surface *s, const contact_view *v, int i,
 
 status coarser_add(coarser *c, const contact_surface *s,
                    const contact_view *v) {
+  OWNS(c);
   PASS_GROW(c->state, c->n, c->capacity);
   coarser_state *x = &c->state[c->n++];
   *x = (coarser_state){.dim = s->dim, .n = s->n, .t = v->t};

@@ -9,8 +9,8 @@
 
 typedef struct coarser coarser;
 
+/* *out is new (memory_free). */
 status coarser_new(coarser **out);
-void coarser_free(coarser *c); /* accepts NULL */
 
 /* An increment, of the contact frames of a surface of n nodes. */
 typedef struct contact_view {

@@ -5,13 +5,9 @@
  * N.
  */
 #include "run/start/start.h"
-#include "base/memory.h"
-#include "base/text.h"
-#include "base/archive/dataset.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "base/archive/dataset.h"
+#include "base/base.h"
 
 static const double SAME_PLACE = 1e-9; /* -, of the size of the mesh */
 
@@ -87,11 +83,6 @@ done:
 status start_report_new(const mesh *msh, start_report *report) {
   PASS_NEW_ALL(OF(report->defect, msh->n_node), OF(report->kind, msh->n_node));
   return OK;
-}
-
-void start_report_free(start_report *report) {
-  RELEASE(report->defect, report->kind);
-  memset(report, 0, sizeof *report);
 }
 
 static status set_line(const model *m, const mesh *msh, const initial *line,

@@ -52,7 +52,6 @@ typedef struct start_report {
 } start_report;
 
 status start_report_new(const mesh *msh, start_report *report);
-void start_report_free(start_report *report); /* accepts all-zero */
 /* u_0 of the deck: the end of another run, then the lines; u[dim*n_node].
  * Errors in the log: ERR_FILE, ERR_DECK. */
 status start_displacements(const model *m, const mesh *msh, double *u,

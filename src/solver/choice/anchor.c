@@ -1,12 +1,10 @@
 /* Springs that hold a body while its contact forces are found (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   MODES = 6, /* of a body in space; 3 in the plane */

@@ -4,12 +4,8 @@
  */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
-#include "base/text.h"
+#include "base/base.h"
 
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 #include <strings.h>
 
 enum { TIGHTER = 3 };                /* tolerances tried on another form */
@@ -166,7 +162,7 @@ static status drive_one(contact_solver *s, const contact_problem *cp,
   if (a->how == ALONG_PATH) {
     int entries = cp->B->start[cp->n];
     if (s->path == NULL || s->path_capacity < entries) {
-      friction_path_free(s->path);
+      memory_free(s->path);
       s->path = NULL;
       PASS(friction_path_new(cp, &s->path));
       s->path_capacity = entries;
@@ -211,7 +207,7 @@ static int wants_inverse(contact_solver *s, const contact_problem *cp,
       contact_has_stiffness(cp) || !(a->ops->handles & REGULAR_COMPLIANCE) ||
       s->inverse_wanted)
     return 0;
-  solver_release(a->ops, s->work[row]);
+  memory_free(s->work[row]);
   s->work[row] = NULL;
   s->inverse_wanted = 1;
   return a->max_iter == 0 || a->max_iter > rep->iterations;

@@ -43,13 +43,8 @@
  */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/option.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* clang-format off */
 const char auto_help[] =

@@ -4,14 +4,8 @@
  */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
-#include "base/timer.h"
+#include "base/base.h"
 #include "solver/local.h"
-
-#include <limits.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- final correction of a solution ---- */
 
@@ -141,8 +135,7 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
     COPY(r, s.r, cp->m);
   }
 done:
-  node_blocks_free(s.blocks);
-  RELEASE(s.u, s.r);
+  RELEASE(s.blocks, s.u, s.r);
   return st;
 }
 
@@ -162,19 +155,17 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
 /* A (or W) has changed: discard factors. */
 static void forget_factors(contact_solver *s) {
   for (int i = 0; i <= N_SOLVER; ++i) {
-    const solver_ops *ops = i < N_SOLVER ? solver_list[i] : s->choice.ops;
-    solver_release(ops, s->work[i]);
+    memory_free(s->work[i]);
     s->work[i] = NULL;
   }
-  fixed_point_free(s->fixed);
-  friction_path_free(s->path);
+  RELEASE(s->fixed, s->path);
   s->fixed = NULL;
   s->path = NULL;
   other_form_free(&s->other);
   s->inverse_wanted = 0;
   normal_form_free(&s->normal);
   anchor_free(&s->held);
-  contact_bodies_free(s->bodies);
+  memory_free(s->bodies);
   s->bodies = NULL;
   RELEASE(s->best_u, s->best_r, s->full);
   s->best_u = s->best_r = s->full = NULL;

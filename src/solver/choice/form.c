@@ -1,14 +1,11 @@
 /* Other form and normal form (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /* ---- Contact without friction from the closed state --------------------- */
 
@@ -114,6 +111,7 @@ static status opened_new(const contact_problem *cp, const tangent_factor *by,
   opened *o;
   PASS_NEW(o, 1);
   *out = o;
+  OWNS(o);
   o->by = *by;
   o->n = cp->n;
   o->dim = cp->dim;
@@ -127,13 +125,6 @@ static status opened_new(const contact_problem *cp, const tangent_factor *by,
                OF(o->y, o->nt));
   for (int i = 0; i < cp->n; ++i) o->column[i] = -1;
   return OK;
-}
-
-/* Accepts NULL. */
-static void opened_free(opened *o) {
-  if (o == NULL) return;
-  RELEASE(o->made, o->column, o->Y, o->S, o->F, o->v, o->open, o->is_open,
-          o->u0, o->r0, o->du, o->dr, o->y, o);
 }
 
 /* The columns made so far, saved or read. */
@@ -314,9 +305,8 @@ int normal_form_applies(const contact_problem *cp) {
 }
 
 void normal_form_free(normal_form *nf) {
-  solver_release(&newton_solver, nf->work);
-  opened_free(nf->opened);
-  RELEASE(nf->L, nf->Y, nf->S, nf->f, nf->u, nf->r, nf->y);
+  RELEASE(nf->work, nf->opened, nf->L, nf->Y, nf->S, nf->f, nf->u, nf->r,
+          nf->y);
   *nf = (normal_form){0};
 }
 

@@ -1,13 +1,11 @@
 /* Proof that a problem has no solution (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 enum { PASSES = 400 /* columns tried */ };
 static const double DEFECT = 0x1p-26;   /* -, force of a motion without any */

@@ -1,13 +1,11 @@
 /* Least distance programming; Lawson, Hanson 1974, 23.4 (rest.h). */
 #include "solver/choice/rest.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 static const double FREE = 0x1p-36; /* -, square of what moves with a motion */
 static const double MARGIN = 0x1p-40;   /* -, of the gaps */

@@ -15,14 +15,11 @@
  */
 #include "solver/lcp/lcp.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "base/sparse.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stddef.h>
-#include <string.h>
 
 /* ---- the plain form of the problem: a dense matrix, covering vector 1 ---- */
 
@@ -63,7 +60,7 @@ static double plain_residual(int n, const double *M, const double *q,
 
 status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
                  double *z, lcp_report *rep) {
-  ENDS_BY(lcp_free) lcp_work *w = NULL;
+  OWNED lcp_work *w = NULL;
   OWNED double *d = NULL;
   plain m = {n, M, power_to_one(largest_entry((size_t)n * (size_t)n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
@@ -475,18 +472,11 @@ static const double SPOILT = 0x1p-38;   /* defect that requires a new inverse */
 static const double NEAR_END = 0x1p-30; /* share of z0 that is made exact */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
-void lcp_free(lcp_work **p) {
-  lcp_work *w = *p;
-  if (w == NULL) return;
-  RELEASE(w->K, w->P, w->lapack, w->swap, w->var, w->row, w->at_z, w->at_w,
-          w->z, w->w, w->enter.dz, w->enter.dw, w->enter.lz, w->enter.lw,
-          w->gather, w->line, w->column, w->q, w->tie, w->key, w);
-}
-
 status lcp_new(int n, int rank, lcp_work **out) {
   lcp_work *w;
   PASS_NEW(w, 1);
   *out = w;
+  OWNS(w);
   int cap = w->cap = (rank < n ? rank : n) + 2;
   w->n = n;
   PASS_NEW_ALL(

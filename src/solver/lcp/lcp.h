@@ -51,7 +51,6 @@ typedef struct lcp_work lcp_work;
 /* Allocates for n unknowns, of which at most "rank" (of M) are basic at a
  * time. */
 status lcp_new(int n, int rank, lcp_work **out);
-void lcp_free(lcp_work **w); /* accepts that of NULL */
 /* Solve p; rep->residual is unchanged. Allocates nothing. */
 void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep);
 /* z[n] of the last run. */

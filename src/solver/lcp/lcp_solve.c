@@ -4,15 +4,12 @@
  */
 #include "solver/lcp/lcp_solve.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/contact.h"
 #include "solver/lcp/lcp.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 /*
  * Principal transform of a linear complementarity problem (lcp_solve.h): z_i

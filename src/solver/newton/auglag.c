@@ -37,7 +37,7 @@
  *
  * the very step of NEWTON for these states.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
@@ -46,9 +46,6 @@
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 enum {
   NEWTON_STEPS = 60, /* of the generalised Newton method */
@@ -606,17 +603,6 @@ static const double SOFT = 0x1p-20; /* -, of the stiffness: none */
 
 enum { UZAWA_STEPS = 1000 /* Newton steps of all multiplier steps */ };
 
-static void auglag_release(void *work) {
-  auglag_work *w = work;
-  RELEASE(w->part, w->closed, w->mode, w->state, w->origin, w->diagonal,
-          w->lambda, w->z, w->F, w->y, w->du, w->dy, w->e, w->share, w->bonded,
-          w->K, w->pivot, w->free_id, w->by.hold, w->by.b);
-  operated_system_free(w->by.system);
-  pattern_free(&w->by.guess);
-  fixed_point_free(w->fixed);
-  best_iterate_free(&w->best);
-}
-
 /* Of A, also where a rigid motion makes it zero. */
 static void take_diagonal(const contact_problem *cp, double *diagonal) {
   size_t m = (size_t)cp->m;
@@ -652,7 +638,6 @@ static status auglag_setup(const contact_problem *cp, const void *par,
                            void *work) {
   auglag_work *w = work;
   size_t m = (size_t)cp->m;
-  (void)par;
   w->m = cp->m;
   PASS_NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
                  &w->du, &w->dy, &w->e);
@@ -751,6 +736,6 @@ const solver_ops auglag_solver = {
              SOLVES_FLOATING,
   .param_size = sizeof(auglag), .work_size = sizeof(auglag_work),
   .options = auglag_options, .setup = auglag_setup, .solve = auglag_solve,
-  .release = auglag_release, .keep = auglag_keep
+  .keep = auglag_keep
 };
 /* clang-format on */

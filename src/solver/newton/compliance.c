@@ -12,13 +12,11 @@
  */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 /* An unknown force: of one degree of freedom, or along d in the tangent plane
  * of a slipping node. */
@@ -215,13 +213,6 @@ status compliance_system_new(const contact_problem *cp,
   PASS(dense_new(capacity, &s->K));
   s->power = dense_power(cp->m, cp->W);
   return OK;
-}
-
-void compliance_system_free(compliance_system *s) {
-  if (s == NULL) return;
-  dense_free(&s->K);
-  RELEASE(s->list, s->dof, s->place, s->turn, s->x, s->y, s->base, s->in_base,
-          s->column, s->X, s->freed, s->C, s->z, s->pivot, s);
 }
 
 void compliance_displace(const contact_problem *cp, const double *r,

@@ -123,3 +123,13 @@ void dense_null(int m, int rank, const double *L, const int *pivot, double *y,
     v[pivot[r + k] - 1] = 1.0;
   }
 }
+
+double dense_rotate(int j, double *h, double *c, double *s, double *g) {
+  for (int i = 0; i < j; ++i) cblas_drot(1, h + i, 1, h + i + 1, 1, c[i], s[i]);
+  double a = h[j], b = h[j + 1];
+  cblas_drotg(&a, &b, c + j, s + j);
+  h[j] = a;
+  h[j + 1] = g[j + 1] = 0.0;
+  cblas_drot(1, g + j, 1, g + j + 1, 1, c[j], s[j]);
+  return fabs(g[j + 1]);
+}

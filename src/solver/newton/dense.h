@@ -29,3 +29,6 @@ int dense_factor(dense *d, int doubt);
 int dense_invert(dense *d);
 /* x[n, n_rhs], distance ld, from the right sides. */
 void dense_solve(const dense *d, int n_rhs, double *x, int ld);
+/* GMRES: the rotations c, s [j] and one more on column h[j+2] of the Hessenberg
+ * matrix and the right side g; returns what is left of it. */
+double dense_rotate(int j, double *h, double *c, double *s, double *g);

@@ -22,14 +22,10 @@
  * Where only the compliance is known a step solves for the unknown forces of
  * the guess (system.h); a singular system then ends the method.
  */
-#include "base/memory.h"
-#include "base/timer.h"
-#include "solver/newton/system.h"
+#include "base/base.h"
 #include "solver/local.h"
+#include "solver/newton/system.h"
 #include "solver/single.h"
-
-#include <math.h>
-#include <string.h>
 
 typedef struct newton {
   int steps; /* of one attempt; 0: chosen by the program */
@@ -65,20 +61,9 @@ typedef struct newton_work {
   uint64_t seen[HISTORY]; /* hashes of the patterns of the attempt */
 } newton_work;
 
-static void newton_release(void *work) {
-  newton_work *w = work;
-  states_free(&w->states);
-  newton_system_free(w->system);
-  operated_system_free(w->operated);
-  compliance_system_free(w->compliance);
-  node_blocks_free(w->blocks);
-  best_iterate_free(&w->best);
-}
-
 static status newton_setup(const contact_problem *cp, const void *par,
                            void *work) {
   newton_work *w = work;
-  (void)par;
   PASS(states_new(cp, &w->states));
   if (cp->op != NULL)
     PASS(operated_system_new(cp, &w->operated));
@@ -384,6 +369,6 @@ const solver_ops newton_solver = {
              REGULAR_COMPLIANCE | SOLVES_FLOATING,
   .param_size = sizeof(newton), .work_size = sizeof(newton_work),
   .options = newton_options, .setup = newton_setup, .solve = newton_solve,
-  .release = newton_release, .keep = newton_keep
+  .keep = newton_keep
 };
 /* clang-format on */

@@ -1,11 +1,10 @@
 /* A step by the operator (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
+#include "solver/newton/dense.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 enum {
   DIRECTIONS = 60, /* of GMRES, without a new start */
@@ -47,13 +46,6 @@ struct operated_system {
     double *g;     /* [DIRECTIONS+1] */
   } krylov;
 };
-
-void operated_system_free(operated_system *s) {
-  if (s == NULL) return;
-  RELEASE(s->b, s->x, s->Ax, s->added, s->known, s->held, s->slip.dof,
-          s->slip.x, s->slip.load, s->slip.pressed, s->krylov.V, s->krylov.H,
-          s->krylov.c, s->krylov.s, s->krylov.g, s);
-}
 
 status operated_system_new(const contact_problem *cp, operated_system **out) {
   operated_system *s;
@@ -134,6 +126,7 @@ static void add_friction(const operated_system *s, const contact_problem *cp,
 /* Room for the directions made and two more. */
 static status grow(operated_system *s) {
   const size_t n = (size_t)s->slip.n, have = s->krylov.capacity;
+  OWNS(s);
   if (n * (size_t)(s->krylov.n + 2) <= have) return OK;
   const size_t want = n * (size_t)(s->krylov.n + 10);
   double *more = memory_resize(s->krylov.V, have, want, sizeof *more);
@@ -148,9 +141,13 @@ static double *direction(const operated_system *s, int j) {
   return s->krylov.V + (size_t)s->slip.n * (size_t)j;
 }
 
+static double *column(const operated_system *s, int j) {
+  return s->krylov.H + (size_t)j * (DIRECTIONS + 1);
+}
+
 /* w orthogonal to v[0..j]; column j of H. */
 static void orthogonalise(operated_system *s, int j, double *w) {
-  double *h = s->krylov.H + (size_t)j * (DIRECTIONS + 1);
+  double *h = column(s, j);
   memset(h, 0, (DIRECTIONS + 1) * sizeof *h);
   for (int i = 0; i <= j; ++i) {
     const double *v = direction(s, i);
@@ -158,21 +155,6 @@ static void orthogonalise(operated_system *s, int j, double *w) {
     cblas_daxpy(s->slip.n, -h[i], v, 1, w, 1);
   }
   h[j + 1] = cblas_dnrm2(s->slip.n, w, 1);
-}
-
-/* The rotations so far and a new one on column j; what is left of the right
- * side. */
-static double rotate(operated_system *s, int j) {
-  double *h = s->krylov.H + (size_t)j * (DIRECTIONS + 1);
-  double *g = s->krylov.g;
-  for (int i = 0; i < j; ++i)
-    cblas_drot(1, h + i, 1, h + i + 1, 1, s->krylov.c[i], s->krylov.s[i]);
-  double a = h[j], b = h[j + 1];
-  cblas_drotg(&a, &b, s->krylov.c + j, s->krylov.s + j);
-  h[j] = a;
-  h[j + 1] = g[j + 1] = 0.0;
-  cblas_drot(1, g + j, 1, g + j + 1, 1, s->krylov.c[j], s->krylov.s[j]);
-  return fabs(g[j + 1]);
 }
 
 /* The combination of the directions that leaves least is added to the load, and
@@ -219,7 +201,9 @@ static status gmres(operated_system *s, const contact_problem *cp,
     add_friction(s, cp, p, s->slip.x, s->Ax, w);
     orthogonalise(s, s->krylov.n, w);
     next = cblas_dnrm2(s->slip.n, w, 1);
-    left = rotate(s, s->krylov.n++);
+    left = dense_rotate(s->krylov.n, column(s, s->krylov.n), s->krylov.c,
+                        s->krylov.s, s->krylov.g);
+    ++s->krylov.n;
     for (size_t i = 0; i < n && next > EXHAUSTED; ++i) w[i] /= next;
   }
   if (left > s->enough * size) s->exhausted = 1;

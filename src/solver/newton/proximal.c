@@ -30,14 +30,12 @@
  *
  * A body that contact alone holds needs no compliance so.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/newton/system.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
-#include <math.h>
-#include <string.h>
 
 static const option proximal_options[] = {OPTION_END};
 
@@ -86,19 +84,6 @@ typedef struct proximal_work {
   } by;
 } proximal_work;
 
-static void proximal_release(void *work) {
-  proximal_work *w = work;
-  force_set_free(w->set);
-  best_iterate_free(&w->best);
-  step_matrix_free(w->J);
-  operated_system_free(w->by.system);
-  pattern_free(&w->by.guess);
-  RELEASE(w->x, w->F, w->d, w->z, w->weight, w->start, w->centre, w->before,
-          w->acts);
-  RELEASE(w->by.hold, w->by.b, w->by.du, w->by.start, w->by.centre,
-          w->by.before);
-}
-
 /* Workspace of the steps of an operator. */
 static status new_steps(const contact_problem *cp, proximal_work *w) {
   const size_t m = (size_t)cp->m;
@@ -113,7 +98,6 @@ static status proximal_setup(const contact_problem *cp, const void *par,
                              void *work) {
   proximal_work *w = work;
   size_t m = (size_t)cp->m;
-  (void)par;
   PASS(force_set_new(cp, &w->set));
   PASS(best_iterate_new(cp->m, &w->best));
   if (cp->op != NULL)
@@ -529,7 +513,6 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   proximal_work *w = work;
   run s = {.cp = cp, .w = w, .control = control, .u = u, .r = r};
   int limit = control->max_iter > 0 ? control->max_iter : STEPS;
-  (void)par;
   s.scale = contact_scale(cp);
   *rep = (solver_report){.outcome = RUNNING};
   w->best.residual = HUGE_VAL;
@@ -572,6 +555,6 @@ const solver_ops proximal_solver = {
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
   .work_size = sizeof(proximal_work), .options = proximal_options,
-  .setup = proximal_setup, .solve = proximal_solve, .release = proximal_release
+  .setup = proximal_setup, .solve = proximal_solve
 };
 /* clang-format on */

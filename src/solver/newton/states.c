@@ -1,11 +1,7 @@
 /* States of the nodes: open, closed, stick, slip (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
-#include "base/vector.h"
-
-#include <math.h>
-#include <string.h>
+#include "base/base.h"
 
 static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
                                             start */
@@ -36,11 +32,6 @@ status states_new(const contact_problem *cp, states *s) {
   PASS_NEW_ALL(OF(s->raw, m), OF(s->k, m));
   set_stiffness(cp, s);
   return OK;
-}
-
-void states_free(states *s) {
-  pattern_free(&s->guess);
-  RELEASE(s->raw, s->k, s->c, s->g, s->rounding);
 }
 
 /* ---- reaction ------------------------------------------------------------ */

@@ -1,10 +1,9 @@
 /* Matrix of a step of the proximal point iteration (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 
 #include <lapacke.h>
-#include <string.h>
 #include <umfpack.h>
 
 struct step_matrix {
@@ -27,14 +26,6 @@ struct step_matrix {
 };
 
 static int is_sparse(const step_matrix *s) { return s->full == NULL; }
-
-void step_matrix_free(step_matrix *s) {
-  if (s == NULL) return;
-  sparse_free(&s->own);
-  sparse_free(&s->rows);
-  RELEASE(s->place, s->line, s->touched, s->is_touched, s->rhs, s->x, s->full,
-          s->pivot, s);
-}
 
 status step_matrix_new(const contact_problem *cp, const force_set *set,
                        step_matrix **out) {
@@ -108,6 +99,7 @@ static double take_out(step_matrix *s, int i) {
 
 static status put_sparse(step_matrix *s, int row) {
   int n = s->rows.start[row];
+  OWNS(s);
   for (int a = 0; a < s->n_touched; ++a) {
     const int j = s->touched[a];
     if (s->line[j] == 0.0) continue;

@@ -1,14 +1,11 @@
 /* A step: by an updated factor, or by a new one (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/memory.h"
+#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <stdint.h>
-#include <string.h>
 
 enum {
   CHUNK = 32, /* rows gathered at a time */
@@ -370,19 +367,6 @@ status pattern_new(int dim, int n, pattern *p) {
   PASS_NEW_ALL(OF(p->closed, dim * n), OF(p->mode, n), OF(p->e, n * (dim - 1)),
                OF(p->kappa, n), OF(p->free_id, dim * n), OF(p->place, dim * n));
   return OK;
-}
-
-void pattern_free(pattern *p) {
-  RELEASE(p->closed, p->mode, p->e, p->kappa, p->free_id, p->place);
-}
-
-void newton_system_free(newton_system *s) {
-  if (s == NULL) return;
-  dense_free(&s->K);
-  pattern_free(&s->base);
-  RELEASE(s->inverse.column, s->inverse.X, s->inverse.C, s->rows, s->product,
-          s->changed, s->b, s->x, s->du, s->z, s->weight,
-          s->inverse.small_pivot, s);
 }
 
 status newton_system_new(const contact_problem *cp, newton_system **out) {

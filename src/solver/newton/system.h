@@ -38,11 +38,9 @@ typedef struct pattern {
   int n_free;
 } pattern;
 status pattern_new(int dim, int n, pattern *p);
-void pattern_free(pattern *p);
 
 typedef struct newton_system newton_system;
 status newton_system_new(const contact_problem *cp, newton_system **out);
-void newton_system_free(newton_system *s); /* accepts NULL */
 /* Set the problem to be solved next, with the same A; borrowed. */
 void newton_system_fit(newton_system *s, const contact_problem *cp);
 /* A known value is put into u, then u is moved by the step of the guess p, of
@@ -92,7 +90,6 @@ typedef struct states {
 
 /* Arrays for a matrix. */
 status states_new(const contact_problem *cp, states *s);
-void states_free(states *s);
 /* r from raw with the conditions of the guess enforced exactly: no force where
  * open, |r_t| = g where slipping; compliance form: u from raw, no gap where
  * closed, no slip where stuck. */
@@ -122,7 +119,6 @@ uint64_t states_hash(const states *s);
 typedef struct compliance_system compliance_system;
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out);
-void compliance_system_free(compliance_system *s); /* accepts NULL */
 /* raw = W r + q */
 void compliance_displace(const contact_problem *cp, const double *r,
                          double *raw);
@@ -141,7 +137,6 @@ int compliance_system_step(compliance_system *s, const contact_problem *cp,
 
 typedef struct operated_system operated_system;
 status operated_system_new(const contact_problem *cp, operated_system **out);
-void operated_system_free(operated_system *s); /* accepts NULL */
 /* No step before on the same rows. */
 void operated_system_fit(operated_system *s);
 /* newton_system_step. *singular 1: weak springs held the body. ERR_MEMORY. */
@@ -186,7 +181,6 @@ typedef struct step_matrix step_matrix;
 /* set: borrowed. */
 status step_matrix_new(const contact_problem *cp, const force_set *set,
                        step_matrix **out);
-void step_matrix_free(step_matrix *s); /* accepts NULL */
 /* A new matrix: acts[m], 0: row i is e_i; d[m] the right side, kept by the
  * caller until the solve. */
 void step_matrix_begin(step_matrix *s, const unsigned char *acts,

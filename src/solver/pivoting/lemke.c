@@ -21,15 +21,14 @@
  * Tangential unknowns without friction are eliminated first. In 3-D the state
  * found is the start of a solver with the exact disc of friction.
  */
-#include "base/memory.h"
-#include "solver/lcp/lcp.h"
 #include "solver/pivoting/lemke.h"
+
+#include "base/base.h"
+#include "solver/lcp/lcp.h"
 #include "solver/solver.h"
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
-#include <string.h>
 
 enum { N_CORRECTOR = 2 };
 
@@ -635,20 +634,6 @@ static const option lemke_options[] = {
 static const solver_ops *const correctors[N_CORRECTOR] = {&newton_solver,
                                                           &sor_solver};
 
-static void lemke_release(void *work) {
-  lemke_work *w = work;
-  for (int i = 0; i < N_CORRECTOR; ++i) {
-    solver_release(w->corrector.ops[i], w->corrector.work[i]);
-    memory_free(w->corrector.param[i]);
-  }
-  lcp_free(&w->lcp);
-  RELEASE(w->reduced.S, w->reduced.inner, w->spare, w->reduced.D,
-          w->reduced.tame, w->reduced.base, w->raw, w->v, w->t, w->ray, w->work,
-          w->best_u, w->best_r, w->reduced.kept, w->reduced.free_id, w->pivot,
-          w->kind, w->node.normal, w->node.slide, w->node.n_slide, w->var, w->q,
-          w->d, w->z, w->dz);
-}
-
 static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
   for (int i = 0; i < N_CORRECTOR; ++i) {
     const solver_ops *ops = correctors[i];
@@ -743,7 +728,6 @@ static status lemke_solve(const contact_problem *cp, const void *par,
                           double *r, solver_report *rep) {
   lemke_work *w = work;
   lemke_run s = {cp, w, control, contact_matrix(cp)};
-  (void)par;
   *rep = (solver_report){.outcome = STOPPED_SINGULAR};
   w->has_ray = 0;
   if (!prepare(&s)) return OK;
@@ -786,6 +770,6 @@ const solver_ops lemke_solver = {
   .entries = "METHOD=LEMKE, which pivots on columns,",
   .param_size = sizeof(lemke), .work_size = sizeof(lemke_work),
   .options = lemke_options, .setup = lemke_setup, .solve = lemke_solve,
-  .release = lemke_release, .keep = lemke_keep
+  .keep = lemke_keep
 };
 /* clang-format on */
