@@ -437,7 +437,7 @@ START_TEST(gaps_are_those_of_the_curve) {
           ck_assert_double_ge(apart, 0.2 * facets);
         else
           ck_assert_double_le(apart, (dim == 2 ? 0.02 : 0.1) * facets);
-        mortar_free(m);
+        memory_free(m);
         two_free(&p);
       }
 }

@@ -5,7 +5,8 @@
  * surface rises: h^2/8R in the middle of an edge on a circle or sphere, whose
  * normals at the nodes the weights give exactly (Max, J. Graphics Tools 4
  * (1999) 1). The smaller angle counts for both, so that a surface of flat parts
- * stays flat at its kinks.
+ * stays flat at its kinks. All is that of the mesh at rest: what bends a plane
+ * is a displacement, which is linear over a face.
  */
 #include "base/base.h"
 #include "contact/mortar/partner.h"
@@ -25,8 +26,9 @@ typedef struct shape {
 } shape;
 
 static void along(const shape *s, int from, int to, double *e) {
-  const double *x = mortar_place(s->in, from), *y = mortar_place(s->in, to);
-  for (int c = 0; c < s->in->mesh->dim; ++c) e[c] = y[c] - x[c];
+  const mesh *m = s->in->mesh;
+  for (int c = 0; c < m->dim; ++c)
+    e[c] = m->x[m->dim * to + c] - m->x[m->dim * from + c];
 }
 
 static void add_normals(const shape *s, int face) {
@@ -92,13 +94,14 @@ status bulge_find(const mortar_input *in, int n, const int *face,
                OF(s.open, in->mesh->n_node), OF(s.bent, in->mesh->n_node));
   for (int i = 0; i < n; ++i) {
     facet f;
-    if (facet_set(dim, mortar_nodes(in, face[i]), in->x, &f) == 0)
+    if (facet_set(dim, mortar_nodes(in, face[i]), in->mesh->x, &f) == 0)
       add_normals(&s, face[i]);
   }
   for (int second = 0; second < 2; ++second)
     for (int k = 0; k < edges * n; ++k) {
       facet f;
-      if (facet_set(dim, mortar_nodes(in, face[k / edges]), in->x, &f) == 0)
+      if (facet_set(dim, mortar_nodes(in, face[k / edges]), in->mesh->x, &f) ==
+          0)
         set_edge(&s, face[k / edges], k % edges, f.normal, second);
     }
   return OK;

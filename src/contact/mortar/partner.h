@@ -56,7 +56,8 @@ double partner_rounding(const partner_search *s, const facet *f);
 status partner_find(partner_search *s, int face, const facet *f);
 
 /*
- * bulge.c: heights of a curved surface over its flat faces, m, outwards.
+ * bulge.c: heights of a curved surface over its flat faces, m, outwards, at
+ * rest.
  * bulge[edges*n_face], 1 edge of a face in 2-D, 3 in 3-D, is zero and gets
  * those of the n faces of a surface. ERR_MEMORY.
  */
