@@ -1,59 +1,142 @@
 /*
  * What a curved surface has beyond its flat faces, m: over a face the quadratic
  *   sum over edges ij of 4 phi_i phi_j s_ij,   s_ij = length (t_i + t_j)/8,
- * t the angles of the edge with the tangent planes at its ends, up to which the
- * surface rises: h^2/8R in the middle of an edge on a circle or sphere, whose
- * normals at the nodes the weights give exactly (Max, J. Graphics Tools 4
- * (1999) 1). The smaller angle counts for both, so that a surface of flat parts
- * stays flat at its kinks. All is that of the mesh at rest: what bends a plane
- * is a displacement, which is linear over a face.
+ * t the slopes over the edge of the tangent planes at its ends: h^2/8R in the
+ * middle of an edge on a circle or sphere. The smaller slope counts for both,
+ * so that a surface of flat parts stays flat at its kinks. The tangent plane at
+ * a node is that of the quadratic nearest to the nodes around it. All is that
+ * of the mesh at rest: what bends a plane is a displacement, which is linear
+ * over a face.
  */
 #include "base/base.h"
 #include "contact/mortar/partner.h"
 
-/* Angles, -, from which on an edge is no edge of a curve; of rounding. */
+#include <lapacke.h>
+
+/* Slopes, -, from which on an edge is no edge of a curve; of rounding. */
 static const double sharp = 0.3, flat = 1e-9;
+
+/* Coefficients of a quadratic, by the dimension; most nodes that it is fitted
+ * to. */
+enum { TERMS = 5, MOST = 60 };
+static const int terms_of[4] = {0, 0, 2, TERMS};
 
 typedef struct shape {
   const mortar_input *in;
-  int n;
-  const int *face;     /* [n] */
-  double *normal;      /* [dim*n_node], no unit vectors */
-  long *open;          /* [n_node] 0: its faces go all the way round it */
-  unsigned char *bent; /* [n_node] 1: an edge is curved there */
-  double *bulge;       /* s of the edges from node k of a face to the next, by
-                          face */
+  const int *face; /* faces of the surface */
+  double *normal;  /* [dim*n_node], 0: unknown */
+  size_t *start;   /* [n_node+2] the places in face[] of those of a node: .. */
+  int *around;     /* .. in this list */
+  int ring[MOST], n; /* the nodes around one, itself first */
 } shape;
 
-static void along(const shape *s, int from, int to, double *e) {
+static const int *nodes_of(const shape *s, int k) {
+  return mortar_nodes(s->in, s->face[k]);
+}
+
+static int face_plane(const shape *s, int k, facet *f) {
+  return facet_set(s->in->mesh->dim, nodes_of(s, k), s->in->mesh->x, f) == 0;
+}
+
+static void step(const shape *s, int from, int to, double *e) {
   const mesh *m = s->in->mesh;
   for (int c = 0; c < m->dim; ++c)
     e[c] = m->x[m->dim * to + c] - m->x[m->dim * from + c];
 }
 
-static void add_normals(const shape *s, int face) {
-  const int dim = s->in->mesh->dim, *v = mortar_nodes(s->in, face);
-  for (int k = 0; k < dim; ++k) {
-    const int next = v[(k + 1) % dim], last = v[(k + 2) % dim];
-    double a[3], b[3], n[3];
-    along(s, v[k], next, a);
-    along(s, v[k], last, b);
-    const double size = dot(dim, a, a);
-    if (dim == 3) {
-      cross(a, b, n);
-      s->open[v[k]] += next - last;
-    } else {
-      n[0] = k == 0 ? a[1] : -a[1];
-      n[1] = k == 0 ? -a[0] : a[0];
-      s->open[v[k]] += k == 0 ? 1 : -1;
-    }
-    add_scaled(dim, 1.0 / (dim == 3 ? size * dot(dim, b, b) : size), n,
-               s->normal + (size_t)dim * (size_t)v[k]);
-  }
+static status find_around(shape *s, int n) {
+  const int dim = s->in->mesh->dim, n_node = s->in->mesh->n_node;
+  PASS_NEW_ALL(OF(s->start, n_node + 2), OF(s->around, dim * n),
+               OF(s->normal, dim * n_node));
+  for (int i = 0; i < dim * n; ++i)
+    ++s->start[nodes_of(s, i / dim)[i % dim] + 2];
+  for (int i = 0; i < n_node; ++i) s->start[i + 2] += s->start[i + 1];
+  for (int i = 0; i < dim * n; ++i)
+    s->around[s->start[nodes_of(s, i / dim)[i % dim] + 1]++] = i / dim;
+  return OK;
 }
 
-/* Tangent of the angle by which the surface at a node rises over the edge e
- * that leaves it, in a face with the normal f. */
+static void add_to_ring(shape *s, int node) {
+  for (int i = 0; i < s->n; ++i)
+    if (s->ring[i] == node) return;
+  if (s->n < MOST) s->ring[s->n++] = node;
+}
+
+/* The nodes of the faces around a node, and of those around them if they are
+ * too few for a fit. */
+static void find_ring(shape *s, int node) {
+  const int dim = s->in->mesh->dim, few = terms_of[dim] + (dim == 3);
+  s->n = 0;
+  add_to_ring(s, node);
+  for (int round = 0, from = 0; round < 2 && s->n <= few; ++round)
+    for (const int end = s->n; from < end; ++from)
+      for (size_t a = s->start[s->ring[from]]; a < s->start[s->ring[from] + 1];
+           ++a)
+        for (int k = 0; k < dim; ++k)
+          add_to_ring(s, nodes_of(s, s->around[a])[k]);
+}
+
+/* Slopes of the surface at ring[0] over the axes of f; 0: none is found, or f
+ * is the tangent plane but for rounding. */
+static int fit_slopes(const shape *s, const facet *f, double *slope) {
+  const int dim = f->dim, n = terms_of[dim], m = s->n - 1;
+  double A[MOST * TERMS], b[MOST], work[20 * TERMS], d[3];
+  double most = 0.0, size = 0.0;
+  lapack_int rank, pivot[TERMS] = {0};
+  for (int i = 0; i < m; ++i) {
+    step(s, s->ring[0], s->ring[i + 1], d);
+    size += sqrt(dot(dim, d, d)) / m;
+  }
+  for (int i = 0; i < m; ++i) {
+    double x[2] = {0.0, 0.0};
+    step(s, s->ring[0], s->ring[i + 1], d);
+    const double length = sqrt(dot(dim, d, d)), part = length / size;
+    for (int a = 0; a < dim - 1; ++a) x[a] = dot(dim, f->axis[a], d) / length;
+    const double row[TERMS] = {x[0], dim == 2 ? x[0] * x[0] * part : x[1],
+                               x[0] * x[0] * part, x[0] * x[1] * part,
+                               x[1] * x[1] * part};
+    for (int k = 0; k < n; ++k) A[m * k + i] = row[k];
+    b[i] = dot(dim, f->normal, d) / length;
+    most = fmax(most, fabs(b[i]));
+  }
+  if (m < n || !(most > flat)) return 0;
+  if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, m, n, 1, A, m, b, m, pivot, 1e-6,
+                          &rank, work, 20 * TERMS) != 0)
+    return 0;
+  memcpy(slope, b, (size_t)(dim - 1) * sizeof *b);
+  return rank == n;
+}
+
+/* v less its parts along the unit vectors of an orthogonal base, of length 1.
+ */
+static void straighten(int dim, int n, double *const *base, double *v) {
+  for (int k = 0; k < n; ++k)
+    add_scaled(dim, -dot(dim, base[k], v), base[k], v);
+  const double length = sqrt(dot(dim, v, v));
+  for (int c = 0; c < dim; ++c) v[c] /= length;
+}
+
+/* The normal at a node from the plane of one of its faces, and again from the
+ * plane across that. */
+static void find_normal(shape *s, int node) {
+  enum { PASSES = 2 };
+  const int dim = s->in->mesh->dim;
+  double slope[2];
+  facet f;
+  if (!face_plane(s, s->around[s->start[node]], &f)) return;
+  find_ring(s, node);
+  double *const base[] = {f.normal, f.axis[0], f.axis[1]};
+  for (int pass = 0; pass < PASSES && fit_slopes(s, &f, slope); ++pass) {
+    for (int a = 0; a < dim - 1; ++a)
+      add_scaled(dim, -slope[a], f.axis[a], f.normal);
+    for (int k = 0; k < dim; ++k) straighten(dim, k, base, base[k]);
+  }
+  memcpy(s->normal + (size_t)dim * (size_t)node, f.normal,
+         (size_t)dim * sizeof *f.normal);
+}
+
+/* Slope of the surface at a node over the edge e that leaves it, in a face with
+ * the normal f. */
 static double rise(const shape *s, int node, const double *e, const double *f) {
   const int dim = s->in->mesh->dim;
   const double *n = s->normal + (size_t)dim * (size_t)node;
@@ -63,47 +146,41 @@ static double rise(const shape *s, int node, const double *e, const double *f) {
   return fabs(t) > flat && fabs(t) < sharp ? t : 0.0;
 }
 
-/* The edge from node k of a face: curved where both ends are within the
- * surface; at its rim (second) as far as the other end, if that is bent. */
-static void set_edge(const shape *s, int face, int k, const double *f,
-                     int second) {
-  const int dim = s->in->mesh->dim, *v = mortar_nodes(s->in, face);
-  const int i = v[k], j = v[(k + 1) % dim];
-  const int at_rim = (s->open[i] != 0) + (s->open[j] != 0);
-  double e[3], back[3];
-  along(s, i, j, e);
-  along(s, j, i, back);
-  double a = rise(s, i, e, f), b = rise(s, j, back, f);
-  if (second != (at_rim == 1) || (dim == 2 && at_rim == 2)) return;
-  if (second && s->open[i] != 0) a = s->bent[j] ? b : 0.0;
-  if (second && s->open[j] != 0) b = s->bent[i] ? a : 0.0;
-  const double least = a * b > 0.0 ? fmin(fabs(a), fabs(b)) : 0.0;
-  s->bulge[(dim == 2 ? 1 : 3) * face + k] =
-      copysign(0.25 * sqrt(dot(dim, e, e)) * least, a);
-  if (!second && least > 0.0) s->bent[i] = s->bent[j] = 1;
+static int is_end(const shape *s, int node) {
+  return s->start[node + 1] == s->start[node] + 1;
 }
 
-static void shape_release(shape *s) { RELEASE(s->normal, s->open, s->bent); }
+/* s of the edge from node i to node j in a face with the normal f; at an end of
+ * a curve, where the fit lies on one side, by the slope at the other node. */
+static double edge_bulge(const shape *s, int i, int j, const double *f) {
+  double e[3], back[3];
+  step(s, i, j, e);
+  step(s, j, i, back);
+  double a = rise(s, i, e, f), b = rise(s, j, back, f);
+  if (a * b <= 0.0) return 0.0;
+  const int alike = fmax(a / b, b / a) < 2.0;
+  if (alike && is_end(s, i)) a = b;
+  if (alike && is_end(s, j)) b = a;
+  const double least = fmin(fabs(a), fabs(b));
+  return copysign(0.25 * sqrt(dot(s->in->mesh->dim, e, e)) * least, a);
+}
+
+static void shape_release(shape *s) { RELEASE(s->normal, s->start, s->around); }
 
 status bulge_find(const mortar_input *in, int n, const int *face,
                   double *bulge) {
-  ENDS_BY(shape_release)
-  shape s = {.in = in, .n = n, .face = face, .bulge = bulge};
+  ENDS_BY(shape_release) shape s = {.in = in, .face = face};
   const int dim = in->mesh->dim, edges = dim == 2 ? 1 : 3;
-  PASS_NEW_ALL(OF(s.normal, dim * in->mesh->n_node),
-               OF(s.open, in->mesh->n_node), OF(s.bent, in->mesh->n_node));
+  PASS(find_around(&s, n));
+  for (int i = 0; i < in->mesh->n_node; ++i)
+    if (s.start[i + 1] > s.start[i]) find_normal(&s, i);
   for (int i = 0; i < n; ++i) {
     facet f;
-    if (facet_set(dim, mortar_nodes(in, face[i]), in->mesh->x, &f) == 0)
-      add_normals(&s, face[i]);
+    const int *v = nodes_of(&s, i);
+    for (int k = 0; k < edges && face_plane(&s, i, &f); ++k)
+      bulge[edges * face[i] + k] =
+          edge_bulge(&s, v[k], v[(k + 1) % dim], f.normal);
   }
-  for (int second = 0; second < 2; ++second)
-    for (int k = 0; k < edges * n; ++k) {
-      facet f;
-      if (facet_set(dim, mortar_nodes(in, face[k / edges]), in->mesh->x, &f) ==
-          0)
-        set_edge(&s, face[k / edges], k % edges, f.normal, second);
-    }
   return OK;
 }
 
