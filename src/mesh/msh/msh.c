@@ -652,6 +652,23 @@ static void release(msh *m) {
   RELEASE(m->name, m->entity, m->physical, m->fill);
 }
 
+status msh_read_nodes(const char *file, raw_mesh **out) {
+  ENDS_BY(release) msh m = {0};
+  char name[SCAN_NAME];
+  *out = NULL;
+  PASS(scan_open(&m.s, file, ERR_DECK));
+  PASS_NEW(*out, 1);
+  m.raw = *out;
+  for (;;) {
+    PASS(scan_section(&m.s, name));
+    if (name[0] == '\0') return OK;
+    if (strcmp(name, "Nodes") == 0)
+      PASS(read_section(&m, name));
+    else
+      PASS(scan_skip(&m.s, name));
+  }
+}
+
 status msh_read(const char *file, raw_mesh **out) {
   ENDS_BY(release) msh m = {0};
   *out = NULL;

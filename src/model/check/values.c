@@ -181,7 +181,7 @@ static status find_field(model *m, const mesh *msh, const char *file,
   if (*out != NULL) return OK;
   PASS_GROW(m->load.fields, m->n.field, m->cap.field);
   nodal_field *f = &m->load.fields[m->n.field];
-  const status st = nodal_field_read(file, msh, &f->value);
+  const status st = nodal_field_read(file, msh, m->mesh.scale, &f->value);
   if (st == ERR_FILE || st == ERR_DECK) {
     message_add(m->log, P2053, at, "%s", status_message());
     return OK;
