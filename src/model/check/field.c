@@ -90,7 +90,7 @@ static status read_gmsh(scan *s, pairs *p) {
   for (;;) {
     PASS(scan_section(s, name));
     if (name[0] == '\0') break;
-    p->has_nodes |= strcmp(name, "Nodes") == 0;
+    p->has_nodes |= strstr(name, "Nodes") != NULL;
     if (strcmp(name, "NodeData") != 0) {
       PASS(scan_skip(s, name));
       continue;
