@@ -697,6 +697,7 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   check_steps(m, msh);
   PASS(check_pairs(m, msh));
   PASS(check_fields(m, msh));
+  PASS(check_start_file(m));
   check_reference(m);
   for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
   PASS(model_find_corner(m, msh));

@@ -199,6 +199,17 @@ static status find_kind(const char *path, int *is_hdf5) {
   return OK;
 }
 
+status check_start_file(const model *m) {
+  const start_card *from = &m->initial.start;
+  hdf5_source s;
+  if (from->file == NULL) return OK;
+  const status st = dataset_open(from->file, &s);
+  dataset_close(&s);
+  if (st == ERR_FILE)
+    message_add(m->log, P5003, &from->file_at, "%s", status_message());
+  return st;
+}
+
 status nodal_field_read(const char *path, const mesh *msh, double scale,
                         double **value) {
   status st = OK;

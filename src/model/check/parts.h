@@ -28,7 +28,10 @@ void check_no_effect(const model *m, const mesh *msh);
 /* Increments of *VISCO steps against the laws that do not change. */
 status check_visco(const model *m);
 
-/* field.c: a value at each node of a mesh, from the file of another program. */
+/* field.c: the file of the start is there before any result is, which may have
+ * its name. */
+status check_start_file(const model *m);
+/* A value at each node of a mesh, from the file of another program. */
 /*
  * *value[n_node] is new (memory_free), NULL on failure. The file is a .msh of
  * gmsh (2.2 or 4.1, ASCII or binary) whose last $NodeData counts, or HDF5 with
