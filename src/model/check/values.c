@@ -574,6 +574,14 @@ int step_level(const model *m, const step *s, double t, double dt, double rate,
   /* Ends of increments are sums: dt is known to the rounding of the time. */
   double rounding = 4e-16 * (fabs(t) + dt);
   if (notify) report_ringing(m, s, t, dt, rate);
+  if (!(limit > 0.0)) {
+    message_add(m->log, P2050, &s->at,
+                "step %d, time %g: %s is stable with no dt: the rates of the "
+                "laws at these stresses leave the range of the numbers; give "
+                "INTEGRATOR=BACKWARD, or smaller loads and increments before",
+                (int)(s - m->steps) + 1, t, s->visco.integrator->name);
+    return -1;
+  }
   while (ldexp(dt, -level) > limit + rounding && level < DEEPEST) ++level;
   if (level == 0 || (s->visco.substeps && level < DEEPEST)) return level;
   message_add(m->log, P2050, &s->at,
