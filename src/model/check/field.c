@@ -201,10 +201,9 @@ static status find_kind(const char *path, int *is_hdf5) {
 
 status check_start_file(const model *m) {
   const start_card *from = &m->initial.start;
-  hdf5_source s;
+  int is_hdf5;
   if (from->file == NULL) return OK;
-  const status st = dataset_open(from->file, &s);
-  dataset_close(&s);
+  const status st = find_kind(from->file, &is_hdf5);
   if (st == ERR_FILE)
     message_add(m->log, P5003, &from->file_at, "%s", status_message());
   return st;
