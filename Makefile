@@ -233,6 +233,7 @@ $(out)/tests/unit/sundials: LDLIBS += -lsundials_cvode -lsundials_nvecserial \
               -lsundials_sunlinsoldense -lsundials_sunmatrixdense
 
 # Stands between a program under test and the C library.
+$(out)/tests/preload/mesh.so: src/mesh/raw.h
 $(out)/tests/preload/%.so: tests/preload/%.c Makefile | $(messages)
 	@mkdir -p $(@D)
 	@echo "  LD   $@"

@@ -129,7 +129,9 @@ int message_wanted(const message_log *log, severity s) {
 void message_memory(message_log *log) { log->no_memory = 1; }
 
 static int same_place(const place *a, const place *b) {
-  if (a == NULL || b == NULL) return a == b;
+  static const place none;
+  if (a == NULL) a = &none;
+  if (b == NULL) b = &none;
   if (a->line_no != b->line_no || a->column_no != b->column_no) return 0;
   if (a->file == NULL || b->file == NULL) return a->file == b->file;
   return strcmp(a->file, b->file) == 0;

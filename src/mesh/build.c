@@ -323,6 +323,7 @@ static status check_geo_tail(const char *file, const place *at,
 
 /* gmsh itself reports a name given twice in one dimension as an error. */
 static message_id number_of(const char *text) {
+  if (strstr(text, NO_EFFECT) != NULL) return P2042;
   return strstr(text, "Physical ") != NULL && strstr(text, "already exists")
              ? P3012
              : P3003;

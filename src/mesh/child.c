@@ -571,6 +571,49 @@ static void send_warnings(const child *c, const char *doing) {
   }
 }
 
+/* 1: the .geo has left a number another value than it was given. */
+static int is_replaced(const child *c, const mesh_number *of) {
+  char name[32], **line;
+  int error, fd = memfd_create("protis", MFD_CLOEXEC);
+  size_t n = 0;
+  if (fd < 0) give_up(c, ERR_MESH, "cannot ask gmsh: %s", strerror(errno));
+  snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
+  dprintf(fd,
+          "If (Exists(%s))\nIf (#%s() != 1)\nPrintf(\"replaced\");\n"
+          "ElseIf (%s(0) != %.17g)\nPrintf(\"replaced\");\nEndIf\nEndIf\n",
+          of->name, of->name, of->name, of->value);
+  c->gmsh.LoggerStart(&error);
+  c->gmsh.Merge(name, &error); /* fails where the name is a word of gmsh */
+  close(fd);
+  CALL(c, "list its messages", c->gmsh.LoggerGet, &line, &n);
+  for (size_t i = 0; i < n; ++i)
+    if (strstr(line[i], ": replaced") != NULL) return 1;
+  return 0;
+}
+
+/* A number that statements replace by another has no effect; after all else,
+ * as the question is a file that gmsh merges. */
+static void check_numbers(const child *c) {
+  const mesh_source *r = c->request->source;
+  geo_text g = {0};
+  for (int i = 0; i < r->n_number; ++i) {
+    const mesh_number *of = &r->numbers[i];
+    geo_setting how;
+    const char *file = r->file;
+    int line = 0;
+    char where[16] = "";
+    if (!is_replaced(c, of)) continue;
+    if (g.n_file == 0 && geo_read(r->file, &g) != OK) return;
+    if (geo_sets(&g, of->name, &how, &file, &line) != OK) return;
+    if (how == GEO_CHANGES) continue;
+    if (line > 0) snprintf(where, sizeof where, ":%d", line);
+    give_up(c, ERR_MESH,
+            "%s%s gives %s a value: %s = %g " NO_EFFECT
+            "; write DefineConstant[ %s = ... ] there, or take another name",
+            file, where, of->name, of->name, of->value, of->name);
+  }
+}
+
 void child_run(const raw_request *request, int fd, int error_fd) {
   child here = {.request = request, .fd = fd}, *c = &here;
   detach(fd, error_fd);
@@ -590,6 +633,7 @@ void child_run(const raw_request *request, int fd, int error_fd) {
   send_warnings(c, doing);
   send_entities(c, dim);
   send_nodes(c);
+  if (request->source->sizes[0].of == NULL) check_numbers(c);
   send_array(c, WIRE_END, 0, 1, NULL);
   _exit(0);
 }

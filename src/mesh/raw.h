@@ -39,8 +39,11 @@
   X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                       \
   X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetNumbers)                      \
   X(ModelMeshFieldSetAsBackgroundMesh) X(ModelMeshRemoveConstraints)          \
-  X(Clear) X(Write) X(ViewAdd) X(ViewAddListData) X(Free)
+  X(Clear) X(Merge) X(Write) X(ViewAdd) X(ViewAddListData) X(Free)
 /* clang-format on */
+
+/* In the message of a number that a .geo replaces. */
+#define NO_EFFECT "of *PARAMETER or -D has no effect"
 
 #define WIRE_ENUM(name, type) WIRE_##name,
 typedef enum { WIRE_LIST(WIRE_ENUM) WIRE_COUNT } wire_kind;

@@ -101,7 +101,7 @@ EACH(rewrite, (run * r, contact_problem *cp, double **u, double *force), 1,
      is_due(r, k), e->on.rewrite(r, own, cp, u, force))
 EACH(found, (run * r, int *again), 1, !*again, e->on.found(r, own, again))
 EACH(examine, (run * r, double t), 1, 1, e->on.examine(r, own, t))
-EACH(estimate, (run * r), 1, 1, e->on.estimate(r, own))
+EACH(estimate, (run * r), 1, !r->effects.on[k].borrowed, e->on.estimate(r, own))
 EACH(accept, (run * r), 1, is_due(r, k), e->on.accept(r, own))
 
 void effects_restore(run *r, contact_problem *cp, double *u, double *force) {

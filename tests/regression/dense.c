@@ -212,6 +212,63 @@ START_TEST(points_leave_the_run_alone) {
 }
 END_TEST
 
+/* Errors at a point, of the mesh and of a goal, are those of an increment that
+ * ends there, also in the second step, after MESH=END. */
+static char *errors_at(const char *dt, const char *table, const char *points) {
+  char model[400], steps[600], *text = NULL;
+  size_t size;
+  const int goals = table[0] == 'G';
+  snprintf(model, sizeof model,
+           "%s*GOAL, NAME=G, QUANTITY=ENERGY\n"
+           "*TIME POINTS, NAME=T, TIME=TOTAL TIME\n2.25\n",
+           FLOOR(0.2));
+  snprintf(steps, sizeof steps,
+           "*QUASISTATIC\n1., 1.\n*ACCURACY, MESH=END\n*END STEP\n*STEP\n"
+           "*QUASISTATIC\n%s, 0.5\n*ACCURACY, MESH=YES\n" SLIDES
+           "*PRINT, %s%s\n",
+           dt, table, points);
+  square_case s = {STEEL, "", "CPE3", model, PRESS(10.), steps};
+  job j = square_run(&s, 0);
+  dat d = job_table(&j, table, points[0] != '\0' ? -1 : goals ? 0 : 2);
+  FILE *f = open_memstream(&text, &size);
+  for (int i = 0; i < d.n_row; ++i)
+    fprintf(f, "%.9g ", dat_at(&d, i, goals ? "error" : "mesh_error"));
+  fclose(f);
+  ck_assert_double_gt(dat_at(&d, 0, goals ? "band" : "mesh_error"), 0);
+  dat_free(&d);
+  job_end(&j);
+  return text;
+}
+
+START_TEST(errors_at_a_point_are_those_of_its_time) {
+  static const char *const table[] = {"ELEMENTS", "GOALS"};
+  char *at = errors_at("0.5", table[_i], ", TIME POINTS=T");
+  char *end = errors_at("0.25", table[_i], "");
+  ck_assert_str_eq(at, end);
+  free(at);
+  free(end);
+}
+END_TEST
+
+/* MESH=END of the step before asks for none. */
+START_TEST(no_error_at_a_point_unless_required) {
+  square_case s = {STEEL,
+                   "",
+                   "CPE3",
+                   "*TIME POINTS, NAME=T\n0.5\n",
+                   HELD "*ACCURACY, MESH=END\n",
+                   "*QUASISTATIC\n1., 1.\n*ACCURACY, MESH=END\n"
+                   "*PRINT, ELEMENTS, TIME POINTS=T\n"};
+  job j = square_run(&s, 0);
+  dat before = job_table(&j, "ELEMENTS", 0), at = job_table(&j, "ELEMENTS", 1);
+  ck_assert_int_eq(dat_has(&before, "mesh_error"), 1);
+  ck_assert_int_eq(dat_has(&at, "mesh_error"), 0);
+  dat_free(&before);
+  dat_free(&at);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("dense");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -220,6 +277,8 @@ int main(void) {
   tcase_add_test(tests, stiff_points_lie_between_the_ends);
   tcase_add_test(tests, units_add_up_at_points);
   tcase_add_test(tests, friction_at_a_point_is_that_of_a_shorter_increment);
+  tcase_add_loop_test(tests, errors_at_a_point_are_those_of_its_time, 0, 2);
+  tcase_add_test(tests, no_error_at_a_point_unless_required);
   tcase_add_test(tests, moduli_at_a_point_are_those_of_its_time);
   tcase_add_test(tests, points_leave_the_run_alone);
   return unit_run("dense", tests);

@@ -3,6 +3,13 @@
  */
 #include "support/small_job.h"
 
+#include <string.h>
+
+/* Those of the step, unless the cards say which. */
+static const char *fields_of(const char *cards) {
+  return strstr(cards, "*OUTPUT") == NULL ? "*OUTPUT\n" : "";
+}
+
 job small_flat(double mu, const char *cards, const char *method) {
   job j = job_begin("block");
   job_copy(&j, "input/greco/greco.geo");
@@ -13,10 +20,10 @@ job small_flat(double mu, const char *cards, const char *method) {
             "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
             "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.02\nTOP, 1, 1, 0.02\n"
-            "*SOLVER, METHOD=%s\n*PRINT, CONTACT, LOOP\n*OUTPUT\n%s"
+            "*SOLVER, METHOD=%s\n*PRINT, CONTACT, LOOP\n%s%s"
             "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
             "*BOUNDARY\nTOP, 1, 1, -0.01\n*END STEP\n",
-            mu, method, cards);
+            mu, method, fields_of(cards), cards);
   return j;
 }
 
@@ -31,10 +38,10 @@ job small_solid(double mu, const char *cards, const char *method) {
             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
             "0.5, 1.\n*BOUNDARY\nTOP, 1, 1, 0.03\nTOP, 2, 2, 0.\n"
-            "TOP, 3, 3, -0.02\n*SOLVER, METHOD=%s\n*PRINT, CONTACT\n*OUTPUT\n"
+            "TOP, 3, 3, -0.02\n*SOLVER, METHOD=%s\n*PRINT, CONTACT\n%s"
             "%s*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\n"
             "TOP, 2, 2, 0.05\n*END STEP\n",
-            mu, method, cards);
+            mu, method, fields_of(cards), cards);
   return j;
 }
 
@@ -50,8 +57,8 @@ job small_creep(double mu, const char *cards, const char *method) {
             "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%g\n*STEP\n*QUASISTATIC\n"
             "0.5, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\n"
-            "LEFT, P, 150.\n*PRINT, CONTACT, ENERGY\n*OUTPUT\n%s*END STEP\n"
+            "LEFT, P, 150.\n*PRINT, CONTACT, ENERGY\n%s%s*END STEP\n"
             "*STEP\n*VISCO, %s\n0.5, 4.\n*ACCURACY, TIME=YES\n*END STEP\n",
-            mu, cards, method);
+            mu, fields_of(cards), cards, method);
   return j;
 }

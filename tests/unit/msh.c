@@ -336,10 +336,13 @@ START_TEST(what_is_no_mesh_is_passed_over) {
 }
 END_TEST
 
-/* Elements on entities of partitions belong to the groups of those. */
+/* Elements on entities of partitions belong to the groups of those; what parts
+ * them, here a point, has the groups of the whole in the file and is in none.
+ */
 START_TEST(partitions_have_their_groups) {
   static const char parts[] =
-      "$PartitionedEntities\n1\n1\n9 1\n1 1 1 0\n1 0 1 1 1 0 0 0 1 3\n"
+      "$PartitionedEntities\n1\n1\n9 1\n2 1 1 0\n1 0 1 1 1 0 0 0 1 3\n"
+      "7 2 5 2 1 2 0 0 0 1 1\n"
       "6 1 6 1 1 0 0 0 1 0 0 1 2 0\n5 2 5 1 1 0 0 0 1 1 0 1 1 1 6\n"
       "$EndPartitionedEntities\n";
   mesh_file f;
@@ -353,6 +356,28 @@ START_TEST(partitions_have_their_groups) {
   mesh *m = mesh_file_text(&f, "parts.msh", text);
   ck_assert_msg(m != NULL, "%s", f.messages);
   const char *what;
+  ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
+  memory_free(plain);
+  memory_free(m);
+  mesh_file_close(&f);
+}
+END_TEST
+
+/* What gmsh -parametric writes: dimension and tag of the entity of a node, and
+ * its place there. */
+START_TEST(parameters_of_nodes_are_passed_over) {
+  mesh_file f;
+  mesh_file_open(&f);
+  char text[4096];
+  const char *what, *from = strstr(text_22, "$Nodes"),
+                    *to = strstr(text_22, "$EndNodes");
+  snprintf(text, sizeof text,
+           "%.*s$ParametricNodes\n4\n1 0 0 0 0 1\n2 1 0 0 1 6 0.5\n"
+           "3 1 1 0 2 5 0.5 1\n4 0 1 0 3 1\n$EndParametricNodes%s",
+           (int)(from - text_22), text_22, to + strlen("$EndNodes"));
+  mesh *plain = mesh_file_text(&f, "plain.msh", text_22);
+  mesh *m = mesh_file_text(&f, "places.msh", text);
+  ck_assert_msg(m != NULL, "%s", f.messages);
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
   memory_free(plain);
   memory_free(m);
@@ -453,6 +478,6 @@ UNIT_MAIN("msh", all_variants_give_the_same_mesh, file_cut_anywhere_is_refused,
           file_without_a_line_or_with_one_twice_is_refused,
           counts_are_compared_with_the_file_first, damaged_bytes_take_no_memory,
           damage_is_told_with_its_line, what_is_no_mesh_is_passed_over,
-          partitions_have_their_groups, tags_choose_the_groups,
-          coordinates_are_the_nearest_doubles,
+          partitions_have_their_groups, parameters_of_nodes_are_passed_over,
+          tags_choose_the_groups, coordinates_are_the_nearest_doubles,
           reader_gives_back_all_when_refused)

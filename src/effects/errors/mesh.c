@@ -123,6 +123,7 @@ const effect_ops mesh_error_effect = {
   .name = "error of mesh", .bit = EFFECT_BIT_MESH_ERROR,
   .required = requires_mesh_error, .expected = expected,
   .own = STAGE_MESH_ERROR, .inside = 1, .size = sizeof(mesh_estimate),
+  .copy_as = COPY_IS_NEW,
   .on = {.create = estimate_new, .estimate = estimate, .keep = keep},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -19,6 +19,7 @@
 #include "effects/goal/parts.h"
 #include "effects/plan/effect.h"
 #include "effects/shared.h"
+#include "run/history/loop.h"
 
 #include <cblas.h>
 
@@ -495,6 +496,29 @@ static status keep(run *r, void *self, archive *a) {
   return archive_reals(a, "band", h->band, (size_t)own->n);
 }
 
+/* With the errors that friction remembers, of the start of the increment. */
+static status goals_copy(const run *r, const void *of, run *copy, void **self) {
+  const goal_history *from = &((const goal_state *)of)->before;
+  goal_state *own = *self;
+  PASS(goals_new(copy, self));
+  goal_history *h = &own->before;
+  const size_t edges = (size_t)r->msh->dim * (size_t)from->n_edge;
+  h->lost = from->lost;
+  h->n_edge = from->n_edge;
+  COPY(h->sum, from->sum, own->n);
+  COPY(h->band, from->band, own->n);
+  if (h->u != NULL) COPY(h->u, from->u, r->n_dof);
+  if (from->edge == NULL) return OK;
+  PASS_NEW(h->edge, edges);
+  COPY(h->edge, from->edge, edges);
+  return OK;
+}
+
+static int goals_due(const run *r) {
+  return !r->course.shadow ||
+         table_is_due(r->step, PRINT_GOALS, r->now.t, -1, 0);
+}
+
 static void show(const void *self, state *s) {
   const goal_state *own = self;
   s->errors.n_goal = own->n;
@@ -578,6 +602,7 @@ const effect_ops goals_effect = {
   .name = "errors of goals", .bit = NO_BIT, .required = requires_goals,
   .expected = expected, .table = {PRINT_GOALS, PER_GOAL},
   .size = sizeof(goal_state), .items = goal_items,
-  .on = {.create = goals_new, .accept = find_goals, .show = show, .keep = keep},
+  .on = {.create = goals_new, .due = goals_due, .accept = find_goals,
+         .show = show, .keep = keep, .copy = goals_copy},
   COLUMNS_OF(columns)};
 /* clang-format on */

@@ -125,6 +125,80 @@ status geo_read(const char *file, geo_text *g) {
   return OK;
 }
 
+/* The character of a statement after a name, with the list it may be. */
+static const char *after_name(const char *q) {
+  q += strspn(q, " \t");
+  if (strncmp(q, "[]", 2) == 0 || strncmp(q, "()", 2) == 0) q += 2;
+  return q + strspn(q, " \t");
+}
+
+/* 1: the name stands in the text before the end of the statement. */
+static int has_name(const char *q, const char *name) {
+  const size_t n = strlen(name);
+  for (int in_quotes = 0; *q != '\0' && *q != ';'; ++q)
+    if ((in_quotes ^= *q == '"') == 0 && strncmp(q, name, n) == 0 &&
+        !in_name(q[-1]) && !in_name(q[n]))
+      return 1;
+  return 0;
+}
+
+/* Of a name that ends at q, behind the character "before". */
+static geo_setting setting_at(char before, const char *q, const char *name) {
+  const char *at = after_name(q);
+  if (*at != '\0' && strchr("+-*/", *at) != NULL && at[1] == '=')
+    return GEO_CHANGES;
+  if (*at != '=' || at[1] == '=' || before == '[' || before == ',')
+    return GEO_SETS_NOT;
+  return has_name(at, name) ? GEO_CHANGES : GEO_SETS;
+}
+
+static int lines_of(const char *p, const char *end) {
+  int n = 0;
+  for (; p < end; ++p) n += *p == '\n';
+  return n;
+}
+
+/* The last in a text, or 0; GEO_CHANGES comes first. */
+static geo_setting find_setting(char *text, const char *name, int *line) {
+  geo_setting how = GEO_SETS_NOT;
+  int in_quotes = 0, now = 1;
+  char before = ';';
+  for (char *p = text, *q; *p != '\0' && how != GEO_CHANGES; p = q) {
+    if ((q = pass_over(p, in_quotes)) == p && starts_name(*p) && !in_quotes) {
+      while (in_name(*q)) ++q;
+      const int same = strlen(name) == (size_t)(q - p) &&
+                       strncmp(p, name, strlen(name)) == 0;
+      const geo_setting is = same ? setting_at(before, q, name) : GEO_SETS_NOT;
+      if (is != GEO_SETS_NOT) {
+        how = is;
+        *line = now;
+      }
+      before = 'a';
+    } else if (q == p) {
+      in_quotes ^= *q++ == '"';
+      if (!isspace((unsigned char)*p)) before = *p;
+    }
+    now += lines_of(p, q);
+  }
+  return how;
+}
+
+status geo_sets(const geo_text *g, const char *name, geo_setting *how,
+                const char **file, int *line) {
+  *how = GEO_SETS_NOT;
+  for (int i = 0; i < g->n_file && *how != GEO_CHANGES; ++i) {
+    OWNED char *text = NULL;
+    if (g->text[i] == NULL) continue;
+    PASS(load(g->file[i], &text));
+    const geo_setting is =
+        text == NULL ? GEO_SETS_NOT : find_setting(text, name, line);
+    if (is == GEO_SETS_NOT) continue;
+    *how = is;
+    *file = g->file[i];
+  }
+  return OK;
+}
+
 void geo_free(geo_text *g) {
   for (int i = 0; i < g->n_file; ++i) {
     RELEASE(g->file[i], g->text[i]);

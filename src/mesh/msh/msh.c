@@ -2,13 +2,14 @@
  * Reader of .msh files: the sections of the versions 2.2 and 4.1 become blocks
  * of elements, groups and nodes of a raw mesh.
  *
- * $Nodes and $Elements of version 2.2: one line, or one record, each; the first
+ * $Nodes, or $ParametricNodes with their places on curves and surfaces, and
+ * $Elements of version 2.2: one line, or one record, each; the first
  * tag of an element is its group, the second its entity; an element of several
  * groups is listed once for each.
  *
  * $Entities, $Nodes and $Elements of version 4.1. Entities know their groups,
  * nodes and elements come in blocks on an entity. Partitions have a list of
- * entities of their own.
+ * entities of their own; what parts them is in no group.
  */
 #include "base/base.h"
 #include "mesh/msh/raw_mesh.h"
@@ -171,7 +172,19 @@ static status read_count(scan *s, size_t *n) {
   return OK;
 }
 
-static status msh2_nodes(msh *m) {
+/* Dimension and tag of the entity of a node, and its place on curves and
+ * surfaces. */
+static status pass_place(scan *s) {
+  int dim, tag;
+  double place;
+  PASS(scan_int(s, &dim));
+  PASS(scan_int(s, &tag));
+  for (int i = 0; i < dim && dim < 3; ++i) PASS(scan_real(s, &place));
+  return OK;
+}
+
+static status msh2_nodes(msh *m, const char *name) {
+  const int has_places = strcmp(name, "ParametricNodes") == 0;
   scan *s = &m->s;
   size_t n;
   PASS(read_count(s, &n));
@@ -180,9 +193,10 @@ static status msh2_nodes(msh *m) {
   for (size_t i = 0; i < n; ++i) {
     PASS(read_record_no(s, &m->raw->node_no[i]));
     for (size_t k = 0; k < 3; ++k) PASS(scan_real(s, &m->raw->xyz[3 * i + k]));
+    if (has_places) PASS(pass_place(s));
     PASS(scan_line(s));
   }
-  return scan_end(s, "Nodes", "its nodes");
+  return scan_end(s, name, "its nodes");
 }
 
 /* An entity that has elements counts once. */
@@ -330,16 +344,17 @@ static status read_groups(msh *m, int dim, msh_entity *e) {
 /* Tag, bounding box, groups, entities that bound it. */
 static status read_entity(msh *m, int dim, int partitioned) {
   scan *s = &m->s;
-  int tag, id, n = m->entities.n;
+  int tag, id, of = dim, n = m->entities.n;
   msh_entity e = {0};
   double box;
   PASS(scan_int(s, &tag));
   if (partitioned) {
-    PASS(pass_ints(s, 2)); /* dimension and tag of the whole */
+    PASS(scan_int(s, &of)); /* dimension and tag of the whole */
+    PASS(pass_ints(s, 1));
     PASS(pass_list(s));
   }
   for (int i = 0; i < (dim == 0 ? 3 : 6); ++i) PASS(scan_real(s, &box));
-  PASS(read_groups(m, dim, &e));
+  PASS(of == dim ? read_groups(m, dim, &e) : pass_list(s));
   if (dim > 0) PASS(pass_list(s));
   PASS(scan_line(s));
   PASS(table_add(&m->entities, table_key(dim, tag), &id));
@@ -604,13 +619,17 @@ static status once(const msh *m, int *has, const char *name) {
   return OK;
 }
 
+static int has_nodes(const char *name) {
+  return strcmp(name, "Nodes") == 0 || strcmp(name, "ParametricNodes") == 0;
+}
+
 static status read_section(msh *m, const char *name) {
   int is_4 = m->s.version > 4.0;
   if (strcmp(name, "PhysicalNames") == 0) {
     PASS(read_names(m));
-  } else if (strcmp(name, "Nodes") == 0) {
+  } else if (has_nodes(name)) {
     PASS(once(m, &m->has_nodes, name));
-    PASS(is_4 ? msh4_nodes(m) : msh2_nodes(m));
+    PASS(is_4 ? msh4_nodes(m) : msh2_nodes(m, name));
   } else if (strcmp(name, "Elements") == 0) {
     PASS(once(m, &m->has_elements, name));
     PASS(is_4 ? msh4_elements(m) : msh2_elements(m));
@@ -647,6 +666,24 @@ static void release(msh *m) {
   table_free(&m->entities);
   table_free(&m->blocks);
   RELEASE(m->name, m->entity, m->physical, m->fill);
+}
+
+status msh_read_nodes(const char *file, raw_mesh **out) {
+  ENDS_BY(release) msh m = {0};
+  char name[SCAN_NAME];
+  *out = NULL;
+  PASS(scan_open(&m.s, file, ERR_DECK));
+  PASS_NEW(*out, 1);
+  m.raw = *out;
+  OWNS(m.raw);
+  for (;;) {
+    PASS(scan_section(&m.s, name));
+    if (name[0] == '\0') return OK;
+    if (has_nodes(name))
+      PASS(read_section(&m, name));
+    else
+      PASS(scan_skip(&m.s, name));
+  }
 }
 
 status msh_read(const char *file, raw_mesh **out) {

@@ -44,6 +44,9 @@ typedef struct raw_mesh {
  * the record if it is damaged; ERR_FILE, ERR_MEMORY. */
 status msh_read(const char *file, raw_mesh **out);
 
+/* Its nodes alone, none where it has no $Nodes; ERR_DECK if it is damaged. */
+status msh_read_nodes(const char *file, raw_mesh **out);
+
 /* Ids by key, a hash table that grows. */
 typedef struct key_table {
   int n;         /* keys */

@@ -187,14 +187,18 @@ static void take_nested(const reading *r, const card_options *p, step *s) {
     report_idle(r, "NESTED", "the first step and a .geo in *MESH");
 }
 
+/* 1: the step has one already. */
+static int second_in_step(const reading *r, int given) {
+  if (given)
+    message_add(r->m->log, P2011, &r->card->at,
+                "a step has one *%s card, this is its second", r->card->name);
+  return given;
+}
+
 status apply_solver(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
-  if (s->solver_at.file != NULL) {
-    message_add(r->m->log, P2011, &r->card->at,
-                "a step has one *SOLVER card, this is its second");
-    return OK;
-  }
+  if (second_in_step(r, s->solver_at.file != NULL)) return OK;
   s->solver_at = r->card->at;
   s->solver.ops = solver_find(p->solver.method);
   s->balanced = p->tol < 0.0;
@@ -239,9 +243,7 @@ static void take_target(const reading *r, const card_options *p) {
 status apply_accuracy(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
-  if (s->accuracy.given)
-    message_add(r->m->log, P2011, &r->card->at,
-                "a step has one *ACCURACY card, this is its second");
+  if (second_in_step(r, s->accuracy.given)) return OK;
   s->accuracy.given = 1;
   s->accuracy.at = r->card->at;
   s->accuracy.no_solver = !p->accuracy.solver;
@@ -294,6 +296,7 @@ status apply_print(reading *r) {
 status apply_output(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
+  if (second_in_step(r, s->output.given)) return OK;
   s->output.given = 1;
   s->output.at = r->card->at;
   s->output.frequency = p->output.hdf5 ? p->frequency : -1;
@@ -306,6 +309,7 @@ status apply_output(reading *r) {
 status apply_restart(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
+  if (second_in_step(r, s->restart.given)) return OK;
   s->restart.given = 1;
   s->restart.at = r->card->at;
   s->restart.frequency = p->frequency;

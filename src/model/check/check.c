@@ -656,6 +656,33 @@ static status check_pairs(model *m, const mesh *msh) {
   return check_ties(m, msh, fixed);
 }
 
+/* What the layout of FCLIB has in the place of a contact, or NULL. */
+static const char *other_layout(const model *m, int step_id, int contact_id) {
+  const friction_rule *rule = friction_in_force(m, step_id, contact_id);
+  if (m->contacts[contact_id].force.given)
+    return "unilateral contact only, no given forces";
+  if (rule_has_average(rule))
+    return "friction of each node by itself only, no average";
+  if (rule_has_friction(rule) && rule->law != &coulomb_friction)
+    return "Coulomb friction only, no given sliding limit";
+  return m->mesh.corner_id == contact_id
+             ? "nodes that touch one obstacle only, not those of two contacts"
+             : NULL;
+}
+
+/* Condensed problems, which are written from the first step on that has one. */
+static void check_condensed(const model *m) {
+  for (int i = 0; i < m->n.step; ++i)
+    for (int k = 0; k < m->n.contact; ++k) {
+      const char *why = other_layout(m, i, k);
+      if (m->steps[i].output.condensed < 0 || why == NULL) continue;
+      message_add(m->log, P2064, &m->steps[i].output.at,
+                  "*OUTPUT, CONDENSED=FCLIB: contact %s: the layout has %s",
+                  m->contacts[k].name, why);
+      return;
+    }
+}
+
 status model_check(model *m, const mesh *msh, effect_finder *find) {
   m->dim = msh->dim;
   m->ns = msh->dim == 3 ? 6 : 4;
@@ -669,12 +696,14 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   check_steps(m, msh);
   PASS(check_pairs(m, msh));
   PASS(check_fields(m, msh));
+  PASS(check_start_file(m));
   check_reference(m);
   for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
   PASS(model_find_corner(m, msh));
   m->effects = find(m);
   check_moduli(m);
   check_entries(m);
+  check_condensed(m);
   PASS(message_status(m->log, ERR_DECK));
   check_values(m, msh);
   check_no_effect(m, msh);

@@ -4,21 +4,24 @@
 #include "base/archive/dataset.h"
 #include "base/base.h"
 #include "base/system/input.h"
+#include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
 
 /* Values beyond those of the mesh that a file may have: FOREIGN a node, and
  * FEW. */
 enum { FOREIGN = 8, FEW = 100000 };
+static const double SAME_PLACE = 1e-6; /* -, of the size of the mesh */
 
 typedef struct pairs { /* as the file has them */
   long n;
   long *node_no;
   double *value;
+  int has_nodes; /* 1: and their places */
 } pairs;
 
 static void pairs_free(pairs *p) {
   RELEASE(p->node_no, p->value);
-  *p = (pairs){0};
+  *p = (pairs){.has_nodes = p->has_nodes};
 }
 
 /* A count on a line of its own. */
@@ -81,6 +84,7 @@ static status read_gmsh(scan *s, pairs *p) {
   for (;;) {
     PASS(scan_section(s, name));
     if (name[0] == '\0') break;
+    p->has_nodes |= strstr(name, "Nodes") != NULL;
     if (strcmp(name, "NodeData") != 0) {
       PASS(scan_skip(s, name));
       continue;
@@ -121,18 +125,43 @@ static int compare_no(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+static const numbered *find_node(const mesh *msh, const numbered *node,
+                                 size_t no) {
+  const numbered key = {no, 0};
+  return bsearch(&key, node, (size_t)msh->n_node, sizeof key, compare_no);
+}
+
+/* Nodes of one number are at one place. */
+static status check_places(const char *path, const mesh *msh, double scale,
+                           const numbered *node) {
+  OWNED raw_mesh *raw = NULL;
+  PASS(msh_read_nodes(path, &raw));
+  for (size_t i = 0; i < raw->n_node; ++i) {
+    const numbered *at = find_node(msh, node, raw->node_no[i]);
+    for (int c = 0; at != NULL && c < msh->dim; ++c) {
+      const double there = scale * raw->xyz[3 * i + (size_t)c],
+                   here = msh->x[msh->dim * at->id + c];
+      if (fabs(there - here) > SAME_PLACE * msh->size)
+        RAISE(ERR_DECK,
+              "%s has another mesh: node %zu is at %c = %.9g there and %.9g "
+              "here",
+              path, at->no, "xyz"[c], there, here);
+    }
+  }
+  return OK;
+}
+
 static status to_mesh(const char *path, const pairs *p, const mesh *msh,
-                      double *value) {
+                      double scale, double *value) {
   OWNED numbered *node = NULL;
   OWNED unsigned char *known = NULL;
   PASS_NEW_ALL(OF(node, msh->n_node), OF(known, msh->n_node));
   for (int i = 0; i < msh->n_node; ++i)
     node[i] = (numbered){msh->node_no[i], i};
   qsort(node, (size_t)msh->n_node, sizeof *node, compare_no);
+  if (p->has_nodes) PASS(check_places(path, msh, scale, node));
   for (long i = 0; i < p->n; ++i) {
-    const numbered key = {(size_t)p->node_no[i], 0};
-    const numbered *at =
-        bsearch(&key, node, (size_t)msh->n_node, sizeof key, compare_no);
+    const numbered *at = find_node(msh, node, (size_t)p->node_no[i]);
     if (at == NULL) continue;
     if (!isfinite(p->value[i]))
       RAISE(ERR_DECK, "%s: the value of node %ld is not a finite number", path,
@@ -164,7 +193,18 @@ static status find_kind(const char *path, int *is_hdf5) {
   return OK;
 }
 
-status nodal_field_read(const char *path, const mesh *msh, double **value) {
+status check_start_file(const model *m) {
+  const start_card *from = &m->initial.start;
+  int is_hdf5;
+  if (from->file == NULL) return OK;
+  const status st = find_kind(from->file, &is_hdf5);
+  if (st == ERR_FILE)
+    message_add(m->log, P5003, &from->file_at, "%s", status_message());
+  return st;
+}
+
+status nodal_field_read(const char *path, const mesh *msh, double scale,
+                        double **value) {
   status st = OK;
   pairs p = {0};
   scan s = {0};
@@ -178,7 +218,7 @@ status nodal_field_read(const char *path, const mesh *msh, double **value) {
     TRY(read_gmsh(&s, &p));
   }
   NEW(*value, msh->n_node);
-  TRY(to_mesh(path, &p, msh, *value));
+  TRY(to_mesh(path, &p, msh, scale, *value));
 done:
   scan_close(&s);
   pairs_free(&p);

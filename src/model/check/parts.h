@@ -28,13 +28,18 @@ void check_no_effect(const model *m, const mesh *msh);
 /* Increments of *VISCO steps against the laws that do not change. */
 status check_visco(const model *m);
 
-/* field.c: a value at each node of a mesh, from the file of another program. */
+/* field.c: the file of the start is there before any result is, which may have
+ * its name. */
+status check_start_file(const model *m);
+/* A value at each node of a mesh, from the file of another program. */
 /*
  * *value[n_node] is new (memory_free), NULL on failure. The file is a .msh of
  * gmsh (2.2 or 4.1, ASCII or binary) whose last $NodeData counts, or HDF5 with
  * the datasets /node_no and /temperature. Nodes go by their number in the mesh
- * file; numbers that the mesh does not have are skipped. ERR_FILE: it cannot be
- * read; ERR_DECK: no field of one component, a node of the mesh without value,
- * a value that is not finite.
+ * file; numbers that the mesh does not have are skipped; a .msh that has places
+ * too, times the scale, has them where the mesh has them. ERR_FILE: it cannot
+ * be read; ERR_DECK: no field of one component, a node of the mesh without
+ * value or at another place, a value that is not finite.
  */
-status nodal_field_read(const char *path, const mesh *msh, double **value);
+status nodal_field_read(const char *path, const mesh *msh, double scale,
+                        double **value);

@@ -178,7 +178,7 @@ static status find_field(model *m, const mesh *msh, const char *file,
   OWNS(m);
   PASS_GROW(m->load.fields, m->n.field, m->cap.field);
   nodal_field *f = &m->load.fields[m->n.field];
-  const status st = nodal_field_read(file, msh, &f->value);
+  const status st = nodal_field_read(file, msh, m->mesh.scale, &f->value);
   if (st == ERR_FILE || st == ERR_DECK) {
     message_add(m->log, P2053, at, "%s", status_message());
     return OK;
@@ -571,6 +571,14 @@ int step_level(const model *m, const step *s, double t, double dt, double rate,
   /* Ends of increments are sums: dt is known to the rounding of the time. */
   double rounding = 4e-16 * (fabs(t) + dt);
   if (notify) report_ringing(m, s, t, dt, rate);
+  if (!(limit > 0.0)) {
+    message_add(m->log, P2050, &s->at,
+                "step %d, time %g: %s is stable with no dt: the rates of the "
+                "laws at these stresses leave the range of the numbers; give "
+                "INTEGRATOR=BACKWARD, or smaller loads and increments before",
+                (int)(s - m->steps) + 1, t, s->visco.integrator->name);
+    return -1;
+  }
   while (ldexp(dt, -level) > limit + rounding && level < DEEPEST) ++level;
   if (level == 0 || (s->visco.substeps && level < DEEPEST)) return level;
   message_add(m->log, P2050, &s->at,

@@ -356,10 +356,12 @@ static status carry_choices(const step *old, step *s) {
     s->accuracy.time_balanced = old->accuracy.time_balanced;
     s->accuracy.time_share = old->accuracy.time_share;
     s->accuracy.theorems = old->accuracy.theorems;
+    s->accuracy.at = old->accuracy.at;
   }
   if (!s->output.given) {
     s->output.frequency = old->output.frequency;
     s->output.condensed = old->output.condensed;
+    s->output.at = old->output.at;
   }
   if (!s->restart.given) s->restart.frequency = old->restart.frequency;
   for (int i = 0; i < old->print.n && !s->print.given; ++i) {

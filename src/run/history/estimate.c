@@ -100,6 +100,12 @@ status estimate_increment(run *r) {
   return OK;
 }
 
+status estimate_within(run *copy) {
+  PASS(effects_estimate(copy));
+  estimate_unloaded(copy);
+  return OK;
+}
+
 /* What solutions_by_statuses refuses, at its card. */
 static status refuse_all(const step *s, status st) {
   if (st != ERR_DECK) return st;

@@ -125,10 +125,13 @@ static status show_within(run *r, double t, int increment_no) {
   ENDS_BY(shadow_leave) shadow *b = NULL;
   PASS(shadow_at(r, t, &b));
   run *own = shadow_run(b);
+  if (table_is_due(own->step, PRINT_ELEMENTS, t, -1, 0))
+    PASS(estimate_within(own));
   PASS(effects_accept(own));
   if (own->solving.report.outcome <= 0) ++r->course.unsettled;
   state s = loop_state(own, 1, increment_no);
   s.within = 1;
+  effects_show(own, &s);
   return r->sink->between(r->sink->ctx, &s);
 }
 

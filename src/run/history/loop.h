@@ -61,5 +61,7 @@ int rounding_is_all(const run *r);
 /* estimate.c: errors at r->now into r->errors.error, mesh_error, as required.
  */
 status estimate_increment(run *r);
+/* Of a copy of the run at a time within the increment: that of the mesh. */
+status estimate_within(run *copy);
 /* Those of solver and mesh alone, from r->now.u; read r->errors.evaluated. */
 status estimate_evaluate(run *r);
