@@ -602,7 +602,7 @@ static void check_numbers(const child *c) {
     const char *file = r->file;
     int line = 0;
     char where[16] = "";
-    if (!is_replaced(c, of)) continue;
+    if (of->in_deck || !is_replaced(c, of)) continue;
     if (g.n_file == 0 && geo_read(r->file, &g) != OK) return;
     if (geo_sets(&g, of->name, &how, &file, &line) != OK) return;
     if (how == GEO_CHANGES) continue;

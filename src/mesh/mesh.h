@@ -60,6 +60,7 @@ typedef struct mesh {
 typedef struct mesh_number { /* a number handed to a .geo file */
   const char *name;
   double value;
+  int in_deck; /* 1: the deck uses it too, the file may have its own */
 } mesh_number;
 
 /* Lengths of elements at the nodes of a mesh. */

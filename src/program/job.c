@@ -51,7 +51,8 @@ static status read_mesh(const job_mesh *other, job_input *in) {
   for (int i = 0; i < m->deck->n_symbol; ++i)
     if (m->deck->symbols[i].in_geometry)
       numbers[n++] =
-          (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value};
+          (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value,
+                        m->deck->symbols[i].used};
   PASS_NEW(rounds, 2 * m->n.contact);
   TIMED(STAGE_MESH);
   if ((model_has_target(m) || m->steps[0].nested) && job_is_geo(m))

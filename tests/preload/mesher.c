@@ -41,7 +41,7 @@ static void make(const char *part, int n, char *const *words) {
   source.numbers = numbers;
   for (int i = 0; i < source.n_number; ++i)
     numbers[i] = (mesh_number){words[HEAD + 2 * i],
-                               strtod(words[HEAD + 2 * i + 1], NULL)};
+                               strtod(words[HEAD + 2 * i + 1], NULL), 0};
   const int to = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   const int nothing = open("/dev/null", O_WRONLY);
   if (to < 0 || nothing < 0 || chdir(words[1]) != 0) _exit(1);

@@ -319,7 +319,7 @@ END_TEST
 /* The mesh of the file is refined as foreseen; its contact stays on the circle.
  */
 START_TEST(msh_of_a_cylinder_is_refined) {
-  static const mesh_number few[] = {{"NC", 2}, {"R", 10}, {"A", A_H}};
+  static const mesh_number few[] = {{"NC", 2, 0}, {"R", 10, 0}, {"A", A_H, 0}};
   const mesh_source source = {.file = "input/hertz_line/hertz_line.geo",
                               .scale = 1.0,
                               .n_number = 3,

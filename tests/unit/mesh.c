@@ -223,7 +223,7 @@ START_TEST(meshing_twice_gives_the_same_bytes) {
   mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
-  const mesh_number n = {"N", 7.0};
+  const mesh_number n = {"N", 7.0, 0};
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
   mesh *a = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
   mesh *b = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
@@ -251,7 +251,8 @@ START_TEST(numbers_reach_the_geometry) {
       "Point(4) = {0,H,0}; Line(1) = {1,2}; Line(2) = {2,3};\n"
       "Line(3) = {3,4}; Line(4) = {4,1}; Curve Loop(1) = {1:4};\n"
       "Plane Surface(1) = {1}; Physical Surface(\"B\") = {1};\n";
-  const mesh_number n[] = {{"W", 1.0 / 3.0}, {"UNUSED", 9.0}, {"H", 2e-5}};
+  const mesh_number n[] = {
+      {"W", 1.0 / 3.0, 0}, {"UNUSED", 9.0, 0}, {"H", 2e-5, 0}};
   mesh_file_write(&f, "r.geo", geo, sizeof geo - 1);
   mesh *m = mesh_file_read(&f, "r.geo", 1.0, 3, n);
   ck_assert_msg(m != NULL, "%s", f.messages);
@@ -431,7 +432,7 @@ END_TEST
 START_TEST(neighbours_are_close_in_memory) {
   mesh_file f;
   mesh_file_open(&f);
-  const mesh_number n = {"N", 30.0};
+  const mesh_number n = {"N", 30.0, 0};
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
   mesh *m = mesh_file_read(&f, "d.geo", 1.0, 1, &n);
   double jump = 0.0;

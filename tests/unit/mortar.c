@@ -389,13 +389,13 @@ END_TEST
 /* ---- curved surfaces ----------------------------------------------------- */
 
 /* The places of a plane pair on a circle or sphere of radius 2, or on two
- * planes. */
+ * planes: a V, also of two edges in all, or an end of one edge. */
 static void bend(pair *p, int kinked) {
   const int dim = p->m.dim;
   for (int i = 0; i < p->m.n_node; ++i) {
     double *x = p->m.x + dim * i, *z = x + dim - 1;
     if (kinked) {
-      *z = 0.2 * fabs(x[0] - 0.5);
+      *z = 0.2 * (kinked == 2 ? fmax(0, x[0] - 0.75) : fabs(x[0] - 0.5));
       continue;
     }
     double square = 4;
@@ -418,10 +418,12 @@ static double largest_gap(const mortar *m) {
 /* Two meshes of one curve have no gap where their faces are h^2/8R apart; those
  * of two planes none at all. */
 START_TEST(gaps_are_those_of_the_curve) {
+  static const int size[][2] = {{8, 12}, {4, 8}, {4, 8}, {2, 4}};
   for (int dim = 2; dim <= 3; ++dim)
-    for (int kinked = 0; kinked < 2; ++kinked)
+    for (int kinked = 0; kinked < 6 - dim; ++kinked)
       for (int flat = 0; flat < 2; ++flat) {
-        pair p = plane_pair(dim, 8, 12, dim == 2 && !kinked ? 0.3 : 0);
+        pair p = plane_pair(dim, size[kinked][0], size[kinked][1],
+                            dim == 2 && !kinked ? 0.3 : 0);
         bend(&p, kinked);
         p.in.flat = flat;
         mortar *m = two_couple(&p);

@@ -2,11 +2,11 @@
  * What a curved surface has beyond its flat faces, m: over a face the quadratic
  *   sum over edges ij of 4 phi_i phi_j s_ij,   s_ij = length (t_i + t_j)/8,
  * t the slopes over the edge of the tangent planes at its ends: h^2/8R in the
- * middle of an edge on a circle or sphere. The smaller slope counts for both,
- * so that a surface of flat parts stays flat at its kinks. The tangent plane at
- * a node is that of the quadratic nearest to the nodes around it. All is that
- * of the mesh at rest: what bends a plane is a displacement, which is linear
- * over a face.
+ * middle of an edge on a circle or sphere. The smaller slope counts for both.
+ * The tangent plane at a node is that of the quadratic nearest to the nodes
+ * around it. A surface of flat parts stays flat at its kinks: no edge bends
+ * next to a flat node, nor one alone. All is that of the mesh at rest: what
+ * bends a plane is a displacement, which is linear over a face.
  */
 #include "base/base.h"
 #include "contact/mortar/partner.h"
@@ -19,14 +19,18 @@ static const double sharp = 0.3, flat = 1e-9;
 /* Coefficients of a quadratic, by the dimension; most nodes that it is fitted
  * to. */
 enum { TERMS = 5, MOST = 60 };
+enum { FITS = 1, FLAT = 2, BESIDE_FLAT = 4 };
 static const int terms_of[4] = {0, 0, 2, TERMS};
 
 typedef struct shape {
   const mortar_input *in;
-  const int *face; /* faces of the surface */
-  double *normal;  /* [dim*n_node], 0: unknown */
-  size_t *start;   /* [n_node+2] the places in face[] of those of a node: .. */
-  int *around;     /* .. in this list */
+  const int *face;      /* faces of the surface */
+  double *normal;       /* [dim*n_node] */
+  unsigned char *state; /* [n_node] of the enum */
+  int *bends;           /* [n_node] edges there that bend */
+  double *bulge;        /* of bulge_find */
+  size_t *start; /* [n_node+2] the places in face[] of those of a node: .. */
+  int *around;   /* .. in this list */
   int ring[MOST], n; /* the nodes around one, itself first */
 } shape;
 
@@ -47,7 +51,8 @@ static void step(const shape *s, int from, int to, double *e) {
 static status find_around(shape *s, int n) {
   const int dim = s->in->mesh->dim, n_node = s->in->mesh->n_node;
   PASS_NEW_ALL(OF(s->start, n_node + 2), OF(s->around, dim * n),
-               OF(s->normal, dim * n_node));
+               OF(s->normal, dim * n_node), OF(s->state, n_node),
+               OF(s->bends, n_node));
   for (int i = 0; i < dim * n; ++i)
     ++s->start[nodes_of(s, i / dim)[i % dim] + 2];
   for (int i = 0; i < n_node; ++i) s->start[i + 2] += s->start[i + 1];
@@ -62,22 +67,45 @@ static void add_to_ring(shape *s, int node) {
   if (s->n < MOST) s->ring[s->n++] = node;
 }
 
-/* The nodes of the faces around a node, and of those around them if they are
- * too few for a fit. */
-static void find_ring(shape *s, int node) {
-  const int dim = s->in->mesh->dim, few = terms_of[dim] + (dim == 3);
-  s->n = 0;
-  add_to_ring(s, node);
-  for (int round = 0, from = 0; round < 2 && s->n <= few; ++round)
-    for (const int end = s->n; from < end; ++from)
-      for (size_t a = s->start[s->ring[from]]; a < s->start[s->ring[from] + 1];
-           ++a)
-        for (int k = 0; k < dim; ++k)
-          add_to_ring(s, nodes_of(s, s->around[a])[k]);
+/* The mean normal of the faces at a node, for a start, with axes across it in
+ * f; 0: one of them is too far from it. */
+static int start_normal(const shape *s, int node, facet *f) {
+  const int dim = s->in->mesh->dim;
+  double mean[3] = {0.0, 0.0, 0.0};
+  for (int pass = 0; pass < 2; ++pass)
+    for (size_t a = s->start[node]; a < s->start[node + 1]; ++a) {
+      if (!face_plane(s, s->around[a], f)) return 0;
+      if (pass == 0)
+        add_scaled(dim, f->measure, f->normal, mean);
+      else if (dot(dim, mean, f->normal) <
+               cos(atan(sharp)) * sqrt(dot(dim, mean, mean)))
+        return 0;
+    }
+  memcpy(f->normal, mean, sizeof mean);
+  return 1;
 }
 
-/* Slopes of the surface at ring[0] over the axes of f; 0: none is found, or f
- * is the tangent plane but for rounding. */
+static void add_faces_of(shape *s, int node) {
+  const int dim = s->in->mesh->dim;
+  for (size_t a = s->start[node]; a < s->start[node + 1]; ++a)
+    for (int k = 0; k < dim; ++k) add_to_ring(s, nodes_of(s, s->around[a])[k]);
+}
+
+/* The nodes of the faces around a node; in space, where they are too few for a
+ * fit, of those around them too, not across sharp edges. */
+static void find_ring(shape *s, int node) {
+  s->n = 0;
+  add_to_ring(s, node);
+  add_faces_of(s, node);
+  if (s->in->mesh->dim == 2 || s->n > TERMS + 1) return;
+  for (int i = 1, end = s->n; i < end; ++i) {
+    facet f;
+    if (start_normal(s, s->ring[i], &f)) add_faces_of(s, s->ring[i]);
+  }
+}
+
+/* Slopes of the surface at ring[0] over the axes of f; 0: none is found; -1: it
+ * is flat but for rounding. */
 static int fit_slopes(const shape *s, const facet *f, double *slope) {
   const int dim = f->dim, n = terms_of[dim], m = s->n - 1;
   double A[MOST * TERMS], b[MOST], work[20 * TERMS], d[3];
@@ -99,7 +127,8 @@ static int fit_slopes(const shape *s, const facet *f, double *slope) {
     b[i] = dot(dim, f->normal, d) / length;
     most = fmax(most, fabs(b[i]));
   }
-  if (m < n || !(most > flat)) return 0;
+  if (m < n) return 0;
+  if (!(most > flat)) return -1;
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, m, n, 1, A, m, b, m, pivot, 1e-6,
                           &rank, work, 20 * TERMS) != 0)
     return 0;
@@ -116,21 +145,24 @@ static void straighten(int dim, int n, double *const *base, double *v) {
   for (int c = 0; c < dim; ++c) v[c] /= length;
 }
 
-/* The normal at a node from the plane of one of its faces, and again from the
- * plane across that. */
+/* The normal at a node: that of the quadratic over the plane across itself. */
 static void find_normal(shape *s, int node) {
-  enum { PASSES = 2 };
+  enum { PASSES = 4 };
   const int dim = s->in->mesh->dim;
   double slope[2];
   facet f;
-  if (!face_plane(s, s->around[s->start[node]], &f)) return;
+  if (!start_normal(s, node, &f)) return;
   find_ring(s, node);
   double *const base[] = {f.normal, f.axis[0], f.axis[1]};
-  for (int pass = 0; pass < PASSES && fit_slopes(s, &f, slope); ++pass) {
-    for (int a = 0; a < dim - 1; ++a)
-      add_scaled(dim, -slope[a], f.axis[a], f.normal);
+  for (int pass = 0; pass < PASSES; ++pass) {
     for (int k = 0; k < dim; ++k) straighten(dim, k, base, base[k]);
+    const int found = fit_slopes(s, &f, slope);
+    if (pass == 0) s->state[node] = found == 1 ? FITS : found == -1 ? FLAT : 0;
+    for (int a = 0; a < dim - 1 && found == 1; ++a)
+      add_scaled(dim, -slope[a], f.axis[a], f.normal);
+    if (found != 1) break;
   }
+  straighten(dim, 0, base, f.normal);
   memcpy(s->normal + (size_t)dim * (size_t)node, f.normal,
          (size_t)dim * sizeof *f.normal);
 }
@@ -146,41 +178,60 @@ static double rise(const shape *s, int node, const double *e, const double *f) {
   return fabs(t) > flat && fabs(t) < sharp ? t : 0.0;
 }
 
-static int is_end(const shape *s, int node) {
-  return s->start[node + 1] == s->start[node] + 1;
-}
-
-/* s of the edge from node i to node j in a face with the normal f; at an end of
- * a curve, where the fit lies on one side, by the slope at the other node. */
-static double edge_bulge(const shape *s, int i, int j, const double *f) {
+/* s of edge k of a face. First those whose ends have fits that bend the same
+ * way are counted at their nodes; second, an edge has it if another one at one
+ * of its nodes bends, and an end without a fit has the slope of the other. */
+static void set_edge(shape *s, int face, int k, const double *f, int second) {
+  const int dim = s->in->mesh->dim, *v = nodes_of(s, face);
+  const int i = v[k], j = v[(k + 1) % dim];
+  const int i_fits = s->state[i] & FITS, j_fits = s->state[j] & FITS;
   double e[3], back[3];
+  if ((s->state[i] | s->state[j]) & (FLAT | BESIDE_FLAT)) return;
   step(s, i, j, e);
   step(s, j, i, back);
-  double a = rise(s, i, e, f), b = rise(s, j, back, f);
-  if (a * b <= 0.0) return 0.0;
-  const int alike = fmax(a / b, b / a) < 2.0;
-  if (alike && is_end(s, i)) a = b;
-  if (alike && is_end(s, j)) b = a;
-  const double least = fmin(fabs(a), fabs(b));
-  return copysign(0.25 * sqrt(dot(s->in->mesh->dim, e, e)) * least, a);
+  double a = i_fits ? rise(s, i, e, f) : 0.0,
+         b = j_fits ? rise(s, j, back, f) : 0.0;
+  const int bends = a * b > 0.0, own = bends ? dim - 1 : 0;
+  if (!second) {
+    s->bends[i] += bends;
+    s->bends[j] += bends;
+    return;
+  }
+  if (!i_fits) a = b;
+  if (!j_fits) b = a;
+  if (a * b > 0.0 && (s->bends[i] > own || s->bends[j] > own))
+    s->bulge[(dim == 2 ? 1 : 3) * s->face[face] + k] =
+        copysign(0.25 * sqrt(dot(dim, e, e)) * fmin(fabs(a), fabs(b)), a);
 }
 
-static void shape_release(shape *s) { RELEASE(s->normal, s->start, s->around); }
+/* Nodes that are fitted to a flat one: at kinks, or at ends of a curve. */
+static void mark_flat(shape *s) {
+  for (int i = 0; i < s->in->mesh->n_node; ++i) {
+    if (!(s->state[i] & FITS)) continue;
+    find_ring(s, i);
+    for (int k = 1; k < s->n; ++k)
+      if (s->state[s->ring[k]] & FLAT) s->state[i] |= BESIDE_FLAT;
+  }
+}
+
+static void shape_release(shape *s) {
+  RELEASE(s->normal, s->start, s->around, s->state, s->bends);
+}
 
 status bulge_find(const mortar_input *in, int n, const int *face,
                   double *bulge) {
-  ENDS_BY(shape_release) shape s = {.in = in, .face = face};
+  ENDS_BY(shape_release) shape s = {.in = in, .face = face, .bulge = bulge};
   const int dim = in->mesh->dim, edges = dim == 2 ? 1 : 3;
   PASS(find_around(&s, n));
   for (int i = 0; i < in->mesh->n_node; ++i)
     if (s.start[i + 1] > s.start[i]) find_normal(&s, i);
-  for (int i = 0; i < n; ++i) {
-    facet f;
-    const int *v = nodes_of(&s, i);
-    for (int k = 0; k < edges && face_plane(&s, i, &f); ++k)
-      bulge[edges * face[i] + k] =
-          edge_bulge(&s, v[k], v[(k + 1) % dim], f.normal);
-  }
+  mark_flat(&s);
+  for (int second = 0; second < 2; ++second)
+    for (int i = 0; i < n; ++i) {
+      facet f;
+      for (int k = 0; k < edges && face_plane(&s, i, &f); ++k)
+        set_edge(&s, i, k, f.normal, second);
+    }
   return OK;
 }
 

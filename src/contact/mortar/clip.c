@@ -6,7 +6,9 @@
 
 #include "base/base.h"
 
-enum { MOST = 8 }; /* corners of a polygon */
+/* Corners of a polygon: six of two triangles, and what rounding adds where one
+ * of them is seen from its edge. */
+enum { MOST = CLIP_CELLS + 2 };
 
 typedef struct polygon {
   int n;

@@ -25,9 +25,10 @@ typedef struct shadow {
   double measure;   /* of the projection */
 } shadow;
 
-/* Two triangles have at most 6 corners in common; what is left of one without
- * the other is three pieces of at most 5. */
-enum { CLIP_CELLS = 4, CLIP_REST = 9 };
+/* Triangles: two have at most 6 corners in common, but for the two more that
+ * each line may add by rounding where one is seen from its edge; what is left
+ * of one without the other is three such pieces. */
+enum { CLIP_CELLS = 10, CLIP_REST = 3 * CLIP_CELLS };
 
 /* node[dim] of a face, x[dim*n_node]. 0; -1: the corners are (nearly) on one
  * line, or one point. */

@@ -67,7 +67,7 @@ static void set_partner(const run *r, const contact *c, contact_pair *p) {
   }
   p->master = &r->msh->group[c->pair.master_id];
   p->how = (c->slave_normal ? COUPLE_SLAVE_NORMAL : 0) |
-           (c->pair.adjust ? COUPLE_FLAT : 0);
+           (c->pair.adjust || c->is_crack ? COUPLE_FLAT : 0);
   p->update = c->update;
   p->change = c->change.given ? &c->change.value : NULL;
   p->change_sign = c->change.interferes ? -1.0 : 1.0;
