@@ -12,7 +12,8 @@ enum {
 };
 static const double SURE = 2.0;   /* -, times an estimate: a bound */
 static const double SPARSE = 0.1; /* -, share of entries that are not zero */
-static const double NOTHING = 0x1p-40;
+static const double NOTHING = 0x1p-40; /* -, diagonal over its column */
+
 static double largest_of_column(const contact_problem *cp, int dof) {
   const sparse_blocks *b = cp->blocks;
   const size_t d = (size_t)cp->dim, m = (size_t)cp->m;

@@ -156,7 +156,7 @@ static int has_node(const mesh *m, int face_id, int node_id) {
 }
 
 /* The most that faces at the nodes of a face lean. */
-static double most_beside(const mesh *m, const mesh_group *g, int face_id,
+static double most_around(const mesh *m, const mesh_group *g, int face_id,
                           unsigned fixed) {
   double most = 0.0, n[3];
   for (int k = 0; k < g->n_item; ++k)
@@ -170,12 +170,12 @@ static double most_beside(const mesh *m, const mesh_group *g, int face_id,
 
 int mirrors_bend(const mesh *m, const mesh_group *g, int node_id,
                  unsigned fixed, const double *n) {
-  static const double bent =
-      1.5; /* 2 on a curve of equal edges, 1 on a plane */
+  /* 2 on a curve of equal edges, 1 on a plane */
+  static const double bent = 1.5;
   double most = 0.0;
   for (int k = 0; k < g->n_item; ++k)
     if (has_node(m, g->item_id[k], node_id))
-      most = fmax(most, most_beside(m, g, g->item_id[k], fixed));
+      most = fmax(most, most_around(m, g, g->item_id[k], fixed));
   return most >= bent * fixed_part(m->dim, fixed, n);
 }
 

@@ -14,8 +14,9 @@
 
 /* ---- parts that the matrix of the problem does not join (contact.h) ------ */
 
-static const double JOINED =
-    0x1p-30; /* Root of the largest diagonal entry of a node. */
+static const double JOINED = 0x1p-30; /* -, entry over those of the diagonal */
+
+/* Root of the largest diagonal entry of a node. */
 static double root_of(const contact_problem *cp, int node_id) {
   double most = 0.0;
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i)

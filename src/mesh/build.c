@@ -199,7 +199,10 @@ static void release(builder *b) {
 static void tell_warnings(const builder *b) {
   const raw_mesh *raw = b->raw;
   for (int i = 0; i < raw->n_warning; ++i)
-    message_add(b->log, P3004, b->at, "gmsh warns: %s", raw->warning[i]);
+    if (strstr(raw->warning[i], OWN_VALUE) != NULL)
+      message_add(b->log, P2065, b->at, "%s", raw->warning[i]);
+    else
+      message_add(b->log, P3004, b->at, "gmsh warns: %s", raw->warning[i]);
   if (raw->n_loose > 0)
     message_add(b->log, P3014, b->at,
                 "%zu %s(s) in no physical group are left out", raw->n_loose,

@@ -601,16 +601,20 @@ static void check_numbers(const child *c) {
     geo_setting how;
     const char *file = r->file;
     int line = 0;
-    char where[16] = "";
-    if (of->in_deck || !is_replaced(c, of)) continue;
+    char where[16] = "", text[1024];
+    if (!is_replaced(c, of)) continue;
     if (g.n_file == 0 && geo_read(r->file, &g) != OK) return;
     if (geo_sets(&g, of->name, &how, &file, &line) != OK) return;
     if (how == GEO_CHANGES) continue;
     if (line > 0) snprintf(where, sizeof where, ":%d", line);
-    give_up(c, ERR_MESH,
-            "%s%s gives %s a value: %s = %g " NO_EFFECT
-            "; write DefineConstant[ %s = ... ] there, or take another name",
-            file, where, of->name, of->name, of->value, of->name);
+    snprintf(
+        text, sizeof text,
+        "%s%s gives %s a value: %s = %g %s; write DefineConstant[ %s = ... "
+        "] there, or take another name",
+        file, where, of->name, of->name, of->value,
+        of->in_deck ? OWN_VALUE : NO_EFFECT, of->name);
+    if (!of->in_deck) give_up(c, ERR_MESH, "%s", text);
+    send_text(c, WIRE_WARNING, 0, 0, text);
   }
 }
 

@@ -44,6 +44,7 @@
 
 /* In the message of a number that a .geo replaces. */
 #define NO_EFFECT "of *PARAMETER or -D has no effect"
+#define OWN_VALUE "is that of the deck alone"
 
 #define WIRE_ENUM(name, type) WIRE_##name,
 typedef enum { WIRE_LIST(WIRE_ENUM) WIRE_COUNT } wire_kind;

@@ -296,20 +296,6 @@ static double forecast_doubt(const job *j, double level) {
   return NAN;
 }
 
-/* Unknowns of the last pass. */
-static double last_unknowns(const job *j) {
-  char *json = job_file(j, "json"), *last = NULL;
-  for (char *at = strstr(json, "\"passes\""); at != NULL;
-       at = strstr(at + 1, "\"unknowns\": "))
-    if (strncmp(at, "\"unknowns\": ", 12) == 0 &&
-        strstr(at, "\"changed_next\"") != NULL)
-      last = at;
-  ck_assert_ptr_nonnull(last);
-  const double value = atof(last + 12);
-  free(json);
-  return value;
-}
-
 /* The forecast of an error against the passes that reach it. */
 START_TEST(forecast_is_near_the_truth) {
   job j;
@@ -326,7 +312,7 @@ START_TEST(forecast_is_near_the_truth) {
   const double held = job_told(&j, "peak_bytes") / 1048576.0;
   ck_assert_double_gt(held, memory / within);
   ck_assert_double_lt(held, memory * within);
-  const double has = last_unknowns(&j);
+  const double has = job_unknowns(&j);
   ck_assert_msg(unknowns > has / 2 && unknowns < has * 2, "%g %g", unknowns,
                 has);
   ck_assert_double_gt(memory, 0);
@@ -348,7 +334,7 @@ START_TEST(forecast_of_a_coarse_mesh) {
   forecast_row(&j, 5, &unknowns, &memory);
   job_end(&j);
   ck_assert_int_eq(press_cube(&j, 3, "", "*ACCURACY, TARGET=5\n", ""), 0);
-  const double has = last_unknowns(&j);
+  const double has = job_unknowns(&j);
   ck_assert_msg(unknowns > has / 1.5 && unknowns < has * 1.5, "%g %g", unknowns,
                 has);
   job_end(&j);

@@ -429,3 +429,16 @@ int dat_zone(const dat *z, int kind) {
   ck_assert_int_lt(row, z->n_row);
   return row;
 }
+
+double job_unknowns(const job *j) {
+  char *json = job_file(j, "json"), *last = NULL;
+  for (char *at = strstr(json, "\"passes\""); at != NULL;
+       at = strstr(at + 1, "\"unknowns\": "))
+    if (strncmp(at, "\"unknowns\": ", 12) == 0 &&
+        strstr(at, "\"changed_next\"") != NULL)
+      last = at;
+  ck_assert_ptr_nonnull(last);
+  const double value = atof(last + 12);
+  free(json);
+  return value;
+}

@@ -73,6 +73,8 @@ void job_clear(const job *j);
 long job_stage(const job *j, const char *stage, long *bytes);
 /* The last number of that name in JOB.json; check fails if there is none. */
 double job_told(const job *j, const char *name);
+/* Unknowns of the last pass of TARGET=. */
+double job_unknowns(const job *j);
 /* Energy norm of the difference of two runs under the same loads over that of
  * the second, %: its square is (u_a - u_b)'(r_a - r_b) on the contact; block k
  * of the tables CONTACT and ENERGY. */

@@ -137,20 +137,6 @@ static int foreseen(const job *j, double level, double row[3]) {
   return 0;
 }
 
-/* Unknowns of the last pass. */
-static double unknowns_of(const job *j) {
-  char *json = job_file(j, "json"), *last = NULL;
-  for (char *at = strstr(json, "\"passes\""); at != NULL;
-       at = strstr(at + 1, "\"unknowns\": "))
-    if (strncmp(at, "\"unknowns\": ", 12) == 0 &&
-        strstr(at, "\"changed_next\"") != NULL)
-      last = at;
-  ck_assert_ptr_nonnull(last);
-  double value = atof(last + 12);
-  free(json);
-  return value;
-}
-
 static void check_forecast(const example *e, const double *levels, int n) {
   job plan;
   ck_assert_int_eq(run(&plan, e, NULL, "--estimate-cost"), 0);
@@ -161,7 +147,7 @@ static void check_forecast(const example *e, const double *levels, int n) {
     ck_assert(foreseen(&plan, levels[i], row));
     snprintf(card, sizeof card, "*ACCURACY, TARGET=%g", levels[i]);
     ck_assert_int_eq(run(&j, e, card, ""), 0);
-    double cpu = cpu_of(&j), unknowns = unknowns_of(&j);
+    double cpu = cpu_of(&j), unknowns = job_unknowns(&j);
     double bytes = job_told(&j, "peak_bytes") / 1048576;
     printf("%-16s %8g %9.0f %9.0f %8.2f %8.2f %9.2f %9.2f %7.2f %7.2f\n",
            e->name, levels[i], row[0], unknowns, row[1], cpu, row[2], bytes,

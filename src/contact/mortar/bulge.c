@@ -19,7 +19,7 @@ static const double sharp = 0.3, flat = 1e-9;
 /* Coefficients of a quadratic, by the dimension; most nodes that it is fitted
  * to. */
 enum { TERMS = 5, MOST = 60 };
-enum { FITS = 1, FLAT = 2, BESIDE_FLAT = 4 };
+enum { FITS = 1, FLAT = 2, AT_FLAT = 4 };
 static const int terms_of[4] = {0, 0, 2, TERMS};
 
 typedef struct shape {
@@ -186,7 +186,7 @@ static void set_edge(shape *s, int face, int k, const double *f, int second) {
   const int i = v[k], j = v[(k + 1) % dim];
   const int i_fits = s->state[i] & FITS, j_fits = s->state[j] & FITS;
   double e[3], back[3];
-  if ((s->state[i] | s->state[j]) & (FLAT | BESIDE_FLAT)) return;
+  if ((s->state[i] | s->state[j]) & (FLAT | AT_FLAT)) return;
   step(s, i, j, e);
   step(s, j, i, back);
   double a = i_fits ? rise(s, i, e, f) : 0.0,
@@ -210,7 +210,7 @@ static void mark_flat(shape *s) {
     if (!(s->state[i] & FITS)) continue;
     find_ring(s, i);
     for (int k = 1; k < s->n; ++k)
-      if (s->state[s->ring[k]] & FLAT) s->state[i] |= BESIDE_FLAT;
+      if (s->state[s->ring[k]] & FLAT) s->state[i] |= AT_FLAT;
   }
 }
 
