@@ -14,11 +14,13 @@
   X(STOPPED_NAN,        -4, "NAN",        "not a number")                     \
   X(STOPPED_CYCLE,      -5, "CYCLE",      "cycle of states")                  \
   X(STOPPED_SINGULAR,   -6, "SINGULAR",   "singular")                         \
-  X(STOPPED_UNFIT,      -7, "UNFIT",     "method does not apply to the problem")
+  X(STOPPED_UNFIT,      -7, "UNFIT",     "method does not apply to the problem")\
+  X(STOPPED_UNSTABLE,   -8, "UNSTABLE",   "increment not stable")
 /* clang-format on */
 /* Stagnation: no progress above the rounding level; a ray: there is no
  * equilibrium; a cycle: a pattern of statuses came again; singular: a linear
- * system of the method has no solution. */
+ * system of the method has no solution; unstable: an explicit integrator met
+ * rates beyond its limit. */
 #define OUTCOME_ENUM(name, value, code, text) name = value,
 typedef enum { OUTCOME_LIST(OUTCOME_ENUM) } outcome;
 /* In a few words, for listings and messages. */

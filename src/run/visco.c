@@ -100,6 +100,7 @@ static status advance(run *r, double t) {
   scheme_step p = {.t = t,
                    .dt = step_length(r, t),
                    .theta = r->step->visco.theta,
+                   .fastest = step_fastest(r->step, t, t - r->old.t),
                    .initial = r->step->visco.initial,
                    .tol = r->step->solver.tol};
   v->result = (scheme_result){.settled = 1, .error = -1.0};
@@ -113,8 +114,10 @@ static status advance(run *r, double t) {
     r->strains.eigen.e0 = r->now.e0;
   else
     strains_collect(r);
+  v->stages = fmax(v->stages, v->result.unstable);
   if (!v->result.settled && r->solving.report.outcome > 0)
-    r->solving.report.outcome = STOPPED_ITERATIONS;
+    r->solving.report.outcome =
+        v->result.unstable > 0.0 ? STOPPED_UNSTABLE : STOPPED_ITERATIONS;
   return OK;
 }
 
@@ -296,7 +299,7 @@ status visco_level(run *r, double dt, int *level) {
     return OK;
   TIMED(STAGE_INELASTIC);
   PASS(flow_fastest(&v->x, &v->old, dt, &rate));
-  *level = step_level(r->m, r->step, r->old.t, dt, rate,
+  *level = step_level(r->m, r->step, r->old.t, dt, fmax(rate, v->stages),
                       v->reported != r->step && !flow_is_constant(&v->x));
   v->reported = r->step;
   if (*level < 0)
@@ -319,6 +322,7 @@ status visco_accept(run *r) {
   double norm = 0.0;
   const int flows = r->step->kind == STEP_VISCO && r->old.t > r->now.t;
   v->result.dissipated = 0.0;
+  v->stages = 0.0;
   TIMED(STAGE_INELASTIC);
   if (!flows) take_strains(r, &r->old);
   PASS(elastic_norm(v, &norm));

@@ -49,6 +49,8 @@ struct visco {
   int *section_id;      /* [n_elem] sections of their own for the points */
   kinematics *kin;      /* [r->body.moduli.n + x.n] */
   double *thickness;    /* the same */
+  double stages;        /* fastest rate of stages that were not stable since the
+                           last increment, 1/s; or 0 */
   double largest;       /* largest norm of the elastic strains so far */
   const step *reported; /* step whose ringing has been reported */
   int locking_reported; /* 1: P4016 has been reported */

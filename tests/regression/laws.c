@@ -332,6 +332,40 @@ START_TEST(explicit_limits) {
 }
 END_TEST
 
+/* A bar pulled by 2e-3 that flows from half of that on: nothing moves at the
+ * start of the increment, and the rate of its stages is 5.5 times what is
+ * stable. With r = (E + H)/eta = 11 the strain that has flowed is E 2e-3/(E +
+ * H) (0.5 - (1 - exp(-r/2))/r). Cut increments have an error of their own. */
+START_TEST(stages_beyond_the_limit_cut_the_increment) {
+  static const char *const schemes[] = {"HEUN", "RK4", "HEUN, TOLERANCE=0.5",
+                                        "RK4, TOLERANCE=0.5"};
+  const double flowed = 2e-3 / 1.1 * (0.5 - (1 - exp(-5.5)) / 11);
+  for (int k = 0; k < 4; ++k)
+    for (int cut = k > 1; cut < 2; ++cut) {
+      char visco[256];
+      snprintf(visco, sizeof visco,
+               "*VISCO, INTEGRATOR=%s%s\n1., 1.%s\n" SYMMETRY
+               "TOP, 2, 2, 2.E-3\n*ACCURACY, TIME=YES, MESH=NO\n",
+               schemes[k], cut && k < 2 ? ", SUBSTEPS=AUTO" : "",
+               k < 2 ? "" : ", 1.");
+      scene s = {HARD,   "*INELASTIC, LAW=PERZYNA\n100., 1.E4, 1.E4\n",
+                 "CPS3", "",
+                 NULL,   visco};
+      job j = run_scene(&s, cut ? 0 : 2);
+      if (cut) {
+        char *sta = job_file(&j, "sta"), *row = strstr(sta, "CUT UNSTABLE");
+        all_have(&j, -1, "stress_yy", 1e5 * (2e-3 - flowed), 2);
+        ck_assert_ptr_nonnull(row);
+        for (; row != NULL; row = strstr(row + 1, "0.000 OK"))
+          ck_assert_int_ne(row[-21], '-'); /* steps[%] */
+        free(sta);
+      } else
+        ck_assert_ptr_nonnull(strstr(j.errors, "not with dt = 1; give"));
+      job_end(&j);
+    }
+}
+END_TEST
+
 /* Creep at constant volume locks linear elements, but not in plane stress; one
  * that swells does not. A step that is not *VISCO says that nothing flows. */
 START_TEST(locking_creep_is_told) {
@@ -408,6 +442,7 @@ int main(void) {
   tcase_add_test(tests, armstrong_frederick_loop);
   tcase_add_test(tests, a_bar_ratchets);
   tcase_add_test(tests, explicit_limits);
+  tcase_add_test(tests, stages_beyond_the_limit_cut_the_increment);
   tcase_add_test(tests, locking_creep_is_told);
   tcase_add_test(tests, creep_without_a_state_is_not_settled);
   tcase_add_test(tests, increments_that_never_settle_end);

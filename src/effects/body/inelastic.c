@@ -72,8 +72,9 @@ static status attempt_adapted(run *r) {
   int settled = r->solving.report.outcome > 0;
   if (settled && error > s->visco.tolerance) TRY(forget_rounding(r, &error));
   r->course.missed = settled && error > s->visco.tolerance;
-  if ((!settled || r->course.missed) && fmin(tried, p->dt) > least &&
-      loop_cut_helps(r)) {
+  if (r->solving.report.outcome == STOPPED_UNSTABLE ||
+      ((!settled || r->course.missed) && fmin(tried, p->dt) > least &&
+       loop_cut_helps(r))) {
     TRY(loop_reject(r, attempt, p->increment_no + 1,
                     settled ? "strain error above TOLERANCE"
                             : outcome_text(r->solving.report.outcome)));

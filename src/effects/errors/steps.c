@@ -117,7 +117,6 @@ static int path_exists(const run *r) {
  * equilibrium. */
 static status try_halves(run *r, finer_path *p, double t) {
   p->measured = 0;
-  if (p->lost) return OK;
   PASS(half(r, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
   p->lost = r->solving.report.outcome <= 0;
   if (p->lost) return OK;
@@ -402,10 +401,8 @@ static double next_length(const run *r, double dt, double planned, double part,
 }
 
 /* The attempt is rejected: r->at.dt the next time. */
-static status refuse(run *r, paths *own, double tried, double dt,
-                     const char *why) {
+static status refuse(run *r, double tried, double dt, const char *why) {
   progress *p = &r->at;
-  if (own->path != NULL) own->path->lost = 0;
   PASS(loop_reject(r, p->attempt, p->increment_no + 1, why));
   p->dt = fmax(r->step->dt_min, fmin(0.5 * tried, dt));
   ++p->attempt;
@@ -428,8 +425,9 @@ static status attempt_balanced(run *r, paths *own) {
   PASS(effects_attempt(r, t));
   PASS(loop_solve(r, t));
   int settled = r->solving.report.outcome > 0, shorter = p->dt > s->dt_min;
-  if (!settled && shorter && loop_cut_helps(r)) {
-    PASS(refuse(r, own, tried, 0.0, outcome_text(r->solving.report.outcome)));
+  if (r->solving.report.outcome == STOPPED_UNSTABLE ||
+      (!settled && shorter && loop_cut_helps(r))) {
+    PASS(refuse(r, tried, 0.0, outcome_text(r->solving.report.outcome)));
     return OK;
   }
   if (outcome_is_fatal(r->solving.report.outcome)) PASS(loop_no_equilibrium(r));
@@ -440,7 +438,7 @@ static status attempt_balanced(run *r, paths *own) {
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);
   if (part > allowed && shorter) {
-    PASS(refuse(r, own, tried, dt, "error of the steps above its share"));
+    PASS(refuse(r, tried, dt, "error of the steps above its share"));
     return OK;
   }
   p->attempt = 1;

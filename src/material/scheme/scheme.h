@@ -128,12 +128,15 @@ typedef struct flow_body {
 typedef struct scheme_step {
   double t;         /* end of the step: old->t + dt to rounding, s */
   double dt, theta; /* s, - */
+  double fastest;   /* rate up to which an explicit step is stable, 1/s */
   int initial;      /* 1: iterate with the elastic matrix */
   double tol;       /* of the contact; most of the iteration on stresses, - */
 } scheme_step;
 
 typedef struct scheme_result {
   int settled;       /* 0: no result to continue with */
+  double unstable;   /* rate of a stage beyond what p->fastest allows, 1/s, not
+                        settled then; or 0 */
   int stuck;         /* point that has no state at the end, from 1; or 0 */
   int iterations;    /* linear solves of an implicit step */
   double error;      /* of strains, root mean square, -; < 0: not estimated */

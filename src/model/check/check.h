@@ -17,6 +17,9 @@ double model_locking_error(double nu, int n);
 
 /* 1 if the integrator of a *VISCO step can be unstable or ring. */
 int step_has_limit(const step *s);
+/* The fastest rate, 1/s, with which an increment dt to t is stable: as
+ * step_level, less the rounding of both. */
+double step_fastest(const step *s, double t, double dt);
 /*
  * What the fastest rate of the laws means for an increment dt of a *VISCO step
  * from t on: the level of 2^level pieces that keep it stable, > 0 with

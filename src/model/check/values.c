@@ -563,13 +563,23 @@ static void report_ringing(const model *m, const step *s, double t, double dt,
               (1.0 - (1.0 - theta) * z) / (1.0 + theta * z));
 }
 
+/* Ends of increments are sums: dt is known to the rounding of the time. */
+static double rounding_of(double t, double dt) {
+  return 4e-16 * (fabs(t) + dt);
+}
+
+double step_fastest(const step *s, double t, double dt) {
+  const double least = dt - 2.0 * rounding_of(t, dt);
+  const double limit = scheme_limit(s->visco.integrator, s->visco.theta);
+  return least > 0.0 ? limit / least : HUGE_VAL;
+}
+
 int step_level(const model *m, const step *s, double t, double dt, double rate,
                int notify) {
   enum { DEEPEST = 30 };
   int level = 0;
   double limit = scheme_limit(s->visco.integrator, s->visco.theta) / rate;
-  /* Ends of increments are sums: dt is known to the rounding of the time. */
-  double rounding = 4e-16 * (fabs(t) + dt);
+  double rounding = rounding_of(t, dt);
   if (notify) report_ringing(m, s, t, dt, rate);
   if (!(limit > 0.0)) {
     message_add(m->log, P2050, &s->at,

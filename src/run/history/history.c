@@ -479,14 +479,17 @@ static status attempt_piece(run *r, long n) {
   PASS(choose_piece(r, n, &t));
   PASS(effects_attempt(r, t));
   PASS(loop_solve(r, t));
-  int settled = r->solving.report.outcome > 0, finer = !settled && can_cut(r);
+  int settled = r->solving.report.outcome > 0;
+  int unstable = r->solving.report.outcome == STOPPED_UNSTABLE;
+  int finer = unstable || (!settled && can_cut(r));
   if (finer || (!settled && outcome_is_fatal(r->solving.report.outcome)))
     PASS(loop_reject(r, p->attempt, p->increment_no + 1,
                      outcome_text(r->solving.report.outcome)));
   if (finer) {
+    ++p->attempt;
+    if (unstable) return OK; /* choose_piece cuts */
     p->part *= 2;
     p->cut = ++p->level;
-    ++p->attempt;
     return OK;
   }
   if (!settled && outcome_is_fatal(r->solving.report.outcome))
