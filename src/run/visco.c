@@ -171,6 +171,18 @@ status visco_advance_from(run *r, flow_state *from, double t, flow_state *to) {
   return OK;
 }
 
+status visco_settle_from(run *r, const flow_state *from, double t,
+                         flow_state *to) {
+  visco *v = r->strains.visco;
+  if (v != NULL) flow_state_copy(&v->x, from, &v->now);
+  PASS(increment_solve(r, t));
+  if (v == NULL) return OK;
+  TIMED(STAGE_INELASTIC);
+  take_strains(r, &r->now);
+  flow_state_copy(&v->x, &v->now, to);
+  return OK;
+}
+
 status start_point_new(const run *r, start_point *p) {
   PASS_NEW_REALS(r->nodes.n_c, &p->uc, &p->rc);
   if (r->old.motion != NULL) PASS_NEW(p->motion, r->nodes.n_c);

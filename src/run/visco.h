@@ -81,6 +81,9 @@ equilibrium start_point_use(run *r, const start_point *p);
 /* visco.c: by the integrator of the step from another state than that of the
  * run (its t is not read: r->old.t counts) to t, into r->now and *to. */
 status visco_advance_from(run *r, flow_state *from, double t, flow_state *to);
+/* The same of an increment in which nothing flows. */
+status visco_settle_from(run *r, const flow_state *from, double t,
+                         flow_state *to);
 /* Order of the integrator of a *VISCO step: that of THETA depends on theta. */
 int visco_order(const step *s);
 /* (*d)[ns*x.n], new: the trapezoidal rule less r->now of points that flow at

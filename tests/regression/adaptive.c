@@ -284,11 +284,13 @@ START_TEST(flow_that_passes_its_threshold_is_seen) {
 }
 END_TEST
 
-/* The same of the error of the steps, whose truth is 81 % for EULER. */
+/* The same of the error of the steps, whose truth is 81 % for EULER; stages of
+ * HEUN and RK4 would not be stable if the strain were held, and are cut. */
 START_TEST(flow_that_begins_late_is_an_error_of_the_steps) {
   char visco[200];
   snprintf(visco, sizeof visco,
-           "*VISCO, INTEGRATOR=%s\n1., 1.\n*ACCURACY, TIME=YES\n", blind[_i]);
+           "*VISCO, INTEGRATOR=%s%s\n1., 1.\n*ACCURACY, TIME=YES\n", blind[_i],
+           _i == 1 || _i == 2 ? ", SUBSTEPS=AUTO" : "");
   job j = run_past(0, visco);
   const double error = error_past(&j, 0) / 1.2e-3,
                told = 0.01 * job_told(&j, "time_error_percent");

@@ -366,6 +366,43 @@ START_TEST(stages_beyond_the_limit_cut_the_increment) {
 }
 END_TEST
 
+/* A Maxwell bar is held between its floor and 1e-3, lifted within a quarter of
+ * its relaxation time and, in a step of its own, pressed to 1e-3 again at once:
+ * its stress is what has flowed, in units of E 1e-3
+ *   2 s, s = 2 log(1 + exp(-1)/4) the time of the lift until no stress is left.
+ * Before that step nothing but strains tells the error of the increments. */
+START_TEST(error_of_the_steps_goes_through_a_body_without_stress) {
+  static const char *const press[] = {"VISCO, INTEGRATOR=BACKWARD",
+                                      "QUASISTATIC"};
+  char visco[512];
+  snprintf(visco, sizeof visco,
+           "*VISCO, INTEGRATOR=BACKWARD\n0.5, 2.5\n*BOUNDARY\nLEFT, 1\n"
+           "TOP, 2, 2, -1.E-3, LIFT\n*ACCURACY, TIME=YES, MESH=NO\n" TABLES
+           "*END STEP\n*STEP\n*%s\n5.E-7, 1.E-6\n"
+           "*BOUNDARY\nTOP, 2, 2, -1.E-3\n",
+           press[_i]);
+  scene s = {SOFT,
+             "*INELASTIC, LAW=MAXWELL\n2.\n",
+             "CPS3",
+             "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+             "*AMPLITUDE, NAME=LIFT\n0., 1.\n2., 1.\n2.5, 0.\n",
+             NULL,
+             visco};
+  job j = run_scene(&s, 0);
+  dat d = job_table(&j, "ELEMENTS", -1);
+  const double stress = -dat_at(&d, 0, "stress_yy");
+  const double exact = 4 * log(1 + exp(-1) / 4);
+  const double error = 100 * fabs(stress - exact) / stress;
+  const double told = job_told(&j, "time_error_percent");
+  ck_assert_double_eq_tol(stress, pow(1.25, -4), 1e-6);
+  ck_assert_msg(told > 0.5 * error && told < 1.5 * error, "%g told, %g true",
+                told, error);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
 /* Creep at constant volume locks linear elements, but not in plane stress; one
  * that swells does not. A step that is not *VISCO says that nothing flows. */
 START_TEST(locking_creep_is_told) {
@@ -443,6 +480,8 @@ int main(void) {
   tcase_add_test(tests, a_bar_ratchets);
   tcase_add_test(tests, explicit_limits);
   tcase_add_test(tests, stages_beyond_the_limit_cut_the_increment);
+  tcase_add_loop_test(
+      tests, error_of_the_steps_goes_through_a_body_without_stress, 0, 2);
   tcase_add_test(tests, locking_creep_is_told);
   tcase_add_test(tests, creep_without_a_state_is_not_settled);
   tcase_add_test(tests, increments_that_never_settle_end);

@@ -40,7 +40,8 @@ typedef struct finer_path {
   int lost;     /* 1: it found no equilibrium */
   int measured; /* 1: "error" is that of the attempt */
   path_error error;
-  int flows;                /* 1: made in a *VISCO step */
+  double factor; /* largest of extrapolation() so far */
+  int sudden;    /* 1: what is applied at the start of the step is to come */
   waypoint at, middle, end; /* accepted; of the attempt now made */
   double *d, *Ad;           /* [m] difference of the paths, m; N */
   double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no
@@ -59,15 +60,8 @@ static status waypoint_new(const run *r, waypoint *w) {
   return OK;
 }
 
-static void waypoint_copy(const run *r, const equilibrium *e, waypoint *w) {
-  if (e == &r->old && r->strains.visco != NULL)
-    flow_state_copy(&r->strains.visco->x, &r->strains.visco->old, &w->flow);
-  start_point_copy(r, e, &w->start);
-}
-
 static status path_new(const run *r, finer_path *p) {
   OWNS(p);
-  p->flows = r->step->kind == STEP_VISCO;
   PASS(waypoint_new(r, &p->at));
   PASS(waypoint_new(r, &p->middle));
   PASS(waypoint_new(r, &p->end));
@@ -75,8 +69,9 @@ static status path_new(const run *r, finer_path *p) {
   if (r->strains.visco != NULL) {
     PASS_NEW(p->u, r->n_dof);
     PASS_NEW(p->e0, visco_at(r, r->strains.eigen.n));
+    flow_state_copy(&r->strains.visco->x, &r->strains.visco->old, &p->at.flow);
   }
-  waypoint_copy(r, &r->old, &p->at);
+  start_point_copy(r, &r->old, &p->at.start);
   return OK;
 }
 
@@ -87,15 +82,19 @@ static status path_begin(const run *r, paths *own) {
   return path_new(r, own->path);
 }
 
-/* The equilibrium at t from where "from" stands, into "to". */
-static status half(run *r, waypoint *from, double t, waypoint *to) {
+/* The equilibrium at t from where "from" stands, into "to"; lost where there is
+ * none. */
+static status half(run *r, finer_path *p, waypoint *from, double t,
+                   waypoint *to) {
+  if (p->lost) return OK;
   equilibrium keep = start_point_use(r, &from->start);
-  const status st = r->step->kind == STEP_VISCO
+  const status st = r->step->kind == STEP_VISCO && t > from->start.t
                         ? visco_advance_from(r, &from->flow, t, &to->flow)
-                        : increment_solve(r, t);
+                        : visco_settle_from(r, &from->flow, t, &to->flow);
   r->old = keep;
   PASS(st);
-  waypoint_copy(r, &r->now, to);
+  start_point_copy(r, &r->now, &to->start);
+  p->lost = r->solving.report.outcome <= 0;
   return OK;
 }
 
@@ -108,20 +107,27 @@ static void restart(paths *own) {
   own->now = (path_error){0};
 }
 
-/* Only slip in increments and inelastic strains depend on their path. */
+/* Only slip in increments and inelastic strains, those of steps before too,
+ * depend on their path. */
 static int path_exists(const run *r) {
-  return effects_sum_up(r) == NULL && run_remembers(r);
+  return effects_sum_up(r) == NULL && run_inherits(r);
 }
 
-/* Both halves of the increment that ends at t; lost where there is no
- * equilibrium. */
+/* The attempt is accepted: the next one starts at its end. */
+static void advance(finer_path *p) {
+  waypoint w = p->at;
+  p->at = p->end;
+  p->end = w;
+}
+
+/* Both halves of the increment that ends at t. */
 static status try_halves(run *r, finer_path *p, double t) {
-  p->measured = 0;
-  PASS(half(r, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
-  p->lost = r->solving.report.outcome <= 0;
-  if (p->lost) return OK;
-  PASS(half(r, &p->middle, t, &p->end));
-  p->lost = r->solving.report.outcome <= 0;
+  p->measured = p->lost = 0;
+  if (p->sudden) PASS(half(r, p, &p->at, p->at.start.t, &p->end));
+  if (p->sudden && !p->lost) advance(p);
+  p->sudden &= p->lost;
+  PASS(half(r, p, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
+  PASS(half(r, p, &p->middle, t, &p->end));
   if (p->lost || p->u == NULL) return OK;
   memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
   COPY(p->e0, r->strains.eigen.e0, visco_at(r, r->strains.eigen.n));
@@ -135,11 +141,10 @@ static status try_path(run *r, void *self, double t) {
   if (!r->step->accuracy.time || !path_exists(r)) return OK;
   timer_enter_whole(STAGE_TIME_ERROR);
   r->course.shadow = 1;
-  if (own->path != NULL && (own->path->at.start.t != r->old.t ||
-                            own->path->flows != (r->step->kind == STEP_VISCO)))
-    restart(own);
+  if (own->path != NULL && own->path->at.start.t != r->old.t) restart(own);
   TRY(path_begin(r, own));
   TRY(try_halves(r, own->path, t));
+  if (r->step->kind != STEP_VISCO) visco_rest(r);
 done:
   r->course.shadow = 0;
   timer_leave(STAGE_TIME_ERROR);
@@ -206,13 +211,6 @@ static double extrapolation(const run *r) {
   return r->problem.ut0 != NULL ? EXTRAPOLATION : 4.0 / 3.0;
 }
 
-/* The attempt is accepted: the next one starts at its end. */
-static void advance(finer_path *p) {
-  waypoint w = p->at;
-  p->at = p->end;
-  p->end = w;
-}
-
 static const char *why_no_path(const run *r) {
   if (effects_sum_up(r) != NULL) return effects_sum_up(r);
   if (r->step->kind == STEP_STATIC) return "one static problem, no path";
@@ -234,8 +232,9 @@ static status measure(run *r, paths *own, double *norm) {
     if (p->u != NULL) PASS(subtract_strains(r, p));
     p->error = p->u != NULL ? field_difference(r, p)
                             : (path_error){condensed_difference(r, p), 0.0};
-    p->error.norm *= extrapolation(r);
-    p->error.strain *= extrapolation(r);
+    p->factor = fmax(p->factor, extrapolation(r));
+    p->error.norm *= p->factor;
+    p->error.strain *= p->factor;
   }
   p->measured = 1;
   *norm = own->before.norm + p->error.norm;
@@ -301,9 +300,10 @@ static status compare(run *r, void *self) {
 
 static void forget(run *r, void *self) { restart(self); }
 
-/* Sudden loads at the start of a *VISCO step is no part of a path. */
 static status begin_step(run *r, void *self) {
-  if (r->step->kind == STEP_VISCO && r->strains.visco != NULL) restart(self);
+  finer_path *p = ((paths *)self)->path;
+  if (p != NULL)
+    p->sudden = r->step->kind == STEP_VISCO && r->strains.visco != NULL;
   return OK;
 }
 
@@ -330,7 +330,8 @@ static status keep(run *r, void *self, archive *a) {
   PASS(archive_reals(a, "path_strain", &own->now.strain, 1));
   if (!there) return OK;
   PASS(path_begin(r, own));
-  PASS(archive_ints(a, "path_lost", &own->path->lost, 1));
+  PASS(archive_ints(a, "path_sudden", &own->path->sudden, 1));
+  PASS(archive_reals(a, "path_factor", &own->path->factor, 1));
   return keep_waypoint(r, &own->path->at, a);
 }
 
@@ -451,7 +452,8 @@ static status attempt_balanced(run *r, paths *own) {
 static status march(run *r, void *self, int *made) {
   paths *own = self;
   double end = r->step->start + r->step->total;
-  if (!r->step->accuracy.time_balanced || !path_exists(r)) return OK;
+  if (!r->step->accuracy.time_balanced || !path_exists(r) || !run_remembers(r))
+    return OK;
   *made = 1;
   if (r->at.increment_no == 0) r->at.error = total_error(own);
   while (r->old.t < end) {
