@@ -14,7 +14,7 @@
   X(STOPPED_NAN,        -4, "NAN",        "not a number")                     \
   X(STOPPED_CYCLE,      -5, "CYCLE",      "cycle of states")                  \
   X(STOPPED_SINGULAR,   -6, "SINGULAR",   "singular")                         \
-  X(STOPPED_UNFIT,      -7, "UNFIT",     "method does not apply to the problem")\
+  X(STOPPED_UNFIT,      -7, "UNFIT", "method does not apply to the problem")   \
   X(STOPPED_UNSTABLE,   -8, "UNSTABLE",   "increment not stable")
 /* clang-format on */
 /* Stagnation: no progress above the rounding level; a ray: there is no

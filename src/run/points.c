@@ -237,10 +237,10 @@ static double apparent_ratio(const run *r) {
 void visco_warn_locking(run *r) {
   enum { COARSE = 16, FINE = 64 };
   visco *v = r->strains.visco;
-  if (v->locking_reported) return;
+  if (v->reported.locking) return;
   double nu = apparent_ratio(r);
   if (nu <= 0.49) return;
-  v->locking_reported = 1;
+  v->reported.locking = 1;
   message_add(r->m->log, P4016, &r->step->at,
               "step %d, time %g: creep has brought Poisson's ratio to an "
               "apparent %.4g; linear elements lock: expect displacements too "
@@ -253,10 +253,10 @@ void visco_warn_locking(run *r) {
 
 void visco_warn_stuck(run *r) {
   visco *v = r->strains.visco;
-  if (v == NULL || v->result.stuck == 0 || v->stuck_reported) return;
+  if (v == NULL || v->result.stuck == 0 || v->reported.stuck) return;
   const int e = v->elem[v->result.stuck - 1];
   const material *mat = run_material(r, e);
-  v->stuck_reported = 1;
+  v->reported.stuck = 1;
   message_add(r->m->log, P4017, &r->step->at,
               "step %d, time %g: law %s of material %s finds no state of "
               "element %zu (group %s) at the end of an increment of %g: its "
@@ -312,7 +312,7 @@ static inline void add_points(int ns, const run *r, const visco_part *p,
   for (int k = p->point; k < end; ++k) add_works(ns, r, k, sum);
   for (int k = p->point; k < end && r->now.thermal != NULL; ++k)
     add_thermal(r, k, sum);
-  if (r->strains.visco->locking_reported) return;
+  if (r->strains.visco->reported.locking) return;
   for (int k = p->point; k < end; ++k) add_locking(ns, r, k, &sum->locking);
 }
 

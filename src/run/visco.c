@@ -311,9 +311,10 @@ status visco_level(run *r, double dt, int *level) {
     return OK;
   TIMED(STAGE_INELASTIC);
   PASS(flow_fastest(&v->x, &v->old, dt, &rate));
-  *level = step_level(r->m, r->step, r->old.t, dt, fmax(rate, v->stages),
-                      v->reported != r->step && !flow_is_constant(&v->x));
-  v->reported = r->step;
+  *level =
+      step_level(r->m, r->step, r->old.t, dt, fmax(rate, v->stages),
+                 v->reported.ringing != r->step && !flow_is_constant(&v->x));
+  v->reported.ringing = r->step;
   if (*level < 0)
     RAISE(ERR_DECK, "step %d: the increment is not stable", run_step_id(r) + 1);
   return OK;
@@ -361,7 +362,7 @@ status visco_keep_flow(const flow *x, flow_state *s, archive *a,
 
 status visco_keep(run *r, archive *a) {
   visco *v = r->strains.visco;
-  int reported = v->reported == r->step;
+  int reported = v->reported.ringing == r->step;
   PASS(visco_keep_flow(&v->x, &v->old, a, "old"));
   PASS(visco_keep_flow(&v->x, &v->now, a, "now"));
   PASS(archive_reals(a, "largest", &v->largest, 1));
@@ -370,8 +371,8 @@ status visco_keep(run *r, archive *a) {
   PASS(archive_reals(a, "asked", &v->x.tally->asked, 1));
   PASS(archive_reals(a, "resting", &v->x.tally->resting, 1));
   PASS(archive_ints(a, "told", &reported, 1));
-  v->reported = reported ? r->step : NULL;
-  PASS(archive_ints(a, "told_locking", &v->locking_reported, 1));
-  PASS(archive_ints(a, "told_stuck", &v->stuck_reported, 1));
+  v->reported.ringing = reported ? r->step : NULL;
+  PASS(archive_ints(a, "told_locking", &v->reported.locking, 1));
+  PASS(archive_ints(a, "told_stuck", &v->reported.stuck, 1));
   return tangent_keep(r, a);
 }

@@ -43,18 +43,19 @@ struct visco {
   long clock;
   double length[SLOTS]; /* of the last different steps, s */
   unsigned n_length;
-  double *E;            /* [ns*ns*(r->body.moduli.n + x.n)] of "fresh" */
-  double *stress;       /* [ns*r->strains.eigen.n] Pa */
-  int E_is_fresh;       /* that of "fresh" */
-  int *section_id;      /* [n_elem] sections of their own for the points */
-  kinematics *kin;      /* [r->body.moduli.n + x.n] */
-  double *thickness;    /* the same */
-  double stages;        /* fastest rate of stages that were not stable since the
-                           last increment, 1/s; or 0 */
-  double largest;       /* largest norm of the elastic strains so far */
-  const step *reported; /* step whose ringing has been reported */
-  int locking_reported; /* 1: P4016 has been reported */
-  int stuck_reported;   /* 1: P4017 has been reported */
+  double *E;         /* [ns*ns*(r->body.moduli.n + x.n)] of "fresh" */
+  double *stress;    /* [ns*r->strains.eigen.n] Pa */
+  int E_is_fresh;    /* that of "fresh" */
+  int *section_id;   /* [n_elem] sections of their own for the points */
+  kinematics *kin;   /* [r->body.moduli.n + x.n] */
+  double *thickness; /* the same */
+  double stages;     /* fastest rate of stages that were not stable since the
+                        last increment, 1/s; or 0 */
+  double largest;    /* largest norm of the elastic strains so far */
+  struct {
+    const step *ringing; /* of this step */
+    int locking, stuck;  /* 1: P4016, P4017 */
+  } reported;            /* so far */
 };
 
 /* Where the components of item k start among [ns*n]. */
