@@ -339,6 +339,23 @@ START_TEST(strain_that_is_left_has_the_error_of_the_steps) {
 }
 END_TEST
 
+/* A block held on its floor relaxes for ten relaxation times. In one increment
+ * the midpoint rule takes all stress from it, flows five times too far, and the
+ * block lifts off: without a stress, but not without an error. */
+START_TEST(flow_that_takes_all_stress_is_no_rounding) {
+  const square_case s = {
+      STEEL,
+      PROPORTIONAL,
+      "CPS3",
+      FLOOR(0.),
+      "*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -1.E-3\n",
+      "*VISCO, INTEGRATOR=MIDPOINT, TOLERANCE=1.E-4\n20., 20.\n"};
+  job j = square_run(&s, 0);
+  square_all_have(&j, -1, "ei_yy", 1e-3 * expm1(-10.0), 1e-6);
+  job_end(&j);
+}
+END_TEST
+
 /* A held strain relaxes for its relaxation time in two increments; in the step
  * after that the stress is still wrong by as much. */
 START_TEST(strains_that_a_step_holds_keep_their_error) {
@@ -514,6 +531,7 @@ int main(void) {
   tcase_add_loop_test(tests, increments_grow_over_thirty_decades, 0, 2);
   tcase_add_loop_test(tests, flow_that_passes_its_threshold_is_seen, 0,
                       2 * BLIND);
+  tcase_add_test(tests, flow_that_takes_all_stress_is_no_rounding);
   tcase_add_loop_test(tests, flow_that_begins_late_is_an_error_of_the_steps, 0,
                       BLIND);
   tcase_add_loop_test(tests, strains_that_a_step_holds_keep_their_error, 0, 2);
