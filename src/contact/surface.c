@@ -365,16 +365,16 @@ static const candidate *next_of(const builder *b, const candidate *c) {
   return c->also > 0 ? &b->list[c->also - 1] : NULL;
 }
 
-/* The normal of the obstacle instead of that of the body; 0 where the body
- * faces away from the obstacle. */
+/* The normal of the obstacle instead of that of the body; 0 where the body does
+ * not face the obstacle. */
 static int take_obstacle_normal(const builder *b, candidate *c) {
   const surface_row at = row_of(b, c);
   double body[3];
   memcpy(body, c->normal, sizeof body);
   if (at.of->support != NULL)
     obstacle_normal(at.of->support, b->dim, at.x, c->normal);
-  return dot(b->dim, body, c->normal) >=
-         -PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
+  return dot(b->dim, body, c->normal) >
+         PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
 
 /* 1: the contact leans where it meets a plane of symmetry: the obstacle, if it

@@ -8,6 +8,11 @@
  * ERR_MEMORY. */
 status setup_adjust(model *m, mesh *msh);
 
+/* facing.c: *out: the group of the faces of "all" that face an obstacle at time
+ * 0, new. */
+status setup_facing(const mesh *m, const obstacle *o, const mesh_group *all,
+                    const mesh_group **out);
+
 /* flow.c: the start of the points whose law flows, after strains_new: what the
  * deck does not give of inelastic strains and the units that make them.
  * ERR_DECK with an error in the log: they do not agree; a temperature of a

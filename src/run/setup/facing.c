@@ -1,0 +1,61 @@
+/*
+ * The faces of a contact that face its obstacle.
+ *
+ * Where faces of a group meet at an edge of the body, those count that lean
+ * about as little from the obstacle as the one that leans least: the foot of a
+ * block and not its sides, but both sides of a wedge on its tip. Else the sides
+ * would have their part in areas and normals of the edge.
+ */
+#include "base/memory.h"
+#include "run/setup/setup.h"
+
+static double lean_of(const mesh *m, const obstacle *o, int face_id, int k) {
+  const int node_id = m->face[m->dim * face_id + k];
+  double normal[3];
+  mesh_face_normal(m, face_id, normal);
+  return obstacle_lean(o, m->dim, &m->x[m->dim * node_id], normal);
+}
+
+/* least[n_node]: the least angle of its faces, rad. */
+static void find_least(const mesh *m, const obstacle *o, const mesh_group *g,
+                       double *least) {
+  for (int i = 0; i < m->n_node; ++i) least[i] = HUGE_VAL;
+  for (int i = 0; i < g->n_item; ++i)
+    for (int k = 0; k < m->dim; ++k) {
+      double *of = &least[m->face[m->dim * g->item_id[i] + k]];
+      *of = fmin(*of, lean_of(m, o, g->item_id[i], k));
+    }
+}
+
+static int counts(const mesh *m, const obstacle *o, int face_id,
+                  const double *least) {
+  static const double sharp = 0.7; /* rad */
+  for (int k = 0; k < m->dim; ++k)
+    if (lean_of(m, o, face_id, k) >
+        least[m->face[m->dim * face_id + k]] + sharp)
+      return 0;
+  return 1;
+}
+
+status setup_facing(const mesh *m, const obstacle *o, const mesh_group *all,
+                    const mesh_group **out) {
+  OWNED double *least = NULL;
+  mesh_group *g = NULL;
+  *out = all;
+  if (all->dim != m->dim - 1) return OK;
+  PASS_NEW(least, m->n_node);
+  find_least(m, o, all, least);
+  PASS_NEW(g, 1);
+  *g = (mesh_group){.name = all->name, .dim = all->dim, .tag = all->tag};
+  PASS_NEW_ALL(OF(g->item_id, all->n_item), OF(g->node_id, all->n_node));
+  *out = g;
+  for (int i = 0; i < all->n_item; ++i)
+    if (counts(m, o, all->item_id[i], least))
+      g->item_id[g->n_item++] = all->item_id[i];
+  for (int i = 0; i < g->n_item; ++i)
+    for (int k = 0; k < m->dim; ++k)
+      least[m->face[m->dim * g->item_id[i] + k]] = -1.0;
+  for (int i = 0; i < all->n_node; ++i)
+    if (least[all->node_id[i]] < 0.0) g->node_id[g->n_node++] = all->node_id[i];
+  return OK;
+}
