@@ -42,6 +42,7 @@ typedef struct tally {
   int fixed_node, corner_node; /* the first of them */
   /* first node and pair */
   int n_dependent, dependent_node, dependent_on;
+  int n_doubled; /* as near to another obstacle by the same faces */
   int deep_node;
   double depth;    /* deepest penetration, m */
   int turned_node; /* where the normals of body and obstacle differ most */
@@ -377,19 +378,6 @@ static int take_obstacle_normal(const builder *b, candidate *c) {
          PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
 
-/* 1: the contact leans where it meets a plane of symmetry: the obstacle, if it
- * has a normal of its own, else the body, if it does not bend. */
-static int leans(const builder *b, const candidate *c) {
-  static const double told = 1e-6; /* -, of its length: an angle of 1.4e-3 */
-  const contact_pair *p = &b->in->pairs[c->pair_id];
-  const unsigned fixed = b->in->fixed[c->node_id];
-  double n[3];
-  if (p->support == NULL ||
-      !obstacle_normal(p->support, b->dim, row_of(b, c).x, n))
-    return !mirrors_bend(b->in->mesh, p->group, c->node_id, fixed, c->normal);
-  return 1.0 - frame_project(b->dim, fixed, n) > told;
-}
-
 /* Unit normal and its part orthogonal to the fixed components, or left out. */
 static void orient(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
@@ -412,8 +400,9 @@ static void orient(builder *b, candidate *c) {
   double held = 0.0;
   for (int k = 0; k < b->dim; ++k)
     if (fixed >> k & 1) held = fmax(held, fabs(c->normal[k]));
-  c->leans = held > rounding &&
-             !(mirrors_have(&b->mirrors, b->in, c->node_id) && !leans(b, c));
+  c->leans =
+      held > rounding && !(mirrors_have(&b->mirrors, b->in, c->node_id) &&
+                           !mirrors_lean(b->in, p, c->node_id, c->normal));
   if (!c->leans) COPY(c->normal, c->across, 3);
   if (left > PAIR_FIXED_SINE) return;
   c->left_out = 1;
@@ -494,6 +483,30 @@ static void stand_upright(candidate *c) {
   c->leans = 0;
 }
 
+/* 1: along one normal two obstacles at rest bound a node as one, the nearer,
+ * which takes the place of both. Faces that both have count once. */
+static int take_nearer(builder *b, const candidate **other,
+                       const candidate *c) {
+  candidate *x = &b->list[*other - b->list], *y = &b->list[c - b->list];
+  const contact_pair *p = &b->in->pairs[x->pair_id],
+                     *q = &b->in->pairs[y->pair_id];
+  const int faces_apart = p->group->tag != q->group->tag;
+  const double area = x->area + y->area;
+  if (p->support == NULL || q->support == NULL || moves(p) || moves(q) ||
+      !frame_is_same(b->dim, x->across, y->across))
+    return 0;
+  if (!faces_apart && fabs(x->gap - y->gap) <= rounding * b->in->mesh->size) {
+    tally *t = &b->tallies[y->pair_id];
+    if (t->n_doubled++ + t->n_dependent == 0)
+      t->dependent_node = y->node_id, t->dependent_on = x->pair_id;
+    --t->n_kept;
+  } else if (y->gap < x->gap) {
+    *other = y;
+  }
+  if (faces_apart) x->area = y->area = area;
+  return 1;
+}
+
 /* Move the candidates of one node that stay to kept[]; their number. */
 static int gather(builder *b, int first, int end, const candidate **kept) {
   int n = 0;
@@ -511,6 +524,10 @@ static int gather(builder *b, int first, int end, const candidate **kept) {
     if (c->left_out) continue;
     compare_normals(b, c);
     ++b->tallies[c->pair_id].n_kept;
+    int one = 0;
+    for (int k = 0; k < n && k < b->dim && !one; ++k)
+      one = take_nearer(b, &kept[k], c);
+    if (one) continue;
     if (n < b->dim) kept[n] = c;
     ++n;
   }
@@ -647,15 +664,15 @@ static void say(const builder *b, int pair_id) {
                 "friction, the first is %s",
                 p->card, p->name, t->n_corner,
                 describe(m, t->corner_node).text);
-  if (t->n_dependent > 0)
+  const int n_bad = t->n_dependent + (t->n_kept == 0 ? t->n_doubled : 0);
+  if (n_bad > 0)
     message_add(b->log, P4006, &p->at,
                 "%s %s: its normal depends on that of %s %s at %d "
                 "node%s, the first is %s",
                 p->card, p->name, b->in->pairs[t->dependent_on].card,
-                b->in->pairs[t->dependent_on].name, t->n_dependent,
-                t->n_dependent == 1 ? "" : "s",
-                describe(m, t->dependent_node).text);
-  if (t->n_kept == 0)
+                b->in->pairs[t->dependent_on].name, n_bad,
+                n_bad == 1 ? "" : "s", describe(m, t->dependent_node).text);
+  else if (t->n_kept == 0)
     message_add(b->log, P4010, &p->at,
                 "%s %s: no node of group %s can touch %s", p->card, p->name,
                 p->group->name, partner(p).text);
