@@ -6,7 +6,7 @@
  * block and not its sides, but both sides of a wedge on its tip. Else the sides
  * would have their part in areas and normals of the edge.
  */
-#include "base/memory.h"
+#include "base/base.h"
 #include "run/setup/setup.h"
 
 static double lean_of(const mesh *m, const obstacle *o, int face_id, int k) {
@@ -37,18 +37,54 @@ static int counts(const mesh *m, const obstacle *o, int face_id,
   return 1;
 }
 
-status setup_facing(const mesh *m, const obstacle *o, const mesh_group *all,
-                    const mesh_group **out) {
+/* Shapes without a normal have that of the body, which is one at an edge. */
+static status warn_edges(const mesh *m, const contact_pair *p,
+                         message_log *log) {
+  static const double sharp = 0.5; /* rad, from the mean of both sides */
+  const mesh_group *g = p->group;
+  OWNED double *mean = NULL;
+  double normal[3], most = 0.0;
+  int node_id = -1;
+  PASS_NEW(mean, m->dim * m->n_node);
+  for (int i = 0; i < g->n_item; ++i) {
+    const double measure = mesh_face_normal(m, g->item_id[i], normal);
+    for (int k = 0; k < m->dim; ++k)
+      for (int c = 0; c < m->dim; ++c)
+        mean[m->dim * m->face[m->dim * g->item_id[i] + k] + c] +=
+            measure * normal[c];
+  }
+  for (int i = 0; i < g->n_item; ++i)
+    for (int k = 0; k < m->dim; ++k) {
+      const int id = m->face[m->dim * g->item_id[i] + k];
+      const double *v = &mean[m->dim * id];
+      mesh_face_normal(m, g->item_id[i], normal);
+      const double lean = acos(
+          fmax(-1, fmin(1, dot(m->dim, v, normal) / sqrt(dot(m->dim, v, v)))));
+      if (lean > most) most = lean, node_id = id;
+    }
+  if (most > sharp)
+    message_add(log, P4037, &p->at,
+                "%s %s: faces of group %s lean by %.2g rad from their mean, "
+                "along which contact is, at node %zu: a *CONTACT for each side "
+                "of the edge has both normals",
+                p->card, p->name, g->name, most, m->node_no[node_id]);
+  return OK;
+}
+
+status setup_facing(const mesh *m, contact_pair *p, message_log *log) {
+  const mesh_group *all = p->group;
+  const obstacle *o = p->support;
   OWNED double *least = NULL;
   mesh_group *g = NULL;
-  *out = all;
   if (all->dim != m->dim - 1) return OK;
+  if (o->shape == OBSTACLE_GAP || o->shape == OBSTACLE_CONFORMING)
+    return warn_edges(m, p, log);
   PASS_NEW(least, m->n_node);
   find_least(m, o, all, least);
   PASS_NEW(g, 1);
   *g = (mesh_group){.name = all->name, .dim = all->dim, .tag = all->tag};
   PASS_NEW_ALL(OF(g->item_id, all->n_item), OF(g->node_id, all->n_node));
-  *out = g;
+  p->group = g;
   for (int i = 0; i < all->n_item; ++i)
     if (counts(m, o, all->item_id[i], least))
       g->item_id[g->n_item++] = all->item_id[i];

@@ -64,7 +64,7 @@ static status set_partner(const run *r, const contact *c, contact_pair *p) {
   if (!c->is_pair) {
     p->support = &r->m->obstacles[c->obstacle_id];
     p->obstacle_normal = c->obstacle_normal;
-    return setup_facing(r->msh, p->support, p->group, &p->group);
+    return setup_facing(r->msh, p, r->m->log);
   }
   p->master = &r->msh->group[c->pair.master_id];
   p->how = (c->slave_normal ? COUPLE_SLAVE_NORMAL : 0) |
@@ -90,8 +90,8 @@ static status new_pairs(run *r) {
       const friction_ops *law = friction_in_force(m, k, i)->law;
       r->faces.pairs[i].friction |= law != NULL && law->value_name != NULL;
     }
-    PASS(set_partner(r, c, &r->faces.pairs[i]));
     r->faces.pairs[i].at = c->at;
+    PASS(set_partner(r, c, &r->faces.pairs[i]));
   }
   r->faces.input.n_pair = m->n.contact;
   r->faces.input.pairs = r->faces.pairs;

@@ -8,10 +8,10 @@
  * ERR_MEMORY. */
 status setup_adjust(model *m, mesh *msh);
 
-/* facing.c: *out: the group of the faces of "all" that face an obstacle at time
- * 0, new. */
-status setup_facing(const mesh *m, const obstacle *o, const mesh_group *all,
-                    const mesh_group **out);
+/* facing.c: p->group, of the contact p with an obstacle, becomes a new group of
+ * its faces that face the obstacle at time 0; a warning where contact acts
+ * along the mean of faces that meet at an edge. */
+status setup_facing(const mesh *m, contact_pair *p, message_log *log);
 
 /* flow.c: the start of the points whose law flows, after strains_new: what the
  * deck does not give of inelastic strains and the units that make them.
