@@ -121,5 +121,7 @@ typedef struct surface_row {
   double apart;             /* gap of a pair at time 0, m */
 } surface_row;
 
-/* Gap of the row of a pair, m. */
-double pair_gap(const surface_row *at, double t);
+/* Gap of a row, to its obstacle or to the master of its pair, m. */
+double pair_row_gap(const surface_row *at, double t);
+/* 1: the gap to the obstacle of a contact can change with time. */
+int pair_moves(const contact_pair *p);

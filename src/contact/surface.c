@@ -80,17 +80,6 @@ static node_text describe(const mesh *m, int node_id) {
   return d;
 }
 
-/* Gap of a row, to its obstacle or to the master of its pair, m. */
-static double gap_of(const surface_row *at, double t) {
-  if (at->of->support == NULL) return pair_gap(at, t);
-  return obstacle_gap(at->of->support, at->dim, at->x, at->normal, t);
-}
-
-/* 1: its gap can change with time. */
-static int moves(const contact_pair *p) {
-  return p->support != NULL && obstacle_moves(p->support);
-}
-
 /* What a contact is with. */
 static node_text partner(const contact_pair *p) {
   node_text d;
@@ -458,14 +447,14 @@ static void measure(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
   const surface_row at = row_of(b, c);
-  c->gap = p->coupled != NULL ? mean_apart(b, c) : gap_of(&at, 0);
+  c->gap = p->coupled != NULL ? mean_apart(b, c) : pair_row_gap(&at, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
     message_add(b->log, P4007, &p->at, "%s %s: gap is %s at %s, time 0",
                 p->card, p->name, isnan(c->gap) ? "not a number" : "-inf",
                 describe(m, c->node_id).text);
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
-    if (moves(p)) {
+    if (pair_moves(p)) {
       c->gap = m->size;
     } else {
       c->left_out = 1;
@@ -483,8 +472,27 @@ static void stand_upright(candidate *c) {
   c->leans = 0;
 }
 
+/* 1: the body has its back to a cylinder or sphere. */
+static int is_behind(const builder *b, const candidate *c) {
+  const surface_row at = row_of(b, c);
+  return at.of->support != NULL &&
+         obstacle_lean(at.of->support, b->dim, at.x, c->normal) > acos(0.0);
+}
+
+/* 1: of two contacts along one normal the one behind the body is left out. */
+static int leave_behind(builder *b, const candidate **other,
+                        const candidate *c) {
+  const int behind = is_behind(b, c);
+  tally *t = &b->tallies[(behind ? c : *other)->pair_id];
+  if (!behind && !is_behind(b, *other)) return 0;
+  --t->n_kept, ++t->n_unreached;
+  if (!behind) *other = c;
+  return 1;
+}
+
 /* 1: along one normal two obstacles at rest bound a node as one, the nearer,
- * which takes the place of both. Faces that both have count once. */
+ * which takes the place of both; of two of which one is behind the body the
+ * other does. Faces that both have count once. */
 static int take_nearer(builder *b, const candidate **other,
                        const candidate *c) {
   candidate *x = &b->list[*other - b->list], *y = &b->list[c - b->list];
@@ -492,8 +500,10 @@ static int take_nearer(builder *b, const candidate **other,
                      *q = &b->in->pairs[y->pair_id];
   const int faces_apart = p->group->tag != q->group->tag;
   const double area = x->area + y->area;
-  if (p->support == NULL || q->support == NULL || moves(p) || moves(q) ||
-      !frame_is_same(b->dim, x->across, y->across))
+  if (!frame_is_same(b->dim, x->across, y->across)) return 0;
+  if (leave_behind(b, other, c)) return 1;
+  if (p->support == NULL || q->support == NULL || pair_moves(p) ||
+      pair_moves(q))
     return 0;
   if (!faces_apart && fabs(x->gap - y->gap) <= rounding * b->in->mesh->size) {
     tally *t = &b->tallies[y->pair_id];
@@ -738,59 +748,4 @@ int surface_has_held(const contact_surface *s) {
 
 int surface_is_corner(const contact_surface *s, int i) {
   return s->side_id[i * (s->dim - 1)] >= 0;
-}
-
-/* Gap of contact node i along row k of its frame; reach where the obstacle is
- * not met. */
-static status row_gap(const contact_surface *s, const contact_pair *p, int i,
-                      int k, double t, double reach, double *gap) {
-  int dim = s->dim;
-  const surface_row at = {p, dim, &s->x[dim * i],
-                          &s->frame[dim * dim * i + dim * k],
-                          s->apart == NULL ? 0.0 : s->apart[dim * i + k]};
-  *gap = gap_of(&at, t);
-  if (isnan(*gap) || *gap == -HUGE_VAL)
-    RAISE(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
-          p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
-          s->node_no[i], t);
-  if (*gap == HUGE_VAL) *gap = reach;
-  return OK;
-}
-
-status surface_gap(const contact_surface *s, const surface_input *in, double t,
-                   double *gap, double *side_gap) {
-  const contact_pair *pairs = in->pairs;
-  for (int i = 0; i < s->n; ++i) {
-    PASS(
-        row_gap(s, &pairs[s->contact_id[i]], i, 0, t, in->mesh->size, &gap[i]));
-    for (int k = 1; k < s->dim && side_gap != NULL; ++k) {
-      int at = i * (s->dim - 1) + k - 1, side = s->side_id[at];
-      side_gap[at] = HUGE_VAL;
-      if (side < 0) continue;
-      PASS(row_gap(s, &pairs[side], i, k, t, HUGE_VAL, &side_gap[at]));
-    }
-  }
-  return OK;
-}
-
-/* Row k of the frame of node i meets the obstacle of its own contact. */
-static void row_drift(const contact_surface *s, const contact_pair *pairs,
-                      int i, int k, const double times[2], double *motion) {
-  int dim = s->dim;
-  int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
-  const contact_pair *p = &pairs[side >= 0 ? side : s->contact_id[i]];
-  const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
-  double drift[3];
-  if (!moves(p)) return;
-  obstacle_drift(p->support, dim, &s->x[dim * i], side >= 0 ? row : frame,
-                 times[0], times[1], drift);
-  *motion += dot(dim, row, drift);
-}
-
-void surface_drift(const contact_surface *s, const surface_input *in, double t0,
-                   double t, double *motion) {
-  const double times[2] = {t0, t};
-  for (int i = 0; i < s->n; ++i)
-    for (int k = 0; k < s->dim; ++k)
-      row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
 }

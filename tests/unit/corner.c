@@ -156,6 +156,36 @@ START_TEST(tip_that_is_held_across_a_groove_stands_in_it) {
 }
 END_TEST
 
+/* A slab between two rollers that come nearer, its whole surface in contact
+ * with both: each side is with the roller that it faces. */
+START_TEST(of_two_obstacles_that_behind_the_body_is_none) {
+  face_scene c;
+  faces_begin(&c, 2);
+  for (int i = 0; i < 4; ++i) faces_node(&c, i == 1 || i == 2, i / 2, 0);
+  faces_face(&c, 0, 1, 0);
+  faces_face(&c, 2, 3, 0);
+  faces_contact(&c, "FOOT", 0, 2);
+  faces_contact(&c, "HEAD", 0, 2);
+  for (int k = 0; k < 2; ++k) {
+    c.support[k] = (obstacle){.name = k ? "ABOVE" : "BELOW",
+                              .shape = OBSTACLE_CYLINDER,
+                              .radius = 2.9,
+                              .point = {0.5, k ? 4 : -3, 0}};
+    formula_compile(&c.support[k].motion[1], k ? "-t" : "t");
+  }
+  ck_assert_int_eq(faces_build(&c), OK);
+  ck_assert_int_eq(c.s->n, 4);
+  for (int i = 0; i < 4; ++i) {
+    ck_assert_int_eq(c.s->contact_id[i], i / 2);
+    ck_assert_int_eq(c.s->side_id[i], -1);
+    ck_assert_double_eq_tol(c.s->gap0[i], 3 - sqrt(2.9 * 2.9 - 0.25), 1e-14);
+  }
+  ck_assert_int_eq(faces_said(&c, "2 nodes cannot reach"), 2);
+  for (int k = 0; k < 2; ++k) formula_release(&c.support[k].motion[1]);
+  faces_end(&c);
+}
+END_TEST
+
 /* Not a second contact that adds nothing. */
 START_TEST(faces_twice_at_one_place_are_an_error) {
   face_scene c;
@@ -226,6 +256,7 @@ UNIT_MAIN("corner", corner_on_two_obstacles_has_both_normals,
           obstacles_side_by_side_share_a_node,
           of_two_obstacles_at_rest_the_nearer_counts,
           tip_that_is_held_across_a_groove_stands_in_it,
+          of_two_obstacles_that_behind_the_body_is_none,
           faces_twice_at_one_place_are_an_error,
           cube_corner_stands_on_three_obstacles,
           corner_moves_with_both_obstacles)
