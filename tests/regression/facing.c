@@ -43,20 +43,22 @@ static void write_block(const job *j, int dim, double slant) {
   memory_free(m);
 }
 
+/* slant < 0: of revolution, and upright. */
 static job run_block(int dim, double slant, const char *group,
                      const char *shape, const char *law) {
   job j = job_begin("facing");
-  write_block(&j, dim, slant);
+  write_block(&j, dim, fmax(slant, 0));
   job_write(&j, "facing.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*OBSTACLE, NAME=O, %s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n*OBSTACLE, NAME=O, %s\n"
             "*CONTACT, NAME=C, GROUP=%s, OBSTACLE=O\n"
             "*GOAL, NAME=FORCE, QUANTITY=FORCE, CONTACT=C\n"
             "*FRICTION, CONTACT=C, LAW=%s\n"
-            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, %d\n"
-            "TOP, 1, 1, 0.002\n*SOLVER, TOL=1E-13\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%sTOP, 2, %d\n"
+            "*SOLVER, TOL=1E-13\n"
             "*PRINT, TOTALS, GOALS, ENERGY\n*END STEP\n",
-            shape, group, law, dim);
+            slant < 0 ? ", TYPE=CAX3" : "", shape, group, law,
+            slant < 0 ? "LEFT, 1\n" : "TOP, 1, 1, 0.002\n", dim);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "%s: exit %d: %s", group, code, j.errors);
   return j;
@@ -95,6 +97,14 @@ static const char round_one[4][120] = {
     "TYPE=SPHERE, RADIUS=1000\n0.3, -1000., 0.2\nMOVE, 0., 0.01, 0."};
 
 /* Upright and, of a trapezoid, by 10 degrees off. */
+/* The whole surface has the axis, where there is no face. */
+START_TEST(sides_of_a_body_of_revolution_neither) {
+  compare_groups(2, -1, plane[0], "COULOMB\n0.3\n");
+  compare_groups(2, -1, "TYPE=SPHERE, RADIUS=1000\n0., -1000.\nMOVE, 0., 0.01",
+                 "COULOMB\n0.3\n");
+}
+END_TEST
+
 START_TEST(sides_of_a_block_have_no_part_in_its_foot) {
   for (int dim = 2; dim <= 3; ++dim) {
     compare_groups(dim, 0.18, plane[dim - 2], "COULOMB\n0.3\n");
@@ -105,4 +115,5 @@ START_TEST(sides_of_a_block_have_no_part_in_its_foot) {
 }
 END_TEST
 
-UNIT_MAIN("facing", sides_of_a_block_have_no_part_in_its_foot)
+UNIT_MAIN("facing", sides_of_a_body_of_revolution_neither,
+          sides_of_a_block_have_no_part_in_its_foot)

@@ -16,6 +16,12 @@ static double lean_of(const mesh *m, const obstacle *o, int face_id, int k) {
   return obstacle_lean(o, m->dim, &m->x[m->dim * node_id], normal);
 }
 
+/* 1: on the axis of symmetry, where there is no surface. */
+static int is_axis(const mesh *m, int axisymmetric, int face_id) {
+  const int *node = &m->face[m->dim * face_id];
+  return axisymmetric && m->x[2 * node[0]] == 0.0 && m->x[2 * node[1]] == 0.0;
+}
+
 /* least[n_node]: the least angle of its faces, rad. */
 static void find_least(const mesh *m, const obstacle *o, const mesh_group *g,
                        double *least) {
@@ -71,27 +77,29 @@ static status warn_edges(const mesh *m, const contact_pair *p,
   return OK;
 }
 
-status setup_facing(const mesh *m, contact_pair *p, message_log *log) {
+status setup_facing(const run *r, contact_pair *p) {
+  const mesh *m = r->msh;
   const mesh_group *all = p->group;
-  const obstacle *o = p->support;
   OWNED double *least = NULL;
   mesh_group *g = NULL;
   if (all->dim != m->dim - 1) return OK;
-  if (o->shape == OBSTACLE_GAP || o->shape == OBSTACLE_CONFORMING)
-    return warn_edges(m, p, log);
   PASS_NEW(least, m->n_node);
-  find_least(m, o, all, least);
+  find_least(m, p->support, all, least);
   PASS_NEW(g, 1);
   *g = (mesh_group){.name = all->name, .dim = all->dim, .tag = all->tag};
   PASS_NEW_ALL(OF(g->item_id, all->n_item), OF(g->node_id, all->n_node));
   p->group = g;
   for (int i = 0; i < all->n_item; ++i)
-    if (counts(m, o, all->item_id[i], least))
+    if (counts(m, p->support, all->item_id[i], least) &&
+        !is_axis(m, r->faces.input.axisymmetric, all->item_id[i]))
       g->item_id[g->n_item++] = all->item_id[i];
   for (int i = 0; i < g->n_item; ++i)
     for (int k = 0; k < m->dim; ++k)
       least[m->face[m->dim * g->item_id[i] + k]] = -1.0;
   for (int i = 0; i < all->n_node; ++i)
     if (least[all->node_id[i]] < 0.0) g->node_id[g->n_node++] = all->node_id[i];
-  return OK;
+  if (p->support->shape != OBSTACLE_GAP &&
+      p->support->shape != OBSTACLE_CONFORMING)
+    return OK;
+  return warn_edges(m, p, r->m->log);
 }

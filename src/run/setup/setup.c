@@ -64,7 +64,7 @@ static status set_partner(const run *r, const contact *c, contact_pair *p) {
   if (!c->is_pair) {
     p->support = &r->m->obstacles[c->obstacle_id];
     p->obstacle_normal = c->obstacle_normal;
-    return setup_facing(r->msh, p, r->m->log);
+    return setup_facing(r, p);
   }
   p->master = &r->msh->group[c->pair.master_id];
   p->how = (c->slave_normal ? COUPLE_SLAVE_NORMAL : 0) |
