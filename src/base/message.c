@@ -175,7 +175,7 @@ void message_add(message_log *log, message_id id, const place *at,
   va_start(args, format);
   make_text(entry, at, format, args, text);
   va_end(args);
-  if (m.level == WARNING && is_there(log, &m, at, text)) return;
+  if (m.level < ERROR && is_there(log, &m, at, text)) return;
   ++log->count[m.level];
   OWNS(log);
   m.text = memory_text(text);

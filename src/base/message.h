@@ -35,10 +35,10 @@ typedef struct message_log message_log;
 typedef enum { MESSAGE_LIST(MESSAGE_ENUM) P_END } message_id;
 
 status message_log_new(message_log **log);
-/* Add one; the texts are copied. "at" may be NULL (no place). A warning that is
- * there already, with its place and text, is not added again. After 100 of a
- * severity the rest is only counted. Never fails: without memory the message is
- * counted, and message_status returns ERR_MEMORY. */
+/* Add one; the texts are copied. "at" may be NULL (no place). A note or warning
+ * that is there already, with its place and text, is not added again. After 100
+ * of a severity the rest is only counted. Never fails: without memory the
+ * message is counted, and message_status returns ERR_MEMORY. */
 void message_add(message_log *log, message_id id, const place *at,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
 /* Memory ran out while the input was read: message_status returns

@@ -85,6 +85,12 @@ int frame_is_smooth(int dim, const double *a, const double *b) {
   return cosine > smooth_cosine;
 }
 
+int frame_is_same(int dim, const double *a, const double *b) {
+  double square = 0.0;
+  for (int c = 0; c < dim; ++c) square += (a[c] - b[c]) * (a[c] - b[c]);
+  return square < dependent_sine * dependent_sine;
+}
+
 void frame_invert(int dim, int orthonormal, const double *frame,
                   double *basis) {
   if (orthonormal) {
@@ -177,6 +183,18 @@ int mirrors_bend(const mesh *m, const mesh_group *g, int node_id,
     if (has_node(m, g->item_id[k], node_id))
       most = fmax(most, most_around(m, g, g->item_id[k], fixed));
   return most >= bent * fixed_part(m->dim, fixed, n);
+}
+
+int mirrors_lean(const surface_input *in, const contact_pair *p, int node_id,
+                 const double *normal) {
+  static const double told = 1e-6; /* -, of its length: an angle of 1.4e-3 */
+  const mesh *m = in->mesh;
+  const unsigned fixed = in->fixed[node_id];
+  double n[3];
+  if (p->support == NULL ||
+      !obstacle_normal(p->support, m->dim, &m->x[m->dim * node_id], n))
+    return !mirrors_bend(m, p->group, node_id, fixed, normal);
+  return 1.0 - frame_project(m->dim, fixed, n) > told;
 }
 
 int mirrors_have(const mirrors *s, const surface_input *in, int node_id) {

@@ -139,6 +139,13 @@ int obstacle_normal(const obstacle *o, int dim, const double *x, double *n) {
   return 1;
 }
 
+double obstacle_lean(const obstacle *o, int dim, const double *x,
+                     const double *normal) {
+  double n[3];
+  if (!obstacle_normal(o, dim, x, n)) return 0;
+  return acos(fmax(-1, fmin(1, dot(dim, n, normal))));
+}
+
 int obstacle_moves(const obstacle *o) {
   unsigned variables = 0;
   for (int c = 0; c < 3; ++c) variables |= quantity_variables(&o->motion[c]);

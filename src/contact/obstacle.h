@@ -57,6 +57,10 @@ double obstacle_gap(const obstacle *o, int dim, const double *x,
  * (the outward normal of a body that touches it there); 0, and n as it was, for
  * the other shapes, which have no normal of their own, and at a centre. */
 int obstacle_normal(const obstacle *o, int dim, const double *x, double *n);
+/* Angle of a unit vector to that direction, rad; 0 for the other shapes, and at
+ * a centre. */
+double obstacle_lean(const obstacle *o, int dim, const double *x,
+                     const double *normal);
 /* Shift d[3] of the obstacle at time t, m. */
 void obstacle_motion(const obstacle *o, double t, double *d);
 /* Its angle at time t, rad; 0 without a rotation. */

@@ -391,7 +391,8 @@ double pair_apart(const surface_input *in, const contact_pair *p, int row,
 }
 
 /* With what CLEARANCE or INTERFERENCE adds. */
-double pair_gap(const surface_row *at, double t) {
+/* Gap of the row of a pair, m. */
+static double pair_gap(const surface_row *at, double t) {
   const contact_pair *p = at->of;
   double x[3] = {0.0, 0.0, 0.0};
   if (p->change == NULL) return at->apart;
@@ -569,4 +570,70 @@ status pairs_check_circles(const contact_surface *s, const surface_input *in,
       "cracks that meet one *CRACK",
       s->node_no[first], text + 2);
   return message_status(log, ERR_DECK);
+}
+
+/* ---- gaps and motions over time ---------------------------------------- */
+
+double pair_row_gap(const surface_row *at, double t) {
+  if (at->of->support == NULL) return pair_gap(at, t);
+  return obstacle_gap(at->of->support, at->dim, at->x, at->normal, t);
+}
+
+int pair_moves(const contact_pair *p) {
+  return p->support != NULL && obstacle_moves(p->support);
+}
+
+/* Gap of contact node i along row k of its frame; reach where the obstacle is
+ * not met. */
+static status row_gap(const contact_surface *s, const contact_pair *p, int i,
+                      int k, double t, double reach, double *gap) {
+  int dim = s->dim;
+  const surface_row at = {p, dim, &s->x[dim * i],
+                          &s->frame[dim * dim * i + dim * k],
+                          s->apart == NULL ? 0.0 : s->apart[dim * i + k]};
+  *gap = pair_row_gap(&at, t);
+  if (isnan(*gap) || *gap == -HUGE_VAL)
+    RAISE(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
+          p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
+          s->node_no[i], t);
+  if (*gap == HUGE_VAL) *gap = reach;
+  return OK;
+}
+
+status surface_gap(const contact_surface *s, const surface_input *in, double t,
+                   double *gap, double *side_gap) {
+  const contact_pair *pairs = in->pairs;
+  for (int i = 0; i < s->n; ++i) {
+    PASS(
+        row_gap(s, &pairs[s->contact_id[i]], i, 0, t, in->mesh->size, &gap[i]));
+    for (int k = 1; k < s->dim && side_gap != NULL; ++k) {
+      int at = i * (s->dim - 1) + k - 1, side = s->side_id[at];
+      side_gap[at] = HUGE_VAL;
+      if (side < 0) continue;
+      PASS(row_gap(s, &pairs[side], i, k, t, HUGE_VAL, &side_gap[at]));
+    }
+  }
+  return OK;
+}
+
+/* Row k of the frame of node i meets the obstacle of its own contact. */
+static void row_drift(const contact_surface *s, const contact_pair *pairs,
+                      int i, int k, const double times[2], double *motion) {
+  int dim = s->dim;
+  int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
+  const contact_pair *p = &pairs[side >= 0 ? side : s->contact_id[i]];
+  const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
+  double drift[3];
+  if (!pair_moves(p)) return;
+  obstacle_drift(p->support, dim, &s->x[dim * i], side >= 0 ? row : frame,
+                 times[0], times[1], drift);
+  *motion += dot(dim, row, drift);
+}
+
+void surface_drift(const contact_surface *s, const surface_input *in, double t0,
+                   double t, double *motion) {
+  const double times[2] = {t0, t};
+  for (int i = 0; i < s->n; ++i)
+    for (int k = 0; k < s->dim; ++k)
+      row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
 }

@@ -44,6 +44,8 @@ int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
 
 /* 1: two normals, not of unit length, less than 45 degrees apart. */
 int frame_is_smooth(int dim, const double *a, const double *b);
+/* 1: two unit normals that depend on each other and point to one side. */
+int frame_is_same(int dim, const double *a, const double *b);
 
 /* basis[dim*dim], column major: inverse of frame (rows). An orthonormal frame
  * is its own inverse, transposed: no arithmetic then. */
@@ -63,6 +65,10 @@ int mirrors_have(const mirrors *s, const surface_input *in, int node_id);
  * the faces next to those of the node lean more. */
 int mirrors_bend(const mesh *m, const mesh_group *g, int node_id,
                  unsigned fixed, const double *n);
+/* 1: the contact leans where it meets such a plane: the obstacle, if it has a
+ * normal of its own, else the body, if it does not bend. */
+int mirrors_lean(const surface_input *in, const contact_pair *p, int node_id,
+                 const double *normal);
 
 /*
  * Pairs of two surfaces of the mesh in a contact surface: what their nodes are
@@ -115,5 +121,7 @@ typedef struct surface_row {
   double apart;             /* gap of a pair at time 0, m */
 } surface_row;
 
-/* Gap of the row of a pair, m. */
-double pair_gap(const surface_row *at, double t);
+/* Gap of a row, to its obstacle or to the master of its pair, m. */
+double pair_row_gap(const surface_row *at, double t);
+/* 1: the gap to the obstacle of a contact can change with time. */
+int pair_moves(const contact_pair *p);

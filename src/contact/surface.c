@@ -42,6 +42,7 @@ typedef struct tally {
   int fixed_node, corner_node; /* the first of them */
   /* first node and pair */
   int n_dependent, dependent_node, dependent_on;
+  int n_doubled; /* as near to another obstacle by the same faces */
   int deep_node;
   double depth;    /* deepest penetration, m */
   int turned_node; /* where the normals of body and obstacle differ most */
@@ -77,17 +78,6 @@ static node_text describe(const mesh *m, int node_id) {
     snprintf(d.text, sizeof d.text, "node %zu at (%g, %g, %g)",
              m->node_no[node_id], x[0], x[1], x[2]);
   return d;
-}
-
-/* Gap of a row, to its obstacle or to the master of its pair, m. */
-static double gap_of(const surface_row *at, double t) {
-  if (at->of->support == NULL) return pair_gap(at, t);
-  return obstacle_gap(at->of->support, at->dim, at->x, at->normal, t);
-}
-
-/* 1: its gap can change with time. */
-static int moves(const contact_pair *p) {
-  return p->support != NULL && obstacle_moves(p->support);
 }
 
 /* What a contact is with. */
@@ -365,29 +355,16 @@ static const candidate *next_of(const builder *b, const candidate *c) {
   return c->also > 0 ? &b->list[c->also - 1] : NULL;
 }
 
-/* The normal of the obstacle instead of that of the body; 0 where the body
- * faces away from the obstacle. */
+/* The normal of the obstacle instead of that of the body; 0 where the body does
+ * not face the obstacle. */
 static int take_obstacle_normal(const builder *b, candidate *c) {
   const surface_row at = row_of(b, c);
   double body[3];
   memcpy(body, c->normal, sizeof body);
   if (at.of->support != NULL)
     obstacle_normal(at.of->support, b->dim, at.x, c->normal);
-  return dot(b->dim, body, c->normal) >=
-         -PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
-}
-
-/* 1: the contact leans where it meets a plane of symmetry: the obstacle, if it
- * has a normal of its own, else the body, if it does not bend. */
-static int leans(const builder *b, const candidate *c) {
-  static const double told = 1e-6; /* -, of its length: an angle of 1.4e-3 */
-  const contact_pair *p = &b->in->pairs[c->pair_id];
-  const unsigned fixed = b->in->fixed[c->node_id];
-  double n[3];
-  if (p->support == NULL ||
-      !obstacle_normal(p->support, b->dim, row_of(b, c).x, n))
-    return !mirrors_bend(b->in->mesh, p->group, c->node_id, fixed, c->normal);
-  return 1.0 - frame_project(b->dim, fixed, n) > told;
+  return dot(b->dim, body, c->normal) >
+         PAIR_FIXED_SINE * sqrt(dot(b->dim, body, body));
 }
 
 /* Unit normal and its part orthogonal to the fixed components, or left out. */
@@ -412,8 +389,9 @@ static void orient(builder *b, candidate *c) {
   double held = 0.0;
   for (int k = 0; k < b->dim; ++k)
     if (fixed >> k & 1) held = fmax(held, fabs(c->normal[k]));
-  c->leans = held > rounding &&
-             !(mirrors_have(&b->mirrors, b->in, c->node_id) && !leans(b, c));
+  c->leans =
+      held > rounding && !(mirrors_have(&b->mirrors, b->in, c->node_id) &&
+                           !mirrors_lean(b->in, p, c->node_id, c->normal));
   if (!c->leans) COPY(c->normal, c->across, 3);
   if (left > PAIR_FIXED_SINE) return;
   c->left_out = 1;
@@ -469,14 +447,14 @@ static void measure(builder *b, candidate *c) {
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
   const surface_row at = row_of(b, c);
-  c->gap = p->coupled != NULL ? mean_apart(b, c) : gap_of(&at, 0);
+  c->gap = p->coupled != NULL ? mean_apart(b, c) : pair_row_gap(&at, 0);
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
     message_add(b->log, P4007, &p->at, "%s %s: gap is %s at %s, time 0",
                 p->card, p->name, isnan(c->gap) ? "not a number" : "-inf",
                 describe(m, c->node_id).text);
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
-    if (moves(p)) {
+    if (pair_moves(p)) {
       c->gap = m->size;
     } else {
       c->left_out = 1;
@@ -492,6 +470,51 @@ static void measure(builder *b, candidate *c) {
 static void stand_upright(candidate *c) {
   COPY(c->normal, c->across, 3);
   c->leans = 0;
+}
+
+/* 1: the body has its back to a cylinder or sphere. */
+static int is_behind(const builder *b, const candidate *c) {
+  const surface_row at = row_of(b, c);
+  return at.of->support != NULL &&
+         obstacle_lean(at.of->support, b->dim, at.x, c->normal) > acos(0.0);
+}
+
+/* 1: of two contacts along one normal the one behind the body is left out. */
+static int leave_behind(builder *b, const candidate **other,
+                        const candidate *c) {
+  const int behind = is_behind(b, c);
+  tally *t = &b->tallies[(behind ? c : *other)->pair_id];
+  if (!behind && !is_behind(b, *other)) return 0;
+  --t->n_kept, ++t->n_unreached;
+  if (!behind) *other = c;
+  return 1;
+}
+
+/* 1: along one normal two obstacles at rest bound a node as one, the nearer,
+ * which takes the place of both; of two of which one is behind the body the
+ * other does. Faces that both have count once. */
+static int take_nearer(builder *b, const candidate **other,
+                       const candidate *c) {
+  candidate *x = &b->list[*other - b->list], *y = &b->list[c - b->list];
+  const contact_pair *p = &b->in->pairs[x->pair_id],
+                     *q = &b->in->pairs[y->pair_id];
+  const int faces_apart = p->group->tag != q->group->tag;
+  const double area = x->area + y->area;
+  if (!frame_is_same(b->dim, x->across, y->across)) return 0;
+  if (leave_behind(b, other, c)) return 1;
+  if (p->support == NULL || q->support == NULL || pair_moves(p) ||
+      pair_moves(q))
+    return 0;
+  if (!faces_apart && fabs(x->gap - y->gap) <= rounding * b->in->mesh->size) {
+    tally *t = &b->tallies[y->pair_id];
+    if (t->n_doubled++ + t->n_dependent == 0)
+      t->dependent_node = y->node_id, t->dependent_on = x->pair_id;
+    --t->n_kept;
+  } else if (y->gap < x->gap) {
+    *other = y;
+  }
+  if (faces_apart) x->area = y->area = area;
+  return 1;
 }
 
 /* Move the candidates of one node that stay to kept[]; their number. */
@@ -511,6 +534,10 @@ static int gather(builder *b, int first, int end, const candidate **kept) {
     if (c->left_out) continue;
     compare_normals(b, c);
     ++b->tallies[c->pair_id].n_kept;
+    int one = 0;
+    for (int k = 0; k < n && k < b->dim && !one; ++k)
+      one = take_nearer(b, &kept[k], c);
+    if (one) continue;
     if (n < b->dim) kept[n] = c;
     ++n;
   }
@@ -647,15 +674,15 @@ static void say(const builder *b, int pair_id) {
                 "friction, the first is %s",
                 p->card, p->name, t->n_corner,
                 describe(m, t->corner_node).text);
-  if (t->n_dependent > 0)
+  const int n_bad = t->n_dependent + (t->n_kept == 0 ? t->n_doubled : 0);
+  if (n_bad > 0)
     message_add(b->log, P4006, &p->at,
                 "%s %s: its normal depends on that of %s %s at %d "
                 "node%s, the first is %s",
                 p->card, p->name, b->in->pairs[t->dependent_on].card,
-                b->in->pairs[t->dependent_on].name, t->n_dependent,
-                t->n_dependent == 1 ? "" : "s",
-                describe(m, t->dependent_node).text);
-  if (t->n_kept == 0)
+                b->in->pairs[t->dependent_on].name, n_bad,
+                n_bad == 1 ? "" : "s", describe(m, t->dependent_node).text);
+  else if (t->n_kept == 0)
     message_add(b->log, P4010, &p->at,
                 "%s %s: no node of group %s can touch %s", p->card, p->name,
                 p->group->name, partner(p).text);
@@ -721,59 +748,4 @@ int surface_has_held(const contact_surface *s) {
 
 int surface_is_corner(const contact_surface *s, int i) {
   return s->side_id[i * (s->dim - 1)] >= 0;
-}
-
-/* Gap of contact node i along row k of its frame; reach where the obstacle is
- * not met. */
-static status row_gap(const contact_surface *s, const contact_pair *p, int i,
-                      int k, double t, double reach, double *gap) {
-  int dim = s->dim;
-  const surface_row at = {p, dim, &s->x[dim * i],
-                          &s->frame[dim * dim * i + dim * k],
-                          s->apart == NULL ? 0.0 : s->apart[dim * i + k]};
-  *gap = gap_of(&at, t);
-  if (isnan(*gap) || *gap == -HUGE_VAL)
-    RAISE(ERR_DECK, "%s:%d: *CONTACT %s: gap is %g at node %zu, time %g",
-          p->at.file != NULL ? p->at.file : "", p->at.line_no, p->name, *gap,
-          s->node_no[i], t);
-  if (*gap == HUGE_VAL) *gap = reach;
-  return OK;
-}
-
-status surface_gap(const contact_surface *s, const surface_input *in, double t,
-                   double *gap, double *side_gap) {
-  const contact_pair *pairs = in->pairs;
-  for (int i = 0; i < s->n; ++i) {
-    PASS(
-        row_gap(s, &pairs[s->contact_id[i]], i, 0, t, in->mesh->size, &gap[i]));
-    for (int k = 1; k < s->dim && side_gap != NULL; ++k) {
-      int at = i * (s->dim - 1) + k - 1, side = s->side_id[at];
-      side_gap[at] = HUGE_VAL;
-      if (side < 0) continue;
-      PASS(row_gap(s, &pairs[side], i, k, t, HUGE_VAL, &side_gap[at]));
-    }
-  }
-  return OK;
-}
-
-/* Row k of the frame of node i meets the obstacle of its own contact. */
-static void row_drift(const contact_surface *s, const contact_pair *pairs,
-                      int i, int k, const double times[2], double *motion) {
-  int dim = s->dim;
-  int side = k > 0 ? s->side_id[i * (dim - 1) + k - 1] : -1;
-  const contact_pair *p = &pairs[side >= 0 ? side : s->contact_id[i]];
-  const double *frame = &s->frame[dim * dim * i], *row = frame + dim * k;
-  double drift[3];
-  if (!moves(p)) return;
-  obstacle_drift(p->support, dim, &s->x[dim * i], side >= 0 ? row : frame,
-                 times[0], times[1], drift);
-  *motion += dot(dim, row, drift);
-}
-
-void surface_drift(const contact_surface *s, const surface_input *in, double t0,
-                   double t, double *motion) {
-  const double times[2] = {t0, t};
-  for (int i = 0; i < s->n; ++i)
-    for (int k = 0; k < s->dim; ++k)
-      row_drift(s, in->pairs, i, k, times, &motion[s->dim * i + k]);
 }

@@ -108,14 +108,14 @@ void pairs_release(const surface_input *in); /* frees the couplings */
 status surface_build(const surface_input *in, message_log *log,
                      contact_surface **out);
 /*
- * gap[n] at time t, m: the size of the mesh where the obstacle is out of
- * reach at that time.  side_gap[n*(dim-1)] (or NULL): HUGE_VAL without a second
- * obstacle.  ERR_DECK if a gap is not a number.
+ * pair.c: gap[n] at time t, m: the size of the mesh where the obstacle is out
+ * of reach at that time.  side_gap[n*(dim-1)] (or NULL): HUGE_VAL without a
+ * second obstacle.  ERR_DECK if a gap is not a number.
  */
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
                    double *gap, double *side_gap);
-/* Adds to motion[dim*n] the displacement of the obstacle at each node from time
- * t0 to t (obstacle_drift) in the contact frame, m. */
+/* pair.c: adds to motion[dim*n] the displacement of the obstacle at each node
+ * from time t0 to t (obstacle_drift) in the contact frame, m. */
 void surface_drift(const contact_surface *s, const surface_input *in, double t0,
                    double t, double *motion);
 /* pair.c: w[dim*n], the contact unknowns of the displacements u[dim*n_node]:

@@ -85,6 +85,27 @@ START_TEST(a_contact_that_never_touched_is_told) {
 }
 END_TEST
 
+/* A ball between the nodes, or none of which passes them. */
+START_TEST(a_ball_that_no_normal_meets_is_told) {
+  static const char *const ball[] = {"0.0625, -0.001\n", "9., -0.001\n"};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("block");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(
+        &j, "block.inp",
+        "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+        "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=0.001\n%sMOVE, 0., 5E-4\n"
+        "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=O\n*STEP\n"
+        "*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 2\n*END STEP\n",
+        ball[k]);
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    ck_told(&j, "P4021", "at its end no normal of a node meets it", 1);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Two sweeps solve nothing: the nodes that touch in an increment that does not
  * count are none that never touched. */
 START_TEST(a_touch_of_an_increment_that_does_not_count_is_one) {
@@ -233,6 +254,7 @@ int main(void) {
   tcase_add_test(tests, strains_above_five_percent_are_told);
   tcase_add_test(tests, elements_inside_out_are_told);
   tcase_add_test(tests, a_contact_that_never_touched_is_told);
+  tcase_add_test(tests, a_ball_that_no_normal_meets_is_told);
   tcase_add_test(tests, a_touch_of_an_increment_that_does_not_count_is_one);
   tcase_add_test(tests, what_goes_on_from_a_miss_says_so);
   tcase_add_test(tests, friction_along_a_held_direction_is_told);

@@ -70,12 +70,15 @@ END_TEST
 /* In the order in which the input is read: an include stands where its card
  * stands, whatever the order of the messages. */
 /* As after --restart, which keeps no place for one without a file. */
-START_TEST(a_warning_without_a_place_is_told_once) {
+START_TEST(a_warning_or_note_without_a_place_is_told_once) {
   message_log *log = new_log();
   const place nowhere = {0};
   message_add(log, P2058, NULL, "one");
   message_add(log, P2058, &nowhere, "one");
   ck_assert_int_eq(message_count(log, WARNING), 1);
+  message_add(log, P4003, &nowhere, "two");
+  message_add(log, P4003, NULL, "two");
+  ck_assert_int_eq(message_count(log, NOTE), 1);
   memory_free(log);
 }
 END_TEST
@@ -283,7 +286,7 @@ END_TEST
 UNIT_MAIN("message", a_message_shows_place_line_and_caret,
           the_caret_stands_below_tabs_and_letters_of_two_bytes,
           a_place_may_lack_column_line_or_file,
-          a_warning_without_a_place_is_told_once,
+          a_warning_or_note_without_a_place_is_told_once,
           messages_come_in_the_order_of_the_input, the_texts_are_copies,
           a_long_line_is_cut_around_the_column,
           control_characters_are_not_printed,

@@ -59,11 +59,21 @@ static status look(run *r, void *self) {
   return OK;
 }
 
-/* The least gap left of a contact, m; HUGE_VAL: it has no node. */
+/* 1: the line along the normal of contact node i meets its obstacle. */
+static int meets(const run *r, int i) {
+  const contact_surface *s = r->surface;
+  const obstacle *o = r->faces.pairs[s->contact_id[i]].support;
+  return o == NULL ||
+         obstacle_gap(o, s->dim, &s->x[s->dim * i],
+                      &s->frame[s->dim * s->dim * i], r->now.t) < HUGE_VAL;
+}
+
+/* The least gap left of a contact, m; HUGE_VAL: no node of it meets what it is
+ * with. */
 static double least_gap(const run *r, int contact_id) {
   double least = HUGE_VAL;
   for (int i = 0; i < r->nodes.n; ++i)
-    if (r->surface->contact_id[i] == contact_id)
+    if (r->surface->contact_id[i] == contact_id && meets(r, i))
       least = fmin(least, r->result.open_gap[i]);
   return least;
 }
@@ -74,11 +84,14 @@ static void end(run *r, void *self) {
   for (int i = 0; i < r->m->n.contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
     if (reported->touched[i] || c->force.given || c->is_crack) continue;
+    const double least = least_gap(r, i);
+    char gap[80] = "at its end no normal of a node meets it";
+    if (least < HUGE_VAL)
+      snprintf(gap, sizeof gap, "the least gap at its end is %.3g", least);
     message_add(r->m->log, P4021, &c->at,
-                "%s %s: no node touched %s %s in the run; the least gap at its "
-                "end is %.3g",
-                contact_card(c), c->name, c->is_pair ? "surface" : "obstacle",
-                c->obstacle_name, least_gap(r, i));
+                "%s %s: no node touched %s %s in the run; %s", contact_card(c),
+                c->name, c->is_pair ? "surface" : "obstacle", c->obstacle_name,
+                gap);
   }
 }
 

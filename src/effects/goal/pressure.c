@@ -174,7 +174,7 @@ static double face_rest(const run *r, const weight *w, const int *q,
 static status add_faces(const run *r, const goal_card *g, const weight *w,
                         double *sum) {
   const mesh *m = r->msh;
-  const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
   OWNED int *where = NULL;
   double normal[3];
   PASS(goal_places(r, &where));
@@ -240,7 +240,7 @@ static void line_free(line *l) { RELEASE(l->node, l->s); }
 /* next[2*n]: the contact nodes next to each node of the line, or -1. */
 static status find_next(const run *r, const goal_card *g, int *next) {
   const mesh *m = r->msh;
-  const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
   OWNED int *where = NULL;
   PASS(goal_places(r, &where));
   for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
@@ -310,7 +310,7 @@ static void zone_of(const run *r, const line *l, int *first, int *last) {
 static weight weight_at(const run *r, const goal_card *g, int q) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
-  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
   weight w = {.dim = dim,
               .axi = r->faces.input.axisymmetric,
               .plane = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
@@ -490,7 +490,7 @@ static int carries(const run *r, const int *where, int node) {
 /* The sides that have a node within a radius of the middle. */
 static status look_round(const run *r, const goal_card *g, double radius,
                          weight *w, rim *out) {
-  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
   const int n = 3 * of->n_item;
   OWNED side *e = NULL;
   OWNED int *where = NULL;
@@ -515,7 +515,7 @@ static status look_round(const run *r, const goal_card *g, double radius,
 /* behind[3]: part_behind of the planes of symmetry normal to each axis. */
 static status parts_behind(const run *r, const goal_card *g, double largest,
                            double *behind) {
-  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
   OWNED side *e = NULL;
   OWNED int *where = NULL;
   PASS(sides_of(r->msh, of, &e));
@@ -619,7 +619,7 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
 
 /* 1: forces per length are pressures times one thickness. */
 static int has_one_thickness(const run *r, const goal_card *g) {
-  const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
   const double *thickness = r->faces.face_weight;
   int same = 1;
   for (int k = 0; k < of->n_item; ++k)

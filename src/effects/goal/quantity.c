@@ -135,7 +135,7 @@ static status add_held(const run *r, const goal_card *g, goal_form *f) {
   const contact *on = &r->m->contacts[g->contact_id];
   OWNED int *where = NULL;
   if (on->is_pair) return OK;
-  const mesh_group *of = &m->group[on->group_id];
+  const mesh_group *of = r->faces.pairs[g->contact_id].group;
   PASS(goal_places(r, &where));
   for (int i = 0; i < of->n_item; ++i) {
     const int *v = m->face + m->dim * of->item_id[i];

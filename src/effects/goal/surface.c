@@ -79,7 +79,7 @@ static status gap_slopes_new(const run *r, const int *where, gap_slopes *out) {
   PASS_NEW_ALL(OF(out->of, 3 * r->nodes.n), OF(out->n_face, r->nodes.n),
                OF(weight, r->nodes.n));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k) {
-    const mesh_group *of = &m->group[r->m->contacts[k].group_id];
+    const mesh_group *of = r->faces.pairs[k].group;
     for (int i = 0; i < of->n_item && !r->m->contacts[k].is_pair; ++i) {
       int q[3], all = 1;
       double g[3];
@@ -307,14 +307,12 @@ status goal_surface_new(const run *r, const goal_border *border,
   ENDS_BY(gap_slopes_free) gap_slopes slopes = {0};
   PASS(gap_slopes_new(r, where, &slopes));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
-    if (!r->m->contacts[k].is_pair)
-      n += m->group[r->m->contacts[k].group_id].n_item;
+    if (!r->m->contacts[k].is_pair) n += r->faces.pairs[k].group->n_item;
   for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;
   PASS_NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair)
-      add_group(r, &rings, &slopes, &m->group[r->m->contacts[k].group_id],
-                where, s);
+      add_group(r, &rings, &slopes, r->faces.pairs[k].group, where, s);
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   if (s->n_edge > 0)

@@ -59,11 +59,12 @@ static status new_faces(run *r) {
 }
 
 /* What a contact is with: an obstacle, or another surface. */
-static void set_partner(const run *r, const contact *c, contact_pair *p) {
+static status set_partner(const run *r, const contact *c, contact_pair *p) {
+  OWNS(r->faces.pairs);
   if (!c->is_pair) {
     p->support = &r->m->obstacles[c->obstacle_id];
     p->obstacle_normal = c->obstacle_normal;
-    return;
+    return setup_facing(r, p);
   }
   p->master = &r->msh->group[c->pair.master_id];
   p->how = (c->slave_normal ? COUPLE_SLAVE_NORMAL : 0) |
@@ -71,6 +72,7 @@ static void set_partner(const run *r, const contact *c, contact_pair *p) {
   p->update = c->update;
   p->change = c->change.given ? &c->change.value : NULL;
   p->change_sign = c->change.interferes ? -1.0 : 1.0;
+  return OK;
 }
 
 static status new_pairs(run *r) {
@@ -88,8 +90,8 @@ static status new_pairs(run *r) {
       const friction_ops *law = friction_in_force(m, k, i)->law;
       r->faces.pairs[i].friction |= law != NULL && law->value_name != NULL;
     }
-    set_partner(r, c, &r->faces.pairs[i]);
     r->faces.pairs[i].at = c->at;
+    PASS(set_partner(r, c, &r->faces.pairs[i]));
   }
   r->faces.input.n_pair = m->n.contact;
   r->faces.input.pairs = r->faces.pairs;

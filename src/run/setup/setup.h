@@ -8,6 +8,12 @@
  * ERR_MEMORY. */
 status setup_adjust(model *m, mesh *msh);
 
+/* facing.c: p->group, of the contact p with an obstacle, becomes a new group of
+ * its faces that face the obstacle at time 0, without those on the axis of
+ * symmetry; a warning where contact acts along the mean of faces that meet at
+ * an edge. */
+status setup_facing(const run *r, contact_pair *p);
+
 /* flow.c: the start of the points whose law flows, after strains_new: what the
  * deck does not give of inelastic strains and the units that make them.
  * ERR_DECK with an error in the log: they do not agree; a temperature of a

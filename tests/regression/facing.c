@@ -1,0 +1,119 @@
+/*
+ * A contact group of more faces than those that face the obstacle: the whole
+ * surface of a block gives the answer of its foot.
+ */
+#include "base/base.h"
+#include "support/grid.h"
+#include "support/inner_group.h"
+#include "support/job.h"
+#include "support/msh_write.h"
+#include "support/unit.h"
+
+const int job_without_fields = 1;
+
+static int is_outer(const mesh *m, const int *node) {
+  for (int f = 0; f < m->n_face; ++f) {
+    int same = 0;
+    for (int k = 0; k < m->dim; ++k)
+      for (int l = 0; l < m->dim; ++l)
+        same += m->face[m->dim * f + k] == node[l];
+    if (same == m->dim && m->face_other[f] < 0) return 1;
+  }
+  return 0;
+}
+
+static int is_below(const mesh *m, const int *node) {
+  for (int k = 0; k < m->dim; ++k)
+    if (m->x[m->dim * node[k] + 1] > 1e-9) return 0;
+  return 1;
+}
+
+static void write_block(const job *j, int dim, double slant) {
+  const double length[3] = {2, 1, 1};
+  mesh *m = dim == 2 ? make_grid_2d((int[2]){8, 4}, length)
+                     : make_grid_3d((int[3]){5, 3, 3}, length);
+  char path[128];
+  ck_assert_ptr_nonnull(m);
+  for (int i = 0; i < m->n_node; ++i)
+    m->x[dim * i] += slant * (m->x[dim * i] - 1) * m->x[dim * i + 1];
+  add_side_group(m, "ALL", is_outer);
+  add_side_group(m, "FOOT", is_below);
+  snprintf(path, sizeof path, "%s/block.msh", j->dir);
+  msh_write(path, m);
+  memory_free(m);
+}
+
+/* slant < 0: of revolution, and upright. */
+static job run_block(int dim, double slant, const char *group,
+                     const char *shape, const char *law) {
+  job j = job_begin("facing");
+  write_block(&j, dim, fmax(slant, 0));
+  job_write(&j, "facing.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n*OBSTACLE, NAME=O, %s\n"
+            "*CONTACT, NAME=C, GROUP=%s, OBSTACLE=O\n"
+            "*GOAL, NAME=FORCE, QUANTITY=FORCE, CONTACT=C\n"
+            "*FRICTION, CONTACT=C, LAW=%s\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%sTOP, 2, %d\n"
+            "*SOLVER, TOL=1E-13\n"
+            "*PRINT, TOTALS, GOALS, ENERGY\n*END STEP\n",
+            slant < 0 ? ", TYPE=CAX3" : "", shape, group, law,
+            slant < 0 ? "LEFT, 1\n" : "TOP, 1, 1, 0.002\n", dim);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s: exit %d: %s", group, code, j.errors);
+  return j;
+}
+
+static void compare(const job *a, const job *b, const char *table,
+                    const char *column) {
+  dat p = job_table(a, table, -1), q = job_table(b, table, -1);
+  const double x = dat_at(&p, 0, column), y = dat_at(&q, 0, column);
+  ck_assert_msg(fabs(x - y) <= 1e-9 * fabs(x), "%s: %.12g, foot %.12g", column,
+                y, x);
+  dat_free(&p);
+  dat_free(&q);
+}
+
+static void compare_groups(int dim, double slant, const char *shape,
+                           const char *law) {
+  static const char *const column[] = {"normal", "closed_area", "pressure_max"};
+  job a = run_block(dim, slant, "FOOT", shape, law);
+  job b = run_block(dim, slant, "ALL", shape, law);
+  for (int k = 0; k < 3; ++k) compare(&a, &b, "TOTALS", column[k]);
+  compare(&a, &b, "GOALS", "error");
+  compare(&a, &b, "ENERGY", "strain_energy");
+  job_end(&a);
+  job_end(&b);
+}
+
+static const char plane[2][80] = {
+    "TYPE=PLANE\n0., 0.\n0., 1.\nMOVE, 0., 0.01",
+    "TYPE=PLANE\n0., 0., 0.\n0., 1., 0.\nMOVE, 0., 0.01, 0."};
+static const char round_one[4][120] = {
+    "TYPE=CYLINDER, RADIUS=1000\n0.3, -1000.\nMOVE, 0., 0.01",
+    "TYPE=CYLINDER, RADIUS=1000\n0.3, -1000., 0.\n0., 0., 1.\n"
+    "MOVE, 0., 0.01, 0.",
+    "TYPE=CYLINDER, RADIUS=1000, SIDE=INSIDE\n1., 1000.\nMOVE, 0., 0.01",
+    "TYPE=SPHERE, RADIUS=1000\n0.3, -1000., 0.2\nMOVE, 0., 0.01, 0."};
+
+/* Upright and, of a trapezoid, by 10 degrees off. */
+/* The whole surface has the axis, where there is no face. */
+START_TEST(sides_of_a_body_of_revolution_neither) {
+  compare_groups(2, -1, plane[0], "COULOMB\n0.3\n");
+  compare_groups(2, -1, "TYPE=SPHERE, RADIUS=1000\n0., -1000.\nMOVE, 0., 0.01",
+                 "COULOMB\n0.3\n");
+}
+END_TEST
+
+START_TEST(sides_of_a_block_have_no_part_in_its_foot) {
+  for (int dim = 2; dim <= 3; ++dim) {
+    compare_groups(dim, 0.18, plane[dim - 2], "COULOMB\n0.3\n");
+    compare_groups(dim, 0, plane[dim - 2], "TRESCA\n1.\n");
+  }
+  for (int c = 0; c < 4; ++c)
+    compare_groups(2 + c % 2, 0.18 * (c / 2), round_one[c], "COULOMB\n0.3\n");
+}
+END_TEST
+
+UNIT_MAIN("facing", sides_of_a_body_of_revolution_neither,
+          sides_of_a_block_have_no_part_in_its_foot)
