@@ -575,18 +575,18 @@ static void send_warnings(const child *c, const char *doing) {
 static int is_replaced(const child *c, const mesh_number *of) {
   char name[32], **line;
   int error, fd = memfd_create("protis", MFD_CLOEXEC);
-  size_t n = 0;
+  size_t before = 0, n = 0;
   if (fd < 0) give_up(c, ERR_MESH, "cannot ask gmsh: %s", strerror(errno));
   snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
   dprintf(fd,
           "If (Exists(%s))\nIf (#%s() != 1)\nPrintf(\"replaced\");\n"
           "ElseIf (%s(0) != %.17g)\nPrintf(\"replaced\");\nEndIf\nEndIf\n",
           of->name, of->name, of->name, of->value);
-  c->gmsh.LoggerStart(&error);
+  CALL(c, "list its messages", c->gmsh.LoggerGet, &line, &before);
   c->gmsh.Merge(name, &error); /* fails where the name is a word of gmsh */
   close(fd);
   CALL(c, "list its messages", c->gmsh.LoggerGet, &line, &n);
-  for (size_t i = 0; i < n; ++i)
+  for (size_t i = before; i < n; ++i)
     if (strstr(line[i], ": replaced") != NULL) return 1;
   return 0;
 }
