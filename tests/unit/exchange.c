@@ -722,6 +722,7 @@ START_TEST(defect_of_text_is_named) {
                                          {"1\n1\n\ninf\n", ":4: q, item 1"},
                                          {"1\n1 1e999\n", "q, item 1"},
                                          {"1\n1 2x\n", "q, item 1"},
+                                         {"1\n1 -1-1\n", "q, item 1: a sum"},
                                          {"20000\n1 2\n", "4 characters"}};
   enter();
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {
