@@ -169,6 +169,7 @@ class Meshes(unittest.TestCase):
             "BASE: 2 triangles", "FREE: 3 triangles", "EVERY: 5 points",
             "FIX: 4 points", "BODY: 1 tetrahedra", "ALL: 2 tetrahedra"])
         self.assertIn("TOOL is left out", said)
+        self.assertIn("1 rigid elements, springs or masses are left", said)
         text = (self.dir / "model.msh").read_text()
         self.assertIn("\n2\n3\n4\n5\n100000001\n", text)
         self.assertIn(" 100000001 2 3\n", text)  # S1
