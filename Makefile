@@ -515,8 +515,8 @@ manual-run: $(program)
 PREFIX ?= /usr/local
 share  := $(DESTDIR)$(PREFIX)/share
 bash   := $(share)/bash-completion/completions
-shown  := batch compare deck_tools.py effects pictures plot plot_contact python \
-          report study
+shown  := abaqus_mesh batch compare deck_tools.py effects pictures plot \
+          plot_contact python reference report study
 .PHONY: install install-files uninstall deb
 install: all
 	$(Q)$(MAKE) --no-print-directory install-files

@@ -23,7 +23,8 @@ typedef struct decimal {
   int n_digit;
   char digit[DIGITS + 2]; /* without leading zeros */
   long exponent;          /* value = digits * 10^exponent */
-  int bare;               /* exponent written without a letter */
+  int bare;               /* exponent without a letter: its digits, else 0 */
+  int has_point;
 } decimal;
 
 static int is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -55,7 +56,8 @@ static void add_digit(decimal *d, char c) {
 static const char *read_mantissa(const char *p, decimal *d) {
   int any = 0;
   for (; is_digit(*p); ++p, any = 1) add_digit(d, *p);
-  if (*p == '.') {
+  d->has_point = *p == '.';
+  if (d->has_point) {
     for (++p; is_digit(*p); ++p, any = 1) {
       long before = d->exponent;
       int n = d->n_digit;
@@ -75,14 +77,15 @@ static const char *read_mantissa(const char *p, decimal *d) {
 static const char *read_exponent(const char *p, decimal *d) {
   int letter = *p != '\0' && strchr("eEdD", *p) != NULL;
   if (!letter && *p != '+' && *p != '-') return p;
-  d->bare = !letter;
   p += letter;
   int negative = *p == '-';
   if (*p == '+' || *p == '-') ++p;
   if (!is_digit(*p)) return NULL;
+  const char *start = p;
   long e = 0;
   for (; is_digit(*p); ++p)
     if (e < EXPONENT_LIMIT) e = 10 * e + (*p - '0');
+  d->bare = letter ? 0 : (int)(p - start);
   d->exponent += negative ? -e : e;
   return p;
 }
@@ -98,8 +101,8 @@ static const char *read_decimal(const char *text, decimal *d) {
   if (end == NULL) return "not a number";
   p = read_exponent(end, d);
   if (p == NULL)
-    return d->bare || is_letter(end[1]) ? wrong_end(end)
-                                        : "exponent without digits";
+    return !is_letter(*end) || is_letter(end[1]) ? wrong_end(end)
+                                                 : "exponent without digits";
   p = skip_blanks(p);
   return *p == '\0' ? NULL : wrong_end(p);
 }
@@ -121,15 +124,26 @@ static const char *convert(decimal *d, double *value) {
   return NULL;
 }
 
-const char *number_real(const char *text, double *value) {
+const char *number_column(const char *text, double *value) {
   decimal d = {.n_digit = 0};
   const char *wrong = read_decimal(text, &d);
   return wrong != NULL ? wrong : convert(&d, value);
 }
 
+/* Fortran writes a point, and two or three digits where it has no room for the
+ * letter: what else looks so is a difference or a sum. */
+const char *number_real(const char *text, double *value) {
+  decimal d = {.n_digit = 0};
+  const char *wrong = read_decimal(text, &d);
+  if (wrong != NULL) return wrong;
+  if (d.bare == 1 || (d.bare > 0 && !d.has_point))
+    return "a sum, or an exponent without E";
+  return convert(&d, value);
+}
+
 int number_bare_exponent(const char *text) {
   decimal d = {.n_digit = 0};
-  return read_decimal(text, &d) == NULL && d.bare;
+  return read_decimal(text, &d) == NULL && d.bare > 0;
 }
 
 const char *number_int(const char *text, int *value) {

@@ -15,6 +15,8 @@ enum { NUMBER_TEXT_SIZE = 32 };
  * The text may have blanks before and after the number. The answer does not
  * depend on the locale. Underflow gives the nearest double, zero included. */
 const char *number_real(const char *text, double *value);
+/* The same in fixed columns, where 1.5-3 and 15+2 are numbers too. */
+const char *number_column(const char *text, double *value);
 const char *number_int(const char *text, int *value);
 /* 1 if the text is a number whose exponent has a sign but no letter (1.5+03);
  * the same text is a sum in an expression. */

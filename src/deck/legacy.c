@@ -181,21 +181,42 @@ static status add_point(buffer *b, const char *text, int decimals) {
   return buffer_add(b, text + sign + whole, strlen(text + sign + whole));
 }
 
-/* Check a numeric column field; a real without point gets that of Fw.d. */
+/* Put E before the sign of an exponent. */
+static status add_letter(buffer *b, const char *text) {
+  const size_t n = 1 + strcspn(text + 1, "+-");
+  b->n = 0;
+  PASS(buffer_add(b, text, n));
+  PASS(buffer_add(b, "E", 1));
+  return buffer_add(b, text + n, strlen(text + n));
+}
+
+static status take_scratch(reader *r, field *f) {
+  PASS_GET(f->text, store_text(r->d, r->scratch.text, (size_t)r->scratch.n));
+  return OK;
+}
+
+/* Check a numeric column field; a real without point gets that of Fw.d, an
+ * exponent without letter its E. */
 static status settle_number(reader *r, const column_field *c, field *f,
                             int named) {
   double real;
   int whole;
   const char *wrong = c->kind == 'I' ? number_int(f->text, &whole)
-                                     : number_real(f->text, &real);
+                                     : number_column(f->text, &real);
   if (wrong != NULL) {
     message_add(r->log, P1028, &f->at, "%s in columns %d-%d: '%.200s'", wrong,
                 c->start + 1, c->start + c->width, f->text);
     f->text = "1"; /* no message follows from it */
-  } else if (c->kind == 'F' && !named && c->decimals > 0 &&
-             strchr(f->text, '.') == NULL) {
+    return OK;
+  }
+  if (c->kind == 'F' && !named && c->decimals > 0 &&
+      strchr(f->text, '.') == NULL) {
     PASS(add_point(&r->scratch, f->text, c->decimals));
-    PASS_GET(f->text, store_text(r->d, r->scratch.text, (size_t)r->scratch.n));
+    PASS(take_scratch(r, f));
+  }
+  if (c->kind == 'F' && number_bare_exponent(f->text)) {
+    PASS(add_letter(&r->scratch, f->text));
+    PASS(take_scratch(r, f));
   }
   return OK;
 }

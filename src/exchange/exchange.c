@@ -65,7 +65,7 @@ static status next_real(words *w, const char *what, int row, double *value) {
     RAISE(ERR_DECK, "%s: the file ends in %s %d", w->path, what, row);
   const char *wrong = number_real(word, value);
   if (wrong != NULL)
-    RAISE(ERR_DECK, "%s:%d: %s %d is %s", w->path, w->word_line_no, what, row,
+    RAISE(ERR_DECK, "%s:%d: %s %d: %s", w->path, w->word_line_no, what, row,
           wrong);
   return OK;
 }

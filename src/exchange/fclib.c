@@ -202,6 +202,10 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
           s->path, W.rows, W.columns);
   PASS(set_size(s, LOCAL, W.rows, p));
   PASS(triplets_read(s, LOCAL "/W", &W));
+  if (triplets_triangle(&W) != 0)
+    RAISE(ERR_DECK,
+          "%s: only one triangle of " LOCAL "/W is there; expected all of it",
+          s->path);
   PASS(new_arrays(p));
   PASS(read_vector(s, LOCAL "/vectors/q", p->m, &q));
   PASS(read_friction(s, LOCAL "/vectors/mu", p));

@@ -11,6 +11,7 @@
 #include "mesh/raw.h"
 
 #include "base/base.h"
+#include "base/file.h"
 #include "base/system/limits.h"
 #include "mesh/msh/geo.h"
 
@@ -42,7 +43,8 @@ typedef struct gmsh_calls {
 typedef struct child {
   const raw_request *request;
   int fd;
-  char *path; /* of the geometry in full, or NULL */
+  char *path;      /* of the geometry in full, or NULL */
+  char *temporary; /* folder for copies of it */
   gmsh_calls gmsh;
 } child;
 
@@ -308,15 +310,16 @@ static double *view_of_sizes(const child *c, const mesh_sizes *s, size_t *n) {
   return data;
 }
 
-/* Copy the geometry without the lines that fix numbers of elements. */
-static void drop_counts(const child *c, const char *from, const char *to) {
+/* Copy the geometry without the lines that fix numbers of elements; 0: it
+ * cannot be written. */
+static int drop_counts(const char *from, const char *to) {
   static const char *const words[] = {"Transfinite ", "Recombine ", "Field[",
                                       "Background Field"};
-  FILE *in = fopen(from, "r"), *out = fopen(to, "w");
+  ENDS_BY(file_leave) FILE *in = fopen(from, "r");
+  FILE *out = in != NULL ? fopen(to, "w") : NULL;
   char *line = NULL;
   size_t capacity = 0;
-  if (in == NULL || out == NULL)
-    give_up(c, ERR_MESH, "cannot copy the geometry to %s", to);
+  if (out == NULL) return 0;
   while (getline(&line, &capacity, in) > 0) {
     int kept = 1;
     for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
@@ -325,9 +328,7 @@ static void drop_counts(const child *c, const char *from, const char *to) {
   }
   int whole = feof(in) && !ferror(out);
   free(line);
-  fclose(in);
-  if (fclose(out) != 0 || !whole)
-    give_up(c, ERR_MESH, "cannot copy the geometry to %s", to);
+  return fclose(out) == 0 && whole;
 }
 
 /*
@@ -336,24 +337,29 @@ static void drop_counts(const child *c, const char *from, const char *to) {
  * written out and read again without them.
  */
 static void free_counts(const child *c) {
-  static const char again[] = "read the geometry again";
+  char folder[PATH_MAX], all[PATH_MAX + 20], rest[PATH_MAX + 20];
   int error;
-  char folder[] = "/tmp/protis_XXXXXX", all[64], rest[64];
   c->gmsh.ModelMeshRemoveConstraints(NULL, 0, &error);
   if (c->request->is_solid) return;
+  snprintf(folder, sizeof folder, "%s/protis_XXXXXX", c->temporary);
   if (mkdtemp(folder) == NULL)
-    give_up(c, ERR_MESH, "cannot make a folder in /tmp: %s", strerror(errno));
+    give_up(c, ERR_FILE, "cannot make a folder in %s: %s", c->temporary,
+            strerror(errno));
   snprintf(all, sizeof all, "%s/all.geo_unrolled", folder);
   snprintf(rest, sizeof rest, "%s/rest.geo", folder);
-  CALL(c, "write out the geometry", c->gmsh.Write, all);
-  drop_counts(c, all, rest);
-  c->gmsh.Clear(&error);
-  check(c, error, again);
-  c->gmsh.Open(rest, &error);
+  c->gmsh.Write(all, &error);
+  errno = 0;
+  int copied = !error && drop_counts(all, rest);
+  int why = errno;
+  if (copied) c->gmsh.Clear(&error);
+  if (copied && !error) c->gmsh.Open(rest, &error);
   unlink(all);
   unlink(rest);
   rmdir(folder);
-  check(c, error, again);
+  check(c, error, "write the geometry and read it again");
+  if (!copied)
+    give_up(c, ERR_FILE, "cannot copy the geometry to %s: %s", c->temporary,
+            why != 0 ? strerror(why) : "unknown reason");
 }
 
 static const char take_sizes[] = "take the sizes";
@@ -575,18 +581,18 @@ static void send_warnings(const child *c, const char *doing) {
 static int is_replaced(const child *c, const mesh_number *of) {
   char name[32], **line;
   int error, fd = memfd_create("protis", MFD_CLOEXEC);
-  size_t n = 0;
+  size_t before = 0, n = 0;
   if (fd < 0) give_up(c, ERR_MESH, "cannot ask gmsh: %s", strerror(errno));
   snprintf(name, sizeof name, "/proc/self/fd/%d", fd);
   dprintf(fd,
           "If (Exists(%s))\nIf (#%s() != 1)\nPrintf(\"replaced\");\n"
           "ElseIf (%s(0) != %.17g)\nPrintf(\"replaced\");\nEndIf\nEndIf\n",
           of->name, of->name, of->name, of->value);
-  c->gmsh.LoggerStart(&error);
+  CALL(c, "list its messages", c->gmsh.LoggerGet, &line, &before);
   c->gmsh.Merge(name, &error); /* fails where the name is a word of gmsh */
   close(fd);
   CALL(c, "list its messages", c->gmsh.LoggerGet, &line, &n);
-  for (size_t i = 0; i < n; ++i)
+  for (size_t i = before; i < n; ++i)
     if (strstr(line[i], ": replaced") != NULL) return 1;
   return 0;
 }
@@ -620,7 +626,10 @@ static void check_numbers(const child *c) {
 
 void child_run(const raw_request *request, int fd, int error_fd) {
   child here = {.request = request, .fd = fd}, *c = &here;
+  const char *folder = getenv("TMPDIR");
+  c->temporary = memory_text(folder != NULL && *folder ? folder : "/tmp");
   detach(fd, error_fd);
+  if (c->temporary == NULL) give_up(c, ERR_MEMORY, "memory exhausted: a name");
   confine();
   load(c);
   start(c);

@@ -98,8 +98,9 @@ static status store(raw_mesh *raw, const wire_head *head, void **payload) {
       raw->warning[raw->n_warning++] = data;
       break;
     case WIRE_FAILURE:
-      RAISE(head->tag == ERR_MEMORY ? ERR_MEMORY : ERR_MESH, "%s",
-            (const char *)data);
+      RAISE(head->tag == ERR_MEMORY || head->tag == ERR_FILE ? (status)head->tag
+                                                             : ERR_MESH,
+            "%s", (const char *)data);
     default:
       return store_block_part(raw, head, payload);
   }

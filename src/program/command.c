@@ -229,6 +229,8 @@ static char *folder_of(const char *file) {
 
 /* Options of which one would have no effect; -1: there are none. */
 static int check_together(const command *c) {
+  if (c->check_only && c->estimate_cost)
+    return wrong("--estimate-cost has no effect with --check", "");
   if (c->table == NULL)
     return c->format == NULL
                ? -1
@@ -237,6 +239,8 @@ static int check_together(const command *c) {
   if (c->estimate_cost)
     return wrong("--estimate-cost has no effect with --table", "");
   if (c->restart) return wrong("--restart has no effect with --table", "");
+  if (c->n_define > 0)
+    return wrong("-D has no effect with --table", "");
   return -1;
 }
 

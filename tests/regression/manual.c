@@ -144,7 +144,7 @@ END_TEST
 
 /* Chapters whose fenced blocks are commands. */
 static const char *const commands[] = {"tutorial", "results", "batch",
-                                       "trouble"};
+                                       "trouble", "abaqus"};
 enum { COMMANDS = sizeof commands / sizeof *commands };
 
 START_TEST(every_command_runs) {

@@ -191,8 +191,12 @@ START_TEST(structured_geometry_is_made_finer) {
     job j = job_begin("square");
     job_write(&j, "square.geo", geo, fixed[k]);
     job_write(&j, "square.inp", "*MESH, FILE=square.geo\n%s", square_deck);
-    int code = job_run(&j, "");
+    int code = job_shell(&j, "mkdir t && TMPDIR=t protis square && rmdir t");
     ck_assert_msg(code == 0, "%s: exit %d: %s", fixed[k], code, j.errors);
+    ck_assert_int_eq(job_shell(&j, "TMPDIR=square.inp protis square"), 4);
+    ck_assert_msg(
+        strstr(j.errors, "cannot make a folder in square.inp: Not") != NULL,
+        "%s", j.errors);
     job_end(&j);
   }
 }

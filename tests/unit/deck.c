@@ -71,6 +71,8 @@ static const good_deck good_decks[] = {
    "AB 1 21 32 43 54 6 1D1\n", "*A[AB|1|2.1|3.2|4.3|5.4|6|.1D1]"},
   {"*LEGACY, FORMAT=(3F4.3)\n*A\n   1       3\n  -1\n +12\n",
    "*A[.001|0|.003][-.001][+.012]"},
+  {"*LEGACY, FORMAT=(F6.0,F6.2)\n*A\n 1.5-3  15+2\n1.5+03\n",
+   "*A[1.5E-3|.15E+2][1.5E+03]"},
   {"*PARAMETER\nH=3\n*LEGACY, FORMAT=(2F5.1)\n*A\n <H>    20\n",
    "*A[3|2.0]"},
   {"*LEGACY,\n FORMAT=(I5,\n F10.0)\n*A\n    1        2.\n", "*A[1|2.]"},

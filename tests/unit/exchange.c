@@ -486,6 +486,13 @@ START_TEST(what_is_not_available_is_said) {
     ck_assert_int_eq(a.st, ERR_DECK);
     ck_assert_ptr_nonnull(strstr(a.text, "not available"));
   }
+  for (int k = 1; k < 3; ++k) {
+    double half[4] = {1, k == 1, k == 2, 1};
+    fclib_local(path, STORE_ROWS, 2, 1, half, q, mu);
+    answer a = read_as(EXCHANGE_FCLIB);
+    ck_assert_int_eq(a.st, ERR_DECK);
+    ck_assert_ptr_nonnull(strstr(a.text, "one triangle of /fclib_local/W"));
+  }
   leave();
 }
 END_TEST
@@ -722,6 +729,7 @@ START_TEST(defect_of_text_is_named) {
                                          {"1\n1\n\ninf\n", ":4: q, item 1"},
                                          {"1\n1 1e999\n", "q, item 1"},
                                          {"1\n1 2x\n", "q, item 1"},
+                                         {"1\n1 -1-1\n", "q, item 1: a sum"},
                                          {"20000\n1 2\n", "4 characters"}};
   enter();
   for (size_t k = 0; k < sizeof wrong / sizeof *wrong; ++k) {

@@ -14,7 +14,7 @@ typedef struct good_real {
 static const good_real good_reals[] = {
   {"1", 1.0}, {"1.", 1.0}, {".5", 0.5}, {"1.5E3", 1500.0},
   {"1.5e3", 1500.0}, {"1.5D+03", 1500.0}, {"1.5d3", 1500.0},
-  {"1.5+03", 1500.0}, {"1.5-3", 0.0015}, {"-2", -2.0}, {"+2", 2.0},
+  {"1.5+03", 1500.0}, {"-.15-003", -0.00015}, {"-2", -2.0}, {"+2", 2.0},
   {"-.25D-1", -0.025}, {"0", 0.0}, {"000", 0.0}, {"0.0E5", 0.0},
   {"  7\t", 7.0}, {"\t7 ", 7.0}, {"0.1", 0.1}, {"0.3", 0.3},
   {"00012.500", 12.5}, {"1.D-10", 1e-10}, {"130.D3", 130e3},
@@ -37,8 +37,9 @@ static const good_real wrong_reals[] = { /* value: 0, reason */
   {"", 0}, {" ", 0}, {"nan", 0}, {"NaN", 0}, {"inf", 0}, {"-Infinity", 0},
   {"0x10", 0}, {"-0X1p3", 0}, {"1.5x", 0}, {"1.5 mm", 0}, {"1.5.", 0},
   {"1,5", 0}, {"1E", 0}, {"1D+", 0}, {"1+", 0}, {".", 0}, {"-", 0}, {"+-1", 0},
-  {"E5", 0}, {"1E5.0", 0}, {"1E309", 0}, {"-1.8E308", 0}, {"1+999", 0},
+  {"E5", 0}, {"1E5.0", 0}, {"1E309", 0}, {"-1.8E308", 0}, {"1.+999", 0},
   {"1 2", 0}, {"1e5e5", 0}, {"<H>", 0}, {"1em", 0}, {"--1", 0},
+  {"0.5-1", 0}, {"10-03", 0}, {"2+3", 0},
 };
 static const char *const reasons[] = {
   "empty", "empty", "not a number", "not a number", "not a number",
@@ -50,7 +51,8 @@ static const char *const reasons[] = {
   "not a number", "not a number", "characters after the number", "too large",
   "too large", "too large", "characters after the number",
   "letters after the number", "not a number", "letters after the number",
-  "not a number",
+  "not a number", "a sum, or an exponent without E",
+  "a sum, or an exponent without E", "a sum, or an exponent without E",
 };
 /* clang-format on */
 
@@ -153,6 +155,15 @@ START_TEST(integers_are_whole_and_in_range) {
 }
 END_TEST
 
+START_TEST(column_may_have_any_exponent_without_letter) {
+  double x = 0;
+  ck_assert_ptr_null(number_column("1.5-3", &x));
+  ck_assert(x == 0.0015);
+  ck_assert_ptr_null(number_column(" 15+2", &x));
+  ck_assert(x == 1500.0);
+}
+END_TEST
+
 START_TEST(exponent_without_letter_is_known) {
   ck_assert_int_eq(number_bare_exponent("1.5+03"), 1);
   ck_assert_int_eq(number_bare_exponent(" 32-1"), 1);
@@ -219,5 +230,6 @@ UNIT_MAIN("number", every_form_of_a_real_is_read_exactly,
           what_is_no_real_is_refused_with_a_reason, minus_zero_keeps_its_sign,
           digits_far_behind_decide_the_rounding,
           thousands_of_digits_before_the_point, integers_are_whole_and_in_range,
+          column_may_have_any_exponent_without_letter,
           exponent_without_letter_is_known, written_numbers_come_back_exactly,
           written_numbers_are_short, the_locale_has_no_say)

@@ -132,10 +132,11 @@ static const char *after_name(const char *q) {
   return q + strspn(q, " \t");
 }
 
-/* 1: the name stands in the text before the end of the statement. */
-static int has_name(const char *q, const char *name) {
+/* 1: the name stands in the text up to "end" and to the end of the statement.
+ */
+static int has_name(const char *q, const char *end, const char *name) {
   const size_t n = strlen(name);
-  for (int in_quotes = 0; *q != '\0' && *q != ';'; ++q)
+  for (int in_quotes = 0; q < end && *q != ';'; ++q)
     if ((in_quotes ^= *q == '"') == 0 && strncmp(q, name, n) == 0 &&
         !in_name(q[-1]) && !in_name(q[n]))
       return 1;
@@ -145,11 +146,12 @@ static int has_name(const char *q, const char *name) {
 /* Of a name that ends at q, behind the character "before". */
 static geo_setting setting_at(char before, const char *q, const char *name) {
   const char *at = after_name(q);
-  if (*at != '\0' && strchr("+-*/", *at) != NULL && at[1] == '=')
+  const int counts = (*at == '+' || *at == '-') && at[1] == *at;
+  if (counts || (*at != '\0' && strchr("+-*/", *at) != NULL && at[1] == '='))
     return GEO_CHANGES;
   if (*at != '=' || at[1] == '=' || before == '[' || before == ',')
     return GEO_SETS_NOT;
-  return has_name(at, name) ? GEO_CHANGES : GEO_SETS;
+  return has_name(at, at + strlen(at), name) ? GEO_CHANGES : GEO_SETS;
 }
 
 static int lines_of(const char *p, const char *end) {
@@ -158,43 +160,75 @@ static int lines_of(const char *p, const char *end) {
   return n;
 }
 
-/* The last in a text, or 0; GEO_CHANGES comes first. */
-static geo_setting find_setting(char *text, const char *name, int *line) {
-  geo_setting how = GEO_SETS_NOT;
+typedef struct search { /* of what sets a name */
+  const char *name;
+  char before;      /* character before the word */
+  int depth, asked; /* of If; of the outermost that has the name, or 0 */
+  geo_setting how;
+  int line; /* of the last such */
+} search;
+
+static int is_word(const char *p, const char *q, const char *word) {
+  return strlen(word) == (size_t)(q - p) &&
+         strncmp(p, word, (size_t)(q - p)) == 0;
+}
+
+/* The ) of the condition at q, or the end of the text. */
+static const char *condition_end(const char *q) {
+  int depth = 0;
+  for (; *q != '\0'; ++q) {
+    depth += (*q == '(') - (*q == ')');
+    if (*q == ')' && depth == 0) break;
+  }
+  return q;
+}
+
+/* A word from p to q. */
+static void take_word(search *s, const char *p, const char *q, int line) {
+  const int begins = is_word(p, q, "If");
+  geo_setting is = GEO_SETS_NOT;
+  s->depth += begins;
+  if ((begins || is_word(p, q, "ElseIf")) && s->asked == 0 &&
+      has_name(q, condition_end(q), s->name))
+    s->asked = s->depth;
+  if (is_word(p, q, "EndIf") && s->depth-- == s->asked) s->asked = 0;
+  if (is_word(p, q, s->name)) is = setting_at(s->before, q, s->name);
+  if (is == GEO_SETS && s->depth > 0)
+    is = s->asked > 0 ? GEO_CHANGES : GEO_MAY_SET;
+  if (is == GEO_SETS_NOT || is < s->how) return;
+  s->how = is;
+  s->line = line;
+}
+
+static void find_setting(char *text, search *s) {
   int in_quotes = 0, now = 1;
-  char before = ';';
-  for (char *p = text, *q; *p != '\0' && how != GEO_CHANGES; p = q) {
+  s->before = ';';
+  for (char *p = text, *q; *p != '\0'; p = q) {
     if ((q = pass_over(p, in_quotes)) == p && starts_name(*p) && !in_quotes) {
       while (in_name(*q)) ++q;
-      const int same = strlen(name) == (size_t)(q - p) &&
-                       strncmp(p, name, strlen(name)) == 0;
-      const geo_setting is = same ? setting_at(before, q, name) : GEO_SETS_NOT;
-      if (is != GEO_SETS_NOT) {
-        how = is;
-        *line = now;
-      }
-      before = 'a';
+      take_word(s, p, q, now);
+      s->before = 'a';
     } else if (q == p) {
       in_quotes ^= *q++ == '"';
-      if (!isspace((unsigned char)*p)) before = *p;
+      if (!isspace((unsigned char)*p)) s->before = *p;
     }
     now += lines_of(p, q);
   }
-  return how;
 }
 
 status geo_sets(const geo_text *g, const char *name, geo_setting *how,
                 const char **file, int *line) {
   *how = GEO_SETS_NOT;
-  for (int i = 0; i < g->n_file && *how != GEO_CHANGES; ++i) {
+  for (int i = 0; i < g->n_file; ++i) {
     OWNED char *text = NULL;
+    search s = {.name = name};
     if (g->text[i] == NULL) continue;
     PASS(load(g->file[i], &text));
-    const geo_setting is =
-        text == NULL ? GEO_SETS_NOT : find_setting(text, name, line);
-    if (is == GEO_SETS_NOT) continue;
-    *how = is;
+    if (text != NULL) find_setting(text, &s);
+    if (s.how == GEO_SETS_NOT || s.how < *how) continue;
+    *how = s.how;
     *file = g->file[i];
+    *line = s.line;
   }
   return OK;
 }

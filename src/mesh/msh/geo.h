@@ -21,9 +21,11 @@ status geo_read(const char *file, geo_text *g);
 void geo_free(geo_text *g); /* accepts an all-zero object */
 /* 1 if the text has the name, letter by letter, or may have it. */
 int geo_has(const geo_text *g, const char *name);
-/* How statements set the name, besides DefineConstant. */
-typedef enum { GEO_SETS_NOT, GEO_SETS, GEO_CHANGES } geo_setting;
-/* GEO_CHANGES: one by what it was; else *file, *line: of the last, if any. */
+/* How statements set the name, besides DefineConstant: where a condition on
+ * other names holds; by what it was, or where a condition on it holds; to
+ * another value. */
+typedef enum { GEO_SETS_NOT, GEO_MAY_SET, GEO_CHANGES, GEO_SETS } geo_setting;
+/* The last of them that the text has; *file, *line: where, if any. */
 status geo_sets(const geo_text *g, const char *name, geo_setting *how,
                 const char **file, int *line);
 /* Name number i, or NULL: for nearest_word. */

@@ -5,8 +5,10 @@
 
 status apply_heading(reading *r) {
   const card *c = r->card;
-  if (c->n_record > 0 && r->m->name.title[0] == '\0')
-    r->m->name.title = c->records[0].raw;
+  if (c->n_record == 0) return OK;
+  if (r->m->name.title[0] != '\0')
+    message_add(r->m->log, P2011, &c->at, "a deck has one *HEADING card");
+  r->m->name.title = c->records[0].raw;
   return OK;
 }
 
