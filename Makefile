@@ -233,11 +233,11 @@ $(out)/tests/unit/sundials: LDLIBS += -lsundials_cvode -lsundials_nvecserial \
               -lsundials_sunlinsoldense -lsundials_sunmatrixdense
 
 # Stands between a program under test and the C library.
-$(out)/tests/preload/mesh.so: src/mesh/raw.h
+$(out)/tests/preload/mesh.so: src/mesh/raw.h tests/preload/guard.c
 $(out)/tests/preload/%.so: tests/preload/%.c Makefile | $(messages)
 	@mkdir -p $(@D)
 	@echo "  LD   $@"
-	$(Q)$(CC) -std=gnu11 -Isrc -Ibuild -O2 -Wall -Wextra -shared -fPIC $< -o $@ -ldl
+	$(Q)$(CC) -std=gnu11 -Isrc -Ibuild -O2 -Wall -Wextra -shared -fPIC $(filter %.c,$^) -o $@ -ldl
 
 # A fresh machine has no pkg-config when make starts: install, then start anew.
 demo test: deps-drawing

@@ -344,6 +344,7 @@ status command_apply(command *c, message_log *log) {
 }
 
 void command_free(command *c) {
+  input_confine(NULL);
   RELEASE(c->deck_file, c->dir, c->defines);
   memset(c, 0, sizeof *c);
 }

@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include "base/memory.h"
 #include "fem/fem.h"
 
 #include <check.h>
@@ -16,10 +17,21 @@ enum { UNIT_SECONDS = 600 };
 /* 1: make stability, which leaves out nothing that make test does. */
 static inline int unit_whole(void) { return getenv("PROTIS_PROBLEMS") != NULL; }
 
+/* Bytes that were requested before a test. */
+static size_t unit_before;
+
+static inline void unit_start(void) { unit_before = memory_in_use(); }
+
+/* All is given back. */
+static inline void unit_end(void) {
+  ck_assert_uint_eq(memory_in_use(), unit_before);
+}
+
 /* Run the suite of one case; exit code of the program. */
 static inline int unit_run(const char *name, TCase *tests) {
   Suite *suite = suite_create(name);
   suite_add_tcase(suite, tests);
+  tcase_add_checked_fixture(tests, unit_start, unit_end);
   blas_set_threads(1); /* as the program does */
   SRunner *runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);

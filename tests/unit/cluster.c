@@ -180,7 +180,7 @@ START_TEST(every_refused_request_of_the_stiffness_is_told) {
     memory_free(k);
     ck_assert_uint_eq(memory_in_use(), before);
   }
-  scene_free(s);
+  free_box(s);
 }
 END_TEST
 

@@ -396,6 +396,12 @@ START_TEST(blocks_give_the_residual_of_all_entries) {
         ck_assert_double_eq(block[e], p.W[row + p.cp.m * column]);
       }
     }
+    for (int j = 0; j < p.cp.m; ++j) {
+      double column[64];
+      contact_column(&p.cp, j, column);
+      for (int i = 0; i < p.cp.m; ++i)
+        ck_assert_double_eq(column[i], p.W[i + p.cp.m * j]);
+    }
     for (int i = 0; i < p.cp.m; ++i)
       p.u[i] += (k % 3 == 0 ? 0.0 : case_random(&seed)) * p.W[0];
     double have = contact_residual(&p.cp, p.u, p.r);

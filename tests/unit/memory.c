@@ -4,6 +4,8 @@
 
 #include <SuiteSparse_config.h>
 #include <stdint.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 START_TEST(bytes_in_use_return_to_the_start) {
   size_t before = memory_in_use();
@@ -32,6 +34,29 @@ START_TEST(blocks_of_suitesparse_are_counted) {
   ck_assert_ptr_null(SuiteSparse_calloc(1, 1));
   SuiteSparse_free(a);
   ck_assert_uint_eq(memory_in_use(), before);
+}
+END_TEST
+
+/* In the tests: what lies behind a block is no number, and stays as it is
+ * (tests/preload/guard.c). */
+START_TEST(blocks_are_guarded) {
+  const char *loaded = getenv("LD_PRELOAD");
+  volatile size_t n = 3;
+  int code;
+  if (loaded == NULL || strstr(loaded, "mesh.so") == NULL) return;
+  double *a = memory_new(n, sizeof *a);
+  ck_assert_ptr_nonnull(a);
+  ck_assert(isnan(a[n]));
+  const pid_t pid = fork();
+  if (pid == 0) {
+    fclose(stderr);
+    a[n] = 1.0;
+    memory_free(a);
+    _exit(0);
+  }
+  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+  ck_assert(WIFSIGNALED(code) && WTERMSIG(code) == SIGABRT);
+  memory_free(a);
 }
 END_TEST
 
@@ -113,5 +138,6 @@ END_TEST
 
 UNIT_MAIN("memory", bytes_in_use_return_to_the_start,
           blocks_of_suitesparse_are_counted, overflowing_request_is_refused,
-          limit_is_kept_and_foreseen, kth_request_is_refused_once_or_for_good,
+          blocks_are_guarded, limit_is_kept_and_foreseen,
+          kth_request_is_refused_once_or_for_good,
           failure_keeps_message_and_path, stage_is_charged_for_itself_only)

@@ -307,6 +307,50 @@ START_TEST(initial_strains_have_the_components_of_the_space) {
 }
 END_TEST
 
+/* Zones of a body and some of its elements, whose temperatures are those of one
+ * expression or not. */
+START_TEST(zones_have_one_temperature) {
+  static const struct {
+    const char *initial, *heat;
+    int n;
+  } cases[] = {{"", "BODY, 20.\nLEFT, 20.\n", 1},
+               {"", "BODY, 20.\nLEFT, 30.\n", 2},
+               {"", "BODY, 20., A\nLEFT, 20., A\n", 1},
+               {"", "BODY, 20., A\nLEFT, 20., B\n", 2},
+               {"", "BODY, 20.\nLEFT, 20., B\n", 2},
+               {"", "BODY, \"x\"\nLEFT, \"y\"\n", 2},
+               {"BODY, 5.\nLEFT, 5.\n", "BODY, 20.\n", 1},
+               {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\n", 2},
+               {"BODY, 5.\nLEFT, 6.\n", "BODY, 20.\nLEFT, 7.\n", 2}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; ++k) {
+    char text[1000];
+    text_model s;
+    mesh *msh = square();
+    int zone[12], others = 0;
+    ck_assert_int_eq(msh->n_elem, 12);
+    for (int i = 0; i < msh->n_group; ++i)
+      if (strcmp(msh->group[i].name, "LEFT") == 0) msh->group[i].dim = 2;
+    snprintf(text, sizeof text,
+             HEAD
+             "*EXPANSION\n1E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+             "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n"
+             "*AMPLITUDE, NAME=B\n0., 0., 1., 0.5\n"
+             "%s%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n"
+             "*TEMPERATURE\n%s*END STEP\n",
+             cases[k].initial[0] != '\0'
+                 ? "*INITIAL CONDITIONS, TYPE=TEMPERATURE\n"
+                 : "",
+             cases[k].initial, cases[k].heat);
+    text_model_read(&s, text, msh);
+    ck_assert_int_eq(s.st, OK);
+    ck_assert_int_eq(load_temperature_zones(s.m, s.msh, zone), OK);
+    for (int i = 0; i < 12; ++i) others |= zone[i] != zone[0];
+    ck_assert_msg(1 + others == cases[k].n, "%s", cases[k].heat);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 START_TEST(every_refused_request_is_reported) {
   static const char text[] = HEAD
       "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -347,4 +391,4 @@ UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
           echo_reads_back_to_the_same_echo, directions_have_unit_length,
           effects_are_what_the_deck_calls_for, supports_that_move_are_found,
           initial_strains_have_the_components_of_the_space,
-          every_refused_request_is_reported)
+          zones_have_one_temperature, every_refused_request_is_reported)

@@ -184,6 +184,13 @@ START_TEST(nearest_word_is_found_if_it_is_near) {
 }
 END_TEST
 
+/* Two letters exchanged are one error, nearer than two others. */
+START_TEST(exchanged_letters_count_once) {
+  static const char *const words[] = {"ABXY", "ABCD", NULL};
+  ck_assert_str_eq(nearest_word("ABDC", next_card, words), "ABCD");
+}
+END_TEST
+
 START_TEST(no_word_is_near_where_there_are_no_rows) {
   const option *none = NULL;
   ck_assert_ptr_null(nearest_word("TOL", candidate_name, NAMES(none, 0)));
@@ -214,7 +221,7 @@ UNIT_MAIN("option", rows_are_found_by_their_full_name, defaults_are_stored,
           right_values_are_read,
           a_long_wrong_value_does_not_overrun_the_message,
           what_is_written_is_read_back, words_of_a_choice_have_their_rank,
-          nearest_word_is_found_if_it_is_near,
+          nearest_word_is_found_if_it_is_near, exchanged_letters_count_once,
           no_word_is_near_where_there_are_no_rows,
           a_value_that_is_not_finite_is_said_to_be_so,
           a_very_long_word_is_near_to_none)

@@ -568,6 +568,22 @@ static void count_step(void *ctx, const solver_step *s) {
   ++*count;
 }
 
+START_TEST(best_of_none_leaves_the_start) {
+  best_iterate best;
+  double u[] = {1.0, 2.0}, r[] = {3.0, 4.0};
+  ck_assert_int_eq(best_iterate_new(2, &best), OK);
+  solver_keep_best(&best, 2, NAN, u, r);
+  solver_take_best(&best, 2, u, r);
+  ck_assert(u[0] == 1.0 && u[1] == 2.0 && r[0] == 3.0 && r[1] == 4.0);
+  solver_keep_best(&best, 2, 0.5, r, u);
+  solver_keep_best(&best, 2, 0.6, u, r);
+  solver_take_best(&best, 2, u, r);
+  ck_assert(u[0] == 3.0 && u[1] == 4.0 && r[0] == 1.0 && r[1] == 2.0);
+  memory_free(best.u);
+  memory_free(best.r);
+}
+END_TEST
+
 START_TEST(limit_of_iterations_is_honest_and_heard) {
   const solver_ops *ops;
   for (int i = 0; solver_row(i, &ops); ++i) {
@@ -645,4 +661,4 @@ UNIT_MAIN("solver", table_is_complete, one_triangle_slips_sticks_and_opens,
           body_at_rest_costs_next_to_nothing, nan_in_the_data_is_told,
           nan_in_the_start_is_forgotten,
           limit_of_iterations_is_honest_and_heard,
-          refused_memory_is_told_and_given_back)
+          best_of_none_leaves_the_start, refused_memory_is_told_and_given_back)

@@ -7,6 +7,7 @@
 #include "effects/plan/plan.h"
 #include "fem/fem.h"
 #include "support/pressed_block.h"
+#include "support/text_model.h"
 #include "support/unit.h"
 
 /* Segments on the floor of a square; elements along the edges of a cube. */
@@ -56,5 +57,52 @@ START_TEST(cost_of_a_row_is_that_of_its_stages) {
 }
 END_TEST
 
-UNIT_MAIN("work", cost_of_a_row_is_that_of_its_stages,
+#define CARDS                                                         \
+  "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"   \
+  "*DENSITY\n2.5\n*EXPANSION\n1E-5\n*INELASTIC, LAW=MAXWELL\n2.\n"    \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"                          \
+  "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 20.\n"                \
+  "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"                              \
+  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"                      \
+  "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"                          \
+  "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 10.\n*BOUNDARY\nTOP, 1, " \
+  "2\n*TEMPERATURE\n"                                                 \
+  "BODY, 30.\n*DSLOAD\nRIGHT, P, 1.\n*ACCURACY, MESH=YES, TIME=YES\n" \
+  "*PRINT, CONTACT, NODES, ELEMENTS, REACTIONS, TOTALS, ENERGY\n*END STEP\n"
+
+/* Sixteen times the elements: of each row more operations, of one that works
+ * on all nodes or elements in proportion, but for files. */
+START_TEST(work_grows_with_the_mesh) {
+  enum { FINE = 4 };
+  text_model s[2];
+  effect_plan *p[2];
+  for (int k = 0; k < 2; ++k) {
+    const int n = k == 0 ? 8 : FINE * 8;
+    text_model_read(&s[k], CARDS,
+                    make_grid_2d((int[]){n, n}, (double[]){1.0, 1.0}));
+    ck_assert_int_eq(s[k].st, OK);
+    ck_assert_int_eq(plan_new(s[k].m, s[k].msh, 0, &p[k]), OK);
+  }
+  ck_assert_int_eq(p[0]->n, p[1]->n);
+  for (int i = 0; i < p[0]->n; ++i) {
+    const plan_row *a = &p[0]->rows[i], *b = &p[1]->rows[i];
+    const double more = a->work.items > 0.0 ? b->work.items / a->work.items : 1;
+    ck_assert_int_eq(a->on, b->on);
+    ck_assert_msg(a->work.operations >= 0.0 && isfinite(b->work.operations),
+                  "%s: %g", a->name, a->work.operations);
+    ck_assert_msg(b->work.operations >= a->work.operations, "%s: %g, %g",
+                  a->name, a->work.operations, b->work.operations);
+    if (more > FINE * FINE / 2.0 && a->work.calls >= 0.0)
+      ck_assert_msg(b->work.operations > 0.5 * more * a->work.operations,
+                    "%s: %g times", a->name,
+                    b->work.operations / a->work.operations);
+  }
+  for (int k = 0; k < 2; ++k) {
+    memory_free(p[k]);
+    text_model_close(&s[k]);
+  }
+}
+END_TEST
+
+UNIT_MAIN("work", work_grows_with_the_mesh, cost_of_a_row_is_that_of_its_stages,
           factor_has_the_size_that_was_foreseen)
