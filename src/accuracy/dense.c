@@ -5,7 +5,6 @@
  */
 #include "accuracy/accuracy.h"
 
-#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>

@@ -14,7 +14,6 @@
  */
 #include "accuracy/accuracy.h"
 #include "accuracy/solutions.h"
-#include "base/base.h"
 
 #include <lapacke.h>
 

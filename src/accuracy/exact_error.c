@@ -7,7 +7,6 @@
 #include "accuracy/exact_error.h"
 
 #include "accuracy/space.h"
-#include "base/base.h"
 #include "material/voigt.h"
 
 enum { MAX_NS = 6, RULE = 4 };

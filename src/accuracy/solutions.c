@@ -1,8 +1,6 @@
 /* The set of solutions found, distinguished by their distance in energy. */
 #include "accuracy/solutions.h"
 
-#include "base/base.h"
-
 #include <assert.h>
 #include <cblas.h>
 

@@ -5,7 +5,6 @@
 #include "base/base.h"
 #include "contact/formulation.h"
 #include "solver/pivoting/lemke.h"
-#include "solver/solver.h"
 
 #include <stdarg.h>
 

@@ -6,9 +6,7 @@
  */
 #include "base/base.h"
 #include "fem/element.h"
-#include "fem/factor.h"
 #include "fem/operator.h"
-#include "fem/rigid.h"
 
 #include <cblas.h>
 #include <lapacke.h>

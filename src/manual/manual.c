@@ -5,10 +5,8 @@
 #include "manual/manual.h"
 
 #include "base/base.h"
-#include "base/option.h"
 #include "model/keyword/keyword.h"
 #include "output/columns/columns.h"
-#include "run/run.h"
 
 #include <ctype.h>
 #include <errno.h>

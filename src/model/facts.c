@@ -4,8 +4,6 @@
  */
 #include "model/facts.h"
 
-#include "base/base.h"
-
 const char *place_file(const place *at) {
   const char *file = at->file != NULL ? at->file : "deck";
   const char *slash = strrchr(file, '/');

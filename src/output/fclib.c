@@ -14,12 +14,10 @@
  * tangential unknown has no force and no motion: q_T = 0 there.
  */
 #include "base/archive/dataset.h"
-#include "base/base.h"
 #include "base/file.h"
 #include "output/writers.h"
 
 #include <errno.h>
-#include <hdf5.h>
 #include <lapacke.h>
 #include <unistd.h>
 

@@ -1,5 +1,4 @@
 /* JOB.json: the outcome and the figures of the run for programs. */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "output/writers.h"
 

@@ -14,9 +14,6 @@
  */
 #include "program/job.h"
 
-#include "accuracy/space.h"
-#include "base/base.h"
-
 static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
 static const double BLIND = 0.5; /* -, of the error, without an estimate */

@@ -30,8 +30,6 @@
  * that it needs for itself. The passes of its target cost that of the deck and
  * two like the last one.
  */
-#include "accuracy/space.h"
-#include "base/base.h"
 #include "effects/rows.h"
 #include "program/job.h"
 

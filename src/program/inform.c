@@ -1,12 +1,8 @@
 /* Information without solving: version, lists, the check of a deck. */
 #include "program/inform.h"
 
-#include "base/base.h"
-#include "base/option.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
-#include "exchange/exchange.h"
-#include "fem/fem.h"
 #include "model/keyword/keyword.h"
 #include "run/history/history.h"
 

@@ -4,13 +4,10 @@
  */
 #include "program/job.h"
 
-#include "accuracy/space.h"
 #include "base/base.h"
 #include "base/system/input.h"
-#include "effects/plan/plan.h"
 #include "effects/reduction/reduction.h"
 #include "effects/rows.h"
-#include "fem/fem.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
 #include "program/inform.h"

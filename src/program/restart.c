@@ -2,7 +2,6 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/system/input.h"
-#include "fem/fem.h"
 #include "mesh/msh/geo.h"
 #include "model/keyword/keyword.h"
 #include "program/inform.h"

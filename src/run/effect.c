@@ -1,7 +1,6 @@
 /* The hooks of the active effects, each under the stage of its row. */
 #include "run/effect.h"
 
-#include "base/base.h"
 #include "run/run.h"
 
 int effect_is_on(const effect_ops *e, const model *m) {

@@ -2,8 +2,6 @@
  * One equilibrium: loads and obstacles at time t, condensed load, contact
  * problem, contact solver, recovery of the interior (CPR98, problem S_i^n).
  */
-#include "base/base.h"
-#include "base/sparse.h"
 #include "run/run.h"
 #include "solver/choice/rest.h"
 

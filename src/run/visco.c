@@ -6,7 +6,6 @@
  */
 #include "run/visco.h"
 
-#include "base/base.h"
 #include "model/check/check.h"
 
 /* The error of the midpoint rule in its difference to the trapezoidal one. */

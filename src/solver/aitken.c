@@ -19,9 +19,7 @@
  *
  * A combination after which a sweep moves farther than before is rejected.
  */
-#include "base/base.h"
 #include "solver/local.h"
-#include "solver/solver.h"
 
 #include <cblas.h>
 

@@ -1,8 +1,6 @@
 /* Fixed point on the sliding limit, with Anderson mixing (fixed_point.h). */
 #include "solver/fixed_point.h"
 
-#include "base/base.h"
-
 enum {
   MOST = 200000, /* iterations of all passes, by default */
   DEPTH = 4,     /* differences mixed */

@@ -21,7 +21,6 @@
  *
  * and shortens rho, never below the bound of Collatz and Wielandt.
  */
-#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 

@@ -27,7 +27,6 @@
  * operator a product with W is a solve with the factor of all rows, and a
  * product with A one with that of the interior.
  */
-#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 

@@ -4,8 +4,6 @@
  */
 #include "solver/local.h"
 
-#include "base/base.h"
-
 #include <cblas.h>
 
 enum { DRIFT_SWEEPS = 20 };

@@ -8,10 +8,8 @@
  * q is carried along with the columns of W. Both see the same
  * problem of a node,  K d = b + r,  K = A_ii or inv(W_ii),  b = -r now.
  */
-#include "base/base.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
-#include "solver/solver.h"
 
 typedef struct sor {
   double omega; /* relaxation factor, -; 0: chosen by the program */

@@ -15,7 +15,6 @@
 #include "accuracy/goal/goal.h"
 
 #include "accuracy/accuracy.h"
-#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>

@@ -1,6 +1,5 @@
 /* Norms in the energy of A, and the constants of friction in them. */
 #include "accuracy/theorems/theorems.h"
-#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>

@@ -1,8 +1,6 @@
 /* The report on an increment from its parts (theorems.h). */
 #include "accuracy/theorems/theorems.h"
 
-#include "base/base.h"
-
 /*
  * The variational inequality S_i^n of CPR98 over random test fields. The convex
  * K and the functional j of a frozen limit are sums over the nodes, so fields

@@ -1,5 +1,4 @@
 /* *REFERENCE: the true error of each increment against a closed form. */
-#include "accuracy/exact_error.h"
 #include "effects/plan/effect.h"
 
 #include "run/column_row.h"

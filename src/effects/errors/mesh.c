@@ -3,7 +3,6 @@
  * and of each element.
  */
 #include "effects/plan/effect.h"
-#include "effects/shared.h"
 
 #include "run/column_row.h"
 

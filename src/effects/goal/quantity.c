@@ -2,7 +2,6 @@
  * The quantities of *GOAL and their derivatives; those of a pressure are in
  * pressure.c.
  */
-#include "base/base.h"
 #include "effects/goal/parts.h"
 #include "effects/shared.h"
 

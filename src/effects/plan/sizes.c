@@ -13,8 +13,6 @@
  */
 #include "effects/plan/plan.h"
 
-#include "base/base.h"
-
 /* Increments that an output with this frequency shows. */
 static double shown_of(const step *s, int frequency) {
   if (frequency < 0) return 0.0;

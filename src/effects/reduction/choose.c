@@ -16,7 +16,6 @@
  */
 #include "effects/plan/effect.h"
 #include "effects/reduction/parts.h"
-#include "fem/fem.h"
 
 /*
  * Materials to try without their law: it flows too little, or it is always in

@@ -17,10 +17,6 @@
  */
 #include "effects/reduction/parts.h"
 
-#include "base/base.h"
-#include "base/sparse.h"
-#include "fem/fem.h"
-
 enum { SAFETY = 2 };
 
 /* a / b; 0 if a is 0. */

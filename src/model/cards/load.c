@@ -1,5 +1,4 @@
 /* Supports, loads and initial conditions. */
-#include "base/base.h"
 #include "model/cards/cards.h"
 
 /* 0 also where an error was reported for the card. */

@@ -2,7 +2,6 @@
  * The model against the mesh: kinematics, sections, contacts, goals, pairs of
  * surfaces, and the parts in order.
  */
-#include "base/base.h"
 #include "mesh/crack/crack.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"

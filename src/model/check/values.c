@@ -4,7 +4,6 @@
  * input without effect; increments of *VISCO steps against the laws.
  */
 #include "base/base.h"
-#include "model/cards/cards.h"
 #include "model/check/parts.h"
 
 /* ---- names of groups to their ids in the mesh ---------------------------- */

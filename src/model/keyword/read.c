@@ -1,5 +1,4 @@
 /* From cards to the model: the driver over the keyword table. */
-#include "base/base.h"
 #include "model/keyword/keyword.h"
 
 /* ---- decks with *CONDENSED PROBLEM: what is allowed with it ------------- */

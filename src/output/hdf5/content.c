@@ -4,7 +4,6 @@
  */
 #include "output/hdf5/file.h"
 
-#include "base/base.h"
 #include "model/keyword/keyword.h"
 
 int hdf5_is_history(const hdf5_field *f) {

@@ -5,11 +5,9 @@
 #include "output/hdf5/file.h"
 
 #include "base/archive/dataset.h"
-#include "base/base.h"
 #include "base/file.h"
 
 #include <errno.h>
-#include <hdf5.h>
 
 /* The file while it is made. */
 typedef struct maker {

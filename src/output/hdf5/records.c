@@ -12,8 +12,6 @@
  */
 #include "output/hdf5/file.h"
 
-#include "base/base.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <unistd.h>

@@ -7,7 +7,6 @@
  * JOB.body.xdmf, JOB.contact.xdmf: one grid of the last record, without time,
  * for readers that take nothing else (meshio.read).
  */
-#include "base/base.h"
 #include "output/hdf5/hdf5.h"
 
 /* Where the name of a record and its time stand in a text of any record. */

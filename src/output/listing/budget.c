@@ -5,9 +5,7 @@
  */
 #include "output/listing/job.h"
 
-#include "base/base.h"
 #include "effects/rows.h"
-#include "output/columns/columns.h"
 
 #include <stdarg.h>
 

@@ -5,8 +5,6 @@
  */
 #include "output/listing/job.h"
 
-#include "base/base.h"
-
 enum { WORST_NODES = 10, DIGITS = 5 /* after the point */ };
 
 /* The node with the largest defect below that of "last"; -1: none. */

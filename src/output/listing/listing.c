@@ -6,7 +6,6 @@
  */
 #include "output/listing/job.h"
 
-#include "base/base.h"
 #include "effects/rows.h"
 #include "model/keyword/keyword.h"
 

@@ -2,9 +2,7 @@
  * The steps of a run before the first is solved: what deck and mesh alone tell
  * of each that the run would end with, after the steps before it.
  */
-#include "base/base.h"
 #include "model/facts.h"
-#include "run/history/history.h"
 #include "run/setup/setup.h"
 
 /* 1: motions that friction may not allow, or statuses that are all tried. */

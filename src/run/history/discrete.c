@@ -4,7 +4,6 @@
  */
 #include "run/history/history.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <strings.h>

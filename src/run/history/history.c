@@ -3,7 +3,6 @@
  * with exact rollback, outcome of each increment, outputs.
  */
 #include "accuracy/verdict.h"
-#include "base/base.h"
 #include "base/interrupt.h"
 #include "run/history/loop.h"
 #include "run/setup/setup.h"

@@ -12,7 +12,6 @@
  * count with their final size.
  */
 #include "base/base.h"
-#include "base/sparse.h"
 #include "run/history/loop.h"
 
 static const double LAST_DIGIT = 0.1; /* -, error without a correct digit */

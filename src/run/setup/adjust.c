@@ -5,8 +5,6 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/base.h"
-
 enum { PASSES = 3 };
 
 /* The places once the slave of a pair is on its master, into x[dim*n_node]:

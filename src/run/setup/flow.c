@@ -3,9 +3,7 @@
  * those of the units of their laws, of which they are the sum; temperatures of
  * the steps in which they flow.
  */
-#include "base/base.h"
 #include "model/facts.h"
-#include "run/setup/setup.h"
 #include "run/visco.h"
 
 /* ---- temperatures -------------------------------------------------------- */

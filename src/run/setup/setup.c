@@ -4,8 +4,6 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-
 static status new_equilibrium(const run *r, equilibrium *e) {
   PASS_NEW_REALS(r->n_dof, &e->u, &e->F, &e->reaction);
   return OK;

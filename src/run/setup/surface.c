@@ -4,8 +4,6 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-
 void run_free_surface(run *r) {
   effects_forget(r);
   run_forget_estimates(r);

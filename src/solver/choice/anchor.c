@@ -1,8 +1,6 @@
 /* Springs that hold a body while its contact forces are found (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
-
 #include <cblas.h>
 #include <lapacke.h>
 

@@ -44,7 +44,6 @@
 #include "solver/choice/choice.h"
 
 #include "base/base.h"
-#include "base/option.h"
 
 /* clang-format off */
 const char auto_help[] =

@@ -1,9 +1,6 @@
 /* Other form and normal form (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
-#include "solver/newton/dense.h"
-
 #include <cblas.h>
 #include <lapacke.h>
 

@@ -1,7 +1,6 @@
 /* Proof that a problem has no solution (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/lcp/lcp_solve.h"
 

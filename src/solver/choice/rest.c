@@ -1,7 +1,6 @@
 /* Least distance programming; Lawson, Hanson 1974, 23.4 (rest.h). */
 #include "solver/choice/rest.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>

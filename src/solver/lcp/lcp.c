@@ -15,7 +15,6 @@
  */
 #include "solver/lcp/lcp.h"
 
-#include "base/base.h"
 #include "base/sparse.h"
 
 #include <cblas.h>

@@ -37,12 +37,8 @@
  *
  * the very step of NEWTON for these states.
  */
-#include "base/base.h"
-#include "contact/force_set.h"
 #include "solver/fixed_point.h"
-#include "solver/local.h"
 #include "solver/newton/system.h"
-#include "solver/solver.h"
 
 #include <cblas.h>
 #include <lapacke.h>

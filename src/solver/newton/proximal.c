@@ -30,10 +30,7 @@
  *
  * A body that contact alone holds needs no compliance so.
  */
-#include "base/base.h"
-#include "contact/force_set.h"
 #include "solver/newton/system.h"
-#include "solver/solver.h"
 
 #include <cblas.h>
 

@@ -23,7 +23,6 @@
  */
 #include "solver/pivoting/lemke.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/solver.h"
 
