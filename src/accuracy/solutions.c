@@ -55,8 +55,7 @@ static double unit_energy(const contact_problem *cp) {
 
 static status find_distance(const contact_problem *cp, const double *a,
                             const double *b, double *distance) {
-  OWNED double *t = NULL;
-  PASS_NEW(t, 2 * cp->m);
+  OWNED_NEW(double, t, 2 * cp->m);
   double size = fmax(energy(cp, a, NULL, t), energy(cp, b, NULL, t));
   size = fmax(size, unit_energy(cp));
   double apart = energy(cp, a, b, t);

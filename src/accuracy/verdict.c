@@ -63,10 +63,9 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       size_t size) {
   words w = {text, size};
   ENDS_BY(pair_free) pair p = {0};
-  OWNED double *value = NULL;
   double scale = contact_scale(cp), most = 0.0;
   text[0] = '\0';
-  PASS_NEW(value, cp->n);
+  OWNED_NEW(double, value, cp->n);
   PASS(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   for (int dof = 0; dof < cp->m; ++dof) {
@@ -85,11 +84,10 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
 static status put_given(const verdict_scene *s, given_form **form,
                         contact_problem *cp) {
   const contact_problem before = *cp;
-  OWNED int *node = NULL;
   OWNED double *force = NULL, *u = NULL, *r = NULL;
   int n = 0;
   if (s->given == NULL) return OK;
-  PASS_NEW(node, cp->n);
+  OWNED_NEW(int, node, cp->n);
   PASS_NEW_REALS(cp->m, &force, &u, &r);
   for (int i = 0; i < cp->n; ++i)
     if (s->given[i] >= 0.0) {
@@ -256,10 +254,9 @@ static int add_bad_number(const words *w, const verdict_scene *s) {
 status verdict_text(const verdict_scene *s, char *text, size_t size) {
   words w = {text, size};
   outcome end = RUNNING;
-  OWNED double *v = NULL;
   text[0] = '\0';
   if (add_bad_number(&w, s)) return OK;
-  PASS_NEW(v, s->cp->m);
+  OWNED_NEW(double, v, s->cp->m);
   PASS(find_motion(s, v, &end));
   if (end == STOPPED_RAY) {
     PASS(add_moving(&w, s, v));

@@ -108,6 +108,10 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 
 /* OWNED double *a = NULL: freed where the name ends, on each return. */
 #define OWNED __attribute__((cleanup(memory_leave)))
+/* OWNED_NEW(double, a, n): such an a with n zeroed items, or RAISE. */
+#define OWNED_NEW(type, name, n) \
+  OWNED type *name = NULL;       \
+  PASS_NEW(name, n)
 /* The same by a function of a pointer to the local. */
 #define ENDS_BY(function) __attribute__((cleanup(function)))
 

@@ -282,9 +282,8 @@ static int add_coupled(const builder *b, int pair_id, candidate *first) {
 /* Order by node; the contacts of a node keep their order. */
 static status sort_candidates(builder *b) {
   int n_node = b->in->mesh->n_node;
-  OWNED int *start = NULL;
-  OWNED candidate *sorted = NULL;
-  PASS_NEW_ALL(OF(start, n_node + 1), OF(sorted, b->n));
+  OWNED_NEW(int, start, n_node + 1);
+  OWNED_NEW(candidate, sorted, b->n);
   for (int i = 0; i < b->n; ++i) ++start[b->list[i].node_id + 1];
   for (int k = 0; k < n_node; ++k) start[k + 1] += start[k];
   for (int i = 0; i < b->n; ++i)

@@ -276,9 +276,8 @@ static status read_number(compiler *c) {
   item value = {.kind = NUMBER};
   const char *end = number_end(c->p);
   size_t length = (size_t)(end - c->p);
-  OWNED char *text = NULL;
   snprintf(shown, sizeof shown, "%.*s", (int)length, c->p);
-  PASS_NEW(text, length + 1);
+  OWNED_NEW(char, text, length + 1);
   memcpy(text, c->p, length);
   const char *wrong = number_real(text, &value.number);
   if (wrong != NULL) RAISE(ERR_DECK, "%s: '%s'", wrong, shown);

@@ -239,9 +239,8 @@ static status order_by_cuts(const graph *g, int dim, const double *x, int n,
 /* Pattern of the graph among node[0..n), upper triangle, new. */
 static status graph_pattern(const graph *g, int n, const int *node,
                             cholmod_common *cm, cholmod_sparse **out) {
-  OWNED int *order = NULL;
   size_t edges = 0;
-  PASS_NEW(order, g->n);
+  OWNED_NEW(int, order, g->n);
   for (int i = 0; i < n; ++i) order[node[i]] = i + 1;
   for (int i = 0; i < n; ++i)
     for (size_t p = g->start[node[i]]; p < g->start[node[i] + 1]; ++p)
@@ -350,8 +349,7 @@ done:
 static status compare_with_metis(const graph *g, int n, int *node,
                                  cholmod_common *cm, const char **name) {
   order_cost cuts, metis;
-  OWNED int *other = NULL;
-  PASS_NEW(other, n);
+  OWNED_NEW(int, other, n);
   memcpy(other, node, (size_t)n * sizeof *node);
   PASS(order_by_pattern(ORDER_METIS, g, n, other, cm));
   PASS(order_cost_of(g, n, node, NULL, cm, &cuts));

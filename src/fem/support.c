@@ -99,16 +99,15 @@ static void measure_bodies(body_sets *s, double *low, double *high) {
 
 /* Bodies and pieces, each body a set. Fails with s empty. */
 static status sets_find(const domain *d, body_sets *s) {
-  OWNED double *box = NULL;
   const int n_node = d->mesh->n_node;
   *s = (body_sets){.d = d};
   PASS(pieces_find(d->mesh, &s->p));
   const int n_body = s->p.n_body;
+  OWNED_NEW(double, box, 6 * n_body);
   PASS_NEW_ALL(OF(s->first_piece, n_body + 1), OF(s->at, n_body),
                OF(s->body, n_node), OF(s->contact, n_node), OF(s->tie, n_node),
                OF(s->set, n_body), OF(s->column, n_body), OF(s->n, n_body),
-               OF(s->start, n_body + 2), OF(s->node, n_node),
-               OF(box, 6 * n_body));
+               OF(s->start, n_body + 2), OF(s->node, n_node));
   find_pieces(s);
   find_nodes(s);
   measure_bodies(s, box, box + 3 * n_body);
@@ -379,10 +378,9 @@ static void add_contact(triangle *t, int normals) {
 static status is_regular(const triangle *t, int *regular) {
   enum { MISSED = 10 };
   const int n = t->n;
-  OWNED double *work = NULL;
-  OWNED lapack_int *number = NULL;
   double one, infinity;
-  PASS_NEW_ALL(OF(work, 3 * n), OF(number, n));
+  OWNED_NEW(double, work, 3 * n);
+  OWNED_NEW(lapack_int, number, n);
   if (LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, '1', 'L', 'N', n, t->r, n, &one,
                           work, number) != 0 ||
       LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, 'I', 'L', 'N', n, t->r, n,
@@ -600,8 +598,7 @@ static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
 
 /* Bodies that their supports hold leave first, then those tied to them. */
 static status drop_bodies_at_rest(body_sets *s) {
-  OWNED unsigned char *rest = NULL;
-  PASS_NEW(rest, s->p.n_body);
+  OWNED_NEW(unsigned char, rest, s->p.n_body);
   for (int by = NOTHING; by <= TIES; ++by) {
     sets_join(s, (joint)by);
     for (int id = 0; id < s->p.n_body; ++id)

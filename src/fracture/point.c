@@ -149,9 +149,8 @@ static status find_mixed(const fracture_body *b, obstacles *o) {
 static status find_obstacles(const fracture_body *b, obstacles *o) {
   static const double rounding = 1e-6;
   const mesh *m = b->mesh;
-  OWNED double *sum = NULL;
   int n = 0;
-  PASS_NEW(sum, 4 * (size_t)m->n_node);
+  OWNED_NEW(double, sum, 4 * (size_t)m->n_node);
   add_normals(m, sum);
   PASS(find_mixed(b, o));
   for (int i = 0; i < m->n_node; ++i) {

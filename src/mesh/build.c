@@ -56,8 +56,7 @@ static int by_name(const void *p, const void *q) {
 
 static status check_names(const builder *b) {
   const mesh *m = b->m;
-  OWNED const mesh_group **sorted = NULL;
-  PASS_NEW(sorted, m->n_group);
+  OWNED_NEW(const mesh_group *, sorted, m->n_group);
   for (int i = 0; i < m->n_group; ++i) sorted[i] = &m->group[i];
   qsort(sorted, (size_t)m->n_group, sizeof *sorted, by_name);
   for (int i = 1; i < m->n_group; ++i) {

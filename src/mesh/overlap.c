@@ -389,9 +389,8 @@ static status check_skin(search *s, const char *is_skin) {
 /* One side of each piece of the boundary, -1 for the others. A piece goes on
  * across edges (2-D: nodes) that two sides have in common. */
 static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
-  OWNED sort_item *item = NULL;
   int v[3], n = m->dim * sides->n;
-  PASS_NEW(item, n);
+  OWNED_NEW(sort_item, item, n);
   for (int i = 0; i < n; ++i) {
     int side = i / m->dim, k = i % m->dim;
     mesh_side_nodes(m, sides->side[side].id, v);
@@ -413,8 +412,7 @@ static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
 static status check_inside(search *s, const side_list *sides,
                            const char *is_skin) {
   const mesh *m = s->b->m;
-  OWNED int *piece = NULL;
-  PASS_NEW(piece, sides->n);
+  OWNED_NEW(int, piece, sides->n);
   PASS(find_pieces(m, sides, piece));
   PASS(start_tree(s, sides->n));
   for (int i = 0; i < sides->n; ++i)

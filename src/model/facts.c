@@ -222,9 +222,8 @@ const char *facts_reads_entries(const model *m, const step *s) {
 }
 
 status model_find_corner(model *m, const mesh *msh) {
-  OWNED int *of = NULL;
   m->mesh.corner_id = -1;
-  PASS_NEW(of, msh->n_node);
+  OWNED_NEW(int, of, msh->n_node);
   for (int i = 0; i < m->n.contact; ++i) {
     if (m->contacts[i].group_id < 0) continue;
     const mesh_group *g = &msh->group[m->contacts[i].group_id];

@@ -317,8 +317,7 @@ static double temperature_of(const load *l, const mesh *msh, double t,
 status load_temperature_at(const model *m, const mesh *msh, const step *s,
                            double t, const double *b, const double *T0,
                            double *T) {
-  OWNED double *start = NULL;
-  PASS_NEW(start, msh->n_elem);
+  OWNED_NEW(double, start, msh->n_elem);
   memcpy(start, T0, (size_t)msh->n_elem * sizeof *T);
   memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
   if (s > m->steps && t < step_end(s))
@@ -410,9 +409,9 @@ static void initial_cards(const model *m, const mesh *msh, int *last) {
 /* zone[n] from 0 becomes that of the pair of it and by[n], below n_by. */
 static status split_zones(int n, const int *by, int n_by, int *zone) {
   int n_zone = 0, n_new = 0;
-  OWNED int *of = NULL;
   for (int k = 0; k < n; ++k)
     if (zone[k] >= n_zone) n_zone = zone[k] + 1;
+  OWNED int *of = NULL;
   PASS_NEW(of, (size_t)n_zone * (size_t)n_by);
   for (int k = 0; k < n; ++k) {
     int *at = &of[(size_t)n_by * (size_t)zone[k] + (size_t)by[k]];
@@ -423,8 +422,7 @@ static status split_zones(int n, const int *by, int n_by, int *zone) {
 }
 
 status load_temperature_zones(const model *m, const mesh *msh, int *zone) {
-  OWNED int *by = NULL;
-  PASS_NEW(by, msh->n_elem);
+  OWNED_NEW(int, by, msh->n_elem);
   memset(zone, 0, (size_t)msh->n_elem * sizeof *zone);
   for (int k = 0; k < msh->n_elem; ++k)
     by[k] = first_expansion(m, m->elem_section[k]);

@@ -461,10 +461,9 @@ static void stand_free(stand *s) {
 static status run_for_goals(const command *c, const mesh_sizes *first,
                             const job_input *at, const double *eta, double part,
                             stand *s) {
-  OWNED double *size = NULL;
   trial before = {0};
   const mesh *msh = at->msh;
-  PASS_NEW(size, msh->n_node);
+  OWNED_NEW(double, size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) size[i] = HUGE_VAL;
   aims_ask(s->t.goals, part);
   PASS(aims_sizes(s->t.goals, at->m, msh, eta, size));

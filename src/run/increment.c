@@ -37,10 +37,9 @@ static void put_rows(const run *r, const double *u, const double *force) {
 
 /* Displacements of the contact nodes that were found with the interior. */
 static status take_interior(const run *r) {
-  OWNED double *w = NULL;
   int dim = r->msh->dim, next = 0;
   if (r->nodes.n_row == r->nodes.n_c) return OK;
-  PASS_NEW(w, r->nodes.n_c);
+  OWNED_NEW(double, w, r->nodes.n_c);
   surface_relative(r->surface, r->now.u, w);
   for (int i = 0; i < r->nodes.n; ++i) {
     int is_in = r->nodes.reach.in == NULL ||

@@ -183,9 +183,9 @@ static status gmres(linear_system *s, int transposed, double *x) {
   double H[DIRECTIONS * (DIRECTIONS + 1)] = {0.0};
   double c[DIRECTIONS], t[DIRECTIONS], g[DIRECTIONS + 1] = {size};
   double left = size, *h = H;
-  OWNED double *V = NULL;
   int n = 0;
   if (!(size > 0.0)) return OK;
+  OWNED double *V = NULL;
   PASS_NEW(V, (size_t)m * (DIRECTIONS + 1));
   for (int k = 0; k < m; ++k) V[k] = x[k] / size;
   for (; n < DIRECTIONS && left > ENOUGH * size; h += DIRECTIONS + 1) {
@@ -263,9 +263,8 @@ static status linear_system_new(const linear_states *rows,
 static status linear_solve(linear_system *s, const double *b, double *x) {
   const linear_states *rows = s->rows;
   const int m = rows->cp->m;
-  OWNED double *rest = NULL;
   if (s->M == NULL) return solve_operated(s, b, x);
-  PASS_NEW(rest, m);
+  OWNED_NEW(double, rest, m);
   for (int k = 0; k < m; ++k)
     if (rows->place[k] >= 0) x[k] = 0.0;
   contact_apply(rows->cp, x, s->Ax);

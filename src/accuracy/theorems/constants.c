@@ -246,10 +246,9 @@ static status tangential_constant(block *b, int limits, double *largest) {
 
 status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
                           theorems_contact *out) {
-  OWNED int *dof = NULL;
-  OWNED unsigned char *pressed = NULL;
   double product = 0.0;
-  PASS_NEW_ALL(OF(dof, cp->m), OF(pressed, cp->n));
+  OWNED_NEW(int, dof, cp->m);
+  OWNED_NEW(unsigned char, pressed, cp->n);
   block b = {.cp = cp, .e = e, .dof = dof};
   find_pressed(cp, pressed);
   for (int i = 0; i < cp->n; ++i)

@@ -318,8 +318,7 @@ static status measure(const theorems_scene *s, const frozen_problem *p,
 /* With one contact the row of all contacts is the same. */
 static status measure_contacts(theorems *t, const theorems_scene *s,
                                const frozen_problem *p) {
-  OWNED unsigned char *keep = NULL;
-  PASS_NEW(keep, p->cp.n);
+  OWNED_NEW(unsigned char, keep, p->cp.n);
   for (int k = 0; k < t->n_contact; ++k) {
     if (t->n_contact == 2 && k == 0) continue;
     PASS(measure(s, p, keep, &t->contacts[k]));

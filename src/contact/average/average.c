@@ -477,9 +477,8 @@ static status find_rows(builder *b) {
 }
 
 static status transpose(const sparse_rows *a, sparse_rows *out) {
-  OWNED int *start = NULL;
-  PASS_NEW_ALL(OF(start, a->n + 2), OF(out->col, a->start[a->n]),
-               OF(out->val, a->start[a->n]));
+  OWNED_NEW(int, start, a->n + 2);
+  PASS_NEW_ALL(OF(out->col, a->start[a->n]), OF(out->val, a->start[a->n]));
   for (int k = 0; k < a->start[a->n]; ++k) ++start[a->col[k] + 2];
   for (int i = 0; i < a->n; ++i) start[i + 2] += start[i + 1];
   for (int i = 0; i < a->n; ++i)
@@ -570,14 +569,13 @@ static status symmetrise(builder *b, sparse_rows *out) {
 status average_build(const average_patch *patch, const average_rule *rule,
                      sparse_rows *out, average_facts *facts) {
   ENDS_BY(builder_free) builder b = {.p = patch, .rule = rule};
-  OWNED unsigned char *coarse = NULL;
   memset(out, 0, sizeof *out);
   PASS(builder_new(&b));
   find_shares(&b);
   PASS(find_rows(&b));
   PASS(transpose(&b.raw, &b.by_column));
   PASS(symmetrise(&b, out));
-  PASS_NEW(coarse, patch->n_node);
+  OWNED_NEW(unsigned char, coarse, patch->n_node);
   find_facts(&b, facts, coarse);
   return OK;
 }

@@ -492,8 +492,7 @@ static status add_row(builder *b, int q, entry *row) {
 }
 
 static status add_rows(builder *b) {
-  OWNED entry *row = NULL;
-  PASS_NEW(row, longest_row(b));
+  OWNED_NEW(entry, row, longest_row(b));
   for (int q = 0; q < b->out->n; ++q) PASS(add_row(b, q, row));
   return OK;
 }

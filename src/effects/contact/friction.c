@@ -173,12 +173,11 @@ static status add_law(run *r, friction *own, int contact_id, double t,
 }
 
 static status find_limit(run *r, friction *own, double t) {
-  OWNED int *node = NULL;
   TIMED(STAGE_LIMIT);
   OWNS(own);
   friction_limit_free(&own->limit);
   PASS(friction_limit_new(r->nodes.n, &own->limit));
-  PASS_NEW(node, r->nodes.n);
+  OWNED_NEW(int, node, r->nodes.n);
   for (int i = 0; i < r->m->n.contact; ++i) PASS(add_law(r, own, i, t, node));
   own->known = !limit_varies(r);
   if (!own->known) run_forget_estimates(r);

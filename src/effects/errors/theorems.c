@@ -77,9 +77,8 @@ static status elastic_body(run *r, body_map *b) {
 /* The contact of the elastic body with a given limit, in the states of the
  * solution. */
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
-  OWNED unsigned char *none = NULL;
   contact_problem cp = r->problem.cp;
-  PASS_NEW(none, r->nodes.n);
+  OWNED_NEW(unsigned char, none, r->nodes.n);
   PASS(elastic_body(r, b));
   cp.A = condensed_matrix(b->c);
   cp.op = condensed_operator(b->c);

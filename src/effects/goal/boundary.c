@@ -535,10 +535,9 @@ status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
   ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  OWNED unsigned char *in = NULL;
   *sum = 0.0;
   PASS(goal_ring_new(m, &rings));
-  PASS_NEW(in, m->n_face + m->n_elem);
+  OWNED_NEW(unsigned char, in, m->n_face + m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
   for (int f = 0; f < m->n_face; ++f) {
     if (m->face_other[f] >= 0 || !in[g->dim < m->dim ? f : m->face_elem[f]])

@@ -275,9 +275,8 @@ static void follow(const run *r, const weight *w, const int *next, int peak,
 
 static status line_new(const run *r, const goal_card *g, const weight *w,
                        int peak, line *l) {
-  OWNED int *next = NULL;
-  PASS_NEW_ALL(OF(next, 2 * r->nodes.n), OF(l->node, r->nodes.n),
-               OF(l->s, r->nodes.n));
+  OWNED_NEW(int, next, 2 * r->nodes.n);
+  PASS_NEW_ALL(OF(l->node, r->nodes.n), OF(l->s, r->nodes.n));
   PASS(find_next(r, g, next));
   follow(r, w, next, peak, -1.0, l);
   for (int k = 0; k < l->n / 2; ++k) {

@@ -206,8 +206,7 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   const mesh_group *of = &r->msh->group[g->group_id];
   const size_t ns = (size_t)d->ns, c = (size_t)(g->component - GOAL_TENSOR);
   double whole = 0.0;
-  OWNED double *beyond = NULL;
-  PASS_NEW(beyond, r->msh->n_elem);
+  OWNED_NEW(double, beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
   for (int k = 0; k < of->n_item; ++k)
     whole += element_weight(d, of->item_id[k]);
@@ -245,8 +244,7 @@ static double energy_density(const run *r, int elem_id) {
 }
 
 static status set_energy(const run *r, const goal_card *g, goal_form *f) {
-  OWNED double *beyond = NULL;
-  PASS_NEW(beyond, r->msh->n_elem);
+  OWNED_NEW(double, beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
   for (int e = 0; e < r->msh->n_elem; ++e) {
     if (beyond[e] != 0.0) f->curved += beyond[e] * energy_density(r, e);

@@ -75,9 +75,8 @@ static double face_slope(const run *r, int face, const int *q, double *g) {
 static status gap_slopes_new(const run *r, const int *where, gap_slopes *out) {
   const mesh *m = r->msh;
   const int dim = m->dim;
-  OWNED double *weight = NULL;
-  PASS_NEW_ALL(OF(out->of, 3 * r->nodes.n), OF(out->n_face, r->nodes.n),
-               OF(weight, r->nodes.n));
+  OWNED_NEW(double, weight, r->nodes.n);
+  PASS_NEW_ALL(OF(out->of, 3 * r->nodes.n), OF(out->n_face, r->nodes.n));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k) {
     const mesh_group *of = &m->group[r->m->contacts[k].group_id];
     for (int i = 0; i < of->n_item && !r->m->contacts[k].is_pair; ++i) {

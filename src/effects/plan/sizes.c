@@ -75,9 +75,8 @@ static status contact_nodes(const plan_sizes *s,
                             int (*is)(const friction_rule *rule), double *n) {
   const model *m = s->m;
   const mesh *msh = s->msh;
-  OWNED unsigned char *seen = NULL;
   *n = 0.0;
-  PASS_NEW(seen, msh->n_node);
+  OWNED_NEW(unsigned char, seen, msh->n_node);
   for (int i = 0; i < m->n.contact; ++i) {
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
     int counts = is == NULL;
@@ -96,9 +95,8 @@ static status count_held(const plan_sizes *s, double *unknowns, double *nodes) {
   const model *m = s->m;
   const mesh *msh = s->msh;
   int dim = msh->dim;
-  OWNED unsigned char *fixed = NULL;
   *unknowns = *nodes = 0.0;
-  PASS_NEW(fixed, dim * msh->n_node);
+  OWNED_NEW(unsigned char, fixed, dim * msh->n_node);
   if (m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i) {
     int any = 0;

@@ -278,10 +278,9 @@ static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
 }
 
 static status try_threshold(model *m, const mesh *msh) {
-  OWNED unsigned char *flows = NULL;
   int seen = 0;
   if (!is_worth_it(m)) return OK;
-  PASS_NEW(flows, msh->n_elem);
+  OWNED_NEW(unsigned char, flows, msh->n_elem);
   PASS(run_elastic(m, msh, flows, &seen));
   if (!seen) return OK;
   OWNS(m);

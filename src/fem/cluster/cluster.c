@@ -135,10 +135,9 @@ static status list_elements(const mesh *m, cluster_set *c) {
 
 static status list_nodes(const mesh *m, cluster_set *c) {
   const int per = m->dim + 1;
-  OWNED int *seen = NULL;
   int n = 0;
-  PASS_NEW_ALL(OF(seen, m->n_node), OF(c->first, c->n + 1),
-               OF(c->node, per * c->start[c->n]));
+  OWNED_NEW(int, seen, m->n_node);
+  PASS_NEW_ALL(OF(c->first, c->n + 1), OF(c->node, per * c->start[c->n]));
   for (int k = 0; k < c->n; ++k) {
     for (int q = c->start[k]; q < c->start[k + 1]; ++q)
       for (int a = 0; a < per; ++a) {

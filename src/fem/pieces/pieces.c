@@ -46,13 +46,12 @@ static void unite_round_node_3d(const mesh *m, const pieces *p, int j,
 }
 
 static status unite_by_faces(const mesh *m, const pieces *p, int *up) {
-  OWNED int *last = NULL;
-  OWNED corner *list = NULL;
   size_t most = 0;
   for (int j = 0; j < m->n_node; ++j)
     if (p->start[j + 1] - p->start[j] > most)
       most = p->start[j + 1] - p->start[j];
-  PASS_NEW_ALL(OF(last, m->n_node), OF(list, 3 * most));
+  OWNED_NEW(int, last, m->n_node);
+  OWNED_NEW(corner, list, 3 * most);
   for (int j = 0; j < m->n_node; ++j)
     if (m->dim == 2)
       unite_round_node_2d(m, p, j, last, up);

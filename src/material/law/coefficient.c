@@ -287,9 +287,8 @@ static const char *find_values(const law_card *law, double t,
 status law_card_check(const law_card *law, elastic_type type,
                       message_log *log) {
   char text[256];
-  OWNED double *value = NULL;
   if (law->ops->check == NULL) return OK;
-  PASS_NEW(value, law_n_value(law));
+  OWNED_NEW(double, value, law_n_value(law));
   for (int i = 0; i < law->n_set; ++i) {
     const char *wrong = find_values(law, 0, law->temperature[i], value);
     if (wrong == NULL)
@@ -345,4 +344,3 @@ unsigned law_varies(const law_card *law) {
     bits |= LAW_VARIES_TEMPERATURE;
   return bits;
 }
-

@@ -594,9 +594,8 @@ static int by_entity(const void *p, const void *q) {
 /* The order in which the entities are numbered, not that of the file. */
 static status finish_blocks(msh *m) {
   raw_mesh *raw = m->raw;
-  OWNED block_order *order = NULL;
-  OWNED raw_block *sorted = NULL;
-  PASS_NEW_ALL(OF(order, raw->n_block), OF(sorted, raw->n_block));
+  OWNED_NEW(block_order, order, raw->n_block);
+  OWNED_NEW(raw_block, sorted, raw->n_block);
   for (int i = 0; i < raw->n_block; ++i)
     order[i] =
         (block_order){raw->block[i].dim, m->fill[i].tag, raw->block[i].type, i};

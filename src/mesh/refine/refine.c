@@ -222,9 +222,8 @@ static status mark_neighbours(bisection *b) {
 /* The faces that may be curved, as nodes: new. */
 static status find_surface(bisection *b) {
   const cell_list *low = &b->cells[b->dim - 1];
-  OWNED int *node = NULL;
   surface_faces f = {.n_node = b->dim};
-  PASS_NEW(node, b->dim * low->n);
+  OWNED_NEW(int, node, b->dim * low->n);
   for (int i = 0; i < low->n; ++i) {
     if (!b->is_round[low->item[i].block]) continue;
     for (int k = 0; k < b->dim; ++k) node[b->dim * f.n + k] = low->item[i].v[k];
@@ -264,10 +263,9 @@ static void straighten(bisection *b, int id, int p, int q) {
 
 /* A new node for each marked edge, in the order of marking. */
 static status add_middles(bisection *b) {
-  OWNED uint64_t *key = NULL;
   PASS(grow(b));
   PASS(find_surface(b));
-  PASS_NEW(key, b->marked.n);
+  OWNED_NEW(uint64_t, key, b->marked.n);
   for (size_t k = 0; k < b->marked.n_slot; ++k)
     if (b->marked.id[k] > 0) key[b->marked.id[k] - 1] = b->marked.key[k];
   b->first_mid = b->n_node;

@@ -218,10 +218,9 @@ static void improve_border(round_surface *s, const double *within) {
 }
 
 static status set_surface(round_surface *s, int n_all) {
-  OWNED unsigned char *bent = NULL;
-  OWNED double *within = NULL;
   if (s->f.n_node == 2) return OK;
-  PASS_NEW_ALL(OF(bent, n_all), OF(within, 3 * n_all));
+  OWNED_NEW(unsigned char, bent, n_all);
+  OWNED_NEW(double, within, 3 * n_all);
   set_normals(s, bent);
   for (int i = 0; i < n_all; ++i) {
     normalise(s->normal + 3 * i);

@@ -541,8 +541,7 @@ static void check_inner(const model *m, const mesh *msh, const pair_card *c,
 static status check_surfaces(const model *m, const mesh *msh,
                              const pair_card *c, const surface_pair *p,
                              int *group) {
-  OWNED unsigned char *seen = NULL;
-  PASS_NEW(seen, msh->n_face);
+  OWNED_NEW(unsigned char, seen, msh->n_face);
   for (int k = 0; k < 2; ++k) {
     if (p->group[k][0] == '\0') return OK;
     group[k] =
@@ -594,9 +593,8 @@ static status check_contact_pair(model *m, const mesh *msh,
 
 status model_open_cracks(model *m, mesh *msh) {
   const int n = m->n.crack;
-  OWNED mesh_cut *cut = NULL;
   if (n == 0 || msh->n_crack > 0) return OK;
-  PASS_NEW(cut, n);
+  OWNED_NEW(mesh_cut, cut, n);
   for (int i = 0; i < n; ++i) {
     crack *k = &m->mesh.cracks[i];
     const int id = check_group(m, msh, k->group, &k->group_at);
@@ -625,9 +623,8 @@ static void mark_nodes(const mesh_group *g, unsigned char *touches) {
 
 static status check_ties(model *m, const mesh *msh,
                          const unsigned char *fixed) {
-  OWNED unsigned char *touches = NULL;
   if (m->n.tie == 0) return OK;
-  PASS_NEW(touches, msh->n_node);
+  OWNED_NEW(unsigned char, touches, msh->n_node);
   for (int i = 0; i < m->n.contact && !is_lost(m); ++i) {
     const contact *c = &m->contacts[i];
     mark_nodes(&msh->group[c->group_id], touches);
@@ -646,8 +643,8 @@ static status check_ties(model *m, const mesh *msh,
 }
 
 static status check_pairs(model *m, const mesh *msh) {
-  OWNED unsigned char *fixed = NULL;
   if (!model_has_pairs(m)) return OK;
+  OWNED unsigned char *fixed = NULL;
   PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
   if (!is_lost(m) && m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < m->n.contact; ++i)

@@ -153,9 +153,8 @@ static status check_places(const char *path, const mesh *msh, double scale,
 
 static status to_mesh(const char *path, const pairs *p, const mesh *msh,
                       double scale, double *value) {
-  OWNED numbered *node = NULL;
-  OWNED unsigned char *known = NULL;
-  PASS_NEW_ALL(OF(node, msh->n_node), OF(known, msh->n_node));
+  OWNED_NEW(numbered, node, msh->n_node);
+  OWNED_NEW(unsigned char, known, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i)
     node[i] = (numbered){msh->node_no[i], i};
   qsort(node, (size_t)msh->n_node, sizeof *node, compare_no);

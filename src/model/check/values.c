@@ -330,10 +330,9 @@ void check_values(const model *m, const mesh *msh) {
 
 status check_agreement(const model *m, const mesh *msh, int step_id) {
   const step *s = &m->steps[step_id];
-  OWNED int *owner = NULL;
-  OWNED double *ud = NULL;
   size_t n_dof = (size_t)msh->dim * (size_t)msh->n_node;
-  PASS_NEW_ALL(OF(owner, n_dof), OF(ud, n_dof));
+  OWNED_NEW(int, owner, n_dof);
+  OWNED_NEW(double, ud, n_dof);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     const mesh_group *g = &msh->group[l->group_id];

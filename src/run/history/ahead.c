@@ -17,8 +17,7 @@ static int effects_have_to_look(const model *m) {
 
 /* The supports of r->step; *other: they are not those of the step before. */
 static status take_supports(run *r, int *other) {
-  OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, r->n_dof);
+  OWNED_NEW(unsigned char, fixed, r->n_dof);
   load_fixed(r->msh, r->step, fixed);
   *other = memcmp(fixed, r->body.fixed, r->n_dof) != 0;
   memcpy(r->body.fixed, fixed, r->n_dof);

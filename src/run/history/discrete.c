@@ -55,9 +55,8 @@ static void discrete_free(discrete *d) {
 /* Energy x' M x/2 of the condensed solution. */
 static status condensed_energy(const contact_problem *cp, const double *u,
                                const double *r, double *energy) {
-  OWNED double *y = NULL;
   const double *x = contact_has_stiffness(cp) ? u : r;
-  PASS_NEW(y, cp->m);
+  OWNED_NEW(double, y, cp->m);
   contact_apply(cp, x, y);
   *energy = 0.0;
   for (int i = 0; i < cp->m; ++i) *energy += 0.5 * x[i] * y[i];

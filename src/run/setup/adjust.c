@@ -44,10 +44,9 @@ static status check_elements(const model *m, const mesh *msh,
 
 static status adjust(const model *m, const surface_input *in, surface_pair *p,
                      mesh *msh) {
-  OWNED double *x = NULL;
   const size_t n = (size_t)msh->dim * (size_t)msh->n_node;
   if (!p->adjust) return OK;
-  PASS_NEW(x, n);
+  OWNED_NEW(double, x, n);
   for (int pass = 0; pass < PASSES; ++pass) {
     PASS(move_slave(in, p, x));
     memcpy(msh->x, x, n * sizeof *x);

@@ -66,11 +66,10 @@ static status find_reach(run *r) {
 
 /* The active nodes at the start or the end of the step. */
 static status choose_nodes(run *r, int n_motion) {
-  OWNED double *gap = NULL;
   r->nodes.reach.passes = 0;
   if (!may_leave_out(r, n_motion)) return OK;
   TIMED(STAGE_SURFACE);
-  PASS_NEW(gap, r->nodes.n);
+  OWNED_NEW(double, gap, r->nodes.n);
   PASS(find_reach(r));
   PASS(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
                    gap, NULL));
@@ -178,8 +177,7 @@ static status take_places(run *r) {
 
 status run_prepare(run *r) {
   int fresh, other = 0;
-  OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, r->n_dof);
+  OWNED_NEW(unsigned char, fixed, r->n_dof);
   load_fixed(r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
   known_rate_forget(&r->solving.rate);
@@ -224,10 +222,9 @@ static int is_at(const mesh *msh, int group_id, const int *body, int body_id) {
 static status has_friction(const run *r, size_t elem_no, int *answer) {
   const model *m = r->m;
   const mesh *msh = r->msh;
-  OWNED int *body = NULL;
   int n = 0, e = 0;
   *answer = 0;
-  PASS_NEW(body, msh->n_elem);
+  OWNED_NEW(int, body, msh->n_elem);
   PASS(mesh_bodies(msh, &n, body));
   while (msh->elem_no[e] != elem_no) ++e;
   for (int i = 0; i < m->n.contact; ++i)

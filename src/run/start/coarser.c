@@ -169,9 +169,8 @@ static int nearest_of(const coarser_state *x, const along *list, int axis,
 
 status coarser_match(const coarser_state *x, const contact_surface *s,
                      int *nearest) {
-  OWNED along *list = NULL;
   const int axis = longest_axis(x);
-  PASS_NEW(list, x->n);
+  OWNED_NEW(along, list, x->n);
   for (int i = 0; i < x->n; ++i) list[i] = (along){x->x[x->dim * i + axis], i};
   qsort(list, (size_t)x->n, sizeof *list, by_place);
   for (int i = 0; i < s->n; ++i) nearest[i] = nearest_of(x, list, axis, s, i);

@@ -30,8 +30,7 @@ void form_apply_scale(int m, double power, const double *scale, double *M) {
 }
 
 status form_invert(int m, dense *d, int *good) {
-  OWNED double *scale = NULL;
-  PASS_NEW(scale, m);
+  OWNED_NEW(double, scale, m);
   d->n = m;
   for (int i = 0; i < m; ++i) d->work[i] = d->a[(size_t)i * (size_t)(m + 1)];
   const double power = form_scale(m, d->work, scale);
