@@ -237,9 +237,7 @@ static void find_centroids(const mesh *m, double *x) {
 
 status space_recovery_new(const domain *d, space_recovery **out) {
   const mesh *m = d->mesh;
-  PASS_NEW(*out, 1);
-  space_recovery *s = *out;
-  OWNS(s);
+  MAKES(space_recovery, s, out);
   s->d = d;
   for (int k = 0; k < m->n_elem; ++k)
     if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;

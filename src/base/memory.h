@@ -120,6 +120,12 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNS(object)                                                 \
   void *before_ __attribute__((cleanup(memory_own_again), unused)) = \
       memory_own(object)
+/* MAKES(type, s, out): s = *out is a new object that OWNS the rest, or RAISE.
+ */
+#define MAKES(type, s, out) \
+  PASS_NEW(*out, 1);        \
+  type *s = *out;           \
+  OWNS(s)
 void *memory_own(void *p); /* the owner before, for memory_own_again */
 void memory_own_again(void *const *before);
 

@@ -667,10 +667,7 @@ static int has_pair(const surface_input *in) {
 }
 
 static status surface_new(int dim, int n, int pairs, contact_surface **out) {
-  contact_surface *s;
-  PASS_NEW(s, 1);
-  *out = s;
-  OWNS(s);
+  MAKES(contact_surface, s, out);
   s->dim = dim;
   PASS_NEW_ALL(OF(s->node_id, n), OF(s->node_no, n), OF(s->contact_id, n),
                OF(s->side_id, n * (dim - 1)), OF(s->side_area, n * (dim - 1)),

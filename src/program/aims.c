@@ -35,9 +35,7 @@ struct aims {
 status aims_new(const model *m, int all, aims **out) {
   *out = NULL;
   if (m->n.goal == 0) return OK;
-  PASS_NEW(*out, 1);
-  aims *a = *out;
-  OWNS(a);
+  MAKES(aims, a, out);
   a->all = all;
   a->counts = all || model_targeted_goal(m) != NULL;
   a->n = m->n.goal;

@@ -240,9 +240,7 @@ static status linear_system_new(const linear_states *rows,
                                 linear_system **out) {
   const size_t m = (size_t)rows->cp->m;
   int singular = 0;
-  PASS_NEW(*out, 1);
-  linear_system *s = *out;
-  OWNS(s);
+  MAKES(linear_system, s, out);
   s->rows = rows;
   s->bent = is_bent(rows);
   PASS_NEW_REALS(m, &s->b, &s->Ax);
@@ -300,9 +298,7 @@ struct contact_adjoint {
 
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out) {
-  PASS_NEW(*out, 1);
-  contact_adjoint *a = *out;
-  OWNS(a);
+  MAKES(contact_adjoint, a, out);
   a->cp = cp;
   a->u = u;
   a->r = r;

@@ -101,9 +101,7 @@ static void find_shares(effect_plan *p) {
 
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   int capacity = 0;
-  PASS_NEW(*out, 1);
-  effect_plan *p = *out;
-  OWNS(p);
+  MAKES(effect_plan, p, out);
   PASS(plan_sizes_find(m, msh, n, &p->sizes));
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;

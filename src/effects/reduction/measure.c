@@ -48,10 +48,7 @@ static double coefficient_of(const reduction *n, const state *s, int i) {
 
 status reduction_new(const model *m, const mesh *msh, reduction **out) {
   const size_t strains = (size_t)m->ns * (size_t)msh->n_elem;
-  reduction *n = NULL;
-  PASS_NEW(n, 1);
-  *out = n;
-  OWNS(n);
+  MAKES(reduction, n, out);
   n->m = m;
   n->msh = msh;
   n->d.mesh = msh;

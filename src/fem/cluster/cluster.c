@@ -197,9 +197,7 @@ status cluster_new(const cluster_input *in, cluster_set **out) {
   *out = NULL;
   for (int i = 0; i < in->n_section; ++i) wanted |= in->share[i] > 0;
   if (!wanted) return OK;
-  PASS_NEW(*out, 1);
-  cluster_set *c = *out;
-  OWNS(c);
+  MAKES(cluster_set, c, out);
   PASS(grow(in, c));
   PASS(list_elements(in->mesh, c));
   PASS(list_nodes(in->mesh, c));

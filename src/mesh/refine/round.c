@@ -251,9 +251,7 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
                          round_surface **out) {
   *out = NULL;
   if (f->n == 0) return OK;
-  PASS_NEW(*out, 1);
-  round_surface *s = *out;
-  OWNS(s);
+  MAKES(round_surface, s, out);
   s->f = *f;
   s->x = x;
   PASS_NEW_ALL(OF(s->next, 2 * n_all), OF(s->number, n_all), OF(s->flat, n_all),

@@ -289,10 +289,7 @@ static status default_step(model *m) {
 }
 
 status model_from_deck(deck *d, message_log *log, model **out) {
-  model *m = NULL;
-  PASS_NEW(m, 1);
-  *out = m;
-  OWNS(m);
+  MAKES(model, m, out);
   m->deck = d;
   m->log = log;
   m->name.title = "";

@@ -104,10 +104,7 @@ struct opened {
 
 static status opened_new(const contact_problem *cp, const tangent_factor *by,
                          opened **out) {
-  opened *o;
-  PASS_NEW(o, 1);
-  *out = o;
-  OWNS(o);
+  MAKES(opened, o, out);
   o->by = *by;
   o->n = cp->n;
   o->dim = cp->dim;

@@ -472,10 +472,7 @@ static const double NEAR_END = 0x1p-30; /* share of z0 that is made exact */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
 status lcp_new(int n, int rank, lcp_work **out) {
-  lcp_work *w;
-  PASS_NEW(w, 1);
-  *out = w;
-  OWNS(w);
+  MAKES(lcp_work, w, out);
   int cap = w->cap = (rank < n ? rank : n) + 2;
   w->n = n;
   PASS_NEW_ALL(
