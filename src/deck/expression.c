@@ -440,8 +440,7 @@ done:
 double expression_value(const expression *e, const double x[3], double t) {
   double stack[STACK];
   int n = 0;
-  for (int i = 0; i < e->n; ++i) {
-    const item *op = &e->code[i];
+  for (EACH(const item, op, e->code, e->n)) {
     if (op->kind == NUMBER) {
       stack[n++] = op->number;
     } else if (op->kind == VARIABLE) {

@@ -119,8 +119,7 @@ static status pin_sets(condensed *c) {
   if (c->rigid.n_set == 0) return OK;
   PASS(rigid_orthonormalise(k, &c->d, &c->rigid));
   PASS_NEW(c->pinned, c->m);
-  for (int t = 0; t < c->rigid.n_set; ++t) {
-    const rigid_set *s = &c->rigid.set[t];
+  for (EACH(const rigid_set, s, c->rigid.set, c->rigid.n_set)) {
     if (s->k == s->n_motion) {
       PASS(rigid_pin(&c->rigid, s, c->pinned));
       continue;

@@ -260,11 +260,6 @@ static status grow_tree(const mesh *m, tree *t) {
   return OK;
 }
 
-static void tree_free(tree *t) {
-  RELEASE(t->elem, t->node);
-  *t = (tree){0};
-}
-
 static int boxes_meet(const box *p, const box *q) {
   return p->lo[0] < q->hi[0] && q->lo[0] < p->hi[0] && p->lo[1] < q->hi[1] &&
          q->lo[1] < p->hi[1] && p->lo[2] <= q->hi[2] && q->lo[2] <= p->hi[2];
@@ -368,7 +363,8 @@ static status find(search *s, int e, int from) {
 }
 
 static status start_tree(search *s, int n) {
-  tree_free(&s->t);
+  RELEASE(s->t.elem, s->t.node);
+  s->t = (tree){0};
   PASS_NEW(s->t.elem, n);
   return OK;
 }
@@ -425,27 +421,22 @@ static status check_inside(search *s, const side_list *sides,
 }
 
 static status check_skins(const builder *b, const side_list *sides) {
-  status st = OK;
   const mesh *m = b->m;
   search s = {.b = b};
-  char *is_skin = NULL;
+  SCRATCH;
   for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
     s.far = fmax(s.far, fabs(m->x[i]) / m->size);
-  NEW(is_skin, m->n_elem);
+  OWNED_NEW(char, is_skin, m->n_elem);
   for (int i = 0; i < sides->n; ++i)
     is_skin[sides->side[i].id / (m->dim + 1)] = 1;
-  TRY(check_skin(&s, is_skin));
-  TRY(check_inside(&s, sides, is_skin));
+  PASS(check_skin(&s, is_skin));
+  PASS(check_inside(&s, sides, is_skin));
   if (s.other.n > 0 && !b->raw->meets)
     message_add(b->log, P3043, b->at, "elements of two bodies overlap: %s",
                 s.other.text);
   if (s.same.n > 0)
     message_add(b->log, P3034, b->at, "elements overlap: %s", s.same.text);
-  TRY(build_check(b));
-done:
-  RELEASE(is_skin, s.body);
-  tree_free(&s.t);
-  return st;
+  return build_check(b);
 }
 
 status overlap_check(builder *b) {

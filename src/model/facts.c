@@ -60,10 +60,8 @@ const contact *facts_first_given(const model *m) {
 
 const load *facts_first_body_load(const model *m) {
   for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *l = &m->steps[i].loads.item[k];
+    for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n))
       if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY) return l;
-    }
   return NULL;
 }
 
@@ -115,8 +113,7 @@ static int held_before(const model *m, int step_id, const load *l) {
 
 const load *facts_moving_support(const model *m) {
   for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *l = &m->steps[i].loads.item[k];
+    for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n)) {
       if (l->kind != LOAD_FIXING) continue;
       int let_go = i + 1 < m->n.step &&
                    (m->steps[i + 1].renewed >> LOAD_FIXING & 1u) != 0;
@@ -144,10 +141,8 @@ static const initial *first_initial(const model *m, int type) {
 
 int facts_starts_strained(const model *m) {
   int units = 0;
-  for (int i = 0; i < m->n.material; ++i) {
-    const material *mat = &m->materials[i];
+  for (EACH(const material, mat, m->materials, m->n.material))
     units |= mat->used && mat->law.ops != NULL && mat->law.ops->units != NULL;
-  }
   return first_initial(m, INITIAL_STRAIN) != NULL ||
          (units && first_initial(m, INITIAL_INTERNAL) != NULL);
 }
@@ -165,12 +160,10 @@ int model_flows(const model *m, int elem_id) {
 }
 
 const material *facts_first_warm_law(const model *m) {
-  for (int i = 0; i < m->n.material; ++i) {
-    const material *mat = &m->materials[i];
+  for (EACH(const material, mat, m->materials, m->n.material))
     if (mat->used && mat->law.ops != NULL &&
         (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE))
       return mat;
-  }
   return NULL;
 }
 
@@ -254,12 +247,10 @@ int model_updates_pairs(const model *m) {
 }
 
 const step *facts_first_whole(const model *m) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step))
     if (s->output.condensed >= 0 || s->check != CHECK_NONE ||
         s->accuracy.theorems)
       return s;
-  }
   return NULL;
 }
 

@@ -202,8 +202,7 @@ static status add_points(const model *m, const mesh *msh, const load *l,
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F) {
   memset(F, 0, (size_t)msh->dim * (size_t)msh->n_node * sizeof *F);
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     switch ((load_kind)l->kind) {
       case LOAD_PRESSURE:
       case LOAD_TRACTION:
@@ -226,8 +225,7 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
 
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud) {
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     if (l->kind != LOAD_FIXING) continue;
     const mesh_group *g = &msh->group[l->group_id];
     const double w = share_at(l, s, t);
@@ -283,8 +281,7 @@ static status refuse_temperature(const model *m, const mesh *msh,
 void load_temperature_initial_at(const model *m, const mesh *msh,
                                  const double *b, double *T) {
   memset(T, 0, (size_t)msh->n_elem * sizeof *T);
-  for (int i = 0; i < m->n.initial; ++i) {
-    const initial *c = &m->initial.lines[i];
+  for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k)
@@ -295,8 +292,7 @@ void load_temperature_initial_at(const model *m, const mesh *msh,
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {
   memset(T, 0, (size_t)msh->n_elem * sizeof *T);
-  for (int i = 0; i < m->n.initial; ++i) {
-    const initial *c = &m->initial.lines[i];
+  for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {
@@ -322,8 +318,7 @@ status load_temperature_at(const model *m, const mesh *msh, const step *s,
   memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
   if (s > m->steps && t < step_end(s))
     PASS(load_temperature_at(m, msh, s - 1, step_end(s - 1), b, T0, start));
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     if (l->kind != LOAD_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[l->group_id];
     const double w = share_at(l, s, t);
@@ -394,8 +389,7 @@ static void cards_of_step(const mesh *msh, const step *s, int *last) {
 /* The same of the initial conditions. */
 static void initial_cards(const model *m, const mesh *msh, int *last) {
   memset(last, 0, (size_t)msh->n_elem * sizeof *last);
-  for (int i = 0; i < m->n.initial; ++i) {
-    const initial *c = &m->initial.lines[i];
+  for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
     int first = 0;
@@ -438,8 +432,7 @@ status load_temperature_zones(const model *m, const mesh *msh, int *zone) {
 
 void load_fixed(const mesh *msh, const step *s, unsigned char *fixed) {
   memset(fixed, 0, (size_t)msh->dim * (size_t)msh->n_node);
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     if (l->kind != LOAD_FIXING) continue;
     const mesh_group *g = &msh->group[l->group_id];
     for (int k = 0; k < g->n_node; ++k)

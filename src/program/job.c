@@ -27,8 +27,7 @@ static status check_safe_mesh(const model *m) {
  * between their nodes. */
 static int find_rounds(const model *m, const char **names) {
   int n = 0;
-  for (int i = 0; i < m->n.contact; ++i) {
-    const contact *c = &m->contacts[i];
+  for (EACH(const contact, c, m->contacts, m->n.contact)) {
     if (c->is_crack) continue;
     names[n++] = c->is_pair ? c->pair.group[0] : c->group;
     if (c->is_pair) names[n++] = c->pair.group[1];

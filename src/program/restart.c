@@ -182,8 +182,7 @@ static status add_geometry(const char *path, FILE *out) {
 static status add_files(FILE *out, const void *what) {
   const job_input *in = what;
   int step_no = 0;
-  for (int i = 0; i < in->d->n_card; ++i) {
-    const card *c = &in->d->cards[i];
+  for (EACH(const card, c, in->d->cards, in->d->n_card)) {
     const parameter *file = card_parameter(c, "FILE");
     if (strcmp(c->name, "STEP") == 0) ++step_no;
     if (file == NULL || !file->has_value) continue;

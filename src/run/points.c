@@ -69,11 +69,9 @@ static status take_initial(const run *r, visco *v, const initial *c) {
 }
 
 static status initial_state(const run *r, visco *v) {
-  for (int i = 0; i < r->m->n.initial; ++i) {
-    const initial *c = &r->m->initial.lines[i];
+  for (EACH(const initial, c, r->m->initial.lines, r->m->n.initial))
     if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
       PASS(take_initial(r, v, c));
-  }
   return OK;
 }
 

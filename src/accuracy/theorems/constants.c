@@ -93,16 +93,15 @@ static status lanczos_run(const symmetric_map *map, lanczos *s, double *v,
 }
 
 status lanczos_largest(const symmetric_map *map, double *largest) {
-  status st = OK;
-  lanczos s = {.n = map->n};
-  double *v = NULL;
-  NEW(s.Q, (size_t)map->n * STEPS);
-  NEW_REALS(STEPS, &s.alpha, &s.beta, &s.d, &s.e);
-  NEW_ALL(OF(s.Z, (size_t)STEPS * STEPS), OF(s.work, 2 * STEPS), OF(v, map->n));
-  TRY(lanczos_run(map, &s, v, largest));
-done:
-  RELEASE(s.Q, s.alpha, s.beta, s.d, s.e, s.Z, s.work, v);
-  return st;
+  double *v;
+  OWNED_NEW(lanczos, s, 1);
+  OWNS(s);
+  s->n = map->n;
+  PASS_NEW(s->Q, (size_t)map->n * STEPS);
+  PASS_NEW_REALS(STEPS, &s->alpha, &s->beta, &s->d, &s->e);
+  PASS_NEW_ALL(OF(s->Z, (size_t)STEPS * STEPS), OF(s->work, 2 * STEPS),
+               OF(v, map->n));
+  return lanczos_run(map, s, v, largest);
 }
 
 status largest_eigenvalue(const symmetric_map *map, double *largest) {

@@ -144,8 +144,7 @@ static status pass(archive *a, const char *name, archive_kind kind, void *v,
 }
 
 status archive_pass_on(const archive *from, const char *group, archive *to) {
-  for (int k = 0; k < from->n; ++k) {
-    const archive_item *x = &from->item[k];
+  for (EACH(const archive_item, x, from->item, from->n)) {
     archive_item *i = NULL;
     if (strncmp(x->name, group, strlen(group)) != 0) continue;
     if (find_whole(to, x->name) != NULL) continue;
@@ -305,8 +304,7 @@ static status put_items(const archive *a, hid_t file, const char *path) {
   PASS(list_items(a, &list));
   PASS(write_dataset(file, path, "/list", H5T_NATIVE_UCHAR, strlen(list) + 1,
                      list));
-  for (int i = 0; i < a->n; ++i) {
-    const archive_item *it = &a->item[i];
+  for (EACH(const archive_item, it, a->item, a->n)) {
     snprintf(name, sizeof name, "/data/%s", it->name);
     PASS(write_dataset(file, path, name, type_of(it->kind), it->n, it->data));
   }

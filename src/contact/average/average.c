@@ -206,9 +206,9 @@ static void close_loop(const walk *w, int first) {
 
 static status lay_straight(const average_patch *p, const fans *f, double apart,
                            layout *l) {
-  status st = OK;
-  walk w = {.p = p, .f = f, .l = l};
-  NEW_ALL(OF(w.done, p->n_face), OF(l->loop, p->n_node));
+  OWNED_NEW(unsigned char, done, p->n_face);
+  walk w = {.p = p, .f = f, .l = l, .done = done};
+  PASS_NEW(l->loop, p->n_node);
   /* Lines with ends first; what is left is closed. */
   for (int i = 0; i < p->n_node; ++i)
     while (fan_size(f, i) != 2 && next_face(&w, i) >= 0) {
@@ -221,9 +221,7 @@ static status lay_straight(const average_patch *p, const fans *f, double apart,
       close_loop(&w, i);
       w.row += apart;
     }
-done:
-  memory_free(w.done);
-  return st;
+  return OK;
 }
 
 static status layout_new(const average_patch *patch, const average_rule *rule,

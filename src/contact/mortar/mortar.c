@@ -170,8 +170,7 @@ static status add_dropped(builder *b, int face, face_part *part,
 
 static status add_masters(builder *b, face_part *part) {
   const int dim = b->in->mesh->dim;
-  for (int k = 0; k < b->n_point; ++k) {
-    const sample *p = &b->points[k];
+  for (EACH(const sample, p, b->points, b->n_point)) {
     const partner *m = &b->search.list[p->partner];
     const int *node = mortar_nodes(b->in, m->face);
     b->met[m->face] = 1;

@@ -314,8 +314,7 @@ static status find_creep(const run *r, crack_state *own) {
   OWNED_NEW(fracture_factors, found, own->n);
   for (size_t k = 0; k < r->n_dof; ++k)
     own->rate[k] = (r->now.u[k] - r->old.u[k]) / dt;
-  for (int i = 0; i < own->n; ++i) {
-    tip *t = &own->tips[i];
+  for (EACH(tip, t, own->tips, own->n)) {
     fracture *f = own->of[t->crack_id];
     const double n = exponent_of(r, &fracture_points(f)[t->point]);
     if (t->point == 0 || s.share != n / (n + 1.0)) {

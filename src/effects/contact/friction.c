@@ -219,8 +219,7 @@ static const load *holder(const run *r, int i, int a) {
   const contact_surface *s = r->surface;
   const double *axis = &s->frame[s->dim * s->dim * i + s->dim * a];
   const load *best = NULL;
-  for (int k = 0; k < r->step->loads.n; ++k) {
-    const load *l = &r->step->loads.item[k];
+  for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
     if (l->kind != LOAD_FIXING ||
         !in_group(&r->msh->group[l->group_id], s->node_id[i]))
       continue;

@@ -80,8 +80,7 @@ static status keep(run *r, void *self, archive *a) {
 static effect_work expected(const plan_sizes *s) {
   const double passes = s->is_flat ? 3.0 : 6.0;
   double n = 0.0;
-  for (int i = 0; i < s->m->n.step; ++i) {
-    const step *p = &s->m->steps[i];
+  for (EACH(const step, p, s->m->steps, s->m->n.step)) {
     if (p->accuracy.mesh == MESH_ERROR_YES) n += step_increments(p);
     n += p->accuracy.mesh == MESH_ERROR_END;
   }

@@ -466,8 +466,7 @@ static patch element_patch(const run *r, int e) {
 
 static status add_loads(const run *r, const goal_ring *rings, double *dF) {
   const load_list *all = &r->step->loads;
-  for (int i = 0; i < all->n; ++i) {
-    const load *l = &all->item[i];
+  for (EACH(const load, l, all->item, all->n)) {
     const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
     if (!on_faces && (l->kind != LOAD_BODY || !varies(l))) continue;
     const mesh_group *g = &r->msh->group[l->group_id];

@@ -82,8 +82,7 @@ static int bends(const load *l) {
 static status given_edges(const run *r, given_edge *e, int *n) {
   OWNED unsigned char *in = NULL;
   *n = 0;
-  for (int i = 0; i < r->step->loads.n; ++i) {
-    const load *l = &r->step->loads.item[i];
+  for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
     if (!bends(l)) continue;
     const mesh_group *g = &r->msh->group[l->group_id];
     if (in == NULL) PASS_NEW(in, r->msh->n_node);

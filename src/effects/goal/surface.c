@@ -378,8 +378,7 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
   OWNED int *where = NULL;
   *turn = *area = 0.0;
   PASS(goal_places(r, &where));
-  for (int k = 0; k < s->n_edge; ++k) {
-    const contact_edge *e = &s->edge[k];
+  for (EACH(const contact_edge, e, s->edge, s->n_edge)) {
     if (!e->closed || e->other[0] >= 0) continue;
     for (int along = 0; along < (e->stuck ? 1 : 2); ++along) {
       double v[2][3], more[3] = {0.0}, sum = 0.0;

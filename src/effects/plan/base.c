@@ -193,8 +193,8 @@ static const double TEXT = 250.0; /* operations to write a number */
 double plan_rows(const plan_sizes *s, int table, double items) {
   double most = 0.0;
   for (int i = 0; i < s->m->n.step && s->msh != NULL; ++i)
-    for (int k = 0; k < s->m->steps[i].print.n; ++k) {
-      const print_request *p = &s->m->steps[i].print.requests[k];
+    for (EACH(const print_request, p, s->m->steps[i].print.requests,
+              s->m->steps[i].print.n)) {
       if (p->table != table) continue;
       if (p->group_id < 0) return items;
       const mesh_group *g = &s->msh->group[p->group_id];
@@ -210,8 +210,8 @@ effect_work plan_table(const plan_sizes *s, int table, double all) {
 
 int plan_requires_table(const model *m, int table, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i)
-    for (int q = 0; q < m->steps[i].print.n; ++q) {
-      const print_request *p = &m->steps[i].print.requests[q];
+    for (EACH(const print_request, p, m->steps[i].print.requests,
+              m->steps[i].print.n)) {
       if (p->table != table) continue;
       snprintf(why, size, "*PRINT, %s, %s:%d", print_word(table), PLACE(p->at));
       return 1;

@@ -162,8 +162,7 @@ static void print_name(const plan_row *r, const char *lead, FILE *f) {
 void plan_print(const effect_plan *p, const char *lead, FILE *f) {
   fprintf(f, "%s%-26s %-3s %18s %7s  %s\n", lead, "effect", "", "size",
           "cpu[%]", "called for by");
-  for (int i = 0; i < p->n; ++i) {
-    const plan_row *r = &p->rows[i];
+  for (EACH(const plan_row, r, p->rows, p->n)) {
     print_name(r, lead, f);
     fprintf(f, " %18s %7s  %s\n",
             r->on && r->work.kind != NULL

@@ -21,8 +21,7 @@ static double shown_of(const step *s, int frequency) {
 
 double plan_shown(const model *m, int table) {
   double n = 0.0;
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step)) {
     double here = table != 0 ? 0.0 : shown_of(s, s->output.frequency);
     for (int k = 0; k < s->print.n; ++k)
       if (table == 0 || s->print.requests[k].table == table)

@@ -421,8 +421,7 @@ int reduction_refuted(const model *m) {
 
 int reduction_take_back(model *m, int all) {
   int n = 0;
-  for (int k = 0; k < m->reduction.n; ++k) {
-    omitted *row = &m->reduction.row[k];
+  for (EACH(omitted, row, m->reduction.row, m->reduction.n)) {
     if (row->back || (is_within(m, row) && !all)) continue;
     row->back = 1;
     row->lost = all;

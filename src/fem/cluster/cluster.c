@@ -176,20 +176,19 @@ static status weigh(const cluster_input *in, cluster_set *c) {
 }
 
 static status grow(const cluster_input *in, cluster_set *c) {
-  status st = OK;
   const mesh *m = in->mesh;
-  growth g = {.m = m, .section_id = in->section_id};
-  TRY(mesh_node_elements(m, &g.start, &g.elem));
-  NEW_ALL(OF(g.size, m->n_elem), OF(g.outside, m->n_node),
-          OF(g.taken, m->n_node), OF(c->of, m->n_elem));
-  g.of = c->of;
-  for (int e = 0; e < m->n_elem; ++e) g.of[e] = -1;
+  PASS_NEW(c->of, m->n_elem);
+  OWNED_NEW(growth, g, 1);
+  OWNS(g);
+  *g = (growth){.m = m, .section_id = in->section_id, .of = c->of};
+  PASS(mesh_node_elements(m, &g->start, &g->elem));
+  PASS_NEW_ALL(OF(g->size, m->n_elem), OF(g->outside, m->n_node),
+               OF(g->taken, m->n_node));
+  for (int e = 0; e < m->n_elem; ++e) g->of[e] = -1;
   for (int i = 0; i < in->n_section; ++i)
-    if (in->share[i] > 0) grow_section(&g, i);
-  c->n = g.n;
-done:
-  RELEASE(g.start, g.elem, g.size, g.outside, g.taken);
-  return st;
+    if (in->share[i] > 0) grow_section(g, i);
+  c->n = g->n;
+  return OK;
 }
 
 status cluster_new(const cluster_input *in, cluster_set **out) {

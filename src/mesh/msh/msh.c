@@ -568,8 +568,7 @@ static status finish_groups(msh *m) {
   raw_mesh *raw = m->raw;
   if (raw->n_group > 0)
     qsort(raw->group, (size_t)raw->n_group, sizeof *raw->group, by_dim_and_tag);
-  for (int i = 0; i < raw->n_group; ++i) {
-    raw_group *g = &raw->group[i];
+  for (EACH(raw_group, g, raw->group, raw->n_group)) {
     int id = table_find(&m->names, table_key(g->dim, g->tag));
     size_t n = id >= 0 ? m->name[id].length : 0;
     PASS_NEW(g->name, n + 1);

@@ -60,21 +60,17 @@ static void release(bisection *b) {
 /* 1: only what is bisected here, points apart. */
 static int is_simple(const raw_mesh *raw) {
   static const int type[] = {15, 1, 2, 4};
-  for (int i = 0; i < raw->n_block; ++i) {
-    const raw_block *p = &raw->block[i];
+  for (EACH(const raw_block, p, raw->block, raw->n_block))
     if (p->dim < 0 || p->dim > 3 || p->type != type[p->dim]) return 0;
-  }
   return 1;
 }
 
 static int is_named(const bisection *b, const raw_block *p) {
-  for (int i = 0; i < b->raw->n_group; ++i) {
-    const raw_group *g = &b->raw->group[i];
+  for (EACH(const raw_group, g, b->raw->group, b->raw->n_group))
     for (int k = 0; k < p->n_physical; ++k)
       if (g->dim == p->dim && g->tag == p->physical[k])
         for (int j = 0; j < b->q->n_round; ++j)
           if (strcmp(g->name, b->q->rounds[j]) == 0) return 1;
-  }
   return 0;
 }
 
@@ -349,19 +345,14 @@ static status split(bisection *b, int dim, const cell *c, cell_list *to) {
 }
 
 static status split_all(bisection *b) {
-  status st = OK;
-  cell_list next = {0};
   for (int d = 1; d <= b->dim; ++d) {
+    cell_list next = {0};
     for (int i = 0; i < b->cells[d].n; ++i)
-      TRY(split(b, d, &b->cells[d].item[i], &next));
-    const cell_list old = b->cells[d];
+      PASS(split(b, d, &b->cells[d].item[i], &next));
+    memory_free(b->cells[d].item);
     b->cells[d] = next;
-    next = (cell_list){0};
-    memory_free(old.item);
   }
-done:
-  memory_free(next.item);
-  return st;
+  return OK;
 }
 
 /* *done: no element is too long. */
@@ -391,8 +382,7 @@ static status give_block(const bisection *b, raw_block *p, int block) {
   p->no = p->node = NULL;
   p->n = 0;
   PASS_NEW_ALL(OF(p->no, n), OF(p->node, p->n_per * n));
-  for (int i = 0; i < from->n; ++i) {
-    const cell *c = &from->item[i];
+  for (EACH(const cell, c, from->item, from->n)) {
     if (c->block != block) continue;
     p->no[p->n] = c->no;
     for (size_t k = 0; k < p->n_per; ++k)

@@ -174,11 +174,9 @@ status apply_time_points(reading *r) {
   *own = (time_points){.name = p->name == NULL ? "" : p->name,
                        .total_time = p->time,
                        .at = *value_place(r, "NAME")};
-  for (int i = 0; i < r->card->n_record; ++i) {
-    const record *line = &r->card->records[i];
+  for (EACH(const record, line, r->card->records, r->card->n_record))
     PASS(p->type ? read_range(r, line, own, &room)
                  : read_times(r, line, own, &room));
-  }
   return OK;
 }
 

@@ -33,8 +33,7 @@ status apply_reference(reading *r) {
                 "a deck has one *REFERENCE, the first is in line %d",
                 ref->at.line_no);
   ref->at = r->card->at;
-  for (int i = 0; i < r->card->n_record; ++i) {
-    const record *line = &r->card->records[i];
+  for (EACH(const record, line, r->card->records, r->card->n_record)) {
     const field *f = line->fields;
     quantity value = {0};
     if (record_fields(r, line, 2, 2, "name, value") != 0) continue;

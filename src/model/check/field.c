@@ -204,26 +204,16 @@ status check_start_file(const model *m) {
 
 status nodal_field_read(const char *path, const mesh *msh, double scale,
                         double **value) {
-  status st = OK;
-  pairs p = {0};
-  scan s = {0};
+  ENDS_BY(pairs_free) pairs p = {0};
+  ENDS_BY(scan_close) scan s = {0};
   int is_hdf5 = 0;
-  *value = NULL;
-  TRY(find_kind(path, &is_hdf5));
+  PASS(find_kind(path, &is_hdf5));
   if (is_hdf5) {
-    TRY(read_hdf5(path, FEW + (1L + FOREIGN) * msh->n_node, &p));
+    PASS(read_hdf5(path, FEW + (1L + FOREIGN) * msh->n_node, &p));
   } else {
-    TRY(scan_open(&s, path, ERR_DECK));
-    TRY(read_gmsh(&s, &p));
+    PASS(scan_open(&s, path, ERR_DECK));
+    PASS(read_gmsh(&s, &p));
   }
-  NEW(*value, msh->n_node);
-  TRY(to_mesh(path, &p, msh, scale, *value));
-done:
-  scan_close(&s);
-  pairs_free(&p);
-  if (st != OK) {
-    memory_free(*value);
-    *value = NULL;
-  }
-  return st;
+  PASS_NEW(*value, msh->n_node);
+  return to_mesh(path, &p, msh, scale, *value);
 }

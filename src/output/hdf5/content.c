@@ -60,8 +60,7 @@ static void add_part(hdf5_field *f, const column *c) {
 
 static status add_field(hdf5_file *h, const column *c, entity of,
                         const char *group, int id) {
-  for (int i = 0; i < h->n_field; ++i) {
-    hdf5_field *f = &h->fields[i];
+  for (EACH(hdf5_field, f, h->fields, h->n_field)) {
     if (strcmp(f->name, c->field) != 0 || strcmp(f->group, group) != 0)
       continue;
     add_part(f, c);

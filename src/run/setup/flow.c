@@ -53,8 +53,7 @@ enum { STRAIN_GIVEN = 1, UNITS_GIVEN = 2 };
 /* What the deck gives of each point, bits[x.n]. */
 static void find_given(const run *r, unsigned char *bits) {
   const visco *v = r->strains.visco;
-  for (int i = 0; i < r->m->n.initial; ++i) {
-    const initial *c = &r->m->initial.lines[i];
+  for (EACH(const initial, c, r->m->initial.lines, r->m->n.initial)) {
     if (c->type != INITIAL_STRAIN && c->type != INITIAL_INTERNAL) continue;
     const mesh_group *g = &r->msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {

@@ -117,8 +117,7 @@ static status check_range(const run *r) {
 /* The first load of the run that is in range, at the increments of its steps: a
  * step with almost no load is scaled with it. */
 static status find_load_of_run(run *r) {
-  for (int k = 0; k < r->m->n.step; ++k) {
-    const step *s = r->m->steps + k;
+  for (EACH(const step, s, r->m->steps, r->m->n.step)) {
     const double dt = s->dt > 0.0 ? s->dt : s->total;
     for (int i = 1; (i - 0.5) * dt < s->total; ++i) {
       PASS(load_forces(r->m, r->msh, s, s->start + i * dt, r->now.F));
