@@ -254,12 +254,11 @@ static status find_bodies(condensed *c, int *of) {
 
 /* The whole matrix in the place of those of the bodies. */
 static status make_operator(condensed *c) {
-  const stiffness *k = c->k;
   OWNED_NEW(int, body, c->m);
   OWNED_NEW(unsigned char, held, c->m);
   PASS(find_bodies(c, body));
   for (int q = 0; q < c->m; ++q) held[q] = (unsigned char)is_held(c, q);
-  const operator_data data = {.k = k,
+  const operator_data data = {.k = c->k,
                               .x = c->d.mesh->x,
                               .order = c->d.order,
                               .held = held,

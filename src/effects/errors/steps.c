@@ -471,8 +471,10 @@ static effect_work expected(const plan_sizes *s) {
           (4.0 * work_factor_entries(s) + PLAN_STEPS * 2.0 * m * m)};
 }
 
+static int is_estimated(const step *s) { return s->accuracy.time; }
+
 static int requires_time_error(const model *m, char *why, size_t size) {
-  return plan_requires_accuracy(m, "TIME", facts_asks_time_error, why, size);
+  return plan_requires_accuracy(m, "TIME", is_estimated, why, size);
 }
 
 VALUE(time_error, v->s->errors.time_error.asked

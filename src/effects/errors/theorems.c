@@ -196,10 +196,12 @@ static status see_increment(run *r, void *own) { return see_theory(r, own, 0); }
 
 static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
 
+static int is_checked(const step *s) { return s->accuracy.theorems; }
+
 static int requires_theorems(const model *m, char *why, size_t size) {
-  if (facts_first_step(m, facts_asks_theory) != NULL && m->n.contact == 0)
+  if (facts_first_step(m, is_checked) != NULL && m->n.contact == 0)
     return plan_says(0, why, size, "no *CONTACT card");
-  return plan_requires_accuracy(m, "THEORY", facts_asks_theory, why, size);
+  return plan_requires_accuracy(m, "THEORY", is_checked, why, size);
 }
 
 static effect_work expected(const plan_sizes *s) {

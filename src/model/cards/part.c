@@ -21,7 +21,6 @@ status apply_units(reading *r) {
 }
 
 status apply_mesh(reading *r) {
-  const card_options *p = r->param;
   model *m = r->m;
   if (m->mesh.given) {
     message_add(m->log, P2015, &r->card->at, "a deck has one *MESH card");
@@ -29,7 +28,7 @@ status apply_mesh(reading *r) {
   }
   m->mesh.given = 1;
   m->mesh.at = *value_place(r, "FILE");
-  m->mesh.scale = p->body.scale;
+  m->mesh.scale = r->param->body.scale;
   return field_file(r, &m->mesh.file);
 }
 

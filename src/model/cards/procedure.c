@@ -101,10 +101,9 @@ static void read_increments(const reading *r, step *s) {
 
 status apply_quasistatic(reading *r) {
   step *s = open_step(r);
-  const card_options *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_QUASISTATIC;
-  s->form = p->type;
+  s->form = r->param->type;
   read_increments(r, s);
   return OK;
 }
@@ -307,11 +306,10 @@ status apply_output(reading *r) {
 }
 
 status apply_restart(reading *r) {
-  const card_options *p = r->param;
   step *s = open_step(r);
   if (second_in_step(r, s->restart.given)) return OK;
   s->restart.given = 1;
   s->restart.at = r->card->at;
-  s->restart.frequency = p->frequency;
+  s->restart.frequency = r->param->frequency;
   return OK;
 }

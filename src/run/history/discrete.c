@@ -148,9 +148,8 @@ static status solve_lcp(discrete *d) {
   status st = OK;
   double start = timer_cpu();
   const solver_choice *choice = &d->step->solver;
-  const solver_ops *ops = choice->ops;
   lcp_data p = {d->p->n, d->p->matrix, d->p->load};
-  lcp_control control = {choice->tol, choice->max_iter, ops != NULL};
+  lcp_control control = {choice->tol, choice->max_iter, choice->ops != NULL};
   lcp_verdict v;
   TRY(lcp_solve(&p, &control, d->r, d->u, &v));
   d->report = (solver_report){.outcome = v.outcome,
