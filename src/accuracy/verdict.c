@@ -101,28 +101,25 @@ static status put_given(const verdict_scene *s, given_form **form,
 /* v[m]: the motion; *outcome of complementary pivoting. */
 static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   const contact_problem *cp = s->cp;
-  status st = OK;
   _Alignas(16) char param[PARAM_SIZE] = {0};
   const solver_ops *lemke = solver_find("lemke");
   const solver_control control = {.tol = 1e-8};
   solver_report rep = {.outcome = RUNNING};
-  void *work = NULL;
-  double *u = NULL, *r = NULL, *A = NULL;
-  given_form *form = NULL;
+  OWNED double *u = NULL, *r = NULL, *A = NULL;
   *end = RUNNING;
-  if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) goto done;
+  if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) return OK;
   contact_problem own = *cp;
   if (cp->op != NULL) {
-    NEW(A, (size_t)cp->m * (size_t)cp->m);
+    PASS_NEW(A, (size_t)cp->m * (size_t)cp->m);
     contact_dense(cp, A);
     own.A = A;
     own.op = NULL;
   }
-  TRY(put_given(s, &form, &own));
-  NEW_REALS(cp->m, &u, &r);
+  OWNED_OF(given_form, form, put_given(s, &form, &own));
+  PASS_NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
-  TRY(solver_set_up(lemke, &own, param, &work));
-  TRY(lemke->solve(&own, param, work, &control, u, r, &rep));
+  OWNED_OF(void, work, solver_set_up(lemke, &own, param, &work));
+  PASS(lemke->solve(&own, param, work, &control, u, r, &rep));
   *end = rep.outcome;
   const double *ray = lemke_ray(work);
   if (rep.outcome == STOPPED_RAY && ray != NULL)
@@ -130,11 +127,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   else if (rep.outcome == STOPPED_RAY)
     *end = STOPPED_STAGNATION;
   if (form != NULL) given_form_move(form, v);
-done:
-  memory_free(form);
-  memory_free(work);
-  RELEASE(u, r, A);
-  return st;
+  return OK;
 }
 
 /* Nodes that open, and those that only slide. */

@@ -70,6 +70,11 @@
     }                                                      \
   } while (0)
 
+/* ADDED(load, l, list, n, capacity): l is a new item n++ of the list. */
+#define ADDED(type, item, list, n, capacity) \
+  PASS_GROW(list, n, capacity);              \
+  type *item = &(list)[(n)++]
+
 /* PASS_RESIZE(pointer, from, to): its items are kept, the rest is zero. */
 #define PASS_RESIZE(pointer, from, to) RESIZE_OR(RAISE, pointer, from, to)
 #define RESIZE_OR(fail, pointer, from, to)                                \
@@ -118,6 +123,10 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNED_NEW(type, name, n) \
   OWNED type *name = NULL;       \
   PASS_NEW(name, n)
+/* The same of a block that a call requests into &a. */
+#define OWNED_OF(type, name, call) \
+  OWNED type *name = NULL;         \
+  PASS(call)
 /* The same by a function of a pointer to the local. */
 #define ENDS_BY(function) __attribute__((cleanup(function)))
 

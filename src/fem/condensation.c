@@ -92,9 +92,8 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
 /* The motions that only contact holds: c->rigid. A body nothing holds: name it
  * and the motion. */
 static status find_motions(condensed *c) {
-  OWNED free_motion *list = NULL;
   int n = 0;
-  PASS(support_motions(&c->d, &n, &list, &c->rigid));
+  OWNED_OF(free_motion, list, support_motions(&c->d, &n, &list, &c->rigid));
   for (int q = 0; q < n; ++q)
     if (list[q].held_by == HELD_BY_NOTHING)
       RAISE(ERR_SINGULAR,

@@ -658,8 +658,7 @@ static status add_set(const triangle *t, const null_basis *z,
   const body_sets *s = t->s;
   const int *node = s->node + s->start[t->id];
   const size_t n = (size_t)t->n;
-  PASS_GROW(r->set, r->n_set, r->capacity);
-  rigid_set *to = &r->set[r->n_set++];
+  ADDED(rigid_set, to, r->set, r->n_set, r->capacity);
   *to = (rigid_set){.n = t->n,
                     .n_motion = z->rank,
                     .k = z->exact,

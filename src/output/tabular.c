@@ -88,11 +88,10 @@ static int in_group(const mesh_group *g, int node_id) {
 static status contact_rows(const table *columns, tabular *t, const view *v,
                            const mesh_group *g) {
   const contact_surface *surface = v->s->contacts.surface;
-  OWNED int *order = NULL;
   if (surface == NULL) return OK;
   OWNED_NEW(size_t, no, surface->n);
   for (int i = 0; i < surface->n; ++i) no[i] = surface->node_no[i];
-  PASS(order_by_number(surface->n, no, &order));
+  OWNED_OF(int, order, order_by_number(surface->n, no, &order));
   for (int i = 0; i < surface->n; ++i)
     if (g == NULL || in_group(g, surface->node_id[order[i]]))
       table_row(columns, v, order[i], t->dat.f);

@@ -53,8 +53,7 @@ static void print_sizes(const model *m, const mesh *msh) {
 }
 
 static status print_plan(const model *m, const mesh *msh, int n) {
-  OWNED effect_plan *p = NULL;
-  PASS(plan_new(m, msh, n, &p));
+  OWNED_OF(effect_plan, p, plan_new(m, msh, n, &p));
   puts("effects");
   plan_print(p, "  ", stdout);
   return OK;

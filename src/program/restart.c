@@ -89,9 +89,8 @@ static status read_text(archive *a, const char *name, char **text) {
 
 /* Messages of the run so far, so that repeated ones are recognised. */
 static status report_warnings(const job_input *in, archive *a) {
-  OWNED char *text = NULL;
   char *end;
-  PASS(read_text(a, "warnings", &text));
+  OWNED_OF(char, text, read_text(a, "warnings", &text));
   for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
     int id, no, used = 0;
     *end = '\0';

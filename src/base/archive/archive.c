@@ -299,9 +299,8 @@ static status write_dataset(hid_t file, const char *path, const char *name,
 }
 
 static status put_items(const archive *a, hid_t file, const char *path) {
-  OWNED char *list = NULL;
   char name[ARCHIVE_NAME + 8];
-  PASS(list_items(a, &list));
+  OWNED_OF(char, list, list_items(a, &list));
   PASS(write_dataset(file, path, "/list", H5T_NATIVE_UCHAR, strlen(list) + 1,
                      list));
   for (EACH(const archive_item, it, a->item, a->n)) {

@@ -183,8 +183,7 @@ status source_ints(const hdf5_source *s, const char *name, int optional,
 
 status source_int(const hdf5_source *s, const char *name, int *value) {
   long n = 0;
-  OWNED int *all = NULL;
-  PASS(source_ints(s, name, 0, MOST_ITEMS, &n, &all));
+  OWNED_OF(int, all, source_ints(s, name, 0, MOST_ITEMS, &n, &all));
   if (n != 1)
     RAISE(ERR_DECK, "%s: %s has %ld items, expected one integer", s->path, name,
           n);

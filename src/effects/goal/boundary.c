@@ -436,10 +436,9 @@ static void add_beyond_edge(const run *r, const load *l, const rim_edge *e,
 
 static status add_rim(const run *r, const load *l, double *dF) {
   const mesh *m = r->msh;
-  OWNED rim_edge *e = NULL;
   OWNED int *next = NULL, *last = NULL;
   int n;
-  PASS(rim_new(m, &m->group[l->group_id], &e, &n));
+  OWNED_OF(rim_edge, e, rim_new(m, &m->group[l->group_id], &e, &n));
   PASS_NEW_ALL(OF(next, 2 * n), OF(last, m->n_node));
   for (int k = 0; k < 2 * n; ++k) {
     int *at = &last[e[k / 2].v[k % 2]];
@@ -482,9 +481,8 @@ static status add_loads(const run *r, const goal_ring *rings, double *dF) {
 
 status goal_add_boundary(const run *r, double *dF) {
   ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  OWNED int *where = NULL;
   PASS(goal_ring_new(r->msh, &rings));
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
     if (p.is_curved) add_part_beyond(r, &p, f, where, dF);

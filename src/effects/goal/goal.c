@@ -265,9 +265,8 @@ static double of_sticks(const run *r, const goal_state *own, const shared *s,
 static status of_slip(const run *r, const shared *s, double *sum) {
   const int dim = r->msh->dim;
   const double *now = goal_estimator_edges(s->estimator);
-  OWNED int *where = NULL;
   *sum = 0.0;
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < s->surface.n_edge; ++k, now += dim) {
     const contact_edge *e = &s->surface.edge[k];
     const int q[2] = {where[e->a], where[e->b]};

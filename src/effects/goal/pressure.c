@@ -175,9 +175,8 @@ static status add_faces(const run *r, const goal_card *g, const weight *w,
                         double *sum) {
   const mesh *m = r->msh;
   const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
-  OWNED int *where = NULL;
   double normal[3];
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < of->n_item; ++k) {
     const int *v = m->face + m->dim * of->item_id[k];
     int q[3] = {0}, all = 1;
@@ -241,8 +240,7 @@ static void line_free(line *l) { RELEASE(l->node, l->s); }
 static status find_next(const run *r, const goal_card *g, int *next) {
   const mesh *m = r->msh;
   const mesh_group *of = &m->group[r->m->contacts[g->contact_id].group_id];
-  OWNED int *where = NULL;
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
   for (int k = 0; k < of->n_item; ++k) {
     const int *v = m->face + 2 * of->item_id[k];
@@ -491,10 +489,8 @@ static status look_round(const run *r, const goal_card *g, double radius,
                          weight *w, rim *out) {
   const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
   const int n = 3 * of->n_item;
-  OWNED side *e = NULL;
-  OWNED int *where = NULL;
-  PASS(sides_of(r->msh, of, &e));
-  PASS(goal_places(r, &where));
+  OWNED_OF(side, e, sides_of(r->msh, of, &e));
+  OWNED_OF(int, where, goal_places(r, &where));
   *out = (rim){0, 0.0};
   for (int k = 0, last; k < n; k = last) {
     const int *v = e[k].v;
@@ -515,10 +511,8 @@ static status look_round(const run *r, const goal_card *g, double radius,
 static status parts_behind(const run *r, const goal_card *g, double largest,
                            double *behind) {
   const mesh_group *of = &r->msh->group[r->m->contacts[g->contact_id].group_id];
-  OWNED side *e = NULL;
-  OWNED int *where = NULL;
-  PASS(sides_of(r->msh, of, &e));
-  PASS(goal_places(r, &where));
+  OWNED_OF(side, e, sides_of(r->msh, of, &e));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < 3 * of->n_item; ++k)
     for (int c = 0; c < 3; ++c) {
       if (!lies_in_plane(r, e + k, c)) continue;

@@ -132,10 +132,9 @@ static void add_lost(const run *r, int face, const int *q, goal_form *f) {
 static status add_held(const run *r, const goal_card *g, goal_form *f) {
   const mesh *m = r->msh;
   const contact *on = &r->m->contacts[g->contact_id];
-  OWNED int *where = NULL;
   if (on->is_pair) return OK;
   const mesh_group *of = &m->group[on->group_id];
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int i = 0; i < of->n_item; ++i) {
     const int *v = m->face + m->dim * of->item_id[i];
     int q[3] = {0}, all = 1, none = 1;

@@ -375,9 +375,8 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
                          const double *z, const double *spin, double *turn,
                          double *area) {
   const int dim = r->msh->dim;
-  OWNED int *where = NULL;
   *turn = *area = 0.0;
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (EACH(const contact_edge, e, s->edge, s->n_edge)) {
     if (!e->closed || e->other[0] >= 0) continue;
     for (int along = 0; along < (e->stuck ? 1 : 2); ++along) {

@@ -121,10 +121,9 @@ static int is_default(const step *s) {
 }
 
 status plan_leave_out(model *m, const mesh *msh) {
-  OWNED effect_plan *p = NULL;
   if (facts_first_step(m, is_default) == NULL || model_targeted_goal(m) != NULL)
     return OK;
-  PASS(plan_new(m, msh, 0, &p));
+  OWNED_OF(effect_plan, p, plan_new(m, msh, 0, &p));
   double share = 0.0;
   for (int i = 0; i < p->n; ++i)
     if (p->rows[i].name == mesh_error_effect.name) share = p->rows[i].share;

@@ -91,8 +91,7 @@ static status read_line(lines *r, const record *line, const option *table) {
   }
   for (int i = 0; i < n && !r->wrong; ++i) {
     const field *f = i < line->n_field ? &line->fields[i] : NULL;
-    PASS_GROW(law->value, r->n_value, r->capacity);
-    quantity *q = &law->value[r->n_value++];
+    ADDED(quantity, q, law->value, r->n_value, r->capacity);
     const int absent = f == NULL || (f->text[0] == '\0' && !f->quoted);
     if (!absent || table[i].initial == NULL) {
       r->wrong |= read_value(r, f, &table[i], q) != 0;

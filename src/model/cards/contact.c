@@ -218,8 +218,7 @@ static status new_contact(const reading *r, const char *name, contact **out) {
   model *m = r->m;
   for (int i = 0; i < m->n.contact; ++i)
     shown_name_taken(r, name, m->contacts[i].name);
-  PASS_GROW(m->contacts, m->n.contact, m->cap.contact);
-  contact *c = &m->contacts[m->n.contact++];
+  ADDED(contact, c, m->contacts, m->n.contact, m->cap.contact);
   c->name = name == NULL ? "" : name;
   c->at = r->card->at;
   c->obstacle_id = c->group_id = -1;
@@ -319,8 +318,7 @@ status apply_tie(reading *r) {
   const card_options *p = r->param;
   model *m = r->m;
   for (int i = 0; i < m->n.tie; ++i) name_taken(r, p->name, m->ties[i].name);
-  PASS_GROW(m->ties, m->n.tie, m->cap.tie);
-  tie *t = &m->ties[m->n.tie++];
+  ADDED(tie, t, m->ties, m->n.tie, m->cap.tie);
   t->name = p->name == NULL ? "" : p->name;
   t->at = r->card->at;
   read_surfaces(r, p->surface.slave, p->surface.adjust, &t->pair);
@@ -342,8 +340,7 @@ status apply_crack(reading *r) {
   model *m = r->m;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
-  PASS_GROW(m->mesh.cracks, m->n.crack, m->cap.crack);
-  crack *k = &m->mesh.cracks[m->n.crack++];
+  ADDED(crack, k, m->mesh.cracks, m->n.crack, m->cap.crack);
   k->name = c->name;
   k->group = p->group == NULL ? "" : p->group;
   k->at = c->at;
@@ -528,8 +525,7 @@ status apply_effect(reading *r) {
         p->contact == NULL ? "" : p->contact, r->card->name, first->at.line_no);
     return OK;
   }
-  PASS_GROW(m->effect_cards, m->n.effect_card, m->cap.effect_card);
-  effect_card *c = &m->effect_cards[m->n.effect_card++];
+  ADDED(effect_card, c, m->effect_cards, m->n.effect_card, m->cap.effect_card);
   *c = (effect_card){r->card->name, id, {0}, r->card->at};
   memcpy(c->value, p->value, sizeof c->value);
   return OK;

@@ -31,8 +31,7 @@ typedef int line_reader(const reading *r, const record *line, load *l,
 static status add_load(reading *r, const record *line, int own_field,
                        const load *from) {
   load_list *list = r->in_step ? &open_step(r)->loads : &r->m->load.supports;
-  PASS_GROW(list->item, list->n, list->cap);
-  load *l = &list->item[list->n++];
+  ADDED(load, l, list->item, list->n, list->cap);
   const char *name = r->param->amplitude;
   *l = *from;
   l->group = line->fields[0].text;

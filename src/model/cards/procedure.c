@@ -8,8 +8,7 @@
 status apply_step(reading *r) {
   const card_options *p = r->param;
   model *m = r->m;
-  PASS_GROW(m->steps, m->n.step, m->cap.step);
-  step *s = &m->steps[m->n.step++];
+  ADDED(step, s, m->steps, m->n.step, m->cap.step);
   s->name = p->name == NULL ? "" : p->name;
   s->at = r->card->at;
   r->in_step = 1;
@@ -270,8 +269,7 @@ status apply_print(reading *r) {
     if (named && !p->output.print[i]) s->print.ended |= 1 << i;
     if (!p->output.print[i]) continue;
     s->print.given = 1;
-    PASS_GROW(s->print.requests, s->print.n, s->print.cap);
-    print_request *q = &s->print.requests[s->print.n++];
+    ADDED(print_request, q, s->print.requests, s->print.n, s->print.cap);
     q->table = 1 << i;
     q->group = p->group;
     q->group_id = -1;

@@ -165,8 +165,7 @@ status apply_goal(reading *r) {
   if (r->misread || p->name == NULL || !is_given(r, "QUANTITY")) return OK;
   for (int i = 0; i < m->n.goal; ++i)
     shown_name_taken(r, p->name, m->accuracy.goals[i].name);
-  PASS_GROW(m->accuracy.goals, m->n.goal, m->cap.goal);
-  goal_card *g = &m->accuracy.goals[m->n.goal++];
+  ADDED(goal_card, g, m->accuracy.goals, m->n.goal, m->cap.goal);
   *g = (goal_card){.name = p->name,
                    .quantity = (goal_quantity)p->goal.quantity,
                    .contact_id = -1,

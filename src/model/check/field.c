@@ -101,10 +101,9 @@ static status read_gmsh(scan *s, pairs *p) {
 
 static status read_hdf5(const char *path, long most, pairs *p) {
   ENDS_BY(dataset_close) hdf5_source s = {0};
-  OWNED int *number = NULL;
   long n_value = 0;
   PASS(dataset_open(path, &s));
-  PASS(source_ints(&s, "/node_no", 0, most, &p->n, &number));
+  OWNED_OF(int, number, source_ints(&s, "/node_no", 0, most, &p->n, &number));
   PASS(source_reals(&s, "/temperature", 0, most, &n_value, &p->value));
   if (n_value != p->n)
     RAISE(ERR_DECK, "%s: /node_no has %ld items, /temperature %ld", path, p->n,
@@ -134,8 +133,7 @@ static const numbered *find_node(const mesh *msh, const numbered *node,
 /* Nodes of one number are at one place. */
 static status check_places(const char *path, const mesh *msh, double scale,
                            const numbered *node) {
-  OWNED raw_mesh *raw = NULL;
-  PASS(msh_read_nodes(path, &raw));
+  OWNED_OF(raw_mesh, raw, msh_read_nodes(path, &raw));
   for (size_t i = 0; i < raw->n_node; ++i) {
     const numbered *at = find_node(msh, node, raw->node_no[i]);
     for (int c = 0; at != NULL && c < msh->dim; ++c) {

@@ -66,8 +66,7 @@ static status add_field(hdf5_file *h, const column *c, entity of,
     add_part(f, c);
     return OK;
   }
-  PASS_GROW(h->fields, h->n_field, h->cap_field);
-  hdf5_field *f = &h->fields[h->n_field++];
+  ADDED(hdf5_field, f, h->fields, h->n_field, h->cap_field);
   *f = (hdf5_field){.name = c->field, .of = of, .id = id, .n_part = 1};
   snprintf(f->group, sizeof f->group, "%s", group);
   f->part[0] = c;
@@ -98,8 +97,7 @@ static status choose_fields(hdf5_file *h) {
 static status add_fixed(hdf5_file *h, const char *path, data_type type,
                         int rows, int columns, const void *data, void *own) {
   OWNED void *held = own;
-  PASS_GROW(h->fixed, h->n_fixed, h->cap_fixed);
-  fixed_data *d = &h->fixed[h->n_fixed++];
+  ADDED(fixed_data, d, h->fixed, h->n_fixed, h->cap_fixed);
   *d = (fixed_data){.type = type,
                     .rows = rows,
                     .columns = columns,

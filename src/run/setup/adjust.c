@@ -70,11 +70,10 @@ status setup_adjust(model *m, mesh *msh) {
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].pair.adjust;
   for (int i = 0; i < m->n.tie; ++i) any |= m->ties[i].pair.adjust;
   if (!any) return OK;
-  OWNED double *weight = NULL;
   OWNED unsigned char *fixed = NULL;
   surface_input in = {.mesh = msh,
                       .axisymmetric = m->sections[0].kin == AXISYMMETRIC};
-  PASS(setup_face_weights(m, msh, &weight));
+  OWNED_OF(double, weight, setup_face_weights(m, msh, &weight));
   in.face_weight = weight;
   PASS_NEW(fixed, msh->n_node);
   if (m->n.step > 0) PASS(find_fixed(m, msh, fixed));

@@ -265,8 +265,7 @@ static status refuse_unheld(const run *r, int n, const free_motion *list) {
 }
 
 status run_check_supports(const run *r, int *n) {
-  OWNED free_motion *list = NULL;
-  PASS(domain_free_motions(&r->body.d, n, &list));
+  OWNED_OF(free_motion, list, domain_free_motions(&r->body.d, n, &list));
   return refuse_unheld(r, *n, list);
 }
 

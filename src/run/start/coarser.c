@@ -56,8 +56,7 @@ static void fill_node(const contact_surface *s, const contact_view *v, int i,
 status coarser_add(coarser *c, const contact_surface *s,
                    const contact_view *v) {
   OWNS(c);
-  PASS_GROW(c->state, c->n, c->capacity);
-  coarser_state *x = &c->state[c->n++];
+  ADDED(coarser_state, x, c->state, c->n, c->capacity);
   *x = (coarser_state){.dim = s->dim, .n = s->n, .t = v->t};
   PASS(new_arrays(s, x));
   memcpy(x->gap, v->gap, (size_t)s->n * sizeof *x->gap);
