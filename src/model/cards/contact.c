@@ -428,10 +428,8 @@ static status read_value(reading *r, const char *what, int variable,
 }
 
 /* The rule a *FRICTION card fills: of the contact, or of the step for it; NULL
- * without memory, or *told after a message. */
-static friction_rule *new_rule(const reading *r, int contact_id,
-                               int *reported) {
-  status st = OK;
+ * after a message. */
+static status new_rule(const reading *r, int contact_id, friction_rule **out) {
   contact *c = &r->m->contacts[contact_id];
   friction_rule *rule = &c->friction;
   const friction_rule *old = rule->law == NULL ? NULL : rule;
@@ -441,18 +439,17 @@ static friction_rule *new_rule(const reading *r, int contact_id,
     for (int k = 0; k < s->friction.n; ++k)
       if (s->friction.changes[k].contact_id == contact_id)
         old = &s->friction.changes[k].rule;
-    GROW(s->friction.changes, s->friction.n, s->friction.cap);
+    PASS_GROW(s->friction.changes, s->friction.n, s->friction.cap);
     rule = &s->friction.changes[s->friction.n].rule;
     s->friction.changes[s->friction.n].contact_id = contact_id;
     s->friction.n += old == NULL;
   }
-  *reported = old != NULL;
+  *out = old == NULL ? rule : NULL;
   if (old != NULL)
     message_add(r->m->log, P2032, &r->card->at,
                 "contact %s has its *FRICTION already, at line %d", c->name,
                 old->at.line_no);
-done:
-  return st != OK || *reported ? NULL : rule;
+  return OK;
 }
 
 static status copy_options(const reading *r, const friction_ops *law,
@@ -470,11 +467,10 @@ status apply_friction(reading *r) {
   const card *c = r->card;
   const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
   if (law == NULL || p->contact == NULL) return OK;
-  int reported = 0, id = find_contact(r, p->contact);
+  const int id = find_contact(r, p->contact);
+  friction_rule *rule;
   if (id < 0) return OK;
-  friction_rule *rule = new_rule(r, id, &reported);
-  if (rule == NULL && !reported)
-    RAISE(ERR_MEMORY, "memory exhausted: *FRICTION");
+  PASS(new_rule(r, id, &rule));
   if (rule == NULL) return OK;
   rule->law = law;
   rule->amplitude_name = p->amplitude;
