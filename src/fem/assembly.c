@@ -363,16 +363,27 @@ static status list_coupling(stiffness *k) {
 }
 
 status stiffness_assemble(const domain *d, stiffness **out) {
+  status st = OK;
+  stiffness *k = NULL;
+  *out = NULL;
   TIMED(STAGE_ASSEMBLY);
-  MAKES(stiffness, k, out);
+  PASS_NEW(k, 1);
+  OWNS(k);
   k->dim = d->mesh->dim;
   k->rows = d->rows > 0 ? d->rows : k->dim;
   k->n_node = d->mesh->n_node;
-  PASS(coupling_new(d, &k->moved));
-  PASS(find_graph(d, k));
-  PASS(add_elements(d, k));
-  PASS(add_clusters(d, k));
-  PASS(mark_unknowns(d, k));
+  TRY(coupling_new(d, &k->moved));
+  TRY(find_graph(d, k));
+  TRY(add_elements(d, k));
+  TRY(add_clusters(d, k));
+  TRY(mark_unknowns(d, k));
   turn_blocks(d, k);
-  return list_coupling(k);
+  TRY(list_coupling(k));
+done:
+  if (st != OK) {
+    memory_free(k);
+    k = NULL;
+  }
+  *out = k;
+  return st;
 }
