@@ -9,9 +9,10 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
-typedef memory_header header;
-struct memory_header {
+typedef struct header header;
+struct header {
   size_t bytes;
   header *first;        /* of the blocks it owns */
   header *next, **link; /* with the same owner; what points to this one */
@@ -28,7 +29,7 @@ static size_t most = SIZE_MAX;
 static const char *limit_of = "nothing";
 static long requests, refuse_at;
 static int refuse_all, hit_limit;
-static header **owned; /* list of what is requested, or NULL */
+static header *owner; /* of what is requested, or NULL */
 
 static header *header_of(const void *p) {
   return p == NULL ? NULL : (header *)(void *)((char *)p - HEADER);
@@ -71,7 +72,7 @@ void *memory_new(size_t n, size_t size) {
   if (block == NULL) return NULL;
   header *h = header_of(block + HEADER);
   h->bytes = bytes;
-  if (owned != NULL) join(h, owned);
+  if (owner != NULL) join(h, &owner->first);
   allocated += bytes;
   in_use += bytes;
   if (in_use > peak) peak = in_use;
@@ -117,37 +118,22 @@ char *memory_text(const char *text) {
   return copy;
 }
 
-static void free_all(header **first) {
-  while (*first != NULL) memory_free((char *)*first + HEADER);
-}
-
 void memory_free(void *p) {
   if (p == NULL) return;
   header *h = header_of(p);
-  free_all(&h->first);
+  while (h->first != NULL) memory_free((char *)h->first + HEADER);
   part(h);
   in_use -= h->bytes;
   free(h);
 }
 
-header **memory_own(void *p) {
-  header **before = owned;
-  owned = p == NULL ? NULL : &header_of(p)->first;
+void *memory_own(void *p) {
+  header *before = owner;
+  owner = header_of(p);
   return before;
 }
 
-void memory_own_again(header **const *before) { owned = *before; }
-
-memory_scratch memory_scratch_new(header **first) {
-  const memory_scratch s = {NULL, owned};
-  owned = first;
-  return s;
-}
-
-void memory_scratch_free(memory_scratch *s) {
-  owned = s->before;
-  free_all(&s->first);
-}
+void memory_own_again(void *const *before) { owner = *before; }
 
 void memory_free_all(int n, void *const *p) {
   for (int i = 0; i < n; ++i) memory_free(p[i]);

@@ -120,29 +120,17 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 
 /* Of what is requested from here to the end of the block the object is the
  * owner; NULL: none. Not behind a jump to "done:" of the same block. */
-#define OWNS(object)            \
-  memory_header **const before_ \
-      __attribute__((cleanup(memory_own_again), unused)) = memory_own(object)
+#define OWNS(object)                                                 \
+  void *before_ __attribute__((cleanup(memory_own_again), unused)) = \
+      memory_own(object)
 /* MAKES(type, s, out): s = *out is a new object that OWNS the rest, or RAISE.
  */
 #define MAKES(type, s, out) \
   PASS_NEW(*out, 1);        \
   type *s = *out;           \
   OWNS(s)
-typedef struct memory_header memory_header;
-memory_header **memory_own(void *p); /* the owner before */
-void memory_own_again(memory_header **const *before);
-
-/* SCRATCH; the same of a block itself: what is requested there is freed at its
- * end. What outlives it is requested before, or has an owner of its own. */
-#define SCRATCH                                          \
-  memory_scratch scratch_ ENDS_BY(memory_scratch_free) = \
-      memory_scratch_new(&scratch_.first)
-typedef struct memory_scratch {
-  memory_header *first, **before;
-} memory_scratch;
-memory_scratch memory_scratch_new(memory_header **first);
-void memory_scratch_free(memory_scratch *s);
+void *memory_own(void *p); /* the owner before, for memory_own_again */
+void memory_own_again(void *const *before);
 
 /* From here on all blocks of SuiteSparse come from here too. Called before
  * its first use; further calls change nothing. */

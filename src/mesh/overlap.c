@@ -422,20 +422,21 @@ static status check_inside(search *s, const side_list *sides,
 
 static status check_skins(const builder *b, const side_list *sides) {
   const mesh *m = b->m;
-  search s = {.b = b};
-  SCRATCH;
+  OWNED_NEW(search, s, 1);
+  OWNS(s);
+  s->b = b;
   for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
-    s.far = fmax(s.far, fabs(m->x[i]) / m->size);
+    s->far = fmax(s->far, fabs(m->x[i]) / m->size);
   OWNED_NEW(char, is_skin, m->n_elem);
   for (int i = 0; i < sides->n; ++i)
     is_skin[sides->side[i].id / (m->dim + 1)] = 1;
-  PASS(check_skin(&s, is_skin));
-  PASS(check_inside(&s, sides, is_skin));
-  if (s.other.n > 0 && !b->raw->meets)
+  PASS(check_skin(s, is_skin));
+  PASS(check_inside(s, sides, is_skin));
+  if (s->other.n > 0 && !b->raw->meets)
     message_add(b->log, P3043, b->at, "elements of two bodies overlap: %s",
-                s.other.text);
-  if (s.same.n > 0)
-    message_add(b->log, P3034, b->at, "elements overlap: %s", s.same.text);
+                s->other.text);
+  if (s->same.n > 0)
+    message_add(b->log, P3034, b->at, "elements overlap: %s", s->same.text);
   return build_check(b);
 }
 
