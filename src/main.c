@@ -4,8 +4,6 @@
  */
 #include "base/base.h"
 #include "base/interrupt.h"
-#include "fem/fem.h"
-#include "program/command.h"
 #include "program/inform.h"
 #include "program/job.h"
 

@@ -30,7 +30,6 @@
  */
 #include "accuracy/accuracy.h"
 #include "base/base.h"
-#include "contact/parts.h"
 
 #include <cblas.h>
 #include <lapacke.h>

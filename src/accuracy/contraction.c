@@ -8,9 +8,6 @@
  */
 #include "accuracy/accuracy.h"
 
-#include "base/base.h"
-#include "contact/parts.h"
-
 #include <cblas.h>
 #include <lapacke.h>
 
@@ -154,12 +151,11 @@ static void first_change(linear_contact *s, const double *r) {
 }
 
 static status measure(linear_contact *s, const double *r, double *rate) {
-  OWNED double *dn = NULL;
   double last;
   int good = 0;
   *rate = 0.0;
   if (s->at.n_slip == 0) return OK;
-  PASS_NEW(dn, s->at.cp->n);
+  OWNED_NEW(double, dn, s->at.cp->n);
   *rate = HUGE_VAL;
   PASS(factor(s, &good));
   if (!good) return OK;
@@ -196,14 +192,13 @@ static signed char state_of(const linear_contact *s, int dof) {
  * least recently used rate. */
 static status compare(const linear_contact *s, known_rate *k, int *same) {
   const size_t m = (size_t)s->at.cp->m;
-  OWNED signed char *now = NULL;
   int at = 0;
   if (k->state == NULL || k->m != s->at.cp->m) {
     known_rate_forget(k);
     PASS_NEW(k->state, KNOWN_RATES * m);
     k->m = s->at.cp->m;
   }
-  PASS_NEW(now, m);
+  OWNED_NEW(signed char, now, m);
   for (int dof = 0; dof < s->at.cp->m; ++dof) now[dof] = state_of(s, dof);
   while (at < k->n && memcmp(k->state + m * (size_t)at, now, m) != 0) ++at;
   *same = at < k->n;
@@ -219,9 +214,8 @@ static status compare(const linear_contact *s, known_rate *k, int *same) {
 
 /* Mean factor of the last passes of many, independent of the start. */
 static status measure_limit(linear_contact *s, const double *r, double *rate) {
-  OWNED double *dn = NULL;
   double last, grown = 0.0;
-  PASS_NEW(dn, s->at.cp->n);
+  OWNED_NEW(double, dn, s->at.cp->n);
   first_change(s, r);
   last = move(s);
   for (int k = 1; k <= LONG_RUN && last > 0.0; ++k) {

@@ -5,7 +5,6 @@
  */
 #include "accuracy/accuracy.h"
 
-#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
@@ -71,9 +70,7 @@ static status find_kernel(dense_inverse *d) {
 status dense_inverse_new(int m, const double *M, dense_inverse **out) {
   OWNED double *work = NULL;
   OWNED int *iwork = NULL;
-  PASS_NEW(*out, 1);
-  dense_inverse *d = *out;
-  OWNS(d);
+  MAKES(dense_inverse, d, out);
   d->m = m;
   PASS_NEW_ALL(OF(d->L, (size_t)m * (size_t)m), OF(d->unit, m), OF(d->pivot, m),
                OF(d->y, m), OF(work, 3 * m), OF(iwork, m));

@@ -14,7 +14,6 @@
  */
 #include "accuracy/accuracy.h"
 #include "accuracy/solutions.h"
-#include "base/base.h"
 
 #include <lapacke.h>
 
@@ -398,10 +397,9 @@ static status check_size(const contact_problem *cp) {
 status solutions_by_statuses(const contact_problem *cp, double tol,
                              const double *u, const double *r,
                              solution_set *out) {
-  OWNED search *s = NULL;
   int no;
   PASS(check_size(cp));
-  PASS_NEW(s, 1);
+  OWNED_NEW(search, s, 1);
   s->cp = cp;
   s->tol = tol;
   s->force = contact_scale(cp);

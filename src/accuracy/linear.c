@@ -1,9 +1,6 @@
 /* The contact linearised at a state (accuracy.h). */
 #include "accuracy/accuracy.h"
 
-#include "base/base.h"
-#include "contact/operator.h"
-
 int accuracy_rubs(const contact_problem *cp, int dof) {
   int node_id = dof / cp->dim;
   if (cp->g0 == NULL || dof % cp->dim == 0 || contact_held(cp, dof)) return 0;

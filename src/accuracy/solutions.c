@@ -1,8 +1,6 @@
 /* The set of solutions found, distinguished by their distance in energy. */
 #include "accuracy/solutions.h"
 
-#include "base/base.h"
-
 #include <assert.h>
 #include <cblas.h>
 
@@ -22,8 +20,7 @@ int solution_set_confirmed(const solution_set *s) {
   const char *family = NULL;
   if (s->n_found == 0) return 0;
   if (s->n_pattern > 0) return s->found[0].facts.patterns > 0;
-  for (int k = 0; k < s->n_attempt; ++k) {
-    const solution_attempt *a = &s->attempts[k];
+  for (EACH(const solution_attempt, a, s->attempts, s->n_attempt)) {
     if (a->solution_no != 1) continue;
     if (family != NULL && strcmp(family, a->family) != 0) return 1;
     family = a->family;
@@ -57,8 +54,7 @@ static double unit_energy(const contact_problem *cp) {
 
 static status find_distance(const contact_problem *cp, const double *a,
                             const double *b, double *distance) {
-  OWNED double *t = NULL;
-  PASS_NEW(t, 2 * cp->m);
+  OWNED_NEW(double, t, 2 * cp->m);
   double size = fmax(energy(cp, a, NULL, t), energy(cp, b, NULL, t));
   size = fmax(size, unit_energy(cp));
   double apart = energy(cp, a, b, t);
@@ -221,12 +217,11 @@ static status try_solver(const contact_problem *cp, double tol,
 status solutions_by_solvers(const contact_problem *cp, double tol,
                             const solver_report *report, const double *u,
                             const double *r, solution_set *out) {
-  status st = OK;
-  trial x = {0};
+  OWNED_NEW(double, at_start, 2 * cp->m);
+  trial x = {.u = at_start, .r = at_start + cp->m};
   int no = 0;
-  NEW_REALS(cp->m, &x.u, &x.r);
-  TRY(solution_set_add(cp, tol, u, r, out, &no));
-  GROW(out->attempts, out->n_attempt, out->cap_attempt);
+  PASS(solution_set_add(cp, tol, u, r, out, &no));
+  PASS_GROW(out->attempts, out->n_attempt, out->cap_attempt);
   out->attempts[out->n_attempt++] =
       (solution_attempt){.solver = report->solver,
                          .family = solver_family(report->solver),
@@ -235,8 +230,6 @@ status solutions_by_solvers(const contact_problem *cp, double tol,
                          .residual = report->residual,
                          .solution_no = no};
   for (int i = 0; solver_list[i] != NULL; ++i)
-    if (is_chosen(cp, i)) TRY(try_solver(cp, tol, solver_list[i], &x, out));
-done:
-  RELEASE(x.u, x.r);
-  return st;
+    if (is_chosen(cp, i)) PASS(try_solver(cp, tol, solver_list[i], &x, out));
+  return OK;
 }

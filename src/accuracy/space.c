@@ -179,12 +179,12 @@ static void find_materials(const space_recovery *s, int *of) {
 
 static status find_regions(space_recovery *s) {
   const domain *d = s->d;
-  OWNED int *material = NULL, *region = NULL;
   int n_zone = 1;
   for (int k = 0; k < d->mesh->n_elem && d->zone != NULL; ++k)
     if (d->zone[k] >= n_zone) n_zone = d->zone[k] + 1;
-  PASS_NEW_ALL(OF(material, s->n_section),
-               OF(region, (size_t)s->n_section * (size_t)n_zone));
+  OWNED_NEW(int, material, s->n_section);
+  OWNED int *region = NULL;
+  PASS_NEW(region, (size_t)s->n_section * (size_t)n_zone);
   find_materials(s, material);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     int *at = &region[material[d->section_id[k]] * n_zone +
@@ -237,9 +237,7 @@ static void find_centroids(const mesh *m, double *x) {
 
 status space_recovery_new(const domain *d, space_recovery **out) {
   const mesh *m = d->mesh;
-  PASS_NEW(*out, 1);
-  space_recovery *s = *out;
-  OWNS(s);
+  MAKES(space_recovery, s, out);
   s->d = d;
   for (int k = 0; k < m->n_elem; ++k)
     if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;

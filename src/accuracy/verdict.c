@@ -5,7 +5,6 @@
 #include "base/base.h"
 #include "contact/formulation.h"
 #include "solver/pivoting/lemke.h"
-#include "solver/solver.h"
 
 #include <stdarg.h>
 
@@ -64,10 +63,9 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       size_t size) {
   words w = {text, size};
   ENDS_BY(pair_free) pair p = {0};
-  OWNED double *value = NULL;
   double scale = contact_scale(cp), most = 0.0;
   text[0] = '\0';
-  PASS_NEW(value, cp->n);
+  OWNED_NEW(double, value, cp->n);
   PASS(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   for (int dof = 0; dof < cp->m; ++dof) {
@@ -86,11 +84,10 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
 static status put_given(const verdict_scene *s, given_form **form,
                         contact_problem *cp) {
   const contact_problem before = *cp;
-  OWNED int *node = NULL;
   OWNED double *force = NULL, *u = NULL, *r = NULL;
   int n = 0;
   if (s->given == NULL) return OK;
-  PASS_NEW(node, cp->n);
+  OWNED_NEW(int, node, cp->n);
   PASS_NEW_REALS(cp->m, &force, &u, &r);
   for (int i = 0; i < cp->n; ++i)
     if (s->given[i] >= 0.0) {
@@ -104,28 +101,25 @@ static status put_given(const verdict_scene *s, given_form **form,
 /* v[m]: the motion; *outcome of complementary pivoting. */
 static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   const contact_problem *cp = s->cp;
-  status st = OK;
   _Alignas(16) char param[PARAM_SIZE] = {0};
   const solver_ops *lemke = solver_find("lemke");
   const solver_control control = {.tol = 1e-8};
   solver_report rep = {.outcome = RUNNING};
-  void *work = NULL;
-  double *u = NULL, *r = NULL, *A = NULL;
-  given_form *form = NULL;
+  OWNED double *u = NULL, *r = NULL, *A = NULL;
   *end = RUNNING;
-  if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) goto done;
+  if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) return OK;
   contact_problem own = *cp;
   if (cp->op != NULL) {
-    NEW(A, (size_t)cp->m * (size_t)cp->m);
+    PASS_NEW(A, (size_t)cp->m * (size_t)cp->m);
     contact_dense(cp, A);
     own.A = A;
     own.op = NULL;
   }
-  TRY(put_given(s, &form, &own));
-  NEW_REALS(cp->m, &u, &r);
+  OWNED_OF(given_form, form, put_given(s, &form, &own));
+  PASS_NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
-  TRY(solver_set_up(lemke, &own, param, &work));
-  TRY(lemke->solve(&own, param, work, &control, u, r, &rep));
+  OWNED_OF(void, work, solver_set_up(lemke, &own, param, &work));
+  PASS(lemke->solve(&own, param, work, &control, u, r, &rep));
   *end = rep.outcome;
   const double *ray = lemke_ray(work);
   if (rep.outcome == STOPPED_RAY && ray != NULL)
@@ -133,11 +127,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   else if (rep.outcome == STOPPED_RAY)
     *end = STOPPED_STAGNATION;
   if (form != NULL) given_form_move(form, v);
-done:
-  memory_free(form);
-  memory_free(work);
-  RELEASE(u, r, A);
-  return st;
+  return OK;
 }
 
 /* Nodes that open, and those that only slide. */
@@ -257,10 +247,9 @@ static int add_bad_number(const words *w, const verdict_scene *s) {
 status verdict_text(const verdict_scene *s, char *text, size_t size) {
   words w = {text, size};
   outcome end = RUNNING;
-  OWNED double *v = NULL;
   text[0] = '\0';
   if (add_bad_number(&w, s)) return OK;
-  PASS_NEW(v, s->cp->m);
+  OWNED_NEW(double, v, s->cp->m);
   PASS(find_motion(s, v, &end));
   if (end == STOPPED_RAY) {
     PASS(add_moving(&w, s, v));

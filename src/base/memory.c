@@ -91,10 +91,10 @@ status memory_reals(size_t n, int count, double **const *p) {
 status memory_items(int count, const memory_item *items) {
   for (const memory_item *i = items; i < items + count; ++i) {
     void *block = memory_new(i->n, i->size);
+    memcpy(i->at, &block, sizeof block);
     if (block == NULL)
       RAISE(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", i->n,
             i->size, i->name);
-    memcpy(i->at, &block, sizeof block);
   }
   return OK;
 }

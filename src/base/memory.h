@@ -22,16 +22,11 @@
 #define COPY(to, from, n) memcpy((to), (from), (size_t)(n) * sizeof *(to))
 #define CLEAR(to, n) memset((to), 0, (size_t)(n) * sizeof *(to))
 
-/* NEW(pointer, n): n zeroed items of what the pointer points to, or FAIL. */
-#define NEW(pointer, n) NEW_OR(FAIL, pointer, n)
-#define PASS_NEW(pointer, n) NEW_OR(RAISE, pointer, n)
-#define NEW_OR(fail, pointer, n)                                          \
-  do {                                                                    \
-    (pointer) = memory_new((size_t)(n), sizeof *(pointer));               \
-    if ((pointer) == NULL)                                                \
-      fail(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", \
-           (size_t)(n), sizeof *(pointer), #pointer);                     \
-  } while (0)
+/* for (EACH(const load, l, list, n)): l is one of n items after another. */
+#define EACH(type, item, list, n)                \
+  type *item = (list), *item##_end = item + (n); \
+  item < item##_end;                             \
+  ++item
 
 /* NEW_REALS(n, &a, &b, ...): n zeroed numbers for each, or FAIL. */
 #define NEW_REALS(n, ...) TRY(REALS(n, __VA_ARGS__))
@@ -41,7 +36,10 @@
                (int)(sizeof((double **[]){__VA_ARGS__}) / sizeof(void *)), \
                (double **[]){__VA_ARGS__})
 
-/* NEW_ALL(OF(a, n), OF(b, m), ...): zeroed items for each, or FAIL. */
+/* NEW(a, n), NEW_ALL(OF(a, n), OF(b, m), ...): n zeroed items for each of what
+ * the pointer points to, or FAIL. */
+#define NEW(pointer, n) NEW_ALL(OF(pointer, n))
+#define PASS_NEW(pointer, n) PASS_NEW_ALL(OF(pointer, n))
 #define NEW_ALL(...) TRY(ALL_OF(__VA_ARGS__))
 #define PASS_NEW_ALL(...) PASS(ALL_OF(__VA_ARGS__))
 #define OF(pointer, n) \
@@ -51,38 +49,39 @@
       (int)(sizeof((memory_item[]){__VA_ARGS__}) / sizeof(memory_item)), \
       (memory_item[]){__VA_ARGS__})
 
-/* GROW(pointer, n, capacity): space for item n (0-based), doubling as needed;
- * capacity is an int lvalue that belongs to the pointer. */
-#define GROW(pointer, n, capacity) GROW_OR(FAIL, pointer, n, capacity)
-#define PASS_GROW(pointer, n, capacity) GROW_OR(RAISE, pointer, n, capacity)
-#define GROW_OR(fail, pointer, n, capacity)                \
-  do {                                                     \
-    if ((n) >= (capacity)) {                               \
-      int wanted_ = (capacity) > 0 ? 2 * (capacity) : 8;   \
-      RESIZE_OR(fail, pointer, capacity, (size_t)wanted_); \
-      (capacity) = wanted_;                                \
-    }                                                      \
+/* PASS_GROW(pointer, n, capacity): space for item n (0-based), doubling as
+ * needed; capacity is an int lvalue that belongs to the pointer. */
+#define PASS_GROW(pointer, n, capacity)                  \
+  do {                                                   \
+    if ((n) >= (capacity)) {                             \
+      int wanted_ = (capacity) > 0 ? 2 * (capacity) : 8; \
+      PASS_RESIZE(pointer, capacity, (size_t)wanted_);   \
+      (capacity) = wanted_;                              \
+    }                                                    \
   } while (0)
+
+/* ADDED(load, l, list, n, capacity): l is a new item n++ of the list. */
+#define ADDED(type, item, list, n, capacity) \
+  PASS_GROW(list, n, capacity);              \
+  type *item = &(list)[(n)++]
 
 /* PASS_RESIZE(pointer, from, to): its items are kept, the rest is zero. */
-#define PASS_RESIZE(pointer, from, to) RESIZE_OR(RAISE, pointer, from, to)
-#define RESIZE_OR(fail, pointer, from, to)                                \
-  do {                                                                    \
-    void *grown_ = memory_resize((pointer), (size_t)(from), (size_t)(to), \
-                                 sizeof *(pointer));                      \
-    if (grown_ == NULL)                                                   \
-      fail(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", \
-           (size_t)(to), sizeof *(pointer), #pointer);                    \
-    (pointer) = grown_;                                                   \
+#define PASS_RESIZE(pointer, from, to)                                     \
+  do {                                                                     \
+    void *grown_ = memory_resize((pointer), (size_t)(from), (size_t)(to),  \
+                                 sizeof *(pointer));                       \
+    if (grown_ == NULL)                                                    \
+      RAISE(ERR_MEMORY, "memory exhausted: %zu items of %zu bytes for %s", \
+            (size_t)(to), sizeof *(pointer), #pointer);                    \
+    (pointer) = grown_;                                                    \
   } while (0)
 
-/* GET(pointer, block): a block that a function requests, or FAIL. */
-#define GET(pointer, block) GET_OR(FAIL, pointer, block)
-#define PASS_GET(pointer, block) GET_OR(RAISE, pointer, block)
-#define GET_OR(fail, pointer, block)                                           \
-  do {                                                                         \
-    (pointer) = (block);                                                       \
-    if ((pointer) == NULL) fail(ERR_MEMORY, "memory exhausted: %s", #pointer); \
+/* PASS_GET(pointer, block): a block that a function requests. */
+#define PASS_GET(pointer, block)                           \
+  do {                                                     \
+    (pointer) = (block);                                   \
+    if ((pointer) == NULL)                                 \
+      RAISE(ERR_MEMORY, "memory exhausted: %s", #pointer); \
   } while (0)
 
 void *memory_new(size_t n, size_t size); /* zeroed; NULL if refused */
@@ -108,6 +107,14 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 
 /* OWNED double *a = NULL: freed where the name ends, on each return. */
 #define OWNED __attribute__((cleanup(memory_leave)))
+/* OWNED_NEW(double, a, n): such an a with n zeroed items, or RAISE. */
+#define OWNED_NEW(type, name, n) \
+  OWNED type *name = NULL;       \
+  PASS_NEW(name, n)
+/* The same of a block that a call requests into &a. */
+#define OWNED_OF(type, name, call) \
+  OWNED type *name = NULL;         \
+  PASS(call)
 /* The same by a function of a pointer to the local. */
 #define ENDS_BY(function) __attribute__((cleanup(function)))
 
@@ -116,6 +123,12 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNS(object)                                                 \
   void *before_ __attribute__((cleanup(memory_own_again), unused)) = \
       memory_own(object)
+/* MAKES(type, s, out): s = *out is a new object that OWNS the rest, or RAISE.
+ */
+#define MAKES(type, s, out) \
+  PASS_NEW(*out, 1);        \
+  type *s = *out;           \
+  OWNS(s)
 void *memory_own(void *p); /* the owner before, for memory_own_again */
 void memory_own_again(void *const *before);
 

@@ -9,7 +9,6 @@
 
 #include <stdarg.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum {
   KEPT = 100,       /* messages stored of each severity */

@@ -5,9 +5,7 @@
 #include "base/text.h"
 
 #include <float.h>
-#include <limits.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 const option *option_find(const option *table, const char *name) {

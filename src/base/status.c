@@ -4,7 +4,6 @@
 #include "base/text.h"
 
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { MESSAGE_SIZE = 4096, PATH_SIZE = 1024 };

@@ -4,7 +4,6 @@
 #include "base/memory.h"
 
 #include <assert.h>
-#include <string.h>
 #include <sys/resource.h>
 #include <time.h>
 

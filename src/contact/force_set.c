@@ -174,11 +174,8 @@ static status step_of_operator(force_set *s, const contact_problem *cp,
 }
 
 status force_set_new(const contact_problem *cp, force_set **out) {
-  force_set *s;
   OWNED double *v = NULL;
-  PASS_NEW(s, 1);
-  *out = s;
-  OWNS(s);
+  MAKES(force_set, s, out);
   PASS_NEW_REALS(cp->m, &s->D, &s->origin, &s->load, &s->defect);
   PASS_NEW_ALL(OF(s->part, cp->m), OF(s->rim, cp->n), OF(v, 2 * cp->m));
   scaling(cp, s->D);

@@ -39,11 +39,8 @@ struct velocity_form {
 };
 
 status velocity_form_new(const contact_problem *cp, velocity_form **out) {
-  velocity_form *v;
   int tangents = cp->n * (cp->dim - 1);
-  PASS_NEW(v, 1);
-  *out = v;
-  OWNS(v);
+  MAKES(velocity_form, v, out);
   PASS_NEW_ALL(OF(v->u_old, cp->m), OF(v->R, cp->m), OF(v->gap, cp->n),
                OF(v->side, tangents), OF(v->d, tangents), OF(v->du, cp->m));
   return OK;
@@ -177,10 +174,7 @@ static void condense_normals(const contact_problem *cp, given_form *g) {
 
 status given_form_new(const contact_problem *cp, int n, const int *node,
                       given_form **out) {
-  given_form *g;
-  PASS_NEW(g, 1);
-  *out = g;
-  OWNS(g);
+  MAKES(given_form, g, out);
   g->n = n;
   g->m = cp->m;
   g->dim = cp->dim;

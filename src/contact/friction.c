@@ -71,8 +71,7 @@ static status add_rows(friction_limit *out, int n, const int *node,
                        const sparse_rows *part) {
   const sparse_rows *old = &out->B;
   ENDS_BY(sparse_free) sparse_rows all = {.n = n};
-  OWNED int *row_of = NULL;
-  PASS_NEW(row_of, n);
+  OWNED_NEW(int, row_of, n);
   for (int i = 0; i < n; ++i) row_of[i] = -1;
   for (int k = 0; k < part->n; ++k) row_of[node[k]] = k;
   PASS_NEW(all.start, n + 1);

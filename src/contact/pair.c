@@ -144,9 +144,8 @@ static status couple_kept(const surface_input *in, int pair_id, int *n_held,
   contact_pair *p = &in->pairs[pair_id];
   const size_t n = (size_t)in->mesh->dim * (size_t)in->mesh->n_node;
   OWNED unsigned char *dropped = NULL, *shared = NULL;
-  OWNED double *x = NULL;
   int more = 1;
-  PASS_NEW(x, n);
+  OWNED_NEW(double, x, n);
   for (size_t k = 0; k < n; ++k)
     x[k] = in->mesh->x[k] + (is_moved(in, p) ? in->u[k] : 0.0);
   PASS_NEW_ALL(OF(dropped, in->mesh->n_node), OF(shared, in->mesh->n_node));
@@ -480,12 +479,11 @@ status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r) {
   enum { LONGEST = 100 };
   const size_t n = (size_t)s->dim * (size_t)n_node;
-  OWNED double *rest = NULL;
   memset(r, 0, (size_t)(s->dim * s->n) * sizeof *r);
   const double first = add_forces(s, F, r);
   double more = first;
   if (s->master == NULL) return OK;
-  PASS_NEW(rest, n);
+  OWNED_NEW(double, rest, n);
   for (int k = 0; k < LONGEST && more > rounding * first; ++k) {
     memcpy(rest, F, n * sizeof *rest);
     surface_spread(s, -1, r, rest);
@@ -551,11 +549,10 @@ static void add_names(const finder *f, int q, char *text, size_t size) {
 
 status pairs_check_circles(const contact_surface *s, const surface_input *in,
                            message_log *log) {
-  OWNED int *row = NULL;
-  OWNED unsigned char *done = NULL;
   char text[480] = "";
   if (s->master == NULL) return OK;
-  PASS_NEW_ALL(OF(row, in->mesh->n_node), OF(done, s->n));
+  OWNED_NEW(int, row, in->mesh->n_node);
+  OWNED_NEW(unsigned char, done, s->n);
   for (int i = 0; i < in->mesh->n_node; ++i) row[i] = -1;
   for (int q = 0; q < s->n; ++q) row[s->node_id[q]] = q;
   finder f = {s, in, row, done};

@@ -35,9 +35,8 @@ static status take(contact_reach *x, int n, const unsigned char *keep) {
 }
 
 status reach_choose(contact_reach *x, int n, const double *gap) {
-  OWNED unsigned char *keep = NULL;
   int nearest = 0;
-  PASS_NEW(keep, n);
+  OWNED_NEW(unsigned char, keep, n);
   for (int i = 0; i < n; ++i) {
     keep[i] = gap[i] <= x->distance;
     if (gap[i] < gap[nearest]) nearest = i;
@@ -59,8 +58,7 @@ int reach_misses(const contact_reach *x, int n, const double *gap,
 
 status reach_extend(contact_reach *x, int n, const double *gap,
                     const double *u_n, int stride, int all) {
-  OWNED unsigned char *keep = NULL;
-  PASS_NEW(keep, n);
+  OWNED_NEW(unsigned char, keep, n);
   all = all || x->passes >= MOST_PASSES;
   x->distance *= LONGER;
   ++x->passes;

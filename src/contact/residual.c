@@ -85,12 +85,9 @@ static void find_sparse_bodies(const contact_problem *cp, const double *root,
 }
 
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
-  contact_bodies *b;
   OWNED double *root = NULL;
   OWNED int *list = NULL;
-  PASS_NEW(b, 1);
-  *out = b;
-  OWNS(b);
+  MAKES(contact_bodies, b, out);
   PASS_NEW(b->of, cp->n);
   if (cp->op != NULL) {
     b->n = cp->op->n_body;

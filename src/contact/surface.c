@@ -272,9 +272,8 @@ static int add_coupled(const builder *b, int pair_id, candidate *first) {
 /* Order by node; the contacts of a node keep their order. */
 static status sort_candidates(builder *b) {
   int n_node = b->in->mesh->n_node;
-  OWNED int *start = NULL;
-  OWNED candidate *sorted = NULL;
-  PASS_NEW_ALL(OF(start, n_node + 1), OF(sorted, b->n));
+  OWNED_NEW(int, start, n_node + 1);
+  OWNED_NEW(candidate, sorted, b->n);
   for (int i = 0; i < b->n; ++i) ++start[b->list[i].node_id + 1];
   for (int k = 0; k < n_node; ++k) start[k + 1] += start[k];
   for (int i = 0; i < b->n; ++i)
@@ -695,10 +694,7 @@ static int has_pair(const surface_input *in) {
 }
 
 static status surface_new(int dim, int n, int pairs, contact_surface **out) {
-  contact_surface *s;
-  PASS_NEW(s, 1);
-  *out = s;
-  OWNS(s);
+  MAKES(contact_surface, s, out);
   s->dim = dim;
   PASS_NEW_ALL(OF(s->node_id, n), OF(s->node_no, n), OF(s->contact_id, n),
                OF(s->side_id, n * (dim - 1)), OF(s->side_area, n * (dim - 1)),

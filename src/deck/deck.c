@@ -124,8 +124,7 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
  * there are none. */
 static int check_names(reader *r, const card *c, const char *const *names) {
   int good = 1;
-  for (int i = 0; i < c->n_parameter; ++i) {
-    const parameter *p = &c->parameters[i];
+  for (EACH(const parameter, p, c->parameters, c->n_parameter)) {
     const char *const *name = names;
     while (*name != NULL && strcmp(*name, p->name) != 0) ++name;
     if (*name != NULL) continue;
@@ -185,7 +184,9 @@ static status use_legacy(reader *r, const card *c) {
   if (p == NULL) return OK;
   r->legacy_at = c->at;
   r->waiting_text = p->value.text;
-  const status st = format_read(p->value.text, &r->waiting_format);
+  struct format *read;
+  const status st = format_read(p->value.text, &read);
+  if (st == OK) r->waiting_format = read;
   if (st != ERR_DECK) return st;
   message_add(r->log, P1027, &p->value.at, "%s in '%.200s'", status_message(),
               p->value.text);

@@ -276,9 +276,8 @@ static status read_number(compiler *c) {
   item value = {.kind = NUMBER};
   const char *end = number_end(c->p);
   size_t length = (size_t)(end - c->p);
-  OWNED char *text = NULL;
   snprintf(shown, sizeof shown, "%.*s", (int)length, c->p);
-  PASS_NEW(text, length + 1);
+  OWNED_NEW(char, text, length + 1);
   memcpy(text, c->p, length);
   const char *wrong = number_real(text, &value.number);
   if (wrong != NULL) RAISE(ERR_DECK, "%s: '%s'", wrong, shown);
@@ -441,8 +440,7 @@ done:
 double expression_value(const expression *e, const double x[3], double t) {
   double stack[STACK];
   int n = 0;
-  for (int i = 0; i < e->n; ++i) {
-    const item *op = &e->code[i];
+  for (EACH(const item, op, e->code, e->n)) {
     if (op->kind == NUMBER) {
       stack[n++] = op->number;
     } else if (op->kind == VARIABLE) {

@@ -140,22 +140,15 @@ static status read_next(unroller *u) {
 }
 
 status format_read(const char *text, format **out) {
-  status st = OK;
-  unroller u = {.text = text, .p = text};
-  *out = NULL;
-  PASS_NEW(u.f, 1);
-  OWNS(u.f);
+  MAKES(format, f, out);
+  unroller u = {.text = text, .p = text, .f = f};
   skip(&u);
-  if (*u.p != '(') FAIL(ERR_DECK, "'(' expected at the start");
-  TRY(open_group(&u, 1));
-  while (u.n_group > 0) TRY(read_next(&u));
+  if (*u.p != '(') RAISE(ERR_DECK, "'(' expected at the start");
+  PASS(open_group(&u, 1));
+  while (u.n_group > 0) PASS(read_next(&u));
   skip(&u);
-  if (*u.p != '\0') FAIL(ERR_DECK, "text after the last ')'");
-  *out = u.f;
-  u.f = NULL;
-done:
-  memory_free(u.f);
-  return st;
+  if (*u.p != '\0') RAISE(ERR_DECK, "text after the last ')'");
+  return OK;
 }
 
 /* Text of a column field within the line, blanks cut. */

@@ -213,10 +213,10 @@ status source_open(deck *d, message_log *log, const char *file, const place *at,
   if (shown == NULL) FAIL(ERR_MEMORY, "memory exhausted: name of a file");
   text_shown(shown, size, file);
   s->file = shown;
-  if (at != NULL) {
-    GET(s->from, store_place(d, at));
-  }
-  if (at == NULL) TRY(deck_input(d, file));
+  if (at == NULL)
+    TRY(deck_input(d, file));
+  else if ((s->from = store_place(d, at)) == NULL)
+    FAIL(ERR_MEMORY, "memory exhausted: place of a file");
   if (open_stream(s, file, log, at) != 0) goto done;
   TRY(note_file(d, s->file));
   *top = s;

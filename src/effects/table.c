@@ -4,8 +4,6 @@
  */
 #include "effects/rows.h"
 
-#include <string.h>
-
 #define EFFECT_PLACE(name) &name##_effect,
 const effect_ops *const effect_table[] = {EFFECT_ROWS(EFFECT_PLACE) NULL};
 

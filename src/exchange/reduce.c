@@ -367,10 +367,9 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
   size_t size = (size_t)n * (size_t)n;
   OWNED double *a = NULL, *work = NULL, *x = NULL;
   double rcond = 0.0;
-  OWNED int *pivot = NULL;
   *singular = 1;
-  PASS_NEW_ALL(OF(a, size), OF(work, 4 * (size_t)n), OF(pivot, 2 * (size_t)n),
-               OF(x, n));
+  OWNED_NEW(int, pivot, 2 * (size_t)n);
+  PASS_NEW_ALL(OF(a, size), OF(work, 4 * (size_t)n), OF(x, n));
   triplets_dense(M, a);
   for (long k = 0; k < M->n && mirror; ++k)
     if (M->row[k] != M->column[k])
@@ -520,9 +519,8 @@ static double count_parts(const columns *c, const row_sets *t) {
 
 static status solve_parts(reduction *s, const columns *c, row_sets *t,
                           long room, triplets *W) {
-  OWNED double *x = NULL;
-  PASS_NEW_ALL(OF(W->row, room), OF(W->column, room), OF(W->value, room),
-               OF(x, s->n));
+  OWNED_NEW(double, x, s->n);
+  PASS_NEW_ALL(OF(W->row, room), OF(W->column, room), OF(W->value, room));
   for (int k = 0; k < t->most; ++k) {
     memset(x, 0, (size_t)s->n * sizeof *x);
     put_parts(c, t, k, x);
@@ -537,7 +535,6 @@ status reduce_bodies(const triplets *M, const triplets *H, const double *f,
   ENDS_BY(reduction_end) reduction s = {.n = M->rows};
   ENDS_BY(columns_free) columns c = {0};
   ENDS_BY(row_sets_free) row_sets t = {0};
-  OWNED double *x = NULL;
   double entries;
   const double m = H->columns;
   *usable = 0;
@@ -551,7 +548,7 @@ status reduce_bodies(const triplets *M, const triplets *H, const double *f,
   PASS(factorise(&s, M, usable));
   if (!*usable) return OK;
   PASS(solve_parts(&s, &c, &t, (long)entries, W));
-  PASS_NEW(x, s.n);
+  OWNED_NEW(double, x, s.n);
   put_column(&c, H->columns, x);
   PASS(solve_scaled(&s, x));
   take_column(&c, x, q);

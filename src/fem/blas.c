@@ -4,7 +4,6 @@
  * the time. The choice can only be changed by the environment of a new process:
  * set it and run the same program again, once.
  */
-#include "fem/fem.h"
 
 #include "base/base.h"
 #include "base/system/limits.h"

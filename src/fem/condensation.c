@@ -6,9 +6,7 @@
  */
 #include "base/base.h"
 #include "fem/element.h"
-#include "fem/factor.h"
 #include "fem/operator.h"
-#include "fem/rigid.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -94,9 +92,8 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
 /* The motions that only contact holds: c->rigid. A body nothing holds: name it
  * and the motion. */
 static status find_motions(condensed *c) {
-  OWNED free_motion *list = NULL;
   int n = 0;
-  PASS(support_motions(&c->d, &n, &list, &c->rigid));
+  OWNED_OF(free_motion, list, support_motions(&c->d, &n, &list, &c->rigid));
   for (int q = 0; q < n; ++q)
     if (list[q].held_by == HELD_BY_NOTHING)
       RAISE(ERR_SINGULAR,
@@ -121,8 +118,7 @@ static status pin_sets(condensed *c) {
   if (c->rigid.n_set == 0) return OK;
   PASS(rigid_orthonormalise(k, &c->d, &c->rigid));
   PASS_NEW(c->pinned, c->m);
-  for (int t = 0; t < c->rigid.n_set; ++t) {
-    const rigid_set *s = &c->rigid.set[t];
+  for (EACH(const rigid_set, s, c->rigid.set, c->rigid.n_set)) {
     if (s->k == s->n_motion) {
       PASS(rigid_pin(&c->rigid, s, c->pinned));
       continue;
@@ -138,13 +134,12 @@ static status pin_sets(condensed *c) {
 static status factor_bodies(condensed *c) {
   const stiffness *k = c->k;
   ENDS_BY(graph_release) graph g = {0};
-  OWNED int *list = NULL;
-  OWNED unsigned char *seen = NULL;
-  OWNED long *number = NULL;
   int q = 0;
   TIMED(STAGE_ORDERING);
-  PASS_NEW_ALL(OF(list, k->n_node), OF(seen, k->n_node),
-               OF(number, (size_t)k->dim * (size_t)k->n_node));
+  OWNED_NEW(int, list, k->n_node);
+  OWNED_NEW(unsigned char, seen, k->n_node);
+  OWNED long *number = NULL;
+  PASS_NEW(number, (size_t)k->dim * (size_t)k->n_node);
   PASS(graph_of_unknowns(k, &g));
   c->n_body = count_bodies(k, &g, seen, list);
   PASS_NEW(c->body, c->n_body);
@@ -242,9 +237,8 @@ static status form_matrix(condensed *c) {
 static status find_bodies(condensed *c, int *of) {
   const stiffness *k = c->k;
   ENDS_BY(graph_release) graph g = {0};
-  OWNED int *list = NULL;
-  OWNED unsigned char *seen = NULL;
-  PASS_NEW_ALL(OF(list, k->n_node), OF(seen, k->n_node));
+  OWNED_NEW(int, list, k->n_node);
+  OWNED_NEW(unsigned char, seen, k->n_node);
   PASS(graph_of_unknowns(k, &g));
   for (int i = 0; i < k->n_node; ++i) {
     if (k->free[i] == 0 || seen[i]) continue;
@@ -259,13 +253,11 @@ static status find_bodies(condensed *c, int *of) {
 
 /* The whole matrix in the place of those of the bodies. */
 static status make_operator(condensed *c) {
-  const stiffness *k = c->k;
-  OWNED int *body = NULL;
-  OWNED unsigned char *held = NULL;
-  PASS_NEW_ALL(OF(body, c->m), OF(held, c->m));
+  OWNED_NEW(int, body, c->m);
+  OWNED_NEW(unsigned char, held, c->m);
   PASS(find_bodies(c, body));
   for (int q = 0; q < c->m; ++q) held[q] = (unsigned char)is_held(c, q);
-  const operator_data data = {.k = k,
+  const operator_data data = {.k = c->k,
                               .x = c->d.mesh->x,
                               .order = c->d.order,
                               .held = held,
@@ -500,8 +492,7 @@ static status solve_rows(const condensed *c, const double *f, double *u,
 status condensed_force_energy(condensed *c, const double *d, double *square) {
   *square = 0;
   if (c->sparse != NULL) {
-    OWNED double *u = NULL;
-    PASS_NEW(u, c->m);
+    OWNED_NEW(double, u, c->m);
     PASS(solve_rows(c, d, u, square));
   }
   for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
@@ -535,9 +526,8 @@ static status solve_sparse(const condensed *c, const unsigned char *held,
                            const double *f, double *u, int *good) {
   const contact_operator *op = &c->sparse->seen;
   const known_rows rows = {.known = held};
-  OWNED double *Au = NULL;
   int singular = 0;
-  PASS_NEW(Au, c->m);
+  OWNED_NEW(double, Au, c->m);
   PASS(op->set_rows(op->ctx, &rows, &singular));
   *good = !singular;
   memset(u, 0, (size_t)c->m * sizeof *u);
@@ -550,10 +540,9 @@ static status solve_sparse(const condensed *c, const unsigned char *held,
 static status solve_open(const condensed *c, const unsigned char *held,
                          const double *f, double *u, int *good) {
   OWNED double *A = NULL, *x = NULL;
-  OWNED int *open = NULL;
   int n = 0;
   if (c->sparse != NULL) return solve_sparse(c, held, f, u, good);
-  PASS_NEW(open, c->m);
+  OWNED_NEW(int, open, c->m);
   for (int q = 0; q < c->m; ++q) {
     u[q] = 0;
     if (!held[q]) open[n++] = q;

@@ -111,9 +111,8 @@ static status body_factor_matrix(const stiffness *k, const body_factor *f,
                                  cholmod_sparse **out) {
   columns w = {
       .k = k, .f = f, .number = number, .scale = ldexp(1, -f->exponent)};
-  OWNED SuiteSparse_long *count = NULL;
   long total = 0;
-  PASS_NEW(count, f->n + 1);
+  OWNED_NEW(SuiteSparse_long, count, f->n + 1);
   w.start = count;
   put_blocks(&w);
   for (long c = 0; c < f->n; ++c) total += count[c];
@@ -404,9 +403,8 @@ status body_factor_back(const body_factor *f, const double *u_c, double *u,
 
 status body_factor_interior(const body_factor *f, const double *load, double *u,
                             cholmod_common *cm) {
-  OWNED double *x = NULL;
   const double scale = ldexp(1, -f->exponent);
-  PASS_NEW(x, f->n);
+  OWNED_NEW(double, x, f->n);
   for (long p = 0; p < f->n; ++p) x[p] = scale * load[f->unknown[p]];
   for (long q = 0; q < f->nc; ++q) x[f->contact_at[q]] = 0;
   PASS(solve_lower(f, 0, x, cm));
@@ -419,10 +417,9 @@ status body_factor_interior(const body_factor *f, const double *load, double *u,
 
 status body_factor_energy(const body_factor *f, const double *d,
                           double *square) {
-  OWNED double *x = NULL;
   double sum = 0;
   long super = 0;
-  PASS_NEW(x, f->nc);
+  OWNED_NEW(double, x, f->nc);
   for (long q = 0; q < f->nc; ++q) x[q] = d[f->contact_id[q]];
   for (long q = 0; q < f->nc; ++q) {
     const factor_column c = column_at(f->L, f->contact_at[q], &super);
@@ -439,10 +436,9 @@ status body_factor_energy(const body_factor *f, const double *d,
 
 status body_factor_solve(const body_factor *f, const double *d, double *w,
                          double *square, cholmod_common *cm) {
-  OWNED double *x = NULL;
   const double scale = ldexp(1, -f->exponent);
   double sum = 0;
-  PASS_NEW(x, f->n);
+  OWNED_NEW(double, x, f->n);
   for (long p = 0; p < f->n; ++p) x[p] = scale * d[f->unknown[p]];
   PASS(solve_lower(f, 0, x, cm));
   PASS(solve_lower(f, 1, x, cm));
@@ -520,8 +516,7 @@ static double norm(long n, const double *v) {
 static status inverse_norm(const body_factor *f, const double *root,
                            cholmod_common *cm, double *growth) {
   enum { PASSES = 2 };
-  OWNED double *x = NULL;
-  PASS_NEW(x, f->n);
+  OWNED_NEW(double, x, f->n);
   for (long p = 0; p < f->n; ++p) x[p] = 1 + 0.25 * (double)(f->unknown[p] % 7);
   for (int pass = 0; pass < PASSES; ++pass) {
     const double size = norm(f->n, x);

@@ -665,10 +665,7 @@ static status factor_both(sparse_operator *o) {
 status sparse_operator_new(const operator_data *d, const char **ordering,
                            sparse_operator **out) {
   const stiffness *k = d->k;
-  sparse_operator *o = NULL;
-  PASS_NEW(o, 1);
-  *out = o;
-  OWNS(o);
+  MAKES(sparse_operator, o, out);
   o->k = k;
   o->rigid = d->rigid;
   o->cm = d->cm;

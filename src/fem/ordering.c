@@ -239,9 +239,8 @@ static status order_by_cuts(const graph *g, int dim, const double *x, int n,
 /* Pattern of the graph among node[0..n), upper triangle, new. */
 static status graph_pattern(const graph *g, int n, const int *node,
                             cholmod_common *cm, cholmod_sparse **out) {
-  OWNED int *order = NULL;
   size_t edges = 0;
-  PASS_NEW(order, g->n);
+  OWNED_NEW(int, order, g->n);
   for (int i = 0; i < n; ++i) order[node[i]] = i + 1;
   for (int i = 0; i < n; ++i)
     for (size_t p = g->start[node[i]]; p < g->start[node[i] + 1]; ++p)
@@ -270,23 +269,19 @@ static int is_permutation(const SuiteSparse_long *perm, int n, int *seen) {
 
 static status order_by_pattern(order_method method, const graph *g, int n,
                                int *node, cholmod_common *cm) {
-  status st = OK;
   cholmod_sparse *a = NULL;
-  SuiteSparse_long *perm = NULL;
-  int *old = NULL;
-  TRY(graph_pattern(g, n, node, cm, &a));
-  NEW_ALL(OF(perm, n), OF(old, n));
+  OWNED_NEW(SuiteSparse_long, perm, n);
+  OWNED_NEW(int, old, n);
+  PASS(graph_pattern(g, n, node, cm, &a));
   const int ordered = method == ORDER_METIS
                           ? cholmod_l_metis(a, NULL, 0, 0, perm, cm)
                           : cholmod_l_amd(a, NULL, 0, perm, cm);
+  cholmod_l_free_sparse(&a, cm);
   if (!ordered || !is_permutation(perm, n, old))
-    FAIL(ERR_MEMORY, "memory exhausted: order of %d nodes", n);
+    RAISE(ERR_MEMORY, "memory exhausted: order of %d nodes", n);
   memcpy(old, node, (size_t)n * sizeof *node);
   for (int i = 0; i < n; ++i) node[i] = old[perm[i]];
-done:
-  cholmod_l_free_sparse(&a, cm);
-  RELEASE(perm, old);
-  return st;
+  return OK;
 }
 
 status order_by(order_method method, const graph *g, int dim, const double *x,
@@ -321,37 +316,32 @@ static void add_reached(int n, const int *node, const unsigned char *mark,
 status order_cost_of(const graph *g, int n, const int *node,
                      const unsigned char *mark, cholmod_common *cm,
                      order_cost *cost) {
-  status st = OK;
   cholmod_sparse *a = NULL;
-  SuiteSparse_long *w = NULL;
-  unsigned char *reached = NULL;
   const size_t size = (size_t)n;
+  OWNED_NEW(SuiteSparse_long, w, 6 * size);
+  OWNED_NEW(unsigned char, reached, n);
   *cost = (order_cost){0};
-  TRY(graph_pattern(g, n, node, cm, &a));
-  NEW_ALL(OF(w, 6 * size), OF(reached, n));
+  PASS(graph_pattern(g, n, node, cm, &a));
   for (int i = 0; i < n; ++i) w[i] = i;
-  if (!cholmod_l_analyze_ordering(a, CHOLMOD_GIVEN, w, NULL, 0, w + size,
-                                  w + 2 * size, w + 3 * size, w + 4 * size,
-                                  w + 5 * size, cm))
-    FAIL(ERR_MEMORY, "memory exhausted: count of %d nodes", n);
+  const int counted = cholmod_l_analyze_ordering(
+      a, CHOLMOD_GIVEN, w, NULL, 0, w + size, w + 2 * size, w + 3 * size,
+      w + 4 * size, w + 5 * size, cm);
+  cholmod_l_free_sparse(&a, cm);
+  if (!counted) RAISE(ERR_MEMORY, "memory exhausted: count of %d nodes", n);
   cost->flops = cm->fl;
   cost->entries = cm->lnz;
   for (int q = 0; mark != NULL && q < n; ++q)
     reached[q] = (unsigned char)is_near(g, node[q], mark);
   if (mark != NULL)
     add_reached(n, node, mark, w + size, w + 3 * size, reached, cost);
-done:
-  cholmod_l_free_sparse(&a, cm);
-  RELEASE(w, reached);
-  return st;
+  return OK;
 }
 
 /* Both orders, the cheaper by its count: node[] holds that of the cuts. */
 static status compare_with_metis(const graph *g, int n, int *node,
                                  cholmod_common *cm, const char **name) {
   order_cost cuts, metis;
-  OWNED int *other = NULL;
-  PASS_NEW(other, n);
+  OWNED_NEW(int, other, n);
   memcpy(other, node, (size_t)n * sizeof *node);
   PASS(order_by_pattern(ORDER_METIS, g, n, other, cm));
   PASS(order_cost_of(g, n, node, NULL, cm, &cuts));

@@ -196,8 +196,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
     r->k += r->set[t].k;
   }
   PASS_NEW_ALL(OF(r->Q, (size_t)r->m * (size_t)r->k), OF(of, r->n_body));
-  for (int t = 0; t < r->n_set; ++t) {
-    rigid_set *s = &r->set[t];
+  for (EACH(rigid_set, s, r->set, r->n_set)) {
     PASS_NEW(s->load, s->n);
     if (!measure_contact(k, d, r, s, of)) s->k = 0;
     centre_motions(r, of, s);
@@ -298,8 +297,7 @@ void rigid_loads(const stiffness *k, const domain *d, rigid_motions *r,
 }
 
 void rigid_balance(const rigid_motions *r, double *f_c) {
-  for (int t = 0; t < r->n_set; ++t) {
-    const rigid_set *s = &r->set[t];
+  for (EACH(const rigid_set, s, r->set, r->n_set)) {
     const double *Q = r->Q + (size_t)r->m * (size_t)s->first;
     for (int j = 0; j < s->k; ++j, Q += r->m) {
       const double given =

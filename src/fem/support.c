@@ -11,7 +11,6 @@
  * Bodies that supports and ties hold are at rest and leave the sets.
  */
 #include "base/base.h"
-#include "fem/pieces/pieces.h"
 #include "fem/rigid.h"
 
 #include <cblas.h>
@@ -21,6 +20,132 @@
 static const double rank_limit = 1e-8;
 /* Motions below this part strain nothing: they are free to rounding. */
 static const double exact_limit = 1e-12;
+
+/* ---- pieces -------------------------------------------------------------- */
+
+/*
+ * Bodies and their rigid pieces, by union-find over the elements. Elements that
+ * share a face move as one rigid piece when nothing is strained; pieces that
+ * share less (a vertex, in 3-D an edge) form one body with a hinge.
+ */
+typedef struct pieces {
+  int n_body, n_piece;
+  int *piece;      /* [n_elem] piece of the element */
+  int *body;       /* [n_piece] body of the piece, ascending */
+  int *piece_elem; /* [n_piece] its first element */
+  size_t *start;   /* [n_node+1] elements round the node */
+  int *elem;       /* [start[n_node]] */
+} pieces;
+
+/* 2-D: elements round node j that share a second vertex share an edge. */
+static void unite_round_node_2d(const mesh *m, const pieces *p, int j,
+                                int *last, int *up) {
+  for (size_t q = p->start[j]; q < p->start[j + 1]; ++q)
+    for (int a = 0; a < 3; ++a) {
+      const int v = m->elem[3 * p->elem[q] + a];
+      if (v > j) last[v] = -1;
+    }
+  for (size_t q = p->start[j]; q < p->start[j + 1]; ++q)
+    for (int a = 0; a < 3; ++a) {
+      const int v = m->elem[3 * p->elem[q] + a];
+      if (v <= j) continue;
+      if (last[v] >= 0) forest_join(up, last[v], p->elem[q]);
+      last[v] = p->elem[q];
+    }
+}
+
+typedef struct corner {
+  int v, w, elem; /* the other two vertices of a face, v < w; its element */
+} corner;
+
+/* 3-D: faces whose lowest vertex is j, compared pair by pair. */
+static void unite_round_node_3d(const mesh *m, const pieces *p, int j,
+                                corner *list, int *up) {
+  int n = 0;
+  for (size_t q = p->start[j]; q < p->start[j + 1]; ++q) {
+    const int *e = m->elem + 4 * (size_t)p->elem[q];
+    for (int a = 0; a < 4; ++a)
+      for (int b = a + 1; b < 4; ++b) {
+        if (e[a] <= j || e[b] <= j) continue;
+        corner c = {e[a] < e[b] ? e[a] : e[b], e[a] < e[b] ? e[b] : e[a],
+                    p->elem[q]};
+        int k = 0;
+        while (k < n && (list[k].v != c.v || list[k].w != c.w)) ++k;
+        if (k < n)
+          forest_join(up, list[k].elem, c.elem);
+        else
+          list[n++] = c;
+      }
+  }
+}
+
+static status unite_by_faces(const mesh *m, const pieces *p, int *up) {
+  size_t most = 0;
+  for (int j = 0; j < m->n_node; ++j)
+    if (p->start[j + 1] - p->start[j] > most)
+      most = p->start[j + 1] - p->start[j];
+  OWNED_NEW(int, last, m->n_node);
+  OWNED_NEW(corner, list, 3 * most);
+  for (int j = 0; j < m->n_node; ++j)
+    if (m->dim == 2)
+      unite_round_node_2d(m, p, j, last, up);
+    else
+      unite_round_node_3d(m, p, j, list, up);
+  return OK;
+}
+
+/* Number the sets by their first element: id[n_elem], returns how many. */
+static int number_sets(int n_elem, int *up, int *id) {
+  int n = 0;
+  for (int e = 0; e < n_elem; ++e) {
+    const int r = forest_root(up, e);
+    id[e] = r == e ? n++ : id[r];
+  }
+  return n;
+}
+
+/* Number the pieces body by body; body_of[n_elem]. */
+static status sort_pieces(const mesh *m, const int *body_of, pieces *p) {
+  OWNED int *count = NULL, *number = NULL;
+  PASS_NEW_ALL(OF(count, p->n_body + 1), OF(number, p->n_piece),
+               OF(p->body, p->n_piece), OF(p->piece_elem, p->n_piece));
+  for (int q = 0; q < p->n_piece; ++q) number[q] = -1;
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int e = 0; e < m->n_elem; ++e) {
+      int *q = &number[p->piece[e]];
+      if (pass == 0 && *q < 0) {
+        *q = body_of[e];
+        ++count[*q + 1];
+      } else if (pass == 1 && *q < 0) {
+        *q = count[body_of[e]]++;
+        p->body[*q] = body_of[e];
+        p->piece_elem[*q] = e;
+      }
+    }
+    if (pass == 1) break;
+    for (int b = 0; b < p->n_body; ++b) count[b + 1] += count[b];
+    for (int q = 0; q < p->n_piece; ++q) number[q] = -1;
+  }
+  for (int e = 0; e < m->n_elem; ++e) p->piece[e] = number[p->piece[e]];
+  return OK;
+}
+
+static status pieces_find(const mesh *m, pieces *p) {
+  OWNED int *up = NULL, *body = NULL;
+  *p = (pieces){0};
+  PASS(mesh_node_elements(m, &p->start, &p->elem));
+  PASS_NEW_ALL(OF(up, m->n_elem), OF(body, m->n_elem), OF(p->piece, m->n_elem));
+  for (int e = 0; e < m->n_elem; ++e) up[e] = e;
+  PASS(unite_by_faces(m, p, up));
+  p->n_piece = number_sets(m->n_elem, up, p->piece);
+  for (int j = 0; j < m->n_node; ++j)
+    for (size_t q = p->start[j] + 1; q < p->start[j + 1]; ++q)
+      forest_join(up, p->elem[q - 1], p->elem[q]);
+  p->n_body = number_sets(m->n_elem, up, body);
+  return sort_pieces(m, body, p);
+}
+
+/* ---- sets of bodies ------------------------------------------------------ */
 
 /* What joins bodies. */
 typedef enum { NOTHING, TIES, TIES_AND_PAIRS } joint;
@@ -42,7 +167,7 @@ typedef struct body_sets {
 } body_sets;
 
 static void sets_release(body_sets *s) {
-  pieces_release(&s->p);
+  RELEASE(s->p.piece, s->p.body, s->p.piece_elem, s->p.start, s->p.elem);
   RELEASE(s->first_piece, s->at, s->body, s->contact, s->tie, s->set, s->column,
           s->n, s->start, s->node);
   *s = (body_sets){0};
@@ -99,16 +224,15 @@ static void measure_bodies(body_sets *s, double *low, double *high) {
 
 /* Bodies and pieces, each body a set. Fails with s empty. */
 static status sets_find(const domain *d, body_sets *s) {
-  OWNED double *box = NULL;
   const int n_node = d->mesh->n_node;
   *s = (body_sets){.d = d};
   PASS(pieces_find(d->mesh, &s->p));
   const int n_body = s->p.n_body;
+  OWNED_NEW(double, box, 6 * n_body);
   PASS_NEW_ALL(OF(s->first_piece, n_body + 1), OF(s->at, n_body),
                OF(s->body, n_node), OF(s->contact, n_node), OF(s->tie, n_node),
                OF(s->set, n_body), OF(s->column, n_body), OF(s->n, n_body),
-               OF(s->start, n_body + 2), OF(s->node, n_node),
-               OF(box, 6 * n_body));
+               OF(s->start, n_body + 2), OF(s->node, n_node));
   find_pieces(s);
   find_nodes(s);
   measure_bodies(s, box, box + 3 * n_body);
@@ -379,10 +503,9 @@ static void add_contact(triangle *t, int normals) {
 static status is_regular(const triangle *t, int *regular) {
   enum { MISSED = 10 };
   const int n = t->n;
-  OWNED double *work = NULL;
-  OWNED lapack_int *number = NULL;
   double one, infinity;
-  PASS_NEW_ALL(OF(work, 3 * n), OF(number, n));
+  OWNED_NEW(double, work, 3 * n);
+  OWNED_NEW(lapack_int, number, n);
   if (LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, '1', 'L', 'N', n, t->r, n, &one,
                           work, number) != 0 ||
       LAPACKE_dtrcon_work(LAPACK_COL_MAJOR, 'I', 'L', 'N', n, t->r, n,
@@ -535,8 +658,7 @@ static status add_set(const triangle *t, const null_basis *z,
   const body_sets *s = t->s;
   const int *node = s->node + s->start[t->id];
   const size_t n = (size_t)t->n;
-  PASS_GROW(r->set, r->n_set, r->capacity);
-  rigid_set *to = &r->set[r->n_set++];
+  ADDED(rigid_set, to, r->set, r->n_set, r->capacity);
   *to = (rigid_set){.n = t->n,
                     .n_motion = z->rank,
                     .k = z->exact,
@@ -600,8 +722,7 @@ static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
 
 /* Bodies that their supports hold leave first, then those tied to them. */
 static status drop_bodies_at_rest(body_sets *s) {
-  OWNED unsigned char *rest = NULL;
-  PASS_NEW(rest, s->p.n_body);
+  OWNED_NEW(unsigned char, rest, s->p.n_body);
   for (int by = NOTHING; by <= TIES; ++by) {
     sets_join(s, (joint)by);
     for (int id = 0; id < s->p.n_body; ++id)

@@ -15,9 +15,7 @@ static status prepare(fracture *f) {
 }
 
 status fracture_new(const fracture_body *body, fracture **out) {
-  PASS_NEW(*out, 1);
-  fracture *f = *out;
-  OWNS(f);
+  MAKES(fracture, f, out);
   f->body = *body;
   return prepare(f);
 }

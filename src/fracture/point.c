@@ -149,9 +149,8 @@ static status find_mixed(const fracture_body *b, obstacles *o) {
 static status find_obstacles(const fracture_body *b, obstacles *o) {
   static const double rounding = 1e-6;
   const mesh *m = b->mesh;
-  OWNED double *sum = NULL;
   int n = 0;
-  PASS_NEW(sum, 4 * (size_t)m->n_node);
+  OWNED_NEW(double, sum, 4 * (size_t)m->n_node);
   add_normals(m, sum);
   PASS(find_mixed(b, o));
   for (int i = 0; i < m->n_node; ++i) {
@@ -207,8 +206,7 @@ static double free_radius(const mesh *m, const obstacles *o,
 static double half_way(const fracture *f, const fracture_point *p,
                        double radius) {
   const mesh *m = f->body.mesh;
-  for (int i = 0; i < f->n; ++i) {
-    const fracture_point *other = &f->point[i];
+  for (EACH(const fracture_point, other, f->point, f->n)) {
     if (other->node == p->node) continue;
     if (m->dim == 3 && dot(3, other->frame + 6, p->frame + 6) > 0.5) continue;
     radius = fmin(radius, distance(m, other->node, p->node) / 2);
@@ -330,8 +328,7 @@ status points_find(fracture *f) {
       else
         set_frame_3d(f, chain, i);
     }
-  for (int i = 0; i < f->n; ++i) {
-    fracture_point *p = &f->point[i];
+  for (EACH(fracture_point, p, f->point, f->n)) {
     double most = p->curvature != 0 ? 0.5 / fabs(p->curvature) : m->size;
     p->radius = half_way(f, p, fmin(most, m->size));
     p->radius = free_radius(m, &o, p, p->radius);

@@ -5,10 +5,8 @@
 #include "manual/manual.h"
 
 #include "base/base.h"
-#include "base/option.h"
 #include "model/keyword/keyword.h"
 #include "output/columns/columns.h"
-#include "run/run.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -71,9 +69,16 @@ status example_copy(const char *name, FILE *out) {
   return OK;
 }
 
-/* Name in capitals, source and manual text. */
-static void print_entry(const char *name, const char *reference,
-                        const char *help, FILE *out) {
+static const embedded_file *embedded_find(const char *name) {
+  for (const embedded_file *f = embedded_files; f->folder != NULL; ++f)
+    if (strcmp(f->folder, "manual") == 0 && strcmp(f->name, name) == 0)
+      return f;
+  return NULL;
+}
+
+/* Name in capitals, source, manual text and options of a plug-in. */
+static void list_plugin(const char *name, const char *reference,
+                        const char *help, const option *options, FILE *out) {
   for (const char *p = name; *p != '\0'; ++p)
     fputc(toupper((unsigned char)*p), out);
   fprintf(out, "  (%s)\n  ", reference);
@@ -82,21 +87,24 @@ static void print_entry(const char *name, const char *reference,
     if (*p == '\n') fputs("  ", out);
   }
   fputc('\n', out);
-}
-
-/* The same with the options of a plug-in. */
-static void list_plugin(const char *name, const char *reference,
-                        const char *help, const option *options, FILE *out) {
-  print_entry(name, reference, help, out);
   option_print(options, out);
 }
 
+/* The part of methods.txt that begins with the name; an empty line ends it. */
+static void print_method(const char *name, FILE *out) {
+  const char *p = embedded_find("methods.txt")->text;
+  const size_t n = strlen(name);
+  while (strncasecmp(p, name, n) != 0 || p[n] != ' ') p = strstr(p, "\n\n") + 2;
+  fprintf(out, "%.*s\n", (int)(strstr(p, "\n\n") - p), p);
+}
+
 static void list_solvers(FILE *out) {
-  print_entry("AUTO", "the default", auto_help, out);
+  print_method("auto", out);
   for (int i = 0; solver_list[i] != NULL; ++i) {
     const solver_ops *s = solver_list[i];
     fputc('\n', out);
-    list_plugin(s->name, s->reference, s->help, s->options, out);
+    print_method(s->name, out);
+    option_print(s->options, out);
     if (s->entries == NULL)
       fputs("  works with STIFFNESS=DENSE and FACTOR\n", out);
     else
@@ -223,13 +231,6 @@ int list_print(const char *kind, FILE *out) {
   return 0;
 }
 
-static const embedded_file *embedded_find(const char *folder,
-                                          const char *name) {
-  for (const embedded_file *f = embedded_files; f->folder != NULL; ++f)
-    if (strcmp(f->folder, folder) == 0 && strcmp(f->name, name) == 0) return f;
-  return NULL;
-}
-
 /* The line of a deck that opens a card, or NULL. */
 static const char *find_card_in(const char *text, const char *name) {
   const size_t n = strlen(name);
@@ -314,12 +315,12 @@ const char *manual_chapter(const void *ctx, int i) {
 }
 
 void manual_file(const char *name, FILE *out) {
-  fputs(embedded_find("manual", name)->text, out);
+  fputs(embedded_find(name)->text, out);
 }
 
 /* Name and title, which is the first line. */
 static void print_title(int i, FILE *out) {
-  const embedded_file *f = embedded_find("manual", chapters[i].file);
+  const embedded_file *f = embedded_find(chapters[i].file);
   const char *text = f->text + strspn(f->text, "# ");
   fprintf(out, "  %-13s %.*s\n", chapters[i].name, (int)strcspn(text, "\n"),
           text);

@@ -56,8 +56,7 @@ static int by_name(const void *p, const void *q) {
 
 static status check_names(const builder *b) {
   const mesh *m = b->m;
-  OWNED const mesh_group **sorted = NULL;
-  PASS_NEW(sorted, m->n_group);
+  OWNED_NEW(const mesh_group *, sorted, m->n_group);
   for (int i = 0; i < m->n_group; ++i) sorted[i] = &m->group[i];
   qsort(sorted, (size_t)m->n_group, sizeof *sorted, by_name);
   for (int i = 1; i < m->n_group; ++i) {
@@ -178,17 +177,13 @@ static status fill_group(builder *b, mesh_group *g, filling *f) {
 }
 
 static status groups_fill(builder *b) {
-  status st = OK;
   mesh *m = b->m;
-  filling f = {0};
-  int n_item = m->n_elem > m->n_face ? m->n_elem : m->n_face;
-  NEW_ALL(OF(f.node_mark, m->n_node), OF(f.item_mark, n_item),
-          OF(f.node, m->n_node), OF(f.item, n_item));
-  for (int i = 0; i < m->n_group; ++i) TRY(fill_group(b, &m->group[i], &f));
-  TRY(build_check(b));
-done:
-  RELEASE(f.node_mark, f.item_mark, f.node, f.item);
-  return st;
+  const int n_item = m->n_elem > m->n_face ? m->n_elem : m->n_face;
+  OWNED_NEW(char, mark, m->n_node + n_item);
+  OWNED_NEW(int, list, m->n_node + n_item);
+  filling f = {mark, mark + m->n_node, list, list + m->n_node, 0, 0};
+  for (int i = 0; i < m->n_group; ++i) PASS(fill_group(b, &m->group[i], &f));
+  return build_check(b);
 }
 
 static void release(builder *b) {

@@ -602,8 +602,7 @@ static int is_replaced(const child *c, const mesh_number *of) {
 static void check_numbers(const child *c) {
   const mesh_source *r = c->request->source;
   geo_text g = {0};
-  for (int i = 0; i < r->n_number; ++i) {
-    const mesh_number *of = &r->numbers[i];
+  for (EACH(const mesh_number, of, r->numbers, r->n_number)) {
     geo_setting how;
     const char *file = r->file;
     int line = 0;

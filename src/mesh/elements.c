@@ -345,10 +345,9 @@ static status store_elements(builder *b, const top_list *t,
 }
 
 status elements_finish(builder *b) {
-  OWNED sort_item *item = NULL;
-  OWNED size_t *no = NULL;
-  PASS_NEW_ALL(OF(item, b->n_top), OF(no, b->n_top),
-               OF(b->elem_of_top, b->n_top));
+  OWNED_NEW(sort_item, item, b->n_top);
+  OWNED_NEW(size_t, no, b->n_top);
+  PASS_NEW(b->elem_of_top, b->n_top);
   fill_keys(b, no, item);
   top_list t = {b->m->dim + 1, b->corner, no};
   PASS(sort_items(b->n_top, item, by_corners, &t));

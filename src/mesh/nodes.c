@@ -194,13 +194,12 @@ static status store_nodes(builder *b, const sort_item *item) {
 /* The nodes of the top elements get their ids. */
 status nodes_order(builder *b) {
   mesh *m = b->m;
-  OWNED sort_item *item = NULL;
   double lo[3], hi[3];
   for (size_t i = 0; i < b->raw->n_node; ++i) m->n_node += b->node_id[i] >= 0;
   PASS(find_box(b, lo, hi));
   PASS(check_plane(b, lo, hi));
   for (int k = 0; k < m->dim; ++k) m->size = fmax(m->size, hi[k] - lo[k]);
-  PASS_NEW(item, m->n_node);
+  OWNED_NEW(sort_item, item, m->n_node);
   if (m->size ==
       0.0) { /* all in one point: the check of the elements reports it */
     for (size_t i = 0, n = 0; i < b->raw->n_node; ++i)
@@ -228,9 +227,8 @@ static int coincide(const mesh *m, int a, int c) {
 }
 
 static status body_of_nodes(const mesh *m, int *body_of) {
-  OWNED int *body = NULL;
   int n_body, corners = m->dim + 1;
-  PASS_NEW(body, m->n_elem);
+  OWNED_NEW(int, body, m->n_elem);
   PASS(mesh_bodies(m, &n_body, body));
   for (size_t i = 0; i < (size_t)corners * (size_t)m->n_elem; ++i)
     body_of[m->elem[i]] = body[i / (size_t)corners];

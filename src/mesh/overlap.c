@@ -260,11 +260,6 @@ static status grow_tree(const mesh *m, tree *t) {
   return OK;
 }
 
-static void tree_free(tree *t) {
-  RELEASE(t->elem, t->node);
-  *t = (tree){0};
-}
-
 static int boxes_meet(const box *p, const box *q) {
   return p->lo[0] < q->hi[0] && q->lo[0] < p->hi[0] && p->lo[1] < q->hi[1] &&
          q->lo[1] < p->hi[1] && p->lo[2] <= q->hi[2] && q->lo[2] <= p->hi[2];
@@ -368,7 +363,8 @@ static status find(search *s, int e, int from) {
 }
 
 static status start_tree(search *s, int n) {
-  tree_free(&s->t);
+  RELEASE(s->t.elem, s->t.node);
+  s->t = (tree){0};
   PASS_NEW(s->t.elem, n);
   return OK;
 }
@@ -389,9 +385,8 @@ static status check_skin(search *s, const char *is_skin) {
 /* One side of each piece of the boundary, -1 for the others. A piece goes on
  * across edges (2-D: nodes) that two sides have in common. */
 static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
-  OWNED sort_item *item = NULL;
   int v[3], n = m->dim * sides->n;
-  PASS_NEW(item, n);
+  OWNED_NEW(sort_item, item, n);
   for (int i = 0; i < n; ++i) {
     int side = i / m->dim, k = i % m->dim;
     mesh_side_nodes(m, sides->side[side].id, v);
@@ -413,8 +408,7 @@ static status find_pieces(const mesh *m, const side_list *sides, int *piece) {
 static status check_inside(search *s, const side_list *sides,
                            const char *is_skin) {
   const mesh *m = s->b->m;
-  OWNED int *piece = NULL;
-  PASS_NEW(piece, sides->n);
+  OWNED_NEW(int, piece, sides->n);
   PASS(find_pieces(m, sides, piece));
   PASS(start_tree(s, sides->n));
   for (int i = 0; i < sides->n; ++i)
@@ -427,27 +421,23 @@ static status check_inside(search *s, const side_list *sides,
 }
 
 static status check_skins(const builder *b, const side_list *sides) {
-  status st = OK;
   const mesh *m = b->m;
-  search s = {.b = b};
-  char *is_skin = NULL;
+  OWNED_NEW(search, s, 1);
+  OWNS(s);
+  s->b = b;
   for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
-    s.far = fmax(s.far, fabs(m->x[i]) / m->size);
-  NEW(is_skin, m->n_elem);
+    s->far = fmax(s->far, fabs(m->x[i]) / m->size);
+  OWNED_NEW(char, is_skin, m->n_elem);
   for (int i = 0; i < sides->n; ++i)
     is_skin[sides->side[i].id / (m->dim + 1)] = 1;
-  TRY(check_skin(&s, is_skin));
-  TRY(check_inside(&s, sides, is_skin));
-  if (s.other.n > 0 && !b->raw->meets)
+  PASS(check_skin(s, is_skin));
+  PASS(check_inside(s, sides, is_skin));
+  if (s->other.n > 0 && !b->raw->meets)
     message_add(b->log, P3043, b->at, "elements of two bodies overlap: %s",
-                s.other.text);
-  if (s.same.n > 0)
-    message_add(b->log, P3034, b->at, "elements overlap: %s", s.same.text);
-  TRY(build_check(b));
-done:
-  RELEASE(is_skin, s.body);
-  tree_free(&s.t);
-  return st;
+                s->other.text);
+  if (s->same.n > 0)
+    message_add(b->log, P3034, b->at, "elements overlap: %s", s->same.text);
+  return build_check(b);
 }
 
 status overlap_check(builder *b) {

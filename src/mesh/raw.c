@@ -168,9 +168,8 @@ static int tells_of_memory(const char *text) {
 
 /* How the child ended, when it did not send a whole mesh. */
 static status child_failure(int ended, int code, int error_fd) {
-  OWNED char *text = NULL;
   char last[LAST_SIZE];
-  PASS_NEW(text, TAIL_SIZE + 1);
+  OWNED_NEW(char, text, TAIL_SIZE + 1);
   /* A process started by gmsh may hold the other end: do not wait for it. */
   fcntl(error_fd, F_SETFL, O_NONBLOCK);
   read_bytes(error_fd, text, TAIL_SIZE);

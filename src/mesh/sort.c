@@ -33,9 +33,8 @@ static int pass(int n, int shift, const sort_item *from, sort_item *to) {
 }
 
 static status radix(int n, sort_item *item) {
-  OWNED sort_item *other = NULL;
   sort_item *from = item;
-  PASS_NEW(other, n);
+  OWNED_NEW(sort_item, other, n);
   for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
     sort_item *to = from == item ? other : item;
     if (pass(n, shift, from, to)) from = to;
@@ -77,8 +76,7 @@ status sort_items(int n, sort_item *item, sort_compare *compare,
 }
 
 status sort_ids(int n, int *id) {
-  OWNED sort_item *item = NULL;
-  PASS_NEW(item, n);
+  OWNED_NEW(sort_item, item, n);
   for (int i = 0; i < n; ++i) item[i] = (sort_item){(uint64_t)id[i], id[i]};
   PASS(sort_items(n, item, NULL, NULL));
   for (int i = 0; i < n; ++i) id[i] = item[i].id;

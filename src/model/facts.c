@@ -4,8 +4,6 @@
  */
 #include "model/facts.h"
 
-#include "base/base.h"
-
 const char *place_file(const place *at) {
   const char *file = at->file != NULL ? at->file : "deck";
   const char *slash = strrchr(file, '/');
@@ -42,65 +40,16 @@ int rule_has_average(const friction_rule *rule) {
   return rule_has_friction(rule) && rule->law->average != NULL;
 }
 
-const friction_rule *facts_first_rule(const model *m,
-                                      int (*is)(const friction_rule *rule),
-                                      const contact **of) {
-  for (int i = 0; i < m->n.contact; ++i)
-    for (int k = 0; k < m->n.step; ++k) {
-      const friction_rule *rule = friction_in_force(m, k, i);
-      *of = &m->contacts[i];
-      if (is(rule)) return rule;
-    }
-  return NULL;
-}
-
-const contact *facts_first_given(const model *m) {
-  for (int i = 0; i < m->n.contact; ++i)
-    if (m->contacts[i].force.given) return &m->contacts[i];
-  return NULL;
-}
-
-const load *facts_first_body_load(const model *m) {
-  for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *l = &m->steps[i].loads.item[k];
-      if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY) return l;
-    }
-  return NULL;
-}
-
-const load *facts_first_temperature(const model *m) {
-  for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k)
-      if (m->steps[i].loads.item[k].kind == LOAD_TEMPERATURE)
-        return &m->steps[i].loads.item[k];
-  return NULL;
-}
-
-const step *facts_first_print(const model *m, int table, place *at) {
-  for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].print.n; ++k)
-      if (m->steps[i].print.requests[k].table & table) {
-        *at = m->steps[i].print.requests[k].at;
-        return &m->steps[i];
-      }
-  return NULL;
-}
-
 int model_has_axis(const model *m) {
   int any = 0;
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].has_axis;
   return any;
 }
 
-const step *facts_first_fields(const model *m) {
-  for (int i = 0; i < m->n.step; ++i)
-    if (m->steps[i].output.frequency >= 0) return &m->steps[i];
-  return NULL;
-}
-
 int model_writes_fields(const model *m) {
-  return facts_first_fields(m) != NULL;
+  for (int i = 0; i < m->n.step; ++i)
+    if (m->steps[i].output.frequency >= 0) return 1;
+  return 0;
 }
 
 /* 1 if the step before holds the same component of the same group. */
@@ -117,8 +66,7 @@ static int held_before(const model *m, int step_id, const load *l) {
 
 const load *facts_moving_support(const model *m) {
   for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *l = &m->steps[i].loads.item[k];
+    for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n)) {
       if (l->kind != LOAD_FIXING) continue;
       int let_go = i + 1 < m->n.step &&
                    (m->steps[i + 1].renewed >> LOAD_FIXING & 1u) != 0;
@@ -138,20 +86,18 @@ const section *facts_first_inelastic(const model *m) {
   return NULL;
 }
 
-static const initial *first_initial(const model *m, int type) {
+int facts_has_initial(const model *m, int type) {
   for (int i = 0; i < m->n.initial; ++i)
-    if (m->initial.lines[i].type == type) return &m->initial.lines[i];
-  return NULL;
+    if (m->initial.lines[i].type == type) return 1;
+  return 0;
 }
 
 int facts_starts_strained(const model *m) {
   int units = 0;
-  for (int i = 0; i < m->n.material; ++i) {
-    const material *mat = &m->materials[i];
+  for (EACH(const material, mat, m->materials, m->n.material))
     units |= mat->used && mat->law.ops != NULL && mat->law.ops->units != NULL;
-  }
-  return first_initial(m, INITIAL_STRAIN) != NULL ||
-         (units && first_initial(m, INITIAL_INTERNAL) != NULL);
+  return facts_has_initial(m, INITIAL_STRAIN) ||
+         (units && facts_has_initial(m, INITIAL_INTERNAL));
 }
 
 int facts_has_inelastic(const model *m) {
@@ -166,53 +112,11 @@ int model_flows(const model *m, int elem_id) {
          !(mat->is_still && m->reduction.still[elem_id]);
 }
 
-const material *facts_first_warm_law(const model *m) {
-  for (int i = 0; i < m->n.material; ++i) {
-    const material *mat = &m->materials[i];
-    if (mat->used && mat->law.ops != NULL &&
-        (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE))
-      return mat;
-  }
-  return NULL;
-}
-
-/* 1 if temperatures are given. */
-static int has_temperature(const model *m) {
-  return facts_first_temperature(m) != NULL ||
-         first_initial(m, INITIAL_TEMPERATURE) != NULL;
-}
-
-const material *facts_first_warm_moduli(const model *m) {
-  for (int i = 0; i < m->n.material; ++i)
-    if (m->materials[i].used && m->materials[i].elastic.n > 1)
-      return &m->materials[i];
-  return NULL;
-}
-
-int facts_has_warm_moduli(const model *m) {
-  return has_temperature(m) && facts_first_warm_moduli(m) != NULL;
-}
-
-int facts_has_warm_law(const model *m) {
-  return facts_has_inelastic(m) && has_temperature(m) &&
-         facts_first_warm_law(m) != NULL;
-}
-
-int facts_has_expansion(const model *m) {
-  for (int i = 0; i < m->n.material; ++i)
-    if (m->materials[i].used && m->materials[i].expand.given) return 1;
-  return 0;
-}
-
 const step *facts_first_step(const model *m, int (*is)(const step *s)) {
   for (int i = 0; i < m->n.step; ++i)
     if (is(&m->steps[i])) return &m->steps[i];
   return NULL;
 }
-
-int facts_asks_mesh_error(const step *s) { return s->accuracy.mesh; }
-int facts_asks_time_error(const step *s) { return s->accuracy.time; }
-int facts_asks_theory(const step *s) { return s->accuracy.theorems; }
 
 const char *facts_reads_entries(const model *m, const step *s) {
   if (s->solver.ops != NULL && s->solver.ops->entries != NULL)
@@ -224,9 +128,8 @@ const char *facts_reads_entries(const model *m, const step *s) {
 }
 
 status model_find_corner(model *m, const mesh *msh) {
-  OWNED int *of = NULL;
   m->mesh.corner_id = -1;
-  PASS_NEW(of, msh->n_node);
+  OWNED_NEW(int, of, msh->n_node);
   for (int i = 0; i < m->n.contact; ++i) {
     if (m->contacts[i].group_id < 0) continue;
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
@@ -257,21 +160,11 @@ int model_updates_pairs(const model *m) {
 }
 
 const step *facts_first_whole(const model *m) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step))
     if (s->output.condensed >= 0 || s->check != CHECK_NONE ||
         s->accuracy.theorems)
       return s;
-  }
   return NULL;
-}
-
-int facts_omits_friction(const model *m) {
-  int any = 0;
-  for (int i = 0; i < m->reduction.n; ++i)
-    any |= m->reduction.row[i].bit == EFFECT_BIT_FRICTION &&
-           !m->reduction.row[i].back;
-  return any;
 }
 
 int model_rubs_locally(const model *m) {

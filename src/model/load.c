@@ -202,8 +202,7 @@ static status add_points(const model *m, const mesh *msh, const load *l,
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F) {
   memset(F, 0, (size_t)msh->dim * (size_t)msh->n_node * sizeof *F);
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     switch ((load_kind)l->kind) {
       case LOAD_PRESSURE:
       case LOAD_TRACTION:
@@ -226,8 +225,7 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
 
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud) {
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     if (l->kind != LOAD_FIXING) continue;
     const mesh_group *g = &msh->group[l->group_id];
     const double w = share_at(l, s, t);
@@ -283,8 +281,7 @@ static status refuse_temperature(const model *m, const mesh *msh,
 void load_temperature_initial_at(const model *m, const mesh *msh,
                                  const double *b, double *T) {
   memset(T, 0, (size_t)msh->n_elem * sizeof *T);
-  for (int i = 0; i < m->n.initial; ++i) {
-    const initial *c = &m->initial.lines[i];
+  for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k)
@@ -295,8 +292,7 @@ void load_temperature_initial_at(const model *m, const mesh *msh,
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {
   memset(T, 0, (size_t)msh->n_elem * sizeof *T);
-  for (int i = 0; i < m->n.initial; ++i) {
-    const initial *c = &m->initial.lines[i];
+  for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {
@@ -317,14 +313,12 @@ static double temperature_of(const load *l, const mesh *msh, double t,
 status load_temperature_at(const model *m, const mesh *msh, const step *s,
                            double t, const double *b, const double *T0,
                            double *T) {
-  OWNED double *start = NULL;
-  PASS_NEW(start, msh->n_elem);
+  OWNED_NEW(double, start, msh->n_elem);
   memcpy(start, T0, (size_t)msh->n_elem * sizeof *T);
   memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
   if (s > m->steps && t < step_end(s))
     PASS(load_temperature_at(m, msh, s - 1, step_end(s - 1), b, T0, start));
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     if (l->kind != LOAD_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[l->group_id];
     const double w = share_at(l, s, t);
@@ -395,8 +389,7 @@ static void cards_of_step(const mesh *msh, const step *s, int *last) {
 /* The same of the initial conditions. */
 static void initial_cards(const model *m, const mesh *msh, int *last) {
   memset(last, 0, (size_t)msh->n_elem * sizeof *last);
-  for (int i = 0; i < m->n.initial; ++i) {
-    const initial *c = &m->initial.lines[i];
+  for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
     int first = 0;
@@ -410,9 +403,9 @@ static void initial_cards(const model *m, const mesh *msh, int *last) {
 /* zone[n] from 0 becomes that of the pair of it and by[n], below n_by. */
 static status split_zones(int n, const int *by, int n_by, int *zone) {
   int n_zone = 0, n_new = 0;
-  OWNED int *of = NULL;
   for (int k = 0; k < n; ++k)
     if (zone[k] >= n_zone) n_zone = zone[k] + 1;
+  OWNED int *of = NULL;
   PASS_NEW(of, (size_t)n_zone * (size_t)n_by);
   for (int k = 0; k < n; ++k) {
     int *at = &of[(size_t)n_by * (size_t)zone[k] + (size_t)by[k]];
@@ -423,8 +416,7 @@ static status split_zones(int n, const int *by, int n_by, int *zone) {
 }
 
 status load_temperature_zones(const model *m, const mesh *msh, int *zone) {
-  OWNED int *by = NULL;
-  PASS_NEW(by, msh->n_elem);
+  OWNED_NEW(int, by, msh->n_elem);
   memset(zone, 0, (size_t)msh->n_elem * sizeof *zone);
   for (int k = 0; k < msh->n_elem; ++k)
     by[k] = first_expansion(m, m->elem_section[k]);
@@ -440,8 +432,7 @@ status load_temperature_zones(const model *m, const mesh *msh, int *zone) {
 
 void load_fixed(const mesh *msh, const step *s, unsigned char *fixed) {
   memset(fixed, 0, (size_t)msh->dim * (size_t)msh->n_node);
-  for (int i = 0; i < s->loads.n; ++i) {
-    const load *l = &s->loads.item[i];
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
     if (l->kind != LOAD_FIXING) continue;
     const mesh_group *g = &msh->group[l->group_id];
     for (int k = 0; k < g->n_node; ++k)

@@ -1,8 +1,6 @@
 /* The model: what belongs to it, and what its tables show. */
 #include "model/model.h"
 
-#include "base/base.h"
-
 #include <strings.h>
 
 int has_card(const model *m, const char *name) {

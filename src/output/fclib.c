@@ -14,12 +14,10 @@
  * tangential unknown has no force and no motion: q_T = 0 there.
  */
 #include "base/archive/dataset.h"
-#include "base/base.h"
 #include "base/file.h"
 #include "output/writers.h"
 
 #include <errno.h>
-#include <hdf5.h>
 #include <lapacke.h>
 #include <unistd.h>
 
@@ -99,8 +97,6 @@ static status make_matrix(written *f) {
   const contact_problem *cp = f->cp;
   size_t size = (size_t)cp->m * (size_t)cp->m;
   double *a = NULL;
-  OWNED double *work = NULL;
-  OWNED int *iwork = NULL;
   PASS_NEW(a, size);
   f->M = a;
   f->local = 1;
@@ -109,7 +105,8 @@ static status make_matrix(written *f) {
     return OK;
   }
   memcpy(a, cp->A, size * sizeof *a);
-  PASS_NEW_ALL(OF(work, 3 * (size_t)cp->m), OF(iwork, cp->m));
+  OWNED_NEW(double, work, 3 * (size_t)cp->m);
+  OWNED_NEW(int, iwork, cp->m);
   if (!cp->floating && invert(cp->m, a, work, iwork)) return OK;
   memcpy(a, cp->A, size * sizeof *a);
   f->local = 0;

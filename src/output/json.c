@@ -1,5 +1,4 @@
 /* JOB.json: the outcome and the figures of the run for programs. */
-#include "base/base.h"
 #include "effects/rows.h"
 #include "output/writers.h"
 
@@ -327,8 +326,7 @@ static void write_cost(json *w, const output_options *o) {
 static void write_solutions(json *w, const increment_summary *s) {
   if (!s->checked) return;
   ARRAY(w, "solutions");
-  for (int i = 0; i < s->n_solution; ++i) {
-    const solution_facts *a = &s->solutions[i];
+  for (EACH(const solution_facts, a, s->solutions, s->n_solution)) {
     ITEM(w);
     json_real(w, "residual", a->residual);
     json_real(w, "distance_percent", 100 * a->distance);
@@ -347,8 +345,7 @@ static void write_solutions(json *w, const increment_summary *s) {
 static void write_theory_contacts(json *w, const model *m,
                                   const theorems_report *t) {
   ARRAY(w, "contacts");
-  for (int i = 0; i < t->n_contact; ++i) {
-    const theorems_contact *c = &t->contacts[i];
+  for (EACH(const theorems_contact, c, t->contacts, t->n_contact)) {
     ITEM(w);
     json_string(w, "contact",
                 c->contact_id < 0 ? "" : m->contacts[c->contact_id].name);

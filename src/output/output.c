@@ -66,9 +66,8 @@ static status each_condensed(const model *m, const char *dir, int after,
   if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
   if (folder == NULL) return text_failed(dir, "read", errno);
   for (struct dirent *e; (e = readdir(folder)) != NULL;) {
-    OWNED char *path = NULL;
     if (increment_of(e->d_name, m->name.job) <= after) continue;
-    PASS_NEW(path, strlen(dir) + strlen(e->d_name) + 2);
+    OWNED_NEW(char, path, strlen(dir) + strlen(e->d_name) + 2);
     sprintf(path, "%s/%s", dir, e->d_name);
     PASS(cleared ? file_clear(path) : spare(m->deck, path));
   }

@@ -209,8 +209,7 @@ static status remember_theory(const theorems_report *t, increment_summary *i) {
 
 status output_remember(output *o, const state *s) {
   run_summary *run = &o->run;
-  PASS_GROW(run->increments, run->n_increment, run->capacity);
-  increment_summary *i = &run->increments[run->n_increment++];
+  ADDED(increment_summary, i, run->increments, run->n_increment, run->capacity);
   *i = (increment_summary){.step_no = s->step_no,
                            .increment_no = s->increment_no,
                            .total_no = s->total_no,

@@ -3,7 +3,6 @@
  * JOB.cvg: one line per contact iteration.
  * The line on the terminal, and those at the end.
  */
-#include "base/base.h"
 #include "output/writers.h"
 
 status sta_header(const output_options *o, text_file *sta) {

@@ -71,9 +71,8 @@ static int by_number(const void *a_, const void *b_) {
 }
 
 static status order_by_number(int n, const size_t *no, int **order) {
-  OWNED numbered *list = NULL;
   PASS_NEW(*order, n);
-  PASS_NEW(list, n);
+  OWNED_NEW(numbered, list, n);
   for (int i = 0; i < n; ++i) list[i] = (numbered){no[i], i};
   qsort(list, (size_t)n, sizeof *list, by_number);
   for (int i = 0; i < n; ++i) (*order)[i] = list[i].id;
@@ -89,12 +88,10 @@ static int in_group(const mesh_group *g, int node_id) {
 static status contact_rows(const table *columns, tabular *t, const view *v,
                            const mesh_group *g) {
   const contact_surface *surface = v->s->contacts.surface;
-  OWNED size_t *no = NULL;
-  OWNED int *order = NULL;
   if (surface == NULL) return OK;
-  PASS_NEW(no, surface->n);
+  OWNED_NEW(size_t, no, surface->n);
   for (int i = 0; i < surface->n; ++i) no[i] = surface->node_no[i];
-  PASS(order_by_number(surface->n, no, &order));
+  OWNED_OF(int, order, order_by_number(surface->n, no, &order));
   for (int i = 0; i < surface->n; ++i)
     if (g == NULL || in_group(g, surface->node_id[order[i]]))
       table_row(columns, v, order[i], t->dat.f);

@@ -14,9 +14,6 @@
  */
 #include "program/job.h"
 
-#include "accuracy/space.h"
-#include "base/base.h"
-
 static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
 static const double BLIND = 0.5; /* -, of the error, without an estimate */
@@ -38,9 +35,7 @@ struct aims {
 status aims_new(const model *m, int all, aims **out) {
   *out = NULL;
   if (m->n.goal == 0) return OK;
-  PASS_NEW(*out, 1);
-  aims *a = *out;
-  OWNS(a);
+  MAKES(aims, a, out);
   a->all = all;
   a->counts = all || model_targeted_goal(m) != NULL;
   a->n = m->n.goal;

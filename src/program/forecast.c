@@ -30,8 +30,6 @@
  * that it needs for itself. The passes of its target cost that of the deck and
  * two like the last one.
  */
-#include "accuracy/space.h"
-#include "base/base.h"
 #include "effects/rows.h"
 #include "program/job.h"
 
@@ -409,10 +407,9 @@ static status fit(model_of_cost *c, double wanted) {
 static status run_adapted(const command *c, const job_input *in,
                           const double *eta, double wanted, trial *t) {
   status st = OK;
-  double *size = NULL;
   job_input other = {0};
   trial before = {0};
-  NEW(size, in->msh->n_node);
+  OWNED_NEW(double, size, in->msh->n_node);
   TRY(message_log_new(&other.log));
   space_sizes(in->msh, eta, wanted, size);
   stage_costs(NULL, &before);
@@ -422,7 +419,6 @@ static status run_adapted(const command *c, const job_input *in,
 done:
   if (st != OK && other.log != NULL) message_print(other.log, stderr);
   job_input_free(&other);
-  memory_free(size);
   return st;
 }
 
@@ -463,10 +459,9 @@ static void stand_free(stand *s) {
 static status run_for_goals(const command *c, const mesh_sizes *first,
                             const job_input *at, const double *eta, double part,
                             stand *s) {
-  OWNED double *size = NULL;
   trial before = {0};
   const mesh *msh = at->msh;
-  PASS_NEW(size, msh->n_node);
+  OWNED_NEW(double, size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) size[i] = HUGE_VAL;
   aims_ask(s->t.goals, part);
   PASS(aims_sizes(s->t.goals, at->m, msh, eta, size));
@@ -578,11 +573,10 @@ static status forecast_goals(const command *c, job_input *in, trial *now) {
   enum { LEAST = 2, MOST = 4 };
   static const double part = 0.3;
   status st = OK;
-  double *length = NULL;
+  OWNED_NEW(double, length, in->msh->n_node);
   stand s[2] = {{.t.goals = now->goals}, {.t.goals = now->goals}};
   model_of_cost cost = {.dim = in->m->dim, .deck = *now};
   int n = 0;
-  NEW(length, in->msh->n_node);
   space_lengths(in->msh, length);
   const mesh_sizes first = {in->msh, length};
   while (n < LEAST || (n < MOST && lacks_estimate(now->goals, in->m, n - 1))) {
@@ -600,31 +594,26 @@ static status forecast_goals(const command *c, job_input *in, trial *now) {
 done:
   stand_free(&s[0]);
   stand_free(&s[1]);
-  memory_free(length);
   return st;
 }
 
 status forecast_print(const command *c, job_input *in) {
-  status st = OK;
-  double *eta = NULL;
+  OWNED aims *goals = NULL;
   model_of_cost cost = {.dim = in->m != NULL ? in->m->dim : 2};
   if (in->problem != NULL)
-    FAIL(ERR_DECK,
-         "--estimate-cost refines the mesh: the deck must name one in *MESH, "
-         "FILE=");
+    RAISE(ERR_DECK,
+          "--estimate-cost refines the mesh: the deck must name one in *MESH, "
+          "FILE=");
   if (job_keeps_mesh(in->m))
-    FAIL(ERR_DECK,
-         "--estimate-cost refines the mesh: a .msh with values at its nodes "
-         "(FILE=) is not refined, give them as expressions");
+    RAISE(ERR_DECK,
+          "--estimate-cost refines the mesh: a .msh with values at its nodes "
+          "(FILE=) is not refined, give them as expressions");
   if (job_is_geo(in->m)) mesh_gmsh_load();
-  NEW(eta, in->msh->n_elem);
-  if (in->m->n.goal > 0) TRY(aims_new(in->m, 1, &cost.deck.goals));
-  TRY(run_trial(in, &cost.deck, eta));
+  OWNED_NEW(double, eta, in->msh->n_elem);
+  if (in->m->n.goal > 0) PASS(aims_new(in->m, 1, &goals));
+  cost.deck.goals = goals;
+  PASS(run_trial(in, &cost.deck, eta));
   stage_costs(NULL, &cost.deck);
-  TRY(forecast_norm(c, in, eta, &cost));
-  if (in->m->n.goal > 0) TRY(forecast_goals(c, in, &cost.deck));
-done:
-  memory_free(cost.deck.goals);
-  memory_free(eta);
-  return st;
+  PASS(forecast_norm(c, in, eta, &cost));
+  return in->m->n.goal > 0 ? forecast_goals(c, in, &cost.deck) : OK;
 }

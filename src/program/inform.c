@@ -1,12 +1,8 @@
 /* Information without solving: version, lists, the check of a deck. */
 #include "program/inform.h"
 
-#include "base/base.h"
-#include "base/option.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
-#include "exchange/exchange.h"
-#include "fem/fem.h"
 #include "model/keyword/keyword.h"
 #include "run/history/history.h"
 
@@ -57,8 +53,7 @@ static void print_sizes(const model *m, const mesh *msh) {
 }
 
 static status print_plan(const model *m, const mesh *msh, int n) {
-  OWNED effect_plan *p = NULL;
-  PASS(plan_new(m, msh, n, &p));
+  OWNED_OF(effect_plan, p, plan_new(m, msh, n, &p));
   puts("effects");
   plan_print(p, "  ", stdout);
   return OK;

@@ -4,13 +4,10 @@
  */
 #include "program/job.h"
 
-#include "accuracy/space.h"
 #include "base/base.h"
 #include "base/system/input.h"
-#include "effects/plan/plan.h"
 #include "effects/reduction/reduction.h"
 #include "effects/rows.h"
-#include "fem/fem.h"
 #include "model/check/check.h"
 #include "model/keyword/keyword.h"
 #include "program/inform.h"
@@ -30,8 +27,7 @@ static status check_safe_mesh(const model *m) {
  * between their nodes. */
 static int find_rounds(const model *m, const char **names) {
   int n = 0;
-  for (int i = 0; i < m->n.contact; ++i) {
-    const contact *c = &m->contacts[i];
+  for (EACH(const contact, c, m->contacts, m->n.contact)) {
     if (c->is_crack) continue;
     names[n++] = c->is_pair ? c->pair.group[0] : c->group;
     if (c->is_pair) names[n++] = c->pair.group[1];
@@ -43,17 +39,15 @@ static int find_rounds(const model *m, const char **names) {
 static status read_mesh(const job_mesh *other, job_input *in) {
   const model *m = in->m;
   double cpu = timer_cpu();
-  OWNED mesh_number *numbers = NULL;
-  OWNED const char **rounds = NULL;
   int n = 0;
   PASS(check_safe_mesh(m));
-  PASS_NEW(numbers, m->deck->n_symbol);
+  OWNED_NEW(mesh_number, numbers, m->deck->n_symbol);
   for (int i = 0; i < m->deck->n_symbol; ++i)
     if (m->deck->symbols[i].in_geometry)
       numbers[n++] =
           (mesh_number){m->deck->symbols[i].typed, m->deck->symbols[i].value,
                         m->deck->symbols[i].used};
-  PASS_NEW(rounds, 2 * m->n.contact);
+  OWNED_NEW(const char *, rounds, 2 * m->n.contact);
   TIMED(STAGE_MESH);
   if ((model_has_target(m) || m->steps[0].nested) && job_is_geo(m))
     mesh_gmsh_load();
@@ -200,8 +194,7 @@ static status solve_first(const command *c, const mesh_sizes *sizes,
 }
 
 status job_solve_coarser(const command *c, job_input *in) {
-  OWNED double *size = NULL;
-  PASS_NEW(size, in->msh->n_node);
+  OWNED_NEW(double, size, in->msh->n_node);
   space_lengths(in->msh, size);
   for (int i = 0; i < in->msh->n_node; ++i) size[i] *= 2.0;
   PASS(coarser_new(&in->contact));

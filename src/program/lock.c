@@ -1,8 +1,6 @@
 /* The lock of a job; the file shows the number of the process. */
 #include "program/job.h"
 
-#include "base/base.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <sys/file.h>

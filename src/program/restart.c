@@ -2,7 +2,6 @@
 #include "base/base.h"
 #include "base/file.h"
 #include "base/system/input.h"
-#include "fem/fem.h"
 #include "mesh/msh/geo.h"
 #include "model/keyword/keyword.h"
 #include "program/inform.h"
@@ -90,9 +89,8 @@ static status read_text(archive *a, const char *name, char **text) {
 
 /* Messages of the run so far, so that repeated ones are recognised. */
 static status report_warnings(const job_input *in, archive *a) {
-  OWNED char *text = NULL;
   char *end;
-  PASS(read_text(a, "warnings", &text));
+  OWNED_OF(char, text, read_text(a, "warnings", &text));
   for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
     int id, no, used = 0;
     *end = '\0';
@@ -183,8 +181,7 @@ static status add_geometry(const char *path, FILE *out) {
 static status add_files(FILE *out, const void *what) {
   const job_input *in = what;
   int step_no = 0;
-  for (int i = 0; i < in->d->n_card; ++i) {
-    const card *c = &in->d->cards[i];
+  for (EACH(const card, c, in->d->cards, in->d->n_card)) {
     const parameter *file = card_parameter(c, "FILE");
     if (strcmp(c->name, "STEP") == 0) ++step_no;
     if (file == NULL || !file->has_value) continue;

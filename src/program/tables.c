@@ -252,11 +252,10 @@ static status tell_end(const command *c, const char *name, const extract *e) {
 
 status tables_print(const command *c) {
   status st = OK;
-  OWNED extract *e = NULL;
   OWNED char *name = job_name(c->deck_file), *path = NULL;
   if (name != NULL) path = text_path(c->dir, name, "dat");
   if (path == NULL) RAISE(ERR_MEMORY, "memory exhausted: name of a file");
-  PASS_NEW(e, 1);
+  OWNED_NEW(extract, e, 1);
   PASS(read_name(c->table, e));
   e->path = path;
   e->separator =

@@ -12,8 +12,6 @@
  */
 #include "program/job.h"
 
-#include "accuracy/space.h"
-#include "base/base.h"
 #include "base/interrupt.h"
 
 /* Shares of the target, -: errors allowed to the mesh, the increments and the

@@ -1,7 +1,6 @@
 /* The hooks of the active effects, each under the stage of its row. */
 #include "run/effect.h"
 
-#include "base/base.h"
 #include "run/run.h"
 
 int effect_is_on(const effect_ops *e, const model *m) {
@@ -72,37 +71,39 @@ const char *effects_sum_up(const run *r) {
 
 /* effects_HOOK: "call" for each effect e that has the hook and for which "if_"
  * holds, own its state, timed or not. */
-#define EACH(hook, parameters, timed, if_, call)  \
-  status effects_##hook parameters {              \
-    for (int k = 0; k < r->effects.n; ++k) {      \
-      const effect_ops *e = r->effects.on[k].ops; \
-      void *own = r->effects.on[k].state;         \
-      if (e->on.hook == NULL || !(if_)) continue; \
-      if (timed) enter(r, k);                     \
-      const status st = call;                     \
-      if (timed) leave(r, k);                     \
-      if (st != OK) return st;                    \
-    }                                             \
-    return OK;                                    \
+#define FOR_HOOK(hook, parameters, timed, if_, call) \
+  status effects_##hook parameters {                 \
+    for (int k = 0; k < r->effects.n; ++k) {         \
+      const effect_ops *e = r->effects.on[k].ops;    \
+      void *own = r->effects.on[k].state;            \
+      if (e->on.hook == NULL || !(if_)) continue;    \
+      if (timed) enter(r, k);                        \
+      const status st = call;                        \
+      if (timed) leave(r, k);                        \
+      if (st != OK) return st;                       \
+    }                                                \
+    return OK;                                       \
   }
 
-EACH(check, (run * r), 0, 1, e->on.check(r, own))
-EACH(prepare, (run * r), 0, 1, e->on.prepare(r, own))
-EACH(begin_step, (run * r), 1, 1, e->on.begin_step(r, own))
-EACH(start, (run * r), 1, 1, e->on.start(r, own))
-EACH(make_step, (run * r, int *made), 1, !*made, e->on.make_step(r, own, made))
-EACH(attempt, (run * r, double t), 1, 1, e->on.attempt(r, own, t))
-EACH(solve, (run * r, double t, int *made), 1, !*made,
-     e->on.solve(r, own, t, made))
-EACH(initial, (run * r), 1, is_due(r, k), e->on.initial(r, own))
-EACH(load, (run * r, double t), 1, 1, e->on.load(r, own, t))
-EACH(pose, (run * r, double t), 1, 1, e->on.pose(r, own, t))
-EACH(rewrite, (run * r, contact_problem *cp, double **u, double *force), 1,
-     is_due(r, k), e->on.rewrite(r, own, cp, u, force))
-EACH(found, (run * r, int *again), 1, !*again, e->on.found(r, own, again))
-EACH(examine, (run * r, double t), 1, 1, e->on.examine(r, own, t))
-EACH(estimate, (run * r), 1, !r->effects.on[k].borrowed, e->on.estimate(r, own))
-EACH(accept, (run * r), 1, is_due(r, k), e->on.accept(r, own))
+FOR_HOOK(check, (run * r), 0, 1, e->on.check(r, own))
+FOR_HOOK(prepare, (run * r), 0, 1, e->on.prepare(r, own))
+FOR_HOOK(begin_step, (run * r), 1, 1, e->on.begin_step(r, own))
+FOR_HOOK(start, (run * r), 1, 1, e->on.start(r, own))
+FOR_HOOK(make_step, (run * r, int *made), 1, !*made,
+         e->on.make_step(r, own, made))
+FOR_HOOK(attempt, (run * r, double t), 1, 1, e->on.attempt(r, own, t))
+FOR_HOOK(solve, (run * r, double t, int *made), 1, !*made,
+         e->on.solve(r, own, t, made))
+FOR_HOOK(initial, (run * r), 1, is_due(r, k), e->on.initial(r, own))
+FOR_HOOK(load, (run * r, double t), 1, 1, e->on.load(r, own, t))
+FOR_HOOK(pose, (run * r, double t), 1, 1, e->on.pose(r, own, t))
+FOR_HOOK(rewrite, (run * r, contact_problem *cp, double **u, double *force), 1,
+         is_due(r, k), e->on.rewrite(r, own, cp, u, force))
+FOR_HOOK(found, (run * r, int *again), 1, !*again, e->on.found(r, own, again))
+FOR_HOOK(examine, (run * r, double t), 1, 1, e->on.examine(r, own, t))
+FOR_HOOK(estimate, (run * r), 1, !r->effects.on[k].borrowed,
+         e->on.estimate(r, own))
+FOR_HOOK(accept, (run * r), 1, is_due(r, k), e->on.accept(r, own))
 
 void effects_restore(run *r, contact_problem *cp, double *u, double *force) {
   for (int k = r->effects.n - 1; k >= 0; --k)

@@ -2,8 +2,6 @@
  * One equilibrium: loads and obstacles at time t, condensed load, contact
  * problem, contact solver, recovery of the interior (CPR98, problem S_i^n).
  */
-#include "base/base.h"
-#include "base/sparse.h"
 #include "run/run.h"
 #include "solver/choice/rest.h"
 
@@ -39,10 +37,9 @@ static void put_rows(const run *r, const double *u, const double *force) {
 
 /* Displacements of the contact nodes that were found with the interior. */
 static status take_interior(const run *r) {
-  OWNED double *w = NULL;
   int dim = r->msh->dim, next = 0;
   if (r->nodes.n_row == r->nodes.n_c) return OK;
-  PASS_NEW(w, r->nodes.n_c);
+  OWNED_NEW(double, w, r->nodes.n_c);
   surface_relative(r->surface, r->now.u, w);
   for (int i = 0; i < r->nodes.n; ++i) {
     int is_in = r->nodes.reach.in == NULL ||

@@ -3,8 +3,6 @@
  */
 #include "run/run.h"
 
-#include "base/base.h"
-
 int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
 
 const material *run_material(const run *r, int elem_id) {

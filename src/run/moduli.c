@@ -1,8 +1,6 @@
 /* Elasticity of the elements at their temperatures. */
 #include "run/run.h"
 
-#include "base/base.h"
-
 static const material *material_of(const model *m, int section_id) {
   return &m->materials[m->sections[section_id].material_id];
 }

@@ -26,9 +26,8 @@ static status new_kinds(const run *r, flow *x, int *kind_of) {
 }
 
 static status new_points(run *r, visco *v, const int *kind_of) {
-  OWNED int *kind_id = NULL;
   int n = 0;
-  PASS_NEW(kind_id, r->strains.eigen.n);
+  OWNED_NEW(int, kind_id, r->strains.eigen.n);
   PASS_NEW(v->place, r->strains.eigen.n);
   PASS_NEW(v->elem, r->strains.eigen.n);
   for (int k = 0; k < r->strains.eigen.n; ++k) {
@@ -70,21 +69,18 @@ static status take_initial(const run *r, visco *v, const initial *c) {
 }
 
 static status initial_state(const run *r, visco *v) {
-  for (int i = 0; i < r->m->n.initial; ++i) {
-    const initial *c = &r->m->initial.lines[i];
+  for (EACH(const initial, c, r->m->initial.lines, r->m->n.initial))
     if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
       PASS(take_initial(r, v, c));
-  }
   return OK;
 }
 
 status visco_new(run *r) {
-  OWNED int *kind_of = NULL;
   visco *v = NULL;
   TIMED(STAGE_INELASTIC);
   PASS_NEW(v, 1);
   r->strains.visco = v;
-  PASS_NEW(kind_of, r->m->n.section);
+  OWNED_NEW(int, kind_of, r->m->n.section);
   PASS(new_kinds(r, &v->x, kind_of));
   PASS(new_points(r, v, kind_of));
   PASS(flow_state_new(&v->x, &v->old));

@@ -205,13 +205,13 @@ static void find_torques(run *r) {
 /* Energy of the springs of laws that elastic constants represent, J: the part
  * 1/2 sigma R sigma of their strain energy (model.h). */
 static status relaxed_energy(const run *r, double *kept) {
-  OWNED double *sigma = NULL;
   const int ns = r->m->ns;
   int any = 0;
   *kept = 0.0;
   for (int i = 0; i < r->m->n.material; ++i)
     any |= r->m->materials[i].is_relaxed;
   if (!any) return OK;
+  OWNED double *sigma = NULL;
   PASS_NEW(sigma, (size_t)ns * (size_t)r->msh->n_elem);
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < r->msh->n_elem; ++e) {

@@ -12,9 +12,20 @@
 #include "material/scheme/scheme.h"
 #include "run/start/start.h"
 #include "accuracy/theorems/theorems.h"
-#include "accuracy/exact_error.h"
 
 struct run;
+
+/* Of *REFERENCE, relative to the norm of the closed form, -; NAN: not
+ * available. */
+typedef struct true_error {
+  int asked;
+  double energy;       /* of the stresses, integral of s' inv(E) s; without
+                          stresses in the card of E times all the strain */
+  double displacement; /* L2 */
+  double stress;       /* L2, all components of the tensor */
+  double pressure;     /* L2 on the contact surface, of nodal values */
+  double cpu;          /* s, CPU time for it so far */
+} true_error;
 
 /* Forces and moments of one contact: of the obstacle on the body. */
 typedef struct contact_total {

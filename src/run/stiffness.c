@@ -6,7 +6,6 @@
  */
 #include "run/run.h"
 
-#include "base/base.h"
 #include "model/facts.h"
 
 enum {

@@ -3,7 +3,6 @@
  * inelastic laws, sigma = E (e - e0): stored only for the elements that can
  * have any.
  */
-#include "base/base.h"
 #include "model/facts.h"
 #include "run/visco.h"
 

@@ -6,7 +6,6 @@
  */
 #include "run/visco.h"
 
-#include "base/base.h"
 #include "model/check/check.h"
 
 /* The error of the midpoint rule in its difference to the trapezoidal one. */
@@ -264,9 +263,8 @@ status visco_turning(const run *r, double **d) {
 
 /* The larger of both differences. */
 static status blind_error(const run *r, double *error) {
-  OWNED double *d = NULL;
   *error = halves_error(r);
-  PASS(visco_turning(r, &d));
+  OWNED_OF(double, d, visco_turning(r, &d));
   if (d != NULL)
     *error = fmax(*error, flow_norm(&r->strains.visco->x, d) /
                               (visco_order(r->step) > 1 ? SIMPSON : 1.0));

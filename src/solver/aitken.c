@@ -19,9 +19,7 @@
  *
  * A combination after which a sweep moves farther than before is rejected.
  */
-#include "base/base.h"
 #include "solver/local.h"
-#include "solver/solver.h"
 
 #include <cblas.h>
 
@@ -297,23 +295,7 @@ static status aitken_solve(const contact_problem *cp, const void *par,
 /* clang-format off */
 const solver_ops aitken_solver = {
   .name = "aitken",
-  .reference = "CPR98, 3.3; Irons, Tuck 1969; Walker, Ni 2011",
   .family = "relaxation",
-  .help =
-    "Gauss-Seidel sweeps with Aitken's acceleration. The nodes are visited\n"
-    "one after the other, each solved exactly with the others held (closed\n"
-    "form in 2-D, the true friction disc in 3-D, the sliding limit following\n"
-    "the pressure in the sweep). ACCELERATION=AITKEN extrapolates every sixth\n"
-    "sweep by the vector form of Irons and Tuck, x+ = G - F (F.dF)/(dF.dF), F\n"
-    "the change made by a sweep, dF its difference from the one before, in\n"
-    "the metric of the diagonal of A. ACCELERATION=ANDERSON combines the last\n"
-    "twelve sweeps after every sweep so that the linearised change is least.\n"
-    "A step after which the sweep moves farther is rejected, so the method is\n"
-    "as safe as Gauss-Seidel; there is no factor to choose. Where plain\n"
-    "sweeps cycle they are made forward and backward in turn, then shortened.\n"
-    "Costs one product with the matrix a sweep. Choose it when only the\n"
-    "compliance is known or is singular, when the direct methods fail, or for\n"
-    "a few digits of a very large problem.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
   .entries = "METHOD=AITKEN, which relaxes row by row,",

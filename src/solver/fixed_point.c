@@ -1,8 +1,6 @@
 /* Fixed point on the sliding limit, with Anderson mixing (fixed_point.h). */
 #include "solver/fixed_point.h"
 
-#include "base/base.h"
-
 enum {
   MOST = 200000, /* iterations of all passes, by default */
   DEPTH = 4,     /* differences mixed */
@@ -26,10 +24,7 @@ struct fixed_point {
 };
 
 status fixed_point_new(int n, fixed_point **out) {
-  fixed_point *fp;
-  PASS_NEW(fp, 1);
-  *out = fp;
-  OWNS(fp);
+  MAKES(fixed_point, fp, out);
   fp->n = n;
   PASS_NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
   PASS_NEW_ALL(OF(fp->dg, n * DEPTH), OF(fp->dG, n * DEPTH));
@@ -284,10 +279,7 @@ struct friction_path {
 };
 
 status friction_path_new(const contact_problem *cp, friction_path **out) {
-  friction_path *path;
-  PASS_NEW(path, 1);
-  *out = path;
-  OWNS(path);
+  MAKES(friction_path, path, out);
   PASS_NEW_ALL(OF(path->g0, cp->n),
                OF(path->val, cp->B != NULL ? cp->B->start[cp->n] : 0),
                OF(path->good_u, cp->m), OF(path->good_r, cp->m));

@@ -21,7 +21,6 @@
  *
  * and shortens rho, never below the bound of Collatz and Wielandt.
  */
-#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 
@@ -211,22 +210,7 @@ static status lagrange_keep(void *work, archive *a) {
 /* clang-format off */
 const solver_ops lagrange_solver = {
   .name = "lagrange",
-  .reference = "CPR98, 3.3; Uzawa 1958; Nesterov 1983",
   .family = "multipliers",
-  .help =
-    "Lagrangian method (Uzawa): the forces of contact are multipliers, moved\n"
-    "by r <- P(r - rho D (u - o)), A u = f + r, with o the gap and the stick\n"
-    "position, D the inverse diagonal of the compliance and P the projection\n"
-    "on r_n <= 0 and the disc |r_t| <= g. The step rho comes from the largest\n"
-    "eigenvalue of the compliance and is checked at every step, so there is\n"
-    "nothing to choose. ACCELERATION=NESTEROV extrapolates the forces and\n"
-    "begins again when the step turns; NONE is Uzawa's original method. The\n"
-    "sliding limit is updated around it (CPR98, 2.3). Needs the compliance\n"
-    "(an inverse, once per matrix); a body that contact alone holds is held\n"
-    "by soft springs on its rigid motions, which follow it until they carry\n"
-    "nothing. One product a step, many steps: it is for comparison and as a\n"
-    "method that always converges on a Tresca problem; PCG solves the same\n"
-    "problem in far fewer products.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE,
   .param_size = sizeof(lagrange), .work_size = sizeof(lagrange_work),
   .options = lagrange_options, .setup = lagrange_setup, .solve = lagrange_solve,

@@ -4,8 +4,6 @@
  */
 #include "solver/local.h"
 
-#include <math.h>
-
 enum { ROOT_STEPS = 100 };
 static const double LAST_STEP = 0x1p-27; /* -, of a root found by Newton steps:
                                             the next is its square */

@@ -27,7 +27,6 @@
  * operator a product with W is a solve with the factor of all rows, and a
  * product with A one with that of the interior.
  */
-#include "base/base.h"
 #include "contact/force_set.h"
 #include "solver/solver.h"
 
@@ -414,23 +413,7 @@ static status pcg_solve(const contact_problem *cp, const void *par, void *work,
 /* clang-format off */
 const solver_ops pcg_solver = {
   .name = "pcg",
-  .reference = "CPR98, 3.3; Dostal 2009 (MPRGP); Kucera 2008",
   .family = "projection",
-  .help =
-    "Projected conjugate gradients, preconditioned, on the forces of contact\n"
-    "(compliance form): minimise 1/2 r'Wr + (q - o)'r over r_n <= 0 and |r_t|\n"
-    "<= g, o the gap and the stick position. Conjugate gradients run on the\n"
-    "face of the active constraints; a step that leaves the set is projected\n"
-    "back, and when the gradient off the face is larger than the one along it\n"
-    "the constraints are released (proportioning). In 3-D the true disc is\n"
-    "used and a slipping node turns along its rim. PRECONDITIONER=FACE takes\n"
-    "the block of the stiffness that belongs to the face, DIAGONAL the\n"
-    "diagonal. The sliding limit is updated around it (CPR98, 2.3). Needs the\n"
-    "compliance (an inverse, once per matrix; with STIFFNESS=FACTOR solves\n"
-    "with one factor); a body that contact alone\n"
-    "holds is held by soft springs on its rigid motions, which follow it\n"
-    "until they carry nothing. A step costs two products. Choose it for large\n"
-    "problems with many increments on one matrix and small friction.",
   .handles = SOLVES_TRESCA | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE,
   .param_size = sizeof(pcg), .work_size = sizeof(pcg_work),

@@ -4,8 +4,6 @@
  */
 #include "solver/local.h"
 
-#include "base/base.h"
-
 #include <cblas.h>
 
 enum { DRIFT_SWEEPS = 20 };
@@ -65,11 +63,8 @@ static void lift_block(int d, const double *block, double lift, double *K) {
 }
 
 status node_blocks_new(const contact_problem *cp, node_blocks **out) {
-  node_blocks *b;
   int d = cp->dim;
-  PASS_NEW(b, 1);
-  *out = b;
-  OWNS(b);
+  MAKES(node_blocks, b, out);
   PASS_NEW_REALS(cp->m, &b->weight, &b->step, &b->strained);
   PASS_NEW_ALL(OF(b->K, cp->n * d * d), OF(b->state, cp->n));
   double lift = 0.0;

@@ -1,8 +1,6 @@
 /* Functions common to the solvers (solver.h). */
 #include "solver/solver.h"
 
-#include "base/base.h"
-
 static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 
 int solver_few_digits(double tol) { return tol >= FEW_DIGITS; }

@@ -83,14 +83,14 @@ enum {
 };
 
 typedef struct solver_ops {
-  const char *name, *reference; /* METHOD= in lower case; source */
-  const char *family;           /* kind of method: two of one family share their
-                                   weaknesses */
-  const char *help;             /* manual text: method, when to choose it */
-  unsigned handles;             /* bits above */
-  const char *entries;          /* the method and why it needs the entries of
-                                   A; NULL: an operator (contact/operator.h)
-                                   suffices */
+  const char *name;    /* METHOD= in lower case; what the manual tells
+                          of it stands in src/manual/methods.txt */
+  const char *family;  /* kind of method: two of one family share their
+                          weaknesses */
+  unsigned handles;    /* bits above */
+  const char *entries; /* the method and why it needs the entries of
+                          A; NULL: an operator (contact/operator.h)
+                          suffices */
   size_t param_size, work_size;
   const option *options;
   /* Once per matrix; par: [param_size]; work: the private state, [work_size]
@@ -117,7 +117,6 @@ extern const solver_ops *const solver_list[];    /* NULL at the end */
 const solver_ops *solver_find(const char *name); /* case ignored; or NULL */
 /* Family of the solver of that name; "direct" if none was needed (NULL too). */
 const char *solver_family(const char *name);
-extern const char auto_help[]; /* manual text of METHOD=AUTO */
 
 /* ---- functions common to the solvers ---- */
 

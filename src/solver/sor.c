@@ -8,10 +8,8 @@
  * q is carried along with the columns of W. Both see the same
  * problem of a node,  K d = b + r,  K = A_ii or inv(W_ii),  b = -r now.
  */
-#include "base/base.h"
 #include "solver/fixed_point.h"
 #include "solver/local.h"
-#include "solver/solver.h"
 
 typedef struct sor {
   double omega; /* relaxation factor, -; 0: chosen by the program */
@@ -214,24 +212,7 @@ static status sor_solve(const contact_problem *cp, const void *par, void *work,
 /* clang-format off */
 const solver_ops sor_solver = {
   .name = "sor",
-  .reference = "CPR98, 2.3 and 3.3; Jourdan, Alart, Jean 1998",
   .family = "relaxation",
-  .help =
-    "Projected successive over-relaxation. The nodes are visited one after\n"
-    "the other; each visit solves the contact problem of the node exactly\n"
-    "with all others held (closed form in 2-D, the true friction disc in 3-D)\n"
-    "and over-relaxes by the factor OMEGA. With FRICTION=DIRECT the sliding\n"
-    "limit follows the pressure within the sweep; with FRICTION=FIXED_POINT\n"
-    "Tresca problems are solved and the limit is updated around them (CPR98,\n"
-    "2.3), which contracts for small friction only. Without OMEGA the program\n"
-    "chooses it from the observed rate and reduces it when the residual stops\n"
-    "falling: with friction in the sweep large factors do not converge, and\n"
-    "for the compliance form they have no advantage (1 is taken). If a sweep\n"
-    "order cycles, the order is changed, then the steps damped; if patterns\n"
-    "of states are still repeated, it stops with a cycle. Costs one product\n"
-    "with the matrix a sweep, and many sweeps: choose it when the direct\n"
-    "methods fail, when only the compliance is known or is singular, or for a\n"
-    "few digits of a large problem.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING |
              SPARSE_COMPLIANCE,
   .entries = "METHOD=SOR, which relaxes row by row,",

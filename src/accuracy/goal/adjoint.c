@@ -15,7 +15,6 @@
 #include "accuracy/goal/goal.h"
 
 #include "accuracy/accuracy.h"
-#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
@@ -184,9 +183,9 @@ static status gmres(linear_system *s, int transposed, double *x) {
   double H[DIRECTIONS * (DIRECTIONS + 1)] = {0.0};
   double c[DIRECTIONS], t[DIRECTIONS], g[DIRECTIONS + 1] = {size};
   double left = size, *h = H;
-  OWNED double *V = NULL;
   int n = 0;
   if (!(size > 0.0)) return OK;
+  OWNED double *V = NULL;
   PASS_NEW(V, (size_t)m * (DIRECTIONS + 1));
   for (int k = 0; k < m; ++k) V[k] = x[k] / size;
   for (; n < DIRECTIONS && left > ENOUGH * size; h += DIRECTIONS + 1) {
@@ -241,9 +240,7 @@ static status linear_system_new(const linear_states *rows,
                                 linear_system **out) {
   const size_t m = (size_t)rows->cp->m;
   int singular = 0;
-  PASS_NEW(*out, 1);
-  linear_system *s = *out;
-  OWNS(s);
+  MAKES(linear_system, s, out);
   s->rows = rows;
   s->bent = is_bent(rows);
   PASS_NEW_REALS(m, &s->b, &s->Ax);
@@ -264,9 +261,8 @@ static status linear_system_new(const linear_states *rows,
 static status linear_solve(linear_system *s, const double *b, double *x) {
   const linear_states *rows = s->rows;
   const int m = rows->cp->m;
-  OWNED double *rest = NULL;
   if (s->M == NULL) return solve_operated(s, b, x);
-  PASS_NEW(rest, m);
+  OWNED_NEW(double, rest, m);
   for (int k = 0; k < m; ++k)
     if (rows->place[k] >= 0) x[k] = 0.0;
   contact_apply(rows->cp, x, s->Ax);
@@ -302,9 +298,7 @@ struct contact_adjoint {
 
 status contact_adjoint_new(const contact_problem *cp, const double *u,
                            const double *r, contact_adjoint **out) {
-  PASS_NEW(*out, 1);
-  contact_adjoint *a = *out;
-  OWNS(a);
+  MAKES(contact_adjoint, a, out);
   a->cp = cp;
   a->u = u;
   a->r = r;

@@ -426,9 +426,7 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   const mesh *m = s->d->mesh;
   OWNED double *q = NULL, *G = NULL;
   const size_t n = (size_t)(m->dim * m->dim);
-  PASS_NEW(*out, 1);
-  goal_estimator *e = *out;
-  OWNS(e);
+  MAKES(goal_estimator, e, out);
   e->s = *s;
   e->recovery = recovery;
   PASS_NEW_ALL(OF(q, n * (size_t)m->n_elem), OF(G, n * (size_t)m->n_node));

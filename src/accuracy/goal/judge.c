@@ -3,8 +3,6 @@
  */
 #include "accuracy/goal/goal.h"
 
-#include <math.h>
-
 /* HOOP, measured on a tube, is for what the elements of it next to the border
  * lack. Measured on plane scenes with known goals: the estimate is within a
  * factor of 2 in 91 % of all cases below TRUSTED, and the true value in the

@@ -10,7 +10,6 @@
  * Both give |z| <= (|load|_* + c)/(1 - q).
  */
 #include "accuracy/theorems/theorems.h"
-#include "base/base.h"
 
 /* A contact problem with part of its sliding limit and of its normal forces
  * given (theorems.h). */

@@ -1,6 +1,5 @@
 /* Norms in the energy of A, and the constants of friction in them. */
 #include "accuracy/theorems/theorems.h"
-#include "base/base.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -94,16 +93,15 @@ static status lanczos_run(const symmetric_map *map, lanczos *s, double *v,
 }
 
 status lanczos_largest(const symmetric_map *map, double *largest) {
-  status st = OK;
-  lanczos s = {.n = map->n};
-  double *v = NULL;
-  NEW(s.Q, (size_t)map->n * STEPS);
-  NEW_REALS(STEPS, &s.alpha, &s.beta, &s.d, &s.e);
-  NEW_ALL(OF(s.Z, (size_t)STEPS * STEPS), OF(s.work, 2 * STEPS), OF(v, map->n));
-  TRY(lanczos_run(map, &s, v, largest));
-done:
-  RELEASE(s.Q, s.alpha, s.beta, s.d, s.e, s.Z, s.work, v);
-  return st;
+  double *v;
+  OWNED_NEW(lanczos, s, 1);
+  OWNS(s);
+  s->n = map->n;
+  PASS_NEW(s->Q, (size_t)map->n * STEPS);
+  PASS_NEW_REALS(STEPS, &s->alpha, &s->beta, &s->d, &s->e);
+  PASS_NEW_ALL(OF(s->Z, (size_t)STEPS * STEPS), OF(s->work, 2 * STEPS),
+               OF(v, map->n));
+  return lanczos_run(map, s, v, largest);
 }
 
 status largest_eigenvalue(const symmetric_map *map, double *largest) {
@@ -247,10 +245,9 @@ static status tangential_constant(block *b, int limits, double *largest) {
 
 status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
                           theorems_contact *out) {
-  OWNED int *dof = NULL;
-  OWNED unsigned char *pressed = NULL;
   double product = 0.0;
-  PASS_NEW_ALL(OF(dof, cp->m), OF(pressed, cp->n));
+  OWNED_NEW(int, dof, cp->m);
+  OWNED_NEW(unsigned char, pressed, cp->n);
   block b = {.cp = cp, .e = e, .dof = dof};
   find_pressed(cp, pressed);
   for (int i = 0; i < cp->n; ++i)

@@ -1,8 +1,6 @@
 /* The report on an increment from its parts (theorems.h). */
 #include "accuracy/theorems/theorems.h"
 
-#include "base/base.h"
-
 /*
  * The variational inequality S_i^n of CPR98 over random test fields. The convex
  * K and the functional j of a frozen limit are sums over the nodes, so fields
@@ -38,10 +36,6 @@ static double any(trial *s) {
   return ldexp((double)(s->seed >> 11), -52) - 1.0;
 }
 
-static double diagonal(const contact_problem *cp, int dof) {
-  return contact_diagonal(cp, dof);
-}
-
 /* u_n, u_t without the initial penetration, which no test field can undo. */
 static double lifted(const trial *s, int dof) {
   return s->u[dof] - fmin(contact_bound(s->cp, dof), 0.0);
@@ -52,7 +46,7 @@ static void set_scales(trial *s) {
   double push = 0.0, f2 = 0.0, r2 = 0.0, u2 = 0.0;
   contact_product(cp->m, cp->A, s->u, s->r);
   for (int k = 0; k < cp->m; ++k) {
-    double a = diagonal(cp, k), v = lifted(s, k);
+    double a = contact_diagonal(cp, k), v = lifted(s, k);
     s->r[k] -= cp->f[k];
     f2 += cp->f[k] * cp->f[k] / a;
     r2 += s->r[k] * s->r[k] / a;
@@ -105,7 +99,7 @@ static double part(const trial *s, int i, double *square) {
     int dof = cp->dim * i + k;
     double d = s->w[dof] - s->u[dof];
     sum += s->r[dof] * d;
-    *square += diagonal(cp, dof) * d * d;
+    *square += contact_diagonal(cp, dof) * d * d;
   }
   if (cp->g0 != NULL && !contact_has_side(cp, i))
     sum += contact_node_limit(cp, s->r, i) *
@@ -150,7 +144,7 @@ static void test_penetration(trial *s) {
   for (int k = 0; k < cp->m; ++k) {
     double deep = s->u[k] - contact_bound(cp, k);
     if (contact_held(cp, k) || !(deep > 0.0)) continue;
-    deep *= sqrt(diagonal(cp, k));
+    deep *= sqrt(contact_diagonal(cp, k));
     s->least = fmin(s->least, -deep / fmax(s->whole, deep));
   }
 }
@@ -267,31 +261,27 @@ static void set_limit(theorems_contact *row) {
 /* Constants of every contact with friction, and of all. */
 static status know_friction(theorems *t, const theorems_scene *s,
                             const frozen_problem *p) {
-  status st = OK;
-  OWNED unsigned char *keep = NULL;
   theorems_contact all = {.contact_id = -1};
   if (same_friction(t, &p->cp)) return OK;
+  OWNED_NEW(unsigned char, keep, p->cp.n);
   forget_friction(t);
   t->n_entry = count_entries(&p->cp);
-  NEW_ALL(OF(t->entries, t->n_entry), OF(t->contacts, s->n_contact + 1),
-          OF(keep, p->cp.n));
+  PASS_NEW_ALL(OF(t->entries, t->n_entry), OF(t->contacts, s->n_contact + 1));
   if (t->n_entry > 0) COPY(t->entries, p->cp.B->val, t->n_entry);
-  TRY(friction_constants(&p->cp, &t->norm, 1, &all));
+  PASS(friction_constants(&p->cp, &t->norm, 1, &all));
   for (int c = 0; c < s->n_contact; ++c) {
     theorems_contact row = {.contact_id = c, .mu = s->mu[c]};
     ENDS_BY(frozen_free) frozen_problem part = {0};
     if (!mark_contact(s, &p->cp, c, keep)) continue;
     all.mu = fmax(all.mu, row.mu);
-    TRY(frozen_new(&p->cp, p->r, keep, NULL, &part));
-    TRY(friction_constants(&part.cp, &t->norm, 0, &row));
+    PASS(frozen_new(&p->cp, p->r, keep, NULL, &part));
+    PASS(friction_constants(&part.cp, &t->norm, 0, &row));
     set_limit(&row);
     add_row(t, &row);
   }
   set_limit(&all);
   add_row(t, &all);
-done:
-  if (st != OK) forget_friction(t);
-  return st;
+  return OK;
 }
 
 static mu_regime regime_of(const theorems_contact *row) {
@@ -320,8 +310,7 @@ static status measure(const theorems_scene *s, const frozen_problem *p,
 /* With one contact the row of all contacts is the same. */
 static status measure_contacts(theorems *t, const theorems_scene *s,
                                const frozen_problem *p) {
-  OWNED unsigned char *keep = NULL;
-  PASS_NEW(keep, p->cp.n);
+  OWNED_NEW(unsigned char, keep, p->cp.n);
   for (int k = 0; k < t->n_contact; ++k) {
     if (t->n_contact == 2 && k == 0) continue;
     PASS(measure(s, p, keep, &t->contacts[k]));

@@ -7,7 +7,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <hdf5.h>
 #include <inttypes.h>
 #include <unistd.h>
 
@@ -145,8 +144,7 @@ static status pass(archive *a, const char *name, archive_kind kind, void *v,
 }
 
 status archive_pass_on(const archive *from, const char *group, archive *to) {
-  for (int k = 0; k < from->n; ++k) {
-    const archive_item *x = &from->item[k];
+  for (EACH(const archive_item, x, from->item, from->n)) {
     archive_item *i = NULL;
     if (strncmp(x->name, group, strlen(group)) != 0) continue;
     if (find_whole(to, x->name) != NULL) continue;
@@ -301,13 +299,11 @@ static status write_dataset(hid_t file, const char *path, const char *name,
 }
 
 static status put_items(const archive *a, hid_t file, const char *path) {
-  OWNED char *list = NULL;
   char name[ARCHIVE_NAME + 8];
-  PASS(list_items(a, &list));
+  OWNED_OF(char, list, list_items(a, &list));
   PASS(write_dataset(file, path, "/list", H5T_NATIVE_UCHAR, strlen(list) + 1,
                      list));
-  for (int i = 0; i < a->n; ++i) {
-    const archive_item *it = &a->item[i];
+  for (EACH(const archive_item, it, a->item, a->n)) {
     snprintf(name, sizeof name, "/data/%s", it->name);
     PASS(write_dataset(file, path, name, type_of(it->kind), it->n, it->data));
   }

@@ -183,8 +183,7 @@ status source_ints(const hdf5_source *s, const char *name, int optional,
 
 status source_int(const hdf5_source *s, const char *name, int *value) {
   long n = 0;
-  OWNED int *all = NULL;
-  PASS(source_ints(s, name, 0, MOST_ITEMS, &n, &all));
+  OWNED_OF(int, all, source_ints(s, name, 0, MOST_ITEMS, &n, &all));
   if (n != 1)
     RAISE(ERR_DECK, "%s: %s has %ld items, expected one integer", s->path, name,
           n);
@@ -195,10 +194,9 @@ status source_int(const hdf5_source *s, const char *name, int *value) {
 status source_reals(const hdf5_source *s, const char *name, int optional,
                     long most, long *n, double **value) {
   HELD hid_t set = -1;
-  OWNED double *v = NULL;
   *value = NULL;
   PASS(open_set(s, name, optional, 1, most, &set, n));
-  PASS_NEW(v, *n);
+  OWNED_NEW(double, v, *n);
   if (*n > 0) PASS(read_set(s, name, set, H5T_NATIVE_DOUBLE, v));
   for (long k = 0; k < *n; ++k)
     if (!isfinite(v[k]))

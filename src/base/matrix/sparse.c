@@ -98,9 +98,7 @@ status sparse_blocks_new(int dim, int n, long count_given, const int *row,
                          sparse_blocks **out) {
   ENDS_BY(places_free) places p = {0};
   const entries e = {count_given, row, col, val};
-  PASS_NEW(*out, 1);
-  sparse_blocks *b = *out;
-  OWNS(b);
+  MAKES(sparse_blocks, b, out);
   b->dim = dim;
   b->n = n;
   PASS_NEW(b->start, n + 1);

@@ -206,9 +206,9 @@ static void close_loop(const walk *w, int first) {
 
 static status lay_straight(const average_patch *p, const fans *f, double apart,
                            layout *l) {
-  status st = OK;
-  walk w = {.p = p, .f = f, .l = l};
-  NEW_ALL(OF(w.done, p->n_face), OF(l->loop, p->n_node));
+  OWNED_NEW(unsigned char, done, p->n_face);
+  walk w = {.p = p, .f = f, .l = l, .done = done};
+  PASS_NEW(l->loop, p->n_node);
   /* Lines with ends first; what is left is closed. */
   for (int i = 0; i < p->n_node; ++i)
     while (fan_size(f, i) != 2 && next_face(&w, i) >= 0) {
@@ -221,9 +221,7 @@ static status lay_straight(const average_patch *p, const fans *f, double apart,
       close_loop(&w, i);
       w.row += apart;
     }
-done:
-  memory_free(w.done);
-  return st;
+  return OK;
 }
 
 static status layout_new(const average_patch *patch, const average_rule *rule,
@@ -477,9 +475,8 @@ static status find_rows(builder *b) {
 }
 
 static status transpose(const sparse_rows *a, sparse_rows *out) {
-  OWNED int *start = NULL;
-  PASS_NEW_ALL(OF(start, a->n + 2), OF(out->col, a->start[a->n]),
-               OF(out->val, a->start[a->n]));
+  OWNED_NEW(int, start, a->n + 2);
+  PASS_NEW_ALL(OF(out->col, a->start[a->n]), OF(out->val, a->start[a->n]));
   for (int k = 0; k < a->start[a->n]; ++k) ++start[a->col[k] + 2];
   for (int i = 0; i < a->n; ++i) start[i + 2] += start[i + 1];
   for (int i = 0; i < a->n; ++i)
@@ -570,14 +567,13 @@ static status symmetrise(builder *b, sparse_rows *out) {
 status average_build(const average_patch *patch, const average_rule *rule,
                      sparse_rows *out, average_facts *facts) {
   ENDS_BY(builder_free) builder b = {.p = patch, .rule = rule};
-  OWNED unsigned char *coarse = NULL;
   memset(out, 0, sizeof *out);
   PASS(builder_new(&b));
   find_shares(&b);
   PASS(find_rows(&b));
   PASS(transpose(&b.raw, &b.by_column));
   PASS(symmetrise(&b, out));
-  PASS_NEW(coarse, patch->n_node);
+  OWNED_NEW(unsigned char, coarse, patch->n_node);
   find_facts(&b, facts, coarse);
   return OK;
 }

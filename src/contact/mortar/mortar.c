@@ -170,8 +170,7 @@ static status add_dropped(builder *b, int face, face_part *part,
 
 static status add_masters(builder *b, face_part *part) {
   const int dim = b->in->mesh->dim;
-  for (int k = 0; k < b->n_point; ++k) {
-    const sample *p = &b->points[k];
+  for (EACH(const sample, p, b->points, b->n_point)) {
     const partner *m = &b->search.list[p->partner];
     const int *node = mortar_nodes(b->in, m->face);
     b->met[m->face] = 1;
@@ -492,8 +491,7 @@ static status add_row(builder *b, int q, entry *row) {
 }
 
 static status add_rows(builder *b) {
-  OWNED entry *row = NULL;
-  PASS_NEW(row, longest_row(b));
+  OWNED_NEW(entry, row, longest_row(b));
   for (int q = 0; q < b->out->n; ++q) PASS(add_row(b, q, row));
   return OK;
 }

@@ -247,10 +247,8 @@ static void leave_hiding(partner_search *s) {
     double *side = &farthest[s->list[i].height < 0];
     if (!s->list[i].hides) *side = fmax(*side, fabs(s->list[i].height));
   }
-  for (int i = 0; i < s->n; ++i) {
-    const partner *p = &s->list[i];
+  for (EACH(const partner, p, s->list, s->n))
     if (!p->hides || distance(p) < farthest[p->height < 0]) s->list[n++] = *p;
-  }
   s->n = n;
 }
 

@@ -106,10 +106,6 @@ static status adapt(run *r, void *self, int *made) {
   return OK;
 }
 
-static int strains(const model *m, int elem_id) {
-  return model_flows(m, elem_id);
-}
-
 /* Solvers are those of the step. */
 static status prepare(run *r, void *self) {
   visco_new_solvers(r);
@@ -198,7 +194,7 @@ static int requires_inelastic(const model *m, char *why, size_t size) {
 const effect_ops inelastic_effect = {
   .name = "inelastic strain", .bit = EFFECT_BIT_INELASTIC,
   .required = requires_inelastic, .expected = expected, .own = STAGE_INELASTIC,
-  .inside = 1, .far = 1, .strains = strains,
+  .inside = 1, .far = 1, .strains = model_flows,
   .on = {.prepare = prepare, .make_step = adapt, .forget = forget,
          .keep = keep},
   COLUMNS_OF(columns)};

@@ -9,8 +9,8 @@
  * back, into *largest; diagonal of K. */
 static status start_forces(run *r, double *R, double *diagonal,
                            double *largest) {
-  OWNED double *sigma = NULL;
   const double *all = strains_load(r);
+  OWNED double *sigma = NULL;
   PASS_NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
   domain_stress(&r->body.d, r->old.u, NULL, sigma);
   domain_internal_force(&r->body.d, sigma, R);

@@ -79,18 +79,50 @@ static effect_work expected(const plan_sizes *s) {
                        s->equilibria * n * 2.0 * plan_element_work(s)};
 }
 
+static const load *first_temperature(const model *m) {
+  for (int i = 0; i < m->n.step; ++i)
+    for (int k = 0; k < m->steps[i].loads.n; ++k)
+      if (m->steps[i].loads.item[k].kind == LOAD_TEMPERATURE)
+        return &m->steps[i].loads.item[k];
+  return NULL;
+}
+
+/* Material whose law depends on temperature; whose moduli do. */
+static const material *first_warm_law(const model *m) {
+  for (EACH(const material, mat, m->materials, m->n.material))
+    if (mat->used && mat->law.ops != NULL &&
+        (law_varies(&mat->law) & LAW_VARIES_TEMPERATURE))
+      return mat;
+  return NULL;
+}
+
+static const material *first_warm_moduli(const model *m) {
+  for (int i = 0; i < m->n.material; ++i)
+    if (m->materials[i].used && m->materials[i].elastic.n > 1)
+      return &m->materials[i];
+  return NULL;
+}
+
+static int has_expansion(const model *m) {
+  for (int i = 0; i < m->n.material; ++i)
+    if (m->materials[i].used && m->materials[i].expand.given) return 1;
+  return 0;
+}
+
 static int requires_thermal(const model *m, char *why, size_t size) {
-  const load *l = facts_first_temperature(m);
-  if (facts_has_warm_law(m))
-    return plan_says(
-        1, why, size, "law %s of material %s depends on temperature",
-        facts_first_warm_law(m)->law.ops->name, facts_first_warm_law(m)->name);
-  if (facts_has_warm_moduli(m))
+  const load *l = first_temperature(m);
+  const int given = l != NULL || facts_has_initial(m, INITIAL_TEMPERATURE);
+  const material *law = first_warm_law(m), *warm = first_warm_moduli(m);
+  if (given && law != NULL && facts_has_inelastic(m))
+    return plan_says(1, why, size,
+                     "law %s of material %s depends on temperature",
+                     law->law.ops->name, law->name);
+  if (given && warm != NULL)
     return plan_says(1, why, size,
                      "*ELASTIC of material %s depends on temperature",
-                     facts_first_warm_moduli(m)->name);
+                     warm->name);
   if (l == NULL) return plan_says(0, why, size, "no *TEMPERATURE card");
-  if (!facts_has_expansion(m))
+  if (!has_expansion(m))
     return plan_says(0, why, size, "no material in use has *EXPANSION");
   return plan_says(1, why, size, "*TEMPERATURE on group %s, %s:%d", l->group,
                    PLACE(l->at));

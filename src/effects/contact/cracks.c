@@ -306,17 +306,15 @@ static double exponent_of(const run *r, const fracture_point *p) {
 
 /* C(t) by the rates of the increment. */
 static status find_creep(const run *r, crack_state *own) {
-  OWNED fracture_factors *found = NULL;
   const double dt = r->now.t - r->old.t;
   fracture_state s = {own->rate, own->sigma, own->traction, 0.5};
   for (int i = 0; i < own->n; ++i)
     own->tips[i].creep = own->tips[i].creep_scatter = NAN;
   if (!own->flows || r->step->kind != STEP_VISCO || !(dt > 0.0)) return OK;
-  PASS_NEW(found, own->n);
+  OWNED_NEW(fracture_factors, found, own->n);
   for (size_t k = 0; k < r->n_dof; ++k)
     own->rate[k] = (r->now.u[k] - r->old.u[k]) / dt;
-  for (int i = 0; i < own->n; ++i) {
-    tip *t = &own->tips[i];
+  for (EACH(tip, t, own->tips, own->n)) {
     fracture *f = own->of[t->crack_id];
     const double n = exponent_of(r, &fracture_points(f)[t->point]);
     if (t->point == 0 || s.share != n / (n + 1.0)) {
@@ -335,10 +333,9 @@ static status find_creep(const run *r, crack_state *own) {
 static status check_elastic(const run *r, const crack_state *own, double *u) {
   static const double near = 0.02;
   const size_t ns = (size_t)r->m->ns, n = ns * (size_t)r->msh->n_elem;
-  OWNED double *sigma = NULL;
   domain d = r->body.d;
   double most = 0.0, largest = 0.0;
-  PASS_NEW(sigma, n);
+  OWNED_NEW(double, sigma, n);
   d.eigen = NULL;
   domain_stress(&d, u, NULL, sigma);
   for (size_t k = 0; k < n; ++k) {

@@ -173,12 +173,11 @@ static status add_law(run *r, friction *own, int contact_id, double t,
 }
 
 static status find_limit(run *r, friction *own, double t) {
-  OWNED int *node = NULL;
   TIMED(STAGE_LIMIT);
   OWNS(own);
   friction_limit_free(&own->limit);
   PASS(friction_limit_new(r->nodes.n, &own->limit));
-  PASS_NEW(node, r->nodes.n);
+  OWNED_NEW(int, node, r->nodes.n);
   for (int i = 0; i < r->m->n.contact; ++i) PASS(add_law(r, own, i, t, node));
   own->known = !limit_varies(r);
   if (!own->known) run_forget_estimates(r);
@@ -220,8 +219,7 @@ static const load *holder(const run *r, int i, int a) {
   const contact_surface *s = r->surface;
   const double *axis = &s->frame[s->dim * s->dim * i + s->dim * a];
   const load *best = NULL;
-  for (int k = 0; k < r->step->loads.n; ++k) {
-    const load *l = &r->step->loads.item[k];
+  for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
     if (l->kind != LOAD_FIXING ||
         !in_group(&r->msh->group[l->group_id], s->node_id[i]))
       continue;

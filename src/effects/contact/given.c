@@ -125,10 +125,11 @@ static effect_work expected(const plan_sizes *s) {
 }
 
 static int requires_given(const model *m, char *why, size_t size) {
-  const contact *c = facts_first_given(m);
-  if (c == NULL) return plan_says(0, why, size, "no *CONTACT FORCE card");
-  return plan_says(1, why, size, "*CONTACT FORCE on contact %s, %s:%d", c->name,
-                   PLACE(c->force.at));
+  for (EACH(const contact, c, m->contacts, m->n.contact))
+    if (c->force.given)
+      return plan_says(1, why, size, "*CONTACT FORCE on contact %s, %s:%d",
+                       c->name, PLACE(c->force.at));
+  return plan_says(0, why, size, "no *CONTACT FORCE card");
 }
 
 /* clang-format off */

@@ -4,7 +4,6 @@
  * kept while surface and options are unchanged.
  */
 #include "effects/plan/effect.h"
-#include "effects/shared.h"
 
 /* The average of one contact and the rule it was made for. */
 typedef struct friction_average {

@@ -97,10 +97,9 @@ static status refuse(const run *r, const effect_card *c, double factor) {
 static status wear_off(run *r, void *self) {
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
-  OWNED double *root = NULL;
   const effect_card *worn = NULL;
   double *depth = self, factor = 0.0;
-  PASS_NEW(root, r->nodes.n_c);
+  OWNED_NEW(double, root, r->nodes.n_c);
   for (int i = 0; i < r->nodes.n; ++i) {
     const double slip = slip_of(r, i);
     for (int a = 0; a < dim; ++a) {

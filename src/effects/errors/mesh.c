@@ -3,7 +3,6 @@
  * and of each element.
  */
 #include "effects/plan/effect.h"
-#include "effects/shared.h"
 
 #include "run/column_row.h"
 
@@ -81,8 +80,7 @@ static status keep(run *r, void *self, archive *a) {
 static effect_work expected(const plan_sizes *s) {
   const double passes = s->is_flat ? 3.0 : 6.0;
   double n = 0.0;
-  for (int i = 0; i < s->m->n.step; ++i) {
-    const step *p = &s->m->steps[i];
+  for (EACH(const step, p, s->m->steps, s->m->n.step)) {
     if (p->accuracy.mesh == MESH_ERROR_YES) n += step_increments(p);
     n += p->accuracy.mesh == MESH_ERROR_END;
   }
@@ -94,6 +92,8 @@ static int is_at_each_increment(const step *s) {
   return s->accuracy.mesh == MESH_ERROR_YES;
 }
 
+static int is_estimated(const step *s) { return s->accuracy.mesh; }
+
 static int requires_mesh_error(const model *m, char *why, size_t size) {
   if (facts_first_step(m, is_at_each_increment) != NULL)
     return plan_requires_accuracy(m, "MESH", is_at_each_increment, why, size);
@@ -103,7 +103,7 @@ static int requires_mesh_error(const model *m, char *why, size_t size) {
         "foreseen %.0f %% of the run, more than %.0f %%; *ACCURACY, "
         "MESH=YES requires it",
         100 * m->accuracy.mesh_price, 100 * PLAN_CHEAP);
-  if (facts_first_step(m, facts_asks_mesh_error) != NULL)
+  if (facts_first_step(m, is_estimated) != NULL)
     return plan_says(1, why, size,
                      "default, end of step; *ACCURACY, MESH=NO leaves it out");
   return plan_says(0, why, size, "*ACCURACY, MESH=NO");

@@ -44,14 +44,13 @@ static int choose_inverse(run *r, double *diagonal, inverse_energy *out) {
 static status estimate(run *r, void *self) {
   solver_error found = {.norm = NAN, .why = weakly_held};
   inverse_energy inverse;
-  OWNED double *diagonal = NULL;
   bounds *own = self;
   const double cpu = timer_cpu(), before = run_inherits(r) ? own->before : 0.0;
   r->errors.error = (error_bound){0};
   own->now = r->nodes.n == 0 ? before : NAN;
   if (r->nodes.n == 0 || r->step->accuracy.no_solver) return OK;
   TIMED(STAGE_ESTIMATE);
-  PASS_NEW(diagonal, r->problem.cp.m);
+  OWNED_NEW(double, diagonal, r->problem.cp.m);
   if (choose_inverse(r, diagonal, &inverse))
     PASS(solver_error_bound(&r->problem.cp, &inverse, run_rows(r, 0, r->now.uc),
                             run_rows(r, 1, r->now.rc), &r->solving.rate,

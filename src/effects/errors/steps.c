@@ -177,11 +177,10 @@ static double field_norm(const run *r, const double *u, const double *e0) {
 static status subtract_strains(run *r, finer_path *p) {
   visco *v = r->strains.visco;
   const size_t ns = visco_at(r, 1);
-  OWNED double *turning = NULL;
   for (size_t k = 0; k < visco_at(r, r->strains.eigen.n); ++k)
     p->e0[k] -= r->strains.eigen.e0[k];
   if (r->step->kind != STEP_VISCO) return OK;
-  PASS(visco_turning(r, &turning));
+  OWNED_OF(double, turning, visco_turning(r, &turning));
   for (int k = 0; k < v->x.n && turning != NULL; ++k) {
     double *e0 = p->e0 + visco_at(r, v->place[k]), largest = 0.0;
     for (size_t i = 0; i < ns; ++i) largest = fmax(largest, fabs(e0[i]));
@@ -471,8 +470,10 @@ static effect_work expected(const plan_sizes *s) {
           (4.0 * work_factor_entries(s) + PLAN_STEPS * 2.0 * m * m)};
 }
 
+static int is_estimated(const step *s) { return s->accuracy.time; }
+
 static int requires_time_error(const model *m, char *why, size_t size) {
-  return plan_requires_accuracy(m, "TIME", facts_asks_time_error, why, size);
+  return plan_requires_accuracy(m, "TIME", is_estimated, why, size);
 }
 
 VALUE(time_error, v->s->errors.time_error.asked

@@ -77,9 +77,8 @@ static status elastic_body(run *r, body_map *b) {
 /* The contact of the elastic body with a given limit, in the states of the
  * solution. */
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
-  OWNED unsigned char *none = NULL;
   contact_problem cp = r->problem.cp;
-  PASS_NEW(none, r->nodes.n);
+  OWNED_NEW(unsigned char, none, r->nodes.n);
   PASS(elastic_body(r, b));
   cp.A = condensed_matrix(b->c);
   cp.op = condensed_operator(b->c);
@@ -197,10 +196,12 @@ static status see_increment(run *r, void *own) { return see_theory(r, own, 0); }
 
 static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
 
+static int is_checked(const step *s) { return s->accuracy.theorems; }
+
 static int requires_theorems(const model *m, char *why, size_t size) {
-  if (facts_first_step(m, facts_asks_theory) != NULL && m->n.contact == 0)
+  if (facts_first_step(m, is_checked) != NULL && m->n.contact == 0)
     return plan_says(0, why, size, "no *CONTACT card");
-  return plan_requires_accuracy(m, "THEORY", facts_asks_theory, why, size);
+  return plan_requires_accuracy(m, "THEORY", is_checked, why, size);
 }
 
 static effect_work expected(const plan_sizes *s) {

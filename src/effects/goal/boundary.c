@@ -436,10 +436,9 @@ static void add_beyond_edge(const run *r, const load *l, const rim_edge *e,
 
 static status add_rim(const run *r, const load *l, double *dF) {
   const mesh *m = r->msh;
-  OWNED rim_edge *e = NULL;
   OWNED int *next = NULL, *last = NULL;
   int n;
-  PASS(rim_new(m, &m->group[l->group_id], &e, &n));
+  OWNED_OF(rim_edge, e, rim_new(m, &m->group[l->group_id], &e, &n));
   PASS_NEW_ALL(OF(next, 2 * n), OF(last, m->n_node));
   for (int k = 0; k < 2 * n; ++k) {
     int *at = &last[e[k / 2].v[k % 2]];
@@ -466,8 +465,7 @@ static patch element_patch(const run *r, int e) {
 
 static status add_loads(const run *r, const goal_ring *rings, double *dF) {
   const load_list *all = &r->step->loads;
-  for (int i = 0; i < all->n; ++i) {
-    const load *l = &all->item[i];
+  for (EACH(const load, l, all->item, all->n)) {
     const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
     if (!on_faces && (l->kind != LOAD_BODY || !varies(l))) continue;
     const mesh_group *g = &r->msh->group[l->group_id];
@@ -483,9 +481,8 @@ static status add_loads(const run *r, const goal_ring *rings, double *dF) {
 
 status goal_add_boundary(const run *r, double *dF) {
   ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  OWNED int *where = NULL;
   PASS(goal_ring_new(r->msh, &rings));
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
     if (p.is_curved) add_part_beyond(r, &p, f, where, dF);
@@ -535,10 +532,9 @@ status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
   ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  OWNED unsigned char *in = NULL;
   *sum = 0.0;
   PASS(goal_ring_new(m, &rings));
-  PASS_NEW(in, m->n_face + m->n_elem);
+  OWNED_NEW(unsigned char, in, m->n_face + m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
   for (int f = 0; f < m->n_face; ++f) {
     if (m->face_other[f] >= 0 || !in[g->dim < m->dim ? f : m->face_elem[f]])

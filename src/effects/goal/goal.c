@@ -141,9 +141,8 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
 }
 
 static status set_moved(const run *r, goal_state *own, shared *s) {
-  OWNED double *at = NULL;
   if (!remembers(r, own)) return OK;
-  PASS_NEW(at, r->nodes.n_c);
+  OWNED_NEW(double, at, r->nodes.n_c);
   surface_relative(r->surface, own->before.u, at);
   run_take_rows(r, at, s->moved);
   return OK;
@@ -236,8 +235,7 @@ static status solve(run *r, shared *s, double *solver) {
   PASS(condense_load(r->c, s->form.load, NULL, s->j));
   if (s->adjoint != NULL) {
     run_take_rows(r, s->form.rows, s->more);
-    OWNED double *psi = NULL;
-    PASS_NEW(psi, r->nodes.n_c);
+    OWNED_NEW(double, psi, r->nodes.n_c);
     COPY(psi, s->form.psi, r->nodes.n_c);
     spread_held(r, psi);
     run_take_rows(r, psi, s->psi);
@@ -267,9 +265,8 @@ static double of_sticks(const run *r, const goal_state *own, const shared *s,
 static status of_slip(const run *r, const shared *s, double *sum) {
   const int dim = r->msh->dim;
   const double *now = goal_estimator_edges(s->estimator);
-  OWNED int *where = NULL;
   *sum = 0.0;
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < s->surface.n_edge; ++k, now += dim) {
     const contact_edge *e = &s->surface.edge[k];
     const int q[2] = {where[e->a], where[e->b]};
@@ -316,8 +313,7 @@ static double of_factor(const run *r, const shared *s) {
 static status of_curvature(const run *r, const shared *s, double *sum) {
   const int dim = r->msh->dim;
   double turn, area;
-  OWNED double *z = NULL;
-  PASS_NEW(z, r->n_dof);
+  OWNED_NEW(double, z, r->n_dof);
   COPY(z, s->y, r->n_dof);
   for (int k = 0; k < dim * r->nodes.n; ++k)
     for (int c = 0; c < dim; ++c)

@@ -7,7 +7,6 @@
  * are in no residual at the nodes, as those of boundary.c, the mean of a stress
  * is less by that of E d0, and the energy by that of sigma : d0.
  */
-#include "base/base.h"
 #include "effects/goal/parts.h"
 
 static const double PI = 3.14159265358979323846;

@@ -3,7 +3,6 @@
  * of its elements, as a unit traction over it would do work; over the nodes of
  * a group that has nothing else.
  */
-#include "base/base.h"
 #include "effects/goal/parts.h"
 
 static const double PI = 3.14159265358979323846;

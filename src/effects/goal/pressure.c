@@ -175,9 +175,8 @@ static status add_faces(const run *r, const goal_card *g, const weight *w,
                         double *sum) {
   const mesh *m = r->msh;
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
-  OWNED int *where = NULL;
   double normal[3];
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < of->n_item; ++k) {
     const int *v = m->face + m->dim * of->item_id[k];
     int q[3] = {0}, all = 1;
@@ -241,8 +240,7 @@ static void line_free(line *l) { RELEASE(l->node, l->s); }
 static status find_next(const run *r, const goal_card *g, int *next) {
   const mesh *m = r->msh;
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
-  OWNED int *where = NULL;
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
   for (int k = 0; k < of->n_item; ++k) {
     const int *v = m->face + 2 * of->item_id[k];
@@ -275,9 +273,8 @@ static void follow(const run *r, const weight *w, const int *next, int peak,
 
 static status line_new(const run *r, const goal_card *g, const weight *w,
                        int peak, line *l) {
-  OWNED int *next = NULL;
-  PASS_NEW_ALL(OF(next, 2 * r->nodes.n), OF(l->node, r->nodes.n),
-               OF(l->s, r->nodes.n));
+  OWNED_NEW(int, next, 2 * r->nodes.n);
+  PASS_NEW_ALL(OF(l->node, r->nodes.n), OF(l->s, r->nodes.n));
   PASS(find_next(r, g, next));
   follow(r, w, next, peak, -1.0, l);
   for (int k = 0; k < l->n / 2; ++k) {
@@ -492,10 +489,8 @@ static status look_round(const run *r, const goal_card *g, double radius,
                          weight *w, rim *out) {
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
   const int n = 3 * of->n_item;
-  OWNED side *e = NULL;
-  OWNED int *where = NULL;
-  PASS(sides_of(r->msh, of, &e));
-  PASS(goal_places(r, &where));
+  OWNED_OF(side, e, sides_of(r->msh, of, &e));
+  OWNED_OF(int, where, goal_places(r, &where));
   *out = (rim){0, 0.0};
   for (int k = 0, last; k < n; k = last) {
     const int *v = e[k].v;
@@ -516,10 +511,8 @@ static status look_round(const run *r, const goal_card *g, double radius,
 static status parts_behind(const run *r, const goal_card *g, double largest,
                            double *behind) {
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
-  OWNED side *e = NULL;
-  OWNED int *where = NULL;
-  PASS(sides_of(r->msh, of, &e));
-  PASS(goal_places(r, &where));
+  OWNED_OF(side, e, sides_of(r->msh, of, &e));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < 3 * of->n_item; ++k)
     for (int c = 0; c < 3; ++c) {
       if (!lies_in_plane(r, e + k, c)) continue;

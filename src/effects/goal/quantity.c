@@ -2,7 +2,6 @@
  * The quantities of *GOAL and their derivatives; those of a pressure are in
  * pressure.c.
  */
-#include "base/base.h"
 #include "effects/goal/parts.h"
 #include "effects/shared.h"
 
@@ -133,10 +132,9 @@ static void add_lost(const run *r, int face, const int *q, goal_form *f) {
 static status add_held(const run *r, const goal_card *g, goal_form *f) {
   const mesh *m = r->msh;
   const contact *on = &r->m->contacts[g->contact_id];
-  OWNED int *where = NULL;
   if (on->is_pair) return OK;
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
-  PASS(goal_places(r, &where));
+  OWNED_OF(int, where, goal_places(r, &where));
   for (int i = 0; i < of->n_item; ++i) {
     const int *v = m->face + m->dim * of->item_id[i];
     int q[3] = {0}, all = 1, none = 1;
@@ -207,8 +205,7 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   const mesh_group *of = &r->msh->group[g->group_id];
   const size_t ns = (size_t)d->ns, c = (size_t)(g->component - GOAL_TENSOR);
   double whole = 0.0;
-  OWNED double *beyond = NULL;
-  PASS_NEW(beyond, r->msh->n_elem);
+  OWNED_NEW(double, beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
   for (int k = 0; k < of->n_item; ++k)
     whole += element_weight(d, of->item_id[k]);
@@ -246,8 +243,7 @@ static double energy_density(const run *r, int elem_id) {
 }
 
 static status set_energy(const run *r, const goal_card *g, goal_form *f) {
-  OWNED double *beyond = NULL;
-  PASS_NEW(beyond, r->msh->n_elem);
+  OWNED_NEW(double, beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
   for (int e = 0; e < r->msh->n_elem; ++e) {
     if (beyond[e] != 0.0) f->curved += beyond[e] * energy_density(r, e);

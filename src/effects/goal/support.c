@@ -82,8 +82,7 @@ static int bends(const load *l) {
 static status given_edges(const run *r, given_edge *e, int *n) {
   OWNED unsigned char *in = NULL;
   *n = 0;
-  for (int i = 0; i < r->step->loads.n; ++i) {
-    const load *l = &r->step->loads.item[i];
+  for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
     if (!bends(l)) continue;
     const mesh_group *g = &r->msh->group[l->group_id];
     if (in == NULL) PASS_NEW(in, r->msh->n_node);
@@ -375,9 +374,8 @@ static int inner_edges(const mesh *m, const space_recovery *of, const joint *at,
 static status mark_inner(const mesh *m, const space_recovery *of,
                          const joint *at, unsigned char *ends) {
   const int n = inner_edges(m, of, at, NULL);
-  OWNED inner *e = NULL;
   if (n == 0) return OK;
-  PASS_NEW(e, n);
+  OWNED_NEW(inner, e, n);
   inner_edges(m, of, at, e);
   qsort(e, (size_t)n, sizeof *e, number_pair_order);
   for (int i = 0, last; i < n; i = last) {
@@ -400,9 +398,8 @@ static status mark_space(const run *r, const goal_border *border,
                          const space_recovery *of, const joint *at,
                          goal_surface *s) {
   const mesh *m = r->msh;
-  OWNED rim *e = NULL;
-  OWNED unsigned char *held = NULL;
-  PASS_NEW_ALL(OF(e, 3 * border->n), OF(held, 3 * m->n_node));
+  OWNED_NEW(rim, e, 3 * border->n);
+  OWNED_NEW(unsigned char, held, 3 * m->n_node);
   for (int k = 0; k < border->n; ++k) {
     int v[3];
     mesh_side_nodes(m, border->side[k], v);
@@ -417,8 +414,7 @@ static status mark_space(const run *r, const goal_border *border,
 static status mark_plane(const run *r, const goal_border *border,
                          const joint *at, goal_surface *s) {
   const mesh *m = r->msh;
-  OWNED corner *c = NULL;
-  PASS_NEW(c, m->n_node);
+  OWNED_NEW(corner, c, m->n_node);
   for (int i = 0; i < m->n_node; ++i) c[i].angle = border->angle[i];
   for (int k = 0; k < border->n; ++k) {
     int v[2];
@@ -447,8 +443,7 @@ status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
   const int n = m->dim + 1;
-  OWNED joint *at = NULL;
-  PASS_NEW(at, m->n_node);
+  OWNED_NEW(joint, at, m->n_node);
   for (int k = 0; k < n * m->n_elem; ++k)
     add_region(space_region(of, k / n) + 1,
                m->dim == 2 ? angle_at(m, m->elem + k - k % n, k % n) : 0.0,

@@ -75,9 +75,8 @@ static double face_slope(const run *r, int face, const int *q, double *g) {
 static status gap_slopes_new(const run *r, const int *where, gap_slopes *out) {
   const mesh *m = r->msh;
   const int dim = m->dim;
-  OWNED double *weight = NULL;
-  PASS_NEW_ALL(OF(out->of, 3 * r->nodes.n), OF(out->n_face, r->nodes.n),
-               OF(weight, r->nodes.n));
+  OWNED_NEW(double, weight, r->nodes.n);
+  PASS_NEW_ALL(OF(out->of, 3 * r->nodes.n), OF(out->n_face, r->nodes.n));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k) {
     const mesh_group *of = r->faces.pairs[k].group;
     for (int i = 0; i < of->n_item && !r->m->contacts[k].is_pair; ++i) {
@@ -374,11 +373,9 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
                          const double *z, const double *spin, double *turn,
                          double *area) {
   const int dim = r->msh->dim;
-  OWNED int *where = NULL;
   *turn = *area = 0.0;
-  PASS(goal_places(r, &where));
-  for (int k = 0; k < s->n_edge; ++k) {
-    const contact_edge *e = &s->edge[k];
+  OWNED_OF(int, where, goal_places(r, &where));
+  for (EACH(const contact_edge, e, s->edge, s->n_edge)) {
     if (!e->closed || e->other[0] >= 0) continue;
     for (int along = 0; along < (e->stuck ? 1 : 2); ++along) {
       double v[2][3], more[3] = {0.0}, sum = 0.0;

@@ -70,11 +70,24 @@ static int requires_contact(const model *m, char *why, size_t size) {
 
 int plan_requires_rule(const model *m, int (*is)(const friction_rule *rule),
                        const char *none, char *why, size_t size) {
-  const contact *c = NULL;
-  const friction_rule *rule = facts_first_rule(m, is, &c);
-  if (rule == NULL) return plan_says(0, why, size, "%s", none);
-  return plan_says(1, why, size, "*FRICTION, LAW=%s on contact %s, %s:%d",
-                   rule->law->name, c->name, PLACE(rule->at));
+  for (EACH(const contact, c, m->contacts, m->n.contact))
+    for (int k = 0; k < m->n.step; ++k) {
+      const friction_rule *rule =
+          friction_in_force(m, k, (int)(c - m->contacts));
+      if (is(rule))
+        return plan_says(1, why, size, "*FRICTION, LAW=%s on contact %s, %s:%d",
+                         rule->law->name, c->name, PLACE(rule->at));
+    }
+  return plan_says(0, why, size, "%s", none);
+}
+
+/* 1: *EFFECTS leaves friction out and bounds what it would have changed. */
+static int omits_friction(const model *m) {
+  int any = 0;
+  for (int i = 0; i < m->reduction.n; ++i)
+    any |= m->reduction.row[i].bit == EFFECT_BIT_FRICTION &&
+           !m->reduction.row[i].back;
+  return any;
 }
 
 /* The normals of a second obstacle are tangents of the first. */
@@ -86,7 +99,7 @@ static int requires_tangents(const model *m, char *why, size_t size) {
     return plan_says(1, why, size, "contact %s meets another, %s:%d",
                      m->contacts[m->mesh.corner_id].name,
                      PLACE(m->contacts[m->mesh.corner_id].at));
-  if (s == NULL && facts_omits_friction(m))
+  if (s == NULL && omits_friction(m))
     return plan_says(1, why, size, "friction left out is checked, %s:%d",
                      PLACE(m->reduction.at));
   if (s == NULL)
@@ -102,17 +115,21 @@ static int requires_tangents(const model *m, char *why, size_t size) {
 }
 
 static int requires_body(const model *m, char *why, size_t size) {
-  const load *l = facts_first_body_load(m);
-  if (l == NULL) return plan_says(0, why, size, "no *DLOAD card");
-  return plan_says(1, why, size, "*DLOAD on group %s, %s:%d", l->group,
-                   PLACE(l->at));
+  for (int i = 0; i < m->n.step; ++i)
+    for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n))
+      if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY)
+        return plan_says(1, why, size, "*DLOAD on group %s, %s:%d", l->group,
+                         PLACE(l->at));
+  return plan_says(0, why, size, "no *DLOAD card");
 }
 
 static int requires_output(const model *m, int table, char *why, size_t size) {
-  place at;
-  if (facts_first_print(m, table, &at) != NULL)
-    return plan_says(1, why, size, "*PRINT, %s:%d", PLACE(at));
-  if (facts_first_fields(m) != NULL)
+  for (EACH(const step, s, m->steps, m->n.step))
+    for (int k = 0; k < s->print.n; ++k)
+      if (s->print.requests[k].table & table)
+        return plan_says(1, why, size, "*PRINT, %s:%d",
+                         PLACE(s->print.requests[k].at));
+  if (model_writes_fields(m))
     return plan_says(1, why, size, "fields in JOB.h5, see below");
   return plan_says(0, why, size, "no output requires them");
 }
@@ -193,8 +210,8 @@ static const double TEXT = 250.0; /* operations to write a number */
 double plan_rows(const plan_sizes *s, int table, double items) {
   double most = 0.0;
   for (int i = 0; i < s->m->n.step && s->msh != NULL; ++i)
-    for (int k = 0; k < s->m->steps[i].print.n; ++k) {
-      const print_request *p = &s->m->steps[i].print.requests[k];
+    for (EACH(const print_request, p, s->m->steps[i].print.requests,
+              s->m->steps[i].print.n)) {
       if (p->table != table) continue;
       if (p->group_id < 0) return items;
       const mesh_group *g = &s->msh->group[p->group_id];
@@ -210,8 +227,8 @@ effect_work plan_table(const plan_sizes *s, int table, double all) {
 
 int plan_requires_table(const model *m, int table, char *why, size_t size) {
   for (int i = 0; i < m->n.step; ++i)
-    for (int q = 0; q < m->steps[i].print.n; ++q) {
-      const print_request *p = &m->steps[i].print.requests[q];
+    for (EACH(const print_request, p, m->steps[i].print.requests,
+              m->steps[i].print.n)) {
       if (p->table != table) continue;
       snprintf(why, size, "*PRINT, %s, %s:%d", print_word(table), PLACE(p->at));
       return 1;

@@ -101,9 +101,7 @@ static void find_shares(effect_plan *p) {
 
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   int capacity = 0;
-  PASS_NEW(*out, 1);
-  effect_plan *p = *out;
-  OWNS(p);
+  MAKES(effect_plan, p, out);
   PASS(plan_sizes_find(m, msh, n, &p->sizes));
   for (int k = 0; effect_table[k] != NULL; ++k) {
     plan_row r;
@@ -123,10 +121,9 @@ static int is_default(const step *s) {
 }
 
 status plan_leave_out(model *m, const mesh *msh) {
-  OWNED effect_plan *p = NULL;
   if (facts_first_step(m, is_default) == NULL || model_targeted_goal(m) != NULL)
     return OK;
-  PASS(plan_new(m, msh, 0, &p));
+  OWNED_OF(effect_plan, p, plan_new(m, msh, 0, &p));
   double share = 0.0;
   for (int i = 0; i < p->n; ++i)
     if (p->rows[i].name == mesh_error_effect.name) share = p->rows[i].share;
@@ -164,8 +161,7 @@ static void print_name(const plan_row *r, const char *lead, FILE *f) {
 void plan_print(const effect_plan *p, const char *lead, FILE *f) {
   fprintf(f, "%s%-26s %-3s %18s %7s  %s\n", lead, "effect", "", "size",
           "cpu[%]", "called for by");
-  for (int i = 0; i < p->n; ++i) {
-    const plan_row *r = &p->rows[i];
+  for (EACH(const plan_row, r, p->rows, p->n)) {
     print_name(r, lead, f);
     fprintf(f, " %18s %7s  %s\n",
             r->on && r->work.kind != NULL

@@ -13,8 +13,6 @@
  */
 #include "effects/plan/plan.h"
 
-#include "base/base.h"
-
 /* Increments that an output with this frequency shows. */
 static double shown_of(const step *s, int frequency) {
   if (frequency < 0) return 0.0;
@@ -23,8 +21,7 @@ static double shown_of(const step *s, int frequency) {
 
 double plan_shown(const model *m, int table) {
   double n = 0.0;
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step)) {
     double here = table != 0 ? 0.0 : shown_of(s, s->output.frequency);
     for (int k = 0; k < s->print.n; ++k)
       if (table == 0 || s->print.requests[k].table == table)
@@ -77,9 +74,8 @@ static status contact_nodes(const plan_sizes *s,
                             int (*is)(const friction_rule *rule), double *n) {
   const model *m = s->m;
   const mesh *msh = s->msh;
-  OWNED unsigned char *seen = NULL;
   *n = 0.0;
-  PASS_NEW(seen, msh->n_node);
+  OWNED_NEW(unsigned char, seen, msh->n_node);
   for (int i = 0; i < m->n.contact; ++i) {
     const mesh_group *g = &msh->group[m->contacts[i].group_id];
     int counts = is == NULL;
@@ -98,9 +94,8 @@ static status count_held(const plan_sizes *s, double *unknowns, double *nodes) {
   const model *m = s->m;
   const mesh *msh = s->msh;
   int dim = msh->dim;
-  OWNED unsigned char *fixed = NULL;
   *unknowns = *nodes = 0.0;
-  PASS_NEW(fixed, dim * msh->n_node);
+  OWNED_NEW(unsigned char, fixed, dim * msh->n_node);
   if (m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i) {
     int any = 0;

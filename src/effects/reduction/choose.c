@@ -16,7 +16,6 @@
  */
 #include "effects/plan/effect.h"
 #include "effects/reduction/parts.h"
-#include "fem/fem.h"
 
 /*
  * Materials to try without their law: it flows too little, or it is always in
@@ -88,8 +87,7 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
  * fast terms; else 0. */
 static double damped_increment(const model *m) {
   double least = HUGE_VAL;
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step)) {
     if (s->kind != STEP_VISCO) return 0.0;
     if (!s->visco.integrator->linear_only && s->visco.theta != 1.0) return 0.0;
     least = fmin(least, s->dt);
@@ -214,17 +212,14 @@ static status see_material(preview *p, int id, double t) {
 }
 
 static status see_increment(void *ctx, const state *s) {
-  status st = OK;
   preview *p = ctx;
   const model *m = p->n->m;
-  TRY(reduction_stress(p->n, s));
-  for (int i = 0; i < m->n.material; ++i)
+  p->st = reduction_stress(p->n, s);
+  for (int i = 0; i < m->n.material && p->st == OK; ++i)
     if (m->materials[i].law_aside != NULL &&
         m->materials[i].law_aside->flows != NULL)
-      TRY(see_material(p, i, s->t));
-done:
-  p->st = st;
-  return st;
+      p->st = see_material(p, i, s->t);
+  return p->st;
 }
 
 /* Without any law, in few increments. */
@@ -240,23 +235,19 @@ static void make_elastic(model *m) {
 /* The elastic run; *seen 1 if it came to its end. */
 static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
                           int *seen) {
-  status st = OK;
   preview p = {.flows = flows};
   const history_sink sink = {.ctx = &p, .increment = see_increment};
-  double *dt = NULL;
   int unsettled = 0;
-  NEW(dt, m->n.step);
+  OWNED_NEW(double, dt, m->n.step);
   for (int i = 0; i < m->n.step; ++i) dt[i] = m->steps[i].dt;
   make_elastic(m);
-  TRY(reduction_new(m, msh, &p.n));
-  *seen = history_run(m, msh, effect_table, &sink, &unsettled) == OK;
-  st = p.st;
-done:
-  for (int i = 0; i < m->n.step && dt != NULL; ++i) m->steps[i].dt = dt[i];
+  p.st = reduction_new(m, msh, &p.n);
+  *seen =
+      p.st == OK && history_run(m, msh, effect_table, &sink, &unsettled) == OK;
+  for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = dt[i];
   reduction_restore(m);
   memory_free(p.n);
-  memory_free(dt);
-  return st;
+  return p.st;
 }
 
 static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
@@ -279,10 +270,9 @@ static void add_rows(model *m, const mesh *msh, const unsigned char *flows) {
 }
 
 static status try_threshold(model *m, const mesh *msh) {
-  OWNED unsigned char *flows = NULL;
   int seen = 0;
   if (!is_worth_it(m)) return OK;
-  PASS_NEW(flows, msh->n_elem);
+  OWNED_NEW(unsigned char, flows, msh->n_elem);
   PASS(run_elastic(m, msh, flows, &seen));
   if (!seen) return OK;
   OWNS(m);
@@ -301,8 +291,7 @@ static status reduction_try_laws(model *m, const mesh *msh) {
 static double largest_temperature(const model *m) {
   double most = 0.0;
   for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *l = &m->steps[i].loads.item[k];
+    for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n)) {
       if (l->kind != LOAD_TEMPERATURE) continue;
       if (l->value.formula != NULL || l->file != NULL) return HUGE_VAL;
       most = fmax(most, fabs(l->value.number));
@@ -320,8 +309,7 @@ static status find_jump(const model *m, const mesh *msh, int *jumps) {
   PASS_NEW_REALS(msh->n_elem, &T0, &before, &T);
   PASS(load_temperature_initial(m, msh, T0));
   COPY(before, T0, msh->n_elem);
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step)) {
     PASS(load_temperature(m, msh, s, s->start, T0, T));
     for (int e = 0; e < msh->n_elem && s->kind == STEP_VISCO; ++e)
       *jumps |= fabs(T[e] - before[e]) > 1e-12 * fabs(T[e]);
@@ -334,8 +322,7 @@ static status find_jump(const model *m, const mesh *msh, int *jumps) {
 static double thermal_part(const model *m, const mesh *msh) {
   double T = largest_temperature(m), worst = 0.0;
   if (!(T < HUGE_VAL)) return HUGE_VAL;
-  for (int i = 0; i < m->n.material; ++i) {
-    const material *mat = &m->materials[i];
+  for (EACH(const material, mat, m->materials, m->n.material)) {
     double e[3];
     if (!mat->used) continue;
     if (mat->elastic.n > 1 ||
@@ -453,8 +440,7 @@ static double largest_mu(const model *m) {
 
 /* 1: no material expands across its load. */
 static int has_no_coupling(const model *m) {
-  for (int i = 0; i < m->n.material; ++i) {
-    const material *mat = &m->materials[i];
+  for (EACH(const material, mat, m->materials, m->n.material)) {
     double most = reduction_young(mat);
     for (int k = 0; k < 9 && mat->used; ++k)
       if (k % 4 != 0 && fabs(mat->C[6 * (k / 3) + k % 3]) > 1e-12 * most)
@@ -498,14 +484,12 @@ static status try_friction(model *m, const mesh *msh) {
 
 /* 1: needs the problem itself, not its solution, or moves on its own. */
 static int must_stay(const model *m) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step))
     if (s->check != CHECK_NONE || s->accuracy.theorems ||
         s->output.condensed >= 0 || s->form == FORM_VELOCITY ||
         s->restart.frequency >= 0 || s->visco.tolerance > 0.0 ||
         s->accuracy.time_balanced)
       return 1;
-  }
   for (int i = 0; i < m->n.section; ++i)
     if (m->sections[i].averaged) return 1;
   if (m->n.points > 0) return 1;

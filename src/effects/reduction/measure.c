@@ -17,10 +17,6 @@
  */
 #include "effects/reduction/parts.h"
 
-#include "base/base.h"
-#include "base/sparse.h"
-#include "fem/fem.h"
-
 enum { SAFETY = 2 };
 
 /* a / b; 0 if a is 0. */
@@ -52,10 +48,7 @@ static double coefficient_of(const reduction *n, const state *s, int i) {
 
 status reduction_new(const model *m, const mesh *msh, reduction **out) {
   const size_t strains = (size_t)m->ns * (size_t)msh->n_elem;
-  reduction *n = NULL;
-  PASS_NEW(n, 1);
-  *out = n;
-  OWNS(n);
+  MAKES(reduction, n, out);
   n->m = m;
   n->msh = msh;
   n->d.mesh = msh;
@@ -428,8 +421,7 @@ int reduction_refuted(const model *m) {
 
 int reduction_take_back(model *m, int all) {
   int n = 0;
-  for (int k = 0; k < m->reduction.n; ++k) {
-    omitted *row = &m->reduction.row[k];
+  for (EACH(omitted, row, m->reduction.row, m->reduction.n)) {
     if (row->back || (is_within(m, row) && !all)) continue;
     row->back = 1;
     row->lost = all;

@@ -10,8 +10,7 @@ const double reduction_share = 0.1;
 double reduction_load_stress(const model *m, const mesh *msh, double young) {
   double most = 0.0;
   for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *l = &m->steps[i].loads.item[k];
+    for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n)) {
       double value = fabs(l->value.number);
       if (l->kind == LOAD_TEMPERATURE) continue;
       if (l->value.formula != NULL || l->kind == LOAD_POINT ||
@@ -103,8 +102,7 @@ static void change_constants(material *mat) {
 }
 
 void reduction_leave_out(model *m) {
-  for (int i = 0; i < m->reduction.n; ++i) {
-    omitted *row = &m->reduction.row[i];
+  for (EACH(omitted, row, m->reduction.row, m->reduction.n)) {
     if (row->back) continue;
     row->bound = row->local = row->change = 0.0;
     row->checked = row->again = 0;
@@ -126,8 +124,7 @@ void reduction_leave_out(model *m) {
 
 void reduction_restore(model *m) {
   each_rule(m, put_back);
-  for (int i = 0; i < m->n.material; ++i) {
-    material *mat = &m->materials[i];
+  for (EACH(material, mat, m->materials, m->n.material)) {
     if (mat->law_aside != NULL) mat->law.ops = mat->law_aside;
     mat->law_aside = NULL;
     mat->is_still = 0;

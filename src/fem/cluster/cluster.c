@@ -135,10 +135,9 @@ static status list_elements(const mesh *m, cluster_set *c) {
 
 static status list_nodes(const mesh *m, cluster_set *c) {
   const int per = m->dim + 1;
-  OWNED int *seen = NULL;
   int n = 0;
-  PASS_NEW_ALL(OF(seen, m->n_node), OF(c->first, c->n + 1),
-               OF(c->node, per * c->start[c->n]));
+  OWNED_NEW(int, seen, m->n_node);
+  PASS_NEW_ALL(OF(c->first, c->n + 1), OF(c->node, per * c->start[c->n]));
   for (int k = 0; k < c->n; ++k) {
     for (int q = c->start[k]; q < c->start[k + 1]; ++q)
       for (int a = 0; a < per; ++a) {
@@ -177,20 +176,19 @@ static status weigh(const cluster_input *in, cluster_set *c) {
 }
 
 static status grow(const cluster_input *in, cluster_set *c) {
-  status st = OK;
   const mesh *m = in->mesh;
-  growth g = {.m = m, .section_id = in->section_id};
-  TRY(mesh_node_elements(m, &g.start, &g.elem));
-  NEW_ALL(OF(g.size, m->n_elem), OF(g.outside, m->n_node),
-          OF(g.taken, m->n_node), OF(c->of, m->n_elem));
-  g.of = c->of;
-  for (int e = 0; e < m->n_elem; ++e) g.of[e] = -1;
+  PASS_NEW(c->of, m->n_elem);
+  OWNED_NEW(growth, g, 1);
+  OWNS(g);
+  *g = (growth){.m = m, .section_id = in->section_id, .of = c->of};
+  PASS(mesh_node_elements(m, &g->start, &g->elem));
+  PASS_NEW_ALL(OF(g->size, m->n_elem), OF(g->outside, m->n_node),
+               OF(g->taken, m->n_node));
+  for (int e = 0; e < m->n_elem; ++e) g->of[e] = -1;
   for (int i = 0; i < in->n_section; ++i)
-    if (in->share[i] > 0) grow_section(&g, i);
-  c->n = g.n;
-done:
-  RELEASE(g.start, g.elem, g.size, g.outside, g.taken);
-  return st;
+    if (in->share[i] > 0) grow_section(g, i);
+  c->n = g->n;
+  return OK;
 }
 
 status cluster_new(const cluster_input *in, cluster_set **out) {
@@ -198,9 +196,7 @@ status cluster_new(const cluster_input *in, cluster_set **out) {
   *out = NULL;
   for (int i = 0; i < in->n_section; ++i) wanted |= in->share[i] > 0;
   if (!wanted) return OK;
-  PASS_NEW(*out, 1);
-  cluster_set *c = *out;
-  OWNS(c);
+  MAKES(cluster_set, c, out);
   PASS(grow(in, c));
   PASS(list_elements(in->mesh, c));
   PASS(list_nodes(in->mesh, c));

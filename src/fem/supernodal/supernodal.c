@@ -40,11 +40,8 @@ static status link_up(supernodal *s) {
 }
 
 status supernodal_new(const cholmod_factor *L, supernodal **out) {
-  supernodal *s = NULL;
   int most = 0;
-  PASS_NEW(s, 1);
-  *out = s;
-  OWNS(s);
+  MAKES(supernodal, s, out);
   s->n = (int)L->n;
   s->count = (int)L->nsuper;
   s->first = L->super;

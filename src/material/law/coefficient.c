@@ -91,8 +91,7 @@ static status read_line(lines *r, const record *line, const option *table) {
   }
   for (int i = 0; i < n && !r->wrong; ++i) {
     const field *f = i < line->n_field ? &line->fields[i] : NULL;
-    PASS_GROW(law->value, r->n_value, r->capacity);
-    quantity *q = &law->value[r->n_value++];
+    ADDED(quantity, q, law->value, r->n_value, r->capacity);
     const int absent = f == NULL || (f->text[0] == '\0' && !f->quoted);
     if (!absent || table[i].initial == NULL) {
       r->wrong |= read_value(r, f, &table[i], q) != 0;
@@ -287,9 +286,8 @@ static const char *find_values(const law_card *law, double t,
 status law_card_check(const law_card *law, elastic_type type,
                       message_log *log) {
   char text[256];
-  OWNED double *value = NULL;
   if (law->ops->check == NULL) return OK;
-  PASS_NEW(value, law_n_value(law));
+  OWNED_NEW(double, value, law_n_value(law));
   for (int i = 0; i < law->n_set; ++i) {
     const char *wrong = find_values(law, 0, law->temperature[i], value);
     if (wrong == NULL)
@@ -345,4 +343,3 @@ unsigned law_varies(const law_card *law) {
     bits |= LAW_VARIES_TEMPERATURE;
   return bits;
 }
-

@@ -232,9 +232,8 @@ static void copy_block(const double *A, int rows, int columns, double *M,
 /* Matrix of d(e^i, alpha)/dt under held strain, [n*n]. */
 static status coupled_matrix(const law_point *p, int na, double *M) {
   const int ns = p->elastic->ns, n = ns + na;
-  OWNED double *work = NULL;
   law_jacobian j;
-  PASS_NEW(work, 2 * ns * ns + 2 * ns * na + na * na);
+  OWNED_NEW(double, work, 2 * ns * ns + 2 * ns * na + na * na);
   j.ei_sigma = work;
   j.ei_ei = j.ei_sigma + ns * ns;
   j.ei_alpha = j.ei_ei + ns * ns;
@@ -252,8 +251,7 @@ static status coupled_matrix(const law_point *p, int na, double *M) {
 /* The largest magnitude of an eigenvalue of M[n*n], which is destroyed. */
 static status spectral_radius(const law_point *p, double *M, int n,
                               double *radius) {
-  OWNED double *re = NULL;
-  PASS_NEW(re, 6 * n);
+  OWNED_NEW(double, re, 6 * n);
   for (int i = 0; i < n * n; ++i)
     if (!isfinite(M[i]))
       RAISE(ERR_SINGULAR,
@@ -272,7 +270,6 @@ static status spectral_radius(const law_point *p, double *M, int n,
 status law_fastest_rate(const law_point *p, double *rate) {
   const law_ops *ops = p->law->ops;
   const law_elastic *el = p->elastic;
-  OWNED double *M = NULL;
   *rate = 0;
   if (!law_flows(p)) return OK;
   if (ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
@@ -281,6 +278,7 @@ status law_fastest_rate(const law_point *p, double *rate) {
     *rate = -1;
   if (!(*rate < 0)) return OK;
   const int na = law_n_alpha(p->law, el->ns), n = el->ns + na;
+  OWNED double *M = NULL;
   PASS_NEW(M, n * n);
   PASS(coupled_matrix(p, na, M));
   return spectral_radius(p, M, n, rate);

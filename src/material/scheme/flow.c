@@ -148,8 +148,7 @@ status flow_turning(const flow *x, const flow_state *old, const flow_state *now,
                     double *d) {
   double value[2][FLOW_VALUE_MAX];
   const double dt = now->t - old->t;
-  OWNED double *alpha_rate = NULL;
-  PASS_NEW(alpha_rate, x->alpha_at[x->n]);
+  OWNED_NEW(double, alpha_rate, x->alpha_at[x->n]);
   for (int k = 0; k < x->n; ++k) {
     const size_t at = (size_t)x->ns * (size_t)k;
     law_point from, to;

@@ -70,8 +70,7 @@ static status linear_law(const flow_kind *k, double *L, double *G) {
 
 /* X[n*m] := inv(M) X; M is destroyed. */
 static status solve(int n, int m, double *M, double *X) {
-  OWNED int *pivot = NULL;
-  PASS_NEW(pivot, n);
+  OWNED_NEW(int, pivot, n);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, m, M, n, pivot, X, n) != 0)
     RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
   return OK;
@@ -364,10 +363,9 @@ static void condense(int ns, double *D) {
 }
 
 status plane_stress_map(const law_elastic *el, linear_map *m, double *D) {
-  OWNED double *row = NULL;
   if (!(D[ZZ + el->ns * ZZ] > 0.0))
     RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
-  PASS_NEW(row, m->n);
+  OWNED_NEW(double, row, m->n);
   eliminate_old(el, m);
   eliminate_new(el, D, m, row);
   condense(el->ns, D);

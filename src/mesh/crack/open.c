@@ -320,8 +320,7 @@ static int start_of(const walk *w, int edge) {
  * a node of an edge of more, -1: there is none. */
 static status find_neighbours(walk *w, int *branch) {
   const int dim = w->o->m->dim, n = dim * w->n;
-  OWNED sort_item *edge = NULL;
-  PASS_NEW(edge, n);
+  OWNED_NEW(sort_item, edge, n);
   for (int i = 0; i < n; ++i) {
     int next = dim == 2 ? i : i - i % 3 + (i % 3 + 1) % 3;
     int v[2] = {start_of(w, i), start_of(w, next)};
@@ -584,10 +583,9 @@ static status add_lip(opening *o, int crack, char sign, const int *face) {
   mesh *m = o->m;
   const char *base = m->group[o->group_id[crack]].name;
   const mesh_crack *c = &o->crack[crack];
-  OWNED char *name = NULL;
   size_t length = strlen(base) + 2;
   int tag = 0;
-  PASS_NEW(name, length);
+  OWNED_NEW(char, name, length);
   snprintf(name, length, "%s%c", base, sign);
   if (mesh_find_group(m, name) != NULL)
     message_add(o->log, P3012, o->cut[crack].at,
@@ -624,10 +622,9 @@ static status take_lips(opening *o, int crack) {
 
 static status groups_open(opening *o) {
   mesh *m = o->m;
-  OWNED char *mark = NULL;
-  OWNED int *list = NULL;
   size_t old = (size_t)m->n_group;
-  PASS_NEW_ALL(OF(mark, m->n_node), OF(list, m->n_node));
+  OWNED_NEW(char, mark, m->n_node);
+  OWNED_NEW(int, list, m->n_node);
   PASS_RESIZE(m->group, old, old + 2 * (size_t)o->n);
   for (int k = 0; k < o->n; ++k) {
     PASS(take_lips(o, k));
@@ -696,9 +693,8 @@ static int gather_edges(const opening *o, int crack, front_edge *list) {
 /* next[n]: the edge that goes on where one ends, -1: none, or several; last[n]
  * 1: nothing comes before. */
 static status link_edges(const edge_list *list, int *next, char *is_first) {
-  OWNED sort_item *end = NULL;
   const int n = 2 * list->n;
-  PASS_NEW(end, n);
+  OWNED_NEW(sort_item, end, n);
   for (int i = 0; i < n; ++i)
     end[i] = (sort_item){(uint64_t)list->edge[i / 2].node[i % 2], i};
   for (int i = 0; i < list->n; ++i) {
@@ -748,8 +744,7 @@ static status chain_edges(const edge_list *list, mesh_crack *c) {
 
 static status find_front(const opening *o, int crack) {
   mesh_crack *c = &o->crack[crack];
-  OWNED front_edge *edge = NULL;
-  PASS_NEW(edge, o->m->dim * c->n);
+  OWNED_NEW(front_edge, edge, o->m->dim * c->n);
   const edge_list list = {gather_edges(o, crack, edge), edge};
   PASS_NEW_ALL(OF(c->front_start, list.n + 1), OF(c->front_node, 2 * list.n),
                OF(c->front_face, 2 * list.n));

@@ -16,14 +16,13 @@ enum { MOST_BYTES = 1 << 26 };
 
 static status add_file(geo_text *g, const char *folder, size_t n_folder,
                        const char *name, int merged) {
-  OWNED char *path = NULL;
   int i = 0;
   if (g->n_file >= GEO_FILES) {
     g->is_open = 1;
     return OK;
   }
   if (name[0] == '/') n_folder = 0;
-  PASS_NEW(path, n_folder + strlen(name) + 1);
+  OWNED_NEW(char, path, n_folder + strlen(name) + 1);
   if (n_folder > 0) memcpy(path, folder, n_folder);
   strcpy(path + n_folder, name);
   while (i < g->n_file && strcmp(g->file[i], path) != 0) ++i;
@@ -59,13 +58,12 @@ static int in_name(char c) { return isalnum((unsigned char)c) || c == '_'; }
 /* After Include, Merge or ShapeFromFile: the file, if its name is in quotes. */
 static status include(geo_text *g, const char *path, const char *p,
                       int merged) {
-  OWNED char *name = NULL;
   const char *slash = strrchr(path, '/');
   p += strspn(p, " \t\r\n(");
   size_t n = *p == '"' ? strcspn(p + 1, "\"\n") : 0;
   g->is_open |= n == 0;
   if (n == 0) return OK;
-  PASS_NEW(name, n + 1);
+  OWNED_NEW(char, name, n + 1);
   memcpy(name, p + 1, n);
   return add_file(g, path, slash != NULL ? (size_t)(slash - path) + 1 : 0, name,
                   merged);

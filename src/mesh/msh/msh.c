@@ -568,8 +568,7 @@ static status finish_groups(msh *m) {
   raw_mesh *raw = m->raw;
   if (raw->n_group > 0)
     qsort(raw->group, (size_t)raw->n_group, sizeof *raw->group, by_dim_and_tag);
-  for (int i = 0; i < raw->n_group; ++i) {
-    raw_group *g = &raw->group[i];
+  for (EACH(raw_group, g, raw->group, raw->n_group)) {
     int id = table_find(&m->names, table_key(g->dim, g->tag));
     size_t n = id >= 0 ? m->name[id].length : 0;
     PASS_NEW(g->name, n + 1);
@@ -594,9 +593,8 @@ static int by_entity(const void *p, const void *q) {
 /* The order in which the entities are numbered, not that of the file. */
 static status finish_blocks(msh *m) {
   raw_mesh *raw = m->raw;
-  OWNED block_order *order = NULL;
-  OWNED raw_block *sorted = NULL;
-  PASS_NEW_ALL(OF(order, raw->n_block), OF(sorted, raw->n_block));
+  OWNED_NEW(block_order, order, raw->n_block);
+  OWNED_NEW(raw_block, sorted, raw->n_block);
   for (int i = 0; i < raw->n_block; ++i)
     order[i] =
         (block_order){raw->block[i].dim, m->fill[i].tag, raw->block[i].type, i};

@@ -60,21 +60,17 @@ static void release(bisection *b) {
 /* 1: only what is bisected here, points apart. */
 static int is_simple(const raw_mesh *raw) {
   static const int type[] = {15, 1, 2, 4};
-  for (int i = 0; i < raw->n_block; ++i) {
-    const raw_block *p = &raw->block[i];
+  for (EACH(const raw_block, p, raw->block, raw->n_block))
     if (p->dim < 0 || p->dim > 3 || p->type != type[p->dim]) return 0;
-  }
   return 1;
 }
 
 static int is_named(const bisection *b, const raw_block *p) {
-  for (int i = 0; i < b->raw->n_group; ++i) {
-    const raw_group *g = &b->raw->group[i];
+  for (EACH(const raw_group, g, b->raw->group, b->raw->n_group))
     for (int k = 0; k < p->n_physical; ++k)
       if (g->dim == p->dim && g->tag == p->physical[k])
         for (int j = 0; j < b->q->n_round; ++j)
           if (strcmp(g->name, b->q->rounds[j]) == 0) return 1;
-  }
   return 0;
 }
 
@@ -222,9 +218,8 @@ static status mark_neighbours(bisection *b) {
 /* The faces that may be curved, as nodes: new. */
 static status find_surface(bisection *b) {
   const cell_list *low = &b->cells[b->dim - 1];
-  OWNED int *node = NULL;
   surface_faces f = {.n_node = b->dim};
-  PASS_NEW(node, b->dim * low->n);
+  OWNED_NEW(int, node, b->dim * low->n);
   for (int i = 0; i < low->n; ++i) {
     if (!b->is_round[low->item[i].block]) continue;
     for (int k = 0; k < b->dim; ++k) node[b->dim * f.n + k] = low->item[i].v[k];
@@ -264,10 +259,9 @@ static void straighten(bisection *b, int id, int p, int q) {
 
 /* A new node for each marked edge, in the order of marking. */
 static status add_middles(bisection *b) {
-  OWNED uint64_t *key = NULL;
   PASS(grow(b));
   PASS(find_surface(b));
-  PASS_NEW(key, b->marked.n);
+  OWNED_NEW(uint64_t, key, b->marked.n);
   for (size_t k = 0; k < b->marked.n_slot; ++k)
     if (b->marked.id[k] > 0) key[b->marked.id[k] - 1] = b->marked.key[k];
   b->first_mid = b->n_node;
@@ -351,19 +345,14 @@ static status split(bisection *b, int dim, const cell *c, cell_list *to) {
 }
 
 static status split_all(bisection *b) {
-  status st = OK;
-  cell_list next = {0};
   for (int d = 1; d <= b->dim; ++d) {
+    cell_list next = {0};
     for (int i = 0; i < b->cells[d].n; ++i)
-      TRY(split(b, d, &b->cells[d].item[i], &next));
-    const cell_list old = b->cells[d];
+      PASS(split(b, d, &b->cells[d].item[i], &next));
+    memory_free(b->cells[d].item);
     b->cells[d] = next;
-    next = (cell_list){0};
-    memory_free(old.item);
   }
-done:
-  memory_free(next.item);
-  return st;
+  return OK;
 }
 
 /* *done: no element is too long. */
@@ -393,8 +382,7 @@ static status give_block(const bisection *b, raw_block *p, int block) {
   p->no = p->node = NULL;
   p->n = 0;
   PASS_NEW_ALL(OF(p->no, n), OF(p->node, p->n_per * n));
-  for (int i = 0; i < from->n; ++i) {
-    const cell *c = &from->item[i];
+  for (EACH(const cell, c, from->item, from->n)) {
     if (c->block != block) continue;
     p->no[p->n] = c->no;
     for (size_t k = 0; k < p->n_per; ++k)

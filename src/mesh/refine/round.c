@@ -218,10 +218,9 @@ static void improve_border(round_surface *s, const double *within) {
 }
 
 static status set_surface(round_surface *s, int n_all) {
-  OWNED unsigned char *bent = NULL;
-  OWNED double *within = NULL;
   if (s->f.n_node == 2) return OK;
-  PASS_NEW_ALL(OF(bent, n_all), OF(within, 3 * n_all));
+  OWNED_NEW(unsigned char, bent, n_all);
+  OWNED_NEW(double, within, 3 * n_all);
   set_normals(s, bent);
   for (int i = 0; i < n_all; ++i) {
     normalise(s->normal + 3 * i);
@@ -252,9 +251,7 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
                          round_surface **out) {
   *out = NULL;
   if (f->n == 0) return OK;
-  PASS_NEW(*out, 1);
-  round_surface *s = *out;
-  OWNS(s);
+  MAKES(round_surface, s, out);
   s->f = *f;
   s->x = x;
   PASS_NEW_ALL(OF(s->next, 2 * n_all), OF(s->number, n_all), OF(s->flat, n_all),

@@ -98,9 +98,7 @@ static status build(size_grid *g) {
 }
 
 status size_grid_new(const refine_sizes *s, size_grid **out) {
-  PASS_NEW(*out, 1);
-  size_grid *g = *out;
-  OWNS(g);
+  MAKES(size_grid, g, out);
   g->s = *s;
   return build(g);
 }

@@ -218,8 +218,7 @@ static status new_contact(const reading *r, const char *name, contact **out) {
   model *m = r->m;
   for (int i = 0; i < m->n.contact; ++i)
     shown_name_taken(r, name, m->contacts[i].name);
-  PASS_GROW(m->contacts, m->n.contact, m->cap.contact);
-  contact *c = &m->contacts[m->n.contact++];
+  ADDED(contact, c, m->contacts, m->n.contact, m->cap.contact);
   c->name = name == NULL ? "" : name;
   c->at = r->card->at;
   c->obstacle_id = c->group_id = -1;
@@ -319,8 +318,7 @@ status apply_tie(reading *r) {
   const card_options *p = r->param;
   model *m = r->m;
   for (int i = 0; i < m->n.tie; ++i) name_taken(r, p->name, m->ties[i].name);
-  PASS_GROW(m->ties, m->n.tie, m->cap.tie);
-  tie *t = &m->ties[m->n.tie++];
+  ADDED(tie, t, m->ties, m->n.tie, m->cap.tie);
   t->name = p->name == NULL ? "" : p->name;
   t->at = r->card->at;
   read_surfaces(r, p->surface.slave, p->surface.adjust, &t->pair);
@@ -342,8 +340,7 @@ status apply_crack(reading *r) {
   model *m = r->m;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
-  PASS_GROW(m->mesh.cracks, m->n.crack, m->cap.crack);
-  crack *k = &m->mesh.cracks[m->n.crack++];
+  ADDED(crack, k, m->mesh.cracks, m->n.crack, m->cap.crack);
   k->name = c->name;
   k->group = p->group == NULL ? "" : p->group;
   k->at = c->at;
@@ -431,10 +428,8 @@ static status read_value(reading *r, const char *what, int variable,
 }
 
 /* The rule a *FRICTION card fills: of the contact, or of the step for it; NULL
- * without memory, or *told after a message. */
-static friction_rule *new_rule(const reading *r, int contact_id,
-                               int *reported) {
-  status st = OK;
+ * after a message. */
+static status new_rule(const reading *r, int contact_id, friction_rule **out) {
   contact *c = &r->m->contacts[contact_id];
   friction_rule *rule = &c->friction;
   const friction_rule *old = rule->law == NULL ? NULL : rule;
@@ -444,18 +439,17 @@ static friction_rule *new_rule(const reading *r, int contact_id,
     for (int k = 0; k < s->friction.n; ++k)
       if (s->friction.changes[k].contact_id == contact_id)
         old = &s->friction.changes[k].rule;
-    GROW(s->friction.changes, s->friction.n, s->friction.cap);
+    PASS_GROW(s->friction.changes, s->friction.n, s->friction.cap);
     rule = &s->friction.changes[s->friction.n].rule;
     s->friction.changes[s->friction.n].contact_id = contact_id;
     s->friction.n += old == NULL;
   }
-  *reported = old != NULL;
+  *out = old == NULL ? rule : NULL;
   if (old != NULL)
     message_add(r->m->log, P2032, &r->card->at,
                 "contact %s has its *FRICTION already, at line %d", c->name,
                 old->at.line_no);
-done:
-  return st != OK || *reported ? NULL : rule;
+  return OK;
 }
 
 static status copy_options(const reading *r, const friction_ops *law,
@@ -473,11 +467,10 @@ status apply_friction(reading *r) {
   const card *c = r->card;
   const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
   if (law == NULL || p->contact == NULL) return OK;
-  int reported = 0, id = find_contact(r, p->contact);
+  const int id = find_contact(r, p->contact);
+  friction_rule *rule;
   if (id < 0) return OK;
-  friction_rule *rule = new_rule(r, id, &reported);
-  if (rule == NULL && !reported)
-    RAISE(ERR_MEMORY, "memory exhausted: *FRICTION");
+  PASS(new_rule(r, id, &rule));
   if (rule == NULL) return OK;
   rule->law = law;
   rule->amplitude_name = p->amplitude;
@@ -528,8 +521,7 @@ status apply_effect(reading *r) {
         p->contact == NULL ? "" : p->contact, r->card->name, first->at.line_no);
     return OK;
   }
-  PASS_GROW(m->effect_cards, m->n.effect_card, m->cap.effect_card);
-  effect_card *c = &m->effect_cards[m->n.effect_card++];
+  ADDED(effect_card, c, m->effect_cards, m->n.effect_card, m->cap.effect_card);
   *c = (effect_card){r->card->name, id, {0}, r->card->at};
   memcpy(c->value, p->value, sizeof c->value);
   return OK;

@@ -1,5 +1,4 @@
 /* Supports, loads and initial conditions. */
-#include "base/base.h"
 #include "model/cards/cards.h"
 
 /* 0 also where an error was reported for the card. */
@@ -32,8 +31,7 @@ typedef int line_reader(const reading *r, const record *line, load *l,
 static status add_load(reading *r, const record *line, int own_field,
                        const load *from) {
   load_list *list = r->in_step ? &open_step(r)->loads : &r->m->load.supports;
-  PASS_GROW(list->item, list->n, list->cap);
-  load *l = &list->item[list->n++];
+  ADDED(load, l, list->item, list->n, list->cap);
   const char *name = r->param->amplitude;
   *l = *from;
   l->group = line->fields[0].text;
@@ -57,8 +55,7 @@ static status add_load(reading *r, const record *line, int own_field,
 static status read_loads(reading *r, unsigned kinds, const char *expected,
                          const char *file, line_reader *read) {
   renew(r, kinds, expected);
-  for (int i = 0; i < r->card->n_record; ++i) {
-    const record *line = &r->card->records[i];
+  for (EACH(const record, line, r->card->records, r->card->n_record)) {
     load l = {.file = file};
     int last = 0, own_field = read(r, line, &l, &last);
     for (; own_field >= 0 && l.component <= last; ++l.component)
@@ -275,8 +272,7 @@ status apply_initial(reading *r) {
   model *m = r->m;
   if (r->misread) return OK;
   PASS(open_initial(r));
-  for (int i = 0; i < r->card->n_record; ++i) {
-    const record *line = &r->card->records[i];
+  for (EACH(const record, line, r->card->records, r->card->n_record)) {
     initial c = {.type = p->type, .group_id = -1};
     if (read_initial(r, line, &c) != 0) continue;
     c.group = line->fields[0].text;

@@ -23,7 +23,6 @@ status apply_units(reading *r) {
 }
 
 status apply_mesh(reading *r) {
-  const card_options *p = r->param;
   model *m = r->m;
   if (m->mesh.given) {
     message_add(m->log, P2015, &r->card->at, "a deck has one *MESH card");
@@ -31,7 +30,7 @@ status apply_mesh(reading *r) {
   }
   m->mesh.given = 1;
   m->mesh.at = *value_place(r, "FILE");
-  m->mesh.scale = p->body.scale;
+  m->mesh.scale = r->param->body.scale;
   return field_file(r, &m->mesh.file);
 }
 
@@ -52,8 +51,7 @@ status apply_condensed_problem(reading *r) {
 status apply_section(reading *r) {
   const card_options *p = r->param;
   model *m = r->m;
-  PASS_GROW(m->sections, m->n.section, m->cap.section);
-  section *s = &m->sections[m->n.section++];
+  ADDED(section, s, m->sections, m->n.section, m->cap.section);
   s->elset = p->body.elset == NULL ? "" : p->body.elset;
   s->material_name = p->body.material == NULL ? "" : p->body.material;
   s->at = r->card->at;
@@ -94,8 +92,7 @@ status apply_amplitude(reading *r) {
   const card *c = r->card;
   for (int i = 0; i < m->n.amplitude; ++i)
     name_taken(r, p->name, m->time.amplitudes[i].name);
-  PASS_GROW(m->time.amplitudes, m->n.amplitude, m->cap.amplitude);
-  amplitude *a = &m->time.amplitudes[m->n.amplitude++];
+  ADDED(amplitude, a, m->time.amplitudes, m->n.amplitude, m->cap.amplitude);
   a->name = p->name == NULL ? "" : p->name;
   a->at = *value_place(r, "NAME");
   a->total_time = p->time;
@@ -171,16 +168,13 @@ status apply_time_points(reading *r) {
   int room = 0;
   for (int i = 0; i < m->n.points; ++i)
     name_taken(r, p->name, m->time.points[i].name);
-  PASS_GROW(m->time.points, m->n.points, m->cap.points);
-  time_points *own = &m->time.points[m->n.points++];
+  ADDED(time_points, own, m->time.points, m->n.points, m->cap.points);
   *own = (time_points){.name = p->name == NULL ? "" : p->name,
                        .total_time = p->time,
                        .at = *value_place(r, "NAME")};
-  for (int i = 0; i < r->card->n_record; ++i) {
-    const record *line = &r->card->records[i];
+  for (EACH(const record, line, r->card->records, r->card->n_record))
     PASS(p->type ? read_range(r, line, own, &room)
                  : read_times(r, line, own, &room));
-  }
   return OK;
 }
 

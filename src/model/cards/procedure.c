@@ -8,8 +8,7 @@
 status apply_step(reading *r) {
   const card_options *p = r->param;
   model *m = r->m;
-  PASS_GROW(m->steps, m->n.step, m->cap.step);
-  step *s = &m->steps[m->n.step++];
+  ADDED(step, s, m->steps, m->n.step, m->cap.step);
   s->name = p->name == NULL ? "" : p->name;
   s->at = r->card->at;
   r->in_step = 1;
@@ -101,10 +100,9 @@ static void read_increments(const reading *r, step *s) {
 
 status apply_quasistatic(reading *r) {
   step *s = open_step(r);
-  const card_options *p = r->param;
   if (second_procedure(r)) return OK;
   s->kind = STEP_QUASISTATIC;
-  s->form = p->type;
+  s->form = r->param->type;
   read_increments(r, s);
   return OK;
 }
@@ -271,8 +269,7 @@ status apply_print(reading *r) {
     if (named && !p->output.print[i]) s->print.ended |= 1 << i;
     if (!p->output.print[i]) continue;
     s->print.given = 1;
-    PASS_GROW(s->print.requests, s->print.n, s->print.cap);
-    print_request *q = &s->print.requests[s->print.n++];
+    ADDED(print_request, q, s->print.requests, s->print.n, s->print.cap);
     q->table = 1 << i;
     q->group = p->group;
     q->group_id = -1;
@@ -307,11 +304,10 @@ status apply_output(reading *r) {
 }
 
 status apply_restart(reading *r) {
-  const card_options *p = r->param;
   step *s = open_step(r);
   if (second_in_step(r, s->restart.given)) return OK;
   s->restart.given = 1;
   s->restart.at = r->card->at;
-  s->restart.frequency = p->frequency;
+  s->restart.frequency = r->param->frequency;
   return OK;
 }

@@ -33,8 +33,7 @@ status apply_reference(reading *r) {
                 "a deck has one *REFERENCE, the first is in line %d",
                 ref->at.line_no);
   ref->at = r->card->at;
-  for (int i = 0; i < r->card->n_record; ++i) {
-    const record *line = &r->card->records[i];
+  for (EACH(const record, line, r->card->records, r->card->n_record)) {
     const field *f = line->fields;
     quantity value = {0};
     if (record_fields(r, line, 2, 2, "name, value") != 0) continue;
@@ -166,8 +165,7 @@ status apply_goal(reading *r) {
   if (r->misread || p->name == NULL || !is_given(r, "QUANTITY")) return OK;
   for (int i = 0; i < m->n.goal; ++i)
     shown_name_taken(r, p->name, m->accuracy.goals[i].name);
-  PASS_GROW(m->accuracy.goals, m->n.goal, m->cap.goal);
-  goal_card *g = &m->accuracy.goals[m->n.goal++];
+  ADDED(goal_card, g, m->accuracy.goals, m->n.goal, m->cap.goal);
   *g = (goal_card){.name = p->name,
                    .quantity = (goal_quantity)p->goal.quantity,
                    .contact_id = -1,

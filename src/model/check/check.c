@@ -2,7 +2,6 @@
  * The model against the mesh: kinematics, sections, contacts, goals, pairs of
  * surfaces, and the parts in order.
  */
-#include "base/base.h"
 #include "mesh/crack/crack.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
@@ -21,8 +20,7 @@ static void check_reference(model *m) {
   closed_form *ref = &m->accuracy.ref;
   int axi = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
   int n_u = 0, n_stress = 0;
-  for (int i = 0; i < ref->n; ++i) {
-    const reference_line *l = &ref->line[i];
+  for (EACH(const reference_line, l, ref->line, ref->n)) {
     int at = reference_place(l->name, m->dim, axi);
     if (at < 0) {
       message_add(m->log, P2024, &l->at, "*REFERENCE: %s has no %s",
@@ -103,10 +101,9 @@ static void check_laws(const model *m) {
   for (int i = 0; i < m->n.contact; ++i)
     check_law(m, m->contacts[i].name, &m->contacts[i].friction);
   for (int k = 0; k < m->n.step; ++k)
-    for (int i = 0; i < m->steps[k].friction.n; ++i) {
-      const friction_change *f = &m->steps[k].friction.changes[i];
+    for (EACH(const friction_change, f, m->steps[k].friction.changes,
+              m->steps[k].friction.n))
       check_law(m, m->contacts[f->contact_id].name, &f->rule);
-    }
 }
 
 /* Points and directions of an obstacle in 3-D have three numbers; a sphere of
@@ -154,8 +151,7 @@ static void check_contacts(model *m, const mesh *msh) {
 }
 
 static void check_kinematics(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n.section; ++i) {
-    section *s = &m->sections[i];
+  for (EACH(section, s, m->sections, m->n.section)) {
     if (s->kin < 0) s->kin = msh->dim == 3 ? SOLID_3D : PLANE_STRAIN;
     if ((s->kin == SOLID_3D) != (msh->dim == 3))
       message_add(
@@ -193,8 +189,7 @@ double model_locking_error(double nu, int n) {
 
 static void check_locking(const model *m) {
   enum { COARSE = 16, FINE = 64 };
-  for (int i = 0; i < m->n.section; ++i) {
-    const section *s = &m->sections[i];
+  for (EACH(const section, s, m->sections, m->n.section)) {
     const material *mat =
         s->material_id < 0 || s->kin == PLANE_STRESS || s->averaged
             ? NULL
@@ -263,8 +258,7 @@ static status check_sections(model *m, const mesh *msh) {
 
 /* Moduli over the temperature where there is none. */
 static void check_moduli(const model *m) {
-  for (int i = 0; i < m->n.material; ++i) {
-    const material *mat = &m->materials[i];
+  for (EACH(const material, mat, m->materials, m->n.material)) {
     if (!mat->used || mat->elastic.n < 2 || (m->effects & EFFECT_THERMAL))
       continue;
     message_add(m->log, P2049, &mat->at,
@@ -276,8 +270,7 @@ static void check_moduli(const model *m) {
 
 /* STIFFNESS=FACTOR next to what needs the entries of the matrix. */
 static void check_entries(const model *m) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step)) {
     const char *reads = facts_reads_entries(m, s);
     if (s->solver.stiffness != STIFFNESS_FACTOR || reads == NULL) continue;
     message_add(m->log, P2061, &s->solver_at,
@@ -542,8 +535,7 @@ static void check_inner(const model *m, const mesh *msh, const pair_card *c,
 static status check_surfaces(const model *m, const mesh *msh,
                              const pair_card *c, const surface_pair *p,
                              int *group) {
-  OWNED unsigned char *seen = NULL;
-  PASS_NEW(seen, msh->n_face);
+  OWNED_NEW(unsigned char, seen, msh->n_face);
   for (int k = 0; k < 2; ++k) {
     if (p->group[k][0] == '\0') return OK;
     group[k] =
@@ -564,8 +556,7 @@ static int is_lost(const model *m) { return message_count(m->log, ERROR) > 0; }
 
 static void check_same_surfaces(const model *m, int id) {
   const contact *c = &m->contacts[id];
-  for (int i = 0; i < id; ++i) {
-    const contact *old = &m->contacts[i];
+  for (EACH(const contact, old, m->contacts, id)) {
     const surface_pair *a = &c->pair, *b = &old->pair;
     if (!old->is_pair ||
         a->slave_id + a->master_id != b->slave_id + b->master_id)
@@ -595,9 +586,8 @@ static status check_contact_pair(model *m, const mesh *msh,
 
 status model_open_cracks(model *m, mesh *msh) {
   const int n = m->n.crack;
-  OWNED mesh_cut *cut = NULL;
   if (n == 0 || msh->n_crack > 0) return OK;
-  PASS_NEW(cut, n);
+  OWNED_NEW(mesh_cut, cut, n);
   for (int i = 0; i < n; ++i) {
     crack *k = &m->mesh.cracks[i];
     const int id = check_group(m, msh, k->group, &k->group_at);
@@ -626,16 +616,14 @@ static void mark_nodes(const mesh_group *g, unsigned char *touches) {
 
 static status check_ties(model *m, const mesh *msh,
                          const unsigned char *fixed) {
-  OWNED unsigned char *touches = NULL;
   if (m->n.tie == 0) return OK;
-  PASS_NEW(touches, msh->n_node);
+  OWNED_NEW(unsigned char, touches, msh->n_node);
   for (int i = 0; i < m->n.contact && !is_lost(m); ++i) {
     const contact *c = &m->contacts[i];
     mark_nodes(&msh->group[c->group_id], touches);
     if (c->is_pair) mark_nodes(&msh->group[c->pair.master_id], touches);
   }
-  for (int i = 0; i < m->n.tie; ++i) {
-    tie *t = &m->ties[i];
+  for (EACH(tie, t, m->ties, m->n.tie)) {
     const pair_card of = {"TIE", t->name, &t->at};
     int group[2] = {-1, -1};
     PASS(check_surfaces(m, msh, &of, &t->pair, group));
@@ -647,8 +635,8 @@ static status check_ties(model *m, const mesh *msh,
 }
 
 static status check_pairs(model *m, const mesh *msh) {
-  OWNED unsigned char *fixed = NULL;
   if (!model_has_pairs(m)) return OK;
+  OWNED unsigned char *fixed = NULL;
   PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
   if (!is_lost(m) && m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < m->n.contact; ++i)

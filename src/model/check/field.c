@@ -101,10 +101,9 @@ static status read_gmsh(scan *s, pairs *p) {
 
 static status read_hdf5(const char *path, long most, pairs *p) {
   ENDS_BY(dataset_close) hdf5_source s = {0};
-  OWNED int *number = NULL;
   long n_value = 0;
   PASS(dataset_open(path, &s));
-  PASS(source_ints(&s, "/node_no", 0, most, &p->n, &number));
+  OWNED_OF(int, number, source_ints(&s, "/node_no", 0, most, &p->n, &number));
   PASS(source_reals(&s, "/temperature", 0, most, &n_value, &p->value));
   if (n_value != p->n)
     RAISE(ERR_DECK, "%s: /node_no has %ld items, /temperature %ld", path, p->n,
@@ -134,8 +133,7 @@ static const numbered *find_node(const mesh *msh, const numbered *node,
 /* Nodes of one number are at one place. */
 static status check_places(const char *path, const mesh *msh, double scale,
                            const numbered *node) {
-  OWNED raw_mesh *raw = NULL;
-  PASS(msh_read_nodes(path, &raw));
+  OWNED_OF(raw_mesh, raw, msh_read_nodes(path, &raw));
   for (size_t i = 0; i < raw->n_node; ++i) {
     const numbered *at = find_node(msh, node, raw->node_no[i]);
     for (int c = 0; at != NULL && c < msh->dim; ++c) {
@@ -153,9 +151,8 @@ static status check_places(const char *path, const mesh *msh, double scale,
 
 static status to_mesh(const char *path, const pairs *p, const mesh *msh,
                       double scale, double *value) {
-  OWNED numbered *node = NULL;
-  OWNED unsigned char *known = NULL;
-  PASS_NEW_ALL(OF(node, msh->n_node), OF(known, msh->n_node));
+  OWNED_NEW(numbered, node, msh->n_node);
+  OWNED_NEW(unsigned char, known, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i)
     node[i] = (numbered){msh->node_no[i], i};
   qsort(node, (size_t)msh->n_node, sizeof *node, compare_no);
@@ -205,26 +202,16 @@ status check_start_file(const model *m) {
 
 status nodal_field_read(const char *path, const mesh *msh, double scale,
                         double **value) {
-  status st = OK;
-  pairs p = {0};
-  scan s = {0};
+  ENDS_BY(pairs_free) pairs p = {0};
+  ENDS_BY(scan_close) scan s = {0};
   int is_hdf5 = 0;
-  *value = NULL;
-  TRY(find_kind(path, &is_hdf5));
+  PASS(find_kind(path, &is_hdf5));
   if (is_hdf5) {
-    TRY(read_hdf5(path, FEW + (1L + FOREIGN) * msh->n_node, &p));
+    PASS(read_hdf5(path, FEW + (1L + FOREIGN) * msh->n_node, &p));
   } else {
-    TRY(scan_open(&s, path, ERR_DECK));
-    TRY(read_gmsh(&s, &p));
+    PASS(scan_open(&s, path, ERR_DECK));
+    PASS(read_gmsh(&s, &p));
   }
-  NEW(*value, msh->n_node);
-  TRY(to_mesh(path, &p, msh, scale, *value));
-done:
-  scan_close(&s);
-  pairs_free(&p);
-  if (st != OK) {
-    memory_free(*value);
-    *value = NULL;
-  }
-  return st;
+  PASS_NEW(*value, msh->n_node);
+  return to_mesh(path, &p, msh, scale, *value);
 }

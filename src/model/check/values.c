@@ -4,15 +4,13 @@
  * input without effect; increments of *VISCO steps against the laws.
  */
 #include "base/base.h"
-#include "model/cards/cards.h"
 #include "model/check/parts.h"
 
 /* ---- names of groups to their ids in the mesh ---------------------------- */
 
 /* The lip that is meant by the name of a *CRACK with a sign; NULL: none. */
 static const char *lip_meant(const model *m, const char *name) {
-  for (int i = 0; i < m->n.crack; ++i) {
-    const crack *k = &m->mesh.cracks[i];
+  for (EACH(const crack, k, m->mesh.cracks, m->n.crack)) {
     const size_t n = strlen(k->name);
     if (strncmp(name, k->name, n) != 0) continue;
     if (strcmp(name + n, "-") == 0) return k->lip[0];
@@ -141,8 +139,7 @@ static void check_initial_law(const model *m, const mesh *msh,
 }
 
 void check_initials(model *m, const mesh *msh) {
-  for (int i = 0; i < m->n.initial; ++i) {
-    initial *c = &m->initial.lines[i];
+  for (EACH(initial, c, m->initial.lines, m->n.initial)) {
     int nodal = c->type == INITIAL_DISPLACEMENT;
     c->group_id = nodal ? check_group(m, msh, c->group, &c->at)
                         : check_group_of(m, msh, c->group, msh->dim, &c->at);
@@ -157,8 +154,7 @@ void check_initials(model *m, const mesh *msh) {
 }
 
 static void check_prints(const model *m, const mesh *msh, step *s) {
-  for (int i = 0; i < s->print.n; ++i) {
-    print_request *p = &s->print.requests[i];
+  for (EACH(print_request, p, s->print.requests, s->print.n)) {
     if (p->group == NULL) continue;
     p->group_id = p->table == PRINT_ELEMENTS
                       ? check_group_of(m, msh, p->group, msh->dim, &p->at)
@@ -192,18 +188,15 @@ static status find_field(model *m, const mesh *msh, const char *file,
 
 status check_fields(model *m, const mesh *msh) {
   for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      load *l = &m->steps[i].loads.item[k];
+    for (EACH(load, l, m->steps[i].loads.item, m->steps[i].loads.n))
       PASS(find_field(m, msh, l->file, &l->file_at, &l->field));
-    }
   return OK;
 }
 
 /* 1 if an earlier step has this load from the same line: checked there. */
 static int checked_before(const model *m, int step_id, load *l) {
   for (int i = 0; i < step_id; ++i)
-    for (int k = 0; k < m->steps[i].loads.n; ++k) {
-      const load *old = &m->steps[i].loads.item[k];
+    for (EACH(const load, old, m->steps[i].loads.item, m->steps[i].loads.n)) {
       if (old->at.file != l->at.file || old->at.line_no != l->at.line_no ||
           old->component != l->component)
         continue;
@@ -331,10 +324,9 @@ void check_values(const model *m, const mesh *msh) {
 
 status check_agreement(const model *m, const mesh *msh, int step_id) {
   const step *s = &m->steps[step_id];
-  OWNED int *owner = NULL;
-  OWNED double *ud = NULL;
   size_t n_dof = (size_t)msh->dim * (size_t)msh->n_node;
-  PASS_NEW_ALL(OF(owner, n_dof), OF(ud, n_dof));
+  OWNED_NEW(int, owner, n_dof);
+  OWNED_NEW(double, ud, n_dof);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     const mesh_group *g = &msh->group[l->group_id];
@@ -453,8 +445,7 @@ static int is_reached(const model *m, const step *s, double first, double t) {
 
 /* 1 if a step that prints at these times reaches one. */
 static int is_printed(const model *m, const time_points *p, double t) {
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step)) {
     if (!is_reached(m, s, p->total_time ? s->start : 0.0, t)) continue;
     for (int k = 0; k < s->print.n; ++k)
       if (s->print.requests[k].points == p) return 1;
@@ -527,14 +518,12 @@ void check_no_effect(const model *m, const mesh *msh) {
       check_heat(m, msh, "INITIAL CONDITIONS", m->initial.lines[i].group_id,
                  &m->initial.lines[i].at);
   for (int i = 0; i < m->n.contact; ++i) check_contact(m, msh, &m->contacts[i]);
-  for (int i = 0; i < m->n.step; ++i) {
-    const step *s = &m->steps[i];
+  for (EACH(const step, s, m->steps, m->n.step)) {
     check_flow(m, s);
     check_tables(m, s);
     for (int k = 0; k < s->friction.n; ++k)
       check_friction(m, msh, &s->friction.changes[k].rule);
-    for (int k = 0; k < s->loads.n; ++k) {
-      const load *l = &s->loads.item[k];
+    for (EACH(const load, l, s->loads.item, s->loads.n)) {
       if (l->removed) continue;
       if (l->kind == LOAD_TEMPERATURE)
         check_heat(m, msh, "TEMPERATURE", l->group_id, &l->at);
@@ -672,8 +661,7 @@ static status keeps_volume(const section *s, const material *mat, int *answer) {
 
 /* Bodies that creep at constant volume become incompressible. */
 static status check_creep(const model *m) {
-  for (int i = 0; i < m->n.section; ++i) {
-    const section *s = &m->sections[i];
+  for (EACH(const section, s, m->sections, m->n.section)) {
     const material *mat = &m->materials[s->material_id];
     int locks = 0;
     if (mat->law.ops == NULL || s->kin == PLANE_STRESS || s->averaged) continue;

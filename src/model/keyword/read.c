@@ -1,5 +1,4 @@
 /* From cards to the model: the driver over the keyword table. */
-#include "base/base.h"
 #include "model/keyword/keyword.h"
 
 /* ---- decks with *CONDENSED PROBLEM: what is allowed with it ------------- */
@@ -17,8 +16,7 @@ static int goes_with_problem(const char *name) {
 
 static void check_problem_cards(const reading *r) {
   const model *m = r->m;
-  for (int i = 0; i < m->deck->n_card; ++i) {
-    const card *c = &m->deck->cards[i];
+  for (EACH(const card, c, m->deck->cards, m->deck->n_card)) {
     const keyword *row = keyword_find(c->name);
     if (row != NULL && !goes_with_problem(c->name))
       message_add(m->log, P2034, &c->at,
@@ -144,8 +142,7 @@ void keyword_parameters(const keyword *row, reading *r, card_options *param,
     if (named.size > 0) r->plugin = plugin_param;
   }
   two_tables all = {row->options, named.options};
-  for (int i = 0; i < c->n_parameter; ++i) {
-    const parameter *p = &c->parameters[i];
+  for (EACH(const parameter, p, c->parameters, c->n_parameter)) {
     if (option_find(row->options, p->name) != NULL) continue;
     const option *o = option_find(named.options, p->name);
     if (o != NULL)
@@ -290,10 +287,7 @@ static status default_step(model *m) {
 }
 
 status model_from_deck(deck *d, message_log *log, model **out) {
-  model *m = NULL;
-  PASS_NEW(m, 1);
-  *out = m;
-  OWNS(m);
+  MAKES(model, m, out);
   m->deck = d;
   m->log = log;
   m->name.title = "";

@@ -4,8 +4,7 @@
 #include "model/keyword/keyword.h"
 
 int name_is_lost(const model *m, const char *name) {
-  for (int i = 0; i < m->deck->n_card; ++i) {
-    const card *c = &m->deck->cards[i];
+  for (EACH(const card, c, m->deck->cards, m->deck->n_card)) {
     const parameter *p = card_parameter(c, "NAME");
     if (p != NULL && p->has_value && same_word(p->value.text, name) &&
         keyword_find(c->name) == NULL)
@@ -47,8 +46,7 @@ static status resolve_laws(model *m, int lost) {
 }
 
 static void resolve_materials(model *m, int lost) {
-  for (int i = 0; i < m->n.section; ++i) {
-    section *s = &m->sections[i];
+  for (EACH(section, s, m->sections, m->n.section)) {
     if (s->material_name[0] == '\0') continue;
     s->material_id =
         find_known(m, s->material_name, "MATERIAL",
@@ -109,8 +107,7 @@ static void resolve_axis(const model *m, contact *c) {
 }
 
 static void resolve_contacts(model *m) {
-  for (int i = 0; i < m->n.contact; ++i) {
-    contact *c = &m->contacts[i];
+  for (EACH(contact, c, m->contacts, m->n.contact)) {
     resolve_friction(m, &c->friction);
     given_force *f = &c->force;
     resolve_value(m, "CONTACT FORCE", &f->value, &f->position,
@@ -263,12 +260,10 @@ static load ended_load(const step *old, const load *l) {
 /* Loads of the step before that its own cards neither replace nor end. */
 static status carry_loads(const model *m, const step *old, step *s,
                           load_list *all) {
-  for (int i = 0; i < old->loads.n; ++i) {
-    const load *l = &old->loads.item[i];
+  for (EACH(const load, l, old->loads.item, old->loads.n)) {
     int again = 0, renewed = (s->renewed >> l->kind & 1u) != 0;
     if (l->removed) continue;
-    for (int k = 0; k < s->loads.n; ++k) {
-      load *own = &s->loads.item[k];
+    for (EACH(load, own, s->loads.item, s->loads.n)) {
       int same = same_load(l, own);
       again |= same;
       /* Gravity in another direction takes the place of the old, which ends. */
@@ -314,18 +309,14 @@ static void drop_repeated(const model *m, load_list *own) {
 }
 
 static status resolve_loads(model *m, const step *old, step *s) {
-  status st = OK;
   load_list all = {0};
   drop_repeated(m, &s->loads);
   for (int i = 0; i < s->loads.n; ++i) start_load(m, s, &s->loads.item[i]);
-  TRY(carry_loads(m, old, s, &all));
-  TRY(append_loads(&all, &s->loads));
+  PASS(carry_loads(m, old, s, &all));
+  PASS(append_loads(&all, &s->loads));
   memory_free(s->loads.item);
   s->loads = all;
-  all.item = NULL;
-done:
-  memory_free(all.item);
-  return st;
+  return OK;
 }
 
 static const solver_choice default_solver = {
@@ -394,8 +385,7 @@ static status resolve_steps(model *m) {
   for (int i = 0; i < before.loads.n; ++i)
     start_load(m, &before, &before.loads.item[i]);
   const step *old = &before;
-  for (int i = 0; i < m->n.step; ++i) {
-    step *s = &m->steps[i];
+  for (EACH(step, s, m->steps, m->n.step)) {
     s->start = step_end(old);
     check_clock(m, s);
     for (int k = 0; k < s->friction.n; ++k)
@@ -454,8 +444,7 @@ static status check_symbols(const model *m) {
   if (m->mesh.file != NULL && mesh_is_program(m->mesh.file))
     PASS(geo_read(m->mesh.file, &g));
   for (int i = 1; i < g.n_file; ++i) PASS(deck_input_copy(m->deck, g.file[i]));
-  for (int i = 0; i < m->deck->n_symbol; ++i) {
-    symbol *s = &m->deck->symbols[i];
+  for (EACH(symbol, s, m->deck->symbols, m->deck->n_symbol)) {
     s->in_geometry = geo_has(&g, s->typed);
     if (!s->used && !s->in_geometry && s->at.from == NULL)
       report_unused(m, &g, s);

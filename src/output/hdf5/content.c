@@ -4,7 +4,6 @@
  */
 #include "output/hdf5/file.h"
 
-#include "base/base.h"
 #include "model/keyword/keyword.h"
 
 int hdf5_is_history(const hdf5_field *f) {
@@ -61,15 +60,13 @@ static void add_part(hdf5_field *f, const column *c) {
 
 static status add_field(hdf5_file *h, const column *c, entity of,
                         const char *group, int id) {
-  for (int i = 0; i < h->n_field; ++i) {
-    hdf5_field *f = &h->fields[i];
+  for (EACH(hdf5_field, f, h->fields, h->n_field)) {
     if (strcmp(f->name, c->field) != 0 || strcmp(f->group, group) != 0)
       continue;
     add_part(f, c);
     return OK;
   }
-  PASS_GROW(h->fields, h->n_field, h->cap_field);
-  hdf5_field *f = &h->fields[h->n_field++];
+  ADDED(hdf5_field, f, h->fields, h->n_field, h->cap_field);
   *f = (hdf5_field){.name = c->field, .of = of, .id = id, .n_part = 1};
   snprintf(f->group, sizeof f->group, "%s", group);
   f->part[0] = c;
@@ -100,8 +97,7 @@ static status choose_fields(hdf5_file *h) {
 static status add_fixed(hdf5_file *h, const char *path, data_type type,
                         int rows, int columns, const void *data, void *own) {
   OWNED void *held = own;
-  PASS_GROW(h->fixed, h->n_fixed, h->cap_fixed);
-  fixed_data *d = &h->fixed[h->n_fixed++];
+  ADDED(fixed_data, d, h->fixed, h->n_fixed, h->cap_fixed);
   *d = (fixed_data){.type = type,
                     .rows = rows,
                     .columns = columns,

@@ -14,7 +14,6 @@
  */
 #include "output/hdf5/file.h"
 
-#include "base/base.h"
 #include "base/file.h"
 
 #include <errno.h>

@@ -5,11 +5,9 @@
 #include "output/hdf5/file.h"
 
 #include "base/archive/dataset.h"
-#include "base/base.h"
 #include "base/file.h"
 
 #include <errno.h>
-#include <hdf5.h>
 
 /* The file while it is made. */
 typedef struct maker {
@@ -233,8 +231,7 @@ static status make_all(maker *k, const hdf5_file *h, hdf5_layout *l,
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
                         hdf5_layout *l) {
   maker k = {h->aside, -1, -1, -1};
-  OWNED record_group *groups = NULL;
-  PASS_NEW(groups, h->n_field);
+  OWNED_NEW(record_group, groups, h->n_field);
   status st = alloc_layout(h, n_row, n_record, l);
   if (st == OK) st = make_all(&k, h, l, groups);
   status closed = close_maker(&k, st == OK);

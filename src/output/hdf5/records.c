@@ -12,8 +12,6 @@
  */
 #include "output/hdf5/file.h"
 
-#include "base/base.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -345,10 +343,9 @@ static status make_records(stream *s, int n, const int *order, int n_group,
 
 status hdf5_records_make(const char *path, int n, int n_group,
                          const record_group *groups) {
-  OWNED int *order = NULL;
-  OWNED stream *s = NULL;
   int used = 0;
-  PASS_NEW_ALL(OF(s, 1), OF(order, n));
+  OWNED_NEW(int, order, n);
+  OWNED_NEW(stream, s, 1);
   for (int no = 1; no <= n && no < 100000; ++no)
     order_names(n, no, order, &used);
   s->path = path;

@@ -7,7 +7,6 @@
  * JOB.body.xdmf, JOB.contact.xdmf: one grid of the last record, without time,
  * for readers that take nothing else (meshio.read).
  */
-#include "base/base.h"
 #include "output/hdf5/hdf5.h"
 
 /* Where the name of a record and its time stand in a text of any record. */
@@ -200,10 +199,9 @@ static void write_last(FILE *f, const void *what) {
 
 status xdmf_write_last(const hdf5_shape *shape, int of_contact,
                        const char *path) {
-  OWNED char *text = NULL;
   part p = of_contact ? surface_part(shape) : body_part(shape);
   if (shape->n_record == 0 || p.n_point == 0) return OK;
   p.alone = 1;
-  PASS(make_pattern(&p, shape, &text));
+  OWNED_OF(char, text, make_pattern(&p, shape, &text));
   return text_replace(path, &(snapshot){text, shape->n_record - 1}, write_last);
 }

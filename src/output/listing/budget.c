@@ -5,9 +5,7 @@
  */
 #include "output/listing/job.h"
 
-#include "base/base.h"
 #include "effects/rows.h"
-#include "output/columns/columns.h"
 
 #include <stdarg.h>
 
@@ -121,8 +119,8 @@ double job_effectivity(const job *j) {
 
 balance_sum job_balance(const job *j) {
   balance_sum sum = {0};
-  for (int i = 0; i < j->run->n_increment; ++i) {
-    const increment_summary *s = &j->run->increments[i];
+  for (EACH(const increment_summary, s, j->run->increments,
+            j->run->n_increment)) {
     if (!s->balance.asked) continue;
     sum.asked = 1;
     sum.iterations += s->iterations;
@@ -135,10 +133,8 @@ balance_sum job_balance(const job *j) {
 double job_increments_of_deck(const job *j, int *made) {
   double sum = 0;
   *made = 0;
-  for (int i = 0; i < j->m->n.step; ++i) {
-    const step *s = &j->m->steps[i];
+  for (EACH(const step, s, j->m->steps, j->m->n.step))
     if (s->accuracy.time_balanced) sum += ceil(s->total / s->dt - 1e-9);
-  }
   for (int i = 0; i < j->run->n_increment; ++i)
     *made +=
         j->m->steps[j->run->increments[i].step_no - 1].accuracy.time_balanced;

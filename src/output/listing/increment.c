@@ -5,8 +5,6 @@
  */
 #include "output/listing/job.h"
 
-#include "base/base.h"
-
 enum { WORST_NODES = 10, DIGITS = 5 /* after the point */ };
 
 /* The node with the largest defect below that of "last"; -1: none. */
@@ -84,8 +82,7 @@ static void print_values(const state *s, const solution *a, FILE *f) {
 
 /* Attempts that ended without a solution. */
 static void print_failures(const solution_set *set, FILE *f) {
-  for (int k = 0; k < set->n_attempt; ++k) {
-    const solution_attempt *a = &set->attempts[k];
+  for (EACH(const solution_attempt, a, set->attempts, set->n_attempt)) {
     if (a->solution_no > 0) continue;
     fprintf(f, "    %s (%s), start %s: %s, residual %s\n", a->solver, a->family,
             a->start, outcome_text(a->outcome), text_number(a->residual, 1));
@@ -95,8 +92,7 @@ static void print_failures(const solution_set *set, FILE *f) {
 /* The attempts that found solution number i + 1: a line for each solver. */
 static void print_finders(const solution_set *set, int i, FILE *f) {
   const char *last = "";
-  for (int k = 0; k < set->n_attempt; ++k) {
-    const solution_attempt *a = &set->attempts[k];
+  for (EACH(const solution_attempt, a, set->attempts, set->n_attempt)) {
     if (a->solution_no != i + 1) continue;
     if (strcmp(last, a->solver) != 0)
       fprintf(f, "%s        by %s (%s) from: ", last[0] == '\0' ? "" : "\n",
@@ -155,14 +151,12 @@ static void print_limits(const job *j, const theorems_report *t, FILE *f) {
   if (t->n_contact == 0) return;
   fprintf(f, "  %-20s %12s %12s %12s %12s  %s\n", "theory: contact", "mu[-]",
           "1/C_h[-]", "contraction", "mu/contr.[-]", "mu is");
-  for (int i = 0; i < t->n_contact; ++i) {
-    const theorems_contact *c = &t->contacts[i];
+  for (EACH(const theorems_contact, c, t->contacts, t->n_contact))
     fprintf(f, "  %-20s %12s %12s %12s %12s  %s\n", row_name(j->m, c),
             text_number(c->mu, 4), text_number(c->limit, 4),
             text_number(c->rate, 4),
             c->suggested < HUGE_VAL ? text_number(c->suggested, 4) : "-",
             mu_regime_text(c->regime));
-  }
 }
 
 static void print_bound(const job *j, const char *what, const theorems_bound *b,

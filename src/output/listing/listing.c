@@ -6,7 +6,6 @@
  */
 #include "output/listing/job.h"
 
-#include "base/base.h"
 #include "effects/rows.h"
 #include "model/keyword/keyword.h"
 
@@ -73,17 +72,14 @@ static void print_pair(const surface_pair *p, const char *what,
 
 static void print_model(const job *j, FILE *f) {
   const model *m = j->m;
-  for (int i = 0; i < j->msh->n_group; ++i) {
-    const mesh_group *g = &j->msh->group[i];
+  for (EACH(const mesh_group, g, j->msh->group, j->msh->n_group))
     fprintf(f, "  group    %-20s dimension %d  items %8d  nodes %8d\n", g->name,
             g->dim, g->n_item, g->n_node);
-  }
   for (int i = 0; i < m->n.section; ++i)
     fprintf(f, "  section  %-20s %s, material %s%s\n", m->sections[i].elset,
             kinematics_text(m->sections[i].kin), m->sections[i].material_name,
             m->sections[i].averaged ? ", volume averaged" : "");
-  for (int i = 0; i < m->n.contact; ++i) {
-    const contact *c = &m->contacts[i];
+  for (EACH(const contact, c, m->contacts, m->n.contact)) {
     if (c->is_pair)
       print_pair(&c->pair, "contact", c->name, j->msh, f);
     else
@@ -96,12 +92,11 @@ static void print_model(const job *j, FILE *f) {
     fputc('\n', f);
   }
   for (int i = 0; i < m->n.step; ++i)
-    for (int k = 0; k < m->steps[i].friction.n; ++k) {
-      const friction_change *change = &m->steps[i].friction.changes[k];
+    for (EACH(const friction_change, change, m->steps[i].friction.changes,
+              m->steps[i].friction.n))
       fprintf(f, "  contact  %-20s from step %d on friction %s\n",
               m->contacts[change->contact_id].name, i + 1,
               law_text(&change->rule));
-    }
 }
 
 /* Effects that *EFFECTS, MODE=AUTO leaves out, or had to restore. */

@@ -2,9 +2,7 @@
  * The steps of a run before the first is solved: what deck and mesh alone tell
  * of each that the run would end with, after the steps before it.
  */
-#include "base/base.h"
 #include "model/facts.h"
-#include "run/history/history.h"
 #include "run/setup/setup.h"
 
 /* 1: motions that friction may not allow, or statuses that are all tried. */
@@ -19,8 +17,7 @@ static int effects_have_to_look(const model *m) {
 
 /* The supports of r->step; *other: they are not those of the step before. */
 static status take_supports(run *r, int *other) {
-  OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, r->n_dof);
+  OWNED_NEW(unsigned char, fixed, r->n_dof);
   load_fixed(r->msh, r->step, fixed);
   *other = memcmp(fixed, r->body.fixed, r->n_dof) != 0;
   memcpy(r->body.fixed, fixed, r->n_dof);

@@ -4,7 +4,6 @@
  */
 #include "run/history/history.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <strings.h>
@@ -56,9 +55,8 @@ static void discrete_free(discrete *d) {
 /* Energy x' M x/2 of the condensed solution. */
 static status condensed_energy(const contact_problem *cp, const double *u,
                                const double *r, double *energy) {
-  OWNED double *y = NULL;
   const double *x = contact_has_stiffness(cp) ? u : r;
-  PASS_NEW(y, cp->m);
+  OWNED_NEW(double, y, cp->m);
   contact_apply(cp, x, y);
   *energy = 0.0;
   for (int i = 0; i < cp->m; ++i) *energy += 0.5 * x[i] * y[i];
@@ -150,9 +148,8 @@ static status solve_lcp(discrete *d) {
   status st = OK;
   double start = timer_cpu();
   const solver_choice *choice = &d->step->solver;
-  const solver_ops *ops = choice->ops;
   lcp_data p = {d->p->n, d->p->matrix, d->p->load};
-  lcp_control control = {choice->tol, choice->max_iter, ops != NULL};
+  lcp_control control = {choice->tol, choice->max_iter, choice->ops != NULL};
   lcp_verdict v;
   TRY(lcp_solve(&p, &control, d->r, d->u, &v));
   d->report = (solver_report){.outcome = v.outcome,

@@ -2,7 +2,6 @@
  * Checks of the contact solution at an accepted increment: its errors, by the
  * effects that estimate them, and reasons for doubt.
  */
-#include "base/base.h"
 #include "run/history/loop.h"
 
 const char *const error_bound_indefinite =

@@ -3,7 +3,6 @@
  * with exact rollback, outcome of each increment, outputs.
  */
 #include "accuracy/verdict.h"
-#include "base/base.h"
 #include "base/interrupt.h"
 #include "run/history/loop.h"
 #include "run/setup/setup.h"
@@ -147,8 +146,7 @@ static status dense_show(run *r, int increment_no) {
 
 /* 1 if some output needs the stresses of this increment. */
 static int stress_is_due(const step *s, double t, int increment_no, int last) {
-  int f = s->output.frequency;
-  if (frequency_shows(f, increment_no, last)) return 1;
+  if (frequency_shows(s->output.frequency, increment_no, last)) return 1;
   return table_is_due(s, ~0, t, increment_no, last);
 }
 

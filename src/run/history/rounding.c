@@ -12,7 +12,6 @@
  * count with their final size.
  */
 #include "base/base.h"
-#include "base/sparse.h"
 #include "run/history/loop.h"
 
 static const double LAST_DIGIT = 0.1; /* -, error without a correct digit */
@@ -100,8 +99,7 @@ static void add_row(motion_fit *f, long double row[COLUMNS]) {
 /* Body of each node, and their number. */
 static status find_bodies(const run *r, int *body, int *n) {
   const mesh *m = r->msh;
-  OWNED int *of = NULL;
-  PASS_NEW(of, m->n_elem);
+  OWNED_NEW(int, of, m->n_elem);
   PASS(mesh_bodies(m, n, of));
   for (int e = 0; e < m->n_elem; ++e)
     for (int a = 0; a <= m->dim; ++a)
@@ -112,12 +110,10 @@ static status find_bodies(const run *r, int *body, int *n) {
 static status supports_strain(const run *r, int *strained) {
   const mesh *m = r->msh;
   const int dim = m->dim;
-  OWNED int *body = NULL;
-  OWNED motion_fit *fit = NULL;
   int n = 0;
-  PASS_NEW(body, m->n_node);
+  OWNED_NEW(int, body, m->n_node);
   PASS(find_bodies(r, body, &n));
-  PASS_NEW(fit, n);
+  OWNED_NEW(motion_fit, fit, n);
   for (size_t q = 0; q < r->n_dof; ++q) {
     const size_t i = q / (size_t)dim;
     long double row[COLUMNS];
@@ -284,10 +280,9 @@ static void find_held(const run *r, const contact_status *touch,
 
 /* Again with the body held by contact, where supports are weak. */
 static status find_adjacent_contact(run *r, misfit *x) {
-  OWNED contact_status *touch = NULL;
-  OWNED unsigned char *held = NULL;
   double square = 0.0;
-  PASS_NEW_ALL(OF(touch, r->problem.cp.n), OF(held, r->problem.cp.m));
+  OWNED_NEW(contact_status, touch, r->problem.cp.n);
+  OWNED_NEW(unsigned char, held, r->problem.cp.m);
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
                    run_rows(r, 1, r->now.rc), touch);
   find_held(r, touch, held);
@@ -416,13 +411,12 @@ static status find_own(const run *r, double *own) {
 }
 
 status rounding_hidden(const run *r, double *part) {
-  OWNED double *own = NULL;
   *part = 0.0;
   if (r->nodes.n == 0 || r->solving.report.outcome <= 0) return OK;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
   *part = contact_hidden(&r->problem.cp, u, rc, NULL);
   if (!(*part > LAST_DIGIT)) return OK;
-  PASS_NEW(own, r->problem.cp.n);
+  OWNED_NEW(double, own, r->problem.cp.n);
   PASS(find_own(r, own));
   *part = contact_hidden(&r->problem.cp, u, rc, own);
   return OK;

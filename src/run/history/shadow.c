@@ -5,7 +5,6 @@
  * with arrays of its own, solves it; the increment is unchanged. Shared arrays
  * are those that result_evaluate computes again.
  */
-#include "base/base.h"
 #include "run/visco.h"
 
 struct shadow {

@@ -5,10 +5,7 @@
  * degree 4 through its values at five times of the increment; an increment
  * ends at a point of a table where a longer one would miss another course.
  */
-#include "model/facts.h"
 #include "run/history/loop.h"
-
-#include <math.h>
 
 static const double APART = 0x1p-40; /* -, of the time: points of their own */
 

@@ -5,8 +5,6 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/base.h"
-
 enum { PASSES = 3 };
 
 /* The places once the slave of a pair is on its master, into x[dim*n_node]:
@@ -46,10 +44,9 @@ static status check_elements(const model *m, const mesh *msh,
 
 static status adjust(const model *m, const surface_input *in, surface_pair *p,
                      mesh *msh) {
-  OWNED double *x = NULL;
   const size_t n = (size_t)msh->dim * (size_t)msh->n_node;
   if (!p->adjust) return OK;
-  PASS_NEW(x, n);
+  OWNED_NEW(double, x, n);
   for (int pass = 0; pass < PASSES; ++pass) {
     PASS(move_slave(in, p, x));
     memcpy(msh->x, x, n * sizeof *x);
@@ -73,11 +70,10 @@ status setup_adjust(model *m, mesh *msh) {
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].pair.adjust;
   for (int i = 0; i < m->n.tie; ++i) any |= m->ties[i].pair.adjust;
   if (!any) return OK;
-  OWNED double *weight = NULL;
   OWNED unsigned char *fixed = NULL;
   surface_input in = {.mesh = msh,
                       .axisymmetric = m->sections[0].kin == AXISYMMETRIC};
-  PASS(setup_face_weights(m, msh, &weight));
+  OWNED_OF(double, weight, setup_face_weights(m, msh, &weight));
   in.face_weight = weight;
   PASS_NEW(fixed, msh->n_node);
   if (m->n.step > 0) PASS(find_fixed(m, msh, fixed));

@@ -3,9 +3,7 @@
  * those of the units of their laws, of which they are the sum; temperatures of
  * the steps in which they flow.
  */
-#include "base/base.h"
 #include "model/facts.h"
-#include "run/setup/setup.h"
 #include "run/visco.h"
 
 /* ---- temperatures -------------------------------------------------------- */
@@ -36,9 +34,8 @@ static status check_cold(const run *r, int step_id, double t, const double *T) {
 /* Temperatures are between those of the ends of the step, or expressions. */
 static status check_temperatures(const run *r) {
   const double *T0 = r->strains.temperature0;
-  OWNED double *T = NULL;
   if (!counts_from_zero(&r->strains.visco->x)) return OK;
-  PASS_NEW(T, r->msh->n_elem);
+  OWNED_NEW(double, T, r->msh->n_elem);
   for (int i = 0; i < 2 * r->m->n.step; ++i) {
     const step *s = &r->m->steps[i / 2];
     const double t = s->start + (i % 2) * s->total;
@@ -56,8 +53,7 @@ enum { STRAIN_GIVEN = 1, UNITS_GIVEN = 2 };
 /* What the deck gives of each point, bits[x.n]. */
 static void find_given(const run *r, unsigned char *bits) {
   const visco *v = r->strains.visco;
-  for (int i = 0; i < r->m->n.initial; ++i) {
-    const initial *c = &r->m->initial.lines[i];
+  for (EACH(const initial, c, r->m->initial.lines, r->m->n.initial)) {
     if (c->type != INITIAL_STRAIN && c->type != INITIAL_INTERNAL) continue;
     const mesh_group *g = &r->msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {
@@ -128,9 +124,8 @@ static status settle_point(const run *r, int k, unsigned given) {
 
 static status settle_units(const run *r) {
   visco *v = r->strains.visco;
-  OWNED unsigned char *given = NULL;
   if (!facts_starts_strained(r->m)) return OK;
-  PASS_NEW(given, v->x.n);
+  OWNED_NEW(unsigned char, given, v->x.n);
   find_given(r, given);
   for (int k = 0; k < v->x.n; ++k) PASS(settle_point(r, k, given[k]));
   flow_state_copy(&v->x, &v->old, &v->now);

@@ -4,9 +4,6 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-#include "base/timer.h"
-
 /* The nodes of a continued run. */
 static status keep_nodes(run *r, archive *a) {
   ENDS_BY(reach_free) contact_reach x = r->nodes.reach;

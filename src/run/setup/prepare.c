@@ -66,11 +66,10 @@ static status find_reach(run *r) {
 
 /* The active nodes at the start or the end of the step. */
 static status choose_nodes(run *r, int n_motion) {
-  OWNED double *gap = NULL;
   r->nodes.reach.passes = 0;
   if (!may_leave_out(r, n_motion)) return OK;
   TIMED(STAGE_SURFACE);
-  PASS_NEW(gap, r->nodes.n);
+  OWNED_NEW(double, gap, r->nodes.n);
   PASS(find_reach(r));
   PASS(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
                    gap, NULL));
@@ -118,8 +117,7 @@ static status check_range(const run *r) {
 /* The first load of the run that is in range, at the increments of its steps: a
  * step with almost no load is scaled with it. */
 static status find_load_of_run(run *r) {
-  for (int k = 0; k < r->m->n.step; ++k) {
-    const step *s = r->m->steps + k;
+  for (EACH(const step, s, r->m->steps, r->m->n.step)) {
     const double dt = s->dt > 0.0 ? s->dt : s->total;
     for (int i = 1; (i - 0.5) * dt < s->total; ++i) {
       PASS(load_forces(r->m, r->msh, s, s->start + i * dt, r->now.F));
@@ -178,8 +176,7 @@ static status take_places(run *r) {
 
 status run_prepare(run *r) {
   int fresh, other = 0;
-  OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, r->n_dof);
+  OWNED_NEW(unsigned char, fixed, r->n_dof);
   load_fixed(r->msh, r->step, fixed);
   memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
   known_rate_forget(&r->solving.rate);
@@ -224,10 +221,9 @@ static int is_at(const mesh *msh, int group_id, const int *body, int body_id) {
 static status has_friction(const run *r, size_t elem_no, int *answer) {
   const model *m = r->m;
   const mesh *msh = r->msh;
-  OWNED int *body = NULL;
   int n = 0, e = 0;
   *answer = 0;
-  PASS_NEW(body, msh->n_elem);
+  OWNED_NEW(int, body, msh->n_elem);
   PASS(mesh_bodies(msh, &n, body));
   while (msh->elem_no[e] != elem_no) ++e;
   for (int i = 0; i < m->n.contact; ++i)
@@ -269,8 +265,7 @@ static status refuse_unheld(const run *r, int n, const free_motion *list) {
 }
 
 status run_check_supports(const run *r, int *n) {
-  OWNED free_motion *list = NULL;
-  PASS(domain_free_motions(&r->body.d, n, &list));
+  OWNED_OF(free_motion, list, domain_free_motions(&r->body.d, n, &list));
   return refuse_unheld(r, *n, list);
 }
 

@@ -4,8 +4,6 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-
 static status new_equilibrium(const run *r, equilibrium *e) {
   PASS_NEW_REALS(r->n_dof, &e->u, &e->F, &e->reaction);
   return OK;
@@ -20,12 +18,11 @@ static void free_equilibrium(equilibrium *e) {
  * moduli are averaged like those that flow. */
 static status new_clusters(run *r) {
   const model *m = r->m;
-  OWNED double *share = NULL;
   int averaged = 0;
   for (int i = 0; i < m->n.section; ++i) averaged |= m->sections[i].averaged;
   if (!averaged) return OK;
   TIMED(STAGE_CLUSTER);
-  PASS_NEW(share, m->n.section);
+  OWNED_NEW(double, share, m->n.section);
   for (int i = 0; i < m->n.section; ++i) {
     const section *s = &m->sections[i];
     const material *mat = &m->materials[s->material_id];

@@ -4,8 +4,6 @@
  */
 #include "run/setup/setup.h"
 
-#include "base/memory.h"
-
 void run_free_surface(run *r) {
   effects_forget(r);
   run_forget_estimates(r);
@@ -85,8 +83,7 @@ static status old_state_to_frames(run *r, double *force) {
 }
 
 status run_build_surface(run *r) {
-  OWNED double *force = NULL;
-  PASS_NEW(force, r->n_dof);
+  OWNED_NEW(double, force, r->n_dof);
   if (r->surface != NULL) surface_spread(r->surface, 1.0, r->old.rc, force);
   run_free_surface(r);
   const status st = build(r);
@@ -172,9 +169,8 @@ static void add_node(const run *r, const mortar *m, int q, tie_set *t) {
 static status join(run *r, mortar *const *m) {
   const int n_tie = r->m->n.tie;
   tie_set *t = &r->body.ties;
-  OWNED int *next = NULL;
   size_t n_row = 0, n_part = 0;
-  PASS_NEW(next, n_tie);
+  OWNED_NEW(int, next, n_tie);
   for (int i = 0; i < n_tie; ++i) {
     n_row += (size_t)m[i]->n;
     n_part += m[i]->to.start[m[i]->n];

@@ -56,8 +56,7 @@ static void fill_node(const contact_surface *s, const contact_view *v, int i,
 status coarser_add(coarser *c, const contact_surface *s,
                    const contact_view *v) {
   OWNS(c);
-  PASS_GROW(c->state, c->n, c->capacity);
-  coarser_state *x = &c->state[c->n++];
+  ADDED(coarser_state, x, c->state, c->n, c->capacity);
   *x = (coarser_state){.dim = s->dim, .n = s->n, .t = v->t};
   PASS(new_arrays(s, x));
   memcpy(x->gap, v->gap, (size_t)s->n * sizeof *x->gap);
@@ -169,9 +168,8 @@ static int nearest_of(const coarser_state *x, const along *list, int axis,
 
 status coarser_match(const coarser_state *x, const contact_surface *s,
                      int *nearest) {
-  OWNED along *list = NULL;
   const int axis = longest_axis(x);
-  PASS_NEW(list, x->n);
+  OWNED_NEW(along, list, x->n);
   for (int i = 0; i < x->n; ++i) list[i] = (along){x->x[x->dim * i + axis], i};
   qsort(list, (size_t)x->n, sizeof *list, by_place);
   for (int i = 0; i < s->n; ++i) nearest[i] = nearest_of(x, list, axis, s, i);

@@ -26,10 +26,9 @@ static status width_of(const hdf5_source *s, const char *name, long n,
 
 static status check_mesh(const hdf5_source *s, const mesh *msh) {
   static const char name[] = "/mesh/nodes";
-  OWNED double *x = NULL;
   size_t width, dim = (size_t)msh->dim;
   long n = 0;
-  PASS(source_reals(s, name, 0, 3L * msh->n_node, &n, &x));
+  OWNED_OF(double, x, source_reals(s, name, 0, 3L * msh->n_node, &n, &x));
   PASS(width_of(s, name, n, msh, &width));
   for (size_t i = 0; i < (size_t)msh->n_node; ++i)
     for (size_t c = 0; c < width; ++c) {

@@ -1,8 +1,6 @@
 /* Springs that hold a body while its contact forces are found (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
-
 #include <cblas.h>
 #include <lapacke.h>
 
@@ -43,10 +41,9 @@ static void orthonormalise(int m, int n, double *R) {
  * rounding, as that of a free body with one contact node. */
 static status find_stiffness(const contact_problem *cp, double *stiffness) {
   const contact_bodies *b = cp->bodies;
-  OWNED double *sum = NULL;
-  OWNED int *count = NULL;
   double all = 0.0;
-  PASS_NEW_ALL(OF(sum, b == NULL ? 1 : b->n), OF(count, b == NULL ? 1 : b->n));
+  OWNED_NEW(double, sum, b == NULL ? 1 : b->n);
+  OWNED_NEW(int, count, b == NULL ? 1 : b->n);
   for (int i = 0; i < cp->m; ++i) {
     const int of = b == NULL ? 0 : b->of[i / cp->dim];
     sum[of] += contact_diagonal(cp, i) / cp->m;

@@ -44,33 +44,6 @@
 #include "solver/choice/choice.h"
 
 #include "base/base.h"
-#include "base/option.h"
-
-/* clang-format off */
-const char auto_help[] =
-  "Chooses a method by the problem and falls back to others on the same\n"
-  "problem. Without friction the tangential unknowns are eliminated and\n"
-  "NEWTON solves in the normal ones. With friction, and the stiffness known\n"
-  "(every deck with a mesh), it is NEWTON, then NEWTON along a friction path\n"
-  "(the coefficient grows to its value, each solution the start of the\n"
-  "next), then SOR, then LEMKE, then PROXIMAL; in 3-D with TOL above 1e-4\n"
-  "sweeps of SOR go first. With STIFFNESS=FACTOR AUGLAG, PROXIMAL and PCG\n"
-  "follow NEWTON, and the entries of the stiffness are formed, if they fit,\n"
-  "for SOR and LEMKE. Of a problem that comes as a compliance\n"
-  "(*CONDENSED PROBLEM) such sweeps go first in 3-D, while their rate\n"
-  "predicts the solution at less cost than NEWTON; then the same chain, with\n"
-  "such sweeps after NEWTON, and PCG, PROXIMAL, PCG with more iterations and\n"
-  "LAGRANGE before SOR, for singular compliances. A compliance most of which\n"
-  "is zero (contacts of many bodies) is kept in sparse blocks: sweeps of\n"
-  "AITKEN go first, as many as cost what PROXIMAL or PCG is estimated to\n"
-  "cost, while their rate predicts the solution; then these two, the cheaper\n"
-  "first, and the others. The first starts from the last\n"
-  "increment, the others cold; each has a limit of iterations that bounds\n"
-  "its cost, or MAX_ITER if that is less. A result is accepted only by the\n"
-  "residual of the given problem; the listing says which methods were tried,\n"
-  "why each stopped and which converged. It has no options. Choose another\n"
-  "method to compare, or where one is known to be faster.";
-/* clang-format on */
 
 enum {
   WARM_STEPS = 3,      /* of NEWTON before the normal form is made */

@@ -113,13 +113,12 @@ status polish_touch(const contact_problem *cp, double scale, double tol,
 
 status polish_slip(const contact_problem *cp, double tol, int most, double *u,
                    double *r, int *sweeps) {
-  status st = OK;
-  relaxation s = {.cp = cp, .omega = 1.0};
   double least = slip_misdirection(cp, u, r);
   *sweeps = 0;
-  if (!(least > tol) || most <= 0 || cp->op != NULL) goto done;
-  NEW_ALL(OF(s.u, cp->m), OF(s.r, cp->m));
-  TRY(node_blocks_new(cp, &s.blocks));
+  if (!(least > tol) || most <= 0 || cp->op != NULL) return OK;
+  OWNED_NEW(double, at, 2 * cp->m);
+  OWNED_OF(node_blocks, blocks, node_blocks_new(cp, &blocks));
+  relaxation s = {cp, blocks, .u = at, .r = at + cp->m, .omega = 1.0};
   COPY(s.u, u, cp->m);
   COPY(s.r, r, cp->m);
   relaxation_start(&s);
@@ -134,9 +133,7 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
     COPY(u, s.u, cp->m);
     COPY(r, s.r, cp->m);
   }
-done:
-  RELEASE(s.blocks, s.u, s.r);
-  return st;
+  return OK;
 }
 
 status contact_solver_new(const solver_choice *choice, contact_solver **out) {

@@ -1,9 +1,6 @@
 /* Other form and normal form (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
-#include "solver/newton/dense.h"
-
 #include <cblas.h>
 #include <lapacke.h>
 
@@ -33,8 +30,7 @@ void form_apply_scale(int m, double power, const double *scale, double *M) {
 }
 
 status form_invert(int m, dense *d, int *good) {
-  OWNED double *scale = NULL;
-  PASS_NEW(scale, m);
+  OWNED_NEW(double, scale, m);
   d->n = m;
   for (int i = 0; i < m; ++i) d->work[i] = d->a[(size_t)i * (size_t)(m + 1)];
   const double power = form_scale(m, d->work, scale);
@@ -108,10 +104,7 @@ struct opened {
 
 static status opened_new(const contact_problem *cp, const tangent_factor *by,
                          opened **out) {
-  opened *o;
-  PASS_NEW(o, 1);
-  *out = o;
-  OWNS(o);
+  MAKES(opened, o, out);
   o->by = *by;
   o->n = cp->n;
   o->dim = cp->dim;

@@ -1,7 +1,6 @@
 /* Proof that a problem has no solution (choice.h). */
 #include "solver/choice/choice.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/lcp/lcp_solve.h"
 
@@ -247,11 +246,10 @@ static status find_motion(const contact_problem *cp, const anchor *an,
 /* The final forces of complementary pivoting without friction. */
 static status find_forces(const contact_problem *cp, int *proved) {
   OWNED double *M = NULL, *q = NULL, *y = NULL, *l = NULL, *work = NULL;
-  OWNED int *id = NULL;
   int n = 0;
   size_t m = (size_t)cp->m;
   lcp_report rep;
-  PASS_NEW(id, m);
+  OWNED_NEW(int, id, m);
   for (int dof = 0; dof < cp->m; ++dof)
     if (contact_bound(cp, dof) < HUGE_VAL) id[n++] = dof;
   PASS_NEW_ALL(OF(M, (size_t)n * (size_t)n), OF(q, n), OF(y, n), OF(l, m),

@@ -1,7 +1,6 @@
 /* Least distance programming; Lawson, Hanson 1974, 23.4 (rest.h). */
 #include "solver/choice/rest.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>
@@ -158,13 +157,12 @@ static int next_column(const rest *s, double unit, const double *left,
 /* q <- the nearest that no bound forbids. */
 static status keep_out(rest *s) {
   ENDS_BY(nonnegative_free) nonnegative sum = {0};
-  OWNED double *side = NULL;
   double unit = 0.0;
   const int k = s->k;
   for (int i = 0; i < s->m; ++i) unit = fmax(unit, beyond(s, i));
   if (!(unit > 0.0)) return OK;
   PASS(nonnegative_new(k + 1, &sum));
-  PASS_NEW(side, k + 1);
+  OWNED_NEW(double, side, k + 1);
   sum.b[k] = 1.0;
   nonnegative_begin(&sum);
   for (double *next; (next = nonnegative_next(&sum)) != NULL;)

@@ -15,7 +15,6 @@
  */
 #include "solver/lcp/lcp.h"
 
-#include "base/base.h"
 #include "base/sparse.h"
 
 #include <cblas.h>
@@ -60,11 +59,10 @@ static double plain_residual(int n, const double *M, const double *q,
 
 status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
                  double *z, lcp_report *rep) {
-  OWNED lcp_work *w = NULL;
   OWNED double *d = NULL;
   plain m = {n, M, power_to_one(largest_entry((size_t)n * (size_t)n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
-  PASS(lcp_new(n, n, &w));
+  OWNED_OF(lcp_work, w, lcp_new(n, n, &w));
   PASS_NEW(d, n);
   for (int i = 0; i < n; ++i) d[i] = 1.0;
   lcp_problem p = {.n = n,
@@ -473,10 +471,7 @@ static const double NEAR_END = 0x1p-30; /* share of z0 that is made exact */
 enum { REFRESH = 16 /* pivots from one new start of the values to the next */ };
 
 status lcp_new(int n, int rank, lcp_work **out) {
-  lcp_work *w;
-  PASS_NEW(w, 1);
-  *out = w;
-  OWNS(w);
+  MAKES(lcp_work, w, out);
   int cap = w->cap = (rank < n ? rank : n) + 2;
   w->n = n;
   PASS_NEW_ALL(

@@ -4,7 +4,6 @@
  */
 #include "solver/lcp/lcp_solve.h"
 
-#include "base/base.h"
 #include "contact/contact.h"
 #include "solver/lcp/lcp.h"
 

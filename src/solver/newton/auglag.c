@@ -37,12 +37,8 @@
  *
  * the very step of NEWTON for these states.
  */
-#include "base/base.h"
-#include "contact/force_set.h"
 #include "solver/fixed_point.h"
-#include "solver/local.h"
 #include "solver/newton/system.h"
-#include "solver/solver.h"
 
 #include <cblas.h>
 #include <lapacke.h>
@@ -718,20 +714,7 @@ static status auglag_keep(void *work, archive *a) {
 /* clang-format off */
 const solver_ops auglag_solver = {
   .name = "auglag",
-  .reference = "CPR98, 3.3; Alart, Curnier 1991",
   .family = "multipliers",
-  .help =
-    "Augmented Lagrangian of Alart and Curnier: the forces of contact are F =\n"
-    "P(lambda - rho (u - o)), P the projection on r_n <= 0 and on the disc\n"
-    "|r_t| <= g. VARIANT=NEWTON solves A u = f + F and lambda = F by the\n"
-    "generalised Newton method, the limit following the pressure, the step\n"
-    "shortened until the equations are met better; should it stop, the other\n"
-    "variant goes on. VARIANT=UZAWA minimises over u for fixed multipliers, a\n"
-    "convex problem solved by Newton's method with a search along the step,\n"
-    "then sets lambda to F; the limit is updated around it (CPR98, 2.3). rho\n"
-    "is a multiple of the diagonal of A, no parameter. A step costs one\n"
-    "factorisation. Choose it where NEWTON cycles, and UZAWA for a body that\n"
-    "contact alone holds.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              SOLVES_FLOATING,
   .param_size = sizeof(auglag), .work_size = sizeof(auglag_work),

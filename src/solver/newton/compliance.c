@@ -12,7 +12,6 @@
  */
 #include "solver/newton/system.h"
 
-#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>

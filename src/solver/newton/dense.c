@@ -5,7 +5,6 @@
 
 #include <cblas.h>
 #include <lapacke.h>
-#include <math.h>
 
 enum { TILE = 32 }; /* for the cache */
 static const double SINGULAR_RCOND = 1e-13;

@@ -348,23 +348,7 @@ static status newton_keep(void *work, archive *a) {
 /* clang-format off */
 const solver_ops newton_solver = {
   .name = "newton",
-  .reference = "Alart, Curnier 1991; Hueber, Stadler, Wohlmuth 2008",
   .family = "Newton",
-  .help =
-    "Semismooth Newton method on the natural map of contact and friction,\n"
-    "written as a primal-dual active set. Each step guesses which nodes are\n"
-    "open, stick or slip, solves one linear system in the displacements\n"
-    "that are free under the guess, and corrects the guess. Friction follows\n"
-    "the pressure inside the step; in 3-D the slip turns with the exact\n"
-    "derivative of the friction disc. Typically 5 to 15 steps from a cold and\n"
-    "2 to 4 from a warm start, to full accuracy, whatever the size. The\n"
-    "factor is updated while exchanging the rows that change costs less than\n"
-    "a new one, from increment to increment too. If a pattern of states is\n"
-    "repeated the method starts again from another guess, one of them made by\n"
-    "sweeps of relaxation. A single node is solved directly. Where only the\n"
-    "compliance is known the unknowns of a step are the forces of the closed\n"
-    "nodes; no inverse is made, but the compliance must have one. The first\n"
-    "choice for all but very large problems and large friction.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_STIFFNESS |
              REGULAR_COMPLIANCE | SOLVES_FLOATING,
   .param_size = sizeof(newton), .work_size = sizeof(newton_work),

@@ -1,7 +1,6 @@
 /* A step by the operator (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>

@@ -30,10 +30,7 @@
  *
  * A body that contact alone holds needs no compliance so.
  */
-#include "base/base.h"
-#include "contact/force_set.h"
 #include "solver/newton/system.h"
-#include "solver/solver.h"
 
 #include <cblas.h>
 
@@ -541,17 +538,6 @@ static status proximal_solve(const contact_problem *cp, const void *par,
 const solver_ops proximal_solver = {
   .name = "proximal",
   .family = "Newton",
-  .reference = "Rockafellar 1976; Alart, Curnier 1991; Guler 1992",
-  .help =
-    "Proximal point iteration on the forces of contact, with the compliance:\n"
-    "each pass solves the equations of Alart and Curnier, friction with the\n"
-    "limit that follows the pressure, for a compliance made regular by a\n"
-    "share of its diagonal about the forces of the last pass. The share falls\n"
-    "as the passes succeed. Needs no stiffness: the compliance may be\n"
-    "semidefinite, with more contacts than bodies can move, and unsymmetric.\n"
-    "A step is a factorisation, a pass 2 to 20 steps. Choose it for\n"
-    "problems from files where the sweeps and PCG do not reach the tolerance;\n"
-    "for a body on its contact surface NEWTON is faster.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | NEEDS_COMPLIANCE |
              SPARSE_COMPLIANCE | FLOATS_BY_OPERATOR,
   .work_size = sizeof(proximal_work), .options = proximal_options,

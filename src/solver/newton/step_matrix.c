@@ -1,8 +1,6 @@
 /* Matrix of a step of the proximal point iteration (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/base.h"
-
 #include <lapacke.h>
 #include <umfpack.h>
 

@@ -1,7 +1,6 @@
 /* A step: by an updated factor, or by a new one (system.h). */
 #include "solver/newton/system.h"
 
-#include "base/base.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
@@ -581,14 +580,13 @@ static int fresh_step(newton_system *s, const pattern *p, double before,
 }
 
 int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
-  const contact_problem *cp = s->cp;
   set_known(s, p, u, raw);
   s->updated = 0;
   s->n_free = p->n_free;
   s->solves = 0;
   if (p->n_free == 0) return 0;
   if (s->symmetric < 0)
-    s->symmetric = dense_is_symmetric(s->m, cp->A, SYMMETRIC / s->power);
+    s->symmetric = dense_is_symmetric(s->m, s->cp->A, SYMMETRIC / s->power);
   double before = newton_load(s->cp, p, s->power, u, raw, s->b);
   double cost = s->has_base ? newton_list_changes(s, p) : HUGE_VAL;
   if (s->spent + cost <= newton_cost(p->n_free, newton_needs_lu(s, p))) {

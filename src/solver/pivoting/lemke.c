@@ -23,7 +23,6 @@
  */
 #include "solver/pivoting/lemke.h"
 
-#include "base/base.h"
 #include "solver/lcp/lcp.h"
 #include "solver/solver.h"
 
@@ -753,19 +752,7 @@ static status lemke_keep(void *work, archive *a) {
 /* clang-format off */
 const solver_ops lemke_solver = {
   .name = "lemke",
-  .reference = "Lemke 1965; Cottle, Pang, Stone 1992; Klarbring 1986",
   .family = "pivoting",
-  .help =
-    "Complementary pivoting with the lexicographic rule. The frictionless\n"
-    "and the 2-D frictional problem are each one linear complementarity\n"
-    "problem, without a fixed point on the sliding limit: from a body pressed\n"
-    "into stick to the real load, one change of state a pivot. It never\n"
-    "cycles, has a solution for every friction coefficient if the body is\n"
-    "supported; a body held by contact alone ends in equilibrium or in a\n"
-    "motion that proves there is none. In 3-D the cone has FACETS facets. A\n"
-    "state that misses the tolerance, as that of facets does, is corrected by\n"
-    "NEWTON or SOR. For up to some hundred contact nodes, and where other\n"
-    "methods disagree or fail.",
   .handles = SOLVES_TRESCA | SOLVES_COULOMB | SOLVES_3D | SOLVES_FLOATING,
   .entries = "METHOD=LEMKE, which pivots on columns,",
   .param_size = sizeof(lemke), .work_size = sizeof(lemke_work),
