@@ -239,8 +239,7 @@ static int check_together(const command *c) {
   if (c->estimate_cost)
     return wrong("--estimate-cost has no effect with --table", "");
   if (c->restart) return wrong("--restart has no effect with --table", "");
-  if (c->n_define > 0)
-    return wrong("-D has no effect with --table", "");
+  if (c->n_define > 0) return wrong("-D has no effect with --table", "");
   return -1;
 }
 

@@ -136,6 +136,7 @@ void point_body_run(point_body *b, const scheme *s, double theta, double t,
     const scheme_step p = {.t = k == n - 1 ? t : start + (k + 1) * dt,
                            .dt = dt,
                            .theta = theta,
+                           .fastest = HUGE_VAL,
                            .tol = 1e-12};
     const scheme_call call = {&b->x,   &p,      &body,     b->work,
                               &b->old, &b->now, &b->result};
