@@ -469,6 +469,42 @@ START_TEST(gaps_of_rounding_make_no_increment) {
 }
 END_TEST
 
+/* A block turned against a plane, and 1e6 of its sizes away: its nodes stand
+ * from it by the rounding of their coordinates. Where that is more than the
+ * load moves them, pressures are wrong and the run says so; in line with the
+ * axes nothing is lost. */
+START_TEST(pressures_below_the_rounding_of_coordinates_are_told) {
+  static const struct {
+    double turn, load, error;
+    int code;
+  } rows[] = {{0.7, 1, 1e-4, 0},
+              {0.7, 1e-5, 0.2, 0},
+              {0.7, 1e-7, 0, 1},
+              {0, 1e-7, 1e-4, 0}};
+  const double turn = rows[_i].turn, load = rows[_i].load;
+  job j;
+  begin(&j, "rect 4 4 1 1", &(mesh_change){.turn = turn, .shift = 1e6});
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n1e6, 1e6\n%.17g, %.17g\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.\n*STEP\n*STATIC\n"
+            "*DSLOAD\nTOP, P, %g\n*PRINT, CONTACT\n*END STEP\n",
+            -sin(turn), cos(turn), load);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == rows[_i].code, "exit %d: %s", code, j.errors);
+  dat d = job_table(&j, "CONTACT", -1);
+  const double found = dat_max(&d, "pressure") / load;
+  dat_free(&d);
+  if (code == 0)
+    ck_assert_double_eq_tol(found, 1, rows[_i].error);
+  else
+    ck_assert_double_gt(job_told(&j, "rounding_hidden_percent"), 10);
+  job_end(&j);
+}
+END_TEST
+
 /* Friction below the rounding of the pressures is lost, and nothing else is. */
 START_TEST(rounding_may_hide_a_friction_of_next_to_nothing) {
   static const char *const mu[] = {"0", "1E-300", "1E-20", "1E-14", "1E-12"};
@@ -563,6 +599,8 @@ int main(void) {
   tcase_add_loop_test(tests, body_lowered_through_a_gap_is_settled, 0, 6);
   tcase_add_test(tests, works_of_free_motion_stay_rounding_at_its_origin);
   tcase_add_loop_test(tests, gaps_of_rounding_make_no_increment, 0, 2);
+  tcase_add_loop_test(
+      tests, pressures_below_the_rounding_of_coordinates_are_told, 0, 4);
   tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);

@@ -100,8 +100,7 @@ START_TEST(errors_of_an_increment) {
   must_print(write_increment, HEAD
              "  rounding: 1.0E+000 % of the energy norm, 2.0E+000 % of the "
              "largest stress, 3.0E+000 %\n    of the largest displacement\n"
-             "  rounding of the motion may be 2.0E+001 % of the contact "
-             "forces\n"
+             "  rounding may be 2.0E+001 % of the contact forces\n"
              "  error of the solver: at most 6.0E+000 % of the energy norm, "
              "5.0E-001 force*length; contraction 7.50E-001\n"
              "  balanced: 1.0E-001 % is enough, stopped below residual "

@@ -239,7 +239,7 @@ static void print_rounding(const state *s, FILE *f) {
 
 static void print_hidden(const state *s, FILE *f) {
   if (s->errors.in_doubt && s->errors.error.hidden > 0.1)
-    fprintf(f, "  rounding of the motion may be %s %% of the contact forces\n",
+    fprintf(f, "  rounding may be %s %% of the contact forces\n",
             text_number(100 * s->errors.error.hidden, 1));
 }
 

@@ -410,15 +410,37 @@ static status find_own(const run *r, double *own) {
   return OK;
 }
 
+/* Gaps at time 0 of the size of their rounding, of nodes on their obstacle, as
+ * what they take for forces over the largest of all, or own[n] if that is more;
+ * none where no more has moved than that. */
+static double hidden_by_gaps(const run *r, const double *own) {
+  const contact_problem *cp = &r->problem.cp;
+  const double least = rounding_of_gaps(r), force = largest_force(r);
+  double worst = 0.0;
+  if (!(increment_free_load(r, r->now.F) > 0.0) &&
+      largest_entry(r->n_dof, r->now.u) <= least)
+    return 0.0;
+  for (int k = 0; k < cp->n; ++k) {
+    const int i = r->nodes.reach.in != NULL ? r->nodes.reach.in[k] : k;
+    const double gap = fabs(r->surface->gap0[i]);
+    if (gap == 0.0 || gap > least || !(r->now.rc[cp->dim * i] < 0.0)) continue;
+    worst = fmax(worst, gap * contact_diagonal(cp, cp->dim * k) /
+                            fmax(force, own != NULL ? own[k] : 0.0));
+  }
+  return worst;
+}
+
 status rounding_hidden(const run *r, double *part) {
   *part = 0.0;
   if (r->nodes.n == 0 || r->solving.report.outcome <= 0) return OK;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
-  *part = contact_hidden(&r->problem.cp, u, rc, NULL);
+  *part = fmax(contact_hidden(&r->problem.cp, u, rc, NULL),
+               hidden_by_gaps(r, NULL));
   if (!(*part > LAST_DIGIT)) return OK;
   OWNED_NEW(double, own, r->problem.cp.n);
   PASS(find_own(r, own));
-  *part = contact_hidden(&r->problem.cp, u, rc, own);
+  *part =
+      fmax(contact_hidden(&r->problem.cp, u, rc, own), hidden_by_gaps(r, own));
   return OK;
 }
 
