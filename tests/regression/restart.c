@@ -599,6 +599,9 @@ START_TEST(damaged_files_are_refused) {
   ck_assert_ptr_nonnull(strstr(j.errors, "warning"));
   ck_assert_ptr_nonnull(strstr(j.errors, "rst.old.h5"));
   same_files(&whole, &j, "from the file before");
+  job_write(&j, "block.dat", "short");
+  refused(&j, 4, "block.dat is shorter");
+  ck_assert(!job_has(&j, "json"));
   damage(&j, "rst.inc");
   refused(&j, 4, "rst.inc is damaged");
   job_write(&j, "block.rst.inc", "short");
