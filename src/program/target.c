@@ -353,15 +353,20 @@ static status read_next(pass *p) {
   return begin(p, &p->next);
 }
 
+static status stop_asked(const pass *p) {
+  const status st = interrupt_asked();
+  if (st == OK) return OK;
+  return status_fail(st, __func__, __LINE__,
+                     "interrupted by %s: the files are those of pass %d",
+                     interrupt_name(), p->n);
+}
+
 /* While the files of the pass are open: they have the exit code of a failure.
  */
 static status prepare_next(pass *p) {
-  status st = interrupt_asked();
-  if (st != OK)
-    FAIL(st, "interrupted by %s: the files are those of pass %d",
-         interrupt_name(), p->n);
-  TRY(read_next(p));
-done:
+  status st = stop_asked(p);
+  if (st == OK) st = read_next(p);
+  if (st == OK) st = stop_asked(p); /* meshes take long */
   if (st != OK) miss(p, status_message());
   return st;
 }
