@@ -16,11 +16,12 @@
 #include <unistd.h>
 
 /* JOB.stop is removed only if it was made during the run. The first N_OLD of
- * an earlier run must not be taken for results of this one. */
-enum { N_OLD = 8 };
+ * an earlier run must not be taken for results of this one, the first N_END of
+ * the part before a restart not for those of the whole. */
+enum { N_END = 4, N_OLD = 8 };
 /* clang-format off */
 static const char *const results[] = {
-    "h5", "xdmf", "json", "body.xdmf", "rst.h5", "rst.old.h5", "contact.xdmf",
+    "json", "xdmf", "body.xdmf", "contact.xdmf", "h5", "rst.h5", "rst.old.h5",
     "rst.inc", "lst", "sta", "cvg", "dat", "lock", "h5.tmp", "xdmf.tmp",
     "json.tmp", "rst.h5.tmp", "body.xdmf.tmp", "contact.xdmf.tmp"};
 /* clang-format on */
@@ -277,10 +278,10 @@ static status open_hdf5(output *o, const hdf5_count *before) {
 }
 
 static status open_new(output *o) {
+  for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
   PASS(open_text(o, "lst", -1, &o->lst));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
-  for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
   PASS(each_condensed(o->m, o->o.dir, 0, 1));
   PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
   if (o->dat == NULL) PASS(remove_old(o, "dat"));
@@ -298,6 +299,7 @@ static status open_earlier(output *o) {
   IN_GROUP(a, "output");
   TRY(output_read(o, a, &ends));
   o->quiet = 1;
+  for (int k = 0; k < N_END; ++k) TRY(remove_old(o, results[k]));
   TRY(open_text(o, "lst", ends.lst, &o->lst));
   TRY(open_text(o, "sta", ends.sta, &o->sta));
   TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
@@ -389,6 +391,13 @@ static void make_closing(const output *o) {
   memory_free(path);
 }
 
+/* None rather than that of another outcome. */
+static status write_json(const output *o) {
+  const status st = json_write(&o->job, o->json);
+  if (st != OK) unlink(o->json);
+  return st;
+}
+
 status output_close(output *o, status run, int unsettled) {
   char message[2048] = "";
   status kept = OK;
@@ -404,11 +413,12 @@ status output_close(output *o, status run, int unsettled) {
   first_of(&kept, message, sizeof message, text_close(&o->sta));
   o->run.message = message;
   o->run.verdict = verdict_of(kept, unsettled);
+  first_of(&kept, message, sizeof message, write_json(o));
+  const status told = o->run.verdict = verdict_of(kept, unsettled);
   first_of(&kept, message, sizeof message, listing_verdict(&o->job, &o->lst));
   first_of(&kept, message, sizeof message, text_close(&o->lst));
   o->run.verdict = verdict_of(kept, unsettled);
-  first_of(&kept, message, sizeof message, json_write(&o->job, o->json));
-  o->run.verdict = verdict_of(kept, unsettled);
+  if (o->run.verdict != told) write_json(o);
   make_closing(o);
   release(o);
   if (kept != OK) return status_fail(kept, __func__, __LINE__, "%s", message);

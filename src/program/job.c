@@ -154,10 +154,11 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
            : condensed_run(in->m, in->problem, &sink, unsettled);
   if (watch != NULL && watch->finished != NULL)
     st = watch->finished(watch->first.ctx, st, restart.out);
+  if (st == OK) st = message_status(in->m->log, ERR_INTERNAL);
   status closed = output_close(restart.out, st, *unsettled);
   if (st == OK && closed != ERR_UNSETTLED) st = closed;
   PASS(st);
-  return message_status(in->m->log, ERR_INTERNAL);
+  return OK;
 }
 
 /* ---- the start from a coarser mesh --------------------------------------- */

@@ -30,7 +30,7 @@ static const double LEAST_TOL = 1e-14, SHORTEST = 1.0 / 16; /* - */
 typedef struct pass {
   const command *c;
   const accuracy_target *target;
-  job_input *in;
+  job_input *in, next; /* of this pass; of the next, once it is read */
   pass_row rows[MAX_PASS_ROWS], forecast;
   int n;                     /* rows, this pass included */
   double energy;             /* J, largest strain energy: the increment
@@ -268,12 +268,12 @@ static status decide(pass *p) {
 
 /* ---- one pass ------------------------------------------------------------ */
 
-static void report_pass(const pass *p) {
+static status report_pass(const pass *p) {
   const pass_row *r = &p->rows[p->n - 1];
   const char *next = r->change[0] != '\0' ? r->change
                      : p->why[0] != '\0'  ? p->why
                                           : "done";
-  if (p->c->quiet) return;
+  if (p->c->quiet) return OK;
   if (p->n == 1) {
     printf("%4s %10s", "pass", "unknowns");
     if (has_norm(p))
@@ -288,7 +288,7 @@ static void report_pass(const pass *p) {
   if (p->goals != NULL)
     passes_goals(p->in->m, aims_rows(p->goals), p->n - 1, stdout);
   printf(" %9.3g  %s\n", r->cpu, next);
-  fflush(stdout);
+  return text_flush_output();
 }
 
 /* Forecast of a tenth of the error reached; that of goals is of second order.
@@ -301,6 +301,91 @@ static pass_row next_digit(const pass *p) {
                   .total = r->total / 10.0,
                   .cpu = price(p, factor)};
   return row;
+}
+
+/* Increments and tolerances of the deck times the factors of the pass. */
+static void adjust(const pass *p, model *m) {
+  for (int i = 0; i < m->n.step; ++i) {
+    m->steps[i].dt *= p->dt;
+    m->steps[i].dt_min *= p->dt;
+    m->steps[i].solver.tol = fmax(m->steps[i].solver.tol * p->tol, LEAST_TOL);
+  }
+}
+
+/* The contact of the last pass is the start of this one. */
+static status next_contact(pass *p, model *m) {
+  memory_free(p->before);
+  p->before = p->contact;
+  p->contact = NULL;
+  if (p->before != NULL) m->accuracy.coarser = p->before;
+  return coarser_new(&p->contact);
+}
+
+/* Before a pass with that input. */
+static status begin(pass *p, const job_input *in) {
+  RELEASE(p->eta, p->size);
+  p->eta = p->size = NULL;
+  p->energy = -1.0;
+  p->mesh = p->time = p->solver = 0.0;
+  PASS(next_contact(p, in->m));
+  PASS_NEW(p->eta, in->msh->n_elem);
+  PASS(aims_begin(p->goals, in->msh));
+  adjust(p, in->m);
+  return OK;
+}
+
+/* Its messages are those of the first pass, shown only if something is wrong.
+ */
+static status read_next(pass *p) {
+  job_mesh other = {0};
+  p->cpu.start = timer_cpu();
+  p->cpu.meshed = timer_cost(STAGE_MESH).cpu;
+  p->cpu.last_mesh = p->cpu.mesh;
+  PASS(message_log_new(&p->next.log));
+  if (refines(&p->rows[p->n - 1]))
+    other =
+        (job_mesh){.sizes = {{p->in->msh, p->size}, {p->first, p->first_size}}};
+  else
+    other.same = p->in->msh;
+  const status st = job_read(p->c, &other, p->next.log, &p->next);
+  if (st != OK) message_print(p->next.log, stderr);
+  PASS(st);
+  return begin(p, &p->next);
+}
+
+static status stop_asked(const pass *p) {
+  const status st = interrupt_asked();
+  if (st == OK) return OK;
+  return status_fail(st, __func__, __LINE__,
+                     "interrupted by %s: the files are those of pass %d",
+                     interrupt_name(), p->n);
+}
+
+/* While the files of the pass are open: they have the exit code of a failure.
+ */
+static status prepare_next(pass *p) {
+  status st = stop_asked(p);
+  if (st == OK) st = read_next(p);
+  if (st == OK) st = stop_asked(p); /* meshes take long */
+  if (st != OK) miss(p, status_message());
+  return st;
+}
+
+static void drop_next(pass *p) {
+  if (p->next.msh == p->in->msh) p->next.msh = NULL;
+  job_input_free(&p->next);
+}
+
+/* The input of the next pass in the place of the last. */
+static void take_next(pass *p) {
+  job_input *in = p->in;
+  p->next.first = in->first != NULL ? in->first : in->d;
+  if (in->first == NULL) in->d = NULL;
+  in->first = NULL;
+  if (in->msh == p->first || in->msh == p->next.msh) in->msh = NULL;
+  job_input_free(in);
+  *in = p->next;
+  p->next = (job_input){0};
 }
 
 static status see_finished(void *ctx, status st, output *out) {
@@ -316,11 +401,11 @@ static status see_finished(void *ctx, status st, output *out) {
                     .cpu = timer_cpu() - p->cpu.start};
   p->cpu.mesh = timer_cost(STAGE_MESH).cpu - p->cpu.meshed - p->in->library_cpu;
   TRY(decide(p));
-  report_pass(p);
   p->forecast = next_digit(p);
   output_passes(out, &(pass_table){p->target->percent, p->n, p->rows,
                                    total(p) > EXACT ? &p->forecast : NULL,
                                    aims_rows(p->goals), p->why});
+  TRY(report_pass(p));
   if (p->why[0] != '\0' && !has_norm(p))
     FAIL(ERR_UNSETTLED,
          "a target of *GOAL is missed: %s; the files are those of pass %d",
@@ -330,72 +415,8 @@ static status see_finished(void *ctx, status st, output *out) {
          "the error is %.3g %%, the target %g %%: %s; the files are those of "
          "pass %d",
          row->total, p->target->percent, p->why, p->n);
+  if (!p->done) TRY(prepare_next(p));
 done:
-  return st;
-}
-
-/* Increments and tolerances of the deck times the factors of the pass. */
-static void adjust(const pass *p, model *m) {
-  for (int i = 0; i < m->n.step; ++i) {
-    m->steps[i].dt *= p->dt;
-    m->steps[i].dt_min *= p->dt;
-    m->steps[i].solver.tol = fmax(m->steps[i].solver.tol * p->tol, LEAST_TOL);
-  }
-}
-
-/* The contact of the last pass is the start of this one. */
-static status next_contact(pass *p) {
-  memory_free(p->before);
-  p->before = p->contact;
-  p->contact = NULL;
-  if (p->before != NULL) p->in->m->accuracy.coarser = p->before;
-  return coarser_new(&p->contact);
-}
-
-static status run_pass(pass *p, int *unsettled) {
-  const job_watch watch = {
-      {.ctx = p, .increment = see_increment, .ready = see_ready}, see_finished};
-  RELEASE(p->eta, p->size);
-  p->eta = p->size = NULL;
-  p->energy = -1.0;
-  p->mesh = p->time = p->solver = 0.0;
-  PASS(next_contact(p));
-  PASS_NEW(p->eta, p->in->msh->n_elem);
-  PASS(aims_begin(p->goals, p->in->msh));
-  adjust(p, p->in->m);
-  *unsettled = 0;
-  return job_solve(p->c, p->in, &watch, NULL, unsettled);
-}
-
-/* The input of the next pass in the place of the last. Its messages are those
- * of the first pass, shown only if something is wrong. */
-static status read_next(pass *p) {
-  status st = OK;
-  job_input next = {0};
-  job_mesh other = {0};
-  mesh *msh = p->in->msh;
-  p->cpu.start = timer_cpu();
-  p->cpu.meshed = timer_cost(STAGE_MESH).cpu;
-  p->cpu.last_mesh = p->cpu.mesh;
-  TRY(message_log_new(&next.log));
-  if (refines(&p->rows[p->n - 1])) {
-    other = (job_mesh){.sizes = {{msh, p->size}, {p->first, p->first_size}}};
-  } else {
-    other.same = msh;
-    p->in->msh = NULL;
-  }
-  TRY(job_read(p->c, &other, next.log, &next));
-  next.first = p->in->first != NULL ? p->in->first : p->in->d;
-  if (p->in->first == NULL) p->in->d = NULL;
-  p->in->first = NULL;
-  if (p->first == p->in->msh) p->in->msh = NULL;
-  job_input_free(p->in);
-  *p->in = next;
-  next = (job_input){0};
-done:
-  if (st != OK && next.log != NULL) message_print(next.log, stderr);
-  if (next.msh == p->first) next.msh = NULL;
-  job_input_free(&next);
   return st;
 }
 
@@ -410,18 +431,20 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   const accuracy_target target = in->m->accuracy.target;
   pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
+  const job_watch watch = {
+      {.ctx = &p, .increment = see_increment, .ready = see_ready},
+      see_finished};
   TRY(aims_new(in->m, 0, &p.goals));
   if (aims_count(p.goals)) TRY(keep_first(&p));
+  TRY(begin(&p, in));
   for (;;) {
-    TRY(run_pass(&p, unsettled));
+    *unsettled = 0;
+    TRY(job_solve(c, in, &watch, NULL, unsettled));
     if (p.done) break;
-    status stop = interrupt_asked();
-    if (stop != OK)
-      FAIL(stop, "interrupted by %s: the files are those of pass %d",
-           interrupt_name(), p.n);
-    TRY(read_next(&p));
+    take_next(&p);
   }
 done:
+  drop_next(&p);
   if (p.first != in->msh) memory_free(p.first);
   RELEASE(p.eta, p.size, p.first_size);
   memory_free(p.before);

@@ -123,7 +123,8 @@ START_TEST(small_thermal_strain_is_left_out) {
                        NULL};
   scene above = small, large = small, beside = small;
   above.loads = "*TEMPERATURE\nBODY, 2.5D-3\n";
-  large.loads = "*TEMPERATURE\nBODY, 1.D-2\n";
+  large.loads = "*TEMPERATURE\nBODY, 1.D-2\n"; /* along x alone */
+  large.material = "*EXPANSION, TYPE=ORTHO\n1.2D-5, 0., 0.\n";
   compare(&small, "thermal strain", 1, 1e-3);
   compare(&above, "thermal strain", -1, 1e-12);
   stays(&large, "thermal strain");

@@ -139,6 +139,22 @@ START_TEST(averaged_groups_do_not_lock) {
 }
 END_TEST
 
+/* The law of the first group has no exact integrator, that of the second has.
+ */
+START_TEST(integrators_fit_the_law_of_each_group) {
+  const layers s = {.hard = "*INELASTIC, LAW=MAXWELL\n2.\n",
+                    .soft = "*INELASTIC, LAW=NORTON\n1.E-6, 3.\n",
+                    .of_soft = "",
+                    .of_hard = "",
+                    .at = {20, 20},
+                    .integrator = "EXPONENTIAL"};
+  job j = run_layers(&s, "--check", 2);
+  ck_assert_ptr_nonnull(strstr(j.errors, "NORTON of material E is not linear"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "\n1 error"));
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("layers", creep_beside_a_group_that_expands,
           laws_have_the_temperature_of_their_elements, cold_elements_are_named,
-          averaged_groups_do_not_lock)
+          integrators_fit_the_law_of_each_group, averaged_groups_do_not_lock)

@@ -560,6 +560,25 @@ START_TEST(what_is_read_is_written_again) {
 }
 END_TEST
 
+/* The last increment but not the first has converged; at the end of such a run
+ * there is nothing left to do. */
+START_TEST(missed_tolerance_goes_on) {
+  job j = small_flat(1.0, "*RESTART\n", "SOR, MAX_ITER=1");
+  edit(&j, "0.25, 1.\n*BOUNDARY\nTOP, 2, 2, -0.02\nTOP, 1, 1, 0.02\n",
+       "1., 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 50.\nLEFT, P, 150.\n");
+  edit(&j, "0.25, 1.\n*BOUNDARY\nTOP, 1, 1, -0.01\n",
+       "1., 1.\n*SOLVER, METHOD=AUTO\n");
+  edit(&j, "COULOMB\n1\n", "COULOMB\n\"if(t < 0.5, 0.9, 1)\"\n");
+  ck_assert_int_eq(job_run(&j, "--no-timing"), 1);
+  goes_on(&j, 1, "a tolerance missed");
+  char *lst = job_file(&j, "lst");
+  ck_assert_ptr_nonnull(strstr(lst, "jumps at t = 0.5 from 0.9 to 1"));
+  ck_assert_ptr_nonnull(strstr(lst, "violated most at"));
+  free(lst);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(some_jobs_start_anew) {
   job j = stopped_at(3);
   edit(&j, "TOP, 1, 1, -0.01\n", "TOP, 1, 1, -0.01\n*ACCURACY, THEORY=YES\n");
@@ -599,6 +618,9 @@ START_TEST(damaged_files_are_refused) {
   ck_assert_ptr_nonnull(strstr(j.errors, "warning"));
   ck_assert_ptr_nonnull(strstr(j.errors, "rst.old.h5"));
   same_files(&whole, &j, "from the file before");
+  job_write(&j, "block.dat", "short");
+  refused(&j, 4, "block.dat is shorter");
+  ck_assert(!job_has(&j, "json"));
   damage(&j, "rst.inc");
   refused(&j, 4, "rst.inc is damaged");
   job_write(&j, "block.rst.inc", "short");
@@ -623,5 +645,5 @@ UNIT_MAIN("restart", what_is_read_is_written_again,
           run_without_a_file_begins_anew, files_are_in_the_seal,
           restart_files_are_equal, errors_of_goals_go_on, factor_goes_on,
           kind_of_stiffness_goes_on, observed_work_goes_on,
-          restart_file_does_not_grow, some_jobs_start_anew,
-          damaged_files_are_refused)
+          restart_file_does_not_grow, missed_tolerance_goes_on,
+          some_jobs_start_anew, damaged_files_are_refused)

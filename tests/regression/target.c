@@ -475,6 +475,19 @@ START_TEST(exact_solution_costs_one_pass_and_no_forecast) {
 }
 END_TEST
 
+/* The lines of the passes cannot be printed, or nobody reads them. */
+START_TEST(lines_of_the_passes_must_leave) {
+  job j;
+  ck_assert_int_eq(block(&j, 0.5, "*ACCURACY, TARGET=0.01\n", "--check"), 0);
+  ck_assert_int_eq(job_shell(&j, "protis block > /dev/full"), 4);
+  ck_assert_ptr_nonnull(strstr(j.errors, "cannot write: No space left"));
+  ck_assert_ptr_null(job_contradiction(&j, 4));
+  job_shell(&j, "{ protis block; echo exit $? >&2; } | true");
+  ck_assert_ptr_nonnull(strstr(j.errors, "exit 0\n"));
+  job_end(&j);
+}
+END_TEST
+
 /* Increments that follow rounding would have no end. */
 START_TEST(exact_solution_needs_no_shorter_increments) {
   job j;
@@ -516,5 +529,6 @@ UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
           order_at_a_sharp_edge_is_that_of_three_meshes,
           flow_has_its_share_of_the_target,
           exact_solution_costs_one_pass_and_no_forecast,
+          lines_of_the_passes_must_leave,
           exact_solution_needs_no_shorter_increments,
           unloaded_body_has_no_large_error)

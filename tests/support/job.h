@@ -44,8 +44,11 @@ char *job_deck_text(const char *deck);
 /* Options that make an example cheaper: half the segments (a quarter of more
  * than 30), increments of four times the length. */
 void job_coarsen(const char *deck, char *words, size_t size);
+/* The one of JOB.lst and JOB.json ("lst", "json") that is there with an exit
+ * code other than that, or NULL. */
+const char *job_contradiction(const job *j, int code);
 /* Run protis NAME with further words ("" or "-D N=4 --check"); exit code,
- * or 1000 + signal. */
+ * or 1000 + signal. The check fails if the files of a run have another. */
 int job_run(job *j, const char *words);
 /* Run a command of the shell in the folder, "protis" being the program; its
  * exit code. */

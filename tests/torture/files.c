@@ -47,6 +47,7 @@ static const char *fault(const job *whole, job *j, int code) {
   if (code != 4 && code != 5) return "exit code";
   if (strstr(j->errors, "error") == NULL) return "no message";
   if (strstr(j->errors, j->name) == NULL) return "file not named";
+  if (job_contradiction(j, code) != NULL) return "another exit code in a file";
   return restart_fault(whole, j);
 }
 

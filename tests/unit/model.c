@@ -307,6 +307,27 @@ START_TEST(initial_strains_have_the_components_of_the_space) {
 }
 END_TEST
 
+/* A static step keeps the strains that a body starts with; it has none else. */
+START_TEST(strains_of_the_start_need_a_value) {
+  static const char *const cards[] = {
+      "", "*INITIAL CONDITIONS, TYPE=INTERNAL\nBODY, 1, 1.E-3\n"};
+  for (int k = 0; k < 2; ++k) {
+    char text[1000];
+    text_model s;
+    snprintf(text, sizeof text,
+             HEAD
+             "*INELASTIC, LAW=KELVIN\n500., 3.\n"
+             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+             "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*END STEP\n",
+             cards[k]);
+    text_model_read(&s, text, square());
+    ck_assert_int_eq(s.st, OK);
+    ck_assert_int_eq(facts_has_inelastic(s.m), k);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 /* Zones of a body and some of its elements, whose temperatures are those of one
  * expression or not. */
 START_TEST(zones_have_one_temperature) {
@@ -391,4 +412,5 @@ UNIT_MAIN("model", resultant_is_the_integral_of_the_load,
           echo_reads_back_to_the_same_echo, directions_have_unit_length,
           effects_are_what_the_deck_calls_for, supports_that_move_are_found,
           initial_strains_have_the_components_of_the_space,
-          zones_have_one_temperature, every_refused_request_is_reported)
+          strains_of_the_start_need_a_value, zones_have_one_temperature,
+          every_refused_request_is_reported)

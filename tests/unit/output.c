@@ -463,6 +463,51 @@ START_TEST(full_disk_of_any_text_file_is_told_and_the_others_are_kept) {
 }
 END_TEST
 
+/* Listing and JSON, as far as they are whole, have that exit code. */
+static void ck_code(const char *dir, int code) {
+  static const char *const files[][2] = {{"block.lst", "\n  exit "},
+                                         {"block.json", "\"code\": "}};
+  for (int k = 0; k < 2; ++k) {
+    char *text = folder_file(dir, files[k][0], NULL);
+    const char *at = text != NULL ? strstr(text, files[k][1]) : NULL;
+    if (at != NULL)
+      ck_assert_msg(atoi(at + strlen(files[k][1])) == code, "%s: not %d",
+                    files[k][0], code);
+    free(text);
+  }
+}
+
+/* The listing takes no more when all else is written, and JSON may not be
+ * written again: the k-th request is refused. 1: it was. */
+static int end_on_full_disk(made_up *made, long k) {
+  char dir[64];
+  folder_new(dir);
+  output_options o = quiet(dir);
+  output *out = NULL;
+  ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
+  history_sink sink = output_sink(out);
+  ck_assert_int_eq(tell(made, &sink, 2), OK);
+  fill_disk("block.lst");
+  const long first = memory_requests();
+  memory_refuse(k, 0);
+  const status st = output_close(out, OK, 0);
+  memory_refuse(0, 0);
+  ck_assert_msg(st == ERR_FILE || st == ERR_MEMORY, "%s", status_message());
+  ck_code(dir, status_exit_code(st));
+  char *text = k > 0 ? NULL : checked_json(dir);
+  if (k == 0) ck_assert_ptr_nonnull(strstr(text, "block.lst: cannot write"));
+  free(text);
+  folder_remove(dir);
+  return k <= memory_requests() - first;
+}
+
+START_TEST(full_disk_at_the_end_is_told) {
+  made_up *made = made_up_new(2, 2, 2);
+  for (long k = 0; end_on_full_disk(made, k);) ++k;
+  made_up_free(made);
+}
+END_TEST
+
 /* What bears the name of a file that is made aside. */
 START_TEST(files_made_aside_are_told) {
   const char *const files[] = {"block.json.tmp", "block.xdmf.tmp"};
@@ -476,6 +521,7 @@ START_TEST(files_made_aside_are_told) {
     ck_assert_msg(run(made, &o, 2) == ERR_FILE, "%s", files[k]);
     ck_assert_msg(strstr(status_message(), files[k]) != NULL, "%s: %s",
                   files[k], status_message());
+    ck_code(dir, 4);
     made_up_free(made);
     folder_remove(dir);
   }
@@ -512,6 +558,7 @@ START_TEST(every_refused_request_is_told_and_leaves_nothing) {
     memory_refuse(0, 0);
     ck_assert_msg(st == OK || st == ERR_MEMORY, "%ld: %s", k, status_message());
     ck_assert_uint_eq(memory_in_use(), before);
+    ck_code(dir, status_exit_code(st));
     if (st == ERR_MEMORY) ++refused;
     if (memory_requests() - first < k) break;
   }
@@ -657,7 +704,8 @@ UNIT_MAIN("output", two_runs_give_the_same_bytes,
           files_of_an_earlier_run_do_not_stay,
           run_that_never_became_ready_has_a_verdict,
           full_disk_of_any_text_file_is_told_and_the_others_are_kept,
-          files_made_aside_are_told, folder_that_cannot_be_written_is_told,
+          full_disk_at_the_end_is_told, files_made_aside_are_told,
+          folder_that_cannot_be_written_is_told,
           every_refused_request_is_told_and_leaves_nothing,
           output_changes_nothing_it_is_given, progress_foresees_the_time_left,
           no_progress_line_where_there_is_no_terminal)

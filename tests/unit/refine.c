@@ -292,6 +292,39 @@ START_TEST(surfaces_in_contact_are_followed) {
 }
 END_TEST
 
+/* The area between the sides of the border. */
+static double enclosed(const mesh *m) {
+  double sum = 0.0, normal[3];
+  for (int k = 0; k < m->n_face; ++k) {
+    if (m->face_other[k] >= 0) continue;
+    const double length = mesh_face_normal(m, k, normal);
+    const double *p = m->x + 2 * m->face[2 * k];
+    sum += 0.5 * length * (p[0] * normal[0] + p[1] * normal[1]);
+  }
+  return sum;
+}
+
+/* Along a hump of the radius 2 lie elements a quarter as high as it is over
+ * their sides: new nodes on it would turn them over. */
+START_TEST(thin_elements_are_not_turned_over) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = make_grid_2d((int[]){8, 4}, (double[]){2.0, 1.0});
+  for (int i = 0; i < grid->n_node; ++i) {
+    double *x = grid->x + 2 * i;
+    const double low = sqrt(4.0 - (x[0] - 1.0) * (x[0] - 1.0)) - sqrt(3.0);
+    x[1] = low + pow(x[1], 5.0) * (1.0 - low);
+  }
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *r = refine(&f, grid, fine);
+  check_conforming(r);
+  ck_assert_double_eq_tol(measure(r), enclosed(r), 1e-12);
+  memory_free(r);
+  memory_free(grid);
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* Every other face of a group has its nodes in the other order. */
 static void turn_faces(mesh *m, const char *group) {
   const mesh_group *g = mesh_find_group(m, group);
@@ -370,5 +403,5 @@ END_TEST
 
 UNIT_MAIN("refine", square_is_refined_to_its_sizes,
           angles_keep_half_of_the_smallest, nothing_gets_larger, box_is_refined,
-          surfaces_in_contact_are_followed, sphere_is_followed,
-          each_refused_request_is_an_error_and_frees_all)
+          surfaces_in_contact_are_followed, thin_elements_are_not_turned_over,
+          sphere_is_followed, each_refused_request_is_an_error_and_frees_all)
