@@ -89,10 +89,10 @@ static status linear_body(run *r, const unsigned char *given, body_map *b) {
 
 static status body_map_new(run *r, const unsigned char *given, body_map *b) {
   const visco *v = r->strains.visco;
-  const size_t ns = (size_t)r->m->ns, n = (size_t)v->x.n;
+  const size_t ns = r->m->ns, n = v->x.n;
   b->r = r;
   PASS_NEW(b->Q, ns * ns * n);
-  PASS_NEW_REALS(ns * (size_t)r->strains.eigen.n, &b->e0, &b->sigma);
+  PASS_NEW_REALS(ns * r->strains.eigen.n, &b->e0, &b->sigma);
   PASS_NEW_REALS(r->n_dof, &b->F, &b->u);
   PASS_NEW_REALS(r->nodes.n_c, &b->f, &b->du);
   PASS(linear_body(r, given, b));
@@ -130,7 +130,7 @@ static status answer_of_body(void *ctx, double *size) {
   double square = 0.0;
   if (b->begun) flow_by_law(b);
   b->begun = 1;
-  memset(b->F, 0, r->n_dof * sizeof *b->F);
+  CLEAR(b->F, r->n_dof);
   eigen_force(&r->body.d, &x, b->F);
   PASS(condense_load(b->c, b->F, NULL, b->f));
   PASS(linear_contact_move(b->contact, b->f, b->du));
