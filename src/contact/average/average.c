@@ -562,9 +562,9 @@ static status set_rows(builder *b) {
 
 status average_build(const average_patch *patch, const average_rule *rule,
                      sparse_rows *out, average_facts *facts) {
+  memset(out, 0, sizeof *out);
   OWNED_NEW(builder, b, 1);
   *b = (builder){.p = patch, .rule = rule};
-  memset(out, 0, sizeof *out);
   PASS(set_rows(b));
   PASS(symmetrise(b, out));
   OWNED_NEW(unsigned char, coarse, patch->n_node);

@@ -12,7 +12,7 @@ enum { PASSES = 3 };
 static status move_slave(const surface_input *in, surface_pair *p, double *x) {
   const mesh *msh = in->mesh;
   const int dim = msh->dim;
-  mortar *m = NULL;
+  OWNED mortar *m = NULL;
   PASS(surfaces_couple(in, msh->x, &msh->group[p->slave_id],
                        &msh->group[p->master_id], COUPLE_FLAT, NULL, &m));
   COPY(x, msh->x, (size_t)dim * msh->n_node);
@@ -24,7 +24,6 @@ static status move_slave(const surface_input *in, surface_pair *p, double *x) {
       x[k] += d;
       p->moved = fmax(p->moved, fabs(d));
     }
-  memory_free(m);
   return OK;
 }
 
