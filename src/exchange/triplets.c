@@ -148,8 +148,7 @@ void triplets_dense(const triplets *t, double *a) {
 }
 
 status triplets_by_column(const triplets *t, int **start, long **entry) {
-  PASS_NEW(*start, t->columns + 2);
-  PASS_NEW(*entry, t->n);
+  PASS_NEW_ALL(OF(*start, t->columns + 2), OF(*entry, t->n));
   for (long k = 0; k < t->n; ++k) ++(*start)[t->column[k] + 2];
   for (int j = 0; j <= t->columns; ++j) (*start)[j + 1] += (*start)[j];
   for (long k = 0; k < t->n; ++k) (*entry)[(*start)[t->column[k] + 1]++] = k;

@@ -64,9 +64,8 @@ static status new_arrays(const average_patch *p, layout *l) {
   size_t dim = p->dim;
   l->dim = p->dim;
   l->n_face = p->n_face;
-  PASS_NEW(l->x, dim * p->n_node);
-  PASS_NEW(l->corner, dim * dim * p->n_face);
-  PASS_NEW(l->rim, dim * dim * dim * (p->n_face + 1));
+  PASS_NEW_ALL(OF(l->x, dim * p->n_node), OF(l->corner, dim * dim * p->n_face),
+               OF(l->rim, dim * dim * dim * (p->n_face + 1)));
   return OK;
 }
 

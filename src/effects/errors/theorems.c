@@ -34,8 +34,7 @@ static status largest_mu(const run *r, int contact_id, double *mu) {
 static status theorems_scene_new(run *r, const equilibrium *e,
                                  theorems_scene *s, double **mu,
                                  unsigned char **given) {
-  PASS_NEW(*mu, r->m->n.contact);
-  PASS_NEW(*given, r->nodes.n);
+  PASS_NEW_ALL(OF(*mu, r->m->n.contact), OF(*given, r->nodes.n));
   for (int c = 0; c < r->m->n.contact; ++c) PASS(largest_mu(r, c, &(*mu)[c]));
   for (int i = 0; i < r->nodes.n; ++i)
     (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;

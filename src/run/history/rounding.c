@@ -391,8 +391,7 @@ static status find_own(const run *r, double *own) {
   const mesh *m = r->msh;
   const contact_surface *s = r->surface;
   OWNED double *sigma = NULL, *most = NULL;
-  PASS_NEW(sigma, (size_t)r->m->ns * m->n_elem);
-  PASS_NEW(most, m->n_node);
+  PASS_NEW_ALL(OF(sigma, (size_t)r->m->ns * m->n_elem), OF(most, m->n_node));
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < m->n_elem; ++e) {
     const size_t ns = r->m->ns;
