@@ -264,7 +264,7 @@ static status patch_new(const contact_surface *s, const surface_input *in,
     while (i < s->n && s->node_id[i] < g->node_id[k]) ++i;
     int there = i < s->n && s->node_id[i] == g->node_id[k];
     a->contact_node[k] = there ? i : -1;
-    a->active[k] = (unsigned char)(there && carries(s, i, contact_id));
+    a->active[k] = there && carries(s, i, contact_id);
     if (a->part != NULL) a->part[k] = there ? s->covered[i] : 1.0;
   }
   for (int k = 0; k < g->n_item; ++k)

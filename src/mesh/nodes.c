@@ -163,7 +163,7 @@ static int by_coordinates(const void *ctx, int a, int b) {
  * nodes share up to the last bit, are inside of cells and not between. */
 static void fill_keys(const builder *b, const double lo[3], sort_item *item) {
   static const double shift[3] = {0.1321, 0.1732, 0.1579};
-  const double cells = (double)(1 << CURVE_BITS), share = 0.7071;
+  const double cells = 1 << CURVE_BITS, share = 0.7071;
   int n = 0;
   for (size_t i = 0; i < b->raw->n_node; ++i) {
     if (b->node_id[i] < 0) continue;

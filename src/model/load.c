@@ -100,7 +100,7 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
  * times the measure, d = n - 1.
  */
 static void simplex_mass(int n, double measure, const double *r, double *M) {
-  double d2 = (double)(n * (n + 1)), d3 = d2 * (double)(n + 2);
+  double d2 = n * (n + 1), d3 = d2 * (n + 2);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       double sum = 0.0;

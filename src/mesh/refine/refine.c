@@ -73,8 +73,7 @@ static status add_cell(cell_list *to, const cell *c) {
 /* ERR_MESH: an element has a node that is not there. */
 static status take_block(bisection *b, int block, const key_table *nodes) {
   const raw_block *p = &b->raw->block[block];
-  b->is_round[block] =
-      p->dim == b->dim - 1 && is_named(b, p) ? (unsigned char)1 : 0;
+  b->is_round[block] = p->dim == b->dim - 1 && is_named(b, p) ? 1 : 0;
   for (size_t i = 0; i < p->n; ++i) {
     cell c = {.block = block, .no = p->no[i]};
     for (size_t k = 0; k < p->n_per; ++k) {

@@ -89,7 +89,7 @@ static void find_curves(round_surface *s) {
         is_sharp = turn(other, s->face_normal + 3 * f[0]) > SMOOTH;
         if (!is_sharp) continue;
       }
-      s->kind[id] = (unsigned char)(ON_CURVE | (is_sharp ? IS_SHARP : 0));
+      s->kind[id] = ON_CURVE | (is_sharp ? IS_SHARP : 0);
       add_curve(s, p, q, is_sharp);
     }
 }

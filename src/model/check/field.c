@@ -74,7 +74,7 @@ static status read_node_data(scan *s, pairs *p) {
     PASS(scan_line(s));
     p->node_no[i] = no;
   }
-  p->n = (long)n;
+  p->n = n;
   return scan_end(s, "NodeData", "its values");
 }
 

@@ -39,7 +39,7 @@ static void node_bits(run *r) {
   }
   /* A tied node moves with others, wholly. */
   for (int q = 0; q < r->body.ties.n; ++q)
-    r->faces.node_fixed[r->body.ties.node_id[q]] = (unsigned char)0xff;
+    r->faces.node_fixed[r->body.ties.node_id[q]] = 0xff;
 }
 
 static status build(run *r) {

@@ -43,7 +43,7 @@ static int is_good(int n, const double *M, int i, int j) {
 
 static int draw(unsigned *seed, int count) {
   *seed = *seed * 1664525u + 1013904223u;
-  return (int)((double)(*seed >> 8) * 0x1p-24 * count);
+  return (int)((*seed >> 8) * 0x1p-24 * count);
 }
 
 /* Column to exchange with row i: i itself, or the partner j for which both
@@ -407,7 +407,7 @@ static void start(newton_run *s, int k, unsigned *seed) {
   double size = ldexp(1.0, k / 3 % 10 - 2);
   for (int i = 0; i < s->p->n; ++i) {
     *seed = *seed * 1664525u + 1013904223u;
-    double random = (double)(*seed >> 8) * 0x1p-24;
+    double random = (*seed >> 8) * 0x1p-24;
     s->z[i] = k == 0   ? 0.0
               : k == 1 ? fmax(0.0, -s->q[i])
                        : fmax(0.0, size * (2.0 * random - 1.0));
@@ -553,8 +553,7 @@ static int keep(run *s) {
 /* Positive numbers of a fixed series, [0.25, 4). */
 static double cover(unsigned *seed) {
   *seed = *seed * 1664525u + 1013904223u;
-  return ldexp(1.0 + (double)(*seed >> 8) * 0x1p-24,
-               (int)(*seed >> 6 & 3u) - 2);
+  return ldexp(1.0 + (*seed >> 8) * 0x1p-24, (int)(*seed >> 6 & 3u) - 2);
 }
 
 /* Attempt k: plain; in natural units; then with other covering vectors and

@@ -217,9 +217,8 @@ void states_all_stick(states *s) {
   memset(s->guess.closed, 0, cp->m);
   for (int i = 0; i < cp->n; ++i) {
     s->guess.closed[i * cp->dim] = 1;
-    s->guess.mode[i] = cp->g0 != NULL && !contact_has_side(cp, i)
-                           ? (unsigned char)STICK
-                           : FREE;
+    s->guess.mode[i] =
+        cp->g0 != NULL && !contact_has_side(cp, i) ? STICK : FREE;
   }
 }
 
