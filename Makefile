@@ -28,7 +28,8 @@ headers  := cholmod.h umfpack.h lapacke.h cblas.h hdf5.h gmshc.h check.h
 
 march    := $(if $(filter x86_64-%,$(shell $(CC) -dumpmachine 2>/dev/null)),\
               -march=x86-64-v2)
-warnings := -Wall -Wextra -Wno-unused-parameter -Wpedantic -Wshadow -Wconversion -Werror
+warnings := -Wall -Wextra -Wno-unused-parameter -Wpedantic -Wshadow -Wconversion \
+            -Wno-sign-conversion -Werror
 optimise_release := -O3 $(march) -g1 -fno-math-errno
 optimise_debug   := -O0 -g3
 optimise_asan    := -O1 -g2 -fsanitize=address,undefined \

@@ -115,13 +115,12 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
     *done = 1;
     return OK;
   }
-  PASS_NEW_ALL(OF(Z, (size_t)m * (size_t)k), OF(G, (size_t)k * (size_t)k),
-               OF(y, k), OF(root, 5 * k), OF(pivot, 2 * k));
+  PASS_NEW_ALL(OF(Z, (size_t)m * k), OF(G, (size_t)k * k), OF(y, k),
+               OF(root, 5 * k), OF(pivot, 2 * k));
   for (int c = 0; c < k; ++c) {
-    double *z = Z + (size_t)m * (size_t)c;
+    double *z = Z + (size_t)m * c;
     for (int dof = 0; dof < m; ++dof)
-      z[dof] = slack(cp, p, dof) *
-               inverse->kernel[(size_t)m * (size_t)c + (size_t)dof];
+      z[dof] = slack(cp, p, dof) * inverse->kernel[(size_t)m * c + dof];
     follow_limit(cp, p, z);
   }
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1.0,
@@ -238,7 +237,7 @@ static double pair_rounding(const contact_problem *cp,
     for (int i = 0; i < cp->m; ++i) p->t[i] += size[i];
   }
   for (int j = 0; cp->op == NULL && j < cp->m; ++j) {
-    const double *column = M + (size_t)j * (size_t)cp->m;
+    const double *column = M + (size_t)j * cp->m;
     double size = fabs(x[j]);
     for (int i = 0; size > 0.0 && i < cp->m; ++i)
       p->t[i] += size * fabs(column[i]);

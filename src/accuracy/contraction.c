@@ -44,7 +44,7 @@ static void add_turning(linear_contact *s) {
     for (int t = 1; a % 3 > 0 && at->slip[a / 3] && t < 3; ++t) {
       const int b = a - a % 3 + t;
       if (at->place[a] < 0 || at->place[b] < 0) continue;
-      s->K[(size_t)at->place[a] + (size_t)at->n_free * (size_t)at->place[b]] +=
+      s->K[at->place[a] + (size_t)at->n_free * at->place[b]] +=
           linear_turn(at, a, b);
     }
 }
@@ -57,10 +57,10 @@ static status factor(linear_contact *s, int *good) {
     *good = !singular;
     return OK;
   }
-  size_t ld = (size_t)s->at.n_free, m = (size_t)s->at.cp->m;
+  size_t ld = s->at.n_free, m = s->at.cp->m;
   PASS_NEW(s->K, ld * ld);
   for (size_t j = 0; j < ld; ++j) {
-    const double *column = s->at.cp->A + m * (size_t)s->at.free_id[j];
+    const double *column = s->at.cp->A + m * s->at.free_id[j];
     for (size_t i = j; i < ld; ++i) s->K[i + ld * j] = column[s->at.free_id[i]];
   }
   if (s->at.cp->dim == 3) add_turning(s);
@@ -73,8 +73,8 @@ static status factor(linear_contact *s, int *good) {
 static double solve(linear_contact *s) {
   const contact_operator *op = s->at.cp->op;
   double energy = 0.0;
-  memset(s->full, 0, (size_t)s->at.cp->m * sizeof *s->full);
-  memset(s->b, 0, (size_t)s->at.cp->m * sizeof *s->b);
+  CLEAR(s->full, s->at.cp->m);
+  CLEAR(s->b, s->at.cp->m);
   for (int a = 0; a < s->at.n_free; ++a) s->b[s->at.free_id[a]] = s->x[a];
   op->solve(op->ctx, s->b, s->full, s->Ax);
   for (int a = 0; a < s->at.n_free; ++a) {
@@ -104,12 +104,12 @@ static double move(linear_contact *s) {
 
 static status gather_columns(linear_contact *s) {
   if (s->at.cp->op != NULL) return OK;
-  PASS_NEW(s->P, (size_t)s->at.n_free * (size_t)s->at.n_closed);
+  PASS_NEW(s->P, (size_t)s->at.n_free * s->at.n_closed);
   double *to = s->P;
   for (int i = 0; i < s->at.cp->n; ++i) {
     if (!s->at.closed[i]) continue;
     const double *column =
-        s->at.cp->A + (size_t)(i * s->at.cp->dim) * (size_t)s->at.cp->m;
+        s->at.cp->A + (size_t)(i * s->at.cp->dim) * s->at.cp->m;
     for (int a = 0; a < s->at.n_free; ++a) *to++ = column[s->at.free_id[a]];
   }
   return OK;
@@ -191,7 +191,7 @@ static signed char state_of(const linear_contact *s, int dof) {
 /* The known rate of these states comes first, *same = 1; or they replace the
  * least recently used rate. */
 static status compare(const linear_contact *s, known_rate *k, int *same) {
-  const size_t m = (size_t)s->at.cp->m;
+  const size_t m = s->at.cp->m;
   int at = 0;
   if (k->state == NULL || k->m != s->at.cp->m) {
     known_rate_forget(k);
@@ -200,13 +200,13 @@ static status compare(const linear_contact *s, known_rate *k, int *same) {
   }
   OWNED_NEW(signed char, now, m);
   for (int dof = 0; dof < s->at.cp->m; ++dof) now[dof] = state_of(s, dof);
-  while (at < k->n && memcmp(k->state + m * (size_t)at, now, m) != 0) ++at;
+  while (at < k->n && memcmp(k->state + m * at, now, m) != 0) ++at;
   *same = at < k->n;
   if (!*same && k->n < KNOWN_RATES) ++k->n;
   if (at == KNOWN_RATES) --at;
   double rate = k->rate[at];
-  memmove(k->state + m, k->state, m * (size_t)at);
-  memmove(k->rate + 1, k->rate, (size_t)at * sizeof *k->rate);
+  memmove(k->state + m, k->state, m * at);
+  memmove(k->rate + 1, k->rate, at * sizeof *k->rate);
   memcpy(k->state, now, m);
   k->rate[0] = rate;
   return OK;

@@ -26,7 +26,7 @@ struct dense_inverse {
 /* Lower triangle of L = D M D with a unit diagonal; 0: not symmetric or no
  * positive diagonal. */
 static int scale(const double *M, dense_inverse *d) {
-  size_t m = (size_t)d->m;
+  size_t m = d->m;
   for (size_t i = 0; i < m; ++i) {
     if (!(M[i * (m + 1)] > 0.0)) return 0;
     d->unit[i] = 1.0 / sqrt(M[i * (m + 1)]);
@@ -59,10 +59,10 @@ static int factor(dense_inverse *d, double *work, int *iwork) {
 
 /* Null vectors of L, in the unknowns before the scaling. */
 static status find_kernel(dense_inverse *d) {
-  size_t m = (size_t)d->m;
-  PASS_NEW(d->kernel, m * (size_t)(d->m - d->rank));
+  size_t m = d->m;
+  PASS_NEW(d->kernel, m * (d->m - d->rank));
   dense_null(d->m, d->rank, d->L, d->pivot, d->y, d->kernel);
-  for (size_t k = 0; k < m * (size_t)(d->m - d->rank); ++k)
+  for (size_t k = 0; k < m * (d->m - d->rank); ++k)
     d->kernel[k] *= d->unit[k % m];
   return OK;
 }
@@ -72,7 +72,7 @@ status dense_inverse_new(int m, const double *M, dense_inverse **out) {
   OWNED int *iwork = NULL;
   MAKES(dense_inverse, d, out);
   d->m = m;
-  PASS_NEW_ALL(OF(d->L, (size_t)m * (size_t)m), OF(d->unit, m), OF(d->pivot, m),
+  PASS_NEW_ALL(OF(d->L, (size_t)m * m), OF(d->unit, m), OF(d->pivot, m),
                OF(d->y, m), OF(work, 3 * m), OF(iwork, m));
   if (scale(M, d) && factor(d, work, iwork)) return find_kernel(d);
   memory_free(d);
@@ -101,9 +101,9 @@ void dense_inverse_solve(dense_inverse *d, const double *x, double *v) {
 }
 
 void dense_inverse_fill(dense_inverse *d, double *N, int *done) {
-  size_t m = (size_t)d->m;
+  size_t m = d->m;
   *done = d->rank == d->m;
-  memset(N, 0, m * m * sizeof *N);
+  CLEAR(N, m * m);
   for (size_t j = 0; j < m && *done; ++j) {
     N[j * (m + 1)] = 1.0;
     dense_inverse_solve(d, N + m * j, N + m * j);

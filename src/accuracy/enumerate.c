@@ -300,7 +300,7 @@ static int add_row(search *s, int dof) {
 }
 
 static void back_substitute(const search *s, double *x) {
-  memset(x, 0, (size_t)s->cp->m * sizeof *x);
+  CLEAR(x, s->cp->m);
   for (int q = s->n_row - 1; q >= 0; --q) {
     double sum = s->row[q][s->cp->m];
     for (int p = q + 1; p < s->n_row; ++p)

@@ -47,8 +47,7 @@ static double energy(const contact_problem *cp, const double *a,
 static double unit_energy(const contact_problem *cp) {
   const double *M = contact_matrix(cp);
   double scale = contact_scale(cp), most = 0.0;
-  for (int i = 0; i < cp->m; ++i)
-    most = fmax(most, M[(size_t)i * (size_t)(cp->m + 1)]);
+  for (int i = 0; i < cp->m; ++i) most = fmax(most, M[(size_t)i * (cp->m + 1)]);
   return most > 0.0 ? UNIT * UNIT * scale * (scale / most) : 0.0;
 }
 

@@ -157,10 +157,9 @@ struct space_recovery {
 
 /* 1 if the stress of a solution may be continuous across two sections. */
 static int same_material(const domain *d, int a, int b) {
-  size_t size = (size_t)(d->ns * d->ns);
+  size_t size = d->ns * d->ns;
   return d->kin[a] == d->kin[b] && d->thickness[a] == d->thickness[b] &&
-         memcmp(d->E + size * (size_t)a, d->E + size * (size_t)b,
-                size * sizeof *d->E) == 0;
+         memcmp(d->E + size * a, d->E + size * b, size * sizeof *d->E) == 0;
 }
 
 /* of[n_section]: the first section of the same material. */
@@ -184,7 +183,7 @@ static status find_regions(space_recovery *s) {
     if (d->zone[k] >= n_zone) n_zone = d->zone[k] + 1;
   OWNED_NEW(int, material, s->n_section);
   OWNED int *region = NULL;
-  PASS_NEW(region, (size_t)s->n_section * (size_t)n_zone);
+  PASS_NEW(region, (size_t)s->n_section * n_zone);
   find_materials(s, material);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     int *at = &region[material[d->section_id[k]] * n_zone +
@@ -197,7 +196,7 @@ static status find_regions(space_recovery *s) {
 
 status space_compliance(const domain *d, int section, double *S) {
   int ns = d->ns, n = 0, active[MAX_NS];
-  const double *E = d->E + (size_t)(ns * ns) * (size_t)section;
+  const double *E = d->E + (size_t)(ns * ns) * section;
   double M[MAX_NS * MAX_NS];
   for (int i = 0; i < ns; ++i)
     if (i != 2 || d->kin[section] != PLANE_STRESS) active[n++] = i;
@@ -241,14 +240,13 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   s->d = d;
   for (int k = 0; k < m->n_elem; ++k)
     if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;
-  PASS_NEW_ALL(OF(s->region, m->n_elem),
-               OF(s->compliance, d->ns * d->ns * s->n_section),
-               OF(s->start, m->n_node + 1),
-               OF(s->elem, (size_t)(m->dim + 1) * (size_t)m->n_elem),
-               OF(s->patch, m->n_elem), OF(s->stamp, m->n_elem),
-               OF(s->weight, m->n_elem), OF(s->seen, m->n_node),
-               OF(s->recovered, (size_t)d->ns * (size_t)m->n_node),
-               OF(s->centroid, m->dim * m->n_elem), OF(s->measure, m->n_elem));
+  PASS_NEW_ALL(
+      OF(s->region, m->n_elem), OF(s->compliance, d->ns * d->ns * s->n_section),
+      OF(s->start, m->n_node + 1),
+      OF(s->elem, (size_t)(m->dim + 1) * m->n_elem), OF(s->patch, m->n_elem),
+      OF(s->stamp, m->n_elem), OF(s->weight, m->n_elem), OF(s->seen, m->n_node),
+      OF(s->recovered, (size_t)d->ns * m->n_node),
+      OF(s->centroid, m->dim * m->n_elem), OF(s->measure, m->n_elem));
   find_centroids(m, s->centroid);
   for (int k = 0; k < m->n_elem; ++k) s->measure[k] = element_weight(d, k);
   PASS(find_regions(s));
@@ -353,7 +351,7 @@ static void normal_equations(const space_recovery *s, int node, int n,
                              double size, double *G) {
   const int p = s->d->mesh->dim + 1;
   double basis[MAX_BASIS];
-  memset(G, 0, (size_t)(p * p) * sizeof *G);
+  CLEAR(G, p * p);
   for (int k = 0; k < n; ++k) {
     basis_at(s, node, k, size, basis);
     for (int j = 0; j < p; ++j)
@@ -408,7 +406,7 @@ static void add_up(int n, const int *elem, const double *weight, int nq,
                    const double *q, double *value) {
   for (int i = 0; i < nq; ++i) value[i] = 0.0;
   for (int k = 0; k < n; ++k) {
-    const double *t = q + (size_t)nq * (size_t)elem[k];
+    const double *t = q + (size_t)nq * elem[k];
     for (int i = 0; i < nq; ++i) value[i] += weight[k] * t[i];
   }
 }
@@ -433,11 +431,11 @@ static status keep_region(space_recovery *s, int region, fit_weights *w) {
   PASS_NEW(w->start, m->n_node + 1);
   for (int i = 0; i < m->n_node; ++i) {
     const int n = gather(s, i, region);
-    const size_t at = (size_t)w->start[i], next = at + (size_t)n;
+    const size_t at = w->start[i], next = at + n;
     if (next > have) PASS(grow(w, &have, next));
     w->start[i + 1] = (int)next;
     if (n == 0) continue;
-    memcpy(w->elem + at, s->patch, (size_t)n * sizeof *s->patch);
+    COPY(w->elem + at, s->patch, n);
     fit(s, i, n, w->weight + at);
   }
   return OK;
@@ -482,7 +480,7 @@ static double energy_product(int ns, const double *S, const double *a,
 
 static const double *compliance_of(const space_recovery *s, int elem_id) {
   return s->compliance +
-         (size_t)(s->d->ns * s->d->ns) * (size_t)s->d->section_id[elem_id];
+         (size_t)(s->d->ns * s->d->ns) * s->d->section_id[elem_id];
 }
 
 /* Adds a S b and b S b. */
@@ -499,8 +497,8 @@ static inline void add_products(int ns, const double *S, const double *a,
 /* d[ns] of a field at node v less that of the element; added to all[ns]. */
 static inline void difference(int ns, const space_field *f, int elem_id, int v,
                               double *d, double *all) {
-  const double *node = f->node + (size_t)ns * (size_t)v;
-  const double *own = f->element + (size_t)ns * (size_t)elem_id;
+  const double *node = f->node + (size_t)ns * v;
+  const double *own = f->element + (size_t)ns * elem_id;
   for (int i = 0; i < ns; ++i) {
     d[i] = node[i] - own[i];
     all[i] += d[i];
@@ -551,7 +549,7 @@ static void add_region(space_recovery *s, int region, const double *sigma,
   const space_field own = {sigma, s->recovered};
   space_recover(s, region, d->ns, sigma, s->recovered);
   for (int e = 0; e < d->mesh->n_elem; ++e) {
-    const double *t = sigma + (size_t)d->ns * (size_t)e;
+    const double *t = sigma + (size_t)d->ns * e;
     if (space_region(s, e) != region) continue;
     double square;
     space_product(s, e, &own, &own, &square);

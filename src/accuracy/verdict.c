@@ -110,7 +110,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   if (lemke == NULL || !contact_has_stiffness(cp) || cp->n > LARGEST) return OK;
   contact_problem own = *cp;
   if (cp->op != NULL) {
-    PASS_NEW(A, (size_t)cp->m * (size_t)cp->m);
+    PASS_NEW(A, (size_t)cp->m * cp->m);
     contact_dense(cp, A);
     own.A = A;
     own.op = NULL;
@@ -123,7 +123,7 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   *end = rep.outcome;
   const double *ray = lemke_ray(work);
   if (rep.outcome == STOPPED_RAY && ray != NULL)
-    memcpy(v, ray, (size_t)cp->m * sizeof *v);
+    COPY(v, ray, cp->m);
   else if (rep.outcome == STOPPED_RAY)
     *end = STOPPED_STAGNATION;
   if (form != NULL) given_form_move(form, v);
@@ -221,7 +221,7 @@ static status add_loads(const words *w, const verdict_scene *s, const double *u,
 /* The rigid motion of the body by the contact nodes, without load. */
 static status add_drive(const words *w, const verdict_scene *s,
                         const double *v) {
-  size_t n = (size_t)s->msh->dim * (size_t)s->msh->n_node;
+  size_t n = (size_t)s->msh->dim * s->msh->n_node;
   OWNED double *F = NULL, *u = NULL, *f_c = NULL;
   PASS_NEW_REALS(n, &F, &u);
   PASS_NEW(f_c, s->cp->m);

@@ -129,6 +129,11 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
   PASS_NEW(*out, 1);        \
   type *s = *out;           \
   OWNS(s)
+/* SCRATCH; what is requested from here to the end of the block ends there, if
+ * it has no other owner: for what calls nothing that keeps a block. */
+#define SCRATCH                 \
+  OWNED_NEW(char, scratch_, 1); \
+  OWNS(scratch_)
 void *memory_own(void *p); /* the owner before, for memory_own_again */
 void memory_own_again(void *const *before);
 

@@ -230,10 +230,10 @@ static int compare_messages(const void *x, const void *y) {
 
 /* Messages in order into sorted[]; without memory as they were added. */
 static const message **sorted_messages(const message_log *log) {
-  const message **sorted = memory_new((size_t)log->n, sizeof *sorted);
+  const message **sorted = memory_new(log->n, sizeof *sorted);
   if (sorted == NULL) return NULL;
   for (int i = 0; i < log->n; ++i) sorted[i] = &log->items[i];
-  qsort(sorted, (size_t)log->n, sizeof *sorted, compare_messages);
+  qsort(sorted, log->n, sizeof *sorted, compare_messages);
   return sorted;
 }
 

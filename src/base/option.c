@@ -119,7 +119,7 @@ const char *candidate_name(const void *names, int i) {
   const name_list *l = names;
   const char *p;
   if (i >= l->n) return NULL;
-  const char *row = (const char *)l->first + (size_t)i * l->size;
+  const char *row = (const char *)l->first + i * l->size;
   memcpy(&p, row + l->offset, sizeof p);
   if (p != NULL && l->behind > 0) memcpy(&p, p + l->behind - 1, sizeof p);
   return p;

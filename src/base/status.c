@@ -39,19 +39,19 @@ const char *status_path(void) { return path; }
 const char *status_name(status s) {
 #define STATUS_NAME(name, exit_code, text) #name,
   static const char *const names[] = {STATUS_LIST(STATUS_NAME)};
-  return (unsigned)s < STATUS_COUNT ? names[s] : "?";
+  return s < STATUS_COUNT ? names[s] : "?";
 }
 
 const char *status_text(status s) {
 #define STATUS_TEXT(name, exit_code, text) text,
   static const char *const texts[] = {STATUS_LIST(STATUS_TEXT)};
-  return (unsigned)s < STATUS_COUNT ? texts[s] : "?";
+  return s < STATUS_COUNT ? texts[s] : "?";
 }
 
 int status_exit_code(status s) {
 #define STATUS_EXIT(name, exit_code, text) exit_code,
   static const int codes[] = {STATUS_LIST(STATUS_EXIT)};
-  return (unsigned)s < STATUS_COUNT ? codes[s] : codes[ERR_INTERNAL];
+  return s < STATUS_COUNT ? codes[s] : codes[ERR_INTERNAL];
 }
 
 int status_is_request(status s) { return status_exit_code(s) > 128; }

@@ -29,8 +29,8 @@ const char *text_number(double value, int digits) {
   snprintf(text, TEXT_ROOM, "%.*E", digits, value == 0 ? 0.0 : value);
   char *e = strchr(text, 'E');
   int exponent = atoi(e + 1);
-  snprintf(e, (size_t)(text + TEXT_ROOM - e), "E%c%03d",
-           exponent < 0 ? '-' : '+', abs(exponent));
+  snprintf(e, text + TEXT_ROOM - e, "E%c%03d", exponent < 0 ? '-' : '+',
+           abs(exponent));
   return text;
 }
 
@@ -111,7 +111,7 @@ int text_piece(const char **text, char piece[PIECE_SIZE]) {
     length +=
         snprintf(piece + length, PIECE_SIZE - (size_t)length, "\\x%02X", s[k]);
   if (!seen) return length;
-  memcpy(piece, s, (size_t)n);
+  memcpy(piece, s, n);
   piece[n] = '\0';
   return n;
 }
@@ -119,7 +119,7 @@ int text_piece(const char **text, char piece[PIECE_SIZE]) {
 size_t text_shown(char *out, size_t size, const char *text) {
   char piece[PIECE_SIZE];
   size_t used = 0, n;
-  while ((n = (size_t)text_piece(&text, piece)) > 0 && used + n < size) {
+  while ((n = text_piece(&text, piece)) > 0 && used + n < size) {
     memcpy(out + used, piece, n);
     used += n;
   }

@@ -53,35 +53,34 @@ void contact_add_columns(const contact_problem *cp, int node_id,
   if (cp->blocks != NULL)
     sparse_blocks_add(cp->blocks, node_id, x, y);
   else
-    cblas_dgemv(
-        CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0,
-        contact_matrix(cp) + (size_t)(node_id * cp->dim) * (size_t)cp->m, cp->m,
-        x, 1, 1.0, y, 1);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->dim, 1.0,
+                contact_matrix(cp) + (size_t)(node_id * cp->dim) * cp->m, cp->m,
+                x, 1, 1.0, y, 1);
 }
 
 void contact_column(const contact_problem *cp, int dof, double *column) {
   double e[3] = {0.0, 0.0, 0.0};
   e[dof % cp->dim] = 1.0;
-  memset(column, 0, (size_t)cp->m * sizeof *column);
+  CLEAR(column, cp->m);
   contact_add_columns(cp, dof / cp->dim, e, column);
 }
 
 void contact_block(const contact_problem *cp, int node_id, double *block) {
   const int d = cp->dim;
-  const size_t m = (size_t)cp->m, first = (size_t)(node_id * d) * (m + 1);
+  const size_t m = cp->m, first = node_id * d * (m + 1);
   if (cp->blocks != NULL) {
     COPY(block, sparse_blocks_own(cp->blocks, node_id), d * d);
     return;
   }
   for (int j = 0; j < d; ++j)
-    COPY(block + d * j, contact_matrix(cp) + first + m * (size_t)j, d);
+    COPY(block + d * j, contact_matrix(cp) + first + m * j, d);
 }
 
 /* Column by column; symmetric to the last bit. */
 static void form_entries(const contact_problem *cp, double *M) {
-  const size_t m = (size_t)cp->m;
+  const size_t m = cp->m;
   double *e = cp->op->room;
-  memset(e, 0, m * sizeof *e);
+  CLEAR(e, m);
   for (size_t j = 0; j < m; ++j) {
     e[j] = 1.0;
     contact_apply(cp, e, M + m * j);
@@ -98,7 +97,7 @@ void contact_dense(const contact_problem *cp, double *M) {
   else if (cp->blocks != NULL)
     sparse_blocks_dense(cp->blocks, M);
   else
-    memcpy(M, contact_matrix(cp), (size_t)cp->m * (size_t)cp->m * sizeof *M);
+    COPY(M, contact_matrix(cp), (size_t)cp->m * cp->m);
 }
 
 void contact_reaction(const contact_problem *cp, const double *u, double *r) {
@@ -112,7 +111,7 @@ double contact_node_limit(const contact_problem *cp, const double *r,
   double g = cp->g0[node_id];
   if (cp->B != NULL)
     for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
-      double p = -r[(size_t)cp->B->col[k] * (size_t)cp->dim];
+      double p = -r[(size_t)cp->B->col[k] * cp->dim];
       if (p > 0.0 || isnan(p)) g += cp->B->val[k] * p;
     }
   return g > 0.0 || isnan(g) ? g : 0.0;
@@ -146,7 +145,7 @@ double contact_diagonal(const contact_problem *cp, int dof) {
   if (cp->op != NULL) return cp->op->diagonal[dof];
   if (cp->blocks != NULL)
     return sparse_blocks_own(cp->blocks, dof / cp->dim)[k + k * cp->dim];
-  return contact_matrix(cp)[(size_t)dof * (size_t)cp->m + (size_t)dof];
+  return contact_matrix(cp)[(size_t)dof * cp->m + dof];
 }
 
 double contact_largest_diagonal(const contact_problem *cp) {
@@ -204,7 +203,7 @@ static double load_of_operator(const contact_problem *cp, int closed) {
 static double load_of_rows(const contact_problem *cp, int first, int rows,
                            int closed) {
   double y[CHUNK], d[CHUNK], worst = 0.0;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   for (int i = 0; i < rows; ++i) y[i] = cp->f[first + i];
   for (int j0 = 0; j0 < cp->m; j0 += CHUNK) {
     int cols = cp->m - j0 < CHUNK ? cp->m - j0 : CHUNK, zero = 1;
@@ -214,7 +213,7 @@ static double load_of_rows(const contact_problem *cp, int first, int rows,
     }
     if (zero) continue;
     cblas_dgemv(CblasColMajor, CblasNoTrans, rows, cols, -1.0,
-                cp->A + first + m * (size_t)j0, cp->m, d, 1, 1.0, y, 1);
+                cp->A + first + m * j0, cp->m, d, 1, 1.0, y, 1);
   }
   for (int i = 0; i < rows; ++i)
     if (!contact_held(cp, first + i)) worst = larger(worst, fabs(y[i]));

@@ -16,13 +16,12 @@ static const double NOTHING = 0x1p-40; /* -, diagonal over its column */
 
 static double largest_of_column(const contact_problem *cp, int dof) {
   const sparse_blocks *b = cp->blocks;
-  const size_t d = (size_t)cp->dim, m = (size_t)cp->m;
+  const size_t d = cp->dim, m = cp->m;
   double most = 0.0;
   if (cp->op != NULL) return 0.0;
-  if (b == NULL) return largest_entry(m, cp->W + m * (size_t)dof);
+  if (b == NULL) return largest_entry(m, cp->W + m * dof);
   for (int k = b->start[dof / cp->dim]; k < b->start[dof / cp->dim + 1]; ++k)
-    most = fmax(
-        most, largest_entry(d, b->val + d * (d * (size_t)k + (size_t)dof % d)));
+    most = fmax(most, largest_entry(d, b->val + d * (d * k + dof % d)));
   return most;
 }
 
@@ -30,7 +29,7 @@ static double largest_of_column(const contact_problem *cp, int dof) {
 static double own_compliance(const contact_problem *cp, int dof) {
   if (cp->op != NULL) return 1.0 / contact_diagonal(cp, dof);
   if (cp->blocks != NULL) return contact_diagonal(cp, dof);
-  return cp->W[(size_t)dof * (size_t)(cp->m + 1)];
+  return cp->W[(size_t)dof * (cp->m + 1)];
 }
 
 /* D: 1/W_ii, equal in the tangents of a node, so that discs stay discs; of the
@@ -57,13 +56,13 @@ static void scaling(const contact_problem *cp, double *D) {
  * (Collatz and Wielandt: the largest ratio bounds it). v, z [m]. */
 static double spectrum_bound(const contact_problem *cp, const double *D,
                              double *v, double *z) {
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   double bound = HUGE_VAL;
   for (size_t i = 0; i < m; ++i) v[i] = 1.0;
   for (int k = 0; k < SHARPENINGS; ++k) {
     double ratio = 0.0;
     if (cp->blocks != NULL) sparse_blocks_bound(cp->blocks, v, z);
-    if (cp->blocks == NULL) memset(z, 0, m * sizeof *z);
+    if (cp->blocks == NULL) CLEAR(z, m);
     for (size_t j = 0; j < m && cp->blocks == NULL; ++j)
       for (size_t i = 0; i < m; ++i) z[i] += fabs(cp->W[i + m * j]) * v[j];
     for (size_t i = 0; i < m; ++i) {
@@ -77,7 +76,7 @@ static double spectrum_bound(const contact_problem *cp, const double *D,
 }
 
 static int is_symmetric(int m, const double *M) {
-  size_t n = (size_t)m;
+  size_t n = m;
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < j; ++i)
       if (!(fabs(M[i + n * j] - M[j + n * i]) <=
@@ -87,14 +86,14 @@ static int is_symmetric(int m, const double *M) {
 }
 
 static size_t entries(const contact_problem *cp) {
-  size_t size = (size_t)cp->m * (size_t)cp->m, count = 0;
+  size_t size = (size_t)cp->m * cp->m, count = 0;
   for (size_t k = 0; k < size; ++k) count += cp->W[k] != 0.0;
   return count;
 }
 
 status compliance_rows(const contact_problem *cp, sparse_rows *rows) {
   if (cp->blocks != NULL) return sparse_blocks_rows(cp->blocks, rows);
-  size_t m = (size_t)cp->m, count = entries(cp);
+  size_t m = cp->m, count = entries(cp);
   OWNED int *at = NULL;
   PASS_NEW_ALL(OF(at, m), OF(rows->start, m + 1), OF(rows->col, count),
                OF(rows->val, count));
@@ -183,7 +182,7 @@ status force_set_new(const contact_problem *cp, force_set **out) {
     PASS(step_of_operator(s, cp, v, v + cp->m));
   } else {
     s->symmetric = cp->blocks == NULL && is_symmetric(cp->m, cp->W);
-    if (cp->blocks != NULL || (double)entries(cp) <= SPARSE * cp->m * cp->m)
+    if (cp->blocks != NULL || entries(cp) <= SPARSE * cp->m * cp->m)
       PASS(compliance_rows(cp, &s->rows));
     s->step = 1.0 / spectrum_bound(cp, s->D, v, v + cp->m);
   }

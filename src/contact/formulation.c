@@ -120,7 +120,7 @@ struct given_form {
 };
 
 static status new_arrays(const contact_problem *cp, given_form *g) {
-  size_t n = (size_t)g->n, m = (size_t)cp->m;
+  size_t n = g->n, m = cp->m;
   PASS_NEW_ALL(OF(g->node, n), OF(g->A, m * m), OF(g->L, n * n),
                OF(g->Y, n * m), OF(g->f, m), OF(g->gap, cp->n),
                OF(g->met, cp->n), OF(g->y, n), OF(g->force, n),
@@ -129,12 +129,12 @@ static status new_arrays(const contact_problem *cp, given_form *g) {
 }
 
 static size_t normal(const given_form *g, int k) {
-  return (size_t)g->dim * (size_t)g->node[k];
+  return (size_t)g->dim * g->node[k];
 }
 
 /* L L' = A_gg */
 static status factorise(const contact_problem *cp, given_form *g) {
-  size_t n = (size_t)g->n, m = (size_t)cp->m;
+  size_t n = g->n, m = cp->m;
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < n; ++i)
       g->L[i + n * j] = cp->A[normal(g, (int)i) + m * normal(g, (int)j)];
@@ -152,14 +152,14 @@ static status factorise(const contact_problem *cp, given_form *g) {
 
 /* Y = inv(L) A_gc and A' = A - Y'Y, diagonal in the rows of g. */
 static void condense_normals(const contact_problem *cp, given_form *g) {
-  size_t n = (size_t)g->n, m = (size_t)cp->m;
+  size_t n = g->n, m = cp->m;
   for (size_t j = 0; j < m; ++j)
     for (size_t k = 0; k < n; ++k)
       g->Y[k + n * j] = cp->A[normal(g, (int)k) + m * j];
   for (size_t k = 0; k < n; ++k) CLEAR(g->Y + n * normal(g, (int)k), n);
   cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit,
               g->n, cp->m, 1.0, g->L, g->n, g->Y, g->n);
-  memcpy(g->A, cp->A, m * m * sizeof *g->A);
+  COPY(g->A, cp->A, m * m);
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, cp->m, g->n, -1.0, g->Y,
               g->n, 1.0, g->A, cp->m);
   for (size_t k = 0; k < n; ++k) {
@@ -203,7 +203,7 @@ static status set_limit(given_form *g, const contact_problem *cp,
     PASS_NEW(g->mu, g->n_entry);
   }
   /* The gaps are not in use yet: the array stores the forces by node. */
-  memset(g->gap, 0, (size_t)cp->n * sizeof *g->gap);
+  CLEAR(g->gap, cp->n);
   for (int k = 0; k < g->n; ++k) g->gap[g->node[k]] = g->force[k];
   for (int i = 0; i < cp->n; ++i) {
     g->g0[i] = cp->g0[i];
@@ -225,10 +225,10 @@ status given_form_set(given_form *g, const contact_problem *cp,
                       const double *force, double reach, double *u, double *r,
                       contact_problem *out) {
   *out = *cp;
-  memcpy(g->force, force, (size_t)g->n * sizeof *force);
+  COPY(g->force, force, g->n);
   PASS(set_limit(g, cp, out));
-  memcpy(g->gap, cp->gap, (size_t)cp->n * sizeof *g->gap);
-  memcpy(g->f, cp->f, (size_t)cp->m * sizeof *g->f);
+  COPY(g->gap, cp->gap, cp->n);
+  COPY(g->f, cp->f, cp->m);
   for (int k = 0; k < g->n; ++k) {
     size_t row = normal(g, k);
     g->y[k] = cp->f[row] - force[k];
@@ -256,14 +256,14 @@ static void put_normals(given_form *g, double *u) {
 }
 
 void given_form_move(given_form *g, double *u) {
-  memset(g->y, 0, (size_t)g->n * sizeof *g->y);
+  CLEAR(g->y, g->n);
   put_normals(g, u);
 }
 
 void given_form_apply(given_form *g, contact_problem *cp, double *u,
                       double *r) {
   put_normals(g, u);
-  memmove(g->met, cp->gap, (size_t)cp->n * sizeof *g->met);
+  memmove(g->met, cp->gap, cp->n * sizeof *g->met);
   for (int k = 0; k < g->n; ++k) {
     g->met[g->node[k]] = g->y[k];
     r[normal(g, k)] = -g->force[k];

@@ -198,7 +198,7 @@ int mirrors_lean(const surface_input *in, const contact_pair *p, int node_id,
 }
 
 int mirrors_have(const mirrors *s, const surface_input *in, int node_id) {
-  const double *x = &in->mesh->x[(size_t)in->mesh->dim * (size_t)node_id];
+  const double *x = &in->mesh->x[(size_t)in->mesh->dim * node_id];
   const double near = rounding * in->mesh->size;
   for (int c = 0; c < in->mesh->dim; ++c) {
     if (!(in->fixed[node_id] >> c & 1)) continue;

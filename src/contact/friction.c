@@ -237,14 +237,10 @@ typedef struct patch {
   int *contact_node; /* [n_node] of the surface, or -1 */
 } patch;
 
-static void patch_free(patch *a) {
-  RELEASE(a->x, a->face, a->active, a->part, a->contact_node);
-}
-
 /* Place of a mesh node in the group, whose ids ascend. */
 static int place_in(const mesh_group *g, int node_id) {
-  const int *at = bsearch(&node_id, g->node_id, (size_t)g->n_node,
-                          sizeof node_id, number_order);
+  const int *at =
+      bsearch(&node_id, g->node_id, g->n_node, sizeof node_id, number_order);
   return (int)(at - g->node_id);
 }
 
@@ -257,18 +253,18 @@ static status patch_new(const contact_surface *s, const surface_input *in,
                         int contact_id, patch *a) {
   const mesh *m = in->mesh;
   const mesh_group *g = in->pairs[contact_id].group;
-  size_t dim = (size_t)m->dim;
-  PASS_NEW_ALL(OF(a->x, dim * (size_t)g->n_node),
-               OF(a->face, m->dim * g->n_item), OF(a->active, g->n_node),
-               OF(a->contact_node, g->n_node));
+  size_t dim = m->dim;
+  OWNS(a);
+  PASS_NEW_ALL(OF(a->x, dim * g->n_node), OF(a->face, m->dim * g->n_item),
+               OF(a->active, g->n_node), OF(a->contact_node, g->n_node));
   if (s->covered != NULL) PASS_NEW(a->part, g->n_node);
   for (int k = 0, i = 0; k < g->n_node; ++k) {
     for (size_t c = 0; c < dim; ++c)
-      a->x[dim * (size_t)k + c] = m->x[dim * (size_t)g->node_id[k] + c];
+      a->x[dim * k + c] = m->x[dim * g->node_id[k] + c];
     while (i < s->n && s->node_id[i] < g->node_id[k]) ++i;
     int there = i < s->n && s->node_id[i] == g->node_id[k];
     a->contact_node[k] = there ? i : -1;
-    a->active[k] = (unsigned char)(there && carries(s, i, contact_id));
+    a->active[k] = there && carries(s, i, contact_id);
     if (a->part != NULL) a->part[k] = there ? s->covered[i] : 1.0;
   }
   for (int k = 0; k < g->n_item; ++k)
@@ -334,12 +330,12 @@ static status nonlocal_average(const friction_card *card,
       .geodesic = own->distance,
       .mirror = {(average_mirror)own->mirror_x, (average_mirror)own->mirror_y,
                  (average_mirror)own->mirror_z}};
-  ENDS_BY(patch_free) patch a = {.x = NULL};
+  OWNED_NEW(patch, a, 1);
   ENDS_BY(sparse_free) sparse_rows G = {.n = 0};
   average_facts facts;
-  PASS(patch_new(s, in, contact_id, &a));
-  PASS(average_build(&a.p, &rule, &G, &facts));
-  PASS(to_surface(s, contact_id, &a, &G, out));
+  PASS(patch_new(s, in, contact_id, a));
+  PASS(average_build(&a->p, &rule, &G, &facts));
+  PASS(to_surface(s, contact_id, a, &G, out));
   warn(own->radius, in->pairs[contact_id].name, &facts, at, log);
   return OK;
 }

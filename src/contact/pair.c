@@ -15,8 +15,8 @@ int surface_tied(const surface_input *in, int node_id) {
   const tie_set *t = in->ties;
   const int *at = t == NULL || t->n == 0
                       ? NULL
-                      : bsearch(&node_id, t->node_id, (size_t)t->n,
-                                sizeof *t->node_id, number_order);
+                      : bsearch(&node_id, t->node_id, t->n, sizeof *t->node_id,
+                                number_order);
   return at == NULL ? -1 : (int)(at - t->node_id);
 }
 
@@ -34,7 +34,7 @@ static int is_moved(const surface_input *in, const contact_pair *p) {
 static int is_held(const surface_input *in, const mortar *m, int q) {
   const int dim = in->mesh->dim;
   double n[3];
-  memcpy(n, m->normal + (size_t)dim * (size_t)q, (size_t)dim * sizeof *n);
+  COPY(n, m->normal + (size_t)dim * q, dim);
   return !(frame_project(dim, in->fixed[m->node_id[q]], n) > PAIR_FIXED_SINE);
 }
 
@@ -45,8 +45,8 @@ int pair_same_normal(int dim, const contact_pair *a, int q,
   double frame[9];
   unsigned char held[3] = {0};
   if (a->group == b->group && frame_is_smooth(dim, m, n)) return 1;
-  memcpy(frame, m, (size_t)dim * sizeof *frame);
-  memcpy(frame + dim, n, (size_t)dim * sizeof *frame);
+  COPY(frame, m, dim);
+  COPY(frame + dim, n, dim);
   return frame_complete(dim, 2, 0, frame, held) < 0;
 }
 
@@ -56,8 +56,8 @@ static int is_taken(const surface_input *in, int pair_id, int q) {
   for (const contact_pair *p = in->pairs; p < now; ++p) {
     const mortar *old = p->coupled;
     if (old == NULL) continue;
-    const int *at = bsearch(&now->coupled->node_id[q], old->node_id,
-                            (size_t)old->n, sizeof *old->node_id, number_order);
+    const int *at = bsearch(&now->coupled->node_id[q], old->node_id, old->n,
+                            sizeof *old->node_id, number_order);
     if (at != NULL &&
         pair_same_normal(in->mesh->dim, p, (int)(at - old->node_id), now, q))
       return 1;
@@ -77,11 +77,11 @@ static int same_change(const contact_pair *a, const contact_pair *b) {
 /* 1: nodes of two surfaces coincide: no step is between them. */
 static int surfaces_meet(const mesh *m, const mesh_group *a,
                          const mesh_group *b) {
-  const size_t dim = (size_t)m->dim;
+  const size_t dim = m->dim;
   for (int i = 0; i < a->n_node; ++i)
     for (int k = 0; k < b->n_node; ++k) {
-      const double *x = m->x + dim * (size_t)a->node_id[i];
-      const double *y = m->x + dim * (size_t)b->node_id[k];
+      const double *x = m->x + dim * a->node_id[i];
+      const double *y = m->x + dim * b->node_id[k];
       double far = 0.0;
       for (size_t c = 0; c < dim; ++c) far = fmax(far, fabs(x[c] - y[c]));
       if (far <= rounding * m->size) return 1;
@@ -142,7 +142,7 @@ status surfaces_couple(const surface_input *in, const double *x,
 static status couple_kept(const surface_input *in, int pair_id, int *n_held,
                           int *n_shared) {
   contact_pair *p = &in->pairs[pair_id];
-  const size_t n = (size_t)in->mesh->dim * (size_t)in->mesh->n_node;
+  const size_t n = (size_t)in->mesh->dim * in->mesh->n_node;
   OWNED unsigned char *dropped = NULL, *shared = NULL;
   int more = 1;
   OWNED_NEW(double, x, n);
@@ -363,12 +363,12 @@ status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
       PASS(place_of(l, first, to->master[e], room, &at));
       for (int c = 0; c < dim; ++c)
         if (source[c] == rows[k].normal)
-          l->part[dim * at + c] += by * to->part[(size_t)dim * e];
+          l->part[dim * at + c] += by * to->part[dim * e];
     }
   }
   for (int c = 0; c < dim; ++c) set_resultant(s, i, c, source[c], m, rows);
   l->n = i + 1;
-  l->start[i + 1] = (size_t)room->n;
+  l->start[i + 1] = room->n;
   return OK;
 }
 
@@ -377,14 +377,14 @@ status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
 double pair_apart(const surface_input *in, const contact_pair *p, int row,
                   const double *n) {
   const mortar *m = p->coupled;
-  const size_t dim = (size_t)in->mesh->dim;
+  const size_t dim = in->mesh->dim;
   const int moved = is_moved(in, p);
   double gap = 0.0;
   for (size_t c = 0; c < dim; ++c) {
-    double by = moved ? in->u[dim * (size_t)m->node_id[row] + c] : 0.0;
+    double by = moved ? in->u[dim * m->node_id[row] + c] : 0.0;
     for (size_t e = m->to.start[row]; moved && e < m->to.start[row + 1]; ++e)
-      by -= m->to.part[dim * e] * in->u[dim * (size_t)m->to.master[e] + c];
-    gap += (m->gap[dim * (size_t)row + c] + by / m->share[row]) * n[c];
+      by -= m->to.part[dim * e] * in->u[dim * m->to.master[e] + c];
+    gap += (m->gap[dim * row + c] + by / m->share[row]) * n[c];
   }
   return gap;
 }
@@ -395,7 +395,7 @@ static double pair_gap(const surface_row *at, double t) {
   const contact_pair *p = at->of;
   double x[3] = {0.0, 0.0, 0.0};
   if (p->change == NULL) return at->apart;
-  memcpy(x, at->x, (size_t)at->dim * sizeof *x);
+  COPY(x, at->x, at->dim);
   return at->apart + p->change_sign * quantity_value(p->change, x, t);
 }
 
@@ -407,11 +407,11 @@ void surface_relative(const contact_surface *s, const double *u, double *w) {
   for (int q = 0; q < s->n; ++q)
     for (int a = 0; a < dim; ++a) {
       const double *row = &s->frame[dim * (dim * q + a)];
-      double sum = dot(dim, row, u + (size_t)dim * (size_t)s->node_id[q]);
+      double sum = dot(dim, row, u + (size_t)dim * s->node_id[q]);
       for (size_t e = l == NULL ? 0 : l->start[q];
            l != NULL && e < l->start[q + 1]; ++e)
-        sum -= l->part[(size_t)dim * e + (size_t)a] *
-               dot(dim, row, u + (size_t)dim * (size_t)l->master[e]);
+        sum -= l->part[dim * e + a] *
+               dot(dim, row, u + (size_t)dim * l->master[e]);
       w[dim * q + a] = sum / surface_share(s, q, a);
     }
 }
@@ -421,14 +421,14 @@ double surface_prescribed(const contact_surface *s, const unsigned char *fixed,
   const int dim = s->dim;
   const node_links *l = s->master;
   const double *row = &s->frame[dim * (dim * q + a)];
-  const size_t at = (size_t)dim * (size_t)s->node_id[q];
+  const size_t at = (size_t)dim * s->node_id[q];
   double sum = 0.0;
   for (int c = 0; c < dim; ++c)
-    if (fixed[at + (size_t)c]) sum += row[c] * ud[at + (size_t)c];
+    if (fixed[at + c]) sum += row[c] * ud[at + c];
   for (size_t e = l == NULL ? 0 : l->start[q]; l != NULL && e < l->start[q + 1];
        ++e)
-    sum -= l->part[(size_t)dim * e + (size_t)a] *
-           dot(dim, row, ud + (size_t)dim * (size_t)l->master[e]);
+    sum -=
+        l->part[dim * e + a] * dot(dim, row, ud + (size_t)dim * l->master[e]);
   return sum / surface_share(s, q, a);
 }
 
@@ -436,7 +436,7 @@ int surface_is_mutual(const contact_surface *s, int q, int a) {
   const node_links *l = s->master;
   if (l == NULL || l->start[q] == l->start[q + 1]) return 1;
   for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
-    if (l->part[(size_t)s->dim * e + (size_t)a] != 0.0) return 1;
+    if (l->part[s->dim * e + a] != 0.0) return 1;
   return 0;
 }
 
@@ -446,11 +446,11 @@ void surface_spread_row(const contact_surface *s, int q, int a, double force,
   const node_links *l = s->master;
   const double *row = &s->frame[dim * (dim * q + a)];
   force /= surface_share(s, q, a);
-  add_scaled(dim, force, row, F + (size_t)dim * (size_t)s->node_id[q]);
+  add_scaled(dim, force, row, F + (size_t)dim * s->node_id[q]);
   for (size_t e = l == NULL ? 0 : l->start[q]; l != NULL && e < l->start[q + 1];
        ++e)
-    add_scaled(dim, -force * l->part[(size_t)dim * e + (size_t)a], row,
-               F + (size_t)dim * (size_t)l->master[e]);
+    add_scaled(dim, -force * l->part[dim * e + a], row,
+               F + (size_t)dim * l->master[e]);
 }
 
 void surface_spread(const contact_surface *s, double factor, const double *r,
@@ -466,7 +466,7 @@ static double add_forces(const contact_surface *s, const double *F, double *r) {
   for (int q = 0; q < s->n; ++q)
     for (int a = 0; a < dim; ++a) {
       const double more = dot(dim, &s->basis[dim * (dim * q + a)],
-                              F + (size_t)dim * (size_t)s->node_id[q]);
+                              F + (size_t)dim * s->node_id[q]);
       r[dim * q + a] += more;
       most = fmax(most, fabs(more));
     }
@@ -478,14 +478,14 @@ static double add_forces(const contact_surface *s, const double *F, double *r) {
 status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r) {
   enum { LONGEST = 100 };
-  const size_t n = (size_t)s->dim * (size_t)n_node;
-  memset(r, 0, (size_t)(s->dim * s->n) * sizeof *r);
+  const size_t n = (size_t)s->dim * n_node;
+  CLEAR(r, s->dim * s->n);
   const double first = add_forces(s, F, r);
   double more = first;
   if (s->master == NULL) return OK;
   OWNED_NEW(double, rest, n);
   for (int k = 0; k < LONGEST && more > rounding * first; ++k) {
-    memcpy(rest, F, n * sizeof *rest);
+    COPY(rest, F, n);
     surface_spread(s, -1, r, rest);
     more = add_forces(s, rest, r);
   }

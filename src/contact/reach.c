@@ -19,7 +19,7 @@ int reach_count(const contact_reach *x, int n) {
 int reach_is_same(const contact_reach *a, const contact_reach *b) {
   if (a->in == NULL || b->in == NULL) return a->in == b->in;
   return a->n_in == b->n_in &&
-         memcmp(a->in, b->in, (size_t)a->n_in * sizeof *a->in) == 0;
+         memcmp(a->in, b->in, a->n_in * sizeof *a->in) == 0;
 }
 
 /* keep[n]: 1 of the nodes to be taken. */
@@ -106,7 +106,7 @@ static void cut_limit(const contact_reach *x, const sparse_rows *from,
 static const double *cut_reals(const contact_reach *x, int size,
                                const double *from, double *to) {
   for (int k = 0; from != NULL && k < x->n_in; ++k)
-    memcpy(to + size * k, from + size * x->in[k], (size_t)size * sizeof *to);
+    COPY(to + size * k, from + size * x->in[k], size);
   return from != NULL ? to : NULL;
 }
 
@@ -117,7 +117,7 @@ void reach_cut(const contact_reach *x, reach_part *part, contact_problem *cp) {
   cp->ut0 = cut_reals(x, dim - 1, cp->ut0, part->ut0);
   cp->g0 = cut_reals(x, 1, cp->g0, part->g0);
   for (int k = 0; held != NULL && k < x->n_in; ++k)
-    memcpy(part->held + dim * k, held + dim * x->in[k], (size_t)dim);
+    memcpy(part->held + dim * k, held + dim * x->in[k], dim);
   if (held != NULL) cp->held = part->held;
   if (cp->B == NULL) return;
   part->B.n = x->n_in;

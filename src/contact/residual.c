@@ -27,7 +27,7 @@ static double root_of(const contact_problem *cp, int node_id) {
 /* 1: an entry of columns a and rows b is above "least". */
 static int joined(const contact_problem *cp, int a, int b, double least) {
   for (int j = a * cp->dim; j < (a + 1) * cp->dim; ++j) {
-    const double *column = contact_matrix(cp) + (size_t)j * (size_t)cp->m;
+    const double *column = contact_matrix(cp) + (size_t)j * cp->m;
     for (int i = b * cp->dim; i < (b + 1) * cp->dim; ++i)
       if (fabs(column[i]) > least) return 1;
   }
@@ -60,7 +60,7 @@ static void find_bodies(const contact_problem *cp, const double *root,
 static void find_sparse_bodies(const contact_problem *cp, const double *root,
                                int *list, contact_bodies *b) {
   const sparse_blocks *W = cp->blocks;
-  const size_t size = (size_t)(cp->dim * cp->dim);
+  const size_t size = cp->dim * cp->dim;
   for (int i = 0; i < cp->n; ++i) b->of[i] = -1;
   for (int first = 0; first < cp->n; ++first) {
     int found = 0;
@@ -72,8 +72,8 @@ static void find_sparse_bodies(const contact_problem *cp, const double *root,
       for (int k = W->start[a]; k < W->start[a + 1]; ++k) {
         const int other = W->row[k];
         const double most =
-            fmax(largest_entry(size, W->val + size * (size_t)k),
-                 largest_entry(size, W->val + size * (size_t)W->mate[k]));
+            fmax(largest_entry(size, W->val + size * k),
+                 largest_entry(size, W->val + size * W->mate[k]));
         if (b->of[other] >= 0 || !(most > JOINED * root[a] * root[other]))
           continue;
         b->of[other] = b->n;
@@ -91,7 +91,7 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   PASS_NEW(b->of, cp->n);
   if (cp->op != NULL) {
     b->n = cp->op->n_body;
-    memcpy(b->of, cp->op->body, (size_t)cp->n * sizeof *b->of);
+    COPY(b->of, cp->op->body, cp->n);
   } else {
     PASS_NEW_ALL(OF(root, cp->n), OF(list, cp->n));
     for (int i = 0; i < cp->n; ++i) root[i] = root_of(cp, i);

@@ -70,7 +70,7 @@ typedef struct node_text {
 
 static node_text describe(const mesh *m, int node_id) {
   node_text d;
-  const double *x = &m->x[(size_t)m->dim * (size_t)node_id];
+  const double *x = &m->x[(size_t)m->dim * node_id];
   if (m->dim == 2)
     snprintf(d.text, sizeof d.text, "node %zu at (%g, %g)", m->node_no[node_id],
              x[0], x[1]);
@@ -91,11 +91,10 @@ static node_text partner(const contact_pair *p) {
 
 /* The row of a candidate along its normal. */
 static surface_row row_of(const builder *b, const candidate *c) {
-  return (surface_row){
-      .of = &b->in->pairs[c->pair_id],
-      .dim = b->dim,
-      .x = &b->in->mesh->x[(size_t)b->dim * (size_t)c->node_id],
-      .normal = c->normal};
+  return (surface_row){.of = &b->in->pairs[c->pair_id],
+                       .dim = b->dim,
+                       .x = &b->in->mesh->x[(size_t)b->dim * c->node_id],
+                       .normal = c->normal};
 }
 
 /* Integrals w[dim] of the P1 functions of the nodes of a face, times thickness
@@ -155,11 +154,10 @@ static void check_axis(const builder *b, const contact_pair *p) {
  * NULL: there is none. */
 static candidate *find(const builder *b, int pair_id, int node_id) {
   const contact_pair *p = &b->in->pairs[pair_id];
-  const int *at =
-      p->support == NULL || surface_tied(b->in, node_id) >= 0
-          ? NULL
-          : bsearch(&node_id, p->group->node_id, (size_t)p->group->n_node,
-                    sizeof *p->group->node_id, number_order);
+  const int *at = p->support == NULL || surface_tied(b->in, node_id) >= 0
+                      ? NULL
+                      : bsearch(&node_id, p->group->node_id, p->group->n_node,
+                                sizeof *p->group->node_id, number_order);
   return at == NULL ? NULL
                     : &b->list[b->first[pair_id] + (at - p->group->node_id)];
 }
@@ -201,7 +199,7 @@ static int give_masters(const builder *b, int pair_id, int row, double w,
       candidate *to = find_near(b, pair_id, l->master[e], normal);
       double part = 0.0;
       for (int c = 0; c < dim; ++c)
-        part += normal[c] * normal[c] * l->part[(size_t)dim * e + (size_t)c];
+        part += normal[c] * normal[c] * l->part[dim * e + c];
       if (to == NULL || !(part > 0.0)) continue;
       if (pass == 0)
         sum += part;
@@ -550,9 +548,9 @@ static int set_frame(builder *b, contact_surface *s, int i, int n_kept,
   double *frame = &s->frame[dim * dim * i];
   unsigned fixed = b->in->fixed[node_id] & ((1u << dim) - 1);
   for (int k = 0; k < n_kept && k < dim; ++k)
-    memcpy(frame + dim * k, kept[k]->across, (size_t)dim * sizeof *frame);
+    COPY(frame + dim * k, kept[k]->across, dim);
   bad = bad || frame_complete(dim, n_kept, fixed, frame, &s->held[dim * i]) < 0;
-  memcpy(frame, kept[0]->normal, (size_t)dim * sizeof *frame);
+  COPY(frame, kept[0]->normal, dim);
   tally *t = &b->tallies[kept[bad ? 1 : 0]->pair_id];
   if (bad && t->n_dependent++ == 0) {
     t->dependent_node = node_id;
@@ -607,7 +605,7 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
     s->side_area[i * (dim - 1) + k] = side != NULL ? side->area : 0.0;
   }
   for (int k = 0; k < dim; ++k)
-    s->x[dim * i + k] = m->x[(size_t)dim * (size_t)c->node_id + (size_t)k];
+    s->x[dim * i + k] = m->x[(size_t)dim * c->node_id + k];
   s->area[i] = c->area;
   s->gap0[i] = c->gap;
   if (!set_frame(b, s, i, n_kept, kept)) note_corner(b, n_kept, kept);
@@ -739,7 +737,7 @@ done:
 }
 
 int surface_has_held(const contact_surface *s) {
-  return memchr(s->held, 1, (size_t)(s->dim * s->n)) != NULL;
+  return memchr(s->held, 1, s->dim * s->n) != NULL;
 }
 
 int surface_is_corner(const contact_surface *s, int i) {

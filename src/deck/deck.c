@@ -35,8 +35,7 @@ const parameter *card_parameter(const card *c, const char *name) {
 /* Part of a piece between two bytes of it, blanks cut. */
 static piece part(const reader *r, int from, int to) {
   size_t length;
-  const char *text =
-      trim(r->line.all.text + from, (size_t)(to - from), &length);
+  const char *text = trim(r->line.all.text + from, to - from, &length);
   piece p = {(int)(text - r->line.all.text), (int)length, -1};
   return p;
 }
@@ -56,7 +55,7 @@ static status read_value(reader *r, piece p, int equals, parameter *out) {
     message_add(r->log, P1007, &at, "%s has no value", out->name);
     return OK;
   }
-  const char *second = memchr(text, '=', (size_t)value.length);
+  const char *second = memchr(text, '=', value.length);
   if (*text != '"' && *text != '(' && second != NULL)
     report(r, P1010, (int)(second - r->line.all.text),
            "a second equals sign; is a comma missing before?");
@@ -66,8 +65,7 @@ static status read_value(reader *r, piece p, int equals, parameter *out) {
 /* NAME or NAME=VALUE; *ok 0 if it was refused. */
 static status read_parameter(reader *r, piece p, parameter *out, int *ok) {
   const char *text = r->line.all.text + p.start;
-  const char *equals =
-      p.length > 0 ? memchr(text, '=', (size_t)p.length) : NULL;
+  const char *equals = p.length > 0 ? memchr(text, '=', p.length) : NULL;
   int end =
       equals != NULL ? (int)(equals - r->line.all.text) : p.start + p.length;
   piece name = part(r, p.start, end);
@@ -81,8 +79,8 @@ static status read_parameter(reader *r, piece p, parameter *out, int *ok) {
   *out = (parameter){.value = {.text = ""}};
   out->at = logical_place(&r->line, name.start);
   out->value.at = out->at;
-  PASS_GET(out->name, store_name(r->d, r->line.all.text + name.start,
-                                 (size_t)name.length));
+  PASS_GET(out->name,
+           store_name(r->d, r->line.all.text + name.start, name.length));
   if (equals != NULL) PASS(read_value(r, p, end, out));
   *ok = equals == NULL || out->has_value;
   return OK;
@@ -110,10 +108,10 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
     else
       c->n_parameter += ok;
   }
-  size_t n = (size_t)c->n_parameter;
+  size_t n = c->n_parameter;
   parameter *kept = store_new(r->d, n, sizeof *kept);
   if (kept == NULL) RAISE(ERR_MEMORY, "memory exhausted: parameters");
-  if (n > 0) memcpy(kept, list, n * sizeof *kept);
+  if (n > 0) COPY(kept, list, n);
   c->parameters = kept;
   return OK;
 }
@@ -236,7 +234,7 @@ static status add_card(reader *r, card *c) {
 /* Name of the card into c; 0 after a message. */
 static status read_name(reader *r, piece p, card *c, int *ok) {
   const char *text = r->line.all.text + p.start;
-  const char *equals = memchr(text, '=', (size_t)p.length);
+  const char *equals = memchr(text, '=', p.length);
   *ok = 0;
   c->at = logical_place(&r->line, p.start);
   PASS_GET(c->name, store_name(r->d, text + 1, (size_t)p.length - 1));
@@ -280,7 +278,7 @@ static status add_record(reader *r, const physical *line, record **out) {
   PASS_GROW(c->records, c->n_record, r->record_capacity);
   record *new = &c->records[c->n_record];
   size_t blanks = 0;
-  PASS_GET(new->raw, store_text(r->d, line->text, (size_t)line->length));
+  PASS_GET(new->raw, store_text(r->d, line->text, line->length));
   while (is_blank(line->text[blanks])) ++blanks;
   new->at = source_place(r->top, line->line_no, (int)blanks + 1, new->raw);
   ++c->n_record;
@@ -291,7 +289,7 @@ static status add_record(reader *r, const physical *line, record **out) {
 static status read_text(reader *r, const physical *line) {
   record *new;
   size_t length;
-  const char *text = trim(line->text, (size_t)line->length, &length);
+  const char *text = trim(line->text, line->length, &length);
   PASS(add_record(r, line, &new));
   PASS_GET(new->fields, store_new(r->d, 1, sizeof *new->fields));
   new->n_field = 1;
@@ -322,7 +320,7 @@ static status read_record(reader *r, const physical *line) {
   PASS(add_record(r, line, &new));
   PASS(logical_read(r, line, LINE_FREE));
   int n = count_fields(&r->line);
-  PASS_GET(new->fields, store_new(r->d, (size_t)n, sizeof *new->fields));
+  PASS_GET(new->fields, store_new(r->d, n, sizeof *new->fields));
   piece p = {.next = 0};
   for (; new->n_field < n; ++new->n_field) {
     p = logical_piece(&r->line, p.next, 0);

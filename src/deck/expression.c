@@ -275,7 +275,7 @@ static status read_number(compiler *c) {
   char shown[NAME_SIZE];
   item value = {.kind = NUMBER};
   const char *end = number_end(c->p);
-  size_t length = (size_t)(end - c->p);
+  size_t length = end - c->p;
   snprintf(shown, sizeof shown, "%.*s", (int)length, c->p);
   OWNED_NEW(char, text, length + 1);
   memcpy(text, c->p, length);

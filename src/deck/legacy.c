@@ -157,15 +157,14 @@ static const char *cut_column(const column_field *c, const physical *line,
   *length = 0;
   if (c->start >= line->length) return line->text + line->length;
   int rest = line->length - c->start;
-  return trim(line->text + c->start,
-              (size_t)(rest < c->width ? rest : c->width), length);
+  return trim(line->text + c->start, rest < c->width ? rest : c->width, length);
 }
 
 /* Put the point of Fw.d into digits that have none. */
 static status add_point(buffer *b, const char *text, int decimals) {
   size_t sign = *text == '+' || *text == '-';
   size_t n = strspn(text + sign, "0123456789");
-  size_t d = (size_t)decimals, whole = n > d ? n - d : 0;
+  size_t d = decimals, whole = n > d ? n - d : 0;
   b->n = 0;
   PASS(buffer_add(b, text, sign + whole));
   PASS(buffer_add(b, ".", 1));
@@ -184,7 +183,7 @@ static status add_letter(buffer *b, const char *text) {
 }
 
 static status take_scratch(reader *r, field *f) {
-  PASS_GET(f->text, store_text(r->d, r->scratch.text, (size_t)r->scratch.n));
+  PASS_GET(f->text, store_text(r->d, r->scratch.text, r->scratch.n));
   return OK;
 }
 
@@ -244,7 +243,7 @@ static int filled_fields(const format *f, const physical *line) {
 static void check_rest(reader *r, const format *f, const physical *line,
                        const place *whole) {
   place at = *whole;
-  const char *tab = memchr(line->text, '\t', (size_t)line->length);
+  const char *tab = memchr(line->text, '\t', line->length);
   if (tab != NULL) {
     at.column_no = (int)(tab - line->text) + 1;
     message_add(r->log, P1029, &at, "a tab in fixed columns");
@@ -252,7 +251,7 @@ static void check_rest(reader *r, const format *f, const physical *line,
   if (line->length <= f->width || r->excess_seen) return;
   size_t length;
   const char *rest =
-      trim(line->text + f->width, (size_t)(line->length - f->width), &length);
+      trim(line->text + f->width, line->length - f->width, &length);
   if (length == 0) return;
   at.column_no = (int)(rest - line->text) + 1;
   message_add(r->log, P1030, &at, "text after column %d is not read", f->width);
@@ -262,8 +261,7 @@ static void check_rest(reader *r, const format *f, const physical *line,
 status format_record(reader *r, const format *f, const physical *line,
                      record *out) {
   out->n_field = filled_fields(f, line);
-  PASS_GET(out->fields,
-           store_new(r->d, (size_t)out->n_field, sizeof *out->fields));
+  PASS_GET(out->fields, store_new(r->d, out->n_field, sizeof *out->fields));
   check_rest(r, f, line, &out->at);
   for (int i = 0; i < out->n_field; ++i)
     PASS(read_column(r, &f->fields[i], line, &out->at, &out->fields[i]));

@@ -292,10 +292,10 @@ static status add_segment(reader *r, const physical *line, int end) {
   segment *s = &l->segments[l->n_segment];
   s->start = l->all.n;
   s->at = source_place(r->top, line->line_no, 0,
-                       store_text(r->d, line->text, (size_t)line->length));
+                       store_text(r->d, line->text, line->length));
   if (s->at.line == NULL) RAISE(ERR_MEMORY, "memory exhausted: line");
   ++l->n_segment;
-  return buffer_add(&l->all, line->text, (size_t)end);
+  return buffer_add(&l->all, line->text, end);
 }
 
 /* Append one physical line; *goes_on: it ends in a comma. */
@@ -356,7 +356,7 @@ piece logical_piece(const logical *l, int from, int nested) {
   }
   size_t length;
   piece p = {.next = i < l->all.n ? i + 1 : -1};
-  const char *text = trim(l->all.text + from, (size_t)(i - from), &length);
+  const char *text = trim(l->all.text + from, i - from, &length);
   p.start = (int)(text - l->all.text);
   p.length = (int)length;
   if (length == 0) p.start = i;

@@ -62,7 +62,7 @@ const place *store_place(deck *d, const place *p) {
 status buffer_add(buffer *b, const char *text, size_t n) {
   if (n > INT32_MAX / 4 || b->n > INT32_MAX / 4)
     RAISE(ERR_MEMORY, "a line of more than %d bytes", INT32_MAX / 4);
-  while ((size_t)b->n + n + 1 > (size_t)b->capacity)
+  while (b->n + n + 1 > (size_t)b->capacity)
     PASS_GROW(b->text, b->capacity, b->capacity);
   if (n > 0) memcpy(b->text + b->n, text, n);
   b->n += (int)n;
@@ -117,7 +117,7 @@ static int same_name(const char *stored, const char *name, size_t n) {
 static int *find_slot(const deck *d, const char *name, size_t n) {
   const struct deck_text *own = d->own;
   if (own->n_slot == 0) return NULL;
-  unsigned mask = (unsigned)own->n_slot - 1, i = hash_name(name, n) & mask;
+  unsigned mask = own->n_slot - 1, i = hash_name(name, n) & mask;
   while (own->slot[i] != 0 &&
          !same_name(d->symbols[own->slot[i] - 1].name, name, n))
     i = (i + 1) & mask;

@@ -64,7 +64,7 @@ static size_t name_in_brackets(const char *p, const char *end) {
   const char *q = p + 1;
   if (q >= end || !is_name_start(*q)) return 0;
   while (q < end && is_name_part(*q)) ++q;
-  return q < end && *q == '>' ? (size_t)(q - p - 1) : 0;
+  return q < end && *q == '>' ? q - p - 1 : 0;
 }
 
 /* In an expression 0<x>1 is a comparison. */
@@ -114,7 +114,7 @@ status symbols_replace(reader *r, const char *text, size_t n, replacing how,
   r->scratch.n = 0;
   while (open != NULL) {
     size_t length = name_in_brackets(open, end);
-    size_t before = (size_t)(open - p) + (length == 0);
+    size_t before = open - p + (length == 0);
     PASS(buffer_add(&r->scratch, p, before));
     p += before;
     if (length > 0) {
@@ -123,9 +123,9 @@ status symbols_replace(reader *r, const char *text, size_t n, replacing how,
       PASS(add_named(r, open + 1, length, how, &there));
       p = open + length + 2;
     }
-    open = p < end ? memchr(p, '<', (size_t)(end - p)) : NULL;
+    open = p < end ? memchr(p, '<', end - p) : NULL;
   }
-  PASS(buffer_add(&r->scratch, p, (size_t)(end - p)));
+  PASS(buffer_add(&r->scratch, p, end - p));
   *out = store_text(r->d, r->scratch.text, (size_t)r->scratch.n);
   if (*out == NULL) RAISE(ERR_MEMORY, "memory exhausted: text");
   return OK;
@@ -198,8 +198,8 @@ static status definition_value(reader *r, const definition *def,
 static const char *cut_definition(const char *text, size_t n, definition *d) {
   const char *end = text + n, *equals = n > 0 ? memchr(text, '=', n) : NULL;
   if (equals == NULL) return "NAME = VALUE expected";
-  d->name = trim(text, (size_t)(equals - text), &d->n_name);
-  d->value = trim(equals + 1, (size_t)(end - equals - 1), &d->n_value);
+  d->name = trim(text, equals - text, &d->n_name);
+  d->value = trim(equals + 1, end - equals - 1, &d->n_value);
   d->quoted = 0;
   if (d->n_name == 0) return "no name before the equals sign";
   for (size_t i = 0; i < d->n_name; ++i)
@@ -229,7 +229,7 @@ static status define_piece(reader *r, piece p) {
   definition def;
   double value = 1;
   place at = logical_place(&r->line, p.start);
-  const char *wrong = cut_definition(text + p.start, (size_t)p.length, &def);
+  const char *wrong = cut_definition(text + p.start, p.length, &def);
   if (wrong != NULL) {
     message_add(r->log, P1019, &at, "%s", wrong);
     return OK;
@@ -388,11 +388,11 @@ status deck_input_copy(deck *d, const char *path) {
 static int take_quotes(reader *r, piece *p) {
   const char *text = r->line.all.text + p->start;
   const char *end = text + p->length, *quote;
-  quote = p->length > 0 ? memchr(text, '"', (size_t)p->length) : NULL;
+  quote = p->length > 0 ? memchr(text, '"', p->length) : NULL;
   if (quote == NULL) return 0;
   const char *after = NULL;
   if (quote == text) {
-    const char *close = memchr(text + 1, '"', (size_t)(p->length - 1));
+    const char *close = memchr(text + 1, '"', p->length - 1);
     after = close != NULL ? close + 1 : end;
     p->length = (int)((close != NULL ? close : end) - text) - 1;
     ++p->start;
@@ -461,7 +461,7 @@ status field_read(reader *r, piece p, int on_card, field *out) {
   size_t n;
   out->at = logical_place(&r->line, p.start);
   out->quoted = take_quotes(r, &p);
-  const char *text = trim(r->line.all.text + p.start, (size_t)p.length, &n);
+  const char *text = trim(r->line.all.text + p.start, p.length, &n);
   place inside = logical_place(&r->line, (int)(text - r->line.all.text));
   return out->quoted ? read_quoted(r, text, n, on_card, &inside, out)
                      : read_plain(r, text, n, &inside, out);

@@ -105,7 +105,7 @@ static status read_numbers(words *w, exchange_problem *p) {
   p->m = p->unknowns = p->n;
   p->form = "linear complementarity problem";
   PASS(require_problem_memory(p->m));
-  size_t m = (size_t)p->m;
+  size_t m = p->m;
   PASS_NEW_ALL(OF(p->matrix, m * m), OF(p->load, m));
   for (size_t i = 0; i < m; ++i)
     for (size_t j = 0; j < m; ++j)

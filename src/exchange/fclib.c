@@ -18,7 +18,7 @@ static double sign_of(int dim, int dof) { return dof % dim == 0 ? -1.0 : 1.0; }
 
 static status new_arrays(exchange_problem *p) {
   PASS_NEW_ALL(OF(p->load, p->m), OF(p->gap, p->n),
-               OF(p->ut0, (size_t)p->n * (size_t)(p->dim - 1)), OF(p->g0, p->n),
+               OF(p->ut0, (size_t)p->n * (p->dim - 1)), OF(p->g0, p->n),
                OF(p->B.start, p->n + 1), OF(p->B.col, p->n),
                OF(p->B.val, p->n));
   return OK;
@@ -43,7 +43,7 @@ static status set_size(const hdf5_source *s, const char *root, int m,
 /* A matrix of all entries, zero. */
 static status new_matrix(const hdf5_source *s, const char *root,
                          exchange_problem *p) {
-  const size_t m = (size_t)p->m;
+  const size_t m = p->m;
   if (p->m > MOST_UNKNOWNS)
     RAISE(ERR_DECK, "%s: %s has %d unknowns; at most %d can be solved", s->path,
           root, p->m, (int)MOST_UNKNOWNS);
@@ -99,12 +99,10 @@ static void turn_signs(const exchange_problem *p) {
   for (int j = 0; j < p->m; ++j) p->load[j] *= sign_of(d, j);
   for (int j = 0; p->matrix != NULL && j < p->m; ++j)
     for (int i = 0; i < p->m; ++i)
-      p->matrix[(size_t)i + (size_t)p->m * (size_t)j] *=
-          sign_of(d, i) * sign_of(d, j);
+      p->matrix[i + (size_t)p->m * j] *= sign_of(d, i) * sign_of(d, j);
   for (int k = 0; b != NULL && k < b->start[p->n]; ++k)
     for (int e = 0; e < d * d; ++e)
-      b->val[(size_t)k * (size_t)(d * d) + (size_t)e] *=
-          sign_of(d, e % d) * sign_of(d, e / d);
+      b->val[(size_t)k * (d * d) + e] *= sign_of(d, e % d) * sign_of(d, e / d);
 }
 
 /* 1: so few of "all" that sparse products are faster. */
@@ -125,7 +123,7 @@ static status take_blocks(exchange_problem *p, const triplets *W) {
 
 /* W in blocks, where most of it is zero, in the place of the matrix. */
 static status thin_out(exchange_problem *p) {
-  const size_t m = (size_t)p->m;
+  const size_t m = p->m;
   long n = 0;
   for (size_t k = 0; k < m * m; ++k) n += p->matrix[k] != 0.0;
   OWNED int *row = NULL, *column = NULL;
@@ -168,7 +166,7 @@ static status read_dense(const hdf5_source *s, const char *name, int rows,
   if (t.rows != rows || t.columns != columns)
     RAISE(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
           s->path, name, t.rows, t.columns, rows, columns);
-  PASS_NEW(*a, (size_t)rows * (size_t)columns);
+  PASS_NEW(*a, (size_t)rows * columns);
   triplets_dense(&t, *a);
   return OK;
 }
@@ -209,7 +207,7 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
   PASS(new_arrays(p));
   PASS(read_vector(s, LOCAL "/vectors/q", p->m, &q));
   PASS(read_friction(s, LOCAL "/vectors/mu", p));
-  memcpy(p->load, q, (size_t)p->m * sizeof *q);
+  COPY(p->load, q, p->m);
   PASS(read_constraints(s, p->m, &c));
   if (c.p == 0) PASS(take_blocks(p, &W));
   if (p->blocks == NULL) {
@@ -276,7 +274,7 @@ static int is_symmetric(int m, const double *a) {
   double largest = 0.0, skew = 0.0;
   for (size_t j = 0; j < (size_t)m; ++j)
     for (size_t i = 0; i <= j; ++i) {
-      double one = a[i + (size_t)m * j], other = a[j + (size_t)m * i];
+      double one = a[i + m * j], other = a[j + m * i];
       largest = fmax(largest, fabs(one));
       skew = fmax(skew, fabs(one - other));
     }
@@ -296,9 +294,9 @@ static void set_origin(exchange_problem *p, const double *w) {
 
 static void take_stiffness(exchange_problem *p, const global *g, int floating,
                            int *done) {
-  size_t m = (size_t)p->m;
+  size_t m = p->m;
   double *a = p->matrix;
-  memset(a, 0, m * m * sizeof *a);
+  CLEAR(a, m * m);
   triplets_dense(&g->M, a);
   int upper = 0, lower = 0;
   for (size_t j = 0; j < m; ++j)
@@ -340,17 +338,17 @@ static status join(const global *g, triplets *all) {
 /* The condensed matrix of (H, G) [size*size] and its vector, in their parts. */
 static status part(const double *all, const double *vector, int size, int m,
                    exchange_problem *p, constraints *c) {
-  size_t ld = (size_t)size, rows = (size_t)m, n = (size_t)(size - m);
+  size_t ld = size, rows = m, n = size - m;
   c->p = size - m;
   PASS_NEW_ALL(OF(c->V, rows * n), OF(c->R, n * n), OF(c->s, n));
   for (size_t j = 0; j < rows; ++j) {
     p->load[j] = vector[j];
-    memcpy(p->matrix + rows * j, all + ld * j, rows * sizeof *all);
+    COPY(p->matrix + rows * j, all + ld * j, rows);
   }
   for (size_t k = 0; k < n; ++k) {
     const double *column = all + ld * (rows + k);
-    memcpy(c->V + rows * k, column, rows * sizeof *column);
-    memcpy(c->R + n * k, column + rows, n * sizeof *column);
+    COPY(c->V + rows * k, column, rows);
+    COPY(c->R + n * k, column + rows, n);
     c->s[k] = vector[rows + k];
   }
   return OK;
@@ -368,7 +366,7 @@ static status reduce_held(const hdf5_source *s, const global *g,
   if (usable) return OK;
   PASS(springs_add(&g->M, &g->G, &stiff, &held));
   PASS_NEW(f, g->M.rows);
-  memcpy(f, g->f, (size_t)g->M.rows * sizeof *f);
+  COPY(f, g->f, g->M.rows);
   for (long k = 0; k < g->G.n; ++k)
     f[g->G.row[k]] -= stiff * g->G.value[k] * g->b[g->G.column[k]];
   PASS(reduce_global(&held, joined, f, all, vector, &usable));
@@ -391,9 +389,9 @@ static status condense_constrained(const hdf5_source *s, const global *g,
           "can be solved",
           s->path, size, (int)MOST_UNKNOWNS);
   PASS(join(g, &joined));
-  PASS_NEW_ALL(OF(all, (size_t)size * (size_t)size), OF(vector, size));
-  memcpy(vector, g->w, (size_t)p->m * sizeof *vector);
-  memcpy(vector + p->m, g->b, (size_t)g->G.columns * sizeof *vector);
+  PASS_NEW_ALL(OF(all, (size_t)size * size), OF(vector, size));
+  COPY(vector, g->w, p->m);
+  COPY(vector + p->m, g->b, g->G.columns);
   PASS(reduce_held(s, g, &joined, all, vector));
   PASS(part(all, vector, size, p->m, p, &c));
   PASS(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
@@ -407,7 +405,7 @@ static status condense_constrained(const hdf5_source *s, const global *g,
 static status condense_bodies(const global *g, exchange_problem *p) {
   ENDS_BY(triplets_free) triplets W = {0};
   int usable = 0;
-  memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
+  COPY(p->load, g->w, p->m);
   PASS(reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
   if (usable) PASS(take_blocks(p, &W));
   return OK;
@@ -417,16 +415,16 @@ static status condense_bodies(const global *g, exchange_problem *p) {
 static status condense_global(const hdf5_source *s, global *g,
                               exchange_problem *p) {
   int definite = 0, taken = 0;
-  size_t size = (size_t)p->m * (size_t)p->m;
-  memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
+  size_t size = (size_t)p->m * p->m;
+  COPY(p->load, g->w, p->m);
   PASS(reduce_global(&g->M, &g->H, g->f, p->matrix, p->load, &definite));
   if (g->h != NULL) take_stiffness(p, g, !definite, &taken);
   if (taken) return OK;
   if (!definite)
     PASS(springs_condense(&g->M, &g->H, g->f, p->matrix, p->load, &taken));
   if (!definite && !taken) {
-    memset(p->matrix, 0, size * sizeof *p->matrix);
-    memcpy(p->load, g->w, (size_t)p->m * sizeof *g->w);
+    CLEAR(p->matrix, size);
+    COPY(p->load, g->w, p->m);
     PASS(reduce_any(s->path, &g->M, &g->H, g->f, p->matrix, p->load));
   }
   if (!taken) PASS(thin_out(p));

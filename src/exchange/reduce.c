@@ -78,7 +78,7 @@ static int invert(int m, double *W, double *work, int *iwork) {
   if (!(rcond > SPRING_RCOND)) return 0;
   if (LAPACKE_dpotri_work(LAPACK_COL_MAJOR, 'L', m, W, m) != 0) return 0;
   for (size_t j = 0; j < (size_t)m; ++j)
-    for (size_t i = 0; i < j; ++i) W[i + (size_t)m * j] = W[j + (size_t)m * i];
+    for (size_t i = 0; i < j; ++i) W[i + m * j] = W[j + m * i];
   return 1;
 }
 
@@ -113,27 +113,22 @@ typedef struct elimination {
 } elimination;
 
 static status elimination_new(int m, const constraints *c, elimination *a) {
-  size_t p = (size_t)c->p, all = p * ((size_t)m + 1);
+  size_t p = c->p, all = p * ((size_t)m + 1);
   PASS_NEW(a->R, p * p);
   PASS_NEW_REALS(all, &a->X, &a->rhs);
   PASS_NEW(a->spread, p);
-  memcpy(a->R, c->R, p * p * sizeof *a->R);
+  COPY(a->R, c->R, p * p);
   for (size_t k = 0; k < p; ++k) {
-    for (size_t i = 0; i < (size_t)m; ++i)
-      a->X[k + p * i] = c->V[i + (size_t)m * k];
-    a->X[k + p * (size_t)m] = c->s[k];
+    for (size_t i = 0; i < (size_t)m; ++i) a->X[k + p * i] = c->V[i + m * k];
+    a->X[k + p * m] = c->s[k];
   }
-  memcpy(a->rhs, a->X, all * sizeof *a->X);
+  COPY(a->rhs, a->X, all);
   return OK;
-}
-
-static void elimination_free(elimination *a) {
-  RELEASE(a->R, a->X, a->rhs, a->spread);
 }
 
 /* |R X - [V' s]| of the largest entry, relative. */
 static double contradiction(int m, const constraints *c, elimination *a) {
-  size_t all = (size_t)c->p * ((size_t)m + 1);
+  size_t all = c->p * ((size_t)m + 1);
   double size = 0.0, defect = 0.0;
   for (size_t k = 0; k < all; ++k) size = fmax(size, fabs(a->rhs[k]));
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, c->p, m + 1, c->p,
@@ -144,9 +139,10 @@ static double contradiction(int m, const constraints *c, elimination *a) {
 
 status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q) {
-  ENDS_BY(elimination_free) elimination a = {0};
+  elimination a = {0};
   lapack_int rank = 0, info;
   if (c->p == 0) return OK;
+  SCRATCH;
   PASS(elimination_new(m, c, &a));
   info = LAPACKE_dgelsd(LAPACK_COL_MAJOR, c->p, c->p, m + 1, a.R, c->p, a.X,
                         c->p, a.spread, REPEATED_RCOND, &rank);
@@ -161,7 +157,7 @@ status constraints_eliminate(const char *path, int m, const constraints *c,
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, m, c->p, -1.0, c->V,
               m, a.X, c->p, 1.0, W, m);
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, c->p, -1.0, c->V, m,
-              a.X + (size_t)c->p * (size_t)m, 1, 1.0, q, 1);
+              a.X + (size_t)c->p * m, 1, 1.0, q, 1);
   return OK;
 }
 
@@ -200,7 +196,7 @@ static int make_scale(const triplets *M, double *scale) {
 
 /* All entries of the scaled M, both triangles, repeated ones added. */
 static cholmod_sparse *assemble(reduction *s, const triplets *M, int mirror) {
-  size_t n = (size_t)M->rows, most = (size_t)M->n * (mirror ? 2 : 1);
+  size_t n = M->rows, most = (size_t)M->n * (mirror ? 2 : 1);
   cholmod_triplet *t =
       cholmod_allocate_triplet(n, n, most, 0, CHOLMOD_REAL, &s->cm);
   if (t == NULL) return NULL;
@@ -298,17 +294,17 @@ static void take_column(const columns *c, const double *x, double *y) {
 }
 
 static double *target(const columns *c, int k, double *W, double *q) {
-  return k == c->H->columns ? q : W + (size_t)c->H->columns * (size_t)k;
+  return k == c->H->columns ? q : W + (size_t)c->H->columns * k;
 }
 
 /* ---- Cholesky or LU ------------------------------------------------------ */
 
 /* x <- inv(M) x. */
 static status solve_scaled(reduction *s, double *x) {
-  cholmod_dense b = {.nrow = (size_t)s->n,
+  cholmod_dense b = {.nrow = s->n,
                      .ncol = 1,
-                     .nzmax = (size_t)s->n,
-                     .d = (size_t)s->n,
+                     .nzmax = s->n,
+                     .d = s->n,
                      .x = x,
                      .xtype = CHOLMOD_REAL,
                      .dtype = CHOLMOD_DOUBLE};
@@ -323,19 +319,19 @@ static status solve_scaled(reduction *s, double *x) {
 static status reduce_block(reduction *s, const columns *c, int first, int count,
                            double *W, double *q) {
   status st = OK;
-  size_t n = (size_t)s->n;
+  size_t n = s->n;
   cholmod_dense *X = NULL;
-  cholmod_dense *B = cholmod_zeros(n, (size_t)count, CHOLMOD_REAL, &s->cm);
+  cholmod_dense *B = cholmod_zeros(n, count, CHOLMOD_REAL, &s->cm);
   if (B == NULL) TRY(no_memory());
   for (int k = 0; k < count; ++k) {
-    double *b = (double *)B->x + n * (size_t)k;
+    double *b = (double *)B->x + n * k;
     put_column(c, first + k, b);
     for (int i = 0; i < s->n; ++i) b[i] *= s->scale[i];
   }
   X = cholmod_solve(CHOLMOD_A, s->L, B, &s->cm);
   if (X == NULL) TRY(no_memory());
   for (int k = 0; k < count; ++k) {
-    double *x = (double *)X->x + n * (size_t)k;
+    double *x = (double *)X->x + n * k;
     for (int i = 0; i < s->n; ++i) x[i] *= s->scale[i];
     take_column(c, x, target(c, first + k, W, q));
   }
@@ -346,7 +342,7 @@ done:
 }
 
 static void symmetrise(int m, double *W) {
-  size_t n = (size_t)m;
+  size_t n = m;
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < j; ++i)
       W[i + n * j] = W[j + n * i] = 0.5 * (W[i + n * j] + W[j + n * i]);
@@ -364,7 +360,7 @@ static status reduce_sparse(reduction *s, const columns *c, double *W,
 static status reduce_dense(const triplets *M, const columns *c, double *W,
                            double *q, int *singular) {
   int n = M->rows, mirror = triplets_triangle(M) != 0;
-  size_t size = (size_t)n * (size_t)n;
+  size_t size = (size_t)n * n;
   OWNED double *a = NULL, *work = NULL, *x = NULL;
   double rcond = 0.0;
   *singular = 1;
@@ -373,7 +369,7 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
   triplets_dense(M, a);
   for (long k = 0; k < M->n && mirror; ++k)
     if (M->row[k] != M->column[k])
-      a[(size_t)M->column[k] + (size_t)n * (size_t)M->row[k]] += M->value[k];
+      a[M->column[k] + (size_t)n * M->row[k]] += M->value[k];
   double norm = LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', n, n, a, n, work);
   if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, a, n, pivot) != 0) return OK;
   LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', n, a, n, norm, &rcond, work,
@@ -381,7 +377,7 @@ static status reduce_dense(const triplets *M, const columns *c, double *W,
   if (!(rcond > RCOND)) return OK;
   *singular = 0;
   for (int k = 0; k <= c->H->columns; ++k) {
-    memset(x, 0, (size_t)n * sizeof *x);
+    CLEAR(x, n);
     put_column(c, k, x);
     LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'N', n, 1, a, n, pivot, x, n);
     take_column(c, x, target(c, k, W, q));
@@ -522,7 +518,7 @@ static status solve_parts(reduction *s, const columns *c, row_sets *t,
   OWNED_NEW(double, x, s->n);
   PASS_NEW_ALL(OF(W->row, room), OF(W->column, room), OF(W->value, room));
   for (int k = 0; k < t->most; ++k) {
-    memset(x, 0, (size_t)s->n * sizeof *x);
+    CLEAR(x, s->n);
     put_parts(c, t, k, x);
     PASS(solve_scaled(s, x));
     PASS(take_parts(c, t, x, W, room));

@@ -101,7 +101,7 @@ static status fill(arrays *a, triplets *t) {
   if (compressed && a->n_p > 0)
     expand(a->p, lines, t->column);
   else if (t->n > 0)
-    memcpy(t->column, a->p, (size_t)t->n * sizeof *t->column);
+    COPY(t->column, a->p, t->n);
   t->row = a->i;
   t->value = a->x;
   a->i = NULL;
@@ -144,13 +144,11 @@ void triplets_free(triplets *t) {
 
 void triplets_dense(const triplets *t, double *a) {
   for (long k = 0; k < t->n; ++k)
-    a[(size_t)t->row[k] + (size_t)t->rows * (size_t)t->column[k]] +=
-        t->value[k];
+    a[t->row[k] + (size_t)t->rows * t->column[k]] += t->value[k];
 }
 
 status triplets_by_column(const triplets *t, int **start, long **entry) {
-  PASS_NEW(*start, t->columns + 2);
-  PASS_NEW(*entry, t->n);
+  PASS_NEW_ALL(OF(*start, t->columns + 2), OF(*entry, t->n));
   for (long k = 0; k < t->n; ++k) ++(*start)[t->column[k] + 2];
   for (int j = 0; j <= t->columns; ++j) (*start)[j + 1] += (*start)[j];
   for (long k = 0; k < t->n; ++k) (*entry)[(*start)[t->column[k] + 1]++] = k;

@@ -15,7 +15,7 @@ typedef struct node_graph {
 
 /* Nodes of a list that come after j into column j. */
 static status add_rows(node_graph *g, int j, int n_more, const int *node) {
-  const size_t most = (size_t)n_more;
+  const size_t most = n_more;
   if (g->n + most > g->capacity) {
     const size_t more = g->capacity / 2 + most;
     int *grown =
@@ -50,7 +50,7 @@ static status add_element_rows(node_graph *g, const domain *d, int j, int e) {
   const int per = d->mesh->dim + 1;
   const cluster_set *c = d->cluster;
   if (c == NULL || c->of[e] < 0)
-    return add_moved_rows(g, j, per, d->mesh->elem + (size_t)per * (size_t)e);
+    return add_moved_rows(g, j, per, d->mesh->elem + (size_t)per * e);
   const int q = c->of[e];
   return add_moved_rows(g, j, c->first[q + 1] - c->first[q],
                         c->node + c->first[q]);
@@ -115,7 +115,7 @@ static void add_block(stiffness *k, int i, int j, const double *b) {
   const int low = i < j ? i : j, high = i < j ? j : i;
   size_t p = k->start[low];
   while (k->row[p] != high) ++p;
-  double *to = k->block + (size_t)nb * p;
+  double *to = k->block + nb * p;
   if (i >= j)
     for (int c = 0; c < nb; ++c) to[c] += b[c];
   else
@@ -188,9 +188,9 @@ static void put_block(stiffness *k, int i, int j, const double *b) {
 static status add_elements(const domain *d, stiffness *k) {
   const int dim = k->dim, nb = dim * dim;
   double blocks[10 * 9];
-  PASS_NEW(k->block, (size_t)nb * k->start[k->n_node]);
+  PASS_NEW(k->block, nb * k->start[k->n_node]);
   for (int e = 0; e < d->mesh->n_elem; ++e) {
-    const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)e;
+    const int *v = d->mesh->elem + (size_t)(dim + 1) * e;
     PASS(check_element(d, e));
     element_stiffness(d, e, blocks);
     const double *b = blocks;
@@ -210,7 +210,7 @@ typedef struct cluster_rows {
 /* Add one element; its volume is w, its part of the cluster "part". */
 static void add_to_rows(const domain *d, int e, cluster_rows *x) {
   const int dim = d->mesh->dim, ns = d->ns;
-  const int *v = d->mesh->elem + (size_t)(dim + 1) * (size_t)e;
+  const int *v = d->mesh->elem + (size_t)(dim + 1) * e;
   double E[36], m_E[6], B[72], bulk;
   const double w = element_strain(d, e, B), part = d->cluster->weight[e];
   element_rest(d, e, E, m_E, &bulk);
@@ -229,8 +229,8 @@ static void add_cluster(const domain *d, int q, cluster_rows *x, stiffness *k) {
   const int dim = k->dim, *node = c->node + c->first[q];
   const int n = c->first[q + 1] - c->first[q];
   const double part = c->share[q] / 3;
-  memset(x->t, 0, (size_t)(dim * n) * sizeof *x->t);
-  memset(x->r, 0, (size_t)(dim * n) * sizeof *x->r);
+  CLEAR(x->t, dim * n);
+  CLEAR(x->r, dim * n);
   x->bulk = 0;
   for (int a = 0; a < n; ++a) x->place[node[a]] = a;
   for (int p = c->start[q]; p < c->start[q + 1]; ++p)
@@ -273,7 +273,7 @@ static void turn_block(int dim, const double *Ti, const double *Tj, double *b) {
         for (int q = 0; q < dim; ++q)
           t[dim * c + r] += b[dim * q + r] * Tj[dim * c + q];
       }
-    memcpy(b, t, (size_t)(dim * dim) * sizeof *b);
+    COPY(b, t, dim * dim);
   }
   if (Ti != NULL) {
     for (int c = 0; c < dim; ++c)
@@ -282,7 +282,7 @@ static void turn_block(int dim, const double *Ti, const double *Tj, double *b) {
         for (int q = 0; q < dim; ++q)
           t[dim * c + r] += Ti[dim * r + q] * b[dim * c + q];
       }
-    memcpy(b, t, (size_t)(dim * dim) * sizeof *b);
+    COPY(b, t, dim * dim);
   }
 }
 
@@ -311,8 +311,7 @@ static status mark_unknowns(const domain *d, stiffness *k) {
     k->contact[i] = -1;
     k->free[i] = (unsigned char)all;
     for (int c = 0; c < dim; ++c)
-      if (d->fixed[(size_t)dim * (size_t)i + (size_t)c])
-        k->free[i] &= (unsigned char)~(1 << c);
+      if (d->fixed[(size_t)dim * i + c]) k->free[i] &= (unsigned char)~(1 << c);
   }
   for (int q = 0; d->ties != NULL && q < d->ties->n; ++q)
     k->free[d->ties->node_id[q]] = 0;
@@ -336,7 +335,7 @@ static void turn_blocks(const domain *d, stiffness *k) {
       if (ci < 0 && cj < 0) continue;
       turn_block(k->dim, ci >= 0 ? d->surface->basis + nb * ci : NULL,
                  cj >= 0 ? d->surface->basis + nb * cj : NULL,
-                 k->block + (size_t)nb * p);
+                 k->block + nb * p);
     }
 }
 
@@ -351,7 +350,7 @@ static status list_coupling(stiffness *k) {
   size_t n = 0;
   for (int j = 0; j < k->n_node; ++j)
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
-      n += (size_t)couples(k, k->row[p], j);
+      n += couples(k, k->row[p], j);
   PASS_NEW_ALL(OF(k->coupling, n), OF(k->coupling_column, n));
   for (int j = 0; j < k->n_node; ++j)
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)

@@ -64,7 +64,7 @@ static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
     connected_set(g, i, seen, list);
     ++n;
   }
-  memset(seen, 0, (size_t)k->n_node);
+  memset(seen, 0, k->n_node);
   return n;
 }
 
@@ -126,7 +126,7 @@ static status pin_sets(condensed *c) {
     c->just_held = 0;
     for (int j = 0; j < s->n_node; ++j)
       if (k->first_row[s->node[j]] >= 0)
-        memset(c->pinned + k->first_row[s->node[j]], 1, (size_t)k->rows);
+        memset(c->pinned + k->first_row[s->node[j]], 1, k->rows);
   }
   return OK;
 }
@@ -139,7 +139,7 @@ static status factor_bodies(condensed *c) {
   OWNED_NEW(int, list, k->n_node);
   OWNED_NEW(unsigned char, seen, k->n_node);
   OWNED long *number = NULL;
-  PASS_NEW(number, (size_t)k->dim * (size_t)k->n_node);
+  PASS_NEW(number, (size_t)k->dim * k->n_node);
   PASS(graph_of_unknowns(k, &g));
   c->n_body = count_bodies(k, &g, seen, list);
   PASS_NEW(c->body, c->n_body);
@@ -166,7 +166,7 @@ static int contact_of(const condensed *c, int row) {
 static size_t component_of(const condensed *c, int row) {
   const stiffness *k = c->k;
   const int i = c->d.surface->node_id[contact_of(c, row)];
-  return (size_t)k->dim * (size_t)i + (size_t)(row % k->rows);
+  return (size_t)k->dim * i + row % k->rows;
 }
 
 static int is_held(const condensed *c, int row) {
@@ -186,7 +186,7 @@ static body_factor *factor_at(const condensed *c, int q) {
 /* Stiffness in the row of a held unknown, N/m. */
 static double held_stiffness(const condensed *c, int q) {
   return c->sparse != NULL ? c->sparse->seen.diagonal[q]
-                           : c->A[(size_t)q * (size_t)(c->m + 1)];
+                           : c->A[(size_t)q * (c->m + 1)];
 }
 
 /* The factor is that of all rows. */
@@ -198,7 +198,7 @@ static status want_all_rows(const condensed *c) {
  * unknowns of the node, or of A. */
 static void fill_held(condensed *c) {
   const int rows = c->k->rows;
-  const size_t m = (size_t)c->m;
+  const size_t m = c->m;
   double most = 0;
   for (size_t i = 0; i < m; ++i) most = fmax(most, c->A[i * (m + 1)]);
   if (most == 0) most = 1;
@@ -207,8 +207,8 @@ static void fill_held(condensed *c) {
     double own = 0;
     if (!is_held(c, q)) continue;
     for (int t = node * rows; t < (node + 1) * rows; ++t)
-      if (!is_held(c, t)) own = fmax(own, c->A[(size_t)t * (m + 1)]);
-    c->A[(size_t)q * (m + 1)] = own > 0 ? own : most;
+      if (!is_held(c, t)) own = fmax(own, c->A[t * (m + 1)]);
+    c->A[q * (m + 1)] = own > 0 ? own : most;
   }
 }
 
@@ -225,7 +225,7 @@ static status estimate_condition(condensed *c) {
 static status form_matrix(condensed *c) {
   if (c->m == 0) return OK;
   TIMED(STAGE_CONDENSE);
-  PASS_NEW(c->A, (size_t)c->m * (size_t)c->m);
+  PASS_NEW(c->A, (size_t)c->m * c->m);
   for (int q = 0; q < c->n_body; ++q)
     PASS(body_factor_condense(c->k, &c->body[q], c->m, c->A));
   PASS(rigid_project(&c->rigid, c->A));
@@ -285,8 +285,8 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   c->n_contact = d->surface != NULL ? d->surface->n : 0;
   c->m = k->n_row;
   c->ordering = "natural";
-  NEW(c->load, (size_t)k->dim * (size_t)k->n_node);
-  NEW(c->prescribed, (size_t)k->dim * (size_t)k->n_node);
+  NEW(c->load, (size_t)k->dim * k->n_node);
+  NEW(c->prescribed, (size_t)k->dim * k->n_node);
   TRY(find_motions(c));
   TRY(pin_sets(c));
   if (d->sparse && c->m > 0) {
@@ -320,12 +320,12 @@ static int set_prescribed(condensed *c, const double *ud) {
   const int dim = k->dim;
   int any = 0;
   for (int i = 0; i < k->n_node; ++i) {
-    const unsigned char *fixed = c->d.fixed + (size_t)dim * (size_t)i;
-    double *p = c->prescribed + (size_t)dim * (size_t)i;
+    const unsigned char *fixed = c->d.fixed + (size_t)dim * i;
+    double *p = c->prescribed + (size_t)dim * i;
     for (int a = 0; a < dim; ++a) {
       p[a] = 0;
       if (ud == NULL || (k->free[i] >> a & 1)) continue;
-      const double *u = ud + (size_t)dim * (size_t)i;
+      const double *u = ud + (size_t)dim * i;
       if (k->contact[i] < 0) {
         p[a] = fixed[a] ? u[a] : 0;
       } else {
@@ -342,9 +342,9 @@ static int set_prescribed(condensed *c, const double *ud) {
 static void turn_nodes(const condensed *c, int transposed, double *u) {
   const int dim = c->k->dim;
   for (int q = 0; q < c->n_contact; ++q) {
-    double *v = u + (size_t)dim * (size_t)c->d.surface->node_id[q], a[3];
+    double *v = u + (size_t)dim * c->d.surface->node_id[q], a[3];
     const double *T = c->d.surface->basis + dim * dim * q;
-    memcpy(a, v, (size_t)dim * sizeof *a);
+    COPY(a, v, dim);
     for (int r = 0; r < dim; ++r) {
       v[r] = 0;
       for (int s = 0; s < dim; ++s)
@@ -356,7 +356,7 @@ static void turn_nodes(const condensed *c, int transposed, double *u) {
 /* Forces at the unknowns: what acts on a node acts on those it moves with, and
  * contact nodes turn by their basis. */
 static void set_load(condensed *c, const double *F) {
-  memcpy(c->load, F, (size_t)c->k->dim * (size_t)c->k->n_node * sizeof *F);
+  COPY(c->load, F, (size_t)c->k->dim * c->k->n_node);
   if (c->k->moved != NULL) coupling_load(c->k->moved, c->load);
   turn_nodes(c, 1, c->load);
 }
@@ -364,11 +364,11 @@ static void set_load(condensed *c, const double *F) {
 /* load -= K prescribed over the blocks that couple them. */
 static void move_prescribed(condensed *c) {
   const stiffness *k = c->k;
-  const size_t dim = (size_t)k->dim;
+  const size_t dim = k->dim;
   for (size_t t = 0; t < k->n_coupling; ++t) {
     const size_t p = k->coupling[t];
-    const size_t i = dim * (size_t)k->row[p];
-    const size_t j = dim * (size_t)k->coupling_column[t];
+    const size_t i = dim * k->row[p];
+    const size_t j = dim * k->coupling_column[t];
     const double *b = k->block + dim * dim * p;
     for (size_t s = 0; s < dim; ++s)
       for (size_t r = 0; r < dim; ++r) {
@@ -398,7 +398,7 @@ static void to_global(const condensed *c, double *u) {
 
 /* Interior displacements from the stored forward solve. */
 static status back(const condensed *c, const double *u_c, double *u) {
-  COPY(u, c->prescribed, (size_t)c->k->dim * (size_t)c->k->n_node);
+  COPY(u, c->prescribed, (size_t)c->k->dim * c->k->n_node);
   if (c->sparse != NULL) sparse_operator_back(c->sparse, u_c, u);
   for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
     PASS(body_factor_back(&c->body[q], u_c, u, c->cm));
@@ -415,11 +415,11 @@ static void set_residual(condensed *c, const double *u) {
 /* Iterative refinement of the interior of u for the load last condensed. */
 static status refine(condensed *c, double *u) {
   enum { PASSES = 2 };
-  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  const size_t n = (size_t)c->k->dim * c->k->n_node;
   double *more = c->rest; /* free once the residual is in c->load */
   for (int pass = 0; pass < PASSES; ++pass) {
     set_residual(c, u);
-    memset(more, 0, n * sizeof *more);
+    CLEAR(more, n);
     if (c->sparse != NULL) sparse_operator_interior(c->sparse, c->load, more);
     for (int q = 0; c->sparse == NULL && q < c->n_body; ++q)
       PASS(body_factor_interior(&c->body[q], c->load, more, c->cm));
@@ -432,13 +432,13 @@ static status refine(condensed *c, double *u) {
 /* f_c again: the reactions of the refined solution for u_c = 0, with opposite
  * sign. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
-  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  const size_t n = (size_t)c->k->dim * c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;
   PASS_NEW_ALL(OF(u, n), OF(zero, c->m));
   OWNS(c);
   if (c->rest == NULL) PASS_NEW(c->rest, n);
   if (c->F == NULL) PASS_NEW(c->F, n);
-  memcpy(c->F, F, n * sizeof *F);
+  COPY(c->F, F, n);
   PASS(back(c, zero, u));
   PASS(refine(c, u));
   set_residual(c, u);
@@ -476,7 +476,7 @@ status condense_recover(condensed *c, const double *u_c, double *u) {
  * that are not held. */
 static status solve_rows(const condensed *c, const double *f, double *u,
                          double *square) {
-  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  const size_t n = (size_t)c->k->dim * c->k->n_node;
   OWNED double *load = NULL, *w = NULL;
   PASS_NEW_ALL(OF(load, n), OF(w, n));
   for (int q = 0; q < c->m; ++q)
@@ -511,7 +511,7 @@ status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square) {
   const stiffness *k = c->k;
   *square = 0;
-  memset(w, 0, (size_t)k->dim * (size_t)k->n_node * sizeof *w);
+  CLEAR(w, (size_t)k->dim * k->n_node);
   set_load(c, rest);
   for (int q = 0; q < c->m; ++q) c->load[component_of(c, q)] += rc[q];
   PASS(want_all_rows(c));
@@ -530,7 +530,7 @@ static status solve_sparse(const condensed *c, const unsigned char *held,
   OWNED_NEW(double, Au, c->m);
   PASS(op->set_rows(op->ctx, &rows, &singular));
   *good = !singular;
-  memset(u, 0, (size_t)c->m * sizeof *u);
+  CLEAR(u, c->m);
   if (*good) op->solve(op->ctx, f, u, Au);
   return OK;
 }
@@ -547,12 +547,11 @@ static status solve_open(const condensed *c, const unsigned char *held,
     u[q] = 0;
     if (!held[q]) open[n++] = q;
   }
-  PASS_NEW_ALL(OF(A, (size_t)n * (size_t)n), OF(x, n));
+  PASS_NEW_ALL(OF(A, (size_t)n * n), OF(x, n));
   for (int b = 0; b < n; ++b) {
     x[b] = f[open[b]];
     for (int a = 0; a < n; ++a)
-      A[(size_t)b * (size_t)n + (size_t)a] =
-          c->A[(size_t)open[b] * (size_t)c->m + (size_t)open[a]];
+      A[(size_t)b * n + a] = c->A[(size_t)open[b] * c->m + open[a]];
   }
   *good = n == 0 ||
           LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', n, 1, A, n, x, n) == 0;
@@ -563,7 +562,7 @@ static status solve_open(const condensed *c, const unsigned char *held,
 status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
                              const unsigned char *held, double *w,
                              double *square) {
-  const size_t n = (size_t)c->k->dim * (size_t)c->k->n_node;
+  const size_t n = (size_t)c->k->dim * c->k->n_node;
   OWNED double *f_c = NULL, *u_c = NULL;
   int good = 0;
   PASS_NEW_ALL(OF(f_c, c->m), OF(u_c, c->m));
@@ -605,8 +604,8 @@ double condensed_stiffest(const condensed *c) {
   for (int i = 0; i < k->n_node; ++i)
     for (int a = 0; a < k->dim; ++a)
       if (k->free[i] >> a & 1)
-        most = fmax(most, k->block[(size_t)(k->dim * k->dim) * k->start[i] +
-                                   (size_t)(a * (k->dim + 1))]);
+        most = fmax(most,
+                    k->block[k->dim * k->dim * k->start[i] + a * (k->dim + 1)]);
   return most;
 }
 
@@ -621,7 +620,7 @@ int condensed_kernel(const condensed *c, const double **kernel) {
 }
 
 void condensed_diagonal(const condensed *c, double *diagonal) {
-  const size_t dim = (size_t)c->k->dim;
+  const size_t dim = c->k->dim;
   for (int q = 0; q < c->m; ++q) {
     const size_t at = component_of(c, q);
     const double *block = c->k->block + dim * dim * c->k->start[at / dim];
@@ -647,7 +646,7 @@ condense_info condensed_info(const condensed *c) {
     info.bytes +=
         f->L->xsize * sizeof(double) + f->L->ssize * sizeof(SuiteSparse_long);
   }
-  if (c->A != NULL) info.bytes += (size_t)c->m * (size_t)c->m * sizeof(double);
+  if (c->A != NULL) info.bytes += (size_t)c->m * c->m * sizeof(double);
   if (c->sparse != NULL) info.bytes += c->sparse->n_own * sizeof(double);
   return info;
 }

@@ -43,9 +43,9 @@ static int find_sources(const domain *d, source *of) {
 
 /* C of the master at place e of the links. */
 static void find_block(const source *s, int dim, size_t e, double *C) {
-  memset(C, 0, 9 * sizeof *C);
+  CLEAR(C, 9);
   for (int c = 0; c < dim; ++c) {
-    double part = s->links->part[(size_t)dim * e + (size_t)c];
+    double part = s->links->part[dim * e + c];
     if (s->frame == NULL) {
       C[c * (dim + 1)] = part;
       continue;
@@ -60,7 +60,7 @@ static void find_block(const source *s, int dim, size_t e, double *C) {
 /* The block of a node in the last row: one that is there, or a new one. */
 static status part_of(builder *b, size_t first, int node, coupled_part **out) {
   coupling *c = b->c;
-  const size_t at = (size_t)b->place[node];
+  const size_t at = b->place[node];
   if (at > first) {
     *out = &c->part[at - 1];
     return OK;
@@ -167,11 +167,11 @@ status coupling_new(const domain *d, coupling **out) {
 
 /* A row is taken before what it gets of later ones, which have it in theirs. */
 void coupling_load(const coupling *c, double *F) {
-  const size_t dim = (size_t)c->dim;
+  const size_t dim = c->dim;
   for (int q = 0; q < c->n; ++q) {
-    const double *own = F + dim * (size_t)c->node[q];
+    const double *own = F + dim * c->node[q];
     for (size_t t = c->start[q]; t < c->start[q + 1]; ++t) {
-      double *to = F + dim * (size_t)c->part[t].node;
+      double *to = F + dim * c->part[t].node;
       for (size_t j = 0; j < dim; ++j)
         for (size_t i = 0; i < dim; ++i)
           to[j] += c->part[t].block[dim * j + i] * own[i];
@@ -181,11 +181,11 @@ void coupling_load(const coupling *c, double *F) {
 
 /* From the last row on: those it needs are still v. */
 void coupling_move(const coupling *c, double *v) {
-  const size_t dim = (size_t)c->dim;
+  const size_t dim = c->dim;
   for (int q = c->n - 1; q >= 0; --q) {
-    double *to = v + dim * (size_t)c->node[q];
+    double *to = v + dim * c->node[q];
     for (size_t t = c->start[q]; t < c->start[q + 1]; ++t) {
-      const double *from = v + dim * (size_t)c->part[t].node;
+      const double *from = v + dim * c->part[t].node;
       for (size_t j = 0; j < dim; ++j)
         for (size_t i = 0; i < dim; ++i)
           to[i] += c->part[t].block[dim * j + i] * from[j];

@@ -69,10 +69,10 @@ static void block_3d(const double *g, double w, const double *S, double *k) {
 
 void element_rest(const domain *d, int elem_id, double *E, double *m_E,
                   double *bulk) {
-  const size_t ns = (size_t)d->ns;
+  const size_t ns = d->ns;
   const int k = d->cluster == NULL ? -1 : d->cluster->of[elem_id];
   const double part = k < 0 ? 0 : d->cluster->share[k] / 3;
-  COPY(E, d->E + ns * ns * (size_t)d->section_id[elem_id], ns * ns);
+  COPY(E, d->E + ns * ns * d->section_id[elem_id], ns * ns);
   if (k < 0) return;
   for (size_t i = 0; i < ns; ++i) m_E[i] = E[i] + E[ns + i] + E[2 * ns + i];
   *bulk = m_E[0] + m_E[1] + m_E[2];
@@ -110,10 +110,10 @@ double element_strain(const domain *d, int elem_id, double *B) {
   const int dim = d->mesh->dim, ns = d->ns;
   element_shape s;
   shape_at(d, elem_id, &s);
-  memset(B, 0, (size_t)(ns * dim * (dim + 1)) * sizeof *B);
+  CLEAR(B, ns * dim * (dim + 1));
   for (int a = 0; a <= dim; ++a) {
     const double *g = s.grad + dim * a;
-    double *b = B + (size_t)(ns * dim * a);
+    double *b = B + ns * dim * a;
     for (int c = 0; c < dim; ++c) b[ns * c + c] = g[c];
     if (dim == 2) b[2] = s.hoop;
     for (int k = 0; k < (dim == 2 ? 1 : 3); ++k) {
@@ -171,9 +171,8 @@ static void strain_at(const domain *d, int elem_id, const double *u,
 
 static void stress_at(const domain *d, int elem_id, const double *e,
                       double *sigma) {
-  const size_t square = (size_t)(d->ns * d->ns);
-  voigt_product(d->ns, d->E + square * (size_t)d->section_id[elem_id], e,
-                sigma);
+  const size_t square = d->ns * d->ns;
+  voigt_product(d->ns, d->E + square * d->section_id[elem_id], e, sigma);
 }
 
 /* Means over the clusters of the strains of n elements (elem_id NULL: of the
@@ -204,7 +203,7 @@ static void averaged_strain(const domain *d, int elem_id, const double *u,
 static const double *eigen_at(const domain *d, int elem_id, int *next) {
   const eigenstrain *x = d->eigen;
   if (x == NULL || *next >= x->n || x->elem_id[*next] != elem_id) return NULL;
-  return x->e0 + (size_t)d->ns * (size_t)(*next)++;
+  return x->e0 + (size_t)d->ns * (*next)++;
 }
 
 /* e[ns] becomes the elastic strain; e0 may be NULL. */
@@ -216,12 +215,12 @@ static void take_eigen(const domain *d, const double *e0, double *e) {
 static void total_strain(const domain *d, int section, const double *e0,
                          double *e) {
   if (d->kin[section] == PLANE_STRESS && d->C != NULL)
-    elastic_zz_strain(d->C + (size_t)36 * (size_t)section, e);
+    elastic_zz_strain(d->C + (size_t)36 * section, e);
   for (int i = 0; e0 != NULL && i < d->ns; ++i) e[i] += e0[i];
 }
 
 void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
-  const size_t ns = (size_t)d->ns;
+  const size_t ns = d->ns;
   int next = 0;
   mean_strains(d, d->mesh->n_elem, NULL, u);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
@@ -231,33 +230,32 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
     shape_at(d, k, &s);
     averaged_strain(d, k, u, &s, strain);
     take_eigen(d, e0, strain);
-    if (sigma != NULL) stress_at(d, k, strain, sigma + ns * (size_t)k);
+    if (sigma != NULL) stress_at(d, k, strain, sigma + ns * k);
     if (e == NULL) continue;
     total_strain(d, d->section_id[k], e0, strain);
-    memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
+    COPY(e + ns * k, strain, ns);
   }
   if (sigma != NULL && d->cluster != NULL) {
     cluster_begin(d->cluster, CLUSTER_STRESS);
     for (int k = 0; k < d->mesh->n_elem; ++k)
-      cluster_add(d->cluster, CLUSTER_STRESS, k, sigma + ns * (size_t)k);
+      cluster_add(d->cluster, CLUSTER_STRESS, k, sigma + ns * k);
     for (int k = 0; k < d->mesh->n_elem; ++k)
-      cluster_smooth(d->cluster, CLUSTER_STRESS, k, sigma + ns * (size_t)k);
+      cluster_smooth(d->cluster, CLUSTER_STRESS, k, sigma + ns * k);
   }
 }
 
 void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
                   double *e, double *sigma) {
-  const size_t ns = (size_t)d->ns;
+  const size_t ns = d->ns;
   mean_strains(d, x->n, x->elem_id, u);
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
     double strain[6];
     shape_at(d, x->elem_id[k], &s);
     averaged_strain(d, x->elem_id[k], u, &s, strain);
-    if (x->e0 != NULL) take_eigen(d, x->e0 + ns * (size_t)k, strain);
-    if (e != NULL) memcpy(e + ns * (size_t)k, strain, ns * sizeof *e);
-    if (sigma != NULL)
-      stress_at(d, x->elem_id[k], strain, sigma + ns * (size_t)k);
+    if (x->e0 != NULL) take_eigen(d, x->e0 + ns * k, strain);
+    if (e != NULL) COPY(e + ns * k, strain, ns);
+    if (sigma != NULL) stress_at(d, x->elem_id[k], strain, sigma + ns * k);
   }
 }
 
@@ -294,11 +292,11 @@ static void add_force(const domain *d, int elem_id, const element_shape *s,
 }
 
 void domain_internal_force(const domain *d, const double *sigma, double *F) {
-  memset(F, 0, (size_t)d->mesh->dim * (size_t)d->mesh->n_node * sizeof *F);
+  CLEAR(F, (size_t)d->mesh->dim * d->mesh->n_node);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     element_shape s;
     shape_at(d, k, &s);
-    add_force(d, k, &s, sigma + (size_t)d->ns * (size_t)k, 1, F);
+    add_force(d, k, &s, sigma + (size_t)d->ns * k, 1, F);
   }
 }
 
@@ -306,13 +304,13 @@ void eigen_force(const domain *d, const eigenstrain *x, double *F) {
   double t[6];
   cluster_begin(d->cluster, CLUSTER_STRESS);
   for (int k = 0; k < x->n && d->cluster != NULL; ++k) {
-    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * (size_t)k, t);
+    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * k, t);
     cluster_add(d->cluster, CLUSTER_STRESS, x->elem_id[k], t);
   }
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
     shape_at(d, x->elem_id[k], &s);
-    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * (size_t)k, t);
+    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * k, t);
     cluster_smooth(d->cluster, CLUSTER_STRESS, x->elem_id[k], t);
     add_force(d, x->elem_id[k], &s, t, 1, F);
   }
@@ -320,14 +318,14 @@ void eigen_force(const domain *d, const eigenstrain *x, double *F) {
 
 void eigen_add_force(const domain *d, int n, const int *elem_id,
                      const double *sigma, double *F) {
-  const size_t ns = (size_t)d->ns;
+  const size_t ns = d->ns;
   cluster_begin(d->cluster, CLUSTER_STRESS);
   for (int k = 0; k < n; ++k)
-    cluster_add(d->cluster, CLUSTER_STRESS, elem_id[k], sigma + ns * (size_t)k);
+    cluster_add(d->cluster, CLUSTER_STRESS, elem_id[k], sigma + ns * k);
   for (int k = 0; k < n; ++k) {
     element_shape s;
     double t[6];
-    memcpy(t, sigma + ns * (size_t)k, ns * sizeof *t);
+    COPY(t, sigma + ns * k, ns);
     shape_at(d, elem_id[k], &s);
     cluster_smooth(d->cluster, CLUSTER_STRESS, elem_id[k], t);
     add_force(d, elem_id[k], &s, t, 1, F);
@@ -347,7 +345,7 @@ void domain_residual(const domain *d, const double *u, const double *F,
   const int n = d->mesh->n_elem;
   element_shape s;
   double t[6];
-  COPY(rest, F, (size_t)d->mesh->dim * (size_t)d->mesh->n_node);
+  COPY(rest, F, (size_t)d->mesh->dim * d->mesh->n_node);
   mean_strains(d, n, NULL, u);
   cluster_begin(d->cluster, CLUSTER_STRESS);
   for (int k = 0; k < n && d->cluster != NULL; ++k) {
@@ -404,9 +402,9 @@ static void gradient_at(const domain *d, int elem_id, const double *u,
   const int dim = d->mesh->dim, *v = d->mesh->elem + (dim + 1) * elem_id;
   element_shape s;
   shape_at(d, elem_id, &s);
-  memset(G, 0, 9 * sizeof *G);
+  CLEAR(G, 9);
   for (int a = 0; a <= dim; ++a) {
-    const double *u_a = u + (size_t)dim * (size_t)v[a];
+    const double *u_a = u + (size_t)dim * v[a];
     for (int i = 0; i < dim; ++i)
       for (int c = 0; c < dim; ++c)
         G[3 * i + c] += u_a[i] * s.grad[dim * a + c];

@@ -25,7 +25,7 @@ void body_factor_number(const stiffness *k, body_factor *f, long *number) {
     const int i = f->node[q], last = q >= f->n_inner;
     for (int t = 0; t < k->dim; ++t) {
       const int c = last ? k->dim - 1 - t : t;
-      long *at = &number[(size_t)k->dim * (size_t)i + (size_t)c];
+      long *at = &number[(size_t)k->dim * i + c];
       if (!f->whole && (contact_row(k, i, c) >= 0) != last) continue;
       *at = k->free[i] >> c & 1 ? n++ : -1;
       if (last && *at >= 0) ++f->nc;
@@ -35,8 +35,8 @@ void body_factor_number(const stiffness *k, body_factor *f, long *number) {
 }
 
 static double diagonal(const stiffness *k, int node, int c) {
-  const size_t size = (size_t)(k->dim * k->dim);
-  return k->block[size * k->start[node] + (size_t)(c * (k->dim + 1))];
+  const size_t size = k->dim * k->dim;
+  return k->block[size * k->start[node] + c * (k->dim + 1)];
 }
 
 /* Largest diagonal entry of the unknowns of the body; NaN if one is not a
@@ -75,9 +75,9 @@ typedef struct columns { /* lower triangle under construction */
  * NULL) or stored at start[column]++. */
 static void put_block(columns *w, size_t p, int i, int j) {
   const int dim = w->k->dim;
-  const double *b = w->k->block + (size_t)(dim * dim) * p;
-  const long *ni = w->number + (size_t)dim * (size_t)i;
-  const long *nj = w->number + (size_t)dim * (size_t)j;
+  const double *b = w->k->block + dim * dim * p;
+  const long *ni = w->number + (size_t)dim * i;
+  const long *nj = w->number + (size_t)dim * j;
   for (int c = 0; c < dim; ++c) {
     if (nj[c] < 0) continue;
     for (int r = i == j ? c : 0; r < dim; ++r) {
@@ -116,8 +116,8 @@ static status body_factor_matrix(const stiffness *k, const body_factor *f,
   w.start = count;
   put_blocks(&w);
   for (long c = 0; c < f->n; ++c) total += count[c];
-  cholmod_sparse *a = *out = cholmod_l_allocate_sparse(
-      (size_t)f->n, (size_t)f->n, (size_t)total, 0, 1, -1, CHOLMOD_REAL, cm);
+  cholmod_sparse *a = *out =
+      cholmod_l_allocate_sparse(f->n, f->n, total, 0, 1, -1, CHOLMOD_REAL, cm);
   if (a == NULL) RAISE(ERR_MEMORY, "memory exhausted: %ld unknowns", f->n);
   SuiteSparse_long *start = a->p;
   for (long c = 0; c < f->n; ++c) {
@@ -211,7 +211,7 @@ static status begin(const stiffness *k, const long *number, cholmod_common *cm,
   PASS(body_factor_matrix(k, f, number, cm, a));
   PASS(analyse(*a, cm, f));
   PASS(locate(k, number, f));
-  f->y = cholmod_l_zeros((size_t)f->n, 1, CHOLMOD_REAL, cm);
+  f->y = cholmod_l_zeros(f->n, 1, CHOLMOD_REAL, cm);
   f->work = cholmod_l_zeros(f->L->maxesize + 1, 1, CHOLMOD_REAL, cm);
   if (f->y == NULL || f->work == NULL)
     RAISE(ERR_MEMORY, "memory exhausted: solution of %ld unknowns", f->n);
@@ -266,7 +266,7 @@ static factor_column column_at(const cholmod_factor *L, long p, long *super) {
 static void multiply_cc(const body_factor *f, int transposed, const double *in,
                         double *out) {
   long super = 0;
-  memset(out, 0, (size_t)f->nc * sizeof *out);
+  CLEAR(out, f->nc);
   for (long q = 0; q < f->nc; ++q) {
     const factor_column c = column_at(f->L, f->contact_at[q], &super);
     double sum = 0;
@@ -285,14 +285,14 @@ static void multiply_cc(const body_factor *f, int transposed, const double *in,
 /* U = L_cc in reversed order, so that U U' is the condensed matrix in the
  * same order: the upper triangle LAPACK's lauum multiplies in place. */
 static void extract_reversed(const body_factor *f, double *U) {
-  const size_t nc = (size_t)f->nc;
+  const size_t nc = f->nc;
   long super = 0;
   for (size_t q = 0; q < nc; ++q) {
     const factor_column c = column_at(f->L, f->contact_at[q], &super);
     double *to = U + nc * (nc - 1 - q);
     for (long t = 0; t < c.n; ++t) {
       const int r = f->rank[c.row[t] - f->contact_at[0]];
-      if (r >= 0) to[nc - 1 - (size_t)r] = c.value[t];
+      if (r >= 0) to[nc - 1 - r] = c.value[t];
     }
   }
 }
@@ -316,7 +316,7 @@ void symmetric_fill(size_t n, double *A) {
 
 status body_factor_condense(const stiffness *k, const body_factor *f, int m,
                             double *A) {
-  const size_t nc = (size_t)f->nc, stride = (size_t)m;
+  const size_t nc = f->nc, stride = m;
   const int in_place = covers(f, m);
   const double scale = ldexp(1, f->exponent);
   OWNED double *U = NULL;
@@ -337,7 +337,7 @@ status body_factor_condense(const stiffness *k, const body_factor *f, int m,
   }
   symmetric_fill(nc, S);
   for (size_t j = 0; !in_place && j < nc; ++j) {
-    double *to = A + stride * (size_t)f->contact_id[nc - 1 - j];
+    double *to = A + stride * f->contact_id[nc - 1 - j];
     for (size_t i = 0; i < nc; ++i)
       to[f->contact_id[nc - 1 - i]] = S[i + nc * j];
   }
@@ -347,7 +347,7 @@ status body_factor_condense(const stiffness *k, const body_factor *f, int m,
 /* x becomes inv(L) x or, transposed, inv(L') x; by position. */
 static status solve_lower(const body_factor *f, int transposed, double *x,
                           cholmod_common *cm) {
-  const size_t n = (size_t)f->n;
+  const size_t n = f->n;
   cholmod_dense z = {n, 1, n, n, x, NULL, CHOLMOD_REAL, CHOLMOD_DOUBLE};
   if (!(transposed ? cholmod_l_super_ltsolve(f->L, &z, f->work, cm)
                    : cholmod_l_super_lsolve(f->L, &z, f->work, cm)))
@@ -464,10 +464,10 @@ static void fill_roots(const stiffness *k, const body_factor *f, double *root) {
   const double scale = ldexp(1, -f->exponent);
   for (int q = 0; q < f->n_node; ++q) {
     const int i = f->node[q];
-    const double *b = k->block + (size_t)(dim * dim) * k->start[i];
+    const double *b = k->block + dim * dim * k->start[i];
     for (int c = 0; c < dim; ++c) {
       const double spring = body_factor_spring(k, f, (long)dim * i + c);
-      root[(size_t)dim * (size_t)i + (size_t)c] =
+      root[(size_t)dim * i + c] =
           k->free[i] >> c & 1 ? sqrt(scale * b[c * (dim + 1)] + spring) : 1;
     }
   }
@@ -478,11 +478,11 @@ static void fill_roots(const stiffness *k, const body_factor *f, double *root) {
 static void add_magnitudes(const stiffness *k, size_t p, int j,
                            const double *root, double *sum) {
   const int dim = k->dim, i = k->row[p];
-  const double *b = k->block + (size_t)(dim * dim) * p;
+  const double *b = k->block + dim * dim * p;
   for (int c = 0; c < dim; ++c)
     for (int r = 0; r < dim; ++r) {
-      const size_t row = (size_t)dim * (size_t)i + (size_t)r;
-      const size_t col = (size_t)dim * (size_t)j + (size_t)c;
+      const size_t row = (size_t)dim * i + r;
+      const size_t col = (size_t)dim * j + c;
       if (!(k->free[i] >> r & 1) || !(k->free[j] >> c & 1)) continue;
       if (row == col) continue;
       const double v = fabs(b[dim * c + r]) / (root[row] * root[col]);
@@ -531,7 +531,7 @@ static status inverse_norm(const body_factor *f, const double *root,
 
 status body_factor_condition(const stiffness *k, const body_factor *f,
                              cholmod_common *cm, double *condition) {
-  const size_t n = (size_t)k->dim * (size_t)k->n_node;
+  const size_t n = (size_t)k->dim * k->n_node;
   OWNED double *sum = NULL, *root = NULL;
   double growth = 0;
   PASS_NEW_ALL(OF(sum, n), OF(root, n));

@@ -15,7 +15,7 @@ static int contact_node(const sparse_operator *o, int id) {
 
 /* Place in the factor of component c of a node, -1: prescribed. */
 static long place_of(const sparse_operator *o, int node, int c) {
-  return o->number[(size_t)o->k->dim * (size_t)node + (size_t)c];
+  return o->number[(size_t)o->k->dim * node + c];
 }
 
 /* ---- the factors --------------------------------------------------------- */
@@ -54,14 +54,14 @@ static void put_block(const filling *w, size_t p, int j, const long *columns,
   const stiffness *k = w->o->k;
   const int dim = k->dim, i = k->row[p];
   const int touches = k->first_row[i] >= 0 || k->first_row[j] >= 0;
-  const double *block = k->block + (size_t)(dim * dim) * p;
+  const double *block = k->block + dim * dim * p;
   for (int c = 0; c < dim; ++c)
     for (int r = i == j ? c : 0; r < dim; ++r) {
       const long at = filled_at(w, i, r), bt = filled_at(w, j, c);
       const long column = at < bt ? at : bt, row = at < bt ? bt : at;
       const double entry = block[dim * c + r];
       if (column < columns[0] || column >= columns[1]) continue;
-      x[lead * (size_t)(column - columns[0]) + (size_t)position[row]] =
+      x[lead * (column - columns[0]) + position[row]] =
           touches ? contact_entry(w, i, r, j, c, entry) : w->scale * entry;
     }
 }
@@ -71,7 +71,7 @@ static void put_columns(void *ctx, int supernode, const int *position,
   const filling *w = ctx;
   const supernodal *s = w->s;
   const block_lists *list = &w->o->columns;
-  const size_t lead = (size_t)(s->start[supernode + 1] - s->start[supernode]);
+  const size_t lead = s->start[supernode + 1] - s->start[supernode];
   for (size_t t = list->start[supernode]; t < list->start[supernode + 1]; ++t)
     put_block(w, list->item[t].block, list->item[t].node, s->first + supernode,
               position, lead, x);
@@ -104,7 +104,7 @@ static void mark_node(sparse_operator *o, int id, unsigned char *mark) {
 /* 1: what the factor follows at a contact node is other than that. */
 static int differs(const sparse_operator *o, int id, const known_rows *rows,
                    int springs) {
-  const size_t dim = (size_t)o->k->rows, first = dim * (size_t)id;
+  const size_t dim = o->k->rows, first = dim * id;
   for (size_t q = first; q < first + dim; ++q) {
     const int known = rows->known != NULL && rows->known[q];
     if (o->rows.known[q] != known) return 1;
@@ -118,7 +118,7 @@ static int differs(const sparse_operator *o, int id, const known_rows *rows,
 }
 
 static void take_rows(sparse_operator *o, const known_rows *rows, int springs) {
-  const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
+  const size_t m = o->k->n_row, size = o->k->rows * m;
   for (size_t q = 0; q < m; ++q)
     o->rows.known[q] = rows->known != NULL && rows->known[q];
   for (size_t i = 0; i < size; ++i)
@@ -131,7 +131,7 @@ static int mark_changes(sparse_operator *o, const known_rows *rows,
                         int springs) {
   unsigned char *mark = o->part.mark;
   int any = o->state != FACTORED;
-  const size_t count = (size_t)o->s->count;
+  const size_t count = o->s->count;
   if (o->state == BROKEN)
     memcpy(mark, o->part.touches, count);
   else
@@ -164,7 +164,7 @@ status sparse_operator_all_rows(sparse_operator *o) {
 /* The factor of the interior, where contact unknowns have part in it; the rest
  * is that of the factor of all rows. */
 static status factor_interior(sparse_operator *o) {
-  memcpy(o->part.mark, o->part.touches, (size_t)o->s->count);
+  memcpy(o->part.mark, o->part.touches, o->s->count);
   const long bad = factor(o, o->interior, o->inside, o->inner);
   for (long p = 0; bad >= 0 && p < o->f.n; ++p)
     if (o->inside[p] == bad) return broke(o, p);
@@ -178,7 +178,7 @@ static void clear(const sparse_operator *o, double *v) {
   for (int t = 0; t < part->n; ++t) {
     const long first = o->s->first[part->list[t]];
     const long n = o->s->first[part->list[t] + 1] - first;
-    memset(v + first, 0, (size_t)n * sizeof *v);
+    CLEAR(v + first, n);
   }
 }
 
@@ -217,7 +217,7 @@ static void solve_interior(const sparse_operator *o,
 static void spread(const sparse_operator *o, double part, const double *u,
                    double *w) {
   const stiffness *k = o->k;
-  const size_t dim = (size_t)k->dim;
+  const size_t dim = k->dim;
   for (int q = 0; q < k->n_row; ++q) {
     const int id = q / k->rows, r = q % k->rows;
     const double move = part * u[q];
@@ -241,7 +241,7 @@ static void spread(const sparse_operator *o, double part, const double *u,
 static void gather_node(const sparse_operator *o, int id, const double *v,
                         double *f, double *size) {
   const stiffness *k = o->k;
-  const size_t dim = (size_t)k->dim;
+  const size_t dim = k->dim;
   const int a = contact_node(o, id);
   for (int r = 0; r < k->rows; ++r) {
     f[r] = 0.0;
@@ -267,9 +267,9 @@ static void gather_node(const sparse_operator *o, int id, const double *v,
 /* v -= Q Q'v: no force by a rigid motion, no motion of forces. */
 static void project(const sparse_operator *o, double *v) {
   const rigid_motions *r = o->rigid;
-  const size_t m = (size_t)o->k->n_row;
+  const size_t m = o->k->n_row;
   for (int c = 0; c < r->k; ++c) {
-    const double *q = r->Q + m * (size_t)c;
+    const double *q = r->Q + m * c;
     double sum = 0.0;
     for (size_t i = 0; i < m; ++i) sum += q[i] * v[i];
     for (size_t i = 0; i < m; ++i) v[i] -= sum * q[i];
@@ -300,7 +300,7 @@ static void move_contact(sparse_operator *o, const double *u) {
 static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row;
-  memcpy(Au, u, (size_t)m * sizeof *Au);
+  COPY(Au, u, m);
   project(o, Au);
   move_contact(o, Au);
   gather(o, u, Au, size);
@@ -356,10 +356,10 @@ static void set_response(void *ctx, const unsigned char *at) {
   sparse_operator *o = ctx;
   const int rows = o->k->rows;
   o->part.n = 0;
-  memset(o->part.mark, 0, (size_t)o->s->count);
+  memset(o->part.mark, 0, o->s->count);
   for (int i = 0; i < n_contact(o); ++i) {
     const int a = contact_node(o, i);
-    if (memchr(at + rows * i, 1, (size_t)rows) == NULL) continue;
+    if (memchr(at + rows * i, 1, rows) == NULL) continue;
     o->part.node[o->part.n++] = i;
     for (size_t t = o->touched.start[i]; t < o->touched.start[i + 1]; ++t)
       for (int c = 0; c < o->k->dim; ++c) {
@@ -412,7 +412,7 @@ void sparse_operator_forward(sparse_operator *o, const double *load,
 }
 
 void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
-  memset(o->work.v, 0, (size_t)o->f.n * sizeof *o->work.v);
+  CLEAR(o->work.v, o->f.n);
   spread(o, -1.0, u_c, o->work.v);
   solve_interior(o, &o->part.contact, &o->part.all, o->work.v);
   for (long p = 0; p < o->f.n; ++p)
@@ -483,7 +483,7 @@ static status order_whole(sparse_operator *o, const double *x,
     *ordering = own.name;
   } else {
     PASS_NEW(f->node, given->n);
-    memcpy(f->node, given->node, (size_t)given->n * sizeof *f->node);
+    COPY(f->node, given->node, given->n);
     f->n_node = given->n;
     *ordering = given->name;
   }
@@ -494,19 +494,18 @@ static status order_whole(sparse_operator *o, const double *x,
 
 /* Arrays by contact row, before there is a factor. */
 static status new_rows(sparse_operator *o) {
-  const size_t m = (size_t)o->k->n_row, size = (size_t)o->k->rows * m;
-  PASS_NEW_ALL(OF(o->number, (size_t)o->k->dim * (size_t)o->k->n_node),
+  const size_t m = o->k->n_row, size = o->k->rows * m;
+  PASS_NEW_ALL(OF(o->number, (size_t)o->k->dim * o->k->n_node),
                OF(o->unknown, m), OF(o->held, m), OF(o->rows.known, m),
                OF(o->rows.added, size), OF(o->diagonal, m), OF(o->room, 2 * m),
-               OF(o->body, m / (size_t)o->k->rows),
-               OF(o->part.node, m / (size_t)o->k->rows));
+               OF(o->body, m / o->k->rows), OF(o->part.node, m / o->k->rows));
   return OK;
 }
 
 /* Held unknowns get the largest diagonal entry of their node, or of all. */
 static void fill_diagonal(sparse_operator *o) {
   const stiffness *k = o->k;
-  const size_t dim = (size_t)k->dim;
+  const size_t dim = k->dim;
   double most = 0.0;
   for (int q = 0; q < k->n_row; ++q) {
     const size_t at = o->unknown[q];
@@ -527,7 +526,7 @@ static void number_rows(sparse_operator *o) {
   for (int i = 0; i < o->k->n_node; ++i)
     for (int c = 0; c < o->k->dim; ++c)
       if (contact_row(o->k, i, c) >= 0)
-        o->unknown[contact_row(o->k, i, c)] = (size_t)(o->k->dim * i + c);
+        o->unknown[contact_row(o->k, i, c)] = o->k->dim * i + c;
 }
 
 /* Unknowns numbered by their place in the factor: its matrix then needs no
@@ -594,7 +593,7 @@ static status list_blocks(sparse_operator *o, int n, block_taker *take,
   }
   PASS_NEW(list->item, sum);
   each_block(o, take);
-  memmove(list->start + 1, list->start, (size_t)n * sizeof *list->start);
+  memmove(list->start + 1, list->start, n * sizeof *list->start);
   list->start[0] = 0;
   return OK;
 }
@@ -605,7 +604,7 @@ static status divide(sparse_operator *o) {
   PASS_NEW_ALL(OF(o->part.mark, count), OF(o->part.touches, count),
                OF(o->part.all.list, count), OF(o->part.contact.list, count),
                OF(o->part.response.list, count));
-  memset(o->part.mark, 1, (size_t)count);
+  memset(o->part.mark, 1, count);
   supernodal_list(o->s, o->part.mark, &o->part.all);
   for (int i = 0; i < n_contact(o); ++i) mark_node(o, i, o->part.touches);
   supernodal_close(o->s, o->part.touches);
@@ -671,8 +670,8 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
   o->cm = d->cm;
   o->pinned = d->pinned;
   PASS(new_rows(o));
-  memcpy(o->held, d->held, (size_t)k->n_row);
-  memcpy(o->body, d->body, (size_t)(k->n_row / k->rows) * sizeof *o->body);
+  memcpy(o->held, d->held, k->n_row);
+  COPY(o->body, d->body, k->n_row / k->rows);
   number_rows(o);
   fill_diagonal(o);
   PASS(order_whole(o, d->x, d->order, ordering));

@@ -62,7 +62,7 @@ typedef struct dissection {
 enum { DIAGONAL = 2, DIRECTIONS_2D = 4 };
 
 static double coordinate(const dissection *w, int node, int axis) {
-  const double *x = w->x + (size_t)w->dim * (size_t)node;
+  const double *x = w->x + (size_t)w->dim * node;
   if (w->dim == 3 || axis < DIAGONAL) return x[axis];
   return axis == DIAGONAL ? x[0] + x[1] : x[0] - x[1];
 }
@@ -144,7 +144,7 @@ static int keep_inner(dissection *w, int n, int *node, int other) {
       w->spare[moved++] = node[i];
     else
       node[kept++] = node[i];
-  memcpy(node + kept, w->spare, (size_t)moved * sizeof *node);
+  COPY(node + kept, w->spare, moved);
   return kept;
 }
 
@@ -213,8 +213,8 @@ static void dissect(dissection *w, int n, int *node) {
   int n_left = half, n_right = n - half;
   if (c.at_left < c.at_right) {
     n_left = keep_inner(w, half, node, c.right);
-    memcpy(w->spare, node + n_left, (size_t)(half - n_left) * sizeof *node);
-    memmove(node + n_left, node + half, (size_t)n_right * sizeof *node);
+    COPY(w->spare, node + n_left, (half - n_left));
+    memmove(node + n_left, node + half, n_right * sizeof *node);
     COPY(node + n_left + n_right, w->spare, half - n_left);
   } else {
     n_right = keep_inner(w, n - half, node + half, c.left);
@@ -245,8 +245,8 @@ static status graph_pattern(const graph *g, int n, const int *node,
   for (int i = 0; i < n; ++i)
     for (size_t p = g->start[node[i]]; p < g->start[node[i] + 1]; ++p)
       edges += order[g->next[p]] > i + 1;
-  cholmod_sparse *a = *out = cholmod_l_allocate_sparse(
-      (size_t)n, (size_t)n, edges, 0, 1, -1, CHOLMOD_PATTERN, cm);
+  cholmod_sparse *a = *out =
+      cholmod_l_allocate_sparse(n, n, edges, 0, 1, -1, CHOLMOD_PATTERN, cm);
   if (a == NULL) RAISE(ERR_MEMORY, "memory exhausted: graph of %d nodes", n);
   SuiteSparse_long *start = a->p, *row = a->i, k = 0;
   for (int i = 0; i < n; ++i) {
@@ -259,7 +259,7 @@ static status graph_pattern(const graph *g, int n, const int *node,
 
 /* METIS without memory returns arbitrary numbers, and CHOLMOD accepts them. */
 static int is_permutation(const SuiteSparse_long *perm, int n, int *seen) {
-  memset(seen, 0, (size_t)n * sizeof *seen);
+  CLEAR(seen, n);
   for (int i = 0; i < n; ++i) {
     if (perm[i] < 0 || perm[i] >= n || seen[perm[i]]) return 0;
     seen[perm[i]] = 1;
@@ -279,7 +279,7 @@ static status order_by_pattern(order_method method, const graph *g, int n,
   cholmod_l_free_sparse(&a, cm);
   if (!ordered || !is_permutation(perm, n, old))
     RAISE(ERR_MEMORY, "memory exhausted: order of %d nodes", n);
-  memcpy(old, node, (size_t)n * sizeof *node);
+  COPY(old, node, n);
   for (int i = 0; i < n; ++i) node[i] = old[perm[i]];
   return OK;
 }
@@ -317,7 +317,7 @@ status order_cost_of(const graph *g, int n, const int *node,
                      const unsigned char *mark, cholmod_common *cm,
                      order_cost *cost) {
   cholmod_sparse *a = NULL;
-  const size_t size = (size_t)n;
+  const size_t size = n;
   OWNED_NEW(SuiteSparse_long, w, 6 * size);
   OWNED_NEW(unsigned char, reached, n);
   *cost = (order_cost){0};
@@ -342,12 +342,12 @@ static status compare_with_metis(const graph *g, int n, int *node,
                                  cholmod_common *cm, const char **name) {
   order_cost cuts, metis;
   OWNED_NEW(int, other, n);
-  memcpy(other, node, (size_t)n * sizeof *node);
+  COPY(other, node, n);
   PASS(order_by_pattern(ORDER_METIS, g, n, other, cm));
   PASS(order_cost_of(g, n, node, NULL, cm, &cuts));
   PASS(order_cost_of(g, n, other, NULL, cm, &metis));
   if (metis.flops < cuts.flops) {
-    memcpy(node, other, (size_t)n * sizeof *node);
+    COPY(node, other, n);
     *name = "METIS";
   }
   return OK;

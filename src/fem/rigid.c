@@ -41,9 +41,9 @@ double component_term(const component *x, int t, int *node) {
   *node = x->node;
   if (t == 0) return 1;
   const node_links *l = x->links;
-  const size_t e = l->start[x->row] + (size_t)t - 1;
+  const size_t e = l->start[x->row] + t - 1;
   *node = l->master[e];
-  return -l->part[(size_t)l->dim * e + (size_t)x->c];
+  return -l->part[l->dim * e + x->c];
 }
 
 /* Is component c of node i unknown? Prescribed ones do not move. */
@@ -58,9 +58,8 @@ static int term_row(const domain *d, const rigid_motions *r, const component *x,
   int node;
   *factor = component_term(x, t, &node);
   if (*factor == 0 || r->column[node] < 0) return -1;
-  modes_row(&r->at[r->body[node]],
-            d->mesh->x + (size_t)d->mesh->dim * (size_t)node, x->direction,
-            row);
+  modes_row(&r->at[r->body[node]], d->mesh->x + (size_t)d->mesh->dim * node,
+            x->direction, row);
   return r->column[node];
 }
 
@@ -71,7 +70,7 @@ typedef struct box {
 
 static void extend(const domain *d, int node, box *b) {
   const int dim = d->mesh->dim;
-  const double *x = d->mesh->x + (size_t)dim * (size_t)node;
+  const double *x = d->mesh->x + (size_t)dim * node;
   for (int c = 0; c < dim; ++c) {
     if (!b->found || x[c] < b->low[c]) b->low[c] = x[c];
     if (!b->found || x[c] > b->high[c]) b->high[c] = x[c];
@@ -116,15 +115,15 @@ static void contact_motion(const domain *d, const rigid_motions *r,
                            const rigid_set *s, const component *x, double *to) {
   const int n = component_terms(x);
   double row[6], factor;
-  for (int j = 0; j < s->k; ++j) to[(size_t)r->m * (size_t)j] = 0;
+  for (int j = 0; j < s->k; ++j) to[(size_t)r->m * j] = 0;
   for (int t = 0; t < n; ++t) {
     const int column = term_row(d, r, x, t, &factor, row);
     for (int j = 0; column >= 0 && j < s->k; ++j) {
-      const double *y = s->Y + (size_t)s->n * (size_t)j + column;
+      const double *y = s->Y + (size_t)s->n * j + column;
       double sum = 0;
       for (int a = 0; a < r->at[s->owner[column]].modes; ++a)
         sum += row[a] * y[a];
-      to[(size_t)r->m * (size_t)j] += factor * sum;
+      to[(size_t)r->m * j] += factor * sum;
     }
   }
 }
@@ -137,9 +136,8 @@ static void contact_motions(const stiffness *k, const domain *d,
     for (int c = 0; first >= 0 && c < k->rows; ++c) {
       const component x = node_component(d, i, k->contact[i], c);
       if (is_unknown(k, i, c))
-        contact_motion(
-            d, r, s, &x,
-            r->Q + (size_t)r->m * (size_t)s->first + (size_t)(first + c));
+        contact_motion(d, r, s, &x,
+                       r->Q + (size_t)r->m * s->first + (first + c));
     }
   }
 }
@@ -150,18 +148,18 @@ static double inner(int n, const double *a, const double *b) {
 
 /* Make the columns of a set orthonormal; the motions follow. */
 static void gram_schmidt(const rigid_motions *r, rigid_set *s) {
-  const size_t m = (size_t)r->m, n = (size_t)s->n;
-  double *Q = r->Q + m * (size_t)s->first;
+  const size_t m = r->m, n = s->n;
+  double *Q = r->Q + m * s->first;
   int kept = 0;
   for (int j = 0; j < s->k; ++j) {
-    double *q = Q + m * (size_t)kept, *y = s->Y + n * (size_t)kept;
-    memmove(q, Q + m * (size_t)j, m * sizeof *q);
-    memmove(y, s->Y + n * (size_t)j, n * sizeof *y);
+    double *q = Q + m * kept, *y = s->Y + n * kept;
+    memmove(q, Q + m * j, m * sizeof *q);
+    memmove(y, s->Y + n * j, n * sizeof *y);
     const double before = inner(r->m, q, q);
     for (int i = 0; i < kept; ++i) {
-      const double part = inner(r->m, Q + m * (size_t)i, q);
-      cblas_daxpy(r->m, -part, Q + m * (size_t)i, 1, q, 1);
-      cblas_daxpy(s->n, -part, s->Y + n * (size_t)i, 1, y, 1);
+      const double part = inner(r->m, Q + m * i, q);
+      cblas_daxpy(r->m, -part, Q + m * i, 1, q, 1);
+      cblas_daxpy(s->n, -part, s->Y + n * i, 1, y, 1);
     }
     const double norm = sqrt(inner(r->m, q, q));
     if (!(norm > least_part * sqrt(before))) continue;
@@ -169,7 +167,7 @@ static void gram_schmidt(const rigid_motions *r, rigid_set *s) {
     cblas_dscal(s->n, 1 / norm, y, 1);
     ++kept;
   }
-  for (int j = kept; j < s->k; ++j) memset(Q + m * (size_t)j, 0, m * sizeof *Q);
+  for (int j = kept; j < s->k; ++j) CLEAR(Q + m * j, m);
   s->k = kept;
 }
 
@@ -181,8 +179,7 @@ static void centre_motions(const rigid_motions *r, const box *of,
     for (int i = 0; i < s->n; i += r->at[s->owner[i]].modes) {
       const int b = s->owner[i];
       const rigid_modes at = modes_about(&r->at[b], &of[b]);
-      if (of[b].found)
-        modes_move(&r->at[b], &at, s->Y + (size_t)s->n * (size_t)j + i);
+      if (of[b].found) modes_move(&r->at[b], &at, s->Y + (size_t)s->n * j + i);
     }
 }
 
@@ -195,7 +192,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
     r->set[t].first = r->k;
     r->k += r->set[t].k;
   }
-  PASS_NEW_ALL(OF(r->Q, (size_t)r->m * (size_t)r->k), OF(of, r->n_body));
+  PASS_NEW_ALL(OF(r->Q, (size_t)r->m * r->k), OF(of, r->n_body));
   for (EACH(rigid_set, s, r->set, r->n_set)) {
     PASS_NEW(s->load, s->n);
     if (!measure_contact(k, d, r, s, of)) s->k = 0;
@@ -231,8 +228,8 @@ status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned) {
   const int m = r->m, k = s->k;
   OWNED double *rest = NULL, *moved = NULL, *axis = NULL;
-  PASS_NEW_ALL(OF(rest, (size_t)m * (size_t)k), OF(moved, m), OF(axis, k));
-  COPY(rest, r->Q + (size_t)m * (size_t)s->first, (size_t)m * (size_t)k);
+  PASS_NEW_ALL(OF(rest, (size_t)m * k), OF(moved, m), OF(axis, k));
+  COPY(rest, r->Q + (size_t)m * s->first, (size_t)m * k);
   for (int j = 0; j < k; ++j) {
     const int at = most_moved(m, k, rest);
     cblas_dcopy(k, rest + at, m, axis, 1);
@@ -250,7 +247,7 @@ status rigid_project(const rigid_motions *r, double *A) {
   const int m = r->m, k = r->k;
   OWNED double *V = NULL, *S = NULL;
   if (m == 0 || k == 0) return OK;
-  PASS_NEW_ALL(OF(V, (size_t)m * (size_t)k), OF(S, (size_t)k * (size_t)k));
+  PASS_NEW_ALL(OF(V, (size_t)m * k), OF(S, (size_t)k * k));
   cblas_dsymm(CblasColMajor, CblasLeft, CblasUpper, m, k, 1, A, m, r->Q, m, 0,
               V, m);
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1, r->Q, m, V,
@@ -259,7 +256,7 @@ status rigid_project(const rigid_motions *r, double *A) {
               S, k, 1, V, m);
   cblas_dsyr2k(CblasColMajor, CblasUpper, CblasNoTrans, m, k, -1, V, m, r->Q, m,
                1, A, m);
-  symmetric_fill((size_t)m, A);
+  symmetric_fill(m, A);
   return OK;
 }
 
@@ -279,10 +276,10 @@ static void add_load(const domain *d, const rigid_motions *r,
 static void add_loads(const stiffness *k, const domain *d,
                       const rigid_motions *r, const double *load,
                       rigid_set *s) {
-  memset(s->load, 0, (size_t)s->n * sizeof *s->load);
+  CLEAR(s->load, s->n);
   for (int t = 0; t < s->n_node; ++t) {
     const int i = s->node[t];
-    const double *f = load + (size_t)k->dim * (size_t)i;
+    const double *f = load + (size_t)k->dim * i;
     for (int c = 0; c < k->dim; ++c) {
       const component x = node_component(d, i, k->contact[i], c);
       if (f[c] != 0 && is_unknown(k, i, c)) add_load(d, r, &x, f[c], s);
@@ -298,10 +295,9 @@ void rigid_loads(const stiffness *k, const domain *d, rigid_motions *r,
 
 void rigid_balance(const rigid_motions *r, double *f_c) {
   for (EACH(const rigid_set, s, r->set, r->n_set)) {
-    const double *Q = r->Q + (size_t)r->m * (size_t)s->first;
+    const double *Q = r->Q + (size_t)r->m * s->first;
     for (int j = 0; j < s->k; ++j, Q += r->m) {
-      const double given =
-          inner(s->n, s->Y + (size_t)s->n * (size_t)j, s->load);
+      const double given = inner(s->n, s->Y + (size_t)s->n * j, s->load);
       cblas_daxpy(r->m, given - inner(r->m, Q, f_c), Q, 1, f_c, 1);
     }
   }
@@ -317,13 +313,13 @@ void modes_row(const rigid_modes *r, const double *x, const double *direction,
     row[0] = direction[1];
   } else if (r->dim == 2) {
     *v++ = p[0] * direction[1] - p[1] * direction[0];
-    memcpy(v, direction, 2 * sizeof *v);
+    COPY(v, direction, 2);
   } else {
     for (int c = 0; c < 3; ++c) {
       const int i = (c + 1) % 3, j = (c + 2) % 3;
       *v++ = p[i] * direction[j] - p[j] * direction[i];
     }
-    memcpy(v, direction, 3 * sizeof *v);
+    COPY(v, direction, 3);
   }
 }
 
@@ -366,9 +362,8 @@ static void write_vector(int dim, const double *v, int direction, char *text,
   }
   size_t used = 0;
   for (int c = 0; c < dim && used < size; ++c)
-    used += (size_t)snprintf(text + used, size - used, "%s%.6g",
-                             c == 0 ? "(" : ", ",
-                             direction ? v[c] / sqrt(norm) : v[c]);
+    used += snprintf(text + used, size - used, "%s%.6g", c == 0 ? "(" : ", ",
+                     direction ? v[c] / sqrt(norm) : v[c]);
   if (used < size) snprintf(text + used, size - used, ")");
 }
 

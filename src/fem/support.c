@@ -205,7 +205,7 @@ static void measure_bodies(body_sets *s, double *low, double *high) {
   }
   for (int i = 0; i < m->n_node; ++i)
     for (int c = 0; c < m->dim && s->body[i] >= 0; ++c) {
-      const double x = m->x[(size_t)m->dim * (size_t)i + (size_t)c];
+      const double x = m->x[(size_t)m->dim * i + c];
       const int at = 3 * s->body[i] + c;
       low[at] = fmin(low[at], x);
       high[at] = fmax(high[at], x);
@@ -282,7 +282,7 @@ static int join_round(body_sets *s, int i, int join) {
 /* Nodes by set: a count, then the list. */
 static void list_nodes(body_sets *s) {
   const int n_node = s->d->mesh->n_node, n_body = s->p.n_body;
-  memset(s->start, 0, (size_t)(n_body + 2) * sizeof *s->start);
+  CLEAR(s->start, (n_body + 2));
   for (int pass = 0; pass < 2; ++pass) {
     for (int i = 0; i < n_node; ++i) {
       const int id = join_round(s, i, 0);
@@ -311,7 +311,7 @@ static void sets_join(body_sets *s, joint by) {
     if ((by >= TIES && s->tie[i] >= 0) ||
         (by == TIES_AND_PAIRS && s->contact[i] >= 0))
       join_round(s, i, 1);
-  memset(s->n, 0, (size_t)n_body * sizeof *s->n);
+  CLEAR(s->n, n_body);
   for (int b = 0; b < n_body; ++b) {
     if (s->set[b] < 0) continue;
     const int id = s->set[b] = forest_root(s->set, b);
@@ -359,7 +359,7 @@ static status triangle_new(const body_sets *s, int id, int closed,
                            triangle *t) {
   const int n = s->n[id];
   *t = (triangle){.s = s, .id = id, .closed = closed, .n = n, .first = n};
-  PASS_NEW_ALL(OF(t->r, (size_t)n * (size_t)n), OF(t->end, n), OF(t->owner, n),
+  PASS_NEW_ALL(OF(t->r, (size_t)n * n), OF(t->end, n), OF(t->owner, n),
                OF(t->row, n));
   for (int b = id, k = 0; k < n; ++b)
     for (int a = s->set[b] == id ? sets_columns(s, b) : 0; a > 0; --a)
@@ -387,7 +387,7 @@ static void add_row(triangle *t) {
   const int adds = is_condition(t);
   t->n_row += adds;
   for (int k = t->first; adds && k < t->last; ++k) {
-    double *r = t->r + (size_t)k * (size_t)t->n;
+    double *r = t->r + (size_t)k * t->n;
     if (row[k] == 0) continue;
     const double h = hypot(r[k], row[k]), c = r[k] / h, s = row[k] / h;
     if (t->end[k] > t->last) t->last = t->end[k];
@@ -411,7 +411,7 @@ static void add_term(triangle *t, int b, int column, int x, double factor,
   const mesh *m = t->s->d->mesh;
   const rigid_modes *at = &t->s->at[b];
   double row[6];
-  modes_row(at, m->x + (size_t)m->dim * (size_t)x, direction, row);
+  modes_row(at, m->x + (size_t)m->dim * x, direction, row);
   for (int a = 0; a < at->modes; ++a) {
     t->row[column + a] += factor * row[a];
     t->most = fmax(t->most, fabs(factor * row[a]));
@@ -467,9 +467,8 @@ static void add_hinges(triangle *t, int i) {
 static int is_prescribed(const body_sets *s, int i, int c) {
   const domain *d = s->d;
   const int dim = d->mesh->dim, q = s->contact[i];
-  return q >= 0
-             ? d->surface->held[dim * q + c]
-             : s->tie[i] >= 0 || d->fixed[(size_t)dim * (size_t)i + (size_t)c];
+  return q >= 0 ? d->surface->held[dim * q + c]
+                : s->tie[i] >= 0 || d->fixed[(size_t)dim * i + c];
 }
 
 static void add_supports(triangle *t) {
@@ -521,8 +520,8 @@ static status find_null_space(const triangle *t, double *u, null_basis *z) {
   const int n = t->n;
   OWNED double *a = NULL, *s = NULL, *work = NULL;
   double none;
-  PASS_NEW_ALL(OF(a, (size_t)n * (size_t)n), OF(s, n), OF(work, 16 * n));
-  memcpy(a, t->r, (size_t)n * (size_t)n * sizeof *a);
+  PASS_NEW_ALL(OF(a, (size_t)n * n), OF(s, n), OF(work, 16 * n));
+  COPY(a, t->r, (size_t)n * n);
   if (LAPACKE_dgesvd_work(LAPACK_COL_MAJOR, 'A', 'N', n, n, a, n, s, u, n,
                           &none, 1, work, 16 * n) != 0)
     RAISE(ERR_INTERNAL, "singular values of the supports not found");
@@ -530,8 +529,7 @@ static status find_null_space(const triangle *t, double *u, null_basis *z) {
     z->rank += !(s[k] > rank_limit * s[0]);
     z->exact += !(s[k] > exact_limit * s[0]);
   }
-  memmove(u, u + (size_t)(n - z->rank) * (size_t)n,
-          (size_t)z->rank * (size_t)n * sizeof *u);
+  memmove(u, u + (size_t)(n - z->rank) * n, (size_t)z->rank * n * sizeof *u);
   return OK;
 }
 
@@ -541,10 +539,10 @@ static status null_space(const triangle *t, null_basis *z) {
   *z = (null_basis){0};
   if (t->n_row >= n) PASS(is_regular(t, &regular));
   if (regular) return OK;
-  PASS_NEW(z->Z, (size_t)n * (size_t)n);
+  PASS_NEW(z->Z, (size_t)n * n);
   if (t->n_row > 0) return find_null_space(t, z->Z, z);
   z->rank = z->exact = n;
-  for (int k = 0; k < n; ++k) z->Z[(size_t)k * (size_t)(n + 1)] = 1;
+  for (int k = 0; k < n; ++k) z->Z[(size_t)k * (n + 1)] = 1;
   return OK;
 }
 
@@ -622,7 +620,7 @@ typedef struct finder {
 static int is_new_motion(finder *f, const double *z) {
   const int n = f->t.n, m = f->n_known;
   double *rest = f->rest;
-  memcpy(rest, z, (size_t)n * sizeof *rest);
+  COPY(rest, z, n);
   for (int pass = 0; pass < 2; ++pass) {
     cblas_dgemv(CblasColMajor, CblasTrans, n, m, 1, f->known, n, rest, 1, 0,
                 f->part, 1);
@@ -632,7 +630,7 @@ static int is_new_motion(finder *f, const double *z) {
   const double left = cblas_ddot(n, rest, 1, rest, 1);
   if (!(left > 1e-12 * cblas_ddot(n, z, 1, z, 1))) return 0;
   cblas_dscal(n, 1 / sqrt(left), rest, 1);
-  memcpy(f->known + (size_t)m * (size_t)n, rest, (size_t)n * sizeof *rest);
+  COPY(f->known + (size_t)m * n, rest, n);
   ++f->n_known;
   return 1;
 }
@@ -640,11 +638,11 @@ static int is_new_motion(finder *f, const double *z) {
 /* Append the motions of a null space that are new, translations first. */
 static status append_motions(finder *f, motion_hold hold, motion_list *list) {
   const null_basis *of = &f->of[hold];
-  const size_t n = (size_t)f->t.n;
-  reduce_rows((size_t)of->rank, n, of->Z);
+  const size_t n = f->t.n;
+  reduce_rows(of->rank, n, of->Z);
   for (int rotation = 0; rotation < 2; ++rotation)
     for (int i = 0; i < of->rank; ++i) {
-      const double *z = of->Z + (size_t)i * n;
+      const double *z = of->Z + i * n;
       if (turns(&f->t, z) != rotation || !is_new_motion(f, z)) continue;
       PASS_GROW(list->item, list->n, list->capacity);
       list->item[list->n].held_by = hold;
@@ -657,17 +655,17 @@ static status add_set(const triangle *t, const null_basis *z,
                       rigid_motions *r) {
   const body_sets *s = t->s;
   const int *node = s->node + s->start[t->id];
-  const size_t n = (size_t)t->n;
+  const size_t n = t->n;
   ADDED(rigid_set, to, r->set, r->n_set, r->capacity);
   *to = (rigid_set){.n = t->n,
                     .n_motion = z->rank,
                     .k = z->exact,
                     .n_node = s->start[t->id + 1] - s->start[t->id]};
-  PASS_NEW_ALL(OF(to->Y, n * (size_t)to->k), OF(to->owner, n),
+  PASS_NEW_ALL(OF(to->Y, n * to->k), OF(to->owner, n),
                OF(to->node, to->n_node));
-  COPY(to->Y, z->Z + n * (size_t)(z->rank - z->exact), n * (size_t)to->k);
-  memcpy(to->owner, t->owner, n * sizeof *to->owner);
-  memcpy(to->node, node, (size_t)to->n_node * sizeof *node);
+  COPY(to->Y, z->Z + n * (z->rank - z->exact), n * to->k);
+  COPY(to->owner, t->owner, n);
+  COPY(to->node, node, to->n_node);
   return OK;
 }
 
@@ -699,7 +697,7 @@ static status set_motions(const body_sets *s, int id, motion_list *list,
   TRY(null_space(&f.t, &f.of[HELD_BY_FRICTION]));
   add_contact(&f.t, 0);
   TRY(null_space(&f.t, &f.of[HELD_BY_NOTHING]));
-  NEW_ALL(OF(f.known, (size_t)n * (size_t)n), OF(f.rest, n), OF(f.part, n));
+  NEW_ALL(OF(f.known, (size_t)n * n), OF(f.rest, n), OF(f.part, n));
   for (int hold = HELD_BY_NOTHING; hold <= HELD_BY_CONTACT; ++hold)
     TRY(append_motions(&f, (motion_hold)hold, list));
 done:
@@ -735,12 +733,12 @@ static status drop_bodies_at_rest(body_sets *s) {
 
 /* What rigid.c needs of the bodies. */
 static status keep_places(const body_sets *s, rigid_motions *r) {
-  const size_t n_body = (size_t)s->p.n_body;
+  const size_t n_body = s->p.n_body;
   const int n_node = s->d->mesh->n_node;
   r->n_body = s->p.n_body;
   PASS_NEW_ALL(OF(r->at, n_body), OF(r->body, n_node), OF(r->column, n_node));
-  memcpy(r->at, s->at, n_body * sizeof *r->at);
-  memcpy(r->body, s->body, (size_t)n_node * sizeof *r->body);
+  COPY(r->at, s->at, n_body);
+  COPY(r->body, s->body, n_node);
   for (int i = 0; i < n_node; ++i) r->column[i] = sets_node_column(s, i);
   return OK;
 }

@@ -89,7 +89,7 @@ static void share_domains(const integrals *of, int mode, double factor,
 status fracture_derive(fracture *f, const fracture_state *s, int point,
                        int mode, fracture_linear *out) {
   const mesh *m = f->body.mesh;
-  const size_t n_dof = (size_t)m->dim * (size_t)m->n_node;
+  const size_t n_dof = (size_t)m->dim * m->n_node;
   const fracture_point *p = &f->point[point];
   const elasticity x = elasticity_at(f, p);
   integrals sum;

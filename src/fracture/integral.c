@@ -81,12 +81,12 @@ static int set_corners(work *w, int n, const int *node) {
  * Returns its measure. */
 static double set_slope(work *w, int elem, double g[12]) {
   const int dim = w->m->dim;
-  const int *v = w->m->elem + (size_t)(dim + 1) * (size_t)elem;
+  const int *v = w->m->elem + (size_t)(dim + 1) * elem;
   const double determinant = mesh_elem_gradients(w->m, elem, g);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) w->slope[i][j] = -w->turn[i][j];
   for (int k = 0; k <= dim; ++k) {
-    const double *u = w->state->u + (size_t)dim * (size_t)v[k];
+    const double *u = w->state->u + (size_t)dim * v[k];
     for (int i = 0; i < dim; ++i)
       for (int j = 0; j < dim; ++j) w->slope[i][j] += u[i] * g[dim * k + j];
   }
@@ -98,7 +98,7 @@ static double set_fields(work *w, int elem, double g[12]) {
   static const int voigt[2][3][3] = {{{0, 3, -1}, {3, 1, -1}, {-1, -1, 2}},
                                      {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};
   const int dim = w->m->dim;
-  const double *sigma = w->state->sigma + (size_t)(2 * dim) * (size_t)elem;
+  const double *sigma = w->state->sigma + (size_t)(2 * dim) * elem;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       const int at = voigt[dim - 2][i][j];
@@ -313,7 +313,7 @@ static void add_element(work *w, int elem) {
   double g[12], Q[DOMAINS][3];
   field_tensor s, d, grow[DOMAINS], P;
   local at;
-  if (!set_corners(w, n, w->m->elem + (size_t)n * (size_t)elem)) return;
+  if (!set_corners(w, n, w->m->elem + (size_t)n * elem)) return;
   w->measure = set_fields(w, elem, g);
   place_at(w, phi, &at);
   field_turn(&at, w->stress, &s);
@@ -368,9 +368,9 @@ static int derive_element(work *w, int elem, int mode, const double *part,
 
 /* The given traction at a node in the frame of its place. */
 static void traction_of(const work *w, int node, const local *at, double t[3]) {
-  const size_t dim = (size_t)w->m->dim;
+  const size_t dim = w->m->dim;
   double given[3] = {0, 0, 0};
-  memcpy(given, w->state->traction + dim * (size_t)node, dim * sizeof *given);
+  COPY(given, w->state->traction + dim * node, dim);
   field_turn_vector(at, given, t);
 }
 
@@ -599,7 +599,7 @@ static int is_near(const fracture *f, int node, const fracture_point *p) {
 /* Nodes of an element that are new and near go to the list. */
 static int list_nodes(fracture *f, int elem, const fracture_point *p, int n) {
   const mesh *m = f->body.mesh;
-  const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)elem;
+  const int *v = m->elem + (size_t)(m->dim + 1) * elem;
   for (int c = 0; c <= m->dim; ++c) {
     if (f->node_seen[v[c]] == f->mark || !is_near(f, v[c], p)) continue;
     f->node_seen[v[c]] = f->mark;
@@ -662,16 +662,16 @@ status integrals_derive(fracture *f, const fracture_state *s,
                         const double *part, fracture_linear *out) {
   work w = {.f = f, .m = f->body.mesh, .crack = f->body.crack, .p = p};
   const int dim = w.m->dim;
-  const size_t each = (size_t)((dim + 1) * dim * dim);
+  const size_t each = (dim + 1) * dim * dim;
   by_slopes sum = {{0}, {0}};
   w.state = s;
   w.x = x;
   const int n = gather_elements(f, p);
   find_turn(&w);
-  PASS_NEW_ALL(OF(out->elem, n), OF(out->flux, each * (size_t)n));
+  PASS_NEW_ALL(OF(out->elem, n), OF(out->flux, each * n));
   for (int i = 0; i < n; ++i)
     if (derive_element(&w, f->elem_list[i], mode, part, out->by_u,
-                       out->flux + each * (size_t)out->n, &sum))
+                       out->flux + each * out->n, &sum))
       out->elem[out->n++] = f->elem_list[i];
   derive_turn(&w, sum.centre, out->by_u);
   for (int k = 0; k < dim * dim; ++k)

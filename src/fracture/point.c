@@ -9,7 +9,7 @@
 
 void place_of(const mesh *m, int node, double x[3]) {
   x[2] = 0;
-  memcpy(x, m->x + (size_t)m->dim * (size_t)node, (size_t)m->dim * sizeof *x);
+  COPY(x, m->x + (size_t)m->dim * node, m->dim);
 }
 
 /* The front is a circle of curvature k through the point, its centre behind it
@@ -116,7 +116,7 @@ static void release(obstacles *o) { RELEASE(o->node, o->normal, o->mixed); }
  * lengths. */
 static void add_normals(const mesh *m, double *sum) {
   for (int e = 0; e < m->n_elem; ++e) {
-    const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)e;
+    const int *v = m->elem + (size_t)(m->dim + 1) * e;
     double g[12];
     const double w = mesh_elem_gradients(m, e, g);
     for (int a = 0; a <= m->dim; ++a) {
@@ -137,7 +137,7 @@ static status find_mixed(const fracture_body *b, obstacles *o) {
   for (int i = 0; i < m->n_node; ++i) of[i] = -1;
   for (int e = 0; e < m->n_elem; ++e)
     for (int a = 0; a <= m->dim; ++a) {
-      int node = m->elem[(size_t)(m->dim + 1) * (size_t)e + (size_t)a];
+      int node = m->elem[(size_t)(m->dim + 1) * e + a];
       int here = b->section_id[e];
       if (of[node] < 0) of[node] = here;
       if (!same_material(&b->material[of[node]], &b->material[here]))
@@ -163,7 +163,7 @@ static status find_obstacles(const fracture_body *b, obstacles *o) {
   for (int i = 0; i < m->n_node; ++i) {
     const double *at = sum + 4 * (size_t)i;
     if (!o->mixed[i] && dot(3, at, at) == 0) continue;
-    memcpy(o->normal + 3 * n, at, 3 * sizeof *at);
+    COPY(o->normal + 3 * n, at, 3);
     o->node[n++] = i;
   }
   return OK;
@@ -223,7 +223,7 @@ static void look_round(const fracture *f, fracture_point *p) {
   p->section = b->section_id[first];
   for (size_t k = f->start[p->node]; k < f->start[p->node + 1]; ++k) {
     const int e = f->elem[k];
-    const int *v = m->elem + (size_t)(m->dim + 1) * (size_t)e;
+    const int *v = m->elem + (size_t)(m->dim + 1) * e;
     for (int a = 0; a <= m->dim; ++a) sum += distance(m, v[a], p->node);
     if (!same_material(&b->material[b->section_id[e]],
                        &b->material[b->section_id[first]]))

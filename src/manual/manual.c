@@ -177,11 +177,11 @@ static void print_column(const column *c, FILE *out) {
                 {SCENE_SOLID, "3-D"},
                 {SCENE_LCP, "LCP"}};
   char text[800];
-  size_t n = (size_t)snprintf(text, sizeof text, "%s", c->help);
-  unsigned of = c->scenes & ~(unsigned)SCENE_LCP ? c->scenes : SCENE_LCP;
+  size_t n = snprintf(text, sizeof text, "%s", c->help);
+  unsigned of = c->scenes & ~SCENE_LCP ? c->scenes : SCENE_LCP;
   for (int i = 0; i < 4 && (c->scenes & SCENE_ALL) != SCENE_ALL; ++i)
     if (of & scenes[i].bit && n < sizeof text)
-      n += (size_t)snprintf(text + n, sizeof text - n, "; %s", scenes[i].name);
+      n += snprintf(text + n, sizeof text - n, "; %s", scenes[i].name);
   if (c->field != NULL && strcmp(c->field, c->name) != 0 && n < sizeof text)
     snprintf(text + n, sizeof text - n, "; JOB.h5: %s", c->field);
   fprintf(out, "  %-18s %-14s ", c->name, c->unit);

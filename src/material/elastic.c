@@ -128,7 +128,7 @@ static void anisotropic(const double *k, double C[36]) {
 const char *elastic_matrix(elastic_type type, int n, const double *constants,
                            double C[36], char *text, int text_size) {
   static const int expected[] = {2, 9, 21};
-  const size_t size = (size_t)text_size;
+  const size_t size = text_size;
   const char *wrong = NULL;
   memset(C, 0, 36 * sizeof *C);
   if (n != expected[type]) {
@@ -228,7 +228,7 @@ static status close_set(lines *r, const place *at) {
     return OK;
   }
   PASS_GROW(t->set, t->n, r->capacity);
-  memcpy(t->set[t->n].constant, r->set, (size_t)n * sizeof *r->set);
+  memcpy(t->set[t->n].constant, r->set, n * sizeof *r->set);
   t->set[t->n++].temperature = T;
   r->n = 0;
   return OK;

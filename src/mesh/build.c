@@ -58,7 +58,7 @@ static status check_names(const builder *b) {
   const mesh *m = b->m;
   OWNED_NEW(const mesh_group *, sorted, m->n_group);
   for (int i = 0; i < m->n_group; ++i) sorted[i] = &m->group[i];
-  qsort(sorted, (size_t)m->n_group, sizeof *sorted, by_name);
+  qsort(sorted, m->n_group, sizeof *sorted, by_name);
   for (int i = 1; i < m->n_group; ++i) {
     const mesh_group *a = sorted[i - 1], *g = sorted[i];
     if (strcmp(a->name, g->name) == 0)
@@ -124,9 +124,9 @@ static void add_items(const builder *b, int block, filling *f) {
   int top = p->dim == m->dim;
   size_t n = p->n_per;
   for (size_t i = 0; i < p->n; ++i) {
-    size_t raw_item = (size_t)b->first[block] + i;
+    size_t raw_item = b->first[block] + i;
     int id = top ? b->elem_of_top[raw_item] : b->face_of_low[raw_item];
-    const int *v = (top ? m->elem : m->face) + n * (size_t)id;
+    const int *v = (top ? m->elem : m->face) + n * id;
     if (f->item_mark[id]) continue;
     add(f->item_mark, f->item, &f->n_item, id);
     for (size_t k = 0; k < n; ++k) add(f->node_mark, f->node, &f->n_node, v[k]);
@@ -149,7 +149,7 @@ static void add_nodes(const builder *b, const raw_block *p, filling *f,
 static status take_list(int n, const int *list, char *mark, int **out) {
   for (int i = 0; i < n; ++i) mark[list[i]] = 0;
   PASS_NEW(*out, n);
-  memcpy(*out, list, (size_t)n * sizeof **out);
+  COPY(*out, list, n);
   return sort_ids(n, *out);
 }
 

@@ -58,7 +58,7 @@ static void put(const child *c, const void *data, size_t n) {
     if (w < 0 && errno == EINTR) continue;
     if (w <= 0) _exit(LEFT_BY_ITSELF); /* the reader has closed the pipe */
     data = (const char *)data + w;
-    n -= (size_t)w;
+    n -= w;
   }
 }
 
@@ -67,7 +67,7 @@ static void send(const child *c, wire_head head, const void *data,
                  size_t size) {
   head.magic = WIRE_MAGIC;
   put(c, &head, sizeof head);
-  put(c, data, (size_t)head.n * size);
+  put(c, data, head.n * size);
 }
 
 static void send_array(const child *c, wire_kind kind, size_t n, size_t size,
@@ -146,7 +146,7 @@ static void detach(int fd, int error_fd) {
 
 static void set_limit(unsigned what, double most) {
   struct rlimit l;
-  if (getrlimit(what, &l) != 0 || !(most < (double)l.rlim_cur)) return;
+  if (getrlimit(what, &l) != 0 || !(most < l.rlim_cur)) return;
   l.rlim_cur = (rlim_t)most;
   setrlimit(what, &l);
 }
@@ -301,7 +301,7 @@ static double *view_of_sizes(const child *c, const mesh_sizes *s, size_t *n) {
   double *data = memory_new(*n, sizeof *data);
   if (data == NULL) give_up(c, ERR_MEMORY, "memory exhausted: sizes for gmsh");
   for (int e = 0; e < m->n_elem; ++e) {
-    const int *node = m->elem + vertices * (size_t)e;
+    const int *node = m->elem + vertices * e;
     for (int i = 0; i < 3; ++i)
       for (size_t a = 0; a < vertices; ++a)
         data[k++] = (i < m->dim ? m->x[m->dim * node[a] + i] : m->z) / r->scale;

@@ -72,7 +72,7 @@ static status count_items(builder *b) {
 
 static void gather_block(builder *b, int block, faults *unknown) {
   const raw_block *p = &b->raw->block[block];
-  int *corner = b->corner + p->n_per * (size_t)b->first[block];
+  int *corner = b->corner + p->n_per * b->first[block];
   for (size_t i = 0; i < p->n_per * p->n; ++i) {
     int r = nodes_find(b, p->node[i]);
     corner[i] = r < 0 ? 0 : r;
@@ -92,7 +92,7 @@ status elements_gather(builder *b) {
   PASS(nodes_index(b));
   PASS_NEW(b->node_id, b->raw->n_node);
   for (size_t i = 0; i < b->raw->n_node; ++i) b->node_id[i] = -1;
-  PASS_NEW(b->corner, (size_t)(b->m->dim + 1) * (size_t)b->n_top);
+  PASS_NEW(b->corner, (size_t)(b->m->dim + 1) * b->n_top);
   for (int i = 0; i < b->raw->n_block; ++i)
     if (b->raw->block[i].dim == b->m->dim) gather_block(b, i, &unknown);
   if (unknown.n > 0)
@@ -104,11 +104,10 @@ status elements_gather(builder *b) {
 /* Determinant of the edges from corner 0, and the longest edge. */
 static double determinant(const mesh *m, const int *v, double *longest) {
   double d[3][3], top = 0.0;
-  size_t dim = (size_t)m->dim;
+  size_t dim = m->dim;
   for (size_t i = 0; i <= dim; ++i)
     for (size_t j = 0; j < i; ++j) {
-      const double *x = m->x + dim * (size_t)v[i],
-                   *y = m->x + dim * (size_t)v[j];
+      const double *x = m->x + dim * v[i], *y = m->x + dim * (size_t)v[j];
       double square = 0.0;
       for (size_t k = 0; k < dim; ++k) {
         double e = x[k] - y[k];
@@ -126,7 +125,7 @@ static double determinant(const mesh *m, const int *v, double *longest) {
 
 static double largest_coordinate(const mesh *m) {
   double top = 0.0;
-  for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
+  for (size_t i = 0; i < (size_t)m->dim * m->n_node; ++i)
     top = fmax(top, fabs(m->x[i]));
   return top;
 }
@@ -218,12 +217,12 @@ static status cut_flat(builder *b, double far) {
       ++left;
       if (was == NULL) {
         PASS_NEW(was, n);
-        memcpy(was, m->elem, n * sizeof *was);
+        COPY(was, m->elem, n);
       }
       cut += cut_beyond(b, e, far);
     }
   }
-  if (left > 0) memcpy(m->elem, was, n * sizeof *was);
+  if (left > 0) COPY(m->elem, was, n);
   return OK;
 }
 
@@ -267,16 +266,15 @@ typedef struct top_list { /* top elements, corners ascending mesh nodes */
 } top_list;
 
 static int same_corners(const top_list *t, int a, int b) {
-  size_t n = (size_t)t->n_corner;
-  return memcmp(t->corner + n * (size_t)a, t->corner + n * (size_t)b,
-                n * sizeof(int)) == 0;
+  size_t n = t->n_corner;
+  return memcmp(t->corner + n * a, t->corner + n * b, n * sizeof(int)) == 0;
 }
 
 /* The key holds the first two corners: by the others, then by number. */
 static int by_corners(const void *ctx, int a, int b) {
   const top_list *t = ctx;
-  const int *v = t->corner + (size_t)t->n_corner * (size_t)a;
-  const int *w = t->corner + (size_t)t->n_corner * (size_t)b;
+  const int *v = t->corner + (size_t)t->n_corner * a;
+  const int *w = t->corner + (size_t)t->n_corner * b;
   for (int k = 2; k < t->n_corner; ++k)
     if (v[k] != w[k]) return v[k] < w[k] ? -1 : 1;
   return (t->no[a] > t->no[b]) - (t->no[a] < t->no[b]);
@@ -287,10 +285,10 @@ static void fill_keys(builder *b, size_t *no, sort_item *item) {
   int n = b->m->dim + 1;
   for (int i = 0; i < b->raw->n_block; ++i) {
     const raw_block *p = &b->raw->block[i];
-    if (p->dim == b->m->dim) memcpy(no + b->first[i], p->no, p->n * sizeof *no);
+    if (p->dim == b->m->dim) COPY(no + b->first[i], p->no, p->n);
   }
   for (int e = 0; e < b->n_top; ++e) {
-    int *v = b->corner + (size_t)n * (size_t)e;
+    int *v = b->corner + (size_t)n * e;
     for (int k = 0; k < n; ++k) v[k] = b->node_id[v[k]];
     sort_few(n, v);
     item[e] = (sort_item){sort_key(v[0], v[1]), e};
@@ -328,12 +326,12 @@ static status check_repeated(builder *b, const top_list *t,
 static status store_elements(builder *b, const top_list *t,
                              const sort_item *item) {
   mesh *m = b->m;
-  size_t n = (size_t)t->n_corner;
-  PASS_NEW_ALL(OF(m->elem, n * (size_t)b->n_top), OF(m->elem_no, b->n_top));
+  size_t n = t->n_corner;
+  PASS_NEW_ALL(OF(m->elem, n * b->n_top), OF(m->elem_no, b->n_top));
   for (int i = 0; i < b->n_top; ++i) {
     const int id = item[i].id;
     if (i == 0 || !same_corners(t, item[i - 1].id, id)) {
-      COPY(m->elem + n * (size_t)m->n_elem, t->corner + n * (size_t)id, n);
+      COPY(m->elem + n * m->n_elem, t->corner + n * id, n);
       m->elem_no[m->n_elem++] = t->no[id];
     }
     b->elem_of_top[id] = m->n_elem - 1;

@@ -31,7 +31,7 @@ static int by_corners(const void *ctx, int a, int b) {
 
 static void find_centre(const builder *b, const raw_block *p, size_t i,
                         double *x) {
-  memset(x, 0, 3 * sizeof *x);
+  CLEAR(x, 3);
   for (size_t k = 0; k < p->n_per; ++k) {
     int r = nodes_find(b, p->node[p->n_per * i + k]);
     for (size_t d = 0; d < 3 && r >= 0; ++d)
@@ -46,7 +46,7 @@ static void note_missing(const builder *b, int j, faults *bad) {
          (size_t)(j - b->first[i]) >= b->raw->block[i].n)
     ++i;
   const raw_block *p = &b->raw->block[i];
-  size_t item = (size_t)(j - b->first[i]);
+  size_t item = j - b->first[i];
   double x[3];
   find_centre(b, p, item, x);
   fault_at(bad, b->m->dim, p->no[item], x);
@@ -54,20 +54,20 @@ static void note_missing(const builder *b, int j, faults *bad) {
 
 /* Corners as mesh nodes; faces with nodes outside of the mesh go to bad. */
 static status gather(builder *b, face_list *f, faults *bad) {
-  size_t dim = (size_t)f->dim;
-  PASS_NEW_ALL(OF(f->low, dim * (size_t)b->n_low), OF(f->no, b->n_low));
+  size_t dim = f->dim;
+  PASS_NEW_ALL(OF(f->low, dim * b->n_low), OF(f->no, b->n_low));
   for (int i = 0; i < b->raw->n_block; ++i) {
     const raw_block *p = &b->raw->block[i];
     if (p->dim != f->dim - 1) continue;
-    memcpy(f->no + b->first[i], p->no, p->n * sizeof *f->no);
-    int *v = f->low + dim * (size_t)b->first[i];
+    COPY(f->no + b->first[i], p->no, p->n);
+    int *v = f->low + dim * b->first[i];
     for (size_t j = 0; j < dim * p->n; ++j) {
       int r = nodes_find(b, p->node[j]);
       v[j] = r < 0 ? -1 : b->node_id[r];
     }
   }
   for (int j = 0; j < b->n_low; ++j) {
-    int *v = f->low + dim * (size_t)j;
+    int *v = f->low + dim * j;
     sort_few(f->dim, v);
     if (v[0] < 0) note_missing(b, j, bad);
   }
@@ -78,21 +78,21 @@ static status gather(builder *b, face_list *f, faults *bad) {
 static status number_faces(builder *b, face_list *f) {
   mesh *m = b->m;
   OWNED sort_item *item = NULL;
-  size_t dim = (size_t)f->dim, bytes = dim * sizeof(int);
+  size_t dim = f->dim, bytes = dim * sizeof(int);
   PASS_NEW_ALL(OF(item, b->n_low), OF(b->face_of_low, b->n_low),
-               OF(f->corner, dim * (size_t)b->n_low), OF(f->example, b->n_low));
+               OF(f->corner, dim * b->n_low), OF(f->example, b->n_low));
   int n = 0;
   for (int j = 0; j < b->n_low; ++j) {
-    const int *v = f->low + dim * (size_t)j;
+    const int *v = f->low + dim * j;
     b->face_of_low[j] = -1;
     if (v[0] >= 0) item[n++] = (sort_item){sort_key(v[0], v[1]), j};
   }
   PASS(sort_items(n, item, by_corners, f));
   for (int i = 0; i < n; ++i) {
-    const int id = item[i].id, *v = f->low + dim * (size_t)id;
+    const int id = item[i].id, *v = f->low + dim * id;
     int last = m->n_face - 1;
-    if (last < 0 || memcmp(f->corner + dim * (size_t)last, v, bytes) != 0) {
-      memcpy(f->corner + dim * (size_t)++last, v, bytes);
+    if (last < 0 || memcmp(f->corner + dim * last, v, bytes) != 0) {
+      memcpy(f->corner + dim * ++last, v, bytes);
       f->example[m->n_face++] = id;
     }
     b->face_of_low[id] = last;
@@ -106,8 +106,7 @@ static status number_faces(builder *b, face_list *f) {
 /* The face with these ascending corners, or -1. */
 static int find_face(const face_list *f, const int *v) {
   for (int i = f->start[v[0]]; i < f->start[v[0] + 1]; ++i)
-    if (memcmp(f->corner + (size_t)f->dim * (size_t)i, v,
-               (size_t)f->dim * sizeof(int)) == 0)
+    if (memcmp(f->corner + (size_t)f->dim * i, v, f->dim * sizeof(int)) == 0)
       return i;
   return -1;
 }
@@ -133,12 +132,12 @@ void mesh_side_nodes(const mesh *m, int id, int *v) {
 
 /* One side of an element. */
 static void meet(mesh *m, face_list *f, int elem, int side) {
-  size_t dim = (size_t)f->dim;
+  size_t dim = f->dim;
   int outward[3], v[3];
   mesh_side_nodes(m, (m->dim + 1) * elem + side, outward);
   int low = outward[dim == 2 && outward[1] < outward[0]];
   if (f->start[low] == f->start[low + 1]) return;
-  memcpy(v, outward, dim * sizeof *v);
+  COPY(v, outward, dim);
   sort_few(f->dim, v);
   int face = find_face(f, v);
   if (face < 0) return;
@@ -146,19 +145,18 @@ static void meet(mesh *m, face_list *f, int elem, int side) {
     m->face_other[face] = elem;
     return;
   }
-  memcpy(m->face + dim * (size_t)face, outward, dim * sizeof(int));
+  memcpy(m->face + dim * face, outward, dim * sizeof(int));
   m->face_elem[face] = elem;
 }
 
 static status find_elements(builder *b, face_list *f) {
   mesh *m = b->m;
-  size_t dim = (size_t)f->dim;
-  PASS_NEW_ALL(OF(m->face, dim * (size_t)m->n_face),
-               OF(m->face_elem, m->n_face), OF(m->face_other, m->n_face),
-               OF(f->start, m->n_node + 1));
+  size_t dim = f->dim;
+  PASS_NEW_ALL(OF(m->face, dim * m->n_face), OF(m->face_elem, m->n_face),
+               OF(m->face_other, m->n_face), OF(f->start, m->n_node + 1));
   for (int i = 0; i < m->n_face; ++i) {
     m->face_elem[i] = m->face_other[i] = -1;
-    ++f->start[f->corner[dim * (size_t)i] + 1];
+    ++f->start[f->corner[dim * i] + 1];
   }
   for (int i = 0; i < m->n_node; ++i) f->start[i + 1] += f->start[i];
   for (int e = 0; e < m->n_elem; ++e)

@@ -54,7 +54,7 @@ double mesh_elem_measure(const mesh *m, int elem_id) {
 
 double mesh_elem_gradients(const mesh *m, int elem_id, double *g) {
   const size_t n = (size_t)m->dim + 1;
-  const int *v = m->elem + n * (size_t)elem_id;
+  const int *v = m->elem + n * elem_id;
   double e[3][3];
   if (m->dim == 2) {
     const double *p[3];
@@ -113,7 +113,7 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
 }
 
 status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
-  const size_t per = (size_t)m->dim + 1, n = per * (size_t)m->n_elem;
+  const size_t per = (size_t)m->dim + 1, n = per * m->n_elem;
   PASS_NEW_ALL(OF(*start, m->n_node + 2), OF(*elem, n));
   size_t *s = *start;
   for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];

@@ -19,7 +19,7 @@ static const double plane_digits = 1e-9;
 /* Numbers without gaps index a table directly; others are hashed. */
 static size_t slot_of(const number_table *t, size_t no) {
   size_t mask = ((size_t)1 << t->bits) - 1, upper = no >> t->bits;
-  size_t s = (no + upper * (size_t)0x9E3779B97F4A7C15u) & mask;
+  size_t s = (no + upper * 0x9E3779B97F4A7C15u) & mask;
   while (t->slot[s] != 0 && t->no[t->slot[s] - 1] != no) s = (s + 1) & mask;
   return s;
 }
@@ -163,13 +163,13 @@ static int by_coordinates(const void *ctx, int a, int b) {
  * nodes share up to the last bit, are inside of cells and not between. */
 static void fill_keys(const builder *b, const double lo[3], sort_item *item) {
   static const double shift[3] = {0.1321, 0.1732, 0.1579};
-  const double cells = (double)(1 << CURVE_BITS), share = 0.7071;
+  const double cells = 1 << CURVE_BITS, share = 0.7071;
   int n = 0;
   for (size_t i = 0; i < b->raw->n_node; ++i) {
     if (b->node_id[i] < 0) continue;
     uint32_t cell[3];
     for (int k = 0; k < b->m->dim; ++k) {
-      double part = b->raw->xyz[3 * i + (size_t)k] * b->scale - lo[k];
+      double part = b->raw->xyz[3 * i + k] * b->scale - lo[k];
       cell[k] = (uint32_t)((shift[k] + share * (part / b->m->size)) * cells);
     }
     item[n++] = (sort_item){on_curve(cell, b->m->dim), (int)i};
@@ -178,12 +178,12 @@ static void fill_keys(const builder *b, const double lo[3], sort_item *item) {
 
 static status store_nodes(builder *b, const sort_item *item) {
   mesh *m = b->m;
-  size_t dim = (size_t)m->dim;
-  PASS_NEW_ALL(OF(m->x, dim * (size_t)m->n_node), OF(m->node_no, m->n_node));
+  size_t dim = m->dim;
+  PASS_NEW_ALL(OF(m->x, dim * m->n_node), OF(m->node_no, m->n_node));
   for (int i = 0; i < m->n_node; ++i) {
-    size_t r = (size_t)item[i].id;
+    size_t r = item[i].id;
     for (size_t k = 0; k < dim; ++k)
-      m->x[dim * (size_t)i + k] = b->raw->xyz[3 * r + k] * b->scale;
+      m->x[dim * i + k] = b->raw->xyz[3 * r + k] * b->scale;
     if (dim == 2) m->z = b->raw->xyz[3 * r + 2] * b->scale;
     m->node_no[i] = b->raw->node_no[r];
     b->node_id[r] = i;
@@ -209,7 +209,7 @@ status nodes_order(builder *b) {
   }
   PASS(sort_items(m->n_node, item, by_coordinates, b->raw));
   PASS(store_nodes(b, item));
-  size_t unused = b->raw->n_node - (size_t)m->n_node;
+  size_t unused = b->raw->n_node - m->n_node;
   if (unused > 0 && !b->raw->made)
     message_add(b->log, P3040, b->at,
                 "%zu node(s) of the file are in no element", unused);
@@ -217,10 +217,10 @@ status nodes_order(builder *b) {
 }
 
 static int coincide(const mesh *m, int a, int c) {
-  size_t dim = (size_t)m->dim;
+  size_t dim = m->dim;
   double square = 0.0, near = same_place * m->size;
   for (size_t k = 0; k < dim; ++k) {
-    double d = m->x[dim * (size_t)a + k] - m->x[dim * (size_t)c + k];
+    double d = m->x[dim * a + k] - m->x[dim * c + k];
     square += d * d / near / near; /* no overflow in any unit */
   }
   return square <= 1.0;
@@ -230,8 +230,8 @@ static status body_of_nodes(const mesh *m, int *body_of) {
   int n_body, corners = m->dim + 1;
   OWNED_NEW(int, body, m->n_elem);
   PASS(mesh_bodies(m, &n_body, body));
-  for (size_t i = 0; i < (size_t)corners * (size_t)m->n_elem; ++i)
-    body_of[m->elem[i]] = body[i / (size_t)corners];
+  for (size_t i = 0; i < (size_t)corners * m->n_elem; ++i)
+    body_of[m->elem[i]] = body[i / corners];
   return OK;
 }
 

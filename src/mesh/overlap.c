@@ -48,7 +48,7 @@ static status gather_sides(const mesh *m, side_list *s) {
   s->n = n * m->n_elem;
   PASS_NEW_ALL(OF(s->start, m->n_node + 2), OF(s->side, s->n));
   for (int e = 0; e < m->n_elem; ++e) {
-    two_lowest(n, m->elem + (size_t)n * (size_t)e, low);
+    two_lowest(n, m->elem + (size_t)n * e, low);
     s->start[low[0] + 2] += m->dim;
     ++s->start[low[1] + 2];
   }
@@ -140,16 +140,16 @@ typedef struct pair { /* two elements over the size of the mesh */
 
 static void load_pair(const mesh *m, int a, int b, pair *p) {
   const int id[2] = {a, b};
-  size_t dim = (size_t)m->dim;
+  size_t dim = m->dim;
   double scale = 1.0 / m->size; /* products stay in range in any unit */
-  const double *from = m->x + dim * (size_t)m->elem[(dim + 1) * (size_t)a];
+  const double *from = m->x + dim * m->elem[(dim + 1) * a];
   p->n = m->dim + 1;
   memset(p->x, 0, sizeof p->x);
   for (int i = 0; i < 2; ++i)
     for (size_t k = 0; k <= dim; ++k) {
-      int v = m->elem[(dim + 1) * (size_t)id[i] + k];
+      int v = m->elem[(dim + 1) * id[i] + k];
       for (size_t d = 0; d < dim; ++d)
-        p->x[i][k][d] = (m->x[dim * (size_t)v + d] - from[d]) * scale;
+        p->x[i][k][d] = (m->x[dim * v + d] - from[d]) * scale;
     }
 }
 
@@ -210,7 +210,7 @@ static int intersect(const mesh *m, double far, int e, int f) {
 /* Elements on both sides of a face are known to lie apart. */
 static int share_a_side(const mesh *m, int e, int f) {
   size_t n = (size_t)m->dim + 1;
-  const int *v = m->elem + n * (size_t)e, *w = m->elem + n * (size_t)f;
+  const int *v = m->elem + n * e, *w = m->elem + n * f;
   size_t common = 0;
   for (size_t i = 0; i < n; ++i)
     for (size_t j = 0; j < n; ++j) common += v[i] == w[j];
@@ -232,12 +232,12 @@ typedef struct tree {
 } tree;
 
 static void surround(const mesh *m, int e, box *b) {
-  size_t dim = (size_t)m->dim;
-  const int *v = m->elem + (dim + 1) * (size_t)e;
+  size_t dim = m->dim;
+  const int *v = m->elem + (dim + 1) * e;
   memset(b, 0, sizeof *b);
   for (size_t k = 0; k <= dim; ++k)
     for (size_t d = 0; d < dim; ++d) {
-      double x = m->x[dim * (size_t)v[k] + d];
+      double x = m->x[dim * v[k] + d];
       if (k == 0 || x < b->lo[d]) b->lo[d] = x;
       if (k == 0 || x > b->hi[d]) b->hi[d] = x;
     }
@@ -322,7 +322,7 @@ static status belong_together(search *s, int f, int *together) {
     return OK;
   for (int i = 0; i < m->n_group && !*together; ++i) {
     const mesh_group *g = &m->group[i];
-    size_t n = (size_t)g->n_item, size = sizeof(int);
+    size_t n = g->n_item, size = sizeof(int);
     *together = g->dim == m->dim &&
                 bsearch(&s->e, g->item_id, n, size, number_order) != NULL &&
                 bsearch(&f, g->item_id, n, size, number_order) != NULL;
@@ -425,7 +425,7 @@ static status check_skins(const builder *b, const side_list *sides) {
   OWNED_NEW(search, s, 1);
   OWNS(s);
   s->b = b;
-  for (size_t i = 0; i < (size_t)m->dim * (size_t)m->n_node; ++i)
+  for (size_t i = 0; i < (size_t)m->dim * m->n_node; ++i)
     s->far = fmax(s->far, fabs(m->x[i]) / m->size);
   OWNED_NEW(char, is_skin, m->n_elem);
   for (int i = 0; i < sides->n; ++i)

@@ -21,7 +21,7 @@ static size_t read_bytes(int fd, void *data, size_t n) {
     ssize_t r = read(fd, (char *)data + got, n - got);
     if (r < 0 && errno == EINTR) continue;
     if (r <= 0) break;
-    got += (size_t)r;
+    got += r;
   }
   return got;
 }
@@ -39,11 +39,11 @@ static status store_block_part(raw_mesh *raw, const wire_head *head,
     b->n_physical = (int)head->n;
   } else if (head->kind == WIRE_ELEM_NO && b->no == NULL) {
     b->no = part;
-    b->n = (size_t)head->n;
+    b->n = head->n;
   } else if (head->kind == WIRE_ELEM_NODE && b->node == NULL && b->n > 0 &&
              head->n % b->n == 0) {
     b->node = part;
-    b->n_per = (size_t)head->n / b->n;
+    b->n_per = head->n / b->n;
   } else {
     RAISE(ERR_MESH, "the mesh reader sent parts that do not fit");
   }
@@ -77,7 +77,7 @@ static status store(raw_mesh *raw, const wire_head *head, void **payload) {
       if (raw->node_no != NULL)
         RAISE(ERR_MESH, "the mesh reader sent nodes twice");
       raw->node_no = data;
-      raw->n_node = (size_t)head->n;
+      raw->n_node = head->n;
       break;
     case WIRE_NODE_X:
       if (raw->xyz != NULL || head->n != 3 * (uint64_t)raw->n_node)
@@ -133,7 +133,7 @@ status raw_receive(int fd, raw_mesh *raw, int *stopped) {
       RAISE(ERR_MESH, "the mesh reader sent what is no mesh");
     if (head.kind == WIRE_END) return check_complete(raw);
     OWNED void *payload = NULL;
-    size_t size = (size_t)head.n * item_size[head.kind];
+    size_t size = head.n * item_size[head.kind];
     /* texts end in a zero byte */
     PASS_GET(payload, memory_new(size + 1, 1));
     *stopped = read_bytes(fd, payload, size) != size;

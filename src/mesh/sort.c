@@ -39,7 +39,7 @@ static status radix(int n, sort_item *item) {
     sort_item *to = from == item ? other : item;
     if (pass(n, shift, from, to)) from = to;
   }
-  if (from != item) memcpy(item, from, (size_t)n * sizeof *item);
+  if (from != item) COPY(item, from, n);
   return OK;
 }
 
@@ -69,8 +69,7 @@ status sort_items(int n, sort_item *item, sort_compare *compare,
   for (int i = 0, end; compare != NULL && i < n; i = end) {
     end = sort_run_end(n, item, i);
     if (end - i > 1)
-      qsort_r(item + i, (size_t)(end - i), sizeof *item, by_ties,
-              &(ties){compare, ctx});
+      qsort_r(item + i, end - i, sizeof *item, by_ties, &(ties){compare, ctx});
   }
   return OK;
 }

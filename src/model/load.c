@@ -50,8 +50,7 @@ double load_at_point(const load *l, const step *s, const double x[3],
 
 static void node_position(const mesh *msh, int node, double x[3]) {
   x[2] = 0.0;
-  for (int c = 0; c < msh->dim; ++c)
-    x[c] = msh->x[(size_t)msh->dim * (size_t)node + (size_t)c];
+  for (int c = 0; c < msh->dim; ++c) x[c] = msh->x[(size_t)msh->dim * node + c];
 }
 
 double load_at_node(const load *l, const mesh *msh, const step *s, int node,
@@ -101,7 +100,7 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
  * times the measure, d = n - 1.
  */
 static void simplex_mass(int n, double measure, const double *r, double *M) {
-  double d2 = (double)(n * (n + 1)), d3 = d2 * (double)(n + 2);
+  double d2 = n * (n + 1), d3 = d2 * (n + 2);
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
       double sum = 0.0;
@@ -131,14 +130,14 @@ static status add_patch(const model *m, const mesh *msh, const load *l,
   int axisymmetric = m->sections[0].kin == AXISYMMETRIC;
   for (int i = 0; i < p->n; ++i) {
     PASS(node_value(m, msh, l, s, t, p->node[i], &value[i]));
-    r[i] = 2.0 * M_PI * msh->x[(size_t)msh->dim * (size_t)p->node[i]];
+    r[i] = 2.0 * M_PI * msh->x[(size_t)msh->dim * p->node[i]];
   }
   simplex_mass(p->n, p->measure, axisymmetric ? r : NULL, M);
   for (int i = 0; i < p->n; ++i) {
     double force = 0.0;
     for (int j = 0; j < p->n; ++j) force += M[i + p->n * j] * value[j];
     force *= p->factor;
-    double *Fi = F + (size_t)msh->dim * (size_t)p->node[i];
+    double *Fi = F + (size_t)msh->dim * p->node[i];
     for (int c = 0; c < msh->dim; ++c) Fi[c] += force * p->direction[c];
   }
   return OK;
@@ -155,7 +154,7 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
     int face = g->item_id[k];
     double normal[3];
     patch p = {.n = msh->dim, .factor = 1.0};
-    COPY(p.node, msh->face + (size_t)msh->dim * (size_t)face, msh->dim);
+    COPY(p.node, msh->face + (size_t)msh->dim * face, msh->dim);
     p.measure = mesh_face_normal(msh, face, normal) *
                 model_thickness(m, msh->face_elem[face]);
     for (int c = 0; c < msh->dim; ++c)
@@ -174,7 +173,7 @@ static status add_elements(const model *m, const mesh *msh, const load *l,
   for (int k = 0; k < g->n_item; ++k) {
     int e = g->item_id[k];
     patch p = {.n = msh->dim + 1, .factor = 1.0};
-    COPY(p.node, msh->elem + (size_t)p.n * (size_t)e, p.n);
+    COPY(p.node, msh->elem + (size_t)p.n * e, p.n);
     p.measure = mesh_elem_measure(msh, e) * model_thickness(m, e);
     if (l->kind == LOAD_GRAVITY) {
       const section *sec = &m->sections[m->elem_section[e]];
@@ -194,14 +193,14 @@ static status add_points(const model *m, const mesh *msh, const load *l,
   for (int k = 0; k < g->n_node; ++k) {
     double value;
     PASS(node_value(m, msh, l, s, t, g->node_id[k], &value));
-    F[(size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component] += value;
+    F[(size_t)msh->dim * g->node_id[k] + l->component] += value;
   }
   return OK;
 }
 
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F) {
-  memset(F, 0, (size_t)msh->dim * (size_t)msh->n_node * sizeof *F);
+  CLEAR(F, (size_t)msh->dim * msh->n_node);
   for (EACH(const load, l, s->loads.item, s->loads.n)) {
     switch ((load_kind)l->kind) {
       case LOAD_PRESSURE:
@@ -231,8 +230,7 @@ status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
     const double w = share_at(l, s, t);
     for (int k = 0; k < g->n_node; ++k) {
       double own;
-      size_t dof =
-          (size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component;
+      size_t dof = (size_t)msh->dim * g->node_id[k] + l->component;
       PASS(node_value(m, msh, l, s, l->run == RUN_RAMP ? step_end(s) : t,
                       g->node_id[k], &own));
       ud[dof] = w < 1.0 ? (1.0 - w) * start[dof] + w * own : own;
@@ -280,7 +278,7 @@ static status refuse_temperature(const model *m, const mesh *msh,
 
 void load_temperature_initial_at(const model *m, const mesh *msh,
                                  const double *b, double *T) {
-  memset(T, 0, (size_t)msh->n_elem * sizeof *T);
+  CLEAR(T, msh->n_elem);
   for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
@@ -291,7 +289,7 @@ void load_temperature_initial_at(const model *m, const mesh *msh,
 }
 
 status load_temperature_initial(const model *m, const mesh *msh, double *T) {
-  memset(T, 0, (size_t)msh->n_elem * sizeof *T);
+  CLEAR(T, msh->n_elem);
   for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
@@ -314,8 +312,8 @@ status load_temperature_at(const model *m, const mesh *msh, const step *s,
                            double t, const double *b, const double *T0,
                            double *T) {
   OWNED_NEW(double, start, msh->n_elem);
-  memcpy(start, T0, (size_t)msh->n_elem * sizeof *T);
-  memcpy(T, T0, (size_t)msh->n_elem * sizeof *T);
+  memcpy(start, T0, msh->n_elem * sizeof *T);
+  COPY(T, T0, msh->n_elem);
   if (s > m->steps && t < step_end(s))
     PASS(load_temperature_at(m, msh, s - 1, step_end(s - 1), b, T0, start));
   for (EACH(const load, l, s->loads.item, s->loads.n)) {
@@ -369,7 +367,7 @@ static int same_quantity(const quantity *a, const quantity *b) {
 /* last[n_elem]: from 1 the cards of step s that an element has its temperature
  * from, those of equal numbers as one; 0: none. */
 static void cards_of_step(const mesh *msh, const step *s, int *last) {
-  memset(last, 0, (size_t)msh->n_elem * sizeof *last);
+  CLEAR(last, msh->n_elem);
   for (int i = 0; i < s->loads.n; ++i) {
     const load *l = &s->loads.item[i];
     if (l->kind != LOAD_TEMPERATURE) continue;
@@ -388,7 +386,7 @@ static void cards_of_step(const mesh *msh, const step *s, int *last) {
 
 /* The same of the initial conditions. */
 static void initial_cards(const model *m, const mesh *msh, int *last) {
-  memset(last, 0, (size_t)msh->n_elem * sizeof *last);
+  CLEAR(last, msh->n_elem);
   for (EACH(const initial, c, m->initial.lines, m->n.initial)) {
     if (c->type != INITIAL_TEMPERATURE) continue;
     const mesh_group *g = &msh->group[c->group_id];
@@ -406,9 +404,9 @@ static status split_zones(int n, const int *by, int n_by, int *zone) {
   for (int k = 0; k < n; ++k)
     if (zone[k] >= n_zone) n_zone = zone[k] + 1;
   OWNED int *of = NULL;
-  PASS_NEW(of, (size_t)n_zone * (size_t)n_by);
+  PASS_NEW(of, (size_t)n_zone * n_by);
   for (int k = 0; k < n; ++k) {
-    int *at = &of[(size_t)n_by * (size_t)zone[k] + (size_t)by[k]];
+    int *at = &of[(size_t)n_by * zone[k] + by[k]];
     if (*at == 0) *at = ++n_new;
     zone[k] = *at - 1;
   }
@@ -417,7 +415,7 @@ static status split_zones(int n, const int *by, int n_by, int *zone) {
 
 status load_temperature_zones(const model *m, const mesh *msh, int *zone) {
   OWNED_NEW(int, by, msh->n_elem);
-  memset(zone, 0, (size_t)msh->n_elem * sizeof *zone);
+  CLEAR(zone, msh->n_elem);
   for (int k = 0; k < msh->n_elem; ++k)
     by[k] = first_expansion(m, m->elem_section[k]);
   PASS(split_zones(msh->n_elem, by, m->n.section, zone));
@@ -431,12 +429,11 @@ status load_temperature_zones(const model *m, const mesh *msh, int *zone) {
 }
 
 void load_fixed(const mesh *msh, const step *s, unsigned char *fixed) {
-  memset(fixed, 0, (size_t)msh->dim * (size_t)msh->n_node);
+  memset(fixed, 0, (size_t)msh->dim * msh->n_node);
   for (EACH(const load, l, s->loads.item, s->loads.n)) {
     if (l->kind != LOAD_FIXING) continue;
     const mesh_group *g = &msh->group[l->group_id];
     for (int k = 0; k < g->n_node; ++k)
-      fixed[(size_t)msh->dim * (size_t)g->node_id[k] + (size_t)l->component] =
-          1;
+      fixed[(size_t)msh->dim * g->node_id[k] + l->component] = 1;
   }
 }

@@ -66,7 +66,7 @@ static double offset_of(const contact_problem *cp, int dof) {
  * work[3 m], iwork[m]: workspace. */
 static int invert(int m, double *a, double *work, int *iwork) {
   double rcond = 0.0;
-  const size_t n = (size_t)m;
+  const size_t n = m;
   if (m == 0) return 1;
   const double norm = LAPACKE_dlange(LAPACK_COL_MAJOR, '1', m, m, a, m);
   if (LAPACKE_dpotrf(LAPACK_COL_MAJOR, 'U', m, a, m) != 0) return 0;
@@ -82,11 +82,10 @@ static int invert(int m, double *a, double *work, int *iwork) {
 
 /* W or A by rows, signs turned. M holds it by columns. */
 static void turn_matrix(const contact_problem *cp, double *M) {
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   for (int j = 0; j < cp->m; ++j)
     for (int i = 0; i <= j; ++i) {
-      size_t above = (size_t)i + m * (size_t)j,
-             below = (size_t)j + m * (size_t)i;
+      size_t above = i + m * j, below = j + m * i;
       double s = sign_of(cp->dim, i) * sign_of(cp->dim, j), swap = M[above];
       M[above] = s * M[below];
       M[below] = s * swap;
@@ -95,7 +94,7 @@ static void turn_matrix(const contact_problem *cp, double *M) {
 
 static status make_matrix(written *f) {
   const contact_problem *cp = f->cp;
-  size_t size = (size_t)cp->m * (size_t)cp->m;
+  size_t size = (size_t)cp->m * cp->m;
   double *a = NULL;
   PASS_NEW(a, size);
   f->M = a;
@@ -104,11 +103,11 @@ static status make_matrix(written *f) {
     contact_dense(cp, a);
     return OK;
   }
-  memcpy(a, cp->A, size * sizeof *a);
+  COPY(a, cp->A, size);
   OWNED_NEW(double, work, 3 * (size_t)cp->m);
   OWNED_NEW(int, iwork, cp->m);
   if (!cp->floating && invert(cp->m, a, work, iwork)) return OK;
-  memcpy(a, cp->A, size * sizeof *a);
+  COPY(a, cp->A, size);
   f->local = 0;
   return OK;
 }
@@ -118,7 +117,7 @@ static status make_vectors(written *f) {
   const contact_problem *cp = f->cp;
   PASS_NEW_ALL(OF(f->q, cp->m), OF(f->mu, cp->n));
   if (f->local && !contact_has_stiffness(cp))
-    memcpy(f->q, cp->f, (size_t)cp->m * sizeof *f->q);
+    COPY(f->q, cp->f, cp->m);
   else if (f->local)
     contact_product(cp->m, f->M, cp->f, f->q);
   for (int k = 0; k < cp->m; ++k) {
@@ -211,7 +210,7 @@ static status put_matrix(const written *f, const char *group, int nz, size_t n,
 }
 
 static status write_local(written *f) {
-  size_t m = (size_t)f->cp->m;
+  size_t m = f->cp->m;
   PASS_NEW_ALL(OF(f->start, m + 1), OF(f->col, m * m));
   for (size_t i = 0; i <= m; ++i) f->start[i] = (int)(m * i);
   for (size_t k = 0; k < m * m; ++k) f->col[k] = (int)(k % m);
@@ -220,13 +219,13 @@ static status write_local(written *f) {
   PASS(put_matrix(f, "/fclib_local/W", BY_ROW, m * m, f->M));
   PASS(put_group(f, "/fclib_local/vectors"));
   PASS(put_reals(f, "/fclib_local/vectors", "q", m, f->q));
-  return put_reals(f, "/fclib_local/vectors", "mu", (size_t)f->cp->n, f->mu);
+  return put_reals(f, "/fclib_local/vectors", "mu", f->cp->n, f->mu);
 }
 
 /* M and f keep the signs of contact.h: H turns them. */
 static status write_global(written *f) {
   const contact_problem *cp = f->cp;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   OWNED double *h = NULL;
   PASS_NEW_ALL(OF(f->start, m * m), OF(f->col, m * m), OF(h, m));
   PASS(put_group(f, "/fclib_global"));
@@ -244,11 +243,11 @@ static status write_global(written *f) {
   PASS(put_group(f, "/fclib_global/vectors"));
   PASS(put_reals(f, "/fclib_global/vectors", "f", m, cp->f));
   PASS(put_reals(f, "/fclib_global/vectors", "w", m, f->q));
-  return put_reals(f, "/fclib_global/vectors", "mu", (size_t)cp->n, f->mu);
+  return put_reals(f, "/fclib_global/vectors", "mu", cp->n, f->mu);
 }
 
 static status write_solution(const written *f, const double *v) {
-  size_t m = (size_t)f->cp->m;
+  size_t m = f->cp->m;
   if (f->u == NULL) return OK;
   PASS(put_group(f, "/solution"));
   PASS(put_reals(f, "/solution", "u", m, f->u));
@@ -289,10 +288,6 @@ static status write_all(written *f, const double *v, const char *title,
   return st;
 }
 
-static void written_free(written *f) {
-  RELEASE(f->M, f->q, f->mu, f->start, f->col, f->u, f->r);
-}
-
 static status make_file(written *f, const double *u, const double *r) {
   if (f->cp->m > 46340)
     RAISE(ERR_DECK, "%s: %d unknowns are too many for the layout of FCLIB",
@@ -306,9 +301,10 @@ static status make_file(written *f, const double *u, const double *r) {
 status fclib_write(const contact_problem *cp, const size_t *node_no,
                    const double *u, const double *r, const char *title,
                    const char *description, const char *path) {
-  written f ENDS_BY(written_free) = {.cp = cp, .node_no = node_no, .file = -1};
+  written f = {.cp = cp, .node_no = node_no, .file = -1};
   H5E_auto2_t print;
   void *print_data;
+  SCRATCH;
   OWNED char *aside = NULL;
   PASS_GET(aside, text_path("", path, "tmp"));
   f.path = path;

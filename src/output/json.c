@@ -229,7 +229,7 @@ static void write_contacts(json *w, const job *j) {
   const size_t size = job_end_size(j->m);
   ARRAY(w, "contacts");
   for (int k = 0; k < j->m->n.step; ++k) {
-    const double *end = j->run->ends + (size_t)k * size, *value = end + 2;
+    const double *end = j->run->ends + k * size, *value = end + 2;
     for (int i = 0; i < j->m->n.contact && end[0] > 0; ++i) {
       ITEM(w);
       json_count(w, "step", k + 1);

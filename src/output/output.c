@@ -329,7 +329,7 @@ status output_open(const model *m, const mesh *msh, const output_options *opt,
   o->attempt = 1;
   o->run.message = "";
   o->progress = opt->progress && isatty(STDERR_FILENO);
-  NEW(o->run.ends, (size_t)m->n.step * job_end_size(m));
+  NEW(o->run.ends, m->n.step * job_end_size(m));
   if (m->n.goal > 0) NEW(o->run.goals, m->n.step * m->n.goal);
   TRY(plan_new(m, m->problem.given ? NULL : msh, opt->n_problem, &o->plan));
   o->job = (job){m, msh, &o->o, &o->run, o->plan};

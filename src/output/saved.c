@@ -58,8 +58,7 @@ static void append_increment(output *o, const increment_summary *from) {
   for (int k = 0; k < REASONS; ++k)
     if (text[k] != NULL) append(&o->saved, text[k], strlen(text[k]) + 1);
   if (s.n_solution > 0)
-    append(&o->saved, from->solutions,
-           (size_t)s.n_solution * sizeof *from->solutions);
+    append(&o->saved, from->solutions, s.n_solution * sizeof *from->solutions);
 }
 
 /* Append the summaries of all increments since the last call to JOB.rst.inc,
@@ -90,8 +89,8 @@ static char *take(reader *r, size_t n) {
 
 /* The next text. */
 static const char *take_text(reader *r) {
-  const char *nul = memchr(r->at, '\0', (size_t)(r->end - r->at));
-  return nul == NULL ? NULL : take(r, (size_t)(nul + 1 - r->at));
+  const char *nul = memchr(r->at, '\0', r->end - r->at);
+  return nul == NULL ? NULL : take(r, nul + 1 - r->at);
 }
 
 static status damaged(const output *o) {
@@ -110,7 +109,7 @@ static status take_increment(const output *o, reader *r, increment_summary *s) {
   for (int k = 0; k < REASONS; ++k)
     if (*why[k] != NULL && (*why[k] = take_text(r)) == NULL) return damaged(o);
   if (s->n_solution <= 0) return OK;
-  const size_t n = (size_t)s->n_solution * sizeof *s->solutions;
+  const size_t n = s->n_solution * sizeof *s->solutions;
   const char *solutions = take(r, n);
   if (solutions == NULL) return damaged(o);
   PASS_NEW(s->solutions, s->n_solution);
@@ -133,7 +132,7 @@ static status read_file(output *o, size_t n) {
  * ERR_FILE: it is damaged. */
 static status saved_read(output *o, const saved_end *end) {
   run_summary *run = &o->run;
-  const size_t n = (size_t)end->length;
+  const size_t n = end->length;
   const int count = run->n_increment;
   run->n_increment = 0; /* those that "release" may look at */
   PASS(open_file(o, end));
@@ -163,13 +162,13 @@ size_t job_end_size(const model *m) {
   size_t n = 0;
   for (column_walk w = columns_of(PER_CONTACT); job_end_column(m, &w) != NULL;)
     ++n;
-  return 2 + n * (size_t)m->n.contact;
+  return 2 + n * m->n.contact;
 }
 
 /* The contacts of the last increment so far of the step. */
 static void remember_contacts(output *o, const state *s) {
   const view v = {o->m, o->msh, s};
-  double *to = o->run.ends + (size_t)(s->step_no - 1) * job_end_size(o->m);
+  double *to = o->run.ends + (s->step_no - 1) * job_end_size(o->m);
   *to++ = s->increment_no;
   *to++ = s->t;
   for (int i = 0; i < o->m->n.contact; ++i) {
@@ -201,7 +200,7 @@ static status remember_theory(const theorems_report *t, increment_summary *i) {
   i->theorems.n_contact = 0;
   if (t->n_contact == 0) return OK;
   PASS_NEW(own, t->n_contact);
-  memcpy(own, t->contacts, (size_t)t->n_contact * sizeof *own);
+  COPY(own, t->contacts, t->n_contact);
   i->theorems.contacts = own;
   i->theorems.n_contact = t->n_contact;
   return OK;
@@ -241,8 +240,8 @@ status output_remember(output *o, const state *s) {
   PASS(remember_theory(&s->errors.theorems, i));
   remember_contacts(o, s);
   if (s->errors.goals != NULL)
-    COPY(run->goals + (size_t)((s->step_no - 1) * s->errors.n_goal),
-         s->errors.goals, s->errors.n_goal);
+    COPY(run->goals + (s->step_no - 1) * s->errors.n_goal, s->errors.goals,
+         s->errors.n_goal);
   if (!s->settled) ++run->n_unsettled;
   return OK;
 }
@@ -283,7 +282,7 @@ static status keep_counts(output *o, archive *a, file_ends *ends) {
 
 /* Without seconds, which differ from run to run. */
 static status keep_goals(output *o, archive *a, size_t steps) {
-  const size_t n = steps * (size_t)o->m->n.goal;
+  const size_t n = steps * o->m->n.goal;
   for (size_t i = 0; i < n; ++i) {
     goal_result *g = &o->run.goals[i];
     const double cpu = g->cpu;
@@ -298,7 +297,7 @@ static status keep_goals(output *o, archive *a, size_t steps) {
 /* The steps so far, written or read. */
 static status keep_ends(output *o, archive *a) {
   const int n = o->run.n_increment;
-  const size_t steps = n > 0 ? (size_t)o->run.increments[n - 1].step_no : 0;
+  const size_t steps = n > 0 ? o->run.increments[n - 1].step_no : 0;
   PASS(archive_reals(a, "contact_ends", o->run.ends,
                      steps * job_end_size(o->m)));
   return keep_goals(o, a, steps);

@@ -180,7 +180,7 @@ static void close_contacts(const job *j, FILE *f) {
   const increment_summary *last = &run->increments[run->n_increment - 1];
   const int shown = j->m->n.contact < MOST_SHOWN ? j->m->n.contact : MOST_SHOWN;
   const double *value =
-      run->ends + (size_t)(last->step_no - 1) * job_end_size(j->m) + 2;
+      run->ends + (last->step_no - 1) * job_end_size(j->m) + 2;
   for (int i = 0; i < shown; ++i) value = close_contact(j, i, value, f);
   if (shown < j->m->n.contact)
     fprintf(f, "%-9s %d contacts more: JOB.json\n", "",

@@ -37,8 +37,7 @@ static void want_nodes(tabular *t, const mesh_group *g) {
 /* Nodes of a table: of the group, of the supports, or all. */
 static void choose_nodes(tabular *t, const print_request *p, const step *now) {
   const mesh_group *g = request_group(t->msh, p);
-  memset(t->wanted, g == NULL && p->table == PRINT_NODES,
-         (size_t)t->msh->n_node);
+  memset(t->wanted, g == NULL && p->table == PRINT_NODES, t->msh->n_node);
   if (p->table == PRINT_REACTIONS && g == NULL)
     for (int i = 0; i < now->loads.n; ++i)
       if (now->loads.item[i].kind == LOAD_FIXING)
@@ -48,7 +47,7 @@ static void choose_nodes(tabular *t, const print_request *p, const step *now) {
 
 static void choose_elements(tabular *t, const print_request *p) {
   const mesh_group *g = request_group(t->msh, p);
-  memset(t->wanted, g == NULL, (size_t)t->msh->n_elem);
+  memset(t->wanted, g == NULL, t->msh->n_elem);
   if (g != NULL && g->dim == t->msh->dim)
     for (int i = 0; i < g->n_item; ++i) t->wanted[g->item_id[i]] = 1;
 }
@@ -74,13 +73,13 @@ static status order_by_number(int n, const size_t *no, int **order) {
   PASS_NEW(*order, n);
   OWNED_NEW(numbered, list, n);
   for (int i = 0; i < n; ++i) list[i] = (numbered){no[i], i};
-  qsort(list, (size_t)n, sizeof *list, by_number);
+  qsort(list, n, sizeof *list, by_number);
   for (int i = 0; i < n; ++i) (*order)[i] = list[i].id;
   return OK;
 }
 
 static int in_group(const mesh_group *g, int node_id) {
-  return bsearch(&node_id, g->node_id, (size_t)g->n_node, sizeof node_id,
+  return bsearch(&node_id, g->node_id, g->n_node, sizeof node_id,
                  number_order) != NULL;
 }
 
@@ -122,8 +121,8 @@ static status table_rows(const table *columns, tabular *t, const view *v,
 
 static status write_table(tabular *t, const view *v, const print_request *p) {
   table columns;
-  table_choose(&columns, effect_of_table(p->table)->table.of,
-               (unsigned)p->table, v, DIGITS);
+  table_choose(&columns, effect_of_table(p->table)->table.of, p->table, v,
+               DIGITS);
   fprintf(t->dat.f, "%s# step %d increment %d time %s table %s%s%s\n",
           t->n_block++ > 0 ? "\n\n" : "", v->s->step_no, v->s->increment_no,
           text_number(v->s->t, DIGITS), print_word(p->table),
@@ -153,7 +152,7 @@ static unsigned tables_asked(const model *m) {
   unsigned bits = 0;
   for (int i = 0; i < m->n.step; ++i)
     for (int k = 0; k < m->steps[i].print.n; ++k)
-      bits |= (unsigned)m->steps[i].print.requests[k].table;
+      bits |= m->steps[i].print.requests[k].table;
   return bits;
 }
 

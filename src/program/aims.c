@@ -56,7 +56,7 @@ status aims_begin(aims *a, const mesh *msh) {
   memory_free(a->product);
   a->product = NULL;
   ++a->n_pass;
-  if (a->counts) PASS_NEW(a->product, (size_t)a->n * (size_t)msh->n_elem);
+  if (a->counts) PASS_NEW(a->product, (size_t)a->n * msh->n_elem);
   return OK;
 }
 
@@ -64,8 +64,7 @@ void aims_see(aims *a, const mesh *msh, const state *s) {
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) last_row(a, i)->found = s->errors.goals[i];
   if (a->counts)
-    COPY(a->product, s->errors.goal_products,
-         (size_t)a->n * (size_t)msh->n_elem);
+    COPY(a->product, s->errors.goal_products, (size_t)a->n * msh->n_elem);
 }
 
 int aims_count(const aims *a) { return a != NULL && a->counts; }
@@ -162,9 +161,8 @@ size_t aims_name(const aims *a, const model *m, char *text, size_t size) {
   size_t used = 0;
   for (int i = 0; a != NULL && i < a->n && used < size; ++i)
     if (!is_met(&m->accuracy.goals[i], last_row(a, i)))
-      used +=
-          (size_t)snprintf(text + used, size - used, "%s %s",
-                           used > 0 ? "," : " for", m->accuracy.goals[i].name);
+      used += snprintf(text + used, size - used, "%s %s",
+                       used > 0 ? "," : " for", m->accuracy.goals[i].name);
   return used < size ? used : size;
 }
 
@@ -195,7 +193,7 @@ static void find_sizes(const mesh *msh, const double *own, double part,
 
 /* own[n_elem] of goal i; 1: there are some. */
 static int find_own(const aims *a, const mesh *msh, int i, double *own) {
-  const double *product = a->product + (size_t)i * (size_t)msh->n_elem;
+  const double *product = a->product + (size_t)i * msh->n_elem;
   int any = 0;
   for (int e = 0; e < msh->n_elem; ++e) {
     own[e] = sqrt(product[e]);

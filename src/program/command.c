@@ -221,7 +221,7 @@ static char *find_deck(const char *name) {
 static char *folder_of(const char *file) {
   const char *slash = strrchr(file, '/');
   if (slash == NULL) return memory_text(".");
-  size_t length = slash == file ? 1 : (size_t)(slash - file);
+  size_t length = slash == file ? 1 : slash - file;
   char *dir = memory_new(length + 1, 1);
   if (dir != NULL) memcpy(dir, file, length);
   return dir;
@@ -297,7 +297,7 @@ static int read_options(int argc, char **argv, command *c) {
 int command_read(int argc, char **argv, command *c, int *exit_code) {
   *c = (command){.commit = c->commit};
   opterr = 0; /* told here */
-  c->defines = memory_new((size_t)argc, sizeof *c->defines);
+  c->defines = memory_new(argc, sizeof *c->defines);
   int code = c->defines == NULL ? no_memory() : read_options(argc, argv, c);
   if (code < 0) code = check_together(c);
   if (code < 0) code = take_job(argc - optind, argv + optind, c);

@@ -177,8 +177,7 @@ static void simplify(model *m) {
   s->accuracy.no_solver = 1;
   s->check = CHECK_NONE;
   m->n.goal = 0;
-  m->effects &=
-      ~(unsigned)(EFFECT_MESH_ERROR | EFFECT_TIME_ERROR | EFFECT_ESTIMATES |
+  m->effects &= ~(EFFECT_MESH_ERROR | EFFECT_TIME_ERROR | EFFECT_ESTIMATES |
                   EFFECT_REFERENCE | EFFECT_THEORY);
 }
 

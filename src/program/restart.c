@@ -23,13 +23,12 @@ typedef struct identity {
 
 /* Nodes, elements and groups in their order. */
 static uint64_t mesh_hash(const mesh *s) {
-  size_t dim = (size_t)s->dim;
-  uint64_t h =
-      number_hash(HASH_START, s->x, dim * (size_t)s->n_node * sizeof *s->x);
-  h = number_hash(h, s->elem, (dim + 1) * (size_t)s->n_elem * sizeof *s->elem);
+  size_t dim = s->dim;
+  uint64_t h = number_hash(HASH_START, s->x, dim * s->n_node * sizeof *s->x);
+  h = number_hash(h, s->elem, (dim + 1) * s->n_elem * sizeof *s->elem);
   for (int i = 0; i < s->n_group; ++i)
     h = number_hash(h, s->group[i].node_id,
-                    (size_t)s->group[i].n_node * sizeof *s->group[i].node_id);
+                    s->group[i].n_node * sizeof *s->group[i].node_id);
   return h;
 }
 
@@ -168,7 +167,7 @@ static status add_geometry(const char *path, FILE *out) {
   geo_text g ENDS_BY(geo_free) = {0};
   PASS(geo_read(path, &g));
   const char *slash = strrchr(path, '/');
-  size_t folder = slash != NULL ? (size_t)(slash - path) + 1 : 0;
+  size_t folder = slash != NULL ? slash - path + 1 : 0;
   for (int i = 1; i < g.n_file; ++i) {
     size_t pass = strncmp(g.file[i], path, folder) == 0 ? folder : 0;
     fprintf(out, "0 *MESH");
@@ -235,7 +234,7 @@ static void next_card(echo_card *c) {
   c->text += c->length;
   c->length = strlen(c->text);
   const char *end = strstr(c->text, "\n*");
-  if (end != NULL) c->length = (size_t)(end + 1 - c->text);
+  if (end != NULL) c->length = end + 1 - c->text;
   if (strncmp(c->text, "*STEP", 5) == 0) ++c->step_no;
 }
 

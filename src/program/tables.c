@@ -188,7 +188,7 @@ static void list_tables(extract *e, char *text, size_t size) {
     if (!read_heading(e)) continue;
     snprintf(word, sizeof word, " %s", e->now.table);
     if (strstr(text, word) == NULL && used + strlen(word) < size)
-      used += (size_t)snprintf(text + used, size - used, "%s", word);
+      used += snprintf(text + used, size - used, "%s", word);
   }
 }
 

@@ -199,15 +199,15 @@ static void choose(pass *p, char *text, size_t size) {
   size_t used = 0;
   text[0] = '\0';
   if (norm_wants_mesh(p) || !aims_are_met(p->goals, p->in->m)) {
-    used = (size_t)snprintf(text, size, "mesh");
+    used = snprintf(text, size, "mesh");
     used += aims_name(p->goals, p->in->m, text + used, size - used);
   }
   if (has_norm(p) && p->time > TIME_SHARE * goal &&
       p->dt > SHORTEST * SHORTEST) {
     double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
     p->dt *= factor;
-    used += (size_t)snprintf(text + used, size - used, "%sdt * %.2g",
-                             used > 0 ? ", " : "", factor);
+    used += snprintf(text + used, size - used, "%sdt * %.2g",
+                     used > 0 ? ", " : "", factor);
   }
   if (tol < 1.0) {
     p->tol *= tol;

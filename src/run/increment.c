@@ -28,7 +28,7 @@ double *run_rows(const run *r, int k, double *v) {
 /* The solution u, r of r->problem.cp: other forces are zero. */
 static void put_rows(const run *r, const double *u, const double *force) {
   if (u == r->now.uc) return;
-  memset(r->now.rc, 0, (size_t)r->nodes.n_c * sizeof *r->now.rc);
+  CLEAR(r->now.rc, r->nodes.n_c);
   for (int i = 0; i < r->nodes.n_row; ++i) {
     r->now.uc[unknown_of(r, i)] = u[i];
     r->now.rc[unknown_of(r, i)] = force[i];
@@ -97,8 +97,8 @@ static status drop_reactions(const run *r, double *residual, double *u,
   double left = contact_residual(&r->problem.cp, q, zero);
   if (!(left <= *residual)) return OK;
   *residual = left;
-  memcpy(u, q, (size_t)r->nodes.n_row * sizeof *u);
-  memset(rc, 0, (size_t)r->nodes.n_row * sizeof *rc);
+  COPY(u, q, r->nodes.n_row);
+  CLEAR(rc, r->nodes.n_row);
   return OK;
 }
 
@@ -123,8 +123,7 @@ static status solve_posed(run *r) {
   double *own_u = run_rows(r, 0, r->now.uc), *u = own_u;
   double *rc = run_rows(r, 1, r->now.rc);
   double tol = r->solving.tol;
-  if (is_open(r, r->old.uc) &&
-      largest_entry((size_t)r->nodes.n_c, r->old.rc) == 0.0)
+  if (is_open(r, r->old.uc) && largest_entry(r->nodes.n_c, r->old.rc) == 0.0)
     PASS(drop_reactions(r, &tol, u, rc));
   PASS(effects_rewrite(r, &cp, &u, rc));
   contact_solver_tolerance(r->solver, r->solving.tol);
@@ -137,8 +136,7 @@ static status solve_posed(run *r) {
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &cp);
   effects_restore(r, &r->problem.cp, own_u, rc);
   put_rows(r, own_u, rc);
-  if (is_open(r, r->now.uc) &&
-      largest_entry((size_t)r->nodes.n_c, r->now.rc) > 0.0) {
+  if (is_open(r, r->now.uc) && largest_entry(r->nodes.n_c, r->now.rc) > 0.0) {
     PASS(drop_reactions(r, &r->solving.report.residual, own_u, rc));
     put_rows(r, own_u, rc);
   }
@@ -149,7 +147,7 @@ static status solve_posed(run *r) {
 static int is_let_go(const run *r) {
   static const double rounding = 1e-9;
   const contact_problem *cp = &r->problem.cp;
-  const size_t n = (size_t)r->nodes.n_c;
+  const size_t n = r->nodes.n_c;
   return cp->floating && cp->B != NULL && r->solving.report.outcome > 0 &&
          r->problem.n_before == r->nodes.n_row &&
          largest_entry(n, r->now.rc) < rounding * largest_entry(n, r->old.rc);
@@ -176,7 +174,7 @@ static status follow_load(run *r) {
   static const double almost = 0x1p-20;
   const double *f = r->problem.cp.f;
   const solver_report empty = r->solving.report;
-  const size_t bytes = (size_t)r->nodes.n_c * sizeof *r->now.uc;
+  const size_t bytes = r->nodes.n_c * sizeof *r->now.uc;
   OWNED double *near = NULL, *u = NULL, *rc = NULL;
   PASS_NEW(near, r->nodes.n_row);
   PASS_NEW_REALS(r->nodes.n_c, &u, &rc);

@@ -13,8 +13,7 @@ const material *run_material(const run *r, int elem_id) {
 const double *run_elasticity(const run *r, int elem_id) {
   const int ns = r->m->ns;
   return r->body.moduli.E +
-         (size_t)(ns * ns) *
-             (size_t)moduli_entry(&r->body.moduli, r->m, elem_id);
+         (size_t)(ns * ns) * moduli_entry(&r->body.moduli, r->m, elem_id);
 }
 
 void matrices_free(matrices *m) {

@@ -17,8 +17,8 @@ int moduli_entry(const moduli *x, const model *m, int elem_id) {
 
 /* C, which is of the size of an entry, into entry i. */
 static void put_entry(moduli *x, const model *m, int i, const double C[36]) {
-  memcpy(x->C + 36 * (size_t)i, C, 36 * sizeof *C);
-  elastic_reduce(C, x->kin[i], x->E + (size_t)(m->ns * m->ns) * (size_t)i);
+  COPY(x->C + 36 * (size_t)i, C, 36);
+  elastic_reduce(C, x->kin[i], x->E + (size_t)(m->ns * m->ns) * i);
 }
 
 /* Entry n_section + k at the temperature T; 1 in *changed if it is new. */
@@ -63,7 +63,7 @@ status moduli_new(const model *m, const mesh *msh, const double *T, moduli *x) {
     x->n_own += moduli_follows(m, e);
   x->n = m->n.section + x->n_own;
   PASS_NEW_ALL(OF(x->origin, x->n), OF(x->kin, x->n), OF(x->thickness, x->n),
-               OF(x->E, (size_t)(m->ns * m->ns) * (size_t)x->n),
+               OF(x->E, (size_t)(m->ns * m->ns) * x->n),
                OF(x->C, 36 * (size_t)x->n));
   for (int i = 0; i < m->n.section; ++i) {
     x->origin[i] = i;

@@ -44,19 +44,18 @@ static status new_points(run *r, visco *v, const int *kind_of) {
 }
 
 int visco_point_of(const int *elem, int n, int elem_id) {
-  const int *found =
-      bsearch(&elem_id, elem, (size_t)n, sizeof *elem, number_order);
+  const int *found = bsearch(&elem_id, elem, n, sizeof *elem, number_order);
   return found == NULL ? -1 : (int)(found - elem);
 }
 
 /* One line of *INITIAL CONDITIONS into both states. */
 static status take_initial(const run *r, visco *v, const initial *c) {
   const mesh_group *g = &r->msh->group[c->group_id];
-  size_t ns = (size_t)r->m->ns, part = (size_t)c->component;
+  size_t ns = r->m->ns, part = c->component;
   for (int i = 0; i < g->n_item; ++i) {
     double value;
     const int point = visco_point_of(v->elem, v->x.n, g->item_id[i]);
-    const size_t k = (size_t)point;
+    const size_t k = point;
     if (point < 0) continue;
     PASS(load_initial(r->m, r->msh, c, v->elem[k], &value));
     if (c->type == INITIAL_STRAIN)
@@ -87,7 +86,7 @@ status visco_new(run *r) {
   PASS(flow_state_new(&v->x, &v->now));
   PASS(initial_state(r, v));
   PASS(scheme_work_new(&v->work));
-  PASS_NEW(v->stress, (size_t)r->m->ns * (size_t)r->strains.eigen.n);
+  PASS_NEW(v->stress, (size_t)r->m->ns * r->strains.eigen.n);
   return OK;
 }
 
@@ -271,9 +270,9 @@ static inline void add_works(int ns, const run *r, int k, point_sums *sum) {
   const double *ei[] = {v->old.ei + at, v->now.ei + at};
   double middle[6], creep[6], elastic[6], held[6];
   for (int i = 0; i < ns; ++i) {
-    middle[i] = 0.5 * (v->old.sigma[at + (size_t)i] + sigma[i]);
+    middle[i] = 0.5 * (v->old.sigma[at + i] + sigma[i]);
     creep[i] = ei[1][i] - ei[0][i];
-    elastic[i] = v->now.e[at + (size_t)i] - ei[1][i];
+    elastic[i] = v->now.e[at + i] - ei[1][i];
   }
   voigt_product(ns, v->x.kind[v->x.kind_id[k]].elastic.E, ei[1], held);
   sum->inelastic += w * voigt_dot(ns, middle, creep);
@@ -290,8 +289,8 @@ static void add_thermal(const run *r, int k, point_sums *sum) {
   const double w = v->x.weight[k], *thermal = r->now.thermal + item;
   double twice[6], stress[6], middle[6], warm[6];
   for (int i = 0; i < ns; ++i) {
-    const size_t j = item + (size_t)i;
-    middle[i] = 0.5 * (v->old.sigma[at + (size_t)i] + sigma[i]);
+    const size_t j = item + i;
+    middle[i] = 0.5 * (v->old.sigma[at + i] + sigma[i]);
     warm[i] = thermal[i] - r->old.thermal[j];
     twice[i] = thermal[i] + 2.0 * ei[i];
     r->now.e0[j] = thermal[i] + ei[i];

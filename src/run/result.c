@@ -212,12 +212,12 @@ static status relaxed_energy(const run *r, double *kept) {
     any |= r->m->materials[i].is_relaxed;
   if (!any) return OK;
   OWNED double *sigma = NULL;
-  PASS_NEW(sigma, (size_t)ns * (size_t)r->msh->n_elem);
+  PASS_NEW(sigma, (size_t)ns * r->msh->n_elem);
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < r->msh->n_elem; ++e) {
     const material *mat = run_material(r, e);
     double strain[6];
-    const double *own = sigma + (size_t)ns * (size_t)e;
+    const double *own = sigma + (size_t)ns * e;
     if (!mat->is_relaxed) continue;
     tensor_product(ns, mat->relaxed, own, strain);
     *kept += 0.5 * element_weight(&r->body.d, e) * tensor_dot(ns, own, strain);

@@ -44,8 +44,7 @@ static double increments_ahead(const run *r) {
 
 /* Systems of an increment that starts from the last. */
 static double systems_of_increment(const observed_work *seen) {
-  if (seen->increments > 1)
-    return (double)seen->later / (seen->increments - 1.0);
+  if (seen->increments > 1) return seen->later / (seen->increments - 1.0);
   return seen->increments == 1 ? (double)WARM * seen->first / COLD : WARM;
 }
 

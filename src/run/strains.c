@@ -6,7 +6,7 @@
 #include "model/facts.h"
 #include "run/visco.h"
 
-static size_t at(const run *r, int k) { return (size_t)r->m->ns * (size_t)k; }
+static size_t at(const run *r, int k) { return (size_t)r->m->ns * k; }
 
 size_t strains_kept(const run *r) {
   /* The first work is from zero. */
@@ -67,14 +67,14 @@ void strains_collect(run *r) {
     r->strains.eigen.e0 = r->strains.visco->now.ei;
     return;
   }
-  COPY(now->e0, now->thermal, (size_t)r->m->ns * (size_t)r->strains.eigen.n);
+  COPY(now->e0, now->thermal, (size_t)r->m->ns * r->strains.eigen.n);
   if (r->strains.visco != NULL) visco_add_strains(r, now->e0);
   r->strains.eigen.e0 = now->e0;
 }
 
 const double *strains_load(run *r) {
   if (r->strains.eigen.n == 0) return r->now.F;
-  memcpy(r->strains.load, r->now.F, r->n_dof * sizeof *r->strains.load);
+  COPY(r->strains.load, r->now.F, r->n_dof);
   eigen_force(&r->body.d, &r->strains.eigen, r->strains.load);
   return r->strains.load;
 }

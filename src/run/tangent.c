@@ -56,14 +56,14 @@ static status factor_again(const domain *d, matrices *m) {
  * matrices of the domain go on reading. */
 static status constant_domain(const run *r, const flow_tangent *law, double **E,
                               domain *d) {
-  size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
+  size_t square = visco_at(r, r->m->ns), n = r->body.moduli.n;
   int kind = 0;
   if (*E == NULL) PASS_NEW(*E, square * n);
   COPY(*E, r->body.moduli.E, square * n);
   for (int i = 0; i < r->m->n.section; ++i) {
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     if (mat->law.ops == NULL) continue;
-    COPY(*E + square * (size_t)i, law->D + square * (size_t)kind++, square);
+    COPY(*E + square * i, law->D + square * kind++, square);
   }
   *d = r->body.d;
   d->E = *E;
@@ -79,7 +79,7 @@ static status factor_constant(run *r, int again, const domain *d, matrices *m) {
   status st = again ? factor_again(d, m) : factor(d, m);
   if (st != ERR_SINGULAR) return st;
   for (int i = 0; i < r->m->n.section; ++i) {
-    const size_t at = square * (size_t)i;
+    const size_t at = square * i;
     const material *mat = &r->m->materials[r->m->sections[i].material_id];
     for (size_t k = at; k < at + square && mat->law.ops != NULL; ++k)
       m->E[k] += TRACE * r->body.moduli.E[k];
@@ -95,8 +95,8 @@ static status new_sections(run *r) {
   PASS_NEW_ALL(OF(v->section_id, r->msh->n_elem), OF(v->kin, n),
                OF(v->thickness, n));
   COPY(v->section_id, r->body.d.section_id, r->msh->n_elem);
-  memcpy(v->kin, own->kin, (size_t)own->n * sizeof *v->kin);
-  memcpy(v->thickness, own->thickness, (size_t)own->n * sizeof *v->thickness);
+  COPY(v->kin, own->kin, own->n);
+  COPY(v->thickness, own->thickness, own->n);
   for (int k = 0; k < v->x.n; ++k) {
     int e = v->elem[k], entry = own->n + k;
     v->kin[entry] = own->kin[v->section_id[e]];
@@ -108,11 +108,11 @@ static status new_sections(run *r) {
 
 static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   visco *v = r->strains.visco;
-  size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
+  size_t square = visco_at(r, r->m->ns), n = r->body.moduli.n;
   if (v->section_id == NULL) PASS(new_sections(r));
-  if (v->E == NULL) PASS_NEW(v->E, square * (n + (size_t)v->x.n));
-  memcpy(v->E, r->body.moduli.E, square * n * sizeof *v->E);
-  memcpy(v->E + square * n, law->D, square * (size_t)v->x.n * sizeof *v->E);
+  if (v->E == NULL) PASS_NEW(v->E, square * (n + v->x.n));
+  COPY(v->E, r->body.moduli.E, square * n);
+  COPY(v->E + square * n, law->D, square * v->x.n);
   v->E_is_fresh = 1;
   *d = r->body.d;
   d->section_id = v->section_id;
@@ -128,9 +128,8 @@ static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
 static int same_tangents(const run *r, const flow_tangent *law) {
   const visco *v = r->strains.visco;
   const size_t square = visco_at(r, r->m->ns);
-  return v->E_is_fresh &&
-         memcmp(v->E + square * (size_t)r->body.moduli.n, law->D,
-                square * (size_t)v->x.n * sizeof *v->E) == 0;
+  return v->E_is_fresh && memcmp(v->E + square * r->body.moduli.n, law->D,
+                                 square * v->x.n * sizeof *v->E) == 0;
 }
 
 /* Tangents of this solve alone: their symbolic factor is kept. */
@@ -197,11 +196,11 @@ static void part_stress(run *r, const flow_tangent *law, const double *sigma,
         law->elastic
             ? run_elasticity(r, elem_id)
             : law->D + visco_at(r, ns * (law->key > 0.0 ? kind : point));
-    for (int i = 0; i < ns; ++i) e_k[i] = e[at + (size_t)i];
+    for (int i = 0; i < ns; ++i) e_k[i] = e[at + i];
     for (int i = 0; i < ns && r->now.thermal != NULL; ++i)
-      e_k[i] += r->now.thermal[visco_at(r, item) + (size_t)i];
+      e_k[i] += r->now.thermal[visco_at(r, item) + i];
     voigt_product(ns, D, e_k, stress);
-    for (int i = 0; i < ns; ++i) stress[i] -= sigma[at + (size_t)i];
+    for (int i = 0; i < ns; ++i) stress[i] -= sigma[at + i];
     ++point;
   }
 }
@@ -211,7 +210,7 @@ static void part_stress(run *r, const flow_tangent *law, const double *sigma,
 static const double *tangent_load(run *r, const flow_tangent *law) {
   const visco_part all = {0, r->strains.eigen.n, 0, r->strains.visco->x.n};
   part_stress(r, law, law->sigma, law->e, &all);
-  memcpy(r->strains.load, r->now.F, r->n_dof * sizeof *r->strains.load);
+  COPY(r->strains.load, r->now.F, r->n_dof);
   eigen_add_force(&r->body.d, r->strains.eigen.n, r->strains.elem,
                   r->strains.visco->stress, r->strains.load);
   return r->strains.load;
@@ -221,7 +220,7 @@ static const double *tangent_load(run *r, const flow_tangent *law) {
 static const double *step_load(run *r, const flow_tangent *law,
                                const scheme_call *a) {
   visco_part p = {0};
-  memcpy(r->strains.load, r->now.F, r->n_dof * sizeof *r->strains.load);
+  COPY(r->strains.load, r->now.F, r->n_dof);
   while (visco_next_part(r, &p)) {
     linear_predict(a, p.point, p.point + p.n_point);
     part_stress(r, law, a->now->sigma, a->old->e, &p);
@@ -265,14 +264,13 @@ status tangent_step(run *r, const flow_tangent *law, const scheme_call *a) {
 /* The tangents that v->fresh is made of. */
 static status keep_fresh(run *r, archive *a) {
   visco *v = r->strains.visco;
-  size_t square = visco_at(r, r->m->ns), n = (size_t)r->body.moduli.n;
+  size_t square = visco_at(r, r->m->ns), n = r->body.moduli.n;
   int there = v->E_is_fresh && v->fresh.c != NULL;
   PASS(archive_ints(a, "fresh", &there, 1));
   if (archive_reads(a)) v->E_is_fresh = there;
   if (!there) return OK;
-  if (v->E == NULL) PASS_NEW(v->E, square * (n + (size_t)v->x.n));
-  return archive_reals(a, "tangents", v->E + square * n,
-                       square * (size_t)v->x.n);
+  if (v->E == NULL) PASS_NEW(v->E, square * (n + v->x.n));
+  return archive_reals(a, "tangents", v->E + square * n, square * v->x.n);
 }
 
 status tangent_keep(run *r, archive *a) {

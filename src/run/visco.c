@@ -231,7 +231,7 @@ static status two_halves(run *r, double t) {
   if (st == OK && r->solving.report.outcome > 0) st = second_half(r, t);
   r->course.shadow = 0;
   PASS(st);
-  memcpy(v->fine, v->now.ei, n * sizeof *v->fine);
+  COPY(v->fine, v->now.ei, n);
   return OK;
 }
 
@@ -348,14 +348,14 @@ status visco_accept(run *r) {
 
 status visco_keep_flow(const flow *x, flow_state *s, archive *a,
                        const char *group) {
-  size_t n = (size_t)x->ns * (size_t)x->n;
+  size_t n = (size_t)x->ns * x->n;
   IN_GROUP(a, group);
   PASS(archive_reals(a, "t", &s->t, 1));
   PASS(archive_reals(a, "e", s->e, n));
   PASS(archive_reals(a, "ei", s->ei, n));
   PASS(archive_reals(a, "sigma", s->sigma, n));
   PASS(archive_reals(a, "alpha", s->alpha, x->alpha_at[x->n]));
-  return archive_reals(a, "temperature", s->temperature, (size_t)x->n);
+  return archive_reals(a, "temperature", s->temperature, x->n);
 }
 
 status visco_keep(run *r, archive *a) {

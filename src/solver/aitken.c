@@ -66,7 +66,7 @@ static status aitken_setup(const contact_problem *cp, const void *par,
                            void *work) {
   aitken_work *w = work;
   const aitken *p = par;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   size_t depth = p->acceleration == BY_ANDERSON ? DEPTH : 1;
   PASS(node_blocks_new(cp, &w->blocks));
   PASS(best_iterate_new(cp->m, &w->best));
@@ -108,7 +108,7 @@ static double weighted_dot(const run *s, const double *a, const double *b) {
 static void keep(run *s) {
   aitken_work *w = s->w;
   int at = (s->newest + 1) % s->depth;
-  size_t m = (size_t)s->m, offset = m * (size_t)at;
+  size_t m = s->m, offset = m * at;
   double *dx = w->dx + offset, *dy = w->dy + offset, *df = w->df + offset;
   for (size_t i = 0; i < m; ++i) {
     double f = s->x[i] - w->before[i];
@@ -128,7 +128,7 @@ static void keep(run *s) {
   for (int j = 0; j < s->kept; ++j) {
     int other = (at + s->depth - j) % s->depth;
     w->gram[at][other] = w->gram[other][at] =
-        weighted_dot(s, df, w->df + m * (size_t)other);
+        weighted_dot(s, df, w->df + m * other);
   }
 }
 
@@ -140,8 +140,7 @@ static void weights(const run *s, double *gamma) {
   for (int a = 0; a < n; ++a) place[a] = (s->newest + s->depth - a) % s->depth;
   for (int a = 0; a < n; ++a) {
     for (int b = 0; b < n; ++b) N[a][b] = s->w->gram[place[a]][place[b]];
-    N[a][n] = weighted_dot(s, s->w->df + (size_t)s->m * (size_t)place[a],
-                           s->w->defect);
+    N[a][n] = weighted_dot(s, s->w->df + (size_t)s->m * place[a], s->w->defect);
     first[a] = N[a][a];
   }
   for (int p = 0; p < n; ++p) {
@@ -164,8 +163,7 @@ static void combine(run *s) {
   double gamma[DEPTH];
   weights(s, gamma);
   for (int a = 0; a < s->kept; ++a) {
-    size_t offset =
-        (size_t)s->m * (size_t)((s->newest + s->depth - a) % s->depth);
+    size_t offset = (size_t)s->m * ((s->newest + s->depth - a) % s->depth);
     cblas_daxpy(s->m, -gamma[a], s->w->dx + offset, 1, s->x, 1);
     cblas_daxpy(s->m, -gamma[a], s->w->dy + offset, 1, s->y, 1);
   }
@@ -178,8 +176,8 @@ static void forget(run *s) { s->kept = s->started = s->combined = 0; }
 static void accelerate(run *s, int k) {
   double moved = s->sweep.change;
   if (s->combined && !(moved <= FARTHER * s->moved)) {
-    memcpy(s->x, s->w->x, (size_t)s->m * sizeof *s->x);
-    memcpy(s->y, s->w->y, (size_t)s->m * sizeof *s->y);
+    COPY(s->x, s->w->x, s->m);
+    COPY(s->y, s->w->y, s->m);
     forget(s);
     return;
   }
@@ -233,7 +231,7 @@ static outcome sweeps(run *s, const solver_control *control,
   for (int k = 1; k <= limit; ++k) {
     rep->iterations = k;
     if (k % REFRESH == 1) relaxation_refresh(z);
-    memcpy(s->w->before, s->x, (size_t)s->m * sizeof *s->x);
+    COPY(s->w->before, s->x, s->m);
     relaxation_sweep(z, s->symmetric && k % 2 == 0);
     ++s->since;
     if (!is_checked(s, k, limit, control->tol)) {

@@ -41,7 +41,7 @@ static double norm(int n, const double *x) {
  * ratio of their lengths is the rate. */
 static double keep_difference(fixed_point *fp, const double *g,
                               const double *image) {
-  size_t n = (size_t)fp->n;
+  size_t n = fp->n;
   memmove(fp->dg + n, fp->dg, n * (DEPTH - 1) * sizeof *fp->dg);
   memmove(fp->dG + n, fp->dG, n * (DEPTH - 1) * sizeof *fp->dG);
   for (size_t i = 0; i < n; ++i) {

@@ -275,17 +275,17 @@ static void gradient_step(run *s) {
 }
 
 static void remember(run *s) {
-  memcpy(s->w->r0, s->r, (size_t)s->cp->m * sizeof *s->r);
-  memcpy(s->w->x0, s->w->x, (size_t)s->cp->m * sizeof *s->r);
+  COPY(s->w->r0, s->r, s->cp->m);
+  memcpy(s->w->x0, s->w->x, s->cp->m * sizeof *s->r);
 }
 
 /* The phase ended outside the set: go back along its step. */
 static void come_back(run *s) {
   pcg_work *w = s->w;
   double share = 1.0;
-  memcpy(w->z, s->r, (size_t)s->cp->m * sizeof *s->r);
+  COPY(w->z, s->r, s->cp->m);
   for (int k = 0; k <= HALVINGS; ++k, share *= 0.5) {
-    memcpy(s->r, w->r0, (size_t)s->cp->m * sizeof *s->r);
+    COPY(s->r, w->r0, s->cp->m);
     if (arrive(s, share, w->z)) return;
   }
   gradient_step(s);
@@ -343,7 +343,7 @@ static outcome phase(run *s) {
   s->refreshed = 0;
   remember(s);
   precondition(s);
-  memcpy(w->p, w->z, (size_t)m * sizeof *w->p);
+  COPY(w->p, w->z, m);
   double rho = cblas_ddot(m, w->phi, 1, w->z, 1);
   for (;;) {
     curvature_product(s);

@@ -24,7 +24,7 @@ struct node_blocks {
  * the iteration is unchanged). */
 static void invert_block(int d, const double *block, double lift, double *K) {
   double M[9];
-  memcpy(M, block, (size_t)(d * d) * sizeof *M);
+  COPY(M, block, d * d);
   for (int k = 0; k < d; ++k)
     if (!(M[k + d * k] > 0x1p-30 * lift)) M[k + d * k] += 0x1p-20 * lift;
   for (int k = 0; k < d; ++k) {
@@ -48,8 +48,8 @@ static void invert_block(int d, const double *block, double lift, double *K) {
  * point of the iteration is unchanged. */
 static void lift_block(int d, const double *block, double lift, double *K) {
   double M[9], own = SOFT * lift;
-  memcpy(M, block, (size_t)(d * d) * sizeof *M);
-  memcpy(K, block, (size_t)(d * d) * sizeof *K);
+  COPY(M, block, d * d);
+  COPY(K, block, d * d);
   for (int k = 0; k < d; ++k) own = fmax(own, block[k + d * k]);
   for (int k = 0; k < d; ++k) {
     if (!(M[k + d * k] > 0x1p-40 * own)) {
@@ -117,7 +117,7 @@ static void local_of(const relaxation *s, int node_id, local_problem *lp,
   if (cp->B == NULL) return;
   for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
     int j = cp->B->col[k];
-    double p = -s->r[(size_t)j * (size_t)cp->dim];
+    double p = -s->r[(size_t)j * cp->dim];
     if (j == node_id)
       lp->mu = cp->B->val[k];
     else if (p > 0.0)
@@ -390,12 +390,12 @@ int relaxation_fly(relaxation *s, const double *from) {
  * is overwritten. from[m]: work. */
 static int drifts(relaxation *s, double *from) {
   const contact_problem *cp = s->cp;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
   double most = 0.0;
   int falls = 0;
   if (!cp->floating || !contact_has_stiffness(cp)) return 0;
-  memcpy(from, s->u, m * sizeof *from);
+  COPY(from, s->u, m);
   s->omega = 1.0;
   for (int k = 0; k < DRIFT_SWEEPS; ++k) relaxation_sweep(s, 0);
   for (size_t i = 0; i < m; ++i) d[i] -= from[i];

@@ -46,10 +46,10 @@ static void set_problem(single *s) {
     s->ut0[s->n_rub] = contact_stick(cp, k);
     s->rub[s->n_rub++] = k;
   }
-  const double P = largest_entry((size_t)(m * m), s->P);
-  const double Q = largest_entry((size_t)(m * m), s->Q);
+  const double P = largest_entry(m * m, s->P);
+  const double Q = largest_entry(m * m, s->Q);
   const double u = fmax(fabs(cp->gap[0]), largest_entry(2, s->ut0));
-  const double c = largest_entry((size_t)m, s->c);
+  const double c = largest_entry(m, s->c);
   s->to_one[0] = power_to_one(P);
   s->to_one[1] = power_to_one(Q);
   s->to_one[2] = power_to_one(fmax(c, fmax(P * u, Q * s->g0)));
@@ -68,8 +68,8 @@ static void check(single *s, const double *u, const double *r) {
                                                       : r[i] - s->r0[i]);
   if (like < s->like || (like == s->like && !(apart < s->distance))) return;
   s->like = like;
-  memcpy(s->u, u, (size_t)s->m * sizeof *u);
-  memcpy(s->r, r, (size_t)s->m * sizeof *r);
+  COPY(s->u, u, s->m);
+  COPY(s->r, r, s->m);
   s->distance = apart;
   s->residual = residual;
 }
@@ -90,7 +90,7 @@ static void try_linear(single *s, unsigned fixed, const double *at) {
     }
   }
   for (int j = 0; j < m; ++j) {
-    power[j] = power_to_one(largest_entry((size_t)m, M + m * j));
+    power[j] = power_to_one(largest_entry(m, M + m * j));
     for (int i = 0; i < m; ++i) M[i + m * j] *= power[j];
   }
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, m, m, 1, M, m, b, m, pivot, RANK,

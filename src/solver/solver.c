@@ -61,12 +61,12 @@ void solver_keep_best(best_iterate *best, int m, double residual,
                       const double *u, const double *r) {
   if (!(residual < best->residual)) return;
   best->residual = residual;
-  memcpy(best->u, u, (size_t)m * sizeof *u);
-  memcpy(best->r, r, (size_t)m * sizeof *r);
+  COPY(best->u, u, m);
+  COPY(best->r, r, m);
 }
 
 void solver_take_best(const best_iterate *best, int m, double *u, double *r) {
   if (!(best->residual < HUGE_VAL)) return;
-  memcpy(u, best->u, (size_t)m * sizeof *u);
-  memcpy(r, best->r, (size_t)m * sizeof *r);
+  COPY(u, best->u, m);
+  COPY(r, best->r, m);
 }

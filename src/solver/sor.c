@@ -158,7 +158,7 @@ static outcome sweeps(relaxation *s, course *c, const solver_control *control,
   relaxation_refresh(s);
   for (int k = 1; k <= limit; ++k) {
     rep->iterations = k;
-    if (is_checked(k)) memcpy(c->before, s->u, (size_t)s->cp->m * sizeof *s->u);
+    if (is_checked(k)) COPY(c->before, s->u, s->cp->m);
     relaxation_sweep(s, c->order == SWEEP_BACKWARD ||
                             (c->order == SWEEP_SYMMETRIC && k % 2 == 0));
     c->turned += s->turned;

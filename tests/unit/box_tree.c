@@ -33,7 +33,7 @@ START_TEST(search_finds_what_is_near) {
       }
       ck_assert_int_eq(count, expected);
     }
-    box_tree_free(&t);
+    RELEASE(t.item, t.of, t.box);
   }
 }
 END_TEST
@@ -69,7 +69,7 @@ START_TEST(search_finds_what_is_along_a_beam) {
     }
     ck_assert_int_eq(box_tree_along(&t, &b, found), expected);
   }
-  box_tree_free(&t);
+  RELEASE(t.item, t.of, t.box);
 }
 END_TEST
 

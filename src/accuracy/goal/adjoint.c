@@ -90,9 +90,9 @@ static void add_slip(linear_system *s, int dof) {
     const int j = cp->B->col[k];
     if (!rows->closed[j]) continue;
     const double *column =
-        cp->A + (size_t)(j * cp->dim) * (size_t)cp->m; /* A is symmetric */
+        cp->A + (size_t)(j * cp->dim) * cp->m; /* A is symmetric */
     for (int b = 0; b < n; ++b)
-      row[(size_t)n * (size_t)b] +=
+      row[(size_t)n * b] +=
           rows->e[dof] * cp->B->val[k] * column[rows->free_id[b]];
   }
 }
@@ -100,21 +100,20 @@ static void add_slip(linear_system *s, int dof) {
 /* The columns of M of what a sliding unknown in space turns. */
 static void add_turn(linear_system *s, int dof) {
   const linear_states *rows = s->rows;
-  const size_t n = (size_t)rows->n_free;
+  const size_t n = rows->n_free;
   const int i = dof / 3;
   for (int t = 3 * i + 1; t < 3 * i + 3; ++t)
     if (rows->place[t] >= 0)
-      s->M[(size_t)rows->place[dof] + n * (size_t)rows->place[t]] +=
-          linear_turn(rows, dof, t);
+      s->M[rows->place[dof] + n * rows->place[t]] += linear_turn(rows, dof, t);
 }
 
 static status factor(linear_system *s, int *singular) {
   const linear_states *rows = s->rows;
   const contact_problem *cp = rows->cp;
-  const size_t n = (size_t)rows->n_free;
+  const size_t n = rows->n_free;
   PASS_NEW_ALL(OF(s->pivot, n), OF(s->M, n * n));
   for (size_t b = 0; b < n; ++b) {
-    const double *column = cp->A + (size_t)cp->m * (size_t)rows->free_id[b];
+    const double *column = cp->A + (size_t)cp->m * rows->free_id[b];
     for (size_t k = 0; k < n; ++k) s->M[k + n * b] = column[rows->free_id[k]];
   }
   for (int k = 0; k < rows->n_free; ++k) {
@@ -164,10 +163,10 @@ static void precondition(linear_system *s, int transposed, const double *v,
 /* Column j of H[(DIRECTIONS+1)*] by w against the directions V, which becomes
  * the next one. */
 static void orthogonalise(int m, int j, double *V, double *h) {
-  double *w = V + (size_t)m * (size_t)(j + 1);
+  double *w = V + (size_t)m * (j + 1);
   for (int pass = 0; pass < 2; ++pass)
     for (int i = 0; i <= j; ++i) {
-      const double *v = V + (size_t)m * (size_t)i;
+      const double *v = V + (size_t)m * i;
       const double along = cblas_ddot(m, v, 1, w, 1);
       h[i] += along;
       cblas_daxpy(m, -along, v, 1, w, 1);
@@ -189,7 +188,7 @@ static status gmres(linear_system *s, int transposed, double *x) {
   PASS_NEW(V, (size_t)m * (DIRECTIONS + 1));
   for (int k = 0; k < m; ++k) V[k] = x[k] / size;
   for (; n < DIRECTIONS && left > ENOUGH * size; h += DIRECTIONS + 1) {
-    double *v = V + (size_t)m * (size_t)n;
+    double *v = V + (size_t)m * n;
     precondition(s, transposed, v, v + m);
     orthogonalise(m, n, V, h);
     left = dense_rotate(n, h, c, t, g);
@@ -222,7 +221,7 @@ static status solve_operated(linear_system *s, const double *b, double *x) {
 static status transpose_operated(linear_system *s, const double *b, double *w) {
   const linear_states *rows = s->rows;
   const contact_operator *op = rows->cp->op;
-  memset(w, 0, (size_t)rows->cp->m * sizeof *w);
+  CLEAR(w, rows->cp->m);
   op->solve(op->ctx, b, w, s->Ax);
   return s->bent ? gmres(s, 1, w) : OK;
 }
@@ -238,7 +237,7 @@ static int is_bent(const linear_states *rows) {
 /* *out is new; NULL if M is singular. ERR_MEMORY. */
 static status linear_system_new(const linear_states *rows,
                                 linear_system **out) {
-  const size_t m = (size_t)rows->cp->m;
+  const size_t m = rows->cp->m;
   int singular = 0;
   MAKES(linear_system, s, out);
   s->rows = rows;
@@ -278,7 +277,7 @@ static status linear_solve(linear_system *s, const double *b, double *x) {
  * ERR_MEMORY. */
 static status linear_solve_transposed(linear_system *s, const double *b,
                                       double *w) {
-  memset(w, 0, (size_t)s->rows->cp->m * sizeof *w);
+  CLEAR(w, s->rows->cp->m);
   if (s->M == NULL)
     PASS(transpose_operated(s, b, w));
   else
@@ -365,7 +364,7 @@ static double misses(const contact_adjoint *a, const double *j,
  * with it. */
 static void set_stick(contact_adjoint *a, const double *j) {
   const contact_problem *cp = a->cp;
-  memset(a->stick, 0, (size_t)cp->m * sizeof *a->stick);
+  CLEAR(a->stick, cp->m);
   linear_add_turn(&a->rows, a->w, a->stick);
   for (int k = 0; k < cp->m; ++k)
     if (sticks(a, k)) a->stick[k] = j[k] - a->Ax[k];

@@ -77,7 +77,7 @@ static void gradients(const goal_solution *s, double *q) {
   for (int e = 0; e < m->n_elem; ++e, q += dim * dim) {
     mesh_elem_gradients(m, e, g);
     for (int a = 0; a <= dim; ++a) {
-      const double *v = u + (size_t)dim * (size_t)m->elem[(dim + 1) * e + a];
+      const double *v = u + (size_t)dim * m->elem[(dim + 1) * e + a];
       for (int c = 0; c < dim; ++c)
         for (int k = 0; k < dim; ++k) q[c * dim + k] += v[c] * g[dim * a + k];
     }
@@ -90,8 +90,7 @@ static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
   const goal_solution *s = &e->s;
   const contact_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
   if (!e->on_surface[a] || !e->on_surface[b]) return NULL;
-  return bsearch(&key, s->edge, (size_t)s->n_edge, sizeof key,
-                 number_pair_order);
+  return bsearch(&key, s->edge, s->n_edge, sizeof key, number_pair_order);
 }
 
 /* v[dim] with another part along n[dim]. */
@@ -106,7 +105,7 @@ static void set_along(int dim, const double *n, double part, double *v) {
 static void outside(const goal_solution *s, const double *G, int a, int b,
                     const double *out, double *u) {
   const int dim = s->d->mesh->dim, n = dim * dim;
-  const double *ga = G + (size_t)n * (size_t)a, *gb = G + (size_t)n * (size_t)b;
+  const double *ga = G + (size_t)n * a, *gb = G + (size_t)n * b;
   for (int c = 0; c < dim; ++c) {
     u[c] = 0.0;
     for (int k = 0; k < dim; ++k)
@@ -139,10 +138,9 @@ static void support(const goal_solution *s, const double *G, int a, int b,
     any |= s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c];
   if (!any) return;
   if (s->n_given > 0)
-    g = bsearch(v, s->given, (size_t)s->n_given, sizeof *g, number_pair_order);
+    g = bsearch(v, s->given, s->n_given, sizeof *g, number_pair_order);
   if (s->n_bent > 0)
-    bent =
-        bsearch(v, s->bent, (size_t)s->n_bent, sizeof *bent, number_pair_order);
+    bent = bsearch(v, s->bent, s->n_bent, sizeof *bent, number_pair_order);
   if (bent != NULL) outside(s, G, a, b, bent->out, u);
   for (int c = 0; c < dim; ++c)
     if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c])
@@ -158,7 +156,7 @@ static void root_bubble(const goal_solution *s, const double *G, int a, int b,
   const mesh *m = s->d->mesh;
   const int dim = m->dim;
   const double *xa = m->x + dim * a, *xb = m->x + dim * b;
-  const double *g = G + (size_t)(dim * dim) * (size_t)b;
+  const double *g = G + (size_t)(dim * dim) * b;
   for (int c = 0; c < dim; ++c) {
     double lacks = s->u[dim * b + c] - s->u[dim * a + c];
     for (int k = 0; k < dim; ++k) lacks -= g[c * dim + k] * (xb[k] - xa[k]);
@@ -176,7 +174,7 @@ static void free_bubble(const goal_solution *s, const double *G, int a, int b,
     return;
   }
   const double *xa = m->x + dim * a, *xb = m->x + dim * b;
-  const double *ga = G + (size_t)n * (size_t)a, *gb = G + (size_t)n * (size_t)b;
+  const double *ga = G + (size_t)n * a, *gb = G + (size_t)n * b;
   for (int c = 0; c < dim; ++c) {
     d[c] = 0.0;
     for (int k = 0; k < dim; ++k)
@@ -191,7 +189,7 @@ static void bubble_of(goal_estimator *e, const double *G, int a, int b,
   const goal_solution *s = &e->s;
   const int dim = s->d->mesh->dim;
   double rest[3] = {0.0};
-  memset(x, 0, 3 * sizeof *x);
+  CLEAR(x, 3);
   free_bubble(s, G, a, b, d);
   const contact_edge *contact = find_edge(e, a, b);
   if (contact != NULL) {
@@ -201,7 +199,7 @@ static void bubble_of(goal_estimator *e, const double *G, int a, int b,
     }
     for (int c = 0; c < dim; ++c) d[c] -= rest[c];
     if (contact->closed) hold(s, G, contact, d, x);
-    COPY(e->edge + (size_t)dim * (size_t)(contact - s->edge), d, dim);
+    COPY(e->edge + dim * (contact - s->edge), d, dim);
     for (int c = 0; c < dim; ++c) d[c] += rest[c];
   }
   support(s, G, a, b, d, x);
@@ -229,10 +227,10 @@ static int edges_of(int dim) { return dim == 2 ? 3 : 6; }
 static void add_bubble(const domain *d, int elem_id, const int *edge,
                        const double *g, const double *of, bubbles *to) {
   const int dim = d->mesh->dim, a = edge[0], b = edge[1];
-  double *e = to->strain + (size_t)d->ns * (size_t)elem_id;
+  double *e = to->strain + (size_t)d->ns * elem_id;
   double grad[3] = {0.0};
-  const size_t at = (size_t)(edges_of(dim) * elem_id + edge[2]);
-  if (to->part != NULL) COPY(to->part + (size_t)dim * at, of, dim);
+  const size_t at = edges_of(dim) * elem_id + edge[2];
+  if (to->part != NULL) COPY(to->part + dim * at, of, dim);
   for (int k = 0; k < dim; ++k)
     grad[k] = 4.0 / (dim + 1) * (g[dim * a + k] + g[dim * b + k]);
   add_strain(dim, grad, of, e);
@@ -244,8 +242,7 @@ static void add_bubble(const domain *d, int elem_id, const int *edge,
 static joint_edge *find_joint(const goal_estimator *e, int a, int b) {
   const joint_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
   if (e->n_joint == 0 || !e->is_joint[a] || !e->is_joint[b]) return NULL;
-  return bsearch(&key, e->joint, (size_t)e->n_joint, sizeof key,
-                 number_pair_order);
+  return bsearch(&key, e->joint, e->n_joint, sizeof key, number_pair_order);
 }
 
 static void mark_joints(goal_estimator *e, int *region) {
@@ -298,7 +295,7 @@ static status find_joints(goal_estimator *e) {
   if (n == 0) return OK;
   PASS_NEW(e->joint, n);
   list_joints(e, e->joint);
-  qsort(e->joint, (size_t)n, sizeof *e->joint, number_pair_order);
+  qsort(e->joint, n, sizeof *e->joint, number_pair_order);
   e->n_joint = unite_joints(e->joint, n);
   return OK;
 }
@@ -320,8 +317,7 @@ static void add_joint(goal_estimator *e, const double *G, int region,
   add_to(given, j->given);
   const contact_edge *of = find_edge(e, j->a, j->b);
   if (of == NULL) return;
-  memcpy(contact, e->edge + (size_t)dim * (size_t)(of - e->s.edge),
-         (size_t)dim * sizeof *contact);
+  COPY(contact, e->edge + dim * (of - e->s.edge), dim);
   add_to(contact, j->contact);
 }
 
@@ -334,9 +330,7 @@ static void finish_joint(goal_estimator *e, joint_edge *j) {
     j->contact[c] /= j->n;
   }
   const contact_edge *of = find_edge(e, j->a, j->b);
-  if (of != NULL)
-    memcpy(e->edge + (size_t)dim * (size_t)(of - e->s.edge), j->contact,
-           (size_t)dim * sizeof *j->contact);
+  if (of != NULL) COPY(e->edge + dim * (of - e->s.edge), j->contact, dim);
 }
 
 /* The bubbles of the edges of an element; G NULL: of those of several
@@ -379,7 +373,7 @@ static status recover_region(goal_estimator *e, int region, const double *q,
                              double *G) {
   const mesh *m = e->s.d->mesh;
   const int ns = e->s.d->ns;
-  PASS_NEW(e->stress[region], (size_t)ns * (size_t)m->n_node);
+  PASS_NEW(e->stress[region], (size_t)ns * m->n_node);
   space_recover(e->recovery, region, m->dim * m->dim, q, G);
   space_recover(e->recovery, region, ns, e->s.sigma, e->stress[region]);
   const space_field f = {e->s.sigma, e->stress[region]};
@@ -393,16 +387,16 @@ static status recover_region(goal_estimator *e, int region, const double *q,
 
 static status new_bubbles(const goal_solution *s, int parts, bubbles *b) {
   const mesh *m = s->d->mesh;
-  const size_t n = (size_t)(edges_of(m->dim) * m->dim);
-  PASS_NEW(b->strain, (size_t)s->d->ns * (size_t)m->n_elem);
-  if (parts) PASS_NEW(b->part, n * (size_t)m->n_elem);
+  const size_t n = edges_of(m->dim) * m->dim;
+  PASS_NEW(b->strain, (size_t)s->d->ns * m->n_elem);
+  if (parts) PASS_NEW(b->part, n * m->n_elem);
   return OK;
 }
 
 /* E e0: the stress of all strains less that of u. */
 static status new_eigen(goal_estimator *e) {
   domain d = *e->s.d;
-  const size_t n = (size_t)d.ns * (size_t)d.mesh->n_elem;
+  const size_t n = (size_t)d.ns * d.mesh->n_elem;
   if (d.eigen == NULL) return OK;
   PASS_NEW_ALL(OF(e->eigen, n), OF(e->node_eigen, d.ns * d.mesh->n_node));
   d.eigen = NULL;
@@ -425,11 +419,11 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
                           goal_estimator **out) {
   const mesh *m = s->d->mesh;
   OWNED double *q = NULL, *G = NULL;
-  const size_t n = (size_t)(m->dim * m->dim);
+  const size_t n = m->dim * m->dim;
   MAKES(goal_estimator, e, out);
   e->s = *s;
   e->recovery = recovery;
-  PASS_NEW_ALL(OF(q, n * (size_t)m->n_elem), OF(G, n * (size_t)m->n_node));
+  PASS_NEW_ALL(OF(q, n * m->n_elem), OF(G, n * m->n_node));
   gradients(s, q);
   e->n_region = space_regions(recovery);
   PASS_NEW_ALL(OF(e->stress, e->n_region), OF(e->own, m->n_elem),
@@ -437,8 +431,8 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   for (int k = 0; k < s->n_edge; ++k)
     e->on_surface[s->edge[k].a] = e->on_surface[s->edge[k].b] = 1;
   PASS(new_fields(e));
-  PASS_NEW(e->sigma_y, (size_t)s->d->ns * (size_t)m->n_elem);
-  PASS_NEW(e->node_y, (size_t)s->d->ns * (size_t)m->n_node);
+  PASS_NEW(e->sigma_y, (size_t)s->d->ns * m->n_elem);
+  PASS_NEW(e->node_y, (size_t)s->d->ns * m->n_node);
   PASS(space_moduli(recovery));
   PASS(space_keep(recovery));
   PASS(find_joints(e));
@@ -451,7 +445,7 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
 static void stress_by(const domain *d, int elem_id, const double *e,
                       double *t) {
   const int ns = d->ns;
-  const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[elem_id];
+  const double *E = d->E + (size_t)(ns * ns) * d->section_id[elem_id];
   for (int i = 0; i < ns; ++i) {
     t[i] = 0.0;
     for (int j = 0; j < ns; ++j) t[i] += E[i + ns * j] * e[j];
@@ -462,12 +456,11 @@ void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
                            double *d) {
   const mesh *m = e->s.d->mesh;
   const int dim = m->dim, *v = m->elem + (dim + 1) * elem_id;
-  const double *of =
-      e->all.part + (size_t)(edges_of(dim) * dim) * (size_t)elem_id;
+  const double *of = e->all.part + (size_t)(edges_of(dim) * dim) * elem_id;
   for (int i = 0; i < dim; ++i)
     for (int k = i + 1; k <= dim; ++k, of += dim)
       if ((v[i] == a && v[k] == b) || (v[i] == b && v[k] == a))
-        memcpy(d, of, (size_t)dim * sizeof *d);
+        COPY(d, of, dim);
 }
 
 /* At a point of an element: T : grad of u, that in the bubbles too, by the
@@ -475,8 +468,7 @@ void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
 static double flux_part(const goal_estimator *e, int elem_id, const double *phi,
                         const double *g, const double *T) {
   const int dim = e->s.d->mesh->dim;
-  const double *d =
-      e->all.part + (size_t)(edges_of(dim) * dim) * (size_t)elem_id;
+  const double *d = e->all.part + (size_t)(edges_of(dim) * dim) * elem_id;
   const int *v = e->s.d->mesh->elem + (dim + 1) * elem_id;
   double sum = 0.0;
   for (int i = 0; i < dim; ++i)
@@ -542,8 +534,8 @@ static double axi_strains(const goal_estimator *e, int elem_id, int point,
   const double *d = b->part + 6 * (size_t)elem_id;
   double g[12], phi[3], r = 0.0, up[2] = {0.0};
   mesh_elem_gradients(m, elem_id, g);
-  memset(of_v, 0, 4 * sizeof *of_v);
-  memset(of_b, 0, 4 * sizeof *of_b);
+  CLEAR(of_v, 4);
+  CLEAR(of_b, 4);
   for (int a = 0; a < 3; ++a) {
     phi[a] = AXI_RULE[a == point];
     r += phi[a] * m->x[2 * node[a]];
@@ -598,7 +590,7 @@ static int is_axi(const goal_estimator *e, int elem_id) {
  */
 static double residual_of(const goal_estimator *e, int elem_id, const double *y,
                           const double *tau, int of_u, const bubbles *in) {
-  const size_t ns = (size_t)e->s.d->ns, at = ns * (size_t)elem_id;
+  const size_t ns = e->s.d->ns, at = ns * elem_id;
   const double *b = in->strain + at;
   double sum = 0.0;
   if (is_axi(e, elem_id))
@@ -686,17 +678,16 @@ static void add_axi_force(const goal_estimator *e, int elem_id, double *zero,
 
 void goal_estimator_force(goal_estimator *e, double *F) {
   const domain *d = e->s.d;
-  const size_t ns = (size_t)d->ns;
-  const size_t n = (size_t)d->mesh->dim * (size_t)d->mesh->n_node;
+  const size_t ns = d->ns;
+  const size_t n = (size_t)d->mesh->dim * d->mesh->n_node;
   if (d->kin[0] == AXISYMMETRIC) {
-    memset(F, 0, n * sizeof *F);
-    memset(e->node_y, 0, n * sizeof *e->node_y);
+    CLEAR(F, n);
+    CLEAR(e->node_y, n);
     for (int k = 0; k < d->mesh->n_elem; ++k) add_axi_force(e, k, e->node_y, F);
     return;
   }
   for (int k = 0; k < d->mesh->n_elem; ++k)
-    stress_by(d, k, e->all.strain + ns * (size_t)k,
-              e->sigma_y + ns * (size_t)k);
+    stress_by(d, k, e->all.strain + ns * k, e->sigma_y + ns * k);
   domain_internal_force(d, e->sigma_y, F);
   for (size_t k = 0; k < n; ++k) F[k] = -F[k];
 }

@@ -23,7 +23,7 @@ static status freeze_limit(const contact_problem *cp, const double *r,
                            const unsigned char *keep_row,
                            const unsigned char *given, frozen_problem *out) {
   const sparse_rows *B = cp->B;
-  memcpy(out->g0, cp->g0, (size_t)cp->n * sizeof *out->g0);
+  COPY(out->g0, cp->g0, cp->n);
   if (B == NULL) return OK;
   out->B = (sparse_rows){B->n, B->start, B->col, NULL};
   PASS_NEW(out->B.val, B->start[B->n]);
@@ -47,8 +47,8 @@ status frozen_new(const contact_problem *cp, const double *r,
   PASS_NEW(out->f, cp->m);
   PASS_NEW_REALS(cp->n, &out->gap, &out->g0);
   PASS_NEW(out->r, cp->m);
-  memcpy(out->f, cp->f, (size_t)cp->m * sizeof *out->f);
-  memcpy(out->r, r, (size_t)cp->m * sizeof *out->r);
+  COPY(out->f, cp->f, cp->m);
+  COPY(out->r, r, cp->m);
   for (int i = 0; i < cp->n; ++i) {
     int k = cp->dim * i;
     out->gap[i] = is_given(given, i) ? HUGE_VAL : cp->gap[i];
@@ -114,14 +114,14 @@ static const double ROUNDING = 1e-8; /* -, of the larger norm */
 
 status state_before_keep(const contact_problem *cp, const double *u,
                          const double *r, state_before *b) {
-  size_t m = (size_t)cp->m, n = (size_t)cp->n;
+  size_t m = cp->m, n = cp->n;
   if (b->u == NULL) {
     PASS_NEW_REALS(m, &b->u, &b->r, &b->f, &b->gap);
     PASS_NEW(b->g, n);
   }
-  memcpy(b->u, u, m * sizeof *u);
-  memcpy(b->r, r, m * sizeof *r);
-  memcpy(b->f, cp->f, m * sizeof *b->f);
+  COPY(b->u, u, m);
+  COPY(b->r, r, m);
+  COPY(b->f, cp->f, m);
   for (int k = 0; k < cp->m; ++k) b->gap[k] = contact_bound(cp, k);
   contact_limit(cp, r, b->g);
   b->known = 1;
@@ -160,8 +160,8 @@ status bound_total(const contact_problem *cp, const double *u,
   OWNED double *w = NULL, *z = NULL, *load = NULL;
   double limit = 0.0;
   PASS_NEW_REALS(cp->m, &w, &z, &load);
-  memcpy(z, u, (size_t)cp->m * sizeof *z);
-  memcpy(load, cp->f, (size_t)cp->m * sizeof *load);
+  COPY(z, u, cp->m);
+  COPY(load, cp->f, cp->m);
   for (int k = 0; k < cp->m; ++k)
     if (!contact_held(cp, k)) w[k] = fmin(contact_bound(cp, k), 0.0);
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i)

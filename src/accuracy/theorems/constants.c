@@ -11,7 +11,7 @@ static const double CLOSE = 1e-10; /* -, residual of Lanczos over the value */
 static status dense_largest(const symmetric_map *map, double *largest) {
   OWNED int *iwork = NULL;
   int n = map->n, found, support[2];
-  size_t ld = (size_t)n;
+  size_t ld = n;
   OWNED double *H = NULL, *x = NULL, *w = NULL, *work = NULL;
   PASS_NEW(H, ld * ld);
   PASS_NEW_REALS(ld, &x, &w);
@@ -40,8 +40,8 @@ typedef struct lanczos {
 /* Largest eigenvalue of the tridiagonal matrix, and its residual added. */
 static double ritz(lanczos *s, double *residual) {
   int k = s->k;
-  memcpy(s->d, s->alpha, (size_t)k * sizeof *s->d);
-  memcpy(s->e, s->beta, (size_t)k * sizeof *s->e);
+  COPY(s->d, s->alpha, k);
+  COPY(s->e, s->beta, k);
   LAPACKE_dstev_work(LAPACK_COL_MAJOR, 'V', k, s->d, s->e, s->Z, k, s->work);
   *residual = s->beta[k - 1] * fabs(s->Z[(size_t)(k * k) - 1]);
   return s->d[k - 1];
@@ -49,7 +49,7 @@ static double ritz(lanczos *s, double *residual) {
 
 /* The next vector: H q less what lies along the vectors so far, twice. */
 static void lanczos_step(const symmetric_map *map, lanczos *s, double *v) {
-  const double *q = s->Q + (size_t)s->n * (size_t)s->k;
+  const double *q = s->Q + (size_t)s->n * s->k;
   map->apply(map->ctx, q, v);
   s->alpha[s->k] = cblas_ddot(s->n, q, 1, v, 1);
   ++s->k;
@@ -83,7 +83,7 @@ static status lanczos_run(const symmetric_map *map, lanczos *s, double *v,
       *largest = history[s->k / EVERY] = ritz(s, &residual);
       if (stop || !(residual > CLOSE * *largest)) break;
     }
-    double *next = s->Q + (size_t)s->n * (size_t)s->k;
+    double *next = s->Q + (size_t)s->n * s->k;
     for (int i = 0; i < s->n; ++i) next[i] = v[i] / beta;
   }
   if (residual > CLOSE * *largest)
@@ -99,8 +99,7 @@ status lanczos_largest(const symmetric_map *map, double *largest) {
   s->n = map->n;
   PASS_NEW(s->Q, (size_t)map->n * STEPS);
   PASS_NEW_REALS(STEPS, &s->alpha, &s->beta, &s->d, &s->e);
-  PASS_NEW_ALL(OF(s->Z, (size_t)STEPS * STEPS), OF(s->work, 2 * STEPS),
-               OF(v, map->n));
+  PASS_NEW_ALL(OF(s->Z, STEPS * STEPS), OF(s->work, 2 * STEPS), OF(v, map->n));
   return lanczos_run(map, s, v, largest);
 }
 
@@ -148,7 +147,7 @@ typedef struct block {
 } block;
 
 static void scatter(const block *b, const double *x, double *full) {
-  memset(full, 0, (size_t)b->cp->m * sizeof *full);
+  CLEAR(full, b->cp->m);
   for (int k = 0; k < b->n; ++k) full[b->dof[k]] = x[k];
 }
 
@@ -178,7 +177,7 @@ static void apply_limit(void *ctx, const double *x, double *y) {
   const block *b = ctx;
   const contact_problem *cp = b->cp;
   const sparse_rows *B = cp->B;
-  memset(b->e->x, 0, (size_t)cp->m * sizeof *b->e->x);
+  CLEAR(b->e->x, cp->m);
   for (int k = 0; k < b->n; ++k) {
     int i = b->dof[k] / cp->dim;
     for (int e = B->start[i]; e < B->start[i + 1]; ++e)
@@ -222,7 +221,7 @@ static int is_loose(const block *b) {
   const inverse_energy *e = &b->e->dual;
   if (b->e->inverse == NULL) return 1;
   for (int c = 0; c < e->n_kernel; ++c) {
-    const double *z = e->kernel + (size_t)c * (size_t)b->cp->m;
+    const double *z = e->kernel + (size_t)c * b->cp->m;
     double most = 0.0, part = 0.0;
     for (int k = 0; k < b->cp->m; ++k) most = fmax(most, fabs(z[k]));
     for (int k = 0; k < b->n; ++k) part = fmax(part, fabs(z[b->dof[k]]));

@@ -157,7 +157,7 @@ status inequality_least(const contact_problem *cp, const double *u,
   if (cp->m == 0) return OK;
   PASS_NEW_REALS(cp->m, &r, &w);
   trial s = {.cp = cp, .u = u, .r = r, .w = w, .least = HUGE_VAL, .seed = 1998};
-  memcpy(w, u, (size_t)cp->m * sizeof *u);
+  COPY(w, u, cp->m);
   set_scales(&s);
   try_nodes(&s);
   try_all(&s);
@@ -231,7 +231,7 @@ static int count_entries(const contact_problem *cp) {
 }
 
 static int same_friction(const theorems *t, const contact_problem *cp) {
-  size_t size = (size_t)count_entries(cp) * sizeof *t->entries;
+  size_t size = count_entries(cp) * sizeof *t->entries;
   if (t->contacts == NULL || t->n_entry != count_entries(cp)) return 0;
   return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
 }

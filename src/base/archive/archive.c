@@ -211,7 +211,7 @@ static status write_whole(int fd, const char *path, const char *text) {
     ssize_t n = pwrite(fd, text + at, ARCHIVE_SEAL - at, (off_t)at);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) PASS(text_failed(path, "write", errno));
-    at += (size_t)n;
+    at += n;
   }
   return OK;
 }
@@ -269,9 +269,8 @@ static status list_items(const archive *a, char **out) {
   char *list = memory_new(size, 1);
   if (list == NULL) RAISE(ERR_MEMORY, "memory exhausted: list of an archive");
   for (int i = 0; i < a->n; ++i)
-    used +=
-        (size_t)snprintf(list + used, size - used, "%d %zu %s\n",
-                         (int)a->item[i].kind, a->item[i].n, a->item[i].name);
+    used += snprintf(list + used, size - used, "%d %zu %s\n",
+                     (int)a->item[i].kind, a->item[i].n, a->item[i].name);
   *out = list;
   return OK;
 }

@@ -108,7 +108,7 @@ static status check_storage(const hdf5_source *s, const char *name, hid_t set,
     unsigned flags, info;
     size_t n = 0;
     H5Z_filter_t filter =
-        H5Pget_filter2(made, (unsigned)k, &flags, &n, NULL, 0, NULL, &info);
+        H5Pget_filter2(made, k, &flags, &n, NULL, 0, NULL, &info);
     if (!may_pack(filter))
       RAISE(ERR_DECK, "%s: %s is packed by filter %d; only deflate is read",
             s->path, name, (int)filter);

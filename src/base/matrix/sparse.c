@@ -59,7 +59,7 @@ static status set_pattern(sparse_blocks *b, const places *p) {
   }
   PASS_NEW_ALL(OF(b->row, b->start[b->n]), OF(b->mate, b->start[b->n]),
                OF(b->own, b->n),
-               OF(b->val, (size_t)b->start[b->n] * (size_t)(b->dim * b->dim)));
+               OF(b->val, (size_t)b->start[b->n] * (b->dim * b->dim)));
   for (int j = 0; j < b->n; ++j)
     for (int k = p->start[j]; k < p->start[j + 1]; ++k) {
       int i = p->row[k];
@@ -67,7 +67,7 @@ static status set_pattern(sparse_blocks *b, const places *p) {
       last[i] = j;
       b->row[next[i]++] = j;
     }
-  memcpy(next, b->start, (size_t)b->n * sizeof *next);
+  COPY(next, b->start, b->n);
   for (int j = 0; j < b->n; ++j)
     for (int k = b->start[j]; k < b->start[j + 1]; ++k) {
       b->mate[k] = next[b->row[k]]++;
@@ -90,7 +90,7 @@ static int place_of(const sparse_blocks *b, int i, int j) {
 }
 
 static double *block(const sparse_blocks *b, int place) {
-  return b->val + (size_t)place * (size_t)(b->dim * b->dim);
+  return b->val + (size_t)place * (b->dim * b->dim);
 }
 
 status sparse_blocks_new(int dim, int n, long count_given, const int *row,
@@ -133,7 +133,7 @@ void sparse_blocks_add(const sparse_blocks *b, int j, const double *x,
 }
 
 void sparse_blocks_product(const sparse_blocks *b, const double *x, double *y) {
-  memset(y, 0, (size_t)(b->n * b->dim) * sizeof *y);
+  CLEAR(y, b->n * b->dim);
   for (int j = 0; j < b->n; ++j)
     if (!is_zero(b->dim, x + j * b->dim))
       sparse_blocks_add(b, j, x + j * b->dim, y);
@@ -141,7 +141,7 @@ void sparse_blocks_product(const sparse_blocks *b, const double *x, double *y) {
 
 void sparse_blocks_bound(const sparse_blocks *b, const double *x, double *y) {
   int d = b->dim;
-  memset(y, 0, (size_t)(b->n * d) * sizeof *y);
+  CLEAR(y, b->n * d);
   for (int j = 0; j < b->n; ++j)
     for (int k = b->start[j]; k < b->start[j + 1]; ++k)
       for (int e = 0; e < d * d; ++e)
@@ -151,7 +151,7 @@ void sparse_blocks_bound(const sparse_blocks *b, const double *x, double *y) {
 void sparse_blocks_row(const sparse_blocks *b, int i, const double *x,
                        double *y) {
   int d = b->dim;
-  memset(y, 0, (size_t)d * sizeof *y);
+  CLEAR(y, d);
   for (int k = b->start[i]; k < b->start[i + 1]; ++k) {
     const double *B = block(b, b->mate[k]), *from = x + b->row[k] * d;
     for (int e = 0; e < d * d; ++e) y[e % d] += B[e] * from[e / d];
@@ -160,7 +160,7 @@ void sparse_blocks_row(const sparse_blocks *b, int i, const double *x,
 
 status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows) {
   int d = b->dim, m = b->n * d, count_all = 0;
-  size_t all = (size_t)b->start[b->n] * (size_t)(d * d);
+  size_t all = (size_t)b->start[b->n] * (d * d);
   for (size_t k = 0; k < all; ++k) count_all += b->val[k] != 0.0;
   PASS_NEW_ALL(OF(rows->start, m + 1), OF(rows->col, count_all),
                OF(rows->val, count_all));
@@ -181,11 +181,10 @@ status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows) {
 
 void sparse_blocks_dense(const sparse_blocks *b, double *M) {
   int d = b->dim;
-  size_t m = (size_t)(b->n * d);
-  memset(M, 0, m * m * sizeof *M);
+  size_t m = b->n * d;
+  CLEAR(M, m * m);
   for (int j = 0; j < b->n; ++j)
     for (int k = b->start[j]; k < b->start[j + 1]; ++k)
       for (int e = 0; e < d * d; ++e)
-        M[(size_t)(b->row[k] * d + e % d) + m * (size_t)(j * d + e / d)] =
-            block(b, k)[e];
+        M[b->row[k] * d + e % d + m * (j * d + e / d)] = block(b, k)[e];
 }

@@ -96,7 +96,7 @@ static void climb(const char *root, const char *mount, const char *group,
                   group_limit *limit, limits *l) {
   char folder[PATH];
   int n = snprintf(folder, sizeof folder, "%s%s", root, mount);
-  if (n < 0 || (size_t)n + strlen(group) >= sizeof folder) return;
+  if (n < 0 || n + strlen(group) >= sizeof folder) return;
   strcpy(folder + n, group);
   for (;;) {
     limit(folder, l);
@@ -197,7 +197,7 @@ static void take_one_processor(void) {
       sched_getaffinity(0, sizeof processors, &processors) != 0)
     return;
   CPU_ZERO(&one);
-  CPU_SET((size_t)current, &one);
+  CPU_SET(current, &one);
   sched_setaffinity(0, sizeof one, &one);
 }
 

@@ -50,7 +50,7 @@ static int fan_size(const fans *f, int node) {
 }
 
 static const double *node_at(const average_patch *p, int node) {
-  return p->x + (size_t)p->dim * (size_t)node;
+  return p->x + (size_t)p->dim * node;
 }
 
 static int on_axis(const average_patch *p, int node) {
@@ -61,12 +61,11 @@ static int on_axis(const average_patch *p, int node) {
 }
 
 static status new_arrays(const average_patch *p, layout *l) {
-  size_t dim = (size_t)p->dim;
+  size_t dim = p->dim;
   l->dim = p->dim;
   l->n_face = p->n_face;
-  PASS_NEW(l->x, dim * (size_t)p->n_node);
-  PASS_NEW(l->corner, dim * dim * (size_t)p->n_face);
-  PASS_NEW(l->rim, dim * dim * dim * (size_t)(p->n_face + 1));
+  PASS_NEW_ALL(OF(l->x, dim * p->n_node), OF(l->corner, dim * dim * p->n_face),
+               OF(l->rim, dim * dim * dim * (p->n_face + 1)));
   return OK;
 }
 
@@ -83,10 +82,10 @@ static int on_mirror(const layout *l, int corners,
 }
 
 static void add_rim(layout *l, int corners, const double *const *corner) {
-  size_t dim = (size_t)l->dim;
+  size_t dim = l->dim;
   if (on_mirror(l, corners, corner)) return;
-  double *to = l->rim + (dim - 1) * dim * (size_t)l->n_rim++;
-  for (int k = 0; k < corners; ++k) COPY(to + dim * (size_t)k, corner[k], dim);
+  double *to = l->rim + (dim - 1) * dim * l->n_rim++;
+  for (int k = 0; k < corners; ++k) COPY(to + dim * k, corner[k], dim);
 }
 
 /* Least or largest coordinate of the patch. */
@@ -120,13 +119,13 @@ static int shared(const average_patch *p, const fans *f, int a, int b) {
 }
 
 static void lay_as_is(const average_patch *p, const fans *f, layout *l) {
-  size_t dim = (size_t)p->dim;
-  memcpy(l->x, p->x, dim * (size_t)p->n_node * sizeof *l->x);
+  size_t dim = p->dim;
+  COPY(l->x, p->x, dim * p->n_node);
   for (int k = 0; k < p->dim * p->n_face; ++k) {
     int a = p->face[k];
     int b = k % p->dim == p->dim - 1 ? p->face[k + 1 - p->dim] : p->face[k + 1];
     const double *ends[2] = {node_at(p, a), node_at(p, b)};
-    memcpy(l->corner + dim * (size_t)k, ends[0], dim * sizeof *l->corner);
+    COPY(l->corner + dim * k, ends[0], dim);
     if (p->dim == 2 && fan_size(f, a) == 1 && !on_axis(p, a))
       add_rim(l, 1, ends);
     if (p->dim == 3 && shared(p, f, a, b) == 1) add_rim(l, 2, ends);
@@ -262,16 +261,6 @@ typedef struct builder {
   int cut;                    /* 1: a face with a node left out is within it */
 } builder;
 
-static void builder_free(builder *b) {
-  RELEASE(b->at.x, b->at.corner, b->at.loop, b->at.rim);
-  box_tree_free(&b->faces);
-  box_tree_free(&b->rim);
-  RELEASE(b->share, b->mass);
-  sparse_free(&b->raw);
-  sparse_free(&b->by_column);
-  RELEASE(b->alone, b->part, b->found, b->touched, b->row);
-}
-
 static status builder_new(builder *b) {
   int n = b->p->n_node, dim = b->p->dim;
   int line = dim == 2 && !b->p->axisymmetric;
@@ -309,7 +298,7 @@ static double triangle_area(const double *x) {
 static void find_shares(builder *b) {
   const average_patch *p = b->p;
   for (int f = 0; f < p->n_face; ++f) {
-    const double *x = b->at.corner + (size_t)(p->dim * p->dim) * (size_t)f;
+    const double *x = b->at.corner + (size_t)(p->dim * p->dim) * f;
     const int *node = p->face + p->dim * f;
     double size = p->dim == 3 ? triangle_area(x) : distance(2, x, x + 2);
     for (int k = 0; k < p->dim; ++k) {
@@ -327,8 +316,8 @@ static void find_facts(const builder *b, average_facts *facts,
   memset(facts, 0, sizeof *facts);
   for (int k = 0; k < p->dim * p->n_face; ++k) {
     int next = k % p->dim == p->dim - 1 ? k + 1 - p->dim : k + 1;
-    double length = distance(p->dim, b->at.corner + (size_t)(p->dim * k),
-                             b->at.corner + (size_t)(p->dim * next));
+    double length = distance(p->dim, b->at.corner + p->dim * k,
+                             b->at.corner + p->dim * next);
     facts->longest = fmax(facts->longest, length);
     if (4.0 * length > b->rule->radius * (1.0 + ROUNDING))
       coarse[p->face[k]] = coarse[p->face[next]] = 1;
@@ -346,8 +335,7 @@ static void find_facts(const builder *b, average_facts *facts,
 /* 1 if a face with a node that carries no pressure lies within the disc. */
 static int cuts(const builder *b, int face, const double *x, double reach) {
   const average_patch *p = b->p;
-  const double *corner =
-      b->at.corner + (size_t)(p->dim * p->dim) * (size_t)face;
+  const double *corner = b->at.corner + (size_t)(p->dim * p->dim) * face;
   int left_out = 0;
   for (int k = 0; k < p->dim; ++k)
     left_out |= !p->active[p->face[p->dim * face + k]];
@@ -358,8 +346,7 @@ static int cuts(const builder *b, int face, const double *x, double reach) {
 static void add_face(builder *b, int i, int face, const double *x,
                      double reach) {
   const average_patch *p = b->p;
-  const double *corner =
-      b->at.corner + (size_t)(p->dim * p->dim) * (size_t)face;
+  const double *corner = b->at.corner + (size_t)(p->dim * p->dim) * face;
   double weight[3];
   b->cut |= cuts(b, face, x, reach);
   if (p->dim == 3)
@@ -402,7 +389,7 @@ static void look_from_images(builder *b, int i, const double *x, double reach) {
 }
 
 static void look_around(builder *b, int i) {
-  const double *x = b->at.x + (size_t)b->p->dim * (size_t)i;
+  const double *x = b->at.x + (size_t)b->p->dim * i;
   double length = b->at.loop == NULL ? 0.0 : b->at.loop[i];
   double reach = b->rule->radius;
   b->n_touched = b->neighbours = b->cut = 0;
@@ -420,10 +407,10 @@ static void look_around(builder *b, int i) {
 /* 1 if the disc around node i reaches beyond the patch. */
 static int meets_rim(builder *b, int i) {
   int dim = b->p->dim, corners = dim - 1;
-  const double *x = b->at.x + (size_t)dim * (size_t)i;
+  const double *x = b->at.x + (size_t)dim * i;
   int n = box_tree_near(&b->rim, x, b->rule->radius, b->found);
   for (int k = 0; k < n; ++k) {
-    const double *a = b->at.rim + (size_t)(dim * corners) * (size_t)b->found[k];
+    const double *a = b->at.rim + (size_t)(dim * corners) * b->found[k];
     double d = corners == 1 ? distance(dim, a, x)
                             : face_segment_distance(dim, a, a + dim, x);
     if (d < b->rule->radius * (1.0 - ROUNDING)) return 1;
@@ -445,7 +432,7 @@ static status keep_row(builder *b, int i, int cap[2]) {
   const average_patch *p = b->p;
   double seen = 0.0;
   int n = b->raw.start[i];
-  qsort(b->touched, (size_t)b->n_touched, sizeof *b->touched, number_order);
+  qsort(b->touched, b->n_touched, sizeof *b->touched, number_order);
   for (int k = 0; k < b->n_touched; ++k) {
     int j = b->touched[k];
     if (p->active[j]) seen += b->row[j];
@@ -549,7 +536,7 @@ static status symmetrise(builder *b, sparse_rows *out) {
     double all = b->share[i] * b->mass[i];
     part[i] = n > 0 && left < 0.0 ? all / (all - left) : 1.0;
   }
-  memcpy(b->part, part, (size_t)p->n_node * sizeof *part);
+  COPY(b->part, part, p->n_node);
   PASS_NEW(out->col, out->start[p->n_node]);
   PASS_NEW(out->val, out->start[p->n_node]);
   for (int i = 0; i < p->n_node; ++i) {
@@ -564,16 +551,22 @@ static status symmetrise(builder *b, sparse_rows *out) {
   return OK;
 }
 
+static status set_rows(builder *b) {
+  OWNS(b);
+  PASS(builder_new(b));
+  find_shares(b);
+  PASS(find_rows(b));
+  return transpose(&b->raw, &b->by_column);
+}
+
 status average_build(const average_patch *patch, const average_rule *rule,
                      sparse_rows *out, average_facts *facts) {
-  ENDS_BY(builder_free) builder b = {.p = patch, .rule = rule};
   memset(out, 0, sizeof *out);
-  PASS(builder_new(&b));
-  find_shares(&b);
-  PASS(find_rows(&b));
-  PASS(transpose(&b.raw, &b.by_column));
-  PASS(symmetrise(&b, out));
+  OWNED_NEW(builder, b, 1);
+  *b = (builder){.p = patch, .rule = rule};
+  PASS(set_rows(b));
+  PASS(symmetrise(b, out));
   OWNED_NEW(unsigned char, coarse, patch->n_node);
-  find_facts(&b, facts, coarse);
+  find_facts(b, facts, coarse);
   return OK;
 }

@@ -15,7 +15,7 @@ typedef struct range {
 } range;
 
 static double middle(const box_tree *t, int item, int axis) {
-  const double *b = t->of + 2 * (size_t)t->dim * (size_t)item;
+  const double *b = t->of + 2 * (size_t)t->dim * item;
   return b[axis] + b[t->dim + axis];
 }
 
@@ -52,9 +52,9 @@ static void build(box_tree *t, range r) {
   size_t size = 2 * (size_t)t->dim;
   double *box = t->box + size * r.node;
   int axis = 0;
-  memcpy(box, t->of + size * (size_t)t->item[r.first], size * sizeof *box);
+  COPY(box, t->of + size * t->item[r.first], size);
   for (int i = 1; i < r.count; ++i)
-    widen(t->dim, box, t->of + size * (size_t)t->item[r.first + i]);
+    widen(t->dim, box, t->of + size * t->item[r.first + i]);
   if (r.count <= LEAF) return;
   for (int c = 1; c < t->dim; ++c)
     if (box[t->dim + c] - box[c] > box[t->dim + axis] - box[axis]) axis = c;
@@ -86,20 +86,14 @@ status box_tree_new(int dim, int n, int corners, const double *x,
   memset(out, 0, sizeof *out);
   out->dim = dim;
   out->n = n;
-  PASS_NEW_ALL(OF(out->item, n), OF(out->of, size * (size_t)n),
+  PASS_NEW_ALL(OF(out->item, n), OF(out->of, size * n),
                OF(out->box, size * node_count(n)));
   for (int i = 0; i < n; ++i) {
     out->item[i] = i;
-    surround(dim, corners, x + (size_t)(dim * corners) * (size_t)i,
-             out->of + size * (size_t)i);
+    surround(dim, corners, x + (size_t)(dim * corners) * i, out->of + size * i);
   }
   if (n > 0) build(out, (range){0, 0, n});
   return OK;
-}
-
-void box_tree_free(box_tree *t) {
-  RELEASE(t->item, t->of, t->box);
-  memset(t, 0, sizeof *t);
 }
 
 static int is_near(int dim, const double *box, const double *x, double r) {
@@ -152,7 +146,7 @@ static int search(const box_tree *t, const query *q, int *found) {
     }
     for (int i = 0; i < a.count; ++i) {
       int item = t->item[a.first + i];
-      if (is_wanted(t->dim, t->of + size * (size_t)item, q)) found[n++] = item;
+      if (is_wanted(t->dim, t->of + size * item, q)) found[n++] = item;
     }
   }
   return n;

@@ -16,7 +16,6 @@ typedef struct box_tree {
 /* n items of "corners" points each, one after the other: x[dim*corners*n]. */
 status box_tree_new(int dim, int n, int corners, const double *x,
                     box_tree *out);
-void box_tree_free(box_tree *t); /* accepts all-zero */
 /* The items whose boxes are nearer than r to x: found[n], their number. */
 int box_tree_near(const box_tree *t, const double *x, double r, int *found);
 

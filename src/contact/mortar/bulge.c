@@ -132,7 +132,7 @@ static int fit_slopes(const shape *s, const facet *f, double *slope) {
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, m, n, 1, A, m, b, m, pivot, 1e-6,
                           &rank, work, 20 * TERMS) != 0)
     return 0;
-  memcpy(slope, b, (size_t)(dim - 1) * sizeof *b);
+  COPY(slope, b, (dim - 1));
   return rank == n;
 }
 
@@ -163,15 +163,14 @@ static void find_normal(shape *s, int node) {
     if (found != 1) break;
   }
   straighten(dim, 0, base, f.normal);
-  memcpy(s->normal + (size_t)dim * (size_t)node, f.normal,
-         (size_t)dim * sizeof *f.normal);
+  COPY(s->normal + (size_t)dim * node, f.normal, dim);
 }
 
 /* Slope of the surface at a node over the edge e that leaves it, in a face with
  * the normal f. */
 static double rise(const shape *s, int node, const double *e, const double *f) {
   const int dim = s->in->mesh->dim;
-  const double *n = s->normal + (size_t)dim * (size_t)node;
+  const double *n = s->normal + (size_t)dim * node;
   const double up = dot(dim, n, f);
   const double t =
       up > 0.0 ? -dot(dim, n, e) / (up * sqrt(dot(dim, e, e))) : 0.0;
@@ -214,13 +213,10 @@ static void mark_flat(shape *s) {
   }
 }
 
-static void shape_release(shape *s) {
-  RELEASE(s->normal, s->start, s->around, s->state, s->bends);
-}
-
 status bulge_find(const mortar_input *in, int n, const int *face,
                   double *bulge) {
-  ENDS_BY(shape_release) shape s = {.in = in, .face = face, .bulge = bulge};
+  SCRATCH;
+  shape s = {.in = in, .face = face, .bulge = bulge};
   const int dim = in->mesh->dim, edges = dim == 2 ? 1 : 3;
   PASS(find_around(&s, n));
   for (int i = 0; i < in->mesh->n_node; ++i)

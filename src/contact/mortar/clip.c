@@ -21,7 +21,7 @@ static double turn(const double *a, const double *b, const double *c) {
 }
 
 static double *node_place(int dim, const double *x, int node, double *at) {
-  memcpy(at, x + (size_t)dim * (size_t)node, (size_t)dim * sizeof *at);
+  memcpy(at, x + (size_t)dim * node, dim * sizeof *at);
   return at;
 }
 

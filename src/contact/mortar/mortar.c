@@ -211,7 +211,7 @@ static int set_kept(const builder *b, int face, int *kept) {
 static void set_shares(const builder *b, int face, const facet *f,
                        double *share) {
   const int dim = f->dim;
-  memset(share, 0, 3 * sizeof *share);
+  CLEAR(share, 3);
   for (int k = 0; k < dim; ++k) {
     double phi[3];
     rule_point(dim, k, phi);
@@ -238,7 +238,7 @@ static status do_face(builder *b, int i) {
   cell corner;
   int kept[3];
   memset(part, 0, sizeof *part);
-  part->first = part->end = (size_t)b->n_entry;
+  part->first = part->end = b->n_entry;
   if (facet_set(b->in->mesh->dim, mortar_nodes(b->in, face), b->in->x, &f) != 0)
     return OK;
   memcpy(part->normal, f.normal, sizeof part->normal);
@@ -255,7 +255,7 @@ static status do_face(builder *b, int i) {
   PASS(add_masters(b, part));
   PASS(add_dropped(b, face, part, kept));
   add_bulges(b, face, part);
-  part->end = (size_t)b->n_entry;
+  part->end = b->n_entry;
   return OK;
 }
 
@@ -358,31 +358,30 @@ static void make_unit(int dim, double *v) {
 static status set_node_normals(builder *b) {
   const mortar_input *in = b->in;
   const int dim = in->mesh->dim;
-  const size_t n = (size_t)in->mesh->n_node;
-  PASS_NEW(b->normal, (size_t)dim * n);
+  const size_t n = in->mesh->n_node;
+  PASS_NEW(b->normal, dim * n);
   for (int i = 0; i < in->n_master * dim; ++i) {
     const facet *f = &b->search.master[i / dim];
     const int node = mortar_nodes(b->in, in->master[i / dim])[i % dim];
     b->slot[node] = 0;
     if (b->met[in->master[i / dim]])
-      add_scaled(dim, f->measure, f->normal,
-                 b->normal + (size_t)dim * (size_t)node);
+      add_scaled(dim, f->measure, f->normal, b->normal + (size_t)dim * node);
   }
   for (int i = 0; i < in->n_slave * dim; ++i) {
     const int node = mortar_nodes(b->in, in->slave[i / dim])[i % dim];
     const face_part *f = &b->face[i / dim];
     if (b->slot[node] != 0)
       add_scaled(dim, -f->share[i % dim], f->normal,
-                 b->normal + (size_t)dim * (size_t)node);
+                 b->normal + (size_t)dim * node);
   }
-  for (size_t i = 0; i < n; ++i) make_unit(dim, b->normal + (size_t)dim * i);
+  for (size_t i = 0; i < n; ++i) make_unit(dim, b->normal + dim * i);
   return OK;
 }
 
 static void set_normal(builder *b, int q) {
   const int dim = b->in->mesh->dim, node = b->out->node_id[q];
   const node_links *l = &b->out->to;
-  double *normal = b->out->normal + (size_t)dim * (size_t)q;
+  double *normal = b->out->normal + (size_t)dim * q;
   double other[3] = {0};
   for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
     const face_part *f = &b->face[b->around[a]];
@@ -391,8 +390,8 @@ static void set_normal(builder *b, int q) {
   make_unit(dim, normal);
   if (b->in->slave_normal) return;
   for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
-    add_scaled(dim, l->part[(size_t)dim * e],
-               b->normal + (size_t)dim * (size_t)l->master[e], other);
+    add_scaled(dim, l->part[dim * e], b->normal + (size_t)dim * l->master[e],
+               other);
   make_unit(dim, other);
   add_scaled(dim, -1, other, normal);
   make_unit(dim, normal);
@@ -458,7 +457,7 @@ static void set_resultant(builder *b, int q) {
   mortar *m = b->out;
   const int dim = b->in->mesh->dim, node = m->node_id[q];
   const double own = m->area[q];
-  double *lever = m->lever + (size_t)dim * (size_t)q;
+  double *lever = m->lever + (size_t)dim * q;
   add_scaled(dim, own, mortar_place(b->in, node), lever);
   for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
     const face_part *f = &b->face[b->around[a]];
@@ -481,12 +480,12 @@ static status add_row(builder *b, int q, entry *row) {
   m->area[q] = node_area(b, node, &m->whole[q]);
   int n = gather(b, node, m->area[q], row, &rounding);
   n = leave_rounding(row, n, rounding);
-  qsort(row, (size_t)n, sizeof *row, by_node);
+  qsort(row, n, sizeof *row, by_node);
   for (int i = 0; i < n; ++i) {
     PASS_GROW(b->links, b->n_link, b->link_capacity);
     b->links[b->n_link++] = (link){row[i].node, row[i].part[0]};
   }
-  m->to.start[q + 1] = (size_t)b->n_link;
+  m->to.start[q + 1] = b->n_link;
   return OK;
 }
 
@@ -498,8 +497,9 @@ static status add_rows(builder *b) {
 
 static status set_links(builder *b) {
   node_links *l = &b->out->to;
-  const size_t dim = (size_t)l->dim;
-  PASS_NEW_ALL(OF(l->master, b->n_link), OF(l->part, dim * (size_t)b->n_link));
+  const size_t dim = l->dim;
+  OWNS(b->out);
+  PASS_NEW_ALL(OF(l->master, b->n_link), OF(l->part, dim * b->n_link));
   for (size_t e = 0; e < (size_t)b->n_link; ++e) {
     l->master[e] = b->links[e].master;
     for (size_t c = 0; c < dim; ++c) l->part[dim * e + c] = b->links[e].part;
@@ -511,28 +511,33 @@ static void set_gap(builder *b, int q) {
   const int dim = b->in->mesh->dim, node = b->out->node_id[q];
   const node_links *l = &b->out->to;
   const double *x = mortar_place(b->in, node);
-  double *gap = b->out->gap + (size_t)dim * (size_t)q;
+  double *gap = b->out->gap + (size_t)dim * q;
   for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
     for (int c = 0; c < dim; ++c)
-      gap[c] += l->part[(size_t)dim * e] *
-                (mortar_place(b->in, l->master[e])[c] - x[c]);
+      gap[c] +=
+          l->part[dim * e] * (mortar_place(b->in, l->master[e])[c] - x[c]);
   for (size_t a = b->start[node]; a < b->start[node + 1]; ++a) {
     const face_part *f = &b->face[b->around[a]];
     add_scaled(dim,
                -f->bulge[corner_of(b, b->around[a], node)] / b->out->area[q],
-               b->out->normal + (size_t)dim * (size_t)q, gap);
+               b->out->normal + (size_t)dim * q, gap);
   }
 }
 
-static status set_nodes(builder *b) {
-  mortar *m = b->out;
-  const int dim = b->in->mesh->dim;
-  int n = 0;
+static status new_nodes(mortar *m, int dim) {
+  OWNS(m);
   m->to.dim = dim;
   m->to.n = m->n;
   PASS_NEW_REALS(dim * m->n, &m->lever, &m->normal, &m->gap);
   PASS_NEW_ALL(OF(m->node_id, m->n), OF(m->area, m->n), OF(m->whole, m->n),
                OF(m->share, m->n), OF(m->to.start, m->n + 1));
+  return OK;
+}
+
+static status set_nodes(builder *b) {
+  mortar *m = b->out;
+  int n = 0;
+  PASS(new_nodes(m, b->in->mesh->dim));
   for (int i = 0; i < b->in->mesh->n_node; ++i)
     if (b->state[i] == CARRIES) m->node_id[n++] = i;
   PASS(add_rows(b));
@@ -561,6 +566,7 @@ static status sum_up(builder *b) {
   const int dim = b->in->mesh->dim;
   mortar *m = b->out;
   double masters = 0.0, slaves = 0.0;
+  OWNS(m);
   PASS_NEW(m->cut, b->in->n_slave);
   for (int i = 0; i < b->in->n_slave; ++i) {
     const face_part *f = &b->face[i];
@@ -582,10 +588,10 @@ static status sum_up(builder *b) {
   return OK;
 }
 
-static status builder_new(const mortar_input *in, builder *b) {
-  const size_t n = (size_t)in->mesh->n_node;
-  *b = (builder){.in = in};
-  PASS_NEW_ALL(OF(b->out, 1), OF(b->state, n), OF(b->face, in->n_slave),
+static status builder_new(const mortar_input *in, mortar *out, builder *b) {
+  const size_t n = in->mesh->n_node;
+  *b = (builder){.in = in, .out = out};
+  PASS_NEW_ALL(OF(b->state, n), OF(b->face, in->n_slave),
                OF(b->met, in->mesh->n_face), OF(b->slot, n));
   for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
   PASS(set_around(b));
@@ -598,23 +604,15 @@ static status builder_new(const mortar_input *in, builder *b) {
   return partner_search_new(in, &b->search);
 }
 
-static void builder_release(builder *b) {
-  partner_search_release(&b->search);
-  RELEASE(b->state, b->face, b->met, b->entries, b->points, b->slot, b->normal,
-          b->bulge, b->start, b->around, b->links, b->out);
-}
-
 status mortar_couple(const mortar_input *in, mortar **out) {
-  ENDS_BY(builder_release) builder b;
-  PASS(builder_new(in, &b));
-  OWNS(b.out);
+  builder b;
+  PASS_NEW(*out, 1);
+  SCRATCH;
+  PASS(builder_new(in, *out, &b));
   PASS(do_faces(&b));
   for (int i = 0; i < in->mesh->n_node; ++i) b.slot[i] = -1;
   PASS(set_nodes(&b));
-  PASS(sum_up(&b));
-  *out = b.out;
-  b.out = NULL;
-  return OK;
+  return sum_up(&b);
 }
 
 /* ---- links ---- */
@@ -625,7 +623,7 @@ static int share(const tie_set *t, int q, int c, double *F) {
   double *own = F + (ptrdiff_t)l->dim * t->node_id[q] + c, f = *own;
   int moves = 0;
   for (size_t e = l->start[q]; e < l->start[q + 1] && f != 0.0; ++e) {
-    const double part = l->part[(size_t)l->dim * e + (size_t)c];
+    const double part = l->part[l->dim * e + c];
     F[(ptrdiff_t)l->dim * l->master[e] + c] += part * f;
     moves |= part != 0.0;
   }

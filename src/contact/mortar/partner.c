@@ -32,12 +32,12 @@ static double extent(const mortar_input *in, int n, const int *face,
 static status plant(const mortar_input *in, int n, const int *face,
                     box_tree *out) {
   const int dim = in->mesh->dim;
-  const size_t size = (size_t)dim * (size_t)dim;
+  const size_t size = (size_t)dim * dim;
   OWNED double *corner = NULL;
-  PASS_NEW(corner, size * (size_t)n);
+  PASS_NEW(corner, size * n);
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < dim; ++k)
-      COPY(corner + size * (size_t)i + dim * k,
+      COPY(corner + size * i + dim * k,
            mortar_place(in, mortar_nodes(in, face[i])[k]), dim);
   return box_tree_new(dim, n, dim, corner, out);
 }
@@ -56,13 +56,6 @@ status partner_search_new(const mortar_input *in, partner_search *s) {
                   extent(in, in->n_master, in->master, &s->largest));
   PASS(plant(in, in->n_master, in->master, &s->masters));
   return plant(in, in->n_slave, in->slave, &s->slaves);
-}
-
-void partner_search_release(partner_search *s) {
-  box_tree_free(&s->masters);
-  box_tree_free(&s->slaves);
-  RELEASE(s->master, s->found, s->group, s->list, s->cells, s->rest);
-  *s = (partner_search){0};
 }
 
 double partner_rounding(const partner_search *s, const facet *f) {
@@ -266,7 +259,7 @@ static int is_single(partner_search *s, const facet *f) {
 /* Of faces one behind the other only the nearest is left. */
 static status leave_nearest(partner_search *s, const facet *f) {
   int n = 0;
-  qsort(s->list, (size_t)s->n, sizeof *s->list, by_distance);
+  qsort(s->list, s->n, sizeof *s->list, by_distance);
   for (int i = 1; i < s->n; ++i)
     if (!s->list[i].hides) PASS(uncover(s, f, i));
   for (int i = 0; i < s->n; ++i)

@@ -48,7 +48,6 @@ typedef struct partner_search {
 } partner_search;
 
 status partner_search_new(const mortar_input *in, partner_search *s);
-void partner_search_release(partner_search *s); /* accepts all-zero */
 /* Relative size of what is only rounding of the coordinates in the plane of f,
  * of the size of f, - . */
 double partner_rounding(const partner_search *s, const facet *f);

@@ -130,8 +130,8 @@ static double inelastic(const view *v, int id, int part) {
 static double internal(const view *v, int id, int part) {
   int k = point_of(v, id);
   const size_t *start = v->s->body.flow->alpha_at;
-  if (k < 0 || start[k] + (size_t)part >= start[k + 1]) return 0;
-  return v->s->body.inelastic->alpha[start[k] + (size_t)part];
+  if (k < 0 || start[k] + part >= start[k + 1]) return 0;
+  return v->s->body.inelastic->alpha[start[k] + part];
 }
 
 VALUE(inelastic_work, v->s->energy.inelastic)

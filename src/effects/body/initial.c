@@ -11,7 +11,7 @@ static status start_forces(run *r, double *R, double *diagonal,
                            double *largest) {
   const double *all = strains_load(r);
   OWNED double *sigma = NULL;
-  PASS_NEW(sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  PASS_NEW(sigma, (size_t)r->m->ns * r->msh->n_elem);
   domain_stress(&r->body.d, r->old.u, NULL, sigma);
   domain_internal_force(&r->body.d, sigma, R);
   for (size_t k = 0; k < r->n_dof; ++k) {
@@ -34,7 +34,7 @@ static status relax_start(run *r) {
     TRY(loop_no_equilibrium(r));
   }
   TRY(loop_accept(r, 1, 0, 0, cpu));
-  memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
+  COPY(r->loads.start, r->old.u, r->n_dof);
 done:
   r->course.relaxing = 0;
   return st;
@@ -55,7 +55,7 @@ static status check_start(run *r, start_report *s) {
   }
   if (s->relaxed) return relax_start(r);
   /* The start is the old equilibrium of the first increment. */
-  memcpy(r->old.F, r->now.F, r->n_dof * sizeof *r->old.F);
+  COPY(r->old.F, r->now.F, r->n_dof);
   result_start(r, &r->old);
   return OK;
 }

@@ -33,24 +33,22 @@ static int strains(const model *m, int elem_id) {
 static void average_thermal(run *r) {
   cluster_set *c = r->body.d.cluster;
   double *thermal = r->now.thermal;
-  const size_t ns = (size_t)r->m->ns;
+  const size_t ns = r->m->ns;
   cluster_begin(c, CLUSTER_STRAIN);
   for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k],
-                thermal + ns * (size_t)k);
+    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
   for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k],
-                   thermal + ns * (size_t)k);
+    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
 }
 
 static void strain(run *r, const double *T0) {
-  const size_t ns = (size_t)r->m->ns;
+  const size_t ns = r->m->ns;
   equilibrium *now = &r->now;
   for (int k = 0; k < r->strains.eigen.n; ++k) {
     int e = r->strains.elem[k];
     if (expands(r->m, e))
       expansion_strain(&run_material(r, e)->expand, now->temperature[e], T0[e],
-                       now->thermal + ns * (size_t)k);
+                       now->thermal + ns * k);
   }
   average_thermal(r);
 }

@@ -141,7 +141,7 @@ static status new_cracks(run *r, crack_state *own) {
 
 static status cracks_new(run *r, void **self) {
   crack_state *own = *self;
-  PASS_NEW(own->sigma, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  PASS_NEW(own->sigma, (size_t)r->m->ns * r->msh->n_elem);
   PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped);
   PASS_NEW_ALL(OF(own->area, r->msh->n_node), OF(own->shift, r->n_dof));
   own->step_id = -1;
@@ -197,7 +197,7 @@ static void shift_back(const run *r, const crack_state *own, int face,
 static void shift_all(const run *r, const crack_state *own, int transposed,
                       double *t) {
   const mesh *m = r->msh;
-  memcpy(own->lumped, t, r->n_dof * sizeof *t);
+  COPY(own->lumped, t, r->n_dof);
   for (int i = 0; i < m->n_crack; ++i)
     for (int k = 0; k < 2 * m->crack[i].n; ++k)
       shift_back(r, own, lip_of(&m->crack[i], k), transposed, own->lumped, t);
@@ -217,7 +217,7 @@ void cracks_by_forces(const run *r, double *by) {
 
 /* Of contact forces and loads at the lips. */
 static void find_tractions(const run *r, crack_state *own) {
-  memcpy(own->traction, r->now.F, r->n_dof * sizeof *own->traction);
+  COPY(own->traction, r->now.F, r->n_dof);
   if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
   over_areas(r, own, own->traction);
   shift_all(r, own, 0, own->traction);
@@ -332,7 +332,7 @@ static status find_creep(const run *r, crack_state *own) {
  * "near" they are: Poisson's ratio may change in plane strain. */
 static status check_elastic(const run *r, const crack_state *own, double *u) {
   static const double near = 0.02;
-  const size_t ns = (size_t)r->m->ns, n = ns * (size_t)r->msh->n_elem;
+  const size_t ns = r->m->ns, n = ns * r->msh->n_elem;
   domain d = r->body.d;
   double most = 0.0, largest = 0.0;
   OWNED_NEW(double, sigma, n);

@@ -369,7 +369,7 @@ static const double least_slide = 0.3, least_motion = 1e-9;
 static double motion_along(const run *r, const double *d, int node_id) {
   const int dim = r->msh->dim;
   const int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
-  const size_t at = (size_t)dim * (size_t)node_id;
+  const size_t at = (size_t)dim * node_id;
   const double now = dot(dim, d, &r->now.u[at]);
   return fresh ? now : now - dot(dim, d, &r->old.u[at]);
 }
@@ -384,7 +384,7 @@ static int masters_slide(const run *r, int i, int a, double least) {
   double mean = 0.0, most = 0.0;
   for (size_t e = l->start[i]; e < l->start[i + 1]; ++e) {
     const double by = motion_along(r, d, l->master[e]) - own;
-    mean += l->part[(size_t)s->dim * e] * by;
+    mean += l->part[s->dim * e] * by;
     most = fmax(most, fabs(by));
   }
   return fabs(mean) > least_slide * most && most > least;
@@ -464,7 +464,7 @@ static status prepare(run *r, void *self) {
 static void forget(run *r, void *self) {
   friction *own = self;
   if (own->distance == NULL) return;
-  memset(own->left, 0, (size_t)r->msh->n_node * sizeof *own->left);
+  CLEAR(own->left, r->msh->n_node);
   for (int i = 0; i < r->nodes.n; ++i)
     own->left[r->surface->node_id[i]] = own->distance[i];
   friction_limit_free(&own->limit);
@@ -481,7 +481,7 @@ static status friction_copy(const run *r, const void *of, run *copy,
   OWNS(own);
   PASS_NEW(own->told, r->m->n.contact);
   COPY(own->told, ((const friction *)of)->told, r->m->n.contact);
-  memcpy(own->distance, distance, (size_t)r->nodes.n * sizeof *distance);
+  COPY(own->distance, distance, r->nodes.n);
   use_arrays(own, copy);
   return OK;
 }
@@ -492,8 +492,8 @@ static status keep(run *r, void *self, archive *a) {
   friction *own = self;
   int known = own->known;
   PASS(archive_ints(a, "limit_known", &known, 1));
-  PASS(archive_ints(a, "held_told", own->told, (size_t)r->m->n.contact));
-  PASS(archive_reals(a, "distance", own->distance, (size_t)r->nodes.n));
+  PASS(archive_ints(a, "held_told", own->told, r->m->n.contact));
+  PASS(archive_reals(a, "distance", own->distance, r->nodes.n));
   if (archive_reads(a) && known) PASS(update_limit(r, own, r->old.t));
   return OK;
 }

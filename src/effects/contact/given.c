@@ -50,7 +50,7 @@ static status set_forces(run *r, void *self, double t) {
   for (int k = 0; k < f->n; ++k) {
     int i = f->node[k];
     double x[3] = {0.0, 0.0, 0.0};
-    memcpy(x, s->x + s->dim * i, (size_t)s->dim * sizeof *x);
+    COPY(x, s->x + s->dim * i, s->dim);
     const given_force *given = force_of(r, i);
     double p = quantity_value(&given->value, x, t);
     f->force[k] = f->all[i] = p * s->area[i];

@@ -14,7 +14,7 @@ static effect_work expected(const plan_sizes *s) {
   return plan_table(s, PRINT_LOOP, s->m->n.contact);
 }
 
-static size_t contacts_of(const run *r) { return (size_t)r->m->n.contact; }
+static size_t contacts_of(const run *r) { return r->m->n.contact; }
 
 static status begin_step(run *r, void *self) {
   contact_loop *loops = self;

@@ -61,9 +61,9 @@ static void find_arm(const run *r, int i, int a, double *arm) {
   const node_links *l = s->master;
   const int id = surface_contact_of(s, i, a);
   double whole = 0.0;
-  memset(arm, 0, 3 * sizeof *arm);
+  CLEAR(arm, 3);
   for (size_t e = l->start[i]; e < l->start[i + 1]; ++e) {
-    const double part = l->part[(size_t)s->dim * e + (size_t)a];
+    const double part = l->part[s->dim * e + a];
     whole += part;
     add_place(r, id, l->master[e], -part, arm);
   }
@@ -88,8 +88,8 @@ static void add_moment(const run *r, int i, int a, double *moment) {
 static status find_forces(run *r, void *self) {
   pair_forces *own = self;
   const contact_surface *s = r->surface;
-  memset(own->force, 0, r->n_dof * sizeof *own->force);
-  memset(own->moment, 0, (size_t)r->m->n.contact * sizeof *own->moment);
+  CLEAR(own->force, r->n_dof);
+  CLEAR(own->moment, r->m->n.contact);
   if (r->nodes.n == 0) return OK;
   surface_spread(s, 1.0, r->now.rc, own->force);
   if (s->master == NULL) return OK;

@@ -31,7 +31,7 @@ static effect_work expected(const plan_sizes *s) {
 }
 
 static size_t length_of(const run *r) {
-  return (size_t)r->msh->dim * (size_t)r->msh->n_node;
+  return (size_t)r->msh->dim * r->msh->n_node;
 }
 
 /* Tributary area of that normal, m2. */

@@ -46,16 +46,6 @@ static status level_new(int dim, int n, level *l) {
   return OK;
 }
 
-static void level_free(level *l) {
-  RELEASE(l->in, l->square, l->slope, l->weight);
-}
-
-static void finder_free(finder *z) {
-  level_free(&z->closed);
-  level_free(&z->stick);
-  RELEASE(z->index, z->next, z->next_face, z->before);
-}
-
 static status finder_new(run *r, finder *z) {
   const contact_surface *s = r->surface;
   z->r = r;
@@ -123,7 +113,7 @@ static void difference(const finder *z, int from, int to, double *d) {
 static double face_gradient(const finder *z, const int *node, const double *w,
                             double *g) {
   double a[3], b[3], normal[3], part[3];
-  memset(g, 0, 3 * sizeof *g);
+  CLEAR(g, 3);
   difference(z, node[0], node[1], a);
   difference(z, node[0], node[2], b);
   cross(a, b, normal);
@@ -406,7 +396,8 @@ static status find_lines(finder *z, int contact_id) {
 }
 
 static status find_zones(run *r, void *self) {
-  ENDS_BY(finder_free) finder z = {.out = self};
+  SCRATCH;
+  finder z = {.out = self};
   z.out->n = 0;
   PASS(finder_new(r, &z));
   set_levels(&z);
@@ -454,7 +445,7 @@ VALUE(zone_length, zone_of(v, id)->length)
 VALUE(zone_area, zone_of(v, id)->area)
 
 static const char *zone_word(const view *v, int id) {
-  return status_word((unsigned)zone_of(v, id)->kind);
+  return status_word(zone_of(v, id)->kind);
 }
 
 static const char *zone_contact_name(const view *v, int id) {

@@ -70,8 +70,8 @@ static void guess(run *r, balance *b, double t) {
 
 /* The next solve continues from r->now. */
 static void go_on(run *r, balance *b) {
-  memcpy(b->guess_u, r->now.uc, (size_t)b->m * sizeof *b->guess_u);
-  memcpy(b->guess_r, r->now.rc, (size_t)b->m * sizeof *b->guess_r);
+  COPY(b->guess_u, r->now.uc, b->m);
+  COPY(b->guess_r, r->now.rc, b->m);
   r->solving.guess_u = b->guess_u;
   r->solving.guess_r = b->guess_r;
 }
@@ -201,7 +201,7 @@ static status learn(run *r, void *self) {
 
 static status keep(run *r, void *self, archive *a) {
   balance *b = self;
-  size_t m = (size_t)b->m;
+  size_t m = b->m;
   double *learnt[] = {&b->mesh,         &b->time,      &b->before,
                       &b->per_residual, &b->per_digit, &b->iterations,
                       &b->cpu,          &b->t,         &r->solving.tol};

@@ -50,7 +50,7 @@ static double product(int ns, const double *M, const double *t) {
 static const double *node_values(const element_at_work *e, int vertex) {
   const mesh *m = e->d->mesh;
   int node = m->elem[(m->dim + 1) * e->elem_id + vertex];
-  return e->a->u + (size_t)m->dim * (size_t)node;
+  return e->a->u + (size_t)m->dim * node;
 }
 
 /* Strains of the closed form at x, by differences of its displacements. */
@@ -68,7 +68,7 @@ static void exact_strain(const element_at_work *e, const double x[3],
       }
       grad[c][k] = (8.0 * (f[2] - f[1]) - (f[3] - f[0])) / (12.0 * h);
     }
-  memset(strain, 0, MAX_NS * sizeof *strain);
+  CLEAR(strain, MAX_NS);
   strain[0] = grad[0][0];
   strain[1] = grad[1][1];
   strain[3] = grad[0][1] + grad[1][0];
@@ -117,7 +117,7 @@ static void add_strain(const element_at_work *e, const double x[3],
 static void add_stress(const element_at_work *e, const double x[3],
                        double weight) {
   int ns = e->d->ns;
-  const double *found = e->stress + (size_t)ns * (size_t)e->elem_id;
+  const double *found = e->stress + (size_t)ns * e->elem_id;
   double exact[MAX_NS];
   for (int i = 0; i < ns; ++i) {
     const quantity *q = &e->ref->value[REFERENCE_STRESS + i];
@@ -188,13 +188,13 @@ static status sum_elements(const run *r, squares *sum) {
   for (int i = 0; i < n_section; ++i)
     PASS(space_compliance(d, i, S + square * i));
   plain.eigen = NULL;
-  PASS_NEW(elastic, (size_t)ns * (size_t)d->mesh->n_elem);
+  PASS_NEW(elastic, (size_t)ns * d->mesh->n_elem);
   domain_stress(&plain, r->now.u, NULL, elastic);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     e.S = S + square * d->section_id[k];
     e.E = d->E + square * d->section_id[k];
     e.elem_id = k;
-    e.elastic = elastic + (size_t)ns * (size_t)k;
+    e.elastic = elastic + (size_t)ns * k;
     e.size = pow(mesh_elem_measure(d->mesh, k), 1.0 / d->mesh->dim);
     if (d->mesh->dim == 2)
       add_triangle(&e);

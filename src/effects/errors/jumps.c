@@ -103,12 +103,12 @@ static void set_sliding(const contact_problem *cp, const double *before,
 
 static status sliding_rate(run *r, double *rate) {
   const contact_problem *cp = &r->problem.cp;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   OWNED double *u = NULL, *q = NULL, *before = NULL;
   PASS_NEW_REALS(m, &u, &q, &before);
-  memcpy(before, run_rows(r, 1, r->old.rc), m * sizeof *before);
-  memcpy(u, run_rows(r, 0, r->now.uc), m * sizeof *u);
-  memcpy(q, run_rows(r, 1, r->now.rc), m * sizeof *q);
+  COPY(before, run_rows(r, 1, r->old.rc), m);
+  COPY(u, run_rows(r, 0, r->now.uc), m);
+  COPY(q, run_rows(r, 1, r->now.rc), m);
   set_sliding(cp, before, u, q);
   return contraction_rate(cp, u, q, &r->solving.rate, rate);
 }
@@ -130,22 +130,16 @@ typedef struct path {
   double *room;           /* [2*n_c] */
 } path;
 
-static void path_free(path *s) {
-  for (int k = 0; k < s->n; ++k) {
-    RELEASE(s->p[k].u, s->p[k].status);
-  }
-  memory_free(s->room);
-}
-
 /* The state u, rc as point number "at". */
 static status insert(path *s, int at, double t, const double *u,
                      const double *rc) {
   run *r = s->r;
-  memmove(s->p + at + 1, s->p + at, (size_t)(s->n - at) * sizeof *s->p);
+  memmove(s->p + at + 1, s->p + at, (s->n - at) * sizeof *s->p);
   s->p[at] = (point){.t = t};
   ++s->n;
+  OWNS(s);
   PASS_NEW_ALL(OF(s->p[at].u, r->nodes.n_c), OF(s->p[at].status, r->nodes.n));
-  memcpy(s->p[at].u, u, (size_t)r->nodes.n_c * sizeof *u);
+  COPY(s->p[at].u, u, r->nodes.n_c);
   contact_classify(&r->problem.cp, run_rows(r, 0, s->p[at].u),
                    run_rows(r, 1, (double *)rc), s->p[at].status);
   return OK;
@@ -154,7 +148,7 @@ static status insert(path *s, int at, double t, const double *u,
 /* 0 where the statuses at both ends of part k are the same. */
 static void measure(path *s, int k) {
   point *a = s->p + k, *b = a + 1;
-  size_t bytes = (size_t)s->r->problem.cp.n * sizeof *a->status;
+  size_t bytes = s->r->problem.cp.n * sizeof *a->status;
   a->motion = memcmp(a->status, b->status, bytes) == 0
                   ? 0.0
                   : distance(s->r, b->u, a->u, s->room);
@@ -216,27 +210,27 @@ static void note_jump(run *r, checked *own, double t, double share) {
 /* *share of the motion, 0: no jump; *at: its time, s. r->now is lost. */
 static status look_into(run *r, double t, double *at, double *share) {
   status st = OK;
-  path s = {.r = r, .shortest = ldexp(t - r->old.t, -DEPTH) * 1.5};
+  OWNED_NEW(path, s, 1);
+  OWNED_NEW(double, room, 2 * r->nodes.n_c);
+  *s = (path){r, .room = room, .shortest = ldexp(t - r->old.t, -DEPTH) * 1.5};
   contact_solver *own = NULL;
   const double tol = r->solving.tol;
   int found = -1;
   r->solving.tol = r->step->solver.tol;
   TRY(lend_solver(r, &own));
-  NEW(s.room, 2 * r->nodes.n_c);
   TRY(increment_solve(r, t));
   if (r->solving.report.outcome <= 0) goto done;
-  TRY(insert(&s, 0, t, r->now.uc, r->now.rc));
-  TRY(insert(&s, 0, r->old.t, r->old.uc, r->old.rc));
-  double all = distance(r, s.p[1].u, s.p[0].u, s.room);
-  s.least = LEFT * all;
-  measure(&s, 0);
-  TRY(follow(&s, &found));
+  TRY(insert(s, 0, t, r->now.uc, r->now.rc));
+  TRY(insert(s, 0, r->old.t, r->old.uc, r->old.rc));
+  double all = distance(r, s->p[1].u, s->p[0].u, room);
+  s->least = LEFT * all;
+  measure(s, 0);
+  TRY(follow(s, &found));
   if (found < 0) goto done;
-  *at = s.p[found + 1].t;
-  *share = s.p[found].motion / all;
+  *at = s->p[found + 1].t;
+  *share = s->p[found].motion / all;
 done:
   if (own != NULL) give_back(r, own, tol);
-  path_free(&s);
   return st;
 }
 

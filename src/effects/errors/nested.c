@@ -79,7 +79,7 @@ static void start_node(const run *r, nested *x, int i, double part) {
  * their state there than were found in another one. */
 static int is_nearer(const run *r, const nested *x) {
   if (r->course.total_no == 0)
-    return largest_entry((size_t)r->nodes.n_c, r->old.rc) == 0.0;
+    return largest_entry(r->nodes.n_c, r->old.rc) == 0.0;
   return x->missed >= 0 &&
          count_other(r->nodes.n, x->before, x->state) > x->missed;
 }
@@ -93,8 +93,8 @@ static status pose(run *r, void *self, double t) {
   if (of == NULL || !(t > 0.0)) return OK;
   PASS(match(r, x, of));
   if (!is_nearer(r, x)) return OK;
-  memcpy(x->u, r->old.uc, (size_t)r->nodes.n_c * sizeof *x->u);
-  memcpy(x->rc, r->old.rc, (size_t)r->nodes.n_c * sizeof *x->rc);
+  COPY(x->u, r->old.uc, r->nodes.n_c);
+  COPY(x->rc, r->old.rc, r->nodes.n_c);
   const double part = fmin(1.0, t / coarser_time(of));
   for (int i = 0; i < r->nodes.n; ++i)
     if (x->nearest[i] >= 0) start_node(r, x, i, part);
@@ -119,7 +119,7 @@ static status compare(run *r, void *self) {
   x->missed = -1;
   if (of == NULL || r->nodes.n == 0) return OK;
   PASS(match(r, x, of));
-  memcpy(x->before, x->state, (size_t)r->nodes.n * sizeof *x->before);
+  COPY(x->before, x->state, r->nodes.n);
   x->missed = count_other(r->nodes.n, x->before, r->result.contact);
   return OK;
 }

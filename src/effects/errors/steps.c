@@ -129,7 +129,7 @@ static status try_halves(run *r, finer_path *p, double t) {
   PASS(half(r, p, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
   PASS(half(r, p, &p->middle, t, &p->end));
   if (p->lost || p->u == NULL) return OK;
-  memcpy(p->u, r->now.u, r->n_dof * sizeof *p->u);
+  COPY(p->u, r->now.u, r->n_dof);
   COPY(p->e0, r->strains.eigen.e0, visco_at(r, r->strains.eigen.n));
   return OK;
 }
@@ -184,7 +184,7 @@ static status subtract_strains(run *r, finer_path *p) {
   for (int k = 0; k < v->x.n && turning != NULL; ++k) {
     double *e0 = p->e0 + visco_at(r, v->place[k]), largest = 0.0;
     for (size_t i = 0; i < ns; ++i) largest = fmax(largest, fabs(e0[i]));
-    if (largest == 0.0) memcpy(e0, turning + visco_at(r, k), ns * sizeof *e0);
+    if (largest == 0.0) COPY(e0, turning + visco_at(r, k), ns);
   }
   return OK;
 }
@@ -307,7 +307,7 @@ static status begin_step(run *r, void *self) {
 }
 
 static status keep_waypoint(const run *r, waypoint *w, archive *a) {
-  size_t m = (size_t)r->nodes.n_c;
+  size_t m = r->nodes.n_c;
   PASS(archive_reals(a, "path_t", &w->start.t, 1));
   PASS(archive_reals(a, "path_uc", w->start.uc, m));
   PASS(archive_reals(a, "path_rc", w->start.rc, m));

@@ -34,8 +34,7 @@ static status largest_mu(const run *r, int contact_id, double *mu) {
 static status theorems_scene_new(run *r, const equilibrium *e,
                                  theorems_scene *s, double **mu,
                                  unsigned char **given) {
-  PASS_NEW(*mu, r->m->n.contact);
-  PASS_NEW(*given, r->nodes.n);
+  PASS_NEW_ALL(OF(*mu, r->m->n.contact), OF(*given, r->nodes.n));
   for (int c = 0; c < r->m->n.contact; ++c) PASS(largest_mu(r, c, &(*mu)[c]));
   for (int i = 0; i < r->nodes.n; ++i)
     (*given)[i] = r->m->contacts[r->surface->contact_id[i]].force.given != 0;
@@ -89,10 +88,10 @@ static status linear_body(run *r, const unsigned char *given, body_map *b) {
 
 static status body_map_new(run *r, const unsigned char *given, body_map *b) {
   const visco *v = r->strains.visco;
-  const size_t ns = (size_t)r->m->ns, n = (size_t)v->x.n;
+  const size_t ns = r->m->ns, n = v->x.n;
   b->r = r;
   PASS_NEW(b->Q, ns * ns * n);
-  PASS_NEW_REALS(ns * (size_t)r->strains.eigen.n, &b->e0, &b->sigma);
+  PASS_NEW_REALS(ns * r->strains.eigen.n, &b->e0, &b->sigma);
   PASS_NEW_REALS(r->n_dof, &b->F, &b->u);
   PASS_NEW_REALS(r->nodes.n_c, &b->f, &b->du);
   PASS(linear_body(r, given, b));
@@ -130,7 +129,7 @@ static status answer_of_body(void *ctx, double *size) {
   double square = 0.0;
   if (b->begun) flow_by_law(b);
   b->begun = 1;
-  memset(b->F, 0, r->n_dof * sizeof *b->F);
+  CLEAR(b->F, r->n_dof);
   eigen_force(&r->body.d, &x, b->F);
   PASS(condense_load(b->c, b->F, NULL, b->f));
   PASS(linear_contact_move(b->contact, b->f, b->du));

@@ -104,7 +104,7 @@ static status keep(run *r, void *self, archive *a) {
   warnings *own = self;
   PASS(archive_ints(a, "told_strain", &own->strain, 1));
   PASS(archive_ints(a, "told_folded", &own->folded, 1));
-  return archive_ints(a, "touched", own->touched, (size_t)r->m->n.contact);
+  return archive_ints(a, "touched", own->touched, r->m->n.contact);
 }
 
 static int requires_warnings(const model *m, char *why, size_t size) {

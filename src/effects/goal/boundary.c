@@ -92,7 +92,7 @@ static void normal_at(const run *r, const goal_ring *rings, int node,
   const mesh *m = r->msh;
   const unsigned char *held = r->body.d.fixed + m->dim * node;
   double size = 0.0;
-  memset(n, 0, 3 * sizeof *n);
+  CLEAR(n, 3);
   for (int k = rings->start[node]; k < rings->start[node + 1]; ++k) {
     const int face = rings->face[k];
     double other[3] = {0.0}, along = 0.0;
@@ -151,7 +151,7 @@ status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s) {
   PASS_NEW(s->bent, m->n_face * (m->dim == 3 ? 3 : 1));
   for (int f = 0; f < m->n_face; ++f)
     if (m->face_other[f] < 0) n += bent_edges(r, rings, f, s->bent + n);
-  if (n > 0) qsort(s->bent, (size_t)n, sizeof *s->bent, number_pair_order);
+  if (n > 0) qsort(s->bent, n, sizeof *s->bent, number_pair_order);
   for (int k = 0; k < n; ++k)
     if (kept == 0 || number_pair_order(&s->bent[kept - 1], &s->bent[k]) != 0)
       s->bent[kept++] = s->bent[k];
@@ -182,7 +182,7 @@ static patch face_patch(const run *r, const goal_ring *rings, int face) {
   patch p = {.n = m->dim, .elem = m->face_elem[face]};
   const int *v = m->elem + (m->dim + 1) * m->face_elem[face];
   double g[12];
-  memcpy(p.node, m->face + m->dim * face, (size_t)m->dim * sizeof *p.node);
+  COPY(p.node, m->face + m->dim * face, m->dim);
   p.weight = mesh_face_normal(m, face, p.normal) *
              model_thickness(r->m, m->face_elem[face]);
   if (m->face_other[face] >= 0) return p;
@@ -272,7 +272,7 @@ static void add_part_beyond(const run *r, const patch *p, int face,
                             const int *where, double *dF) {
   const mesh *m = r->msh;
   const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
-  const double *t = r->result.stress + (size_t)r->body.d.ns * (size_t)e;
+  const double *t = r->result.stress + (size_t)r->body.d.ns * e;
   double T[3][3] = {{t[0], t[3], dim == 3 ? t[5] : 0.0},
                     {t[3], t[1], dim == 3 ? t[4] : 0.0},
                     {dim == 3 ? t[5] : 0.0, dim == 3 ? t[4] : 0.0, t[2]}};
@@ -385,7 +385,7 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   *n = 3 * g->n_item;
   PASS_NEW(*e, *n);
   for (int i = 0; i < *n; ++i) (*e)[i] = edge_of(m, g->item_id[i / 3], i % 3);
-  qsort(*e, (size_t)*n, sizeof **e, number_pair_order);
+  qsort(*e, *n, sizeof **e, number_pair_order);
   for (int i = 0, last; i < *n; i = last) {
     for (last = i + 1; last < *n && number_pair_order(*e + i, *e + last) == 0;)
       ++last;
@@ -403,7 +403,7 @@ static void out_at(const run *r, const rim_edge *e, const int *next, int k,
   const unsigned char *held = r->body.d.fixed + 3 * own->v[k % 2];
   double size = 0.0;
   int at = k;
-  memset(out, 0, 3 * sizeof *out);
+  CLEAR(out, 3);
   do {
     const rim_edge *other = e + at / 2;
     for (int c = 0; c < 3 && dot(3, own->out, other->out) >= SMOOTH; ++c)
@@ -458,7 +458,7 @@ static status add_rim(const run *r, const load *l, double *dF) {
 static patch element_patch(const run *r, int e) {
   const mesh *m = r->msh;
   patch p = {.n = m->dim + 1};
-  memcpy(p.node, m->elem + p.n * e, (size_t)p.n * sizeof *p.node);
+  COPY(p.node, m->elem + p.n * e, p.n);
   p.weight = mesh_elem_measure(m, e) * model_thickness(r->m, e);
   return p;
 }

@@ -55,7 +55,7 @@ static status goals_new(run *r, void **self) {
   PASS(goal_border_new(r->msh, &own->border));
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
-    PASS_NEW(own->product, (size_t)own->n * (size_t)r->msh->n_elem);
+    PASS_NEW(own->product, (size_t)own->n * r->msh->n_elem);
   PASS_NEW_REALS(own->n, &own->before.sum, &own->before.band);
   if (!effect_is_on(&slip_history_effect, r->m)) return OK;
   PASS_NEW(own->before.u, r->n_dof);
@@ -95,9 +95,9 @@ static int remembers(const run *r, const goal_state *own) {
 /* A static problem starts from the origin. */
 static void forget(const run *r, goal_history *h, int n) {
   if (r->step->kind != STEP_STATIC || r->course.relaxing) return;
-  if (h->edge != NULL) CLEAR(h->edge, (size_t)r->msh->dim * (size_t)h->n_edge);
-  memset(h->sum, 0, (size_t)n * sizeof *h->sum);
-  memset(h->band, 0, (size_t)n * sizeof *h->band);
+  if (h->edge != NULL) CLEAR(h->edge, (size_t)r->msh->dim * h->n_edge);
+  CLEAR(h->sum, n);
+  CLEAR(h->band, n);
   h->lost = 0;
 }
 
@@ -116,14 +116,6 @@ typedef struct shared {
   double *rest;                 /* [3*n_elem] of goal_add_thermal, or NULL */
   double *moved; /* [n_row] errors of the positions of stick, m */
 } shared;
-
-static void shared_free(shared *s) {
-  goal_surface_free(&s->surface);
-  memory_free(s->estimator);
-  memory_free(s->adjoint);
-  goal_form_free(&s->form);
-  RELEASE(s->y, s->j, s->more, s->psi, s->y_c, s->lacks, s->rest, s->moved);
-}
 
 /* That of the error of the mesh, or its own. */
 static status recover(const run *r, goal_state *own, space_recovery **out) {
@@ -150,9 +142,9 @@ static status set_moved(const run *r, goal_state *own, shared *s) {
 
 /* Where the edges began to stick. */
 static void set_sticks(const run *r, const goal_history *h, goal_surface *s) {
-  const size_t dim = (size_t)r->msh->dim;
+  const size_t dim = r->msh->dim;
   for (int k = 0; k < s->n_edge && h->edge != NULL; ++k)
-    memcpy(s->edge[k].stick, h->edge + dim * (size_t)k, dim * sizeof *h->edge);
+    COPY(s->edge[k].stick, h->edge + dim * k, dim);
 }
 
 static int has_goal_of(const model *m, goal_quantity of) {
@@ -293,9 +285,8 @@ static void add_sum(goal_history *h, int id, goal_result *out) {
 
 /* [n_elem] of a goal, or NULL. */
 static double *product_of(const run *r, const goal_state *own, int id) {
-  return own->product == NULL
-             ? NULL
-             : own->product + (size_t)r->msh->n_elem * (size_t)id;
+  return own->product == NULL ? NULL
+                              : own->product + (size_t)r->msh->n_elem * id;
 }
 
 /* What a stress intensity factor has by the bubbles, and by its integral at
@@ -432,7 +423,7 @@ static status remember(run *r, goal_state *own, shared *s) {
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   }
   COPY(h->edge, goal_estimator_edges(s->estimator),
-       (size_t)r->msh->dim * (size_t)h->n_edge);
+       (size_t)r->msh->dim * h->n_edge);
   return move_nodes(r, own, s);
 }
 
@@ -453,7 +444,8 @@ static status find_goal(run *r, goal_state *own, shared *s, int id) {
 /* The time that all share counts with the first. */
 static status find_goals(run *r, void *self) {
   goal_state *own = self;
-  ENDS_BY(shared_free) shared s = {.estimator = NULL};
+  SCRATCH;
+  shared s = {.estimator = NULL};
   double cpu = timer_cpu();
   PASS(goal_form_new(r, &s.form));
   forget(r, &own->before, own->n);
@@ -485,11 +477,10 @@ static status keep(run *r, void *self, archive *a) {
   OWNS(own);
   if (h->edge == NULL && h->n_edge > 0)
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
-  PASS(archive_reals(a, "edge", h->edge,
-                     (size_t)r->msh->dim * (size_t)h->n_edge));
+  PASS(archive_reals(a, "edge", h->edge, (size_t)r->msh->dim * h->n_edge));
   PASS(archive_reals(a, "u", h->u, r->n_dof));
-  PASS(archive_reals(a, "sum", h->sum, (size_t)own->n));
-  return archive_reals(a, "band", h->band, (size_t)own->n);
+  PASS(archive_reals(a, "sum", h->sum, own->n));
+  return archive_reals(a, "band", h->band, own->n);
 }
 
 /* With the errors that friction remembers, of the start of the increment. */
@@ -498,7 +489,7 @@ static status goals_copy(const run *r, const void *of, run *copy, void **self) {
   goal_state *own = *self;
   PASS(goals_new(copy, self));
   goal_history *h = &own->before;
-  const size_t edges = (size_t)r->msh->dim * (size_t)from->n_edge;
+  const size_t edges = (size_t)r->msh->dim * from->n_edge;
   h->lost = from->lost;
   h->n_edge = from->n_edge;
   COPY(h->sum, from->sum, own->n);

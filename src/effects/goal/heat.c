@@ -34,7 +34,7 @@ static status set_spot(const run *r, int k, spot *s) {
 static int strain_at(const run *r, int k, const spot *s, double *d) {
   const int e = r->strains.elem[k];
   const expansion *x = &run_material(r, e)->expand;
-  const double *mean = r->now.thermal + (size_t)r->m->ns * (size_t)k;
+  const double *mean = r->now.thermal + (size_t)r->m->ns * k;
   if (!x->given || !isfinite(s->T[e]) || !isfinite(s->T0[e])) return 0;
   expansion_strain(x, s->T[e], s->T0[e], d);
   for (int c = 0; c < 3; ++c) d[c] -= mean[c];
@@ -44,7 +44,7 @@ static int strain_at(const run *r, int k, const spot *s, double *d) {
 /* t[ns] = E d0. */
 static void stress_of(const domain *d, int e, const double *strain, double *t) {
   const int ns = d->ns;
-  const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[e];
+  const double *E = d->E + (size_t)(ns * ns) * d->section_id[e];
   for (int i = 0; i < ns; ++i) {
     t[i] = 0.0;
     for (int c = 0; c < 3; ++c) t[i] += E[i + ns * c] * strain[c];
@@ -87,15 +87,14 @@ static void add_spot(const run *r, const spot *s, double *dF, double *rest) {
                                   : d->thickness[d->section_id[e]];
     stress_of(d, e, strain, t);
     add_force(m, e, s->b, t, weight, radius, dF);
-    for (int c = 0; c < 3; ++c)
-      rest[3 * (size_t)e + (size_t)c] += weight * strain[c];
+    for (int c = 0; c < 3; ++c) rest[3 * (size_t)e + c] += weight * strain[c];
   }
 }
 
 status goal_add_thermal(const run *r, double *dF, double **rest) {
   OWNED double *T0 = NULL, *T = NULL;
   if (r->now.thermal == NULL || r->now.temperature == NULL) return OK;
-  PASS_NEW(*rest, (size_t)3 * (size_t)r->msh->n_elem);
+  PASS_NEW(*rest, (size_t)3 * r->msh->n_elem);
   PASS_NEW_REALS(r->msh->n_elem, &T0, &T);
   for (int k = 0; k <= r->msh->dim; ++k) {
     spot s = {.T0 = T0, .T = T};

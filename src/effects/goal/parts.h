@@ -47,7 +47,6 @@ typedef struct goal_form {
 } goal_form;
 
 status goal_form_new(const run *r, goal_form *f);
-void goal_form_free(goal_form *f); /* accepts all-zero */
 /* quantity.c: *f of a goal. ERR_MEMORY. */
 status goal_form_set(run *r, const goal_card *g, goal_form *f);
 /* pressure.c: the mean of a pressure round a point; the width of a zone. */
@@ -117,7 +116,6 @@ status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s);
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
-void goal_surface_free(goal_surface *s); /* accepts all-zero */
 /* Work of the tractions of closed edges along the surface less that of their
  * nodes: *turn, that of their directions on y[dim*n_node], which beyond the
  * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of

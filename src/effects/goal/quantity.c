@@ -16,23 +16,17 @@ status goal_form_new(const run *r, goal_form *f) {
   for (int i = 0; i < r->m->n.goal; ++i) {
     const goal_quantity q = r->m->accuracy.goals[i].quantity;
     if ((q == GOAL_STRESS || q == GOAL_ENERGY) && f->tau == NULL)
-      PASS_NEW(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+      PASS_NEW(f->tau, (size_t)r->m->ns * r->msh->n_elem);
   }
   return OK;
 }
 
-void goal_form_free(goal_form *f) {
-  RELEASE(f->load, f->rows, f->psi, f->tau);
-  fracture_linear_free(&f->factor);
-  *f = (goal_form){0};
-}
-
 static void clear(const run *r, goal_form *f) {
-  const size_t n_c = (size_t)r->nodes.n_c;
-  memset(f->load, 0, r->n_dof * sizeof *f->load);
-  memset(f->rows, 0, n_c * sizeof *f->rows);
-  memset(f->psi, 0, n_c * sizeof *f->psi);
-  if (f->has_tau) CLEAR(f->tau, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  const size_t n_c = r->nodes.n_c;
+  CLEAR(f->load, r->n_dof);
+  CLEAR(f->rows, n_c);
+  CLEAR(f->psi, n_c);
+  if (f->has_tau) CLEAR(f->tau, (size_t)r->m->ns * r->msh->n_elem);
   fracture_linear_free(&f->factor);
   memset(f->spin, 0, sizeof f->spin);
   f->value = f->curved = f->size = f->held = f->rough = 0.0;
@@ -203,15 +197,15 @@ static status set_displacement(const run *r, const goal_card *g, goal_form *f) {
 static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   const domain *d = &r->body.d;
   const mesh_group *of = &r->msh->group[g->group_id];
-  const size_t ns = (size_t)d->ns, c = (size_t)(g->component - GOAL_TENSOR);
+  const size_t ns = d->ns, c = g->component - GOAL_TENSOR;
   double whole = 0.0;
   OWNED_NEW(double, beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
   for (int k = 0; k < of->n_item; ++k)
     whole += element_weight(d, of->item_id[k]);
   for (int k = 0; k < of->n_item; ++k) {
-    const size_t e = (size_t)of->item_id[k];
-    const double *E = d->E + ns * ns * (size_t)d->section_id[e];
+    const size_t e = of->item_id[k];
+    const double *E = d->E + ns * ns * d->section_id[e];
     const double part =
         element_weight(d, (int)e) / whole * r->result.stress[ns * e + c];
     f->value += part;
@@ -219,7 +213,7 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
     for (size_t i = 0; i < ns; ++i) f->tau[ns * e + i] = E[ns * i + c] / whole;
   }
   for (int k = 0; k < of->n_item; ++k) {
-    const size_t e = (size_t)of->item_id[k];
+    const size_t e = of->item_id[k];
     f->curved += beyond[e] / whole * (r->result.stress[ns * e + c] - f->value);
     if (f->rest != NULL)
       f->curved -= goal_thermal_rest(r, (int)e, f->rest, (int)c) / whole;
@@ -231,12 +225,11 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
 /* 1/2 sigma : inv(E) sigma of an element, J/m3; 0 where E is singular. */
 static double energy_density(const run *r, int elem_id) {
   const domain *d = &r->body.d;
-  const size_t ns = (size_t)d->ns;
-  const double *sigma = r->result.stress + ns * (size_t)elem_id;
+  const size_t ns = d->ns;
+  const double *sigma = r->result.stress + ns * elem_id;
   double E[36], strain[6];
-  memcpy(E, d->E + ns * ns * (size_t)d->section_id[elem_id],
-         ns * ns * sizeof *E);
-  memcpy(strain, sigma, ns * sizeof *strain);
+  COPY(E, d->E + ns * ns * d->section_id[elem_id], ns * ns);
+  COPY(strain, sigma, ns);
   if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', d->ns, 1, E, d->ns, strain, d->ns))
     return 0.0;
   return 0.5 * cblas_ddot(d->ns, sigma, 1, strain, 1);
@@ -253,7 +246,7 @@ static status set_energy(const run *r, const goal_card *g, goal_form *f) {
   }
   f->value = r->now.energy.strain;
   f->has_tau = f->is_square = 1;
-  COPY(f->tau, r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+  COPY(f->tau, r->result.stress, (size_t)r->m->ns * r->msh->n_elem);
   return OK;
 }
 

@@ -60,7 +60,7 @@ static int edges_in(const run *r, const load *l, const unsigned char *in,
 /* Each edge once. */
 static int unite(given_edge *e, int n) {
   int kept = 0;
-  if (n > 0) qsort(e, (size_t)n, sizeof *e, number_pair_order);
+  if (n > 0) qsort(e, n, sizeof *e, number_pair_order);
   for (int k = 0; k < n; ++k) {
     if (kept == 0 || number_pair_order(&e[kept - 1], &e[k]) != 0) {
       e[kept++] = e[k];
@@ -167,10 +167,10 @@ static kind held_kind(const mesh *m, const edge *e, int component) {
 }
 
 static kind contact_kind(const goal_surface *s, const edge *e) {
-  const contact_edge *found = s->n_edge == 0
-                                  ? NULL
-                                  : bsearch(e, s->edge, (size_t)s->n_edge,
-                                            sizeof *s->edge, number_pair_order);
+  const contact_edge *found =
+      s->n_edge == 0
+          ? NULL
+          : bsearch(e, s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
   if (found == NULL || !found->closed) return FREE;
   return found->stuck ? CLAMPED : ROLLER;
 }
@@ -315,7 +315,7 @@ static int is_singular_edge(const mesh *m, const rim *e, int count) {
 }
 
 static void mark_edges(const mesh *m, rim *e, int n, goal_surface *s) {
-  if (n > 0) qsort(e, (size_t)n, sizeof *e, number_pair_order);
+  if (n > 0) qsort(e, n, sizeof *e, number_pair_order);
   for (int i = 0, last; i < n; i = last) {
     for (last = i + 1; last < n && number_pair_order(e + i, e + last) == 0;)
       ++last;
@@ -377,7 +377,7 @@ static status mark_inner(const mesh *m, const space_recovery *of,
   if (n == 0) return OK;
   OWNED_NEW(inner, e, n);
   inner_edges(m, of, at, e);
-  qsort(e, (size_t)n, sizeof *e, number_pair_order);
+  qsort(e, n, sizeof *e, number_pair_order);
   for (int i = 0, last; i < n; i = last) {
     joint j = {.n = 0};
     double whole = 0.0;

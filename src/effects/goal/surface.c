@@ -59,7 +59,7 @@ static double face_slope(const run *r, int face, const int *q, double *g) {
   const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
   double shape[12], normal[3] = {0.0}, along = 0.0;
   const double measure = mesh_face_normal(m, face, normal);
-  memset(g, 0, 3 * sizeof *g);
+  CLEAR(g, 3);
   mesh_elem_gradients(m, e, shape);
   for (int i = 0; i < dim; ++i) {
     if (!(r->problem.gap[q[i]] < m->size)) return 0.0;
@@ -315,7 +315,7 @@ status goal_surface_new(const run *r, const goal_border *border,
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   if (s->n_edge > 0)
-    qsort(s->edge, (size_t)s->n_edge, sizeof *s->edge, number_pair_order);
+    qsort(s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
   mark_border(r, where, seen, s);
   PASS(mark_front(m, s));
   unite_edges(s);
@@ -332,7 +332,7 @@ static double traction_of(const run *r, int q, int along, double *v) {
   const contact_surface *s = r->surface;
   const int dim = s->dim, first = along ? 1 : 0, last = along ? dim : 1;
   double size = 0.0;
-  memset(v, 0, 3 * sizeof *v);
+  CLEAR(v, 3);
   for (int a = first; a < last; ++a) {
     const double part = r->now.rc[dim * q + a] / s->area[q];
     for (int c = 0; c < dim; ++c)
@@ -395,9 +395,4 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
     }
   }
   return OK;
-}
-
-void goal_surface_free(goal_surface *s) {
-  RELEASE(s->edge, s->ends, s->front, s->bent, s->given);
-  *s = (goal_surface){0};
 }

@@ -47,7 +47,7 @@ static double coefficient_of(const reduction *n, const state *s, int i) {
 }
 
 status reduction_new(const model *m, const mesh *msh, reduction **out) {
-  const size_t strains = (size_t)m->ns * (size_t)msh->n_elem;
+  const size_t strains = (size_t)m->ns * msh->n_elem;
   MAKES(reduction, n, out);
   n->m = m;
   n->msh = msh;
@@ -77,7 +77,7 @@ static double stress_scale(const reduction *n, const state *s) {
   for (int i = 0; c != NULL && i < c->n; ++i)
     if (c->area[i] > 0.0)
       most = fmax(most, -s->contacts.rc[c->dim * i] / c->area[i]);
-  size_t size = (size_t)n->m->ns * (size_t)n->msh->n_elem;
+  size_t size = (size_t)n->m->ns * n->msh->n_elem;
   if (most > 0.0) return most;
   for (size_t i = 0; i < size; ++i) most = fmax(most, fabs(n->sigma[i]));
   return most;
@@ -89,7 +89,7 @@ static double energy_of(const reduction *n, int elem_id, const double *e,
   double held[6], sum = 0.0;
   int ns = n->m->ns;
   const double *E =
-      n->moduli.E + (size_t)(ns * ns) * (size_t)n->m->elem_section[elem_id];
+      n->moduli.E + (size_t)(ns * ns) * n->m->elem_section[elem_id];
   *stress = 0.0;
   for (int i = 0; i < ns; ++i) {
     held[i] = 0.0;
@@ -108,7 +108,7 @@ status reduction_stress(reduction *n, const state *s) {
     PASS(load_temperature(m, n->msh, &m->steps[s->step_no - 1], s->t, n->T0,
                           n->T));
   for (int e = 0; e < n->msh->n_elem; ++e) {
-    double *own = n->strain + (size_t)(ns * e);
+    double *own = n->strain + ns * e;
     for (int i = 0; i < ns; ++i) own[i] = 0.0;
     if (warm && reduction_material(n, e)->expand.given)
       expansion_strain(&reduction_material(n, e)->expand, n->T[e], n->T0[e],
@@ -168,10 +168,10 @@ static void measure_relaxed(reduction *n, const omitted *row, double dt,
   *stress = 0.0;
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double ended[6], own;
-    double *before = n->flow.strain_rate + (size_t)(ns * e);
-    double *lag = n->flow.strain + (size_t)(ns * e);
+    double *before = n->flow.strain_rate + ns * e;
+    double *lag = n->flow.strain + ns * e;
     if (!is_about(n, row, e)) continue;
-    tensor_product(ns, mat->relaxed, n->sigma + (size_t)(ns * e), ended);
+    tensor_product(ns, mat->relaxed, n->sigma + ns * e, ended);
     for (int i = 0; i < ns; ++i) {
       lag[i] = left * (lag[i] - (ended[i] - before[i]));
       before[i] = ended[i];
@@ -199,7 +199,7 @@ static status add_rates(reduction *n, const state *s, const omitted *row,
       section_id = n->m->elem_section[e];
       PASS(law_sample_at(mat, &law, n->moduli.kin[section_id], s->t, &x));
     }
-    x.p.sigma = n->sigma + (size_t)n->m->ns * (size_t)e;
+    x.p.sigma = n->sigma + (size_t)n->m->ns * e;
     law_rate(&x.p, ei_rate, alpha_rate);
     sum += element_weight(&n->d, e) * energy_of(n, e, ei_rate, &stress);
     n->flow.stress[e] += dt * fmax(stress, n->flow.rate[e]);
@@ -364,7 +364,7 @@ static status solve_again(reduction *n, const state *s, int k, double bound,
                           omitted *row) {
   OWNED double *rc = NULL;
   int solved = 0;
-  const size_t dofs = (size_t)(n->msh->dim * n->msh->n_node);
+  const size_t dofs = n->msh->dim * n->msh->n_node;
   grow_scales(n, s);
   if (row->bit == EFFECT_BIT_NONLOCAL || bound == 0.0) return OK;
   if (!s->end_of_step && bound <= 2.0 * n->seen[k]) return OK;

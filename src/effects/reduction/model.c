@@ -119,7 +119,7 @@ void reduction_leave_out(model *m) {
   for (int i = 0; i < m->reduction.n; ++i)
     if (m->reduction.row[i].bit == EFFECT_BIT_THERMAL &&
         !m->reduction.row[i].back)
-      m->effects &= ~(unsigned)EFFECT_THERMAL;
+      m->effects &= ~EFFECT_THERMAL;
 }
 
 void reduction_restore(model *m) {

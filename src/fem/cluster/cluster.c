@@ -21,7 +21,7 @@ typedef struct growth {
 } growth;
 
 static const int *corners(const growth *g, int e) {
-  return g->m->elem + (size_t)(g->m->dim + 1) * (size_t)e;
+  return g->m->elem + (size_t)(g->m->dim + 1) * e;
 }
 
 static int has_node(const growth *g, int e, int node) {
@@ -45,8 +45,8 @@ static int behind(const growth *g, int e, int a) {
 }
 
 static void mark_outside(growth *g) {
-  memset(g->outside, 0, (size_t)g->m->n_node);
-  memset(g->taken, 0, (size_t)g->m->n_node);
+  memset(g->outside, 0, g->m->n_node);
+  memset(g->taken, 0, g->m->n_node);
   for (int e = 0; e < g->m->n_elem; ++e) {
     if (g->section_id[e] != g->section) continue;
     for (int a = 0; a <= g->m->dim; ++a)
@@ -141,7 +141,7 @@ static status list_nodes(const mesh *m, cluster_set *c) {
   for (int k = 0; k < c->n; ++k) {
     for (int q = c->start[k]; q < c->start[k + 1]; ++q)
       for (int a = 0; a < per; ++a) {
-        const int i = m->elem[(size_t)per * (size_t)c->elem[q] + (size_t)a];
+        const int i = m->elem[(size_t)per * c->elem[q] + a];
         if (seen[i] == k + 1) continue;
         seen[i] = k + 1;
         c->node[n++] = i;
@@ -153,7 +153,7 @@ static status list_nodes(const mesh *m, cluster_set *c) {
 
 /* Volume of an element but for a factor common to its section. */
 static double volume(const cluster_input *in, int e) {
-  const int *v = in->mesh->elem + (size_t)(in->mesh->dim + 1) * (size_t)e;
+  const int *v = in->mesh->elem + (size_t)(in->mesh->dim + 1) * e;
   const double *x = in->mesh->x;
   double size = mesh_elem_measure(in->mesh, e);
   if (in->axisymmetric) size *= x[2 * v[0]] + x[2 * v[1]] + x[2 * v[2]];
@@ -214,7 +214,7 @@ double cluster_share(int ns, const double *E, int flows) {
 }
 
 void cluster_begin(cluster_set *c, cluster_field f) {
-  if (c != NULL) memset(c->mean[f], 0, (size_t)c->n * sizeof *c->mean[f]);
+  if (c != NULL) CLEAR(c->mean[f], c->n);
 }
 
 void cluster_add(cluster_set *c, cluster_field f, int elem_id,

@@ -24,7 +24,7 @@ static const SuiteSparse_long *rows_of(const supernodal *s, int q) {
 }
 
 size_t supernodal_entries(const supernodal *s, int supernode) {
-  return (size_t)n_row(s, supernode) * (size_t)n_column(s, supernode);
+  return (size_t)n_row(s, supernode) * n_column(s, supernode);
 }
 
 /* Supernodes of the columns and those they update first. */
@@ -60,7 +60,7 @@ status supernodal_new(const cholmod_factor *L, supernodal **out) {
 status supernodal_restrict(const supernodal *s, const int *number,
                            supernodal **out) {
   supernodal *r = NULL;
-  const size_t count = (size_t)s->count, rows = (size_t)s->start[count];
+  const size_t count = s->count, rows = s->start[count];
   SuiteSparse_long n_rows = 0, *first = NULL;
   PASS_NEW(r, 1);
   *r = *s;
@@ -122,11 +122,11 @@ static void take_parts(cholmod_factor *L, const split *p,
   for (SuiteSparse_long q = 0; q < p->count; ++q) {
     const SuiteSparse_long own = p->first[q + 1] - p->first[q];
     const SuiteSparse_long end = p->start[q + 1];
-    const size_t below = (size_t)(end - p->start[q] - own);
+    const size_t below = end - p->start[q] - own;
     if (below > L->maxesize) L->maxesize = below;
     for (SuiteSparse_long i = p->start[q] + own, to; i < end; i = to) {
       for (to = i; to < end && of[p->row[to]] == of[p->row[i]];) ++to;
-      const size_t size = (size_t)(end - i) * (size_t)(to - i);
+      const size_t size = (end - i) * (to - i);
       if (size > L->maxcsize) L->maxcsize = size;
     }
   }
@@ -134,17 +134,17 @@ static void take_parts(cholmod_factor *L, const split *p,
   L->pi = p->start;
   L->px = p->at;
   L->s = p->row;
-  L->nsuper = (size_t)p->count;
-  L->ssize = (size_t)p->n_row;
-  L->xsize = (size_t)p->n_entry;
+  L->nsuper = p->count;
+  L->ssize = p->n_row;
+  L->xsize = p->n_entry;
 }
 
 static void free_parts(const split *p, cholmod_common *cm) {
-  const size_t n = (size_t)p->count + 1, size = sizeof *p->row;
+  const size_t n = p->count + 1, size = sizeof *p->row;
   cholmod_l_free(n, size, p->first, cm);
   cholmod_l_free(n, size, p->start, cm);
   cholmod_l_free(n, size, p->at, cm);
-  cholmod_l_free((size_t)p->n_row, size, p->row, cm);
+  cholmod_l_free(p->n_row, size, p->row, cm);
 }
 
 int supernodal_split(cholmod_factor *L, int most, cholmod_common *cm) {
@@ -159,7 +159,7 @@ int supernodal_split(cholmod_factor *L, int most, cholmod_common *cm) {
   p.first = cholmod_l_malloc((size_t)p.count + 1, size, cm);
   p.start = cholmod_l_malloc((size_t)p.count + 1, size, cm);
   p.at = cholmod_l_malloc((size_t)p.count + 1, size, cm);
-  p.row = cholmod_l_malloc((size_t)p.n_row, size, cm);
+  p.row = cholmod_l_malloc(p.n_row, size, cm);
   const int fits = cm->status == CHOLMOD_OK;
   if (fits) {
     p.count = p.n_row = p.n_entry = 0;
@@ -195,14 +195,14 @@ static void add_columns(int n, int k, const double *restrict a, size_t lead,
                         double *restrict y) {
   int c = 0;
   for (; c + 4 <= k; c += 4) {
-    const double *a0 = a + lead * (size_t)c, *a1 = a0 + lead, *a2 = a1 + lead,
+    const double *a0 = a + lead * c, *a1 = a0 + lead, *a2 = a1 + lead,
                  *a3 = a2 + lead;
     const double f0 = a0[0], f1 = a1[0], f2 = a2[0], f3 = a3[0];
     for (int i = 0; i < n; ++i)
       y[i] += a0[i] * f0 + a1[i] * f1 + a2[i] * f2 + a3[i] * f3;
   }
   for (; c < k; ++c) {
-    const double *a0 = a + lead * (size_t)c, f0 = a0[0];
+    const double *a0 = a + lead * c, f0 = a0[0];
     for (int i = 0; i < n; ++i) y[i] += a0[i] * f0;
   }
 }
@@ -210,11 +210,11 @@ static void add_columns(int n, int k, const double *restrict a, size_t lead,
 /* out[rows*columns], lower part: a a' of the first "columns" of a[rows*k]. */
 static void multiply(int rows, int columns, int k, const double *a, int lead,
                      double *out) {
-  const size_t ld = (size_t)rows;
+  const size_t ld = rows;
   if ((double)rows * columns * k <= FEW_PRODUCTS) {
-    memset(out, 0, ld * (size_t)columns * sizeof *out);
+    CLEAR(out, ld * columns);
     for (int j = 0; j < columns; ++j)
-      add_columns(rows - j, k, a + j, (size_t)lead, out + (ld + 1) * (size_t)j);
+      add_columns(rows - j, k, a + j, lead, out + (ld + 1) * j);
     return;
   }
   cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, columns, k, 1.0, a, lead,
@@ -238,13 +238,13 @@ static void subtract(supernodal *s, int q, int d, int inside,
                      double *const *x) {
   const int from = s->done[d], rows = n_row(s, d) - from;
   const SuiteSparse_long *row = rows_of(s, d) + from;
-  const size_t lead = (size_t)n_row(s, q);
+  const size_t lead = n_row(s, q);
   int *relative = s->relative;
   multiply(rows, inside, n_column(s, d), x[d] + from, n_row(s, d), s->product);
   for (int i = 0; i < rows; ++i) relative[i] = s->place[row[i]];
   for (int j = 0; j < inside; ++j) {
-    double *to = x[q] + lead * (size_t)relative[j];
-    const double *product = s->product + (size_t)rows * (size_t)j;
+    double *to = x[q] + lead * relative[j];
+    const double *product = s->product + (size_t)rows * j;
     for (int i = j; i < rows; ++i) to[relative[i]] -= product[i];
   }
 }
@@ -260,12 +260,12 @@ static void pass_on(supernodal *s, int d) {
 /* Cholesky factor of the diagonal block and the rows below it; the first column
  * without a positive pivot, or -1. */
 static int eliminate_few(int rows, int columns, double *x) {
-  const size_t lead = (size_t)rows;
+  const size_t lead = rows;
   for (int j = 0; j < columns; ++j) {
-    double *own = x + (lead + 1) * (size_t)j;
+    double *own = x + (lead + 1) * j;
     const int n = rows - j;
     for (int c = 0; c < j; ++c) {
-      const double *a = x + lead * (size_t)c + j, f = a[0];
+      const double *a = x + lead * c + j, f = a[0];
       for (int i = 0; i < n; ++i) own[i] -= a[i] * f;
     }
     if (!(own[0] > 0.0)) return j;
@@ -301,7 +301,7 @@ static void use_up(supernodal *s, int q, int renew, double *const *x) {
 static void begin(supernodal *s, int q, supernodal_fill *fill, void *ctx,
                   double *x) {
   const SuiteSparse_long *row = rows_of(s, q);
-  memset(x, 0, supernodal_entries(s, q) * sizeof *x);
+  CLEAR(x, supernodal_entries(s, q));
   for (int i = 0; i < n_row(s, q); ++i) s->place[row[i]] = i;
   fill(ctx, q, s->place, x);
 }
@@ -327,9 +327,9 @@ int supernodal_factor(supernodal *s, const unsigned char *mark,
 /* own[columns] = inv of the diagonal block, below[rows] the rest times it. */
 static void forward_few(int rows, int columns, const double *x, double *own,
                         double *restrict below) {
-  memset(below, 0, (size_t)rows * sizeof *below);
+  CLEAR(below, rows);
   for (int c = 0; c < columns; ++c) {
-    const double *restrict a = x + (size_t)(rows + columns) * (size_t)c;
+    const double *restrict a = x + (size_t)(rows + columns) * c;
     const double f = own[c] /= a[c];
     for (int r = c + 1; r < columns; ++r) own[r] -= a[r] * f;
     for (int r = 0; r < rows; ++r) below[r] += a[columns + r] * f;
@@ -362,7 +362,7 @@ void supernodal_forward(const supernodal *s, double *const *x,
 static void back_few(int rows, int columns, const double *x, double *own,
                      const double *below) {
   for (int c = columns - 1; c >= 0; --c) {
-    const double *a = x + (size_t)(rows + columns) * (size_t)c;
+    const double *a = x + (size_t)(rows + columns) * c;
     double sum[4] = {own[c]};
     int r = 0;
     for (int k = c + 1; k < columns; ++k) sum[0] -= a[k] * own[k];

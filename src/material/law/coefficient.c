@@ -31,9 +31,8 @@ const char *law_line_text(const option *table, char *text, size_t size) {
   size_t used = 0;
   const int n = needed(table);
   for (int i = 0; table[i].name != NULL && used < size; ++i)
-    used +=
-        (size_t)snprintf(text + used, size - used, i < n ? "%s%s" : " [%s%s]",
-                         i == 0 ? "" : ", ", table[i].name);
+    used += snprintf(text + used, size - used, i < n ? "%s%s" : " [%s%s]",
+                     i == 0 ? "" : ", ", table[i].name);
   if (used < size) snprintf(text + used, size - used, " [, temperature]");
   return text;
 }
@@ -267,7 +266,7 @@ static const char *find_values(const law_card *law, double t,
   const int n = law_n_value(law);
   double weight;
   const quantity *low =
-      law->value + (size_t)n * (size_t)find_set(law, temperature, &weight);
+      law->value + (size_t)n * find_set(law, temperature, &weight);
   for (int i = 0; i < n; ++i) {
     int term;
     const option *row = row_of(law, i, &term);

@@ -175,7 +175,7 @@ int law_n_alpha(const law_card *law, int ns) {
 }
 
 static void clear(double *x, int n) {
-  if (n > 0) memset(x, 0, (size_t)n * sizeof *x);
+  if (n > 0) CLEAR(x, n);
 }
 
 static void multiply(double *x, int n, double factor) {

@@ -89,8 +89,7 @@ static void add_column_shares(const law_point *p, const double *A, int na,
   const int ns = p->elastic->ns;
   for (int j = 0; j < columns; ++j)
     for (int k = 0; k < p->law->n_term; ++k)
-      add_share(ns, &terms_of(p)[k], A + (size_t)na * (size_t)j + ns * k,
-                ei + ns * j);
+      add_share(ns, &terms_of(p)[k], A + (size_t)na * j + ns * k, ei + ns * j);
 }
 
 static void jacobian(const law_point *p, law_jacobian *j) {

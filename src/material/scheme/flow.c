@@ -30,7 +30,7 @@ status flow_new_points(flow *x, int n, const int *kind_id) {
   for (int k = 0; k < n; ++k) {
     int n_alpha = x->kind[kind_id[k]].n_alpha;
     x->kind_id[k] = kind_id[k];
-    x->alpha_at[k + 1] = x->alpha_at[k] + (size_t)n_alpha;
+    x->alpha_at[k + 1] = x->alpha_at[k] + n_alpha;
     if (n_alpha > x->most_alpha) x->most_alpha = n_alpha;
   }
   return OK;
@@ -48,7 +48,7 @@ void flow_free(flow *x) {
   memset(x, 0, sizeof *x);
 }
 
-static size_t components(const flow *x) { return (size_t)x->ns * (size_t)x->n; }
+static size_t components(const flow *x) { return (size_t)x->ns * x->n; }
 
 status flow_state_new(const flow *x, flow_state *s) {
   PASS_NEW_ALL(OF(s->e, components(x)), OF(s->ei, components(x)),
@@ -103,7 +103,7 @@ status flow_at_point(flow_kind *kind, double t, double temperature,
 /* Point k of a state into p. */
 static void take_state(const flow *x, int k, const flow_state *s,
                        law_point *p) {
-  size_t at = (size_t)x->ns * (size_t)k;
+  size_t at = (size_t)x->ns * k;
   p->sigma = s->sigma + at;
   p->ei = s->ei + at;
   p->alpha = s->alpha + x->alpha_at[k];
@@ -131,14 +131,13 @@ status flow_rates(const flow *x, const flow_state *s, double dt,
                   double *ei_rate, double *alpha_rate, double *power) {
   double value[FLOW_VALUE_MAX];
   *power = 0.0;
-  memset(ei_rate, 0, components(x) * sizeof *ei_rate);
-  memset(alpha_rate, 0, x->alpha_at[x->n] * sizeof *alpha_rate);
+  CLEAR(ei_rate, components(x));
+  CLEAR(alpha_rate, x->alpha_at[x->n]);
   for (int k = 0; k < x->n; ++k) {
     law_point p;
     PASS(flow_point(x, k, s, dt, value, &p));
     if (!flow_goes_on(x, &p)) continue;
-    law_rate(&p, ei_rate + (size_t)x->ns * (size_t)k,
-             alpha_rate + x->alpha_at[k]);
+    law_rate(&p, ei_rate + (size_t)x->ns * k, alpha_rate + x->alpha_at[k]);
     *power += x->weight[k] * law_dissipation(&p);
   }
   return OK;
@@ -150,7 +149,7 @@ status flow_turning(const flow *x, const flow_state *old, const flow_state *now,
   const double dt = now->t - old->t;
   OWNED_NEW(double, alpha_rate, x->alpha_at[x->n]);
   for (int k = 0; k < x->n; ++k) {
-    const size_t at = (size_t)x->ns * (size_t)k;
+    const size_t at = (size_t)x->ns * k;
     law_point from, to;
     if (x->kind[x->kind_id[k]].law->ops->flows == NULL) continue;
     PASS(flow_point(x, k, old, dt, value[0], &from));
@@ -159,7 +158,7 @@ status flow_turning(const flow *x, const flow_state *old, const flow_state *now,
     if (law_flows(&to) == flowed) continue;
     if (flowed) PASS(flow_point(x, k, old, dt, value[0], &from));
     law_rate(flowed ? &from : &to, d + at, alpha_rate + x->alpha_at[k]);
-    for (size_t i = at; i < at + (size_t)x->ns; ++i)
+    for (size_t i = at; i < at + x->ns; ++i)
       d[i] = 0.5 * dt * d[i] - now->ei[i] + old->ei[i];
   }
   return OK;
@@ -205,7 +204,7 @@ double flow_root(const flow *x, double sum) {
 double flow_norm(const flow *x, const double *v) {
   double sum = 0.0;
   for (int k = 0; k < x->n; ++k) {
-    const double *own = v + (size_t)x->ns * (size_t)k;
+    const double *own = v + (size_t)x->ns * k;
     sum += x->weight[k] * voigt_strain_square(x->ns, own);
   }
   return flow_root(x, sum);
@@ -215,10 +214,9 @@ status flow_add_elastic(const flow *x, const flow_state *s, int from, int to,
                         double *sum) {
   for (int k = from; k < to; ++k) {
     flow_kind *kind = &x->kind[x->kind_id[k]];
-    const size_t at = (size_t)x->ns * (size_t)k;
+    const size_t at = (size_t)x->ns * k;
     double e[6] = {0};
-    for (int i = 0; i < x->ns; ++i)
-      e[i] = s->e[at + (size_t)i] - s->ei[at + (size_t)i];
+    for (int i = 0; i < x->ns; ++i) e[i] = s->e[at + i] - s->ei[at + i];
     if (kind->elastic.plane_stress) { /* zz: from the stress alone */
       PASS(flow_heat(kind, s->temperature[k]));
       voigt_product(x->ns, kind->elastic.S, s->sigma + at, e);

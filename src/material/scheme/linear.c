@@ -92,9 +92,9 @@ static status theta_map(const flow_kind *k, const scheme_step *p,
     X[n * (n + ns) + i] = in * G[i];
   }
   PASS(solve(n, columns, M, X));
-  memcpy(m->P, X, (size_t)(n * n) * sizeof *X);
-  memcpy(m->Q0, X + n * n, (size_t)(n * ns) * sizeof *X);
-  memcpy(m->Q1, X + n * (n + ns), (size_t)(n * ns) * sizeof *X);
+  COPY(m->P, X, n * n);
+  COPY(m->Q0, X + n * n, n * ns);
+  COPY(m->Q1, X + n * (n + ns), n * ns);
   return OK;
 }
 
@@ -104,7 +104,7 @@ static status exponential_less_one(int n, const double *A, double *X) {
   enum { TERMS = 12 };
   OWNED double *power = NULL, *next = NULL;
   double largest = 0.0;
-  size_t square = (size_t)n * (size_t)n;
+  size_t square = (size_t)n * n;
   int halvings = 0;
   PASS_NEW_ALL(OF(power, square), OF(next, square));
   for (int i = 0; i < n; ++i) {
@@ -116,14 +116,14 @@ static status exponential_less_one(int n, const double *A, double *X) {
   if (halvings < 0) halvings = 0;
   for (size_t i = 0; i < square; ++i) X[i] = power[i] = ldexp(A[i], -halvings);
   for (int k = 2; k <= TERMS; ++k) {
-    memset(next, 0, square * sizeof *next);
+    CLEAR(next, square);
     multiply(n, n, n, ldexp(1.0 / k, -halvings), A, power, next);
     for (size_t i = 0; i < square; ++i) X[i] += power[i] = next[i];
   }
   for (; halvings > 0; --halvings) {
     for (size_t i = 0; i < square; ++i) next[i] = 2.0 * X[i];
     multiply(n, n, n, 1.0, X, X, next);
-    memcpy(X, next, square * sizeof *X);
+    COPY(X, next, square);
   }
   return OK;
 }
@@ -156,7 +156,7 @@ static void remains(const law_elastic *el, const linear_map *m, double *D) {
   double top[36];
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + m->n * j];
-  memcpy(D, el->E, (size_t)(ns * ns) * sizeof *D);
+  COPY(D, el->E, ns * ns);
   multiply(ns, ns, ns, -1.0, el->E, top, D);
 }
 
@@ -231,8 +231,8 @@ static void relaxed_shares(const scheme_step *p, int exact, double rate,
 
 /* All zero, but 1 in the first n_kept of the diagonal of P. */
 static void clear_map(int ns, int n_kept, linear_map *m) {
-  const size_t n = (size_t)m->n, bytes = n * (size_t)ns * sizeof *m->Q0;
-  memset(m->P, 0, n * n * sizeof *m->P);
+  const size_t n = m->n, bytes = n * ns * sizeof *m->Q0;
+  CLEAR(m->P, n * n);
   memset(m->Q0, 0, bytes);
   memset(m->Q1, 0, bytes);
   for (int i = 0; i < n_kept; ++i) m->P[i + m->n * i] = 1.0;
@@ -322,7 +322,7 @@ static void eliminate_old(const law_elastic *el, linear_map *m) {
   }
   add_outer(n, ns, column, of_ei, of_ei[ZZ], m->P);
   add_outer(n, ns, column, of_e, of_ei[ZZ], m->Q0);
-  memset(column, 0, (size_t)n * sizeof *column);
+  CLEAR(column, n);
 }
 
 /* row[columns] = c A for the rows of e^i of A[n*columns]. */
@@ -348,7 +348,7 @@ static void eliminate_new(const law_elastic *el, const double *D, linear_map *m,
   stress_row(el, m->Q0, n, ns, row);
   add_outer(n, ns, column, row, pivot, m->Q0);
   add_outer(n, ns, column, of_e, pivot, m->Q1);
-  memset(column, 0, (size_t)n * sizeof *column);
+  CLEAR(column, n);
 }
 
 /* D of the other components. */
@@ -561,7 +561,7 @@ status series_map(const flow_kind *k, const scheme_step *p, int exact,
   int of = LAW_NO_PART, whole = 0;
   for (int part = 0; (of = units_of(&point, part, p->dt, &s)) != LAW_NO_PART;
        ++part) {
-    memset(s.u0, 0, (size_t)(s.n * (s.n + 2)) * sizeof *s.u0);
+    CLEAR(s.u0, s.n * (s.n + 2));
     if (exact)
       PASS(by_exponential(&s));
     else

@@ -23,10 +23,10 @@ status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
   const int ns = k->elastic.ns, n = ns + k->n_alpha, series = is_series(k);
   const int general = !series && k->law->ops->relaxing == NULL;
   m->n = n;
-  PASS(need(&m->P, (size_t)(n * n)));
-  PASS(need(&m->Q0, (size_t)(n * ns)));
-  PASS(need(&m->Q1, (size_t)(n * ns)));
-  PASS(need(&m->Q, (size_t)(n * ns)));
+  PASS(need(&m->P, n * n));
+  PASS(need(&m->Q0, n * ns));
+  PASS(need(&m->Q1, n * ns));
+  PASS(need(&m->Q, n * ns));
   if (series)
     PASS(series_map(k, p, exact, m, D));
   else if (!general)
@@ -35,13 +35,13 @@ status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
     PASS(general_map(k, p, exact, m, D));
   if (!general && k->elastic.plane_stress)
     PASS(plane_stress_map(&k->elastic, m, D));
-  sum_scaled((size_t)(n * ns), m->Q0, 1.0, m->Q1, m->Q);
+  sum_scaled(n * ns, m->Q0, 1.0, m->Q1, m->Q);
   return OK;
 }
 
 static status linear_maps(const flow *x, const scheme_step *p, int exact,
                           scheme_work *w) {
-  size_t square = (size_t)(x->ns * x->ns);
+  size_t square = x->ns * x->ns;
   const linear_key key = {p->dt, p->theta, exact};
   if (w->made.dt == key.dt && w->made.theta == key.theta &&
       w->made.exact == exact)
@@ -49,10 +49,10 @@ static status linear_maps(const flow *x, const scheme_step *p, int exact,
   w->made.dt = 0.0;
   if (w->map == NULL) PASS_NEW(w->map, x->n_kind);
   w->n_kind = x->n_kind;
-  PASS(need(&w->D_kind, square * (size_t)x->n_kind));
+  PASS(need(&w->D_kind, square * x->n_kind));
   for (int i = 0; i < x->n_kind; ++i)
     PASS(linear_map_make(&x->kind[i], p, exact, &w->map[i],
-                         w->D_kind + square * (size_t)i));
+                         w->D_kind + square * i));
   w->made = key;
   return OK;
 }
@@ -72,12 +72,12 @@ static void add_product(int n, int m, const double *restrict A,
 /* y[n] = P (e^i, alpha) of point k; without alpha in its own tensors. */
 static inline void map_state(int ns, const flow *x, const linear_map *m, int k,
                              const flow_state *s, double *y) {
-  const double *ei = s->ei + (size_t)ns * (size_t)k;
+  const double *ei = s->ei + (size_t)ns * k;
   if (m->n == ns) {
     voigt_product(ns, m->P, ei, y);
     return;
   }
-  memset(y, 0, (size_t)m->n * sizeof *y);
+  CLEAR(y, m->n);
   add_product(m->n, ns, m->P, ei, y);
   add_product(m->n, m->n - ns, m->P + m->n * ns, s->alpha + x->alpha_at[k], y);
 }
@@ -94,17 +94,17 @@ static inline void map_strain(int ns, const linear_map *m, const double *Q,
 void linear_at(const flow *x, const linear_map *m, int k, const flow_state *old,
                const double *e, double *y) {
   map_state(x->ns, x, m, k, old, y);
-  map_strain(x->ns, m, m->Q0, old->e + (size_t)x->ns * (size_t)k, y);
+  map_strain(x->ns, m, m->Q0, old->e + (size_t)x->ns * k, y);
   map_strain(x->ns, m, m->Q1, e, y);
 }
 
 /* Point k of a state: e^i, alpha and the stress at the strain e[ns]. */
 static inline void put_point(int ns, const flow *x, const linear_map *m, int k,
                              const double *y, const double *e, flow_state *s) {
-  const size_t at = (size_t)ns * (size_t)k;
+  const size_t at = (size_t)ns * k;
   double elastic[6], *alpha = s->alpha + x->alpha_at[k];
   for (int i = 0; i < ns; ++i) elastic[i] = e[i] - y[i];
-  for (int i = 0; i < ns; ++i) s->ei[at + (size_t)i] = y[i];
+  for (int i = 0; i < ns; ++i) s->ei[at + i] = y[i];
   for (int i = ns; i < m->n; ++i) alpha[i - ns] = y[i];
   voigt_product(ns, x->kind[x->kind_id[k]].elastic.E, elastic, s->sigma + at);
 }
@@ -119,7 +119,7 @@ static status map_between(const scheme_call *a, int kind, linear_map *m,
   part.dt = mid->t - a->old->t;
   PASS(linear_map_make(&x->kind[kind], &part, 1, m, D));
   for (int k = 0; k < x->n; ++k) {
-    const size_t at = (size_t)x->ns * (size_t)k;
+    const size_t at = (size_t)x->ns * k;
     double y[FLOW_VALUE_MAX];
     if (x->kind_id[k] != kind) continue;
     mean(x->ns, part.dt / whole, a->old->e + at, a->now->e + at, mid->e + at);
@@ -143,7 +143,7 @@ static inline void predict(int ns, const scheme_call *a, int from, int to) {
   double y[FLOW_VALUE_MAX];
   for (int k = from; k < to; ++k) {
     const linear_map *m = &a->w->map[x->kind_id[k]];
-    const double *e = a->old->e + (size_t)ns * (size_t)k;
+    const double *e = a->old->e + (size_t)ns * k;
     map_state(ns, x, m, k, a->old, y);
     map_strain(ns, m, m->Q, e, y);
     put_point(ns, x, m, k, y, e, a->now);
@@ -162,18 +162,17 @@ static inline void follow(int ns, const scheme_call *a, int k) {
   const flow *x = a->x;
   const int kind = x->kind_id[k];
   const linear_map *m = &a->w->map[kind];
-  const size_t at = (size_t)ns * (size_t)k;
+  const size_t at = (size_t)ns * k;
   double de[6], y[FLOW_VALUE_MAX], *alpha = a->now->alpha + x->alpha_at[k];
-  for (int i = 0; i < ns; ++i)
-    de[i] = a->now->e[at + (size_t)i] - a->old->e[at + (size_t)i];
+  for (int i = 0; i < ns; ++i) de[i] = a->now->e[at + i] - a->old->e[at + i];
   voigt_add(ns, a->w->D_kind + ns * ns * kind, de, a->now->sigma + at);
   if (m->n == ns) {
     voigt_add(ns, m->Q1, de, a->now->ei + at);
     return;
   }
-  memset(y, 0, (size_t)m->n * sizeof *y);
+  CLEAR(y, m->n);
   add_product(m->n, ns, m->Q1, de, y);
-  for (int i = 0; i < ns; ++i) a->now->ei[at + (size_t)i] += y[i];
+  for (int i = 0; i < ns; ++i) a->now->ei[at + i] += y[i];
   for (int i = ns; i < m->n; ++i) alpha[i - ns] += y[i];
 }
 
@@ -183,7 +182,7 @@ static inline double middle_power(int ns, const scheme_call *a, int k,
   const flow *x = a->x;
   const flow_state *old = a->old, *now = a->now;
   const double th = a->p->theta;
-  const size_t at = (size_t)ns * (size_t)k, al = x->alpha_at[k];
+  const size_t at = (size_t)ns * k, al = x->alpha_at[k];
   double sigma[6], ei[6], alpha[FLOW_VALUE_MAX];
   mean(ns, th, old->sigma + at, now->sigma + at, sigma);
   mean(ns, th, old->ei + at, now->ei + at, ei);

@@ -69,11 +69,11 @@ static status point_step_begin(const flow *x, const scheme_step *p, int k,
                                const flow_state *old, const flow_state *now,
                                point_step *l) {
   const double th = p->theta;
-  size_t at = (size_t)x->ns * (size_t)k;
+  size_t at = (size_t)x->ns * k;
   flow_kind *kind = &x->kind[x->kind_id[k]];
   double T = (1 - th) * old->temperature[k] + th * now->temperature[k];
   PASS(flow_heat(kind, now->temperature[k]));
-  memcpy(l->E, kind->elastic.E, (size_t)(x->ns * x->ns) * sizeof *l->E);
+  COPY(l->E, kind->elastic.E, x->ns * x->ns);
   PASS(flow_at_point(kind, old->t + th * p->dt, T, l->value, &l->p));
   l->p.dt = p->dt;
   l->ns = x->ns;
@@ -82,10 +82,10 @@ static status point_step_begin(const flow *x, const scheme_step *p, int k,
   l->p.sigma = l->sigma;
   l->p.ei = l->ei;
   l->p.alpha = l->alpha;
-  memcpy(l->e, now->e + at, (size_t)l->ns * sizeof *l->e);
-  memcpy(l->old, old->ei + at, (size_t)l->ns * sizeof *l->old);
+  COPY(l->e, now->e + at, l->ns);
+  COPY(l->old, old->ei + at, l->ns);
   COPY(l->old + l->ns, old->alpha + x->alpha_at[k], l->na);
-  memcpy(l->y, l->old, (size_t)l->n * sizeof *l->y);
+  COPY(l->y, l->old, l->n);
   return OK;
 }
 
@@ -125,8 +125,8 @@ static void point_matrix(const scheme_step *p, const double *E, point_step *l) {
   const double h = p->theta * p->dt;
   const int ns = l->ns, na = l->na, n = l->n;
   law_jacobian_at(&l->p, &l->j);
-  memset(l->X, 0, (size_t)(n * ns) * sizeof *l->X);
-  memset(l->M, 0, (size_t)(n * n) * sizeof *l->M);
+  CLEAR(l->X, n * ns);
+  CLEAR(l->M, n * n);
   for (int c = 0; c < ns; ++c)
     for (int q = 0; q < ns; ++q) {
       double factor = h * (E != NULL ? E[q + ns * c] : q == c);
@@ -156,7 +156,7 @@ static int point_update(const scheme_step *p, const double *sigma_old,
     double left = point_residual(p, sigma_old, l->trial, l, l->f);
     if (left > *residual && part > 2e-4) continue;
     if (!isfinite(left)) return 0;
-    memcpy(l->y, l->trial, (size_t)l->n * sizeof *l->y);
+    COPY(l->y, l->trial, l->n);
     *residual = left;
     return 1;
   }
@@ -190,11 +190,11 @@ static int point_newton(const scheme_step *p, const double *sigma_old,
     if (residual <= enough && alpha_misfit(l) <= alpha_tol) return 1;
     double before = residual;
     point_matrix(p, l->E, l);
-    memcpy(l->trial, l->f, (size_t)l->n * sizeof *l->f);
+    COPY(l->trial, l->f, l->n);
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, l->n, 1, l->M, l->n, l->pivot, l->trial,
                       l->n) != 0)
       break;
-    memcpy(l->X, l->trial, (size_t)l->n * sizeof *l->X);
+    COPY(l->X, l->trial, l->n);
     if (!point_update(p, sigma_old, l->X, &residual, l)) break;
     /* Rounding: no progress at a negligible level. */
     if (residual >= before && residual <= 1e3 * enough) break;
@@ -273,12 +273,12 @@ static status point_step_tangent(const scheme_step *p, point_step *l,
 static status compliance_at(const flow *x, const scheme_step *p, int k,
                             const flow_state *old, const flow_state *now,
                             point_step *l, double *Q) {
-  const size_t at = (size_t)x->ns * (size_t)k;
+  const size_t at = (size_t)x->ns * k;
   PASS(point_step_begin(x, p, k, old, now, l));
   const int ns = l->ns, n = l->n;
-  memset(Q, 0, (size_t)(ns * ns) * sizeof *Q);
-  memcpy(l->y, now->ei + at, (size_t)ns * sizeof *l->y);
-  memcpy(l->y + ns, now->alpha + x->alpha_at[k], (size_t)l->na * sizeof *l->y);
+  CLEAR(Q, ns * ns);
+  COPY(l->y, now->ei + at, ns);
+  COPY(l->y + ns, now->alpha + x->alpha_at[k], l->na);
   point_step_place(p, old->sigma + at, l->y, l);
   if (!law_flows(&l->p)) return OK;
   point_matrix(p, NULL, l);
@@ -291,8 +291,8 @@ static status compliance_at(const flow *x, const scheme_step *p, int k,
 /* R[n*n] with R R = E, symmetric and positive semidefinite. */
 static int square_root(int n, const double *E, double *R) {
   double V[36], w[6], work[36];
-  memcpy(V, E, (size_t)(n * n) * sizeof *V);
-  memset(R, 0, (size_t)(n * n) * sizeof *R);
+  COPY(V, E, n * n);
+  CLEAR(R, n * n);
   if (LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'U', n, V, n, w, work, 36) != 0)
     return 0;
   for (int q = 0; q < n; ++q)
@@ -319,12 +319,12 @@ static status energy_size(int n, const double *E, const double *Q,
 status flow_compliance(const flow *x, const scheme_step *p,
                        const flow_state *old, const flow_state *now, double *Q,
                        double *largest) {
-  const size_t square = (size_t)(x->ns * x->ns);
+  const size_t square = x->ns * x->ns;
   ENDS_BY(point_step_free) point_step l = {0};
   *largest = 0.0;
   PASS(point_step_new(x, &l));
   for (int k = 0; k < x->n; ++k) {
-    double size = 0.0, *own = Q + square * (size_t)k;
+    double size = 0.0, *own = Q + square * k;
     PASS(compliance_at(x, p, k, old, now, &l, own));
     PASS(energy_size(x->ns, l.E, own, &size));
     *largest = fmax(*largest, size);
@@ -358,7 +358,7 @@ static int has_map(const flow *x, int k) {
 /* Point k by the map: r->l.y and r->D. */
 static status follow_map(const scheme_call *a, int k, point_work *r) {
   const flow *x = a->x;
-  const size_t ns = (size_t)x->ns, n = ns + (size_t)x->most_alpha;
+  const size_t ns = x->ns, n = ns + x->most_alpha;
   point_step *l = &r->l;
   flow_kind now = x->kind[x->kind_id[k]];
   if (now.varies != 0) {
@@ -377,8 +377,8 @@ static status follow_map(const scheme_call *a, int k, point_work *r) {
 /* Point k for now->e: r->l.y, and into D[ns*ns] unless it is NULL. */
 static status follow_point(const scheme_call *a, int k, point_work *r,
                            double *D) {
-  const size_t ns = (size_t)a->x->ns, bytes = ns * ns * sizeof *D;
-  const double *sigma_old = a->old->sigma + ns * (size_t)k;
+  const size_t ns = a->x->ns, bytes = ns * ns * sizeof *D;
+  const double *sigma_old = a->old->sigma + ns * k;
   point_step *l = &r->l;
   PASS(point_step_begin(a->x, a->p, k, a->old, a->now, l));
   const int maps = has_map(a->x, k);
@@ -402,16 +402,16 @@ static status follow_point(const scheme_call *a, int k, point_work *r,
  * unless the iteration is that of initial stresses. */
 static status solve_points(const scheme_call *a, point_work *r) {
   const flow *x = a->x;
-  const size_t ns = (size_t)x->ns;
+  const size_t ns = x->ns;
   point_step *l = &r->l;
   a->out->dissipated = 0.0;
   for (int k = 0; k < x->n; ++k) {
-    const size_t at = ns * (size_t)k;
+    const size_t at = ns * k;
     double elastic[6];
     PASS(follow_point(a, k, r, a->p->initial ? NULL : a->w->D + ns * at));
     if (!a->out->settled) return OK;
     a->out->dissipated += a->p->dt * x->weight[k] * law_dissipation(&l->p);
-    memcpy(a->now->ei + at, l->y, ns * sizeof *l->y);
+    COPY(a->now->ei + at, l->y, ns);
     COPY(a->now->alpha + x->alpha_at[k], l->y + ns, l->na);
     for (size_t i = 0; i < ns; ++i) elastic[i] = l->e[i] - l->y[i];
     tensor_product(x->ns, l->E, elastic, a->now->sigma + at);
@@ -427,17 +427,17 @@ static status linear_stress(const flow *x, const flow_tangent *law,
   const int ns = x->ns;
   double sum = 0.0;
   for (int k = 0; k < x->n; ++k) {
-    const size_t at = (size_t)ns * (size_t)k;
+    const size_t at = (size_t)ns * k;
     flow_kind *kind = &x->kind[x->kind_id[k]];
     PASS(flow_heat(kind, now->temperature[k]));
     const double *E = kind->elastic.E;
-    const double *D = law->elastic ? E : law->D + (size_t)ns * at;
+    const double *D = law->elastic ? E : law->D + ns * at;
     double step[6], change[6], whole[6];
     for (size_t i = 0; i < (size_t)ns; ++i)
       step[i] = now->e[at + i] - law->e[at + i];
     tensor_product(ns, D, step, change);
     tensor_product(ns, E, now->e + at, whole);
-    sum_scaled((size_t)ns, law->sigma + at, 1.0, change, linear + at);
+    sum_scaled(ns, law->sigma + at, 1.0, change, linear + at);
     sum += x->weight[k] * (tensor_dot(ns, whole, whole) +
                            tensor_dot(ns, linear + at, linear + at));
   }
@@ -451,7 +451,7 @@ static double misfit(const flow *x, const flow_state *now, const double *linear,
   double sum = 0.0;
   for (int k = 0; k < x->n; ++k)
     for (size_t i = 0; i < (size_t)x->ns; ++i) {
-      size_t at = (size_t)x->ns * (size_t)k + i;
+      size_t at = (size_t)x->ns * k + i;
       double d = now->sigma[at] - linear[at];
       sum += x->weight[k] * d * d;
     }
@@ -460,11 +460,11 @@ static double misfit(const flow *x, const flow_state *now, const double *linear,
 
 static status need_workspace(const flow *x, const scheme_step *p,
                              scheme_work *w) {
-  size_t n = (size_t)x->ns * (size_t)x->n;
+  size_t n = (size_t)x->ns * x->n;
   PASS(need(&w->sigma_k, n));
   PASS(need(&w->e_k, n));
   PASS(need(&w->linear, n));
-  if (!p->initial) PASS(need(&w->D, n * (size_t)x->ns));
+  if (!p->initial) PASS(need(&w->D, n * x->ns));
   return OK;
 }
 
@@ -482,13 +482,13 @@ status newton_advance(const scheme_call *a) {
   PASS(need_workspace(x, p, w));
   a->now->t = p->t;
   PASS(a->b->begin(a->b->ctx, a->now));
-  COPY(a->now->e, a->old->e, (size_t)x->ns * (size_t)x->n);
+  COPY(a->now->e, a->old->e, (size_t)x->ns * x->n);
   flow_tangent law = {
       .elastic = p->initial, .D = w->D, .sigma = w->sigma_k, .e = w->e_k};
   PASS(solve_points(a, &r));
   while (out->settled && out->iterations < most) {
-    COPY(w->sigma_k, a->now->sigma, (size_t)x->ns * (size_t)x->n);
-    COPY(w->e_k, a->now->e, (size_t)x->ns * (size_t)x->n);
+    COPY(w->sigma_k, a->now->sigma, (size_t)x->ns * x->n);
+    COPY(w->e_k, a->now->e, (size_t)x->ns * x->n);
     PASS(a->b->linear(a->b->ctx, &law, a->now, &out->settled));
     ++out->iterations;
     if (!out->settled) return OK;

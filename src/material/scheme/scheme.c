@@ -23,7 +23,7 @@
  * its equilibrium. */
 static status add_stage(const scheme_call *a, double dt, const double *factor) {
   const scheme_work *w = a->w;
-  size_t n = (size_t)a->x->ns * (size_t)a->x->n, na = a->x->alpha_at[a->x->n];
+  size_t n = (size_t)a->x->ns * a->x->n, na = a->x->alpha_at[a->x->n];
   int settled = 1;
   if (!a->out->settled) return OK;
   sum_scaled(n, a->old->ei, factor[0], w->ei_rate[0], a->now->ei);
@@ -54,7 +54,7 @@ static status rates(const scheme_call *a, const flow_state *s, int i,
     a->out->settled = 0;
     return OK;
   }
-  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
+  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * a->x->n));
   PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
   PASS(flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], &power));
   a->out->dissipated += part * power;
@@ -70,7 +70,7 @@ static status euler_advance(const scheme_call *a) {
 
 static status heun_advance(const scheme_call *a) {
   const double h = a->p->dt;
-  const size_t n = (size_t)a->x->ns * (size_t)a->x->n;
+  const size_t n = (size_t)a->x->ns * a->x->n;
   scheme_work *w = a->w;
   PASS(rates(a, a->old, 0, h / 2));
   PASS(add_stage(a, h, (double[STAGES]){h}));
@@ -112,7 +112,7 @@ static status rk4_advance(const scheme_call *a) {
 static status end_rates(const scheme_call *a, const flow_state *s, int i,
                         double *power) {
   scheme_work *w = a->w;
-  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * (size_t)a->x->n));
+  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * a->x->n));
   PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
   return flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], power);
 }
@@ -132,17 +132,15 @@ static void interpolate(int n, size_t at, double dt, double s,
                         const step_end end[2], double *y) {
   const double *old = end[0].y + at;
   double change[6] = {0}, d[2][6] = {{0}}, in[2];
-  for (int i = 0; i < n; ++i) change[i] = end[1].y[at + (size_t)i] - old[i];
+  for (int i = 0; i < n; ++i) change[i] = end[1].y[at + i] - old[i];
   double most = sqrt(voigt_strain_square(n, change));
   for (int k = 0; k < 2; ++k) {
-    for (int i = 0; i < n; ++i)
-      d[k][i] = dt * end[k].f[at + (size_t)i] - change[i];
+    for (int i = 0; i < n; ++i) d[k][i] = dt * end[k].f[at + i] - change[i];
     in[k] = bounded(sqrt(voigt_strain_square(n, d[k])), most);
   }
   for (int i = 0; i < n; ++i)
-    y[at + (size_t)i] =
-        old[i] + s * change[i] +
-        s * (1 - s) * ((1 - s) * in[0] * d[0][i] - s * in[1] * d[1][i]);
+    y[at + i] = old[i] + s * change[i] +
+                s * (1 - s) * ((1 - s) * in[0] * d[0][i] - s * in[1] * d[1][i]);
 }
 
 /* The part of the step at t. */
@@ -154,7 +152,7 @@ static double part_at(const scheme_call *a, double t) {
 static status hermite_between(const scheme_call *a, flow_state *mid) {
   const flow *x = a->x;
   const scheme_work *w = a->w;
-  const size_t ns = (size_t)x->ns, n = (size_t)x->n;
+  const size_t ns = x->ns, n = x->n;
   const double s = part_at(a, mid->t), dt = a->p->dt;
   double power;
   PASS(end_rates(a, a->old, 0, &power));

@@ -161,7 +161,7 @@ static status pair_sides(opening *o) {
     if (side[i].key != side[i - 1].key) continue;
     side_nodes(o, one, v);
     side_nodes(o, two, w);
-    if (memcmp(v, w, (size_t)dim * sizeof *v) != 0) continue;
+    if (memcmp(v, w, dim * sizeof *v) != 0) continue;
     o->across[one] = two;
     o->across[two] = one;
   }
@@ -173,11 +173,10 @@ static int side_of(const opening *o, int elem, int face_id) {
   const mesh *m = o->m;
   const int first = (m->dim + 1) * o->place[elem];
   int face[3], v[3], s = first - 1;
-  memcpy(face, mesh_face_nodes(m, face_id), (size_t)m->dim * sizeof *face);
+  COPY(face, mesh_face_nodes(m, face_id), m->dim);
   sort_few(m->dim, face);
   do side_nodes(o, ++s, v);
-  while (s < first + m->dim &&
-         memcmp(v, face, (size_t)m->dim * sizeof *v) != 0);
+  while (s < first + m->dim && memcmp(v, face, m->dim * sizeof *v) != 0);
   return s;
 }
 
@@ -425,8 +424,8 @@ static status lips_orient(opening *o) {
 
 static status add_nodes(opening *o) {
   mesh *m = o->m;
-  const size_t dim = (size_t)m->dim, old = (size_t)m->n_node;
-  const size_t n = old + (size_t)o->n_copy;
+  const size_t dim = m->dim, old = m->n_node;
+  const size_t n = old + o->n_copy;
   size_t last = 0;
   for (size_t i = 0; i < old; ++i)
     if (m->node_no[i] > last) last = m->node_no[i];
@@ -436,7 +435,7 @@ static status add_nodes(opening *o) {
   for (size_t i = 0; i < n; ++i) m->origin[i] = (int)i;
   for (size_t i = old; i < n; ++i) {
     int from = o->copy_of[i - old];
-    memcpy(m->x + dim * i, mesh_node_x(m, from), dim * sizeof *m->x);
+    COPY(m->x + dim * i, mesh_node_x(m, from), dim);
     m->node_no[i] = last + 1 + (i - old);
     m->origin[i] = from;
   }
@@ -473,7 +472,7 @@ static void part_lips(opening *o, int i, int *plus, int *minus) {
   const int f = o->face[i], g = m->n_face++;
   const int *v = mesh_face_nodes(m, f);
   int *w = mesh_face_nodes(m, g);
-  memcpy(w, v, (size_t)m->dim * sizeof *w);
+  COPY(w, v, m->dim);
   w[m->dim - 2] = v[m->dim - 1];
   w[m->dim - 1] = v[m->dim - 2];
   m->face_elem[g] = m->face_other[f];
@@ -484,8 +483,8 @@ static void part_lips(opening *o, int i, int *plus, int *minus) {
 
 static status add_faces(opening *o) {
   mesh *m = o->m;
-  const size_t dim = (size_t)m->dim, old = (size_t)m->n_face;
-  const size_t n = old + (size_t)o->n_face;
+  const size_t dim = m->dim, old = m->n_face;
+  const size_t n = old + o->n_face;
   PASS_RESIZE(m->face, dim * old, dim * n);
   PASS_RESIZE(m->face_elem, old, n);
   PASS_RESIZE(m->face_other, old, n);
@@ -565,7 +564,7 @@ static status fill_nodes(const opening *o, mesh_group *g, filling *f) {
     if (!o->on_crack[g->node_id[i]]) add(f, g->node_id[i]);
   for (int i = 0; i < f->n; ++i) f->mark[f->list[i]] = 0;
   PASS_NEW(node, f->n);
-  memcpy(node, f->list, (size_t)f->n * sizeof *node);
+  COPY(node, f->list, f->n);
   memory_free(g->node_id);
   g->node_id = node;
   g->n_node = f->n;
@@ -602,7 +601,7 @@ static status add_lip(opening *o, int crack, char sign, const int *face) {
   name = NULL;
   g->n_item = c->n;
   ++m->n_group;
-  memcpy(g->item_id, face, (size_t)c->n * sizeof *face);
+  COPY(g->item_id, face, c->n);
   return sort_ids(c->n, g->item_id);
 }
 
@@ -612,8 +611,8 @@ static status take_lips(opening *o, int crack) {
   const mesh_crack *c = &o->crack[crack];
   int *item;
   PASS_NEW(item, 2 * c->n);
-  memcpy(item, c->plus, (size_t)c->n * sizeof *item);
-  memcpy(item + c->n, c->minus, (size_t)c->n * sizeof *item);
+  COPY(item, c->plus, c->n);
+  COPY(item + c->n, c->minus, c->n);
   memory_free(g->item_id);
   g->item_id = item;
   g->n_item = 2 * c->n;
@@ -622,7 +621,7 @@ static status take_lips(opening *o, int crack) {
 
 static status groups_open(opening *o) {
   mesh *m = o->m;
-  size_t old = (size_t)m->n_group;
+  size_t old = m->n_group;
   OWNED_NEW(char, mark, m->n_node);
   OWNED_NEW(int, list, m->n_node);
   PASS_RESIZE(m->group, old, old + 2 * (size_t)o->n);

@@ -46,7 +46,7 @@ static status load(const char *path, char **text) {
     PASS(text_failed(path, "read", errno));
   if (size < MOST_BYTES) {
     PASS_NEW(*text, size + 1);
-    (*text)[fread(*text, 1, (size_t)size, in)] = '\0';
+    (*text)[fread(*text, 1, size, in)] = '\0';
     if (ferror(in)) PASS(text_failed(path, "read", errno));
   }
   return OK;
@@ -167,8 +167,7 @@ typedef struct search { /* of what sets a name */
 } search;
 
 static int is_word(const char *p, const char *q, const char *word) {
-  return strlen(word) == (size_t)(q - p) &&
-         strncmp(p, word, (size_t)(q - p)) == 0;
+  return strlen(word) == (size_t)(q - p) && strncmp(p, word, q - p) == 0;
 }
 
 /* The ) of the condition at q, or the end of the text. */

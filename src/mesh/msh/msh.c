@@ -101,7 +101,7 @@ static status new_block(msh *m, int id, int type, int tag, int n_physical,
   raw_block *b = &m->raw->block[id];
   *b = (raw_block){.dim = t->dim, .type = type, .n_per = (size_t)t->n_node};
   PASS_NEW(b->physical, n_physical);
-  memcpy(b->physical, physical, (size_t)n_physical * sizeof *physical);
+  COPY(b->physical, physical, n_physical);
   b->n_physical = n_physical;
   PASS_GET(b->type_name, memory_text(t->name));
   return OK;
@@ -289,7 +289,7 @@ static status read_records(msh *m, size_t n) {
       PASS(read_record_no(s, &no));
       PASS(read_element(m, &h, no));
     }
-    done_so_far += (size_t)follow;
+    done_so_far += follow;
   }
   return OK;
 }
@@ -328,7 +328,7 @@ static status read_groups(msh *m, int dim, msh_entity *e) {
   int tag;
   PASS(scan_size(s, &n));
   PASS(scan_fits(s, n, 2, 4, "groups"));
-  e->first = (size_t)m->n_physical;
+  e->first = m->n_physical;
   for (size_t i = 0; i < n; ++i) {
     PASS(scan_int(s, &tag));
     if (tag == 0 || tag == INT32_MIN)
@@ -567,7 +567,7 @@ static int by_dim_and_tag(const void *p, const void *q) {
 static status finish_groups(msh *m) {
   raw_mesh *raw = m->raw;
   if (raw->n_group > 0)
-    qsort(raw->group, (size_t)raw->n_group, sizeof *raw->group, by_dim_and_tag);
+    qsort(raw->group, raw->n_group, sizeof *raw->group, by_dim_and_tag);
   for (EACH(raw_group, g, raw->group, raw->n_group)) {
     int id = table_find(&m->names, table_key(g->dim, g->tag));
     size_t n = id >= 0 ? m->name[id].length : 0;
@@ -598,7 +598,7 @@ static status finish_blocks(msh *m) {
   for (int i = 0; i < raw->n_block; ++i)
     order[i] =
         (block_order){raw->block[i].dim, m->fill[i].tag, raw->block[i].type, i};
-  qsort(order, (size_t)raw->n_block, sizeof *order, by_entity);
+  qsort(order, raw->n_block, sizeof *order, by_entity);
   for (int i = 0; i < raw->n_block; ++i) sorted[i] = raw->block[order[i].id];
   memory_free(raw->block);
   raw->block = sorted;

@@ -12,7 +12,7 @@ uint64_t table_key(int upper, long lower) {
 /* The slot of the key, or the empty one where it belongs. */
 static size_t slot_of(const key_table *t, uint64_t key) {
   uint64_t spread = key * 0x9E3779B97F4A7C15u;
-  size_t s = (size_t)(spread ^ spread >> 32) & (t->n_slot - 1);
+  size_t s = (spread ^ spread >> 32) & (t->n_slot - 1);
   while (t->id[s] != 0 && t->key[s] != key) s = (s + 1) & (t->n_slot - 1);
   return s;
 }

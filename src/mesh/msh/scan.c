@@ -26,7 +26,7 @@ static status read_all(scan *s, int fd) {
     if (n < 0)
       RAISE(ERR_FILE, "%s: cannot be read: %s", s->path, strerror(errno));
     if (n == 0) RAISE(ERR_FILE, "%s: it became shorter while read", s->path);
-    got += (size_t)n;
+    got += n;
   }
   return OK;
 }
@@ -41,10 +41,10 @@ status scan_open(scan *s, const char *path, status wrong) {
   if (fstat(fd, &about) != 0)
     RAISE(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
   limits_read("", &l);
-  if ((double)about.st_size > l.memory)
+  if (about.st_size > l.memory)
     RAISE(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
           (long long)about.st_size, l.who);
-  s->size = (size_t)about.st_size;
+  s->size = about.st_size;
   return read_all(s, fd);
 }
 
@@ -117,7 +117,7 @@ static status word_whole(scan *s, int64_t least, int64_t most, int64_t *value) {
                least < 0 ? "" : " not below zero");
     return not_expected(s, wanted);
   }
-  s->at += (size_t)(p - start);
+  s->at += p - start;
   *value = v;
   return OK;
 }
@@ -197,9 +197,9 @@ static status word_real(scan *s, double *value) {
   else if (end == NULL || !ends_word(*end))
     return not_expected(s, "a number");
   else if (!convert(&d, value))
-    PASS(convert_word(s, p, (size_t)(end - p), value));
+    PASS(convert_word(s, p, end - p, value));
   if (*start == '-') *value = -*value;
-  s->at += (size_t)(end - start);
+  s->at += end - start;
   return OK;
 }
 
@@ -307,7 +307,7 @@ status scan_skip(scan *s, const char *name) {
   for (size_t at = s->at; at < s->size; ++at) {
     const char *dollar = memchr(s->data + at, '$', s->size - at);
     if (dollar == NULL) break;
-    at = (size_t)(dollar - s->data);
+    at = dollar - s->data;
     if (!is_mark(s, at, "$End", name)) continue;
     s->at = at;
     return scan_end(s, name, "its lines");

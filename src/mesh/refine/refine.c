@@ -45,16 +45,6 @@ typedef struct bisection {
   round_surface *surface;
 } bisection;
 
-static void release(bisection *b) {
-  for (int d = 0; d < 4; ++d) memory_free(b->cells[d].item);
-  table_free(&b->by_no);
-  table_free(&b->parts);
-  table_free(&b->marked);
-  memory_free(b->sizes);
-  memory_free(b->surface);
-  RELEASE(b->x, b->no, b->is_round, b->bent);
-}
-
 /* ---- from the raw mesh --------------------------------------------------- */
 
 /* 1: only what is bisected here, points apart. */
@@ -83,8 +73,7 @@ static status add_cell(cell_list *to, const cell *c) {
 /* ERR_MESH: an element has a node that is not there. */
 static status take_block(bisection *b, int block, const key_table *nodes) {
   const raw_block *p = &b->raw->block[block];
-  b->is_round[block] =
-      p->dim == b->dim - 1 && is_named(b, p) ? (unsigned char)1 : 0;
+  b->is_round[block] = p->dim == b->dim - 1 && is_named(b, p) ? 1 : 0;
   for (size_t i = 0; i < p->n; ++i) {
     cell c = {.block = block, .no = p->no[i]};
     for (size_t k = 0; k < p->n_per; ++k) {
@@ -233,15 +222,15 @@ static status find_surface(bisection *b) {
 
 /* Space for the middles of all marked edges; numbers beyond all others. */
 static status grow(bisection *b) {
-  const size_t n = (size_t)b->n_node, all = n + (size_t)b->marked.n;
+  const size_t n = b->n_node, all = n + b->marked.n;
   OWNED double *x = b->x;
   OWNED size_t *no = b->no;
   size_t last = 0;
   b->x = NULL;
   b->no = NULL;
   PASS_NEW_ALL(OF(b->x, 3 * all), OF(b->no, all));
-  memcpy(b->x, x, 3 * n * sizeof *x);
-  memcpy(b->no, no, n * sizeof *no);
+  COPY(b->x, x, 3 * n);
+  COPY(b->no, no, n);
   for (size_t i = 0; i < n; ++i) last = no[i] > last ? no[i] : last;
   for (size_t i = n; i < all; ++i) b->no[i] = ++last;
   memory_free(b->bent);
@@ -281,8 +270,8 @@ static void halve(const bisection *b, const int *v, const int *end,
   const int first = v[end[0]] < v[end[1]] ? 0 : 1;
   const int mid =
       b->first_mid + table_find(&b->marked, key_of(v[end[0]], v[end[1]]));
-  memcpy(parts, v, 4 * sizeof *v);
-  memcpy(parts + 4, v, 4 * sizeof *v);
+  COPY(parts, v, 4);
+  COPY(parts + 4, v, 4);
   parts[end[!first]] = mid;
   parts[4 + end[first]] = mid;
 }
@@ -394,27 +383,28 @@ static status give_block(const bisection *b, raw_block *p, int block) {
 
 static status give(const bisection *b) {
   raw_mesh *raw = b->raw;
-  const size_t n = (size_t)b->n_node, before = raw->n_node;
+  const size_t n = b->n_node, before = raw->n_node;
   OWNED double *old = raw->xyz;
+  OWNS(raw);
   memory_free(raw->node_no);
   raw->node_no = NULL;
   raw->xyz = NULL;
   raw->n_node = 0;
   PASS_NEW_ALL(OF(raw->node_no, n), OF(raw->xyz, 3 * n));
   raw->n_node = n;
-  memcpy(raw->node_no, b->no, n * sizeof *b->no);
+  COPY(raw->node_no, b->no, n);
   for (size_t k = 0; k < 3 * n; ++k) raw->xyz[k] = b->x[k] / b->q->scale;
-  memcpy(raw->xyz, old, 3 * before * sizeof *old);
+  COPY(raw->xyz, old, 3 * before);
   for (int i = 0; i < raw->n_block; ++i)
     if (raw->block[i].dim > 0) PASS(give_block(b, &raw->block[i], i));
   return OK;
 }
 
 status raw_refine(raw_mesh *raw, const refine_request *q) {
-  ENDS_BY(release) bisection b = {.q = q, .raw = raw};
+  bisection b = {.q = q, .raw = raw};
   int done = 0;
   if (!is_simple(raw)) return OK;
-  OWNS(raw);
+  SCRATCH;
   PASS(take(&b));
   if (b.dim < 2) return OK;
   PASS(size_grid_new(&q->sizes, &b.sizes));

@@ -89,7 +89,7 @@ static void find_curves(round_surface *s) {
         is_sharp = turn(other, s->face_normal + 3 * f[0]) > SMOOTH;
         if (!is_sharp) continue;
       }
-      s->kind[id] = (unsigned char)(ON_CURVE | (is_sharp ? IS_SHARP : 0));
+      s->kind[id] = ON_CURVE | (is_sharp ? IS_SHARP : 0);
       add_curve(s, p, q, is_sharp);
     }
 }
@@ -126,7 +126,7 @@ static void set_tangents(round_surface *s, int n_all) {
   for (int i = 0; i < n_all; ++i)
     if (s->number[i] == 2 && !(s->flat[i] & CURVE_FLAT) &&
         (s->flat[s->next[2 * i]] | s->flat[s->next[2 * i + 1]]) & CURVE_FLAT)
-      memset(s->tangent + 3 * i, 0, 3 * sizeof *s->tangent);
+      CLEAR(s->tangent + 3 * i, 3);
 }
 
 /* c less twice its part across: t at the other end of the chord c, both along
@@ -143,7 +143,7 @@ static int curve_tangent(const round_surface *s, int a, int b, double *t) {
   normalise(c);
   const int other =
       dot(3, s->tangent + 3 * a, s->tangent + 3 * a) > 0.0 ? a : b;
-  memcpy(t, s->tangent + 3 * other, 3 * sizeof *t);
+  COPY(t, s->tangent + 3 * other, 3);
   if (!(dot(3, t, t) > 0.0)) return 0;
   if (dot(3, t, c) < 0.0)
     for (int k = 0; k < 3; ++k) t[k] = -t[k];

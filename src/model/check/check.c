@@ -212,7 +212,7 @@ static void check_radius(const model *m, const mesh *msh) {
   static const double rounding = 1e-9; /* of the size of the mesh */
   if (m->n.section == 0 || m->sections[0].kin != AXISYMMETRIC) return;
   for (int i = 0; i < msh->n_node; ++i) {
-    const double *x = msh->x + (size_t)msh->dim * (size_t)i;
+    const double *x = msh->x + (size_t)msh->dim * i;
     if (x[0] >= -rounding * msh->size) continue;
     message_add(m->log, P2039, &m->sections[0].at,
                 "axisymmetric, but node %zu is at radius x = %g",
@@ -416,7 +416,7 @@ static unsigned held_bits(const mesh *msh, const unsigned char *fixed,
                           int node_id) {
   unsigned bits = 0;
   for (int c = 0; c < msh->dim; ++c)
-    bits |= (unsigned)(fixed[msh->dim * node_id + c] != 0) << c;
+    bits |= (fixed[msh->dim * node_id + c] != 0) << c;
   return bits;
 }
 
@@ -452,7 +452,7 @@ static int held_alone(const mesh *msh, const unsigned char *fixed,
   int n = 0;
   for (int i = 0; i < of->n_node; ++i) {
     const unsigned own = held_bits(msh, fixed, of->node_id[i]);
-    const double *x = &msh->x[(size_t)msh->dim * (size_t)of->node_id[i]];
+    const double *x = &msh->x[(size_t)msh->dim * of->node_id[i]];
     double least = near;
     int best = -1;
     for (int k = 0; own != 0 && k < other->n_node; ++k) {
@@ -637,7 +637,7 @@ static status check_ties(model *m, const mesh *msh,
 static status check_pairs(model *m, const mesh *msh) {
   if (!model_has_pairs(m)) return OK;
   OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
+  PASS_NEW(fixed, (size_t)msh->dim * msh->n_node);
   if (!is_lost(m) && m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < m->n.contact; ++i)
     PASS(check_contact_pair(m, msh, fixed, i));

@@ -50,7 +50,7 @@ static status read_tags(scan *s, size_t *n) {
     int tag;
     PASS(scan_int(s, &tag));
     PASS(scan_line(s));
-    if (i == 1) component = (size_t)tag;
+    if (i == 1) component = tag;
     if (i == 2) *n = tag < 0 ? SIZE_MAX : (size_t)tag;
   }
   if (count < 3) return scan_fail(s, "$NodeData needs three integer tags");
@@ -74,7 +74,7 @@ static status read_node_data(scan *s, pairs *p) {
     PASS(scan_line(s));
     p->node_no[i] = no;
   }
-  p->n = (long)n;
+  p->n = n;
   return scan_end(s, "NodeData", "its values");
 }
 
@@ -127,7 +127,7 @@ static int compare_no(const void *a, const void *b) {
 static const numbered *find_node(const mesh *msh, const numbered *node,
                                  size_t no) {
   const numbered key = {no, 0};
-  return bsearch(&key, node, (size_t)msh->n_node, sizeof key, compare_no);
+  return bsearch(&key, node, msh->n_node, sizeof key, compare_no);
 }
 
 /* Nodes of one number are at one place. */
@@ -137,7 +137,7 @@ static status check_places(const char *path, const mesh *msh, double scale,
   for (size_t i = 0; i < raw->n_node; ++i) {
     const numbered *at = find_node(msh, node, raw->node_no[i]);
     for (int c = 0; at != NULL && c < msh->dim; ++c) {
-      const double there = scale * raw->xyz[3 * i + (size_t)c],
+      const double there = scale * raw->xyz[3 * i + c],
                    here = msh->x[msh->dim * at->id + c];
       if (fabs(there - here) > SAME_PLACE * msh->size)
         RAISE(ERR_DECK,
@@ -155,10 +155,10 @@ static status to_mesh(const char *path, const pairs *p, const mesh *msh,
   OWNED_NEW(unsigned char, known, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i)
     node[i] = (numbered){msh->node_no[i], i};
-  qsort(node, (size_t)msh->n_node, sizeof *node, compare_no);
+  qsort(node, msh->n_node, sizeof *node, compare_no);
   if (p->has_nodes) PASS(check_places(path, msh, scale, node));
   for (long i = 0; i < p->n; ++i) {
-    const numbered *at = find_node(msh, node, (size_t)p->node_no[i]);
+    const numbered *at = find_node(msh, node, p->node_no[i]);
     if (at == NULL) continue;
     if (!isfinite(p->value[i]))
       RAISE(ERR_DECK, "%s: the value of node %ld is not a finite number", path,

@@ -34,8 +34,8 @@ int check_group(const model *m, const mesh *msh, const char *name,
   char all[400] = "";
   size_t n = 0;
   for (int i = 0; i < msh->n_group && n < sizeof all / 2; ++i)
-    n += (size_t)snprintf(all + n, sizeof all - n, "%s%.60s",
-                          i == 0 ? "" : ", ", msh->group[i].name);
+    n += snprintf(all + n, sizeof all - n, "%s%.60s", i == 0 ? "" : ", ",
+                  msh->group[i].name);
   message_add(m->log, P2021, at, "the mesh has no group %s; it has %s", name,
               all);
   return -1;
@@ -233,8 +233,8 @@ static int contact_finite(const model *m, const mesh *msh, const contact *c,
   const mesh_group *g = &msh->group[c->group_id];
   for (int k = 0; k < g->n_node && v.name != NULL; ++k) {
     double x[3] = {0.0, 0.0, 0.0};
-    size_t node = (size_t)g->node_id[k], dim = (size_t)msh->dim;
-    memcpy(x, msh->x + dim * node, dim * sizeof *x);
+    size_t node = g->node_id[k], dim = msh->dim;
+    COPY(x, msh->x + dim * node, dim);
     double value = quantity_value(v.value, x, t);
     if (value >= 0.0 && value <= NUMBER_MOST) continue;
     message_add(m->log, P2041, v.at,
@@ -324,7 +324,7 @@ void check_values(const model *m, const mesh *msh) {
 
 status check_agreement(const model *m, const mesh *msh, int step_id) {
   const step *s = &m->steps[step_id];
-  size_t n_dof = (size_t)msh->dim * (size_t)msh->n_node;
+  size_t n_dof = (size_t)msh->dim * msh->n_node;
   OWNED_NEW(int, owner, n_dof);
   OWNED_NEW(double, ud, n_dof);
   for (int i = 0; i < s->loads.n; ++i) {
@@ -332,8 +332,8 @@ status check_agreement(const model *m, const mesh *msh, int step_id) {
     const mesh_group *g = &msh->group[l->group_id];
     int reported = 0;
     for (int k = 0; k < g->n_node && l->kind == LOAD_FIXING; ++k) {
-      size_t node = (size_t)g->node_id[k];
-      size_t dof = (size_t)msh->dim * node + (size_t)l->component;
+      size_t node = g->node_id[k];
+      size_t dof = msh->dim * node + l->component;
       double value = load_at_node(l, msh, s, (int)node, step_time(s, 1));
       const load *first =
           owner[dof] > 0 ? &s->loads.item[owner[dof] - 1] : NULL;
@@ -421,8 +421,7 @@ static void check_axis(const model *m, const mesh *msh, const step *s,
   const mesh_group *g = &msh->group[l->group_id];
   for (int k = 0; k < g->n_node; ++k) {
     int node = g->node_id[k];
-    if (msh->x[(size_t)msh->dim * (size_t)node] > rounding * msh->size)
-      continue;
+    if (msh->x[(size_t)msh->dim * node] > rounding * msh->size) continue;
     double u = load_at_node(l, msh, s, node, s->start + s->total);
     if (u == 0.0) continue;
     message_add(m->log, P2059, &l->at,

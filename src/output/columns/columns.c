@@ -575,7 +575,7 @@ const char *column_unit(const char *unit, const model *m) {
     int n = known ? snprintf(text + used, LABEL - used, "%s", labels[k])
                   : snprintf(text + used, LABEL - used, "%c", *unit);
     unit += known ? strlen(words[k]) : 1;
-    used += (size_t)n;
+    used += n;
   }
   for (char *p = text; (p = strpbrk(p, " \t\v\f[]")) != NULL;) *p = '_';
   return text;

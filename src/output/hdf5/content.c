@@ -29,7 +29,7 @@ void hdf5_record_name(char *text, size_t size, int i) {
 
 size_t fixed_bytes(const fixed_data *d) {
   static const size_t size[] = {sizeof(double), sizeof(int), sizeof(size_t), 1};
-  return size[d->type] * (size_t)d->rows * (size_t)d->columns;
+  return size[d->type] * d->rows * d->columns;
 }
 
 /* A name as a link of HDF5: "/" parts groups and "." is the group itself. */
@@ -111,7 +111,7 @@ static status add_fixed(hdf5_file *h, const char *path, data_type type,
 /* Points of some nodes (NULL: all), with 3 components. */
 static status add_points(hdf5_file *h, const char *path, int n,
                          const int *node_id) {
-  size_t dim = (size_t)h->msh->dim;
+  size_t dim = h->msh->dim;
   double *own = NULL;
   PASS_NEW(own, 3 * (size_t)n);
   for (size_t i = 0; i < (size_t)n; ++i)
@@ -164,17 +164,16 @@ static const mesh_group *contact_group(const hdf5_file *h, int contact_id) {
 /* The faces of the contact groups, as places in contact_node. */
 static status add_faces(hdf5_file *h, const int *place_of) {
   const mesh *s = h->msh;
-  size_t dim = (size_t)s->dim, n = 0, most = 0;
+  size_t dim = s->dim, n = 0, most = 0;
   int *faces = NULL;
-  for (int c = 0; c < h->m->n.contact; ++c)
-    most += (size_t)contact_group(h, c)->n_item;
+  for (int c = 0; c < h->m->n.contact; ++c) most += contact_group(h, c)->n_item;
   PASS_NEW(faces, dim * most);
   for (int c = 0; c < h->m->n.contact; ++c) {
     const mesh_group *g = contact_group(h, c);
     if (g->dim != s->dim - 1 || g->item_id == NULL) continue;
     for (int i = 0; i < g->n_item; ++i)
       for (size_t k = 0; k < dim; ++k)
-        faces[n++] = place_of[s->face[dim * (size_t)g->item_id[i] + k]];
+        faces[n++] = place_of[s->face[dim * g->item_id[i] + k]];
   }
   h->n_contact_face = (int)(n / dim);
   return add_fixed(h, "/contact/faces", DATA_INT, h->n_contact_face, s->dim,

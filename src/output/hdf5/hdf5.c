@@ -54,10 +54,10 @@ static status copy(const hdf5_file *h, off_t from, int fd, off_t to,
         pread(h->fd, chunk, bytes < sizeof chunk ? bytes : sizeof chunk, from);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) PASS(text_failed(h->path, "read back", errno));
-    PASS(hdf5_put(fd, h->aside, chunk, (size_t)n, to));
+    PASS(hdf5_put(fd, h->aside, chunk, n, to));
     from += n;
     to += n;
-    bytes -= (size_t)n;
+    bytes -= n;
   }
   return OK;
 }
@@ -67,7 +67,7 @@ static status put_nan(int fd, const char *path, off_t offset, int n) {
   for (int i = 0; i < CHUNK; ++i) chunk[i] = NAN;
   for (int i = 0; i < n; i += CHUNK) {
     int part = n - i < CHUNK ? n - i : CHUNK;
-    PASS(hdf5_put(fd, path, chunk, sizeof(double) * (size_t)part,
+    PASS(hdf5_put(fd, path, chunk, sizeof(double) * part,
                   offset + (off_t)sizeof(double) * i));
   }
   return OK;
@@ -101,23 +101,22 @@ static status copy_records(hdf5_file *h, int fd, const hdf5_layout *l) {
     for (int k = 0; k < h->n_field; ++k) {
       const hdf5_field *f = &h->fields[k];
       if (hdf5_is_history(f)) continue;
-      off_t old =
-          h->now.record[(size_t)k * (size_t)h->now.n_record + (size_t)i];
-      off_t new = l->record[(size_t)k * (size_t)l->n_record + (size_t)i];
+      off_t old = h->now.record[(size_t)k * h->now.n_record + i];
+      off_t new = l->record[(size_t)k * l->n_record + i];
       if (old != from + (off_t)bytes || new != to + (off_t)bytes) {
         PASS(copy(h, from, fd, to, bytes));
         from = old;
         to = new;
         bytes = 0;
       }
-      bytes += sizeof(double) * (size_t)hdf5_items(h, f) * (size_t)f->n_part;
+      bytes += sizeof(double) * hdf5_items(h, f) * f->n_part;
     }
   return copy(h, from, fd, to, bytes);
 }
 
 static status copy_results(hdf5_file *h, int fd, const hdf5_layout *l) {
-  const size_t rows = sizeof(double) * (size_t)h->n_row;
-  const size_t records = sizeof(double) * (size_t)h->n_record;
+  const size_t rows = sizeof(double) * h->n_row;
+  const size_t records = sizeof(double) * h->n_record;
   for (int i = 0; i < h->n_field; ++i)
     if (hdf5_is_history(&h->fields[i]))
       PASS(copy(h, h->now.history[i], fd, l->history[i], rows));
@@ -218,7 +217,7 @@ typedef struct burst {
 } burst;
 
 static status put_burst(hdf5_file *h, burst *b) {
-  const size_t bytes = sizeof *b->value * (size_t)b->n;
+  const size_t bytes = sizeof *b->value * b->n;
   b->n = 0;
   return hdf5_put(h->fd, h->path, b->value, bytes, b->at);
 }
@@ -263,7 +262,7 @@ static status put_record(hdf5_file *h, const view *v) {
   find_surface_ids(h, v->s->contacts.surface);
   for (int i = 0; i < h->n_field; ++i) {
     if (hdf5_is_history(&h->fields[i])) continue;
-    size_t k = (size_t)i * (size_t)h->now.n_record + (size_t)h->n_record;
+    size_t k = (size_t)i * h->now.n_record + h->n_record;
     PASS(put_field(h, &h->fields[i], v, h->now.record[k], &b));
   }
   PASS(put_burst(h, &b));
@@ -325,7 +324,7 @@ static status earlier_file(hdf5_file *h, const hdf5_count *before) {
           h->path);
   h->n_row = before->rows;
   h->n_record = h->cap_time = before->records;
-  size_t bytes = (size_t)h->n_record * sizeof *h->times;
+  size_t bytes = h->n_record * sizeof *h->times;
   PASS_NEW(h->times, h->n_record);
   errno = 0;
   if (bytes > 0 &&

@@ -120,7 +120,7 @@ static status make_fixed(const maker *k, const hdf5_file *h, hdf5_layout *l) {
     HELD hid_t text = -1;
     if (d->rows == 0) continue;
     if (d->type == DATA_TEXT) {
-      PASS(text_type(k, (size_t)d->rows, &text));
+      PASS(text_type(k, d->rows, &text));
       dims[0] = 1;
     }
     PASS(make_dataset(k, d->path, text >= 0 ? text : types[d->type], dims, NULL,
@@ -152,8 +152,8 @@ static status make_records(const maker *k, const hdf5_file *h, int field_id,
   if (dims[0] == 0 || l->n_record == 0) return OK;
   hdf5_record_name(name, sizeof name, 0);
   snprintf(first, sizeof first, "%s/%s", path, name);
-  g->offset = &l->record[(size_t)field_id * (size_t)l->n_record];
-  g->bytes = sizeof(double) * (size_t)(dims[0] * dims[1]);
+  g->offset = &l->record[(size_t)field_id * l->n_record];
+  g->bytes = sizeof(double) * dims[0] * dims[1];
   PASS(make_dataset(k, first, H5T_NATIVE_DOUBLE, dims, NULL, NULL, g->offset));
   PASS(find_address(k, path, &g->group));
   return find_address(k, first, &g->set);
@@ -211,7 +211,7 @@ static status alloc_layout(const hdf5_file *h, int n_row, int n_record,
                            hdf5_layout *l) {
   *l = (hdf5_layout){.n_row = n_row, .n_record = n_record};
   PASS_NEW_ALL(OF(l->fixed, h->n_fixed), OF(l->history, h->n_field),
-               OF(l->record, (size_t)h->n_field * (size_t)n_record));
+               OF(l->record, (size_t)h->n_field * n_record));
   return OK;
 }
 
@@ -267,7 +267,7 @@ static status read_records(const hdf5_file *h, hid_t file, int field_id,
   char path[400], name[40];
   for (int i = 0; i < l->n_record && hdf5_items(h, f) > 0; ++i) {
     hsize_t n = (hsize_t)(hdf5_items(h, f) * f->n_part);
-    size_t slot = (size_t)field_id * (size_t)l->n_record + (size_t)i;
+    size_t slot = (size_t)field_id * l->n_record + i;
     hdf5_record_name(name, sizeof name, i);
     snprintf(path, sizeof path, "%s/%s/%s", f->group, f->name, name);
     PASS(read_offset(h, file, path, &n, &l->record[slot]));

@@ -88,7 +88,7 @@ static status emit(stream *s, const void *data, size_t n) {
 static status emit_number(stream *s, int bytes, uint64_t v) {
   unsigned char text[8];
   set_number(text, bytes, v);
-  return emit(s, text, (size_t)bytes);
+  return emit(s, text, bytes);
 }
 
 static status go_to(stream *s, uint64_t at) {
@@ -107,7 +107,7 @@ status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
     if (n <= 0) return text_failed(path, "write", n < 0 ? errno : ENOSPC);
     at += n;
     offset += n;
-    bytes -= (size_t)n;
+    bytes -= n;
   }
   return OK;
 }

@@ -206,7 +206,7 @@ static size_t add(char *text, size_t size, size_t used, const char *format,
   va_start(list, format);
   int n = used < size ? vsnprintf(text + used, size - used, format, list) : 0;
   va_end(list);
-  return used + (size_t)(n > 0 ? n : 0);
+  return used + (n > 0 ? n : 0);
 }
 
 static int is_balanced(const model *m) {

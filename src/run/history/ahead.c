@@ -44,7 +44,7 @@ static status pass_step(run *r) {
 
 /* *any = 1: some step has other supports than the one before. */
 static status change_supports(const model *m, const mesh *msh, int *any) {
-  const size_t n = (size_t)msh->dim * (size_t)msh->n_node;
+  const size_t n = (size_t)msh->dim * msh->n_node;
   OWNED unsigned char *first = NULL, *fixed = NULL;
   PASS_NEW_ALL(OF(first, n), OF(fixed, n));
   load_fixed(msh, &m->steps[0], first);
@@ -57,7 +57,7 @@ static status change_supports(const model *m, const mesh *msh, int *any) {
 
 /* The first n steps. */
 static status check_steps(run *r, int n, int look) {
-  memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
+  COPY(r->loads.start, r->old.u, r->n_dof);
   for (int i = 0; i < n; ++i) {
     int other = 0;
     r->step = &r->m->steps[i];

@@ -36,9 +36,8 @@ static status discrete_new(discrete *d) {
   const exchange_problem *p = d->p;
   PASS_NEW(d->surface.node_no, p->n);
   PASS_NEW_REALS(p->m, &d->u, &d->r);
-  PASS_NEW_ALL(OF(d->gap, p->n),
-               OF(d->slip, (size_t)p->n * (size_t)(p->dim - 1)), OF(d->g, p->n),
-               OF(d->contact, p->n));
+  PASS_NEW_ALL(OF(d->gap, p->n), OF(d->slip, (size_t)p->n * (p->dim - 1)),
+               OF(d->g, p->n), OF(d->contact, p->n));
   d->surface.dim = p->dim;
   d->surface.n = p->n;
   for (int i = 0; i < p->n; ++i) d->surface.node_no[i] = (size_t)i + 1;
@@ -75,7 +74,7 @@ static status bound_error(const contact_problem *cp, dense_inverse *dense,
   OWNED double *A = NULL;
   int made = 0;
   if (!contact_has_stiffness(cp) && cp->B != NULL) {
-    PASS_NEW(A, (size_t)cp->m * (size_t)cp->m);
+    PASS_NEW(A, (size_t)cp->m * cp->m);
     dense_inverse_fill(dense, A, &made);
     stiff.A = A;
     inverse.stiffness = made ? &stiff : NULL;
@@ -85,7 +84,7 @@ static status bound_error(const contact_problem *cp, dense_inverse *dense,
 
 /* Of a compliance in blocks all of it, for the bound and the checks. */
 static status fill_up(discrete *d) {
-  const size_t m = (size_t)d->p->m;
+  const size_t m = d->p->m;
   const int bound = !d->step->accuracy.no_solver && d->p->m <= MOST_WHOLE;
   d->whole = d->cp;
   if (d->cp.blocks == NULL || (!bound && d->step->check == CHECK_NONE))

@@ -192,7 +192,7 @@ static void count_work(observed_work *seen) {
 static status check_finite(const run *r) {
   const energies *e = &r->now.energy;
   const double u = largest_entry(r->n_dof, r->now.u);
-  const double rc = largest_entry((size_t)r->nodes.n_c, r->now.rc);
+  const double rc = largest_entry(r->nodes.n_c, r->now.rc);
   if (isfinite(e->strain) && isfinite(e->external + e->defect) &&
       isfinite(u * u) && isfinite(rc * rc))
     return OK;
@@ -321,8 +321,7 @@ static int touched_by_rounding(const run *r) {
 /* 1: temperatures of laws, moduli or strains jump at the start of the step. */
 static int starts_hotter(const run *r) {
   return r->now.temperature != NULL &&
-         !same_vector((size_t)r->msh->n_elem, r->now.temperature,
-                      r->old.temperature);
+         !same_vector(r->msh->n_elem, r->now.temperature, r->old.temperature);
 }
 
 /* 1: temperatures jump, or supports, loads or friction end: at once, whether

@@ -115,11 +115,10 @@ static status supports_strain(const run *r, int *strained) {
   PASS(find_bodies(r, body, &n));
   OWNED_NEW(motion_fit, fit, n);
   for (size_t q = 0; q < r->n_dof; ++q) {
-    const size_t i = q / (size_t)dim;
+    const size_t i = q / dim;
     long double row[COLUMNS];
     if (!r->body.fixed[q]) continue;
-    set_row(r->body.d.kin[0], m->x + (size_t)dim * i, (int)(q % (size_t)dim),
-            row);
+    set_row(r->body.d.kin[0], m->x + dim * i, (int)(q % dim), row);
     row[MODES] = r->loads.ud[q];
     add_row(&fit[body[i]], row);
   }
@@ -142,7 +141,7 @@ typedef struct misfit {
 
 static status misfit_new(const run *r, misfit *x) {
   x->c = r->elastic.c != NULL ? r->elastic.c : r->c;
-  x->n_stress = (size_t)r->m->ns * (size_t)r->msh->n_elem;
+  x->n_stress = (size_t)r->m->ns * r->msh->n_elem;
   PASS_NEW(x->stress, x->n_stress);
   PASS_NEW_REALS(r->n_dof, &x->rest, &x->w);
   PASS_NEW(x->rc, r->problem.cp.m);
@@ -173,7 +172,7 @@ double rounding_of_works(const run *r) {
 
 static double largest_force(const run *r) {
   return fmax(fmax(largest_entry(r->n_dof, r->now.F), increment_strain_load(r)),
-              largest_entry((size_t)r->nodes.n_c, r->now.rc));
+              largest_entry(r->nodes.n_c, r->now.rc));
 }
 
 /* 1: contact forces and supports carry the loads straight, and strains are no
@@ -190,11 +189,11 @@ static int forces_hide_strains(const run *r) {
 /* 1: no force acts on the body, and its supports do not strain it. */
 static int moves_alone(const run *r) {
   return !r->errors.strained && increment_free_load(r, r->now.F) == 0.0 &&
-         largest_entry((size_t)r->nodes.n_c, r->now.rc) == 0.0;
+         largest_entry(r->nodes.n_c, r->now.rc) == 0.0;
 }
 
 double rounding_of_gaps(const run *r) {
-  const size_t n = (size_t)(r->msh->dim * r->msh->n_node);
+  const size_t n = r->msh->dim * r->msh->n_node;
   return 16 * DBL_EPSILON * largest_entry(n, r->msh->x);
 }
 
@@ -209,7 +208,7 @@ static int hides_strains(const run *r, double u) {
 }
 
 int rounding_is_all(const run *r) {
-  const double force = largest_entry((size_t)r->nodes.n_c, r->now.rc);
+  const double force = largest_entry(r->nodes.n_c, r->now.rc);
   if (forces_hide_strains(r)) return 1;
   if ((r->strains.eigen.n == 0 || r->errors.noise) && moves_alone(r)) return 1;
   if (r->errors.strained || increment_free_load(r, r->now.F) > 0.0) return 0;
@@ -392,12 +391,11 @@ static status find_own(const run *r, double *own) {
   const mesh *m = r->msh;
   const contact_surface *s = r->surface;
   OWNED double *sigma = NULL, *most = NULL;
-  PASS_NEW(sigma, (size_t)r->m->ns * (size_t)m->n_elem);
-  PASS_NEW(most, m->n_node);
+  PASS_NEW_ALL(OF(sigma, (size_t)r->m->ns * m->n_elem), OF(most, m->n_node));
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < m->n_elem; ++e) {
-    const size_t ns = (size_t)r->m->ns;
-    const double peak = largest_entry(ns, sigma + ns * (size_t)e);
+    const size_t ns = r->m->ns;
+    const double peak = largest_entry(ns, sigma + ns * e);
     for (int a = 0; a <= m->dim; ++a) {
       const int v = m->elem[(m->dim + 1) * e + a];
       most[v] = fmax(most[v], peak);

@@ -22,9 +22,8 @@ typedef struct own_array {
 /* Arrays that the copy changes and the run still needs. */
 static void list_own(run *b, own_array list[OWN]) {
   equilibrium *e = &b->now;
-  const size_t n = (size_t)b->nodes.n, n_c = (size_t)b->nodes.n_c,
-               dofs = b->n_dof;
-  const size_t sides = n_c - n, elements = (size_t)b->msh->n_elem;
+  const size_t n = b->nodes.n, n_c = b->nodes.n_c, dofs = b->n_dof;
+  const size_t sides = n_c - n, elements = b->msh->n_elem;
   const size_t strains = strains_kept(b);
   const own_array all[OWN] = {{&e->u, dofs},
                               {&e->F, dofs},
@@ -35,8 +34,8 @@ static void list_own(run *b, own_array list[OWN]) {
                               {&e->thermal, strains},
                               {&e->e0, strains},
                               {&e->sigma, strains},
-                              {&b->problem.f, (size_t)b->nodes.n_row},
-                              {&b->problem.f_load, (size_t)b->nodes.n_row},
+                              {&b->problem.f, b->nodes.n_row},
+                              {&b->problem.f_load, b->nodes.n_row},
                               {&b->problem.gap, n},
                               {&b->problem.side_gap, sides},
                               {&e->elastic, strains},
@@ -56,7 +55,7 @@ static status copy_arrays(run *b) {
   for (int i = 0; i < OWN; ++i) {
     if (from[i] == NULL) continue;
     PASS_NEW(*list[i].at, list[i].n);
-    memcpy(*list[i].at, from[i], list[i].n * sizeof **list[i].at);
+    COPY(*list[i].at, from[i], list[i].n);
   }
   return OK;
 }
@@ -159,7 +158,7 @@ status shadow_with(run *r, const double *more, double *u, double *rc,
   PASS(shadow_new(r, &b));
   PASS(solve_with(r, &b->r, more));
   *solved = b->r.solving.report.outcome > 0;
-  memcpy(u, b->r.now.u, r->n_dof * sizeof *u);
+  COPY(u, b->r.now.u, r->n_dof);
   if (r->nodes.n_c > 0) COPY(rc, b->r.now.rc, r->nodes.n_c);
   return OK;
 }

@@ -12,19 +12,18 @@ enum { PASSES = 3 };
 static status move_slave(const surface_input *in, surface_pair *p, double *x) {
   const mesh *msh = in->mesh;
   const int dim = msh->dim;
-  mortar *m = NULL;
+  OWNED mortar *m = NULL;
   PASS(surfaces_couple(in, msh->x, &msh->group[p->slave_id],
                        &msh->group[p->master_id], COUPLE_FLAT, NULL, &m));
-  memcpy(x, msh->x, (size_t)dim * (size_t)msh->n_node * sizeof *x);
+  COPY(x, msh->x, (size_t)dim * msh->n_node);
   for (int q = 0; q < m->n; ++q)
     for (int c = 0; c < dim; ++c) {
-      const size_t k = (size_t)dim * (size_t)m->node_id[q] + (size_t)c;
+      const size_t k = (size_t)dim * m->node_id[q] + c;
       const int held = in->fixed[m->node_id[q]] >> c & 1;
       const double d = held ? 0.0 : m->gap[dim * q + c];
       x[k] += d;
       p->moved = fmax(p->moved, fabs(d));
     }
-  memory_free(m);
   return OK;
 }
 
@@ -44,12 +43,12 @@ static status check_elements(const model *m, const mesh *msh,
 
 static status adjust(const model *m, const surface_input *in, surface_pair *p,
                      mesh *msh) {
-  const size_t n = (size_t)msh->dim * (size_t)msh->n_node;
+  const size_t n = (size_t)msh->dim * msh->n_node;
   if (!p->adjust) return OK;
   OWNED_NEW(double, x, n);
   for (int pass = 0; pass < PASSES; ++pass) {
     PASS(move_slave(in, p, x));
-    memcpy(msh->x, x, n * sizeof *x);
+    COPY(msh->x, x, n);
   }
   return check_elements(m, msh, p);
 }
@@ -57,7 +56,7 @@ static status adjust(const model *m, const surface_input *in, surface_pair *p,
 /* bits[n_node]: the components that the first step fixes. */
 static status find_fixed(const model *m, const mesh *msh, unsigned char *bits) {
   OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, (size_t)msh->dim * (size_t)msh->n_node);
+  PASS_NEW(fixed, (size_t)msh->dim * msh->n_node);
   load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i)
     for (int c = 0; c < msh->dim; ++c)

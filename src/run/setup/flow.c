@@ -95,7 +95,7 @@ static status take_sum(const run *r, int k, const double *sum) {
                 law->material, sum[i]);
     return message_status(r->m->log, ERR_DECK);
   }
-  memcpy(ei, sum, visco_at(r, 1) * sizeof *ei);
+  COPY(ei, sum, visco_at(r, 1));
   return OK;
 }
 
@@ -116,7 +116,7 @@ static status settle_point(const run *r, int k, unsigned given) {
   p.alpha = alpha;
   const int dashpot = ops->units(&p, given == STRAIN_GIVEN ? alpha : NULL, sum);
   if ((given & STRAIN_GIVEN) == 0)
-    memcpy(ei, sum, visco_at(r, 1) * sizeof *ei);
+    COPY(ei, sum, visco_at(r, 1));
   else if (!dashpot)
     PASS(take_sum(r, k, sum));
   return OK;

@@ -12,9 +12,9 @@ static status keep_nodes(run *r, archive *a) {
   PASS(archive_ints(a, "reach_passes", &x.passes, 1));
   PASS(archive_ints(a, "nodes_in", &x.n_in, 1));
   if (!archive_reads(a))
-    return archive_ints(a, "in", r->nodes.reach.in, (size_t)x.n_in);
+    return archive_ints(a, "in", r->nodes.reach.in, x.n_in);
   if (x.n_in > 0) PASS_NEW(x.in, r->nodes.n);
-  PASS(archive_ints(a, "in", x.in, (size_t)x.n_in));
+  PASS(archive_ints(a, "in", x.in, x.n_in));
   r->nodes.reach.distance = x.distance;
   r->nodes.reach.passes = x.passes;
   if (reach_is_same(&x, &r->nodes.reach)) return OK;
@@ -25,8 +25,8 @@ static status keep_nodes(run *r, archive *a) {
 }
 
 static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
-  size_t m = (size_t)r->nodes.n_c, strains = strains_kept(r);
-  size_t elements = e->temperature == NULL ? 0 : (size_t)r->msh->n_elem;
+  size_t m = r->nodes.n_c, strains = strains_kept(r);
+  size_t elements = e->temperature == NULL ? 0 : r->msh->n_elem;
   PASS(archive_reals(a, "t", &e->t, 1));
   PASS(archive_reals(a, "u", e->u, r->n_dof));
   PASS(archive_reals(a, "F", e->F, r->n_dof));
@@ -48,7 +48,7 @@ static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
 /* Temperatures of the moduli, and whether the elastic matrix is theirs. */
 static status keep_moduli(run *r, archive *a) {
   int stale = r->body.stale, changed = 0;
-  size_t n = r->body.moduli.n_own == 0 ? 0 : (size_t)r->msh->n_elem;
+  size_t n = r->body.moduli.n_own == 0 ? 0 : r->msh->n_elem;
   double *T = r->now.temperature;
   for (int k = 0; k < r->body.moduli.n_own && !archive_reads(a); ++k)
     T[r->body.moduli.elem_id[k]] = r->body.moduli.at[k];
@@ -72,14 +72,13 @@ static status keep_rate(run *r, archive *a) {
   if (archive_reads(a)) PASS_NEW(k->state, KNOWN_RATES * (size_t)m);
   k->m = m;
   k->n = n;
-  PASS(archive_bytes(a, "rate_states", k->state, (size_t)m * (size_t)n));
-  return archive_reals(a, "rate", k->rate, (size_t)n);
+  PASS(archive_bytes(a, "rate_states", k->state, (size_t)m * n));
+  return archive_reals(a, "rate", k->rate, n);
 }
 
 static status keep_contact(run *r, archive *a) {
   PASS(keep_nodes(r, a));
-  PASS(archive_reals(a, "f_before", r->problem.f_before,
-                     (size_t)r->nodes.n_row));
+  PASS(archive_reals(a, "f_before", r->problem.f_before, r->nodes.n_row));
   r->problem.n_before = r->nodes.n_row;
   r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
   PASS(keep_rate(r, a));

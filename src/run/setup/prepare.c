@@ -40,7 +40,7 @@ static double least_stiffness(const run *r) {
   double least = HUGE_VAL;
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     const int s = d->section_id[e];
-    const double *E = d->E + (size_t)(ns * ns) * (size_t)s;
+    const double *E = d->E + (size_t)(ns * ns) * s;
     double size =
         flat && d->kin[s] != AXISYMMETRIC ? d->thickness[s] : d->mesh->size;
     for (int c = 0; c < d->mesh->dim; ++c)
@@ -178,7 +178,7 @@ status run_prepare(run *r) {
   int fresh, other = 0;
   OWNED_NEW(unsigned char, fixed, r->n_dof);
   load_fixed(r->msh, r->step, fixed);
-  memcpy(r->loads.start, r->old.u, r->n_dof * sizeof *r->loads.start);
+  COPY(r->loads.start, r->old.u, r->n_dof);
   known_rate_forget(&r->solving.rate);
   PASS(take_places(r));
   fresh = r->elastic.c == NULL || memcmp(fixed, r->body.fixed, r->n_dof) != 0 ||

@@ -27,9 +27,9 @@ static status new_clusters(run *r) {
     const section *s = &m->sections[i];
     const material *mat = &m->materials[s->material_id];
     if (s->averaged && s->kin != PLANE_STRESS)
-      share[i] = cluster_share(
-          m->ns, r->body.moduli.E + (size_t)(m->ns * m->ns) * (size_t)i,
-          mat->law.ops != NULL || mat->elastic.n > 1);
+      share[i] =
+          cluster_share(m->ns, r->body.moduli.E + (size_t)(m->ns * m->ns) * i,
+                        mat->law.ops != NULL || mat->elastic.n > 1);
   }
   const cluster_input in = {r->msh, m->sections[0].kin == AXISYMMETRIC,
                             m->n.section, m->elem_section, share};
@@ -96,7 +96,7 @@ static status new_pairs(run *r) {
 }
 
 status run_new(run *r, const effect_ops *const *effects) {
-  r->n_dof = (size_t)r->msh->dim * (size_t)r->msh->n_node;
+  r->n_dof = (size_t)r->msh->dim * r->msh->n_node;
   r->solving.known_key = RUN_NO_KEY;
   r->body.d.mesh = r->msh;
   PASS_NEW(r->body.fixed, r->n_dof);
@@ -113,9 +113,9 @@ status run_new(run *r, const effect_ops *const *effects) {
   if (r->m->n.goal > 0 ||
       (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR |
                         EFFECT_REFERENCE)) != 0)
-    PASS_NEW(r->result.stress, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+    PASS_NEW(r->result.stress, (size_t)r->m->ns * r->msh->n_elem);
   if (r->m->effects & EFFECT_STRESS)
-    PASS_NEW(r->result.strain, (size_t)r->m->ns * (size_t)r->msh->n_elem);
+    PASS_NEW(r->result.strain, (size_t)r->m->ns * r->msh->n_elem);
   return OK;
 }
 

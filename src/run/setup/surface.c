@@ -34,12 +34,12 @@ static void node_bits(run *r) {
   for (int i = 0; i < r->msh->n_node; ++i) {
     unsigned bits = 0;
     for (int c = 0; c < dim; ++c)
-      bits |= (unsigned)(r->body.fixed[dim * i + c] != 0) << c;
+      bits |= (r->body.fixed[dim * i + c] != 0) << c;
     r->faces.node_fixed[i] = (unsigned char)bits;
   }
   /* A tied node moves with others, wholly. */
   for (int q = 0; q < r->body.ties.n; ++q)
-    r->faces.node_fixed[r->body.ties.node_id[q]] = (unsigned char)0xff;
+    r->faces.node_fixed[r->body.ties.node_id[q]] = 0xff;
 }
 
 static status build(run *r) {
@@ -158,10 +158,9 @@ static void add_node(const run *r, const mortar *m, int q, tie_set *t) {
     const size_t from = m->to.start[q] + e, to = t->to.start[row] + e;
     t->to.master[to] = m->to.master[from];
     for (int c = 0; c < dim; ++c)
-      t->to.part[(size_t)dim * to + (size_t)c] =
-          r->body.fixed[dim * m->node_id[q] + c]
-              ? 0.0
-              : m->to.part[(size_t)dim * from + (size_t)c];
+      t->to.part[dim * to + c] = r->body.fixed[dim * m->node_id[q] + c]
+                                     ? 0.0
+                                     : m->to.part[dim * from + c];
   }
 }
 
@@ -172,12 +171,11 @@ static status join(run *r, mortar *const *m) {
   size_t n_row = 0, n_part = 0;
   OWNED_NEW(int, next, n_tie);
   for (int i = 0; i < n_tie; ++i) {
-    n_row += (size_t)m[i]->n;
+    n_row += m[i]->n;
     n_part += m[i]->to.start[m[i]->n];
   }
   PASS_NEW_ALL(OF(t->node_id, n_row), OF(t->to.start, n_row + 1),
-               OF(t->to.master, n_part),
-               OF(t->to.part, (size_t)r->msh->dim * n_part));
+               OF(t->to.master, n_part), OF(t->to.part, r->msh->dim * n_part));
   t->to.dim = r->msh->dim;
   while ((size_t)t->n < n_row) {
     int least = -1;

@@ -28,12 +28,12 @@ status coarser_new(coarser **out) {
 }
 
 static status new_arrays(const contact_surface *s, coarser_state *x) {
-  const size_t n = (size_t)s->n, all = (size_t)s->dim * n;
+  const size_t n = s->n, all = s->dim * n;
   PASS_NEW_ALL(OF(x->x, all), OF(x->contact_id, n), OF(x->gap, n));
   PASS_NEW_REALS(all, &x->traction, &x->slip);
   PASS_NEW(x->contact, n);
-  memcpy(x->x, s->x, all * sizeof *x->x);
-  memcpy(x->contact_id, s->contact_id, n * sizeof *x->contact_id);
+  COPY(x->x, s->x, all);
+  COPY(x->contact_id, s->contact_id, n);
   return OK;
 }
 
@@ -59,8 +59,8 @@ status coarser_add(coarser *c, const contact_surface *s,
   ADDED(coarser_state, x, c->state, c->n, c->capacity);
   *x = (coarser_state){.dim = s->dim, .n = s->n, .t = v->t};
   PASS(new_arrays(s, x));
-  memcpy(x->gap, v->gap, (size_t)s->n * sizeof *x->gap);
-  memcpy(x->contact, v->contact, (size_t)s->n * sizeof *x->contact);
+  COPY(x->gap, v->gap, s->n);
+  COPY(x->contact, v->contact, s->n);
   for (int i = 0; i < s->n; ++i) fill_node(s, v, i, x);
   return OK;
 }
@@ -171,7 +171,7 @@ status coarser_match(const coarser_state *x, const contact_surface *s,
   const int axis = longest_axis(x);
   OWNED_NEW(along, list, x->n);
   for (int i = 0; i < x->n; ++i) list[i] = (along){x->x[x->dim * i + axis], i};
-  qsort(list, (size_t)x->n, sizeof *list, by_place);
+  qsort(list, x->n, sizeof *list, by_place);
   for (int i = 0; i < s->n; ++i) nearest[i] = nearest_of(x, list, axis, s, i);
   return OK;
 }

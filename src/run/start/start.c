@@ -26,7 +26,7 @@ static status width_of(const hdf5_source *s, const char *name, long n,
 
 static status check_mesh(const hdf5_source *s, const mesh *msh) {
   static const char name[] = "/mesh/nodes";
-  size_t width, dim = (size_t)msh->dim;
+  size_t width, dim = msh->dim;
   long n = 0;
   OWNED_OF(double, x, source_reals(s, name, 0, 3L * msh->n_node, &n, &x));
   PASS(width_of(s, name, n, msh, &width));
@@ -46,7 +46,7 @@ static status check_mesh(const hdf5_source *s, const mesh *msh) {
 static status read_last(const hdf5_source *s, const mesh *msh, double *u,
                         double *t) {
   OWNED double *time = NULL, *all = NULL;
-  size_t width, dim = (size_t)msh->dim;
+  size_t width, dim = msh->dim;
   long n = 0, items = 0;
   PASS(source_reals(s, "/fields/time", 0, MOST_ITEMS, &n, &time));
   if (n < 1) RAISE(ERR_DECK, "%s has no record of fields", s->path);
@@ -87,13 +87,13 @@ status start_report_new(const mesh *msh, start_report *report) {
 static status set_line(const model *m, const mesh *msh, const initial *line,
                        double *u) {
   const mesh_group *g = &msh->group[line->group_id];
-  size_t dim = (size_t)msh->dim;
+  size_t dim = msh->dim;
   for (int k = 0; k < g->n_node; ++k) {
-    size_t node = (size_t)g->node_id[k];
+    size_t node = g->node_id[k];
     double x[3] = {0.0, 0.0, 0.0};
-    memcpy(x, msh->x + dim * node, dim * sizeof *x);
+    COPY(x, msh->x + dim * node, dim);
     double value = quantity_value(&line->value, x, 0.0);
-    u[dim * node + (size_t)line->component] = value;
+    u[dim * node + line->component] = value;
     if (isfinite(value)) continue;
     message_add(m->log, P2041, &line->at,
                 "*INITIAL CONDITIONS: component %d is %g at node %zu (%g, %g, "
@@ -134,9 +134,9 @@ const char *defect_text(defect_kind kind) {
 void start_stiffness(const domain *d, double *diagonal) {
   double B[6 * 12];
   int dim = d->mesh->dim, ns = d->ns, n_u = dim * (dim + 1);
-  memset(diagonal, 0, (size_t)dim * (size_t)d->mesh->n_node * sizeof *diagonal);
+  CLEAR(diagonal, (size_t)dim * d->mesh->n_node);
   for (int e = 0; e < d->mesh->n_elem; ++e) {
-    const double *E = d->E + (size_t)(ns * ns) * (size_t)d->section_id[e];
+    const double *E = d->E + (size_t)(ns * ns) * d->section_id[e];
     double w = element_strain(d, e, B);
     for (int k = 0; k < n_u; ++k) {
       const double *b = B + ns * k;
@@ -153,7 +153,7 @@ static void add_defect(start_report *report, int node_id, double size,
                        defect_kind kind) {
   if (!(size > report->defect[node_id])) return;
   report->defect[node_id] = size;
-  report->kind[node_id] = (unsigned char)kind;
+  report->kind[node_id] = kind;
 }
 
 /* Contact forces of the start: r = basis' (K u - F); a held unknown has none,
@@ -170,12 +170,12 @@ static status find_contact_forces(const start_input *in, double *rc) {
 static void test_balance(const start_input *in, const double *rc,
                          double *reaction, start_report *report) {
   int dim = in->mesh->dim;
-  size_t n_dof = (size_t)dim * (size_t)in->mesh->n_node;
-  memcpy(reaction, in->R, n_dof * sizeof *reaction);
+  size_t n_dof = (size_t)dim * in->mesh->n_node;
+  COPY(reaction, in->R, n_dof);
   if (in->surface != NULL) surface_spread(in->surface, -1.0, rc, reaction);
   if (in->ties != NULL) ties_share(in->ties, reaction);
   for (size_t k = 0; k < n_dof; ++k) {
-    int node_id = (int)(k / (size_t)dim);
+    int node_id = (int)(k / dim);
     if (in->fixed[k]) {
       add_defect(report, node_id, in->stiffness[k] * fabs(in->u[k] - in->ud[k]),
                  DEFECT_SUPPORT);
@@ -189,7 +189,7 @@ static void test_balance(const start_input *in, const double *rc,
 /* max(r_n, c (u_n - gap)), or the distance to the given force. */
 static double normal_defect(const start_input *in, const double *rc, int i) {
   const contact_problem *cp = in->cp;
-  size_t k = (size_t)in->surface->dim * (size_t)i;
+  size_t k = (size_t)in->surface->dim * i;
   double c = contact_diagonal(cp, cp->dim * i);
   if (in->given != NULL && in->given[i] >= 0.0)
     return fabs(rc[k] + in->given[i]);
@@ -201,7 +201,7 @@ static double side_defect(const contact_problem *cp, const double *uc,
                           const double *rc, int i) {
   double worst = 0.0;
   for (int a = 1; a < cp->dim; ++a) {
-    size_t k = (size_t)(cp->dim * i + a);
+    size_t k = cp->dim * i + a;
     double bound = cp->side_gap[(cp->dim - 1) * i + a - 1];
     double c = contact_diagonal(cp, (int)k), part = fabs(rc[k]);
     if (bound < HUGE_VAL) part = fabs(fmax(rc[k], c * (uc[k] - bound)));

@@ -28,9 +28,9 @@ void anchor_free(anchor *an) {
 /* R orthonormal, by Gram and Schmidt, twice for rounding. */
 static void orthonormalise(int m, int n, double *R) {
   for (int j = 0; j < n; ++j) {
-    double *v = R + (size_t)j * (size_t)m;
+    double *v = R + (size_t)j * m;
     for (int k = 0; k < 2 * j; ++k) {
-      const double *q = R + (size_t)(k % j) * (size_t)m;
+      const double *q = R + (size_t)(k % j) * m;
       cblas_daxpy(m, -cblas_ddot(m, q, 1, v, 1), q, 1, v, 1);
     }
     cblas_dscal(m, 1.0 / cblas_dnrm2(m, v, 1), v, 1);
@@ -60,11 +60,11 @@ static status find_stiffness(const contact_problem *cp, double *stiffness) {
 
 /* The motions that the operator knows. */
 static status known_modes(const contact_problem *cp, anchor *an) {
-  const size_t size = (size_t)cp->m * (size_t)cp->op->n_kernel;
+  const size_t size = (size_t)cp->m * cp->op->n_kernel;
   an->n_mode = cp->op->n_kernel;
   PASS_NEW_ALL(OF(an->R, size), OF(an->a, an->n_mode),
                OF(an->step, an->n_mode));
-  if (size > 0) memcpy(an->R, cp->op->kernel, size * sizeof *an->R);
+  if (size > 0) COPY(an->R, cp->op->kernel, size);
   return OK;
 }
 
@@ -72,11 +72,11 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
   OWNED int *pivot = NULL;
   int m = cp->m, rank = 0;
   OWNED double *work = NULL, *L = NULL, *scale = NULL;
-  const size_t size = (size_t)m * (size_t)m;
+  const size_t size = (size_t)m * m;
   if (an->R != NULL) return OK;
   if (cp->op != NULL) return known_modes(cp, an);
   PASS_NEW_ALL(OF(pivot, m), OF(work, 2 * m), OF(scale, m), OF(L, size));
-  memcpy(L, cp->A, size * sizeof *L);
+  COPY(L, cp->A, size);
   /* Pivots of a soft body are no rounding of those of a stiff one. */
   PASS(find_stiffness(cp, work));
   form_apply_scale(m, form_scale(m, work, scale), scale, L);
@@ -95,17 +95,17 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
 static status hold(const contact_problem *cp, anchor *an) {
   ENDS_BY(dense_free) dense d = {0};
   int m = cp->m, good = 0;
-  size_t size = (size_t)m * (size_t)m;
+  size_t size = (size_t)m * m;
   PASS(dense_new(m, &d));
-  memcpy(an->A, cp->A, size * sizeof *an->A);
+  COPY(an->A, cp->A, size);
   for (int k = 0; k < an->n_mode; ++k) {
-    const double *v = an->R + (size_t)k * (size_t)m;
+    const double *v = an->R + (size_t)k * m;
     cblas_dger(CblasColMajor, m, m, an->spring[k], v, 1, v, 1, an->A, m);
   }
-  memcpy(d.a, an->A, size * sizeof *d.a);
+  COPY(d.a, an->A, size);
   PASS(form_invert(m, &d, &good));
   an->missing = !good;
-  memcpy(an->W, d.a, size * sizeof *d.a);
+  COPY(an->W, d.a, size);
   return OK;
 }
 
@@ -116,7 +116,7 @@ static status choose_springs(const contact_problem *cp, anchor *an) {
   PASS_NEW_ALL(OF(stiffness, cp->m), OF(an->spring, an->n_mode));
   PASS(find_stiffness(cp, stiffness));
   for (int k = 0; k < an->n_mode; ++k) {
-    const double *v = an->R + (size_t)k * (size_t)cp->m;
+    const double *v = an->R + (size_t)k * cp->m;
     for (int i = 0; i < cp->m; ++i) an->spring[k] += v[i] * v[i] * stiffness[i];
     an->spring[k] *= SOFT / cp->n;
   }
@@ -131,7 +131,7 @@ static status choose_springs(const contact_problem *cp, anchor *an) {
  */
 
 static double *mode_of(const anchor *an, int m, int k) {
-  return an->R + (size_t)m * (size_t)k;
+  return an->R + (size_t)m * k;
 }
 
 /* Au += R k R'u. */
@@ -162,7 +162,7 @@ static status held_rows(void *ctx, const known_rows *rows, int *singular) {
 static void held_solve(void *ctx, const double *b, double *x, double *Ax) {
   const anchor *an = ctx;
   const int m = an->m;
-  memcpy(an->y, b, (size_t)m * sizeof *an->y);
+  COPY(an->y, b, m);
   for (int k = 0; k < an->n_mode; ++k) {
     const double *v = mode_of(an, m, k);
     cblas_daxpy(m, -cblas_ddot(m, v, 1, an->y, 1), v, 1, an->y, 1);
@@ -195,7 +195,7 @@ static status hold_operator(const contact_problem *cp, anchor *an) {
 }
 
 status anchor_make(const contact_problem *cp, anchor *an) {
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   if (an->missing || an->made) return OK;
   an->missing = !contact_has_stiffness(cp) || cp->n == 0;
   if (an->missing) return OK;
@@ -233,14 +233,14 @@ typedef struct passes {
 /* The place of the body, R'u. */
 static void place(const anchor *an, int m, const double *u, double *a) {
   for (int k = 0; k < an->n_mode; ++k)
-    a[k] = cblas_ddot(m, an->R + (size_t)k * (size_t)m, 1, u, 1);
+    a[k] = cblas_ddot(m, an->R + (size_t)k * m, 1, u, 1);
 }
 
 /* The last move of unknown i, m. */
 static double move_of(const passes *p, int i) {
   double d = 0.0;
   for (int k = 0; k < p->an->n_mode; ++k)
-    d += p->an->step[k] * p->an->R[(size_t)i + (size_t)p->cp->m * (size_t)k];
+    d += p->an->step[k] * p->an->R[i + (size_t)p->cp->m * k];
   return d;
 }
 
@@ -283,8 +283,7 @@ static void follow(passes *p, const double *u) {
   const anchor *an = p->an;
   double apart = 0.0, size = 0.0;
   for (int k = 0; k < an->n_mode; ++k) {
-    double at =
-        cblas_ddot(p->cp->m, an->R + (size_t)k * (size_t)p->cp->m, 1, u, 1);
+    double at = cblas_ddot(p->cp->m, an->R + (size_t)k * p->cp->m, 1, u, 1);
     double step = at - an->a[k], turn = step - an->step[k];
     apart += turn * turn;
     size += step * step;
@@ -351,10 +350,10 @@ static outcome check(passes *p, double tol, const double *r, solver_report *rep,
 static contact_problem anchored(const passes *p) {
   const anchor *an = p->an;
   contact_problem own = *p->cp;
-  memcpy(an->f, p->cp->f, (size_t)own.m * sizeof *an->f);
+  COPY(an->f, p->cp->f, own.m);
   for (int k = 0; k < an->n_mode; ++k)
-    cblas_daxpy(own.m, an->spring[k] * p->an->a[k],
-                an->R + (size_t)k * (size_t)own.m, 1, an->f, 1);
+    cblas_daxpy(own.m, an->spring[k] * p->an->a[k], an->R + (size_t)k * own.m,
+                1, an->f, 1);
   anchor_put(an, &own);
   own.f = an->f;
   own.floating = 0;
@@ -368,8 +367,8 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
   solver_control own = *control;
   *rep = (solver_report){.outcome = RUNNING, .residual = 1.0};
   place(an, cp->m, u, an->a);
-  memset(an->step, 0, (size_t)an->n_mode * sizeof *an->step);
-  p.load = largest_entry((size_t)cp->m, cp->f);
+  CLEAR(an->step, an->n_mode);
+  p.load = largest_entry(cp->m, cp->f);
   for (int k = 0; k < PASSES && rep->outcome == RUNNING; ++k) {
     solver_report pass;
     contact_problem held = anchored(&p);

@@ -69,7 +69,7 @@ static int lacks_compliance(const contact_problem *cp, const solver_ops *ops) {
 
 /* All of a compliance given in blocks, for the others. */
 static status fill_up(contact_solver *s, contact_problem *cp) {
-  const size_t m = (size_t)cp->m;
+  const size_t m = cp->m;
   if (cp->blocks == NULL) return OK;
   if (s->full == NULL) {
     PASS(memory_require((double)(m * m * sizeof *s->full),
@@ -93,7 +93,7 @@ static status form_entries(contact_solver *s, contact_problem *cp,
     return OK;
   }
   if (s->full == NULL) {
-    PASS_NEW(s->full, (size_t)cp->m * (size_t)cp->m);
+    PASS_NEW(s->full, (size_t)cp->m * cp->m);
     contact_dense(cp, s->full);
   }
   cp->A = s->full;
@@ -322,8 +322,8 @@ status attempt_prove(contact_solver *s, const contact_problem *cp,
 /* Cold start: stick, no penetration; r = A u - f. */
 void cold_start(const contact_problem *cp, double *u, double *r) {
   if (!contact_has_stiffness(cp)) {
-    memset(r, 0, (size_t)cp->m * sizeof *r);
-    memcpy(u, cp->f, (size_t)cp->m * sizeof *u);
+    CLEAR(r, cp->m);
+    COPY(u, cp->f, cp->m);
     return;
   }
   for (int dof = 0; dof < cp->m; ++dof) {

@@ -89,7 +89,7 @@ static int touch(const contact_problem *cp, const double *u, const double *r,
   }
   for (int i = 0; i < cp->m; ++i) changed |= move[i] != 0.0;
   if (!changed) return 0;
-  memcpy(s, r, (size_t)cp->m * sizeof *s);
+  COPY(s, r, cp->m);
   if (contact_has_stiffness(cp)) contact_apply(cp, move, v);
   for (int i = 0; i < cp->m; ++i) {
     if (contact_has_stiffness(cp) && move[i] != 0.0) s[i] += v[i];
@@ -254,9 +254,9 @@ static int known_answer(const contact_solver *s, const contact_problem *cp,
   rep->residual = contact_residual_at(cp, scale, u, r);
   if (rep->residual <= tol) return 1;
   if (scale == 0.0 || needs_no_force(cp, r)) {
-    memset(r, 0, (size_t)cp->m * sizeof *r);
-    memset(u, 0, (size_t)cp->m * sizeof *u);
-    if (!contact_has_stiffness(cp)) memcpy(u, cp->f, (size_t)cp->m * sizeof *u);
+    CLEAR(r, cp->m);
+    CLEAR(u, cp->m);
+    if (!contact_has_stiffness(cp)) COPY(u, cp->f, cp->m);
     rep->residual = contact_residual_at(cp, scale, u, r);
     return rep->residual <= tol;
   }

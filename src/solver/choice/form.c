@@ -24,7 +24,7 @@ double form_scale(int m, const double *diagonal, double *scale) {
 }
 
 void form_apply_scale(int m, double power, const double *scale, double *M) {
-  const size_t n = (size_t)m;
+  const size_t n = m;
   for (size_t j = 0; j < n; ++j)
     for (size_t i = 0; i < n; ++i) M[i + n * j] *= power * scale[i] * scale[j];
 }
@@ -32,7 +32,7 @@ void form_apply_scale(int m, double power, const double *scale, double *M) {
 status form_invert(int m, dense *d, int *good) {
   OWNED_NEW(double, scale, m);
   d->n = m;
-  for (int i = 0; i < m; ++i) d->work[i] = d->a[(size_t)i * (size_t)(m + 1)];
+  for (int i = 0; i < m; ++i) d->work[i] = d->a[(size_t)i * (m + 1)];
   const double power = form_scale(m, d->work, scale);
   d->full = !dense_is_symmetric(m, d->a, SYMMETRIC / power);
   form_apply_scale(m, power, scale, d->a);
@@ -75,7 +75,7 @@ void other_form_free(other_form *o) {
  */
 /* Unknown number i of the tangential ones. */
 static size_t tangent_dof(int dim, int i) {
-  return (size_t)(i / (dim - 1) * dim + 1 + i % (dim - 1));
+  return i / (dim - 1) * dim + 1 + i % (dim - 1);
 }
 
 /* A_tt = L L'/power, borrowed. */
@@ -110,9 +110,8 @@ static status opened_new(const contact_problem *cp, const tangent_factor *by,
   o->dim = cp->dim;
   o->nt = cp->m - cp->n;
   PASS_NEW_ALL(OF(o->made, o->n), OF(o->column, cp->n),
-               OF(o->Y, (size_t)o->nt * (size_t)o->n),
-               OF(o->S, (size_t)o->n * (size_t)o->n),
-               OF(o->F, (size_t)o->n * (size_t)o->n), OF(o->v, o->n),
+               OF(o->Y, (size_t)o->nt * o->n), OF(o->S, (size_t)o->n * o->n),
+               OF(o->F, (size_t)o->n * o->n), OF(o->v, o->n),
                OF(o->open, cp->n), OF(o->is_open, cp->n), OF(o->u0, cp->m),
                OF(o->r0, cp->m), OF(o->du, cp->m), OF(o->dr, cp->m),
                OF(o->y, o->nt));
@@ -122,13 +121,13 @@ static status opened_new(const contact_problem *cp, const tangent_factor *by,
 
 /* The columns made so far, saved or read. */
 static status opened_keep(opened *o, archive *a) {
-  size_t capacity = (size_t)o->n;
+  size_t capacity = o->n;
   PASS(archive_ints(a, "n_made", &o->n_made, 1));
   if (o->n_made < 0 || o->n_made > o->n)
     RAISE(ERR_FILE, "the restart file is damaged: columns have other sizes");
   PASS(archive_ints(a, "made", o->made, capacity));
-  PASS(archive_ints(a, "column", o->column, (size_t)o->n));
-  PASS(archive_reals(a, "Y", o->Y, (size_t)o->nt * (size_t)o->n_made));
+  PASS(archive_ints(a, "column", o->column, o->n));
+  PASS(archive_reals(a, "Y", o->Y, (size_t)o->nt * o->n_made));
   return archive_reals(a, "S", o->S, capacity * capacity);
 }
 
@@ -142,7 +141,7 @@ static void release_tangents(opened *o, const double *r, double *u) {
 }
 
 static void close_all(opened *o, const contact_problem *cp) {
-  memset(o->u0, 0, (size_t)cp->m * sizeof *o->u0);
+  CLEAR(o->u0, cp->m);
   for (int i = 0; i < cp->n; ++i) o->u0[i * cp->dim] = cp->gap[i];
   contact_reaction(cp, o->u0, o->r0);
   release_tangents(o, o->r0, o->u0);
@@ -154,33 +153,31 @@ static void close_all(opened *o, const contact_problem *cp) {
 /* Of the open nodes that have none. */
 static void make_columns(opened *o, const contact_problem *cp) {
   int first = o->n_made, nt = o->nt, capacity = o->n;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   for (int a = 0; a < o->n_open; ++a) {
     if (o->column[o->open[a]] >= 0) continue;
     o->column[o->open[a]] = o->n_made;
     o->made[o->n_made] = o->open[a];
-    const double *column = cp->A + m * (size_t)(o->open[a] * o->dim);
-    double *to = o->Y + (size_t)nt * (size_t)o->n_made++;
+    const double *column = cp->A + m * (o->open[a] * o->dim);
+    double *to = o->Y + (size_t)nt * o->n_made++;
     for (int i = 0; i < nt; ++i)
       to[i] = o->by.power * column[tangent_dof(o->dim, i)];
   }
   int fresh = o->n_made - first;
   if (fresh == 0) return;
-  double *Y = o->Y + (size_t)nt * (size_t)first;
+  double *Y = o->Y + (size_t)nt * first;
   cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit,
               nt, fresh, 1.0, o->by.L, nt, Y, nt);
   for (int b = first; b < o->n_made; ++b)
     for (int a = 0; a < o->n_made; ++a)
-      o->S[(size_t)a + (size_t)capacity * (size_t)b] =
-          cp->A[(size_t)(o->made[a] * o->dim) +
-                m * (size_t)(o->made[b] * o->dim)];
+      o->S[a + (size_t)capacity * b] =
+          cp->A[o->made[a] * o->dim + m * (o->made[b] * o->dim)];
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, o->n_made, fresh, nt,
               -1.0 / o->by.power, o->Y, nt, Y, nt, 1.0,
-              o->S + (size_t)capacity * (size_t)first, capacity);
+              o->S + (size_t)capacity * first, capacity);
   for (int b = first; b < o->n_made; ++b)
     for (int a = 0; a < first; ++a)
-      o->S[(size_t)b + (size_t)capacity * (size_t)a] =
-          o->S[(size_t)a + (size_t)capacity * (size_t)b];
+      o->S[b + (size_t)capacity * a] = o->S[a + (size_t)capacity * b];
 }
 
 /* ---- steps --------------------------------------------------------------- */
@@ -189,10 +186,9 @@ static void make_columns(opened *o, const contact_problem *cp) {
 static int open_up(opened *o) {
   int n = o->n_open;
   for (int b = 0; b < n; ++b) {
-    const double *column = o->S + (size_t)o->n * (size_t)o->column[o->open[b]];
+    const double *column = o->S + (size_t)o->n * o->column[o->open[b]];
     for (int a = b; a < n; ++a)
-      o->F[(size_t)a + (size_t)n * (size_t)b] =
-          o->by.power * column[o->column[o->open[a]]];
+      o->F[a + (size_t)n * b] = o->by.power * column[o->column[o->open[a]]];
     o->v[b] = -o->by.power * o->r0[o->open[b] * o->dim];
   }
   if (n == 0) return 1;
@@ -203,12 +199,12 @@ static int open_up(opened *o) {
 
 /* du, dr of v. */
 static void displace(opened *o, const contact_problem *cp) {
-  size_t m = (size_t)cp->m, bytes = m * sizeof *o->du;
+  size_t m = cp->m, bytes = m * sizeof *o->du;
   memset(o->du, 0, bytes);
   memset(o->dr, 0, bytes);
   if (o->n_open == 0) return;
   for (int a = 0; a < o->n_open; ++a) {
-    size_t dof = (size_t)(o->open[a] * o->dim);
+    size_t dof = o->open[a] * o->dim;
     o->du[dof] = o->v[a];
     cblas_daxpy(cp->m, o->v[a], cp->A + m * dof, 1, o->dr, 1);
   }
@@ -223,7 +219,7 @@ static int next_states(opened *o, const contact_problem *cp, double margin,
   int changes = 0;
   *worst = 0.0;
   for (int i = 0; i < o->n; ++i) {
-    size_t dof = (size_t)(i * o->dim);
+    size_t dof = i * o->dim;
     double wrong = o->is_open[i] ? contact_diagonal(cp, (int)dof) * o->du[dof]
                                  : o->r0[dof] + o->dr[dof];
     *worst = fmax(*worst, wrong);
@@ -243,7 +239,7 @@ static void list_open(opened *o) {
 static void begin(opened *o, const contact_problem *cp, const double *u,
                   const double *r) {
   for (int i = 0; i < cp->n; ++i) {
-    size_t dof = (size_t)(i * cp->dim);
+    size_t dof = i * cp->dim;
     double over = contact_diagonal(cp, (int)dof) * (u[dof] - cp->gap[i]);
     o->is_open[i] = !(r[dof] <= over) && !(r[dof] == 0.0 && u[dof] == 0.0);
   }
@@ -252,7 +248,7 @@ static void begin(opened *o, const contact_problem *cp, const double *u,
 /* The solution into u, r; tensile forces are set to zero. */
 static void finish(const opened *o, const contact_problem *cp, double *u,
                    double *r) {
-  memset(r, 0, (size_t)cp->m * sizeof *r);
+  CLEAR(r, cp->m);
   for (int i = 0; i < cp->m; ++i) u[i] = o->u0[i] + o->du[i];
   for (int i = 0; i < cp->n; ++i)
     if (!o->is_open[i])
@@ -307,13 +303,12 @@ void normal_form_free(normal_form *nf) {
  * the result does not solve the problem, which the residual shows. */
 static int factor_tangents(normal_form *nf, const contact_problem *cp) {
   int nt = cp->m - cp->n, d = cp->dim;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   nf->power = dense_power(cp->m, cp->A);
   for (int j = 0; j < nt; ++j) {
     const double *column = cp->A + m * tangent_dof(d, j);
     for (int i = j; i < nt; ++i)
-      nf->L[(size_t)i + (size_t)nt * (size_t)j] =
-          nf->power * column[tangent_dof(d, i)];
+      nf->L[i + (size_t)nt * j] = nf->power * column[tangent_dof(d, i)];
   }
   return LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', nt, nf->L, nt) == 0;
 }
@@ -321,14 +316,12 @@ static int factor_tangents(normal_form *nf, const contact_problem *cp) {
 /* Y and S. */
 static void condense_tangents(normal_form *nf, const contact_problem *cp) {
   int n = cp->n, nt = cp->m - n, d = cp->dim;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   for (int j = 0; j < n; ++j) {
-    const double *column = cp->A + m * (size_t)(j * d);
+    const double *column = cp->A + m * (j * d);
     for (int i = 0; i < nt; ++i)
-      nf->Y[(size_t)i + (size_t)nt * (size_t)j] =
-          nf->power * column[tangent_dof(d, i)];
-    for (int i = 0; i < n; ++i)
-      nf->S[(size_t)i + (size_t)n * (size_t)j] = column[i * d];
+      nf->Y[i + (size_t)nt * j] = nf->power * column[tangent_dof(d, i)];
+    for (int i = 0; i < n; ++i) nf->S[i + (size_t)n * j] = column[i * d];
   }
   cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit,
               nt, n, 1.0, nf->L, nt, nf->Y, nt);
@@ -338,7 +331,7 @@ static void condense_tangents(normal_form *nf, const contact_problem *cp) {
 }
 
 static status factor(normal_form *nf, const contact_problem *cp) {
-  size_t nt = (size_t)(cp->m - cp->n);
+  size_t nt = cp->m - cp->n;
   if (nf->L != NULL) return OK;
   PASS_NEW_ALL(OF(nf->L, nt * nt), OF(nf->y, cp->m));
   nf->missing = !factor_tangents(nf, cp);
@@ -346,7 +339,7 @@ static status factor(normal_form *nf, const contact_problem *cp) {
 }
 
 static status condense_form(normal_form *nf, const contact_problem *cp) {
-  size_t n = (size_t)cp->n, nt = (size_t)cp->m - n;
+  size_t n = cp->n, nt = cp->m - n;
   if (nf->S != NULL) return OK;
   PASS_NEW_ALL(OF(nf->S, n * n), OF(nf->Y, nt * n), OF(nf->f, n), OF(nf->u, n),
                OF(nf->r, n));
@@ -369,7 +362,7 @@ static void set_load(normal_form *nf, const contact_problem *cp) {
 static void settle(const normal_form *nf, const contact_problem *cp, double *u,
                    double *r) {
   int n = cp->n, nt = cp->m - n, d = cp->dim;
-  memset(r, 0, (size_t)cp->m * sizeof *r);
+  CLEAR(r, cp->m);
   for (int i = 0; i < n; ++i) r[i * d] = nf->r[i];
   cblas_dgemv(CblasColMajor, CblasNoTrans, nt, n, -1.0, nf->Y, nt, nf->u, 1,
               1.0, nf->y, 1);

@@ -58,7 +58,7 @@ static double force_of(const contact_problem *cp, const double *v,
                        double *workspace) {
   double force = 0.0, size = 0.0;
   contact_apply(cp, v, workspace);
-  for (size_t i = 0, m = (size_t)cp->m; i < m; ++i) {
+  for (size_t i = 0, m = cp->m; i < m; ++i) {
     force = fmax(force, fabs(workspace[i]));
     size = fmax(size, contact_diagonal(cp, (int)i) * fabs(v[i]));
   }
@@ -82,7 +82,7 @@ static int motion_is_proof(const contact_problem *cp, const double *v,
 static double respond(const contact_problem *cp, const double *l, double *v,
                       double *column) {
   double most = 0.0;
-  for (size_t j = 0, m = (size_t)cp->m; j < m; ++j) {
+  for (size_t j = 0, m = cp->m; j < m; ++j) {
     double terms = 0.0;
     contact_column(cp, (int)j, column);
     v[j] = 0.0;
@@ -135,15 +135,10 @@ typedef struct balance {
 } balance;
 
 static status balance_new(balance *s) {
-  size_t m = (size_t)s->cp->m;
+  size_t m = s->cp->m;
   PASS(nonnegative_new(s->an->n_mode + 1, &s->sum));
   PASS_NEW_ALL(OF(s->v, m), OF(s->c, 3 * m), OF(s->force, m), OF(s->lift, m));
   return OK;
-}
-
-static void balance_free(balance *s) {
-  nonnegative_free(&s->sum);
-  RELEASE(s->v, s->c, s->force, s->lift);
 }
 
 /* Friction of node i against v, times "limit", added to the force. */
@@ -178,7 +173,7 @@ static double best_column(balance *s, double *to) {
     if (s->c[dof] > s->c[best]) best = dof;
   double of_limit = held_by_limit(cp, slip) / s->unit + s->sum.rest[k];
   int limit = of_limit > s->c[best];
-  memset(s->force, 0, (size_t)m * sizeof *s->force);
+  CLEAR(s->force, m);
   if (!limit) set_push(s, best);
   for (int i = 0; limit && cp->g0 != NULL && i < cp->n; ++i)
     add_friction(s, i, cp->g0[i] / s->unit);
@@ -217,7 +212,8 @@ static int is_proof(balance *s, double gain) {
 /* *proved: the load on the modes cannot be balanced. */
 static status find_motion(const contact_problem *cp, const anchor *an,
                           int *proved) {
-  ENDS_BY(balance_free) balance s = {.cp = cp, .an = an};
+  SCRATCH;
+  balance s = {.cp = cp, .an = an};
   double *column, *b, size, gain, before = HUGE_VAL;
   PASS(balance_new(&s));
   b = s.sum.b;
@@ -247,17 +243,16 @@ static status find_motion(const contact_problem *cp, const anchor *an,
 static status find_forces(const contact_problem *cp, int *proved) {
   OWNED double *M = NULL, *q = NULL, *y = NULL, *l = NULL, *work = NULL;
   int n = 0;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   lcp_report rep;
   OWNED_NEW(int, id, m);
   for (int dof = 0; dof < cp->m; ++dof)
     if (contact_bound(cp, dof) < HUGE_VAL) id[n++] = dof;
-  PASS_NEW_ALL(OF(M, (size_t)n * (size_t)n), OF(q, n), OF(y, n), OF(l, m),
+  PASS_NEW_ALL(OF(M, (size_t)n * n), OF(q, n), OF(y, n), OF(l, m),
                OF(work, 3 * m));
   for (int j = 0; j < n; ++j) {
     contact_column(cp, id[j], work);
-    for (int i = 0; i < n; ++i)
-      M[(size_t)i + (size_t)n * (size_t)j] = work[id[i]];
+    for (int i = 0; i < n; ++i) M[i + (size_t)n * j] = work[id[i]];
   }
   for (int i = 0; i < n; ++i) q[i] = contact_bound(cp, id[i]) - cp->f[id[i]];
   PASS(lcp_lemke(n, M, q, 0, y, &rep));

@@ -23,10 +23,6 @@ typedef struct rest {
   double *q, *x;         /* [k] factors; x = L'(q - those without obstacles) */
 } rest;
 
-static void rest_free(rest *s) {
-  RELEASE(s->forced, s->V, s->W, s->L, s->q, s->x);
-}
-
 /* ---- motions that no force opposes --------------------------------------- */
 
 static int body_of(const contact_problem *cp, int node) {
@@ -76,12 +72,12 @@ static status find_motions(rest *s, const double *Q, int n) {
 /* W: what u of all nodes is more where that of the contact is V more. */
 static status find_fields(rest *s) {
   OWNED double *moved = NULL;
-  const double unit = 1.0 / power_to_one(largest_entry((size_t)s->m, s->u));
-  PASS_NEW_ALL(OF(moved, s->m), OF(s->W, s->at->n_dof * (size_t)s->k));
+  const double unit = 1.0 / power_to_one(largest_entry(s->m, s->u));
+  PASS_NEW_ALL(OF(moved, s->m), OF(s->W, s->at->n_dof * s->k));
   for (int j = 0; j < s->k; ++j) {
-    double *W = s->W + s->at->n_dof * (size_t)j;
-    memcpy(moved, s->u, (size_t)s->m * sizeof *moved);
-    cblas_daxpy(s->m, unit, s->V + (size_t)s->m * (size_t)j, 1, moved, 1);
+    double *W = s->W + s->at->n_dof * j;
+    COPY(moved, s->u, s->m);
+    cblas_daxpy(s->m, unit, s->V + (size_t)s->m * j, 1, moved, 1);
     PASS(condense_recover(s->at->c, moved, W));
     for (size_t i = 0; i < s->at->n_dof; ++i)
       W[i] = (W[i] - s->at->now[i]) / unit;
@@ -93,8 +89,8 @@ static status find_fields(rest *s) {
 static int is_loaded(const rest *s) {
   const size_t n = s->at->n_dof;
   for (int j = 0; j < s->k; ++j) {
-    const double *W = s->W + n * (size_t)j, most = largest_entry(n, W);
-    const size_t dim = (size_t)s->cp->dim;
+    const double *W = s->W + n * j, most = largest_entry(n, W);
+    const size_t dim = s->cp->dim;
     double work = 0.0, load = 0.0;
     for (size_t i = 0; i < n; i += dim) { /* the nodes that move */
       if (!(largest_entry(dim, W + i) > BALANCED * most)) continue;
@@ -114,7 +110,7 @@ static int find_free(rest *s) {
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, k, n, 1.0, s->W, n, 0.0,
               s->L, k);
   for (int j = 0; j < k; ++j) {
-    const double *W = s->W + s->at->n_dof * (size_t)j;
+    const double *W = s->W + s->at->n_dof * j;
     s->q[j] =
         cblas_ddot(n, W, 1, s->at->old, 1) - cblas_ddot(n, W, 1, s->at->now, 1);
   }
@@ -149,14 +145,14 @@ static int next_column(const rest *s, double unit, const double *left,
     if (!(work > MARGIN * cblas_dnrm2(s->k + 1, side, 1)) || work <= most)
       continue;
     most = work;
-    memcpy(next, side, (size_t)(s->k + 1) * sizeof *next);
+    COPY(next, side, (s->k + 1));
   }
   return most > 0.0;
 }
 
 /* q <- the nearest that no bound forbids. */
 static status keep_out(rest *s) {
-  ENDS_BY(nonnegative_free) nonnegative sum = {0};
+  nonnegative sum;
   double unit = 0.0;
   const int k = s->k;
   for (int i = 0; i < s->m; ++i) unit = fmax(unit, beyond(s, i));
@@ -184,7 +180,7 @@ static void put(rest *s) {
 }
 
 status rest_find(const rest_scene *at, double *u, const double *f, int *moved) {
-  ENDS_BY(rest_free)
+  SCRATCH;
   rest s = {.at = at, .cp = at->cp, .u = u, .f = f, .m = at->cp->m};
   const double *Q;
   const int n = condensed_motions(at->c, &Q);

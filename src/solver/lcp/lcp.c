@@ -31,18 +31,18 @@ typedef struct plain {
 static void plain_product(const void *ctx, int n_id, const int *id,
                           const double *x, double *y) {
   const plain *m = ctx;
-  size_t n = (size_t)m->n;
-  memset(y, 0, n * sizeof *y);
+  size_t n = m->n;
+  CLEAR(y, n);
   for (int k = 0; k < n_id; ++k)
     if (x[k] != 0.0)
-      cblas_daxpy(m->n, m->factor * x[k], m->M + n * (size_t)id[k], 1, y, 1);
+      cblas_daxpy(m->n, m->factor * x[k], m->M + n * id[k], 1, y, 1);
 }
 
 static void plain_row(const void *ctx, int i, int n_id, const int *id,
                       double *row) {
   const plain *m = ctx;
   for (int k = 0; k < n_id; ++k)
-    row[k] = m->factor * m->M[(size_t)i + (size_t)m->n * (size_t)id[k]];
+    row[k] = m->factor * m->M[i + (size_t)m->n * id[k]];
 }
 
 static double plain_residual(int n, const double *M, const double *q,
@@ -50,7 +50,7 @@ static double plain_residual(int n, const double *M, const double *q,
   double worst = 0.0;
   for (size_t i = 0; i < (size_t)n; ++i) {
     double sum = q[i];
-    for (size_t j = 0; j < (size_t)n; ++j) sum += M[i + (size_t)n * j] * z[j];
+    for (size_t j = 0; j < (size_t)n; ++j) sum += M[i + n * j] * z[j];
     double violation = fabs(fmin(sum, z[i]));
     if (!(violation <= worst)) worst = violation;
   }
@@ -60,7 +60,7 @@ static double plain_residual(int n, const double *M, const double *q,
 status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
                  double *z, lcp_report *rep) {
   OWNED double *d = NULL;
-  plain m = {n, M, power_to_one(largest_entry((size_t)n * (size_t)n, M))};
+  plain m = {n, M, power_to_one(largest_entry((size_t)n * n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
   OWNED_OF(lcp_work, w, lcp_new(n, n, &w));
   PASS_NEW(d, n);
@@ -148,8 +148,7 @@ static double lcp_largest(int n, const double *x) {
 static void measure_inverse(lcp_work *w) {
   w->size_K = 0.0;
   for (int b = 0; b < w->s; ++b)
-    w->size_K =
-        fmax(w->size_K, lcp_largest(w->s, w->K + (size_t)b * (size_t)w->cap));
+    w->size_K = fmax(w->size_K, lcp_largest(w->s, w->K + (size_t)b * w->cap));
 }
 
 /* z = -K q_row, w = q + M z, with one correction of the defect of the rows.
@@ -205,7 +204,7 @@ static double lcp_direction(lcp_work *w, const lcp_problem *p) {
     for (int b = 0; b < s; ++b) w->gather[b] = -w->column[w->row[b]];
     lcp_apply_inverse(w, w->gather, w->enter.dz);
   } else {
-    COPY(w->enter.dz, w->K + (size_t)w->at_w[-1 - k] * (size_t)w->cap, s);
+    COPY(w->enter.dz, w->K + (size_t)w->at_w[-1 - k] * w->cap, s);
   }
   for (int pass = 0; pass < 2; ++pass) {
     lcp_expand(w, p, w->enter.dz, w->enter.dw);
@@ -316,8 +315,7 @@ static int split_ties(lcp_work *w, const lcp_problem *p, int j, int n_tie) {
       if (w->tie[i] != w->cap + j) w->tie[kept++] = w->tie[i];
     return kept > 0 ? kept : n_tie;
   }
-  for (int a = 0; a < w->s; ++a)
-    w->enter.lz[a] = -w->K[(size_t)a + (size_t)b * (size_t)w->cap];
+  for (int a = 0; a < w->s; ++a) w->enter.lz[a] = -w->K[a + (size_t)b * w->cap];
   for (int i = 0; i < n_tie; ++i) any_w = any_w || w->tie[i] >= w->cap;
   size_w = size_z = lcp_largest(w->s, w->enter.lz);
   if (any_w) {
@@ -369,7 +367,7 @@ static void rank_one(lcp_work *w, double factor, const double *x,
 /* z_k enters, w_j leaves: P gets a row and a column. */
 static void border(lcp_work *w, const lcp_problem *p, int k, int j) {
   int s = w->s;
-  size_t ld = (size_t)w->cap, last = (size_t)s;
+  size_t ld = w->cap, last = s;
   double pivot = w->enter.dw[j];
   row_times_inverse(w, p, j);
   rank_one(w, -1.0 / pivot, w->enter.dz, w->gather);
@@ -426,15 +424,15 @@ static void swap_columns(lcp_work *w, int a, int b) {
 /* The w at place b enters, the z at place a leaves: P loses both. */
 static void shrink(lcp_work *w, int b, int a) {
   int last = w->s - 1;
-  size_t ld = (size_t)w->cap;
+  size_t ld = w->cap;
   double pivot = w->enter.dz[a];
   cblas_dcopy(w->s, w->K + a, w->cap, w->gather, 1);
-  memcpy(w->line, w->K + (size_t)b * ld, (size_t)w->s * sizeof *w->line);
+  COPY(w->line, w->K + b * ld, w->s);
   rank_one(w, -1.0 / pivot, w->line, w->gather);
   swap_columns(w, a, last);
   w->at_w[w->row[b]] = -1;
   if (b != last) {
-    COPY(w->K + (size_t)b * ld, w->K + (size_t)last * ld, last);
+    COPY(w->K + b * ld, w->K + last * ld, last);
     w->row[b] = w->row[last];
     w->at_w[w->row[b]] = b;
   }
@@ -474,13 +472,13 @@ status lcp_new(int n, int rank, lcp_work **out) {
   MAKES(lcp_work, w, out);
   int cap = w->cap = (rank < n ? rank : n) + 2;
   w->n = n;
-  PASS_NEW_ALL(
-      OF(w->K, (size_t)cap * (size_t)cap), OF(w->P, (size_t)cap * (size_t)cap),
-      OF(w->lapack, cap), OF(w->swap, cap), OF(w->var, cap), OF(w->row, cap),
-      OF(w->at_z, n + 1), OF(w->at_w, n), OF(w->z, cap), OF(w->w, n),
-      OF(w->enter.dz, cap), OF(w->enter.dw, n), OF(w->enter.lz, cap),
-      OF(w->enter.lw, n), OF(w->gather, cap), OF(w->line, cap),
-      OF(w->column, n), OF(w->q, n), OF(w->tie, n + cap), OF(w->key, n + cap));
+  PASS_NEW_ALL(OF(w->K, (size_t)cap * cap), OF(w->P, (size_t)cap * cap),
+               OF(w->lapack, cap), OF(w->swap, cap), OF(w->var, cap),
+               OF(w->row, cap), OF(w->at_z, n + 1), OF(w->at_w, n),
+               OF(w->z, cap), OF(w->w, n), OF(w->enter.dz, cap),
+               OF(w->enter.dw, n), OF(w->enter.lz, cap), OF(w->enter.lw, n),
+               OF(w->gather, cap), OF(w->line, cap), OF(w->column, n),
+               OF(w->q, n), OF(w->tie, n + cap), OF(w->key, n + cap));
   return OK;
 }
 
@@ -573,14 +571,14 @@ void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
 }
 
 void lcp_values(const lcp_work *w, double *z) {
-  memset(z, 0, (size_t)w->n * sizeof *z);
+  CLEAR(z, w->n);
   for (int a = 0; a < w->s; ++a)
     if (w->var[a] < w->n && w->z[a] > 0.0) z[w->var[a]] = w->z[a] * w->power;
 }
 
 double lcp_ray(const lcp_work *w, double *y) {
   double y0 = 0.0;
-  memset(y, 0, (size_t)w->n * sizeof *y);
+  CLEAR(y, w->n);
   for (int a = 0; a < w->s; ++a) {
     if (w->var[a] == w->n)
       y0 = w->enter.dz[a];
@@ -594,7 +592,7 @@ double lcp_ray(const lcp_work *w, double *y) {
 int lcp_row_is_tight(const lcp_work *w, int i) { return w->at_w[i] >= 0; }
 
 void lcp_correction(lcp_work *w, const double *defect, double *dz) {
-  memset(dz, 0, (size_t)w->n * sizeof *dz);
+  CLEAR(dz, w->n);
   for (int b = 0; b < w->s; ++b) w->gather[b] = -defect[w->row[b]];
   lcp_apply_inverse(w, w->gather, w->line);
   for (int a = 0; a < w->s; ++a)

@@ -19,19 +19,19 @@
 static const double GOOD = 0x1p-7; /* -, of the largest entry of the row */
 
 static double entry(int n, const double *M, int i, int j) {
-  return M[(size_t)i + (size_t)n * (size_t)j];
+  return M[i + (size_t)n * j];
 }
 
 /* y_r and x_c of y = q + M x change places. row[n] */
 static void exchange(int n, int r, int c, double *M, double *q, double *row) {
-  size_t ld = (size_t)n;
-  double *column = M + ld * (size_t)c, pivot = column[r], q_r = q[r];
+  size_t ld = n;
+  double *column = M + ld * c, pivot = column[r], q_r = q[r];
   cblas_dcopy(n, M + r, n, row, 1);
   cblas_dscal(n, 1.0 / pivot, column, 1);
   for (int j = 0; j < n; ++j)
-    if (j != c) cblas_daxpy(n, -row[j], column, 1, M + ld * (size_t)j, 1);
+    if (j != c) cblas_daxpy(n, -row[j], column, 1, M + ld * j, 1);
   cblas_daxpy(n, -q_r, column, 1, q, 1);
-  for (int j = 0; j < n; ++j) M[(size_t)r + ld * (size_t)j] = -row[j] / pivot;
+  for (int j = 0; j < n; ++j) M[r + ld * j] = -row[j] / pivot;
   column[r] = 1.0 / pivot;
   q[r] = -q_r / pivot;
 }
@@ -43,7 +43,7 @@ static int is_good(int n, const double *M, int i, int j) {
 
 static int draw(unsigned *seed, int count) {
   *seed = *seed * 1664525u + 1013904223u;
-  return (int)((double)(*seed >> 8) * 0x1p-24 * count);
+  return (int)((*seed >> 8) * 0x1p-24 * count);
 }
 
 /* Column to exchange with row i: i itself, or the partner j for which both
@@ -63,14 +63,14 @@ static int partner(int n, int i, unsigned *seed, const double *M,
 /* z_i, z_j with w_i, w_j by the entries next to the diagonal. */
 static void exchange_pair(int n, int i, int j, double *M, double *q,
                           double *row) {
-  size_t ld = (size_t)n;
+  size_t ld = n;
   exchange(n, i, j, M, q, row);
   exchange(n, j, i, M, q, row);
   double keep = q[i];
   q[i] = q[j];
   q[j] = keep;
   cblas_dswap(n, M + i, n, M + j, n);
-  cblas_dswap(n, M + ld * (size_t)i, 1, M + ld * (size_t)j, 1);
+  cblas_dswap(n, M + ld * i, 1, M + ld * j, 1);
 }
 
 void lcp_turn(int n, int want, unsigned *seed, double *M, double *q,
@@ -91,42 +91,38 @@ void lcp_turn(int n, int want, unsigned *seed, double *M, double *q,
 /* ---- Least squares without negative factors ----------------------------- */
 
 status nonnegative_new(int rows, nonnegative *s) {
-  size_t n = (size_t)rows;
+  size_t n = rows;
   *s = (nonnegative){.rows = rows};
   PASS_NEW_ALL(OF(s->b, n), OF(s->rest, n), OF(s->G, n * n), OF(s->Q, n * n),
                OF(s->x, n), OF(s->y, n), OF(s->work, 4 * n));
   return OK;
 }
 
-void nonnegative_free(nonnegative *s) {
-  RELEASE(s->b, s->rest, s->G, s->Q, s->x, s->y, s->work);
-}
-
 void nonnegative_begin(nonnegative *s) {
   s->n = 0;
-  memcpy(s->rest, s->b, (size_t)s->rows * sizeof *s->rest);
+  COPY(s->rest, s->b, s->rows);
 }
 
 double *nonnegative_next(const nonnegative *s) {
-  return s->n < s->rows ? s->G + (size_t)s->rows * (size_t)s->n : NULL;
+  return s->n < s->rows ? s->G + (size_t)s->rows * s->n : NULL;
 }
 
 /* y[n]: factors of the columns for b[rows] by least squares; 0: not possible.
  */
 static int fit(nonnegative *s, const double *b) {
   int rows = s->rows;
-  memcpy(s->Q, s->G, (size_t)rows * (size_t)s->n * sizeof *s->Q);
-  memcpy(s->y, b, (size_t)rows * sizeof *s->y);
+  COPY(s->Q, s->G, (size_t)rows * s->n);
+  COPY(s->y, b, rows);
   return LAPACKE_dgels_work(LAPACK_COL_MAJOR, 'N', rows, s->n, 1, s->Q, rows,
                             s->y, rows, s->work, 4 * rows) == 0;
 }
 
 static void drop(nonnegative *s, int j) {
-  size_t rows = (size_t)s->rows;
+  size_t rows = s->rows;
   --s->n;
-  memmove(s->G + rows * (size_t)j, s->G + rows * (size_t)(j + 1),
-          rows * (size_t)(s->n - j) * sizeof *s->G);
-  memmove(s->x + j, s->x + j + 1, (size_t)(s->n - j) * sizeof *s->x);
+  memmove(s->G + rows * j, s->G + rows * (j + 1),
+          rows * (s->n - j) * sizeof *s->G);
+  memmove(s->x + j, s->x + j + 1, (s->n - j) * sizeof *s->x);
 }
 
 /* From x towards y while no factor is negative; factors that become zero are
@@ -159,7 +155,7 @@ int nonnegative_take(nonnegative *s) {
   do {
     if (!fit(s, s->b)) return 0;
   } while (!go(s));
-  memcpy(s->rest, s->b, (size_t)s->rows * sizeof *s->rest);
+  COPY(s->rest, s->b, s->rows);
   subtract(s, s->x);
   if (s->n > 0 && fit(s, s->rest)) subtract(s, s->y);
   return 1;
@@ -179,7 +175,7 @@ int nonnegative_take(nonnegative *s) {
 
 /* Units that bring the diagonal to one, or the largest of row and column. */
 static double natural_unit(const lcp_data *p, size_t i) {
-  size_t n = (size_t)p->n;
+  size_t n = p->n;
   double largest = fabs(p->M[i + n * i]);
   for (size_t j = 0; j < n && largest == 0.0; ++j)
     largest = fmax(largest, fmax(fabs(p->M[i + n * j]), fabs(p->M[j + n * i])));
@@ -189,7 +185,7 @@ static double natural_unit(const lcp_data *p, size_t i) {
 enum { LCP_MOST_BASES = 14 /* unknowns of which all bases are tried */ };
 double lcp_residual(const lcp_data *p, const double *z, double *w) {
   double c = 0.0, scale = 0.0, worst = 0.0;
-  size_t n = (size_t)p->n;
+  size_t n = p->n;
   contact_product(p->n, p->M, z, w);
   for (size_t k = 0; k < n * n; ++k) c = fmax(c, fabs(p->M[k]));
   for (size_t i = 0; i < n; ++i) {
@@ -236,7 +232,7 @@ typedef struct newton_run {
 } newton_run;
 
 static status newton_new(newton_run *s) {
-  size_t n = (size_t)s->p->n;
+  size_t n = s->p->n;
   PASS_NEW_REALS(n, &s->size, &s->q, &s->z, &s->w, &s->phi, &s->a, &s->b, &s->d,
                  &s->g, &s->answer, &s->slack);
   PASS_NEW_ALL(OF(s->M, n * n), OF(s->J, n * n), OF(s->pivot, n),
@@ -246,14 +242,9 @@ static status newton_new(newton_run *s) {
   return OK;
 }
 
-static void newton_free(newton_run *s) {
-  RELEASE(s->size, s->q, s->z, s->w, s->phi, s->a, s->b, s->d, s->g, s->answer,
-          s->slack, s->M, s->J, s->pivot, s->basis, s->N, s->work);
-}
-
 /* Units that bring the largest of each row and column near one. */
 static void scale_problem(newton_run *s) {
-  size_t n = (size_t)s->p->n;
+  size_t n = s->p->n;
   double most = 0.0;
   for (size_t i = 0; i < n; ++i) {
     s->size[i] = natural_unit(s->p, i);
@@ -275,7 +266,7 @@ static int solves(newton_run *s) {
 
 /* M of the basis (1: z_i free) into s->J; its size. */
 static int gather_basis(newton_run *s) {
-  size_t n = (size_t)s->p->n, to = 0;
+  size_t n = s->p->n, to = 0;
   int k = 0;
   for (size_t j = 0; j < n; ++j) {
     k += s->basis[j];
@@ -310,7 +301,7 @@ static int nearest_solves(newton_run *s) {
   if (k == 0) return 0;
   for (int i = 0, row = 0; i < n; ++i)
     if (s->basis[i]) s->d[row++] = -s->slack[i];
-  memset(s->pivot, 0, (size_t)k * sizeof *s->pivot);
+  CLEAR(s->pivot, k);
   if (LAPACKE_dgelsy_work(LAPACK_COL_MAJOR, k, k, 1, s->J, k, s->d, k, s->pivot,
                           RANK, &rank, s->work, s->lwork) != 0)
     return 0;
@@ -329,7 +320,7 @@ static int basis_of_iterate_solves(newton_run *s) {
 /* w and phi at z; returns |phi|^2/2. */
 static double evaluate(newton_run *s) {
   int n = s->p->n;
-  memcpy(s->w, s->q, (size_t)n * sizeof *s->w);
+  COPY(s->w, s->q, n);
   cblas_dgemv(CblasColMajor, CblasNoTrans, n, n, 1.0, s->M, n, s->z, 1, 1.0,
               s->w, 1);
   for (int i = 0; i < n; ++i) {
@@ -348,7 +339,7 @@ static void regular_direction(newton_run *s) {
   for (int i = 0; i < n; ++i) s->d[i] = -s->g[i];
   cblas_dsyrk(CblasColMajor, CblasLower, CblasTrans, n, n, 1.0, s->J, n, 0.0,
               s->N, n);
-  for (int i = 0; i < n; ++i) s->N[(size_t)i * (size_t)(n + 1)] += size;
+  for (int i = 0; i < n; ++i) s->N[(size_t)i * (n + 1)] += size;
   LAPACKE_dposv_work(LAPACK_COL_MAJOR, 'L', n, 1, s->N, n, s->d, n);
 }
 
@@ -356,7 +347,7 @@ static void regular_direction(newton_run *s) {
  * g.d. */
 static double direction(newton_run *s) {
   int n = s->p->n;
-  size_t ld = (size_t)n;
+  size_t ld = n;
   for (int i = 0; i < n; ++i) {
     double length = hypot(s->z[i], s->w[i]);
     s->a[i] = (length > 0.0 ? s->z[i] / length : sqrt(0.5)) - 1.0;
@@ -370,7 +361,7 @@ static double direction(newton_run *s) {
   }
   cblas_dgemv(CblasColMajor, CblasTrans, n, n, 1.0, s->J, n, s->phi, 1, 0.0,
               s->g, 1);
-  memcpy(s->N, s->J, ld * ld * sizeof *s->N);
+  COPY(s->N, s->J, ld * ld);
   int fails = LAPACKE_dgesv_work(LAPACK_COL_MAJOR, n, 1, s->N, n, s->pivot,
                                  s->d, n) != 0;
   double slope = cblas_ddot(n, s->g, 1, s->d, 1);
@@ -416,7 +407,7 @@ static void start(newton_run *s, int k, unsigned *seed) {
   double size = ldexp(1.0, k / 3 % 10 - 2);
   for (int i = 0; i < s->p->n; ++i) {
     *seed = *seed * 1664525u + 1013904223u;
-    double random = (double)(*seed >> 8) * 0x1p-24;
+    double random = (*seed >> 8) * 0x1p-24;
     s->z[i] = k == 0   ? 0.0
               : k == 1 ? fmax(0.0, -s->q[i])
                        : fmax(0.0, size * (2.0 * random - 1.0));
@@ -427,7 +418,7 @@ static void start(newton_run *s, int k, unsigned *seed) {
  * tol. *steps grows. */
 static status lcp_newton(const lcp_data *p, const lcp_control *control,
                          double *z, int *steps, int *found) {
-  ENDS_BY(newton_free)
+  SCRATCH;
   newton_run s = {.p = p, .tol = control->tol, .most = control->max_iter};
   unsigned seed = 7;
   *found = 0;
@@ -440,15 +431,15 @@ static status lcp_newton(const lcp_data *p, const lcp_control *control,
     start(&s, k, &seed);
     *found = descend(&s, steps);
   }
-  if (*found) memcpy(z, s.answer, (size_t)p->n * sizeof *z);
+  if (*found) COPY(z, s.answer, p->n);
   return OK;
 }
 
 /* Column j of a basis: of w_j, or of z_j, in q = w - M z. */
 static void column_of(const newton_run *s, int j, double *to) {
-  size_t n = (size_t)s->p->n;
+  size_t n = s->p->n;
   for (size_t i = 0; i < n; ++i)
-    to[i] = s->basis[j] ? -s->M[i + n * (size_t)j] : (int)i == j;
+    to[i] = s->basis[j] ? -s->M[i + n * j] : (int)i == j;
 }
 
 /* 1: q is no sum of the columns of the basis, by a margin: a vector separates
@@ -456,7 +447,7 @@ static void column_of(const newton_run *s, int j, double *to) {
 static int excludes(newton_run *s, nonnegative *sum) {
   int n = s->p->n;
   double *column, *rest = sum->rest, before = HUGE_VAL;
-  memcpy(sum->b, s->q, (size_t)n * sizeof *sum->b);
+  COPY(sum->b, s->q, n);
   nonnegative_begin(sum);
   while ((column = nonnegative_next(sum)) != NULL) {
     double left = cblas_dnrm2(n, rest, 1), most = 0.0;
@@ -485,8 +476,9 @@ static void set_basis(newton_run *s, int set) {
  * there is none; STOPPED_STAGNATION: not known. */
 static status lcp_all_bases(const lcp_data *p, double tol, double *z,
                             outcome *end) {
-  ENDS_BY(newton_free) newton_run s = {.p = p, .tol = tol};
-  ENDS_BY(nonnegative_free) nonnegative sum = {0};
+  SCRATCH;
+  newton_run s = {.p = p, .tol = tol};
+  nonnegative sum;
   int found = 0, excluded = 1, n_set = 1 << p->n;
   *end = STOPPED_STAGNATION;
   PASS(newton_new(&s));
@@ -497,7 +489,7 @@ static status lcp_all_bases(const lcp_data *p, double tol, double *z,
   }
   if (found) {
     *end = CONVERGED;
-    memcpy(z, s.answer, (size_t)p->n * sizeof *z);
+    COPY(z, s.answer, p->n);
     return OK;
   }
   scale_problem(&s);
@@ -532,15 +524,11 @@ typedef struct run {
 } run;
 
 static status run_new(run *s) {
-  size_t n = (size_t)s->p->n;
+  size_t n = s->p->n;
   PASS_NEW_ALL(OF(s->try_z, n), OF(s->y, 2 * n), OF(s->cover, n),
                OF(s->size, n), OF(s->M, n * n), OF(s->q, n), OF(s->work, n),
                OF(s->turned, n));
   return OK;
-}
-
-static void run_free(run *s) {
-  RELEASE(s->try_z, s->y, s->cover, s->size, s->M, s->q, s->work, s->turned);
 }
 
 static void note(lcp_verdict *v, const char *who, outcome o) {
@@ -565,14 +553,13 @@ static int keep(run *s) {
 /* Positive numbers of a fixed series, [0.25, 4). */
 static double cover(unsigned *seed) {
   *seed = *seed * 1664525u + 1013904223u;
-  return ldexp(1.0 + (double)(*seed >> 8) * 0x1p-24,
-               (int)(*seed >> 6 & 3u) - 2);
+  return ldexp(1.0 + (*seed >> 8) * 0x1p-24, (int)(*seed >> 6 & 3u) - 2);
 }
 
 /* Attempt k: plain; in natural units; then with other covering vectors and
  * from other vertices. */
 static void choose(run *s, int k) {
-  size_t n = (size_t)s->p->n;
+  size_t n = s->p->n;
   for (size_t i = 0; i < n; ++i) {
     s->size[i] = k == 0 ? 1.0 : natural_unit(s->p, i);
     s->cover[i] = k < FIRST ? 1.0 : cover(&s->seed);
@@ -599,7 +586,7 @@ static int pivots_allowed(const run *s) {
 /* Lemke's method with a covering vector d is that of the rows over d with a
  * vector of ones. On a ray of the given problem y is its direction. */
 static status pivot_once(run *s, lcp_report *rep) {
-  size_t n = (size_t)s->p->n;
+  size_t n = s->p->n;
   double *slack = s->y + n;
   for (size_t i = 0; i < n; ++i) {
     cblas_dscal((int)n, 1.0 / s->cover[i], s->M + i, (int)n);
@@ -643,7 +630,7 @@ static status pivot(run *s, int first, int last, outcome *o) {
 /* 1: y >= 0, M'y <= 0, q'y < 0: for no z >= 0 is w >= 0, since
  * y'w = q'y + (M'y)'z < 0. */
 static int is_certificate(const lcp_data *p, const double *y) {
-  size_t n = (size_t)p->n;
+  size_t n = p->n;
   double work = 0.0, size = 0.0;
   for (size_t j = 0; j < n; ++j) {
     work += p->q[j] * y[j];
@@ -664,7 +651,7 @@ static int is_certificate(const lcp_data *p, const double *y) {
 /* Is there any z >= 0 with w >= 0? *proved = 1: no. The ray of the skew problem
  * is (z, y) with y the certificate. */
 static status look_for_proof(run *s, int *proved) {
-  size_t n = (size_t)s->p->n, m = 2 * n;
+  size_t n = s->p->n, m = 2 * n;
   OWNED double *K = NULL, *k = NULL, *ray = NULL;
   lcp_report rep;
   PASS_NEW_ALL(OF(K, m * m), OF(k, m), OF(ray, m));
@@ -674,7 +661,7 @@ static status look_for_proof(run *s, int *proved) {
       K[n + i + m * j] = a;
       K[j + m * (n + i)] = -a;
     }
-  memcpy(k + n, s->p->q, n * sizeof *k);
+  COPY(k + n, s->p->q, n);
   PASS(lcp_lemke((int)m, K, k, 0, ray, &rep));
   s->v->iterations += rep.pivots;
   *proved = rep.outcome == STOPPED_RAY && is_certificate(s->p, ray + n);
@@ -747,7 +734,7 @@ static status follow(run *s) {
 
 status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
                  double *w, lcp_verdict *v) {
-  ENDS_BY(run_free)
+  SCRATCH;
   run s = {.p = p, .control = control, .v = v, .z = z, .w = w, .seed = 1};
   *v = (lcp_verdict){.outcome = CONVERGED, .method = "lemke"};
   v->residual = lcp_residual(p, z, w);

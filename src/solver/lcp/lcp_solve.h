@@ -82,7 +82,6 @@ typedef struct nonnegative {
 } nonnegative;
 
 status nonnegative_new(int rows, nonnegative *s);
-void nonnegative_free(nonnegative *s);
 /* No column is taken yet; b is set. */
 void nonnegative_begin(nonnegative *s);
 /* Where the next column[rows] goes; NULL: already as many columns as rows. */

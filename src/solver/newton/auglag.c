@@ -122,7 +122,7 @@ static void tangent_force(auglag_run *s, int node_id) {
   }
   s->changes += now != w->mode[node_id];
   s->bent = s->bent || (now == SLIP && cp->dim == 3);
-  w->mode[node_id] = (unsigned char)now;
+  w->mode[node_id] = now;
 }
 
 /* z, F and the states from base (lambda, or y) and u. */
@@ -138,7 +138,7 @@ static void auglag_evaluate(auglag_run *s, const double *base) {
     contact_state now = w->z[dof] < 0.0 ? CLOSED : OPEN;
     if (now == CLOSED) w->F[dof] = w->z[dof];
     s->changes += now != w->closed[dof];
-    w->closed[dof] = (unsigned char)now;
+    w->closed[dof] = now;
   }
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) tangent_force(s, i);
   if (s->changes > 0 || s->bent) s->factored = 0;
@@ -172,8 +172,7 @@ static void auglag_take_states(auglag_run *s) {
     int differs = 0;
     for (int dof = node_id * dim; dof < (node_id + 1) * dim; ++dof) {
       int sign = auglag_slips(s, dof) && w->e[dof] > 0.0;
-      unsigned char now =
-          (unsigned char)(w->closed[dof] | w->mode[node_id] << 1 | sign << 3);
+      unsigned char now = w->closed[dof] | w->mode[node_id] << 1 | sign << 3;
       differs = differs || now != w->state[dof];
       w->state[dof] = now;
     }
@@ -270,26 +269,25 @@ static int newton_matrix(auglag_run *s, int n) {
   auglag_work *w = s->w;
   double *unit = w->z;
   int slipping = 0;
-  memset(unit, 0, (size_t)cp->m * sizeof *unit);
+  CLEAR(unit, cp->m);
   for (int j = 0; j < n; ++j) {
-    const double *column = cp->A + (size_t)cp->m * (size_t)w->free_id[j];
-    double *to = w->K + (size_t)n * (size_t)j;
+    const double *column = cp->A + (size_t)cp->m * w->free_id[j];
+    double *to = w->K + (size_t)n * j;
     for (int i = 0; i < n; ++i) to[i] = w->power * column[w->free_id[i]];
     slipping += auglag_slips(s, w->free_id[j]);
   }
   for (int j = 0; j < n && slipping > 0; ++j) {
     int dof = w->free_id[j];
-    const double *column = cp->A + (size_t)cp->m * (size_t)dof;
+    const double *column = cp->A + (size_t)cp->m * dof;
     unit[dof] = 1.0;
     for (int i = 0; i < n; ++i)
       if (auglag_slips(s, w->free_id[i]))
-        w->K[(size_t)i + (size_t)n * (size_t)j] =
+        w->K[i + (size_t)n * j] =
             w->power * newton_row(s, w->free_id[i], column, unit);
     unit[dof] = 0.0;
   }
   for (int i = 0; cp->floating && i < n; ++i)
-    w->K[(size_t)i * ((size_t)n + 1)] +=
-        w->power * SPRING * w->diagonal[w->free_id[i]];
+    w->K[i * ((size_t)n + 1)] += w->power * SPRING * w->diagonal[w->free_id[i]];
   return slipping;
 }
 
@@ -416,11 +414,11 @@ enum {
 static int uzawa_factor(auglag_run *s) {
   const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   for (int attempt = 0; attempt < 2; ++attempt) {
-    memcpy(w->K, cp->A, m * m * sizeof *w->K);
+    COPY(w->K, cp->A, m * m);
     for (int dof = 0; dof < cp->m; ++dof) {
-      double *column = w->K + m * (size_t)dof;
+      double *column = w->K + m * dof;
       if (auglag_is_fixed(s, dof)) column[dof] += auglag_rho(s, dof);
       if (attempt > 0) column[dof] += SPRING * w->diagonal[dof];
       int end = (dof / cp->dim + 1) * cp->dim;
@@ -601,7 +599,7 @@ enum { UZAWA_STEPS = 1000 /* Newton steps of all multiplier steps */ };
 
 /* Of A, also where a rigid motion makes it zero. */
 static void take_diagonal(const contact_problem *cp, double *diagonal) {
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   int d = cp->dim;
   double largest = 0.0;
   for (size_t i = 0; i < m; ++i) {
@@ -619,7 +617,7 @@ static void take_diagonal(const contact_problem *cp, double *diagonal) {
 
 /* Workspace of the matrix of a step. */
 static status new_matrix(const contact_problem *cp, auglag_work *w) {
-  const size_t m = (size_t)cp->m;
+  const size_t m = cp->m;
   if (cp->op != NULL) {
     PASS(operated_system_new(cp, &w->by.system));
     PASS(pattern_new(cp->dim, cp->n, &w->by.guess));
@@ -633,7 +631,7 @@ static status new_matrix(const contact_problem *cp, auglag_work *w) {
 static status auglag_setup(const contact_problem *cp, const void *par,
                            void *work) {
   auglag_work *w = work;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   w->m = cp->m;
   PASS_NEW_REALS(m, &w->origin, &w->diagonal, &w->lambda, &w->z, &w->F, &w->y,
                  &w->du, &w->dy, &w->e);
@@ -708,7 +706,7 @@ static status auglag_solve(const contact_problem *cp, const void *par,
 /* Changes of state are counted against the step before. */
 static status auglag_keep(void *work, archive *a) {
   auglag_work *w = work;
-  return archive_bytes(a, "state", w->state, (size_t)w->m);
+  return archive_bytes(a, "state", w->state, w->m);
 }
 
 /* clang-format off */

@@ -70,7 +70,7 @@ static int base_has_all(const compliance_system *s) {
 
 /* Mark the plain unknowns of the guess in y. */
 static void mark(compliance_system *s) {
-  memset(s->y, 0, (size_t)s->n_base * sizeof *s->y);
+  CLEAR(s->y, s->n_base);
   for (int i = 0; i < s->n; ++i)
     if (!s->list[i].turns) s->y[s->in_base[s->list[i].dof]] = 1.0;
 }
@@ -95,17 +95,17 @@ static double freed_cost(compliance_system *s) {
 }
 
 static void make_columns(compliance_system *s) {
-  size_t n = (size_t)s->n_base;
+  size_t n = s->n_base;
   int first = s->n_column;
   for (int c = 0; c < s->n_freed; ++c) {
     int a = s->freed[c];
     if (s->column[a] >= 0) continue;
     s->column[a] = s->n_column++;
-    double *x = s->X + n * (size_t)s->column[a];
-    memset(x, 0, n * sizeof *x);
+    double *x = s->X + n * s->column[a];
+    CLEAR(x, n);
     x[a] = 1.0;
   }
-  dense_solve(&s->K, s->n_column - first, s->X + n * (size_t)first, s->n_base);
+  dense_solve(&s->K, s->n_column - first, s->X + n * first, s->n_base);
 }
 
 /* Direction of friction at a slipping node, the first of its two rows in 3-D:
@@ -150,12 +150,12 @@ static double displacement_part(const compliance_system *s, int a, int other) {
 }
 
 static void small_system(compliance_system *s) {
-  size_t n = (size_t)s->n_base, k = (size_t)s->n_freed;
+  size_t n = s->n_base, k = s->n_freed;
   for (size_t i = 0; i < k; ++i) {
     int a = s->freed[i], node_id = s->base[a] / s->cp->dim;
     int second = s->turn[node_id] >= 0 && s->base[a] % 3 == 2;
     for (size_t j = 0; j < k; ++j) {
-      const double *X = s->X + n * (size_t)s->column[s->freed[j]];
+      const double *X = s->X + n * s->column[s->freed[j]];
       s->C[i + k * j] = row_of(s, a, X) + displacement_part(s, a, s->freed[j]);
     }
     s->z[i] = (second ? s->x[s->turn[node_id]] : 0.0) - row_of(s, a, s->y);
@@ -167,7 +167,7 @@ static void small_system(compliance_system *s) {
 static int freed_solve(compliance_system *s) {
   int k = s->n_freed;
   make_columns(s);
-  memset(s->y, 0, (size_t)s->n_base * sizeof *s->y);
+  CLEAR(s->y, s->n_base);
   for (int i = 0; i < s->n; ++i)
     if (!s->list[i].turns) s->y[s->in_base[s->list[i].dof]] = s->x[i];
   dense_solve(&s->K, 1, s->y, s->n_base);
@@ -178,8 +178,8 @@ static int freed_solve(compliance_system *s) {
       return 0;
     for (int c = 0; c < k; ++c)
       cblas_daxpy(s->n_base, s->z[c],
-                  s->X + (size_t)s->n_base * (size_t)s->column[s->freed[c]], 1,
-                  s->y, 1);
+                  s->X + (size_t)s->n_base * s->column[s->freed[c]], 1, s->y,
+                  1);
   }
   for (int i = 0; i < s->n; ++i) {
     const unknown *a = &s->list[i];
@@ -198,7 +198,7 @@ static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal */
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out) {
   compliance_system *s;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   int capacity = cp->g0 == NULL && cp->side_gap == NULL ? cp->n : cp->m;
   PASS_NEW(s, 1);
   *out = s;
@@ -216,15 +216,14 @@ status compliance_system_new(const contact_problem *cp,
 
 void compliance_displace(const contact_problem *cp, const double *r,
                          double *raw) {
-  size_t m = (size_t)cp->m;
-  memcpy(raw, cp->f, m * sizeof *raw);
+  size_t m = cp->m;
+  COPY(raw, cp->f, m);
   for (int k = 0; k < cp->dim; ++k) {
     int any = 0;
     for (int i = k; i < cp->m; i += cp->dim) any = any || r[i] != 0.0;
     if (any)
-      cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->n, 1.0,
-                  cp->W + m * (size_t)k, cp->m * cp->dim, r + k, cp->dim, 1.0,
-                  raw, 1);
+      cblas_dgemv(CblasColMajor, CblasNoTrans, cp->m, cp->n, 1.0, cp->W + m * k,
+                  cp->m * cp->dim, r + k, cp->dim, 1.0, raw, 1);
   }
 }
 
@@ -274,7 +273,7 @@ static double part(const unknown *a, const double *of) {
 /* to += a W_dof, rows of the unknowns, times power */
 static void add_column(const compliance_system *s, int dof, double a,
                        double *to) {
-  const double *column = s->cp->W + (size_t)s->cp->m * (size_t)dof;
+  const double *column = s->cp->W + (size_t)s->cp->m * dof;
   a *= s->power;
   for (int i = 0; i < s->n; ++i) to[i] += a * part(&s->list[i], column);
 }
@@ -283,7 +282,7 @@ static void add_column(const compliance_system *s, int dof, double a,
 static int add_limits(compliance_system *s) {
   const sparse_rows *B = s->cp->B;
   const pattern *p = s->p;
-  size_t n = (size_t)s->n;
+  size_t n = s->n;
   int found = 0, dim = s->cp->dim;
   for (int i = 0; B != NULL && i < s->cp->n; ++i) {
     if (p->mode[i] != SLIP) continue;
@@ -292,22 +291,22 @@ static int add_limits(compliance_system *s) {
       int j = s->place[B->col[k]];
       if (j < 0 || B->val[k] == 0.0) continue;
       if (!made) {
-        memset(s->x, 0, n * sizeof *s->x);
+        CLEAR(s->x, n);
         for (int t = 0; t < dim - 1; ++t)
           add_column(s, i * dim + 1 + t, p->e[i * (dim - 1) + t], s->x);
       }
       found = made = 1;
-      cblas_daxpy(s->n, -B->val[k], s->x, 1, s->K.a + n * (size_t)j, 1);
+      cblas_daxpy(s->n, -B->val[k], s->x, 1, s->K.a + n * j, 1);
     }
   }
   return found;
 }
 
 static void fill(compliance_system *s) {
-  size_t n = (size_t)s->n, m = (size_t)s->cp->m;
+  size_t n = s->n, m = s->cp->m;
   for (size_t j = 0; j < n; ++j) {
     const unknown *a = &s->list[j];
-    const double *column = s->cp->W + m * (size_t)a->dof;
+    const double *column = s->cp->W + m * a->dof;
     double *to = s->K.a + n * j, first = s->power * a->d[0];
     for (size_t i = 0; i < n; ++i) to[i] = first * column[s->dof[i]];
     for (size_t i = 0; i < n && s->n_turn > 0; ++i)
@@ -427,7 +426,7 @@ static void add_forces(const compliance_system *s, double *r) {
 static double size_of(const compliance_system *s, const double *r) {
   const contact_problem *cp = s->cp;
   double size = 0.0;
-  for (size_t i = 0, m = (size_t)cp->m; i < m; ++i)
+  for (size_t i = 0, m = cp->m; i < m; ++i)
     size = fmax(size, fmax(fabs(cp->f[i]), fabs(cp->W[i * m + i] * r[i])));
   return s->power * size;
 }

@@ -11,7 +11,7 @@ static const double SINGULAR_RCOND = 1e-13;
 static const double SUSPECT = 0x1p-20; /* -, smallest over largest pivot */
 
 status dense_new(int capacity, dense *d) {
-  size_t m = (size_t)capacity;
+  size_t m = capacity;
   PASS_NEW_ALL(OF(d->a, m * m), OF(d->pivot, m), OF(d->iwork, m),
                OF(d->work, 4 * m));
   return OK;
@@ -20,7 +20,7 @@ status dense_new(int capacity, dense *d) {
 void dense_free(dense *d) { RELEASE(d->a, d->pivot, d->iwork, d->work); }
 
 int dense_is_symmetric(int m, const double *M, double apart) {
-  size_t n = (size_t)m;
+  size_t n = m;
   int unlike = 0;
   for (size_t j0 = 0; j0 < n; j0 += TILE)
     for (size_t i0 = 0; i0 <= j0; i0 += TILE)
@@ -31,7 +31,7 @@ int dense_is_symmetric(int m, const double *M, double apart) {
 }
 
 void dense_mirror(int m, double *M) {
-  size_t n = (size_t)m;
+  size_t n = m;
   for (size_t j0 = 0; j0 < n; j0 += TILE)
     for (size_t i0 = j0; i0 < n; i0 += TILE)
       for (size_t j = j0; j < n && j < j0 + TILE; ++j)
@@ -41,7 +41,7 @@ void dense_mirror(int m, double *M) {
 
 double dense_power(int m, const double *M) {
   double largest = 0.0;
-  size_t n = (size_t)m;
+  size_t n = m;
   for (size_t i = 0; i < n; ++i)
     if (M[i * n + i] > largest) largest = M[i * n + i];
   return power_to_one(largest);
@@ -49,7 +49,7 @@ double dense_power(int m, const double *M) {
 
 /* 1: the pivots leave doubt, and the condition number says singular. */
 static int is_singular(dense *d, double norm) {
-  size_t n = (size_t)d->n;
+  size_t n = d->n;
   double least = HUGE_VAL, most = 0.0, rcond = 1.0;
   for (size_t i = 0; i < n; ++i) {
     double pivot = fabs(d->a[i + n * i]);
@@ -111,7 +111,7 @@ void dense_solve(const dense *d, int n_rhs, double *x, int ld) {
 
 void dense_null(int m, int rank, const double *L, const int *pivot, double *y,
                 double *N) {
-  size_t ld = (size_t)m, r = (size_t)rank;
+  size_t ld = m, r = rank;
   for (size_t k = 0; k < ld - r; ++k) {
     double *v = N + ld * k;
     for (size_t i = 0; i < r; ++i) y[i] = -L[r + k + ld * i];

@@ -305,15 +305,15 @@ static void begin(run *s) {
   s->scale = s->control->scale > 0.0 ? s->control->scale : contact_scale(cp);
   s->st->careful = 0;
   s->st->dice = 0;
-  memset(s->st->guess.closed, 0, (size_t)cp->m);
-  memset(s->st->guess.mode, FREE, (size_t)cp->n);
+  memset(s->st->guess.closed, 0, cp->m);
+  memset(s->st->guess.mode, FREE, cp->n);
   set_raw(s);
   if (s->w->operated != NULL)
     operated_system_fit(s->w->operated);
   else if (s->w->system != NULL)
     newton_system_fit(s->w->system, cp);
   else
-    memcpy(s->u, s->st->raw, (size_t)cp->m * sizeof *s->u);
+    memcpy(s->u, s->st->raw, cp->m * sizeof *s->u);
   s->w->best.residual = HUGE_VAL;
 }
 

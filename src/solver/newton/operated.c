@@ -48,15 +48,15 @@ struct operated_system {
 
 status operated_system_new(const contact_problem *cp, operated_system **out) {
   operated_system *s;
-  const size_t m = (size_t)cp->m;
+  const size_t m = cp->m;
   PASS_NEW(s, 1);
   *out = s;
   s->m = cp->m;
   s->power = power_to_one(largest_entry(m, cp->op->diagonal));
   PASS_NEW_REALS(m, &s->b, &s->x, &s->Ax);
-  PASS_NEW_ALL(OF(s->added, (size_t)cp->dim * m), OF(s->known, m),
-               OF(s->held, m), OF(s->slip.dof, m), OF(s->slip.x, m),
-               OF(s->slip.load, m), OF(s->slip.pressed, m),
+  PASS_NEW_ALL(OF(s->added, cp->dim * m), OF(s->known, m), OF(s->held, m),
+               OF(s->slip.dof, m), OF(s->slip.x, m), OF(s->slip.load, m),
+               OF(s->slip.pressed, m),
                OF(s->krylov.H, (DIRECTIONS + 1) * DIRECTIONS),
                OF(s->krylov.c, DIRECTIONS), OF(s->krylov.s, DIRECTIONS),
                OF(s->krylov.g, DIRECTIONS + 1));
@@ -85,7 +85,7 @@ static void list_slip(operated_system *s, const contact_problem *cp,
                       const pattern *p) {
   const sparse_rows *B = cp->B;
   s->slip.n = 0;
-  memset(s->slip.pressed, 0, (size_t)s->m);
+  memset(s->slip.pressed, 0, s->m);
   for (int i = 0; i < cp->n; ++i) {
     int any = s->drifts;
     if (p->mode[i] != SLIP) continue;
@@ -124,10 +124,10 @@ static void add_friction(const operated_system *s, const contact_problem *cp,
 
 /* Room for the directions made and two more. */
 static status grow(operated_system *s) {
-  const size_t n = (size_t)s->slip.n, have = s->krylov.capacity;
+  const size_t n = s->slip.n, have = s->krylov.capacity;
   OWNS(s);
-  if (n * (size_t)(s->krylov.n + 2) <= have) return OK;
-  const size_t want = n * (size_t)(s->krylov.n + 10);
+  if (n * (s->krylov.n + 2) <= have) return OK;
+  const size_t want = n * (s->krylov.n + 10);
   double *more = memory_resize(s->krylov.V, have, want, sizeof *more);
   if (more == NULL)
     RAISE(ERR_MEMORY, "memory exhausted: %zu numbers of GMRES", want);
@@ -137,7 +137,7 @@ static status grow(operated_system *s) {
 }
 
 static double *direction(const operated_system *s, int j) {
-  return s->krylov.V + (size_t)s->slip.n * (size_t)j;
+  return s->krylov.V + (size_t)s->slip.n * j;
 }
 
 static double *column(const operated_system *s, int j) {
@@ -147,7 +147,7 @@ static double *column(const operated_system *s, int j) {
 /* w orthogonal to v[0..j]; column j of H. */
 static void orthogonalise(operated_system *s, int j, double *w) {
   double *h = column(s, j);
-  memset(h, 0, (DIRECTIONS + 1) * sizeof *h);
+  CLEAR(h, (DIRECTIONS + 1));
   for (int i = 0; i <= j; ++i) {
     const double *v = direction(s, i);
     h[i] = cblas_ddot(s->slip.n, v, 1, w, 1);
@@ -174,21 +174,21 @@ static void combine(operated_system *s, const contact_problem *cp) {
  * slipping rows, which alone have any. */
 static status gmres(operated_system *s, const contact_problem *cp,
                     const pattern *p, double size) {
-  const size_t n = (size_t)s->slip.n;
+  const size_t n = s->slip.n;
   double left;
   s->krylov.n = 0;
   PASS(grow(s));
   double *v = s->krylov.V;
-  memset(v, 0, n * sizeof *v);
+  CLEAR(v, n);
   add_friction(s, cp, p, s->x, s->Ax, v);
   left = cblas_dnrm2(s->slip.n, v, 1);
-  memset(s->krylov.g, 0, (DIRECTIONS + 1) * sizeof *s->krylov.g);
+  CLEAR(s->krylov.g, (DIRECTIONS + 1));
   size = fmax(size, left); /* a body that known rows alone move has no load */
   if (!(left > s->enough * size)) return OK;
   s->krylov.g[0] = -left;
   for (size_t i = 0; i < n; ++i) v[i] /= left;
   cp->op->set_response(cp->op->ctx, s->slip.pressed);
-  memset(s->slip.load, 0, (size_t)s->m * sizeof *s->slip.load);
+  CLEAR(s->slip.load, s->m);
   for (double next = 1.0; left > s->enough * size && next > EXHAUSTED &&
                           s->krylov.n < DIRECTIONS;) {
     PASS(grow(s));
@@ -196,7 +196,7 @@ static status gmres(operated_system *s, const contact_problem *cp,
     double *w = direction(s, s->krylov.n + 1);
     for (int t = 0; t < s->slip.n; ++t) s->slip.load[s->slip.dof[t]] = v[t];
     cp->op->response(cp->op->ctx, s->slip.load, s->slip.x, s->Ax);
-    memcpy(w, v, n * sizeof *w);
+    COPY(w, v, n);
     add_friction(s, cp, p, s->slip.x, s->Ax, w);
     orthogonalise(s, s->krylov.n, w);
     next = cblas_dnrm2(s->slip.n, w, 1);
@@ -216,7 +216,7 @@ static status gmres(operated_system *s, const contact_problem *cp,
 static void wanted(const contact_problem *cp, const operated_rows *rows,
                    int node, double *block) {
   const int dim = cp->dim;
-  memset(block, 0, (size_t)(dim * dim) * sizeof *block);
+  CLEAR(block, dim * dim);
   for (int a = 0; a < 2 && dim == 3 && rows->p->mode[node] == SLIP; ++a)
     for (int b = 0; b < 2; ++b)
       block[3 * (1 + a) + 1 + b] = turning(rows->p, node, a, b);

@@ -83,7 +83,7 @@ typedef struct proximal_work {
 
 /* Workspace of the steps of an operator. */
 static status new_steps(const contact_problem *cp, proximal_work *w) {
-  const size_t m = (size_t)cp->m;
+  const size_t m = cp->m;
   PASS(operated_system_new(cp, &w->by.system));
   PASS(pattern_new(cp->dim, cp->n, &w->by.guess));
   PASS_NEW_REALS(m, &w->by.hold, &w->by.b, &w->by.du, &w->by.start,
@@ -94,7 +94,7 @@ static status new_steps(const contact_problem *cp, proximal_work *w) {
 static status proximal_setup(const contact_problem *cp, const void *par,
                              void *work) {
   proximal_work *w = work;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   PASS(force_set_new(cp, &w->set));
   PASS(best_iterate_new(cp->m, &w->best));
   if (cp->op != NULL)
@@ -382,7 +382,7 @@ static status close_operator(run *s) {
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
   int singular;
-  memset(w->centre, 0, (size_t)cp->m * sizeof *w->centre);
+  CLEAR(w->centre, cp->m);
   evaluate(s);
   for (int i = 0; i < cp->n; ++i) w->by.guess.mode[i] = FREE;
   for (int i = 0; i < cp->m; ++i) {
@@ -399,8 +399,8 @@ static status start_closed(run *s) {
   proximal_work *w = s->w;
   int m = s->cp->m, singular = 0;
   if (s->cp->op != NULL) return close_operator(s);
-  memset(s->r, 0, (size_t)m * sizeof *s->r);
-  memset(w->centre, 0, (size_t)m * sizeof *w->centre);
+  CLEAR(s->r, m);
+  CLEAR(w->centre, m);
   evaluate(s);
   for (int i = 0; i < m; ++i) {
     w->acts[i] = w->set->part[i] != NO_FORCE;
@@ -414,7 +414,7 @@ static status start_closed(run *s) {
     PASS(step_matrix_put(w->J, i));
   }
   PASS(step_matrix_solve(w->J, w->d, &singular));
-  if (!singular) memcpy(s->r, w->d, (size_t)m * sizeof *s->r);
+  if (!singular) COPY(s->r, w->d, m);
   return OK;
 }
 
@@ -515,8 +515,8 @@ static status proximal_solve(const contact_problem *cp, const void *par,
   w->best.residual = HUGE_VAL;
   PASS(force_set_fit(w->set, cp));
   set_weights(w, cp);
-  memcpy(w->start, r, (size_t)cp->m * sizeof *r);
-  if (cp->op != NULL) memcpy(w->by.start, u, (size_t)cp->m * sizeof *u);
+  COPY(w->start, r, cp->m);
+  if (cp->op != NULL) COPY(w->by.start, u, cp->m);
   for (int k = 0; k < TRIALS && rep->outcome != CONVERGED; ++k) {
     if (k > 0 && (s.steps >= limit || control->no_restart)) break;
     int until = s.steps + TRIAL;

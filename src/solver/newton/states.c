@@ -26,7 +26,7 @@ static void set_stiffness(const contact_problem *cp, states *s) {
 }
 
 status states_new(const contact_problem *cp, states *s) {
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   PASS(pattern_new(cp->dim, cp->n, &s->guess));
   PASS_NEW_REALS(cp->n, &s->c, &s->g, &s->rounding);
   PASS_NEW_ALL(OF(s->raw, m), OF(s->k, m));
@@ -76,7 +76,7 @@ void states_clean(const states *s) {
     clean_displacement(s);
     return;
   }
-  memcpy(s->r, s->raw, (size_t)cp->m * sizeof *s->r);
+  COPY(s->r, s->raw, cp->m);
   for (int dof = 0; dof < cp->m; ++dof) {
     int k = dof % cp->dim;
     int none = !s->guess.closed[dof] &&
@@ -214,12 +214,11 @@ int states_next(states *s, int fresh) {
 
 void states_all_stick(states *s) {
   const contact_problem *cp = s->cp;
-  memset(s->guess.closed, 0, (size_t)cp->m);
+  memset(s->guess.closed, 0, cp->m);
   for (int i = 0; i < cp->n; ++i) {
     s->guess.closed[i * cp->dim] = 1;
-    s->guess.mode[i] = cp->g0 != NULL && !contact_has_side(cp, i)
-                           ? (unsigned char)STICK
-                           : FREE;
+    s->guess.mode[i] =
+        cp->g0 != NULL && !contact_has_side(cp, i) ? STICK : FREE;
   }
 }
 

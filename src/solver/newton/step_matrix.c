@@ -28,7 +28,7 @@ static int is_sparse(const step_matrix *s) { return s->full == NULL; }
 status step_matrix_new(const contact_problem *cp, const force_set *set,
                        step_matrix **out) {
   step_matrix *s;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   PASS_NEW(s, 1);
   *out = s;
   s->m = cp->m;
@@ -113,13 +113,13 @@ static status put_sparse(step_matrix *s, int row) {
 status step_matrix_put(step_matrix *s, int i) {
   status st = OK;
   int row = s->place[i];
-  double *to = is_sparse(s) ? NULL : s->full + (size_t)row * (size_t)s->k;
+  double *to = is_sparse(s) ? NULL : s->full + (size_t)row * s->k;
   sort_touched(s);
   s->rhs[row] = take_out(s, i);
   if (to == NULL)
     st = put_sparse(s, row);
   else
-    memset(to, 0, (size_t)s->k * sizeof *to);
+    CLEAR(to, s->k);
   for (int a = 0; a < s->n_touched; ++a) {
     const int j = s->touched[a];
     if (to != NULL && s->place[j] >= 0) to[s->place[j]] = s->line[j];
@@ -133,7 +133,7 @@ status step_matrix_put(step_matrix *s, int i) {
 /* The rows one after the other are the transpose by columns. */
 static int solve_dense(step_matrix *s) {
   int k = s->k;
-  memcpy(s->x, s->rhs, (size_t)k * sizeof *s->x);
+  COPY(s->x, s->rhs, k);
   if (LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, k, k, s->full, k, s->pivot) != 0)
     return 0;
   LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, 'T', k, 1, s->full, k, s->pivot, s->x,

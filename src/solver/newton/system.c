@@ -96,9 +96,9 @@ static double turning(const newton_system *s, const pattern *p, int node_id,
 
 static void fill(newton_system *s, double spring) {
   const pattern *p = &s->base;
-  size_t ld = (size_t)p->n_free, m = (size_t)s->m;
+  size_t ld = p->n_free, m = s->m;
   for (size_t j = 0; j < ld; ++j) {
-    const double *column = s->cp->A + m * (size_t)p->free_id[j];
+    const double *column = s->cp->A + m * p->free_id[j];
     double *to = s->K.a + ld * j;
     for (size_t i = s->K.full ? 0 : j; i < ld; ++i)
       to[i] = s->power * column[p->free_id[i]];
@@ -112,7 +112,7 @@ static void fill(newton_system *s, double spring) {
         int i = p->place[3 * node_id + 1 + a],
             j = p->place[3 * node_id + 1 + b];
         if (i >= 0 && j >= 0)
-          s->K.a[(size_t)i + ld * (size_t)j] += turning(s, p, node_id, a, b);
+          s->K.a[i + ld * j] += turning(s, p, node_id, a, b);
       }
   }
 }
@@ -125,14 +125,13 @@ static void newton_row(const newton_system *s, const pattern *p, int dof,
   int m = s->m, step = s->symmetric ? 1 : m, node_id = dof / cp->dim,
       tangents = cp->dim - 1, k = dof % cp->dim - 1;
   size_t stride = s->symmetric ? (size_t)m : 1u;
-  memset(to, 0, (size_t)m * sizeof *to);
-  cblas_daxpy(m, s->power, cp->A + stride * (size_t)dof, step, to, 1);
+  CLEAR(to, m);
+  cblas_daxpy(m, s->power, cp->A + stride * dof, step, to, 1);
   if (k < 0 || p->mode[node_id] != SLIP) return;
   for (int j = row_begin(B, node_id); j < row_end(B, node_id); ++j) {
     int n = B->col[j] * cp->dim;
     double a = s->power * p->e[node_id * tangents + k] * B->val[j];
-    if (p->closed[n])
-      cblas_daxpy(m, a, cp->A + stride * (size_t)n, step, to, 1);
+    if (p->closed[n]) cblas_daxpy(m, a, cp->A + stride * n, step, to, 1);
   }
   for (int a = 0; tangents == 2 && a < 2; ++a)
     to[node_id * 3 + 1 + a] += turning(s, p, node_id, k, a);
@@ -176,13 +175,13 @@ static void newton_plain_step(newton_system *s) {
 }
 
 static void pattern_copy(int dim, int n, const pattern *from, pattern *to) {
-  size_t nodes = (size_t)n, m = nodes * (size_t)dim;
-  memcpy(to->closed, from->closed, m * sizeof *to->closed);
-  memcpy(to->mode, from->mode, nodes * sizeof *to->mode);
-  memcpy(to->e, from->e, (m - nodes) * sizeof *to->e);
-  memcpy(to->kappa, from->kappa, nodes * sizeof *to->kappa);
-  memcpy(to->free_id, from->free_id, m * sizeof *to->free_id);
-  memcpy(to->place, from->place, m * sizeof *to->place);
+  size_t nodes = n, m = nodes * dim;
+  COPY(to->closed, from->closed, m);
+  COPY(to->mode, from->mode, nodes);
+  COPY(to->e, from->e, (m - nodes));
+  COPY(to->kappa, from->kappa, nodes);
+  COPY(to->free_id, from->free_id, m);
+  COPY(to->place, from->place, m);
   to->n_free = from->n_free;
 }
 
@@ -260,31 +259,31 @@ static double newton_list_changes(newton_system *s, const pattern *p) {
 
 /* Columns of X for the rows that have none. */
 static void make_columns(newton_system *s) {
-  size_t m = (size_t)s->m;
+  size_t m = s->m;
   const pattern *p = &s->base;
   int first = s->inverse.n;
   for (int a = 0; a < s->n_changed; ++a) {
     int dof = s->changed[a];
     if (s->inverse.column[dof] >= 0) continue;
     s->inverse.column[dof] = s->inverse.n++;
-    double *x = s->inverse.X + m * (size_t)s->inverse.column[dof];
-    memset(x, 0, m * sizeof *x);
+    double *x = s->inverse.X + m * s->inverse.column[dof];
+    CLEAR(x, m);
     if (p->place[dof] >= 0) {
       x[p->place[dof]] = 1.0;
       continue;
     }
-    const double *column = s->cp->A + m * (size_t)dof;
+    const double *column = s->cp->A + m * dof;
     for (int i = 0; i < p->n_free; ++i) x[i] = s->power * column[p->free_id[i]];
     if (s->K.full) newton_limit_rows(s, p, column, x);
     for (int i = 0; i < p->n_free; ++i) x[i] = -x[i];
   }
-  newton_back(s, s->inverse.n - first, s->inverse.X + m * (size_t)first);
+  newton_back(s, s->inverse.n - first, s->inverse.X + m * first);
   for (int c = first; c < s->inverse.n; ++c)
-    newton_expand(s, s->inverse.X + m * (size_t)c);
+    newton_expand(s, s->inverse.X + m * c);
   for (int a = 0; a < s->n_changed; ++a) {
     int dof = s->changed[a];
     if (s->inverse.column[dof] >= first && p->place[dof] < 0)
-      s->inverse.X[m * (size_t)s->inverse.column[dof] + (size_t)dof] = 1.0;
+      s->inverse.X[m * s->inverse.column[dof] + dof] = 1.0;
   }
 }
 
@@ -294,16 +293,15 @@ static void equation_rows(newton_system *s, const pattern *p, int n,
                           const int *id) {
   int k = s->n_changed;
   for (int i = 0; i < n; ++i)
-    newton_row(s, p, s->changed[id[i]], s->rows + (size_t)i * (size_t)s->m);
+    newton_row(s, p, s->changed[id[i]], s->rows + (size_t)i * s->m);
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, n, s->inverse.n, s->m,
               1.0, s->rows, s->m, s->inverse.X, s->m, 0.0, s->product, CHUNK);
   for (int i = 0; i < n; ++i) {
     for (int b = 0; b < k; ++b)
-      s->inverse.C[(size_t)id[i] + (size_t)k * (size_t)b] =
+      s->inverse.C[id[i] + (size_t)k * b] =
           s->product[i + CHUNK * s->inverse.column[s->changed[b]]];
-    s->z[id[i]] =
-        s->b[s->changed[id[i]]] -
-        cblas_ddot(s->m, s->rows + (size_t)i * (size_t)s->m, 1, s->x, 1);
+    s->z[id[i]] = s->b[s->changed[id[i]]] -
+                  cblas_ddot(s->m, s->rows + (size_t)i * s->m, 1, s->x, 1);
   }
 }
 
@@ -316,10 +314,8 @@ static void small_system(newton_system *s, const pattern *p) {
       id[n++] = a;
     } else {
       for (int b = 0; b < k; ++b)
-        s->inverse.C[(size_t)a + (size_t)k * (size_t)b] =
-            s->inverse
-                .X[(size_t)s->m * (size_t)s->inverse.column[s->changed[b]] +
-                   (size_t)dof];
+        s->inverse.C[a + (size_t)k * b] =
+            s->inverse.X[(size_t)s->m * s->inverse.column[s->changed[b]] + dof];
       s->z[a] = -s->x[dof];
     }
     if (n == CHUNK) {
@@ -334,18 +330,18 @@ static void small_system(newton_system *s, const pattern *p) {
 static int newton_exchange(newton_system *s, const pattern *p) {
   int k = s->n_changed;
   make_columns(s);
-  memcpy(s->x, s->b, (size_t)s->m * sizeof *s->x);
+  COPY(s->x, s->b, s->m);
   for (int a = 0; a < k; ++a) s->x[s->changed[a]] = 0.0;
   for (int i = 0; i < s->base.n_free; ++i) s->du[i] = s->x[s->base.free_id[i]];
   newton_back(s, 1, s->du);
   newton_expand(s, s->du);
   if (k == 0) return 1;
-  memcpy(s->x, s->du, (size_t)s->m * sizeof *s->x);
+  COPY(s->x, s->du, s->m);
   small_system(s, p);
   if (LAPACKE_dgesv_work(LAPACK_COL_MAJOR, k, 1, s->inverse.C, k,
                          s->inverse.small_pivot, s->z, k) != 0)
     return 0;
-  memset(s->weight, 0, (size_t)s->inverse.n * sizeof *s->weight);
+  CLEAR(s->weight, s->inverse.n);
   for (int a = 0; a < k; ++a)
     s->weight[s->inverse.column[s->changed[a]]] = s->z[a];
   cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, s->inverse.n, 1.0,
@@ -370,11 +366,11 @@ status pattern_new(int dim, int n, pattern *p) {
 
 status newton_system_new(const contact_problem *cp, newton_system **out) {
   newton_system *s;
-  size_t m = (size_t)cp->m, capacity = m / SHARE + 1;
+  size_t m = cp->m, capacity = m / SHARE + 1;
   PASS_NEW(s, 1);
   *out = s;
   s->m = cp->m;
-  s->n_node = (size_t)cp->n;
+  s->n_node = cp->n;
   s->inverse.capacity = (int)capacity;
   PASS(dense_new(cp->m, &s->K));
   PASS(pattern_new(cp->dim, cp->n, &s->base));
@@ -456,7 +452,7 @@ void newton_take_known(const contact_problem *cp, const pattern *p, double *u) {
 /* The known unknowns into u, raw following. */
 static void set_known(newton_system *s, pattern *p, double *u, double *raw) {
   const contact_problem *cp = s->cp;
-  const size_t m = (size_t)cp->m;
+  const size_t m = cp->m;
   int moved = newton_list_known(cp, p, u, s->du);
   newton_take_known(cp, p, u);
   if (SHARE * moved > cp->m) {
@@ -516,7 +512,7 @@ static void move(const newton_system *s, double *u, double *raw) {
 /* Largest of |f| and diag(A) |u|, times power. */
 static double force_size(const newton_system *s, const double *u) {
   double size = 0.0;
-  for (size_t i = 0, m = (size_t)s->m; i < m; ++i)
+  for (size_t i = 0, m = s->m; i < m; ++i)
     size = fmax(size, fmax(fabs(s->cp->f[i]),
                            fabs(contact_diagonal(s->cp, (int)i) * u[i])));
   return s->power * size;
@@ -600,7 +596,7 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw) {
 /* Matrix and guess of the base. */
 static status keep_base(newton_system *s, archive *a) {
   pattern *p = &s->base;
-  size_t m = (size_t)s->m, n = s->n_node, e = m - n;
+  size_t m = s->m, n = s->n_node, e = m - n;
   PASS(archive_bytes(a, "closed", p->closed, m * sizeof *p->closed));
   PASS(archive_bytes(a, "mode", p->mode, n * sizeof *p->mode));
   PASS(archive_reals(a, "e", p->e, e));
@@ -611,7 +607,7 @@ static status keep_base(newton_system *s, archive *a) {
 
 status newton_system_keep(newton_system *s, archive *a) {
   pattern *p = &s->base;
-  size_t m = (size_t)s->m;
+  size_t m = s->m;
   PASS(archive_ints(a, "has_base", &s->has_base, 1));
   if (!s->has_base) return OK;
   PASS(archive_ints(a, "full", &s->K.full, 1));
@@ -624,10 +620,10 @@ status newton_system_keep(newton_system *s, archive *a) {
   PASS(archive_reals(a, "spent", &s->spent, 1));
   PASS(keep_base(s, a));
   s->K.n = p->n_free;
-  PASS(archive_reals(a, "K", s->K.a, (size_t)p->n_free * (size_t)p->n_free));
-  PASS(archive_ints(a, "pivot", s->K.pivot, (size_t)p->n_free));
+  PASS(archive_reals(a, "K", s->K.a, (size_t)p->n_free * p->n_free));
+  PASS(archive_ints(a, "pivot", s->K.pivot, p->n_free));
   PASS(archive_ints(a, "column", s->inverse.column, m));
-  return archive_reals(a, "X", s->inverse.X, m * (size_t)s->inverse.n);
+  return archive_reals(a, "X", s->inverse.X, m * s->inverse.n);
 }
 
 int newton_system_refresh(newton_system *s) {

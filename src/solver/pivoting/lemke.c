@@ -165,8 +165,8 @@ static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue */
 static void gather(const lemke_run *s, int n_row, const int *row, int n_col,
                    const int *col, double *to) {
   for (int j = 0; j < n_col; ++j) {
-    const double *from = s->M + (size_t)col[j] * (size_t)s->cp->m;
-    double *column = to + (size_t)j * (size_t)n_row;
+    const double *from = s->M + (size_t)col[j] * s->cp->m;
+    double *column = to + (size_t)j * n_row;
     for (int i = 0; i < n_row; ++i) column[i] = from[row[i]];
   }
 }
@@ -186,12 +186,12 @@ static int invert_free(lemke_run *s) {
 static int pseudo_invert_free(lemke_run *s) {
   lemke_work *w = s->w;
   int n = w->reduced.n_free;
-  size_t ld = (size_t)n;
+  size_t ld = n;
   gather(s, n, w->reduced.free_id, n, w->reduced.free_id, w->spare);
   if (LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'L', n, w->spare, n, w->t,
                          w->work, 4 * w->m + 4) != 0)
     return 0;
-  memset(w->reduced.inner, 0, ld * ld * sizeof *w->reduced.inner);
+  CLEAR(w->reduced.inner, ld * ld);
   for (size_t k = 0; k < ld; ++k)
     if (w->t[k] > SINGULAR * w->t[n - 1])
       cblas_dger(CblasColMajor, n, n, 1.0 / w->t[k], w->spare + k * ld, 1,
@@ -208,10 +208,10 @@ static int lemke_reduce(lemke_run *s) {
   if (!lemke_is_stiff(s)) w->reduced.n_free = nf = 0;
   if (nf == 0) return 1;
   if (!(s->cp->floating ? pseudo_invert_free(s) : invert_free(s))) return 0;
-  double *X = w->reduced.inner + (size_t)nf * (size_t)nf;
+  double *X = w->reduced.inner + (size_t)nf * nf;
   for (int j = 0; j < nk; ++j) {
     gather(s, nf, w->reduced.free_id, 1, &w->reduced.kept[j], w->t);
-    contact_product(nf, w->reduced.inner, w->t, X + (size_t)j * (size_t)nf);
+    contact_product(nf, w->reduced.inner, w->t, X + (size_t)j * nf);
   }
   for (int k = 0; k < nf; ++k) {
     gather(s, nk, w->reduced.kept, 1, &w->reduced.free_id[k], w->t);
@@ -228,7 +228,7 @@ static void lemke_scale(lemke_run *s) {
   double largest = 0.0;
   for (int i = 0; i < s->cp->n; ++i) w->reduced.D[i] = 0.0;
   for (int i = 0; i < nk; ++i) {
-    double a = w->reduced.S[(size_t)i * (size_t)nk + (size_t)i];
+    double a = w->reduced.S[(size_t)i * nk + i];
     double *D = w->reduced.D + w->reduced.kept[i] / dim;
     *D = fmax(*D, a);
     largest = fmax(largest, a);
@@ -242,7 +242,7 @@ static void lemke_scale(lemke_run *s) {
   }
   for (int j = 0; j < nk; ++j)
     for (int i = 0; i < nk; ++i)
-      w->reduced.S[(size_t)j * (size_t)nk + (size_t)i] *=
+      w->reduced.S[(size_t)j * nk + i] *=
           w->unit * w->reduced.D[w->reduced.kept[i] / dim] *
           w->reduced.D[w->reduced.kept[j] / dim];
 }
@@ -302,7 +302,7 @@ static void lemke_add_limits(const lemke_run *s, const double *z, double *y) {
 /* v[n_kept] = sum of x V(:, id) */
 static void spread(const lemke_run *s, int n_id, const int *id, const double *x,
                    double *v) {
-  memset(v, 0, (size_t)s->w->reduced.n_kept * sizeof *v);
+  CLEAR(v, s->w->reduced.n_kept);
   for (int k = 0; k < n_id; ++k) {
     const variable *a = s->w->var + id[k];
     if (a->type == LIMIT) continue;
@@ -325,10 +325,10 @@ static void multiply(const lemke_run *s, const double *v, double *t) {
     contact_product(n, w->reduced.S, v, t);
     return;
   }
-  memset(t, 0, (size_t)n * sizeof *t);
+  CLEAR(t, n);
   for (int i = 0; i < n; ++i)
     if (v[i] != 0.0)
-      cblas_daxpy(n, v[i], w->reduced.S + (size_t)i * (size_t)n, 1, t, 1);
+      cblas_daxpy(n, v[i], w->reduced.S + (size_t)i * n, 1, t, 1);
 }
 
 /* product and row of lcp_problem; ctx: a lemke_run. */
@@ -371,7 +371,7 @@ static void lemke_row(const void *ctx, int i, int n_id, const int *id,
   const int stiff = lemke_is_stiff(s);
   const sparse_rows *B = stiff && v->type == SLIDE ? s->cp->B : NULL;
   int n = w->reduced.n_kept;
-  memset(w->t, 0, (size_t)n * sizeof *w->t);
+  CLEAR(w->t, n);
   for (int k = 0; k < 2; ++k)
     if (v->e[k] != 0.0)
       cblas_daxpy(n, v->e[k], w->reduced.S + v->dof + k, n, w->t, 1);
@@ -415,7 +415,7 @@ static void lemke_settle_free(const lemke_run *s, int load, double *u) {
 static void lemke_set_base(lemke_run *s) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
-  memset(w->reduced.base, 0, (size_t)cp->m * sizeof *w->reduced.base);
+  CLEAR(w->reduced.base, cp->m);
   if (!lemke_is_stiff(s)) return;
   for (int dof = 0; dof < cp->m; ++dof) {
     if (w->kind[dof] == IS_BOUND) w->reduced.base[dof] = contact_bound(cp, dof);
@@ -466,7 +466,7 @@ static void lemke_add_motion(const lemke_work *w, const double *z, double *x) {
 
 /* x = the state at z. */
 static void lemke_state_of(const lemke_run *s, const double *z, double *x) {
-  memcpy(x, s->w->reduced.base, (size_t)s->cp->m * sizeof *x);
+  COPY(x, s->w->reduced.base, s->cp->m);
   lemke_add_motion(s->w, z, x);
   lemke_settle_free(s, 1, x);
 }
@@ -474,7 +474,7 @@ static void lemke_state_of(const lemke_run *s, const double *z, double *x) {
 /* q and d of the complementarity problem. */
 static void lemke_set_vectors(lemke_run *s) {
   lemke_work *w = s->w;
-  memset(w->z, 0, (size_t)w->reduced.n_var * sizeof *w->z);
+  CLEAR(w->z, w->reduced.n_var);
   lemke_respond(s, w->reduced.base, 1, w->raw);
   slacks(s, w->raw, w->z, w->q);
   for (int a = 0; a < w->reduced.n_var; ++a) w->d[a] = 1.0;
@@ -524,7 +524,7 @@ static void clean_forces(const lemke_run *s, double *r) {
 static void clean_motion(const lemke_run *s, double *u) {
   const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
-  memcpy(u, w->raw, (size_t)cp->m * sizeof *u);
+  COPY(u, w->raw, cp->m);
   for (int a = 0; a < w->reduced.n_var; ++a) {
     const variable *v = w->var + a;
     int dof = w->reduced.kept[v->dof],
@@ -584,7 +584,7 @@ static outcome lemke_check_ray(lemke_run *s) {
   for (int i = 0; i < cp->n; ++i)
     w->best_r[i * cp->dim] = fmin(w->best_r[i * cp->dim], 0.0);
   lcp_ray(w->lcp, w->z);
-  memset(w->ray, 0, (size_t)cp->m * sizeof *w->ray);
+  CLEAR(w->ray, cp->m);
   lemke_add_motion(w, w->z, w->ray);
   lemke_settle_free(s, 0, w->ray);
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
@@ -602,7 +602,7 @@ static int lemke_load_is_held(lemke_run *s) {
   double worst = 0.0;
   if (w->reduced.n_free == 0 || !s->cp->floating) return 1;
   lemke_respond(s, w->reduced.base, 1, w->raw);
-  memset(w->ray, 0, (size_t)s->cp->m * sizeof *w->ray);
+  CLEAR(w->ray, s->cp->m);
   for (int k = 0; k < w->reduced.n_free; ++k) {
     int dof = w->reduced.free_id[k];
     w->ray[dof] = -w->raw[dof];
@@ -652,7 +652,7 @@ static status lemke_setup(const contact_problem *cp, const void *par,
                           void *work) {
   lemke_work *w = work;
   const lemke *p = par;
-  size_t m = (size_t)cp->m;
+  size_t m = cp->m;
   w->m = cp->m;
   w->facets = p->facets >= 4 ? p->facets + p->facets % 2 : 8;
   int n_var = cp->n * (cp->dim == 2 ? 4 : w->facets + 2);
