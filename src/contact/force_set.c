@@ -182,7 +182,7 @@ status force_set_new(const contact_problem *cp, force_set **out) {
     PASS(step_of_operator(s, cp, v, v + cp->m));
   } else {
     s->symmetric = cp->blocks == NULL && is_symmetric(cp->m, cp->W);
-    if (cp->blocks != NULL || entries(cp) <= SPARSE * cp->m * cp->m)
+    if (cp->blocks != NULL || (double)entries(cp) <= SPARSE * cp->m * cp->m)
       PASS(compliance_rows(cp, &s->rows));
     s->step = 1.0 / spectrum_bound(cp, s->D, v, v + cp->m);
   }

@@ -146,7 +146,7 @@ static void detach(int fd, int error_fd) {
 
 static void set_limit(unsigned what, double most) {
   struct rlimit l;
-  if (getrlimit(what, &l) != 0 || !(most < l.rlim_cur)) return;
+  if (getrlimit(what, &l) != 0 || !(most < (double)l.rlim_cur)) return;
   l.rlim_cur = (rlim_t)most;
   setrlimit(what, &l);
 }

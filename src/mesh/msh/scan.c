@@ -41,7 +41,7 @@ status scan_open(scan *s, const char *path, status wrong) {
   if (fstat(fd, &about) != 0)
     RAISE(ERR_FILE, "%s: cannot be read: %s", path, strerror(errno));
   limits_read("", &l);
-  if (about.st_size > l.memory)
+  if ((double)about.st_size > l.memory)
     RAISE(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
           (long long)about.st_size, l.who);
   s->size = about.st_size;

@@ -153,7 +153,7 @@ static void add_defect(start_report *report, int node_id, double size,
                        defect_kind kind) {
   if (!(size > report->defect[node_id])) return;
   report->defect[node_id] = size;
-  report->kind[node_id] = kind;
+  report->kind[node_id] = (unsigned char)kind;
 }
 
 /* Contact forces of the start: r = basis' (K u - F); a held unknown has none,

@@ -122,7 +122,7 @@ static void tangent_force(auglag_run *s, int node_id) {
   }
   s->changes += now != w->mode[node_id];
   s->bent = s->bent || (now == SLIP && cp->dim == 3);
-  w->mode[node_id] = now;
+  w->mode[node_id] = (unsigned char)now;
 }
 
 /* z, F and the states from base (lambda, or y) and u. */
@@ -138,7 +138,7 @@ static void auglag_evaluate(auglag_run *s, const double *base) {
     contact_state now = w->z[dof] < 0.0 ? CLOSED : OPEN;
     if (now == CLOSED) w->F[dof] = w->z[dof];
     s->changes += now != w->closed[dof];
-    w->closed[dof] = now;
+    w->closed[dof] = (unsigned char)now;
   }
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) tangent_force(s, i);
   if (s->changes > 0 || s->bent) s->factored = 0;
@@ -172,7 +172,8 @@ static void auglag_take_states(auglag_run *s) {
     int differs = 0;
     for (int dof = node_id * dim; dof < (node_id + 1) * dim; ++dof) {
       int sign = auglag_slips(s, dof) && w->e[dof] > 0.0;
-      unsigned char now = w->closed[dof] | w->mode[node_id] << 1 | sign << 3;
+      unsigned char now =
+          (unsigned char)(w->closed[dof] | w->mode[node_id] << 1 | sign << 3);
       differs = differs || now != w->state[dof];
       w->state[dof] = now;
     }
