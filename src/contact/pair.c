@@ -389,8 +389,7 @@ double pair_apart(const surface_input *in, const contact_pair *p, int row,
   return gap;
 }
 
-/* With what CLEARANCE or INTERFERENCE adds. */
-/* Gap of the row of a pair, m. */
+/* Gap of the row of a pair with what CLEARANCE or INTERFERENCE adds, m. */
 static double pair_gap(const surface_row *at, double t) {
   const contact_pair *p = at->of;
   double x[3] = {0.0, 0.0, 0.0};

@@ -278,8 +278,8 @@ static status open_hdf5(output *o, const hdf5_count *before) {
 }
 
 static status open_new(output *o) {
-  for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
   PASS(open_text(o, "lst", -1, &o->lst));
+  for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
   PASS(each_condensed(o->m, o->o.dir, 0, 1));

@@ -20,6 +20,7 @@ void faces_begin(face_scene *c, int dim) {
 }
 
 void faces_end(face_scene *c) {
+  pairs_release(&c->in);
   memory_free(c->s);
   memory_free(c->log);
 }

@@ -6,17 +6,16 @@
 
 #include "contact/surface.h"
 
-enum { FACES_MAX = 600 };
+enum { FACES_MAX = 600, FACES_GROUPS = 8 };
 
-/* Faces with their nodes; the surface reads no elements. */
 typedef struct face_scene {
   mesh m;
   double x[3 * FACES_MAX], weight[FACES_MAX];
   size_t node_no[FACES_MAX];
-  int face[3 * FACES_MAX], face_other[FACES_MAX], item[4][FACES_MAX],
-      group_node[4][FACES_MAX];
+  int face[3 * FACES_MAX], face_other[FACES_MAX], item[FACES_GROUPS][FACES_MAX],
+      group_node[FACES_GROUPS][FACES_MAX];
   unsigned char fixed[FACES_MAX];
-  mesh_group group[4];
+  mesh_group group[FACES_GROUPS];
   contact_pair pair[4];
   obstacle support[4];
   surface_input in;

@@ -1,84 +1,36 @@
 /* src/contact/pair.c: which nodes of two surfaces are in a pair, what the rows
  * of the contact surface are relative to, messages. Surfaces without bodies. */
 #include "base/base.h"
-#include "contact/surface.h"
+#include "support/faces.h"
 #include "support/unit.h"
 
-enum { MOST = 200, GROUPS = 8, PAIRS = 3 };
-
-typedef struct scene {
-  mesh m;
-  double x[3 * MOST], weight[MOST];
-  size_t node_no[MOST];
-  int face[3 * MOST], other[MOST], item[GROUPS][MOST], node[GROUPS][MOST];
-  unsigned char fixed[MOST];
-  mesh_group group[GROUPS];
-  contact_pair pair[PAIRS];
-  obstacle wall;
-  surface_input in;
-  message_log *log;
-  contact_surface *s;
-} scene;
-
-static void scene_init(scene *c, int dim) {
-  memset(c, 0, sizeof *c);
-  c->m = (mesh){.dim = dim,
-                .x = c->x,
-                .node_no = c->node_no,
-                .face = c->face,
-                .face_other = c->other,
-                .group = c->group,
-                .size = 1};
-  c->in = (surface_input){.mesh = &c->m,
-                          .pairs = c->pair,
-                          .fixed = c->fixed,
-                          .face_weight = c->weight};
-  c->wall = (obstacle){.name = "WALL", .shape = OBSTACLE_CONFORMING};
-  ck_assert_int_eq(message_log_new(&c->log), OK);
-}
-
-static void scene_free(scene *c) {
-  pairs_release(&c->in);
-  memory_free(c->s);
-  memory_free(c->log);
-}
-
 /* The node at a place, new if there is none. */
-static int node_at(scene *c, const double *at) {
+static int node_at(face_scene *c, const double *at) {
   const int dim = c->m.dim;
   for (int i = 0; i < c->m.n_node; ++i) {
     double far = 0;
     for (int k = 0; k < dim; ++k) far += fabs(c->x[dim * i + k] - at[k]);
     if (far < 1e-9) return i;
   }
-  ck_assert_int_lt(c->m.n_node, MOST);
-  memcpy(c->x + dim * c->m.n_node, at, (size_t)dim * sizeof *at);
-  c->node_no[c->m.n_node] = (size_t)c->m.n_node + 1;
-  return c->m.n_node++;
-}
-
-static void add_face(scene *c, const int *v) {
-  const int f = c->m.n_face++;
-  ck_assert_int_lt(f, MOST);
-  memcpy(c->face + c->m.dim * f, v, (size_t)c->m.dim * sizeof *v);
-  c->other[f] = -1;
-  c->weight[f] = 1;
+  double x[3] = {0};
+  memcpy(x, at, (size_t)dim * sizeof *x);
+  return faces_node(c, x[0], x[1], x[2]);
 }
 
 /* n edges; the body is on the left of the way from a to b. */
-static void add_line(scene *c, int n, const double *a, const double *b) {
+static void add_line(face_scene *c, int n, const double *a, const double *b) {
   int v[2] = {node_at(c, a), 0};
   for (int i = 1; i <= n; ++i) {
     const double s = (double)i / n;
     v[1] = node_at(
         c, (double[]){(1 - s) * a[0] + s * b[0], (1 - s) * a[1] + s * b[1]});
-    add_face(c, v);
+    faces_face(c, v[0], v[1], 0);
     v[0] = v[1];
   }
 }
 
 /* n x n squares of two triangles on the sides a, b; normal a x b. */
-static void add_square(scene *c, int n, const double *at, const double *a,
+static void add_square(face_scene *c, int n, const double *at, const double *a,
                        const double *b) {
   for (int k = 0; k < n * n; ++k) {
     int v[4];
@@ -89,20 +41,20 @@ static void add_square(scene *c, int n, const double *at, const double *a,
       for (int d = 0; d < 3; ++d) x[d] = at[d] + s * a[d] + t * b[d];
       v[q] = node_at(c, x);
     }
-    add_face(c, (int[]){v[0], v[1], v[2]});
-    add_face(c, (int[]){v[0], v[2], v[3]});
+    faces_face(c, v[0], v[1], v[2]);
+    faces_face(c, v[0], v[2], v[3]);
   }
 }
 
 /* The faces since "first" as a group. */
-static mesh_group *group_from(scene *c, const char *name, int first) {
+static mesh_group *group_from(face_scene *c, const char *name, int first) {
   const int id = c->m.n_group++;
   mesh_group *g = &c->group[id];
-  char used[MOST] = {0};
-  ck_assert_int_lt(id, GROUPS);
+  char used[FACES_MAX] = {0};
+  ck_assert_int_lt(id, FACES_GROUPS);
   *g = (mesh_group){.name = name, .dim = c->m.dim - 1};
   g->item_id = c->item[id];
-  g->node_id = c->node[id];
+  g->node_id = c->group_node[id];
   for (int f = first; f < c->m.n_face; ++f) {
     g->item_id[g->n_item++] = f;
     for (int k = 0; k < c->m.dim; ++k) used[c->face[c->m.dim * f + k]] = 1;
@@ -113,18 +65,19 @@ static mesh_group *group_from(scene *c, const char *name, int first) {
 }
 
 /* master NULL: the wall. */
-static contact_pair *add_pair(scene *c, const mesh_group *slave,
+static contact_pair *add_pair(face_scene *c, const mesh_group *slave,
                               const mesh_group *master) {
   contact_pair *p = &c->pair[c->in.n_pair++];
+  c->support[0] = (obstacle){.name = "WALL", .shape = OBSTACLE_CONFORMING};
   *p = (contact_pair){.card = "*CONTACT PAIR",
                       .name = "P",
                       .group = slave,
                       .master = master,
-                      .support = master == NULL ? &c->wall : NULL};
+                      .support = master == NULL ? c->support : NULL};
   return p;
 }
 
-static status build(scene *c) {
+static status build(face_scene *c) {
   const status st = pairs_couple(&c->in, c->log);
   return st != OK ? st : surface_build(&c->in, c->log, &c->s);
 }
@@ -134,17 +87,8 @@ static double noise(unsigned *seed) {
   return ((*seed >> 8) & 0xffff) / 65535.0 - 0.5;
 }
 
-/* 1: the messages hold the text. */
-static int said(const scene *c, const char *text) {
-  char all[4096] = "";
-  FILE *out = fmemopen(all, sizeof all - 1, "w");
-  message_print(c->log, out);
-  fclose(out);
-  return strstr(all, text) != NULL;
-}
-
 /* The sum of the parts of component k of contact node q: 1, or 0 of none. */
-static double part_sum(const scene *c, int q, int k) {
+static double part_sum(const face_scene *c, int q, int k) {
   const node_links *l = c->s->master;
   double sum = 0;
   for (size_t e = l->start[q]; e < l->start[q + 1]; ++e)
@@ -157,8 +101,8 @@ static double part_sum(const scene *c, int q, int k) {
 /* Pairs side by side: a common node is of the earlier one. The displacements
  * (x, 2 x) move all alike. */
 START_TEST(node_of_two_pairs_is_of_the_first) {
-  scene c;
-  scene_init(&c, 2);
+  face_scene c;
+  faces_begin(&c, 2);
   for (int p = 0; p < 3; ++p) {
     int first = c.m.n_face;
     add_line(&c, 3, (double[]){p, 0}, (double[]){p + 1, 0});
@@ -169,7 +113,7 @@ START_TEST(node_of_two_pairs_is_of_the_first) {
   }
   ck_assert_int_eq(build(&c), OK);
   ck_assert_int_eq(c.s->n, 10);
-  double u[2 * MOST], w[2 * MOST];
+  double u[2 * FACES_MAX], w[2 * FACES_MAX];
   for (int i = 0; i < c.m.n_node; ++i)
     for (int k = 0; k < 2; ++k) u[2 * i + k] = (k + 1) * c.x[2 * i];
   surface_relative(c.s, u, w);
@@ -183,15 +127,15 @@ START_TEST(node_of_two_pairs_is_of_the_first) {
     }
   }
   for (int p = 1; p < 3; ++p) ck_assert_int_eq(c.pair[p].coupled->n, 3);
-  scene_free(&c);
+  faces_end(&c);
 }
 END_TEST
 
 /* The normal that counts is that of the common node, at the other end of a bent
  * slave. */
 START_TEST(normals_are_compared_where_the_pairs_meet) {
-  scene c;
-  scene_init(&c, 2);
+  face_scene c;
+  faces_begin(&c, 2);
   add_line(&c, 4, (double[]){0, 1}, (double[]){0, 0});
   add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
   const mesh_group *bent = group_from(&c, "BENT", 0);
@@ -205,13 +149,13 @@ START_TEST(normals_are_compared_where_the_pairs_meet) {
   ck_assert_int_eq(build(&c), OK);
   ck_assert_int_eq(c.pair[1].coupled->n, 4);
   for (int q = 0; q < c.s->n; ++q) ck_assert_int_eq(c.s->side_id[q], -1);
-  scene_free(&c);
+  faces_end(&c);
 }
 END_TEST
 
 /* Four edges on three. */
-static void flat_pair(scene *c) {
-  scene_init(c, 2);
+static void flat_pair(face_scene *c) {
+  faces_begin(c, 2);
   add_line(c, 4, (double[]){0, 0}, (double[]){1, 0});
   const mesh_group *slave = group_from(c, "SLAVE", 0);
   add_line(c, 3, (double[]){1, -0.1}, (double[]){0, -0.1});
@@ -219,12 +163,12 @@ static void flat_pair(scene *c) {
 }
 
 START_TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
-  scene c;
+  face_scene c;
   flat_pair(&c);
   c.fixed[0] = c.fixed[4] = 2;
   ck_assert_int_eq(build(&c), OK);
-  ck_assert(said(&c, "P4002"));
-  ck_assert(said(&c, "left out of contact: 2"));
+  ck_assert(faces_said(&c, "P4002"));
+  ck_assert(faces_said(&c, "left out of contact: 2"));
   ck_assert_int_eq(c.pair[0].coupled->n, 3);
   ck_assert_int_eq(c.s->n, 3);
   double area = 0;
@@ -235,7 +179,7 @@ START_TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
   }
   ck_assert_double_eq_tol(area, 1, 1e-14);
   ck_assert_int_eq(c.pair[0].coupled->n_dropped, 2);
-  scene_free(&c);
+  faces_end(&c);
 }
 END_TEST
 
@@ -244,8 +188,8 @@ END_TEST
 /* It is where supports hold the masters too, and do not tie them. */
 START_TEST(held_tangent_is_relative_to_none) {
   for (int k = 0; k < 3; ++k) { /* masters are free, held, tied */
-    scene c;
-    int tied[MOST];
+    face_scene c;
+    int tied[FACES_MAX];
     flat_pair(&c);
     c.fixed[0] = 1;
     tie_set ties = {.node_id = tied};
@@ -261,7 +205,7 @@ START_TEST(held_tangent_is_relative_to_none) {
       ck_assert_double_eq_tol(part_sum(&c, q, 0), 1, 1e-14);
       ck_assert_double_eq_tol(part_sum(&c, q, 1), q != 0 || k == 1, 1e-14);
     }
-    scene_free(&c);
+    faces_end(&c);
   }
 }
 END_TEST
@@ -269,8 +213,9 @@ END_TEST
 /* Forces on both sides do the work of the relative displacements, and are found
  * again from their sums at the nodes. */
 static void check_forces(const contact_surface *s, int n_node) {
-  double u[3 * MOST], w[3 * MOST], r[3 * MOST], F[3 * MOST] = {0};
-  double again[3 * MOST], work = 0;
+  double u[3 * FACES_MAX], w[3 * FACES_MAX], r[3 * FACES_MAX],
+      F[3 * FACES_MAX] = {0};
+  double again[3 * FACES_MAX], work = 0;
   const int n = s->dim * s->n;
   unsigned seed = 1;
   for (int i = 0; i < s->dim * n_node; ++i) u[i] = noise(&seed);
@@ -288,9 +233,10 @@ static const double lean[3] = {-0.3, 0, 1};
 
 /* The edge along y of a floor, which begins at x = "from", and a leaning wall
  * or an obstacle in its place. The first node of the floor, of the wall. */
-static void build_edge(scene *c, int with_wall, double from, int first[2]) {
+static void build_edge(face_scene *c, int with_wall, double from,
+                       int first[2]) {
   static const double ex[3] = {1, 0, 0}, ey[3] = {0, 1, 0};
-  scene_init(c, 3);
+  faces_begin(c, 3);
   add_square(c, 2, (double[]){0, 0, 0}, ey, ex);
   const mesh_group *below = group_from(c, "BELOW", 0);
   add_square(c, 2, (double[]){0, 0, 0}, lean, ey);
@@ -311,9 +257,9 @@ START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
   const double length = sqrt(1.09);
   const int with_wall = _i;
   int first[2];
-  scene c;
+  face_scene c;
   build_edge(&c, with_wall, 0, first);
-  double u[3 * MOST] = {0}, w[3 * MOST];
+  double u[3 * FACES_MAX] = {0}, w[3 * FACES_MAX];
   for (int i = first[0]; i < c.m.n_node; ++i)
     memcpy(u + 3 * i, i < first[1] ? floor : wall, sizeof floor);
   surface_relative(c.s, u, w);
@@ -334,14 +280,14 @@ START_TEST(rows_at_an_edge_are_relative_to_their_own_partner) {
   }
   ck_assert_int_eq(n_edge, 3);
   check_forces(c.s, c.m.n_node);
-  scene_free(&c);
+  faces_end(&c);
 }
 END_TEST
 
 /* What the floor covers of a node, and where the force of its row acts, are the
  * same with a wall beside it. */
 START_TEST(floor_covers_what_it_does_without_a_wall) {
-  scene c[2];
+  face_scene c[2];
   int first[2], n_edge = 0;
   for (int k = 0; k < 2; ++k) build_edge(&c[k], k, 0.25, first);
   ck_assert_int_eq(c[0].s->n, c[1].s->n);
@@ -357,14 +303,14 @@ START_TEST(floor_covers_what_it_does_without_a_wall) {
       ck_assert_double_eq_tol(a->lever[9 * q + x], b->lever[9 * q + x], 1e-14);
   }
   ck_assert_int_eq(n_edge, 3);
-  for (int k = 0; k < 2; ++k) scene_free(&c[k]);
+  for (int k = 0; k < 2; ++k) faces_end(&c[k]);
 }
 END_TEST
 
 START_TEST(normal_is_the_mean_or_that_of_the_slave) {
   const double slope = 0.1, angle = _i ? atan(slope) : 0.5 * atan(slope);
-  scene c;
-  scene_init(&c, 2);
+  face_scene c;
+  faces_begin(&c, 2);
   add_line(&c, 4, (double[]){0, 0.1}, (double[]){1, 0.1 + slope});
   const mesh_group *slave = group_from(&c, "SLAVE", 0);
   add_line(&c, 5, (double[]){1.1, 0}, (double[]){-0.1, 0});
@@ -376,7 +322,7 @@ START_TEST(normal_is_the_mean_or_that_of_the_slave) {
     ck_assert_double_eq_tol(c.s->frame[4 * q], sin(angle), 1e-14);
     ck_assert_double_eq_tol(c.s->frame[4 * q + 1], -cos(angle), 1e-14);
   }
-  scene_free(&c);
+  faces_end(&c);
 }
 END_TEST
 
@@ -389,8 +335,8 @@ START_TEST(coarse_masters_are_told) {
     double bend;
     int told;
   } cases[] = {{3, 0, 0}, {5, 0, 1}, {3, 0.1, 1}, {1, 0.1, 0}};
-  scene c;
-  scene_init(&c, 2);
+  face_scene c;
+  faces_begin(&c, 2);
   const double y = cases[_i].bend;
   add_line(&c, cases[_i].n, (double[]){0, y}, (double[]){1, 0});
   add_line(&c, cases[_i].n, (double[]){1, 0}, (double[]){2, y});
@@ -400,32 +346,32 @@ START_TEST(coarse_masters_are_told) {
   add_line(&c, 1, (double[]){1, -0.1}, (double[]){0, y - 0.1});
   add_pair(&c, slave, group_from(&c, "MASTER", first));
   ck_assert_int_eq(build(&c), OK);
-  ck_assert_int_eq(said(&c, "P4024"), cases[_i].told);
-  scene_free(&c);
+  ck_assert_int_eq(faces_said(&c, "P4024"), cases[_i].told);
+  faces_end(&c);
 }
 END_TEST
 
 START_TEST(surfaces_that_do_not_meet_are_an_error) {
-  scene c;
-  scene_init(&c, 2);
+  face_scene c;
+  faces_begin(&c, 2);
   add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
   const mesh_group *slave = group_from(&c, "SLAVE", 0);
   add_line(&c, 3, (double[]){3, -0.1}, (double[]){2, -0.1});
   add_pair(&c, slave, group_from(&c, "MASTER", 4));
   ck_assert_int_eq(build(&c), ERR_DECK);
-  ck_assert(said(&c, "P4023"));
-  scene_free(&c);
+  ck_assert(faces_said(&c, "P4023"));
+  faces_end(&c);
 }
 END_TEST
 
 START_TEST(pair_whose_nodes_are_all_held_is_an_error) {
-  scene c;
+  face_scene c;
   flat_pair(&c);
   memset(c.fixed, 2, 5);
   ck_assert_int_eq(build(&c), ERR_DECK);
-  ck_assert(said(&c, "P4010"));
-  ck_assert(!said(&c, "P4023"));
-  scene_free(&c);
+  ck_assert(faces_said(&c, "P4010"));
+  ck_assert(!faces_said(&c, "P4023"));
+  faces_end(&c);
 }
 END_TEST
 

@@ -61,7 +61,6 @@ static status rates(const scheme_call *a, const flow_state *s, int i,
   return OK;
 }
 
-/* explicit.c */
 static status euler_advance(const scheme_call *a) {
   const double h = a->p->dt;
   PASS(rates(a, a->old, 0, h));
@@ -148,7 +147,6 @@ static double part_at(const scheme_call *a, double t) {
   return (t - a->old->t) / (a->now->t - a->old->t);
 }
 
-/* between.c */
 static status hermite_between(const scheme_call *a, flow_state *mid) {
   const flow *x = a->x;
   const scheme_work *w = a->w;

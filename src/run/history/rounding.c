@@ -408,9 +408,9 @@ static status find_own(const run *r, double *own) {
   return OK;
 }
 
-/* Gaps at time 0 of the size of their rounding, of nodes on their obstacle, as
- * what they take for forces over the largest of all, or own[n] if that is more;
- * none where no more has moved than that. */
+/* A gap at time 0 of the size of the rounding of coordinates is rounding: the
+ * force that closes it, over the largest of all or own[n] (NULL: none), the
+ * largest over the nodes. 0 for bodies without load that have moved no more. */
 static double hidden_by_gaps(const run *r, const double *own) {
   const contact_problem *cp = &r->problem.cp;
   const double least = rounding_of_gaps(r), force = largest_force(r);
