@@ -409,6 +409,14 @@ static status refuse(run *r, double tried, double dt, const char *why) {
   return OK;
 }
 
+/* What the attempt adds to the error of strains that are left without a stress,
+ * as a share of them. */
+static double strain_part(const run *r, const paths *own) {
+  const double left = rounding_strain_left(r);
+  if (own->path == NULL || own->path->lost || !(left > 0.0)) return 0.0;
+  return share_of(own->path->error.strain - own->now.strain, left);
+}
+
 static status attempt_balanced(run *r, paths *own) {
   const step *s = r->step;
   progress *p = &r->at;
@@ -433,11 +441,13 @@ static status attempt_balanced(run *r, paths *own) {
   if (outcome_is_fatal(r->solving.report.outcome)) PASS(loop_no_equilibrium(r));
   if (!r->errors.evaluated) PASS(estimate_evaluate(r));
   PASS(measure(r, own, &part));
-  PASS(rounding_hides_strains(r, &hides));
+  PASS(rounding_hides_stresses(r, &hides));
   part = hides ? 0.0 : part - before;
+  const int flows = hides && strain_part(r, own) > s->accuracy.time_share;
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);
-  if (part > allowed && shorter) {
+  if (flows) dt = SHORTER * tried;
+  if ((part > allowed || flows) && shorter) {
     PASS(refuse(r, tried, dt, "error of the steps above its share"));
     return OK;
   }

@@ -42,8 +42,9 @@ status rounding_find(run *r);
 /* Contact forces that may be below the rounding of the motion: contact_hidden,
  * own forces by the stresses next to the node. */
 status rounding_hidden(const run *r, double *part);
-/* *hides = 1: the strains of the body are no more than the rounding of its
- * motion. */
+/* *hides = 1: the stresses, or the strains too, of the body are no more than
+ * the rounding of its motion. */
+status rounding_hides_stresses(const run *r, int *hides);
 status rounding_hides_strains(const run *r, int *hides);
 /* Energy that the elasticity would give the strains of a body whose law flows,
  * J; 0: it has none, or no more than the rounding of its motion. */

@@ -354,7 +354,7 @@ static int may_be_noise(const run *r) {
   return farthest_work(r) > FAR * FAR * r->now.energy.strain;
 }
 
-static status hides_stresses(const run *r, int *hides) {
+status rounding_hides_stresses(const run *r, int *hides) {
   ENDS_BY(misfit_free) misfit x = {0};
   double square = 0.0;
   *hides = hides_strains(r, lost(r));
@@ -368,7 +368,7 @@ static status hides_stresses(const run *r, int *hides) {
 
 status rounding_hides_strains(const run *r, int *hides) {
   *hides = 0;
-  return rounding_strain_left(r) > 0.0 ? OK : hides_stresses(r, hides);
+  return rounding_strain_left(r) > 0.0 ? OK : rounding_hides_stresses(r, hides);
 }
 
 double rounding_strain_left(const run *r) {
@@ -383,7 +383,7 @@ double rounding_strain_left(const run *r) {
 static status find_noise(run *r) {
   if (r->strains.eigen.n == 0 || !moves_alone(r) || !may_be_noise(r)) return OK;
   PASS(supports_strain(r, &r->errors.strained));
-  return r->errors.strained ? OK : hides_stresses(r, &r->errors.noise);
+  return r->errors.strained ? OK : rounding_hides_stresses(r, &r->errors.noise);
 }
 
 /* Largest stress next to each contact node times its area, own[n], N. */
