@@ -2,6 +2,7 @@
 """Results for other programs: tools/compare, reference, batch, study and the
 Python package. Runs in the folder of the sources; PROTIS: the program. Needs
 python3-numpy and python3-h5py; pandas is looked at where it is there."""
+import contextlib
 import csv
 import importlib.util
 import io
@@ -9,6 +10,7 @@ import json
 import os
 import pathlib
 import re
+import runpy
 import shutil
 import signal
 import subprocess
@@ -31,10 +33,19 @@ SMALL = ["-DN=4", "-DMU=0.5"]
 
 
 def tool(name, *words):
-    """Exit code and what a tool says."""
-    done = subprocess.run([sys.executable, f"tools/{name}", *map(str, words)],
-                          capture_output=True, text=True, check=False)
-    return done.returncode, done.stdout + done.stderr
+    """Exit code and what a tool says, in this process: numpy is loaded."""
+    said, code, argv = io.StringIO(), 0, sys.argv
+    sys.argv = [f"tools/{name}", *map(str, words)]
+    try:
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+            runpy.run_path(sys.argv[0], run_name="__main__")
+    except SystemExit as end:
+        code = end.code or 0
+        if isinstance(code, str):
+            code, said = 1, io.StringIO(said.getvalue() + end.code)
+    finally:
+        sys.argv = argv
+    return code, said.getvalue()
 
 
 class Results(unittest.TestCase):
