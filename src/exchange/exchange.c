@@ -11,7 +11,7 @@
 /*
  * A linear complementarity problem as text: n, the matrix M by rows, q. Numbers
  * are parted by blanks, commas, semicolons or line ends; # starts a comment
- * that ends with its line.
+ * that ends with its line. A byte order mark may precede it.
  */
 
 /* Up to FEW_UNKNOWNS the place where a short file ends is reported. */
@@ -126,25 +126,29 @@ static status lcp_text_read(const char *path, exchange_problem *p) {
   ENDS_BY(file_leave) FILE *f = input_stream(path, &why);
   if (f == NULL) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   errno = 0;
+  if (getc(f) != 0xEF || getc(f) != 0xBB || getc(f) != 0xBF) rewind(f);
   return read_numbers(&(words){.path = path, .line_no = 1, .f = f}, p);
 }
 
-static const unsigned char SIGNATURE[8] = {0x89, 'H',  'D',  'F',
-                                           '\r', '\n', 0x1a, '\n'};
+/* 1: HDF5 starts here, or at 512, 1024, 2048, ... bytes, behind what others
+ * put before it. */
+static int is_hdf5(FILE *f) {
+  char start[8];
+  for (long at = 0; fseek(f, at, SEEK_SET) == 0 &&
+                    fread(start, 1, sizeof start, f) == sizeof start;
+       at = at == 0 ? 512 : 2 * at)
+    if (memcmp(start, "\x89HDF\r\n\x1a\n", sizeof start) == 0) return 1;
+  return 0;
+}
 
-/* FCLIB if the file starts as HDF5 does. */
 static status type_of(const char *path, exchange_type *type) {
-  unsigned char start[sizeof SIGNATURE];
   const char *why = NULL;
   ENDS_BY(file_leave) FILE *f = input_stream(path, &why);
   if (f == NULL) RAISE(ERR_FILE, "%s: cannot be read: %s", path, why);
   errno = 0;
-  size_t n = fread(start, 1, sizeof start, f);
-  if (ferror(f)) PASS(text_failed(path, "read", errno));
   if (*type == EXCHANGE_BY_CONTENT)
-    *type = n == sizeof start && memcmp(start, SIGNATURE, n) == 0
-                ? EXCHANGE_FCLIB
-                : EXCHANGE_LCP;
+    *type = is_hdf5(f) ? EXCHANGE_FCLIB : EXCHANGE_LCP;
+  if (ferror(f)) PASS(text_failed(path, "read", errno));
   return OK;
 }
 

@@ -701,7 +701,8 @@ static answer read_text(const char *text) {
 
 START_TEST(text_is_read_by_rows) {
   enter();
-  answer a = read_text("# two unknowns\r\n2\n1, 2.5D0;-3 4e0 # M\n 5\n6");
+  answer a =
+      read_text("\xEF\xBB\xBF# two unknowns\r\n2\n1, 2.5D0;-3 4e0 # M\n 5\n6");
   ck_assert_msg(a.st == OK, "%s", a.text);
   const double M[] = {1.0, -3.0, 2.5, 4.0};
   ck_assert_int_eq(a.p->dim, 1);

@@ -7,6 +7,8 @@
 #include "support/folder.h"
 #include "support/unit.h"
 
+#include <unistd.h>
+
 static char folder[64], path[128];
 
 static void enter(void) {
@@ -101,6 +103,39 @@ START_TEST(singular_stiffness_is_written_as_global) {
 }
 END_TEST
 
+/* As other programs leave room for what is theirs before HDF5. */
+START_TEST(layout_behind_a_user_block_is_read) {
+  const place at = {.file = "a.inp", .line_no = 1};
+  enter();
+  contact_case c = one_node();
+  message_log *log;
+  exchange_problem *p;
+  ck_assert_int_eq(message_log_new(&log), OK);
+  for (hsize_t size = 512; size <= 2048; size *= 2) {
+    ck_assert_int_eq(fclib_write(&c.cp, NULL, NULL, NULL, "", "", path), OK);
+    hid_t plain = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+    ck_assert_int_eq(unlink(path), 0);
+    hid_t how = H5Pcreate(H5P_FILE_CREATE);
+    ck_assert_int_ge(H5Pset_userblock(how, size), 0);
+    hid_t file = H5Fcreate(path, H5F_ACC_EXCL, how, H5P_DEFAULT);
+    ck_assert_int_ge(H5Ocopy(plain, "fclib_local", file, "fclib_local",
+                             H5P_DEFAULT, H5P_DEFAULT),
+                     0);
+    H5Pclose(how);
+    H5Fclose(file);
+    H5Fclose(plain);
+    ck_assert_int_eq(exchange_read(path, EXCHANGE_BY_CONTENT, &at, log, &p),
+                     OK);
+    ck_assert_double_eq_tol(p->cp.f[0], 1.5, 1e-15);
+    ck_assert_double_eq_tol(p->cp.f[1], 1.25, 1e-15);
+    memory_free(p);
+  }
+  memory_free(log);
+  case_free(&c);
+  leave();
+}
+END_TEST
+
 /* No file is left, not even the one aside. */
 START_TEST(problems_without_a_place_are_refused) {
   enter();
@@ -152,5 +187,6 @@ END_TEST
 
 UNIT_MAIN("fclib", signs_are_those_of_the_layout,
           singular_stiffness_is_written_as_global,
+          layout_behind_a_user_block_is_read,
           problems_without_a_place_are_refused,
           every_refused_request_is_reported)
