@@ -413,9 +413,11 @@ status output_close(output *o, status run, int unsettled) {
   first_of(&kept, message, sizeof message, text_close(&o->sta));
   o->run.message = message;
   o->run.verdict = verdict_of(kept, unsettled);
+  first_of(&kept, message, sizeof message, listing_summary(&o->job, &o->lst));
+  o->run.verdict = verdict_of(kept, unsettled);
   first_of(&kept, message, sizeof message, write_json(o));
   const status told = o->run.verdict = verdict_of(kept, unsettled);
-  first_of(&kept, message, sizeof message, listing_verdict(&o->job, &o->lst));
+  first_of(&kept, message, sizeof message, listing_end(&o->job, &o->lst));
   first_of(&kept, message, sizeof message, text_close(&o->lst));
   o->run.verdict = verdict_of(kept, unsettled);
   if (o->run.verdict != told) write_json(o);

@@ -299,7 +299,7 @@ START_TEST(counts_of_the_run) {
                           .increments = all,
                           .message = "",
                           .verdict = ERR_UNSETTLED};
-  must_print(listing_verdict,
+  must_print(listing_summary,
              "  increments                           11\n"
              "  attempts cut                         12\n"
              "  tolerance missed                     13\n"

@@ -3,6 +3,7 @@
 
 #include "base/base.h"
 #include "output/writers.h"
+#include "support/disk.h"
 #include "support/folder.h"
 #include "support/made_up.h"
 #include "support/unit.h"
@@ -423,20 +424,6 @@ END_TEST
 
 /* ---- failures --------------------------------------------------------- */
 
-/* The open file of that name takes no more. */
-static void fill_disk(const char *name) {
-  char link[64], path[200];
-  for (int fd = 3; fd < 64; ++fd) {
-    snprintf(link, sizeof link, "/proc/self/fd/%d", fd);
-    ssize_t n = readlink(link, path, sizeof path - 1);
-    path[n > 0 ? n : 0] = '\0';
-    if (strstr(path, name) == NULL) continue;
-    int full = open("/dev/full", O_RDWR);
-    ck_assert_int_eq(dup2(full, fd), fd);
-    close(full);
-  }
-}
-
 START_TEST(full_disk_of_any_text_file_is_told_and_the_others_are_kept) {
   const char *const files[] = {"block.lst", "block.sta", "block.cvg",
                                "block.dat"};
@@ -447,7 +434,7 @@ START_TEST(full_disk_of_any_text_file_is_told_and_the_others_are_kept) {
     output_options o = quiet(dir);
     output *out = NULL;
     ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
-    fill_disk(files[k]);
+    disk_fill(files[k]);
     history_sink sink = output_sink(out);
     status st = output_close(out, tell(made, &sink, 2), 0);
     ck_assert_msg(st == ERR_FILE, "%s", files[k]);
@@ -477,9 +464,10 @@ static void ck_code(const char *dir, int code) {
   }
 }
 
-/* The listing takes no more when all else is written, and JSON may not be
- * written again: the k-th request is refused. 1: it was. */
-static int end_on_full_disk(made_up *made, long k) {
+/* The listing takes no more when all else is written, or, late, but its end,
+ * and JSON may not be written (again): the k-th request is refused. 1: it was.
+ */
+static int end_on_full_disk(made_up *made, int late, long k) {
   char dir[64];
   folder_new(dir);
   output_options o = quiet(dir);
@@ -487,11 +475,13 @@ static int end_on_full_disk(made_up *made, long k) {
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
   history_sink sink = output_sink(out);
   ck_assert_int_eq(tell(made, &sink, 2), OK);
-  fill_disk("block.lst");
+  if (!late) disk_fill("block.lst");
+  disk_fill_after("block.lst", late ? "block.json" : NULL);
   const long first = memory_requests();
   memory_refuse(k, 0);
   const status st = output_close(out, OK, 0);
   memory_refuse(0, 0);
+  disk_fill_after(NULL, NULL);
   ck_assert_msg(st == ERR_FILE || st == ERR_MEMORY, "%s", status_message());
   ck_code(dir, status_exit_code(st));
   char *text = k > 0 ? NULL : checked_json(dir);
@@ -503,7 +493,8 @@ static int end_on_full_disk(made_up *made, long k) {
 
 START_TEST(full_disk_at_the_end_is_told) {
   made_up *made = made_up_new(2, 2, 2);
-  for (long k = 0; end_on_full_disk(made, k);) ++k;
+  for (int late = 0; late < 2; ++late)
+    for (long k = 0; end_on_full_disk(made, late, k);) ++k;
   made_up_free(made);
 }
 END_TEST

@@ -162,8 +162,10 @@ status listing_start(const job *j, const start_report *s, text_file *lst);
 status listing_increment(const job *j, const state *s, text_file *lst);
 status listing_between(const state *s, text_file *lst);
 status listing_rejected(const state *s, const char *why, text_file *lst);
-/* Warnings, accuracy, cost, exit code. */
-status listing_verdict(const job *j, text_file *lst);
+/* Warnings, accuracy, cost. */
+status listing_summary(const job *j, text_file *lst);
+/* The exit code, in one piece: all of it or nothing. */
+status listing_end(const job *j, text_file *lst);
 
 /* budget.c, for the files of this folder: the goals of an increment; at the end
  * budget of the errors, goals, what to improve, passes. */

@@ -209,7 +209,7 @@ static void print_stages(const job *j, FILE *f) {
             "points below their threshold", t->resting, t->asked);
 }
 
-status listing_verdict(const job *j, text_file *lst) {
+status listing_summary(const job *j, text_file *lst) {
   FILE *f = lst->f;
   if (j->m->log != NULL && message_count(j->m->log, WARNING) > 0) {
     heading(f, "WARNINGS");
@@ -223,9 +223,16 @@ status listing_verdict(const job *j, text_file *lst) {
   heading(f, "COST OF THE EFFECTS");
   plan_print_cost(j->plan, !j->o->no_timing, f);
   print_proof(j->m, f);
-  heading(f, "END");
-  fprintf(f, "  exit %d: %s\n", status_exit_code(j->run->verdict),
-          status_text(j->run->verdict));
-  if (j->run->message[0] != '\0') fprintf(f, "  %s\n", j->run->message);
+  return text_check(lst);
+}
+
+status listing_end(const job *j, text_file *lst) {
+  char end[4096];
+  const int n =
+      snprintf(end, sizeof end, "\nEND\n---\n  exit %d: %s\n",
+               status_exit_code(j->run->verdict), status_text(j->run->verdict));
+  if (j->run->message[0] != '\0')
+    snprintf(end + n, sizeof end - (size_t)n, "  %s\n", j->run->message);
+  fputs(end, lst->f);
   return text_check(lst);
 }
