@@ -177,11 +177,16 @@ static contact_node take_node(const judged *j, const deck_contact *c, int row) {
   return q;
 }
 
-/* What is left of v in the tangent plane, without fixed components. */
+/* What is left of v in the tangent plane without fixed components, which is at
+ * a right angle to what is left of the normal. */
 static void tangential(const contact_node *q, double *v) {
-  double along = dot(v, q->n);
-  for (int c = 0; c < 3; ++c)
-    v[c] = q->fixed >> c & 1 ? 0 : v[c] - along * q->n[c];
+  double n[3];
+  for (int c = 0; c < 3; ++c) {
+    if (q->fixed >> c & 1) v[c] = 0;
+    n[c] = q->fixed >> c & 1 ? 0 : q->n[c];
+  }
+  const double size = dot(n, n), along = size > 0 ? dot(v, n) / size : 0;
+  for (int c = 0; c < 3; ++c) v[c] -= along * n[c];
 }
 
 /* ---- conditions --------------------------------------------------------- */
