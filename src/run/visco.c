@@ -364,6 +364,7 @@ status visco_keep(run *r, archive *a) {
   PASS(visco_keep_flow(&v->x, &v->old, a, "old"));
   PASS(visco_keep_flow(&v->x, &v->now, a, "now"));
   PASS(archive_reals(a, "largest", &v->largest, 1));
+  PASS(archive_reals(a, "stages", &v->stages, 1));
   PASS(archive_reals(a, "length", v->length, SLOTS));
   PASS(archive_bytes(a, "n_length", &v->n_length, sizeof v->n_length));
   PASS(archive_reals(a, "asked", &v->x.tally->asked, 1));

@@ -159,6 +159,36 @@ START_TEST(adapted_increments_go_on) {
 }
 END_TEST
 
+/* Yields within an increment, whose stages are then not stable. */
+static job yielding(void) {
+  job j = small_creep(0.1, "", "INTEGRATOR=HEUN, SUBSTEPS=AUTO");
+  edit(&j, "MAXWELL\n4.\n", "PERZYNA\n200., 1.E4, 1.E4\n");
+  edit(&j, "*ACCURACY, TIME=YES\n", "*DSLOAD\nLEFT, P, 400.\n");
+  return j;
+}
+
+/* Stopped after the first attempt that was not stable: the next is cut. */
+START_TEST(unstable_attempt_is_not_made_twice) {
+  int from = 0, to, changes;
+  job whole = yielding(), j = yielding();
+  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &to), 0);
+  while (to - from > 1) {
+    const int at = (from + to) / 2;
+    job_clear(&j);
+    ck_assert_int_eq(run_until(&j, nothing, at, SIGINT, &changes), 130);
+    char *sta = job_file(&j, "sta");
+    *(strstr(sta, "CUT UNSTABLE") != NULL ? &to : &from) = at;
+    free(sta);
+  }
+  job_clear(&j);
+  ck_assert_int_eq(run_until(&j, nothing, to, SIGINT, &changes), 130);
+  goes_on(&j, 0, "yielding");
+  same_files(&whole, &j, "yielding");
+  job_end(&whole);
+  job_end(&j);
+}
+END_TEST
+
 /* A block that comes down through the air, with tolerances of its own. */
 static job falling(void) {
   job j =
@@ -640,10 +670,10 @@ END_TEST
 UNIT_MAIN("restart", what_is_read_is_written_again,
           changed_decks_are_refused_by_card, later_steps_may_change,
           adapted_increments_go_on, killed_twice_goes_on,
-          chosen_tolerance_goes_on, path_on_a_moving_obstacle_goes_on,
-          known_rate_goes_on, largest_loads_and_energies_go_on,
-          run_without_a_file_begins_anew, files_are_in_the_seal,
-          restart_files_are_equal, errors_of_goals_go_on, factor_goes_on,
-          kind_of_stiffness_goes_on, observed_work_goes_on,
+          unstable_attempt_is_not_made_twice, chosen_tolerance_goes_on,
+          path_on_a_moving_obstacle_goes_on, known_rate_goes_on,
+          largest_loads_and_energies_go_on, run_without_a_file_begins_anew,
+          files_are_in_the_seal, restart_files_are_equal, errors_of_goals_go_on,
+          factor_goes_on, kind_of_stiffness_goes_on, observed_work_goes_on,
           restart_file_does_not_grow, missed_tolerance_goes_on,
           some_jobs_start_anew, damaged_files_are_refused)
