@@ -146,7 +146,9 @@ static void find_normal(const random_deck *d, const deck_contact *c,
   }
   if (c->obstacle.kind == PLANE || c->normal == 2)
     obstacle_normal(d, &c->obstacle, q->x, q->n);
-  if (d->kind == AXISYMMETRIC_ && q->x[0] == 0) q->n[0] = 0;
+  /* On the axis a body lies on a round obstacle as on its mirror. */
+  if (d->kind == AXISYMMETRIC_ && c->obstacle.kind == SPHERE && q->x[0] == 0)
+    q->n[0] = 0;
   double size = sqrt(dot(q->n, q->n));
   for (int k = 0; k < 3; ++k) q->n[k] /= size;
 }
