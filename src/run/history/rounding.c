@@ -175,15 +175,19 @@ static double largest_force(const run *r) {
               largest_entry(r->nodes.n_c, r->now.rc));
 }
 
-/* 1: contact forces and supports carry the loads straight, and strains are no
- * more than the rounding of both, or than what the solver has left at the
- * contact nodes. */
-static int forces_hide_strains(const run *r) {
+/* What the rounding of the forces stores, and what the solver has left at the
+ * contact nodes, J. */
+static double forces_energy(const run *r) {
   const double force = largest_force(r), rounding = CARRIED * force,
                left = r->solving.report.residual * force;
-  return r->now.energy.strain <=
-         (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
-             condensed_stiffest(r->c);
+  return (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
+         condensed_stiffest(r->c);
+}
+
+/* 1: contact forces and supports carry the loads straight, and strains are
+ * nothing else. */
+static int forces_hide_strains(const run *r) {
+  return r->now.energy.strain <= forces_energy(r);
 }
 
 /* 1: no force acts on the body, and its supports do not strain it. */
@@ -376,7 +380,8 @@ double rounding_strain_left(const run *r) {
   plain.eigen = NULL;
   if (r->strains.visco == NULL) return 0.0;
   const double energy = domain_strain_energy(&plain, r->now.u);
-  return energy > FAR * motion_energy(r, lost(r)) ? energy : 0.0;
+  const double none = fmax(motion_energy(r, lost(r)), forces_energy(r));
+  return energy > FAR * none ? energy : 0.0;
 }
 
 /* Strains that flow, of a body that nothing loads now. */
