@@ -1,0 +1,130 @@
+/*
+ * src/model/cards: what the cards of a step say is in the model, in its own
+ * place: no number is there twice, and none is that of a default.
+ */
+#include "base/base.h"
+#include "material/scheme/scheme.h"
+#include "support/text_model.h"
+#include "support/unit.h"
+
+static mesh *square(void) {
+  const int n[] = {3, 2};
+  const double length[] = {6.0, 4.0};
+  return make_grid_2d(n, length);
+}
+
+static void read_steps(text_model *s, const char *steps) {
+  char text[2000];
+  snprintf(text, sizeof text,
+           "*MESH, FILE=none.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+           "*INELASTIC, LAW=NORTON\n1e-9, 3.\n"
+           "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n"
+           "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+           "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+           "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n%s",
+           steps);
+  text_model_read(s, text, square());
+  ck_assert_int_eq(s->st, OK);
+}
+
+START_TEST(increments_of_a_step) {
+  text_model s;
+  read_steps(&s,
+             "*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.25, 3., 0.125, 0.5\n"
+             "*BOUNDARY\nTOP, 1, 2\n*END STEP\n"
+             "*STEP\n*QUASISTATIC\n0.75, 7.\n*END STEP\n"
+             "*STEP\n*VISCO, INTEGRATOR=THETA, THETA=0.75, "
+             "ITERATION=INITIAL, TOLERANCE=0.01\n2., 11., , 5.\n*END STEP\n"
+             "*STEP\n*VISCO, INTEGRATOR=EULER, SUBSTEPS=AUTO\n"
+             "2., 13., 0.625\n*END STEP\n"
+             "*STEP\n*STATIC\n17.\n*END STEP\n");
+  const step *a = s.m->steps;
+  ck_assert_int_eq(s.m->n.step, 5);
+  ck_assert(a[0].kind == STEP_QUASISTATIC && a[2].kind == STEP_VISCO &&
+            a[4].kind == STEP_STATIC);
+  ck_assert(a[0].form == 1 && a[1].form == 0);
+  ck_assert(a[0].dt == 0.25 && a[0].total == 3 && a[0].dt_min == 0.125 &&
+            a[0].dt_max == 0.5);
+  ck_assert(a[1].dt == 0.75 && a[1].total == 7 && a[1].dt_min == 0.75 / 16 &&
+            a[1].dt_max == HUGE_VAL);
+  ck_assert(a[2].dt == 2 && a[2].total == 11 && a[2].dt_max == 5);
+  ck_assert_double_eq_tol(a[2].dt_min, 2e-6, 1e-20);
+  ck_assert(a[3].dt_min == 0.625 && a[4].total == 17);
+  ck_assert(a[1].start == 3 && a[2].start == 10 && a[4].start == 34);
+  ck_assert_str_eq(a[2].visco.integrator->name, "THETA");
+  ck_assert_str_eq(a[3].visco.integrator->name, "EULER");
+  ck_assert(a[2].visco.theta == 0.75 && a[2].visco.tolerance == 0.01 &&
+            a[2].visco.initial && a[2].visco.substeps);
+  ck_assert(a[3].visco.theta == 0 && a[3].visco.tolerance == 0 &&
+            !a[3].visco.initial && a[3].visco.substeps);
+  text_model_close(&s);
+}
+END_TEST
+
+START_TEST(solver_and_accuracy_of_a_step) {
+  text_model s;
+  read_steps(&s,
+             "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nTOP, 1, 2\n"
+             "*SOLVER, METHOD=SOR, TOL=1e-7, MAX_ITER=17, LIMIT_MAX_ITER=19, "
+             "CHECK=ALL, STIFFNESS=DENSE\n"
+             "*ACCURACY, MESH=NO, TIME=YES, SOLVER=NO, THEORY=YES\n*END STEP\n"
+             "*STEP\n*QUASISTATIC\n1., 4.\n"
+             "*SOLVER, TOL=BALANCED, SHARE=0.25, MAX_MEMORY=23\n"
+             "*ACCURACY, MESH=NO, TIME=BALANCED, TIME_SHARE=0.375\n"
+             "*END STEP\n"
+             "*STEP\n*QUASISTATIC\n1., 4.\n*ACCURACY, MESH=NO, TARGET=29, "
+             "MAX_CPU=31, MAX_MEMORY=37, MAX_PASSES=5\n*END STEP\n");
+  const step *a = s.m->steps;
+  ck_assert_str_eq(a[0].solver.ops->name, "sor");
+  ck_assert(a[0].solver.tol == 1e-7 && a[0].solver.max_iter == 17 &&
+            a[0].solver.limit_max_iter == 19 && a[0].check == CHECK_ALL &&
+            a[0].solver.stiffness == STIFFNESS_DENSE && !a[0].balanced);
+  ck_assert(a[0].accuracy.mesh == MESH_ERROR_NO && a[0].accuracy.time &&
+            a[0].accuracy.no_solver && a[0].accuracy.theorems &&
+            !a[0].accuracy.time_balanced);
+  ck_assert(a[1].solver.ops == NULL && a[1].balanced && a[1].share == 0.25 &&
+            a[1].solver.max_memory == 23 && a[1].solver.max_iter == 0 &&
+            a[1].check == CHECK_NONE);
+  ck_assert(a[1].accuracy.mesh == MESH_ERROR_YES && a[1].accuracy.time &&
+            a[1].accuracy.time_balanced && a[1].accuracy.time_share == 0.375 &&
+            !a[1].accuracy.no_solver && !a[1].accuracy.theorems);
+  ck_assert(a[2].accuracy.mesh == MESH_ERROR_YES && a[2].accuracy.time &&
+            !a[2].accuracy.time_balanced);
+  const accuracy_target *t = &s.m->accuracy.target;
+  ck_assert(t->percent == 29 && t->max_cpu == 31 && t->max_memory == 37 &&
+            t->max_passes == 5);
+  text_model_close(&s);
+}
+END_TEST
+
+START_TEST(outputs_of_a_step) {
+  text_model s;
+  read_steps(&s,
+             "*TIME POINTS, NAME=P\n0.5, 1.5\n"
+             "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nTOP, 1, 2\n"
+             "*PRINT, NODES, FREQUENCY=3, GROUP=TOP\n"
+             "*PRINT, ENERGY, TIME POINTS=P\n"
+             "*OUTPUT, FREQUENCY=5, CONDENSED=FCLIB\n"
+             "*RESTART, FREQUENCY=7\n*END STEP\n"
+             "*STEP\n*QUASISTATIC\n1., 4.\n*OUTPUT, HDF5=NO, CONDENSED=FCLIB, "
+             "FREQUENCY=11\n*END STEP\n"
+             "*STEP\n*QUASISTATIC\n1., 4.\n*OUTPUT, FREQUENCY=13\n"
+             "*END STEP\n");
+  const step *a = s.m->steps;
+  const print_request *q = a[0].print.requests;
+  ck_assert_int_eq(a[0].print.n, 2);
+  ck_assert(q[0].table == PRINT_NODES && q[0].frequency == 3);
+  ck_assert_str_eq(q[0].group, "TOP");
+  ck_assert(q[0].group_id >= 0 && q[0].points_name == NULL);
+  ck_assert(q[1].table == PRINT_ENERGY && q[1].group == NULL);
+  ck_assert_str_eq(q[1].points_name, "P");
+  ck_assert(a[0].output.frequency == 5 && a[0].output.condensed == 5 &&
+            a[0].restart.frequency == 7);
+  ck_assert(a[1].output.frequency == -1 && a[1].output.condensed == 11);
+  ck_assert(a[2].output.frequency == 13 && a[2].output.condensed == -1);
+  text_model_close(&s);
+}
+END_TEST
+
+UNIT_MAIN("cards", increments_of_a_step, solver_and_accuracy_of_a_step,
+          outputs_of_a_step)
