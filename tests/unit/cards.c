@@ -1,6 +1,6 @@
 /*
- * src/model/cards: what the cards of a step say is in the model, in its own
- * place: no number is there twice, and none is that of a default.
+ * src/model/cards: what the cards say is in the model, in its own place: no
+ * number is there twice, and none is that of a default.
  */
 #include "base/base.h"
 #include "material/scheme/scheme.h"
@@ -126,5 +126,106 @@ START_TEST(outputs_of_a_step) {
 }
 END_TEST
 
-UNIT_MAIN("cards", increments_of_a_step, solver_and_accuracy_of_a_step,
+/* The numbers of a vector. */
+static void check_vector(const double *v, double x, double y, double z) {
+  ck_assert_double_eq_tol(v[0], x, 1e-15);
+  ck_assert_double_eq_tol(v[1], y, 1e-15);
+  ck_assert_double_eq_tol(v[2], z, 1e-15);
+}
+
+static void read_in_space(text_model *s, const char *cards) {
+  const int n[] = {2, 2, 2};
+  const double length[] = {2.0, 3.0, 4.0};
+  char text[2000];
+  snprintf(text, sizeof text,
+           "*MESH, FILE=none.msh\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+           "*MATERIAL, NAME=M\n%s*STEP\n*QUASISTATIC\n1., 4.\n"
+           "*BOUNDARY\nTOP, 1, 3\n*END STEP\n",
+           cards);
+  text_model_read(s, text, make_grid_3d(n, length));
+  ck_assert_int_eq(s->st, OK);
+}
+
+START_TEST(obstacles_and_contacts) {
+  text_model s;
+  read_in_space(&s,
+                "*ELASTIC\n1000., 0.3\n*AMPLITUDE, NAME=R\n0., 0., 9., 9.\n"
+                "*OBSTACLE, NAME=A, TYPE=CYLINDER, RADIUS=0.5, SIDE=INSIDE\n"
+                "1., 2., 5.\n3., 0., 4.\nMOVE, 6., 7., 8.\n"
+                "ROTATE, 9., 10., 11., 0., 6., -8., 0.25\n"
+                "*OBSTACLE, NAME=B, TYPE=SPHERE, RADIUS=0.75\n12., 13., 14.\n"
+                "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=A, NORMAL=OBSTACLE\n"
+                "AXIS, 15., 16., 17., 6., 8., 0.\n"
+                "*CONTACT, NAME=D, GROUP=LEFT, OBSTACLE=B, NORMAL=BODY\n");
+  const obstacle *a = &s.m->obstacles[0], *b = &s.m->obstacles[1];
+  ck_assert(a->inside && a->radius == 0.5 && a->turns);
+  check_vector(a->point, 1, 2, 5);
+  check_vector(a->direction, 0.6, 0, 0.8);
+  for (int k = 0; k < 3; ++k) ck_assert(a->motion[k].number == 6 + k);
+  check_vector(a->pivot, 9, 10, 11);
+  check_vector(a->axis, 0, 0.6, -0.8);
+  ck_assert(a->angle.number == 0.25);
+  ck_assert(!b->inside && b->radius == 0.75 && !b->turns);
+  check_vector(b->point, 12, 13, 14);
+  const contact *c = s.m->contacts;
+  ck_assert(c[0].obstacle_id == 0 && c[1].obstacle_id == 1);
+  ck_assert(c[0].obstacle_normal == 1 && c[1].obstacle_normal == 0);
+  ck_assert(c[0].has_axis && !c[1].has_axis && !c[0].axis_of_obstacle);
+  check_vector(c[0].axis_point, 15, 16, 17);
+  check_vector(c[0].axis, 0.6, 0.8, 0);
+  text_model_close(&s);
+}
+END_TEST
+
+START_TEST(materials_and_goals) {
+  text_model s;
+  read_in_space(&s,
+                "*ELASTIC, TYPE=ORTHO, MODULI=LONG TERM\n"
+                "100., 110., 120., 0.1, 0.11, 0.12, 40., 41., 42.\n"
+                "*EXPANSION, TYPE=ORTHO, ZERO=7.\n1e-3, 2e-3, 3e-3\n"
+                "*INELASTIC, LAW=NORTON, SHIFT=ARRHENIUS, T_REF=20., "
+                "ACTIVATION=300., T_ZERO=-273.\n1e-9, 3.\n*DENSITY\n2.5\n"
+                "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nBODY, 21.\n"
+                "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=2, "
+                "TARGET=0.125\n0., 0., 2.\n1., 1.5, 4.\n"
+                "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=BODY, COMPONENT=ZX, "
+                "TARGET=\"3 %\"\n");
+  const material *m = s.m->materials;
+  double C[36] = {0.0};
+  const double E[] = {100, 110, 120}, nu[] = {0.1, 0.11, 0.12};
+  for (int i = 0; i < 3; ++i)
+    C[7 * i] = 1 / E[i], C[21 + 7 * i] = 1.0 / (40 + i);
+  C[1] = C[6] = -nu[0] / E[0];
+  C[2] = C[12] = -nu[1] / E[0];
+  C[8] = C[13] = -nu[2] / E[1];
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      /* shear xy, yz, zx of G12, G23, G13 */
+      static const int at[] = {0, 1, 2, 3, 5, 4};
+      double sum = 0.0;
+      for (int k = 0; k < 6; ++k) sum += m->C[at[i] + 6 * at[k]] * C[k + 6 * j];
+      ck_assert_double_eq_tol(sum, i == j, 1e-12);
+    }
+  ck_assert(m->moduli == MODULI_LONG_TERM && m->density == 2.5);
+  ck_assert(m->expand.zero == 7);
+  double e[3];
+  expansion_strain(&m->expand, 17, 7, e);
+  check_vector(e, 1e-2, 2e-2, 3e-2);
+  const law_shift *x = &m->law.shift;
+  ck_assert(x->kind == SHIFT_ARRHENIUS && x->reference == 20 &&
+            x->activation == 300 && x->zero == -273);
+  ck_assert(s.m->initial.lines[0].value.number == 21);
+  const goal_card *g = s.m->accuracy.goals;
+  ck_assert(g[0].component == 1 && g[0].target == 0.125 && !g[0].in_percent &&
+            g[0].n_point == 2);
+  check_vector(g[0].point[0], 0, 0, 2);
+  check_vector(g[0].point[1], 1, 1.5, 4);
+  ck_assert(g[1].component == GOAL_TENSOR + 5 && g[1].target == 3 &&
+            g[1].in_percent && g[1].group_id >= 0);
+  text_model_close(&s);
+}
+END_TEST
+
+UNIT_MAIN("cards", obstacles_and_contacts, materials_and_goals,
+          increments_of_a_step, solver_and_accuracy_of_a_step,
           outputs_of_a_step)
