@@ -202,12 +202,12 @@ START_TEST(path_on_a_moving_obstacle_goes_on) {
 }
 END_TEST
 
-/* What friction remembers of errors. */
+/* What friction remembers of errors, and the solutions that CHECK= finds. */
 START_TEST(errors_of_goals_go_on) {
   int changes, all;
   job both[2];
   for (int k = 0; k < 2; ++k) {
-    both[k] = small_flat(0.1, "*PRINT, GOALS\n", "NEWTON");
+    both[k] = small_flat(0.1, "*PRINT, GOALS\n", "NEWTON, CHECK=YES");
     edit(&both[k], "*STEP",
          "*GOAL, NAME=F, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
          "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n*STEP");
