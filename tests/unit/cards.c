@@ -7,6 +7,16 @@
 #include "support/text_model.h"
 #include "support/unit.h"
 
+/* Each number and what it is to be. */
+static void check_pairs(size_t n, const double *pair) {
+  for (size_t i = 0; i < n; i += 2)
+    ck_assert_msg(pair[i] == pair[i + 1], "number %zu: %g, not %g", i / 2,
+                  pair[i], pair[i + 1]);
+}
+#define PAIRS(...)                                              \
+  check_pairs(sizeof((double[]){__VA_ARGS__}) / sizeof(double), \
+              (double[]){__VA_ARGS__})
+
 static mesh *square(void) {
   const int n[] = {3, 2};
   const double length[] = {6.0, 4.0};
@@ -40,23 +50,22 @@ START_TEST(increments_of_a_step) {
              "*STEP\n*STATIC\n17.\n*END STEP\n");
   const step *a = s.m->steps;
   ck_assert_int_eq(s.m->n.step, 5);
-  ck_assert(a[0].kind == STEP_QUASISTATIC && a[2].kind == STEP_VISCO &&
-            a[4].kind == STEP_STATIC);
-  ck_assert(a[0].form == 1 && a[1].form == 0);
-  ck_assert(a[0].dt == 0.25 && a[0].total == 3 && a[0].dt_min == 0.125 &&
-            a[0].dt_max == 0.5);
-  ck_assert(a[1].dt == 0.75 && a[1].total == 7 && a[1].dt_min == 0.75 / 16 &&
-            a[1].dt_max == HUGE_VAL);
-  ck_assert(a[2].dt == 2 && a[2].total == 11 && a[2].dt_max == 5);
+  PAIRS(a[0].kind, STEP_QUASISTATIC, a[2].kind, STEP_VISCO, a[4].kind,
+        STEP_STATIC);
+  PAIRS(a[0].form, 1, a[1].form, 0);
+  PAIRS(a[0].dt, 0.25, a[0].total, 3, a[0].dt_min, 0.125, a[0].dt_max, 0.5);
+  PAIRS(a[1].dt, 0.75, a[1].total, 7, a[1].dt_min, 0.75 / 16, a[1].dt_max,
+        HUGE_VAL);
+  PAIRS(a[2].dt, 2, a[2].total, 11, a[2].dt_max, 5);
   ck_assert_double_eq_tol(a[2].dt_min, 2e-6, 1e-20);
-  ck_assert(a[3].dt_min == 0.625 && a[4].total == 17);
-  ck_assert(a[1].start == 3 && a[2].start == 10 && a[4].start == 34);
+  PAIRS(a[3].dt_min, 0.625, a[4].total, 17);
+  PAIRS(a[1].start, 3, a[2].start, 10, a[4].start, 34);
   ck_assert_str_eq(a[2].visco.integrator->name, "THETA");
   ck_assert_str_eq(a[3].visco.integrator->name, "EULER");
-  ck_assert(a[2].visco.theta == 0.75 && a[2].visco.tolerance == 0.01 &&
-            a[2].visco.initial && a[2].visco.substeps);
-  ck_assert(a[3].visco.theta == 0 && a[3].visco.tolerance == 0 &&
-            !a[3].visco.initial && a[3].visco.substeps);
+  PAIRS(a[2].visco.theta, 0.75, a[2].visco.tolerance, 0.01, a[2].visco.initial,
+        1, a[2].visco.substeps, 1);
+  PAIRS(a[3].visco.theta, 0, a[3].visco.tolerance, 0, a[3].visco.initial, 0,
+        a[3].visco.substeps, 1);
   text_model_close(&s);
 }
 END_TEST
@@ -76,23 +85,22 @@ START_TEST(solver_and_accuracy_of_a_step) {
              "MAX_CPU=31, MAX_MEMORY=37, MAX_PASSES=5\n*END STEP\n");
   const step *a = s.m->steps;
   ck_assert_str_eq(a[0].solver.ops->name, "sor");
-  ck_assert(a[0].solver.tol == 1e-7 && a[0].solver.max_iter == 17 &&
-            a[0].solver.limit_max_iter == 19 && a[0].check == CHECK_ALL &&
-            a[0].solver.stiffness == STIFFNESS_DENSE && !a[0].balanced);
-  ck_assert(a[0].accuracy.mesh == MESH_ERROR_NO && a[0].accuracy.time &&
-            a[0].accuracy.no_solver && a[0].accuracy.theorems &&
-            !a[0].accuracy.time_balanced);
-  ck_assert(a[1].solver.ops == NULL && a[1].balanced && a[1].share == 0.25 &&
-            a[1].solver.max_memory == 23 && a[1].solver.max_iter == 0 &&
-            a[1].check == CHECK_NONE);
-  ck_assert(a[1].accuracy.mesh == MESH_ERROR_YES && a[1].accuracy.time &&
-            a[1].accuracy.time_balanced && a[1].accuracy.time_share == 0.375 &&
-            !a[1].accuracy.no_solver && !a[1].accuracy.theorems);
-  ck_assert(a[2].accuracy.mesh == MESH_ERROR_YES && a[2].accuracy.time &&
-            !a[2].accuracy.time_balanced);
+  PAIRS(a[0].solver.tol, 1e-7, a[0].solver.max_iter, 17,
+        a[0].solver.limit_max_iter, 19, a[0].check, CHECK_ALL,
+        a[0].solver.stiffness, STIFFNESS_DENSE, a[0].balanced, 0);
+  PAIRS(a[0].accuracy.mesh, MESH_ERROR_NO, a[0].accuracy.time, 1,
+        a[0].accuracy.no_solver, 1, a[0].accuracy.theorems, 1,
+        a[0].accuracy.time_balanced, 0);
+  PAIRS(a[1].solver.ops == NULL, 1, a[1].balanced, 1, a[1].share, 0.25,
+        a[1].solver.max_memory, 23, a[1].solver.max_iter, 0, a[1].check,
+        CHECK_NONE);
+  PAIRS(a[1].accuracy.mesh, MESH_ERROR_YES, a[1].accuracy.time, 1,
+        a[1].accuracy.time_balanced, 1, a[1].accuracy.time_share, 0.375,
+        a[1].accuracy.no_solver, 0, a[1].accuracy.theorems, 0);
+  PAIRS(a[2].accuracy.mesh, MESH_ERROR_YES, a[2].accuracy.time, 1,
+        a[2].accuracy.time_balanced, 0);
   const accuracy_target *t = &s.m->accuracy.target;
-  ck_assert(t->percent == 29 && t->max_cpu == 31 && t->max_memory == 37 &&
-            t->max_passes == 5);
+  PAIRS(t->percent, 29, t->max_cpu, 31, t->max_memory, 37, t->max_passes, 5);
   text_model_close(&s);
 }
 END_TEST
@@ -113,15 +121,15 @@ START_TEST(outputs_of_a_step) {
   const step *a = s.m->steps;
   const print_request *q = a[0].print.requests;
   ck_assert_int_eq(a[0].print.n, 2);
-  ck_assert(q[0].table == PRINT_NODES && q[0].frequency == 3);
+  PAIRS(q[0].table, PRINT_NODES, q[0].frequency, 3);
   ck_assert_str_eq(q[0].group, "TOP");
-  ck_assert(q[0].group_id >= 0 && q[0].points_name == NULL);
-  ck_assert(q[1].table == PRINT_ENERGY && q[1].group == NULL);
+  PAIRS(q[0].group_id >= 0, 1, q[0].points_name == NULL, 1);
+  PAIRS(q[1].table, PRINT_ENERGY, q[1].group == NULL, 1);
   ck_assert_str_eq(q[1].points_name, "P");
-  ck_assert(a[0].output.frequency == 5 && a[0].output.condensed == 5 &&
-            a[0].restart.frequency == 7);
-  ck_assert(a[1].output.frequency == -1 && a[1].output.condensed == 11);
-  ck_assert(a[2].output.frequency == 13 && a[2].output.condensed == -1);
+  PAIRS(a[0].output.frequency, 5, a[0].output.condensed, 5,
+        a[0].restart.frequency, 7);
+  PAIRS(a[1].output.frequency, -1, a[1].output.condensed, 11);
+  PAIRS(a[2].output.frequency, 13, a[2].output.condensed, -1);
   text_model_close(&s);
 }
 END_TEST
@@ -158,19 +166,19 @@ START_TEST(obstacles_and_contacts) {
                 "AXIS, 15., 16., 17., 6., 8., 0.\n"
                 "*CONTACT, NAME=D, GROUP=LEFT, OBSTACLE=B, NORMAL=BODY\n");
   const obstacle *a = &s.m->obstacles[0], *b = &s.m->obstacles[1];
-  ck_assert(a->inside && a->radius == 0.5 && a->turns);
+  PAIRS(a->inside, 1, a->radius, 0.5, a->turns, 1);
   check_vector(a->point, 1, 2, 5);
   check_vector(a->direction, 0.6, 0, 0.8);
   for (int k = 0; k < 3; ++k) ck_assert(a->motion[k].number == 6 + k);
   check_vector(a->pivot, 9, 10, 11);
   check_vector(a->axis, 0, 0.6, -0.8);
   ck_assert(a->angle.number == 0.25);
-  ck_assert(!b->inside && b->radius == 0.75 && !b->turns);
+  PAIRS(b->inside, 0, b->radius, 0.75, b->turns, 0);
   check_vector(b->point, 12, 13, 14);
   const contact *c = s.m->contacts;
-  ck_assert(c[0].obstacle_id == 0 && c[1].obstacle_id == 1);
-  ck_assert(c[0].obstacle_normal == 1 && c[1].obstacle_normal == 0);
-  ck_assert(c[0].has_axis && !c[1].has_axis && !c[0].axis_of_obstacle);
+  PAIRS(c[0].obstacle_id, 0, c[1].obstacle_id, 1);
+  PAIRS(c[0].obstacle_normal, 1, c[1].obstacle_normal, 0);
+  PAIRS(c[0].has_axis, 1, c[1].has_axis, 0, c[0].axis_of_obstacle, 0);
   check_vector(c[0].axis_point, 15, 16, 17);
   check_vector(c[0].axis, 0.6, 0.8, 0);
   text_model_close(&s);
@@ -206,22 +214,22 @@ START_TEST(materials_and_goals) {
       for (int k = 0; k < 6; ++k) sum += m->C[at[i] + 6 * at[k]] * C[k + 6 * j];
       ck_assert_double_eq_tol(sum, i == j, 1e-12);
     }
-  ck_assert(m->moduli == MODULI_LONG_TERM && m->density == 2.5);
+  PAIRS(m->moduli, MODULI_LONG_TERM, m->density, 2.5);
   ck_assert(m->expand.zero == 7);
   double e[3];
   expansion_strain(&m->expand, 17, 7, e);
   check_vector(e, 1e-2, 2e-2, 3e-2);
   const law_shift *x = &m->law.shift;
-  ck_assert(x->kind == SHIFT_ARRHENIUS && x->reference == 20 &&
-            x->activation == 300 && x->zero == -273);
+  PAIRS(x->kind, SHIFT_ARRHENIUS, x->reference, 20, x->activation, 300, x->zero,
+        -273);
   ck_assert(s.m->initial.lines[0].value.number == 21);
   const goal_card *g = s.m->accuracy.goals;
-  ck_assert(g[0].component == 1 && g[0].target == 0.125 && !g[0].in_percent &&
-            g[0].n_point == 2);
+  PAIRS(g[0].component, 1, g[0].target, 0.125, g[0].in_percent, 0, g[0].n_point,
+        2);
   check_vector(g[0].point[0], 0, 0, 2);
   check_vector(g[0].point[1], 1, 1.5, 4);
-  ck_assert(g[1].component == GOAL_TENSOR + 5 && g[1].target == 3 &&
-            g[1].in_percent && g[1].group_id >= 0);
+  PAIRS(g[1].component, GOAL_TENSOR + 5, g[1].target, 3, g[1].in_percent, 1,
+        g[1].group_id >= 0, 1);
   text_model_close(&s);
 }
 END_TEST
