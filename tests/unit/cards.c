@@ -78,11 +78,13 @@ START_TEST(solver_and_accuracy_of_a_step) {
              "CHECK=ALL, STIFFNESS=DENSE\n"
              "*ACCURACY, MESH=NO, TIME=YES, SOLVER=NO, THEORY=YES\n*END STEP\n"
              "*STEP\n*QUASISTATIC\n1., 4.\n"
-             "*SOLVER, TOL=BALANCED, SHARE=0.25, MAX_MEMORY=23\n"
+             "*SOLVER, MAX_MEMORY=23\n"
              "*ACCURACY, MESH=NO, TIME=BALANCED, TIME_SHARE=0.375\n"
              "*END STEP\n"
              "*STEP\n*QUASISTATIC\n1., 4.\n*ACCURACY, MESH=NO, TARGET=29, "
-             "MAX_CPU=31, MAX_MEMORY=37, MAX_PASSES=5\n*END STEP\n");
+             "MAX_CPU=31, MAX_MEMORY=37, MAX_PASSES=5\n*END STEP\n"
+             "*STEP\n*QUASISTATIC\n1., 4.\n*SOLVER, TOL=BALANCED, SHARE=0.25\n"
+             "*ACCURACY, MESH=NO, SOLVER=NO\n*END STEP\n");
   const step *a = s.m->steps;
   ck_assert_str_eq(a[0].solver.ops->name, "sor");
   PAIRS(a[0].solver.tol, 1e-7, a[0].solver.max_iter, 17,
@@ -91,9 +93,10 @@ START_TEST(solver_and_accuracy_of_a_step) {
   PAIRS(a[0].accuracy.mesh, MESH_ERROR_NO, a[0].accuracy.time, 1,
         a[0].accuracy.no_solver, 1, a[0].accuracy.theorems, 1,
         a[0].accuracy.time_balanced, 0);
-  PAIRS(a[1].solver.ops == NULL, 1, a[1].balanced, 1, a[1].share, 0.25,
-        a[1].solver.max_memory, 23, a[1].solver.max_iter, 0, a[1].check,
-        CHECK_NONE);
+  PAIRS(a[3].balanced, 1, a[3].share, 0.25, a[3].accuracy.mesh, MESH_ERROR_YES,
+        a[3].accuracy.no_solver, 0);
+  PAIRS(a[1].solver.ops == NULL, 1, a[1].balanced, 0, a[1].solver.max_memory,
+        23, a[1].solver.max_iter, 0, a[1].check, CHECK_NONE);
   PAIRS(a[1].accuracy.mesh, MESH_ERROR_YES, a[1].accuracy.time, 1,
         a[1].accuracy.time_balanced, 1, a[1].accuracy.time_share, 0.375,
         a[1].accuracy.no_solver, 0, a[1].accuracy.theorems, 0);
