@@ -9,11 +9,12 @@
 #include "support/made_up.h"
 #include "support/unit.h"
 
-/* JOB.json of a run of one increment after three cuts; the caller frees. */
+/* JOB.json of a run of one increment after three cuts, with times where there
+ * are passes; the caller frees. */
 static char *write(made_up *made, const pass_table *passes) {
   char dir[64];
   folder_new(dir);
-  const output_options o = {.dir = dir, .no_timing = 1};
+  const output_options o = {.dir = dir, .no_timing = passes->n == 0};
   output *out = NULL;
   ck_assert_int_eq(output_open(&made->m, made->msh, &o, &out), OK);
   const history_sink sink = output_sink(out);
@@ -213,10 +214,10 @@ START_TEST(sums_goals_and_passes_of_the_run) {
   static goal_card cards[2] = {
       {.name = "SINK", .quantity = GOAL_DISPLACEMENT, .target = 0.125},
       {.name = "PULL", .quantity = GOAL_FORCE}};
-  goal_result goals[2] = {{6, -0.5, 0.0625, 0.25, 0.125, 99, GOAL_RELIABLE},
-                          {7, 8, 9, 10, 11, 99, GOAL_CANCELS}};
-  const pass_row rows[2] = {{100, 1, 2, 3, 4, 99, "finer"},
-                            {200, 5, 6, 7, 8, 99, ""}};
+  goal_result goals[2] = {{6, -0.5, 0.0625, 0.25, 0.125, 18, GOAL_RELIABLE},
+                          {7, 8, 9, 10, 11, 19, GOAL_CANCELS}};
+  const pass_row rows[2] = {{100, 1, 2, 3, 4, 20, "finer"},
+                            {200, 5, 6, 7, 8, 21, ""}};
   const pass_goal of_pass[4] = {{goals[0], 12, 13},
                                 {goals[1], 14, 99},
                                 {goals[1], 15, 16},
@@ -227,44 +228,46 @@ START_TEST(sums_goals_and_passes_of_the_run) {
   made->s.errors.n_goal = 2;
   made->s.errors.goals = goals;
   made->steps[0].accuracy.time_balanced = 1;
-  made->s.errors.balance = (balance_report){1, 3, 3.5, 9, 99, 99};
+  made->s.errors.balance = (balance_report){1, 3, 3.5, 9, 99, 22};
   const pass_table passes = {10, 2, rows, NULL, of_pass, "late"};
   must_have(made, &passes,
             "\"balanced_increments\": 1,"
             "\"balanced_increments_of_deck\": 1,"
             "\"balanced_iterations\": 8,"
-            "\"balanced_saved_iterations\": 99,");
-  must_have(made, &passes,
-            "\"goals\": [{\"goal\": \"SINK\",\"unit\": \"length\","
-            "\"value\": 6,\"error\": -0.5,\"corrected\": 5.5,"
-            "\"band\": 0.25,\"solver_error\": 0.0625,"
-            "\"contact_ends_percent\": 12.5,\"verdict\": \"reliable\"},"
-            "{\"goal\": \"PULL\",\"unit\": \"force\",\"value\": 7,"
-            "\"error\": 8,\"corrected\": 15,\"band\": 10,"
-            "\"solver_error\": 9,\"contact_ends_percent\": 1100,"
-            "\"verdict\": \"cancels\"}],");
-  must_have(made, &passes,
-            "\"target\": {\"percent\": 10,\"reached\": false,"
-            "\"passes\": [{\"unknowns\": 100,\"mesh_error_percent\": 1,"
-            "\"time_error_percent\": 2,\"solver_error_percent\": 3,"
-            "\"total_error_percent\": 4,\"goals\": [{\"goal\": \"SINK\","
-            "\"unit\": \"length\",\"value\": 6,\"error\": -0.5,"
-            "\"band\": 0.25,\"solver_error\": 0.0625,"
-            "\"error_at_most\": 12,\"target\": 13,"
-            "\"verdict\": \"reliable\"},{\"goal\": \"PULL\","
-            "\"unit\": \"force\",\"value\": 7,\"error\": 8,\"band\": 10,"
-            "\"solver_error\": 9,\"error_at_most\": 14,"
-            "\"verdict\": \"cancels\"}],\"changed_next\": \"finer\"},"
-            "{\"unknowns\": 200,\"mesh_error_percent\": 5,"
-            "\"time_error_percent\": 6,\"solver_error_percent\": 7,"
-            "\"total_error_percent\": 8,\"goals\": [{\"goal\": \"SINK\","
-            "\"unit\": \"length\",\"value\": 7,\"error\": 8,\"band\": 10,"
-            "\"solver_error\": 9,\"error_at_most\": 15,\"target\": 16,"
-            "\"verdict\": \"cancels\"},{\"goal\": \"PULL\","
-            "\"unit\": \"force\",\"value\": 6,\"error\": -0.5,"
-            "\"band\": 0.25,\"solver_error\": 0.0625,"
-            "\"error_at_most\": 17,\"verdict\": \"reliable\"}],"
-            "\"changed_next\": \"\"}]},");
+            "\"balanced_saved_iterations\": 99,\"balanced_saved_cpu\": 22,");
+  must_have(
+      made, &passes,
+      "\"goals\": [{\"goal\": \"SINK\",\"unit\": \"length\","
+      "\"value\": 6,\"error\": -0.5,\"corrected\": 5.5,"
+      "\"band\": 0.25,\"solver_error\": 0.0625,"
+      "\"contact_ends_percent\": 12.5,\"verdict\": \"reliable\",\"cpu\": 18},"
+      "{\"goal\": \"PULL\",\"unit\": \"force\",\"value\": 7,"
+      "\"error\": 8,\"corrected\": 15,\"band\": 10,"
+      "\"solver_error\": 9,\"contact_ends_percent\": 1100,"
+      "\"verdict\": \"cancels\",\"cpu\": 19}],");
+  must_have(
+      made, &passes,
+      "\"target\": {\"percent\": 10,\"reached\": false,"
+      "\"passes\": [{\"unknowns\": 100,\"mesh_error_percent\": 1,"
+      "\"time_error_percent\": 2,\"solver_error_percent\": 3,"
+      "\"total_error_percent\": 4,\"goals\": [{\"goal\": \"SINK\","
+      "\"unit\": \"length\",\"value\": 6,\"error\": -0.5,"
+      "\"band\": 0.25,\"solver_error\": 0.0625,"
+      "\"error_at_most\": 12,\"target\": 13,"
+      "\"verdict\": \"reliable\"},{\"goal\": \"PULL\","
+      "\"unit\": \"force\",\"value\": 7,\"error\": 8,\"band\": 10,"
+      "\"solver_error\": 9,\"error_at_most\": 14,"
+      "\"verdict\": \"cancels\"}],\"cpu\": 20,\"changed_next\": \"finer\"},"
+      "{\"unknowns\": 200,\"mesh_error_percent\": 5,"
+      "\"time_error_percent\": 6,\"solver_error_percent\": 7,"
+      "\"total_error_percent\": 8,\"goals\": [{\"goal\": \"SINK\","
+      "\"unit\": \"length\",\"value\": 7,\"error\": 8,\"band\": 10,"
+      "\"solver_error\": 9,\"error_at_most\": 15,\"target\": 16,"
+      "\"verdict\": \"cancels\"},{\"goal\": \"PULL\","
+      "\"unit\": \"force\",\"value\": 6,\"error\": -0.5,"
+      "\"band\": 0.25,\"solver_error\": 0.0625,"
+      "\"error_at_most\": 17,\"verdict\": \"reliable\"}],"
+      "\"cpu\": 21,\"changed_next\": \"\"}]},");
   made_up_free(made);
 }
 END_TEST
