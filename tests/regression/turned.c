@@ -1,6 +1,7 @@
 /*
  * A body whose elasticity couples all components, and the same with its axes in
- * another order and direction: all tables of both, component by component.
+ * another order and direction and in other units: all tables of both, component
+ * by component.
  */
 #include "base/base.h"
 #include "scenes/mesh.h"
@@ -11,9 +12,10 @@
 
 const int job_without_fields = 1;
 
-/* Axis i is axis to[i] of the turned scene, in the direction sign[i]. */
+/* Axis i is axis to[i] of the turned scene, in the direction sign[i]; numbers
+ * of a length and of a force are so many powers of two larger there. */
 typedef struct turning {
-  int to[3], sign[3];
+  int to[3], sign[3], length, force;
 } turning;
 
 typedef struct scene {
@@ -22,16 +24,21 @@ typedef struct scene {
   turning turned;
 } scene;
 
-static const turning still = {{0, 1, 2}, {1, 1, 1}};
+static const turning still = {{0, 1, 2}, {1, 1, 1}, 0, 0};
 
-/* What axis i has become: "y", and "-y" for its coordinate. */
+/* What axis i has become: "y", and "(-8*y)" for its coordinate. */
 static char axis_of(const turning *t, int i) { return (char)('x' + t->to[i]); }
 static const char *place_of(const turning *t, int i) {
-  static char text[6][4];
+  static char text[12][40];
   static int k;
-  char *to = text[k++ % 6];
-  sprintf(to, "%s%c", t->sign[i] < 0 ? "-" : "", axis_of(t, i));
+  char *to = text[k++ % 12];
+  sprintf(to, "(%.17g*%c)", ldexp(t->sign[i], -t->length), axis_of(t, i));
   return to;
+}
+
+/* A number of that many powers of the units. */
+static double in_units(const turning *t, double x, int lengths, int forces) {
+  return ldexp(x, lengths * t->length + forces * t->force);
 }
 
 static const int pairs[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {2, 0}};
@@ -62,16 +69,19 @@ static void write_elastic(const turning *t, char *text) {
     }
   for (int j = 0; j < 6; ++j)
     for (int i = 0; i <= j; ++i, ++n)
-      text += sprintf(text, "%g%s", turned[order[i]][order[j]],
+      text += sprintf(text, "%.17g%s",
+                      in_units(t, turned[order[i]][order[j]], -2, 1),
                       n == 20      ? "\n"
                       : n % 7 == 6 ? ",\n"
                                    : ", ");
 }
 
+/* Of a length. */
 static void write_vector(const turning *t, int dim, const double *v,
                          char *text) {
   double turned[3] = {0};
-  for (int i = 0; i < dim; ++i) turned[t->to[i]] = t->sign[i] * v[i];
+  for (int i = 0; i < dim; ++i)
+    turned[t->to[i]] = in_units(t, t->sign[i] * v[i], 1, 0);
   for (int i = 0; i < dim; ++i)
     text += sprintf(text, "%s%.17g", i > 0 ? ", " : "", turned[i]);
 }
@@ -129,7 +139,8 @@ static job run(const scene *s, const turning *t) {
   const double point[] = {0.5, solid ? 0.4 : -0.01, -0.01};
   const double up[] = {0.1, solid ? -0.2 : 1, 1};
   const double shift[] = {0.06, solid ? 0.05 : -0.04, -0.04};
-  char elastic[600], goals[2000] = "", at[90], normal[90], tops[300] = "";
+  char elastic[900], goals[2000] = "", at[120], normal[120], law[90] = "",
+                     tops[500] = "";
   job j = job_begin("turned");
   write_mesh(&j, s, t);
   write_elastic(t, elastic);
@@ -137,8 +148,12 @@ static job run(const scene *s, const turning *t) {
   write_vector(t, s->dim, up, normal);
   if (!s->creeps) write_goals(s, t, goals);
   for (int i = 0; i < s->dim; ++i)
-    sprintf(strchr(tops, '\0'), "TOP, %d, %d, \"%g*(1+0.5*(%s))\"\n",
-            t->to[i] + 1, t->to[i] + 1, t->sign[i] * shift[i], place_of(t, 0));
+    sprintf(strchr(tops, '\0'), "TOP, %d, %d, \"%.17g*(1+0.5*%s)\"\n",
+            t->to[i] + 1, t->to[i] + 1,
+            in_units(t, t->sign[i] * shift[i], 1, 0), place_of(t, 0));
+  if (s->creeps)
+    sprintf(law, "*INELASTIC, LAW=NORTON\n%.17g, 2.\n",
+            in_units(t, 1e-4, 4, -2));
   const double alpha[] = {1e-3, 2e-3, 4e-3};
   double along[3];
   for (int i = 0; i < 3; ++i) along[t->to[i]] = alpha[i];
@@ -146,21 +161,22 @@ static job run(const scene *s, const turning *t) {
       &j, "turned.inp",
       "*MESH, FILE=turned.msh\n*MATERIAL, NAME=M\n*ELASTIC, TYPE=ANISO\n%s"
       "*EXPANSION, TYPE=ORTHO\n%g, %g, %g\n%s"
-      "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s, THICKNESS=%.17g\n"
       "*OBSTACLE, NAME=O, TYPE=PLANE\n%s\n%s\n"
       "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
       "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n%s"
-      "*STEP\n*%s\n0.5, 1.\n*BOUNDARY\n%s*DLOAD\nBODY, B%c, %d.\n"
-      "*DSLOAD\nRIGHT, P, \"1+(%s)\"\nRIGHT, T%c, \"%d*(%s)\"\n"
-      "*TEMPERATURE\nBODY, \"5*(%s)+4*(%s)-3*(%s)*(%s)\"\n"
+      "*STEP\n*%s\n0.5, 1.\n*BOUNDARY\n%s*DLOAD\nBODY, B%c, %.17g\n"
+      "*DSLOAD\nRIGHT, P, \"%.17g*(1+%s)\"\nRIGHT, T%c, \"%.17g*%s\"\n"
+      "*TEMPERATURE\nBODY, \"5*%s+4*%s-3*%s*%s\"\n"
       "*SOLVER, TOL=1E-13\n*ACCURACY, MESH=YES\n"
       "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, REACTIONS, ENERGY%s\n"
       "*END STEP\n",
-      elastic, along[0], along[1], along[2],
-      s->creeps ? "*INELASTIC, LAW=NORTON\n1e-4, 2.\n" : "", s->section, at,
-      normal, goals, s->creeps ? "VISCO, INTEGRATOR=EULER" : "QUASISTATIC",
-      tops, toupper(axis_of(t, 0)), -3 * t->sign[0], place_of(t, 1),
-      toupper(axis_of(t, 1)), -2 * t->sign[1], place_of(t, 0), place_of(t, 0),
+      elastic, along[0], along[1], along[2], law, s->section,
+      in_units(t, 1, 1, 0), at, normal, goals,
+      s->creeps ? "VISCO, INTEGRATOR=EULER" : "QUASISTATIC", tops,
+      toupper(axis_of(t, 0)), in_units(t, -3 * t->sign[0], -3, 1),
+      in_units(t, 1, -2, 1), place_of(t, 1), toupper(axis_of(t, 1)),
+      in_units(t, -2 * t->sign[1], -2, 1), place_of(t, 0), place_of(t, 0),
       place_of(t, 1), place_of(t, 0), place_of(t, s->dim - 1),
       s->creeps ? "" : ", GOALS");
   const int code = job_run(&j, "");
@@ -196,18 +212,44 @@ static int column_of(const turning *t, const char *name, char *turned,
   return 1;
 }
 
+/* The unit of a column as the powers of two of the turned scene: its factors
+ * are words, numbers and exponents. */
+static int unit_of(const turning *t, const char *dat_text, const char *table,
+                   const char *name) {
+  char key[60];
+  int sum = 0, side = 1;
+  snprintf(key, sizeof key, " table %s", table);
+  const char *at = strstr(dat_text, key);
+  ck_assert_ptr_nonnull(at);
+  snprintf(key, sizeof key, " %s[", name);
+  at = strstr(at, key);
+  ck_assert_msg(at != NULL, "%s: no %s", table, name);
+  for (at += strlen(key); *at != ']' && strcmp(table, "GOALS") != 0; ++at) {
+    const int of = strncmp(at, "length", 6) == 0  ? t->length
+                   : strncmp(at, "force", 5) == 0 ? t->force
+                                                  : 0;
+    if (*at == '/') side = -1;
+    if (of == 0) continue;
+    at += strcspn(at, "*/^]");
+    sum += side * of * (*at == '^' ? at[1] - '0' : 1);
+    if (*at != '^') --at;
+  }
+  return sum;
+}
+
 static void compare_columns(const dat *a, const dat *b, const scene *s,
-                            const char *table) {
+                            const char *text, const char *table) {
   const double exact = strcmp(table, "GOALS") == 0 ? 1e-7 : 1e-9;
   ck_assert(a->n_row == b->n_row && a->n_col == b->n_col && a->n_row > 0);
   for (int c = 0; c < a->n_col; ++c) {
     char turned[32];
     int sign;
     if (!column_of(&s->turned, a->name[c], turned, &sign)) continue;
+    const int unit = unit_of(&s->turned, text, table, a->name[c]);
     const double most = dat_max(a, a->name[c]);
     for (int i = 0; i < a->n_row; ++i) {
       const double is = dat_at(a, i, a->name[c]);
-      const double found = sign * dat_at(b, i, turned);
+      const double found = ldexp(sign * dat_at(b, i, turned), -unit);
       ck_assert_msg(isnan(is) || fabs(found - is) <= exact * most,
                     "%s, row %d: %s %.12g, but %s %.12g", table, i, a->name[c],
                     is, turned, found);
@@ -215,45 +257,55 @@ static void compare_columns(const dat *a, const dat *b, const scene *s,
   }
 }
 
-/* Goals are signed as their components. */
-static void compare_goals(const dat *a, dat *b, const scene *s) {
-  static const char *const columns[] = {"value", "error", "corrected"};
+/* Goals are signed as their components and have units of their own. */
+static void compare_goals(const dat *a, dat *b, const scene *s,
+                          const char *text) {
+  static const char *const columns[] = {"value", "error", "corrected", "band"};
+  const int length = s->turned.length, force = s->turned.force;
   for (int i = 0; i < b->n_row; ++i) {
     int sign = 1, k = i - 1 - 2 * s->dim;
     if (i > 0 && k < 0) sign = s->turned.sign[(i - 1) / 2];
     if (k >= 0) tensor_of(&s->turned, s->dim == 2 && k == 2 ? 3 : k, &sign);
-    for (size_t c = 0; c < 3; ++c)
-      b->value[b->n_col * i + dat_column(b, columns[c])] *= sign;
+    const int unit = i == 0   ? force + length
+                     : k >= 0 ? force - 2 * length
+                     : i % 2  ? length
+                              : force;
+    for (size_t c = 0; c < 4; ++c) {
+      double *to = &b->value[b->n_col * i + dat_column(b, columns[c])];
+      *to = ldexp(c < 3 ? sign * *to : *to, -unit);
+    }
   }
-  compare_columns(a, b, s, "GOALS");
+  compare_columns(a, b, s, text, "GOALS");
 }
 
 #define RECT "rect 5 3 1 0.7 alternate"
 static const scene scenes[] = {
-    {"box 3 2 2 1 0.7 0.8", "", 3, 0, {{1, 2, 0}, {-1, 1, -1}}},
+    {"box 3 2 2 1 0.7 0.8", "", 3, 0, {{1, 2, 0}, {-1, 1, -1}, -17, 9}},
     {"box 2 2 2 1 0.7 0.8",
      ", FORMULATION=AVERAGED",
      3,
      1,
-     {{2, 0, 1}, {1, -1, -1}}},
-    {RECT, ", TYPE=CPE3", 2, 0, {{1, 0, 2}, {1, -1, 1}}},
-    {RECT, ", TYPE=CPS3", 2, 1, {{1, 0, 2}, {-1, 1, 1}}}};
+     {{2, 0, 1}, {1, -1, -1}, 13, -8}},
+    {RECT, ", TYPE=CPE3", 2, 0, {{1, 0, 2}, {1, -1, 1}, -14, 21}},
+    {RECT, ", TYPE=CPS3", 2, 1, {{1, 0, 2}, {-1, 1, 1}, 18, 6}}};
 
 START_TEST(axes_have_no_order) {
   static const char *const tables[] = {"CONTACT",  "TOTALS",    "NODES",
                                        "ELEMENTS", "REACTIONS", "ENERGY"};
   const scene *s = &scenes[_i];
   job a = run(s, &still), b = run(s, &s->turned);
+  char *text = job_file(&a, "dat");
   for (size_t k = 0; k < sizeof tables / sizeof *tables; ++k) {
     dat of[2] = {job_table(&a, tables[k], -1), job_table(&b, tables[k], -1)};
-    compare_columns(&of[0], &of[1], s, tables[k]);
+    compare_columns(&of[0], &of[1], s, text, tables[k]);
     for (int i = 0; i < 2; ++i) dat_free(&of[i]);
   }
   if (!s->creeps) {
     dat of[2] = {job_table(&a, "GOALS", -1), job_table(&b, "GOALS", -1)};
-    compare_goals(&of[0], &of[1], s);
+    compare_goals(&of[0], &of[1], s, text);
     for (int i = 0; i < 2; ++i) dat_free(&of[i]);
   }
+  free(text);
   job_end(&a);
   job_end(&b);
 }
