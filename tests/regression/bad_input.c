@@ -9,7 +9,7 @@
  *   -line                     this line is taken away
  *   +line                     put there; "^" and "$" before: start, end of file
  *   ! first line of stderr; absent: there is none
- *   = exit code
+ *   = exit code; behind it how many messages there are, if not one
  */
 #include "base/base.h"
 #include "base/message.h"
@@ -24,7 +24,7 @@ static const char folder[] = "tests/regression/bad";
 enum { LINES = 128, LINE = 1024, FILES = 24, CASES = 700 };
 
 typedef struct bad_case {
-  char *title, *line[LINES], *expected;
+  char *title, *line[LINES], *expected, *count;
   int n_line, exit_code;
 } bad_case;
 
@@ -52,6 +52,8 @@ static void read_line(bad_cases *all, char *line) {
     c->expected = copy_text(line + 2);
   } else if (strncmp(line, "= ", 2) == 0) {
     c->exit_code = atoi(line + 2);
+    if (strchr(line + 2, ' ') != NULL)
+      c->count = copy_text(strchr(line + 2, ' ') + 1);
   } else {
     ck_assert_int_lt(c->n_line, LINES);
     c->line[c->n_line++] = copy_text(line);
@@ -72,6 +74,7 @@ static void free_cases(bad_cases *all) {
     for (int k = 0; k < all->item[i].n_line; ++k) free(all->item[i].line[k]);
     free(all->item[i].title);
     free(all->item[i].expected);
+    free(all->item[i].count);
   }
   all->n = 0;
 }
@@ -193,6 +196,22 @@ static int has_line(const char *text, const char *line) {
   return 0;
 }
 
+/* A line tells how many messages there are, where they have numbers. */
+static int is_counted(const bad_case *c, const char *errors) {
+  const char *wanted = c->count;
+  if (wanted == NULL) wanted = c->exit_code != 0 ? "1 error" : "1 warning";
+  const size_t n = strlen(wanted);
+  for (const char *p = errors; p != NULL; p = strchr(p, '\n')) {
+    p += *p == '\n';
+    const size_t digits = strspn(p, "0123456789");
+    if (digits == 0 || (strncmp(p + digits, " error", 6) != 0 &&
+                        strncmp(p + digits, " warning", 8) != 0))
+      continue;
+    return strncmp(p, wanted, n) == 0 && strchr(";\n", p[n]) != NULL;
+  }
+  return c->count == NULL;
+}
+
 static int run_case(const bad_case *c, const char *more, seen *s) {
   job j = begin_run();
   char words[LINE];
@@ -201,7 +220,8 @@ static int run_case(const bad_case *c, const char *more, seen *s) {
   note_numbers(s, j.errors);
   int good = code == c->exit_code &&
              (c->expected == NULL ? j.errors[0] == '\0'
-                                  : has_line(j.errors, c->expected));
+                                  : has_line(j.errors, c->expected)) &&
+             (more[0] != '\0' || is_counted(c, j.errors));
   if (!good)
     fprintf(stderr, "%s%s\n  expected %d: %s\n  found    %d: %s\n", c->title,
             more, c->exit_code, c->expected == NULL ? "" : c->expected, code,

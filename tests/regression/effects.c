@@ -90,6 +90,11 @@ START_TEST(reactions_are_of_supports_alone) {
 }
 END_TEST
 
+/* A step that asks for nothing, and the beginning of the next, to line 26. */
+#define LATER                                                         \
+  "*SOLVER\n*ACCURACY, MESH=NO\n*OUTPUT, HDF5=NO\n*END STEP\n*STEP\n" \
+  "*STATIC\n"
+
 /* The card that counts, of several. */
 START_TEST(plan_names_the_reason) {
   static const struct {
@@ -118,7 +123,28 @@ START_TEST(plan_names_the_reason) {
       {"*OUTPUT, HDF5=NO\n*PRINT, NODES\n*PRINT, ELEMENTS\n", "", "stresses",
        "*PRINT, block.inp:23"},
       {"*BOUNDARY\nTOP, 2, 2, -1E-3\n", "", "reactions",
-       "work of the support TOP, block.inp:22, that moves or is released"}};
+       "work of the support TOP, block.inp:22, that moves or is released"},
+      {LATER "*SOLVER, CHECK=YES\n", "", "second solutions, jumps",
+       "*SOLVER, CHECK=, block.inp:27"},
+      {LATER, "", "second solutions, jumps",
+       "friction in *QUASISTATIC of block.inp:13 may jump"},
+      {LATER "*ACCURACY, TIME=YES\n", "", "error of steps",
+       "*ACCURACY, TIME=YES, block.inp:27"},
+      {LATER "*ACCURACY, MESH=YES\n", "", "error of mesh",
+       "*ACCURACY, MESH=YES, block.inp:27"},
+      {LATER "*ACCURACY, THEORY=YES\n", "", "theory checks",
+       "*ACCURACY, THEORY=YES, block.inp:27"},
+      {LATER "*SOLVER, TOL=BALANCED\n", "", "error of mesh",
+       "*SOLVER, TOL=BALANCED, block.inp:27"},
+      {LATER "*RESTART\n", "", "restart", "*RESTART, block.inp:27"},
+      {LATER "*OUTPUT, CONDENSED=FCLIB\n", "", "condensed problems",
+       "*OUTPUT, CONDENSED=FCLIB, block.inp:27"},
+      {"*END STEP\n*STEP\n*QUASISTATIC, FORM=VELOCITY\n1., 1.\n", "",
+       "velocity form", "*QUASISTATIC, FORM=VELOCITY of block.inp:22"},
+      {LATER "*PRINT, ZONES\n", "", "table of zones",
+       "*PRINT, ZONES, block.inp:27"},
+      {LATER "*DLOAD\nBODY, BX, 1.\n", "", "body forces",
+       "*DLOAD on group BODY, block.inp:28"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
     char words[40], name[40];
     snprintf(words, sizeof words, "--check %s", rows[i].words);

@@ -419,7 +419,8 @@ START_TEST(materials_that_meet_in_space) {
     double height;
     const char *hold;
     int sharp;
-  } rows[] = {{0.5, "RIGHT, 1\n", 0}, {0.5, "", 1}, {0.8, "RIGHT, 1\n", 1}};
+  } rows[] = {
+      {0.62, "RIGHT, 1\n", 0}, {0.5, "", 1}, {0.67, "RIGHT, 1\n", 1}};
   for (int k = 0; k < 3; ++k) {
     job j = job_begin("prism");
     job_write(&j, "prism.geo", PRISM, rows[k].height);

@@ -12,25 +12,32 @@
 
 #include <signal.h>
 
-static const char head[] =
-    "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-    "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n";
+#define HEAD                                            \
+  "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPE3\n" \
+  "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
 static const char rough[] = "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n";
 static const char whole[] = "*OUTPUT, CONDENSED=FCLIB\n";
 
-/* A block, 4 long for 1 high, on a cylinder that touches it in its middle. */
-static job on_cylinder(const char *friction, const char *more) {
+/* A block, 4 long for 1 high, on a cylinder that touches it in its middle. The
+ * cards "first" go on with its material. */
+static job in_step(const char *first, const char *friction, const char *step,
+                   const char *more) {
   job j = job_begin("cylinder");
   block_file_write(&j, (int[]){80, 10}, (double[]){80.0, 20.0}, 0);
   job_write(&j, "cylinder.inp",
-            "*MESH, FILE=block.msh\n%s*OBSTACLE, NAME=O, TYPE=CYLINDER, "
+            "*MESH, FILE=block.msh\n" HEAD
+            "%s*OBSTACLE, NAME=O, TYPE=CYLINDER, "
             "RADIUS=100.\n40., -100.\n"
             "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
-            "%s*STEP\n*QUASISTATIC\n0.25, 1.0\n*BOUNDARY\nLEFT, 1, 1\n"
+            "%s*STEP\n*%s\n0.25, 1.0\n*BOUNDARY\nLEFT, 1, 1\n"
             "TOP, 2, 2, -0.1\n*DSLOAD\nSYMMETRY, P, 2.\n"
             "*PRINT, CONTACT, ENERGY\n%s*END STEP\n",
-            head, friction, more);
+            first, friction, step, more);
   return j;
+}
+
+static job on_cylinder(const char *friction, const char *more) {
+  return in_step("", friction, "QUASISTATIC", more);
 }
 
 /* A cantilever that bends down to a floor, first at its end. */
@@ -38,13 +45,14 @@ static job cantilever(const char *friction, const char *more) {
   job j = job_begin("cantilever");
   block_file_write(&j, (int[]){48, 6}, (double[]){8.0, 1.0}, 0);
   job_write(&j, "cantilever.inp",
-            "*MESH, FILE=block.msh\n%s*OBSTACLE, NAME=O, TYPE=PLANE\n0., "
+            "*MESH, FILE=block.msh\n" HEAD
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., "
             "-0.02\n0., 1.\n"
             "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
             "%s*STEP\n*QUASISTATIC\n0.125, 1.0, 0.03125, 0.125\n*BOUNDARY\n"
             "LEFT, 1, 2\n*DSLOAD\nTOP, P, 0.08\n*PRINT, CONTACT\n*RESTART\n"
             "%s*END STEP\n",
-            head, friction, more);
+            friction, more);
   return j;
 }
 
@@ -170,6 +178,25 @@ START_TEST(other_laws_keep_all_nodes) {
 }
 END_TEST
 
+/* So do those that something else than loads and supports moves or loads. */
+START_TEST(other_effects_keep_all_nodes) {
+  static const struct {
+    const char *first, *step, *more;
+  } rows[] = {
+      {"*DENSITY\n1.\n", "QUASISTATIC", "*DLOAD\nBODY, GRAV, 1e-6, 0., -1.\n"},
+      {"*EXPANSION\n1e-9\n", "QUASISTATIC", "*TEMPERATURE\nBODY, 1.\n"},
+      {"*INELASTIC, LAW=NORTON\n1e-20, 2.\n", "VISCO, INTEGRATOR=EULER", ""},
+      {"*INITIAL CONDITIONS, TYPE=DISPLACEMENT\nTOP, 1, 0.\n", "QUASISTATIC",
+       ""}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
+    job j = in_step(rows[k].first, "", rows[k].step, rows[k].more);
+    run(&j, 0);
+    ck_assert_double_eq(job_told(&j, "contact_unknowns"), 81);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* What is cheap with the nodes first expected to touch may not fit with all. */
 START_TEST(stiffness_is_chosen_again_for_more_nodes) {
   static const char *const cards[] = {"*SOLVER, MAX_MEMORY=7\n",
@@ -186,12 +213,13 @@ START_TEST(stiffness_is_chosen_again_for_more_nodes) {
               "Physical Curve(\"LEFT\") = {s[3]};\n"
               "Physical Surface(\"BODY\") = {s[1]};\n");
     job_write(&j[k], "thick.inp",
-              "*MESH, FILE=block.geo\n%s*OBSTACLE, NAME=O, TYPE=PLANE\n0., "
+              "*MESH, FILE=block.geo\n" HEAD
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., "
               "-0.02\n0., 1.\n"
               "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
               "%s*STEP\n*QUASISTATIC\n0.5, 1.0\n*BOUNDARY\nLEFT, 1, 2\n"
               "*DSLOAD\nTOP, P, 0.08\n*PRINT, CONTACT\n%s*END STEP\n",
-              head, rough, cards[k]);
+              rough, cards[k]);
     run(&j[k], 0);
     ck_assert_int_ge(notes(&j[k]), 1);
     char *listing = job_file(&j[k], "lst");
@@ -271,5 +299,5 @@ UNIT_MAIN("reach", long_surface_costs_its_nodes_within_reach,
           nodes_that_reach_are_taken_in_a_second_pass,
           rough_nodes_that_reach_are_taken_too,
           stiffness_is_chosen_again_for_more_nodes, other_laws_keep_all_nodes,
-          increments_are_cut_with_all_nodes, run_goes_on_bit_for_bit,
-          rough_run_goes_on_bit_for_bit)
+          other_effects_keep_all_nodes, increments_are_cut_with_all_nodes,
+          run_goes_on_bit_for_bit, rough_run_goes_on_bit_for_bit)

@@ -164,6 +164,29 @@ static int listed_solutions(const job *j, double *u_t, double *u_n) {
   return n;
 }
 
+/* The values of the node in the listing, which has as many digits, and its
+ * forces within the law. */
+static void check_values(const job *j, double mu, int n, const double *u_t,
+                         const double *u_n) {
+  char *lst = job_file(j, "lst");
+  const char *at = lst;
+  for (int i = 0; i < n; ++i) {
+    char word[16];
+    double v[4];
+    at = strstr(at, "node_no status");
+    ck_assert_ptr_nonnull(at);
+    at = strchr(at, '\n');
+    ck_assert_int_eq(sscanf(at, "%*d %15s %lf %lf %lf %lf", word, &v[0], &v[1],
+                            &v[2], &v[3]),
+                     5);
+    ck_assert_double_eq_tol(v[0], u_n[i], 1e-4 * fabs(u_n[i]) + 1e-15);
+    ck_assert_double_eq_tol(v[1], u_t[i], 1e-4 * fabs(u_t[i]) + 1e-15);
+    ck_assert_double_le(fabs(v[3]), (mu + 1e-3) * v[2]);
+    ck_assert_int_eq(strcmp(word, "OPEN") == 0, v[2] == 0.0);
+  }
+  free(lst);
+}
+
 /* All three solutions, or the only one, by both ways of looking for them. With
  * NORMAL=OBSTACLE u_n = -u_y, u_t = u_x up to the sign of the tangent. */
 START_TEST(all_solutions_are_listed) {
@@ -185,6 +208,7 @@ START_TEST(all_solutions_are_listed) {
       ck_assert_int_eq(expected, mu[m] > 1.8 ? 3 : 1);
       ck_assert_int_eq(n, expected);
       ck_assert_int_eq(found, expected);
+      if (c == 0) check_values(&j, mu[m], n, u_t, u_n);
       char *sta = job_file(&j, "sta");
       ck_assert_int_eq(strstr(sta, "OK SOLUTIONS=3\n") != NULL, expected == 3);
       ck_assert_ptr_null(strstr(sta, "UNCONFIRMED"));

@@ -99,7 +99,8 @@ void case_average(contact_case *c, int reach, double mu) {
     for (int j = i - reach; j <= i + reach; ++j) {
       if (j < 0 || j >= n) continue;
       B->col[e] = j;
-      B->val[e++] = mu * (reach + 1 - abs(i - j)) / full;
+      B->val[e++] =
+          (j < i ? 0.6 : 1.0) * mu * (reach + 1 - abs(i - j)) / full;
     }
     B->start[i + 1] = e;
   }

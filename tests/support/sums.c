@@ -47,15 +47,18 @@ static void add(sum *row, double value) {
   row->largest = fmax(row->largest, fabs(value));
 }
 
+static double read_letters(const char *from, const char *to) {
+  double value = 0.0;
+  for (; from < to; ++from)
+    value = fmod(31.0 * value + (unsigned char)*from, 997.0);
+  return value;
+}
+
 /* Words, of a status or of a contact, count by their letters. */
 static double read_word(const char *word) {
   char *end;
   double value = strtod(word, &end);
-  if (*end == '\0') return value;
-  value = 0.0;
-  for (const char *c = word; *c != '\0'; ++c)
-    value = fmod(31.0 * value + (unsigned char)*c, 997.0);
-  return value;
+  return *end == '\0' ? value : read_letters(word, strchr(word, '\0'));
 }
 
 /* Columns of a block of JOB.dat: its heading names the table, the next line
@@ -73,9 +76,11 @@ static int read_heading(sums *s, char *line, const char *table, int *column) {
   return n;
 }
 
-static void read_tables(sums *s, char *text) {
-  char table[64] = "", *save = NULL;
+/* Blocks with a heading each, or one with the name "whole". */
+static void read_tables(sums *s, char *text, const char *whole) {
+  char table[64], *save = NULL;
   int column[COLUMNS], n = 0;
+  snprintf(table, sizeof table, "%s", whole);
   for (char *line = strtok_r(text, "\n", &save); line != NULL;
        line = strtok_r(NULL, "\n", &save)) {
     const char *kind =
@@ -89,6 +94,22 @@ static void read_tables(sums *s, char *text) {
       for (int k = 0; (word = strsep(&rest, " \t")) != NULL;)
         if (*word != '\0' && k < n) add(&s->row[column[k++]], read_word(word));
     }
+  }
+}
+
+/* The lines of JOB.lst under a heading. */
+static void read_section(sums *s, char *text, const char *heading) {
+  char key[32];
+  snprintf(key, sizeof key, "\n%s\n", heading);
+  char *at = strstr(text, key);
+  ck_assert_msg(at != NULL, "no %s", heading);
+  snprintf(key, sizeof key, "lst.%s", heading);
+  const int row = (int)(find(s, key) - s->row);
+  for (char *end; *++at != '\n'; at = end) {
+    end = strchr(at, '\n');
+    *end = '\0';
+    add(&s->row[row], read_word(at));
+    *end = '\n';
   }
 }
 
@@ -119,6 +140,8 @@ static const char *read_json(sums *s, keys *k, const char *at) {
     if (end[1] == ':')
       snprintf(k->name[k->depth], sizeof k->name[0], "%.*s",
                (int)(end - at) - 1, at + 1);
+    else
+      add_key(s, k, read_letters(at + 1, end));
     return end + 1;
   }
   if (*at == '{' || *at == '[') {
@@ -174,9 +197,9 @@ static void read_fields(sums *s, const job *j) {
 /* Counts of iterations and the error of the solver hang on rounding more than
  * results do. */
 static int is_loose(const char *name) {
-  static const char *const words[] = {"iteration",   "sweep",    "solves",
-                                      "calls",       "products", "refactor",
-                                      "solver_error"};
+  static const char *const words[] = {"iter",      "sweep",       "solves",
+                                      "sta.error", "calls",       "products",
+                                      "refactor",  "solver_error"};
   for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
     if (strstr(name, words[i]) != NULL) return 1;
   return 0;
@@ -185,9 +208,9 @@ static int is_loose(const char *name) {
 /* What another machine, or another hour, gives otherwise; what is rounding
  * alone. */
 static int is_left_out(const char *name) {
-  static const char *const words[] = {"seconds", "bytes",        "memory",
-                                      "peak_",   "json.threads", "defect",
-                                      "residual"};
+  static const char *const words[] = {
+      "seconds",      "bytes",  "memory",       "peak_",  "json.threads",
+      "json.version", "kernel", "improve_next", "defect", "residual"};
   for (size_t i = 0; i < sizeof words / sizeof *words; ++i)
     if (strstr(name, words[i]) != NULL) return 1;
   return strstr(name, "cpu") != NULL && strstr(name, "expected") == NULL;
@@ -197,12 +220,18 @@ sums sums_of(const job *j) {
   sums s = {0};
   keys k = {.depth = 0};
   char *tables = job_file(j, "dat"), *json = job_file(j, "json");
+  char *lst = job_file(j, "lst"), *sta = job_file(j, "sta");
   ck_assert_msg(json != NULL, "%s has no JSON", j->name);
-  if (tables != NULL) read_tables(&s, tables);
+  if (tables != NULL) read_tables(&s, tables, "");
+  read_tables(&s, sta, "sta");
+  read_section(&s, lst, "MODEL");
+  read_section(&s, lst, "EQUATIONS");
   for (const char *at = json; *at != '\0';) at = read_json(&s, &k, at);
   read_fields(&s, j);
   free(tables);
   free(json);
+  free(lst);
+  free(sta);
   int n = s.n;
   s.n = 0;
   for (int i = 0; i < n; ++i)

@@ -318,21 +318,22 @@ START_TEST(budget_goals_and_passes) {
        .target = 0.125,
        .in_percent = 0},
       {.name = "PULL", .quantity = GOAL_FORCE, .target = 3, .in_percent = 1}};
-  increment_summary all[3] = {{.step_no = 1,
-                               .iterations = 20,
-                               .error = {.asked = 1, .relative = 0.05},
-                               .balance = {1, 9.0, 9.0, 9, 100.0, 9.0},
-                               .mesh_error = {1, 0.06, 9.0, NULL},
-                               .time_error = {1, 0.07, 9.0, NULL},
-                               .exact = {1, 0.08, 9.0, 9.0, 9.0, 9.0}},
-                              {.step_no = 1,
-                               .iterations = 3,
-                               .error = {.asked = 1, .relative = 0.015},
-                               .balance = {1, 9.0, 9.0, 9, 1000.0, 9.0},
-                               .mesh_error = {1, 0.02, 9.0, NULL},
-                               .time_error = {1, 0.01, 9.0, NULL},
-                               .exact = {1, 0.03, 9.0, 9.0, 9.0, 9.0}},
-                              {.step_no = 1, .iterations = 9}};
+  increment_summary all[3] = {
+      {.step_no = 1,
+       .iterations = 20,
+       .error = {.asked = 1, .relative = 0.05},
+       .balance = {1, 9.0, 9.0, 9, 100.0, 9.0},
+       .mesh_error = {1, 0.06, 9.0, NULL},
+       .time_error = {1, 0.07, 9.0, NULL},
+       .exact = {1, 0.08, 9.0, 9.0, 9.0, 9.0}},
+      {.step_no = 1,
+       .iterations = 3,
+       .error = {.asked = 1, .relative = 0.015},
+       .balance = {1, 9.0, 9.0, 9, 1000.0, 9.0},
+       .mesh_error = {1, 0.02, 9.0, NULL},
+       .time_error = {1, 0.01, 9.0, NULL},
+       .exact = {1, 0.03, 9.0, 9.0, 9.0, 9.0}},
+      {.step_no = 1, .count = {31, 32, 33}, .iterations = 9}};
   goal_result goals[2] = {{6.0, -0.5, 0.01, 0.02, 0.03, 0.0, GOAL_RELIABLE},
                           {7.0, 0.25, 0.04, 0.05, 0.06, 0.0, GOAL_RELIABLE}};
   pass_row rows[2] = {{100, 1, 2, 3, 4, 9, "finer"}, {200, 5, 6, 7, 8, 9, ""}};
@@ -376,6 +377,27 @@ START_TEST(budget_goals_and_passes) {
       "2.20E-001  8.00E+000  \n"
       "  next digit        300                                   5.00E-001    "
       "                      forecast\n");
+  double ends[40];
+  for (int k = 0; k < 40; ++k) ends[k] = 10 + k;
+  ck_assert_int_le(job_end_size(m), 40);
+  summary.ends = ends;
+  summary.n_rejected = 12;
+  summary.penetration_worst = 0.15;
+  summary.residual_worst = 1.4e-11;
+  must_print(
+      write_closing,
+      "exit      0: done; increments 3, attempts cut 12\n"
+      "FOOT      force_x 12, force_y 13, open 19, slip 20, stick 21\n"
+      "worst     residual 1.4e-11, penetration 0.15\n"
+      "SINK      6 length, error -0.5: 5.5 within 0.02, reliable\n"
+      "PULL      7 force, error 0.25: 7.25 within 0.05, reliable\n"
+      "error     mesh 6 %, steps 7 %, solver 5 % of the energy norm\n"
+      "next      the mesh: half the length of the elements gives about 1 % for "
+      "up to 5 times the CPU\n"
+      "cost      ");
+  m->n.contact = 0;
+  must_print(write_closing, "\ncontact   open 31, slip 32, stick 33\n");
+  m->n.contact = 1;
   made->m.steps[0].accuracy.time_balanced = 1;
   all[1].time_error.relative = 0.04;
   all[1].error.relative = 1e-6;

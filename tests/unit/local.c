@@ -35,10 +35,10 @@ static local_problem any_problem(int dim, double far,
   return lp;
 }
 
-/* Where the state says so: forces to rounding of the largest. */
-static void check(const local_problem *lp, local_state is, const double *d,
-                  const double *r, int no) {
-  double x[3], g = lp->g0 - lp->mu * r[0], slip = 0.0, force = 0.0, size = 0.0;
+/* K d = b + r; returns what is rounding of the largest force. x = at + d. */
+static double check_balance(const local_problem *lp, const double *d,
+                            const double *r, int no, double *x) {
+  double size = 0.0;
   for (int i = 0; i < lp->dim; ++i) {
     double defect = -lp->b[i] - r[i];
     x[i] = lp->at[i] + d[i];
@@ -48,10 +48,19 @@ static void check(const local_problem *lp, local_state is, const double *d,
     }
     size = fmax(size, fabs(lp->b[i]));
     ck_assert_msg(fabs(defect) <= 1e-14 * size, "%d: defect %g", no, defect);
-    if (i > 0) slip = hypot(slip, x[i]);
-    if (i > 0) force = hypot(force, r[i]);
   }
-  const double tol = 1e-14 * size;
+  return 1e-14 * size;
+}
+
+/* Where the state says so: forces to rounding of the largest. */
+static void check(const local_problem *lp, local_state is, const double *d,
+                  const double *r, int no) {
+  double x[3], g = lp->g0 - lp->mu * r[0], slip = 0.0, force = 0.0;
+  const double tol = check_balance(lp, d, r, no, x);
+  for (int i = 1; i < lp->dim; ++i) {
+    slip = hypot(slip, x[i]);
+    force = hypot(force, r[i]);
+  }
   ck_assert_msg(r[0] <= tol && x[0] <= tol, "%d: r %g, x %g", no, r[0], x[0]);
   ck_assert_msg(r[0] == 0.0 || fabs(x[0]) <= tol, "%d: x %g", no, x[0]);
   ck_assert_msg(force <= g + tol, "%d: %g, limit %g", no, force, g);
@@ -77,4 +86,34 @@ START_TEST(node_meets_its_conditions) {
 }
 END_TEST
 
-UNIT_MAIN("local", node_meets_its_conditions)
+/* Without friction; each obstacle may be out of reach. */
+START_TEST(node_at_several_obstacles_meets_its_conditions) {
+  unsigned long long seed = 5;
+  int closed[8] = {0};
+  for (int k = 0; k < 2000; ++k) {
+    double d[3], r[3], x[3];
+    unsigned is_closed = 0;
+    local_problem lp = any_problem(2 + k % 2, 1.0, &seed);
+    lp.g0 = lp.mu = 0.0;
+    lp.bounded = 1;
+    for (int i = 1; i < lp.dim; ++i)
+      if (k / 2 % 4 != i) lp.bound[i] = centred(&seed);
+    const local_state is = local_solve(&lp, (local_state)(k / 8 % 3), d, r);
+    const double tol = check_balance(&lp, d, r, k, x);
+    for (int i = 0; i < lp.dim; ++i) {
+      const double over = x[i] - lp.bound[i];
+      ck_assert_msg(r[i] <= tol && over <= tol, "%d: r[%d] %g, over %g", k, i,
+                    r[i], over);
+      ck_assert_msg(r[i] == 0.0 || fabs(over) <= tol, "%d: open %d, r %g", k, i,
+                    r[i]);
+      is_closed |= (unsigned)(r[i] != 0.0) << i;
+    }
+    ck_assert_int_eq(is, is_closed & 1u ? LOCAL_SLIP : LOCAL_OPEN);
+    ++closed[is_closed];
+  }
+  for (int i = 0; i < 8; ++i) ck_assert_int_gt(closed[i], 20);
+}
+END_TEST
+
+UNIT_MAIN("local", node_meets_its_conditions,
+          node_at_several_obstacles_meets_its_conditions)

@@ -250,6 +250,7 @@ static void find_jumps(const run *r, const crack_state *own, tip *t) {
   t->jump[0] = t->jump[1] = NAN;
   if (r->msh->dim == 3 || p->section < 0) return;
   const fracture_material *mat = &own->materials[p->section];
+  if (!(mat->E > 0.0)) return;
   const double modulus =
       mat->plane_stress ? mat->E : mat->E / (1.0 - mat->nu * mat->nu);
   for (int i = 0; i < r->nodes.n; ++i) {

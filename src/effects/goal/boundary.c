@@ -145,6 +145,17 @@ static int bent_edges(const run *r, const goal_ring *rings, int f,
   return n;
 }
 
+/* Of both faces of an edge: the mean of one surface; where two meet, the edge
+ * is on both. */
+static void join_bent(bent_edge *e, const bent_edge *other) {
+  const double share = fabs(dot(3, e->out, other->out)) <
+                               SMOOTH * sqrt(dot(3, e->out, e->out) *
+                                             dot(3, other->out, other->out))
+                           ? 1.0
+                           : 0.5;
+  for (int c = 0; c < 3; ++c) e->out[c] = share * (e->out[c] + other->out[c]);
+}
+
 status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s) {
   const mesh *m = r->msh;
   int kept = 0, n = 0;
@@ -155,6 +166,8 @@ status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s) {
   for (int k = 0; k < n; ++k)
     if (kept == 0 || number_pair_order(&s->bent[kept - 1], &s->bent[k]) != 0)
       s->bent[kept++] = s->bent[k];
+    else
+      join_bent(&s->bent[kept - 1], &s->bent[k]);
   s->n_bent = kept;
   return OK;
 }

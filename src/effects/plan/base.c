@@ -154,7 +154,7 @@ int plan_requires_accuracy(const model *m, const char *word,
   if (m->accuracy.target.percent > 0.0)
     return plan_says(1, why, size, "*ACCURACY, TARGET=, %s:%d",
                      PLACE(s->accuracy.at));
-  if (s->accuracy.at.file == NULL)
+  if (s->accuracy.at.file == NULL || (s->balanced && strcmp(word, "MESH") == 0))
     return plan_says(1, why, size, "*SOLVER, TOL=BALANCED, %s:%d",
                      PLACE(s->solver_at));
   return plan_says(1, why, size, "*ACCURACY, %s=YES, %s:%d", word,
