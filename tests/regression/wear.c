@@ -158,8 +158,8 @@ static job run_beside(int solid, int wall, const char *method) {
             "*DSLOAD\nTOP, P, \"3*(1 + x)\"\n*SOLVER, METHOD=%s\n"
             "*PRINT, CONTACT, TOTALS, LOOP, WEAR\n*END STEP\n",
             solid ? "cube" : "square", last, last, last,
-            wall && solid ? "1.5, 0, 0\n-1, 0, 0"
-            : wall        ? "1.5, 0\n-1, 0"
+            wall && solid ? "1.5, 0, 0\n-1, 0, 0.4"
+            : wall        ? "1.5, 0\n-1, 0.4"
             : solid       ? "0, 0, 1.5\n0, 0, -1"
                           : "0, 1.5\n0, -1",
             wall ? "RIGHT" : "TOP", solid ? "FRONT, 2\n" : "", method);
