@@ -88,11 +88,15 @@ static status overshoot(const run *r, const double *root, double *largest) {
 
 static status refuse(const run *r, const effect_card *c, double factor) {
   const double dt = r->now.t - r->old.t;
+  char shorter[64] = "";
+  if (dt > 0.0)
+    snprintf(shorter, sizeof shorter, "give increments of dt <= %.3g, or ",
+             dt / factor);
   message_add(r->m->log, P2050, &c->at,
               "step %d, time %g: the wear of an increment of dt = %g reduces "
               "the forces of a node by %.3g times their value, above 2 they "
-              "grow without bound: give increments of dt <= %.3g",
-              run_step_id(r) + 1, r->now.t, dt, factor, dt / factor);
+              "grow without bound: %slet what acts at once grow over the step",
+              run_step_id(r) + 1, r->now.t, dt, factor, shorter);
   RAISE(ERR_DECK, "%s:%d: the increment is not stable", PLACE(c->at));
 }
 
