@@ -88,10 +88,11 @@ static status overshoot(const run *r, const double *root, double *largest) {
 
 static status refuse(const run *r, const effect_card *c, double factor) {
   const double dt = r->now.t - r->old.t;
-  char shorter[64] = "";
+  const int whole = r->step->kind == STEP_STATIC;
+  char shorter[80] = "";
   if (dt > 0.0)
-    snprintf(shorter, sizeof shorter, "give increments of dt <= %.3g, or ",
-             dt / factor);
+    snprintf(shorter, sizeof shorter, "give %sincrements of dt <= %.3g, or ",
+             whole ? "*QUASISTATIC " : "", dt / factor);
   message_add(r->m->log, P2050, &c->at,
               "step %d, time %g: the wear of an increment of dt = %g reduces "
               "the forces of a node by %.3g times their value, above 2 they "
