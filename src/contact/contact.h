@@ -96,6 +96,10 @@ void contact_limit(const contact_problem *cp, const double *r, double *g);
  * slips. status[n]. */
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
+/* closed[m]: 1: an unknown whose obstacle is met, as contact_classify says of
+ * normals, where the node touches a second (third) one. */
+void contact_classify_sides(const contact_problem *cp, const double *u,
+                            const double *r, unsigned char *closed);
 /*
  * Force scale of the problem, N (displacement scale, m, if A is NULL): an upper
  * estimate of the forces of its solution, from the data alone.

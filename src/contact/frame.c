@@ -23,9 +23,7 @@ double frame_project(int dim, unsigned fixed, double *v) {
   return normalise(dim, v);
 }
 
-/* Tangents of n: in 2-D n turned by 90 degrees; in 3-D x (or y, where n is
- * near x) projected, and the cross product. */
-static void add_tangents(int dim, double *frame) {
+void frame_tangents(int dim, double *frame) {
   const double *n = frame;
   double *t1 = frame + dim;
   if (dim == 2) {
@@ -64,7 +62,7 @@ int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
                    unsigned char *held) {
   for (int k = 0; k < dim; ++k) held[k] = 0;
   if (n_normal == 1) {
-    add_tangents(dim, frame);
+    frame_tangents(dim, frame);
     for (int c = 0; c < dim; ++c)
       if (fixed >> c & 1) held[align_tangent(dim, c, frame)] = 1;
     return 0;

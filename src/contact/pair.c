@@ -415,6 +415,35 @@ void surface_relative(const contact_surface *s, const double *u, double *w) {
     }
 }
 
+void surface_motion(const contact_surface *s, const double *u, int q, int a,
+                    double *v) {
+  const int dim = s->dim;
+  const node_links *l = s->master;
+  for (int c = 0; c < dim; ++c) {
+    v[c] = u[(size_t)dim * s->node_id[q] + c];
+    for (size_t e = l == NULL ? 0 : l->start[q];
+         l != NULL && e < l->start[q + 1]; ++e)
+      v[c] -= l->part[dim * e + a] * u[(size_t)dim * l->master[e] + c];
+    v[c] /= surface_share(s, q, a);
+  }
+}
+
+void surface_tangent(const contact_surface *s, int q, int a, double *t) {
+  double frame[9];
+  COPY(frame, s->frame + s->dim * s->dim * q, s->dim * s->dim);
+  if (surface_is_corner(s, q)) frame_tangents(s->dim, frame);
+  COPY(t, frame + s->dim * a, s->dim);
+}
+
+double surface_along(const contact_surface *s, const double *u, const double *w,
+                     int q, int a) {
+  double v[3], t[3];
+  if (!surface_is_corner(s, q)) return w[s->dim * q + a];
+  surface_motion(s, u, q, 0, v);
+  surface_tangent(s, q, a, t);
+  return dot(s->dim, t, v);
+}
+
 double surface_prescribed(const contact_surface *s, const unsigned char *fixed,
                           const double *ud, int q, int a) {
   const int dim = s->dim;

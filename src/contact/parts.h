@@ -32,6 +32,10 @@ double contact_length(int n, const double *v);
  * v = 0 if nothing was left. */
 double frame_project(int dim, unsigned fixed, double *v);
 
+/* Tangents of the first row n of a frame: in 2-D n turned by 90 degrees; in 3-D
+ * x (or y, where n is near x) projected, and the cross product. */
+void frame_tangents(int dim, double *frame);
+
 /*
  * Complete a frame whose first n_normal rows are unit normals orthogonal to the
  * fixed components. held[dim] is set to 1 for the rows that are fixed

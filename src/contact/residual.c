@@ -454,20 +454,40 @@ static double trial_friction(const measure *x, int node_id, double c) {
   return contact_length(x->cp->dim - 1, z);
 }
 
+/* 1: unknown k of a node, of stiffness c, is at its obstacle. */
+static int is_closed(measure *x, int node_id, const measured *node, int k,
+                     double c) {
+  const int dof = node_id * x->cp->dim + k;
+  const body_size *b = body_of(x, node_id);
+  const double least = STATUS_MARGIN * forces_of(x, node, b, c);
+  double push = c * (x->u[dof] - contact_bound(x->cp, dof)) - x->r[dof];
+  return push > least && !has_no_force(b, node);
+}
+
+void contact_classify_sides(const contact_problem *cp, const double *u,
+                            const double *r, unsigned char *closed) {
+  measure x;
+  measure_set(cp, contact_scale(cp), u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    measured node;
+    measure_node(&x, i, &node);
+    for (int k = 1; k < cp->dim; ++k)
+      closed[i * cp->dim + k] =
+          (unsigned char)is_closed(&x, i, &node, k, node.c.t);
+  }
+}
+
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *state) {
   measure x;
   measure_set(cp, contact_scale(cp), u, r, &x);
   for (int i = 0; i < cp->n; ++i) {
     measured node;
-    int n = i * cp->dim;
     measure_node(&x, i, &node);
     const body_size *b = body_of(&x, i);
-    double push = node.c.n * (u[n] - cp->gap[i]) - r[n];
     double g = contact_node_limit(cp, r, i);
     double trial = trial_friction(&x, i, node.c.t);
-    const double least = STATUS_MARGIN * forces_of(&x, &node, b, node.c.n);
-    if (!(push > least) || has_no_force(b, &node))
+    if (!is_closed(&x, i, &node, 0, node.c.n))
       state[i] = CONTACT_OPEN;
     else if (g == 0.0 ||
              trial - g > STATUS_MARGIN * forces_of(&x, &node, b, node.c.t))

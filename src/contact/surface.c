@@ -739,7 +739,3 @@ done:
 int surface_has_held(const contact_surface *s) {
   return memchr(s->held, 1, s->dim * s->n) != NULL;
 }
-
-int surface_is_corner(const contact_surface *s, int i) {
-  return s->side_id[i * (s->dim - 1)] >= 0;
-}

@@ -121,6 +121,16 @@ void surface_drift(const contact_surface *s, const surface_input *in, double t0,
 /* pair.c: w[dim*n], the contact unknowns of the displacements u[dim*n_node]:
  * relative to the masters of pairs, F_a . (u - sum part u(master)) / share. */
 void surface_relative(const contact_surface *s, const double *u, double *w);
+/* Motion v[dim] of contact node q relative to what its row a meets, of the
+ * displacements u[dim*n_node], m. */
+void surface_motion(const contact_surface *s, const double *u, int q, int a,
+                    double *v);
+/* Tangent a = 1, 2 of the first normal of contact node q, t[dim]: row a, but at
+ * a corner, where that is another normal. */
+void surface_tangent(const contact_surface *s, int q, int a, double *t);
+/* Displacement along that tangent, m, of u[dim*n_node] and w[dim*n] of it. */
+double surface_along(const contact_surface *s, const double *u, const double *w,
+                     int q, int a);
 /* w of row a of node q, which supports hold (fixed[dim*n_node]) at
  * ud[dim*n_node], and its masters if it is relative to them, m. */
 double surface_prescribed(const contact_surface *s, const unsigned char *fixed,
@@ -161,4 +171,6 @@ static inline int surface_contact_of(const contact_surface *s, int i, int a) {
 /* 1: some contact unknown is held. */
 int surface_has_held(const contact_surface *s);
 /* 1 if node i touches a second obstacle: it has no friction. */
-int surface_is_corner(const contact_surface *s, int i);
+static inline int surface_is_corner(const contact_surface *s, int i) {
+  return s->side_id != NULL && s->side_id[i * (s->dim - 1)] >= 0;
+}

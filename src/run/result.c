@@ -38,12 +38,46 @@ double run_motion_over(const run *r, int k) {
          (run_drift(&r->now, k) - run_drift(&r->old, k));
 }
 
-/* Motion that friction opposes: in a static problem the motion from the origin
- * (CPR98, P2), else that of the increment. */
+void run_slide(const run *r, int i, int a, int from_origin, double *v) {
+  const contact_surface *s = r->surface;
+  const int dim = s->dim;
+  const double *row = &s->frame[dim * (dim * i + a)];
+  const obstacle *o = r->faces.pairs[surface_contact_of(s, i, a)].support;
+  double before[3] = {0.0, 0.0, 0.0}, drift[3] = {0.0, 0.0, 0.0};
+  surface_motion(s, r->now.u, i, a, v);
+  if (!from_origin) surface_motion(s, r->old.u, i, a, before);
+  if (o != NULL)
+    obstacle_drift(o, dim, s->x + dim * i, row, from_origin ? 0.0 : r->old.t,
+                   r->now.t, drift);
+  for (int c = 0; c < dim; ++c) v[c] -= before[c] + drift[c];
+  add_scaled(dim, -dot(dim, row, v), row, v);
+}
+
+/* In a static problem friction opposes the motion from the origin (CPR98, P2),
+ * else that of the increment. */
+static int is_from_origin(const run *r) {
+  return r->step->kind == STEP_STATIC && !r->course.relaxing;
+}
+
+/* Motion that friction opposes. */
 static double slip_of(const run *r, int k) {
-  if (r->step->kind == STEP_STATIC && !r->course.relaxing)
-    return r->now.uc[k] - run_drift(&r->now, k);
+  if (is_from_origin(r)) return r->now.uc[k] - run_drift(&r->now, k);
   return run_motion_over(r, k);
+}
+
+/* The same of a node along its tangents. At a corner rows are other normals. */
+static void find_slip(const run *r, int i) {
+  const int dim = r->msh->dim;
+  double v[3], t[3], *slip = &r->result.slip[(dim - 1) * i];
+  if (!surface_is_corner(r->surface, i)) {
+    for (int a = 1; a < dim; ++a) slip[a - 1] = slip_of(r, dim * i + a);
+    return;
+  }
+  run_slide(r, i, 0, is_from_origin(r), v);
+  for (int a = 1; a < dim; ++a) {
+    surface_tangent(r->surface, i, a, t);
+    slip[a - 1] = dot(dim, t, v);
+  }
 }
 
 /* 1: supports hold node i along its contact, whatever it touches there. */
@@ -72,7 +106,7 @@ static double carried_slip(const run *r, int k, double still,
  */
 static void find_carried(run *r, int i, double still) {
   const int tangents = r->msh->dim - 1, k = r->msh->dim * i + 1;
-  const int fresh = r->step->kind == STEP_STATIC && !r->course.relaxing;
+  const int fresh = is_from_origin(r);
   const double *slip = &r->result.slip[tangents * i], g = r->result.g[i];
   const double length = carried_slip(r, k, still, slip);
   double *force = &r->now.rc[k], size = 0.0;
@@ -104,8 +138,7 @@ static void find_contact(run *r) {
   int dim = r->msh->dim;
   for (int i = 0; i < r->nodes.n; ++i) {
     r->result.open_gap[i] = r->problem.gap[i] - r->now.uc[dim * i];
-    for (int a = 1; a < dim; ++a)
-      r->result.slip[(dim - 1) * i + a - 1] = slip_of(r, dim * i + a);
+    find_slip(r, i);
   }
   if (r->result.g != NULL) {
     contact_limit(&r->problem.cp, run_rows(r, 1, r->now.rc), r->result.g);
@@ -113,6 +146,9 @@ static void find_contact(run *r) {
   }
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
                    run_rows(r, 1, r->now.rc), r->result.contact);
+  if (r->problem.cp.side_gap != NULL)
+    contact_classify_sides(&r->problem.cp, r->now.uc, r->now.rc,
+                           r->result.closed);
   for (int i = r->nodes.n - 1, k = r->nodes.reach.n_in - 1;
        r->nodes.reach.in != NULL && i >= 0; --i)
     r->result.contact[i] = k >= 0 && r->nodes.reach.in[k] == i
@@ -149,9 +185,10 @@ static void add_side(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
   const int k = s->dim * i + a, at = (s->dim - 1) * i + a - 1;
   const double rc = r->now.rc[k];
-  add_normal(rc, s->side_area[at], rc != 0.0, t);
-  t->n_open += rc == 0.0;
-  t->n_slip += rc != 0.0;
+  const int closed = r->result.closed[k];
+  add_normal(rc, s->side_area[at], closed, t);
+  t->n_open += !closed;
+  t->n_slip += closed;
   if (r->problem.side_gap != NULL)
     t->penetration =
         fmax(t->penetration, r->now.uc[k] - r->problem.side_gap[at]);

@@ -147,6 +147,7 @@ typedef struct derived {
   double *open_gap, *slip; /* [n], [n*(dim-1)] */
   double *g;               /* [n] limit, N, borrowed from friction */
   contact_status *contact; /* [n] */
+  unsigned char *closed;   /* [n_c] contact_classify_sides, or NULL: no sides */
   contact_total *totals;   /* [n_contact] */
   double *distance;        /* [n] as in state, borrowed likewise; or NULL */
   double *torque;          /* [n_contact] as in state, or NULL */
@@ -422,6 +423,9 @@ static inline double run_drift(const equilibrium *e, int k) {
 }
 /* Motion of a contact unknown against the obstacle in the increment, m. */
 double run_motion_over(const run *r, int k);
+/* Slip v[dim] of contact node i over what its row a, a normal, meets, of the
+ * increment, or from the origin, m. */
+void run_slide(const run *r, int i, int a, int from_origin, double *v);
 /* Of motions, that of their differences. */
 #define RUN_ROUNDING 1e-12
 /* Motion that is rounding of displacements and places, m: to it comes that of

@@ -122,6 +122,104 @@ START_TEST(each_side_of_a_corner_wears_by_its_own_force) {
 }
 END_TEST
 
+/* A wall in x pushes the block of nu = 0 along the floor, LEFT held. */
+START_TEST(corner_wears_where_a_wall_pushes_it) {
+  job j = job_begin("block");
+  const char *const cards =
+      "*OBSTACLE, NAME=PUSH, TYPE=PLANE, AMPLITUDE=RUN\n1, 0\n-1, 0\n"
+      "MOVE, -0.01, 0\n*CONTACT, NAME=SIDE, GROUP=RIGHT, OBSTACLE=PUSH\n" WORN;
+  ck_assert_int_eq(run_block(&j, "square", "CPE3", "0, 0", cards, ""), 0);
+  dat w = job_table(&j, "WEAR", -1);
+  for (int i = 0; i < w.n_row; ++i)
+    ck_assert_double_eq_tol(
+        dat_at(&w, i, "depth"),
+        (dat_at(&w, i, "y") > 0 ? 0 : 1e-4 * 3 * 0.01 * dat_at(&w, i, "x")),
+        1e-8);
+  dat_free(&w);
+  job_end(&j);
+}
+END_TEST
+
+/* The block beside a wall, or below a roof, that it does not touch. */
+static job run_beside(int solid, int wall, const char *method) {
+  job j = job_begin("block");
+  const char *const last = solid ? ", 0" : "";
+  job_copy(&j, solid ? "tests/regression/mesh/cube.geo"
+                     : "tests/regression/mesh/square.geo");
+  job_write(&j, "block.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=%s.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=BELT, TYPE=PLANE\n0, 0%s\n0%s, 1\n"
+            "MOVE, \"0.1*t\", 0%s\n*OBSTACLE, NAME=STONE, TYPE=PLANE\n%s\n"
+            "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=BELT\n"
+            "*CONTACT, NAME=SIDE, GROUP=%s, OBSTACLE=STONE\n"
+            "*FRICTION, CONTACT=SIDE, LAW=COULOMB\n0.3\n" WORN
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\n%s"
+            "*DSLOAD\nTOP, P, \"3*(1 + x)\"\n*SOLVER, METHOD=%s\n"
+            "*PRINT, CONTACT, TOTALS, LOOP, WEAR\n*END STEP\n",
+            solid ? "cube" : "square", last, last, last,
+            wall && solid ? "1.5, 0, 0\n-1, 0, 0.4"
+            : wall        ? "1.5, 0\n-1, 0.4"
+            : solid       ? "0, 0, 1.5\n0, 0, -1"
+                          : "0, 1.5\n0, -1",
+            wall ? "RIGHT" : "TOP", solid ? "FRONT, 2\n" : "", method);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  return j;
+}
+
+static void check_same(const job *a, const job *b, const char *table,
+                       const char *const *names) {
+  dat one = job_table(a, table, -1), two = job_table(b, table, -1);
+  const int by_node = strcmp(table, "CONTACT") == 0;
+  for (int i = 0; i < (by_node ? one.n_row : 1); ++i) {
+    int k = 0;
+    if (by_node && dat_at(&one, i, names[0]) > 0) continue;
+    while (by_node && dat_at(&two, k, "node_no") != dat_at(&one, i, "node_no"))
+      ck_assert_int_lt(++k, two.n_row);
+    for (int n = 1; names[n] != NULL; ++n)
+      ck_assert_msg(
+          fabs(dat_at(&one, i, names[n]) - dat_at(&two, k, names[n])) <= 1e-12,
+          "%s, row %d, %s: %g for %g", table, i, names[n],
+          dat_at(&two, k, names[n]), dat_at(&one, i, names[n]));
+  }
+  dat_free(&one);
+  dat_free(&two);
+}
+
+/* Nodes that may touch a second obstacle have no friction, and but for it all
+ * that they would have without the obstacle. */
+START_TEST(second_obstacle_that_is_not_met_changes_nothing) {
+  static const char *const of_nodes[2][12] = {
+      {"y", "u_n", "u_t", "slip", "slip_distance", "slip_dir_x", "f_n"},
+      {"z", "u_n", "u_t1", "u_t2", "slip_1", "slip_2", "slip_distance",
+       "slip_dir_x", "slip_dir_y", "slip_dir_z", "f_n"}};
+  static const char *const of_loops[2][8] = {
+      {"", "normal", "way", "mean_u_t", "friction_work"},
+      {"", "normal", "way_1", "way_2", "mean_u_t1", "mean_u_t2"}};
+  static const char *const of_totals[] = {"",     "closed_area", "worn_volume",
+                                          "open", "slip",        NULL};
+  job roof = run_beside(_i, 0, "NEWTON"), wall = run_beside(_i, 1, "NEWTON");
+  check_same(&roof, &wall, "CONTACT", of_nodes[_i]);
+  check_same(&roof, &wall, "LOOP", of_loops[_i]);
+  check_same(&roof, &wall, "TOTALS", of_totals);
+  job_end(&roof);
+  job_end(&wall);
+}
+END_TEST
+
+/* SOR leaves forces of rounding at open obstacles. */
+START_TEST(second_obstacle_that_is_not_met_is_open) {
+  job j = run_beside(1, 1, "SOR");
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert(dat_at(&t, 1, "normal") != 0);
+  ck_assert(dat_at(&t, 1, "closed_area") == 0);
+  ck_assert(dat_at(&t, 1, "slip") == 0);
+  ck_assert(dat_at(&t, 1, "open") > 2);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* All of the block slips against friction: wear as the work of the normal
  * forces, whatever the pressures; stopped and gone on with. */
 START_TEST(volume_with_friction_and_restart) {
@@ -237,6 +335,10 @@ int main(void) {
   tcase_add_loop_test(tests, depth_under_a_belt, 0, 2);
   tcase_add_test(tests, depth_at_a_time_point_counts_from_the_start);
   tcase_add_test(tests, each_side_of_a_corner_wears_by_its_own_force);
+  tcase_add_test(tests, corner_wears_where_a_wall_pushes_it);
+  tcase_add_loop_test(tests, second_obstacle_that_is_not_met_changes_nothing, 0,
+                      2);
+  tcase_add_test(tests, second_obstacle_that_is_not_met_is_open);
   tcase_add_test(tests, volume_with_friction_and_restart);
   tcase_add_test(tests, increments_too_long_are_refused);
   tcase_add_test(tests, nothing_without_the_card);

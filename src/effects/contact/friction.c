@@ -422,10 +422,11 @@ static status accept(run *r, void *self) {
   int dim = r->msh->dim;
   TIMED(history_of(r));
   for (int i = 0; i < r->nodes.n; ++i) {
-    double s[2] = {run_motion_over(r, dim * i + 1), 0.0};
+    double s[3] = {run_motion_over(r, dim * i + 1), 0.0, 0.0};
     if (dim == 3) s[1] = run_motion_over(r, dim * i + 2);
+    if (surface_is_corner(r->surface, i)) run_slide(r, i, 0, 0, s);
     if (r->result.contact[i] == CONTACT_SLIP)
-      own->distance[i] += hypot(s[0], s[1]);
+      own->distance[i] += hypot(hypot(s[0], s[1]), s[2]);
   }
   check_masters(r, own);
   return OK;
@@ -537,28 +538,27 @@ VALUE(contact_slip, view_opening(v, id, part + 1) *
 VALUE(slip_distance, view_opening(v, id, 1) * v->s->contacts.distance[id])
 VALUE(sliding_limit, v->s->contacts.limit[id])
 
-/* The slip in global components. */
-static double contact_slide(const view *v, int id, int part) {
+/* Component of the slip in global directions. */
+static double slide_of(const view *v, int id, int part) {
   int dim = SURFACE->dim;
-  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
   const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
-  double sum = 0;
-  for (int k = 1; k < dim; ++k) sum += frame[dim * k + part] * slip[k - 1];
-  return view_opening(v, id, 1) * sum;
+  double sum = 0, t[3];
+  for (int k = 1; k < dim; ++k) {
+    surface_tangent(SURFACE, id, k, t);
+    sum += t[part] * slip[k - 1];
+  }
+  return sum;
 }
+
+VALUE(contact_slide, view_opening(v, id, 1) * slide_of(v, id, part))
 
 /* Unit vector of the slip, global components; 0 where the node does not slip */
 static double slip_direction(const view *v, int id, int part) {
-  int dim = SURFACE->dim;
-  const double *frame = SURFACE->frame + at(dim * dim, id, 0);
-  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
-  double sum = frame[dim + part] * slip[0], length = fabs(slip[0]);
-  if (dim == 3) {
-    sum += frame[2 * dim + part] * slip[1];
-    length = hypot(slip[0], slip[1]);
-  }
+  const int tangents = SURFACE->dim - 1;
+  const double *slip = v->s->contacts.slip + at(tangents, id, 0);
+  const double length = tangents == 1 ? fabs(slip[0]) : hypot(slip[0], slip[1]);
   if (v->s->contacts.contact[id] != CONTACT_SLIP || !(length > 0)) return 0;
-  return sum / length;
+  return slide_of(v, id, part) / length;
 }
 
 /* clang-format off */

@@ -30,7 +30,7 @@ static status find_loops(run *r, void *self) {
   int dim = r->msh->dim;
   for (int i = 0; i < r->m->n.contact; ++i) {
     contact_loop *l = &loops[i];
-    double weight = 0.0;
+    double weight = 0.0, apart = 0.0; /* of all nodes, of those at no corner */
     memset(l->way, 0, sizeof l->way);
     memset(l->mean_u_t, 0, sizeof l->mean_u_t);
     if (r->faces.pairs[i].support != NULL)
@@ -38,11 +38,13 @@ static status find_loops(run *r, void *self) {
     for (int k = 0; k < r->nodes.n; ++k) {
       if (s->contact_id[k] != i) continue;
       weight += s->area[k];
+      if (!surface_is_corner(s, k)) apart += s->area[k];
       for (int a = 0; a < dim - 1; ++a) {
         int c = dim * k + a + 1;
-        l->way[a] += s->area[k] * (run_drift(&r->now, c) - l->way[a]) / weight;
-        l->mean_u_t[a] += s->area[k] * (r->now.uc[c] - l->mean_u_t[a]) / weight;
-        if (s->side_id[(dim - 1) * k + a] >= 0) continue;
+        const double u_t = surface_along(s, r->now.u, r->now.uc, k, a + 1);
+        l->mean_u_t[a] += s->area[k] * (u_t - l->mean_u_t[a]) / weight;
+        if (surface_is_corner(s, k)) continue;
+        l->way[a] += s->area[k] * (run_drift(&r->now, c) - l->way[a]) / apart;
         const double mean = 0.5 * (r->old.rc[c] + r->now.rc[c]);
         l->friction -= mean * run_motion_over(r, c);
         l->friction_end -= r->now.rc[c] * run_motion_over(r, c);

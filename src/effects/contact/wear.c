@@ -2,7 +2,7 @@
  * *WEAR: a body wears where it slides on an obstacle (Archard 1953): depth += k
  * p |slip|, after each increment from its pressure p and slip, and the gap is
  * opened by it from the next one on. At a corner each obstacle wears off along
- * its own normal, the slip is that along both.
+ * its own normal, by the slip over it.
  *
  * This is Euler's method for the pressures: with A the stiffness of the normals
  * of the nodes and D = k |slip|/area, the wear of an increment reduces the
@@ -52,14 +52,16 @@ static status open_gaps(run *r, void *self, double t) {
   return OK;
 }
 
-/* Slip of the increment along all tangents of a node, m; rounding of the motion
- * where it sticks. */
-static double slip_of(const run *r, int i) {
+/* Slip of the increment of a node over what its row a, a normal, meets, m;
+ * rounding of the motion where it sticks. */
+static double slip_of(const run *r, int i, int a) {
   const int dim = r->msh->dim;
-  double sum = 0.0;
-  for (int a = 1; a < dim; ++a)
-    if (surface_normal_of(r->surface, i, a) < 0)
-      sum = hypot(sum, run_motion_over(r, dim * i + a));
+  double sum = 0.0, v[3] = {0.0, 0.0, 0.0};
+  if (surface_is_corner(r->surface, i))
+    run_slide(r, i, a, 0, v);
+  else
+    for (int k = 1; k < dim; ++k) v[k] = run_motion_over(r, dim * i + k);
+  for (int c = 0; c < dim; ++c) sum = hypot(sum, v[c]);
   return sum;
 }
 
@@ -86,11 +88,16 @@ static status overshoot(const run *r, const double *root, double *largest) {
 
 static status refuse(const run *r, const effect_card *c, double factor) {
   const double dt = r->now.t - r->old.t;
+  const int whole = r->step->kind == STEP_STATIC;
+  char shorter[80] = "";
+  if (dt > 0.0)
+    snprintf(shorter, sizeof shorter, "give %sincrements of dt <= %.3g, or ",
+             whole ? "*QUASISTATIC " : "", dt / factor);
   message_add(r->m->log, P2050, &c->at,
               "step %d, time %g: the wear of an increment of dt = %g reduces "
               "the forces of a node by %.3g times their value, above 2 they "
-              "grow without bound: give increments of dt <= %.3g",
-              run_step_id(r) + 1, r->now.t, dt, factor, dt / factor);
+              "grow without bound: %slet what acts at once grow over the step",
+              run_step_id(r) + 1, r->now.t, dt, factor, shorter);
   RAISE(ERR_DECK, "%s:%d: the increment is not stable", PLACE(c->at));
 }
 
@@ -100,20 +107,19 @@ static status wear_off(run *r, void *self) {
   const effect_card *worn = NULL;
   double *depth = self, factor = 0.0;
   OWNED_NEW(double, root, r->nodes.n_c);
-  for (int i = 0; i < r->nodes.n; ++i) {
-    const double slip = slip_of(r, i);
+  for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
       const int id = surface_normal_of(s, i, a), k = dim * i + a;
       const effect_card *c =
           id < 0 ? NULL : model_effect_card(r->m, "WEAR", id);
       if (c == NULL || !(r->now.rc[k] < 0.0)) continue;
       if (!(area_of(s, i, a) > 0.0)) continue;
-      const double per_force = c->value[0] * slip / area_of(s, i, a);
+      const double per_force =
+          c->value[0] * slip_of(r, i, a) / area_of(s, i, a);
       depth[dim * s->node_id[i] + a] -= per_force * r->now.rc[k];
       root[k] = sqrt(per_force);
       worn = c;
     }
-  }
   PASS(overshoot(r, run_rows(r, 0, root), &factor));
   return factor > 2.0 ? refuse(r, worn, factor) : OK;
 }

@@ -21,8 +21,9 @@ static const char *contact_name(const view *v, int id) {
 VALUE(contact_x, SURFACE->x[at(SURFACE->dim, id, part)])
 VALUE(contact_u_n,
       view_opening(v, id, 0) * v->s->contacts.uc[at(SURFACE->dim, id, 0)])
-VALUE(contact_u_t, view_opening(v, id, part + 1) *
-                       v->s->contacts.uc[at(SURFACE->dim, id, part + 1)])
+VALUE(contact_u_t,
+      view_opening(v, id, part + 1) *
+          surface_along(SURFACE, v->s->body.u, v->s->contacts.uc, id, part + 1))
 VALUE(contact_gap, view_opening(v, id, 0) * v->s->contacts.gap[id])
 VALUE(contact_f_n, -v->s->contacts.rc[at(SURFACE->dim, id, 0)])
 /* The side row of a corner node is a normal force of another obstacle. A

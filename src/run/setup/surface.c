@@ -22,8 +22,9 @@ void run_free_surface(run *r) {
     memory_free(*owned[i]);
     *owned[i] = NULL;
   }
-  memory_free(r->result.contact);
+  RELEASE(r->result.contact, r->result.closed);
   r->result.contact = NULL;
+  r->result.closed = NULL;
   reach_free(&r->nodes.reach);
   reach_part_free(&r->problem.part);
   run_take_nodes(r);
@@ -59,6 +60,7 @@ static status new_contact_arrays(run *r) {
   PASS_NEW(r->result.open_gap, r->nodes.n);
   PASS_NEW(r->result.contact, r->nodes.n);
   if (r->nodes.rows > 1) PASS_NEW(r->problem.side_gap, tangents);
+  if (r->nodes.rows > 1) PASS_NEW(r->result.closed, r->nodes.n_c);
   PASS_NEW(r->result.slip, tangents);
   return OK;
 }
