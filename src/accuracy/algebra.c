@@ -189,15 +189,6 @@ void pair_set(const contact_problem *cp, const double *u, const double *r,
   pair_friction(cp, u, r, p);
 }
 
-/* d = M x - load - y, x the unknown multiplied by M. */
-static void pair_defect(const contact_problem *cp, pair *p) {
-  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
-  contact_apply(cp, x, p->d);
-  for (int i = 0; i < cp->m; ++i)
-    p->d[i] = contact_has_stiffness(cp) ? p->d[i] - cp->f[i] - p->q[i]
-                                        : p->v[i] - p->d[i] - cp->f[i];
-}
-
 /* |u - v|_A or |r - q|_W. */
 static double pair_distance(const contact_problem *cp, const double *u,
                             const double *r, pair *p, double *move) {
@@ -289,7 +280,12 @@ status solver_error_bound(const contact_problem *cp,
   }
   PASS(pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
-  pair_defect(cp, &p);
+  /* d = M x - load - y, x the unknown multiplied by M. */
+  const double *x = contact_has_stiffness(cp) ? p.v : p.q;
+  contact_apply(cp, x, p.d);
+  for (int i = 0; i < cp->m; ++i)
+    p.d[i] = contact_has_stiffness(cp) ? p.d[i] - cp->f[i] - p.q[i]
+                                       : p.v[i] - p.d[i] - cp->f[i];
   if (inverse->n_kernel > 0) {
     PASS(pair_balance(cp, inverse, &p, &balanced));
     if (!balanced) {

@@ -348,15 +348,6 @@ static void symmetrise(int m, double *W) {
       W[i + n * j] = W[j + n * i] = 0.5 * (W[i + n * j] + W[j + n * i]);
 }
 
-static status reduce_sparse(reduction *s, const columns *c, double *W,
-                            double *q) {
-  int all = c->H->columns + 1;
-  for (int k = 0; k < all; k += BLOCK)
-    PASS(reduce_block(s, c, k, all - k < BLOCK ? all - k : BLOCK, W, q));
-  symmetrise(c->H->columns, W);
-  return OK;
-}
-
 static status reduce_dense(const triplets *M, const columns *c, double *W,
                            double *q, int *singular) {
   int n = M->rows, mirror = triplets_triangle(M) != 0;
@@ -408,7 +399,12 @@ status reduce_global(const triplets *M, const triplets *H, const double *f,
   if (M->rows == 0) return OK;
   PASS(columns_new(H, f, &c));
   PASS(factorise(&s, M, usable));
-  if (*usable) PASS(reduce_sparse(&s, &c, W, q));
+  if (*usable) {
+    int all = c.H->columns + 1;
+    for (int k = 0; k < all; k += BLOCK)
+      PASS(reduce_block(&s, &c, k, all - k < BLOCK ? all - k : BLOCK, W, q));
+    symmetrise(c.H->columns, W);
+  }
   return OK;
 }
 

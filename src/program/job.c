@@ -15,14 +15,6 @@
 
 #include <unistd.h>
 
-/* --safe: a mesh that is a program is not run. */
-static status check_safe_mesh(const model *m) {
-  if (input_is_confined() && job_is_geo(m))
-    message_add(m->log, P5021, &m->mesh.at,
-                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh.file);
-  return message_status(m->log, ERR_DECK);
-}
-
 /* Surfaces in contact, names[2*n.contact]; not cracks, which are straight
  * between their nodes. */
 static int find_rounds(const model *m, const char **names) {
@@ -40,7 +32,11 @@ static status read_mesh(const job_mesh *other, job_input *in) {
   const model *m = in->m;
   double cpu = timer_cpu();
   int n = 0;
-  PASS(check_safe_mesh(m));
+  /* --safe: a mesh that is a program is not run. */
+  if (input_is_confined() && job_is_geo(m))
+    message_add(m->log, P5021, &m->mesh.at,
+                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh.file);
+  PASS(message_status(m->log, ERR_DECK));
   OWNED_NEW(mesh_number, numbers, m->deck->n_symbol);
   for (int i = 0; i < m->deck->n_symbol; ++i)
     if (m->deck->symbols[i].in_geometry)

@@ -65,16 +65,6 @@ typedef struct disc_problem {
   double S[4], c[2], ga, gb[2], at[2];
 } disc_problem;
 
-/* Largest slope mu K_tn that keeps a one-dimensional slip unique is S itself:
- * d = (c + e ga)/(S - e gb), e = -sign(s), the sign of less the force that
- * would hold it, "held". */
-static void slip_line(const disc_problem *dp, double held, double *d) {
-  double e = held > 0.0 ? -1.0 : 1.0;
-  double stiffness = dp->S[0] - e * dp->gb[0];
-  d[0] = (dp->c[0] + e * dp->ga) / stiffness;
-  if (!(stiffness > 0.0) || e * (dp->at[0] + d[0]) > 0.0) d[0] = -dp->at[0];
-}
-
 /* Posed in s (at = 0), slip for a given flexibility nu = |s|/|t|:  q = (nu S +
  * I)^-1 c = -t and s = nu q; returns |q| - g(s), and its derivative. */
 static double slip_excess(const disc_problem *dp, double nu, double *q,
@@ -161,7 +151,13 @@ static int disc_solve(const disc_problem *dp, double *d, double *t) {
   }
   if (sqrt(size) <= positive(held.ga)) return 0;
   if (dp->n == 1) {
-    slip_line(dp, held.c[0], d);
+    /* Largest slope mu K_tn that keeps a one-dimensional slip unique is S
+     * itself: d = (c + e ga)/(S - e gb), e = -sign(s), the sign of less the
+     * force that would hold it, "held". */
+    double e = held.c[0] > 0.0 ? -1.0 : 1.0;
+    double stiffness = dp->S[0] - e * dp->gb[0];
+    d[0] = (dp->c[0] + e * dp->ga) / stiffness;
+    if (!(stiffness > 0.0) || e * (dp->at[0] + d[0]) > 0.0) d[0] = -dp->at[0];
   } else {
     double flexibility = length(dp->at) / length(dp->c);
     slip_disc(&held, flexibility < HUGE_VAL ? flexibility : 0.0, s);

@@ -513,15 +513,6 @@ double goal_estimator_energy(const goal_estimator *e) {
 
 /* ---- the sums ------------------------------------------------------------ */
 
-/* Bits of its nodes. */
-static int ends_of(const goal_estimator *e, int elem_id) {
-  const mesh *m = e->s.d->mesh;
-  int any = 0;
-  for (int a = 0; a <= m->dim; ++a)
-    any |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
-  return any;
-}
-
 static const double AXI_RULE[2] = {1.0 / 6.0, 2.0 / 3.0};
 
 /* At a point of an axisymmetric element: radius, strain of the nodes' values
@@ -632,7 +623,10 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   }
   out->magnitude += fabs(product);
   out->product += both;
-  const int ends = ends_of(e, elem_id);
+  const mesh *m = e->s.d->mesh;
+  int ends = 0;
+  for (int a = 0; a <= m->dim; ++a)
+    ends |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
   if (ends != 0) out->ends += both;
   if (ends == GOAL_END_OF_SUPPORT) out->supports += both;
   if ((ends & GOAL_END_OF_SUPPORT) != 0) out->sharp += of_u ? 0.5 * both : both;

@@ -202,14 +202,6 @@ static void forget_friction(theorems *t) {
   t->n_entry = t->n_contact = 0;
 }
 
-static void forget_matrix(theorems *t) {
-  energy_norm_free(&t->norm);
-  memory_free(t->diagonal);
-  t->diagonal = NULL;
-  forget_friction(t);
-  state_before_free(&t->before);
-}
-
 static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
   for (int i = 0; i < cp->m; ++i)
@@ -220,7 +212,11 @@ static int same_matrix(const theorems *t, const contact_problem *cp) {
 static status know_matrix(theorems *t, const contact_problem *cp) {
   t->fresh = !same_matrix(t, cp);
   if (!t->fresh) return OK;
-  forget_matrix(t);
+  energy_norm_free(&t->norm);
+  memory_free(t->diagonal);
+  t->diagonal = NULL;
+  forget_friction(t);
+  state_before_free(&t->before);
   PASS_NEW(t->diagonal, cp->m);
   for (int i = 0; i < cp->m; ++i) t->diagonal[i] = contact_diagonal(cp, i);
   return energy_norm_new(cp->m, cp->A, &t->norm);
@@ -344,14 +340,6 @@ static status check_bounds(theorems *t, const theorems_scene *s,
   return OK;
 }
 
-static status check_inequality(const theorems_scene *s,
-                               const contact_problem *cp,
-                               theorems_report *out) {
-  PASS(inequality_least(cp, s->u, &out->inequality, &out->n_field));
-  out->inequality_violated = !(out->inequality >= -s->tol);
-  return OK;
-}
-
 status theorems_start(theorems *t, const theorems_scene *s) {
   OWNS(t);
   ENDS_BY(frozen_free) frozen_problem p = {0};
@@ -376,7 +364,8 @@ status theorems_check(theorems *t, const theorems_scene *s,
   PASS(know_friction(t, s, &p));
   PASS(measure_contacts(t, s, &p));
   PASS(check_bounds(t, s, &p, out));
-  PASS(check_inequality(s, &p.cp, out));
+  PASS(inequality_least(&p.cp, s->u, &out->inequality, &out->n_field));
+  out->inequality_violated = !(out->inequality >= -s->tol);
   out->start = t->start;
   out->contacts = t->contacts;
   out->n_contact = t->n_contact == 2 ? 1 : t->n_contact;

@@ -60,15 +60,6 @@ static int on_axis(const average_patch *p, int node) {
   return node_at(p, node)[0] <= ON_AXIS * largest;
 }
 
-static status new_arrays(const average_patch *p, layout *l) {
-  size_t dim = p->dim;
-  l->dim = p->dim;
-  l->n_face = p->n_face;
-  PASS_NEW_ALL(OF(l->x, dim * p->n_node), OF(l->corner, dim * dim * p->n_face),
-               OF(l->rim, dim * dim * dim * (p->n_face + 1)));
-  return OK;
-}
-
 /* 1 if all corners lie on one mirror. */
 static int on_mirror(const layout *l, int corners,
                      const double *const *corner) {
@@ -228,7 +219,12 @@ static status layout_new(const average_patch *patch, const average_rule *rule,
   ENDS_BY(fans_free) fans f = {0};
   memset(out, 0, sizeof *out);
   PASS(fans_new(patch, &f));
-  PASS(new_arrays(patch, out));
+  size_t dim = patch->dim;
+  out->dim = patch->dim;
+  out->n_face = patch->n_face;
+  PASS_NEW_ALL(OF(out->x, dim * patch->n_node),
+               OF(out->corner, dim * dim * patch->n_face),
+               OF(out->rim, dim * dim * dim * (patch->n_face + 1)));
   set_mirrors(patch, rule, out);
   if (rule->geodesic)
     PASS(lay_straight(patch, &f, 4.0 * rule->radius, out));

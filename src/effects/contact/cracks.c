@@ -215,14 +215,6 @@ void cracks_by_forces(const run *r, double *by) {
   over_areas(r, own, by);
 }
 
-/* Of contact forces and loads at the lips. */
-static void find_tractions(const run *r, crack_state *own) {
-  COPY(own->traction, r->now.F, r->n_dof);
-  if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
-  over_areas(r, own, own->traction);
-  shift_all(r, own, 0, own->traction);
-}
-
 /* Sums of a line K + slope * distance by least squares. */
 typedef struct fit {
   double n, x, xx, y, xy;
@@ -358,7 +350,11 @@ static status find_all(run *r, crack_state *own) {
   const int step_id = run_step_id(r);
   if (own->step_id == step_id && !(own->t < r->now.t)) return OK;
   domain_stress(&r->body.d, r->now.u, NULL, own->sigma);
-  find_tractions(r, own);
+  /* Of contact forces and loads at the lips. */
+  COPY(own->traction, r->now.F, r->n_dof);
+  if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
+  over_areas(r, own, own->traction);
+  shift_all(r, own, 0, own->traction);
   if (own->flows) PASS(find_elastic(r, own->elastic));
   if (own->flows) PASS(check_elastic(r, own, own->elastic));
   const fracture_state s = state_of(r, own);

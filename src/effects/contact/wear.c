@@ -52,17 +52,6 @@ static status open_gaps(run *r, void *self, double t) {
   return OK;
 }
 
-/* Slip of the increment along all tangents of a node, m; rounding of the motion
- * where it sticks. */
-static double slip_of(const run *r, int i) {
-  const int dim = r->msh->dim;
-  double sum = 0.0;
-  for (int a = 1; a < dim; ++a)
-    if (surface_normal_of(r->surface, i, a) < 0)
-      sum = hypot(sum, run_motion_over(r, dim * i + a));
-  return sum;
-}
-
 /* The largest eigenvalue of the symmetric root A root from below, of the roots
  * of D in the rows of r->problem.cp. */
 static status overshoot(const run *r, const double *root, double *largest) {
@@ -101,7 +90,12 @@ static status wear_off(run *r, void *self) {
   double *depth = self, factor = 0.0;
   OWNED_NEW(double, root, r->nodes.n_c);
   for (int i = 0; i < r->nodes.n; ++i) {
-    const double slip = slip_of(r, i);
+    /* Slip of the increment along all tangents of a node, m; rounding of the
+     * motion where it sticks. */
+    double slip = 0.0;
+    for (int a = 1; a < dim; ++a)
+      if (surface_normal_of(r->surface, i, a) < 0)
+        slip = hypot(slip, run_motion_over(r, dim * i + a));
     for (int a = 0; a < dim; ++a) {
       const int id = surface_normal_of(s, i, a), k = dim * i + a;
       const effect_card *c =

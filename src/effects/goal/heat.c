@@ -20,16 +20,6 @@ typedef struct spot {
   double *T0, *T; /* [n_elem] */
 } spot;
 
-/* The temperatures at a point of all elements. */
-static status set_spot(const run *r, int k, spot *s) {
-  const int n = r->msh->dim + 1;
-  for (int a = 0; a < n; ++a)
-    s->b[a] = a == k ? AT[n] : (1.0 - AT[n]) / (n - 1);
-  load_temperature_initial_at(r->m, r->msh, s->b, s->T0);
-  return load_temperature_at(r->m, r->msh, r->step, r->now.t, s->b, s->T0,
-                             s->T);
-}
-
 /* d[3] = d0 at a point of element number k of those with strains; 0: none. */
 static int strain_at(const run *r, int k, const spot *s, double *d) {
   const int e = r->strains.elem[k];
@@ -98,7 +88,12 @@ status goal_add_thermal(const run *r, double *dF, double **rest) {
   PASS_NEW_REALS(r->msh->n_elem, &T0, &T);
   for (int k = 0; k <= r->msh->dim; ++k) {
     spot s = {.T0 = T0, .T = T};
-    PASS(set_spot(r, k, &s));
+    /* The temperatures at a point of all elements. */
+    const int n = r->msh->dim + 1;
+    for (int a = 0; a < n; ++a)
+      s.b[a] = a == k ? AT[n] : (1.0 - AT[n]) / (n - 1);
+    load_temperature_initial_at(r->m, r->msh, s.b, s.T0);
+    PASS(load_temperature_at(r->m, r->msh, r->step, r->now.t, s.b, s.T0, s.T));
     add_spot(r, &s, dF, *rest);
   }
   return OK;

@@ -298,14 +298,6 @@ static int outgrows(const mesh *m, const fracture_linear *l, double radius) {
   return 0;
 }
 
-static void set_rough(const run *r, const fracture_point *p, goal_form *f) {
-  const double part = p->size / p->radius;
-  f->is_front = r->msh->dim == 3;
-  f->is_coarse = !f->is_front && (part * FEWEST > 1.0 ||
-                                  outgrows(r->msh, &f->factor, p->radius));
-  f->rough = ROUGH * fabs(f->value) * (f->is_front ? part : part * part);
-}
-
 static status set_factor(run *r, const goal_card *g, goal_form *f) {
   const size_t n = r->n_dof;
   crack_factors k;
@@ -318,7 +310,12 @@ static status set_factor(run *r, const goal_card *g, goal_form *f) {
   if (!k.is_linear) f->why = GOAL_NOT_COVERED;
   if (!k.is_linear) return OK;
   PASS(cracks_derive(r, g->crack_id, point, g->component, &f->factor));
-  set_rough(r, &k.points[point], f);
+  const double part = k.points[point].size / k.points[point].radius;
+  f->is_front = r->msh->dim == 3;
+  f->is_coarse =
+      !f->is_front && (part * FEWEST > 1.0 ||
+                       outgrows(r->msh, &f->factor, k.points[point].radius));
+  f->rough = ROUGH * fabs(f->value) * (f->is_front ? part : part * part);
   for (size_t i = 0; i < n; ++i) f->load[i] = f->factor.by_u[i];
   cracks_by_forces(r, f->factor.by_traction);
   if (r->nodes.n > 0)

@@ -19,19 +19,15 @@ static const double SLACK = 0.27;
 
 /* ---- what supports prescribe between the nodes --------------------------- */
 
-static double middle_of(const run *r, const load *l, const int *v) {
-  const mesh *m = r->msh;
-  double x[3] = {0.0};
-  for (int c = 0; c < m->dim; ++c)
-    x[c] = 0.5 * (m->x[m->dim * v[0] + c] + m->x[m->dim * v[1] + c]);
-  return load_at_point(l, r->step, x, r->now.t);
-}
-
 /* Edge v[2] of a support whose value varies. */
 static given_edge edge_of(const run *r, const load *l, const int *v) {
   given_edge e = {.a = v[0] < v[1] ? v[0] : v[1],
                   .b = v[0] < v[1] ? v[1] : v[0]};
-  double bend = middle_of(r, l, v);
+  const mesh *m = r->msh;
+  double x[3] = {0.0};
+  for (int c = 0; c < m->dim; ++c)
+    x[c] = 0.5 * (m->x[m->dim * v[0] + c] + m->x[m->dim * v[1] + c]);
+  double bend = load_at_point(l, r->step, x, r->now.t);
   for (int k = 0; k < 2; ++k)
     bend -= 0.5 * load_at_node(l, r->msh, r->step, v[k], r->now.t);
   if (isfinite(bend)) e.bend[l->component] = bend;

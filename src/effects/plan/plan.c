@@ -92,13 +92,6 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
   return OK;
 }
 
-static void find_shares(effect_plan *p) {
-  double sum = 0.0;
-  for (int i = 0; i < p->n; ++i) sum += p->rows[i].work.operations;
-  for (int i = 0; i < p->n && sum > 0.0; ++i)
-    p->rows[i].share = p->rows[i].work.operations / sum;
-}
-
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   int capacity = 0;
   MAKES(effect_plan, p, out);
@@ -112,7 +105,10 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
     else
       PASS(add_row(p, &capacity, &r));
   }
-  find_shares(p);
+  double sum = 0.0;
+  for (int i = 0; i < p->n; ++i) sum += p->rows[i].work.operations;
+  for (int i = 0; i < p->n && sum > 0.0; ++i)
+    p->rows[i].share = p->rows[i].work.operations / sum;
   return OK;
 }
 

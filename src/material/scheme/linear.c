@@ -150,16 +150,6 @@ static status exponential_map(const flow_kind *k, const scheme_step *p,
   return OK;
 }
 
-/* D = E (I - Q1) with the rows of e^i. */
-static void remains(const law_elastic *el, const linear_map *m, double *D) {
-  const int ns = el->ns;
-  double top[36];
-  for (int j = 0; j < ns; ++j)
-    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + m->n * j];
-  COPY(D, el->E, ns * ns);
-  multiply(ns, ns, ns, -1.0, el->E, top, D);
-}
-
 /* The general case: from L and G. */
 status general_map(const flow_kind *k, const scheme_step *p, int exact,
                    linear_map *m, double *D) {
@@ -167,7 +157,13 @@ status general_map(const flow_kind *k, const scheme_step *p, int exact,
   PASS_NEW_ALL(OF(L, m->n * m->n), OF(G, m->n * k->elastic.ns));
   PASS(linear_law(k, L, G));
   PASS(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
-  remains(&k->elastic, m, D);
+  /* D = E (I - Q1) with the rows of e^i. */
+  const int ns = k->elastic.ns;
+  double top[36];
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + m->n * j];
+  COPY(D, k->elastic.E, ns * ns);
+  multiply(ns, ns, ns, -1.0, k->elastic.E, top, D);
   return OK;
 }
 

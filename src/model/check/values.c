@@ -153,15 +153,6 @@ void check_initials(model *m, const mesh *msh) {
   }
 }
 
-static void check_prints(const model *m, const mesh *msh, step *s) {
-  for (EACH(print_request, p, s->print.requests, s->print.n)) {
-    if (p->group == NULL) continue;
-    p->group_id = p->table == PRINT_ELEMENTS
-                      ? check_group_of(m, msh, p->group, msh->dim, &p->at)
-                      : check_group(m, msh, p->group, &p->at);
-  }
-}
-
 /* The field of a file, read once; NULL after a message. */
 static status find_field(model *m, const mesh *msh, const char *file,
                          const place *at, const double **out) {
@@ -212,7 +203,12 @@ void check_steps(model *m, const mesh *msh) {
     for (int k = 0; k < s->loads.n; ++k)
       if (!checked_before(m, i, &s->loads.item[k]))
         check_load(m, msh, &s->loads.item[k]);
-    check_prints(m, msh, s);
+    for (EACH(print_request, p, s->print.requests, s->print.n)) {
+      if (p->group == NULL) continue;
+      p->group_id = p->table == PRINT_ELEMENTS
+                        ? check_group_of(m, msh, p->group, msh->dim, &p->at)
+                        : check_group(m, msh, p->group, &p->at);
+    }
   }
 }
 

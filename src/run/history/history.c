@@ -373,12 +373,6 @@ static status start_visco(run *r, int *increment_no) {
   return visco_begin_step(r);
 }
 
-static status start_step(run *r) {
-  visco_rest(r);
-  PASS(effects_start(r));
-  return start_visco(r, &r->at.increment_no);
-}
-
 /* ---- between two attempts ------------------------------------------------ */
 
 static status checkpoint(run *r) {
@@ -513,7 +507,9 @@ static status run_step(run *r) {
   } else {
     r->at =
         (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
-    PASS(start_step(r));
+    visco_rest(r);
+    PASS(effects_start(r));
+    PASS(start_visco(r, &r->at.increment_no));
   }
   PASS(effects_make_step(r, &made));
   if (!made) PASS(run_fixed(r));
