@@ -16,8 +16,6 @@ typedef struct element_shape {
   double weight;   /* volume, thickness or 2 pi r included, m3 */
 } element_shape;
 
-static const double two_pi = 6.283185307179586476925286766559;
-
 static void shape_at(const domain *d, int elem_id, element_shape *s) {
   const mesh *m = d->mesh;
   const int section = d->section_id[elem_id];
@@ -29,7 +27,7 @@ static void shape_at(const domain *d, int elem_id, element_shape *s) {
   const int *v = m->elem + 3 * elem_id;
   const double three_r = m->x[2 * v[0]] + m->x[2 * v[1]] + m->x[2 * v[2]];
   s->hoop = 1 / three_r;
-  s->weight *= two_pi * (three_r / 3);
+  s->weight *= 2.0 * M_PI * (three_r / 3);
 }
 
 /* E B_b of one vertex, columns of ns: the stress of its unit displacements. */

@@ -272,22 +272,14 @@ static status builder_new(builder *b) {
   return OK;
 }
 
-static double distance(int dim, const double *a, const double *b) {
-  double sum = 0.0;
-  for (int c = 0; c < dim; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
-  return sqrt(sum);
-}
-
 /* ---- the patch --------------------------------------------------------- */
 
 static double triangle_area(const double *x) {
   double a[3], b[3], n[3];
-  for (int c = 0; c < 3; ++c) {
-    a[c] = x[3 + c] - x[c];
-    b[c] = x[6 + c] - x[c];
-  }
+  vector_of(3, x, x + 3, a);
+  vector_of(3, x, x + 6, b);
   cross(a, b, n);
-  return 0.5 * sqrt(dot(3, n, n));
+  return 0.5 * norm(3, n);
 }
 
 /* Integrals of the P1 functions. */
@@ -296,7 +288,7 @@ static void find_shares(builder *b) {
   for (int f = 0; f < p->n_face; ++f) {
     const double *x = b->at.corner + (size_t)(p->dim * p->dim) * f;
     const int *node = p->face + p->dim * f;
-    double size = p->dim == 3 ? triangle_area(x) : distance(2, x, x + 2);
+    double size = p->dim == 3 ? triangle_area(x) : distance_of(2, x, x + 2);
     for (int k = 0; k < p->dim; ++k) {
       double weight = 1.0 / p->dim;
       if (p->axisymmetric) weight = (2.0 * x[2 * k] + x[2 * !k]) / 6.0;
@@ -312,8 +304,8 @@ static void find_facts(const builder *b, average_facts *facts,
   memset(facts, 0, sizeof *facts);
   for (int k = 0; k < p->dim * p->n_face; ++k) {
     int next = k % p->dim == p->dim - 1 ? k + 1 - p->dim : k + 1;
-    double length = distance(p->dim, b->at.corner + p->dim * k,
-                             b->at.corner + p->dim * next);
+    double length = distance_of(p->dim, b->at.corner + p->dim * k,
+                                b->at.corner + p->dim * next);
     facts->longest = fmax(facts->longest, length);
     if (4.0 * length > b->rule->radius * (1.0 + ROUNDING))
       coarse[p->face[k]] = coarse[p->face[next]] = 1;
@@ -354,7 +346,7 @@ static void add_face(builder *b, int i, int face, const double *x,
   for (int k = 0; k < p->dim; ++k) {
     int j = p->face[p->dim * face + k];
     if (j != i && p->active[j] &&
-        distance(p->dim, x, corner + p->dim * k) < reach)
+        distance_of(p->dim, x, corner + p->dim * k) < reach)
       ++b->neighbours;
     if (!(weight[k] > 0.0)) continue;
     if (b->row[j] == 0.0) b->touched[b->n_touched++] = j;
@@ -407,7 +399,7 @@ static int meets_rim(builder *b, int i) {
   int n = box_tree_near(&b->rim, x, b->rule->radius, b->found);
   for (int k = 0; k < n; ++k) {
     const double *a = b->at.rim + (size_t)(dim * corners) * b->found[k];
-    double d = corners == 1 ? distance(dim, a, x)
+    double d = corners == 1 ? distance_of(dim, a, x)
                             : face_segment_distance(dim, a, a + dim, x);
     if (d < b->rule->radius * (1.0 - ROUNDING)) return 1;
   }

@@ -141,8 +141,7 @@ static int fit_slopes(const shape *s, const facet *f, double *slope) {
 static void straighten(int dim, int n, double *const *base, double *v) {
   for (int k = 0; k < n; ++k)
     add_scaled(dim, -dot(dim, base[k], v), base[k], v);
-  const double length = sqrt(dot(dim, v, v));
-  for (int c = 0; c < dim; ++c) v[c] /= length;
+  make_unit(dim, v);
 }
 
 /* The normal at a node: that of the quadratic over the plane across itself. */

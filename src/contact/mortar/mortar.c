@@ -337,12 +337,6 @@ static status do_faces(builder *b) {
 
 /* ---- normals ------------------------------------------------------------- */
 
-static void make_unit(int dim, double *v) {
-  double square = 0.0;
-  for (int c = 0; c < dim; ++c) square += v[c] * v[c];
-  for (int c = 0; c < dim && square > 0; ++c) v[c] /= sqrt(square);
-}
-
 /* Normals at the nodes of the masters, from the faces that are partners (not
  * the sides at an edge of the body); where a node of the slave is in P, the
  * opposite of its own. */

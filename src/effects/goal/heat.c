@@ -9,8 +9,6 @@
  */
 #include "effects/goal/parts.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Points of degree 2, as many as corners: barycentric coordinate of point k in
  * corner k. */
 static const double AT[5] = {[3] = 2.0 / 3.0, [4] = 0.58541019662496847};
@@ -73,7 +71,7 @@ static void add_spot(const run *r, const spot *s, double *dF, double *rest) {
     if (!strain_at(r, k, s, strain)) continue;
     for (int a = 0; a < n && kin == AXISYMMETRIC; ++a)
       radius += s->b[a] * m->x[2 * m->elem[n * e + a]];
-    weight *= kin == AXISYMMETRIC ? 2.0 * PI * radius
+    weight *= kin == AXISYMMETRIC ? 2.0 * M_PI * radius
                                   : d->thickness[d->section_id[e]];
     stress_of(d, e, strain, t);
     add_force(m, e, s->b, t, weight, radius, dF);

@@ -46,6 +46,14 @@ typedef struct goal_form {
   goal_verdict why;   /* GOAL_RELIABLE: it has a value */
 } goal_form;
 
+/* v[dim] to length 1, unless that is 0, by hypot; the length. */
+static inline double goal_make_unit(int dim, double *v) {
+  double size = 0.0;
+  for (int c = 0; c < dim; ++c) size = hypot(size, v[c]);
+  for (int c = 0; c < dim && size > 0.0; ++c) v[c] /= size;
+  return size;
+}
+
 status goal_form_new(const run *r, goal_form *f);
 /* quantity.c: *f of a goal. ERR_MEMORY. */
 status goal_form_set(run *r, const goal_card *g, goal_form *f);

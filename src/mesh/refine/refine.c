@@ -122,11 +122,7 @@ static double square_of(const bisection *b, int i, int k) {
 static double measure_of(const bisection *b, const int *v) {
   double e[3][3];
   for (int k = 0; k < b->dim; ++k) vector(b, v[0], v[k + 1], e[k]);
-  if (b->dim == 2) return 0.5 * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
-  return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-          e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
-         6.0;
+  return determinant(b->dim, e) / (b->dim == 2 ? 2.0 : 6.0);
 }
 
 /* Length over that required. */
