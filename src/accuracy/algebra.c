@@ -145,8 +145,6 @@ status pair_new(int n, int m, pair *p) {
   return OK;
 }
 
-void pair_free(pair *p) { RELEASE(p->v, p->q, p->d, p->t, p->slides); }
-
 /* Unilateral unknowns, and those without any force. */
 static void pair_normal(const contact_problem *cp, const double *u,
                         const double *r, pair *p) {
@@ -267,7 +265,6 @@ status solver_error_bound(const contact_problem *cp,
                           const inverse_energy *inverse, const double *u,
                           const double *r, known_rate *known,
                           solver_error *error) {
-  ENDS_BY(pair_free) pair p = {0};
   double square = 0.0;
   int balanced = 1;
   *error = (solver_error){0};
@@ -278,7 +275,7 @@ status solver_error_bound(const contact_problem *cp,
     no_bound(error, "without contact the body is weakly held");
     return OK;
   }
-  PASS(pair_new(cp->n, cp->m, &p));
+  OWNED_PARTS(pair, p, pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   /* d = M x - load - y, x the unknown multiplied by M. */
   const double *x = contact_has_stiffness(cp) ? p.v : p.q;

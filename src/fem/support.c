@@ -359,8 +359,6 @@ static status triangle_new(const body_sets *s, int id, int closed,
   return OK;
 }
 
-static void basis_free(null_basis *z) { memory_free(z->Z); }
-
 static void triangle_release(triangle *t) {
   RELEASE(t->r, t->end, t->owner, t->row);
 }
@@ -660,13 +658,11 @@ static status add_set(const triangle *t, const null_basis *z,
 /* Store what supports, hinges and ties leave, the gaps of ties counted: their
  * masters pull where they are. */
 static status keep_motions(const finder *f, rigid_motions *r) {
-  ENDS_BY(triangle_release) triangle t = {0};
-  ENDS_BY(basis_free) null_basis z = {0};
   if (f->t.s->d->ties == NULL)
     return add_set(&f->t, &f->of[HELD_BY_CONTACT], r);
-  PASS(triangle_new(f->t.s, f->t.id, 0, &t));
+  OWNED_PARTS(triangle, t, triangle_new(f->t.s, f->t.id, 0, &t));
   add_supports(&t);
-  PASS(null_space(&t, &z));
+  OWNED_PARTS(null_basis, z, null_space(&t, &z));
   if (z.rank > 0) PASS(add_set(&t, &z, r));
   return OK;
 }
@@ -697,11 +693,9 @@ done:
 
 /* 1: supports, hinges and ties leave the set no motion. */
 static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
-  ENDS_BY(triangle_release) triangle t = {0};
-  ENDS_BY(basis_free) null_basis z = {0};
-  PASS(triangle_new(s, id, 1, &t));
+  OWNED_PARTS(triangle, t, triangle_new(s, id, 1, &t));
   add_supports(&t);
-  PASS(null_space(&t, &z));
+  OWNED_PARTS(null_basis, z, null_space(&t, &z));
   *rest = z.rank == 0;
   return OK;
 }

@@ -34,8 +34,6 @@ typedef struct fans {
   int *start, *face; /* [n_node+1], [dim*n_face] */
 } fans;
 
-static void fans_free(fans *f) { RELEASE(f->start, f->face); }
-
 static status fans_new(const average_patch *p, fans *f) {
   int n = p->dim * p->n_face;
   PASS_NEW_ALL(OF(f->start, p->n_node + 2), OF(f->face, n));
@@ -216,9 +214,8 @@ static status lay_straight(const average_patch *p, const fans *f, double apart,
 
 static status layout_new(const average_patch *patch, const average_rule *rule,
                          layout *out) {
-  ENDS_BY(fans_free) fans f = {0};
   memset(out, 0, sizeof *out);
-  PASS(fans_new(patch, &f));
+  OWNED_PARTS(fans, f, fans_new(patch, &f));
   size_t dim = patch->dim;
   out->dim = patch->dim;
   out->n_face = patch->n_face;

@@ -62,8 +62,6 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
 
 /* ---- faces --------------------------------------------------------------- */
 
-void goal_ring_free(goal_ring *r) { RELEASE(r->start, r->face); }
-
 status goal_ring_new(const mesh *m, goal_ring *r) {
   PASS_NEW_ALL(OF(r->start, m->n_node + 1), OF(r->face, m->dim * m->n_face));
   for (int k = 0; k < m->dim * m->n_face; ++k) ++r->start[m->face[k] + 1];
@@ -214,8 +212,7 @@ static double volume_beyond(const run *r, const patch *p) {
 }
 
 status goal_volumes_beyond(const run *r, double *volume) {
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  PASS(goal_ring_new(r->msh, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(r->msh, &rings));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
     volume[r->msh->face_elem[f]] += volume_beyond(r, &p);
@@ -468,8 +465,7 @@ static status add_loads(const run *r, const goal_ring *rings, double *dF) {
 }
 
 status goal_add_boundary(const run *r, double *dF) {
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  PASS(goal_ring_new(r->msh, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(r->msh, &rings));
   OWNED_OF(int, where, goal_places(r, &where));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
@@ -519,9 +515,8 @@ status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum) {
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
   *sum = 0.0;
-  PASS(goal_ring_new(m, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
   OWNED_NEW(unsigned char, in, m->n_face + m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
   for (int f = 0; f < m->n_face; ++f) {

@@ -74,7 +74,6 @@ typedef struct goal_ring {
 } goal_ring;
 /* All-zero r is new. ERR_MEMORY. */
 status goal_ring_new(const mesh *m, goal_ring *r);
-void goal_ring_free(goal_ring *r); /* accepts all-zero */
 /* out[dim]: from the middle of an edge of nodes v[2] of a face to the surface
  * of the body, m. */
 void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,

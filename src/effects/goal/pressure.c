@@ -232,8 +232,6 @@ typedef struct line {
   double *s;   /* [n] m, from the peak */
 } line;
 
-static void line_free(line *l) { RELEASE(l->node, l->s); }
-
 /* next[2*n]: the contact nodes next to each node of the line, or -1. */
 static status find_next(const run *r, const goal_card *g, int *next) {
   const mesh *m = r->msh;
@@ -400,9 +398,8 @@ static void judge_line(const run *r, const goal_card *g, const line *l,
 /* Where the largest pressure may be infinite there is no peak. */
 static status place_on_line(const run *r, const goal_card *g, int peak,
                             weight *w, goal_form *f) {
-  ENDS_BY(line_free) line l = {0};
   int first, last;
-  PASS(line_new(r, g, w, peak, &l));
+  OWNED_PARTS(line, l, line_new(r, g, w, peak, &l));
   const int mirrored = goal_is_mirrored(r, peak);
   const int at_border = l.peak == 0 || l.peak == l.n - 1;
   zone_of(r, &l, &first, &last);
@@ -707,13 +704,12 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
 }
 
 status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
-  ENDS_BY(line_free) line l = {0};
   const int peak = peak_of(r, g);
   f->value = NAN;
   if (r->msh->dim == 3 || !has_one_thickness(r, g)) f->why = GOAL_NOT_COVERED;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (f->why != GOAL_RELIABLE) return OK;
   const weight w = weight_at(r, g, peak);
-  PASS(line_new(r, g, &w, peak, &l));
+  OWNED_PARTS(line, l, line_new(r, g, &w, peak, &l));
   return set_ends(r, g, &l, &w, f);
 }

@@ -47,8 +47,6 @@ typedef struct gap_slopes {
   int *n_face; /* [n] of them round each */
 } gap_slopes;
 
-static void gap_slopes_free(gap_slopes *g) { RELEASE(g->of, g->n_face); }
-
 /* g[3] of the linear gap on a face between contact nodes q[dim]; returns its
  * weight, with which gradients of a parabola are exact in the plane; 0: a gap
  * out of reach. */
@@ -293,13 +291,11 @@ status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
   OWNED int *where = NULL, *seen = NULL;
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
   int n = 0;
-  PASS(goal_ring_new(m, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
   PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node));
   PASS(goal_places(r, &where));
-  ENDS_BY(gap_slopes_free) gap_slopes slopes = {0};
-  PASS(gap_slopes_new(r, where, &slopes));
+  OWNED_PARTS(gap_slopes, slopes, gap_slopes_new(r, where, &slopes));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair) n += r->faces.pairs[k].group->n_item;
   for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;

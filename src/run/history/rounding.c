@@ -148,8 +148,6 @@ static status misfit_new(const run *r, misfit *x) {
   return OK;
 }
 
-static void misfit_free(misfit *x) { RELEASE(x->stress, x->rest, x->w, x->rc); }
-
 /* Error of the largest displacement, m. */
 static double lost(const run *r) {
   return CARRIED * largest_entry(r->n_dof, r->now.u);
@@ -301,10 +299,9 @@ static void forget_strains(run *r) {
 }
 
 static status find(run *r) {
-  ENDS_BY(misfit_free) misfit x = {0};
   const double share = share_of_step(r);
   double square = 0.0;
-  PASS(misfit_new(r, &x));
+  OWNED_PARTS(misfit, x, misfit_new(r, &x));
   PASS(find_error(r, &x, &square));
   r->now.peak_stress =
       fmax(r->now.peak_stress, largest_entry(x.n_stress, x.stress));
@@ -346,12 +343,11 @@ static int may_be_noise(const run *r) {
 }
 
 status rounding_hides_stresses(const run *r, int *hides) {
-  ENDS_BY(misfit_free) misfit x = {0};
   double square = 0.0;
   *hides = hides_strains(r, lost(r));
   if (*hides || !may_be_noise(r)) return OK;
   TIMED(STAGE_RECOVERY);
-  PASS(misfit_new(r, &x));
+  OWNED_PARTS(misfit, x, misfit_new(r, &x));
   PASS(find_error(r, &x, &square));
   *hides = is_noise(r, square);
   return OK;
