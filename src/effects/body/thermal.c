@@ -107,23 +107,20 @@ static int has_expansion(const model *m) {
   return 0;
 }
 
-static int requires_thermal(const model *m, char *why, size_t size) {
+static int requires_thermal(const model *m, const reason *why) {
   const load *l = first_temperature(m);
   const int given = l != NULL || facts_has_initial(m, INITIAL_TEMPERATURE);
   const material *law = first_warm_law(m), *warm = first_warm_moduli(m);
   if (given && law != NULL && facts_has_inelastic(m))
-    return plan_says(1, why, size,
-                     "law %s of material %s depends on temperature",
+    return plan_says(1, why, "law %s of material %s depends on temperature",
                      law->law.ops->name, law->name);
   if (given && warm != NULL)
-    return plan_says(1, why, size,
-                     "*ELASTIC of material %s depends on temperature",
+    return plan_says(1, why, "*ELASTIC of material %s depends on temperature",
                      warm->name);
-  if (l == NULL) return plan_says(0, why, size, "no *TEMPERATURE card");
+  if (l == NULL) return plan_says(0, why, "no *TEMPERATURE card");
   if (!has_expansion(m))
-    return plan_says(0, why, size, "no material in use has *EXPANSION");
-  return plan_says(1, why, size, "*TEMPERATURE on group %s, %s:%d", l->group,
-                   PLACE(l->at));
+    return plan_says(0, why, "no material in use has *EXPANSION");
+  return plan_at(why, &l->at, "*TEMPERATURE on group %s", l->group);
 }
 
 VALUE(thermal_work, v->s->energy.thermal)

@@ -395,12 +395,11 @@ static status find_factors(run *r, void *self) {
   return find_creep(r, own);
 }
 
-static int requires_factors(const model *m, char *why, size_t size) {
+static int requires_factors(const model *m, const reason *why) {
   for (int i = 0; i < m->n.goal; ++i)
     if (m->accuracy.goals[i].quantity == GOAL_SIF)
-      return plan_says(1, why, size, "*GOAL, QUANTITY=SIF, %s:%d",
-                       PLACE(m->accuracy.goals[i].at));
-  return plan_requires_table(m, PRINT_SIF, why, size);
+      return plan_at(why, &m->accuracy.goals[i].at, "*GOAL, QUANTITY=SIF");
+  return plan_requires_table(m, PRINT_SIF, why);
 }
 
 static effect_work expected(const plan_sizes *s) {

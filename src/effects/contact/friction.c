@@ -498,23 +498,21 @@ static effect_work expected_history(const plan_sizes *s) {
   return (effect_work){s->friction, "nodes", times, 20.0 * times * s->friction};
 }
 
-static int requires_friction(const model *m, char *why, size_t size) {
+static int requires_friction(const model *m, const reason *why) {
   return plan_requires_rule(m, rule_has_friction,
                             m->n.contact == 0
                                 ? "no *CONTACT card"
                                 : "no *FRICTION card with a value above zero",
-                            why, size);
+                            why);
 }
 
 /* More than one increment: slip and load have a history. */
-static int requires_history(const model *m, char *why, size_t size) {
-  if (!requires_friction(m, NULL, 0))
-    return plan_says(0, why, size, "no friction");
+static int requires_history(const model *m, const reason *why) {
+  if (!requires_friction(m, NULL)) return plan_says(0, why, "no friction");
   if (m->n.step == 0 ||
       (m->n.step == 1 && !(m->steps[0].dt < m->steps[0].total)))
-    return plan_says(0, why, size, "one increment only");
-  return plan_says(1, why, size, "friction over more than one increment, %s:%d",
-                   PLACE(m->steps[0].at));
+    return plan_says(0, why, "one increment only");
+  return plan_at(why, &m->steps[0].at, "friction over more than one increment");
 }
 
 /* ---- columns ------------------------------------------------------------ */

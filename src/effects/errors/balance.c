@@ -212,7 +212,7 @@ static void show(const void *self, state *s) {
   s->errors.balance = ((const balance *)self)->report;
 }
 
-static int requires_balance(const model *m, char *why, size_t size) {
+static int requires_balance(const model *m, const reason *why) {
   int any = 0;
   for (int i = 0; i < m->n.step; ++i) any |= m->steps[i].balanced;
   return any;

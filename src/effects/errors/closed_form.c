@@ -243,11 +243,9 @@ static status find_error(const run *r, true_error *out) {
   return OK;
 }
 
-static int requires_reference(const model *m, char *why, size_t size) {
-  if (m->accuracy.ref.n == 0)
-    return plan_says(0, why, size, "no *REFERENCE card");
-  return plan_says(1, why, size, "*REFERENCE, %s:%d",
-                   PLACE(m->accuracy.ref.at));
+static int requires_reference(const model *m, const reason *why) {
+  if (m->accuracy.ref.n == 0) return plan_says(0, why, "no *REFERENCE card");
+  return plan_at(why, &m->accuracy.ref.at, "*REFERENCE");
 }
 
 /* Formulas at many points of each element. */

@@ -518,10 +518,10 @@ static effect_work expected(const plan_sizes *s) {
       s->increments * (factor + (1.0 + n) * pass + (n + history) * solve)};
 }
 
-static int requires_goals(const model *m, char *why, size_t size) {
-  if (m->n.goal == 0) return plan_says(0, why, size, "no *GOAL card");
-  return plan_says(1, why, size, "*GOAL, NAME=%s, %s:%d",
-                   m->accuracy.goals[0].name, PLACE(m->accuracy.goals[0].at));
+static int requires_goals(const model *m, const reason *why) {
+  if (m->n.goal == 0) return plan_says(0, why, "no *GOAL card");
+  return plan_at(why, &m->accuracy.goals[0].at, "*GOAL, NAME=%s",
+                 m->accuracy.goals[0].name);
 }
 
 static int goal_items(const void *self) {
