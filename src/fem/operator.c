@@ -159,12 +159,12 @@ status sparse_operator_all_rows(sparse_operator *o) {
 
 /* ---- products and solves ------------------------------------------------- */
 
-static void clear(const sparse_operator *o, double *v) {
+static void clear(const sparse_operator *o) {
   const supernodal_part *part = &o->part.contact;
   for (int t = 0; t < part->n; ++t) {
     const long first = o->s->first[part->list[t]];
     const long n = o->s->first[part->list[t] + 1] - first;
-    CLEAR(v + first, n);
+    CLEAR(o->work.v + first, n);
   }
 }
 
@@ -199,14 +199,13 @@ static void solve_interior(const sparse_operator *o,
       if (o->inside[p] >= 0) v[p] = o->work.z[o->inside[p]];
 }
 
-/* w += part * K u of contact unknowns u[m], that of held ones left out. */
-static void spread(const sparse_operator *o, double part, const double *u,
-                   double *w) {
+/* o->work.v less K u of contact unknowns u[m], that of held ones left out. */
+static void spread(const sparse_operator *o, const double *u) {
   const stiffness *k = o->k;
   const size_t dim = k->dim;
   for (int q = 0; q < k->n_row; ++q) {
     const int id = q / k->rows, r = q % k->rows;
-    const double move = part * u[q];
+    const double move = -u[q];
     if (o->held[q] || move == 0.0) continue;
     const int a = contact_node(o, id);
     for (size_t t = o->touched.start[id]; t < o->touched.start[id + 1]; ++t) {
@@ -216,7 +215,7 @@ static void spread(const sparse_operator *o, double part, const double *u,
       for (int c = 0; c < k->dim; ++c) {
         const long at = place_of(o, b->node, c);
         if (at < 0) continue;
-        w[at] += move * block[of_row ? k->dim * c + r : k->dim * r + c];
+        o->work.v[at] += move * block[of_row ? k->dim * c + r : k->dim * r + c];
       }
     }
   }
@@ -280,8 +279,8 @@ static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
   COPY(Au, u, m);
   project(o, Au);
   /* The contact unknowns have u[m]: o->work.v at them and next to them. */
-  clear(o, o->work.v);
-  spread(o, -1.0, Au, o->work.v);
+  clear(o);
+  spread(o, Au);
   solve_interior(o, &o->part.contact, &o->part.contact, o->work.v);
   for (int q = 0; q < o->k->n_row; ++q)
     if (!o->held[q]) o->work.v[o->number[o->unknown[q]]] = Au[q];
@@ -315,8 +314,8 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
   const int m = o->k->n_row;
   for (int q = 0; q < m; ++q)
     Ax[q] = o->rows.known[q] && !o->held[q] ? x[q] : 0.0;
-  clear(o, o->work.v);
-  spread(o, -1.0, Ax, o->work.v);
+  clear(o);
+  spread(o, Ax);
   for (int q = 0; q < m; ++q) {
     if (o->held[q]) continue;
     double *v = o->work.v + o->number[o->unknown[q]];
@@ -358,7 +357,7 @@ static void set_response(void *ctx, const unsigned char *at) {
 static void response(void *ctx, const double *b, double *x, double *Ax) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row, rows = o->k->rows;
-  clear(o, o->work.v);
+  clear(o);
   for (int q = 0; q < m; ++q)
     if (b[q] != 0.0 && !o->held[q] && !o->rows.known[q])
       o->work.v[o->number[o->unknown[q]]] = b[q];
@@ -395,7 +394,7 @@ void sparse_operator_forward(sparse_operator *o, const double *load,
 
 void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
   CLEAR(o->work.v, o->f.n);
-  spread(o, -1.0, u_c, o->work.v);
+  spread(o, u_c);
   solve_interior(o, &o->part.contact, &o->part.all, o->work.v);
   for (long p = 0; p < o->f.n; ++p)
     u[o->f.unknown[p]] = o->work.y[p] + o->work.v[p];

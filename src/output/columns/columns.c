@@ -541,22 +541,13 @@ int column_ready(const column *c, const state *s) {
 
 int column_items(const column *c, const view *v) {
   const effect_ops *e = effect_of_column(c);
-  switch (c->of) {
-    case PER_NODE:
-      return v->msh->n_node;
-    case PER_ELEMENT:
-      return v->msh->n_elem;
-    case PER_CONTACT_NODE:
-      return v->s->contacts.surface != NULL ? v->s->contacts.surface->n : 0;
-    case PER_CONTACT:
-      return v->m->n.contact;
-    case PER_ZONE:
-    case PER_TIP:
-    case PER_GOAL:
-      return e->items(effect_state(v->s->effects, e));
-    default:
-      return 1;
-  }
+  if (c->of == PER_NODE) return v->msh->n_node;
+  if (c->of == PER_ELEMENT) return v->msh->n_elem;
+  if (c->of == PER_CONTACT) return v->m->n.contact;
+  if (c->of == PER_CONTACT_NODE)
+    return v->s->contacts.surface != NULL ? v->s->contacts.surface->n : 0;
+  if (c->of == PER_INCREMENT) return 1;
+  return e->items(effect_state(v->s->effects, e));
 }
 
 const char *column_unit(const char *unit, const model *m) {
