@@ -565,18 +565,6 @@ static status divide(sparse_operator *o) {
   return OK;
 }
 
-/* The factor without contact unknowns. */
-static status leave_contact_out(sparse_operator *o) {
-  int n = 0;
-  PASS_NEW(o->inside, o->f.n);
-  for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) o->inside[o->number[o->unknown[q]]] = -1;
-  for (long p = 0; p < o->f.n; ++p)
-    if (o->inside[p] == 0) o->inside[p] = n++;
-  PASS_NEW(o->work.z, n);
-  return supernodal_restrict(o->s, o->inside, &o->interior);
-}
-
 /* The columns of both factors. */
 static status new_columns(sparse_operator *o) {
   const int count = o->s->count;
@@ -615,7 +603,14 @@ static status factor_both(sparse_operator *o) {
   PASS(list_blocks(o, n_contact(o), list_by_contact, &o->touched));
   PASS(divide(o));
   PASS_NEW_ALL(OF(o->work.v, o->f.n), OF(o->work.y, o->f.n));
-  PASS(leave_contact_out(o));
+  int n = 0;
+  PASS_NEW(o->inside, o->f.n);
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) o->inside[o->number[o->unknown[q]]] = -1;
+  for (long p = 0; p < o->f.n; ++p)
+    if (o->inside[p] == 0) o->inside[p] = n++;
+  PASS_NEW(o->work.z, n);
+  PASS(supernodal_restrict(o->s, o->inside, &o->interior));
   PASS(new_columns(o));
   PASS(sparse_operator_all_rows(o));
   /* The factor of the interior, where contact unknowns have part in it; the

@@ -164,18 +164,6 @@ static status keep_first(void *to, const state *s) {
   RAISE(ERR_UNSETTLED, "the first increment is all that is needed");
 }
 
-/* Without what the start does not depend on. */
-static void simplify(model *m) {
-  step *s = m->steps;
-  s->accuracy.mesh = 0;
-  s->accuracy.time = s->accuracy.time_balanced = s->accuracy.theorems = 0;
-  s->accuracy.no_solver = 1;
-  s->check = CHECK_NONE;
-  m->n.goal = 0;
-  m->effects &= ~(EFFECT_MESH_ERROR | EFFECT_TIME_ERROR | EFFECT_ESTIMATES |
-                  EFFECT_REFERENCE | EFFECT_THEORY);
-}
-
 /* On the mesh with these sizes, into *to. */
 static status solve_first(const command *c, const mesh_sizes *sizes,
                           coarser *to) {
@@ -184,7 +172,15 @@ static status solve_first(const command *c, const mesh_sizes *sizes,
   const history_sink sink = {.ctx = to, .increment = keep_first};
   PASS(message_log_new(&other.log));
   PASS(job_read(c, &(job_mesh){.sizes = {*sizes}}, other.log, &other));
-  simplify(other.m);
+  /* Without what the start does not depend on. */
+  step *s = other.m->steps;
+  s->accuracy.mesh = 0;
+  s->accuracy.time = s->accuracy.time_balanced = s->accuracy.theorems = 0;
+  s->accuracy.no_solver = 1;
+  s->check = CHECK_NONE;
+  other.m->n.goal = 0;
+  other.m->effects &= ~(EFFECT_MESH_ERROR | EFFECT_TIME_ERROR |
+                        EFFECT_ESTIMATES | EFFECT_REFERENCE | EFFECT_THEORY);
   return history_run(other.m, other.msh, effect_table, &sink, &unsettled);
 }
 

@@ -245,16 +245,6 @@ static joint_edge *find_joint(const goal_estimator *e, int a, int b) {
                  number_pair_order);
 }
 
-static void mark_joints(goal_estimator *e, int *region) {
-  const mesh *m = e->s.d->mesh;
-  for (int k = 0; k < (m->dim + 1) * m->n_elem; ++k) {
-    const int of = space_region(e->recovery, k / (m->dim + 1)) + 1;
-    int *at = &region[m->elem[k]];
-    if (*at != 0 && *at != of) e->is_joint[m->elem[k]] = 1;
-    *at = of;
-  }
-}
-
 /* Writes the edges between marked nodes, element by element, or counts them. */
 static int list_joints(const goal_estimator *e, joint_edge *to) {
   const mesh *m = e->s.d->mesh;
@@ -289,7 +279,13 @@ static status find_joints(goal_estimator *e) {
   const int n_node = e->s.d->mesh->n_node;
   OWNED int *region = NULL;
   PASS_NEW_ALL(OF(e->is_joint, n_node), OF(region, n_node));
-  mark_joints(e, region);
+  const mesh *m = e->s.d->mesh;
+  for (int k = 0; k < (m->dim + 1) * m->n_elem; ++k) {
+    const int of = space_region(e->recovery, k / (m->dim + 1)) + 1;
+    int *at = &region[m->elem[k]];
+    if (*at != 0 && *at != of) e->is_joint[m->elem[k]] = 1;
+    *at = of;
+  }
   const int n = list_joints(e, NULL);
   if (n == 0) return OK;
   PASS_NEW(e->joint, n);

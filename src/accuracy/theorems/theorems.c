@@ -127,17 +127,6 @@ static void try_nodes(trial *s) {
     }
 }
 
-static void try_all(trial *s) {
-  for (int k = 0; k < FIELDS_OF_ALL; ++k) {
-    double value = 0.0, square = 0.0;
-    for (int i = 0; i < s->cp->n; ++i) {
-      set_node(s, i, moves[(i + k) % PATTERNS]);
-      value += part(s, i, &square);
-    }
-    count(s, value, square);
-  }
-}
-
 /* u itself must be in K. */
 static void test_penetration(trial *s) {
   const contact_problem *cp = s->cp;
@@ -160,7 +149,14 @@ status inequality_least(const contact_problem *cp, const double *u,
   COPY(w, u, cp->m);
   set_scales(&s);
   try_nodes(&s);
-  try_all(&s);
+  for (int k = 0; k < FIELDS_OF_ALL; ++k) {
+    double value = 0.0, square = 0.0;
+    for (int i = 0; i < s.cp->n; ++i) {
+      set_node(&s, i, moves[(i + k) % PATTERNS]);
+      value += part(&s, i, &square);
+    }
+    count(&s, value, square);
+  }
   test_penetration(&s);
   *least = s.least < HUGE_VAL ? s.least : 0.0;
   *fields = s.n;

@@ -435,17 +435,6 @@ static status keep_row(builder *b, int i, int cap[2]) {
   return OK;
 }
 
-static status find_rows(builder *b) {
-  int cap[2] = {0, 0};
-  for (int i = 0; i < b->p->n_node; ++i) {
-    b->raw.start[i + 1] = b->raw.start[i];
-    if (!b->p->active[i]) continue;
-    look_around(b, i);
-    PASS(keep_row(b, i, cap));
-  }
-  return OK;
-}
-
 static status transpose(const sparse_rows *a, sparse_rows *out) {
   OWNED_NEW(int, start, a->n + 2);
   PASS_NEW_ALL(OF(out->col, a->start[a->n]), OF(out->val, a->start[a->n]));
@@ -540,7 +529,13 @@ static status set_rows(builder *b) {
   OWNS(b);
   PASS(builder_new(b));
   find_shares(b);
-  PASS(find_rows(b));
+  int cap[2] = {0, 0};
+  for (int i = 0; i < b->p->n_node; ++i) {
+    b->raw.start[i + 1] = b->raw.start[i];
+    if (!b->p->active[i]) continue;
+    look_around(b, i);
+    PASS(keep_row(b, i, cap));
+  }
   return transpose(&b->raw, &b->by_column);
 }
 

@@ -29,18 +29,6 @@ static int strains(const model *m, int elem_id) {
   return expands(m, elem_id) || moduli_follows(m, elem_id);
 }
 
-/* Thermal strains are averaged as the strains are that they are taken off. */
-static void average_thermal(run *r) {
-  cluster_set *c = r->body.d.cluster;
-  double *thermal = r->now.thermal;
-  const size_t ns = r->m->ns;
-  cluster_begin(c, CLUSTER_STRAIN);
-  for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
-  for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
-}
-
 static void strain(run *r, const double *T0) {
   const size_t ns = r->m->ns;
   equilibrium *now = &r->now;
@@ -50,7 +38,14 @@ static void strain(run *r, const double *T0) {
       expansion_strain(&run_material(r, e)->expand, now->temperature[e], T0[e],
                        now->thermal + ns * k);
   }
-  average_thermal(r);
+  /* Thermal strains are averaged as the strains are that they are taken off. */
+  cluster_set *c = r->body.d.cluster;
+  double *thermal = r->now.thermal;
+  cluster_begin(c, CLUSTER_STRAIN);
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
 }
 
 /* Temperatures, moduli and thermal strains of r->now at t. */

@@ -86,16 +86,6 @@ static void add_areas(const run *r, const mesh_crack *c, crack_state *own) {
   }
 }
 
-static void set_areas(run *r, crack_state *own) {
-  const mesh *m = r->msh;
-  for (int i = 0; i < m->n_crack; ++i) add_areas(r, &m->crack[i], own);
-  for (int k = 0; k < m->dim * m->n_node; ++k)
-    if (own->area[k / m->dim] > 0.0) own->shift[k] /= own->area[k / m->dim];
-  for (int i = 0; i < m->n_crack; ++i)
-    for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
-      own->area[m->crack[i].front_node[k]] = 0.0;
-}
-
 /* Points of a front without factors, and why. */
 static void tell_points(const run *r, int id, const fracture *f) {
   const crack *c = &r->m->mesh.cracks[id];
@@ -130,7 +120,12 @@ static status new_cracks(run *r, crack_state *own) {
     PASS(fracture_new(&body, &own->of[i]));
     own->n += fracture_count(own->of[i]);
   }
-  set_areas(r, own);
+  for (int i = 0; i < m->n_crack; ++i) add_areas(r, &m->crack[i], own);
+  for (int k = 0; k < m->dim * m->n_node; ++k)
+    if (own->area[k / m->dim] > 0.0) own->shift[k] /= own->area[k / m->dim];
+  for (int i = 0; i < m->n_crack; ++i)
+    for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
+      own->area[m->crack[i].front_node[k]] = 0.0;
   PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n));
   for (int i = 0, n = 0; i < m->n_crack; ++i)
     for (int k = 0; k < fracture_count(own->of[i]); ++k)

@@ -329,17 +329,6 @@ static status split(bisection *b, int dim, const cell *c, cell_list *to) {
   return split(b, dim, &part, to);
 }
 
-static status split_all(bisection *b) {
-  for (int d = 1; d <= b->dim; ++d) {
-    cell_list next = {0};
-    for (int i = 0; i < b->cells[d].n; ++i)
-      PASS(split(b, d, &b->cells[d].item[i], &next));
-    memory_free(b->cells[d].item);
-    b->cells[d] = next;
-  }
-  return OK;
-}
-
 /* *done: no element is too long. */
 static status run_round(bisection *b, double *limit, int *done) {
   double worst;
@@ -354,7 +343,14 @@ static status run_round(bisection *b, double *limit, int *done) {
   PASS(mark_neighbours(b));
   PASS(add_middles(b));
   check_middles(b);
-  return split_all(b);
+  for (int d = 1; d <= b->dim; ++d) {
+    cell_list next = {0};
+    for (int i = 0; i < b->cells[d].n; ++i)
+      PASS(split(b, d, &b->cells[d].item[i], &next));
+    memory_free(b->cells[d].item);
+    b->cells[d] = next;
+  }
+  return OK;
 }
 
 /* ---- back to the raw mesh ------------------------------------------------ */

@@ -230,16 +230,6 @@ static status set_surface(round_surface *s, int n_all) {
   return OK;
 }
 
-static void set_face_normals(round_surface *s) {
-  for (int i = 0; i < s->f.n && s->f.n_node == 3; ++i) {
-    const int *v = s->f.node + 3 * i;
-    double e[2][3];
-    between(s, v[0], v[1], e[0]);
-    between(s, v[0], v[2], e[1]);
-    cross(e[0], e[1], s->face_normal + 3 * i);
-  }
-}
-
 status round_surface_new(const surface_faces *f, int n_all, const double *x,
                          round_surface **out) {
   *out = NULL;
@@ -251,7 +241,13 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
                OF(s->sharp, n_all));
   PASS_NEW_REALS(3 * n_all, &s->tangent, &s->normal);
   PASS_NEW(s->face_normal, 3 * f->n);
-  set_face_normals(s);
+  for (int i = 0; i < s->f.n && s->f.n_node == 3; ++i) {
+    const int *v = s->f.node + 3 * i;
+    double e[2][3];
+    between(s, v[0], v[1], e[0]);
+    between(s, v[0], v[2], e[1]);
+    cross(e[0], e[1], s->face_normal + 3 * i);
+  }
   PASS(find_edges(s));
   set_tangents(s, n_all);
   return set_surface(s, n_all);

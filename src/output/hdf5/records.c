@@ -270,16 +270,6 @@ static status emit_levels(stream *s, const places *p, uint64_t root) {
 
 /* ---- a group ------------------------------------------------------------- */
 
-static void set_places(places *p) {
-  p->heap = p->end;
-  p->header = p->heap + name_place(p->n);
-  p->node = p->header + p->header_size * (uint64_t)(p->n - 1);
-  int n = parts(p->n, p->per_node);
-  p->tree = p->node + node_size(p) * (uint64_t)n;
-  p->end = p->tree;
-  while ((n = parts(n, p->per_tree)) > 1) p->end += tree_size(p) * (uint64_t)n;
-}
-
 static status fill_group(stream *s, places *p, const record_group *g) {
   unsigned char header[HEADER_MOST];
   uint64_t tree, heap;
@@ -287,7 +277,13 @@ static status fill_group(stream *s, places *p, const record_group *g) {
   PASS(get_header(s, g->set, header, &p->header_size));
   PASS(get(s, heap, header, HEAP_HEAD));
   if (memcmp(header, "HEAP", 5) != 0) PASS(other_format(s->path));
-  set_places(p);
+  p->heap = p->end;
+  p->header = p->heap + name_place(p->n);
+  p->node = p->header + p->header_size * (uint64_t)(p->n - 1);
+  int n = parts(p->n, p->per_node);
+  p->tree = p->node + node_size(p) * (uint64_t)n;
+  p->end = p->tree;
+  while ((n = parts(n, p->per_tree)) > 1) p->end += tree_size(p) * (uint64_t)n;
   PASS(go_to(s, p->heap));
   PASS(emit_names(s, p));
   PASS(emit_headers(s, p, g->set, g));

@@ -177,17 +177,6 @@ static void note_nodes(run *r) {
   r->nodes.n_reported = now;
 }
 
-/* The systems of an increment, unless a method did not tell its own. */
-static void count_work(observed_work *seen) {
-  if (!seen->untold) {
-    if (seen->increments++ == 0)
-      seen->first = seen->now;
-    else
-      seen->later += seen->now;
-  }
-  seen->now = seen->untold = 0;
-}
-
 /* The energies have the squares of all that is in the state. */
 static status check_finite(const run *r) {
   const energies *e = &r->now.energy;
@@ -223,7 +212,14 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
   PASS(dense_show(r, increment_no));
   ++r->course.total_no;
-  count_work(&r->solving.seen);
+  /* The systems of an increment, unless a method did not tell its own. */
+  if (!r->solving.seen.untold) {
+    if (r->solving.seen.increments++ == 0)
+      r->solving.seen.first = r->solving.seen.now;
+    else
+      r->solving.seen.later += r->solving.seen.now;
+  }
+  r->solving.seen.now = r->solving.seen.untold = 0;
   r->at.last = last;
   PASS(
       result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
