@@ -124,7 +124,6 @@ typedef struct pair {
 } pair;
 
 status pair_new(int n, int m, pair *p);
-void pair_free(pair *p);
 /* v and q from a solution (u, r) by one step of the natural map. */
 void pair_set(const contact_problem *cp, const double *u, const double *r,
               pair *p);

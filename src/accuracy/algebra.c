@@ -145,8 +145,6 @@ status pair_new(int n, int m, pair *p) {
   return OK;
 }
 
-void pair_free(pair *p) { RELEASE(p->v, p->q, p->d, p->t, p->slides); }
-
 /* Unilateral unknowns, and those without any force. */
 static void pair_normal(const contact_problem *cp, const double *u,
                         const double *r, pair *p) {
@@ -187,15 +185,6 @@ void pair_set(const contact_problem *cp, const double *u, const double *r,
               pair *p) {
   pair_normal(cp, u, r, p);
   pair_friction(cp, u, r, p);
-}
-
-/* d = M x - load - y, x the unknown multiplied by M. */
-static void pair_defect(const contact_problem *cp, pair *p) {
-  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
-  contact_apply(cp, x, p->d);
-  for (int i = 0; i < cp->m; ++i)
-    p->d[i] = contact_has_stiffness(cp) ? p->d[i] - cp->f[i] - p->q[i]
-                                        : p->v[i] - p->d[i] - cp->f[i];
 }
 
 /* |u - v|_A or |r - q|_W. */
@@ -276,7 +265,6 @@ status solver_error_bound(const contact_problem *cp,
                           const inverse_energy *inverse, const double *u,
                           const double *r, known_rate *known,
                           solver_error *error) {
-  ENDS_BY(pair_free) pair p = {0};
   double square = 0.0;
   int balanced = 1;
   *error = (solver_error){0};
@@ -287,9 +275,14 @@ status solver_error_bound(const contact_problem *cp,
     no_bound(error, "without contact the body is weakly held");
     return OK;
   }
-  PASS(pair_new(cp->n, cp->m, &p));
+  OWNED_PARTS(pair, p, pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
-  pair_defect(cp, &p);
+  /* d = M x - load - y, x the unknown multiplied by M. */
+  const double *x = contact_has_stiffness(cp) ? p.v : p.q;
+  contact_apply(cp, x, p.d);
+  for (int i = 0; i < cp->m; ++i)
+    p.d[i] = contact_has_stiffness(cp) ? p.d[i] - cp->f[i] - p.q[i]
+                                       : p.v[i] - p.d[i] - cp->f[i];
   if (inverse->n_kernel > 0) {
     PASS(pair_balance(cp, inverse, &p, &balanced));
     if (!balanced) {

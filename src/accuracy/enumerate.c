@@ -299,7 +299,10 @@ static int add_row(search *s, int dof) {
   return !(fabs(y[dof]) > WEAK * largest);
 }
 
-static void back_substitute(const search *s, double *x) {
+static status leaf(search *s) {
+  double x[ROWS];
+  ++s->out->n_pattern;
+  if (s->weak > 0) return solve_anew(s);
   CLEAR(x, s->cp->m);
   for (int q = s->n_row - 1; q >= 0; --q) {
     double sum = s->row[q][s->cp->m];
@@ -307,13 +310,6 @@ static void back_substitute(const search *s, double *x) {
       sum -= s->row[q][s->column[p]] * x[s->column[p]];
     x[s->column[q]] = sum / s->row[q][s->column[q]];
   }
-}
-
-static status leaf(search *s) {
-  double x[ROWS];
-  ++s->out->n_pattern;
-  if (s->weak > 0) return solve_anew(s);
-  back_substitute(s, x);
   return signs_hold(s, x) ? solve_anew(s) : OK;
 }
 

@@ -69,15 +69,6 @@ static void sizes_at_nodes(const mesh *m, const double *eta, double target,
   }
 }
 
-static double distance(const mesh *m, int a, int b) {
-  double sum = 0.0;
-  for (int c = 0; c < m->dim; ++c) {
-    double d = m->x[m->dim * a + c] - m->x[m->dim * b + c];
-    sum += d * d;
-  }
-  return sqrt(sum);
-}
-
 /* One sweep over the edges; 1 if a size changed. */
 static int limit_growth(const mesh *m, double *size) {
   int changed = 0;
@@ -86,7 +77,8 @@ static int limit_growth(const mesh *m, double *size) {
       for (int b = 0; b <= m->dim; ++b) {
         int i = m->elem[(m->dim + 1) * e + a];
         int j = m->elem[(m->dim + 1) * e + b];
-        double most = size[j] + GROWTH * distance(m, i, j);
+        double most = size[j] + GROWTH * distance_of(m->dim, mesh_node_x(m, i),
+                                                     mesh_node_x(m, j));
         if (!(size[i] > most)) continue;
         size[i] = most;
         changed = 1;

@@ -62,11 +62,10 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size) {
   words w = {text, size};
-  ENDS_BY(pair_free) pair p = {0};
   double scale = contact_scale(cp), most = 0.0;
   text[0] = '\0';
   OWNED_NEW(double, value, cp->n);
-  PASS(pair_new(cp->n, cp->m, &p));
+  OWNED_PARTS(pair, p, pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
   for (int dof = 0; dof < cp->m; ++dof) {
     double defect = fabs(p.q[dof] - r[dof]);

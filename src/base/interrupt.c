@@ -117,17 +117,11 @@ static void say(const char *text) {
 }
 
 static const char *name_of(int signal_no) {
-  switch (signal_no) {
-    case SIGSEGV:
-    case SIGBUS:
-      return "an address that is not there";
-    case SIGFPE:
-      return "a floating-point trap";
-    case SIGILL:
-      return "an instruction this machine does not know";
-    default:
-      return "abort";
-  }
+  if (signal_no == SIGSEGV || signal_no == SIGBUS)
+    return "an address that is not there";
+  if (signal_no == SIGFPE) return "a floating-point trap";
+  return signal_no == SIGILL ? "an instruction this machine does not know"
+                             : "abort";
 }
 
 static void on_signal(int signal_no) {

@@ -115,13 +115,24 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNED_OF(type, name, call) \
   OWNED type *name = NULL;         \
   PASS(call)
+/* OWNED_PARTS(type, name, call): a struct, zero but for what a call requests
+ * for it, which is freed where the name ends; or RAISE. The call requests
+ * nothing for others. */
+#define OWNED_PARTS(type, name, call)   \
+  type name = {0};                      \
+  OWNED_NEW(char, name##_parts, 1);     \
+  do {                                  \
+    OWNER_TILL_END(name##_parts, name); \
+    PASS(call);                         \
+  } while (0)
 /* The same by a function of a pointer to the local. */
 #define ENDS_BY(function) __attribute__((cleanup(function)))
 
 /* Of what is requested from here to the end of the block the object is the
  * owner; NULL: none. Not behind a jump to "done:" of the same block. */
-#define OWNS(object)                                                 \
-  void *before_ __attribute__((cleanup(memory_own_again), unused)) = \
+#define OWNS(object) OWNER_TILL_END(object, before)
+#define OWNER_TILL_END(object, name)                                 \
+  void *name##_ __attribute__((cleanup(memory_own_again), unused)) = \
       memory_own(object)
 /* MAKES(type, s, out): s = *out is a new object that OWNS the rest, or RAISE.
  */

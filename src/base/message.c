@@ -268,27 +268,17 @@ static void print_caret(const char *line, int first, int column, FILE *out) {
   fputs("^\n", out);
 }
 
-/* A line of a deck is in the shown form already, others may be not. */
-static void print_part(const char *line, int first, int last, FILE *out) {
-  char piece[PIECE_SIZE];
-  const char *p = line + first;
-  while (p < line + last && text_piece(&p, piece) > 0) fputs(piece, out);
-}
-
 static void print_source(const place *at, FILE *out) {
   if (at == NULL || at->line == NULL || at->line_no <= 0) return;
   int first, last, column = at->column_no - 1;
   visible_part(at->line, column, &first, &last);
   fprintf(out, "%8d | %s", at->line_no, first > 0 ? "..." : "");
-  print_part(at->line, first, last, out);
+  /* A line of a deck is in the shown form already, others may be not. */
+  char piece[PIECE_SIZE];
+  const char *p = at->line + first;
+  while (p < at->line + last && text_piece(&p, piece) > 0) fputs(piece, out);
   fprintf(out, "%s\n", at->line[last] != '\0' ? "..." : "");
   if (column >= 0 && column <= last) print_caret(at->line, first, column, out);
-}
-
-static void print_include(const place *p, FILE *out) {
-  fprintf(out, "%8s   included from ", "");
-  text_put(out, p->file);
-  fprintf(out, ":%d\n", p->line_no);
 }
 
 static void print_message(const message *m, FILE *out) {
@@ -296,8 +286,11 @@ static void print_message(const message *m, FILE *out) {
   fprintf(out, "%s P%04d: %s\n", severity_word(m->level), (int)m->id, m->text);
   print_source(m->at, out);
   if (m->at == NULL) return;
-  for (const place *p = m->at->from; p != NULL; p = p->from)
-    print_include(p, out);
+  for (const place *p = m->at->from; p != NULL; p = p->from) {
+    fprintf(out, "%8s   included from ", "");
+    text_put(out, p->file);
+    fprintf(out, ":%d\n", p->line_no);
+  }
 }
 
 static void print_count(int n, const char *word, const char *before,

@@ -195,6 +195,19 @@ int number_pair_order(const void *a, const void *b) {
                     : number_order((const int *)a + 1, (const int *)b + 1);
 }
 
+void number_pair_sort(void *item, size_t size, size_t n) {
+  if (n > 0) qsort(item, n, size, number_pair_order);
+}
+
+int number_pair_end(const void *item, size_t size, int n, int i) {
+  const char *first = (const char *)item + size * i, *next = first;
+  while (i < n && number_pair_order(first, next) == 0) {
+    next += size;
+    ++i;
+  }
+  return i;
+}
+
 uint64_t number_hash(uint64_t h, const void *data, size_t n) {
   const unsigned char *at = data;
   for (size_t i = 0; i < n; ++i) h = (h ^ at[i]) * 1099511628211u;

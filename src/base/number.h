@@ -31,3 +31,14 @@ uint64_t number_hash(uint64_t h, const void *data, size_t n);
 /* For qsort and bsearch: an int; the two ints an item starts with. */
 int number_order(const void *a, const void *b);
 int number_pair_order(const void *a, const void *b);
+typedef struct number_pair {
+  int a, b; /* a <= b */
+} number_pair;
+static inline number_pair number_pair_of(int a, int b) {
+  return (number_pair){a < b ? a : b, a < b ? b : a};
+}
+/* Item[n] by their pairs; one past the last that has the pair of item i. */
+#define PAIR_SORT(item, n) number_pair_sort((item), sizeof *(item), (size_t)(n))
+#define PAIR_END(item, n, i) number_pair_end((item), sizeof *(item), (n), (i))
+void number_pair_sort(void *item, size_t size, size_t n);
+int number_pair_end(const void *item, size_t size, int n, int i);

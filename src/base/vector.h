@@ -1,10 +1,36 @@
 /* Vectors, most of two or three components. */
 #pragma once
 
+#include <math.h>
+
 static inline double dot(int dim, const double *a, const double *b) {
   double sum = 0.0;
   for (int c = 0; c < dim; ++c) sum += a[c] * b[c];
   return sum;
+}
+
+static inline double norm(int dim, const double *a) {
+  return sqrt(dot(dim, a, a));
+}
+
+/* |a - b| */
+static inline double distance_of(int dim, const double *a, const double *b) {
+  double sum = 0.0;
+  for (int c = 0; c < dim; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
+  return sqrt(sum);
+}
+
+/* d = b - a */
+static inline void vector_of(int dim, const double *a, const double *b,
+                             double *d) {
+  for (int c = 0; c < dim; ++c) d[c] = b[c] - a[c];
+}
+
+/* To length 1, unless that is 0; the length. */
+static inline double make_unit(int dim, double *v) {
+  const double length = norm(dim, v);
+  for (int c = 0; c < dim && length > 0.0; ++c) v[c] /= length;
+  return length;
 }
 
 static inline int is_zero(int n, const double *v) {
@@ -18,6 +44,14 @@ static inline void cross(const double *a, const double *b, double *c) {
   c[0] = a[1] * b[2] - a[2] * b[1];
   c[1] = a[2] * b[0] - a[0] * b[2];
   c[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Twice the area between the first two edges e, six times the volume of all. */
+static inline double determinant(int dim, double (*e)[3]) {
+  double c[3];
+  if (dim == 2) return e[0][0] * e[1][1] - e[0][1] * e[1][0];
+  cross(e[1], e[2], c);
+  return dot(3, e[0], c);
 }
 
 /* to += factor v */

@@ -159,19 +159,6 @@ static double mean_of_spectrum(const force_set *s, double *v, double *z) {
   return largest * sum / SAMPLES;
 }
 
-/* D and the step where there are no entries: those of D W_ii that are not the
- * mean are below 1 too, as PROXIMAL wants them. */
-static status step_of_operator(force_set *s, const contact_problem *cp,
-                               double *v, double *z) {
-  PASS_NEW(s->image, cp->m);
-  PASS(force_set_fit(s, cp));
-  const double mean = mean_of_spectrum(s, v, z);
-  for (int i = 0; i < cp->m && mean > 0.0; ++i) s->D[i] /= SURE * mean;
-  const double largest = force_set_spectrum(s, v, z);
-  s->step = largest > 0.0 ? 1.0 / (SURE * largest) : 0.0;
-  return OK;
-}
-
 status force_set_new(const contact_problem *cp, force_set **out) {
   OWNED double *v = NULL;
   MAKES(force_set, s, out);
@@ -179,7 +166,14 @@ status force_set_new(const contact_problem *cp, force_set **out) {
   PASS_NEW_ALL(OF(s->part, cp->m), OF(s->rim, cp->n), OF(v, 2 * cp->m));
   scaling(cp, s->D);
   if (cp->op != NULL) {
-    PASS(step_of_operator(s, cp, v, v + cp->m));
+    /* D and the step where there are no entries: those of D W_ii that are not
+     * the mean are below 1 too, as PROXIMAL wants them. */
+    PASS_NEW(s->image, cp->m);
+    PASS(force_set_fit(s, cp));
+    const double mean = mean_of_spectrum(s, v, v + cp->m);
+    for (int i = 0; i < cp->m && mean > 0.0; ++i) s->D[i] /= SURE * mean;
+    const double largest = force_set_spectrum(s, v, v + cp->m);
+    s->step = largest > 0.0 ? 1.0 / (SURE * largest) : 0.0;
   } else {
     s->symmetric = cp->blocks == NULL && is_symmetric(cp->m, cp->W);
     if (cp->blocks != NULL || (double)entries(cp) <= SPARSE * cp->m * cp->m)

@@ -48,17 +48,6 @@ status velocity_form_new(const contact_problem *cp, velocity_form **out) {
 
 double *velocity_form_old(velocity_form *v) { return v->u_old; }
 
-/* The convex set of the increment. */
-static void set_bounds(velocity_form *v, const contact_problem *cp) {
-  for (int i = 0; i < cp->n; ++i) {
-    v->gap[i] = cp->gap[i] - v->u_old[cp->dim * i];
-    for (int a = 1; a < cp->dim && cp->side_gap != NULL; ++a) {
-      int s = (cp->dim - 1) * i + a - 1;
-      v->side[s] = cp->side_gap[s] - v->u_old[cp->dim * i + a];
-    }
-  }
-}
-
 /* Its position of stick: zero, unless the obstacle or the support moves. */
 static void set_stick(velocity_form *v, const contact_problem *cp) {
   for (int i = 0; i < cp->n; ++i)
@@ -72,7 +61,13 @@ void velocity_form_set(velocity_form *v, const contact_problem *cp,
                        contact_problem *out, double **u) {
   contact_apply(cp, v->u_old, v->R);
   for (int k = 0; k < cp->m; ++k) v->R[k] = cp->f[k] - v->R[k];
-  set_bounds(v, cp);
+  for (int i = 0; i < cp->n; ++i) {
+    v->gap[i] = cp->gap[i] - v->u_old[cp->dim * i];
+    for (int a = 1; a < cp->dim && cp->side_gap != NULL; ++a) {
+      int s = (cp->dim - 1) * i + a - 1;
+      v->side[s] = cp->side_gap[s] - v->u_old[cp->dim * i + a];
+    }
+  }
   if (cp->ut0 != NULL) set_stick(v, cp);
   for (int k = 0; k < cp->m; ++k) v->du[k] = (*u)[k] - v->u_old[k];
   *out = *cp;

@@ -51,7 +51,7 @@ static int align_tangent(int dim, int c, double *frame) {
   return row;
 }
 
-static double determinant(int dim, const double *m) {
+static double volume(int dim, const double *m) {
   if (dim == 2) return m[0] * m[3] - m[1] * m[2];
   double c[3];
   cross(m + 3, m + 6, c);
@@ -72,7 +72,7 @@ int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
     if (normalise(dim, frame + 2 * dim) < dependent_sine) return -1;
     held[2] = fixed != 0;
   }
-  return fabs(determinant(dim, frame)) < dependent_sine ? -1 : 0;
+  return fabs(volume(dim, frame)) < dependent_sine ? -1 : 0;
 }
 
 /* Normals nearer than this (45 degrees) are those of one smooth surface. */
@@ -84,9 +84,7 @@ int frame_is_smooth(int dim, const double *a, const double *b) {
 }
 
 int frame_is_same(int dim, const double *a, const double *b) {
-  double square = 0.0;
-  for (int c = 0; c < dim; ++c) square += (a[c] - b[c]) * (a[c] - b[c]);
-  return square < dependent_sine * dependent_sine;
+  return distance_of(dim, a, b) < dependent_sine;
 }
 
 void frame_invert(int dim, int orthonormal, const double *frame,
@@ -95,7 +93,7 @@ void frame_invert(int dim, int orthonormal, const double *frame,
     for (int k = 0; k < dim * dim; ++k) basis[k] = frame[k];
     return;
   }
-  double det = determinant(dim, frame);
+  double det = volume(dim, frame);
   if (dim == 2) {
     basis[0] = frame[3] / det;
     basis[1] = -frame[2] / det;

@@ -33,14 +33,10 @@ void friction_limit_free(friction_limit *limit) {
   memset(limit, 0, sizeof *limit);
 }
 
-static void coordinates(const contact_surface *s, int i, double *x) {
-  for (int c = 0; c < 3; ++c) x[c] = c < s->dim ? s->x[s->dim * i + c] : 0.0;
-}
-
 status friction_value(const friction_card *card, const contact_surface *s,
                       int i, double t, double *value) {
   double x[3];
-  coordinates(s, i, x);
+  for (int c = 0; c < 3; ++c) x[c] = c < s->dim ? s->x[s->dim * i + c] : 0.0;
   *value = quantity_value(&card->value, x, t);
   if (!(*value >= 0.0 && *value <= NUMBER_MOST))
     RAISE(ERR_DECK,

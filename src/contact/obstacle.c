@@ -167,18 +167,10 @@ double obstacle_gap(const obstacle *o, int dim, const double *x,
     lost[c] = lost_of(at[c] - d[c], o->point[c]);
   }
   for (int c = 0; c < dim; ++c) point[c] = x[c] - (d[c] - along * n[c]);
-  switch ((obstacle_shape)o->shape) {
-    case OBSTACLE_CONFORMING:
-      return along;
-    case OBSTACLE_PLANE:
-      return plane_gap(o, dim, y, m);
-    case OBSTACLE_CYLINDER:
-    case OBSTACLE_SPHERE:
-      return round_gap(o, dim, y, lost, m);
-    case OBSTACLE_GAP:
-      return quantity_value(&o->gap, point, t) + along;
-  }
-  return NAN;
+  if (o->shape == OBSTACLE_CONFORMING) return along;
+  if (o->shape == OBSTACLE_PLANE) return plane_gap(o, dim, y, m);
+  return o->shape == OBSTACLE_GAP ? quantity_value(&o->gap, point, t) + along
+                                  : round_gap(o, dim, y, lost, m);
 }
 
 /* arm[3] from the axis to the point where x meets the obstacle at time t. */

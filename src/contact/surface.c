@@ -244,16 +244,6 @@ static int add_nodes(const builder *b, int pair_id, candidate *first) {
   return g->n_node;
 }
 
-/* Its faces; those of nodes of *TIE last, once the normals of all are known. */
-static void add_faces(const builder *b) {
-  const surface_input *in = b->in;
-  for (int tied = 0; tied < 2; ++tied)
-    for (int p = 0; p < in->n_pair; ++p)
-      for (int k = 0;
-           in->pairs[p].support != NULL && k < in->pairs[p].group->n_item; ++k)
-        add_face(b, p, in->pairs[p].group->item_id[k], tied);
-}
-
 /* The nodes that the coupling of a pair has. */
 static int add_coupled(const builder *b, int pair_id, candidate *first) {
   const mortar *m = b->in->pairs[pair_id].coupled;
@@ -300,7 +290,13 @@ static status collect(builder *b) {
     b->n += in->pairs[p].coupled != NULL ? add_coupled(b, p, &b->list[b->n])
                                          : add_nodes(b, p, &b->list[b->n]);
   }
-  add_faces(b);
+  /* Its faces; those of nodes of *TIE last, once the normals of all are known.
+   */
+  for (int tied = 0; tied < 2; ++tied)
+    for (int p = 0; p < in->n_pair; ++p)
+      for (int k = 0;
+           in->pairs[p].support != NULL && k < in->pairs[p].group->n_item; ++k)
+        add_face(b, p, in->pairs[p].group->item_id[k], tied);
   return sort_candidates(b);
 }
 

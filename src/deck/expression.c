@@ -326,16 +326,6 @@ static status end_argument(compiler *c, waiting *w) {
   return OK;
 }
 
-static status read_comma(compiler *c) {
-  PASS(emit_down_to(c, 1));
-  waiting *w = c->n_waiting > 0 ? &c->stack[c->n_waiting - 1] : NULL;
-  if (w == NULL || w->kind != WAIT_CALL)
-    RAISE(ERR_DECK, "a comma outside the arguments of a function");
-  PASS(end_argument(c, w));
-  ++c->p;
-  return OK;
-}
-
 static status end_call(compiler *c, waiting *w) {
   const function *f = w->called;
   item op = {CHOICE, 0, 0, f->unary, f->binary};
@@ -397,7 +387,12 @@ static status compile(compiler *c) {
     if (*c->p == ')') {
       PASS(read_closing(c));
     } else if (*c->p == ',') {
-      PASS(read_comma(c));
+      PASS(emit_down_to(c, 1));
+      waiting *w = c->n_waiting > 0 ? &c->stack[c->n_waiting - 1] : NULL;
+      if (w == NULL || w->kind != WAIT_CALL)
+        RAISE(ERR_DECK, "a comma outside the arguments of a function");
+      PASS(end_argument(c, w));
+      ++c->p;
       complete = 0;
     } else {
       PASS(read_operator(c));

@@ -173,15 +173,6 @@ static status add_point(buffer *b, const char *text, int decimals) {
   return buffer_add(b, text + sign + whole, strlen(text + sign + whole));
 }
 
-/* Put E before the sign of an exponent. */
-static status add_letter(buffer *b, const char *text) {
-  const size_t n = 1 + strcspn(text + 1, "+-");
-  b->n = 0;
-  PASS(buffer_add(b, text, n));
-  PASS(buffer_add(b, "E", 1));
-  return buffer_add(b, text + n, strlen(text + n));
-}
-
 static status take_scratch(reader *r, field *f) {
   PASS_GET(f->text, store_text(r->d, r->scratch.text, r->scratch.n));
   return OK;
@@ -207,7 +198,12 @@ static status settle_number(reader *r, const column_field *c, field *f,
     PASS(take_scratch(r, f));
   }
   if (c->kind == 'F' && number_bare_exponent(f->text)) {
-    PASS(add_letter(&r->scratch, f->text));
+    /* Put E before the sign of an exponent. */
+    const size_t n = 1 + strcspn(f->text + 1, "+-");
+    r->scratch.n = 0;
+    PASS(buffer_add(&r->scratch, f->text, n));
+    PASS(buffer_add(&r->scratch, "E", 1));
+    PASS(buffer_add(&r->scratch, f->text + n, strlen(f->text + n)));
     PASS(take_scratch(r, f));
   }
   return OK;

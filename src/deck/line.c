@@ -54,14 +54,6 @@ static int next_byte(source *s) {
   return (unsigned char)s->block[s->at++];
 }
 
-/* A byte order mark at the start of the file is skipped. */
-static void skip_mark(source *s) {
-  if (next_byte(s) != EOF) --s->at;
-  if (s->n_block - s->at >= 3 &&
-      memcmp(s->block + s->at, "\xEF\xBB\xBF", 3) == 0)
-    s->at += 3;
-}
-
 /* LF, CR and CR LF end a line. */
 static int ends_line(source *s, int c) {
   if (c == '\r') {
@@ -105,12 +97,6 @@ static int is_card(const char *p) {
   return *p == '\0' || *p == ',';
 }
 
-/* An included file begins: unless it starts with a card it may be any file. */
-static void begin(source *s) {
-  if (!s->begun) s->hidden = s->from != NULL && !is_card(s->shown);
-  s->begun = 1;
-}
-
 static void report(source *s, message_log *log, got what) {
   place at;
   if (what == GOT_NUL) {
@@ -137,7 +123,10 @@ status source_next(source *s, message_log *log, const physical **line) {
     if (what == GOT_LINE && !is_empty_or_comment(s->shown)) {
       s->line.text = s->shown;
       s->line.line_no = s->line_no;
-      begin(s);
+      /* An included file begins: unless it starts with a card it may be any
+       * file. */
+      if (!s->begun) s->hidden = s->from != NULL && !is_card(s->shown);
+      s->begun = 1;
       return OK;
     }
   }
@@ -171,7 +160,11 @@ static int open_stream(source *s, const char *file, message_log *log,
                 s->file, why);
     return -1;
   }
-  skip_mark(s);
+  /* A byte order mark at the start of the file is skipped. */
+  if (next_byte(s) != EOF) --s->at;
+  if (s->n_block - s->at >= 3 &&
+      memcmp(s->block + s->at, "\xEF\xBB\xBF", 3) == 0)
+    s->at += 3;
   s->device = info.st_dev;
   s->inode = info.st_ino;
   if (is_open_already(s)) {

@@ -35,12 +35,6 @@ static void advise(const deck *d, const message_log *log, const char *name,
              *marks != '\0' ? marks + 1 : "");
 }
 
-static void report_unknown(reader *r, const place *at, const char *name) {
-  char advice[ADVICE_SIZE];
-  advise(r->d, r->log, name, "<>", advice);
-  message_add(r->log, P1020, at, "unknown name <%s>%s", name, advice);
-}
-
 /* Message of an expression that did not compile (the record says why), with
  * the nearest name. "column" is that of the error in text, from 0; the place
  * moves there if the line has the text as it is from byte "start" on. */
@@ -99,7 +93,9 @@ static status add_named(reader *r, const char *name, size_t n, replacing how,
   } else if (s == NULL) {
     const char *unknown = store_name(r->d, name, n);
     if (unknown == NULL) RAISE(ERR_MEMORY, "memory exhausted: name");
-    report_unknown(r, at, unknown);
+    char advice[ADVICE_SIZE];
+    advise(r->d, r->log, unknown, "<>", advice);
+    message_add(r->log, P1020, at, "unknown name <%s>%s", unknown, advice);
     PASS(buffer_add(&r->scratch, "1", 1));
   } else {
     PASS(add_value(&r->scratch, s->value, how));

@@ -10,7 +10,7 @@ const effect_ops *const effect_table[] = {EFFECT_ROWS(EFFECT_PLACE) NULL};
 unsigned effects_required(const model *m) {
   unsigned bits = 0;
   for (int k = 0; effect_table[k] != NULL; ++k)
-    if (effect_table[k]->bit != NO_BIT && effect_table[k]->required(m, NULL, 0))
+    if (effect_table[k]->bit != NO_BIT && effect_table[k]->required(m, NULL))
       bits |= 1u << effect_table[k]->bit;
   return bits;
 }

@@ -161,8 +161,7 @@ static void set_problem(exchange_problem *p, int stiffness, int floating) {
 /* A matrix of given size, dense. */
 static status read_dense(const hdf5_source *s, const char *name, int rows,
                          int columns, double **a) {
-  ENDS_BY(triplets_free) triplets t = {0};
-  PASS(triplets_read(s, name, &t));
+  OWNED_PARTS(triplets, t, triplets_read(s, name, &t));
   if (t.rows != rows || t.columns != columns)
     RAISE(ERR_DECK, "%s: %s has %d rows and %d columns, expected %d and %d",
           s->path, name, t.rows, t.columns, rows, columns);
@@ -191,7 +190,6 @@ static status read_constraints(const hdf5_source *s, int m, constraints *c) {
 
 static status read_local(const hdf5_source *s, exchange_problem *p) {
   ENDS_BY(triplets_free) triplets W = {0};
-  ENDS_BY(constraints_free) constraints c = {0};
   OWNED double *q = NULL;
   p->form = "FCLIB, local";
   PASS(triplets_size(s, LOCAL "/W", &W));
@@ -208,7 +206,7 @@ static status read_local(const hdf5_source *s, exchange_problem *p) {
   PASS(read_vector(s, LOCAL "/vectors/q", p->m, &q));
   PASS(read_friction(s, LOCAL "/vectors/mu", p));
   COPY(p->load, q, p->m);
-  PASS(read_constraints(s, p->m, &c));
+  OWNED_PARTS(constraints, c, read_constraints(s, p->m, &c));
   if (c.p == 0) PASS(take_blocks(p, &W));
   if (p->blocks == NULL) {
     PASS(new_matrix(s, LOCAL, p));
@@ -359,12 +357,11 @@ static status part(const double *all, const double *vector, int size, int m,
 static status reduce_held(const hdf5_source *s, const global *g,
                           const triplets *joined, double *all, double *vector) {
   int usable = 0;
-  ENDS_BY(triplets_free) triplets held = {0};
   OWNED double *f = NULL;
   double stiff = 0.0;
   PASS(reduce_global(&g->M, joined, g->f, all, vector, &usable));
   if (usable) return OK;
-  PASS(springs_add(&g->M, &g->G, &stiff, &held));
+  OWNED_PARTS(triplets, held, springs_add(&g->M, &g->G, &stiff, &held));
   PASS_NEW(f, g->M.rows);
   COPY(f, g->f, g->M.rows);
   for (long k = 0; k < g->G.n; ++k)
@@ -378,8 +375,6 @@ static status reduce_held(const hdf5_source *s, const global *g,
  * H, which leaves constraints on r and l. */
 static status condense_constrained(const hdf5_source *s, const global *g,
                                    exchange_problem *p) {
-  ENDS_BY(triplets_free) triplets joined = {0};
-  ENDS_BY(constraints_free) constraints c = {0};
   OWNED double *all = NULL, *vector = NULL;
   int size = p->m + g->G.columns;
   if (size > MOST_UNKNOWNS)
@@ -388,12 +383,12 @@ static status condense_constrained(const hdf5_source *s, const global *g,
           " has %d unknowns and constraints; at most %d "
           "can be solved",
           s->path, size, (int)MOST_UNKNOWNS);
-  PASS(join(g, &joined));
+  OWNED_PARTS(triplets, joined, join(g, &joined));
   PASS_NEW_ALL(OF(all, (size_t)size * size), OF(vector, size));
   COPY(vector, g->w, p->m);
   COPY(vector + p->m, g->b, g->G.columns);
   PASS(reduce_held(s, g, &joined, all, vector));
-  PASS(part(all, vector, size, p->m, p, &c));
+  OWNED_PARTS(constraints, c, part(all, vector, size, p->m, p, &c));
   PASS(constraints_eliminate(s->path, p->m, &c, p->matrix, p->load));
   turn_signs(p);
   set_problem(p, 0, 0);
@@ -403,10 +398,11 @@ static status condense_constrained(const hdf5_source *s, const global *g,
 /* W in blocks and q without a matrix of all entries; p->blocks NULL: not
  * possible, or most of it is not zero. */
 static status condense_bodies(const global *g, exchange_problem *p) {
-  ENDS_BY(triplets_free) triplets W = {0};
   int usable = 0;
   COPY(p->load, g->w, p->m);
-  PASS(reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
+  OWNED_PARTS(
+      triplets, W,
+      reduce_bodies(&g->M, &g->H, g->f, SPARSE_SHARE, &W, p->load, &usable));
   if (usable) PASS(take_blocks(p, &W));
   return OK;
 }

@@ -44,7 +44,6 @@ typedef struct constraints {
 /* W[m*m], q[m] without l. ERR_SINGULAR: they contradict one another. */
 status constraints_eliminate(const char *path, int m, const constraints *c,
                              double *W, double *q);
-void constraints_free(constraints *c); /* accepts all-zero */
 
 /*
  * W[m*m] = H' inv(M) H (symmetric) and q[m] = H' inv(M) f + w, both given

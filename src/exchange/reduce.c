@@ -84,13 +84,12 @@ static int invert(int m, double *W, double *work, int *iwork) {
 
 status springs_condense(const triplets *M, const triplets *H, const double *f,
                         double *A, double *load, int *usable) {
-  ENDS_BY(triplets_free) triplets held = {0};
   OWNED double *q = NULL, *work = NULL;
   double s = 0.0;
   OWNED int *iwork = NULL;
   int m = H->columns;
   PASS_NEW_ALL(OF(q, m), OF(work, 3 * m), OF(iwork, m));
-  PASS(springs_add(M, H, &s, &held));
+  OWNED_PARTS(triplets, held, springs_add(M, H, &s, &held));
   PASS(reduce_global(&held, H, f, A, q, usable));
   *usable = *usable && s > 0.0 && invert(m, A, work, iwork);
   if (!*usable) return OK;
@@ -160,8 +159,6 @@ status constraints_eliminate(const char *path, int m, const constraints *c,
               a.X + (size_t)c->p * m, 1, 1.0, q, 1);
   return OK;
 }
-
-void constraints_free(constraints *c) { RELEASE(c->V, c->R, c->s); }
 
 enum { BLOCK = 32, MOST_DENSE = 6000 };
 static const double ASYMMETRY = 1e-10; /* -, of the largest entry */
@@ -276,8 +273,6 @@ static status columns_new(const triplets *H, const double *f, columns *c) {
   return triplets_by_column(H, &c->start, &c->entry);
 }
 
-static void columns_free(columns *c) { RELEASE(c->start, c->entry); }
-
 static void put_column(const columns *c, int k, double *x) {
   if (k == c->H->columns) {
     for (int i = 0; i < c->H->rows; ++i) x[i] += c->f[i];
@@ -348,15 +343,6 @@ static void symmetrise(int m, double *W) {
       W[i + n * j] = W[j + n * i] = 0.5 * (W[i + n * j] + W[j + n * i]);
 }
 
-static status reduce_sparse(reduction *s, const columns *c, double *W,
-                            double *q) {
-  int all = c->H->columns + 1;
-  for (int k = 0; k < all; k += BLOCK)
-    PASS(reduce_block(s, c, k, all - k < BLOCK ? all - k : BLOCK, W, q));
-  symmetrise(c->H->columns, W);
-  return OK;
-}
-
 static status reduce_dense(const triplets *M, const columns *c, double *W,
                            double *q, int *singular) {
   int n = M->rows, mirror = triplets_triangle(M) != 0;
@@ -402,13 +388,17 @@ static void reduction_end(reduction *s) {
 status reduce_global(const triplets *M, const triplets *H, const double *f,
                      double *W, double *q, int *usable) {
   ENDS_BY(reduction_end) reduction s = {.n = M->rows};
-  ENDS_BY(columns_free) columns c = {0};
   *usable = 1;
   reduction_begin(&s);
   if (M->rows == 0) return OK;
-  PASS(columns_new(H, f, &c));
+  OWNED_PARTS(columns, c, columns_new(H, f, &c));
   PASS(factorise(&s, M, usable));
-  if (*usable) PASS(reduce_sparse(&s, &c, W, q));
+  if (*usable) {
+    int all = c.H->columns + 1;
+    for (int k = 0; k < all; k += BLOCK)
+      PASS(reduce_block(&s, &c, k, all - k < BLOCK ? all - k : BLOCK, W, q));
+    symmetrise(c.H->columns, W);
+  }
   return OK;
 }
 
@@ -426,10 +416,6 @@ typedef struct row_sets {
   int *column;  /* [start[n]] columns of each set */
   int *current; /* [n] that of the right side; -1: none left */
 } row_sets;
-
-static void row_sets_free(row_sets *t) {
-  RELEASE(t->of, t->start, t->column, t->current);
-}
 
 static status join_rows(const triplets *M, row_sets *t) {
   OWNED int *parent = NULL, *number = NULL;
@@ -529,16 +515,14 @@ static status solve_parts(reduction *s, const columns *c, row_sets *t,
 status reduce_bodies(const triplets *M, const triplets *H, const double *f,
                      double share, triplets *W, double *q, int *usable) {
   ENDS_BY(reduction_end) reduction s = {.n = M->rows};
-  ENDS_BY(columns_free) columns c = {0};
-  ENDS_BY(row_sets_free) row_sets t = {0};
   double entries;
   const double m = H->columns;
   *usable = 0;
   W->rows = W->columns = H->columns;
   reduction_begin(&s);
   if (M->rows == 0) return OK;
-  PASS(columns_new(H, f, &c));
-  PASS(row_sets_new(M, &c, &t));
+  OWNED_PARTS(columns, c, columns_new(H, f, &c));
+  OWNED_PARTS(row_sets, t, row_sets_new(M, &c, &t));
   entries = count_parts(&c, &t);
   if (entries > share * m * m) return OK;
   PASS(factorise(&s, M, usable));
@@ -553,14 +537,13 @@ status reduce_bodies(const triplets *M, const triplets *H, const double *f,
 
 status reduce_any(const char *path, const triplets *M, const triplets *H,
                   const double *f, double *W, double *q) {
-  ENDS_BY(columns_free) columns c = {0};
   int singular = 0;
   if (M->rows > MOST_DENSE)
     RAISE(ERR_SINGULAR,
           "%s: /fclib_global/M is not symmetric and positive definite, and too "
           "large (%d) for a dense LU factor",
           path, M->rows);
-  PASS(columns_new(H, f, &c));
+  OWNED_PARTS(columns, c, columns_new(H, f, &c));
   PASS(reduce_dense(M, &c, W, q, &singular));
   if (singular)
     RAISE(ERR_SINGULAR,

@@ -86,15 +86,6 @@ void blas_set_threads(int n) {
   limit_openmp(n >= OMP_THREADS ? 1 : 0);
 }
 
-/* A product that is large enough to be made in the buffer of the thread: of up
- * to 100 rows the kernels for AVX-512 make without. */
-static void take_buffer(void) {
-  enum { SIDE = 128 };
-  double a[SIDE * SIDE] = {0}, b[SIDE * SIDE];
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, SIDE, SIDE, SIDE, 1.0,
-              a, SIDE, a, SIDE, 0.0, b, SIDE);
-}
-
 static int addresses_are_limited(struct rlimit *limit) {
   return getrlimit(RLIMIT_AS, limit) == 0 && limit->rlim_cur != RLIM_INFINITY;
 }
@@ -115,7 +106,12 @@ static void fit_address_space(void) {
     _exit(status_exit_code(ERR_MEMORY));
   }
   munmap(buffer, BUFFER);
-  take_buffer();
+  /* A product that is large enough to be made in the buffer of the thread: of
+   * up to 100 rows the kernels for AVX-512 make without. */
+  enum { SIDE = 128 };
+  double a[SIDE * SIDE] = {0}, b[SIDE * SIDE];
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, SIDE, SIDE, SIDE, 1.0,
+              a, SIDE, a, SIDE, 0.0, b, SIDE);
 }
 
 void blas_choose_kernel(char **argv) {

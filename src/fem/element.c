@@ -16,8 +16,6 @@ typedef struct element_shape {
   double weight;   /* volume, thickness or 2 pi r included, m3 */
 } element_shape;
 
-static const double two_pi = 6.283185307179586476925286766559;
-
 static void shape_at(const domain *d, int elem_id, element_shape *s) {
   const mesh *m = d->mesh;
   const int section = d->section_id[elem_id];
@@ -29,7 +27,7 @@ static void shape_at(const domain *d, int elem_id, element_shape *s) {
   const int *v = m->elem + 3 * elem_id;
   const double three_r = m->x[2 * v[0]] + m->x[2 * v[1]] + m->x[2 * v[2]];
   s->hoop = 1 / three_r;
-  s->weight *= two_pi * (three_r / 3);
+  s->weight *= 2.0 * M_PI * (three_r / 3);
 }
 
 /* E B_b of one vertex, columns of ns: the stress of its unit displacements. */
@@ -211,14 +209,6 @@ static void take_eigen(const domain *d, const double *e0, double *e) {
   for (int i = 0; e0 != NULL && i < d->ns; ++i) e[i] -= e0[i];
 }
 
-/* Plane stress: the elastic strain e gets its zz, then e0 is put back. */
-static void total_strain(const domain *d, int section, const double *e0,
-                         double *e) {
-  if (d->kin[section] == PLANE_STRESS && d->C != NULL)
-    elastic_zz_strain(d->C + (size_t)36 * section, e);
-  for (int i = 0; e0 != NULL && i < d->ns; ++i) e[i] += e0[i];
-}
-
 void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
   const size_t ns = d->ns;
   int next = 0;
@@ -232,7 +222,10 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
     take_eigen(d, e0, strain);
     if (sigma != NULL) stress_at(d, k, strain, sigma + ns * k);
     if (e == NULL) continue;
-    total_strain(d, d->section_id[k], e0, strain);
+    /* Plane stress: the elastic strain e gets its zz, then e0 is put back. */
+    if (d->kin[d->section_id[k]] == PLANE_STRESS && d->C != NULL)
+      elastic_zz_strain(d->C + (size_t)36 * d->section_id[k], strain);
+    for (int i = 0; e0 != NULL && i < d->ns; ++i) strain[i] += e0[i];
     COPY(e + ns * k, strain, ns);
   }
   if (sigma != NULL && d->cluster != NULL) {

@@ -505,12 +505,6 @@ static double largest_row_sum(const stiffness *k, const body_factor *f,
   return 1 + scale * most;
 }
 
-static double norm(long n, const double *v) {
-  double sum = 0;
-  for (long i = 0; i < n; ++i) sum += v[i] * v[i];
-  return sqrt(sum);
-}
-
 /* *growth = |D inv(K) D| by inverse iteration from a vector of ones with a
  * ripple. */
 static status inverse_norm(const body_factor *f, const double *root,
@@ -519,12 +513,12 @@ static status inverse_norm(const body_factor *f, const double *root,
   OWNED_NEW(double, x, f->n);
   for (long p = 0; p < f->n; ++p) x[p] = 1 + 0.25 * (double)(f->unknown[p] % 7);
   for (int pass = 0; pass < PASSES; ++pass) {
-    const double size = norm(f->n, x);
+    const double size = norm((int)f->n, x);
     for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]] / size;
     PASS(solve_lower(f, 0, x, cm));
     PASS(solve_lower(f, 1, x, cm));
     for (long p = 0; p < f->n; ++p) x[p] *= root[f->unknown[p]];
-    *growth = norm(f->n, x);
+    *growth = norm((int)f->n, x);
   }
   return OK;
 }

@@ -117,15 +117,6 @@ static int differs(const sparse_operator *o, int id, const known_rows *rows,
   return 0;
 }
 
-static void take_rows(sparse_operator *o, const known_rows *rows, int springs) {
-  const size_t m = o->k->n_row, size = o->k->rows * m;
-  for (size_t q = 0; q < m; ++q)
-    o->rows.known[q] = rows->known != NULL && rows->known[q];
-  for (size_t i = 0; i < size; ++i)
-    o->rows.added[i] = rows->added != NULL ? rows->added[i] : 0.0;
-  o->rows.springs = springs;
-}
-
 /* Mark what is to be made again for the rows; returns 0 if nothing is. */
 static int mark_changes(sparse_operator *o, const known_rows *rows,
                         int springs) {
@@ -149,7 +140,12 @@ static int mark_changes(sparse_operator *o, const known_rows *rows,
 static status refactor(sparse_operator *o, const known_rows *rows,
                        int springs) {
   if (!mark_changes(o, rows, springs)) return OK;
-  take_rows(o, rows, springs);
+  const size_t m = o->k->n_row, size = o->k->rows * m;
+  for (size_t q = 0; q < m; ++q)
+    o->rows.known[q] = rows->known != NULL && rows->known[q];
+  for (size_t i = 0; i < size; ++i)
+    o->rows.added[i] = rows->added != NULL ? rows->added[i] : 0.0;
+  o->rows.springs = springs;
   if (o->state == FACTORED) o->state = BROKEN;
   const long bad = factor(o, o->s, NULL, o->x);
   if (bad >= 0) return broke(o, bad);
@@ -161,24 +157,14 @@ status sparse_operator_all_rows(sparse_operator *o) {
   return refactor(o, &(known_rows){0}, 1);
 }
 
-/* The factor of the interior, where contact unknowns have part in it; the rest
- * is that of the factor of all rows. */
-static status factor_interior(sparse_operator *o) {
-  memcpy(o->part.mark, o->part.touches, o->s->count);
-  const long bad = factor(o, o->interior, o->inside, o->inner);
-  for (long p = 0; bad >= 0 && p < o->f.n; ++p)
-    if (o->inside[p] == bad) return broke(o, p);
-  return OK;
-}
-
 /* ---- products and solves ------------------------------------------------- */
 
-static void clear(const sparse_operator *o, double *v) {
+static void clear(const sparse_operator *o) {
   const supernodal_part *part = &o->part.contact;
   for (int t = 0; t < part->n; ++t) {
     const long first = o->s->first[part->list[t]];
     const long n = o->s->first[part->list[t] + 1] - first;
-    CLEAR(v + first, n);
+    CLEAR(o->work.v + first, n);
   }
 }
 
@@ -213,14 +199,13 @@ static void solve_interior(const sparse_operator *o,
       if (o->inside[p] >= 0) v[p] = o->work.z[o->inside[p]];
 }
 
-/* w += part * K u of contact unknowns u[m], that of held ones left out. */
-static void spread(const sparse_operator *o, double part, const double *u,
-                   double *w) {
+/* o->work.v less K u of contact unknowns u[m], that of held ones left out. */
+static void spread(const sparse_operator *o, const double *u) {
   const stiffness *k = o->k;
   const size_t dim = k->dim;
   for (int q = 0; q < k->n_row; ++q) {
     const int id = q / k->rows, r = q % k->rows;
-    const double move = part * u[q];
+    const double move = -u[q];
     if (o->held[q] || move == 0.0) continue;
     const int a = contact_node(o, id);
     for (size_t t = o->touched.start[id]; t < o->touched.start[id + 1]; ++t) {
@@ -230,7 +215,7 @@ static void spread(const sparse_operator *o, double part, const double *u,
       for (int c = 0; c < k->dim; ++c) {
         const long at = place_of(o, b->node, c);
         if (at < 0) continue;
-        w[at] += move * block[of_row ? k->dim * c + r : k->dim * r + c];
+        o->work.v[at] += move * block[of_row ? k->dim * c + r : k->dim * r + c];
       }
     }
   }
@@ -288,21 +273,17 @@ static void gather(const sparse_operator *o, const double *u, double *Au,
   project(o, Au);
 }
 
-/* The contact unknowns have u[m]: o->work.v at them and next to them. */
-static void move_contact(sparse_operator *o, const double *u) {
-  clear(o, o->work.v);
-  spread(o, -1.0, u, o->work.v);
-  solve_interior(o, &o->part.contact, &o->part.contact, o->work.v);
-  for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) o->work.v[o->number[o->unknown[q]]] = u[q];
-}
-
 static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row;
   COPY(Au, u, m);
   project(o, Au);
-  move_contact(o, Au);
+  /* The contact unknowns have u[m]: o->work.v at them and next to them. */
+  clear(o);
+  spread(o, Au);
+  solve_interior(o, &o->part.contact, &o->part.contact, o->work.v);
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) o->work.v[o->number[o->unknown[q]]] = Au[q];
   gather(o, u, Au, size);
   for (int q = 0; size != NULL && q < m; ++q)
     if (o->held[q]) size[q] = fabs(Au[q]);
@@ -333,8 +314,8 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
   const int m = o->k->n_row;
   for (int q = 0; q < m; ++q)
     Ax[q] = o->rows.known[q] && !o->held[q] ? x[q] : 0.0;
-  clear(o, o->work.v);
-  spread(o, -1.0, Ax, o->work.v);
+  clear(o);
+  spread(o, Ax);
   for (int q = 0; q < m; ++q) {
     if (o->held[q]) continue;
     double *v = o->work.v + o->number[o->unknown[q]];
@@ -376,7 +357,7 @@ static void set_response(void *ctx, const unsigned char *at) {
 static void response(void *ctx, const double *b, double *x, double *Ax) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row, rows = o->k->rows;
-  clear(o, o->work.v);
+  clear(o);
   for (int q = 0; q < m; ++q)
     if (b[q] != 0.0 && !o->held[q] && !o->rows.known[q])
       o->work.v[o->number[o->unknown[q]]] = b[q];
@@ -413,7 +394,7 @@ void sparse_operator_forward(sparse_operator *o, const double *load,
 
 void sparse_operator_back(sparse_operator *o, const double *u_c, double *u) {
   CLEAR(o->work.v, o->f.n);
-  spread(o, -1.0, u_c, o->work.v);
+  spread(o, u_c);
   solve_interior(o, &o->part.contact, &o->part.all, o->work.v);
   for (long p = 0; p < o->f.n; ++p)
     u[o->f.unknown[p]] = o->work.y[p] + o->work.v[p];
@@ -492,16 +473,6 @@ static status order_whole(sparse_operator *o, const double *x,
   return OK;
 }
 
-/* Arrays by contact row, before there is a factor. */
-static status new_rows(sparse_operator *o) {
-  const size_t m = o->k->n_row, size = o->k->rows * m;
-  PASS_NEW_ALL(OF(o->number, (size_t)o->k->dim * o->k->n_node),
-               OF(o->unknown, m), OF(o->held, m), OF(o->rows.known, m),
-               OF(o->rows.added, size), OF(o->diagonal, m), OF(o->room, 2 * m),
-               OF(o->body, m / o->k->rows), OF(o->part.node, m / o->k->rows));
-  return OK;
-}
-
 /* Held unknowns get the largest diagonal entry of their node, or of all. */
 static void fill_diagonal(sparse_operator *o) {
   const stiffness *k = o->k;
@@ -520,24 +491,6 @@ static void fill_diagonal(sparse_operator *o) {
       if (!o->held[t]) own = fmax(own, o->diagonal[t]);
     o->diagonal[q] = own > 0.0 ? own : most > 0.0 ? most : 1.0;
   }
-}
-
-static void number_rows(sparse_operator *o) {
-  for (int i = 0; i < o->k->n_node; ++i)
-    for (int c = 0; c < o->k->dim; ++c)
-      if (contact_row(o->k, i, c) >= 0)
-        o->unknown[contact_row(o->k, i, c)] = o->k->dim * i + c;
-}
-
-/* Unknowns numbered by their place in the factor: its matrix then needs no
- * permutation each time. */
-static void renumber(sparse_operator *o) {
-  SuiteSparse_long *perm = o->f.L->Perm;
-  for (long p = 0; p < o->f.n; ++p) {
-    o->number[o->f.unknown[p]] = p;
-    perm[p] = p;
-  }
-  o->f.L->ordering = CHOLMOD_NATURAL;
 }
 
 /* Calls `take` for each block that has unknowns at both nodes. */
@@ -612,18 +565,6 @@ static status divide(sparse_operator *o) {
   return OK;
 }
 
-/* The factor without contact unknowns. */
-static status leave_contact_out(sparse_operator *o) {
-  int n = 0;
-  PASS_NEW(o->inside, o->f.n);
-  for (int q = 0; q < o->k->n_row; ++q)
-    if (!o->held[q]) o->inside[o->number[o->unknown[q]]] = -1;
-  for (long p = 0; p < o->f.n; ++p)
-    if (o->inside[p] == 0) o->inside[p] = n++;
-  PASS_NEW(o->work.z, n);
-  return supernodal_restrict(o->s, o->inside, &o->interior);
-}
-
 /* The columns of both factors. */
 static status new_columns(sparse_operator *o) {
   const int count = o->s->count;
@@ -649,16 +590,36 @@ static status factor_both(sparse_operator *o) {
   body_factor_number(o->k, &o->f, o->number);
   PASS(body_factor_analyse(o->k, o->number, o->cm, &o->f));
   memory_return_before(o->f.L->xsize * sizeof(double));
-  renumber(o);
+  /* Unknowns numbered by their place in the factor: its matrix then needs no
+   * permutation each time. */
+  SuiteSparse_long *perm = o->f.L->Perm;
+  for (long p = 0; p < o->f.n; ++p) {
+    o->number[o->f.unknown[p]] = p;
+    perm[p] = p;
+  }
+  o->f.L->ordering = CHOLMOD_NATURAL;
   PASS(supernodal_new(o->f.L, &o->s));
   PASS(list_blocks(o, o->s->count, list_by_column, &o->columns));
   PASS(list_blocks(o, n_contact(o), list_by_contact, &o->touched));
   PASS(divide(o));
   PASS_NEW_ALL(OF(o->work.v, o->f.n), OF(o->work.y, o->f.n));
-  PASS(leave_contact_out(o));
+  int n = 0;
+  PASS_NEW(o->inside, o->f.n);
+  for (int q = 0; q < o->k->n_row; ++q)
+    if (!o->held[q]) o->inside[o->number[o->unknown[q]]] = -1;
+  for (long p = 0; p < o->f.n; ++p)
+    if (o->inside[p] == 0) o->inside[p] = n++;
+  PASS_NEW(o->work.z, n);
+  PASS(supernodal_restrict(o->s, o->inside, &o->interior));
   PASS(new_columns(o));
   PASS(sparse_operator_all_rows(o));
-  return factor_interior(o);
+  /* The factor of the interior, where contact unknowns have part in it; the
+   * rest is that of the factor of all rows. */
+  memcpy(o->part.mark, o->part.touches, o->s->count);
+  const long bad = factor(o, o->interior, o->inside, o->inner);
+  for (long p = 0; bad >= 0 && p < o->f.n; ++p)
+    if (o->inside[p] == bad) return broke(o, p);
+  return OK;
 }
 
 status sparse_operator_new(const operator_data *d, const char **ordering,
@@ -669,10 +630,18 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
   o->rigid = d->rigid;
   o->cm = d->cm;
   o->pinned = d->pinned;
-  PASS(new_rows(o));
+  /* Arrays by contact row, before there is a factor. */
+  const size_t m = o->k->n_row, size = o->k->rows * m;
+  PASS_NEW_ALL(OF(o->number, (size_t)o->k->dim * o->k->n_node),
+               OF(o->unknown, m), OF(o->held, m), OF(o->rows.known, m),
+               OF(o->rows.added, size), OF(o->diagonal, m), OF(o->room, 2 * m),
+               OF(o->body, m / o->k->rows), OF(o->part.node, m / o->k->rows));
   memcpy(o->held, d->held, k->n_row);
   COPY(o->body, d->body, k->n_row / k->rows);
-  number_rows(o);
+  for (int i = 0; i < o->k->n_node; ++i)
+    for (int c = 0; c < o->k->dim; ++c)
+      if (contact_row(o->k, i, c) >= 0)
+        o->unknown[contact_row(o->k, i, c)] = o->k->dim * i + c;
   fill_diagonal(o);
   PASS(order_whole(o, d->x, d->order, ordering));
   PASS(factor_both(o));

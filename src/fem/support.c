@@ -173,14 +173,6 @@ static void sets_release(body_sets *s) {
   *s = (body_sets){0};
 }
 
-/* Pieces of the bodies in their order. */
-static void find_pieces(body_sets *s) {
-  const pieces *p = &s->p;
-  for (int q = 0; q < p->n_piece; ++q) ++s->first_piece[p->body[q] + 1];
-  for (int b = 0; b < p->n_body; ++b)
-    s->first_piece[b + 1] += s->first_piece[b];
-}
-
 static void find_nodes(body_sets *s) {
   const domain *d = s->d;
   const pieces *p = &s->p;
@@ -233,7 +225,11 @@ static status sets_find(const domain *d, body_sets *s) {
                OF(s->body, n_node), OF(s->contact, n_node), OF(s->tie, n_node),
                OF(s->set, n_body), OF(s->column, n_body), OF(s->n, n_body),
                OF(s->start, n_body + 2), OF(s->node, n_node));
-  find_pieces(s);
+  /* Pieces of the bodies in their order. */
+  const pieces *p = &s->p;
+  for (int q = 0; q < p->n_piece; ++q) ++s->first_piece[p->body[q] + 1];
+  for (int b = 0; b < p->n_body; ++b)
+    s->first_piece[b + 1] += s->first_piece[b];
   find_nodes(s);
   measure_bodies(s, box, box + 3 * n_body);
   for (int b = 0; b < n_body; ++b) s->set[b] = b;
@@ -256,12 +252,6 @@ static component sets_component(const body_sets *s, int i, int c) {
   return x;
 }
 
-/* Set of a node, -1: at rest. */
-static int set_of(body_sets *s, int i) {
-  const int b = s->body[i];
-  return b < 0 || s->set[b] < 0 ? -1 : forest_root(s->set, b);
-}
-
 /* Join (or not) the sets that a node meets; that of the node or else one of its
  * masters, -1: all are at rest. */
 static int join_round(body_sets *s, int i, int join) {
@@ -271,7 +261,9 @@ static int join_round(body_sets *s, int i, int join) {
     const int n = component_terms(&x);
     for (int t = 0; t < n; ++t) {
       if (component_term(&x, t, &node) == 0) continue;
-      const int other = set_of(s, node);
+      /* Set of a node, -1: at rest. */
+      const int b = s->body[node];
+      const int other = b < 0 || s->set[b] < 0 ? -1 : forest_root(s->set, b);
       if (join && id >= 0 && other >= 0) forest_join(s->set, id, other);
       if (id < 0) id = other;
     }
@@ -367,24 +359,18 @@ static status triangle_new(const body_sets *s, int id, int closed,
   return OK;
 }
 
-static void basis_free(null_basis *z) { memory_free(z->Z); }
-
 static void triangle_release(triangle *t) {
   RELEASE(t->r, t->end, t->owner, t->row);
-}
-
-/* Is the next condition more than rounding? A pair within one piece has none.
- */
-static int is_condition(const triangle *t) {
-  double most = 0;
-  for (int k = t->first; k < t->last; ++k) most = fmax(most, fabs(t->row[k]));
-  return most > exact_limit * t->most;
 }
 
 /* Rotate the next condition into the triangle. */
 static void add_row(triangle *t) {
   double *row = t->row;
-  const int adds = is_condition(t);
+  /* Is the next condition more than rounding? A pair within one piece has none.
+   */
+  double most = 0;
+  for (int k = t->first; k < t->last; ++k) most = fmax(most, fabs(t->row[k]));
+  const int adds = most > exact_limit * t->most;
   t->n_row += adds;
   for (int k = t->first; adds && k < t->last; ++k) {
     double *r = t->r + (size_t)k * t->n;
@@ -672,13 +658,11 @@ static status add_set(const triangle *t, const null_basis *z,
 /* Store what supports, hinges and ties leave, the gaps of ties counted: their
  * masters pull where they are. */
 static status keep_motions(const finder *f, rigid_motions *r) {
-  ENDS_BY(triangle_release) triangle t = {0};
-  ENDS_BY(basis_free) null_basis z = {0};
   if (f->t.s->d->ties == NULL)
     return add_set(&f->t, &f->of[HELD_BY_CONTACT], r);
-  PASS(triangle_new(f->t.s, f->t.id, 0, &t));
+  OWNED_PARTS(triangle, t, triangle_new(f->t.s, f->t.id, 0, &t));
   add_supports(&t);
-  PASS(null_space(&t, &z));
+  OWNED_PARTS(null_basis, z, null_space(&t, &z));
   if (z.rank > 0) PASS(add_set(&t, &z, r));
   return OK;
 }
@@ -709,11 +693,9 @@ done:
 
 /* 1: supports, hinges and ties leave the set no motion. */
 static status is_at_rest(const body_sets *s, int id, unsigned char *rest) {
-  ENDS_BY(triangle_release) triangle t = {0};
-  ENDS_BY(basis_free) null_basis z = {0};
-  PASS(triangle_new(s, id, 1, &t));
+  OWNED_PARTS(triangle, t, triangle_new(s, id, 1, &t));
   add_supports(&t);
-  PASS(null_space(&t, &z));
+  OWNED_PARTS(null_basis, z, null_space(&t, &z));
   *rest = z.rank == 0;
   return OK;
 }

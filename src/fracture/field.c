@@ -13,8 +13,6 @@
 
 #include "base/base.h"
 
-static const double two_pi = 6.283185307179586476925286766559;
-
 /*
  * u_i = sqrt(r / 2 pi) / (2 G) g_i(theta),  c = cos(theta/2), s = sin(theta/2):
  *   I    g = c (kappa - 1 + 2 s^2),   s (kappa + 1 - 2 c^2),   0
@@ -48,7 +46,7 @@ static void angular(int mode, double kappa, double theta, double g[3],
 void williams_field(int mode, double kappa, double G, const double x[2],
                     double u[3], double d[3][2]) {
   const double r = hypot(x[0], x[1]), theta = atan2(x[1], x[0]);
-  const double size = sqrt(r / two_pi) / (2 * G);
+  const double size = sqrt(r / (2.0 * M_PI)) / (2 * G);
   double g[3], slope[3];
   angular(mode, kappa, theta, g, slope);
   for (int i = 0; i < 3; ++i) {

@@ -4,7 +4,9 @@
 #include "base/base.h"
 #include "fracture/parts.h"
 
-static status prepare(fracture *f) {
+status fracture_new(const fracture_body *body, fracture **out) {
+  MAKES(fracture, f, out);
+  f->body = *body;
   const mesh *m = f->body.mesh;
   f->n = f->body.crack->front_start[f->body.crack->n_front];
   PASS_NEW_ALL(OF(f->point, f->n), OF(f->elem_seen, m->n_elem),
@@ -12,12 +14,6 @@ static status prepare(fracture *f) {
                OF(f->node_list, m->n_node));
   PASS(mesh_node_elements(m, &f->start, &f->elem));
   return points_find(f);
-}
-
-status fracture_new(const fracture_body *body, fracture **out) {
-  MAKES(fracture, f, out);
-  f->body = *body;
-  return prepare(f);
 }
 
 int fracture_count(const fracture *f) { return f->n; }

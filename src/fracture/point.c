@@ -89,17 +89,11 @@ static int same_material(const fracture_material *a,
   return a->E == b->E && a->nu == b->nu && a->plane_stress == b->plane_stress;
 }
 
-static void scale_to_one(double *a) {
-  const double length = sqrt(dot(3, a, a));
-  for (int k = 0; k < 3; ++k) a[k] /= length;
-}
-
 static double distance(const mesh *m, int a, int b) {
   double x[3], y[3];
   place_of(m, a, x);
   place_of(m, b, y);
-  for (int k = 0; k < 3; ++k) x[k] -= y[k];
-  return sqrt(dot(3, x, x));
+  return distance_of(3, x, y);
 }
 
 typedef struct obstacles {
@@ -249,9 +243,9 @@ static void set_frame_2d(const fracture *f, int i) {
   const int *v = m->face + 2 * (size_t)c->plus[c->front_face[i]];
   place_of(m, v[0] == p->node ? v[1] : v[0], x);
   for (int k = 0; k < 3; ++k) e1[k] = p->origin[k] - x[k];
-  scale_to_one(e1);
+  make_unit(3, e1);
   add_normal(f, c->front_face[i], e2);
-  scale_to_one(e2);
+  make_unit(3, e2);
   cross(e1, e2, e3);
 }
 
@@ -289,7 +283,7 @@ static void fit_circle(const fracture *f, int chain, int i) {
   const double c = (r1 * s4 - r2 * s3) / determinant;
   p->curvature = -2 * (r2 * s2 - r1 * s3) / determinant;
   for (int k = 0; k < 3; ++k) p->frame[6 + k] += c * p->frame[k];
-  scale_to_one(p->frame + 6);
+  make_unit(3, p->frame + 6);
   cross(p->frame + 3, p->frame + 6, p->frame);
 }
 
@@ -302,12 +296,12 @@ static void set_frame_3d(const fracture *f, int chain, int i) {
   place_of(m, c->front_node[before < 0 ? i : before], x);
   place_of(m, c->front_node[after < 0 ? i : after], e3);
   for (int k = 0; k < 3; ++k) e3[k] -= x[k];
-  scale_to_one(e3);
+  make_unit(3, e3);
   if (before >= 0) add_normal(f, c->front_face[before], e2);
   if (after >= 0) add_normal(f, c->front_face[after - 1], e2);
   const double part = dot(3, e2, e3);
   for (int k = 0; k < 3; ++k) e2[k] -= part * e3[k];
-  scale_to_one(e2);
+  make_unit(3, e2);
   cross(e2, e3, e1);
   fit_circle(f, chain, i);
 }

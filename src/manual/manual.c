@@ -243,15 +243,6 @@ static const char *find_card_in(const char *text, const char *name) {
   return NULL;
 }
 
-/* The same of the pattern decks. */
-static const char *find_card(const char *name) {
-  const char *found = NULL;
-  for (const embedded_file *f = embedded_files; f->folder && !found; ++f)
-    if (strcmp(f->folder, "manual") == 0 && strstr(f->name, ".inp") != NULL)
-      found = find_card_in(f->text, name);
-  return found;
-}
-
 /* A card and its data lines: to the next card or comment. */
 static void print_card(const char *p, FILE *out) {
   do {
@@ -270,7 +261,10 @@ static void print_kind(const char *title, const char *kind, FILE *out) {
 /* Every card with its example, then what cards can name. */
 static void print_cards(FILE *out) {
   for (const keyword *k = keyword_table; k->name != NULL; ++k) {
-    const char *example = find_card(k->name);
+    const char *example = NULL;
+    for (const embedded_file *f = embedded_files; f->folder && !example; ++f)
+      if (strcmp(f->folder, "manual") == 0 && strstr(f->name, ".inp") != NULL)
+        example = find_card_in(f->text, k->name);
     fprintf(out, "\n### \\*%s\n\n```\n", k->name);
     keywords_print(k->name, out);
     fputs("```\n", out);

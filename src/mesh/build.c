@@ -350,16 +350,6 @@ static status read_msh(const mesh_source *source, const char *head,
   return st;
 }
 
-static status refine(const mesh_source *source, raw_mesh *raw) {
-  const mesh *of = source->sizes[0].of;
-  const refine_request request = {
-      {of->dim, of->n_node, of->n_elem, of->x, of->elem, source->sizes[0].at},
-      source->scale,
-      source->n_round,
-      source->rounds};
-  return raw_refine(raw, &request);
-}
-
 int mesh_is_program(const char *file) {
   size_t n = strlen(file);
   return n >= 4 && strcasecmp(file + n - 4, ".geo") == 0;
@@ -375,8 +365,15 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
     PASS(read_geo(source, head, at, log, &raw));
   else
     PASS(read_msh(source, head, at, log, &raw));
-  if (source->sizes[0].of != NULL && !mesh_is_program(source->file))
-    PASS(refine(source, raw));
+  if (source->sizes[0].of != NULL && !mesh_is_program(source->file)) {
+    const mesh *of = source->sizes[0].of;
+    const refine_request request = {
+        {of->dim, of->n_node, of->n_elem, of->x, of->elem, source->sizes[0].at},
+        source->scale,
+        source->n_round,
+        source->rounds};
+    PASS(raw_refine(raw, &request));
+  }
   raw->meets = source->meets;
   raw->made = mesh_is_program(source->file);
   return build_mesh(raw, source->scale, at, log, out);

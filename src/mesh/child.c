@@ -282,15 +282,6 @@ static void start(const child *c) {
   c->gmsh.LoggerStart(&error);
 }
 
-/* One thread: the same input gives the same mesh. Linear elements. */
-static void fix_options(const child *c) {
-  set(c, "General.NumThreads", 1);
-  set(c, "Mesh.MaxNumThreads1D", 1);
-  set(c, "Mesh.MaxNumThreads2D", 1);
-  set(c, "Mesh.MaxNumThreads3D", 1);
-  set(c, "Mesh.ElementOrder", 1);
-}
-
 /* The earlier mesh as a view of gmsh: per element the coordinates x of all
  * vertices, then y, then z, then the sizes there, in units of the .geo. */
 static double *view_of_sizes(const child *c, const mesh_sizes *s, size_t *n) {
@@ -553,15 +544,6 @@ static void send_entities(const child *c, int top) {
   send_array(c, WIRE_LOOSE, 1, sizeof(size_t), &loose);
 }
 
-static void send_nodes(const child *c) {
-  size_t *no, n, n_x, n_parameter;
-  double *x, *parameter;
-  CALL(c, "list the nodes", c->gmsh.ModelMeshGetNodes, &no, &n, &x, &n_x,
-       &parameter, &n_parameter, -1, -1, 0, 0);
-  send_array(c, WIRE_NODE_NO, n, sizeof(size_t), no);
-  send_array(c, WIRE_NODE_X, n_x, sizeof(double), x);
-}
-
 /* gmsh continues after some errors: the mesh is then not valid. */
 static void send_warnings(const child *c, const char *doing) {
   char **line;
@@ -638,13 +620,23 @@ void child_run(const raw_request *request, int fd, int error_fd) {
   const char *doing = "read the file";
   if (dim >= 2 && !has_elements(c, dim)) {
     doing = "mesh the geometry";
-    fix_options(c);
+    /* One thread: the same input gives the same mesh. Linear elements. */
+    set(c, "General.NumThreads", 1);
+    set(c, "Mesh.MaxNumThreads1D", 1);
+    set(c, "Mesh.MaxNumThreads2D", 1);
+    set(c, "Mesh.MaxNumThreads3D", 1);
+    set(c, "Mesh.ElementOrder", 1);
     if (request->source->sizes[0].of != NULL) set_sizes(c);
     CALL(c, doing, c->gmsh.ModelMeshGenerate, dim);
   }
   send_warnings(c, doing);
   send_entities(c, dim);
-  send_nodes(c);
+  size_t *no, n, n_x, n_parameter;
+  double *x, *parameter;
+  CALL(c, "list the nodes", c->gmsh.ModelMeshGetNodes, &no, &n, &x, &n_x,
+       &parameter, &n_parameter, -1, -1, 0, 0);
+  send_array(c, WIRE_NODE_NO, n, sizeof(size_t), no);
+  send_array(c, WIRE_NODE_X, n_x, sizeof(double), x);
   if (request->source->sizes[0].of == NULL) check_numbers(c);
   send_array(c, WIRE_END, 0, 1, NULL);
   _exit(0);

@@ -102,7 +102,7 @@ status elements_gather(builder *b) {
 }
 
 /* Determinant of the edges from corner 0, and the longest edge. */
-static double determinant(const mesh *m, const int *v, double *longest) {
+static double measure(const mesh *m, const int *v, double *longest) {
   double d[3][3], top = 0.0;
   size_t dim = m->dim;
   for (size_t i = 0; i <= dim; ++i)
@@ -117,10 +117,7 @@ static double determinant(const mesh *m, const int *v, double *longest) {
       top = fmax(top, square);
     }
   *longest = sqrt(top);
-  if (dim == 2) return d[0][0] * d[1][1] - d[0][1] * d[1][0];
-  return d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) -
-         d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +
-         d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
+  return determinant(m->dim, d);
 }
 
 static double largest_coordinate(const mesh *m) {
@@ -139,7 +136,7 @@ static void swap(int *a, int *b) {
 /* Less than any usable sliver, far above the rounding of coordinates. */
 static int is_flat(const mesh *m, const int *v, double far, double *det) {
   double edge;
-  *det = determinant(m, v, &edge);
+  *det = measure(m, v, &edge);
   const double face = m->dim == 2 ? edge : edge * edge;
   return fabs(*det) <= fmax(flat * edge, 16.0 * DBL_EPSILON * far) * face;
 }

@@ -29,16 +29,6 @@ static int by_corners(const void *ctx, int a, int b) {
   return (f->no[a] > f->no[b]) - (f->no[a] < f->no[b]);
 }
 
-static void find_centre(const builder *b, const raw_block *p, size_t i,
-                        double *x) {
-  CLEAR(x, 3);
-  for (size_t k = 0; k < p->n_per; ++k) {
-    int r = nodes_find(b, p->node[p->n_per * i + k]);
-    for (size_t d = 0; d < 3 && r >= 0; ++d)
-      x[d] += b->raw->xyz[3 * (size_t)r + d] * b->scale / (double)p->n_per;
-  }
-}
-
 /* Number and place of low element j, for a message. */
 static void note_missing(const builder *b, int j, faults *bad) {
   int i = 0;
@@ -48,7 +38,12 @@ static void note_missing(const builder *b, int j, faults *bad) {
   const raw_block *p = &b->raw->block[i];
   size_t item = j - b->first[i];
   double x[3];
-  find_centre(b, p, item, x);
+  CLEAR(x, 3);
+  for (size_t k = 0; k < p->n_per; ++k) {
+    int r = nodes_find(b, p->node[p->n_per * item + k]);
+    for (size_t d = 0; d < 3 && r >= 0; ++d)
+      x[d] += b->raw->xyz[3 * (size_t)r + d] * b->scale / (double)p->n_per;
+  }
   fault_at(bad, b->m->dim, p->no[item], x);
 }
 

@@ -24,8 +24,6 @@ static size_t slot_of(const number_table *t, size_t no) {
   return s;
 }
 
-static void numbers_free(number_table *t) { memory_free(t->slot); }
-
 static status numbers_index(number_table *t, int n, const size_t *no) {
   t->no = no;
   while (((size_t)1 << t->bits) < 2 * (size_t)n + 2) ++t->bits;
@@ -50,10 +48,9 @@ static int ascend(int n, const size_t *no) {
 
 status numbers_check(builder *b, const char *what, int n, const size_t *no,
                      const int *id) {
-  ENDS_BY(numbers_free) number_table t = {0};
   faults bad = {0};
   if (ascend(n, no)) return OK;
-  PASS(numbers_index(&t, n, no));
+  OWNED_PARTS(number_table, t, numbers_index(&t, n, no));
   for (int i = 0; i < n; ++i) {
     int j = numbers_find(&t, no[i]);
     if (j != i && (id == NULL || id[j] != id[i])) fault_add(&bad, "%zu", no[i]);

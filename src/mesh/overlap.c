@@ -154,15 +154,14 @@ static void load_pair(const mesh *m, int a, int b, pair *p) {
 }
 
 static void edge(const pair *p, int i, int from, int to, double *d) {
-  for (int k = 0; k < 3; ++k) d[k] = p->x[i][to][k] - p->x[i][from][k];
+  vector_of(3, p->x[i][from], p->x[i][to], d);
 }
 
 /* Whether the elements lie side by side along a x b. An axis along which one of
  * them is below rounding decides nothing. */
 static int apart(const pair *p, const double *a, const double *b) {
   double lo[2], hi[2], axis[3];
-  for (int k = 0; k < 3; ++k)
-    axis[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+  cross(a, b, axis);
   for (int i = 0; i < 2; ++i) {
     lo[i] = hi[i] = dot(3, axis, p->x[i][0]);
     for (int k = 1; k < p->n; ++k) {
@@ -280,18 +279,11 @@ typedef struct search {
 
 /* Of x and the side of the first element across from its corner i. */
 static double corner_volume(const pair *p, int i, const double *x) {
-  double d[3][3], cross[3];
+  double d[3][3];
   int n = 0;
-  for (int k = 0; k < p->n; ++k) {
-    if (k == i) continue;
-    for (int c = 0; c < 3; ++c) d[n][c] = p->x[0][k][c] - x[c];
-    ++n;
-  }
-  if (p->n == 3) return d[0][0] * d[1][1] - d[0][1] * d[1][0];
-  for (int k = 0; k < 3; ++k)
-    cross[k] = d[0][(k + 1) % 3] * d[1][(k + 2) % 3] -
-               d[0][(k + 2) % 3] * d[1][(k + 1) % 3];
-  return dot(3, cross, d[2]);
+  for (int k = 0; k < p->n; ++k)
+    if (k != i) vector_of(3, x, p->x[0][k], d[n++]);
+  return determinant(n, d);
 }
 
 /* 1: the centre of element f lies in element e. Where bodies touch along a

@@ -221,14 +221,6 @@ static int open_pipe(int ends[2]) {
   return ends[0] >= 0 && ends[1] >= 0;
 }
 
-/* Wait for the child; 1 if its end is known (not if SIGCHLD is ignored). */
-static int wait_for(pid_t pid, int *code) {
-  pid_t r;
-  do r = waitpid(pid, code, 0);
-  while (r < 0 && errno == EINTR);
-  return r == pid;
-}
-
 status raw_read(const raw_request *request, raw_mesh **out) {
   ENDS_BY(close_ends) int data[2] = {-1, -1};
   ENDS_BY(close_ends) int error[2] = {-1, -1};
@@ -250,6 +242,10 @@ status raw_read(const raw_request *request, raw_mesh **out) {
   status st = raw_receive(data[0], *out, &stopped);
   close_end(&data[0]);
   if (!stopped) kill(pid, SIGKILL); /* its output has ended */
-  int ended = wait_for(pid, &code);
+  /* Wait for the child; 1 if its end is known (not if SIGCHLD is ignored). */
+  pid_t r;
+  do r = waitpid(pid, &code, 0);
+  while (r < 0 && errno == EINTR);
+  int ended = r == pid;
   return stopped ? child_failure(ended, code, error[0]) : st;
 }

@@ -9,20 +9,14 @@
 enum { MAX_NODE = 4 };
 
 const char *load_card(const load *l) {
-  switch ((load_kind)l->kind) {
-    case LOAD_PRESSURE:
-    case LOAD_TRACTION:
-      return "DSLOAD";
-    case LOAD_BODY:
-    case LOAD_GRAVITY:
-      return "DLOAD";
-    case LOAD_TEMPERATURE:
-      return "TEMPERATURE";
-    case LOAD_POINT:
-      return "CLOAD";
-    default:
-      return "BOUNDARY";
-  }
+  static const char *const cards[] = {[LOAD_PRESSURE] = "DSLOAD",
+                                      [LOAD_TRACTION] = "DSLOAD",
+                                      [LOAD_BODY] = "DLOAD",
+                                      [LOAD_GRAVITY] = "DLOAD",
+                                      [LOAD_TEMPERATURE] = "TEMPERATURE",
+                                      [LOAD_POINT] = "CLOAD",
+                                      [LOAD_FIXING] = "BOUNDARY"};
+  return cards[l->kind];
 }
 
 /* Time at which the value of a load of an earlier step counts. */

@@ -67,20 +67,17 @@ int print_shows(const print_request *p, const step *s, double t,
   return 0;
 }
 
-/* Of a plain complementarity problem. */
-static void check_method(const model *m) {
-  const solver_ops *ops = m->steps[0].solver.ops;
-  if (ops != NULL && strcasecmp(ops->name, "lemke") != 0)
-    message_add(m->log, P2004, &m->steps[0].solver_at,
-                "*SOLVER, METHOD=%s does not solve a plain linear "
-                "complementarity problem; use LEMKE or AUTO",
-                ops->name);
-}
-
 void model_fit_problem(model *m, int dim, int friction, effect_finder *find) {
   m->dim = dim;
   m->problem.friction = friction;
   m->effects = EFFECT_CONTACT | (friction ? EFFECT_FRICTION : 0u);
-  if (dim == 1) check_method(m);
+  if (dim == 1) {
+    const solver_ops *ops = m->steps[0].solver.ops;
+    if (ops != NULL && strcasecmp(ops->name, "lemke") != 0)
+      message_add(m->log, P2004, &m->steps[0].solver_at,
+                  "*SOLVER, METHOD=%s does not solve a plain linear "
+                  "complementarity problem; use LEMKE or AUTO",
+                  ops->name);
+  }
   if (dim > 1) m->effects |= find(m) & EFFECT_ESTIMATES;
 }

@@ -130,17 +130,6 @@ static status make_vectors(written *f) {
   return OK;
 }
 
-static status make_solution(written *f, const double *u, const double *r) {
-  const contact_problem *cp = f->cp;
-  if (u == NULL) return OK;
-  PASS_NEW_REALS(cp->m, &f->u, &f->r);
-  for (int k = 0; k < cp->m; ++k) {
-    f->u[k] = sign_of(cp->dim, k) * u[k] + offset_of(cp, k);
-    f->r[k] = contact_held(cp, k) ? 0.0 : sign_of(cp->dim, k) * r[k];
-  }
-  return OK;
-}
-
 static status failed(const written *f, const char *name) {
   return status_fail(ERR_FILE, __func__, __LINE__, "%s: %s cannot be written",
                      f->path, name);
@@ -295,7 +284,14 @@ static status make_file(written *f, const double *u, const double *r) {
   PASS(check_friction(f->cp));
   PASS(make_matrix(f));
   PASS(make_vectors(f));
-  return make_solution(f, u, r);
+  const contact_problem *cp = f->cp;
+  if (u == NULL) return OK;
+  PASS_NEW_REALS(cp->m, &f->u, &f->r);
+  for (int k = 0; k < cp->m; ++k) {
+    f->u[k] = sign_of(cp->dim, k) * u[k] + offset_of(cp, k);
+    f->r[k] = contact_held(cp, k) ? 0.0 : sign_of(cp->dim, k) * r[k];
+  }
+  return OK;
 }
 
 status fclib_write(const contact_problem *cp, const size_t *node_no,

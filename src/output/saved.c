@@ -32,12 +32,6 @@ static void reasons_of(increment_summary *s, const char **why[REASONS]) {
   why[2] = &s->time_error.why;
 }
 
-/* They differ from run to run. */
-static void leave_out_cpu(increment_summary *s) {
-  s->error.cpu = s->mesh_error.cpu = s->time_error.cpu = 0.0;
-  s->exact.cpu = s->balance.saved_cpu = 0.0;
-}
-
 static void append(saved_increments *to, const void *data, size_t n) {
   to->end.checksum = number_hash(to->end.checksum, data, n);
   fwrite(data, 1, n, to->file.f); /* checked by text_sync */
@@ -53,7 +47,10 @@ static void append_increment(output *o, const increment_summary *from) {
   }
   s.solutions = NULL;
   s.theorems = (theorems_report){0}; /* such a run starts again (restart.c) */
-  if (o->o.no_timing) leave_out_cpu(&s);
+  if (o->o.no_timing) {
+    s.error.cpu = s.mesh_error.cpu = s.time_error.cpu = 0.0;
+    s.exact.cpu = s.balance.saved_cpu = 0.0;
+  }
   append(&o->saved, &s, sizeof s);
   for (int k = 0; k < REASONS; ++k)
     if (text[k] != NULL) append(&o->saved, text[k], strlen(text[k]) + 1);

@@ -132,19 +132,16 @@ static status write_table(tabular *t, const view *v, const print_request *p) {
   return text_check(&t->dat);
 }
 
-static status write_timed(tabular *t, const view *v, const print_request *p) {
-  TIMED(effect_stage(effect_of_table(p->table)));
-  return write_table(t, v, p);
-}
-
 status tabular_increment(tabular *t, const state *s) {
   if (t == NULL) return OK;
   view v = {t->m, t->msh, s};
   const step *now = &t->m->steps[s->step_no - 1];
   for (int i = 0; i < now->print.n; ++i)
     if (print_shows(&now->print.requests[i], now, s->t,
-                    s->within ? -1 : s->increment_no, s->end_of_step))
-      PASS(write_timed(t, &v, &now->print.requests[i]));
+                    s->within ? -1 : s->increment_no, s->end_of_step)) {
+      TIMED(effect_stage(effect_of_table(now->print.requests[i].table)));
+      PASS(write_table(t, &v, &now->print.requests[i]));
+    }
   return OK;
 }
 

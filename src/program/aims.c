@@ -103,21 +103,17 @@ static double sum_of(const goal_result *r, double factor) {
   return factor * (fabs(r->error) + r->band) + fabs(r->solver);
 }
 
-static void evaluate(const goal_card *goal, pass_goal *g) {
-  const goal_result *r = &g->found;
-  g->off = sum_of(r, r->verdict == GOAL_CONTACT_END ? ENDS : 1.0);
-  g->allowed = goal->in_percent
-                   ? goal->target / 100.0 * fabs(r->value + r->error)
-                   : goal->target;
-}
-
 void aims_evaluate(aims *a, const model *m) {
   double most = 0.0;
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) {
     const goal_card *goal = &m->accuracy.goals[i];
     pass_goal *g = last_row(a, i);
-    evaluate(goal, g);
+    const goal_result *r = &g->found;
+    g->off = sum_of(r, r->verdict == GOAL_CONTACT_END ? ENDS : 1.0);
+    g->allowed = goal->in_percent
+                     ? goal->target / 100.0 * fabs(r->value + r->error)
+                     : goal->target;
     if (goal->target > 0.0)
       most = fmax(most, isnan(g->off) ? HUGE_VAL : g->off / g->allowed);
   }

@@ -323,19 +323,15 @@ static void set_threads(int cores, command *c, message_log *log) {
   blas_set_threads(c->threads);
 }
 
-/* The settings hold for the whole process, libraries included. */
-static void set_memory(const limits *system, const command *c) {
-  const char *who = c->max_memory > 0.0 ? "--max-memory" : system->who;
-  double bytes = c->max_memory > 0.0 ? 1e6 * c->max_memory - limits_held()
-                                     : system->memory;
-  if (bytes < 1e18) memory_limit((size_t)fmax(bytes, 0.0), who);
-}
-
 status command_apply(command *c, message_log *log) {
   limits system;
   limits_read("", &system);
   set_threads(system.cores, c, log);
-  set_memory(&system, c);
+  /* The settings hold for the whole process, libraries included. */
+  const char *who = c->max_memory > 0.0 ? "--max-memory" : system.who;
+  double bytes =
+      c->max_memory > 0.0 ? 1e6 * c->max_memory - limits_held() : system.memory;
+  if (bytes < 1e18) memory_limit((size_t)fmax(bytes, 0.0), who);
   if (!c->safe) return OK;
   OWNED char *folder = NULL;
   PASS_GET(folder, folder_of(c->deck_file));

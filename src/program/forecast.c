@@ -113,19 +113,9 @@ static void stage_costs(const trial *before, trial *t) {
 
 /* 1: paid once a run, not once an increment. */
 static int is_of_run(int s) {
-  switch (s) {
-    case STAGE_DECK:
-    case STAGE_MESH:
-    case STAGE_SURFACE:
-    case STAGE_COUPLING:
-    case STAGE_ASSEMBLY:
-    case STAGE_ORDERING:
-    case STAGE_FACTOR:
-    case STAGE_CONDENSE:
-      return 1;
-    default:
-      return 0;
-  }
+  return s == STAGE_DECK || s == STAGE_MESH || s == STAGE_SURFACE ||
+         s == STAGE_COUPLING || s == STAGE_ASSEMBLY || s == STAGE_ORDERING ||
+         s == STAGE_FACTOR || s == STAGE_CONDENSE;
 }
 
 /* As in target.c: the share of the increments in the target, the aim of the
@@ -175,20 +165,12 @@ static double exponent(double y0, double y1, double x0, double x1) {
 /* Growth of the CPU of a stage when N is that many times those of fine. */
 static double growth(const model_of_cost *c, stage s, double ratio) {
   int plane = c->dim == 2;
-  switch (s) {
-    case STAGE_FACTOR:
-      return pow(ratio, plane ? 1.2 : 1.75);
-    case STAGE_ORDERING:
-      return pow(ratio, 1.2);
-    case STAGE_RECOVERY:
-      return pow(ratio, plane ? 1.05 : 4.0 / 3.0);
-    case STAGE_CONDENSE:
-    case STAGE_CONTACT:
-    case STAGE_ESTIMATE:
-      return pow(ratio, DENSE * c->contact);
-    default:
-      return ratio;
-  }
+  if (s == STAGE_FACTOR) return pow(ratio, plane ? 1.2 : 1.75);
+  if (s == STAGE_ORDERING) return pow(ratio, 1.2);
+  if (s == STAGE_RECOVERY) return pow(ratio, plane ? 1.05 : 4.0 / 3.0);
+  if (s == STAGE_CONDENSE || s == STAGE_CONTACT || s == STAGE_ESTIMATE)
+    return pow(ratio, DENSE * c->contact);
+  return ratio;
 }
 
 /* CPU seconds of the stages of the shadow run too. */

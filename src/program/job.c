@@ -15,14 +15,6 @@
 
 #include <unistd.h>
 
-/* --safe: a mesh that is a program is not run. */
-static status check_safe_mesh(const model *m) {
-  if (input_is_confined() && job_is_geo(m))
-    message_add(m->log, P5021, &m->mesh.at,
-                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh.file);
-  return message_status(m->log, ERR_DECK);
-}
-
 /* Surfaces in contact, names[2*n.contact]; not cracks, which are straight
  * between their nodes. */
 static int find_rounds(const model *m, const char **names) {
@@ -40,7 +32,11 @@ static status read_mesh(const job_mesh *other, job_input *in) {
   const model *m = in->m;
   double cpu = timer_cpu();
   int n = 0;
-  PASS(check_safe_mesh(m));
+  /* --safe: a mesh that is a program is not run. */
+  if (input_is_confined() && job_is_geo(m))
+    message_add(m->log, P5021, &m->mesh.at,
+                "--safe: the mesh must be a .msh, not \"%s\"", m->mesh.file);
+  PASS(message_status(m->log, ERR_DECK));
   OWNED_NEW(mesh_number, numbers, m->deck->n_symbol);
   for (int i = 0; i < m->deck->n_symbol; ++i)
     if (m->deck->symbols[i].in_geometry)
@@ -168,18 +164,6 @@ static status keep_first(void *to, const state *s) {
   RAISE(ERR_UNSETTLED, "the first increment is all that is needed");
 }
 
-/* Without what the start does not depend on. */
-static void simplify(model *m) {
-  step *s = m->steps;
-  s->accuracy.mesh = 0;
-  s->accuracy.time = s->accuracy.time_balanced = s->accuracy.theorems = 0;
-  s->accuracy.no_solver = 1;
-  s->check = CHECK_NONE;
-  m->n.goal = 0;
-  m->effects &= ~(EFFECT_MESH_ERROR | EFFECT_TIME_ERROR | EFFECT_ESTIMATES |
-                  EFFECT_REFERENCE | EFFECT_THEORY);
-}
-
 /* On the mesh with these sizes, into *to. */
 static status solve_first(const command *c, const mesh_sizes *sizes,
                           coarser *to) {
@@ -188,7 +172,15 @@ static status solve_first(const command *c, const mesh_sizes *sizes,
   const history_sink sink = {.ctx = to, .increment = keep_first};
   PASS(message_log_new(&other.log));
   PASS(job_read(c, &(job_mesh){.sizes = {*sizes}}, other.log, &other));
-  simplify(other.m);
+  /* Without what the start does not depend on. */
+  step *s = other.m->steps;
+  s->accuracy.mesh = 0;
+  s->accuracy.time = s->accuracy.time_balanced = s->accuracy.theorems = 0;
+  s->accuracy.no_solver = 1;
+  s->check = CHECK_NONE;
+  other.m->n.goal = 0;
+  other.m->effects &= ~(EFFECT_MESH_ERROR | EFFECT_TIME_ERROR |
+                        EFFECT_ESTIMATES | EFFECT_REFERENCE | EFFECT_THEORY);
   return history_run(other.m, other.msh, effect_table, &sink, &unsettled);
 }
 

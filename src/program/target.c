@@ -303,34 +303,27 @@ static pass_row next_digit(const pass *p) {
   return row;
 }
 
-/* Increments and tolerances of the deck times the factors of the pass. */
-static void adjust(const pass *p, model *m) {
-  for (int i = 0; i < m->n.step; ++i) {
-    m->steps[i].dt *= p->dt;
-    m->steps[i].dt_min *= p->dt;
-    m->steps[i].solver.tol = fmax(m->steps[i].solver.tol * p->tol, LEAST_TOL);
-  }
-}
-
-/* The contact of the last pass is the start of this one. */
-static status next_contact(pass *p, model *m) {
-  memory_free(p->before);
-  p->before = p->contact;
-  p->contact = NULL;
-  if (p->before != NULL) m->accuracy.coarser = p->before;
-  return coarser_new(&p->contact);
-}
-
 /* Before a pass with that input. */
 static status begin(pass *p, const job_input *in) {
   RELEASE(p->eta, p->size);
   p->eta = p->size = NULL;
   p->energy = -1.0;
   p->mesh = p->time = p->solver = 0.0;
-  PASS(next_contact(p, in->m));
+  /* The contact of the last pass is the start of this one. */
+  memory_free(p->before);
+  p->before = p->contact;
+  p->contact = NULL;
+  if (p->before != NULL) in->m->accuracy.coarser = p->before;
+  PASS(coarser_new(&p->contact));
   PASS_NEW(p->eta, in->msh->n_elem);
   PASS(aims_begin(p->goals, in->msh));
-  adjust(p, in->m);
+  /* Increments and tolerances of the deck times the factors of the pass. */
+  for (int i = 0; i < in->m->n.step; ++i) {
+    in->m->steps[i].dt *= p->dt;
+    in->m->steps[i].dt_min *= p->dt;
+    in->m->steps[i].solver.tol =
+        fmax(in->m->steps[i].solver.tol * p->tol, LEAST_TOL);
+  }
   return OK;
 }
 

@@ -5,7 +5,7 @@
 
 int effect_is_on(const effect_ops *e, const model *m) {
   if (e->bit != NO_BIT) return (m->effects >> e->bit & 1u) != 0;
-  return e->required(m, NULL, 0);
+  return e->required(m, NULL);
 }
 
 void *effect_state(const effect_list *list, const effect_ops *e) {

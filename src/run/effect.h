@@ -169,6 +169,12 @@ typedef struct effect_hooks {
                  void **out);
 } effect_hooks;
 
+/* A text to be written; NULL: not needed. */
+typedef struct reason {
+  char *text;
+  size_t size;
+} reason;
+
 typedef struct effect_ops {
   const char *name;
   size_t size; /* of the state, zeroed: bytes times count; 0: of "create" */
@@ -176,9 +182,8 @@ typedef struct effect_ops {
   effect_copy copy_as;
   int bit; /* EFFECT_BIT_... of the result of required in m->effects, for other
               files; or NO_BIT */
-  /* 1: the model requires it; the card or fact that does, or why none does,
-   * into why[size]; size 0: not needed. */
-  int (*required)(const model *m, char *why, size_t size);
+  /* 1: the model requires it; the card or fact that does, or why none does. */
+  int (*required)(const model *m, const reason *why);
   /* Work expected before anything is solved; NULL: none, no row in the plan.
    */
   effect_work (*expected)(const plan_sizes *s);

@@ -237,21 +237,18 @@ static status load_at(run *r, double t) {
   return load_prescribed(r->m, r->msh, r->step, t, r->loads.start, r->loads.ud);
 }
 
-static status pose_contact(run *r, double t) {
-  PASS_TIMED(STAGE_SURFACE, surface_gap(r->surface, &r->faces.input, t,
-                                        r->problem.gap, r->problem.side_gap));
-  PASS(effects_pose(r, t));
-  set_problem(r);
-  return OK;
-}
-
 /* Condensed load and contact problem under the forces F. */
 static status pose(run *r, const double *F) {
   r->solving.report = (solver_report){.outcome = CONVERGED, .solver = "linear"};
   if (r->nodes.n > 0 && largest_entry(r->n_dof, r->loads.ud) > 0.0)
     PASS(condense_load(r->c, F, NULL, r->problem.f_load));
   PASS(condense_load(r->c, F, r->loads.ud, r->problem.f));
-  if (r->nodes.n > 0) PASS(pose_contact(r, r->now.t));
+  if (r->nodes.n > 0) {
+    PASS_TIMED(STAGE_SURFACE, surface_gap(r->surface, &r->faces.input, r->now.t,
+                                          r->problem.gap, r->problem.side_gap));
+    PASS(effects_pose(r, r->now.t));
+    set_problem(r);
+  }
   return OK;
 }
 

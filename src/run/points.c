@@ -67,13 +67,6 @@ static status take_initial(const run *r, visco *v, const initial *c) {
   return OK;
 }
 
-static status initial_state(const run *r, visco *v) {
-  for (EACH(const initial, c, r->m->initial.lines, r->m->n.initial))
-    if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
-      PASS(take_initial(r, v, c));
-  return OK;
-}
-
 status visco_new(run *r) {
   visco *v = NULL;
   TIMED(STAGE_INELASTIC);
@@ -84,7 +77,9 @@ status visco_new(run *r) {
   PASS(new_points(r, v, kind_of));
   PASS(flow_state_new(&v->x, &v->old));
   PASS(flow_state_new(&v->x, &v->now));
-  PASS(initial_state(r, v));
+  for (EACH(const initial, c, r->m->initial.lines, r->m->n.initial))
+    if (c->type == INITIAL_STRAIN || c->type == INITIAL_INTERNAL)
+      PASS(take_initial(r, v, c));
   PASS(scheme_work_new(&v->work));
   PASS_NEW(v->stress, (size_t)r->m->ns * r->strains.eigen.n);
   return OK;

@@ -26,13 +26,6 @@ static void find_reactions(run *r, int known) {
     if (!r->body.fixed[i]) reaction[i] = 0.0;
 }
 
-/* Stresses that an output or an error estimate needs. */
-static void find_stresses(run *r, int shown) {
-  stage s = run_finds_mesh_error(r) ? STAGE_MESH_ERROR : STAGE_REFERENCE;
-  TIMED(shown ? STAGE_STRESS : s);
-  domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
-}
-
 double run_motion_over(const run *r, int k) {
   return (r->now.uc[k] - r->old.uc[k]) -
          (run_drift(&r->now, k) - run_drift(&r->old, k));
@@ -312,8 +305,12 @@ status result_evaluate(run *r, int due) {
   unsigned effects = r->m->effects;
   int shown = (effects & EFFECT_STRESS) && due;
   int needed = run_finds_mesh_error(r) || r->m->accuracy.ref.has_stress;
-  if (shown || (needed && !(effects & EFFECT_REACTION)))
-    find_stresses(r, shown);
+  if (shown || (needed && !(effects & EFFECT_REACTION))) {
+    /* Stresses that an output or an error estimate needs. */
+    stage s = run_finds_mesh_error(r) ? STAGE_MESH_ERROR : STAGE_REFERENCE;
+    TIMED(shown ? STAGE_STRESS : s);
+    domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
+  }
   if (r->nodes.n > 0) find_contact(r);
   if (effects & EFFECT_REACTION) find_reactions(r, shown);
   if (r->m->n.contact > 0) find_totals(r);

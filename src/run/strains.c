@@ -31,7 +31,10 @@ static status new_strains(const run *r, equilibrium *e) {
   return OK;
 }
 
-static status list_elements(run *r) {
+status strains_new(run *r) {
+  PASS(moduli_new(r->m, r->msh, r->strains.temperature0, &r->body.moduli));
+  moduli_domain(&r->body.moduli, r->m, &r->body.d);
+  if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) return OK;
   int n = 0;
   for (int e = 0; e < r->msh->n_elem; ++e)
     r->strains.eigen.n += effects_strain(r, e);
@@ -40,14 +43,6 @@ static status list_elements(run *r) {
     if (effects_strain(r, e)) r->strains.elem[n++] = e;
   r->strains.eigen.elem_id = r->strains.elem;
   PASS_NEW(r->strains.load, r->n_dof);
-  return OK;
-}
-
-status strains_new(run *r) {
-  PASS(moduli_new(r->m, r->msh, r->strains.temperature0, &r->body.moduli));
-  moduli_domain(&r->body.moduli, r->m, &r->body.d);
-  if (!(r->m->effects & (EFFECT_THERMAL | EFFECT_INELASTIC))) return OK;
-  PASS(list_elements(r));
   PASS(new_strains(r, &r->old));
   PASS(new_strains(r, &r->now));
   if (r->m->effects & EFFECT_INELASTIC) PASS(visco_new(r));
@@ -137,18 +132,6 @@ static void items_work(run *r, int from, int to, energies *e, double *held) {
   for (int k = from; k < to; ++k) item_work(r, &ends, k, e, held);
 }
 
-/* The items that are no points whose sums are known. */
-static void rest_work(run *r, energies *e, double *held) {
-  const visco *v = r->strains.visco;
-  int from = 0;
-  for (int k = 0; k < v->x.n && v->x.n < r->strains.eigen.n; ++k) {
-    if (v->place[k] > from) items_work(r, from, v->place[k], e, held);
-    from = v->place[k] + 1;
-  }
-  if (v->x.n < r->strains.eigen.n && from < r->strains.eigen.n)
-    items_work(r, from, r->strains.eigen.n, e, held);
-}
-
 void strains_start(run *r, equilibrium *e) {
   const size_t bytes = strains_kept(r) * sizeof *e->e0;
   if (bytes == 0) return;
@@ -170,7 +153,14 @@ void strains_work(run *r, energies *e) {
     e->thermal += v->sums.thermal;
     e->inelastic += v->sums.inelastic;
     held = v->sums.held;
-    rest_work(r, e, &held);
+    /* The items that are no points whose sums are known. */
+    int from = 0;
+    for (int k = 0; k < v->x.n && v->x.n < r->strains.eigen.n; ++k) {
+      if (v->place[k] > from) items_work(r, from, v->place[k], e, &held);
+      from = v->place[k] + 1;
+    }
+    if (v->x.n < r->strains.eigen.n && from < r->strains.eigen.n)
+      items_work(r, from, r->strains.eigen.n, e, &held);
   } else {
     items_work(r, 0, r->strains.eigen.n, e, &held);
   }

@@ -124,19 +124,14 @@ static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   return OK;
 }
 
-/* 1 if the tangents of the points are those of the last solve of its kind. */
-static int same_tangents(const run *r, const flow_tangent *law) {
-  const visco *v = r->strains.visco;
-  const size_t square = visco_at(r, r->m->ns);
-  return v->E_is_fresh && memcmp(v->E + square * r->body.moduli.n, law->D,
-                                 square * v->x.n * sizeof *v->E) == 0;
-}
-
 /* Tangents of this solve alone: their symbolic factor is kept. */
 static status use_fresh(run *r, const flow_tangent *law) {
   visco *v = r->strains.visco;
   domain d;
-  int same = same_tangents(r, law);
+  /* 1 if the tangents of the points are those of the last solve of its kind. */
+  const size_t square = visco_at(r, r->m->ns);
+  int same = v->E_is_fresh && memcmp(v->E + square * r->body.moduli.n, law->D,
+                                     square * v->x.n * sizeof *v->E) == 0;
   if (same && v->fresh.c != NULL) return OK;
   PASS(fresh_domain(r, law, &d));
   r->c = NULL;

@@ -188,8 +188,6 @@ status start_point_new(const run *r, start_point *p) {
   return OK;
 }
 
-void start_point_free(start_point *p) { RELEASE(p->uc, p->rc, p->motion); }
-
 void start_point_copy(const run *r, const equilibrium *e, start_point *p) {
   p->t = e->t;
   if (r->nodes.n_c == 0) return;
@@ -210,9 +208,8 @@ equilibrium start_point_use(run *r, const start_point *p) {
 /* From r->now, which is temporarily the accepted state, to t. */
 static status second_half(run *r, double t) {
   visco *v = r->strains.visco;
-  ENDS_BY(start_point_free) start_point p = {0};
   if (v->middle.e == NULL) PASS(flow_state_new(&v->x, &v->middle));
-  PASS(start_point_new(r, &p));
+  OWNED_PARTS(start_point, p, start_point_new(r, &p));
   start_point_copy(r, &r->now, &p);
   flow_state_copy(&v->x, &v->now, &v->middle);
   equilibrium keep = start_point_use(r, &p);

@@ -75,7 +75,6 @@ typedef struct start_point {
 /* visco.c. Workspace; that of an equilibrium; r->old is at the point until the
  * returned state is restored. */
 status start_point_new(const run *r, start_point *p);
-void start_point_free(start_point *p);
 void start_point_copy(const run *r, const equilibrium *e, start_point *p);
 equilibrium start_point_use(run *r, const start_point *p);
 

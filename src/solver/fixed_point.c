@@ -1,6 +1,8 @@
 /* Fixed point on the sliding limit, with Anderson mixing (fixed_point.h). */
 #include "solver/fixed_point.h"
 
+#include "base/vector.h"
+
 enum {
   MOST = 200000, /* iterations of all passes, by default */
   DEPTH = 4,     /* differences mixed */
@@ -29,12 +31,6 @@ status fixed_point_new(int n, fixed_point **out) {
   PASS_NEW_REALS(n, &fp->g, &fp->image, &fp->last_g, &fp->last_G);
   PASS_NEW_ALL(OF(fp->dg, n * DEPTH), OF(fp->dG, n * DEPTH));
   return OK;
-}
-
-static double norm(int n, const double *x) {
-  double sum = 0.0;
-  for (int i = 0; i < n; ++i) sum += x[i] * x[i];
-  return sqrt(sum);
 }
 
 /* Shift the differences and put those of the last two passes in front; the

@@ -110,15 +110,6 @@ static outcome check(run *s, int k) {
   return k - s->since > PATIENCE ? STOPPED_STAGNATION : RUNNING;
 }
 
-/* y and its displacement; theta = 0 begins again. */
-static void extrapolate(run *s, double theta) {
-  lagrange_work *w = s->w;
-  for (int i = 0; i < s->cp->m; ++i) {
-    w->y[i] = s->r[i] + theta * (s->r[i] - w->old_r[i]);
-    w->y_x[i] = w->x[i] + theta * (w->x[i] - w->old_x[i]);
-  }
-}
-
 /* r and x after a step of gradient projection from y; 0: the step was too long
  * and is now shorter. */
 static int project_step(run *s) {
@@ -161,7 +152,11 @@ static outcome steps(run *s, solver_report *rep) {
   outcome o = check(s, 0);
   for (int k = 1; k <= limit && o == RUNNING; ++k) {
     rep->iterations = k;
-    extrapolate(s, theta);
+    /* y and its displacement; theta = 0 begins again. */
+    for (int i = 0; i < s->cp->m; ++i) {
+      w->y[i] = s->r[i] + theta * (s->r[i] - w->old_r[i]);
+      w->y_x[i] = w->x[i] + theta * (w->x[i] - w->old_x[i]);
+    }
     COPY(w->old_r, s->r, s->cp->m);
     COPY(w->old_x, w->x, s->cp->m);
     if (!project_step(s)) {

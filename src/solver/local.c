@@ -4,6 +4,8 @@
  */
 #include "solver/local.h"
 
+#include "base/vector.h"
+
 enum { ROOT_STEPS = 100 };
 static const double LAST_STEP = 0x1p-27; /* -, of a root found by Newton steps:
                                             the next is its square */
@@ -15,14 +17,9 @@ typedef struct candidate {
 
 static double positive(double a) { return a > 0.0 ? a : 0.0; }
 
-static double length(const double *v) {
-  return sqrt(v[0] * v[0] + v[1] * v[1]);
-}
-
+/* Of the tangents. */
 static double size_of(const local_problem *lp, const double *v) {
-  double sum = 0.0;
-  for (int k = 1; k < lp->dim; ++k) sum += v[k] * v[k];
-  return sqrt(sum);
+  return norm(lp->dim - 1, v + 1);
 }
 
 /* K d - b */
@@ -64,16 +61,6 @@ typedef struct disc_problem {
   int n;
   double S[4], c[2], ga, gb[2], at[2];
 } disc_problem;
-
-/* Largest slope mu K_tn that keeps a one-dimensional slip unique is S itself:
- * d = (c + e ga)/(S - e gb), e = -sign(s), the sign of less the force that
- * would hold it, "held". */
-static void slip_line(const disc_problem *dp, double held, double *d) {
-  double e = held > 0.0 ? -1.0 : 1.0;
-  double stiffness = dp->S[0] - e * dp->gb[0];
-  d[0] = (dp->c[0] + e * dp->ga) / stiffness;
-  if (!(stiffness > 0.0) || e * (dp->at[0] + d[0]) > 0.0) d[0] = -dp->at[0];
-}
 
 /* Posed in s (at = 0), slip for a given flexibility nu = |s|/|t|:  q = (nu S +
  * I)^-1 c = -t and s = nu q; returns |q| - g(s), and its derivative. */
@@ -129,7 +116,7 @@ static void slip_disc(const disc_problem *dp, double nu, double *s) {
 /* The same in steps, where the slip s found is so long that errors of its
  * direction n fade: (S + n gb') d = c - ga n. */
 static void slip_step(const disc_problem *dp, const double *s, double *d) {
-  double size = length(s), n[2], y[2], M[4];
+  double size = norm(2, s), n[2], y[2], M[4];
   for (int i = 0; i < 2; ++i) {
     d[i] = s[i] - dp->at[i];
     n[i] = s[i] / size;
@@ -161,9 +148,15 @@ static int disc_solve(const disc_problem *dp, double *d, double *t) {
   }
   if (sqrt(size) <= positive(held.ga)) return 0;
   if (dp->n == 1) {
-    slip_line(dp, held.c[0], d);
+    /* Largest slope mu K_tn that keeps a one-dimensional slip unique is S
+     * itself: d = (c + e ga)/(S - e gb), e = -sign(s), the sign of less the
+     * force that would hold it, "held". */
+    double e = held.c[0] > 0.0 ? -1.0 : 1.0;
+    double stiffness = dp->S[0] - e * dp->gb[0];
+    d[0] = (dp->c[0] + e * dp->ga) / stiffness;
+    if (!(stiffness > 0.0) || e * (dp->at[0] + d[0]) > 0.0) d[0] = -dp->at[0];
   } else {
-    double flexibility = length(dp->at) / length(dp->c);
+    double flexibility = norm(2, dp->at) / norm(2, dp->c);
     slip_disc(&held, flexibility < HUGE_VAL ? flexibility : 0.0, s);
     slip_step(dp, s, d);
   }

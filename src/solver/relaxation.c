@@ -155,18 +155,6 @@ static void relax_forces(const relaxation *s, const local_problem *lp,
   for (int k = 1; k < lp->dim && size > g; ++k) r[k] *= g / size;
 }
 
-/* Step of the node's displacement, of the unknowns not held d[], m. */
-static void displacement_step(const relaxation *s, int node_id,
-                              const local_problem *lp, const int *id,
-                              const double *d, double *step) {
-  const contact_problem *cp = s->cp;
-  for (int k = 0; k < lp->dim; ++k) step[id[k]] = d[k];
-  for (int k = 1; k < cp->dim; ++k) {
-    const int dof = node_id * cp->dim + k;
-    if (contact_held(cp, dof)) step[k] = -s->r[dof] / contact_diagonal(cp, dof);
-  }
-}
-
 /* 1: an open node without force that stays so: nothing moves. */
 static int rests(const relaxation *s, int node_id) {
   const contact_problem *cp = s->cp;
@@ -194,7 +182,13 @@ static void node_step(relaxation *s, int node_id, double *step) {
   s->turned += now != before;
   if (contact_has_stiffness(cp)) {
     if (now == before) relax(s, &lp, now, d);
-    displacement_step(s, node_id, &lp, id, d, step);
+    /* Step of the node's displacement, of the unknowns not held d[], m. */
+    for (int k = 0; k < lp.dim; ++k) step[id[k]] = d[k];
+    for (int k = 1; k < cp->dim; ++k) {
+      const int dof = node_id * cp->dim + k;
+      if (contact_held(cp, dof))
+        step[k] = -s->r[dof] / contact_diagonal(cp, dof);
+    }
     return;
   }
   double force[3] = {0.0, 0.0, 0.0};

@@ -97,16 +97,6 @@ static void add_slip(linear_system *s, int dof) {
   }
 }
 
-/* The columns of M of what a sliding unknown in space turns. */
-static void add_turn(linear_system *s, int dof) {
-  const linear_states *rows = s->rows;
-  const size_t n = rows->n_free;
-  const int i = dof / 3;
-  for (int t = 3 * i + 1; t < 3 * i + 3; ++t)
-    if (rows->place[t] >= 0)
-      s->M[rows->place[dof] + n * rows->place[t]] += linear_turn(rows, dof, t);
-}
-
 static status factor(linear_system *s, int *singular) {
   const linear_states *rows = s->rows;
   const contact_problem *cp = rows->cp;
@@ -120,7 +110,14 @@ static status factor(linear_system *s, int *singular) {
     const int dof = rows->free_id[k];
     if (dof % cp->dim == 0 || !rows->slip[dof / cp->dim]) continue;
     add_slip(s, dof);
-    if (cp->dim == 3) add_turn(s, dof);
+    if (cp->dim == 3) {
+      /* The columns of M of what a sliding unknown in space turns. */
+      const int i = dof / 3;
+      for (int t = 3 * i + 1; t < 3 * i + 3; ++t)
+        if (rows->place[t] >= 0)
+          s->M[rows->place[dof] + n * rows->place[t]] +=
+              linear_turn(rows, dof, t);
+    }
   }
   *singular =
       n > 0 && LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, rows->n_free, rows->n_free,
@@ -360,16 +357,6 @@ static double misses(const contact_adjoint *a, const double *j,
   return sum;
 }
 
-/* Where a node sticks, the rest of the adjoint equation; in space slip turns
- * with it. */
-static void set_stick(contact_adjoint *a, const double *j) {
-  const contact_problem *cp = a->cp;
-  CLEAR(a->stick, cp->m);
-  linear_add_turn(&a->rows, a->w, a->stick);
-  for (int k = 0; k < cp->m; ++k)
-    if (sticks(a, k)) a->stick[k] = j[k] - a->Ax[k];
-}
-
 const double *contact_adjoint_stick(const contact_adjoint *a) {
   return a->stick;
 }
@@ -386,7 +373,12 @@ status contact_adjoint_solve(contact_adjoint *a, const double *j,
   for (int k = 0; k < cp->m; ++k) y[k] += a->w[k];
   contact_apply(cp, y, a->Ax);
   *solver = misses(a, j, y);
-  set_stick(a, j);
+  /* Where a node sticks, the rest of the adjoint equation; in space slip turns
+   * with it. */
+  CLEAR(a->stick, cp->m);
+  linear_add_turn(&a->rows, a->w, a->stick);
+  for (int k = 0; k < cp->m; ++k)
+    if (sticks(a, k)) a->stick[k] = j[k] - a->Ax[k];
   return OK;
 }
 

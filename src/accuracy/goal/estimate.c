@@ -88,16 +88,14 @@ static void gradients(const goal_solution *s, double *q) {
 
 static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
   const goal_solution *s = &e->s;
-  const contact_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
+  const number_pair key = number_pair_of(a, b);
   if (!e->on_surface[a] || !e->on_surface[b]) return NULL;
-  return bsearch(&key, s->edge, s->n_edge, sizeof key, number_pair_order);
+  return bsearch(&key, s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
 }
 
 /* v[dim] with another part along n[dim]. */
 static void set_along(int dim, const double *n, double part, double *v) {
-  double along = 0.0;
-  for (int k = 0; k < dim; ++k) along += n[k] * v[k];
-  for (int k = 0; k < dim; ++k) v[k] += (part - along) * n[k];
+  add_scaled(dim, part - dot(dim, n, v), n, v);
 }
 
 /* u[dim] at the surface of the body less that in the middle of its edge a, b,
@@ -129,7 +127,8 @@ static void hold(const goal_solution *s, const double *G, const contact_edge *c,
 /* d[dim], x[dim] where a support holds both ends of an edge. */
 static void support(const goal_solution *s, const double *G, int a, int b,
                     double *d, double *x) {
-  const int dim = s->d->mesh->dim, v[2] = {a < b ? a : b, a < b ? b : a};
+  const int dim = s->d->mesh->dim;
+  const number_pair v = number_pair_of(a, b);
   const given_edge *g = NULL;
   const bent_edge *bent = NULL;
   double u[3] = {0.0};
@@ -138,9 +137,9 @@ static void support(const goal_solution *s, const double *G, int a, int b,
     any |= s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c];
   if (!any) return;
   if (s->n_given > 0)
-    g = bsearch(v, s->given, s->n_given, sizeof *g, number_pair_order);
+    g = bsearch(&v, s->given, s->n_given, sizeof *g, number_pair_order);
   if (s->n_bent > 0)
-    bent = bsearch(v, s->bent, s->n_bent, sizeof *bent, number_pair_order);
+    bent = bsearch(&v, s->bent, s->n_bent, sizeof *bent, number_pair_order);
   if (bent != NULL) outside(s, G, a, b, bent->out, u);
   for (int c = 0; c < dim; ++c)
     if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c])
@@ -240,19 +239,10 @@ static void add_bubble(const domain *d, int elem_id, const int *edge,
 
 /* NULL: all elements of the edge are of one region. */
 static joint_edge *find_joint(const goal_estimator *e, int a, int b) {
-  const joint_edge key = {.a = a < b ? a : b, .b = a < b ? b : a};
+  const number_pair key = number_pair_of(a, b);
   if (e->n_joint == 0 || !e->is_joint[a] || !e->is_joint[b]) return NULL;
-  return bsearch(&key, e->joint, e->n_joint, sizeof key, number_pair_order);
-}
-
-static void mark_joints(goal_estimator *e, int *region) {
-  const mesh *m = e->s.d->mesh;
-  for (int k = 0; k < (m->dim + 1) * m->n_elem; ++k) {
-    const int of = space_region(e->recovery, k / (m->dim + 1)) + 1;
-    int *at = &region[m->elem[k]];
-    if (*at != 0 && *at != of) e->is_joint[m->elem[k]] = 1;
-    *at = of;
-  }
+  return bsearch(&key, e->joint, e->n_joint, sizeof *e->joint,
+                 number_pair_order);
 }
 
 /* Writes the edges between marked nodes, element by element, or counts them. */
@@ -264,10 +254,9 @@ static int list_joints(const goal_estimator *e, joint_edge *to) {
     for (int a = 0; a < m->dim; ++a)
       for (int b = a + 1; b <= m->dim; ++b) {
         if (!e->is_joint[v[a]] || !e->is_joint[v[b]]) continue;
-        if (to != NULL)
-          to[n] = (joint_edge){.a = v[a] < v[b] ? v[a] : v[b],
-                               .b = v[a] < v[b] ? v[b] : v[a],
-                               .region = space_region(e->recovery, k)};
+        const number_pair is = number_pair_of(v[a], v[b]);
+        const int region = space_region(e->recovery, k);
+        if (to != NULL) to[n] = (joint_edge){is.a, is.b, .region = region};
         ++n;
       }
   }
@@ -279,8 +268,8 @@ static int unite_joints(joint_edge *j, int n) {
   int kept = 0;
   for (int i = 0, last; i < n; i = last) {
     int several = 0;
-    for (last = i; last < n && number_pair_order(j + i, j + last) == 0; ++last)
-      several |= j[last].region != j[i].region;
+    last = PAIR_END(j, n, i);
+    for (int k = i; k < last; ++k) several |= j[k].region != j[i].region;
     if (several) j[kept++] = j[i];
   }
   return kept;
@@ -290,12 +279,18 @@ static status find_joints(goal_estimator *e) {
   const int n_node = e->s.d->mesh->n_node;
   OWNED int *region = NULL;
   PASS_NEW_ALL(OF(e->is_joint, n_node), OF(region, n_node));
-  mark_joints(e, region);
+  const mesh *m = e->s.d->mesh;
+  for (int k = 0; k < (m->dim + 1) * m->n_elem; ++k) {
+    const int of = space_region(e->recovery, k / (m->dim + 1)) + 1;
+    int *at = &region[m->elem[k]];
+    if (*at != 0 && *at != of) e->is_joint[m->elem[k]] = 1;
+    *at = of;
+  }
   const int n = list_joints(e, NULL);
   if (n == 0) return OK;
   PASS_NEW(e->joint, n);
   list_joints(e, e->joint);
-  qsort(e->joint, n, sizeof *e->joint, number_pair_order);
+  PAIR_SORT(e->joint, n);
   e->n_joint = unite_joints(e->joint, n);
   return OK;
 }
@@ -513,15 +508,6 @@ double goal_estimator_energy(const goal_estimator *e) {
 
 /* ---- the sums ------------------------------------------------------------ */
 
-/* Bits of its nodes. */
-static int ends_of(const goal_estimator *e, int elem_id) {
-  const mesh *m = e->s.d->mesh;
-  int any = 0;
-  for (int a = 0; a <= m->dim; ++a)
-    any |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
-  return any;
-}
-
 static const double AXI_RULE[2] = {1.0 / 6.0, 2.0 / 3.0};
 
 /* At a point of an axisymmetric element: radius, strain of the nodes' values
@@ -632,7 +618,10 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   }
   out->magnitude += fabs(product);
   out->product += both;
-  const int ends = ends_of(e, elem_id);
+  const mesh *m = e->s.d->mesh;
+  int ends = 0;
+  for (int a = 0; a <= m->dim; ++a)
+    ends |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
   if (ends != 0) out->ends += both;
   if (ends == GOAL_END_OF_SUPPORT) out->supports += both;
   if ((ends & GOAL_END_OF_SUPPORT) != 0) out->sharp += of_u ? 0.5 * both : both;

@@ -127,17 +127,6 @@ static void try_nodes(trial *s) {
     }
 }
 
-static void try_all(trial *s) {
-  for (int k = 0; k < FIELDS_OF_ALL; ++k) {
-    double value = 0.0, square = 0.0;
-    for (int i = 0; i < s->cp->n; ++i) {
-      set_node(s, i, moves[(i + k) % PATTERNS]);
-      value += part(s, i, &square);
-    }
-    count(s, value, square);
-  }
-}
-
 /* u itself must be in K. */
 static void test_penetration(trial *s) {
   const contact_problem *cp = s->cp;
@@ -160,7 +149,14 @@ status inequality_least(const contact_problem *cp, const double *u,
   COPY(w, u, cp->m);
   set_scales(&s);
   try_nodes(&s);
-  try_all(&s);
+  for (int k = 0; k < FIELDS_OF_ALL; ++k) {
+    double value = 0.0, square = 0.0;
+    for (int i = 0; i < s.cp->n; ++i) {
+      set_node(&s, i, moves[(i + k) % PATTERNS]);
+      value += part(&s, i, &square);
+    }
+    count(&s, value, square);
+  }
   test_penetration(&s);
   *least = s.least < HUGE_VAL ? s.least : 0.0;
   *fields = s.n;
@@ -202,14 +198,6 @@ static void forget_friction(theorems *t) {
   t->n_entry = t->n_contact = 0;
 }
 
-static void forget_matrix(theorems *t) {
-  energy_norm_free(&t->norm);
-  memory_free(t->diagonal);
-  t->diagonal = NULL;
-  forget_friction(t);
-  state_before_free(&t->before);
-}
-
 static int same_matrix(const theorems *t, const contact_problem *cp) {
   if (t->diagonal == NULL || t->norm.m != cp->m || t->norm.A != cp->A) return 0;
   for (int i = 0; i < cp->m; ++i)
@@ -220,7 +208,11 @@ static int same_matrix(const theorems *t, const contact_problem *cp) {
 static status know_matrix(theorems *t, const contact_problem *cp) {
   t->fresh = !same_matrix(t, cp);
   if (!t->fresh) return OK;
-  forget_matrix(t);
+  energy_norm_free(&t->norm);
+  memory_free(t->diagonal);
+  t->diagonal = NULL;
+  forget_friction(t);
+  state_before_free(&t->before);
   PASS_NEW(t->diagonal, cp->m);
   for (int i = 0; i < cp->m; ++i) t->diagonal[i] = contact_diagonal(cp, i);
   return energy_norm_new(cp->m, cp->A, &t->norm);
@@ -344,14 +336,6 @@ static status check_bounds(theorems *t, const theorems_scene *s,
   return OK;
 }
 
-static status check_inequality(const theorems_scene *s,
-                               const contact_problem *cp,
-                               theorems_report *out) {
-  PASS(inequality_least(cp, s->u, &out->inequality, &out->n_field));
-  out->inequality_violated = !(out->inequality >= -s->tol);
-  return OK;
-}
-
 status theorems_start(theorems *t, const theorems_scene *s) {
   OWNS(t);
   ENDS_BY(frozen_free) frozen_problem p = {0};
@@ -376,7 +360,8 @@ status theorems_check(theorems *t, const theorems_scene *s,
   PASS(know_friction(t, s, &p));
   PASS(measure_contacts(t, s, &p));
   PASS(check_bounds(t, s, &p, out));
-  PASS(check_inequality(s, &p.cp, out));
+  PASS(inequality_least(&p.cp, s->u, &out->inequality, &out->n_field));
+  out->inequality_violated = !(out->inequality >= -s->tol);
   out->start = t->start;
   out->contacts = t->contacts;
   out->n_contact = t->n_contact == 2 ? 1 : t->n_contact;

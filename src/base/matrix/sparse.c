@@ -14,8 +14,6 @@ typedef struct places {
   int *row;   /* [start[n]] */
 } places;
 
-static void places_free(places *p) { RELEASE(p->start, p->row); }
-
 static void count(int *start, int column) { ++start[column + 2]; }
 
 static void put(places *p, int row, int column) {
@@ -96,13 +94,12 @@ static double *block(const sparse_blocks *b, int place) {
 status sparse_blocks_new(int dim, int n, long count_given, const int *row,
                          const int *col, const double *val,
                          sparse_blocks **out) {
-  ENDS_BY(places_free) places p = {0};
   const entries e = {count_given, row, col, val};
   MAKES(sparse_blocks, b, out);
   b->dim = dim;
   b->n = n;
   PASS_NEW(b->start, n + 1);
-  PASS(places_new(dim, n, &e, &p));
+  OWNED_PARTS(places, p, places_new(dim, n, &e, &p));
   PASS(set_pattern(b, &p));
   for (long k = 0; k < e.n; ++k) {
     if (val[k] == 0.0) continue;

@@ -124,15 +124,6 @@ static void read_group(const char *root, char *line, limits *l) {
   }
 }
 
-static void read_groups(const char *root, limits *l) {
-  char path[PATH], line[LINE];
-  snprintf(path, sizeof path, "%s/proc/self/cgroup", root);
-  FILE *f = fopen(path, "r");
-  while (f != NULL && fgets(line, sizeof line, f) != NULL)
-    read_group(root, line, l);
-  if (f != NULL) fclose(f);
-}
-
 static void read_machine(const char *root, limits *l) {
   char path[PATH];
   snprintf(path, sizeof path, "%s/proc/meminfo", root);
@@ -178,7 +169,12 @@ static int allowed_cores(void) {
 void limits_read(const char *root, limits *l) {
   *l = (limits){allowed_cores(), INFINITY, "nothing"};
   read_machine(root, l);
-  read_groups(root, l);
+  char path[PATH], line[LINE];
+  snprintf(path, sizeof path, "%s/proc/self/cgroup", root);
+  FILE *f = fopen(path, "r");
+  while (f != NULL && fgets(line, sizeof line, f) != NULL)
+    read_group(root, line, l);
+  if (f != NULL) fclose(f);
   read_process(l);
 }
 

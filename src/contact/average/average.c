@@ -34,8 +34,6 @@ typedef struct fans {
   int *start, *face; /* [n_node+1], [dim*n_face] */
 } fans;
 
-static void fans_free(fans *f) { RELEASE(f->start, f->face); }
-
 static status fans_new(const average_patch *p, fans *f) {
   int n = p->dim * p->n_face;
   PASS_NEW_ALL(OF(f->start, p->n_node + 2), OF(f->face, n));
@@ -58,15 +56,6 @@ static int on_axis(const average_patch *p, int node) {
   if (!p->axisymmetric) return 0;
   for (int i = 0; i < p->n_node; ++i) largest = fmax(largest, node_at(p, i)[0]);
   return node_at(p, node)[0] <= ON_AXIS * largest;
-}
-
-static status new_arrays(const average_patch *p, layout *l) {
-  size_t dim = p->dim;
-  l->dim = p->dim;
-  l->n_face = p->n_face;
-  PASS_NEW_ALL(OF(l->x, dim * p->n_node), OF(l->corner, dim * dim * p->n_face),
-               OF(l->rim, dim * dim * dim * (p->n_face + 1)));
-  return OK;
 }
 
 /* 1 if all corners lie on one mirror. */
@@ -225,10 +214,14 @@ static status lay_straight(const average_patch *p, const fans *f, double apart,
 
 static status layout_new(const average_patch *patch, const average_rule *rule,
                          layout *out) {
-  ENDS_BY(fans_free) fans f = {0};
   memset(out, 0, sizeof *out);
-  PASS(fans_new(patch, &f));
-  PASS(new_arrays(patch, out));
+  OWNED_PARTS(fans, f, fans_new(patch, &f));
+  size_t dim = patch->dim;
+  out->dim = patch->dim;
+  out->n_face = patch->n_face;
+  PASS_NEW_ALL(OF(out->x, dim * patch->n_node),
+               OF(out->corner, dim * dim * patch->n_face),
+               OF(out->rim, dim * dim * dim * (patch->n_face + 1)));
   set_mirrors(patch, rule, out);
   if (rule->geodesic)
     PASS(lay_straight(patch, &f, 4.0 * rule->radius, out));
@@ -276,22 +269,14 @@ static status builder_new(builder *b) {
   return OK;
 }
 
-static double distance(int dim, const double *a, const double *b) {
-  double sum = 0.0;
-  for (int c = 0; c < dim; ++c) sum += (a[c] - b[c]) * (a[c] - b[c]);
-  return sqrt(sum);
-}
-
 /* ---- the patch --------------------------------------------------------- */
 
 static double triangle_area(const double *x) {
   double a[3], b[3], n[3];
-  for (int c = 0; c < 3; ++c) {
-    a[c] = x[3 + c] - x[c];
-    b[c] = x[6 + c] - x[c];
-  }
+  vector_of(3, x, x + 3, a);
+  vector_of(3, x, x + 6, b);
   cross(a, b, n);
-  return 0.5 * sqrt(dot(3, n, n));
+  return 0.5 * norm(3, n);
 }
 
 /* Integrals of the P1 functions. */
@@ -300,7 +285,7 @@ static void find_shares(builder *b) {
   for (int f = 0; f < p->n_face; ++f) {
     const double *x = b->at.corner + (size_t)(p->dim * p->dim) * f;
     const int *node = p->face + p->dim * f;
-    double size = p->dim == 3 ? triangle_area(x) : distance(2, x, x + 2);
+    double size = p->dim == 3 ? triangle_area(x) : distance_of(2, x, x + 2);
     for (int k = 0; k < p->dim; ++k) {
       double weight = 1.0 / p->dim;
       if (p->axisymmetric) weight = (2.0 * x[2 * k] + x[2 * !k]) / 6.0;
@@ -316,8 +301,8 @@ static void find_facts(const builder *b, average_facts *facts,
   memset(facts, 0, sizeof *facts);
   for (int k = 0; k < p->dim * p->n_face; ++k) {
     int next = k % p->dim == p->dim - 1 ? k + 1 - p->dim : k + 1;
-    double length = distance(p->dim, b->at.corner + p->dim * k,
-                             b->at.corner + p->dim * next);
+    double length = distance_of(p->dim, b->at.corner + p->dim * k,
+                                b->at.corner + p->dim * next);
     facts->longest = fmax(facts->longest, length);
     if (4.0 * length > b->rule->radius * (1.0 + ROUNDING))
       coarse[p->face[k]] = coarse[p->face[next]] = 1;
@@ -358,7 +343,7 @@ static void add_face(builder *b, int i, int face, const double *x,
   for (int k = 0; k < p->dim; ++k) {
     int j = p->face[p->dim * face + k];
     if (j != i && p->active[j] &&
-        distance(p->dim, x, corner + p->dim * k) < reach)
+        distance_of(p->dim, x, corner + p->dim * k) < reach)
       ++b->neighbours;
     if (!(weight[k] > 0.0)) continue;
     if (b->row[j] == 0.0) b->touched[b->n_touched++] = j;
@@ -411,7 +396,7 @@ static int meets_rim(builder *b, int i) {
   int n = box_tree_near(&b->rim, x, b->rule->radius, b->found);
   for (int k = 0; k < n; ++k) {
     const double *a = b->at.rim + (size_t)(dim * corners) * b->found[k];
-    double d = corners == 1 ? distance(dim, a, x)
+    double d = corners == 1 ? distance_of(dim, a, x)
                             : face_segment_distance(dim, a, a + dim, x);
     if (d < b->rule->radius * (1.0 - ROUNDING)) return 1;
   }
@@ -447,17 +432,6 @@ static status keep_row(builder *b, int i, int cap[2]) {
     if (p->active[j]) PASS(add_entry(&b->raw, &n, cap, j, value));
   }
   b->raw.start[i + 1] = n;
-  return OK;
-}
-
-static status find_rows(builder *b) {
-  int cap[2] = {0, 0};
-  for (int i = 0; i < b->p->n_node; ++i) {
-    b->raw.start[i + 1] = b->raw.start[i];
-    if (!b->p->active[i]) continue;
-    look_around(b, i);
-    PASS(keep_row(b, i, cap));
-  }
   return OK;
 }
 
@@ -555,7 +529,13 @@ static status set_rows(builder *b) {
   OWNS(b);
   PASS(builder_new(b));
   find_shares(b);
-  PASS(find_rows(b));
+  int cap[2] = {0, 0};
+  for (int i = 0; i < b->p->n_node; ++i) {
+    b->raw.start[i + 1] = b->raw.start[i];
+    if (!b->p->active[i]) continue;
+    look_around(b, i);
+    PASS(keep_row(b, i, cap));
+  }
   return transpose(&b->raw, &b->by_column);
 }
 

@@ -97,10 +97,6 @@ static double distance2(int dim, const double *x, const double *y) {
   return sum;
 }
 
-static void subtract(const double *a, const double *b, double *d) {
-  for (int c = 0; c < 3; ++c) d[c] = a[c] - b[c];
-}
-
 double face_segment_distance(int dim, const double *a, const double *b,
                              const double *x) {
   double along2 = distance2(dim, a, b), to = 0.0, s, y[3];
@@ -114,12 +110,12 @@ double face_segment_distance(int dim, const double *a, const double *b,
  * outside of the triangle. */
 static double height(const double *corner, const double *x) {
   double n[3], a[3], b[3], side[3];
-  subtract(corner + 3, corner, a);
-  subtract(corner + 6, corner, b);
+  vector_of(3, corner, corner + 3, a);
+  vector_of(3, corner, corner + 6, b);
   cross(a, b, n);
   for (int k = 0; k < 3; ++k) {
-    subtract(corner + 3 * ((k + 1) % 3), corner + 3 * k, a);
-    subtract(x, corner + 3 * k, b);
+    vector_of(3, corner + 3 * k, corner + 3 * ((k + 1) % 3), a);
+    vector_of(3, corner + 3 * k, x, b);
     cross(a, b, side);
     if (!(dot(3, side, n) > 0.0)) return HUGE_VAL;
   }
@@ -348,8 +344,8 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
   flat f = {.m = m};
   double a[3], b[3], n[3], to[3], e0[3], e1[3];
   memset(weight, 0, 3 * sizeof *weight);
-  subtract(corner + 3, corner, a);
-  subtract(corner + 6, corner, b);
+  vector_of(3, corner, corner + 3, a);
+  vector_of(3, corner, corner + 6, b);
   cross(a, b, n);
   double twice = sqrt(dot(3, n, n)), length = sqrt(dot(3, a, a));
   if (!(twice > 0.0)) return;
@@ -362,14 +358,14 @@ void face_triangle(const mollifier *m, const double *corner, const double *x,
     e0[c] = a[c] / length;
   }
   cross(n, e0, e1);
-  subtract(x, corner, to);
+  vector_of(3, corner, x, to);
   double off = dot(3, to, n);
   f.off2 = off * off;
   f.rim2 = (m->radius - fabs(off)) * (m->radius + fabs(off));
   if (!(f.rim2 > 0.0)) return;
   for (int k = 0; k < 3; ++k) {
     double d[3];
-    subtract(corner + 3 * k, x, d);
+    vector_of(3, x, corner + 3 * k, d);
     f.p[k][0] = dot(3, d, e0);
     f.p[k][1] = dot(3, d, e1);
   }

@@ -141,8 +141,7 @@ static int fit_slopes(const shape *s, const facet *f, double *slope) {
 static void straighten(int dim, int n, double *const *base, double *v) {
   for (int k = 0; k < n; ++k)
     add_scaled(dim, -dot(dim, base[k], v), base[k], v);
-  const double length = sqrt(dot(dim, v, v));
-  for (int c = 0; c < dim; ++c) v[c] /= length;
+  make_unit(dim, v);
 }
 
 /* The normal at a node: that of the quadratic over the plane across itself. */
@@ -203,16 +202,6 @@ static void set_edge(shape *s, int face, int k, const double *f, int second) {
         copysign(0.25 * sqrt(dot(dim, e, e)) * fmin(fabs(a), fabs(b)), a);
 }
 
-/* Nodes that are fitted to a flat one: at kinks, or at ends of a curve. */
-static void mark_flat(shape *s) {
-  for (int i = 0; i < s->in->mesh->n_node; ++i) {
-    if (!(s->state[i] & FITS)) continue;
-    find_ring(s, i);
-    for (int k = 1; k < s->n; ++k)
-      if (s->state[s->ring[k]] & FLAT) s->state[i] |= AT_FLAT;
-  }
-}
-
 status bulge_find(const mortar_input *in, int n, const int *face,
                   double *bulge) {
   SCRATCH;
@@ -221,7 +210,13 @@ status bulge_find(const mortar_input *in, int n, const int *face,
   PASS(find_around(&s, n));
   for (int i = 0; i < in->mesh->n_node; ++i)
     if (s.start[i + 1] > s.start[i]) find_normal(&s, i);
-  mark_flat(&s);
+  /* Nodes that are fitted to a flat one: at kinks, or at ends of a curve. */
+  for (int i = 0; i < s.in->mesh->n_node; ++i) {
+    if (!(s.state[i] & FITS)) continue;
+    find_ring(&s, i);
+    for (int k = 1; k < s.n; ++k)
+      if (s.state[s.ring[k]] & FLAT) s.state[i] |= AT_FLAT;
+  }
   for (int second = 0; second < 2; ++second)
     for (int i = 0; i < n; ++i) {
       facet f;

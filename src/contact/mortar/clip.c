@@ -28,14 +28,8 @@ static double *node_place(int dim, const double *x, int node, double *at) {
 /* Coordinates of x in the plane. */
 static void into_plane(const facet *f, const double *x, double *y) {
   double d[3];
-  for (int c = 0; c < f->dim; ++c) d[c] = x[c] - f->origin[c];
+  vector_of(f->dim, f->origin, x, d);
   for (int a = 0; a < f->dim - 1; ++a) y[a] = dot(f->dim, f->axis[a], d);
-}
-
-static int scale_to_unit(int dim, double *v) {
-  const double length = sqrt(dot(dim, v, v));
-  for (int c = 0; c < dim; ++c) v[c] /= length;
-  return length > 0 ? 0 : -1;
 }
 
 /* Frame from the edges u, v of a triangle. */
@@ -44,13 +38,12 @@ static int frame_of_triangle(facet *f, const double *u, const double *v) {
                                        rounding */
   double w[3];
   cross(u, v, f->normal);
-  for (int c = 0; c < 3; ++c) w[c] = v[c] - u[c];
+  vector_of(3, u, v, w);
   const double longest = fmax(fmax(dot(3, u, u), dot(3, v, v)), dot(3, w, w));
-  f->measure = 0.5 * sqrt(dot(3, f->normal, f->normal));
+  f->measure = 0.5 * norm(3, f->normal);
   if (!(f->measure > flat * longest)) return -1;
   memcpy(f->axis[0], u, sizeof w);
-  if (scale_to_unit(3, f->axis[0]) != 0) return -1;
-  if (scale_to_unit(3, f->normal) != 0) return -1;
+  if (!(make_unit(3, f->axis[0]) > 0 && make_unit(3, f->normal) > 0)) return -1;
   cross(f->normal, f->axis[0], f->axis[1]);
   return 0;
 }

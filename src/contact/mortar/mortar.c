@@ -199,14 +199,6 @@ static void add_bulges(const builder *b, int face, face_part *part) {
   }
 }
 
-static int set_kept(const builder *b, int face, int *kept) {
-  const int *node = mortar_nodes(b->in, face);
-  int n = 0;
-  for (int k = 0; k < b->in->mesh->dim; ++k)
-    n += kept[k] = b->state[node[k]] == CARRIES;
-  return n;
-}
-
 /* int phi_j over the whole face. */
 static void set_shares(const builder *b, int face, const facet *f,
                        double *share) {
@@ -218,16 +210,6 @@ static void set_shares(const builder *b, int face, const facet *f,
     const double w = f->measure / dim * thickness(b, face, phi);
     for (int j = 0; j < dim; ++j) share[j] += w * phi[j];
   }
-}
-
-/* Mean of thinner over the points of a face. */
-static double mean_thinner(const builder *b, int face) {
-  double both = 0.0, own = 0.0;
-  for (int k = 0; k < b->n_point; ++k) {
-    both += b->points[k].weight;
-    own += b->points[k].weight / thinner(b, face, b->points[k].partner);
-  }
-  return both / own;
 }
 
 /* The integrals of slave face number i. */
@@ -247,9 +229,18 @@ static status do_face(builder *b, int i) {
   set_shares(b, face, &f, part->share);
   PASS(partner_find(&b->search, face, &f));
   PASS(set_points(b, face, &f, &corner));
-  const int n_kept = set_kept(b, face, kept);
+  const int *node = mortar_nodes(b->in, face);
+  int n_kept = 0;
+  for (int k = 0; k < b->in->mesh->dim; ++k)
+    n_kept += kept[k] = b->state[node[k]] == CARRIES;
   if (b->n_point == 0) return OK;
-  part->thin = mean_thinner(b, face);
+  /* Mean of thinner over the points of a face. */
+  double both = 0.0, own = 0.0;
+  for (int k = 0; k < b->n_point; ++k) {
+    both += b->points[k].weight;
+    own += b->points[k].weight / thinner(b, face, b->points[k].partner);
+  }
+  part->thin = both / own;
   dual_basis(f.dim, &corner, kept, b->n_point, b->points, part->d);
   if (n_kept == 0) return OK;
   PASS(add_masters(b, part));
@@ -345,12 +336,6 @@ static status do_faces(builder *b) {
 }
 
 /* ---- normals ------------------------------------------------------------- */
-
-static void make_unit(int dim, double *v) {
-  double square = 0.0;
-  for (int c = 0; c < dim; ++c) square += v[c] * v[c];
-  for (int c = 0; c < dim && square > 0; ++c) v[c] /= sqrt(square);
-}
 
 /* Normals at the nodes of the masters, from the faces that are partners (not
  * the sides at an edge of the body); where a node of the slave is in P, the

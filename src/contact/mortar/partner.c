@@ -15,7 +15,7 @@ static const double edge_on = 1e-6;
 static double extent(const mortar_input *in, int n, const int *face,
                      double *largest) {
   const int dim = in->mesh->dim;
-  double low[3] = {0}, high[3] = {0}, sum = 0.0;
+  double low[3] = {0}, high[3] = {0};
   for (int i = 0; i < n * dim; ++i) {
     const double *x =
         mortar_place(in, mortar_nodes(in, face[i / dim])[i % dim]);
@@ -25,8 +25,7 @@ static double extent(const mortar_input *in, int n, const int *face,
       *largest = fmax(*largest, fabs(x[c]));
     }
   }
-  for (int c = 0; c < dim; ++c) sum += (high[c] - low[c]) * (high[c] - low[c]);
-  return sqrt(sum);
+  return distance_of(dim, high, low);
 }
 
 static status plant(const mortar_input *in, int n, const int *face,

@@ -181,11 +181,11 @@ static effect_work expected(const plan_sizes *s) {
       law * s->equilibria * s->elements * plan_element_work(s)};
 }
 
-static int requires_inelastic(const model *m, char *why, size_t size) {
+static int requires_inelastic(const model *m, const reason *why) {
   const section *s = facts_first_inelastic(m);
-  if (s == NULL) return plan_says(0, why, size, "no material has *INELASTIC");
+  if (s == NULL) return plan_says(0, why, "no material has *INELASTIC");
   const law_card *law = &m->materials[s->material_id].law;
-  return plan_says(facts_has_inelastic(m), why, size, "%s of group %s, %s:%d%s",
+  return plan_says(facts_has_inelastic(m), why, "%s of group %s, %s:%d%s",
                    law->ops->name, s->elset, PLACE(law->at),
                    has_card(m, "VISCO") ? "" : ", but no step is *VISCO");
 }

@@ -106,12 +106,11 @@ static effect_work expected(const plan_sizes *s) {
                        4.0 * s->elements * plan_element_work(s)};
 }
 
-static int requires_start(const model *m, char *why, size_t size) {
+static int requires_start(const model *m, const reason *why) {
   if (!m->initial.start.given)
-    return plan_says(0, why, size, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
-  return plan_says(1, why, size,
-                   "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, %s:%d",
-                   PLACE(m->initial.start.at));
+    return plan_says(0, why, "no *INITIAL CONDITIONS, TYPE=DISPLACEMENT");
+  return plan_at(why, &m->initial.start.at,
+                 "*INITIAL CONDITIONS, TYPE=DISPLACEMENT");
 }
 
 /* clang-format off */

@@ -29,18 +29,6 @@ static int strains(const model *m, int elem_id) {
   return expands(m, elem_id) || moduli_follows(m, elem_id);
 }
 
-/* Thermal strains are averaged as the strains are that they are taken off. */
-static void average_thermal(run *r) {
-  cluster_set *c = r->body.d.cluster;
-  double *thermal = r->now.thermal;
-  const size_t ns = r->m->ns;
-  cluster_begin(c, CLUSTER_STRAIN);
-  for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
-  for (int k = 0; k < r->strains.eigen.n; ++k)
-    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
-}
-
 static void strain(run *r, const double *T0) {
   const size_t ns = r->m->ns;
   equilibrium *now = &r->now;
@@ -50,7 +38,14 @@ static void strain(run *r, const double *T0) {
       expansion_strain(&run_material(r, e)->expand, now->temperature[e], T0[e],
                        now->thermal + ns * k);
   }
-  average_thermal(r);
+  /* Thermal strains are averaged as the strains are that they are taken off. */
+  cluster_set *c = r->body.d.cluster;
+  double *thermal = r->now.thermal;
+  cluster_begin(c, CLUSTER_STRAIN);
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_add(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
+  for (int k = 0; k < r->strains.eigen.n; ++k)
+    cluster_smooth(c, CLUSTER_STRAIN, r->strains.elem[k], thermal + ns * k);
 }
 
 /* Temperatures, moduli and thermal strains of r->now at t. */
@@ -107,23 +102,20 @@ static int has_expansion(const model *m) {
   return 0;
 }
 
-static int requires_thermal(const model *m, char *why, size_t size) {
+static int requires_thermal(const model *m, const reason *why) {
   const load *l = first_temperature(m);
   const int given = l != NULL || facts_has_initial(m, INITIAL_TEMPERATURE);
   const material *law = first_warm_law(m), *warm = first_warm_moduli(m);
   if (given && law != NULL && facts_has_inelastic(m))
-    return plan_says(1, why, size,
-                     "law %s of material %s depends on temperature",
+    return plan_says(1, why, "law %s of material %s depends on temperature",
                      law->law.ops->name, law->name);
   if (given && warm != NULL)
-    return plan_says(1, why, size,
-                     "*ELASTIC of material %s depends on temperature",
+    return plan_says(1, why, "*ELASTIC of material %s depends on temperature",
                      warm->name);
-  if (l == NULL) return plan_says(0, why, size, "no *TEMPERATURE card");
+  if (l == NULL) return plan_says(0, why, "no *TEMPERATURE card");
   if (!has_expansion(m))
-    return plan_says(0, why, size, "no material in use has *EXPANSION");
-  return plan_says(1, why, size, "*TEMPERATURE on group %s, %s:%d", l->group,
-                   PLACE(l->at));
+    return plan_says(0, why, "no material in use has *EXPANSION");
+  return plan_at(why, &l->at, "*TEMPERATURE on group %s", l->group);
 }
 
 VALUE(thermal_work, v->s->energy.thermal)

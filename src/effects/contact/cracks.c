@@ -86,16 +86,6 @@ static void add_areas(const run *r, const mesh_crack *c, crack_state *own) {
   }
 }
 
-static void set_areas(run *r, crack_state *own) {
-  const mesh *m = r->msh;
-  for (int i = 0; i < m->n_crack; ++i) add_areas(r, &m->crack[i], own);
-  for (int k = 0; k < m->dim * m->n_node; ++k)
-    if (own->area[k / m->dim] > 0.0) own->shift[k] /= own->area[k / m->dim];
-  for (int i = 0; i < m->n_crack; ++i)
-    for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
-      own->area[m->crack[i].front_node[k]] = 0.0;
-}
-
 /* Points of a front without factors, and why. */
 static void tell_points(const run *r, int id, const fracture *f) {
   const crack *c = &r->m->mesh.cracks[id];
@@ -130,7 +120,12 @@ static status new_cracks(run *r, crack_state *own) {
     PASS(fracture_new(&body, &own->of[i]));
     own->n += fracture_count(own->of[i]);
   }
-  set_areas(r, own);
+  for (int i = 0; i < m->n_crack; ++i) add_areas(r, &m->crack[i], own);
+  for (int k = 0; k < m->dim * m->n_node; ++k)
+    if (own->area[k / m->dim] > 0.0) own->shift[k] /= own->area[k / m->dim];
+  for (int i = 0; i < m->n_crack; ++i)
+    for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
+      own->area[m->crack[i].front_node[k]] = 0.0;
   PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n));
   for (int i = 0, n = 0; i < m->n_crack; ++i)
     for (int k = 0; k < fracture_count(own->of[i]); ++k)
@@ -213,14 +208,6 @@ void cracks_by_forces(const run *r, double *by) {
   const crack_state *own = effect_state(&r->effects, &cracks_effect);
   shift_all(r, own, 1, by);
   over_areas(r, own, by);
-}
-
-/* Of contact forces and loads at the lips. */
-static void find_tractions(const run *r, crack_state *own) {
-  COPY(own->traction, r->now.F, r->n_dof);
-  if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
-  over_areas(r, own, own->traction);
-  shift_all(r, own, 0, own->traction);
 }
 
 /* Sums of a line K + slope * distance by least squares. */
@@ -359,7 +346,11 @@ static status find_all(run *r, crack_state *own) {
   const int step_id = run_step_id(r);
   if (own->step_id == step_id && !(own->t < r->now.t)) return OK;
   domain_stress(&r->body.d, r->now.u, NULL, own->sigma);
-  find_tractions(r, own);
+  /* Of contact forces and loads at the lips. */
+  COPY(own->traction, r->now.F, r->n_dof);
+  if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
+  over_areas(r, own, own->traction);
+  shift_all(r, own, 0, own->traction);
   if (own->flows) PASS(find_elastic(r, own->elastic));
   if (own->flows) PASS(check_elastic(r, own, own->elastic));
   const fracture_state s = state_of(r, own);
@@ -400,12 +391,11 @@ static status find_factors(run *r, void *self) {
   return find_creep(r, own);
 }
 
-static int requires_factors(const model *m, char *why, size_t size) {
+static int requires_factors(const model *m, const reason *why) {
   for (int i = 0; i < m->n.goal; ++i)
     if (m->accuracy.goals[i].quantity == GOAL_SIF)
-      return plan_says(1, why, size, "*GOAL, QUANTITY=SIF, %s:%d",
-                       PLACE(m->accuracy.goals[i].at));
-  return plan_requires_table(m, PRINT_SIF, why, size);
+      return plan_at(why, &m->accuracy.goals[i].at, "*GOAL, QUANTITY=SIF");
+  return plan_requires_table(m, PRINT_SIF, why);
 }
 
 static effect_work expected(const plan_sizes *s) {

@@ -102,16 +102,6 @@ static void notify(run *r, const friction_rule *rule, int contact_id, jump j) {
            j.to, r->surface->node_no[j.node_id]);
 }
 
-static void report_law(run *r, const friction_rule *before,
-                       const friction_rule *now, int contact_id) {
-  size_t used = strlen(r->course.note);
-  snprintf(r->course.note + used, sizeof r->course.note - used,
-           "  friction of contact %s changes at t = %.9g from %s to %s\n",
-           r->m->contacts[contact_id].name, r->old.t,
-           before->law == NULL ? "NONE" : before->law->name,
-           now->law == NULL ? "NONE" : now->law->name);
-}
-
 /* What another *FRICTION changes at the start of a step. */
 static void note_change(run *r, int contact_id) {
   int step_id = run_step_id(r);
@@ -121,7 +111,12 @@ static void note_change(run *r, int contact_id) {
       friction_in_force(r->m, step_id - 1, contact_id);
   if (now == before) return;
   if (now->law != before->law) {
-    report_law(r, before, now, contact_id);
+    size_t used = strlen(r->course.note);
+    snprintf(r->course.note + used, sizeof r->course.note - used,
+             "  friction of contact %s changes at t = %.9g from %s to %s\n",
+             r->m->contacts[contact_id].name, r->old.t,
+             before->law == NULL ? "NONE" : before->law->name,
+             now->law == NULL ? "NONE" : now->law->name);
     return;
   }
   if (now->law == NULL || now->law->value_name == NULL) return;
@@ -141,14 +136,6 @@ static void note_jump(run *r, int contact_id, double t) {
   jump j = largest_change(r, contact_id, rule, r->old.t, rule, t);
   if (j.node_id >= 0) j = narrow(r, rule, j, r->old.t);
   notify(r, rule, contact_id, j);
-}
-
-static void note_jumps(run *r, double t) {
-  r->course.note[0] = '\0';
-  for (int i = 0; i < r->m->n.contact; ++i) {
-    note_change(r, i);
-    note_jump(r, i, t);
-  }
 }
 
 /* ---- the limit ---------------------------------------------------------- */
@@ -185,7 +172,11 @@ static status find_limit(run *r, friction *own, double t) {
 }
 
 static status update_limit(run *r, friction *own, double t) {
-  note_jumps(r, t);
+  r->course.note[0] = '\0';
+  for (int i = 0; i < r->m->n.contact; ++i) {
+    note_change(r, i);
+    note_jump(r, i, t);
+  }
   if (!own->known) PASS(find_limit(r, own, t));
   r->problem.limit = &own->limit;
   r->problem.B = own->limit.B.start == NULL ? NULL : &own->limit.B;
@@ -508,23 +499,21 @@ static effect_work expected_history(const plan_sizes *s) {
   return (effect_work){s->friction, "nodes", times, 20.0 * times * s->friction};
 }
 
-static int requires_friction(const model *m, char *why, size_t size) {
+static int requires_friction(const model *m, const reason *why) {
   return plan_requires_rule(m, rule_has_friction,
                             m->n.contact == 0
                                 ? "no *CONTACT card"
                                 : "no *FRICTION card with a value above zero",
-                            why, size);
+                            why);
 }
 
 /* More than one increment: slip and load have a history. */
-static int requires_history(const model *m, char *why, size_t size) {
-  if (!requires_friction(m, NULL, 0))
-    return plan_says(0, why, size, "no friction");
+static int requires_history(const model *m, const reason *why) {
+  if (!requires_friction(m, NULL)) return plan_says(0, why, "no friction");
   if (m->n.step == 0 ||
       (m->n.step == 1 && !(m->steps[0].dt < m->steps[0].total)))
-    return plan_says(0, why, size, "one increment only");
-  return plan_says(1, why, size, "friction over more than one increment, %s:%d",
-                   PLACE(m->steps[0].at));
+    return plan_says(0, why, "one increment only");
+  return plan_at(why, &m->steps[0].at, "friction over more than one increment");
 }
 
 /* ---- columns ------------------------------------------------------------ */

@@ -124,12 +124,12 @@ static effect_work expected(const plan_sizes *s) {
   return (effect_work){n, "nodes", s->equilibria, 20.0 * s->equilibria * n};
 }
 
-static int requires_given(const model *m, char *why, size_t size) {
+static int requires_given(const model *m, const reason *why) {
   for (EACH(const contact, c, m->contacts, m->n.contact))
     if (c->force.given)
-      return plan_says(1, why, size, "*CONTACT FORCE on contact %s, %s:%d",
-                       c->name, PLACE(c->force.at));
-  return plan_says(0, why, size, "no *CONTACT FORCE card");
+      return plan_at(why, &c->force.at, "*CONTACT FORCE on contact %s",
+                     c->name);
+  return plan_says(0, why, "no *CONTACT FORCE card");
 }
 
 /* clang-format off */

@@ -6,8 +6,8 @@
 
 #include "run/column_row.h"
 
-static int requires_loops(const model *m, char *why, size_t size) {
-  return plan_requires_table(m, PRINT_LOOP, why, size);
+static int requires_loops(const model *m, const reason *why) {
+  return plan_requires_table(m, PRINT_LOOP, why);
 }
 
 static effect_work expected(const plan_sizes *s) {

@@ -24,7 +24,7 @@ static effect_work expected(const plan_sizes *s) {
                        100.0 * s->equilibria * s->contact};
 }
 
-static int requires_motion(const model *m, char *why, size_t size) {
+static int requires_motion(const model *m, const reason *why) {
   for (int i = 0; i < m->n.contact; ++i) {
     const int id = m->contacts[i].obstacle_id;
     if (id < 0 || !obstacle_moves(&m->obstacles[id])) continue;
@@ -32,10 +32,10 @@ static int requires_motion(const model *m, char *why, size_t size) {
     const place *at = &of->at;
     if (of->rotate_at.file != NULL) at = &of->rotate_at;
     if (of->move_at.file != NULL) at = &of->move_at;
-    return plan_says(1, why, size, "motion of *OBSTACLE, NAME=%s, %s:%d",
-                     m->obstacles[id].name, PLACE(*at));
+    return plan_at(why, at, "motion of *OBSTACLE, NAME=%s",
+                   m->obstacles[id].name);
   }
-  return plan_says(0, why, size, "no *OBSTACLE moves");
+  return plan_says(0, why, "no *OBSTACLE moves");
 }
 
 /* clang-format off */

@@ -166,9 +166,9 @@ static effect_work expected(const plan_sizes *s) {
   return (effect_work){n, "nodes", 1.0, 1000.0 * n + n * n};
 }
 
-static int requires_average(const model *m, char *why, size_t size) {
+static int requires_average(const model *m, const reason *why) {
   return plan_requires_rule(m, rule_has_average,
-                            "no friction law with an average", why, size);
+                            "no friction law with an average", why);
 }
 
 /* clang-format off */

@@ -13,16 +13,14 @@ typedef struct pair_forces {
   double *moment; /* [n_contact] left by both sides, N m */
 } pair_forces;
 
-static int requires_pairs(const model *m, char *why, size_t size) {
+static int requires_pairs(const model *m, const reason *why) {
   for (int i = 0; i < m->n.contact; ++i)
     if (m->contacts[i].is_pair)
-      return plan_says(1, why, size, "%s, NAME=%s, %s:%d",
-                       contact_card(&m->contacts[i]), m->contacts[i].name,
-                       PLACE(m->contacts[i].at));
+      return plan_at(why, &m->contacts[i].at, "%s, NAME=%s",
+                     contact_card(&m->contacts[i]), m->contacts[i].name);
   if (m->n.tie > 0)
-    return plan_says(1, why, size, "*TIE, NAME=%s, %s:%d", m->ties[0].name,
-                     PLACE(m->ties[0].at));
-  return plan_says(0, why, size, "no *CONTACT PAIR, no *TIE");
+    return plan_at(why, &m->ties[0].at, "*TIE, NAME=%s", m->ties[0].name);
+  return plan_says(0, why, "no *CONTACT PAIR, no *TIE");
 }
 
 /* Faces of a group that two surfaces search for partners. */

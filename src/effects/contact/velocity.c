@@ -50,12 +50,12 @@ static effect_work expected(const plan_sizes *s) {
                        20.0 * s->equilibria * s->contact};
 }
 
-static int requires_velocity(const model *m, char *why, size_t size) {
+static int requires_velocity(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     if (m->steps[i].form == FORM_VELOCITY)
-      return plan_says(1, why, size, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
+      return plan_says(1, why, "*QUASISTATIC, FORM=VELOCITY of %s:%d",
                        PLACE(m->steps[i].at));
-  return plan_says(0, why, size, "no *QUASISTATIC, FORM=VELOCITY");
+  return plan_says(0, why, "no *QUASISTATIC, FORM=VELOCITY");
 }
 
 /* clang-format off */

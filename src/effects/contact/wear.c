@@ -16,11 +16,11 @@
 /* depth[dim*n_node] of the mesh, along the normals of the rows of a contact
  * node, m. */
 
-static int requires_wear(const model *m, char *why, size_t size) {
+static int requires_wear(const model *m, const reason *why) {
   const effect_card *c = model_effect_card(m, "WEAR", -1);
-  if (c == NULL) return plan_says(0, why, size, "no *WEAR card");
-  return plan_says(1, why, size, "*WEAR on contact %s, %s:%d",
-                   m->contacts[c->contact_id].name, PLACE(c->at));
+  if (c == NULL) return plan_says(0, why, "no *WEAR card");
+  return plan_at(why, &c->at, "*WEAR on contact %s",
+                 m->contacts[c->contact_id].name);
 }
 
 static effect_work expected(const plan_sizes *s) {

@@ -410,8 +410,8 @@ static status find_zones(run *r, void *self) {
   return OK;
 }
 
-static int requires_zones(const model *m, char *why, size_t size) {
-  return plan_requires_table(m, PRINT_ZONES, why, size);
+static int requires_zones(const model *m, const reason *why) {
+  return plan_requires_table(m, PRINT_ZONES, why);
 }
 
 static effect_work expected(const plan_sizes *s) {

@@ -68,14 +68,6 @@ static void guess(run *r, balance *b, double t) {
   r->solving.guess_r = b->guess_r;
 }
 
-/* The next solve continues from r->now. */
-static void go_on(run *r, balance *b) {
-  COPY(b->guess_u, r->now.uc, b->m);
-  COPY(b->guess_r, r->now.rc, b->m);
-  r->solving.guess_u = b->guess_u;
-  r->solving.guess_r = b->guess_r;
-}
-
 /* Of the increment that ends at t, after those of the error "before". */
 static double wanted_error(const run *r, const balance *b, double before,
                            double t) {
@@ -135,7 +127,10 @@ static status solve(run *r, void *self, double t, int *made) {
     iterations += r->solving.report.iterations;
     if (r->solving.report.outcome <= 0) break;
     TRY(check_increment(r, b, &tol, &again));
-    go_on(r, b);
+    COPY(b->guess_u, r->now.uc, b->m);
+    COPY(b->guess_r, r->now.rc, b->m);
+    r->solving.guess_u = b->guess_u;
+    r->solving.guess_r = b->guess_r;
   }
   r->solving.report.iterations = iterations;
   b->iterations += iterations;
@@ -217,7 +212,7 @@ static void show(const void *self, state *s) {
   s->errors.balance = ((const balance *)self)->report;
 }
 
-static int requires_balance(const model *m, char *why, size_t size) {
+static int requires_balance(const model *m, const reason *why) {
   int any = 0;
   for (int i = 0; i < m->n.step; ++i) any |= m->steps[i].balanced;
   return any;

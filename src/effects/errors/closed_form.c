@@ -104,16 +104,6 @@ static void add_energy(const element_at_work *e, const double *found,
   e->sum->energy_all += weight * product(ns, e->S, exact);
 }
 
-/* The stresses that the strains of the closed form have without expansion and
- * inelastic strains; those of the solution likewise. */
-static void add_strain(const element_at_work *e, const double x[3],
-                       double weight) {
-  double strain[MAX_NS], exact[MAX_NS];
-  exact_strain(e, x, strain);
-  voigt_product(e->d->ns, e->E, strain, exact);
-  add_energy(e, e->elastic, exact, weight);
-}
-
 static void add_stress(const element_at_work *e, const double x[3],
                        double weight) {
   int ns = e->d->ns;
@@ -146,8 +136,14 @@ static void add_point(const element_at_work *e, const double *shape,
   if (e->ref->has_u) add_displacement(e, x, shape, weight);
   if (e->ref->has_stress)
     add_stress(e, x, weight);
-  else if (e->ref->has_u)
-    add_strain(e, x, weight);
+  else if (e->ref->has_u) {
+    /* The stresses that the strains of the closed form have without expansion
+     * and inelastic strains; those of the solution likewise. */
+    double strain[MAX_NS], exact[MAX_NS];
+    exact_strain(e, x, strain);
+    voigt_product(e->d->ns, e->E, strain, exact);
+    add_energy(e, e->elastic, exact, weight);
+  }
 }
 
 static void add_triangle(const element_at_work *e) {
@@ -247,11 +243,9 @@ static status find_error(const run *r, true_error *out) {
   return OK;
 }
 
-static int requires_reference(const model *m, char *why, size_t size) {
-  if (m->accuracy.ref.n == 0)
-    return plan_says(0, why, size, "no *REFERENCE card");
-  return plan_says(1, why, size, "*REFERENCE, %s:%d",
-                   PLACE(m->accuracy.ref.at));
+static int requires_reference(const model *m, const reason *why) {
+  if (m->accuracy.ref.n == 0) return plan_says(0, why, "no *REFERENCE card");
+  return plan_at(why, &m->accuracy.ref.at, "*REFERENCE");
 }
 
 /* Formulas at many points of each element. */

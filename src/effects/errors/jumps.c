@@ -262,17 +262,15 @@ done:
 
 /* Jumps are searched where friction makes increments depend on their
  * history. */
-static int requires_check(const model *m, char *why, size_t size) {
+static int requires_check(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     if (m->steps[i].check != CHECK_NONE)
-      return plan_says(1, why, size, "*SOLVER, CHECK=, %s:%d",
-                       PLACE(m->steps[i].solver_at));
+      return plan_at(why, &m->steps[i].solver_at, "*SOLVER, CHECK=");
   for (int i = 0; i < m->n.step && (m->effects & EFFECT_FRICTION); ++i)
     if (m->steps[i].kind == STEP_QUASISTATIC)
-      return plan_says(1, why, size,
-                       "friction in *QUASISTATIC of %s:%d may jump",
+      return plan_says(1, why, "friction in *QUASISTATIC of %s:%d may jump",
                        PLACE(m->steps[i].at));
-  return plan_says(0, why, size, "no *SOLVER, CHECK=, no path of friction");
+  return plan_says(0, why, "no *SOLVER, CHECK=, no path of friction");
 }
 
 /* Products with the condensed matrix in each increment. */

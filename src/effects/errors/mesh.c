@@ -94,19 +94,19 @@ static int is_at_each_increment(const step *s) {
 
 static int is_estimated(const step *s) { return s->accuracy.mesh; }
 
-static int requires_mesh_error(const model *m, char *why, size_t size) {
+static int requires_mesh_error(const model *m, const reason *why) {
   if (facts_first_step(m, is_at_each_increment) != NULL)
-    return plan_requires_accuracy(m, "MESH", is_at_each_increment, why, size);
+    return plan_requires_accuracy(m, "MESH", is_at_each_increment, why);
   if (m->accuracy.mesh_price > 0.0)
     return plan_says(
-        0, why, size,
+        0, why,
         "foreseen %.0f %% of the run, more than %.0f %%; *ACCURACY, "
         "MESH=YES requires it",
         100 * m->accuracy.mesh_price, 100 * PLAN_CHEAP);
   if (facts_first_step(m, is_estimated) != NULL)
-    return plan_says(1, why, size,
+    return plan_says(1, why,
                      "default, end of step; *ACCURACY, MESH=NO leaves it out");
-  return plan_says(0, why, size, "*ACCURACY, MESH=NO");
+  return plan_says(0, why, "*ACCURACY, MESH=NO");
 }
 
 VALUE(mesh_error, v->s->errors.mesh_error.asked

@@ -124,7 +124,7 @@ static status compare(run *r, void *self) {
   return OK;
 }
 
-static int requires_start(const model *m, char *why, size_t size) {
+static int requires_start(const model *m, const reason *why) {
   return m->accuracy.coarser != NULL;
 }
 

@@ -82,18 +82,17 @@ static effect_work expected(const plan_sizes *s) {
                        s->increments * (3.0 * m * m + solve + factor)};
 }
 
-static int requires_bound(const model *m, char *why, size_t size) {
+static int requires_bound(const model *m, const reason *why) {
   int any = 0;
   for (int i = 0; i < m->n.step; ++i) any |= !m->steps[i].accuracy.no_solver;
   if (m->problem.given && !m->steps[0].accuracy.given)
-    return plan_says(any, why, size, "no *ACCURACY card, which requires it");
+    return plan_says(any, why, "no *ACCURACY card, which requires it");
   if (m->problem.given && any)
-    return plan_says(1, why, size, "*ACCURACY, %s:%d",
-                     PLACE(m->steps[0].accuracy.at));
+    return plan_at(why, &m->steps[0].accuracy.at, "*ACCURACY");
   if (m->n.contact == 0 && !m->problem.given)
-    return plan_says(0, why, size, "no *CONTACT card");
-  if (!any) return plan_says(0, why, size, "*ACCURACY, SOLVER=NO");
-  return plan_says(1, why, size, "default; *ACCURACY, SOLVER=NO leaves it out");
+    return plan_says(0, why, "no *CONTACT card");
+  if (!any) return plan_says(0, why, "*ACCURACY, SOLVER=NO");
+  return plan_says(1, why, "default; *ACCURACY, SOLVER=NO leaves it out");
 }
 
 VALUE(bound_error, 100 * v->s->errors.error.relative)

@@ -482,8 +482,8 @@ static effect_work expected(const plan_sizes *s) {
 
 static int is_estimated(const step *s) { return s->accuracy.time; }
 
-static int requires_time_error(const model *m, char *why, size_t size) {
-  return plan_requires_accuracy(m, "TIME", is_estimated, why, size);
+static int requires_time_error(const model *m, const reason *why) {
+  return plan_requires_accuracy(m, "TIME", is_estimated, why);
 }
 
 VALUE(time_error, v->s->errors.time_error.asked

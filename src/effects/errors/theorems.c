@@ -197,10 +197,10 @@ static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
 
 static int is_checked(const step *s) { return s->accuracy.theorems; }
 
-static int requires_theorems(const model *m, char *why, size_t size) {
+static int requires_theorems(const model *m, const reason *why) {
   if (facts_first_step(m, is_checked) != NULL && m->n.contact == 0)
-    return plan_says(0, why, size, "no *CONTACT card");
-  return plan_requires_accuracy(m, "THEORY", is_checked, why, size);
+    return plan_says(0, why, "no *CONTACT card");
+  return plan_requires_accuracy(m, "THEORY", is_checked, why);
 }
 
 static effect_work expected(const plan_sizes *s) {

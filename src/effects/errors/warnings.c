@@ -107,7 +107,7 @@ static status keep(run *r, void *self, archive *a) {
   return archive_ints(a, "touched", own->touched, r->m->n.contact);
 }
 
-static int requires_warnings(const model *m, char *why, size_t size) {
+static int requires_warnings(const model *m, const reason *why) {
   return !m->problem.given;
 }
 

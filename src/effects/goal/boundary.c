@@ -17,7 +17,6 @@
 #include "base/base.h"
 #include "effects/goal/parts.h"
 
-static const double PI = 3.14159265358979323846;
 static const double SMOOTH = 0.86; /* -, cosine between faces of a surface */
 
 /* A face, or an element for a load in the body. */
@@ -63,8 +62,6 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
 
 /* ---- faces --------------------------------------------------------------- */
 
-void goal_ring_free(goal_ring *r) { RELEASE(r->start, r->face); }
-
 status goal_ring_new(const mesh *m, goal_ring *r) {
   PASS_NEW_ALL(OF(r->start, m->n_node + 1), OF(r->face, m->dim * m->n_face));
   for (int k = 0; k < m->dim * m->n_face; ++k) ++r->start[m->face[k] + 1];
@@ -91,20 +88,17 @@ static void normal_at(const run *r, const goal_ring *rings, int node,
                       const double *own, double *n) {
   const mesh *m = r->msh;
   const unsigned char *held = r->body.d.fixed + m->dim * node;
-  double size = 0.0;
   CLEAR(n, 3);
   for (int k = rings->start[node]; k < rings->start[node + 1]; ++k) {
     const int face = rings->face[k];
-    double other[3] = {0.0}, along = 0.0;
+    double other[3] = {0.0};
     if (m->face_other[face] >= 0) continue;
     const double measure = mesh_face_normal(m, face, other);
-    for (int c = 0; c < m->dim; ++c) along += own[c] * other[c];
-    for (int c = 0; c < m->dim && along >= SMOOTH; ++c)
-      n[c] += measure * other[c];
+    if (dot(m->dim, own, other) >= SMOOTH)
+      add_scaled(m->dim, measure, other, n);
   }
   mirror(m->dim, held, own, n);
-  for (int c = 0; c < m->dim; ++c) size = hypot(size, n[c]);
-  for (int c = 0; c < m->dim && size > 0.0; ++c) n[c] /= size;
+  goal_make_unit(m->dim, n);
 }
 
 void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
@@ -162,7 +156,7 @@ status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s) {
   PASS_NEW(s->bent, m->n_face * (m->dim == 3 ? 3 : 1));
   for (int f = 0; f < m->n_face; ++f)
     if (m->face_other[f] < 0) n += bent_edges(r, rings, f, s->bent + n);
-  if (n > 0) qsort(s->bent, n, sizeof *s->bent, number_pair_order);
+  PAIR_SORT(s->bent, n);
   for (int k = 0; k < n; ++k)
     if (kept == 0 || number_pair_order(&s->bent[kept - 1], &s->bent[k]) != 0)
       s->bent[kept++] = s->bent[k];
@@ -204,9 +198,8 @@ static patch face_patch(const run *r, const goal_ring *rings, int face) {
   mesh_elem_gradients(m, m->face_elem[face], g);
   for (int i = 0; i < p.n; ++i)
     for (int a = 0; a <= m->dim; ++a) {
-      double along = 0.0;
       if (v[a] != p.node[i]) continue;
-      for (int c = 0; c < m->dim; ++c) along += g[m->dim * a + c] * p.normal[c];
+      const double along = dot(m->dim, g + m->dim * a, p.normal);
       for (int c = 0; c < m->dim; ++c)
         p.g[i][c] = g[m->dim * a + c] - along * p.normal[c];
     }
@@ -218,7 +211,7 @@ static int is_axisymmetric(const run *r) {
 }
 
 static double turn_of(const run *r, double radius) {
-  return is_axisymmetric(r) ? 2.0 * PI * radius : 1.0;
+  return is_axisymmetric(r) ? 2.0 * M_PI * radius : 1.0;
 }
 
 /* What lies beyond a face, m3. */
@@ -232,8 +225,7 @@ static double volume_beyond(const run *r, const patch *p) {
 }
 
 status goal_volumes_beyond(const run *r, double *volume) {
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  PASS(goal_ring_new(r->msh, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(r->msh, &rings));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
     volume[r->msh->face_elem[f]] += volume_beyond(r, &p);
@@ -296,7 +288,7 @@ static void add_part_beyond(const run *r, const patch *p, int face,
   for (int k = 0; k < p->n && is_axisymmetric(r); ++k) {
     const spot s = spot_at(m, p, k);
     for (int i = 0; i < p->n; ++i)
-      dF[2 * p->node[i]] -= s.weight * s.beyond * 2.0 * PI * s.b[i] * t[2];
+      dF[2 * p->node[i]] -= s.weight * s.beyond * 2.0 * M_PI * s.b[i] * t[2];
   }
   for (int a = 0; a <= dim; ++a)
     for (int c = 0; c < dim; ++c)
@@ -315,8 +307,7 @@ static int varies(const load *l) {
  * of their areas. */
 static void directions(const load *l, int dim, const patch *p, const spot *s,
                        double *flat, double *bent) {
-  double slope = 0.0;
-  for (int c = 0; c < dim; ++c) slope += s->slope[c] * s->slope[c];
+  const double slope = dot(dim, s->slope, s->slope);
   for (int c = 0; c < dim; ++c) {
     const double along = c == l->component;
     flat[c] = l->kind == LOAD_PRESSURE ? -p->normal[c] : along;
@@ -376,18 +367,15 @@ typedef struct rim_edge {
 static rim_edge edge_of(const mesh *m, int face, int k) {
   const int *v = m->face + 3 * face, a = v[(k + 1) % 3], b = v[(k + 2) % 3];
   rim_edge e = {{a < b ? a : b, a < b ? b : a}, face, 0.0, {0.0}};
-  double along[3], size = 0.0;
+  double along[3];
   for (int c = 0; c < 3; ++c) {
     along[c] = m->x[3 * b + c] - m->x[3 * a + c];
     e.out[c] = m->x[3 * a + c] - m->x[3 * v[k] + c];
     e.length = hypot(e.length, along[c]);
   }
   const double part = dot(3, e.out, along) / (e.length * e.length);
-  for (int c = 0; c < 3; ++c) {
-    e.out[c] -= part * along[c];
-    size = hypot(size, e.out[c]);
-  }
-  for (int c = 0; c < 3; ++c) e.out[c] /= size;
+  for (int c = 0; c < 3; ++c) e.out[c] -= part * along[c];
+  goal_make_unit(3, e.out);
   return e;
 }
 
@@ -398,10 +386,9 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   *n = 3 * g->n_item;
   PASS_NEW(*e, *n);
   for (int i = 0; i < *n; ++i) (*e)[i] = edge_of(m, g->item_id[i / 3], i % 3);
-  qsort(*e, *n, sizeof **e, number_pair_order);
+  PAIR_SORT(*e, *n);
   for (int i = 0, last; i < *n; i = last) {
-    for (last = i + 1; last < *n && number_pair_order(*e + i, *e + last) == 0;)
-      ++last;
+    last = PAIR_END(*e, *n, i);
     if (last == i + 1) (*e)[kept++] = (*e)[i];
   }
   *n = kept;
@@ -414,7 +401,6 @@ static void out_at(const run *r, const rim_edge *e, const int *next, int k,
                    double *out) {
   const rim_edge *own = e + k / 2;
   const unsigned char *held = r->body.d.fixed + 3 * own->v[k % 2];
-  double size = 0.0;
   int at = k;
   CLEAR(out, 3);
   do {
@@ -424,8 +410,7 @@ static void out_at(const run *r, const rim_edge *e, const int *next, int k,
     at = next[at];
   } while (at != k);
   mirror(3, held, own->out, out);
-  for (int c = 0; c < 3; ++c) size = hypot(size, out[c]);
-  for (int c = 0; c < 3 && size > 0.0; ++c) out[c] /= size;
+  goal_make_unit(3, out);
 }
 
 static void add_beyond_edge(const run *r, const load *l, const rim_edge *e,
@@ -493,8 +478,7 @@ static status add_loads(const run *r, const goal_ring *rings, double *dF) {
 }
 
 status goal_add_boundary(const run *r, double *dF) {
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
-  PASS(goal_ring_new(r->msh, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(r->msh, &rings));
   OWNED_OF(int, where, goal_places(r, &where));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
@@ -527,12 +511,12 @@ static double beyond_face(const run *r, const patch *p, int face,
   double sum = 0.0;
   for (int k = 0; k < p->n; ++k) {
     const spot s = spot_at(m, p, k);
-    double u = -mean, slope = 0.0;
+    double u = -mean;
     for (int i = 0; i < p->n; ++i)
       u += s.b[i] * r->now.u[m->dim * p->node[i] + w->component];
-    for (int c = 0; c < m->dim; ++c) slope += s.slope[c] * s.slope[c];
     const double more =
-        sqrt(1.0 + slope) * turn_of(r, s.on[0]) - turn_of(r, s.x[0]);
+        sqrt(1.0 + dot(m->dim, s.slope, s.slope)) * turn_of(r, s.on[0]) -
+        turn_of(r, s.x[0]);
     sum +=
         s.weight * (of_faces ? u * more + s.beyond * rise * turn_of(r, s.x[0])
                              : u * s.beyond * turn_of(r, s.x[0]));
@@ -544,9 +528,8 @@ status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
                         double *sum) {
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
   *sum = 0.0;
-  PASS(goal_ring_new(m, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
   OWNED_NEW(unsigned char, in, m->n_face + m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
   for (int f = 0; f < m->n_face; ++f) {

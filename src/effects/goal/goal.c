@@ -140,13 +140,6 @@ static status set_moved(const run *r, goal_state *own, shared *s) {
   return OK;
 }
 
-/* Where the edges began to stick. */
-static void set_sticks(const run *r, const goal_history *h, goal_surface *s) {
-  const size_t dim = r->msh->dim;
-  for (int k = 0; k < s->n_edge && h->edge != NULL; ++k)
-    COPY(s->edge[k].stick, h->edge + dim * k, dim);
-}
-
 static int has_goal_of(const model *m, goal_quantity of) {
   int any = 0;
   for (int i = 0; i < m->n.goal; ++i)
@@ -177,7 +170,9 @@ static status prepare(run *r, goal_state *own, shared *s) {
   const int n = r->nodes.n_row;
   PASS(recover(r, own, &recovery));
   PASS(goal_surface_new(r, &own->border, recovery, &s->surface));
-  set_sticks(r, &own->before, &s->surface);
+  const size_t dim = r->msh->dim;
+  for (int k = 0; k < s->surface.n_edge && own->before.edge != NULL; ++k)
+    COPY(s->surface.edge[k].stick, own->before.edge + dim * k, dim);
   const goal_solution found = {.d = &r->body.d,
                                .u = r->now.u,
                                .sigma = r->result.stress,
@@ -395,16 +390,6 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
 
 /* ---- the errors that the next increment remembers ------------------------ */
 
-/* Errors of the nodes by the bubbles and by the positions of stick. */
-static status move_nodes(run *r, goal_state *own, shared *s) {
-  goal_estimator_force(s->estimator, s->y);
-  cblas_daxpy((int)r->n_dof, 1.0, s->lacks, 1, s->y, 1);
-  PASS(condense_load(r->c, s->y, NULL, s->j));
-  if (s->adjoint != NULL)
-    PASS(contact_adjoint_change(s->adjoint, s->j, s->moved, s->y_c));
-  return condense_recover(r->c, s->y_c, own->before.u);
-}
-
 /* 1: no increment follows. */
 static int is_last(const run *r) {
   return r->at.last && run_step_id(r) == r->m->n.step - 1;
@@ -424,7 +409,13 @@ static status remember(run *r, goal_state *own, shared *s) {
   }
   COPY(h->edge, goal_estimator_edges(s->estimator),
        (size_t)r->msh->dim * h->n_edge);
-  return move_nodes(r, own, s);
+  /* Errors of the nodes by the bubbles and by the positions of stick. */
+  goal_estimator_force(s->estimator, s->y);
+  cblas_daxpy((int)r->n_dof, 1.0, s->lacks, 1, s->y, 1);
+  PASS(condense_load(r->c, s->y, NULL, s->j));
+  if (s->adjoint != NULL)
+    PASS(contact_adjoint_change(s->adjoint, s->j, s->moved, s->y_c));
+  return condense_recover(r->c, s->y_c, own->before.u);
 }
 
 static status find_goal(run *r, goal_state *own, shared *s, int id) {
@@ -527,10 +518,10 @@ static effect_work expected(const plan_sizes *s) {
       s->increments * (factor + (1.0 + n) * pass + (n + history) * solve)};
 }
 
-static int requires_goals(const model *m, char *why, size_t size) {
-  if (m->n.goal == 0) return plan_says(0, why, size, "no *GOAL card");
-  return plan_says(1, why, size, "*GOAL, NAME=%s, %s:%d",
-                   m->accuracy.goals[0].name, PLACE(m->accuracy.goals[0].at));
+static int requires_goals(const model *m, const reason *why) {
+  if (m->n.goal == 0) return plan_says(0, why, "no *GOAL card");
+  return plan_at(why, &m->accuracy.goals[0].at, "*GOAL, NAME=%s",
+                 m->accuracy.goals[0].name);
 }
 
 static int goal_items(const void *self) {

@@ -9,8 +9,6 @@
  */
 #include "effects/goal/parts.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* Points of degree 2, as many as corners: barycentric coordinate of point k in
  * corner k. */
 static const double AT[5] = {[3] = 2.0 / 3.0, [4] = 0.58541019662496847};
@@ -19,16 +17,6 @@ typedef struct spot {
   double b[4];    /* barycentric */
   double *T0, *T; /* [n_elem] */
 } spot;
-
-/* The temperatures at a point of all elements. */
-static status set_spot(const run *r, int k, spot *s) {
-  const int n = r->msh->dim + 1;
-  for (int a = 0; a < n; ++a)
-    s->b[a] = a == k ? AT[n] : (1.0 - AT[n]) / (n - 1);
-  load_temperature_initial_at(r->m, r->msh, s->b, s->T0);
-  return load_temperature_at(r->m, r->msh, r->step, r->now.t, s->b, s->T0,
-                             s->T);
-}
 
 /* d[3] = d0 at a point of element number k of those with strains; 0: none. */
 static int strain_at(const run *r, int k, const spot *s, double *d) {
@@ -83,7 +71,7 @@ static void add_spot(const run *r, const spot *s, double *dF, double *rest) {
     if (!strain_at(r, k, s, strain)) continue;
     for (int a = 0; a < n && kin == AXISYMMETRIC; ++a)
       radius += s->b[a] * m->x[2 * m->elem[n * e + a]];
-    weight *= kin == AXISYMMETRIC ? 2.0 * PI * radius
+    weight *= kin == AXISYMMETRIC ? 2.0 * M_PI * radius
                                   : d->thickness[d->section_id[e]];
     stress_of(d, e, strain, t);
     add_force(m, e, s->b, t, weight, radius, dF);
@@ -98,7 +86,12 @@ status goal_add_thermal(const run *r, double *dF, double **rest) {
   PASS_NEW_REALS(r->msh->n_elem, &T0, &T);
   for (int k = 0; k <= r->msh->dim; ++k) {
     spot s = {.T0 = T0, .T = T};
-    PASS(set_spot(r, k, &s));
+    /* The temperatures at a point of all elements. */
+    const int n = r->msh->dim + 1;
+    for (int a = 0; a < n; ++a)
+      s.b[a] = a == k ? AT[n] : (1.0 - AT[n]) / (n - 1);
+    load_temperature_initial_at(r->m, r->msh, s.b, s.T0);
+    PASS(load_temperature_at(r->m, r->msh, r->step, r->now.t, s.b, s.T0, s.T));
     add_spot(r, &s, dF, *rest);
   }
   return OK;

@@ -5,8 +5,6 @@
  */
 #include "effects/goal/parts.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* ---- at the nodes -------------------------------------------------------- */
 
 /* The integrals of the P1 functions of a group, at the unknowns of a component;
@@ -75,7 +73,7 @@ static double bubble_integral(const run *r, const int *v, int n, int a, int b,
   if (r->m->sections[0].kin != AXISYMMETRIC) return share[n] * measure;
   for (int k = 0; k < n; ++k)
     radius += (k == a || k == b ? 2.0 : 1.0) * r->msh->x[2 * v[k]];
-  return share[n] * measure * 2.0 * PI * radius / (n == 2 ? 4.0 : 5.0);
+  return share[n] * measure * 2.0 * M_PI * radius / (n == 2 ? 4.0 : 5.0);
 }
 
 /* Of one face or element, with the measure times the thickness. */

@@ -46,6 +46,14 @@ typedef struct goal_form {
   goal_verdict why;   /* GOAL_RELIABLE: it has a value */
 } goal_form;
 
+/* v[dim] to length 1, unless that is 0, by hypot; the length. */
+static inline double goal_make_unit(int dim, double *v) {
+  double size = 0.0;
+  for (int c = 0; c < dim; ++c) size = hypot(size, v[c]);
+  for (int c = 0; c < dim && size > 0.0; ++c) v[c] /= size;
+  return size;
+}
+
 status goal_form_new(const run *r, goal_form *f);
 /* quantity.c: *f of a goal. ERR_MEMORY. */
 status goal_form_set(run *r, const goal_card *g, goal_form *f);
@@ -66,7 +74,6 @@ typedef struct goal_ring {
 } goal_ring;
 /* All-zero r is new. ERR_MEMORY. */
 status goal_ring_new(const mesh *m, goal_ring *r);
-void goal_ring_free(goal_ring *r); /* accepts all-zero */
 /* out[dim]: from the middle of an edge of nodes v[2] of a face to the surface
  * of the body, m. */
 void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,

@@ -24,8 +24,6 @@
 
 #include <lapacke.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* The derivative of J by a normal force at x. */
 typedef struct weight {
   double (*at)(const struct weight *w, const double *x);
@@ -50,7 +48,7 @@ static double along(const weight *w, const double *x) {
 
 /* From a force to one of unit thickness, or of unit length round the axis. */
 static double per_length(const weight *w, const double *x) {
-  return w->axi ? 1.0 / (2.0 * PI * x[0]) : 1.0 / w->thickness;
+  return w->axi ? 1.0 / (2.0 * M_PI * x[0]) : 1.0 / w->thickness;
 }
 
 static double line_weight(double s, double radius) {
@@ -70,7 +68,7 @@ static double on_line(const weight *w, const double *x) {
 static double disc_weight(double square, double radius) {
   const double t2 = square / (radius * radius), q = 1.0 - t2;
   if (!(q > 0.0)) return 0.0;
-  return 8.0 / (PI * radius * radius) * (1.0 - 2.5 * t2) * q * q;
+  return 8.0 / (M_PI * radius * radius) * (1.0 - 2.5 * t2) * q * q;
 }
 
 /* Square of the distance of x, or of its image in the planes of symmetry of the
@@ -165,7 +163,7 @@ static double face_rest(const run *r, const weight *w, const int *q,
       traction += b[k] * r->now.rc[dim * q[k]] / s->area[q[k]];
       linear += b[k] * w->at(w, at);
     }
-    const double turn = w->axi ? 2.0 * PI * x[0] : w->thickness;
+    const double turn = w->axi ? 2.0 * M_PI * x[0] : w->thickness;
     sum += b[dim] * measure * turn * traction * (w->at(w, x) - linear);
   }
   return sum;
@@ -233,8 +231,6 @@ typedef struct line {
   int *node;   /* [n] */
   double *s;   /* [n] m, from the peak */
 } line;
-
-static void line_free(line *l) { RELEASE(l->node, l->s); }
 
 /* next[2*n]: the contact nodes next to each node of the line, or -1. */
 static status find_next(const run *r, const goal_card *g, int *next) {
@@ -402,9 +398,8 @@ static void judge_line(const run *r, const goal_card *g, const line *l,
 /* Where the largest pressure may be infinite there is no peak. */
 static status place_on_line(const run *r, const goal_card *g, int peak,
                             weight *w, goal_form *f) {
-  ENDS_BY(line_free) line l = {0};
   int first, last;
-  PASS(line_new(r, g, w, peak, &l));
+  OWNED_PARTS(line, l, line_new(r, g, w, peak, &l));
   const int mirrored = goal_is_mirrored(r, peak);
   const int at_border = l.peak == 0 || l.peak == l.n - 1;
   zone_of(r, &l, &first, &last);
@@ -428,20 +423,15 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
 
 /* ---- a disc in space ----------------------------------------------------- */
 
-typedef struct side {
-  int v[2]; /* mesh nodes, ascending */
-} side;
-
 /* Sides of the faces of a group, sorted; new. */
-static status sides_of(const mesh *m, const mesh_group *of, side **out) {
+static status sides_of(const mesh *m, const mesh_group *of, number_pair **out) {
   PASS_NEW(*out, 3 * of->n_item);
   for (int k = 0; k < of->n_item; ++k)
     for (int a = 0; a < 3; ++a) {
       const int *v = m->face + 3 * of->item_id[k];
-      const int p = v[a], q = v[(a + 1) % 3];
-      (*out)[3 * k + a] = (side){{p < q ? p : q, p < q ? q : p}};
+      (*out)[3 * k + a] = number_pair_of(v[a], v[(a + 1) % 3]);
     }
-  qsort(*out, 3 * (size_t)of->n_item, sizeof **out, number_pair_order);
+  PAIR_SORT(*out, 3 * of->n_item);
   return OK;
 }
 
@@ -455,19 +445,19 @@ typedef struct rim {
 } rim;
 
 /* 1: a side of the border lies in a plane of symmetry normal to axis c. */
-static int lies_in_plane(const run *r, const side *e, int c) {
+static int lies_in_plane(const run *r, const number_pair *e, int c) {
   const mesh *m = r->msh;
   const unsigned char *fixed = r->body.d.fixed;
-  const int i = 3 * e->v[0] + c, j = 3 * e->v[1] + c;
+  const int i = 3 * e->a + c, j = 3 * e->b + c;
   return fixed[i] && fixed[j] && fabs(m->x[i] - m->x[j]) <= 1e-9 * m->size;
 }
 
 /* The planes of symmetry that a side of the border lies in; 0: none. */
-static int add_planes(const run *r, const side *e, weight *w) {
+static int add_planes(const run *r, const number_pair *e, weight *w) {
   int any = 0;
   for (int c = 0; c < 3; ++c) {
     if (!lies_in_plane(r, e, c)) continue;
-    w->plane[c] = r->msh->x[3 * e->v[0] + c];
+    w->plane[c] = r->msh->x[3 * e->a + c];
     any = 1;
   }
   return any;
@@ -489,13 +479,12 @@ static status look_round(const run *r, const goal_card *g, double radius,
                          weight *w, rim *out) {
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
   const int n = 3 * of->n_item;
-  OWNED_OF(side, e, sides_of(r->msh, of, &e));
+  OWNED_OF(number_pair, e, sides_of(r->msh, of, &e));
   OWNED_OF(int, where, goal_places(r, &where));
   *out = (rim){0, 0.0};
   for (int k = 0, last; k < n; k = last) {
-    const int *v = e[k].v;
-    for (last = k + 1; last < n && number_pair_order(e + k, e + last) == 0;)
-      ++last;
+    const int v[2] = {e[k].a, e[k].b};
+    last = PAIR_END(e, n, k);
     if (!is_near(r, v[0], w, radius) && !is_near(r, v[1], w, radius)) continue;
     double length = 0.0;
     for (int c = 0; c < 3; ++c)
@@ -511,15 +500,15 @@ static status look_round(const run *r, const goal_card *g, double radius,
 static status parts_behind(const run *r, const goal_card *g, double largest,
                            double *behind) {
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
-  OWNED_OF(side, e, sides_of(r->msh, of, &e));
+  OWNED_OF(number_pair, e, sides_of(r->msh, of, &e));
   OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < 3 * of->n_item; ++k)
     for (int c = 0; c < 3; ++c) {
       if (!lies_in_plane(r, e + k, c)) continue;
+      const int q[2] = {where[e[k].a], where[e[k].b]};
       for (int i = 0; i < 2; ++i)
-        if (where[e[k].v[i]] >= 0)
-          behind[c] =
-              fmax(behind[c], part_behind(r, where[e[k].v[i]], largest));
+        if (q[i] >= 0)
+          behind[c] = fmax(behind[c], part_behind(r, q[i], largest));
     }
   return OK;
 }
@@ -537,7 +526,7 @@ static status set_half_of_disc(const run *r, const goal_card *g, weight *w,
     }
   if (closed < 6) f->why = GOAL_NO_ZONE;
   PASS(parts_behind(r, g, largest, behind));
-  w->radius = 0.5 * sqrt(area / PI);
+  w->radius = 0.5 * sqrt(area / M_PI);
   for (int c = 0; c < 3; ++c) w->radius *= sqrt(1.0 + behind[c]);
   return OK;
 }
@@ -715,13 +704,12 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
 }
 
 status goal_set_width(const run *r, const goal_card *g, goal_form *f) {
-  ENDS_BY(line_free) line l = {0};
   const int peak = peak_of(r, g);
   f->value = NAN;
   if (r->msh->dim == 3 || !has_one_thickness(r, g)) f->why = GOAL_NOT_COVERED;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (f->why != GOAL_RELIABLE) return OK;
   const weight w = weight_at(r, g, peak);
-  PASS(line_new(r, g, &w, peak, &l));
+  OWNED_PARTS(line, l, line_new(r, g, &w, peak, &l));
   return set_ends(r, g, &l, &w, f);
 }

@@ -8,8 +8,6 @@
 #include <cblas.h>
 #include <lapacke.h>
 
-static const double PI = 3.14159265358979323846;
-
 status goal_form_new(const run *r, goal_form *f) {
   PASS_NEW(f->load, r->n_dof);
   PASS_NEW_REALS(r->nodes.n_c, &f->rows, &f->psi);
@@ -73,7 +71,7 @@ static double held_part(const run *r, int face, const int *q, int k, int a) {
                         r->faces.face_weight[face] / (dim * (dim + 1));
   for (int l = 0; l < dim; ++l) {
     const double turn = r->faces.input.axisymmetric
-                            ? PI * (s->x[dim * q[k]] + s->x[dim * q[l]])
+                            ? M_PI * (s->x[dim * q[k]] + s->x[dim * q[l]])
                             : 1.0;
     for (int b = 1; b < dim && l != k; ++b)
       sum +=
@@ -109,7 +107,7 @@ static void add_lost(const run *r, int face, const int *q, goal_form *f) {
   for (int k = 0; k < dim; ++k) ++*(q[k] < 0 ? &lost : &left);
   for (int k = 0; k < dim; ++k) {
     const double turn = r->faces.input.axisymmetric && q[k] >= 0
-                            ? 2.0 * PI * r->surface->x[dim * q[k]]
+                            ? 2.0 * M_PI * r->surface->x[dim * q[k]]
                             : 1.0;
     for (int a = 0; a < dim && q[k] >= 0; ++a) {
       const double part = f->psi[dim * q[k] + a] * r->now.rc[dim * q[k] + a] *
@@ -298,14 +296,6 @@ static int outgrows(const mesh *m, const fracture_linear *l, double radius) {
   return 0;
 }
 
-static void set_rough(const run *r, const fracture_point *p, goal_form *f) {
-  const double part = p->size / p->radius;
-  f->is_front = r->msh->dim == 3;
-  f->is_coarse = !f->is_front && (part * FEWEST > 1.0 ||
-                                  outgrows(r->msh, &f->factor, p->radius));
-  f->rough = ROUGH * fabs(f->value) * (f->is_front ? part : part * part);
-}
-
 static status set_factor(run *r, const goal_card *g, goal_form *f) {
   const size_t n = r->n_dof;
   crack_factors k;
@@ -318,7 +308,12 @@ static status set_factor(run *r, const goal_card *g, goal_form *f) {
   if (!k.is_linear) f->why = GOAL_NOT_COVERED;
   if (!k.is_linear) return OK;
   PASS(cracks_derive(r, g->crack_id, point, g->component, &f->factor));
-  set_rough(r, &k.points[point], f);
+  const double part = k.points[point].size / k.points[point].radius;
+  f->is_front = r->msh->dim == 3;
+  f->is_coarse =
+      !f->is_front && (part * FEWEST > 1.0 ||
+                       outgrows(r->msh, &f->factor, k.points[point].radius));
+  f->rough = ROUGH * fabs(f->value) * (f->is_front ? part : part * part);
   for (size_t i = 0; i < n; ++i) f->load[i] = f->factor.by_u[i];
   cracks_by_forces(r, f->factor.by_traction);
   if (r->nodes.n > 0)

@@ -13,25 +13,20 @@
 #include "base/base.h"
 #include "effects/goal/parts.h"
 
-static const double PI = 3.14159265358979323846;
 /* Of a face that is a chord of a smooth surface, rad: half of what it turns. */
 static const double SLACK = 0.27;
 
 /* ---- what supports prescribe between the nodes --------------------------- */
 
-static double middle_of(const run *r, const load *l, const int *v) {
+/* Edge v[2] of a support whose value varies. */
+static given_edge edge_of(const run *r, const load *l, const int *v) {
+  const number_pair is = number_pair_of(v[0], v[1]);
+  given_edge e = {.a = is.a, .b = is.b};
   const mesh *m = r->msh;
   double x[3] = {0.0};
   for (int c = 0; c < m->dim; ++c)
     x[c] = 0.5 * (m->x[m->dim * v[0] + c] + m->x[m->dim * v[1] + c]);
-  return load_at_point(l, r->step, x, r->now.t);
-}
-
-/* Edge v[2] of a support whose value varies. */
-static given_edge edge_of(const run *r, const load *l, const int *v) {
-  given_edge e = {.a = v[0] < v[1] ? v[0] : v[1],
-                  .b = v[0] < v[1] ? v[1] : v[0]};
-  double bend = middle_of(r, l, v);
+  double bend = load_at_point(l, r->step, x, r->now.t);
   for (int k = 0; k < 2; ++k)
     bend -= 0.5 * load_at_node(l, r->msh, r->step, v[k], r->now.t);
   if (isfinite(bend)) e.bend[l->component] = bend;
@@ -60,7 +55,7 @@ static int edges_in(const run *r, const load *l, const unsigned char *in,
 /* Each edge once. */
 static int unite(given_edge *e, int n) {
   int kept = 0;
-  if (n > 0) qsort(e, n, sizeof *e, number_pair_order);
+  PAIR_SORT(e, n);
   for (int k = 0; k < n; ++k) {
     if (kept == 0 || number_pair_order(&e[kept - 1], &e[k]) != 0) {
       e[kept++] = e[k];
@@ -132,15 +127,6 @@ static int is_bent(int n, double angle, double whole) {
 
 typedef enum { FREE, CLAMPED, ROLLER, ACROSS, SLANTED } kind;
 
-/* a < b. */
-typedef struct edge {
-  int a, b;
-} edge;
-
-static edge between(int a, int b) {
-  return (edge){a < b ? a : b, a < b ? b : a};
-}
-
 /* The body at a node. */
 typedef struct corner {
   double angle;                   /* rad */
@@ -159,14 +145,14 @@ static double angle_at(const mesh *m, const int *v, int k) {
 }
 
 /* By the one component of an edge that is held. */
-static kind held_kind(const mesh *m, const edge *e, int component) {
+static kind held_kind(const mesh *m, const number_pair *e, int component) {
   const double d[2] = {fabs(m->x[2 * e->b] - m->x[2 * e->a]),
                        fabs(m->x[2 * e->b + 1] - m->x[2 * e->a + 1])};
   if (d[component] <= 1e-6 * d[1 - component]) return ROLLER;
   return d[1 - component] <= 1e-6 * d[component] ? ACROSS : SLANTED;
 }
 
-static kind contact_kind(const goal_surface *s, const edge *e) {
+static kind contact_kind(const goal_surface *s, const number_pair *e) {
   const contact_edge *found =
       s->n_edge == 0
           ? NULL
@@ -175,8 +161,8 @@ static kind contact_kind(const goal_surface *s, const edge *e) {
   return found->stuck ? CLAMPED : ROLLER;
 }
 
-static void add_border(const run *r, const goal_surface *s, const edge *e,
-                       corner *c) {
+static void add_border(const run *r, const goal_surface *s,
+                       const number_pair *e, corner *c) {
   const unsigned char *fixed = r->body.d.fixed;
   const int held[2] = {fixed[2 * e->a] && fixed[2 * e->b],
                        fixed[2 * e->a + 1] && fixed[2 * e->b + 1]};
@@ -199,7 +185,7 @@ static void add_border(const run *r, const goal_surface *s, const edge *e,
  * by its angle. */
 static int is_smooth(const corner *c, kind a, kind b) {
   if (!c->contact || c->support) return 0;
-  return a != FREE || b != CLAMPED || c->angle > PI - SLACK;
+  return a != FREE || b != CLAMPED || c->angle > M_PI - SLACK;
 }
 
 /* 1: stresses are infinite at a node of the border. */
@@ -208,19 +194,19 @@ static int is_singular(const corner *c) {
   const kind b = c->of[0] < c->of[1] ? c->of[1] : c->of[0];
   if (is_smooth(c, a, b)) return 0;
   if (c->n != 2) return c->n > 2;
-  if (a == b && fabs(c->angle - PI) < 2.0 * SLACK) return 0;
+  if (a == b && fabs(c->angle - M_PI) < 2.0 * SLACK) return 0;
   if (b == SLANTED) return 1;
-  if (a == b && b <= CLAMPED) return c->angle > PI;
-  return c->angle > (a == FREE && b == CLAMPED ? PI / 4 : PI / 2 + SLACK);
+  if (a == b && b <= CLAMPED) return c->angle > M_PI;
+  return c->angle > (a == FREE && b == CLAMPED ? M_PI / 4 : M_PI / 2 + SLACK);
 }
 
 /* 1: the same by the regions that meet at a node. */
 static int is_singular_joint(const corner *c, const joint *j) {
   const int mirrored = c->n == 2 && c->of[0] == ROLLER && c->of[1] == ROLLER &&
-                       fabs(c->angle - PI) < SLACK;
+                       fabs(c->angle - M_PI) < SLACK;
   if (j->n < 2) return 0;
-  if (c->n == 0) return is_bent(j->n, j->angle, 2.0 * PI);
-  return !mirrored || is_bent(j->n, j->angle, PI);
+  if (c->n == 0) return is_bent(j->n, j->angle, 2.0 * M_PI);
+  return !mirrored || is_bent(j->n, j->angle, M_PI);
 }
 
 /* 1: a support holds the node and no edge at it. */
@@ -246,8 +232,7 @@ static void outward(const mesh *m, const int *v, double *n) {
     for (int c = 0; c < 3; ++c)
       d[i][c] = m->x[3 * v[i + 1] + c] - m->x[3 * v[0] + c];
   cross(d[0], d[1], n);
-  const double size = sqrt(dot(3, n, n));
-  for (int c = 0; c < 3; ++c) n[c] /= size;
+  make_unit(3, n);
 }
 
 /* By n_held components of a face, the last of them "component". */
@@ -261,7 +246,7 @@ static kind side_kind(const double *n, int n_held, int component) {
 static kind side_contact(const goal_surface *s, const int *v) {
   kind of = CLAMPED;
   for (int k = 0; k < 3; ++k) {
-    const edge e = between(v[k], v[(k + 1) % 3]);
+    const number_pair e = number_pair_of(v[k], v[(k + 1) % 3]);
     const kind at = contact_kind(s, &e);
     if (at == FREE) return FREE;
     if (at == ROLLER) of = ROLLER;
@@ -284,7 +269,7 @@ static void add_side(const run *r, const goal_surface *s, const int *v,
     for (int k = 0; k < 3; ++k) held[3 * v[k] + c] = 1;
   }
   for (int k = 0; k < 3; ++k) {
-    const edge of = between(v[(k + 1) % 3], v[(k + 2) % 3]);
+    const number_pair of = number_pair_of(v[(k + 1) % 3], v[(k + 2) % 3]);
     e[k] = (rim){
         .a = of.a,
         .b = of.b,
@@ -303,7 +288,7 @@ static int is_singular_edge(const mesh *m, const rim *e, int count) {
   for (int c = 0; c < 3; ++c)
     across += e[0].n[c] * (m->x[3 * e[1].other + c] - m->x[3 * e[0].a + c]);
   const double turn = acos(fmax(-1.0, fmin(1.0, dot(3, e[0].n, e[1].n))));
-  corner at = {.angle = PI + (across > 0.0 ? turn : -turn), .n = 2};
+  corner at = {.angle = M_PI + (across > 0.0 ? turn : -turn), .n = 2};
   for (int k = 0; k < 2; ++k) {
     at.of[k] = e[k].of;
     if (e[k].support) at.support = 1;
@@ -315,10 +300,9 @@ static int is_singular_edge(const mesh *m, const rim *e, int count) {
 }
 
 static void mark_edges(const mesh *m, rim *e, int n, goal_surface *s) {
-  if (n > 0) qsort(e, n, sizeof *e, number_pair_order);
+  PAIR_SORT(e, n);
   for (int i = 0, last; i < n; i = last) {
-    for (last = i + 1; last < n && number_pair_order(e + i, e + last) == 0;)
-      ++last;
+    last = PAIR_END(e, n, i);
     if (s->front != NULL && s->front[e[i].a] && s->front[e[i].b]) continue;
     if (!is_singular_edge(m, e + i, last - i)) continue;
     s->ends[e[i].a] |= GOAL_END_OF_SUPPORT;
@@ -360,7 +344,7 @@ static int inner_edges(const mesh *m, const space_recovery *of, const joint *at,
     for (int i = 0; i < 3; ++i)
       for (int k = i + 1; k < 4; ++k) {
         if (at[v[i]].n < 2 || at[v[k]].n < 2) continue;
-        const edge is = between(v[i], v[k]);
+        const number_pair is = number_pair_of(v[i], v[k]);
         if (to != NULL)
           to[n] = (inner){is.a, is.b, space_region(of, e) + 1,
                           angle_between(m, v, i, k)};
@@ -377,16 +361,16 @@ static status mark_inner(const mesh *m, const space_recovery *of,
   if (n == 0) return OK;
   OWNED_NEW(inner, e, n);
   inner_edges(m, of, at, e);
-  qsort(e, n, sizeof *e, number_pair_order);
+  PAIR_SORT(e, n);
   for (int i = 0, last; i < n; i = last) {
     joint j = {.n = 0};
     double whole = 0.0;
-    for (last = i; last < n && number_pair_order(e + i, e + last) == 0;
-         ++last) {
-      add_region(e[last].region, e[last].angle, &j);
-      whole += e[last].angle;
+    last = PAIR_END(e, n, i);
+    for (int k = i; k < last; ++k) {
+      add_region(e[k].region, e[k].angle, &j);
+      whole += e[k].angle;
     }
-    if (j.n < 2 || whole < 2.0 * PI - SLACK || !is_bent(j.n, j.angle, whole))
+    if (j.n < 2 || whole < 2.0 * M_PI - SLACK || !is_bent(j.n, j.angle, whole))
       continue;
     ends[e[i].a] |= GOAL_END_OF_SUPPORT;
     ends[e[i].b] |= GOAL_END_OF_SUPPORT;
@@ -419,7 +403,7 @@ static status mark_plane(const run *r, const goal_border *border,
   for (int k = 0; k < border->n; ++k) {
     int v[2];
     mesh_side_nodes(m, border->side[k], v);
-    const edge e = between(v[0], v[1]);
+    const number_pair e = number_pair_of(v[0], v[1]);
     add_border(r, s, &e, c);
   }
   for (int i = 0; i < m->n_node; ++i)

@@ -5,8 +5,6 @@
 #include "base/base.h"
 #include "effects/goal/parts.h"
 
-static const double PI = 3.14159265358979323846;
-
 /* 1: a face at a node in the plane is held along its normal, as the node is. */
 static int has_held_face(const run *r, int node) {
   const mesh *m = r->msh;
@@ -40,7 +38,7 @@ static double bubble_weight(const run *r, int face) {
       mesh_face_normal(m, face, normal) * r->faces.face_weight[face];
   if (m->dim == 3) return weight / 3.0;
   if (!r->faces.input.axisymmetric) return weight * 2.0 / 3.0;
-  return weight * 2.0 / 3.0 * PI * (m->x[2 * v[0]] + m->x[2 * v[1]]);
+  return weight * 2.0 / 3.0 * M_PI * (m->x[2 * v[0]] + m->x[2 * v[1]]);
 }
 
 /* Gradients of the gap along the surface. */
@@ -49,15 +47,13 @@ typedef struct gap_slopes {
   int *n_face; /* [n] of them round each */
 } gap_slopes;
 
-static void gap_slopes_free(gap_slopes *g) { RELEASE(g->of, g->n_face); }
-
 /* g[3] of the linear gap on a face between contact nodes q[dim]; returns its
  * weight, with which gradients of a parabola are exact in the plane; 0: a gap
  * out of reach. */
 static double face_slope(const run *r, int face, const int *q, double *g) {
   const mesh *m = r->msh;
   const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
-  double shape[12], normal[3] = {0.0}, along = 0.0;
+  double shape[12], normal[3] = {0.0};
   const double measure = mesh_face_normal(m, face, normal);
   CLEAR(g, 3);
   mesh_elem_gradients(m, e, shape);
@@ -67,8 +63,7 @@ static double face_slope(const run *r, int face, const int *q, double *g) {
       for (int c = 0; c < dim && v[a] == r->surface->node_id[q[i]]; ++c)
         g[c] += shape[dim * a + c] * r->problem.gap[q[i]];
   }
-  for (int c = 0; c < dim; ++c) along += g[c] * normal[c];
-  for (int c = 0; c < dim; ++c) g[c] -= along * normal[c];
+  add_scaled(dim, -dot(dim, g, normal), normal, g);
   return dim == 2 ? 1.0 / measure : measure;
 }
 
@@ -125,13 +120,12 @@ static void set_middle(const run *r, const gap_slopes *slopes, const int *q,
   const contact_surface *s = r->surface;
   const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
   const int dim = s->dim;
-  double x[3] = {0.0}, size = 0.0;
+  double x[3] = {0.0};
   for (int c = 0; c < dim; ++c) {
     x[c] = 0.5 * (s->x[dim * q[0] + c] + s->x[dim * q[1] + c]);
     e->n[c] = s->frame[dim * dim * q[0] + c] + s->frame[dim * dim * q[1] + c];
-    size = hypot(size, e->n[c]);
   }
-  for (int c = 0; c < dim; ++c) e->n[c] /= size;
+  goal_make_unit(dim, e->n);
   if (p->obstacle_normal) obstacle_normal(p->support, dim, x, e->n);
   double out = 0.0;
   for (int c = 0; c < dim; ++c) out = hypot(out, e->out[c]);
@@ -155,10 +149,11 @@ static int state_of(const run *r, int q) {
 static void add_edge(const run *r, const goal_ring *rings,
                      const gap_slopes *slopes, int face, const int *v,
                      const int *where, goal_surface *s) {
-  const int i = v[0], j = v[1], q[2] = {where[i], where[j]};
+  const number_pair is = number_pair_of(v[0], v[1]);
+  const int q[2] = {where[v[0]], where[v[1]]};
   if (q[0] < 0 || q[1] < 0) return;
-  contact_edge e = {.a = i < j ? i : j,
-                    .b = i < j ? j : i,
+  contact_edge e = {.a = is.a,
+                    .b = is.b,
                     .weight = bubble_weight(r, face),
                     .other = {-1, -1}};
   const contact_status a = r->result.contact[q[0]], b = r->result.contact[q[1]];
@@ -167,7 +162,7 @@ static void add_edge(const run *r, const goal_ring *rings,
   goal_bulge(r, rings, face, v, e.out);
   if (e.closed) set_middle(r, slopes, q, &e);
   if (state_of(r, q[0]) != state_of(r, q[1]))
-    s->ends[i] = s->ends[j] = GOAL_END_OF_CONTACT;
+    s->ends[is.a] = s->ends[is.b] = GOAL_END_OF_CONTACT;
   s->edge[s->n_edge++] = e;
 }
 
@@ -183,15 +178,13 @@ static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
                     .closed = 1,
                     .stuck = 1,
                     .other = {other[turn], other[!turn]}};
-  double size = 0.0;
   for (int k = 0; k < n_q; ++k) {
     e.closed &= r->result.contact[q[k]] != CONTACT_OPEN;
     e.stuck &= r->result.contact[q[k]] == CONTACT_STICK;
     for (int c = 0; c < dim; ++c)
       e.n[c] += r->surface->frame[dim * dim * q[k] + c];
   }
-  for (int c = 0; c < dim; ++c) size = hypot(size, e.n[c]);
-  for (int c = 0; c < dim; ++c) e.n[c] /= size;
+  goal_make_unit(dim, e.n);
   s->edge[s->n_edge++] = e;
   if (n_q < 2 || state_of(r, q[0]) == state_of(r, q[1])) return;
   s->ends[e.a] = s->ends[e.b] = GOAL_END_OF_CONTACT;
@@ -298,13 +291,11 @@ status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
   OWNED int *where = NULL, *seen = NULL;
-  ENDS_BY(goal_ring_free) goal_ring rings = {0};
   int n = 0;
-  PASS(goal_ring_new(m, &rings));
+  OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
   PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node));
   PASS(goal_places(r, &where));
-  ENDS_BY(gap_slopes_free) gap_slopes slopes = {0};
-  PASS(gap_slopes_new(r, where, &slopes));
+  OWNED_PARTS(gap_slopes, slopes, gap_slopes_new(r, where, &slopes));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
     if (!r->m->contacts[k].is_pair) n += r->faces.pairs[k].group->n_item;
   for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;
@@ -314,8 +305,7 @@ status goal_surface_new(const run *r, const goal_border *border,
       add_group(r, &rings, &slopes, r->faces.pairs[k].group, where, s);
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
-  if (s->n_edge > 0)
-    qsort(s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
+  PAIR_SORT(s->edge, s->n_edge);
   mark_border(r, where, seen, s);
   PASS(mark_front(m, s));
   unite_edges(s);
@@ -331,16 +321,13 @@ status goal_surface_new(const run *r, const goal_border *border,
 static double traction_of(const run *r, int q, int along, double *v) {
   const contact_surface *s = r->surface;
   const int dim = s->dim, first = along ? 1 : 0, last = along ? dim : 1;
-  double size = 0.0;
   CLEAR(v, 3);
   for (int a = first; a < last; ++a) {
     const double part = r->now.rc[dim * q + a] / s->area[q];
     for (int c = 0; c < dim; ++c)
       v[c] += part * s->frame[dim * (dim * q + a) + c];
   }
-  for (int c = 0; c < dim; ++c) size = hypot(size, v[c]);
-  for (int c = 0; c < dim && size > 0.0; ++c) v[c] /= size;
-  return size;
+  return goal_make_unit(dim, v);
 }
 
 /* v[2][dim] at the ends: v in the middle times the mean of y and "more" less

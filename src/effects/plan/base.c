@@ -56,29 +56,27 @@ static effect_work reactions(const plan_sizes *s) {
 
 /* ---- the cards that require them ----------------------------------------- */
 
-static int requires_mesh(const model *m, char *why, size_t size) {
-  return plan_says(!m->problem.given, why, size, "*MESH, %s:%d",
-                   PLACE(m->mesh.at));
+static int requires_mesh(const model *m, const reason *why) {
+  return plan_says(!m->problem.given, why, "*MESH, %s:%d", PLACE(m->mesh.at));
 }
 
-static int requires_contact(const model *m, char *why, size_t size) {
-  if (m->n.contact == 0) return plan_says(0, why, size, "no *CONTACT card");
-  return plan_says(1, why, size, "%s, NAME=%s, %s:%d",
-                   contact_card(&m->contacts[0]), m->contacts[0].name,
-                   PLACE(m->contacts[0].at));
+static int requires_contact(const model *m, const reason *why) {
+  if (m->n.contact == 0) return plan_says(0, why, "no *CONTACT card");
+  return plan_at(why, &m->contacts[0].at, "%s, NAME=%s",
+                 contact_card(&m->contacts[0]), m->contacts[0].name);
 }
 
 int plan_requires_rule(const model *m, int (*is)(const friction_rule *rule),
-                       const char *none, char *why, size_t size) {
+                       const char *none, const reason *why) {
   for (EACH(const contact, c, m->contacts, m->n.contact))
     for (int k = 0; k < m->n.step; ++k) {
       const friction_rule *rule =
           friction_in_force(m, k, (int)(c - m->contacts));
       if (is(rule))
-        return plan_says(1, why, size, "*FRICTION, LAW=%s on contact %s, %s:%d",
-                         rule->law->name, c->name, PLACE(rule->at));
+        return plan_at(why, &rule->at, "*FRICTION, LAW=%s on contact %s",
+                       rule->law->name, c->name);
     }
-  return plan_says(0, why, size, "%s", none);
+  return plan_says(0, why, "%s", none);
 }
 
 /* 1: *EFFECTS leaves friction out and bounds what it would have changed. */
@@ -91,74 +89,64 @@ static int omits_friction(const model *m) {
 }
 
 /* The normals of a second obstacle are tangents of the first. */
-static int requires_tangents(const model *m, char *why, size_t size) {
+static int requires_tangents(const model *m, const reason *why) {
   const step *s = facts_first_whole(m);
-  if (m->n.contact == 0 || friction_effect.required(m, NULL, 0))
-    return friction_effect.required(m, why, size);
+  if (m->n.contact == 0 || friction_effect.required(m, NULL))
+    return friction_effect.required(m, why);
   if (m->mesh.corner_id >= 0)
-    return plan_says(1, why, size, "contact %s meets another, %s:%d",
-                     m->contacts[m->mesh.corner_id].name,
-                     PLACE(m->contacts[m->mesh.corner_id].at));
+    return plan_at(why, &m->contacts[m->mesh.corner_id].at,
+                   "contact %s meets another",
+                   m->contacts[m->mesh.corner_id].name);
   if (s == NULL && omits_friction(m))
-    return plan_says(1, why, size, "friction left out is checked, %s:%d",
-                     PLACE(m->reduction.at));
-  if (s == NULL)
-    return plan_says(0, why, size, "mu = 0: only normals are condensed");
+    return plan_at(why, &m->reduction.at, "friction left out is checked");
+  if (s == NULL) return plan_says(0, why, "mu = 0: only normals are condensed");
   if (s->output.condensed >= 0)
-    return plan_says(1, why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d",
-                     PLACE(s->output.at));
+    return plan_at(why, &s->output.at, "*OUTPUT, CONDENSED=FCLIB");
   if (s->check != CHECK_NONE)
-    return plan_says(1, why, size, "*SOLVER, CHECK=, %s:%d",
-                     PLACE(s->solver_at));
-  return plan_says(1, why, size, "*ACCURACY, THEORY=YES, %s:%d",
-                   PLACE(s->accuracy.at));
+    return plan_at(why, &s->solver_at, "*SOLVER, CHECK=");
+  return plan_at(why, &s->accuracy.at, "*ACCURACY, THEORY=YES");
 }
 
-static int requires_body(const model *m, char *why, size_t size) {
+static int requires_body(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n))
       if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY)
-        return plan_says(1, why, size, "*DLOAD on group %s, %s:%d", l->group,
-                         PLACE(l->at));
-  return plan_says(0, why, size, "no *DLOAD card");
+        return plan_at(why, &l->at, "*DLOAD on group %s", l->group);
+  return plan_says(0, why, "no *DLOAD card");
 }
 
-static int requires_output(const model *m, int table, char *why, size_t size) {
+static int requires_output(const model *m, int table, const reason *why) {
   for (EACH(const step, s, m->steps, m->n.step))
     for (int k = 0; k < s->print.n; ++k)
       if (s->print.requests[k].table & table)
-        return plan_says(1, why, size, "*PRINT, %s:%d",
-                         PLACE(s->print.requests[k].at));
+        return plan_at(why, &s->print.requests[k].at, "*PRINT");
   if (model_writes_fields(m))
-    return plan_says(1, why, size, "fields in JOB.h5, see below");
-  return plan_says(0, why, size, "no output requires them");
+    return plan_says(1, why, "fields in JOB.h5, see below");
+  return plan_says(0, why, "no output requires them");
 }
 
-static int requires_stress(const model *m, char *why, size_t size) {
-  return requires_output(m, PRINT_ELEMENTS, why, size);
+static int requires_stress(const model *m, const reason *why) {
+  return requires_output(m, PRINT_ELEMENTS, why);
 }
 
 /* Reactions are computed when printed, or where a support does work. */
-static int requires_reaction(const model *m, char *why, size_t size) {
+static int requires_reaction(const model *m, const reason *why) {
   const load *l = facts_moving_support(m);
-  if (l == NULL) return requires_output(m, PRINT_REACTIONS, why, size);
-  return plan_says(1, why, size,
+  if (l == NULL) return requires_output(m, PRINT_REACTIONS, why);
+  return plan_says(1, why,
                    "work of the support %s, %s:%d, that moves or is released",
                    l->group, PLACE(l->at));
 }
 
 int plan_requires_accuracy(const model *m, const char *word,
-                           int (*is)(const step *s), char *why, size_t size) {
+                           int (*is)(const step *s), const reason *why) {
   const step *s = facts_first_step(m, is);
-  if (s == NULL) return plan_says(0, why, size, "no *ACCURACY, %s=YES", word);
+  if (s == NULL) return plan_says(0, why, "no *ACCURACY, %s=YES", word);
   if (m->accuracy.target.percent > 0.0)
-    return plan_says(1, why, size, "*ACCURACY, TARGET=, %s:%d",
-                     PLACE(s->accuracy.at));
+    return plan_at(why, &s->accuracy.at, "*ACCURACY, TARGET=");
   if (s->accuracy.at.file == NULL || (s->balanced && strcmp(word, "MESH") == 0))
-    return plan_says(1, why, size, "*SOLVER, TOL=BALANCED, %s:%d",
-                     PLACE(s->solver_at));
-  return plan_says(1, why, size, "*ACCURACY, %s=YES, %s:%d", word,
-                   PLACE(s->accuracy.at));
+    return plan_at(why, &s->solver_at, "*SOLVER, TOL=BALANCED");
+  return plan_at(why, &s->accuracy.at, "*ACCURACY, %s=YES", word);
 }
 
 VALUE(reaction, v->s->body.reaction[at(v->msh->dim, id, part)])
@@ -225,16 +213,14 @@ effect_work plan_table(const plan_sizes *s, int table, double all) {
   return (effect_work){n, "rows", shown, shown * n * 10.0 * TEXT};
 }
 
-int plan_requires_table(const model *m, int table, char *why, size_t size) {
+int plan_requires_table(const model *m, int table, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     for (EACH(const print_request, p, m->steps[i].print.requests,
               m->steps[i].print.n)) {
-      if (p->table != table) continue;
-      snprintf(why, size, "*PRINT, %s, %s:%d", print_word(table), PLACE(p->at));
-      return 1;
+      if (p->table == table)
+        return plan_at(why, &p->at, "*PRINT, %s", print_word(table));
     }
-  snprintf(why, size, "no *PRINT, %s", print_word(table));
-  return 0;
+  return plan_says(0, why, "no *PRINT, %s", print_word(table));
 }
 
 static effect_work held_rows(const plan_sizes *s) {
@@ -251,14 +237,14 @@ TABLE_ROWS(nodes, PRINT_NODES, s->nodes)
 TABLE_ROWS(elements, PRINT_ELEMENTS, s->elements)
 TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
 
-#define TABLE(row, text, bit_, of_, rows_)                            \
-  static int requires_##row(const model *m, char *why, size_t size) { \
-    return plan_requires_table(m, bit_, why, size);                   \
-  }                                                                   \
-  const effect_ops row##_effect = {.name = text,                      \
-                                   .bit = NO_BIT,                     \
-                                   .required = requires_##row,        \
-                                   .expected = rows_,                 \
+#define TABLE(row, text, bit_, of_, rows_)                       \
+  static int requires_##row(const model *m, const reason *why) { \
+    return plan_requires_table(m, bit_, why);                    \
+  }                                                              \
+  const effect_ops row##_effect = {.name = text,                 \
+                                   .bit = NO_BIT,                \
+                                   .required = requires_##row,   \
+                                   .expected = rows_,            \
                                    .table = {bit_, of_}};
 TABLE(contact_table, "table of contact nodes", PRINT_CONTACT, PER_CONTACT_NODE,
       contact_rows)
@@ -272,35 +258,31 @@ TABLE(energy_table, "table of energies", PRINT_ENERGY, PER_INCREMENT,
 TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, PER_NODE,
       held_rows)
 
-static int requires_fields(const model *m, char *why, size_t size) {
+static int requires_fields(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     if (m->steps[i].output.frequency >= 0 && m->steps[i].output.given)
-      return plan_says(1, why, size, "*OUTPUT, %s:%d",
-                       PLACE(m->steps[i].output.at));
+      return plan_at(why, &m->steps[i].output.at, "*OUTPUT");
     else if (m->steps[i].output.frequency >= 0)
-      return plan_says(1, why, size,
-                       "default; *OUTPUT, HDF5=NO leaves them out");
-  return plan_says(0, why, size, "*OUTPUT, HDF5=NO");
+      return plan_says(1, why, "default; *OUTPUT, HDF5=NO leaves them out");
+  return plan_says(0, why, "*OUTPUT, HDF5=NO");
 }
 
-static int requires_condensed(const model *m, char *why, size_t size) {
+static int requires_condensed(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     if (m->steps[i].output.condensed >= 0)
-      return plan_says(1, why, size, "*OUTPUT, CONDENSED=FCLIB, %s:%d",
-                       PLACE(m->steps[i].output.at));
-  return plan_says(0, why, size, "no *OUTPUT, CONDENSED=FCLIB");
+      return plan_at(why, &m->steps[i].output.at, "*OUTPUT, CONDENSED=FCLIB");
+  return plan_says(0, why, "no *OUTPUT, CONDENSED=FCLIB");
 }
 
-static int requires_restart(const model *m, char *why, size_t size) {
+static int requires_restart(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     if (m->steps[i].restart.frequency >= 0)
-      return plan_says(1, why, size, "*RESTART, %s:%d",
-                       PLACE(m->steps[i].restart.at));
-  return plan_says(0, why, size, "no *RESTART card");
+      return plan_at(why, &m->steps[i].restart.at, "*RESTART");
+  return plan_says(0, why, "no *RESTART card");
 }
 
-static int requires_always(const model *m, char *why, size_t size) {
-  return plan_says(1, why, size, "always");
+static int requires_always(const model *m, const reason *why) {
+  return plan_says(1, why, "always");
 }
 
 static effect_work fields(const plan_sizes *s) {

@@ -8,12 +8,22 @@
 
 #include <stdarg.h>
 
-int plan_says(int on, char *why, size_t size, const char *format, ...) {
+int plan_says(int on, const reason *why, const char *format, ...) {
   va_list list;
   va_start(list, format);
-  vsnprintf(why, size, format, list);
+  if (why != NULL) vsnprintf(why->text, why->size, format, list);
   va_end(list);
   return on;
+}
+
+int plan_at(const reason *why, const place *at, const char *format, ...) {
+  va_list list;
+  va_start(list, format);
+  const int n = why == NULL ? 0 : vsnprintf(why->text, why->size, format, list);
+  va_end(list);
+  if (why != NULL && n >= 0 && (size_t)n < why->size)
+    snprintf(why->text + n, why->size - n, ", %s:%d", PLACE(*at));
+  return 1;
 }
 
 /* 1: *EFFECTS leaves out an effect that the deck requires. */
@@ -25,28 +35,28 @@ static int is_omitted(const model *m, int bit) {
 }
 
 /* The reason of a row with a bit in a deck with *CONDENSED PROBLEM. */
-static void say_of_problem(const model *m, const effect_ops *e, plan_row *r) {
+static void say_of_problem(const model *m, const effect_ops *e,
+                           const reason *why) {
   if (e->bit == EFFECT_BIT_CONTACT)
-    plan_says(1, r->why, sizeof r->why, "*CONDENSED PROBLEM, %s:%d",
-              PLACE(m->problem.at));
+    plan_at(why, &m->problem.at, "*CONDENSED PROBLEM");
   else if (e->bit == EFFECT_BIT_FRICTION)
-    plan_says(1, r->why, sizeof r->why,
-              "mu of *CONDENSED PROBLEM, %s:%d, is %s", PLACE(m->problem.at),
+    plan_says(1, why, "mu of *CONDENSED PROBLEM, %s:%d, is %s",
+              PLACE(m->problem.at),
               m->problem.friction ? "not zero" : "zero or not there");
   else if (e->bit != EFFECT_BIT_ESTIMATES || m->dim == 1)
-    plan_says(1, r->why, sizeof r->why, "not part of a condensed problem");
+    plan_says(1, why, "not part of a condensed problem");
 }
 
 static void row_of(const plan_sizes *s, const effect_ops *e, plan_row *r) {
   const model *m = s->m;
   *r = (plan_row){
       .name = e->name, .on = effect_is_on(e, m), .within = e->within};
-  e->required(m, r->why, sizeof r->why);
+  const reason why = {r->why, sizeof r->why};
+  e->required(m, &why);
   if (e->bit != NO_BIT && m->problem.given)
-    say_of_problem(m, e, r);
+    say_of_problem(m, e, &why);
   else if (e->bit != NO_BIT && is_omitted(m, e->bit))
-    plan_says(1, r->why, sizeof r->why,
-              "left out by *EFFECTS, MODE=AUTO, %s:%d", PLACE(m->reduction.at));
+    plan_at(&why, &m->reduction.at, "left out by *EFFECTS, MODE=AUTO");
   if (effect_stage(e) != STAGE_NONE) r->stages[r->n_stage++] = effect_stage(e);
   for (int k = 0; e->more[k] != 0; ++k) r->stages[r->n_stage++] = e->more[k];
   r->work = e->expected(s);
@@ -77,8 +87,8 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
     if (mat->law.ops == NULL) continue;
     snprintf(r.of, sizeof r.of, "%s", m->sections[i].elset);
     if (r.on)
-      snprintf(r.why, sizeof r.why, "%s of material %s, %s:%d",
-               mat->law.ops->name, mat->name, PLACE(mat->law.at));
+      plan_at(&(reason){r.why, sizeof r.why}, &mat->law.at, "%s of material %s",
+              mat->law.ops->name, mat->name);
     r.work.items = r.on ? flowing_elements(m, msh, i) : 0.0;
     r.work.operations *= r.work.items / fmax(1.0, all->work.items);
     if (!first) {
@@ -90,13 +100,6 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
   }
   if (first) PASS(add_row(p, capacity, all));
   return OK;
-}
-
-static void find_shares(effect_plan *p) {
-  double sum = 0.0;
-  for (int i = 0; i < p->n; ++i) sum += p->rows[i].work.operations;
-  for (int i = 0; i < p->n && sum > 0.0; ++i)
-    p->rows[i].share = p->rows[i].work.operations / sum;
 }
 
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
@@ -112,7 +115,10 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
     else
       PASS(add_row(p, &capacity, &r));
   }
-  find_shares(p);
+  double sum = 0.0;
+  for (int i = 0; i < p->n; ++i) sum += p->rows[i].work.operations;
+  for (int i = 0; i < p->n && sum > 0.0; ++i)
+    p->rows[i].share = p->rows[i].work.operations / sum;
   return OK;
 }
 

@@ -88,21 +88,24 @@ double plan_cpu(const effect_plan *p);
 
 /* The first rule that "is"; "none": there is no such rule. */
 int plan_requires_rule(const model *m, int (*is)(const friction_rule *rule),
-                       const char *none, char *why, size_t size);
+                       const char *none, const reason *why);
 /* Material of a section; one without anything if it has none. */
 const material *plan_material(const model *m, int section_id);
 /* Elements of a section. */
 double plan_section_elements(const plan_sizes *s, int section_id);
 /* Increments that all steps show: in a table, or 0: in any table or field. */
 double plan_shown(const model *m, int table);
-/* "on", with the reason in why[size] as by snprintf. */
-int plan_says(int on, char *why, size_t size, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+/* "on", with the reason as by snprintf. */
+int plan_says(int on, const reason *why, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* 1, with what requires it and its place. */
+int plan_at(const reason *why, const place *at, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* An estimate of *ACCURACY that the first step that "is" requires. */
 int plan_requires_accuracy(const model *m, const char *word,
-                           int (*is)(const step *s), char *why, size_t size);
-/* 1: some *PRINT has the table; where, into why[size]. */
-int plan_requires_table(const model *m, int table, char *why, size_t size);
+                           int (*is)(const step *s), const reason *why);
+/* 1: some *PRINT has the table. */
+int plan_requires_table(const model *m, int table, const reason *why);
 /* Rows of a table of "all": all of whose requests name a group, the largest. */
 double plan_rows(const plan_sizes *s, int table, double all);
 effect_work plan_table(const plan_sizes *s, int table, double all);

@@ -222,16 +222,6 @@ static status see_increment(void *ctx, const state *s) {
   return p->st;
 }
 
-/* Without any law, in few increments. */
-static void make_elastic(model *m) {
-  for (int i = 0; i < m->n.material; ++i) {
-    m->materials[i].law_aside = m->materials[i].law.ops;
-    m->materials[i].law.ops = NULL;
-  }
-  for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
-  m->effects = effects_required(m);
-}
-
 /* The elastic run; *seen 1 if it came to its end. */
 static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
                           int *seen) {
@@ -240,7 +230,12 @@ static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
   int unsettled = 0;
   OWNED_NEW(double, dt, m->n.step);
   for (int i = 0; i < m->n.step; ++i) dt[i] = m->steps[i].dt;
-  make_elastic(m);
+  for (int i = 0; i < m->n.material; ++i) {
+    m->materials[i].law_aside = m->materials[i].law.ops;
+    m->materials[i].law.ops = NULL;
+  }
+  for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
+  m->effects = effects_required(m);
   p.st = reduction_new(m, msh, &p.n);
   *seen =
       p.st == OK && history_run(m, msh, effect_table, &sink, &unsettled) == OK;

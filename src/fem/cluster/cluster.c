@@ -44,17 +44,6 @@ static int behind(const growth *g, int e, int a) {
   return -1;
 }
 
-static void mark_outside(growth *g) {
-  memset(g->outside, 0, g->m->n_node);
-  memset(g->taken, 0, g->m->n_node);
-  for (int e = 0; e < g->m->n_elem; ++e) {
-    if (g->section_id[e] != g->section) continue;
-    for (int a = 0; a <= g->m->dim; ++a)
-      for (int b = 0; b <= g->m->dim && behind(g, e, a) < 0; ++b)
-        if (b != a) g->outside[corners(g, e)[b]] = 1;
-  }
-}
-
 static void put(growth *g, int e, int cluster) {
   g->of[e] = cluster;
   ++g->size[cluster];
@@ -114,7 +103,14 @@ static void start_with_element(growth *g) {
 
 static void grow_section(growth *g, int section) {
   g->section = section;
-  mark_outside(g);
+  memset(g->outside, 0, g->m->n_node);
+  memset(g->taken, 0, g->m->n_node);
+  for (int e = 0; e < g->m->n_elem; ++e) {
+    if (g->section_id[e] != g->section) continue;
+    for (int a = 0; a <= g->m->dim; ++a)
+      for (int b = 0; b <= g->m->dim && behind(g, e, a) < 0; ++b)
+        if (b != a) g->outside[corners(g, e)[b]] = 1;
+  }
   take_stars(g, 0);
   if (join_rest(g) == 0) return;
   take_stars(g, 1);
@@ -122,16 +118,6 @@ static void grow_section(growth *g, int section) {
 }
 
 /* ---- the finished set ---------------------------------------------------- */
-
-static status list_elements(const mesh *m, cluster_set *c) {
-  PASS_NEW_ALL(OF(c->start, c->n + 2), OF(c->elem, m->n_elem));
-  for (int e = 0; e < m->n_elem; ++e)
-    if (c->of[e] >= 0) ++c->start[c->of[e] + 2];
-  for (int k = 0; k < c->n; ++k) c->start[k + 2] += c->start[k + 1];
-  for (int e = 0; e < m->n_elem; ++e)
-    if (c->of[e] >= 0) c->elem[c->start[c->of[e] + 1]++] = e;
-  return OK;
-}
 
 static status list_nodes(const mesh *m, cluster_set *c) {
   const int per = m->dim + 1;
@@ -198,7 +184,12 @@ status cluster_new(const cluster_input *in, cluster_set **out) {
   if (!wanted) return OK;
   MAKES(cluster_set, c, out);
   PASS(grow(in, c));
-  PASS(list_elements(in->mesh, c));
+  PASS_NEW_ALL(OF(c->start, c->n + 2), OF(c->elem, in->mesh->n_elem));
+  for (int e = 0; e < in->mesh->n_elem; ++e)
+    if (c->of[e] >= 0) ++c->start[c->of[e] + 2];
+  for (int k = 0; k < c->n; ++k) c->start[k + 2] += c->start[k + 1];
+  for (int e = 0; e < in->mesh->n_elem; ++e)
+    if (c->of[e] >= 0) c->elem[c->start[c->of[e] + 1]++] = e;
   PASS(list_nodes(in->mesh, c));
   return weigh(in, c);
 }

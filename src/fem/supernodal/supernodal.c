@@ -225,14 +225,6 @@ static void multiply(int rows, int columns, int k, const double *a, int lead,
                 rows);
 }
 
-/* Of supernode d from row "from" on, those within q: their number. */
-static int rows_within(const supernodal *s, int d, int q) {
-  const SuiteSparse_long *row = rows_of(s, d);
-  int to = s->done[d];
-  while (to < n_row(s, d) && row[to] < s->first[q + 1]) ++to;
-  return to - s->done[d];
-}
-
 /* x[q] less what supernode d, which is done, has in its columns. */
 static void subtract(supernodal *s, int q, int d, int inside,
                      double *const *x) {
@@ -290,7 +282,11 @@ static int eliminate(int rows, int columns, double *x) {
 /* The supernodes below q have updated it. */
 static void use_up(supernodal *s, int q, int renew, double *const *x) {
   for (int d = s->head[q], next; d >= 0; d = next) {
-    const int inside = rows_within(s, d, q);
+    /* Of supernode d from row "from" on, those within q: their number. */
+    const SuiteSparse_long *row = rows_of(s, d);
+    int to = s->done[d];
+    while (to < n_row(s, d) && row[to] < s->first[q + 1]) ++to;
+    const int inside = to - s->done[d];
     next = s->next[d];
     if (renew) subtract(s, q, d, inside, x);
     s->done[d] += inside;
@@ -298,19 +294,16 @@ static void use_up(supernodal *s, int q, int renew, double *const *x) {
   }
 }
 
-static void begin(supernodal *s, int q, supernodal_fill *fill, void *ctx,
-                  double *x) {
-  const SuiteSparse_long *row = rows_of(s, q);
-  CLEAR(x, supernodal_entries(s, q));
-  for (int i = 0; i < n_row(s, q); ++i) s->place[row[i]] = i;
-  fill(ctx, q, s->place, x);
-}
-
 int supernodal_factor(supernodal *s, const unsigned char *mark,
                       supernodal_fill *fill, void *ctx, double *const *x) {
   for (int q = 0; q < s->count; ++q) s->head[q] = -1;
   for (int q = 0; q < s->count; ++q) {
-    if (mark[q]) begin(s, q, fill, ctx, x[q]);
+    if (mark[q]) {
+      const SuiteSparse_long *row = rows_of(s, q);
+      CLEAR(x[q], supernodal_entries(s, q));
+      for (int i = 0; i < n_row(s, q); ++i) s->place[row[i]] = i;
+      fill(ctx, q, s->place, x[q]);
+    }
     use_up(s, q, mark[q], x);
     if (mark[q]) {
       const int bad = eliminate(n_row(s, q), n_column(s, q), x[q]);

@@ -119,12 +119,6 @@ static void invert(int n, double *A) {
   }
 }
 
-/* The xx, yy, zz, xy block of a 6x6 matrix. */
-static void plane_block(const double A[36], double *B) {
-  for (int j = 0; j < 4; ++j)
-    for (int i = 0; i < 4; ++i) B[i + 4 * j] = A[i + 6 * j];
-}
-
 void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
                      law_elastic *out) {
   double full[36];
@@ -139,7 +133,9 @@ void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
   if (kin == PLANE_STRESS) {
     memcpy(full, C6, sizeof full);
     invert(6, full);
-    plane_block(full, out->S);
+    /* The xx, yy, zz, xy block of a 6x6 matrix. */
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; ++i) out->S[i + 4 * j] = full[i + 6 * j];
   } else {
     invert(ns, out->S);
   }

@@ -46,18 +46,15 @@ static status new_jacobian(const law_point *p, int na, law_jacobian *j) {
   return OK;
 }
 
-static void free_jacobian(law_jacobian *j) { memory_free(j->ei_sigma); }
-
 /* y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
 static status linear_law(const flow_kind *k, double *L, double *G) {
   const law_elastic *el = &k->elastic;
   const int ns = el->ns, na = k->n_alpha, n = ns + na;
   law_point p = flow_kind_point(k);
-  ENDS_BY(free_jacobian) law_jacobian j = {0};
   OWNED double *zero = NULL, *top = NULL;
   PASS_NEW_ALL(OF(zero, n), OF(top, n * ns));
   p.sigma = p.ei = p.alpha = zero;
-  PASS(new_jacobian(&p, na, &j));
+  OWNED_PARTS(law_jacobian, j, new_jacobian(&p, na, &j));
   put_block(ns, ns, j.ei_sigma, top, n);
   put_block(na, ns, j.alpha_sigma, top + ns, n);
   multiply(n, ns, ns, 1.0, top, el->E, G);
@@ -150,16 +147,6 @@ static status exponential_map(const flow_kind *k, const scheme_step *p,
   return OK;
 }
 
-/* D = E (I - Q1) with the rows of e^i. */
-static void remains(const law_elastic *el, const linear_map *m, double *D) {
-  const int ns = el->ns;
-  double top[36];
-  for (int j = 0; j < ns; ++j)
-    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + m->n * j];
-  COPY(D, el->E, ns * ns);
-  multiply(ns, ns, ns, -1.0, el->E, top, D);
-}
-
 /* The general case: from L and G. */
 status general_map(const flow_kind *k, const scheme_step *p, int exact,
                    linear_map *m, double *D) {
@@ -167,7 +154,13 @@ status general_map(const flow_kind *k, const scheme_step *p, int exact,
   PASS_NEW_ALL(OF(L, m->n * m->n), OF(G, m->n * k->elastic.ns));
   PASS(linear_law(k, L, G));
   PASS(exact ? exponential_map(k, p, L, G, m) : theta_map(k, p, L, G, m));
-  remains(&k->elastic, m, D);
+  /* D = E (I - Q1) with the rows of e^i. */
+  const int ns = k->elastic.ns;
+  double top[36];
+  for (int j = 0; j < ns; ++j)
+    for (int i = 0; i < ns; ++i) top[i + ns * j] = m->Q1[i + m->n * j];
+  COPY(D, k->elastic.E, ns * ns);
+  multiply(ns, ns, ns, -1.0, k->elastic.E, top, D);
   return OK;
 }
 
@@ -395,8 +388,6 @@ static status series_new(int n, series *s) {
   return OK;
 }
 
-static void series_free(series *s) { memory_free(s->work); }
-
 /* All units of a part; LAW_NO_PART: there is none. */
 static int units_of(const law_point *p, int part, double dt, series *s) {
   int of = LAW_NO_PART;
@@ -555,8 +546,7 @@ status series_map(const flow_kind *k, const scheme_step *p, int exact,
   const int ns = k->elastic.ns, n = m->n;
   const law_point point = flow_kind_point(k);
   double kept[3] = {1.0, 1.0, 1.0};
-  ENDS_BY(series_free) series s = {0};
-  PASS(series_new(n / ns, &s));
+  OWNED_PARTS(series, s, series_new(n / ns, &s));
   clear_map(ns, n, m);
   int of = LAW_NO_PART, whole = 0;
   for (int part = 0; (of = units_of(&point, part, p->dt, &s)) != LAW_NO_PART;

@@ -458,16 +458,6 @@ static double misfit(const flow *x, const flow_state *now, const double *linear,
   return scale > 0.0 ? sqrt(sum) / scale : 0.0;
 }
 
-static status need_workspace(const flow *x, const scheme_step *p,
-                             scheme_work *w) {
-  size_t n = (size_t)x->ns * x->n;
-  PASS(need(&w->sigma_k, n));
-  PASS(need(&w->e_k, n));
-  PASS(need(&w->linear, n));
-  if (!p->initial) PASS(need(&w->D, n * x->ns));
-  return OK;
-}
-
 status newton_advance(const scheme_call *a) {
   const flow *x = a->x;
   const scheme_step *p = a->p;
@@ -479,7 +469,11 @@ status newton_advance(const scheme_call *a) {
   scheme_result *out = a->out;
   ENDS_BY(point_work_free) point_work r = {0};
   PASS(point_step_new(x, &r.l));
-  PASS(need_workspace(x, p, w));
+  size_t n = (size_t)x->ns * x->n;
+  PASS(need(&w->sigma_k, n));
+  PASS(need(&w->e_k, n));
+  PASS(need(&w->linear, n));
+  if (!p->initial) PASS(need(&w->D, n * x->ns));
   a->now->t = p->t;
   PASS(a->b->begin(a->b->ctx, a->now));
   COPY(a->now->e, a->old->e, (size_t)x->ns * x->n);

@@ -414,12 +414,6 @@ static status orient_crack(opening *o, int crack) {
   return OK;
 }
 
-static status lips_orient(opening *o) {
-  PASS_NEW(o->sign, o->n_face);
-  for (int k = 0; k < o->n; ++k) PASS(orient_crack(o, k));
-  return OK;
-}
-
 /* ---- the opened mesh ----------------------------------------------------- */
 
 static status add_nodes(opening *o) {
@@ -769,7 +763,8 @@ status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
   PASS(cut_sides(&o));
   PASS(find_fans(&o));
   leave_closed(&o);
-  PASS(lips_orient(&o));
+  PASS_NEW(o.sign, o.n_face);
+  for (int k = 0; k < o.n; ++k) PASS(orient_crack(&o, k));
   PASS(opening_check(&o));
   PASS(lips_store(&o));
   PASS(groups_open(&o));

@@ -199,14 +199,6 @@ static status msh2_nodes(msh *m, const char *name) {
   return scan_end(s, name, "its nodes");
 }
 
-/* An entity that has elements counts once. */
-static status count_entity(msh *m, int dim, int tag) {
-  int id, n = m->entities.n;
-  PASS(table_add(&m->entities, table_key(dim, tag), &id));
-  if (id == n) ++m->raw->n_entity[dim];
-  return OK;
-}
-
 typedef struct element_head { /* of elements that follow each other */
   int type, n_tag;
   int entity, physical; /* of the element before; its block */
@@ -216,7 +208,12 @@ typedef struct element_head { /* of elements that follow each other */
 /* The block of an element, mostly that of the one before. */
 static status find_block(msh *m, element_head *h, int physical, int entity) {
   int dim = msh_type(h->type)->dim;
-  if (entity != h->entity) PASS(count_entity(m, dim, entity));
+  if (entity != h->entity) {
+    /* An entity that has elements counts once. */
+    int id, n = m->entities.n;
+    PASS(table_add(&m->entities, table_key(dim, entity), &id));
+    if (id == n) ++m->raw->n_entity[dim];
+  }
   if (physical != h->physical) {
     if (physical != 0) PASS(msh_add_group(m, dim, physical));
     PASS(msh_block(m, h->type, physical, physical != 0, &physical, &h->block));

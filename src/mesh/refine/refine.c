@@ -122,11 +122,7 @@ static double square_of(const bisection *b, int i, int k) {
 static double measure_of(const bisection *b, const int *v) {
   double e[3][3];
   for (int k = 0; k < b->dim; ++k) vector(b, v[0], v[k + 1], e[k]);
-  if (b->dim == 2) return 0.5 * (e[0][0] * e[1][1] - e[0][1] * e[1][0]);
-  return (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-          e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
-         6.0;
+  return determinant(b->dim, e) / (b->dim == 2 ? 2.0 : 6.0);
 }
 
 /* Length over that required. */
@@ -333,17 +329,6 @@ static status split(bisection *b, int dim, const cell *c, cell_list *to) {
   return split(b, dim, &part, to);
 }
 
-static status split_all(bisection *b) {
-  for (int d = 1; d <= b->dim; ++d) {
-    cell_list next = {0};
-    for (int i = 0; i < b->cells[d].n; ++i)
-      PASS(split(b, d, &b->cells[d].item[i], &next));
-    memory_free(b->cells[d].item);
-    b->cells[d] = next;
-  }
-  return OK;
-}
-
 /* *done: no element is too long. */
 static status run_round(bisection *b, double *limit, int *done) {
   double worst;
@@ -358,7 +343,14 @@ static status run_round(bisection *b, double *limit, int *done) {
   PASS(mark_neighbours(b));
   PASS(add_middles(b));
   check_middles(b);
-  return split_all(b);
+  for (int d = 1; d <= b->dim; ++d) {
+    cell_list next = {0};
+    for (int i = 0; i < b->cells[d].n; ++i)
+      PASS(split(b, d, &b->cells[d].item[i], &next));
+    memory_free(b->cells[d].item);
+    b->cells[d] = next;
+  }
+  return OK;
 }
 
 /* ---- back to the raw mesh ------------------------------------------------ */

@@ -32,13 +32,6 @@ struct round_surface {
 
 /* ---- vectors ------------------------------------------------------------- */
 
-/* To unit length; 0: it has none. */
-static int normalise(double *a) {
-  const double length = sqrt(dot(3, a, a));
-  for (int k = 0; k < 3 && length > 0.0; ++k) a[k] /= length;
-  return length > 0.0;
-}
-
 /* Sine of the angle between two directions, 2 beyond a right angle. */
 static double turn(const double *a, const double *b) {
   double c[3];
@@ -120,7 +113,7 @@ static void set_tangents(round_surface *s, int n_all) {
     if (sine < FLAT) s->flat[i] |= CURVE_FLAT;
     for (int k = 0; k < 2; ++k)
       add_scaled(3, 1.0 / dot(3, e[k], e[k]), e[k], t);
-    normalise(t);
+    make_unit(3, t);
   }
   /* Where a curve goes over into a line it has no circle through both. */
   for (int i = 0; i < n_all; ++i)
@@ -140,7 +133,7 @@ static void mirror(const double *c, double *t) {
 static int curve_tangent(const round_surface *s, int a, int b, double *t) {
   double c[3];
   between(s, a, b, c);
-  normalise(c);
+  make_unit(3, c);
   const int other =
       dot(3, s->tangent + 3 * a, s->tangent + 3 * a) > 0.0 ? a : b;
   COPY(t, s->tangent + 3 * other, 3);
@@ -186,7 +179,7 @@ static void set_border_normal(round_surface *s, int i) {
     memcpy(n, c, sizeof c);
   else if (known > 0)
     add_scaled(3, -dot(3, n, t[0]), t[0], n);
-  normalise(n);
+  make_unit(3, n);
 }
 
 /* Unit tangent at node a of the surface towards b; 0: none. */
@@ -195,7 +188,7 @@ static int surface_tangent(const round_surface *s, int a, int b, double *t) {
   if (!(dot(3, n, n) > 0.0)) return 0;
   between(s, a, b, t);
   add_scaled(3, -dot(3, t, n), n, t);
-  return normalise(t);
+  return make_unit(3, t) > 0.0;
 }
 
 /* Of a node of the border the mean of the mirror images of its neighbours'
@@ -209,7 +202,7 @@ static void improve_border(round_surface *s, const double *within) {
         double c[3], m[3];
         if (s->number[v[a]] == 0 || !(dot(3, n, n) > 0.0)) continue;
         between(s, v[a], v[b], c);
-        normalise(c);
+        make_unit(3, c);
         memcpy(m, n, sizeof m);
         add_scaled(3, -2.0 * dot(3, n, c), c, m);
         double *sum = s->normal + 3 * v[a];
@@ -223,7 +216,7 @@ static status set_surface(round_surface *s, int n_all) {
   OWNED_NEW(double, within, 3 * n_all);
   set_normals(s, bent);
   for (int i = 0; i < n_all; ++i) {
-    normalise(s->normal + 3 * i);
+    make_unit(3, s->normal + 3 * i);
     if (!bent[i]) s->flat[i] |= SURFACE_FLAT;
     if (s->number[i] == 0) COPY(within + 3 * i, s->normal + 3 * i, 3);
   }
@@ -237,16 +230,6 @@ static status set_surface(round_surface *s, int n_all) {
   return OK;
 }
 
-static void set_face_normals(round_surface *s) {
-  for (int i = 0; i < s->f.n && s->f.n_node == 3; ++i) {
-    const int *v = s->f.node + 3 * i;
-    double e[2][3];
-    between(s, v[0], v[1], e[0]);
-    between(s, v[0], v[2], e[1]);
-    cross(e[0], e[1], s->face_normal + 3 * i);
-  }
-}
-
 status round_surface_new(const surface_faces *f, int n_all, const double *x,
                          round_surface **out) {
   *out = NULL;
@@ -258,7 +241,13 @@ status round_surface_new(const surface_faces *f, int n_all, const double *x,
                OF(s->sharp, n_all));
   PASS_NEW_REALS(3 * n_all, &s->tangent, &s->normal);
   PASS_NEW(s->face_normal, 3 * f->n);
-  set_face_normals(s);
+  for (int i = 0; i < s->f.n && s->f.n_node == 3; ++i) {
+    const int *v = s->f.node + 3 * i;
+    double e[2][3];
+    between(s, v[0], v[1], e[0]);
+    between(s, v[0], v[2], e[1]);
+    cross(e[0], e[1], s->face_normal + 3 * i);
+  }
   PASS(find_edges(s));
   set_tangents(s, n_all);
   return set_surface(s, n_all);
@@ -280,7 +269,7 @@ static int tangents_of(const round_surface *s, int id, int a, int b, double *ta,
   if (!known[0] && !known[1]) return 0;
   if (known[0] && known[1]) return 1;
   between(s, a, b, c);
-  normalise(c);
+  make_unit(3, c);
   memcpy(known[0] ? tb : ta, known[0] ? ta : tb, sizeof c);
   for (int k = 0; k < 3; ++k) (known[0] ? tb : ta)[k] *= -1.0;
   mirror(c, known[0] ? tb : ta);
@@ -292,8 +281,7 @@ int round_surface_middle(const round_surface *s, int a, int b, double *middle) {
   const int id = s == NULL ? -1 : table_find(&s->edges, key_of(a, b));
   if (id < 0 || !tangents_of(s, id, a, b, ta, tb)) return 0;
   between(s, a, b, c);
-  const double length = sqrt(dot(3, c, c));
-  normalise(c);
+  const double length = make_unit(3, c);
   const double cosine = 0.5 * (dot(3, ta, c) - dot(3, tb, c));
   add_scaled(3, 1.0, tb, ta); /* ta less the tangent at b in the same sense */
   add_scaled(3, -dot(3, ta, c), c, ta);

@@ -104,14 +104,10 @@ status size_grid_new(const refine_sizes *s, size_grid **out) {
 }
 
 /* Six times the volume of corners p[4], or twice the area of p[3]. */
-static double determinant(int dim, const double *const *p) {
-  double e[3][3] = {{0.0}};
-  for (int k = 0; k < dim; ++k)
-    for (int c = 0; c < dim; ++c) e[k][c] = p[k + 1][c] - p[0][c];
-  if (dim == 2) return e[0][0] * e[1][1] - e[0][1] * e[1][0];
-  return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-         e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-         e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+static double measure_of(int dim, const double *const *p) {
+  double e[3][3];
+  for (int k = 0; k < dim; ++k) vector_of(dim, p[0], p[k + 1], e[k]);
+  return determinant(dim, e);
 }
 
 /* Barycentric coordinates of x in an element; returns the least. */
@@ -121,11 +117,11 @@ static double coordinates(const refine_sizes *s, int elem, const double *x,
   const double *p[4];
   double least = HUGE_VAL;
   for (int a = 0; a <= s->dim; ++a) p[a] = s->x + s->dim * v[a];
-  const double whole = determinant(s->dim, p);
+  const double whole = measure_of(s->dim, p);
   for (int a = 0; a <= s->dim; ++a) {
     const double *own = p[a];
     p[a] = x;
-    phi[a] = determinant(s->dim, p) / whole;
+    phi[a] = measure_of(s->dim, p) / whole;
     p[a] = own;
     least = fmin(least, phi[a]);
   }

@@ -110,15 +110,6 @@ static int read_course_lines(const reading *r, struct move *m, obstacle *o) {
   return n;
 }
 
-/* A point or direction of two numbers: not enough in 3-D. */
-static void note_short(const reading *r, int n_line, const obstacle *o) {
-  move *of = &r->m->moves[o - r->m->obstacles];
-  const record *line = r->card->records;
-  for (int i = 0; i < n_line && o->shape != OBSTACLE_GAP; ++i)
-    if (line[i].n_field == 2 && of->short_at.file == NULL)
-      of->short_at = line[i].at;
-}
-
 /* The lines before MOVE and ROTATE, as the shape requires them. */
 static void read_shape(const reading *r, int n_line, obstacle *o) {
   const record *line = r->card->records;
@@ -194,7 +185,12 @@ status apply_obstacle(reading *r) {
     message_add(m->log, P2007, &c->at,
                 "*OBSTACLE: AMPLITUDE= needs a line MOVE, dx, dy [, dz] or "
                 "ROTATE");
-  note_short(r, lines, o);
+  /* A point or direction of two numbers: not enough in 3-D. */
+  move *of = &r->m->moves[o - r->m->obstacles];
+  const record *line = r->card->records;
+  for (int i = 0; i < lines && o->shape != OBSTACLE_GAP; ++i)
+    if (line[i].n_field == 2 && of->short_at.file == NULL)
+      of->short_at = line[i].at;
   read_shape(r, lines, o);
   return OK;
 }
@@ -387,16 +383,6 @@ int find_contact(const reading *r, const char *name) {
   return -1;
 }
 
-/* Values of a table that must not be negative. */
-static void check_table(const reading *r, const char *what,
-                        const value_table *t) {
-  for (int i = 0; i < t->n; ++i)
-    if (!(t->value[i] >= 0.0))
-      message_add(r->m->log, P2010, &pair_field(r->card, 0, i, 1)->at,
-                  "*%s: %s = %.15g in the table is negative", r->card->name,
-                  what, t->value[i]);
-}
-
 /* The value lines: one quantity, or pairs with TABLE=. Not negative. */
 static status read_value(reading *r, const char *what, int variable,
                          quantity *q, value_table *pairs) {
@@ -407,7 +393,12 @@ static status read_value(reading *r, const char *what, int variable,
       message_add(r->m->log, P2007, &c->at, "*%s, TABLE= needs lines of pairs",
                   c->name);
     PASS(read_pairs(r, 0, variable, pairs));
-    check_table(r, what, pairs);
+    /* Values of a table that must not be negative. */
+    for (int i = 0; i < pairs->n; ++i)
+      if (!(pairs->value[i] >= 0.0))
+        message_add(r->m->log, P2010, &pair_field(r->card, 0, i, 1)->at,
+                    "*%s: %s = %.15g in the table is negative", r->card->name,
+                    what, pairs->value[i]);
     q->number = 1.0;
     q->factor = pairs; /* set again by model_resolve */
     return OK;

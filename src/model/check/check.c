@@ -96,16 +96,6 @@ static void check_law(const model *m, const char *contact_name,
                 rule->law->name, contact_name, why);
 }
 
-/* Options of friction laws that are not for every model. */
-static void check_laws(const model *m) {
-  for (int i = 0; i < m->n.contact; ++i)
-    check_law(m, m->contacts[i].name, &m->contacts[i].friction);
-  for (int k = 0; k < m->n.step; ++k)
-    for (EACH(const friction_change, f, m->steps[k].friction.changes,
-              m->steps[k].friction.n))
-      check_law(m, m->contacts[f->contact_id].name, &f->rule);
-}
-
 /* Points and directions of an obstacle in 3-D have three numbers; a sphere of
  * an axisymmetric model stays on the axis. */
 static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
@@ -679,7 +669,13 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   PASS(check_sections(m, msh));
   check_locking(m);
   check_contacts(m, msh);
-  check_laws(m);
+  /* Options of friction laws that are not for every model. */
+  for (int i = 0; i < m->n.contact; ++i)
+    check_law(m, m->contacts[i].name, &m->contacts[i].friction);
+  for (int k = 0; k < m->n.step; ++k)
+    for (EACH(const friction_change, f, m->steps[k].friction.changes,
+              m->steps[k].friction.n))
+      check_law(m, m->contacts[f->contact_id].name, &f->rule);
   check_initials(m, msh);
   check_steps(m, msh);
   PASS(check_pairs(m, msh));

@@ -85,19 +85,10 @@ static void check_outside(const model *m, const mesh *msh, const load *l) {
 
 /* Id of the group a load acts on, or -1 and the error. */
 static int load_group(const model *m, const mesh *msh, const load *l) {
-  switch ((load_kind)l->kind) {
-    case LOAD_PRESSURE:
-    case LOAD_TRACTION:
-      return check_group_of(m, msh, l->group, msh->dim - 1, &l->at);
-    case LOAD_BODY:
-    case LOAD_GRAVITY:
-    case LOAD_TEMPERATURE:
-      return check_group_of(m, msh, l->group, msh->dim, &l->at);
-    case LOAD_POINT:
-    case LOAD_FIXING:
-      break;
-  }
-  return check_group(m, msh, l->group, &l->at);
+  const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
+  if (l->kind == LOAD_POINT || l->kind == LOAD_FIXING)
+    return check_group(m, msh, l->group, &l->at);
+  return check_group_of(m, msh, l->group, msh->dim - on_faces, &l->at);
 }
 
 static void check_load(const model *m, const mesh *msh, load *l) {
@@ -153,15 +144,6 @@ void check_initials(model *m, const mesh *msh) {
   }
 }
 
-static void check_prints(const model *m, const mesh *msh, step *s) {
-  for (EACH(print_request, p, s->print.requests, s->print.n)) {
-    if (p->group == NULL) continue;
-    p->group_id = p->table == PRINT_ELEMENTS
-                      ? check_group_of(m, msh, p->group, msh->dim, &p->at)
-                      : check_group(m, msh, p->group, &p->at);
-  }
-}
-
 /* The field of a file, read once; NULL after a message. */
 static status find_field(model *m, const mesh *msh, const char *file,
                          const place *at, const double **out) {
@@ -212,12 +194,13 @@ void check_steps(model *m, const mesh *msh) {
     for (int k = 0; k < s->loads.n; ++k)
       if (!checked_before(m, i, &s->loads.item[k]))
         check_load(m, msh, &s->loads.item[k]);
-    check_prints(m, msh, s);
+    for (EACH(print_request, p, s->print.requests, s->print.n)) {
+      if (p->group == NULL) continue;
+      p->group_id = p->table == PRINT_ELEMENTS
+                        ? check_group_of(m, msh, p->group, msh->dim, &p->at)
+                        : check_group(m, msh, p->group, &p->at);
+    }
   }
-}
-
-static double step_time(const step *s, int end) {
-  return end ? s->start + s->total : s->start;
 }
 
 /* A value of a contact that must be at least zero, as the cards say it. */
@@ -254,7 +237,7 @@ static void check_contact_values(const model *m, const mesh *msh, int id) {
   const contact *c = &m->contacts[id];
   int good = 1, fine = 1, sound = 1;
   for (int k = 0; k < m->n.step; ++k) {
-    double t = step_time(&m->steps[k], 1);
+    double t = step_end(&m->steps[k]);
     const friction_rule *rule = friction_in_force(m, k, id);
     contact_value friction = {"FRICTION",
                               rule->law == NULL ? NULL : rule->law->value_name,
@@ -297,7 +280,7 @@ static int motion_finite(const model *m, int obstacle_id, double t) {
 static void check_tilt(const model *m, int obstacle_id) {
   const obstacle *o = &m->obstacles[obstacle_id];
   for (int k = 0; k < m->n.step; ++k) {
-    double t = step_time(&m->steps[k], 1), tilt = obstacle_tilt(o, t);
+    double t = step_end(&m->steps[k]), tilt = obstacle_tilt(o, t);
     if (!(tilt > 0.1)) continue;
     message_add(m->log, P2052, &m->moves[obstacle_id].rotate_at,
                 "*OBSTACLE %s: ROTATE has tilted the plane by %.3g rad at time "
@@ -311,7 +294,7 @@ void check_values(const model *m, const mesh *msh) {
   for (int i = 0; i < m->n.obstacle; ++i) {
     int good = motion_finite(m, i, 0.0);
     for (int k = 0; k < m->n.step && good; ++k)
-      good = motion_finite(m, i, step_time(&m->steps[k], 1));
+      good = motion_finite(m, i, step_end(&m->steps[k]));
     if (good) check_tilt(m, i);
   }
   for (int i = 0; i < m->n.contact; ++i) check_contact_values(m, msh, i);
@@ -319,7 +302,7 @@ void check_values(const model *m, const mesh *msh) {
     for (int k = 0; k < m->steps[i].loads.n; ++k)
       if (m->steps[i].loads.item[k].run != RUN_HELD)
         load_finite(m, msh, &m->steps[i], &m->steps[i].loads.item[k],
-                    step_time(&m->steps[i], 1));
+                    step_end(&m->steps[i]));
 }
 
 status check_agreement(const model *m, const mesh *msh, int step_id) {
@@ -334,7 +317,7 @@ status check_agreement(const model *m, const mesh *msh, int step_id) {
     for (int k = 0; k < g->n_node && l->kind == LOAD_FIXING; ++k) {
       size_t node = g->node_id[k];
       size_t dof = msh->dim * node + l->component;
-      double value = load_at_node(l, msh, s, (int)node, step_time(s, 1));
+      double value = load_at_node(l, msh, s, (int)node, step_end(s));
       const load *first =
           owner[dof] > 0 ? &s->loads.item[owner[dof] - 1] : NULL;
       if (first != NULL && value != ud[dof] && !reported++)

@@ -115,18 +115,6 @@ static int has_name(const char *text, const char *name) {
   return 0;
 }
 
-/* Names are replaced by their values, except in expressions and the .geo. */
-static void echo_symbols(const deck *d, const char *cards, FILE *out) {
-  int any = 0;
-  for (int i = 0; i < d->n_symbol; ++i) {
-    const symbol *s = &d->symbols[i];
-    if (!s->in_geometry && !has_name(cards, s->name)) continue;
-    if (!any) fputs("*PARAMETER\n", out);
-    any = 1;
-    fprintf(out, "%s = %.17g\n", s->typed, s->value);
-  }
-}
-
 status model_echo(const model *m, FILE *out) {
   status st = OK;
   const deck *d = m->deck;
@@ -137,7 +125,15 @@ status model_echo(const model *m, FILE *out) {
   for (int i = 0; i < d->n_card; ++i) echo_card(m, &d->cards[i], f);
   if (!text_memory_end(f, &cards))
     FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-  echo_symbols(d, cards, out);
+  /* Names are replaced by their values, except in expressions and the .geo. */
+  int any = 0;
+  for (int i = 0; i < d->n_symbol; ++i) {
+    const symbol *s = &d->symbols[i];
+    if (!s->in_geometry && !has_name(cards, s->name)) continue;
+    if (!any) fputs("*PARAMETER\n", out);
+    any = 1;
+    fprintf(out, "%s = %.17g\n", s->typed, s->value);
+  }
   fputs(cards, out);
 done:
   free(cards);

@@ -29,15 +29,6 @@ static void check_problem_cards(const reading *r) {
                 i + 1);
 }
 
-static void check_problem_tables(const reading *r, const step *s) {
-  for (int i = 0; i < s->print.n; ++i)
-    if (s->print.requests[i].table != PRINT_CONTACT ||
-        s->print.requests[i].group != NULL)
-      message_add(r->m->log, P2034, &s->print.requests[i].at,
-                  "a condensed problem has no mesh: only *PRINT, CONTACT "
-                  "without GROUP= has rows");
-}
-
 /* The bound of the error factors the matrix, which costs more than many
  * solutions: only on request. */
 static void check_problem_accuracy(const reading *r, step *s) {
@@ -57,7 +48,12 @@ static void check_problem_accuracy(const reading *r, step *s) {
 static status model_finish_problem(reading *r) {
   check_problem_cards(r);
   step *s = &r->m->steps[0];
-  check_problem_tables(r, s);
+  for (int i = 0; i < s->print.n; ++i)
+    if (s->print.requests[i].table != PRINT_CONTACT ||
+        s->print.requests[i].group != NULL)
+      message_add(r->m->log, P2034, &s->print.requests[i].at,
+                  "a condensed problem has no mesh: only *PRINT, CONTACT "
+                  "without GROUP= has rows");
   check_problem_accuracy(r, s);
   s->kind = STEP_STATIC;
   if (!(s->total > 0.0)) s->total = 1.0;
@@ -279,13 +275,6 @@ static void report_absent(const reading *r) {
                 "this *STEP is not closed by *END STEP");
 }
 
-/* A problem from a file needs no *STEP. */
-static status default_step(model *m) {
-  PASS_GROW(m->steps, m->n.step, m->cap.step);
-  m->steps[m->n.step++] = (step){.name = "", .at = m->problem.at};
-  return OK;
-}
-
 status model_from_deck(deck *d, message_log *log, model **out) {
   MAKES(model, m, out);
   m->deck = d;
@@ -302,7 +291,11 @@ status model_from_deck(deck *d, message_log *log, model **out) {
     PASS(read_card(&r));
   }
   report_absent(&r);
-  if (m->problem.given && m->n.step == 0) PASS(default_step(m));
+  if (m->problem.given && m->n.step == 0) {
+    /* A problem from a file needs no *STEP. */
+    PASS_GROW(m->steps, m->n.step, m->cap.step);
+    m->steps[m->n.step++] = (step){.name = "", .at = m->problem.at};
+  }
   PASS(model_resolve(m, r.lost));
   if (m->problem.given) PASS(model_finish_problem(&r));
   return message_status(log, ERR_DECK);

@@ -277,14 +277,6 @@ static status carry_loads(const model *m, const step *old, step *s,
   return OK;
 }
 
-static status append_loads(load_list *all, const load_list *own) {
-  for (int i = 0; i < own->n; ++i) {
-    PASS_GROW(all->item, all->n, all->cap);
-    all->item[all->n++] = own->item[i];
-  }
-  return OK;
-}
-
 static int same_value(const load *a, const load *b) {
   return a->value.formula == NULL && b->value.formula == NULL &&
          a->value.number == b->value.number &&
@@ -313,7 +305,10 @@ static status resolve_loads(model *m, const step *old, step *s) {
   drop_repeated(m, &s->loads);
   for (int i = 0; i < s->loads.n; ++i) start_load(m, s, &s->loads.item[i]);
   PASS(carry_loads(m, old, s, &all));
-  PASS(append_loads(&all, &s->loads));
+  for (int i = 0; i < s->loads.n; ++i) {
+    PASS_GROW(all.item, all.n, all.cap);
+    all.item[all.n++] = s->loads.item[i];
+  }
   memory_free(s->loads.item);
   s->loads = all;
   return OK;

@@ -227,8 +227,6 @@ static double mises(const view *v, int id, int part) {
   return sqrt(0.5 * (a * a + b * b + c * c) + 3 * shear);
 }
 
-static double length(const double *a) { return sqrt(dot(3, a, a)); }
-
 /* The larger (sign 1) or the smaller (-1) eigenvalue of [a c; c b]. */
 static double of_two(double a, double b, double c, int sign) {
   return (a + b) / 2 + sign * hypot((a - b) / 2, c);
@@ -254,18 +252,18 @@ static void plane_of(double d[3][3], double lone, double *s, double *t) {
   int p = 0;
   for (int k = 0; k < 3; ++k) {
     for (int i = 0; i < 3; ++i) c[k][i] = d[k][i] - (i == k ? lone : 0);
-    if (length(c[k]) > length(c[p])) p = k;
+    if (norm(3, c[k]) > norm(3, c[p])) p = k;
   }
   double *q = c[(p + 1) % 3], *other = c[(p + 2) % 3];
-  const double size = length(c[p]);
+  const double size = norm(3, c[p]);
   for (int i = 0; i < 3; ++i) s[i] = c[p][i] / size;
   const double along[2] = {dot(3, s, q), dot(3, s, other)};
   for (int i = 0; i < 3; ++i) {
     q[i] -= along[0] * s[i];
     other[i] -= along[1] * s[i];
   }
-  if (length(other) > length(q)) q = other;
-  const double rest = length(q);
+  if (norm(3, other) > norm(3, q)) q = other;
+  const double rest = norm(3, q);
   for (int i = 0; i < 3; ++i) t[i] = q[i] / rest;
 }
 
@@ -281,7 +279,7 @@ static double principal_in_space(const double *stress, int part) {
     d[k][k] = (stress[k] - mean) / scale;
     d[k][(k + 1) % 3] = d[(k + 1) % 3][k] = stress[3 + k] / scale;
   }
-  if (!(length(d[0]) + length(d[1]) + length(d[2]) > 0)) return mean;
+  if (!(norm(3, d[0]) + norm(3, d[1]) + norm(3, d[2]) > 0)) return mean;
   const double lone = lone_value(d);
   plane_of(d, lone, s, t);
   for (int k = 0; k < 3; ++k) {
@@ -544,22 +542,13 @@ int column_ready(const column *c, const state *s) {
 
 int column_items(const column *c, const view *v) {
   const effect_ops *e = effect_of_column(c);
-  switch (c->of) {
-    case PER_NODE:
-      return v->msh->n_node;
-    case PER_ELEMENT:
-      return v->msh->n_elem;
-    case PER_CONTACT_NODE:
-      return v->s->contacts.surface != NULL ? v->s->contacts.surface->n : 0;
-    case PER_CONTACT:
-      return v->m->n.contact;
-    case PER_ZONE:
-    case PER_TIP:
-    case PER_GOAL:
-      return e->items(effect_state(v->s->effects, e));
-    default:
-      return 1;
-  }
+  if (c->of == PER_NODE) return v->msh->n_node;
+  if (c->of == PER_ELEMENT) return v->msh->n_elem;
+  if (c->of == PER_CONTACT) return v->m->n.contact;
+  if (c->of == PER_CONTACT_NODE)
+    return v->s->contacts.surface != NULL ? v->s->contacts.surface->n : 0;
+  if (c->of == PER_INCREMENT) return 1;
+  return e->items(effect_state(v->s->effects, e));
 }
 
 const char *column_unit(const char *unit, const model *m) {

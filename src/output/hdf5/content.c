@@ -11,16 +11,9 @@ int hdf5_is_history(const hdf5_field *f) {
 }
 
 int hdf5_items(const hdf5_file *h, const hdf5_field *f) {
-  switch (f->of) {
-    case PER_NODE:
-      return h->msh->n_node;
-    case PER_ELEMENT:
-      return h->msh->n_elem;
-    case PER_CONTACT_NODE:
-      return h->n_contact_node;
-    default:
-      return 1;
-  }
+  if (f->of == PER_NODE) return h->msh->n_node;
+  if (f->of == PER_ELEMENT) return h->msh->n_elem;
+  return f->of == PER_CONTACT_NODE ? h->n_contact_node : 1;
 }
 
 void hdf5_record_name(char *text, size_t size, int i) {

@@ -125,17 +125,12 @@ static status copy_results(hdf5_file *h, int fd, const hdf5_layout *l) {
   return copy(h, h->now.record_total, fd, l->record_total, records);
 }
 
-/* Reserve the space: a full disk is found now and not later. */
-static status reserve(const hdf5_file *h, int fd) {
+static status fill_aside(hdf5_file *h, int fd, const hdf5_layout *l) {
+  /* Reserve the space: a full disk is found now and not later. */
   struct stat info;
   if (fstat(fd, &info) != 0) PASS(text_failed(h->aside, "inspect", errno));
   int error_no = posix_fallocate(fd, 0, info.st_size);
   if (error_no != 0) PASS(text_failed(h->aside, "reserve space for", error_no));
-  return OK;
-}
-
-static status fill_aside(hdf5_file *h, int fd, const hdf5_layout *l) {
-  PASS(reserve(h, fd));
   PASS(put_nan(fd, h->aside, l->history[time_field(h)], l->n_row));
   PASS(put_nan(fd, h->aside, l->record_time, l->n_record));
   PASS(put_fixed(h, fd, l));
@@ -303,15 +298,6 @@ static void release(hdf5_file *h) {
           h->path, h->aside, h);
 }
 
-/* The mesh is kept, the copies for the first file are freed. */
-static void drop_copies(hdf5_file *h) {
-  for (int i = 0; i < h->n_fixed; ++i) {
-    memory_free(h->fixed[i].own);
-    h->fixed[i].own = NULL;
-    h->fixed[i].data = NULL;
-  }
-}
-
 /* The file of the continued run: its contents beyond "before" are written
  * again. */
 static status earlier_file(hdf5_file *h, const hdf5_count *before) {
@@ -343,7 +329,12 @@ static status first_file(hdf5_file *h, const hdf5_count *before) {
     if (records < before->records) records = before->records;
   }
   PASS(renew(h, rows, records));
-  drop_copies(h);
+  /* The mesh is kept, the copies for the first file are freed. */
+  for (int i = 0; i < h->n_fixed; ++i) {
+    memory_free(h->fixed[i].own);
+    h->fixed[i].own = NULL;
+    h->fixed[i].data = NULL;
+  }
   return OK;
 }
 

@@ -170,16 +170,6 @@ static status make_history(const maker *k, const hdf5_file *h, int field_id,
                       &l->history[field_id]);
 }
 
-static status make_record_times(const maker *k, const hdf5_file *h,
-                                hdf5_layout *l) {
-  hsize_t dims[2] = {(hsize_t)l->n_record, 1};
-  if (l->n_record == 0) return OK;
-  PASS(make_dataset(k, "/fields/time", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
-                    &l->record_time));
-  return make_dataset(k, "/fields/total", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
-                      &l->record_total);
-}
-
 static status root_attributes(const maker *k, const hdf5_file *h) {
   const model *m = h->m;
   const struct {
@@ -225,7 +215,12 @@ static status make_all(maker *k, const hdf5_file *h, hdf5_layout *l,
       PASS(make_history(k, h, i, l));
     else
       PASS(make_records(k, h, i, l, &groups[i]));
-  return make_record_times(k, h, l);
+  hsize_t dims[2] = {(hsize_t)l->n_record, 1};
+  if (l->n_record == 0) return OK;
+  PASS(make_dataset(k, "/fields/time", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
+                    &l->record_time));
+  return make_dataset(k, "/fields/total", H5T_NATIVE_DOUBLE, dims, NULL, h->m,
+                      &l->record_total);
 }
 
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,

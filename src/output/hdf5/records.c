@@ -270,26 +270,6 @@ static status emit_levels(stream *s, const places *p, uint64_t root) {
 
 /* ---- a group ------------------------------------------------------------- */
 
-static void set_places(places *p) {
-  p->heap = p->end;
-  p->header = p->heap + name_place(p->n);
-  p->node = p->header + p->header_size * (uint64_t)(p->n - 1);
-  int n = parts(p->n, p->per_node);
-  p->tree = p->node + node_size(p) * (uint64_t)n;
-  p->end = p->tree;
-  while ((n = parts(n, p->per_tree)) > 1) p->end += tree_size(p) * (uint64_t)n;
-}
-
-/* What is written at one time stands together: record after record. */
-static void place_data(places *p, int n_group, const record_group *groups) {
-  for (int i = 1; i < p->n; ++i)
-    for (int k = 0; k < n_group; ++k) {
-      if (groups[k].set == 0) continue;
-      groups[k].offset[i] = (off_t)p->end;
-      p->end += groups[k].bytes;
-    }
-}
-
 static status fill_group(stream *s, places *p, const record_group *g) {
   unsigned char header[HEADER_MOST];
   uint64_t tree, heap;
@@ -297,7 +277,13 @@ static status fill_group(stream *s, places *p, const record_group *g) {
   PASS(get_header(s, g->set, header, &p->header_size));
   PASS(get(s, heap, header, HEAP_HEAD));
   if (memcmp(header, "HEAP", 5) != 0) PASS(other_format(s->path));
-  set_places(p);
+  p->heap = p->end;
+  p->header = p->heap + name_place(p->n);
+  p->node = p->header + p->header_size * (uint64_t)(p->n - 1);
+  int n = parts(p->n, p->per_node);
+  p->tree = p->node + node_size(p) * (uint64_t)n;
+  p->end = p->tree;
+  while ((n = parts(n, p->per_tree)) > 1) p->end += tree_size(p) * (uint64_t)n;
   PASS(go_to(s, p->heap));
   PASS(emit_names(s, p));
   PASS(emit_headers(s, p, g->set, g));
@@ -330,7 +316,13 @@ static status make_records(stream *s, int n, const int *order, int n_group,
               .per_node = 2 * (int)number(head + K_PLACE, 2),
               .per_tree = 2 * (int)number(head + K_PLACE + 2, 2),
               .end = (number(head + EOF_PLACE, 8) + 7) / 8 * 8};
-  place_data(&p, n_group, groups);
+  /* What is written at one time stands together: record after record. */
+  for (int i = 1; i < p.n; ++i)
+    for (int k = 0; k < n_group; ++k) {
+      if (groups[k].set == 0) continue;
+      groups[k].offset[i] = (off_t)p.end;
+      p.end += groups[k].bytes;
+    }
   for (int i = 0; i < n_group; ++i)
     if (groups[i].set != 0) PASS(fill_group(s, &p, &groups[i]));
   PASS(go_to(s, EOF_PLACE));

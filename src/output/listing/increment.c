@@ -80,15 +80,6 @@ static void print_values(const state *s, const solution *a, FILE *f) {
             text_number(a->r[2 * i + 1], 4));
 }
 
-/* Attempts that ended without a solution. */
-static void print_failures(const solution_set *set, FILE *f) {
-  for (EACH(const solution_attempt, a, set->attempts, set->n_attempt)) {
-    if (a->solution_no > 0) continue;
-    fprintf(f, "    %s (%s), start %s: %s, residual %s\n", a->solver, a->family,
-            a->start, outcome_text(a->outcome), text_number(a->residual, 1));
-  }
-}
-
 /* The attempts that found solution number i + 1: a line for each solver. */
 static void print_finders(const solution_set *set, int i, FILE *f) {
   const char *last = "";
@@ -125,7 +116,11 @@ static void print_solutions(const state *s, FILE *f) {
     fprintf(f,
             "    %d singular combinations have solutions of unknown extent\n",
             set->n_undecided);
-  print_failures(set, f);
+  for (EACH(const solution_attempt, a, set->attempts, set->n_attempt)) {
+    if (a->solution_no > 0) continue;
+    fprintf(f, "    %s (%s), start %s: %s, residual %s\n", a->solver, a->family,
+            a->start, outcome_text(a->outcome), text_number(a->residual, 1));
+  }
 }
 
 static const char *row_name(const model *m, const theorems_contact *c) {
@@ -237,12 +232,6 @@ static void print_rounding(const state *s, FILE *f) {
           text_number(100 * s->errors.rounding.u, 1));
 }
 
-static void print_hidden(const state *s, FILE *f) {
-  if (s->errors.in_doubt && s->errors.error.hidden > 0.1)
-    fprintf(f, "  rounding may be %s %% of the contact forces\n",
-            text_number(100 * s->errors.error.hidden, 1));
-}
-
 static void print_error(const job *j, const state *s, FILE *f) {
   const error_bound *e = &s->errors.error;
   if (!e->asked) return;
@@ -330,7 +319,9 @@ static void print_verdict(const job *j, const state *s, FILE *f) {
   if (s->note != NULL) fputs(s->note, f);
   print_solver(j, s, f);
   print_rounding(s, f);
-  print_hidden(s, f);
+  if (s->errors.in_doubt && s->errors.error.hidden > 0.1)
+    fprintf(f, "  rounding may be %s %% of the contact forces\n",
+            text_number(100 * s->errors.error.hidden, 1));
   print_error(j, s, f);
   print_balance(j, s, f);
   if (s->solver_log != NULL && s->solver_log[0] != '\0')

@@ -177,17 +177,6 @@ status listing_ready(const job *j, text_file *lst) {
   return text_check(lst);
 }
 
-static void print_accuracy(const job *j, FILE *f) {
-  const run_summary *run = j->run;
-  fprintf(f, "  %-26s %12d\n", "increments", run->n_increment);
-  fprintf(f, "  %-26s %12d\n", "attempts cut", run->n_rejected);
-  fprintf(f, "  %-26s %12d\n", "tolerance missed", run->n_unsettled);
-  fprintf(f, "  %-26s %12s\n", "largest residual",
-          text_number(run->residual_worst, 2));
-  fprintf(f, "  %-26s %12s\n", "largest energy defect",
-          text_number(run->defect_worst, 2));
-}
-
 /* Stages that were never entered are shown too: 0 calls, 0 bytes. */
 static void print_stages(const job *j, FILE *f) {
   int cost = !j->o->no_timing;
@@ -216,7 +205,14 @@ status listing_summary(const job *j, text_file *lst) {
     message_list(j->m->log, WARNING, f);
   }
   heading(f, "ACCURACY");
-  print_accuracy(j, f);
+  const run_summary *run = j->run;
+  fprintf(f, "  %-26s %12d\n", "increments", run->n_increment);
+  fprintf(f, "  %-26s %12d\n", "attempts cut", run->n_rejected);
+  fprintf(f, "  %-26s %12d\n", "tolerance missed", run->n_unsettled);
+  fprintf(f, "  %-26s %12s\n", "largest residual",
+          text_number(run->residual_worst, 2));
+  fprintf(f, "  %-26s %12s\n", "largest energy defect",
+          text_number(run->defect_worst, 2));
   listing_accuracy(j, f);
   heading(f, "COST");
   print_stages(j, f);

@@ -33,15 +33,6 @@ static status build_step(run *r) {
   return run_check_supports(r, &motions);
 }
 
-/* The displacements that the next step starts from: those of supports. */
-static status pass_step(run *r) {
-  PASS(load_prescribed(r->m, r->msh, r->step, step_end(r->step), NULL,
-                       r->loads.start));
-  for (size_t k = 0; k < r->n_dof; ++k)
-    if (!r->body.fixed[k]) r->loads.start[k] = NAN;
-  return OK;
-}
-
 /* *any = 1: some step has other supports than the one before. */
 static status change_supports(const model *m, const mesh *msh, int *any) {
   const size_t n = (size_t)msh->dim * msh->n_node;
@@ -64,7 +55,13 @@ static status check_steps(run *r, int n, int look) {
     PASS(take_supports(r, &other));
     if (i == 0 || other) PASS(build_step(r));
     PASS(effects_check(r));
-    if (look) PASS(pass_step(r));
+    if (look) {
+      /* The displacements that the next step starts from: those of supports. */
+      PASS(load_prescribed(r->m, r->msh, r->step, step_end(r->step), NULL,
+                           r->loads.start));
+      for (size_t k = 0; k < r->n_dof; ++k)
+        if (!r->body.fixed[k]) r->loads.start[k] = NAN;
+    }
   }
   return OK;
 }

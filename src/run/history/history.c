@@ -177,17 +177,6 @@ static void note_nodes(run *r) {
   r->nodes.n_reported = now;
 }
 
-/* The systems of an increment, unless a method did not tell its own. */
-static void count_work(observed_work *seen) {
-  if (!seen->untold) {
-    if (seen->increments++ == 0)
-      seen->first = seen->now;
-    else
-      seen->later += seen->now;
-  }
-  seen->now = seen->untold = 0;
-}
-
 /* The energies have the squares of all that is in the state. */
 static status check_finite(const run *r) {
   const energies *e = &r->now.energy;
@@ -223,7 +212,14 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
                    double cpu) {
   PASS(dense_show(r, increment_no));
   ++r->course.total_no;
-  count_work(&r->solving.seen);
+  /* The systems of an increment, unless a method did not tell its own. */
+  if (!r->solving.seen.untold) {
+    if (r->solving.seen.increments++ == 0)
+      r->solving.seen.first = r->solving.seen.now;
+    else
+      r->solving.seen.later += r->solving.seen.now;
+  }
+  r->solving.seen.now = r->solving.seen.untold = 0;
   r->at.last = last;
   PASS(
       result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
@@ -373,12 +369,6 @@ static status start_visco(run *r, int *increment_no) {
   return visco_begin_step(r);
 }
 
-static status start_step(run *r) {
-  visco_rest(r);
-  PASS(effects_start(r));
-  return start_visco(r, &r->at.increment_no);
-}
-
 /* ---- between two attempts ------------------------------------------------ */
 
 static status checkpoint(run *r) {
@@ -513,7 +503,9 @@ static status run_step(run *r) {
   } else {
     r->at =
         (progress){.step_id = run_step_id(r), .attempt = 1, .dt = r->step->dt};
-    PASS(start_step(r));
+    visco_rest(r);
+    PASS(effects_start(r));
+    PASS(start_visco(r, &r->at.increment_no));
   }
   PASS(effects_make_step(r, &made));
   if (!made) PASS(run_fixed(r));

@@ -148,18 +148,6 @@ static status misfit_new(const run *r, misfit *x) {
   return OK;
 }
 
-static void misfit_free(misfit *x) { RELEASE(x->stress, x->rest, x->w, x->rc); }
-
-/* The stresses of the displacement w alone, over those of the solution. */
-static void compare_stresses(run *r, misfit *x) {
-  domain plain = r->body.d;
-  double wrong;
-  plain.eigen = NULL;
-  domain_stress(&plain, x->w, NULL, x->stress);
-  wrong = largest_entry(x->n_stress, x->stress);
-  if (wrong > 0.0) r->errors.rounding.stress = wrong / r->now.peak_stress;
-}
-
 /* Error of the largest displacement, m. */
 static double lost(const run *r) {
   return CARRIED * largest_entry(r->n_dof, r->now.u);
@@ -220,13 +208,6 @@ int rounding_is_all(const run *r) {
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
-/* Residual of equilibrium without contact forces. */
-static void find_rest(const run *r, misfit *x) {
-  domain_stress(&r->body.d, r->now.u, NULL, x->stress);
-  domain_internal_force(&r->body.d, x->stress, x->rest);
-  for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
-}
-
 /* The contact forces of the answer. Where they differ from those of its
  * displacements by more than rounding, the solver has left that, and the latter
  * are taken. */
@@ -246,7 +227,9 @@ static status find_forces(const run *r, misfit *x) {
 
 /* w; *square: twice its energy, J. */
 static status find_error(const run *r, misfit *x, double *square) {
-  find_rest(r, x);
+  domain_stress(&r->body.d, r->now.u, NULL, x->stress);
+  domain_internal_force(&r->body.d, x->stress, x->rest);
+  for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
   PASS(find_forces(r, x));
   return condensed_misfit(x->c, x->rest, x->rc, x->w, square);
 }
@@ -264,7 +247,13 @@ static void take_loss(run *r, misfit *x, double square) {
     r->errors.rounding.u =
         largest_entry(r->n_dof, x->w) / largest_entry(r->n_dof, r->now.u);
   }
-  compare_stresses(r, x);
+  /* The stresses of the displacement w alone, over those of the solution. */
+  domain plain = r->body.d;
+  double wrong;
+  plain.eigen = NULL;
+  domain_stress(&plain, x->w, NULL, x->stress);
+  wrong = largest_entry(x->n_stress, x->stress);
+  if (wrong > 0.0) r->errors.rounding.stress = wrong / r->now.peak_stress;
 }
 
 /* 1 for each unknown of the contact problem that contact holds in place. */
@@ -314,10 +303,9 @@ static void forget_strains(run *r) {
 }
 
 static status find(run *r) {
-  ENDS_BY(misfit_free) misfit x = {0};
   const double share = share_of_step(r);
   double square = 0.0;
-  PASS(misfit_new(r, &x));
+  OWNED_PARTS(misfit, x, misfit_new(r, &x));
   PASS(find_error(r, &x, &square));
   r->now.peak_stress =
       fmax(r->now.peak_stress, largest_entry(x.n_stress, x.stress));
@@ -359,12 +347,11 @@ static int may_be_noise(const run *r) {
 }
 
 status rounding_hides_stresses(const run *r, int *hides) {
-  ENDS_BY(misfit_free) misfit x = {0};
   double square = 0.0;
   *hides = hides_strains(r, lost(r));
   if (*hides || !may_be_noise(r)) return OK;
   TIMED(STAGE_RECOVERY);
-  PASS(misfit_new(r, &x));
+  OWNED_PARTS(misfit, x, misfit_new(r, &x));
   PASS(find_error(r, &x, &square));
   *hides = is_noise(r, square);
   return OK;

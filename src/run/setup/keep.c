@@ -94,27 +94,6 @@ static status keep_choice(run *r, archive *a) {
   return archive_bytes(a, "stiffness_why", c->why, sizeof c->why);
 }
 
-static status keep_counts(run *r, archive *a) {
-  observed_work *seen = &r->solving.seen;
-  PASS(keep_choice(r, a));
-  PASS(archive_bytes(a, "observed", seen, sizeof *seen));
-  PASS(archive_bytes(a, "at", &r->at, sizeof r->at));
-  PASS(archive_ints(a, "total_no", &r->course.total_no, 1));
-  PASS(archive_ints(a, "unsettled", &r->course.unsettled, 1));
-  PASS(archive_reals(a, "start", r->loads.start, r->n_dof));
-  return archive_reals(a, "step_load", &r->loads.largest, 1);
-}
-
-static status keep_costs(run *r, archive *a) {
-  for (int i = 0; i < STAGE_COUNT; ++i) {
-    r->course.costs[i] = timer_cost((stage)i);
-    if (!archive_has_cpu(a)) r->course.costs[i].cpu = 0.0;
-  }
-  PASS(archive_bytes(a, "costs", r->course.costs, sizeof r->course.costs));
-  if (archive_reads(a)) timer_resume(r->course.costs);
-  return OK;
-}
-
 status run_keep_start(run *r, archive *a) {
   IN_GROUP(a, "run");
   return archive_reals(a, "start", r->loads.start, r->n_dof);
@@ -127,10 +106,23 @@ status run_keep_choice(run *r, archive *a) {
 
 status run_keep(run *r, archive *a) {
   IN_GROUP(a, "run");
-  PASS(keep_counts(r, a));
+  observed_work *seen = &r->solving.seen;
+  PASS(keep_choice(r, a));
+  PASS(archive_bytes(a, "observed", seen, sizeof *seen));
+  PASS(archive_bytes(a, "at", &r->at, sizeof r->at));
+  PASS(archive_ints(a, "total_no", &r->course.total_no, 1));
+  PASS(archive_ints(a, "unsettled", &r->course.unsettled, 1));
+  PASS(archive_reals(a, "start", r->loads.start, r->n_dof));
+  PASS(archive_reals(a, "step_load", &r->loads.largest, 1));
   PASS(keep_equilibrium(r, &r->old, a));
   PASS(keep_moduli(r, a));
   if (r->nodes.n > 0) PASS(keep_contact(r, a));
   PASS(effects_keep(r, a));
-  return keep_costs(r, a);
+  for (int i = 0; i < STAGE_COUNT; ++i) {
+    r->course.costs[i] = timer_cost((stage)i);
+    if (!archive_has_cpu(a)) r->course.costs[i].cpu = 0.0;
+  }
+  PASS(archive_bytes(a, "costs", r->course.costs, sizeof r->course.costs));
+  if (archive_reads(a)) timer_resume(r->course.costs);
+  return OK;
 }

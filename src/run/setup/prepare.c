@@ -129,17 +129,6 @@ static status find_load_of_run(run *r) {
   return OK;
 }
 
-/* The largest nodal load at the ends of the step. */
-static status find_load(run *r) {
-  const double end = r->step->start + r->step->total;
-  PASS(load_forces(r->m, r->msh, r->step, end, r->now.F));
-  r->loads.largest =
-      fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
-  if (r->loads.largest > 0.0 && r->loads.largest <= LEAST)
-    PASS(find_load_of_run(r));
-  return check_range(r);
-}
-
 /* Surface and matrices for r->body.fixed; chosen: of the kind of
  * r->body.choice. */
 static status make_matrices(run *r, int chosen) {
@@ -188,7 +177,14 @@ status run_prepare(run *r) {
     memcpy(r->body.fixed, fixed, r->n_dof);
     PASS(make_matrices(r, other));
   }
-  PASS(find_load(r));
+  /* The largest nodal load at the ends of the step. */
+  const double end = r->step->start + r->step->total;
+  PASS(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  r->loads.largest =
+      fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
+  if (r->loads.largest > 0.0 && r->loads.largest <= LEAST)
+    PASS(find_load_of_run(r));
+  PASS(check_range(r));
   PASS(effects_prepare(r));
   if (fresh || other) PASS(report_ready(r));
   contact_solver_free(&r->elastic.solver);

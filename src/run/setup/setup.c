@@ -43,18 +43,6 @@ status setup_face_weights(const model *m, const mesh *msh, double **weight) {
   return OK;
 }
 
-/* What contact and ties know of the faces. */
-static status new_faces(run *r) {
-  PASS(setup_face_weights(r->m, r->msh, &r->faces.face_weight));
-  PASS_NEW(r->faces.node_fixed, r->msh->n_node);
-  r->faces.input.fixed = r->faces.node_fixed;
-  r->faces.input.ties = &r->body.ties;
-  r->faces.input.mesh = r->msh;
-  r->faces.input.face_weight = r->faces.face_weight;
-  r->faces.input.axisymmetric = r->m->sections[0].kin == AXISYMMETRIC;
-  return OK;
-}
-
 /* What a contact is with: an obstacle, or another surface. */
 static status set_partner(const run *r, const contact *c, contact_pair *p) {
   OWNS(r->faces.pairs);
@@ -108,7 +96,16 @@ status run_new(run *r, const effect_ops *const *effects) {
   PASS(strains_new(r));
   PASS(setup_flow(r));
   PASS(new_clusters(r));
-  if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0) PASS(new_faces(r));
+  if ((r->m->effects & EFFECT_CONTACT) || r->m->n.tie > 0) {
+    /* What contact and ties know of the faces. */
+    PASS(setup_face_weights(r->m, r->msh, &r->faces.face_weight));
+    PASS_NEW(r->faces.node_fixed, r->msh->n_node);
+    r->faces.input.fixed = r->faces.node_fixed;
+    r->faces.input.ties = &r->body.ties;
+    r->faces.input.mesh = r->msh;
+    r->faces.input.face_weight = r->faces.face_weight;
+    r->faces.input.axisymmetric = r->m->sections[0].kin == AXISYMMETRIC;
+  }
   if (r->m->effects & EFFECT_CONTACT) PASS(new_pairs(r));
   if (r->m->n.goal > 0 ||
       (r->m->effects & (EFFECT_STRESS | EFFECT_REACTION | EFFECT_MESH_ERROR |

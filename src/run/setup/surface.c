@@ -65,22 +65,18 @@ static status new_contact_arrays(run *r) {
   return OK;
 }
 
-/* The force of a node that supports take out of the contact goes to them. */
-static void leave_forces(run *r, double *force) {
+/* Brings the old state into the frames of a new surface: u_c = frame u, and the
+ * forces dual to it, r = basis' force (equal for an orthonormal frame). */
+static status old_state_to_frames(run *r, double *force) {
+  surface_relative(r->surface, r->old.u, r->old.uc);
+  PASS(surface_forces(r->surface, r->msh->n_node, force, r->old.rc));
+  /* The force of a node that supports take out of the contact goes to them. */
   int dim = r->msh->dim;
   if (r->surface->master != NULL)
     surface_spread(r->surface, -1.0, r->old.rc, force);
   for (int i = 0; i < r->nodes.n; ++i)
     for (int c = 0; c < dim; ++c) force[dim * r->surface->node_id[i] + c] = 0.0;
   for (size_t k = 0; k < r->n_dof; ++k) r->old.reaction[k] += force[k];
-}
-
-/* Brings the old state into the frames of a new surface: u_c = frame u, and the
- * forces dual to it, r = basis' force (equal for an orthonormal frame). */
-static status old_state_to_frames(run *r, double *force) {
-  surface_relative(r->surface, r->old.u, r->old.uc);
-  PASS(surface_forces(r->surface, r->msh->n_node, force, r->old.rc));
-  leave_forces(r, force);
   return OK;
 }
 
@@ -113,16 +109,6 @@ void run_free_ties(run *r) {
   links_release(&r->body.ties.to);
   r->body.ties = (tie_set){0};
   r->body.d.ties = NULL;
-}
-
-/* Nodes that all their components hold, or an earlier tie has, are left out. */
-static void find_dropped(const run *r, unsigned char *dropped) {
-  const int dim = r->msh->dim;
-  for (int i = 0; i < r->msh->n_node; ++i) {
-    int all = 1;
-    for (int c = 0; c < dim; ++c) all &= r->body.fixed[dim * i + c] != 0;
-    dropped[i] |= (unsigned char)all;
-  }
 }
 
 static status couple(const run *r, const tie *t, const unsigned char *dropped,
@@ -202,7 +188,14 @@ status run_build_ties(run *r) {
   node_bits(r);
   timer_enter(STAGE_COUPLING);
   NEW_ALL(OF(m, n), OF(dropped, r->msh->n_node));
-  find_dropped(r, dropped);
+  /* Nodes that all their components hold, or an earlier tie has, are left out.
+   */
+  const int dim = r->msh->dim;
+  for (int i = 0; i < r->msh->n_node; ++i) {
+    int all = 1;
+    for (int c = 0; c < dim; ++c) all &= r->body.fixed[dim * i + c] != 0;
+    dropped[i] |= (unsigned char)all;
+  }
   for (int i = 0; i < n; ++i) {
     TRY(couple(r, &r->m->ties[i], dropped, &m[i]));
     for (int q = 0; q < m[i]->n; ++q) dropped[m[i]->node_id[q]] = 1;

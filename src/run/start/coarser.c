@@ -27,16 +27,6 @@ status coarser_new(coarser **out) {
   return OK;
 }
 
-static status new_arrays(const contact_surface *s, coarser_state *x) {
-  const size_t n = s->n, all = s->dim * n;
-  PASS_NEW_ALL(OF(x->x, all), OF(x->contact_id, n), OF(x->gap, n));
-  PASS_NEW_REALS(all, &x->traction, &x->slip);
-  PASS_NEW(x->contact, n);
-  COPY(x->x, s->x, all);
-  COPY(x->contact_id, s->contact_id, n);
-  return OK;
-}
-
 /* Traction and slip of node i. */
 static void fill_node(const contact_surface *s, const contact_view *v, int i,
                       coarser_state *x) {
@@ -58,7 +48,12 @@ status coarser_add(coarser *c, const contact_surface *s,
   OWNS(c);
   ADDED(coarser_state, x, c->state, c->n, c->capacity);
   *x = (coarser_state){.dim = s->dim, .n = s->n, .t = v->t};
-  PASS(new_arrays(s, x));
+  const size_t n = s->n, all = s->dim * n;
+  PASS_NEW_ALL(OF(x->x, all), OF(x->contact_id, n), OF(x->gap, n));
+  PASS_NEW_REALS(all, &x->traction, &x->slip);
+  PASS_NEW(x->contact, n);
+  COPY(x->x, s->x, all);
+  COPY(x->contact_id, s->contact_id, n);
   COPY(x->gap, v->gap, s->n);
   COPY(x->contact, v->contact, s->n);
   for (int i = 0; i < s->n; ++i) fill_node(s, v, i, x);

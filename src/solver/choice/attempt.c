@@ -177,13 +177,6 @@ static status drive_one(contact_solver *s, const contact_problem *cp,
   return OK;
 }
 
-/* Append to the log. */
-static void log_unfit(contact_solver *s, const char *name, const char *why) {
-  size_t used = strlen(s->log);
-  snprintf(s->log + used, LOG_SIZE - used, "%s%s: %s", used > 0 ? ", " : "",
-           name, why);
-}
-
 /* An attempt on the given problem. */
 typedef struct drive_call {
   contact_solver *s;
@@ -269,7 +262,9 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
   *rep = (solver_report){.outcome = STOPPED_UNFIT};
   TRY(suit(s, cp, a->ops, &own, &why));
   if (why != NULL) {
-    log_unfit(s, a->ops->name, why);
+    size_t used = strlen(s->log);
+    snprintf(s->log + used, LOG_SIZE - used, "%s%s: %s", used > 0 ? ", " : "",
+             a->ops->name, why);
     goto done;
   }
   if (own.A == cp->A && own.op == cp->op && own.W == cp->W)

@@ -140,14 +140,6 @@ static void release_tangents(opened *o, const double *r, double *u) {
   for (int i = 0; i < o->nt; ++i) u[tangent_dof(o->dim, i)] += o->y[i];
 }
 
-static void close_all(opened *o, const contact_problem *cp) {
-  CLEAR(o->u0, cp->m);
-  for (int i = 0; i < cp->n; ++i) o->u0[i * cp->dim] = cp->gap[i];
-  contact_reaction(cp, o->u0, o->r0);
-  release_tangents(o, o->r0, o->u0);
-  contact_reaction(cp, o->u0, o->r0);
-}
-
 /* ---- columns ------------------------------------------------------------- */
 
 /* Of the open nodes that have none. */
@@ -230,12 +222,6 @@ static int next_states(opened *o, const contact_problem *cp, double margin,
   return changes;
 }
 
-static void list_open(opened *o) {
-  o->n_open = 0;
-  for (int i = 0; i < o->n; ++i)
-    if (o->is_open[i]) o->open[o->n_open++] = i;
-}
-
 static void begin(opened *o, const contact_problem *cp, const double *u,
                   const double *r) {
   for (int i = 0; i < cp->n; ++i) {
@@ -266,11 +252,17 @@ static void opened_solve(opened *o, const contact_problem *cp,
   *rep =
       (solver_report){.outcome = STOPPED_UNFIT, .solver = newton_solver.name};
   begin(o, cp, u, r);
-  close_all(o, cp);
+  CLEAR(o->u0, cp->m);
+  for (int i = 0; i < cp->n; ++i) o->u0[i * cp->dim] = cp->gap[i];
+  contact_reaction(cp, o->u0, o->r0);
+  release_tangents(o, o->r0, o->u0);
+  contact_reaction(cp, o->u0, o->r0);
   int asked = control->max_iter, most = STEPS;
   if (asked > 0 && asked < most) most = asked;
   while (rep->iterations < most) {
-    list_open(o);
+    o->n_open = 0;
+    for (int i = 0; i < o->n; ++i)
+      if (o->is_open[i]) o->open[o->n_open++] = i;
     make_columns(o, cp);
     if (!open_up(o)) return;
     displace(o, cp);

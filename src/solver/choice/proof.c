@@ -25,17 +25,6 @@ static double slip_of(const contact_problem *cp, const double *v, int node_id) {
   return sqrt(sum);
 }
 
-/* c of every unknown with a bound, 0 at the others. c[m], slip[n] */
-static void set_growth(const contact_problem *cp, const double *v,
-                       const double *slip, double *c) {
-  const sparse_rows *B = cp->B;
-  for (int dof = 0; dof < cp->m; ++dof)
-    c[dof] = contact_bound(cp, dof) < HUGE_VAL ? v[dof] : 0.0;
-  for (int i = 0; B != NULL && i < cp->n; ++i)
-    for (int k = B->start[i]; k < B->start[i + 1]; ++k)
-      c[B->col[k] * cp->dim] += B->val[k] * slip[i];
-}
-
 static double held_by_limit(const contact_problem *cp, const double *slip) {
   double h = 0.0;
   for (int i = 0; cp->g0 != NULL && i < cp->n; ++i) h += cp->g0[i] * slip[i];
@@ -47,7 +36,13 @@ static double largest_growth(const contact_problem *cp, const double *v,
                              double *c, double *slip) {
   double most = 0.0;
   for (int i = 0; i < cp->n; ++i) slip[i] = slip_of(cp, v, i);
-  set_growth(cp, v, slip, c);
+  /* c of every unknown with a bound, 0 at the others. c[m], slip[n] */
+  const sparse_rows *B = cp->B;
+  for (int dof = 0; dof < cp->m; ++dof)
+    c[dof] = contact_bound(cp, dof) < HUGE_VAL ? v[dof] : 0.0;
+  for (int i = 0; B != NULL && i < cp->n; ++i)
+    for (int k = B->start[i]; k < B->start[i + 1]; ++k)
+      c[B->col[k] * cp->dim] += B->val[k] * slip[i];
   for (int dof = 0; dof < cp->m; ++dof)
     if (!(c[dof] <= most)) most = c[dof];
   return most;
@@ -151,15 +146,6 @@ static void add_friction(const balance *s, int i, double limit) {
   }
 }
 
-/* The normal force of an unknown with a bound, 1, and its friction. */
-static void set_push(const balance *s, int dof) {
-  const contact_problem *cp = s->cp;
-  s->force[dof] = 1.0;
-  for (int i = 0; cp->B != NULL && i < cp->n; ++i)
-    for (int e = cp->B->start[i]; e < cp->B->start[i + 1]; ++e)
-      if (cp->B->col[e] * cp->dim == dof) add_friction(s, i, cp->B->val[e]);
-}
-
 /* The column with the largest work on the rest, into to[rows]; its work, <= 0:
  * none. */
 static double best_column(balance *s, double *to) {
@@ -174,7 +160,13 @@ static double best_column(balance *s, double *to) {
   double of_limit = held_by_limit(cp, slip) / s->unit + s->sum.rest[k];
   int limit = of_limit > s->c[best];
   CLEAR(s->force, m);
-  if (!limit) set_push(s, best);
+  if (!limit) {
+    /* The normal force of an unknown with a bound, 1, and its friction. */
+    s->force[best] = 1.0;
+    for (int i = 0; cp->B != NULL && i < cp->n; ++i)
+      for (int e = cp->B->start[i]; e < cp->B->start[i + 1]; ++e)
+        if (cp->B->col[e] * cp->dim == best) add_friction(s, i, cp->B->val[e]);
+  }
   for (int i = 0; limit && cp->g0 != NULL && i < cp->n; ++i)
     add_friction(s, i, cp->g0[i] / s->unit);
   cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, s->an->R, m, s->force, 1,

@@ -125,22 +125,18 @@ static double beyond(const rest *s, int i) {
   return cblas_ddot(s->k, s->V + i, s->m, s->q, 1) - fmax(0.0, bound - s->u[i]);
 }
 
-/* The column of the bound of unknown i: what pushes back, and how far it is
- * crossed, over "unit". */
-static void set_column(const rest *s, int i, double unit, double *side) {
-  for (int j = 0; j < s->k; ++j) side[j] = -s->V[i + s->m * j];
-  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, s->k, s->L,
-              s->k, side, 1);
-  side[s->k] = beyond(s, i) / unit;
-}
-
 /* The column that does the most work on the rest, into "next"; 0: none. */
 static int next_column(const rest *s, double unit, const double *left,
                        double *side, double *next) {
   double most = 0.0;
   for (int i = 0; i < s->m; ++i) {
     if (!(beyond(s, i) > -HUGE_VAL)) continue;
-    set_column(s, i, unit, side);
+    /* The column of the bound of unknown i: what pushes back, and how far it is
+     * crossed, over "unit". */
+    for (int j = 0; j < s->k; ++j) side[j] = -s->V[i + s->m * j];
+    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, s->k,
+                s->L, s->k, side, 1);
+    side[s->k] = beyond(s, i) / unit;
     const double work = cblas_ddot(s->k + 1, side, 1, left, 1);
     if (!(work > MARGIN * cblas_dnrm2(s->k + 1, side, 1)) || work <= most)
       continue;
@@ -171,14 +167,6 @@ static status keep_out(rest *s) {
   return OK;
 }
 
-/* Moves the bodies; what touches then lies on the obstacle. */
-static void put(rest *s) {
-  cblas_dgemv(CblasColMajor, CblasNoTrans, s->m, s->k, 1.0, s->V, s->m, s->q, 1,
-              1.0, s->u, 1);
-  for (int i = 0; i < s->m; ++i)
-    if (!s->forced[i]) s->u[i] = fmin(s->u[i], contact_bound(s->cp, i));
-}
-
 status rest_find(const rest_scene *at, double *u, const double *f, int *moved) {
   SCRATCH;
   rest s = {.at = at, .cp = at->cp, .u = u, .f = f, .m = at->cp->m};
@@ -194,7 +182,11 @@ status rest_find(const rest_scene *at, double *u, const double *f, int *moved) {
   PASS_NEW_ALL(OF(s.L, s.k * s.k), OF(s.q, s.k), OF(s.x, s.k));
   if (!find_free(&s)) return OK;
   PASS(keep_out(&s));
-  put(&s);
+  /* Moves the bodies; what touches then lies on the obstacle. */
+  cblas_dgemv(CblasColMajor, CblasNoTrans, s.m, s.k, 1.0, s.V, s.m, s.q, 1, 1.0,
+              s.u, 1);
+  for (int i = 0; i < s.m; ++i)
+    if (!s.forced[i]) s.u[i] = fmin(s.u[i], contact_bound(s.cp, i));
   *moved = 1;
   return OK;
 }

@@ -145,12 +145,6 @@ static double lcp_largest(int n, const double *x) {
   return n > 0 ? fabs(x[cblas_idamax(n, x, 1)]) : 0.0;
 }
 
-static void measure_inverse(lcp_work *w) {
-  w->size_K = 0.0;
-  for (int b = 0; b < w->s; ++b)
-    w->size_K = fmax(w->size_K, lcp_largest(w->s, w->K + (size_t)b * w->cap));
-}
-
 /* z = -K q_row, w = q + M z, with one correction of the defect of the rows.
  * Returns the relative defect before. */
 static double lcp_refresh(lcp_work *w, const lcp_problem *p) {
@@ -171,7 +165,9 @@ static double lcp_refresh(lcp_work *w, const lcp_problem *p) {
   }
   cblas_daxpy(w->n, 1.0, w->q, 1, w->w, 1);
   for (int b = 0; b < w->s; ++b) w->w[w->row[b]] = 0.0;
-  measure_inverse(w);
+  w->size_K = 0.0;
+  for (int b = 0; b < w->s; ++b)
+    w->size_K = fmax(w->size_K, lcp_largest(w->s, w->K + (size_t)b * w->cap));
   return defect / size;
 }
 

@@ -117,14 +117,6 @@ static int fit(nonnegative *s, const double *b) {
                             s->y, rows, s->work, 4 * rows) == 0;
 }
 
-static void drop(nonnegative *s, int j) {
-  size_t rows = s->rows;
-  --s->n;
-  memmove(s->G + rows * j, s->G + rows * (j + 1),
-          rows * (s->n - j) * sizeof *s->G);
-  memmove(s->x + j, s->x + j + 1, (s->n - j) * sizeof *s->x);
-}
-
 /* From x towards y while no factor is negative; factors that become zero are
  * dropped. 1: y is reached. */
 static int go(nonnegative *s) {
@@ -138,7 +130,11 @@ static int go(nonnegative *s) {
   }
   for (int j = 0; j < s->n; ++j) s->x[j] += share * (s->y[j] - s->x[j]);
   if (end < 0) return 1;
-  drop(s, end);
+  size_t rows = s->rows;
+  --s->n;
+  memmove(s->G + rows * end, s->G + rows * (end + 1),
+          rows * (s->n - end) * sizeof *s->G);
+  memmove(s->x + end, s->x + end + 1, (s->n - end) * sizeof *s->x);
   return s->n == 0;
 }
 
@@ -523,14 +519,6 @@ typedef struct run {
   int is_first; /* 1: one of the first tries */
 } run;
 
-static status run_new(run *s) {
-  size_t n = s->p->n;
-  PASS_NEW_ALL(OF(s->try_z, n), OF(s->y, 2 * n), OF(s->cover, n),
-               OF(s->size, n), OF(s->M, n * n), OF(s->q, n), OF(s->work, n),
-               OF(s->turned, n));
-  return OK;
-}
-
 static void note(lcp_verdict *v, const char *who, outcome o) {
   size_t used = strlen(v->log);
   snprintf(v->log + used, LCP_LOG - used, "%s%s: %s", used > 0 ? ", " : "", who,
@@ -739,7 +727,9 @@ status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
   *v = (lcp_verdict){.outcome = CONVERGED, .method = "lemke"};
   v->residual = lcp_residual(p, z, w);
   if (v->residual <= control->tol) return OK;
-  PASS(run_new(&s));
+  size_t n = s.p->n;
+  PASS_NEW_ALL(OF(s.try_z, n), OF(s.y, 2 * n), OF(s.cover, n), OF(s.size, n),
+               OF(s.M, n * n), OF(s.q, n), OF(s.work, n), OF(s.turned, n));
   PASS(follow(&s));
   v->residual = lcp_residual(p, z, w);
   return OK;

@@ -68,19 +68,15 @@ static int base_has_all(const compliance_system *s) {
   return 1;
 }
 
-/* Mark the plain unknowns of the guess in y. */
-static void mark(compliance_system *s) {
-  CLEAR(s->y, s->n_base);
-  for (int i = 0; i < s->n; ++i)
-    if (!s->list[i].turns) s->y[s->in_base[s->list[i].dof]] = 1.0;
-}
-
 /* List what the guess frees; the operations of a step with it, or HUGE_VAL if
  * there is no base or the guess has forces that are not in it. */
 static double freed_cost(compliance_system *s) {
   double fresh = 0.0, n = s->n_base;
   if (s->n_base == 0 || !base_has_all(s)) return HUGE_VAL;
-  mark(s);
+  /* Mark the plain unknowns of the guess in y. */
+  CLEAR(s->y, s->n_base);
+  for (int i = 0; i < s->n; ++i)
+    if (!s->list[i].turns) s->y[s->in_base[s->list[i].dof]] = 1.0;
   s->n_freed = 0;
   for (int a = 0; a < s->n_base; ++a) {
     if (s->y[a] != 0.0) continue;
@@ -124,20 +120,16 @@ static double on_limit(const compliance_system *s, int node_id,
   return sum;
 }
 
-/* The second row: the force across over its stiffness. */
-static double across(const compliance_system *s, int node_id, const double *y) {
-  const unknown *d = &s->list[s->turn[node_id]];
-  double sum = 0.0;
-  for (int k = 0; k < 2; ++k) sum += d->d[k] * y[s->in_base[d->dof + k]];
-  return sum * s->power / s->p->kappa[node_id];
-}
-
 /* Product of the row of a freed force with forces y. */
 static double row_of(const compliance_system *s, int a, const double *y) {
   int dof = s->base[a], dim = s->cp->dim, node_id = dof / dim;
   if (dof % dim == 0 || s->p->mode[node_id] != SLIP) return y[a];
   if (s->turn[node_id] < 0 || dof % dim == 1) return on_limit(s, node_id, y);
-  return across(s, node_id, y);
+  /* The second row: the force across over its stiffness. */
+  const unknown *d = &s->list[s->turn[node_id]];
+  double sum = 0.0;
+  for (int k = 0; k < 2; ++k) sum += d->d[k] * y[s->in_base[d->dof + k]];
+  return sum * s->power / s->p->kappa[node_id];
 }
 
 /* Its product with the displacement of another freed one. */
@@ -236,11 +228,6 @@ static int turns(const compliance_system *s, int node_id) {
          !contact_held(s->cp, first + 1) && !contact_held(s->cp, first + 2);
 }
 
-static void add_unknown(compliance_system *s, int dof) {
-  s->dof[s->n] = dof;
-  s->list[s->n++] = (unknown){.dof = dof, .d = {1.0, 0.0}};
-}
-
 static void list_unknowns(compliance_system *s) {
   const contact_problem *cp = s->cp;
   const pattern *p = s->p;
@@ -250,8 +237,10 @@ static void list_unknowns(compliance_system *s) {
     s->place[i] = p->closed[first] ? s->n : -1;
     for (int dof = first; dof < first + cp->dim; ++dof) {
       int stick = dof > first && p->mode[i] == STICK;
-      if (!contact_held(cp, dof) && (p->closed[dof] || stick))
-        add_unknown(s, dof);
+      if (!contact_held(cp, dof) && (p->closed[dof] || stick)) {
+        s->dof[s->n] = dof;
+        s->list[s->n++] = (unknown){.dof = dof, .d = {1.0, 0.0}};
+      }
     }
     s->turn[i] = turns(s, i) ? s->n : -1;
     if (s->turn[i] < 0) continue;
@@ -413,15 +402,6 @@ static int new_factor(compliance_system *s) {
 
 /* ---- step ---------------------------------------------------------------- */
 
-/* Add the solved x to the forces. */
-static void add_forces(const compliance_system *s, double *r) {
-  for (int i = 0; i < s->n; ++i) {
-    const unknown *a = &s->list[i];
-    r[a->dof] += s->x[i] * a->d[0];
-    if (a->turns) r[a->dof + 1] += s->x[i] * a->d[1];
-  }
-}
-
 /* Largest of |q| and diag(W) |r|, times power. */
 static double size_of(const compliance_system *s, const double *r) {
   const contact_problem *cp = s->cp;
@@ -454,7 +434,12 @@ static int solve(compliance_system *s, int by_base, double *r, double *raw) {
       dense_solve(&s->K, 1, s->x, s->n);
     else if (!freed_solve(s))
       return 0;
-    add_forces(s, r);
+    /* Add the solved x to the forces. */
+    for (int i = 0; i < s->n; ++i) {
+      const unknown *a = &s->list[i];
+      r[a->dof] += s->x[i] * a->d[0];
+      if (a->turns) r[a->dof + 1] += s->x[i] * a->d[1];
+    }
     settle(s, r);
     compliance_displace(s->cp, r, raw);
     before = left;

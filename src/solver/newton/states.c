@@ -101,14 +101,6 @@ static void set_slip(states *s, int node_id, const double *z, double size,
       size - g > 0x1p-20 * g ? c * g / (size - g) : 0x1p20 * c;
 }
 
-/* Forces that push each node back by its own stiffness, to compare its slip
- * with: the cheapest guess of stick or slip. */
-static void presume_pressure(states *s) {
-  for (int dof = 0; dof < s->cp->m; dof += s->cp->dim)
-    s->r[dof] =
-        fmin(0.0, -s->k[dof] * (s->u[dof] - s->cp->gap[dof / s->cp->dim]));
-}
-
 /* State of friction from z = r_t - c slip; the state before decides ties. */
 static void friction_state(states *s, int node_id, int fresh) {
   int tangents = s->cp->dim - 1, first = node_id * s->cp->dim + 1;
@@ -194,7 +186,11 @@ int states_next(states *s, int fresh) {
   const contact_problem *cp = s->cp;
   int changes = 0, bonded = fresh && is_zero(s->cp->m, s->r);
   if (bonded && !contact_has_stiffness(cp)) {
-    presume_pressure(s);
+    /* Forces that push each node back by its own stiffness, to compare its slip
+     * with: the cheapest guess of stick or slip. */
+    for (int dof = 0; dof < s->cp->m; dof += s->cp->dim)
+      s->r[dof] =
+          fmin(0.0, -s->k[dof] * (s->u[dof] - s->cp->gap[dof / s->cp->dim]));
     bonded = 0;
   }
   contact_roundings(cp, s->u, s->r, s->rounding);

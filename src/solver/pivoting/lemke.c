@@ -471,16 +471,6 @@ static void lemke_state_of(const lemke_run *s, const double *z, double *x) {
   lemke_settle_free(s, 1, x);
 }
 
-/* q and d of the complementarity problem. */
-static void lemke_set_vectors(lemke_run *s) {
-  lemke_work *w = s->w;
-  CLEAR(w->z, w->reduced.n_var);
-  lemke_respond(s, w->reduced.base, 1, w->raw);
-  slacks(s, w->raw, w->z, w->q);
-  for (int a = 0; a < w->reduced.n_var; ++a) w->d[a] = 1.0;
-  if (lemke_is_stiff(s)) lemke_add_limits(s, w->z, w->d);
-}
-
 /* Correct z by the residual of the rows of the final basis with the given
  * matrix. */
 static void polish(lemke_run *s, double *x) {
@@ -713,7 +703,12 @@ static int prepare(lemke_run *s) {
 static outcome follow(lemke_run *s, int *count) {
   lemke_work *w = s->w;
   lcp_report rep;
-  lemke_set_vectors(s);
+  /* q and d of the complementarity problem. */
+  CLEAR(w->z, w->reduced.n_var);
+  lemke_respond(s, w->reduced.base, 1, w->raw);
+  slacks(s, w->raw, w->z, w->q);
+  for (int a = 0; a < w->reduced.n_var; ++a) w->d[a] = 1.0;
+  if (lemke_is_stiff(s)) lemke_add_limits(s, w->z, w->d);
   const lcp_problem p = {
       w->reduced.n_var, w->q,      w->d,         s->control->max_iter,
       lemke_product,    lemke_row, report_pivot, s};
