@@ -507,14 +507,17 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
-/* Also next to ends of a contact; by 64 x 64 squares the force is 10.598. */
+/* Also next to ends of a contact: a block under a shear that ends at its
+ * corners. */
 START_TEST(estimates_of_coarse_meshes_are_doubted) {
-  for (int n = 2; n <= 3; ++n) {
-    job j = of_block(n, "SPHERE, RADIUS=20.\n0.9, -20.",
-                     NORMAL
-                     "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
-                     "TOP, 2, 2, -0.01\n");
-    check(&j, 10.598, -2.0, 2.0, 6.0);
+  for (int n = 3; n <= 4; ++n) {
+    job j = of_block(
+        n, PLANE,
+        "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
+        "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+        "*DSLOAD\nTOP, P, 30.\nTOP, TX, 3.\n");
+    ck_assert(has_verdict(&j, "U", "contact_end"));
+    check(&j, 0.01789396, 0.4, 0.7, 1.0);
     job_end(&j);
   }
 }
