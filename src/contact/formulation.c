@@ -139,9 +139,7 @@ static status factorise(const contact_problem *cp, given_form *g) {
     if (!(pivot * pivot > SINGULAR * whole)) info = 1;
   }
   if (info != 0)
-    RAISE(ERR_SINGULAR,
-          "*CONTACT FORCE: nothing holds the body against the given normal "
-          "forces; hold it with *BOUNDARY or another *CONTACT");
+    RAISE(ERR_SINGULAR, "nothing holds the body against given normal forces");
   return OK;
 }
 

@@ -587,6 +587,10 @@ const contact_operator *condensed_operator(const condensed *c) {
   return c->sparse != NULL ? &c->sparse->seen : NULL;
 }
 
+status condensed_keep(condensed *c, archive *a) {
+  return c->sparse != NULL ? sparse_operator_keep(c->sparse, a) : OK;
+}
+
 void condensed_product(const condensed *c, const double *u, double *Au) {
   const contact_operator *op = condensed_operator(c);
   if (op != NULL)

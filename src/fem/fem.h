@@ -9,6 +9,7 @@
 #pragma once
 
 #include "fem/cluster/cluster.h"
+#include "base/archive/archive.h"
 #include "contact/operator.h"
 #include "contact/surface.h"
 #include "material/material.h"
@@ -119,6 +120,8 @@ void condensed_free(condensed *c);
 /* A [m*m], NULL: d->sparse; then the operator, else NULL. */
 const double *condensed_matrix(const condensed *c);
 const contact_operator *condensed_operator(const condensed *c);
+/* What of the operator follows from its use. */
+status condensed_keep(condensed *c, archive *a);
 void condensed_product(const condensed *c, const double *u, double *Au);
 int condensed_floating(
     const condensed *c); /* 1: a body is held by contact alone */

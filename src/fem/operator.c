@@ -157,6 +157,26 @@ status sparse_operator_all_rows(sparse_operator *o) {
   return refactor(o, &(known_rows){0}, 1);
 }
 
+status sparse_operator_keep(sparse_operator *o, archive *a) {
+  const size_t m = o->k->n_row, size = o->k->rows * m;
+  const int reads = archive_reads(a);
+  int springs = o->rows.springs, whole = o->state == FACTORED;
+  OWNED_NEW(unsigned char, known, m);
+  OWNED_NEW(double, added, size);
+  PASS(archive_ints(a, "springs", &springs, 1));
+  PASS(archive_ints(a, "whole", &whole, 1));
+  PASS(archive_bytes(a, "known", reads ? known : o->rows.known, m));
+  PASS(archive_reals(a, "added", reads ? added : o->rows.added, size));
+  const known_rows rows = {.known = known, .added = added};
+  if (!reads) return OK;
+  if (whole) return refactor(o, &rows, springs);
+  COPY(o->rows.known, known, m);
+  COPY(o->rows.added, added, size);
+  o->rows.springs = springs;
+  o->state = BROKEN;
+  return OK;
+}
+
 /* ---- products and solves ------------------------------------------------- */
 
 static void clear(const sparse_operator *o) {

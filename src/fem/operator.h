@@ -6,6 +6,7 @@
  */
 #pragma once
 
+#include "base/archive/archive.h"
 #include "contact/operator.h"
 #include "fem/factor.h"
 #include "fem/rigid.h"
@@ -99,3 +100,5 @@ void sparse_operator_interior(sparse_operator *o, const double *load,
                               double *u);
 /* The factor of all rows, with springs. ERR_SINGULAR, ERR_MEMORY. */
 status sparse_operator_all_rows(sparse_operator *o);
+/* The rows that the factor follows; made again for them on reading. */
+status sparse_operator_keep(sparse_operator *o, archive *a);

@@ -403,11 +403,13 @@ static status see_finished(void *ctx, status st, output *out) {
     FAIL(ERR_UNSETTLED,
          "a target of *GOAL is missed: %s; the files are those of pass %d",
          p->why, p->n);
+  char error[32] = "unknown";
+  if (!isnan(row->total)) snprintf(error, sizeof error, "%.3g %%", row->total);
   if (p->why[0] != '\0')
     FAIL(ERR_UNSETTLED,
-         "the error is %.3g %%, the target %g %%: %s; the files are those of "
+         "the error is %s, the target %g %%: %s; the files are those of "
          "pass %d",
-         row->total, p->target->percent, p->why, p->n);
+         error, p->target->percent, p->why, p->n);
   if (!p->done) TRY(prepare_next(p));
 done:
   return st;

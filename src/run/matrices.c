@@ -36,12 +36,28 @@ static status new_solver(const run *r, matrices *m) {
   return st;
 }
 
+/* Of the present group. */
+static status keep_operator(matrices *m, archive *a) {
+  int there = m->c != NULL;
+  PASS(archive_ints(a, "operator", &there, 1));
+  return there && m->c != NULL ? condensed_keep(m->c, a) : OK;
+}
+
+status matrices_follow(matrices *m) {
+  if (m->from == NULL) return OK;
+  archive_go(m->from, m->group);
+  const status st = keep_operator(m, m->from);
+  archive_go(m->from, "");
+  return st;
+}
+
 status matrices_keep(matrices *m, archive *a, const char *group) {
   int there = m->solver != NULL;
   if (!archive_reads(a) && !there && m->from != NULL)
     return archive_pass_on(m->from, m->group, a);
   IN_GROUP(a, group);
   PASS(archive_ints(a, "solver", &there, 1));
+  PASS(keep_operator(m, a));
   if (!archive_reads(a) || m->solver != NULL)
     return there ? contact_solver_keep(m->solver, a) : OK;
   if (there) {

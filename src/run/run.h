@@ -286,6 +286,8 @@ void matrices_free(matrices *m);
 /* Saved data of the solver, in a group of this name; reading: for the solver
  * that is made next. */
 status matrices_keep(matrices *m, archive *a, const char *group);
+/* The operator that is made again follows what the one before a restart did. */
+status matrices_follow(matrices *m);
 
 /* The contact nodes of r->problem.cp are those of r->nodes.reach; allocates
  * their part and unknowns. */

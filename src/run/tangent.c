@@ -48,6 +48,7 @@ static status factor_again(const domain *d, matrices *m) {
   for (int i = 0; i < STAGE_COUNT; ++i)
     before[i].calls = timer_cost((stage)i).calls;
   status st = factor(d, m);
+  if (st == OK) st = matrices_follow(m);
   timer_resume(before);
   return st;
 }

@@ -261,7 +261,7 @@ static int is_alone(const averager *a, int i) {
   for (int mask = 0; mask < 8; ++mask)
     for (int j = 0; j < a->n && image_of(a, i, mask, from); ++j) {
       double r = to_segment(from, from, a->x + 3 * a->node[j]);
-      if (j != i && r < a->f->radius) return 0;
+      if (j != i && r < a->f->radius * (1 - 1e-9)) return 0;
     }
   return 1;
 }

@@ -1,8 +1,9 @@
 /*
  * Part of mesh.so: what lies behind each block that is asked for with calloc,
- * as are all of src (base/memory.c), is NaN, or no index, for who reads it; who
- * wrote it ends the process when the block is released. A program of which a
- * block is left at its end fails.
+ * as are all of src (base/memory.c), and what was in it when it is released, is
+ * NaN, or no index, for who reads it, also a while later; who wrote behind it
+ * ends the process when the block is released. A program of which a block is
+ * left at its end fails.
  */
 #include <malloc.h>
 #include <stdint.h>
@@ -16,7 +17,9 @@ enum {
   LEAST = 5 * WORD,
   MOST = 32 * WORD,
   HEADER = 48, /* of base/memory.c, whose first word is the size behind it */
-  CALLERS = 1024
+  CALLERS = 1024,
+  SMALL = 1024, /* bytes of blocks that others take the place of */
+  LATE = 256    /* blocks later                                           */
 };
 
 static const uint64_t behind = 0x7ff8dead7ff8deadu, mark = 0x9e3779b97f4a7c15u;
@@ -30,6 +33,8 @@ typedef struct caller {
 static caller callers[CALLERS];
 static const caller *program; /* memory_new                                   */
 static pid_t owner;
+static void *released[LATE];
+static unsigned n_released;
 
 /* At the end of what the C library gives: the size asked for, the mark. */
 typedef struct trailer {
@@ -82,14 +87,15 @@ void *calloc(size_t n, size_t size) {
   return p;
 }
 
-/* The mark goes with the block: the next one there may have none. */
-static void check(void *p) {
+/* Bytes of the block, 0: it has no mark. The mark goes with the block: the next
+ * one there may have none. */
+static size_t check(void *p) {
   static const char told[] = "guard: a block was written behind its end\n";
   trailer t;
-  if (p == NULL) return;
+  if (p == NULL) return 0;
   char *end = trailer_of(p);
   memcpy(&t, end, sizeof t);
-  if (t.mark != mark_of(p)) return;
+  if (t.mark != mark_of(p)) return 0;
   uint64_t first;
   memcpy(&first, p, sizeof first);
   if (t.size > HEADER && first == t.size - HEADER) program = t.by;
@@ -102,6 +108,7 @@ static void check(void *p) {
       abort();
     }
   memset(end, 0, sizeof t);
+  return t.size;
 }
 
 static void look_back(void) {
@@ -123,6 +130,13 @@ void *realloc(void *p, size_t n) {
 }
 
 void free(void *p) {
-  check(p);
+  const size_t n = check(p);
+  for (size_t k = 0; k + WORD <= n; k += WORD)
+    memcpy((char *)p + k, &behind, WORD);
+  if (n > 0 && n <= SMALL) {
+    void **at = &released[n_released++ % LATE], *old = *at;
+    *at = p;
+    p = old;
+  }
   __libc_free(p);
 }

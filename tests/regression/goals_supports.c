@@ -508,6 +508,35 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
+/* Also next to ends of a contact: a block under a shear that ends at its
+ * corners. */
+START_TEST(estimates_of_coarse_meshes_are_doubted) {
+  for (int n = 3; n <= 4; ++n) {
+    job j = of_block(
+        n, PLANE,
+        "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
+        "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+        "*DSLOAD\nTOP, P, 30.\nTOP, TX, 3.\n");
+    ck_assert(has_verdict(&j, "U", "contact_end"));
+    check(&j, 0.01789396, 0.4, 0.7, 1.0);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* The force acts in one node, so the moment is by chance what it is. */
+START_TEST(moment_about_a_single_node_is_not_reliable) {
+  job j = of_block(4, "SPHERE, RADIUS=2.\n0.6, -2.",
+                   "*GOAL, NAME=M, QUANTITY=MOMENT, CONTACT=C, COMPONENT=3\n"
+                   "0., 0.\n" NORMAL
+                   "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                   "*DSLOAD\nTOP, P, 0.1\n");
+  ck_assert(has_verdict(&j, "M", "few_nodes"));
+  ck_assert(has_verdict(&j, "N", "reliable"));
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           zeros_are_not_exact, energies_by_loads_and_by_supports,
           ends_of_supports_are_not_reliable, ends_of_supports_in_space,
@@ -515,4 +544,6 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           temperatures_that_do_not_meet, energies_by_loads_and_by_temperatures,
           temperatures_that_vary_within_elements, materials_that_meet_in_space,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
-          radius_of_a_zone_that_planes_halve)
+          radius_of_a_zone_that_planes_halve,
+          estimates_of_coarse_meshes_are_doubted,
+          moment_about_a_single_node_is_not_reliable)

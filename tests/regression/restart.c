@@ -189,6 +189,32 @@ START_TEST(unstable_attempt_is_not_made_twice) {
 }
 END_TEST
 
+static job adapted_factors(void) {
+  job j = small_creep(0.1, "*SOLVER, STIFFNESS=FACTOR\n",
+                      "INTEGRATOR=BACKWARD, TOLERANCE=3E-3");
+  edit(&j, "MAXWELL\n4.\n",
+       "KELVIN, TYPE=DEVIATORIC\n65.E3, 52.E3\n108.E3, 182.E3\n");
+  edit(&j, "0.5, 4.\n*ACCURACY, TIME=YES\n", "0.25, 1.\n");
+  return j;
+}
+
+/* So do the rows that the factors of their matrices follow. */
+START_TEST(factors_of_adapted_increments_go_on) {
+  int changes, all;
+  job one = adapted_factors();
+  ck_assert_int_eq(run_until(&one, nothing, 0, 0, &all), 0);
+  for (int k = 1; k <= 3; ++k) {
+    job j = adapted_factors();
+    ck_assert_int_eq(run_until(&j, nothing, all * k / 8, SIGINT, &changes),
+                     130);
+    goes_on(&j, 0, "adapted");
+    same_files(&one, &j, "adapted");
+    job_end(&j);
+  }
+  job_end(&one);
+}
+END_TEST
+
 /* A block that comes down through the air, with tolerances of its own. */
 static job falling(void) {
   job j =
@@ -671,11 +697,12 @@ END_TEST
 
 UNIT_MAIN("restart", what_is_read_is_written_again,
           changed_decks_are_refused_by_card, later_steps_may_change,
-          adapted_increments_go_on, killed_twice_goes_on,
-          unstable_attempt_is_not_made_twice, chosen_tolerance_goes_on,
-          path_on_a_moving_obstacle_goes_on, known_rate_goes_on,
-          largest_loads_and_energies_go_on, run_without_a_file_begins_anew,
-          files_are_in_the_seal, restart_files_are_equal, errors_of_goals_go_on,
-          factor_goes_on, kind_of_stiffness_goes_on, observed_work_goes_on,
+          adapted_increments_go_on, factors_of_adapted_increments_go_on,
+          killed_twice_goes_on, unstable_attempt_is_not_made_twice,
+          chosen_tolerance_goes_on, path_on_a_moving_obstacle_goes_on,
+          known_rate_goes_on, largest_loads_and_energies_go_on,
+          run_without_a_file_begins_anew, files_are_in_the_seal,
+          restart_files_are_equal, errors_of_goals_go_on, factor_goes_on,
+          kind_of_stiffness_goes_on, observed_work_goes_on,
           restart_file_does_not_grow, missed_tolerance_goes_on,
           some_jobs_start_anew, damaged_files_are_refused)

@@ -512,6 +512,20 @@ START_TEST(radius_below_the_mesh_is_local) {
 }
 END_TEST
 
+/* Whatever rounding makes of each edge. */
+START_TEST(radius_of_an_edge_is_local) {
+  owned o = line(10, 0.0, 1.0, 0.0);
+  average_facts facts;
+  sparse_rows G = build(&o, KERNEL_CONSTANT, 0.1, 0, 0, &facts);
+  ck_assert_int_eq(facts.n_local, G.n);
+  sparse_free(&G);
+  G = build(&o, KERNEL_CONSTANT, 0.10001, 0, 0, &facts);
+  ck_assert_int_eq(facts.n_local, 0);
+  sparse_free(&G);
+  owned_free(&o);
+}
+END_TEST
+
 START_TEST(coarse_nodes_are_counted) {
   owned o = line(10, 0.0, 1.0, 0.0);
   average_facts facts;
@@ -748,9 +762,9 @@ UNIT_MAIN("average", bump_has_the_constants_of_the_literature,
           surface_loses_mass_at_its_edges,
           distance_of_a_face_is_to_its_foot_or_edge,
           disc_clear_of_nodes_left_out_is_whole, axisymmetric_rows,
-          radius_below_the_mesh_is_local, coarse_nodes_are_counted,
-          geodesic_distance_unbends_the_line, closed_line_has_no_edge,
-          mirrors_stand_for_the_other_half,
+          radius_below_the_mesh_is_local, radius_of_an_edge_is_local,
+          coarse_nodes_are_counted, geodesic_distance_unbends_the_line,
+          closed_line_has_no_edge, mirrors_stand_for_the_other_half,
           quarter_of_a_square_has_no_edge_at_its_mirrors,
           factors_of_two_change_no_bit, entries_are_continuous_in_the_radius,
           refused_memory_is_given_back)

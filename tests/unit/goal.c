@@ -335,6 +335,13 @@ START_TEST(verdicts_change_at_their_limits) {
 }
 END_TEST
 
+/* By a zone of few nodes three times the estimate may be missing. */
+START_TEST(few_nodes_have_a_wider_band) {
+  const goal_estimate e = {.error = -0.5, .magnitude = 2.0, .product = 5.0};
+  ck_assert_double_eq(goal_judge(&e, 3).band, goal_judge(&e, 4).band + 1.5);
+}
+END_TEST
+
 /* Elements without error, as in uniform stress under a curved gap. */
 START_TEST(ends_of_rounding_are_no_ends) {
   const goal_estimate e = {
@@ -356,6 +363,7 @@ int main(void) {
   tcase_add_loop_test(tests, changes_are_the_transpose_of_the_adjoint, 0, 6);
   tcase_add_loop_test(tests, an_operator_gives_what_its_matrix_does, 0, 6);
   tcase_add_test(tests, verdicts_change_at_their_limits);
+  tcase_add_test(tests, few_nodes_have_a_wider_band);
   tcase_add_test(tests, ends_of_rounding_are_no_ends);
   return unit_run("goal", tests);
 }

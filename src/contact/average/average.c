@@ -343,7 +343,7 @@ static void add_face(builder *b, int i, int face, const double *x,
   for (int k = 0; k < p->dim; ++k) {
     int j = p->face[p->dim * face + k];
     if (j != i && p->active[j] &&
-        distance_of(p->dim, x, corner + p->dim * k) < reach)
+        distance_of(p->dim, x, corner + p->dim * k) < reach * (1.0 - ROUNDING))
       ++b->neighbours;
     if (!(weight[k] > 0.0)) continue;
     if (b->row[j] == 0.0) b->touched[b->n_touched++] = j;

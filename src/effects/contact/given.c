@@ -92,6 +92,18 @@ static status given_copy(const run *r, const void *of, run *copy, void **self) {
   return prepare(copy, *self);
 }
 
+/* The form of cp, with a message that names the first card. */
+static status new_form(const run *r, given_forces *own,
+                       const contact_problem *cp) {
+  const status st = given_form_new(cp, own->n, own->node, &own->form);
+  if (st == ERR_SINGULAR)
+    RAISE(st,
+          "%s:%d: *CONTACT FORCE: nothing holds the body against the given "
+          "normal forces; hold it with *BOUNDARY or another *CONTACT",
+          PLACE(force_of(r, own->node[0])->at));
+  return st;
+}
+
 static status take(run *r, void *self, contact_problem *cp, double **u,
                    double *force) {
   given_forces *own = self;
@@ -104,8 +116,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   }
   own->matrix_no = r->solving.matrix_no;
   OWNS(own);
-  if (own->form == NULL)
-    PASS(given_form_new(cp, own->n, own->node, &own->form));
+  if (own->form == NULL) PASS(new_form(r, own, cp));
   return given_form_set(own->form, &before, own->force, r->msh->size, *u, force,
                         cp);
 }

@@ -8,6 +8,7 @@
 typedef struct warnings {
   int strain, folded; /* 1: told */
   int *touched;       /* [n_contact] 1: a node has touched */
+  double *least;      /* [n_contact] m, gap now, if none has */
 } warnings;
 
 static const double LARGE = 0.05; /* -, strain */
@@ -53,12 +54,6 @@ static void note_touches(run *r, warnings *reported) {
   }
 }
 
-static status look(run *r, void *self) {
-  note_touches(r, self);
-  if (r->solving.report.outcome > 0) warn_deformation(r, self);
-  return OK;
-}
-
 /* 1: the line along the normal of contact node i meets its obstacle. */
 static int meets(const run *r, int i) {
   const contact_surface *s = r->surface;
@@ -78,16 +73,25 @@ static double least_gap(const run *r, int contact_id) {
   return least;
 }
 
+static status look(run *r, void *self) {
+  warnings *own = self;
+  note_touches(r, own);
+  for (int i = 0; i < r->m->n.contact; ++i)
+    if (!own->touched[i]) own->least[i] = least_gap(r, i);
+  if (r->solving.report.outcome > 0) warn_deformation(r, own);
+  return OK;
+}
+
 /* Where an increment is not solved, what touched in it is not known. */
 static void end(run *r, void *self) {
   const warnings *reported = self;
   for (int i = 0; i < r->m->n.contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
     if (reported->touched[i] || c->force.given || c->is_crack) continue;
-    const double least = least_gap(r, i);
     char gap[80] = "at its end no normal of a node meets it";
-    if (least < HUGE_VAL)
-      snprintf(gap, sizeof gap, "the least gap at its end is %.3g", least);
+    if (reported->least[i] < HUGE_VAL)
+      snprintf(gap, sizeof gap, "the least gap at its end is %.3g",
+               reported->least[i]);
     message_add(r->m->log, P4021, &c->at,
                 "%s %s: no node touched %s %s in the run; %s", contact_card(c),
                 c->name, c->is_pair ? "surface" : "obstacle", c->obstacle_name,
@@ -96,7 +100,9 @@ static void end(run *r, void *self) {
 }
 
 static status warnings_new(run *r, void **self) {
-  PASS_NEW(((warnings *)*self)->touched, r->m->n.contact);
+  warnings *own = *self;
+  PASS_NEW_ALL(OF(own->touched, r->m->n.contact),
+               OF(own->least, r->m->n.contact));
   return OK;
 }
 
@@ -104,7 +110,8 @@ static status keep(run *r, void *self, archive *a) {
   warnings *own = self;
   PASS(archive_ints(a, "told_strain", &own->strain, 1));
   PASS(archive_ints(a, "told_folded", &own->folded, 1));
-  return archive_ints(a, "touched", own->touched, r->m->n.contact);
+  PASS(archive_ints(a, "touched", own->touched, r->m->n.contact));
+  return archive_reals(a, "least_gap", own->least, r->m->n.contact);
 }
 
 static int requires_warnings(const model *m, const reason *why) {

@@ -354,11 +354,16 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
 static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   space_recovery *recovery;
   PASS(recover(r, own, &recovery));
-  if (out->verdict != GOAL_RELIABLE || !space_is_coarse(space_depth(recovery)))
-    return OK;
-  out->verdict = GOAL_COARSE;
+  if (!space_is_coarse(space_depth(recovery))) return OK;
+  if (out->verdict == GOAL_RELIABLE) out->verdict = GOAL_COARSE;
   out->band += fabs(out->error);
   return OK;
+}
+
+/* 1: a moment whose force acts in few nodes, and so as near as they lie. */
+static int moves(const run *r, int id, goal_verdict found) {
+  return found == GOAL_FEW_NODES &&
+         r->m->accuracy.goals[id].quantity == GOAL_MOMENT;
 }
 
 static status estimate(run *r, goal_state *own, shared *s, int id) {
@@ -382,7 +387,8 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
-  if (e.magnitude <= ROUNDING * fabs(value)) out->verdict = GOAL_RELIABLE;
+  if (e.magnitude <= ROUNDING * fabs(value) && !moves(r, id, out->verdict))
+    out->verdict = GOAL_RELIABLE;
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;

@@ -257,7 +257,10 @@ void job_advice(const job *j, char *text, size_t size) {
   used = add_solver(j, fmax(in_mesh, in_steps), last_of(rows, n, "solver"),
                     text, size, used);
   if (isnan(in_steps) && job_path_counts(j->m))
-    add(text, size, used, "; of the steps no error is known without TIME=YES");
+    add(text, size, used, "; %s",
+        j->m->effects & EFFECT_TIME_ERROR
+            ? "the error of the steps is unknown"
+            : "of the steps no error is known without TIME=YES");
 }
 
 static void print_advice(const job *j, FILE *f) {

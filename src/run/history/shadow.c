@@ -71,6 +71,7 @@ void shadow_leave(shadow **p) {
     matrices_free(&b->r.elastic);
     moduli_free(&b->r.body.moduli);
   }
+  if (b->r.problem.given != NULL) contact_solver_free(&b->r.elastic.solver);
   flow_state_free(&b->v.now);
   memory_free(b);
 }
@@ -103,7 +104,9 @@ static status own_points(const run *r, shadow *b) {
   return OK;
 }
 
-/* *out is valid (free it) also after a failure. */
+/* *out is valid (free it) also after a failure. Given forces make a matrix of
+ * their own in each run: the solver, which has its factors and what else the
+ * problem borrows from it, is the copy's own too. */
 static status shadow_new(const run *r, shadow **out) {
   shadow *b = NULL;
   PASS_NEW(b, 1);
@@ -112,7 +115,8 @@ static status shadow_new(const run *r, shadow **out) {
   *own = *r;
   own->course.shadow = 1;
   own->c = r->elastic.c;
-  own->solver = r->elastic.solver;
+  if (own->problem.given != NULL) own->elastic.solver = NULL;
+  own->solver = own->elastic.solver;
   own->solving.known_key = RUN_NO_KEY;
   own->solving.rate = (known_rate){0};
   own->course.note[0] = '\0';
