@@ -1,9 +1,9 @@
 /*
  * Part of mesh.so: what lies behind each block that is asked for with calloc,
- * as are all of src (base/memory.c), and what was in it when it is released, is
- * NaN, or no index, for who reads it, also a while later; who wrote behind it
- * ends the process when the block is released. A program of which a block is
- * left at its end fails.
+ * as are all of src (base/memory.c), and what was in those of src when they are
+ * released, is NaN, or no index, for who reads it, also a while later; who
+ * wrote behind it ends the process when the block is released. A program of
+ * which a block is left at its end fails.
  */
 #include <malloc.h>
 #include <stdint.h>
@@ -87,8 +87,8 @@ void *calloc(size_t n, size_t size) {
   return p;
 }
 
-/* Bytes of the block, 0: it has no mark. The mark goes with the block: the next
- * one there may have none. */
+/* Bytes of the block, 0: it has no mark, or is of a library or a program of
+ * others. The mark goes with the block: the next one there may have none. */
 static size_t check(void *p) {
   static const char told[] = "guard: a block was written behind its end\n";
   trailer t;
@@ -108,7 +108,7 @@ static size_t check(void *p) {
       abort();
     }
   memset(end, 0, sizeof t);
-  return t.size;
+  return t.by == program ? t.size : 0;
 }
 
 static void look_back(void) {
