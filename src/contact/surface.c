@@ -658,7 +658,7 @@ static void say(const builder *b, int pair_id) {
   if (p->friction && t->held > told_lean)
     message_add(b->log, P4022, &p->at,
                 "%s %s: supports hold nodes in a direction that leans by %.2g "
-                "rad from %s: their friction acts along it, at %s",
+                "rad from %s: friction, u_t and slip are along it, at %s",
                 p->card, p->name, acos(fmax(1.0 - t->held, 0.0)),
                 partner(p).text, describe(m, t->held_node).text);
   if (t->n_corner > 0)

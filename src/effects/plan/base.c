@@ -306,7 +306,6 @@ static effect_work listing(const plan_sizes *s) {
 }
 
 /* clang-format off */
-/* clang-format off */
 const effect_ops fields_effect = {
   .name = "fields in JOB.h5", .bit = NO_BIT, .required = requires_fields,
   .expected = fields, .own = STAGE_HDF5};
