@@ -148,7 +148,7 @@ static status type_of(const char *path, exchange_type *type) {
   errno = 0;
   if (*type == EXCHANGE_BY_CONTENT)
     *type = is_hdf5(f) ? EXCHANGE_FCLIB : EXCHANGE_LCP;
-  if (ferror(f)) PASS(text_failed(path, "read", errno));
+  if (errno != 0) PASS(text_failed(path, "read", errno));
   return OK;
 }
 
