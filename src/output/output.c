@@ -17,12 +17,13 @@
 
 /* JOB.stop is removed only if it was made during the run. The first N_OLD of
  * an earlier run must not be taken for results of this one, the first N_END of
- * the part before a restart not for those of the whole. */
-enum { N_END = 4, N_OLD = 8 };
+ * the part before a restart not for those of the whole. In the order in which
+ * they go: what JOB.sta tells stands in JOB.h5 at every moment. */
+enum { N_END = 4, N_OLD = 11 };
 /* clang-format off */
 static const char *const results[] = {
-    "json", "xdmf", "body.xdmf", "contact.xdmf", "h5", "rst.h5", "rst.old.h5",
-    "rst.inc", "lst", "sta", "cvg", "dat", "lock", "h5.tmp", "xdmf.tmp",
+    "json", "xdmf", "body.xdmf", "contact.xdmf", "rst.h5", "rst.old.h5",
+    "rst.inc", "sta", "cvg", "dat", "h5", "lst", "lock", "h5.tmp", "xdmf.tmp",
     "json.tmp", "rst.h5.tmp", "body.xdmf.tmp", "contact.xdmf.tmp"};
 /* clang-format on */
 

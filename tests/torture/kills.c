@@ -180,6 +180,20 @@ START_TEST(chain_of_kills_goes_on) {
 }
 END_TEST
 
+START_TEST(killed_over_old_results) {
+  points t = {.kind = "killed over old results"};
+  job j = small_flat(0.4, "*RESTART\n", "AUTO");
+  ck_assert_int_eq(run(&j, nothing, 0, NULL), 0);
+  for (int at = 1; told(&j) > 0 || at == 1; ++at) {
+    const char *wrong = after_kill(&j, run(&j, nothing, at, NULL));
+    points_try(&t);
+    if (wrong != NULL) points_lose(&t, "killed at change %d: %s", at, wrong);
+  }
+  job_end(&j);
+  points_end(&t);
+}
+END_TEST
+
 /* SIGINT at a change of a file and at the next one. */
 static const char *after_second(const job *j, int at, int *changes) {
   traced t = {.action = TRACE_SIGNAL, .at = at, .number = SIGINT, .always = 1};
@@ -229,6 +243,7 @@ int main(void) {
   TCase *tests = tcase_create("kills");
   tcase_set_timeout(tests, 100 * UNIT_SECONDS);
   tcase_add_test(tests, killed_run_goes_on);
+  tcase_add_test(tests, killed_over_old_results);
   tcase_add_test(tests, chain_of_kills_goes_on);
   tcase_add_test(tests, second_signal_ends_at_once);
   return unit_run("kills", tests);
