@@ -4,6 +4,7 @@
  */
 #include "base/base.h"
 #include "base/interrupt.h"
+#include "base/system/blas.h"
 #include "program/inform.h"
 #include "program/job.h"
 

@@ -5,9 +5,11 @@
  * such that r = 0 gives the prescribed value.
  */
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "fem/element.h"
 #include "fem/operator.h"
 
+#include <limits.h>
 #include <cblas.h>
 #include <lapacke.h>
 
@@ -276,6 +278,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   *out = NULL;
   memory_count_suitesparse();
   PASS_NEW(c, 1);
+  const int rows = blas_rows(INT_MAX);
   OWNS(c);
   NEW(c->cm, 1);
   cholmod_l_start(c->cm);
@@ -297,6 +300,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   }
   TRY(estimate_condition(c));
 done:
+  blas_rows(rows);
   if (st != OK) {
     condensed_free(c);
     c = NULL;

@@ -220,11 +220,3 @@ void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
  * Pa; A averages (cluster.h). */
 void eigen_add_force(const domain *d, int n, const int *elem_id,
                      const double *sigma, double *F);
-
-/* BLAS kernel: see blas.c. Called first in main; may replace the process. */
-void blas_choose_kernel(char **argv);
-const char *blas_kernel(void); /* core name, "SkylakeX" */
-int blas_kernel_changed(void); /* 1: changed at start-up */
-/* Threads of BLAS and CHOLMOD; blas_choose_kernel sets 1. The environment
- * (OPENBLAS_NUM_THREADS and similar) has no effect. */
-void blas_set_threads(int n);

@@ -2,9 +2,9 @@
 #include "program/command.h"
 
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "base/system/input.h"
 #include "base/system/limits.h"
-#include "fem/fem.h"
 #include "manual/manual.h"
 #include "program/inform.h"
 

@@ -1,6 +1,7 @@
 /* Information without solving: version, lists, the check of a deck. */
 #include "program/inform.h"
 
+#include "base/system/blas.h"
 #include "effects/plan/plan.h"
 #include "effects/rows.h"
 #include "model/keyword/keyword.h"

@@ -5,6 +5,7 @@
 #include "program/job.h"
 
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "base/system/input.h"
 #include "effects/reduction/reduction.h"
 #include "effects/rows.h"

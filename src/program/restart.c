@@ -1,6 +1,7 @@
 /* The restart file: its origin, and whether a deck may continue from it. */
 #include "base/base.h"
 #include "base/file.h"
+#include "base/system/blas.h"
 #include "base/system/input.h"
 #include "mesh/msh/geo.h"
 #include "model/keyword/keyword.h"

@@ -1,6 +1,7 @@
 /*
  * The matrix in use with its contact solver, and the contact nodes that it has.
  */
+#include "base/system/blas.h"
 #include "run/run.h"
 
 int run_step_id(const run *r) { return (int)(r->step - r->m->steps); }
@@ -84,6 +85,7 @@ status run_use(run *r, matrices *m) {
     run_forget_estimates(r);
   r->solving.matrix_no += r->c != m->c;
   r->c = m->c;
+  blas_rows(r->nodes.n_row);
   r->solver = m->solver;
   r->solving.known_key = RUN_NO_KEY;
   /* An increment may end before it is posed. */

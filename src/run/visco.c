@@ -6,16 +6,29 @@
  */
 #include "run/visco.h"
 
+#include "base/system/blas.h"
 #include "model/check/check.h"
 
 /* The error of the midpoint rule in its difference to the trapezoidal one. */
 static const double SIMPSON = 3.0;
 
+/* The laws of the points have few rows, the contact between their calls as
+ * many as there are. */
+static void leave_laws(const run *r) {
+  timer_leave(STAGE_INELASTIC);
+  blas_rows(r->problem.cp.m);
+}
+
+static void enter_laws(void) {
+  timer_enter(STAGE_INELASTIC);
+  blas_rows(0);
+}
+
 static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
   run *r = ctx;
-  timer_leave(STAGE_INELASTIC);
+  leave_laws(r);
   const status st = increment_solve(r, s->t);
-  timer_enter(STAGE_INELASTIC);
+  enter_laws();
   PASS(st);
   visco_temperatures(r, &r->now, s);
   visco_strains(r, &r->now, s);
@@ -25,9 +38,9 @@ static status equilibrium_of(void *ctx, flow_state *s, int *settled) {
 
 static status begin(void *ctx, flow_state *s) {
   run *r = ctx;
-  timer_leave(STAGE_INELASTIC);
+  leave_laws(r);
   status st = increment_load(r, s->t);
-  timer_enter(STAGE_INELASTIC);
+  enter_laws();
   if (st == OK) visco_temperatures(r, &r->now, s);
   return st;
 }
@@ -39,12 +52,12 @@ static status linear(void *ctx, const flow_tangent *law, flow_state *s,
                      int *settled) {
   run *r = ctx;
   const double tol = r->solving.tol;
-  timer_leave(STAGE_INELASTIC);
+  leave_laws(r);
   r->solving.tol = r->step->solver.tol;
   if (law->tol > 0.0) r->solving.tol = fmin(r->solving.tol, law->tol);
   status st = tangent_solve(r, law);
   r->solving.tol = tol;
-  timer_enter(STAGE_INELASTIC);
+  enter_laws();
   if (st == OK) visco_strains(r, &r->now, s);
   *settled = r->solving.report.outcome > 0;
   return st;
@@ -56,9 +69,9 @@ static status constant(void *ctx, const flow_tangent *law, const scheme_call *a,
                        int *settled) {
   run *r = ctx;
   visco *v = r->strains.visco;
-  timer_leave(STAGE_INELASTIC);
+  leave_laws(r);
   status st = tangent_step(r, law, a);
-  timer_enter(STAGE_INELASTIC);
+  enter_laws();
   *settled = r->solving.report.outcome > 0;
   v->sums.known = r->body.moduli.n_own == 0 &&
                   (r->body.d.cluster == NULL || v->x.n == r->strains.eigen.n) &&
@@ -107,7 +120,10 @@ static status advance(run *r, double t) {
   v->sums.known = 0;
   const scheme_call call = {&v->x,   &p,      &body,     v->work,
                             &v->old, &v->now, &v->result};
-  PASS(r->step->visco.integrator->advance(&call));
+  const int rows = blas_rows(0);
+  const status st = r->step->visco.integrator->advance(&call);
+  blas_rows(rows);
+  PASS(st);
   v->now.t = t;
   if (v->sums.known && r->now.e0 != NULL)
     r->strains.eigen.e0 = r->now.e0;

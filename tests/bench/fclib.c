@@ -11,8 +11,8 @@
  * AUTO's ratios.
  */
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "exchange/exchange.h"
-#include "fem/fem.h"
 #include "solver/solver.h"
 #include "support/natural_map.h"
 

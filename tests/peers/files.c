@@ -13,8 +13,8 @@
  */
 #include "base/base.h"
 #include "base/sparse.h"
+#include "base/system/blas.h"
 #include "exchange/exchange.h"
-#include "fem/fem.h"
 #include "peers/kernels.h"
 #include "solver/solver.h"
 #include "support/natural_map.h"

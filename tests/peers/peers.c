@@ -21,6 +21,7 @@
  * Without friction only the part W_nn is made.
  */
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "fem/fem.h"
 #include "peers/kernels.h"
 #include "solver/solver.h"

@@ -2,6 +2,7 @@
 
 #include "support/unit.h"
 
+#include <stdio.h>
 #include <fcntl.h>
 #include <unistd.h>
 

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "base/memory.h"
-#include "fem/fem.h"
+#include "base/system/blas.h"
 
 #include <check.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* src/fem/blas.c: a lesser kernel is replaced once, the user's choice stays;
- * threads of the environment do not count. */
+/* src/base/system/blas.c: a lesser kernel is replaced once, the user's choice
+ * stays; threads of the environment do not count. */
 #include "base/base.h"
-#include "fem/fem.h"
+#include "base/system/blas.h"
 #include "support/unit.h"
 
 #include <unistd.h>
@@ -57,11 +57,22 @@ START_TEST(kernel_the_user_asked_for_stays) {
 }
 END_TEST
 
+START_TEST(small_matrices_are_left_to_one_thread) {
+  blas_set_threads(2);
+  ck_assert_int_eq(openblas_get_num_threads(), 2);
+  const int before = blas_rows(20);
+  ck_assert_int_eq(openblas_get_num_threads(), 1);
+  ck_assert_int_eq(blas_rows(before), 20);
+  ck_assert_int_eq(openblas_get_num_threads(), 2);
+}
+END_TEST
+
 int main(int argc, char **argv) {
   if (argc == 2) return play(argv[1], argv);
   TCase *tests = tcase_create("blas");
   tcase_add_test(tests,
                  lesser_kernel_is_replaced_by_the_best_the_processor_runs);
   tcase_add_test(tests, kernel_the_user_asked_for_stays);
+  tcase_add_test(tests, small_matrices_are_left_to_one_thread);
   return unit_run("blas", tests);
 }

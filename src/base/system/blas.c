@@ -5,11 +5,14 @@
  * set it and run the same program again, once.
  */
 
+#include "base/system/blas.h"
+
 #include "base/base.h"
 #include "base/system/limits.h"
 
 #include <cblas.h>
 #include <dlfcn.h>
+#include <limits.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -80,10 +83,25 @@ static void limit_openmp(int levels) {
   dlclose(self);
 }
 
+/* Rows from which a factorization gains by a second thread; with fewer the
+ * threads synchronize longer than they calculate, on a busy machine a hundred
+ * times as long. */
+enum { SHARED_ROWS = 800 };
+
+static int threads = 1, rows_now = INT_MAX;
+
 void blas_set_threads(int n) {
   limits_release_processors();
-  openblas_set_num_threads(n);
+  threads = n;
+  blas_rows(rows_now);
   limit_openmp(n >= OMP_THREADS ? 1 : 0);
+}
+
+int blas_rows(int rows) {
+  const int before = rows_now;
+  rows_now = rows;
+  openblas_set_num_threads(rows < SHARED_ROWS ? 1 : threads);
+  return before;
 }
 
 static int addresses_are_limited(struct rlimit *limit) {
