@@ -29,7 +29,6 @@ extern const effect_ops *const effect_table[];
 /* Bits EFFECT_* of those that the model requires. */
 unsigned effects_required(const model *m);
 const char *effect_name(int bit);
-const effect_ops *effect_find(const char *name); /* or NULL */
 /* The effect whose column it is, or NULL. */
 const effect_ops *effect_of_column(const column *c);
 /* The effect whose table it is, PRINT_*. */

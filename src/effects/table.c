@@ -21,12 +21,6 @@ const char *effect_name(int bit) {
   return effect_table[k]->name;
 }
 
-const effect_ops *effect_find(const char *name) {
-  for (int k = 0; effect_table[k] != NULL; ++k)
-    if (strcmp(effect_table[k]->name, name) == 0) return effect_table[k];
-  return NULL;
-}
-
 const effect_ops *effect_of_column(const column *c) {
   for (int k = 0; effect_table[k] != NULL; ++k) {
     const effect_ops *e = effect_table[k];

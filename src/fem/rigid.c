@@ -171,6 +171,26 @@ static void gram_schmidt(const rigid_motions *r, rigid_set *s) {
   s->k = kept;
 }
 
+/* The motion y[modes] about the centre and with the size of another, "to". */
+static void move(const rigid_modes *from, const rigid_modes *to, double *y) {
+  const double turn = to->size / from->size;
+  double e[3];
+  if (from->modes == 1) return;
+  for (int c = 0; c < from->dim; ++c)
+    e[c] = (to->centre[c] - from->centre[c]) / from->size;
+  if (from->dim == 2) {
+    y[1] -= y[0] * e[1];
+    y[2] += y[0] * e[0];
+    y[0] *= turn;
+    return;
+  }
+  for (int c = 0; c < 3; ++c) {
+    const int i = (c + 1) % 3, j = (c + 2) % 3;
+    y[3 + c] += y[i] * e[j] - y[j] * e[i];
+  }
+  for (int c = 0; c < 3; ++c) y[c] *= turn;
+}
+
 /* The motions of a set about the centres of its contact nodes; of has a box of
  * each body. */
 static void centre_motions(const rigid_motions *r, const box *of,
@@ -179,7 +199,7 @@ static void centre_motions(const rigid_motions *r, const box *of,
     for (int i = 0; i < s->n; i += r->at[s->owner[i]].modes) {
       const int b = s->owner[i];
       const rigid_modes at = modes_about(&r->at[b], &of[b]);
-      if (of[b].found) modes_move(&r->at[b], &at, s->Y + (size_t)s->n * j + i);
+      if (of[b].found) move(&r->at[b], &at, s->Y + (size_t)s->n * j + i);
     }
 }
 
@@ -321,25 +341,6 @@ void modes_row(const rigid_modes *r, const double *x, const double *direction,
     }
     COPY(v, direction, 3);
   }
-}
-
-void modes_move(const rigid_modes *from, const rigid_modes *to, double *y) {
-  const double turn = to->size / from->size;
-  double e[3];
-  if (from->modes == 1) return;
-  for (int c = 0; c < from->dim; ++c)
-    e[c] = (to->centre[c] - from->centre[c]) / from->size;
-  if (from->dim == 2) {
-    y[1] -= y[0] * e[1];
-    y[2] += y[0] * e[0];
-    y[0] *= turn;
-    return;
-  }
-  for (int c = 0; c < 3; ++c) {
-    const int i = (c + 1) % 3, j = (c + 2) % 3;
-    y[3 + c] += y[i] * e[j] - y[j] * e[i];
-  }
-  for (int c = 0; c < 3; ++c) y[c] *= turn;
 }
 
 /* "x" or "(0.6, 0.8, 0)" for a direction; "(1, 2)" for a point. */

@@ -21,8 +21,6 @@ typedef struct rigid_modes {
 /* Coefficients of the displacement along "direction" at x: row[modes]. */
 void modes_row(const rigid_modes *r, const double *x, const double *direction,
                double *row);
-/* The motion y[modes] about the centre and with the size of another, "to". */
-void modes_move(const rigid_modes *from, const rigid_modes *to, double *y);
 /* Name the motion v[modes]: "translation along x", "rotation about (1, 2)". */
 void modes_text(const rigid_modes *at, const double *v, char *text,
                 size_t size);

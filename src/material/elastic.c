@@ -274,10 +274,12 @@ status elastic_table_read(const card *c, elastic_type type,
   if (!r.wrong && r.n > 0)
     count_error(&r, table->n == 0 ? &c->at : &c->records[c->n_record - 1].at,
                 text_of("%d found", r.n));
-  if (r.wrong)
-    elastic_table_free(table);
-  else
+  if (r.wrong) {
+    memory_free(table->set);
+    *table = (elastic_table){0};
+  } else {
     check_sets(&r, material_name);
+  }
   return OK;
 }
 
@@ -326,11 +328,6 @@ double elastic_table_most(const elastic_table *t, int i) {
     most = fmax(most, constant[i]);
   }
   return most;
-}
-
-void elastic_table_free(elastic_table *t) {
-  memory_free(t->set);
-  *t = (elastic_table){0};
 }
 
 /* The tables of deck/expression.h know the temperature as their variable t. */

@@ -64,7 +64,6 @@ const char *elastic_at(const elastic_table *t, double temperature, double C[36],
 void elastic_table_relaxed(elastic_table *t, const double relaxed[2]);
 /* Largest value of constant number i in any set. */
 double elastic_table_most(const elastic_table *t, int i);
-void elastic_table_free(elastic_table *t); /* accepts all-zero */
 
 /* Thermal expansion along the axes xx, yy, zz (rr, zz, theta). */
 typedef enum { EXPANSION_ISO, EXPANSION_ORTHO } expansion_type;

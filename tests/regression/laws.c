@@ -265,7 +265,7 @@ START_TEST(armstrong_frederick_loop) {
              "*VISCO, INTEGRATOR=MIDPOINT\n0.01, 11.\n" SYMMETRY
              "*BOUNDARY, AMPLITUDE=SAW\nTOP, 2, 2, 0.012\n"};
   job j = run_scene(&s, 0);
-  for (int k = 4; k < 11 * HALF; k += 5) {
+  for (int k = 4; k < 11 * HALF; k += k == HALF - 1 ? 8 * HALF : 5) {
     dat d = job_table(&j, "ELEMENTS", k);
     double X = 2e4 * dat_at(&d, 0, "alpha_3"), all = dat_at(&d, 0, "alpha_1");
     dat_free(&d);
@@ -292,7 +292,7 @@ START_TEST(a_bar_ratchets) {
              "CPS3",
              SAW(-100., 150.),
              NULL,
-             "*VISCO, INTEGRATOR=BACKWARD\n0.005, 6.\n" SYMMETRY
+             "*VISCO, INTEGRATOR=BACKWARD\n0.005, 4.\n" SYMMETRY
              "*DSLOAD, AMPLITUDE=SAW\nTOP, TY, 1.\n"};
   double e[2];
   job j = run_scene(&s, 0);
@@ -432,7 +432,7 @@ END_TEST
 /* No increment of the second step comes as far as its contact. */
 static job run_without_state(const char *second) {
   job j = job_begin("fast");
-  block_file_write(&j, (int[]){4, 4}, (double[]){1.0, 1.0}, 0);
+  block_file_write(&j, (int[]){2, 2}, (double[]){1.0, 1.0}, 0);
   job_write(&j, "fast.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n2.1E5, 0.3\n"
             "*CREEP, LAW=STRAIN\n1e-5, 10.\n"
@@ -456,10 +456,10 @@ START_TEST(creep_without_a_state_is_not_settled) {
 }
 END_TEST
 
-/* Up to 1e11 increments would follow, or 400. */
+/* Up to 1e11 increments would follow, or 120. */
 START_TEST(increments_that_never_settle_end) {
   job j = run_without_state("0.5, 1E5, 1E-6"), k;
-  k = run_without_state("0.5, 100., 0.25");
+  k = run_without_state("0.5, 30., 0.25");
   int code = job_shell(&j, "timeout 100 protis fast");
   ck_assert_msg(code == 6 && strstr(j.errors, "in a row are not settled"),
                 "exit %d: %s", code, j.errors);

@@ -47,9 +47,9 @@ static void make_surface(made_up *run) {
   }
 }
 
-static void put_effect(made_up *run, const char *name, void *own) {
+static void put_effect(made_up *run, const effect_ops *ops, void *own) {
   effect_list *list = &run->effects;
-  list->on[list->n].ops = effect_find(name);
+  list->on[list->n].ops = ops;
   list->on[list->n++].state = own;
 }
 
@@ -76,9 +76,9 @@ static void make_arrays(made_up *run) {
   run->s.contacts.distance = run->array[MADE_DISTANCE];
   run->s.contacts.torque = run->torque;
   run->zone_list.zone = run->zones;
-  put_effect(run, "table of loops", run->loops);
-  put_effect(run, "table of zones", &run->zone_list);
-  put_effect(run, "closed form", &run->s.errors.exact);
+  put_effect(run, &loops_effect, run->loops);
+  put_effect(run, &zones_effect, &run->zone_list);
+  put_effect(run, &closed_form_effect, &run->s.errors.exact);
   run->s.effects = &run->effects;
   run->zone_list.n = 2;
   run->s.contacts.contact = run->status;

@@ -304,7 +304,6 @@ static double node_area(const builder *b, int node, double *whole) {
 /* Nodes without enough area; n_redo: those that faces are to do without. */
 static void leave_out(builder *b) {
   mortar *m = b->out;
-  m->scant_node = -1;
   for (int i = 0; i < b->in->mesh->n_node; ++i) {
     double whole;
     m->n_dropped += b->state[i] == DROPPED;
@@ -317,7 +316,6 @@ static void leave_out(builder *b) {
     b->state[i] = area > 0 ? SCANT : UNCOVERED;
     m->n_uncovered += area > 0 ? 0 : 1;
     m->n_scant += area > 0 ? 1 : 0;
-    if (area > 0) m->scant_node = i;
   }
 }
 

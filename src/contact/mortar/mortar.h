@@ -94,7 +94,6 @@ typedef struct mortar {
   int n_bare;      /* faces covered but without a node that carries */
   int n_cut;       /* faces of which a part has no partner */
   int *cut;        /* [n_cut] of mesh->face */
-  int scant_node;  /* one of n_scant, -1: none */
   double covered;  /* area of the slave that has a partner, m2 */
   double slave_area, master_area;
   double size_ratio; /* mean size of master faces over that of slave faces,

@@ -51,7 +51,8 @@ static error_share solver_share(const increment_summary *i) {
       .asked = e->asked, .relative = e->relative, .cpu = e->cpu, .why = e->why};
 }
 
-int job_path_counts(const model *m) {
+/* 1: the error of the steps may be other than zero. */
+static int path_counts(const model *m) {
   const unsigned path = EFFECT_HISTORY | EFFECT_INELASTIC;
   int sums = 0;
   for (int k = 0; effect_table[k] != NULL; ++k)
@@ -89,7 +90,7 @@ static const struct {
 /* 1: the steps make no error, whoever asked. */
 static int has_no_error(const job *j, share_of *const *of) {
   return *of == time_share && j->run->n_increment > 0 && !j->m->problem.given &&
-         !job_path_counts(j->m);
+         !path_counts(j->m);
 }
 
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
@@ -256,7 +257,7 @@ void job_advice(const job *j, char *text, size_t size) {
     return;
   used = add_solver(j, fmax(in_mesh, in_steps), last_of(rows, n, "solver"),
                     text, size, used);
-  if (isnan(in_steps) && job_path_counts(j->m))
+  if (isnan(in_steps) && path_counts(j->m))
     add(text, size, used, "; %s",
         j->m->effects & EFFECT_TIME_ERROR
             ? "the error of the steps is unknown"

@@ -121,8 +121,6 @@ const char *job_goal_unit(const model *m, int id);
 void passes_goal_heads(const model *m, FILE *f);
 void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f);
 double pass_goal_percent(const pass_goal *g);
-/* advice.c: 1: the error of the steps may be other than zero. */
-int job_path_counts(const model *m);
 /* One sentence: the error to improve next, and what that costs; "": none is
  * known. */
 enum { ADVICE_SIZE = 320 };

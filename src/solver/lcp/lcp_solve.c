@@ -179,7 +179,10 @@ static double natural_unit(const lcp_data *p, size_t i) {
 }
 
 enum { LCP_MOST_BASES = 14 /* unknowns of which all bases are tried */ };
-double lcp_residual(const lcp_data *p, const double *z, double *w) {
+
+/* Residual of z, -: largest of |min(z_i c, w_i)| over the rows, c the largest
+ * |M|, over the largest |q|. w[n] = q + M z. NaN if one is. */
+static double residual_of(const lcp_data *p, const double *z, double *w) {
   double c = 0.0, scale = 0.0, worst = 0.0;
   size_t n = p->n;
   contact_product(p->n, p->M, z, w);
@@ -257,7 +260,7 @@ static void scale_problem(newton_run *s) {
 /* ---- a basis ------------------------------------------------------------- */
 
 static int solves(newton_run *s) {
-  return lcp_residual(s->p, s->answer, s->slack) <= s->tol;
+  return residual_of(s->p, s->answer, s->slack) <= s->tol;
 }
 
 /* M of the basis (1: z_i free) into s->J; its size. */
@@ -528,7 +531,7 @@ static void note(lcp_verdict *v, const char *who, outcome o) {
 
 /* Keep the attempt if it is better; 1: it solves the problem. */
 static int keep(run *s) {
-  double residual = lcp_residual(s->p, s->try_z, s->w);
+  double residual = residual_of(s->p, s->try_z, s->w);
   if (residual < s->v->residual || isnan(s->v->residual)) {
     s->v->residual = residual;
     COPY(s->z, s->try_z, s->p->n);
@@ -725,12 +728,12 @@ status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
   SCRATCH;
   run s = {.p = p, .control = control, .v = v, .z = z, .w = w, .seed = 1};
   *v = (lcp_verdict){.outcome = CONVERGED, .method = "lemke"};
-  v->residual = lcp_residual(p, z, w);
+  v->residual = residual_of(p, z, w);
   if (v->residual <= control->tol) return OK;
   size_t n = s.p->n;
   PASS_NEW_ALL(OF(s.try_z, n), OF(s.y, 2 * n), OF(s.cover, n), OF(s.size, n),
                OF(s.M, n * n), OF(s.q, n), OF(s.work, n), OF(s.turned, n));
   PASS(follow(&s));
-  v->residual = lcp_residual(p, z, w);
+  v->residual = residual_of(p, z, w);
   return OK;
 }

@@ -27,7 +27,7 @@ typedef struct lcp_data {
 } lcp_data;
 
 typedef struct lcp_control {
-  double tol;        /* wanted lcp_residual, - */
+  double tol;        /* wanted residual, - */
   int max_iter;      /* pivots and steps of all attempts; 0: each its own
                         limit */
   int pivoting_only; /* 1: no other method */
@@ -40,16 +40,10 @@ typedef struct lcp_verdict {
                          limit was reached; STOPPED_STAGNATION: nothing found,
                          nothing proved; STOPPED_NAN */
   int iterations;     /* pivots and steps of all attempts */
-  double residual;    /* lcp_residual of z */
+  double residual;    /* of z, -: see lcp_solve.c */
   const char *method; /* the last method */
   char log[LCP_LOG];  /* "lemke: no equilibrium, ..."; "" if the first did */
 } lcp_verdict;
-
-/*
- * Residual of z, -: largest of |min(z_i c, w_i)| over the rows, c the largest
- * |M|, over the largest |q|. w[n] = q + M z. NaN if one is.
- */
-double lcp_residual(const lcp_data *p, const double *z, double *w);
 
 /* z[n] start value, then the solution or the best found; w[n] = q + M z.
  * Errors: ERR_MEMORY. */
