@@ -18,7 +18,8 @@ const char *const check_name[CHECKS] = {[OF_TEMPERATURE] = "temperature",
                                         [OF_MEAN] = "mean",
                                         [OF_SLIP] = "slip",
                                         [OF_FRICTION] = "friction",
-                                        [OF_TOTAL] = "total"};
+                                        [OF_TOTAL] = "total",
+                                        [OF_ENERGY] = "energy"};
 
 /* Of the scale. */
 static const double tolerance[CHECKS] = {
@@ -26,7 +27,7 @@ static const double tolerance[CHECKS] = {
     [OF_BALANCE] = 1e-8,      [OF_SUPPORT] = 1e-10, [OF_FRAME] = 1e-8,
     [OF_GAP] = 1e-7,          [OF_NORMAL] = 1e-6,   [OF_LIMIT] = 1e-8,
     [OF_AVERAGE] = 5e-3,      [OF_MEAN] = 5e-2,     [OF_SLIP] = 1e-6,
-    [OF_FRICTION] = 1e-6,     [OF_TOTAL] = 1e-8};
+    [OF_FRICTION] = 1e-6,     [OF_TOTAL] = 1e-8,    [OF_ENERGY] = 1e-6};
 
 void judge_note(judgement *q, check_kind kind, double miss, double scale,
                 const snapshot *s, int no) {
@@ -62,14 +63,16 @@ static double *vector(int n) {
 }
 
 static void judge_one(const random_deck *d, const snapshot *first,
-                      const snapshot *now, double residual, judgement *q) {
+                      const snapshot *now, const double residual[2],
+                      judgement *q) {
   const snapshot *before = now == first ? NULL : now - 1;
   int n = d->mesh.n_node, dof = d->mesh.dim * n;
   judged x = {.d = d,
               .first = first,
               .now = now,
               .before = before,
-              .residual = residual,
+              .residual = residual[1],
+              .old_residual = residual[0],
               .step = now->step - 1,
               .q = q};
   x.u = vector(dof);
@@ -107,6 +110,9 @@ static double residual_of(const char *sta, const snapshot *s) {
 void judge(const random_deck *d, const tables *t, const char *sta,
            judgement *q) {
   memset(q, 0, sizeof *q);
-  for (int i = 0; i < t->n; ++i)
-    judge_one(d, t->at, &t->at[i], residual_of(sta, &t->at[i]), q);
+  double residual[2] = {0, 0};
+  for (int i = 0; i < t->n; ++i, residual[0] = residual[1]) {
+    residual[1] = residual_of(sta, &t->at[i]);
+    judge_one(d, t->at, &t->at[i], residual, q);
+  }
 }

@@ -26,6 +26,7 @@ typedef enum {
   OF_SLIP,        /* slip printed                                           */
   OF_FRICTION,    /* friction condition                                     */
   OF_TOTAL,       /* resultant of the contacts                              */
+  OF_ENERGY,      /* energies and works, of the magnitudes in their sums    */
   CHECKS
 } check_kind;
 extern const char *const check_name[CHECKS];
@@ -44,9 +45,9 @@ void judge_note(judgement *q, check_kind kind, double miss, double scale,
 typedef struct judged {
   const random_deck *d;
   const snapshot *first, *now, *before; /* before: NULL for the first       */
-  double residual; /* that the program reached, -              */
-  double largest;  /* sum of force magnitudes at a node        */
-  int step;        /* from 0                                   */
+  double residual, old_residual; /* that the program reached, -           */
+  double largest;                /* sum of force magnitudes at a node        */
+  int step;                      /* from 0                                   */
   judgement *q;
   double *u, *old_u;    /* [dim*n_node]                             */
   double *force, *size; /* [dim*n_node]; [n_node] sum of magnitudes */

@@ -413,6 +413,102 @@ static void apply(judged *j, const deck_load *l, unsigned char *fixed,
       load_element(j, l, e);
 }
 
+/* ---- energies ----------------------------------------------------------- */
+
+typedef struct energy_sums {
+  double strain, internal, thermal, inelastic, scale;
+} energy_sums;
+
+static double power(const double sigma[6], const double e[6]) {
+  double sum = 0;
+  for (int i = 0; i < 6; ++i) sum += sigma[i] * e[i];
+  return sum;
+}
+
+/* Strain, inelastic strain, thermal strain and stress of an element. */
+typedef struct element_state {
+  double e[6], ei[6], warm[6], sigma[6];
+} element_state;
+
+static element_state state_of(const judged *j, const snapshot *s, int e) {
+  const random_deck *d = j->d;
+  const table *t = &s->of[T_ELEMENTS];
+  const deck_material *m = &d->material[d->material_of[d->mesh.elem_group[e]]];
+  element_columns c = columns_of(d, t);
+  element_state x = {.warm = {0}};
+  int *row = table_rows(t, d->mesh.n_face + d->mesh.n_elem);
+  const int at = row[d->mesh.n_face + e + 1];
+  take(t, at, c.e, x.e);
+  take(t, at, c.ei, x.ei);
+  take(t, at, c.sigma, x.sigma);
+  for (int i = 0; i < 3 && c.temperature >= 0; ++i)
+    x.warm[i] =
+        thermal_strain(m, table_at(t, at, c.temperature),
+                       d->warm[d->mesh.group[d->mesh.elem_group[e]].body]);
+  free(row);
+  return x;
+}
+
+static void add_energy(const judged *j, int e, energy_sums *sum) {
+  const double volume = element_of(j->d, e).volume;
+  const element_state now = state_of(j, j->now, e),
+                      old = state_of(j, j->before, e);
+  double elastic[6], sigma[6], by[3][6];
+  for (int i = 0; i < 6; ++i) {
+    elastic[i] = now.e[i] - now.ei[i] - now.warm[i];
+    sigma[i] = 0.5 * (now.sigma[i] + old.sigma[i]);
+    by[0][i] = now.e[i] - old.e[i];
+    by[1][i] = now.warm[i] - old.warm[i];
+    by[2][i] = now.ei[i] - old.ei[i];
+  }
+  sum->strain += 0.5 * volume * power(now.sigma, elastic);
+  sum->internal += volume * power(sigma, by[0]);
+  sum->thermal += volume * power(sigma, by[1]);
+  sum->inelastic += volume * power(sigma, by[2]);
+  for (int i = 0; i < 6; ++i)
+    sum->scale +=
+        volume * (fabs(now.sigma[i]) + fabs(old.sigma[i])) *
+        (fabs(now.e[i]) + fabs(old.e[i]) + fabs(now.ei[i]) + fabs(now.warm[i]));
+}
+
+/* A column of the energies, here and one increment before; 0: absent. */
+static double energy_at(const snapshot *s, const char *name) {
+  const int col = table_column(&s->of[T_ENERGY], name);
+  return col < 0 ? 0 : table_at(&s->of[T_ENERGY], 0, col);
+}
+
+static double gain(const judged *j, const char *name) {
+  return energy_at(j->now, name) - energy_at(j->before, name);
+}
+
+/* The energy of the elastic strains, and the works of an increment by the
+ * stresses at its ends: that of the strains is what loads, supports and
+ * contacts do. Averaged, the printed strains and stresses of an element are no
+ * pair of one energy; moduli that change with the temperature do work too. */
+static void judge_energy(judged *j) {
+  energy_sums sum = {0};
+  int warmed = 0; /* moduli that change with the temperature */
+  if (j->before == NULL || (j->d->averaged && j->d->kind != PLANE_STRESS_))
+    return;
+  for (int k = 0; k < MATERIALS; ++k) warmed |= j->d->material[k].n_set > 1;
+  for (int e = 0; e < j->d->mesh.n_elem; ++e) add_energy(j, e, &sum);
+  const double off[] = {energy_at(j->now, "strain_energy") - sum.strain,
+                        gain(j, "thermal_work") - sum.thermal,
+                        gain(j, "inelastic_work") - sum.inelastic,
+                        gain(j, "external_work") + gain(j, "normal_work") -
+                            gain(j, "friction_work") - sum.internal,
+                        gain(j, "energy_defect") + gain(j, "strain_energy") +
+                            gain(j, "thermal_work") +
+                            gain(j, "inelastic_work") - sum.internal};
+  const double moved = largest(j->u, j->d->mesh.dim * j->d->mesh.n_node),
+               scale = sum.scale + 1e-6 * LEAST_FORCE +
+                       1e9 * fmax(j->residual, j->old_residual) *
+                           (sum.scale + j->largest * moved);
+  for (int k = 0; k < 5; ++k)
+    if (k != 1 || !warmed)
+      judge_note(j->q, OF_ENERGY, off[k], scale, j->now, k);
+}
+
 /* ---- equilibrium -------------------------------------------------------- */
 
 /* The forces of a table whose columns begin at "first". */
@@ -446,6 +542,7 @@ void judge_body(judged *j) {
   double most = LEAST_FORCE + largest(j->size, d->mesh.n_node) +
                 1e-6 * scale * largest(j->stiffness, d->mesh.n_node);
   j->largest = most;
+  judge_energy(j);
   for (size_t k = 0; k < n; ++k)
     judge_note(j->q, OF_BALANCE, j->force[k],
                most * (1 + j->residual * 1e9) * (loose ? 1e7 : 1), j->now,

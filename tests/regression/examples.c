@@ -164,6 +164,53 @@ static void compare_sums(const job *j, const char *path) {
 #endif
 }
 
+/* Tags of JOB.xdmf close in the order they open; cells have the rows and
+ * columns that their topology says. */
+static void check_xml(const job *j, const char *path) {
+  char *text = job_file(j, "xdmf"), *open[16], *end, type[16], of[8] = "";
+  int depth = 0, n, rows, columns;
+  for (char *at = strchr(text, '<'); at != NULL; at = strchr(end, '<')) {
+    end = at + 1 + strcspn(at + 1, "<>");
+    ck_assert_msg(*end == '>', "%s: %.60s", path, at);
+    if (at[1] == '/') {
+      ck_assert_msg(--depth >= 0 && strncmp(open[depth] + 1, at + 2,
+                                            (size_t)(end - at - 2)) == 0,
+                    "%s: %.60s", path, at);
+    } else if (at[1] != '?' && end[-1] != '/') {
+      ck_assert_int_lt(depth, 16);
+      open[depth++] = at;
+    }
+    if (strncmp(at, "<Topology", 9) != 0) continue;
+    columns = 1;
+    ck_assert_int_ge(sscanf(at,
+                            "<Topology TopologyType=\"%15[A-Za-z]\" "
+                            "NumberOfElements=\"%d\" %7[A-Za-z]",
+                            type, &n, of),
+                     2);
+    sscanf(strstr(end, "Dimensions"), "Dimensions=\"%d %d", &rows, &columns);
+    const int corners = strcmp(type, "Triangle") == 0      ? 3
+                        : strcmp(type, "Tetrahedron") == 0 ? 4
+                        : strcmp(type, "Polyline") == 0    ? 2
+                                                           : 1;
+    ck_assert_msg(rows == n && columns == corners &&
+                      (corners > 2 || strcmp(of, "NodesPe") == 0),
+                  "%s: %.120s", path, at);
+  }
+  ck_assert_int_eq(depth, 0);
+  free(text);
+}
+
+/* The bodies of a pair are two. */
+static void check_pairs(const job *j) {
+  char *text = job_file(j, "lst"), slave[64], master[64];
+  for (char *at = strstr(text, " slave "); at != NULL;
+       at = strstr(at + 1, " slave "))
+    if (sscanf(at, " slave %63s (%*[^)]), master %63[^, \n]", slave, master) ==
+        2)
+      ck_assert_str_ne(slave, master);
+  free(text);
+}
+
 /* Run one deck (path without .inp) and compare its lines. */
 static void run_deck(const char *path, int n, const line *lines) {
   const char *name = strrchr(path, '/') + 1;
@@ -174,6 +221,8 @@ static void run_deck(const char *path, int n, const line *lines) {
   check_balance(&j, path);
   compare_plan(&j, name);
   check_off(&j, name);
+  if (job_has(&j, "xdmf")) check_xml(&j, path);
+  check_pairs(&j);
   compare_sums(&j, path);
   for (int k = 0; k < n; ++k) {
     if (strcmp(lines[k].deck, name) != 0) continue;

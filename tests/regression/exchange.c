@@ -504,6 +504,7 @@ static int run_lcp(job *j, const lcp *p, const char *solver) {
 /* Largest violation by the table of the run, in units of q. */
 static double lcp_violation(const job *j, const lcp *p) {
   double worst = 0.0, scale = largest(p->n, p->q);
+  int open = 0;
   dat t = job_table(j, "CONTACT", 0);
   ck_assert_int_eq(t.n_row, p->n);
   for (int i = 0; i < p->n; ++i) {
@@ -511,7 +512,9 @@ static double lcp_violation(const job *j, const lcp *p) {
     for (int k = 0; k < p->n; ++k) w += p->M[p->n * i + k] * dat_at(&t, k, "z");
     worst = fmax(worst, fabs(w - dat_at(&t, i, "w")));
     worst = fmax(worst, fabs(fmin(w, z)));
+    open += z == 0.0;
   }
+  ck_assert(job_told(j, "open") == open);
   dat_free(&t);
   return worst / scale;
 }
