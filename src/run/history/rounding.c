@@ -322,6 +322,21 @@ static status check_touch(const run *r) {
   return OK;
 }
 
+/* A body that only contact would hold, at a node that meets no obstacle. */
+static status check_met(const run *r) {
+  const double *given = r->problem.given, unmet = SURFACE_UNMET * r->msh->size;
+  for (int i = 0; i < r->nodes.n; ++i)
+    if (r->problem.gap[i] >= unmet && r->now.rc[r->msh->dim * i] < 0.0 &&
+        (given == NULL || given[i] < 0.0) &&
+        !surface_meets(r->surface, r->faces.pairs, i, r->now.t))
+      RAISE(ERR_SINGULAR,
+            "step %d, time %g: no equilibrium found: contact node %zu is "
+            "pressed where the line along its normal meets no obstacle; a "
+            "*BOUNDARY or another load can hold the body",
+            run_step_id(r) + 1, r->now.t, r->surface->node_no[i]);
+  return OK;
+}
+
 /* What the motion would store as a strain of the stiffest element, or the
  * forces there, whichever is larger, J. */
 static double farthest_work(const run *r) {
@@ -436,6 +451,7 @@ status rounding_find(run *r) {
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
+  PASS(check_met(r));
   PASS(check_touch(r));
   if (!is_doubtful(r)) return find_noise(r);
   PASS(supports_strain(r, &r->errors.strained));
