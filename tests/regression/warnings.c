@@ -83,7 +83,7 @@ START_TEST(a_contact_that_never_touched_is_told) {
   job j = run_block(0.125, "", lifted, "");
   for (int k = 0; k < 2; ++k) {
     ck_told(&j, "P4021", "*CONTACT FOOT: no node touched obstacle O", 1);
-    ck_told(&j, "P4021", "0.135", 1);
+    ck_told(&j, "P4021", "end is 0.135", 1);
     ck_assert_int_eq(job_run(&j, "--restart"), 0);
   }
   job_end(&j);
