@@ -625,12 +625,20 @@ static status row_gap(const contact_surface *s, const contact_pair *p, int i,
   return OK;
 }
 
+int surface_meets(const contact_surface *s, const contact_pair *pairs, int i,
+                  double t) {
+  const obstacle *o = pairs[s->contact_id[i]].support;
+  return o == NULL ||
+         obstacle_gap(o, s->dim, &s->x[s->dim * i],
+                      &s->frame[s->dim * s->dim * i], t) < HUGE_VAL;
+}
+
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
                    double *gap, double *side_gap) {
   const contact_pair *pairs = in->pairs;
   for (int i = 0; i < s->n; ++i) {
-    PASS(
-        row_gap(s, &pairs[s->contact_id[i]], i, 0, t, in->mesh->size, &gap[i]));
+    PASS(row_gap(s, &pairs[s->contact_id[i]], i, 0, t,
+                 SURFACE_UNMET * in->mesh->size, &gap[i]));
     for (int k = 1; k < s->dim && side_gap != NULL; ++k) {
       int at = i * (s->dim - 1) + k - 1, side = s->side_id[at];
       side_gap[at] = HUGE_VAL;

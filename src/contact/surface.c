@@ -448,7 +448,7 @@ static void measure(builder *b, candidate *c) {
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
     if (pair_moves(p)) {
-      c->gap = m->size;
+      c->gap = SURFACE_UNMET * m->size;
     } else {
       c->left_out = 1;
       ++t->n_unreached;

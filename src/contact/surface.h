@@ -107,13 +107,20 @@ void pairs_release(const surface_input *in); /* frees the couplings */
  */
 status surface_build(const surface_input *in, message_log *log,
                      contact_surface **out);
+/* Gap where a line does not meet an obstacle that moves, over the size of the
+ * mesh: no body comes that far. */
+#define SURFACE_UNMET 1e6
 /*
- * pair.c: gap[n] at time t, m: the size of the mesh where the obstacle is out
- * of reach at that time.  side_gap[n*(dim-1)] (or NULL): HUGE_VAL without a
+ * pair.c: gap[n] at time t, m: SURFACE_UNMET where the obstacle is out of reach
+ * at that time.  side_gap[n*(dim-1)] (or NULL): HUGE_VAL without a
  * second obstacle.  ERR_DECK if a gap is not a number.
  */
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
                    double *gap, double *side_gap);
+/* pair.c: 1 unless contact node i has an obstacle that its normal does not meet
+ * at time t. */
+int surface_meets(const contact_surface *s, const contact_pair *pairs, int i,
+                  double t);
 /* pair.c: adds to motion[dim*n] the displacement of the obstacle at each node
  * from time t0 to t (obstacle_drift) in the contact frame, m. */
 void surface_drift(const contact_surface *s, const surface_input *in, double t0,

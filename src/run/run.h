@@ -345,6 +345,12 @@ void strains_start(run *r, equilibrium *e);
  * e->largest at least what the strains would store if they were held. */
 void strains_work(run *r, energies *e);
 double strains_energy(const run *r); /* of the stresses of r->now, J */
+/* -, displacements and forces in u and A u, by rounding */
+#define RUN_CARRIED (4 * DBL_EPSILON)
+/* Error of the largest displacement of r->now, m; what an error u of all
+ * displacements stores, J. */
+double strains_lost(const run *r);
+double strains_rounding(const run *r, double u);
 
 /* Inelastic strains. points.c: of the elements whose law flows. */
 status visco_new(run *r);

@@ -3,6 +3,7 @@
  * inelastic laws, sigma = E (e - e0): stored only for the elements that can
  * have any.
  */
+#include "base/base.h"
 #include "model/facts.h"
 #include "run/visco.h"
 
@@ -173,4 +174,12 @@ double strains_energy(const run *r) {
     return domain_strain_energy(&r->body.d, r->now.u);
   return v->sums.strain +
          domain_energy_without(&r->body.d, v->x.n, v->elem, r->now.u);
+}
+
+double strains_lost(const run *r) {
+  return RUN_CARRIED * largest_entry(r->n_dof, r->now.u);
+}
+
+double strains_rounding(const run *r, double u) {
+  return r->msh->n_node * condensed_stiffest(r->c) * u * u;
 }

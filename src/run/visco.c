@@ -79,6 +79,10 @@ static status constant(void *ctx, const flow_tangent *law, const scheme_call *a,
   return st;
 }
 
+static double rounding(void *ctx) {
+  return strains_rounding(ctx, strains_lost(ctx));
+}
+
 void visco_rest(run *r) {
   visco *v = r->strains.visco;
   if (v != NULL) flow_state_copy(&v->x, &v->old, &v->now);
@@ -108,7 +112,7 @@ static double step_length(run *r, double t) {
 
 static status advance(run *r, double t) {
   visco *v = r->strains.visco;
-  const flow_body body = {r, equilibrium_of, begin, linear, constant};
+  const flow_body body = {r, equilibrium_of, begin, linear, constant, rounding};
   scheme_step p = {.t = t,
                    .dt = step_length(r, t),
                    .theta = r->step->visco.theta,

@@ -219,6 +219,33 @@ START_TEST(a_body_lifted_off_keeps_no_forces) {
 }
 END_TEST
 
+/* No wall stands where no normal meets the ball: a body led down by three of
+ * its sizes has no forces, one that is pressed down has no equilibrium. */
+START_TEST(a_ball_that_no_normal_meets_holds_nothing) {
+  static const char *const by[] = {"TOP, 1, 1, 0.\nTOP, 2, 2, -3.\n",
+                                   "LEFT, 1\n*DSLOAD\nTOP, P, 1.\n"};
+  job j = job_begin("ball");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "ball.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=0.001\n9., -5.\n"
+            "MOVE, 0., 5E-4\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n%s"
+            "*PRINT, TOTALS\n*END STEP\n",
+            by[_i]);
+  ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), _i == 0 ? 0 : 6);
+  if (_i == 0) {
+    dat t = job_table(&j, "TOTALS", -1);
+    ck_assert_double_eq(dat_at(&t, 0, "normal"), 0);
+    dat_free(&t);
+  } else {
+    ck_assert_ptr_nonnull(strstr(j.errors, "meets no obstacle"));
+  }
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("falling");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -231,5 +258,6 @@ int main(void) {
   tcase_add_test(tests, chosen_increments_do_not_follow_supports);
   tcase_add_loop_test(tests, loads_carried_straight_lose_nothing, 0, 2);
   tcase_add_loop_test(tests, a_body_lifted_off_keeps_no_forces, 0, 4);
+  tcase_add_loop_test(tests, a_ball_that_no_normal_meets_holds_nothing, 0, 2);
   return unit_run("falling", tests);
 }

@@ -689,6 +689,24 @@ START_TEST(points_at_rest_are_counted) {
 }
 END_TEST
 
+/* A body that its support carries has no stress but rounding, which none of the
+ * iterations of a step takes away: no increment is cut for it. */
+START_TEST(carried_bodies_settle) {
+  static const char *const laws[] = {PROPORTIONAL, DEVIATORIC,
+                                     "*INELASTIC, LAW=KELVIN\n500., 1000.\n"};
+  const square_case s = {STEEL,
+                         laws[_i],
+                         "CPE3",
+                         "",
+                         "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, 1.E-4\n",
+                         "*VISCO, INTEGRATOR=BACKWARD, ITERATION=INITIAL\n"
+                         "0.25, 1.\n"};
+  job j = square_run(&s, 0);
+  ck_assert_double_eq(square_energy(&j, -1, "increment"), 4);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("visco");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -715,5 +733,6 @@ int main(void) {
   tcase_add_test(tests, factors_are_kept);
   tcase_add_test(tests, increments_of_one_length_share_a_factor);
   tcase_add_test(tests, each_step_has_its_own_integrator);
+  tcase_add_loop_test(tests, carried_bodies_settle, 0, 3);
   return unit_run("visco", tests);
 }

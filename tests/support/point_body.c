@@ -128,9 +128,14 @@ void point_body_free(point_body *b) {
   law_case_free(&b->c);
 }
 
+static double exact(void *ctx) {
+  (void)ctx;
+  return 0.0;
+}
+
 void point_body_run(point_body *b, const scheme *s, double theta, double t,
                     int n, double *estimates) {
-  const flow_body body = {b, equilibrium, begin, linear, step};
+  const flow_body body = {b, equilibrium, begin, linear, step, exact};
   const double start = b->old.t, dt = (t - start) / n;
   for (int k = 0; k < n; ++k) {
     const scheme_step p = {.t = k == n - 1 ? t : start + (k + 1) * dt,

@@ -54,21 +54,13 @@ static void note_touches(run *r, warnings *reported) {
   }
 }
 
-/* 1: the line along the normal of contact node i meets its obstacle. */
-static int meets(const run *r, int i) {
-  const contact_surface *s = r->surface;
-  const obstacle *o = r->faces.pairs[s->contact_id[i]].support;
-  return o == NULL ||
-         obstacle_gap(o, s->dim, &s->x[s->dim * i],
-                      &s->frame[s->dim * s->dim * i], r->now.t) < HUGE_VAL;
-}
-
 /* The least gap left of a contact, m; HUGE_VAL: no node of it meets what it is
  * with. */
 static double least_gap(const run *r, int contact_id) {
   double least = HUGE_VAL;
   for (int i = 0; i < r->nodes.n; ++i)
-    if (r->surface->contact_id[i] == contact_id && meets(r, i))
+    if (r->surface->contact_id[i] == contact_id &&
+        surface_meets(r->surface, r->faces.pairs, i, r->now.t))
       least = fmin(least, r->result.open_gap[i]);
   return least;
 }

@@ -445,16 +445,24 @@ static status linear_stress(const flow *x, const flow_tangent *law,
   return OK;
 }
 
-/* Misfit of the stresses and of those of the linear law, over the scale. */
+/* Misfit of the stresses and of those of the linear law, over the scale;
+ * *energy: no more than what it stores, by the trace of E, J. */
 static double misfit(const flow *x, const flow_state *now, const double *linear,
-                     double scale) {
+                     double scale, double *energy) {
   double sum = 0.0;
-  for (int k = 0; k < x->n; ++k)
-    for (size_t i = 0; i < (size_t)x->ns; ++i) {
-      size_t at = (size_t)x->ns * k + i;
-      double d = now->sigma[at] - linear[at];
-      sum += x->weight[k] * d * d;
+  *energy = 0.0;
+  for (int k = 0; k < x->n; ++k) {
+    const double *E = x->kind[x->kind_id[k]].elastic.E;
+    double square = 0.0, trace = 0.0;
+    for (int i = 0; i < x->ns; ++i) {
+      const size_t at = (size_t)x->ns * k + i;
+      const double d = now->sigma[at] - linear[at];
+      square += d * d;
+      trace += E[i + x->ns * i];
     }
+    sum += x->weight[k] * square;
+    *energy += x->weight[k] * square / (2.0 * trace);
+  }
   return scale > 0.0 ? sqrt(sum) / scale : 0.0;
 }
 
@@ -486,11 +494,12 @@ status newton_advance(const scheme_call *a) {
     PASS(a->b->linear(a->b->ctx, &law, a->now, &out->settled));
     ++out->iterations;
     if (!out->settled) return OK;
-    double scale = 0.0;
+    double scale = 0.0, energy = 0.0;
     PASS(linear_stress(x, &law, a->now, w->linear, &scale));
     PASS(solve_points(a, &r));
-    const double left = misfit(x, a->now, w->linear, scale);
+    const double left = misfit(x, a->now, w->linear, scale, &energy);
     if (!out->settled || left <= enough) return OK;
+    if (energy <= a->b->rounding(a->b->ctx)) return OK;
     stalled = left < least ? 0 : stalled + 1;
     least = fmin(least, left);
     /* The contact solver leaves too much. */

@@ -123,6 +123,8 @@ typedef struct flow_body {
    * with the linear law, e of it, linear_follow. */
   status (*step)(void *ctx, const flow_tangent *law,
                  const struct scheme_call *a, int *settled);
+  /* Energy of strains that are rounding of the displacements, J. */
+  double (*rounding)(void *ctx);
 } flow_body;
 
 typedef struct scheme_step {

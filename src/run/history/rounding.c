@@ -17,8 +17,6 @@
 static const double LAST_DIGIT = 0.1; /* -, error without a correct digit */
 /* -, the same where the condition number makes the measuring factor useless */
 static const double IN_DOUBT = 0.01;
-/* -, displacements and forces in u and A u, by rounding */
-static const double CARRIED = 4 * DBL_EPSILON;
 /* -, work of creep over the strain energy; motion of the body, or forces that
  * contact carries at once, over those of the strains */
 static const double FAR = 1e6;
@@ -148,14 +146,9 @@ static status misfit_new(const run *r, misfit *x) {
   return OK;
 }
 
-/* Error of the largest displacement, m. */
-static double lost(const run *r) {
-  return CARRIED * largest_entry(r->n_dof, r->now.u);
-}
-
 double rounding_of_works(const run *r) {
   const double u = largest_entry(r->n_dof, r->now.u);
-  return r->msh->n_node * condensed_stiffest(r->c) * u * lost(r);
+  return r->msh->n_node * condensed_stiffest(r->c) * u * strains_lost(r);
 }
 
 static double largest_force(const run *r) {
@@ -166,7 +159,7 @@ static double largest_force(const run *r) {
 /* What the rounding of the forces stores, and what the solver has left at the
  * contact nodes, J. */
 static double forces_energy(const run *r) {
-  const double force = largest_force(r), rounding = CARRIED * force,
+  const double force = largest_force(r), rounding = RUN_CARRIED * force,
                left = r->solving.report.residual * force;
   return (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
          condensed_stiffest(r->c);
@@ -189,14 +182,9 @@ double rounding_of_gaps(const run *r) {
   return 16 * DBL_EPSILON * largest_entry(n, r->msh->x);
 }
 
-/* What an error of the displacements by u stores, J. */
-static double motion_energy(const run *r, double u) {
-  return r->msh->n_node * condensed_stiffest(r->c) * u * u;
-}
-
 /* 1: such an error explains all strains. */
 static int hides_strains(const run *r, double u) {
-  return r->now.energy.strain <= motion_energy(r, u);
+  return r->now.energy.strain <= strains_rounding(r, u);
 }
 
 int rounding_is_all(const run *r) {
@@ -204,7 +192,8 @@ int rounding_is_all(const run *r) {
   if (forces_hide_strains(r)) return 1;
   if ((r->strains.eigen.n == 0 || r->errors.noise) && moves_alone(r)) return 1;
   if (r->errors.strained || increment_free_load(r, r->now.F) > 0.0) return 0;
-  const double u = force > 0.0 ? fmax(lost(r), rounding_of_gaps(r)) : lost(r);
+  const double u = force > 0.0 ? fmax(strains_lost(r), rounding_of_gaps(r))
+                               : strains_lost(r);
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
@@ -333,6 +322,21 @@ static status check_touch(const run *r) {
   return OK;
 }
 
+/* A body that only contact would hold, at a node that meets no obstacle. */
+static status check_met(const run *r) {
+  const double *given = r->problem.given, unmet = SURFACE_UNMET * r->msh->size;
+  for (int i = 0; i < r->nodes.n; ++i)
+    if (r->problem.gap[i] >= unmet && r->now.rc[r->msh->dim * i] < 0.0 &&
+        (given == NULL || given[i] < 0.0) &&
+        !surface_meets(r->surface, r->faces.pairs, i, r->now.t))
+      RAISE(ERR_SINGULAR,
+            "step %d, time %g: no equilibrium found: contact node %zu is "
+            "pressed where the line along its normal meets no obstacle; a "
+            "*BOUNDARY or another load can hold the body",
+            run_step_id(r) + 1, r->now.t, r->surface->node_no[i]);
+  return OK;
+}
+
 /* What the motion would store as a strain of the stiffest element, or the
  * forces there, whichever is larger, J. */
 static double farthest_work(const run *r) {
@@ -348,7 +352,7 @@ static int may_be_noise(const run *r) {
 
 status rounding_hides_stresses(const run *r, int *hides) {
   double square = 0.0;
-  *hides = hides_strains(r, lost(r));
+  *hides = hides_strains(r, strains_lost(r));
   if (*hides || !may_be_noise(r)) return OK;
   TIMED(STAGE_RECOVERY);
   OWNED_PARTS(misfit, x, misfit_new(r, &x));
@@ -367,7 +371,8 @@ double rounding_strain_left(const run *r) {
   plain.eigen = NULL;
   if (r->strains.visco == NULL) return 0.0;
   const double energy = domain_strain_energy(&plain, r->now.u);
-  const double none = fmax(motion_energy(r, lost(r)), forces_energy(r));
+  const double none =
+      fmax(strains_rounding(r, strains_lost(r)), forces_energy(r));
   return energy > FAR * none ? energy : 0.0;
 }
 
@@ -446,6 +451,7 @@ status rounding_find(run *r) {
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
+  PASS(check_met(r));
   PASS(check_touch(r));
   if (!is_doubtful(r)) return find_noise(r);
   PASS(supports_strain(r, &r->errors.strained));
