@@ -419,8 +419,7 @@ START_TEST(materials_that_meet_in_space) {
     double height;
     const char *hold;
     int sharp;
-  } rows[] = {
-      {0.62, "RIGHT, 1\n", 0}, {0.5, "", 1}, {0.67, "RIGHT, 1\n", 1}};
+  } rows[] = {{0.62, "RIGHT, 1\n", 0}, {0.5, "", 1}, {0.67, "RIGHT, 1\n", 1}};
   for (int k = 0; k < 3; ++k) {
     job j = job_begin("prism");
     job_write(&j, "prism.geo", PRISM, rows[k].height);
@@ -508,7 +507,7 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
-/* Also next to ends of a contact: a block under a shear that ends at its
+/* Also next to ends of a load: a block under a shear that ends at its
  * corners. */
 START_TEST(estimates_of_coarse_meshes_are_doubted) {
   for (int n = 3; n <= 4; ++n) {
@@ -517,8 +516,8 @@ START_TEST(estimates_of_coarse_meshes_are_doubted) {
         "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
         "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
         "*DSLOAD\nTOP, P, 30.\nTOP, TX, 3.\n");
-    ck_assert(has_verdict(&j, "U", "contact_end"));
-    check(&j, 0.01789396, 0.4, 0.7, 1.0);
+    ck_assert(has_verdict(&j, "U", "support_end"));
+    check(&j, 0.01789396, 0.4, 0.7, 1.4);
     job_end(&j);
   }
 }
@@ -537,6 +536,68 @@ START_TEST(moment_about_a_single_node_is_not_reliable) {
 }
 END_TEST
 
+/* Where normals differ, so do the forces along them by the place of the node.
+ */
+START_TEST(normal_force_in_a_single_node_is_not_reliable) {
+  job j = of_body("rect 4 4 2 1 alternate",
+                  "SPHERE, RADIUS=2.\n0.6, -2.\n"
+                  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O, NORMAL=OBSTACLE"
+                  "\n" NORMAL
+                  "*GOAL, NAME=Y, QUANTITY=FORCE, CONTACT=C, COMPONENT=2\n"
+                  "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                  "*DSLOAD\nTOP, P, 0.1\n");
+  ck_assert(has_verdict(&j, "N", "few_nodes"));
+  ck_assert(has_verdict(&j, "Y", "reliable"));
+  job_end(&j);
+}
+END_TEST
+
+/* A sphere between two nodes, pressed into the side or below it. */
+START_TEST(contact_between_nodes_is_not_none) {
+  static const double depth[] = {0.002, -0.05};
+  for (int flat = 0; flat < 2; ++flat)
+    for (int k = 0; k < 2; ++k) {
+      char cards[500];
+      snprintf(cards, sizeof cards,
+               "SPHERE, RADIUS=2.\n%s%.17g" CONTACT NORMAL
+               "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
+               "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n%s",
+               flat ? "0.75, " : "0.75, 0.5, ", depth[k] - 2.0,
+               flat ? "TOP, 2, 2, 0.\n" : "FRONT, 2\nTOP, 3, 3, 0.\n");
+      job j = of_body(flat ? "rect 4 4 2 1" : "box 4 4 4 2 2 1", cards);
+      ck_assert(has_verdict(&j, "N", k == 0 ? "few_nodes" : "reliable"));
+      ck_assert(has_verdict(&j, "U", k == 0 ? "few_nodes" : "reliable"));
+      job_end(&j);
+    }
+}
+END_TEST
+
+/* A shear that ends at a corner, where no stress fits both sides, next to a
+ * free side, to a plane of symmetry, or a pressure on all sides, which fits. */
+START_TEST(ends_of_loads_are_not_reliable) {
+  static const struct {
+    const char *point, *load, *word;
+  } flat[] = {
+      {"2., 1.", "TOP, P, 3.\nTOP, TX, 3.\n", "support_end"},
+      {"0., 1.", "TOP, TX, 3.\n", "support_end"},
+      {"2., 1.", "TOP, P, \"3+x^2\"\nRIGHT, P, \"1+y^2\"\n", "reliable"},
+      {"2., 1.", "TOP, TX, \"x\"\nRIGHT, TY, \"y\"\n", "support_end"},
+      {"2., 1.", "TOP, TX, \"x\"\nRIGHT, TY, \"2*y\"\n", "reliable"}};
+  for (int k = 0; k < 5; ++k) {
+    char cards[500];
+    snprintf(cards, sizeof cards,
+             "PLANE\n9., 0.\n-1., 0.\n"
+             "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n"
+             "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=2\n%s\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DSLOAD\n%s",
+             flat[k].point, flat[k].load);
+    job j = of_body("rect 16 16 2 1 alternate", cards);
+    ck_assert_msg(has_verdict(&j, "U", flat[k].word), "row %d", k);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           zeros_are_not_exact, energies_by_loads_and_by_supports,
           ends_of_supports_are_not_reliable, ends_of_supports_in_space,
@@ -546,4 +607,6 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
           radius_of_a_zone_that_planes_halve,
           estimates_of_coarse_meshes_are_doubted,
-          moment_about_a_single_node_is_not_reliable)
+          moment_about_a_single_node_is_not_reliable,
+          normal_force_in_a_single_node_is_not_reliable,
+          contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable)

@@ -22,8 +22,8 @@ static const struct {
 } verdicts[] = {
     [GOAL_RELIABLE] = {"reliable", "reliable"},
     [GOAL_CONTACT_END] = {"contact_end", "not reliable: contact end"},
-    [GOAL_SUPPORT_END] = {"support_end",
-                          "not reliable: end of a support or inner corner"},
+    [GOAL_SUPPORT_END] =
+        {"support_end", "not reliable: end of a support or load, inner corner"},
     [GOAL_NO_SLIP] = {"no_slip", "not reliable: no node slips"},
     [GOAL_FEW_NODES] = {"few_nodes", "not reliable: few contact nodes"},
     [GOAL_FEW_ELEMENTS] = {"few_elements",

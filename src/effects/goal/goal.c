@@ -25,6 +25,7 @@
 
 static const double DIGITS = 1e-13;   /* -, of the terms: their rounding */
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
+static const double TURN = 1e-9;      /* -, of directions: they are the same */
 /* Measured on strips whose crack has 0.1 to 0.7 of their width: what the
  * estimate of a factor lacks is up to 0.12 of it and this times the error of
  * the mesh in the energy norm. */
@@ -360,10 +361,36 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
-/* 1: a moment whose force acts in few nodes, and so as near as they lie. */
-static int moves(const run *r, int id, goal_verdict found) {
-  return found == GOAL_FEW_NODES &&
-         r->m->accuracy.goals[id].quantity == GOAL_MOMENT;
+/* 1: a sum of contact forces along directions that differ: where few nodes have
+ * the forces, it is what their places make it. */
+static int turns(const run *r, const goal_form *f) {
+  const int dim = r->msh->dim;
+  double first[3] = {0.0}, size = 0.0, most = 0.0;
+  for (int i = 0; i < r->nodes.n; ++i) {
+    double v[3] = {0.0};
+    for (int a = 0; a < dim; ++a)
+      add_scaled(dim, f->psi[dim * i + a],
+                 r->surface->basis + dim * (dim * i + a), v);
+    if (dot(dim, v, v) > 0.0 && size == 0.0) {
+      COPY(first, v, dim);
+      size = sqrt(dot(dim, v, v));
+    }
+    for (int c = 0; c < dim && dot(dim, v, v) > 0.0; ++c)
+      most = fmax(most, fabs(v[c] - first[c]));
+  }
+  return most > TURN * size;
+}
+
+/* exact: without an error but rounding. Nothing is known about a contact that
+ * its nodes miss. */
+static void doubt_of_nodes(const run *r, const shared *s, int exact,
+                           goal_result *out) {
+  const int few = out->verdict == GOAL_FEW_NODES &&
+                  fmax(s->form.size, fabs(s->form.value)) > 0.0 &&
+                  turns(r, &s->form);
+  if (exact && !few) out->verdict = GOAL_RELIABLE;
+  if (s->surface.is_missed && out->verdict == GOAL_RELIABLE)
+    out->verdict = GOAL_FEW_NODES;
 }
 
 static status estimate(run *r, goal_state *own, shared *s, int id) {
@@ -387,8 +414,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
-  if (e.magnitude <= ROUNDING * fabs(value) && !moves(r, id, out->verdict))
-    out->verdict = GOAL_RELIABLE;
+  doubt_of_nodes(r, s, e.magnitude <= ROUNDING * fabs(value), out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;

@@ -102,6 +102,17 @@ typedef struct goal_border {
 } goal_border;
 status goal_border_new(const mesh *m, goal_border *b); /* support.c */
 
+/* jumps.c: the loads of a side of the border at one of its nodes. */
+typedef struct goal_pull {
+  double pressure, traction[3]; /* Pa */
+} goal_pull;
+/* *pull, new: [dim*n] of the sides of a border, node by node. ERR_MEMORY. */
+status goal_pulls_new(const run *r, const goal_border *b, goal_pull **pull);
+/* 1: no stress that is continuous at a node has the loads of two sides with
+ * normals n[dim], m[dim]; smooth: they are one side. */
+int goal_is_torn(int dim, const goal_pull *p, const double *n,
+                 const goal_pull *q, const double *m, int smooth);
+
 /* surface.c */
 typedef struct goal_surface {
   int n_edge;
@@ -113,6 +124,8 @@ typedef struct goal_surface {
   given_edge *given;    /* [n_given] sorted; NULL: none */
   unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
   int n_closed;         /* closed nodes */
+  int is_missed; /* 1: no node of a contact is closed, but its gap may end
+                    between nodes */
 } goal_surface;
 /* boundary.c: s->bent. */
 status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);

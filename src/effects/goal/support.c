@@ -8,7 +8,8 @@
  *
  * The same where two materials, or zones of temperature, meet at the border
  * (Bogy 1971, J Appl Mech 38, 377-386), unless it is a plane of symmetry that
- * their interface is normal to, and where their interface turns within.
+ * their interface is normal to, and where their interface turns within; and
+ * where loads end (jumps.c).
  */
 #include "base/base.h"
 #include "effects/goal/parts.h"
@@ -134,6 +135,8 @@ typedef struct corner {
   kind of[2];                     /* the first of them */
   unsigned char held[2];          /* components that some face holds */
   unsigned char support, contact; /* 1: some face is held, closed */
+  const goal_pull *pull[2];       /* of the first faces */
+  double normal[2][2];            /* outward, the same */
 } corner;
 
 static double angle_at(const mesh *m, const int *v, int k) {
@@ -159,6 +162,20 @@ static kind contact_kind(const goal_surface *s, const number_pair *e) {
           : bsearch(e, s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
   if (found == NULL || !found->closed) return FREE;
   return found->stuck ? CLAMPED : ROLLER;
+}
+
+/* Of side v[2], turned outward. */
+static void add_pull(const mesh *m, const int *v, const goal_pull *pull,
+                     corner *c) {
+  const double *a = m->x + 2 * v[0], *b = m->x + 2 * v[1];
+  double n[2] = {b[1] - a[1], a[0] - b[0]};
+  goal_make_unit(2, n);
+  for (int k = 0; k < 2; ++k) {
+    corner *at = &c[v[k]];
+    if (at->n >= 2) continue;
+    at->pull[at->n] = pull + k;
+    COPY(at->normal[at->n], n, 2);
+  }
 }
 
 static void add_border(const run *r, const goal_surface *s,
@@ -200,6 +217,19 @@ static int is_singular(const corner *c) {
   return c->angle > (a == FREE && b == CLAMPED ? M_PI / 4 : M_PI / 2 + SLACK);
 }
 
+/* 1: the same by loads, where the other side is free, or a roller of a body
+ * that goes on behind it: its pressure is unknown, and has no part across. */
+static int is_torn(int dim, const corner *c, const goal_pull *const *pull,
+                   const double *n, const double *m) {
+  const int free_too = c->of[0] == FREE && c->of[1] == FREE;
+  const int mirrored = (c->of[0] == FREE || c->of[1] == FREE) &&
+                       (c->of[0] == ROLLER || c->of[1] == ROLLER) &&
+                       fabs(c->angle - M_PI / 2) < SLACK;
+  return c->n == 2 && !c->contact && (free_too || mirrored) &&
+         goal_is_torn(dim, pull[0], n, pull[1], m,
+                      fabs(c->angle - M_PI) < 2.0 * SLACK);
+}
+
 /* 1: the same by the regions that meet at a node. */
 static int is_singular_joint(const corner *c, const joint *j) {
   const int mirrored = c->n == 2 && c->of[0] == ROLLER && c->of[1] == ROLLER &&
@@ -222,7 +252,8 @@ typedef struct rim {
   int region;
   kind of;
   int support;
-  double n[3]; /* outward normal */
+  double n[3];              /* outward normal */
+  const goal_pull *pull[2]; /* of the face at a and b */
 } rim;
 
 /* v[3]: turned outward. */
@@ -256,7 +287,7 @@ static kind side_contact(const goal_surface *s, const int *v) {
 
 /* The three edges of a face; held[3*n_node] += what it holds. */
 static void add_side(const run *r, const goal_surface *s, const int *v,
-                     int region, unsigned char *held, rim *e) {
+                     const goal_pull *pull, unsigned char *held, rim *e) {
   const unsigned char *fixed = r->body.d.fixed;
   int n_held = 0, component = 0;
   double n[3];
@@ -269,12 +300,12 @@ static void add_side(const run *r, const goal_surface *s, const int *v,
     for (int k = 0; k < 3; ++k) held[3 * v[k] + c] = 1;
   }
   for (int k = 0; k < 3; ++k) {
-    const number_pair of = number_pair_of(v[(k + 1) % 3], v[(k + 2) % 3]);
+    const int i = (k + 1) % 3, j = (k + 2) % 3, turn = v[i] > v[j];
     e[k] = (rim){
-        .a = of.a,
-        .b = of.b,
+        .a = v[turn ? j : i],
+        .b = v[turn ? i : j],
         .other = v[k],
-        .region = region,
+        .pull = {pull + (turn ? j : i), pull + (turn ? i : j)},
         .of = n_held > 0 ? side_kind(n, n_held, component) : side_contact(s, v),
         .support = n_held > 0,
         .n = {n[0], n[1], n[2]}};
@@ -296,6 +327,10 @@ static int is_singular_edge(const mesh *m, const rim *e, int count) {
   }
   if (e[0].region != e[1].region)
     return at.of[0] != ROLLER || at.of[1] != ROLLER || turn > SLACK;
+  for (int k = 0; k < 2; ++k) {
+    const goal_pull *const pull[2] = {e[0].pull[k], e[1].pull[k]};
+    if (is_torn(3, &at, pull, e[0].n, e[1].n)) return 1;
+  }
   return is_singular(&at);
 }
 
@@ -384,10 +419,13 @@ static status mark_space(const run *r, const goal_border *border,
   const mesh *m = r->msh;
   OWNED_NEW(rim, e, 3 * border->n);
   OWNED_NEW(unsigned char, held, 3 * m->n_node);
+  OWNED_OF(goal_pull, pull, goal_pulls_new(r, border, &pull));
   for (int k = 0; k < border->n; ++k) {
     int v[3];
     mesh_side_nodes(m, border->side[k], v);
-    add_side(r, s, v, space_region(of, border->side[k] / 4), held, e + 3 * k);
+    add_side(r, s, v, pull + 3 * k, held, e + 3 * k);
+    for (int i = 0; i < 3; ++i)
+      e[3 * k + i].region = space_region(of, border->side[k] / 4);
   }
   mark_edges(m, e, 3 * border->n, s);
   for (int k = 0; k < 3 * m->n_node; ++k)
@@ -399,16 +437,20 @@ static status mark_plane(const run *r, const goal_border *border,
                          const joint *at, goal_surface *s) {
   const mesh *m = r->msh;
   OWNED_NEW(corner, c, m->n_node);
+  OWNED_OF(goal_pull, pull, goal_pulls_new(r, border, &pull));
   for (int i = 0; i < m->n_node; ++i) c[i].angle = border->angle[i];
   for (int k = 0; k < border->n; ++k) {
     int v[2];
     mesh_side_nodes(m, border->side[k], v);
     const number_pair e = number_pair_of(v[0], v[1]);
+    add_pull(m, v, pull + 2 * k, c);
     add_border(r, s, &e, c);
   }
   for (int i = 0; i < m->n_node; ++i)
     if ((s->front == NULL || !s->front[i]) &&
-        (is_singular(&c[i]) || is_point(r->body.d.fixed + 2 * i, &c[i]) ||
+        (is_singular(&c[i]) ||
+         is_torn(2, &c[i], c[i].pull, c[i].normal[0], c[i].normal[1]) ||
+         is_point(r->body.d.fixed + 2 * i, &c[i]) ||
          is_singular_joint(&c[i], &at[i])))
       s->ends[i] |= GOAL_END_OF_SUPPORT;
   return OK;

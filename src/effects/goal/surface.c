@@ -261,6 +261,35 @@ static status mark_front(const mesh *m, goal_surface *s) {
   return OK;
 }
 
+/* 1: the gap along an edge of open nodes, a parabola through its ends and
+ * middle, may be below zero: one of its coefficients is. */
+static int may_close(const run *r, const int *q, double middle) {
+  const contact_surface *s = r->surface;
+  double ends = 0.0;
+  for (int k = 0; k < 2; ++k)
+    ends += 0.5 * (r->problem.gap[q[k]] -
+                   dot(s->dim, s->frame + s->dim * s->dim * q[k],
+                       r->now.u + s->dim * s->node_id[q[k]]));
+  return 2.0 * middle < ends;
+}
+
+/* s->is_missed. */
+static status find_missed(const run *r, const gap_slopes *slopes,
+                          const int *where, goal_surface *s) {
+  OWNED_NEW(unsigned char, closed, r->m->n.contact);
+  for (int q = 0; q < r->nodes.n; ++q)
+    if (r->result.contact[q] != CONTACT_OPEN)
+      closed[r->surface->contact_id[q]] = 1;
+  for (int k = 0; k < s->n_edge && !s->is_missed; ++k) {
+    contact_edge e = s->edge[k];
+    const int q[2] = {where[e.a], where[e.b]};
+    if (e.other[0] >= 0 || closed[r->surface->contact_id[q[0]]]) continue;
+    set_middle(r, slopes, q, &e);
+    s->is_missed = may_close(r, q, e.excess);
+  }
+  return OK;
+}
+
 /* Each edge once. */
 static void unite_edges(goal_surface *s) {
   int n = 0;
@@ -309,6 +338,7 @@ status goal_surface_new(const run *r, const goal_border *border,
   mark_border(r, where, seen, s);
   PASS(mark_front(m, s));
   unite_edges(s);
+  PASS(find_missed(r, &slopes, where, s));
   for (int q = 0; q < r->nodes.n; ++q)
     s->n_closed += r->result.contact[q] != CONTACT_OPEN;
   PASS(goal_add_bent(r, &rings, s));

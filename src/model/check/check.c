@@ -661,6 +661,23 @@ static void check_condensed(const model *m) {
     }
 }
 
+/* Targets that no mesh can reach: their error has no estimate. */
+static void check_targets(const model *m) {
+  static const char text[] =
+      "%s: TARGET= cannot be reached, for there is no estimate of %s with it";
+  const effect_card *worn = model_effect_card(m, "WEAR", -1);
+  if (worn != NULL && model_has_target(m))
+    message_add(m->log, P2066, &worn->at, text, "*WEAR", "the error");
+  if (model_targeted_goal(m) == NULL) return;
+  for (int i = 0; i < m->n.tie; ++i)
+    message_add(m->log, P2066, &m->ties[i].at, text, "*TIE",
+                "the error of a goal");
+  for (int i = 0; i < m->n.contact; ++i)
+    if (m->contacts[i].is_pair && !m->contacts[i].is_crack)
+      message_add(m->log, P2066, &m->contacts[i].at, text, "*CONTACT PAIR",
+                  "the error of a goal");
+}
+
 status model_check(model *m, const mesh *msh, effect_finder *find) {
   m->dim = msh->dim;
   m->ns = msh->dim == 3 ? 6 : 4;
@@ -683,6 +700,7 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   PASS(check_start_file(m));
   check_reference(m);
   for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
+  check_targets(m);
   PASS(model_find_corner(m, msh));
   m->effects = find(m);
   check_moduli(m);
