@@ -200,17 +200,6 @@ static void check_xml(const job *j, const char *path) {
   free(text);
 }
 
-/* The bodies of a pair are two. */
-static void check_pairs(const job *j) {
-  char *text = job_file(j, "lst"), slave[64], master[64];
-  for (char *at = strstr(text, " slave "); at != NULL;
-       at = strstr(at + 1, " slave "))
-    if (sscanf(at, " slave %63s (%*[^)]), master %63[^, \n]", slave, master) ==
-        2)
-      ck_assert_str_ne(slave, master);
-  free(text);
-}
-
 /* Run one deck (path without .inp) and compare its lines. */
 static void run_deck(const char *path, int n, const line *lines) {
   const char *name = strrchr(path, '/') + 1;
@@ -222,7 +211,6 @@ static void run_deck(const char *path, int n, const line *lines) {
   compare_plan(&j, name);
   check_off(&j, name);
   if (job_has(&j, "xdmf")) check_xml(&j, path);
-  check_pairs(&j);
   compare_sums(&j, path);
   for (int k = 0; k < n; ++k) {
     if (strcmp(lines[k].deck, name) != 0) continue;
