@@ -28,18 +28,22 @@ static void write_mesh(const job *j, const char *words,
 }
 
 /* A body of these words (scenes/mesh.h) with contact cards. */
-static job of_body(const char *words, const char *cards) {
+static job of_type(const char *type, const char *words, const char *cards) {
   const mesh_change change = {.scale = 1.0};
   job j = job_begin("block");
   write_mesh(&j, words, &change);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
             "*OBSTACLE, NAME=O, TYPE=%s*PRINT, GOALS\n*END STEP\n",
-            cards);
+            type, cards);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
+}
+
+static job of_body(const char *words, const char *cards) {
+  return of_type("", words, cards);
 }
 
 #define CONTACT "\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
@@ -552,6 +556,22 @@ START_TEST(normal_force_in_a_single_node_is_not_reliable) {
 }
 END_TEST
 
+/* The radial force is that of the bearing of the ring, the axial one the load.
+ */
+START_TEST(radial_force_in_a_single_node_is_not_reliable) {
+  job j = of_type(", TYPE=CAX3", "rect 2 2 1 0.5",
+                  "PLANE\n1., 0.\n-0.05, 1.\n"
+                  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O, NORMAL=OBSTACLE"
+                  "\n*GOAL, NAME=R, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+                  "*GOAL, NAME=Z, QUANTITY=FORCE, CONTACT=C, COMPONENT=2\n"
+                  "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                  "*DSLOAD\nTOP, P, 0.01\n");
+  ck_assert(has_verdict(&j, "R", "few_nodes"));
+  ck_assert(has_verdict(&j, "Z", "reliable"));
+  job_end(&j);
+}
+END_TEST
+
 /* A sphere between two nodes, pressed into the side or below it. */
 START_TEST(contact_between_nodes_is_not_none) {
   static const double depth[] = {0.002, -0.05};
@@ -609,4 +629,5 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           estimates_of_coarse_meshes_are_doubted,
           moment_about_a_single_node_is_not_reliable,
           normal_force_in_a_single_node_is_not_reliable,
+          radial_force_in_a_single_node_is_not_reliable,
           contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable)

@@ -361,8 +361,8 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
-/* 1: a sum of contact forces along directions that differ: where few nodes have
- * the forces, it is what their places make it. */
+/* 1: a sum of contact forces along directions that differ, as radial ones do:
+ * where few nodes have the forces, it is what their places make it. */
 static int turns(const run *r, const goal_form *f) {
   const int dim = r->msh->dim;
   double first[3] = {0.0}, size = 0.0, most = 0.0;
@@ -378,6 +378,7 @@ static int turns(const run *r, const goal_form *f) {
     for (int c = 0; c < dim && dot(dim, v, v) > 0.0; ++c)
       most = fmax(most, fabs(v[c] - first[c]));
   }
+  if (r->faces.input.axisymmetric) most = fmax(most, fabs(first[0]));
   return most > TURN * size;
 }
 
