@@ -193,7 +193,7 @@ typedef struct state {
 
 /* How the contact solver knows the condensed stiffness. */
 typedef struct stiffness_row {
-  double seconds, bytes; /* foreseen */
+  double seconds, bytes; /* expected */
 } stiffness_row;
 typedef struct stiffness_choice {
   int sparse;                  /* 1: FACTOR, 0: DENSE */

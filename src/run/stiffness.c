@@ -1,6 +1,6 @@
 /*
  * STIFFNESS=AUTO: whether the condensed matrix is formed (DENSE) or known by
- * solves with the sparse matrix of the body (FACTOR), by foreseen seconds and
+ * solves with the sparse matrix of the body (FACTOR), by expected seconds and
  * bytes. The seconds are of one core that does some ten billion operations a
  * second: only their ratio counts.
  */
@@ -150,7 +150,7 @@ static void compare(const run *r, double most, stiffness_choice *c) {
   else if (!dense_fits)
     say(c, c->factor.bytes < c->dense.bytes, "it needs less memory");
   else
-    say(c, c->factor.seconds < c->dense.seconds, "it is foreseen to be faster");
+    say(c, c->factor.seconds < c->dense.seconds, "it is expected to be faster");
   if (dense_fits && factor_fits && seen->increments > 0)
     snprintf(c->why + strlen(c->why), sizeof c->why - strlen(c->why),
              ", by %.1f systems an increment and %.1f solves each",

@@ -147,7 +147,7 @@ void solver_keep_best(best_iterate *best, int m, double residual,
 /* Copy it to u, r if there is one. */
 void solver_take_best(const best_iterate *best, int m, double *u, double *r);
 
-/* How the solver knows the condensed stiffness: by the foreseen cost, its
+/* How the solver knows the condensed stiffness: by the expected cost, its
  * entries, or products and solves (contact/operator.h). */
 typedef enum {
   STIFFNESS_AUTO,

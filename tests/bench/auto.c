@@ -18,6 +18,7 @@
  * column: AUTO over the best row.
  */
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "fem/fem.h"
 #include "solver/solver.h"
 #include "support/pressed_block.h"

@@ -12,6 +12,7 @@
  * sample of columns and extrapolated.
  */
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "fem/factor.h"
 #include "support/scene.h"
 

@@ -12,6 +12,7 @@
  * python3-getfem is installed (tests/peers/getfem_contact.py).
  */
 #include "base/base.h"
+#include "mesh/mesh.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -300,7 +301,7 @@ static void row_of_getfem(const bench_case *c) {
 }
 
 /* What --check foresees of a kind, s and MB. */
-static void foreseen(job *j, const char *kind, double *cpu, double *mega) {
+static void expected(job *j, const char *kind, double *cpu, double *mega) {
   char key[40];
   *cpu = *mega = 0;
   if (job_run(j, "--check") != 0) return;
@@ -321,7 +322,7 @@ static void row_of(const bench_case *c, const char *kind) {
     return;
   }
   job j = make_job(c, kind);
-  foreseen(&j, kind, &cpu_before, &mega_before);
+  expected(&j, kind, &cpu_before, &mega_before);
   if (run_protis(&j, &cpu, &mega))
     printf("%d-D %-7s %6d %-23s %9.2f %9.1f %12.2g %12.1f\n", c->dim,
            c->how == GRADED ? "graded" : "uniform", c->cells, kind, cpu, mega,
@@ -337,8 +338,8 @@ START_TEST(both_kinds_of_stiffness) {
   const int all = getenv("BIG") != NULL, only = one != NULL ? atoi(one) : 0;
   puts(
       "mesh           cells kind                        cpu[s]   mem[MB]  "
-      "foreseen[s] "
-      "foreseen[MB]");
+      "expected[s] "
+      "expected[MB]");
   for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
     if (only > 0 ? i + 1 != (size_t)only : cases[i].large && !all) continue;
     for (int k = 0; k < KINDS && cases[i].kinds[k] != NULL; ++k)

@@ -11,6 +11,7 @@
  * solution at a residual of 1e-13. Rows start from zero each time.
  */
 #include "base/base.h"
+#include "base/system/blas.h"
 #include "fem/fem.h"
 #include "solver/solver.h"
 #include "support/pressed_block.h"

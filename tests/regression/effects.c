@@ -1,6 +1,6 @@
 /*
  * The effect plan: the same before a run and in its listing, in JSON, off where
- * nothing calls for an effect, and what is foreseen against what is counted.
+ * nothing calls for an effect, and what is expected against what is counted.
  */
 #include "base/base.h"
 #include "support/block_file.h"
@@ -375,8 +375,8 @@ START_TEST(nothing_rubs_no_loop_one_factor) {
 }
 END_TEST
 
-/* JSON: calls foreseen and counted of the effects that tell both. */
-START_TEST(calls_are_as_foreseen) {
+/* JSON: calls expected and counted of the effects that tell both. */
+START_TEST(calls_are_as_expected) {
   static const char *const files[] = {"", "*PRINT, CONTACT, TOTALS\n"};
   for (size_t k = 0; k < 2; ++k) {
     job j = block("", files[k], "");
@@ -408,10 +408,10 @@ START_TEST(no_timing_leaves_calls_alone) {
   job a = block("", bare, "--no-timing"), b = block("", bare, "--no-timing");
   char *line = effect_line(&a, "COST OF THE EFFECTS", "unilateral contact");
   double share;
-  long foreseen, calls;
+  long expected, calls;
   char rest;
   ck_assert_int_eq(
-      sscanf(line + 32, "%lf %ld %ld %c", &share, &foreseen, &calls, &rest), 3);
+      sscanf(line + 32, "%lf %ld %ld %c", &share, &expected, &calls, &rest), 3);
   ck_assert_int_eq(calls, 4);
   char *one = job_file(&a, "lst"), *two = job_file(&b, "lst");
   ck_assert_str_eq(one, two);
@@ -427,5 +427,5 @@ UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
           plan_names_file_and_line, plan_names_the_reason,
           reactions_are_of_supports_alone, no_stage_runs_uncalled,
           every_effect_is_called_for, no_friction_no_tangential_unknown,
-          nothing_rubs_no_loop_one_factor, calls_are_as_foreseen,
+          nothing_rubs_no_loop_one_factor, calls_are_as_expected,
           no_timing_leaves_calls_alone)

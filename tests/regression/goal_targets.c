@@ -263,7 +263,7 @@ START_TEST(zero_needs_a_target_in_its_unit) {
 END_TEST
 
 /* What --estimate-cost says of an error of a goal: unknowns, 0: reached. */
-static double foreseen(const job *j, const char *goal, const char *level) {
+static double forecast(const job *j, const char *goal, const char *level) {
   char word[40];
   double unknowns = 0.0, cpu;
   snprintf(word, sizeof word, "  %s: ", goal);
@@ -294,14 +294,14 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
   int code = run_with(&j, "input/hertz_line/hertz_exact", cards, "",
                       "--estimate-cost");
   OK_OR_STOP(code, j);
-  const double expected[2] = {foreseen(&j, "PEAK", "0.1"),
-                              foreseen(&j, "TOP", "0.1")};
+  const double expected[2] = {forecast(&j, "PEAK", "0.1"),
+                              forecast(&j, "TOP", "0.1")};
   /* A tenth by the second order of linear elements, or a little more. */
-  const double more = foreseen(&j, "TOP", "0.01") / expected[1];
+  const double more = forecast(&j, "TOP", "0.01") / expected[1];
   ck_assert_msg(more > 7.7 && more < 10.5, "%g times the unknowns", more);
   /* Of formulas on faces the mesh takes .022 % less (499.892 of 500 N). */
-  ck_assert_double_eq(foreseen(&j, "ALL", "0.1"), 0.0);
-  ck_assert_double_gt(foreseen(&j, "ALL", "0.01"), 0.0);
+  ck_assert_double_eq(forecast(&j, "ALL", "0.1"), 0.0);
+  ck_assert_double_gt(forecast(&j, "ALL", "0.01"), 0.0);
   job_end(&j);
   for (int k = 0; k < 2; ++k) {
     snprintf(cards, sizeof cards, goals, k == 0 ? target : "",
@@ -310,7 +310,7 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
     OK_OR_STOP(code, j);
     const double has = job_told(&j, "unknowns");
     ck_assert_msg(expected[k] > has / 2.5 && expected[k] < 2.5 * has,
-                  "%d: %g unknowns, foreseen %g", k, has, expected[k]);
+                  "%d: %g unknowns, expected %g", k, has, expected[k]);
     /* A pass between: 3787 of the peak without it. */
     if (k == 0) ck_assert_double_lt(has, 3000.0);
     job_end(&j);
@@ -318,7 +318,7 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
 }
 END_TEST
 
-/* The mesh of the file is refined as foreseen; its contact stays on the circle.
+/* The mesh of the file is refined as expected; its contact stays on the circle.
  */
 START_TEST(msh_of_a_cylinder_is_refined) {
   static const mesh_number few[] = {{"NC", 2, 0}, {"R", 10, 0}, {"A", A_H, 0}};
@@ -348,12 +348,12 @@ START_TEST(msh_of_a_cylinder_is_refined) {
             "*END STEP\n");
   int code = job_run(&j, "--estimate-cost");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  const double expected = foreseen(&j, "PEAK", "1");
+  const double expected = forecast(&j, "PEAK", "1");
   code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   const double has = job_told(&j, "unknowns");
   ck_assert_msg(expected > has / 2.5 && expected < 2.5 * has,
-                "%g unknowns, foreseen %g", has, expected);
+                "%g unknowns, expected %g", has, expected);
   dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
   ck_assert_double_eq_tol(dat_at(&t, 0, "value"), P_H, 0.01 * P_H);
   ck_assert_int_gt(c.n_row, 15);

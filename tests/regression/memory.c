@@ -1,6 +1,6 @@
 /*
- * Memory is foreseen: a run that would need more than there is ends at once
- * with exit code 5 and says what to do; what is foreseen is what a run takes.
+ * Memory is expected: a run that would need more than there is ends at once
+ * with exit code 5 and says what to do; what is expected is what a run takes.
  */
 #include "base/base.h"
 #include "support/job.h"
@@ -55,7 +55,7 @@ START_TEST(limit_of_the_process_is_seen) {
 END_TEST
 
 /* Sum of the numbers of the line "memory" of --check, bytes. */
-static double foreseen(const job *j) {
+static double expected(const job *j) {
   double factor, contact, rest;
   const char *line = strstr(j->text, "\nmemory ");
   ck_assert_ptr_nonnull(line);
@@ -67,7 +67,7 @@ static double foreseen(const job *j) {
   return 1e6 * (factor + contact + rest);
 }
 
-START_TEST(runs_take_what_is_foreseen) {
+START_TEST(runs_take_what_is_expected) {
   static const char *const rows[][3] = {
       {"greco/greco", "greco", "-D N=96"},
       {"block_shear_3d/block_shear_3d", "block_shear_3d", "-D N=12"},
@@ -80,15 +80,15 @@ START_TEST(runs_take_what_is_foreseen) {
     snprintf(deck, sizeof deck, "input/%s", rows[i][0]);
     snprintf(words, sizeof words, "%s --check", rows[i][2]);
     ck_assert_int_eq(job_run_deck(&j, deck, words), 0);
-    double most = foreseen(&j);
+    double most = expected(&j);
     ck_assert_int_eq(job_run_deck(&j, deck, rows[i][2]), 0);
     double taken = job_told(&j, "peak_bytes");
     ck_assert_msg(taken <= most && most <= 2.5 * taken,
-                  "%s: foreseen %.3g, taken %.3g", deck, most, taken);
+                  "%s: expected %.3g, taken %.3g", deck, most, taken);
     job_end(&j);
   }
 }
 END_TEST
 
 UNIT_MAIN("memory", limit_by_hand_is_obeyed, limit_of_the_process_is_seen,
-          runs_take_what_is_foreseen)
+          runs_take_what_is_expected)

@@ -356,7 +356,7 @@ START_TEST(kind_of_stiffness_goes_on) {
   check_kinds(
       600, (const char *const[]){", STIFFNESS=DENSE", ""},
       (const char *const[]){"", ""},
-      (const char *const[]){"DENSE  STIFFNESS of", "FACTOR  it is foreseen"});
+      (const char *const[]){"DENSE  STIFFNESS of", "FACTOR  it is expected"});
 }
 END_TEST
 
@@ -366,7 +366,7 @@ START_TEST(observed_work_goes_on) {
   check_kinds(150, (const char *const[]){", STIFFNESS=FACTOR", ""},
               (const char *const[]){"END, 1, 1, 4e-5\n", "END, 2, 2, -5e-5\n"},
               (const char *const[]){"FACTOR  STIFFNESS of",
-                                    "FACTOR  it is foreseen to be faster, by"});
+                                    "FACTOR  it is expected to be faster, by"});
 }
 END_TEST
 

@@ -205,7 +205,7 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
     ck_assert_int_eq(job_run(&j[k], ""), 0);
     char *listing = job_file(&j[k], "lst");
     ck_assert_ptr_nonnull(strstr(
-        listing, k == 0 ? "FACTOR  it is foreseen" : "DENSE  STIFFNESS of"));
+        listing, k == 0 ? "FACTOR  it is expected" : "DENSE  STIFFNESS of"));
     free(listing);
   }
   dat a = job_table(&j[0], "CONTACT", 0), b = job_table(&j[1], "CONTACT", 0);

@@ -325,8 +325,8 @@ END_TEST
 /* ---- what the plan and *EFFECTS tell ----------------------------------------
  */
 
-/* The shares of what is foreseen are all of it. */
-START_TEST(foreseen_shares_are_the_whole) {
+/* The shares of what is expected are all of it. */
+START_TEST(expected_shares_are_the_whole) {
   job j = run("", FLOOR
               "*STEP\n*STATIC\n*BOUNDARY\nCLAMPED, 1, 2\n*CLOAD\n"
               "TIPS, 2, -10.\n*END STEP\n");
@@ -375,7 +375,7 @@ UNIT_MAIN("tips", contact_that_holds_is_one_that_touches,
           creep_in_shear_is_near_the_locking_it_tells,
           creep_in_volume_is_far_from_locking,
           moduli_of_a_table_in_plane_strain_and_stress,
-          foreseen_shares_are_the_whole,
+          expected_shares_are_the_whole,
           law_at_its_end_keeps_the_energy_of_its_springs,
           points_lie_within_increments, limit_of_tresca_is_a_stress,
           given_pressure_pushes, static_problems_slip_from_the_origin,

@@ -46,7 +46,7 @@ typedef struct made_up {
   state s;
 } made_up;
 
-/* dim 2 or 3, cells per side, increments foreseen; the program ends without
+/* dim 2 or 3, cells per side, increments expected; the program ends without
  * memory. All tables at every increment, fields at every increment. */
 made_up *made_up_new(int dim, int cells, int n_increment);
 void made_up_free(made_up *run);

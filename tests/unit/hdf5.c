@@ -272,7 +272,7 @@ START_TEST(contacts_have_their_nodes_and_faces) {
 }
 END_TEST
 
-START_TEST(more_increments_than_foreseen_are_kept) {
+START_TEST(more_increments_than_expected_are_kept) {
   char dir[64];
   folder_new(dir);
   made_up *made = made_up_new(2, 2, 3);
@@ -463,8 +463,8 @@ END_TEST
 /* ---- kills ------------------------------------------------------------ */
 
 /* The child acknowledges each increment by one byte in the pipe. */
-static void child_run(const char *dir, int pipe_end, int foreseen) {
-  made_up *made = made_up_new(2, 4, foreseen);
+static void child_run(const char *dir, int pipe_end, int expected) {
+  made_up *made = made_up_new(2, 4, expected);
   output_options o = plain;
   hdf5_file *h = NULL;
   o.dir = dir;
@@ -479,7 +479,7 @@ static void child_run(const char *dir, int pipe_end, int foreseen) {
 
 /* Kill some microseconds after increment "until" was acknowledged (0: after
  * the start); the number of increments acknowledged. */
-static int run_and_kill(const char *dir, int foreseen, int until,
+static int run_and_kill(const char *dir, int expected, int until,
                         long microseconds) {
   int ends[2], n = 0;
   char c;
@@ -488,7 +488,7 @@ static int run_and_kill(const char *dir, int foreseen, int until,
   ck_assert_int_ge(pid, 0);
   if (pid == 0) {
     close(ends[0]);
-    child_run(dir, ends[1], foreseen);
+    child_run(dir, ends[1], expected);
   }
   close(ends[1]);
   struct timespec pause = {0, microseconds * 1000};
@@ -509,10 +509,10 @@ START_TEST(killed_at_any_moment_keeps_every_acknowledged_increment) {
     char dir[64];
     folder_new(dir);
     /* Small forecasts: some kills fall into the making of a larger file. */
-    int foreseen = k % 2 ? 3 : 500;
-    int n = run_and_kill(dir, foreseen, k % 30, 137 * k % 3000);
+    int expected = k % 2 ? 3 : 500;
+    int n = run_and_kill(dir, expected, k % 30, 137 * k % 3000);
     if (n > 0) ++runs_with_results;
-    if (n > foreseen) ++runs_grown;
+    if (n > expected) ++runs_grown;
     for (int i = 1; i <= n; i += i < n - 3 && n > 20 ? 7 : 1)
       increment_is(made, dir, i);
     int reached = count_reached(dir); /* perhaps one more than told          */
@@ -579,11 +579,11 @@ START_TEST(adapted_increments_take_room_as_they_come) {
   made->s.dt = 1e-12;
   made->s.end_of_step = 0;
   ck_assert_int_eq(hdf5_open(&made->m, made->msh, &o, NULL, &h), OK);
-  const long foreseen = size_of(dir, "block.h5");
-  ck_assert_int_lt(foreseen, 1000000);
+  const long expected = size_of(dir, "block.h5");
+  ck_assert_int_lt(expected, 1000000);
   for (int i = 1; i <= 200; ++i)
     ck_assert_int_eq(hdf5_increment(h, &made->s), OK);
-  ck_assert_int_lt(size_of(dir, "block.h5"), 5 * foreseen);
+  ck_assert_int_lt(size_of(dir, "block.h5"), 5 * expected);
   ck_assert_int_eq(hdf5_close(h, 1), OK);
   made_up_free(made);
   folder_remove(dir);
@@ -652,7 +652,7 @@ static int run_on_small_disk(made_up *made, const char *dir, int pages) {
   double *t = dataset(dir, "/history/time", dims);
   int n = t == NULL ? 0 : count_reached(dir);
   free(t);
-  if (t != NULL && n < 3) return LOST; /* what was foreseen has its room     */
+  if (t != NULL && n < 3) return LOST; /* what was expected has its room     */
   if (st == OK && n != 20) return LOST;
   for (int i = 1; i <= n; ++i) increment_is(made, dir, i);
   return (int)st;
@@ -776,7 +776,7 @@ END_TEST
 
 UNIT_MAIN("hdf5", fields_read_back_exactly, mesh_and_surface_stand_in_the_file,
           contacts_have_their_nodes_and_faces,
-          more_increments_than_foreseen_are_kept,
+          more_increments_than_expected_are_kept,
           records_of_six_digits_are_kept, room_not_used_is_cut_at_the_end,
           frequency_chooses_the_records, missing_arrays_are_not_zero,
           scene_without_contact_has_no_surface,

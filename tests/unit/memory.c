@@ -79,7 +79,7 @@ START_TEST(kth_request_is_refused_once_or_for_good) {
 END_TEST
 
 /* What is above the limit is refused, and can be asked before. */
-START_TEST(limit_is_kept_and_foreseen) {
+START_TEST(limit_is_kept_and_expected) {
   memory_limit(memory_in_use() + 1000, "a test");
   ck_assert_double_eq(memory_left(), 1000.0);
   ck_assert_ptr_null(memory_new(1001, 1));
@@ -138,6 +138,6 @@ END_TEST
 
 UNIT_MAIN("memory", bytes_in_use_return_to_the_start,
           blocks_of_suitesparse_are_counted, overflowing_request_is_refused,
-          blocks_are_guarded, limit_is_kept_and_foreseen,
+          blocks_are_guarded, limit_is_kept_and_expected,
           kth_request_is_refused_once_or_for_good,
           failure_keeps_message_and_path, stage_is_charged_for_itself_only)

@@ -473,7 +473,7 @@ END_TEST
 
 /* Both factors: of thin slabs, most of whose unknowns are in contact or only
  * their normal ones. */
-START_TEST(interior_is_foreseen_without_the_contact) {
+START_TEST(interior_is_expected_without_the_contact) {
   for (int rows = 1; rows <= 3; rows += 2) {
     const double real = sizeof(double);
     scene *s = scene_new(make_grid_3d((int[]){14, 14, 2}, (double[]){7, 7, 1}),
@@ -518,7 +518,7 @@ int main(void) {
   tcase_add_loop_test(tests, loads_and_recovery_are_the_same, 0, SCENES);
   tcase_add_loop_test(tests, energies_and_errors_are_the_same, 0, HELD);
   tcase_add_test(tests, power_of_two_in_the_moduli_leaves_every_bit);
-  tcase_add_test(tests, interior_is_foreseen_without_the_contact);
+  tcase_add_test(tests, interior_is_expected_without_the_contact);
   tcase_add_test(tests, every_refused_request_is_survived);
   return unit_run("operator", tests);
 }

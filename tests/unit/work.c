@@ -1,6 +1,6 @@
 /*
  * src/effects/plan: what a row has cost; entries and operations of the factor
- * foreseen from the number of unknowns besides those that CHOLMOD counts for
+ * expected from the number of unknowns besides those that CHOLMOD counts for
  * blocks in the plane and in space, the contact last.
  */
 #include "base/base.h"
@@ -16,7 +16,7 @@ static const struct {
 } blocks[] = {{2, 17, 16}, {2, 65, 64},  {2, 257, 256}, {2, 257, 64},
               {3, 81, 8},  {3, 169, 12}, {3, 361, 18},  {3, 625, 12}};
 
-START_TEST(factor_has_the_size_that_was_foreseen) {
+START_TEST(factor_has_the_size_that_was_expected) {
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k) {
     pressed_block b;
     int dim = blocks[k].dim;
@@ -105,4 +105,4 @@ START_TEST(work_grows_with_the_mesh) {
 END_TEST
 
 UNIT_MAIN("work", work_grows_with_the_mesh, cost_of_a_row_is_that_of_its_stages,
-          factor_has_the_size_that_was_foreseen)
+          factor_has_the_size_that_was_expected)

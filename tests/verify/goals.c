@@ -30,7 +30,7 @@ typedef struct scene {
 #define HALF_PLANE "input/hertz_line/hertz_exact"
 #define BALL "input/hertz_sphere/hertz_sphere"
 #define PARABOLA "input/spence/spence"
-#define EACH(percent) "EACH TARGET=" percent " %"
+#define AT(percent) "EACH TARGET=" percent " %"
 #define BLOCK_NAMES \
   { "GRIP", "UX", "UY" }
 #define BLOCK_EXACT \
@@ -144,34 +144,34 @@ static const scene scenes[] = {
   {HALF_PLANE, HERTZ, "", {8, 16, 32}, "N", HERTZ_NAMES, HERTZ_EXACT},
   {HALF_PLANE, HERTZ, "TARGET=2 %", {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
   {HALF_PLANE, HERTZ, "TARGET=1 %", {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
-  {HALF_PLANE, HERTZ, EACH("1"), {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
-  {HALF_PLANE, HERTZ, EACH("0.3"), {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
-  {HALF_PLANE, HERTZ, EACH("0.05"), {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
+  {HALF_PLANE, HERTZ, AT("1"), {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
+  {HALF_PLANE, HERTZ, AT("0.3"), {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
+  {HALF_PLANE, HERTZ, AT("0.05"), {4}, "N", HERTZ_NAMES, HERTZ_EXACT},
   {BALL, SPHERE, "", {8, 16, 32}, "NC", {"PEAK", "WIDE"}, BALL_EXACT},
-  {BALL, SPHERE, EACH("1"), {8}, "NC", {"PEAK", "WIDE"}, BALL_EXACT},
-  {BALL, SPHERE, EACH("0.2"), {8}, "NC", {"PEAK", "WIDE"}, BALL_EXACT},
+  {BALL, SPHERE, AT("1"), {8}, "NC", {"PEAK", "WIDE"}, BALL_EXACT},
+  {BALL, SPHERE, AT("0.2"), {8}, "NC", {"PEAK", "WIDE"}, BALL_EXACT},
   {BALL "_3d", POLE, "", {6, 12}, "NC", {"PEAK"}, BALL_EXACT},
-  {BALL "_3d", POLE, EACH("1"), {6}, "NC", {"PEAK"}, BALL_EXACT},
+  {BALL "_3d", POLE, AT("1"), {6}, "NC", {"PEAK"}, BALL_EXACT},
   {"block", BLOCK, "", {16, 32, 64, 128}, "N", BLOCK_NAMES, BLOCK_EXACT},
   {"block", BLOCK, "TARGET=1 %", {16}, "N", BLOCK_NAMES, BLOCK_EXACT},
-  {"block", BLOCK, EACH("1"), {16}, "N", BLOCK_NAMES, BLOCK_EXACT},
-  {"block", BLOCK, EACH("0.2"), {16}, "N", BLOCK_NAMES, BLOCK_EXACT},
+  {"block", BLOCK, AT("1"), {16}, "N", BLOCK_NAMES, BLOCK_EXACT},
+  {"block", BLOCK, AT("0.2"), {16}, "N", BLOCK_NAMES, BLOCK_EXACT},
   {"tube", "", "", {4, 8, 16}, "N", {"UR", "S", "E"}, TUBE_EXACT},
-  {"tube", "", EACH("0.2"), {4}, "N", {"UR", "S", "E"}, TUBE_EXACT},
-  {"tube", "", EACH("0.05"), {4}, "N", {"UR", "S", "E"}, TUBE_EXACT},
+  {"tube", "", AT("0.2"), {4}, "N", {"UR", "S", "E"}, TUBE_EXACT},
+  {"tube", "", AT("0.05"), {4}, "N", {"UR", "S", "E"}, TUBE_EXACT},
   {"fro", "", "", {16, 32, 64}, "N", FRO_NAMES, FRO_EXACT},
-  {"fro", "", EACH("1"), {16}, "N", FRO_NAMES, FRO_EXACT},
-  {"fro", "", EACH("0.3"), {16}, "N", FRO_NAMES, FRO_EXACT},
+  {"fro", "", AT("1"), {16}, "N", FRO_NAMES, FRO_EXACT},
+  {"fro", "", AT("0.3"), {16}, "N", FRO_NAMES, FRO_EXACT},
   {PARABOLA, SPENCE, "", {8, 16}, "DT=0.1 -D NC", SPENCE_NAMES, SPENCE_EXACT},
-  {PARABOLA, SPENCE, EACH("3"), {8}, "DT=0.1 -D NC", SPENCE_NAMES,
+  {PARABOLA, SPENCE, AT("3"), {8}, "DT=0.1 -D NC", SPENCE_NAMES,
    SPENCE_EXACT},
   {"input/torsion_sphere_3d/torsion_sphere_3d", TORSION, "", {4, 6},
    "DT=0.25 -D NC", {"TURN", "PEAK", "WORK"}, {66.3506, 4625.10, 0.233906}},
   {"crack", PULLED, "", {6, 12, 25, 50}, "N", {"K1", "K2"}, PULLED_EXACT},
-  {"crack", PULLED, EACH("1"), {4}, "N", {"K1", "K2"}, PULLED_EXACT},
-  {"crack", PULLED, EACH("0.3"), {4}, "N", {"K1", "K2"}, PULLED_EXACT},
+  {"crack", PULLED, AT("1"), {4}, "N", {"K1", "K2"}, PULLED_EXACT},
+  {"crack", PULLED, AT("0.3"), {4}, "N", {"K1", "K2"}, PULLED_EXACT},
   {"crack slips", SLIPS, "", {6, 12, 25, 50}, "N", {"K2"}, {0.63456099}},
-  {"crack slips", SLIPS, EACH("1"), {6}, "N", {"K2"}, {0.63456099}}};
+  {"crack slips", SLIPS, AT("1"), {6}, "N", {"K2"}, {0.63456099}}};
 /* clang-format on */
 
 /* Rows of a kind. */

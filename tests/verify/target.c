@@ -123,8 +123,8 @@ START_TEST(targets) {
 }
 END_TEST
 
-/* Unknowns, CPU seconds and MB foreseen for an error in %; 0: no such row. */
-static int foreseen(const job *j, double level, double row[3]) {
+/* Unknowns, CPU seconds and MB expected for an error in %; 0: no such row. */
+static int expected(const job *j, double level, double row[3]) {
   double found, times;
   for (const char *at = j->text; at != NULL; at = strchr(at, '\n')) {
     at += *at == '\n';
@@ -144,7 +144,7 @@ static void check_forecast(const example *e, const double *levels, int n) {
     double row[3];
     char card[60];
     job j;
-    ck_assert(foreseen(&plan, levels[i], row));
+    ck_assert(expected(&plan, levels[i], row));
     snprintf(card, sizeof card, "*ACCURACY, TARGET=%g", levels[i]);
     ck_assert_int_eq(run(&j, e, card, ""), 0);
     double cpu = cpu_of(&j), unknowns = job_unknowns(&j);

@@ -197,9 +197,9 @@ static void print_row(const plan_row *r, double cpu, int cost, FILE *f) {
 
 void plan_print_cost(const effect_plan *p, int cost, FILE *f) {
   double cpu = plan_cpu(p);
-  fprintf(f, "  %-26s %-3s %11s", "effect", "", "foreseen[%]");
+  fprintf(f, "  %-26s %-3s %11s", "effect", "", "expected[%]");
   if (cost) fprintf(f, " %8s", "cpu[%]");
-  fprintf(f, " %9s %7s", "foreseen", "calls");
+  fprintf(f, " %9s %7s", "expected", "calls");
   fprintf(f, cost ? " %10s %14s\n" : "\n", "cpu[s]", "bytes");
   for (int i = 0; i < p->n; ++i) print_row(&p->rows[i], cpu, cost, f);
 }

@@ -230,7 +230,7 @@ static const option solver_options[] = {
          "combinations of statuses, up to 10 contact nodes in 2-D"),
   CHOICE(solver.stiffness, "STIFFNESS", "AUTO|DENSE|FACTOR", "AUTO",
          "DENSE: the condensed matrix is formed; FACTOR: it is known by solves "
-         "with the sparse matrix of the body; AUTO: the cheaper as foreseen "
+         "with the sparse matrix of the body; AUTO: the cheaper as expected "
          "(--check prints both)"),
   REAL(max_memory, "MAX_MEMORY", 0, 1e12, "0", "MB",
        "that STIFFNESS=AUTO keeps below; 0: 80 % of the memory"),

@@ -64,7 +64,7 @@ enum {
   MOST_SWEEPS = 20000
 };
 
-static const double LENIENT = 1.5; /* sweeps foreseen over those allowed */
+static const double LENIENT = 1.5; /* sweeps expected over those allowed */
 
 /* A method, its loop, and where it applies. */
 typedef struct link {
