@@ -3,7 +3,7 @@
  * a path of many, of the mesh against a fine one by the potential energy.
  */
 #include "base/base.h"
-#include "support/job.h"
+#include "support/square_case.h"
 #include "support/unit.h"
 
 const int job_without_fields = 1;
@@ -225,6 +225,48 @@ START_TEST(error_of_the_steps_is_told_where_a_law_flows) {
 }
 END_TEST
 
+#define NEXT "*ACCURACY, TIME=YES, MESH=NO\n*END STEP\n*STEP\n"
+
+/* The top is drawn to the side at once at the start of the second *VISCO step,
+ * where all slips, and goes back: the body answers as fast, nothing flows. */
+START_TEST(sudden_slip_has_no_error_of_steps) {
+  const square_case s = {"1000., 0.",
+                         "*INELASTIC, LAW=MAXWELL\n1.E6\n",
+                         "CPS3",
+                         FLOOR(0.3) "*AMPLITUDE, NAME=BACK\n\"1 - 0.25*t\"\n",
+                         "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -1.E-3\n",
+                         "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n" NEXT
+                         "*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
+                         "*BOUNDARY\nTOP, 1, 1, 1.E-3, BACK\n"};
+  job j = square_run(&s, 0);
+  ck_assert_double_lt(last_of(&j, TIME_COLUMN), 1e-4);
+  job_end(&j);
+}
+END_TEST
+
+/* All stresses relax at one rate, and their error with them: one of order 1
+ * stays what it is in a step of order 4 that adds almost none. */
+START_TEST(error_of_steps_of_order_1_stays) {
+  double told[2];
+  for (int k = 0; k < 2; ++k) {
+    const square_case s = {STEEL,
+                           PROPORTIONAL,
+                           "CPS3",
+                           "",
+                           HELD,
+                           k == 0 ? "*VISCO, INTEGRATOR=EULER\n0.25, 1.\n"
+                                    "*ACCURACY, TIME=YES, MESH=NO\n"
+                                  : "*VISCO, INTEGRATOR=EULER\n0.25, 1.\n" NEXT
+                                    "*VISCO, INTEGRATOR=RK4\n0.25, 1.\n"};
+    job j = square_run(&s, 0);
+    told[k] = last_of(&j, TIME_COLUMN);
+    job_end(&j);
+  }
+  ck_assert_msg(fabs(told[1] - told[0]) < 0.02 * told[0], "%g, %g", told[0],
+                told[1]);
+}
+END_TEST
+
 /* A flowing square pressed on a floor where it sticks moves as one that is held
  * there, and half the steps differ as much: zones of slip may grow, so that the
  * error is 5/3 of that, not 4/3 as for schemes of order 2; 2 for EULER. */
@@ -384,6 +426,7 @@ UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
           error_of_the_steps_is_that_of_all_steps,
           proportional_load_has_no_error_of_steps,
           error_of_the_steps_is_told_where_a_law_flows,
+          sudden_slip_has_no_error_of_steps, error_of_steps_of_order_1_stays,
           steps_beside_friction_are_those_of_growing_zones,
           increments_are_balanced_with_the_mesh,
           increments_of_flow_are_balanced,
