@@ -615,7 +615,10 @@ void child_run(const raw_request *request, int fd, int error_fd) {
   load(c);
   start(c);
   open_geo(c);
-  if (request->source->sizes[0].of != NULL) free_counts(c);
+  if (request->source->sizes[0].of != NULL) {
+    free_counts(c);
+    set_sizes(c);
+  }
   int dim = send_groups(c);
   const char *doing = "read the file";
   if (dim >= 2 && !has_elements(c, dim)) {
@@ -626,7 +629,6 @@ void child_run(const raw_request *request, int fd, int error_fd) {
     set(c, "Mesh.MaxNumThreads2D", 1);
     set(c, "Mesh.MaxNumThreads3D", 1);
     set(c, "Mesh.ElementOrder", 1);
-    if (request->source->sizes[0].of != NULL) set_sizes(c);
     CALL(c, doing, c->gmsh.ModelMeshGenerate, dim);
   }
   send_warnings(c, doing);

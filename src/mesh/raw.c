@@ -163,6 +163,7 @@ static int tells_of_memory(const char *text) {
   return strstr(text, "bad_alloc") != NULL ||
          strstr(text, "Out of memory") != NULL ||
          strstr(text, "out of memory") != NULL ||
+         strstr(text, "out of dynamic memory") != NULL ||
          strstr(text, "annot allocate memory") != NULL;
 }
 

@@ -31,15 +31,15 @@
 /* What is called of libgmsh: first those that say what is to be meshed. */
 #define GMSH_BEFORE_MESH(X)                                                   \
   X(Initialize) X(LoggerStart) X(OptionSetNumber) X(Open)                     \
+  X(ModelMeshRemoveConstraints) X(Write) X(Clear) X(ViewAdd)                  \
+  X(ViewAddListData) X(ModelMeshFieldAdd) X(ModelMeshFieldSetNumber)          \
+  X(ModelMeshFieldSetNumbers) X(ModelMeshFieldSetAsBackgroundMesh)            \
   X(ModelGetPhysicalGroups)
 #define GMSH_CALLS(X)                                                         \
   X(LoggerGet) X(LoggerGetLastError) X(ModelGetEntities)                      \
   X(ModelGetPhysicalName) X(ModelGetPhysicalGroupsForEntity)                  \
   X(ModelMeshGenerate) X(ModelMeshGetNodes) X(ModelMeshGetElements)           \
-  X(ModelMeshGetElementProperties) X(ModelMeshFieldAdd)                       \
-  X(ModelMeshFieldSetNumber) X(ModelMeshFieldSetNumbers)                      \
-  X(ModelMeshFieldSetAsBackgroundMesh) X(ModelMeshRemoveConstraints)          \
-  X(Clear) X(Merge) X(Write) X(ViewAdd) X(ViewAddListData) X(Free)
+  X(ModelMeshGetElementProperties) X(Merge) X(Free)
 /* clang-format on */
 
 /* In the message of a number that a .geo replaces. */

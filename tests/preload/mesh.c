@@ -10,13 +10,13 @@
  * What is asked is found by a process forked where libgmsh would be loaded. It
  * gets the calls below in its place, and either gives out a kept stream, which
  * mesher.c may have to make, or ends with the name under which one may be kept.
- * Files that reach beyond their text and meshes by sizes are always made by the
- * program's own gmsh.
+ * Files that reach beyond their text are always made by the program's own gmsh.
  */
 #define _GNU_SOURCE
 #include "mesh.h"
 
 #include <dlfcn.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -72,12 +72,20 @@ static void mix(const void *data, size_t n) {
 static int n_word;
 static char **word;
 static const char *geo;
+/* Sizes: views of an earlier mesh of the geometry, written out as it is. */
+static int by_sizes, is_written, n_view, vertices;
+static struct {
+  double *data;
+  size_t n;
+} view[MESH_SIZES];
+
+static void mix_text(const char *text) { mix(text, strlen(text) + 1); }
 
 void gmshInitialize(int argc, char **argv, int ignored, int *error) {
   (void)ignored;
   n_word = argc;
   word = argv;
-  for (int i = 1; i < argc; ++i) mix(argv[i], strlen(argv[i]) + 1);
+  for (int i = 1; i < argc; ++i) mix_text(argv[i]);
   *error = 0;
 }
 
@@ -87,6 +95,16 @@ void gmshOptionSetNumber(const char *name, double value, int *error) {
   mix(name, strlen(name));
   mix(&value, sizeof value);
   *error = 0;
+}
+
+/* Where mesher.c finds the sizes. */
+static void keep_view(const char *name, int i) {
+  char file[4200];
+  snprintf(file, sizeof file, "%s-%d.%d", name, i, (int)getpid());
+  FILE *f = fopen(file, "wb");
+  if (f == NULL) return;
+  fwrite(view[i].data, sizeof(double), view[i].n, f);
+  fclose(f);
 }
 
 /* The stream made by mesher.c, if it is there: the words of its request. */
@@ -105,6 +123,10 @@ static void have_made(const char *name) {
   end += 17;
   end += strlen(end) + 1;
   end += snprintf(end, (size_t)(last - end), "%s", geo) + 1;
+  end += snprintf(end, 40, "%d %d %d %d", (int)getpid(), n_view, vertices,
+                  !is_written) +
+         1;
+  for (int i = 0; i < n_view; ++i) keep_view(name, i);
   for (int i = 1; i < n_word; ++i)
     if (i % 3 != 1 && end < last)
       end += snprintf(end, (size_t)(last - end), "%s", word[i]) + 1;
@@ -112,24 +134,99 @@ static void have_made(const char *name) {
     if (recv(fd, text, 1, 0) < 0) _exit(1);
 }
 
-void gmshOpen(const char *name, int *error) {
-  static const char *const beyond[] = {"Include", "Merge",   "Shape", "Get",
-                                       "System",  "Current", "Print", "Exit"};
-  static char text[1 << 16];
-  const char *slash = strrchr(name, '/');
+/* The text of a file and of those it includes. */
+static void mix_file(const char *name, int depth) {
+  static const char *const beyond[] = {"Merge",   "Shape", "Get", "System",
+                                       "Current", "Print", "Exit"};
+  char text[1 << 15], file[2048], other[4096];
+  const char *slash = strrchr(name, '/'), *at = text;
+  const int folder = slash != NULL ? (int)(slash + 1 - name) : 0;
   FILE *f = fopen(name, "rb");
-  geo = name;
-  size_t n = f == NULL ? sizeof text : fread(text, 1, sizeof text - 1, f);
-  may_keep = n < sizeof text - 1 && memchr(text, '\0', n) == NULL;
-  for (size_t i = 0; may_keep && i < sizeof beyond / sizeof *beyond; ++i)
-    may_keep = strstr(text, beyond[i]) == NULL;
-  mix(slash != NULL ? slash : name, strlen(slash != NULL ? slash : name) + 1);
-  mix(text, may_keep ? n : 0);
+  const size_t n = f == NULL ? sizeof text : fread(text, 1, sizeof text - 1, f);
   if (f != NULL) fclose(f);
+  may_keep &= depth < 4 && n < sizeof text - 1 && memchr(text, '\0', n) == NULL;
+  if (!may_keep) return;
+  text[n] = '\0';
+  for (size_t i = 0; i < sizeof beyond / sizeof *beyond; ++i)
+    may_keep &= strstr(text, beyond[i]) == NULL;
+  mix_text(name + folder);
+  mix_text(text);
+  while (may_keep && (at = strstr(at, "Include")) != NULL) {
+    int end = 0;
+    sscanf(at += 7, " \"%2047[^\"/]\";%n", file, &end);
+    may_keep = end > 0;
+    at += end;
+    if (end == 0) return;
+    snprintf(other, sizeof other, "%.*s%s", folder, name, file);
+    mix_file(other, depth + 1);
+  }
+}
+
+void gmshOpen(const char *name, int *error) {
+  *error = 0;
+  if (by_sizes) return;
+  geo = name;
+  mix_file(name, 0);
+}
+
+void gmshModelMeshRemoveConstraints(int *tags, size_t n, int *error) {
+  (void)tags, (void)n;
+  by_sizes = 1;
   *error = 0;
 }
 
-/* The first call after that of a file whose sizes are its own. */
+void gmshWrite(const char *name, int *error) {
+  FILE *f = fopen(name, "w");
+  *error = f == NULL || fclose(f) != 0;
+  is_written = 1;
+}
+
+void gmshClear(int *error) { *error = 0; }
+
+int gmshViewAdd(const char *name, int tag, int *error) {
+  (void)name, (void)tag;
+  *error = n_view == MESH_SIZES;
+  return n_view;
+}
+
+void gmshViewAddListData(int tag, const char *kind, int n_elem, double *data,
+                         size_t n, int *error) {
+  double *own = malloc(n * sizeof *own);
+  *error = own == NULL;
+  if (own == NULL) return;
+  memcpy(own, data, n * sizeof *own);
+  mix_text(kind);
+  mix(own, n * sizeof *own);
+  vertices = n_elem > 0 ? (int)(n / 4 / (size_t)n_elem) : 0;
+  view[tag].data = own;
+  view[tag].n = n;
+  ++n_view;
+}
+
+int gmshModelMeshFieldAdd(const char *kind, int tag, int *error) {
+  (void)kind, (void)tag;
+  *error = 0;
+  return 0;
+}
+
+void gmshModelMeshFieldSetNumber(int tag, const char *option, double value,
+                                 int *error) {
+  (void)tag, (void)option, (void)value;
+  *error = 0;
+}
+
+void gmshModelMeshFieldSetNumbers(int tag, const char *option, double *values,
+                                  size_t n, int *error) {
+  (void)tag, (void)option, (void)values, (void)n;
+  *error = 0;
+}
+
+void gmshModelMeshFieldSetAsBackgroundMesh(int tag, int *error) {
+  (void)tag;
+  *error = 0;
+}
+
+/* The first call after what is to be meshed is known. */
 void gmshModelGetPhysicalGroups(void) {
   static char part[65536];
   char name[4096];
@@ -177,14 +274,17 @@ static void *ask(void *(*next)(const char *, int), int flags) {
   return NULL;
 }
 
-/* The reader loads libgmsh: here its work begins. */
+/* The reader loads libgmsh: here its work begins. What loads it for later
+ * readers does not need it. */
 void *dlopen(const char *file, int flags) {
   static void *(*next)(const char *, int);
   void *found = next == NULL ? real("dlopen") : NULL, *asked = NULL;
   if (found != NULL) memcpy(&next, &found, sizeof next);
-  if (file != NULL && kept != NULL && sink >= 0 &&
-      strncmp(file, "libgmsh", 7) == 0)
-    asked = ask(next, flags);
+  if (file != NULL && kept != NULL && strncmp(file, "libgmsh", 7) == 0) {
+    if (sink < 0 && strcmp(program_invocation_short_name, "protis") == 0)
+      return NULL;
+    if (sink >= 0) asked = ask(next, flags);
+  }
   return asked != NULL ? asked : next(file, flags);
 }
 

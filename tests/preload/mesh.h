@@ -22,6 +22,21 @@ void gmshLoggerStart(int *error);
 void gmshOptionSetNumber(const char *name, double value, int *error);
 /* gmshc.h: the file. */
 void gmshOpen(const char *name, int *error);
+/* gmshc.h: the mesh has sizes. */
+void gmshModelMeshRemoveConstraints(int *tags, size_t n, int *error);
+/* gmshc.h: an empty file. */
+void gmshWrite(const char *name, int *error);
+/* gmshc.h: the sizes; the other calls that set them do nothing. */
+void gmshViewAddListData(int tag, const char *kind, int n_elem, double *data,
+                         size_t n, int *error);
+void gmshClear(int *error);
+int gmshViewAdd(const char *name, int tag, int *error);
+int gmshModelMeshFieldAdd(const char *kind, int tag, int *error);
+void gmshModelMeshFieldSetNumber(int tag, const char *option, double value,
+                                 int *error);
+void gmshModelMeshFieldSetNumbers(int tag, const char *option, double *values,
+                                  size_t n, int *error);
+void gmshModelMeshFieldSetAsBackgroundMesh(int tag, int *error);
 /* gmshc.h: never returns; the stream is given out, or its name told. */
 void gmshModelGetPhysicalGroups(void);
 

@@ -4,9 +4,11 @@
  * by the reader's own code, into the file that mesh.c asks for.
  * usage: mesher FOLDER SOCKET     listens at SOCKET until its parent ends
  *
- * A request: the words key, folder of the program, file, then name and value of
- * each number, each ended by a zero byte. The answer: one byte, the file
- * FOLDER/key is there or will not be.
+ * A request: the words key, folder of the program, file, "p n v s", then name
+ * and value of each number, each ended by a zero byte. The answer: one byte,
+ * the file FOLDER/key is there or will not be. The n views of sizes are the
+ * files FOLDER/key-i.p, of elements with v vertices; s = 1: geometry of
+ * OpenCASCADE.
  */
 #include "mesh/raw.h"
 
@@ -16,11 +18,12 @@
 #include <string.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MOST = 1 << 16, NUMBERS = 100, HEAD = 3 };
+enum { MOST = 1 << 16, NUMBERS = 100, HEAD = 4 };
 
 /* The words of the request; their number, 0: it is none. */
 static int receive(int fd, char text[MOST], char *words[HEAD + 2 * NUMBERS]) {
@@ -34,18 +37,54 @@ static int receive(int fd, char text[MOST], char *words[HEAD + 2 * NUMBERS]) {
   return n >= HEAD && (n - HEAD) % 2 == 0 ? n : 0;
 }
 
-static void make(const char *part, int n, char *const *words) {
+/* The sizes of a view: a mesh in which no elements share a node. */
+static int take_view(const char *name, int vertices, mesh_sizes *sizes) {
+  struct stat is;
+  const int fd = open(name, O_RDONLY);
+  if (fd < 0 || fstat(fd, &is) != 0 || is.st_size == 0) return 0;
+  const size_t n = (size_t)is.st_size / sizeof(double) / 4;
+  double *data = malloc(4 * n * sizeof *data), *at = malloc(n * sizeof *at);
+  mesh *m = calloc(1, sizeof *m);
+  m->dim = vertices - 1;
+  m->n_elem = (int)n / vertices;
+  m->elem = malloc(n * sizeof *m->elem);
+  m->x = malloc(n * m->dim * sizeof *m->x);
+  if (read(fd, data, 4 * n * sizeof *data) < is.st_size) return 0;
+  for (int k = 0; k < (int)n; ++k) {
+    const double *of = data + 4 * vertices * (k / vertices) + k % vertices;
+    for (int i = 0; i < m->dim; ++i) m->x[m->dim * k + i] = of[i * vertices];
+    m->z = of[2 * vertices];
+    at[k] = of[3 * vertices];
+    m->elem[k] = k;
+  }
+  *sizes = (mesh_sizes){m, at};
+  close(fd);
+  unlink(name);
+  free(data);
+  return 1;
+}
+
+static void make(const char *whole, const char *part, int n,
+                 char *const *words) {
   mesh_number numbers[NUMBERS];
   mesh_source source = {
       .file = words[2], .scale = 1.0, .n_number = (n - HEAD) / 2};
+  int pid, n_view, vertices, is_solid;
+  char view[4300];
   source.numbers = numbers;
   for (int i = 0; i < source.n_number; ++i)
     numbers[i] = (mesh_number){words[HEAD + 2 * i],
                                strtod(words[HEAD + 2 * i + 1], NULL), 0};
+  if (sscanf(words[3], "%d %d %d %d", &pid, &n_view, &vertices, &is_solid) != 4)
+    _exit(1);
+  for (int i = 0; i < n_view; ++i) {
+    snprintf(view, sizeof view, "%s-%d.%d", whole, i, pid);
+    if (!take_view(view, vertices, &source.sizes[i])) _exit(1);
+  }
   const int to = open(part, O_WRONLY | O_CREAT | O_TRUNC, 0666);
   const int nothing = open("/dev/null", O_WRONLY);
   if (to < 0 || nothing < 0 || chdir(words[1]) != 0) _exit(1);
-  child_run(&(raw_request){&source, 0}, to, nothing);
+  child_run(&(raw_request){&source, is_solid}, to, nothing);
 }
 
 /* 1: the stream has a mesh. What fails is left to the program, whose messages
@@ -67,7 +106,7 @@ static void serve(const char *folder, int fd) {
     snprintf(whole, sizeof whole, "%s/%s", folder, words[0]);
     snprintf(part, sizeof part, "%s.%d", whole, (int)getpid());
     const pid_t pid = fork();
-    if (pid == 0) make(part, n, words);
+    if (pid == 0) make(whole, part, n, words);
     if (pid > 0 && waitpid(pid, &code, 0) == pid && code == 0 && is_mesh(part))
       rename(part, whole);
     else

@@ -114,6 +114,9 @@ static void check_order(const mesh *m) {
     ck_assert_double_gt(mesh_elem_measure(m, e), 0.0);
 }
 
+/* Once for all tests, which are processes of their own. */
+__attribute__((constructor)) static void load(void) { mesh_gmsh_load(); }
+
 START_TEST(disc_in_frame_has_its_areas_normals_and_groups) {
   mesh_file f;
   mesh_file_open(&f);
@@ -183,7 +186,6 @@ END_TEST
 
 /* gmsh itself writes the other formats, from the very mesh it made. */
 static void check_formats(const char *geo) {
-  mesh_gmsh_load();
   static const char *const name[] = {"a22.msh", "b22.msh", "a41.msh",
                                      "b41.msh"};
   static char text[8192];
@@ -220,7 +222,6 @@ START_TEST(all_formats_give_the_same_mesh_3d) { check_formats(cubes_geo); }
 END_TEST
 
 START_TEST(meshing_twice_gives_the_same_bytes) {
-  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   const mesh_number n = {"N", 7.0, 0};
@@ -267,7 +268,6 @@ END_TEST
 
 /* Sizes 0.05 in the quarter x, y < 0, 0.5 elsewhere, lengths scaled by 10. */
 START_TEST(sizes_reach_the_geometry) {
-  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "d.geo", disc_geo, strlen(disc_geo));
@@ -307,7 +307,6 @@ START_TEST(sizes_reach_the_geometry) {
 END_TEST
 
 START_TEST(scale_by_a_power_of_two_changes_no_digit) {
-  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   mesh_file_write(&f, "c.geo", cubes_geo, strlen(cubes_geo));
@@ -499,7 +498,6 @@ static const char small_msh[] =
 
 /* Parent and child go on counting: each request is refused on one side. */
 START_TEST(reader_gives_back_all_when_refused) {
-  mesh_gmsh_load();
   static const char merge[] = "Merge \"m.msh\";\n";
   mesh_file f;
   mesh_file_open(&f);

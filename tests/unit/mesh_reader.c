@@ -15,6 +15,9 @@
 static const char good_msh[] = MSH(BODY, SQUARE, "2\n" TWO);
 
 /* gmsh reads nothing after a failure in the same process. */
+/* Once for all tests, which are processes of their own. */
+__attribute__((constructor)) static void load(void) { mesh_gmsh_load(); }
+
 START_TEST(good_file_is_read_after_bad_ones) {
   mesh_file f;
   mesh_file_open(&f);
@@ -34,7 +37,6 @@ END_TEST
 
 /* SystemCall runs a shell below gmsh: its parent is the reader. */
 START_TEST(reader_that_dies_is_told) {
-  mesh_gmsh_load();
   static const struct {
     const char *geo, *text;
     status answer;
@@ -114,7 +116,6 @@ static void on_alarm(int signal) { (void)signal; }
 /* Signals that the program handles must not break the reading, and what is
  * ignored by the program (SIGCHLD) must not lose the mesh. */
 START_TEST(signals_do_not_disturb) {
-  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   struct sigaction often = {.sa_handler = on_alarm}; /* no SA_RESTART */
@@ -215,7 +216,6 @@ END_TEST
 
 /* What gmsh prints does not reach the user. */
 START_TEST(nothing_is_printed) {
-  mesh_gmsh_load();
   mesh_file f;
   mesh_file_open(&f);
   fflush(NULL);
@@ -276,7 +276,6 @@ END_TEST
 
 /* gmsh executes the options files of merged files, however they are named. */
 START_TEST(options_of_merged_files_are_refused) {
-  mesh_gmsh_load();
   static const char *const ways[] = {"Include \"in.geo\";", "Merge \"in.geo\";",
                                      "Merge StrCat(\"in\", \".geo\");"};
   mesh_file f;
