@@ -65,6 +65,12 @@ START_TEST(reader_that_dies_is_told) {
       mesh_file_text(&f, "killed.geo", "SystemCall \"kill -KILL $PPID\";\n"));
   ck_assert_int_eq(f.answer, ERR_MEMORY);
   ck_assert_ptr_nonnull(strstr(status_message(), "gmsh was killed"));
+  /* what its scanner says before it exits */
+  ck_assert_ptr_null(mesh_file_text(
+      &f, "scanner.geo",
+      "Error(\"out of dynamic memory in gmsh_yy_create_buffer()\"); Exit;\n"));
+  ck_assert_int_eq(f.answer, ERR_MEMORY);
+  ck_assert_ptr_nonnull(strstr(status_message(), "gmsh ran out of memory"));
   mesh_file_close(&f);
 }
 END_TEST
