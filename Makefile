@@ -352,7 +352,8 @@ bench-run: $(program) $(bench)
 # Programs of tests/verify print tables: found and expected.
 .PHONY: verify
 verify: $(program) $(verify)
-	$(Q)for v in $(verify); do PROTIS=$(abspath $(program)) $$v || exit 1; done
+	$(Q)for v in $(verify); do PROTIS=$(abspath $(program)) CK_TIMEOUT_MULTIPLIER=10 \
+	  $$v || exit 1; done
 
 # What is off costs nothing: instructions counted by valgrind.
 .PHONY: effects-cost
