@@ -98,7 +98,7 @@ const char *nearest_word(const char *word,
                          const void *ctx) {
   int n = (int)strnlen(word, WORD_MAX + 1), best = 2 + n / 4;
   const char *found = NULL, *longer = NULL, *candidate;
-  if (n == 0 || n > WORD_MAX) return NULL;
+  if (n > WORD_MAX) return NULL;
   if (best > n) best = n; /* something of the word must remain */
   for (int i = 0; (candidate = next(ctx, i)) != NULL; ++i) {
     int m = (int)strnlen(candidate, WORD_MAX + 1);

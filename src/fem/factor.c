@@ -499,7 +499,7 @@ static double largest_row_sum(const stiffness *k, const body_factor *f,
   for (int q = 0; q < f->n_own; ++q) {
     const int j = f->node[q];
     for (size_t p = k->start[j]; p < k->start[j + 1]; ++p)
-      if (k->free[k->row[p]] != 0) add_magnitudes(k, p, j, root, sum);
+      add_magnitudes(k, p, j, root, sum);
   }
   for (long p = 0; p < f->n; ++p) most = fmax(most, sum[f->unknown[p]]);
   return 1 + scale * most;

@@ -413,7 +413,6 @@ status output_close(output *o, status run, int unsettled) {
   first_of(&kept, message, sizeof message, text_close(&o->cvg));
   first_of(&kept, message, sizeof message, text_close(&o->sta));
   o->run.message = message;
-  o->run.verdict = verdict_of(kept, unsettled);
   first_of(&kept, message, sizeof message, listing_summary(&o->job, &o->lst));
   o->run.verdict = verdict_of(kept, unsettled);
   first_of(&kept, message, sizeof message, write_json(o));

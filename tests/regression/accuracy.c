@@ -125,6 +125,17 @@ static void must_say(const job *j, const char *suffix, const char *text) {
   free(all);
 }
 
+/* The first step has no bound, so those after it have none. */
+START_TEST(no_error_is_told_after_one_that_is_not_known) {
+  job j = run_steps("COULOMB\n0.3",
+                    "METHOD=NEWTON\n*ACCURACY, SOLVER=NO\n*END STEP\n"
+                    "*STEP\n*QUASISTATIC\n1., 1.\n*ACCURACY");
+  ck_assert(isnan(told_error(&j)));
+  must_say(&j, "lst", "no bound, an increment before this one has none");
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(error_stands_in_every_result) {
   job j = run_block("COULOMB\n0.3", supports[0], "METHOD=NEWTON");
   must_say(&j, "lst", "  error of the solver: at most ");
@@ -206,6 +217,7 @@ START_TEST(strain_that_is_left_has_the_bound_of_the_solver) {
 END_TEST
 
 UNIT_MAIN("accuracy", told_error_bounds_the_true_one,
-          told_error_has_the_increments_before, error_stands_in_every_result,
-          not_asked_for_not_computed,
+          told_error_has_the_increments_before,
+          no_error_is_told_after_one_that_is_not_known,
+          error_stands_in_every_result, not_asked_for_not_computed,
           strain_that_is_left_has_the_bound_of_the_solver)

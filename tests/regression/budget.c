@@ -354,6 +354,16 @@ START_TEST(budget_stands_in_every_result) {
   char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
   ck_assert_ptr_nonnull(strstr(lst, "  error of the mesh: about "));
   ck_assert_ptr_nonnull(strstr(lst, "  error of the steps: about "));
+  /* Two times behind two errors, each under its heading. */
+  const char *table = strstr(lst, "\n  error in the energy norm ");
+  double value[4];
+  ck_assert_ptr_nonnull(table);
+  const size_t width = strcspn(table + 1, "\n");
+  const char *row = table + width + 2;
+  ck_assert_uint_eq(strcspn(row, "\n"), width);
+  ck_assert_int_eq(sscanf(row + 28, "%lf %lf %lf %lf", &value[0], &value[1],
+                          &value[2], &value[3]),
+                   4);
   ck_assert_ptr_nonnull(strstr(json, "\"mesh_error_worst_percent\": "));
   ck_assert_ptr_nonnull(strstr(json, "\"time_error_estimate_cpu\": "));
   /* The shares of the elements make up the error. */

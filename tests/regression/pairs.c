@@ -537,6 +537,11 @@ START_TEST(adjusted_nodes_are_on_the_master) {
             "*PRINT, CONTACT\n*END STEP\n");
   int code = job_run(&j, "--no-timing");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  char *lst = job_file(&j, "lst"), *pair = strstr(lst, " slave SEAT (");
+  ck_assert_ptr_nonnull(pair);
+  pair = strstr(pair, "), master BORE, nodes moved by up to 0.0");
+  ck_assert_ptr_nonnull(pair);
+  free(lst);
   dat c = job_table(&j, "CONTACT", -1);
   ck_assert_int_eq(c.n_row, 9);
   for (int i = 0; i < c.n_row; ++i)

@@ -119,6 +119,30 @@ START_TEST(long_surface_costs_its_nodes_within_reach) {
 }
 END_TEST
 
+/* A thin body under thin loads moves as a thick one. */
+START_TEST(nodes_within_reach_are_those_of_any_thickness) {
+  double n[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("cylinder");
+    block_file_write(&j, (int[]){80, 10}, (double[]){80.0, 20.0}, 0);
+    job_write(
+        &j, "cylinder.inp",
+        "*MESH, FILE=block.msh\n*SOLID SECTION, ELSET=BODY, MATERIAL=M, "
+        "TYPE=CPE3, THICKNESS=%s\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+        "*OBSTACLE, NAME=O, TYPE=CYLINDER, RADIUS=100.\n40., -100.\n"
+        "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O, NORMAL=OBSTACLE\n"
+        "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\n*DSLOAD\n"
+        "CONTACT, P, -2.\n*END STEP\n",
+        k == 0 ? "1." : "1E-6");
+    ck_assert_int_eq(job_run(&j, ""), 0);
+    n[k] = job_told(&j, "contact_unknowns");
+    job_end(&j);
+  }
+  ck_assert_double_lt(n[0], 81.0);
+  ck_assert_double_eq(n[1], n[0]);
+}
+END_TEST
+
 /* Also what rubs where it touches. */
 START_TEST(rough_surface_costs_its_nodes_within_reach) {
   check_cylinder(rough, 2.0);
@@ -295,6 +319,7 @@ START_TEST(rough_run_goes_on_bit_for_bit) { check_going_on(rough, 1); }
 END_TEST
 
 UNIT_MAIN("reach", long_surface_costs_its_nodes_within_reach,
+          nodes_within_reach_are_those_of_any_thickness,
           rough_surface_costs_its_nodes_within_reach,
           nodes_that_reach_are_taken_in_a_second_pass,
           rough_nodes_that_reach_are_taken_too,

@@ -219,6 +219,17 @@ START_TEST(a_restart_at_the_end_loses_no_line) {
     free(again);
     free(text[k]);
   }
+  setenv("OPENBLAS_CORETYPE", "Prescott", 1); /* the oldest there is */
+  ck_assert_int_eq(job_run(&j, "--no-timing --restart --threads 2"), 0);
+  ck_assert_ptr_nonnull(strstr(j.errors, "started with 1 thread and kernel "));
+  char *json = job_file(&j, "json"), kernel[40], now[120];
+  static const char key[] = "\"blas_kernel\": \"";
+  ck_assert_int_eq(sscanf(strstr(json, key) + strlen(key), "%39[^\"]", kernel),
+                   1);
+  snprintf(now, sizeof now, ", this is 2 and %s: last digits may differ\n",
+           kernel);
+  ck_assert_ptr_nonnull(strstr(j.errors, now));
+  free(json);
   job_end(&j);
 }
 END_TEST

@@ -99,6 +99,9 @@ START_TEST(clusters_part_their_sections_and_hang_together) {
     }
     ck_assert_double_eq_tol(weight, 1, 1e-14);
     ck_assert_double_eq(c->share[k], share[section]);
+    for (int i = c->first[k]; i < c->first[k + 1]; ++i) /* each of them once */
+      for (int j = c->first[k]; j < i; ++j)
+        ck_assert_int_ne(c->node[i], c->node[j]);
     ck_assert(_i % 2 || hangs_together(m, c, k));
   }
   memory_free(c);

@@ -48,6 +48,18 @@ static void expect(const char *name, int n, const double *value) {
   expect(name, (int)(sizeof(double[]){__VA_ARGS__} / sizeof(double)), \
          (double[]){__VA_ARGS__})
 
+static void expect_text(const char *name, const char *text) {
+  char is[80] = "";
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set);
+  ck_assert_uint_eq(H5Tget_size(type), strlen(text) + 1);
+  ck_assert(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, is) >= 0);
+  ck_assert_str_eq(is, text);
+  H5Tclose(type);
+  H5Dclose(set);
+  H5Fclose(file);
+}
+
 /* u_n = W_n (8 + r_n): gap left 0.5 - 2 = -1.5 without force. */
 START_TEST(signs_are_those_of_the_layout) {
   enter();
@@ -66,6 +78,8 @@ START_TEST(signs_are_those_of_the_layout) {
   EXPECT("/fclib_local/vectors/mu", 0.3);
   EXPECT("/solution/u", 0, 0.5);
   EXPECT("/solution/r", 6, -1.5);
+  expect_text("/fclib_local/info/title", "title");
+  expect_text("/fclib_local/info/description", "about");
   case_free(&c);
   leave();
 }

@@ -300,6 +300,14 @@ START_TEST(nodes_covered_by_less_than_a_hundredth_are_left_out) {
     check_line_forces(&p, m, 0, p.m.x[2 * 15]);
     /* The node left out is among the masters of its neighbour. */
     ck_assert_int_eq(part_of(m, 2, 3) < -1e-4, !above);
+    double masters = 0; /* their sizes over the covered part */
+    for (int i = 0; i < p.in.n_master; ++i) {
+      const int *v = p.m.face + 2 * p.master[i];
+      const double to = p.m.x[2 * v[0]], from = p.m.x[2 * v[1]];
+      masters += fmax(0, to - fmax(from, 0)) * (to - from);
+    }
+    ck_assert_double_eq_tol(m->size_ratio, masters / (0.2 * p.m.x[2 * 15]),
+                            1e-12);
     memory_free(m);
     two_free(&p);
   }

@@ -247,6 +247,7 @@ START_TEST(damaged_bytes_take_no_memory) {
 END_TEST
 
 /* clang-format off */
+#define DIGITS_40 "1234567890123456789012345678901234567890"
 static const struct { const char *from, *to, *message; } damages[] = {
   {"4\n1 0 0 0", "5\n1 0 0 0", ":16: \"$EndNodes\" where a whole number"},
   {"4\n1 0 0 0", "3\n1 0 0 0", ":15: \"4\" where $EndNodes"},
@@ -257,6 +258,8 @@ static const struct { const char *from, *to, *message; } damages[] = {
   {"1 0 0 0", "1 0 0 1e", ":12: \"1e\" where a number is expected"},
   {"1 0 0 0", "1 0 0 1,5", ":12: \"1,5\" where a number is expected"},
   {"1 0 0 0", "1 0 0 1.5+3", ":12: \"1.5+3\" where a number is expected"},
+  {"1 0 0 0", "1 0 0 " DIGITS_40 DIGITS_40 DIGITS_40 "12345678",
+   ":12: \"123456789012345678901234\" where a number of fewer digits"},
   {"1 0 0 0", "1.0 0 0 0", ":12: \"1.0\" where a whole number"},
   {"1 0 0 0", "0 0 0 0", ":12: a number is not above zero"},
   {"4\n1 0 0 0", "1000000000000000000\n1 0 0 0",

@@ -188,6 +188,7 @@ END_TEST
 START_TEST(exchanged_letters_count_once) {
   static const char *const words[] = {"ABXY", "ABCD", NULL};
   ck_assert_str_eq(nearest_word("ABDC", next_card, words), "ABCD");
+  ck_assert_ptr_null(nearest_word("", next_card, words));
 }
 END_TEST
 

@@ -1,5 +1,6 @@
 /* src/output: all files of a made-up run, and what happens when one fails. */
 #include "output/output.h"
+#include "output/hdf5/hdf5.h"
 
 #include "base/base.h"
 #include "output/writers.h"
@@ -383,6 +384,48 @@ START_TEST(xdmf_names_every_record_of_its_file) {
 }
 END_TEST
 
+/* The grid of the contact surface as the format has it, in the plane and in
+ * 3-D; its nodes alone where every neighbour of it was left out. */
+START_TEST(xdmf_names_the_cells_of_the_contact) {
+#define ITEM "<DataItem Format=\"HDF\" NumberType="
+#define INTS ITEM "\"Int\" Precision=\"4\" Dimensions="
+  static const struct {
+    int faces, corners;
+    const char *text;
+  } surface[] = {
+      {0, 2,
+       "Polyvertex\" NumberOfElements=\"5\" NodesPerElement=\"1\">" INTS
+       "\"5\">a.h5:/contact/index"},
+      {4, 2,
+       "Polyline\" NumberOfElements=\"4\" NodesPerElement=\"2\">" INTS
+       "\"4 2\">a.h5:/contact/faces"},
+      {6, 3,
+       "Triangle\" NumberOfElements=\"6\">" INTS
+       "\"6 3\">a.h5:/contact/faces"}};
+  const double time = 0.5;
+  char dir[64], path[96], want[600];
+  folder_new(dir);
+  snprintf(path, sizeof path, "%s/a.xdmf", dir);
+  for (int k = 0; k < 3; ++k) {
+    const hdf5_shape shape = {
+        "out/a.h5",         9, 7, 4,    5,    surface[k].faces,
+        surface[k].corners, 0, 1, NULL, &time};
+    ck_assert_int_eq(xdmf_write(&shape, path), OK);
+    char *text = folder_file(dir, "a.xdmf", NULL);
+    snprintf(want, sizeof want,
+             "<Topology TopologyType=\"%s</DataItem>\n</Topology>\n"
+             "<Geometry GeometryType=\"XYZ\">" ITEM
+             "\"Float\" Precision=\"8\" Dimensions=\"5 3\">"
+             "a.h5:/contact/points</DataItem>\n</Geometry>\n</Grid>\n",
+             surface[k].text);
+    ck_assert_msg(strstr(text, want) != NULL, "%s\nhas no\n%s", text, want);
+    ck_assert_ptr_nonnull(strstr(text, "<Time Value=\""));
+    free(text);
+  }
+  folder_remove(dir);
+}
+END_TEST
+
 START_TEST(files_of_an_earlier_run_do_not_stay) {
   char dir[64];
   folder_new(dir);
@@ -684,19 +727,17 @@ START_TEST(reasons_of_stopping_are_told_apart) {
 }
 END_TEST
 
-UNIT_MAIN("output", two_runs_give_the_same_bytes,
-          status_file_has_a_line_per_attempt,
-          header_of_the_status_file_stands_over_its_columns,
-          unsettled_increment_is_seen_everywhere,
-          reasons_of_stopping_are_told_apart,
-          json_is_valid_whatever_the_texts_and_numbers,
-          json_tells_what_was_left_out, cost_is_shown_unless_left_out,
-          xdmf_names_every_record_of_its_file,
-          files_of_an_earlier_run_do_not_stay,
-          run_that_never_became_ready_has_a_verdict,
-          full_disk_of_any_text_file_is_told_and_the_others_are_kept,
-          full_disk_at_the_end_is_told, files_made_aside_are_told,
-          folder_that_cannot_be_written_is_told,
-          every_refused_request_is_told_and_leaves_nothing,
-          output_changes_nothing_it_is_given, progress_foresees_the_time_left,
-          no_progress_line_where_there_is_no_terminal)
+UNIT_MAIN(
+    "output", two_runs_give_the_same_bytes, status_file_has_a_line_per_attempt,
+    header_of_the_status_file_stands_over_its_columns,
+    unsettled_increment_is_seen_everywhere, reasons_of_stopping_are_told_apart,
+    json_is_valid_whatever_the_texts_and_numbers, json_tells_what_was_left_out,
+    cost_is_shown_unless_left_out, xdmf_names_every_record_of_its_file,
+    xdmf_names_the_cells_of_the_contact, files_of_an_earlier_run_do_not_stay,
+    run_that_never_became_ready_has_a_verdict,
+    full_disk_of_any_text_file_is_told_and_the_others_are_kept,
+    full_disk_at_the_end_is_told, files_made_aside_are_told,
+    folder_that_cannot_be_written_is_told,
+    every_refused_request_is_told_and_leaves_nothing,
+    output_changes_nothing_it_is_given, progress_foresees_the_time_left,
+    no_progress_line_where_there_is_no_terminal)

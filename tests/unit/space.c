@@ -420,11 +420,12 @@ START_TEST(stress_jumps_between_unlike_sections) {
 }
 END_TEST
 
-/* Sections of one material and elements whose moduli follow their temperature
- * are of the region of their material. */
+/* Sections of one material, one of moduli that another one has, and elements
+ * whose moduli follow their temperature are of the region of their material. */
 START_TEST(regions_are_those_of_the_materials) {
-  static const int origin[] = {0, 1, 2, 3, 2, 3, 1},
-                   wanted[] = {0, 0, 1, 2, 1, 2, 0};
+  static const int origin[] = {0, 1, 2, 3, 2, 3, 1, 7},
+                   wanted[] = {0, 0, 1, 2, 1, 2, 0, 1},
+                   factor[] = {1, 1, 2, 1, 7, 8, 9, 2};
   enum { SECTIONS = sizeof origin / sizeof *origin };
   scene *s =
       scene_new(make_grid_2d((int[]){4, 4}, (double[]){1, 1}), PLANE_STRAIN, 3);
@@ -435,8 +436,7 @@ START_TEST(regions_are_those_of_the_materials) {
     kin[k] = PLANE_STRAIN;
     thickness[k] = origin[k] == 3 ? 2 : 1;
     memcpy(C + 36 * k, s->C, 36 * sizeof *C);
-    for (int i = 0; i < 16; ++i)
-      E[16 * k + i] = s->E[i] * (k > 3 ? 3 + k : origin[k] == 2 ? 2 : 1);
+    for (int i = 0; i < 16; ++i) E[16 * k + i] = s->E[i] * factor[k];
   }
   s->d.E = E;
   s->d.C = C;

@@ -316,8 +316,14 @@ START_TEST(wrong_answers_violate_the_bounds) {
   contact_case c = case_any(2, 5, 0.05, 0, 61);
   looker l;
   look_at(&l, &c, 0.05);
+  for (int i = 0; i < 5; ++i) c.ut0[i] = 0.0;
   solve(&c);
   ck_assert_int_eq(look(&l)->violated, 0);
+  /* From nothing the change is the whole. */
+  ck_assert_double_eq_tol(l.rep.change.left, l.rep.total.left,
+                          1e-12 * l.rep.total.left);
+  ck_assert_double_eq_tol(l.rep.change.right, l.rep.total.right,
+                          1e-12 * l.rep.total.right);
   double far = 1.1 * l.rep.total.right / l.rep.total.left;
   for (int i = 0; i < 5; ++i) c.ut0[i] = c.u[2 * i + 1];
   ck_assert_int_eq(look(&l)->change.violated, 0); /* nothing has changed */

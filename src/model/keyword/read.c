@@ -235,7 +235,6 @@ static status read_card(reading *r) {
     return OK;
   }
   keyword_parameters(row, r, &param, plugin_param);
-  r->lost |= r->misread;
   /* A card that has no lines means the same with some. */
   if (right_lines(r, row) || row->max_line == 0)
     PASS(row->apply(r));
