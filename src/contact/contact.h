@@ -65,6 +65,8 @@ typedef struct contact_problem {
   int floating; /* A is singular: contact alone holds the body */
   double load;  /* N, final size of the loads: forces below its rounding are
                    zero (contact_scale); 0: not known */
+  double moved; /* m, of the last equilibrium: a body that floats may be as
+                   far from its place at time 0; 0: not known */
 } contact_problem;
 
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;

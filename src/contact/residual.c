@@ -187,12 +187,12 @@ static double largest_of(int n, const double *v) {
   return most;
 }
 
-/* Bound of the motion by loads and obstacles: displacements that drift off and
- * forces that grow without bound are no solution, however large their rounding
- * is. */
+/* Bound of the motion by loads, obstacles and where it was: displacements that
+ * drift off and forces that grow without bound are no solution, however large
+ * their rounding is. */
 static double reach_of(const measure *x, int node_id, double k) {
   const contact_problem *cp = x->cp;
-  double force = 0.0, position = 0.0;
+  double force = 0.0, position = cp->moved;
   if (!contact_has_stiffness(cp)) return LEVER * x->scale * sqrt(k);
   if (!cp->floating) return HUGE_VAL;
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i) {

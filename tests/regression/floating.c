@@ -335,6 +335,31 @@ START_TEST(body_that_is_left_stays_where_it_was) {
 }
 END_TEST
 
+/* So it is where a floor has lifted it and sinks back to its first place. */
+START_TEST(body_that_a_floor_has_lifted_stays) {
+  static const char *const methods[] = {"AUTO",     "NEWTON",   "SOR",   "PCG",
+                                        "LAGRANGE", "PROXIMAL", "AUGLAG"};
+  job j = job_begin("lifted");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "lifted.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "MOVE, 0., \"0.1*sin(pi*t)\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*SOLVER, METHOD=%s\n"
+            "*PRINT, NODES\n*END STEP\n",
+            methods[_i]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s: %s", methods[_i], j.errors);
+  dat d = job_table(&j, "NODES", -1);
+  for (int i = 0; i < d.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&d, i, "u_y"), 0.1, 1e-12);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
 /* The same under a block that is pressed down and lifted, of either side. */
 START_TEST(body_under_another_that_is_lifted_stays) {
   static const char *const sides[] = {"TOP 1, BOTTOM 2", "BOTTOM 2, TOP 1"};
@@ -574,6 +599,7 @@ int main(void) {
   tcase_add_test(tests, free_motions_are_named);
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
   tcase_add_test(tests, body_that_is_left_stays_where_it_was);
+  tcase_add_loop_test(tests, body_that_a_floor_has_lifted_stays, 0, 7);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);
   tcase_add_test(tests, block_between_others_slides_away);
   tcase_add_test(tests, touch_without_force_is_open);
