@@ -360,6 +360,26 @@ START_TEST(body_that_a_floor_has_lifted_stays) {
 }
 END_TEST
 
+/* sin(pi) is rounding: what it presses on a belt is no load. */
+START_TEST(load_that_ends_as_rounding_is_settled) {
+  job j = job_begin("belt");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "belt.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=%s\nMOVE, 0.01, 0.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"sin(pi*t)\"\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 1., A\n"
+            "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
+            "*DSLOAD, OP=NEW\nTOP, P, 0.\n*PRINT, TOTALS\n*END STEP\n",
+            _i == 0 ? "CONFORMING" : "SPHERE, RADIUS=100.\n0.5, -100.");
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /* The same under a block that is pressed down and lifted, of either side. */
 START_TEST(body_under_another_that_is_lifted_stays) {
   static const char *const sides[] = {"TOP 1, BOTTOM 2", "BOTTOM 2, TOP 1"};
@@ -600,6 +620,7 @@ int main(void) {
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
   tcase_add_test(tests, body_that_is_left_stays_where_it_was);
   tcase_add_loop_test(tests, body_that_a_floor_has_lifted_stays, 0, 7);
+  tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);
   tcase_add_test(tests, block_between_others_slides_away);
   tcase_add_test(tests, touch_without_force_is_open);
