@@ -46,21 +46,13 @@ static double bound_of_strains(const run *r, double energy) {
   return scale > 0.0 ? sqrt(energy / scale) : 0.0;
 }
 
-/* 1: contact carries the loads straight, and strains are no more than what the
- * solver may have left. */
-static int is_left_by_solver(const run *r) {
-  const error_bound *e = &r->errors.error;
-  return r->errors.carried && !r->errors.strained && e->asked &&
-         e->why == NULL && r->now.energy.strain <= e->energy;
-}
-
 /* Those of an unloaded body, whose state is rounding, are relative to the
  * largest energy so far; a body in free motion has none. Inelastic strains that
  * are left have the errors of the increments before. */
 static void estimate_unloaded(run *r) {
   energies *e = &r->now.energy;
   r->errors.left = 1.0;
-  if (rounding_is_all(r) || is_left_by_solver(r)) {
+  if (rounding_is_all(r)) {
     take_left(r, 0.0);
     if (r->errors.error.why == NULL)
       r->errors.error.relative = bound_of_strains(r, r->errors.error.energy);

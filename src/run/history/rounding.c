@@ -157,11 +157,14 @@ static double largest_force(const run *r) {
 }
 
 /* What the rounding of the forces stores, and what the solver has left at the
- * contact nodes, J. */
+ * contact nodes, J: at the stiffest node, or at any where nothing but that is
+ * left of them. */
 static double forces_energy(const run *r) {
   const double force = largest_force(r), rounding = RUN_CARRIED * force,
-               left = r->solving.report.residual * force;
-  return (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
+               left = r->solving.report.residual * force,
+               soft = r->errors.carried ? condensed_condition(r->c) : 1.0;
+  return soft *
+         (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
          condensed_stiffest(r->c);
 }
 
@@ -239,12 +242,12 @@ static status find_error(const run *r, misfit *x, double *square) {
 static status find_carried(run *r) {
   const double most = fmax(increment_free_load(r, r->now.F),
                            largest_entry(r->nodes.n_c, r->now.rc)),
-               part = fmax(RUN_CARRIED, r->solving.report.residual),
+               part = RUN_CARRIED + r->solving.report.residual,
                moved = condensed_stiffest(r->c) * strains_lost(r);
   OWNED_NEW(double, left, r->n_dof);
   COPY(left, r->now.F, r->n_dof);
   if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, left);
-  r->errors.carried = 1;
+  r->errors.carried = !r->errors.strained;
   for (size_t q = 0; q < r->n_dof; ++q) {
     const double rest = fabs(left[q]), by = fabs(r->now.F[q]);
     if (r->body.fixed[q] || rest <= part * most) continue;
