@@ -26,6 +26,8 @@ typedef struct body_size {
                           moved, N */
   double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
   double reach;        /* the same of positions that follow from the data */
+  double root;         /* largest sqrt(k), sqrt(N/m) */
+  double position;     /* largest bound, or place of stick, m */
 } body_size;
 typedef struct contact_bodies {
   int n;

@@ -360,6 +360,29 @@ START_TEST(body_that_a_floor_has_lifted_stays) {
 }
 END_TEST
 
+/* Pushed out of the floor where one node is inside it: without a force, to any
+ * tolerance. */
+START_TEST(body_pushed_out_of_its_floor_has_no_force) {
+  static const char *const gaps[] = {"-1E-3*(x > 0.9)", "0 - 1E-3*x^8",
+                                     "0 - 27E-5*x^2"};
+  job j = job_begin("inside");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "inside.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, %s\n"
+            "*INELASTIC, LAW=MAXWELL\n1.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n"
+            "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 0.3\n"
+            "*SOLVER, TOL=1E-12\n*PRINT, TOTALS\n*END STEP\n",
+            _i < 3 ? "0.3" : "0.49", gaps[_i % 3]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /* A load that ends 16 digits below its peak is none on a belt. */
 START_TEST(load_that_ends_as_rounding_is_settled) {
   job j = job_begin("belt");
@@ -644,6 +667,7 @@ int main(void) {
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
   tcase_add_test(tests, body_that_is_left_stays_where_it_was);
   tcase_add_loop_test(tests, body_that_a_floor_has_lifted_stays, 0, 7);
+  tcase_add_loop_test(tests, body_pushed_out_of_its_floor_has_no_force, 0, 6);
   tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
   tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
                       0, 12);
