@@ -26,6 +26,8 @@ typedef struct body_size {
                           moved, N */
   double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
   double reach;        /* the same of positions that follow from the data */
+  double root;         /* largest sqrt(k), sqrt(N/m) */
+  double position;     /* largest bound, or place of stick, m */
 } body_size;
 typedef struct contact_bodies {
   int n;
@@ -65,6 +67,8 @@ typedef struct contact_problem {
   int floating; /* A is singular: contact alone holds the body */
   double load;  /* N, final size of the loads: forces below its rounding are
                    zero (contact_scale); 0: not known */
+  double moved; /* m, of the last equilibrium: a body that floats may be as
+                   far from its place at time 0; 0: not known */
 } contact_problem;
 
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;

@@ -187,20 +187,22 @@ static double largest_of(int n, const double *v) {
   return most;
 }
 
-/* Bound of the motion by loads and obstacles: displacements that drift off and
- * forces that grow without bound are no solution, however large their rounding
- * is. */
-static double reach_of(const measure *x, int node_id, double k) {
+/* Bound of the motion by loads, obstacles and where it was: displacements that
+ * drift off and forces that grow without bound are no solution, however large
+ * their rounding is. */
+static double reach_of(const measure *x, int node_id, double k,
+                       double *position) {
   const contact_problem *cp = x->cp;
-  double force = 0.0, position = 0.0;
+  double force = 0.0;
   if (!contact_has_stiffness(cp)) return LEVER * x->scale * sqrt(k);
   if (!cp->floating) return HUGE_VAL;
+  *position = larger(*position, cp->moved);
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i) {
     double bound = contact_bound(cp, i), stick = contact_stick(cp, i);
     force = larger(force, fabs(cp->f[i]));
-    position = larger(position, bound < HUGE_VAL ? fabs(bound) : fabs(stick));
+    *position = larger(*position, fabs(bound < HUGE_VAL ? bound : stick));
   }
-  return larger(LEVER * force / sqrt(k), sqrt(k) * position);
+  return LEVER * force / sqrt(k);
 }
 
 /* Force of the load at a node that nothing else holds, N. */
@@ -234,7 +236,8 @@ static void add_node(measure *x, int node_id) {
   double moved = fmin(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
   b->fallen = larger(b->fallen, node.c.n * moved);
   b->carried = larger(b->carried, root * largest_of(cp->dim, v));
-  b->reach = larger(b->reach, reach_of(x, node_id, node.k));
+  b->reach = larger(b->reach, reach_of(x, node_id, node.k, &b->position));
+  b->root = larger(b->root, root);
 }
 
 static void measure_set(const contact_problem *cp, double scale,
@@ -245,8 +248,11 @@ static void measure_set(const contact_problem *cp, double scale,
   for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
     x->size[b] = (body_size){0};
   for (int i = 0; i < cp->n; ++i) add_node(x, i);
-  for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b)
-    x->forces = larger(x->forces, larger(x->size[b].load, x->size[b].contact));
+  for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b) {
+    body_size *s = &x->size[b];
+    x->forces = larger(x->forces, larger(s->load, s->contact));
+    s->reach = larger(s->reach, 2.0 * s->root * s->position);
+  }
 }
 
 /* Final size of the loads of a body, growing like those of all, N. */

@@ -180,6 +180,13 @@ int model_rubs_locally(const model *m) {
   return local;
 }
 
+int facts_leaves_axis(const model *m, int obstacle_id, double t) {
+  const obstacle *o = &m->obstacles[obstacle_id];
+  return m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC &&
+         o->shape == OBSTACLE_SPHERE &&
+         quantity_value(&o->motion[0], o->point, t) != 0.0;
+}
+
 const char *goal_unit(const goal_card *g) {
   static const char *const units[] = {
       [GOAL_FORCE] = "force",           [GOAL_PRESSURE] = "force/length^2",

@@ -23,3 +23,5 @@ int facts_has_inelastic(const model *m); /* 1: its strains may change */
 int facts_starts_strained(const model *m);
 /* 1: *INITIAL CONDITIONS has lines of an initial_type. */
 int facts_has_initial(const model *m, int type);
+/* 1: MOVE has the sphere off the axis of an axisymmetric model at time t. */
+int facts_leaves_axis(const model *m, int obstacle_id, double t);

@@ -32,13 +32,23 @@ static double share_at(const load *l, const step *s, double t) {
   return (t - s->start) / s->total;
 }
 
+/* 0 where a value passes zero but for the rounding of t and of its terms: a
+ * pressure of -1e-17 would lift a body. */
+static double value_at(const quantity *q, const double x[3], double t) {
+  static const double small = 16 * DBL_EPSILON, share = 0.25;
+  const double v = quantity_value(q, x, t);
+  if (v == 0.0 || !(quantity_variables(q) & 1u << TABLE_T)) return v;
+  const double near = fmin(fabs(quantity_value(q, x, t * (1.0 - small))),
+                           fabs(quantity_value(q, x, t * (1.0 + small))));
+  return fabs(v) <= share * near ? 0.0 : v;
+}
+
 double load_at_point(const load *l, const step *s, const double x[3],
                      double t) {
-  const double now = quantity_value(&l->value, x, value_time(l, t));
+  const double now = value_at(&l->value, x, value_time(l, t));
   const double w = share_at(l, s, t);
   if (w >= 1.0) return now;
-  double from =
-      l->has_before ? quantity_value(&l->before, x, l->before_t) : 0.0;
+  double from = l->has_before ? value_at(&l->before, x, l->before_t) : 0.0;
   return (1.0 - w) * from + w * now;
 }
 

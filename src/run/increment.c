@@ -225,7 +225,8 @@ static void set_problem(run *r) {
       .side_gap = all && has_side_gap(r->surface) ? r->problem.side_gap : NULL,
       .held = all && surface_has_held(r->surface) ? r->surface->held : NULL,
       .floating = condensed_floating(r->c),
-      .load = fmax(r->loads.largest, increment_strain_load(r))};
+      .load = fmax(r->loads.largest, increment_strain_load(r)),
+      .moved = largest_entry(r->nodes.n_c, r->old.uc)};
   if (r->nodes.reach.in != NULL)
     reach_cut(&r->nodes.reach, &r->problem.part, &r->problem.cp);
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &r->problem.cp);

@@ -161,7 +161,10 @@ typedef struct error_state {
   double *elem_error; /* [n_elem] borrowed, or NULL */
   double left;   /* -, of an unloaded body: part of the largest energy so far,
                     to which its errors are relative; 0: rounding alone */
-  int strained;  /* 1: supports strain a body, found if motions are large */
+  int strained;  /* 1: supports strain a body, found if motions are large or
+                    nothing loads it */
+  int carried;   /* 1: contact carries its loads straight, found if motions are
+                    large */
   int noise;     /* 1: strains are rounding of the motion, found likewise */
   int evaluated; /* 1: those of mesh and solver are of r->now */
 } error_state;

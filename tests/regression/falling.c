@@ -194,6 +194,73 @@ START_TEST(loads_carried_straight_lose_nothing) {
 }
 END_TEST
 
+/* Open nodes carry the loads by friction while the supports move the body. */
+START_TEST(loads_carried_straight_by_a_body_led_lose_nothing) {
+  job j = job_begin("led");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "led.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=TRESCA\n1.E6\n"
+            "*STEP\n%s\n0.5, 1.\n"
+            "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -0.7\n"
+            "*CLOAD\nBOTTOM, 1, %s\n*SOLVER, METHOD=%s\n*PRINT, TOTALS\n"
+            "*END STEP\n",
+            _i / 2 != 1 ? "" : MAXWELL,
+            _i / 2 != 1 ? "*QUASISTATIC" : "*VISCO, INTEGRATOR=BACKWARD",
+            _i % 2 == 0 ? "0.1" : "1.E4", _i < 4 ? "AUTO" : "LAGRANGE");
+  ck_assert_msg(job_run(&j, "--no-timing --quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
+/* So they do on a floor that moves, where a node is far softer than others. */
+START_TEST(loads_carried_straight_on_a_floor_led_lose_nothing) {
+  static const char *const methods[] = {"AUTO", "SOR", "LEMKE", "LAGRANGE"};
+  const mesh_change bent = {.map = {"x + 0.05*x*(1 - x)*(1 - z)", NULL, NULL}};
+  int *number = NULL;
+  char path[100];
+  job j = job_begin("box");
+  snprintf(path, sizeof path, "%s/box.msh", j.dir);
+  FILE *out = fopen(path, "w");
+  ck_assert_ptr_nonnull(out);
+  ck_assert_int_eq(scene_mesh_write(out, "box 3 1 1 1 0.5 1", &bent, &number),
+                   1);
+  fclose(out);
+  free(number);
+  job_write(&j, "box.inp",
+            "*MESH, FILE=box.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=200.\n0.5, 0.5, -200.\n"
+            "MOVE, 0., \"5E-6*sin(2*pi*t)\", 0.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=TRESCA\n0.2\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 3\n"
+            "*DSLOAD\nRIGHT, P, -6.1E-4\n*SOLVER, METHOD=%s\n"
+            "*PRINT, TOTALS\n*END STEP\n",
+            methods[_i]);
+  ck_assert_msg(job_run(&j, "--no-timing --quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
+/* Nothing but supports strains the body: its errors are those of any other. */
+START_TEST(supports_alone_leave_an_error_of_the_mesh) {
+  job j = job_begin("pulled");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "pulled.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n"
+            "*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
+            "BOTTOM, 1, 2\nTOP, 1, 1, 0.1\nTOP, 2, 2, 0.1\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), 0);
+  ck_assert_double_gt(job_told(&j, "mesh_error_percent"), 1);
+  job_end(&j);
+}
+END_TEST
+
 /* What a loose tolerance leaves between contact forces is nobody's once all
  * nodes are off. */
 START_TEST(a_body_lifted_off_keeps_no_forces) {
@@ -257,6 +324,11 @@ int main(void) {
                       12);
   tcase_add_test(tests, chosen_increments_do_not_follow_supports);
   tcase_add_loop_test(tests, loads_carried_straight_lose_nothing, 0, 2);
+  tcase_add_loop_test(tests, loads_carried_straight_by_a_body_led_lose_nothing,
+                      0, 6);
+  tcase_add_loop_test(tests, loads_carried_straight_on_a_floor_led_lose_nothing,
+                      0, 4);
+  tcase_add_test(tests, supports_alone_leave_an_error_of_the_mesh);
   tcase_add_loop_test(tests, a_body_lifted_off_keeps_no_forces, 0, 4);
   tcase_add_loop_test(tests, a_ball_that_no_normal_meets_holds_nothing, 0, 2);
   return unit_run("falling", tests);

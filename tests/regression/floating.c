@@ -335,6 +335,98 @@ START_TEST(body_that_is_left_stays_where_it_was) {
 }
 END_TEST
 
+/* So it is where a floor has lifted it and sinks back to its first place. */
+START_TEST(body_that_a_floor_has_lifted_stays) {
+  static const char *const methods[] = {"AUTO",     "NEWTON",   "SOR",   "PCG",
+                                        "LAGRANGE", "PROXIMAL", "AUGLAG"};
+  job j = job_begin("lifted");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "lifted.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "MOVE, 0., \"0.1*sin(pi*t)\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*SOLVER, METHOD=%s\n"
+            "*PRINT, NODES\n*END STEP\n",
+            methods[_i]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s: %s", methods[_i], j.errors);
+  dat d = job_table(&j, "NODES", -1);
+  for (int i = 0; i < d.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&d, i, "u_y"), 0.1, 1e-12);
+  dat_free(&d);
+  job_end(&j);
+}
+END_TEST
+
+/* Pushed out of the floor where one node is inside it: without a force, to any
+ * tolerance. */
+START_TEST(body_pushed_out_of_its_floor_has_no_force) {
+  static const char *const gaps[] = {"-1E-3*(x > 0.9)", "0 - 1E-3*x^8",
+                                     "0 - 27E-5*x^2"};
+  job j = job_begin("inside");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "inside.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, %s\n"
+            "*INELASTIC, LAW=MAXWELL\n1.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n"
+            "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 0.3\n"
+            "*SOLVER, TOL=1E-12\n*PRINT, TOTALS\n*END STEP\n",
+            _i < 3 ? "0.3" : "0.49", gaps[_i % 3]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
+/* A load that ends 16 digits below its peak is none on a belt. */
+START_TEST(load_that_ends_as_rounding_is_settled) {
+  job j = job_begin("belt");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "belt.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=%s\nMOVE, 0.01, 0.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n"
+            "0., 0., 0.5, 1., 1., 1E-16\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 1., A\n"
+            "*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
+            "*DSLOAD, OP=NEW\nTOP, P, 0.\n*PRINT, TOTALS\n*END STEP\n",
+            _i == 0 ? "CONFORMING" : "SPHERE, RADIUS=100.\n0.5, -100.");
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
+/* 0.3 - 0.1*3 is -5.6e-17: no load lifts the body, in this step or the next. */
+START_TEST(load_that_is_zero_but_for_rounding_lifts_nothing) {
+  static const char *const methods[] = {"AUTO", "LEMKE", "SOR"};
+  static const char *const courses[] = {"0.3 - 0.1*t", "1 - t*(0.1 + 0.2)/0.9"};
+  job j = job_begin("ended");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "ended.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"%s\"\n"
+            "*STEP\n*QUASISTATIC\n1., 3.\n*BOUNDARY\nLEFT, 1\n"
+            "*DSLOAD\nTOP, P, 1., A\n*SOLVER, METHOD=%s\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*DSLOAD, OP=NEW\nTOP, P, 0.\n"
+            "*PRINT, TOTALS\n*END STEP\n",
+            _i % 2 == 0 ? "" : "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n",
+            courses[_i / 2 % 2], methods[_i / 4]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /* The same under a block that is pressed down and lifted, of either side. */
 START_TEST(body_under_another_that_is_lifted_stays) {
   static const char *const sides[] = {"TOP 1, BOTTOM 2", "BOTTOM 2, TOP 1"};
@@ -574,6 +666,11 @@ int main(void) {
   tcase_add_test(tests, free_motions_are_named);
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
   tcase_add_test(tests, body_that_is_left_stays_where_it_was);
+  tcase_add_loop_test(tests, body_that_a_floor_has_lifted_stays, 0, 7);
+  tcase_add_loop_test(tests, body_pushed_out_of_its_floor_has_no_force, 0, 6);
+  tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
+  tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
+                      0, 12);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);
   tcase_add_test(tests, block_between_others_slides_away);
   tcase_add_test(tests, touch_without_force_is_open);

@@ -608,6 +608,43 @@ START_TEST(bodies_and_laws_count_by_their_own_forces) {
 }
 END_TEST
 
+/* A sphere of an axisymmetric model moves along the axis, by any expression
+ * that is zero across it; one that is not is refused, between steps too. */
+START_TEST(a_sphere_moves_along_the_axis) {
+  static const struct {
+    const char *move;
+    int code;
+  } runs[] = {{"0., 0.1", 0},
+              {"\"0*t\", \"0.1*t\"", 0},
+              {"\"0.1*t\", \"0.1*t\"", 2},
+              {"\"t*(t - 1)\", \"0.1*t\"", 2}};
+  double pressed = 0.0;
+  for (size_t k = 0; k < sizeof runs / sizeof *runs; ++k) {
+    job j = job_begin("axis");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "axis.inp",
+              "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+              "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=10.\n0., -10.\n"
+              "MOVE, %s\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 1, 2\n"
+              "*PRINT, TOTALS\n*END STEP\n",
+              runs[k].move);
+    ck_assert_int_eq(job_run(&j, "--no-timing --quiet"), runs[k].code);
+    if (runs[k].code == 0) {
+      dat t = job_table(&j, "TOTALS", -1);
+      if (k == 0) pressed = dat_at(&t, 0, "normal");
+      ck_assert_double_gt(pressed, 0.01);
+      ck_assert_double_eq(dat_at(&t, 0, "normal"), pressed);
+      dat_free(&t);
+    } else {
+      ck_assert_ptr_nonnull(strstr(j.errors, "off the axis of symmetry"));
+    }
+    job_end(&j);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("motion");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -623,5 +660,6 @@ int main(void) {
   tcase_add_test(tests, long_motions_leave_the_forces_right);
   tcase_add_test(tests, forces_lost_to_rounding_are_never_ok);
   tcase_add_test(tests, bodies_and_laws_count_by_their_own_forces);
+  tcase_add_test(tests, a_sphere_moves_along_the_axis);
   return unit_run("motion", tests);
 }

@@ -95,6 +95,21 @@ START_TEST(balanced_load_has_no_proof) {
 }
 END_TEST
 
+/* A pull is one, unless it is below the rounding of the loads to come. */
+START_TEST(rounding_of_the_load_proves_nothing) {
+  unsigned long long seed = 5;
+  for (int k = 0; k < 32; ++k) {
+    const int dim = 2 + k % 2, n = 3 + k % 9, tiny = k / 2 % 2,
+              known = k / 4 % 2;
+    contact_case c = body(dim, n, 0.3, 0.0, &seed);
+    for (int i = 0; i < n; ++i) c.f[i * dim] = tiny ? -1e-17 : -1e-14;
+    c.cp.load = known;
+    ck_assert_int_eq(is_proved(&c), !(tiny && known));
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* All nodes on one plane, the load at each outside its limit by a little, or
  * inside, in any direction of the plane. */
 START_TEST(limit_of_friction_is_met_from_both_sides) {
@@ -335,6 +350,7 @@ START_TEST(large_sparse_compliance_is_not_searched) {
 END_TEST
 
 UNIT_MAIN("proof", balanced_load_has_no_proof,
+          rounding_of_the_load_proves_nothing,
           limit_of_friction_is_met_from_both_sides,
           pressure_elsewhere_holds_a_slip,
           solvable_problem_is_never_said_to_have_no_equilibrium,

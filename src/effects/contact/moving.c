@@ -14,6 +14,14 @@ static status prepare(run *r, void *self) {
 }
 
 static status pose(run *r, void *self, double t) {
+  for (int i = 0; i < r->m->n.contact; ++i) {
+    const int id = r->m->contacts[i].obstacle_id;
+    if (id >= 0 && facts_leaves_axis(r->m, id, t))
+      RAISE(ERR_DECK,
+            "%s:%d: *OBSTACLE %s: MOVE leads the sphere off the axis of "
+            "symmetry at time %g",
+            PLACE(r->m->moves[id].move_at), r->m->obstacles[id].name, t);
+  }
   COPY(r->now.motion, r->old.motion, r->nodes.n_c);
   surface_drift(r->surface, &r->faces.input, r->old.t, t, r->now.motion);
   return OK;

@@ -99,17 +99,16 @@ static void check_law(const model *m, const char *contact_name,
 /* Points and directions of an obstacle in 3-D have three numbers; a sphere of
  * an axisymmetric model stays on the axis. */
 static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
-  const obstacle *o = &m->obstacles[id];
-  const quantity *radial = &o->motion[0];
+  int off = facts_leaves_axis(m, id, 0.0);
   if (msh->dim == 3 && m->moves[id].short_at.file != NULL)
     message_add(m->log, P2009, &m->moves[id].short_at,
                 "2 numbers on this line of *OBSTACLE; a mesh in 3-D needs 3");
-  if (m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC &&
-      o->shape == OBSTACLE_SPHERE &&
-      (radial->formula != NULL || radial->number != 0.0))
+  for (int k = 0; k < m->n.step; ++k)
+    if (facts_leaves_axis(m, id, step_end(&m->steps[k]))) off = 1;
+  if (off)
     message_add(m->log, P4009, &m->moves[id].move_at,
                 "*OBSTACLE %s: MOVE leads the sphere off the axis of symmetry",
-                o->name);
+                m->obstacles[id].name);
 }
 
 /* Groups, obstacles and their axes, torques. */

@@ -63,6 +63,7 @@ static void estimate_unloaded(run *r) {
   }
   if (!(e->strain < UNLOADED * e->largest)) return;
   take_left(r, sqrt(fmax(e->strain, 0.0) / e->largest));
+  r->errors.error.hidden *= r->errors.left;
   if (r->errors.error.asked && r->errors.error.why == NULL)
     r->errors.error.relative =
         fmax(sqrt(r->errors.error.energy / e->largest),

@@ -55,8 +55,8 @@ double rounding_of_gaps(const run *r);
 double rounding_of_works(const run *r);
 /* 1: no load acts on it either, contact forces are no more than that, and its
  * supports do not strain it (gaps that close with no other force have their
- * rounding too); or contact carries the load straight, and strains
- * are rounding of both or left by the solver. After rounding_find. */
+ * rounding too); or contact carries the load straight, and strains are rounding
+ * of both, of the motion, or left by the solver. After rounding_find. */
 int rounding_is_all(const run *r);
 
 /* estimate.c: errors at r->now into r->errors.error, mesh_error, as required.

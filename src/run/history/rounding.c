@@ -157,11 +157,14 @@ static double largest_force(const run *r) {
 }
 
 /* What the rounding of the forces stores, and what the solver has left at the
- * contact nodes, J. */
+ * contact nodes, J: at the stiffest node, or at any where nothing but that is
+ * left of them. */
 static double forces_energy(const run *r) {
   const double force = largest_force(r), rounding = RUN_CARRIED * force,
-               left = r->solving.report.residual * force;
-  return (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
+               left = r->solving.report.residual * force,
+               soft = r->errors.carried ? condensed_condition(r->c) : 1.0;
+  return soft *
+         (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
          condensed_stiffest(r->c);
 }
 
@@ -171,10 +174,15 @@ static int forces_hide_strains(const run *r) {
   return r->now.energy.strain <= forces_energy(r);
 }
 
-/* 1: no force acts on the body, and its supports do not strain it. */
-static int moves_alone(const run *r) {
-  return !r->errors.strained && increment_free_load(r, r->now.F) == 0.0 &&
+/* 1: no force acts on the body. */
+static int is_unloaded(const run *r) {
+  return increment_free_load(r, r->now.F) == 0.0 &&
          largest_entry(r->nodes.n_c, r->now.rc) == 0.0;
+}
+
+/* 1: nor do its supports strain it. */
+static int moves_alone(const run *r) {
+  return !r->errors.strained && is_unloaded(r);
 }
 
 double rounding_of_gaps(const run *r) {
@@ -188,10 +196,14 @@ static int hides_strains(const run *r, double u) {
 }
 
 int rounding_is_all(const run *r) {
-  const double force = largest_entry(r->nodes.n_c, r->now.rc);
+  const double force = largest_entry(r->nodes.n_c, r->now.rc),
+               moved = strains_rounding(r, strains_lost(r));
   if (forces_hide_strains(r)) return 1;
   if ((r->strains.eigen.n == 0 || r->errors.noise) && moves_alone(r)) return 1;
-  if (r->errors.strained || increment_free_load(r, r->now.F) > 0.0) return 0;
+  if (r->errors.strained) return 0;
+  if (r->errors.carried && r->now.energy.strain <= moved + forces_energy(r))
+    return 1;
+  if (increment_free_load(r, r->now.F) > 0.0) return 0;
   const double u = force > 0.0 ? fmax(strains_lost(r), rounding_of_gaps(r))
                                : strains_lost(r);
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
@@ -221,6 +233,27 @@ static status find_error(const run *r, misfit *x, double *square) {
   for (size_t i = 0; i < r->n_dof; ++i) x->rest[i] = r->now.F[i] - x->rest[i];
   PASS(find_forces(r, x));
   return condensed_misfit(x->c, x->rest, x->rc, x->w, square);
+}
+
+/* Whether contact carries the loads straight: at each node its force and the
+ * load leave no more than the rounding of forces, what the solver has left, or
+ * the rounding of the motion where that is far below the load or nothing loads
+ * it. */
+static status find_carried(run *r) {
+  const double most = fmax(increment_free_load(r, r->now.F),
+                           largest_entry(r->nodes.n_c, r->now.rc)),
+               part = RUN_CARRIED + r->solving.report.residual,
+               moved = condensed_stiffest(r->c) * strains_lost(r);
+  OWNED_NEW(double, left, r->n_dof);
+  COPY(left, r->now.F, r->n_dof);
+  if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, left);
+  r->errors.carried = !r->errors.strained;
+  for (size_t q = 0; q < r->n_dof; ++q) {
+    const double rest = fabs(left[q]), by = fabs(r->now.F[q]);
+    if (r->body.fixed[q] || rest <= part * most) continue;
+    if (rest > moved || (by > 0.0 && by < FAR * rest)) r->errors.carried = 0;
+  }
+  return OK;
 }
 
 /* 1: an error of that square explains all strains. */
@@ -379,8 +412,7 @@ double rounding_strain_left(const run *r) {
 /* Strains that flow, of a body that nothing loads now. */
 static status find_noise(run *r) {
   if (r->strains.eigen.n == 0 || !moves_alone(r) || !may_be_noise(r)) return OK;
-  PASS(supports_strain(r, &r->errors.strained));
-  return r->errors.strained ? OK : rounding_hides_stresses(r, &r->errors.noise);
+  return rounding_hides_stresses(r, &r->errors.noise);
 }
 
 /* Largest stress next to each contact node times its area, own[n], N. */
@@ -447,14 +479,16 @@ static int is_doubtful(const run *r) {
 
 status rounding_find(run *r) {
   r->errors.rounding = (rounding_loss){0};
-  r->errors.strained = r->errors.noise = 0;
+  r->errors.strained = r->errors.carried = r->errors.noise = 0;
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
   PASS(check_met(r));
   PASS(check_touch(r));
-  if (!is_doubtful(r)) return find_noise(r);
-  PASS(supports_strain(r, &r->errors.strained));
+  const int doubtful = is_doubtful(r);
+  if (doubtful || is_unloaded(r)) PASS(supports_strain(r, &r->errors.strained));
+  if (!doubtful) return find_noise(r);
+  PASS(find_carried(r));
   TIMED(STAGE_RECOVERY);
   return find(r);
 }

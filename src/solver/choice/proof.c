@@ -5,6 +5,7 @@
 #include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>
+#include <float.h>
 
 enum { PASSES = 400 /* columns tried */ };
 static const double DEFECT = 0x1p-26;   /* -, force of a motion without any */
@@ -62,15 +63,17 @@ static double force_of(const contact_problem *cp, const double *v,
 
 static int motion_is_proof(const contact_problem *cp, const double *v,
                            double *workspace) {
-  double work = 0.0, terms = 0.0, most = 0.0, *slip = workspace + cp->m;
+  double work = 0.0, terms = 0.0, most = 0.0, noise = 0.0;
+  double *slip = workspace + cp->m;
   if (!cp->floating || !(force_of(cp, v, workspace) <= DEFECT)) return 0;
   for (int i = 0; i < cp->m; ++i) {
     most = fmax(most, fabs(v[i]));
     work += cp->f[i] * v[i];
     terms += fabs(cp->f[i] * v[i]);
+    noise += DBL_EPSILON * cp->load * fabs(v[i]);
   }
   if (!(largest_growth(cp, v, workspace, slip) <= ROUNDING * most)) return 0;
-  return work - held_by_limit(cp, slip) > MARGIN * terms;
+  return work - held_by_limit(cp, slip) > fmax(MARGIN * terms, noise);
 }
 
 /* v = W'l with the sum of |terms| of its largest entry; column[m]: work. */
