@@ -572,6 +572,40 @@ START_TEST(radial_force_in_a_single_node_is_not_reliable) {
 }
 END_TEST
 
+/* Three nodes are few, four are not. */
+START_TEST(zones_of_three_nodes_are_not_reliable) {
+  for (int n = 2; n <= 3; ++n) {
+    char words[40];
+    snprintf(words, sizeof words, "rect %d 8 2 1 alternate", n);
+    job j = of_body(words, PLANE CONTACT
+                    "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, "
+                    "COMPONENT=2\n*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                    "*DSLOAD\nTOP, P, \"3+x^2\"\n");
+    ck_assert_int_eq(has_verdict(&j, "U", "few_nodes"), n == 2);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* The node slid and stays where it is: the work is that of its slide, which one
+ * node does not have. */
+START_TEST(work_of_a_single_node_remains_doubtful) {
+  job j = of_block(4, "SPHERE, RADIUS=2.\n0.6, -2.",
+                   "*FRICTION, CONTACT=C, LAW=COULOMB\n0.05\n"
+                   "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n"
+                   "*STEP\n*QUASISTATIC\n1., 2.\n*BOUNDARY\nLEFT, 1\n"
+                   "*DSLOAD\nTOP, P, \"0.1*min(t, 1)\"\n");
+  dat first = job_table(&j, "GOALS", 0), last = job_table(&j, "GOALS", -1);
+  const double work = dat_at(&last, 0, "value");
+  ck_assert_double_gt(work, 0.0);
+  ck_assert_double_eq_tol(dat_at(&first, 0, "value"), work, 1e-9 * work);
+  ck_assert(has_verdict(&j, "W", "few_nodes"));
+  dat_free(&first);
+  dat_free(&last);
+  job_end(&j);
+}
+END_TEST
+
 /* A sphere between two nodes, pressed into the side or below it. */
 START_TEST(contact_between_nodes_is_not_none) {
   static const double depth[] = {0.002, -0.05};
@@ -630,4 +664,6 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           moment_about_a_single_node_is_not_reliable,
           normal_force_in_a_single_node_is_not_reliable,
           radial_force_in_a_single_node_is_not_reliable,
+          zones_of_three_nodes_are_not_reliable,
+          work_of_a_single_node_remains_doubtful,
           contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable)

@@ -41,6 +41,7 @@ typedef struct goal_result {
   double cpu;    /* s, CPU time for it so far */
   goal_verdict verdict;
 } goal_result;
+/* Reals alone; of a sum over the increments the sums of theirs. */
 typedef struct goal_estimate {
   double error;     /* J of the solution less J_h, of the mesh, unit of J */
   double magnitude; /* sum of the magnitudes of the parts of elements */
@@ -51,9 +52,12 @@ typedef struct goal_estimate {
   double history;   /* sum of the magnitudes by the increments before */
   double hoop;      /* by the hoop strains of axisymmetric elements, which the
                        stiffness takes at their mean radius */
+  double few;       /* |error| of increments with few closed nodes */
 } goal_estimate;
-/* The result of an estimate but for value, solver and cpu; n_closed: nodes. */
-goal_result goal_judge(const goal_estimate *e, int n_closed);
+/* *sum += *e. */
+void goal_estimate_add(const goal_estimate *e, goal_estimate *sum);
+/* The result of an estimate but for value, solver and cpu. */
+goal_result goal_judge(const goal_estimate *e);
 
 /*
  * The linearised problem of (u, r): nodes closed, stuck and sliding remain so.

@@ -36,8 +36,9 @@ typedef struct goal_history {
   double *u;    /* [dim*n_node] of the nodes, m; NULL: none is needed */
   double *edge; /* [dim*n_edge] u in the bubbles of contact edges, m; NULL: 0 */
   int n_edge;
-  double *sum, *band; /* [n] of goals that are sums over the increments */
+  goal_estimate *sum; /* [n] of goals that are sums over the increments */
   int lost;           /* 1: an increment before was not covered */
+  int missed;         /* 1: goal_surface.is_missed of one */
 } goal_history;
 
 typedef struct goal_state {
@@ -57,7 +58,7 @@ static status goals_new(run *r, void **self) {
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
     PASS_NEW(own->product, (size_t)own->n * r->msh->n_elem);
-  PASS_NEW_REALS(own->n, &own->before.sum, &own->before.band);
+  PASS_NEW(own->before.sum, own->n);
   if (!effect_is_on(&slip_history_effect, r->m)) return OK;
   PASS_NEW(own->before.u, r->n_dof);
   return OK;
@@ -98,8 +99,7 @@ static void forget(const run *r, goal_history *h, int n) {
   if (r->step->kind != STEP_STATIC || r->course.relaxing) return;
   if (h->edge != NULL) CLEAR(h->edge, (size_t)r->msh->dim * h->n_edge);
   CLEAR(h->sum, n);
-  CLEAR(h->band, n);
-  h->lost = 0;
+  h->lost = h->missed = 0;
 }
 
 /* ---- an increment -------------------------------------------------------- */
@@ -271,14 +271,6 @@ static status of_slip(const run *r, const shared *s, double *sum) {
   return OK;
 }
 
-/* What the increments before have added to a sum over them. */
-static void add_sum(goal_history *h, int id, goal_result *out) {
-  out->error += h->sum[id];
-  out->band += h->band[id];
-  h->sum[id] = out->error;
-  h->band[id] = out->band;
-}
-
 /* [n_elem] of a goal, or NULL. */
 static double *product_of(const run *r, const goal_state *own, int id) {
   return own->product == NULL ? NULL
@@ -382,15 +374,21 @@ static int turns(const run *r, const goal_form *f) {
   return most > TURN * size;
 }
 
+static int has_few(const shared *s) {
+  enum { FEW = 3 };
+  return s->surface.n_closed > 0 && s->surface.n_closed <= FEW;
+}
+
 /* exact: without an error but rounding. Nothing is known about a contact that
- * its nodes miss. */
-static void doubt_of_nodes(const run *r, const shared *s, int exact,
+ * its nodes miss, or missed while a sum grew. */
+static void doubt_of_nodes(const run *r, const shared *s, int exact, int missed,
                            goal_result *out) {
-  const int few = out->verdict == GOAL_FEW_NODES &&
+  const int few = (out->verdict == GOAL_FEW_NODES || has_few(s)) &&
                   fmax(s->form.size, fabs(s->form.value)) > 0.0 &&
                   turns(r, &s->form);
-  if (exact && !few) out->verdict = GOAL_RELIABLE;
-  if (s->surface.is_missed && out->verdict == GOAL_RELIABLE)
+  if (exact) out->verdict = few ? GOAL_FEW_NODES : GOAL_RELIABLE;
+  if ((s->surface.is_missed || (s->form.sums && missed)) &&
+      out->verdict == GOAL_RELIABLE)
     out->verdict = GOAL_FEW_NODES;
 }
 
@@ -406,8 +404,12 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   if (!isfinite(e.error)) return OK;
   PASS(complete(r, s, &e));
   e.error += of_sticks(r, own, s, &e.history);
-  *out = goal_judge(&e, s->surface.n_closed);
-  if (f->sums) add_sum(&own->before, id, out);
+  e.few = has_few(s) ? fabs(e.error) : 0.0;
+  if (f->sums) {
+    goal_estimate_add(&e, &own->before.sum[id]);
+    e = own->before.sum[id];
+  }
+  *out = goal_judge(&e);
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
@@ -415,7 +417,8 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
-  doubt_of_nodes(r, s, e.magnitude <= ROUNDING * fabs(value), out);
+  doubt_of_nodes(r, s, e.magnitude <= ROUNDING * fabs(value),
+                 own->before.missed, out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
@@ -431,6 +434,7 @@ static int is_last(const run *r) {
 static status remember(run *r, goal_state *own, shared *s) {
   goal_history *h = &own->before;
   if (h->u == NULL || is_last(r)) return OK;
+  h->missed |= s->surface.is_missed;
   if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL)) {
     h->lost = 1;
     return OK;
@@ -497,14 +501,15 @@ static status keep(run *r, void *self, archive *a) {
   }
   if (h->u == NULL) return OK;
   PASS(archive_ints(a, "lost", &h->lost, 1));
+  PASS(archive_ints(a, "missed", &h->missed, 1));
   PASS(archive_ints(a, "edges", &h->n_edge, 1));
   OWNS(own);
   if (h->edge == NULL && h->n_edge > 0)
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   PASS(archive_reals(a, "edge", h->edge, (size_t)r->msh->dim * h->n_edge));
   PASS(archive_reals(a, "u", h->u, r->n_dof));
-  PASS(archive_reals(a, "sum", h->sum, own->n));
-  return archive_reals(a, "band", h->band, own->n);
+  return archive_reals(a, "sum", (double *)h->sum,
+                       own->n * sizeof *h->sum / sizeof(double));
 }
 
 /* With the errors that friction remembers, of the start of the increment. */
@@ -515,9 +520,9 @@ static status goals_copy(const run *r, const void *of, run *copy, void **self) {
   goal_history *h = &own->before;
   const size_t edges = (size_t)r->msh->dim * from->n_edge;
   h->lost = from->lost;
+  h->missed = from->missed;
   h->n_edge = from->n_edge;
   COPY(h->sum, from->sum, own->n);
-  COPY(h->band, from->band, own->n);
   if (h->u != NULL) COPY(h->u, from->u, r->n_dof);
   if (from->edge == NULL) return OK;
   PASS_NEW(h->edge, edges);
