@@ -572,6 +572,68 @@ START_TEST(radial_force_in_a_single_node_is_not_reliable) {
 }
 END_TEST
 
+/* The adjoint of the force is linear, and has no error: that of the force is
+ * the gap between the nodes, of which its bubble lacks a part (Betti: the force
+ * is that of the mean of what the gap leaves). */
+START_TEST(errors_by_gaps_alone_have_a_band) {
+  job j = of_block(16, "GAP\n\"0.001*x^4\"",
+                   NORMAL
+                   "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                   "TOP, 2, 2, -0.05\n");
+  check(&j, 1000.0 / (1.0 - 0.3 * 0.3) * (0.1 - 0.001 * 6.4), 0.95, 1.05, 0.2);
+  ck_assert(has_verdict(&j, "N", "reliable"));
+  job_end(&j);
+}
+END_TEST
+
+/* A block that is pressed flat moves by its strain times x, the floor by 0.3
+ * times that: where its friction turns back at x = 0.3, within an edge, decides
+ * on its force. */
+START_TEST(friction_that_turns_back_within_an_edge) {
+  static const double strain = 0.3 / 0.7 * 0.01, limit = 1e-6;
+  for (int n = 8; n <= 16; n *= 2) {
+    char cards[500], on[80];
+    snprintf(on, sizeof on, PLANE "\nMOVE, %.15g, 0.", 0.3 * strain);
+    snprintf(cards, sizeof cards,
+             "*FRICTION, CONTACT=C, LAW=TRESCA\n%g\n"
+             "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n" NORMAL
+             "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n"
+             "TOP, 2, 2, -0.01\n",
+             limit);
+    job j = of_block(n, on, cards);
+    dat t = job_table(&j, "GOALS", -1);
+    const double off = limit * (0.3 - 1.7) - dat_at(&t, 0, "corrected");
+    const double band = dat_at(&t, 0, "band"), edge = 2.0 / n;
+    ck_assert_double_gt(fabs(off), 0.1 * limit * edge);
+    ck_assert_double_gt(band, fabs(off));
+    ck_assert_double_lt(band, 1.2 * limit * edge);
+    ck_assert(has_verdict(&j, "T", "contact_end"));
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* On a cylinder that touches one row of nodes the moment about its axis is by
+ * chance what it is. */
+START_TEST(moment_about_a_row_of_nodes_is_not_reliable) {
+  job j = of_body("box 4 4 4 2 2 1",
+                  "CYLINDER, RADIUS=2.\n0.6, 0., -2.\n0., 1., 0." CONTACT
+                  "*GOAL, NAME=M, QUANTITY=MOMENT, CONTACT=C, COMPONENT=2\n"
+                  "0., 0., 0.\n" NORMAL
+                  "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nFRONT, 2\n"
+                  "*DSLOAD\nTOP, P, 0.1\n*PRINT, CONTACT\n");
+  dat t = job_table(&j, "CONTACT", -1);
+  int closed = 0;
+  for (int i = 0; i < t.n_row; ++i) closed += dat_at(&t, i, "f_n") > 0.0;
+  ck_assert_int_eq(closed, 5);
+  ck_assert(has_verdict(&j, "M", "few_nodes"));
+  ck_assert(has_verdict(&j, "N", "reliable"));
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* Three nodes are few, four are not. */
 START_TEST(zones_of_three_nodes_are_not_reliable) {
   for (int n = 2; n <= 3; ++n) {
@@ -665,5 +727,8 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           normal_force_in_a_single_node_is_not_reliable,
           radial_force_in_a_single_node_is_not_reliable,
           zones_of_three_nodes_are_not_reliable,
+          errors_by_gaps_alone_have_a_band,
+          friction_that_turns_back_within_an_edge,
+          moment_about_a_row_of_nodes_is_not_reliable,
           work_of_a_single_node_remains_doubtful,
           contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable)

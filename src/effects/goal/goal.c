@@ -288,8 +288,9 @@ static double of_factor(const run *r, const shared *s) {
 }
 
 /* What contact forces do between the nodes: to the adjoint, and to what they
- * are summed with. */
-static status of_curvature(const run *r, const shared *s, double *sum) {
+ * are summed with; and where friction turns back. */
+static status of_contact(const run *r, const shared *s, double *product,
+                         double *sum, double *reversed) {
   const int dim = r->msh->dim;
   double turn, area;
   OWNED_NEW(double, z, r->n_dof);
@@ -301,19 +302,23 @@ static status of_curvature(const run *r, const shared *s, double *sum) {
   PASS(goal_work_between(r, &s->surface, s->form.is_field ? z : s->y, z,
                          s->form.spin, &turn, &area));
   *sum = turn + area;
-  return OK;
+  return goal_add_reversals(r, &s->surface, z, product, reversed);
 }
 
 /* What the residual of the elements has not. */
-static status complete(const run *r, const shared *s, goal_estimate *e) {
+static status complete(const run *r, const shared *s, double *product,
+                       goal_estimate *e) {
   const goal_form *f = &s->form;
-  double along = 0.0;
-  PASS(of_curvature(r, s, &along));
+  double along = 0.0, reversed = 0.0;
+  PASS(of_contact(r, s, product, &along, &reversed));
   if (f->factor.n > 0) e->error += of_factor(r, s);
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   const double between = goal_mean_bubbles(r, s->estimator, f);
   e->error += f->curved + along + beyond + between;
-  e->magnitude += fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between);
+  e->magnitude +=
+      fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between) + reversed;
+  e->product += reversed;
+  e->ends += reversed;
   e->error += e->hoop;
   if (f->sums) {
     double slips;
@@ -374,9 +379,11 @@ static int turns(const run *r, const goal_form *f) {
   return most > TURN * size;
 }
 
+/* 1: few closed nodes, or nodes in a line on a surface in space. */
 static int has_few(const shared *s) {
   enum { FEW = 3 };
-  return s->surface.n_closed > 0 && s->surface.n_closed <= FEW;
+  return s->surface.n_closed > 0 &&
+         (s->surface.n_closed <= FEW || s->surface.n_whole == 0);
 }
 
 /* exact: without an error but rounding. Nothing is known about a contact that
@@ -402,8 +409,9 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
                           f->is_square, product_of(r, own, id), &e));
   if (!isfinite(e.error)) return OK;
-  PASS(complete(r, s, &e));
+  PASS(complete(r, s, product_of(r, own, id), &e));
   e.error += of_sticks(r, own, s, &e.history);
+  e.magnitude = fmax(e.magnitude, fabs(e.error));
   e.few = has_few(s) ? fabs(e.error) : 0.0;
   if (f->sums) {
     goal_estimate_add(&e, &own->before.sum[id]);
