@@ -714,6 +714,38 @@ START_TEST(ends_of_loads_are_not_reliable) {
 }
 END_TEST
 
+/* Under a force on a node the displacement grows without end with the elements,
+ * in the plane and in space; not where there is none. */
+START_TEST(forces_on_nodes_are_not_reliable) {
+  static const char *const flat[] = {"rect %d %d 2 1 alternate", "2., 1.", ""};
+  static const char *const space[] = {"box %d %d 4 1 1 1", "1., 1., 1.",
+                                      "FRONT, 2\n"};
+  for (int dim = 2; dim <= 3; ++dim) {
+    const char *const *of = dim == 2 ? flat : space;
+    double value[2];
+    for (int k = 0; k < 3; ++k) {
+      char words[40], cards[500];
+      const int n = dim == 2 ? 16 : 6;
+      snprintf(words, sizeof words, of[0], n << k % 2, n << k % 2);
+      snprintf(cards, sizeof cards,
+               "GAP\n0." CONTACT
+               "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1\n%s\n" ENERGY
+               "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n%s"
+               "*DSLOAD\nTOP, P, \"10+x^2\"\n*CLOAD\nTIP, 1, %d\n",
+               of[1], of[2], k < 2);
+      job j = of_body(words, cards);
+      dat t = job_table(&j, "GOALS", -1);
+      if (k < 2) value[k] = dat_at(&t, 0, "value");
+      ck_assert_int_eq(has_verdict(&j, "U", "support_end"), k < 2);
+      ck_assert_int_eq(has_verdict(&j, "E", "support_end"), k < 2);
+      dat_free(&t);
+      job_end(&j);
+    }
+    ck_assert_double_gt(value[1], 1.05 * value[0]);
+  }
+}
+END_TEST
+
 UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           zeros_are_not_exact, energies_by_loads_and_by_supports,
           ends_of_supports_are_not_reliable, ends_of_supports_in_space,
@@ -731,4 +763,5 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           friction_that_turns_back_within_an_edge,
           moment_about_a_row_of_nodes_is_not_reliable,
           work_of_a_single_node_remains_doubtful,
-          contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable)
+          contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable,
+          forces_on_nodes_are_not_reliable)

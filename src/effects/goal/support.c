@@ -8,8 +8,8 @@
  *
  * The same where two materials, or zones of temperature, meet at the border
  * (Bogy 1971, J Appl Mech 38, 377-386), unless it is a plane of symmetry that
- * their interface is normal to, and where their interface turns within; and
- * where loads end (jumps.c).
+ * their interface is normal to, and where their interface turns within; where
+ * loads end (jumps.c), and under the force on a node.
  */
 #include "base/base.h"
 #include "effects/goal/parts.h"
@@ -465,6 +465,20 @@ status goal_border_new(const mesh *m, goal_border *b) {
   return OK;
 }
 
+/* Under a force on a node the displacement is infinite. */
+static void mark_forces(const run *r, unsigned char *ends) {
+  const int dim = r->msh->dim;
+  for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
+    const mesh_group *g = &r->msh->group[l->group_id];
+    for (int k = 0; l->kind == LOAD_POINT && k < g->n_node; ++k) {
+      const int i = g->node_id[k];
+      if (!r->body.d.fixed[dim * i + l->component] &&
+          load_at_node(l, r->msh, r->step, i, r->now.t) != 0.0)
+        ends[i] |= GOAL_END_OF_SUPPORT;
+    }
+  }
+}
+
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
@@ -474,6 +488,7 @@ status goal_mark_supports(const run *r, const goal_border *border,
     add_region(space_region(of, k / n) + 1,
                m->dim == 2 ? angle_at(m, m->elem + k - k % n, k % n) : 0.0,
                &at[m->elem[k]]);
+  mark_forces(r, s->ends);
   return m->dim == 2 ? mark_plane(r, border, at, s)
                      : mark_space(r, border, of, at, s);
 }
