@@ -68,14 +68,11 @@ static status goals_new(run *r, void **self) {
 
 /* 1: of pairs there are cracks alone, each within one material. */
 static int has_cracks_alone(const run *r) {
-  const mesh *m = r->msh;
   int all = r->m->n.tie == 0;
-  for (int i = 0; i < r->m->n.contact; ++i)
-    all &= !r->m->contacts[i].is_pair || r->m->contacts[i].is_crack;
-  for (int i = 0; i < m->n_crack && all; ++i)
-    for (int k = 0; k < m->crack[i].n; ++k)
-      all &= r->m->elem_section[m->face_elem[m->crack[i].plus[k]]] ==
-             r->m->elem_section[m->face_elem[m->crack[i].minus[k]]];
+  for (int i = 0; i < r->m->n.contact; ++i) {
+    const contact *c = &r->m->contacts[i];
+    all &= !c->is_pair || (c->is_crack && !model_is_interface(r->m, r->msh, i));
+  }
   return all;
 }
 
