@@ -586,6 +586,28 @@ START_TEST(errors_by_gaps_alone_have_a_band) {
 }
 END_TEST
 
+/* There are no products of errors to refine by but rounding, which the
+ * thickness changes: it must not change the meshes. */
+START_TEST(passes_do_not_refine_by_rounding) {
+  int unknowns[2][9], n[2] = {0};
+  for (int k = 0; k < 2; ++k) {
+    job j = of_type(k == 0 ? ", TYPE=CPS3" : ", TYPE=CPS3, THICKNESS=1.7",
+                    "rect 8 8 2 1 alternate",
+                    "GAP\n\"0.001*x^4\"" CONTACT
+                    "*GOAL, NAME=N, QUANTITY=FORCE, CONTACT=C, TARGET=0.1 %\n"
+                    "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.05\n");
+    char *json = job_file(&j, "json"), *at = strstr(json, "\"passes\"");
+    for (; n[k] < 9 && (at = strstr(at, "\"unknowns\": ")) != NULL; ++n[k])
+      unknowns[k][n[k]] = atoi(at += 12);
+    free(json);
+    job_end(&j);
+  }
+  ck_assert_int_gt(n[0], 1);
+  ck_assert_int_eq(n[1], n[0]);
+  ck_assert_mem_eq(unknowns[1], unknowns[0], (size_t)n[0] * sizeof **unknowns);
+}
+END_TEST
+
 /* A block that is pressed flat moves by its strain times x, the floor by 0.3
  * times that: where its friction turns back at x = 0.3, within an edge, decides
  * on its force. */
@@ -759,7 +781,7 @@ UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
           normal_force_in_a_single_node_is_not_reliable,
           radial_force_in_a_single_node_is_not_reliable,
           zones_of_three_nodes_are_not_reliable,
-          errors_by_gaps_alone_have_a_band,
+          errors_by_gaps_alone_have_a_band, passes_do_not_refine_by_rounding,
           friction_that_turns_back_within_an_edge,
           moment_about_a_row_of_nodes_is_not_reliable,
           work_of_a_single_node_remains_doubtful,
