@@ -314,22 +314,25 @@ END_TEST
 START_TEST(verdicts_change_at_their_limits) {
   static const struct {
     double error, ends, supports;
-    double few;
+    double few, near;
     goal_verdict verdict;
-  } cases[] = {{0.051, 0.029, 0.0, 0.0, GOAL_RELIABLE},
-               {-0.051, 0.0, 0.0, 0.029, GOAL_RELIABLE},
-               {0.051, 0.029, 0.0, 0.031, GOAL_FEW_NODES},
-               {-0.051, 0.031, 0.0, 1.0, GOAL_FEW_NODES},
-               {0.051, 0.031, 0.015, 0.0, GOAL_CONTACT_END},
-               {0.051, 0.031, 0.016, 0.0, GOAL_SUPPORT_END},
-               {-0.049, 0.029, 0.0, 0.0, GOAL_CANCELS},
-               {0.049, 0.0, 0.0, 0.0, GOAL_CANCELS}};
-  for (int k = 0; k < 8; ++k) {
+  } cases[] = {{0.051, 0.029, 0.0, 0.0, 0.0, GOAL_RELIABLE},
+               {-0.051, 0.0, 0.0, 0.029, 0.029, GOAL_RELIABLE},
+               {0.051, 0.029, 0.0, 0.031, 0.0, GOAL_FEW_NODES},
+               {-0.051, 0.031, 0.0, 1.0, 0.0, GOAL_FEW_NODES},
+               {0.051, 0.031, 0.015, 0.0, 0.0, GOAL_CONTACT_END},
+               {0.051, 0.031, 0.0, 0.0, 0.9, GOAL_CONTACT_END},
+               {0.051, 0.031, 0.016, 0.0, 0.0, GOAL_SUPPORT_END},
+               {0.051, 0.02, 0.0, 0.0, 0.011, GOAL_SUPPORT_END},
+               {-0.049, 0.029, 0.0, 0.0, 0.0, GOAL_CANCELS},
+               {0.049, 0.0, 0.0, 0.0, 0.0, GOAL_CANCELS}};
+  for (int k = 0; k < 10; ++k) {
     const goal_estimate e = {.error = 2.0 * cases[k].error,
                              .magnitude = 2.0,
                              .product = 5.0,
                              .ends = 5.0 * cases[k].ends,
                              .supports = 5.0 * cases[k].supports,
+                             .near = 5.0 * cases[k].near,
                              .few = 2.0 * fabs(cases[k].error) * cases[k].few};
     ck_assert_int_eq(goal_judge(&e).verdict, cases[k].verdict);
   }

@@ -622,6 +622,8 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   int ends = 0;
   for (int a = 0; a <= m->dim; ++a)
     ends |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
+  if (ends == GOAL_NEAR_SUPPORT) out->near += both;
+  ends &= ~GOAL_NEAR_SUPPORT;
   if (ends != 0) out->ends += both;
   if (ends == GOAL_END_OF_SUPPORT) out->supports += both;
   if ((ends & GOAL_END_OF_SUPPORT) != 0) out->sharp += of_u ? 0.5 * both : both;

@@ -49,6 +49,7 @@ typedef struct goal_estimate {
   double ends;      /* the same where the contact or a support ends */
   double supports;  /* of that what is not at contact ends */
   double sharp;     /* of ends what GOAL_END_OF_SUPPORT has */
+  double near;      /* the same of the elements next to those of sharp */
   double history;   /* sum of the magnitudes by the increments before */
   double hoop;      /* by the hoop strains of axisymmetric elements, which the
                        stiffness takes at their mean radius */
@@ -124,7 +125,11 @@ typedef struct goal_flux {
 
 /* Next to a node the contact changes its status; stresses are infinite, by a
  * support, an inner corner, or the border of a contact that sticks. */
-enum { GOAL_END_OF_CONTACT = 1, GOAL_END_OF_SUPPORT = 2 };
+enum {
+  GOAL_END_OF_CONTACT = 1,
+  GOAL_END_OF_SUPPORT = 2,
+  GOAL_NEAR_SUPPORT = 4 /* of an element with such a node */
+};
 
 /* The solution. All is borrowed. */
 typedef struct goal_solution {

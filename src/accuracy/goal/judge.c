@@ -55,19 +55,24 @@ void goal_estimate_add(const goal_estimate *e, goal_estimate *sum) {
   for (size_t k = 0; k < sizeof *e / sizeof *of; ++k) to[k] += of[k];
 }
 
+/* Share of a part of the products, beyond rounding. */
+static double share_of(const goal_estimate *e, double part) {
+  return e->product > ROUNDING * e->magnitude ? part / e->product : 0.0;
+}
+
 goal_result goal_judge(const goal_estimate *e) {
   goal_result r = {.error = e->error,
                    .band = BAND * e->magnitude + e->ends +
                            (SHARP - 1.0) * (e->sharp + e->few) +
                            HISTORY * e->history + HOOP * fabs(e->hoop),
-                   .ends = e->product > ROUNDING * e->magnitude
-                               ? e->ends / e->product
-                               : 0.0};
+                   .ends = share_of(e, e->ends)};
   if (e->few > TRUSTED * fabs(e->error))
     r.verdict = GOAL_FEW_NODES;
   else if (r.ends >= TRUSTED)
     r.verdict =
         2.0 * e->supports > e->ends ? GOAL_SUPPORT_END : GOAL_CONTACT_END;
+  else if (share_of(e, e->ends + e->near) >= TRUSTED)
+    r.verdict = GOAL_SUPPORT_END;
   else if (fabs(e->error) < fmax(LEFT * e->magnitude, HOOP * fabs(e->hoop)))
     r.verdict = GOAL_CANCELS;
   return r;

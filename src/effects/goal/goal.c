@@ -345,6 +345,22 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
   return f->is_front ? GOAL_FRONT : found;
 }
 
+/* In a corner of the border in the plane, where recovered gradients are
+ * extrapolated along both sides: there displacements were in error by 0.7
+ * to 1.2 of the estimate. */
+static double of_corner(const run *r, const goal_state *own, int id,
+                        double error) {
+  static const double CORNER = 2.6, PART = 0.5; /* rad, - */
+  const goal_card *g = &r->m->accuracy.goals[id];
+  const int node[2] = {g->node_id, g->from_node_id};
+  if (g->quantity != GOAL_DISPLACEMENT || r->msh->dim == 3) return 0.0;
+  for (int k = 0; k < 2; ++k)
+    if (node[k] >= 0 && own->border.angle[node[k]] < CORNER &&
+        !r->body.d.fixed[2 * node[k]] && !r->body.d.fixed[2 * node[k] + 1])
+      return PART * fabs(error);
+  return 0.0;
+}
+
 /* Half of the error may be missing. */
 static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   space_recovery *recovery;
@@ -419,6 +435,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->solver = solver;
   out->cpu = cpu;
   out->band += f->rough + f->held + of_coarseness(r, s, &e) +
+               of_corner(r, own, id, e.error) +
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));

@@ -479,6 +479,18 @@ static void mark_forces(const run *r, unsigned char *ends) {
   }
 }
 
+/* What is infinite at a node is so steep beyond its elements that recovered
+ * gradients lack it there too. */
+static void mark_near(const mesh *m, unsigned char *ends) {
+  const int n = m->dim + 1;
+  for (int e = 0; e < m->n_elem; ++e) {
+    int near = 0;
+    for (int a = 0; a < n; ++a) near |= ends[m->elem[n * e + a]];
+    for (int a = 0; a < n && (near & GOAL_END_OF_SUPPORT) != 0; ++a)
+      ends[m->elem[n * e + a]] |= GOAL_NEAR_SUPPORT;
+  }
+}
+
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
@@ -489,6 +501,8 @@ status goal_mark_supports(const run *r, const goal_border *border,
                m->dim == 2 ? angle_at(m, m->elem + k - k % n, k % n) : 0.0,
                &at[m->elem[k]]);
   mark_forces(r, s->ends);
-  return m->dim == 2 ? mark_plane(r, border, at, s)
-                     : mark_space(r, border, of, at, s);
+  PASS(m->dim == 2 ? mark_plane(r, border, at, s)
+                   : mark_space(r, border, of, at, s));
+  mark_near(m, s->ends);
+  return OK;
 }
