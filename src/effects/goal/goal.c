@@ -371,41 +371,49 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
-/* 1: a sum of contact forces along directions that differ, as radial ones do:
- * where few nodes have the forces, it is what their places make it. */
-static int turns(const run *r, const goal_form *f) {
-  const int dim = r->msh->dim;
-  double first[3] = {0.0}, size = 0.0, most = 0.0;
+/* 1: the same force of the obstacle on another node would change J: where few
+ * nodes have the forces, it is what their places make it. Radial forces are
+ * those of the place too. */
+static int turns(const run *r, const shared *s) {
+  const contact_surface *on = r->surface;
+  const int dim = r->msh->dim, last = r->problem.ut0 != NULL ? dim : 1;
+  double size = 0.0, most = 0.0;
+  for (size_t k = 0; k < r->n_dof; ++k) size = fmax(size, fabs(s->y[k]));
   for (int i = 0; i < r->nodes.n; ++i) {
-    double v[3] = {0.0};
+    double z[3] = {0.0};
     for (int a = 0; a < dim; ++a)
-      add_scaled(dim, f->psi[dim * i + a],
-                 r->surface->basis + dim * (dim * i + a), v);
-    if (dot(dim, v, v) > 0.0 && size == 0.0) {
-      COPY(first, v, dim);
-      size = sqrt(dot(dim, v, v));
+      add_scaled(dim, s->form.psi[dim * i + a], on->basis + dim * (dim * i + a),
+                 z);
+    if (r->faces.input.axisymmetric) most = fmax(most, fabs(z[0]));
+    for (int c = 0; c < dim; ++c) {
+      size = fmax(size, fabs(z[c]));
+      z[c] += s->y[dim * on->node_id[i] + c];
     }
-    for (int c = 0; c < dim && dot(dim, v, v) > 0.0; ++c)
-      most = fmax(most, fabs(v[c] - first[c]));
+    for (int k = dim * i; k < dim * i + last; ++k)
+      if (!on->held[k])
+        most = fmax(most, fabs(dot(dim, on->frame + dim * k, z)));
   }
-  if (r->faces.input.axisymmetric) most = fmax(most, fabs(first[0]));
   return most > TURN * size;
 }
 
-/* 1: few closed nodes, or nodes in a line on a surface in space. */
-static int has_few(const shared *s) {
+/* 1: few closed nodes, or nodes in a line on a surface in space: of the contact
+ * of a goal, or of all. */
+static int has_few(const run *r, const shared *s, int id) {
   enum { FEW = 3 };
-  return s->surface.n_closed > 0 &&
-         (s->surface.n_closed <= FEW || s->surface.n_whole == 0);
+  const int of = r->m->accuracy.goals[id].contact_id;
+  int n = s->surface.n_closed, whole = 0;
+  if (of >= 0) n = s->surface.closed[of];
+  for (int k = 0; k < r->m->n.contact; ++k)
+    if (of < 0 || of == k) whole += s->surface.whole[k];
+  return n > 0 && (n <= FEW || whole == 0);
 }
 
 /* exact: without an error but rounding. Nothing is known about a contact that
  * its nodes miss, or missed while a sum grew. */
-static void doubt_of_nodes(const run *r, const shared *s, int exact, int missed,
-                           goal_result *out) {
-  const int few = (out->verdict == GOAL_FEW_NODES || has_few(s)) &&
-                  fmax(s->form.size, fabs(s->form.value)) > 0.0 &&
-                  turns(r, &s->form);
+static void doubt_of_nodes(const run *r, const shared *s, int id, int exact,
+                           int missed, goal_result *out) {
+  const int few = (out->verdict == GOAL_FEW_NODES || has_few(r, s, id)) &&
+                  fmax(s->form.size, fabs(s->form.value)) > 0.0 && turns(r, s);
   if (exact) out->verdict = few ? GOAL_FEW_NODES : GOAL_RELIABLE;
   if ((s->surface.is_missed || (s->form.sums && missed)) &&
       out->verdict == GOAL_RELIABLE)
@@ -425,7 +433,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   PASS(complete(r, s, product_of(r, own, id), &e));
   e.error += of_sticks(r, own, s, &e.history);
   e.magnitude = fmax(e.magnitude, fabs(e.error));
-  e.few = has_few(s) ? fabs(e.error) : 0.0;
+  e.few = has_few(r, s, id) ? fabs(e.error) : 0.0;
   if (f->sums) {
     goal_estimate_add(&e, &own->before.sum[id]);
     e = own->before.sum[id];
@@ -439,7 +447,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
-  doubt_of_nodes(r, s, e.magnitude <= ROUNDING * fabs(value),
+  doubt_of_nodes(r, s, id, e.magnitude <= ROUNDING * fabs(value),
                  own->before.missed, out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;

@@ -123,8 +123,8 @@ typedef struct goal_surface {
   bent_edge *bent;      /* [n_bent] sorted */
   given_edge *given;    /* [n_given] sorted; NULL: none */
   unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
-  int n_closed;         /* closed nodes */
-  int n_whole;          /* faces with closed nodes alone */
+  int *closed, *whole;  /* [n_contact] closed nodes; faces with them alone */
+  int n_closed;         /* of all contacts */
   int is_missed; /* 1: no node of a contact is closed, but its gap may end
                     between nodes */
 } goal_surface;

@@ -229,7 +229,7 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
     for (int a = 0; a < m->dim; ++a)
       for (int b = 0; b < m->dim; ++b)
         if (m->origin[v[a]] == m->origin[to[b]]) w[a] = to[b];
-    s->n_whole += is_whole(r, where, v);
+    s->whole[r->m->mesh.cracks[id].contact_id] += is_whole(r, where, v);
     add_lip_edges(r, where, v, w, bubble_weight(r, near), s);
   }
 }
@@ -285,20 +285,16 @@ static int may_close(const run *r, const int *q, double middle) {
 }
 
 /* s->is_missed. */
-static status find_missed(const run *r, const gap_slopes *slopes,
-                          const int *where, goal_surface *s) {
-  OWNED_NEW(unsigned char, closed, r->m->n.contact);
-  for (int q = 0; q < r->nodes.n; ++q)
-    if (r->result.contact[q] != CONTACT_OPEN)
-      closed[r->surface->contact_id[q]] = 1;
+static void find_missed(const run *r, const gap_slopes *slopes,
+                        const int *where, goal_surface *s) {
   for (int k = 0; k < s->n_edge && !s->is_missed; ++k) {
     contact_edge e = s->edge[k];
     const int q[2] = {where[e.a], where[e.b]};
-    if (e.other[0] >= 0 || closed[r->surface->contact_id[q[0]]]) continue;
+    if (e.other[0] >= 0 || s->closed[r->surface->contact_id[q[0]]] > 0)
+      continue;
     set_middle(r, slopes, q, &e);
     s->is_missed = may_close(r, q, e.excess);
   }
-  return OK;
 }
 
 /* Each edge once. */
@@ -314,12 +310,13 @@ static void unite_edges(goal_surface *s) {
 
 /* The edges of a contact on an obstacle. */
 static void add_group(const run *r, const goal_ring *rings,
-                      const gap_slopes *slopes, const mesh_group *g,
-                      const int *where, goal_surface *s) {
+                      const gap_slopes *slopes, int id, const int *where,
+                      goal_surface *s) {
   const int dim = r->msh->dim;
+  const mesh_group *g = r->faces.pairs[id].group;
   for (int i = 0; i < g->n_item; ++i) {
     const int *v = r->msh->face + dim * g->item_id[i];
-    s->n_whole += is_whole(r, where, v);
+    s->whole[id] += is_whole(r, where, v);
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b) {
         const int ends[2] = {v[a], v[b]};
@@ -334,7 +331,8 @@ status goal_surface_new(const run *r, const goal_border *border,
   OWNED int *where = NULL, *seen = NULL;
   int n = 0;
   OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
-  PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node));
+  PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node),
+               OF(s->closed, r->m->n.contact), OF(s->whole, r->m->n.contact));
   PASS(goal_places(r, &where));
   OWNED_PARTS(gap_slopes, slopes, gap_slopes_new(r, where, &slopes));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
@@ -342,17 +340,18 @@ status goal_surface_new(const run *r, const goal_border *border,
   for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;
   PASS_NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
-    if (!r->m->contacts[k].is_pair)
-      add_group(r, &rings, &slopes, r->faces.pairs[k].group, where, s);
+    if (!r->m->contacts[k].is_pair) add_group(r, &rings, &slopes, k, where, s);
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   PAIR_SORT(s->edge, s->n_edge);
   mark_border(r, where, seen, s);
   PASS(mark_front(m, s));
   unite_edges(s);
-  PASS(find_missed(r, &slopes, where, s));
   for (int q = 0; q < r->nodes.n; ++q)
-    s->n_closed += r->result.contact[q] != CONTACT_OPEN;
+    s->closed[r->surface->contact_id[q]] +=
+        r->result.contact[q] != CONTACT_OPEN;
+  for (int k = 0; k < r->m->n.contact; ++k) s->n_closed += s->closed[k];
+  find_missed(r, &slopes, where, s);
   PASS(goal_add_bent(r, &rings, s));
   PASS(goal_add_given(r, s));
   return goal_mark_supports(r, border, of, s);
