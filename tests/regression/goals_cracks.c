@@ -325,6 +325,15 @@ START_TEST(target_of_a_factor) {
 }
 END_TEST
 
+/* Other goals are in error at the tip, beyond its elements too. */
+START_TEST(tip_is_an_end_for_other_goals) {
+  job j = run_crack("crack", "N = 12\nANGLE = 0.\nGROWTH = 0.3\nW = 3.",
+                    "*GOAL, NAME=E, QUANTITY=ENERGY\n", HELD PULLED);
+  ck_assert(has_word(&j, "support_end"));
+  job_end(&j);
+}
+END_TEST
+
 /* Between two materials there is no estimate. */
 START_TEST(target_of_an_interface_is_refused) {
   job j = job_begin("joint");
@@ -375,4 +384,5 @@ UNIT_MAIN("goals_cracks", open_crack_in_a_plate, crack_loaded_on_its_lips,
           domain_of_long_elements, closed_crack_that_slips,
           error_of_the_solver_in_a_factor, crack_that_sticks_is_none,
           disc_in_space, no_factor_no_estimate, target_of_a_factor,
-          target_on_meshes_that_scatter, target_of_an_interface_is_refused)
+          target_on_meshes_that_scatter, target_of_an_interface_is_refused,
+          tip_is_an_end_for_other_goals)

@@ -433,6 +433,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   PASS(complete(r, s, product_of(r, own, id), &e));
   e.error += of_sticks(r, own, s, &e.history);
   e.magnitude = fmax(e.magnitude, fabs(e.error));
+  if (f->factor.n > 0) e.near = 0.0;
   e.few = has_few(r, s, id) ? fabs(e.error) : 0.0;
   if (f->sums) {
     goal_estimate_add(&e, &own->before.sum[id]);

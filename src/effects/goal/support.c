@@ -480,9 +480,12 @@ static void mark_forces(const run *r, unsigned char *ends) {
 }
 
 /* What is infinite at a node is so steep beyond its elements that recovered
- * gradients lack it there too. */
-static void mark_near(const mesh *m, unsigned char *ends) {
+ * gradients lack it there too, and at the front of a crack. */
+static void mark_near(const mesh *m, const unsigned char *front,
+                      unsigned char *ends) {
   const int n = m->dim + 1;
+  for (int i = 0; i < m->n_node && front != NULL; ++i)
+    if (front[i]) ends[i] |= GOAL_NEAR_SUPPORT;
   for (int e = 0; e < m->n_elem; ++e) {
     int near = 0;
     for (int a = 0; a < n; ++a) near |= ends[m->elem[n * e + a]];
@@ -503,6 +506,6 @@ status goal_mark_supports(const run *r, const goal_border *border,
   mark_forces(r, s->ends);
   PASS(m->dim == 2 ? mark_plane(r, border, at, s)
                    : mark_space(r, border, of, at, s));
-  mark_near(m, s->ends);
+  mark_near(m, s->front, s->ends);
   return OK;
 }
