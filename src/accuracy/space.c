@@ -470,7 +470,7 @@ static double energy_product(int ns, const double *S, const double *a,
   return sum;
 }
 
-static const double *compliance_of(const space_recovery *s, int elem_id) {
+const double *space_compliance_of(const space_recovery *s, int elem_id) {
   return s->compliance +
          (size_t)(s->d->ns * s->d->ns) * s->d->section_id[elem_id];
 }
@@ -503,7 +503,7 @@ static inline void find_products(const space_recovery *s, int elem_id,
                                  const space_field *a, const space_field *b,
                                  const int n, double *sum) {
   const int ns = n == 3 ? 4 : 6, *v = s->d->mesh->elem + n * elem_id;
-  const double *S = compliance_of(s, elem_id);
+  const double *S = space_compliance_of(s, elem_id);
   double da[MAX_NS], db[MAX_NS];
   double all_a[MAX_NS] = {0.0}, all_b[MAX_NS] = {0.0};
   for (int k = 0; k < n; ++k) {
@@ -547,7 +547,7 @@ static void add_region(space_recovery *s, int region, const double *sigma,
     space_product(s, e, &own, &own, &square);
     out->error += square;
     out->norm +=
-        s->measure[e] * energy_product(d->ns, compliance_of(s, e), t, t);
+        s->measure[e] * energy_product(d->ns, space_compliance_of(s, e), t, t);
     if (eta != NULL) eta[e] = sqrt(fmax(square, 0.0));
   }
 }

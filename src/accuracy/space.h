@@ -56,6 +56,8 @@ typedef struct space_field {
 } space_field;
 /* The moduli of the domain now, for the products; ERR_INTERNAL as above. */
 status space_moduli(space_recovery *s);
+/* S[ns*ns] of space_compliance for an element, of the moduli then. */
+const double *space_compliance_of(const space_recovery *s, int elem_id);
 /* Integral of d_a' inv(E) d_b over an element, d recovered less own, J; that of
  * d_b' inv(E) d_b in *square. */
 double space_product(const space_recovery *s, int elem_id, const space_field *a,

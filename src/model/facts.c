@@ -147,6 +147,17 @@ const char *contact_card(const contact *c) {
   return c->is_pair ? "*CONTACT PAIR" : "*CONTACT";
 }
 
+int model_is_interface(const model *m, const mesh *msh, int contact_id) {
+  const int *of = m->elem_section;
+  for (int i = 0; i < msh->n_crack; ++i)
+    for (int k = 0; k < msh->crack[i].n; ++k)
+      if (m->mesh.cracks[i].contact_id == contact_id &&
+          of[msh->face_elem[msh->crack[i].plus[k]]] !=
+              of[msh->face_elem[msh->crack[i].minus[k]]])
+        return 1;
+  return 0;
+}
+
 int model_has_pairs(const model *m) {
   int any = m->n.tie > 0;
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].is_pair;

@@ -510,6 +510,8 @@ const friction_rule *friction_in_force(const model *m, int step_id,
                                        int contact_id);
 /* A friction value that is zero everywhere and always is no friction. */
 int rule_has_friction(const friction_rule *rule);
+/* 1: a crack between two sections. */
+int model_is_interface(const model *m, const mesh *msh, int contact_id);
 /* "*CONTACT", "*CONTACT PAIR" or "*CRACK" */
 const char *contact_card(const contact *c);
 /* 1 if the deck has such a card. */

@@ -18,9 +18,10 @@ static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
 static const double BLIND = 0.5; /* -, of the error, without an estimate */
 static const double FAR = 0.1;   /* -, of the error, or it is near */
-enum { BLIND_PASSES = 3 };       /* without one at all, at most */
-static const double ENDS = 2.0;  /* -, of an estimate that is not reliable for
-                                    the ends of contact */
+static const double ROUNDING = 1e-9; /* -, of the error */
+enum { BLIND_PASSES = 3 };           /* without one at all, at most */
+static const double ENDS = 2.0; /* -, of an estimate that is not reliable for
+                                   the ends of contact */
 
 struct aims {
   int n, n_pass;   /* goals */
@@ -187,15 +188,16 @@ static void find_sizes(const mesh *msh, const double *own, double part,
   space_sizes(msh, own, sqrt(part * square), size);
 }
 
-/* own[n_elem] of goal i; 1: there are some. */
+/* own[n_elem] of goal i; 1: there are some, beyond rounding: an adjoint that is
+ * linear has none, and the error is one of the gap. */
 static int find_own(const aims *a, const mesh *msh, int i, double *own) {
   const double *product = a->product + (size_t)i * msh->n_elem;
-  int any = 0;
+  double sum = 0.0;
   for (int e = 0; e < msh->n_elem; ++e) {
     own[e] = sqrt(product[e]);
-    any |= own[e] > 0.0;
+    sum += product[e];
   }
-  return any;
+  return sum > ROUNDING * fabs(last_row(a, i)->found.error);
 }
 
 status aims_share(const aims *a, const mesh *msh, int i, double *share) {

@@ -325,6 +325,45 @@ START_TEST(target_of_a_factor) {
 }
 END_TEST
 
+/* Other goals are in error at the tip, beyond its elements too. */
+START_TEST(tip_is_an_end_for_other_goals) {
+  job j = run_crack("crack", "N = 12\nANGLE = 0.\nGROWTH = 0.3\nW = 3.",
+                    "*GOAL, NAME=E, QUANTITY=ENERGY\n", HELD PULLED);
+  ck_assert(has_word(&j, "support_end"));
+  job_end(&j);
+}
+END_TEST
+
+/* Between two materials there is no estimate. */
+START_TEST(target_of_an_interface_is_refused) {
+  job j = job_begin("joint");
+  job_write(&j, "joint.geo",
+            "For k In {0:2}\nPoint(4*k+1)={0,k,0,.5};Point(4*k+2)={1,k,0,.5};"
+            "Point(4*k+3)={2,k,0,.5};Point(4*k+4)={3,k,0,.5};\n"
+            "For i In {1:3}\nLine(10*k+i)={4*k+i,4*k+i+1};\nEndFor\nEndFor\n"
+            "For k In {0:1}\nLine(40+k)={4*k+1,4*k+5};\n"
+            "Line(50+k)={4*k+4,4*k+8};\nLine Loop(k+1)={10*k+1,10*k+2,10*k+3,"
+            "50+k,-10*k-13,-10*k-12,-10*k-11,-40-k};\nPlane Surface(k+1)={k+1};"
+            "\nEndFor\nPhysical Surface(\"LOW\")={1};\n"
+            "Physical Surface(\"HIGH\")={2};\nPhysical Line(\"SLIT\")={12};\n"
+            "Physical Line(\"TOP\")={21,22,23};\n"
+            "Physical Line(\"FOOT\")={1,2,3};\n");
+  job_write(&j, "joint.inp",
+            "*MESH, FILE=joint.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*MATERIAL, NAME=N\n*ELASTIC\n2000., 0.3\n"
+            "*SOLID SECTION, ELSET=LOW, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=HIGH, MATERIAL=N\n"
+            "*CRACK, NAME=C, GROUP=SLIT\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY, TARGET=1 %%\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nFOOT, 1, 2\n*DSLOAD\nTOP, P, -1.\n"
+            "*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 2);
+  ck_assert_ptr_nonnull(
+      strstr(j.errors, "error P2066: *CRACK between two materials: TARGET="));
+  job_end(&j);
+}
+END_TEST
+
 /* The error scatters by as much as little finer meshes gain. */
 START_TEST(target_on_meshes_that_scatter) {
   job j = run_crack("crack", "N = 5\nANGLE = 40.\nGROWTH = 0.2\nW = 200.",
@@ -345,4 +384,5 @@ UNIT_MAIN("goals_cracks", open_crack_in_a_plate, crack_loaded_on_its_lips,
           domain_of_long_elements, closed_crack_that_slips,
           error_of_the_solver_in_a_factor, crack_that_sticks_is_none,
           disc_in_space, no_factor_no_estimate, target_of_a_factor,
-          target_on_meshes_that_scatter)
+          target_on_meshes_that_scatter, target_of_an_interface_is_refused,
+          tip_is_an_end_for_other_goals)

@@ -5,87 +5,12 @@
  * plane of symmetry.
  */
 #include "base/base.h"
-#include "scenes/mesh.h"
-#include "support/job.h"
+#include "support/goal_body.h"
 #include "support/unit.h"
 
-#define PLANE "PLANE\n0., 0.\n0., 1."
 #define ENERGY "*GOAL, NAME=E, QUANTITY=ENERGY\n"
-#define NORMAL "*GOAL, NAME=N, QUANTITY=FORCE, CONTACT=C\n"
 #define PRESSED "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n"
 #define CLAMPED "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n*DSLOAD\nTOP, P, 10.\n"
-
-static void write_mesh(const job *j, const char *words,
-                       const mesh_change *change) {
-  char path[200];
-  int *number = NULL;
-  snprintf(path, sizeof path, "%s/block.msh", j->dir);
-  FILE *f = fopen(path, "w");
-  ck_assert_ptr_nonnull(f);
-  ck_assert(scene_mesh_write(f, words, change, &number));
-  fclose(f);
-  free(number);
-}
-
-/* A body of these words (scenes/mesh.h) with contact cards. */
-static job of_type(const char *type, const char *words, const char *cards) {
-  const mesh_change change = {.scale = 1.0};
-  job j = job_begin("block");
-  write_mesh(&j, words, &change);
-  job_write(&j, "block.inp",
-            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
-            "*OBSTACLE, NAME=O, TYPE=%s*PRINT, GOALS\n*END STEP\n",
-            type, cards);
-  const int code = job_run(&j, "");
-  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-  return j;
-}
-
-static job of_body(const char *words, const char *cards) {
-  return of_type("", words, cards);
-}
-
-#define CONTACT "\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-
-/* A block of 2 x 1 with n x n squares on an obstacle. */
-static job of_block(int n, const char *on, const char *cards) {
-  char words[40], all[800];
-  snprintf(words, sizeof words, "rect %d %d 2 1 alternate", n, n);
-  snprintf(all, sizeof all, "%s" CONTACT "%s", on, cards);
-  return of_body(words, all);
-}
-
-/* A goal: its estimate is from "least" to "most" of its error, which is in the
- * band, and the band at most "wide" of the error. */
-static void check_row(const job *j, int row, double exact, double least,
-                      double most, double wide) {
-  dat t = job_table(j, "GOALS", -1);
-  const double is = exact - dat_at(&t, row, "value");
-  const double told = dat_at(&t, row, "error"), band = dat_at(&t, row, "band");
-  ck_assert_msg(told / is > least && told / is < most,
-                "error %g, estimate %g of it", is, told / is);
-  ck_assert_msg(fabs(is - told) <= band && band <= wide * fabs(is),
-                "error %g, estimate %g, band %g", is, told, band);
-  dat_free(&t);
-}
-
-static void check(const job *j, double exact, double least, double most,
-                  double wide) {
-  check_row(j, 0, exact, least, most, wide);
-}
-
-static int has_verdict(const job *j, const char *goal, const char *word) {
-  char wanted[80], *json = job_file(j, "json");
-  snprintf(wanted, sizeof wanted, "\"goal\": \"%s\"", goal);
-  char *at = strstr(json, wanted);
-  ck_assert_msg(at != NULL, "no %s", wanted);
-  *strchr(at, '}') = '\0';
-  snprintf(wanted, sizeof wanted, "\"verdict\": \"%s\"", word);
-  const int has = strstr(at, wanted) != NULL;
-  free(json);
-  return has;
-}
 
 /* By supports alone the energy of a mesh is too large, by loads too small; by
  * both, and along supports that bend, by a part of each. */
@@ -110,33 +35,44 @@ START_TEST(energies_by_loads_and_by_supports) {
   for (int k = 0; k < 5; ++k) {
     char cards[400];
     snprintf(cards, sizeof cards, ENERGY "%s", rows[k].step);
-    job j = of_block(16, rows[k].on, cards);
-    check(&j, rows[k].exact, 0.6, 1.3, rows[k].wide);
+    job j = body_of_block(16, rows[k].on, cards);
+    goal_check(&j, rows[k].exact, 0.6, 1.3, rows[k].wide);
     job_end(&j);
   }
+}
+END_TEST
+
+/* In a ring the hoop strains vary within the elements, which is no error. */
+START_TEST(energy_of_a_ring_that_is_pressed) {
+  job j = body_of_type(", TYPE=CAX3", "rect 16 16 1 1 alternate at 1 0",
+                       PLANE CONTACT ENERGY
+                       "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                       "TOP, 2, 2, -0.002\n");
+  goal_check(&j, 0.01944272377, 0.8, 1.2, 3.0);
+  job_end(&j);
 }
 END_TEST
 
 /* Next to the corners of a clamp stresses are infinite, and at the edge of a
  * roller in a straight side; not where it has all of the side. */
 START_TEST(ends_of_supports_are_not_reliable) {
-  job j = of_block(8, PLANE, NORMAL ENERGY PRESSED);
-  ck_assert(has_verdict(&j, "N", "support_end"));
-  ck_assert(has_verdict(&j, "E", "support_end"));
-  check(&j, 23.118663, 0.3, 1.0, 3.0);
+  job j = body_of_block(8, PLANE, NORMAL ENERGY PRESSED);
+  ck_assert(goal_has_verdict(&j, "N", "support_end"));
+  ck_assert(goal_has_verdict(&j, "E", "support_end"));
+  goal_check(&j, 23.118663, 0.3, 1.0, 3.0);
   job_end(&j);
-  j = of_block(
+  j = body_of_block(
       8, PLANE,
       "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1\n2., 1.\n" CLAMPED);
-  ck_assert(has_verdict(&j, "U", "support_end"));
-  check(&j, 0.0070721533, 0.3, 1.0, 3.0);
+  ck_assert(goal_has_verdict(&j, "U", "support_end"));
+  goal_check(&j, 0.0070721533, 0.3, 1.0, 3.0);
   job_end(&j);
-  j = of_block(16, PLANE,
-               ENERGY
-               "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
-               "TOP, P, \"10*(1+cos(pi*x/2))\"\n");
-  ck_assert(has_verdict(&j, "E", "reliable"));
-  check(&j, 0.13444394, 0.8, 1.2, 0.5);
+  j = body_of_block(16, PLANE,
+                    ENERGY
+                    "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\n"
+                    "TOP, P, \"10*(1+cos(pi*x/2))\"\n");
+  ck_assert(goal_has_verdict(&j, "E", "reliable"));
+  goal_check(&j, 0.13444394, 0.8, 1.2, 0.5);
   job_end(&j);
 }
 END_TEST
@@ -149,9 +85,9 @@ START_TEST(ends_of_supports_in_space) {
     char cards[400];
     snprintf(cards, sizeof cards,
              "%s*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, -0.01\n%s", on, hold[k]);
-    job j = of_body("box 4 4 4 1 1 1", cards);
-    ck_assert(has_verdict(&j, "N", k == 0 ? "support_end" : "reliable"));
-    if (k == 0) check(&j, 10.3045, 0.3, 1.0, 3.0);
+    job j = body_of("box 4 4 4 1 1 1", cards);
+    ck_assert(goal_has_verdict(&j, "N", k == 0 ? "support_end" : "reliable"));
+    if (k == 0) goal_check(&j, 10.3045, 0.3, 1.0, 3.0);
     job_end(&j);
   }
 }
@@ -170,12 +106,12 @@ START_TEST(nodes_of_supports_have_a_part_of_the_force) {
              "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.05\n"
              "TOP, 2, 2, -0.01\n%s",
              hold[k]);
-    job j = of_block(8, "GAP\n\"-0.005\"", cards);
+    job j = body_of_block(8, "GAP\n\"-0.005\"", cards);
     dat t = job_table(&j, "GOALS", -1);
     const double off = -1.0 - dat_at(&t, 0, "corrected");
     const double band = dat_at(&t, 0, "band");
     ck_assert_msg(fabs(off) <= band, "row %d: %g off, band %g", k, off, band);
-    ck_assert_int_eq(has_verdict(&j, "T", "reliable"), k > 0);
+    ck_assert_int_eq(goal_has_verdict(&j, "T", "reliable"), k > 0);
     ck_assert(k == 0 ? band > 0.01 : band < 1e-12 && band > 1e-14);
     dat_free(&t);
     job_end(&j);
@@ -185,14 +121,14 @@ END_TEST
 
 /* Where a coarse mesh sticks, and a sum whose terms cancel. */
 START_TEST(zeros_are_not_exact) {
-  job j = of_block(8, PLANE,
-                   "*FRICTION, CONTACT=C, LAW=COULOMB\n5.\n"
-                   "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n"
-                   "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n"
-                   "*DSLOAD\nTOP, P, 10.\n");
-  ck_assert(has_verdict(&j, "W", "no_slip"));
+  job j = body_of_block(8, PLANE,
+                        "*FRICTION, CONTACT=C, LAW=COULOMB\n5.\n"
+                        "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n"
+                        "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n"
+                        "*DSLOAD\nTOP, P, 10.\n");
+  ck_assert(goal_has_verdict(&j, "W", "no_slip"));
   job_end(&j);
-  j = of_block(
+  j = body_of_block(
       8, PLANE,
       "*GOAL, NAME=S, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n" CLAMPED);
   dat t = job_table(&j, "GOALS", -1);
@@ -220,7 +156,7 @@ typedef struct layers {
 static job of_layers(layers l, const char *cards) {
   const mesh_change change = {.scale = 1.0, .map = {NULL, l.y, NULL}};
   job j = job_begin("block");
-  write_mesh(&j, "rect 12 12 1 1 alternate layers", &change);
+  body_write_mesh(&j, "rect 12 12 1 1 alternate layers", &change);
   job_write(&j, "block.inp",
             "*MESH, FILE=block.msh\n*MATERIAL, NAME=A\n*ELASTIC\n1000., 0.3\n"
             "*EXPANSION\n1e-3\n*MATERIAL, NAME=B\n*ELASTIC\n%g, 0.3\n"
@@ -245,7 +181,8 @@ typedef struct expected {
 } expected;
 
 /* At a free side stresses are infinite; the mean over TOP and that over RIGHT
- * have the same part of their errors, by the theorem of Betti. */
+ * have the same part of their errors, by the theorem of Betti. The energy under
+ * the pressure is half of it times the mean over TOP: its part is near that. */
 START_TEST(materials_that_meet_at_a_free_side) {
   static const struct {
     layers of;
@@ -263,7 +200,7 @@ START_TEST(materials_that_meet_at_a_free_side) {
        {{0, -0.013077065, 0.54, 0.6, 0.8},
         {1, 0.0037010199, 0.54, 0.6, 0.8},
         {3, 1.0729641, 0.5, 0.6, 0.8},
-        {5, 0.4108281, 0.75, 0.9, 1.0}}},
+        {5, 0.4108281, 0.6, 0.75, 1.0}}},
       {{1.0, -5e-4, "CPE3", NULL},
        SIDES "*TEMPERATURE\nSOFT, 10.\nHARD, 10.\n",
        {{2, 0.0035564393, 0.95, 1.05, 0.8}, {3, 4.3105328, 0.68, 0.78, 0.6}}},
@@ -275,10 +212,10 @@ START_TEST(materials_that_meet_at_a_free_side) {
        {{2, -0.002234232, 0.95, 1.05, 1.3}, {3, 2.5251199, 0.54, 0.65, 0.8}}}};
   for (int k = 0; k < 5; ++k) {
     job j = of_layers(rows[k].of, rows[k].cards);
-    ck_assert(has_verdict(&j, "S", "support_end"));
+    ck_assert(goal_has_verdict(&j, "S", "support_end"));
     for (int i = 0; i < 4 && rows[k].is[i].wide > 0.0; ++i) {
       const expected *e = &rows[k].is[i];
-      check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
+      goal_check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
     }
     job_end(&j);
   }
@@ -289,19 +226,19 @@ END_TEST
  * where that turns. */
 START_TEST(materials_that_meet_smoothly) {
   job j = of_layers((layers){3.0, 0.0, "CPE3", NULL}, WALLS WAVE);
-  ck_assert(has_verdict(&j, "P", "reliable"));
-  ck_assert(has_verdict(&j, "E", "reliable"));
-  check_row(&j, 4, -0.015275949, 0.9, 1.1, 0.3);
-  check_row(&j, 5, 0.12590357, 0.9, 1.1, 0.3);
+  ck_assert(goal_has_verdict(&j, "P", "reliable"));
+  ck_assert(goal_has_verdict(&j, "E", "reliable"));
+  goal_check_row(&j, 4, -0.015275949, 0.9, 1.1, 0.3);
+  goal_check_row(&j, 5, 0.12590357, 0.9, 1.1, 0.3);
   job_end(&j);
   j = of_layers((layers){3.0, 0.0, "CAX3", NULL},
                 "*BOUNDARY\nRIGHT, 1\nBOTTOM, 2\n" WAVE);
-  ck_assert(!has_verdict(&j, "E", "support_end"));
+  ck_assert(!goal_has_verdict(&j, "E", "support_end"));
   job_end(&j);
   j = of_layers((layers){3.0, 0.0, "CPE3", "y+0.5*y*(1-y)*abs(cos(pi*x))"},
                 WALLS WAVE);
-  ck_assert(has_verdict(&j, "E", "support_end"));
-  check_row(&j, 5, 0.13734705, 0.85, 1.1, 0.4);
+  ck_assert(goal_has_verdict(&j, "E", "support_end"));
+  goal_check_row(&j, 5, 0.13734705, 0.85, 1.1, 0.4);
   job_end(&j);
 }
 END_TEST
@@ -357,7 +294,7 @@ START_TEST(energies_by_loads_and_by_temperatures) {
   for (int k = 0; k < 6; ++k) {
     job j = of_layers(rows[k].of, rows[k].cards);
     const expected *e = &rows[k].is;
-    check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
+    goal_check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
     job_end(&j);
   }
 }
@@ -390,7 +327,7 @@ START_TEST(temperatures_that_vary_within_elements) {
     job j = of_layers(rows[k].of, rows[k].cards);
     for (int i = 0; i < 3 && rows[k].is[i].wide > 0.0; ++i) {
       const expected *e = &rows[k].is[i];
-      check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
+      goal_check_row(&j, e->row, e->exact, e->least, e->most, e->wide);
     }
     job_end(&j);
   }
@@ -438,7 +375,7 @@ START_TEST(materials_that_meet_in_space) {
               rows[k].hold);
     const int code = job_run(&j, "");
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    ck_assert_int_eq(has_verdict(&j, "E", "support_end"), rows[k].sharp);
+    ck_assert_int_eq(goal_has_verdict(&j, "E", "support_end"), rows[k].sharp);
     job_end(&j);
   }
 }
@@ -454,7 +391,7 @@ static job of_peak(const char *words, const char *gap, const char *radius,
            "%s*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C%s\n*STEP\n*STATIC\n"
            "*BOUNDARY\nRIGHT, 1\n%s*PRINT, CONTACT\n",
            on, radius, hold);
-  return of_body(words, cards);
+  return body_of(words, cards);
 }
 
 /* The largest pressure is inside, and the zone grows to the plane at RIGHT: the
@@ -511,123 +448,12 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
-/* Also next to ends of a load: a block under a shear that ends at its
- * corners. */
-START_TEST(estimates_of_coarse_meshes_are_doubted) {
-  for (int n = 3; n <= 4; ++n) {
-    job j = of_block(
-        n, PLANE,
-        "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
-        "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
-        "*DSLOAD\nTOP, P, 30.\nTOP, TX, 3.\n");
-    ck_assert(has_verdict(&j, "U", "support_end"));
-    check(&j, 0.01789396, 0.4, 0.7, 1.4);
-    job_end(&j);
-  }
-}
-END_TEST
-
-/* The force acts in one node, so the moment is by chance what it is. */
-START_TEST(moment_about_a_single_node_is_not_reliable) {
-  job j = of_block(4, "SPHERE, RADIUS=2.\n0.6, -2.",
-                   "*GOAL, NAME=M, QUANTITY=MOMENT, CONTACT=C, COMPONENT=3\n"
-                   "0., 0.\n" NORMAL
-                   "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
-                   "*DSLOAD\nTOP, P, 0.1\n");
-  ck_assert(has_verdict(&j, "M", "few_nodes"));
-  ck_assert(has_verdict(&j, "N", "reliable"));
-  job_end(&j);
-}
-END_TEST
-
-/* Where normals differ, so do the forces along them by the place of the node.
- */
-START_TEST(normal_force_in_a_single_node_is_not_reliable) {
-  job j = of_body("rect 4 4 2 1 alternate",
-                  "SPHERE, RADIUS=2.\n0.6, -2.\n"
-                  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O, NORMAL=OBSTACLE"
-                  "\n" NORMAL
-                  "*GOAL, NAME=Y, QUANTITY=FORCE, CONTACT=C, COMPONENT=2\n"
-                  "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
-                  "*DSLOAD\nTOP, P, 0.1\n");
-  ck_assert(has_verdict(&j, "N", "few_nodes"));
-  ck_assert(has_verdict(&j, "Y", "reliable"));
-  job_end(&j);
-}
-END_TEST
-
-/* The radial force is that of the bearing of the ring, the axial one the load.
- */
-START_TEST(radial_force_in_a_single_node_is_not_reliable) {
-  job j = of_type(", TYPE=CAX3", "rect 2 2 1 0.5",
-                  "PLANE\n1., 0.\n-0.05, 1.\n"
-                  "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O, NORMAL=OBSTACLE"
-                  "\n*GOAL, NAME=R, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
-                  "*GOAL, NAME=Z, QUANTITY=FORCE, CONTACT=C, COMPONENT=2\n"
-                  "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
-                  "*DSLOAD\nTOP, P, 0.01\n");
-  ck_assert(has_verdict(&j, "R", "few_nodes"));
-  ck_assert(has_verdict(&j, "Z", "reliable"));
-  job_end(&j);
-}
-END_TEST
-
-/* A sphere between two nodes, pressed into the side or below it. */
-START_TEST(contact_between_nodes_is_not_none) {
-  static const double depth[] = {0.002, -0.05};
-  for (int flat = 0; flat < 2; ++flat)
-    for (int k = 0; k < 2; ++k) {
-      char cards[500];
-      snprintf(cards, sizeof cards,
-               "SPHERE, RADIUS=2.\n%s%.17g" CONTACT NORMAL
-               "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
-               "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n%s",
-               flat ? "0.75, " : "0.75, 0.5, ", depth[k] - 2.0,
-               flat ? "TOP, 2, 2, 0.\n" : "FRONT, 2\nTOP, 3, 3, 0.\n");
-      job j = of_body(flat ? "rect 4 4 2 1" : "box 4 4 4 2 2 1", cards);
-      ck_assert(has_verdict(&j, "N", k == 0 ? "few_nodes" : "reliable"));
-      ck_assert(has_verdict(&j, "U", k == 0 ? "few_nodes" : "reliable"));
-      job_end(&j);
-    }
-}
-END_TEST
-
-/* A shear that ends at a corner, where no stress fits both sides, next to a
- * free side, to a plane of symmetry, or a pressure on all sides, which fits. */
-START_TEST(ends_of_loads_are_not_reliable) {
-  static const struct {
-    const char *point, *load, *word;
-  } flat[] = {
-      {"2., 1.", "TOP, P, 3.\nTOP, TX, 3.\n", "support_end"},
-      {"0., 1.", "TOP, TX, 3.\n", "support_end"},
-      {"2., 1.", "TOP, P, \"3+x^2\"\nRIGHT, P, \"1+y^2\"\n", "reliable"},
-      {"2., 1.", "TOP, TX, \"x\"\nRIGHT, TY, \"y\"\n", "support_end"},
-      {"2., 1.", "TOP, TX, \"x\"\nRIGHT, TY, \"2*y\"\n", "reliable"}};
-  for (int k = 0; k < 5; ++k) {
-    char cards[500];
-    snprintf(cards, sizeof cards,
-             "PLANE\n9., 0.\n-1., 0.\n"
-             "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n"
-             "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=2\n%s\n"
-             "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DSLOAD\n%s",
-             flat[k].point, flat[k].load);
-    job j = of_body("rect 16 16 2 1 alternate", cards);
-    ck_assert_msg(has_verdict(&j, "U", flat[k].word), "row %d", k);
-    job_end(&j);
-  }
-}
-END_TEST
-
-UNIT_MAIN("goals_supports", nodes_of_supports_have_a_part_of_the_force,
-          zeros_are_not_exact, energies_by_loads_and_by_supports,
-          ends_of_supports_are_not_reliable, ends_of_supports_in_space,
-          materials_that_meet_at_a_free_side, materials_that_meet_smoothly,
-          temperatures_that_do_not_meet, energies_by_loads_and_by_temperatures,
+UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
+          nodes_of_supports_have_a_part_of_the_force, zeros_are_not_exact,
+          energies_by_loads_and_by_supports, ends_of_supports_are_not_reliable,
+          ends_of_supports_in_space, materials_that_meet_at_a_free_side,
+          materials_that_meet_smoothly, temperatures_that_do_not_meet,
+          energies_by_loads_and_by_temperatures,
           temperatures_that_vary_within_elements, materials_that_meet_in_space,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
-          radius_of_a_zone_that_planes_halve,
-          estimates_of_coarse_meshes_are_doubted,
-          moment_about_a_single_node_is_not_reliable,
-          normal_force_in_a_single_node_is_not_reliable,
-          radial_force_in_a_single_node_is_not_reliable,
-          contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable)
+          radius_of_a_zone_that_planes_halve)

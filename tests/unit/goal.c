@@ -314,31 +314,50 @@ END_TEST
 START_TEST(verdicts_change_at_their_limits) {
   static const struct {
     double error, ends, supports;
-    int n_closed;
+    double few, near;
     goal_verdict verdict;
-  } cases[] = {{0.051, 0.029, 0.0, 4, GOAL_RELIABLE},
-               {-0.051, 0.0, 0.0, 0, GOAL_RELIABLE},
-               {0.051, 0.029, 0.0, 3, GOAL_FEW_NODES},
-               {0.051, 0.031, 0.015, 4, GOAL_CONTACT_END},
-               {0.051, 0.031, 0.016, 4, GOAL_SUPPORT_END},
-               {-0.049, 0.029, 0.0, 4, GOAL_CANCELS},
-               {0.049, 0.0, 0.0, 0, GOAL_CANCELS}};
-  for (int k = 0; k < 7; ++k) {
+  } cases[] = {{0.051, 0.029, 0.0, 0.0, 0.0, GOAL_RELIABLE},
+               {-0.051, 0.0, 0.0, 0.029, 0.029, GOAL_RELIABLE},
+               {0.051, 0.029, 0.0, 0.031, 0.0, GOAL_FEW_NODES},
+               {-0.051, 0.031, 0.0, 1.0, 0.0, GOAL_FEW_NODES},
+               {0.051, 0.031, 0.015, 0.0, 0.0, GOAL_CONTACT_END},
+               {0.051, 0.031, 0.0, 0.0, 0.9, GOAL_CONTACT_END},
+               {0.051, 0.031, 0.016, 0.0, 0.0, GOAL_SUPPORT_END},
+               {0.051, 0.02, 0.0, 0.0, 0.011, GOAL_SUPPORT_END},
+               {-0.049, 0.029, 0.0, 0.0, 0.0, GOAL_CANCELS},
+               {0.049, 0.0, 0.0, 0.0, 0.0, GOAL_CANCELS}};
+  for (int k = 0; k < 10; ++k) {
     const goal_estimate e = {.error = 2.0 * cases[k].error,
                              .magnitude = 2.0,
                              .product = 5.0,
                              .ends = 5.0 * cases[k].ends,
-                             .supports = 5.0 * cases[k].supports};
-    ck_assert_int_eq(goal_judge(&e, cases[k].n_closed).verdict,
-                     cases[k].verdict);
+                             .supports = 5.0 * cases[k].supports,
+                             .near = 5.0 * cases[k].near,
+                             .few = 2.0 * fabs(cases[k].error) * cases[k].few};
+    ck_assert_int_eq(goal_judge(&e).verdict, cases[k].verdict);
   }
 }
 END_TEST
 
 /* By a zone of few nodes three times the estimate may be missing. */
 START_TEST(few_nodes_have_a_wider_band) {
-  const goal_estimate e = {.error = -0.5, .magnitude = 2.0, .product = 5.0};
-  ck_assert_double_eq(goal_judge(&e, 3).band, goal_judge(&e, 4).band + 1.5);
+  goal_estimate e = {.error = -0.5, .magnitude = 2.0, .product = 5.0};
+  const double band = goal_judge(&e).band;
+  e.few = 0.5;
+  ck_assert_double_eq(goal_judge(&e).band, band + 1.5);
+}
+END_TEST
+
+/* A zone that began with few nodes has still what they lacked. */
+START_TEST(sums_keep_the_doubts_of_their_parts) {
+  const goal_estimate few = {.error = 0.5, .magnitude = 0.5, .few = 0.5};
+  goal_estimate sum = {.error = 0.5, .magnitude = 1.0, .product = 5.0};
+  ck_assert_int_eq(goal_judge(&sum).verdict, GOAL_RELIABLE);
+  goal_estimate_add(&few, &sum);
+  const goal_result r = goal_judge(&sum);
+  ck_assert_int_eq(r.verdict, GOAL_FEW_NODES);
+  ck_assert_double_eq(r.error, 1.0);
+  ck_assert_double_eq_tol(r.band, 0.1 * 1.5 + 1.5, 1e-15);
 }
 END_TEST
 
@@ -346,7 +365,7 @@ END_TEST
 START_TEST(ends_of_rounding_are_no_ends) {
   const goal_estimate e = {
       .error = 2.0, .magnitude = 2.0, .product = 1e-15, .ends = 1e-15};
-  const goal_result r = goal_judge(&e, 4);
+  const goal_result r = goal_judge(&e);
   ck_assert_int_eq(r.verdict, GOAL_RELIABLE);
   ck_assert_double_eq(r.ends, 0.0);
 }
@@ -364,6 +383,7 @@ int main(void) {
   tcase_add_loop_test(tests, an_operator_gives_what_its_matrix_does, 0, 6);
   tcase_add_test(tests, verdicts_change_at_their_limits);
   tcase_add_test(tests, few_nodes_have_a_wider_band);
+  tcase_add_test(tests, sums_keep_the_doubts_of_their_parts);
   tcase_add_test(tests, ends_of_rounding_are_no_ends);
   return unit_run("goal", tests);
 }

@@ -3,6 +3,7 @@
  * the same measure where they are polyhedra, on circles and spheres where they
  * were, and no worse in shape than half of the smallest angle.
  */
+#include "accuracy/space.h"
 #include "base/base.h"
 #include "support/grid.h"
 #include "support/mesh_file.h"
@@ -246,6 +247,46 @@ START_TEST(box_is_refined) {
 }
 END_TEST
 
+/* In that unit. */
+static mesh *refine_in(double unit, int dim) {
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh *grid = dim == 2
+                   ? make_grid_2d((int[]){4, 3}, (double[]){1.0, 0.8})
+                   : make_grid_3d((int[]){2, 2, 2}, (double[]){1.0, 0.9, 0.7});
+  for (int i = 0; i < dim * grid->n_node; ++i) grid->x[i] *= unit;
+  msh_write(mesh_file_path(&f, "grid.msh"), grid);
+  mesh *m = read_again(&f, grid, NULL);
+  double *size = calloc((size_t)m->n_node, sizeof *size);
+  space_lengths(m, size);
+  for (int i = 0; i < m->n_node; ++i)
+    size[i] *= dim == 2 ? 0.125 : m->x[3 * i] < 0.6 * unit ? 0.25 : 1.0;
+  mesh *r = read_again(&f, m, size);
+  free(size);
+  memory_free(m);
+  memory_free(grid);
+  mesh_file_close(&f);
+  return r;
+}
+
+/* Halves of right triangles have equal edges, and elements may be as large as
+ * required: rounding, which is another in other units, does not choose. */
+START_TEST(units_change_no_mesh) {
+  static const double units[] = {1.0 / 3.0, 25.4e-3, 7e5, 1e-9};
+  for (int dim = 2; dim <= 3; ++dim) {
+    mesh *first = refine_in(1.0, dim);
+    for (int k = 0; k < 4; ++k) {
+      mesh *m = refine_in(units[k], dim);
+      ck_assert_int_eq(m->n_elem, first->n_elem);
+      ck_assert_mem_eq(m->elem, first->elem,
+                       (size_t)((dim + 1) * m->n_elem) * sizeof *m->elem);
+      memory_free(m);
+    }
+    memory_free(first);
+  }
+}
+END_TEST
+
 /* Below x = 1 the bottom of the square becomes an arc of the radius 2 that goes
  * over into a straight line. */
 static void bend(mesh *m) {
@@ -401,7 +442,7 @@ START_TEST(each_refused_request_is_an_error_and_frees_all) {
 }
 END_TEST
 
-UNIT_MAIN("refine", square_is_refined_to_its_sizes,
+UNIT_MAIN("refine", units_change_no_mesh, square_is_refined_to_its_sizes,
           angles_keep_half_of_the_smallest, nothing_gets_larger, box_is_refined,
           surfaces_in_contact_are_followed, thin_elements_are_not_turned_over,
           sphere_is_followed, each_refused_request_is_an_error_and_frees_all)

@@ -568,6 +568,51 @@ static double axi_residual(const goal_estimator *e, int elem_id,
   return sum;
 }
 
+/* At a point of an axisymmetric element: what is recovered of a stress less
+ * that of v[2*n_node], whose hoop strain varies there and is no error. */
+static double axi_difference(const goal_estimator *e, int elem_id, int point,
+                             const space_field *f, const double *v, double *d) {
+  const mesh *m = e->s.d->mesh;
+  const int *node = m->elem + 3 * elem_id;
+  const double *E = e->s.d->E + 16 * e->s.d->section_id[elem_id];
+  double at[2] = {0.0}, mean[2] = {0.0};
+  for (int i = 0; i < 4; ++i) d[i] = -f->element[4 * elem_id + i];
+  for (int a = 0; a < 3; ++a) {
+    const double phi = AXI_RULE[a == point];
+    const double own[2] = {v[2 * node[a]], m->x[2 * node[a]]};
+    for (int k = 0; k < 2; ++k) at[k] += phi * own[k];
+    for (int k = 0; k < 2; ++k) mean[k] += own[k] / 3.0;
+    for (int i = 0; i < 4; ++i) d[i] += phi * f->node[4 * node[a] + i];
+  }
+  for (int i = 0; i < 4; ++i)
+    d[i] -= E[i + 8] * (at[0] / at[1] - mean[0] / mean[1]);
+  return at[1];
+}
+
+/* Integral of d_u' inv(E) d_w over an axisymmetric element; that of d_u' inv(E)
+ * d_u in *own. */
+static double axi_product(const goal_estimator *e, int elem_id,
+                          const space_field *u, const space_field *of_w,
+                          const double *w, double *own) {
+  const domain *d = e->s.d;
+  const double *S = space_compliance_of(e->recovery, elem_id);
+  const double share =
+      element_weight(d, elem_id) / (3.0 * radius_of(d->mesh, elem_id));
+  double sum = 0.0;
+  *own = 0.0;
+  for (int p = 0; p < 3; ++p) {
+    double a[4], b[4];
+    const double r = axi_difference(e, elem_id, p, u, e->s.u, a);
+    axi_difference(e, elem_id, p, of_w, w, b);
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 4; ++k) {
+        sum += share * r * a[i] * S[i + 4 * k] * b[k];
+        *own += share * r * a[i] * S[i + 4 * k] * a[k];
+      }
+  }
+  return sum;
+}
+
 static int is_axi(const goal_estimator *e, int elem_id) {
   return e->s.d->kin[e->s.d->section_id[elem_id]] == AXISYMMETRIC;
 }
@@ -602,16 +647,17 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   const int region = space_region(e->recovery, elem_id);
   const space_field u = {e->s.sigma, e->stress[region]};
   const space_field of_y = {e->sigma_y, e->node_y};
-  double square;
-  const double product =
-      space_product(e->recovery, elem_id, &u, &of_y, &square);
+  double square, own = e->own[elem_id];
+  double product = space_product(e->recovery, elem_id, &u, &of_y, &square);
   const double both = sqrt(fmax(e->own[elem_id] * square, 0.0));
   const double residual = residual_of(e, elem_id, y, tau, of_u, &e->all);
+  if (of_u && is_axi(e, elem_id))
+    product = axi_product(e, elem_id, &u, &of_y, y, &own);
   if (of_u) {
     const double given = residual_of(e, elem_id, y, tau, of_u, &e->given);
     const double varied = eigen_product(e, elem_id, &u, &of_y);
     out->error += 0.5 * e->by_given * (given + product + varied) +
-                  0.5 * (1.0 - e->by_given) * (residual + e->own[elem_id]);
+                  0.5 * (1.0 - e->by_given) * (residual + own);
     out->magnitude += fabs(given) + fabs(varied);
   } else {
     out->error += residual;
@@ -622,6 +668,8 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   int ends = 0;
   for (int a = 0; a <= m->dim; ++a)
     ends |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
+  if (ends == GOAL_NEAR_SUPPORT) out->near += both;
+  ends &= ~GOAL_NEAR_SUPPORT;
   if (ends != 0) out->ends += both;
   if (ends == GOAL_END_OF_SUPPORT) out->supports += both;
   if ((ends & GOAL_END_OF_SUPPORT) != 0) out->sharp += of_u ? 0.5 * both : both;

@@ -41,6 +41,7 @@ typedef struct goal_result {
   double cpu;    /* s, CPU time for it so far */
   goal_verdict verdict;
 } goal_result;
+/* Reals alone; of a sum over the increments the sums of theirs. */
 typedef struct goal_estimate {
   double error;     /* J of the solution less J_h, of the mesh, unit of J */
   double magnitude; /* sum of the magnitudes of the parts of elements */
@@ -48,12 +49,16 @@ typedef struct goal_estimate {
   double ends;      /* the same where the contact or a support ends */
   double supports;  /* of that what is not at contact ends */
   double sharp;     /* of ends what GOAL_END_OF_SUPPORT has */
+  double near;      /* the same of the elements next to those of sharp */
   double history;   /* sum of the magnitudes by the increments before */
   double hoop;      /* by the hoop strains of axisymmetric elements, which the
                        stiffness takes at their mean radius */
+  double few;       /* |error| of increments with few closed nodes */
 } goal_estimate;
-/* The result of an estimate but for value, solver and cpu; n_closed: nodes. */
-goal_result goal_judge(const goal_estimate *e, int n_closed);
+/* *sum += *e. */
+void goal_estimate_add(const goal_estimate *e, goal_estimate *sum);
+/* The result of an estimate but for value, solver and cpu. */
+goal_result goal_judge(const goal_estimate *e);
 
 /*
  * The linearised problem of (u, r): nodes closed, stuck and sliding remain so.
@@ -120,7 +125,11 @@ typedef struct goal_flux {
 
 /* Next to a node the contact changes its status; stresses are infinite, by a
  * support, an inner corner, or the border of a contact that sticks. */
-enum { GOAL_END_OF_CONTACT = 1, GOAL_END_OF_SUPPORT = 2 };
+enum {
+  GOAL_END_OF_CONTACT = 1,
+  GOAL_END_OF_SUPPORT = 2,
+  GOAL_NEAR_SUPPORT = 4 /* of an element with such a node */
+};
 
 /* The solution. All is borrowed. */
 typedef struct goal_solution {

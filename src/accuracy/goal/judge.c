@@ -7,7 +7,8 @@
  * lack. Measured on plane scenes with known goals: the estimate is within a
  * factor of 2 in 91 % of all cases below TRUSTED, and the true value in the
  * band in 91 to 95 % whatever the share. */
-static const double TRUSTED = 0.03; /* -, share of the contact ends */
+static const double TRUSTED = 0.03; /* -, share of the contact ends,
+                                      of few nodes */
 /* What the estimate lacks by infinite stresses was up to 3.4 of their share, by
  * a zone of one to three nodes up to 2.6 of all of it. */
 static const double SHARP = 4.0;     /* -, band by it */
@@ -48,20 +49,30 @@ static const struct {
 const char *goal_verdict_word(goal_verdict v) { return verdicts[v].word; }
 const char *goal_verdict_text(goal_verdict v) { return verdicts[v].text; }
 
-goal_result goal_judge(const goal_estimate *e, int n_closed) {
-  enum { FEW = 3 };
-  goal_result r = {
-      .error = e->error,
-      .band = BAND * e->magnitude + e->ends + (SHARP - 1.0) * e->sharp +
-              HISTORY * e->history + HOOP * fabs(e->hoop),
-      .ends =
-          e->product > ROUNDING * e->magnitude ? e->ends / e->product : 0.0};
-  if (n_closed > 0 && n_closed <= FEW) {
+void goal_estimate_add(const goal_estimate *e, goal_estimate *sum) {
+  const double *of = (const double *)e;
+  double *to = (double *)sum;
+  for (size_t k = 0; k < sizeof *e / sizeof *of; ++k) to[k] += of[k];
+}
+
+/* Share of a part of the products, beyond rounding. */
+static double share_of(const goal_estimate *e, double part) {
+  return e->product > ROUNDING * e->magnitude ? part / e->product : 0.0;
+}
+
+goal_result goal_judge(const goal_estimate *e) {
+  goal_result r = {.error = e->error,
+                   .band = BAND * e->magnitude + e->ends +
+                           (SHARP - 1.0) * (e->sharp + e->few) +
+                           HISTORY * e->history + HOOP * fabs(e->hoop),
+                   .ends = share_of(e, e->ends)};
+  if (e->few > TRUSTED * fabs(e->error))
     r.verdict = GOAL_FEW_NODES;
-    r.band += (SHARP - 1.0) * fabs(e->error);
-  } else if (r.ends >= TRUSTED)
+  else if (r.ends >= TRUSTED)
     r.verdict =
         2.0 * e->supports > e->ends ? GOAL_SUPPORT_END : GOAL_CONTACT_END;
+  else if (share_of(e, e->ends + e->near) >= TRUSTED)
+    r.verdict = GOAL_SUPPORT_END;
   else if (fabs(e->error) < fmax(LEFT * e->magnitude, HOOP * fabs(e->hoop)))
     r.verdict = GOAL_CANCELS;
   return r;

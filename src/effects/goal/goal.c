@@ -36,8 +36,9 @@ typedef struct goal_history {
   double *u;    /* [dim*n_node] of the nodes, m; NULL: none is needed */
   double *edge; /* [dim*n_edge] u in the bubbles of contact edges, m; NULL: 0 */
   int n_edge;
-  double *sum, *band; /* [n] of goals that are sums over the increments */
+  goal_estimate *sum; /* [n] of goals that are sums over the increments */
   int lost;           /* 1: an increment before was not covered */
+  int missed;         /* 1: goal_surface.is_missed of one */
 } goal_history;
 
 typedef struct goal_state {
@@ -57,7 +58,7 @@ static status goals_new(run *r, void **self) {
   PASS_NEW(own->result, own->n);
   if (r->m->accuracy.goal_products)
     PASS_NEW(own->product, (size_t)own->n * r->msh->n_elem);
-  PASS_NEW_REALS(own->n, &own->before.sum, &own->before.band);
+  PASS_NEW(own->before.sum, own->n);
   if (!effect_is_on(&slip_history_effect, r->m)) return OK;
   PASS_NEW(own->before.u, r->n_dof);
   return OK;
@@ -67,14 +68,11 @@ static status goals_new(run *r, void **self) {
 
 /* 1: of pairs there are cracks alone, each within one material. */
 static int has_cracks_alone(const run *r) {
-  const mesh *m = r->msh;
   int all = r->m->n.tie == 0;
-  for (int i = 0; i < r->m->n.contact; ++i)
-    all &= !r->m->contacts[i].is_pair || r->m->contacts[i].is_crack;
-  for (int i = 0; i < m->n_crack && all; ++i)
-    for (int k = 0; k < m->crack[i].n; ++k)
-      all &= r->m->elem_section[m->face_elem[m->crack[i].plus[k]]] ==
-             r->m->elem_section[m->face_elem[m->crack[i].minus[k]]];
+  for (int i = 0; i < r->m->n.contact; ++i) {
+    const contact *c = &r->m->contacts[i];
+    all &= !c->is_pair || (c->is_crack && !model_is_interface(r->m, r->msh, i));
+  }
   return all;
 }
 
@@ -98,8 +96,7 @@ static void forget(const run *r, goal_history *h, int n) {
   if (r->step->kind != STEP_STATIC || r->course.relaxing) return;
   if (h->edge != NULL) CLEAR(h->edge, (size_t)r->msh->dim * h->n_edge);
   CLEAR(h->sum, n);
-  CLEAR(h->band, n);
-  h->lost = 0;
+  h->lost = h->missed = 0;
 }
 
 /* ---- an increment -------------------------------------------------------- */
@@ -271,14 +268,6 @@ static status of_slip(const run *r, const shared *s, double *sum) {
   return OK;
 }
 
-/* What the increments before have added to a sum over them. */
-static void add_sum(goal_history *h, int id, goal_result *out) {
-  out->error += h->sum[id];
-  out->band += h->band[id];
-  h->sum[id] = out->error;
-  h->band[id] = out->band;
-}
-
 /* [n_elem] of a goal, or NULL. */
 static double *product_of(const run *r, const goal_state *own, int id) {
   return own->product == NULL ? NULL
@@ -296,8 +285,9 @@ static double of_factor(const run *r, const shared *s) {
 }
 
 /* What contact forces do between the nodes: to the adjoint, and to what they
- * are summed with. */
-static status of_curvature(const run *r, const shared *s, double *sum) {
+ * are summed with; and where friction turns back. */
+static status of_contact(const run *r, const shared *s, double *product,
+                         double *sum, double *reversed) {
   const int dim = r->msh->dim;
   double turn, area;
   OWNED_NEW(double, z, r->n_dof);
@@ -309,19 +299,23 @@ static status of_curvature(const run *r, const shared *s, double *sum) {
   PASS(goal_work_between(r, &s->surface, s->form.is_field ? z : s->y, z,
                          s->form.spin, &turn, &area));
   *sum = turn + area;
-  return OK;
+  return goal_add_reversals(r, &s->surface, z, product, reversed);
 }
 
 /* What the residual of the elements has not. */
-static status complete(const run *r, const shared *s, goal_estimate *e) {
+static status complete(const run *r, const shared *s, double *product,
+                       goal_estimate *e) {
   const goal_form *f = &s->form;
-  double along = 0.0;
-  PASS(of_curvature(r, s, &along));
+  double along = 0.0, reversed = 0.0;
+  PASS(of_contact(r, s, product, &along, &reversed));
   if (f->factor.n > 0) e->error += of_factor(r, s);
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   const double between = goal_mean_bubbles(r, s->estimator, f);
   e->error += f->curved + along + beyond + between;
-  e->magnitude += fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between);
+  e->magnitude +=
+      fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between) + reversed;
+  e->product += reversed;
+  e->ends += reversed;
   e->error += e->hoop;
   if (f->sums) {
     double slips;
@@ -351,6 +345,22 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
   return f->is_front ? GOAL_FRONT : found;
 }
 
+/* In a corner of the border in the plane, where recovered gradients are
+ * extrapolated along both sides: there displacements were in error by 0.7
+ * to 1.2 of the estimate. */
+static double of_corner(const run *r, const goal_state *own, int id,
+                        double error) {
+  static const double CORNER = 2.6, PART = 0.5; /* rad, - */
+  const goal_card *g = &r->m->accuracy.goals[id];
+  const int node[2] = {g->node_id, g->from_node_id};
+  if (g->quantity != GOAL_DISPLACEMENT || r->msh->dim == 3) return 0.0;
+  for (int k = 0; k < 2; ++k)
+    if (node[k] >= 0 && own->border.angle[node[k]] < CORNER &&
+        !r->body.d.fixed[2 * node[k]] && !r->body.d.fixed[2 * node[k] + 1])
+      return PART * fabs(error);
+  return 0.0;
+}
+
 /* Half of the error may be missing. */
 static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   space_recovery *recovery;
@@ -361,36 +371,52 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
-/* 1: a sum of contact forces along directions that differ, as radial ones do:
- * where few nodes have the forces, it is what their places make it. */
-static int turns(const run *r, const goal_form *f) {
-  const int dim = r->msh->dim;
-  double first[3] = {0.0}, size = 0.0, most = 0.0;
+/* 1: the same force of the obstacle on another node would change J: where few
+ * nodes have the forces, it is what their places make it. Radial forces are
+ * those of the place too. */
+static int turns(const run *r, const shared *s) {
+  const contact_surface *on = r->surface;
+  const int dim = r->msh->dim, last = r->problem.ut0 != NULL ? dim : 1;
+  double size = 0.0, most = 0.0;
+  for (size_t k = 0; k < r->n_dof; ++k) size = fmax(size, fabs(s->y[k]));
   for (int i = 0; i < r->nodes.n; ++i) {
-    double v[3] = {0.0};
+    double z[3] = {0.0};
     for (int a = 0; a < dim; ++a)
-      add_scaled(dim, f->psi[dim * i + a],
-                 r->surface->basis + dim * (dim * i + a), v);
-    if (dot(dim, v, v) > 0.0 && size == 0.0) {
-      COPY(first, v, dim);
-      size = sqrt(dot(dim, v, v));
+      add_scaled(dim, s->form.psi[dim * i + a], on->basis + dim * (dim * i + a),
+                 z);
+    if (r->faces.input.axisymmetric) most = fmax(most, fabs(z[0]));
+    for (int c = 0; c < dim; ++c) {
+      size = fmax(size, fabs(z[c]));
+      z[c] += s->y[dim * on->node_id[i] + c];
     }
-    for (int c = 0; c < dim && dot(dim, v, v) > 0.0; ++c)
-      most = fmax(most, fabs(v[c] - first[c]));
+    for (int k = dim * i; k < dim * i + last; ++k)
+      if (!on->held[k])
+        most = fmax(most, fabs(dot(dim, on->frame + dim * k, z)));
   }
-  if (r->faces.input.axisymmetric) most = fmax(most, fabs(first[0]));
   return most > TURN * size;
 }
 
+/* 1: few closed nodes, or nodes in a line on a surface in space: of the contact
+ * of a goal, or of all. */
+static int has_few(const run *r, const shared *s, int id) {
+  enum { FEW = 3 };
+  const int of = r->m->accuracy.goals[id].contact_id;
+  int n = s->surface.n_closed, whole = 0;
+  if (of >= 0) n = s->surface.closed[of];
+  for (int k = 0; k < r->m->n.contact; ++k)
+    if (of < 0 || of == k) whole += s->surface.whole[k];
+  return n > 0 && (n <= FEW || whole == 0);
+}
+
 /* exact: without an error but rounding. Nothing is known about a contact that
- * its nodes miss. */
-static void doubt_of_nodes(const run *r, const shared *s, int exact,
-                           goal_result *out) {
-  const int few = out->verdict == GOAL_FEW_NODES &&
-                  fmax(s->form.size, fabs(s->form.value)) > 0.0 &&
-                  turns(r, &s->form);
-  if (exact && !few) out->verdict = GOAL_RELIABLE;
-  if (s->surface.is_missed && out->verdict == GOAL_RELIABLE)
+ * its nodes miss, or missed while a sum grew. */
+static void doubt_of_nodes(const run *r, const shared *s, int id, int exact,
+                           int missed, goal_result *out) {
+  const int few = (out->verdict == GOAL_FEW_NODES || has_few(r, s, id)) &&
+                  fmax(s->form.size, fabs(s->form.value)) > 0.0 && turns(r, s);
+  if (exact) out->verdict = few ? GOAL_FEW_NODES : GOAL_RELIABLE;
+  if ((s->surface.is_missed || (s->form.sums && missed)) &&
+      out->verdict == GOAL_RELIABLE)
     out->verdict = GOAL_FEW_NODES;
 }
 
@@ -404,18 +430,26 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   PASS(goal_estimate_find(s->estimator, s->y, f->has_tau ? f->tau : NULL,
                           f->is_square, product_of(r, own, id), &e));
   if (!isfinite(e.error)) return OK;
-  PASS(complete(r, s, &e));
+  PASS(complete(r, s, product_of(r, own, id), &e));
   e.error += of_sticks(r, own, s, &e.history);
-  *out = goal_judge(&e, s->surface.n_closed);
-  if (f->sums) add_sum(&own->before, id, out);
+  e.magnitude = fmax(e.magnitude, fabs(e.error));
+  if (f->factor.n > 0) e.near = 0.0;
+  e.few = has_few(r, s, id) ? fabs(e.error) : 0.0;
+  if (f->sums) {
+    goal_estimate_add(&e, &own->before.sum[id]);
+    e = own->before.sum[id];
+  }
+  *out = goal_judge(&e);
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
   out->band += f->rough + f->held + of_coarseness(r, s, &e) +
+               of_corner(r, own, id, e.error) +
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
-  doubt_of_nodes(r, s, e.magnitude <= ROUNDING * fabs(value), out);
+  doubt_of_nodes(r, s, id, e.magnitude <= ROUNDING * fabs(value),
+                 own->before.missed, out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
@@ -431,6 +465,7 @@ static int is_last(const run *r) {
 static status remember(run *r, goal_state *own, shared *s) {
   goal_history *h = &own->before;
   if (h->u == NULL || is_last(r)) return OK;
+  h->missed |= s->surface.is_missed;
   if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL)) {
     h->lost = 1;
     return OK;
@@ -497,14 +532,15 @@ static status keep(run *r, void *self, archive *a) {
   }
   if (h->u == NULL) return OK;
   PASS(archive_ints(a, "lost", &h->lost, 1));
+  PASS(archive_ints(a, "missed", &h->missed, 1));
   PASS(archive_ints(a, "edges", &h->n_edge, 1));
   OWNS(own);
   if (h->edge == NULL && h->n_edge > 0)
     PASS_NEW(h->edge, r->msh->dim * h->n_edge);
   PASS(archive_reals(a, "edge", h->edge, (size_t)r->msh->dim * h->n_edge));
   PASS(archive_reals(a, "u", h->u, r->n_dof));
-  PASS(archive_reals(a, "sum", h->sum, own->n));
-  return archive_reals(a, "band", h->band, own->n);
+  return archive_reals(a, "sum", (double *)h->sum,
+                       own->n * sizeof *h->sum / sizeof(double));
 }
 
 /* With the errors that friction remembers, of the start of the increment. */
@@ -515,9 +551,9 @@ static status goals_copy(const run *r, const void *of, run *copy, void **self) {
   goal_history *h = &own->before;
   const size_t edges = (size_t)r->msh->dim * from->n_edge;
   h->lost = from->lost;
+  h->missed = from->missed;
   h->n_edge = from->n_edge;
   COPY(h->sum, from->sum, own->n);
-  COPY(h->band, from->band, own->n);
   if (h->u != NULL) COPY(h->u, from->u, r->n_dof);
   if (from->edge == NULL) return OK;
   PASS_NEW(h->edge, edges);

@@ -123,7 +123,8 @@ typedef struct goal_surface {
   bent_edge *bent;      /* [n_bent] sorted */
   given_edge *given;    /* [n_given] sorted; NULL: none */
   unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
-  int n_closed;         /* closed nodes */
+  int *closed, *whole;  /* [n_contact] closed nodes; faces with them alone */
+  int n_closed;         /* of all contacts */
   int is_missed; /* 1: no node of a contact is closed, but its gap may end
                     between nodes */
 } goal_surface;
@@ -144,6 +145,11 @@ status goal_surface_new(const run *r, const goal_border *border,
 status goal_work_between(const run *r, const goal_surface *s, const double *y,
                          const double *z, const double *spin, double *turn,
                          double *area);
+/* What the places where friction turns back within edges may add to J, whose
+ * derivative by friction is z[dim*n_node]: *sum; product[n_elem] or NULL: the
+ * elements have it more. */
+status goal_add_reversals(const run *r, const goal_surface *s, const double *z,
+                          double *product, double *sum);
 /* 1: node i of the surface stands on a plane of symmetry along tangent a, or on
  * the axis. */
 int goal_is_mirrored(const run *r, int i);

@@ -8,8 +8,8 @@
  *
  * The same where two materials, or zones of temperature, meet at the border
  * (Bogy 1971, J Appl Mech 38, 377-386), unless it is a plane of symmetry that
- * their interface is normal to, and where their interface turns within; and
- * where loads end (jumps.c).
+ * their interface is normal to, and where their interface turns within; where
+ * loads end (jumps.c), and under the force on a node.
  */
 #include "base/base.h"
 #include "effects/goal/parts.h"
@@ -465,6 +465,35 @@ status goal_border_new(const mesh *m, goal_border *b) {
   return OK;
 }
 
+/* Under a force on a node the displacement is infinite. */
+static void mark_forces(const run *r, unsigned char *ends) {
+  const int dim = r->msh->dim;
+  for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
+    const mesh_group *g = &r->msh->group[l->group_id];
+    for (int k = 0; l->kind == LOAD_POINT && k < g->n_node; ++k) {
+      const int i = g->node_id[k];
+      if (!r->body.d.fixed[dim * i + l->component] &&
+          load_at_node(l, r->msh, r->step, i, r->now.t) != 0.0)
+        ends[i] |= GOAL_END_OF_SUPPORT;
+    }
+  }
+}
+
+/* What is infinite at a node is so steep beyond its elements that recovered
+ * gradients lack it there too, and at the front of a crack. */
+static void mark_near(const mesh *m, const unsigned char *front,
+                      unsigned char *ends) {
+  const int n = m->dim + 1;
+  for (int i = 0; i < m->n_node && front != NULL; ++i)
+    if (front[i]) ends[i] |= GOAL_NEAR_SUPPORT;
+  for (int e = 0; e < m->n_elem; ++e) {
+    int near = 0;
+    for (int a = 0; a < n; ++a) near |= ends[m->elem[n * e + a]];
+    for (int a = 0; a < n && (near & GOAL_END_OF_SUPPORT) != 0; ++a)
+      ends[m->elem[n * e + a]] |= GOAL_NEAR_SUPPORT;
+  }
+}
+
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
@@ -474,6 +503,9 @@ status goal_mark_supports(const run *r, const goal_border *border,
     add_region(space_region(of, k / n) + 1,
                m->dim == 2 ? angle_at(m, m->elem + k - k % n, k % n) : 0.0,
                &at[m->elem[k]]);
-  return m->dim == 2 ? mark_plane(r, border, at, s)
-                     : mark_space(r, border, of, at, s);
+  mark_forces(r, s->ends);
+  PASS(m->dim == 2 ? mark_plane(r, border, at, s)
+                   : mark_space(r, border, of, at, s));
+  mark_near(m, s->front, s->ends);
+  return OK;
 }

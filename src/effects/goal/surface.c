@@ -145,6 +145,16 @@ static int state_of(const run *r, int q) {
   return k == 1 && r->result.slip[q] < 0.0 ? -1 : CONTACT_SLIP;
 }
 
+/* 1: all nodes v[dim] of a face are closed, or at the front of a crack. */
+static int is_whole(const run *r, const int *where, const int *v) {
+  int closed = 0, open = 0;
+  for (int k = 0; k < r->msh->dim; ++k) {
+    const int q = where[v[k]];
+    if (q >= 0) ++*(r->result.contact[q] != CONTACT_OPEN ? &closed : &open);
+  }
+  return closed > 0 && open == 0;
+}
+
 /* Edge v[2] of a face. */
 static void add_edge(const run *r, const goal_ring *rings,
                      const gap_slopes *slopes, int face, const int *v,
@@ -219,6 +229,7 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
     for (int a = 0; a < m->dim; ++a)
       for (int b = 0; b < m->dim; ++b)
         if (m->origin[v[a]] == m->origin[to[b]]) w[a] = to[b];
+    s->whole[r->m->mesh.cracks[id].contact_id] += is_whole(r, where, v);
     add_lip_edges(r, where, v, w, bubble_weight(r, near), s);
   }
 }
@@ -274,20 +285,16 @@ static int may_close(const run *r, const int *q, double middle) {
 }
 
 /* s->is_missed. */
-static status find_missed(const run *r, const gap_slopes *slopes,
-                          const int *where, goal_surface *s) {
-  OWNED_NEW(unsigned char, closed, r->m->n.contact);
-  for (int q = 0; q < r->nodes.n; ++q)
-    if (r->result.contact[q] != CONTACT_OPEN)
-      closed[r->surface->contact_id[q]] = 1;
+static void find_missed(const run *r, const gap_slopes *slopes,
+                        const int *where, goal_surface *s) {
   for (int k = 0; k < s->n_edge && !s->is_missed; ++k) {
     contact_edge e = s->edge[k];
     const int q[2] = {where[e.a], where[e.b]};
-    if (e.other[0] >= 0 || closed[r->surface->contact_id[q[0]]]) continue;
+    if (e.other[0] >= 0 || s->closed[r->surface->contact_id[q[0]]] > 0)
+      continue;
     set_middle(r, slopes, q, &e);
     s->is_missed = may_close(r, q, e.excess);
   }
-  return OK;
 }
 
 /* Each edge once. */
@@ -303,11 +310,13 @@ static void unite_edges(goal_surface *s) {
 
 /* The edges of a contact on an obstacle. */
 static void add_group(const run *r, const goal_ring *rings,
-                      const gap_slopes *slopes, const mesh_group *g,
-                      const int *where, goal_surface *s) {
+                      const gap_slopes *slopes, int id, const int *where,
+                      goal_surface *s) {
   const int dim = r->msh->dim;
+  const mesh_group *g = r->faces.pairs[id].group;
   for (int i = 0; i < g->n_item; ++i) {
     const int *v = r->msh->face + dim * g->item_id[i];
+    s->whole[id] += is_whole(r, where, v);
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b < dim; ++b) {
         const int ends[2] = {v[a], v[b]};
@@ -322,7 +331,8 @@ status goal_surface_new(const run *r, const goal_border *border,
   OWNED int *where = NULL, *seen = NULL;
   int n = 0;
   OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
-  PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node));
+  PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node),
+               OF(s->closed, r->m->n.contact), OF(s->whole, r->m->n.contact));
   PASS(goal_places(r, &where));
   OWNED_PARTS(gap_slopes, slopes, gap_slopes_new(r, where, &slopes));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
@@ -330,17 +340,18 @@ status goal_surface_new(const run *r, const goal_border *border,
   for (int k = 0; k < m->n_crack; ++k) n += 2 * m->crack[k].n;
   PASS_NEW(s->edge, n * (m->dim == 3 ? 3 : 1));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k)
-    if (!r->m->contacts[k].is_pair)
-      add_group(r, &rings, &slopes, r->faces.pairs[k].group, where, s);
+    if (!r->m->contacts[k].is_pair) add_group(r, &rings, &slopes, k, where, s);
   for (int k = 0; k < m->n_crack && r->nodes.n > 0; ++k)
     add_crack(r, k, where, s);
   PAIR_SORT(s->edge, s->n_edge);
   mark_border(r, where, seen, s);
   PASS(mark_front(m, s));
   unite_edges(s);
-  PASS(find_missed(r, &slopes, where, s));
   for (int q = 0; q < r->nodes.n; ++q)
-    s->n_closed += r->result.contact[q] != CONTACT_OPEN;
+    s->closed[r->surface->contact_id[q]] +=
+        r->result.contact[q] != CONTACT_OPEN;
+  for (int k = 0; k < r->m->n.contact; ++k) s->n_closed += s->closed[k];
+  find_missed(r, &slopes, where, s);
   PASS(goal_add_bent(r, &rings, s));
   PASS(goal_add_given(r, s));
   return goal_mark_supports(r, border, of, s);
@@ -410,6 +421,47 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
             0.5 * (v[0][c] * z[dim * e->a + c] + v[1][c] * z[dim * e->b + c]);
       *area += force * longer(r->msh, e) * sum;
     }
+  }
+  return OK;
+}
+
+/* Of a node that slips and one whose friction has the opposite direction: in
+ * between it turns back, the nodes have that in the middle, and it may be at
+ * either end. */
+static double reversal_of(const run *r, const contact_edge *e, const int *q,
+                          const double *z) {
+  const int dim = r->msh->dim;
+  double v[2][3], part = 0.0;
+  if (!e->closed || e->stuck || e->other[0] >= 0) return 0.0;
+  const double t[2] = {traction_of(r, q[0], 1, v[0]),
+                       traction_of(r, q[1], 1, v[1])};
+  if (!(dot(dim, v[0], v[1]) < 0.0)) return 0.0;
+  for (int c = 0; c < dim; ++c)
+    part += 0.25 * (t[0] * v[0][c] - t[1] * v[1][c]) *
+            (z[dim * e->a + c] + z[dim * e->b + c]);
+  return fabs(part) * e->weight * (dim == 2 ? 1.5 : 1.0);
+}
+
+/* Adds it to the elements of an edge. */
+static void spread(const mesh *m, const contact_edge *e, double part,
+                   double *product) {
+  for (int k = 0; k < m->n_elem; ++k) {
+    const int *v = m->elem + (m->dim + 1) * k;
+    int n = 0;
+    for (int a = 0; a <= m->dim; ++a) n += v[a] == e->a || v[a] == e->b;
+    if (n == 2) product[k] += part;
+  }
+}
+
+status goal_add_reversals(const run *r, const goal_surface *s, const double *z,
+                          double *product, double *sum) {
+  *sum = 0.0;
+  OWNED_OF(int, where, goal_places(r, &where));
+  for (EACH(const contact_edge, e, s->edge, s->n_edge)) {
+    const int q[2] = {where[e->a], where[e->b]};
+    const double part = reversal_of(r, e, q, z);
+    if (part > 0.0 && product != NULL) spread(r->msh, e, part, product);
+    *sum += part;
   }
   return OK;
 }

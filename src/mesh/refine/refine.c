@@ -32,6 +32,7 @@ typedef struct bisection {
   raw_mesh *raw;
   int dim, n_node;
   double *x;               /* [3*n_node] m */
+  double square;           /* m2, so that no ratio to it is a round number */
   size_t *no;              /* [n_node] */
   cell_list cells[4];      /* by dimension, from 1 */
   unsigned char *is_round; /* [n_block] */
@@ -103,6 +104,9 @@ static status take(bisection *b) {
       b->x[3 * i + k] = b->q->scale * raw->xyz[3 * i + k];
   }
   for (int i = 0; i < raw->n_block; ++i) PASS(take_block(b, i, &nodes));
+  for (int k = 0; k < 3 * b->n_node; ++k)
+    b->square = fmax(b->square, fabs(b->x[k] - b->x[k % 3]));
+  b->square *= M_PI * b->square;
   return OK;
 }
 
@@ -112,10 +116,11 @@ static void vector(const bisection *b, int from, int to, double *e) {
   for (int k = 0; k < 3; ++k) e[k] = b->x[3 * to + k] - b->x[3 * from + k];
 }
 
-static double square_of(const bisection *b, int i, int k) {
+/* Of fewer digits: what is equal but for rounding is so in all units. */
+static float square_of(const bisection *b, int i, int k) {
   double e[3];
   vector(b, i < k ? i : k, i < k ? k : i, e);
-  return dot(3, e, e);
+  return (float)(dot(3, e, e) / b->square);
 }
 
 /* Signed area of a triangle in the plane, volume of a tetrahedron. */
@@ -125,20 +130,20 @@ static double measure_of(const bisection *b, const int *v) {
   return determinant(b->dim, e) / (b->dim == 2 ? 2.0 : 6.0);
 }
 
-/* Length over that required. */
-static double excess_of(const bisection *b, const cell *c) {
+/* Length over that required, of fewer digits. */
+static float excess_of(const bisection *b, const cell *c) {
   const double size = fabs(measure_of(b, c->v));
   double x[3] = {0.0};
   for (int a = 0; a <= b->dim; ++a)
     for (int k = 0; k < 3; ++k) x[k] += b->x[3 * c->v[a] + k] / (b->dim + 1);
   const double length =
       b->dim == 2 ? sqrt(size * 4.0 / sqrt(3.0)) : cbrt(size * 6.0 * sqrt(2.0));
-  return length / size_grid_at(b->sizes, x);
+  return (float)(length / size_grid_at(b->sizes, x));
 }
 
 /* Ends of a longer edge first; of equal ones by the numbers of their nodes. */
 static int is_before(const bisection *b, const int *e, const int *f) {
-  const double d = square_of(b, e[0], e[1]), g = square_of(b, f[0], f[1]);
+  const float d = square_of(b, e[0], e[1]), g = square_of(b, f[0], f[1]);
   const size_t p[2] = {b->no[e[0]], b->no[e[1]]};
   const size_t q[2] = {b->no[f[0]], b->no[f[1]]};
   const int pl = p[0] > p[1], ql = q[0] > q[1];
@@ -181,7 +186,7 @@ static status mark_long(bisection *b, double limit, double *worst) {
   int more = 0;
   *worst = 0.0;
   for (int i = 0; i < top->n; ++i) {
-    const double excess = excess_of(b, &top->item[i]);
+    const float excess = excess_of(b, &top->item[i]);
     *worst = fmax(*worst, excess);
     if (excess > limit) PASS(mark_longest(b, &top->item[i], &more));
   }

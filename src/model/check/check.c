@@ -660,21 +660,55 @@ static void check_condensed(const model *m) {
     }
 }
 
+#define OF_GOALS "the error of a goal"
+
+static void refuse_target(const model *m, const place *at, const char *with,
+                          const char *error) {
+  message_add(m->log, P2066, at,
+              "%s: TARGET= cannot be reached, for there is no estimate of %s "
+              "with it",
+              with, error);
+}
+
+/* What goals on a contact have no estimate with, or NULL; *at. */
+static const char *without_estimate(const model *m, const mesh *msh, int id,
+                                    const place **at) {
+  const contact *c = &m->contacts[id];
+  *at = c->force.given ? &c->force.at : &c->at;
+  if (c->force.given) return "*CONTACT FORCE";
+  if (c->is_crack)
+    return model_is_interface(m, msh, id) ? "*CRACK between two materials"
+                                          : NULL;
+  if (c->is_pair) return "*CONTACT PAIR";
+  return m->mesh.corner_id == id ? "*CONTACT with nodes of another one" : NULL;
+}
+
+static void check_sections_of_goals(const model *m) {
+  for (EACH(const section, s, m->sections, m->n.section))
+    if (s->averaged && s->kin != PLANE_STRESS)
+      refuse_target(m, &s->at, "FORMULATION=AVERAGED", OF_GOALS);
+  if (facts_has_inelastic(m))
+    refuse_target(m, &m->materials[facts_first_inelastic(m)->material_id].at,
+                  "inelastic strain", OF_GOALS);
+}
+
 /* Targets that no mesh can reach: their error has no estimate. */
-static void check_targets(const model *m) {
-  static const char text[] =
-      "%s: TARGET= cannot be reached, for there is no estimate of %s with it";
+static void check_targets(const model *m, const mesh *msh) {
   const effect_card *worn = model_effect_card(m, "WEAR", -1);
   if (worn != NULL && model_has_target(m))
-    message_add(m->log, P2066, &worn->at, text, "*WEAR", "the error");
+    refuse_target(m, &worn->at, "*WEAR", "the error");
   if (model_targeted_goal(m) == NULL) return;
   for (int i = 0; i < m->n.tie; ++i)
-    message_add(m->log, P2066, &m->ties[i].at, text, "*TIE",
-                "the error of a goal");
-  for (int i = 0; i < m->n.contact; ++i)
-    if (m->contacts[i].is_pair && !m->contacts[i].is_crack)
-      message_add(m->log, P2066, &m->contacts[i].at, text, "*CONTACT PAIR",
-                  "the error of a goal");
+    refuse_target(m, &m->ties[i].at, "*TIE", OF_GOALS);
+  for (int i = 0; i < m->n.contact; ++i) {
+    const place *at;
+    const char *with = without_estimate(m, msh, i, &at);
+    if (with != NULL) refuse_target(m, at, with, OF_GOALS);
+  }
+  check_sections_of_goals(m);
+  for (EACH(const goal_card, g, m->accuracy.goals, m->n.goal))
+    if (g->target > 0.0 && g->quantity == GOAL_WIDTH && msh->dim == 3)
+      refuse_target(m, &g->at, "QUANTITY=WIDTH in space", OF_GOALS);
 }
 
 status model_check(model *m, const mesh *msh, effect_finder *find) {
@@ -699,9 +733,9 @@ status model_check(model *m, const mesh *msh, effect_finder *find) {
   PASS(check_start_file(m));
   check_reference(m);
   for (int i = 0; i < m->n.goal; ++i) check_goal(m, msh, &m->accuracy.goals[i]);
-  check_targets(m);
   PASS(model_find_corner(m, msh));
   m->effects = find(m);
+  check_targets(m, msh);
   check_moduli(m);
   check_entries(m);
   check_condensed(m);
