@@ -36,13 +36,15 @@ struct velocity_form {
   double *gap, *side, *d; /* [n], [n*(dim-1)] twice: bounds and step of the
                              obstacle (of a held unknown: of its support), m */
   double *du;             /* [m] the unknown, m */
+  double *rounding;       /* [n] of R, N */
 };
 
 status velocity_form_new(const contact_problem *cp, velocity_form **out) {
   int tangents = cp->n * (cp->dim - 1);
   MAKES(velocity_form, v, out);
   PASS_NEW_ALL(OF(v->u_old, cp->m), OF(v->R, cp->m), OF(v->gap, cp->n),
-               OF(v->side, tangents), OF(v->d, tangents), OF(v->du, cp->m));
+               OF(v->side, tangents), OF(v->d, tangents), OF(v->du, cp->m),
+               OF(v->rounding, cp->n));
   return OK;
 }
 
@@ -58,9 +60,13 @@ static void set_stick(velocity_form *v, const contact_problem *cp) {
 }
 
 void velocity_form_set(velocity_form *v, const contact_problem *cp,
-                       contact_problem *out, double **u) {
+                       const double *force, contact_problem *out, double **u) {
   contact_apply(cp, v->u_old, v->R);
-  for (int k = 0; k < cp->m; ++k) v->R[k] = cp->f[k] - v->R[k];
+  contact_roundings(cp, v->u_old, force, v->rounding);
+  for (int k = 0; k < cp->m; ++k) {
+    v->R[k] = cp->f[k] - v->R[k];
+    if (fabs(v->R[k]) <= v->rounding[k / cp->dim]) v->R[k] = 0.0;
+  }
   for (int i = 0; i < cp->n; ++i) {
     v->gap[i] = cp->gap[i] - v->u_old[cp->dim * i];
     for (int a = 1; a < cp->dim && cp->side_gap != NULL; ++a) {

@@ -14,10 +14,11 @@ status velocity_form_new(const contact_problem *cp, velocity_form **out);
 double *velocity_form_old(velocity_form *v);
 /*
  * cp in the unknown du = u - u_old. *u[m]: the start value of u in, that of du
- * out. *out borrows from v and cp.
+ * out; force[m]: that of the contact forces, N. *out borrows from v and cp. A
+ * load on du that is rounding of the motion so far is none.
  */
 void velocity_form_set(velocity_form *v, const contact_problem *cp,
-                       contact_problem *out, double **u);
+                       const double *force, contact_problem *out, double **u);
 /* u[m] = u_old + du; cp as given to velocity_form_set. */
 void velocity_form_apply(const velocity_form *v, const contact_problem *cp,
                          double *u);

@@ -40,7 +40,7 @@ static double value_at(const quantity *q, const double x[3], double t) {
   if (v == 0.0 || !(quantity_variables(q) & 1u << TABLE_T)) return v;
   const double near = fmin(fabs(quantity_value(q, x, t * (1.0 - small))),
                            fabs(quantity_value(q, x, t * (1.0 + small))));
-  return fabs(v) <= share * near ? 0.0 : v;
+  return fabs(v) < share * near ? 0.0 : v;
 }
 
 double load_at_point(const load *l, const step *s, const double x[3],

@@ -199,18 +199,21 @@ START_TEST(loads_carried_straight_by_a_body_led_lose_nothing) {
   job j = job_begin("led");
   job_copy(&j, "tests/regression/mesh/square.geo");
   job_write(&j, "led.inp",
-            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n%s"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*PARAMETER\nN = %d\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1., %g\n%s"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
             "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
             "*FRICTION, CONTACT=C, LAW=TRESCA\n1.E6\n"
             "*STEP\n%s\n0.5, 1.\n"
-            "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -0.7\n"
+            "*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -0.7\n%s"
             "*CLOAD\nBOTTOM, 1, %s\n*SOLVER, METHOD=%s\n*PRINT, TOTALS\n"
             "*END STEP\n",
-            _i / 2 != 1 ? "" : MAXWELL,
+            _i < 6 ? 4 : 16, _i < 6 ? 0.3 : 0.499, _i / 2 != 1 ? "" : MAXWELL,
+            _i < 6 ? "" : ", TYPE=CAX3",
             _i / 2 != 1 ? "*QUASISTATIC" : "*VISCO, INTEGRATOR=BACKWARD",
-            _i % 2 == 0 ? "0.1" : "1.E4", _i < 4 ? "AUTO" : "LAGRANGE");
+            _i < 6 ? "" : "LEFT, 1\n", _i % 2 == 0 ? "0.1" : "1.E4",
+            _i / 2 != 2 ? "AUTO" : "LAGRANGE");
   ck_assert_msg(job_run(&j, "--no-timing --quiet") == 0, "%s", j.errors);
   job_end(&j);
 }
@@ -325,7 +328,7 @@ int main(void) {
   tcase_add_test(tests, chosen_increments_do_not_follow_supports);
   tcase_add_loop_test(tests, loads_carried_straight_lose_nothing, 0, 2);
   tcase_add_loop_test(tests, loads_carried_straight_by_a_body_led_lose_nothing,
-                      0, 6);
+                      0, 8);
   tcase_add_loop_test(tests, loads_carried_straight_on_a_floor_led_lose_nothing,
                       0, 4);
   tcase_add_test(tests, supports_alone_leave_an_error_of_the_mesh);

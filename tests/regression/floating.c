@@ -360,6 +360,27 @@ START_TEST(body_that_a_floor_has_lifted_stays) {
 }
 END_TEST
 
+/* Of a body that has been unloaded A u is rounding: no load on the next
+ * increment. */
+START_TEST(unloaded_body_rests_in_the_velocity_form) {
+  job j = job_begin("rests");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "rests.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.49\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., %s\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
+            "*STEP\n*QUASISTATIC\n0.2, 1.\n*DSLOAD\nTOP, P, 1., A\n"
+            "*END STEP\n*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.2, 1.\n"
+            "*DSLOAD, OP=NEW\nTOP, P, 0.\n*PRINT, TOTALS\n*END STEP\n",
+            _i == 0 ? "0." : "0.001");
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
 /* Pushed out of the floor where one node is inside it: without a force, to any
  * tolerance. */
 START_TEST(body_pushed_out_of_its_floor_has_no_force) {
@@ -668,6 +689,7 @@ int main(void) {
   tcase_add_test(tests, body_that_is_left_stays_where_it_was);
   tcase_add_loop_test(tests, body_that_a_floor_has_lifted_stays, 0, 7);
   tcase_add_loop_test(tests, body_pushed_out_of_its_floor_has_no_force, 0, 6);
+  tcase_add_loop_test(tests, unloaded_body_rests_in_the_velocity_form, 0, 2);
   tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
   tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
                       0, 12);

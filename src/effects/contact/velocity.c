@@ -33,7 +33,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   OWNS(own);
   if (own->form == NULL) PASS(velocity_form_new(cp, &own->form));
   put_old(r, velocity_form_old(own->form));
-  velocity_form_set(own->form, &own->before, cp, u);
+  velocity_form_set(own->form, &own->before, force, cp, u);
   return OK;
 }
 

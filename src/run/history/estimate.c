@@ -51,23 +51,26 @@ static double bound_of_strains(const run *r, double energy) {
  * are left have the errors of the increments before. */
 static void estimate_unloaded(run *r) {
   energies *e = &r->now.energy;
+  error_bound *b = &r->errors.error;
   r->errors.left = 1.0;
   if (rounding_is_all(r)) {
     take_left(r, 0.0);
-    if (r->errors.error.why == NULL)
-      r->errors.error.relative = bound_of_strains(r, r->errors.error.energy);
-    r->errors.error.hidden = 0.0;
+    if (b->why != NULL && !(rounding_strain_left(r) > 0.0)) {
+      b->why = NULL;
+      b->energy = 0.0;
+    }
+    if (b->why == NULL) b->relative = bound_of_strains(r, b->energy);
+    b->hidden = 0.0;
     e->rounding = fmax(e->rounding, rounding_of_works(r));
     if (e->largest <= e->rounding) e->defect = 0.0;
     return;
   }
   if (!(e->strain < UNLOADED * e->largest)) return;
   take_left(r, sqrt(fmax(e->strain, 0.0) / e->largest));
-  r->errors.error.hidden *= r->errors.left;
-  if (r->errors.error.asked && r->errors.error.why == NULL)
-    r->errors.error.relative =
-        fmax(sqrt(r->errors.error.energy / e->largest),
-             bound_of_strains(r, r->errors.error.energy));
+  b->hidden *= r->errors.left;
+  if (b->asked && b->why == NULL)
+    b->relative =
+        fmax(sqrt(b->energy / e->largest), bound_of_strains(r, b->energy));
 }
 
 status estimate_evaluate(run *r) {

@@ -201,7 +201,8 @@ int rounding_is_all(const run *r) {
   if (forces_hide_strains(r)) return 1;
   if ((r->strains.eigen.n == 0 || r->errors.noise) && moves_alone(r)) return 1;
   if (r->errors.strained) return 0;
-  if (r->errors.carried && r->now.energy.strain <= moved + forces_energy(r))
+  if (r->errors.carried &&
+      (r->errors.noise || r->now.energy.strain <= moved + forces_energy(r)))
     return 1;
   if (increment_free_load(r, r->now.F) > 0.0) return 0;
   const double u = force > 0.0 ? fmax(strains_lost(r), rounding_of_gaps(r))
@@ -242,7 +243,9 @@ static status find_error(const run *r, misfit *x, double *square) {
 static status find_carried(run *r) {
   const double most = fmax(increment_free_load(r, r->now.F),
                            largest_entry(r->nodes.n_c, r->now.rc)),
-               part = RUN_CARRIED + r->solving.report.residual,
+               part = RUN_CARRIED *
+                          sqrt(r->msh->n_node * condensed_condition(r->c)) +
+                      r->solving.report.residual,
                moved = condensed_stiffest(r->c) * strains_lost(r);
   OWNED_NEW(double, left, r->n_dof);
   COPY(left, r->now.F, r->n_dof);
