@@ -56,6 +56,15 @@ START_TEST(estimates_of_coarse_meshes_are_doubted) {
     goal_check(&j, 0.01789396, 0.4, 0.7, 1.4);
     job_end(&j);
   }
+  /* The end of contact decides, and the band has the estimate once more too. */
+  job j = body_of_block(
+      4, PLANE,
+      "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+      "*DSLOAD\nTOP, P, 20.\nRIGHT, TX, \"9*y\"\n");
+  ck_assert(goal_has_verdict(&j, "U", "contact_end"));
+  goal_check(&j, 0.0126535, 0.3, 0.6, 1.0);
+  job_end(&j);
 }
 END_TEST
 
