@@ -117,6 +117,28 @@ START_TEST(force_of_two_nodes_below_a_plane_is_not_reliable) {
 }
 END_TEST
 
+/* Also where the node is on the axis, and has none; there is none on a plane
+ * across it. */
+START_TEST(radial_force_on_the_axis_is_not_reliable) {
+  static const char *const on[] = {"SPHERE, RADIUS=2.\n0., -2.",
+                                   "PLANE\n0., 0.\n0., 1."};
+  for (int k = 0; k < 2; ++k) {
+    char cards[500];
+    snprintf(cards, sizeof cards,
+             "%s\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O, NORMAL=OBSTACLE\n"
+             "*GOAL, NAME=R, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 0.01\n",
+             on[k]);
+    job j = body_of_type(", TYPE=CAX3", "rect 4 4 1 1", cards);
+    dat t = job_table(&j, "GOALS", -1);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "value"), 0.0, 1e-15);
+    ck_assert(goal_has_verdict(&j, "R", k == 0 ? "few_nodes" : "reliable"));
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* The radial force is that of the bearing of the ring, the axial one the load.
  */
 START_TEST(radial_force_in_a_single_node_is_not_reliable) {
@@ -339,6 +361,7 @@ UNIT_MAIN("goals_doubts", displacements_of_corners_are_in_their_bands,
           normal_force_in_a_single_node_is_not_reliable,
           force_of_two_nodes_below_a_plane_is_not_reliable,
           radial_force_in_a_single_node_is_not_reliable,
+          radial_force_on_the_axis_is_not_reliable,
           errors_by_gaps_alone_have_a_band, passes_do_not_refine_by_rounding,
           friction_that_turns_back_within_an_edge,
           moment_about_a_row_of_nodes_is_not_reliable,
