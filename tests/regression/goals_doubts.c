@@ -56,6 +56,15 @@ START_TEST(estimates_of_coarse_meshes_are_doubted) {
     goal_check(&j, 0.01789396, 0.4, 0.7, 1.4);
     job_end(&j);
   }
+  /* The end of contact decides, and the band has the estimate once more too. */
+  job j = body_of_block(
+      4, PLANE,
+      "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, GROUP=TOP, COMPONENT=1\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+      "*DSLOAD\nTOP, P, 20.\nRIGHT, TX, \"9*y\"\n");
+  ck_assert(goal_has_verdict(&j, "U", "contact_end"));
+  goal_check(&j, 0.0126535, 0.3, 0.6, 1.0);
+  job_end(&j);
 }
 END_TEST
 
@@ -92,18 +101,41 @@ START_TEST(normal_force_in_a_single_node_is_not_reliable) {
 END_TEST
 
 /* The nodes of another contact are none of its. */
-START_TEST(force_of_one_node_below_a_plane_is_not_reliable) {
-  job j = body_of("rect 4 4 2 1 alternate",
-                  "SPHERE, RADIUS=2.\n0.6, -2.\n*OBSTACLE, NAME=P, TYPE=PLANE\n"
-                  "0., 1.\n0., -1.\nMOVE, 0., -0.006" CONTACT
-                  "*CONTACT, NAME=D, GROUP=TOP, OBSTACLE=P\n" NORMAL
-                  "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*PRINT, TOTALS\n");
+START_TEST(force_of_two_nodes_below_a_plane_is_not_reliable) {
+  job j =
+      body_of("rect 4 4 2 1 alternate",
+              "SPHERE, RADIUS=2.\n0.75, -2.\n*OBSTACLE, NAME=P, TYPE=PLANE\n"
+              "0., 1.\n0., -1.\nMOVE, 0., -0.03" CONTACT
+              "*CONTACT, NAME=D, GROUP=TOP, OBSTACLE=P\n" NORMAL
+              "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*PRINT, TOTALS\n");
   dat t = job_table(&j, "TOTALS", -1);
-  ck_assert_double_eq(dat_at(&t, 0, "open"), 4.0);
+  ck_assert_double_eq(dat_at(&t, 0, "open"), 3.0);
   ck_assert_double_le(dat_at(&t, 1, "open"), 2.0);
   ck_assert(goal_has_verdict(&j, "N", "few_nodes"));
   dat_free(&t);
   job_end(&j);
+}
+END_TEST
+
+/* Also where the node is on the axis, and has none; there is none on a plane
+ * across it. */
+START_TEST(radial_force_on_the_axis_is_not_reliable) {
+  static const char *const on[] = {"SPHERE, RADIUS=2.\n0., -2.",
+                                   "PLANE\n0., 0.\n0., 1."};
+  for (int k = 0; k < 2; ++k) {
+    char cards[500];
+    snprintf(cards, sizeof cards,
+             "%s\n*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O, NORMAL=OBSTACLE\n"
+             "*GOAL, NAME=R, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 0.01\n",
+             on[k]);
+    job j = body_of_type(", TYPE=CAX3", "rect 4 4 1 1", cards);
+    dat t = job_table(&j, "GOALS", -1);
+    ck_assert_double_eq_tol(dat_at(&t, 0, "value"), 0.0, 1e-15);
+    ck_assert(goal_has_verdict(&j, "R", k == 0 ? "few_nodes" : "reliable"));
+    dat_free(&t);
+    job_end(&j);
+  }
 }
 END_TEST
 
@@ -327,8 +359,9 @@ UNIT_MAIN("goals_doubts", displacements_of_corners_are_in_their_bands,
           estimates_of_coarse_meshes_are_doubted,
           moment_about_a_single_node_is_not_reliable,
           normal_force_in_a_single_node_is_not_reliable,
-          force_of_one_node_below_a_plane_is_not_reliable,
+          force_of_two_nodes_below_a_plane_is_not_reliable,
           radial_force_in_a_single_node_is_not_reliable,
+          radial_force_on_the_axis_is_not_reliable,
           errors_by_gaps_alone_have_a_band, passes_do_not_refine_by_rounding,
           friction_that_turns_back_within_an_edge,
           moment_about_a_row_of_nodes_is_not_reliable,

@@ -384,7 +384,9 @@ static int turns(const run *r, const shared *s) {
     for (int a = 0; a < dim; ++a)
       add_scaled(dim, s->form.psi[dim * i + a], on->basis + dim * (dim * i + a),
                  z);
-    if (r->faces.input.axisymmetric) most = fmax(most, fabs(z[0]));
+    for (int k = dim * i; k < dim * i + last && r->faces.input.axisymmetric;
+         ++k)
+      most = fmax(most, fabs(z[0] * on->frame[dim * k]));
     for (int c = 0; c < dim; ++c) {
       size = fmax(size, fabs(z[c]));
       z[c] += s->y[dim * on->node_id[i] + c];
@@ -412,8 +414,8 @@ static int has_few(const run *r, const shared *s, int id) {
  * its nodes miss, or missed while a sum grew. */
 static void doubt_of_nodes(const run *r, const shared *s, int id, int exact,
                            int missed, goal_result *out) {
-  const int few = (out->verdict == GOAL_FEW_NODES || has_few(r, s, id)) &&
-                  fmax(s->form.size, fabs(s->form.value)) > 0.0 && turns(r, s);
+  const int few =
+      (out->verdict == GOAL_FEW_NODES || has_few(r, s, id)) && turns(r, s);
   if (exact) out->verdict = few ? GOAL_FEW_NODES : GOAL_RELIABLE;
   if ((s->surface.is_missed || (s->form.sums && missed)) &&
       out->verdict == GOAL_RELIABLE)
