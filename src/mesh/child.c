@@ -226,13 +226,21 @@ static void load(child *c) {
   watch_crashes();
 }
 
+int child_tells_of_memory(const char *text) {
+  return strstr(text, "bad_alloc") != NULL ||
+         strstr(text, "Out of memory") != NULL ||
+         strstr(text, "out of memory") != NULL ||
+         strstr(text, "out of dynamic memory") != NULL ||
+         strstr(text, "annot allocate memory") != NULL;
+}
+
 /* A step of gmsh failed: its last error gives the reason. */
 static void check(const child *c, int error, const char *doing) {
   if (!error) return;
   char *last = NULL;
   int ignored;
   c->gmsh.LoggerGetLastError(&last, &ignored);
-  int memory = last != NULL && strstr(last, "bad_alloc") != NULL;
+  int memory = last != NULL && child_tells_of_memory(last);
   give_up(c, memory ? ERR_MEMORY : ERR_MESH, "gmsh fails to %s: %s", doing,
           last != NULL && last[0] != '\0' ? last : "no reason given");
 }

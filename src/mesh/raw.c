@@ -159,14 +159,6 @@ static void last_error(const char *text, char *last, size_t size) {
   }
 }
 
-static int tells_of_memory(const char *text) {
-  return strstr(text, "bad_alloc") != NULL ||
-         strstr(text, "Out of memory") != NULL ||
-         strstr(text, "out of memory") != NULL ||
-         strstr(text, "out of dynamic memory") != NULL ||
-         strstr(text, "annot allocate memory") != NULL;
-}
-
 /* How the child ended, when it did not send a whole mesh. */
 static status child_failure(int ended, int code, int error_fd) {
   char last[LAST_SIZE];
@@ -177,7 +169,7 @@ static status child_failure(int ended, int code, int error_fd) {
   last_error(text, last, sizeof last);
   const char *said = last[0] != '\0' ? "; it said: " : "";
   int killed = ended && WIFSIGNALED(code);
-  if (tells_of_memory(text))
+  if (child_tells_of_memory(text))
     RAISE(ERR_MEMORY,
           "gmsh ran out of memory while reading the mesh; a damaged file may "
           "require too much");

@@ -71,6 +71,8 @@ status raw_receive(int fd, raw_mesh *raw, int *stopped);
 
 /* Child's end: gmsh from the request to the pipe. Never returns. */
 void child_run(const raw_request *request, int fd, int error_fd);
+/* 1: a text of gmsh says that there was no memory. */
+int child_tells_of_memory(const char *text);
 
 /* Check the raw mesh and make the mesh of it; messages go to the log. */
 status build_mesh(const raw_mesh *raw, double scale, const place *at,

@@ -68,7 +68,7 @@ START_TEST(reader_that_dies_is_told) {
   /* what its scanner says before it exits */
   ck_assert_ptr_null(mesh_file_text(
       &f, "scanner.geo",
-      "Error(\"out of dynamic memory in gmsh_yy_create_buffer()\"); Exit;\n"));
+      "SystemCall \"echo out of dynamic memory in a buffer >&2\"; Exit;\n"));
   ck_assert_int_eq(f.answer, ERR_MEMORY);
   ck_assert_ptr_nonnull(strstr(status_message(), "gmsh ran out of memory"));
   mesh_file_close(&f);
