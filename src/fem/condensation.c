@@ -35,6 +35,7 @@ struct condensed {
   double *load;          /* [dim*n_node] in local components */
   double *prescribed;    /* [dim*n_node] local components, of the last load */
   double condition;      /* 0: not yet known */
+  double stiffest;       /* largest entry of K, N/m */
   double *F;             /* [dim*n_node] the load last condensed; NULL unless
                             solutions are refined */
   double *rest;          /* [dim*n_node] its residual, likewise */
@@ -272,6 +273,16 @@ static status make_operator(condensed *c) {
   return c->sparse == NULL ? st : name_body(c, &c->sparse->f, st);
 }
 
+static double largest_diagonal(const stiffness *k) {
+  double most = 0;
+  for (int i = 0; i < k->n_node; ++i)
+    for (int a = 0; a < k->dim; ++a)
+      if (k->free[i] >> a & 1)
+        most = fmax(most,
+                    k->block[k->dim * k->dim * k->start[i] + a * (k->dim + 1)]);
+  return most;
+}
+
 status condense(const stiffness *k, const domain *d, condensed **out) {
   status st = OK;
   condensed *c = NULL;
@@ -284,6 +295,7 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   cholmod_l_start(c->cm);
   c->cm->print = 0;
   c->k = k;
+  c->stiffest = largest_diagonal(k);
   c->d = *d;
   c->n_contact = d->surface != NULL ? d->surface->n : 0;
   c->m = k->n_row;
@@ -606,16 +618,7 @@ void condensed_product(const condensed *c, const double *u, double *Au) {
 
 int condensed_floating(const condensed *c) { return c->rigid.n_set > 0; }
 
-double condensed_stiffest(const condensed *c) {
-  const stiffness *k = c->k;
-  double most = 0;
-  for (int i = 0; i < k->n_node; ++i)
-    for (int a = 0; a < k->dim; ++a)
-      if (k->free[i] >> a & 1)
-        most = fmax(most,
-                    k->block[k->dim * k->dim * k->start[i] + a * (k->dim + 1)]);
-  return most;
-}
+double condensed_stiffest(const condensed *c) { return c->stiffest; }
 
 int condensed_motions(const condensed *c, const double **R) {
   *R = c->rigid.Q;

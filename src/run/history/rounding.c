@@ -196,13 +196,14 @@ static int hides_strains(const run *r, double u) {
 }
 
 int rounding_is_all(const run *r) {
-  const double force = largest_entry(r->nodes.n_c, r->now.rc),
-               moved = strains_rounding(r, strains_lost(r));
+  const double force = largest_entry(r->nodes.n_c, r->now.rc);
   if (forces_hide_strains(r)) return 1;
   if ((r->strains.eigen.n == 0 || r->errors.noise) && moves_alone(r)) return 1;
   if (r->errors.strained) return 0;
   if (r->errors.carried &&
-      (r->errors.noise || r->now.energy.strain <= moved + forces_energy(r)))
+      (r->errors.noise ||
+       r->now.energy.strain <=
+           strains_rounding(r, strains_lost(r)) + forces_energy(r)))
     return 1;
   if (increment_free_load(r, r->now.F) > 0.0) return 0;
   const double u = force > 0.0 ? fmax(strains_lost(r), rounding_of_gaps(r))
