@@ -136,7 +136,10 @@ static status use_fresh(run *r, const flow_tangent *law) {
   if (same && v->fresh.c != NULL) return OK;
   PASS(fresh_domain(r, law, &d));
   r->c = NULL;
-  if (!same) run_forget_estimates(r);
+  if (!same) {
+    run_forget_estimates(r);
+    v->fresh.from = NULL;
+  }
   PASS(same ? factor_again(&d, &v->fresh) : factor(&d, &v->fresh));
   v->fresh.key = RUN_FRESH_KEY;
   return OK;
@@ -257,16 +260,17 @@ status tangent_step(run *r, const flow_tangent *law, const scheme_call *a) {
   return step_follow(r, a);
 }
 
-/* The tangents that v->fresh is made of. */
+/* The tangents that v->fresh is made of, and its solver. */
 static status keep_fresh(run *r, archive *a) {
   visco *v = r->strains.visco;
   size_t square = visco_at(r, r->m->ns), n = r->body.moduli.n;
-  int there = v->E_is_fresh && v->fresh.c != NULL;
+  int there = v->E_is_fresh && (v->fresh.c != NULL || v->fresh.from != NULL);
   PASS(archive_ints(a, "fresh", &there, 1));
   if (archive_reads(a)) v->E_is_fresh = there;
   if (!there) return OK;
   if (v->E == NULL) PASS_NEW(v->E, square * (n + v->x.n));
-  return archive_reals(a, "tangents", v->E + square * n, square * v->x.n);
+  PASS(archive_reals(a, "tangents", v->E + square * n, square * v->x.n));
+  return matrices_keep(&v->fresh, a, "fresh_solver");
 }
 
 status tangent_keep(run *r, archive *a) {

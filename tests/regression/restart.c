@@ -299,9 +299,12 @@ START_TEST(factor_goes_on) {
 }
 END_TEST
 
-/* A strip of so many cells in three steps, their *SOLVER cards and supports. */
+/* A strip of so many cells in three steps, their *SOLVER cards and supports;
+ * its law and what integrates it, or "". */
 static job strip(int cells, const char *const solver[2],
-                 const char *const supports[2]) {
+                 const char *const supports[2], const char *law,
+                 const char *scheme) {
+  const char *kind = law[0] != '\0' ? "*VISCO" : "*QUASISTATIC";
   job j = job_begin("strip");
   job_write(&j, "strip.geo",
             "Point(1) = {0, 0, 0};\n"
@@ -314,16 +317,17 @@ static job strip(int cells, const char *const solver[2],
             cells);
   job_write(&j, "strip.inp",
             "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "%s*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
             "*OBSTACLE, NAME=O, TYPE=GAP\n\"1e-5*(1 - cos(40*x))\"\n"
             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
-            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*QUASISTATIC\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n%s%s\n"
             "0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, -5e-5\n"
             "*SOLVER%s\n*PRINT, CONTACT\n*OUTPUT, HDF5=NO\n*END STEP\n"
-            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 4e-5\n%s"
-            "*SOLVER%s\n*END STEP\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
+            "*STEP\n%s%s\n0.25, 1.\n*BOUNDARY\nTOP, 1, 1, 4e-5\n%s"
+            "*SOLVER%s\n*END STEP\n*STEP\n%s%s\n0.25, 1.\n"
             "*BOUNDARY\nTOP, 1, 1, 5e-5\n%s*END STEP\n",
-            solver[0], supports[0], solver[1], supports[1]);
+            law, kind, scheme, solver[0], kind, scheme, supports[0], solver[1],
+            kind, scheme, supports[1]);
   return j;
 }
 
@@ -333,7 +337,7 @@ static void check_kinds(int cells, const char *const solver[2],
                         const char *const chosen[2]) {
   int changes, all;
   job both[2];
-  for (int k = 0; k < 2; ++k) both[k] = strip(cells, solver, supports);
+  for (int k = 0; k < 2; ++k) both[k] = strip(cells, solver, supports, "", "");
   ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
   ck_assert_int_eq(run_until(&both[1], nothing, all / 2, SIGINT, &changes),
                    130);
@@ -357,6 +361,24 @@ START_TEST(kind_of_stiffness_goes_on) {
       600, (const char *const[]){", STIFFNESS=DENSE", ""},
       (const char *const[]){"", ""},
       (const char *const[]){"DENSE  STIFFNESS of", "FACTOR  it is expected"});
+}
+END_TEST
+
+/* Tangents of the points that are those of the last solve, as nothing flows:
+ * the factor of Newton, which the next contact changes in a few rows, too. */
+START_TEST(factor_of_tangents_goes_on) {
+  int changes, all;
+  job both[2];
+  static const char *const none[] = {"", ""};
+  for (int k = 0; k < 2; ++k)
+    both[k] = strip(40, none, none, "*INELASTIC, LAW=PERZYNA\n1e6, 50.\n",
+                    ", INTEGRATOR=BACKWARD");
+  ck_assert_int_eq(run_until(&both[0], nothing, 0, 0, &all), 0);
+  ck_assert_int_eq(run_until(&both[1], nothing, 2 * all / 3, SIGINT, &changes),
+                   130);
+  goes_on(&both[1], 0, "tangents");
+  same_files(&both[0], &both[1], "tangents");
+  for (int k = 0; k < 2; ++k) job_end(&both[k]);
 }
 END_TEST
 
@@ -703,6 +725,7 @@ UNIT_MAIN("restart", what_is_read_is_written_again,
           known_rate_goes_on, largest_loads_and_energies_go_on,
           run_without_a_file_begins_anew, files_are_in_the_seal,
           restart_files_are_equal, errors_of_goals_go_on, factor_goes_on,
-          kind_of_stiffness_goes_on, observed_work_goes_on,
-          restart_file_does_not_grow, missed_tolerance_goes_on,
-          some_jobs_start_anew, damaged_files_are_refused)
+          kind_of_stiffness_goes_on, factor_of_tangents_goes_on,
+          observed_work_goes_on, restart_file_does_not_grow,
+          missed_tolerance_goes_on, some_jobs_start_anew,
+          damaged_files_are_refused)
