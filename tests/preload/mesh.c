@@ -81,11 +81,21 @@ static struct {
 
 static void mix_text(const char *text) { mix(text, strlen(text) + 1); }
 
+/* Of the program, then "-setnumber", name and value of each number: in any
+ * order they give one mesh. */
 void gmshInitialize(int argc, char **argv, int ignored, int *error) {
+  const uint64_t before = key;
+  uint64_t sum = 0;
   (void)ignored;
   n_word = argc;
   word = argv;
-  for (int i = 1; i < argc; ++i) mix_text(argv[i]);
+  for (int i = 1; i < argc; i += 3) {
+    key = before;
+    mix_text(argv[i + 1]);
+    mix_text(argv[i + 2]);
+    sum += key;
+  }
+  mix(&sum, sizeof sum);
   *error = 0;
 }
 
