@@ -8,8 +8,7 @@ typedef struct inverse_energy {
   void *ctx;
   /* *square = d' inv(M) d, d[m] */
   status (*square)(void *ctx, const double *d, double *square);
-  double condition;       /* of M scaled to a unit diagonal, -; for the
-                             rounding */
+  double condition;       /* scaled to a unit diagonal, for rounding */
   const double *diagonal; /* [m] or NULL: the condition is that of a matrix with
                              this diagonal, whose inverse holds inv(M) */
   int n_kernel;           /* motions without energy: M is semidefinite */
@@ -22,8 +21,7 @@ typedef struct inverse_energy {
 typedef struct solver_error {
   double norm;     /* bound of |u - u*|_A (|r - r*|_W if A is NULL), square root
                       of an energy; NAN: there is none */
-  double rate;     /* contraction of the sliding limit, -; 0: no Coulomb
-                      friction */
+  double rate;     /* contraction of the sliding limit, -; 0: no Coulomb law */
   const char *why; /* NULL, or why there is no bound */
 } solver_error;
 
@@ -74,8 +72,7 @@ status contraction_limit(const contact_problem *cp, const double *u,
 typedef struct linear_states {
   const contact_problem *cp; /* borrowed */
   int n_free, n_slip, n_closed;
-  int *free_id, *place;         /* [m] unknowns that can move; place among them,
-                                   or -1 */
+  int *free_id, *place;         /* [m] that can move; place there, or -1 */
   unsigned char *closed, *slip; /* [n] */
   double *e;                    /* [m] direction of friction on slip */
   double *kappa;                /* [n] N/m */
@@ -115,8 +112,7 @@ void dense_inverse_fill(dense_inverse *d, double *N, int *done);
  * whose force then balances x. v[m] may be x. */
 void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
 
-/* Admissible pair: displacement v and force q of the contact related by its
- * laws. */
+/* Admissible pair: displacement v, contact force q related by its laws. */
 typedef struct pair {
   double *v, *q;         /* [m] m, N */
   double *d, *t;         /* [m] defect of the equation; workspace */
@@ -137,8 +133,7 @@ void pair_set(const contact_problem *cp, const double *u, const double *r,
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
                     pair *p, int *done);
 
-/* Stiffness of node i along its normal and in
- * its tangent plane, N/m. */
+/* Stiffness of node i along its normal and in its tangent plane. */
 typedef struct node_stiffness {
   double n, t;
 } node_stiffness;

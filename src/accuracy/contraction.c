@@ -17,8 +17,7 @@ struct linear_contact {
   linear_states at;
   double *K;  /* [n_free^2] factor */
   double *x;  /* [m] change of the free unknowns */
-  double *P;  /* [n_free*n_closed] columns of A of the normal unknowns
-                 of closed nodes */
+  double *P;  /* [n_free*n_closed] columns of A of the closed normals */
   double *dg; /* [n] N */
   double *b, *full, *Ax; /* of an operator, in the place of K and P: [m] right
                             side; x at all unknowns; A x, N */

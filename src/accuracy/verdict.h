@@ -27,8 +27,7 @@ typedef struct verdict_scene {
  * Errors: ERR_MEMORY.
  */
 status verdict_text(const verdict_scene *s, char *text, size_t size);
-/* The nodes where the conditions are violated most, as such a clause; "" if
- * unknown. */
+/* The nodes that violate the conditions most, as a clause; "" if unknown. */
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size);

@@ -187,8 +187,7 @@ status given_form_new(const contact_problem *cp, int n, const int *node,
   return OK;
 }
 
-/* g0 and B with the known pressures taken from B to g0; B NULL if none are
- * left. */
+/* g0 and B with the known pressures of B in g0; B NULL if none is left. */
 static status set_limit(given_form *g, const contact_problem *cp,
                         contact_problem *out) {
   OWNS(g);

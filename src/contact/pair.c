@@ -5,8 +5,7 @@
 
 /* ---- couplings ---------------------------------------------------------- */
 
-/* Slave nodes that are left out: supports hold them, an earlier pair has them.
- */
+/* Slave nodes left out: by supports, by an earlier pair. */
 enum { HELD = 1, TAKEN };
 /* Of places over the size of the mesh; of forces over the first of a chain. */
 static const double rounding = 1e-9;
@@ -177,8 +176,7 @@ static int is_curved(int dim, const mortar *m) {
   return 0;
 }
 
-/* 1: a support holds a component of slave node q that it holds of none of its
- * masters. */
+/* 1: a support holds a component of slave node q, of no master. */
 static int is_held_alone(const surface_input *in, const mortar *m, int q) {
   unsigned masters = 0;
   for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e)
@@ -312,8 +310,7 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
-/* Area of the node of a coupling, without what it carries for neighbours, m2.
- */
+/* Area of the node of a coupling, its neighbours' share taken off, m2. */
 static double own_area(const pair_row *row) {
   return row->of->area[row->row] / row->of->share[row->row];
 }
@@ -608,8 +605,7 @@ int pair_moves(const contact_pair *p) {
   return p->support != NULL && obstacle_moves(p->support);
 }
 
-/* Gap of contact node i along row k of its frame; reach where the obstacle is
- * not met. */
+/* Gap of contact node i along row k; reach where no obstacle is met. */
 static status row_gap(const contact_surface *s, const contact_pair *p, int i,
                       int k, double t, double reach, double *gap) {
   int dim = s->dim;

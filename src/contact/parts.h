@@ -79,8 +79,7 @@ int mirrors_lean(const surface_input *in, const contact_pair *p, int node_id,
  * relative to. Private to src/contact.
  */
 
-/* Part of the unit normal that must be left when the fixed components are
- * taken out of it. */
+/* Part of the unit normal left without the fixed components. */
 #define PAIR_FIXED_SINE 1e-3
 
 /* The coupling of which a normal of a node is, and its row there. */

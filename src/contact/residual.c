@@ -34,8 +34,7 @@ static int joined(const contact_problem *cp, int a, int b, double least) {
   return 0;
 }
 
-/* Bodies, each from one node on: list[n] holds the nodes found, then the
- * remaining ones. */
+/* Bodies, each from one node on: list[n] holds nodes found, then others. */
 static void find_bodies(const contact_problem *cp, const double *root,
                         int *list, contact_bodies *b) {
   int found = 0;
@@ -124,8 +123,7 @@ typedef struct measured {
   node_step c;          /* N/m */
   double k;             /* the larger of c, N/m */
   double rounding;      /* what rounding can have put into a row, N */
-  double drift;         /* the same, by motion that does not follow from the
-                           data, N */
+  double drift;         /* the same, by motion not of the data, N */
   double normal, slide; /* scale along the normal, in the tangent plane, N */
   double q[3];          /* the nearest forces of an obstacle, N */
 } measured;
@@ -295,8 +293,7 @@ static void measure_node(measure *x, int node_id, measured *node) {
   node->slide = scale_of(x, b, node, node->c.t);
 }
 
-/* An error over its scale, less the bound of its rounding, or that of a
- * drift. */
+/* An error over its scale, less that of rounding, or of a drift. */
 static double beyond(const measured *node, double error, double scale) {
   double more = error <= node->rounding ? 0.0 : error - node->rounding;
   more = larger(more, node->drift);
@@ -407,8 +404,7 @@ double contact_mismatch(const contact_problem *cp, double scale,
 
 /* ---- status ------------------------------------------------------------ */
 
-/* 1: no load acts on the body of a node, and its contact forces are rounding.
- */
+/* 1: no load acts on the body of a node, its forces are rounding. */
 static int has_no_force(const body_size *b, const measured *node) {
   return b->load == 0.0 && !(b->contact > node->rounding);
 }

@@ -290,8 +290,7 @@ static status collect(builder *b) {
     b->n += in->pairs[p].coupled != NULL ? add_coupled(b, p, &b->list[b->n])
                                          : add_nodes(b, p, &b->list[b->n]);
   }
-  /* Its faces; those of nodes of *TIE last, once the normals of all are known.
-   */
+  /* Its faces; those of nodes of *TIE last, with all normals known. */
   for (int tied = 0; tied < 2; ++tied)
     for (int p = 0; p < in->n_pair; ++p)
       for (int k = 0;
@@ -608,8 +607,7 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
   return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
-/* A depth of penetration that is told, m: facets of curved surfaces enter each
- * other. */
+/* A depth that is told, m: facets of curved surfaces enter each other. */
 static double told_depth(const builder *b, const contact_pair *p) {
   static const double sagitta = 0.05;
   const mesh *m = b->in->mesh;

@@ -118,8 +118,7 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
 
 /* ---- language cards ---------------------------------------------------- */
 
-/* Refuse parameters that are not among the names (NULL at the end); 1 if
- * there are none. */
+/* Refuse parameters not among the names (NULL ends them); 1: there is none. */
 static int check_names(reader *r, const card *c, const char *const *names) {
   int good = 1;
   for (EACH(const parameter, p, c->parameters, c->n_parameter)) {
@@ -329,8 +328,7 @@ static status read_record(reader *r, const physical *line) {
   return OK;
 }
 
-/* A data line where none may stand: one message for the lines that follow
- * each other. */
+/* A data line where none may stand: one message for a run of them. */
 static void refuse_line(reader *r, const physical *line) {
   if (r->stray_seen) return;
   place at = source_place(r->top, line->line_no, 1, line->text);

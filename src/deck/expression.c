@@ -192,8 +192,7 @@ static int precedence(const waiting *w) {
   return w->kind == WAIT_OPERATOR ? w->operation->precedence : 0;
 }
 
-/* Emit the operators of at least the precedence "level", down to a
- * parenthesis. */
+/* Emit operators of at least precedence "level", down to a parenthesis. */
 static status emit_down_to(compiler *c, int level) {
   while (c->n_waiting > 0 && precedence(&c->stack[c->n_waiting - 1]) >= level) {
     PASS(emit_waiting(c, &c->stack[c->n_waiting - 1]));

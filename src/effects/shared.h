@@ -21,8 +21,7 @@ typedef struct crack_factors {
 } crack_factors;
 /* ERR_MEMORY. */
 status cracks_factors(run *r, int crack_id, crack_factors *out);
-/* K of a mode, which the point has, as a linear function; after
- * cracks_factors. ERR_MEMORY. */
+/* K of a mode of the point, linear; after cracks_factors. ERR_MEMORY. */
 status cracks_derive(const run *r, int crack_id, int point, int mode,
                      fracture_linear *out);
 /* by[dim*n_node]: a derivative by tractions at the lips becomes that by the

@@ -30,8 +30,7 @@ struct condensed {
   rigid_motions rigid;   /* those that only contact holds */
   unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
                             NULL: no body needs one */
-  int just_held;         /* 1: the springs hold those motions and nothing
-                            else */
+  int just_held;         /* 1: the springs hold those motions alone */
   double *load;          /* [dim*n_node] in local components */
   double *prescribed;    /* [dim*n_node] local components, of the last load */
   double condition;      /* 0: not yet known */
@@ -92,8 +91,7 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
                      &c->ordering);
 }
 
-/* The motions that only contact holds: c->rigid. A body nothing holds: name it
- * and the motion. */
+/* Motions only contact holds: c->rigid; a body nothing holds is named. */
 static status find_motions(condensed *c) {
   int n = 0;
   OWNED_OF(free_motion, list, support_motions(&c->d, &n, &list, &c->rigid));
@@ -445,8 +443,7 @@ static status refine(condensed *c, double *u) {
   return OK;
 }
 
-/* f_c again: the reactions of the refined solution for u_c = 0, with opposite
- * sign. */
+/* f_c again: minus the reactions of the refined solution for u_c = 0. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;

@@ -16,20 +16,15 @@ typedef struct body_factor {
                                   interior, then those with condensed unknowns;
                                   a node with both stands in both places, the
                                   first n_own once */
-  int bad_node;                /* where the factor broke down, for the
-                                  message */
+  int bad_node;                /* where the factor broke down */
   long n, nc;                  /* unknowns; contact ones among them */
-  long *unknown;               /* [n] dim*node + component of position p in the
-                                  factor */
-  long *contact_at;            /* [nc] positions of the contact unknowns,
-                                  ascending */
+  long *unknown;               /* [n] dim*node + component of a position */
+  long *contact_at;            /* [nc] places of contact, ascending */
   int *contact_id;             /* [nc] their rows in A */
-  int *rank;                   /* [n - contact_at[0]] rank of a position among
-                                  them or -1 */
+  int *rank;                   /* [n - contact_at[0]] rank, or -1 */
   int exponent;                /* see above */
   double flops;                /* of the factorisation */
-  int whole;                   /* 1: contact unknowns anywhere in the order,
-                                  nc = 0 */
+  int whole;                   /* 1: contact unknowns anywhere, nc = 0 */
   const unsigned char *pinned; /* [m] contact unknowns whose diagonal entry is
                                   doubled in the factor, borrowed; NULL: none */
   cholmod_factor *L;
@@ -44,8 +39,7 @@ void body_factor_number(const stiffness *k, body_factor *f, long *number);
  * ERR_SINGULAR, ERR_MEMORY. */
 status body_factor_analyse(const stiffness *k, const long *number,
                            cholmod_common *cm, body_factor *f);
-/* Build the matrix, f->pinned included, and factor it. ERR_SINGULAR,
- * ERR_MEMORY. */
+/* Build the matrix with f->pinned and factor it. ERR_SINGULAR, ERR_MEMORY. */
 status body_factor_build(const stiffness *k, const long *number,
                          cholmod_common *cm, body_factor *f);
 /* Spring of the unknown dim*node + component in the scaled matrix, 0: none. */

@@ -23,8 +23,7 @@ typedef struct eigenstrain {
   const double *e0;   /* [ns*n] -; NULL: 0 (eigen_stress) */
 } eigenstrain;
 
-/* Nodes with unknowns in the order of a factor of the whole stiffness, and what
- * that takes. */
+/* Nodes with unknowns in the order of a whole factor, and its costs. */
 typedef struct whole_order {
   int n, *node;     /* [n], owned */
   const char *name; /* of the method */
@@ -48,8 +47,7 @@ typedef struct domain {
   const double *E;                /* [ns*ns*n_section] Pa */
   const double *C;                /* [36*n_section] Pa, for e_zz of plane
                                      stress; NULL: 0 */
-  const unsigned char *fixed;     /* [dim*n_node] 1: prescribed (global
-                                     components) */
+  const unsigned char *fixed;     /* [dim*n_node] 1: prescribed (globally) */
   const eigenstrain *eigen;       /* NULL: none. Counts in stresses and
                                      energy; condense_load has it from F
                                      (eigen_force) */
@@ -180,8 +178,7 @@ status condensed_misfit(condensed *c, const double *rest, const double *rc,
 status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
                              const unsigned char *held, double *w,
                              double *square);
-/* 1: the condition number is far above that of a plain mesh: the residual
- * matters. */
+/* 1: the condition number is so large that the residual matters. */
 int condensed_costs_digits(const condensed *c);
 /* The motions of whole bodies that contact alone holds, their number: *R[m*k],
  * orthonormal, of the contact unknowns, borrowed. */
@@ -204,8 +201,7 @@ typedef struct deformation {
 } deformation;
 void domain_deformation(const domain *d, const double *u, deformation *out);
 double domain_strain_energy(const domain *d, const double *u); /* J */
-/* The same of all elements but n of them, ascending, which hold whole
- * clusters. */
+/* That of all but n elements, ascending, which hold whole clusters. */
 double domain_energy_without(const domain *d, int n, const int *elem_id,
                              const double *u);
 /* F += sum B' E e0 w: the forces that hold the strains of x back, global

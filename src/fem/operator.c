@@ -202,8 +202,7 @@ static void solve_rows(const sparse_operator *o, const supernodal_part *part,
   supernodal_back(o->s, o->x, part, v);
 }
 
-/* The same of the interior, at its places in the part; forces: of the contact
- * only, or all. */
+/* The same of the interior, into its part; forces: of contact, or all. */
 static void solve_interior(const sparse_operator *o,
                            const supernodal_part *forces,
                            const supernodal_part *part, double *v) {
@@ -241,8 +240,7 @@ static void spread(const sparse_operator *o, const double *u) {
   }
 }
 
-/* Forces f[rows] of displacements v at a contact node, and sums of their
- * magnitudes, or NULL. */
+/* Forces f[rows] of v at a contact node, sums of magnitudes or NULL. */
 static void gather_node(const sparse_operator *o, int id, const double *v,
                         double *f, double *size) {
   const stiffness *k = o->k;

@@ -33,8 +33,7 @@ typedef struct component {
   int row;
 } component;
 
-/* Component c of node i, contact node q or -1: in the frame of q, relative
- * where q is. */
+/* Component c of node i, contact node q or -1: in its frame, relative. */
 component node_component(const domain *d, int i, int q, int c);
 /* Terms of the sum: the node, then its masters. */
 int component_terms(const component *x);
@@ -77,8 +76,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
  * possible: pinned[m] set to 1. */
 status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned);
-/* A <- (I - Q Q') A (I - Q Q'), symmetric to the last bit; upper triangle
- * read. */
+/* A <- (I - Q Q') A (I - Q Q'), exactly symmetric; upper part read. */
 status rigid_project(const rigid_motions *r, double *A);
 /* Gather R' F for rigid_balance: load[dim*n_node] forces at the unknowns, T'F
  * (stiffness.h) in local components. */

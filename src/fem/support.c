@@ -340,8 +340,7 @@ typedef struct triangle {
   double most; /* the largest term of an entry of it */
 } triangle;
 
-/* Orthonormal motions Z[n*rank] up to rank_limit; the last "exact" ones up to
- * exact_limit. */
+/* Orthonormal motions Z[n*rank] up to rank_limit, last ones exact_limit. */
 typedef struct null_basis {
   int rank, exact;
   double *Z;
@@ -366,8 +365,7 @@ static void triangle_release(triangle *t) {
 /* Rotate the next condition into the triangle. */
 static void add_row(triangle *t) {
   double *row = t->row;
-  /* Is the next condition more than rounding? A pair within one piece has none.
-   */
+  /* Is the condition more than rounding? Within one piece it is not. */
   double most = 0;
   for (int k = t->first; k < t->last; ++k) most = fmax(most, fabs(t->row[k]));
   const int adds = most > exact_limit * t->most;

@@ -80,8 +80,7 @@ typedef struct fracture_factors {
 
 typedef struct fracture fracture;
 
-/* Points in the order of crack->front_node, and their domains. *out is new.
- * ERR_MEMORY. */
+/* Points in the order of crack->front_node. *out is new. ERR_MEMORY. */
 status fracture_new(const fracture_body *body, fracture **out);
 int fracture_count(const fracture *f);
 const fracture_point *fracture_points(const fracture *f); /* borrowed */

@@ -77,8 +77,7 @@ static int set_corners(work *w, int n, const int *node) {
   return grows;
 }
 
-/* Displacement gradient of an element; g: gradients of its P1 functions.
- * Returns its measure. */
+/* Displacement gradient of an element, g: of its functions; its measure. */
 static double set_slope(work *w, int elem, double g[12]) {
   const int dim = w->m->dim;
   const int *v = w->m->elem + (size_t)(dim + 1) * elem;
@@ -431,8 +430,7 @@ static void trend_at(const trend *of, double x, double scatter, double t[3]) {
   }
 }
 
-/* Traction at a corner, given or from the line; returns how far it is behind
- * the front. */
+/* Traction at a corner; returns how far it is behind the front. */
 static double set_traction(work *w, corner *c, int node) {
   const trend *of = &w->side[w->above];
   local at;

@@ -249,8 +249,7 @@ static void set_frame_2d(const fracture *f, int i) {
   cross(e1, e2, e3);
 }
 
-/* Positions in front_node of the neighbours "step" away along the chain; -1:
- * beyond its end. */
+/* Positions of the neighbours "step" away along the chain; -1: none. */
 static int along(const mesh_crack *c, int chain, int i, int step) {
   const int from = c->front_start[chain], last = c->front_start[chain + 1] - 1;
   const int n = last - from, to = i + step;

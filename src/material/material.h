@@ -59,8 +59,7 @@ status elastic_table_read(const struct card *c, elastic_type type,
 /* elastic_matrix() of the constants at a temperature. */
 const char *elastic_at(const elastic_table *t, double temperature, double C[36],
                        char *text, int text_size);
-/* The sets of E, nu are what is left after the parts relaxed[2] of G and K have
- * relaxed. */
+/* The sets become what is left after relaxed[2] of G and K have relaxed. */
 void elastic_table_relaxed(elastic_table *t, const double relaxed[2]);
 /* Largest value of constant number i in any set. */
 double elastic_table_most(const elastic_table *t, int i);

@@ -99,8 +99,7 @@ static uint64_t on_curve(uint32_t *x, int dim) {
   return key;
 }
 
-/* Bounding box of the used nodes; coordinates that are not finite are
- * reported. */
+/* Bounding box of the used nodes; others than finite are reported. */
 static status find_box(builder *b, double lo[3], double hi[3]) {
   faults bad = {0};
   for (int k = 0; k < 3; ++k) {

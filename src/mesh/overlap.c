@@ -34,8 +34,7 @@ static void two_lowest(int n, const int *w, int low[2]) {
   }
 }
 
-/* Two elements on both sides of a face have opposite orientations of it: last
- * bit. */
+/* The elements on both sides of a face turn it oppositely: last bit. */
 static uint64_t side_key(int dim, const int *v) {
   int a = v[dim - 2], c = v[dim - 1], turn = a < c;
   uint64_t low = (uint64_t)(turn ? a : c), high = (uint64_t)(turn ? c : a);

@@ -258,8 +258,7 @@ typedef struct friction_change { /* *FRICTION in a step */
 /* CHECK= of *SOLVER */
 typedef enum { CHECK_NONE, CHECK_SOLVERS, CHECK_ALL } solution_check;
 
-/* MESH= of *ACCURACY, as the words stand there: at every increment; at the last
- * of the step. */
+/* MESH= of *ACCURACY in the order of its words: every increment; last. */
 typedef enum { MESH_ERROR_NO, MESH_ERROR_YES, MESH_ERROR_END } mesh_error_at;
 
 typedef struct step {
@@ -285,8 +284,8 @@ typedef struct step {
   struct {
     int n, cap;
     print_request *requests; /* [n] owned */
-    int given; /* 1: those of the step before end */
-    int ended; /* bits of PRINT_*: or these alone, by =NO */
+    int given;               /* 1: those of the step before end */
+    int ended;               /* bits of PRINT_*: or these alone, by =NO */
   } print;
   struct {
     int frequency; /* HDF5: every n-th increment; 0: last; -1: none */
@@ -533,8 +532,7 @@ const char *print_word(int table);
  * count. */
 int print_shows(const print_request *p, const step *s, double t,
                 int increment_no, int last);
-/* Its first time point after one time and before another, neither to
- * rounding; HUGE_VAL: none. */
+/* Its first time point between two times, not to rounding; or HUGE_VAL. */
 double print_next(const print_request *p, const step *s, double after,
                   double before);
 /* 1: *CONTACT PAIR or *TIE: surfaces of the mesh meet. */
@@ -592,8 +590,7 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
  * which all move to their values; not read at its end. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud);
-/* Value of an initial condition in an element, mean of its nodes; ERR_DECK if
- * it is not finite. */
+/* Initial condition in an element, mean of its nodes; or ERR_DECK. */
 status load_initial(const model *m, const mesh *msh, const initial *c,
                     int elem_id, double *value);
 /* Temperatures T[n_elem] before the first step, mean of the nodes. ERR_DECK if

@@ -44,8 +44,7 @@ static status spare(const deck *d, const char *path) {
   return OK;
 }
 
-/* The increment of a file of that name; 0: it is none of a condensed problem
- * of the job. */
+/* The increment of a file of a condensed problem; 0: it is none. */
 static long increment_of(const char *name, const char *job_name) {
   const size_t n = strlen(job_name), k = sizeof middle - 1;
   if (strncmp(name, job_name, n) != 0 || strncmp(name + n, middle, k) != 0 ||
@@ -60,8 +59,7 @@ static void close_folder(DIR **folder) {
   if (*folder != NULL) closedir(*folder);
 }
 
-/* All files of condensed problems of increments after that one are spared, or
- * cleared. */
+/* All condensed problems of later increments are spared, or cleared. */
 static status each_condensed(const model *m, const char *dir, int after,
                              int cleared) {
   DIR *folder ENDS_BY(close_folder) = opendir(dir);

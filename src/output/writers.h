@@ -14,8 +14,7 @@
 #include <stdio.h>
 
 typedef struct tabular tabular;
-/* NULL in *out if no step requires a table. length: of the file to continue;
- * -1: a new one. */
+/* NULL if no step requires a table. length: to continue; -1: a new one. */
 status tabular_open(const model *m, const mesh *msh, const char *dir,
                     long length, tabular **out);
 status tabular_sync(tabular *t, long *length); /* NULL: -1 */
@@ -44,8 +43,7 @@ void progress_show(const model *m, const state *s, double seconds, int done);
 void closing_lines(const job *j, const char *files, FILE *f);
 
 /* ---- json.c ----------------------------------------------------------- */
-/* Written to a temporary file and renamed: a program sees all of it or
- * nothing. */
+/* Written aside and renamed: a reader sees all of it or nothing. */
 status json_write(const job *j, const char *path);
 
 /* ---- fclib.c ---------------------------------------------------------- */
@@ -88,8 +86,7 @@ struct output {
   int progress;
   double shown_at, began_at; /* line on the terminal; end of the setup, s */
   int n_done;                /* increments since then */
-  int quiet;                 /* 1: the first facts stand in the listing
-                                already */
+  int quiet;                 /* 1: the first facts are in the listing */
   saved_increments saved;
 };
 

@@ -38,8 +38,7 @@ typedef struct trial {
   double energy, error, time;     /* J, -, - at the largest energy */
   double cpu[STAGE_COUNT], bytes; /* s; at most held */
   const job_input *in;
-  double *eta; /* [n_elem] shares of the elements there, or
-                  NULL; borrowed */
+  double *eta; /* [n_elem] shares of the elements; borrowed or NULL */
   int n_elem;
   int is_coarse; /* its estimate may have half of the error */
   double depth;  /* elements across the body */
@@ -436,8 +435,7 @@ static void stand_free(stand *s) {
   *s = (stand){.eta = NULL};
 }
 
-/* The job on a mesh for all goals, whose errors are to fall to that part of
- * those of "at". */
+/* The job on a mesh whose goals have that part of the errors of "at". */
 static status run_for_goals(const command *c, const mesh_sizes *first,
                             const job_input *at, const double *eta, double part,
                             stand *s) {

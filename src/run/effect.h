@@ -83,8 +83,7 @@ typedef struct column {
   const char *unit; /* "length", "force/length^2", "s", "-" for none */
   entity of;
   column_form form;
-  unsigned tables;   /* bits PRINT_* of its tables; 0: none; and AT of
-                        column_row.h */
+  unsigned tables;   /* bits PRINT_*; 0: none; and AT of column_row.h */
   unsigned effects;  /* shown only if the model has them all */
   unsigned scenes;   /* bits SCENE_* */
   unsigned needs;    /* bits NEEDS_* */
@@ -128,11 +127,9 @@ typedef struct effect_hooks {
   status (*start)(struct run *r, void *own);
   /* T: the initial displacements are r->old, posed in r->problem.cp. */
   status (*initial)(struct run *r, void *own);
-  /* T: *made = 1: it has made all increments of the step, with a grid of its
-   * own. */
+  /* T: *made = 1: it has made all increments of the step. */
   status (*make_step)(struct run *r, void *own, int *made);
-  /* T: an attempt at the increment that ends at t begins; r->now may be written
-   * to. */
+  /* T: an attempt at the increment to t begins; r->now may be set. */
   status (*attempt)(struct run *r, void *own, double t);
   /* T: *made = 1: it has solved the increment that ends at t into r->now. */
   status (*solve)(struct run *r, void *own, double t, int *made);
@@ -184,18 +181,14 @@ typedef struct effect_ops {
               files; or NO_BIT */
   /* 1: the model requires it; the card or fact that does, or why none does. */
   int (*required)(const model *m, const reason *why);
-  /* Work expected before anything is solved; NULL: none, no row in the plan.
-   */
+  /* Work expected before anything is solved; NULL: no row in the plan. */
   effect_work (*expected)(const plan_sizes *s);
-  /* Of the hooks; 0: one of its name is made; STAGE_NONE: they are not timed.
-   */
+  /* Of the hooks; 0: one of its name; STAGE_NONE: not timed. */
   stage own;
   stage more[EFFECT_STAGES]; /* of run and outputs that count as it, 0 ends */
   const char *within;        /* the effect that it is part of; no stage then */
-  int shadow;                /* 1: stages entered inside a hook are part of
-                                it */
-  int inside;                /* 1: the hooks enter the stage themselves, where
-                                it has work */
+  int shadow;                /* 1: stages within a hook are part of it */
+  int inside;                /* 1: the hooks enter it where it has work */
 
   /* Reason why increments of half the length give no error of the steps with
    * this effect; NULL: they do. */

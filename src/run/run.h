@@ -299,11 +299,9 @@ status run_room_for_part(run *r);
 /* 1: a contact node that was left out of r->problem.cp is beyond its gap in
  * r->now, or no equilibrium was found without those. */
 int run_misses_nodes(const run *r);
-/* Those and more nodes for r->problem.cp, with a matrix and a solver of their
- * own. */
+/* Those and more nodes for r->problem.cp, with a new solver. */
 status run_add_nodes(run *r);
-/* A stiffness, chosen again, and a solver for the nodes that r->nodes.reach now
- * has. */
+/* A stiffness, chosen again, and a solver for r->nodes.reach. */
 status run_renew_nodes(run *r);
 
 /* stiffness.c: how the contact problem of the current supports and nodes knows
@@ -339,8 +337,7 @@ void strains_free(run *r);
 size_t strains_kept(const run *r);
 /* r->strains.eigen.e0 from the current strains. */
 void strains_collect(run *r);
-/* The loads with the forces of the strains of r->now: r->now.F itself if there
- * are none. */
+/* The loads with the forces of the strains of r->now, or r->now.F. */
 const double *strains_load(run *r);
 /* Strains of r->now and stresses of e, from which the works count. */
 void strains_start(run *r, equilibrium *e);
@@ -366,13 +363,11 @@ void visco_show(const run *r, state *s); /* view of the outputs */
 void run_change_moduli(run *r);
 void visco_new_solvers(run *r); /* for a step with the same supports */
 void visco_forget(run *r);      /* matrices are made again */
-/* visco.c, at the start of any step: the strains of r->now are those of r->old.
- */
+/* visco.c, at the start of a step: the strains of r->now as r->old. */
 void visco_rest(run *r);
 /* At the start of a *VISCO step: stresses of r->old. */
 status visco_begin_step(run *r);
-/* From r->old to r->now at time t by the integrator of the step; read
- * r->solving.report. */
+/* From r->old to time t by the integrator; read r->solving.report. */
 status visco_advance(run *r, double t);
 /* The same with an estimate of the error of its strains over the largest
  * elastic strains so far: from the integrator, or from two steps of half the
@@ -390,8 +385,7 @@ void visco_take(run *r);
 status visco_accept(run *r);
 status visco_keep(run *r, archive *a);
 
-/* increment.c: the equilibrium at time t into r->now; read r->solving.report.
- */
+/* increment.c: the equilibrium at t in r->now; r->solving.report. */
 status increment_solve(run *r, double t);
 /* Largest of the loads F[dim*n_node] that no support bears at once, N. */
 double increment_free_load(const run *r, const double *F);

@@ -15,8 +15,7 @@
 
 struct run;
 
-/* Of *REFERENCE, relative to the norm of the closed form, -; NAN: not
- * available. */
+/* Of *REFERENCE over the norm of the closed form, -; NAN: none. */
 typedef struct true_error {
   int asked;
   double energy;       /* of the stresses, integral of s' inv(E) s; without

@@ -14,8 +14,7 @@ static const double PROGRESS = 0.9; /* -, a lower residual */
 static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
 static const double COARSE = 0.9;   /* -, of it: enough where passes stagnate */
 static const double MIXING_RATE = 0.2;     /* -, slower: mix */
-static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: shorter differences
-                                              are rounding */
+static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: below is rounding */
 static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g */
 
 struct fixed_point {
@@ -166,8 +165,7 @@ static void accept(fixed_point *fp, course *c, double defect, int first) {
   COPY(fp->last_G, fp->image, fp->n);
 }
 
-/* Check the pass just made; set the limit of the next one in fp->g. 0: no
- * further pass. */
+/* Check the pass; set the limit of the next in fp->g. 0: no further one. */
 static int advance(fixed_point *fp, course *c, double residual, int first) {
   double defect = 0.0;
   for (int i = 0; i < fp->n; ++i)
@@ -233,8 +231,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
       return OK;
     }
     rep->limit_updates = p.control.limit_update = k;
-    /* not finer than the accuracy of the limit; finer if the last pass had no
-     * effect */
+    /* not below the accuracy of the limit; finer after an idle pass */
     int idle = rep->iterations - before <= IDLE;
     double wanted = fmin(1e-2 * change, idle ? 0.1 * c.lowest : HUGE_VAL);
     before = rep->iterations;

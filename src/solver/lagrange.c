@@ -43,8 +43,7 @@ enum {
   PATIENCE = 2000 /* steps without a lower residual */
 };
 static const double PROGRESS = 0.9;     /* a lower residual is lower by this */
-static const double ROUNDING = 0x1p-30; /* -, of |r|^2: a shorter step shows
-                                          rounding only */
+static const double ROUNDING = 0x1p-30; /* -, of |r|^2: below is rounding */
 static const double LONGER = 0.98;      /* share of the eigenvalue seen */
 
 typedef struct lagrange_work {

@@ -168,8 +168,7 @@ static int rests(const relaxation *s, int node_id) {
   return contact_node_limit(cp, s->r, node_id) == 0.0;
 }
 
-/* Solve the node; step[dim]: change of its displacement (of its force in
- * compliance form). */
+/* Solve the node; step[dim]: change of its displacement (or force). */
 static void node_step(relaxation *s, int node_id, double *step) {
   const contact_problem *cp = s->cp;
   local_problem lp;

@@ -21,8 +21,7 @@ typedef struct solver_report {
   const char *solver; /* the method that converged */
 } solver_report;
 
-/* The linear system of an iteration; unknowns 0: there is none, or it is not
- * told. */
+/* The linear system of an iteration; unknowns 0: none, or not told. */
 typedef struct linear_work {
   double unknowns; /* of the matrix */
   double entries;  /* of the factor in use */
@@ -62,8 +61,7 @@ typedef struct solver_control {
   int max_iter;                    /* 0: the solver's own limit */
   int limit_max_iter;              /* passes of a fixed point on g; 0: 200 */
   double scale;                    /* contact_scale; 0: not known */
-  int no_restart;                  /* 1: stop rather than start again from
-                                      another guess */
+  int no_restart;                  /* 1: no start from another guess */
   int limit_update;                /* pass now running, for the listener */
   sweep_promise *promise;          /* of sweeps; or NULL */
   const solver_listener *listener; /* or NULL */
@@ -85,8 +83,7 @@ enum {
 typedef struct solver_ops {
   const char *name;    /* METHOD= in lower case; what the manual tells
                           of it stands in src/manual/methods.txt */
-  const char *family;  /* kind of method: two of one family share their
-                          weaknesses */
+  const char *family;  /* two of one kind share their weaknesses */
   unsigned handles;    /* bits above */
   const char *entries; /* the method and why it needs the entries of
                           A; NULL: an operator (contact/operator.h)

@@ -617,8 +617,7 @@ static int is_axi(const goal_estimator *e, int elem_id) {
   return e->s.d->kin[e->s.d->section_id[elem_id]] == AXISYMMETRIC;
 }
 
-/* Integral of (tau - sigma(y)) : e(b) over an element, of a field in bubbles.
- */
+/* Integral of (tau - sigma(y)) : e(b) over an element, b in bubbles. */
 static double residual_of(const goal_estimator *e, int elem_id, const double *y,
                           const double *tau, int of_u, const bubbles *in) {
   const size_t ns = e->s.d->ns, at = ns * elem_id;
@@ -699,8 +698,7 @@ static double hoop_of(const goal_estimator *e, int elem_id, const double *y) {
          (mean[0] * mean[1] / mean[2] - sum) / mean[2];
 }
 
-/* Of an axisymmetric element: F'y is what the estimate has by y. zero[2*n_node]
- * stays so. */
+/* Of an axisymmetric element: F'y is what y gives. zero[2*n_node] stays. */
 static void add_axi_force(const goal_estimator *e, int elem_id, double *zero,
                           double *F) {
   const int *v = e->s.d->mesh->elem + 3 * elem_id;

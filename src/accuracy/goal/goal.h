@@ -82,8 +82,7 @@ status contact_adjoint_solve(contact_adjoint *a, const double *j,
                              const double *psi, double *y, double *solver);
 /* [m] derivative of the J solved last by the positions of stick. */
 const double *contact_adjoint_stick(const contact_adjoint *a);
-/* du[m]: the change of u by loads df[m] and by positions of stick that are
- * stick[m] further. */
+/* du[m]: change of u by loads df[m] and positions of stick + stick[m]. */
 status contact_adjoint_change(contact_adjoint *a, const double *df,
                               const double *stick, double *du);
 
@@ -93,8 +92,7 @@ typedef struct contact_edge {
   int closed, stuck; /* both ends are */
   double n[3];       /* unit normal, the mean of its ends */
   double out[3];     /* from its middle to the surface of the body, m */
-  double excess;     /* what u along n is there more than the mean of its ends,
-                        m */
+  double excess;     /* m, what u along n is beyond that of ends */
   double stick[3];   /* what u was in its bubble where it began to stick, m */
   double weight;     /* integral of its bubble over the surface, m2 */
   int other[2];      /* nodes of the opposite lip of a crack, in the order of a,
@@ -119,8 +117,7 @@ typedef struct goal_flux {
   int n;
   const int *elem;  /* [n] */
   double corner;    /* barycentric coordinate of point k in corner k, - */
-  const double *at; /* [n*(dim+1)*dim*dim] at point k of each, unit of J per
-                       volume */
+  const double *at; /* [n*(dim+1)*dim*dim] at point k, unit of J per volume */
 } goal_flux;
 
 /* Next to a node the contact changes its status; stresses are infinite, by a

@@ -228,8 +228,7 @@ static int same_friction(const theorems *t, const contact_problem *cp) {
   return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
 }
 
-/* 1 if a node of the contact has a limit that follows pressure; keep[n] marks
- * its nodes. */
+/* 1: a node has a limit that follows pressure; keep[n] marks them. */
 static int mark_contact(const theorems_scene *s, const contact_problem *cp,
                         int contact_id, unsigned char *keep) {
   int any = 0;
@@ -282,8 +281,7 @@ static mu_regime regime_of(const theorems_contact *row) {
   return row->rate < 1.0 ? MU_BETWEEN : MU_ABOVE;
 }
 
-/* The measured rate of one row, with the limits of other contacts fixed.
- */
+/* The measured rate of one row, the limits of other contacts fixed. */
 static status measure(const theorems_scene *s, const frozen_problem *p,
                       unsigned char *keep, theorems_contact *row) {
   ENDS_BY(frozen_free) frozen_problem part = {0};

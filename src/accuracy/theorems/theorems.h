@@ -38,8 +38,7 @@ typedef struct theorems_scene {
   const int *contact_id;      /* [n] */
   const double *mu;           /* [n_contact] largest of its nodes, - */
   const unsigned char *given; /* [n] 1: the normal force is given; NULL: none */
-  int alone;                  /* 1: (3.10) has no meaning: a static problem, a
-                                 start */
+  int alone;                  /* 1: (3.10) has no meaning: static, a start */
   double tol;                 /* residual the solver was to reach, - */
 } theorems_scene;
 
@@ -54,8 +53,7 @@ typedef struct theorems_contact {
   double mu;        /* largest, - */
   double factor;    /* q, -; HUGE_VAL: none, friction alone resists a motion */
   double limit;     /* unique for mu below it: mu/q = 1/C_h, -; NAN: mu = 0 */
-  double rate;      /* contraction of the fixed point measured at the solution,
-                       - */
+  double rate;      /* measured contraction at the solution, - */
   double suggested; /* mu/rate, -; HUGE_VAL: nothing slides */
   double normal;    /* lmax(A_nn), N/m; of the contact */
   double tangent;   /* lmax(inv(A)_tt), m/N */
@@ -75,8 +73,7 @@ typedef struct theorems_path {
   double rate;     /* of the map linearised at the solution, asymptotic, - */
   double bound;    /* q, - */
   double speed;    /* L, 1/s */
-  double longest;  /* s, increments below it contract; HUGE_VAL: nothing
-                      flows */
+  double longest;  /* s, shorter increments contract; HUGE_VAL: no flow */
   double span;     /* T, since the start of the step, s */
   double passes;   /* least k over T, with the largest L so far, - */
   int violated;    /* rate > bound */
@@ -93,8 +90,7 @@ typedef struct theorems_report {
   double inequality;                /* least of S_i^n over the test fields, - */
   int n_field;                      /* fields tried */
   int inequality_violated;
-  int has_start; /* 1: start is that of the initial state,
-                    (3.8) */
+  int has_start; /* 1: start is that of the first state, (3.8) */
   double start;  /* least of (3.8) over the test fields, - */
   theorems_path path;
   int violated; /* any of them */

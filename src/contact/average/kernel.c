@@ -106,8 +106,7 @@ double face_segment_distance(int dim, const double *a, const double *b,
   return sqrt(distance2(dim, x, y));
 }
 
-/* Distance of the foot of x in the plane of a triangle; HUGE_VAL if it is
- * outside of the triangle. */
+/* Distance of the foot of x in a triangle; HUGE_VAL: it is outside. */
 static double height(const double *corner, const double *x) {
   double n[3], a[3], b[3], side[3];
   vector_of(3, corner, corner + 3, a);

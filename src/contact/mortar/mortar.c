@@ -38,8 +38,7 @@ typedef struct face_part {
   double masters;  /* int size of the master faces, m3 */
   double more[3];  /* [dim] int psi_j phi of the nodes without multiplier, m2 */
   double lever[9]; /* [dim*dim] the same times their places, m3 */
-  double bulge[3]; /* [dim] int psi_j times what both surfaces have beyond their
-                      faces, m3 */
+  double bulge[3]; /* [dim] int psi_j times what is beyond the faces, m3 */
 } face_part;
 
 typedef struct builder {
@@ -614,8 +613,7 @@ static int share(const tie_set *t, int q, int c, double *F) {
   return moves;
 }
 
-/* Masters that are tied themselves pass it on: a pass for each link of a
- * chain. */
+/* Masters that are tied themselves pass it on: a pass for each link. */
 void ties_share(const tie_set *t, double *F) {
   for (int more = 1; more;) {
     more = 0;

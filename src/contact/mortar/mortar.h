@@ -49,8 +49,7 @@ typedef struct node_links {
   double *part;  /* [dim*start[n]] of each component, - */
 } node_links;
 
-/* Nodes of *TIE: w = 0, but a component whose parts are 0 is that of a
- * support. */
+/* Nodes of *TIE: w = 0; a component with parts 0 is that of a support. */
 typedef struct tie_set {
   int n;
   int *node_id;  /* [n] ascending, none a contact node */
@@ -67,11 +66,9 @@ typedef struct mortar_input {
   int n_slave, n_master;     /* faces */
   const int *slave, *master; /* face ids of mesh->face, each once */
   const double *x;           /* [dim*n_node] places of the nodes, m */
-  const double *face_weight; /* [n_face] thickness, m; 1 in 3-D and
-                                axisymmetric bodies */
+  const double *face_weight; /* [n_face] thickness, m; 1 unless plane */
   int axisymmetric;          /* once around the axis: weight 2 pi r */
-  int slave_normal;          /* 1: normals of the slave alone; 0: mean of both
-                                sides */
+  int slave_normal;          /* 1: normals of the slave; 0: mean of both */
   int flat;                  /* 1: the gap is that of the faces as they are */
   const unsigned char *dropped; /* [n_node] 1: carries no multiplier; NULL */
 } mortar_input;

@@ -13,8 +13,7 @@
 
 #include "run/column_row.h"
 
-/* depth[dim*n_node] of the mesh, along the normals of the rows of a contact
- * node, m. */
+/* depth[dim*n_node], along the normals of the rows of a node, m. */
 
 static int requires_wear(const model *m, const reason *why) {
   const effect_card *c = model_effect_card(m, "WEAR", -1);

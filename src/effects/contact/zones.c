@@ -303,8 +303,7 @@ static double thickness_at(const finder *z, int i) {
   return w;
 }
 
-/* Add the piece from part a to part b of the distance from node i to the
- * next. */
+/* Add the piece from part a to b of the distance from node i to the next. */
 static void add_piece(const finder *z, int i, double a, double b,
                       contact_zone *zone) {
   double way[3];

@@ -29,8 +29,7 @@ static status force_energy(void *ctx, const double *d, double *square) {
   return condensed_force_energy(ctx, d, square);
 }
 
-/* The factor of the body; 0: the motions that contact alone holds are not
- * known. */
+/* The factor of the body; 0: motions held by contact are not known. */
 static int choose_inverse(run *r, double *diagonal, inverse_energy *out) {
   condensed_diagonal(r->c, diagonal);
   *out = (inverse_energy){.ctx = r->c,

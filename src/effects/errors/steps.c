@@ -44,8 +44,7 @@ typedef struct finer_path {
   int sudden;    /* 1: what is applied at the start of the step is to come */
   waypoint at, middle, end; /* accepted; of the attempt now made */
   double *d, *Ad;           /* [m] difference of the paths, m; N */
-  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no
-                               law flows */
+  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n]; or NULL */
 } finer_path;
 
 typedef struct paths {
@@ -82,8 +81,7 @@ static status path_begin(const run *r, paths *own) {
   return path_new(r, own->path);
 }
 
-/* The equilibrium at t from where "from" stands, into "to"; lost where there is
- * none. */
+/* The equilibrium at t from that of "from" into "to"; or lost. */
 static status half(run *r, finer_path *p, waypoint *from, double t,
                    waypoint *to) {
   if (p->lost) return OK;
@@ -152,8 +150,7 @@ done:
   return st;
 }
 
-/* Energy norm of the difference of the paths without inelastic strains,
- * sqrt(J). */
+/* Energy norm of the difference of the paths, no strains, sqrt(J). */
 static double condensed_difference(const run *r, finer_path *p) {
   double square = 0.0;
   for (int k = 0; k < r->nodes.n_c; ++k)

@@ -13,8 +13,7 @@ typedef struct checked {
   theorems_report report;
 } checked;
 
-/* Largest friction coefficient of the nodes of a contact now, -; 0 for laws
- * without one. */
+/* Largest friction coefficient of the nodes of a contact, -; 0: none. */
 static status largest_mu(const run *r, int contact_id, double *mu) {
   const friction_rule *rule =
       friction_in_force(r->m, run_step_id(r), contact_id);
@@ -73,8 +72,7 @@ static status elastic_body(run *r, body_map *b) {
   return OK;
 }
 
-/* The contact of the elastic body with a given limit, in the states of the
- * solution. */
+/* The contact of the elastic body, limit given, in the present states. */
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
   contact_problem cp = r->problem.cp;
   OWNED_NEW(unsigned char, none, r->nodes.n);

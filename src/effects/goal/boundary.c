@@ -139,8 +139,7 @@ static int bent_edges(const run *r, const goal_ring *rings, int f,
   return n;
 }
 
-/* Of both faces of an edge: the mean of one surface; where two meet, the edge
- * is on both. */
+/* Of both faces of an edge: the mean of one surface, else on both. */
 static void join_bent(bent_edge *e, const bent_edge *other) {
   const double share = fabs(dot(3, e->out, other->out)) <
                                SMOOTH * sqrt(dot(3, e->out, e->out) *
@@ -271,8 +270,7 @@ static void take_given(const run *r, const patch *p, const int *where,
     take_traction(dim, p->normal, (double[3]){c == 0, c == 1, c == 2}, T);
 }
 
-/* Less the stress of the element times the strains over what is beyond a face.
- */
+/* Less the stress of the element times the strains beyond a face. */
 static void add_part_beyond(const run *r, const patch *p, int face,
                             const int *where, double *dF) {
   const mesh *m = r->msh;
@@ -303,8 +301,7 @@ static int varies(const load *l) {
          (l->has_before && (quantity_variables(&l->before) & 7u) != 0);
 }
 
-/* Direction of a load on the patch, and on the surface beyond it with the ratio
- * of their areas. */
+/* Direction of a load on the patch, and beyond it with a ratio of areas. */
 static void directions(const load *l, int dim, const patch *p, const spot *s,
                        double *flat, double *bent) {
   const double slope = dot(dim, s->slope, s->slope);

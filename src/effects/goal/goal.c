@@ -109,8 +109,7 @@ typedef struct shared {
   goal_form form;
   double *y;                    /* [dim*n_node] */
   double *j, *more, *psi, *y_c; /* [n_row] */
-  double *lacks;                /* [dim*n_node] forces of boundary.c,
-                                   heat.c, N */
+  double *lacks;                /* [dim*n_node] of boundary.c, heat.c, N */
   double *rest;                 /* [3*n_elem] of goal_add_thermal, or NULL */
   double *moved; /* [n_row] errors of the positions of stick, m */
 } shared;

@@ -9,8 +9,7 @@
  */
 #include "effects/goal/parts.h"
 
-/* Points of degree 2, as many as corners: barycentric coordinate of point k in
- * corner k. */
+/* Points of degree 2: barycentric coordinate of point k in corner k. */
 static const double AT[5] = {[3] = 2.0 / 3.0, [4] = 0.58541019662496847};
 
 typedef struct spot {

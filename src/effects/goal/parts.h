@@ -29,16 +29,14 @@ typedef struct goal_form {
   int has_tau;
   int sums;           /* 1: a sum over the increments, of which rows are the
                          derivative by the motion of the last */
-  int is_field;       /* 1: psi are the components of a vector that is smooth
-                         along the surface */
+  int is_field;       /* 1: psi is a smooth vector along the surface */
   double spin[3];     /* the axis of a moment, else 0 */
   int is_still;       /* 1: work of friction where nothing slips so far */
   int is_coarse;      /* 1: a mean over less than two elements to each side, or
                          few elements round a tip */
   int is_front;       /* 1: a factor in space */
   int is_square;      /* 1: the energy, whose error has a quadratic part too */
-  double curved;      /* contact forces times what psi is between the nodes more
-                         than at them */
+  double curved;      /* contact forces times psi's excess inside */
   double size;        /* sum of the magnitudes that value is the sum of */
   double held;        /* what forces of held nodes, in none of them, may be */
   double rough;       /* what the integral of a factor lacks */
@@ -61,8 +59,7 @@ status goal_form_set(run *r, const goal_card *g, goal_form *f);
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f);
 status goal_set_width(const run *r, const goal_card *g, goal_form *f);
 
-/* mean.c: adds a mean times a sign; what of the means is in the bubbles.
- * ERR_MEMORY. */
+/* mean.c: adds a mean times a sign, and its bubbles. ERR_MEMORY. */
 status goal_add_mean(const run *r, int group_id, int component, double sign,
                      goal_form *f);
 double goal_mean_bubbles(const run *r, const goal_estimator *e,
@@ -74,16 +71,14 @@ typedef struct goal_ring {
 } goal_ring;
 /* All-zero r is new. ERR_MEMORY. */
 status goal_ring_new(const mesh *m, goal_ring *r);
-/* out[dim]: from the middle of an edge of nodes v[2] of a face to the surface
- * of the body, m. */
+/* out[dim]: from the middle of edge v[2] of a face to the surface, m. */
 void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
                 double *out);
 /* where[n_node]: contact node of a mesh node, or -1; new. */
 status goal_places(const run *r, int **where);
 /* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
-/* volume[n_elem] += what of the body is beyond the faces of each element, m3.
- * ERR_MEMORY. */
+/* volume[n_elem] += what is beyond the faces of each element. ERR_MEMORY. */
 status goal_volumes_beyond(const run *r, double *volume);
 /* What a mean, without its sign, has by the surface beyond the faces. */
 status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
@@ -150,6 +145,5 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
  * elements have it more. */
 status goal_add_reversals(const run *r, const goal_surface *s, const double *z,
                           double *product, double *sum);
-/* 1: node i of the surface stands on a plane of symmetry along tangent a, or on
- * the axis. */
+/* 1: node i is on a plane of symmetry along tangent a, or on the axis. */
 int goal_is_mirrored(const run *r, int i);

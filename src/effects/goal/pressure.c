@@ -125,8 +125,7 @@ static double add_nodes(const run *r, const goal_card *g, const weight *w,
   return sum;
 }
 
-/* Points and weights of a face, barycentric: Gauss on a line, of degree 5 in a
- * triangle. */
+/* Points and weights of a face: Gauss on a line, degree 5 in a triangle. */
 enum { POINTS_2D = 3, POINTS_3D = 7 };
 static const double line_rule[POINTS_2D][3] = {
     {0.11270166537925831, 0.88729833462074169, 5.0 / 18.0},

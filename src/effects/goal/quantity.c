@@ -267,8 +267,7 @@ static const double FEWEST = 5.0; /* - */
  * the mesh does not choose, a negative one counts as so much of its size. */
 static const double NEGATIVE = 0.9; /* - */
 
-/* The point at the node of the goal, or that of the largest factor; -1: none
- * has one. */
+/* The point at the node of the goal, or of the largest factor; -1: none. */
 static int point_of(const goal_card *g, const crack_factors *k) {
   int best = -1;
   double most = -1.0;

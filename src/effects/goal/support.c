@@ -198,8 +198,7 @@ static void add_border(const run *r, const goal_surface *s,
   }
 }
 
-/* 1: contact alone meets what is free; of it only the end of stick is singular
- * by its angle. */
+/* 1: contact alone meets what is free; the end of stick is singular. */
 static int is_smooth(const corner *c, kind a, kind b) {
   if (!c->contact || c->support) return 0;
   return a != FREE || b != CLAMPED || c->angle > M_PI - SLACK;

@@ -234,8 +234,7 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
   }
 }
 
-/* 1: edge k of the sorted edges of all faces is of one face, and not on a plane
- * of symmetry. */
+/* 1: edge k of the sorted edges is of one face, not on a symmetry. */
 static int is_border(const run *r, const int *where, const goal_surface *s,
                      int k) {
   const contact_edge *e = &s->edge[k];
@@ -245,8 +244,7 @@ static int is_border(const run *r, const int *where, const goal_surface *s,
          !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
 }
 
-/* The border where it is closed: ends of a line, edges of one face.
- * seen[n_node] zero. */
+/* The border where it is closed: ends of a line, edges of one face. */
 static void mark_border(const run *r, const int *where, int *seen,
                         goal_surface *s) {
   const int flat = r->msh->dim == 2;

@@ -151,8 +151,7 @@ static const double margin = 1.5; /* of stresses, - */
 enum {
   PIECES = 8,
   WORTH = 4
-}; /* increments of a step; the run has so many
-      times those of the elastic one */
+}; /* increments of a step over those of the elastic one */
 
 typedef struct preview {
   reduction *n;
@@ -377,8 +376,7 @@ static double option_value(const friction_rule *rule, const char *name) {
   return NAN;
 }
 
-/* 1: each node has none but itself within the radius, and friction acts on the
- * whole surface. */
+/* 1: no node has another within the radius; the whole surface rubs. */
 static int is_local(const friction_rule *rule, double least) {
   static const char *const plain[] = {"ZONE", "MIRROR_X", "MIRROR_Y",
                                       "MIRROR_Z"};

@@ -315,8 +315,7 @@ static double distance(size_t n, const double *a, const double *b) {
   return most;
 }
 
-/* Of the nodes: largest normal and tangential force, sum of each direction of
- * all nodes. */
+/* Of the nodes: largest forces, sum of each direction of all nodes. */
 typedef struct force_sizes {
   double node[2], sum[3];
 } force_sizes;
@@ -339,8 +338,7 @@ static force_sizes sizes_of(const contact_surface *c, const double *rc,
   return f;
 }
 
-/* The forces against those of the increment; of friction against its largest
- * so far. */
+/* The forces over those of the increment; friction over its largest. */
 static double force_change(reduction *n, const state *s, const double *rc) {
   const force_sizes now = sizes_of(s->contacts.surface, s->contacts.rc, NULL);
   const force_sizes d = sizes_of(s->contacts.surface, rc, s->contacts.rc);

@@ -104,8 +104,7 @@ static void point_step_place(const scheme_step *p, const double *sigma_old,
     l->alpha[i] = (1 - th) * l->old[l->ns + i] + th * y[l->ns + i];
 }
 
-/* f = old + dt rates - y at the point of y; largest magnitude of its strains.
- */
+/* f = old + dt rates - y at y; largest magnitude of its strains. */
 static double point_residual(const scheme_step *p, const double *sigma_old,
                              const double *y, point_step *l, double *f) {
   double worst = 0.0;
@@ -229,8 +228,7 @@ static int point_follow(const scheme_step *p, const double *sigma_old,
   return 0;
 }
 
-/* Newton iteration of one point for l->e, from and into l->y; *solved = 0 if
- * it fails. */
+/* Newton iteration of one point from and into l->y; *solved 0: fails. */
 static void point_step_solve(const scheme_step *p, const double *sigma_old,
                              point_step *l, int *solved) {
   if (!point_newton(p, sigma_old, l) && !point_follow(p, sigma_old, l))

@@ -19,8 +19,7 @@
  * The difference of HEUN and EULER is the estimate of the error of HEUN.
  */
 
-/* now = old + sum of factor[i] times the rates of stage i, at old->t + dt, and
- * its equilibrium. */
+/* now = old + sum of factor[i] times rates of stage i, at old->t + dt. */
 static status add_stage(const scheme_call *a, double dt, const double *factor) {
   const scheme_work *w = a->w;
   size_t n = (size_t)a->x->ns * a->x->n, na = a->x->alpha_at[a->x->n];

@@ -215,8 +215,7 @@ static void join_corners(const opening *o, int *fan) {
   }
 }
 
-/* The root of a fan is its lowest corner: that of the first fan of a node keeps
- * it. */
+/* The root of a fan is its lowest corner: the first of a node keeps it. */
 static status find_fans(opening *o) {
   const mesh *m = o->m;
   const int per = m->dim + 1, n_corner = per * o->n_elem;
@@ -365,8 +364,7 @@ static int walk_piece(walk *w, int from, faults *bad) {
   return n;
 }
 
-/* Minus to plus points up along the last axis in which the mean normal has a
- * part. */
+/* Minus to plus points up along the last axis of the mean normal. */
 static void turn_up(walk *w, int from, int to) {
   const mesh *m = w->o->m;
   signed char *sign = w->o->sign + w->first;
@@ -530,8 +528,7 @@ static void add_items(const opening *o, const mesh_group *g, filling *f) {
   }
 }
 
-/* A group of nodes: all copies of those it has. Returns the nodes it had that
- * got any. */
+/* A group of nodes: all copies of those it has. Returns how many had some. */
 static int add_copies(const opening *o, const mesh_group *g, filling *f) {
   const mesh *m = o->m;
   int n = 0;

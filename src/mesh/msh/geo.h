@@ -15,8 +15,7 @@ typedef struct geo_text {
   char merged[GEO_FILES]; /* [n_file] 1: gmsh executes its options file */
 } geo_text;
 
-/* Files that cannot be opened are skipped: gmsh reports them. ERR_MEMORY,
- * ERR_FILE. */
+/* Files that cannot be opened are skipped. ERR_MEMORY, ERR_FILE. */
 status geo_read(const char *file, geo_text *g);
 void geo_free(geo_text *g); /* accepts an all-zero object */
 /* 1 if the text has the name, letter by letter, or may have it. */

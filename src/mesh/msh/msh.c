@@ -172,8 +172,7 @@ static status read_count(scan *s, size_t *n) {
   return OK;
 }
 
-/* Dimension and tag of the entity of a node, and its place on curves and
- * surfaces. */
+/* Dimension and tag of the entity of a node, its place on it. */
 static status pass_place(scan *s) {
   int dim, tag;
   double place;
@@ -433,8 +432,7 @@ static status read_head(scan *s, int head[3], size_t left, size_t *n) {
   return scan_line(s);
 }
 
-/* All blocks are read: the sum of their items must be the number of the first
- * line. */
+/* All blocks are read: their items must be those of the first line. */
 static status check_total(const scan *s, size_t left, const char *what) {
   return left == 0
              ? OK

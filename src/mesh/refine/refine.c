@@ -286,8 +286,7 @@ static int is_sound(const bisection *b, const int *v, double whole) {
   return is_sound(b, parts, 0.5 * whole) && is_sound(b, parts + 4, 0.5 * whole);
 }
 
-/* Middles that are not those of their edges are, where parts would be turned
- * over or nearly so. */
+/* Middles go back to their edges where parts would be turned over. */
 static void check_middles(bisection *b) {
   const cell_list *top = &b->cells[b->dim];
   for (int again = 1; again;) {
@@ -310,8 +309,7 @@ static void check_middles(bisection *b) {
   }
 }
 
-/* The number of the second part: the same for an element that is listed twice.
- */
+/* The number of the second part: one of an element listed twice. */
 static status number_part(bisection *b, size_t no, int mid, size_t *out) {
   int of, part;
   PASS(table_add(&b->by_no, (uint64_t)no, &of));

@@ -142,8 +142,7 @@ static status make_first_step(model *m) {
   return OK;
 }
 
-/* A number without amplitude is reached at the end of the first step, as loads
- * are. */
+/* A number without amplitude is reached at the end of step 1. */
 static void lead(const model *m, const value_table *t, quantity *q) {
   if (t != NULL)
     q->factor = t;

@@ -32,11 +32,9 @@ typedef struct fixed_data { /* written once */
 
 typedef struct hdf5_layout {
   int n_row, n_record;             /* room for */
-  off_t *fixed;                    /* [n_fixed] offset in the file, bytes; 0: no
-                                      dataset */
+  off_t *fixed;                    /* [n_fixed] offset, bytes; 0: no dataset */
   off_t *history;                  /* [n_field] of PER_INCREMENT, PER_CONTACT */
-  off_t *record;                   /* [n_field * n_record] of the others, field
-                                      by field */
+  off_t *record;                   /* [n_field * n_record] field by field */
   off_t record_time, record_total; /* of "/fields/time" and "/fields/total" */
 } hdf5_layout;
 
@@ -60,8 +58,7 @@ struct hdf5_file {
   int *contact_node; /* [n_contact_node] ids of the nodes of all
                         contact groups, ascending: they stay when
                         the surface changes */
-  int *surface_id;   /* [n_contact_node] place in the surface, or
-                        -1 */
+  int *surface_id;   /* [n_contact_node] in the surface, or -1 */
   hdf5_layout now;
   int n_row, n_record, cap_time; /* written */
   double *times;                 /* [n_record] */

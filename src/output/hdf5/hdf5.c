@@ -29,8 +29,7 @@ static double shown(double increments, int frequency) {
 
 static int bounded(double n, int most) { return n < most ? (int)n : most; }
 
-/* Rows and records from step first_id on, plus "extra" increments of the step
- * before it. */
+/* Rows and records from step first_id on, plus "extra" before it. */
 static void forecast(const model *m, int first_id, double extra, int *n_row,
                      int *n_record) {
   double rows = extra, records = 0;
@@ -298,8 +297,7 @@ static void release(hdf5_file *h) {
           h->path, h->aside, h);
 }
 
-/* The file of the continued run: its contents beyond "before" are written
- * again. */
+/* The file of the continued run is written again beyond "before". */
 static status earlier_file(hdf5_file *h, const hdf5_count *before) {
   const char *why;
   h->fd = file_descriptor(AT_FDCWD, h->path, O_RDWR, &why);

@@ -44,7 +44,6 @@ void hdf5_record_name(char *text, size_t size, int i);
 
 /* JOB.xdmf; written to a temporary file and renamed. */
 status xdmf_write(const hdf5_shape *shape, const char *path);
-/* The last record of the body or of the contact alone, the same way; nothing if
- * there is none. */
+/* The last record of the body or of the contact alone; or nothing. */
 status xdmf_write_last(const hdf5_shape *shape, int of_contact,
                        const char *path);

@@ -327,8 +327,7 @@ static int starts_anew(const run *r) {
   return starts_hotter(r) || (ends && run_step_id(r) > 0);
 }
 
-/* 1 if no load acts at the start of the step that did not act before, and
- * nothing ends. */
+/* 1: no load begins to act at the start of the step, none ends. */
 static int starts_smoothly(const run *r) {
   if (starts_anew(r)) return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
@@ -441,8 +440,7 @@ static status accept_piece(run *r, long n, double cpu) {
   return loop_accept(r, attempt, p->increment_no, last, cpu);
 }
 
-/* End of the next piece of n increments: the longest that starts here and is
- * stable. */
+/* End of the next piece of n increments: the longest stable one. */
 static status choose_piece(run *r, long n, double *t) {
   progress *p = &r->at;
   int deeper;
@@ -458,8 +456,7 @@ static status choose_piece(run *r, long n, double *t) {
   return OK;
 }
 
-/* One attempt at the next piece of n increments: accepted, or cut into
- * halves. */
+/* One attempt at the next piece of n increments: accepted, or halved. */
 static status attempt_piece(run *r, long n) {
   progress *p = &r->at;
   double cpu = timer_cpu(), t;

@@ -168,8 +168,7 @@ static double forces_energy(const run *r) {
          condensed_stiffest(r->c);
 }
 
-/* 1: contact forces and supports carry the loads straight, and strains are
- * nothing else. */
+/* 1: contact forces and supports carry the loads straight. */
 static int forces_hide_strains(const run *r) {
   return r->now.energy.strain <= forces_energy(r);
 }

@@ -129,8 +129,7 @@ static status find_load_of_run(run *r) {
   return OK;
 }
 
-/* Surface and matrices for r->body.fixed; chosen: of the kind of
- * r->body.choice. */
+/* Surface, matrices for r->body.fixed; chosen: as r->body.choice. */
 static status make_matrices(run *r, int chosen) {
   int motions = 0;
   PASS(run_build_ties(r));

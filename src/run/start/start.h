@@ -35,8 +35,7 @@ typedef struct start_input {
   const tie_set *ties;            /* NULL: none; R is that of their masters */
   const contact_problem *cp;      /* of time 0, stick at u_0 */
   const double *uc;               /* [m] m */
-  const double *given;            /* [n] given normal force, N; < 0: none; NULL
-                                     all none */
+  const double *given;            /* [n] normal force, N; < 0: none; or NULL */
   double load;                    /* largest force of loads and elements, N */
 } start_input;
 

@@ -314,8 +314,7 @@ static double friction_against(const passes *p, const double *r) {
   return sum;
 }
 
-/* 1: no obstacle stops the last move, and the load does more work on it than
- * friction. */
+/* 1: nothing stops the last move, and friction does less than the load. */
 static int drifts(const passes *p, const double *r) {
   double work = 0.0, into = 0.0, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) {

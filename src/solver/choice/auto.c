@@ -54,8 +54,7 @@ enum {
   LEAST_ROUNDS = 3,    /* least number for a trial */
   TINY_SIZE = 30,      /* m: up to here they cost less than STEPS of NEWTON */
   LEAST_TRIAL = 100,   /* sweeps where NEWTON has failed */
-  READ = 8,            /* solves whose arithmetic takes the time of reading the
-                          matrix */
+  READ = 8,            /* solves in the time of reading the matrix */
   FULL_SIZE = 1000,    /* m: up to here a method has all its iterations */
   SMALL_SIZE = 200,    /* m: up to here factorisations cost like products */
   LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems */

@@ -51,8 +51,7 @@ double slip_misdirection(const contact_problem *cp, const double *u,
   return scale > 0.0 ? worst / scale : 0.0;
 }
 
-/* Distance of an unknown to its bound at the obstacle, m; 0: it is not
- * pressed. */
+/* Distance of an unknown to its bound, m; 0: it is not pressed. */
 static double distance_to_bound(const contact_problem *cp, const double *u,
                                 const double *r, int dof) {
   double own = contact_diagonal(cp, dof);

@@ -148,8 +148,7 @@ struct contact_solver {
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual */
   double scale;            /* contact_scale of the problem being solved */
   int sought, proved;      /* a proof that it has no solution */
-  archive *from;           /* borrowed: saved data for the workspaces; or
-                              NULL */
+  archive *from;           /* borrowed: saved data; or NULL */
   char group[80];          /* in it */
 };
 

@@ -204,8 +204,7 @@ static void displace(opened *o, const contact_problem *cp) {
   contact_product(cp->m, cp->A, o->du, o->dr);
 }
 
-/* The next guess; returns the number of changes, *worst: the largest violation,
- * N. */
+/* The next guess; the number of changes, *worst: the worst, N. */
 static int next_states(opened *o, const contact_problem *cp, double margin,
                        double *worst) {
   int changes = 0;

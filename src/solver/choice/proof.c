@@ -149,8 +149,7 @@ static void add_friction(const balance *s, int i, double limit) {
   }
 }
 
-/* The column with the largest work on the rest, into to[rows]; its work, <= 0:
- * none. */
+/* The column with the largest work into to[rows]; that, <= 0: none. */
 static double best_column(balance *s, double *to) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode, best = 0;

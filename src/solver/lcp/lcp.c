@@ -330,8 +330,7 @@ static int split_ties(lcp_work *w, const lcp_problem *p, int j, int n_tie) {
   return kept;
 }
 
-/* Candidate that leaves, -1: none (a ray). z0 has priority: the problem is then
- * solved. */
+/* Candidate that leaves, -1: a ray. z0 has priority: it is solved. */
 static int lcp_leaving(lcp_work *w, const lcp_problem *p, double *step) {
   sizes k = measure(w);
   int n_tie = first_to_vanish(w, &k, step);

@@ -28,8 +28,7 @@ typedef struct lcp_data {
 
 typedef struct lcp_control {
   double tol;        /* wanted residual, - */
-  int max_iter;      /* pivots and steps of all attempts; 0: each its own
-                        limit */
+  int max_iter;      /* steps of all attempts; 0: own limits */
   int pivoting_only; /* 1: no other method */
 } lcp_control;
 
@@ -45,8 +44,7 @@ typedef struct lcp_verdict {
   char log[LCP_LOG];  /* "lemke: no equilibrium, ..."; "" if the first did */
 } lcp_verdict;
 
-/* z[n] start value, then the solution or the best found; w[n] = q + M z.
- * Errors: ERR_MEMORY. */
+/* z[n] start, then the solution or the best; w = q + M z. ERR_MEMORY. */
 status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
                  double *w, lcp_verdict *v);
 

@@ -162,8 +162,7 @@ static double auglag_turning(const auglag_run *s, int a, int b) {
   return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
 }
 
-/* The states after a step into w->state; counts the nodes that differ from the
- * step before. */
+/* The states after a step; counts the nodes that differ from before. */
 static void auglag_take_states(auglag_run *s) {
   auglag_work *w = s->w;
   int dim = s->cp->dim;
@@ -222,8 +221,7 @@ static int operated_direction(auglag_run *s, const double *hold) {
   return s->failed == OK;
 }
 
-/* ---- VARIANT=NEWTON: the generalised Newton method for both equations at
- * once. */
+/* ---- VARIANT=NEWTON: the generalised Newton method. */
 
 static const double RHO_NEWTON = 0x1p-2; /* -, of diag A */
 static const double DESCENT = 1e-4;      /* -, share of the slope */
@@ -248,8 +246,7 @@ static double newton_row(const auglag_run *s, int row, const double *v,
   return value;
 }
 
-/* The unknowns fixed by the states go into du, the others are listed; returns
- * their number. */
+/* Unknowns fixed by the states go into du; the number of others. */
 static int known_steps(auglag_run *s) {
   auglag_work *w = s->w;
   int n = 0;

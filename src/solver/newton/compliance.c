@@ -425,8 +425,7 @@ static int project(const compliance_system *s, double *r) {
   return moved;
 }
 
-/* Forces of the guess by the updated factor (freed) or a new one; 0: not
- * solved. */
+/* Forces of the guess by the updated factor or a new one; 0: none. */
 static int solve(compliance_system *s, int by_base, double *r, double *raw) {
   double left = load(s, r, raw), before = HUGE_VAL, first = left;
   for (int k = 0; k < REFINEMENTS && left < 0.5 * before; ++k) {

@@ -216,8 +216,7 @@ static int goes_on(const run *s, const course *c, int limit) {
          (limit == FULL_STEPS && c->at < MOST_STEPS && c->at - c->best_at <= 2);
 }
 
-/* Steps from the present guess until solved, without progress, cycling or
- * "limit". */
+/* Steps until solved, without progress, cycling or "limit". */
 static outcome attempt(run *s, int limit) {
   course c = {.lowest = HUGE_VAL, .before = HUGE_VAL};
   int m = s->cp->m;

@@ -19,8 +19,7 @@ struct operated_system {
   int m;
   double power;         /* of two: the diagonal times it is of order 1 */
   double *b, *x, *Ax;   /* [m] */
-  double *added;        /* [dim*m] known_rows.added, of the present step or of
-                           one before */
+  double *added;        /* [dim*m] known_rows.added, of this step or before */
   int drifts;           /* 1: it may be apart */
   int exhausted;        /* 1: the last step had springs, or GMRES left more
                            than it should: not again with its factor */
@@ -257,8 +256,7 @@ static int has_rows(const operated_system *s, const contact_problem *cp,
   return 1;
 }
 
-/* The rows of the guess, in which slip may turn otherwise; spring: share of the
- * diagonal. */
+/* The rows of the guess, where slip may turn; spring: of the diagonal. */
 static status set_rows(operated_system *s, const contact_problem *cp,
                        const operated_rows *rows, double spring,
                        int *singular) {

@@ -45,8 +45,7 @@ static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 /* ---- the matrix ---------------------------------------------------------- */
 
-/* 1: under the guess friction of the node follows pressure: M has no symmetry.
- */
+/* 1: friction of the node follows pressure: M has no symmetry. */
 static int couples(const newton_system *s, const pattern *p, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (p->mode[node_id] != SLIP) return 0;
@@ -145,8 +144,7 @@ static double newton_cost(int n, int full) {
   return (full ? 2.0 : 1.0) / 3.0 * size * size * size + READ * size * size;
 }
 
-/* The condition number is computed only where the matrix can be singular for
- * valid data. */
+/* The condition number only where the matrix may be singular. */
 /* Factor of the base; 0: singular to rounding. */
 static int newton_factor(newton_system *s) {
   fill(s, 0.0);
@@ -209,8 +207,7 @@ static void newton_spring_step(newton_system *s, const pattern *p) {
 static const double DRIFT = 0x1p-3; /* -, change of a slip direction or turning
                                        stiffness that the base allows (3-D) */
 
-/* 1: the node slips in another direction than in the base; in 3-D a small
- * change is allowed. */
+/* 1: the node slips in another direction; in 3-D small turns pass. */
 static int turned(const newton_system *s, const pattern *p, int dof) {
   int node_id = dof / s->cp->dim, tangents = s->cp->dim - 1;
   double change = 0.0, now = p->kappa[node_id], old = s->base.kappa[node_id];
@@ -287,8 +284,7 @@ static void make_columns(newton_system *s) {
   }
 }
 
-/* Rows a .. a + n of the small system, all of them equations. id: places among
- * the changed. */
+/* Rows a .. a + n of the small system. id: places among the changed. */
 static void equation_rows(newton_system *s, const pattern *p, int n,
                           const int *id) {
   int k = s->n_changed;

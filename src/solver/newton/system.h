@@ -51,8 +51,7 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw);
 linear_work newton_system_work(const newton_system *s);
 /* Save or read the factor and its exchanged rows. */
 status newton_system_keep(newton_system *s, archive *a);
-/* 1: the last step came from an updated factor, which is discarded for the
- * next. Accepts NULL. */
+/* 1: the last step was by an updated factor, now discarded. Or NULL. */
 int newton_system_refresh(newton_system *s);
 
 /* The known unknowns of the guess and the free ones are listed; du[m]: what
@@ -158,8 +157,7 @@ status operated_system_direction(operated_system *s, const contact_problem *cp,
 /* newton_system_work. */
 linear_work operated_system_work(const operated_system *s,
                                  const contact_problem *cp);
-/* 1: raw of the last step is a sum over steps, not the reaction of u. Accepts
- * NULL. */
+/* 1: raw of the last step is a sum, not the reaction of u. Or NULL. */
 int operated_system_sums(const operated_system *s);
 /* 1: another step on the same rows may mend the last, which was solved to a few
  * digits. Accepts NULL. */

@@ -54,8 +54,7 @@ typedef struct lemke_work {
                                   [n_free*n_kept] that times A_FK */
     double *base;              /* [m] u (r) at z = 0 */
     double *D;                 /* [n] scale of a node, power of two */
-    double *tame;              /* [n] factor of the rows with the limit, power
-                                  of two */
+    double *tame;              /* [n] of rows with the limit, power of two */
   } reduced;
   struct {
     int *normal, *slide, *n_slide; /* [n] variable of u_n; first SLIDE */
@@ -199,8 +198,7 @@ static int pseudo_invert_free(lemke_run *s) {
   return 1;
 }
 
-/* S = A_KK - A_KF inv(A_FF) A_FK (W_KK in the compliance form); 0: A_FF is
- * singular. */
+/* S = A_KK - A_KF inv(A_FF) A_FK, or W_KK; 0: A_FF is singular. */
 static int lemke_reduce(lemke_run *s) {
   lemke_work *w = s->w;
   int nk = w->reduced.n_kept, nf = w->reduced.n_free;
@@ -471,8 +469,7 @@ static void lemke_state_of(const lemke_run *s, const double *z, double *x) {
   lemke_settle_free(s, 1, x);
 }
 
-/* Correct z by the residual of the rows of the final basis with the given
- * matrix. */
+/* Correct z by the residual of the final basis, the given matrix. */
 static void polish(lemke_run *s, double *x) {
   lemke_work *w = s->w;
   lcp_values(w->lcp, w->z);
@@ -488,8 +485,7 @@ static void polish(lemke_run *s, double *x) {
   lemke_respond(s, x, 1, w->raw);
 }
 
-/* Stiffness form: r from raw with the conditions of the basis enforced
- * exactly. */
+/* Stiffness form: r from raw with the conditions of the basis exact. */
 static void clean_forces(const lemke_run *s, double *r) {
   const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
@@ -561,8 +557,7 @@ static int motion_is_free(lemke_run *s, double resistance) {
          work > resistance * (1.0 - RAY_WORK);
 }
 
-/* STOPPED_RAY if the ray is a free motion, against the limits of the state it
- * starts from. */
+/* STOPPED_RAY if the ray is a free motion against its first limits. */
 static outcome lemke_check_ray(lemke_run *s) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
