@@ -49,10 +49,9 @@ status solver_error_bound(const contact_problem *cp,
                           solver_error *error);
 
 /*
- * Contraction of the fixed point on the sliding limit (CPR98, 2.3) linearised
- * at (u, r), measured in the energy norm; 0 where nothing slides, HUGE_VAL if
- * nothing holds the sliding body. Stiffness form; known or NULL as above.
- * Errors: ERR_MEMORY.
+ * Contraction of the fixed point on the sliding limit (CPR98, 2.3) at (u, r),
+ * in the energy norm; 0 where nothing slides, HUGE_VAL if nothing holds the
+ * sliding body. Stiffness form; known or NULL as above. Errors: ERR_MEMORY.
  */
 status contraction_rate(const contact_problem *cp, const double *u,
                         const double *r, known_rate *known, double *rate);

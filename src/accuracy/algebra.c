@@ -37,9 +37,8 @@
 /*
  * Equilibrium of a body that contact alone holds: its stiffness has motions R
  * without energy, and the energy of d is finite only if R' d = 0. The forces
- * change by dq = Z y, Z = W R with the forces themselves as weights (so that
- * they keep their sign), on sliding nodes by the limit of the new pressure; R'
- * Z y = R' d.
+ * change by dq = Z y, Z = W R with the forces as weights (which keep their
+ * sign), on sliding nodes by the limit of the new pressure; R' Z y = R' d.
  */
 
 /* Largest change of the force of an unknown, N; 0: it is given. */

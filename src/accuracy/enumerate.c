@@ -236,8 +236,7 @@ static status take_line(search *s, const double *x, const double *v) {
 }
 
 /* Singular values of K[n*n] (destroyed), rank by a scale of K; x: least squares
- * solution of K x = b, v: last right vector; *rest: part of b outside the
- * range. */
+ * of K x = b, v: last right vector; *rest: part of b outside the range. */
 static int decompose(int n, double *K, const double *b, double scale, double *x,
                      double *v, double *rest) {
   double S[ROWS], U[ROWS * ROWS], V[ROWS * ROWS], work[SVD_WORK];

@@ -35,8 +35,7 @@ status space_estimate(space_recovery *s, const double *sigma, double *eta,
                       space_error *out);
 
 /* Elements across the body, by the share of the nodes inside it; 1: so few that
- * most fits lie on one side of their node, the estimate may have half of the
- * error. */
+ * most fits lie on one side of the node, half of the error. */
 double space_depth(space_recovery *s);
 int space_is_coarse(double depth);
 

@@ -1,7 +1,6 @@
 /*
- * Why there is no equilibrium, in words: the contact nodes that move away and
- * the loads that drive them, or the nodes where the contact conditions are
- * violated most.
+ * Why there is no equilibrium, in words: contact nodes that move away, loads
+ * that drive them, or the nodes where the contact conditions are violated most.
  */
 #pragma once
 

@@ -115,8 +115,7 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
   OWNED type *name = NULL;         \
   PASS(call)
 /* OWNED_PARTS(type, name, call): a struct, zero but for what a call requests
- * for it, which is freed where the name ends; or RAISE. The call requests
- * nothing for others. */
+ * for it and nothing else, freed where the name ends; or RAISE. */
 #define OWNED_PARTS(type, name, call)   \
   type name = {0};                      \
   OWNED_NEW(char, name##_parts, 1);     \

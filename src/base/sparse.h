@@ -1,6 +1,5 @@
 /*
- * Sparse matrices, by rows and by square blocks, and a vector that has all
- * entries.
+ * Sparse matrices, by rows and by square blocks; full vectors.
  */
 #pragma once
 

@@ -45,9 +45,8 @@
   X(RESTART,     "restart")
 /* clang-format on */
 
-/* Those of the list, which files before the effects enter or whose rows have
- * another name; then those of the other rows, named when needed
- * (timer_own_stage). */
+/* Those of the list, of files before the effects or of another name; then those
+ * of the other rows, named when needed (timer_own_stage). */
 #define STAGE_ENUM(name, text) STAGE_##name,
 typedef enum {
   STAGE_LIST(STAGE_ENUM) STAGE_LISTED,

@@ -157,11 +157,10 @@ double contact_mismatch(const contact_problem *cp, double scale,
 /* Bound of the rounding of the forces of each node, N. rounding[n]. */
 void contact_roundings(const contact_problem *cp, const double *u,
                        const double *r, double *rounding);
-/* Residual of the natural map within these roundings, the largest over the
- * nodes, over F, the largest load or contact force of the body or own[n] (NULL:
- * none), N; of friction over the share of F that the limit of the node is of
- * its normal force, -. Bodies without load whose contact forces are rounding
- * are left out. */
+/* Residual of the natural map within these roundings, the largest over nodes,
+ * over F, the largest force of the body or own[n] (NULL: none), N; of friction
+ * over the share of F that the limit of the node is of its normal force, -.
+ * Bodies without load whose contact forces are rounding are left out. */
 double contact_hidden(const contact_problem *cp, const double *u,
                       const double *r, const double *own);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;

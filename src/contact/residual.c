@@ -185,9 +185,8 @@ static double largest_of(int n, const double *v) {
   return most;
 }
 
-/* Bound of the motion by loads, obstacles and where it was: displacements that
- * drift off and forces that grow without bound are no solution, however large
- * their rounding is. */
+/* Bound of the motion by loads, obstacles and where it was: what drifts off or
+ * grows without bound is no solution, however large their rounding is. */
 static double reach_of(const measure *x, int node_id, double k,
                        double *position) {
   const contact_problem *cp = x->cp;

@@ -128,8 +128,7 @@ typedef struct piece {
 piece logical_piece(const logical *l, int from, int nested);
 
 /* value.c: a field from a piece: quotes taken off, names replaced. "on_card":
- * value of a parameter, where a quoted name alone is text and not an
- * expression. */
+ * value of a parameter, a quoted name alone is a text. */
 status field_read(reader *r, piece p, int on_card, field *out);
 
 /* value.c ---------------------------------------------------------------- */

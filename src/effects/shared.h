@@ -7,9 +7,8 @@
 /* nonlocal.c: [n*n] - of a contact whose law has an average. */
 const sparse_rows *nonlocal_average(const run *r, int contact_id);
 
-/* mesh.c: the patches of elements of r->body.d, made with the elastic matrix of
- * now; borrowed until that changes. *out NULL: the run has no error of the
- * mesh. ERR_MEMORY. */
+/* mesh.c: the patches of r->body.d by the present matrix; borrowed until that
+ * changes. *out NULL: the run has no error of the mesh. ERR_MEMORY. */
 status mesh_recovery(const run *r, space_recovery **out);
 
 /* The factors of a crack at r->now. */

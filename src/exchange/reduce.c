@@ -4,8 +4,7 @@
  *   W = H' inv(M) H,   q = H' inv(M) f + w.
  *
  * M is scaled to a unit diagonal and factored by CHOLMOD; a matrix that is not
- * positive definite or not symmetric gets a dense LU factor, if it is small
- * enough.
+ * positive definite or not symmetric gets a dense LU factor if small.
  */
 #include "base/base.h"
 #include "exchange/parts.h"

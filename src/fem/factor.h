@@ -67,8 +67,7 @@ status body_factor_interior(const body_factor *f, const double *load, double *u,
                             cholmod_common *cm);
 /* *square += d' inv(K) d for forces d[m] on the contact unknowns, which come
  * last in the factor: d' inv(A) d = |inv(L_cc) d|^2. Pins that hold only the
- * rigid motions of a body carry no force where d is in equilibrium: then the
- * same. */
+ * rigid motions of a body carry no force where d balances: the same. */
 status body_factor_energy(const body_factor *f, const double *d,
                           double *square);
 /* w = inv(K) d at the unknowns of the body for forces d[dim*n_node] on them,

@@ -157,18 +157,16 @@ status condense_load(condensed *c, const double *F, const double *ud,
 status condense_recover(condensed *c, const double *u_c, double *u);
 
 /* *square = d' inv(A) d of forces d[m], J, by the same factor. Where contact
- * alone holds a body, A is singular: d must be in equilibrium, K'd = 0 with the
- * kernel below. */
+ * alone holds a body, A is singular: K'd = 0 with the kernel below. */
 status condensed_force_energy(condensed *c, const double *d, double *square);
 /* u[m] = inv(A) f of a load f[m], by the same factor: the contact unknowns
  * without contact forces. Nothing floats. ERR_MEMORY. */
 status condensed_untouched(condensed *c, const double *f, double *u);
 /*
  * Residual of equilibrium by rounding: rest[dim*n_node] = loads less internal
- * forces of the solution, global components; rc[m] the contact forces. With d
- * the residual at the unknowns: w[dim*n_node] = inv(K) d, the error of the
- * displacements, global components, and *square = d' inv(K) d, J, the square of
- * its energy norm.
+ * forces, global; rc[m] the contact forces. With d the residual at the
+ * unknowns: w[dim*n_node] = inv(K) d, the error of the displacements, global
+ * components, and *square = d' inv(K) d, J, the square of its energy norm.
  */
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square);

@@ -2,11 +2,10 @@
  * Rigid motions that the prescribed components leave to each set of bodies.
  *
  * A motion is a vector of rotations and translations per rigid piece (rigid.h).
- * Every prescribed component, every hinge between pieces, every tied node and,
- * in turn, every contact normal and tangent is one linear condition on the
- * pieces that it meets. The conditions are gathered by Givens rotations in a
- * triangle whose null space (singular values below rank_limit of the largest)
- * is what stays free.
+ * Every prescribed component, hinge, tied node and, in turn, contact normal and
+ * tangent is one linear condition on the pieces that it meets. The conditions
+ * are gathered by Givens rotations in a triangle whose null space (singular
+ * values below rank_limit of the largest) is what stays free.
  *
  * Bodies that supports and ties hold are at rest and leave the sets.
  */
@@ -479,10 +478,9 @@ static void add_contact(triangle *t, int normals) {
   }
 }
 
-/* 1: surely no singular value below rank_limit of the largest. The square of
- * their least ratio is not below the product of the reciprocal condition
- * numbers in the 1-norm and the infinity norm, whose estimates may miss by a
- * factor. */
+/* 1: surely no singular value below rank_limit of the largest. Their least
+ * ratio squared is at least the product of the reciprocal condition numbers in
+ * the 1-norm and the infinity norm, whose estimates may miss by a factor. */
 static status is_regular(const triangle *t, int *regular) {
   enum { MISSED = 10 };
   const int n = t->n;

@@ -1,7 +1,6 @@
 /*
  * Stress intensity factors and energy release rate along the front of a crack
- * (mesh/crack/crack.h), by domain integrals over the elements near a tip or a
- * node of the front:
+ * (mesh/crack/crack.h), by domain integrals near a tip or a node of the front:
  *
  *   I = int P_lj Q_l,j + (sig_ij X_ij,l + saux_ij,j u_i,l) Q_l dV
  *       - int_lips t_i uaux_i,l Q_l dS,
@@ -51,9 +50,8 @@ typedef struct fracture_state { /* borrowed */
   const double *sigma; /* [ns*n_elem] Pa; ns = 4: xx, yy, zz, xy; 6: xx, yy,
                           zz, xy, yz, zx */
   /* [dim*n_node] on the body, at nodes of the lips, Pa; NULL: none. Within 4
-   * elements (a quarter of the radius, if that is less) of the front contact
-   * pressures scatter: a line through those up to 16 elements away stands for
-   * them. */
+   * elements (at most a quarter of the radius) of the front contact pressures
+   * scatter: a line through those up to 16 elements away stands for them. */
   const double *traction;
   double share; /* of sigma:strain in J: 1/2; with u the rate of displacements
                    and strains that grow by the power n of the stress n/(n+1),

@@ -3,8 +3,7 @@
  * file, one row in MATERIAL_LIST.
  *
  * Components: plane and axisymmetric ns = 4: xx, yy, zz, xy (axisymmetric rr,
- * zz, theta, rz); 3-D ns = 6: xx, yy, zz, xy, yz, zx. Shear strain is the
- * engineering one.
+ * zz, theta, rz); 3-D ns = 6: xx, yy, zz, xy, yz, zx. Engineering shear strain.
  */
 #pragma once
 

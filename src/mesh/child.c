@@ -118,8 +118,7 @@ static void end_with_reader(int fd) {
 }
 
 /* Isolate the process: streams, signals, core files; it ends with the parent.
- * The error output of gmsh goes to error_fd, which never blocks; what does not
- * fit is lost. */
+ * Errors of gmsh go to error_fd, which never blocks; the rest is lost. */
 static void detach(int fd, int error_fd) {
   static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT, SIGPIPE,
                                 SIGCHLD, SIGABRT, SIGSEGV, SIGFPE,  SIGBUS,

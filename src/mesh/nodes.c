@@ -1,9 +1,8 @@
 /*
  * Nodes: found by number, ordered along a Hilbert curve, checked.
  *
- * The order depends on the coordinates alone (on the numbers only where nodes
- * coincide). Curve: J. Skilling, Programming the Hilbert curve, AIP Conf.
- * Proc. 707 (2004) 381.
+ * The order depends on coordinates (on numbers where nodes coincide). Curve: J.
+ * Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004) 381.
  */
 #include "base/base.h"
 #include "mesh/build.h"

@@ -1,12 +1,10 @@
 /*
- * The border of a mesh, and elements that overlap: two on one side of a face,
- * or two that intersect.
+ * The border of a mesh; elements on one side of a face, or that intersect.
  *
- * How many elements lie over a point changes only across sides on the boundary
- * once no face has two elements on one side. So where elements overlap anywhere
- * an element that owns such a side overlaps another of them, or one piece of
- * the boundary lies wholly inside of other elements: the cost is that of the
- * boundary.
+ * The number of elements over a point changes only across the boundary once no
+ * face has two on one side. So where elements overlap anywhere an element that
+ * owns such a side overlaps another of them, or one piece of the boundary lies
+ * wholly inside of other elements: the cost is that of the boundary.
  */
 #include "base/base.h"
 #include "mesh/build.h"

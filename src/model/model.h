@@ -528,8 +528,7 @@ int frequency_shows(int frequency, int increment_no, int last);
 /* The name of a table, PRINT_*. */
 const char *print_word(int table);
 /* 1 if a table shows the increment that ends at t: its number within the step,
- * -1 if t is within one, 1 if it is the last; of time points the times alone
- * count. */
+ * -1 if t is within one, 1 the last; of time points the times count. */
 int print_shows(const print_request *p, const step *s, double t,
                 int increment_no, int last);
 /* Its first time point between two times, not to rounding; or HUGE_VAL. */

@@ -1,7 +1,6 @@
 /*
  * JOB_condensed_NNNNN.h5: the condensed problem of an increment in the layout
- * of FCLIB (exchange.h), one problem a file, NNNNN the increments since the
- * start.
+ * of FCLIB (exchange.h), NNNNN the increments since the start.
  *
  *   /fclib_local    W = S inv(A) S, q = S inv(A) f + d;  S = diag(-1, 1[, 1])
  *                   per node, d_N = gap, d_T = -ut0

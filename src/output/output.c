@@ -1,8 +1,7 @@
 /*
- * The files of a job: their names, of which none may be one that the deck
- * reads; opened, new or those that a run continues; the sink of history_run,
- * which writes into them; closed. JOB.sta is written last: an increment in it
- * is in all files.
+ * The files of a job: their names, none of which the deck may read; opened, new
+ * or continued; the sink of history_run, which writes into them; closed.
+ * JOB.sta is written last: an increment in it is in all files.
  */
 #include "output/writers.h"
 

@@ -27,10 +27,9 @@ static const char *check_text(const state *s, char text[32]) {
 }
 
 /*
- * OK (JUMP; AFTER_UNSETTLED: solved, but from a history that holds one that is
- * not), UNSETTLED (taken although it did not converge) or CUT, then the code of
- * the outcome of the contact solver, BOUND if its error may be above 10 %, then
- * words.
+ * OK (JUMP; AFTER_UNSETTLED: solved, but after one that is not), UNSETTLED
+ * (taken although it did not converge) or CUT, then the code of the outcome of
+ * the contact solver, BOUND if its error may be above 10 %, then words.
  */
 static void print_reason(const state *s, const char *why, FILE *f) {
   char check[32];

@@ -1,6 +1,5 @@
 /*
- * The writers of this folder, and the open job that output.c and saved.c share.
- * Private to src/output.
+ * The writers of this folder and their open job. Private to src/output.
  */
 #pragma once
 
@@ -48,8 +47,7 @@ status json_write(const job *j, const char *path);
 
 /* ---- fclib.c ---------------------------------------------------------- */
 /* The problem cp; node_no[n], and its solution u[m], r[m], unless NULL. Written
- * to a temporary file and renamed. ERR_DECK: the layout has no place for such a
- * problem. */
+ * to a temporary file and renamed. ERR_DECK: the layout has no place for it. */
 status fclib_write(const contact_problem *cp, const size_t *node_no,
                    const double *u, const double *r, const char *title,
                    const char *description, const char *path);

@@ -344,8 +344,7 @@ static void print_fit(const model_of_cost *c) {
 }
 
 /* Order of the error in N, from the two meshes that are much alike; where that
- * is less than "full", from all three, by least squares: so near to one another
- * meshes scatter. */
+ * is less than "full", from all three, by least squares. */
 static double order_of(const model_of_cost *c, double full) {
   const trial *runs[] = {&c->deck, &c->coarse, &c->fine};
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;

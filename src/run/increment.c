@@ -82,9 +82,8 @@ static int is_open(const run *r, const double *uc) {
 
 /*
  * A body in free motion: the solution without contact forces, if its residual,
- * written to *residual, is not above that. The tolerance of a method, relative
- * to the scale of the motion (contact_scale), would leave spurious contact
- * forces.
+ * written to *residual, is not above that. A tolerance relative to the motion
+ * (contact_scale) would leave spurious contact forces.
  */
 static status drop_reactions(const run *r, double *residual, double *u,
                              double *rc) {

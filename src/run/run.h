@@ -400,9 +400,8 @@ double *run_rows(const run *r, int k, double *v);
 void run_take_rows(const run *r, const double *v, double *rows);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);
-/* Its parts: loads, temperatures and thermal strains at t; with all strains
- * that carry no stress; then the equilibrium with the matrix in use under the
- * forces F[dim*n_node]. */
+/* Its parts: loads, temperatures and thermal strains at t; all such strains;
+ * then the equilibrium with the matrix under the forces F[dim*n_node]. */
 status increment_load(run *r, double t);
 status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);

@@ -1,7 +1,6 @@
 /*
  * Strains that carry no stress, e0 = e_th of the temperature + e^i of the
- * inelastic laws, sigma = E (e - e0): stored only for the elements that can
- * have any.
+ * inelastic laws, sigma = E (e - e0): stored for elements that can have it.
  */
 #include "base/base.h"
 #include "model/facts.h"
@@ -75,9 +74,8 @@ const double *strains_load(run *r) {
   return r->strains.load;
 }
 
-/* Item k of r->strains.eigen: strain energy per volume that the change of the
- * moduli has set free, exact as the trapezoidal works are: 1/2 e_old (E_old -
- * E) e. */
+/* Item k of r->strains.eigen: energy per volume set free by the change of the
+ * moduli, exact as the trapezoidal works are: 1/2 e_old (E_old - E) e. */
 static double softened(const run *r, int k) {
   const equilibrium *a = &r->old, *b = &r->now;
   if (a->elastic == NULL) return 0.0;

@@ -46,8 +46,7 @@ static status begin(void *ctx, flow_state *s) {
 }
 
 /* The iteration on stresses may not converge below the residual of contact:
- * TOL=BALANCED does not loosen that, and it is lower where the iteration
- * requires it. */
+ * TOL=BALANCED does not loosen that, and the iteration may lower it. */
 static status linear(void *ctx, const flow_tangent *law, flow_state *s,
                      int *settled) {
   run *r = ctx;

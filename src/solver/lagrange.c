@@ -9,10 +9,9 @@
  *
  * P the projection on r_n <= 0, |r_t| <= g, o the gap and the stick position, D
  * the inverse diagonal of W = inv(A). theta = 0 is Uzawa's method; with
- * Nesterov's theta_k (1983), begun again when a step turns against the gradient
- * (O'Donoghue, Candes 2015), the number of steps grows with the square root of
- * the condition of D W only. u is carried by the combination of r, so a step is
- * one product with W.
+ * Nesterov's theta_k (1983), restarted by the gradient (O'Donoghue, Candes
+ * 2015), the number of steps grows with the square root of the condition of D W
+ * only. u is carried by the combination of r, so a step is one product with W.
  *
  * The step rho is 1/largest eigenvalue of D W. The power method gives it a
  * little too large; every step checks what descent needs,

@@ -1,6 +1,5 @@
 /*
- * Relaxation: the nodes visited in turn, each solved with the others held
- * (local.h).
+ * Relaxation: nodes in turn, each solved with the others held (local.h).
  */
 #include "solver/local.h"
 

@@ -6,8 +6,7 @@
  *
  * on the free unknowns F, e the direction of the friction force. A matrix has a
  * factor of M; with an operator, S = A_FF + kappa (I - e e') is solved by its
- * factor, and what friction adds by GMRES (Saad, Schultz 1986) with S as
- * preconditioner:
+ * factor, friction by GMRES (Saad, Schultz 1986) with S as preconditioner:
  *
  *   M  x = b:  (I + e B A_n inv(S)) v = b,  x = inv(S) v
  *   M' w = b:  (I + inv(S) A_Fn B' e) w = inv(S) b

@@ -542,8 +542,7 @@ static double axi_strains(const goal_estimator *e, int elem_id, int point,
 }
 
 /* Integral of (tau - sigma(y)) : e(b) over an axisymmetric element, where hoop
- * strains and the turn vary; tau[4] of it, that of u and w at each point, or
- * NULL. */
+ * strains and the turn vary; tau[4] of u and w at each point, or NULL. */
 static double axi_residual(const goal_estimator *e, int elem_id,
                            const double *y, const double *tau, int of_u,
                            const bubbles *b) {

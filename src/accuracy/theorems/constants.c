@@ -63,10 +63,9 @@ static void lanczos_step(const symmetric_map *map, lanczos *s, double *v) {
 }
 
 /*
- * Added at the end: the residual, or what the last half of the steps has still
- * added if that is more. Where eigenvalues crowd at the top, as those of
- * springs in a row, the error falls with the square of the steps and is a third
- * of it.
+ * Added at the end: the residual, or what the last half of the steps added if
+ * more. Where eigenvalues crowd at the top, as those of springs in a row, the
+ * error falls with the square of the steps and is a third of it.
  */
 static status lanczos_run(const symmetric_map *map, lanczos *s, double *v,
                           double *largest) {

@@ -9,9 +9,8 @@
 
 enum { FIELDS_OF_ALL = 32 };
 
-/* Components that a test field changes at a node. Where friction or pressure
- * dominate, a defect of the other shows only if the dominant one is
- * unchanged. */
+/* Components that a test field changes at a node. Of friction or pressure a
+ * defect of the smaller one shows only if the dominant one is unchanged. */
 typedef enum { ALONG_N, ONTO_BOUND, ALONG_T, TO_REST, ANYWHERE } move;
 static const move moves[] = {ONTO_BOUND, ALONG_N,  ALONG_N,  ALONG_N,
                              ALONG_N,    TO_REST,  ALONG_T,  ALONG_T,

@@ -193,8 +193,7 @@ status bound_change(const contact_problem *cp, const double *u,
                     energy_norm *e, theorems_bound *b);
 
 /*
- * Least value over random admissible test fields w in K (on one node, and on
- * all at once) of
+ * Least value over random test fields w in K (on one node, on all) of
  *   a(u, w - u) - (f, w - u) + j(w) - j(u),  j(v) = sum g_i |v_t,i - ut0_i|,
  * over (|f|+|r|)(|w - u|+|u|) in the norms of the diagonal of A, or less the
  * penetration of u itself, if that is worse. 0 or above for a solution; *fields

@@ -1,7 +1,6 @@
 /*
- * The integrals face by face; then the faces of each node are put together. A
- * node turns out to be hardly covered when all faces are done: its faces are
- * done again without it.
+ * The integrals face by face; then by node. A node turns out to be hardly
+ * covered when all faces are done: its faces are done again without it.
  */
 #include "contact/mortar/mortar.h"
 
@@ -334,9 +333,8 @@ static status do_faces(builder *b) {
 
 /* ---- normals ------------------------------------------------------------- */
 
-/* Normals at the nodes of the masters, from the faces that are partners (not
- * the sides at an edge of the body); where a node of the slave is in P, the
- * opposite of its own. */
+/* Normals at the nodes of the masters, from faces that are partners (no sides
+ * at an edge); where a node of the slave is in P, the opposite of its own. */
 static status set_node_normals(builder *b) {
   const mortar_input *in = b->in;
   const int dim = in->mesh->dim;

@@ -20,9 +20,8 @@
  * box round the larger surface.
  *
  * Where the bodies differ in thickness they touch over the smaller one. The gap
- * is that of curved surfaces, if the faces are those of one (bulge.c): two
- * meshes of one circle have none, up to h^4/R^3, where their faces are apart by
- * h^2/8R.
+ * is that of curved surfaces (bulge.c): two meshes of one circle have none, up
+ * to h^4/R^3, where their faces are apart by h^2/8R.
  *
  * A node carries no multiplier if the caller says so, if both surfaces have it,
  * or if less than 1 % of its area is covered. On the faces around it the

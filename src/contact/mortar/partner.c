@@ -1,8 +1,7 @@
 /*
  * Two partners of one component (joined through nodes) do not hide each other:
  * their projections have one sense. Where the partners are not joined, cover
- * more than there is, or are hidden by others, each loses what is covered by
- * nearer ones.
+ * too much, or are hidden, each loses what is covered by nearer ones.
  */
 #include "contact/mortar/partner.h"
 

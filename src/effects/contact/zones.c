@@ -170,10 +170,9 @@ static int edge_nodes(const finder *z, const level *l, int i, int j,
   return n <= 6 ? (n < 3 ? n : 3) : n / 2;
 }
 
-/* Where the square to a power extends to zero, as a line of least squares
- * through n nodes that go inwards: length from node[0] outwards, HUGE_VAL if it
- * does not fall. *misfit, in [0, 1], measures the distance of the nodes from
- * it. */
+/* Where the square to a power extends to zero, by least squares through n nodes
+ * that go inwards: length from node[0] outwards, HUGE_VAL if it does not fall.
+ * *misfit, in [0, 1], measures the distance of the nodes from it. */
 static double extend(const finder *z, const level *l, int n, const int *node,
                      double power, double *misfit) {
   double s[FIT_NODES] = {0}, y[FIT_NODES], ms = 0.0, my = 0.0;

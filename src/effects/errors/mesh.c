@@ -1,6 +1,5 @@
 /*
- * *ACCURACY, MESH=: the error of the mesh by recovered stresses, of the body
- * and of each element.
+ * *ACCURACY, MESH=: the error of the mesh by recovered stresses.
  */
 #include "effects/plan/effect.h"
 

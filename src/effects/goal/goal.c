@@ -1,13 +1,11 @@
 /*
  * *GOAL: quantities of the solution with their errors. For each of them the
- * contact problem linearised at the solution is solved once more, transposed:
- * a solve with the dense factor, which all share, and one with that of the
- * body.
+ * contact problem linearised at the solution is solved once more, transposed: a
+ * solve with the shared dense factor, one with that of the body.
  *
- * Friction that remembers: where a node sticks, it does so at the place where
- * the increment before has left it, and that place is in error too. With s the
- * derivative of J by the positions of stick and e the errors of the nodes after
- * the increment before,
+ * Friction that remembers: a node sticks at the place where the increment
+ * before has left it, which is in error too. With s the derivative of J by the
+ * positions of stick and e the errors of the nodes after the increment before,
  *
  *   J(u) - J(u_h) = estimate of this increment + s'e.
  *
@@ -345,8 +343,7 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
 }
 
 /* In a corner of the border in the plane, where recovered gradients are
- * extrapolated along both sides: there displacements were in error by 0.7
- * to 1.2 of the estimate. */
+ * extrapolated: displacements were in error by 0.7 to 1.2 of the estimate. */
 static double of_corner(const run *r, const goal_state *own, int id,
                         double error) {
   static const double CORNER = 2.6, PART = 0.5; /* rad, - */
@@ -370,9 +367,8 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
-/* 1: the same force of the obstacle on another node would change J: where few
- * nodes have the forces, it is what their places make it. Radial forces are
- * those of the place too. */
+/* 1: the same force of the obstacle on another node would change J: of few
+ * nodes it follows their places. Radial forces are those of the place too. */
 static int turns(const run *r, const shared *s) {
   const contact_surface *on = r->surface;
   const int dim = r->msh->dim, last = r->problem.ut0 != NULL ? dim : 1;

@@ -1,8 +1,7 @@
 /*
  * The parts of the goals: quantities as functions of displacements and contact
- * forces (quantity.c), those of a pressure (pressure.c), means (mean.c),
- * the contact surface as the estimate sees it (surface.c). Private to
- * src/effects/goal.
+ * forces (quantity.c), those of a pressure (pressure.c), means (mean.c), the
+ * contact surface (surface.c). Private to src/effects/goal.
  */
 #pragma once
 
@@ -134,9 +133,8 @@ status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
 /* Work of the tractions of closed edges along the surface less that of their
  * nodes: *turn, that of their directions on y[dim*n_node], which beyond the
- * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of
- * a given friction on z by the length of the surface more than that of the
- * chords. */
+ * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of a
+ * given friction on z by the surface longer than its chords. */
 status goal_work_between(const run *r, const goal_surface *s, const double *y,
                          const double *z, const double *spin, double *turn,
                          double *area);

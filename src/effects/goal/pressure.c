@@ -72,8 +72,7 @@ static double disc_weight(double square, double radius) {
 }
 
 /* Square of the distance of x, or of its image in the planes of symmetry of the
- * bits of "image", to the middle; infinite where there is no plane. away[dim]
- * from there. */
+ * bits of "image", to the middle; infinite without a plane. away[dim]. */
 static double image_of(const weight *w, const double *x, int image,
                        double *away) {
   double square = 0.0;
@@ -202,9 +201,8 @@ static int mirrors_of(const run *r, int q) {
   return n > 0 ? n : goal_is_mirrored(r, q);
 }
 
-/* Contact node nearest to the point of the goal, or that of the largest
- * pressure, by a small margin one in a plane of symmetry; -1: nothing is
- * closed. */
+/* Contact node nearest to the point of the goal, or of the largest pressure,
+ * rather in a plane of symmetry; -1: nothing is closed. */
 static int peak_of(const run *r, const goal_card *g) {
   static const double margin = 0.01; /* -, for each plane */
   const int dim = r->msh->dim;

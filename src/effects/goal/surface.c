@@ -48,8 +48,7 @@ typedef struct gap_slopes {
 } gap_slopes;
 
 /* g[3] of the linear gap on a face between contact nodes q[dim]; returns its
- * weight, with which gradients of a parabola are exact in the plane; 0: a gap
- * out of reach. */
+ * weight, exact for a parabola in the plane; 0: a gap out of reach. */
 static double face_slope(const run *r, int face, const int *q, double *g) {
   const mesh *m = r->msh;
   const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
@@ -423,9 +422,8 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
   return OK;
 }
 
-/* Of a node that slips and one whose friction has the opposite direction: in
- * between it turns back, the nodes have that in the middle, and it may be at
- * either end. */
+/* Of a node that slips and one of opposite friction: in between it turns back,
+ * the nodes have that in the middle, and it may be at either end. */
 static double reversal_of(const run *r, const contact_edge *e, const int *q,
                           const double *z) {
   const int dim = r->msh->dim;

@@ -1,6 +1,5 @@
 /*
- * Creep with the equivalent stress q and creep strain p, d(e^i)/dt = dp/dt 3/2
- * s/q:
+ * Creep of equivalent stress q and strain p, d(e^i)/dt = dp/dt 3/2 s/q:
  *   NORTON      HARDENING=TIME    dp/dt = A q^n t^m
  *               HARDENING=STRAIN  dp/dt = (A q^n ((m + 1) p)^m)^(1/(m + 1)),
  *               the same under constant stress (Norton 1929; Abaqus, creep laws

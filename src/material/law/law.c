@@ -1,7 +1,6 @@
 /*
  * The list of inelastic laws, deviators, equivalent stress and flow directions
- * in Voigt components, the elasticity they are coupled with, and their
- * evaluation at a point.
+ * in Voigt components, their elasticity, and their evaluation.
  */
 #include "material/law/law.h"
 

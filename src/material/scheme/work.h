@@ -1,6 +1,5 @@
 /*
- * Workspace of the integrators and what their files share. Private to
- * src/material/scheme.
+ * What the integrators share. Private to src/material/scheme.
  */
 #pragma once
 

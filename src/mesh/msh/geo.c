@@ -1,6 +1,5 @@
 /*
- * Words of a .geo. Comments are skipped; text in quotes counts, as in
- * GetNumber("h").
+ * Words of a .geo without comments, with texts, as in GetNumber("h").
  */
 #include "mesh/msh/geo.h"
 

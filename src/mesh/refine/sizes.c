@@ -1,6 +1,5 @@
 /*
- * The elements of a mesh in a binary tree of boxes, halved until few elements
- * meet one.
+ * Elements in a binary tree of boxes, halved until few meet one.
  */
 #include "mesh/refine/parts.h"
 

@@ -393,9 +393,8 @@ static status resolve_steps(model *m) {
   return OK;
 }
 
-/* ---- names of *PARAMETER and -D that nothing uses: misspelt ones, which
- * leave the value they were to change as it was. Those of an included file may
- * serve other decks. */
+/* ---- names of *PARAMETER and -D that nothing uses: misspelt, they change
+ * nothing. Those of an included file may serve other decks. */
 
 /* The names of a deck but for one. */
 typedef struct others {

@@ -1,6 +1,5 @@
 /*
- * Fixed contents of JOB.h5: mesh, contact surface, deck; and the fields of the
- * columns.
+ * Contents of JOB.h5: mesh, contact surface, deck; fields of the columns.
  */
 #include "output/hdf5/file.h"
 

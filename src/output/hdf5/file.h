@@ -4,9 +4,8 @@
  * All groups and datasets are made before the first increment (contiguous,
  * allocated at once, no fill, no object times) and the space is reserved. From
  * then on HDF5 is not called: raw numbers are written at the offsets of the
- * datasets, so that no metadata ever changes and the file is readable after a
- * kill at any moment. The time of a row or record is NaN until all of it is
- * written.
+ * datasets, so that metadata never change and the file is readable after any
+ * kill. The time of a row or record is NaN until all of it is written.
  */
 #pragma once
 

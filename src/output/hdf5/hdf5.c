@@ -191,9 +191,8 @@ static double part_value(const hdf5_field *f, const view *v, int id, int k) {
   return column_ready(c, v->s) ? ready_value(c, v, id) : NAN;
 }
 
-/* The item of a column that stands in place id of its field: a contact node
- * that is not in the surface now (-1) has displacements, but no other
- * value. */
+/* The item of a column that stands in place id of its field: a contact node not
+ * in the surface (-1) has displacements alone. */
 static int item_of(const hdf5_file *h, const hdf5_field *f, int id) {
   if (f->of != PER_CONTACT_NODE) return id;
   return f->part[0]->of == PER_NODE ? h->contact_node[id] : h->surface_id[id];

@@ -1,6 +1,5 @@
 /*
- * Data of a run for the listing and JOB.json: options, increments, passes,
- * sizes, error budget.
+ * Data of a run for the listing and JOB.json.
  */
 #pragma once
 

@@ -24,11 +24,10 @@ status loop_no_equilibrium(run *r);
  * effect; the first alone. */
 status loop_solve(run *r, double t);
 status loop_solve_once(run *r, double t);
-/* tables.c: the end of an increment that the program has chosen to end at t:
- * there, or at a point of a table of the loads, supports, temperatures,
- * obstacles or contacts in force, before one of them differs from what the
- * increment sees of it by more than a share, -, of its largest magnitude in
- * the step. */
+/* tables.c: the end of an increment for which the program chose t: there, or a
+ * point of a table of the loads, supports, temperatures, obstacles or contacts
+ * in force, before one of them differs from what the increment sees of it by
+ * more than a share, -, of its largest magnitude in the step. */
 double loop_end(const run *r, double t, double share);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
 status loop_pause(run *r);

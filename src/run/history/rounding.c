@@ -157,8 +157,7 @@ static double largest_force(const run *r) {
 }
 
 /* What the rounding of the forces stores, and what the solver has left at the
- * contact nodes, J: at the stiffest node, or at any where nothing but that is
- * left of them. */
+ * contact nodes, J: at the stiffest node, or at any if all is rounding. */
 static double forces_energy(const run *r) {
   const double force = largest_force(r), rounding = RUN_CARRIED * force,
                left = r->solving.report.residual * force,
@@ -237,9 +236,8 @@ static status find_error(const run *r, misfit *x, double *square) {
 }
 
 /* Whether contact carries the loads straight: at each node its force and the
- * load leave no more than the rounding of forces, what the solver has left, or
- * the rounding of the motion where that is far below the load or nothing loads
- * it. */
+ * load leave no more than the rounding of forces, that of the solver, or the
+ * rounding of the motion if far below the load or nothing loads it. */
 static status find_carried(run *r) {
   const double most = fmax(increment_free_load(r, r->now.F),
                            largest_entry(r->nodes.n_c, r->now.rc)),

@@ -1,6 +1,5 @@
 /*
- * A run before its first step: arrays that persist during the run, from the
- * model and the mesh.
+ * A run before its first step: arrays that persist during the run.
  */
 #include "run/setup/setup.h"
 

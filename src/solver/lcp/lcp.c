@@ -10,8 +10,7 @@
  * The complement of the variable that left last enters next. A pivot adds,
  * replaces or removes one row and one column of P; K follows by a rank-one
  * change. Lexicographic rule: q is thought of as q + (e, e^2, ...) with an
- * infinitesimal e; only the columns of the inverse that are needed to break
- * ties are formed.
+ * infinitesimal e; only the columns that break ties are formed.
  */
 #include "solver/lcp/lcp.h"
 

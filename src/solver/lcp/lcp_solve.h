@@ -4,17 +4,15 @@
  *   w = q + M z,   w >= 0,  z >= 0,  w'z = 0.
  *
  * Complementary pivoting (solver/lcp/lcp.h) comes first. It can end on a ray,
- * or take 2^n pivots, though the problem has a solution; then the question
- * whether any z >= 0 has w >= 0 is posed as a problem that pivoting always
- * decides,
+ * or take 2^n pivots, though the problem has a solution; then whether any z >=
+ * 0 has w >= 0 is posed as a problem that pivoting decides,
  *
  *   w = 0 - M'y,  v = q + M z,   (z, w), (y, v) complementary,
  *
  * (its matrix is skew), and if there is one: for few unknowns all bases, which
  * decides; the Newton method on the function of Fischer and Burmeister from
  * many starts (De Luca, Facchinei, Kanzow 1996), and pivoting with other units,
- * covering vectors and from other vertices. The first attempt ends early where
- * these follow.
+ * covering vectors, vertices. The first attempt ends early where these follow.
  */
 #pragma once
 

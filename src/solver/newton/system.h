@@ -69,9 +69,8 @@ void newton_slip(const contact_problem *cp, const double *u, int node_id,
                  double *slip);
 
 /*
- * The guess of the states of a run of Newton's method: from the forces and
- * displacements of the last step, and enforced exactly in the forces
- * (newton.c).
+ * A guess of the states: from the forces and displacements of the last step,
+ * and enforced exactly in the forces (newton.c).
  */
 typedef struct states {
   const contact_problem *cp;
@@ -102,9 +101,8 @@ void states_all_stick(states *s);
 uint64_t states_hash(const states *s);
 
 /*
- * The linear system of one step of Newton's method (newton.c) where only the
- * compliance is known: the unknowns are the unknown forces of a guess of the
- * states, u = W r + q.
+ * The linear system of a step (newton.c) where only the compliance is known:
+ * the unknowns are the unknown forces of a guess of the states, u = W r + q.
  *
  *   open    r_n = 0                      known
  *   closed  u_n = gap                    unknown r_n
@@ -144,9 +142,8 @@ status operated_system_step(operated_system *s, const contact_problem *cp,
 /* du[m], Adu[m] = A du: the known rows of the guess p (place < 0) as du has
  * them, at the others
  *   (A + hold + kappa (I - e e') + e B A_n) du = b,
- * hold[m] on the diagonal (N/m; NULL: none), the next in slipping nodes alone,
- * A_n rows of closed unknowns. *singular 1: weak springs held the body.
- * ERR_MEMORY. */
+ * hold[m] on the diagonal (N/m or NULL), the next of slipping nodes, A_n rows
+ * of closed unknowns. *singular 1: weak springs held the body. ERR_MEMORY. */
 typedef struct operated_rows {
   const pattern *p;
   const double *hold, *b;
@@ -164,15 +161,13 @@ int operated_system_sums(const operated_system *s);
 int operated_system_refresh(operated_system *s);
 
 /*
- * The matrix of a step of Newton's method on the forces (proximal.c), row by
- * row:
+ * The matrix of a step on the forces (proximal.c), row by row:
  *
  *   J_i = e_i                                         nothing acts on unknown i
  *   J_i = e_i - sum_j c_ij (e_j (1 - a) - D_j W_j) + ...            the others
  *
  * with rows W_j of the compliance. Unknowns of the first kind are eliminated;
- * what is left is sparse where W is, and then factored by UMFPACK, else by
- * LAPACK.
+ * the rest is factored by UMFPACK if sparse, else by LAPACK.
  */
 
 typedef struct step_matrix step_matrix;
