@@ -221,7 +221,7 @@ static double pair_rounding(const contact_problem *cp,
         fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
   if (cp->op != NULL) { /* room[m..] is free between two products */
     double *size = cp->op->room + cp->m;
-    cp->op->apply_sizes(cp->op->ctx, x, cp->op->room, size);
+    cp->op->apply(cp->op->ctx, x, cp->op->room, size);
     for (int i = 0; i < cp->m; ++i) p->t[i] += size[i];
   }
   for (int j = 0; cp->op == NULL && j < cp->m; ++j) {

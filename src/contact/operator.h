@@ -24,10 +24,8 @@ typedef struct contact_operator {
   int n_kernel;
   double *room;             /* [2*m] workspace of the contact problem */
   double unknowns, entries; /* of the matrix that is factored; of its factor */
-  /* Au[m] = A u. */
-  void (*apply)(void *ctx, const double *u, double *Au);
-  /* Au[m] as apply, and in size[m] the sums of the magnitudes of its terms. */
-  void (*apply_sizes)(void *ctx, const double *u, double *Au, double *size);
+  /* Au[m] = A u; size[m], or NULL: the sums of the magnitudes of its terms. */
+  void (*apply)(void *ctx, const double *u, double *Au, double *size);
   /* Factor for solve; *singular 1: to rounding. ERR_MEMORY. */
   status (*set_rows)(void *ctx, const known_rows *rows, int *singular);
   /* x[m], at the known rows as given, of (A + added) x = b at the others; Ax[m]

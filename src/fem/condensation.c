@@ -607,7 +607,7 @@ status condensed_keep(condensed *c, archive *a) {
 void condensed_product(const condensed *c, const double *u, double *Au) {
   const contact_operator *op = condensed_operator(c);
   if (op != NULL)
-    op->apply(op->ctx, u, Au);
+    op->apply(op->ctx, u, Au, NULL);
   else if (c->m > 0)
     cblas_dgemv(CblasColMajor, CblasNoTrans, c->m, c->m, 1, c->A, c->m, u, 1, 0,
                 Au, 1);

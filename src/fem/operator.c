@@ -291,7 +291,7 @@ static void gather(const sparse_operator *o, const double *u, double *Au,
   project(o, Au);
 }
 
-static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
+static void apply(void *ctx, const double *u, double *Au, double *size) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row;
   COPY(Au, u, m);
@@ -305,10 +305,6 @@ static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
   gather(o, u, Au, size);
   for (int q = 0; size != NULL && q < m; ++q)
     if (o->held[q]) size[q] = fabs(Au[q]);
-}
-
-static void apply(void *ctx, const double *u, double *Au) {
-  apply_sizes(ctx, u, Au, NULL);
 }
 
 static status set_rows(void *ctx, const known_rows *rows, int *singular) {
@@ -673,7 +669,6 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
                                .unknowns = (double)o->f.n,
                                .entries = (double)o->f.L->xsize,
                                .apply = apply,
-                               .apply_sizes = apply_sizes,
                                .set_rows = set_rows,
                                .solve = solve,
                                .set_response = set_response,

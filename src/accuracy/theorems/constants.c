@@ -199,13 +199,6 @@ static int has_row(const contact_problem *cp, int i) {
   return 0;
 }
 
-/* Nodes whose pressure moves a limit: pressed[n]. */
-static void find_pressed(const contact_problem *cp, unsigned char *pressed) {
-  const sparse_rows *B = cp->B;
-  for (int e = 0; B != NULL && e < B->start[B->n]; ++e)
-    if (B->val[e] != 0.0) pressed[B->col[e]] = 1;
-}
-
 static status largest_of(const block *b,
                          void (*apply)(void *ctx, const double *x, double *y),
                          double *largest) {
@@ -247,7 +240,10 @@ status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
   OWNED_NEW(int, dof, cp->m);
   OWNED_NEW(unsigned char, pressed, cp->n);
   block b = {.cp = cp, .e = e, .dof = dof};
-  find_pressed(cp, pressed);
+  /* Nodes whose pressure moves a limit: pressed[n]. */
+  const sparse_rows *B = cp->B;
+  for (int k = 0; B != NULL && k < B->start[B->n]; ++k)
+    if (B->val[k] != 0.0) pressed[B->col[k]] = 1;
   for (int i = 0; i < cp->n; ++i)
     if (pressed[i]) b.dof[b.n++] = cp->dim * i;
   PASS(largest_of(&b, apply_stiffness, &out->normal));

@@ -469,12 +469,6 @@ static status add_row(builder *b, int q, entry *row) {
   return OK;
 }
 
-static status add_rows(builder *b) {
-  OWNED_NEW(entry, row, longest_row(b));
-  for (int q = 0; q < b->out->n; ++q) PASS(add_row(b, q, row));
-  return OK;
-}
-
 static status set_links(builder *b) {
   node_links *l = &b->out->to;
   const size_t dim = l->dim;
@@ -520,7 +514,8 @@ static status set_nodes(builder *b) {
   PASS(new_nodes(m, b->in->mesh->dim));
   for (int i = 0; i < b->in->mesh->n_node; ++i)
     if (b->state[i] == CARRIES) m->node_id[n++] = i;
-  PASS(add_rows(b));
+  OWNED_NEW(entry, row, longest_row(b));
+  for (int q = 0; q < b->out->n; ++q) PASS(add_row(b, q, row));
   PASS(set_links(b));
   PASS(set_node_normals(b));
   for (int q = 0; q < m->n; ++q) {

@@ -322,16 +322,12 @@ static void set_point(const finder *z, int i, double part, double *x) {
     x[c] = z->r->surface->x[2 * i + c] + part * way[c];
 }
 
-static contact_zone zone_at(const finder *z, int contact_id, int i) {
-  return (contact_zone){.contact_id = contact_id,
-                        .kind = (int)z->r->result.contact[i],
-                        .direction = slip_sign(z, i)};
-}
-
 /* The zone that begins with node j: half a piece before it, where the line is a
  * ring and another zone ends between i and j, -1 at the end of a line. */
 static contact_zone first_zone(const finder *z, int contact_id, int i, int j) {
-  contact_zone zone = zone_at(z, contact_id, j);
+  contact_zone zone = {.contact_id = contact_id,
+                       .kind = (int)z->r->result.contact[j],
+                       .direction = slip_sign(z, j)};
   if (i < 0 || same_zone(z, i, j)) {
     set_point(z, j, 0.0, zone.from);
     return zone;

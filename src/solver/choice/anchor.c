@@ -135,23 +135,14 @@ static double *mode_of(const anchor *an, int m, int k) {
 }
 
 /* Au += R k R'u. */
-static void add_springs(const anchor *an, int m, const double *u, double *Au) {
+static void held_apply(void *ctx, const double *u, double *Au, double *size) {
+  const anchor *an = ctx;
+  an->of->apply(an->of->ctx, u, Au, size);
   for (int k = 0; k < an->n_mode; ++k) {
-    const double *v = mode_of(an, m, k);
-    cblas_daxpy(m, an->spring[k] * cblas_ddot(m, v, 1, u, 1), v, 1, Au, 1);
+    const double *v = mode_of(an, an->m, k);
+    cblas_daxpy(an->m, an->spring[k] * cblas_ddot(an->m, v, 1, u, 1), v, 1, Au,
+                1);
   }
-}
-
-static void held_apply(void *ctx, const double *u, double *Au) {
-  const anchor *an = ctx;
-  an->of->apply(an->of->ctx, u, Au);
-  add_springs(an, an->m, u, Au);
-}
-
-static void held_sizes(void *ctx, const double *u, double *Au, double *size) {
-  const anchor *an = ctx;
-  an->of->apply_sizes(an->of->ctx, u, Au, size);
-  add_springs(an, an->m, u, Au);
 }
 
 static status held_rows(void *ctx, const known_rows *rows, int *singular) {
@@ -188,7 +179,6 @@ static status hold_operator(const contact_problem *cp, anchor *an) {
                               .n_body = cp->op->n_body,
                               .room = cp->op->room,
                               .apply = held_apply,
-                              .apply_sizes = held_sizes,
                               .set_rows = held_rows,
                               .solve = held_solve};
   return OK;

@@ -289,16 +289,15 @@ const contact_bodies *contact_solver_bodies(const contact_solver *s,
 }
 
 static status solve_apart(contact_solver *s, const contact_problem *cp,
-                          const solver_listener *listener, double *u, double *r,
-                          solver_report *rep) {
+                          double *u, double *r, solver_report *rep) {
   s->scale = contact_scale(cp);
   if (known_answer(s, cp, u, r, rep)) return OK;
   if (s->choice.ops == NULL) {
-    PASS(auto_solve(s, cp, listener, u, r, rep));
+    PASS(auto_solve(s, cp, u, r, rep));
   } else {
     attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter,
                  NULL};
-    PASS(attempt_run(s, cp, &a, listener, u, r, rep));
+    PASS(attempt_run(s, cp, &a, u, r, rep));
     attempt_check(s, cp, u, r, rep);
     PASS(attempt_prove(s, cp, rep));
   }
@@ -318,10 +317,11 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
   contact_problem apart = *cp;
   s->log[0] = '\0';
   s->sought = s->proved = 0;
+  s->listener = listener;
   *rep = (solver_report){.outcome = RUNNING};
   TRY(fit(s, cp));
   if (cp->bodies == NULL) apart.bodies = s->bodies;
-  TRY(solve_apart(s, &apart, listener, u, r, rep));
+  TRY(solve_apart(s, &apart, u, r, rep));
 done:
   rep->cpu = timer_cpu() - start;
   return st;

@@ -146,9 +146,10 @@ struct contact_solver {
   contact_bodies *bodies;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual */
   double scale;            /* contact_scale of the problem being solved */
-  int sought, proved;      /* a proof that it has no solution */
-  archive *from;           /* borrowed: saved data; or NULL */
-  char group[80];          /* in it */
+  const solver_listener *listener; /* of it; or NULL */
+  int sought, proved;              /* a proof that it has no solution */
+  archive *from;                   /* borrowed: saved data; or NULL */
+  char group[80];                  /* in it */
 };
 
 /* WHILE_PROMISING: AUTO alone, sweeps whose rate is watched. */
@@ -168,8 +169,7 @@ status attempt_archive(const contact_solver *s, int row, archive *a);
 /* One attempt with one solver. STOPPED_UNFIT: it cannot treat the problem, the
  * log says why. rep->outcome and residual are those of the solver. */
 status attempt_run(contact_solver *s, const contact_problem *cp,
-                   const attempt *a, const solver_listener *listener, double *u,
-                   double *r, solver_report *rep);
+                   const attempt *a, double *u, double *r, solver_report *rep);
 /* The final outcome: only the residual of the given problem counts. */
 void attempt_check(const contact_solver *s, const contact_problem *cp,
                    const double *u, const double *r, solver_report *rep);
@@ -186,9 +186,8 @@ static inline int is_large_sparse(const contact_problem *cp) {
 }
 
 /* METHOD=AUTO (auto.c), as contact_solve. */
-status auto_solve(contact_solver *s, const contact_problem *cp,
-                  const solver_listener *listener, double *u, double *r,
-                  solver_report *rep);
+status auto_solve(contact_solver *s, const contact_problem *cp, double *u,
+                  double *r, solver_report *rep);
 
 /*
  * Proof that a contact problem has no solution: an inequality that is checked

@@ -132,13 +132,6 @@ typedef struct balance {
   double *lift;    /* [m] set_lift */
 } balance;
 
-static status balance_new(balance *s) {
-  size_t m = s->cp->m;
-  PASS(nonnegative_new(s->an->n_mode + 1, &s->sum));
-  PASS_NEW_ALL(OF(s->v, m), OF(s->c, 3 * m), OF(s->force, m), OF(s->lift, m));
-  return OK;
-}
-
 /* Friction of node i against v, times "limit", added to the force. */
 static void add_friction(const balance *s, int i, double limit) {
   const contact_problem *cp = s->cp;
@@ -209,7 +202,9 @@ static status find_motion(const contact_problem *cp, const anchor *an,
   SCRATCH;
   balance s = {.cp = cp, .an = an};
   double *column, *b, size, gain, before = HUGE_VAL;
-  PASS(balance_new(&s));
+  size_t m = s.cp->m;
+  PASS(nonnegative_new(s.an->n_mode + 1, &s.sum));
+  PASS_NEW_ALL(OF(s.v, m), OF(s.c, 3 * m), OF(s.force, m), OF(s.lift, m));
   b = s.sum.b;
   cblas_dgemv(CblasColMajor, CblasTrans, cp->m, an->n_mode, 1.0, an->R, cp->m,
               cp->f, 1, 0.0, b, 1);

@@ -421,17 +421,13 @@ static double known_value(const contact_problem *cp, const pattern *p,
   return p->closed[dof] ? contact_bound(cp, dof) : contact_stick(cp, dof);
 }
 
-static int is_known(const contact_problem *cp, const pattern *p, int dof) {
-  return contact_held(cp, dof) || p->closed[dof] ||
-         (dof % cp->dim > 0 && p->mode[dof / cp->dim] == STICK);
-}
-
 int newton_list_known(const contact_problem *cp, pattern *p, const double *u,
                       double *du) {
   int moved = 0;
   p->n_free = 0;
   for (int dof = 0; dof < cp->m; ++dof) {
-    const int known = is_known(cp, p, dof);
+    const int known = contact_held(cp, dof) || p->closed[dof] ||
+                      (dof % cp->dim > 0 && p->mode[dof / cp->dim] == STICK);
     p->place[dof] = known ? -1 : p->n_free;
     if (!known) p->free_id[p->n_free++] = dof;
     du[dof] = known ? known_value(cp, p, dof) - u[dof] : 0.0;
