@@ -4,7 +4,6 @@
  */
 #pragma once
 
-#include "contact/contact.h"
 #include "solver/solver.h"
 
 typedef struct solution_facts {

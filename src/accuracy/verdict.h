@@ -4,7 +4,6 @@
  */
 #pragma once
 
-#include "contact/surface.h"
 #include "fem/fem.h"
 #include "model/model.h"
 

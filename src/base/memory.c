@@ -7,8 +7,6 @@
 #endif
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct header header;
 struct header {

@@ -4,7 +4,6 @@
 #pragma once
 
 #include "base/memory.h"
-#include "base/status.h"
 
 #include <math.h>
 #include <stddef.h>

@@ -14,7 +14,6 @@
 #pragma once
 
 #include "base/sparse.h"
-#include "base/status.h"
 #include "contact/operator.h"
 
 /* Nodes that the matrix joins, through others too, are of one body. */

@@ -7,7 +7,6 @@
 #include "base/option.h"
 #include "contact/contact.h"
 #include "contact/surface.h"
-#include "deck/expression.h"
 
 typedef struct friction_limit {
   double *g0;             /* [n] N */

@@ -7,7 +7,6 @@
  * the search of the bodies allocates.
  */
 #include "base/base.h"
-#include "contact/contact.h"
 #include "contact/parts.h"
 
 #include <cblas.h>

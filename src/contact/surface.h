@@ -6,7 +6,6 @@
 
 #include "contact/mortar/mortar.h"
 #include "contact/obstacle.h"
-#include "mesh/mesh.h"
 
 typedef struct contact_surface {
   int dim, n;

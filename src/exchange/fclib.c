@@ -5,8 +5,6 @@
 #include "base/base.h"
 #include "exchange/parts.h"
 
-#include <unistd.h>
-
 #define LOCAL "/fclib_local"
 #define GLOBAL "/fclib_global"
 

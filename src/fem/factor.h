@@ -8,7 +8,6 @@
 #pragma once
 
 #include "fem/ordering.h"
-#include "fem/stiffness.h"
 
 typedef struct body_factor {
   int n_node, n_inner, n_own;

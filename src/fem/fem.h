@@ -13,7 +13,6 @@
 #include "contact/operator.h"
 #include "contact/surface.h"
 #include "material/material.h"
-#include "mesh/mesh.h"
 
 /* Strains without stress (thermal, inelastic) of some elements:
  * sigma = E (e - e0). The others have none. */

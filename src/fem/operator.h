@@ -6,8 +6,6 @@
  */
 #pragma once
 
-#include "base/archive/archive.h"
-#include "contact/operator.h"
 #include "fem/factor.h"
 #include "fem/rigid.h"
 #include "fem/supernodal/supernodal.h"

@@ -8,7 +8,6 @@
 #pragma once
 
 #include "base/message.h"
-#include "base/status.h"
 #include "deck/expression.h"
 
 typedef enum { PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC, SOLID_3D } kinematics;

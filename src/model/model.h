@@ -5,11 +5,6 @@
 #pragma once
 
 #include "contact/friction.h"
-#include "contact/surface.h"
-#include "deck/deck.h"
-#include "material/law/law.h"
-#include "material/material.h"
-#include "mesh/mesh.h"
 #include "material/scheme/scheme.h"
 #include "solver/solver.h"
 

@@ -4,7 +4,6 @@
  */
 #pragma once
 
-#include "output/columns/columns.h"
 #include "output/listing/job.h"
 
 typedef struct output output;

@@ -3,10 +3,8 @@
  */
 #pragma once
 
-#include "base/text.h"
 #include "output/hdf5/hdf5.h"
 #include "model/keyword/keyword.h"
-#include "output/listing/job.h"
 #include "output/output.h"
 
 #include <stdint.h>

@@ -2,10 +2,8 @@
 #pragma once
 
 #include "program/command.h"
-#include "run/history/history.h"
 #include "output/output.h"
 #include "run/start/coarser.h"
-#include "output/listing/job.h"
 
 typedef struct job_input {
   deck *d;

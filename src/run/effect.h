@@ -12,7 +12,6 @@
  */
 #pragma once
 
-#include "base/archive/archive.h"
 #include "base/timer.h"
 #include "run/state.h"
 

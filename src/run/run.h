@@ -4,13 +4,8 @@
  */
 #pragma once
 
-#include "accuracy/accuracy.h"
-#include "accuracy/space.h"
-#include "base/timer.h"
 #include "contact/reach.h"
-#include "material/scheme/scheme.h"
 #include "run/effect.h"
-#include "run/state.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
 typedef struct equilibrium {

@@ -4,12 +4,8 @@
  */
 #pragma once
 
-#include "accuracy/accuracy.h"
 #include "accuracy/goal/goal.h"
 #include "accuracy/solutions.h"
-#include "fem/fem.h"
-#include "model/model.h"
-#include "material/scheme/scheme.h"
 #include "run/start/start.h"
 #include "accuracy/theorems/theorems.h"
 

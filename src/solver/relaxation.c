@@ -3,8 +3,6 @@
  */
 #include "solver/local.h"
 
-#include <cblas.h>
-
 enum { DRIFT_SWEEPS = 20 };
 static const double RIGID = 0x1p-5;     /* -, of a drift: counts as no strain */
 static const double SOFT = 0x1p-20;     /* -, of the stiffness: none */

@@ -25,7 +25,6 @@
 #pragma once
 
 #include "base/sparse.h"
-#include "base/status.h"
 
 /*
  * Kernels w = c k(r/rho) for r < rho and 0 beyond. The integral of w over the

@@ -8,7 +8,6 @@
  */
 #include "effects/plan/effect.h"
 
-#include "accuracy/space.h"
 #include "material/voigt.h"
 #include "run/column_row.h"
 

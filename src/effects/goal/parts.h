@@ -5,7 +5,6 @@
  */
 #pragma once
 
-#include "accuracy/goal/goal.h"
 #include "fracture/fracture.h"
 #include "run/run.h"
 

@@ -9,7 +9,6 @@
  */
 #pragma once
 
-#include "base/text.h"
 #include "output/hdf5/hdf5.h"
 
 #include <stdint.h>

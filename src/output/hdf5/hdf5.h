@@ -1,7 +1,6 @@
 /* JOB.h5 and JOB.xdmf: mesh, fields and histories for viewers and programs. */
 #pragma once
 
-#include "output/columns/columns.h"
 #include "output/listing/job.h"
 
 typedef struct hdf5_file hdf5_file;

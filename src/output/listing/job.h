@@ -3,7 +3,6 @@
  */
 #pragma once
 
-#include "base/archive/archive.h"
 #include "run/history/history.h"
 #include "effects/plan/plan.h"
 #include "output/columns/columns.h"

@@ -9,7 +9,6 @@
  */
 #pragma once
 
-#include "contact/contact.h"
 #include "fem/fem.h"
 #include "model/model.h"
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "solver/fixed_point.h"
-#include "solver/solver.h"
 #include "solver/newton/dense.h"
 
 /*

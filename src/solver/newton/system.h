@@ -19,8 +19,6 @@
  */
 #pragma once
 
-#include "base/archive/archive.h"
-#include "contact/contact.h"
 #include "solver/solver.h"
 #include "contact/force_set.h"
 
