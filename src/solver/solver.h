@@ -8,7 +8,6 @@
 
 #include "base/archive/archive.h"
 #include "base/option.h"
-#include "base/outcome.h"
 #include "contact/contact.h"
 
 typedef struct solver_report {

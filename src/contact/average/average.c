@@ -5,7 +5,7 @@
 #include "contact/average/average.h"
 
 #include "base/base.h"
-#include "contact/average/box_tree.h"
+#include "base/box_tree.h"
 
 /* ---- where distances are measured: on the patch itself, or on its lines laid
  * out straight. The straight layout copies the patch; the geodesic one follows

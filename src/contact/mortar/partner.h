@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "contact/average/box_tree.h"
+#include "base/box_tree.h"
 #include "contact/mortar/clip.h"
 #include "contact/mortar/mortar.h"
 

@@ -12,7 +12,6 @@
  */
 #pragma once
 
-#include "base/outcome.h"
 #include "base/status.h"
 
 typedef struct lcp_report {

@@ -16,7 +16,6 @@
  */
 #pragma once
 
-#include "base/outcome.h"
 #include "base/status.h"
 
 typedef struct lcp_data {
