@@ -282,10 +282,10 @@ static status solve_anew(search *s) {
 
 /* One more row, eliminated; 1: its pivot is not trusted. */
 static int add_row(search *s, int dof) {
-  double *y = s->row[s->n_row], largest = 0.0;
+  double *y = s->row[s->n_row];
   int m = s->cp->m;
   equation(s, dof, y);
-  for (int j = 0; j < m; ++j) largest = fmax(largest, fabs(y[j]));
+  const double largest = largest_entry(m, y);
   for (int q = 0; q < s->n_row; ++q) {
     const double *old = s->row[q];
     double pivot = old[s->column[q]];

@@ -127,11 +127,10 @@ static status elimination_new(int m, const constraints *c, elimination *a) {
 /* |R X - [V' s]| of the largest entry, relative. */
 static double contradiction(int m, const constraints *c, elimination *a) {
   size_t all = c->p * ((size_t)m + 1);
-  double size = 0.0, defect = 0.0;
-  for (size_t k = 0; k < all; ++k) size = fmax(size, fabs(a->rhs[k]));
+  const double size = largest_entry(all, a->rhs);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, c->p, m + 1, c->p,
               -1.0, c->R, c->p, a->X, c->p, 1.0, a->rhs, c->p);
-  for (size_t k = 0; k < all; ++k) defect = fmax(defect, fabs(a->rhs[k]));
+  const double defect = largest_entry(all, a->rhs);
   return size > 0.0 ? defect / size : 0.0;
 }
 

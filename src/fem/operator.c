@@ -273,9 +273,7 @@ static void project(const sparse_operator *o, double *v) {
   const size_t m = o->k->n_row;
   for (int c = 0; c < r->k; ++c) {
     const double *q = r->Q + m * c;
-    double sum = 0.0;
-    for (size_t i = 0; i < m; ++i) sum += q[i] * v[i];
-    for (size_t i = 0; i < m; ++i) v[i] -= sum * q[i];
+    add_scaled((int)m, -dot((int)m, q, v), q, v);
   }
 }
 

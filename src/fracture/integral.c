@@ -378,11 +378,10 @@ static void traction_of(const work *w, int node, const local *at, double t[3]) {
 static int set_lip(work *w, int i) {
   const mesh_crack *c = w->crack;
   const int face = i < c->n ? c->plus[i] : c->minus[i - c->n];
-  double normal[3] = {0, 0, 0}, up = 0;
+  double normal[3] = {0, 0, 0};
   if (!set_corners(w, w->m->dim, w->m->face + w->m->dim * face)) return -1;
   w->measure = mesh_face_normal(w->m, face, normal);
-  for (int k = 0; k < 3; ++k) up += normal[k] * w->p->frame[3 + k];
-  w->above = up < 0;
+  w->above = dot(3, normal, w->p->frame + 3) < 0;
   return face;
 }
 

@@ -250,7 +250,7 @@ static status relaxed_energy(const run *r, double *kept) {
     const double *own = sigma + (size_t)ns * e;
     if (!mat->is_relaxed) continue;
     tensor_product(ns, mat->relaxed, own, strain);
-    *kept += 0.5 * element_weight(&r->body.d, e) * tensor_dot(ns, own, strain);
+    *kept += 0.5 * element_weight(&r->body.d, e) * dot(ns, own, strain);
   }
   return OK;
 }

@@ -79,9 +79,8 @@ const double *strains_load(run *r) {
 static double softened(const run *r, int k) {
   const equilibrium *a = &r->old, *b = &r->now;
   if (a->elastic == NULL) return 0.0;
-  return 0.5 *
-         (tensor_dot(r->m->ns, a->sigma + at(r, k), b->elastic + at(r, k)) -
-          tensor_dot(r->m->ns, b->sigma + at(r, k), a->elastic + at(r, k)));
+  return 0.5 * (dot(r->m->ns, a->sigma + at(r, k), b->elastic + at(r, k)) -
+                dot(r->m->ns, b->sigma + at(r, k), a->elastic + at(r, k)));
 }
 
 /* Stresses of the items and their strains without stress, thermal ones apart
@@ -116,7 +115,7 @@ static void item_work(const run *r, const item_ends *x, int k, energies *e,
   e->inelastic += w * (all - thermal);
   tensor_product(ns, run_elasticity(r, r->strains.elem[k]), x->e0[1] + at(r, k),
                  stress);
-  *held += 0.5 * w * tensor_dot(ns, x->e0[1] + at(r, k), stress);
+  *held += 0.5 * w * dot(ns, x->e0[1] + at(r, k), stress);
 }
 
 /* Items from, ..., to - 1, which hold whole clusters. */

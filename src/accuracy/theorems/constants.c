@@ -214,8 +214,7 @@ static int is_loose(const block *b) {
   if (b->e->inverse == NULL) return 1;
   for (int c = 0; c < e->n_kernel; ++c) {
     const double *z = e->kernel + (size_t)c * b->cp->m;
-    double most = 0.0, part = 0.0;
-    for (int k = 0; k < b->cp->m; ++k) most = fmax(most, fabs(z[k]));
+    double most = largest_entry(b->cp->m, z), part = 0.0;
     for (int k = 0; k < b->n; ++k) part = fmax(part, fabs(z[b->dof[k]]));
     if (part > MOVES * most) return 1;
   }

@@ -43,8 +43,7 @@ static int face_plane(const shape *s, int k, facet *f) {
 
 static void step(const shape *s, int from, int to, double *e) {
   const mesh *m = s->in->mesh;
-  for (int c = 0; c < m->dim; ++c)
-    e[c] = m->x[m->dim * to + c] - m->x[m->dim * from + c];
+  vector_of(m->dim, m->x + m->dim * from, m->x + m->dim * to, e);
 }
 
 static status find_around(shape *s, int n) {

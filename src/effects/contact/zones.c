@@ -66,10 +66,8 @@ static double tangential(const run *r, int i) {
 
 /* Values of any size to squares whose largest is about 1. */
 static void level_square(level *l, int n) {
-  double most = 0.0;
   int power;
-  for (int i = 0; i < n; ++i) most = fmax(most, fabs(l->square[i]));
-  frexp(most, &power);
+  frexp(largest_entry(n, l->square), &power);
   for (int i = 0; i < n; ++i) {
     const double w = ldexp(l->square[i], -power);
     l->square[i] = w * w;
@@ -104,8 +102,7 @@ static int face_nodes(const finder *z, int face_id, int *node) {
 static void difference(const finder *z, int from, int to, double *d) {
   const double *x = z->r->surface->x;
   d[2] = 0.0;
-  for (int c = 0; c < z->dim; ++c)
-    d[c] = x[z->dim * to + c] - x[z->dim * from + c];
+  vector_of(z->dim, x + z->dim * from, x + z->dim * to, d);
 }
 
 /* Gradient of the P1 function with the values w at the nodes of a triangle,

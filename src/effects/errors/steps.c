@@ -179,9 +179,8 @@ static status subtract_strains(run *r, finer_path *p) {
   if (r->step->kind != STEP_VISCO) return OK;
   OWNED_OF(double, turning, visco_turning(r, &turning));
   for (int k = 0; k < v->x.n && turning != NULL; ++k) {
-    double *e0 = p->e0 + visco_at(r, v->place[k]), largest = 0.0;
-    for (size_t i = 0; i < ns; ++i) largest = fmax(largest, fabs(e0[i]));
-    if (largest == 0.0) COPY(e0, turning + visco_at(r, k), ns);
+    double *e0 = p->e0 + visco_at(r, v->place[k]);
+    if (largest_entry(ns, e0) == 0.0) COPY(e0, turning + visco_at(r, k), ns);
   }
   return OK;
 }

@@ -136,8 +136,7 @@ static status answer_of_body(void *ctx, double *size) {
   eigen_stress(&r->body.d, &x, b->u, elastic, b->sigma);
   for (int k = 0; k < v->x.n; ++k) {
     size_t at = visco_at(r, v->place[k]);
-    square +=
-        v->x.weight[k] * tensor_dot(r->m->ns, elastic + at, b->sigma + at);
+    square += v->x.weight[k] * dot(r->m->ns, elastic + at, b->sigma + at);
   }
   *size = sqrt(fmax(square, 0.0));
   for (size_t i = 0; *size > 0.0 && i < visco_at(r, r->strains.eigen.n); ++i)

@@ -131,10 +131,8 @@ static int bent_edges(const run *r, const goal_ring *rings, int f,
       const int first = node[a] < node[b] ? a : b;
       const int v[2] = {node[first], node[a + b - first]};
       bent_edge now = {.a = v[0], .b = v[1]};
-      double size = 0.0;
       goal_bulge(r, rings, f, v, now.out);
-      for (int c = 0; c < dim; ++c) size = fmax(size, fabs(now.out[c]));
-      if (size > 0.0) e[n++] = now;
+      if (largest_entry(dim, now.out) > 0.0) e[n++] = now;
     }
   return n;
 }
@@ -296,7 +294,7 @@ static void add_part_beyond(const run *r, const patch *p, int face,
 
 /* ---- loads --------------------------------------------------------------- */
 
-static int varies(const load *l) {
+int goal_load_varies(const load *l) {
   return (quantity_variables(&l->value) & 7u) != 0 ||
          (l->has_before && (quantity_variables(&l->before) & 7u) != 0);
 }
@@ -330,13 +328,12 @@ static void add_beyond(const mesh *m, const patch *p, const spot *s,
 static void add_load(const run *r, const load *l, const patch *p, double *dF) {
   const mesh *m = r->msh;
   double value[4], flat[3], bent[3], force[3];
-  if (!p->is_curved && !varies(l)) return;
+  if (!p->is_curved && !goal_load_varies(l)) return;
   for (int i = 0; i < p->n; ++i)
     value[i] = load_at_node(l, m, r->step, p->node[i], r->now.t);
   for (int k = 0; k < p->n; ++k) {
     const spot s = spot_at(m, p, k);
-    double linear = 0.0;
-    for (int i = 0; i < p->n; ++i) linear += s.b[i] * value[i];
+    const double linear = dot(p->n, s.b, value);
     const double there = load_at_point(l, r->step, s.on, r->now.t);
     if (!isfinite(there)) continue;
     directions(l, m->dim, p, &s, flat, bent);
@@ -462,7 +459,7 @@ static status add_loads(const run *r, const goal_ring *rings, double *dF) {
   const load_list *all = &r->step->loads;
   for (EACH(const load, l, all->item, all->n)) {
     const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
-    if (!on_faces && (l->kind != LOAD_BODY || !varies(l))) continue;
+    if (!on_faces && (l->kind != LOAD_BODY || !goal_load_varies(l))) continue;
     const mesh_group *g = &r->msh->group[l->group_id];
     for (int k = 0; k < g->n_item; ++k) {
       const patch p = on_faces ? face_patch(r, rings, g->item_id[k])

@@ -372,8 +372,7 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
 static int turns(const run *r, const shared *s) {
   const contact_surface *on = r->surface;
   const int dim = r->msh->dim, last = r->problem.ut0 != NULL ? dim : 1;
-  double size = 0.0, most = 0.0;
-  for (size_t k = 0; k < r->n_dof; ++k) size = fmax(size, fabs(s->y[k]));
+  double size = largest_entry(r->n_dof, s->y), most = 0.0;
   for (int i = 0; i < r->nodes.n; ++i) {
     double z[3] = {0.0};
     for (int a = 0; a < dim; ++a)
@@ -454,14 +453,10 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
 
 /* ---- the errors that the next increment remembers ------------------------ */
 
-/* 1: no increment follows. */
-static int is_last(const run *r) {
-  return r->at.last && run_step_id(r) == r->m->n.step - 1;
-}
-
 static status remember(run *r, goal_state *own, shared *s) {
   goal_history *h = &own->before;
-  if (h->u == NULL || is_last(r)) return OK;
+  const int is_last = r->at.last && run_step_id(r) == r->m->n.step - 1;
+  if (h->u == NULL || is_last) return OK;
   h->missed |= s->surface.is_missed;
   if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL)) {
     h->lost = 1;

@@ -76,6 +76,7 @@ void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
 status goal_places(const run *r, int **where);
 /* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
+int goal_load_varies(const load *l); /* 1: from place to place */
 /* volume[n_elem] += what is beyond the faces of each element. ERR_MEMORY. */
 status goal_volumes_beyond(const run *r, double *volume);
 /* What a mean, without its sign, has by the surface beyond the faces. */

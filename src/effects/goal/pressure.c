@@ -369,9 +369,8 @@ static void set_disc_of_axis(const goal_card *g, weight *w, goal_form *f) {
 /* A mean takes nodes on both sides of its middle, which lies on the surface. */
 static void judge_mean(const goal_card *g, const weight *w, const double *near,
                        double longest, goal_form *f) {
-  double away = 0.0;
-  for (int c = 0; c < w->dim && g->n_point > 0; ++c)
-    away = hypot(away, g->point[0][c] - near[c]);
+  const double away =
+      g->n_point > 0 ? distance_of(w->dim, g->point[0], near) : 0.0;
   f->is_coarse = w->radius < 2.0 * longest;
   if (f->why == GOAL_RELIABLE && (w->radius < longest || away > w->radius))
     f->why = GOAL_NO_ZONE;
@@ -461,10 +460,7 @@ static int add_planes(const run *r, const number_pair *e, weight *w) {
 }
 
 static int is_near(const run *r, int node, const weight *w, double radius) {
-  double away = 0.0;
-  for (int c = 0; c < 3; ++c)
-    away = hypot(away, r->msh->x[3 * node + c] - w->origin[c]);
-  return away <= radius;
+  return distance_of(3, r->msh->x + 3 * node, w->origin) <= radius;
 }
 
 static int carries(const run *r, const int *where, int node) {
@@ -483,10 +479,9 @@ static status look_round(const run *r, const goal_card *g, double radius,
     const int v[2] = {e[k].a, e[k].b};
     last = PAIR_END(e, n, k);
     if (!is_near(r, v[0], w, radius) && !is_near(r, v[1], w, radius)) continue;
-    double length = 0.0;
-    for (int c = 0; c < 3; ++c)
-      length = hypot(length, r->msh->x[3 * v[1] + c] - r->msh->x[3 * v[0] + c]);
-    out->longest = fmax(out->longest, length);
+    const double *x = r->msh->x;
+    out->longest =
+        fmax(out->longest, distance_of(3, x + 3 * v[0], x + 3 * v[1]));
     if (last == k + 1 && !add_planes(r, e + k, w))
       out->cut |= carries(r, where, v[0]) || carries(r, where, v[1]);
   }

@@ -101,12 +101,10 @@ static double gap_between(const run *r, const gap_slopes *slopes,
                           const int *q) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
-  double d[3] = {0.0}, at[2] = {0.0, 0.0};
-  for (int c = 0; c < dim; ++c)
-    d[c] = s->x[dim * q[1] + c] - s->x[dim * q[0] + c];
+  double d[3], at[2];
+  vector_of(dim, s->x + dim * q[0], s->x + dim * q[1], d);
   const double rise = r->problem.gap[q[1]] - r->problem.gap[q[0]];
-  for (int k = 0; k < 2; ++k)
-    for (int c = 0; c < dim; ++c) at[k] += slopes->of[3 * q[k] + c] * d[c];
+  for (int k = 0; k < 2; ++k) at[k] = dot(dim, slopes->of + 3 * q[k], d);
   for (int k = 0; k < 2 && dim == 2; ++k)
     if (slopes->n_face[q[k]] == 1) at[k] = 2.0 * rise - at[1 - k];
   return (at[0] - at[1]) / 8.0;

@@ -79,8 +79,7 @@ static double stress_scale(const reduction *n, const state *s) {
       most = fmax(most, -s->contacts.rc[c->dim * i] / c->area[i]);
   size_t size = (size_t)n->m->ns * n->msh->n_elem;
   if (most > 0.0) return most;
-  for (size_t i = 0; i < size; ++i) most = fmax(most, fabs(n->sigma[i]));
-  return most;
+  return largest_entry(size, n->sigma);
 }
 
 /* e' E e of a strain; its largest stress into *stress. */

@@ -18,20 +18,14 @@ void tensor_deviator(int ns, const double *v, double *d) {
 }
 
 double tensor_mises(int ns, const double *s) {
-  double largest = 0, sum = 0;
-  for (int i = 0; i < ns; ++i) largest = fmax(largest, fabs(s[i]));
+  const double largest = largest_entry(ns, s);
+  double sum = 0;
   if (!(largest > 0)) return largest;
   for (int i = 0; i < ns; ++i) {
     const double x = s[i] / largest;
     sum += i < 3 ? x * x : 2 * x * x;
   }
   return largest * sqrt(1.5 * sum);
-}
-
-double tensor_dot(int ns, const double *a, const double *b) {
-  double sum = 0;
-  for (int i = 0; i < ns; ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 void tensor_product(int ns, const double *A, const double *x, double *y) {

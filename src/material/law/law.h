@@ -215,7 +215,6 @@ status law_fastest_rate(const law_point *p, double *rate);
 double tensor_trace(const double *v);
 void tensor_deviator(int ns, const double *v, double *d);
 double tensor_mises(int ns, const double *s); /* of a deviator, >= 0 */
-double tensor_dot(int ns, const double *a, const double *b); /* a' b */
 void tensor_product(int ns, const double *A, const double *x, double *y);
 /* Strain 3/2 s/q of a deviator s with q = tensor_mises > 0: the direction of
  * flow, its shears doubled. */

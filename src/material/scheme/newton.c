@@ -240,8 +240,7 @@ static void point_step_solve(const scheme_step *p, const double *sigma_old,
 static int point_step_rests(const flow *x, const scheme_step *p,
                             const double *sigma_old, point_step *l) {
   point_step_place(p, sigma_old, l->old, l);
-  return isfinite(tensor_dot(l->ns, l->sigma, l->sigma)) &&
-         !flow_goes_on(x, &l->p);
+  return isfinite(dot(l->ns, l->sigma, l->sigma)) && !flow_goes_on(x, &l->p);
 }
 
 /* D[ns*ns] at the solution. */
@@ -436,8 +435,8 @@ static status linear_stress(const flow *x, const flow_tangent *law,
     tensor_product(ns, D, step, change);
     tensor_product(ns, E, now->e + at, whole);
     sum_scaled(ns, law->sigma + at, 1.0, change, linear + at);
-    sum += x->weight[k] * (tensor_dot(ns, whole, whole) +
-                           tensor_dot(ns, linear + at, linear + at));
+    sum += x->weight[k] *
+           (dot(ns, whole, whole) + dot(ns, linear + at, linear + at));
   }
   *scale = sqrt(sum);
   return OK;

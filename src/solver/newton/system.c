@@ -477,9 +477,9 @@ double newton_load(const contact_problem *cp, const pattern *p, double power,
   for (int node_id = 0; node_id < cp->n; ++node_id) {
     if (p->mode[node_id] != SLIP) continue;
     const double *e = p->e + node_id * (dim - 1);
-    double slip[2], along = 0.0, g = linear_limit(cp, p, raw, node_id);
+    double slip[2], g = linear_limit(cp, p, raw, node_id);
     newton_slip(cp, u, node_id, slip);
-    for (int k = 0; k < dim - 1; ++k) along += e[k] * slip[k];
+    const double along = dot(dim - 1, e, slip);
     for (int k = 0; k < dim - 1; ++k) {
       int dof = node_id * dim + 1 + k;
       if (p->place[dof] < 0) continue;
