@@ -99,9 +99,8 @@ status linear_contact_new(const contact_problem *cp, const double *u,
 /* du[m] of a change df[m] of the load, N. */
 status linear_contact_move(linear_contact *c, const double *df, double *du);
 
-/* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
- * without another inverse. *out is new (memory_free), NULL if M is not
- * symmetric and positive semidefinite. */
+/* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, *out is new
+ * (memory_free), NULL if M is not symmetric, positive semidefinite. */
 typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
 inverse_energy dense_inverse_energy(dense_inverse *d);

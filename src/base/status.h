@@ -90,9 +90,8 @@ void status_clear(void);
   X(STOPPED_UNSTABLE,   -8, "UNSTABLE",   "increment not stable")
 /* clang-format on */
 /* Stagnation: no progress above the rounding level; a ray: there is no
- * equilibrium; a cycle: a pattern of statuses came again; singular: a linear
- * system of the method has no solution; unstable: an explicit integrator met
- * rates beyond its limit. */
+ * equilibrium; a cycle: statuses came again; singular: a linear system has no
+ * solution; unstable: an explicit integrator met rates beyond its limit. */
 #define OUTCOME_ENUM(name, value, code, text) name = value,
 typedef enum { OUTCOME_LIST(OUTCOME_ENUM) } outcome;
 /* In a few words, for listings and messages. */

@@ -1,7 +1,6 @@
 /*
  * What each stage of a run costs: calls, CPU seconds (user and system) and
- * bytes requested. Stages nest; a stage is charged for its own work only, not
- * for the stages entered inside it.
+ * bytes requested. Stages nest; each is charged for its own work only.
  */
 #pragma once
 

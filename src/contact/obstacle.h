@@ -46,10 +46,9 @@ typedef struct obstacle {
  * is.  dim 2: a cylinder or sphere is a circle in the plane of the model, also
  * in an axisymmetric one (a sphere about the axis, else a ring).
  *
- * With D the displacement of the point of the obstacle that is at x at time t,
- * CONFORMING gives n.D, GAP the expression at x - D + (n.D) n, plus n.D: exact
- * for a shift and for a rotation about n, of first order in an angle that tilts
- * the obstacle.
+ * With D the displacement of the obstacle's point at x, CONFORMING gives n.D,
+ * GAP the expression at x - D + (n.D) n, plus n.D: exact for a shift and for a
+ * rotation about n, of first order in an angle that tilts the obstacle.
  */
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t);

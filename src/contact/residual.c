@@ -1,7 +1,6 @@
 /*
  * The residual by which all solvers are checked, and the status of the nodes
- * (contact.h): natural map and equation, each node in the scale of the forces
- * and displacements of its own body.
+ * (contact.h): natural map and equation, each node in the scales of its body.
  *
  * Products with the matrix run over blocks of CHUNK rows, so that nothing but
  * the search of the bodies allocates.

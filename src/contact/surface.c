@@ -168,8 +168,7 @@ static void give(int dim, candidate *to, double w, const double *normal) {
 }
 
 /* The candidate of a master that has parts of a contact: its own there, else
- * one with the same obstacle on a smooth surface, else with another obstacle
- * and nearly that normal. */
+ * with the same obstacle on a smooth surface, else of nearly that normal. */
 static candidate *find_near(const builder *b, int pair_id, int node_id,
                             const double *normal) {
   static const double near_cosine[] = {0.7071, 0.985}; /* 45, 10 degrees */

@@ -92,11 +92,10 @@ void pairs_release(const surface_input *in); /* frees the couplings */
  * (obstacle_normal, where the shape has one), taken orthogonal to the
  * components that are fixed there; those become tangents, flagged in held.
  *
- * Left out, with a message: nodes fixed in the normal direction, nodes
- * that an obstacle at rest cannot reach along the normal.  A node in the groups
- * of two contacts has the normal of the first and, as a side, of the second;
- * where both have the same obstacle and the surface is smooth there, it belongs
- * to the first with the faces of both.
+ * Left out, with a message: nodes fixed in the normal direction, nodes that an
+ * obstacle at rest cannot reach along the normal.  A node in the groups of two
+ * contacts has the normal of the first and, as a side, of the second; of one
+ * obstacle and a smooth surface it belongs to the first with the faces of both.
  *
  * ERR_DECK with errors in the log; ERR_MEMORY.  *out is NULL on failure.
  */

@@ -70,9 +70,8 @@ static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
   return n;
 }
 
-/* f->node: the interior ordered, then the contact nodes in descending order,
- * which have an interior too where their tangents are not condensed.
- * list[n] ascending in, destroyed. */
+/* f->node: the interior ordered, then the contact nodes descending (their
+ * tangents may be interior too). list[n] ascending in, destroyed. */
 static status order_body(condensed *c, const graph *g, int n, int *list,
                          body_factor *f) {
   const stiffness *k = c->k;

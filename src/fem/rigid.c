@@ -2,8 +2,7 @@
  * The motions are chosen so that R_c = Q is orthonormal: a step of modified
  * Gram-Schmidt on R_c goes through their coefficients Y too, and R_c is then
  * computed again from them. So each column is a rigid motion to rounding, also
- * where the contact nodes are few or close together and the motions are nearly
- * dependent on them.
+ * where few or close contact nodes make the motions nearly dependent.
  */
 #include "fem/rigid.h"
 

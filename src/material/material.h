@@ -24,8 +24,7 @@ enum { ELASTIC_MAX = 21 };
  *   ORTHO  E1, E2, E3, nu12, nu13, nu23, G12, G13, G23 (Abaqus ENGINEERING)
  *   ANISO  21 constants of the symmetric matrix in the order of Abaqus
  * Ellipticity (CPR98 2.2): the matrix must be positive definite. NULL, or what
- * is wrong with the constants ("nu = 0.5 outside ]-1, 0.5[", ...); "text" may
- * be used for the answer.
+ * is wrong ("nu = 0.5 outside ]-1, 0.5[", ...), maybe in "text".
  */
 const char *elastic_matrix(elastic_type type, int n, const double *constants,
                            double C[36], char *text, int text_size);

@@ -95,8 +95,7 @@ static double clock_now(void) {
 
 /* JOB.xdmf with the records so far; "all": even if it was written just before.
  * The text is written again each time, so not more than once in XDMF_PAUSE
- * seconds, and not above its share of the run except the last time: the cost
- * stays small however long it grows. */
+ * seconds, and, but for the last time, within its share of the run. */
 static status show_records(output *o, int all) {
   hdf5_shape shape;
   if (o->h5 == NULL) return OK;

@@ -58,8 +58,7 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
                  archive *from, int *unsettled);
 
 /* The same with *EFFECTS, MODE=AUTO: a run without effects that seem not to
- * matter, and the run with them if that is not confirmed
- * (effects/reduction/reduction.h). */
+ * matter, or with them if they do (effects/reduction/reduction.h). */
 status job_solve_auto(const command *c, job_input *in, int *unsettled);
 
 /*
@@ -71,9 +70,8 @@ status job_solve_auto(const command *c, job_input *in, int *unsettled);
  */
 status target_reach(const command *c, job_input *in, int *unsettled);
 
-/* What a mesh has in error at most, -, by the estimate of one that is coarse
- * (space_is_coarse) or not; the estimate that the next one is to have so that
- * the goal is met. */
+/* Most error of a mesh, -, by the estimate of a coarse one (space_is_coarse) or
+ * not; the estimate with which the next meets the goal. */
 double target_at_most(double estimate, int is_coarse);
 double target_next(double estimate, int is_coarse, double goal);
 

@@ -71,9 +71,8 @@ typedef struct contact_nodes {
   int n_reported;      /* how many the output has */
 } contact_nodes;
 
-/* Elasticity of the elements: one entry for each section, and one for each
- * element whose constants follow its temperature (*ELASTIC with several sets,
- * and temperatures in the deck). */
+/* Elasticity of the elements: one entry for each section, and for each element
+ * whose constants follow its temperature. */
 typedef struct moduli {
   int n;           /* entries: sections, then the elements */
   int n_own;       /* elements with an entry of their own */

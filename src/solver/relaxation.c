@@ -16,9 +16,8 @@ struct node_blocks {
   double *step, *strained; /* [m] of a sweep, m; A times it, N */
 };
 
-/* Inverse of a d*d block by elimination without pivoting: the block is positive
- * definite, else a share of "lift" is added to its diagonal (the fixed point of
- * the iteration is unchanged). */
+/* Inverse of a d*d block by elimination without pivoting: a share of "lift" is
+ * added where it is not definite (the fixed point is unchanged). */
 static void invert_block(int d, const double *block, double lift, double *K) {
   double M[9];
   COPY(M, block, d * d);
@@ -375,9 +374,8 @@ int relaxation_fly(relaxation *s, const double *from) {
   return most;
 }
 
-/* 1: a body that contact alone holds drifts off: a few more sweeps make a rigid
- * motion on which the load does work and that leads to no obstacle. The iterate
- * is overwritten. from[m]: work. */
+/* 1: a body that contact alone holds drifts off: a few sweeps make a rigid
+ * motion with the load, to no obstacle. The iterate is lost. from[m]: work. */
 static int drifts(relaxation *s, double *from) {
   const contact_problem *cp = s->cp;
   size_t m = cp->m;

@@ -173,12 +173,11 @@ void goal_estimator_force(goal_estimator *e, double *F);
  *
  *   sum over edges of R d,   R = integral of (tau - sigma(y)) : e(b),
  *
- * b = 4 la lb the bubble of the edge and d the part of u in it, from recovered
- * gradients; on closed edges d_n is that of the gap, and d_t where they
- * stick what it was when they began to. In axisymmetric elements at points, as
- * strains vary within them. of_u: J is the energy, tau the stress of u, and the
- * error has its square. product[n_elem] or NULL: the share of each element in
- * out->product.
+ * b = 4 la lb the bubble of the edge, d that of u from gradients; on closed
+ * edges d_n is that of the gap, and d_t where they stick what it was when they
+ * began to. In axisymmetric elements at points, as strains vary within them.
+ * of_u: J is the energy, tau the stress of u, and the error has its square.
+ * product[n_elem] or NULL: the share of each element in out->product.
  */
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           int of_u, double *product, goal_estimate *out);

@@ -1,8 +1,7 @@
 /*
  * Stress intensity factors of the cracks (src/fracture): at the tips, in space
- * at the nodes of the fronts, by domain integrals, and at tips also from the
- * opening and sliding of the lips behind them (Williams 1957), a check that is
- * good to some percent.
+ * at the nodes of the fronts, by domain integrals, and at tips from the jumps
+ * of the lips behind them (Williams 1957), good to some percent.
  */
 #include "effects/plan/effect.h"
 #include "effects/shared.h"

@@ -340,9 +340,8 @@ static status keep(run *r, void *self, archive *a) {
  *   or its own part of the error <= B dt/total:
  *
  * a contact that grows from a point makes most of its error at first, whatever
- * the increment. The norm of the solution at the end is estimated from its
- * change in the increment. The next increment is that for which a part that
- * goes like dt^2 would meet the bound.
+ * the increment. The norm at the end is estimated from its change. The next
+ * increment is that for which a part that goes like dt^2 would meet the bound.
  */
 static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* - */
 static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm */

@@ -6,9 +6,8 @@
  *   o = 4 sum over edges of la lb B_ab,  B_ab = (n_b - n_a).(x_b - x_a)/8,
  *
  * and loads given by a formula have their value there. In space the rim of a
- * loaded surface is curved where its edges at a node are smooth: by their
- * outward normals along the surface a part of the area 2/3 B_ab |x_b - x_a|
- * lies beyond an edge. The forces
+ * loaded surface is curved where its edges are smooth: by their outward normals
+ * a part of the area 2/3 B_ab |x_b - x_a| lies beyond an edge. The forces
  *
  *   dF v = F(v) - F_h(v) - integral of sigma : e(v) over the part beyond
  *

@@ -2,9 +2,8 @@
  * Opening of a mesh: which faces are cut, what is on their sides, the fans of
  * elements round each node; the lips, their groups and the front.
  *
- * "Near" elements have a node of a crack. Their sides and corners are numbered
- * per * place + k with per = dim + 1, place the one in "elem" and k the side or
- * corner of the element.
+ * "Near" elements have a node of a crack. Their sides and corners have numbers
+ * per * place + k, per = dim + 1, place in "elem", k of the element.
  */
 #include "base/base.h"
 #include "mesh/build.h"

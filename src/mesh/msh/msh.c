@@ -3,9 +3,8 @@
  * of elements, groups and nodes of a raw mesh.
  *
  * $Nodes, or $ParametricNodes with their places on curves and surfaces, and
- * $Elements of version 2.2: one line, or one record, each; the first
- * tag of an element is its group, the second its entity; an element of several
- * groups is listed once for each.
+ * $Elements of version 2.2: one line, or record, each; tags of an element:
+ * group, entity; an element of several groups is listed once for each.
  *
  * $Entities, $Nodes and $Elements of version 4.1. Entities know their groups,
  * nodes and elements come in blocks on an entity. Partitions have a list of

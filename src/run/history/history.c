@@ -11,8 +11,7 @@
 enum { DEEPEST_CUT = 30 };
 
 /* End of piece "part" of 2^level pieces of increment number i (from 0) of n;
- * computed from the ends of the step, so that no error adds up and the last
- * one is the end of the step itself. */
+ * from the ends of the step: no error adds up, the last one is its end. */
 static double piece_end(const step *s, long n, long i, long part, int level) {
   double pieces = ldexp(1.0, level);
   double done = (double)i + (double)part / pieces;

@@ -46,10 +46,9 @@ static status check(const run *r, double share, const condensed *c) {
 /*
  * Whether the supports of a body strain it (not: those of each body move
  * rigidly, to the rounding of the data): their displacements, as given, are
- * compared with the nearest rigid motion of the body. What is left of them is
- * found in long double, so that it is none of a rigid motion but the rounding
- * of the data. The strains of the solution cannot tell: where the motion is far
- * above them they are rounding.
+ * compared with the nearest rigid motion of the body. The rest is found in long
+ * double: of a rigid motion the rounding of the data. The strains of the
+ * solution cannot tell: where the motion is far above them they are rounding.
  */
 enum { MODES = 6, COLUMNS = MODES + 1 };
 
@@ -209,9 +208,8 @@ int rounding_is_all(const run *r) {
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
-/* The contact forces of the answer. Where they differ from those of its
- * displacements by more than rounding, the solver has left that, and the latter
- * are taken. */
+/* The contact forces of the answer. Those of its displacements where they
+ * differ by more than rounding. */
 static status find_forces(const run *r, misfit *x) {
   const contact_problem *cp = &r->problem.cp;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);

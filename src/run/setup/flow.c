@@ -1,7 +1,6 @@
 /*
- * Points whose law flows, before anything is solved: inelastic strains and
- * those of the units of their laws, of which they are the sum; temperatures of
- * the steps in which they flow.
+ * Points whose law flows, before anything is solved: inelastic strains, those
+ * of the units of their laws; temperatures of the steps in which they flow.
  */
 #include "model/facts.h"
 #include "run/visco.h"

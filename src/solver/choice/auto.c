@@ -1,7 +1,6 @@
 /*
- * METHOD=AUTO. The choice depends on quantities without unit: whether there is
- * friction, which form is given, whether it can be inverted, the dimension and
- * the number of unknowns m.
+ * METHOD=AUTO. The choice depends on quantities without unit: friction, the
+ * form given, whether it can be inverted, the dimension and unknowns m.
  *
  * No friction: the tangential unknowns are eliminated and the normal ones are
  * solved for by active sets, of the opening nodes only, and by NEWTON where
