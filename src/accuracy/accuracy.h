@@ -84,8 +84,7 @@ status linear_states_new(const contact_problem *cp, const double *u,
 void linear_states_free(linear_states *s);
 /* Entry of kappa (I - e e') of two tangents of one sliding node, N/m. */
 double linear_turn(const linear_states *s, int a, int b);
-/* The factor of the operator for these states; it keeps one, so again before
- * each use. ERR_MEMORY. */
+/* The factor for these states, which the operator may forget. ERR_MEMORY. */
 status linear_set_rows(const linear_states *s, int *singular);
 
 /*

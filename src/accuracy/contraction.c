@@ -187,8 +187,7 @@ static signed char state_of(const linear_contact *s, int dof) {
   return s->at.e[dof] > 0.0 ? 3 : 2;
 }
 
-/* The known rate of these states comes first, *same = 1; or they replace the
- * least recently used rate. */
+/* The known rate of these states comes first, *same = 1, or takes a place. */
 static status compare(const linear_contact *s, known_rate *k, int *same) {
   const size_t m = s->at.cp->m;
   int at = 0;

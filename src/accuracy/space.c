@@ -496,8 +496,7 @@ static inline void difference(int ns, const space_field *f, int elem_id, int v,
   }
 }
 
-/* sum[2] += the products at n vertices and of their sums; ns and n are known to
- * the compiler. */
+/* sum[2] += the products at n vertices and of their sums; n, ns constant. */
 static inline void find_products(const space_recovery *s, int elem_id,
                                  const space_field *a, const space_field *b,
                                  const int n, double *sum) {

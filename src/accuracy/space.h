@@ -48,8 +48,7 @@ void space_recover(space_recovery *s, int region, int nq, const double *q,
                    double *value);
 /* For many of them: the fits are made once. ERR_MEMORY. */
 status space_keep(space_recovery *s);
-/* A stress and what is recovered from it in the region of an element: [ns] per
- * element and node, Pa. */
+/* A stress and what is recovered in the region of an element, [ns] each, Pa. */
 typedef struct space_field {
   const double *element, *node;
 } space_field;

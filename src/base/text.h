@@ -23,8 +23,7 @@ static inline int is_blank(char c) { return c == ' ' || c == '\t'; }
 char *text_path(const char *dir, const char *name, const char *suffix);
 /* Open for writing; by_line: each line is flushed when it ends. */
 status text_open(text_file *t, const char *path, int by_line);
-/* Open to append after "length" bytes; what follows is cut. ERR_FILE also if
- * the file is shorter. */
+/* Open to append after "length" bytes; the rest is cut. ERR_FILE: shorter. */
 status text_reopen(text_file *t, const char *path, int by_line, long length);
 /* Synchronise the file; bytes so far into *length. */
 status text_sync(text_file *t, long *length);

@@ -1,5 +1,4 @@
-/* Pairs of two surfaces of the mesh in a contact surface: what their nodes are
- * relative to. */
+/* Pairs of two surfaces of the mesh: what their nodes are relative to. */
 #include "base/base.h"
 #include "contact/parts.h"
 
@@ -369,8 +368,7 @@ status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
   return OK;
 }
 
-/* The gap that was measured at x + u is that of time 0 and what the bodies have
- * moved since, along n. */
+/* The gap at x + u: that of time 0 and the motion since, along n. */
 double pair_apart(const surface_input *in, const contact_pair *p, int row,
                   const double *n) {
   const mortar *m = p->coupled;

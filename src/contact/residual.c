@@ -140,8 +140,7 @@ int contact_has_side(const contact_problem *cp, int node_id) {
   return 0;
 }
 
-/* Frictionless node: no force along a free tangent, unilateral where a second
- * obstacle bounds it. */
+/* Frictionless: no force along a free tangent, unilateral at a side. */
 static void project_sides(const measure *x, int node_id, double c, double *q) {
   for (int k = 1; k < x->cp->dim; ++k) {
     int dof = node_id * x->cp->dim + k;
@@ -327,8 +326,7 @@ static double equation_of(const measure *x, const measured *node,
   return worst;
 }
 
-/* d[rows] = A u - f - r, or W r + q - u, from row "first"; A u of an operator
- * is in its room. */
+/* d[rows] = A u - f - r, or W r + q - u, from "first"; op: A u in its room. */
 static void equation_rows(const measure *x, int first, int rows, double *d) {
   const contact_problem *cp = x->cp;
   const double *M = contact_matrix(cp);

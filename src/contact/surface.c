@@ -14,8 +14,7 @@
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
  * the normals of the faces around a node over their area. */
 static const double rounding = 1e-9;
-/* The sine of the angle between the normals of body and obstacle where they
- * touch that is worth a note. */
+/* The sine between normals of body and obstacle in touch that is told. */
 static const double told_sine = 1e-3;
 /* 1 - the cosine of the angle between a contact with friction and what supports
  * hold that is worth a warning: 0.05 rad. */
@@ -97,8 +96,7 @@ static surface_row row_of(const builder *b, const candidate *c) {
                        .normal = c->normal};
 }
 
-/* Integrals w[dim] of the P1 functions of the nodes of a face, times thickness
- * or once around the axis. */
+/* Integrals w[dim] of the P1 functions of a face, with thickness or turn. */
 static void face_shares(const surface_input *in, int face_id, double measure,
                         double *w) {
   const mesh *m = in->mesh;
@@ -150,8 +148,7 @@ static void check_axis(const builder *b, const contact_pair *p) {
                 p->name, o->name, o->point[0]);
 }
 
-/* The candidate of a node that moves by itself, in a contact with an obstacle;
- * NULL: there is none. */
+/* The candidate of a node that moves by itself, at an obstacle; or NULL. */
 static candidate *find(const builder *b, int pair_id, int node_id) {
   const contact_pair *p = &b->in->pairs[pair_id];
   const int *at = p->support == NULL || surface_tied(b->in, node_id) >= 0
@@ -346,8 +343,7 @@ static const candidate *next_of(const builder *b, const candidate *c) {
   return c->also > 0 ? &b->list[c->also - 1] : NULL;
 }
 
-/* The normal of the obstacle instead of that of the body; 0 where the body does
- * not face the obstacle. */
+/* The normal of the obstacle in its place; 0: the body does not face it. */
 static int take_obstacle_normal(const builder *b, candidate *c) {
   const surface_row at = row_of(b, c);
   double body[3];

@@ -145,8 +145,7 @@ void surface_spread(const contact_surface *s, double factor, const double *r,
 /* The same of row a of contact node q alone. */
 void surface_spread_row(const contact_surface *s, int q, int a, double force,
                         double *F);
-/* The forces r[dim*n] that surface_spread brings to F[dim*n_node] at the
- * contact nodes. ERR_MEMORY. */
+/* The forces r[dim*n] that surface_spread brings to F[dim*n_node]. */
 status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r);
 /* What row a of contact node i is divided by, -. */

@@ -151,8 +151,7 @@ static status use_parameter(reader *r, const card *c) {
   return OK;
 }
 
-/* Data lines behind *INCLUDE, in the file or after it, belong to the card
- * before: the mode stays. */
+/* Data lines behind *INCLUDE, in the file or not, are of the card before. */
 static status use_include(reader *r, const card *c) {
   const parameter *input = needed(r, c, "INPUT");
   if (input == NULL) return OK;

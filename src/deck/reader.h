@@ -123,8 +123,7 @@ typedef struct piece {
   int next; /* byte after the comma, or -1 at the end of the line */
 } piece;
 
-/* Cut at the next comma outside quotes, and outside parentheses if "nested".
- * Blanks around are cut. */
+/* Cut at the next comma outside quotes (and parentheses if "nested"). */
 piece logical_piece(const logical *l, int from, int nested);
 
 /* value.c: a field from a piece: quotes taken off, names replaced. "on_card":

@@ -23,6 +23,5 @@ status cracks_factors(run *r, int crack_id, crack_factors *out);
 /* K of a mode of the point, linear; after cracks_factors. ERR_MEMORY. */
 status cracks_derive(const run *r, int crack_id, int point, int mode,
                      fracture_linear *out);
-/* by[dim*n_node]: a derivative by tractions at the lips becomes that by the
- * forces there. */
+/* by[dim*n_node]: a derivative by tractions at the lips to one by forces. */
 void cracks_by_forces(const run *r, double *by);

@@ -28,22 +28,19 @@ struct condensed {
   sparse_operator *sparse; /* in its place and that of the bodies, or NULL */
   body_factor *body;
   rigid_motions rigid;   /* those that only contact holds */
-  unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
-                            NULL: no body needs one */
+  unsigned char *pinned; /* [m] contact unknowns with a spring, or NULL */
   int just_held;         /* 1: the springs hold those motions alone */
   double *load;          /* [dim*n_node] in local components */
   double *prescribed;    /* [dim*n_node] local components, of the last load */
   double condition;      /* 0: not yet known */
   double stiffest;       /* largest entry of K, N/m */
-  double *F;             /* [dim*n_node] the load last condensed; NULL unless
-                            solutions are refined */
+  double *F;             /* [dim*n_node] load condensed last, or NULL */
   double *rest;          /* [dim*n_node] its residual, likewise */
   const char *ordering;
   cholmod_common *cm; /* owned */
 };
 
-/* The connected set of the graph that holds "first": list[0..) and its size;
- * its nodes are marked. */
+/* The set of the graph that holds "first": list[0..), its size; marked. */
 static int connected_set(const graph *g, int first, unsigned char *seen,
                          int *list) {
   int n = 0;
@@ -484,8 +481,7 @@ status condense_recover(condensed *c, const double *u_c, double *u) {
   return OK;
 }
 
-/* u[m] = inv(A) f by the factors of the whole matrix; *square += u.f of those
- * that are not held. */
+/* u[m] = inv(A) f by the whole factor; *square += u.f of those not held. */
 static status solve_rows(const condensed *c, const double *f, double *u,
                          double *square) {
   const size_t n = (size_t)c->k->dim * c->k->n_node;

@@ -47,8 +47,7 @@ double body_factor_spring(const stiffness *k, const body_factor *f,
 /* f->bad_node and ERR_SINGULAR: the factor ends at a node. */
 status body_factor_broke(body_factor *f, int node);
 void body_factor_release(body_factor *f, cholmod_common *cm);
-/* Put the body's part of the condensed stiffness, without the pins, into A[m*m]
- * (zero there). */
+/* The body's part of the condensed stiffness, no pins, into A[m*m], zero. */
 status body_factor_condense(const stiffness *k, const body_factor *f, int m,
                             double *A);
 /* Copy the upper triangle of A[n*n] to the lower one. */
@@ -69,11 +68,9 @@ status body_factor_interior(const body_factor *f, const double *load, double *u,
  * rigid motions of a body carry no force where d balances: the same. */
 status body_factor_energy(const body_factor *f, const double *d,
                           double *square);
-/* w = inv(K) d at the unknowns of the body for forces d[dim*n_node] on them,
- * and *square += d' w. */
+/* w = inv(K) d at the unknowns for forces d[dim*n_node]; *square += d' w. */
 status body_factor_solve(const body_factor *f, const double *d, double *w,
                          double *square, cholmod_common *cm);
-/* Estimate of the condition number of the matrix factored, scaled to a unit
- * diagonal. ERR_MEMORY. */
+/* Estimate of the condition number, scaled to a unit diagonal. ERR_MEMORY. */
 status body_factor_condition(const stiffness *k, const body_factor *f,
                              cholmod_common *cm, double *condition);

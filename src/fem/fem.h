@@ -88,8 +88,7 @@ typedef enum {
 
 typedef struct free_motion {
   int set_id;  /* bodies joined by pairs and ties: the first of them */
-  int body_id; /* connected set of elements, from 0 in element order; the one
-                  that moves most */
+  int body_id; /* connected set, in element order; that moves most */
   motion_hold held_by;
   size_t elem_no; /* an element of the body, number in the mesh file */
   char text[160]; /* "translation along x", "rotation about (1, 2)" */
@@ -201,8 +200,7 @@ double domain_strain_energy(const domain *d, const double *u); /* J */
 /* That of all but n elements, ascending, which hold whole clusters. */
 double domain_energy_without(const domain *d, int n, const int *elem_id,
                              const double *u);
-/* F += sum B' E e0 w: the forces that hold the strains of x back, global
- * components [dim*n_node], N. */
+/* F += sum B' E e0 w: what holds the strains of x back [dim*n_node], N. */
 void eigen_force(const domain *d, const eigenstrain *x, double *F);
 /* Strains less e0 and the stresses E times them, of the elements of x alone,
  * which hold whole clusters: e[ns*n] (zz of plane stress not filled),

@@ -294,8 +294,7 @@ static int sets_columns(const body_sets *s, int b) {
   return modes == 1 ? 1 : modes * (s->first_piece[b + 1] - s->first_piece[b]);
 }
 
-/* Join the sets of bodies that are not at rest, number their coefficients and
- * list their nodes. */
+/* Join the sets of moving bodies, number coefficients, list their nodes. */
 static void sets_join(body_sets *s, joint by) {
   const int n_body = s->p.n_body;
   for (int i = 0; i < s->d->mesh->n_node; ++i)

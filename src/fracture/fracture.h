@@ -101,8 +101,7 @@ typedef struct fracture_linear {
 /* Barycentric coordinate of a point of flux in its own corner, those in the
  * others are equal: degree 2 with equal weights. */
 double fracture_corner(int dim);
-/* Mode 0 to 2, of the domains that give K in s; *out is new. The point has a K.
- * ERR_MEMORY. */
+/* Mode 0 to 2 of a point with a K, its domains in s; *out new. ERR_MEMORY. */
 status fracture_derive(fracture *f, const fracture_state *s, int point,
                        int mode, fracture_linear *out);
 void fracture_linear_free(fracture_linear *l); /* accepts all-zero */

@@ -179,8 +179,7 @@ static void turn_back(const local *at, int dim, double by[3][3], double *out) {
  * du_3/dx_1, in which the fields of K and stresses along the lips have none.
  */
 
-/* A lip that q of the largest domain is on: its part, m^dim, and its element;
- * -1: another lip. */
+/* A lip that q of the largest domain is on: its part, element; -1: another. */
 static int set_turning(work *w, int i, double *part) {
   const mesh_crack *c = w->crack;
   const int face = i < c->n ? c->plus[i] : c->minus[i - c->n];

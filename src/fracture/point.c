@@ -195,8 +195,7 @@ static double free_radius(const mesh *m, const obstacles *o,
   return radius;
 }
 
-/* Half the distance of other tips, or of parts of the front that run elsewhere,
- * at most "radius". */
+/* Half the distance to other tips or parts of the front, at most "radius". */
 static double half_way(const fracture *f, const fracture_point *p,
                        double radius) {
   const mesh *m = f->body.mesh;

@@ -106,8 +106,7 @@ static void give_up(const child *c, status code, const char *format, ...) {
 /* gmsh may exit by itself (Exit in a .geo): skip the exit handlers. */
 static void leave_at_once(void) { _exit(LEFT_BY_ITSELF); }
 
-/* End with the parent, which reads what is written to fd. The kernel forgets it
- * where the user changes. */
+/* End with the parent, which reads fd; forgotten where the user changes. */
 static void end_with_reader(int fd) {
   struct pollfd pipe = {.fd = fd};
 #ifdef __linux__

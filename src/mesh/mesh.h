@@ -121,8 +121,7 @@ double mesh_elem_measure(const mesh *m, int elem_id);
 /* Gradients g[dim*(dim+1)] of its P1 functions, 1/length, one after the other;
  * returns twice the area or six times the volume. */
 double mesh_elem_gradients(const mesh *m, int elem_id, double *g);
-/* Sets as trees: parent[i] = i before. The lower root wins, so that a set is
- * named by its first member. */
+/* Sets as trees: parent[i] = i before. The lowest member names a set. */
 int forest_root(int *parent, int i);
 void forest_join(int *parent, int a, int b);
 /* Bodies: connected sets of elements. body[n_elem] 0..n_body-1. */

@@ -21,8 +21,7 @@ typedef struct side_list {
 
 static void sides_free(side_list *s) { RELEASE(s->start, s->side); }
 
-/* The lowest corner stands in all sides of an element but one, whose lowest is
- * the second one. */
+/* The lowest corner stands in all sides of an element but one. */
 static void two_lowest(int n, const int *w, int low[2]) {
   low[0] = w[0] < w[1] ? w[0] : w[1];
   low[1] = w[0] < w[1] ? w[1] : w[0];

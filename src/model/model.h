@@ -574,8 +574,7 @@ const char *load_card(const load *l); /* "DLOAD" */
 double load_at_point(const load *l, const step *s, const double x[3], double t);
 double load_at_node(const load *l, const mesh *msh, const step *s, int node,
                     double t);
-/* 1 if that is finite at the nodes of its group; else the log has the first
- * node where it is not. */
+/* 1 if finite at the nodes of its group; else the log has the first other. */
 int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
                 double t);
 
@@ -587,8 +586,7 @@ status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
 /* Initial condition in an element, mean of its nodes; or ERR_DECK. */
 status load_initial(const model *m, const mesh *msh, const initial *c,
                     int elem_id, double *value);
-/* Temperatures T[n_elem] before the first step, mean of the nodes. ERR_DECK if
- * one is not finite. */
+/* Temperatures T[n_elem] before the first step; ERR_DECK: not finite. */
 status load_temperature_initial(const model *m, const mesh *msh, double *T);
 /* Temperatures T[n_elem] at time t of a step of the model, T0[n_elem] before
  * the first step; errors as above. */

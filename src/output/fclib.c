@@ -61,8 +61,7 @@ static double offset_of(const contact_problem *cp, int dof) {
   return cp->ut0 == NULL ? 0.0 : -cp->ut0[i * (cp->dim - 1) + k];
 }
 
-/* inv(A) in place of the copy of A, both triangles; 0: A is singular.
- * work[3 m], iwork[m]: workspace. */
+/* inv(A) in place of the copy of A; 0: singular. work[3 m], iwork[m]. */
 static int invert(int m, double *a, double *work, int *iwork) {
   double rcond = 0.0;
   const size_t n = m;

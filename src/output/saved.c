@@ -124,8 +124,7 @@ static status read_file(output *o, size_t n) {
   return OK;
 }
 
-/* o->run.increments from a file with that beginning; what follows is cut.
- * ERR_FILE: it is damaged. */
+/* o->run.increments of a file; what follows is cut. ERR_FILE: damaged. */
 static status saved_read(output *o, const saved_end *end) {
   run_summary *run = &o->run;
   const size_t n = end->length;

@@ -61,8 +61,7 @@ typedef struct saved_increments {
   text_file file;
   int n; /* increments in it */
   saved_end end;
-  char *read; /* what stood in it when the run went on: reasons in
-                 run.increments point into it */
+  char *read; /* reasons in run.increments point into it */
 } saved_increments;
 
 struct output {

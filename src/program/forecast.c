@@ -117,8 +117,7 @@ static int is_of_run(int s) {
          s == STAGE_FACTOR || s == STAGE_CONDENSE;
 }
 
-/* As in target.c: the share of the increments in the target, the aim of the
- * next pass, its limit. */
+/* As in target.c: the share of increments, the aim of a pass, its limit. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, AIM = 0.93;
 static const double REACH = 8.0, FINEST = 0.25, FINEST_LAST = 0.1;
 static const double SHORTEST = 1.0 / 16;

@@ -55,8 +55,7 @@ static int file_no(const deck *d, const char *file) {
   return -1;
 }
 
-/* A line each: number, line, column, number of the file, text; the file in a
- * line before it. */
+/* A line each: number, line, column, number of the file, text; file before. */
 static status list_warnings(FILE *f, const void *what) {
   const job_input *in = what;
   message_view w;

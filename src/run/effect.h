@@ -110,8 +110,7 @@ typedef struct effect_hooks {
   /* *own is new and not NULL, or has been made with the size of the row and is
    * the owner of what is requested here; freed also after a failure. */
   status (*create)(struct run *r, void **own);
-  /* 0: initial, accept, show, rewrite have nothing to do at this increment, and
-   * are not counted. */
+  /* 0: initial, accept, show, rewrite are not called now, nor counted. */
   int (*due)(const struct run *r);
   /* Nothing is solved yet: r->step with its surface, r->loads.start where it is
    * known, else NaN: what of it the run could not solve. */
@@ -145,8 +144,7 @@ typedef struct effect_hooks {
                   double *force);
   /* T: r->now is an equilibrium; *again = 1: the problem has changed. */
   status (*found)(struct run *r, void *own, int *again);
-  /* T: the increment that ends at t has been solved and will be taken; r->now
-   * may be solved again. */
+  /* T: the increment to t is solved and will be taken; r->now may change. */
   status (*examine)(struct run *r, void *own, double t);
   /* T: the errors of r->now into r->errors, finally or at an attempt. */
   status (*estimate)(struct run *r, void *own);
@@ -176,8 +174,7 @@ typedef struct effect_ops {
   size_t size; /* of the state, zeroed: bytes times count; 0: of "create" */
   size_t (*count)(const struct run *r); /* NULL: 1 */
   effect_copy copy_as;
-  int bit; /* EFFECT_BIT_... of the result of required in m->effects, for other
-              files; or NO_BIT */
+  int bit; /* EFFECT_BIT_... in m->effects, or NO_BIT */
   /* 1: the model requires it; the card or fact that does, or why none does. */
   int (*required)(const model *m, const reason *why);
   /* Work expected before anything is solved; NULL: no row in the plan. */
@@ -192,8 +189,7 @@ typedef struct effect_ops {
   /* Reason why increments of half the length give no error of the steps with
    * this effect; NULL: they do. */
   const char *sums_up;
-  /* 1: it may move or load contact nodes independently of the loads and
-   * supports at the ends of a step. */
+  /* 1: it may move or load contact nodes without loads and supports. */
   int far;
 
   /* 1: gives the element strains without stress; NULL: none. */

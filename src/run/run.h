@@ -234,8 +234,7 @@ int run_step_id(const run *r); /* from 0 */
 status effects_create(run *r, const effect_ops *const *table);
 /* sums_up of the first that has it, or NULL. */
 const char *effects_sum_up(const run *r);
-/* history/history.c: 1: slip or inelastic strains of the increments before have
- * a part in this one. */
+/* history/history.c: 1: slip or strains of increments before count. */
 int run_remembers(const run *r);
 /* The same, or steps before in strains that are held or an effect sums up. */
 int run_inherits(const run *r);
@@ -280,8 +279,7 @@ status run_renew_elastic(run *r);
 /* Data of the estimates of the matrix in use. */
 void run_forget_estimates(run *r);
 void matrices_free(matrices *m);
-/* Saved data of the solver, in a group of this name; reading: for the solver
- * that is made next. */
+/* Saved data of the solver, in a group of this name, or for the next. */
 status matrices_keep(matrices *m, archive *a, const char *group);
 /* The operator that is made again follows what the one before a restart did. */
 status matrices_follow(matrices *m);
@@ -314,8 +312,7 @@ status run_take_stiffness(run *r);
 status moduli_new(const model *m, const mesh *msh, const double *T,
                   moduli *out);
 void moduli_free(moduli *x); /* accepts all-zero */
-/* To other temperatures; *changed = 1 if an entry is another one now, else it
- * stays. ERR_DECK likewise. */
+/* To other temperatures; *changed = 1: some entry has. ERR_DECK likewise. */
 status moduli_heat(moduli *x, const model *m, const double *T, int *changed);
 /* What d knows of its elements, borrowed from x and m. */
 void moduli_domain(const moduli *x, const model *m, domain *d);
@@ -341,8 +338,7 @@ void strains_work(run *r, energies *e);
 double strains_energy(const run *r); /* of the stresses of r->now, J */
 /* -, displacements and forces in u and A u, by rounding */
 #define RUN_CARRIED (4 * DBL_EPSILON)
-/* Error of the largest displacement of r->now, m; what an error u of all
- * displacements stores, J. */
+/* Error of the largest displacement of r->now, m; what u stores, J. */
 double strains_lost(const run *r);
 double strains_rounding(const run *r, double u);
 
@@ -400,8 +396,7 @@ status increment_load(run *r, double t);
 status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);
 
-/* result.c: stresses, reactions, totals, energies of r->now as far as the
- * effects and "due" require. */
+/* result.c: the results of r->now, as the effects and "due" require. */
 status result_evaluate(run *r, int due);
 
 /* shadow.c: the state at t within the increment made from r->old to r->now;

@@ -14,8 +14,7 @@ typedef struct locking_sums {
   double growth;         /* m3, square of the inelastic change of volume */
 } locking_sums;
 
-/* Sums over the points for an increment and its end, computed during a step of
- * constant laws. */
+/* Sums over the points for an increment and its end, of constant laws. */
 typedef struct point_sums {
   int known;                 /* 1: those of r->strains.visco->old and now,
                                 r->old and r->now */

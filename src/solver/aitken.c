@@ -132,8 +132,7 @@ static void keep(run *s) {
   }
 }
 
-/* gamma[kept], newest first, by elimination; a difference that depends on the
- * newer ones is left out. */
+/* gamma[kept], newest first, by elimination without dependent ones. */
 static void weights(const run *s, double *gamma) {
   double N[DEPTH][DEPTH + 1], first[DEPTH];
   int n = s->kept, place[DEPTH];
@@ -189,8 +188,7 @@ static void accelerate(run *s, int k) {
 
 /* ---- control ------------------------------------------------------------ */
 
-/* No progress for long: alternate forward and backward sweeps, then shorter
- * steps. 0: no remedy left. */
+/* No progress: alternate sweeps, then shorter steps. 0: no remedy left. */
 static int cure(run *s) {
   static const double shorter[] = {1.0, 0.6, 0.3};
   forget(s);

@@ -96,8 +96,7 @@ static void next_limit(const fixed_point *fp, double step, int mixed,
   }
 }
 
-/* The iterations left to the next pass of those allowed in all; 0: no bound.
- * Returns 0 if none is left. */
+/* The iterations left to the next pass; 0: no bound. Returns 0: none left. */
 static int iterations_left(const solver_control *control,
                            const solver_report *rep, int *left) {
   *left = 0;

@@ -108,8 +108,7 @@ static outcome check(run *s, int k) {
   return k - s->since > PATIENCE ? STOPPED_STAGNATION : RUNNING;
 }
 
-/* r and x after a step of gradient projection from y; 0: the step was too long
- * and is now shorter. */
+/* r and x after a gradient step from y; 0: it was too long, now shorter. */
 static int project_step(run *s) {
   lagrange_work *w = s->w;
   const force_set *set = w->set;

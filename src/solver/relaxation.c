@@ -311,8 +311,7 @@ static void add_unknown(const relaxation *s, int dof, const double *d,
   f->least = fmax(f->least, ROUNDING * k * fabs(s->u[dof]));
 }
 
-/* Distance of a node to its bound or stick position over its step; HUGE_VAL:
- * the step leads to neither. */
+/* Distance of a node to its bound or stick over its step; or HUGE_VAL. */
 static double steps_of(const relaxation *s, int node_id, const double *d,
                        double most) {
   const contact_problem *cp = s->cp;

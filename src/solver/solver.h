@@ -43,8 +43,7 @@ typedef struct solver_listener {
   void *ctx;
 } solver_listener;
 
-/* Sweeps go on while their rate, observed over "every" of them, predicts the
- * answer within "most". */
+/* Sweeps go on while the rate of "every" predicts the end within "most". */
 typedef struct sweep_promise {
   int every;
   double most;
@@ -127,8 +126,7 @@ int solver_few_digits(double tol);
 void solver_report_all(const solver_control *control, const solver_step *s);
 void solver_report_step(const solver_control *control, const char *solver,
                         int iteration, double residual);
-/* The same with the nodes that changed their state, and whether a pattern of
- * states was repeated. */
+/* The same with nodes that changed, and whether a pattern came again. */
 void solver_report_states(const solver_control *control, const char *solver,
                           int iteration, double residual, int changes,
                           int cycle);

@@ -221,8 +221,7 @@ static void add_strain(int dim, const double *g, const double *d, double *e) {
 
 static int edges_of(int dim) { return dim == 2 ? 3 : 6; }
 
-/* Adds edge (a, b), number "edge" of an element with the gradients g, where d
- * is in its bubble. */
+/* Adds edge (a, b), number "edge", d in its bubble; g: gradients of P1. */
 static void add_bubble(const domain *d, int elem_id, const int *edge,
                        const double *g, const double *of, bubbles *to) {
   const int dim = d->mesh->dim, a = edge[0], b = edge[1];
@@ -726,8 +725,7 @@ void goal_estimator_force(goal_estimator *e, double *F) {
   for (size_t k = 0; k < n; ++k) F[k] = -F[k];
 }
 
-/* e->by_given: where friction rubs 1 - integral of sigma : e(y) over twice the
- * energy. */
+/* e->by_given: where friction rubs 1 - integral of sigma : e(y) over 2 E. */
 static void set_share(goal_estimator *e, const double *y) {
   const double whole = 2.0 * domain_strain_energy(e->s.d, e->s.u);
   e->by_given = 1.0;

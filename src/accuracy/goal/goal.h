@@ -105,8 +105,7 @@ typedef struct bent_edge {
   double out[3]; /* from its middle to the surface of the body, m */
 } bent_edge;
 
-/* An edge that a support holds, node ids a < b, whose displacement is no linear
- * function along it. */
+/* An edge that a support holds, a < b, whose displacement is not linear. */
 typedef struct given_edge {
   int a, b;
   double bend[3]; /* in its middle less the mean of its ends, m */
@@ -158,8 +157,7 @@ double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
 /* [dim*n_edge] what u is in the bubbles of the contact edges, m; of a crack,
  * less the mean of both lips. */
 const double *goal_estimator_edges(const goal_estimator *e);
-/* d[dim] what u is in the bubble of the edge from node a to b of an element, m;
- * has_mean. */
+/* d[dim] of u in the bubble of the edge from node a to b, m; has_mean. */
 void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
                            double *d);
 /* J of u, what u is in the bubbles too, by its derivative f. */

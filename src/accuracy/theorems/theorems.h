@@ -116,8 +116,7 @@ typedef struct stress_map {
 /* From where the context stands: the factor that passes end with, 0 if nothing
  * is left. Each pass starts from the last result over its norm. */
 status theorems_path_rate(const stress_map *map, double *rate);
-/* Constants from bound = q of a step dt by theta, after "span" since "start"
- * of a step. */
+/* Constants from bound = q of a step dt by theta, "span" after the "start". */
 void theorems_path_learn(theorems *t, double theta, double dt, double span,
                          theorems_path *p);
 /* Least k with x^k/k! < 1. */

@@ -99,8 +99,7 @@ typedef struct average_rule {
   kernel kernel;
   double radius;            /* rho, m */
   int normalized;           /* 1: G_ij / W_i: uniform stays at edges */
-  int geodesic;             /* 1: distance along the lines (plane only), else
-                               straight */
+  int geodesic;             /* 1: distance along lines (plane), else straight */
   average_mirror mirror[3]; /* by axis; not with geodesic, nor of the radius */
 } average_rule;
 

@@ -291,8 +291,7 @@ static void add_edge(flat *f, const double *a, const double *b) {
   add_outer(f, &e, in1, last);
 }
 
-/* Values at the foot and gradients of the P1 functions turn the integrals of w
- * and w y into weights. */
+/* Values at the foot and gradients turn integrals of w, w y into weights. */
 static void to_weights(const flat *f, double weight[3]) {
   const double(*p)[2] = f->p;
   double twice = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -

@@ -68,8 +68,7 @@ static status estimate(run *r, void *self) {
   return OK;
 }
 
-/* The nodal averages are made now, so that the costs counted from here on are
- * those of the other run. */
+/* The nodal averages are made now: costs from here on are of the other run. */
 static status keep(run *r, void *self, archive *a) {
   int made = is_recovery_known(r, self);
   PASS(archive_ints(a, "recovery", &made, 1));

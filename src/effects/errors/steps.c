@@ -105,8 +105,7 @@ static void restart(paths *own) {
   own->now = (path_error){0};
 }
 
-/* Only slip in increments and inelastic strains, those of steps before too,
- * depend on their path. */
+/* Only slip in increments and inelastic strains depend on their path. */
 static int path_exists(const run *r) {
   return effects_sum_up(r) == NULL && run_inherits(r);
 }
@@ -404,8 +403,7 @@ static status refuse(run *r, double tried, double dt, const char *why) {
   return OK;
 }
 
-/* What the attempt adds to the error of strains that are left without a stress,
- * as a share of them. */
+/* What the attempt adds to the error of strains left without stress, -. */
 static double strain_part(const run *r, const paths *own) {
   const double left = rounding_strain_left(r);
   if (own->path == NULL || own->path->lost || !(left > 0.0)) return 0.0;

@@ -388,8 +388,7 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   return OK;
 }
 
-/* Of the rim at end k of an edge, as normal_at; next[2*n] the other end with
- * the same node in a ring. */
+/* Of the rim at end k of an edge; next[2*n] the next end at its node. */
 static void out_at(const run *r, const rim_edge *e, const int *next, int k,
                    double *out) {
   const rim_edge *own = e + k / 2;

@@ -392,8 +392,7 @@ static int turns(const run *r, const shared *s) {
   return most > TURN * size;
 }
 
-/* 1: few closed nodes, or nodes in a line on a surface in space: of the contact
- * of a goal, or of all. */
+/* 1: few closed nodes, or all in a line in space: of a contact, or all. */
 static int has_few(const run *r, const shared *s, int id) {
   enum { FEW = 3 };
   const int of = r->m->accuracy.goals[id].contact_id;

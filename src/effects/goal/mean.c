@@ -7,8 +7,7 @@
 
 /* ---- at the nodes -------------------------------------------------------- */
 
-/* The integrals of the P1 functions of a group, at the unknowns of a component;
- * the whole of them. */
+/* Integrals of the P1 functions of a group for a component; the whole. */
 static status weights_of(const run *r, int group_id, int component,
                          double *weight, double *whole) {
   const mesh_group *g = &r->msh->group[group_id];

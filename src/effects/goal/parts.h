@@ -30,8 +30,7 @@ typedef struct goal_form {
   int is_field;       /* 1: psi is a smooth vector along the surface */
   double spin[3];     /* the axis of a moment, else 0 */
   int is_still;       /* 1: work of friction where nothing slips so far */
-  int is_coarse;      /* 1: a mean over less than two elements to each side, or
-                         few elements round a tip */
+  int is_coarse;      /* 1: of less than two elements a side, few round a tip */
   int is_front;       /* 1: a factor in space */
   int is_square;      /* 1: the energy, whose error has a quadratic part too */
   double curved;      /* contact forces times psi's excess inside */
@@ -124,8 +123,7 @@ typedef struct goal_surface {
 } goal_surface;
 /* boundary.c: s->bent. */
 status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
-/* support.c: s->given, then what supports and interfaces between the regions
- * "of" add to s->ends. */
+/* support.c: s->given; supports and interfaces of "of" to s->ends. */
 status goal_add_given(const run *r, goal_surface *s);
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s);

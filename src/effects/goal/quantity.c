@@ -154,8 +154,7 @@ static status set_force(const run *r, const goal_card *g, goal_form *f) {
   return add_held(r, g, f);
 }
 
-/* Dissipated so far, by the limits at the ends of the increments; its
- * derivative that of the last one. */
+/* Dissipated so far, by the limits at the ends; derivative: of the last. */
 static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;

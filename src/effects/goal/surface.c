@@ -197,8 +197,7 @@ static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
   s->ends[e.a] = s->ends[e.b] = GOAL_END_OF_CONTACT;
 }
 
-/* Edge a, b of two faces that lie on each other, v[dim] with the contact nodes,
- * w[dim], node by node. */
+/* Edge a, b of two faces that lie on each other, v[dim] and w[dim]. */
 static void add_lip_edges(const run *r, const int *where, const int *v,
                           const int *w, double weight, goal_surface *s) {
   const int dim = r->msh->dim;

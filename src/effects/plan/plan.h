@@ -74,8 +74,7 @@ status plan_expect(const model *m, const mesh *msh, int n,
 
 /* The plan as a table; lead before each line. */
 void plan_print(const effect_plan *p, const char *lead, FILE *f);
-/* After the run: calls, and with "cost" CPU seconds, share and bytes next to
- * the expected ones. */
+/* After the run: calls, with "cost" CPU seconds, share, bytes too. */
 void plan_print_cost(const effect_plan *p, int cost, FILE *f);
 
 /* Cost of a row so far: calls of its first stage, the rest of all. */

@@ -83,8 +83,7 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
   return OK;
 }
 
-/* The shortest increment if the law flows in all steps and the integrator damps
- * fast terms; else 0. */
+/* The shortest increment where a law flows always and is damped; else 0. */
 static double damped_increment(const model *m) {
   double least = HUGE_VAL;
   for (EACH(const step, s, m->steps, m->n.step)) {

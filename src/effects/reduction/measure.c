@@ -181,8 +181,7 @@ static void measure_relaxed(reduction *n, const omitted *row, double dt,
   *norm = SAFETY * sqrt(sum);
 }
 
-/* Rates of one material under the current stresses: their norm; n->stress of
- * its elements grows by dt. */
+/* Rates of one material: their norm; n->stress of it grows by dt. */
 static status add_rates(reduction *n, const state *s, const omitted *row,
                         double dt, double *norm) {
   const material *mat = &n->m->materials[row->id];

@@ -216,8 +216,7 @@ double tensor_trace(const double *v);
 void tensor_deviator(int ns, const double *v, double *d);
 double tensor_mises(int ns, const double *s); /* of a deviator, >= 0 */
 void tensor_product(int ns, const double *A, const double *x, double *y);
-/* Strain 3/2 s/q of a deviator s with q = tensor_mises > 0: the direction of
- * flow, its shears doubled. */
+/* Strain 3/2 s/q of a deviator s, q = tensor_mises > 0, shears doubled. */
 void tensor_direction(int ns, const double *s, double q, double *n);
 /* Equivalent stress q, returned, and the direction of its flow or 0. */
 double tensor_flow(int ns, const double *sigma, double *n);

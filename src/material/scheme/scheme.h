@@ -135,8 +135,7 @@ typedef struct scheme_step {
 
 typedef struct scheme_result {
   int settled;       /* 0: no result to continue with */
-  double unstable;   /* rate of a stage beyond what p->fastest allows, 1/s, not
-                        settled then; or 0 */
+  double unstable;   /* rate beyond p->fastest, 1/s, not settled; or 0 */
   int stuck;         /* point that has no state at the end, from 1; or 0 */
   int iterations;    /* linear solves of an implicit step */
   double error;      /* of strains, root mean square, -; < 0: not estimated */

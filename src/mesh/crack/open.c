@@ -644,8 +644,7 @@ static int holds(const mesh *m, const int *v, const int *edge) {
   return found == m->dim - 1;
 }
 
-/* From a lip round the edge through all elements to the next side that is cut
- * or on the boundary. */
+/* From a lip round the edge to the next side cut or on the boundary. */
 static int last_side(const opening *o, int lip, const int *edge) {
   const int per = o->m->dim + 1;
   int at = lip, v[3];

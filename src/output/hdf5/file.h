@@ -14,8 +14,7 @@
 #include <stdint.h>
 #include <sys/types.h>
 
-/* Values written at once; records and rows allocated at first: a longer run
- * allocates more when needed. */
+/* Values written at once; records and rows allocated at first. */
 enum { CHUNK = 4096, MOST_RECORDS = 100000, MOST_ROWS = 10000000 };
 
 typedef enum { DATA_REAL, DATA_INT, DATA_NUMBER, DATA_TEXT } data_type;
@@ -70,15 +69,13 @@ int hdf5_is_history(const hdf5_field *f);
 int hdf5_items(const hdf5_file *h, const hdf5_field *f);
 size_t fixed_bytes(const fixed_data *d);
 
-/* layout.c: make the temporary file "aside" with space for rows and records; l
- * gets the offsets. */
+/* layout.c: make "aside" with space for rows and records; l: offsets. */
 status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
                         hdf5_layout *l);
 /* records.c: all of data at an offset of the file "path". */
 status hdf5_put(int fd, const char *path, const void *data, size_t bytes,
                 off_t offset);
-/* Records 2 to n > 1 of all groups and their offsets; the file is
- * closed. ERR_FILE, ERR_MEMORY. */
+/* Records 2 to n > 1 of all groups, their offsets. ERR_FILE, ERR_MEMORY. */
 status hdf5_records_make(const char *path, int n, int n_group,
                          const record_group *groups);
 /* That of the file "path"; without the fixed data. */

@@ -19,8 +19,7 @@ typedef struct hdf5_field {
 typedef struct hdf5_count { /* what has been written */
   int rows, records;
 } hdf5_count;
-/* NULL in *out if no step requires fields. before: continue the file after
- * these; NULL: a new one. */
+/* NULL if no step requires fields. before: continue the file; NULL: new. */
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
                  const hdf5_count *before, hdf5_file **out);
 /* Synchronise; h NULL: nothing. */

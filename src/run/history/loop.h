@@ -20,8 +20,7 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
 int loop_cut_helps(const run *r);
 /* Reports that there is no equilibrium: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
-/* From r->old to r->now at t by the procedure of the step, or that of an
- * effect; the first alone. */
+/* From r->old to r->now at t by the step, or an effect; the first alone. */
 status loop_solve(run *r, double t);
 status loop_solve_once(run *r, double t);
 /* tables.c: the end of an increment for which the program chose t: there, or a
@@ -34,8 +33,7 @@ status loop_pause(run *r);
 
 /* The loads now over the largest of the step, at most 1. */
 double share_of_step(const run *r);
-/* rounding.c: the rounding error of r->now, whose energies are known.
- * ERR_SINGULAR: no correct digit. */
+/* rounding.c: the rounding error of r->now. ERR_SINGULAR: no digit. */
 status rounding_find(run *r);
 /* Contact forces that may be below the rounding of the motion: contact_hidden,
  * own forces by the stresses next to the node. */

@@ -208,8 +208,7 @@ int rounding_is_all(const run *r) {
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
-/* The contact forces of the answer. Those of its displacements where they
- * differ by more than rounding. */
+/* The contact forces of the answer, or, beyond rounding, of its motion. */
 static status find_forces(const run *r, misfit *x) {
   const contact_problem *cp = &r->problem.cp;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);

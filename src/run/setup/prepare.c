@@ -227,8 +227,7 @@ static status has_friction(const run *r, size_t elem_no, int *answer) {
   return OK;
 }
 
-/* 1 if nothing resists: no contact there, or tangential contact of a body
- * without friction. */
+/* 1: nothing resists: no contact there, or only tangents, frictionless. */
 static status is_unheld(const run *r, const free_motion *f, int *unheld) {
   int friction = 0;
   if (f->held_by == HELD_BY_FRICTION)

@@ -109,8 +109,7 @@ static status hold(const contact_problem *cp, anchor *an) {
   return OK;
 }
 
-/* Of each motion by the stiffness of the bodies that it moves, which may differ
- * by powers of ten. */
+/* Of each motion by the stiffness of its bodies, which may differ widely. */
 static status choose_springs(const contact_problem *cp, anchor *an) {
   OWNED double *stiffness = NULL;
   PASS_NEW_ALL(OF(stiffness, cp->m), OF(an->spring, an->n_mode));
@@ -234,8 +233,7 @@ static double move_of(const passes *p, int i) {
   return d;
 }
 
-/* Distance from u to the nearest bound over the last move; at least 1, 1 if it
- * leads to none. */
+/* Distance to the nearest bound over the last move; at least 1, 1: none. */
 static double moves_to_bound(const passes *p, const double *u) {
   double moves = HUGE_VAL, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) most = fmax(most, fabs(move_of(p, i)));
@@ -257,8 +255,7 @@ static void close_gaps(passes *p) {
   place(p->an, p->cp->m, d, p->an->a);
 }
 
-/* A body in free motion to an obstacle is moved onto it, the next time onto the
- * first bound it meets. */
+/* A body in free motion is moved onto its obstacle, then to its bound. */
 static void fly(passes *p, const double *u) {
   double moves = moves_to_bound(p, u);
   if (!(moves > 1.0)) return;

@@ -209,8 +209,7 @@ static void note(contact_solver *s, const solver_report *rep,
              rep->iterations, a->max_iter);
 }
 
-/* Significance of a failure; a singular compliance has none, a method that does
- * not apply less. */
+/* Weight of a failure; none of a singular compliance, less if unfit. */
 static int weight(const contact_problem *cp, outcome o) {
   if (o == STOPPED_UNFIT) return -1;
   return o == STOPPED_SINGULAR && contact_has_stiffness(cp);

@@ -170,8 +170,7 @@ static double best_column(balance *s, double *to) {
   return fmax(s->c[best], of_limit);
 }
 
-/* The motion that lifts all nodes most evenly; *gain: the least decrease of c
- * per unit of it, 0: none. */
+/* The motion that lifts all nodes; *gain: least decrease of c per unit. */
 static void set_lift(balance *s, double *gain) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode;

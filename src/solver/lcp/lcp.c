@@ -220,8 +220,7 @@ static double lcp_direction(lcp_work *w, const lcp_problem *p) {
   return first;
 }
 
-/* ---- which variable leaves the basis: the first to vanish, ties by the
- * lexicographic rule. */
+/* ---- which variable leaves: the first to vanish, by lexicographic rule. */
 
 static const double SMALL = 0x1p-38;   /* no pivot below */
 static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered */

@@ -116,8 +116,7 @@ static int fit(nonnegative *s, const double *b) {
                             s->y, rows, s->work, 4 * rows) == 0;
 }
 
-/* From x towards y while no factor is negative; factors that become zero are
- * dropped. 1: y is reached. */
+/* From x towards y while factors are positive; zero ones go. 1: at y. */
 static int go(nonnegative *s) {
   double share = 1.0;
   int end = -1;
@@ -408,8 +407,7 @@ static void start(newton_run *s, int k, unsigned *seed) {
   }
 }
 
-/* Attempts by Newton's method from many starts. 1 in *found: z is a solution to
- * tol. *steps grows. */
+/* Newton's method from many starts. 1 in *found: z solves. *steps grows. */
 static status lcp_newton(const lcp_data *p, const lcp_control *control,
                          double *z, int *steps, int *found) {
   SCRATCH;
@@ -541,8 +539,7 @@ static double cover(unsigned *seed) {
   return ldexp(1.0 + (*seed >> 8) * 0x1p-24, (int)(*seed >> 6 & 3u) - 2);
 }
 
-/* Attempt k: plain; in natural units; then with other covering vectors and
- * from other vertices. */
+/* Attempt k: plain; in natural units; other covering vectors, vertices. */
 static void choose(run *s, int k) {
   size_t n = s->p->n;
   for (size_t i = 0; i < n; ++i) {

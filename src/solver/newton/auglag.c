@@ -94,8 +94,7 @@ typedef struct auglag_run {
   status failed; /* of a step, ERR_MEMORY: the method ends */
 } auglag_run;
 
-/* ---- the augmented forces F(z), the states of the nodes they stand for, and
- * the residual of (u, F). */
+/* ---- the augmented forces F(z), their states, the residual of (u, F). */
 
 /* rho of an unknown, N/m. */
 static double auglag_rho(const auglag_run *s, int dof) {
@@ -661,8 +660,7 @@ static status follow_limit(auglag_run *s, solver_report *rep) {
   return OK;
 }
 
-/* 1: the other variant ended without progress: the cycle of the first one is
- * the better reason. */
+/* 1: the other variant made no progress: the first cycle tells more. */
 static int made_no_progress(const solver_control *control,
                             const solver_report *rep) {
   int bounded = control->max_iter > 0 && rep->iterations >= control->max_iter;

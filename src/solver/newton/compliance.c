@@ -17,8 +17,7 @@
 #include <cblas.h>
 #include <lapacke.h>
 
-/* An unknown force: of one degree of freedom, or along d in the tangent plane
- * of a slipping node. */
+/* An unknown force: of one unknown, or along d of a slipping node. */
 typedef struct unknown {
   int dof;     /* of d: the first tangent */
   int turns;   /* 1: along d */

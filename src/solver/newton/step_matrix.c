@@ -81,8 +81,7 @@ static void sort_touched(step_matrix *s) {
   }
 }
 
-/* Contribution of the eliminated unknowns to the right side; their entries of
- * the line are cleared. */
+/* Of the eliminated unknowns on the right side; their entries are cleared. */
 static double take_out(step_matrix *s, int i) {
   double rhs = s->d[i];
   for (int a = 0; a < s->n_touched; ++a) {

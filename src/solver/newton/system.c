@@ -237,8 +237,7 @@ static int same_row(const newton_system *s, const pattern *p, int dof) {
   return 1;
 }
 
-/* List the rows in which the guess differs from the base; returns what an
- * update costs, operations. */
+/* List the rows that differ from the base; cost of an update, operations. */
 static double newton_list_changes(newton_system *s, const pattern *p) {
   double fresh = 0.0, equations = 0.0, n = s->base.n_free, m = s->m;
   s->n_changed = 0;

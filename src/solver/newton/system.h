@@ -58,8 +58,7 @@ int newton_list_known(const contact_problem *cp, pattern *p, const double *u,
                       double *du);
 /* They are put into u. */
 void newton_take_known(const contact_problem *cp, const pattern *p, double *u);
-/* b[m], times power: minus the residual of each free row at the present u.
- * Returns the largest. */
+/* b[m], times power: minus the residual of free rows at u; the largest. */
 double newton_load(const contact_problem *cp, const pattern *p, double power,
                    const double *u, const double *raw, double *b);
 /* Slip of a node in the directions friction acts in, slip[2], m. */
@@ -154,8 +153,7 @@ linear_work operated_system_work(const operated_system *s,
                                  const contact_problem *cp);
 /* 1: raw of the last step is a sum, not the reaction of u. Or NULL. */
 int operated_system_sums(const operated_system *s);
-/* 1: another step on the same rows may mend the last, which was solved to a few
- * digits. Accepts NULL. */
+/* 1: another step on the same rows may mend the last. Accepts NULL. */
 int operated_system_refresh(operated_system *s);
 
 /*
@@ -172,15 +170,13 @@ typedef struct step_matrix step_matrix;
 /* set: borrowed. */
 status step_matrix_new(const contact_problem *cp, const force_set *set,
                        step_matrix **out);
-/* A new matrix: acts[m], 0: row i is e_i; d[m] the right side, kept by the
- * caller until the solve. */
+/* A new matrix: acts[m], 0: row i is e_i; d[m] right side, kept. */
 void step_matrix_begin(step_matrix *s, const unsigned char *acts,
                        const double *d);
 /* Into the current row: value in column j; share times row j of W. */
 void step_matrix_add(step_matrix *s, int j, double value);
 void step_matrix_add_row(step_matrix *s, int j, double share);
-/* It is row i (with acts[i], in ascending order); the next one is empty.
- * Errors: ERR_MEMORY. */
+/* It is row i (acts[i], ascending); the next one is empty. ERR_MEMORY. */
 status step_matrix_put(step_matrix *s, int i);
 /* d <- inv(J) d; *singular = 1: not found. Errors: ERR_MEMORY. */
 status step_matrix_solve(step_matrix *s, double *d, int *singular);

@@ -156,8 +156,7 @@ static void lemke_list_variables(lemke_run *s) {
   }
 }
 
-/* ---- the matrix of the unknowns kept: the tangents without friction
- * eliminated, node by node scaled. */
+/* ---- the matrix of the unknowns kept, scaled node by node. */
 
 static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue */
 
@@ -425,8 +424,7 @@ static void lemke_set_base(lemke_run *s) {
   lemke_settle_free(s, 1, w->reduced.base);
 }
 
-/* w of every variable from raw, scaled as the matrix is; z: scaled, for the
- * compliance form. */
+/* w of every variable from raw, scaled; z: scaled, of a compliance. */
 static void slacks(const lemke_run *s, const double *raw, const double *z,
                    double *to) {
   const contact_problem *cp = s->cp;
@@ -541,8 +539,7 @@ static void lemke_set_solution(lemke_run *s, double *u, double *r) {
 static const double RAY_DEFECT = 1e-8;  /* -, forces a free motion may cause */
 static const double RAY_WORK = 0x1p-30; /* -, margin of the work of the load */
 
-/* 1: the motion w->ray causes no force, and the load does more work on it than
- * "resistance", N m. */
+/* 1: w->ray causes no force, and load more work than "resistance", N m. */
 static int motion_is_free(lemke_run *s, double resistance) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
