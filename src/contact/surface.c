@@ -161,7 +161,7 @@ static candidate *find(const builder *b, int pair_id, int node_id) {
 
 static void give(int dim, candidate *to, double w, const double *normal) {
   to->area += w;
-  for (int c = 0; c < dim; ++c) to->normal[c] += w * normal[c];
+  add_scaled(dim, w, normal, to->normal);
 }
 
 /* The candidate of a master that has parts of a contact: its own there, else
@@ -303,20 +303,6 @@ static int is_smooth(const builder *b, const candidate *x, const candidate *y) {
          frame_is_smooth(b->dim, x->normal, y->normal);
 }
 
-/* Candidates first..end are those of one node: move the faces of the later ones
- * to an earlier one with the same obstacle. */
-static void merge_smooth(builder *b, int first, int end) {
-  for (int i = first; i < end; ++i)
-    for (int j = i + 1; j < end && !b->list[i].left_out; ++j) {
-      candidate *x = &b->list[i], *y = &b->list[j];
-      if (y->left_out || !is_smooth(b, x, y)) continue;
-      for (int c = 0; c < b->dim; ++c) x->normal[c] += y->normal[c];
-      x->area += y->area;
-      y->left_out = 1;
-      ++b->tallies[y->pair_id].n_kept;
-    }
-}
-
 /* 1: the node acts on the masters of two pairs, side by side. */
 static int is_shared(const builder *b, const candidate *x, const candidate *y) {
   const contact_pair *p = &b->in->pairs[x->pair_id],
@@ -325,15 +311,18 @@ static int is_shared(const builder *b, const candidate *x, const candidate *y) {
          pair_same_normal(b->dim, p, x->row, q, y->row);
 }
 
-static void merge_masters(builder *b, int first, int end) {
+/* Candidates first..end are those of one node: move the faces of the later ones
+ * to an earlier one with the same obstacle, or with masters side by side. */
+static void merge(builder *b, int first, int end) {
   for (int i = first; i < end; ++i)
     for (int j = i + 1, last = i; j < end && !b->list[i].left_out; ++j) {
       candidate *x = &b->list[i], *y = &b->list[j];
-      if (y->left_out || !is_shared(b, x, y)) continue;
-      for (int c = 0; c < b->dim; ++c) x->normal[c] += y->normal[c];
+      const int shared = is_shared(b, x, y);
+      if (y->left_out || (!shared && !is_smooth(b, x, y))) continue;
+      add_scaled(b->dim, 1.0, y->normal, x->normal);
       x->area += y->area;
-      b->list[last].also = j + 1;
-      last = j;
+      if (shared) b->list[last].also = j + 1;
+      if (shared) last = j;
       y->left_out = 1;
       ++b->tallies[y->pair_id].n_kept;
     }
@@ -508,8 +497,7 @@ static int take_nearer(builder *b, const candidate **other,
 static int gather(builder *b, int first, int end, const candidate **kept) {
   int n = 0;
   int n_oriented = 0;
-  merge_smooth(b, first, end);
-  merge_masters(b, first, end);
+  merge(b, first, end);
   for (int i = first; i < end; ++i) {
     if (!b->list[i].left_out) orient(b, &b->list[i]);
     n_oriented += !b->list[i].left_out;

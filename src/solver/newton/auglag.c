@@ -37,6 +37,7 @@
  *
  * the very step of NEWTON for these states.
  */
+#include "base/number.h"
 #include "solver/fixed_point.h"
 #include "solver/newton/system.h"
 
@@ -355,12 +356,11 @@ static double shorten(auglag_run *s, double reference) {
   return now;
 }
 
-/* 1: the states changed in step k, and occurred before. FNV-1a. */
+/* 1: the states changed in step k, and occurred before. */
 static int met_before(const auglag_run *s, int k) {
   auglag_work *w = s->w;
-  uint64_t h = 1469598103934665603u;
+  const uint64_t h = number_hash(HASH_START, w->state, s->cp->m);
   int met = 0;
-  for (int i = 0; i < s->cp->m; ++i) h = (h ^ w->state[i]) * 1099511628211u;
   for (int j = 0; j + 1 < k; ++j) met = met || w->seen[j] == h;
   w->seen[k] = h;
   return met && s->turned > 0;
