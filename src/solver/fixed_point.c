@@ -10,9 +10,8 @@ enum {
   PATIENCE = 30, /* passes without a lower residual */
   IDLE = 2       /* iterations of a pass without effect */
 };
-static const double PROGRESS = 0.9; /* -, a lower residual */
-static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
-static const double COARSE = 0.9;   /* -, of it: enough where passes stagnate */
+static const double FINEST = 0.1; /* -, of the tolerance: enough for a pass */
+static const double COARSE = 0.9; /* -, of it: enough where passes stagnate */
 static const double MIXING_RATE = 0.2;     /* -, slower: mix */
 static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: below is rounding */
 static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g */
@@ -171,10 +170,7 @@ static int advance(fixed_point *fp, course *c, double residual, int first) {
     defect += (fp->image[i] - fp->g[i]) * (fp->image[i] - fp->g[i]);
   defect = sqrt(defect);
   ++c->since;
-  if (residual < PROGRESS * c->lowest) {
-    c->lowest = residual;
-    c->since = 0;
-  }
+  if (solver_progresses(&c->lowest, residual)) c->since = 0;
   if (c->since > PATIENCE) return 0;
   int grew = !first && !(defect < c->defect);
   if (c->mixed && grew) {

@@ -41,7 +41,6 @@ enum {
   STEPS = 100000, /* default limit */
   PATIENCE = 2000 /* steps without a lower residual */
 };
-static const double PROGRESS = 0.9;     /* a lower residual is lower by this */
 static const double ROUNDING = 0x1p-30; /* -, of |r|^2: below is rounding */
 static const double LONGER = 0.98;      /* share of the eigenvalue seen */
 
@@ -101,10 +100,7 @@ static outcome check(run *s, int k) {
   solver_report_step(s->control, "lagrange", k, residual);
   if (isnan(residual)) return STOPPED_NAN;
   if (residual <= s->control->tol) return CONVERGED;
-  if (residual < PROGRESS * s->mark) {
-    s->mark = residual;
-    s->since = k;
-  }
+  if (solver_progresses(&s->mark, residual)) s->since = k;
   return k - s->since > PATIENCE ? STOPPED_STAGNATION : RUNNING;
 }
 

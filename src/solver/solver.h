@@ -122,6 +122,8 @@ status solver_set_up(const solver_ops *ops, const contact_problem *cp,
 /* 1: the tolerance is so loose (TOL=BALANCED) that an iterate within it is
  * accepted, even where one more step would be exact. */
 int solver_few_digits(double tol);
+/* 1: a residual below nine tenths of that of the last progress, *mark. */
+int solver_progresses(double *mark, double residual);
 /* To the listener, with the pass of the limit. */
 void solver_report_all(const solver_control *control, const solver_step *s);
 void solver_report_step(const solver_control *control, const char *solver,

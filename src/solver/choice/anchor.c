@@ -14,8 +14,7 @@ enum {
 static const double NULL_PIVOT = 0x1p-44; /* -, times m: of the largest pivot */
 static const double ROUNDING = 0x1p-48;   /* -, times m: of the mean diagonal */
 static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
-static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
-static const double PROGRESS = 0.9; /* -, a lower residual */
+static const double FINEST = 0.1; /* -, of the tolerance: enough for a pass */
 static const double STEADY = 0x1p-7; /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
@@ -321,10 +320,7 @@ static outcome check(passes *p, double tol, const double *r, solver_report *rep,
   if (rep->residual <= tol && (carried(p) <= tol || ++p->late > LATE))
     return CONVERGED;
   ++p->since;
-  if (rep->residual < PROGRESS * p->lowest) {
-    p->lowest = rep->residual;
-    p->since = 0;
-  }
+  if (solver_progresses(&p->lowest, rep->residual)) p->since = 0;
   if (inner == STOPPED_ITERATIONS && p->since > 0) return inner;
   if (p->steady >= DRIFT && p->since >= DRIFT && drifts(p, r))
     return STOPPED_RAY;

@@ -398,9 +398,8 @@ static outcome auglag_newton(auglag_run *s) {
 /* ---- VARIANT=UZAWA: displacement and multiplier in turn ------------------ */
 
 static const double RHO_UZAWA = 0x1p4; /* -, of diag A */
-static const double PROGRESS = 0.9; /* -, of the residual, in PATIENCE steps */
-static const double START_TOL = 1e-3; /* -, of pressures for a first limit */
-static const double FLATTER = 0.5;    /* -, slope that ends a search */
+static const double START_TOL = 1e-3;  /* -, of pressures for a first limit */
+static const double FLATTER = 0.5;     /* -, slope that ends a search */
 
 enum {
   INNER_STEPS = 60, /* Newton steps of one multiplier step */
@@ -545,10 +544,7 @@ static outcome auglag_uzawa(auglag_run *s) {
   while ((o = minimise(s)) == RUNNING) {
     COPY(w->lambda, w->F, s->cp->m);
     ++since;
-    if (w->best.residual < PROGRESS * mark) {
-      mark = w->best.residual;
-      since = 0;
-    }
+    if (solver_progresses(&mark, w->best.residual)) since = 0;
     if (since > PATIENCE) return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
   }
   return o;

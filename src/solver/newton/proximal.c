@@ -486,10 +486,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
            : s->steps >= limit         ? STOPPED_ITERATIONS
                                        : STOPPED_STAGNATION;
     if (*end != STOPPED_STAGNATION) break;
-    if (residual < 0.9 * lowest) {
-      lowest = residual;
-      idle = 0;
-    }
+    if (solver_progresses(&lowest, residual)) idle = 0;
     creeps = residual > CREEP * before && steps <= HARD ? creeps + 1 : 0;
     before = residual;
     set_centre(s, creeps);
