@@ -264,8 +264,7 @@ status linear_contact_new(const contact_problem *cp, const double *u,
   PASS(map_new(cp, u, r, *out));
   PASS(factor(*out, &good));
   if (good) return OK;
-  memory_free(*out);
-  *out = NULL;
+  FORGET(*out);
   return OK;
 }
 

@@ -104,6 +104,9 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
   memory_free_all((int)(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *)), \
                   (void *[]){__VA_ARGS__})
 
+/* Free p, which is NULL from then on. */
+#define FORGET(p) (memory_free(p), (p) = NULL)
+
 /* OWNED double *a = NULL: freed where the name ends, on each return. */
 #define OWNED __attribute__((cleanup(memory_leave)))
 /* OWNED_NEW(double, a, n): such an a with n zeroed items, or RAISE. */

@@ -195,8 +195,7 @@ static status set_limit(given_form *g, const contact_problem *cp,
   int left = 0;
   if (B == NULL) return OK;
   if (g->n_entry < B->start[cp->n]) {
-    memory_free(g->mu);
-    g->mu = NULL;
+    FORGET(g->mu);
     g->n_entry = B->start[cp->n];
     PASS_NEW(g->mu, g->n_entry);
   }

@@ -131,8 +131,7 @@ status surfaces_couple(const surface_input *in, const double *x,
                            .slave_normal = (how & COUPLE_SLAVE_NORMAL) != 0,
                            .flat = (how & COUPLE_FLAT) != 0,
                            .dropped = dropped};
-  memory_free(*out);
-  *out = NULL;
+  FORGET(*out);
   return mortar_couple(&of, out);
 }
 
@@ -261,10 +260,7 @@ status pairs_couple(const surface_input *in, message_log *log) {
 }
 
 void pairs_release(const surface_input *in) {
-  for (int p = 0; p < in->n_pair; ++p) {
-    memory_free(in->pairs[p].coupled);
-    in->pairs[p].coupled = NULL;
-  }
+  for (int p = 0; p < in->n_pair; ++p) FORGET(in->pairs[p].coupled);
 }
 
 /* ---- rows of the surface ------------------------------------------------ */

@@ -708,8 +708,7 @@ status surface_build(const surface_input *in, message_log *log,
   *out = s;
   s = NULL;
 done:
-  memory_free(s);
-  RELEASE(b.list, b.first, b.tallies, b.rows);
+  RELEASE(s, b.list, b.first, b.tallies, b.rows);
   return st;
 }
 

@@ -174,8 +174,7 @@ static void report_waiting(reader *r) {
 static status use_legacy(reader *r, const card *c) {
   const parameter *p = needed(r, c, "FORMAT");
   report_waiting(r);
-  memory_free(r->waiting_format);
-  r->waiting_format = NULL;
+  FORGET(r->waiting_format);
   r->mode = DATA_REFUSED;
   if (p == NULL) return OK;
   r->legacy_at = c->at;
@@ -391,9 +390,7 @@ static status read_all(reader *r) {
 static void reader_free(reader *r) {
   while (r->top != NULL) source_pop(&r->top);
   logical_free(&r->line);
-  memory_free(r->scratch.text);
-  memory_free(r->format);
-  memory_free(r->waiting_format);
+  RELEASE(r->scratch.text, r->format, r->waiting_format);
 }
 
 status deck_read(const char *file, int n_define, const char *const *defines,

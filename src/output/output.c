@@ -246,8 +246,7 @@ history_sink output_sink(output *o) {
 }
 
 static void release(output *o) {
-  memory_free(o->plan);
-  RELEASE(o->json, o->xdmf);
+  RELEASE(o->plan, o->json, o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i)
     RELEASE(o->run.increments[i].solutions,
             (void *)o->run.increments[i].theorems.contacts);

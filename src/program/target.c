@@ -434,9 +434,6 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
 done:
   drop_next(&p);
   if (p.first != in->msh) memory_free(p.first);
-  RELEASE(p.eta, p.size, p.first_size);
-  memory_free(p.before);
-  memory_free(p.contact);
-  memory_free(p.goals);
+  RELEASE(p.eta, p.size, p.first_size, p.before, p.contact, p.goals);
   return st;
 }

@@ -118,8 +118,7 @@ status energy_norm_new(int m, const double *A, energy_norm *out) {
 }
 
 void energy_norm_free(energy_norm *e) {
-  memory_free(e->inverse);
-  RELEASE(e->x, e->y);
+  RELEASE(e->inverse, e->x, e->y);
   *e = (energy_norm){0};
 }
 

@@ -208,8 +208,7 @@ static status know_matrix(theorems *t, const contact_problem *cp) {
   t->fresh = !same_matrix(t, cp);
   if (!t->fresh) return OK;
   energy_norm_free(&t->norm);
-  memory_free(t->diagonal);
-  t->diagonal = NULL;
+  FORGET(t->diagonal);
   forget_friction(t);
   state_before_free(&t->before);
   PASS_NEW(t->diagonal, cp->m);

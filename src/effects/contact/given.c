@@ -109,10 +109,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   contact_problem before = *cp;
   if (own->n == 0) return OK;
   TIMED(effect_stage(&given_forces_effect));
-  if (own->matrix_no != r->solving.matrix_no) {
-    memory_free(own->form);
-    own->form = NULL;
-  }
+  if (own->matrix_no != r->solving.matrix_no) FORGET(own->form);
   own->matrix_no = r->solving.matrix_no;
   OWNS(own);
   if (own->form == NULL) PASS(new_form(r, own, cp));

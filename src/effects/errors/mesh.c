@@ -26,8 +26,7 @@ static int is_recovery_known(const run *r, const mesh_estimate *own) {
 
 static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
-  memory_free(own->recovery);
-  own->recovery = NULL;
+  FORGET(own->recovery);
   TIMED(STAGE_MESH_ERROR);
   OWNS(own);
   PASS(space_recovery_new(&r->body.d, &own->recovery));

@@ -98,8 +98,7 @@ static status half(run *r, finer_path *p, waypoint *from, double t,
 
 /* The next increment starts from what is in r->old. */
 static void restart(paths *own) {
-  memory_free(own->path);
-  own->path = NULL;
+  FORGET(own->path);
   own->before.norm += own->now.norm;
   own->before.strain += own->now.strain;
   own->now = (path_error){0};

@@ -103,8 +103,7 @@ static status body_map_new(run *r, const unsigned char *given, body_map *b) {
 static void body_map_free(body_map *b) {
   matrices_free(&b->own);
   frozen_free(&b->problem);
-  memory_free(b->contact);
-  RELEASE(b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du);
+  RELEASE(b->contact, b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du);
 }
 
 /* e0 = Q sigma of all points. */

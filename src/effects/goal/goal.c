@@ -117,8 +117,7 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
   PASS(mesh_recovery(r, out));
   if (*out != NULL) return OK;
   if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
-    memory_free(own->recovery);
-    own->recovery = NULL;
+    FORGET(own->recovery);
     OWNS(own);
     PASS(space_recovery_new(&r->body.d, &own->recovery));
     own->elastic_no = r->body.elastic_no;

@@ -449,8 +449,7 @@ static status friction_holds(const model *m, const mesh *msh, int *holds) {
     int n = 0;
     PASS(history_motions(m, msh, effect_table, i, &n, &list));
     for (int k = 0; k < n; ++k) *holds |= list[k].held_by == HELD_BY_FRICTION;
-    memory_free(list);
-    list = NULL;
+    FORGET(list);
   }
   return OK;
 }

@@ -216,8 +216,7 @@ static status find_surface(bisection *b) {
     ++f.n;
   }
   f.node = node;
-  memory_free(b->surface);
-  b->surface = NULL;
+  FORGET(b->surface);
   return round_surface_new(&f, b->n_node, b->x, &b->surface);
 }
 
@@ -234,8 +233,7 @@ static status grow(bisection *b) {
   COPY(b->no, no, n);
   for (size_t i = 0; i < n; ++i) last = no[i] > last ? no[i] : last;
   for (size_t i = n; i < all; ++i) b->no[i] = ++last;
-  memory_free(b->bent);
-  b->bent = NULL;
+  FORGET(b->bent);
   PASS_NEW(b->bent, b->marked.n);
   return OK;
 }
@@ -381,8 +379,7 @@ static status give(const bisection *b) {
   const size_t n = b->n_node, before = raw->n_node;
   OWNED double *old = raw->xyz;
   OWNS(raw);
-  memory_free(raw->node_no);
-  raw->node_no = NULL;
+  FORGET(raw->node_no);
   raw->xyz = NULL;
   raw->n_node = 0;
   PASS_NEW_ALL(OF(raw->node_no, n), OF(raw->xyz, 3 * n));

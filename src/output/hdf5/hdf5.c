@@ -328,8 +328,7 @@ static status first_file(hdf5_file *h, const hdf5_count *before) {
   PASS(renew(h, rows, records));
   /* The mesh is kept, the copies for the first file are freed. */
   for (int i = 0; i < h->n_fixed; ++i) {
-    memory_free(h->fixed[i].own);
-    h->fixed[i].own = NULL;
+    FORGET(h->fixed[i].own);
     h->fixed[i].data = NULL;
   }
   return OK;

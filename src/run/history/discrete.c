@@ -45,8 +45,7 @@ static status discrete_new(discrete *d) {
 
 static void discrete_free(discrete *d) {
   RELEASE(d->surface.node_no, d->u, d->r, d->gap, d->slip, d->g, d->contact,
-          d->full);
-  memory_free(d->bodies);
+          d->full, d->bodies);
   solution_set_free(&d->solutions);
 }
 

@@ -152,8 +152,7 @@ static status drive_one(contact_solver *s, const contact_problem *cp,
   if (a->how == ALONG_PATH) {
     int entries = cp->B->start[cp->n];
     if (s->path == NULL || s->path_capacity < entries) {
-      memory_free(s->path);
-      s->path = NULL;
+      FORGET(s->path);
       PASS(friction_path_new(cp, &s->path));
       s->path_capacity = entries;
     }
@@ -190,8 +189,7 @@ static int wants_inverse(contact_solver *s, const contact_problem *cp,
       contact_has_stiffness(cp) || !(a->ops->handles & REGULAR_COMPLIANCE) ||
       s->inverse_wanted)
     return 0;
-  memory_free(s->work[row]);
-  s->work[row] = NULL;
+  FORGET(s->work[row]);
   s->inverse_wanted = 1;
   return a->max_iter == 0 || a->max_iter > rep->iterations;
 }

@@ -150,19 +150,14 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
 
 /* A (or W) has changed: discard factors. */
 static void forget_factors(contact_solver *s) {
-  for (int i = 0; i <= N_SOLVER; ++i) {
-    memory_free(s->work[i]);
-    s->work[i] = NULL;
-  }
-  RELEASE(s->fixed, s->path);
-  s->fixed = NULL;
-  s->path = NULL;
+  for (int i = 0; i <= N_SOLVER; ++i) FORGET(s->work[i]);
+  FORGET(s->fixed);
+  FORGET(s->path);
   other_form_free(&s->other);
   s->inverse_wanted = 0;
   normal_form_free(&s->normal);
   anchor_free(&s->held);
-  memory_free(s->bodies);
-  s->bodies = NULL;
+  FORGET(s->bodies);
   RELEASE(s->best_u, s->best_r, s->full);
   s->best_u = s->best_r = s->full = NULL;
   s->last = (contact_problem){0};
