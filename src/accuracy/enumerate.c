@@ -365,10 +365,9 @@ status solutions_can_try(int dim, int n, int corner) {
 
 /* 1: a node touches a second obstacle. */
 static int has_corner(const contact_problem *cp) {
-  int any = 0;
   for (int dof = 1; dof < cp->m && cp->dim == 2; dof += 2)
-    any |= contact_bound(cp, dof) < HUGE_VAL;
-  return any;
+    if (contact_bound(cp, dof) < HUGE_VAL) return 1;
+  return 0;
 }
 
 static status check_size(const contact_problem *cp) {

@@ -173,8 +173,7 @@ static status find_regions(space_recovery *s) {
   for (int k = 0; k < d->mesh->n_elem && d->zone != NULL; ++k)
     if (d->zone[k] >= n_zone) n_zone = d->zone[k] + 1;
   OWNED_NEW(int, material, s->n_section);
-  OWNED int *region = NULL;
-  PASS_NEW(region, (size_t)s->n_section * n_zone);
+  OWNED_NEW(int, region, ((size_t)s->n_section * n_zone));
   find_materials(s, material);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     int *at = &region[material[d->section_id[k]] * n_zone +

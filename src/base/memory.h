@@ -113,7 +113,11 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNED_NEW(type, name, n) \
   OWNED type *name = NULL;       \
   PASS_NEW(name, n)
-/* The same of a block that a call requests into &a. */
+/* The same of a block that a function requests, */
+#define OWNED_GET(type, name, block) \
+  OWNED type *name = NULL;           \
+  PASS_GET(name, block)
+/* and of one that a call requests into &a. */
 #define OWNED_OF(type, name, call) \
   OWNED type *name = NULL;         \
   PASS(call)

@@ -135,8 +135,7 @@ static status factor_bodies(condensed *c) {
   TIMED(STAGE_ORDERING);
   OWNED_NEW(int, list, k->n_node);
   OWNED_NEW(unsigned char, seen, k->n_node);
-  OWNED long *number = NULL;
-  PASS_NEW(number, (size_t)k->dim * k->n_node);
+  OWNED_NEW(long, number, (size_t)k->dim * k->n_node);
   PASS(graph_of_unknowns(k, &g));
   c->n_body = count_bodies(k, &g, seen, list);
   PASS_NEW(c->body, c->n_body);

@@ -323,7 +323,7 @@ static status start_list(search *s, int n) {
 static status grow_tree(search *s) {
   const mesh *m = s->b->m;
   const int dim = m->dim, n = dim + 1;
-  OWNED_NEW(double, x, (size_t)dim *n * s->n);
+  OWNED_NEW(double, x, ((size_t)dim * n * s->n));
   for (int k = 0; k < n * s->n; ++k)
     COPY(x + (size_t)dim * k,
          mesh_node_x(m, mesh_elem_nodes(m, s->elem[k / n])[k % n]), dim);

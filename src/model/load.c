@@ -406,8 +406,7 @@ static status split_zones(int n, const int *by, int n_by, int *zone) {
   int n_zone = 0, n_new = 0;
   for (int k = 0; k < n; ++k)
     if (zone[k] >= n_zone) n_zone = zone[k] + 1;
-  OWNED int *of = NULL;
-  PASS_NEW(of, (size_t)n_zone * n_by);
+  OWNED_NEW(int, of, ((size_t)n_zone * n_by));
   for (int k = 0; k < n; ++k) {
     int *at = &of[(size_t)n_by * zone[k] + by[k]];
     if (*at == 0) *at = ++n_new;

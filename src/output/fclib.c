@@ -299,8 +299,7 @@ status fclib_write(const contact_problem *cp, const size_t *node_no,
   H5E_auto2_t print;
   void *print_data;
   SCRATCH;
-  OWNED char *aside = NULL;
-  PASS_GET(aside, text_path("", path, "tmp"));
+  OWNED_GET(char, aside, text_path("", path, "tmp"));
   f.path = path;
   PASS(make_file(&f, u, r));
   f.path = aside;

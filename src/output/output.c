@@ -76,8 +76,7 @@ static status each_condensed(const model *m, const char *dir, int after,
 status output_spare(const model *m, const char *dir) {
   if (m->deck == NULL) return OK;
   for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
-    OWNED char *path = NULL;
-    PASS_GET(path, text_path(dir, m->name.job, results[k]));
+    OWNED_GET(char, path, text_path(dir, m->name.job, results[k]));
     PASS(spare(m->deck, path));
   }
   return each_condensed(m, dir, 0, 0);
@@ -159,7 +158,6 @@ static status write_fields(output *o, const state *s) {
 static status write_condensed(output *o, const state *s) {
   const step *now = &o->m->steps[s->step_no - 1];
   char name[512], text[200];
-  OWNED char *path = NULL;
   if (s->contacts.problem == NULL ||
       !frequency_shows(now->output.condensed, s->increment_no, s->end_of_step))
     return OK;
@@ -169,7 +167,7 @@ static status write_condensed(output *o, const state *s) {
   snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
            o->o.version != NULL ? o->o.version : "", s->step_no,
            s->increment_no, s->t);
-  PASS_GET(path, text_path(o->o.dir, name, "h5"));
+  OWNED_GET(char, path, text_path(o->o.dir, name, "h5"));
   return fclib_write(s->contacts.problem, s->contacts.surface->node_no,
                      s->settled ? s->contacts.uc : NULL, s->contacts.rc,
                      o->m->name.title, text, path);
@@ -254,16 +252,14 @@ static void release(output *o) {
 }
 
 static status remove_old(const output *o, const char *suffix) {
-  OWNED char *path = NULL;
-  PASS_GET(path, text_path(o->o.dir, o->m->name.job, suffix));
+  OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, suffix));
   return file_clear(path);
 }
 
 /* length: of the file to continue; -1: a new one. */
 static status open_text(const output *o, const char *suffix, long length,
                         text_file *t) {
-  OWNED char *path = NULL;
-  PASS_GET(path, text_path(o->o.dir, o->m->name.job, suffix));
+  OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, suffix));
   return length < 0 ? text_open(t, path, 1) : text_reopen(t, path, 1, length);
 }
 
@@ -365,8 +361,7 @@ static status write_last(const output *o) {
   if (o->h5 == NULL) return OK;
   hdf5_shape_of(o->h5, &shape);
   for (int k = 0; k < 2; ++k) {
-    OWNED char *path = NULL;
-    PASS_GET(path, text_path(o->o.dir, o->m->name.job, names[k]));
+    OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, names[k]));
     PASS(xdmf_write_last(&shape, k, path));
   }
   return OK;

@@ -13,8 +13,7 @@
 #include <errno.h>
 
 static status open_file(output *o, const saved_end *end) {
-  OWNED char *path = NULL;
-  PASS_GET(path, text_path(o->o.dir, o->m->name.job, "rst.inc"));
+  OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, "rst.inc"));
   o->saved.end.checksum = end == NULL ? HASH_START : end->checksum;
   if (end == NULL) return text_open(&o->saved.file, path, 0);
   return text_reopen(&o->saved.file, path, 0, end->length);

@@ -240,8 +240,7 @@ static status relaxed_energy(const run *r, double *kept) {
   for (int i = 0; i < r->m->n.material; ++i)
     any |= r->m->materials[i].is_relaxed;
   if (!any) return OK;
-  OWNED double *sigma = NULL;
-  PASS_NEW(sigma, (size_t)ns * r->msh->n_elem);
+  OWNED_NEW(double, sigma, (size_t)ns * r->msh->n_elem);
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < r->msh->n_elem; ++e) {
     const material *mat = run_material(r, e);

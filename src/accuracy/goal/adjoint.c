@@ -179,8 +179,7 @@ static status gmres(linear_system *s, int transposed, double *x) {
   double left = size, *h = H;
   int n = 0;
   if (!(size > 0.0)) return OK;
-  OWNED double *V = NULL;
-  PASS_NEW(V, (size_t)m * (DIRECTIONS + 1));
+  OWNED_NEW(double, V, ((size_t)m * (DIRECTIONS + 1)));
   for (int k = 0; k < m; ++k) V[k] = x[k] / size;
   for (; n < DIRECTIONS && left > ENOUGH * size; h += DIRECTIONS + 1) {
     double *v = V + (size_t)m * n;

@@ -31,8 +31,7 @@ static status plant(const mortar_input *in, int n, const int *face,
                     box_tree *out) {
   const int dim = in->mesh->dim;
   const size_t size = (size_t)dim * dim;
-  OWNED double *corner = NULL;
-  PASS_NEW(corner, size * n);
+  OWNED_NEW(double, corner, (size * n));
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < dim; ++k)
       COPY(corner + size * i + dim * k,

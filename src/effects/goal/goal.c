@@ -135,10 +135,9 @@ static status set_moved(const run *r, goal_state *own, shared *s) {
 }
 
 static int has_goal_of(const model *m, goal_quantity of) {
-  int any = 0;
   for (int i = 0; i < m->n.goal; ++i)
-    any |= m->accuracy.goals[i].quantity == of;
-  return any;
+    if (m->accuracy.goals[i].quantity == of) return 1;
+  return 0;
 }
 
 /* 1: displacements of groups. */
@@ -153,10 +152,9 @@ static int has_mean(const model *m) {
 
 /* 1: nodes slip, and their friction follows the pressures. */
 static int rubs(const run *r) {
-  int any = 0;
   for (int i = 0; i < r->nodes.n && r->problem.B != NULL; ++i)
-    any |= r->result.contact[i] == CONTACT_SLIP && r->result.g[i] > 0.0;
-  return any;
+    if (r->result.contact[i] == CONTACT_SLIP && r->result.g[i] > 0.0) return 1;
+  return 0;
 }
 
 static status prepare(run *r, goal_state *own, shared *s) {

@@ -595,10 +595,9 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
 static int has_one_thickness(const run *r, const goal_card *g) {
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
   const double *thickness = r->faces.face_weight;
-  int same = 1;
   for (int k = 0; k < of->n_item; ++k)
-    same &= thickness[of->item_id[k]] == thickness[of->item_id[0]];
-  return same;
+    if (thickness[of->item_id[k]] != thickness[of->item_id[0]]) return 0;
+  return 1;
 }
 
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {

@@ -267,8 +267,7 @@ status law_fastest_rate(const law_point *p, double *rate) {
     *rate = -1;
   if (!(*rate < 0)) return OK;
   const int na = law_n_alpha(p->law, el->ns), n = el->ns + na;
-  OWNED double *M = NULL;
-  PASS_NEW(M, n * n);
+  OWNED_NEW(double, M, (n * n));
   PASS(coupled_matrix(p, na, M));
   return spectral_radius(p, M, n, rate);
 }

@@ -17,7 +17,7 @@ status size_grid_new(const refine_sizes *s, size_grid **out) {
   MAKES(size_grid, g, out);
   g->s = *s;
   PASS_NEW(g->found, s->n_elem);
-  OWNED_NEW(double, x, (size_t)s->dim *n * s->n_elem);
+  OWNED_NEW(double, x, ((size_t)s->dim * n * s->n_elem));
   for (int k = 0; k < n * s->n_elem; ++k)
     COPY(x + (size_t)s->dim * k, s->x + (size_t)s->dim * s->elem[k], s->dim);
   return box_tree_new(s->dim, s->n_elem, n, x, &g->tree);

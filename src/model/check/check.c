@@ -624,8 +624,7 @@ static status check_ties(model *m, const mesh *msh,
 
 static status check_pairs(model *m, const mesh *msh) {
   if (!model_has_pairs(m)) return OK;
-  OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, (size_t)msh->dim * msh->n_node);
+  OWNED_NEW(unsigned char, fixed, (size_t)msh->dim * msh->n_node);
   if (!is_lost(m) && m->n.step > 0) load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < m->n.contact; ++i)
     PASS(check_contact_pair(m, msh, fixed, i));

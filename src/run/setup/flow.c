@@ -9,10 +9,9 @@
 
 /* 1: rates of some law depend on the absolute temperature. */
 static int counts_from_zero(const flow *x) {
-  int any = 0;
   for (int i = 0; i < x->n_kind; ++i)
-    any |= law_too_cold(x->kind[i].law, -HUGE_VAL) != NULL;
-  return any;
+    if (law_too_cold(x->kind[i].law, -HUGE_VAL) != NULL) return 1;
+  return 0;
 }
 
 /* The first point that is too cold, with temperatures T[n_elem] at a time. */

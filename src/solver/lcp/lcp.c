@@ -58,11 +58,10 @@ static double plain_residual(int n, const double *M, const double *q,
 
 status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
                  double *z, lcp_report *rep) {
-  OWNED double *d = NULL;
   plain m = {n, M, power_to_one(largest_entry((size_t)n * n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
   OWNED_OF(lcp_work, w, lcp_new(n, n, &w));
-  PASS_NEW(d, n);
+  OWNED_NEW(double, d, n);
   for (int i = 0; i < n; ++i) d[i] = 1.0;
   lcp_problem p = {.n = n,
                    .q = q,
