@@ -18,8 +18,7 @@
 static status solve(const command *c, job_input *in, int *unsettled) {
   job_lock lock ENDS_BY(job_lock_release) = {0};
   ENDS_BY(archive_free) archive *from = NULL;
-  OWNED char *stop = NULL;
-  PASS_GET(stop, text_path(c->dir, in->m->name.job, "stop"));
+  OWNED_GET(char, stop, text_path(c->dir, in->m->name.job, "stop"));
   PASS(output_spare(in->m, c->dir));
   PASS(job_lock_take(c->dir, in->m->name.job, &lock));
   interrupt_catch(stop);

@@ -24,9 +24,8 @@
  * brought into equilibrium with the load (balance.c), so that d has an energy;
  * the bound is that of the deformation, without the rigid motion.
  *
- * Compliance form: W, r in the place of A, u; d = v - W q - load. Two states
- * that satisfy the equation have the same distance in r by W as in u by A, so
- * that the rate is the same.
+ * Compliance form: W, r in the place of A, u; d = v - W q - load. Solutions of
+ * the equation are as far apart in r by W as in u by A: the rate is the same.
  */
 #include "accuracy/accuracy.h"
 #include "base/base.h"
@@ -37,9 +36,8 @@
 /*
  * Equilibrium of a body that contact alone holds: its stiffness has motions R
  * without energy, and the energy of d is finite only if R' d = 0. The forces
- * change by dq = Z y, Z = W R with the forces themselves as weights (so that
- * they keep their sign), on sliding nodes by the limit of the new pressure; R'
- * Z y = R' d.
+ * change by dq = Z y, Z = W R with the forces as weights (which keep their
+ * sign), on sliding nodes by the limit of the new pressure; R' Z y = R' d.
  */
 
 /* Largest change of the force of an unknown, N; 0: it is given. */
@@ -222,7 +220,7 @@ static double pair_rounding(const contact_problem *cp,
         fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
   if (cp->op != NULL) { /* room[m..] is free between two products */
     double *size = cp->op->room + cp->m;
-    cp->op->apply_sizes(cp->op->ctx, x, cp->op->room, size);
+    cp->op->apply(cp->op->ctx, x, cp->op->room, size);
     for (int i = 0; i < cp->m; ++i) p->t[i] += size[i];
   }
   for (int j = 0; cp->op == NULL && j < cp->m; ++j) {

@@ -17,8 +17,7 @@ struct linear_contact {
   linear_states at;
   double *K;  /* [n_free^2] factor */
   double *x;  /* [m] change of the free unknowns */
-  double *P;  /* [n_free*n_closed] columns of A of the normal unknowns
-                 of closed nodes */
+  double *P;  /* [n_free*n_closed] columns of A of the closed normals */
   double *dg; /* [n] N */
   double *b, *full, *Ax; /* of an operator, in the place of K and P: [m] right
                             side; x at all unknowns; A x, N */
@@ -188,8 +187,7 @@ static signed char state_of(const linear_contact *s, int dof) {
   return s->at.e[dof] > 0.0 ? 3 : 2;
 }
 
-/* The known rate of these states comes first, *same = 1; or they replace the
- * least recently used rate. */
+/* The known rate of these states comes first, *same = 1, or takes a place. */
 static status compare(const linear_contact *s, known_rate *k, int *same) {
   const size_t m = s->at.cp->m;
   int at = 0;
@@ -266,8 +264,7 @@ status linear_contact_new(const contact_problem *cp, const double *u,
   PASS(map_new(cp, u, r, *out));
   PASS(factor(*out, &good));
   if (good) return OK;
-  memory_free(*out);
-  *out = NULL;
+  FORGET(*out);
   return OK;
 }
 

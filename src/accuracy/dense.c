@@ -23,8 +23,7 @@ struct dense_inverse {
   double *kernel;   /* [m*(m-rank)] motions without energy */
 };
 
-/* Lower triangle of L = D M D with a unit diagonal; 0: not symmetric or no
- * positive diagonal. */
+/* Lower triangle of L = D M D, unit diagonal; 0: not symmetric or positive. */
 static int scale(const double *M, dense_inverse *d) {
   size_t m = d->m;
   for (size_t i = 0; i < m; ++i) {

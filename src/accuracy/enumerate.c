@@ -7,10 +7,9 @@
  *   free   rho_t = 0                            no friction
  *   slip   rho_t - s B rho_n + s g0 = 0         s = +1, -1 along the slip
  * followed depth first, so that the elimination of a node is shared by all that
- * follow it. States that satisfy the inequalities are solved again with
- * pivoting and checked by contact_residual. A singular system that has
- * solutions has a line of them, bounded by the inequalities: its ends are
- * reported as joined.
+ * follow it. States within the inequalities are solved again and checked by
+ * contact_residual. A singular system that has solutions has a line of them,
+ * bounded by the inequalities: its ends are reported as joined.
  */
 #include "accuracy/accuracy.h"
 #include "accuracy/solutions.h"
@@ -236,8 +235,7 @@ static status take_line(search *s, const double *x, const double *v) {
 }
 
 /* Singular values of K[n*n] (destroyed), rank by a scale of K; x: least squares
- * solution of K x = b, v: last right vector; *rest: part of b outside the
- * range. */
+ * of K x = b, v: last right vector; *rest: part of b outside the range. */
 static int decompose(int n, double *K, const double *b, double scale, double *x,
                      double *v, double *rest) {
   double S[ROWS], U[ROWS * ROWS], V[ROWS * ROWS], work[SVD_WORK];
@@ -283,10 +281,10 @@ static status solve_anew(search *s) {
 
 /* One more row, eliminated; 1: its pivot is not trusted. */
 static int add_row(search *s, int dof) {
-  double *y = s->row[s->n_row], largest = 0.0;
+  double *y = s->row[s->n_row];
   int m = s->cp->m;
   equation(s, dof, y);
-  for (int j = 0; j < m; ++j) largest = fmax(largest, fabs(y[j]));
+  const double largest = largest_entry(m, y);
   for (int q = 0; q < s->n_row; ++q) {
     const double *old = s->row[q];
     double pivot = old[s->column[q]];
@@ -367,10 +365,9 @@ status solutions_can_try(int dim, int n, int corner) {
 
 /* 1: a node touches a second obstacle. */
 static int has_corner(const contact_problem *cp) {
-  int any = 0;
   for (int dof = 1; dof < cp->m && cp->dim == 2; dof += 2)
-    any |= contact_bound(cp, dof) < HUGE_VAL;
-  return any;
+    if (contact_bound(cp, dof) < HUGE_VAL) return 1;
+  return 0;
 }
 
 static status check_size(const contact_problem *cp) {

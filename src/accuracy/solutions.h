@@ -4,7 +4,6 @@
  */
 #pragma once
 
-#include "contact/contact.h"
 #include "solver/solver.h"
 
 typedef struct solution_facts {
@@ -35,17 +34,14 @@ typedef struct solution_attempt {
 typedef struct solution_set {
   int n, m; /* nodes, unknowns of the problem */
   int n_found, cap_found;
-  solution *found; /* [n_found] owned; the first is that of the run,
-                      if any */
+  solution *found; /* [n_found] owned; first that of the run, if any */
   int n_attempt, cap_attempt;
   solution_attempt *attempts; /* [n_attempt] owned */
   long n_pattern;             /* status combinations tried; 0: not enumerated */
-  int n_undecided;            /* singular ones with solutions of unknown
-                                 extent */
+  int n_undecided;            /* singular, solutions of no known extent */
 } solution_set;
 
-/* 1: found by more than the first method: by a solver of another family, or the
- * enumeration. */
+/* 1: found by a solver of another family, or by enumeration. */
 int solution_set_confirmed(const solution_set *s);
 void solution_set_free(solution_set *s); /* accepts NULL, all zero */
 /*

@@ -22,9 +22,8 @@
 
 /*
  * Sizes for a new mesh from the errors of the elements of an old one. An
- * element made smaller by the factor r has r^(-dim) parts with the error
- * eta r together (P1: order 1 in the energy norm). The fewest elements with
- * sum (eta r)^2 = target^2 have
+ * element made smaller by r has r^(-dim) parts with the error eta r (P1: order
+ * 1). The fewest elements with sum (eta r)^2 = target^2 have
  *
  *   r = c eta^(-2/(2+dim)),   c^2 = target^2 / sum eta^(2 dim/(2+dim))
  *
@@ -181,8 +180,7 @@ static status find_regions(space_recovery *s) {
   for (int k = 0; k < d->mesh->n_elem && d->zone != NULL; ++k)
     if (d->zone[k] >= n_zone) n_zone = d->zone[k] + 1;
   OWNED_NEW(int, material, s->n_section);
-  OWNED int *region = NULL;
-  PASS_NEW(region, (size_t)s->n_section * n_zone);
+  OWNED_NEW(int, region, ((size_t)s->n_section * n_zone));
   find_materials(s, material);
   for (int k = 0; k < d->mesh->n_elem; ++k) {
     int *at = &region[material[d->section_id[k]] * n_zone +
@@ -508,8 +506,7 @@ static inline void difference(int ns, const space_field *f, int elem_id, int v,
   }
 }
 
-/* sum[2] += the products at n vertices and of their sums; ns and n are known to
- * the compiler. */
+/* sum[2] += the products at n vertices and of their sums; n, ns constant. */
 static inline void find_products(const space_recovery *s, const double *S,
                                  int elem_id, const space_field *a,
                                  const space_field *b, const int n,

@@ -1,11 +1,9 @@
 /*
- * Why there is no equilibrium, in words: the contact nodes that move away and
- * the loads that drive them, or the nodes where the contact conditions are
- * violated most.
+ * Why there is no equilibrium, in words: contact nodes that move away, loads
+ * that drive them, or the nodes where the contact conditions are violated most.
  */
 #pragma once
 
-#include "contact/surface.h"
 #include "fem/fem.h"
 #include "model/model.h"
 
@@ -27,8 +25,7 @@ typedef struct verdict_scene {
  * Errors: ERR_MEMORY.
  */
 status verdict_text(const verdict_scene *s, char *text, size_t size);
-/* The nodes where the conditions are violated most, as such a clause; "" if
- * unknown. */
+/* The nodes that violate the conditions most, as a clause; "" if unknown. */
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size);

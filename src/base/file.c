@@ -175,8 +175,7 @@ status text_close(text_file *t) {
       st = text_failed(t->path, "close", errno);
     t->f = NULL;
   }
-  memory_free(t->path);
-  t->path = NULL;
+  FORGET(t->path);
   return st;
 }
 

@@ -1,5 +1,4 @@
-/* Counted allocation: a header before each block keeps its size, and what it
- * owns. */
+/* Counted allocation: a header keeps the size of a block and its owner. */
 #include "base/memory.h"
 
 #include <SuiteSparse_config.h>
@@ -8,8 +7,6 @@
 #endif
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 typedef struct header header;
 struct header {

@@ -92,8 +92,7 @@ typedef struct memory_item {
   size_t n, size; /* items, bytes of one */
 } memory_item;
 status memory_items(int count, const memory_item *items);
-/* Reallocate old_n items, the rest zeroed; on NULL the old block stays
- * valid. */
+/* Reallocate old_n items, the rest zeroed; NULL: the old block stays. */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
 char *memory_text(const char *text); /* copy of a string; NULL if refused */
 void memory_free(void *p);           /* and what it owns; accepts NULL */
@@ -105,19 +104,25 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
   memory_free_all((int)(sizeof((void *[]){__VA_ARGS__}) / sizeof(void *)), \
                   (void *[]){__VA_ARGS__})
 
+/* Free p, which is NULL from then on. */
+#define FORGET(p) (memory_free(p), (p) = NULL)
+
 /* OWNED double *a = NULL: freed where the name ends, on each return. */
 #define OWNED __attribute__((cleanup(memory_leave)))
 /* OWNED_NEW(double, a, n): such an a with n zeroed items, or RAISE. */
 #define OWNED_NEW(type, name, n) \
   OWNED type *name = NULL;       \
   PASS_NEW(name, n)
-/* The same of a block that a call requests into &a. */
+/* The same of a block that a function requests, */
+#define OWNED_GET(type, name, block) \
+  OWNED type *name = NULL;           \
+  PASS_GET(name, block)
+/* and of one that a call requests into &a. */
 #define OWNED_OF(type, name, call) \
   OWNED type *name = NULL;         \
   PASS(call)
 /* OWNED_PARTS(type, name, call): a struct, zero but for what a call requests
- * for it, which is freed where the name ends; or RAISE. The call requests
- * nothing for others. */
+ * for it and nothing else, freed where the name ends; or RAISE. */
 #define OWNED_PARTS(type, name, call)   \
   type name = {0};                      \
   OWNED_NEW(char, name##_parts, 1);     \
@@ -134,8 +139,7 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNER_TILL_END(object, name)                                 \
   void *name##_ __attribute__((cleanup(memory_own_again), unused)) = \
       memory_own(object)
-/* MAKES(type, s, out): s = *out is a new object that OWNS the rest, or RAISE.
- */
+/* MAKES(type, s, out): s = *out is new and OWNS the rest, or RAISE. */
 #define MAKES(type, s, out) \
   PASS_NEW(*out, 1);        \
   type *s = *out;           \

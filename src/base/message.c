@@ -248,8 +248,7 @@ static void print_place(const place *at, FILE *out) {
 
 static int is_continuation_byte(char c) { return ((unsigned char)c >> 6) == 2; }
 
-/* Part of a long line that contains the column: first byte and one past the
- * last. */
+/* Part of a long line with the column: first byte, one past the last. */
 static void visible_part(const char *line, int column, int *first, int *last) {
   int length = (int)strlen(line);
   *first = column > SHOWN / 2 ? column - SHOWN / 2 : 0;

@@ -1,13 +1,11 @@
 /*
- * Sparse matrices, by rows and by square blocks, and a vector that has all
- * entries.
+ * Sparse matrices, by rows and by square blocks.
  */
 #pragma once
 
 #include "base/memory.h"
-#include "base/status.h"
+#include "base/vector.h"
 
-#include <math.h>
 #include <stddef.h>
 
 typedef struct sparse_rows {
@@ -17,8 +15,7 @@ typedef struct sparse_rows {
   double *val; /* [start[n]] */
 } sparse_rows;
 
-/* Entries of row i: row_begin to row_end - 1, none of NULL or all-zero rows;
- * their sum. */
+/* Entries of row i: row_begin to row_end - 1, none of NULL rows; their sum. */
 static inline int row_begin(const sparse_rows *rows, int i) {
   return rows == NULL || rows->start == NULL ? 0 : rows->start[i];
 }
@@ -80,18 +77,3 @@ void sparse_blocks_row(const sparse_blocks *b, int i, const double *x,
 status sparse_blocks_rows(const sparse_blocks *b, sparse_rows *rows);
 /* All entries into M[m*m], m = dim*n, column major. */
 void sparse_blocks_dense(const sparse_blocks *b, double *M);
-
-/* Largest |v_i| of v[n]; 0 for n = 0. NaN is passed over. */
-static inline double largest_entry(size_t n, const double *v) {
-  double most = 0.0;
-  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(v[i]));
-  return most;
-}
-
-/* Power of two that brings "largest" to order 1; 1 for 0 and what is no number:
- * results then keep their bits under a change of units by such powers. */
-static inline double power_to_one(double largest) {
-  int exponent = 0;
-  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
-  return ldexp(1.0, -exponent);
-}

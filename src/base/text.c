@@ -77,9 +77,8 @@ static int utf8_length(const unsigned char *s) {
   return 0;
 }
 
-/* Characters that are not shown, or change how others are: C0, DEL and C1,
- * marks of direction, lines and joins, tags (Unicode, general categories Cc,
- * Cf, Zl, Zp). */
+/* Characters not shown, or that change others: C0, DEL, C1, marks of direction,
+ * lines and joins, tags (Unicode, general categories Cc, Cf, Zl, Zp). */
 static const struct {
   unsigned first, last;
 } unseen[] = {{0x00, 0x08},     {0x0A, 0x1F},     {0x7F, 0x9F},

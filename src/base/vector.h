@@ -59,3 +59,18 @@ static inline void add_scaled(int dim, double factor, const double *v,
                               double *to) {
   for (int c = 0; c < dim; ++c) to[c] += factor * v[c];
 }
+
+/* Largest |v_i| of v[n]; 0 for n = 0. NaN is passed over. */
+static inline double largest_entry(size_t n, const double *v) {
+  double most = 0.0;
+  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(v[i]));
+  return most;
+}
+
+/* Power of two that brings "largest" to order 1; 1 for 0 and what is no number:
+ * results then keep their bits under a change of units by such powers. */
+static inline double power_to_one(double largest) {
+  int exponent = 0;
+  if (largest > 0.0 && largest < HUGE_VAL) frexp(largest, &exponent);
+  return ldexp(1.0, -exponent);
+}

@@ -41,7 +41,7 @@ const double *contact_matrix(const contact_problem *cp) {
 
 void contact_apply(const contact_problem *cp, const double *x, double *y) {
   if (cp->op != NULL)
-    cp->op->apply(cp->op->ctx, x, y);
+    cp->op->apply(cp->op->ctx, x, y, NULL);
   else if (cp->blocks != NULL)
     sparse_blocks_product(cp->blocks, x, y);
   else

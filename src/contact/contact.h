@@ -14,7 +14,6 @@
 #pragma once
 
 #include "base/sparse.h"
-#include "base/status.h"
 #include "contact/operator.h"
 
 /* Nodes that the matrix joins, through others too, are of one body. */
@@ -22,8 +21,7 @@ typedef struct body_size {
   double load;         /* largest load, N */
   double contact;      /* largest contact force, N */
   double displacement; /* largest of both over the stiffness of its node, m */
-  double fallen;       /* largest c_n times the part of its gap that a node has
-                          moved, N */
+  double fallen;       /* largest c_n times the share of the gap moved, N */
   double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
   double reach;        /* the same of positions that follow from the data */
   double root;         /* largest sqrt(k), sqrt(N/m) */
@@ -96,8 +94,7 @@ void contact_dense(const contact_problem *cp, double *M);
 void contact_reaction(const contact_problem *cp, const double *u, double *r);
 /* g[n] = max(0, g0 + B p) of the normal forces r[m], N. */
 void contact_limit(const contact_problem *cp, const double *r, double *g);
-/* Status of each node from u and r; a node without limit (g = 0) that touches
- * slips. status[n]. */
+/* Status of each node; one that touches with g = 0 slips. status[n]. */
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
 /* closed[m]: 1: an unknown whose obstacle is met, as contact_classify says of
@@ -159,11 +156,10 @@ double contact_mismatch(const contact_problem *cp, double scale,
 /* Bound of the rounding of the forces of each node, N. rounding[n]. */
 void contact_roundings(const contact_problem *cp, const double *u,
                        const double *r, double *rounding);
-/* Residual of the natural map within these roundings, the largest over the
- * nodes, over F, the largest load or contact force of the body or own[n] (NULL:
- * none), N; of friction over the share of F that the limit of the node is of
- * its normal force, -. Bodies without load whose contact forces are rounding
- * are left out. */
+/* Residual of the natural map within these roundings, the largest over nodes,
+ * over F, the largest force of the body or own[n] (NULL: none), N; of friction
+ * over the share of F that the limit of the node is of its normal force, -.
+ * Bodies without load whose contact forces are rounding are left out. */
 double contact_hidden(const contact_problem *cp, const double *u,
                       const double *r, const double *own);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;

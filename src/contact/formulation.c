@@ -187,8 +187,7 @@ status given_form_new(const contact_problem *cp, int n, const int *node,
   return OK;
 }
 
-/* g0 and B with the known pressures taken from B to g0; B NULL if none are
- * left. */
+/* g0 and B with the known pressures of B in g0; B NULL if none is left. */
 static status set_limit(given_form *g, const contact_problem *cp,
                         contact_problem *out) {
   OWNS(g);
@@ -196,8 +195,7 @@ static status set_limit(given_form *g, const contact_problem *cp,
   int left = 0;
   if (B == NULL) return OK;
   if (g->n_entry < B->start[cp->n]) {
-    memory_free(g->mu);
-    g->mu = NULL;
+    FORGET(g->mu);
     g->n_entry = B->start[cp->n];
     PASS_NEW(g->mu, g->n_entry);
   }

@@ -112,8 +112,7 @@ void frame_invert(int dim, int orthonormal, const double *frame,
 /* Of the size of the mesh. */
 static const double rounding = 1e-9;
 
-/* Nodes of the mesh in the plane x_c = at, a node that is not held in it: -1.
- */
+/* Nodes of the mesh in the plane x_c = at, a node not held in it: -1. */
 static int held_in_plane(const surface_input *in, int c, double at) {
   const mesh *m = in->mesh;
   int n = 0;

@@ -61,8 +61,7 @@ static void copy_row(const sparse_rows *from, int row, sparse_rows *to, int i) {
   }
 }
 
-/* Put row k of part (columns: contact nodes) into row node[k] of B, which was
- * empty. */
+/* Put row k of part (columns: contact nodes) into the empty row node[k]. */
 static status add_rows(friction_limit *out, int n, const int *node,
                        const sparse_rows *part) {
   const sparse_rows *old = &out->B;
@@ -289,8 +288,7 @@ static void warn(double radius, const char *contact_name,
               f->n_local);
 }
 
-/* Rows of the nodes whose friction is that of this contact, for forces: times
- * the tributary areas. */
+/* Rows of the nodes of this contact, for forces: times their areas. */
 static status to_surface(const contact_surface *s, int contact_id,
                          const patch *a, const sparse_rows *G,
                          sparse_rows *out) {

@@ -7,7 +7,6 @@
 #include "base/option.h"
 #include "contact/contact.h"
 #include "contact/surface.h"
-#include "deck/expression.h"
 
 typedef struct friction_limit {
   double *g0;             /* [n] N */
@@ -41,8 +40,7 @@ typedef struct friction_ops {
                     message_log *log, sparse_rows *out);
   /* Add the law's part for contact nodes node[0..n_node) to out (rows of the
    * whole surface, all zero before); none where surface_is_corner. ERR_DECK if
-   * the value is negative or not a number at a node (message names node and
-   * time). */
+   * the value is negative or not a number at a node (node and time named). */
   status (*limit)(const friction_card *card, const contact_surface *s,
                   int n_node, const int *node, double t, friction_limit *out);
 } friction_ops;

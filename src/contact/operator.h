@@ -7,8 +7,7 @@
 
 #include "base/status.h"
 
-/* A guess of the states: unknowns whose displacement is given, and stiffness
- * that slip adds. */
+/* A guess of the states: unknowns with given displacement, added slip. */
 typedef struct known_rows {
   const unsigned char *known; /* [m] 1: given; NULL: none */
   const double *added;        /* [dim*m] to the row of unknown i: dim entries in
@@ -25,10 +24,8 @@ typedef struct contact_operator {
   int n_kernel;
   double *room;             /* [2*m] workspace of the contact problem */
   double unknowns, entries; /* of the matrix that is factored; of its factor */
-  /* Au[m] = A u. */
-  void (*apply)(void *ctx, const double *u, double *Au);
-  /* Au[m] as apply, and in size[m] the sums of the magnitudes of its terms. */
-  void (*apply_sizes)(void *ctx, const double *u, double *Au, double *size);
+  /* Au[m] = A u; size[m], or NULL: the sums of the magnitudes of its terms. */
+  void (*apply)(void *ctx, const double *u, double *Au, double *size);
   /* Factor for solve; *singular 1: to rounding. ERR_MEMORY. */
   status (*set_rows)(void *ctx, const known_rows *rows, int *singular);
   /* x[m], at the known rows as given, of (A + added) x = b at the others; Ax[m]

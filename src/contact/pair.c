@@ -1,12 +1,10 @@
-/* Pairs of two surfaces of the mesh in a contact surface: what their nodes are
- * relative to. */
+/* Pairs of two surfaces of the mesh: what their nodes are relative to. */
 #include "base/base.h"
 #include "contact/parts.h"
 
 /* ---- couplings ---------------------------------------------------------- */
 
-/* Slave nodes that are left out: supports hold them, an earlier pair has them.
- */
+/* Slave nodes left out: by supports, by an earlier pair. */
 enum { HELD = 1, TAKEN };
 /* Of places over the size of the mesh; of forces over the first of a chain. */
 static const double rounding = 1e-9;
@@ -133,8 +131,7 @@ status surfaces_couple(const surface_input *in, const double *x,
                            .slave_normal = (how & COUPLE_SLAVE_NORMAL) != 0,
                            .flat = (how & COUPLE_FLAT) != 0,
                            .dropped = dropped};
-  memory_free(*out);
-  *out = NULL;
+  FORGET(*out);
   return mortar_couple(&of, out);
 }
 
@@ -177,8 +174,7 @@ static int is_curved(int dim, const mortar *m) {
   return 0;
 }
 
-/* 1: a support holds a component of slave node q that it holds of none of its
- * masters. */
+/* 1: a support holds a component of slave node q, of no master. */
 static int is_held_alone(const surface_input *in, const mortar *m, int q) {
   unsigned masters = 0;
   for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e)
@@ -264,10 +260,7 @@ status pairs_couple(const surface_input *in, message_log *log) {
 }
 
 void pairs_release(const surface_input *in) {
-  for (int p = 0; p < in->n_pair; ++p) {
-    memory_free(in->pairs[p].coupled);
-    in->pairs[p].coupled = NULL;
-  }
+  for (int p = 0; p < in->n_pair; ++p) FORGET(in->pairs[p].coupled);
 }
 
 /* ---- rows of the surface ------------------------------------------------ */
@@ -312,8 +305,7 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
-/* Area of the node of a coupling, without what it carries for neighbours, m2.
- */
+/* Area of the node of a coupling, its neighbours' share taken off, m2. */
 static double own_area(const pair_row *row) {
   return row->of->area[row->row] / row->of->share[row->row];
 }
@@ -372,8 +364,7 @@ status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
   return OK;
 }
 
-/* The gap that was measured at x + u is that of time 0 and what the bodies have
- * moved since, along n. */
+/* The gap at x + u: that of time 0 and the motion since, along n. */
 double pair_apart(const surface_input *in, const contact_pair *p, int row,
                   const double *n) {
   const mortar *m = p->coupled;
@@ -608,8 +599,7 @@ int pair_moves(const contact_pair *p) {
   return p->support != NULL && obstacle_moves(p->support);
 }
 
-/* Gap of contact node i along row k of its frame; reach where the obstacle is
- * not met. */
+/* Gap of contact node i along row k; reach where no obstacle is met. */
 static status row_gap(const contact_surface *s, const contact_pair *p, int i,
                       int k, double t, double reach, double *gap) {
   int dim = s->dim;

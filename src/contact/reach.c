@@ -7,8 +7,7 @@ enum { MOST_PASSES = 2 };
 static const double LONGER = 4.0; /* -, after a distance that was too short */
 
 void reach_free(contact_reach *x) {
-  memory_free(x->in);
-  x->in = NULL;
+  FORGET(x->in);
   x->n_in = 0;
 }
 

@@ -1,13 +1,11 @@
 /*
  * The residual by which all solvers are checked, and the status of the nodes
- * (contact.h): natural map and equation, each node in the scale of the forces
- * and displacements of its own body.
+ * (contact.h): natural map and equation, each node in the scales of its body.
  *
  * Products with the matrix run over blocks of CHUNK rows, so that nothing but
  * the search of the bodies allocates.
  */
 #include "base/base.h"
-#include "contact/contact.h"
 #include "contact/parts.h"
 
 #include <cblas.h>
@@ -34,8 +32,7 @@ static int joined(const contact_problem *cp, int a, int b, double least) {
   return 0;
 }
 
-/* Bodies, each from one node on: list[n] holds the nodes found, then the
- * remaining ones. */
+/* Bodies, each from one node on: list[n] holds nodes found, then others. */
 static void find_bodies(const contact_problem *cp, const double *root,
                         int *list, contact_bodies *b) {
   int found = 0;
@@ -124,8 +121,7 @@ typedef struct measured {
   node_step c;          /* N/m */
   double k;             /* the larger of c, N/m */
   double rounding;      /* what rounding can have put into a row, N */
-  double drift;         /* the same, by motion that does not follow from the
-                           data, N */
+  double drift;         /* the same, by motion not of the data, N */
   double normal, slide; /* scale along the normal, in the tangent plane, N */
   double q[3];          /* the nearest forces of an obstacle, N */
 } measured;
@@ -144,8 +140,7 @@ int contact_has_side(const contact_problem *cp, int node_id) {
   return 0;
 }
 
-/* Frictionless node: no force along a free tangent, unilateral where a second
- * obstacle bounds it. */
+/* Frictionless: no force along a free tangent, unilateral at a side. */
 static void project_sides(const measure *x, int node_id, double c, double *q) {
   for (int k = 1; k < x->cp->dim; ++k) {
     int dof = node_id * x->cp->dim + k;
@@ -187,9 +182,8 @@ static double largest_of(int n, const double *v) {
   return most;
 }
 
-/* Bound of the motion by loads, obstacles and where it was: displacements that
- * drift off and forces that grow without bound are no solution, however large
- * their rounding is. */
+/* Bound of the motion by loads, obstacles and where it was: what drifts off or
+ * grows without bound is no solution, however large their rounding is. */
 static double reach_of(const measure *x, int node_id, double k,
                        double *position) {
   const contact_problem *cp = x->cp;
@@ -295,8 +289,7 @@ static void measure_node(measure *x, int node_id, measured *node) {
   node->slide = scale_of(x, b, node, node->c.t);
 }
 
-/* An error over its scale, less the bound of its rounding, or that of a
- * drift. */
+/* An error over its scale, less that of rounding, or of a drift. */
 static double beyond(const measured *node, double error, double scale) {
   double more = error <= node->rounding ? 0.0 : error - node->rounding;
   more = larger(more, node->drift);
@@ -333,8 +326,7 @@ static double equation_of(const measure *x, const measured *node,
   return worst;
 }
 
-/* d[rows] = A u - f - r, or W r + q - u, from row "first"; A u of an operator
- * is in its room. */
+/* d[rows] = A u - f - r, or W r + q - u, from "first"; op: A u in its room. */
 static void equation_rows(const measure *x, int first, int rows, double *d) {
   const contact_problem *cp = x->cp;
   const double *M = contact_matrix(cp);
@@ -407,8 +399,7 @@ double contact_mismatch(const contact_problem *cp, double scale,
 
 /* ---- status ------------------------------------------------------------ */
 
-/* 1: no load acts on the body of a node, and its contact forces are rounding.
- */
+/* 1: no load acts on the body of a node, its forces are rounding. */
 static int has_no_force(const body_size *b, const measured *node) {
   return b->load == 0.0 && !(b->contact > node->rounding);
 }

@@ -14,8 +14,7 @@
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
  * the normals of the faces around a node over their area. */
 static const double rounding = 1e-9;
-/* The sine of the angle between the normals of body and obstacle where they
- * touch that is worth a note. */
+/* The sine between normals of body and obstacle in touch that is told. */
 static const double told_sine = 1e-3;
 /* 1 - the cosine of the angle between a contact with friction and what supports
  * hold that is worth a warning: 0.05 rad. */
@@ -97,8 +96,7 @@ static surface_row row_of(const builder *b, const candidate *c) {
                        .normal = c->normal};
 }
 
-/* Integrals w[dim] of the P1 functions of the nodes of a face, times thickness
- * or once around the axis. */
+/* Integrals w[dim] of the P1 functions of a face, with thickness or turn. */
 static void face_shares(const surface_input *in, int face_id, double measure,
                         double *w) {
   const mesh *m = in->mesh;
@@ -150,8 +148,7 @@ static void check_axis(const builder *b, const contact_pair *p) {
                 p->name, o->name, o->point[0]);
 }
 
-/* The candidate of a node that moves by itself, in a contact with an obstacle;
- * NULL: there is none. */
+/* The candidate of a node that moves by itself, at an obstacle; or NULL. */
 static candidate *find(const builder *b, int pair_id, int node_id) {
   const contact_pair *p = &b->in->pairs[pair_id];
   const int *at = p->support == NULL || surface_tied(b->in, node_id) >= 0
@@ -164,12 +161,11 @@ static candidate *find(const builder *b, int pair_id, int node_id) {
 
 static void give(int dim, candidate *to, double w, const double *normal) {
   to->area += w;
-  for (int c = 0; c < dim; ++c) to->normal[c] += w * normal[c];
+  add_scaled(dim, w, normal, to->normal);
 }
 
 /* The candidate of a master that has parts of a contact: its own there, else
- * one with the same obstacle on a smooth surface, else with another obstacle
- * and nearly that normal. */
+ * with the same obstacle on a smooth surface, else of nearly that normal. */
 static candidate *find_near(const builder *b, int pair_id, int node_id,
                             const double *normal) {
   static const double near_cosine[] = {0.7071, 0.985}; /* 45, 10 degrees */
@@ -290,8 +286,7 @@ static status collect(builder *b) {
     b->n += in->pairs[p].coupled != NULL ? add_coupled(b, p, &b->list[b->n])
                                          : add_nodes(b, p, &b->list[b->n]);
   }
-  /* Its faces; those of nodes of *TIE last, once the normals of all are known.
-   */
+  /* Its faces; those of nodes of *TIE last, with all normals known. */
   for (int tied = 0; tied < 2; ++tied)
     for (int p = 0; p < in->n_pair; ++p)
       for (int k = 0;
@@ -308,20 +303,6 @@ static int is_smooth(const builder *b, const candidate *x, const candidate *y) {
          frame_is_smooth(b->dim, x->normal, y->normal);
 }
 
-/* Candidates first..end are those of one node: move the faces of the later ones
- * to an earlier one with the same obstacle. */
-static void merge_smooth(builder *b, int first, int end) {
-  for (int i = first; i < end; ++i)
-    for (int j = i + 1; j < end && !b->list[i].left_out; ++j) {
-      candidate *x = &b->list[i], *y = &b->list[j];
-      if (y->left_out || !is_smooth(b, x, y)) continue;
-      for (int c = 0; c < b->dim; ++c) x->normal[c] += y->normal[c];
-      x->area += y->area;
-      y->left_out = 1;
-      ++b->tallies[y->pair_id].n_kept;
-    }
-}
-
 /* 1: the node acts on the masters of two pairs, side by side. */
 static int is_shared(const builder *b, const candidate *x, const candidate *y) {
   const contact_pair *p = &b->in->pairs[x->pair_id],
@@ -330,15 +311,18 @@ static int is_shared(const builder *b, const candidate *x, const candidate *y) {
          pair_same_normal(b->dim, p, x->row, q, y->row);
 }
 
-static void merge_masters(builder *b, int first, int end) {
+/* Candidates first..end are those of one node: move the faces of the later ones
+ * to an earlier one with the same obstacle, or with masters side by side. */
+static void merge(builder *b, int first, int end) {
   for (int i = first; i < end; ++i)
     for (int j = i + 1, last = i; j < end && !b->list[i].left_out; ++j) {
       candidate *x = &b->list[i], *y = &b->list[j];
-      if (y->left_out || !is_shared(b, x, y)) continue;
-      for (int c = 0; c < b->dim; ++c) x->normal[c] += y->normal[c];
+      const int shared = is_shared(b, x, y);
+      if (y->left_out || (!shared && !is_smooth(b, x, y))) continue;
+      add_scaled(b->dim, 1.0, y->normal, x->normal);
       x->area += y->area;
-      b->list[last].also = j + 1;
-      last = j;
+      if (shared) b->list[last].also = j + 1;
+      if (shared) last = j;
       y->left_out = 1;
       ++b->tallies[y->pair_id].n_kept;
     }
@@ -348,8 +332,7 @@ static const candidate *next_of(const builder *b, const candidate *c) {
   return c->also > 0 ? &b->list[c->also - 1] : NULL;
 }
 
-/* The normal of the obstacle instead of that of the body; 0 where the body does
- * not face the obstacle. */
+/* The normal of the obstacle in its place; 0: the body does not face it. */
 static int take_obstacle_normal(const builder *b, candidate *c) {
   const surface_row at = row_of(b, c);
   double body[3];
@@ -514,8 +497,7 @@ static int take_nearer(builder *b, const candidate **other,
 static int gather(builder *b, int first, int end, const candidate **kept) {
   int n = 0;
   int n_oriented = 0;
-  merge_smooth(b, first, end);
-  merge_masters(b, first, end);
+  merge(b, first, end);
   for (int i = first; i < end; ++i) {
     if (!b->list[i].left_out) orient(b, &b->list[i]);
     n_oriented += !b->list[i].left_out;
@@ -608,8 +590,7 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
   return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
-/* A depth of penetration that is told, m: facets of curved surfaces enter each
- * other. */
+/* A depth that is told, m: facets of curved surfaces enter each other. */
 static double told_depth(const builder *b, const contact_pair *p) {
   static const double sagitta = 0.05;
   const mesh *m = b->in->mesh;
@@ -727,8 +708,7 @@ status surface_build(const surface_input *in, message_log *log,
   *out = s;
   s = NULL;
 done:
-  memory_free(s);
-  RELEASE(b.list, b.first, b.tallies, b.rows);
+  RELEASE(s, b.list, b.first, b.tallies, b.rows);
   return st;
 }
 

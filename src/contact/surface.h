@@ -6,15 +6,13 @@
 
 #include "contact/mortar/mortar.h"
 #include "contact/obstacle.h"
-#include "mesh/mesh.h"
 
 typedef struct contact_surface {
   int dim, n;
   int *node_id;        /* [n] mesh node, ascending */
   size_t *node_no;     /* [n] its number in the mesh file */
   int *contact_id;     /* [n] the *CONTACT the normal belongs to */
-  int *side_id;        /* [n*(dim-1)] *CONTACT of a second (third) obstacle,
-                          -1 */
+  int *side_id;        /* [n*(dim-1)] *CONTACT of a second one, -1 */
   double *x;           /* [dim*n] m */
   double *area;        /* [n] tributary area (integral of the P1 function over
                           the faces of contact_id, of a pair what it carries),
@@ -35,8 +33,7 @@ typedef struct contact_surface {
                           a multiplier too, -; NULL: no pair */
   double *covered;     /* [n] part of the faces around the node that its normal
                           force acts on, -; NULL: no pair */
-  double *lever;       /* [dim*dim*n] where the resultant of a row acts, m;
-                          NULL: no pair */
+  double *lever;       /* [dim*dim*n] of a resultant, m; no pair: NULL */
   double *apart;       /* [dim*n] gap to the master along the rows that are
                           normals of pairs, at time 0, m; NULL: no pair */
 } contact_surface;
@@ -65,13 +62,11 @@ typedef struct surface_input {
   const unsigned char *fixed; /* [n_node] */
   const tie_set *ties;        /* its nodes are no contact nodes */
   const double *face_weight;  /* [n_face] thickness; 1 in 3-D */
-  const double *u; /* [dim*n_node] displacements for pairs with update, m; NULL:
-                      none yet */
+  const double *u; /* [dim*n_node] for pairs with update, m; NULL: none */
   int axisymmetric;
 } surface_input;
 
-/* pair.c: how many slave nodes supports hold along a component that they hold
- * of no master. */
+/* pair.c: slave nodes held along a component that no master has held. */
 int surfaces_held_alone(const surface_input *in, const mortar *m);
 /* pair.c: the coupling of two surfaces at the places x[dim*n_node], without the
  * nodes of dropped[n_node] (or NULL): *out, NULL or an old one that is freed.
@@ -97,11 +92,10 @@ void pairs_release(const surface_input *in); /* frees the couplings */
  * (obstacle_normal, where the shape has one), taken orthogonal to the
  * components that are fixed there; those become tangents, flagged in held.
  *
- * Left out, with a message: nodes fixed in the normal direction, nodes
- * that an obstacle at rest cannot reach along the normal.  A node in the groups
- * of two contacts has the normal of the first and, as a side, of the second;
- * where both have the same obstacle and the surface is smooth there, it belongs
- * to the first with the faces of both.
+ * Left out, with a message: nodes fixed in the normal direction, nodes that an
+ * obstacle at rest cannot reach along the normal.  A node in the groups of two
+ * contacts has the normal of the first and, as a side, of the second; of one
+ * obstacle and a smooth surface it belongs to the first with the faces of both.
  *
  * ERR_DECK with errors in the log; ERR_MEMORY.  *out is NULL on failure.
  */
@@ -117,8 +111,7 @@ status surface_build(const surface_input *in, message_log *log,
  */
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
                    double *gap, double *side_gap);
-/* pair.c: 1 unless contact node i has an obstacle that its normal does not meet
- * at time t. */
+/* pair.c: 0 if the normal of node i does not meet its obstacle at t. */
 int surface_meets(const contact_surface *s, const contact_pair *pairs, int i,
                   double t);
 /* pair.c: adds to motion[dim*n] the displacement of the obstacle at each node
@@ -152,8 +145,7 @@ void surface_spread(const contact_surface *s, double factor, const double *r,
 /* The same of row a of contact node q alone. */
 void surface_spread_row(const contact_surface *s, int q, int a, double force,
                         double *F);
-/* The forces r[dim*n] that surface_spread brings to F[dim*n_node] at the
- * contact nodes. ERR_MEMORY. */
+/* The forces r[dim*n] that surface_spread brings to F[dim*n_node]. */
 status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r);
 /* What row a of contact node i is divided by, -. */

@@ -118,8 +118,7 @@ static status read_parameters(reader *r, int next, int nested, card *c) {
 
 /* ---- language cards ---------------------------------------------------- */
 
-/* Refuse parameters that are not among the names (NULL at the end); 1 if
- * there are none. */
+/* Refuse parameters not among the names (NULL ends them); 1: there is none. */
 static int check_names(reader *r, const card *c, const char *const *names) {
   int good = 1;
   for (EACH(const parameter, p, c->parameters, c->n_parameter)) {
@@ -152,8 +151,7 @@ static status use_parameter(reader *r, const card *c) {
   return OK;
 }
 
-/* Data lines behind *INCLUDE, in the file or after it, belong to the card
- * before: the mode stays. */
+/* Data lines behind *INCLUDE, in the file or not, are of the card before. */
 static status use_include(reader *r, const card *c) {
   const parameter *input = needed(r, c, "INPUT");
   if (input == NULL) return OK;
@@ -176,8 +174,7 @@ static void report_waiting(reader *r) {
 static status use_legacy(reader *r, const card *c) {
   const parameter *p = needed(r, c, "FORMAT");
   report_waiting(r);
-  memory_free(r->waiting_format);
-  r->waiting_format = NULL;
+  FORGET(r->waiting_format);
   r->mode = DATA_REFUSED;
   if (p == NULL) return OK;
   r->legacy_at = c->at;
@@ -329,8 +326,7 @@ static status read_record(reader *r, const physical *line) {
   return OK;
 }
 
-/* A data line where none may stand: one message for the lines that follow
- * each other. */
+/* A data line where none may stand: one message for a run of them. */
 static void refuse_line(reader *r, const physical *line) {
   if (r->stray_seen) return;
   place at = source_place(r->top, line->line_no, 1, line->text);
@@ -394,9 +390,7 @@ static status read_all(reader *r) {
 static void reader_free(reader *r) {
   while (r->top != NULL) source_pop(&r->top);
   logical_free(&r->line);
-  memory_free(r->scratch.text);
-  memory_free(r->format);
-  memory_free(r->waiting_format);
+  RELEASE(r->scratch.text, r->format, r->waiting_format);
 }
 
 status deck_read(const char *file, int n_define, const char *const *defines,

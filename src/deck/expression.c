@@ -1,8 +1,7 @@
 /*
  * Expressions: one pass over the text with a stack of waiting operators
  * (Dijkstra's shunting yard) gives reverse Polish code. Both stacks are
- * bounded, so that the cost of the compiler and the evaluation is bounded for
- * any text.
+ * bounded, so that the cost is bounded for any text.
  */
 #include "deck/expression.h"
 
@@ -192,8 +191,7 @@ static int precedence(const waiting *w) {
   return w->kind == WAIT_OPERATOR ? w->operation->precedence : 0;
 }
 
-/* Emit the operators of at least the precedence "level", down to a
- * parenthesis. */
+/* Emit operators of at least precedence "level", down to a parenthesis. */
 static status emit_down_to(compiler *c, int level) {
   while (c->n_waiting > 0 && precedence(&c->stack[c->n_waiting - 1]) >= level) {
     PASS(emit_waiting(c, &c->stack[c->n_waiting - 1]));

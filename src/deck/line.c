@@ -123,8 +123,7 @@ status source_next(source *s, message_log *log, const physical **line) {
     if (what == GOT_LINE && !is_empty_or_comment(s->shown)) {
       s->line.text = s->shown;
       s->line.line_no = s->line_no;
-      /* An included file begins: unless it starts with a card it may be any
-       * file. */
+      /* A file included first may be any file, unless it starts with a card. */
       if (!s->begun) s->hidden = s->from != NULL && !is_card(s->shown);
       s->begun = 1;
       return OK;

@@ -123,13 +123,11 @@ typedef struct piece {
   int next; /* byte after the comma, or -1 at the end of the line */
 } piece;
 
-/* Cut at the next comma outside quotes, and outside parentheses if "nested".
- * Blanks around are cut. */
+/* Cut at the next comma outside quotes (and parentheses if "nested"). */
 piece logical_piece(const logical *l, int from, int nested);
 
 /* value.c: a field from a piece: quotes taken off, names replaced. "on_card":
- * value of a parameter, where a quoted name alone is text and not an
- * expression. */
+ * value of a parameter, a quoted name alone is a text. */
 status field_read(reader *r, piece p, int on_card, field *out);
 
 /* value.c ---------------------------------------------------------------- */

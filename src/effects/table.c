@@ -1,6 +1,5 @@
 /*
- * The rows of the effects, of all their files, and which of them a model
- * requires.
+ * The rows of the effects, and which of them a model requires.
  */
 #include "effects/rows.h"
 

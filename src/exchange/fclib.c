@@ -5,8 +5,6 @@
 #include "base/base.h"
 #include "exchange/parts.h"
 
-#include <unistd.h>
-
 #define LOCAL "/fclib_local"
 #define GLOBAL "/fclib_global"
 
@@ -116,8 +114,7 @@ static status take_blocks(exchange_problem *p, const triplets *W) {
   PASS(sparse_blocks_new(p->dim, p->n, W->n, W->row, W->column, W->value,
                          &p->blocks));
   if (are_few(p->blocks->start[p->n], p->n)) return OK;
-  memory_free(p->blocks);
-  p->blocks = NULL;
+  FORGET(p->blocks);
   return OK;
 }
 
@@ -139,8 +136,7 @@ static status thin_out(exchange_problem *p) {
   }
   PASS(take_blocks(p, &W));
   if (p->blocks == NULL) return OK;
-  memory_free(p->matrix);
-  p->matrix = NULL;
+  FORGET(p->matrix);
   return OK;
 }
 
@@ -262,8 +258,7 @@ static status find_diagonal(global *g) {
       diagonal = diagonal && g->H.value[k] == 0.0;
   for (int i = 0; i < g->H.rows; ++i) diagonal = diagonal && g->h[i] != 0.0;
   if (diagonal) return OK;
-  memory_free(g->h);
-  g->h = NULL;
+  FORGET(g->h);
   return OK;
 }
 
@@ -352,8 +347,7 @@ static status part(const double *all, const double *vector, int size, int m,
   return OK;
 }
 
-/* With s G (G'v + b) = 0 added, which makes M definite where the constraints
- * hold the bodies. */
+/* With s G (G'v + b) = 0 added: M is definite where G holds the bodies. */
 static status reduce_held(const hdf5_source *s, const global *g,
                           const triplets *joined, double *all, double *vector) {
   int usable = 0;

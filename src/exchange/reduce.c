@@ -4,8 +4,7 @@
  *   W = H' inv(M) H,   q = H' inv(M) f + w.
  *
  * M is scaled to a unit diagonal and factored by CHOLMOD; a matrix that is not
- * positive definite or not symmetric gets a dense LU factor, if it is small
- * enough.
+ * positive definite or not symmetric gets a dense LU factor if small.
  */
 #include "base/base.h"
 #include "exchange/parts.h"
@@ -128,11 +127,10 @@ static status elimination_new(int m, const constraints *c, elimination *a) {
 /* |R X - [V' s]| of the largest entry, relative. */
 static double contradiction(int m, const constraints *c, elimination *a) {
   size_t all = c->p * ((size_t)m + 1);
-  double size = 0.0, defect = 0.0;
-  for (size_t k = 0; k < all; ++k) size = fmax(size, fabs(a->rhs[k]));
+  const double size = largest_entry(all, a->rhs);
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, c->p, m + 1, c->p,
               -1.0, c->R, c->p, a->X, c->p, 1.0, a->rhs, c->p);
-  for (size_t k = 0; k < all; ++k) defect = fmax(defect, fabs(a->rhs[k]));
+  const double defect = largest_entry(all, a->rhs);
   return size > 0.0 ? defect / size : 0.0;
 }
 
@@ -471,8 +469,7 @@ static void put_parts(const columns *c, row_sets *t, int k, double *b) {
       b[c->H->row[e]] += c->H->value[e];
 }
 
-/* Their entries of W from x[rows] = inv(M) b, half of each across the diagonal:
- * W becomes symmetric. */
+/* Entries of W from x[rows] = inv(M) b, halves across: W is symmetric. */
 static status take_parts(const columns *c, const row_sets *t, const double *x,
                          triplets *W, long room) {
   for (long e = 0; e < c->H->n; ++e) {

@@ -379,10 +379,7 @@ status stiffness_assemble(const domain *d, stiffness **out) {
   turn_blocks(d, k);
   TRY(list_coupling(k));
 done:
-  if (st != OK) {
-    memory_free(k);
-    k = NULL;
-  }
+  if (st != OK) FORGET(k);
   *out = k;
   return st;
 }

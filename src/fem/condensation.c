@@ -28,23 +28,19 @@ struct condensed {
   sparse_operator *sparse; /* in its place and that of the bodies, or NULL */
   body_factor *body;
   rigid_motions rigid;   /* those that only contact holds */
-  unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
-                            NULL: no body needs one */
-  int just_held;         /* 1: the springs hold those motions and nothing
-                            else */
+  unsigned char *pinned; /* [m] contact unknowns with a spring, or NULL */
+  int just_held;         /* 1: the springs hold those motions alone */
   double *load;          /* [dim*n_node] in local components */
   double *prescribed;    /* [dim*n_node] local components, of the last load */
   double condition;      /* 0: not yet known */
   double stiffest;       /* largest entry of K, N/m */
-  double *F;             /* [dim*n_node] the load last condensed; NULL unless
-                            solutions are refined */
+  double *F;             /* [dim*n_node] load condensed last, or NULL */
   double *rest;          /* [dim*n_node] its residual, likewise */
   const char *ordering;
   cholmod_common *cm; /* owned */
 };
 
-/* The connected set of the graph that holds "first": list[0..) and its size;
- * its nodes are marked. */
+/* The set of the graph that holds "first": list[0..), its size; marked. */
 static int connected_set(const graph *g, int first, unsigned char *seen,
                          int *list) {
   int n = 0;
@@ -71,9 +67,8 @@ static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
   return n;
 }
 
-/* f->node: the interior ordered, then the contact nodes in descending order,
- * which have an interior too where their tangents are not condensed.
- * list[n] ascending in, destroyed. */
+/* f->node: the interior ordered, then the contact nodes descending (their
+ * tangents may be interior too). list[n] ascending in, destroyed. */
 static status order_body(condensed *c, const graph *g, int n, int *list,
                          body_factor *f) {
   const stiffness *k = c->k;
@@ -92,8 +87,7 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
                      &c->ordering);
 }
 
-/* The motions that only contact holds: c->rigid. A body nothing holds: name it
- * and the motion. */
+/* Motions only contact holds: c->rigid; a body nothing holds is named. */
 static status find_motions(condensed *c) {
   int n = 0;
   OWNED_OF(free_motion, list, support_motions(&c->d, &n, &list, &c->rigid));
@@ -141,8 +135,7 @@ static status factor_bodies(condensed *c) {
   TIMED(STAGE_ORDERING);
   OWNED_NEW(int, list, k->n_node);
   OWNED_NEW(unsigned char, seen, k->n_node);
-  OWNED long *number = NULL;
-  PASS_NEW(number, (size_t)k->dim * k->n_node);
+  OWNED_NEW(long, number, (size_t)k->dim * k->n_node);
   PASS(graph_of_unknowns(k, &g));
   c->n_body = count_bodies(k, &g, seen, list);
   PASS_NEW(c->body, c->n_body);
@@ -445,8 +438,7 @@ static status refine(condensed *c, double *u) {
   return OK;
 }
 
-/* f_c again: the reactions of the refined solution for u_c = 0, with opposite
- * sign. */
+/* f_c again: minus the reactions of the refined solution for u_c = 0. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;
@@ -488,8 +480,7 @@ status condense_recover(condensed *c, const double *u_c, double *u) {
   return OK;
 }
 
-/* u[m] = inv(A) f by the factors of the whole matrix; *square += u.f of those
- * that are not held. */
+/* u[m] = inv(A) f by the whole factor; *square += u.f of those not held. */
 static status solve_rows(const condensed *c, const double *f, double *u,
                          double *square) {
   const size_t n = (size_t)c->k->dim * c->k->n_node;
@@ -610,7 +601,7 @@ status condensed_keep(condensed *c, archive *a) {
 void condensed_product(const condensed *c, const double *u, double *Au) {
   const contact_operator *op = condensed_operator(c);
   if (op != NULL)
-    op->apply(op->ctx, u, Au);
+    op->apply(op->ctx, u, Au, NULL);
   else if (c->m > 0)
     cblas_dgemv(CblasColMajor, CblasNoTrans, c->m, c->m, 1, c->A, c->m, u, 1, 0,
                 Au, 1);

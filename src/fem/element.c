@@ -11,8 +11,7 @@
 
 typedef struct element_shape {
   double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m */
-  double hoop;     /* shape function over radius at the centroid, 1/m; 0 unless
-                      axisymmetric */
+  double hoop;     /* 1/m, function over radius; 0 unless axi */
   double weight;   /* volume, thickness or 2 pi r included, m3 */
 } element_shape;
 
@@ -173,8 +172,7 @@ static void stress_at(const domain *d, int elem_id, const double *e,
   voigt_product(d->ns, d->E + square * d->section_id[elem_id], e, sigma);
 }
 
-/* Means over the clusters of the strains of n elements (elem_id NULL: of the
- * first n). */
+/* Means over clusters of the strains of n elements (NULL: the first n). */
 static void mean_strains(const domain *d, int n, const int *elem_id,
                          const double *u) {
   if (d->cluster == NULL) return;

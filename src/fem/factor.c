@@ -39,8 +39,7 @@ static double diagonal(const stiffness *k, int node, int c) {
   return k->block[size * k->start[node] + c * (k->dim + 1)];
 }
 
-/* Largest diagonal entry of the unknowns of the body; NaN if one is not a
- * number. */
+/* Largest diagonal entry of the body; NaN if one is not a number. */
 static double largest_diagonal(const stiffness *k, const body_factor *f) {
   double most = 0;
   for (int q = 0; q < f->n_node; ++q) {
@@ -104,8 +103,7 @@ static void put_blocks(columns *w) {
   }
 }
 
-/* Scaled lower triangle in elimination order, f->pinned included; *out is new.
- */
+/* Scaled lower triangle in elimination order, with pins; *out is new. */
 static status body_factor_matrix(const stiffness *k, const body_factor *f,
                                  const long *number, cholmod_common *cm,
                                  cholmod_sparse **out) {
@@ -473,8 +471,7 @@ static void fill_roots(const stiffness *k, const body_factor *f, double *root) {
   }
 }
 
-/* Add the magnitudes of the scaled block p = (i, j) to the sums of its rows and
- * columns. */
+/* Add the magnitudes of the scaled block p to sums of rows and columns. */
 static void add_magnitudes(const stiffness *k, size_t p, int j,
                            const double *root, double *sum) {
   const int dim = k->dim, i = k->row[p];
@@ -505,8 +502,7 @@ static double largest_row_sum(const stiffness *k, const body_factor *f,
   return 1 + scale * most;
 }
 
-/* *growth = |D inv(K) D| by inverse iteration from a vector of ones with a
- * ripple. */
+/* *growth = |D inv(K) D| by inverse iteration from ones with a ripple. */
 static status inverse_norm(const body_factor *f, const double *root,
                            cholmod_common *cm, double *growth) {
   enum { PASSES = 2 };

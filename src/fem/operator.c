@@ -202,8 +202,7 @@ static void solve_rows(const sparse_operator *o, const supernodal_part *part,
   supernodal_back(o->s, o->x, part, v);
 }
 
-/* The same of the interior, at its places in the part; forces: of the contact
- * only, or all. */
+/* The same of the interior, into its part; forces: of contact, or all. */
 static void solve_interior(const sparse_operator *o,
                            const supernodal_part *forces,
                            const supernodal_part *part, double *v) {
@@ -241,8 +240,7 @@ static void spread(const sparse_operator *o, const double *u) {
   }
 }
 
-/* Forces f[rows] of displacements v at a contact node, and sums of their
- * magnitudes, or NULL. */
+/* Forces f[rows] of v at a contact node, sums of magnitudes or NULL. */
 static void gather_node(const sparse_operator *o, int id, const double *v,
                         double *f, double *size) {
   const stiffness *k = o->k;
@@ -275,9 +273,7 @@ static void project(const sparse_operator *o, double *v) {
   const size_t m = o->k->n_row;
   for (int c = 0; c < r->k; ++c) {
     const double *q = r->Q + m * c;
-    double sum = 0.0;
-    for (size_t i = 0; i < m; ++i) sum += q[i] * v[i];
-    for (size_t i = 0; i < m; ++i) v[i] -= sum * q[i];
+    add_scaled((int)m, -dot((int)m, q, v), q, v);
   }
 }
 
@@ -293,7 +289,7 @@ static void gather(const sparse_operator *o, const double *u, double *Au,
   project(o, Au);
 }
 
-static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
+static void apply(void *ctx, const double *u, double *Au, double *size) {
   sparse_operator *o = ctx;
   const int m = o->k->n_row;
   COPY(Au, u, m);
@@ -307,10 +303,6 @@ static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
   gather(o, u, Au, size);
   for (int q = 0; size != NULL && q < m; ++q)
     if (o->held[q]) size[q] = fabs(Au[q]);
-}
-
-static void apply(void *ctx, const double *u, double *Au) {
-  apply_sizes(ctx, u, Au, NULL);
 }
 
 static status set_rows(void *ctx, const known_rows *rows, int *singular) {
@@ -610,8 +602,7 @@ static status factor_both(sparse_operator *o) {
   body_factor_number(o->k, &o->f, o->number);
   PASS(body_factor_analyse(o->k, o->number, o->cm, &o->f));
   memory_return_before(o->f.L->xsize * sizeof(double));
-  /* Unknowns numbered by their place in the factor: its matrix then needs no
-   * permutation each time. */
+  /* Unknowns by their place in the factor: its matrix needs no permutation. */
   SuiteSparse_long *perm = o->f.L->Perm;
   for (long p = 0; p < o->f.n; ++p) {
     o->number[o->f.unknown[p]] = p;
@@ -675,7 +666,6 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
                                .unknowns = (double)o->f.n,
                                .entries = (double)o->f.L->xsize,
                                .apply = apply,
-                               .apply_sizes = apply_sizes,
                                .set_rows = set_rows,
                                .solve = solve,
                                .set_response = set_response,

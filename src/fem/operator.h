@@ -6,8 +6,6 @@
  */
 #pragma once
 
-#include "base/archive/archive.h"
-#include "contact/operator.h"
 #include "fem/factor.h"
 #include "fem/rigid.h"
 #include "fem/supernodal/supernodal.h"
@@ -69,8 +67,7 @@ typedef struct sparse_operator {
   int *body;        /* [m/rows] */
 } sparse_operator;
 
-/* What it is made of, all borrowed until sparse_operator_free but held and
- * body. */
+/* Borrowed until sparse_operator_free but held and body. */
 typedef struct operator_data {
   const stiffness *k;
   const double *x;           /* [dim*n_node] coordinates */
@@ -89,8 +86,7 @@ typedef struct operator_data {
 status sparse_operator_new(const operator_data *d, const char **ordering,
                            sparse_operator **out);
 void sparse_operator_free(sparse_operator *o); /* accepts NULL */
-/* f_c[m] of forces load[dim*n_node] at the unknowns; inv(K_ii) load_i is
- * stored. */
+/* f_c[m] of forces load[dim*n_node]; inv(K_ii) load_i is stored. */
 void sparse_operator_forward(sparse_operator *o, const double *load,
                              double *f_c);
 /* u[dim*n_node] at the unknowns from u_c[m] and what is stored. */

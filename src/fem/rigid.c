@@ -2,8 +2,7 @@
  * The motions are chosen so that R_c = Q is orthonormal: a step of modified
  * Gram-Schmidt on R_c goes through their coefficients Y too, and R_c is then
  * computed again from them. So each column is a rigid motion to rounding, also
- * where the contact nodes are few or close together and the motions are nearly
- * dependent on them.
+ * where few or close contact nodes make the motions nearly dependent.
  */
 #include "fem/rigid.h"
 
@@ -78,8 +77,7 @@ static void extend(const domain *d, int node, box *b) {
   b->found = 1;
 }
 
-/* Boxes round the nodes of each body that move contact unknowns of the set. 0:
- * no contact node. */
+/* Boxes round the nodes that move contact unknowns. 0: there is none. */
 static int measure_contact(const stiffness *k, const domain *d,
                            const rigid_motions *r, const rigid_set *s,
                            box *of) {
@@ -97,8 +95,7 @@ static int measure_contact(const stiffness *k, const domain *d,
   return found;
 }
 
-/* About the centre of the box; the extent is that of the body if the box has
- * none. */
+/* About the centre of the box; the extent that of the body if empty. */
 static rigid_modes modes_about(const rigid_modes *old, const box *b) {
   rigid_modes at = *old;
   double size = 0;
@@ -191,8 +188,7 @@ static void move(const rigid_modes *from, const rigid_modes *to, double *y) {
   for (int c = 0; c < 3; ++c) y[c] *= turn;
 }
 
-/* The motions of a set about the centres of its contact nodes; of has a box of
- * each body. */
+/* The motions of a set about the box of the contact nodes of each body. */
 static void centre_motions(const rigid_motions *r, const box *of,
                            rigid_set *s) {
   for (int j = 0; j < s->k; ++j)
@@ -228,8 +224,7 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
   return OK;
 }
 
-/* The unknown with the largest displacement by the motions left in the rows of
- * rest[m*k]. */
+/* The unknown moved most by the motions that are left in rest[m*k]. */
 static int most_moved(int m, int k, const double *rest) {
   double most = 0;
   int at = 0;
@@ -242,8 +237,7 @@ static int most_moved(int m, int k, const double *rest) {
   return at;
 }
 
-/* Gauss elimination with pivots: a pinned motion is eliminated from the
- * others. */
+/* Gauss elimination with pivots: a pinned motion leaves the others. */
 status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned) {
   const int m = r->m, k = s->k;

@@ -2,11 +2,10 @@
  * Rigid motions that the prescribed components leave to each set of bodies.
  *
  * A motion is a vector of rotations and translations per rigid piece (rigid.h).
- * Every prescribed component, every hinge between pieces, every tied node and,
- * in turn, every contact normal and tangent is one linear condition on the
- * pieces that it meets. The conditions are gathered by Givens rotations in a
- * triangle whose null space (singular values below rank_limit of the largest)
- * is what stays free.
+ * Every prescribed component, hinge, tied node and, in turn, contact normal and
+ * tangent is one linear condition on the pieces that it meets. The conditions
+ * are gathered by Givens rotations in a triangle whose null space (singular
+ * values below rank_limit of the largest) is what stays free.
  *
  * Bodies that supports and ties hold are at rest and leave the sets.
  */
@@ -37,35 +36,19 @@ typedef struct pieces {
   int *elem;       /* [start[n_node]] */
 } pieces;
 
-/* 2-D: elements round node j that share a second vertex share an edge. */
-static void unite_round_node_2d(const mesh *m, const pieces *p, int j,
-                                int *last, int *up) {
-  for (size_t q = p->start[j]; q < p->start[j + 1]; ++q)
-    for (int a = 0; a < 3; ++a) {
-      const int v = m->elem[3 * p->elem[q] + a];
-      if (v > j) last[v] = -1;
-    }
-  for (size_t q = p->start[j]; q < p->start[j + 1]; ++q)
-    for (int a = 0; a < 3; ++a) {
-      const int v = m->elem[3 * p->elem[q] + a];
-      if (v <= j) continue;
-      if (last[v] >= 0) forest_join(up, last[v], p->elem[q]);
-      last[v] = p->elem[q];
-    }
-}
-
 typedef struct corner {
-  int v, w, elem; /* the other two vertices of a face, v < w; its element */
+  int v, w, elem; /* the other vertices of a face, v <= w; its element */
 } corner;
 
-/* 3-D: faces whose lowest vertex is j, compared pair by pair. */
-static void unite_round_node_3d(const mesh *m, const pieces *p, int j,
-                                corner *list, int *up) {
+/* Faces whose lowest vertex is j, compared pair by pair. */
+static void unite_round_node(const mesh *m, const pieces *p, int j,
+                             corner *list, int *up) {
+  const int dim = m->dim;
   int n = 0;
   for (size_t q = p->start[j]; q < p->start[j + 1]; ++q) {
-    const int *e = m->elem + 4 * (size_t)p->elem[q];
-    for (int a = 0; a < 4; ++a)
-      for (int b = a + 1; b < 4; ++b) {
+    const int *e = m->elem + (dim + 1) * (size_t)p->elem[q];
+    for (int a = 0; a <= dim; ++a)
+      for (int b = dim == 2 ? a : a + 1; b <= (dim == 2 ? a : dim); ++b) {
         if (e[a] <= j || e[b] <= j) continue;
         corner c = {e[a] < e[b] ? e[a] : e[b], e[a] < e[b] ? e[b] : e[a],
                     p->elem[q]};
@@ -84,13 +67,8 @@ static status unite_by_faces(const mesh *m, const pieces *p, int *up) {
   for (int j = 0; j < m->n_node; ++j)
     if (p->start[j + 1] - p->start[j] > most)
       most = p->start[j + 1] - p->start[j];
-  OWNED_NEW(int, last, m->n_node);
   OWNED_NEW(corner, list, 3 * most);
-  for (int j = 0; j < m->n_node; ++j)
-    if (m->dim == 2)
-      unite_round_node_2d(m, p, j, last, up);
-    else
-      unite_round_node_3d(m, p, j, list, up);
+  for (int j = 0; j < m->n_node; ++j) unite_round_node(m, p, j, list, up);
   return OK;
 }
 
@@ -295,8 +273,7 @@ static int sets_columns(const body_sets *s, int b) {
   return modes == 1 ? 1 : modes * (s->first_piece[b + 1] - s->first_piece[b]);
 }
 
-/* Join the sets of bodies that are not at rest, number their coefficients and
- * list their nodes. */
+/* Join the sets of moving bodies, number coefficients, list their nodes. */
 static void sets_join(body_sets *s, joint by) {
   const int n_body = s->p.n_body;
   for (int i = 0; i < s->d->mesh->n_node; ++i)
@@ -340,8 +317,7 @@ typedef struct triangle {
   double most; /* the largest term of an entry of it */
 } triangle;
 
-/* Orthonormal motions Z[n*rank] up to rank_limit; the last "exact" ones up to
- * exact_limit. */
+/* Orthonormal motions Z[n*rank] up to rank_limit, last ones exact_limit. */
 typedef struct null_basis {
   int rank, exact;
   double *Z;
@@ -366,8 +342,7 @@ static void triangle_release(triangle *t) {
 /* Rotate the next condition into the triangle. */
 static void add_row(triangle *t) {
   double *row = t->row;
-  /* Is the next condition more than rounding? A pair within one piece has none.
-   */
+  /* Is the condition more than rounding? Within one piece it is not. */
   double most = 0;
   for (int k = t->first; k < t->last; ++k) most = fmax(most, fabs(t->row[k]));
   const int adds = most > exact_limit * t->most;
@@ -481,10 +456,9 @@ static void add_contact(triangle *t, int normals) {
   }
 }
 
-/* 1: surely no singular value below rank_limit of the largest. The square of
- * their least ratio is not below the product of the reciprocal condition
- * numbers in the 1-norm and the infinity norm, whose estimates may miss by a
- * factor. */
+/* 1: surely no singular value below rank_limit of the largest. Their least
+ * ratio squared is at least the product of the reciprocal condition numbers in
+ * the 1-norm and the infinity norm, whose estimates may miss by a factor. */
 static status is_regular(const triangle *t, int *regular) {
   enum { MISSED = 10 };
   const int n = t->n;

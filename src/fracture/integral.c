@@ -77,8 +77,7 @@ static int set_corners(work *w, int n, const int *node) {
   return grows;
 }
 
-/* Displacement gradient of an element; g: gradients of its P1 functions.
- * Returns its measure. */
+/* Displacement gradient of an element, g: of its functions; its measure. */
 static double set_slope(work *w, int elem, double g[12]) {
   const int dim = w->m->dim;
   const int *v = w->m->elem + (size_t)(dim + 1) * elem;
@@ -180,8 +179,7 @@ static void turn_back(const local *at, int dim, double by[3][3], double *out) {
  * du_3/dx_1, in which the fields of K and stresses along the lips have none.
  */
 
-/* A lip that q of the largest domain is on: its part, m^dim, and its element;
- * -1: another lip. */
+/* A lip that q of the largest domain is on: its part, element; -1: another. */
 static int set_turning(work *w, int i, double *part) {
   const mesh_crack *c = w->crack;
   const int face = i < c->n ? c->plus[i] : c->minus[i - c->n];
@@ -379,11 +377,10 @@ static void traction_of(const work *w, int node, const local *at, double t[3]) {
 static int set_lip(work *w, int i) {
   const mesh_crack *c = w->crack;
   const int face = i < c->n ? c->plus[i] : c->minus[i - c->n];
-  double normal[3] = {0, 0, 0}, up = 0;
+  double normal[3] = {0, 0, 0};
   if (!set_corners(w, w->m->dim, w->m->face + w->m->dim * face)) return -1;
   w->measure = mesh_face_normal(w->m, face, normal);
-  for (int k = 0; k < 3; ++k) up += normal[k] * w->p->frame[3 + k];
-  w->above = up < 0;
+  w->above = dot(3, normal, w->p->frame + 3) < 0;
   return face;
 }
 
@@ -431,8 +428,7 @@ static void trend_at(const trend *of, double x, double scatter, double t[3]) {
   }
 }
 
-/* Traction at a corner, given or from the line; returns how far it is behind
- * the front. */
+/* Traction at a corner; returns how far it is behind the front. */
 static double set_traction(work *w, corner *c, int node) {
   const trend *of = &w->side[w->above];
   local at;

@@ -3,13 +3,11 @@
  * file, one row in MATERIAL_LIST.
  *
  * Components: plane and axisymmetric ns = 4: xx, yy, zz, xy (axisymmetric rr,
- * zz, theta, rz); 3-D ns = 6: xx, yy, zz, xy, yz, zx. Shear strain is the
- * engineering one.
+ * zz, theta, rz); 3-D ns = 6: xx, yy, zz, xy, yz, zx. Engineering shear strain.
  */
 #pragma once
 
 #include "base/message.h"
-#include "base/status.h"
 #include "deck/expression.h"
 
 typedef enum { PLANE_STRAIN, PLANE_STRESS, AXISYMMETRIC, SOLID_3D } kinematics;
@@ -26,8 +24,7 @@ enum { ELASTIC_MAX = 21 };
  *   ORTHO  E1, E2, E3, nu12, nu13, nu23, G12, G13, G23 (Abaqus ENGINEERING)
  *   ANISO  21 constants of the symmetric matrix in the order of Abaqus
  * Ellipticity (CPR98 2.2): the matrix must be positive definite. NULL, or what
- * is wrong with the constants ("nu = 0.5 outside ]-1, 0.5[", ...); "text" may
- * be used for the answer.
+ * is wrong ("nu = 0.5 outside ]-1, 0.5[", ...), maybe in "text".
  */
 const char *elastic_matrix(elastic_type type, int n, const double *constants,
                            double C[36], char *text, int text_size);
@@ -59,8 +56,7 @@ status elastic_table_read(const struct card *c, elastic_type type,
 /* elastic_matrix() of the constants at a temperature. */
 const char *elastic_at(const elastic_table *t, double temperature, double C[36],
                        char *text, int text_size);
-/* The sets of E, nu are what is left after the parts relaxed[2] of G and K have
- * relaxed. */
+/* The sets become what is left after relaxed[2] of G and K have relaxed. */
 void elastic_table_relaxed(elastic_table *t, const double relaxed[2]);
 /* Largest value of constant number i in any set. */
 double elastic_table_most(const elastic_table *t, int i);

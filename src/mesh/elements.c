@@ -120,13 +120,6 @@ static double measure(const mesh *m, const int *v, double *longest) {
   return determinant(m->dim, d);
 }
 
-static double largest_coordinate(const mesh *m) {
-  double top = 0.0;
-  for (size_t i = 0; i < (size_t)m->dim * m->n_node; ++i)
-    top = fmax(top, fabs(m->x[i]));
-  return top;
-}
-
 static void swap(int *a, int *b) {
   int t = *a;
   *a = *b;
@@ -241,7 +234,7 @@ static status orient(builder *b) {
   mesh *m = b->m;
   faults bad = {0};
   int n = m->dim + 1;
-  double far = largest_coordinate(m), det;
+  double far = largest_entry((size_t)m->dim * m->n_node, m->x), det;
   if (m->dim == 2) PASS(cut_flat(b, far));
   for (int e = 0; e < m->n_elem; ++e) {
     int *v = mesh_elem_nodes(m, e);

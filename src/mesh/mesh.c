@@ -20,8 +20,7 @@ const char *mesh_nearest_group(const mesh *m, const char *name) {
 
 /* d = x[b] - x[a] */
 static void difference(const mesh *m, int a, int b, double *d) {
-  for (int k = 0; k < m->dim; ++k)
-    d[k] = mesh_node_x(m, b)[k] - mesh_node_x(m, a)[k];
+  vector_of(m->dim, mesh_node_x(m, a), mesh_node_x(m, b), d);
 }
 
 double mesh_face_normal(const mesh *m, int face_id, double *normal) {

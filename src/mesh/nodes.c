@@ -1,9 +1,8 @@
 /*
  * Nodes: found by number, ordered along a Hilbert curve, checked.
  *
- * The order depends on the coordinates alone (on the numbers only where nodes
- * coincide). Curve: J. Skilling, Programming the Hilbert curve, AIP Conf.
- * Proc. 707 (2004) 381.
+ * The order depends on coordinates (on numbers where nodes coincide). Curve: J.
+ * Skilling, Programming the Hilbert curve, AIP Conf. Proc. 707 (2004) 381.
  */
 #include "base/base.h"
 #include "mesh/build.h"
@@ -99,8 +98,7 @@ static uint64_t on_curve(uint32_t *x, int dim) {
   return key;
 }
 
-/* Bounding box of the used nodes; coordinates that are not finite are
- * reported. */
+/* Bounding box of the used nodes; others than finite are reported. */
 static status find_box(builder *b, double lo[3], double hi[3]) {
   faults bad = {0};
   for (int k = 0; k < 3; ++k) {

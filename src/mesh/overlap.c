@@ -1,14 +1,13 @@
 /*
- * The border of a mesh, and elements that overlap: two on one side of a face,
- * or two that intersect.
+ * The border of a mesh; elements on one side of a face, or that intersect.
  *
- * How many elements lie over a point changes only across sides on the boundary
- * once no face has two elements on one side. So where elements overlap anywhere
- * an element that owns such a side overlaps another of them, or one piece of
- * the boundary lies wholly inside of other elements: the cost is that of the
- * boundary.
+ * The number of elements over a point changes only across the boundary once no
+ * face has two on one side. So where elements overlap anywhere an element that
+ * owns such a side overlaps another of them, or one piece of the boundary lies
+ * wholly inside of other elements: the cost is that of the boundary.
  */
 #include "base/base.h"
+#include "base/box_tree.h"
 #include "mesh/build.h"
 #include "mesh/sort.h"
 
@@ -22,8 +21,7 @@ typedef struct side_list {
 
 static void sides_free(side_list *s) { RELEASE(s->start, s->side); }
 
-/* The lowest corner stands in all sides of an element but one, whose lowest is
- * the second one. */
+/* The lowest corner stands in all sides of an element but one. */
 static void two_lowest(int n, const int *w, int low[2]) {
   low[0] = w[0] < w[1] ? w[0] : w[1];
   low[1] = w[0] < w[1] ? w[1] : w[0];
@@ -34,8 +32,7 @@ static void two_lowest(int n, const int *w, int low[2]) {
   }
 }
 
-/* Two elements on both sides of a face have opposite orientations of it: last
- * bit. */
+/* The elements on both sides of a face turn it oppositely: last bit. */
 static uint64_t side_key(int dim, const int *v) {
   int a = v[dim - 2], c = v[dim - 1], turn = a < c;
   uint64_t low = (uint64_t)(turn ? a : c), high = (uint64_t)(turn ? c : a);
@@ -216,64 +213,16 @@ static int share_a_side(const mesh *m, int e, int f) {
   return common + 1 == n;
 }
 
-/* ---- a tree of boxes ----------------------------------------------------- */
-
-typedef struct box {
-  double lo[3], hi[3];
-} box;
-
-/* Node k has the children 2k and 2k+1; the elements, which follow each other
- * in space as they do by id, are the leaves. */
-typedef struct tree {
-  int n, first; /* elements; number of the first leaf, a power of two */
-  int *elem;    /* [n] ascending */
-  box *node;    /* [2*first] */
-} tree;
-
-static void surround(const mesh *m, int e, box *b) {
-  size_t dim = m->dim;
-  const int *v = m->elem + (dim + 1) * e;
-  memset(b, 0, sizeof *b);
-  for (size_t k = 0; k <= dim; ++k)
-    for (size_t d = 0; d < dim; ++d) {
-      double x = m->x[dim * v[k] + d];
-      if (k == 0 || x < b->lo[d]) b->lo[d] = x;
-      if (k == 0 || x > b->hi[d]) b->hi[d] = x;
-    }
-}
-
-static status grow_tree(const mesh *m, tree *t) {
-  for (t->first = 1; t->first < t->n;) t->first *= 2;
-  PASS_NEW(t->node, 2 * (size_t)t->first);
-  for (int i = t->first; i-- > 0;) {
-    box *leaf = &t->node[t->first + i];
-    surround(m, t->elem[i < t->n ? i : t->n - 1], leaf);
-  }
-  for (int i = t->first; i-- > 1;) {
-    const box *p = &t->node[2 * i], *q = p + 1;
-    for (int k = 0; k < 3; ++k) {
-      t->node[i].lo[k] = fmin(p->lo[k], q->lo[k]);
-      t->node[i].hi[k] = fmax(p->hi[k], q->hi[k]);
-    }
-  }
-  return OK;
-}
-
-static int boxes_meet(const box *p, const box *q) {
-  return p->lo[0] < q->hi[0] && q->lo[0] < p->hi[0] && p->lo[1] < q->hi[1] &&
-         q->lo[1] < p->hi[1] && p->lo[2] <= q->hi[2] && q->lo[2] <= p->hi[2];
-}
-
 /* ---- which elements overlap ---------------------------------------------- */
 
 typedef struct search {
   const builder *b;
-  tree t;
+  int n, *elem;       /* [n] ascending: those in the tree */
+  box_tree tree;      /* of their boxes */
+  int *found;         /* [n] */
   double far;         /* largest coordinate over the size of the mesh */
   int *body;          /* [n_elem] when it is needed */
   int e;              /* the element that is compared */
-  int from;           /* leaf of the tree from which on it is */
-  box at;             /* its box */
   faults same, other; /* in one body or group; what may be two bodies */
 } search;
 
@@ -336,29 +285,49 @@ static status compare(search *s, int f) {
   return OK;
 }
 
-/* Below a node of the tree, which holds "count" leaves from "leaf" on. */
-static status descend(search *s, int node, int leaf, int count) {
-  if (leaf >= s->t.n || leaf + count <= s->from ||
-      !boxes_meet(&s->t.node[node], &s->at))
-    return OK;
-  if (count == 1) return compare(s, s->t.elem[leaf]);
-  PASS(descend(s, 2 * node, leaf, count / 2));
-  return descend(s, 2 * node + 1, leaf + count / 2, count / 2);
+/* What has a volume in common with the box of element e. */
+static box_beam beam_of(const mesh *m, int e) {
+  box_beam b = {.n_slab = m->dim};
+  const int *v = mesh_elem_nodes(m, e);
+  for (int c = 0; c < m->dim; ++c) {
+    b.axis[c][c] = 1.0;
+    b.low[c] = b.high[c] = mesh_node_x(m, v[0])[c];
+    for (int k = 1; k <= m->dim; ++k) {
+      b.low[c] = fmin(b.low[c], mesh_node_x(m, v[k])[c]);
+      b.high[c] = fmax(b.high[c], mesh_node_x(m, v[k])[c]);
+    }
+    b.low[c] = nextafter(b.low[c], HUGE_VAL);
+    b.high[c] = nextafter(b.high[c], -HUGE_VAL);
+  }
+  return b;
 }
 
-/* All that intersect element e, from that leaf on. */
+/* All that intersect element e, from that one of the tree on. */
 static status find(search *s, int e, int from) {
+  const box_beam beam = beam_of(s->b->m, e);
+  const int n = box_tree_along(&s->tree, &beam, s->found);
+  qsort(s->found, n, sizeof *s->found, number_order);
   s->e = e;
-  s->from = from;
-  surround(s->b->m, e, &s->at);
-  return descend(s, 1, 0, s->t.first);
+  for (int i = 0; i < n; ++i)
+    if (s->found[i] >= from) PASS(compare(s, s->elem[s->found[i]]));
+  return OK;
 }
 
-static status start_tree(search *s, int n) {
-  RELEASE(s->t.elem, s->t.node);
-  s->t = (tree){0};
-  PASS_NEW(s->t.elem, n);
+static status start_list(search *s, int n) {
+  RELEASE(s->elem, s->found, s->tree.item, s->tree.of, s->tree.box);
+  s->n = 0;
+  PASS_NEW_ALL(OF(s->elem, n), OF(s->found, n));
   return OK;
+}
+
+static status grow_tree(search *s) {
+  const mesh *m = s->b->m;
+  const int dim = m->dim, n = dim + 1;
+  OWNED_NEW(double, x, ((size_t)dim * n * s->n));
+  for (int k = 0; k < n * s->n; ++k)
+    COPY(x + (size_t)dim * k,
+         mesh_node_x(m, mesh_elem_nodes(m, s->elem[k / n])[k % n]), dim);
+  return box_tree_new(dim, s->n, n, x, &s->tree);
 }
 
 /* Elements that own a side of the boundary, with each other. */
@@ -366,11 +335,11 @@ static status check_skin(search *s, const char *is_skin) {
   const mesh *m = s->b->m;
   int n = 0;
   for (int e = 0; e < m->n_elem; ++e) n += is_skin[e];
-  PASS(start_tree(s, n));
+  PASS(start_list(s, n));
   for (int e = 0; e < m->n_elem; ++e)
-    if (is_skin[e]) s->t.elem[s->t.n++] = e;
-  PASS(grow_tree(m, &s->t));
-  for (int i = 0; i < n; ++i) PASS(find(s, s->t.elem[i], i + 1));
+    if (is_skin[e]) s->elem[s->n++] = e;
+  PASS(grow_tree(s));
+  for (int i = 0; i < n; ++i) PASS(find(s, s->elem[i], i + 1));
   return OK;
 }
 
@@ -402,11 +371,11 @@ static status check_inside(search *s, const side_list *sides,
   const mesh *m = s->b->m;
   OWNED_NEW(int, piece, sides->n);
   PASS(find_pieces(m, sides, piece));
-  PASS(start_tree(s, sides->n));
+  PASS(start_list(s, sides->n));
   for (int i = 0; i < sides->n; ++i)
-    if (piece[i] >= 0) s->t.elem[s->t.n++] = sides->side[i].id / (m->dim + 1);
-  if (s->t.n < 2) return OK; /* one closed surface bounds them all */
-  PASS(grow_tree(m, &s->t));
+    if (piece[i] >= 0) s->elem[s->n++] = sides->side[i].id / (m->dim + 1);
+  if (s->n < 2) return OK; /* one closed surface bounds them all */
+  PASS(grow_tree(s));
   for (int e = 0; e < m->n_elem; ++e)
     if (!is_skin[e]) PASS(find(s, e, 0));
   return OK;

@@ -132,10 +132,9 @@ status raw_receive(int fd, raw_mesh *raw, int *stopped) {
         head.n > (uint64_t)1 << 40)
       RAISE(ERR_MESH, "the mesh reader sent what is no mesh");
     if (head.kind == WIRE_END) return check_complete(raw);
-    OWNED void *payload = NULL;
     size_t size = head.n * item_size[head.kind];
     /* texts end in a zero byte */
-    PASS_GET(payload, memory_new(size + 1, 1));
+    OWNED_GET(void, payload, memory_new(size + 1, 1));
     *stopped = read_bytes(fd, payload, size) != size;
     if (*stopped)
       RAISE(ERR_MESH, "the mesh reader stopped before the mesh was complete");

@@ -1,6 +1,5 @@
 /*
- * Facts of the deck: the first card or step of a kind, and whether there is
- * one.
+ * Facts of the deck: the first card or step of a kind, if any.
  */
 #include "model/facts.h"
 

@@ -98,10 +98,9 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
 }
 
 /*
- * M_ij = integral of N_i N_j w over a simplex of n nodes and given measure;
- * w = 1, or the P1 function of the nodal values r (axisymmetric: 2 pi r).
- * Integral of a product of barycentric coordinates: d! a! b! c! / (a+b+c+d)!
- * times the measure, d = n - 1.
+ * M_ij = integral of N_i N_j w over a simplex of n nodes and given measure; w =
+ * 1, or the P1 function of the nodal values r (axisymmetric: 2 pi r). Integral
+ * of a product: d! a! b! c! / (a+b+c+d)! times the measure, d = n - 1.
  */
 static void simplex_mass(int n, double measure, const double *r, double *M) {
   double d2 = n * (n + 1), d3 = d2 * (n + 2);
@@ -407,8 +406,7 @@ static status split_zones(int n, const int *by, int n_by, int *zone) {
   int n_zone = 0, n_new = 0;
   for (int k = 0; k < n; ++k)
     if (zone[k] >= n_zone) n_zone = zone[k] + 1;
-  OWNED int *of = NULL;
-  PASS_NEW(of, (size_t)n_zone * n_by);
+  OWNED_NEW(int, of, ((size_t)n_zone * n_by));
   for (int k = 0; k < n; ++k) {
     int *at = &of[(size_t)n_by * zone[k] + by[k]];
     if (*at == 0) *at = ++n_new;

@@ -1,7 +1,6 @@
 /*
  * JOB_condensed_NNNNN.h5: the condensed problem of an increment in the layout
- * of FCLIB (exchange.h), one problem a file, NNNNN the increments since the
- * start.
+ * of FCLIB (exchange.h), NNNNN the increments since the start.
  *
  *   /fclib_local    W = S inv(A) S, q = S inv(A) f + d;  S = diag(-1, 1[, 1])
  *                   per node, d_N = gap, d_T = -ut0
@@ -62,8 +61,7 @@ static double offset_of(const contact_problem *cp, int dof) {
   return cp->ut0 == NULL ? 0.0 : -cp->ut0[i * (cp->dim - 1) + k];
 }
 
-/* inv(A) in place of the copy of A, both triangles; 0: A is singular.
- * work[3 m], iwork[m]: workspace. */
+/* inv(A) in place of the copy of A; 0: singular. work[3 m], iwork[m]. */
 static int invert(int m, double *a, double *work, int *iwork) {
   double rcond = 0.0;
   const size_t n = m;
@@ -301,8 +299,7 @@ status fclib_write(const contact_problem *cp, const size_t *node_no,
   H5E_auto2_t print;
   void *print_data;
   SCRATCH;
-  OWNED char *aside = NULL;
-  PASS_GET(aside, text_path("", path, "tmp"));
+  OWNED_GET(char, aside, text_path("", path, "tmp"));
   f.path = path;
   PASS(make_file(&f, u, r));
   f.path = aside;

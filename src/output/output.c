@@ -1,8 +1,7 @@
 /*
- * The files of a job: their names, of which none may be one that the deck
- * reads; opened, new or those that a run continues; the sink of history_run,
- * which writes into them; closed. JOB.sta is written last: an increment in it
- * is in all files.
+ * The files of a job: their names, none of which the deck may read; opened, new
+ * or continued; the sink of history_run, which writes into them; closed.
+ * JOB.sta is written last: an increment in it is in all files.
  */
 #include "output/writers.h"
 
@@ -44,8 +43,7 @@ static status spare(const deck *d, const char *path) {
   return OK;
 }
 
-/* The increment of a file of that name; 0: it is none of a condensed problem
- * of the job. */
+/* The increment of a file of a condensed problem; 0: it is none. */
 static long increment_of(const char *name, const char *job_name) {
   const size_t n = strlen(job_name), k = sizeof middle - 1;
   if (strncmp(name, job_name, n) != 0 || strncmp(name + n, middle, k) != 0 ||
@@ -60,8 +58,7 @@ static void close_folder(DIR **folder) {
   if (*folder != NULL) closedir(*folder);
 }
 
-/* All files of condensed problems of increments after that one are spared, or
- * cleared. */
+/* All condensed problems of later increments are spared, or cleared. */
 static status each_condensed(const model *m, const char *dir, int after,
                              int cleared) {
   DIR *folder ENDS_BY(close_folder) = opendir(dir);
@@ -79,8 +76,7 @@ static status each_condensed(const model *m, const char *dir, int after,
 status output_spare(const model *m, const char *dir) {
   if (m->deck == NULL) return OK;
   for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
-    OWNED char *path = NULL;
-    PASS_GET(path, text_path(dir, m->name.job, results[k]));
+    OWNED_GET(char, path, text_path(dir, m->name.job, results[k]));
     PASS(spare(m->deck, path));
   }
   return each_condensed(m, dir, 0, 0);
@@ -98,8 +94,7 @@ static double clock_now(void) {
 
 /* JOB.xdmf with the records so far; "all": even if it was written just before.
  * The text is written again each time, so not more than once in XDMF_PAUSE
- * seconds, and not above its share of the run except the last time: the cost
- * stays small however long it grows. */
+ * seconds, and, but for the last time, within its share of the run. */
 static status show_records(output *o, int all) {
   hdf5_shape shape;
   if (o->h5 == NULL) return OK;
@@ -163,7 +158,6 @@ static status write_fields(output *o, const state *s) {
 static status write_condensed(output *o, const state *s) {
   const step *now = &o->m->steps[s->step_no - 1];
   char name[512], text[200];
-  OWNED char *path = NULL;
   if (s->contacts.problem == NULL ||
       !frequency_shows(now->output.condensed, s->increment_no, s->end_of_step))
     return OK;
@@ -173,7 +167,7 @@ static status write_condensed(output *o, const state *s) {
   snprintf(text, sizeof text, "Protis %s: step %d, increment %d, time %.9g",
            o->o.version != NULL ? o->o.version : "", s->step_no,
            s->increment_no, s->t);
-  PASS_GET(path, text_path(o->o.dir, name, "h5"));
+  OWNED_GET(char, path, text_path(o->o.dir, name, "h5"));
   return fclib_write(s->contacts.problem, s->contacts.surface->node_no,
                      s->settled ? s->contacts.uc : NULL, s->contacts.rc,
                      o->m->name.title, text, path);
@@ -250,8 +244,7 @@ history_sink output_sink(output *o) {
 }
 
 static void release(output *o) {
-  memory_free(o->plan);
-  RELEASE(o->json, o->xdmf);
+  RELEASE(o->plan, o->json, o->xdmf);
   for (int i = 0; i < o->run.n_increment; ++i)
     RELEASE(o->run.increments[i].solutions,
             (void *)o->run.increments[i].theorems.contacts);
@@ -259,16 +252,14 @@ static void release(output *o) {
 }
 
 static status remove_old(const output *o, const char *suffix) {
-  OWNED char *path = NULL;
-  PASS_GET(path, text_path(o->o.dir, o->m->name.job, suffix));
+  OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, suffix));
   return file_clear(path);
 }
 
 /* length: of the file to continue; -1: a new one. */
 static status open_text(const output *o, const char *suffix, long length,
                         text_file *t) {
-  OWNED char *path = NULL;
-  PASS_GET(path, text_path(o->o.dir, o->m->name.job, suffix));
+  OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, suffix));
   return length < 0 ? text_open(t, path, 1) : text_reopen(t, path, 1, length);
 }
 
@@ -370,8 +361,7 @@ static status write_last(const output *o) {
   if (o->h5 == NULL) return OK;
   hdf5_shape_of(o->h5, &shape);
   for (int k = 0; k < 2; ++k) {
-    OWNED char *path = NULL;
-    PASS_GET(path, text_path(o->o.dir, o->m->name.job, names[k]));
+    OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, names[k]));
     PASS(xdmf_write_last(&shape, k, path));
   }
   return OK;

@@ -3,9 +3,8 @@
  * JOB.json, saved for a restart and read back.
  *
  * JOB.rst.inc: each summary is written once: a restart file names the bytes
- * that count for it, so that its own size does not grow with the increments. A
- * record: increment_summary without pointers, its reasons (text ended by NUL,
- * where there is one), its solutions.
+ * that count, and does not grow itself. A record: increment_summary without
+ * pointers, its reasons (text ended by NUL, where there is one), its solutions.
  */
 #include "output/writers.h"
 
@@ -14,8 +13,7 @@
 #include <errno.h>
 
 static status open_file(output *o, const saved_end *end) {
-  OWNED char *path = NULL;
-  PASS_GET(path, text_path(o->o.dir, o->m->name.job, "rst.inc"));
+  OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, "rst.inc"));
   o->saved.end.checksum = end == NULL ? HASH_START : end->checksum;
   if (end == NULL) return text_open(&o->saved.file, path, 0);
   return text_reopen(&o->saved.file, path, 0, end->length);
@@ -125,8 +123,7 @@ static status read_file(output *o, size_t n) {
   return OK;
 }
 
-/* o->run.increments from a file with that beginning; what follows is cut.
- * ERR_FILE: it is damaged. */
+/* o->run.increments of a file; what follows is cut. ERR_FILE: damaged. */
 static status saved_read(output *o, const saved_end *end) {
   run_summary *run = &o->run;
   const size_t n = end->length;

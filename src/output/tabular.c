@@ -170,9 +170,8 @@ static status make_orders(tabular *t, unsigned tables) {
 }
 
 static status open_file(tabular *t, const char *dir, long length) {
-  OWNED char *path = NULL;
   PASS(make_orders(t, tables_asked(t->m)));
-  PASS_GET(path, text_path(dir, t->m->name.job, "dat"));
+  OWNED_GET(char, path, text_path(dir, t->m->name.job, "dat"));
   t->n_block = length > 0;
   return length < 0 ? text_open(&t->dat, path, 0)
                     : text_reopen(&t->dat, path, 0, length);

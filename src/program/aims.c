@@ -54,8 +54,7 @@ const pass_goal *aims_rows(const aims *a) { return a != NULL ? a->rows : NULL; }
 status aims_begin(aims *a, const mesh *msh) {
   if (a == NULL) return OK;
   OWNS(a);
-  memory_free(a->product);
-  a->product = NULL;
+  FORGET(a->product);
   ++a->n_pass;
   if (a->counts) PASS_NEW(a->product, (size_t)a->n * msh->n_elem);
   return OK;

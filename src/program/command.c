@@ -333,8 +333,7 @@ status command_apply(command *c, message_log *log) {
       c->max_memory > 0.0 ? 1e6 * c->max_memory - limits_held() : system.memory;
   if (bytes < 1e18) memory_limit((size_t)fmax(bytes, 0.0), who);
   if (!c->safe) return OK;
-  OWNED char *folder = NULL;
-  PASS_GET(folder, folder_of(c->deck_file));
+  OWNED_GET(char, folder, folder_of(c->deck_file));
   return input_confine(folder);
 }
 

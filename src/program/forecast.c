@@ -38,8 +38,7 @@ typedef struct trial {
   double energy, error, time;     /* J, -, - at the largest energy */
   double cpu[STAGE_COUNT], bytes; /* s; at most held */
   const job_input *in;
-  double *eta; /* [n_elem] shares of the elements there, or
-                  NULL; borrowed */
+  double *eta; /* [n_elem] shares of the elements; borrowed or NULL */
   int n_elem;
   int is_coarse; /* its estimate may have half of the error */
   double depth;  /* elements across the body */
@@ -118,8 +117,7 @@ static int is_of_run(int s) {
          s == STAGE_FACTOR || s == STAGE_CONDENSE;
 }
 
-/* As in target.c: the share of the increments in the target, the aim of the
- * next pass, its limit. */
+/* As in target.c: the share of increments, the aim of a pass, its limit. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, AIM = 0.93;
 static const double REACH = 8.0, FINEST = 0.25, FINEST_LAST = 0.1;
 static const double SHORTEST = 1.0 / 16;
@@ -345,8 +343,7 @@ static void print_fit(const model_of_cost *c) {
 }
 
 /* Order of the error in N, from the two meshes that are much alike; where that
- * is less than "full", from all three, by least squares: so near to one another
- * meshes scatter. */
+ * is less than "full", from all three, by least squares. */
 static double order_of(const model_of_cost *c, double full) {
   const trial *runs[] = {&c->deck, &c->coarse, &c->fine};
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
@@ -436,8 +433,7 @@ static void stand_free(stand *s) {
   *s = (stand){.eta = NULL};
 }
 
-/* The job on a mesh for all goals, whose errors are to fall to that part of
- * those of "at". */
+/* The job on a mesh whose goals have that part of the errors of "at". */
 static status run_for_goals(const command *c, const mesh_sizes *first,
                             const job_input *at, const double *eta, double part,
                             stand *s) {

@@ -93,8 +93,7 @@ static status print_memory(const model *m, const mesh *msh) {
   return OK;
 }
 
-/* Motions that the supports of a step leave; ERR_SINGULAR if nothing at all
- * holds one. */
+/* Motions that supports leave; ERR_SINGULAR: nothing holds one. */
 static status print_motions(const model *m, const mesh *msh, int step_id) {
   static const char *const held[] = {
       "nothing holds it", "held by friction only", "held by contact only"};

@@ -16,8 +16,7 @@
 
 #include <unistd.h>
 
-/* Surfaces in contact, names[2*n.contact]; not cracks, which are straight
- * between their nodes. */
+/* Surfaces in contact, names[2*n.contact]; cracks are straight. */
 static int find_rounds(const model *m, const char **names) {
   int n = 0;
   for (EACH(const contact, c, m->contacts, m->n.contact)) {
@@ -108,13 +107,7 @@ status job_keep_contact(coarser *to, const state *s) {
 }
 
 void job_input_free(job_input *in) {
-  memory_free(in->problem);
-  memory_free(in->contact);
-  memory_free(in->msh);
-  memory_free(in->m);
-  memory_free(in->d);
-  memory_free(in->first);
-  memory_free(in->log);
+  RELEASE(in->problem, in->contact, in->msh, in->m, in->d, in->first, in->log);
   free(in->closing);
   *in = (job_input){0};
 }
@@ -227,8 +220,7 @@ static status try_without(watcher *w, const command *c, job_input *in,
   const job_watch watch = {.first = {.ctx = w, .increment = see_increment}};
   reduction_restore(in->m);
   reduction_leave_out(in->m);
-  memory_free(w->n);
-  w->n = NULL;
+  FORGET(w->n);
   PASS(reduction_new(in->m, in->msh, &w->n));
   w->refuted = 0;
   const status st = job_solve(c, in, &watch, NULL, unsettled);

@@ -33,8 +33,7 @@ static status check_content(const char *path, int fd) {
   return OK;
 }
 
-/* Is the file at the path the one that was opened? A run that ended between the
- * two has removed it. */
+/* 1: the path is that of the file opened, not removed by a run that ended. */
 static status check_current(const char *path, int fd, int *current) {
   struct stat one, other;
   *current = 0;
@@ -59,8 +58,7 @@ static status refuse(const char *path, int fd, const char *name) {
       path, name, text[0] != '\0' ? text : "process unknown");
 }
 
-/* A file system without locks runs without. *held: the file is ours, to be
- * removed in the end. */
+/* Without locks a run goes on. *held: the file is ours, to be removed. */
 static status hold(const char *path, const char *name, int *fd, int *held) {
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
   for (int current = 0; !current;) {

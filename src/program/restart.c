@@ -55,8 +55,7 @@ static int file_no(const deck *d, const char *file) {
   return -1;
 }
 
-/* A line each: number, line, column, number of the file, text; the file in a
- * line before it. */
+/* A line each: number, line, column, number of the file, text; file before. */
 static status list_warnings(FILE *f, const void *what) {
   const job_input *in = what;
   message_view w;
@@ -263,10 +262,6 @@ static void next_bound(echo_card *c, int step_no) {
   while (is_free(c, step_no));
 }
 
-static int same_card(const echo_card *a, const echo_card *b) {
-  return a->length == b->length && memcmp(a->text, b->text, a->length) == 0;
-}
-
 /* The first line of a card. */
 static void first_line(const echo_card *c, char text[100]) {
   const char *from = c->length > 0 ? c->text : "the end of the deck";
@@ -280,7 +275,7 @@ static status compare_decks(const char *was, const char *is, int step_no) {
   do {
     next_bound(&a, step_no);
     next_bound(&b, step_no);
-    if (same_card(&a, &b)) continue;
+    if (a.length == b.length && memcmp(a.text, b.text, a.length) == 0) continue;
     first_line(&a, before);
     first_line(&b, now);
     if (a.step_no > 0) snprintf(where, sizeof where, "step %d, ", a.step_no);

@@ -18,8 +18,7 @@ typedef struct extract {
   const char *path; /* of JOB.dat */
   char name[32];    /* of the table wanted */
   char separator;
-  int last; /* 1: only blocks of the time of the last
-               one */
+  int last; /* 1: only blocks of the last time */
   FILE *f;
   char *line; /* of getline */
   size_t size;
@@ -30,12 +29,10 @@ typedef struct extract {
   char *word[WORDS]; /* of the line; into it */
   int n_column, n_place, grouped;
   char column[WORDS][NAME_SIZE]; /* of all blocks */
-  int place[WORDS];              /* [n_place] of the words of the block in
-                                    column; -1 */
+  int place[WORDS];              /* [n_place] of the words in column; -1 */
 } extract;
 
-/* The columns that every row begins with, and what they are called in the
- * tables that have them too. */
+/* The columns that every row begins with, by the names in the tables. */
 static const char *const keys[] = {"step", "increment", "time"};
 
 static int is_key(const char *name) {

@@ -33,8 +33,7 @@ typedef struct pass {
   job_input *in, next; /* of this pass; of the next, once it is read */
   pass_row rows[MAX_PASS_ROWS], forecast;
   int n;                     /* rows, this pass included */
-  double energy;             /* J, largest strain energy: the increment
-                                that counts */
+  double energy;             /* J, largest strain energy that counts */
   double mesh, time, solver; /* -, errors there */
   int coarse;                /* 1: that of the mesh may be twice as large */
   double *eta;               /* [n_elem] shares of the elements there */
@@ -45,16 +44,14 @@ typedef struct pass {
                                 lengths are the largest of all passes */
   double *first_size;        /* [first->n_node] m */
   double unknowns;           /* of this pass */
-  double dt, tol;            /* factors on the increments and tolerances of
-                                the deck */
+  double dt, tol;            /* factors on increments and tolerances */
   struct {
     double mesh, last_mesh; /* of meshing; of the pass before */
     double start;           /* of the process when the pass began */
     double meshed;          /* of that on meshes */
   } cpu;                    /* s */
   int done;                 /* 1: no other pass */
-  char why[256];            /* the target is missed; "" if it is
-                               reached */
+  char why[256];            /* why the target is missed; or "" */
 } pass;
 
 /* ---- observing ----------------------------------------------------------- */
@@ -108,8 +105,7 @@ static void miss(pass *p, const char *why) {
   snprintf(p->why, sizeof p->why, "%s", why);
 }
 
-/* Error allowed to the mesh: the rest of the target, if the others are within
- * their shares. */
+/* Error allowed to the mesh: what the shares of the others leave. */
 static double mesh_goal(const pass *p) {
   double goal = p->target->percent / 100.0;
   if (p->time > TIME_SHARE * goal || p->solver > SOLVER_SHARE * goal)
@@ -291,8 +287,7 @@ static status report_pass(const pass *p) {
   return text_flush_output();
 }
 
-/* Forecast of a tenth of the error reached; that of goals is of second order.
- */
+/* Forecast of a tenth of the error; goals are of second order. */
 static pass_row next_digit(const pass *p) {
   const pass_row *r = &p->rows[p->n - 1];
   const int dim = p->in->m->dim;
@@ -327,8 +322,7 @@ static status begin(pass *p, const job_input *in) {
   return OK;
 }
 
-/* Its messages are those of the first pass, shown only if something is wrong.
- */
+/* Its messages are those of the first pass: shown on errors. */
 static status read_next(pass *p) {
   job_mesh other = {0};
   p->cpu.start = timer_cpu();
@@ -354,8 +348,7 @@ static status stop_asked(const pass *p) {
                      interrupt_name(), p->n);
 }
 
-/* While the files of the pass are open: they have the exit code of a failure.
- */
+/* While the files of the pass are open, for the code of a failure. */
 static status prepare_next(pass *p) {
   status st = stop_asked(p);
   if (st == OK) st = read_next(p);
@@ -441,9 +434,6 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
 done:
   drop_next(&p);
   if (p.first != in->msh) memory_free(p.first);
-  RELEASE(p.eta, p.size, p.first_size);
-  memory_free(p.before);
-  memory_free(p.contact);
-  memory_free(p.goals);
+  RELEASE(p.eta, p.size, p.first_size, p.before, p.contact, p.goals);
   return st;
 }

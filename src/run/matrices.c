@@ -20,8 +20,7 @@ const double *run_elasticity(const run *r, int elem_id) {
 void matrices_free(matrices *m) {
   contact_solver_free(&m->solver);
   condensed_free(m->c);
-  memory_free(m->k);
-  memory_free(m->E);
+  RELEASE(m->k, m->E);
   *m = (matrices){0};
 }
 

@@ -214,8 +214,7 @@ static void find_totals(run *r) {
   for (int i = 0; i < r->nodes.n; ++i) add_node(r, i);
 }
 
-/* Torque of the contacts about their axes; one taken from an obstacle is where
- * MOVE has brought it. */
+/* Torque of the contacts about their axes, where MOVE has brought them. */
 static void find_torques(run *r) {
   for (int i = 0; i < r->m->n.contact && r->result.torque != NULL; ++i) {
     const contact *c = &r->m->contacts[i];
@@ -241,8 +240,7 @@ static status relaxed_energy(const run *r, double *kept) {
   for (int i = 0; i < r->m->n.material; ++i)
     any |= r->m->materials[i].is_relaxed;
   if (!any) return OK;
-  OWNED double *sigma = NULL;
-  PASS_NEW(sigma, (size_t)ns * r->msh->n_elem);
+  OWNED_NEW(double, sigma, (size_t)ns * r->msh->n_elem);
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
   for (int e = 0; e < r->msh->n_elem; ++e) {
     const material *mat = run_material(r, e);
@@ -250,7 +248,7 @@ static status relaxed_energy(const run *r, double *kept) {
     const double *own = sigma + (size_t)ns * e;
     if (!mat->is_relaxed) continue;
     tensor_product(ns, mat->relaxed, own, strain);
-    *kept += 0.5 * element_weight(&r->body.d, e) * tensor_dot(ns, own, strain);
+    *kept += 0.5 * element_weight(&r->body.d, e) * dot(ns, own, strain);
   }
   return OK;
 }

@@ -4,19 +4,14 @@
  */
 #pragma once
 
-#include "accuracy/accuracy.h"
 #include "accuracy/goal/goal.h"
 #include "accuracy/solutions.h"
-#include "fem/fem.h"
-#include "model/model.h"
-#include "material/scheme/scheme.h"
 #include "run/start/start.h"
 #include "accuracy/theorems/theorems.h"
 
 struct run;
 
-/* Of *REFERENCE, relative to the norm of the closed form, -; NAN: not
- * available. */
+/* Of *REFERENCE over the norm of the closed form, -; NAN: none. */
 typedef struct true_error {
   int asked;
   double energy;       /* of the stresses, integral of s' inv(E) s; without

@@ -1,7 +1,6 @@
 /*
  * Strains that carry no stress, e0 = e_th of the temperature + e^i of the
- * inelastic laws, sigma = E (e - e0): stored only for the elements that can
- * have any.
+ * inelastic laws, sigma = E (e - e0): stored for elements that can have it.
  */
 #include "base/base.h"
 #include "model/facts.h"
@@ -75,15 +74,13 @@ const double *strains_load(run *r) {
   return r->strains.load;
 }
 
-/* Item k of r->strains.eigen: strain energy per volume that the change of the
- * moduli has set free, exact as the trapezoidal works are: 1/2 e_old (E_old -
- * E) e. */
+/* Item k of r->strains.eigen: energy per volume set free by the change of the
+ * moduli, exact as the trapezoidal works are: 1/2 e_old (E_old - E) e. */
 static double softened(const run *r, int k) {
   const equilibrium *a = &r->old, *b = &r->now;
   if (a->elastic == NULL) return 0.0;
-  return 0.5 *
-         (tensor_dot(r->m->ns, a->sigma + at(r, k), b->elastic + at(r, k)) -
-          tensor_dot(r->m->ns, b->sigma + at(r, k), a->elastic + at(r, k)));
+  return 0.5 * (dot(r->m->ns, a->sigma + at(r, k), b->elastic + at(r, k)) -
+                dot(r->m->ns, b->sigma + at(r, k), a->elastic + at(r, k)));
 }
 
 /* Stresses of the items and their strains without stress, thermal ones apart
@@ -118,7 +115,7 @@ static void item_work(const run *r, const item_ends *x, int k, energies *e,
   e->inelastic += w * (all - thermal);
   tensor_product(ns, run_elasticity(r, r->strains.elem[k]), x->e0[1] + at(r, k),
                  stress);
-  *held += 0.5 * w * tensor_dot(ns, x->e0[1] + at(r, k), stress);
+  *held += 0.5 * w * dot(ns, x->e0[1] + at(r, k), stress);
 }
 
 /* Items from, ..., to - 1, which hold whole clusters. */

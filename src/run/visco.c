@@ -12,8 +12,7 @@
 /* The error of the midpoint rule in its difference to the trapezoidal one. */
 static const double SIMPSON = 3.0;
 
-/* The laws of the points have few rows, the contact between their calls as
- * many as there are. */
+/* Laws have few rows; the contact between has as many as there are. */
 static void leave_laws(const run *r) {
   timer_leave(STAGE_INELASTIC);
   blas_rows(r->problem.cp.m);
@@ -46,8 +45,7 @@ static status begin(void *ctx, flow_state *s) {
 }
 
 /* The iteration on stresses may not converge below the residual of contact:
- * TOL=BALANCED does not loosen that, and it is lower where the iteration
- * requires it. */
+ * TOL=BALANCED does not loosen that, and the iteration may lower it. */
 static status linear(void *ctx, const flow_tangent *law, flow_state *s,
                      int *settled) {
   run *r = ctx;

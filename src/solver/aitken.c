@@ -47,7 +47,6 @@ enum {
   PATIENCE = 400, /* sweeps without a lower residual before a remedy */
   OFTEN = 20      /* one old pattern in so many sweeps is a cycle */
 };
-static const double PROGRESS = 0.9;    /* a lower residual is lower by this */
 static const double FARTHER = 4.0;     /* -, growth of |F|^2 that is accepted */
 static const double DEPENDENT = 1e-14; /* -, of |dF|^2: adds nothing */
 
@@ -132,8 +131,7 @@ static void keep(run *s) {
   }
 }
 
-/* gamma[kept], newest first, by elimination; a difference that depends on the
- * newer ones is left out. */
+/* gamma[kept], newest first, by elimination without dependent ones. */
 static void weights(const run *s, double *gamma) {
   double N[DEPTH][DEPTH + 1], first[DEPTH];
   int n = s->kept, place[DEPTH];
@@ -189,8 +187,7 @@ static void accelerate(run *s, int k) {
 
 /* ---- control ------------------------------------------------------------ */
 
-/* No progress for long: alternate forward and backward sweeps, then shorter
- * steps. 0: no remedy left. */
+/* No progress: alternate sweeps, then shorter steps. 0: no remedy left. */
 static int cure(run *s) {
   static const double shorter[] = {1.0, 0.6, 0.3};
   forget(s);
@@ -254,10 +251,7 @@ static outcome sweeps(run *s, const solver_control *control,
     if (!solver_promises(control->promise, k, residual, control->tol))
       return STOPPED_ITERATIONS;
     s->circling += cycle;
-    if (residual < PROGRESS * s->mark) {
-      s->mark = residual;
-      s->since = s->circling = 0;
-    }
+    if (solver_progresses(&s->mark, residual)) s->since = s->circling = 0;
     int circles = OFTEN * s->circling > s->since;
     if (s->since > PATIENCE && !cure(s))
       return circles ? STOPPED_CYCLE : STOPPED_STAGNATION;

@@ -10,12 +10,10 @@ enum {
   PATIENCE = 30, /* passes without a lower residual */
   IDLE = 2       /* iterations of a pass without effect */
 };
-static const double PROGRESS = 0.9; /* -, a lower residual */
-static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
-static const double COARSE = 0.9;   /* -, of it: enough where passes stagnate */
+static const double FINEST = 0.1; /* -, of the tolerance: enough for a pass */
+static const double COARSE = 0.9; /* -, of it: enough where passes stagnate */
 static const double MIXING_RATE = 0.2;     /* -, slower: mix */
-static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: shorter differences
-                                              are rounding */
+static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: below is rounding */
 static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g */
 
 struct fixed_point {
@@ -97,8 +95,7 @@ static void next_limit(const fixed_point *fp, double step, int mixed,
   }
 }
 
-/* The iterations left to the next pass of those allowed in all; 0: no bound.
- * Returns 0 if none is left. */
+/* The iterations left to the next pass; 0: no bound. Returns 0: none left. */
 static int iterations_left(const solver_control *control,
                            const solver_report *rep, int *left) {
   *left = 0;
@@ -166,18 +163,14 @@ static void accept(fixed_point *fp, course *c, double defect, int first) {
   COPY(fp->last_G, fp->image, fp->n);
 }
 
-/* Check the pass just made; set the limit of the next one in fp->g. 0: no
- * further pass. */
+/* Check the pass; set the limit of the next in fp->g. 0: no further one. */
 static int advance(fixed_point *fp, course *c, double residual, int first) {
   double defect = 0.0;
   for (int i = 0; i < fp->n; ++i)
     defect += (fp->image[i] - fp->g[i]) * (fp->image[i] - fp->g[i]);
   defect = sqrt(defect);
   ++c->since;
-  if (residual < PROGRESS * c->lowest) {
-    c->lowest = residual;
-    c->since = 0;
-  }
+  if (solver_progresses(&c->lowest, residual)) c->since = 0;
   if (c->since > PATIENCE) return 0;
   int grew = !first && !(defect < c->defect);
   if (c->mixed && grew) {
@@ -233,8 +226,7 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
       return OK;
     }
     rep->limit_updates = p.control.limit_update = k;
-    /* not finer than the accuracy of the limit; finer if the last pass had no
-     * effect */
+    /* not below the accuracy of the limit; finer after an idle pass */
     int idle = rep->iterations - before <= IDLE;
     double wanted = fmin(1e-2 * change, idle ? 0.1 * c.lowest : HUGE_VAL);
     before = rep->iterations;

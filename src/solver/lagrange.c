@@ -9,10 +9,9 @@
  *
  * P the projection on r_n <= 0, |r_t| <= g, o the gap and the stick position, D
  * the inverse diagonal of W = inv(A). theta = 0 is Uzawa's method; with
- * Nesterov's theta_k (1983), begun again when a step turns against the gradient
- * (O'Donoghue, Candes 2015), the number of steps grows with the square root of
- * the condition of D W only. u is carried by the combination of r, so a step is
- * one product with W.
+ * Nesterov's theta_k (1983), restarted by the gradient (O'Donoghue, Candes
+ * 2015), the number of steps grows with the square root of the condition of D W
+ * only. u is carried by the combination of r, so a step is one product with W.
  *
  * The step rho is 1/largest eigenvalue of D W. The power method gives it a
  * little too large; every step checks what descent needs,
@@ -42,9 +41,7 @@ enum {
   STEPS = 100000, /* default limit */
   PATIENCE = 2000 /* steps without a lower residual */
 };
-static const double PROGRESS = 0.9;     /* a lower residual is lower by this */
-static const double ROUNDING = 0x1p-30; /* -, of |r|^2: a shorter step shows
-                                          rounding only */
+static const double ROUNDING = 0x1p-30; /* -, of |r|^2: below is rounding */
 static const double LONGER = 0.98;      /* share of the eigenvalue seen */
 
 typedef struct lagrange_work {
@@ -103,15 +100,11 @@ static outcome check(run *s, int k) {
   solver_report_step(s->control, "lagrange", k, residual);
   if (isnan(residual)) return STOPPED_NAN;
   if (residual <= s->control->tol) return CONVERGED;
-  if (residual < PROGRESS * s->mark) {
-    s->mark = residual;
-    s->since = k;
-  }
+  if (solver_progresses(&s->mark, residual)) s->since = k;
   return k - s->since > PATIENCE ? STOPPED_STAGNATION : RUNNING;
 }
 
-/* r and x after a step of gradient projection from y; 0: the step was too long
- * and is now shorter. */
+/* r and x after a gradient step from y; 0: it was too long, now shorter. */
 static int project_step(run *s) {
   lagrange_work *w = s->w;
   const force_set *set = w->set;

@@ -51,7 +51,6 @@ enum {
   PATIENCE = 500, /* steps without a lower residual */
   HALVINGS = 3    /* of a projected step that does not descend */
 };
-static const double PROGRESS = 0.9; /* a lower residual is lower by this */
 static const double ON_THE_RIM = 0x1p-20; /* -, of g: counts as |r_t| = g */
 static const double ROUNDING = 0x1p-48;   /* -, of the terms of J */
 static const double ENOUGH =
@@ -214,10 +213,7 @@ static outcome check(run *s) {
   solver_report_step(s->control, "pcg", s->steps, s->residual);
   if (isnan(s->residual)) return STOPPED_NAN;
   if (s->residual <= s->control->tol) return CONVERGED;
-  if (s->residual < PROGRESS * s->mark) {
-    s->mark = s->residual;
-    s->since = s->steps;
-  }
+  if (solver_progresses(&s->mark, s->residual)) s->since = s->steps;
   if (s->steps - s->since > PATIENCE) return STOPPED_STAGNATION;
   return s->steps >= s->limit ? STOPPED_ITERATIONS : RUNNING;
 }
@@ -247,8 +243,7 @@ static void curvature_product(run *s) {
       w->v[i * cp->dim + k] += w->turn[i] * w->p[i * cp->dim + k];
 }
 
-/* r to r0 + share*(v - r0) and into the set; x there. 1: J has not grown but by
- * rounding. */
+/* r to r0 + share*(v - r0) and into the set; 1: J has not grown. */
 static int arrive(run *s, double share, const double *aim) {
   pcg_work *w = s->w;
   int m = s->cp->m;

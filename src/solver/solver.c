@@ -5,6 +5,12 @@ static const double FEW_DIGITS = 1e-4; /* -, tolerance */
 
 int solver_few_digits(double tol) { return tol >= FEW_DIGITS; }
 
+int solver_progresses(double *mark, double residual) {
+  if (!(residual < 0.9 * *mark)) return 0;
+  *mark = residual;
+  return 1;
+}
+
 void solver_report_all(const solver_control *control, const solver_step *s) {
   const solver_listener *l = control->listener;
   solver_step step = *s;

@@ -8,7 +8,6 @@
 
 #include "base/archive/archive.h"
 #include "base/option.h"
-#include "base/outcome.h"
 #include "contact/contact.h"
 
 typedef struct solver_report {
@@ -21,8 +20,7 @@ typedef struct solver_report {
   const char *solver; /* the method that converged */
 } solver_report;
 
-/* The linear system of an iteration; unknowns 0: there is none, or it is not
- * told. */
+/* The linear system of an iteration; unknowns 0: none, or not told. */
 typedef struct linear_work {
   double unknowns; /* of the matrix */
   double entries;  /* of the factor in use */
@@ -45,8 +43,7 @@ typedef struct solver_listener {
   void *ctx;
 } solver_listener;
 
-/* Sweeps go on while their rate, observed over "every" of them, predicts the
- * answer within "most". */
+/* Sweeps go on while the rate of "every" predicts the end within "most". */
 typedef struct sweep_promise {
   int every;
   double most;
@@ -62,8 +59,7 @@ typedef struct solver_control {
   int max_iter;                    /* 0: the solver's own limit */
   int limit_max_iter;              /* passes of a fixed point on g; 0: 200 */
   double scale;                    /* contact_scale; 0: not known */
-  int no_restart;                  /* 1: stop rather than start again from
-                                      another guess */
+  int no_restart;                  /* 1: no start from another guess */
   int limit_update;                /* pass now running, for the listener */
   sweep_promise *promise;          /* of sweeps; or NULL */
   const solver_listener *listener; /* or NULL */
@@ -85,8 +81,7 @@ enum {
 typedef struct solver_ops {
   const char *name;    /* METHOD= in lower case; what the manual tells
                           of it stands in src/manual/methods.txt */
-  const char *family;  /* kind of method: two of one family share their
-                          weaknesses */
+  const char *family;  /* two of one kind share their weaknesses */
   unsigned handles;    /* bits above */
   const char *entries; /* the method and why it needs the entries of
                           A; NULL: an operator (contact/operator.h)
@@ -127,12 +122,13 @@ status solver_set_up(const solver_ops *ops, const contact_problem *cp,
 /* 1: the tolerance is so loose (TOL=BALANCED) that an iterate within it is
  * accepted, even where one more step would be exact. */
 int solver_few_digits(double tol);
+/* 1: a residual below nine tenths of that of the last progress, *mark. */
+int solver_progresses(double *mark, double residual);
 /* To the listener, with the pass of the limit. */
 void solver_report_all(const solver_control *control, const solver_step *s);
 void solver_report_step(const solver_control *control, const char *solver,
                         int iteration, double residual);
-/* The same with the nodes that changed their state, and whether a pattern of
- * states was repeated. */
+/* The same with nodes that changed, and whether a pattern came again. */
 void solver_report_states(const solver_control *control, const char *solver,
                           int iteration, double residual, int changes,
                           int cycle);

@@ -37,7 +37,6 @@ enum {
   CHECK = 10,     /* sweeps from one check of the residual to the next */
   PATIENCE = 30   /* checks without a lower residual before a remedy */
 };
-static const double PROGRESS = 0.9; /* a lower residual is lower by this */
 
 typedef struct sor_work {
   node_blocks *blocks;
@@ -97,8 +96,7 @@ static void choose_omega(relaxation *s, course *c) {
   if (wanted > omega) s->omega = fmin(wanted, c->omega_cap);
 }
 
-/* No progress for long: less relaxation, then another order, then damping. 0:
- * no remedy left. */
+/* No progress: less relaxation, another order, damping. 0: none left. */
 static int cure(relaxation *s, course *c) {
   c->since = c->circling = 0;
   c->mark = HUGE_VAL;
@@ -125,8 +123,7 @@ static double check(relaxation *s, course *c, double scale) {
   relaxation_refresh(s);
   double residual = contact_mismatch(s->cp, scale, s->u, s->r, NULL);
   solver_keep_best(c->kept, s->cp->m, residual, s->u, s->r);
-  if (residual < PROGRESS * c->mark) {
-    c->mark = residual;
+  if (solver_progresses(&c->mark, residual)) {
     c->since = c->circling = 0;
   } else {
     ++c->since;

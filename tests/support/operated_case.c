@@ -9,16 +9,11 @@
 
 static const double LARGER = 1.7; /* -, diagonal said over the true one       */
 
-static void apply(void *ctx, const double *u, double *Au) {
+static void apply(void *ctx, const double *u, double *Au, double *size) {
   const operated_case *o = ctx;
   contact_product(o->of.m, o->of.A, u, Au);
   for (int i = 0; i < o->of.m; ++i)
     if (contact_held(&o->of, i)) Au[i] = o->diagonal[i] * u[i];
-}
-
-static void apply_sizes(void *ctx, const double *u, double *Au, double *size) {
-  const operated_case *o = ctx;
-  apply(ctx, u, Au);
   for (int i = 0; i < o->of.m && size != NULL; ++i) {
     size[i] = 0;
     for (int j = 0; j < o->of.m; ++j)
@@ -88,7 +83,7 @@ static void solve(void *ctx, const double *b, double *x, double *Ax) {
   LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', m, 1, o->M, m, o->y, m);
   for (int i = 0; i < m; ++i)
     if (!is_out(o, i)) x[i] = o->y[i];
-  apply(ctx, x, Ax);
+  apply(ctx, x, Ax, NULL);
 }
 
 static void set_response(void *ctx, const unsigned char *at) {}
@@ -153,7 +148,6 @@ operated_case *operated_new(contact_case *c) {
                              .n_body = o->bodies->n,
                              .room = o->room,
                              .apply = apply,
-                             .apply_sizes = apply_sizes,
                              .set_rows = set_rows,
                              .solve = solve,
                              .set_response = set_response,

@@ -134,7 +134,7 @@ START_TEST(springs_of_an_operator_are_in_its_inverse) {
   for (int i = 0; i < M; ++i) b[i] = case_random(&seed) - 0.4;
   ck_assert_int_eq(an.op.set_rows(an.op.ctx, &none, &singular), OK);
   an.op.solve(an.op.ctx, b, u, Au);
-  an.op.apply(an.op.ctx, u, Ax);
+  an.op.apply(an.op.ctx, u, Ax, NULL);
   for (int i = 0; i < M; ++i) {
     ck_assert_double_eq_tol(Ax[i], b[i], 1e-11);
     ck_assert_double_eq_tol(Au[i], b[i], 1e-11);

@@ -1,6 +1,6 @@
-/* src/contact/average/box_tree: search of items near a point and along a line,
+/* src/base/box_tree: search of items near a point and along a line,
  * against all items one by one. */
-#include "contact/average/box_tree.h"
+#include "base/box_tree.h"
 #include "support/unit.h"
 
 #include <math.h>

@@ -46,7 +46,7 @@ static double energy_now(void) {
   double e[6], stored = 0.0;
   tensor_product(6, b.c.elastic.S, b.old.sigma, e);
   ck_assert_int_eq(flow_add_stored(&b.x, &b.old, 0, 1, &stored), OK);
-  return 0.5 * tensor_dot(6, b.old.sigma, e) + stored;
+  return 0.5 * dot(6, b.old.sigma, e) + stored;
 }
 
 static double theta_of(const scheme *s) {

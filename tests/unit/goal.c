@@ -213,7 +213,7 @@ typedef struct by_solves {
   double added[3 * MOST], diagonal[MOST];
 } by_solves;
 
-static void apply(void *ctx, const double *u, double *Au) {
+static void apply(void *ctx, const double *u, double *Au, double *size) {
   const by_solves *b = ctx;
   contact_product(b->cp->m, b->cp->A, u, Au);
 }

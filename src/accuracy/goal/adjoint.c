@@ -6,8 +6,7 @@
  *
  * on the free unknowns F, e the direction of the friction force. A matrix has a
  * factor of M; with an operator, S = A_FF + kappa (I - e e') is solved by its
- * factor, and what friction adds by GMRES (Saad, Schultz 1986) with S as
- * preconditioner:
+ * factor, friction by GMRES (Saad, Schultz 1986) with S as preconditioner:
  *
  *   M  x = b:  (I + e B A_n inv(S)) v = b,  x = inv(S) v
  *   M' w = b:  (I + inv(S) A_Fn B' e) w = inv(S) b
@@ -157,8 +156,7 @@ static void precondition(linear_system *s, int transposed, const double *v,
   linear_add_friction(rows, s->Ax, y);
 }
 
-/* Column j of H[(DIRECTIONS+1)*] by w against the directions V, which becomes
- * the next one. */
+/* Column j of H[(DIRECTIONS+1)*] by w against V, which gets the next one. */
 static void orthogonalise(int m, int j, double *V, double *h) {
   double *w = V + (size_t)m * (j + 1);
   for (int pass = 0; pass < 2; ++pass)
@@ -181,8 +179,7 @@ static status gmres(linear_system *s, int transposed, double *x) {
   double left = size, *h = H;
   int n = 0;
   if (!(size > 0.0)) return OK;
-  OWNED double *V = NULL;
-  PASS_NEW(V, (size_t)m * (DIRECTIONS + 1));
+  OWNED_NEW(double, V, ((size_t)m * (DIRECTIONS + 1)));
   for (int k = 0; k < m; ++k) V[k] = x[k] / size;
   for (; n < DIRECTIONS && left > ENOUGH * size; h += DIRECTIONS + 1) {
     double *v = V + (size_t)m * n;
@@ -197,8 +194,7 @@ static status gmres(linear_system *s, int transposed, double *x) {
   return OK;
 }
 
-/* The free rows of b[m] less those of friction of the known x: by S, then by
- * GMRES. */
+/* The free rows of b[m] less friction of the known x: by S, then GMRES. */
 static status solve_operated(linear_system *s, const double *b, double *x) {
   const linear_states *rows = s->rows;
   const contact_operator *op = rows->cp->op;
@@ -270,8 +266,7 @@ static status linear_solve(linear_system *s, const double *b, double *x) {
   return OK;
 }
 
-/* w[m]: M' w = b at the free unknowns, B' (e.w_t) on closed normals, else 0.
- * ERR_MEMORY. */
+/* w[m]: M' w = b where free, B' (e.w_t) on closed normals; ERR_MEMORY. */
 static status linear_solve_transposed(linear_system *s, const double *b,
                                       double *w) {
   CLEAR(w, s->rows->cp->m);
@@ -373,8 +368,7 @@ status contact_adjoint_solve(contact_adjoint *a, const double *j,
   for (int k = 0; k < cp->m; ++k) y[k] += a->w[k];
   contact_apply(cp, y, a->Ax);
   *solver = misses(a, j, y);
-  /* Where a node sticks, the rest of the adjoint equation; in space slip turns
-   * with it. */
+  /* Where a node sticks, the rest of the equation; in 3-D slip turns. */
   CLEAR(a->stick, cp->m);
   linear_add_turn(&a->rows, a->w, a->stick);
   for (int k = 0; k < cp->m; ++k)

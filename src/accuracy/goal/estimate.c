@@ -221,8 +221,7 @@ static void add_strain(int dim, const double *g, const double *d, double *e) {
 
 static int edges_of(int dim) { return dim == 2 ? 3 : 6; }
 
-/* Adds edge (a, b), number "edge" of an element with the gradients g, where d
- * is in its bubble. */
+/* Adds edge (a, b), number "edge", d in its bubble; g: gradients of P1. */
 static void add_bubble(const domain *d, int elem_id, const int *edge,
                        const double *g, const double *of, bubbles *to) {
   const int dim = d->mesh->dim, a = edge[0], b = edge[1];
@@ -542,8 +541,7 @@ static double axi_strains(const goal_estimator *e, int elem_id, int point,
 }
 
 /* Integral of (tau - sigma(y)) : e(b) over an axisymmetric element, where hoop
- * strains and the turn vary; tau[4] of it, that of u and w at each point, or
- * NULL. */
+ * strains and the turn vary; tau[4] of u and w at each point, or NULL. */
 static double axi_residual(const goal_estimator *e, int elem_id,
                            const double *y, const double *tau, int of_u,
                            const bubbles *b) {
@@ -617,8 +615,7 @@ static int is_axi(const goal_estimator *e, int elem_id) {
   return e->s.d->kin[e->s.d->section_id[elem_id]] == AXISYMMETRIC;
 }
 
-/* Integral of (tau - sigma(y)) : e(b) over an element, of a field in bubbles.
- */
+/* Integral of (tau - sigma(y)) : e(b) over an element, b in bubbles. */
 static double residual_of(const goal_estimator *e, int elem_id, const double *y,
                           const double *tau, int of_u, const bubbles *in) {
   const size_t ns = e->s.d->ns, at = ns * elem_id;
@@ -699,8 +696,7 @@ static double hoop_of(const goal_estimator *e, int elem_id, const double *y) {
          (mean[0] * mean[1] / mean[2] - sum) / mean[2];
 }
 
-/* Of an axisymmetric element: F'y is what the estimate has by y. zero[2*n_node]
- * stays so. */
+/* Of an axisymmetric element: F'y is what y gives. zero[2*n_node] stays. */
 static void add_axi_force(const goal_estimator *e, int elem_id, double *zero,
                           double *F) {
   const int *v = e->s.d->mesh->elem + 3 * elem_id;
@@ -729,8 +725,7 @@ void goal_estimator_force(goal_estimator *e, double *F) {
   for (size_t k = 0; k < n; ++k) F[k] = -F[k];
 }
 
-/* e->by_given: where friction rubs 1 - integral of sigma : e(y) over twice the
- * energy. */
+/* e->by_given: where friction rubs 1 - integral of sigma : e(y) over 2 E. */
 static void set_share(goal_estimator *e, const double *y) {
   const double whole = 2.0 * domain_strain_energy(e->s.d, e->s.u);
   e->by_given = 1.0;

@@ -7,8 +7,7 @@
  * lack. Measured on plane scenes with known goals: the estimate is within a
  * factor of 2 in 91 % of all cases below TRUSTED, and the true value in the
  * band in 91 to 95 % whatever the share. */
-static const double TRUSTED = 0.03; /* -, share of the contact ends,
-                                      of few nodes */
+static const double TRUSTED = 0.03; /* -, share of contact ends, of few nodes */
 /* What the estimate lacks by infinite stresses was up to 3.4 of their share, by
  * a zone of one to three nodes up to 2.6 of all of it. */
 static const double SHARP = 4.0;     /* -, band by it */

@@ -11,8 +11,7 @@
  */
 #include "accuracy/theorems/theorems.h"
 
-/* A contact problem with part of its sliding limit and of its normal forces
- * given (theorems.h). */
+/* A contact problem with part of its limit and forces given (theorems.h). */
 
 static int is_given(const unsigned char *given, int i) {
   return given != NULL && given[i];
@@ -70,8 +69,7 @@ void frozen_free(frozen_problem *p) {
   *p = (frozen_problem){0};
 }
 
-/* ---- The fixed point of Theorem 3.2 of CPR98: rate and constants
- * (theorems.h). */
+/* ---- The fixed point of Theorem 3.2 of CPR98 (theorems.h). */
 
 enum { PASSES = 120 };
 static const double STEADY =
@@ -91,18 +89,13 @@ status theorems_path_rate(const stress_map *map, double *rate) {
   return OK;
 }
 
-/* log(x^k/k!) */
-static double log_term(double x, double k) {
-  return k * log(x) - lgamma(k + 1.0);
-}
-
 double theorems_passes(double x) {
   double low = floor(x), high = 4.0 + ceil(3.0 * x);
   if (x < 1.0) return 1.0;
   if (!(high < 1e15)) return HUGE_VAL;
   while (high - low > 1.0) { /* the terms grow until k = x, then fall */
     double middle = floor(0.5 * (low + high));
-    if (log_term(x, middle) < 0.0)
+    if (middle * log(x) - lgamma(middle + 1.0) < 0.0) /* log(x^k/k!) */
       high = middle;
     else
       low = middle;

@@ -63,10 +63,9 @@ static void lanczos_step(const symmetric_map *map, lanczos *s, double *v) {
 }
 
 /*
- * Added at the end: the residual, or what the last half of the steps has still
- * added if that is more. Where eigenvalues crowd at the top, as those of
- * springs in a row, the error falls with the square of the steps and is a third
- * of it.
+ * Added at the end: the residual, or what the last half of the steps added if
+ * more. Where eigenvalues crowd at the top, as those of springs in a row, the
+ * error falls with the square of the steps and is a third of it.
  */
 static status lanczos_run(const symmetric_map *map, lanczos *s, double *v,
                           double *largest) {
@@ -119,8 +118,7 @@ status energy_norm_new(int m, const double *A, energy_norm *out) {
 }
 
 void energy_norm_free(energy_norm *e) {
-  memory_free(e->inverse);
-  RELEASE(e->x, e->y);
+  RELEASE(e->inverse, e->x, e->y);
   *e = (energy_norm){0};
 }
 
@@ -200,13 +198,6 @@ static int has_row(const contact_problem *cp, int i) {
   return 0;
 }
 
-/* Nodes whose pressure moves a limit: pressed[n]. */
-static void find_pressed(const contact_problem *cp, unsigned char *pressed) {
-  const sparse_rows *B = cp->B;
-  for (int e = 0; B != NULL && e < B->start[B->n]; ++e)
-    if (B->val[e] != 0.0) pressed[B->col[e]] = 1;
-}
-
 static status largest_of(const block *b,
                          void (*apply)(void *ctx, const double *x, double *y),
                          double *largest) {
@@ -222,8 +213,7 @@ static int is_loose(const block *b) {
   if (b->e->inverse == NULL) return 1;
   for (int c = 0; c < e->n_kernel; ++c) {
     const double *z = e->kernel + (size_t)c * b->cp->m;
-    double most = 0.0, part = 0.0;
-    for (int k = 0; k < b->cp->m; ++k) most = fmax(most, fabs(z[k]));
+    double most = largest_entry(b->cp->m, z), part = 0.0;
     for (int k = 0; k < b->n; ++k) part = fmax(part, fabs(z[b->dof[k]]));
     if (part > MOVES * most) return 1;
   }
@@ -248,7 +238,10 @@ status friction_constants(const contact_problem *cp, energy_norm *e, int limits,
   OWNED_NEW(int, dof, cp->m);
   OWNED_NEW(unsigned char, pressed, cp->n);
   block b = {.cp = cp, .e = e, .dof = dof};
-  find_pressed(cp, pressed);
+  /* Nodes whose pressure moves a limit: pressed[n]. */
+  const sparse_rows *B = cp->B;
+  for (int k = 0; B != NULL && k < B->start[B->n]; ++k)
+    if (B->val[k] != 0.0) pressed[B->col[k]] = 1;
   for (int i = 0; i < cp->n; ++i)
     if (pressed[i]) b.dof[b.n++] = cp->dim * i;
   PASS(largest_of(&b, apply_stiffness, &out->normal));

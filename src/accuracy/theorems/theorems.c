@@ -9,9 +9,8 @@
 
 enum { FIELDS_OF_ALL = 32 };
 
-/* Components that a test field changes at a node. Where friction or pressure
- * dominate, a defect of the other shows only if the dominant one is
- * unchanged. */
+/* Components that a test field changes at a node. Of friction or pressure a
+ * defect of the smaller one shows only if the dominant one is unchanged. */
 typedef enum { ALONG_N, ONTO_BOUND, ALONG_T, TO_REST, ANYWHERE } move;
 static const move moves[] = {ONTO_BOUND, ALONG_N,  ALONG_N,  ALONG_N,
                              ALONG_N,    TO_REST,  ALONG_T,  ALONG_T,
@@ -209,8 +208,7 @@ static status know_matrix(theorems *t, const contact_problem *cp) {
   t->fresh = !same_matrix(t, cp);
   if (!t->fresh) return OK;
   energy_norm_free(&t->norm);
-  memory_free(t->diagonal);
-  t->diagonal = NULL;
+  FORGET(t->diagonal);
   forget_friction(t);
   state_before_free(&t->before);
   PASS_NEW(t->diagonal, cp->m);
@@ -228,8 +226,7 @@ static int same_friction(const theorems *t, const contact_problem *cp) {
   return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
 }
 
-/* 1 if a node of the contact has a limit that follows pressure; keep[n] marks
- * its nodes. */
+/* 1: a node has a limit that follows pressure; keep[n] marks them. */
 static int mark_contact(const theorems_scene *s, const contact_problem *cp,
                         int contact_id, unsigned char *keep) {
   int any = 0;
@@ -282,8 +279,7 @@ static mu_regime regime_of(const theorems_contact *row) {
   return row->rate < 1.0 ? MU_BETWEEN : MU_ABOVE;
 }
 
-/* The measured rate of one row, with the limits of other contacts fixed.
- */
+/* The measured rate of one row, the limits of other contacts fixed. */
 static status measure(const theorems_scene *s, const frozen_problem *p,
                       unsigned char *keep, theorems_contact *row) {
   ENDS_BY(frozen_free) frozen_problem part = {0};

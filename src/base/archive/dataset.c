@@ -1,7 +1,6 @@
 /*
- * Datasets of an HDF5 file from outside: nothing in it is trusted. The
- * library's own error stack stays silent; messages name the file and the
- * dataset.
+ * Datasets of an HDF5 file from outside: nothing in it is trusted. The library
+ * stays silent; messages name the file and the dataset.
  */
 #include "base/archive/dataset.h"
 
@@ -167,10 +166,9 @@ static status read_set(const hdf5_source *s, const char *name, hid_t set,
 status source_ints(const hdf5_source *s, const char *name, int optional,
                    long most, long *n, int **value) {
   HELD hid_t set = -1;
-  OWNED long long *wide = NULL;
   *value = NULL;
   PASS(open_set(s, name, optional, 0, most, &set, n));
-  PASS_NEW(wide, *n);
+  OWNED_NEW(long long, wide, *n);
   if (*n > 0) PASS(read_set(s, name, set, H5T_NATIVE_LLONG, wide));
   for (long k = 0; k < *n; ++k)
     if (wide[k] < INT_MIN || wide[k] > INT_MAX)

@@ -84,8 +84,7 @@ static void limit_openmp(int levels) {
 }
 
 /* Rows from which a factorization gains by a second thread; with fewer the
- * threads synchronize longer than they calculate, on a busy machine a hundred
- * times as long. */
+ * threads synchronize longer than they calculate, on a busy machine by far. */
 enum { SHARED_ROWS = 800 };
 
 static int threads = 1, rows_now = INT_MAX;
@@ -104,15 +103,12 @@ int blas_rows(int rows) {
   return before;
 }
 
-static int addresses_are_limited(struct rlimit *limit) {
-  return getrlimit(RLIMIT_AS, limit) == 0 && limit->rlim_cur != RLIM_INFINITY;
-}
-
 /* OpenBLAS requests its buffers until it gets them: it takes that of this
  * thread now, or the process ends. */
 static void fit_address_space(void) {
   struct rlimit limit;
-  if (!addresses_are_limited(&limit)) return;
+  if (!(getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY))
+    return;
   void *buffer = mmap(NULL, BUFFER, PROT_READ | PROT_WRITE,
                       MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (buffer == MAP_FAILED) {

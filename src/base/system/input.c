@@ -84,8 +84,7 @@ FILE *input_stream(const char *path, const char **why) {
 status input_confine(const char *name) {
   if (confined) close(confined - 1);
   confined = 0;
-  memory_free(folder);
-  folder = NULL;
+  FORGET(folder);
   if (name == NULL) return OK;
   int here = strcmp(name, ".") == 0;
   size_t n = strlen(name), slash = n > 0 && name[n - 1] == '/' ? 0 : 1;

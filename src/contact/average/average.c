@@ -5,7 +5,7 @@
 #include "contact/average/average.h"
 
 #include "base/base.h"
-#include "contact/average/box_tree.h"
+#include "base/box_tree.h"
 
 /* ---- where distances are measured: on the patch itself, or on its lines laid
  * out straight. The straight layout copies the patch; the geodesic one follows
@@ -245,8 +245,7 @@ typedef struct builder {
   double *mass;               /* [n_node] W_i, - */
   sparse_rows raw, by_column; /* g_ij and its transpose, - */
   unsigned char *alone;       /* [n_node] no other node within the radius */
-  double *part;               /* [n_node] share of its pairs that the mass of a
-                                 node allows */
+  double *part;               /* [n_node] share of its pairs its mass allows */
   int *found;                 /* [faces or rim] */
   int *touched, n_touched;    /* [n_node] columns of the current row */
   double *row;                /* [n_node] its values */
@@ -351,15 +350,13 @@ static void add_face(builder *b, int i, int face, const double *x,
   }
 }
 
-/* Entries of a node from one place; a closed line laid out straight is treated
- * from three. */
+/* Entries of a node from one place; a straight closed line has three. */
 static void look_from(builder *b, int i, const double *x, double reach) {
   int n = box_tree_near(&b->faces, x, reach, b->found);
   for (int k = 0; k < n; ++k) add_face(b, i, b->found[k], x, reach);
 }
 
-/* The images of a place in the mirrors, and in two or three one after the
- * other. */
+/* The images of a place in one, two or three of the mirrors. */
 static void look_from_images(builder *b, int i, const double *x, double reach) {
   for (int mask = 1; mask < 1 << b->p->dim; ++mask) {
     double image[3];

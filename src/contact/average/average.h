@@ -25,7 +25,6 @@
 #pragma once
 
 #include "base/sparse.h"
-#include "base/status.h"
 
 /*
  * Kernels w = c k(r/rho) for r < rho and 0 beyond. The integral of w over the
@@ -99,10 +98,8 @@ typedef enum { MIRROR_NONE, MIRROR_MIN, MIRROR_MAX } average_mirror;
 typedef struct average_rule {
   kernel kernel;
   double radius;            /* rho, m */
-  int normalized;           /* 1: G_ij / W_i: a constant pressure is kept at
-                               edges too */
-  int geodesic;             /* 1: distance along the lines (plane only), else
-                               straight */
+  int normalized;           /* 1: G_ij / W_i: uniform stays at edges */
+  int geodesic;             /* 1: distance along lines (plane), else straight */
   average_mirror mirror[3]; /* by axis; not with geodesic, nor of the radius */
 } average_rule;
 

@@ -16,8 +16,7 @@
 /* Slopes, -, from which on an edge is no edge of a curve; of rounding. */
 static const double sharp = 0.3, flat = 1e-9;
 
-/* Coefficients of a quadratic, by the dimension; most nodes that it is fitted
- * to. */
+/* Coefficients of a quadratic, by dimension; most nodes to fit. */
 enum { TERMS = 5, MOST = 60 };
 enum { FITS = 1, FLAT = 2, AT_FLAT = 4 };
 static const int terms_of[4] = {0, 0, 2, TERMS};
@@ -44,8 +43,7 @@ static int face_plane(const shape *s, int k, facet *f) {
 
 static void step(const shape *s, int from, int to, double *e) {
   const mesh *m = s->in->mesh;
-  for (int c = 0; c < m->dim; ++c)
-    e[c] = m->x[m->dim * to + c] - m->x[m->dim * from + c];
+  vector_of(m->dim, m->x + m->dim * from, m->x + m->dim * to, e);
 }
 
 static status find_around(shape *s, int n) {
@@ -136,8 +134,7 @@ static int fit_slopes(const shape *s, const facet *f, double *slope) {
   return rank == n;
 }
 
-/* v less its parts along the unit vectors of an orthogonal base, of length 1.
- */
+/* v less its parts along the unit vectors of a base, of length 1. */
 static void straighten(int dim, int n, double *const *base, double *v) {
   for (int k = 0; k < n; ++k)
     add_scaled(dim, -dot(dim, base[k], v), base[k], v);
@@ -165,8 +162,7 @@ static void find_normal(shape *s, int node) {
   COPY(s->normal + (size_t)dim * node, f.normal, dim);
 }
 
-/* Slope of the surface at a node over the edge e that leaves it, in a face with
- * the normal f. */
+/* Slope of the surface at a node over its edge e in a face of normal f. */
 static double rise(const shape *s, int node, const double *e, const double *f) {
   const int dim = s->in->mesh->dim;
   const double *n = s->normal + (size_t)dim * node;

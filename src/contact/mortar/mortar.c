@@ -1,7 +1,6 @@
 /*
- * The integrals face by face; then the faces of each node are put together. A
- * node turns out to be hardly covered when all faces are done: its faces are
- * done again without it.
+ * The integrals face by face; then by node. A node turns out to be hardly
+ * covered when all faces are done: its faces are done again without it.
  */
 #include "contact/mortar/mortar.h"
 
@@ -38,8 +37,7 @@ typedef struct face_part {
   double masters;  /* int size of the master faces, m3 */
   double more[3];  /* [dim] int psi_j phi of the nodes without multiplier, m2 */
   double lever[9]; /* [dim*dim] the same times their places, m3 */
-  double bulge[3]; /* [dim] int psi_j times what both surfaces have beyond their
-                      faces, m3 */
+  double bulge[3]; /* [dim] int psi_j times what is beyond the faces, m3 */
 } face_part;
 
 typedef struct builder {
@@ -335,9 +333,8 @@ static status do_faces(builder *b) {
 
 /* ---- normals ------------------------------------------------------------- */
 
-/* Normals at the nodes of the masters, from the faces that are partners (not
- * the sides at an edge of the body); where a node of the slave is in P, the
- * opposite of its own. */
+/* Normals at the nodes of the masters, from faces that are partners (no sides
+ * at an edge); where a node of the slave is in P, the opposite of its own. */
 static status set_node_normals(builder *b) {
   const mortar_input *in = b->in;
   const int dim = in->mesh->dim;
@@ -472,12 +469,6 @@ static status add_row(builder *b, int q, entry *row) {
   return OK;
 }
 
-static status add_rows(builder *b) {
-  OWNED_NEW(entry, row, longest_row(b));
-  for (int q = 0; q < b->out->n; ++q) PASS(add_row(b, q, row));
-  return OK;
-}
-
 static status set_links(builder *b) {
   node_links *l = &b->out->to;
   const size_t dim = l->dim;
@@ -523,7 +514,8 @@ static status set_nodes(builder *b) {
   PASS(new_nodes(m, b->in->mesh->dim));
   for (int i = 0; i < b->in->mesh->n_node; ++i)
     if (b->state[i] == CARRIES) m->node_id[n++] = i;
-  PASS(add_rows(b));
+  OWNED_NEW(entry, row, longest_row(b));
+  for (int q = 0; q < b->out->n; ++q) PASS(add_row(b, q, row));
   PASS(set_links(b));
   PASS(set_node_normals(b));
   for (int q = 0; q < m->n; ++q) {
@@ -614,8 +606,7 @@ static int share(const tie_set *t, int q, int c, double *F) {
   return moves;
 }
 
-/* Masters that are tied themselves pass it on: a pass for each link of a
- * chain. */
+/* Masters that are tied themselves pass it on: a pass for each link. */
 void ties_share(const tie_set *t, double *F) {
   for (int more = 1; more;) {
     more = 0;

@@ -1,8 +1,7 @@
 /*
  * Two partners of one component (joined through nodes) do not hide each other:
  * their projections have one sense. Where the partners are not joined, cover
- * more than there is, or are hidden by others, each loses what is covered by
- * nearer ones.
+ * too much, or are hidden, each loses what is covered by nearer ones.
  */
 #include "contact/mortar/partner.h"
 
@@ -32,8 +31,7 @@ static status plant(const mortar_input *in, int n, const int *face,
                     box_tree *out) {
   const int dim = in->mesh->dim;
   const size_t size = (size_t)dim * dim;
-  OWNED double *corner = NULL;
-  PASS_NEW(corner, size * n);
+  OWNED_NEW(double, corner, (size * n));
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < dim; ++k)
       COPY(corner + size * i + dim * k,
@@ -83,23 +81,16 @@ static box_beam beam_of(const facet *f, double low, double high) {
   return b;
 }
 
-static int faces_oppose(const facet *f, const facet *m) {
-  double product = 0.0;
-  for (int c = 0; c < f->dim; ++c) product += f->normal[c] * m->normal[c];
-  return product < -edge_on;
-}
-
 /* Height of the partner above the middle of the cells. */
 static double middle_height(int dim, const partner *p, const cell *cells) {
   double sum = 0.0, total = 0.0;
   for (int i = p->first; i < p->first + p->n; ++i) {
-    double phi[3], at[2] = {0, 0}, height = 0.0;
+    double phi[3], at[2] = {0, 0};
     const double measure = cell_measure(dim, &cells[i]);
     for (int k = 0; k < dim; ++k)
       for (int c = 0; c < dim - 1; ++c) at[c] += cells[i].at[k][c] / dim;
     cell_functions(dim, &p->s.in_plane, at, phi);
-    for (int k = 0; k < dim; ++k) height += phi[k] * p->s.height[k];
-    sum += measure * height;
+    sum += measure * dot(dim, phi, p->s.height);
     total += measure;
   }
   return sum / total;
@@ -274,7 +265,9 @@ static status add_masters(partner_search *s, int face, const facet *f) {
   for (int i = 0; i < n; ++i) {
     const facet *m = &s->master[s->found[i]];
     const partner p = {.face = s->in->master[s->found[i]],
-                       .hides = faces_oppose(f, m) ? PARTNER : HIDING_MASTER,
+                       .hides = dot(f->dim, f->normal, m->normal) < -edge_on
+                                    ? PARTNER
+                                    : HIDING_MASTER,
                        .size = m->measure};
     if (m->measure > 0 && p.face != face) PASS(try_face(s, f, p));
   }

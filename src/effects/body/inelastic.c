@@ -43,8 +43,7 @@ static double next_end(const run *r, double dt) {
                          : dt);
 }
 
-/* A body in free motion, or barely touching: its strains, and their error, are
- * rounding. */
+/* A body in free motion or barely touching: its strains are rounding. */
 static status forget_rounding(run *r, double *error) {
   int hides = 0;
   r->now.energy.strain = domain_strain_energy(&r->body.d, r->now.u);

@@ -10,8 +10,7 @@
 static status start_forces(run *r, double *R, double *diagonal,
                            double *largest) {
   const double *all = strains_load(r);
-  OWNED double *sigma = NULL;
-  PASS_NEW(sigma, (size_t)r->m->ns * r->msh->n_elem);
+  OWNED_NEW(double, sigma, (size_t)r->m->ns * r->msh->n_elem);
   domain_stress(&r->body.d, r->old.u, NULL, sigma);
   domain_internal_force(&r->body.d, sigma, R);
   for (size_t k = 0; k < r->n_dof; ++k) {

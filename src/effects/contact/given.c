@@ -1,7 +1,6 @@
 /*
  * *CONTACT FORCE: given normal forces in the place of unilateral contact
- * (CPR98, problem D3). The solver takes a problem without those normals; its
- * solution is transformed back.
+ * (CPR98, problem D3). The solver takes a problem without them.
  */
 #include "contact/formulation.h"
 #include "effects/plan/effect.h"
@@ -110,10 +109,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   contact_problem before = *cp;
   if (own->n == 0) return OK;
   TIMED(effect_stage(&given_forces_effect));
-  if (own->matrix_no != r->solving.matrix_no) {
-    memory_free(own->form);
-    own->form = NULL;
-  }
+  if (own->matrix_no != r->solving.matrix_no) FORGET(own->form);
   own->matrix_no = r->solving.matrix_no;
   OWNS(own);
   if (own->form == NULL) PASS(new_form(r, own, cp));

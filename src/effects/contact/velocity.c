@@ -26,8 +26,7 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
   velocity *own = self;
   own->before = *cp;
   if (own->m != cp->m) { /* other nodes, by the supports or within reach */
-    memory_free(own->form);
-    own->form = NULL;
+    FORGET(own->form);
   }
   own->m = cp->m;
   OWNS(own);

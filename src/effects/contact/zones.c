@@ -8,10 +8,9 @@
  * p^2, and w^2 or w^(2/3), are linear there: the squares are extended from the
  * last node of the zone to zero over its neighbour inside (in 3-D along the
  * gradient over the faces inside). w^(2/3) stays linear over several elements:
- * a line of least squares removes the scatter of the nodes and of the
- * increments; the power with the smaller misfit is taken. Without a neighbour
- * inside, or with values that grow outwards, the end is put half way to the
- * next node.
+ * least squares remove the scatter of nodes and increments; the power with the
+ * smaller misfit is taken. Without a neighbour inside, or with values that grow
+ * outwards, the end is put half way to the next node.
  */
 #include "effects/plan/effect.h"
 #include "run/history/loop.h"
@@ -66,10 +65,8 @@ static double tangential(const run *r, int i) {
 
 /* Values of any size to squares whose largest is about 1. */
 static void level_square(level *l, int n) {
-  double most = 0.0;
   int power;
-  for (int i = 0; i < n; ++i) most = fmax(most, fabs(l->square[i]));
-  frexp(most, &power);
+  frexp(largest_entry(n, l->square), &power);
   for (int i = 0; i < n; ++i) {
     const double w = ldexp(l->square[i], -power);
     l->square[i] = w * w;
@@ -104,8 +101,7 @@ static int face_nodes(const finder *z, int face_id, int *node) {
 static void difference(const finder *z, int from, int to, double *d) {
   const double *x = z->r->surface->x;
   d[2] = 0.0;
-  for (int c = 0; c < z->dim; ++c)
-    d[c] = x[z->dim * to + c] - x[z->dim * from + c];
+  vector_of(z->dim, x + z->dim * from, x + z->dim * to, d);
 }
 
 /* Gradient of the P1 function with the values w at the nodes of a triangle,
@@ -170,10 +166,9 @@ static int edge_nodes(const finder *z, const level *l, int i, int j,
   return n <= 6 ? (n < 3 ? n : 3) : n / 2;
 }
 
-/* Where the square to a power extends to zero, as a line of least squares
- * through n nodes that go inwards: length from node[0] outwards, HUGE_VAL if it
- * does not fall. *misfit, in [0, 1], measures the distance of the nodes from
- * it. */
+/* Where the square to a power extends to zero, by least squares through n nodes
+ * that go inwards: length from node[0] outwards, HUGE_VAL if it does not fall.
+ * *misfit, in [0, 1], measures the distance of the nodes from it. */
 static double extend(const finder *z, const level *l, int n, const int *node,
                      double power, double *misfit) {
   double s[FIT_NODES] = {0}, y[FIT_NODES], ms = 0.0, my = 0.0;
@@ -303,8 +298,7 @@ static double thickness_at(const finder *z, int i) {
   return w;
 }
 
-/* Add the piece from part a to part b of the distance from node i to the
- * next. */
+/* Add the piece from part a to b of the distance from node i to the next. */
 static void add_piece(const finder *z, int i, double a, double b,
                       contact_zone *zone) {
   double way[3];
@@ -324,16 +318,12 @@ static void set_point(const finder *z, int i, double part, double *x) {
     x[c] = z->r->surface->x[2 * i + c] + part * way[c];
 }
 
-static contact_zone zone_at(const finder *z, int contact_id, int i) {
-  return (contact_zone){.contact_id = contact_id,
-                        .kind = (int)z->r->result.contact[i],
-                        .direction = slip_sign(z, i)};
-}
-
 /* The zone that begins with node j: half a piece before it, where the line is a
  * ring and another zone ends between i and j, -1 at the end of a line. */
 static contact_zone first_zone(const finder *z, int contact_id, int i, int j) {
-  contact_zone zone = zone_at(z, contact_id, j);
+  contact_zone zone = {.contact_id = contact_id,
+                       .kind = (int)z->r->result.contact[j],
+                       .direction = slip_sign(z, j)};
   if (i < 0 || same_zone(z, i, j)) {
     set_point(z, j, 0.0, zone.from);
     return zone;

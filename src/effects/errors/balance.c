@@ -8,8 +8,7 @@
  * is left of the share the part that it has of the time left.
  *
  * An increment starts from the line through the last two equilibria if its
- * residual is lower than that of the last one: with few digits wanted it may be
- * all the answer.
+ * residual is lower than the last: with few digits that may be the answer.
  *
  * What was saved is reckoned from the digits of the residual that are missing
  * to the default, and the iterations that a digit took so far; methods that end
@@ -54,8 +53,7 @@ static status begin_step(run *r, void *self) {
   return OK;
 }
 
-/* The line through the last two equilibria, at t; without an earlier one in
- * this step none. */
+/* The line through the last two equilibria of this step, at t. */
 static void guess(run *r, balance *b, double t) {
   double span = r->old.t - b->t, w = (t - r->old.t) / span;
   r->solving.guess_u = r->solving.guess_r = NULL;

@@ -1,6 +1,5 @@
 /*
- * *REFERENCE: the true error of each increment against a closed form, in the
- * norms of the estimates.
+ * *REFERENCE: the true error of increments against a closed form.
  *
  * Integrals over the elements by Gauss-Legendre points of the unit cube, which
  * the map x = a, y = b (1 - a), z = c (1 - a)(1 - b) takes to the simplex.
@@ -9,7 +8,6 @@
  */
 #include "effects/plan/effect.h"
 
-#include "accuracy/space.h"
 #include "material/voigt.h"
 #include "run/column_row.h"
 

@@ -1,6 +1,5 @@
 /*
- * *ACCURACY, MESH=: the error of the mesh by recovered stresses, of the body
- * and of each element.
+ * *ACCURACY, MESH=: the error of the mesh by recovered stresses.
  */
 #include "effects/plan/effect.h"
 
@@ -27,8 +26,7 @@ static int is_recovery_known(const run *r, const mesh_estimate *own) {
 
 static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
-  memory_free(own->recovery);
-  own->recovery = NULL;
+  FORGET(own->recovery);
   TIMED(STAGE_MESH_ERROR);
   OWNS(own);
   PASS(space_recovery_new(&r->body.d, &own->recovery));
@@ -69,8 +67,7 @@ static status estimate(run *r, void *self) {
   return OK;
 }
 
-/* The nodal averages are made now, so that the costs counted from here on are
- * those of the other run. */
+/* The nodal averages are made now: costs from here on are of the other run. */
 static status keep(run *r, void *self, archive *a) {
   int made = is_recovery_known(r, self);
   PASS(archive_ints(a, "recovery", &made, 1));

@@ -44,8 +44,7 @@ typedef struct finer_path {
   int sudden;    /* 1: what is applied at the start of the step is to come */
   waypoint at, middle, end; /* accepted; of the attempt now made */
   double *d, *Ad;           /* [m] difference of the paths, m; N */
-  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no
-                               law flows */
+  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n]; or NULL */
 } finer_path;
 
 typedef struct paths {
@@ -82,8 +81,7 @@ static status path_begin(const run *r, paths *own) {
   return path_new(r, own->path);
 }
 
-/* The equilibrium at t from where "from" stands, into "to"; lost where there is
- * none. */
+/* The equilibrium at t from that of "from" into "to"; or lost. */
 static status half(run *r, finer_path *p, waypoint *from, double t,
                    waypoint *to) {
   if (p->lost) return OK;
@@ -100,15 +98,13 @@ static status half(run *r, finer_path *p, waypoint *from, double t,
 
 /* The next increment starts from what is in r->old. */
 static void restart(paths *own) {
-  memory_free(own->path);
-  own->path = NULL;
+  FORGET(own->path);
   own->before.norm += own->now.norm;
   own->before.strain += own->now.strain;
   own->now = (path_error){0};
 }
 
-/* Only slip in increments and inelastic strains, those of steps before too,
- * depend on their path. */
+/* Only slip in increments and inelastic strains depend on their path. */
 static int path_exists(const run *r) {
   return effects_sum_up(r) == NULL && run_inherits(r);
 }
@@ -152,8 +148,7 @@ done:
   return st;
 }
 
-/* Energy norm of the difference of the paths without inelastic strains,
- * sqrt(J). */
+/* Energy norm of the difference of the paths, no strains, sqrt(J). */
 static double condensed_difference(const run *r, finer_path *p) {
   double square = 0.0;
   for (int k = 0; k < r->nodes.n_c; ++k)
@@ -182,9 +177,8 @@ static status subtract_strains(run *r, finer_path *p) {
   if (r->step->kind != STEP_VISCO) return OK;
   OWNED_OF(double, turning, visco_turning(r, &turning));
   for (int k = 0; k < v->x.n && turning != NULL; ++k) {
-    double *e0 = p->e0 + visco_at(r, v->place[k]), largest = 0.0;
-    for (size_t i = 0; i < ns; ++i) largest = fmax(largest, fabs(e0[i]));
-    if (largest == 0.0) COPY(e0, turning + visco_at(r, k), ns);
+    double *e0 = p->e0 + visco_at(r, v->place[k]);
+    if (largest_entry(ns, e0) == 0.0) COPY(e0, turning + visco_at(r, k), ns);
   }
   return OK;
 }
@@ -344,9 +338,8 @@ static status keep(run *r, void *self, archive *a) {
  *   or its own part of the error <= B dt/total:
  *
  * a contact that grows from a point makes most of its error at first, whatever
- * the increment. The norm of the solution at the end is estimated from its
- * change in the increment. The next increment is that for which a part that
- * goes like dt^2 would meet the bound.
+ * the increment. The norm at the end is estimated from its change. The next
+ * increment is that for which a part that goes like dt^2 would meet the bound.
  */
 static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* - */
 static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm */
@@ -409,8 +402,7 @@ static status refuse(run *r, double tried, double dt, const char *why) {
   return OK;
 }
 
-/* What the attempt adds to the error of strains that are left without a stress,
- * as a share of them. */
+/* What the attempt adds to the error of strains left without stress, -. */
 static double strain_part(const run *r, const paths *own) {
   const double left = rounding_strain_left(r);
   if (own->path == NULL || own->path->lost || !(left > 0.0)) return 0.0;

@@ -13,8 +13,7 @@ typedef struct checked {
   theorems_report report;
 } checked;
 
-/* Largest friction coefficient of the nodes of a contact now, -; 0 for laws
- * without one. */
+/* Largest friction coefficient of the nodes of a contact, -; 0: none. */
 static status largest_mu(const run *r, int contact_id, double *mu) {
   const friction_rule *rule =
       friction_in_force(r->m, run_step_id(r), contact_id);
@@ -73,8 +72,7 @@ static status elastic_body(run *r, body_map *b) {
   return OK;
 }
 
-/* The contact of the elastic body with a given limit, in the states of the
- * solution. */
+/* The contact of the elastic body, limit given, in the present states. */
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
   contact_problem cp = r->problem.cp;
   OWNED_NEW(unsigned char, none, r->nodes.n);
@@ -105,8 +103,7 @@ static status body_map_new(run *r, const unsigned char *given, body_map *b) {
 static void body_map_free(body_map *b) {
   matrices_free(&b->own);
   frozen_free(&b->problem);
-  memory_free(b->contact);
-  RELEASE(b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du);
+  RELEASE(b->contact, b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du);
 }
 
 /* e0 = Q sigma of all points. */
@@ -138,8 +135,7 @@ static status answer_of_body(void *ctx, double *size) {
   eigen_stress(&r->body.d, &x, b->u, elastic, b->sigma);
   for (int k = 0; k < v->x.n; ++k) {
     size_t at = visco_at(r, v->place[k]);
-    square +=
-        v->x.weight[k] * tensor_dot(r->m->ns, elastic + at, b->sigma + at);
+    square += v->x.weight[k] * dot(r->m->ns, elastic + at, b->sigma + at);
   }
   *size = sqrt(fmax(square, 0.0));
   for (size_t i = 0; *size > 0.0 && i < visco_at(r, r->strains.eigen.n); ++i)

@@ -54,8 +54,7 @@ static void note_touches(run *r, warnings *reported) {
   }
 }
 
-/* The least gap left of a contact, m; HUGE_VAL: no node of it meets what it is
- * with. */
+/* The least gap left of a contact, m; HUGE_VAL: no node has one. */
 static double least_gap(const run *r, int contact_id) {
   double least = HUGE_VAL;
   for (int i = 0; i < r->nodes.n; ++i)

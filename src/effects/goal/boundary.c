@@ -6,9 +6,8 @@
  *   o = 4 sum over edges of la lb B_ab,  B_ab = (n_b - n_a).(x_b - x_a)/8,
  *
  * and loads given by a formula have their value there. In space the rim of a
- * loaded surface is curved where its edges at a node are smooth: by their
- * outward normals along the surface a part of the area 2/3 B_ab |x_b - x_a|
- * lies beyond an edge. The forces
+ * loaded surface is curved where its edges are smooth: by their outward normals
+ * a part of the area 2/3 B_ab |x_b - x_a| lies beyond an edge. The forces
  *
  *   dF v = F(v) - F_h(v) - integral of sigma : e(v) over the part beyond
  *
@@ -131,16 +130,13 @@ static int bent_edges(const run *r, const goal_ring *rings, int f,
       const int first = node[a] < node[b] ? a : b;
       const int v[2] = {node[first], node[a + b - first]};
       bent_edge now = {.a = v[0], .b = v[1]};
-      double size = 0.0;
       goal_bulge(r, rings, f, v, now.out);
-      for (int c = 0; c < dim; ++c) size = fmax(size, fabs(now.out[c]));
-      if (size > 0.0) e[n++] = now;
+      if (largest_entry(dim, now.out) > 0.0) e[n++] = now;
     }
   return n;
 }
 
-/* Of both faces of an edge: the mean of one surface; where two meet, the edge
- * is on both. */
+/* Of both faces of an edge: the mean of one surface, else on both. */
 static void join_bent(bent_edge *e, const bent_edge *other) {
   const double share = fabs(dot(3, e->out, other->out)) <
                                SMOOTH * sqrt(dot(3, e->out, e->out) *
@@ -271,8 +267,7 @@ static void take_given(const run *r, const patch *p, const int *where,
     take_traction(dim, p->normal, (double[3]){c == 0, c == 1, c == 2}, T);
 }
 
-/* Less the stress of the element times the strains over what is beyond a face.
- */
+/* Less the stress of the element times the strains beyond a face. */
 static void add_part_beyond(const run *r, const patch *p, int face,
                             const int *where, double *dF) {
   const mesh *m = r->msh;
@@ -298,13 +293,12 @@ static void add_part_beyond(const run *r, const patch *p, int face,
 
 /* ---- loads --------------------------------------------------------------- */
 
-static int varies(const load *l) {
+int goal_load_varies(const load *l) {
   return (quantity_variables(&l->value) & 7u) != 0 ||
          (l->has_before && (quantity_variables(&l->before) & 7u) != 0);
 }
 
-/* Direction of a load on the patch, and on the surface beyond it with the ratio
- * of their areas. */
+/* Direction of a load on the patch, and beyond it with a ratio of areas. */
 static void directions(const load *l, int dim, const patch *p, const spot *s,
                        double *flat, double *bent) {
   const double slope = dot(dim, s->slope, s->slope);
@@ -333,13 +327,12 @@ static void add_beyond(const mesh *m, const patch *p, const spot *s,
 static void add_load(const run *r, const load *l, const patch *p, double *dF) {
   const mesh *m = r->msh;
   double value[4], flat[3], bent[3], force[3];
-  if (!p->is_curved && !varies(l)) return;
+  if (!p->is_curved && !goal_load_varies(l)) return;
   for (int i = 0; i < p->n; ++i)
     value[i] = load_at_node(l, m, r->step, p->node[i], r->now.t);
   for (int k = 0; k < p->n; ++k) {
     const spot s = spot_at(m, p, k);
-    double linear = 0.0;
-    for (int i = 0; i < p->n; ++i) linear += s.b[i] * value[i];
+    const double linear = dot(p->n, s.b, value);
     const double there = load_at_point(l, r->step, s.on, r->now.t);
     if (!isfinite(there)) continue;
     directions(l, m->dim, p, &s, flat, bent);
@@ -395,8 +388,7 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   return OK;
 }
 
-/* Of the rim at end k of an edge, as normal_at; next[2*n] the other end with
- * the same node in a ring. */
+/* Of the rim at end k of an edge; next[2*n] the next end at its node. */
 static void out_at(const run *r, const rim_edge *e, const int *next, int k,
                    double *out) {
   const rim_edge *own = e + k / 2;
@@ -465,7 +457,7 @@ static status add_loads(const run *r, const goal_ring *rings, double *dF) {
   const load_list *all = &r->step->loads;
   for (EACH(const load, l, all->item, all->n)) {
     const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
-    if (!on_faces && (l->kind != LOAD_BODY || !varies(l))) continue;
+    if (!on_faces && (l->kind != LOAD_BODY || !goal_load_varies(l))) continue;
     const mesh_group *g = &r->msh->group[l->group_id];
     for (int k = 0; k < g->n_item; ++k) {
       const patch p = on_faces ? face_patch(r, rings, g->item_id[k])

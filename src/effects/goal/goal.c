@@ -1,13 +1,11 @@
 /*
  * *GOAL: quantities of the solution with their errors. For each of them the
- * contact problem linearised at the solution is solved once more, transposed:
- * a solve with the dense factor, which all share, and one with that of the
- * body.
+ * contact problem linearised at the solution is solved once more, transposed: a
+ * solve with the shared dense factor, one with that of the body.
  *
- * Friction that remembers: where a node sticks, it does so at the place where
- * the increment before has left it, and that place is in error too. With s the
- * derivative of J by the positions of stick and e the errors of the nodes after
- * the increment before,
+ * Friction that remembers: a node sticks at the place where the increment
+ * before has left it, which is in error too. With s the derivative of J by the
+ * positions of stick and e the errors of the nodes after the increment before,
  *
  *   J(u) - J(u_h) = estimate of this increment + s'e.
  *
@@ -109,8 +107,7 @@ typedef struct shared {
   goal_form form;
   double *y;                    /* [dim*n_node] */
   double *j, *more, *psi, *y_c; /* [n_row] */
-  double *lacks;                /* [dim*n_node] forces of boundary.c,
-                                   heat.c, N */
+  double *lacks;                /* [dim*n_node] of boundary.c, heat.c, N */
   double *rest;                 /* [3*n_elem] of goal_add_thermal, or NULL */
   double *moved; /* [n_row] errors of the positions of stick, m */
 } shared;
@@ -120,8 +117,7 @@ static status recover(const run *r, goal_state *own, space_recovery **out) {
   PASS(mesh_recovery(r, out));
   if (*out != NULL) return OK;
   if (own->recovery == NULL || own->elastic_no != r->body.elastic_no) {
-    memory_free(own->recovery);
-    own->recovery = NULL;
+    FORGET(own->recovery);
     OWNS(own);
     PASS(space_recovery_new(&r->body.d, &own->recovery));
     own->elastic_no = r->body.elastic_no;
@@ -139,10 +135,9 @@ static status set_moved(const run *r, goal_state *own, shared *s) {
 }
 
 static int has_goal_of(const model *m, goal_quantity of) {
-  int any = 0;
   for (int i = 0; i < m->n.goal; ++i)
-    any |= m->accuracy.goals[i].quantity == of;
-  return any;
+    if (m->accuracy.goals[i].quantity == of) return 1;
+  return 0;
 }
 
 /* 1: displacements of groups. */
@@ -157,10 +152,9 @@ static int has_mean(const model *m) {
 
 /* 1: nodes slip, and their friction follows the pressures. */
 static int rubs(const run *r) {
-  int any = 0;
   for (int i = 0; i < r->nodes.n && r->problem.B != NULL; ++i)
-    any |= r->result.contact[i] == CONTACT_SLIP && r->result.g[i] > 0.0;
-  return any;
+    if (r->result.contact[i] == CONTACT_SLIP && r->result.g[i] > 0.0) return 1;
+  return 0;
 }
 
 static status prepare(run *r, goal_state *own, shared *s) {
@@ -346,8 +340,7 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
 }
 
 /* In a corner of the border in the plane, where recovered gradients are
- * extrapolated along both sides: there displacements were in error by 0.7
- * to 1.2 of the estimate. */
+ * extrapolated: displacements were in error by 0.7 to 1.2 of the estimate. */
 static double of_corner(const run *r, const goal_state *own, int id,
                         double error) {
   static const double CORNER = 2.6, PART = 0.5; /* rad, - */
@@ -371,14 +364,12 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
-/* 1: the same force of the obstacle on another node would change J: where few
- * nodes have the forces, it is what their places make it. Radial forces are
- * those of the place too. */
+/* 1: the same force of the obstacle on another node would change J: of few
+ * nodes it follows their places. Radial forces are those of the place too. */
 static int turns(const run *r, const shared *s) {
   const contact_surface *on = r->surface;
   const int dim = r->msh->dim, last = r->problem.ut0 != NULL ? dim : 1;
-  double size = 0.0, most = 0.0;
-  for (size_t k = 0; k < r->n_dof; ++k) size = fmax(size, fabs(s->y[k]));
+  double size = largest_entry(r->n_dof, s->y), most = 0.0;
   for (int i = 0; i < r->nodes.n; ++i) {
     double z[3] = {0.0};
     for (int a = 0; a < dim; ++a)
@@ -398,8 +389,7 @@ static int turns(const run *r, const shared *s) {
   return most > TURN * size;
 }
 
-/* 1: few closed nodes, or nodes in a line on a surface in space: of the contact
- * of a goal, or of all. */
+/* 1: few closed nodes, or all in a line in space: of a contact, or all. */
 static int has_few(const run *r, const shared *s, int id) {
   enum { FEW = 3 };
   const int of = r->m->accuracy.goals[id].contact_id;
@@ -459,14 +449,10 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
 
 /* ---- the errors that the next increment remembers ------------------------ */
 
-/* 1: no increment follows. */
-static int is_last(const run *r) {
-  return r->at.last && run_step_id(r) == r->m->n.step - 1;
-}
-
 static status remember(run *r, goal_state *own, shared *s) {
   goal_history *h = &own->before;
-  if (h->u == NULL || is_last(r)) return OK;
+  const int is_last = r->at.last && run_step_id(r) == r->m->n.step - 1;
+  if (h->u == NULL || is_last) return OK;
   h->missed |= s->surface.is_missed;
   if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL)) {
     h->lost = 1;

@@ -9,8 +9,7 @@
  */
 #include "effects/goal/parts.h"
 
-/* Points of degree 2, as many as corners: barycentric coordinate of point k in
- * corner k. */
+/* Points of degree 2: barycentric coordinate of point k in corner k. */
 static const double AT[5] = {[3] = 2.0 / 3.0, [4] = 0.58541019662496847};
 
 typedef struct spot {
@@ -39,8 +38,7 @@ static void stress_of(const domain *d, int e, const double *strain, double *t) {
   }
 }
 
-/* Forces of a stress t at a point of an element, of this weight; r: its radius,
- * 0: not axisymmetric. */
+/* Forces of a stress t at a point of an element; r: radius or 0. */
 static void add_force(const mesh *m, int e, const double *b, const double *t,
                       double weight, double r, double *dF) {
   const int dim = m->dim, *v = m->elem + (dim + 1) * e;

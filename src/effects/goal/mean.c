@@ -7,8 +7,7 @@
 
 /* ---- at the nodes -------------------------------------------------------- */
 
-/* The integrals of the P1 functions of a group, at the unknowns of a component;
- * the whole of them. */
+/* Integrals of the P1 functions of a group for a component; the whole. */
 static status weights_of(const run *r, int group_id, int component,
                          double *weight, double *whole) {
   const mesh_group *g = &r->msh->group[group_id];
@@ -28,8 +27,7 @@ static status weights_of(const run *r, int group_id, int component,
   return OK;
 }
 
-/* Adds the mean with these weights, at the unknowns of a component; NULL: all
- * are 1. */
+/* Adds the mean with these weights of a component; NULL: all are 1. */
 static void add_weighted(const run *r, const mesh_group *g, int component,
                          const double *weight, double factor, goal_form *f) {
   for (int k = 0; k < g->n_node; ++k) {
@@ -64,8 +62,7 @@ status goal_add_mean(const run *r, int group_id, int component, double sign,
 
 /* ---- between them -------------------------------------------------------- */
 
-/* Integral of the bubble of the edge from corner a to b over a face or an
- * element v[n]. */
+/* Integral of the bubble of the edge from corner a to b over v[n]. */
 static double bubble_integral(const run *r, const int *v, int n, int a, int b,
                               double measure) {
   static const double share[5] = {[2] = 2.0 / 3.0, [3] = 1.0 / 3.0, [4] = 0.2};

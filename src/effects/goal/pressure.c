@@ -72,8 +72,7 @@ static double disc_weight(double square, double radius) {
 }
 
 /* Square of the distance of x, or of its image in the planes of symmetry of the
- * bits of "image", to the middle; infinite where there is no plane. away[dim]
- * from there. */
+ * bits of "image", to the middle; infinite without a plane. away[dim]. */
 static double image_of(const weight *w, const double *x, int image,
                        double *away) {
   double square = 0.0;
@@ -125,8 +124,7 @@ static double add_nodes(const run *r, const goal_card *g, const weight *w,
   return sum;
 }
 
-/* Points and weights of a face, barycentric: Gauss on a line, of degree 5 in a
- * triangle. */
+/* Points and weights of a face: Gauss on a line, degree 5 in a triangle. */
 enum { POINTS_2D = 3, POINTS_3D = 7 };
 static const double line_rule[POINTS_2D][3] = {
     {0.11270166537925831, 0.88729833462074169, 5.0 / 18.0},
@@ -203,9 +201,8 @@ static int mirrors_of(const run *r, int q) {
   return n > 0 ? n : goal_is_mirrored(r, q);
 }
 
-/* Contact node nearest to the point of the goal, or that of the largest
- * pressure, by a small margin one in a plane of symmetry; -1: nothing is
- * closed. */
+/* Contact node nearest to the point of the goal, or of the largest pressure,
+ * rather in a plane of symmetry; -1: nothing is closed. */
 static int peak_of(const run *r, const goal_card *g) {
   static const double margin = 0.01; /* -, for each plane */
   const int dim = r->msh->dim;
@@ -372,9 +369,8 @@ static void set_disc_of_axis(const goal_card *g, weight *w, goal_form *f) {
 /* A mean takes nodes on both sides of its middle, which lies on the surface. */
 static void judge_mean(const goal_card *g, const weight *w, const double *near,
                        double longest, goal_form *f) {
-  double away = 0.0;
-  for (int c = 0; c < w->dim && g->n_point > 0; ++c)
-    away = hypot(away, g->point[0][c] - near[c]);
+  const double away =
+      g->n_point > 0 ? distance_of(w->dim, g->point[0], near) : 0.0;
   f->is_coarse = w->radius < 2.0 * longest;
   if (f->why == GOAL_RELIABLE && (w->radius < longest || away > w->radius))
     f->why = GOAL_NO_ZONE;
@@ -464,10 +460,7 @@ static int add_planes(const run *r, const number_pair *e, weight *w) {
 }
 
 static int is_near(const run *r, int node, const weight *w, double radius) {
-  double away = 0.0;
-  for (int c = 0; c < 3; ++c)
-    away = hypot(away, r->msh->x[3 * node + c] - w->origin[c]);
-  return away <= radius;
+  return distance_of(3, r->msh->x + 3 * node, w->origin) <= radius;
 }
 
 static int carries(const run *r, const int *where, int node) {
@@ -486,10 +479,9 @@ static status look_round(const run *r, const goal_card *g, double radius,
     const int v[2] = {e[k].a, e[k].b};
     last = PAIR_END(e, n, k);
     if (!is_near(r, v[0], w, radius) && !is_near(r, v[1], w, radius)) continue;
-    double length = 0.0;
-    for (int c = 0; c < 3; ++c)
-      length = hypot(length, r->msh->x[3 * v[1] + c] - r->msh->x[3 * v[0] + c]);
-    out->longest = fmax(out->longest, length);
+    const double *x = r->msh->x;
+    out->longest =
+        fmax(out->longest, distance_of(3, x + 3 * v[0], x + 3 * v[1]));
     if (last == k + 1 && !add_planes(r, e + k, w))
       out->cut |= carries(r, where, v[0]) || carries(r, where, v[1]);
   }
@@ -603,10 +595,9 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
 static int has_one_thickness(const run *r, const goal_card *g) {
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
   const double *thickness = r->faces.face_weight;
-  int same = 1;
   for (int k = 0; k < of->n_item; ++k)
-    same &= thickness[of->item_id[k]] == thickness[of->item_id[0]];
-  return same;
+    if (thickness[of->item_id[k]] != thickness[of->item_id[0]]) return 0;
+  return 1;
 }
 
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {

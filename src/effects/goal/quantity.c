@@ -1,6 +1,5 @@
 /*
- * The quantities of *GOAL and their derivatives; those of a pressure are in
- * pressure.c.
+ * Quantities of *GOAL and their derivatives; of pressures: pressure.c.
  */
 #include "effects/goal/parts.h"
 #include "effects/shared.h"
@@ -81,9 +80,8 @@ static double held_part(const run *r, int face, const int *q, int k, int a) {
   return sum;
 }
 
-/* Of a held row without a force of its own: held_part. Next to slip, and not on
- * a plane of symmetry, the traction may be that of the neighbours up to the
- * node: up to thrice. */
+/* Of a held row without a force of its own: held_part. Next to slip, not on a
+ * symmetry plane, the traction may be up to thrice that of the neighbours. */
 static void add_row(const run *r, int face, const int *q, int k, int a,
                     goal_form *f) {
   const int row = r->msh->dim * q[k] + a;
@@ -156,8 +154,7 @@ static status set_force(const run *r, const goal_card *g, goal_form *f) {
   return add_held(r, g, f);
 }
 
-/* Dissipated so far, by the limits at the ends of the increments; its
- * derivative that of the last one. */
+/* Dissipated so far, by the limits at the ends; derivative: of the last. */
 static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
@@ -267,8 +264,7 @@ static const double FEWEST = 5.0; /* - */
  * the mesh does not choose, a negative one counts as so much of its size. */
 static const double NEGATIVE = 0.9; /* - */
 
-/* The point at the node of the goal, or that of the largest factor; -1: none
- * has one. */
+/* The point at the node of the goal, or of the largest factor; -1: none. */
 static int point_of(const goal_card *g, const crack_factors *k) {
   int best = -1;
   double most = -1.0;

@@ -34,8 +34,7 @@ static given_edge edge_of(const run *r, const load *l, const int *v) {
   return e;
 }
 
-/* Edges of the elements with both ends in[n_node] the group of a load; counts
- * them where e is NULL. */
+/* Edges of the elements with both ends in[n_node]; NULL: counts them. */
 static int edges_in(const run *r, const load *l, const unsigned char *in,
                     given_edge *e) {
   const mesh *m = r->msh;
@@ -68,18 +67,12 @@ static int unite(given_edge *e, int n) {
   return kept;
 }
 
-static int bends(const load *l) {
-  return l->kind == LOAD_FIXING &&
-         ((quantity_variables(&l->value) & 7u) != 0 ||
-          (l->has_before && (quantity_variables(&l->before) & 7u) != 0));
-}
-
 /* Writes the edges of all loads to e, or counts them. */
 static status given_edges(const run *r, given_edge *e, int *n) {
   OWNED unsigned char *in = NULL;
   *n = 0;
   for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
-    if (!bends(l)) continue;
+    if (l->kind != LOAD_FIXING || !goal_load_varies(l)) continue;
     const mesh_group *g = &r->msh->group[l->group_id];
     if (in == NULL) PASS_NEW(in, r->msh->n_node);
     for (int k = 0; k < g->n_node; ++k) in[g->node_id[k]] = 1;
@@ -118,8 +111,7 @@ static void add_region(int region, double angle, joint *j) {
   j->n = region == j->second ? (j->n == 1 ? 2 : j->n) : 3;
 }
 
-/* 1: stresses are infinite where regions meet: all of the body or its half are
- * in the angle "whole". */
+/* 1: stresses are infinite where regions meet, n of them in "whole". */
 static int is_bent(int n, double angle, double whole) {
   return n > 2 || fabs(angle - 0.5 * whole) > 2.0 * SLACK;
 }
@@ -140,10 +132,9 @@ typedef struct corner {
 } corner;
 
 static double angle_at(const mesh *m, const int *v, int k) {
-  const double *x = m->x + 2 * v[k], *y = m->x + 2 * v[(k + 1) % 3];
-  const double *z = m->x + 2 * v[(k + 2) % 3];
-  const double a[2] = {y[0] - x[0], y[1] - x[1]};
-  const double b[2] = {z[0] - x[0], z[1] - x[1]};
+  double a[2], b[2];
+  vector_of(2, m->x + 2 * v[k], m->x + 2 * v[(k + 1) % 3], a);
+  vector_of(2, m->x + 2 * v[k], m->x + 2 * v[(k + 2) % 3], b);
   return atan2(fabs(a[0] * b[1] - a[1] * b[0]), a[0] * b[0] + a[1] * b[1]);
 }
 
@@ -198,8 +189,7 @@ static void add_border(const run *r, const goal_surface *s,
   }
 }
 
-/* 1: contact alone meets what is free; of it only the end of stick is singular
- * by its angle. */
+/* 1: contact alone meets what is free; the end of stick is singular. */
 static int is_smooth(const corner *c, kind a, kind b) {
   if (!c->contact || c->support) return 0;
   return a != FREE || b != CLAMPED || c->angle > M_PI - SLACK;
@@ -260,8 +250,7 @@ typedef struct rim {
 static void outward(const mesh *m, const int *v, double *n) {
   double d[2][3];
   for (int i = 0; i < 2; ++i)
-    for (int c = 0; c < 3; ++c)
-      d[i][c] = m->x[3 * v[i + 1] + c] - m->x[3 * v[0] + c];
+    vector_of(3, m->x + 3 * v[0], m->x + 3 * v[i + 1], d[i]);
   cross(d[0], d[1], n);
   make_unit(3, n);
 }
@@ -355,12 +344,11 @@ typedef struct inner {
 static double angle_between(const mesh *m, const int *v, int i, int k) {
   double d[3], away[2][3], square = 0.0;
   int n = 0;
-  for (int c = 0; c < 3; ++c) d[c] = m->x[3 * v[k] + c] - m->x[3 * v[i] + c];
+  vector_of(3, m->x + 3 * v[i], m->x + 3 * v[k], d);
   square = dot(3, d, d);
   for (int l = 0; l < 4; ++l) {
     if (l == i || l == k) continue;
-    for (int c = 0; c < 3; ++c)
-      away[n][c] = m->x[3 * v[l] + c] - m->x[3 * v[i] + c];
+    vector_of(3, m->x + 3 * v[i], m->x + 3 * v[l], away[n]);
     const double along = dot(3, away[n], d) / square;
     for (int c = 0; c < 3; ++c) away[n][c] -= along * d[c];
     ++n;

@@ -48,8 +48,7 @@ typedef struct gap_slopes {
 } gap_slopes;
 
 /* g[3] of the linear gap on a face between contact nodes q[dim]; returns its
- * weight, with which gradients of a parabola are exact in the plane; 0: a gap
- * out of reach. */
+ * weight, exact for a parabola in the plane; 0: a gap out of reach. */
 static double face_slope(const run *r, int face, const int *q, double *g) {
   const mesh *m = r->msh;
   const int dim = m->dim, e = m->face_elem[face], *v = m->elem + (dim + 1) * e;
@@ -102,12 +101,10 @@ static double gap_between(const run *r, const gap_slopes *slopes,
                           const int *q) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
-  double d[3] = {0.0}, at[2] = {0.0, 0.0};
-  for (int c = 0; c < dim; ++c)
-    d[c] = s->x[dim * q[1] + c] - s->x[dim * q[0] + c];
+  double d[3], at[2];
+  vector_of(dim, s->x + dim * q[0], s->x + dim * q[1], d);
   const double rise = r->problem.gap[q[1]] - r->problem.gap[q[0]];
-  for (int k = 0; k < 2; ++k)
-    for (int c = 0; c < dim; ++c) at[k] += slopes->of[3 * q[k] + c] * d[c];
+  for (int k = 0; k < 2; ++k) at[k] = dot(dim, slopes->of + 3 * q[k], d);
   for (int k = 0; k < 2 && dim == 2; ++k)
     if (slopes->n_face[q[k]] == 1) at[k] = 2.0 * rise - at[1 - k];
   return (at[0] - at[1]) / 8.0;
@@ -200,8 +197,7 @@ static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
   s->ends[e.a] = s->ends[e.b] = GOAL_END_OF_CONTACT;
 }
 
-/* Edge a, b of two faces that lie on each other, v[dim] with the contact nodes,
- * w[dim], node by node. */
+/* Edge a, b of two faces that lie on each other, v[dim] and w[dim]. */
 static void add_lip_edges(const run *r, const int *where, const int *v,
                           const int *w, double weight, goal_surface *s) {
   const int dim = r->msh->dim;
@@ -234,8 +230,7 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
   }
 }
 
-/* 1: edge k of the sorted edges of all faces is of one face, and not on a plane
- * of symmetry. */
+/* 1: edge k of the sorted edges is of one face, not on a symmetry. */
 static int is_border(const run *r, const int *where, const goal_surface *s,
                      int k) {
   const contact_edge *e = &s->edge[k];
@@ -245,8 +240,7 @@ static int is_border(const run *r, const int *where, const goal_surface *s,
          !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
 }
 
-/* The border where it is closed: ends of a line, edges of one face.
- * seen[n_node] zero. */
+/* The border where it is closed: ends of a line, edges of one face. */
 static void mark_border(const run *r, const int *where, int *seen,
                         goal_surface *s) {
   const int flat = r->msh->dim == 2;
@@ -425,9 +419,8 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
   return OK;
 }
 
-/* Of a node that slips and one whose friction has the opposite direction: in
- * between it turns back, the nodes have that in the middle, and it may be at
- * either end. */
+/* Of a node that slips and one of opposite friction: in between it turns back,
+ * the nodes have that in the middle, and it may be at either end. */
 static double reversal_of(const run *r, const contact_edge *e, const int *q,
                           const double *z) {
   const int dim = r->msh->dim;

@@ -83,8 +83,7 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
   return OK;
 }
 
-/* The shortest increment if the law flows in all steps and the integrator damps
- * fast terms; else 0. */
+/* The shortest increment where a law flows always and is damped; else 0. */
 static double damped_increment(const model *m) {
   double least = HUGE_VAL;
   for (EACH(const step, s, m->steps, m->n.step)) {
@@ -151,8 +150,7 @@ static const double margin = 1.5; /* of stresses, - */
 enum {
   PIECES = 8,
   WORTH = 4
-}; /* increments of a step; the run has so many
-      times those of the elastic one */
+}; /* increments of a step over those of the elastic one */
 
 typedef struct preview {
   reduction *n;
@@ -377,8 +375,7 @@ static double option_value(const friction_rule *rule, const char *name) {
   return NAN;
 }
 
-/* 1: each node has none but itself within the radius, and friction acts on the
- * whole surface. */
+/* 1: no node has another within the radius; the whole surface rubs. */
 static int is_local(const friction_rule *rule, double least) {
   static const char *const plain[] = {"ZONE", "MIRROR_X", "MIRROR_Y",
                                       "MIRROR_Z"};
@@ -452,8 +449,7 @@ static status friction_holds(const model *m, const mesh *msh, int *holds) {
     int n = 0;
     PASS(history_motions(m, msh, effect_table, i, &n, &list));
     for (int k = 0; k < n; ++k) *holds |= list[k].held_by == HELD_BY_FRICTION;
-    memory_free(list);
-    list = NULL;
+    FORGET(list);
   }
   return OK;
 }

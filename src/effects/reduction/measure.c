@@ -79,8 +79,7 @@ static double stress_scale(const reduction *n, const state *s) {
       most = fmax(most, -s->contacts.rc[c->dim * i] / c->area[i]);
   size_t size = (size_t)n->m->ns * n->msh->n_elem;
   if (most > 0.0) return most;
-  for (size_t i = 0; i < size; ++i) most = fmax(most, fabs(n->sigma[i]));
-  return most;
+  return largest_entry(size, n->sigma);
 }
 
 /* e' E e of a strain; its largest stress into *stress. */
@@ -182,8 +181,7 @@ static void measure_relaxed(reduction *n, const omitted *row, double dt,
   *norm = SAFETY * sqrt(sum);
 }
 
-/* Rates of one material under the current stresses: their norm; n->stress of
- * its elements grows by dt. */
+/* Rates of one material: their norm; n->stress of it grows by dt. */
 static status add_rates(reduction *n, const state *s, const omitted *row,
                         double dt, double *norm) {
   const material *mat = &n->m->materials[row->id];
@@ -315,8 +313,7 @@ static double distance(size_t n, const double *a, const double *b) {
   return most;
 }
 
-/* Of the nodes: largest normal and tangential force, sum of each direction of
- * all nodes. */
+/* Of the nodes: largest forces, sum of each direction of all nodes. */
 typedef struct force_sizes {
   double node[2], sum[3];
 } force_sizes;
@@ -339,8 +336,7 @@ static force_sizes sizes_of(const contact_surface *c, const double *rc,
   return f;
 }
 
-/* The forces against those of the increment; of friction against its largest
- * so far. */
+/* The forces over those of the increment; friction over its largest. */
 static double force_change(reduction *n, const state *s, const double *rc) {
   const force_sizes now = sizes_of(s->contacts.surface, s->contacts.rc, NULL);
   const force_sizes d = sizes_of(s->contacts.surface, rc, s->contacts.rc);

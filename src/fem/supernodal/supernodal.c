@@ -350,8 +350,7 @@ void supernodal_forward(const supernodal *s, double *const *x,
   }
 }
 
-/* own[columns] = inv of the transposed diagonal block, own less what "below"
- * adds. */
+/* own[columns] = inv of the transposed block, own less what "below" adds. */
 static void back_few(int rows, int columns, const double *x, double *own,
                      const double *below) {
   for (int c = columns - 1; c >= 0; --c) {

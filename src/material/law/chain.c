@@ -198,14 +198,14 @@ static double unit_energy(const law_point *p, const double *x,
                           const double *y) {
   double Cy[6];
   tensor_product(p->elastic->ns, p->elastic->C, y, Cy);
-  return tensor_dot(p->elastic->ns, x, Cy) / p->elastic->young;
+  return dot(p->elastic->ns, x, Cy) / p->elastic->young;
 }
 
 static double dissipation(const law_point *p) {
   const chain c = chain_of(p);
   double e[6], a_rate[6];
   tensor_product(c.ns, c.Q, p->sigma, e);
-  double lost = c.fluidity * tensor_dot(c.ns, p->sigma, e);
+  double lost = c.fluidity * dot(c.ns, p->sigma, e);
   for (int k = 0; k < c.n; ++k) {
     unit_rate(&c, k, e, a_rate);
     lost += c.k[k].viscosity * unit_energy(p, a_rate, a_rate);

@@ -1,6 +1,5 @@
 /*
- * Creep with the equivalent stress q and creep strain p, d(e^i)/dt = dp/dt 3/2
- * s/q:
+ * Creep of equivalent stress q and strain p, d(e^i)/dt = dp/dt 3/2 s/q:
  *   NORTON      HARDENING=TIME    dp/dt = A q^n t^m
  *               HARDENING=STRAIN  dp/dt = (A q^n ((m + 1) p)^m)^(1/(m + 1)),
  *               the same under constant stress (Norton 1929; Abaqus, creep laws
@@ -67,8 +66,7 @@ static const option hyperbolic_fields[] = {
 /* Rates at an equivalent stress q; a is the internal variable, if there is. */
 typedef struct creep {
   double rate, a_rate; /* dp/dt, 1/s; of a */
-  double by_q, a_by_q; /* their slopes in q; in q = 0 the limit of the
-                          first if it is finite, else 0 */
+  double by_q, a_by_q; /* slopes in q; in q = 0 the limit if finite, else 0 */
   double by_a, a_by_a; /* their slopes in a */
 } creep;
 

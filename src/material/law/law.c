@@ -1,7 +1,6 @@
 /*
  * The list of inelastic laws, deviators, equivalent stress and flow directions
- * in Voigt components, the elasticity they are coupled with, and their
- * evaluation at a point.
+ * in Voigt components, their elasticity, and their evaluation.
  */
 #include "material/law/law.h"
 
@@ -19,20 +18,14 @@ void tensor_deviator(int ns, const double *v, double *d) {
 }
 
 double tensor_mises(int ns, const double *s) {
-  double largest = 0, sum = 0;
-  for (int i = 0; i < ns; ++i) largest = fmax(largest, fabs(s[i]));
+  const double largest = largest_entry(ns, s);
+  double sum = 0;
   if (!(largest > 0)) return largest;
   for (int i = 0; i < ns; ++i) {
     const double x = s[i] / largest;
     sum += i < 3 ? x * x : 2 * x * x;
   }
   return largest * sqrt(1.5 * sum);
-}
-
-double tensor_dot(int ns, const double *a, const double *b) {
-  double sum = 0;
-  for (int i = 0; i < ns; ++i) sum += a[i] * b[i];
-  return sum;
 }
 
 void tensor_product(int ns, const double *A, const double *x, double *y) {
@@ -274,8 +267,7 @@ status law_fastest_rate(const law_point *p, double *rate) {
     *rate = -1;
   if (!(*rate < 0)) return OK;
   const int na = law_n_alpha(p->law, el->ns), n = el->ns + na;
-  OWNED double *M = NULL;
-  PASS_NEW(M, n * n);
+  OWNED_NEW(double, M, (n * n));
   PASS(coupled_matrix(p, na, M));
   return spectral_radius(p, M, n, rate);
 }

@@ -162,7 +162,7 @@ static double share_energy(const law_point *p, int k, const double *x) {
   double share[6] = {0}, stress[6];
   add_share(ns, &terms_of(p)[k], x, share);
   tensor_product(ns, p->elastic->C, share, stress);
-  return tensor_dot(ns, x, stress);
+  return dot(ns, x, stress);
 }
 
 static double dissipation(const law_point *p) {
@@ -184,7 +184,7 @@ static double stored(const law_point *p) {
   tensor_product(ns, p->elastic->C, ei, stress);
   for (int k = 0; k < p->law->n_term; ++k)
     kept += share_energy(p, k, p->alpha + ns * k);
-  return 0.5 * (kept - tensor_dot(ns, ei, stress));
+  return 0.5 * (kept - dot(ns, ei, stress));
 }
 
 static const char *check(const law_card *law, elastic_type type,

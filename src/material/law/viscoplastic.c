@@ -90,11 +90,6 @@ static yield yield_of(const law_point *p) {
   return (yield){v->sigma_y, v->eta, 1, 0, 0, 0};
 }
 
-/* The same card has them behind its fields. */
-static const back_stress *back_of(const law_point *p) {
-  return (const void *)(p->value + law_n_field(p->law->ops->fields));
-}
-
 /* State of a point. */
 typedef struct flow {
   yield y;
@@ -117,7 +112,8 @@ static flow flow_of(const law_point *p) {
   const int ns = p->elastic->ns;
   flow f = {.y = yield_of(p), .ns = ns, .n_back = p->law->n_term};
   double s[6];
-  f.back = back_of(p);
+  /* The same card has them behind its fields. */
+  f.back = (const void *)(p->value + law_n_field(p->law->ops->fields));
   f.p = p->law->ops == &bingham_law ? 0 : p->alpha[0];
   f.a = p->alpha + 1;
   for (int i = 0; i < ns; ++i) {

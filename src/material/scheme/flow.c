@@ -36,10 +36,7 @@ status flow_new_points(flow *x, int n, const int *kind_id) {
   return OK;
 }
 
-void flow_kind_free(flow_kind *k) {
-  memory_free(k->value);
-  k->value = NULL;
-}
+void flow_kind_free(flow_kind *k) { FORGET(k->value); }
 
 void flow_free(flow *x) {
   for (int i = 0; x->kind != NULL && i < x->n_kind; ++i)

@@ -65,14 +65,6 @@ static status linear_law(const flow_kind *k, double *L, double *G) {
   return OK;
 }
 
-/* X[n*m] := inv(M) X; M is destroyed. */
-static status solve(int n, int m, double *M, double *X) {
-  OWNED_NEW(int, pivot, n);
-  if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, m, M, n, pivot, X, n) != 0)
-    RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
-  return OK;
-}
-
 static status theta_map(const flow_kind *k, const scheme_step *p,
                         const double *L, const double *G, linear_map *m) {
   const int n = m->n, ns = k->elastic.ns, columns = n + 2 * ns;
@@ -88,7 +80,10 @@ static status theta_map(const flow_kind *k, const scheme_step *p,
     X[n * n + i] = out * G[i];
     X[n * (n + ns) + i] = in * G[i];
   }
-  PASS(solve(n, columns, M, X));
+  /* X[n*m] := inv(M) X; M is destroyed. */
+  OWNED_NEW(int, pivot, n);
+  if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, columns, M, n, pivot, X, n) != 0)
+    RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
   COPY(m->P, X, n * n);
   COPY(m->Q0, X + n * n, n * ns);
   COPY(m->Q1, X + n * (n + ns), n * ns);
@@ -304,8 +299,7 @@ static void add_outer(int n, int columns, const double *column,
 
 enum { ZZ = 2 };
 
-/* e_zz of the old state out of the map: c (e - e^i) = 0, c the row of C for
- * sigma_zz. */
+/* e_zz of the old state out of the map: c (e - e^i) = 0 for sigma_zz. */
 static void eliminate_old(const law_elastic *el, linear_map *m) {
   const int ns = el->ns, n = m->n;
   double *column = m->Q0 + n * ZZ, of_e[6], of_ei[6];

@@ -104,8 +104,7 @@ static void point_step_place(const scheme_step *p, const double *sigma_old,
     l->alpha[i] = (1 - th) * l->old[l->ns + i] + th * y[l->ns + i];
 }
 
-/* f = old + dt rates - y at the point of y; largest magnitude of its strains.
- */
+/* f = old + dt rates - y at y; largest magnitude of its strains. */
 static double point_residual(const scheme_step *p, const double *sigma_old,
                              const double *y, point_step *l, double *f) {
   double worst = 0.0;
@@ -229,8 +228,7 @@ static int point_follow(const scheme_step *p, const double *sigma_old,
   return 0;
 }
 
-/* Newton iteration of one point for l->e, from and into l->y; *solved = 0 if
- * it fails. */
+/* Newton iteration of one point from and into l->y; *solved 0: fails. */
 static void point_step_solve(const scheme_step *p, const double *sigma_old,
                              point_step *l, int *solved) {
   if (!point_newton(p, sigma_old, l) && !point_follow(p, sigma_old, l))
@@ -242,8 +240,7 @@ static void point_step_solve(const scheme_step *p, const double *sigma_old,
 static int point_step_rests(const flow *x, const scheme_step *p,
                             const double *sigma_old, point_step *l) {
   point_step_place(p, sigma_old, l->old, l);
-  return isfinite(tensor_dot(l->ns, l->sigma, l->sigma)) &&
-         !flow_goes_on(x, &l->p);
+  return isfinite(dot(l->ns, l->sigma, l->sigma)) && !flow_goes_on(x, &l->p);
 }
 
 /* D[ns*ns] at the solution. */
@@ -438,8 +435,8 @@ static status linear_stress(const flow *x, const flow_tangent *law,
     tensor_product(ns, D, step, change);
     tensor_product(ns, E, now->e + at, whole);
     sum_scaled(ns, law->sigma + at, 1.0, change, linear + at);
-    sum += x->weight[k] * (tensor_dot(ns, whole, whole) +
-                           tensor_dot(ns, linear + at, linear + at));
+    sum += x->weight[k] *
+           (dot(ns, whole, whole) + dot(ns, linear + at, linear + at));
   }
   *scale = sqrt(sum);
   return OK;

@@ -19,8 +19,7 @@
  * The difference of HEUN and EULER is the estimate of the error of HEUN.
  */
 
-/* now = old + sum of factor[i] times the rates of stage i, at old->t + dt, and
- * its equilibrium. */
+/* now = old + sum of factor[i] times rates of stage i, at old->t + dt. */
 static status add_stage(const scheme_call *a, double dt, const double *factor) {
   const scheme_work *w = a->w;
   size_t n = (size_t)a->x->ns * a->x->n, na = a->x->alpha_at[a->x->n];
@@ -39,9 +38,8 @@ static status add_stage(const scheme_call *a, double dt, const double *factor) {
   return OK;
 }
 
-/* Rates of a state into stage i; its power counts with the weight "part". Those
- * of a threshold or a power may be beyond the limit here alone, not at the
- * start. */
+/* Rates of a state into stage i; its power counts with the weight "part". A
+ * threshold or a power may pass the limit here alone, not at the start. */
 static status rates(const scheme_call *a, const flow_state *s, int i,
                     double part) {
   scheme_work *w = a->w;
@@ -96,8 +94,7 @@ static status rk4_advance(const scheme_call *a) {
 
 /*
  * States within a step that has been made (dense output). With the part s of
- * the step, the change D = y_new - y_old and the rates f of the laws at both
- * ends,
+ * the step, the change D = y_new - y_old and the rates f at both ends,
  *   y(s) = y_old + s D + s (1 - s) ((1 - s) d_old - s d_new),
  *   d_old = dt f_old - D,  d_new = dt f_new - D
  * is the cubic of Hermite, wrong by dt^4: no integrator loses its order. The

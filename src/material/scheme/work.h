@@ -1,6 +1,5 @@
 /*
- * Workspace of the integrators and what their files share. Private to
- * src/material/scheme.
+ * What the integrators share. Private to src/material/scheme.
  */
 #pragma once
 
@@ -61,12 +60,10 @@ status newton_advance(const scheme_call *a);
 /* linear.c: by the Jacobian of the law. */
 status general_map(const flow_kind *k, const scheme_step *p, int exact,
                    linear_map *m, double *D);
-/* For laws with "series", "relaxing"; m->P, Q0, Q1 are there, D as if e_zz of
- * plane stress were given. */
+/* For "series", "relaxing"; m->P, Q0, Q1 are there, D as if e_zz were given. */
 status series_map(const flow_kind *k, const scheme_step *p, int exact,
                   linear_map *m, double *D);
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
                     linear_map *m, double *D);
-/* The map and D for the strains in the plane, sigma_zz = 0.
- * ERR_SINGULAR: nothing resists e_zz. */
+/* The map and D for the plane, sigma_zz = 0. ERR_SINGULAR: e_zz is free. */
 status plane_stress_map(const law_elastic *el, linear_map *m, double *D);

@@ -2,9 +2,8 @@
  * Opening of a mesh: which faces are cut, what is on their sides, the fans of
  * elements round each node; the lips, their groups and the front.
  *
- * "Near" elements have a node of a crack. Their sides and corners are numbered
- * per * place + k with per = dim + 1, place the one in "elem" and k the side or
- * corner of the element.
+ * "Near" elements have a node of a crack. Their sides and corners have numbers
+ * per * place + k, per = dim + 1, place in "elem", k of the element.
  */
 #include "base/base.h"
 #include "mesh/build.h"
@@ -215,8 +214,7 @@ static void join_corners(const opening *o, int *fan) {
   }
 }
 
-/* The root of a fan is its lowest corner: that of the first fan of a node keeps
- * it. */
+/* The root of a fan is its lowest corner: the first of a node keeps it. */
 static status find_fans(opening *o) {
   const mesh *m = o->m;
   const int per = m->dim + 1, n_corner = per * o->n_elem;
@@ -365,8 +363,7 @@ static int walk_piece(walk *w, int from, faults *bad) {
   return n;
 }
 
-/* Minus to plus points up along the last axis in which the mean normal has a
- * part. */
+/* Minus to plus points up along the last axis of the mean normal. */
 static void turn_up(walk *w, int from, int to) {
   const mesh *m = w->o->m;
   signed char *sign = w->o->sign + w->first;
@@ -530,8 +527,7 @@ static void add_items(const opening *o, const mesh_group *g, filling *f) {
   }
 }
 
-/* A group of nodes: all copies of those it has. Returns the nodes it had that
- * got any. */
+/* A group of nodes: all copies of those it has. Returns how many had some. */
 static int add_copies(const opening *o, const mesh_group *g, filling *f) {
   const mesh *m = o->m;
   int n = 0;
@@ -648,8 +644,7 @@ static int holds(const mesh *m, const int *v, const int *edge) {
   return found == m->dim - 1;
 }
 
-/* From a lip round the edge through all elements to the next side that is cut
- * or on the boundary. */
+/* From a lip round the edge to the next side cut or on the boundary. */
 static int last_side(const opening *o, int lip, const int *edge) {
   const int per = o->m->dim + 1;
   int at = lip, v[3];

@@ -1,7 +1,6 @@
 /* Sizes, surfaces and cells of a refinement. Inside src/mesh/refine only. */
 #pragma once
 
-#include "mesh/msh/raw_mesh.h"
 #include "mesh/refine/refine.h"
 
 /* Of the edge a, b. */

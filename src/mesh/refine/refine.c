@@ -216,8 +216,7 @@ static status find_surface(bisection *b) {
     ++f.n;
   }
   f.node = node;
-  memory_free(b->surface);
-  b->surface = NULL;
+  FORGET(b->surface);
   return round_surface_new(&f, b->n_node, b->x, &b->surface);
 }
 
@@ -234,8 +233,7 @@ static status grow(bisection *b) {
   COPY(b->no, no, n);
   for (size_t i = 0; i < n; ++i) last = no[i] > last ? no[i] : last;
   for (size_t i = n; i < all; ++i) b->no[i] = ++last;
-  memory_free(b->bent);
-  b->bent = NULL;
+  FORGET(b->bent);
   PASS_NEW(b->bent, b->marked.n);
   return OK;
 }
@@ -286,8 +284,7 @@ static int is_sound(const bisection *b, const int *v, double whole) {
   return is_sound(b, parts, 0.5 * whole) && is_sound(b, parts + 4, 0.5 * whole);
 }
 
-/* Middles that are not those of their edges are, where parts would be turned
- * over or nearly so. */
+/* Middles go back to their edges where parts would be turned over. */
 static void check_middles(bisection *b) {
   const cell_list *top = &b->cells[b->dim];
   for (int again = 1; again;) {
@@ -310,8 +307,7 @@ static void check_middles(bisection *b) {
   }
 }
 
-/* The number of the second part: the same for an element that is listed twice.
- */
+/* The number of the second part: one of an element listed twice. */
 static status number_part(bisection *b, size_t no, int mid, size_t *out) {
   int of, part;
   PASS(table_add(&b->by_no, (uint64_t)no, &of));
@@ -383,8 +379,7 @@ static status give(const bisection *b) {
   const size_t n = b->n_node, before = raw->n_node;
   OWNED double *old = raw->xyz;
   OWNS(raw);
-  memory_free(raw->node_no);
-  raw->node_no = NULL;
+  FORGET(raw->node_no);
   raw->xyz = NULL;
   raw->n_node = 0;
   PASS_NEW_ALL(OF(raw->node_no, n), OF(raw->xyz, 3 * n));

@@ -63,8 +63,7 @@ static void add_curve(round_surface *s, int a, int b, int is_sharp) {
   }
 }
 
-/* Which edges are on curves: all of a line, those with one face, or a sharp
- * one. */
+/* Which edges are on curves: of a line, of one face, or sharp. */
 static void find_curves(round_surface *s) {
   const int n = s->f.n_node;
   for (int i = 0; i < s->f.n; ++i)
@@ -122,8 +121,7 @@ static void set_tangents(round_surface *s, int n_all) {
       CLEAR(s->tangent + 3 * i, 3);
 }
 
-/* c less twice its part across: t at the other end of the chord c, both along
- * it. */
+/* c less twice its part across: t at the other end of the chord. */
 static void mirror(const double *c, double *t) {
   const double along = dot(3, t, c);
   for (int k = 0; k < 3; ++k) t[k] = 2.0 * along * c[k] - t[k];
@@ -191,8 +189,7 @@ static int surface_tangent(const round_surface *s, int a, int b, double *t) {
   return make_unit(3, t) > 0.0;
 }
 
-/* Of a node of the border the mean of the mirror images of its neighbours'
- * normals within. */
+/* Of a border node the mean of the mirror images of normals within. */
 static void improve_border(round_surface *s, const double *within) {
   const int *v = s->f.node;
   for (int i = 0; i < s->f.n; ++i, v += 3)

@@ -1,6 +1,5 @@
 /*
- * *REFERENCE: the components of a closed form. *GOAL: a quantity whose error is
- * wanted.
+ * *REFERENCE: components of a closed form. *GOAL: a quantity with its error.
  */
 #include "base/base.h"
 #include "model/cards/cards.h"

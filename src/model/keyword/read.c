@@ -29,8 +29,7 @@ static void check_problem_cards(const reading *r) {
                 i + 1);
 }
 
-/* The bound of the error factors the matrix, which costs more than many
- * solutions: only on request. */
+/* The bound of the error costs more than many solutions: on request. */
 static void check_problem_accuracy(const reading *r, step *s) {
   int others = s->accuracy.mesh == MESH_ERROR_YES || s->accuracy.time ||
                s->accuracy.theorems || r->m->accuracy.target.percent > 0.0;
@@ -106,8 +105,7 @@ static void unknown_parameter(reading *r, const parameter *p,
   unknown_word(r->m->log, P2003, &p->at, text, p->name, either_name, all);
 }
 
-/* A parameter is not reported as missing where another one was not
- * understood. */
+/* A parameter is not missing where another one was not understood. */
 static void report_missing(const reading *r, const option *table) {
   if (r->misread) return;
   for (const option *o = table; o != NULL && o->name != NULL; ++o)
@@ -254,8 +252,7 @@ static status name_job(model *m) {
   return OK;
 }
 
-/* What the deck lacks, at its end; not after a card was refused, which may be
- * the one. */
+/* What the deck lacks; not after a refused card, which may be the one. */
 static void report_absent(const reading *r) {
   const model *m = r->m;
   place at = {.file = m->deck->file};

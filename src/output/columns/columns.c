@@ -268,12 +268,11 @@ static void plane_of(double d[3][3], double lone, double *s, double *t) {
 }
 
 /* Principal stress number part, the largest first, in space: the lone one by
- * its angle, the others from the plane normal to its direction. W. M.
- * Scherzinger, C. R. Dohrmann, Comput. Methods Appl. Mech. Engrg. 197 (2008)
- * 4007. */
+ * its angle, the others normal to its direction. W. M. Scherzinger, C. R.
+ * Dohrmann, Comput. Methods Appl. Mech. Engrg. 197 (2008) 4007. */
 static double principal_in_space(const double *stress, int part) {
-  double d[3][3], s[3], t[3], ds[3], dt[3], scale = 0;
-  for (int k = 0; k < 6; ++k) scale = fmax(scale, fabs(stress[k]));
+  double d[3][3], s[3], t[3], ds[3], dt[3];
+  const double scale = largest_entry(6, stress);
   const double mean = (stress[0] + stress[1] + stress[2]) / 3;
   for (int k = 0; k < 3; ++k) {
     d[k][k] = (stress[k] - mean) / scale;

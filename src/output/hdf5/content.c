@@ -1,6 +1,5 @@
 /*
- * Fixed contents of JOB.h5: mesh, contact surface, deck; and the fields of the
- * columns.
+ * Contents of JOB.h5: mesh, contact surface, deck; fields of the columns.
  */
 #include "output/hdf5/file.h"
 
@@ -192,8 +191,7 @@ static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
   return OK;
 }
 
-/* Number of the node and of its contact, and the place itself (points of a
- * viewer that draws no faces). */
+/* Number of the node and of its contact, and the place as a point. */
 static status add_contact_numbers(hdf5_file *h, const int *contact_of) {
   size_t *no = NULL;
   int *of = NULL, *index = NULL;

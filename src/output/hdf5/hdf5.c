@@ -29,8 +29,7 @@ static double shown(double increments, int frequency) {
 
 static int bounded(double n, int most) { return n < most ? (int)n : most; }
 
-/* Rows and records from step first_id on, plus "extra" increments of the step
- * before it. */
+/* Rows and records from step first_id on, plus "extra" before it. */
 static void forecast(const model *m, int first_id, double extra, int *n_row,
                      int *n_record) {
   double rows = extra, records = 0;
@@ -192,9 +191,8 @@ static double part_value(const hdf5_field *f, const view *v, int id, int k) {
   return column_ready(c, v->s) ? ready_value(c, v, id) : NAN;
 }
 
-/* The item of a column that stands in place id of its field: a contact node
- * that is not in the surface now (-1) has displacements, but no other
- * value. */
+/* The item of a column that stands in place id of its field: a contact node not
+ * in the surface (-1) has displacements alone. */
 static int item_of(const hdf5_file *h, const hdf5_field *f, int id) {
   if (f->of != PER_CONTACT_NODE) return id;
   return f->part[0]->of == PER_NODE ? h->contact_node[id] : h->surface_id[id];
@@ -298,8 +296,7 @@ static void release(hdf5_file *h) {
           h->path, h->aside, h);
 }
 
-/* The file of the continued run: its contents beyond "before" are written
- * again. */
+/* The file of the continued run is written again beyond "before". */
 static status earlier_file(hdf5_file *h, const hdf5_count *before) {
   const char *why;
   h->fd = file_descriptor(AT_FDCWD, h->path, O_RDWR, &why);
@@ -331,8 +328,7 @@ static status first_file(hdf5_file *h, const hdf5_count *before) {
   PASS(renew(h, rows, records));
   /* The mesh is kept, the copies for the first file are freed. */
   for (int i = 0; i < h->n_fixed; ++i) {
-    memory_free(h->fixed[i].own);
-    h->fixed[i].own = NULL;
+    FORGET(h->fixed[i].own);
     h->fixed[i].data = NULL;
   }
   return OK;

@@ -1,7 +1,6 @@
 /* JOB.h5 and JOB.xdmf: mesh, fields and histories for viewers and programs. */
 #pragma once
 
-#include "output/columns/columns.h"
 #include "output/listing/job.h"
 
 typedef struct hdf5_file hdf5_file;
@@ -20,8 +19,7 @@ typedef struct hdf5_field {
 typedef struct hdf5_count { /* what has been written */
   int rows, records;
 } hdf5_count;
-/* NULL in *out if no step requires fields. before: continue the file after
- * these; NULL: a new one. */
+/* NULL if no step requires fields. before: continue the file; NULL: new. */
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
                  const hdf5_count *before, hdf5_file **out);
 /* Synchronise; h NULL: nothing. */
@@ -44,7 +42,6 @@ void hdf5_record_name(char *text, size_t size, int i);
 
 /* JOB.xdmf; written to a temporary file and renamed. */
 status xdmf_write(const hdf5_shape *shape, const char *path);
-/* The last record of the body or of the contact alone, the same way; nothing if
- * there is none. */
+/* The last record of the body or of the contact alone; or nothing. */
 status xdmf_write_last(const hdf5_shape *shape, int of_contact,
                        const char *path);

@@ -17,8 +17,7 @@ enum {
 typedef struct discrete {
   const step *step;
   const exchange_problem *p;
-  contact_problem cp;    /* p->cp, with its bodies after the solve; dim 1:
-                            0 */
+  contact_problem cp;    /* p->cp, with its bodies; dim 1: 0 */
   contact_problem whole; /* the same with all of the matrix */
   double *full;          /* [m*m] of a compliance in blocks, or NULL */
   contact_bodies *bodies;
@@ -46,8 +45,7 @@ static status discrete_new(discrete *d) {
 
 static void discrete_free(discrete *d) {
   RELEASE(d->surface.node_no, d->u, d->r, d->gap, d->slip, d->g, d->contact,
-          d->full);
-  memory_free(d->bodies);
+          d->full, d->bodies);
   solution_set_free(&d->solutions);
 }
 
@@ -63,8 +61,7 @@ static status condensed_energy(const contact_problem *cp, const double *u,
 }
 
 /* The bound by the inverse of the matrix given; where that is a definite
- * compliance with Coulomb friction, the stiffness A[m*m] is computed for its
- * rate.
+ * compliance with Coulomb friction, A[m*m] is computed for its rate.
  */
 static status bound_error(const contact_problem *cp, dense_inverse *dense,
                           const double *u, const double *r,

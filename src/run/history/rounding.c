@@ -46,10 +46,9 @@ static status check(const run *r, double share, const condensed *c) {
 /*
  * Whether the supports of a body strain it (not: those of each body move
  * rigidly, to the rounding of the data): their displacements, as given, are
- * compared with the nearest rigid motion of the body. What is left of them is
- * found in long double, so that it is none of a rigid motion but the rounding
- * of the data. The strains of the solution cannot tell: where the motion is far
- * above them they are rounding.
+ * compared with the nearest rigid motion of the body. The rest is found in long
+ * double: of a rigid motion the rounding of the data. The strains of the
+ * solution cannot tell: where the motion is far above them they are rounding.
  */
 enum { MODES = 6, COLUMNS = MODES + 1 };
 
@@ -157,8 +156,7 @@ static double largest_force(const run *r) {
 }
 
 /* What the rounding of the forces stores, and what the solver has left at the
- * contact nodes, J: at the stiffest node, or at any where nothing but that is
- * left of them. */
+ * contact nodes, J: at the stiffest node, or at any if all is rounding. */
 static double forces_energy(const run *r) {
   const double force = largest_force(r), rounding = RUN_CARRIED * force,
                left = r->solving.report.residual * force,
@@ -168,8 +166,7 @@ static double forces_energy(const run *r) {
          condensed_stiffest(r->c);
 }
 
-/* 1: contact forces and supports carry the loads straight, and strains are
- * nothing else. */
+/* 1: contact forces and supports carry the loads straight. */
 static int forces_hide_strains(const run *r) {
   return r->now.energy.strain <= forces_energy(r);
 }
@@ -211,9 +208,7 @@ int rounding_is_all(const run *r) {
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
-/* The contact forces of the answer. Where they differ from those of its
- * displacements by more than rounding, the solver has left that, and the latter
- * are taken. */
+/* The contact forces of the answer, or, beyond rounding, of its motion. */
 static status find_forces(const run *r, misfit *x) {
   const contact_problem *cp = &r->problem.cp;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);
@@ -238,9 +233,8 @@ static status find_error(const run *r, misfit *x, double *square) {
 }
 
 /* Whether contact carries the loads straight: at each node its force and the
- * load leave no more than the rounding of forces, what the solver has left, or
- * the rounding of the motion where that is far below the load or nothing loads
- * it. */
+ * load leave no more than the rounding of forces, that of the solver, or the
+ * rounding of the motion if far below the load or nothing loads it. */
 static status find_carried(run *r) {
   const double most = fmax(increment_free_load(r, r->now.F),
                            largest_entry(r->nodes.n_c, r->now.rc)),

@@ -55,8 +55,7 @@ static status adjust(const model *m, const surface_input *in, surface_pair *p,
 
 /* bits[n_node]: the components that the first step fixes. */
 static status find_fixed(const model *m, const mesh *msh, unsigned char *bits) {
-  OWNED unsigned char *fixed = NULL;
-  PASS_NEW(fixed, (size_t)msh->dim * msh->n_node);
+  OWNED_NEW(unsigned char, fixed, (size_t)msh->dim * msh->n_node);
   load_fixed(msh, &m->steps[0], fixed);
   for (int i = 0; i < msh->n_node; ++i)
     for (int c = 0; c < msh->dim; ++c)
@@ -69,12 +68,11 @@ status setup_adjust(model *m, mesh *msh) {
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].pair.adjust;
   for (int i = 0; i < m->n.tie; ++i) any |= m->ties[i].pair.adjust;
   if (!any) return OK;
-  OWNED unsigned char *fixed = NULL;
   surface_input in = {.mesh = msh,
                       .axisymmetric = m->sections[0].kin == AXISYMMETRIC};
   OWNED_OF(double, weight, setup_face_weights(m, msh, &weight));
   in.face_weight = weight;
-  PASS_NEW(fixed, msh->n_node);
+  OWNED_NEW(unsigned char, fixed, msh->n_node);
   if (m->n.step > 0) PASS(find_fixed(m, msh, fixed));
   in.fixed = fixed;
   for (int i = 0; i < m->n.tie; ++i)

@@ -48,10 +48,9 @@ static status warn_edges(const mesh *m, const contact_pair *p,
                          message_log *log) {
   static const double sharp = 0.5; /* rad, from the mean of both sides */
   const mesh_group *g = p->group;
-  OWNED double *mean = NULL;
   double normal[3], most = 0.0;
   int node_id = -1;
-  PASS_NEW(mean, m->dim * m->n_node);
+  OWNED_NEW(double, mean, m->dim * m->n_node);
   for (int i = 0; i < g->n_item; ++i) {
     const double measure = mesh_face_normal(m, g->item_id[i], normal);
     for (int k = 0; k < m->dim; ++k)
@@ -80,10 +79,9 @@ static status warn_edges(const mesh *m, const contact_pair *p,
 status setup_facing(const run *r, contact_pair *p) {
   const mesh *m = r->msh;
   const mesh_group *all = p->group;
-  OWNED double *least = NULL;
   mesh_group *g = NULL;
   if (all->dim != m->dim - 1) return OK;
-  PASS_NEW(least, m->n_node);
+  OWNED_NEW(double, least, m->n_node);
   find_least(m, p->support, all, least);
   PASS_NEW(g, 1);
   *g = (mesh_group){.name = all->name, .dim = all->dim, .tag = all->tag};

@@ -1,7 +1,6 @@
 /*
- * Points whose law flows, before anything is solved: inelastic strains and
- * those of the units of their laws, of which they are the sum; temperatures of
- * the steps in which they flow.
+ * Points whose law flows, before anything is solved: inelastic strains, those
+ * of the units of their laws; temperatures of the steps in which they flow.
  */
 #include "model/facts.h"
 #include "run/visco.h"
@@ -10,10 +9,9 @@
 
 /* 1: rates of some law depend on the absolute temperature. */
 static int counts_from_zero(const flow *x) {
-  int any = 0;
   for (int i = 0; i < x->n_kind; ++i)
-    any |= law_too_cold(x->kind[i].law, -HUGE_VAL) != NULL;
-  return any;
+    if (law_too_cold(x->kind[i].law, -HUGE_VAL) != NULL) return 1;
+  return 0;
 }
 
 /* The first point that is too cold, with temperatures T[n_elem] at a time. */

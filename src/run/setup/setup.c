@@ -1,6 +1,5 @@
 /*
- * A run before its first step: arrays that persist during the run, from the
- * model and the mesh.
+ * A run before its first step: arrays that persist during the run.
  */
 #include "run/setup/setup.h"
 
@@ -125,8 +124,7 @@ void run_free(run *r) {
   free_equilibrium(&r->now);
   strains_free(r);
   moduli_free(&r->body.moduli);
-  memory_free(r->body.d.cluster);
-  RELEASE(r->body.fixed, r->faces.pairs, r->faces.node_fixed,
+  RELEASE(r->body.d.cluster, r->body.fixed, r->faces.pairs, r->faces.node_fixed,
           r->faces.face_weight, r->result.totals, r->result.torque, r->loads.ud,
           r->loads.start, r->result.strain, r->result.stress);
 }

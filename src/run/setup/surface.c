@@ -18,10 +18,7 @@ void run_free_surface(run *r) {
       &r->result.open_gap, &r->old.uc,           &r->old.rc,
       &r->now.uc,          &r->now.rc,           &r->old.motion,
       &r->now.motion,      &r->problem.row[0],   &r->problem.row[1]};
-  for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) {
-    memory_free(*owned[i]);
-    *owned[i] = NULL;
-  }
+  for (size_t i = 0; i < sizeof owned / sizeof *owned; ++i) FORGET(*owned[i]);
   RELEASE(r->result.contact, r->result.closed);
   r->result.contact = NULL;
   r->result.closed = NULL;
@@ -188,8 +185,7 @@ status run_build_ties(run *r) {
   node_bits(r);
   timer_enter(STAGE_COUPLING);
   NEW_ALL(OF(m, n), OF(dropped, r->msh->n_node));
-  /* Nodes that all their components hold, or an earlier tie has, are left out.
-   */
+  /* Nodes wholly held, or of an earlier tie, are left out. */
   const int dim = r->msh->dim;
   for (int i = 0; i < r->msh->n_node; ++i) {
     int all = 1;

@@ -1,8 +1,7 @@
 /*
  * Initial displacements from the deck (*INITIAL CONDITIONS, TYPE=DISPLACEMENT)
  * and from the end of an earlier run: mesh and last record of /fields in its
- * JOB.h5; whether they are compatible: the residual of (3.8) node by node, in
- * N.
+ * JOB.h5; whether they fit: the residual of (3.8) node by node, in N.
  */
 #include "run/start/start.h"
 
@@ -62,8 +61,7 @@ static status read_last(const hdf5_source *s, const mesh *msh, double *u,
 /*
  * Displacements u[dim*n_node] (m) of the last record, its time *t (s). ERR_FILE
  * or ERR_DECK with an error in the log at "at": the file cannot be read, has no
- * record, was cut short, or has another mesh (nodes are compared in number and
- * place).
+ * record, was cut short, or has another mesh (number or places).
  */
 static status end_state_read(const char *path, const mesh *msh, const place *at,
                              message_log *log, double *u, double *t) {

@@ -14,8 +14,7 @@ enum {
 static const double NULL_PIVOT = 0x1p-44; /* -, times m: of the largest pivot */
 static const double ROUNDING = 0x1p-48;   /* -, times m: of the mean diagonal */
 static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
-static const double FINEST = 0.1;   /* -, of the tolerance: enough for a pass */
-static const double PROGRESS = 0.9; /* -, a lower residual */
+static const double FINEST = 0.1; /* -, of the tolerance: enough for a pass */
 static const double STEADY = 0x1p-7; /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
@@ -109,8 +108,7 @@ static status hold(const contact_problem *cp, anchor *an) {
   return OK;
 }
 
-/* Of each motion by the stiffness of the bodies that it moves, which may differ
- * by powers of ten. */
+/* Of each motion by the stiffness of its bodies, which may differ widely. */
 static status choose_springs(const contact_problem *cp, anchor *an) {
   OWNED double *stiffness = NULL;
   PASS_NEW_ALL(OF(stiffness, cp->m), OF(an->spring, an->n_mode));
@@ -135,23 +133,14 @@ static double *mode_of(const anchor *an, int m, int k) {
 }
 
 /* Au += R k R'u. */
-static void add_springs(const anchor *an, int m, const double *u, double *Au) {
+static void held_apply(void *ctx, const double *u, double *Au, double *size) {
+  const anchor *an = ctx;
+  an->of->apply(an->of->ctx, u, Au, size);
   for (int k = 0; k < an->n_mode; ++k) {
-    const double *v = mode_of(an, m, k);
-    cblas_daxpy(m, an->spring[k] * cblas_ddot(m, v, 1, u, 1), v, 1, Au, 1);
+    const double *v = mode_of(an, an->m, k);
+    cblas_daxpy(an->m, an->spring[k] * cblas_ddot(an->m, v, 1, u, 1), v, 1, Au,
+                1);
   }
-}
-
-static void held_apply(void *ctx, const double *u, double *Au) {
-  const anchor *an = ctx;
-  an->of->apply(an->of->ctx, u, Au);
-  add_springs(an, an->m, u, Au);
-}
-
-static void held_sizes(void *ctx, const double *u, double *Au, double *size) {
-  const anchor *an = ctx;
-  an->of->apply_sizes(an->of->ctx, u, Au, size);
-  add_springs(an, an->m, u, Au);
 }
 
 static status held_rows(void *ctx, const known_rows *rows, int *singular) {
@@ -188,7 +177,6 @@ static status hold_operator(const contact_problem *cp, anchor *an) {
                               .n_body = cp->op->n_body,
                               .room = cp->op->room,
                               .apply = held_apply,
-                              .apply_sizes = held_sizes,
                               .set_rows = held_rows,
                               .solve = held_solve};
   return OK;
@@ -244,8 +232,7 @@ static double move_of(const passes *p, int i) {
   return d;
 }
 
-/* Distance from u to the nearest bound over the last move; at least 1, 1 if it
- * leads to none. */
+/* Distance to the nearest bound over the last move; at least 1, 1: none. */
 static double moves_to_bound(const passes *p, const double *u) {
   double moves = HUGE_VAL, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) most = fmax(most, fabs(move_of(p, i)));
@@ -267,8 +254,7 @@ static void close_gaps(passes *p) {
   place(p->an, p->cp->m, d, p->an->a);
 }
 
-/* A body in free motion to an obstacle is moved onto it, the next time onto the
- * first bound it meets. */
+/* A body in free motion is moved onto its obstacle, then to its bound. */
 static void fly(passes *p, const double *u) {
   double moves = moves_to_bound(p, u);
   if (!(moves > 1.0)) return;
@@ -314,8 +300,7 @@ static double friction_against(const passes *p, const double *r) {
   return sum;
 }
 
-/* 1: no obstacle stops the last move, and the load does more work on it than
- * friction. */
+/* 1: nothing stops the last move, and friction does less than the load. */
 static int drifts(const passes *p, const double *r) {
   double work = 0.0, into = 0.0, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) {
@@ -335,10 +320,7 @@ static outcome check(passes *p, double tol, const double *r, solver_report *rep,
   if (rep->residual <= tol && (carried(p) <= tol || ++p->late > LATE))
     return CONVERGED;
   ++p->since;
-  if (rep->residual < PROGRESS * p->lowest) {
-    p->lowest = rep->residual;
-    p->since = 0;
-  }
+  if (solver_progresses(&p->lowest, rep->residual)) p->since = 0;
   if (inner == STOPPED_ITERATIONS && p->since > 0) return inner;
   if (p->steady >= DRIFT && p->since >= DRIFT && drifts(p, r))
     return STOPPED_RAY;

@@ -62,21 +62,20 @@ static int lacks_stiffness(const contact_solver *s, const contact_problem *cp,
          !does;
 }
 
-static int lacks_compliance(const contact_problem *cp, const solver_ops *ops) {
-  return (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL &&
-         cp->blocks == NULL && cp->op == NULL;
+static status make_full(contact_solver *s, const contact_problem *cp) {
+  if (s->full != NULL) return OK;
+  PASS_NEW(s->full, (size_t)cp->m * cp->m);
+  contact_dense(cp, s->full);
+  return OK;
 }
 
 /* All of a compliance given in blocks, for the others. */
 static status fill_up(contact_solver *s, contact_problem *cp) {
-  const size_t m = cp->m;
   if (cp->blocks == NULL) return OK;
-  if (s->full == NULL) {
-    PASS(memory_require((double)(m * m * sizeof *s->full),
+  if (s->full == NULL)
+    PASS(memory_require((double)cp->m * cp->m * sizeof *s->full,
                         "the compliance of a method that needs all of it"));
-    PASS_NEW(s->full, m * m);
-    contact_dense(cp, s->full);
-  }
+  PASS(make_full(s, cp));
   cp->W = s->full;
   cp->blocks = NULL;
   return OK;
@@ -92,20 +91,10 @@ static status form_entries(contact_solver *s, contact_problem *cp,
     *why = "needs the entries of the condensed stiffness, which do not fit";
     return OK;
   }
-  if (s->full == NULL) {
-    PASS_NEW(s->full, (size_t)cp->m * cp->m);
-    contact_dense(cp, s->full);
-  }
+  PASS(make_full(s, cp));
   cp->A = s->full;
   cp->op = NULL;
   return OK;
-}
-
-/* Why the solver cannot take the problem in any form, or NULL. */
-static const char *unfit(const contact_problem *cp, const solver_ops *ops) {
-  if (cp->dim == 3 && !(ops->handles & SOLVES_3D))
-    return "solves problems in the plane only";
-  return NULL;
 }
 
 /* 1: it takes a semidefinite stiffness. */
@@ -115,18 +104,19 @@ static int floats(const contact_problem *cp, const solver_ops *ops) {
   return (ops->handles & needs) != 0;
 }
 
-/* The problem in a form the solver can use; NULL, or why there is none. */
+/* The problem in a form the solver can use; *why stays NULL, or there is
+ * none. */
 static status suit(contact_solver *s, const contact_problem *cp,
                    const solver_ops *ops, contact_problem *out,
                    const char **why) {
   contact_problem formed = *cp;
-  *why = unfit(cp, ops);
-  if (*why == NULL) PASS(form_entries(s, &formed, ops, why));
+  PASS(form_entries(s, &formed, ops, why));
   cp = &formed;
   *out = *cp;
   if (*why != NULL) return OK;
   int stiffness = lacks_stiffness(s, cp, ops);
-  int compliance = lacks_compliance(cp, ops);
+  int compliance = (ops->handles & NEEDS_COMPLIANCE) && cp->W == NULL &&
+                   cp->blocks == NULL && cp->op == NULL;
   if (cp->floating && !floats(cp, ops)) return suit_by_springs(s, cp, out, why);
   if (!stiffness && !compliance) {
     if (!(ops->handles & SPARSE_COMPLIANCE)) PASS(fill_up(s, out));
@@ -162,8 +152,7 @@ static status drive_one(contact_solver *s, const contact_problem *cp,
   if (a->how == ALONG_PATH) {
     int entries = cp->B->start[cp->n];
     if (s->path == NULL || s->path_capacity < entries) {
-      memory_free(s->path);
-      s->path = NULL;
+      FORGET(s->path);
       PASS(friction_path_new(cp, &s->path));
       s->path_capacity = entries;
     }
@@ -200,8 +189,7 @@ static int wants_inverse(contact_solver *s, const contact_problem *cp,
       contact_has_stiffness(cp) || !(a->ops->handles & REGULAR_COMPLIANCE) ||
       s->inverse_wanted)
     return 0;
-  memory_free(s->work[row]);
-  s->work[row] = NULL;
+  FORGET(s->work[row]);
   s->inverse_wanted = 1;
   return a->max_iter == 0 || a->max_iter > rep->iterations;
 }
@@ -217,8 +205,7 @@ static status drive_form(drive_call *x, const contact_problem *own,
 }
 
 /* The residual of the stiffness form can be below the tolerance where that of
- * the given compliance is slightly above: the solver continues with a tighter
- * tolerance. */
+ * the given compliance is slightly above: it goes on with a tighter one. */
 static status drive_until_met(drive_call *x, const contact_problem *own,
                               solver_control control, double *u, double *r,
                               solver_report *rep) {
@@ -248,8 +235,7 @@ static int is_number(const contact_problem *cp, const double *u,
 }
 
 status attempt_run(contact_solver *s, const contact_problem *cp,
-                   const attempt *a, const solver_listener *listener, double *u,
-                   double *r, solver_report *rep) {
+                   const attempt *a, double *u, double *r, solver_report *rep) {
   status st = OK;
   contact_problem own;
   const char *why = NULL;
@@ -257,10 +243,13 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
   solver_control control = {.tol = s->choice.tol,
                             .max_iter = a->max_iter,
                             .limit_max_iter = s->choice.limit_max_iter,
-                            .listener = listener,
+                            .listener = s->listener,
                             .promise = a->promise};
   *rep = (solver_report){.outcome = STOPPED_UNFIT};
-  TRY(suit(s, cp, a->ops, &own, &why));
+  if (cp->dim == 3 && !(a->ops->handles & SOLVES_3D))
+    why = "solves problems in the plane only";
+  else
+    TRY(suit(s, cp, a->ops, &own, &why));
   if (why != NULL) {
     size_t used = strlen(s->log);
     snprintf(s->log + used, LOG_SIZE - used, "%s%s: %s", used > 0 ? ", " : "",
@@ -283,7 +272,7 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
     attempt again = *a;
     if (a->max_iter > 0) again.max_iter -= rep->iterations;
     cold_start(cp, u, r);
-    TRY(attempt_run(s, cp, &again, listener, u, r, rep));
+    TRY(attempt_run(s, cp, &again, u, r, rep));
   }
 done:
   rep->solver = a->ops->name;

@@ -1,7 +1,6 @@
 /*
- * METHOD=AUTO. The choice depends on quantities without unit: whether there is
- * friction, which form is given, whether it can be inverted, the dimension and
- * the number of unknowns m.
+ * METHOD=AUTO. The choice depends on quantities without unit: friction, the
+ * form given, whether it can be inverted, the dimension and unknowns m.
  *
  * No friction: the tangential unknowns are eliminated and the normal ones are
  * solved for by active sets, of the opening nodes only, and by NEWTON where
@@ -54,8 +53,7 @@ enum {
   LEAST_ROUNDS = 3,    /* least number for a trial */
   TINY_SIZE = 30,      /* m: up to here they cost less than STEPS of NEWTON */
   LEAST_TRIAL = 100,   /* sweeps where NEWTON has failed */
-  READ = 8,            /* solves whose arithmetic takes the time of reading the
-                          matrix */
+  READ = 8,            /* solves in the time of reading the matrix */
   FULL_SIZE = 1000,    /* m: up to here a method has all its iterations */
   SMALL_SIZE = 200,    /* m: up to here factorisations cost like products */
   LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems */
@@ -125,10 +123,6 @@ static double entries_of(const contact_problem *cp) {
   return (double)cp->blocks->start[cp->n] * cp->dim * cp->dim;
 }
 
-static double sweep_cost(const contact_problem *cp) {
-  return 4.0 * entries_of(cp) + 100.0 * cp->dim * cp->dim * cp->n;
-}
-
 static double cost_of(const contact_problem *cp, const solver_ops *ops) {
   const double e = entries_of(cp);
   if (ops == &proximal_solver) return 16.0 * 500.0 * e;
@@ -169,7 +163,9 @@ static int sweeps_of_others(const contact_problem *cp) {
   double least = HUGE_VAL;
   for (int i = 1; i <= SORTED; ++i)
     least = fmin(least, cost_of(cp, sparse_chain[i].ops));
-  return (int)fmin(least / sweep_cost(cp), MOST_SWEEPS);
+  return (int)fmin(
+      least / (4.0 * entries_of(cp) + 100.0 * cp->dim * cp->dim * cp->n),
+      MOST_SWEEPS);
 }
 
 /* Of the sweeps that are watched. */
@@ -213,8 +209,7 @@ static void note(contact_solver *s, const solver_report *rep,
              rep->iterations, a->max_iter);
 }
 
-/* Significance of a failure; a singular compliance has none, a method that does
- * not apply less. */
+/* Weight of a failure; none of a singular compliance, less if unfit. */
 static int weight(const contact_problem *cp, outcome o) {
   if (o == STOPPED_UNFIT) return -1;
   return o == STOPPED_SINGULAR && contact_has_stiffness(cp);
@@ -228,11 +223,6 @@ static int says_more(const contact_problem *cp, const solver_report *a,
   return !(a->residual >= b->residual);
 }
 
-/* 1: sweeps may be fast. */
-static int sweeps_fit(const contact_problem *cp) {
-  return !contact_has_stiffness(cp) && cp->dim == 3 && cp->B != NULL;
-}
-
 /* 1 if a method of the chain does not apply: a friction path without Coulomb
  * friction, a method for problems of which only the compliance is known, or one
  * that needs all of a large sparse one. */
@@ -240,13 +230,13 @@ static int is_skipped(const contact_problem *cp, const link *l) {
   if (l->how == ALONG_PATH && cp->B == NULL) return 1;
   if (cp->blocks != NULL)
     return is_large_sparse(cp) && !(l->ops->handles & SPARSE_COMPLIANCE);
-  if (l->how == WHILE_PROMISING && !sweeps_fit(cp)) return 1;
+  /* 1: sweeps may be fast. */
+  if (l->how == WHILE_PROMISING &&
+      !(!contact_has_stiffness(cp) && cp->dim == 3 && cp->B != NULL))
+    return 1;
   if (l->compliance < 0) return !contact_has_stiffness(cp);
   return l->compliance && contact_has_stiffness(cp);
 }
-
-/* 1 if no other method is needed: a solution or a proof. */
-static int is_final(outcome o) { return o == CONVERGED || o == STOPPED_RAY; }
 
 /* Start and end of an attempt: u[m], r[m], and its report. */
 typedef struct answer {
@@ -257,30 +247,30 @@ typedef struct answer {
 /* An attempt of few iterations, which need not succeed. */
 static status short_try(contact_solver *s, const contact_problem *cp,
                         const solver_ops *ops, int iterations,
-                        const solver_listener *listener, const answer *to) {
+                        const answer *to) {
   int asked = s->choice.max_iter;
   attempt a = {ops, s->param, PLAIN,
                asked > 0 && asked < iterations ? asked : iterations, NULL};
   memset(s->param, 0, s->param_size);
   option_defaults(ops->options, s->param);
-  PASS(attempt_run(s, cp, &a, listener, to->u, to->r, to->rep));
+  PASS(attempt_run(s, cp, &a, to->u, to->r, to->rep));
   attempt_check(s, cp, to->u, to->r, to->rep);
   return OK;
 }
 
 /* Without friction: in the normal unknowns. *done_well = 1: solved. */
 static status solve_normal(contact_solver *s, const contact_problem *cp,
-                           const solver_listener *listener, double *u,
-                           double *r, solver_report *rep, int *done_well) {
+                           const answer *to, int *done_well) {
+  double *u = to->u, *r = to->r;
+  solver_report *rep = to->rep;
   int before = 0;
   solver_control control = {.tol = s->choice.tol,
                             .max_iter = allowance(s, cp, &dense_chain[1]),
-                            .listener = listener};
+                            .listener = s->listener};
   *done_well = 0;
   if (!normal_form_applies(cp)) return OK;
   if (s->normal.wanted++ == 0 && !is_zero(cp->m, r)) {
-    PASS(short_try(s, cp, &newton_solver, WARM_STEPS, listener,
-                   &(answer){u, r, rep}));
+    PASS(short_try(s, cp, &newton_solver, WARM_STEPS, to));
     *done_well = rep->outcome == CONVERGED;
     if (*done_well) return OK;
     before = rep->iterations;
@@ -303,8 +293,7 @@ static status solve_normal(contact_solver *s, const contact_problem *cp,
 
 /* One method of the chain; its outcome in rep. "first": no other has run. */
 static status run_link(contact_solver *s, const contact_problem *cp,
-                       const link *l, int first,
-                       const solver_listener *listener, const answer *to) {
+                       const link *l, int first, const answer *to) {
   solver_report *rep = to->rep;
   attempt a = {l->ops, s->param, l->how, allowance(s, cp, l), NULL};
   sweep_promise promise = {
@@ -320,7 +309,7 @@ static status run_link(contact_solver *s, const contact_problem *cp,
   if (!l->warm) cold_start(cp, to->u, to->r);
   /* With a nearly singular stiffness its start forces are too large. */
   if (a.ops == &proximal_solver) CLEAR(to->r, cp->m);
-  PASS(attempt_run(s, cp, &a, listener, to->u, to->r, rep));
+  PASS(attempt_run(s, cp, &a, to->u, to->r, rep));
   if (rep->outcome != STOPPED_UNFIT) attempt_check(s, cp, to->u, to->r, rep);
   if (cp->floating || rep->outcome == STOPPED_RAY)
     PASS(attempt_prove(s, cp, rep));
@@ -330,29 +319,28 @@ static status run_link(contact_solver *s, const contact_problem *cp,
 
 /* Sweeps of SOR on a stiffness in 3-D with a loose tolerance. */
 static status coarse_sweeps(contact_solver *s, const contact_problem *cp,
-                            const solver_listener *listener, const answer *to) {
+                            const answer *to) {
   to->rep->outcome = STOPPED_UNFIT;
   if (cp->A != NULL && cp->dim == 3 && cp->B != NULL &&
       solver_few_digits(s->choice.tol))
-    PASS(short_try(s, cp, &sor_solver, cp->m / SWEEP_SHARE, listener, to));
+    PASS(short_try(s, cp, &sor_solver, cp->m / SWEEP_SHARE, to));
   return OK;
 }
 
-status auto_solve(contact_solver *s, const contact_problem *cp,
-                  const solver_listener *listener, double *u, double *r,
-                  solver_report *rep) {
+status auto_solve(contact_solver *s, const contact_problem *cp, double *u,
+                  double *r, solver_report *rep) {
   const link *order[MOST_LINKS];
   const answer to = {u, r, rep};
   int n = order_links(cp, order), iterations = 0, first = 1, solved = 0;
   solver_report best = {.outcome = RUNNING};
-  PASS(solve_normal(s, cp, listener, u, r, rep, &solved));
+  PASS(solve_normal(s, cp, &to, &solved));
   if (!solved) {
-    PASS(coarse_sweeps(s, cp, listener, &to));
+    PASS(coarse_sweeps(s, cp, &to));
     solved = rep->outcome == CONVERGED;
   }
   for (int i = 0; i < n && !solved; ++i) {
     if (is_skipped(cp, order[i])) continue;
-    PASS(run_link(s, cp, order[i], first, listener, &to));
+    PASS(run_link(s, cp, order[i], first, &to));
     iterations += rep->iterations;
     first = first && rep->outcome == STOPPED_UNFIT && s->log[0] == '\0';
     if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
@@ -361,7 +349,7 @@ status auto_solve(contact_solver *s, const contact_problem *cp,
       COPY(s->best_u, u, cp->m);
       COPY(s->best_r, r, cp->m);
     }
-    if (is_final(rep->outcome)) break;
+    if (rep->outcome == CONVERGED || rep->outcome == STOPPED_RAY) break;
   }
   if (solved) return OK;
   PASS(attempt_prove(s, cp, &best));

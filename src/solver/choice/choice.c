@@ -51,8 +51,7 @@ double slip_misdirection(const contact_problem *cp, const double *u,
   return scale > 0.0 ? worst / scale : 0.0;
 }
 
-/* Distance of an unknown to its bound at the obstacle, m; 0: it is not
- * pressed. */
+/* Distance of an unknown to its bound, m; 0: it is not pressed. */
 static double distance_to_bound(const contact_problem *cp, const double *u,
                                 const double *r, int dof) {
   double own = contact_diagonal(cp, dof);
@@ -151,19 +150,14 @@ status contact_solver_new(const solver_choice *choice, contact_solver **out) {
 
 /* A (or W) has changed: discard factors. */
 static void forget_factors(contact_solver *s) {
-  for (int i = 0; i <= N_SOLVER; ++i) {
-    memory_free(s->work[i]);
-    s->work[i] = NULL;
-  }
-  RELEASE(s->fixed, s->path);
-  s->fixed = NULL;
-  s->path = NULL;
+  for (int i = 0; i <= N_SOLVER; ++i) FORGET(s->work[i]);
+  FORGET(s->fixed);
+  FORGET(s->path);
   other_form_free(&s->other);
   s->inverse_wanted = 0;
   normal_form_free(&s->normal);
   anchor_free(&s->held);
-  memory_free(s->bodies);
-  s->bodies = NULL;
+  FORGET(s->bodies);
   RELEASE(s->best_u, s->best_r, s->full);
   s->best_u = s->best_r = s->full = NULL;
   s->last = (contact_problem){0};
@@ -290,16 +284,15 @@ const contact_bodies *contact_solver_bodies(const contact_solver *s,
 }
 
 static status solve_apart(contact_solver *s, const contact_problem *cp,
-                          const solver_listener *listener, double *u, double *r,
-                          solver_report *rep) {
+                          double *u, double *r, solver_report *rep) {
   s->scale = contact_scale(cp);
   if (known_answer(s, cp, u, r, rep)) return OK;
   if (s->choice.ops == NULL) {
-    PASS(auto_solve(s, cp, listener, u, r, rep));
+    PASS(auto_solve(s, cp, u, r, rep));
   } else {
     attempt a = {s->choice.ops, s->choice.param, PLAIN, s->choice.max_iter,
                  NULL};
-    PASS(attempt_run(s, cp, &a, listener, u, r, rep));
+    PASS(attempt_run(s, cp, &a, u, r, rep));
     attempt_check(s, cp, u, r, rep);
     PASS(attempt_prove(s, cp, rep));
   }
@@ -319,10 +312,11 @@ status contact_solve(contact_solver *s, const contact_problem *cp,
   contact_problem apart = *cp;
   s->log[0] = '\0';
   s->sought = s->proved = 0;
+  s->listener = listener;
   *rep = (solver_report){.outcome = RUNNING};
   TRY(fit(s, cp));
   if (cp->bodies == NULL) apart.bodies = s->bodies;
-  TRY(solve_apart(s, &apart, listener, u, r, rep));
+  TRY(solve_apart(s, &apart, u, r, rep));
 done:
   rep->cpu = timer_cpu() - start;
   return st;

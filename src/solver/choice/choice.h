@@ -5,7 +5,6 @@
 #pragma once
 
 #include "solver/fixed_point.h"
-#include "solver/solver.h"
 #include "solver/newton/dense.h"
 
 /*
@@ -64,8 +63,7 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
 /*
  * Other forms of a problem, more suitable for a solver.
  *
- * The other form: stiffness from compliance, or the reverse, by an inverse that
- * is made once per matrix.
+ * The other form: stiffness from compliance or the reverse, made once.
  *
  * The normal form of a problem without friction: the tangential unknowns, which
  * carry no force, are eliminated once per matrix,
@@ -147,10 +145,10 @@ struct contact_solver {
   contact_bodies *bodies;
   double *best_u, *best_r; /* [m] of the attempt with the lowest residual */
   double scale;            /* contact_scale of the problem being solved */
-  int sought, proved;      /* a proof that it has no solution */
-  archive *from;           /* borrowed: saved data for the workspaces; or
-                              NULL */
-  char group[80];          /* in it */
+  const solver_listener *listener; /* of it; or NULL */
+  int sought, proved;              /* a proof that it has no solution */
+  archive *from;                   /* borrowed: saved data; or NULL */
+  char group[80];                  /* in it */
 };
 
 /* WHILE_PROMISING: AUTO alone, sweeps whose rate is watched. */
@@ -170,8 +168,7 @@ status attempt_archive(const contact_solver *s, int row, archive *a);
 /* One attempt with one solver. STOPPED_UNFIT: it cannot treat the problem, the
  * log says why. rep->outcome and residual are those of the solver. */
 status attempt_run(contact_solver *s, const contact_problem *cp,
-                   const attempt *a, const solver_listener *listener, double *u,
-                   double *r, solver_report *rep);
+                   const attempt *a, double *u, double *r, solver_report *rep);
 /* The final outcome: only the residual of the given problem counts. */
 void attempt_check(const contact_solver *s, const contact_problem *cp,
                    const double *u, const double *r, solver_report *rep);
@@ -188,9 +185,8 @@ static inline int is_large_sparse(const contact_problem *cp) {
 }
 
 /* METHOD=AUTO (auto.c), as contact_solve. */
-status auto_solve(contact_solver *s, const contact_problem *cp,
-                  const solver_listener *listener, double *u, double *r,
-                  solver_report *rep);
+status auto_solve(contact_solver *s, const contact_problem *cp, double *u,
+                  double *r, solver_report *rep);
 
 /*
  * Proof that a contact problem has no solution: an inequality that is checked
@@ -237,10 +233,9 @@ status proof_find(const contact_problem *cp, anchor *an, int *proved);
  * held, slip and friction opposed: one or two of them suffice on a solution.
  */
 
-/* Deviation of friction from the direction opposite to the slip: the largest
- * over the nodes of min(c |s|, |r_t + |r_t| s/|s||), s = u_t - ut0, c the
- * stiffness of the node, over contact_scale. -; 0 in the plane, where the
- * residual bounds it. */
+/* How far friction is from opposite to the slip: the largest over the nodes of
+ * min(c |s|, |r_t + |r_t| s/|s||), s = u_t - ut0, c the stiffness of the node,
+ * over contact_scale. -; 0 in the plane, where the residual bounds it. */
 double slip_misdirection(const contact_problem *cp, const double *u,
                          const double *r);
 /*

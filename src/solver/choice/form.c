@@ -67,28 +67,22 @@ void other_form_free(other_form *o) {
  * Contact without friction from the state with every node closed.
  *
  * With v = u_n - gap and r0 the normal forces of the closed state, the normal
- * form is S v = r - r0: v = 0 where closed, r = 0 where open. Only the
- * part S_EE of the nodes E that have been open is made, from columns inv(L)
- * A_tE that are kept while the matrix is unchanged; the forces of the others
- * follow from a product with A. Guess and correction as in NEWTON (primal-dual
- * active set).
+ * form is S v = r - r0: v = 0 where closed, r = 0 where open. Only S_EE of the
+ * nodes E that have been open is made, from columns inv(L) A_tE kept with the
+ * matrix; the forces of the others follow from a product with A. Guess and
+ * correction as in NEWTON (primal-dual active set).
  */
 /* Unknown number i of the tangential ones. */
 static size_t tangent_dof(int dim, int i) {
   return i / (dim - 1) * dim + 1 + i % (dim - 1);
 }
 
-/* A_tt = L L'/power, borrowed. */
-typedef struct tangent_factor {
-  const double *L; /* [nt*nt] */
-  double power;    /* of two */
-} tangent_factor;
-
 enum { STEPS = 20, SHARE = 2 };       /* of the nodes: most that open */
 static const double MARGIN = 0x1p-46; /* -, of the scale: no change of state */
 
 struct opened {
-  tangent_factor by;
+  const double *L; /* [nt*nt] borrowed: A_tt = L L'/power */
+  double power;    /* of two */
   int n, nt, dim;
   int n_made, *made;      /* [n] nodes with a column */
   int *column;            /* [n] of a node, or -1 */
@@ -102,10 +96,11 @@ struct opened {
   double *y;              /* [nt] */
 };
 
-static status opened_new(const contact_problem *cp, const tangent_factor *by,
+static status opened_new(const contact_problem *cp, const normal_form *nf,
                          opened **out) {
   MAKES(opened, o, out);
-  o->by = *by;
+  o->L = nf->L;
+  o->power = nf->power;
   o->n = cp->n;
   o->dim = cp->dim;
   o->nt = cp->m - cp->n;
@@ -134,8 +129,8 @@ static status opened_keep(opened *o, archive *a) {
 /* u_t that carry no force when the others are u: -inv(A_tt) r_t, added. */
 static void release_tangents(opened *o, const double *r, double *u) {
   for (int i = 0; i < o->nt; ++i)
-    o->y[i] = -o->by.power * r[tangent_dof(o->dim, i)];
-  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', o->nt, 1, o->by.L, o->nt, o->y,
+    o->y[i] = -o->power * r[tangent_dof(o->dim, i)];
+  LAPACKE_dpotrs_work(LAPACK_COL_MAJOR, 'L', o->nt, 1, o->L, o->nt, o->y,
                       o->nt);
   for (int i = 0; i < o->nt; ++i) u[tangent_dof(o->dim, i)] += o->y[i];
 }
@@ -153,19 +148,19 @@ static void make_columns(opened *o, const contact_problem *cp) {
     const double *column = cp->A + m * (o->open[a] * o->dim);
     double *to = o->Y + (size_t)nt * o->n_made++;
     for (int i = 0; i < nt; ++i)
-      to[i] = o->by.power * column[tangent_dof(o->dim, i)];
+      to[i] = o->power * column[tangent_dof(o->dim, i)];
   }
   int fresh = o->n_made - first;
   if (fresh == 0) return;
   double *Y = o->Y + (size_t)nt * first;
   cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit,
-              nt, fresh, 1.0, o->by.L, nt, Y, nt);
+              nt, fresh, 1.0, o->L, nt, Y, nt);
   for (int b = first; b < o->n_made; ++b)
     for (int a = 0; a < o->n_made; ++a)
       o->S[a + (size_t)capacity * b] =
           cp->A[o->made[a] * o->dim + m * (o->made[b] * o->dim)];
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, o->n_made, fresh, nt,
-              -1.0 / o->by.power, o->Y, nt, Y, nt, 1.0,
+              -1.0 / o->power, o->Y, nt, Y, nt, 1.0,
               o->S + (size_t)capacity * first, capacity);
   for (int b = first; b < o->n_made; ++b)
     for (int a = 0; a < first; ++a)
@@ -180,8 +175,8 @@ static int open_up(opened *o) {
   for (int b = 0; b < n; ++b) {
     const double *column = o->S + (size_t)o->n * o->column[o->open[b]];
     for (int a = b; a < n; ++a)
-      o->F[a + (size_t)n * b] = o->by.power * column[o->column[o->open[a]]];
-    o->v[b] = -o->by.power * o->r0[o->open[b] * o->dim];
+      o->F[a + (size_t)n * b] = o->power * column[o->column[o->open[a]]];
+    o->v[b] = -o->power * o->r0[o->open[b] * o->dim];
   }
   if (n == 0) return 1;
   if (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', n, o->F, n) != 0) return 0;
@@ -204,8 +199,7 @@ static void displace(opened *o, const contact_problem *cp) {
   contact_product(cp->m, cp->A, o->du, o->dr);
 }
 
-/* The next guess; returns the number of changes, *worst: the largest violation,
- * N. */
+/* The next guess; the number of changes, *worst: the worst, N. */
 static int next_states(opened *o, const contact_problem *cp, double margin,
                        double *worst) {
   int changes = 0;
@@ -242,8 +236,7 @@ static void finish(const opened *o, const contact_problem *cp, double *u,
 }
 
 /* Solve from the states of u[m], r[m], both zero: all closed. rep->outcome
- * CONVERGED, or STOPPED_UNFIT: the guesses do not converge; u, r are then
- * unchanged. */
+ * CONVERGED, or STOPPED_UNFIT: no convergence, u, r unchanged. */
 static void opened_solve(opened *o, const contact_problem *cp,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep) {
@@ -397,8 +390,7 @@ status normal_form_opened(normal_form *nf, const contact_problem *cp,
   if (!nf->missing) TRY(factor(nf, cp));
   if (nf->missing) goto done;
   if (nf->opened == NULL) {
-    tangent_factor by = {nf->L, nf->power};
-    TRY(opened_new(cp, &by, &nf->opened));
+    TRY(opened_new(cp, nf, &nf->opened));
     TRY(remember(nf, "opened", &there));
     if (there) TRY(opened_keep(nf->opened, nf->from));
   }

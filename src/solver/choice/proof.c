@@ -132,13 +132,6 @@ typedef struct balance {
   double *lift;    /* [m] set_lift */
 } balance;
 
-static status balance_new(balance *s) {
-  size_t m = s->cp->m;
-  PASS(nonnegative_new(s->an->n_mode + 1, &s->sum));
-  PASS_NEW_ALL(OF(s->v, m), OF(s->c, 3 * m), OF(s->force, m), OF(s->lift, m));
-  return OK;
-}
-
 /* Friction of node i against v, times "limit", added to the force. */
 static void add_friction(const balance *s, int i, double limit) {
   const contact_problem *cp = s->cp;
@@ -149,8 +142,7 @@ static void add_friction(const balance *s, int i, double limit) {
   }
 }
 
-/* The column with the largest work on the rest, into to[rows]; its work, <= 0:
- * none. */
+/* The column with the largest work into to[rows]; that, <= 0: none. */
 static double best_column(balance *s, double *to) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode, best = 0;
@@ -178,8 +170,7 @@ static double best_column(balance *s, double *to) {
   return fmax(s->c[best], of_limit);
 }
 
-/* The motion that lifts all nodes most evenly; *gain: the least decrease of c
- * per unit of it, 0: none. */
+/* The motion that lifts all nodes; *gain: least decrease of c per unit. */
 static void set_lift(balance *s, double *gain) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode;
@@ -210,7 +201,9 @@ static status find_motion(const contact_problem *cp, const anchor *an,
   SCRATCH;
   balance s = {.cp = cp, .an = an};
   double *column, *b, size, gain, before = HUGE_VAL;
-  PASS(balance_new(&s));
+  size_t m = s.cp->m;
+  PASS(nonnegative_new(s.an->n_mode + 1, &s.sum));
+  PASS_NEW_ALL(OF(s.v, m), OF(s.c, 3 * m), OF(s.force, m), OF(s.lift, m));
   b = s.sum.b;
   cblas_dgemv(CblasColMajor, CblasTrans, cp->m, an->n_mode, 1.0, an->R, cp->m,
               cp->f, 1, 0.0, b, 1);

@@ -10,8 +10,7 @@
  * The complement of the variable that left last enters next. A pivot adds,
  * replaces or removes one row and one column of P; K follows by a rank-one
  * change. Lexicographic rule: q is thought of as q + (e, e^2, ...) with an
- * infinitesimal e; only the columns of the inverse that are needed to break
- * ties are formed.
+ * infinitesimal e; only the columns that break ties are formed.
  */
 #include "solver/lcp/lcp.h"
 
@@ -59,11 +58,10 @@ static double plain_residual(int n, const double *M, const double *q,
 
 status lcp_lemke(int n, const double *M, const double *q, int max_pivots,
                  double *z, lcp_report *rep) {
-  OWNED double *d = NULL;
   plain m = {n, M, power_to_one(largest_entry((size_t)n * n, M))};
   *rep = (lcp_report){.outcome = RUNNING};
   OWNED_OF(lcp_work, w, lcp_new(n, n, &w));
-  PASS_NEW(d, n);
+  OWNED_NEW(double, d, n);
   for (int i = 0; i < n; ++i) d[i] = 1.0;
   lcp_problem p = {.n = n,
                    .q = q,
@@ -221,8 +219,7 @@ static double lcp_direction(lcp_work *w, const lcp_problem *p) {
   return first;
 }
 
-/* ---- which variable leaves the basis: the first to vanish, ties by the
- * lexicographic rule. */
+/* ---- which variable leaves: the first to vanish, by lexicographic rule. */
 
 static const double SMALL = 0x1p-38;   /* no pivot below */
 static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered */
@@ -330,8 +327,7 @@ static int split_ties(lcp_work *w, const lcp_problem *p, int j, int n_tie) {
   return kept;
 }
 
-/* Candidate that leaves, -1: none (a ray). z0 has priority: the problem is then
- * solved. */
+/* Candidate that leaves, -1: a ray. z0 has priority: it is solved. */
 static int lcp_leaving(lcp_work *w, const lcp_problem *p, double *step) {
   sizes k = measure(w);
   int n_tie = first_to_vanish(w, &k, step);

@@ -12,7 +12,6 @@
  */
 #pragma once
 
-#include "base/outcome.h"
 #include "base/status.h"
 
 typedef struct lcp_report {
@@ -48,8 +47,7 @@ typedef struct lcp_problem {
 } lcp_problem;
 
 typedef struct lcp_work lcp_work;
-/* Allocates for n unknowns, of which at most "rank" (of M) are basic at a
- * time. */
+/* Allocates for n unknowns, of which at most "rank" are basic. */
 status lcp_new(int n, int rank, lcp_work **out);
 /* Solve p; rep->residual is unchanged. Allocates nothing. */
 void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep);

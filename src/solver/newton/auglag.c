@@ -37,6 +37,7 @@
  *
  * the very step of NEWTON for these states.
  */
+#include "base/number.h"
 #include "solver/fixed_point.h"
 #include "solver/newton/system.h"
 
@@ -94,8 +95,7 @@ typedef struct auglag_run {
   status failed; /* of a step, ERR_MEMORY: the method ends */
 } auglag_run;
 
-/* ---- the augmented forces F(z), the states of the nodes they stand for, and
- * the residual of (u, F). */
+/* ---- the augmented forces F(z), their states, the residual of (u, F). */
 
 /* rho of an unknown, N/m. */
 static double auglag_rho(const auglag_run *s, int dof) {
@@ -162,8 +162,7 @@ static double auglag_turning(const auglag_run *s, int a, int b) {
   return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
 }
 
-/* The states after a step into w->state; counts the nodes that differ from the
- * step before. */
+/* The states after a step; counts the nodes that differ from before. */
 static void auglag_take_states(auglag_run *s) {
   auglag_work *w = s->w;
   int dim = s->cp->dim;
@@ -222,8 +221,7 @@ static int operated_direction(auglag_run *s, const double *hold) {
   return s->failed == OK;
 }
 
-/* ---- VARIANT=NEWTON: the generalised Newton method for both equations at
- * once. */
+/* ---- VARIANT=NEWTON: the generalised Newton method. */
 
 static const double RHO_NEWTON = 0x1p-2; /* -, of diag A */
 static const double DESCENT = 1e-4;      /* -, share of the slope */
@@ -248,8 +246,7 @@ static double newton_row(const auglag_run *s, int row, const double *v,
   return value;
 }
 
-/* The unknowns fixed by the states go into du, the others are listed; returns
- * their number. */
+/* Unknowns fixed by the states go into du; the number of others. */
 static int known_steps(auglag_run *s) {
   auglag_work *w = s->w;
   int n = 0;
@@ -359,12 +356,11 @@ static double shorten(auglag_run *s, double reference) {
   return now;
 }
 
-/* 1: the states changed in step k, and occurred before. FNV-1a. */
+/* 1: the states changed in step k, and occurred before. */
 static int met_before(const auglag_run *s, int k) {
   auglag_work *w = s->w;
-  uint64_t h = 1469598103934665603u;
+  const uint64_t h = number_hash(HASH_START, w->state, s->cp->m);
   int met = 0;
-  for (int i = 0; i < s->cp->m; ++i) h = (h ^ w->state[i]) * 1099511628211u;
   for (int j = 0; j + 1 < k; ++j) met = met || w->seen[j] == h;
   w->seen[k] = h;
   return met && s->turned > 0;
@@ -402,9 +398,8 @@ static outcome auglag_newton(auglag_run *s) {
 /* ---- VARIANT=UZAWA: displacement and multiplier in turn ------------------ */
 
 static const double RHO_UZAWA = 0x1p4; /* -, of diag A */
-static const double PROGRESS = 0.9; /* -, of the residual, in PATIENCE steps */
-static const double START_TOL = 1e-3; /* -, of pressures for a first limit */
-static const double FLATTER = 0.5;    /* -, slope that ends a search */
+static const double START_TOL = 1e-3;  /* -, of pressures for a first limit */
+static const double FLATTER = 0.5;     /* -, slope that ends a search */
 
 enum {
   INNER_STEPS = 60, /* Newton steps of one multiplier step */
@@ -549,10 +544,7 @@ static outcome auglag_uzawa(auglag_run *s) {
   while ((o = minimise(s)) == RUNNING) {
     COPY(w->lambda, w->F, s->cp->m);
     ++since;
-    if (w->best.residual < PROGRESS * mark) {
-      mark = w->best.residual;
-      since = 0;
-    }
+    if (solver_progresses(&mark, w->best.residual)) since = 0;
     if (since > PATIENCE) return s->singular ? STOPPED_RAY : STOPPED_STAGNATION;
   }
   return o;
@@ -664,8 +656,7 @@ static status follow_limit(auglag_run *s, solver_report *rep) {
   return OK;
 }
 
-/* 1: the other variant ended without progress: the cycle of the first one is
- * the better reason. */
+/* 1: the other variant made no progress: the first cycle tells more. */
 static int made_no_progress(const solver_control *control,
                             const solver_report *rep) {
   int bounded = control->max_iter > 0 && rep->iterations >= control->max_iter;

@@ -19,8 +19,7 @@ struct operated_system {
   int m;
   double power;         /* of two: the diagonal times it is of order 1 */
   double *b, *x, *Ax;   /* [m] */
-  double *added;        /* [dim*m] known_rows.added, of the present step or of
-                           one before */
+  double *added;        /* [dim*m] known_rows.added, of this step or before */
   int drifts;           /* 1: it may be apart */
   int exhausted;        /* 1: the last step had springs, or GMRES left more
                            than it should: not again with its factor */
@@ -156,8 +155,7 @@ static void orthogonalise(operated_system *s, int j, double *w) {
   h[j + 1] = cblas_dnrm2(s->slip.n, w, 1);
 }
 
-/* The combination of the directions that leaves least is added to the load, and
- * that solved for. */
+/* The combination that leaves least goes to the load and its solution. */
 static void combine(operated_system *s, const contact_problem *cp) {
   const int n = s->krylov.n;
   double *sum = direction(s, n);
@@ -224,8 +222,7 @@ static void wanted(const contact_problem *cp, const operated_rows *rows,
     block[(dim + 1) * a] += rows->hold[dim * node + a];
 }
 
-/* 1: the factor has what the guess adds at a node; of one that slips only the
- * turning may be another. */
+/* 1: the factor has what the guess adds at a node, but for its turning. */
 static int has_block(const operated_system *s, const operated_rows *rows,
                      int node, const double *block) {
   for (int i = 0; i < 9; ++i) {
@@ -257,8 +254,7 @@ static int has_rows(const operated_system *s, const contact_problem *cp,
   return 1;
 }
 
-/* The rows of the guess, in which slip may turn otherwise; spring: share of the
- * diagonal. */
+/* The rows of the guess, where slip may turn; spring: of the diagonal. */
 static status set_rows(operated_system *s, const contact_problem *cp,
                        const operated_rows *rows, double spring,
                        int *singular) {

@@ -66,8 +66,7 @@ typedef struct proximal_work {
   force_set *set;
   best_iterate best;
   step_matrix *J;
-  unsigned char *acts;       /* [m] 1: the row of J is not that of the unit
-                                matrix */
+  unsigned char *acts;       /* [m] 1: a row of J not of the unit matrix */
   double *x, *F, *d, *z;     /* [m] */
   double *weight;            /* [m] of F, m/N */
   double *start, *centre;    /* [m] force at the start; of the pass */
@@ -176,8 +175,7 @@ static void add_row(const run *s, int j, double share) {
   step_matrix_add(s->w->J, j, -share * (1.0 - s->stretch * s->share));
 }
 
-/* Row of tangent a of a node that slips: g e turns with z and grows with the
- * pressures. */
+/* Row of tangent a of slip: g e turns with z and grows with pressure. */
 static void add_slip(const run *s, int node_id, int a, double length) {
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
@@ -460,8 +458,7 @@ static status begin(run *s) {
   return OK;
 }
 
-/* Residual at r; of an operator r and A u - f have drifted apart by rounding.
- */
+/* Residual at r; an operator's r and A u - f have drifted apart. */
 static double residual_of(const run *s) {
   const contact_problem *cp = s->cp;
   double *raw = cp->op != NULL ? s->w->by.b : NULL;
@@ -489,10 +486,7 @@ static status trial(run *s, int limit, int closed, outcome *end) {
            : s->steps >= limit         ? STOPPED_ITERATIONS
                                        : STOPPED_STAGNATION;
     if (*end != STOPPED_STAGNATION) break;
-    if (residual < 0.9 * lowest) {
-      lowest = residual;
-      idle = 0;
-    }
+    if (solver_progresses(&lowest, residual)) idle = 0;
     creeps = residual > CREEP * before && steps <= HARD ? creeps + 1 : 0;
     before = residual;
     set_centre(s, creeps);

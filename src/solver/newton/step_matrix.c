@@ -71,8 +71,7 @@ void step_matrix_add_row(step_matrix *s, int j, double share) {
     step_matrix_add(s, W->col[k], share * W->val[k]);
 }
 
-/* The entries of the current row in ascending order; the rows of W that they
- * come from ascend. */
+/* Entries of the row in ascending order; rows of W ascend. */
 static void sort_touched(step_matrix *s) {
   for (int a = 1; a < s->n_touched; ++a) {
     int j = s->touched[a], b = a;
@@ -82,8 +81,7 @@ static void sort_touched(step_matrix *s) {
   }
 }
 
-/* Contribution of the eliminated unknowns to the right side; their entries of
- * the line are cleared. */
+/* Of the eliminated unknowns on the right side; their entries are cleared. */
 static double take_out(step_matrix *s, int i) {
   double rhs = s->d[i];
   for (int a = 0; a < s->n_touched; ++a) {

@@ -45,8 +45,7 @@ static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 /* ---- the matrix ---------------------------------------------------------- */
 
-/* 1: under the guess friction of the node follows pressure: M has no symmetry.
- */
+/* 1: friction of the node follows pressure: M has no symmetry. */
 static int couples(const newton_system *s, const pattern *p, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (p->mode[node_id] != SLIP) return 0;
@@ -145,8 +144,7 @@ static double newton_cost(int n, int full) {
   return (full ? 2.0 : 1.0) / 3.0 * size * size * size + READ * size * size;
 }
 
-/* The condition number is computed only where the matrix can be singular for
- * valid data. */
+/* The condition number only where the matrix may be singular. */
 /* Factor of the base; 0: singular to rounding. */
 static int newton_factor(newton_system *s) {
   fill(s, 0.0);
@@ -209,8 +207,7 @@ static void newton_spring_step(newton_system *s, const pattern *p) {
 static const double DRIFT = 0x1p-3; /* -, change of a slip direction or turning
                                        stiffness that the base allows (3-D) */
 
-/* 1: the node slips in another direction than in the base; in 3-D a small
- * change is allowed. */
+/* 1: the node slips in another direction; in 3-D small turns pass. */
 static int turned(const newton_system *s, const pattern *p, int dof) {
   int node_id = dof / s->cp->dim, tangents = s->cp->dim - 1;
   double change = 0.0, now = p->kappa[node_id], old = s->base.kappa[node_id];
@@ -240,8 +237,7 @@ static int same_row(const newton_system *s, const pattern *p, int dof) {
   return 1;
 }
 
-/* List the rows in which the guess differs from the base; returns what an
- * update costs, operations. */
+/* List the rows that differ from the base; cost of an update, operations. */
 static double newton_list_changes(newton_system *s, const pattern *p) {
   double fresh = 0.0, equations = 0.0, n = s->base.n_free, m = s->m;
   s->n_changed = 0;
@@ -287,8 +283,7 @@ static void make_columns(newton_system *s) {
   }
 }
 
-/* Rows a .. a + n of the small system, all of them equations. id: places among
- * the changed. */
+/* Rows a .. a + n of the small system. id: places among the changed. */
 static void equation_rows(newton_system *s, const pattern *p, int n,
                           const int *id) {
   int k = s->n_changed;
@@ -425,17 +420,13 @@ static double known_value(const contact_problem *cp, const pattern *p,
   return p->closed[dof] ? contact_bound(cp, dof) : contact_stick(cp, dof);
 }
 
-static int is_known(const contact_problem *cp, const pattern *p, int dof) {
-  return contact_held(cp, dof) || p->closed[dof] ||
-         (dof % cp->dim > 0 && p->mode[dof / cp->dim] == STICK);
-}
-
 int newton_list_known(const contact_problem *cp, pattern *p, const double *u,
                       double *du) {
   int moved = 0;
   p->n_free = 0;
   for (int dof = 0; dof < cp->m; ++dof) {
-    const int known = is_known(cp, p, dof);
+    const int known = contact_held(cp, dof) || p->closed[dof] ||
+                      (dof % cp->dim > 0 && p->mode[dof / cp->dim] == STICK);
     p->place[dof] = known ? -1 : p->n_free;
     if (!known) p->free_id[p->n_free++] = dof;
     du[dof] = known ? known_value(cp, p, dof) - u[dof] : 0.0;
@@ -485,9 +476,9 @@ double newton_load(const contact_problem *cp, const pattern *p, double power,
   for (int node_id = 0; node_id < cp->n; ++node_id) {
     if (p->mode[node_id] != SLIP) continue;
     const double *e = p->e + node_id * (dim - 1);
-    double slip[2], along = 0.0, g = linear_limit(cp, p, raw, node_id);
+    double slip[2], g = linear_limit(cp, p, raw, node_id);
     newton_slip(cp, u, node_id, slip);
-    for (int k = 0; k < dim - 1; ++k) along += e[k] * slip[k];
+    const double along = dot(dim - 1, e, slip);
     for (int k = 0; k < dim - 1; ++k) {
       int dof = node_id * dim + 1 + k;
       if (p->place[dof] < 0) continue;

@@ -54,8 +54,7 @@ typedef struct lemke_work {
                                   [n_free*n_kept] that times A_FK */
     double *base;              /* [m] u (r) at z = 0 */
     double *D;                 /* [n] scale of a node, power of two */
-    double *tame;              /* [n] factor of the rows with the limit, power
-                                  of two */
+    double *tame;              /* [n] of rows with the limit, power of two */
   } reduced;
   struct {
     int *normal, *slide, *n_slide; /* [n] variable of u_n; first SLIDE */
@@ -157,8 +156,7 @@ static void lemke_list_variables(lemke_run *s) {
   }
 }
 
-/* ---- the matrix of the unknowns kept: the tangents without friction
- * eliminated, node by node scaled. */
+/* ---- the matrix of the unknowns kept, scaled node by node. */
 
 static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue */
 
@@ -199,8 +197,7 @@ static int pseudo_invert_free(lemke_run *s) {
   return 1;
 }
 
-/* S = A_KK - A_KF inv(A_FF) A_FK (W_KK in the compliance form); 0: A_FF is
- * singular. */
+/* S = A_KK - A_KF inv(A_FF) A_FK, or W_KK; 0: A_FF is singular. */
 static int lemke_reduce(lemke_run *s) {
   lemke_work *w = s->w;
   int nk = w->reduced.n_kept, nf = w->reduced.n_free;
@@ -427,8 +424,7 @@ static void lemke_set_base(lemke_run *s) {
   lemke_settle_free(s, 1, w->reduced.base);
 }
 
-/* w of every variable from raw, scaled as the matrix is; z: scaled, for the
- * compliance form. */
+/* w of every variable from raw, scaled; z: scaled, of a compliance. */
 static void slacks(const lemke_run *s, const double *raw, const double *z,
                    double *to) {
   const contact_problem *cp = s->cp;
@@ -471,8 +467,7 @@ static void lemke_state_of(const lemke_run *s, const double *z, double *x) {
   lemke_settle_free(s, 1, x);
 }
 
-/* Correct z by the residual of the rows of the final basis with the given
- * matrix. */
+/* Correct z by the residual of the final basis, the given matrix. */
 static void polish(lemke_run *s, double *x) {
   lemke_work *w = s->w;
   lcp_values(w->lcp, w->z);
@@ -488,8 +483,7 @@ static void polish(lemke_run *s, double *x) {
   lemke_respond(s, x, 1, w->raw);
 }
 
-/* Stiffness form: r from raw with the conditions of the basis enforced
- * exactly. */
+/* Stiffness form: r from raw with the conditions of the basis exact. */
 static void clean_forces(const lemke_run *s, double *r) {
   const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
@@ -545,8 +539,7 @@ static void lemke_set_solution(lemke_run *s, double *u, double *r) {
 static const double RAY_DEFECT = 1e-8;  /* -, forces a free motion may cause */
 static const double RAY_WORK = 0x1p-30; /* -, margin of the work of the load */
 
-/* 1: the motion w->ray causes no force, and the load does more work on it than
- * "resistance", N m. */
+/* 1: w->ray causes no force, and load more work than "resistance", N m. */
 static int motion_is_free(lemke_run *s, double resistance) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
@@ -561,8 +554,7 @@ static int motion_is_free(lemke_run *s, double resistance) {
          work > resistance * (1.0 - RAY_WORK);
 }
 
-/* STOPPED_RAY if the ray is a free motion, against the limits of the state it
- * starts from. */
+/* STOPPED_RAY if the ray is a free motion against its first limits. */
 static outcome lemke_check_ray(lemke_run *s) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;

@@ -2,7 +2,7 @@
  * Node k of the tree has the children 2k+1 and 2k+2; each holds half of the
  * items of its parent, parted at the median along the longest side.
  */
-#include "contact/average/box_tree.h"
+#include "base/box_tree.h"
 
 #include "base/base.h"
 
