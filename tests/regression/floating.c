@@ -425,6 +425,35 @@ START_TEST(load_that_ends_as_rounding_is_settled) {
 }
 END_TEST
 
+/* A load on a belt that comes and goes: every method follows the body. */
+START_TEST(load_that_comes_and_goes_is_settled_by_every_method) {
+  static const char *const methods[] = {"PCG", "LEMKE", "AUGLAG", "LAGRANGE",
+                                        "PROXIMAL"};
+  const int flat = _i % 2;
+  job j = job_begin("goes");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "goes.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, %s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=%s\nMOVE, \"0.01*t\", 0.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"sin(pi*t)\"\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 1., A\n"
+            "*SOLVER, METHOD=%s\n*PRINT, TOTALS\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n"
+            "*DSLOAD, OP=NEW\nTOP, P, 0.\n*END STEP\n",
+            flat ? "0." : "0.3",
+            flat ? "CONFORMING" : "SPHERE, RADIUS=100\n0.5, -100.",
+            methods[_i / 2]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  dat t = job_table(&j, "TOTALS", 2);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), sqrt(0.5), 1e-8);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* 0.3 - 0.1*3 is -5.6e-17: no load lifts the body, in this step or the next. */
 START_TEST(load_that_is_zero_but_for_rounding_lifts_nothing) {
   static const char *const methods[] = {"AUTO", "LEMKE", "SOR"};
@@ -691,6 +720,8 @@ int main(void) {
   tcase_add_loop_test(tests, body_pushed_out_of_its_floor_has_no_force, 0, 6);
   tcase_add_loop_test(tests, unloaded_body_rests_in_the_velocity_form, 0, 2);
   tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
+  tcase_add_loop_test(
+      tests, load_that_comes_and_goes_is_settled_by_every_method, 0, 10);
   tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
                       0, 12);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);

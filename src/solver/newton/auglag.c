@@ -399,6 +399,19 @@ static outcome auglag_newton(auglag_run *s) {
   }
 }
 
+/* From u, then from stick without a gap: a body that contact alone holds may
+ * have slid off its floor on the way. */
+static outcome newton_attempts(auglag_run *s) {
+  const outcome first = auglag_newton(s);
+  if (first == CONVERGED || first == STOPPED_NAN || s->failed != OK ||
+      s->control->no_restart || s->steps >= s->limit)
+    return first;
+  for (int i = 0; i < s->cp->m; ++i)
+    if (s->w->part[i] != NO_FORCE) s->u[i] = s->w->origin[i];
+  const outcome second = auglag_newton(s);
+  return second == CONVERGED ? second : first;
+}
+
 /* ---- VARIANT=UZAWA: displacement and multiplier in turn ------------------ */
 
 static const double RHO_UZAWA = 0x1p4; /* -, of diag A */
@@ -690,7 +703,7 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   w->best.residual = HUGE_VAL;
   force_parts(cp, w->part, w->origin);
   if (w->by.system != NULL) operated_system_fit(w->by.system);
-  if (p->variant == BY_NEWTON) rep->outcome = auglag_newton(&s);
+  if (p->variant == BY_NEWTON) rep->outcome = newton_attempts(&s);
   int done_well = rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN;
   int cycled = rep->outcome == STOPPED_CYCLE;
   PASS(s.failed);

@@ -539,6 +539,19 @@ static void lemke_set_solution(lemke_run *s, double *u, double *r) {
   }
 }
 
+/* 1: stick without any force, where the path begins, is a solution, u[m], r[m].
+ * Pivots of a problem without a load follow rounding. */
+static int lemke_take_base(lemke_run *s, double *u, double *r) {
+  lemke_work *w = s->w;
+  if (!lemke_is_stiff(s)) return 0;
+  CLEAR(w->best_r, s->cp->m);
+  if (!(contact_residual(s->cp, w->reduced.base, w->best_r) <= s->control->tol))
+    return 0;
+  COPY(u, w->reduced.base, s->cp->m);
+  COPY(r, w->best_r, s->cp->m);
+  return 1;
+}
+
 /* ---- rays: is the motion at the end of the path free, and does the load do
  * more work on it than friction takes. */
 
@@ -728,8 +741,11 @@ static status lemke_solve(const contact_problem *cp, const void *par,
   rep->outcome = STOPPED_RAY;
   if (!lemke_load_is_held(&s)) return OK;
   rep->outcome = follow(&s, &rep->iterations);
+  if (rep->outcome == CONVERGED)
+    lemke_set_solution(&s, u, r);
+  else if (lemke_take_base(&s, u, r))
+    rep->outcome = CONVERGED;
   if (rep->outcome != CONVERGED) return OK;
-  lemke_set_solution(&s, u, r);
   return correct(&s, u, r, rep);
 }
 
