@@ -454,6 +454,34 @@ START_TEST(load_that_comes_and_goes_is_settled_by_every_method) {
 }
 END_TEST
 
+/* Forces within the tolerance of what an increment unloads hold no body that
+ * its floor leaves. */
+START_TEST(forces_within_the_tolerance_hold_no_body) {
+  static const char *const tolerances[] = {"1E-10", "1E-6"};
+  job j = job_begin("leaves");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "leaves.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "MOVE, 0.01, \"-0.01*t\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.8\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
+            "*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n"
+            "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1., A\n"
+            "RIGHT, TX, 1E-4\n*SOLVER, METHOD=SOR, TOL=%s\n"
+            "*PRINT, CONTACT\n*END STEP\n",
+            tolerances[_i]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 4.470e-3, 1e-5);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 /* 0.3 - 0.1*3 is -5.6e-17: no load lifts the body, in this step or the next. */
 START_TEST(load_that_is_zero_but_for_rounding_lifts_nothing) {
   static const char *const methods[] = {"AUTO", "LEMKE", "SOR"};
@@ -722,6 +750,7 @@ int main(void) {
   tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
   tcase_add_loop_test(
       tests, load_that_comes_and_goes_is_settled_by_every_method, 0, 10);
+  tcase_add_loop_test(tests, forces_within_the_tolerance_hold_no_body, 0, 2);
   tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
                       0, 12);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);

@@ -32,6 +32,8 @@ static int body_of(const contact_problem *cp, int node) {
 /* Forces that the rounding, or the tolerance of the solver, hides are none. */
 static status find_forced(rest *s) {
   const contact_problem *cp = s->cp;
+  const double *before =
+      s->at->f_before; /* the velocity form solves for less */
   OWNED double *rounding = NULL, *load = NULL;
   PASS_NEW_REALS(cp->n, &rounding, &load); /* as many bodies, at most */
   PASS_NEW(s->forced, s->m);
@@ -39,6 +41,7 @@ static status find_forced(rest *s) {
   for (int i = 0; i < s->m; ++i) {
     double *own = &load[body_of(cp, i / cp->dim)];
     *own = fmax(*own, fabs(cp->f[i]));
+    if (before != NULL) *own = fmax(*own, fabs(before[i]));
   }
   for (int i = 0; i < s->m; ++i) {
     const int node = i / cp->dim;
