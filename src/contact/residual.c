@@ -424,6 +424,17 @@ void contact_roundings(const contact_problem *cp, const double *u,
   }
 }
 
+void contact_errors(const contact_problem *cp, double tol, const double *u,
+                    const double *r, double *error) {
+  measure x;
+  measure_set(cp, contact_scale(cp), u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    measured node;
+    measure_node(&x, i, &node);
+    error[i] = fmax(node.rounding, tol * fmax(node.normal, node.slide));
+  }
+}
+
 static const double SLIGHT = 0x1p-30; /* -, friction that moves nothing */
 
 double contact_hidden(const contact_problem *cp, const double *u,

@@ -34,20 +34,19 @@ static status find_forced(rest *s) {
   const contact_problem *cp = s->cp;
   const double *before =
       s->at->f_before; /* the velocity form solves for less */
-  OWNED double *rounding = NULL, *load = NULL;
-  PASS_NEW_REALS(cp->n, &rounding, &load); /* as many bodies, at most */
+  OWNED double *error = NULL, *load = NULL;
+  PASS_NEW_REALS(cp->n, &error, &load); /* as many bodies, at most */
   PASS_NEW(s->forced, s->m);
-  contact_roundings(cp, s->u, s->f, rounding);
-  for (int i = 0; i < s->m; ++i) {
+  contact_errors(cp, s->at->tol, s->u, s->f, error);
+  for (int i = 0; i < s->m && before != NULL; ++i) {
     double *own = &load[body_of(cp, i / cp->dim)];
-    *own = fmax(*own, fabs(cp->f[i]));
-    if (before != NULL) *own = fmax(*own, fabs(before[i]));
+    *own = fmax(*own, fabs(before[i]));
   }
   for (int i = 0; i < s->m; ++i) {
     const int node = i / cp->dim;
     const int bounded = contact_bound(cp, i) < HUGE_VAL;
     const double noise =
-        fmax(rounding[node], s->at->tol * load[body_of(cp, node)]);
+        fmax(error[node], s->at->tol * load[body_of(cp, node)]);
     s->forced[i] =
         fabs(s->f[i]) > noise || (!bounded && cp->g0 != NULL &&
                                   contact_node_limit(cp, s->f, node) > noise);
