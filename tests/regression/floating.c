@@ -454,6 +454,34 @@ START_TEST(load_that_comes_and_goes_is_settled_by_every_method) {
 }
 END_TEST
 
+/* A block on a ball that turns away under it, or pushed along, does not leave
+ * it on the way to its place. */
+START_TEST(auglag_holds_a_block_on_a_ball) {
+  static const char *const laws[] = {"TRESCA\n1.", "COULOMB\n0.5",
+                                     "COULOMB\n0.5"};
+  static const char *const moves[] = {"0., 0.", "0.1, 0.1", "0., 0."};
+  static const double shear[] = {0.1, 0.1, 0.4};
+  job j = job_begin("ball");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "ball.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=1.\n0.5, -1.\nMOVE, %s\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=%s\n*STEP\n*STATIC\n"
+            "*DSLOAD\nTOP, P, 1.\nRIGHT, TX, %g\n*SOLVER, METHOD=AUGLAG, "
+            "STIFFNESS=%s\n*PRINT, TOTALS\n*END STEP\n",
+            moves[_i / 2], laws[_i / 2], shear[_i / 2],
+            _i % 2 ? "FACTOR" : "DENSE");
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 1.0, 1e-8);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), -shear[_i / 2], 1e-8);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* Forces within the tolerance of what an increment unloads hold no body that
  * its floor leaves. */
 START_TEST(forces_within_the_tolerance_hold_no_body) {
@@ -750,6 +778,7 @@ int main(void) {
   tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
   tcase_add_loop_test(
       tests, load_that_comes_and_goes_is_settled_by_every_method, 0, 10);
+  tcase_add_loop_test(tests, auglag_holds_a_block_on_a_ball, 0, 6);
   tcase_add_loop_test(tests, forces_within_the_tolerance_hold_no_body, 0, 2);
   tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
                       0, 12);

@@ -70,7 +70,8 @@ static int motion_is_proof(const contact_problem *cp, const double *v,
     most = fmax(most, fabs(v[i]));
     work += cp->f[i] * v[i];
     terms += fabs(cp->f[i] * v[i]);
-    noise += LOAD_ROUNDING * cp->load * fabs(v[i]);
+    noise += LOAD_ROUNDING *
+             fmax(cp->load, contact_diagonal(cp, i) * cp->moved) * fabs(v[i]);
   }
   if (!(largest_growth(cp, v, workspace, slip) <= ROUNDING * most)) return 0;
   return work - held_by_limit(cp, slip) > fmax(MARGIN * terms, noise);
