@@ -74,7 +74,9 @@ static status find_motions(rest *s, const double *Q, int n) {
 /* W: what u of all nodes is more where that of the contact is V more. */
 static status find_fields(rest *s) {
   OWNED double *moved = NULL;
-  const double unit = 1.0 / power_to_one(largest_entry(s->m, s->u));
+  const double most =
+      fmax(largest_entry(s->m, s->u), largest_entry(s->at->n_dof, s->at->now));
+  const double unit = 1.0 / power_to_one(most);
   PASS_NEW_ALL(OF(moved, s->m), OF(s->W, s->at->n_dof * s->k));
   for (int j = 0; j < s->k; ++j) {
     double *W = s->W + s->at->n_dof * j;
