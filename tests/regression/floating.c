@@ -155,6 +155,7 @@ START_TEST(every_method_holds_the_body_or_says_that_none_can) {
       if (hopeless) {
         ck_assert_ptr_nonnull(strstr(j.errors, " slide"));
         ck_assert_ptr_nonnull(strstr(j.errors, "driven by *DSLOAD on LEFT"));
+        ck_assert_ptr_nonnull(strstr(j.errors, "hold it; the last state"));
       } else {
         dat t = job_table(&j, "TOTALS", -1);
         ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 10.0, 1e-8);
