@@ -254,7 +254,7 @@ status verdict_text(const verdict_scene *s, char *text, size_t size) {
     PASS(add_drive(&w, s, v));
     add(&w, "; a *BOUNDARY or another load can hold it");
   } else if (end == CONVERGED) {
-    add(&w, "METHOD=LEMKE of *SOLVER finds an equilibrium");
+    add(&w, "METHOD=LEMKE of *SOLVER finds one to 1E-8 of the loads");
   } else {
     PASS(verdict_misfit(s->cp, s->surface, s->u, s->r, text, size));
   }

@@ -156,6 +156,9 @@ double contact_mismatch(const contact_problem *cp, double scale,
 /* Bound of the rounding of the forces of each node, N. rounding[n]. */
 void contact_roundings(const contact_problem *cp, const double *u,
                        const double *r, double *rounding);
+/* The same with what a residual of tol leaves. error[n]. */
+void contact_errors(const contact_problem *cp, double tol, const double *u,
+                    const double *r, double *error);
 /* Residual of the natural map within these roundings, the largest over nodes,
  * over F, the largest force of the body or own[n] (NULL: none), N; of friction
  * over the share of F that the limit of the node is of its normal force, -.

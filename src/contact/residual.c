@@ -399,9 +399,11 @@ double contact_mismatch(const contact_problem *cp, double scale,
 
 /* ---- status ------------------------------------------------------------ */
 
-/* 1: no load acts on the body of a node, its forces are rounding. */
-static int has_no_force(const body_size *b, const measured *node) {
-  return b->load == 0.0 && !(b->contact > node->rounding);
+/* 1: no load acts on the body of a node but for the rounding of all loads, and
+ * its contact forces are rounding. */
+static int has_no_force(const measure *x, const body_size *b,
+                        const measured *node) {
+  return b->load <= ROUNDING * x->cp->load && !(b->contact > node->rounding);
 }
 
 void contact_roundings(const contact_problem *cp, const double *u,
@@ -412,6 +414,17 @@ void contact_roundings(const contact_problem *cp, const double *u,
     measured node;
     measure_node(&x, i, &node);
     rounding[i] = node.rounding;
+  }
+}
+
+void contact_errors(const contact_problem *cp, double tol, const double *u,
+                    const double *r, double *error) {
+  measure x;
+  measure_set(cp, contact_scale(cp), u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    measured node;
+    measure_node(&x, i, &node);
+    error[i] = fmax(node.rounding, tol * fmax(node.normal, node.slide));
   }
 }
 
@@ -429,7 +442,7 @@ double contact_hidden(const contact_problem *cp, const double *u,
     const node_step e = map_errors(&x, i, &node);
     double most = larger(b->load, b->contact), side = 1.0;
     if (own != NULL) most = larger(most, own[i]);
-    if (has_no_force(b, &node)) continue;
+    if (has_no_force(&x, b, &node)) continue;
     if (cp->g0 != NULL && node.q[0] < 0.0)
       side = smaller(1.0, contact_node_limit(cp, r, i) / -node.q[0]);
     if (side > 0.0) side = larger(side, SLIGHT);
@@ -458,7 +471,7 @@ static int is_closed(measure *x, int node_id, const measured *node, int k,
   const body_size *b = body_of(x, node_id);
   const double least = STATUS_MARGIN * forces_of(x, node, b, c);
   double push = c * (x->u[dof] - contact_bound(x->cp, dof)) - x->r[dof];
-  return push > least && !has_no_force(b, node);
+  return push > least && !has_no_force(x, b, node);
 }
 
 void contact_classify_sides(const contact_problem *cp, const double *u,

@@ -166,10 +166,11 @@ static status solve_from(run *r, double *u, double *rc) {
 /*
  * Friction may keep a body jammed without any load, where it is in equilibrium
  * without contact too. The state that belongs to the path of loads is the one
- * next to that of almost the same load.
+ * next to that of almost the same load, which is no solution to the tolerance.
  */
 static status follow_load(run *r) {
-  static const double almost = 0x1p-20;
+  static const double least = 0x1p-20, most = 0x1p-2, margin = 0x1p10;
+  const double almost = fmin(fmax(least, margin * r->solving.tol), most);
   const double *f = r->problem.cp.f;
   const solver_report empty = r->solving.report;
   const size_t bytes = r->nodes.n_c * sizeof *r->now.uc;
@@ -284,8 +285,16 @@ status increment_pose(run *r, double t) {
 /* Displacements of all nodes; an unheld body is put to its place. */
 static status recover(run *r, const double *F) {
   double *u = run_rows(r, 0, r->now.uc), *f = run_rows(r, 1, r->now.rc);
-  const rest_scene at = {&r->problem.cp, r->c,     r->n_dof,      F,
-                         r->old.u,       r->now.u, r->solving.tol};
+  const rest_scene at = {.cp = &r->problem.cp,
+                         .c = r->c,
+                         .n_dof = r->n_dof,
+                         .F = F,
+                         .old = r->old.u,
+                         .now = r->now.u,
+                         .f_before = r->problem.n_before == r->nodes.n_row
+                                         ? r->problem.f_before
+                                         : NULL,
+                         .tol = r->solving.tol};
   PASS(condense_recover(r->c, u, r->now.u));
   r->solving.placed = 0;
   if (r->nodes.n > 0 && r->solving.report.outcome > 0)

@@ -155,6 +155,7 @@ START_TEST(every_method_holds_the_body_or_says_that_none_can) {
       if (hopeless) {
         ck_assert_ptr_nonnull(strstr(j.errors, " slide"));
         ck_assert_ptr_nonnull(strstr(j.errors, "driven by *DSLOAD on LEFT"));
+        ck_assert_ptr_nonnull(strstr(j.errors, "hold it; the last state"));
       } else {
         dat t = job_table(&j, "TOTALS", -1);
         ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 10.0, 1e-8);
@@ -425,6 +426,91 @@ START_TEST(load_that_ends_as_rounding_is_settled) {
 }
 END_TEST
 
+/* A load on a belt that comes and goes: every method follows the body. */
+START_TEST(load_that_comes_and_goes_is_settled_by_every_method) {
+  static const char *const methods[] = {"PCG", "LEMKE", "AUGLAG", "LAGRANGE",
+                                        "PROXIMAL"};
+  const int flat = _i % 2;
+  job j = job_begin("goes");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "goes.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, %s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=%s\nMOVE, \"0.01*t\", 0.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n"
+            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"sin(pi*t)\"\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*DSLOAD\nTOP, P, 1., A\n"
+            "*SOLVER, METHOD=%s\n*PRINT, TOTALS\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n"
+            "*DSLOAD, OP=NEW\nTOP, P, 0.\n*END STEP\n",
+            flat ? "0." : "0.3",
+            flat ? "CONFORMING" : "SPHERE, RADIUS=100\n0.5, -100.",
+            methods[_i / 2]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  dat t = job_table(&j, "TOTALS", 2);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), sqrt(0.5), 1e-8);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* A block on a ball that turns away under it, or pushed along, does not leave
+ * it on the way to its place. */
+START_TEST(auglag_holds_a_block_on_a_ball) {
+  static const char *const laws[] = {"TRESCA\n1.", "COULOMB\n0.5",
+                                     "COULOMB\n0.5"};
+  static const char *const moves[] = {"0., 0.", "0.1, 0.1", "0., 0."};
+  static const double shear[] = {0.1, 0.1, 0.4};
+  job j = job_begin("ball");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "ball.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=SPHERE, RADIUS=1.\n0.5, -1.\nMOVE, %s\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=%s\n*STEP\n*STATIC\n"
+            "*DSLOAD\nTOP, P, 1.\nRIGHT, TX, %g\n*SOLVER, METHOD=AUGLAG, "
+            "STIFFNESS=%s\n*PRINT, TOTALS\n*END STEP\n",
+            moves[_i / 2], laws[_i / 2], shear[_i / 2],
+            _i % 2 ? "FACTOR" : "DENSE");
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_y"), 1.0, 1e-8);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "force_x"), -shear[_i / 2], 1e-8);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* Forces within the tolerance of what an increment unloads hold no body that
+ * its floor leaves. */
+START_TEST(forces_within_the_tolerance_hold_no_body) {
+  static const char *const tolerances[] = {"1E-10", "1E-6"};
+  job j = job_begin("leaves");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "leaves.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "MOVE, 0.01, \"-0.01*t\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.8\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
+            "*STEP\n*QUASISTATIC, FORM=VELOCITY\n0.5, 1.\n"
+            "*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1., A\n"
+            "RIGHT, TX, 1E-4\n*SOLVER, METHOD=SOR, TOL=%s\n"
+            "*PRINT, CONTACT\n*END STEP\n",
+            tolerances[_i]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 4.470e-3, 1e-5);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 /* 0.3 - 0.1*3 is -5.6e-17: no load lifts the body, in this step or the next. */
 START_TEST(load_that_is_zero_but_for_rounding_lifts_nothing) {
   static const char *const methods[] = {"AUTO", "LEMKE", "SOR"};
@@ -691,6 +777,10 @@ int main(void) {
   tcase_add_loop_test(tests, body_pushed_out_of_its_floor_has_no_force, 0, 6);
   tcase_add_loop_test(tests, unloaded_body_rests_in_the_velocity_form, 0, 2);
   tcase_add_loop_test(tests, load_that_ends_as_rounding_is_settled, 0, 2);
+  tcase_add_loop_test(
+      tests, load_that_comes_and_goes_is_settled_by_every_method, 0, 10);
+  tcase_add_loop_test(tests, auglag_holds_a_block_on_a_ball, 0, 6);
+  tcase_add_loop_test(tests, forces_within_the_tolerance_hold_no_body, 0, 2);
   tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
                       0, 12);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);

@@ -139,11 +139,68 @@ START_TEST(stack_stands_by_contact_alone) {
 }
 END_TEST
 
+/* How far a hot block leans on a soft one when its load has ended: the forces
+ * of the heat are far above those of the contact, and the tolerance with them.
+ */
+static double lean(const char *method) {
+  job j = job_begin("soft");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "soft.inp",
+            "*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n*EXPANSION\n0.01\n"
+            "*MATERIAL, NAME=S\n*ELASTIC\n1E-2, 0.3\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=S\n" PAIR
+            "*FRICTION, CONTACT=P, LAW=TRESCA\n1E-4\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nBOTTOM, 1, 2\n"
+            "*TEMPERATURE\nUPPER, 1.\n*DSLOAD\nTOP, P, 1E-5, A\n"
+            "*SOLVER, METHOD=%s\n*PRINT, NODES\n*END STEP\n",
+            method);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s: %s", method, j.errors);
+  dat t = job_table(&j, "NODES", -1);
+  const double far = dat_max(&t, "u_x");
+  dat_free(&t);
+  job_end(&j);
+  return far;
+}
+
+START_TEST(body_above_a_soft_one_has_its_place_by_every_method) {
+  const double far = lean("PCG");
+  for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k)
+    ck_assert_double_eq_tol(lean(methods[k]), far, 1e-8);
+}
+END_TEST
+
+/* Rounding of the stresses of the upper block presses the lower one, which has
+ * none, where the load has ended. */
+START_TEST(rounding_of_stresses_is_no_doubt) {
+  static const char *const meshes[] = {"N = 4\nM = 7", "N = 3\nM = 5"};
+  job j = job_begin("ended");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "ended.inp",
+            "*PARAMETER\n%s\n*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*EXPANSION\n0.001\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n" PAIR
+            "INTERFERENCE, 0.01\n*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n"
+            "\"0.3 - 0.3*t\"\n*STEP\n*QUASISTATIC\n0.25, 1.\n"
+            "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\nRIGHT, 1\n*DSLOAD\n"
+            "TOP, P, 20., A\n*TEMPERATURE\nUPPER, 0.1\n"
+            "*SOLVER, METHOD=%s\n*PRINT, TOTALS\n*END STEP\n",
+            meshes[_i % 2], _i < 2 ? "AUTO" : "LEMKE");
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("pair_methods");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, all_methods_agree, 0, 2);
   tcase_add_test(tests, wedge_moves_at_its_limit);
+  tcase_add_test(tests, body_above_a_soft_one_has_its_place_by_every_method);
+  tcase_add_loop_test(tests, rounding_of_stresses_is_no_doubt, 0, 4);
   tcase_add_test(tests, stack_stands_by_contact_alone);
   return unit_run("pair_methods", tests);
 }

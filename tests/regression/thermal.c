@@ -577,6 +577,32 @@ START_TEST(costs_nothing_when_not_called) {
 }
 END_TEST
 
+/* Without a load a block that shrinks leaves its floor about its middle, with
+ * friction or without. */
+START_TEST(shrinking_block_keeps_its_place) {
+  job j = job_begin("shrinks");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "shrinks.inp",
+            "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.3\n"
+            "*EXPANSION\n0.001\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n%s"
+            "*AMPLITUDE, NAME=W, TIME=TOTAL TIME\n0., 0., 1., 1., 2., 3.\n"
+            "*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.\n"
+            "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nLEFT, 1\n"
+            "*DSLOAD\nTOP, P, 0.1, A\n*TEMPERATURE\nBODY, -1., W\n"
+            "*PRINT, CONTACT\n*END STEP\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n",
+            _i ? "*FRICTION, CONTACT=C, LAW=COULOMB\n0.1\n" : "");
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "gap"), 1.44e-3, 2e-6);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("thermal");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -593,6 +619,7 @@ int main(void) {
   tcase_add_test(tests, temperatures_from_a_file);
   tcase_add_test(tests, damaged_fields_are_refused);
   tcase_add_test(tests, heat_closes_the_gap);
+  tcase_add_loop_test(tests, shrinking_block_keeps_its_place, 0, 2);
   tcase_add_test(tests, penetration_at_the_start);
   tcase_add_test(tests, costs_nothing_when_not_called);
   tcase_add_loop_test(tests, linear_temperature_leaves_averaged_bodies_free, 0,

@@ -118,6 +118,26 @@ START_TEST(weak_body_is_judged_by_its_own_loads) {
 }
 END_TEST
 
+/* A free body that lies on its obstacle: the load that is left of 1 N is
+ * rounding, and so is what it presses. */
+START_TEST(rounding_of_the_loads_is_no_load) {
+  contact_case c = case_new(2, 2, 0.0);
+  const double u[4] = {-0.25, 0.0, -0.25, 0.0}, r[4] = {-1e-16, 0.0, 0.0, 0.0};
+  contact_status state[2];
+  c.A[0] = c.A[10] = 4.0;
+  c.A[2] = c.A[8] = -4.0;
+  c.gap[0] = c.gap[1] = -0.25;
+  c.f[0] = 1e-16;
+  for (int known = 0; known < 2; ++known) {
+    c.cp.load = known;
+    contact_classify(&c.cp, u, r, state);
+    ck_assert_int_eq(state[0], known ? CONTACT_OPEN : CONTACT_SLIP);
+    ck_assert(contact_hidden(&c.cp, u, r, NULL) == 0.0 || !known);
+  }
+  case_free(&c);
+}
+END_TEST
+
 START_TEST(scale_is_of_the_problem) {
   contact_case c = one_node(4.0, 2.0, 0.5);
   ck_assert(contact_scale(&c.cp) == 0.0);
@@ -457,6 +477,7 @@ UNIT_MAIN("contact", active_nodes_take_their_own_data,
           each_broken_condition_shows_by_its_size,
           weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
           scale_is_above_rounding_of_loads_and_of_the_way,
+          rounding_of_the_loads_is_no_load,
           closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,

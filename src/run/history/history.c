@@ -264,7 +264,9 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why) {
 
 status loop_no_equilibrium(run *r) {
   char why[1024] = "";
+  const outcome o = r->solving.report.outcome;
   const char *tried = contact_solver_log(r->solver);
+  const char *const by = tried[0] == '\0' ? "" : "tried ";
   verdict_scene scene = {.m = r->m,
                          .msh = r->msh,
                          .step = r->step,
@@ -275,19 +277,19 @@ status loop_no_equilibrium(run *r) {
                          .u = run_rows(r, 0, r->now.uc),
                          .r = run_rows(r, 1, r->now.rc),
                          .c = r->c};
-  if (r->solving.report.outcome == STOPPED_UNFIT)
+  if (o == STOPPED_UNFIT)
     RAISE(ERR_SINGULAR,
           "step %d, time %g: the method cannot treat this problem: %s; use "
           "METHOD=AUTO, NEWTON, AUGLAG or SOR",
-          run_step_id(r) + 1, r->now.t, contact_solver_log(r->solver));
+          run_step_id(r) + 1, r->now.t, tried);
   PASS(verdict_text(&scene, why, sizeof why));
+  if (tried[0] == '\0' && (why[0] == '\0' || o != STOPPED_RAY))
+    tried = outcome_text(o);
   RAISE(ERR_SINGULAR,
         "step %d, time %g: no equilibrium found: %s%s%s%s; the last state "
         "written is that of time %g",
-        run_step_id(r) + 1, r->now.t, why, why[0] == '\0' ? "" : "; ",
-        tried[0] == '\0' ? "" : "tried ",
-        tried[0] == '\0' ? outcome_text(r->solving.report.outcome) : tried,
-        r->old.t);
+        run_step_id(r) + 1, r->now.t, why,
+        why[0] == '\0' || tried[0] == '\0' ? "" : "; ", by, tried, r->old.t);
 }
 
 /* ---- before the increments of a step: effects, sudden loads of *VISCO ---- */

@@ -15,6 +15,8 @@ static const double NULL_PIVOT = 0x1p-44; /* -, times m: of the largest pivot */
 static const double ROUNDING = 0x1p-48;   /* -, times m: of the mean diagonal */
 static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
 static const double FINEST = 0.1; /* -, of the tolerance: enough for a pass */
+static const double COARSEST = 1e-3; /* -, tolerance of a pass */
+static const double FINER = 1e-2;    /* -, of the residual, or of no progress */
 static const double STEADY = 0x1p-7; /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
@@ -356,7 +358,10 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
     contact_problem held = anchored(&p);
     if (control->max_iter > 0)
       own.max_iter = control->max_iter - rep->iterations;
-    own.tol = fmax(FINEST * control->tol, fmin(1e-3, 1e-2 * rep->residual));
+    /* Of a body without a load any residual is large. */
+    own.tol = fmax(
+        FINEST * control->tol,
+        fmin(p.since > 0 ? FINER * own.tol : COARSEST, FINER * rep->residual));
     PASS(inner->solve(inner->ctx, &held, &own, u, r, &pass));
     own.no_restart = control->no_restart || pass.outcome < 0;
     rep->iterations += pass.iterations;

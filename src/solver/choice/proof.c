@@ -5,13 +5,13 @@
 #include "solver/lcp/lcp_solve.h"
 
 #include <cblas.h>
-#include <float.h>
 
 enum { PASSES = 400 /* columns tried */ };
 static const double DEFECT = 0x1p-26;   /* -, force of a motion without any */
 static const double ROUNDING = 0x1p-44; /* -, of a sum, of its terms */
 static const double MARGIN = 0x1p-40;   /* -, of the work */
-static const double BALANCED = 0x1p-36; /* -, of the load */
+static const double LOAD_ROUNDING = 0x1p-48; /* -, of the loads */
+static const double BALANCED = 0x1p-36;      /* -, of the load */
 
 /* ---- the inequality ------------------------------------------------------ */
 
@@ -70,7 +70,8 @@ static int motion_is_proof(const contact_problem *cp, const double *v,
     most = fmax(most, fabs(v[i]));
     work += cp->f[i] * v[i];
     terms += fabs(cp->f[i] * v[i]);
-    noise += DBL_EPSILON * cp->load * fabs(v[i]);
+    noise += LOAD_ROUNDING *
+             fmax(cp->load, contact_diagonal(cp, i) * cp->moved) * fabs(v[i]);
   }
   if (!(largest_growth(cp, v, workspace, slip) <= ROUNDING * most)) return 0;
   return work - held_by_limit(cp, slip) > fmax(MARGIN * terms, noise);

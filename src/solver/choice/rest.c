@@ -32,19 +32,21 @@ static int body_of(const contact_problem *cp, int node) {
 /* Forces that the rounding, or the tolerance of the solver, hides are none. */
 static status find_forced(rest *s) {
   const contact_problem *cp = s->cp;
-  OWNED double *rounding = NULL, *load = NULL;
-  PASS_NEW_REALS(cp->n, &rounding, &load); /* as many bodies, at most */
+  const double *before =
+      s->at->f_before; /* the velocity form solves for less */
+  OWNED double *error = NULL, *load = NULL;
+  PASS_NEW_REALS(cp->n, &error, &load); /* as many bodies, at most */
   PASS_NEW(s->forced, s->m);
-  contact_roundings(cp, s->u, s->f, rounding);
-  for (int i = 0; i < s->m; ++i) {
+  contact_errors(cp, s->at->tol, s->u, s->f, error);
+  for (int i = 0; i < s->m && before != NULL; ++i) {
     double *own = &load[body_of(cp, i / cp->dim)];
-    *own = fmax(*own, fabs(cp->f[i]));
+    *own = fmax(*own, fabs(before[i]));
   }
   for (int i = 0; i < s->m; ++i) {
     const int node = i / cp->dim;
     const int bounded = contact_bound(cp, i) < HUGE_VAL;
     const double noise =
-        fmax(rounding[node], s->at->tol * load[body_of(cp, node)]);
+        fmax(error[node], s->at->tol * load[body_of(cp, node)]);
     s->forced[i] =
         fabs(s->f[i]) > noise || (!bounded && cp->g0 != NULL &&
                                   contact_node_limit(cp, s->f, node) > noise);
@@ -72,7 +74,9 @@ static status find_motions(rest *s, const double *Q, int n) {
 /* W: what u of all nodes is more where that of the contact is V more. */
 static status find_fields(rest *s) {
   OWNED double *moved = NULL;
-  const double unit = 1.0 / power_to_one(largest_entry(s->m, s->u));
+  const double most =
+      fmax(largest_entry(s->m, s->u), largest_entry(s->at->n_dof, s->at->now));
+  const double unit = 1.0 / power_to_one(most);
   PASS_NEW_ALL(OF(moved, s->m), OF(s->W, s->at->n_dof * s->k));
   for (int j = 0; j < s->k; ++j) {
     double *W = s->W + s->at->n_dof * j;

@@ -16,7 +16,9 @@
  *
  * F' with the limit following the pressure. Rows of closed and of sticking
  * unknowns hold rho alone and are eliminated. The step is shortened until
- * |Phi| falls. Should it stop, the other variant goes on.
+ * |Phi| falls. Should it stop, the other variant goes on. Where contact alone
+ * holds the body springs on the free unknowns keep it in place, softer as the
+ * residual falls (Levenberg, Marquardt).
  *
  * VARIANT=UZAWA: u minimises the augmented Lagrangian for fixed lambda and g,
  *
@@ -50,6 +52,7 @@ enum {
 };
 
 static const double SPRING = 0x1p-36; /* -, of the diagonal */
+static const double STIFFER = 0x1p-6; /* -, where the residual is above that */
 
 typedef enum { OPEN, CLOSED } contact_state;
 
@@ -85,6 +88,7 @@ typedef struct auglag_run {
   const solver_control *control;
   double *u, *r;
   double scale, rho; /* N; -, of the diagonal */
+  double spring;     /* -, of it, of a step */
   int steps, limit;
   int changes;   /* states changed by the last evaluation */
   int turned;    /* nodes with another state than after the step before */
@@ -285,7 +289,8 @@ static int newton_matrix(auglag_run *s, int n) {
     unit[dof] = 0.0;
   }
   for (int i = 0; cp->floating && i < n; ++i)
-    w->K[i * ((size_t)n + 1)] += w->power * SPRING * w->diagonal[w->free_id[i]];
+    w->K[i * ((size_t)n + 1)] +=
+        w->power * s->spring * w->diagonal[w->free_id[i]];
   return slipping;
 }
 
@@ -302,7 +307,9 @@ static int newton_operated(auglag_run *s) {
   }
   newton_list_known(cp, p, s->u, w->du);
   newton_load(cp, p, 1.0, s->u, w->y, w->by.b);
-  return operated_direction(s, NULL);
+  for (int dof = 0; dof < cp->m; ++dof)
+    w->by.hold[dof] = p->place[dof] < 0 ? 0.0 : s->spring * w->diagonal[dof];
+  return operated_direction(s, cp->floating ? w->by.hold : NULL);
 }
 
 /* du of a Newton step; 0: the matrix is singular. */
@@ -386,6 +393,7 @@ static outcome auglag_newton(auglag_run *s) {
     if (k == NEWTON_STEPS)
       return 2 * met > k ? STOPPED_CYCLE : STOPPED_ITERATIONS;
     ++s->steps;
+    s->spring = fmax(SPRING, fmin(STIFFER, residual));
     if (!newton_direction(s)) return STOPPED_SINGULAR;
     double reference = past[0];
     for (int i = 1; i < MEMORY; ++i) reference = fmax(reference, past[i]);
@@ -393,6 +401,19 @@ static outcome auglag_newton(auglag_run *s) {
     contact_reaction(s->cp, s->u, w->y);
     auglag_evaluate(s, w->y);
   }
+}
+
+/* From u, then from stick without a gap: a body that contact alone holds may
+ * have slid off its floor on the way. */
+static outcome newton_attempts(auglag_run *s) {
+  const outcome first = auglag_newton(s);
+  if (first == CONVERGED || first == STOPPED_NAN || s->failed != OK ||
+      s->control->no_restart || s->steps >= s->limit)
+    return first;
+  for (int i = 0; i < s->cp->m; ++i)
+    if (s->w->part[i] != NO_FORCE) s->u[i] = s->w->origin[i];
+  const outcome second = auglag_newton(s);
+  return second == CONVERGED ? second : first;
 }
 
 /* ---- VARIANT=UZAWA: displacement and multiplier in turn ------------------ */
@@ -681,7 +702,7 @@ static status auglag_solve(const contact_problem *cp, const void *par,
   w->best.residual = HUGE_VAL;
   force_parts(cp, w->part, w->origin);
   if (w->by.system != NULL) operated_system_fit(w->by.system);
-  if (p->variant == BY_NEWTON) rep->outcome = auglag_newton(&s);
+  if (p->variant == BY_NEWTON) rep->outcome = newton_attempts(&s);
   int done_well = rep->outcome == CONVERGED || rep->outcome == STOPPED_NAN;
   int cycled = rep->outcome == STOPPED_CYCLE;
   PASS(s.failed);

@@ -533,24 +533,37 @@ static void lemke_set_solution(lemke_run *s, double *u, double *r) {
   }
 }
 
+/* u[m], r[m] at stick, where the path begins. */
+static void lemke_take_base(const lemke_run *s, double *u, double *r) {
+  const lemke_work *w = s->w;
+  COPY(u, w->reduced.base, s->cp->m);
+  lemke_respond(s, u, 1, w->raw);
+  for (int dof = 0; dof < s->cp->m; ++dof) {
+    r[dof] = w->kind[dof] == IS_FRICTION ? w->raw[dof] : 0.0;
+    if (w->kind[dof] == IS_BOUND) r[dof] = fmin(w->raw[dof], 0.0);
+  }
+}
+
 /* ---- rays: is the motion at the end of the path free, and does the load do
  * more work on it than friction takes. */
 
 static const double RAY_DEFECT = 1e-8;  /* -, forces a free motion may cause */
 static const double RAY_WORK = 0x1p-30; /* -, margin of the work of the load */
+static const double LOAD_ROUNDING = 0x1p-48; /* -, of the loads */
 
 /* 1: w->ray causes no force, and load more work than "resistance", N m. */
 static int motion_is_free(lemke_run *s, double resistance) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
-  double force = 0.0, size = 0.0, work = 0.0;
+  double force = 0.0, size = 0.0, work = 0.0, noise = 0.0;
   lemke_respond(s, w->ray, 0, w->raw);
   for (int dof = 0; dof < cp->m; ++dof) {
     force = fmax(force, fabs(w->raw[dof]));
     size = fmax(size, contact_diagonal(cp, dof) * fabs(w->ray[dof]));
     work += cp->f[dof] * w->ray[dof];
+    noise += LOAD_ROUNDING * cp->load * fabs(w->ray[dof]);
   }
-  return force <= RAY_DEFECT * size && work > 0.0 &&
+  return force <= RAY_DEFECT * size && work > noise &&
          work > resistance * (1.0 - RAY_WORK);
 }
 
@@ -720,8 +733,13 @@ static status lemke_solve(const contact_problem *cp, const void *par,
   rep->outcome = STOPPED_RAY;
   if (!lemke_load_is_held(&s)) return OK;
   rep->outcome = follow(&s, &rep->iterations);
-  if (rep->outcome != CONVERGED) return OK;
-  lemke_set_solution(&s, u, r);
+  if (rep->outcome == CONVERGED)
+    lemke_set_solution(&s, u, r);
+  else if (rep->outcome == STOPPED_STAGNATION && lemke_is_stiff(&s))
+    lemke_take_base(&s, u, r); /* the pivots followed rounding */
+  else
+    return OK;
+  rep->outcome = CONVERGED;
   return correct(&s, u, r, rep);
 }
 
