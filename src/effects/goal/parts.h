@@ -137,6 +137,18 @@ status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s);
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
+/* between.c: of an edge. */
+enum { GOAL_PIECES = 16 };
+/* x[3]: point k of GOAL_PIECES of an edge between contact nodes q[2], on the
+ * arc that the surface of the body is. */
+void goal_point_of(const run *r, const contact_edge *e, const int *q, int k,
+                   double *x);
+/* d[GOAL_PIECES + 1] less the line through its ends. */
+void goal_take_line(double *d);
+/* The middle of the parabola that is zero at the ends and has the integral of
+ * d[GOAL_PIECES + 1]; *rough that of one with the integral of the size of what
+ * they differ by. */
+double goal_parabola(const double *d, double *rough);
 /* Work of the tractions of closed edges along the surface less that of their
  * nodes: *turn, that of their directions on y[dim*n_node], which beyond the
  * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of
@@ -145,11 +157,15 @@ status goal_surface_new(const run *r, const goal_border *border,
 status goal_work_between(const run *r, const goal_surface *s, const double *y,
                          const double *z, const double *spin, double *turn,
                          double *area);
-/* What the places where friction turns back within edges may add to J, whose
- * derivative by friction is z[dim*n_node]: *sum; product[n_elem] or NULL: the
- * elements have it more. */
-status goal_add_reversals(const run *r, const goal_surface *s, const double *z,
-                          double *product, double *sum);
+/* Of edges whose nodes slip: by what the friction value is else than linear. */
+status goal_value_between(const run *r, const goal_surface *s, const double *z,
+                          double *sum);
+/* What J, whose derivative by friction is z[dim*n_node], may lack by edges
+ * within which friction turns back, or gap or friction value are rougher than a
+ * parabola, F[dim*n_node] the forces of the adjoint: *sum; product[n_elem] or
+ * NULL: the elements have it more. */
+status goal_add_doubts(const run *r, const goal_surface *s, const double *z,
+                       const double *F, double *product, double *sum);
 /* 1: node i of the surface stands on a plane of symmetry along tangent a, or on
  * the axis. */
 int goal_is_mirrored(const run *r, int i);
