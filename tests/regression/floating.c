@@ -115,6 +115,37 @@ START_TEST(no_equilibrium_is_a_verdict) {
 }
 END_TEST
 
+/* A triangle on two nodes, a tetrahedron on three: each node moves along its
+ * normal without force, turning the body, but for rounding. */
+START_TEST(body_on_one_face_is_lifted) {
+  static const char *const body[] = {
+      "4\n1 0 0 0\n2 1 0 0\n3 0.3 1 0\n4 9 9 0\n$EndNodes\n$Elements\n2\n"
+      "1 1 2 1 1 1 2\n2 2 2 2 2 1 2 3\n",
+      "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0.3 0.3 1\n$EndNodes\n$Elements\n"
+      "2\n1 2 2 1 1 1 2 3\n2 4 2 2 2 1 2 3 4\n"};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("face");
+    job_write(&j, "face.msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n"
+              "%d 1 \"FOOT\"\n%d 2 \"BODY\"\n$EndPhysicalNames\n$Nodes\n%s"
+              "$EndElements\n",
+              k + 1, k + 2, body[k]);
+    job_write(&j, "face.inp",
+              "*MESH, FILE=face.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+              "*DLOAD\nBODY, B%c, 1.\n*END STEP\n",
+              "YZ"[k]);
+    const int code = job_run(&j, "");
+    ck_assert_msg(code == 6, "exit %d: %s", code, j.errors);
+    ck_assert_msg(strstr(j.errors, " separate") != NULL, "%s", j.errors);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Without any contact or support the free motions are named. */
 START_TEST(free_motions_are_named) {
   static const struct {
@@ -684,6 +715,7 @@ int main(void) {
   tcase_add_test(tests, resultants_are_those_of_statics);
   tcase_add_test(tests, layers_of_any_contrast_weigh_the_same);
   tcase_add_test(tests, no_equilibrium_is_a_verdict);
+  tcase_add_test(tests, body_on_one_face_is_lifted);
   tcase_add_test(tests, free_motions_are_named);
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
   tcase_add_test(tests, body_that_is_left_stays_where_it_was);
