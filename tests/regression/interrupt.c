@@ -367,6 +367,19 @@ START_TEST(closed_streams_are_no_matter) {
 }
 END_TEST
 
+/* What is printed to a closed stream is lost. */
+START_TEST(closed_output_is_a_failed_write) {
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid == 0) {
+    close(STDOUT_FILENO);
+    execl(program(), program(), "--list", "solvers", (char *)NULL);
+    _exit(99);
+  }
+  ck_assert_int_eq(finish(pid), 4);
+}
+END_TEST
+
 /* With a limit and a minute. */
 static int finish_below(const job *j, int what, struct rlimit most,
                         const char *threads) {
@@ -496,7 +509,8 @@ END_TEST
 UNIT_MAIN("interrupt", file_system_without_locks_is_no_matter,
           deck_may_begin_with_a_dash, few_addresses_are_told,
           few_addresses_are_not_waited_for, few_addresses_leave_one_thread,
-          limit_of_time_counts_while_gmsh_works, closed_streams_are_no_matter,
+          limit_of_time_counts_while_gmsh_works,
+          closed_output_is_a_failed_write, closed_streams_are_no_matter,
           signals_end_after_an_increment, signals_come_together,
           ignored_signals_stay_ignored, earlier_file_stays,
           file_ends_after_an_increment, second_signal_ends_at_once,
