@@ -189,6 +189,35 @@ START_TEST(steps_within_edges_are_found) {
                     "*DSLOAD\nTOP, P, \"10.*step(x-0.72)\"\n");
   goal_check(&j, 12.8, 0.8, 1.2, 5.0);
   job_end(&j);
+  j = body_of_block(12, PLANE,
+                    NORMAL
+                    "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                    "TOP, 2, 2, \"-0.01*max(1,1+20*(x-0.78))\"\n");
+  goal_check(&j, 1000.0 / (1.0 - 0.3 * 0.3) * (0.02 + 0.1 * 1.22 * 1.22), 0.9,
+             1.1, 1.0);
+  job_end(&j);
+}
+END_TEST
+
+/* The mean of u_x at the end of a bar is what the heat adds up to. */
+START_TEST(heat_that_ends_within_elements_is_found) {
+  const mesh_change change = {.scale = 1.0};
+  for (int k = 0; k < 2; ++k) {
+    const double x = k == 0 ? 0.69 : 0.77;
+    job j = job_begin("block");
+    body_write_mesh(&j, "rect 12 12 2 1 alternate", &change);
+    job_write(&j, "block.inp",
+              "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*EXPANSION\n1E-4\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+              "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=RIGHT\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*TEMPERATURE\n"
+              "BODY, \"50*step(x-%g)\"\n*PRINT, GOALS\n*END STEP\n",
+              x);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    goal_check(&j, 0.005 * (2.0 - x), 0.9, 1.1, 0.2);
+    job_end(&j);
+  }
 }
 END_TEST
 
@@ -420,6 +449,7 @@ UNIT_MAIN("goals_doubts", displacements_of_corners_are_in_their_bands,
           radial_force_in_a_single_node_is_not_reliable,
           radial_force_on_the_axis_is_not_reliable,
           errors_by_gaps_alone_have_a_band, steps_within_edges_are_found,
+          heat_that_ends_within_elements_is_found,
           obstacles_between_open_nodes_are_seen,
           friction_between_the_nodes_is_in_the_estimate,
           passes_do_not_refine_by_rounding,

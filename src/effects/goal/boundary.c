@@ -57,18 +57,22 @@ static void piece_of(int n, int k, int pieces, double corner[4][4]) {
   }
 }
 
+void goal_rule_point(int n, int k, int pieces, double *b) {
+  double corner[4][4];
+  piece_of(n, k / n, pieces, corner);
+  CLEAR(b, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      b[i] += corner[j][i] * (j == k % n ? AT[n] : (1.0 - AT[n]) / (n - 1));
+}
+
 /* Point k of a patch in pieces. */
 static spot spot_in(const mesh *m, const patch *p, int k, int pieces) {
   spot s = {.weight = p->weight / p->n / pieces};
-  double corner[4][4];
-  piece_of(p->n, k / p->n, pieces, corner);
-  for (int i = 0; i < p->n; ++i) {
-    for (int j = 0; j < p->n; ++j)
-      s.b[i] += corner[j][i] *
-                (j == k % p->n ? AT[p->n] : (1.0 - AT[p->n]) / (p->n - 1));
+  goal_rule_point(p->n, k, pieces, s.b);
+  for (int i = 0; i < p->n; ++i)
     for (int c = 0; c < m->dim; ++c)
       s.x[c] += s.b[i] * m->x[m->dim * p->node[i] + c];
-  }
   for (int i = 0; i < p->n && p->is_curved; ++i)
     for (int j = i + 1; j < p->n; ++j) {
       s.beyond += 4.0 * s.b[i] * s.b[j] * p->B[i][j];

@@ -61,6 +61,9 @@ status goal_form_set(run *r, const goal_card *g, goal_form *f);
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f);
 status goal_set_width(const run *r, const goal_card *g, goal_form *f);
 
+/* Of edges, faces and elements with data that formulas give. */
+enum { GOAL_PIECES = 16 };
+
 /* mean.c: adds a mean times a sign; what of the means is in the bubbles.
  * ERR_MEMORY. */
 status goal_add_mean(const run *r, int group_id, int component, double sign,
@@ -68,6 +71,10 @@ status goal_add_mean(const run *r, int group_id, int component, double sign,
 double goal_mean_bubbles(const run *r, const goal_estimator *e,
                          const goal_form *f);
 
+/* boundary.c: b[n] barycentric coordinates of point k of n * pieces in a
+ * simplex of n corners: Gauss points, n of each of its pieces, of degree 3 on a
+ * line, else 2; pieces = 2^i. */
+void goal_rule_point(int n, int k, int pieces, double *b);
 /* boundary.c: faces round each node. */
 typedef struct goal_ring {
   int *start, *face; /* [n_node+1], [dim*n_face] */
@@ -138,7 +145,6 @@ status goal_mark_supports(const run *r, const goal_border *border,
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
 /* between.c: of an edge. */
-enum { GOAL_PIECES = 16 };
 /* x[3]: point k of GOAL_PIECES of an edge between contact nodes q[2], on the
  * arc that the surface of the body is. */
 void goal_point_of(const run *r, const contact_edge *e, const int *q, int k,
