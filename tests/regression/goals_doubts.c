@@ -192,8 +192,8 @@ START_TEST(steps_within_edges_are_found) {
   j = body_of_block(12, PLANE,
                     NORMAL
                     "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
-                    "TOP, 2, 2, \"-0.01*max(1,1+20*(x-0.78))\"\n");
-  goal_check(&j, 1000.0 / (1.0 - 0.3 * 0.3) * (0.02 + 0.1 * 1.22 * 1.22), 0.9,
+                    "TOP, 2, 2, \"-0.01*max(1,1+20*(x-0.825))\"\n");
+  goal_check(&j, 1000.0 / (1.0 - 0.3 * 0.3) * (0.02 + 0.1 * 1.175 * 1.175), 0.9,
              1.1, 1.0);
   job_end(&j);
 }
