@@ -82,12 +82,15 @@ static int flush_output(int exit_code) {
   return status_exit_code(ERR_FILE);
 }
 
-/* No file of the job gets the number of a stream that was closed; HDF5 locks
- * no file: the job does (lock.c), and not every file system can. */
+/* No file of the job gets the number of a stream that was closed, and what is
+ * printed to none is not lost unseen: it cannot be written. HDF5 locks no file:
+ * the job does (lock.c), and not every file system can. */
 static void prepare_process(void) {
   int fd;
-  do fd = open("/dev/null", O_RDWR);
-  while (fd >= 0 && fd <= STDERR_FILENO);
+  do {
+    fd = open("/dev/null", O_RDWR);
+    if (fd == STDOUT_FILENO && close(fd) == 0) fd = open("/dev/null", O_RDONLY);
+  } while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd > STDERR_FILENO) close(fd);
   setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
 }

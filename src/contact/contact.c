@@ -154,6 +154,16 @@ double contact_largest_diagonal(const contact_problem *cp) {
   return d;
 }
 
+double contact_resistance(const contact_problem *cp, const double *v,
+                          double share) {
+  const double least =
+      cp->m * DBL_EPSILON / share * contact_largest_diagonal(cp);
+  double force = 0.0;
+  for (int i = 0; i < cp->m; ++i)
+    force = fmax(force, fmax(contact_diagonal(cp, i), least) * fabs(v[i]));
+  return force;
+}
+
 double contact_tangent_diagonal(const contact_problem *cp, int node_id,
                                 double none) {
   int first = node_id * cp->dim, counted = 0;

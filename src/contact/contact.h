@@ -175,6 +175,11 @@ int contact_has_side(const contact_problem *cp, int node_id);
 /* Diagonal of A (of an operator: of the stiffness it is condensed from), or of
  * W where that alone is known. */
 double contact_diagonal(const contact_problem *cp, int dof);
+/* Largest force of a motion v[m] of one unknown alone, N; not less than what
+ * the rounding of A is "share" of: a motion of which less than the share is
+ * left as force has none. */
+double contact_resistance(const contact_problem *cp, const double *v,
+                          double share);
 /* Its mean over the tangents of a node that are not held, or "none". */
 double contact_tangent_diagonal(const contact_problem *cp, int node_id,
                                 double none);

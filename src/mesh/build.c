@@ -233,7 +233,7 @@ done:
 enum { HEAD_SIZE = 4096, TAIL_SIZE = 256 };
 
 /* gmsh does not distinguish a missing file from an empty one: check first. The
- * first bytes go to head, with a zero after them. */
+ * first bytes go to head, with a zero after them, but for a byte order mark. */
 static status read_head(const char *file, char head[HEAD_SIZE + 1],
                         const place *at, message_log *log) {
   const char *why = NULL;
@@ -242,6 +242,7 @@ static status read_head(const char *file, char head[HEAD_SIZE + 1],
     why = NULL;
     size_t n = fread(head, 1, HEAD_SIZE, in);
     head[n] = '\0';
+    if (strncmp(head, "\xEF\xBB\xBF", 3) == 0) memmove(head, head + 3, n - 2);
     if (ferror(in))
       why = strerror(errno);
     else if (n == 0)

@@ -18,11 +18,15 @@ static int wrong_shape(int type) {
   return type == 3 || type == 5 || type == 6 || type == 7;
 }
 
-static const char *group_of(const raw_mesh *raw, const raw_block *b) {
+/* Its name, or its number. */
+static const char *group_of(const raw_mesh *raw, const raw_block *b,
+                            char tag[16]) {
+  snprintf(tag, 16, "%d", b->physical[0]);
   for (int i = 0; i < raw->n_group; ++i)
-    if (raw->group[i].dim == b->dim && raw->group[i].tag == b->physical[0])
+    if (raw->group[i].dim == b->dim && raw->group[i].tag == b->physical[0] &&
+        raw->group[i].name[0] != '\0')
       return raw->group[i].name;
-  return "";
+  return tag;
 }
 
 /* One message for each type, at its first block. */
@@ -41,7 +45,8 @@ static status check_types(builder *b) {
       if (j < first) first = j;
     }
     if (first < i) continue;
-    const char *group = group_of(raw, p);
+    char tag[16];
+    const char *group = group_of(raw, p, tag);
     message_add(b->log, wrong_shape(p->type) ? P3020 : P3021, b->at,
                 "%zu element(s) of type \"%s\"; the first is no. %zu in group "
                 "\"%s\"",

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -158,6 +159,20 @@ static void last_error(const char *text, char *last, size_t size) {
   }
 }
 
+/* 1: the child had all the CPU time that a process of this user may take: the
+ * soft limit ends it by SIGXCPU, the hard one by SIGKILL. */
+static int had_all_time(void) {
+  struct rlimit limit;
+  struct rusage used;
+  if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
+      getrusage(RUSAGE_CHILDREN, &used) != 0)
+    return 0;
+  const double s =
+      (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+      1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+  return s >= 0.75 * (double)limit.rlim_cur; /* of another clock */
+}
+
 /* How the child ended, when it did not send a whole mesh. */
 static status child_failure(int ended, int code, int error_fd) {
   char last[LAST_SIZE];
@@ -172,6 +187,9 @@ static status child_failure(int ended, int code, int error_fd) {
     RAISE(ERR_MEMORY,
           "gmsh ran out of memory while reading the mesh; a damaged file may "
           "require too much");
+  if (killed && had_all_time())
+    RAISE(ERR_CPU_LIMIT,
+          "gmsh reached the limit of CPU time while reading the mesh");
   if (killed && WTERMSIG(code) == SIGKILL)
     RAISE(ERR_MEMORY,
           "gmsh was killed while reading the mesh: the system is out of "

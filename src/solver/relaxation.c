@@ -378,8 +378,7 @@ int relaxation_fly(relaxation *s, const double *from) {
 static int drifts(relaxation *s, double *from) {
   const contact_problem *cp = s->cp;
   size_t m = cp->m;
-  double *d = s->u, *Ad = s->r, work = 0.0, stiff = 0.0, left = 0.0;
-  double most = 0.0;
+  double *d = s->u, *Ad = s->r, work = 0.0, left = 0.0, most = 0.0;
   int falls = 0;
   if (!cp->floating || !contact_has_stiffness(cp)) return 0;
   COPY(from, s->u, m);
@@ -390,7 +389,6 @@ static int drifts(relaxation *s, double *from) {
   for (size_t i = 0; i < m; ++i) {
     work += cp->f[i] * d[i];
     left = fmax(left, fabs(Ad[i]));
-    stiff = fmax(stiff, contact_diagonal(cp, (int)i) * fabs(d[i]));
     most = fmax(most, fabs(d[i]));
   }
   for (size_t i = 0; i < m; ++i) {
@@ -398,7 +396,8 @@ static int drifts(relaxation *s, double *from) {
     if (bound < HUGE_VAL && d[i] > RIGID * most && rest > RIGID * most)
       falls = 1;
   }
-  return work > 0.0 && left < RIGID * stiff && !falls;
+  return work > 0.0 && left < RIGID * contact_resistance(cp, d, RIGID) &&
+         !falls;
 }
 
 void relaxation_end(relaxation *s, const best_iterate *best, double *work,

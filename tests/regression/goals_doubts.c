@@ -171,6 +171,92 @@ START_TEST(errors_by_gaps_alone_have_a_band) {
 }
 END_TEST
 
+/* A step of the obstacle, of a load and of a friction limit within an edge is
+ * not what their parabola by its middle is: the forces are those of the
+ * integrals. */
+START_TEST(steps_within_edges_are_found) {
+  job j = body_of_block(12, "GAP\n\"5.E-5*step(x-0.72)\"",
+                        NORMAL
+                        "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                        "TOP, 2, 2, -0.01\n");
+  goal_check(&j, 1000.0 / (1.0 - 0.3 * 0.3) * (0.02 - 1.28 * 5e-5), 0.7, 1.3,
+             5.0);
+  ck_assert(goal_has_verdict(&j, "N", "contact_end"));
+  job_end(&j);
+  j = body_of_block(12, PLANE,
+                    NORMAL
+                    "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                    "*DSLOAD\nTOP, P, \"10.*step(x-0.72)\"\n");
+  goal_check(&j, 12.8, 0.8, 1.2, 5.0);
+  job_end(&j);
+  j = body_of_block(12, PLANE,
+                    NORMAL
+                    "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n"
+                    "TOP, 2, 2, \"-0.01*max(1,1+20*(x-0.825))\"\n");
+  goal_check(&j, 1000.0 / (1.0 - 0.3 * 0.3) * (0.02 + 0.1 * 1.175 * 1.175), 0.9,
+             1.1, 1.0);
+  job_end(&j);
+}
+END_TEST
+
+/* The mean of u_x at the end of a bar is what the heat adds up to. */
+START_TEST(heat_that_ends_within_elements_is_found) {
+  const mesh_change change = {.scale = 1.0};
+  for (int k = 0; k < 2; ++k) {
+    const double x = k == 0 ? 0.69 : 0.77;
+    job j = job_begin("block");
+    body_write_mesh(&j, "rect 12 12 2 1 alternate", &change);
+    job_write(&j, "block.inp",
+              "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*EXPANSION\n1E-4\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+              "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=RIGHT\n"
+              "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nBOTTOM, 2\n*TEMPERATURE\n"
+              "BODY, \"50*step(x-%g)\"\n*PRINT, GOALS\n*END STEP\n",
+              x);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    goal_check(&j, 0.005 * (2.0 - x), 0.9, 1.1, 0.2);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* A narrow tip of an obstacle between two nodes, in the body beside the closed
+ * zone. */
+START_TEST(obstacles_between_open_nodes_are_seen) {
+  job j = body_of_block(
+      8, "GAP\n\"if(abs(x-1.375)<0.01, -0.01, 0.02*max(0,x-0.5))\"",
+      NORMAL "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 1.\n");
+  dat t = job_table(&j, "GOALS", -1);
+  ck_assert(goal_has_verdict(&j, "N", "few_nodes"));
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* All nodes slip: by Tresca the force is the integral of the limit, by Coulomb
+ * what meshes of up to 256 x 256 squares tend to. */
+START_TEST(friction_between_the_nodes_is_in_the_estimate) {
+  static const struct {
+    const char *law;
+    double exact, least, most;
+  } of[] = {{"TRESCA\n\"x^2\"", 8.0 / 3.0, 0.95, 1.05},
+            {"COULOMB\n\"0.1*x^2\"", 2.66779, 0.65, 1.1}};
+  for (int k = 0; k < 2; ++k) {
+    char cards[512];
+    snprintf(cards, sizeof cards,
+             PLANE "\nMOVE, 5., 0." CONTACT
+                   "*FRICTION, CONTACT=C, LAW=%s\n"
+                   "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+                   "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n",
+             of[k].law);
+    job j = body_of("rect 8 8 2 1 alternate", cards);
+    goal_check(&j, of[k].exact, of[k].least, of[k].most, 2.5);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* There are no products of errors to refine by but rounding, which the
  * thickness changes: it must not change the meshes. */
 START_TEST(passes_do_not_refine_by_rounding) {
@@ -362,7 +448,11 @@ UNIT_MAIN("goals_doubts", displacements_of_corners_are_in_their_bands,
           force_of_two_nodes_below_a_plane_is_not_reliable,
           radial_force_in_a_single_node_is_not_reliable,
           radial_force_on_the_axis_is_not_reliable,
-          errors_by_gaps_alone_have_a_band, passes_do_not_refine_by_rounding,
+          errors_by_gaps_alone_have_a_band, steps_within_edges_are_found,
+          heat_that_ends_within_elements_is_found,
+          obstacles_between_open_nodes_are_seen,
+          friction_between_the_nodes_is_in_the_estimate,
+          passes_do_not_refine_by_rounding,
           friction_that_turns_back_within_an_edge,
           moment_about_a_row_of_nodes_is_not_reliable,
           zones_of_three_nodes_are_not_reliable,

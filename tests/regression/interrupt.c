@@ -367,8 +367,22 @@ START_TEST(closed_streams_are_no_matter) {
 }
 END_TEST
 
-/* With so many bytes of addresses and a minute. */
-static int finish_within(const job *j, rlim_t bytes, const char *threads) {
+/* What is printed to a closed stream is lost. */
+START_TEST(closed_output_is_a_failed_write) {
+  pid_t pid = fork();
+  ck_assert_int_ge(pid, 0);
+  if (pid == 0) {
+    close(STDOUT_FILENO);
+    execl(program(), program(), "--list", "solvers", (char *)NULL);
+    _exit(99);
+  }
+  ck_assert_int_eq(finish(pid), 4);
+}
+END_TEST
+
+/* With a limit and a minute. */
+static int finish_below(const job *j, int what, struct rlimit most,
+                        const char *threads) {
   char deck[200];
   snprintf(deck, sizeof deck, "%s/%s", j->dir, j->name);
   pid_t pid = fork();
@@ -378,10 +392,34 @@ static int finish_within(const job *j, rlim_t bytes, const char *threads) {
   into(j, "stdout.txt", STDOUT_FILENO);
   signal(SIGALRM, SIG_DFL);
   alarm(UNIT_SECONDS / 10);
-  setrlimit(RLIMIT_AS, &(struct rlimit){bytes, bytes});
+  setrlimit(what, &most);
   execl(program(), program(), deck, "--threads", threads, (char *)NULL);
   _exit(99);
 }
+
+/* With so many bytes of addresses. */
+static int finish_within(const job *j, rlim_t bytes, const char *threads) {
+  return finish_below(j, RLIMIT_AS, (struct rlimit){bytes, bytes}, threads);
+}
+
+/* Of the CPU time the child that meshes has as much as the run: at the soft
+ * limit it is ended by SIGXCPU, at the hard one by SIGKILL. */
+START_TEST(limit_of_time_counts_while_gmsh_works) {
+  job j = block(2);
+  job_write(
+      &j, "greco.geo",
+      "DefineConstant[ N = 1 ];\nFor i In {1:100000000}\n  x = N;\nEndFor\n");
+  for (rlim_t hard = 1; hard <= 2; ++hard) {
+    const int code =
+        finish_below(&j, RLIMIT_CPU, (struct rlimit){1, hard}, "1");
+    char *errors = errors_of(&j);
+    ck_assert_msg(code == 152, "exit %d: %s", code, errors);
+    ck_assert_ptr_nonnull(strstr(errors, "limit of CPU time"));
+    free(errors);
+  }
+  job_end(&j);
+}
+END_TEST
 
 /* Too few addresses for the linear algebra: told, and not waited for. */
 START_TEST(few_addresses_are_told) {
@@ -471,8 +509,10 @@ END_TEST
 UNIT_MAIN("interrupt", file_system_without_locks_is_no_matter,
           deck_may_begin_with_a_dash, few_addresses_are_told,
           few_addresses_are_not_waited_for, few_addresses_leave_one_thread,
-          closed_streams_are_no_matter, signals_end_after_an_increment,
-          signals_come_together, ignored_signals_stay_ignored,
-          earlier_file_stays, file_ends_after_an_increment,
-          second_signal_ends_at_once, file_size_limit_is_a_failed_write,
-          second_job_of_the_name_is_refused, other_file_of_that_name_stays)
+          limit_of_time_counts_while_gmsh_works,
+          closed_output_is_a_failed_write, closed_streams_are_no_matter,
+          signals_end_after_an_increment, signals_come_together,
+          ignored_signals_stay_ignored, earlier_file_stays,
+          file_ends_after_an_increment, second_signal_ends_at_once,
+          file_size_limit_is_a_failed_write, second_job_of_the_name_is_refused,
+          other_file_of_that_name_stays)

@@ -307,13 +307,14 @@ START_TEST(damage_is_told_with_its_line) {
 }
 END_TEST
 
-/* Other sections, CRLF, comments, empty lines and blanks change nothing. */
+/* Other sections, CRLF, comments, empty lines, blanks and a byte order mark
+ * change nothing. */
 START_TEST(what_is_no_mesh_is_passed_over) {
   mesh_file f;
   mesh_file_open(&f);
   char text[4096];
   int n = snprintf(text, sizeof text,
-                   "$Comments\n$Nodes are below\n$EndComments\n\n%s"
+                   "\xEF\xBB\xBF$Comments\n$Nodes are below\n$EndComments\n\n%s"
                    "$Periodic\n1\n0 2 1\n1\n4 1\n$EndPeriodic\n"
                    "$NodeData\n1\n\"T\"\n$EndNodeData\n\n \n",
                    text_22);

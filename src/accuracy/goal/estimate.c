@@ -770,3 +770,7 @@ status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
   }
   return OK;
 }
+
+void goal_estimator_adjoint_force(const goal_estimator *e, double *F) {
+  domain_internal_force(e->s.d, e->sigma_y, F);
+}

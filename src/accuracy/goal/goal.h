@@ -93,6 +93,7 @@ typedef struct contact_edge {
   double n[3];       /* unit normal, the mean of its ends */
   double out[3];     /* from its middle to the surface of the body, m */
   double excess;     /* m, what u along n is beyond that of ends */
+  double rough;      /* how the gap differs from the parabola of excess, m */
   double stick[3];   /* what u was in its bubble where it began to stick, m */
   double weight;     /* integral of its bubble over the surface, m2 */
   int other[2];      /* nodes of the opposite lip of a crack, in the order of a,
@@ -165,6 +166,8 @@ double goal_estimator_flux(const goal_estimator *e, const goal_flux *f);
 /* F[dim*n_node]: forces that what u is in the bubbles exerts on the mesh; under
  * them the nodes move by their error. */
 void goal_estimator_force(goal_estimator *e, double *F);
+/* F[dim*n_node] of the stress of the adjoint of goal_estimate_find. */
+void goal_estimator_adjoint_force(const goal_estimator *e, double *F);
 /*
  * The error by the adjoint y[dim*n_node] of a J with the derivative integral of
  * tau : e(v), tau[ns*n_elem] (or NULL: zero), besides values at nodes:

@@ -54,9 +54,12 @@ void goal_estimate_add(const goal_estimate *e, goal_estimate *sum) {
   for (size_t k = 0; k < sizeof *e / sizeof *of; ++k) to[k] += of[k];
 }
 
-/* Share of a part of the products, beyond rounding. */
+/* Share of a part of the products, beyond rounding; errors of the gap alone
+ * have none but that. */
 static double share_of(const goal_estimate *e, double part) {
-  return e->product > ROUNDING * e->magnitude ? part / e->product : 0.0;
+  return e->product > ROUNDING * e->magnitude
+             ? part / fmax(e->product, fabs(e->error))
+             : 0.0;
 }
 
 goal_result goal_judge(const goal_estimate *e) {

@@ -97,7 +97,7 @@ static int requires_mesh_error(const model *m, const reason *why) {
   if (m->accuracy.mesh_price > 0.0)
     return plan_says(
         0, why,
-        "expected %.0f %% of the run, more than %.0f %%; *ACCURACY, "
+        "expected %.2g %% of the run, more than %.0f %%; *ACCURACY, "
         "MESH=YES requires it",
         100 * m->accuracy.mesh_price, 100 * PLAN_CHEAP);
   if (facts_first_step(m, is_estimated) != NULL)

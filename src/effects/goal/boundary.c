@@ -41,13 +41,37 @@ typedef struct spot {
 static const double AT[5] = {
     [2] = 0.78867513459481288, [3] = 2.0 / 3.0, [4] = 0.58541019662496847};
 
-static spot spot_at(const mesh *m, const patch *p, int k) {
-  spot s = {.weight = p->weight / p->n};
-  for (int i = 0; i < p->n; ++i) {
-    s.b[i] = i == k ? AT[p->n] : (1.0 - AT[p->n]) / (p->n - 1);
+/* Barycentric coordinates of the corners of piece number k of a simplex with n
+ * corners, halved again and again, where pieces = 2^i. */
+static void piece_of(int n, int k, int pieces, double corner[4][4]) {
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j) corner[i][j] = i == j;
+  for (; pieces > 1; pieces /= 2, k /= 2) {
+    double middle[4];
+    for (int j = 0; j < n; ++j)
+      middle[j] = 0.5 * (corner[0][j] + corner[n - 1][j]);
+    if (k % 2 == 1) COPY(corner[0], corner[n - 1], n);
+    for (int i = n - 1; i > 1; --i) COPY(corner[i], corner[i - 1], n);
+    COPY(corner[1], middle, n);
+  }
+}
+
+void goal_rule_point(int n, int k, int pieces, double *b) {
+  double corner[4][4];
+  piece_of(n, k / n, pieces, corner);
+  CLEAR(b, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      b[i] += corner[j][i] * (j == k % n ? AT[n] : (1.0 - AT[n]) / (n - 1));
+}
+
+/* Point k of a patch in pieces. */
+static spot spot_in(const mesh *m, const patch *p, int k, int pieces) {
+  spot s = {.weight = p->weight / p->n / pieces};
+  goal_rule_point(p->n, k, pieces, s.b);
+  for (int i = 0; i < p->n; ++i)
     for (int c = 0; c < m->dim; ++c)
       s.x[c] += s.b[i] * m->x[m->dim * p->node[i] + c];
-  }
   for (int i = 0; i < p->n && p->is_curved; ++i)
     for (int j = i + 1; j < p->n; ++j) {
       s.beyond += 4.0 * s.b[i] * s.b[j] * p->B[i][j];
@@ -57,6 +81,10 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
     }
   for (int c = 0; c < 3; ++c) s.on[c] = s.x[c] + s.beyond * p->normal[c];
   return s;
+}
+
+static spot spot_at(const mesh *m, const patch *p, int k) {
+  return spot_in(m, p, k, 1);
 }
 
 /* ---- faces --------------------------------------------------------------- */
@@ -328,10 +356,11 @@ static void add_load(const run *r, const load *l, const patch *p, double *dF) {
   const mesh *m = r->msh;
   double value[4], flat[3], bent[3], force[3];
   if (!p->is_curved && !goal_load_varies(l)) return;
+  const int pieces = goal_load_varies(l) ? GOAL_PIECES : 1;
   for (int i = 0; i < p->n; ++i)
     value[i] = load_at_node(l, m, r->step, p->node[i], r->now.t);
-  for (int k = 0; k < p->n; ++k) {
-    const spot s = spot_at(m, p, k);
+  for (int k = 0; k < p->n * pieces; ++k) {
+    const spot s = spot_in(m, p, k, pieces);
     const double linear = dot(p->n, s.b, value);
     const double there = load_at_point(l, r->step, s.on, r->now.t);
     if (!isfinite(there)) continue;

@@ -279,12 +279,13 @@ static double of_factor(const run *r, const shared *s) {
 }
 
 /* What contact forces do between the nodes: to the adjoint, and to what they
- * are summed with; and where friction turns back. */
+ * are summed with; and what of it is in doubt. */
 static status of_contact(const run *r, const shared *s, double *product,
-                         double *sum, double *reversed) {
+                         double *sum, double *doubt) {
   const int dim = r->msh->dim;
-  double turn, area;
+  double turn, area, value;
   OWNED_NEW(double, z, r->n_dof);
+  OWNED_NEW(double, F, r->n_dof);
   COPY(z, s->y, r->n_dof);
   for (int k = 0; k < dim * r->nodes.n; ++k)
     for (int c = 0; c < dim; ++c)
@@ -292,24 +293,27 @@ static status of_contact(const run *r, const shared *s, double *product,
           s->form.psi[k] * r->surface->basis[dim * k + c];
   PASS(goal_work_between(r, &s->surface, s->form.is_field ? z : s->y, z,
                          s->form.spin, &turn, &area));
-  *sum = turn + area;
-  return goal_add_reversals(r, &s->surface, z, product, reversed);
+  PASS(goal_value_between(r, &s->surface, z, &value));
+  *sum = turn + area + value;
+  goal_estimator_adjoint_force(s->estimator, F);
+  cblas_daxpy((int)r->n_dof, -1.0, s->form.load, 1, F, 1);
+  return goal_add_doubts(r, &s->surface, z, F, product, doubt);
 }
 
 /* What the residual of the elements has not. */
 static status complete(const run *r, const shared *s, double *product,
                        goal_estimate *e) {
   const goal_form *f = &s->form;
-  double along = 0.0, reversed = 0.0;
-  PASS(of_contact(r, s, product, &along, &reversed));
+  double along = 0.0, doubt = 0.0;
+  PASS(of_contact(r, s, product, &along, &doubt));
   if (f->factor.n > 0) e->error += of_factor(r, s);
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   const double between = goal_mean_bubbles(r, s->estimator, f);
   e->error += f->curved + along + beyond + between;
   e->magnitude +=
-      fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between) + reversed;
-  e->product += reversed;
-  e->ends += reversed;
+      fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between) + doubt;
+  e->product += doubt;
+  e->ends += doubt;
   e->error += e->hoop;
   if (f->sums) {
     double slips;

@@ -9,11 +9,9 @@
  */
 #include "effects/goal/parts.h"
 
-/* Points of degree 2: barycentric coordinate of point k in corner k. */
-static const double AT[5] = {[3] = 2.0 / 3.0, [4] = 0.58541019662496847};
-
 typedef struct spot {
   double b[4];    /* barycentric */
+  int pieces;     /* of an element */
   double *T0, *T; /* [n_elem] */
 } spot;
 
@@ -65,7 +63,8 @@ static void add_spot(const run *r, const spot *s, double *dF, double *rest) {
   for (int k = 0; k < r->strains.eigen.n; ++k) {
     const int e = r->strains.elem[k];
     const kinematics kin = d->kin[d->section_id[e]];
-    double strain[3], t[6], radius = 0.0, weight = mesh_elem_measure(m, e) / n;
+    double strain[3], t[6], radius = 0.0,
+                            weight = mesh_elem_measure(m, e) / n / s->pieces;
     if (!strain_at(r, k, s, strain)) continue;
     for (int a = 0; a < n && kin == AXISYMMETRIC; ++a)
       radius += s->b[a] * m->x[2 * m->elem[n * e + a]];
@@ -77,17 +76,31 @@ static void add_spot(const run *r, const spot *s, double *dF, double *rest) {
   }
 }
 
+static int is_formula(const quantity *q) {
+  return (quantity_variables(q) & 7u) != 0;
+}
+
+/* 1: temperatures are given by formulas of the place. */
+static int varies(const run *r) {
+  int any = 0;
+  for (EACH(const initial, c, r->m->initial.lines, r->m->n.initial))
+    any |= c->type == INITIAL_TEMPERATURE && is_formula(&c->value);
+  for (const step *s = r->m->steps; s <= r->step; ++s)
+    for (EACH(const load, l, s->loads.item, s->loads.n))
+      any |= l->kind == LOAD_TEMPERATURE && is_formula(&l->value);
+  return any;
+}
+
 status goal_add_thermal(const run *r, double *dF, double **rest) {
   OWNED double *T0 = NULL, *T = NULL;
   if (r->now.thermal == NULL || r->now.temperature == NULL) return OK;
   PASS_NEW(*rest, (size_t)3 * r->msh->n_elem);
   PASS_NEW_REALS(r->msh->n_elem, &T0, &T);
-  for (int k = 0; k <= r->msh->dim; ++k) {
-    spot s = {.T0 = T0, .T = T};
+  const int n = r->msh->dim + 1, pieces = varies(r) ? GOAL_PIECES : 1;
+  for (int k = 0; k < n * pieces; ++k) {
+    spot s = {.pieces = pieces, .T0 = T0, .T = T};
     /* The temperatures at a point of all elements. */
-    const int n = r->msh->dim + 1;
-    for (int a = 0; a < n; ++a)
-      s.b[a] = a == k ? AT[n] : (1.0 - AT[n]) / (n - 1);
+    goal_rule_point(n, k, pieces, s.b);
     load_temperature_initial_at(r->m, r->msh, s.b, s.T0);
     PASS(load_temperature_at(r->m, r->msh, r->step, r->now.t, s.b, s.T0, s.T));
     add_spot(r, &s, dF, *rest);

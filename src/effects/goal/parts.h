@@ -56,12 +56,19 @@ status goal_form_set(run *r, const goal_card *g, goal_form *f);
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f);
 status goal_set_width(const run *r, const goal_card *g, goal_form *f);
 
+/* Of edges, faces and elements with data that formulas give. */
+enum { GOAL_PIECES = 16 };
+
 /* mean.c: adds a mean times a sign, and its bubbles. ERR_MEMORY. */
 status goal_add_mean(const run *r, int group_id, int component, double sign,
                      goal_form *f);
 double goal_mean_bubbles(const run *r, const goal_estimator *e,
                          const goal_form *f);
 
+/* boundary.c: b[n] barycentric coordinates of point k of n * pieces in a
+ * simplex of n corners: Gauss points, n of each of its pieces, of degree 3 on a
+ * line, else 2; pieces = 2^i. */
+void goal_rule_point(int n, int k, int pieces, double *b);
 /* boundary.c: faces round each node. */
 typedef struct goal_ring {
   int *start, *face; /* [n_node+1], [dim*n_face] */
@@ -129,6 +136,17 @@ status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s);
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
+/* between.c: of an edge. */
+/* x[3]: point k of GOAL_PIECES of an edge between contact nodes q[2], on the
+ * arc that the surface of the body is. */
+void goal_point_of(const run *r, const contact_edge *e, const int *q, int k,
+                   double *x);
+/* d[GOAL_PIECES + 1] less the line through its ends. */
+void goal_take_line(double *d);
+/* The middle of the parabola that is zero at the ends and has the integral of
+ * d[GOAL_PIECES + 1]; *rough that of one with the integral of the size of what
+ * they differ by. */
+double goal_parabola(const double *d, double *rough);
 /* Work of the tractions of closed edges along the surface less that of their
  * nodes: *turn, that of their directions on y[dim*n_node], which beyond the
  * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of a
@@ -136,10 +154,14 @@ status goal_surface_new(const run *r, const goal_border *border,
 status goal_work_between(const run *r, const goal_surface *s, const double *y,
                          const double *z, const double *spin, double *turn,
                          double *area);
-/* What the places where friction turns back within edges may add to J, whose
- * derivative by friction is z[dim*n_node]: *sum; product[n_elem] or NULL: the
- * elements have it more. */
-status goal_add_reversals(const run *r, const goal_surface *s, const double *z,
-                          double *product, double *sum);
+/* Of edges whose nodes slip: by what the friction value is else than linear. */
+status goal_value_between(const run *r, const goal_surface *s, const double *z,
+                          double *sum);
+/* What J, whose derivative by friction is z[dim*n_node], may lack by edges
+ * within which friction turns back, or gap or friction value are rougher than a
+ * parabola, F[dim*n_node] the forces of the adjoint: *sum; product[n_elem] or
+ * NULL: the elements have it more. */
+status goal_add_doubts(const run *r, const goal_surface *s, const double *z,
+                       const double *F, double *product, double *sum);
 /* 1: node i is on a plane of symmetry along tangent a, or on the axis. */
 int goal_is_mirrored(const run *r, int i);

@@ -24,12 +24,17 @@ static given_edge edge_of(const run *r, const load *l, const int *v) {
   const number_pair is = number_pair_of(v[0], v[1]);
   given_edge e = {.a = is.a, .b = is.b};
   const mesh *m = r->msh;
-  double x[3] = {0.0};
-  for (int c = 0; c < m->dim; ++c)
-    x[c] = 0.5 * (m->x[m->dim * v[0] + c] + m->x[m->dim * v[1] + c]);
-  double bend = load_at_point(l, r->step, x, r->now.t);
-  for (int k = 0; k < 2; ++k)
-    bend -= 0.5 * load_at_node(l, r->msh, r->step, v[k], r->now.t);
+  double d[GOAL_PIECES + 1], rough;
+  for (int k = 0; k <= GOAL_PIECES; ++k) {
+    const double at = (double)k / GOAL_PIECES;
+    double x[3] = {0.0};
+    for (int c = 0; c < m->dim; ++c)
+      x[c] =
+          (1.0 - at) * m->x[m->dim * v[0] + c] + at * m->x[m->dim * v[1] + c];
+    d[k] = load_at_point(l, r->step, x, r->now.t);
+  }
+  goal_take_line(d);
+  const double bend = goal_parabola(d, &rough);
   if (isfinite(bend)) e.bend[l->component] = bend;
   return e;
 }

@@ -110,14 +110,38 @@ static double gap_between(const run *r, const gap_slopes *slopes,
   return (at[0] - at[1]) / 8.0;
 }
 
-/* Normal and gap in the middle of an edge between contact nodes q[2], at the
- * surface of the body; of the obstacle's normal that there. */
+/* d[GOAL_PIECES + 1]: the gap along an edge of contact nodes q[2] to an
+ * obstacle, along e->n or the normal of the obstacle, less the line through its
+ * ends; 0 where it is out of reach, and of a curved body on a smooth obstacle,
+ * which hides it. */
+static void gap_along(const run *r, const int *q, const contact_edge *e,
+                      double *d) {
+  const contact_surface *s = r->surface;
+  const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
+  const int dim = s->dim;
+  int finite = 1;
+  for (int k = 0; k <= GOAL_PIECES; ++k) {
+    double x[3], n[3];
+    goal_point_of(r, e, q, k, x);
+    COPY(n, e->n, 3);
+    if (p->obstacle_normal) obstacle_normal(p->support, dim, x, n);
+    d[k] = obstacle_gap(p->support, dim, x, n, r->now.t);
+    finite &= isfinite(d[k]);
+  }
+  goal_take_line(d);
+  for (int c = 0; c < dim && p->support->shape != OBSTACLE_GAP; ++c)
+    finite &= !(fabs(e->out[c]) > 0.0);
+  if (!finite) CLEAR(d, GOAL_PIECES + 1);
+}
+
+/* Normal of an edge between contact nodes q[2], and its gap at the surface of
+ * the body: in the middle, what the gap is else as a parabola. */
 static void set_middle(const run *r, const gap_slopes *slopes, const int *q,
                        contact_edge *e) {
   const contact_surface *s = r->surface;
   const contact_pair *p = &r->faces.pairs[s->contact_id[q[0]]];
   const int dim = s->dim;
-  double x[3] = {0.0};
+  double x[3] = {0.0}, d[GOAL_PIECES + 1];
   for (int c = 0; c < dim; ++c) {
     x[c] = 0.5 * (s->x[dim * q[0] + c] + s->x[dim * q[1] + c]);
     e->n[c] = s->frame[dim * dim * q[0] + c] + s->frame[dim * dim * q[1] + c];
@@ -126,9 +150,12 @@ static void set_middle(const run *r, const gap_slopes *slopes, const int *q,
   if (p->obstacle_normal) obstacle_normal(p->support, dim, x, e->n);
   double out = 0.0;
   for (int c = 0; c < dim; ++c) out = hypot(out, e->out[c]);
+  gap_along(r, q, e, d);
+  const double more = goal_parabola(d, &e->rough) - d[GOAL_PIECES / 2];
   e->excess = out > 0.0 ? 0.5 * (r->problem.gap[q[0]] + r->problem.gap[q[1]]) +
                               gap_between(r, slopes, q)
                         : obstacle_gap(p->support, dim, x, e->n, r->now.t);
+  e->excess += more;
   for (int c = 0; c < dim; ++c)
     e->excess -=
         0.5 * e->n[c] * (r->now.u[dim * e->a + c] + r->now.u[dim * e->b + c]);
@@ -266,16 +293,28 @@ static status mark_front(const mesh *m, goal_surface *s) {
   return OK;
 }
 
+/* Gap of contact node q. */
+static double gap_at(const run *r, int q) {
+  const contact_surface *s = r->surface;
+  return r->problem.gap[q] - dot(s->dim, s->frame + s->dim * s->dim * q,
+                                 r->now.u + s->dim * s->node_id[q]);
+}
+
 /* 1: the gap along an edge of open nodes, a parabola through its ends and
  * middle, may be below zero: one of its coefficients is. */
 static int may_close(const run *r, const int *q, double middle) {
-  const contact_surface *s = r->surface;
-  double ends = 0.0;
-  for (int k = 0; k < 2; ++k)
-    ends += 0.5 * (r->problem.gap[q[k]] -
-                   dot(s->dim, s->frame + s->dim * s->dim * q[k],
-                       r->now.u + s->dim * s->node_id[q[k]]));
+  const double ends = 0.5 * (gap_at(r, q[0]) + gap_at(r, q[1]));
   return 2.0 * middle < ends;
+}
+
+/* 1: an obstacle is in the body between open nodes. */
+static int is_entered(const run *r, const int *q, const contact_edge *e) {
+  double d[GOAL_PIECES + 1], least = HUGE_VAL;
+  const double first = gap_at(r, q[0]), rise = gap_at(r, q[1]) - first;
+  gap_along(r, q, e, d);
+  for (int k = 0; k <= GOAL_PIECES; ++k)
+    least = fmin(least, d[k] + first + rise * k / GOAL_PIECES);
+  return least < 0.0;
 }
 
 /* s->is_missed. */
@@ -284,10 +323,13 @@ static void find_missed(const run *r, const gap_slopes *slopes,
   for (int k = 0; k < s->n_edge && !s->is_missed; ++k) {
     contact_edge e = s->edge[k];
     const int q[2] = {where[e.a], where[e.b]};
-    if (e.other[0] >= 0 || s->closed[r->surface->contact_id[q[0]]] > 0)
+    if (e.other[0] >= 0 || r->result.contact[q[0]] != CONTACT_OPEN ||
+        r->result.contact[q[1]] != CONTACT_OPEN)
       continue;
     set_middle(r, slopes, q, &e);
-    s->is_missed = may_close(r, q, e.excess);
+    s->is_missed = is_entered(r, q, &e);
+    if (s->closed[r->surface->contact_id[q[0]]] == 0)
+      s->is_missed |= may_close(r, q, e.excess);
   }
 }
 
@@ -349,112 +391,4 @@ status goal_surface_new(const run *r, const goal_border *border,
   PASS(goal_add_bent(r, &rings, s));
   PASS(goal_add_given(r, s));
   return goal_mark_supports(r, border, of, s);
-}
-
-/* Direction v[dim] of the traction of contact node q along its normal, or along
- * its slip; returns it, Pa. */
-static double traction_of(const run *r, int q, int along, double *v) {
-  const contact_surface *s = r->surface;
-  const int dim = s->dim, first = along ? 1 : 0, last = along ? dim : 1;
-  CLEAR(v, 3);
-  for (int a = first; a < last; ++a) {
-    const double part = r->now.rc[dim * q + a] / s->area[q];
-    for (int c = 0; c < dim; ++c)
-      v[c] += part * s->frame[dim * (dim * q + a) + c];
-  }
-  return goal_make_unit(dim, v);
-}
-
-/* v[2][dim] at the ends: v in the middle times the mean of y and "more" less
- * the mean of both at the ends; 0 where v turns by a right angle. */
-static double product_between(int dim, double v[2][3], const double *ya,
-                              const double *yb, const double *more) {
-  double middle[3] = {0.0}, size = 0.0, sum = 0.0;
-  for (int c = 0; c < dim; ++c) {
-    middle[c] = 0.5 * (v[0][c] + v[1][c]);
-    size = hypot(size, middle[c]);
-  }
-  if (!(size > 0.7)) return 0.0;
-  for (int c = 0; c < dim; ++c)
-    sum += middle[c] / size * (0.5 * (ya[c] + yb[c]) + more[c]) -
-           0.5 * (v[0][c] * ya[c] + v[1][c] * yb[c]);
-  return sum;
-}
-
-/* Length of an arc less that of its chord, over the integral of its bubble. */
-static double longer(const mesh *m, const contact_edge *e) {
-  double out = 0.0, chord = 0.0;
-  for (int c = 0; c < m->dim; ++c) {
-    out = hypot(out, e->out[c]);
-    chord = hypot(chord, m->x[m->dim * e->b + c] - m->x[m->dim * e->a + c]);
-  }
-  return m->dim == 2 ? 4.0 * (out / chord) * (out / chord) : 0.0;
-}
-
-status goal_work_between(const run *r, const goal_surface *s, const double *y,
-                         const double *z, const double *spin, double *turn,
-                         double *area) {
-  const int dim = r->msh->dim;
-  *turn = *area = 0.0;
-  OWNED_OF(int, where, goal_places(r, &where));
-  for (EACH(const contact_edge, e, s->edge, s->n_edge)) {
-    if (!e->closed || e->other[0] >= 0) continue;
-    for (int along = 0; along < (e->stuck ? 1 : 2); ++along) {
-      double v[2][3], more[3] = {0.0}, sum = 0.0;
-      const double force = 0.5 * e->weight *
-                           (traction_of(r, where[e->a], along, v[0]) +
-                            traction_of(r, where[e->b], along, v[1]));
-      if (along) cross(spin, e->out, more);
-      *turn +=
-          force * product_between(dim, v, y + dim * e->a, y + dim * e->b, more);
-      const friction_limit *limit = r->problem.limit;
-      const int is_given =
-          along && limit != NULL && limit->g0[where[e->a]] > 0.0;
-      for (int c = 0; c < dim && is_given; ++c)
-        sum +=
-            0.5 * (v[0][c] * z[dim * e->a + c] + v[1][c] * z[dim * e->b + c]);
-      *area += force * longer(r->msh, e) * sum;
-    }
-  }
-  return OK;
-}
-
-/* Of a node that slips and one of opposite friction: in between it turns back,
- * the nodes have that in the middle, and it may be at either end. */
-static double reversal_of(const run *r, const contact_edge *e, const int *q,
-                          const double *z) {
-  const int dim = r->msh->dim;
-  double v[2][3], part = 0.0;
-  if (!e->closed || e->stuck || e->other[0] >= 0) return 0.0;
-  const double t[2] = {traction_of(r, q[0], 1, v[0]),
-                       traction_of(r, q[1], 1, v[1])};
-  if (!(dot(dim, v[0], v[1]) < 0.0)) return 0.0;
-  for (int c = 0; c < dim; ++c)
-    part += 0.25 * (t[0] * v[0][c] - t[1] * v[1][c]) *
-            (z[dim * e->a + c] + z[dim * e->b + c]);
-  return fabs(part) * e->weight * (dim == 2 ? 1.5 : 1.0);
-}
-
-/* Adds it to the elements of an edge. */
-static void spread(const mesh *m, const contact_edge *e, double part,
-                   double *product) {
-  for (int k = 0; k < m->n_elem; ++k) {
-    const int *v = m->elem + (m->dim + 1) * k;
-    int n = 0;
-    for (int a = 0; a <= m->dim; ++a) n += v[a] == e->a || v[a] == e->b;
-    if (n == 2) product[k] += part;
-  }
-}
-
-status goal_add_reversals(const run *r, const goal_surface *s, const double *z,
-                          double *product, double *sum) {
-  *sum = 0.0;
-  OWNED_OF(int, where, goal_places(r, &where));
-  for (EACH(const contact_edge, e, s->edge, s->n_edge)) {
-    const int q[2] = {where[e->a], where[e->b]};
-    const double part = reversal_of(r, e, q, z);
-    if (part > 0.0 && product != NULL) spread(r->msh, e, part, product);
-    *sum += part;
-  }
-  return OK;
 }

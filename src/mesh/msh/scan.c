@@ -45,7 +45,9 @@ status scan_open(scan *s, const char *path, status wrong) {
     RAISE(ERR_MEMORY, "%s: its %lld bytes are more than %s leaves", path,
           (long long)about.st_size, l.who);
   s->size = about.st_size;
-  return read_all(s, fd);
+  PASS(read_all(s, fd));
+  if (s->size >= 3 && memcmp(s->data, "\xEF\xBB\xBF", 3) == 0) s->at = 3;
+  return OK;
 }
 
 void scan_close(scan *s) {

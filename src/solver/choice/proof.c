@@ -52,13 +52,10 @@ static double largest_growth(const contact_problem *cp, const double *v,
 /* Largest force of A v, which should be zero, over its terms; workspace[m]. */
 static double force_of(const contact_problem *cp, const double *v,
                        double *workspace) {
-  double force = 0.0, size = 0.0;
+  double force = 0.0;
   contact_apply(cp, v, workspace);
-  for (size_t i = 0, m = cp->m; i < m; ++i) {
-    force = fmax(force, fabs(workspace[i]));
-    size = fmax(size, contact_diagonal(cp, (int)i) * fabs(v[i]));
-  }
-  return force > 0.0 ? force / size : 0.0;
+  for (int i = 0; i < cp->m; ++i) force = fmax(force, fabs(workspace[i]));
+  return force > 0.0 ? force / contact_resistance(cp, v, DEFECT) : 0.0;
 }
 
 static int motion_is_proof(const contact_problem *cp, const double *v,

@@ -555,16 +555,15 @@ static const double LOAD_ROUNDING = 0x1p-48; /* -, of the loads */
 static int motion_is_free(lemke_run *s, double resistance) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
-  double force = 0.0, size = 0.0, work = 0.0, noise = 0.0;
+  double force = 0.0, work = 0.0, noise = 0.0;
   lemke_respond(s, w->ray, 0, w->raw);
   for (int dof = 0; dof < cp->m; ++dof) {
     force = fmax(force, fabs(w->raw[dof]));
-    size = fmax(size, contact_diagonal(cp, dof) * fabs(w->ray[dof]));
     work += cp->f[dof] * w->ray[dof];
     noise += LOAD_ROUNDING * cp->load * fabs(w->ray[dof]);
   }
-  return force <= RAY_DEFECT * size && work > noise &&
-         work > resistance * (1.0 - RAY_WORK);
+  return force <= RAY_DEFECT * contact_resistance(cp, w->ray, RAY_DEFECT) &&
+         work > noise && work > resistance * (1.0 - RAY_WORK);
 }
 
 /* STOPPED_RAY if the ray is a free motion against its first limits. */
