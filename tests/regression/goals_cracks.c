@@ -89,6 +89,24 @@ START_TEST(open_crack_in_a_plate) {
 }
 END_TEST
 
+/* Without a point the largest factor is taken, which may be negative: pulled
+ * more on the left. */
+START_TEST(largest_factor_is_negative) {
+  job j = run_crack("crack", "N = 4\nANGLE = 30.\nGROWTH = 0.4\nW = 3.",
+                    SIF "NAME=TWO, COMPONENT=2\n",
+                    HELD
+                    "*DSLOAD\nTOP, P, \"x-5\"\n"
+                    "BOTTOM, P, \"x-5\"\n");
+  dat t = job_table(&j, "SIF", -1), g = job_table(&j, "GOALS", -1);
+  const double left = dat_at(&t, dat_row_near(&t, "x", -cos(pi / 6)), "K_II");
+  ck_assert_double_lt(left, -2.0);
+  ck_assert_double_eq(dat_at(&g, 0, "value"), left);
+  dat_free(&t);
+  dat_free(&g);
+  job_end(&j);
+}
+END_TEST
+
 /* K = sqrt(pi) of a pressure of 1, half of it more and less by one of x: 2.5 at
  * the right tip and 1.5 at the left. */
 START_TEST(crack_loaded_on_its_lips) {
@@ -378,11 +396,11 @@ START_TEST(target_on_meshes_that_scatter) {
 }
 END_TEST
 
-UNIT_MAIN("goals_cracks", open_crack_in_a_plate, crack_loaded_on_its_lips,
-          crack_that_is_closed_in_part, crack_at_an_edge, plate_that_turns,
-          few_elements_round_the_tip, wide_crack_in_a_coarse_strip,
-          domain_of_long_elements, closed_crack_that_slips,
-          error_of_the_solver_in_a_factor, crack_that_sticks_is_none,
-          disc_in_space, no_factor_no_estimate, target_of_a_factor,
-          target_on_meshes_that_scatter, target_of_an_interface_is_refused,
-          tip_is_an_end_for_other_goals)
+UNIT_MAIN("goals_cracks", open_crack_in_a_plate, largest_factor_is_negative,
+          crack_loaded_on_its_lips, crack_that_is_closed_in_part,
+          crack_at_an_edge, plate_that_turns, few_elements_round_the_tip,
+          wide_crack_in_a_coarse_strip, domain_of_long_elements,
+          closed_crack_that_slips, error_of_the_solver_in_a_factor,
+          crack_that_sticks_is_none, disc_in_space, no_factor_no_estimate,
+          target_of_a_factor, target_on_meshes_that_scatter,
+          target_of_an_interface_is_refused, tip_is_an_end_for_other_goals)
