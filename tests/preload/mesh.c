@@ -93,7 +93,9 @@ void gmshInitialize(int argc, char **argv, int ignored, int *error) {
     key = before;
     mix_text(argv[i + 1]);
     mix_text(argv[i + 2]);
-    sum += key;
+    key =
+        (key ^ key >> 29) * 0xbf58476d1ce4e5b9u; /* sums of near ones differ */
+    sum += key ^ key >> 32;
   }
   mix(&sum, sizeof sum);
   *error = 0;
