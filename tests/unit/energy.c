@@ -7,6 +7,7 @@
  *   - work = change of the strain energy + lost + change of what is stored, to
  *     the order of the integrator
  */
+#include "base/base.h"
 #include "support/point_body.h"
 #include "support/unit.h"
 
