@@ -88,8 +88,7 @@ double linear_turn(const linear_states *s, int a, int b);
 status linear_set_rows(const linear_states *s, int *singular);
 
 /*
- * Changes of the contact linearised at (u, r), its limit being given (cp->B is
- * not read). cp is borrowed.
+ * Changes of the contact linearised at (u, r) of given limit. cp: borrowed.
  */
 typedef struct linear_contact linear_contact;
 /* *out is NULL if nothing holds the free unknowns. ERR_MEMORY. */

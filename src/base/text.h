@@ -1,6 +1,5 @@
 /*
- * Text files of the results, every write checked, and the one format of the
- * numbers in them.
+ * Text files of the results: writes are checked, numbers have one format.
  */
 #pragma once
 

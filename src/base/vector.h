@@ -2,6 +2,7 @@
 #pragma once
 
 #include <math.h>
+#include <stddef.h>
 
 static inline double dot(int dim, const double *a, const double *b) {
   double sum = 0.0;

@@ -117,8 +117,7 @@ void contact_classify_sides(const contact_problem *cp, const double *u,
  */
 double contact_scale(const contact_problem *cp);
 /*
- * How far (u, r) is from a solution: the largest over the nodes of e/s, where e
- * is an error in N of
+ * How far (u, r) is from a solution: the largest of e/s, e an error in N of
  *   normal      r_n - min(0, r_n - c (u_n - gap)),
  *   tangential  r_t - P_g(r_t - c (u_t - ut0)),  P_g projects on the disc
  *               |.| <= g,
@@ -140,9 +139,8 @@ double contact_scale(const contact_problem *cp);
  * Bodies are determined where cp->bodies is NULL; the functions below then take
  * all nodes as one.
  *
- * No unit: a change of units by factors 2^k leaves every bit. NaN if anything
- * is NaN; 0 for f = 0, gap >= 0, u = r = 0; HUGE_VAL if s is zero and (u, r) is
- * not a solution.
+ * No unit: units by factors 2^k leave every bit. NaN of any NaN; 0 for f = 0,
+ * gap >= 0, u = r = 0; HUGE_VAL if s is zero and (u, r) is not a solution.
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);

@@ -69,9 +69,8 @@ typedef struct surface_input {
 /* pair.c: slave nodes held along a component that no master has held. */
 int surfaces_held_alone(const surface_input *in, const mortar *m);
 /* pair.c: the coupling of two surfaces at the places x[dim*n_node], without the
- * nodes of dropped[n_node] (or NULL): *out, NULL or an old one that is freed.
- * ERR_MEMORY. how: the normals are those of the slave; the gaps those of the
- * faces as they are. */
+ * nodes of dropped[n_node] (or NULL): *out, or an old one. ERR_MEMORY. how: the
+ * normals are those of the slave; the gaps those of the faces as they are. */
 enum { COUPLE_SLAVE_NORMAL = 1, COUPLE_FLAT = 2 };
 status surfaces_couple(const surface_input *in, const double *x,
                        const mesh_group *slave, const mesh_group *master,

@@ -81,8 +81,7 @@ typedef struct operator_data {
   cholmod_common *cm;
 } operator_data;
 /* Order, number and factor: the matrix of all rows, then the interior; *out
- * also on failure, for sparse_operator_free. ERR_SINGULAR: (*out)->f.bad_node;
- * ERR_MEMORY. */
+ * also on failure. ERR_SINGULAR: (*out)->f.bad_node; ERR_MEMORY. */
 status sparse_operator_new(const operator_data *d, const char **ordering,
                            sparse_operator **out);
 void sparse_operator_free(sparse_operator *o); /* accepts NULL */

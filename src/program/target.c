@@ -386,26 +386,24 @@ static status see_finished(void *ctx, status st, output *out) {
                     .total = 100.0 * total(p),
                     .cpu = timer_cpu() - p->cpu.start};
   p->cpu.mesh = timer_cost(STAGE_MESH).cpu - p->cpu.meshed - p->in->library_cpu;
-  TRY(decide(p));
+  PASS(decide(p));
   p->forecast = next_digit(p);
   output_passes(out, &(pass_table){p->target->percent, p->n, p->rows,
                                    total(p) > EXACT ? &p->forecast : NULL,
                                    aims_rows(p->goals), p->why});
-  TRY(report_pass(p));
+  PASS(report_pass(p));
   if (p->why[0] != '\0' && !has_norm(p))
-    FAIL(ERR_UNSETTLED,
-         "a target of *GOAL is missed: %s; the files are those of pass %d",
-         p->why, p->n);
+    RAISE(ERR_UNSETTLED,
+          "a target of *GOAL is missed: %s; the files are those of pass %d",
+          p->why, p->n);
   char error[32] = "unknown";
   if (!isnan(row->total)) snprintf(error, sizeof error, "%.3g %%", row->total);
   if (p->why[0] != '\0')
-    FAIL(ERR_UNSETTLED,
-         "the error is %s, the target %g %%: %s; the files are those of "
-         "pass %d",
-         error, p->target->percent, p->why, p->n);
-  if (!p->done) TRY(prepare_next(p));
-done:
-  return st;
+    RAISE(ERR_UNSETTLED,
+          "the error is %s, the target %g %%: %s; the files are those of "
+          "pass %d",
+          error, p->target->percent, p->why, p->n);
+  return p->done ? OK : prepare_next(p);
 }
 
 static status keep_first(pass *p) {

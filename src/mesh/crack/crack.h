@@ -1,6 +1,5 @@
 /*
- * Opening a mesh along cracks, groups of faces inside the bodies (2-D: lines,
- * 3-D: triangles).
+ * Opening a mesh along cracks, groups of faces inside the bodies.
  *
  * The elements round a node fall into fans, connected through faces that
  * contain the node and belong to no crack. One fan keeps the node, every other

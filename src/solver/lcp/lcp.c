@@ -1,9 +1,8 @@
 /*
  * Complementary pivoting with a reduced inverse (lcp.h).
  *
- * Basic are: the z of the list "var" (z0 is number n), and the w of every row
- * not in the list "row". Both lists have s entries; with P = [M d](row, var)
- * and K = inv(P)
+ * Basic are the z of the list "var" (z0 is number n) and the w of rows not in
+ * "row". Both have s entries; with P = [M d](row, var) and K = inv(P)
  *
  *   z_var = -K q_row,   w_i = q_i + [M d](i, var) z_var   for the other i.
  *
