@@ -17,10 +17,12 @@ static const double SOFT = 0x1p-5;        /* -, k of the mean diagonal over n */
 static const double FINEST = 0.1; /* -, of the tolerance: enough for a pass */
 static const double COARSEST = 1e-3; /* -, tolerance of a pass */
 static const double FINER = 1e-2;    /* -, of the residual, or of no progress */
-static const double STEADY = 0x1p-7; /* -, of a step of a drift */
+static const double FARTHEST = 0x1p6; /* -, moves ahead */
+static const double STEADY = 0x1p-7;  /* -, of a step of a drift */
 
 void anchor_free(anchor *an) {
-  RELEASE(an->R, an->spring, an->A, an->W, an->f, an->a, an->step, an->y);
+  RELEASE(an->R, an->spring, an->A, an->W, an->f, an->a, an->step, an->at,
+          an->move, an->y);
   *an = (anchor){0};
 }
 
@@ -63,8 +65,8 @@ static status find_stiffness(const contact_problem *cp, double *stiffness) {
 static status known_modes(const contact_problem *cp, anchor *an) {
   const size_t size = (size_t)cp->m * cp->op->n_kernel;
   an->n_mode = cp->op->n_kernel;
-  PASS_NEW_ALL(OF(an->R, size), OF(an->a, an->n_mode),
-               OF(an->step, an->n_mode));
+  PASS_NEW_ALL(OF(an->R, size), OF(an->a, an->n_mode), OF(an->step, an->n_mode),
+               OF(an->at, an->n_mode), OF(an->move, an->n_mode));
   if (size > 0) COPY(an->R, cp->op->kernel, size);
   return OK;
 }
@@ -85,7 +87,8 @@ status anchor_modes(const contact_problem *cp, anchor *an) {
                       m * NULL_PIVOT, work);
   an->n_mode = m - rank;
   PASS_NEW_ALL(OF(an->R, m * an->n_mode), OF(an->a, an->n_mode),
-               OF(an->step, an->n_mode));
+               OF(an->step, an->n_mode), OF(an->at, an->n_mode),
+               OF(an->move, an->n_mode));
   dense_null(m, rank, L, pivot, work, an->R);
   for (int i = 0; i < m * an->n_mode; ++i) an->R[i] *= scale[i % m];
   orthonormalise(m, an->n_mode, an->R);
@@ -218,6 +221,7 @@ typedef struct passes {
   int since, steady; /* passes since; with the same move */
   int closed;        /* 1: has been moved onto its obstacles */
   int late;          /* passes at the tolerance */
+  int ahead;         /* 1: the springs are not where the body is */
 } passes;
 
 /* The place of the body, R'u. */
@@ -266,19 +270,28 @@ static void fly(passes *p, const double *u) {
   p->closed = 1;
 }
 
-/* The springs follow the body. */
+/* The springs follow the body. Of one that creeps they go ahead, by Aitken's
+ * process (aitken.c), every other pass; farther each time that it moves by the
+ * same. */
 static void follow(passes *p, const double *u) {
   const anchor *an = p->an;
-  double apart = 0.0, size = 0.0;
+  double apart = 0.0, size = 0.0, along = 0.0;
   for (int k = 0; k < an->n_mode; ++k) {
     double at = cblas_ddot(p->cp->m, an->R + (size_t)k * p->cp->m, 1, u, 1);
     double step = at - an->a[k], turn = step - an->step[k];
     apart += turn * turn;
+    along += turn * step;
     size += step * step;
     an->step[k] = step;
-    an->a[k] = at;
+    an->move[k] = at - an->at[k];
+    an->a[k] = an->at[k] = at;
   }
   p->steady = sqrt(apart) <= STEADY * sqrt(size) ? p->steady + 1 : 0;
+  p->ahead = p->since > 1 && !p->ahead && apart > 0.0;
+  const double share =
+      p->steady > 0 ? -ldexp(1.0, p->steady) : fmax(along / apart, -FARTHEST);
+  for (int k = 0; k < an->n_mode && p->ahead; ++k)
+    an->a[k] -= share * an->move[k];
 }
 
 /* Resultant the springs carried in the last pass, over the load. */
@@ -351,6 +364,7 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
   solver_control own = *control;
   *rep = (solver_report){.outcome = RUNNING, .residual = 1.0};
   place(an, cp->m, u, an->a);
+  COPY(an->at, an->a, an->n_mode);
   CLEAR(an->step, an->n_mode);
   p.load = largest_entry(cp->m, cp->f);
   for (int k = 0; k < PASSES && rep->outcome == RUNNING; ++k) {

@@ -34,8 +34,9 @@ typedef struct anchor {
   const contact_operator *of; /* A, */
   double *y;                  /* [m] and its work */
   double *f;                  /* [m] f_s, N */
-  double *a,
-      *step; /* [n_mode] place of the springs, last move of the body, m */
+  double *a, *step;  /* [n_mode] place of the springs, what the body moved from
+                        them last, m */
+  double *at, *move; /* [n_mode] last place of the body, its move there, m */
 } anchor;
 
 /* The modes R only, of a problem with its stiffness, if they are not known. */
