@@ -170,7 +170,7 @@ static int had_all_time(void) {
   const double s =
       (double)(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
       1e-6 * (double)(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
-  return s >= 0.75 * (double)limit.rlim_cur; /* of another clock */
+  return s >= 0.5 * (double)limit.rlim_cur; /* the limit counts whole ticks */
 }
 
 /* How the child ended, when it did not send a whole mesh. */
