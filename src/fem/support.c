@@ -36,19 +36,35 @@ typedef struct pieces {
   int *elem;       /* [start[n_node]] */
 } pieces;
 
+/* 2-D: elements round node j that share a second vertex share an edge. */
+static void unite_round_node_2d(const mesh *m, const pieces *p, int j,
+                                int *last, int *up) {
+  for (size_t q = p->start[j]; q < p->start[j + 1]; ++q)
+    for (int a = 0; a < 3; ++a) {
+      const int v = m->elem[3 * p->elem[q] + a];
+      if (v > j) last[v] = -1;
+    }
+  for (size_t q = p->start[j]; q < p->start[j + 1]; ++q)
+    for (int a = 0; a < 3; ++a) {
+      const int v = m->elem[3 * p->elem[q] + a];
+      if (v <= j) continue;
+      if (last[v] >= 0) forest_join(up, last[v], p->elem[q]);
+      last[v] = p->elem[q];
+    }
+}
+
 typedef struct corner {
-  int v, w, elem; /* the other vertices of a face, v <= w; its element */
+  int v, w, elem; /* the other two vertices of a face, v < w; its element */
 } corner;
 
-/* Faces whose lowest vertex is j, compared pair by pair. */
-static void unite_round_node(const mesh *m, const pieces *p, int j,
-                             corner *list, int *up) {
-  const int dim = m->dim;
+/* 3-D: faces whose lowest vertex is j, compared pair by pair. */
+static void unite_round_node_3d(const mesh *m, const pieces *p, int j,
+                                corner *list, int *up) {
   int n = 0;
   for (size_t q = p->start[j]; q < p->start[j + 1]; ++q) {
-    const int *e = m->elem + (dim + 1) * (size_t)p->elem[q];
-    for (int a = 0; a <= dim; ++a)
-      for (int b = dim == 2 ? a : a + 1; b <= (dim == 2 ? a : dim); ++b) {
+    const int *e = m->elem + 4 * (size_t)p->elem[q];
+    for (int a = 0; a < 4; ++a)
+      for (int b = a + 1; b < 4; ++b) {
         if (e[a] <= j || e[b] <= j) continue;
         corner c = {e[a] < e[b] ? e[a] : e[b], e[a] < e[b] ? e[b] : e[a],
                     p->elem[q]};
@@ -67,8 +83,13 @@ static status unite_by_faces(const mesh *m, const pieces *p, int *up) {
   for (int j = 0; j < m->n_node; ++j)
     if (p->start[j + 1] - p->start[j] > most)
       most = p->start[j + 1] - p->start[j];
+  OWNED_NEW(int, last, m->n_node);
   OWNED_NEW(corner, list, 3 * most);
-  for (int j = 0; j < m->n_node; ++j) unite_round_node(m, p, j, list, up);
+  for (int j = 0; j < m->n_node; ++j)
+    if (m->dim == 2)
+      unite_round_node_2d(m, p, j, last, up);
+    else
+      unite_round_node_3d(m, p, j, list, up);
   return OK;
 }
 
