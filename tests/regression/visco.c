@@ -541,6 +541,31 @@ START_TEST(sudden_slip_acts_at_once) {
 }
 END_TEST
 
+/* A sudden load that friction carries where it acts moves nothing: no increment
+ * at the start by any method, whatever their rounding. */
+START_TEST(sudden_load_on_friction_moves_nothing) {
+  static const char *const methods[] = {"AUTO", "AUGLAG", "SOR"};
+  job j = job_begin("carried");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "carried.inp",
+            "*PARAMETER\nN = 3\n*MESH, FILE=square.geo\n"
+            "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n\"0.58 + 0.2*sin(t)\"\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n4.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CAX3\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n0.1\n"
+            "*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=TRESCA\n1.\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
+            "*BOUNDARY\nTOP, 1, 2\nLEFT, 1\n*DSLOAD\nRIGHT, TY, -0.3, A\n"
+            "*SOLVER, METHOD=%s\n*PRINT, ENERGY\n*END STEP\n",
+            methods[_i]);
+  ck_assert_msg(job_run(&j, "--quiet") == 0, "%s", j.errors);
+  ck_assert_double_eq(square_energy(&j, -1, "increment"), 4);
+  job_end(&j);
+}
+END_TEST
+
 /* Relaxation time 4 at 0 degrees and 1 at 100: at 50 it is 2.5, without any
  * thermal expansion. */
 START_TEST(temperature_sets_the_relaxation_time) {
@@ -729,6 +754,7 @@ int main(void) {
   tcase_add_loop_test(tests, what_is_sudden_acts_at_once, 0,
                       (int)(sizeof sudden / sizeof *sudden));
   tcase_add_test(tests, sudden_slip_acts_at_once);
+  tcase_add_loop_test(tests, sudden_load_on_friction_moves_nothing, 0, 3);
   tcase_add_test(tests, steady_creep_of_a_tube);
   tcase_add_test(tests, factors_are_kept);
   tcase_add_test(tests, increments_of_one_length_share_a_factor);

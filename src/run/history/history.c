@@ -362,7 +362,7 @@ static status start_visco(run *r, int *increment_no) {
     if (outcome_is_fatal(r->solving.report.outcome))
       PASS(loop_no_equilibrium(r));
     const int moved = !same_vector(r->n_dof, r->now.u, r->old.u) &&
-                      !(smooth && touched_by_rounding(r));
+                      !(r->nodes.n > 0 && touched_by_rounding(r));
     if (moved || starts_anew(r))
       PASS(loop_accept(r, 1, ++*increment_no, 0, cpu));
   }
