@@ -8,7 +8,8 @@ typedef struct inverse_energy {
   void *ctx;
   /* *square = d' inv(M) d, d[m] */
   status (*square)(void *ctx, const double *d, double *square);
-  double condition;       /* scaled to a unit diagonal, for rounding */
+  double condition;       /* of M scaled to a unit diagonal, -; for the
+                             rounding */
   const double *diagonal; /* [m] or NULL: the condition is that of a matrix with
                              this diagonal, whose inverse holds inv(M) */
   int n_kernel;           /* motions without energy: M is semidefinite */
@@ -21,7 +22,8 @@ typedef struct inverse_energy {
 typedef struct solver_error {
   double norm;     /* bound of |u - u*|_A (|r - r*|_W if A is NULL), square root
                       of an energy; NAN: there is none */
-  double rate;     /* contraction of the sliding limit, -; 0: no Coulomb law */
+  double rate;     /* contraction of the sliding limit, -; 0: no Coulomb
+                      friction */
   const char *why; /* NULL, or why there is no bound */
 } solver_error;
 
@@ -49,9 +51,10 @@ status solver_error_bound(const contact_problem *cp,
                           solver_error *error);
 
 /*
- * Contraction of the fixed point on the sliding limit (CPR98, 2.3) at (u, r),
- * in the energy norm; 0 where nothing slides, HUGE_VAL if nothing holds the
- * sliding body. Stiffness form; known or NULL as above. Errors: ERR_MEMORY.
+ * Contraction of the fixed point on the sliding limit (CPR98, 2.3) linearised
+ * at (u, r), measured in the energy norm; 0 where nothing slides, HUGE_VAL if
+ * nothing holds the sliding body. Stiffness form; known or NULL as above.
+ * Errors: ERR_MEMORY.
  */
 status contraction_rate(const contact_problem *cp, const double *u,
                         const double *r, known_rate *known, double *rate);
@@ -71,7 +74,8 @@ status contraction_limit(const contact_problem *cp, const double *u,
 typedef struct linear_states {
   const contact_problem *cp; /* borrowed */
   int n_free, n_slip, n_closed;
-  int *free_id, *place;         /* [m] that can move; place there, or -1 */
+  int *free_id, *place;         /* [m] unknowns that can move; place among them,
+                                   or -1 */
   unsigned char *closed, *slip; /* [n] */
   double *e;                    /* [m] direction of friction on slip */
   double *kappa;                /* [n] N/m */
@@ -84,11 +88,13 @@ status linear_states_new(const contact_problem *cp, const double *u,
 void linear_states_free(linear_states *s);
 /* Entry of kappa (I - e e') of two tangents of one sliding node, N/m. */
 double linear_turn(const linear_states *s, int a, int b);
-/* The factor for these states, which the operator may forget. ERR_MEMORY. */
+/* The factor of the operator for these states; it keeps one, so again before
+ * each use. ERR_MEMORY. */
 status linear_set_rows(const linear_states *s, int *singular);
 
 /*
- * Changes of the contact linearised at (u, r) of given limit. cp: borrowed.
+ * Changes of the contact linearised at (u, r), its limit being given (cp->B is
+ * not read). cp is borrowed.
  */
 typedef struct linear_contact linear_contact;
 /* *out is NULL if nothing holds the free unknowns. ERR_MEMORY. */
@@ -97,8 +103,9 @@ status linear_contact_new(const contact_problem *cp, const double *u,
 /* du[m] of a change df[m] of the load, N. */
 status linear_contact_move(linear_contact *c, const double *df, double *du);
 
-/* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, *out is new
- * (memory_free), NULL if M is not symmetric, positive semidefinite. */
+/* inverse_energy of a dense matrix M[m*m] by its Cholesky factor, for problems
+ * without another inverse. *out is new (memory_free), NULL if M is not
+ * symmetric and positive semidefinite. */
 typedef struct dense_inverse dense_inverse;
 status dense_inverse_new(int m, const double *M, dense_inverse **out);
 inverse_energy dense_inverse_energy(dense_inverse *d);
@@ -129,7 +136,8 @@ void pair_set(const contact_problem *cp, const double *u, const double *r,
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
                     pair *p, int *done);
 
-/* Stiffness of node i along its normal and in its tangent plane. */
+/* Stiffness of node i along its normal and in
+ * its tangent plane, N/m. */
 typedef struct node_stiffness {
   double n, t;
 } node_stiffness;

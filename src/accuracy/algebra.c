@@ -24,8 +24,9 @@
  * brought into equilibrium with the load (balance.c), so that d has an energy;
  * the bound is that of the deformation, without the rigid motion.
  *
- * Compliance form: W, r in the place of A, u; d = v - W q - load. Solutions of
- * the equation are as far apart in r by W as in u by A: the rate is the same.
+ * Compliance form: W, r in the place of A, u; d = v - W q - load. Two states
+ * that satisfy the equation have the same distance in r by W as in u by A, so
+ * that the rate is the same.
  */
 #include "accuracy/accuracy.h"
 #include "base/base.h"

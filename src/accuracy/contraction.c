@@ -17,7 +17,8 @@ struct linear_contact {
   linear_states at;
   double *K;  /* [n_free^2] factor */
   double *x;  /* [m] change of the free unknowns */
-  double *P;  /* [n_free*n_closed] columns of A of the closed normals */
+  double *P;  /* [n_free*n_closed] columns of A of the normal unknowns
+                 of closed nodes */
   double *dg; /* [n] N */
   double *b, *full, *Ax; /* of an operator, in the place of K and P: [m] right
                             side; x at all unknowns; A x, N */
@@ -187,7 +188,8 @@ static signed char state_of(const linear_contact *s, int dof) {
   return s->at.e[dof] > 0.0 ? 3 : 2;
 }
 
-/* The known rate of these states comes first, *same = 1, or takes a place. */
+/* The known rate of these states comes first, *same = 1; or they replace the
+ * least recently used rate. */
 static status compare(const linear_contact *s, known_rate *k, int *same) {
   const size_t m = s->at.cp->m;
   int at = 0;

@@ -7,9 +7,10 @@
  *   free   rho_t = 0                            no friction
  *   slip   rho_t - s B rho_n + s g0 = 0         s = +1, -1 along the slip
  * followed depth first, so that the elimination of a node is shared by all that
- * follow it. States within the inequalities are solved again and checked by
- * contact_residual. A singular system that has solutions has a line of them,
- * bounded by the inequalities: its ends are reported as joined.
+ * follow it. States that satisfy the inequalities are solved again with
+ * pivoting and checked by contact_residual. A singular system that has
+ * solutions has a line of them, bounded by the inequalities: its ends are
+ * reported as joined.
  */
 #include "accuracy/accuracy.h"
 #include "accuracy/solutions.h"

@@ -38,10 +38,12 @@ typedef struct solution_set {
   int n_attempt, cap_attempt;
   solution_attempt *attempts; /* [n_attempt] owned */
   long n_pattern;             /* status combinations tried; 0: not enumerated */
-  int n_undecided;            /* singular, solutions of no known extent */
+  int n_undecided;            /* singular ones with solutions of unknown
+                                 extent */
 } solution_set;
 
-/* 1: found by a solver of another family, or by enumeration. */
+/* 1: found by more than the first method: by a solver of another family, or the
+ * enumeration. */
 int solution_set_confirmed(const solution_set *s);
 void solution_set_free(solution_set *s); /* accepts NULL, all zero */
 /*

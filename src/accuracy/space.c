@@ -22,8 +22,9 @@
 
 /*
  * Sizes for a new mesh from the errors of the elements of an old one. An
- * element made smaller by r has r^(-dim) parts with the error eta r (P1: order
- * 1). The fewest elements with sum (eta r)^2 = target^2 have
+ * element made smaller by the factor r has r^(-dim) parts with the error
+ * eta r together (P1: order 1 in the energy norm). The fewest elements with
+ * sum (eta r)^2 = target^2 have
  *
  *   r = c eta^(-2/(2+dim)),   c^2 = target^2 / sum eta^(2 dim/(2+dim))
  *

@@ -35,7 +35,8 @@ status space_estimate(space_recovery *s, const double *sigma, double *eta,
                       space_error *out);
 
 /* Elements across the body, by the share of the nodes inside it; 1: so few that
- * most fits lie on one side of the node, half of the error. */
+ * most fits lie on one side of their node, the estimate may have half of the
+ * error. */
 double space_depth(space_recovery *s);
 int space_is_coarse(double depth);
 
@@ -48,7 +49,8 @@ void space_recover(space_recovery *s, int region, int nq, const double *q,
                    double *value);
 /* For many of them: the fits are made once. ERR_MEMORY. */
 status space_keep(space_recovery *s);
-/* A stress and what is recovered in the region of an element, [ns] each, Pa. */
+/* A stress and what is recovered from it in the region of an element: [ns] per
+ * element and node, Pa. */
 typedef struct space_field {
   const double *element, *node;
 } space_field;

@@ -171,7 +171,8 @@ static status forces_of(const verdict_scene *s, int k, double *F) {
   return load_forces(s->m, s->msh, &one, s->t, F);
 }
 
-/* Work of the given forces of a contact on v[m]; of obstacles to sum[3]. */
+/* Work of the given forces of a contact on the motion v[m]; adds what obstacles
+ * exert to sum[3]. */
 static double work_of_given(const verdict_scene *s, int contact_id,
                             const double *v, double *sum) {
   const contact_surface *on = s->surface;

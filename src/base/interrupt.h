@@ -7,7 +7,8 @@
 
 #include "base/status.h"
 
-/* A write beyond the size limit or to no reader fails as on a full disk. */
+/* A write beyond the file size limit, or to a pipe without a reader, fails like
+ * one on a full disk. */
 void interrupt_spare_writes(void);
 /* From now on requests are noted; stop_file is borrowed, NULL: no file is
  * looked for. One that exists already is a request only when it is touched. */

@@ -1,4 +1,5 @@
-/* Counted allocation: a header keeps the size of a block and its owner. */
+/* Counted allocation: a header before each block keeps its size, and what it
+ * owns. */
 #include "base/memory.h"
 
 #include <SuiteSparse_config.h>

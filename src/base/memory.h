@@ -92,7 +92,8 @@ typedef struct memory_item {
   size_t n, size; /* items, bytes of one */
 } memory_item;
 status memory_items(int count, const memory_item *items);
-/* Reallocate old_n items, the rest zeroed; NULL: the old block stays. */
+/* Reallocate old_n items, the rest zeroed; on NULL the old block stays
+ * valid. */
 void *memory_resize(void *p, size_t old_n, size_t new_n, size_t size);
 char *memory_text(const char *text); /* copy of a string; NULL if refused */
 void memory_free(void *p);           /* and what it owns; accepts NULL */
@@ -122,7 +123,8 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
   OWNED type *name = NULL;         \
   PASS(call)
 /* OWNED_PARTS(type, name, call): a struct, zero but for what a call requests
- * for it and nothing else, freed where the name ends; or RAISE. */
+ * for it, which is freed where the name ends; or RAISE. The call requests
+ * nothing for others. */
 #define OWNED_PARTS(type, name, call)   \
   type name = {0};                      \
   OWNED_NEW(char, name##_parts, 1);     \
@@ -139,7 +141,8 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNER_TILL_END(object, name)                                 \
   void *name##_ __attribute__((cleanup(memory_own_again), unused)) = \
       memory_own(object)
-/* MAKES(type, s, out): s = *out is new and OWNS the rest, or RAISE. */
+/* MAKES(type, s, out): s = *out is a new object that OWNS the rest, or RAISE.
+ */
 #define MAKES(type, s, out) \
   PASS_NEW(*out, 1);        \
   type *s = *out;           \

@@ -41,10 +41,12 @@ status message_log_new(message_log **log);
  * message is counted, and message_status returns ERR_MEMORY. */
 void message_add(message_log *log, message_id id, const place *at,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
-/* Memory ran out while reading: message_status returns ERR_MEMORY. */
+/* Memory ran out while the input was read: message_status returns
+ * ERR_MEMORY. */
 void message_memory(message_log *log);
 int message_count(const message_log *log, severity s);
-/* Number k, from 0, of those stored, as added; all borrowed. 0: no more. */
+/* Number k, from 0, of those stored, as they were added; all borrowed. 0: no
+ * more. */
 typedef struct message_view {
   message_id id;
   severity level;

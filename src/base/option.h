@@ -1,6 +1,7 @@
 /*
- * Options: the parameters of keywords, solvers and laws, in tables for reading,
- * range checks, help, the echo of defaults and the tests.
+ * Options: the parameters of keywords, solvers and laws, described in tables
+ * that are used for reading, range checks, help, the echo of defaults and the
+ * tests.
  *
  * A table ends with OPTION_END. Each row is written with OPTION_REAL and its
  * kin; the macro compares pointer types inside sizeof, so a row whose field has

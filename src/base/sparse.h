@@ -1,5 +1,6 @@
 /*
- * Sparse matrices, by rows and by square blocks.
+ * Sparse matrices, by rows and by square blocks, and a vector that has all
+ * entries.
  */
 #pragma once
 
@@ -15,7 +16,8 @@ typedef struct sparse_rows {
   double *val; /* [start[n]] */
 } sparse_rows;
 
-/* Entries of row i: row_begin to row_end - 1, none of NULL rows; their sum. */
+/* Entries of row i: row_begin to row_end - 1, none of NULL or all-zero rows;
+ * their sum. */
 static inline int row_begin(const sparse_rows *rows, int i) {
   return rows == NULL || rows->start == NULL ? 0 : rows->start[i];
 }

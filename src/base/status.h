@@ -60,7 +60,8 @@ typedef enum { STATUS_LIST(STATUS_ENUM) STATUS_COUNT } status;
     }                                   \
   } while (0)
 
-/* Store the message of a new failure in place of the last; return code. */
+/* Store the message of a new failure, discard the record before; return
+ * code. */
 status status_fail(status code, const char *function, int line,
                    const char *format, ...)
     __attribute__((format(printf, 4, 5)));

@@ -1,5 +1,6 @@
 /*
- * Text files of the results: writes are checked, numbers have one format.
+ * Text files of the results, every write checked, and the one format of the
+ * numbers in them.
  */
 #pragma once
 
@@ -22,7 +23,8 @@ static inline int is_blank(char c) { return c == ' ' || c == '\t'; }
 char *text_path(const char *dir, const char *name, const char *suffix);
 /* Open for writing; by_line: each line is flushed when it ends. */
 status text_open(text_file *t, const char *path, int by_line);
-/* Open to append after "length" bytes; the rest is cut. ERR_FILE: shorter. */
+/* Open to append after "length" bytes; what follows is cut. ERR_FILE also if
+ * the file is shorter. */
 status text_reopen(text_file *t, const char *path, int by_line, long length);
 /* Synchronise the file; bytes so far into *length. */
 status text_sync(text_file *t, long *length);
@@ -38,7 +40,8 @@ status text_made(char **text, const void *what,
                  status (*write)(FILE *f, const void *what));
 /* Close a memory stream; 1: it holds all that was printed. */
 int text_memory_end(FILE *f, char **text);
-/* ERR_FILE (ENOMEM: ERR_MEMORY) with path and text of error_no, 0: none. */
+/* ERR_FILE, of ENOMEM ERR_MEMORY, with the path and the text of the error
+ * number; 0: none known. */
 status text_failed(const char *path, const char *doing, int error_no);
 /* What was printed has left; no failure if its reader has gone. */
 status text_flush_output(void);
@@ -47,7 +50,8 @@ enum { TEXT_ROOM = 128, TEXT_ROOMS = 32 };
 char *text_room(void);
 const char *text_of(const char *format, ...)
     __attribute__((format(printf, 1, 2)));
-/* "1.5000E+000": digits after the point, no -0, NaN, Inf; a text_room. */
+/* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
+ * Inf; in a text_room. */
 const char *text_number(double value, int digits);
 /* Right-aligned in a field of the width, at least one blank before it. */
 void text_cell(FILE *f, const char *text, int width);
@@ -60,7 +64,8 @@ void text_wrap(FILE *f, const char *text, int indent);
  * of writing or have no width, invalid UTF-8) becomes \xHH.
  */
 enum { PIECE_SIZE = 20 };
-/* The first character of *text, which moves on; its length, 0: the end. */
+/* The first character of *text, which moves past it; its length, 0 at the
+ * end. */
 int text_piece(const char **text, char piece[PIECE_SIZE]);
 /* All of it, cut at whole characters to the size; its length. */
 size_t text_shown(char *out, size_t size, const char *text);

@@ -1,6 +1,7 @@
 /*
  * What each stage of a run costs: calls, CPU seconds (user and system) and
- * bytes requested. Stages nest; each is charged for its own work only.
+ * bytes requested. Stages nest; a stage is charged for its own work only, not
+ * for the stages entered inside it.
  */
 #pragma once
 
@@ -44,8 +45,9 @@
   X(RESTART,     "restart")
 /* clang-format on */
 
-/* Those of the list, of files before the effects or of another name; then those
- * of the other rows, named when needed (timer_own_stage). */
+/* Those of the list, which files before the effects enter or whose rows have
+ * another name; then those of the other rows, named when needed
+ * (timer_own_stage). */
 #define STAGE_ENUM(name, text) STAGE_##name,
 typedef enum {
   STAGE_LIST(STAGE_ENUM) STAGE_LISTED,

@@ -21,7 +21,8 @@ typedef struct body_size {
   double load;         /* largest load, N */
   double contact;      /* largest contact force, N */
   double displacement; /* largest of both over the stiffness of its node, m */
-  double fallen;       /* largest c_n times the share of the gap moved, N */
+  double fallen;       /* largest c_n times the part of its gap that a node has
+                          moved, N */
   double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
   double reach;        /* the same of positions that follow from the data */
   double root;         /* largest sqrt(k), sqrt(N/m) */
@@ -94,7 +95,8 @@ void contact_dense(const contact_problem *cp, double *M);
 void contact_reaction(const contact_problem *cp, const double *u, double *r);
 /* g[n] = max(0, g0 + B p) of the normal forces r[m], N. */
 void contact_limit(const contact_problem *cp, const double *r, double *g);
-/* Status of each node; one that touches with g = 0 slips. status[n]. */
+/* Status of each node from u and r; a node without limit (g = 0) that touches
+ * slips. status[n]. */
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
 /* closed[m]: 1: an unknown whose obstacle is met, as contact_classify says of
@@ -117,7 +119,8 @@ void contact_classify_sides(const contact_problem *cp, const double *u,
  */
 double contact_scale(const contact_problem *cp);
 /*
- * How far (u, r) is from a solution: the largest of e/s, e an error in N of
+ * How far (u, r) is from a solution: the largest over the nodes of e/s, where e
+ * is an error in N of
  *   normal      r_n - min(0, r_n - c (u_n - gap)),
  *   tangential  r_t - P_g(r_t - c (u_t - ut0)),  P_g projects on the disc
  *               |.| <= g,
@@ -139,8 +142,9 @@ double contact_scale(const contact_problem *cp);
  * Bodies are determined where cp->bodies is NULL; the functions below then take
  * all nodes as one.
  *
- * No unit: units by factors 2^k leave every bit. NaN of any NaN; 0 for f = 0,
- * gap >= 0, u = r = 0; HUGE_VAL if s is zero and (u, r) is not a solution.
+ * No unit: a change of units by factors 2^k leaves every bit. NaN if anything
+ * is NaN; 0 for f = 0, gap >= 0, u = r = 0; HUGE_VAL if s is zero and (u, r) is
+ * not a solution.
  */
 double contact_residual(const contact_problem *cp, const double *u,
                         const double *r);
@@ -157,10 +161,11 @@ void contact_roundings(const contact_problem *cp, const double *u,
 /* The same with what a residual of tol leaves. error[n]. */
 void contact_errors(const contact_problem *cp, double tol, const double *u,
                     const double *r, double *error);
-/* Residual of the natural map within these roundings, the largest over nodes,
- * over F, the largest force of the body or own[n] (NULL: none), N; of friction
- * over the share of F that the limit of the node is of its normal force, -.
- * Bodies without load whose contact forces are rounding are left out. */
+/* Residual of the natural map within these roundings, the largest over the
+ * nodes, over F, the largest load or contact force of the body or own[n] (NULL:
+ * none), N; of friction over the share of F that the limit of the node is of
+ * its normal force, -. Bodies without load whose contact forces are rounding
+ * are left out. */
 double contact_hidden(const contact_problem *cp, const double *u,
                       const double *r, const double *own);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;
@@ -173,9 +178,9 @@ int contact_has_side(const contact_problem *cp, int node_id);
 /* Diagonal of A (of an operator: of the stiffness it is condensed from), or of
  * W where that alone is known. */
 double contact_diagonal(const contact_problem *cp, int dof);
-/* Largest force of a motion v[m] of one unknown alone, N; not less than what
- * the rounding of A is "share" of: a motion of which less than the share is
- * left as force has none. */
+/* Largest force that a motion v[m] would cause by one unknown alone, N, and so
+ * much that "share" of it is not below the rounding of A v: a motion whose
+ * forces are within that share is free. */
 double contact_resistance(const contact_problem *cp, const double *v,
                           double share);
 /* Its mean over the tangents of a node that are not held, or "none". */

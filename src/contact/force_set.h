@@ -35,11 +35,13 @@ status force_set_new(const contact_problem *cp, force_set **out);
 /* Parts and origins of a problem with the same W; an operator is prepared for
  * products until its rows are set otherwise. Errors: ERR_MEMORY. */
 status force_set_fit(force_set *s, const contact_problem *cp);
-/* Into the set; a force deeper than g by less than "margin" is on its rim. */
+/* Into the set; a force deeper than g by less than the share "margin" counts
+ * as lying on the rim. */
 void force_set_project(const force_set *s, double margin, double *r);
 void force_set_product(const force_set *s, const double *r,
                        double *u); /* W r */
-/* Largest eigenvalue of D W by the power method. v[m], z[m]: work. */
+/* Largest eigenvalue of D W, from below by the power method. v[m], z[m]: work.
+ */
 double force_set_spectrum(const force_set *s, double *v, double *z);
 /* All entries of W that are not zero. */
 status compliance_rows(const contact_problem *cp, sparse_rows *rows);

@@ -288,7 +288,8 @@ static void warn(double radius, const char *contact_name,
               f->n_local);
 }
 
-/* Rows of the nodes of this contact, for forces: times their areas. */
+/* Rows of the nodes whose friction is that of this contact, for forces: times
+ * the tributary areas. */
 static status to_surface(const contact_surface *s, int contact_id,
                          const patch *a, const sparse_rows *G,
                          sparse_rows *out) {

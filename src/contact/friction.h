@@ -40,7 +40,8 @@ typedef struct friction_ops {
                     message_log *log, sparse_rows *out);
   /* Add the law's part for contact nodes node[0..n_node) to out (rows of the
    * whole surface, all zero before); none where surface_is_corner. ERR_DECK if
-   * the value is negative or not a number at a node (node and time named). */
+   * the value is negative or not a number at a node (message names node and
+   * time). */
   status (*limit)(const friction_card *card, const contact_surface *s,
                   int n_node, const int *node, double t, friction_limit *out);
 } friction_ops;

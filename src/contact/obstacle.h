@@ -46,9 +46,10 @@ typedef struct obstacle {
  * is.  dim 2: a cylinder or sphere is a circle in the plane of the model, also
  * in an axisymmetric one (a sphere about the axis, else a ring).
  *
- * With D the displacement of the obstacle's point at x, CONFORMING gives n.D,
- * GAP the expression at x - D + (n.D) n, plus n.D: exact for a shift and for a
- * rotation about n, of first order in an angle that tilts the obstacle.
+ * With D the displacement of the point of the obstacle that is at x at time t,
+ * CONFORMING gives n.D, GAP the expression at x - D + (n.D) n, plus n.D: exact
+ * for a shift and for a rotation about n, of first order in an angle that tilts
+ * the obstacle.
  */
 double obstacle_gap(const obstacle *o, int dim, const double *x,
                     const double *n, double t);
@@ -63,7 +64,8 @@ double obstacle_lean(const obstacle *o, int dim, const double *x,
 void obstacle_motion(const obstacle *o, double t, double *d);
 /* Its angle at time t, rad; 0 without a rotation. */
 double obstacle_angle(const obstacle *o, double t);
-/* Angle between the normals of a PLANE at 0 and t, rad; else 0. */
+/* Angle between the normals of a PLANE at times 0 and t, rad; 0 for other
+ * shapes. */
 double obstacle_tilt(const obstacle *o, double t);
 /*
  * Displacement d[3] of the surface of the obstacle at the point where the line

@@ -7,7 +7,8 @@
 
 #include "base/status.h"
 
-/* A guess of the states: unknowns with given displacement, added slip. */
+/* A guess of the states: unknowns whose displacement is given, and stiffness
+ * that slip adds. */
 typedef struct known_rows {
   const unsigned char *known; /* [m] 1: given; NULL: none */
   const double *added;        /* [dim*m] to the row of unknown i: dim entries in

@@ -1,4 +1,5 @@
-/* Pairs of two surfaces of the mesh: what their nodes are relative to. */
+/* Pairs of two surfaces of the mesh in a contact surface: what their nodes are
+ * relative to. */
 #include "base/base.h"
 #include "contact/parts.h"
 
@@ -174,7 +175,8 @@ static int is_curved(int dim, const mortar *m) {
   return 0;
 }
 
-/* 1: a support holds a component of slave node q, of no master. */
+/* 1: a support holds a component of slave node q that it holds of none of its
+ * masters. */
 static int is_held_alone(const surface_input *in, const mortar *m, int q) {
   unsigned masters = 0;
   for (size_t e = m->to.start[q]; e < m->to.start[q + 1]; ++e)
@@ -305,7 +307,8 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
-/* Area of the node of a coupling, its neighbours' share taken off, m2. */
+/* Area of the node of a coupling, without what it carries for neighbours, m2.
+ */
 static double own_area(const pair_row *row) {
   return row->of->area[row->row] / row->of->share[row->row];
 }
@@ -364,7 +367,8 @@ status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
   return OK;
 }
 
-/* The gap at x + u: that of time 0 and the motion since, along n. */
+/* The gap that was measured at x + u is that of time 0 and what the bodies have
+ * moved since, along n. */
 double pair_apart(const surface_input *in, const contact_pair *p, int row,
                   const double *n) {
   const mortar *m = p->coupled;

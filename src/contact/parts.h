@@ -37,10 +37,11 @@ double frame_project(int dim, unsigned fixed, double *v);
 void frame_tangents(int dim, double *frame);
 
 /*
- * Complete a frame of n_normal unit normals first, orthogonal to the fixed
- * components. held[dim] is set to 1 for the rows that are fixed directions.
- * Frames of one normal are orthonormal and, but for two fixed components, right
- * handed. 0; -1 if the normals and the fixed directions are (nearly) dependent.
+ * Complete a frame whose first n_normal rows are unit normals orthogonal to the
+ * fixed components. held[dim] is set to 1 for the rows that are fixed
+ * directions. Frames of one normal are orthonormal and, but for two fixed
+ * components, right handed. 0; -1 if the normals and the fixed directions are
+ * (nearly) dependent.
  */
 int frame_complete(int dim, int n_normal, unsigned fixed, double *frame,
                    unsigned char *held);
@@ -78,7 +79,8 @@ int mirrors_lean(const surface_input *in, const contact_pair *p, int node_id,
  * relative to. Private to src/contact.
  */
 
-/* Part of the unit normal left without the fixed components. */
+/* Part of the unit normal that must be left when the fixed components are
+ * taken out of it. */
 #define PAIR_FIXED_SINE 1e-3
 
 /* The coupling of which a normal of a node is, and its row there. */
@@ -103,7 +105,8 @@ typedef struct pair_links {
 /* The row of contact node i, of the last ones before: its n normals, rows[m] of
  * which those of one normal are for two masters side by side, their mean by
  * area. Its tangents are relative to the master of the first, if it has no
- * other; to none at corners, or where supports hold the node. ERR_MEMORY. */
+ * other; to none at corners, and where supports hold them but not the masters.
+ * ERR_MEMORY. */
 status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
                     int m, const pair_row *rows, pair_links *room);
 /* ERR_DECK with an error in the log if slave nodes of pairs move with

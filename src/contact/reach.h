@@ -22,7 +22,8 @@ status reach_choose(contact_reach *x, int n, const double *gap);
 /* 1: a node that was left out is beyond its gap; u_n[stride*n], m. */
 int reach_misses(const contact_reach *x, int n, const double *gap,
                  const double *u_n, int stride);
-/* These and all nodes within a longer distance, finally all. ERR_MEMORY. */
+/* These and all nodes within a longer distance; all nodes after a few times, or
+ * if "all". ERR_MEMORY. */
 status reach_extend(contact_reach *x, int n, const double *gap,
                     const double *u_n, int stride, int all);
 /* Arrays for the nodal data of a problem. */

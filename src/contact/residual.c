@@ -1,6 +1,7 @@
 /*
  * The residual by which all solvers are checked, and the status of the nodes
- * (contact.h): natural map and equation, each node in the scales of its body.
+ * (contact.h): natural map and equation, each node in the scale of the forces
+ * and displacements of its own body.
  *
  * Products with the matrix run over blocks of CHUNK rows, so that nothing but
  * the search of the bodies allocates.
@@ -32,7 +33,8 @@ static int joined(const contact_problem *cp, int a, int b, double least) {
   return 0;
 }
 
-/* Bodies, each from one node on: list[n] holds nodes found, then others. */
+/* Bodies, each from one node on: list[n] holds the nodes found, then the
+ * remaining ones. */
 static void find_bodies(const contact_problem *cp, const double *root,
                         int *list, contact_bodies *b) {
   int found = 0;
@@ -140,7 +142,8 @@ int contact_has_side(const contact_problem *cp, int node_id) {
   return 0;
 }
 
-/* Frictionless: no force along a free tangent, unilateral at a side. */
+/* Frictionless node: no force along a free tangent, unilateral where a second
+ * obstacle bounds it. */
 static void project_sides(const measure *x, int node_id, double c, double *q) {
   for (int k = 1; k < x->cp->dim; ++k) {
     int dof = node_id * x->cp->dim + k;
@@ -182,8 +185,9 @@ static double largest_of(int n, const double *v) {
   return most;
 }
 
-/* Bound of the motion by loads, obstacles and where it was: what drifts off or
- * grows without bound is no solution, however large their rounding is. */
+/* Bound of the motion by loads, obstacles and where it was: displacements that
+ * drift off and forces that grow without bound are no solution, however large
+ * their rounding is. */
 static double reach_of(const measure *x, int node_id, double k,
                        double *position) {
   const contact_problem *cp = x->cp;
@@ -326,7 +330,8 @@ static double equation_of(const measure *x, const measured *node,
   return worst;
 }
 
-/* d[rows] = A u - f - r, or W r + q - u, from "first"; op: A u in its room. */
+/* d[rows] = A u - f - r, or W r + q - u, from row "first"; A u of an operator
+ * is in its room. */
 static void equation_rows(const measure *x, int first, int rows, double *d) {
   const contact_problem *cp = x->cp;
   const double *M = contact_matrix(cp);

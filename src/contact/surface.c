@@ -14,7 +14,8 @@
 /* Rounding: of a depth of penetration over the size of the mesh, of the sum of
  * the normals of the faces around a node over their area. */
 static const double rounding = 1e-9;
-/* The sine between normals of body and obstacle in touch that is told. */
+/* The sine of the angle between the normals of body and obstacle where they
+ * touch that is worth a note. */
 static const double told_sine = 1e-3;
 /* 1 - the cosine of the angle between a contact with friction and what supports
  * hold that is worth a warning: 0.05 rad. */
@@ -96,7 +97,8 @@ static surface_row row_of(const builder *b, const candidate *c) {
                        .normal = c->normal};
 }
 
-/* Integrals w[dim] of the P1 functions of a face, with thickness or turn. */
+/* Integrals w[dim] of the P1 functions of the nodes of a face, times thickness
+ * or once around the axis. */
 static void face_shares(const surface_input *in, int face_id, double measure,
                         double *w) {
   const mesh *m = in->mesh;
@@ -148,7 +150,8 @@ static void check_axis(const builder *b, const contact_pair *p) {
                 p->name, o->name, o->point[0]);
 }
 
-/* The candidate of a node that moves by itself, at an obstacle; or NULL. */
+/* The candidate of a node that moves by itself, in a contact with an obstacle;
+ * NULL: there is none. */
 static candidate *find(const builder *b, int pair_id, int node_id) {
   const contact_pair *p = &b->in->pairs[pair_id];
   const int *at = p->support == NULL || surface_tied(b->in, node_id) >= 0
@@ -165,7 +168,8 @@ static void give(int dim, candidate *to, double w, const double *normal) {
 }
 
 /* The candidate of a master that has parts of a contact: its own there, else
- * with the same obstacle on a smooth surface, else of nearly that normal. */
+ * one with the same obstacle on a smooth surface, else with another obstacle
+ * and nearly that normal. */
 static candidate *find_near(const builder *b, int pair_id, int node_id,
                             const double *normal) {
   static const double near_cosine[] = {0.7071, 0.985}; /* 45, 10 degrees */
@@ -332,7 +336,8 @@ static const candidate *next_of(const builder *b, const candidate *c) {
   return c->also > 0 ? &b->list[c->also - 1] : NULL;
 }
 
-/* The normal of the obstacle in its place; 0: the body does not face it. */
+/* The normal of the obstacle instead of that of the body; 0 where the body does
+ * not face the obstacle. */
 static int take_obstacle_normal(const builder *b, candidate *c) {
   const surface_row at = row_of(b, c);
   double body[3];

@@ -12,7 +12,8 @@ typedef struct contact_surface {
   int *node_id;        /* [n] mesh node, ascending */
   size_t *node_no;     /* [n] its number in the mesh file */
   int *contact_id;     /* [n] the *CONTACT the normal belongs to */
-  int *side_id;        /* [n*(dim-1)] *CONTACT of a second one, -1 */
+  int *side_id;        /* [n*(dim-1)] *CONTACT of a second (third) obstacle,
+                          -1 */
   double *x;           /* [dim*n] m */
   double *area;        /* [n] tributary area (integral of the P1 function over
                           the faces of contact_id, of a pair what it carries),
@@ -33,7 +34,8 @@ typedef struct contact_surface {
                           a multiplier too, -; NULL: no pair */
   double *covered;     /* [n] part of the faces around the node that its normal
                           force acts on, -; NULL: no pair */
-  double *lever;       /* [dim*dim*n] of a resultant, m; no pair: NULL */
+  double *lever;       /* [dim*dim*n] where the resultant of a row acts, m;
+                          NULL: no pair */
   double *apart;       /* [dim*n] gap to the master along the rows that are
                           normals of pairs, at time 0, m; NULL: no pair */
 } contact_surface;
@@ -62,15 +64,18 @@ typedef struct surface_input {
   const unsigned char *fixed; /* [n_node] */
   const tie_set *ties;        /* its nodes are no contact nodes */
   const double *face_weight;  /* [n_face] thickness; 1 in 3-D */
-  const double *u; /* [dim*n_node] for pairs with update, m; NULL: none */
+  const double *u; /* [dim*n_node] displacements for pairs with update, m; NULL:
+                      none yet */
   int axisymmetric;
 } surface_input;
 
-/* pair.c: slave nodes held along a component that no master has held. */
+/* pair.c: how many slave nodes supports hold along a component that they hold
+ * of no master. */
 int surfaces_held_alone(const surface_input *in, const mortar *m);
 /* pair.c: the coupling of two surfaces at the places x[dim*n_node], without the
- * nodes of dropped[n_node] (or NULL): *out, or an old one. ERR_MEMORY. how: the
- * normals are those of the slave; the gaps those of the faces as they are. */
+ * nodes of dropped[n_node] (or NULL): *out, NULL or an old one that is freed.
+ * ERR_MEMORY. how: the normals are those of the slave; the gaps those of the
+ * faces as they are. */
 enum { COUPLE_SLAVE_NORMAL = 1, COUPLE_FLAT = 2 };
 status surfaces_couple(const surface_input *in, const double *x,
                        const mesh_group *slave, const mesh_group *master,
@@ -91,10 +96,11 @@ void pairs_release(const surface_input *in); /* frees the couplings */
  * (obstacle_normal, where the shape has one), taken orthogonal to the
  * components that are fixed there; those become tangents, flagged in held.
  *
- * Left out, with a message: nodes fixed in the normal direction, nodes that an
- * obstacle at rest cannot reach along the normal.  A node in the groups of two
- * contacts has the normal of the first and, as a side, of the second; of one
- * obstacle and a smooth surface it belongs to the first with the faces of both.
+ * Left out, with a message: nodes fixed in the normal direction, nodes
+ * that an obstacle at rest cannot reach along the normal.  A node in the groups
+ * of two contacts has the normal of the first and, as a side, of the second;
+ * where both have the same obstacle and the surface is smooth there, it belongs
+ * to the first with the faces of both.
  *
  * ERR_DECK with errors in the log; ERR_MEMORY.  *out is NULL on failure.
  */
@@ -110,7 +116,8 @@ status surface_build(const surface_input *in, message_log *log,
  */
 status surface_gap(const contact_surface *s, const surface_input *in, double t,
                    double *gap, double *side_gap);
-/* pair.c: 0 if the normal of node i does not meet its obstacle at t. */
+/* pair.c: 1 unless contact node i has an obstacle that its normal does not meet
+ * at time t. */
 int surface_meets(const contact_surface *s, const contact_pair *pairs, int i,
                   double t);
 /* pair.c: adds to motion[dim*n] the displacement of the obstacle at each node
@@ -144,7 +151,8 @@ void surface_spread(const contact_surface *s, double factor, const double *r,
 /* The same of row a of contact node q alone. */
 void surface_spread_row(const contact_surface *s, int q, int a, double force,
                         double *F);
-/* The forces r[dim*n] that surface_spread brings to F[dim*n_node]. */
+/* The forces r[dim*n] that surface_spread brings to F[dim*n_node] at the
+ * contact nodes. ERR_MEMORY. */
 status surface_forces(const contact_surface *s, int n_node, const double *F,
                       double *r);
 /* What row a of contact node i is divided by, -. */

@@ -151,7 +151,8 @@ static status use_parameter(reader *r, const card *c) {
   return OK;
 }
 
-/* Data lines behind *INCLUDE, in the file or not, are of the card before. */
+/* Data lines behind *INCLUDE, in the file or after it, belong to the card
+ * before: the mode stays. */
 static status use_include(reader *r, const card *c) {
   const parameter *input = needed(r, c, "INPUT");
   if (input == NULL) return OK;
@@ -326,7 +327,8 @@ static status read_record(reader *r, const physical *line) {
   return OK;
 }
 
-/* A data line where none may stand: one message for a run of them. */
+/* A data line where none may stand: one message for the lines that follow
+ * each other. */
 static void refuse_line(reader *r, const physical *line) {
   if (r->stray_seen) return;
   place at = source_place(r->top, line->line_no, 1, line->text);

@@ -1,7 +1,8 @@
 /*
  * Expressions: one pass over the text with a stack of waiting operators
  * (Dijkstra's shunting yard) gives reverse Polish code. Both stacks are
- * bounded, so that the cost is bounded for any text.
+ * bounded, so that the cost of the compiler and the evaluation is bounded for
+ * any text.
  */
 #include "deck/expression.h"
 

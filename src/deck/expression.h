@@ -32,7 +32,8 @@ double expression_value(const expression *e, const double x[3], double t);
 unsigned expression_variables(const expression *e);
 
 /*
- * Values of the deck: a number or an expression of x y z t, times a table.
+ * Values of the deck that may vary: a number or an expression of x y z t, times
+ * a piecewise linear table.
  */
 enum { TABLE_X, TABLE_Y, TABLE_Z, TABLE_T };
 

@@ -123,11 +123,13 @@ typedef struct piece {
   int next; /* byte after the comma, or -1 at the end of the line */
 } piece;
 
-/* Cut at the next comma outside quotes (and parentheses if "nested"). */
+/* Cut at the next comma outside quotes, and outside parentheses if "nested".
+ * Blanks around are cut. */
 piece logical_piece(const logical *l, int from, int nested);
 
 /* value.c: a field from a piece: quotes taken off, names replaced. "on_card":
- * value of a parameter, a quoted name alone is a text. */
+ * value of a parameter, where a quoted name alone is text and not an
+ * expression. */
 status field_read(reader *r, piece p, int on_card, field *out);
 
 /* value.c ---------------------------------------------------------------- */

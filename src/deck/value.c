@@ -407,8 +407,9 @@ static int is_name_alone(const char *text) {
   return *text == '\0';
 }
 
-/* A quoted field without variables becomes the digits of its value; *valid: it
- * is an expression at all. The caller reports what is wrong. */
+/* A quoted field without variables becomes the digits of its value; *valid:
+ * it is an expression at all. What is wrong is reported by the caller that
+ * needs a value. */
 static status settle_constant(reader *r, field *f, int *valid) {
   evaluated what;
   int column;

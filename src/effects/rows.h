@@ -1,6 +1,7 @@
 /*
- * The table of effects: a row is a line here and NAME_effect in a file of its
- * own. Plan, run, outputs and columns go through them in this order.
+ * THE table of effects: a row of what a run computes and writes is a line here
+ * and NAME_effect in a file of its own. Plan, run, outputs and columns go
+ * through them in this order.
  */
 #pragma once
 

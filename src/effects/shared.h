@@ -7,8 +7,9 @@
 /* nonlocal.c: [n*n] - of a contact whose law has an average. */
 const sparse_rows *nonlocal_average(const run *r, int contact_id);
 
-/* mesh.c: the patches of r->body.d by the present matrix; borrowed until that
- * changes. *out NULL: the run has no error of the mesh. ERR_MEMORY. */
+/* mesh.c: the patches of elements of r->body.d, made with the elastic matrix of
+ * now; borrowed until that changes. *out NULL: the run has no error of the
+ * mesh. ERR_MEMORY. */
 status mesh_recovery(const run *r, space_recovery **out);
 
 /* The factors of a crack at r->now. */
@@ -20,8 +21,10 @@ typedef struct crack_factors {
 } crack_factors;
 /* ERR_MEMORY. */
 status cracks_factors(run *r, int crack_id, crack_factors *out);
-/* K of a mode of the point, linear; after cracks_factors. ERR_MEMORY. */
+/* K of a mode, which the point has, as a linear function; after
+ * cracks_factors. ERR_MEMORY. */
 status cracks_derive(const run *r, int crack_id, int point, int mode,
                      fracture_linear *out);
-/* by[dim*n_node]: a derivative by tractions at the lips to one by forces. */
+/* by[dim*n_node]: a derivative by tractions at the lips becomes that by the
+ * forces there. */
 void cracks_by_forces(const run *r, double *by);

@@ -80,7 +80,8 @@ static status read_size(words *w, int *n) {
   return OK;
 }
 
-/* The file has space for n unknowns; checked before they get memory. */
+/* The file is long enough for n unknowns; checked before memory is
+ * allocated. */
 static status check_length(words *w, int n) {
   const long here = ftell(w->f);
   const long end = here < 0 || fseek(w->f, 0, SEEK_END) != 0 ? -1 : ftell(w->f);
@@ -129,7 +130,8 @@ static status lcp_text_read(const char *path, exchange_problem *p) {
   return read_numbers(&(words){.path = path, .line_no = 1, .f = f}, p);
 }
 
-/* 1: HDF5 starts at 0, 512, 1024, 2048, ... bytes. */
+/* 1: HDF5 starts here, or at 512, 1024, 2048, ... bytes, behind what others
+ * put before it. */
 static int is_hdf5(FILE *f) {
   char start[8];
   for (long at = 0; fseek(f, at, SEEK_SET) == 0 &&

@@ -347,7 +347,8 @@ static status part(const double *all, const double *vector, int size, int m,
   return OK;
 }
 
-/* With s G (G'v + b) = 0 added: M is definite where G holds the bodies. */
+/* With s G (G'v + b) = 0 added, which makes M definite where the constraints
+ * hold the bodies. */
 static status reduce_held(const hdf5_source *s, const global *g,
                           const triplets *joined, double *all, double *vector) {
   int usable = 0;

@@ -469,7 +469,8 @@ static void put_parts(const columns *c, row_sets *t, int k, double *b) {
       b[c->H->row[e]] += c->H->value[e];
 }
 
-/* Entries of W from x[rows] = inv(M) b, halves across: W is symmetric. */
+/* Their entries of W from x[rows] = inv(M) b, half of each across the diagonal:
+ * W becomes symmetric. */
 static status take_parts(const columns *c, const row_sets *t, const double *x,
                          triplets *W, long room) {
   for (long e = 0; e < c->H->n; ++e) {

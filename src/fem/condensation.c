@@ -28,8 +28,10 @@ struct condensed {
   sparse_operator *sparse; /* in its place and that of the bodies, or NULL */
   body_factor *body;
   rigid_motions rigid;   /* those that only contact holds */
-  unsigned char *pinned; /* [m] contact unknowns with a spring, or NULL */
-  int just_held;         /* 1: the springs hold those motions alone */
+  unsigned char *pinned; /* [m] contact unknowns with a spring in the factor;
+                            NULL: no body needs one */
+  int just_held;         /* 1: the springs hold those motions and nothing
+                            else */
   double *load;          /* [dim*n_node] in local components */
   double *prescribed;    /* [dim*n_node] local components, of the last load */
   double condition;      /* 0: not yet known */
@@ -40,7 +42,8 @@ struct condensed {
   cholmod_common *cm; /* owned */
 };
 
-/* The set of the graph that holds "first": list[0..), its size; marked. */
+/* The connected set of the graph that holds "first": list[0..) and its size;
+ * its nodes are marked. */
 static int connected_set(const graph *g, int first, unsigned char *seen,
                          int *list) {
   int n = 0;
@@ -67,8 +70,9 @@ static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
   return n;
 }
 
-/* f->node: the interior ordered, then the contact nodes descending (their
- * tangents may be interior too). list[n] ascending in, destroyed. */
+/* f->node: the interior ordered, then the contact nodes in descending order,
+ * which have an interior too where their tangents are not condensed.
+ * list[n] ascending in, destroyed. */
 static status order_body(condensed *c, const graph *g, int n, int *list,
                          body_factor *f) {
   const stiffness *k = c->k;
@@ -87,7 +91,8 @@ static status order_body(condensed *c, const graph *g, int n, int *list,
                      &c->ordering);
 }
 
-/* Motions only contact holds: c->rigid; a body nothing holds is named. */
+/* The motions that only contact holds: c->rigid. A body nothing holds: name it
+ * and the motion. */
 static status find_motions(condensed *c) {
   int n = 0;
   OWNED_OF(free_motion, list, support_motions(&c->d, &n, &list, &c->rigid));
@@ -438,7 +443,8 @@ static status refine(condensed *c, double *u) {
   return OK;
 }
 
-/* f_c again: minus the reactions of the refined solution for u_c = 0. */
+/* f_c again: the reactions of the refined solution for u_c = 0, with opposite
+ * sign. */
 static status refine_load(condensed *c, const double *F, double *f_c) {
   const size_t n = (size_t)c->k->dim * c->k->n_node;
   OWNED double *u = NULL, *zero = NULL;
@@ -480,7 +486,8 @@ status condense_recover(condensed *c, const double *u_c, double *u) {
   return OK;
 }
 
-/* u[m] = inv(A) f by the whole factor; *square += u.f of those not held. */
+/* u[m] = inv(A) f by the factors of the whole matrix; *square += u.f of those
+ * that are not held. */
 static status solve_rows(const condensed *c, const double *f, double *u,
                          double *square) {
   const size_t n = (size_t)c->k->dim * c->k->n_node;

@@ -11,7 +11,8 @@
 
 typedef struct element_shape {
   double grad[12]; /* [dim*(dim+1)] gradient of each shape function, 1/m */
-  double hoop;     /* 1/m, function over radius; 0 unless axi */
+  double hoop;     /* shape function over radius at the centroid, 1/m; 0 unless
+                      axisymmetric */
   double weight;   /* volume, thickness or 2 pi r included, m3 */
 } element_shape;
 

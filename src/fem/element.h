@@ -1,5 +1,6 @@
 /*
- * One P1 element: gradients and stiffness. Private to src/fem.
+ * One P1 element: gradients of its shape functions and its stiffness. Private
+ * to src/fem.
  */
 #pragma once
 
@@ -13,7 +14,8 @@ void element_rest(const domain *d, int elem_id, double *E, double *m_E,
  * a >= b in the order (0,0), (1,0), (1,1), (2,0), ... N/m. In a
  * cluster with the E of element_rest(): what its average adds is not there. */
 void element_stiffness(const domain *d, int elem_id, double *blocks);
-/* rest = F - sum B' E B u w, global components [dim*n_node]. Strains are formed
- * first: a soft part next to a stiff one keeps digits. */
+/* rest = F - sum B' E B u w, global components [dim*n_node]. The strains of
+ * each element are formed first: so digits of a soft part next to a stiff one
+ * are not lost. */
 void domain_residual(const domain *d, const double *u, const double *F,
                      double *rest);

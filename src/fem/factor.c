@@ -103,7 +103,8 @@ static void put_blocks(columns *w) {
   }
 }
 
-/* Scaled lower triangle in elimination order, with pins; *out is new. */
+/* Scaled lower triangle in elimination order, f->pinned included; *out is new.
+ */
 static status body_factor_matrix(const stiffness *k, const body_factor *f,
                                  const long *number, cholmod_common *cm,
                                  cholmod_sparse **out) {
@@ -471,7 +472,8 @@ static void fill_roots(const stiffness *k, const body_factor *f, double *root) {
   }
 }
 
-/* Add the magnitudes of the scaled block p to sums of rows and columns. */
+/* Add the magnitudes of the scaled block p = (i, j) to the sums of its rows and
+ * columns. */
 static void add_magnitudes(const stiffness *k, size_t p, int j,
                            const double *root, double *sum) {
   const int dim = k->dim, i = k->row[p];

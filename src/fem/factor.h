@@ -15,15 +15,20 @@ typedef struct body_factor {
                                   interior, then those with condensed unknowns;
                                   a node with both stands in both places, the
                                   first n_own once */
-  int bad_node;                /* where the factor broke down */
+  int bad_node;                /* where the factor broke down, for the
+                                  message */
   long n, nc;                  /* unknowns; contact ones among them */
-  long *unknown;               /* [n] dim*node + component of a position */
-  long *contact_at;            /* [nc] places of contact, ascending */
+  long *unknown;               /* [n] dim*node + component of position p in the
+                                  factor */
+  long *contact_at;            /* [nc] positions of the contact unknowns,
+                                  ascending */
   int *contact_id;             /* [nc] their rows in A */
-  int *rank;                   /* [n - contact_at[0]] rank, or -1 */
+  int *rank;                   /* [n - contact_at[0]] rank of a position among
+                                  them or -1 */
   int exponent;                /* see above */
   double flops;                /* of the factorisation */
-  int whole;                   /* 1: contact unknowns anywhere, nc = 0 */
+  int whole;                   /* 1: contact unknowns anywhere in the order,
+                                  nc = 0 */
   const unsigned char *pinned; /* [m] contact unknowns whose diagonal entry is
                                   doubled in the factor, borrowed; NULL: none */
   cholmod_factor *L;
@@ -38,7 +43,8 @@ void body_factor_number(const stiffness *k, body_factor *f, long *number);
  * ERR_SINGULAR, ERR_MEMORY. */
 status body_factor_analyse(const stiffness *k, const long *number,
                            cholmod_common *cm, body_factor *f);
-/* Build the matrix with f->pinned and factor it. ERR_SINGULAR, ERR_MEMORY. */
+/* Build the matrix, f->pinned included, and factor it. ERR_SINGULAR,
+ * ERR_MEMORY. */
 status body_factor_build(const stiffness *k, const long *number,
                          cholmod_common *cm, body_factor *f);
 /* Spring of the unknown dim*node + component in the scaled matrix, 0: none. */
@@ -47,7 +53,8 @@ double body_factor_spring(const stiffness *k, const body_factor *f,
 /* f->bad_node and ERR_SINGULAR: the factor ends at a node. */
 status body_factor_broke(body_factor *f, int node);
 void body_factor_release(body_factor *f, cholmod_common *cm);
-/* The body's part of the condensed stiffness, no pins, into A[m*m], zero. */
+/* Put the body's part of the condensed stiffness, without the pins, into A[m*m]
+ * (zero there). */
 status body_factor_condense(const stiffness *k, const body_factor *f, int m,
                             double *A);
 /* Copy the upper triangle of A[n*n] to the lower one. */
@@ -65,12 +72,15 @@ status body_factor_interior(const body_factor *f, const double *load, double *u,
                             cholmod_common *cm);
 /* *square += d' inv(K) d for forces d[m] on the contact unknowns, which come
  * last in the factor: d' inv(A) d = |inv(L_cc) d|^2. Pins that hold only the
- * rigid motions of a body carry no force where d balances: the same. */
+ * rigid motions of a body carry no force where d is in equilibrium: then the
+ * same. */
 status body_factor_energy(const body_factor *f, const double *d,
                           double *square);
-/* w = inv(K) d at the unknowns for forces d[dim*n_node]; *square += d' w. */
+/* w = inv(K) d at the unknowns of the body for forces d[dim*n_node] on them,
+ * and *square += d' w. */
 status body_factor_solve(const body_factor *f, const double *d, double *w,
                          double *square, cholmod_common *cm);
-/* Estimate of the condition number, scaled to a unit diagonal. ERR_MEMORY. */
+/* Estimate of the condition number of the matrix factored, scaled to a unit
+ * diagonal. ERR_MEMORY. */
 status body_factor_condition(const stiffness *k, const body_factor *f,
                              cholmod_common *cm, double *condition);

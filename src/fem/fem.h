@@ -22,7 +22,8 @@ typedef struct eigenstrain {
   const double *e0;   /* [ns*n] -; NULL: 0 (eigen_stress) */
 } eigenstrain;
 
-/* Nodes with unknowns in the order of a whole factor, and its costs. */
+/* Nodes with unknowns in the order of a factor of the whole stiffness, and what
+ * that takes. */
 typedef struct whole_order {
   int n, *node;     /* [n], owned */
   const char *name; /* of the method */
@@ -46,7 +47,8 @@ typedef struct domain {
   const double *E;                /* [ns*ns*n_section] Pa */
   const double *C;                /* [36*n_section] Pa, for e_zz of plane
                                      stress; NULL: 0 */
-  const unsigned char *fixed;     /* [dim*n_node] 1: prescribed (globally) */
+  const unsigned char *fixed;     /* [dim*n_node] 1: prescribed (global
+                                     components) */
   const eigenstrain *eigen;       /* NULL: none. Counts in stresses and
                                      energy; condense_load has it from F
                                      (eigen_force) */
@@ -88,7 +90,8 @@ typedef enum {
 
 typedef struct free_motion {
   int set_id;  /* bodies joined by pairs and ties: the first of them */
-  int body_id; /* connected set, in element order; that moves most */
+  int body_id; /* connected set of elements, from 0 in element order; the one
+                  that moves most */
   motion_hold held_by;
   size_t elem_no; /* an element of the body, number in the mesh file */
   char text[160]; /* "translation along x", "rotation about (1, 2)" */
@@ -155,16 +158,18 @@ status condense_load(condensed *c, const double *F, const double *ud,
 status condense_recover(condensed *c, const double *u_c, double *u);
 
 /* *square = d' inv(A) d of forces d[m], J, by the same factor. Where contact
- * alone holds a body, A is singular: K'd = 0 with the kernel below. */
+ * alone holds a body, A is singular: d must be in equilibrium, K'd = 0 with the
+ * kernel below. */
 status condensed_force_energy(condensed *c, const double *d, double *square);
 /* u[m] = inv(A) f of a load f[m], by the same factor: the contact unknowns
  * without contact forces. Nothing floats. ERR_MEMORY. */
 status condensed_untouched(condensed *c, const double *f, double *u);
 /*
  * Residual of equilibrium by rounding: rest[dim*n_node] = loads less internal
- * forces, global; rc[m] the contact forces. With d the residual at the
- * unknowns: w[dim*n_node] = inv(K) d, the error of the displacements, global
- * components, and *square = d' inv(K) d, J, the square of its energy norm.
+ * forces of the solution, global components; rc[m] the contact forces. With d
+ * the residual at the unknowns: w[dim*n_node] = inv(K) d, the error of the
+ * displacements, global components, and *square = d' inv(K) d, J, the square of
+ * its energy norm.
  */
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square);
@@ -174,7 +179,8 @@ status condensed_misfit(condensed *c, const double *rest, const double *rc,
 status condensed_misfit_held(condensed *c, const double *rest, const double *rc,
                              const unsigned char *held, double *w,
                              double *square);
-/* 1: the condition number is so large that the residual matters. */
+/* 1: the condition number is far above that of a plain mesh: the residual
+ * matters. */
 int condensed_costs_digits(const condensed *c);
 /* The motions of whole bodies that contact alone holds, their number: *R[m*k],
  * orthonormal, of the contact unknowns, borrowed. */
@@ -197,10 +203,12 @@ typedef struct deformation {
 } deformation;
 void domain_deformation(const domain *d, const double *u, deformation *out);
 double domain_strain_energy(const domain *d, const double *u); /* J */
-/* That of all but n elements, ascending, which hold whole clusters. */
+/* The same of all elements but n of them, ascending, which hold whole
+ * clusters. */
 double domain_energy_without(const domain *d, int n, const int *elem_id,
                              const double *u);
-/* F += sum B' E e0 w: what holds the strains of x back [dim*n_node], N. */
+/* F += sum B' E e0 w: the forces that hold the strains of x back, global
+ * components [dim*n_node], N. */
 void eigen_force(const domain *d, const eigenstrain *x, double *F);
 /* Strains less e0 and the stresses E times them, of the elements of x alone,
  * which hold whole clusters: e[ns*n] (zz of plane stress not filled),

@@ -602,7 +602,8 @@ static status factor_both(sparse_operator *o) {
   body_factor_number(o->k, &o->f, o->number);
   PASS(body_factor_analyse(o->k, o->number, o->cm, &o->f));
   memory_return_before(o->f.L->xsize * sizeof(double));
-  /* Unknowns by their place in the factor: its matrix needs no permutation. */
+  /* Unknowns numbered by their place in the factor: its matrix then needs no
+   * permutation each time. */
   SuiteSparse_long *perm = o->f.L->Perm;
   for (long p = 0; p < o->f.n; ++p) {
     o->number[o->f.unknown[p]] = p;

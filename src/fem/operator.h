@@ -67,7 +67,8 @@ typedef struct sparse_operator {
   int *body;        /* [m/rows] */
 } sparse_operator;
 
-/* Borrowed until sparse_operator_free but held and body. */
+/* What it is made of, all borrowed until sparse_operator_free but held and
+ * body. */
 typedef struct operator_data {
   const stiffness *k;
   const double *x;           /* [dim*n_node] coordinates */
@@ -81,11 +82,13 @@ typedef struct operator_data {
   cholmod_common *cm;
 } operator_data;
 /* Order, number and factor: the matrix of all rows, then the interior; *out
- * also on failure. ERR_SINGULAR: (*out)->f.bad_node; ERR_MEMORY. */
+ * also on failure, for sparse_operator_free. ERR_SINGULAR: (*out)->f.bad_node;
+ * ERR_MEMORY. */
 status sparse_operator_new(const operator_data *d, const char **ordering,
                            sparse_operator **out);
 void sparse_operator_free(sparse_operator *o); /* accepts NULL */
-/* f_c[m] of forces load[dim*n_node]; inv(K_ii) load_i is stored. */
+/* f_c[m] of forces load[dim*n_node] at the unknowns; inv(K_ii) load_i is
+ * stored. */
 void sparse_operator_forward(sparse_operator *o, const double *load,
                              double *f_c);
 /* u[dim*n_node] at the unknowns from u_c[m] and what is stored. */

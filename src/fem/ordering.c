@@ -135,7 +135,8 @@ static int touches(const dissection *w, int node, int stamp) {
   return 0;
 }
 
-/* Nodes of "from" that touch the other half go to its end; how many stay. */
+/* Nodes of the half "from" that touch the other move to its end; the number
+ * of those that stay. */
 static int keep_inner(dissection *w, int n, int *node, int other) {
   int kept = 0, moved = 0;
   for (int i = 0; i < n; ++i)

@@ -77,7 +77,8 @@ static void extend(const domain *d, int node, box *b) {
   b->found = 1;
 }
 
-/* Boxes round the nodes that move contact unknowns. 0: there is none. */
+/* Boxes round the nodes of each body that move contact unknowns of the set. 0:
+ * no contact node. */
 static int measure_contact(const stiffness *k, const domain *d,
                            const rigid_motions *r, const rigid_set *s,
                            box *of) {
@@ -95,7 +96,8 @@ static int measure_contact(const stiffness *k, const domain *d,
   return found;
 }
 
-/* About the centre of the box; the extent that of the body if empty. */
+/* About the centre of the box; the extent is that of the body if the box has
+ * none. */
 static rigid_modes modes_about(const rigid_modes *old, const box *b) {
   rigid_modes at = *old;
   double size = 0;
@@ -224,7 +226,8 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
   return OK;
 }
 
-/* The unknown moved most by the motions that are left in rest[m*k]. */
+/* The unknown with the largest displacement by the motions left in the rows of
+ * rest[m*k]. */
 static int most_moved(int m, int k, const double *rest) {
   double most = 0;
   int at = 0;

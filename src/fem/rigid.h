@@ -33,14 +33,16 @@ typedef struct component {
   int row;
 } component;
 
-/* Component c of node i, contact node q or -1: in its frame, relative. */
+/* Component c of node i, contact node q or -1: in the frame of q, relative
+ * where q is. */
 component node_component(const domain *d, int i, int q, int c);
 /* Terms of the sum: the node, then its masters. */
 int component_terms(const component *x);
 /* Node of term t, and its factor; 0: no such term in this component. */
 double component_term(const component *x, int t, int *node);
 
-/* Bodies joined by pairs and ties (sets.h) with the motions they have left. */
+/* Bodies joined by pairs and ties (sets.h) with motions that supports, hinges
+ * and ties leave. */
 typedef struct rigid_set {
   int n;           /* coefficients: those of its pieces one after the other */
   int n_motion, k; /* motions left; those left to rounding */
@@ -55,14 +57,16 @@ typedef struct rigid_set {
 typedef struct rigid_motions {
   rigid_modes *at; /* [n_body] */
   int *body;       /* [n_node] body of a node, -1 */
-  int *column;     /* [n_node] first coefficient of its piece, -1: rests */
+  int *column;     /* [n_node] first coefficient of its piece in those of the
+                      set, -1: at rest */
   int n_body, n_set, capacity;
   rigid_set *set;
   int m, k;  /* contact unknowns; motions of all sets */
   double *Q; /* [m*k] R_c of orthonormal motions */
 } rigid_motions;
 
-/* domain_free_motions. r (or NULL): filled with the sets that have some. */
+/* domain_free_motions. r (or NULL): all-zero before, filled with the sets that
+ * have some. */
 status support_motions(const domain *d, int *n, free_motion **list,
                        rigid_motions *r);
 
@@ -73,7 +77,8 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
  * possible: pinned[m] set to 1. */
 status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned);
-/* A <- (I - Q Q') A (I - Q Q'), exactly symmetric; upper part read. */
+/* A <- (I - Q Q') A (I - Q Q'), symmetric to the last bit; upper triangle
+ * read. */
 status rigid_project(const rigid_motions *r, double *A);
 /* Gather R' F for rigid_balance: load[dim*n_node] forces at the unknowns, T'F
  * (stiffness.h) in local components. */

@@ -42,7 +42,8 @@ struct stiffness {
   int rows;             /* condensed unknowns of a contact node: 1 or dim */
   int n_row;            /* of them all */
   size_t *start;        /* [n_node+1] first block of column j */
-  int *row;             /* [start[n_node]] node i >= j; diagonal first */
+  int *row;             /* [start[n_node]] node i >= j; the diagonal comes
+                           first */
   double *block;        /* [dim*dim*start[n_node]] K_ij, column major, N/m */
   unsigned char *free;  /* [n_node] bit c: local component c is unknown */
   int *contact;         /* [n_node] id of the contact node or -1 */

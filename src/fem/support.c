@@ -2,10 +2,11 @@
  * Rigid motions that the prescribed components leave to each set of bodies.
  *
  * A motion is a vector of rotations and translations per rigid piece (rigid.h).
- * Every prescribed component, hinge, tied node and, in turn, contact normal and
- * tangent is one linear condition on the pieces that it meets. The conditions
- * are gathered by Givens rotations in a triangle whose null space (singular
- * values below rank_limit of the largest) is what stays free.
+ * Every prescribed component, every hinge between pieces, every tied node and,
+ * in turn, every contact normal and tangent is one linear condition on the
+ * pieces that it meets. The conditions are gathered by Givens rotations in a
+ * triangle whose null space (singular values below rank_limit of the largest)
+ * is what stays free.
  *
  * Bodies that supports and ties hold are at rest and leave the sets.
  */
@@ -338,7 +339,8 @@ typedef struct triangle {
   double most; /* the largest term of an entry of it */
 } triangle;
 
-/* Orthonormal motions Z[n*rank] up to rank_limit, last ones exact_limit. */
+/* Orthonormal motions Z[n*rank] up to rank_limit; the last "exact" ones up to
+ * exact_limit. */
 typedef struct null_basis {
   int rank, exact;
   double *Z;
@@ -363,7 +365,8 @@ static void triangle_release(triangle *t) {
 /* Rotate the next condition into the triangle. */
 static void add_row(triangle *t) {
   double *row = t->row;
-  /* Is the condition more than rounding? Within one piece it is not. */
+  /* Is the next condition more than rounding? A pair within one piece has none.
+   */
   double most = 0;
   for (int k = t->first; k < t->last; ++k) most = fmax(most, fabs(t->row[k]));
   const int adds = most > exact_limit * t->most;
@@ -477,9 +480,10 @@ static void add_contact(triangle *t, int normals) {
   }
 }
 
-/* 1: surely no singular value below rank_limit of the largest. Their least
- * ratio squared is at least the product of the reciprocal condition numbers in
- * the 1-norm and the infinity norm, whose estimates may miss by a factor. */
+/* 1: surely no singular value below rank_limit of the largest. The square of
+ * their least ratio is not below the product of the reciprocal condition
+ * numbers in the 1-norm and the infinity norm, whose estimates may miss by a
+ * factor. */
 static status is_regular(const triangle *t, int *regular) {
   enum { MISSED = 10 };
   const int n = t->n;

@@ -44,7 +44,8 @@ static elasticity elasticity_at(const fracture *f, const fracture_point *p) {
   return x;
 }
 
-/* K over the integral: half of E' = 8 G / (kappa + 1). */
+/* K over the integral: half of E' = 8 G / (kappa + 1), in plane stress and
+ * plane strain. */
 static double factor_of(const elasticity *x, int mode) {
   return mode < 2 ? 4 * x->G / (x->kappa + 1) : x->G;
 }

@@ -1,6 +1,7 @@
 /*
  * Stress intensity factors and energy release rate along the front of a crack
- * (mesh/crack/crack.h), by domain integrals near a tip or a node of the front:
+ * (mesh/crack/crack.h), by domain integrals over the elements near a tip or a
+ * node of the front:
  *
  *   I = int P_lj Q_l,j + (sig_ij X_ij,l + saux_ij,j u_i,l) Q_l dV
  *       - int_lips t_i uaux_i,l Q_l dS,
@@ -50,8 +51,9 @@ typedef struct fracture_state { /* borrowed */
   const double *sigma; /* [ns*n_elem] Pa; ns = 4: xx, yy, zz, xy; 6: xx, yy,
                           zz, xy, yz, zx */
   /* [dim*n_node] on the body, at nodes of the lips, Pa; NULL: none. Within 4
-   * elements (at most a quarter of the radius) of the front contact pressures
-   * scatter: a line through those up to 16 elements away stands for them. */
+   * elements (a quarter of the radius, if that is less) of the front contact
+   * pressures scatter: a line through those up to 16 elements away stands for
+   * them. */
   const double *traction;
   double share; /* of sigma:strain in J: 1/2; with u the rate of displacements
                    and strains that grow by the power n of the stress n/(n+1),
@@ -78,7 +80,8 @@ typedef struct fracture_factors {
 
 typedef struct fracture fracture;
 
-/* Points in the order of crack->front_node. *out is new. ERR_MEMORY. */
+/* Points in the order of crack->front_node, and their domains. *out is new.
+ * ERR_MEMORY. */
 status fracture_new(const fracture_body *body, fracture **out);
 int fracture_count(const fracture *f);
 const fracture_point *fracture_points(const fracture *f); /* borrowed */
@@ -101,7 +104,8 @@ typedef struct fracture_linear {
 /* Barycentric coordinate of a point of flux in its own corner, those in the
  * others are equal: degree 2 with equal weights. */
 double fracture_corner(int dim);
-/* Mode 0 to 2 of a point with a K, its domains in s; *out new. ERR_MEMORY. */
+/* Mode 0 to 2, of the domains that give K in s; *out is new. The point has a K.
+ * ERR_MEMORY. */
 status fracture_derive(fracture *f, const fracture_state *s, int point,
                        int mode, fracture_linear *out);
 void fracture_linear_free(fracture_linear *l); /* accepts all-zero */

@@ -77,7 +77,8 @@ static int set_corners(work *w, int n, const int *node) {
   return grows;
 }
 
-/* Displacement gradient of an element, g: of its functions; its measure. */
+/* Displacement gradient of an element; g: gradients of its P1 functions.
+ * Returns its measure. */
 static double set_slope(work *w, int elem, double g[12]) {
   const int dim = w->m->dim;
   const int *v = w->m->elem + (size_t)(dim + 1) * elem;
@@ -179,7 +180,8 @@ static void turn_back(const local *at, int dim, double by[3][3], double *out) {
  * du_3/dx_1, in which the fields of K and stresses along the lips have none.
  */
 
-/* A lip that q of the largest domain is on: its part, element; -1: another. */
+/* A lip that q of the largest domain is on: its part, m^dim, and its element;
+ * -1: another lip. */
 static int set_turning(work *w, int i, double *part) {
   const mesh_crack *c = w->crack;
   const int face = i < c->n ? c->plus[i] : c->minus[i - c->n];
@@ -428,7 +430,8 @@ static void trend_at(const trend *of, double x, double scatter, double t[3]) {
   }
 }
 
-/* Traction at a corner; returns how far it is behind the front. */
+/* Traction at a corner, given or from the line; returns how far it is behind
+ * the front. */
 static double set_traction(work *w, corner *c, int node) {
   const trend *of = &w->side[w->above];
   local at;

@@ -39,8 +39,9 @@ typedef struct rule_point {
   double part;   /* of the measure */
 } rule_point;
 enum { RULE_MOST = 16 };
-/* Their number. For a parabola over sqrt(d) on a segment (n = 1) or triangle
- * (2), d the distance from the front, behind[n+1] at the corners, m. */
+/* Their number. For 1 / sqrt(d) times a second order polynomial on a segment
+ * (n = 1) or triangle (2), d the distance from the front, behind[n+1] at the
+ * corners, m. */
 int lip_rule(int n, const double *behind, rule_point *to);
 
 typedef struct field_tensor {
@@ -58,9 +59,10 @@ typedef struct elasticity {
 } elasticity;
 
 /*
- * Fields of a tip in a plane (Williams, J. Appl. Mech. 24, 1957): u[3] and its
- * gradient d[i][l] = du_i/dx_l of K = 1 in a mode (0 .. 2), at x1 ahead of the
- * tip and x2 above the crack; on the lips x2 is +0.0 above and -0.0 below.
+ * Fields of the tip of a crack in a plane (Williams, J. Appl. Mech. 24, 1957):
+ * u[3] and its gradient d[i][l] = du_i/dx_l of K = 1 in a mode (0 .. 2), at x1
+ * ahead of the tip and x2 above the crack; on the lips x2 is +0.0 above and
+ * -0.0 below.
  *
  *   kappa  3 - 4 nu (plane strain), (3 - nu)/(1 + nu) (plane stress)
  *   G      shear modulus, Pa

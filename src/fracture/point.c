@@ -195,7 +195,8 @@ static double free_radius(const mesh *m, const obstacles *o,
   return radius;
 }
 
-/* Half the distance to other tips or parts of the front, at most "radius". */
+/* Half the distance of other tips, or of parts of the front that run elsewhere,
+ * at most "radius". */
 static double half_way(const fracture *f, const fracture_point *p,
                        double radius) {
   const mesh *m = f->body.mesh;
@@ -248,7 +249,8 @@ static void set_frame_2d(const fracture *f, int i) {
   cross(e1, e2, e3);
 }
 
-/* Positions of the neighbours "step" away along the chain; -1: none. */
+/* Positions in front_node of the neighbours "step" away along the chain; -1:
+ * beyond its end. */
 static int along(const mesh_crack *c, int chain, int i, int step) {
   const int from = c->front_start[chain], last = c->front_start[chain + 1] - 1;
   const int n = last - from, to = i + step;

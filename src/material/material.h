@@ -24,7 +24,8 @@ enum { ELASTIC_MAX = 21 };
  *   ORTHO  E1, E2, E3, nu12, nu13, nu23, G12, G13, G23 (Abaqus ENGINEERING)
  *   ANISO  21 constants of the symmetric matrix in the order of Abaqus
  * Ellipticity (CPR98 2.2): the matrix must be positive definite. NULL, or what
- * is wrong ("nu = 0.5 outside ]-1, 0.5[", ...), maybe in "text".
+ * is wrong with the constants ("nu = 0.5 outside ]-1, 0.5[", ...); "text" may
+ * be used for the answer.
  */
 const char *elastic_matrix(elastic_type type, int n, const double *constants,
                            double C[36], char *text, int text_size);
@@ -56,7 +57,8 @@ status elastic_table_read(const struct card *c, elastic_type type,
 /* elastic_matrix() of the constants at a temperature. */
 const char *elastic_at(const elastic_table *t, double temperature, double C[36],
                        char *text, int text_size);
-/* The sets become what is left after relaxed[2] of G and K have relaxed. */
+/* The sets of E, nu are what is left after the parts relaxed[2] of G and K have
+ * relaxed. */
 void elastic_table_relaxed(elastic_table *t, const double relaxed[2]);
 /* Largest value of constant number i in any set. */
 double elastic_table_most(const elastic_table *t, int i);

@@ -1,6 +1,7 @@
 /*
- * mesh_read_gmsh: a .geo is a program that gmsh runs, all else is read here;
- * then the steps to the mesh, and their messages.
+ * mesh_read_gmsh: a .geo is a program that gmsh runs, all else is data that
+ * is read here; then the steps from the raw mesh to the mesh, and how their
+ * messages are made.
  */
 #include "mesh/build.h"
 

@@ -106,7 +106,8 @@ static void give_up(const child *c, status code, const char *format, ...) {
 /* gmsh may exit by itself (Exit in a .geo): skip the exit handlers. */
 static void leave_at_once(void) { _exit(LEFT_BY_ITSELF); }
 
-/* End with the parent, which reads fd; forgotten where the user changes. */
+/* End with the parent, which reads what is written to fd. The kernel forgets it
+ * where the user changes. */
 static void end_with_reader(int fd) {
   struct pollfd pipe = {.fd = fd};
 #ifdef __linux__
@@ -117,7 +118,8 @@ static void end_with_reader(int fd) {
 }
 
 /* Isolate the process: streams, signals, core files; it ends with the parent.
- * Errors of gmsh go to error_fd, which never blocks; the rest is lost. */
+ * The error output of gmsh goes to error_fd, which never blocks; what does not
+ * fit is lost. */
 static void detach(int fd, int error_fd) {
   static const int signals[] = {SIGINT,  SIGTERM, SIGHUP,  SIGQUIT, SIGPIPE,
                                 SIGCHLD, SIGABRT, SIGSEGV, SIGFPE,  SIGBUS,
@@ -275,7 +277,8 @@ static void start(const child *c) {
       give_up(c, ERR_MEMORY, "memory exhausted: numbers for gmsh");
     argv[argc++] = value;
   }
-  /* The graphical part of gmsh writes preferences to /etc for root. */
+  /* The graphical interface of gmsh would write preferences to /etc for
+   * root. */
   const uid_t user = geteuid(), nobody = 65534;
   int changed = user == 0 && seteuid(nobody) == 0;
   c->gmsh.Initialize(argc, argv, 0, &error);
@@ -305,7 +308,8 @@ static double *view_of_sizes(const child *c, const mesh_sizes *s, size_t *n) {
   return data;
 }
 
-/* Copy the geometry without numbers of elements; 0: it cannot be. */
+/* Copy the geometry without the lines that fix numbers of elements; 0: it
+ * cannot be written. */
 static int drop_counts(const char *from, const char *to) {
   static const char *const words[] = {"Transfinite ", "Recombine ", "Field[",
                                       "Background Field"};
@@ -394,7 +398,8 @@ static void set_sizes(const child *c) {
   set(c, "Mesh.MeshSizeFactor", 1);
 }
 
-/* 1: there is x.geo.opt, which gmsh would execute after the file. */
+/* 1: there is an options file (x.geo.opt), which gmsh would execute after the
+ * file. */
 static int has_options(const char *path) {
   char name[PATH_MAX + 8];
   snprintf(name, sizeof name, "%s.opt", path);

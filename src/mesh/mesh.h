@@ -22,8 +22,9 @@ typedef struct mesh_group {
 } mesh_group;
 
 /* A crack along which the mesh was opened (mesh/crack/crack.h). Its front: tips
- * (2-D) or chains of nodes (3-D), each along e3 = e1 x e2, e1 the growth and e2
- * the normal from minus to plus; a closed chain ends with its first node. */
+ * (2-D) or chains of nodes (3-D), each along e3 = e1 x e2, with e1 the
+ * direction of growth and e2 the normal from minus to plus; a closed chain ends
+ * with its first node. */
 typedef struct mesh_crack {
   int n;            /* faces that are open */
   int *plus;        /* [n] face id of the lip above; face_elem: its element */
@@ -91,8 +92,9 @@ int mesh_is_program(const char *file);
  * ERR_FILE if the file is missing, ERR_MEMORY. */
 status mesh_read_gmsh(const mesh_source *source, const place *at,
                       message_log *log, mesh **out);
-/* The library of gmsh into this process, once: each mesh has a process of its
- * own, which would load it again (0.2 s). Failures are not reported. */
+/* The library of gmsh into this process, once: each mesh is made in a process
+ * of its own, which otherwise loads it again (0.2 s). Failures are not
+ * reported. */
 void mesh_gmsh_load(void);
 
 /* "points", "curves", "surfaces", "volumes". */
@@ -121,7 +123,8 @@ double mesh_elem_measure(const mesh *m, int elem_id);
 /* Gradients g[dim*(dim+1)] of its P1 functions, 1/length, one after the other;
  * returns twice the area or six times the volume. */
 double mesh_elem_gradients(const mesh *m, int elem_id, double *g);
-/* Sets as trees: parent[i] = i before. The lowest member names a set. */
+/* Sets as trees: parent[i] = i before. The lower root wins, so that a set is
+ * named by its first member. */
 int forest_root(int *parent, int i);
 void forest_join(int *parent, int a, int b);
 /* Bodies: connected sets of elements. body[n_elem] 0..n_body-1. */

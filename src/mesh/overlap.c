@@ -1,10 +1,12 @@
 /*
- * The border of a mesh; elements on one side of a face, or that intersect.
+ * The border of a mesh, and elements that overlap: two on one side of a face,
+ * or two that intersect.
  *
- * The number of elements over a point changes only across the boundary once no
- * face has two on one side. So where elements overlap anywhere an element that
- * owns such a side overlaps another of them, or one piece of the boundary lies
- * wholly inside of other elements: the cost is that of the boundary.
+ * How many elements lie over a point changes only across sides on the boundary
+ * once no face has two elements on one side. So where elements overlap anywhere
+ * an element that owns such a side overlaps another of them, or one piece of
+ * the boundary lies wholly inside of other elements: the cost is that of the
+ * boundary.
  */
 #include "base/base.h"
 #include "base/box_tree.h"
@@ -21,7 +23,8 @@ typedef struct side_list {
 
 static void sides_free(side_list *s) { RELEASE(s->start, s->side); }
 
-/* The lowest corner stands in all sides of an element but one. */
+/* The lowest corner stands in all sides of an element but one, whose lowest is
+ * the second one. */
 static void two_lowest(int n, const int *w, int low[2]) {
   low[0] = w[0] < w[1] ? w[0] : w[1];
   low[1] = w[0] < w[1] ? w[1] : w[0];
@@ -32,7 +35,8 @@ static void two_lowest(int n, const int *w, int low[2]) {
   }
 }
 
-/* The elements on both sides of a face turn it oppositely: last bit. */
+/* Two elements on both sides of a face have opposite orientations of it: last
+ * bit. */
 static uint64_t side_key(int dim, const int *v) {
   int a = v[dim - 2], c = v[dim - 1], turn = a < c;
   uint64_t low = (uint64_t)(turn ? a : c), high = (uint64_t)(turn ? c : a);

@@ -12,7 +12,8 @@ const load *facts_moving_support(const model *m);
 /* Step that shows, tries or checks the whole condensed problem. */
 const step *facts_first_whole(const model *m);
 const step *facts_first_step(const model *m, int (*is)(const step *s));
-/* What in the step reads entries of the condensed stiffness; or NULL. */
+/* What in the step needs the entries of the condensed stiffness; NULL: nothing
+ * does. */
 const char *facts_reads_entries(const model *m, const step *s);
 
 /* Section whose material has an inelastic law. */

@@ -98,9 +98,10 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
 }
 
 /*
- * M_ij = integral of N_i N_j w over a simplex of n nodes and given measure; w =
- * 1, or the P1 function of the nodal values r (axisymmetric: 2 pi r). Integral
- * of a product: d! a! b! c! / (a+b+c+d)! times the measure, d = n - 1.
+ * M_ij = integral of N_i N_j w over a simplex of n nodes and given measure;
+ * w = 1, or the P1 function of the nodal values r (axisymmetric: 2 pi r).
+ * Integral of a product of barycentric coordinates: d! a! b! c! / (a+b+c+d)!
+ * times the measure, d = n - 1.
  */
 static void simplex_mass(int n, double measure, const double *r, double *M) {
   double d2 = n * (n + 1), d3 = d2 * (n + 2);

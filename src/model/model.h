@@ -253,7 +253,8 @@ typedef struct friction_change { /* *FRICTION in a step */
 /* CHECK= of *SOLVER */
 typedef enum { CHECK_NONE, CHECK_SOLVERS, CHECK_ALL } solution_check;
 
-/* MESH= of *ACCURACY in the order of its words: every increment; last. */
+/* MESH= of *ACCURACY, as the words stand there: at every increment; at the last
+ * of the step. */
 typedef enum { MESH_ERROR_NO, MESH_ERROR_YES, MESH_ERROR_END } mesh_error_at;
 
 typedef struct step {
@@ -523,10 +524,12 @@ int frequency_shows(int frequency, int increment_no, int last);
 /* The name of a table, PRINT_*. */
 const char *print_word(int table);
 /* 1 if a table shows the increment that ends at t: its number within the step,
- * -1 if t is within one, 1 the last; of time points the times count. */
+ * -1 if t is within one, 1 if it is the last; of time points the times alone
+ * count. */
 int print_shows(const print_request *p, const step *s, double t,
                 int increment_no, int last);
-/* Its first time point between two times, not to rounding; or HUGE_VAL. */
+/* Its first time point after one time and before another, neither to
+ * rounding; HUGE_VAL: none. */
 double print_next(const print_request *p, const step *s, double after,
                   double before);
 /* 1: *CONTACT PAIR or *TIE: surfaces of the mesh meet. */
@@ -574,7 +577,8 @@ const char *load_card(const load *l); /* "DLOAD" */
 double load_at_point(const load *l, const step *s, const double x[3], double t);
 double load_at_node(const load *l, const mesh *msh, const step *s, int node,
                     double t);
-/* 1 if finite at the nodes of its group; else the log has the first other. */
+/* 1 if that is finite at the nodes of its group; else the log has the first
+ * node where it is not. */
 int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
                 double t);
 
@@ -583,10 +587,12 @@ int load_finite(const model *m, const mesh *msh, const step *s, const load *l,
  * which all move to their values; not read at its end. */
 status load_prescribed(const model *m, const mesh *msh, const step *s, double t,
                        const double *start, double *ud);
-/* Initial condition in an element, mean of its nodes; or ERR_DECK. */
+/* Value of an initial condition in an element, mean of its nodes; ERR_DECK if
+ * it is not finite. */
 status load_initial(const model *m, const mesh *msh, const initial *c,
                     int elem_id, double *value);
-/* Temperatures T[n_elem] before the first step; ERR_DECK: not finite. */
+/* Temperatures T[n_elem] before the first step, mean of the nodes. ERR_DECK if
+ * one is not finite. */
 status load_temperature_initial(const model *m, const mesh *msh, double *T);
 /* Temperatures T[n_elem] at time t of a step of the model, T0[n_elem] before
  * the first step; errors as above. */

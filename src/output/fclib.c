@@ -1,6 +1,7 @@
 /*
  * JOB_condensed_NNNNN.h5: the condensed problem of an increment in the layout
- * of FCLIB (exchange.h), NNNNN the increments since the start.
+ * of FCLIB (exchange.h), one problem a file, NNNNN the increments since the
+ * start.
  *
  *   /fclib_local    W = S inv(A) S, q = S inv(A) f + d;  S = diag(-1, 1[, 1])
  *                   per node, d_N = gap, d_T = -ut0
@@ -61,7 +62,8 @@ static double offset_of(const contact_problem *cp, int dof) {
   return cp->ut0 == NULL ? 0.0 : -cp->ut0[i * (cp->dim - 1) + k];
 }
 
-/* inv(A) in place of the copy of A; 0: singular. work[3 m], iwork[m]. */
+/* inv(A) in place of the copy of A, both triangles; 0: A is singular.
+ * work[3 m], iwork[m]: workspace. */
 static int invert(int m, double *a, double *work, int *iwork) {
   double rcond = 0.0;
   const size_t n = m;

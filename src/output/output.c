@@ -1,7 +1,8 @@
 /*
- * The files of a job: their names, none of which the deck may read; opened, new
- * or continued; the sink of history_run, which writes into them; closed.
- * JOB.sta is written last: an increment in it is in all files.
+ * The files of a job: their names, of which none may be one that the deck
+ * reads; opened, new or those that a run continues; the sink of history_run,
+ * which writes into them; closed. JOB.sta is written last: an increment in it
+ * is in all files.
  */
 #include "output/writers.h"
 
@@ -43,7 +44,8 @@ static status spare(const deck *d, const char *path) {
   return OK;
 }
 
-/* The increment of a file of a condensed problem; 0: it is none. */
+/* The increment of a file of that name; 0: it is none of a condensed problem
+ * of the job. */
 static long increment_of(const char *name, const char *job_name) {
   const size_t n = strlen(job_name), k = sizeof middle - 1;
   if (strncmp(name, job_name, n) != 0 || strncmp(name + n, middle, k) != 0 ||
@@ -58,7 +60,8 @@ static void close_folder(DIR **folder) {
   if (*folder != NULL) closedir(*folder);
 }
 
-/* All condensed problems of later increments are spared, or cleared. */
+/* All files of condensed problems of increments after that one are spared, or
+ * cleared. */
 static status each_condensed(const model *m, const char *dir, int after,
                              int cleared) {
   DIR *folder ENDS_BY(close_folder) = opendir(dir);
@@ -94,7 +97,8 @@ static double clock_now(void) {
 
 /* JOB.xdmf with the records so far; "all": even if it was written just before.
  * The text is written again each time, so not more than once in XDMF_PAUSE
- * seconds, and, but for the last time, within its share of the run. */
+ * seconds, and not above its share of the run except the last time: the cost
+ * stays small however long it grows. */
 static status show_records(output *o, int all) {
   hdf5_shape shape;
   if (o->h5 == NULL) return OK;

@@ -8,8 +8,9 @@
 
 typedef struct output output;
 
-/* A file that the run writes or removes: ERR_DECK if its deck reads it,
- * ERR_FILE if it is protected or no file. Before anything else. */
+/* A file that the run writes or removes: ERR_DECK if it is one that its deck
+ * reads, under whatever name, ERR_FILE if it is protected or no file. Before
+ * anything is touched. */
 status output_spare(const model *m, const char *dir);
 /* Open all files of the job: the text files, flushed line by line, and JOB.h5
  * with space for the estimated number of increments. JOB.xdmf, JOB.json and

@@ -3,8 +3,9 @@
  * JOB.json, saved for a restart and read back.
  *
  * JOB.rst.inc: each summary is written once: a restart file names the bytes
- * that count, and does not grow itself. A record: increment_summary without
- * pointers, its reasons (text ended by NUL, where there is one), its solutions.
+ * that count for it, so that its own size does not grow with the increments. A
+ * record: increment_summary without pointers, its reasons (text ended by NUL,
+ * where there is one), its solutions.
  */
 #include "output/writers.h"
 

@@ -27,9 +27,10 @@ static const char *check_text(const state *s, char text[32]) {
 }
 
 /*
- * OK (JUMP; AFTER_UNSETTLED: solved, but after one that is not), UNSETTLED
- * (taken although it did not converge) or CUT, then the code of the outcome of
- * the contact solver, BOUND if its error may be above 10 %, then words.
+ * OK (JUMP; AFTER_UNSETTLED: solved, but from a history that holds one that is
+ * not), UNSETTLED (taken although it did not converge) or CUT, then the code of
+ * the outcome of the contact solver, BOUND if its error may be above 10 %, then
+ * words.
  */
 static void print_reason(const state *s, const char *why, FILE *f) {
   char check[32];
@@ -125,7 +126,8 @@ void progress_line(const char *text) {
   fflush(stderr);
 }
 
-/* Increments after this one: of its step at its dt, of the later ones. */
+/* Increments after this one: of its step at its dt, of the steps that follow.
+ */
 static double increments_left(const model *m, const state *s) {
   const step *now = &m->steps[s->step_no - 1];
   double n = step_increments_left(now, s->t, s->dt, s->increment_no);

@@ -1,5 +1,6 @@
 /*
- * The writers of this folder and their open job. Private to src/output.
+ * The writers of this folder, and the open job that output.c and saved.c share.
+ * Private to src/output.
  */
 #pragma once
 
@@ -11,7 +12,8 @@
 #include <stdio.h>
 
 typedef struct tabular tabular;
-/* NULL if no step requires a table. length: to continue; -1: a new one. */
+/* NULL in *out if no step requires a table. length: of the file to continue;
+ * -1: a new one. */
 status tabular_open(const model *m, const mesh *msh, const char *dir,
                     long length, tabular **out);
 status tabular_sync(tabular *t, long *length); /* NULL: -1 */
@@ -40,12 +42,14 @@ void progress_show(const model *m, const state *s, double seconds, int done);
 void closing_lines(const job *j, const char *files, FILE *f);
 
 /* ---- json.c ----------------------------------------------------------- */
-/* Written aside and renamed: a reader sees all of it or nothing. */
+/* Written to a temporary file and renamed: a program sees all of it or
+ * nothing. */
 status json_write(const job *j, const char *path);
 
 /* ---- fclib.c ---------------------------------------------------------- */
 /* The problem cp; node_no[n], and its solution u[m], r[m], unless NULL. Written
- * to a temporary file and renamed. ERR_DECK: the layout has no place for it. */
+ * to a temporary file and renamed. ERR_DECK: the layout has no place for such a
+ * problem. */
 status fclib_write(const contact_problem *cp, const size_t *node_no,
                    const double *u, const double *r, const char *title,
                    const char *description, const char *path);
@@ -61,7 +65,8 @@ typedef struct saved_increments {
   text_file file;
   int n; /* increments in it */
   saved_end end;
-  char *read; /* reasons in run.increments point into it */
+  char *read; /* what stood in it when the run went on: reasons in
+                 run.increments point into it */
 } saved_increments;
 
 struct output {
@@ -81,7 +86,8 @@ struct output {
   int progress;
   double shown_at, began_at; /* line on the terminal; end of the setup, s */
   int n_done;                /* increments since then */
-  int quiet;                 /* 1: the first facts are in the listing */
+  int quiet;                 /* 1: the first facts stand in the listing
+                                already */
   saved_increments saved;
 };
 

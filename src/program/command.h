@@ -28,8 +28,9 @@ void command_free(command *c);
 /*
  * tables.c, protis JOB --table NAME[:last|:all]: all blocks of that name in
  * JOB.dat as one table on stdout, a header and a row a line: step, increment,
- * time, group (if some have one), contact (likewise), then the other columns,
- * empty in blocks without. Numbers as they stand.
+ * time, group (if some have one), contact (if they have it), then the other
+ * columns. A column that a block does not have is empty there. Numbers as they
+ * stand.
  *
  * Errors: ERR_FILE (no JOB.dat, or stdout cannot be written), ERR_DECK (no such
  * table; the message names those there are), ERR_MEMORY.

@@ -117,7 +117,8 @@ static int is_of_run(int s) {
          s == STAGE_FACTOR || s == STAGE_CONDENSE;
 }
 
-/* As in target.c: the share of increments, the aim of a pass, its limit. */
+/* As in target.c: the share of the increments in the target, the aim of the
+ * next pass, its limit. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, AIM = 0.93;
 static const double REACH = 8.0, FINEST = 0.25, FINEST_LAST = 0.1;
 static const double SHORTEST = 1.0 / 16;
@@ -343,7 +344,8 @@ static void print_fit(const model_of_cost *c) {
 }
 
 /* Order of the error in N, from the two meshes that are much alike; where that
- * is less than "full", from all three, by least squares. */
+ * is less than "full", from all three, by least squares: so near to one another
+ * meshes scatter. */
 static double order_of(const model_of_cost *c, double full) {
   const trial *runs[] = {&c->deck, &c->coarse, &c->fine};
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;

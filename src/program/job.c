@@ -16,7 +16,8 @@
 
 #include <unistd.h>
 
-/* Surfaces in contact, names[2*n.contact]; cracks are straight. */
+/* Surfaces in contact, names[2*n.contact]; not cracks, which are straight
+ * between their nodes. */
 static int find_rounds(const model *m, const char **names) {
   int n = 0;
   for (EACH(const contact, c, m->contacts, m->n.contact)) {

@@ -58,7 +58,8 @@ status job_solve(const command *c, job_input *in, const job_watch *watch,
                  archive *from, int *unsettled);
 
 /* The same with *EFFECTS, MODE=AUTO: a run without effects that seem not to
- * matter, or with them if they do (effects/reduction/reduction.h). */
+ * matter, and the run with them if that is not confirmed
+ * (effects/reduction/reduction.h). */
 status job_solve_auto(const command *c, job_input *in, int *unsettled);
 
 /*
@@ -70,8 +71,9 @@ status job_solve_auto(const command *c, job_input *in, int *unsettled);
  */
 status target_reach(const command *c, job_input *in, int *unsettled);
 
-/* Most error of a mesh, -, by the estimate of a coarse one (space_is_coarse) or
- * not; the estimate with which the next meets the goal. */
+/* What a mesh has in error at most, -, by the estimate of one that is coarse
+ * (space_is_coarse) or not; the estimate that the next one is to have so that
+ * the goal is met. */
 double target_at_most(double estimate, int is_coarse);
 double target_next(double estimate, int is_coarse, double goal);
 
@@ -82,7 +84,8 @@ double target_next(double estimate, int is_coarse, double goal);
 status forecast_print(const command *c, job_input *in);
 
 /* lock.c: one job of a name in a folder at a time: JOB.lock, held by flock(),
- * which any end of the process releases. A file left behind is no lock. */
+ * which the system releases however the process ends. A file left behind is no
+ * lock. */
 typedef struct job_lock {
   char *path; /* owned; NULL: none held */
   int fd;
@@ -101,12 +104,14 @@ void job_lock_release(job_lock *l); /* accepts one never taken */
  * slip so far, inelastic strains, the place in the grid of increments. Data of
  * the contact solver that persist from increment to increment (factors and
  * exchanged rows) are saved as well (contact_solver_keep), because a new factor
- * has other last digits; matrices, surfaces and averages are made again. Of the
- * files their lengths are kept: what was written after the restart file is cut
- * and written again. One of them, JOB.rst.inc, has the summaries of the
- * increments for the end of the run.
+ * has other last digits; matrices, surfaces and averages are made again, for
+ * they depend on the deck and the mesh alone. Of the files their lengths are
+ * kept: what was written after the restart file is cut and written again. One
+ * of them, JOB.rst.inc, has the summaries of the increments for the end of the
+ * run.
  *
- * Of the last two JOB.rst.old.h5 is for a JOB.rst.h5 that is damaged.
+ * The last two are there: JOB.rst.h5, and JOB.rst.old.h5 in case the first
+ * cannot be read.
  */
 
 /* Input of a restart file. */

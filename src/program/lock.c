@@ -33,7 +33,8 @@ static status check_content(const char *path, int fd) {
   return OK;
 }
 
-/* 1: the path is that of the file opened, not removed by a run that ended. */
+/* Is the file at the path the one that was opened? A run that ended between the
+ * two has removed it. */
 static status check_current(const char *path, int fd, int *current) {
   struct stat one, other;
   *current = 0;
@@ -58,7 +59,8 @@ static status refuse(const char *path, int fd, const char *name) {
       path, name, text[0] != '\0' ? text : "process unknown");
 }
 
-/* Without locks a run goes on. *held: the file is ours, to be removed. */
+/* A file system without locks runs without. *held: the file is ours, to be
+ * removed in the end. */
 static status hold(const char *path, const char *name, int *fd, int *held) {
   const int flags = O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
   for (int current = 0; !current;) {

@@ -32,7 +32,8 @@ typedef struct extract {
   int place[WORDS];              /* [n_place] of the words in column; -1 */
 } extract;
 
-/* The columns that every row begins with, by the names in the tables. */
+/* The columns that every row begins with, and what they are called in the
+ * tables that have them too. */
 static const char *const keys[] = {"step", "increment", "time"};
 
 static int is_key(const char *name) {

@@ -105,7 +105,8 @@ static void miss(pass *p, const char *why) {
   snprintf(p->why, sizeof p->why, "%s", why);
 }
 
-/* Error allowed to the mesh: what the shares of the others leave. */
+/* Error allowed to the mesh: the rest of the target, if the others are within
+ * their shares. */
 static double mesh_goal(const pass *p) {
   double goal = p->target->percent / 100.0;
   if (p->time > TIME_SHARE * goal || p->solver > SOLVER_SHARE * goal)
@@ -322,7 +323,8 @@ static status begin(pass *p, const job_input *in) {
   return OK;
 }
 
-/* Its messages are those of the first pass: shown on errors. */
+/* Its messages are those of the first pass, shown only if something is wrong.
+ */
 static status read_next(pass *p) {
   job_mesh other = {0};
   p->cpu.start = timer_cpu();

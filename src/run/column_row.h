@@ -1,7 +1,8 @@
 /*
- * Macros for the rows of all tables of columns. Signs as in the manual:
- * pressure p = -r_n/area >= 0, forces are those of the obstacle on the body, so
- * f_n = -r_n >= 0 presses, and f_t is opposite to the slip.
+ * Macros for the rows of all tables of columns; for the files that hold such a
+ * table. Signs as in the manual: pressure p = -r_n/area >= 0, forces are those
+ * of the obstacle on the body, so f_n = -r_n >= 0 presses, and f_t is opposite
+ * to the slip.
  */
 #pragma once
 

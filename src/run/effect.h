@@ -82,7 +82,8 @@ typedef struct column {
   const char *unit; /* "length", "force/length^2", "s", "-" for none */
   entity of;
   column_form form;
-  unsigned tables;   /* bits PRINT_*; 0: none; and AT of column_row.h */
+  unsigned tables;   /* bits PRINT_* of its tables; 0: none; and AT of
+                        column_row.h */
   unsigned effects;  /* shown only if the model has them all */
   unsigned scenes;   /* bits SCENE_* */
   unsigned needs;    /* bits NEEDS_* */
@@ -110,7 +111,8 @@ typedef struct effect_hooks {
   /* *own is new and not NULL, or has been made with the size of the row and is
    * the owner of what is requested here; freed also after a failure. */
   status (*create)(struct run *r, void **own);
-  /* 0: initial, accept, show, rewrite are not called now, nor counted. */
+  /* 0: initial, accept, show, rewrite have nothing to do at this increment, and
+   * are not counted. */
   int (*due)(const struct run *r);
   /* Nothing is solved yet: r->step with its surface, r->loads.start where it is
    * known, else NaN: what of it the run could not solve. */
@@ -125,9 +127,11 @@ typedef struct effect_hooks {
   status (*start)(struct run *r, void *own);
   /* T: the initial displacements are r->old, posed in r->problem.cp. */
   status (*initial)(struct run *r, void *own);
-  /* T: *made = 1: it has made all increments of the step. */
+  /* T: *made = 1: it has made all increments of the step, with a grid of its
+   * own. */
   status (*make_step)(struct run *r, void *own, int *made);
-  /* T: an attempt at the increment to t begins; r->now may be set. */
+  /* T: an attempt at the increment that ends at t begins; r->now may be written
+   * to. */
   status (*attempt)(struct run *r, void *own, double t);
   /* T: *made = 1: it has solved the increment that ends at t into r->now. */
   status (*solve)(struct run *r, void *own, double t, int *made);
@@ -144,7 +148,8 @@ typedef struct effect_hooks {
                   double *force);
   /* T: r->now is an equilibrium; *again = 1: the problem has changed. */
   status (*found)(struct run *r, void *own, int *again);
-  /* T: the increment to t is solved and will be taken; r->now may change. */
+  /* T: the increment that ends at t has been solved and will be taken; r->now
+   * may be solved again. */
   status (*examine)(struct run *r, void *own, double t);
   /* T: the errors of r->now into r->errors, finally or at an attempt. */
   status (*estimate)(struct run *r, void *own);
@@ -174,22 +179,28 @@ typedef struct effect_ops {
   size_t size; /* of the state, zeroed: bytes times count; 0: of "create" */
   size_t (*count)(const struct run *r); /* NULL: 1 */
   effect_copy copy_as;
-  int bit; /* EFFECT_BIT_... in m->effects, or NO_BIT */
+  int bit; /* EFFECT_BIT_... of the result of required in m->effects, for other
+              files; or NO_BIT */
   /* 1: the model requires it; the card or fact that does, or why none does. */
   int (*required)(const model *m, const reason *why);
-  /* Work expected before anything is solved; NULL: no row in the plan. */
+  /* Work expected before anything is solved; NULL: none, no row in the plan.
+   */
   effect_work (*expected)(const plan_sizes *s);
-  /* Of the hooks; 0: one of its name; STAGE_NONE: not timed. */
+  /* Of the hooks; 0: one of its name is made; STAGE_NONE: they are not timed.
+   */
   stage own;
   stage more[EFFECT_STAGES]; /* of run and outputs that count as it, 0 ends */
   const char *within;        /* the effect that it is part of; no stage then */
-  int shadow;                /* 1: stages within a hook are part of it */
-  int inside;                /* 1: the hooks enter it where it has work */
+  int shadow;                /* 1: stages entered inside a hook are part of
+                                it */
+  int inside;                /* 1: the hooks enter the stage themselves, where
+                                it has work */
 
   /* Reason why increments of half the length give no error of the steps with
    * this effect; NULL: they do. */
   const char *sums_up;
-  /* 1: it may move or load contact nodes without loads and supports. */
+  /* 1: it may move or load contact nodes independently of the loads and
+   * supports at the ends of a step. */
   int far;
 
   /* 1: gives the element strains without stress; NULL: none. */

@@ -56,7 +56,8 @@ static double residual_of(run *r, double *u, double *rc) {
                           run_rows(r, 1, rc));
 }
 
-/* Start values: the last equilibrium, its substitute, or the guess. */
+/* Start values: the last equilibrium, or what is put in its place, or the guess
+ * if it is nearer. */
 static void take_start(run *r) {
   const int own = r->course.shadow;
   double *u = r->old.uc, *rc = r->old.rc;
@@ -82,8 +83,9 @@ static int is_open(const run *r, const double *uc) {
 
 /*
  * A body in free motion: the solution without contact forces, if its residual,
- * written to *residual, is not above that. A tolerance relative to the motion
- * (contact_scale) would leave spurious contact forces.
+ * written to *residual, is not above that. The tolerance of a method, relative
+ * to the scale of the motion (contact_scale), would leave spurious contact
+ * forces.
  */
 static status drop_reactions(const run *r, double *residual, double *u,
                              double *rc) {
@@ -282,7 +284,8 @@ status increment_pose(run *r, double t) {
   return pose(r, strains_load(r));
 }
 
-/* Displacements of all nodes; an unheld body is put to its place. */
+/* Displacements of all nodes; a body that no force holds is put to its place.
+ */
 static status recover(run *r, const double *F) {
   double *u = run_rows(r, 0, r->now.uc), *f = run_rows(r, 1, r->now.rc);
   const rest_scene at = {.cp = &r->problem.cp,

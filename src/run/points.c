@@ -165,7 +165,8 @@ void visco_part_strains(run *r, const visco_part *p) {
   if (!all) to_points(r, p, v->stress, v->now.e);
 }
 
-/* Square of the deviator of a stress (shear 2) or a strain (1/2). */
+/* Square of the deviator of a stress, or of a strain whose shears are doubled:
+ * shear 2 or 1/2. */
 static inline double deviator_square(int ns, const double *t, double shear) {
   const double mean = (t[0] + t[1] + t[2]) / 3.0;
   double sum = 0.0;

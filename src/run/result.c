@@ -214,7 +214,8 @@ static void find_totals(run *r) {
   for (int i = 0; i < r->nodes.n; ++i) add_node(r, i);
 }
 
-/* Torque of the contacts about their axes, where MOVE has brought them. */
+/* Torque of the contacts about their axes; one taken from an obstacle is where
+ * MOVE has brought it. */
 static void find_torques(run *r) {
   for (int i = 0; i < r->m->n.contact && r->result.torque != NULL; ++i) {
     const contact *c = &r->m->contacts[i];

@@ -71,8 +71,9 @@ typedef struct contact_nodes {
   int n_reported;      /* how many the output has */
 } contact_nodes;
 
-/* Elasticity of the elements: one entry for each section, and for each element
- * whose constants follow its temperature. */
+/* Elasticity of the elements: one entry for each section, and one for each
+ * element whose constants follow its temperature (*ELASTIC with several sets,
+ * and temperatures in the deck). */
 typedef struct moduli {
   int n;           /* entries: sections, then the elements */
   int n_own;       /* elements with an entry of their own */
@@ -234,7 +235,8 @@ int run_step_id(const run *r); /* from 0 */
 status effects_create(run *r, const effect_ops *const *table);
 /* sums_up of the first that has it, or NULL. */
 const char *effects_sum_up(const run *r);
-/* history/history.c: 1: slip or strains of increments before count. */
+/* history/history.c: 1: slip or inelastic strains of the increments before have
+ * a part in this one. */
 int run_remembers(const run *r);
 /* The same, or steps before in strains that are held or an effect sums up. */
 int run_inherits(const run *r);
@@ -279,7 +281,8 @@ status run_renew_elastic(run *r);
 /* Data of the estimates of the matrix in use. */
 void run_forget_estimates(run *r);
 void matrices_free(matrices *m);
-/* Saved data of the solver, in a group of this name, or for the next. */
+/* Saved data of the solver, in a group of this name; reading: for the solver
+ * that is made next. */
 status matrices_keep(matrices *m, archive *a, const char *group);
 /* The operator that is made again follows what the one before a restart did. */
 status matrices_follow(matrices *m);
@@ -291,9 +294,11 @@ status run_room_for_part(run *r);
 /* 1: a contact node that was left out of r->problem.cp is beyond its gap in
  * r->now, or no equilibrium was found without those. */
 int run_misses_nodes(const run *r);
-/* Those and more nodes for r->problem.cp, with a new solver. */
+/* Those and more nodes for r->problem.cp, with a matrix and a solver of their
+ * own. */
 status run_add_nodes(run *r);
-/* A stiffness, chosen again, and a solver for r->nodes.reach. */
+/* A stiffness, chosen again, and a solver for the nodes that r->nodes.reach now
+ * has. */
 status run_renew_nodes(run *r);
 
 /* stiffness.c: how the contact problem of the current supports and nodes knows
@@ -312,7 +317,8 @@ status run_take_stiffness(run *r);
 status moduli_new(const model *m, const mesh *msh, const double *T,
                   moduli *out);
 void moduli_free(moduli *x); /* accepts all-zero */
-/* To other temperatures; *changed = 1: some entry has. ERR_DECK likewise. */
+/* To other temperatures; *changed = 1 if an entry is another one now, else it
+ * stays. ERR_DECK likewise. */
 status moduli_heat(moduli *x, const model *m, const double *T, int *changed);
 /* What d knows of its elements, borrowed from x and m. */
 void moduli_domain(const moduli *x, const model *m, domain *d);
@@ -328,7 +334,8 @@ void strains_free(run *r);
 size_t strains_kept(const run *r);
 /* r->strains.eigen.e0 from the current strains. */
 void strains_collect(run *r);
-/* The loads with the forces of the strains of r->now, or r->now.F. */
+/* The loads with the forces of the strains of r->now: r->now.F itself if there
+ * are none. */
 const double *strains_load(run *r);
 /* Strains of r->now and stresses of e, from which the works count. */
 void strains_start(run *r, equilibrium *e);
@@ -338,7 +345,8 @@ void strains_work(run *r, energies *e);
 double strains_energy(const run *r); /* of the stresses of r->now, J */
 /* -, displacements and forces in u and A u, by rounding */
 #define RUN_CARRIED (4 * DBL_EPSILON)
-/* Error of the largest displacement of r->now, m; what u stores, J. */
+/* Error of the largest displacement of r->now, m; what an error u of all
+ * displacements stores, J. */
 double strains_lost(const run *r);
 double strains_rounding(const run *r, double u);
 
@@ -353,11 +361,13 @@ void visco_show(const run *r, state *s); /* view of the outputs */
 void run_change_moduli(run *r);
 void visco_new_solvers(run *r); /* for a step with the same supports */
 void visco_forget(run *r);      /* matrices are made again */
-/* visco.c, at the start of a step: the strains of r->now as r->old. */
+/* visco.c, at the start of any step: the strains of r->now are those of r->old.
+ */
 void visco_rest(run *r);
 /* At the start of a *VISCO step: stresses of r->old. */
 status visco_begin_step(run *r);
-/* From r->old to time t by the integrator; read r->solving.report. */
+/* From r->old to r->now at time t by the integrator of the step; read
+ * r->solving.report. */
 status visco_advance(run *r, double t);
 /* The same with an estimate of the error of its strains over the largest
  * elastic strains so far: from the integrator, or from two steps of half the
@@ -375,7 +385,8 @@ void visco_take(run *r);
 status visco_accept(run *r);
 status visco_keep(run *r, archive *a);
 
-/* increment.c: the equilibrium at t in r->now; r->solving.report. */
+/* increment.c: the equilibrium at time t into r->now; read r->solving.report.
+ */
 status increment_solve(run *r, double t);
 /* Largest of the loads F[dim*n_node] that no support bears at once, N. */
 double increment_free_load(const run *r, const double *F);
@@ -390,13 +401,15 @@ double *run_rows(const run *r, int k, double *v);
 void run_take_rows(const run *r, const double *v, double *rows);
 /* Loads and contact problem of time t without solving. */
 status increment_pose(run *r, double t);
-/* Its parts: loads, temperatures and thermal strains at t; all such strains;
- * then the equilibrium with the matrix under the forces F[dim*n_node]. */
+/* Its parts: loads, temperatures and thermal strains at t; with all strains
+ * that carry no stress; then the equilibrium with the matrix in use under the
+ * forces F[dim*n_node]. */
 status increment_load(run *r, double t);
 status increment_begin(run *r, double t);
 status increment_equilibrium(run *r, const double *F);
 
-/* result.c: the results of r->now, as the effects and "due" require. */
+/* result.c: stresses, reactions, totals, energies of r->now as far as the
+ * effects and "due" require. */
 status result_evaluate(run *r, int due);
 
 /* shadow.c: the state at t within the increment made from r->old to r->now;

@@ -11,7 +11,8 @@
 
 struct run;
 
-/* Of *REFERENCE over the norm of the closed form, -; NAN: none. */
+/* Of *REFERENCE, relative to the norm of the closed form, -; NAN: not
+ * available. */
 typedef struct true_error {
   int asked;
   double energy;       /* of the stresses, integral of s' inv(E) s; without

@@ -86,7 +86,8 @@ typedef struct made_kinds {
   int dense, factor;
 } made_kinds;
 
-/* The row of DENSE as of a compact body, of FACTOR at least. */
+/* The row of DENSE, its factor as of a compact body, and of FACTOR what it
+ * takes at least. */
 static void bound(const run *r, made_kinds made, stiffness_choice *c) {
   const double m = r->nodes.n_row, n = unknowns_of(r);
   const work_ahead w = look_ahead(r);

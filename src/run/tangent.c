@@ -204,7 +204,8 @@ static void part_stress(run *r, const flow_tangent *law, const double *sigma,
   }
 }
 
-/* r->strains.load: loads with those of the law and of heat. */
+/* r->strains.load: the loads with what the linear law and the thermal strains
+ * add to them. */
 static const double *tangent_load(run *r, const flow_tangent *law) {
   const visco_part all = {0, r->strains.eigen.n, 0, r->strains.visco->x.n};
   part_stress(r, law, law->sigma, law->e, &all);

@@ -12,7 +12,8 @@
 /* The error of the midpoint rule in its difference to the trapezoidal one. */
 static const double SIMPSON = 3.0;
 
-/* Laws have few rows; the contact between has as many as there are. */
+/* The laws of the points have few rows, the contact between their calls as
+ * many as there are. */
 static void leave_laws(const run *r) {
   timer_leave(STAGE_INELASTIC);
   blas_rows(r->problem.cp.m);

@@ -14,12 +14,14 @@ typedef struct locking_sums {
   double growth;         /* m3, square of the inelastic change of volume */
 } locking_sums;
 
-/* Sums over the points for an increment and its end, of constant laws. */
+/* Sums over the points for an increment and its end, computed during a step of
+ * constant laws. */
 typedef struct point_sums {
   int known;                 /* 1: those of r->strains.visco->old and now,
                                 r->old and r->now */
   double thermal, inelastic; /* J, work of the middle stress on the strains */
-  double held;               /* J, of the strains if they were held */
+  double held;               /* J, what the strains would store if they were
+                                held */
   double strain;             /* J, energy of the stresses */
   double stored;             /* J, stored by the laws */
   double elastic;            /* m3, square of the elastic strains */

@@ -131,7 +131,8 @@ static void keep(run *s) {
   }
 }
 
-/* gamma[kept], newest first, by elimination without dependent ones. */
+/* gamma[kept], newest first, by elimination; a difference that depends on the
+ * newer ones is left out. */
 static void weights(const run *s, double *gamma) {
   double N[DEPTH][DEPTH + 1], first[DEPTH];
   int n = s->kept, place[DEPTH];
@@ -187,7 +188,8 @@ static void accelerate(run *s, int k) {
 
 /* ---- control ------------------------------------------------------------ */
 
-/* No progress: alternate sweeps, then shorter steps. 0: no remedy left. */
+/* No progress for long: alternate forward and backward sweeps, then shorter
+ * steps. 0: no remedy left. */
 static int cure(run *s) {
   static const double shorter[] = {1.0, 0.6, 0.3};
   forget(s);

@@ -13,7 +13,8 @@ enum {
 static const double FINEST = 0.1; /* -, of the tolerance: enough for a pass */
 static const double COARSE = 0.9; /* -, of it: enough where passes stagnate */
 static const double MIXING_RATE = 0.2;     /* -, slower: mix */
-static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: below is rounding */
+static const double RATE_MARGIN = 0x1p-24; /* -, of |g|: shorter differences
+                                              are rounding */
 static const double SHORTEST_STEP = 1.0 / 32.0; /* -, of G(g) - g */
 
 struct fixed_point {
@@ -163,7 +164,8 @@ static void accept(fixed_point *fp, course *c, double defect, int first) {
   COPY(fp->last_G, fp->image, fp->n);
 }
 
-/* Check the pass; set the limit of the next in fp->g. 0: no further one. */
+/* Check the pass just made; set the limit of the next one in fp->g. 0: no
+ * further pass. */
 static int advance(fixed_point *fp, course *c, double residual, int first) {
   double defect = 0.0;
   for (int i = 0; i < fp->n; ++i)
@@ -226,7 +228,8 @@ status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
       return OK;
     }
     rep->limit_updates = p.control.limit_update = k;
-    /* not below the accuracy of the limit; finer after an idle pass */
+    /* not finer than the accuracy of the limit; finer if the last pass had no
+     * effect */
     int idle = rep->iterations - before <= IDLE;
     double wanted = fmin(1e-2 * change, idle ? 0.1 * c.lowest : HUGE_VAL);
     before = rep->iterations;

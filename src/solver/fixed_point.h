@@ -28,8 +28,9 @@ status fixed_point_new(int n, fixed_point **out); /* for n contact nodes */
  * control->limit_max_iter, 200 if 0; iterations of all passes: at most
  * control->max_iter. rep: iterations of all passes, passes, rate = |G(g_k) -
  * G(g_k-1)| / |g_k - g_k-1| of the last two passes. Where that is slow,
- * Anderson mixing speeds it up; a mixed step that raises |G(g) - g| becomes a
- * plain one, and plain ones that do are shortened.
+ * Anderson mixing speeds it up; a mixed step that raises |G(g) - g| is rejected
+ * and a plain one made, and plain steps that raise it again and again are
+ * shortened.
  */
 status fixed_point_solve(fixed_point *fp, const contact_problem *cp,
                          const inner_solver *inner,

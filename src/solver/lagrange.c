@@ -9,9 +9,10 @@
  *
  * P the projection on r_n <= 0, |r_t| <= g, o the gap and the stick position, D
  * the inverse diagonal of W = inv(A). theta = 0 is Uzawa's method; with
- * Nesterov's theta_k (1983), restarted by the gradient (O'Donoghue, Candes
- * 2015), the number of steps grows with the square root of the condition of D W
- * only. u is carried by the combination of r, so a step is one product with W.
+ * Nesterov's theta_k (1983), begun again when a step turns against the gradient
+ * (O'Donoghue, Candes 2015), the number of steps grows with the square root of
+ * the condition of D W only. u is carried by the combination of r, so a step is
+ * one product with W.
  *
  * The step rho is 1/largest eigenvalue of D W. The power method gives it a
  * little too large; every step checks what descent needs,
@@ -104,7 +105,8 @@ static outcome check(run *s, int k) {
   return k - s->since > PATIENCE ? STOPPED_STAGNATION : RUNNING;
 }
 
-/* r and x after a gradient step from y; 0: it was too long, now shorter. */
+/* r and x after a step of gradient projection from y; 0: the step was too long
+ * and is now shorter. */
 static int project_step(run *s) {
   lagrange_work *w = s->w;
   const force_set *set = w->set;

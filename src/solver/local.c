@@ -82,7 +82,8 @@ static double slip_excess(const disc_problem *dp, double nu, double *q,
 }
 
 /* The root of slip_excess by Newton steps from nu, of the last visit or of
- * stick (0: Tresca, monotone), kept inside a bracket. */
+ * stick (0, where Tresca friction makes them monotone), kept inside a
+ * bracket. */
 static void slip_disc(const disc_problem *dp, double nu, double *s) {
   double low = 0.0, high = HUGE_VAL, q[2], slope;
   double start = 1.0 / (dp->S[0] + dp->S[3]);

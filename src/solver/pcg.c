@@ -243,7 +243,8 @@ static void curvature_product(run *s) {
       w->v[i * cp->dim + k] += w->turn[i] * w->p[i * cp->dim + k];
 }
 
-/* r to r0 + share*(v - r0) and into the set; 1: J has not grown. */
+/* r to r0 + share*(v - r0) and into the set; x there. 1: J has not grown but by
+ * rounding. */
 static int arrive(run *s, double share, const double *aim) {
   pcg_work *w = s->w;
   int m = s->cp->m;

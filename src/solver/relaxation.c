@@ -16,8 +16,9 @@ struct node_blocks {
   double *step, *strained; /* [m] of a sweep, m; A times it, N */
 };
 
-/* Inverse of a d*d block by elimination without pivoting: a share of "lift" is
- * added where it is not definite (the fixed point is unchanged). */
+/* Inverse of a d*d block by elimination without pivoting: the block is positive
+ * definite, else a share of "lift" is added to its diagonal (the fixed point of
+ * the iteration is unchanged). */
 static void invert_block(int d, const double *block, double lift, double *K) {
   double M[9];
   COPY(M, block, d * d);
@@ -164,7 +165,8 @@ static int rests(const relaxation *s, int node_id) {
   return contact_node_limit(cp, s->r, node_id) == 0.0;
 }
 
-/* Solve the node; step[dim]: change of its displacement (or force). */
+/* Solve the node; step[dim]: change of its displacement (of its force in
+ * compliance form). */
 static void node_step(relaxation *s, int node_id, double *step) {
   const contact_problem *cp = s->cp;
   local_problem lp;
@@ -311,7 +313,8 @@ static void add_unknown(const relaxation *s, int dof, const double *d,
   f->least = fmax(f->least, ROUNDING * k * fabs(s->u[dof]));
 }
 
-/* Distance of a node to its bound or stick over its step; or HUGE_VAL. */
+/* Distance of a node to its bound or stick position over its step; HUGE_VAL:
+ * the step leads to neither. */
 static double steps_of(const relaxation *s, int node_id, const double *d,
                        double most) {
   const contact_problem *cp = s->cp;
@@ -373,8 +376,9 @@ int relaxation_fly(relaxation *s, const double *from) {
   return most;
 }
 
-/* 1: a body that contact alone holds drifts off: a few sweeps make a rigid
- * motion with the load, to no obstacle. The iterate is lost. from[m]: work. */
+/* 1: a body that contact alone holds drifts off: a few more sweeps make a rigid
+ * motion on which the load does work and that leads to no obstacle. The iterate
+ * is overwritten. from[m]: work. */
 static int drifts(relaxation *s, double *from) {
   const contact_problem *cp = s->cp;
   size_t m = cp->m;

@@ -76,7 +76,8 @@ static void check(single *s, const double *u, const double *r) {
 
 /* ---- states that are linear ---------------------------------------------- */
 
-/* The state with u_i = u[i] where "fixed" has bit i, else r_i = 0. */
+/* The state with u_i = u[i] of the unknowns in "fixed" (bit i), r_i = 0 of the
+ * others. */
 static void try_linear(single *s, unsigned fixed, const double *at) {
   double M[9], b[3], u[3], r[3], power[3], work[WORK];
   int m = s->m, pivot[3] = {0, 0, 0}, rank;

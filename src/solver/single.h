@@ -15,9 +15,10 @@
 #include "contact/contact.h"
 
 /*
- * cp->n = 1. Of the solutions to tol one with the status of the start comes
- * back in u[m], r[m], the nearest in u (in r of a compliance), else of all; its
- * contact_residual in *residual. 0: none found, u and r are as before.
+ * cp->n = 1. Of the solutions to tol one with the status of the start (u, r)
+ * comes back in u[m], r[m], the nearest in u (in r if the compliance is given),
+ * else the nearest of all; its contact_residual in *residual. 0: none found, u
+ * and r are as before.
  */
 int single_solve(const contact_problem *cp, double scale, double tol, double *u,
                  double *r, double *residual);

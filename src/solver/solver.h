@@ -43,7 +43,8 @@ typedef struct solver_listener {
   void *ctx;
 } solver_listener;
 
-/* Sweeps go on while the rate of "every" predicts the end within "most". */
+/* Sweeps go on while their rate, observed over "every" of them, predicts the
+ * answer within "most". */
 typedef struct sweep_promise {
   int every;
   double most;
@@ -59,7 +60,8 @@ typedef struct solver_control {
   int max_iter;                    /* 0: the solver's own limit */
   int limit_max_iter;              /* passes of a fixed point on g; 0: 200 */
   double scale;                    /* contact_scale; 0: not known */
-  int no_restart;                  /* 1: no start from another guess */
+  int no_restart;                  /* 1: stop rather than start again from
+                                      another guess */
   int limit_update;                /* pass now running, for the listener */
   sweep_promise *promise;          /* of sweeps; or NULL */
   const solver_listener *listener; /* or NULL */
@@ -81,7 +83,8 @@ enum {
 typedef struct solver_ops {
   const char *name;    /* METHOD= in lower case; what the manual tells
                           of it stands in src/manual/methods.txt */
-  const char *family;  /* two of one kind share their weaknesses */
+  const char *family;  /* kind of method: two of one family share their
+                          weaknesses */
   unsigned handles;    /* bits above */
   const char *entries; /* the method and why it needs the entries of
                           A; NULL: an operator (contact/operator.h)
@@ -128,7 +131,8 @@ int solver_progresses(double *mark, double residual);
 void solver_report_all(const solver_control *control, const solver_step *s);
 void solver_report_step(const solver_control *control, const char *solver,
                         int iteration, double residual);
-/* The same with nodes that changed, and whether a pattern came again. */
+/* The same with the nodes that changed their state, and whether a pattern of
+ * states was repeated. */
 void solver_report_states(const solver_control *control, const char *solver,
                           int iteration, double residual, int changes,
                           int cycle);

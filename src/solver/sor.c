@@ -96,7 +96,8 @@ static void choose_omega(relaxation *s, course *c) {
   if (wanted > omega) s->omega = fmin(wanted, c->omega_cap);
 }
 
-/* No progress: less relaxation, another order, damping. 0: none left. */
+/* No progress for long: less relaxation, then another order, then damping. 0:
+ * no remedy left. */
 static int cure(relaxation *s, course *c) {
   c->since = c->circling = 0;
   c->mark = HUGE_VAL;

@@ -156,7 +156,8 @@ static void precondition(linear_system *s, int transposed, const double *v,
   linear_add_friction(rows, s->Ax, y);
 }
 
-/* Column j of H[(DIRECTIONS+1)*] by w against V, which gets the next one. */
+/* Column j of H[(DIRECTIONS+1)*] by w against the directions V, which becomes
+ * the next one. */
 static void orthogonalise(int m, int j, double *V, double *h) {
   double *w = V + (size_t)m * (j + 1);
   for (int pass = 0; pass < 2; ++pass)
@@ -266,7 +267,8 @@ static status linear_solve(linear_system *s, const double *b, double *x) {
   return OK;
 }
 
-/* w[m]: M' w = b where free, B' (e.w_t) on closed normals; ERR_MEMORY. */
+/* w[m]: M' w = b at the free unknowns, B' (e.w_t) on closed normals, else 0.
+ * ERR_MEMORY. */
 static status linear_solve_transposed(linear_system *s, const double *b,
                                       double *w) {
   CLEAR(w, s->rows->cp->m);
@@ -368,7 +370,8 @@ status contact_adjoint_solve(contact_adjoint *a, const double *j,
   for (int k = 0; k < cp->m; ++k) y[k] += a->w[k];
   contact_apply(cp, y, a->Ax);
   *solver = misses(a, j, y);
-  /* Where a node sticks, the rest of the equation; in 3-D slip turns. */
+  /* Where a node sticks, the rest of the adjoint equation; in space slip turns
+   * with it. */
   CLEAR(a->stick, cp->m);
   linear_add_turn(&a->rows, a->w, a->stick);
   for (int k = 0; k < cp->m; ++k)

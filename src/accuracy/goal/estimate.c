@@ -725,7 +725,8 @@ void goal_estimator_force(goal_estimator *e, double *F) {
   for (size_t k = 0; k < n; ++k) F[k] = -F[k];
 }
 
-/* e->by_given: where friction rubs 1 - integral of sigma : e(y) over 2 E. */
+/* e->by_given: where friction rubs 1 - integral of sigma : e(y) over twice the
+ * energy. */
 static void set_share(goal_estimator *e, const double *y) {
   const double whole = 2.0 * domain_strain_energy(e->s.d, e->s.u);
   e->by_given = 1.0;

@@ -82,7 +82,8 @@ status contact_adjoint_solve(contact_adjoint *a, const double *j,
                              const double *psi, double *y, double *solver);
 /* [m] derivative of the J solved last by the positions of stick. */
 const double *contact_adjoint_stick(const contact_adjoint *a);
-/* du[m]: change of u by loads df[m] and positions of stick + stick[m]. */
+/* du[m]: the change of u by loads df[m] and by positions of stick that are
+ * stick[m] further. */
 status contact_adjoint_change(contact_adjoint *a, const double *df,
                               const double *stick, double *du);
 
@@ -92,7 +93,8 @@ typedef struct contact_edge {
   int closed, stuck; /* both ends are */
   double n[3];       /* unit normal, the mean of its ends */
   double out[3];     /* from its middle to the surface of the body, m */
-  double excess;     /* m, what u along n is beyond that of ends */
+  double excess;     /* what u along n is there more than the mean of its ends,
+                        m */
   double rough;      /* how the gap differs from the parabola of excess, m */
   double stick[3];   /* what u was in its bubble where it began to stick, m */
   double weight;     /* integral of its bubble over the surface, m2 */
@@ -106,7 +108,8 @@ typedef struct bent_edge {
   double out[3]; /* from its middle to the surface of the body, m */
 } bent_edge;
 
-/* An edge that a support holds, a < b, whose displacement is not linear. */
+/* An edge that a support holds, node ids a < b, whose displacement is no linear
+ * function along it. */
 typedef struct given_edge {
   int a, b;
   double bend[3]; /* in its middle less the mean of its ends, m */
@@ -158,7 +161,8 @@ double goal_estimator_energy(const goal_estimator *e); /* |e_u|^2, J */
 /* [dim*n_edge] what u is in the bubbles of the contact edges, m; of a crack,
  * less the mean of both lips. */
 const double *goal_estimator_edges(const goal_estimator *e);
-/* d[dim] of u in the bubble of the edge from node a to b, m; has_mean. */
+/* d[dim] what u is in the bubble of the edge from node a to b of an element, m;
+ * has_mean. */
 void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
                            double *d);
 /* J of u, what u is in the bubbles too, by its derivative f. */
@@ -174,11 +178,12 @@ void goal_estimator_adjoint_force(const goal_estimator *e, double *F);
  *
  *   sum over edges of R d,   R = integral of (tau - sigma(y)) : e(b),
  *
- * b = 4 la lb the bubble of the edge, d that of u from gradients; on closed
- * edges d_n is that of the gap, and d_t where they stick what it was when they
- * began to. In axisymmetric elements at points, as strains vary within them.
- * of_u: J is the energy, tau the stress of u, and the error has its square.
- * product[n_elem] or NULL: the share of each element in out->product.
+ * b = 4 la lb the bubble of the edge and d the part of u in it, from recovered
+ * gradients; on closed edges d_n is that of the gap, and d_t where they
+ * stick what it was when they began to. In axisymmetric elements at points, as
+ * strains vary within them. of_u: J is the energy, tau the stress of u, and the
+ * error has its square. product[n_elem] or NULL: the share of each element in
+ * out->product.
  */
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           int of_u, double *product, goal_estimate *out);

@@ -11,7 +11,8 @@
  */
 #include "accuracy/theorems/theorems.h"
 
-/* A contact problem with part of its limit and forces given (theorems.h). */
+/* A contact problem with part of its sliding limit and of its normal forces
+ * given (theorems.h). */
 
 static int is_given(const unsigned char *given, int i) {
   return given != NULL && given[i];
@@ -69,7 +70,8 @@ void frozen_free(frozen_problem *p) {
   *p = (frozen_problem){0};
 }
 
-/* ---- The fixed point of Theorem 3.2 of CPR98 (theorems.h). */
+/* ---- The fixed point of Theorem 3.2 of CPR98: rate and constants
+ * (theorems.h). */
 
 enum { PASSES = 120 };
 static const double STEADY =

@@ -9,8 +9,9 @@
 
 enum { FIELDS_OF_ALL = 32 };
 
-/* Components that a test field changes at a node. Of friction or pressure a
- * defect of the smaller one shows only if the dominant one is unchanged. */
+/* Components that a test field changes at a node. Where friction or pressure
+ * dominate, a defect of the other shows only if the dominant one is
+ * unchanged. */
 typedef enum { ALONG_N, ONTO_BOUND, ALONG_T, TO_REST, ANYWHERE } move;
 static const move moves[] = {ONTO_BOUND, ALONG_N,  ALONG_N,  ALONG_N,
                              ALONG_N,    TO_REST,  ALONG_T,  ALONG_T,
@@ -226,7 +227,8 @@ static int same_friction(const theorems *t, const contact_problem *cp) {
   return size == 0 || memcmp(t->entries, cp->B->val, size) == 0;
 }
 
-/* 1: a node has a limit that follows pressure; keep[n] marks them. */
+/* 1 if a node of the contact has a limit that follows pressure; keep[n] marks
+ * its nodes. */
 static int mark_contact(const theorems_scene *s, const contact_problem *cp,
                         int contact_id, unsigned char *keep) {
   int any = 0;

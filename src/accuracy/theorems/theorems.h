@@ -38,7 +38,8 @@ typedef struct theorems_scene {
   const int *contact_id;      /* [n] */
   const double *mu;           /* [n_contact] largest of its nodes, - */
   const unsigned char *given; /* [n] 1: the normal force is given; NULL: none */
-  int alone;                  /* 1: (3.10) has no meaning: static, a start */
+  int alone;                  /* 1: (3.10) has no meaning: a static problem, a
+                                 start */
   double tol;                 /* residual the solver was to reach, - */
 } theorems_scene;
 
@@ -53,7 +54,8 @@ typedef struct theorems_contact {
   double mu;        /* largest, - */
   double factor;    /* q, -; HUGE_VAL: none, friction alone resists a motion */
   double limit;     /* unique for mu below it: mu/q = 1/C_h, -; NAN: mu = 0 */
-  double rate;      /* measured contraction at the solution, - */
+  double rate;      /* contraction of the fixed point measured at the solution,
+                       - */
   double suggested; /* mu/rate, -; HUGE_VAL: nothing slides */
   double normal;    /* lmax(A_nn), N/m; of the contact */
   double tangent;   /* lmax(inv(A)_tt), m/N */
@@ -73,7 +75,8 @@ typedef struct theorems_path {
   double rate;     /* of the map linearised at the solution, asymptotic, - */
   double bound;    /* q, - */
   double speed;    /* L, 1/s */
-  double longest;  /* s, shorter increments contract; HUGE_VAL: no flow */
+  double longest;  /* s, increments below it contract; HUGE_VAL: nothing
+                      flows */
   double span;     /* T, since the start of the step, s */
   double passes;   /* least k over T, with the largest L so far, - */
   int violated;    /* rate > bound */
@@ -90,7 +93,8 @@ typedef struct theorems_report {
   double inequality;                /* least of S_i^n over the test fields, - */
   int n_field;                      /* fields tried */
   int inequality_violated;
-  int has_start; /* 1: start is that of the first state, (3.8) */
+  int has_start; /* 1: start is that of the initial state,
+                    (3.8) */
   double start;  /* least of (3.8) over the test fields, - */
   theorems_path path;
   int violated; /* any of them */
@@ -116,7 +120,8 @@ typedef struct stress_map {
 /* From where the context stands: the factor that passes end with, 0 if nothing
  * is left. Each pass starts from the last result over its norm. */
 status theorems_path_rate(const stress_map *map, double *rate);
-/* Constants from bound = q of a step dt by theta, "span" after the "start". */
+/* Constants from bound = q of a step dt by theta, after "span" since "start"
+ * of a step. */
 void theorems_path_learn(theorems *t, double theta, double dt, double span,
                          theorems_path *p);
 /* Least k with x^k/k! < 1. */
@@ -192,7 +197,8 @@ status bound_change(const contact_problem *cp, const double *u,
                     energy_norm *e, theorems_bound *b);
 
 /*
- * Least value over random test fields w in K (on one node, on all) of
+ * Least value over random admissible test fields w in K (on one node, and on
+ * all at once) of
  *   a(u, w - u) - (f, w - u) + j(w) - j(u),  j(v) = sum g_i |v_t,i - ut0_i|,
  * over (|f|+|r|)(|w - u|+|u|) in the norms of the diagonal of A, or less the
  * penetration of u itself, if that is worse. 0 or above for a solution; *fields

@@ -1,7 +1,8 @@
 /*
- * Named arrays saved in a file and read back bit for bit: of which a run goes
- * on. One function of a module serves both directions: it names each of its
- * arrays once, and archive_reads() says whether they are read or saved.
+ * Named arrays saved in a file and read back bit for bit: the state from which
+ * a run is continued. One function of a module serves both directions: it names
+ * each of its arrays once, and archive_reads() says whether they are read or
+ * saved.
  *
  * The file is HDF5 with one dataset per array, a list of them in the order they
  * were named, and a checksum of all.
@@ -33,10 +34,12 @@ void archive_leave(archive *const *a);
 /* The full name of the present group, to return to: "" at first. */
 const char *archive_group(const archive *a);
 void archive_go(archive *a, const char *group);
-/* All arrays of a group of an archive from a file into one to be filled, but
- * those it has; borrowed from it until archive_write. ERR_MEMORY. */
+/* All arrays of a group of an archive from a file into one to be filled, under
+ * the same names, but those it has; borrowed from it until archive_write.
+ * ERR_MEMORY. */
 status archive_pass_on(const archive *from, const char *group, archive *to);
-/* Length of an array of the present group in items; 0: there is none. */
+/* Length of an array of the present group in items of its kind; 0: it is not
+ * there. */
 size_t archive_length(const archive *a, const char *name);
 
 /*

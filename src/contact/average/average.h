@@ -98,8 +98,10 @@ typedef enum { MIRROR_NONE, MIRROR_MIN, MIRROR_MAX } average_mirror;
 typedef struct average_rule {
   kernel kernel;
   double radius;            /* rho, m */
-  int normalized;           /* 1: G_ij / W_i: uniform stays at edges */
-  int geodesic;             /* 1: distance along lines (plane), else straight */
+  int normalized;           /* 1: G_ij / W_i: a constant pressure is kept at
+                               edges too */
+  int geodesic;             /* 1: distance along the lines (plane only), else
+                               straight */
   average_mirror mirror[3]; /* by axis; not with geodesic, nor of the radius */
 } average_rule;
 

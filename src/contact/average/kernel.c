@@ -106,7 +106,8 @@ double face_segment_distance(int dim, const double *a, const double *b,
   return sqrt(distance2(dim, x, y));
 }
 
-/* Distance of the foot of x in a triangle; HUGE_VAL: it is outside. */
+/* Distance of the foot of x in the plane of a triangle; HUGE_VAL if it is
+ * outside of the triangle. */
 static double height(const double *corner, const double *x) {
   double n[3], a[3], b[3], side[3];
   vector_of(3, corner, corner + 3, a);
@@ -291,7 +292,8 @@ static void add_edge(flat *f, const double *a, const double *b) {
   add_outer(f, &e, in1, last);
 }
 
-/* Values at the foot and gradients turn integrals of w, w y into weights. */
+/* Values at the foot and gradients of the P1 functions turn the integrals of w
+ * and w y into weights. */
 static void to_weights(const flat *f, double weight[3]) {
   const double(*p)[2] = f->p;
   double twice = (p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -

@@ -34,7 +34,8 @@ static void into_plane(const facet *f, const double *x, double *y) {
 
 /* Frame from the edges u, v of a triangle. */
 static int frame_of_triangle(facet *f, const double *u, const double *v) {
-  static const double flat = 1e-14; /* area over edge^2: rounding */
+  static const double flat = 1e-14; /* area over the square of the longest edge:
+                                       rounding */
   double w[3];
   cross(u, v, f->normal);
   vector_of(3, u, v, w);

@@ -30,7 +30,8 @@ typedef struct shadow {
  * of one without the other is three such pieces. */
 enum { CLIP_CELLS = 10, CLIP_REST = 3 * CLIP_CELLS };
 
-/* node[dim] of a face, x[dim*n_node]. 0; -1: (nearly) on one line. */
+/* node[dim] of a face, x[dim*n_node]. 0; -1: the corners are (nearly) on one
+ * line, or one point. */
 int facet_set(int dim, const int *node, const double *x, facet *f);
 void facet_project(const facet *f, const int *node, const double *x, shadow *s);
 double cell_measure(int dim, const cell *c);

@@ -1,6 +1,7 @@
 /*
- * The integrals face by face; then by node. A node turns out to be hardly
- * covered when all faces are done: its faces are done again without it.
+ * The integrals face by face; then the faces of each node are put together. A
+ * node turns out to be hardly covered when all faces are done: its faces are
+ * done again without it.
  */
 #include "contact/mortar/mortar.h"
 
@@ -37,7 +38,8 @@ typedef struct face_part {
   double masters;  /* int size of the master faces, m3 */
   double more[3];  /* [dim] int psi_j phi of the nodes without multiplier, m2 */
   double lever[9]; /* [dim*dim] the same times their places, m3 */
-  double bulge[3]; /* [dim] int psi_j times what is beyond the faces, m3 */
+  double bulge[3]; /* [dim] int psi_j times what both surfaces have beyond their
+                      faces, m3 */
 } face_part;
 
 typedef struct builder {

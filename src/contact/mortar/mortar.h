@@ -20,8 +20,9 @@
  * box round the larger surface.
  *
  * Where the bodies differ in thickness they touch over the smaller one. The gap
- * is that of curved surfaces (bulge.c): two meshes of one circle have none, up
- * to h^4/R^3, where their faces are apart by h^2/8R.
+ * is that of curved surfaces, if the faces are those of one (bulge.c): two
+ * meshes of one circle have none, up to h^4/R^3, where their faces are apart by
+ * h^2/8R.
  *
  * A node carries no multiplier if the caller says so, if both surfaces have it,
  * or if less than 1 % of its area is covered. On the faces around it the
@@ -48,7 +49,8 @@ typedef struct node_links {
   double *part;  /* [dim*start[n]] of each component, - */
 } node_links;
 
-/* Nodes of *TIE: w = 0; a component with parts 0 is that of a support. */
+/* Nodes of *TIE: w = 0, but a component whose parts are 0 is that of a
+ * support. */
 typedef struct tie_set {
   int n;
   int *node_id;  /* [n] ascending, none a contact node */
@@ -65,9 +67,11 @@ typedef struct mortar_input {
   int n_slave, n_master;     /* faces */
   const int *slave, *master; /* face ids of mesh->face, each once */
   const double *x;           /* [dim*n_node] places of the nodes, m */
-  const double *face_weight; /* [n_face] thickness, m; 1 unless plane */
+  const double *face_weight; /* [n_face] thickness, m; 1 in 3-D and
+                                axisymmetric bodies */
   int axisymmetric;          /* once around the axis: weight 2 pi r */
-  int slave_normal;          /* 1: normals of the slave; 0: mean of both */
+  int slave_normal;          /* 1: normals of the slave alone; 0: mean of both
+                                sides */
   int flat;                  /* 1: the gap is that of the faces as they are */
   const unsigned char *dropped; /* [n_node] 1: carries no multiplier; NULL */
 } mortar_input;

@@ -1,7 +1,8 @@
 /*
  * Two partners of one component (joined through nodes) do not hide each other:
  * their projections have one sense. Where the partners are not joined, cover
- * too much, or are hidden, each loses what is covered by nearer ones.
+ * more than there is, or are hidden by others, each loses what is covered by
+ * nearer ones.
  */
 #include "contact/mortar/partner.h"
 

@@ -48,7 +48,8 @@ typedef struct partner_search {
 } partner_search;
 
 status partner_search_new(const mortar_input *in, partner_search *s);
-/* Relative size of rounding of the coordinates in the plane of f, - . */
+/* Relative size of what is only rounding of the coordinates in the plane of f,
+ * of the size of f, - . */
 double partner_rounding(const partner_search *s, const facet *f);
 /* list and cells of this slave face. */
 status partner_find(partner_search *s, int face, const facet *f);

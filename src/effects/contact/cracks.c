@@ -1,7 +1,8 @@
 /*
  * Stress intensity factors of the cracks (src/fracture): at the tips, in space
- * at the nodes of the fronts, by domain integrals, and at tips from the jumps
- * of the lips behind them (Williams 1957), good to some percent.
+ * at the nodes of the fronts, by domain integrals, and at tips also from the
+ * opening and sliding of the lips behind them (Williams 1957), a check that is
+ * good to some percent.
  */
 #include "effects/plan/effect.h"
 #include "effects/shared.h"
@@ -218,7 +219,8 @@ static double fit_at_zero(const fit *f) {
   return f->n < 2.0 || !(det > 0.0) ? NAN : (f->xx * f->y - f->x * f->xy) / det;
 }
 
-/* K of a node x behind the tip: a jump d is 8 K/E' sqrt(x/(2 pi)). */
+/* K of one node behind the tip at the distance x: a jump d of the lips is 8
+ * K/E' sqrt(x/(2 pi)). */
 static void add_jump(fit *f, double x, double jump, double modulus) {
   const double K = modulus / 8.0 * jump * sqrt(2.0 * acos(-1.0) / x);
   *f = (fit){f->n + 1.0, f->x + x, f->xx + x * x, f->y + K, f->xy + x * K};
@@ -275,7 +277,8 @@ static status find_elastic(const run *r, double *u) {
   return condense_recover(c, uc, u);
 }
 
-/* The power of the stress with which the material creeps; NAN: none. */
+/* The power of the stress with which the material of a tip creeps; NAN: no
+ * power law. */
 static double exponent_of(const run *r, const fracture_point *p) {
   enum { NORTON_N = 1 };
   if (p->section < 0) return NAN;

@@ -1,6 +1,7 @@
 /*
  * *CONTACT FORCE: given normal forces in the place of unilateral contact
- * (CPR98, problem D3). The solver takes a problem without them.
+ * (CPR98, problem D3). The solver takes a problem without those normals; its
+ * solution is transformed back.
  */
 #include "contact/formulation.h"
 #include "effects/plan/effect.h"

@@ -1,7 +1,8 @@
 /*
  * *WEAR: a body wears where it slides on an obstacle (Archard 1953): depth += k
- * p |slip|, after each increment, and opens the gap from the next one on. At a
- * corner each obstacle wears off along its own normal, by the slip over it.
+ * p |slip|, after each increment from its pressure p and slip, and the gap is
+ * opened by it from the next one on. At a corner each obstacle wears off along
+ * its own normal, by the slip over it.
  *
  * This is Euler's method for the pressures: with A the stiffness of the normals
  * of the nodes and D = k |slip|/area, the wear of an increment reduces the
@@ -12,7 +13,8 @@
 
 #include "run/column_row.h"
 
-/* depth[dim*n_node], along the normals of the rows of a node, m. */
+/* depth[dim*n_node] of the mesh, along the normals of the rows of a contact
+ * node, m. */
 
 static int requires_wear(const model *m, const reason *why) {
   const effect_card *c = model_effect_card(m, "WEAR", -1);

@@ -8,9 +8,10 @@
  * p^2, and w^2 or w^(2/3), are linear there: the squares are extended from the
  * last node of the zone to zero over its neighbour inside (in 3-D along the
  * gradient over the faces inside). w^(2/3) stays linear over several elements:
- * least squares remove the scatter of nodes and increments; the power with the
- * smaller misfit is taken. Without a neighbour inside, or with values that grow
- * outwards, the end is put half way to the next node.
+ * a line of least squares removes the scatter of the nodes and of the
+ * increments; the power with the smaller misfit is taken. Without a neighbour
+ * inside, or with values that grow outwards, the end is put half way to the
+ * next node.
  */
 #include "effects/plan/effect.h"
 #include "run/history/loop.h"

@@ -53,7 +53,8 @@ static status begin_step(run *r, void *self) {
   return OK;
 }
 
-/* The line through the last two equilibria of this step, at t. */
+/* The line through the last two equilibria, at t; without an earlier one in
+ * this step none. */
 static void guess(run *r, balance *b, double t) {
   double span = r->old.t - b->t, w = (t - r->old.t) / span;
   r->solving.guess_u = r->solving.guess_r = NULL;

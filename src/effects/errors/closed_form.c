@@ -1,5 +1,6 @@
 /*
- * *REFERENCE: the true error of increments against a closed form.
+ * *REFERENCE: the true error of each increment against a closed form, in the
+ * norms of the estimates.
  *
  * Integrals over the elements by Gauss-Legendre points of the unit cube, which
  * the map x = a, y = b (1 - a), z = c (1 - a)(1 - b) takes to the simplex.

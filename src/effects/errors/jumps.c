@@ -260,7 +260,8 @@ done:
   return st;
 }
 
-/* Jumps are searched where increments depend on their history. */
+/* Jumps are searched where friction makes increments depend on their
+ * history. */
 static int requires_check(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     if (m->steps[i].check != CHECK_NONE)

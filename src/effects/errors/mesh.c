@@ -1,5 +1,6 @@
 /*
- * *ACCURACY, MESH=: the error of the mesh by recovered stresses.
+ * *ACCURACY, MESH=: the error of the mesh by recovered stresses, of the body
+ * and of each element.
  */
 #include "effects/plan/effect.h"
 

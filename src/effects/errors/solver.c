@@ -1,7 +1,8 @@
 /*
  * The error of the contact solver: the bound of accuracy.h, in energy units and
  * relative to the energy norm of the body. The interior follows the contact
- * nodes exactly: the error of the body has the energy of the condensed one.
+ * nodes exactly, so that the error of the whole body has the energy of that of
+ * the condensed problem.
  *
  * An increment starts from the slip and the inelastic strains that the one
  * before has left, and their errors stay in it: with a given limit of friction
@@ -28,7 +29,8 @@ static status force_energy(void *ctx, const double *d, double *square) {
   return condensed_force_energy(ctx, d, square);
 }
 
-/* The factor of the body; 0: motions held by contact are not known. */
+/* The factor of the body; 0: the motions that contact alone holds are not
+ * known. */
 static int choose_inverse(run *r, double *diagonal, inverse_energy *out) {
   condensed_diagonal(r->c, diagonal);
   *out = (inverse_energy){.ctx = r->c,

@@ -44,7 +44,8 @@ typedef struct finer_path {
   int sudden;    /* 1: what is applied at the start of the step is to come */
   waypoint at, middle, end; /* accepted; of the attempt now made */
   double *d, *Ad;           /* [m] difference of the paths, m; N */
-  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n]; or NULL */
+  double *u, *e0;           /* [dim*n_node] m, [ns*eigen.n] at the end; NULL: no
+                               law flows */
 } finer_path;
 
 typedef struct paths {
@@ -81,7 +82,8 @@ static status path_begin(const run *r, paths *own) {
   return path_new(r, own->path);
 }
 
-/* The equilibrium at t from that of "from" into "to"; or lost. */
+/* The equilibrium at t from where "from" stands, into "to"; lost where there is
+ * none. */
 static status half(run *r, finer_path *p, waypoint *from, double t,
                    waypoint *to) {
   if (p->lost) return OK;
@@ -104,7 +106,8 @@ static void restart(paths *own) {
   own->now = (path_error){0};
 }
 
-/* Only slip in increments and inelastic strains depend on their path. */
+/* Only slip in increments and inelastic strains, those of steps before too,
+ * depend on their path. */
 static int path_exists(const run *r) {
   return effects_sum_up(r) == NULL && run_inherits(r);
 }
@@ -148,7 +151,8 @@ done:
   return st;
 }
 
-/* Energy norm of the difference of the paths, no strains, sqrt(J). */
+/* Energy norm of the difference of the paths without inelastic strains,
+ * sqrt(J). */
 static double condensed_difference(const run *r, finer_path *p) {
   double square = 0.0;
   for (int k = 0; k < r->nodes.n_c; ++k)
@@ -338,8 +342,9 @@ static status keep(run *r, void *self, archive *a) {
  *   or its own part of the error <= B dt/total:
  *
  * a contact that grows from a point makes most of its error at first, whatever
- * the increment. The norm at the end is estimated from its change. The next
- * increment is that for which a part that goes like dt^2 would meet the bound.
+ * the increment. The norm of the solution at the end is estimated from its
+ * change in the increment. The next increment is that for which a part that
+ * goes like dt^2 would meet the bound.
  */
 static const double SAFETY = 0.8, LONGER = 2.0, SHORTER = 0.25; /* - */
 static const double ROUNDING = 0x1p-40; /* -, of the largest energy norm */

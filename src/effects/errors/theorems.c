@@ -13,7 +13,8 @@ typedef struct checked {
   theorems_report report;
 } checked;
 
-/* Largest friction coefficient of the nodes of a contact, -; 0: none. */
+/* Largest friction coefficient of the nodes of a contact now, -; 0 for laws
+ * without one. */
 static status largest_mu(const run *r, int contact_id, double *mu) {
   const friction_rule *rule =
       friction_in_force(r->m, run_step_id(r), contact_id);

@@ -6,8 +6,9 @@
  *   o = 4 sum over edges of la lb B_ab,  B_ab = (n_b - n_a).(x_b - x_a)/8,
  *
  * and loads given by a formula have their value there. In space the rim of a
- * loaded surface is curved where its edges are smooth: by their outward normals
- * a part of the area 2/3 B_ab |x_b - x_a| lies beyond an edge. The forces
+ * loaded surface is curved where its edges at a node are smooth: by their
+ * outward normals along the surface a part of the area 2/3 B_ab |x_b - x_a|
+ * lies beyond an edge. The forces
  *
  *   dF v = F(v) - F_h(v) - integral of sigma : e(v) over the part beyond
  *
@@ -164,7 +165,8 @@ static int bent_edges(const run *r, const goal_ring *rings, int f,
   return n;
 }
 
-/* Of both faces of an edge: the mean of one surface, else on both. */
+/* Of both faces of an edge: the mean of one surface; where two meet, the edge
+ * is on both. */
 static void join_bent(bent_edge *e, const bent_edge *other) {
   const double share = fabs(dot(3, e->out, other->out)) <
                                SMOOTH * sqrt(dot(3, e->out, e->out) *
@@ -417,7 +419,8 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   return OK;
 }
 
-/* Of the rim at end k of an edge; next[2*n] the next end at its node. */
+/* Of the rim at end k of an edge, as normal_at; next[2*n] the other end with
+ * the same node in a ring. */
 static void out_at(const run *r, const rim_edge *e, const int *next, int k,
                    double *out) {
   const rim_edge *own = e + k / 2;

@@ -279,7 +279,7 @@ static double of_factor(const run *r, const shared *s) {
 }
 
 /* What contact forces do between the nodes: to the adjoint, and to what they
- * are summed with; and what of it is in doubt. */
+ * are summed with; and where friction turns back. */
 static status of_contact(const run *r, const shared *s, double *product,
                          double *sum, double *doubt) {
   const int dim = r->msh->dim;
@@ -344,7 +344,8 @@ static goal_verdict verdict_of(const goal_form *f, const goal_estimate *e,
 }
 
 /* In a corner of the border in the plane, where recovered gradients are
- * extrapolated: displacements were in error by 0.7 to 1.2 of the estimate. */
+ * extrapolated along both sides: there displacements were in error by 0.7
+ * to 1.2 of the estimate. */
 static double of_corner(const run *r, const goal_state *own, int id,
                         double error) {
   static const double CORNER = 2.6, PART = 0.5; /* rad, - */
@@ -368,8 +369,9 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
-/* 1: the same force of the obstacle on another node would change J: of few
- * nodes it follows their places. Radial forces are those of the place too. */
+/* 1: the same force of the obstacle on another node would change J: where few
+ * nodes have the forces, it is what their places make it. Radial forces are
+ * those of the place too. */
 static int turns(const run *r, const shared *s) {
   const contact_surface *on = r->surface;
   const int dim = r->msh->dim, last = r->problem.ut0 != NULL ? dim : 1;
@@ -393,7 +395,8 @@ static int turns(const run *r, const shared *s) {
   return most > TURN * size;
 }
 
-/* 1: few closed nodes, or all in a line in space: of a contact, or all. */
+/* 1: few closed nodes, or nodes in a line on a surface in space: of the contact
+ * of a goal, or of all. */
 static int has_few(const run *r, const shared *s, int id) {
   enum { FEW = 3 };
   const int of = r->m->accuracy.goals[id].contact_id;

@@ -36,7 +36,8 @@ static void stress_of(const domain *d, int e, const double *strain, double *t) {
   }
 }
 
-/* Forces of a stress t at a point of an element; r: radius or 0. */
+/* Forces of a stress t at a point of an element, of this weight; r: its radius,
+ * 0: not axisymmetric. */
 static void add_force(const mesh *m, int e, const double *b, const double *t,
                       double weight, double r, double *dF) {
   const int dim = m->dim, *v = m->elem + (dim + 1) * e;

@@ -62,7 +62,8 @@ status goal_add_mean(const run *r, int group_id, int component, double sign,
 
 /* ---- between them -------------------------------------------------------- */
 
-/* Integral of the bubble of the edge from corner a to b over v[n]. */
+/* Integral of the bubble of the edge from corner a to b over a face or an
+ * element v[n]. */
 static double bubble_integral(const run *r, const int *v, int n, int a, int b,
                               double measure) {
   static const double share[5] = {[2] = 2.0 / 3.0, [3] = 1.0 / 3.0, [4] = 0.2};

@@ -1,7 +1,8 @@
 /*
  * The parts of the goals: quantities as functions of displacements and contact
- * forces (quantity.c), those of a pressure (pressure.c), means (mean.c), the
- * contact surface (surface.c). Private to src/effects/goal.
+ * forces (quantity.c), those of a pressure (pressure.c), means (mean.c),
+ * the contact surface as the estimate sees it (surface.c). Private to
+ * src/effects/goal.
  */
 #pragma once
 
@@ -27,13 +28,16 @@ typedef struct goal_form {
   int has_tau;
   int sums;           /* 1: a sum over the increments, of which rows are the
                          derivative by the motion of the last */
-  int is_field;       /* 1: psi is a smooth vector along the surface */
+  int is_field;       /* 1: psi are the components of a vector that is smooth
+                         along the surface */
   double spin[3];     /* the axis of a moment, else 0 */
   int is_still;       /* 1: work of friction where nothing slips so far */
-  int is_coarse;      /* 1: of less than two elements a side, few round a tip */
+  int is_coarse;      /* 1: a mean over less than two elements to each side, or
+                         few elements round a tip */
   int is_front;       /* 1: a factor in space */
   int is_square;      /* 1: the energy, whose error has a quadratic part too */
-  double curved;      /* contact forces times psi's excess inside */
+  double curved;      /* contact forces times what psi is between the nodes more
+                         than at them */
   double size;        /* sum of the magnitudes that value is the sum of */
   double held;        /* what forces of held nodes, in none of them, may be */
   double rough;       /* what the integral of a factor lacks */
@@ -59,7 +63,8 @@ status goal_set_width(const run *r, const goal_card *g, goal_form *f);
 /* Of edges, faces and elements with data that formulas give. */
 enum { GOAL_PIECES = 16 };
 
-/* mean.c: adds a mean times a sign, and its bubbles. ERR_MEMORY. */
+/* mean.c: adds a mean times a sign; what of the means is in the bubbles.
+ * ERR_MEMORY. */
 status goal_add_mean(const run *r, int group_id, int component, double sign,
                      goal_form *f);
 double goal_mean_bubbles(const run *r, const goal_estimator *e,
@@ -75,7 +80,8 @@ typedef struct goal_ring {
 } goal_ring;
 /* All-zero r is new. ERR_MEMORY. */
 status goal_ring_new(const mesh *m, goal_ring *r);
-/* out[dim]: from the middle of edge v[2] of a face to the surface, m. */
+/* out[dim]: from the middle of an edge of nodes v[2] of a face to the surface
+ * of the body, m. */
 void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
                 double *out);
 /* where[n_node]: contact node of a mesh node, or -1; new. */
@@ -83,7 +89,8 @@ status goal_places(const run *r, int **where);
 /* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
 status goal_add_boundary(const run *r, double *dF);
 int goal_load_varies(const load *l); /* 1: from place to place */
-/* volume[n_elem] += what is beyond the faces of each element. ERR_MEMORY. */
+/* volume[n_elem] += what of the body is beyond the faces of each element, m3.
+ * ERR_MEMORY. */
 status goal_volumes_beyond(const run *r, double *volume);
 /* What a mean, without its sign, has by the surface beyond the faces. */
 status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
@@ -130,7 +137,8 @@ typedef struct goal_surface {
 } goal_surface;
 /* boundary.c: s->bent. */
 status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
-/* support.c: s->given; supports and interfaces of "of" to s->ends. */
+/* support.c: s->given, then what supports and interfaces between the regions
+ * "of" add to s->ends. */
 status goal_add_given(const run *r, goal_surface *s);
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s);
@@ -149,8 +157,9 @@ void goal_take_line(double *d);
 double goal_parabola(const double *d, double *rough);
 /* Work of the tractions of closed edges along the surface less that of their
  * nodes: *turn, that of their directions on y[dim*n_node], which beyond the
- * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of a
- * given friction on z by the surface longer than its chords. */
+ * chords is by spin more, 1 about the axis [3]; *area, in the plane, that of
+ * a given friction on z by the length of the surface more than that of the
+ * chords. */
 status goal_work_between(const run *r, const goal_surface *s, const double *y,
                          const double *z, const double *spin, double *turn,
                          double *area);

@@ -201,8 +201,9 @@ static int mirrors_of(const run *r, int q) {
   return n > 0 ? n : goal_is_mirrored(r, q);
 }
 
-/* Contact node nearest to the point of the goal, or of the largest pressure,
- * rather in a plane of symmetry; -1: nothing is closed. */
+/* Contact node nearest to the point of the goal, or that of the largest
+ * pressure, by a small margin one in a plane of symmetry; -1: nothing is
+ * closed. */
 static int peak_of(const run *r, const goal_card *g) {
   static const double margin = 0.01; /* -, for each plane */
   const int dim = r->msh->dim;

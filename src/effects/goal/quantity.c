@@ -80,8 +80,9 @@ static double held_part(const run *r, int face, const int *q, int k, int a) {
   return sum;
 }
 
-/* Of a held row without a force of its own: held_part. Next to slip, not on a
- * symmetry plane, the traction may be up to thrice that of the neighbours. */
+/* Of a held row without a force of its own: held_part. Next to slip, and not on
+ * a plane of symmetry, the traction may be that of the neighbours up to the
+ * node: up to thrice. */
 static void add_row(const run *r, int face, const int *q, int k, int a,
                     goal_form *f) {
   const int row = r->msh->dim * q[k] + a;

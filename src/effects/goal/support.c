@@ -39,7 +39,8 @@ static given_edge edge_of(const run *r, const load *l, const int *v) {
   return e;
 }
 
-/* Edges of the elements with both ends in[n_node]; NULL: counts them. */
+/* Edges of the elements with both ends in[n_node] the group of a load; counts
+ * them where e is NULL. */
 static int edges_in(const run *r, const load *l, const unsigned char *in,
                     given_edge *e) {
   const mesh *m = r->msh;
@@ -116,7 +117,8 @@ static void add_region(int region, double angle, joint *j) {
   j->n = region == j->second ? (j->n == 1 ? 2 : j->n) : 3;
 }
 
-/* 1: stresses are infinite where regions meet, n of them in "whole". */
+/* 1: stresses are infinite where regions meet: all of the body or its half are
+ * in the angle "whole". */
 static int is_bent(int n, double angle, double whole) {
   return n > 2 || fabs(angle - 0.5 * whole) > 2.0 * SLACK;
 }

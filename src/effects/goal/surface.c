@@ -224,7 +224,8 @@ static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
   s->ends[e.a] = s->ends[e.b] = GOAL_END_OF_CONTACT;
 }
 
-/* Edge a, b of two faces that lie on each other, v[dim] and w[dim]. */
+/* Edge a, b of two faces that lie on each other, v[dim] with the contact nodes,
+ * w[dim], node by node. */
 static void add_lip_edges(const run *r, const int *where, const int *v,
                           const int *w, double weight, goal_surface *s) {
   const int dim = r->msh->dim;
@@ -257,7 +258,8 @@ static void add_crack(const run *r, int id, const int *where, goal_surface *s) {
   }
 }
 
-/* 1: edge k of the sorted edges is of one face, not on a symmetry. */
+/* 1: edge k of the sorted edges of all faces is of one face, and not on a plane
+ * of symmetry. */
 static int is_border(const run *r, const int *where, const goal_surface *s,
                      int k) {
   const contact_edge *e = &s->edge[k];
@@ -267,7 +269,8 @@ static int is_border(const run *r, const int *where, const goal_surface *s,
          !goal_is_mirrored(r, where[e->a]) || !goal_is_mirrored(r, where[e->b]);
 }
 
-/* The border where it is closed: ends of a line, edges of one face. */
+/* The border where it is closed: ends of a line, edges of one face.
+ * seen[n_node] zero. */
 static void mark_border(const run *r, const int *where, int *seen,
                         goal_surface *s) {
   const int flat = r->msh->dim == 2;

@@ -1,9 +1,11 @@
 /*
- * The effect plan: what a run computes and writes, what calls for it, on how
- * many nodes or elements, and the share of the CPU seconds it is expected to
- * take; after the run what it took, from the stages that belong to it.
+ * The effect plan: what a run computes and writes, which card or fact of the
+ * deck calls for it, on how many nodes or elements, and the share of the CPU
+ * seconds it is expected to take; after the run what it took, from the stages
+ * that belong to it.
  *
- * Shares are of all that follows the mesh: deck, mesh, gmsh excluded.
+ * Shares are of all that follows the mesh: deck, mesh and what gmsh takes are
+ * not part of them.
  */
 #pragma once
 
@@ -62,7 +64,8 @@ status plan_new(const model *m, const mesh *msh, int n, effect_plan **out);
 status plan_leave_out(model *m, const mesh *msh);
 
 /* Bytes that a run holds at most besides the mesh, from the sizes alone; nodes:
- * condensed ones, or < 0: all; choice NULL: DENSE. msh NULL: as in plan_new. */
+ * of the contact that are condensed, or < 0: all; choice NULL: DENSE. msh NULL:
+ * as in plan_new. */
 typedef struct plan_bytes {
   double factor, contact, rest;
 } plan_bytes;
@@ -74,7 +77,8 @@ status plan_expect(const model *m, const mesh *msh, int n,
 
 /* The plan as a table; lead before each line. */
 void plan_print(const effect_plan *p, const char *lead, FILE *f);
-/* After the run: calls, with "cost" CPU seconds, share, bytes too. */
+/* After the run: calls, and with "cost" CPU seconds, share and bytes next to
+ * the expected ones. */
 void plan_print_cost(const effect_plan *p, int cost, FILE *f);
 
 /* Cost of a row so far: calls of its first stage, the rest of all. */

@@ -170,7 +170,8 @@ status plan_sizes_find(const model *m, const mesh *msh, int n, plan_sizes *s) {
  * Above the peaks measured over the examples: the factor; the condensed matrix,
  * its factor and three matrices of a solver; OF_ELEMENT bytes for what
  * assembly, ordering and fields take; BUFFERS of the files. A law that flows
- * has a matrix more, and the strains of the stages of its steps.
+ * has a matrix in addition to the elastic one, and the strains of the stages of
+ * its steps.
  */
 status plan_memory(const model *m, const mesh *msh, double nodes,
                    const stiffness_choice *choice, plan_bytes *b) {

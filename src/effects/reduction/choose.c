@@ -83,7 +83,8 @@ static status try_small(model *m, const mesh *msh, int id, int *tried) {
   return OK;
 }
 
-/* The shortest increment where a law flows always and is damped; else 0. */
+/* The shortest increment if the law flows in all steps and the integrator damps
+ * fast terms; else 0. */
 static double damped_increment(const model *m) {
   double least = HUGE_VAL;
   for (EACH(const step, s, m->steps, m->n.step)) {
@@ -150,7 +151,8 @@ static const double margin = 1.5; /* of stresses, - */
 enum {
   PIECES = 8,
   WORTH = 4
-}; /* increments of a step over those of the elastic one */
+}; /* increments of a step; the run has so many
+      times those of the elastic one */
 
 typedef struct preview {
   reduction *n;
@@ -375,7 +377,8 @@ static double option_value(const friction_rule *rule, const char *name) {
   return NAN;
 }
 
-/* 1: no node has another within the radius; the whole surface rubs. */
+/* 1: each node has none but itself within the radius, and friction acts on the
+ * whole surface. */
 static int is_local(const friction_rule *rule, double least) {
   static const char *const plain[] = {"ZONE", "MIRROR_X", "MIRROR_Y",
                                       "MIRROR_Z"};

@@ -181,7 +181,8 @@ static void measure_relaxed(reduction *n, const omitted *row, double dt,
   *norm = SAFETY * sqrt(sum);
 }
 
-/* Rates of one material: their norm; n->stress of it grows by dt. */
+/* Rates of one material under the current stresses: their norm; n->stress of
+ * its elements grows by dt. */
 static status add_rates(reduction *n, const state *s, const omitted *row,
                         double dt, double *norm) {
   const material *mat = &n->m->materials[row->id];
@@ -313,7 +314,8 @@ static double distance(size_t n, const double *a, const double *b) {
   return most;
 }
 
-/* Of the nodes: largest forces, sum of each direction of all nodes. */
+/* Of the nodes: largest normal and tangential force, sum of each direction of
+ * all nodes. */
 typedef struct force_sizes {
   double node[2], sum[3];
 } force_sizes;
@@ -336,7 +338,8 @@ static force_sizes sizes_of(const contact_surface *c, const double *rc,
   return f;
 }
 
-/* The forces over those of the increment; friction over its largest. */
+/* The forces against those of the increment; of friction against its largest
+ * so far. */
 static double force_change(reduction *n, const state *s, const double *rc) {
   const force_sizes now = sizes_of(s->contacts.surface, s->contacts.rc, NULL);
   const force_sizes d = sizes_of(s->contacts.surface, rc, s->contacts.rc);

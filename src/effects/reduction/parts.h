@@ -55,5 +55,6 @@ void law_sample_free(law_sample *x);
 
 /* measure.c */
 const material *reduction_material(const reduction *n, int elem_id);
-/* Stresses of the run into n->sigma, without strains that carry none. */
+/* Stresses of the run into n->sigma: its thermal strains and those of the laws
+ * in force carry none. */
 status reduction_stress(reduction *n, const state *s);

@@ -12,11 +12,12 @@
  *
  * share = 1 makes the pressure one constant per cluster, with P1 displacements
  * (Stenberg, Math. Comp. 42, 1984, 9-23): stable without spurious pressures
- * where at most 3 clusters (4 in 3-D) meet at an inner node, as clusters grown
- * from stars of separate nodes mostly have. A share below 1 keeps the
- * fluctuations within a cluster with a modulus of their own, (1 - share)^2
- * times that of the volume, of the size of the shear modulus: cluster_share().
- * Stability is unaffected, and pressures are more accurate.
+ * where at most 3 clusters (4 in 3-D) meet at an inner node, which clusters
+ * grown from the stars of nodes that are no neighbours give but for few. A
+ * share below 1 keeps the fluctuations within a cluster with a modulus of their
+ * own, (1 - share)^2 times that of the volume, of the size of the shear
+ * modulus: cluster_share(). Stability is unaffected, and pressures are more
+ * accurate.
  */
 #pragma once
 

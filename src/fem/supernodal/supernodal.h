@@ -39,8 +39,9 @@ typedef struct supernodal_part {
 int supernodal_split(cholmod_factor *L, int most, cholmod_common *cm);
 /* L: symbolic, borrowed. ERR_MEMORY. */
 status supernodal_new(const cholmod_factor *L, supernodal **out);
-/* The supernodes without rows and columns of number[n] < 0; the others ascend.
- * *out is new and uses the workspace of s. ERR_MEMORY. */
+/* The supernodes without the rows and columns whose number[n] is negative; the
+ * others are numbered ascending. *out is new and uses the workspace of s.
+ * ERR_MEMORY. */
 status supernodal_restrict(const supernodal *s, const int *number,
                            supernodal **out);
 /* Entries of the columns of a supernode. */

@@ -152,7 +152,8 @@ static const option *table_of(const law_ops *ops, int i) {
   return i == 0 && ops->fields != NULL ? ops->fields : ops->terms;
 }
 
-/* What a line is read by, its T, whether it opens a set; NULL: an error. */
+/* What a line is read by, its temperature T, and whether it opens a set; NULL
+ * after an error. */
 static const option *place_line(lines *r, const record *line, double *T,
                                 int *opens) {
   const law_card *law = r->law;

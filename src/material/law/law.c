@@ -1,6 +1,7 @@
 /*
  * The list of inelastic laws, deviators, equivalent stress and flow directions
- * in Voigt components, their elasticity, and their evaluation.
+ * in Voigt components, the elasticity they are coupled with, and their
+ * evaluation at a point.
  */
 #include "material/law/law.h"
 

@@ -21,12 +21,16 @@ typedef struct law_elastic {
   int isotropic, plane_stress; /* *ELASTIC, TYPE=ISO; plane stress: s_zz = 0 */
   double E[36];                /* [ns*ns] stress of e - e^i, Pa; in plane stress
                                   singular */
-  double S[36];                /* [ns*ns] all of e^e of a stress, 1/Pa */
-  double C[36];                /* [ns*ns] inv(S), Pa; = E but in plane stress */
-  double young, shear;         /* 1/S_xx, C_xy,xy: isotropic moduli, Pa */
+  double S[36];                /* [ns*ns] all components of e^e of a stress,
+                                  1/Pa */
+  double C[36];                /* [ns*ns] inv(S), Pa; = E but for plane
+                                  stress */
+  double young, shear;         /* 1/S_xx and C_xy,xy: the moduli if isotropic,
+                                  Pa */
   kinematics kin;
   double temperature;         /* of what is above */
-  const elastic_table *table; /* borrowed; NULL: the same at all T */
+  const elastic_table *table; /* borrowed; NULL: the same at all
+                                 temperatures */
 } law_elastic;
 /* C6: elastic_matrix(). No table. */
 void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
@@ -56,7 +60,8 @@ typedef struct law_shift {
 typedef struct law_card {
   const struct law_ops *ops;
   const void *param;         /* [ops->param_size] its words, owned */
-  int n_term;                /* lines of ops->terms, as of a Prony series */
+  int n_term;                /* lines of ops->terms, as the terms of a Prony
+                                series */
   int n_set;                 /* temperatures of the table, 1 if it has none */
   double *temperature;       /* [n_set] ascending, owned */
   quantity *value;           /* [n_set * law_n_value()] fields, then terms,
@@ -179,7 +184,8 @@ const law_ops *law_find(const char *name); /* case ignored; or NULL */
  * number on every line is the temperature, ascending. Errors go to the log
  * (and leave n_set = 0); ERR_MEMORY. */
 status law_card_read(deck *d, const card *c, message_log *log, law_card *law);
-/* Values at t = 0 against each other, the elasticity: log; ERR_MEMORY. */
+/* Values at t = 0 against each other and the elasticity: errors to the log;
+ * ERR_MEMORY. */
 status law_card_check(const law_card *law, elastic_type type, message_log *log);
 /* What a data line holds: "A, n [, m] [, temperature]"; returns text. */
 const char *law_line_text(const option *table, char *text, size_t size);
@@ -216,9 +222,11 @@ double tensor_trace(const double *v);
 void tensor_deviator(int ns, const double *v, double *d);
 double tensor_mises(int ns, const double *s); /* of a deviator, >= 0 */
 void tensor_product(int ns, const double *A, const double *x, double *y);
-/* Strain 3/2 s/q of a deviator s, q = tensor_mises > 0, shears doubled. */
+/* Strain 3/2 s/q of a deviator s with q = tensor_mises > 0: the direction of
+ * flow, its shears doubled. */
 void tensor_direction(int ns, const double *s, double q, double *n);
-/* Equivalent stress q, returned, and the direction of its flow or 0. */
+/* Equivalent stress q of a stress and the direction of its flow, zero if q is:
+ * returns q. */
 double tensor_flow(int ns, const double *sigma, double *n);
 /* J += a (3/2 P - n n') + b n n', P: deviator to strain (shears doubled). */
 void tensor_add_flow(int ns, const double *n, double a, double b, double *J,

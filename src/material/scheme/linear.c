@@ -299,7 +299,8 @@ static void add_outer(int n, int columns, const double *column,
 
 enum { ZZ = 2 };
 
-/* e_zz of the old state out of the map: c (e - e^i) = 0 for sigma_zz. */
+/* e_zz of the old state out of the map: c (e - e^i) = 0, c the row of C for
+ * sigma_zz. */
 static void eliminate_old(const law_elastic *el, linear_map *m) {
   const int ns = el->ns, n = m->n;
   double *column = m->Q0 + n * ZZ, of_e[6], of_ei[6];

@@ -228,7 +228,8 @@ static int point_follow(const scheme_step *p, const double *sigma_old,
   return 0;
 }
 
-/* Newton iteration of one point from and into l->y; *solved 0: fails. */
+/* Newton iteration of one point for l->e, from and into l->y; *solved = 0 if
+ * it fails. */
 static void point_step_solve(const scheme_step *p, const double *sigma_old,
                              point_step *l, int *solved) {
   if (!point_newton(p, sigma_old, l) && !point_follow(p, sigma_old, l))

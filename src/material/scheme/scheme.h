@@ -39,7 +39,8 @@ typedef struct flow {
   flow_tally *tally; /* so far, owned */
 } flow;
 
-/* State of the points at a time; e less thermal, sigma = E (e - ei). */
+/* The state of the points at a time. e = total less thermal strain, so that
+ * sigma = E (e - ei). */
 typedef struct flow_state {
   double t;                       /* s */
   double *e, *ei, *sigma, *alpha; /* [ns*n] -, -, Pa; [alpha_at[n]] */
@@ -101,7 +102,8 @@ typedef struct flow_tangent {
   const double *D;         /* key > 0: [ns*ns*n_kind], else [ns*ns*n]; Pa */
   const double *sigma, *e; /* [ns*n] sigma_k, e_k; key > 0: those that
                               linear_predict makes, and of scheme_call.old */
-  double tol;              /* that the contact is solved to; 0: of the deck */
+  double tol;              /* that the contact is solved to at least, -; 0: that
+                              of the deck */
 } flow_tangent;
 
 struct scheme_call;
@@ -135,7 +137,8 @@ typedef struct scheme_step {
 
 typedef struct scheme_result {
   int settled;       /* 0: no result to continue with */
-  double unstable;   /* rate beyond p->fastest, 1/s, not settled; or 0 */
+  double unstable;   /* rate of a stage beyond what p->fastest allows, 1/s, not
+                        settled then; or 0 */
   int stuck;         /* point that has no state at the end, from 1; or 0 */
   int iterations;    /* linear solves of an implicit step */
   double error;      /* of strains, root mean square, -; < 0: not estimated */

@@ -1,5 +1,6 @@
 /*
- * What the integrators share. Private to src/material/scheme.
+ * Workspace of the integrators and what their files share. Private to
+ * src/material/scheme.
  */
 #pragma once
 
@@ -60,10 +61,12 @@ status newton_advance(const scheme_call *a);
 /* linear.c: by the Jacobian of the law. */
 status general_map(const flow_kind *k, const scheme_step *p, int exact,
                    linear_map *m, double *D);
-/* For "series", "relaxing"; m->P, Q0, Q1 are there, D as if e_zz were given. */
+/* For laws with "series", "relaxing"; m->P, Q0, Q1 are there, D as if e_zz of
+ * plane stress were given. */
 status series_map(const flow_kind *k, const scheme_step *p, int exact,
                   linear_map *m, double *D);
 status relaxing_map(const flow_kind *k, const scheme_step *p, int exact,
                     linear_map *m, double *D);
-/* The map and D for the plane, sigma_zz = 0. ERR_SINGULAR: e_zz is free. */
+/* The map and D for the strains in the plane, sigma_zz = 0.
+ * ERR_SINGULAR: nothing resists e_zz. */
 status plane_stress_map(const law_elastic *el, linear_map *m, double *D);

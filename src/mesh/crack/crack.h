@@ -1,5 +1,6 @@
 /*
- * Opening a mesh along cracks, groups of faces inside the bodies.
+ * Opening a mesh along cracks, groups of faces inside the bodies (2-D: lines,
+ * 3-D: triangles).
  *
  * The elements round a node fall into fans, connected through faces that
  * contain the node and belong to no crack. One fan keeps the node, every other
@@ -36,7 +37,8 @@ typedef struct mesh_cut { /* a crack to be opened */
  *   crack   out     [n] their arrays belong to the mesh
  *
  * ERR_MESH with errors in the log: P2022, P3012, P3050 to P3053. ERR_MEMORY.
- * Cost: a few passes over the mesh, and the elements round the cracks.
+ * Cost: a few passes over the mesh, else linear in the elements round the
+ * cracks.
  */
 status mesh_open(mesh *m, int n, const mesh_cut *cut, message_log *log,
                  mesh_crack *crack);

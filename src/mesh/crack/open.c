@@ -2,8 +2,9 @@
  * Opening of a mesh: which faces are cut, what is on their sides, the fans of
  * elements round each node; the lips, their groups and the front.
  *
- * "Near" elements have a node of a crack. Their sides and corners have numbers
- * per * place + k, per = dim + 1, place in "elem", k of the element.
+ * "Near" elements have a node of a crack. Their sides and corners are numbered
+ * per * place + k with per = dim + 1, place the one in "elem" and k the side or
+ * corner of the element.
  */
 #include "base/base.h"
 #include "mesh/build.h"
@@ -527,7 +528,8 @@ static void add_items(const opening *o, const mesh_group *g, filling *f) {
   }
 }
 
-/* A group of nodes: all copies of those it has. Returns how many had some. */
+/* A group of nodes: all copies of those it has. Returns the nodes it had that
+ * got any. */
 static int add_copies(const opening *o, const mesh_group *g, filling *f) {
   const mesh *m = o->m;
   int n = 0;
@@ -644,7 +646,8 @@ static int holds(const mesh *m, const int *v, const int *edge) {
   return found == m->dim - 1;
 }
 
-/* From a lip round the edge to the next side cut or on the boundary. */
+/* From a lip round the edge through all elements to the next side that is cut
+ * or on the boundary. */
 static int last_side(const opening *o, int lip, const int *edge) {
   const int per = o->m->dim + 1;
   int at = lip, v[3];

@@ -1,5 +1,6 @@
 /*
- * Words of a .geo without comments, with texts, as in GetNumber("h").
+ * Words of a .geo. Comments are skipped; text in quotes counts, as in
+ * GetNumber("h").
  */
 #include "mesh/msh/geo.h"
 
@@ -129,7 +130,8 @@ static const char *after_name(const char *q) {
   return q + strspn(q, " \t");
 }
 
-/* 1: the name stands before "end" and the end of the statement. */
+/* 1: the name stands in the text up to "end" and to the end of the statement.
+ */
 static int has_name(const char *q, const char *end, const char *name) {
   const size_t n = strlen(name);
   for (int in_quotes = 0; q < end && *q != ';'; ++q)

@@ -15,13 +15,15 @@ typedef struct geo_text {
   char merged[GEO_FILES]; /* [n_file] 1: gmsh executes its options file */
 } geo_text;
 
-/* Files that cannot be opened are skipped. ERR_MEMORY, ERR_FILE. */
+/* Files that cannot be opened are skipped: gmsh reports them. ERR_MEMORY,
+ * ERR_FILE. */
 status geo_read(const char *file, geo_text *g);
 void geo_free(geo_text *g); /* accepts an all-zero object */
 /* 1 if the text has the name, letter by letter, or may have it. */
 int geo_has(const geo_text *g, const char *name);
 /* How statements set the name, besides DefineConstant: where a condition on
- * others holds; by what it was, or a condition on it; to another value. */
+ * other names holds; by what it was, or where a condition on it holds; to
+ * another value. */
 typedef enum { GEO_SETS_NOT, GEO_MAY_SET, GEO_CHANGES, GEO_SETS } geo_setting;
 /* The last of them that the text has; *file, *line: where, if any. */
 status geo_sets(const geo_text *g, const char *name, geo_setting *how,

@@ -3,8 +3,9 @@
  * of elements, groups and nodes of a raw mesh.
  *
  * $Nodes, or $ParametricNodes with their places on curves and surfaces, and
- * $Elements of version 2.2: one line, or record, each; tags of an element:
- * group, entity; an element of several groups is listed once for each.
+ * $Elements of version 2.2: one line, or one record, each; the first
+ * tag of an element is its group, the second its entity; an element of several
+ * groups is listed once for each.
  *
  * $Entities, $Nodes and $Elements of version 4.1. Entities know their groups,
  * nodes and elements come in blocks on an entity. Partitions have a list of
@@ -171,7 +172,8 @@ static status read_count(scan *s, size_t *n) {
   return OK;
 }
 
-/* Dimension and tag of the entity of a node, its place on it. */
+/* Dimension and tag of the entity of a node, and its place on curves and
+ * surfaces. */
 static status pass_place(scan *s) {
   int dim, tag;
   double place;
@@ -431,7 +433,8 @@ static status read_head(scan *s, int head[3], size_t left, size_t *n) {
   return scan_line(s);
 }
 
-/* All blocks are read: their items must be those of the first line. */
+/* All blocks are read: the sum of their items must be the number of the first
+ * line. */
 static status check_total(const scan *s, size_t left, const char *what) {
   return left == 0
              ? OK

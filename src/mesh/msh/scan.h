@@ -25,7 +25,8 @@ typedef struct scan {
 
 enum { SCAN_NAME = 64 };
 
-/* The whole file into memory. ERR_FILE if it cannot be, ERR_MEMORY. */
+/* The whole file into memory. ERR_FILE if it cannot be read or is no plain
+ * file, ERR_MEMORY. */
 status scan_open(scan *s, const char *path, status wrong);
 void scan_close(scan *s); /* accepts one never opened */
 /* s->wrong, with the place and the text in the record. */

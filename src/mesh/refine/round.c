@@ -121,7 +121,8 @@ static void set_tangents(round_surface *s, int n_all) {
       CLEAR(s->tangent + 3 * i, 3);
 }
 
-/* c less twice its part across: t at the other end of the chord. */
+/* c less twice its part across: t at the other end of the chord c, both along
+ * it. */
 static void mirror(const double *c, double *t) {
   const double along = dot(3, t, c);
   for (int k = 0; k < 3; ++k) t[k] = 2.0 * along * c[k] - t[k];

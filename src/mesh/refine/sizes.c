@@ -1,4 +1,7 @@
-/* The sizes of a mesh at any point, by the element that it is in. */
+/*
+ * The elements of a mesh in a binary tree of boxes, halved until few elements
+ * meet one.
+ */
 #include "mesh/refine/parts.h"
 
 #include "base/base.h"

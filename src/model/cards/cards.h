@@ -7,7 +7,8 @@
 
 #include "model/model.h"
 
-/* The options of the cards; the keyword table tells which has which. */
+/* The options of the cards; the rows of the keyword table say which of them a
+ * card has. */
 typedef struct card_options {
   const char *name, *group, *file, *amplitude, *contact, *law;
   int type; /* also MODE, FORM, GENERATE, LAW of *CREEP */
@@ -69,7 +70,8 @@ typedef struct reading {
   const char *const *axisymmetric;
   int lost_material,
       lost_step; /* 1: an unknown card seems to have opened one */
-  /* 1: a card has the name, not reported; NULL: none */
+  /* 1: such a card has the name, its absence is not reported; NULL: there is
+   * none */
   int (*is_lost)(const model *m, const char *name);
 } reading;
 
@@ -111,9 +113,11 @@ apply_card apply_boundary, apply_dsload, apply_dload, apply_cload,
 plugin names_inelastic(const reading *r);
 plugin names_law(const reading *r);
 plugin names_solver(const reading *r);
-/* Once all cards are read: a law together with its elasticity. */
+/* Once all cards are read: the law of a material together with its
+ * elasticity. */
 status material_resolve_law(const model *m, material *mat);
-/* Place of a component of *REFERENCE in "value"; -1: no such name. */
+/* Place of a component of *REFERENCE in "value", -1: there is none of that name
+ * in such a model. */
 int reference_place(const char *name, int dim, int axisymmetric);
 /* Id of a contact, or -1 and the error that this card names none. */
 int find_contact(const reading *r, const char *name);
@@ -147,7 +151,8 @@ void shown_name_taken(const reading *r, const char *name, const char *old);
 void unknown_word(message_log *log, message_id id, const place *at,
                   const char *text, const char *word,
                   const char *(*next)(const void *ctx, int i), const void *ctx);
-/* Id of a name, case ignored, or -1; find_name: with an error. */
+/* Id of a name, case ignored, or -1; find_name: and an error that names the
+ * card to write. */
 int rank_of_name(const name_list *names, const char *name);
 int find_name(const model *m, const char *name, const char *title,
               const name_list *names, const place *at);

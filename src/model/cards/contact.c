@@ -52,7 +52,8 @@ static int read_move(const reading *r, const record *line, obstacle *o) {
   return 0;
 }
 
-/* Point, direction from the second field on: x, y or x, y, z, ax, ay, az. */
+/* Point and direction from the second field on: x, y (along z) or x, y, z, ax,
+ * ay, az. */
 static int read_axis(const reading *r, const record *line, int solid,
                      double *point, double *axis) {
   const char *what = same_word(line->fields[0].text, "AXIS")
@@ -417,7 +418,8 @@ static status read_value(reading *r, const char *what, int variable,
   return OK;
 }
 
-/* The rule of a *FRICTION card: of the contact, or the step; or NULL. */
+/* The rule a *FRICTION card fills: of the contact, or of the step for it; NULL
+ * after a message. */
 static status new_rule(const reading *r, int contact_id, friction_rule **out) {
   contact *c = &r->m->contacts[contact_id];
   friction_rule *rule = &c->friction;

@@ -49,7 +49,8 @@ status apply_static(reading *r) {
   return OK;
 }
 
-/* Increments that fit together; those of a TOLERANCE= may grow. */
+/* Increments that fit together and into the step; those of a TOLERANCE= may
+ * grow by any factor. */
 static void check_increments(const reading *r, const field *f, const step *s) {
   message_log *log = r->m->log;
   if (s->dt > s->total * (1.0 + 1e-12))

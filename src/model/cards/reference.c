@@ -1,5 +1,6 @@
 /*
- * *REFERENCE: components of a closed form. *GOAL: a quantity with its error.
+ * *REFERENCE: the components of a closed form. *GOAL: a quantity whose error is
+ * wanted.
  */
 #include "base/base.h"
 #include "model/cards/cards.h"

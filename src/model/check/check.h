@@ -22,8 +22,9 @@ int step_has_limit(const step *s);
 double step_fastest(const step *s, double t, double dt);
 /*
  * What the fastest rate of the laws means for an increment dt of a *VISCO step
- * from t on: the level of 2^level stable pieces, > 0 with SUBSTEPS=AUTO only;
- * -1 after a message. "notify": report if parts of the stress will ring.
+ * from t on: the level of 2^level pieces that keep it stable, > 0 with
+ * SUBSTEPS=AUTO only; -1 after a message that it is not. "notify": report if
+ * parts of the stress will ring.
  */
 int step_level(const model *m, const step *s, double t, double dt, double rate,
                int notify);

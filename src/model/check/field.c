@@ -7,7 +7,8 @@
 #include "mesh/msh/raw_mesh.h"
 #include "mesh/msh/scan.h"
 
-/* Values beyond those of the mesh: FOREIGN a node, and FEW. */
+/* Values beyond those of the mesh that a file may have: FOREIGN a node, and
+ * FEW. */
 enum { FOREIGN = 8, FEW = 100000 };
 static const double SAME_PLACE = 1e-6; /* -, of the size of the mesh */
 

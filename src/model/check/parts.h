@@ -28,7 +28,8 @@ void check_no_effect(const model *m, const mesh *msh);
 /* Increments of *VISCO steps against the laws that do not change. */
 status check_visco(const model *m);
 
-/* field.c: the start is there before any result, which may have its name. */
+/* field.c: the file of the start is there before any result is, which may have
+ * its name. */
 status check_start_file(const model *m);
 /* A value at each node of a mesh, from the file of another program. */
 /*

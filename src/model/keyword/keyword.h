@@ -53,5 +53,6 @@ int name_is_lost(const model *m, const char *name);
 /* The deck with all defaults written out, includes and parameters resolved;
  * reading it gives the same model. */
 status model_echo(const model *m, FILE *out);
-/* Help from the keyword table: all cards in short, one in full; 0: none. */
+/* Help from the keyword table: all cards in short, or one in full; 0 if there
+ * is no card of that name. */
 int keywords_print(const char *name, FILE *out);

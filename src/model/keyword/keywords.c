@@ -1,6 +1,7 @@
 /*
- * The table of deck keywords: places, parameters, data lines. The parser, the
- * range checks, --keywords, the echo of the deck and the tests all run over it.
+ * THE table of deck keywords: where a card is allowed, its parameters, its data
+ * lines. The parser, the range checks, --keywords, the echo of the deck and the
+ * tests all run over it.
  */
 #include "model/keyword/keyword.h"
 

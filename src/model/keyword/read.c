@@ -29,7 +29,8 @@ static void check_problem_cards(const reading *r) {
                 i + 1);
 }
 
-/* The bound of the error costs more than many solutions: on request. */
+/* The bound of the error factors the matrix, which costs more than many
+ * solutions: only on request. */
 static void check_problem_accuracy(const reading *r, step *s) {
   int others = s->accuracy.mesh == MESH_ERROR_YES || s->accuracy.time ||
                s->accuracy.theorems || r->m->accuracy.target.percent > 0.0;

@@ -142,7 +142,8 @@ static status make_first_step(model *m) {
   return OK;
 }
 
-/* A number without amplitude is reached at the end of step 1. */
+/* A number without amplitude is reached at the end of the first step, as loads
+ * are. */
 static void lead(const model *m, const value_table *t, quantity *q) {
   if (t != NULL)
     q->factor = t;
@@ -367,7 +368,8 @@ static void check_clock(const model *m, const step *s) {
               s->dt, s->start, DBL_EPSILON * fabs(s->start));
 }
 
-/* steps.c: what each step has, with what persists from the one before. */
+/* steps.c: start, loads, solver and tables of each step, with what persists
+ * from the one before. */
 static status resolve_steps(model *m) {
   step before = {.solver = default_solver,
                  .loads = m->load.supports,
@@ -392,8 +394,9 @@ static status resolve_steps(model *m) {
   return OK;
 }
 
-/* ---- names of *PARAMETER and -D that nothing uses: misspelt, they change
- * nothing. Those of an included file may serve other decks. */
+/* ---- names of *PARAMETER and -D that nothing uses: misspelt ones, which
+ * leave the value they were to change as it was. Those of an included file may
+ * serve other decks. */
 
 /* The names of a deck but for one. */
 typedef struct others {
@@ -407,7 +410,8 @@ static const char *other_at(const void *ctx, int i) {
   return i < o->d->n_symbol ? o->d->symbols[i].name : NULL;
 }
 
-/* Meant may be: a name of the .geo but for case, of the deck, of the .geo. */
+/* What may be meant: a name of the .geo but for upper and lower case, one of
+ * the deck, one of the .geo. */
 static const char *nearest_use(const model *m, const geo_text *g,
                                const symbol *s) {
   const char *word;

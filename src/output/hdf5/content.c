@@ -191,7 +191,8 @@ static status list_contact_nodes(hdf5_file *h, int *place_of, int *contact_of) {
   return OK;
 }
 
-/* Number of the node and of its contact, and the place as a point. */
+/* Number of the node and of its contact, and the place itself (points of a
+ * viewer that draws no faces). */
 static status add_contact_numbers(hdf5_file *h, const int *contact_of) {
   size_t *no = NULL;
   int *of = NULL, *index = NULL;

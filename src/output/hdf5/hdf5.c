@@ -29,7 +29,8 @@ static double shown(double increments, int frequency) {
 
 static int bounded(double n, int most) { return n < most ? (int)n : most; }
 
-/* Rows and records from step first_id on, plus "extra" before it. */
+/* Rows and records from step first_id on, plus "extra" increments of the step
+ * before it. */
 static void forecast(const model *m, int first_id, double extra, int *n_row,
                      int *n_record) {
   double rows = extra, records = 0;
@@ -191,8 +192,9 @@ static double part_value(const hdf5_field *f, const view *v, int id, int k) {
   return column_ready(c, v->s) ? ready_value(c, v, id) : NAN;
 }
 
-/* The item of a column that stands in place id of its field: a contact node not
- * in the surface (-1) has displacements alone. */
+/* The item of a column that stands in place id of its field: a contact node
+ * that is not in the surface now (-1) has displacements, but no other
+ * value. */
 static int item_of(const hdf5_file *h, const hdf5_field *f, int id) {
   if (f->of != PER_CONTACT_NODE) return id;
   return f->part[0]->of == PER_NODE ? h->contact_node[id] : h->surface_id[id];

@@ -19,7 +19,8 @@ typedef struct hdf5_field {
 typedef struct hdf5_count { /* what has been written */
   int rows, records;
 } hdf5_count;
-/* NULL if no step requires fields. before: continue the file; NULL: new. */
+/* NULL in *out if no step requires fields. before: continue the file after
+ * these; NULL: a new one. */
 status hdf5_open(const model *m, const mesh *msh, const output_options *o,
                  const hdf5_count *before, hdf5_file **out);
 /* Synchronise; h NULL: nothing. */
@@ -42,6 +43,7 @@ void hdf5_record_name(char *text, size_t size, int i);
 
 /* JOB.xdmf; written to a temporary file and renamed. */
 status xdmf_write(const hdf5_shape *shape, const char *path);
-/* The last record of the body or of the contact alone; or nothing. */
+/* The last record of the body or of the contact alone, the same way; nothing if
+ * there is none. */
 status xdmf_write_last(const hdf5_shape *shape, int of_contact,
                        const char *path);

@@ -239,7 +239,8 @@ status hdf5_layout_make(const hdf5_file *h, int n_row, int n_record,
 
 /* ---- a file that is there ------------------------------------------------ */
 
-/* Offset of a dataset of *n numbers, 0: any; 0 if there is none. */
+/* Offset of a dataset of that many numbers; *n = 0: any, then as it is, 0 if
+ * there is no such dataset. */
 static status read_offset(const hdf5_file *h, hid_t file, const char *path,
                           hsize_t *n, off_t *offset) {
   hsize_t wanted = *n;

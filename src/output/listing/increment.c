@@ -1,6 +1,7 @@
 /*
  * The blocks of the initial state and of an increment: solver, solutions of
- * CHECK=, theorems of THEORY=, errors, forces, energies.
+ * CHECK=, theorems of THEORY= (constants, limits of mu, bounds of CPR98),
+ * errors, forces, energies.
  */
 #include "output/listing/job.h"
 

@@ -1,5 +1,6 @@
 /*
- * Data of a run for the listing and JOB.json.
+ * Data of a run for the listing and JOB.json: options, increments, passes,
+ * sizes, error budget.
  */
 #pragma once
 
@@ -17,7 +18,8 @@ typedef struct output_options {
   const char *version; /* of the program, for the results; NULL: "" */
   const char *kernel;  /* BLAS kernel, for the results; NULL: "" */
   int threads;         /* threads of the run, for the results */
-  archive *from;       /* of an earlier run that goes on; or NULL */
+  archive *from;       /* continue the files of an earlier run; NULL: new
+                          ones */
   int n_problem;       /* contacts of a *CONDENSED PROBLEM */
   history_sink first;  /* called before the writers; of its functions
                           checkpoint, ready, increment, each may be NULL */
@@ -118,7 +120,8 @@ const char *job_goal_unit(const model *m, int id);
 void passes_goal_heads(const model *m, FILE *f);
 void passes_goals(const model *m, const pass_goal *goals, int pass, FILE *f);
 double pass_goal_percent(const pass_goal *g);
-/* One sentence: the error to improve next, its cost; "": not known. */
+/* One sentence: the error to improve next, and what that costs; "": none is
+ * known. */
 enum { ADVICE_SIZE = 320 };
 void job_advice(const job *j, char *text, size_t size);
 /* The estimates there are; number of rows. */

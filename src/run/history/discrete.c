@@ -17,7 +17,8 @@ enum {
 typedef struct discrete {
   const step *step;
   const exchange_problem *p;
-  contact_problem cp;    /* p->cp, with its bodies; dim 1: 0 */
+  contact_problem cp;    /* p->cp, with its bodies after the solve; dim 1:
+                            0 */
   contact_problem whole; /* the same with all of the matrix */
   double *full;          /* [m*m] of a compliance in blocks, or NULL */
   contact_bodies *bodies;

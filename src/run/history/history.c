@@ -11,7 +11,8 @@
 enum { DEEPEST_CUT = 30 };
 
 /* End of piece "part" of 2^level pieces of increment number i (from 0) of n;
- * from the ends of the step: no error adds up, the last one is its end. */
+ * computed from the ends of the step, so that no error adds up and the last
+ * one is the end of the step itself. */
 static double piece_end(const step *s, long n, long i, long part, int level) {
   double pieces = ldexp(1.0, level);
   double done = (double)i + (double)part / pieces;
@@ -328,7 +329,8 @@ static int starts_anew(const run *r) {
   return starts_hotter(r) || (ends && run_step_id(r) > 0);
 }
 
-/* 1: no load begins to act at the start of the step, none ends. */
+/* 1 if no load acts at the start of the step that did not act before, and
+ * nothing ends. */
 static int starts_smoothly(const run *r) {
   if (starts_anew(r)) return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
@@ -441,7 +443,8 @@ static status accept_piece(run *r, long n, double cpu) {
   return loop_accept(r, attempt, p->increment_no, last, cpu);
 }
 
-/* End of the next piece of n increments: the longest stable one. */
+/* End of the next piece of n increments: the longest that starts here and is
+ * stable. */
 static status choose_piece(run *r, long n, double *t) {
   progress *p = &r->at;
   int deeper;
@@ -457,7 +460,8 @@ static status choose_piece(run *r, long n, double *t) {
   return OK;
 }
 
-/* One attempt at the next piece of n increments: accepted, or halved. */
+/* One attempt at the next piece of n increments: accepted, or cut into
+ * halves. */
 static status attempt_piece(run *r, long n) {
   progress *p = &r->at;
   double cpu = timer_cpu(), t;

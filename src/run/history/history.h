@@ -7,14 +7,16 @@
 /*
  * Run all steps with the effects (a table that NULL ends) that the model
  * requires. *unsettled counts the increments that did not converge to their
- * tolerance at the smallest dt. Errors: ERR_SINGULAR (no equilibrium), of
- * interrupt_asked, between two attempts, of the sink, ERR_MEMORY.
+ * tolerance at the smallest dt. Errors: ERR_SINGULAR (no equilibrium), those of
+ * interrupt_asked, which ends the run between two attempts, those of the sink,
+ * ERR_MEMORY.
  */
 status history_run(const model *m, const mesh *msh,
                    const effect_ops *const *effects, const history_sink *sink,
                    int *unsettled);
 /* The same from a checkpoint of an equal model on (from NULL: from the start):
- * bit for bit the whole run. Borrowed; ERR_FILE if it does not fit. */
+ * bit for bit the run that was not interrupted. Borrowed; ERR_FILE if it does
+ * not fit. */
 status history_continue(const model *m, const mesh *msh,
                         const effect_ops *const *effects, archive *from,
                         const history_sink *sink, int *unsettled);

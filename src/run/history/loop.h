@@ -12,7 +12,8 @@
 status loop_accept(run *r, int attempt, int increment_no, int last, double cpu);
 /* It is not: reported with the reason. */
 status loop_reject(run *r, int attempt, int increment_no, const char *why);
-/* 1: one of these tables (bits PRINT_*) shows the increment to t. */
+/* 1 if one of these tables (bits PRINT_*) shows the increment that ends at t.
+ */
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last);
 /* 1 if a shorter increment may converge where this attempt did not: the solver
@@ -20,20 +21,23 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
 int loop_cut_helps(const run *r);
 /* Reports that there is no equilibrium: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
-/* From r->old to r->now at t by the step, or an effect; the first alone. */
+/* From r->old to r->now at t by the procedure of the step, or that of an
+ * effect; the first alone. */
 status loop_solve(run *r, double t);
 status loop_solve_once(run *r, double t);
-/* tables.c: the end of an increment for which the program chose t: there, or a
- * point of a table of the loads, supports, temperatures, obstacles or contacts
- * in force, before one of them differs from what the increment sees of it by
- * more than a share, -, of its largest magnitude in the step. */
+/* tables.c: the end of an increment that the program has chosen to end at t:
+ * there, or at a point of a table of the loads, supports, temperatures,
+ * obstacles or contacts in force, before one of them differs from what the
+ * increment sees of it by more than a share, -, of its largest magnitude in
+ * the step. */
 double loop_end(const run *r, double t, double share);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
 status loop_pause(run *r);
 
 /* The loads now over the largest of the step, at most 1. */
 double share_of_step(const run *r);
-/* rounding.c: the rounding error of r->now. ERR_SINGULAR: no digit. */
+/* rounding.c: the rounding error of r->now, whose energies are known.
+ * ERR_SINGULAR: no correct digit. */
 status rounding_find(run *r);
 /* Contact forces that may be below the rounding of the motion: contact_hidden,
  * own forces by the stresses next to the node. */
@@ -55,7 +59,8 @@ double rounding_of_works(const run *r);
  * of both, of the motion, or left by the solver. After rounding_find. */
 int rounding_is_all(const run *r);
 
-/* estimate.c: errors at r->now into r->errors, as required. */
+/* estimate.c: errors at r->now into r->errors.error, mesh_error, as required.
+ */
 status estimate_increment(run *r);
 /* Of a copy of the run at a time within the increment: that of the mesh. */
 status estimate_within(run *copy);

@@ -46,9 +46,10 @@ static status check(const run *r, double share, const condensed *c) {
 /*
  * Whether the supports of a body strain it (not: those of each body move
  * rigidly, to the rounding of the data): their displacements, as given, are
- * compared with the nearest rigid motion of the body. The rest is found in long
- * double: of a rigid motion the rounding of the data. The strains of the
- * solution cannot tell: where the motion is far above them they are rounding.
+ * compared with the nearest rigid motion of the body. What is left of them is
+ * found in long double, so that it is none of a rigid motion but the rounding
+ * of the data. The strains of the solution cannot tell: where the motion is far
+ * above them they are rounding.
  */
 enum { MODES = 6, COLUMNS = MODES + 1 };
 
@@ -156,7 +157,8 @@ static double largest_force(const run *r) {
 }
 
 /* What the rounding of the forces stores, and what the solver has left at the
- * contact nodes, J: at the stiffest node, or at any if all is rounding. */
+ * contact nodes, J: at the stiffest node, or at any where nothing but that is
+ * left of them. */
 static double forces_energy(const run *r) {
   const double force = largest_force(r), rounding = RUN_CARRIED * force,
                left = r->solving.report.residual * force,
@@ -166,7 +168,8 @@ static double forces_energy(const run *r) {
          condensed_stiffest(r->c);
 }
 
-/* 1: contact forces and supports carry the loads straight. */
+/* 1: contact forces and supports carry the loads straight, and strains are
+ * nothing else. */
 static int forces_hide_strains(const run *r) {
   return r->now.energy.strain <= forces_energy(r);
 }
@@ -208,7 +211,9 @@ int rounding_is_all(const run *r) {
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
 }
 
-/* The contact forces of the answer, or, beyond rounding, of its motion. */
+/* The contact forces of the answer. Where they differ from those of its
+ * displacements by more than rounding, the solver has left that, and the latter
+ * are taken. */
 static status find_forces(const run *r, misfit *x) {
   const contact_problem *cp = &r->problem.cp;
   const double *u = run_rows(r, 0, r->now.uc), *rc = run_rows(r, 1, r->now.rc);

@@ -9,9 +9,10 @@
 /*
  * Contact nodes whose gap is wider than what the step can close are left out of
  * the condensed problem: they are free nodes of the interior, without force.
- * After each solution none of them may penetrate; else, or without an
- * equilibrium, more are taken and it is solved again. The solution is thus that
- * of all nodes; only its cost depends on the estimate of the distance.
+ * After each solution none of them may penetrate; otherwise, or where no
+ * equilibrium was found, more nodes are taken and the problem is solved again.
+ * The solution is thus that of all nodes; only its cost depends on the estimate
+ * of the distance.
  */
 enum { FEWEST = 16 };               /* contact nodes */
 static const double GENEROUS = 4.0; /* -, of what loads move a compact body */
@@ -227,7 +228,8 @@ static status has_friction(const run *r, size_t elem_no, int *answer) {
   return OK;
 }
 
-/* 1: nothing resists: no contact there, or only tangents, frictionless. */
+/* 1 if nothing resists: no contact there, or tangential contact of a body
+ * without friction. */
 static status is_unheld(const run *r, const free_motion *f, int *unheld) {
   int friction = 0;
   if (f->held_by == HELD_BY_FRICTION)

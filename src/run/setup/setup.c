@@ -1,5 +1,6 @@
 /*
- * A run before its first step: arrays that persist during the run.
+ * A run before its first step: arrays that persist during the run, from the
+ * model and the mesh.
  */
 #include "run/setup/setup.h"
 

@@ -3,13 +3,15 @@
 
 #include "run/run.h"
 
-/* adjust.c: moves the slave nodes of ADJUST=YES, before the run. ERR_DECK with
- * an error in the log: an element is turned inside out; ERR_MEMORY. */
+/* adjust.c: moves the slave nodes of the pairs and ties with ADJUST=YES. Before
+ * the run. ERR_DECK with an error in the log: an element is turned inside out;
+ * ERR_MEMORY. */
 status setup_adjust(model *m, mesh *msh);
 
-/* facing.c: p->group, of the contact p with an obstacle, becomes a group of its
- * faces that face it at time 0, without those on the axis of symmetry; a
- * warning where contact acts along the mean of faces that meet at an edge. */
+/* facing.c: p->group, of the contact p with an obstacle, becomes a new group of
+ * its faces that face the obstacle at time 0, without those on the axis of
+ * symmetry; a warning where contact acts along the mean of faces that meet at
+ * an edge. */
 status setup_facing(const run *r, contact_pair *p);
 
 /* flow.c: the start of the points whose law flows, after strains_new: what the
@@ -34,7 +36,8 @@ status run_check_supports(const run *r, int *n);
 /* Contact nodes that the problems of r->step have at least; 0: not known. */
 int run_least_nodes(const run *r);
 
-/* surface.c: that of r->body.fixed, with the state of the old one or not.
+/* surface.c: the surface of r->body.fixed, with or without the state of the old
+ * one.
  */
 status run_build_surface(run *r);
 void run_free_surface(run *r);

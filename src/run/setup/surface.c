@@ -185,7 +185,8 @@ status run_build_ties(run *r) {
   node_bits(r);
   timer_enter(STAGE_COUPLING);
   NEW_ALL(OF(m, n), OF(dropped, r->msh->n_node));
-  /* Nodes wholly held, or of an earlier tie, are left out. */
+  /* Nodes that all their components hold, or an earlier tie has, are left out.
+   */
   const int dim = r->msh->dim;
   for (int i = 0; i < r->msh->n_node; ++i) {
     int all = 1;

@@ -30,7 +30,8 @@ const coarser_state *coarser_at(const coarser *c, double t, int next);
 double coarser_time(const coarser_state *x); /* s, its end */
 int coarser_nodes(const coarser_state *x);
 
-/* nearest[s->n]: the nearest node of the same contact, -1. ERR_MEMORY. */
+/* nearest[s->n]: of each node the nearest of the same contact, -1: there is
+ * none. ERR_MEMORY. */
 status coarser_match(const coarser_state *x, const contact_surface *s,
                      int *nearest);
 /* State of a node; -1: open. */

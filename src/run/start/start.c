@@ -61,7 +61,8 @@ static status read_last(const hdf5_source *s, const mesh *msh, double *u,
 /*
  * Displacements u[dim*n_node] (m) of the last record, its time *t (s). ERR_FILE
  * or ERR_DECK with an error in the log at "at": the file cannot be read, has no
- * record, was cut short, or has another mesh (number or places).
+ * record, was cut short, or has another mesh (nodes are compared in number and
+ * place).
  */
 static status end_state_read(const char *path, const mesh *msh, const place *at,
                              message_log *log, double *u, double *t) {

@@ -28,12 +28,14 @@ typedef struct start_input {
   const mesh *mesh;
   const unsigned char *fixed;     /* [dim*n_node] */
   const double *u, *ud, *R;       /* [dim*n_node] m, prescribed m; K u - F, N */
-  const double *stiffness;        /* [dim*n_node] of a unit displacement, N/m */
+  const double *stiffness;        /* [dim*n_node] force of a unit displacement
+                                     of a support, N/m */
   const contact_surface *surface; /* NULL: no contact */
   const tie_set *ties;            /* NULL: none; R is that of their masters */
   const contact_problem *cp;      /* of time 0, stick at u_0 */
   const double *uc;               /* [m] m */
-  const double *given;            /* [n] normal force, N; < 0: none; or NULL */
+  const double *given;            /* [n] given normal force, N; < 0: none; NULL
+                                     all none */
   double load;                    /* largest force of loads and elements, N */
 } start_input;
 

@@ -113,7 +113,8 @@ static status hold(const contact_problem *cp, anchor *an) {
   return OK;
 }
 
-/* Of each motion by the stiffness of its bodies, which may differ widely. */
+/* Of each motion by the stiffness of the bodies that it moves, which may differ
+ * by powers of ten. */
 static status choose_springs(const contact_problem *cp, anchor *an) {
   OWNED double *stiffness = NULL;
   PASS_NEW_ALL(OF(stiffness, cp->m), OF(an->spring, an->n_mode));
@@ -238,7 +239,8 @@ static double move_of(const passes *p, int i) {
   return d;
 }
 
-/* Distance to the nearest bound over the last move; at least 1, 1: none. */
+/* Distance from u to the nearest bound over the last move; at least 1, 1 if it
+ * leads to none. */
 static double moves_to_bound(const passes *p, const double *u) {
   double moves = HUGE_VAL, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) most = fmax(most, fabs(move_of(p, i)));
@@ -260,7 +262,8 @@ static void close_gaps(passes *p) {
   place(p->an, p->cp->m, d, p->an->a);
 }
 
-/* A body in free motion is moved onto its obstacle, then to its bound. */
+/* A body in free motion to an obstacle is moved onto it, the next time onto the
+ * first bound it meets. */
 static void fly(passes *p, const double *u) {
   double moves = moves_to_bound(p, u);
   if (!(moves > 1.0)) return;
@@ -315,7 +318,8 @@ static double friction_against(const passes *p, const double *r) {
   return sum;
 }
 
-/* 1: nothing stops the last move, and friction does less than the load. */
+/* 1: no obstacle stops the last move, and the load does more work on it than
+ * friction. */
 static int drifts(const passes *p, const double *r) {
   double work = 0.0, into = 0.0, most = 0.0;
   for (int i = 0; i < p->cp->m; ++i) {

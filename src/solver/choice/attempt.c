@@ -205,7 +205,8 @@ static status drive_form(drive_call *x, const contact_problem *own,
 }
 
 /* The residual of the stiffness form can be below the tolerance where that of
- * the given compliance is slightly above: it goes on with a tighter one. */
+ * the given compliance is slightly above: the solver continues with a tighter
+ * tolerance. */
 static status drive_until_met(drive_call *x, const contact_problem *own,
                               solver_control control, double *u, double *r,
                               solver_report *rep) {

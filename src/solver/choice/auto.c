@@ -1,6 +1,7 @@
 /*
- * METHOD=AUTO. The choice depends on quantities without unit: friction, the
- * form given, whether it can be inverted, the dimension and unknowns m.
+ * METHOD=AUTO. The choice depends on quantities without unit: whether there is
+ * friction, which form is given, whether it can be inverted, the dimension and
+ * the number of unknowns m.
  *
  * No friction: the tangential unknowns are eliminated and the normal ones are
  * solved for by active sets, of the opening nodes only, and by NEWTON where
@@ -53,7 +54,8 @@ enum {
   LEAST_ROUNDS = 3,    /* least number for a trial */
   TINY_SIZE = 30,      /* m: up to here they cost less than STEPS of NEWTON */
   LEAST_TRIAL = 100,   /* sweeps where NEWTON has failed */
-  READ = 8,            /* solves in the time of reading the matrix */
+  READ = 8,            /* solves whose arithmetic takes the time of reading the
+                          matrix */
   FULL_SIZE = 1000,    /* m: up to here a method has all its iterations */
   SMALL_SIZE = 200,    /* m: up to here factorisations cost like products */
   LEAST_FACTORS = 80,  /* iterations with a factorisation, on large problems */
@@ -209,7 +211,8 @@ static void note(contact_solver *s, const solver_report *rep,
              rep->iterations, a->max_iter);
 }
 
-/* Weight of a failure; none of a singular compliance, less if unfit. */
+/* Significance of a failure; a singular compliance has none, a method that does
+ * not apply less. */
 static int weight(const contact_problem *cp, outcome o) {
   if (o == STOPPED_UNFIT) return -1;
   return o == STOPPED_SINGULAR && contact_has_stiffness(cp);

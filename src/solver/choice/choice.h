@@ -64,7 +64,8 @@ status anchor_solve(const anchor *an, const contact_problem *cp,
 /*
  * Other forms of a problem, more suitable for a solver.
  *
- * The other form: stiffness from compliance or the reverse, made once.
+ * The other form: stiffness from compliance, or the reverse, by an inverse that
+ * is made once per matrix.
  *
  * The normal form of a problem without friction: the tangential unknowns, which
  * carry no force, are eliminated once per matrix,
@@ -234,9 +235,10 @@ status proof_find(const contact_problem *cp, anchor *an, int *proved);
  * held, slip and friction opposed: one or two of them suffice on a solution.
  */
 
-/* How far friction is from opposite to the slip: the largest over the nodes of
- * min(c |s|, |r_t + |r_t| s/|s||), s = u_t - ut0, c the stiffness of the node,
- * over contact_scale. -; 0 in the plane, where the residual bounds it. */
+/* Deviation of friction from the direction opposite to the slip: the largest
+ * over the nodes of min(c |s|, |r_t + |r_t| s/|s||), s = u_t - ut0, c the
+ * stiffness of the node, over contact_scale. -; 0 in the plane, where the
+ * residual bounds it. */
 double slip_misdirection(const contact_problem *cp, const double *u,
                          const double *r);
 /*

@@ -67,10 +67,11 @@ void other_form_free(other_form *o) {
  * Contact without friction from the state with every node closed.
  *
  * With v = u_n - gap and r0 the normal forces of the closed state, the normal
- * form is S v = r - r0: v = 0 where closed, r = 0 where open. Only S_EE of the
- * nodes E that have been open is made, from columns inv(L) A_tE kept with the
- * matrix; the forces of the others follow from a product with A. Guess and
- * correction as in NEWTON (primal-dual active set).
+ * form is S v = r - r0: v = 0 where closed, r = 0 where open. Only the
+ * part S_EE of the nodes E that have been open is made, from columns inv(L)
+ * A_tE that are kept while the matrix is unchanged; the forces of the others
+ * follow from a product with A. Guess and correction as in NEWTON (primal-dual
+ * active set).
  */
 /* Unknown number i of the tangential ones. */
 static size_t tangent_dof(int dim, int i) {
@@ -199,7 +200,8 @@ static void displace(opened *o, const contact_problem *cp) {
   contact_product(cp->m, cp->A, o->du, o->dr);
 }
 
-/* The next guess; the number of changes, *worst: the worst, N. */
+/* The next guess; returns the number of changes, *worst: the largest violation,
+ * N. */
 static int next_states(opened *o, const contact_problem *cp, double margin,
                        double *worst) {
   int changes = 0;
@@ -236,7 +238,8 @@ static void finish(const opened *o, const contact_problem *cp, double *u,
 }
 
 /* Solve from the states of u[m], r[m], both zero: all closed. rep->outcome
- * CONVERGED, or STOPPED_UNFIT: no convergence, u, r unchanged. */
+ * CONVERGED, or STOPPED_UNFIT: the guesses do not converge; u, r are then
+ * unchanged. */
 static void opened_solve(opened *o, const contact_problem *cp,
                          const solver_control *control, double *u, double *r,
                          solver_report *rep) {

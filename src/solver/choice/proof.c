@@ -140,7 +140,8 @@ static void add_friction(const balance *s, int i, double limit) {
   }
 }
 
-/* The column with the largest work into to[rows]; that, <= 0: none. */
+/* The column with the largest work on the rest, into to[rows]; its work, <= 0:
+ * none. */
 static double best_column(balance *s, double *to) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode, best = 0;
@@ -168,7 +169,8 @@ static double best_column(balance *s, double *to) {
   return fmax(s->c[best], of_limit);
 }
 
-/* The motion that lifts all nodes; *gain: least decrease of c per unit. */
+/* The motion that lifts all nodes most evenly; *gain: the least decrease of c
+ * per unit of it, 0: none. */
 static void set_lift(balance *s, double *gain) {
   const contact_problem *cp = s->cp;
   int m = cp->m, k = s->an->n_mode;

@@ -1,15 +1,17 @@
 /*
  * Complementary pivoting with a reduced inverse (lcp.h).
  *
- * Basic are the z of the list "var" (z0 is number n) and the w of rows not in
- * "row". Both have s entries; with P = [M d](row, var) and K = inv(P)
+ * Basic are: the z of the list "var" (z0 is number n), and the w of every row
+ * not in the list "row". Both lists have s entries; with P = [M d](row, var)
+ * and K = inv(P)
  *
  *   z_var = -K q_row,   w_i = q_i + [M d](i, var) z_var   for the other i.
  *
  * The complement of the variable that left last enters next. A pivot adds,
  * replaces or removes one row and one column of P; K follows by a rank-one
  * change. Lexicographic rule: q is thought of as q + (e, e^2, ...) with an
- * infinitesimal e; only the columns that break ties are formed.
+ * infinitesimal e; only the columns of the inverse that are needed to break
+ * ties are formed.
  */
 #include "solver/lcp/lcp.h"
 
@@ -218,7 +220,8 @@ static double lcp_direction(lcp_work *w, const lcp_problem *p) {
   return first;
 }
 
-/* ---- which variable leaves: the first to vanish, by lexicographic rule. */
+/* ---- which variable leaves the basis: the first to vanish, ties by the
+ * lexicographic rule. */
 
 static const double SMALL = 0x1p-38;   /* no pivot below */
 static const double UNEQUAL = 0x1p-26; /* pivots of tied rows not considered */
@@ -326,7 +329,8 @@ static int split_ties(lcp_work *w, const lcp_problem *p, int j, int n_tie) {
   return kept;
 }
 
-/* Candidate that leaves, -1: a ray. z0 has priority: it is solved. */
+/* Candidate that leaves, -1: none (a ray). z0 has priority: the problem is then
+ * solved. */
 static int lcp_leaving(lcp_work *w, const lcp_problem *p, double *step) {
   sizes k = measure(w);
   int n_tie = first_to_vanish(w, &k, step);

@@ -47,7 +47,8 @@ typedef struct lcp_problem {
 } lcp_problem;
 
 typedef struct lcp_work lcp_work;
-/* Allocates for n unknowns, of which at most "rank" are basic. */
+/* Allocates for n unknowns, of which at most "rank" (of M) are basic at a
+ * time. */
 status lcp_new(int n, int rank, lcp_work **out);
 /* Solve p; rep->residual is unchanged. Allocates nothing. */
 void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep);

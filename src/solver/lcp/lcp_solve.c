@@ -107,7 +107,8 @@ double *nonnegative_next(const nonnegative *s) {
   return s->n < s->rows ? s->G + (size_t)s->rows * s->n : NULL;
 }
 
-/* y[n]: factors of the columns for b[rows]; 0: not possible. */
+/* y[n]: factors of the columns for b[rows] by least squares; 0: not possible.
+ */
 static int fit(nonnegative *s, const double *b) {
   int rows = s->rows;
   COPY(s->Q, s->G, (size_t)rows * s->n);
@@ -116,7 +117,8 @@ static int fit(nonnegative *s, const double *b) {
                             s->y, rows, s->work, 4 * rows) == 0;
 }
 
-/* From x towards y while factors are positive; zero ones go. 1: at y. */
+/* From x towards y while no factor is negative; factors that become zero are
+ * dropped. 1: y is reached. */
 static int go(nonnegative *s) {
   double share = 1.0;
   int end = -1;
@@ -141,7 +143,8 @@ static void subtract(nonnegative *s, const double *x) {
               x, 1, 1.0, s->rest, 1);
 }
 
-/* The rest is made normal to the columns twice, for rounding. */
+/* The rest is made normal to the columns twice, for its direction where little
+ * is left. */
 int nonnegative_take(nonnegative *s) {
   if (s->n == s->rows) return 0;
   s->x[s->n++] = 0.0;
@@ -214,7 +217,8 @@ typedef struct newton_run {
   double tol;
   int most;                    /* steps, all starts; 0: no limit */
   double unit;                 /* of z: largest |q| over largest |M| */
-  double *size;                /* [n] units: M has diagonal 1, |q| <= 1 */
+  double *size;                /* [n] units: M and q below have diagonal 1, |q|
+                                  <= 1 */
   double *M, *q;               /* [n*n], [n] */
   double *z, *w;               /* [n] in these units */
   double *phi, *a, *b, *d, *g; /* [n] */
@@ -271,7 +275,8 @@ static int gather_basis(newton_run *s) {
   return k;
 }
 
-/* z of the basis: M_BB z_B = -q_B. 1: s->answer is z, a solution. */
+/* z of the basis: M_BB z_B = -q_B. 1: it solves the problem; s->answer then is
+ * z. */
 static int basis_solves(newton_run *s) {
   int n = s->p->n, k = gather_basis(s);
   for (int i = 0, row = 0; i < n; ++i)
@@ -395,7 +400,8 @@ static int descend(newton_run *s, int *steps) {
   return basis_of_iterate_solves(s);
 }
 
-/* Start k: zero, max(-q, 0), then sparse vectors of growing size. */
+/* Start k: zero, max(-q, 0), then a fixed series of sparse vectors of growing
+ * size. */
 static void start(newton_run *s, int k, unsigned *seed) {
   double size = ldexp(1.0, k / 3 % 10 - 2);
   for (int i = 0; i < s->p->n; ++i) {
@@ -407,7 +413,8 @@ static void start(newton_run *s, int k, unsigned *seed) {
   }
 }
 
-/* Newton's method from many starts. 1 in *found: z solves. *steps grows. */
+/* Attempts by Newton's method from many starts. 1 in *found: z is a solution to
+ * tol. *steps grows. */
 static status lcp_newton(const lcp_data *p, const lcp_control *control,
                          double *z, int *steps, int *found) {
   SCRATCH;
@@ -434,7 +441,8 @@ static void column_of(const newton_run *s, int j, double *to) {
     to[i] = s->basis[j] ? -s->M[i + n * j] : (int)i == j;
 }
 
-/* 1: q is no sum of the columns of the basis, by a margin. */
+/* 1: q is no sum of the columns of the basis, by a margin: a vector separates
+ * it from them. */
 static int excludes(newton_run *s, nonnegative *sum) {
   int n = s->p->n;
   double *column, *rest = sum->rest, before = HUGE_VAL;
@@ -556,7 +564,8 @@ static void choose(run *s, int k) {
              s->work);
 }
 
-/* 0: of the method. The first attempts before others are short. */
+/* 0: the limit of the method. Where others follow the first attempts are short.
+ */
 static int pivots_allowed(const run *s) {
   int most = s->control->max_iter, left = most - s->v->iterations;
   int few = FEW_PIVOTS + PIVOTS_A_ROW * s->p->n;

@@ -4,15 +4,17 @@
  *   w = q + M z,   w >= 0,  z >= 0,  w'z = 0.
  *
  * Complementary pivoting (solver/lcp/lcp.h) comes first. It can end on a ray,
- * or take 2^n pivots, though the problem has a solution; then whether any z >=
- * 0 has w >= 0 is posed as a problem that pivoting decides,
+ * or take 2^n pivots, though the problem has a solution; then the question
+ * whether any z >= 0 has w >= 0 is posed as a problem that pivoting always
+ * decides,
  *
  *   w = 0 - M'y,  v = q + M z,   (z, w), (y, v) complementary,
  *
  * (its matrix is skew), and if there is one: for few unknowns all bases, which
  * decides; the Newton method on the function of Fischer and Burmeister from
  * many starts (De Luca, Facchinei, Kanzow 1996), and pivoting with other units,
- * covering vectors, vertices. The first attempt ends early where these follow.
+ * covering vectors and from other vertices. The first attempt ends early where
+ * these follow.
  */
 #pragma once
 
@@ -25,7 +27,8 @@ typedef struct lcp_data {
 
 typedef struct lcp_control {
   double tol;        /* wanted residual, - */
-  int max_iter;      /* steps of all attempts; 0: own limits */
+  int max_iter;      /* pivots and steps of all attempts; 0: each its own
+                        limit */
   int pivoting_only; /* 1: no other method */
 } lcp_control;
 
@@ -41,7 +44,8 @@ typedef struct lcp_verdict {
   char log[LCP_LOG];  /* "lemke: no equilibrium, ..."; "" if the first did */
 } lcp_verdict;
 
-/* z[n] start, then the solution or the best; w = q + M z. ERR_MEMORY. */
+/* z[n] start value, then the solution or the best found; w[n] = q + M z.
+ * Errors: ERR_MEMORY. */
 status lcp_solve(const lcp_data *p, const lcp_control *control, double *z,
                  double *w, lcp_verdict *v);
 

@@ -99,7 +99,8 @@ typedef struct auglag_run {
   status failed; /* of a step, ERR_MEMORY: the method ends */
 } auglag_run;
 
-/* ---- the augmented forces F(z), their states, the residual of (u, F). */
+/* ---- the augmented forces F(z), the states of the nodes they stand for, and
+ * the residual of (u, F). */
 
 /* rho of an unknown, N/m. */
 static double auglag_rho(const auglag_run *s, int dof) {
@@ -166,7 +167,8 @@ static double auglag_turning(const auglag_run *s, int a, int b) {
   return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
 }
 
-/* The states after a step; counts the nodes that differ from before. */
+/* The states after a step into w->state; counts the nodes that differ from the
+ * step before. */
 static void auglag_take_states(auglag_run *s) {
   auglag_work *w = s->w;
   int dim = s->cp->dim;
@@ -225,7 +227,8 @@ static int operated_direction(auglag_run *s, const double *hold) {
   return s->failed == OK;
 }
 
-/* ---- VARIANT=NEWTON: the generalised Newton method. */
+/* ---- VARIANT=NEWTON: the generalised Newton method for both equations at
+ * once. */
 
 static const double RHO_NEWTON = 0x1p-2; /* -, of diag A */
 static const double DESCENT = 1e-4;      /* -, share of the slope */
@@ -250,7 +253,8 @@ static double newton_row(const auglag_run *s, int row, const double *v,
   return value;
 }
 
-/* Unknowns fixed by the states go into du; the number of others. */
+/* The unknowns fixed by the states go into du, the others are listed; returns
+ * their number. */
 static int known_steps(auglag_run *s) {
   auglag_work *w = s->w;
   int n = 0;
@@ -677,7 +681,8 @@ static status follow_limit(auglag_run *s, solver_report *rep) {
   return OK;
 }
 
-/* 1: the other variant made no progress: the first cycle tells more. */
+/* 1: the other variant ended without progress: the cycle of the first one is
+ * the better reason. */
 static int made_no_progress(const solver_control *control,
                             const solver_report *rep) {
   int bounded = control->max_iter > 0 && rep->iterations >= control->max_iter;

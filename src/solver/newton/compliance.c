@@ -17,7 +17,8 @@
 #include <cblas.h>
 #include <lapacke.h>
 
-/* An unknown force: of one unknown, or along d of a slipping node. */
+/* An unknown force: of one degree of freedom, or along d in the tangent plane
+ * of a slipping node. */
 typedef struct unknown {
   int dof;     /* of d: the first tangent */
   int turns;   /* 1: along d */
@@ -424,7 +425,8 @@ static int project(const compliance_system *s, double *r) {
   return moved;
 }
 
-/* Forces of the guess by the updated factor or a new one; 0: none. */
+/* Forces of the guess by the updated factor (freed) or a new one; 0: not
+ * solved. */
 static int solve(compliance_system *s, int by_base, double *r, double *raw) {
   double left = load(s, r, raw), before = HUGE_VAL, first = left;
   for (int k = 0; k < REFINEMENTS && left < 0.5 * before; ++k) {

@@ -130,8 +130,9 @@ typedef struct course {
 } course;
 
 /* 1: solved, and a further step would change nothing or little, or is more than
- * the tolerance requires. On the round cone in space it is still quadratic: it
- * turns the forces of slipping nodes exactly against their slip. */
+ * the tolerance requires. On the round cone of three dimensions one within the
+ * tolerance is still quadratic: it turns the forces of slipping nodes exactly
+ * against their slip. */
 static int solved(const run *s, course *c, double residual) {
   int within = residual <= s->control->tol, linear = s->cp->dim < 3;
   if (solver_few_digits(s->control->tol)) return within;
@@ -215,7 +216,8 @@ static int goes_on(const run *s, const course *c, int limit) {
          (limit == FULL_STEPS && c->at < MOST_STEPS && c->at - c->best_at <= 2);
 }
 
-/* Steps until solved, without progress, cycling or "limit". */
+/* Steps from the present guess until solved, without progress, cycling or
+ * "limit". */
 static outcome attempt(run *s, int limit) {
   course c = {.lowest = HUGE_VAL, .before = HUGE_VAL};
   int m = s->cp->m;

@@ -155,7 +155,8 @@ static void orthogonalise(operated_system *s, int j, double *w) {
   h[j + 1] = cblas_dnrm2(s->slip.n, w, 1);
 }
 
-/* The combination that leaves least goes to the load and its solution. */
+/* The combination of the directions that leaves least is added to the load, and
+ * that solved for. */
 static void combine(operated_system *s, const contact_problem *cp) {
   const int n = s->krylov.n;
   double *sum = direction(s, n);
@@ -222,7 +223,8 @@ static void wanted(const contact_problem *cp, const operated_rows *rows,
     block[(dim + 1) * a] += rows->hold[dim * node + a];
 }
 
-/* 1: the factor has what the guess adds at a node, but for its turning. */
+/* 1: the factor has what the guess adds at a node; of one that slips only the
+ * turning may be another. */
 static int has_block(const operated_system *s, const operated_rows *rows,
                      int node, const double *block) {
   for (int i = 0; i < 9; ++i) {
@@ -254,7 +256,8 @@ static int has_rows(const operated_system *s, const contact_problem *cp,
   return 1;
 }
 
-/* The rows of the guess, where slip may turn; spring: of the diagonal. */
+/* The rows of the guess, in which slip may turn otherwise; spring: share of the
+ * diagonal. */
 static status set_rows(operated_system *s, const contact_problem *cp,
                        const operated_rows *rows, double spring,
                        int *singular) {

@@ -175,7 +175,8 @@ static void add_row(const run *s, int j, double share) {
   step_matrix_add(s->w->J, j, -share * (1.0 - s->stretch * s->share));
 }
 
-/* Row of tangent a of slip: g e turns with z and grows with pressure. */
+/* Row of tangent a of a node that slips: g e turns with z and grows with the
+ * pressures. */
 static void add_slip(const run *s, int node_id, int a, double length) {
   const contact_problem *cp = s->cp;
   const proximal_work *w = s->w;
@@ -458,7 +459,8 @@ static status begin(run *s) {
   return OK;
 }
 
-/* Residual at r; an operator's r and A u - f have drifted apart. */
+/* Residual at r; of an operator r and A u - f have drifted apart by rounding.
+ */
 static double residual_of(const run *s) {
   const contact_problem *cp = s->cp;
   double *raw = cp->op != NULL ? s->w->by.b : NULL;

@@ -3,7 +3,8 @@
 
 #include "base/base.h"
 
-static const double WARM_SLIP = 0x1p-20; /* -, of g: slips at the start */
+static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
+                                            start */
 
 /* Of each unknown alone, and the mean over a tangent plane. */
 static void set_stiffness(const contact_problem *cp, states *s) {
@@ -157,7 +158,8 @@ static void restore_friction(states *s, int node_id, const node_friction *f) {
     s->guess.e[node_id * (s->cp->dim - 1) + k] = f->e[k];
 }
 
-/* 1: postpone this change, at random from a fixed seed. */
+/* 1: postpone this change. Reproducible: the random numbers start from the same
+ * seed. */
 static int put_off(states *s, int changes) {
   if (s->careful) return changes > 0;
   if (s->dice == 0) return 0;

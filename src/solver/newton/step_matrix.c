@@ -71,7 +71,8 @@ void step_matrix_add_row(step_matrix *s, int j, double share) {
     step_matrix_add(s, W->col[k], share * W->val[k]);
 }
 
-/* Entries of the row in ascending order; rows of W ascend. */
+/* The entries of the current row in ascending order; the rows of W that they
+ * come from ascend. */
 static void sort_touched(step_matrix *s) {
   for (int a = 1; a < s->n_touched; ++a) {
     int j = s->touched[a], b = a;
@@ -81,7 +82,8 @@ static void sort_touched(step_matrix *s) {
   }
 }
 
-/* Of the eliminated unknowns on the right side; their entries are cleared. */
+/* Contribution of the eliminated unknowns to the right side; their entries of
+ * the line are cleared. */
 static double take_out(step_matrix *s, int i) {
   double rhs = s->d[i];
   for (int a = 0; a < s->n_touched; ++a) {

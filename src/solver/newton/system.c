@@ -45,7 +45,8 @@ static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 /* ---- the matrix ---------------------------------------------------------- */
 
-/* 1: friction of the node follows pressure: M has no symmetry. */
+/* 1: under the guess friction of the node follows pressure: M has no symmetry.
+ */
 static int couples(const newton_system *s, const pattern *p, int node_id) {
   const sparse_rows *B = s->cp->B;
   if (p->mode[node_id] != SLIP) return 0;
@@ -144,7 +145,8 @@ static double newton_cost(int n, int full) {
   return (full ? 2.0 : 1.0) / 3.0 * size * size * size + READ * size * size;
 }
 
-/* The condition number only where the matrix may be singular. */
+/* The condition number is computed only where the matrix can be singular for
+ * valid data. */
 /* Factor of the base; 0: singular to rounding. */
 static int newton_factor(newton_system *s) {
   fill(s, 0.0);
@@ -207,7 +209,8 @@ static void newton_spring_step(newton_system *s, const pattern *p) {
 static const double DRIFT = 0x1p-3; /* -, change of a slip direction or turning
                                        stiffness that the base allows (3-D) */
 
-/* 1: the node slips in another direction; in 3-D small turns pass. */
+/* 1: the node slips in another direction than in the base; in 3-D a small
+ * change is allowed. */
 static int turned(const newton_system *s, const pattern *p, int dof) {
   int node_id = dof / s->cp->dim, tangents = s->cp->dim - 1;
   double change = 0.0, now = p->kappa[node_id], old = s->base.kappa[node_id];
@@ -237,7 +240,8 @@ static int same_row(const newton_system *s, const pattern *p, int dof) {
   return 1;
 }
 
-/* List the rows that differ from the base; cost of an update, operations. */
+/* List the rows in which the guess differs from the base; returns what an
+ * update costs, operations. */
 static double newton_list_changes(newton_system *s, const pattern *p) {
   double fresh = 0.0, equations = 0.0, n = s->base.n_free, m = s->m;
   s->n_changed = 0;

@@ -49,7 +49,8 @@ int newton_system_step(newton_system *s, pattern *p, double *u, double *raw);
 linear_work newton_system_work(const newton_system *s);
 /* Save or read the factor and its exchanged rows. */
 status newton_system_keep(newton_system *s, archive *a);
-/* 1: the last step was by an updated factor, now discarded. Or NULL. */
+/* 1: the last step came from an updated factor, which is discarded for the
+ * next. Accepts NULL. */
 int newton_system_refresh(newton_system *s);
 
 /* The known unknowns of the guess and the free ones are listed; du[m]: what
@@ -58,7 +59,8 @@ int newton_list_known(const contact_problem *cp, pattern *p, const double *u,
                       double *du);
 /* They are put into u. */
 void newton_take_known(const contact_problem *cp, const pattern *p, double *u);
-/* b[m], times power: minus the residual of free rows at u; the largest. */
+/* b[m], times power: minus the residual of each free row at the present u.
+ * Returns the largest. */
 double newton_load(const contact_problem *cp, const pattern *p, double power,
                    const double *u, const double *raw, double *b);
 /* Slip of a node in the directions friction acts in, slip[2], m. */
@@ -66,8 +68,9 @@ void newton_slip(const contact_problem *cp, const double *u, int node_id,
                  double *slip);
 
 /*
- * A guess of the states: from the forces and displacements of the last step,
- * and enforced exactly in the forces (newton.c).
+ * The guess of the states of a run of Newton's method: from the forces and
+ * displacements of the last step, and enforced exactly in the forces
+ * (newton.c).
  */
 typedef struct states {
   const contact_problem *cp;
@@ -98,8 +101,9 @@ void states_all_stick(states *s);
 uint64_t states_hash(const states *s);
 
 /*
- * The linear system of a step (newton.c) where only the compliance is known:
- * the unknowns are the unknown forces of a guess of the states, u = W r + q.
+ * The linear system of one step of Newton's method (newton.c) where only the
+ * compliance is known: the unknowns are the unknown forces of a guess of the
+ * states, u = W r + q.
  *
  *   open    r_n = 0                      known
  *   closed  u_n = gap                    unknown r_n
@@ -139,8 +143,9 @@ status operated_system_step(operated_system *s, const contact_problem *cp,
 /* du[m], Adu[m] = A du: the known rows of the guess p (place < 0) as du has
  * them, at the others
  *   (A + hold + kappa (I - e e') + e B A_n) du = b,
- * hold[m] on the diagonal (N/m or NULL), the next of slipping nodes, A_n rows
- * of closed unknowns. *singular 1: weak springs held the body. ERR_MEMORY. */
+ * hold[m] on the diagonal (N/m; NULL: none), the next in slipping nodes alone,
+ * A_n rows of closed unknowns. *singular 1: weak springs held the body.
+ * ERR_MEMORY. */
 typedef struct operated_rows {
   const pattern *p;
   const double *hold, *b;
@@ -151,32 +156,38 @@ status operated_system_direction(operated_system *s, const contact_problem *cp,
 /* newton_system_work. */
 linear_work operated_system_work(const operated_system *s,
                                  const contact_problem *cp);
-/* 1: raw of the last step is a sum, not the reaction of u. Or NULL. */
+/* 1: raw of the last step is a sum over steps, not the reaction of u. Accepts
+ * NULL. */
 int operated_system_sums(const operated_system *s);
-/* 1: another step on the same rows may mend the last. Accepts NULL. */
+/* 1: another step on the same rows may mend the last, which was solved to a few
+ * digits. Accepts NULL. */
 int operated_system_refresh(operated_system *s);
 
 /*
- * The matrix of a step on the forces (proximal.c), row by row:
+ * The matrix of a step of Newton's method on the forces (proximal.c), row by
+ * row:
  *
  *   J_i = e_i                                         nothing acts on unknown i
  *   J_i = e_i - sum_j c_ij (e_j (1 - a) - D_j W_j) + ...            the others
  *
  * with rows W_j of the compliance. Unknowns of the first kind are eliminated;
- * the rest is factored by UMFPACK if sparse, else by LAPACK.
+ * what is left is sparse where W is, and then factored by UMFPACK, else by
+ * LAPACK.
  */
 
 typedef struct step_matrix step_matrix;
 /* set: borrowed. */
 status step_matrix_new(const contact_problem *cp, const force_set *set,
                        step_matrix **out);
-/* A new matrix: acts[m], 0: row i is e_i; d[m] right side, kept. */
+/* A new matrix: acts[m], 0: row i is e_i; d[m] the right side, kept by the
+ * caller until the solve. */
 void step_matrix_begin(step_matrix *s, const unsigned char *acts,
                        const double *d);
 /* Into the current row: value in column j; share times row j of W. */
 void step_matrix_add(step_matrix *s, int j, double value);
 void step_matrix_add_row(step_matrix *s, int j, double share);
-/* It is row i (acts[i], ascending); the next one is empty. ERR_MEMORY. */
+/* It is row i (with acts[i], in ascending order); the next one is empty.
+ * Errors: ERR_MEMORY. */
 status step_matrix_put(step_matrix *s, int i);
 /* d <- inv(J) d; *singular = 1: not found. Errors: ERR_MEMORY. */
 status step_matrix_solve(step_matrix *s, double *d, int *singular);

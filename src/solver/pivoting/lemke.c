@@ -156,7 +156,8 @@ static void lemke_list_variables(lemke_run *s) {
   }
 }
 
-/* ---- the matrix of the unknowns kept, scaled node by node. */
+/* ---- the matrix of the unknowns kept: the tangents without friction
+ * eliminated, node by node scaled. */
 
 static const double SINGULAR = 1e-13; /* -, of the largest eigenvalue */
 
@@ -197,7 +198,8 @@ static int pseudo_invert_free(lemke_run *s) {
   return 1;
 }
 
-/* S = A_KK - A_KF inv(A_FF) A_FK, or W_KK; 0: A_FF is singular. */
+/* S = A_KK - A_KF inv(A_FF) A_FK (W_KK in the compliance form); 0: A_FF is
+ * singular. */
 static int lemke_reduce(lemke_run *s) {
   lemke_work *w = s->w;
   int nk = w->reduced.n_kept, nf = w->reduced.n_free;
@@ -424,7 +426,8 @@ static void lemke_set_base(lemke_run *s) {
   lemke_settle_free(s, 1, w->reduced.base);
 }
 
-/* w of every variable from raw, scaled; z: scaled, of a compliance. */
+/* w of every variable from raw, scaled as the matrix is; z: scaled, for the
+ * compliance form. */
 static void slacks(const lemke_run *s, const double *raw, const double *z,
                    double *to) {
   const contact_problem *cp = s->cp;
@@ -483,7 +486,8 @@ static void polish(lemke_run *s, double *x) {
   lemke_respond(s, x, 1, w->raw);
 }
 
-/* Stiffness form: r from raw with the conditions of the basis exact. */
+/* Stiffness form: r from raw with the conditions of the basis enforced
+ * exactly. */
 static void clean_forces(const lemke_run *s, double *r) {
   const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
@@ -566,7 +570,8 @@ static int motion_is_free(lemke_run *s, double resistance) {
          work > noise && work > resistance * (1.0 - RAY_WORK);
 }
 
-/* STOPPED_RAY if the ray is a free motion against its first limits. */
+/* STOPPED_RAY if the ray is a free motion, against the limits of the state it
+ * starts from. */
 static outcome lemke_check_ray(lemke_run *s) {
   const contact_problem *cp = s->cp;
   lemke_work *w = s->w;
