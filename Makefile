@@ -32,9 +32,12 @@ warnings := -Wall -Wextra -Wno-unused-parameter -Wpedantic -Wshadow -Wconversion
             -Wno-sign-conversion -Werror
 optimise_release := -O3 $(march) -g1 -fno-math-errno
 optimise_debug   := -O0 -g3
-optimise_asan    := -O1 -g2 -fsanitize=address,undefined \
+# Where tests look for faults, locals that are read before they are set are no
+# plausible numbers.
+spoilt           := -ftrivial-auto-var-init=pattern
+optimise_asan    := -O1 -g2 -fsanitize=address,undefined $(spoilt) \
                     -fno-sanitize-recover=all -fno-omit-frame-pointer
-optimise_cover   := -O0 -g1 --coverage
+optimise_cover   := -O0 -g1 --coverage $(spoilt)
 optimise := $(optimise_$(BUILD))
 $(if $(optimise),,$(error BUILD=$(BUILD): release, debug, asan or cover))
 

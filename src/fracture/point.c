@@ -228,7 +228,7 @@ static void look_round(const fracture *f, fracture_point *p) {
 
 /* That of the minus lip points to the plus side. */
 static void add_normal(const fracture *f, int face, double *sum) {
-  double normal[3];
+  double normal[3] = {0.0};
   const double area =
       mesh_face_normal(f->body.mesh, f->body.crack->minus[face], normal);
   for (int k = 0; k < 3; ++k) sum[k] += area * normal[k];

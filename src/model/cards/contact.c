@@ -459,7 +459,7 @@ status apply_friction(reading *r) {
   const friction_ops *law = p->law == NULL ? NULL : friction_find(p->law);
   if (law == NULL || p->contact == NULL) return OK;
   const int id = find_contact(r, p->contact);
-  friction_rule *rule;
+  friction_rule *rule = NULL;
   if (id < 0) return OK;
   PASS(new_rule(r, id, &rule));
   if (rule == NULL) return OK;
