@@ -161,6 +161,7 @@ typedef struct error_state {
   int carried;   /* 1: contact carries its loads straight, found if motions are
                     large */
   int noise;     /* 1: strains are rounding of the motion, found likewise */
+  double lost;   /* N, largest rounding of a contact force, found likewise */
   int evaluated; /* 1: those of mesh and solver are of r->now */
 } error_state;
 

@@ -202,13 +202,15 @@ typedef struct touch_scale {
 
 static void judge_frame(const judged *j, const contact_node *q,
                         const touch_scale *s) {
-  double pressure = cell(j, q->row, "pressure");
+  double pressure = cell(j, q->row, "pressure"), n[3];
   int no = q->node + 1;
+  /* A force along what is fixed is friction, oblique to a normal that leans. */
+  for (int c = 0; c < 3; ++c) n[c] = q->fixed >> c & 1 ? 0 : q->n[c];
   judge_note(j->q, OF_FRAME, dot(q->n, q->u) - cell(j, q->row, "u_n"),
              s->length, j->now, no);
   judge_note(j->q, OF_FRAME, pressure * q->area - q->f_n, s->force, j->now, no);
-  judge_note(j->q, OF_FRAME, dot(q->n, q->force) + q->f_n, s->force, j->now,
-             no);
+  judge_note(j->q, OF_FRAME, dot(n, q->force) + q->f_n * dot(n, n), s->force,
+             j->now, no);
 }
 
 static double given_force(const judged *j, const deck_contact *c,

@@ -583,6 +583,45 @@ START_TEST(load_that_contact_takes_at_once_is_right) {
 }
 END_TEST
 
+/* Loads at the nodes of a body that its supports lift, taken at once by the
+ * friction of these nodes, which are open: each method leaves forces within its
+ * tolerance, or their rounding, at all of them, and no strains else. */
+START_TEST(load_that_friction_of_open_nodes_takes_is_right) {
+  static const char *const methods[] = {"AUTO", "SOR", "AITKEN", "LAGRANGE",
+                                        "PROXIMAL"};
+  static const struct {
+    const char *kind, *nu;
+    double lift, load;
+  } cases[] = {{"CPE3", "0.3", 0.01, 0.1},   {"CPE3", "0.499", 1., 0.1},
+               {"CPE3", "0.499", 1e-4, 0.1}, {"CPE3", "0.499", 0.01, 0.1},
+               {"CAX3", "0.499", 1e-4, 0.1}, {"CAX3", "0.499", 1e-4, 1e-3}};
+  for (size_t k = 0; k < sizeof methods / sizeof *methods; ++k) {
+    job j = job_begin("lifted");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "lifted.inp",
+              "*PARAMETER\nN = 3\n*MESH, FILE=square.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1E3, %s\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=TRESCA\n\"13.*x\"\n"
+              "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nLEFT, 1\nTOP, 1\n"
+              "TOP, 2, 2, %g\n*CLOAD\nBOTTOM, 1, %g\n*SOLVER, METHOD=%s\n"
+              "*PRINT, CONTACT\n*END STEP\n",
+              cases[_i].nu, cases[_i].kind, cases[_i].lift, cases[_i].load,
+              methods[k]);
+    int code = job_run(&j, "--quiet");
+    ck_assert_msg(code == 0, "%s: exit %d: %s", methods[k], code, j.errors);
+    dat c = job_table(&j, "CONTACT", -1);
+    for (int i = 1; i < c.n_row; ++i)
+      ck_assert_double_eq_tol(dat_at(&c, i, "f_t"), -cases[_i].load,
+                              1e-8 * cases[_i].load + 1e-9);
+    dat_free(&c);
+    job_end(&j);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("rounding");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -604,6 +643,8 @@ int main(void) {
   tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
+  tcase_add_loop_test(tests, load_that_friction_of_open_nodes_takes_is_right, 0,
+                      6);
   tcase_add_loop_test(tests, loss_of_a_body_carried_far_is_told, 0, 4);
   tcase_add_loop_test(tests, no_digit_is_left_of_a_body_carried_too_far, 0, 2);
   tcase_add_loop_test(tests, rigid_motion_is_right_to_its_digits, 0, 6);

@@ -157,11 +157,11 @@ static double largest_force(const run *r) {
 }
 
 /* What the rounding of the forces stores, and what the solver has left at the
- * contact nodes, J: at the stiffest node, or at any where nothing but that is
- * left of them. */
-static double forces_energy(const run *r) {
+ * contact nodes, with "lost" of each force, J: at the stiffest node, or at any
+ * where nothing but that is left of them. */
+static double forces_energy(const run *r, double lost) {
   const double force = largest_force(r), rounding = RUN_CARRIED * force,
-               left = r->solving.report.residual * force,
+               left = r->solving.report.residual * force + lost,
                soft = r->errors.carried ? condensed_condition(r->c) : 1.0;
   return soft *
          (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
@@ -171,7 +171,7 @@ static double forces_energy(const run *r) {
 /* 1: contact forces and supports carry the loads straight, and strains are
  * nothing else. */
 static int forces_hide_strains(const run *r) {
-  return r->now.energy.strain <= forces_energy(r);
+  return r->now.energy.strain <= forces_energy(r, 0.0);
 }
 
 /* 1: no force acts on the body. */
@@ -202,8 +202,8 @@ int rounding_is_all(const run *r) {
   if (r->errors.strained) return 0;
   if (r->errors.carried &&
       (r->errors.noise ||
-       r->now.energy.strain <=
-           strains_rounding(r, strains_lost(r)) + forces_energy(r)))
+       r->now.energy.strain <= strains_rounding(r, strains_lost(r)) +
+                                   forces_energy(r, r->errors.lost)))
     return 1;
   if (increment_free_load(r, r->now.F) > 0.0) return 0;
   const double u = force > 0.0 ? fmax(strains_lost(r), rounding_of_gaps(r))
@@ -237,16 +237,29 @@ static status find_error(const run *r, misfit *x, double *square) {
   return condensed_misfit(x->c, x->rest, x->rc, x->w, square);
 }
 
+/* Largest bound of the rounding of a contact force. */
+static status find_lost(run *r) {
+  const contact_problem *cp = &r->problem.cp;
+  OWNED_NEW(double, rounding, cp->n);
+  contact_roundings(cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc),
+                    rounding);
+  r->errors.lost = largest_entry(cp->n, rounding);
+  return OK;
+}
+
 /* Whether contact carries the loads straight: at each node its force and the
- * load leave no more than the rounding of forces, that of the solver, or the
- * rounding of the motion if far below the load or nothing loads it. */
+ * load leave no more than the rounding of forces, what the solver leaves at all
+ * contact nodes, or the rounding of the motion, or of all contact forces, if
+ * far below the load or nothing loads it. */
 static status find_carried(run *r) {
   const double most = fmax(increment_free_load(r, r->now.F),
                            largest_entry(r->nodes.n_c, r->now.rc)),
+               n = r->problem.cp.n,
                part = RUN_CARRIED *
                           sqrt(r->msh->n_node * condensed_condition(r->c)) +
-                      r->solving.report.residual,
-               moved = condensed_stiffest(r->c) * strains_lost(r);
+                      n * r->solving.report.residual,
+               moved = fmax(condensed_stiffest(r->c) * strains_lost(r),
+                            n * r->errors.lost);
   OWNED_NEW(double, left, r->n_dof);
   COPY(left, r->now.F, r->n_dof);
   if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, left);
@@ -254,7 +267,8 @@ static status find_carried(run *r) {
   for (size_t q = 0; q < r->n_dof; ++q) {
     const double rest = fabs(left[q]), by = fabs(r->now.F[q]);
     if (r->body.fixed[q] || rest <= part * most) continue;
-    if (rest > moved || (by > 0.0 && by < FAR * rest)) r->errors.carried = 0;
+    if (rest > part * most + moved || (by > 0.0 && by < FAR * rest))
+      r->errors.carried = 0;
   }
   return OK;
 }
@@ -408,7 +422,7 @@ double rounding_strain_left(const run *r) {
   if (r->strains.visco == NULL) return 0.0;
   const double energy = domain_strain_energy(&plain, r->now.u);
   const double none =
-      fmax(strains_rounding(r, strains_lost(r)), forces_energy(r));
+      fmax(strains_rounding(r, strains_lost(r)), forces_energy(r, 0.0));
   return energy > FAR * none ? energy : 0.0;
 }
 
@@ -483,6 +497,7 @@ static int is_doubtful(const run *r) {
 status rounding_find(run *r) {
   r->errors.rounding = (rounding_loss){0};
   r->errors.strained = r->errors.carried = r->errors.noise = 0;
+  r->errors.lost = 0.0;
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
@@ -491,6 +506,7 @@ status rounding_find(run *r) {
   const int doubtful = is_doubtful(r);
   if (doubtful || is_unloaded(r)) PASS(supports_strain(r, &r->errors.strained));
   if (!doubtful) return find_noise(r);
+  if (r->nodes.n_row > 0) PASS(find_lost(r));
   PASS(find_carried(r));
   TIMED(STAGE_RECOVERY);
   return find(r);

@@ -9,6 +9,7 @@
 static const double FREE = 0x1p-36; /* -, square of what moves with a motion */
 static const double MARGIN = 0x1p-40;   /* -, of the gaps */
 static const double BALANCED = 0x1p-30; /* -, of the work of the loads */
+static const double REAL = 0x1p-10;     /* -, of the scale: never hidden */
 
 typedef struct rest {
   const rest_scene *at;
@@ -29,24 +30,29 @@ static int body_of(const contact_problem *cp, int node) {
   return cp->bodies == NULL ? 0 : cp->bodies->of[node];
 }
 
-/* Forces that the rounding, or the tolerance of the solver, hides are none. */
+/* Forces are none that the rounding, or the tolerance of the solver, hides:
+ * what that leaves at all nodes of a body may be held by the force of one. */
 static status find_forced(rest *s) {
   const contact_problem *cp = s->cp;
   const double *before =
       s->at->f_before; /* the velocity form solves for less */
-  OWNED double *error = NULL, *load = NULL;
-  PASS_NEW_REALS(cp->n, &error, &load); /* as many bodies, at most */
+  const double most = fmax(1.0, REAL / s->at->tol);
+  OWNED double *own = NULL, *load = NULL, *sum = NULL;
+  PASS_NEW_REALS(cp->n, &own, &load, &sum); /* as many bodies, at most */
   PASS_NEW(s->forced, s->m);
-  contact_errors(cp, s->at->tol, s->u, s->f, error);
+  contact_errors(cp, s->at->tol, s->u, s->f, own);
   for (int i = 0; i < s->m && before != NULL; ++i) {
-    double *own = &load[body_of(cp, i / cp->dim)];
-    *own = fmax(*own, fabs(before[i]));
+    double *largest = &load[body_of(cp, i / cp->dim)];
+    *largest = fmax(*largest, fabs(before[i]));
+  }
+  for (int k = 0; k < cp->n; ++k) {
+    own[k] = fmax(own[k], s->at->tol * load[body_of(cp, k)]);
+    sum[body_of(cp, k)] += own[k];
   }
   for (int i = 0; i < s->m; ++i) {
     const int node = i / cp->dim;
     const int bounded = contact_bound(cp, i) < HUGE_VAL;
-    const double noise =
-        fmax(error[node], s->at->tol * load[body_of(cp, node)]);
+    const double noise = fmin(sum[body_of(cp, node)], most * own[node]);
     s->forced[i] =
         fabs(s->f[i]) > noise || (!bounded && cp->g0 != NULL &&
                                   contact_node_limit(cp, s->f, node) > noise);
