@@ -106,21 +106,63 @@ static double turn_in(const course *of, double sign, const double at[3]) {
   return fmax(vx, vy) > sign * value_of_course(of, at[1]) ? x : at[1];
 }
 
-/* Adds t if the value there is beyond those at the times next to it. */
-static int add_turn(const course *c, double sign, double t, double most,
-                    const double ends[2], turn_list *list) {
-  double before = ends[0], after = ends[1];
+/* A course on its way from t0 to t. */
+typedef struct scan {
+  const course *c;
+  double ends[2]; /* of the increment, s */
+  double first;   /* value at t0 */
+  double largest; /* magnitude so far, and at the ends of the step */
+  double sign;    /* 1: it rises, -1: it falls, 0: neither so far */
+  double top;     /* value farthest on that way, */
+  double at[3];   /* s, its time between those looked at next to it */
+  double turn[2]; /* s, the last two turns, t0 at first */
+  double turned;  /* sign before the last turn; 0: none */
+} scan;
+
+static double apart(const scan *s) { return SMALL * s->largest; }
+
+/* Adds the last turn unless a time that is listed, between the turns before and
+ * "next", has the same value. */
+static int add_turn(const scan *s, double next, turn_list *list) {
+  double before = s->turn[0], after = next;
+  const double t = s->turn[1];
+  if (s->turned == 0.0) return 1;
   for (int i = 0; i < list->n; ++i) {
     if (list->at[i] <= t) before = fmax(before, list->at[i]);
     if (list->at[i] >= t) after = fmin(after, list->at[i]);
   }
-  const double v = sign * value_of_course(c, t);
-  const double seen =
-      fmax(sign * value_of_course(c, before), sign * value_of_course(c, after));
-  return v - seen > SMALL * most ? turns_add(list, t) : 1;
+  const double v = s->turned * value_of_course(s->c, t);
+  const double seen = fmax(s->turned * value_of_course(s->c, before),
+                           s->turned * value_of_course(s->c, after));
+  return v - seen > apart(s) ? turns_add(list, t) : 1;
 }
 
-enum { PARTS = 16 };
+/* The value at t, after that at s->at[1] or later; 0: the list is full. */
+static int look(scan *s, double t, double v, double before, turn_list *list) {
+  int all = 1;
+  if (s->sign == 0.0 && fabs(v - s->first) > apart(s))
+    s->sign = v > s->first ? 1.0 : -1.0;
+  if (s->sign * (s->top - v) > apart(s)) {
+    if (s->at[2] <= s->at[1]) s->at[2] = t;
+    const double turn = turn_in(s->c, s->sign, s->at);
+    all = add_turn(s, turn, list);
+    s->turn[0] = s->turn[1];
+    s->turn[1] = turn;
+    s->turned = s->sign;
+    s->sign = -s->sign;
+    s->top = v;
+  }
+  if (s->sign * (v - s->top) >= 0.0) {
+    s->top = v;
+    s->at[0] = before;
+    s->at[1] = s->at[2] = t;
+  } else if (s->at[2] <= s->at[1]) {
+    s->at[2] = t;
+  }
+  return all;
+}
+
+enum { PARTS = 64 };
 
 /* The next time after t at which the course is looked at: parts of the
  * increment, points of its table. */
@@ -139,41 +181,27 @@ static double next_look(const course *c, const double ends[2], int *part,
   return by_part;
 }
 
-/* The largest magnitude, and that at the ends of the step. */
-static double largest_value(const course *c, double largest) {
-  const double start = value_of_course(c, c->s->start);
-  return fmax(largest,
-              fmax(fabs(start), fabs(value_of_course(c, step_end(c->s)))));
-}
-
 int course_turns(const course *c, double t0, double t, turn_list *list) {
-  const double ends[2] = {t0, t};
   if (c->l != NULL && c->l->run == RUN_RAMP)
     return value_of_course(c, t0) != value_of_course(c, t);
-  int n, part = 1, point = course_points(c, t0, t, &n);
+  int n, part = 1, point = course_points(c, t0, t, &n), all = 1;
   const int end_point = point + n;
-  /* Three times of different values, the last one and how it came there. */
-  double at[3] = {t0, t0, t0}, last = value_of_course(c, t0),
-         largest = fabs(last);
-  const double first = last, slope = (value_of_course(c, t) - first) / (t - t0);
-  double sign = 0.0, bent = 0.0;
-  int all = 1;
+  const double first = value_of_course(c, t0),
+               slope = (value_of_course(c, t) - first) / (t - t0);
+  scan s = {.c = c, .ends = {t0, t}, .first = first, .top = first};
+  double bent = 0.0, before = t0;
+  for (int i = 0; i < 3; ++i) s.at[i] = s.turn[i / 2] = t0;
+  s.largest = fmax(fabs(value_of_course(c, c->s->start)),
+                   fabs(value_of_course(c, step_end(c->s))));
   while (part <= PARTS) {
-    at[2] = next_look(c, ends, &part, &point, end_point);
-    const double v = value_of_course(c, at[2]), change = v - last;
-    largest = fmax(largest, fabs(v));
-    bent = fmax(bent, fabs(v - first - slope * (at[2] - t0)));
-    if (sign * change < 0.0)
-      all &= add_turn(c, sign, turn_in(c, sign, at), largest_value(c, largest),
-                      ends, list);
-    if (change != 0.0) {
-      sign = change > 0.0 ? 1.0 : -1.0;
-      at[0] = at[1];
-    }
-    at[1] = at[2];
-    last = v;
+    const double at = next_look(c, s.ends, &part, &point, end_point);
+    const double v = value_of_course(c, at);
+    s.largest = fmax(s.largest, fabs(v));
+    bent = fmax(bent, fabs(v - first - slope * (at - t0)));
+    all &= look(&s, at, v, before, list);
+    before = at;
   }
-  if (!all) return -1;
-  if (sign == 0.0) return 0;
-  return bent > SMALL * largest ? 2 : 1;
+  if (!(all & add_turn(&s, t, list))) return -1;
+  if (s.sign == 0.0) return 0;
+  return bent > apart(&s) ? 2 : 1;
 }

@@ -34,7 +34,7 @@ typedef struct turn_list {
 int turns_add(turn_list *list, double t);
 /*
  * Adds the times from t0 to t at which the course passes a maximum or minimum
- * beyond its values at t0, t and the times listed, found among its values at 16
+ * beyond its values at t0, t and the times listed, found among its values at 64
  * parts and at the points of a table. Returns 1, or 2 if it is not straight; 0
  * if it does not vary; -1: there is no place for all.
  */

@@ -256,7 +256,7 @@ static const struct {
      NULL}};
 enum { TREMBLING = sizeof turning / sizeof *turning - 1 };
 
-static job run_turning(int k, const char *increment) {
+static job run_turning(int k, const char *increment, const char *time) {
   const char *top = turning[k].top, *floor = turning[k].floor;
   char of_top[80] = "*BOUNDARY\nTOP, 1, 1\n";
   job j = job_begin("turning");
@@ -270,18 +270,18 @@ static job run_turning(int k, const char *increment) {
             "*OBSTACLE, NAME=O, TYPE=PLANE%s%s\n0., 0.\n0., 1.\n%s"
             "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
             "*FRICTION, CONTACT=F, LAW=COULOMB\n0.3\n" PRESS
-            "*STEP\n*QUASISTATIC\n%s, 1.\n*ACCURACY, TIME=YES\n%s"
+            "*STEP\n*QUASISTATIC\n%s, 1.\n*ACCURACY, TIME=%s\n%s"
             "*PRINT, CONTACT, ENERGY\n*END STEP\n",
             turning[k].courses, floor != NULL ? ", AMPLITUDE=" : "",
             floor != NULL ? floor : "", floor != NULL ? "MOVE, 1., 0.\n" : "",
-            increment, of_top);
+            increment, time, of_top);
   ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
   return j;
 }
 
 START_TEST(turn_within_an_increment_is_an_error_of_the_steps) {
   for (int k = 0; k < TREMBLING; ++k) {
-    job a = run_turning(k, "0.25"), b = run_turning(k, "0.02");
+    job a = run_turning(k, "0.25", "YES"), b = run_turning(k, "0.02", "YES");
     const double right = job_difference(&a, &b, -1),
                  told = job_told(&a, "time_error_percent");
     ck_assert_double_gt(right, 1.0);
@@ -293,9 +293,18 @@ START_TEST(turn_within_an_increment_is_an_error_of_the_steps) {
 }
 END_TEST
 
+/* Increments that the program chooses are so short that it is known. */
+START_TEST(balanced_increments_are_as_short_as_turns_require) {
+  job j = run_turning(TREMBLING, "1.", "BALANCED, MESH=YES");
+  ck_assert(!listing_has(&j, "error of the steps: unknown"));
+  ck_assert(listing_has(&j, "error of the steps: about"));
+  job_end(&j);
+}
+END_TEST
+
 /* Where it turns too often nothing is told, from there on. */
 START_TEST(turns_without_number_leave_the_error_unknown) {
-  job j = run_turning(TREMBLING, "0.25");
+  job j = run_turning(TREMBLING, "0.25", "YES");
   ck_assert(listing_has(&j,
                         "error of the steps: unknown, the loads turn too "
                         "often in an increment"));
@@ -311,4 +320,5 @@ UNIT_MAIN("friction in time", mu_of_time_in_every_way,
           course_down_to_zero_is_no_jump, friction_card_in_a_step_takes_over,
           contraction_is_that_of_the_card, mu_is_zero_in_places, mu_by_group,
           turn_within_an_increment_is_an_error_of_the_steps,
+          balanced_increments_are_as_short_as_turns_require,
           turns_without_number_leave_the_error_unknown)
