@@ -19,18 +19,20 @@ static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
 static const double BLIND = 0.5; /* -, of the error, without an estimate */
 static const double FAR = 0.1;   /* -, of the error, or it is near */
 static const double ROUNDING = 1e-9; /* -, of the error */
+enum { GROWN = 2 };                  /* -, of the nodes: a mesh is finer */
 enum { BLIND_PASSES = 3 };           /* without one at all, at most */
 static const double ENDS = 2.0; /* -, of an estimate that is not reliable for
                                    the ends of contact */
 
 struct aims {
-  int n, n_pass;   /* goals */
-  int all;         /* 1: goals without a target count too */
-  int counts;      /* 1: some goal counts; 0: they are only shown */
-  double least;    /* -, largest off over its target, least of all passes */
-  int in_vain;     /* passes since */
-  pass_goal *rows; /* [MAX_PASS_ROWS*n] */
-  double *product; /* [n*n_elem] of the last increment */
+  int n, n_pass; /* goals */
+  int all;       /* 1: goals without a target count too */
+  int counts;    /* 1: some goal counts; 0: they are only shown */
+  double least;  /* -, largest off over its target, least of all passes */
+  int in_vain;   /* passes since */
+  int nodes, least_nodes; /* of the mesh, of that with the least */
+  pass_goal *rows;        /* [MAX_PASS_ROWS*n] */
+  double *product;        /* [n*n_elem] of the last increment */
 };
 
 status aims_new(const model *m, int all, aims **out) {
@@ -56,6 +58,7 @@ status aims_begin(aims *a, const mesh *msh) {
   OWNS(a);
   FORGET(a->product);
   ++a->n_pass;
+  a->nodes = msh->n_node;
   if (a->counts) PASS_NEW(a->product, (size_t)a->n * msh->n_elem);
   return OK;
 }
@@ -118,11 +121,15 @@ void aims_evaluate(aims *a, const model *m) {
       most = fmax(most, isnan(g->off) ? HUGE_VAL : g->off / g->allowed);
   }
   a->in_vain = most >= GAIN * a->least ? a->in_vain + 1 : 0;
+  if (a->in_vain == 0) a->least_nodes = a->nodes;
   a->least = fmin(a->least, most);
 }
 
+/* One pass tells nothing, nor do those of a mesh that has hardly grown. */
 int aims_stand_still(const aims *a) {
-  return aims_count(a) && a->in_vain > (isfinite(a->least) ? 1 : BLIND_PASSES);
+  if (!aims_count(a) || a->in_vain < 2) return 0;
+  if (a->in_vain > BLIND_PASSES) return 1;
+  return isfinite(a->least) && a->nodes >= GROWN * a->least_nodes;
 }
 
 void aims_check(const aims *a, const model *m, char *why, size_t size) {

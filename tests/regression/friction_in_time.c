@@ -234,7 +234,91 @@ START_TEST(mu_by_group) {
 }
 END_TEST
 
+/*
+ * The top turns at 0.56, between the times that the increments and their halves
+ * try, and comes to rest at 0.97 of its way; by expression, by a table, with
+ * the obstacle in its place, with both on their way (obstacles count the first
+ * step too), from the start of the step.
+ */
+#define WAY(name, course) "*AMPLITUDE, NAME=" name "\n" course "\n"
+static const struct {
+  const char *courses, *top, *floor;
+} turning[] = {
+    {WAY("W", "\"0.1*min(9*t, max(t*(1.12-t)/0.3136, 0.97))\""), "W", NULL},
+    {WAY("W", "0., 0., 0.559, 0.097, 0.56, 0.1, 0.561, 0.097"), "W", NULL},
+    {WAY("W", "1., 0., 1.5, -0.0985, 1.56, -0.1, 1.62, -0.097"), NULL, "W"},
+    {WAY("W", "\"0.2*t\"") WAY(
+         "V",
+         "\"0.2*(t-1)-0.1*min(9*(t-1), max((t-1)*(2.12-t)/0.3136, 0.97))\""),
+     "W", "V"},
+    {WAY("W", "0., 0.1, 0.1, 0.097"), "W", NULL},
+    {WAY("W", "\"if(t<0.5|t>0.75, 0.1*t, 0.05+0.01*sin(300*(t-0.5)))\""), "W",
+     NULL}};
+enum { TREMBLING = sizeof turning / sizeof *turning - 1 };
+
+static job run_turning(int k, const char *increment, const char *time) {
+  const char *top = turning[k].top, *floor = turning[k].floor;
+  char of_top[80] = "*BOUNDARY\nTOP, 1, 1\n";
+  job j = job_begin("turning");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  if (top != NULL)
+    snprintf(of_top, sizeof of_top, "*BOUNDARY, AMPLITUDE=%s\nTOP, 1, 1, 1.\n",
+             top);
+  job_write(&j, "turning.inp",
+            "*PARAMETER\nN = 4\n*MESH, FILE=square.geo\n%s*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE%s%s\n0., 0.\n0., 1.\n%s"
+            "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=F, LAW=COULOMB\n0.3\n" PRESS
+            "*STEP\n*QUASISTATIC\n%s, 1.\n*ACCURACY, TIME=%s\n%s"
+            "*PRINT, CONTACT, ENERGY\n*END STEP\n",
+            turning[k].courses, floor != NULL ? ", AMPLITUDE=" : "",
+            floor != NULL ? floor : "", floor != NULL ? "MOVE, 1., 0.\n" : "",
+            increment, time, of_top);
+  ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
+  return j;
+}
+
+START_TEST(turn_within_an_increment_is_an_error_of_the_steps) {
+  for (int k = 0; k < TREMBLING; ++k) {
+    job a = run_turning(k, "0.25", "YES"), b = run_turning(k, "0.02", "YES");
+    const double right = job_difference(&a, &b, -1),
+                 told = job_told(&a, "time_error_percent");
+    ck_assert_double_gt(right, 1.0);
+    ck_assert_msg(told >= 0.8 * right && told <= 2 * right, "%d: %g, right %g",
+                  k, told, right);
+    job_end(&a);
+    job_end(&b);
+  }
+}
+END_TEST
+
+/* Increments that the program chooses are so short that it is known. */
+START_TEST(balanced_increments_are_as_short_as_turns_require) {
+  job j = run_turning(TREMBLING, "1.", "BALANCED, MESH=YES");
+  ck_assert(!listing_has(&j, "error of the steps: unknown"));
+  ck_assert(listing_has(&j, "error of the steps: about"));
+  job_end(&j);
+}
+END_TEST
+
+/* Where it turns too often nothing is told, from there on. */
+START_TEST(turns_without_number_leave_the_error_unknown) {
+  job j = run_turning(TREMBLING, "0.25", "YES");
+  ck_assert(listing_has(&j,
+                        "error of the steps: unknown, the loads turn too "
+                        "often in an increment"));
+  ck_assert(listing_has(&j,
+                        "error of the steps: unknown, that of an increment "
+                        "before is"));
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("friction in time", mu_of_time_in_every_way,
           constant_amplitude_and_motion, jump_of_an_expression_is_told,
           course_down_to_zero_is_no_jump, friction_card_in_a_step_takes_over,
-          contraction_is_that_of_the_card, mu_is_zero_in_places, mu_by_group)
+          contraction_is_that_of_the_card, mu_is_zero_in_places, mu_by_group,
+          turn_within_an_increment_is_an_error_of_the_steps,
+          balanced_increments_are_as_short_as_turns_require,
+          turns_without_number_leave_the_error_unknown)

@@ -37,8 +37,8 @@ typedef struct path_error {
 } path_error;
 
 typedef struct finer_path {
-  int lost;     /* 1: it found no equilibrium */
-  int measured; /* 1: "error" is that of the attempt */
+  const char *lost; /* why there is none; NULL: there is one */
+  int measured;     /* 1: "error" is that of the attempt */
   path_error error;
   double factor; /* largest of extrapolation() so far */
   int sudden;    /* 1: what is applied at the start of the step is to come */
@@ -51,6 +51,7 @@ typedef struct finer_path {
 typedef struct paths {
   finer_path *path;       /* NULL: none made */
   path_error before, now; /* of finished paths; of this one */
+  int unknown;            /* 1: also those of increments without a path */
 } paths;
 
 static status waypoint_new(const run *r, waypoint *w) {
@@ -82,6 +83,11 @@ static status path_begin(const run *r, paths *own) {
   return path_new(r, own->path);
 }
 
+static status lose(finer_path *p, const char *why) {
+  p->lost = why;
+  return OK;
+}
+
 /* The equilibrium at t from where "from" stands, into "to"; lost where there is
  * none. */
 static status half(run *r, finer_path *p, waypoint *from, double t,
@@ -94,8 +100,9 @@ static status half(run *r, finer_path *p, waypoint *from, double t,
   r->old = keep;
   PASS(st);
   start_point_copy(r, &r->now, &to->start);
-  p->lost = r->solving.report.outcome <= 0;
-  return OK;
+  return r->solving.report.outcome > 0
+             ? OK
+             : lose(p, "no equilibrium in half an increment");
 }
 
 /* The next increment starts from what is in r->old. */
@@ -119,14 +126,42 @@ static void advance(finer_path *p) {
   p->end = w;
 }
 
+/* *sudden = 1: the increment is the first of a step in which the body does not
+ * begin with what acts on it before. */
+static status jumps(run *r, const finer_path *p, int *sudden) {
+  const step *s = r->step;
+  if (s->kind == STEP_VISCO && r->strains.visco != NULL) return OK;
+  if (r->at.increment_no > 0 || p->at.start.t > s->start) return OK;
+  PASS(increment_begin(r, s->start));
+  *sudden = !loop_starts_smoothly(r);
+  return OK;
+}
+
+/* From p->at to p->end at t by the times between, at least the middle. */
+static status pass_turns(run *r, finer_path *p, double t) {
+  turn_list list;
+  int all;
+  if (p->lost) return OK;
+  PASS(loop_turns(r, p->at.start.t, t, &list, &all));
+  if (!all) return lose(p, "the loads turn too often in an increment");
+  waypoint *from = &p->at;
+  for (int i = 0; i <= list.n; ++i) {
+    waypoint *to = (list.n - i) % 2 == 0 ? &p->end : &p->middle;
+    PASS(half(r, p, from, i < list.n ? list.at[i] : t, to));
+    from = to;
+  }
+  return OK;
+}
+
 /* Both halves of the increment that ends at t. */
 static status try_halves(run *r, finer_path *p, double t) {
-  p->measured = p->lost = 0;
+  p->measured = 0;
+  p->lost = NULL;
+  if (!p->sudden) PASS(jumps(r, p, &p->sudden));
   if (p->sudden) PASS(half(r, p, &p->at, p->at.start.t, &p->end));
   if (p->sudden && !p->lost) advance(p);
-  p->sudden &= p->lost;
-  PASS(half(r, p, &p->at, 0.5 * (p->at.start.t + t), &p->middle));
-  PASS(half(r, p, &p->middle, t, &p->end));
+  p->sudden &= p->lost != NULL;
+  PASS(pass_turns(r, p, t));
   if (p->lost || p->u == NULL) return OK;
   COPY(p->u, r->now.u, r->n_dof);
   COPY(p->e0, r->strains.eigen.e0, visco_at(r, r->strains.eigen.n));
@@ -247,8 +282,8 @@ static status compare_path(run *r, paths *own, error_share *e) {
     return OK;
   }
   if (p->lost) {
-    e->relative = NAN;
-    e->why = "no equilibrium in half an increment";
+    own->unknown = 1;
+    e->why = p->lost;
     return OK;
   }
   PASS(measure(r, own, &norm));
@@ -276,6 +311,7 @@ static double share_of_paths(const run *r, const paths *own) {
 }
 
 static status compare(run *r, void *self) {
+  paths *own = self;
   error_share *e = &r->errors.time_error;
   e->asked = r->step->accuracy.time;
   e->relative = 0.0;
@@ -283,11 +319,13 @@ static status compare(run *r, void *self) {
   if (!e->asked) return OK;
   if (effects_sum_up(r) != NULL) e->relative = NAN;
   if (path_exists(r))
-    PASS(compare_path(r, self, e));
+    PASS(compare_path(r, own, e));
   else
     e->why = why_no_path(r);
+  if (own->unknown) e->relative = NAN;
+  if (own->unknown && e->why == NULL) e->why = "that of an increment before is";
   if (!run_inherits(r) || isnan(e->relative)) return OK;
-  e->relative = share_of_paths(r, self);
+  e->relative = share_of_paths(r, own);
   if (e->relative > STRAIGHT * r->solving.tol)
     e->why = NULL;
   else if (e->why == NULL)
@@ -321,6 +359,7 @@ static status keep(run *r, void *self, archive *a) {
   int there = own->path != NULL;
   PASS(archive_ints(a, "path", &there, 1));
   if (archive_reads(a)) restart(own);
+  PASS(archive_ints(a, "path_unknown", &own->unknown, 1));
   PASS(archive_reals(a, "path_before", &own->before.norm, 1));
   PASS(archive_reals(a, "path_error", &own->now.norm, 1));
   PASS(archive_reals(a, "path_strain_before", &own->before.strain, 1));

@@ -329,9 +329,7 @@ static int starts_anew(const run *r) {
   return starts_hotter(r) || (ends && run_step_id(r) > 0);
 }
 
-/* 1 if no load acts at the start of the step that did not act before, and
- * nothing ends. */
-static int starts_smoothly(const run *r) {
+int loop_starts_smoothly(const run *r) {
   if (starts_anew(r)) return 0;
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->body.fixed[i] &&
@@ -358,7 +356,7 @@ static status start_visco(run *r, int *increment_no) {
   if (r->step->kind != STEP_VISCO) return OK;
   if (!has_law(r)) return OK;
   PASS(increment_begin(r, r->step->start));
-  int smooth = starts_smoothly(r);
+  int smooth = loop_starts_smoothly(r);
   if (!smooth || (r->course.total_no == 0 && r->nodes.n > 0)) {
     PASS(increment_solve(r, r->step->start));
     if (outcome_is_fatal(r->solving.report.outcome))

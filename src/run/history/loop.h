@@ -1,6 +1,7 @@
 /* The loop over increments, shared by the files of this folder only. */
 #pragma once
 
+#include "model/course.h"
 #include "run/history/history.h"
 #include "run/run.h"
 
@@ -21,6 +22,9 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
 int loop_cut_helps(const run *r);
 /* Reports that there is no equilibrium: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
+/* 1 if no load acts at the start of the step that did not act before, and
+ * nothing ends; r->now has the loads of then. */
+int loop_starts_smoothly(const run *r);
 /* From r->old to r->now at t by the procedure of the step, or that of an
  * effect; the first alone. */
 status loop_solve(run *r, double t);
@@ -31,6 +35,10 @@ status loop_solve_once(run *r, double t);
  * increment sees of it by more than a share, -, of its largest magnitude in
  * the step. */
 double loop_end(const run *r, double t, double share);
+/* turns.c: the middle of the increment from t0 to t, and the times at which
+ * what acts on the body turns between; *all = 0: they are more than the list
+ * has places for. Writes to r->now. */
+status loop_turns(run *r, double t0, double t, turn_list *list, int *all);
 /* Between two attempts: the checkpoint that is due; ends the run if asked. */
 status loop_pause(run *r);
 

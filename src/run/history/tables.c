@@ -7,19 +7,6 @@
  */
 #include "run/history/loop.h"
 
-static const double APART = 0x1p-40; /* -, of the time: points of their own */
-
-/* A table at times of the run. */
-typedef struct course {
-  const value_table *table;
-  double start; /* s, time at which its time is zero */
-} course;
-
-static double value_at(const course *c, double t) {
-  static const double nowhere[3] = {0.0};
-  return table_value(c->table, nowhere, t - c->start);
-}
-
 /* What an increment takes of a table: its values at the start, the quarters and
  * the end; the polynomial through them at s in [0, 1]. */
 enum { SEEN = 5 };
@@ -35,28 +22,25 @@ static double polynomial(const double v[SEEN], double s) {
   return sum;
 }
 
-/* The largest magnitude over the step. */
-static double largest_of(const course *c, const step *s) {
-  const double end = s->start + s->total;
-  double most = fmax(fabs(value_at(c, s->start)), fabs(value_at(c, end)));
-  for (int k = 0; k < c->table->n; ++k) {
-    const double t = c->table->at[k] + c->start;
-    if (t > s->start && t < end) most = fmax(most, fabs(c->table->value[k]));
-  }
-  return most;
+static double value_at(const course *c, double t) {
+  static const double nowhere[3] = {0.0};
+  return table_value(c->value->factor, nowhere, t - c->value->factor_start);
 }
 
-/* Points of the table from "after" to before t: the first; *n of them. */
-static int points_within(const course *c, double after, double t, int *n) {
-  const double least = APART * fmax(fabs(after), fabs(t));
-  int first = 0;
-  while (first < c->table->n && c->table->at[first] + c->start <= after + least)
-    ++first;
-  *n = 0;
-  while (first + *n < c->table->n &&
-         c->table->at[first + *n] + c->start < t - least)
-    ++*n;
-  return first;
+static double point_at(const course *c, int k) {
+  return c->value->factor->at[k] + c->value->factor_start;
+}
+
+/* The largest magnitude over the step. */
+static double largest_of(const course *c) {
+  const double start = c->s->start, end = step_end(c->s);
+  double most = fmax(fabs(value_at(c, start)), fabs(value_at(c, end)));
+  for (int k = 0; k < c->value->factor->n; ++k) {
+    const double t = point_at(c, k);
+    if (t > start && t < end)
+      most = fmax(most, fabs(c->value->factor->value[k]));
+  }
+  return most;
 }
 
 /* 1: from t0 to t, with n points from "first" on between them, the table is the
@@ -68,7 +52,7 @@ static int is_seen(const course *c, double t0, double t, int first, int n,
     v[i] = value_at(c, t0 + (t - t0) * i / (SEEN - 1));
   double before = t0;
   for (int k = 0; k <= n && n > 0; ++k) {
-    const double at = k < n ? c->table->at[first + k] + c->start : t;
+    const double at = k < n ? point_at(c, first + k) : t;
     const double both[2] = {0.5 * (before + at), at};
     for (int i = 0; i < 2; ++i)
       if (fabs(value_at(c, both[i]) -
@@ -79,48 +63,31 @@ static int is_seen(const course *c, double t0, double t, int first, int n,
   return 1;
 }
 
-/* The last point of a table that may end the increment to t, or t; found by
+/* The last point of its table that may end the increment to t, or t; found by
  * bisection: no point is between the start and the first. */
-static double end_by(const run *r, const quantity *q, double t, double share) {
-  const course c = {q->factor, q->factor_start};
+static double end_by(const run *r, const course *c, double t, double share) {
   int n, low = 0;
-  if (c.table == NULL || c.table->n == 0 || c.table->variable != TABLE_T)
-    return t;
-  if (q->formula == NULL && q->number == 0.0) return t;
+  if (c->value->formula == NULL && c->value->number == 0.0) return t;
   const double t0 = r->old.t;
-  const int first = points_within(&c, t0, t, &n);
+  const int first = course_points(c, t0, t, &n);
   if (n == 0) return t;
-  const double most = share * largest_of(&c, r->step);
-  if (is_seen(&c, t0, t, first, n, most)) return t;
+  const double most = share * largest_of(c);
+  if (is_seen(c, t0, t, first, n, most)) return t;
   for (int high = n; high - low > 1;) {
     const int middle = (low + high) / 2;
-    const double at = c.table->at[first + middle] + c.start;
-    if (is_seen(&c, t0, at, first, middle, most))
+    if (is_seen(c, t0, point_at(c, first + middle), first, middle, most))
       low = middle;
     else
       high = middle;
   }
-  return c.table->at[first + low] + c.start;
+  return point_at(c, first + low);
 }
 
 /* The same by all tables in force. */
 static double end_by_all(const run *r, double t, double share) {
-  const model *m = r->m;
-  const load_list *loads = &r->step->loads;
-  for (int i = 0; i < loads->n; ++i)
-    if (loads->item[i].run == RUN_DIRECT)
-      t = end_by(r, &loads->item[i].value, t, share);
-  for (int i = 0; i < m->n.obstacle; ++i) {
-    for (int k = 0; k < 3; ++k)
-      t = end_by(r, &m->obstacles[i].motion[k], t, share);
-    t = end_by(r, &m->obstacles[i].angle, t, share);
-  }
-  for (int i = 0; i < m->n.contact; ++i) {
-    const friction_rule *rule = friction_in_force(m, run_step_id(r), i);
-    t = end_by(r, &rule->card.value, t, share);
-    t = end_by(r, &m->contacts[i].change.value, t, share);
-    t = end_by(r, &m->contacts[i].force.value, t, share);
-  }
+  course c;
+  for (int k = 0; k < course_count(r->m, r->step); ++k)
+    if (course_at(r->m, r->msh, r->step, k, &c)) t = end_by(r, &c, t, share);
   return t;
 }
 
