@@ -143,6 +143,29 @@ START_TEST(crack_at_an_edge) {
 }
 END_TEST
 
+/* A factor of the only tip is taken whatever its sign and its size, and is
+ * linear in the load while the crack is open. */
+START_TEST(factor_may_be_large_and_negative) {
+  double K[3];
+  for (int k = 0; k < 3; ++k) {
+    char loads[160];
+    snprintf(loads, sizeof loads,
+             "*BOUNDARY\nPIN, 1, 2\nEND, 1\n*DSLOAD\nTOP, P, -60.\n"
+             "BOTTOM, P, -60.\nTOP, TX, %d\nBOTTOM, TX, %d\n",
+             20 * (k - 1), 20 * (1 - k));
+    job j = run_crack("edge", "N = 6\nW = 5.", SIF "NAME=TWO, COMPONENT=2\n",
+                      loads);
+    dat t = job_table(&j, "GOALS", -1);
+    K[k] = dat_at(&t, 0, "value");
+    dat_free(&t);
+    job_end(&j);
+  }
+  ck_assert_double_lt(fmin(K[0], K[2]), -2.0);
+  ck_assert_double_gt(fmax(K[0], K[2]), 2.0);
+  ck_assert_double_eq_tol(0.5 * (K[0] + K[2]), K[1], 1e-9);
+}
+END_TEST
+
 /* Three and four elements on half a crack: the estimate has half of the error
  * and is not called reliable; the band has it. */
 START_TEST(few_elements_round_the_tip) {
@@ -398,9 +421,10 @@ END_TEST
 
 UNIT_MAIN("goals_cracks", open_crack_in_a_plate, largest_factor_is_negative,
           crack_loaded_on_its_lips, crack_that_is_closed_in_part,
-          crack_at_an_edge, plate_that_turns, few_elements_round_the_tip,
-          wide_crack_in_a_coarse_strip, domain_of_long_elements,
-          closed_crack_that_slips, error_of_the_solver_in_a_factor,
-          crack_that_sticks_is_none, disc_in_space, no_factor_no_estimate,
-          target_of_a_factor, target_on_meshes_that_scatter,
-          target_of_an_interface_is_refused, tip_is_an_end_for_other_goals)
+          crack_at_an_edge, plate_that_turns, factor_may_be_large_and_negative,
+          few_elements_round_the_tip, wide_crack_in_a_coarse_strip,
+          domain_of_long_elements, closed_crack_that_slips,
+          error_of_the_solver_in_a_factor, crack_that_sticks_is_none,
+          disc_in_space, no_factor_no_estimate, target_of_a_factor,
+          target_on_meshes_that_scatter, target_of_an_interface_is_refused,
+          tip_is_an_end_for_other_goals)
