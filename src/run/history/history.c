@@ -221,6 +221,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   }
   r->solving.seen.now = r->solving.seen.untold = 0;
   r->at.last = last;
+  r->errors.after_miss = is_after_miss(r);
   PASS(
       result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   PASS(check_finite(r));
