@@ -414,8 +414,9 @@ static void doubt_of_nodes(const run *r, const shared *s, int id, int exact,
   const int few =
       (out->verdict == GOAL_FEW_NODES || has_few(r, s, id)) && turns(r, s);
   if (exact) out->verdict = few ? GOAL_FEW_NODES : GOAL_RELIABLE;
+  const int none = s->surface.n_closed == 0 && out->verdict < GOAL_NO_HISTORY;
   if ((s->surface.is_missed || (s->form.sums && missed)) &&
-      out->verdict == GOAL_RELIABLE)
+      (out->verdict == GOAL_RELIABLE || none))
     out->verdict = GOAL_FEW_NODES;
 }
 
@@ -447,9 +448,12 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
                DIGITS * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
-  doubt_of_nodes(r, s, id, e.magnitude <= ROUNDING * fabs(value),
-                 own->before.missed, out);
+  const int exact = e.magnitude <= ROUNDING * fabs(value);
+  doubt_of_nodes(r, s, id, exact, own->before.missed, out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
+  /* what would touch or slip on a finer mesh has no part in the estimate */
+  if (exact && (out->verdict == GOAL_FEW_NODES || out->verdict == GOAL_NO_SLIP))
+    out->error = out->band = NAN;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
 }
