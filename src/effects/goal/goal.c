@@ -21,7 +21,9 @@
 
 #include <cblas.h>
 
-static const double DIGITS = 1e-13;   /* -, of the terms: their rounding */
+static const double DIGITS = 1e-13;   /* -, of the terms: their rounding; that
+                                         of the solution, whose condition goes
+                                         like the nodes in the plane, besides */
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
 static const double TURN = 1e-9;      /* -, of directions: they are the same */
 /* Measured on strips whose crack has 0.1 to 0.7 of their width: what the
@@ -443,9 +445,10 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
-  out->band += f->rough + f->held + of_coarseness(r, s, &e) +
-               of_corner(r, own, id, e.error) +
-               DIGITS * fmax(f->size, fabs(value));
+  out->band +=
+      f->rough + f->held + of_coarseness(r, s, &e) +
+      of_corner(r, own, id, e.error) +
+      (DIGITS + DBL_EPSILON * r->msh->n_node) * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
   const int exact = e.magnitude <= ROUNDING * fabs(value);
