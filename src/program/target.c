@@ -20,6 +20,7 @@ static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
 static const double AIM = 0.93;
 /* -, of the error, or a pass had no effect. */
 static const double LEAST_GAIN = 0.95;
+enum { BLIND = 2 };
 /* -, of what a coarse mesh estimates; what the next one is to have of it. */
 static const double COARSE = 2.0, FINER = 0.6;
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
@@ -35,10 +36,10 @@ typedef struct pass {
   int n;                     /* rows, this pass included */
   double energy;             /* J, largest strain energy that counts */
   double mesh, time, solver; /* -, errors there */
-  int coarse;                /* 1: that of the mesh may be twice as large */
-  double *eta;               /* [n_elem] shares of the elements there */
-  double *size;              /* [n_node] of the next mesh, m */
-  aims *goals;               /* or NULL: there are none */
+  int coarse;   /* 1: that of the mesh may be twice as large; 2: any */
+  double *eta;  /* [n_elem] shares of the elements there */
+  double *size; /* [n_node] of the next mesh, m */
+  aims *goals;  /* or NULL: there are none */
   coarser *contact, *before; /* of this pass, of the one before */
   mesh *first;               /* of the deck, with targets of goals: its
                                 lengths are the largest of all passes */
@@ -71,6 +72,7 @@ static status see_increment(void *ctx, const state *s) {
   p->energy = s->energy.strain;
   p->mesh = s->errors.mesh_error.relative;
   p->coarse = s->errors.mesh_error.why != NULL;
+  if (p->coarse && s->errors.mesh_error.depth <= 1.0) p->coarse = BLIND;
   p->time = s->errors.time_error.relative;
   p->solver = s->errors.error.asked ? s->errors.error.relative : 0.0;
   COPY(p->eta, s->errors.elem_error, p->in->msh->n_elem);
@@ -86,7 +88,7 @@ double target_next(double estimate, int is_coarse, double goal) {
 }
 
 static double at_most(const pass *p) {
-  return target_at_most(p->mesh, p->coarse);
+  return p->coarse == BLIND ? HUGE_VAL : target_at_most(p->mesh, p->coarse);
 }
 
 static double total(const pass *p) { return at_most(p) + p->time + p->solver; }
@@ -118,6 +120,11 @@ static int norm_wants_mesh(const pass *p) {
   return has_norm(p) && at_most(p) > mesh_goal(p);
 }
 
+static void halve(const mesh *msh, double *size) {
+  space_lengths(msh, size);
+  for (int i = 0; i < msh->n_node; ++i) size[i] *= 0.5;
+}
+
 /* Sizes of the next mesh, and the factor by which the unknowns grow. */
 static status find_sizes(pass *p, double *factor) {
   const mesh *msh = p->in->msh;
@@ -125,8 +132,11 @@ static status find_sizes(pass *p, double *factor) {
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
-  if (has_norm(p)) space_sizes(msh, p->eta, wanted, p->size);
-  if (norm_wants_mesh(p)) *factor = pow(p->mesh / wanted, p->in->m->dim);
+  if (has_norm(p) && p->coarse != BLIND)
+    space_sizes(msh, p->eta, wanted, p->size);
+  if (has_norm(p) && p->coarse == BLIND) halve(msh, p->size);
+  if (norm_wants_mesh(p))
+    *factor = pow(p->coarse == BLIND ? 2.0 : p->mesh / wanted, p->in->m->dim);
   if (!aims_count(p->goals)) return OK;
   PASS(aims_sizes(p->goals, p->in->m, msh, p->energy >= 0.0 ? p->eta : NULL,
                   p->size));

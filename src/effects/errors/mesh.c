@@ -45,6 +45,20 @@ status mesh_recovery(const run *r, space_recovery **out) {
   return OK;
 }
 
+/* Why the estimate may be too small, and how deep the mesh is: a material that
+ * has more of the energy than the estimate tells is not seen by it where no
+ * node lies inside. */
+static void doubt(mesh_estimate *own, const space_error *found,
+                  error_share *out) {
+  const int unseen = found->layers > found->relative * found->relative;
+  out->depth = unseen ? 1.0 : space_depth(own->recovery);
+  out->why = NULL;
+  if (unseen)
+    out->why = "no node inside a material: it may be many times as large";
+  else if (found->relative > EXACT && space_is_coarse(out->depth))
+    out->why = "few nodes inside the body: it may be twice as large";
+}
+
 /* From r->result.stress. */
 static status estimate(run *r, void *self) {
   mesh_estimate *own = self;
@@ -56,11 +70,7 @@ static status estimate(run *r, void *self) {
   PASS_TIMED(STAGE_MESH_ERROR, space_estimate(own->recovery, r->result.stress,
                                               own->elem_error, &found));
   r->errors.mesh_error.relative = found.relative;
-  r->errors.mesh_error.depth = space_depth(own->recovery);
-  r->errors.mesh_error.why =
-      found.relative > EXACT && space_is_coarse(r->errors.mesh_error.depth)
-          ? "few nodes inside the body: it may be twice as large"
-          : NULL;
+  doubt(own, &found, &r->errors.mesh_error);
   double whole = hypot(found.norm, found.error);
   for (int e = 0; e < r->msh->n_elem; ++e)
     own->elem_error[e] = whole > 0.0 ? own->elem_error[e] / whole : 0.0;

@@ -21,7 +21,9 @@
 
 #include <cblas.h>
 
-static const double DIGITS = 1e-13;   /* -, of the terms: their rounding */
+static const double DIGITS = 1e-13;   /* -, of the terms: their rounding; that
+                                         of the solution, whose condition goes
+                                         like the nodes in the plane, besides */
 static const double ROUNDING = 1e-12; /* -, of the value: no error at all */
 static const double TURN = 1e-9;      /* -, of directions: they are the same */
 /* Measured on strips whose crack has 0.1 to 0.7 of their width: what the
@@ -414,8 +416,9 @@ static void doubt_of_nodes(const run *r, const shared *s, int id, int exact,
   const int few =
       (out->verdict == GOAL_FEW_NODES || has_few(r, s, id)) && turns(r, s);
   if (exact) out->verdict = few ? GOAL_FEW_NODES : GOAL_RELIABLE;
+  const int none = s->surface.n_closed == 0 && out->verdict < GOAL_NO_HISTORY;
   if ((s->surface.is_missed || (s->form.sums && missed)) &&
-      out->verdict == GOAL_RELIABLE)
+      (out->verdict == GOAL_RELIABLE || none))
     out->verdict = GOAL_FEW_NODES;
 }
 
@@ -442,14 +445,18 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
-  out->band += f->rough + f->held + of_coarseness(r, s, &e) +
-               of_corner(r, own, id, e.error) +
-               DIGITS * fmax(f->size, fabs(value));
+  out->band +=
+      f->rough + f->held + of_coarseness(r, s, &e) +
+      of_corner(r, own, id, e.error) +
+      (DIGITS + DBL_EPSILON * r->msh->n_node) * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
-  doubt_of_nodes(r, s, id, e.magnitude <= ROUNDING * fabs(value),
-                 own->before.missed, out);
+  const int exact = e.magnitude <= ROUNDING * fabs(value);
+  doubt_of_nodes(r, s, id, exact, own->before.missed, out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
+  /* what would touch or slip on a finer mesh has no part in the estimate */
+  if (exact && (out->verdict == GOAL_FEW_NODES || out->verdict == GOAL_NO_SLIP))
+    out->error = out->band = NAN;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
 }
