@@ -57,8 +57,8 @@ START_TEST(groups_of_version_2_are_climbed) {
   put("/sys/fs/cgroup/a/b/memory.max", "max\n");
   put("/sys/fs/cgroup/a/b/cpu.max", "max 100000\n");
   ck_assert_double_eq(read_limits().memory, 9000.0 * 1024.0);
-  put("/sys/fs/cgroup/a/memory.max", "4000000\n");
-  put("/sys/fs/cgroup/a/memory.current", "3000000\n");
+  put("/sys/fs/cgroup/a/memory.max", "10000000\n");
+  put("/sys/fs/cgroup/a/memory.current", "9000000\n");
   put("/sys/fs/cgroup/a/memory.stat", "anon 1\nfile 1500000\nslab 3\n");
   put("/sys/fs/cgroup/a/cpu.max", "50000 100000\n");
   limits l = read_limits();
