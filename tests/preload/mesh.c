@@ -97,6 +97,7 @@ void gmshInitialize(int argc, char **argv, int ignored, int *error) {
         (key ^ key >> 29) * 0xbf58476d1ce4e5b9u; /* sums of near ones differ */
     sum += key ^ key >> 32;
   }
+  key = before;
   mix(&sum, sizeof sum);
   *error = 0;
 }
@@ -148,10 +149,11 @@ static void have_made(const char *name) {
 
 /* The text of a file and of those it includes. */
 static void mix_file(const char *name, int depth) {
-  static const char *const beyond[] = {"Merge",   "Shape", "Get", "System",
+  static const char *const beyond[] = {"Shape",   "Get",   "System",
                                        "Current", "Print", "Exit"};
+  static const char *const others[] = {"Include", "Merge"};
   char text[1 << 15], file[2048], other[4096];
-  const char *slash = strrchr(name, '/'), *at = text;
+  const char *slash = strrchr(name, '/'), *at;
   const int folder = slash != NULL ? (int)(slash + 1 - name) : 0;
   FILE *f = fopen(name, "rb");
   const size_t n = f == NULL ? sizeof text : fread(text, 1, sizeof text - 1, f);
@@ -163,15 +165,17 @@ static void mix_file(const char *name, int depth) {
     may_keep &= strstr(text, beyond[i]) == NULL;
   mix_text(name + folder);
   mix_text(text);
-  while (may_keep && (at = strstr(at, "Include")) != NULL) {
-    int end = 0;
-    sscanf(at += 7, " \"%2047[^\"/]\";%n", file, &end);
-    may_keep = end > 0;
-    at += end;
-    if (end == 0) return;
-    snprintf(other, sizeof other, "%.*s%s", folder, name, file);
-    mix_file(other, depth + 1);
-  }
+  for (size_t i = 0; i < sizeof others / sizeof *others; ++i)
+    for (at = text; may_keep && (at = strstr(at, others[i])) != NULL;) {
+      int end = 0;
+      at += strlen(others[i]);
+      sscanf(at, " \"%2047[^\"]\";%n", file, &end);
+      may_keep = end > 0 && file[0] != '/';
+      at += end;
+      if (!may_keep) return;
+      snprintf(other, sizeof other, "%.*s%s", folder, name, file);
+      mix_file(other, depth + 1);
+    }
 }
 
 void gmshOpen(const char *name, int *error) {
