@@ -40,7 +40,8 @@ static sum *find(sums *s, const char *name) {
 
 /* Weights between 1 and 2 that do not repeat. What is no number counts as 0. */
 static void add(sum *row, double value) {
-  double weight = 1.0 + fmod(0.6180339887498949 * (double)row->count, 1.0);
+  const double turns = 0.6180339887498949 * (double)row->count;
+  const double weight = 1.0 + (turns - floor(turns));
   ++row->count;
   if (!isfinite(value)) return;
   row->total += weight * value;

@@ -29,19 +29,29 @@ static const char *program(void) {
   return p == NULL ? "build/release/protis" : p;
 }
 
-/* Only calls that may change a file stop; looked at by changes_file. */
+static struct sock_filter load(size_t offset) {
+  return (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS,
+                                      (unsigned)offset);
+}
+
+/* Only calls that may change a file stop; looked at by changes_file. Opening to
+ * read does not. */
 static int stop_at_changes(void) {
-  static const unsigned calls[] = {SYS_write,  SYS_pwrite64,  SYS_fsync,
-                                   SYS_close,  SYS_ftruncate, SYS_openat,
-                                   SYS_rename, SYS_unlink};
+  static const unsigned calls[] = {SYS_write,    SYS_pwrite64, SYS_fsync,
+                                   SYS_close,    SYS_rename,   SYS_unlink,
+                                   SYS_ftruncate};
   enum { CALLS = sizeof calls / sizeof *calls };
-  struct sock_filter rule[CALLS + 3];
+  struct sock_filter rule[CALLS + 6];
   int n = 0;
-  rule[n++] = (struct sock_filter)BPF_STMT(BPF_LD | BPF_W | BPF_ABS,
-                                           offsetof(struct seccomp_data, nr));
+  rule[n++] = load(offsetof(struct seccomp_data, nr));
   for (int k = 0; k < CALLS; ++k)
     rule[n++] = (struct sock_filter)BPF_JUMP(
-        BPF_JMP | BPF_JEQ | BPF_K, calls[k], (unsigned char)(CALLS - k), 0);
+        BPF_JMP | BPF_JEQ | BPF_K, calls[k], (unsigned char)(CALLS + 3 - k), 0);
+  rule[n++] =
+      (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, SYS_openat, 0, 2);
+  rule[n++] = load(offsetof(struct seccomp_data, args[2]));
+  rule[n++] =
+      (struct sock_filter)BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, O_ACCMODE, 1, 0);
   rule[n++] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW);
   rule[n++] = (struct sock_filter)BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRACE);
   struct sock_fprog program = {(unsigned short)n, rule};
