@@ -3,11 +3,14 @@
 traction columns, the page is well-formed and its figures are those of
 JOB.json. Runs in the folder of the sources; PROTIS: the program. Needs
 python3-matplotlib and python3-h5py."""
+import contextlib
+import io
 import json
 import math
 import os
 import pathlib
 import re
+import runpy
 import subprocess
 import sys
 import tempfile
@@ -75,7 +78,21 @@ def run(*command):
     if done.returncode:
         raise AssertionError(
             f"{command}: exit {done.returncode}: {done.stderr}")
-    return done.stdout
+
+
+def tool(name, *words):
+    """What a tool prints, in this process: matplotlib is loaded."""
+    said, argv = io.StringIO(), sys.argv
+    sys.argv = [f"tools/{name}", *words]
+    try:
+        with contextlib.redirect_stdout(said):
+            runpy.run_path(sys.argv[0], run_name="__main__")
+    except SystemExit as end:
+        if end.code:
+            raise
+    finally:
+        sys.argv = argv
+    return said.getvalue()
 
 
 class Walls(unittest.TestCase):
@@ -94,8 +111,7 @@ class Walls(unittest.TestCase):
         cls.folder.cleanup()
 
     def check(self, job):
-        said = run("tools/plot_contact", f"{job}.dat", f"{job}.svg",
-                   "walls", "x")
+        said = tool("plot_contact", f"{job}.dat", f"{job}.svg", "walls", "x")
         tree.parse(f"{job}.svg")
         svg = pathlib.Path(f"{job}.svg").read_text(encoding="utf-8")
         found = re.findall(r"^(.*): largest pressure (\S+), shear ([^ ;]+)",
@@ -157,7 +173,7 @@ class Page(unittest.TestCase):
         job = pathlib.Path(cls.folder.name) / "hild"
         job.with_suffix(".inp").write_text("\n".join(lines), encoding="utf-8")
         run(PROGRAM, f"{job}.inp", "-o", cls.folder.name, "--quiet")
-        cls.page = run("tools/report", str(job)).strip()
+        cls.page = tool("report", str(job)).strip()
         cls.data = json.loads(job.with_suffix(".json").read_text())
 
     @classmethod
@@ -256,10 +272,9 @@ class Refused(unittest.TestCase):
     """What cannot be drawn is said in a line."""
 
     def test_missing_results_are_named(self):
-        done = subprocess.run(["tools/report", "nowhere/job"], check=False,
-                              capture_output=True, text=True)
-        self.assertEqual(done.returncode, 1)
-        self.assertRegex(done.stderr, "^report: nowhere/job: no results.*\n$")
+        with self.assertRaisesRegex(
+                SystemExit, "^report: nowhere/job: no results.*$"):
+            tool("report", "nowhere/job")
 
 
 if __name__ == "__main__":

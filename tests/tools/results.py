@@ -206,9 +206,9 @@ class Results(unittest.TestCase):
             text = DECK.read_text() if name != "c" else "*NONSENSE\n"
             (folder / "job.inp").write_text(text)
             decks.append(str(folder / "job.inp"))
-        words = [sys.executable, "tools/batch", *decks, "-o",
-                 str(self.dir / "out"), "--", "-DN=4"]
-        with subprocess.Popen(words, stdout=subprocess.PIPE, text=True,
+        words = ["batch", *decks, "-o", str(self.dir / "out"), "--", "-DN=4"]
+        with subprocess.Popen([f"tools/{words[0]}", *words[1:]], text=True,
+                              stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL) as first:
             line = json.loads(first.stdout.readline())
             first.send_signal(signal.SIGTERM)
@@ -216,37 +216,31 @@ class Results(unittest.TestCase):
         self.assertEqual((line["deck"], line["exit"]), (decks[0], 0))
         self.assertEqual(line["contacts"][0]["contact"], "FOOT")
         self.assertAlmostEqual(line["contacts"][0]["normal"], 2000, places=6)
-        again = subprocess.run(words, capture_output=True, text=True,
-                               check=False)
-        self.assertEqual(again.returncode, 1)
+        self.assertEqual(tool(*words)[0], 1)
         lines = [json.loads(text) for text in
                  (self.dir / "out/batch.jsonl").read_text().splitlines()]
         self.assertEqual([entry["deck"] for entry in lines], decks)
         self.assertEqual([entry["exit"] for entry in lines], [0, 0, 2])
         self.assertIn("NONSENSE", lines[2]["message"])
         self.assertEqual(len({entry["folder"] for entry in lines}), 3)
-        third = subprocess.run(words, capture_output=True, text=True,
-                               check=False)
-        self.assertEqual(third.returncode, 1)  # what was refused is read again
-        self.assertEqual(json.loads(third.stdout)["deck"], decks[2])
-        self.assertIn("1 of 3 runs did not end with 0", third.stderr)
+        code, said = tool(*words)
+        self.assertEqual(code, 1)  # what was refused is read again
+        self.assertEqual(json.loads(said.splitlines()[0])["deck"], decks[2])
+        self.assertIn("1 of 3 runs did not end with 0", said)
 
     def test_batch_repeats_what_a_signal_ended(self):
-        words = [sys.executable, "tools/batch", str(DECK), "-o",
-                 str(self.dir), "--", "-DN=4"]
+        def batch():
+            said = tool("batch", DECK, "-o", self.dir, "--", "-DN=4")[1]
+            self.assertEqual(json.loads(said.splitlines()[0])["exit"], 0)
         for code in (0, -9, 143):
-            done = subprocess.run(words, capture_output=True, text=True,
-                                  check=False)
-            self.assertEqual(json.loads(done.stdout)["exit"], 0)
+            batch()
             lines = self.dir / "batch.jsonl"
             lines.write_text(lines.read_text().replace(
                 '"exit": 0', f'"exit": {code or -15}'))
         for hand in (False, True):  # of another run in the folder, too
             if hand:
                 protis.run(DECK, lines.parent / DECK.stem, N=5)
-            done = subprocess.run(words, capture_output=True, text=True,
-                                  check=False)
-            self.assertEqual(json.loads(done.stdout)["exit"], 0)
+            batch()
 
     def test_what_has_changed_is_run_again(self):
         """A deck, back to what it was before too; files of other folders that
