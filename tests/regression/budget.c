@@ -57,6 +57,20 @@ START_TEST(error_of_the_steps_is_near_the_true_one) {
 }
 END_TEST
 
+/* What the solver does in the increments is told, not only in the first. */
+START_TEST(every_increment_stands_in_the_log_of_the_solver) {
+  job j = roll(3, "*ACCURACY, TIME=YES\n");
+  char *cvg = job_file(&j, "cvg");
+  for (int k = 1; k <= 3; ++k) {
+    char row[16];
+    snprintf(row, sizeof row, "\n%7d   1 ", k);
+    ck_assert_msg(strstr(cvg, row) != NULL, "no increment %d in %s", k, cvg);
+  }
+  free(cvg);
+  job_end(&j);
+}
+END_TEST
+
 /* Steps that add no error of their own, each with a path of its own. */
 START_TEST(error_of_the_steps_is_that_of_all_steps) {
   static const char still[] =
@@ -333,9 +347,9 @@ static double potential(const job *j, double *strain) {
 
 START_TEST(error_of_the_mesh_is_near_the_true_one) {
   double strain, fine_strain;
-  job fine = press(32, "");
+  job fine = press(16, "");
   double least = potential(&fine, &fine_strain);
-  for (int nc = 8; nc <= 16; nc *= 2) {
+  for (int nc = 4; nc <= 8; nc *= 2) {
     job j = press(nc, "*ACCURACY, MESH=YES, SOLVER=NO\n");
     double told = last_of(&j, MESH_COLUMN);
     double is = 100 * sqrt(2 * (potential(&j, &strain) - least)) /
@@ -434,6 +448,7 @@ END_TEST
 
 UNIT_MAIN("budget", error_of_the_steps_is_near_the_true_one,
           error_of_the_steps_is_that_of_all_steps,
+          every_increment_stands_in_the_log_of_the_solver,
           proportional_load_has_no_error_of_steps,
           error_of_the_steps_is_told_where_a_law_flows,
           sudden_slip_has_no_error_of_steps, error_of_steps_of_order_1_stays,

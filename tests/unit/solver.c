@@ -576,6 +576,22 @@ static void count_step(void *ctx, const solver_step *s) {
   ++*count;
 }
 
+static void keep_step(void *ctx, const solver_step *s) {
+  *(solver_step *)ctx = *s;
+}
+
+START_TEST(step_is_heard_as_it_was_told) {
+  solver_step heard = {0};
+  const solver_listener listener = {keep_step, &heard};
+  const solver_control control = {.listener = &listener};
+  solver_report_step(&control, "name", 7, 0.25);
+  ck_assert_str_eq(heard.solver, "name");
+  ck_assert_int_eq(heard.iteration, 7);
+  ck_assert_double_eq(heard.residual, 0.25);
+  ck_assert_int_eq(heard.status_changes, -1);
+}
+END_TEST
+
 START_TEST(best_of_none_leaves_the_start) {
   best_iterate best;
   double u[] = {1.0, 2.0}, r[] = {3.0, 4.0};
@@ -669,4 +685,5 @@ UNIT_MAIN("solver", table_is_complete, one_triangle_slips_sticks_and_opens,
           body_at_rest_costs_next_to_nothing, nan_in_the_data_is_told,
           nan_in_the_start_is_forgotten,
           limit_of_iterations_is_honest_and_heard,
-          best_of_none_leaves_the_start, refused_memory_is_told_and_given_back)
+          best_of_none_leaves_the_start, step_is_heard_as_it_was_told,
+          refused_memory_is_told_and_given_back)
