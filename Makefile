@@ -332,8 +332,9 @@ scenes: $(program) $(scenes)
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) $(scenes)
 
 # Programs of make test that run all their cases here (unit_whole).
-whole    := $(addprefix $(out)/tests/,unit/average unit/conformance unit/history \
-              unit/fixed_point unit/mesh_reader regression/partial_slip)
+whole    := $(addprefix $(out)/tests/unit/,average conformance fixed_point \
+              fracture history mesh_reader methods nonlocal solver_block work) \
+            $(out)/tests/regression/partial_slip
 stability: $(program) $(stab) $(whole) scenes
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
 	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes,$^)

@@ -69,11 +69,11 @@ static double expected(const job *j) {
 
 START_TEST(runs_take_what_is_expected) {
   static const char *const rows[][3] = {
-      {"greco/greco", "greco", "-D N=96"},
-      {"block_shear_3d/block_shear_3d", "block_shear_3d", "-D N=12"},
-      {"torsion_sphere_3d/torsion_sphere_3d", "torsion_sphere_3d", ""},
+      {"greco/greco", "greco", "-D N=64"},
+      {"block_shear_3d/block_shear_3d", "block_shear_3d", "-D N=8"},
+      {"torsion_sphere_3d/torsion_sphere_3d", "torsion_sphere_3d", "-D NC=4"},
       {"creep_block/creep_block", "creep_block", "-D N=64"},
-      {"lee_radok/lee_radok", "lee_radok", ""}};
+      {"lee_radok/lee_radok", "lee_radok", "-D NC=20"}};
   for (size_t i = 0; i < sizeof rows / sizeof *rows; ++i) {
     char deck[100], words[60];
     job j = job_begin(rows[i][1]);

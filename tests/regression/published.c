@@ -94,7 +94,7 @@ START_TEST(hertz_line_has_its_pressure) {
   static const char *const decks[] = {"input/hertz_line/hertz_block",
                                       "input/hertz_line/hertz_line",
                                       "input/hertz_line/disc"};
-  static const char *const words[] = {"-D NC=48", "-D NC=32", "-D NC=24"};
+  static const char *const words[] = {"-D NC=24", "-D NC=16", "-D NC=16"};
 
   static const double tol[] = {2e-3, 2e-3, 3e-3};
   for (int k = 0; k < 3; ++k) {

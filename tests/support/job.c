@@ -90,7 +90,7 @@ void job_coarsen(const char *deck, char *words, size_t size) {
       snprintf(words + n, size - n, " -D DT=%g", 4 * value);
     else if (strspn(name, "NC12") == strlen(name) && value >= 8)
       snprintf(words + n, size - n, " -D %s=%g", name,
-               value / (value > 30 ? 4 : 2));
+               value / (value > 15 ? 4 : 2));
   }
   fclose(f);
 }

@@ -252,7 +252,7 @@ static job from_deck(const call_deck *d) {
 
 /* Some of them without PROTIS_CALLS and PROTIS_POINTS. */
 static int is_tried(size_t k) {
-  enum { OFTEN = 7 };
+  enum { OFTEN = 10 };
   return getenv("PROTIS_CALLS") != NULL || getenv("PROTIS_POINTS") != NULL ||
          k % OFTEN == 0;
 }

@@ -111,7 +111,7 @@ static void kill_often(points *t, points *twice, make_job *make,
 
 START_TEST(killed_run_goes_on) {
   points t = {.kind = "killed runs"}, twice = {.kind = "killed restarts"};
-  long n = points_number(3, 0.0375);
+  long n = points_number(2, 0.0375);
   kill_often(&t, &twice, small_flat, "AUTO", 0.1, n);
   kill_often(&t, &twice, small_flat, "NEWTON", 10.0, n);
   kill_often(&t, &twice, small_solid, "SOR", 0.4, n);

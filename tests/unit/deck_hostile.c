@@ -37,7 +37,7 @@ START_TEST(mutated_decks_do_no_harm) {
   size_t before = memory_in_use();
   decks_enter();
   decks_write("b.inp", "4,5\n*PARAMETER\nM=<N>+1\n");
-  for (int i = 0; i < points_number(3000, 1.0); ++i) {
+  for (int i = 0; i < points_number(2000, 1.0); ++i) {
     size_t n = sizeof seed_deck - 1;
     memcpy(content, seed_deck, n);
     for (int k = 0; k < 1 + i % 7; ++k) {

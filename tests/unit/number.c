@@ -176,7 +176,7 @@ END_TEST
 START_TEST(written_numbers_come_back_exactly) {
   char text[NUMBER_TEXT_SIZE];
   unsigned long long state = 88172645463325252ULL;
-  for (int i = 0; i < 200000; ++i) {
+  for (int i = 0; i < 60000; ++i) {
     double x, back;
     state ^= state << 13;
     state ^= state >> 7;
