@@ -122,5 +122,6 @@ status inform_check(const model *m, const mesh *msh) {
   for (int i = 0; i < m->n.step; ++i)
     if (i == 0 || m->steps[i].renewed >> LOAD_FIXING & 1u)
       PASS(print_motions(m, msh, i));
-  return history_check(m, msh, effect_table);
+  PASS(history_check(m, msh, effect_table));
+  return history_ranges(m, msh, effect_table);
 }

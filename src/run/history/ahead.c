@@ -82,3 +82,19 @@ status history_check(const model *m, const mesh *msh,
   timer_leave(STAGE_SURFACE);
   return st;
 }
+
+status history_ranges(const model *m, const mesh *msh,
+                      const effect_ops *const *effects) {
+  static const history_sink nobody;
+  ENDS_BY(run_free)
+  run r = {.m = m, .msh = msh, .sink = &nobody, .step = &m->steps[0]};
+  if (m->n.step == 0) return OK;
+  PASS(run_new(&r, effects));
+  for (int i = 0; i < m->n.step; ++i) {
+    r.step = &m->steps[i];
+    load_fixed(msh, r.step, r.body.fixed);
+    PASS(run_check_range(&r));
+    COPY(r.old.F, r.now.F, r.n_dof);
+  }
+  return OK;
+}

@@ -56,6 +56,12 @@ status check_possible(const step *s, int dim, int n, int corner);
 status history_check(const model *m, const mesh *msh,
                      const effect_ops *const *effects);
 
+/* All steps, nothing solved: ERR_DECK, ERR_SINGULAR where the run would end
+ * because loads, moduli or displacements leave the range of the numbers;
+ * ERR_MEMORY. */
+status history_ranges(const model *m, const mesh *msh,
+                      const effect_ops *const *effects);
+
 /* How the first step would know the condensed stiffness, nothing solved. */
 status history_stiffness(const model *m, const mesh *msh,
                          const effect_ops *const *effects,

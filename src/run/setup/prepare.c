@@ -111,6 +111,13 @@ static status check_range(const run *r) {
         "step %d: the largest nodal load is %.3g, the moduli are %.3g to %.3g: "
         "their squares leave the range of the numbers; use other units",
         run_step_id(r) + 1, r->loads.largest, least, most);
+  const double moved = largest_entry(r->n_dof, r->loads.ud);
+  if (!isfinite(moved * moved * most))
+    RAISE(ERR_SINGULAR,
+          "step %d: the largest displacement of *BOUNDARY is %.3g, the moduli "
+          "are up to %.3g: the energies leave the range of the numbers; use "
+          "other units",
+          run_step_id(r) + 1, moved, most);
   return OK;
 }
 
@@ -127,6 +134,17 @@ static status find_load_of_run(run *r) {
     }
   }
   return OK;
+}
+
+status run_check_range(run *r) {
+  const double end = r->step->start + r->step->total;
+  PASS(load_forces(r->m, r->msh, r->step, end, r->now.F));
+  PASS(load_prescribed(r->m, r->msh, r->step, end, NULL, r->loads.ud));
+  r->loads.largest =
+      fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
+  if (r->loads.largest > 0.0 && r->loads.largest <= LEAST)
+    PASS(find_load_of_run(r));
+  return check_range(r);
 }
 
 /* Surface, matrices for r->body.fixed; chosen: as r->body.choice. */
@@ -176,14 +194,7 @@ status run_prepare(run *r) {
     memcpy(r->body.fixed, fixed, r->n_dof);
     PASS(make_matrices(r, other));
   }
-  /* The largest nodal load at the ends of the step. */
-  const double end = r->step->start + r->step->total;
-  PASS(load_forces(r->m, r->msh, r->step, end, r->now.F));
-  r->loads.largest =
-      fmax(increment_free_load(r, r->old.F), increment_free_load(r, r->now.F));
-  if (r->loads.largest > 0.0 && r->loads.largest <= LEAST)
-    PASS(find_load_of_run(r));
-  PASS(check_range(r));
+  PASS(run_check_range(r));
   PASS(effects_prepare(r));
   if (fresh || other) PASS(report_ready(r));
   contact_solver_free(&r->elastic.solver);

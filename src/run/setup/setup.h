@@ -33,6 +33,11 @@ status run_motions(run *r, int *n, free_motion **list);
 /* The same of the current surface; *n: those that contact alone holds. */
 status run_check_supports(const run *r, int *n);
 
+/* The largest nodal load at the ends of r->step, which begins with r->old.F, to
+ * r->loads.largest; ERR_DECK, of prescribed displacements ERR_SINGULAR: squares
+ * leave the range of the numbers. Writes to r->now.F. */
+status run_check_range(run *r);
+
 /* Contact nodes that the problems of r->step have at least; 0: not known. */
 int run_least_nodes(const run *r);
 
