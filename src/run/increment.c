@@ -284,19 +284,30 @@ status increment_pose(run *r, double t) {
   return pose(r, strains_load(r));
 }
 
+/* Largest force on each row at the last equilibrium, *out NULL if it had other
+ * rows. */
+static status take_before(const run *r, double **out) {
+  if (r->problem.n_before != r->nodes.n_row) return OK;
+  PASS_NEW(*out, r->nodes.n_row);
+  run_take_rows(r, r->old.rc, *out);
+  for (int i = 0; i < r->nodes.n_row; ++i)
+    (*out)[i] = fmax(fabs((*out)[i]), fabs(r->problem.f_before[i]));
+  return OK;
+}
+
 /* Displacements of all nodes; a body that no force holds is put to its place.
  */
 static status recover(run *r, const double *F) {
+  OWNED double *before = NULL;
   double *u = run_rows(r, 0, r->now.uc), *f = run_rows(r, 1, r->now.rc);
+  if (r->nodes.n > 0) PASS(take_before(r, &before));
   const rest_scene at = {.cp = &r->problem.cp,
                          .c = r->c,
                          .n_dof = r->n_dof,
                          .F = F,
                          .old = r->old.u,
                          .now = r->now.u,
-                         .f_before = r->problem.n_before == r->nodes.n_row
-                                         ? r->problem.f_before
-                                         : NULL,
+                         .before = before,
                          .tol = r->solving.tol};
   PASS(condense_recover(r->c, u, r->now.u));
   r->solving.placed = 0;

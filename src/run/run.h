@@ -154,16 +154,16 @@ typedef struct error_state {
   rounding_loss rounding;
   error_share mesh_error, time_error;
   double *elem_error; /* [n_elem] borrowed, or NULL */
-  double left;    /* -, of an unloaded body: part of the largest energy so far,
-                     to which its errors are relative; 0: rounding alone */
-  int strained;   /* 1: supports strain a body, found if motions are large or
-                     nothing loads it */
-  int carried;    /* 1: contact carries its loads straight, found if motions are
-                     large */
-  int noise;      /* 1: strains are rounding of the motion, found likewise */
-  double lost;    /* N, largest rounding of a contact force, found likewise */
-  int evaluated;  /* 1: those of mesh and solver are of r->now */
-  int after_miss; /* 1: its start contains an increment without convergence */
+  double left;   /* -, of an unloaded body: part of the largest energy so far,
+                    to which its errors are relative; 0: rounding alone */
+  int strained;  /* 1: supports strain a body, found if motions are large or
+                    nothing loads it */
+  int carried;   /* 1: contact carries its loads straight, found if motions are
+                    large */
+  int noise;     /* 1: strains are rounding of the motion, found likewise */
+  double lost;   /* N, largest rounding of a contact force, found likewise */
+  int evaluated; /* 1: those of mesh and solver are of r->now */
+  int astray;    /* 1: its start contains an increment without convergence */
 } error_state;
 
 /* Linear systems of the contact problems so far, without those of shadow runs:
@@ -192,6 +192,7 @@ typedef struct solving {
 /* Counters, messages and saved data of the run. */
 typedef struct course_state {
   int total_no, unsettled, in_a_row; /* in_a_row: the last, not settled */
+  int unsolved;  /* of those unsettled: without convergence */
   int missed;    /* 1: the increment missed the tolerance of its step */
   int shadow;    /* 1: no step of the run: a finer path or a copy is solved */
   int relaxing;  /* the current increment relaxes the start to equilibrium */

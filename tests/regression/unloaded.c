@@ -73,6 +73,7 @@ END_TEST
 typedef struct squeezed {
   int n;
   const char *nu, *mu[2], *dt, *down; /* of the lid, over t */
+  const char *form;
 } squeezed;
 
 /* Between a floor and a lid that moves along it too by "along"; u[2] of node
@@ -92,9 +93,10 @@ static void run_squeezed(const squeezed *s, double along, const char *method,
             "*FRICTION, CONTACT=C, LAW=COULOMB\n%s\n"
             "*CONTACT, NAME=L, GROUP=TOP, OBSTACLE=LID\n"
             "*FRICTION, CONTACT=L, LAW=COULOMB\n%s\n"
-            "*STEP\n*QUASISTATIC\n%s, 1.\n*SOLVER, METHOD=%s\n"
+            "*STEP\n*QUASISTATIC, FORM=%s\n%s, 1.\n*SOLVER, METHOD=%s\n"
             "*PRINT, NODES\n*END STEP\n",
-            s->n, s->nu, along, s->down, s->mu[0], s->mu[1], s->dt, method);
+            s->n, s->nu, along, s->down, s->mu[0], s->mu[1], s->form, s->dt,
+            method);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "%s: exit %d: %s", method, code, j.errors);
   dat d = job_table(&j, "NODES", -1);
@@ -108,10 +110,10 @@ static void run_squeezed(const squeezed *s, double along, const char *method,
  * the force of one. */
 START_TEST(squeezed_body_is_left_by_sweeps_as_by_others) {
   static const squeezed cases[] = {
-      {2, "0.499", {"0.1", "1."}, "0.5", "sin(4*t)"},
-      {4, "0.3", {"0.3", "0.1"}, "0.2", "sin(4*t)"},
-      {12, "0.3", {"0.3", "0.1"}, "0.5", "sin(4*t)"},
-      {12, "0.3", {"0.1", "1."}, "0.2", "sin(4*t)"}};
+      {2, "0.499", {"0.1", "1."}, "0.5", "sin(4*t)", "DISPLACEMENT"},
+      {4, "0.3", {"0.3", "0.1"}, "0.2", "sin(4*t)", "DISPLACEMENT"},
+      {12, "0.3", {"0.3", "0.1"}, "0.5", "sin(4*t)", "DISPLACEMENT"},
+      {12, "0.3", {"0.1", "1."}, "0.2", "sin(4*t)", "DISPLACEMENT"}};
   static const char *const methods[] = {"SOR", "AITKEN"};
   const squeezed *s = &cases[_i / 2];
   double first[2], u[2];
@@ -125,9 +127,26 @@ START_TEST(squeezed_body_is_left_by_sweeps_as_by_others) {
 }
 END_TEST
 
+/* The velocity form solves for the forces that the increment takes away. */
+START_TEST(squeezed_body_is_left_in_the_velocity_form) {
+  static const char *const methods[] = {"SOR",    "AITKEN",   "PCG",
+                                        "AUGLAG", "LAGRANGE", "PROXIMAL"};
+  const squeezed s = {2,     "0.3",      {_i == 0 ? "0." : "0.3", "0.2"},
+                      "0.5", "sin(4*t)", "VELOCITY"};
+  double first[2], u[2];
+  run_squeezed(&s, 0.0, "AUTO", first);
+  for (int k = 0; k < 6; ++k) {
+    run_squeezed(&s, 0.0, methods[k], u);
+    for (int c = 0; c < 2; ++c)
+      ck_assert_msg(fabs(u[c] - first[c]) < 1e-8, "%s: u[%d] = %g, %g",
+                    methods[k], c, u[c], first[c]);
+  }
+}
+END_TEST
+
 /* Even where the tolerance times their number is the whole force. */
 START_TEST(body_still_squeezed_is_held_to_any_tolerance) {
-  const squeezed s = {40, "0.3", {"0.3", "0.1"}, "0.2", "t"};
+  const squeezed s = {40, "0.3", {"0.3", "0.1"}, "0.2", "t", "DISPLACEMENT"};
   double fine[2], coarse[2];
   run_squeezed(&s, 0.01, "AUTO", fine);
   run_squeezed(&s, 0.01, "AUTO, TOL=1E-2", coarse);
@@ -346,6 +365,7 @@ int main(void) {
   tcase_add_test(tests, body_that_is_left_stays_where_it_was);
   tcase_add_loop_test(tests, squeezed_body_is_left_by_sweeps_as_by_others, 0,
                       8);
+  tcase_add_loop_test(tests, squeezed_body_is_left_in_the_velocity_form, 0, 2);
   tcase_add_test(tests, body_still_squeezed_is_held_to_any_tolerance);
   tcase_add_loop_test(tests, body_that_a_floor_has_lifted_stays, 0, 7);
   tcase_add_loop_test(tests, body_pushed_out_of_its_floor_has_no_force, 0, 6);

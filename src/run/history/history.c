@@ -221,7 +221,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   }
   r->solving.seen.now = r->solving.seen.untold = 0;
   r->at.last = last;
-  r->errors.after_miss = is_after_miss(r);
+  r->errors.astray = r->course.unsolved > 0 && run_inherits(r);
   PASS(
       result_evaluate(r, stress_is_due(r->step, r->now.t, increment_no, last)));
   PASS(check_finite(r));
@@ -233,6 +233,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
   PASS(note_misfit(r));
   state s = loop_state(r, attempt, increment_no);
   r->course.unsettled += !s.settled;
+  r->course.unsolved += r->solving.report.outcome <= 0;
   r->course.in_a_row = s.settled ? 0 : r->course.in_a_row + 1;
   s.end_of_step = last;
   s.cpu = timer_cpu() - cpu;

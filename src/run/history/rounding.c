@@ -33,7 +33,7 @@ static int leaves_none(const rounding_loss *loss, double share,
 /* The body may be far away by an increment that did not converge. */
 static status check(const run *r, double share, const condensed *c) {
   const rounding_loss *loss = &r->errors.rounding;
-  if (!leaves_none(loss, share, c) || r->errors.after_miss) return OK;
+  if (!leaves_none(loss, share, c) || r->errors.astray) return OK;
   RAISE(ERR_SINGULAR,
         "step %d, time %g: rounding leaves no correct digit: the energy "
         "norm is wrong by about %.1g of itself, stresses by %.1g and "

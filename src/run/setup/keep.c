@@ -112,6 +112,7 @@ status run_keep(run *r, archive *a) {
   PASS(archive_bytes(a, "at", &r->at, sizeof r->at));
   PASS(archive_ints(a, "total_no", &r->course.total_no, 1));
   PASS(archive_ints(a, "unsettled", &r->course.unsettled, 1));
+  PASS(archive_ints(a, "unsolved", &r->course.unsolved, 1));
   PASS(archive_reals(a, "start", r->loads.start, r->n_dof));
   PASS(archive_reals(a, "step_load", &r->loads.largest, 1));
   PASS(keep_equilibrium(r, &r->old, a));

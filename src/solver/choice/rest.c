@@ -34,8 +34,7 @@ static int body_of(const contact_problem *cp, int node) {
  * what that leaves at all nodes of a body may be held by the force of one. */
 static status find_forced(rest *s) {
   const contact_problem *cp = s->cp;
-  const double *before =
-      s->at->f_before; /* the velocity form solves for less */
+  const double *before = s->at->before; /* the velocity form solves for less */
   const double most = fmax(1.0, REAL / s->at->tol);
   OWNED double *own = NULL, *load = NULL, *sum = NULL;
   PASS_NEW_REALS(cp->n, &own, &load, &sum); /* as many bodies, at most */

@@ -20,7 +20,7 @@ typedef struct rest_scene {
   size_t n_dof;
   const double *F;         /* [n_dof] forces without those of contact, N */
   const double *old, *now; /* [n_dof] last equilibrium, this one, m */
-  const double *f_before;  /* [m] load of the last one, N; or NULL */
+  const double *before;    /* [m] largest force of the last one, N; or NULL */
   double tol;              /* of the solver, -, of the load of a body */
 } rest_scene;
 
