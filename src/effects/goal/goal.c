@@ -397,13 +397,19 @@ static int turns(const run *r, const shared *s) {
   return most > TURN * size;
 }
 
+/* Closed nodes of the contact of a goal, or of all. */
+static int closed_of(const run *r, const shared *s, int id) {
+  const int of = r->m->accuracy.goals[id].contact_id;
+  return of >= 0 ? s->surface.closed[of] : s->surface.n_closed;
+}
+
 /* 1: few closed nodes, or nodes in a line on a surface in space: of the contact
  * of a goal, or of all. */
 static int has_few(const run *r, const shared *s, int id) {
   enum { FEW = 3 };
   const int of = r->m->accuracy.goals[id].contact_id;
-  int n = s->surface.n_closed, whole = 0;
-  if (of >= 0) n = s->surface.closed[of];
+  const int n = closed_of(r, s, id);
+  int whole = 0;
   for (int k = 0; k < r->m->n.contact; ++k)
     if (of < 0 || of == k) whole += s->surface.whole[k];
   return n > 0 && (n <= FEW || whole == 0);
@@ -455,7 +461,8 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   doubt_of_nodes(r, s, id, exact, own->before.missed, out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;
   /* what would touch or slip on a finer mesh has no part in the estimate */
-  if (exact && (out->verdict == GOAL_FEW_NODES || out->verdict == GOAL_NO_SLIP))
+  if (exact && (out->verdict == GOAL_NO_SLIP ||
+                (out->verdict == GOAL_FEW_NODES && closed_of(r, s, id) == 0)))
     out->error = out->band = NAN;
   if (remembers(r, own) && own->before.lost) out->verdict = GOAL_NO_HISTORY;
   return OK;
