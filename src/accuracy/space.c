@@ -135,9 +135,8 @@ typedef struct fit_weights {
 struct space_recovery {
   const domain *d;
   int n_section, n_region;
-  int *region; /* [n_elem] elements of one material, and of one zone of
-                  temperatures, have one */
-  unsigned char *has_inside; /* [n_region] 1: a node, known with depth */
+  int *region;        /* [n_elem] elements of one material, and of one zone of
+                         temperatures, have one */
   double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E) of the estimate */
   double *of_error;   /* the same without the hoop strains */
   int *start, *elem;  /* [n_node+1], elements round each node */
@@ -250,7 +249,6 @@ status space_recovery_new(const domain *d, space_recovery **out) {
   find_centroids(m, s->centroid);
   for (int k = 0; k < m->n_elem; ++k) s->measure[k] = element_weight(d, k);
   PASS(find_regions(s));
-  PASS_NEW(s->has_inside, s->n_region);
   list_neighbours(s);
   return OK;
 }
@@ -312,11 +310,7 @@ double space_depth(space_recovery *s) {
   const mesh *m = s->d->mesh;
   int inside = 0;
   if (s->depth == 0.0) {
-    for (int i = 0; i < m->n_node; ++i) {
-      if (!is_inside(s, i)) continue;
-      ++inside;
-      s->has_inside[space_region(s, s->elem[s->start[i]])] = 1;
-    }
+    for (int i = 0; i < m->n_node; ++i) inside += is_inside(s, i);
     const double side = pow((double)inside / m->n_node, 1.0 / m->dim);
     s->depth = (1.0 + side) / (1.0 - side);
   }
@@ -569,13 +563,11 @@ status space_moduli(space_recovery *s) {
   return OK;
 }
 
-/* Squares of error and norm of one region added to out, of the norm to
- * out->layers too if no node is inside; eta or NULL. */
+/* Squares of error and norm of one region added to out; eta or NULL. */
 static void add_region(space_recovery *s, int region, const double *sigma,
                        double *eta, space_error *out) {
   const domain *d = s->d;
   const space_field own = {sigma, s->recovered};
-  const double before = out->norm;
   space_recover(s, region, d->ns, sigma, s->recovered);
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     const double *t = sigma + (size_t)d->ns * e;
@@ -588,19 +580,16 @@ static void add_region(space_recovery *s, int region, const double *sigma,
         s->measure[e] * energy_product(d->ns, space_compliance_of(s, e), t, t);
     if (eta != NULL) eta[e] = sqrt(square);
   }
-  if (!s->has_inside[region]) out->layers += out->norm - before;
 }
 
 status space_estimate(space_recovery *s, const double *sigma, double *eta,
                       space_error *out) {
-  *out = (space_error){.norm = 0.0};
-  space_depth(s); /* for has_inside */
+  *out = (space_error){0.0, 0.0, 0.0};
   PASS(space_moduli(s));
   for (int region = 0; region < s->n_region; ++region)
     add_region(s, region, sigma, eta, out);
   double total = out->error + out->norm;
   out->relative = total > 0.0 ? sqrt(out->error / total) : 0.0;
-  out->layers = out->norm > 0.0 ? out->layers / out->norm : 0.0;
   out->error = sqrt(out->error);
   out->norm = sqrt(out->norm);
   return OK;

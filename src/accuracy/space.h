@@ -17,7 +17,6 @@ typedef struct space_error {
   double error;    /* estimated |u - u_h|, sqrt(J) */
   double norm;     /* |u_h|, sqrt(J) */
   double relative; /* error / sqrt(norm^2 + error^2), -; 0 without stress */
-  double layers;   /* share of norm^2 in materials without a node inside, - */
 } space_error;
 
 /* S[ns*ns] = inv(E) of a section over the components that carry stress, 1/Pa,

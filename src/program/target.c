@@ -409,7 +409,8 @@ static status see_finished(void *ctx, status st, output *out) {
           "a target of *GOAL is missed: %s; the files are those of pass %d",
           p->why, p->n);
   char error[32] = "unknown";
-  if (!isnan(row->total)) snprintf(error, sizeof error, "%.3g %%", row->total);
+  if (isfinite(row->total))
+    snprintf(error, sizeof error, "%.3g %%", row->total);
   if (p->why[0] != '\0')
     RAISE(ERR_UNSETTLED,
           "the error is %s, the target %g %%: %s; the files are those of "

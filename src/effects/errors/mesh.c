@@ -4,14 +4,17 @@
  */
 #include "effects/plan/effect.h"
 
+#include "effects/errors/free_sides.h"
 #include "run/column_row.h"
 
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
+static const double SEEN = 0.0625; /* -, of the energy on free sides */
 
 typedef struct mesh_estimate {
   space_recovery *recovery; /* NULL until the first estimate */
   long elastic_no;          /* of the run, that it is made of */
   double *elem_error;       /* [n_elem] share of each element, - */
+  free_sides free;          /* of the same time */
 } mesh_estimate;
 
 static status estimate_new(run *r, void **self) {
@@ -28,9 +31,11 @@ static int is_recovery_known(const run *r, const mesh_estimate *own) {
 static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
   FORGET(own->recovery);
+  FORGET(own->free.side);
   TIMED(STAGE_MESH_ERROR);
   OWNS(own);
   PASS(space_recovery_new(&r->body.d, &own->recovery));
+  PASS(mesh_border(r->msh, &own->free.n, &own->free.side));
   if (r->m->n.goal > 0) PASS(space_keep(own->recovery));
   own->elastic_no = r->body.elastic_no;
   return OK;
@@ -45,16 +50,17 @@ status mesh_recovery(const run *r, space_recovery **out) {
   return OK;
 }
 
-/* Why the estimate may be too small, and how deep the mesh is: a material that
- * has more of the energy than the estimate tells is not seen by it where no
- * node lies inside. */
-static void doubt(mesh_estimate *own, const space_error *found,
+/* Why the estimate may be too small, and how deep the mesh is: as if it had one
+ * element where the stress across free sides tells more of an error. */
+static void doubt(mesh_estimate *own, const space_error *found, double bare,
                   error_share *out) {
-  const int unseen = found->layers > found->relative * found->relative;
+  const double rounding = EXACT * found->norm;
+  const int unseen =
+      SEEN * bare > fmax(found->error * found->error, rounding * rounding);
   out->depth = unseen ? 1.0 : space_depth(own->recovery);
   out->why = NULL;
   if (unseen)
-    out->why = "no node inside a material: it may be many times as large";
+    out->why = "stress across sides is not their load: it may be many times as large";
   else if (found->relative > EXACT && space_is_coarse(out->depth))
     out->why = "few nodes inside the body: it may be twice as large";
 }
@@ -62,7 +68,7 @@ static void doubt(mesh_estimate *own, const space_error *found,
 /* From r->result.stress. */
 static status estimate(run *r, void *self) {
   mesh_estimate *own = self;
-  double cpu = timer_cpu();
+  double cpu = timer_cpu(), bare;
   space_error found;
   r->errors.mesh_error.asked = run_finds_mesh_error(r);
   if (!r->errors.mesh_error.asked) return OK;
@@ -70,7 +76,8 @@ static status estimate(run *r, void *self) {
   PASS_TIMED(STAGE_MESH_ERROR, space_estimate(own->recovery, r->result.stress,
                                               own->elem_error, &found));
   r->errors.mesh_error.relative = found.relative;
-  doubt(own, &found, &r->errors.mesh_error);
+  PASS_TIMED(STAGE_MESH_ERROR, free_sides_energy(r, &own->free, &bare));
+  doubt(own, &found, bare, &r->errors.mesh_error);
   double whole = hypot(found.norm, found.error);
   for (int e = 0; e < r->msh->n_elem; ++e)
     own->elem_error[e] = whole > 0.0 ? own->elem_error[e] / whole : 0.0;
