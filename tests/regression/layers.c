@@ -214,8 +214,10 @@ START_TEST(stress_across_sides_is_that_of_loads) {
   energy_of_rows(1000, (int[]){16, 2},
                  "TOP, 1, 2\n*DSLOAD\nSYMMETRY, TX, 1.\n*ACCURACY, MESH=YES",
                  1);
+  energy_of_rows(1, (int[]){32, 8}, "*DSLOAD\nTOP, P, 1.\n*ACCURACY, MESH=YES",
+                 0);
   energy_of_rows(1, (int[]){32, 8},
-                 "*DSLOAD\nTOP, P, 1.\nTOP, TX, 0.3\n*ACCURACY, MESH=YES", 0);
+                 "*DSLOAD\nTOP, TY, -1.\n*ACCURACY, MESH=YES", 0);
 }
 END_TEST
 

@@ -60,7 +60,9 @@ static void doubt(mesh_estimate *own, const space_error *found, double bare,
   out->depth = unseen ? 1.0 : space_depth(own->recovery);
   out->why = NULL;
   if (unseen)
-    out->why = "stress across sides is not their load: it may be many times as large";
+    out->why =
+        "stress across sides is not their load: "
+        "it may be many times as large";
   else if (found->relative > EXACT && space_is_coarse(out->depth))
     out->why = "few nodes inside the body: it may be twice as large";
 }
