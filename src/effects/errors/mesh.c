@@ -67,6 +67,12 @@ static void doubt(mesh_estimate *own, const space_error *found, double bare,
     out->why = "few nodes inside the body: it may be twice as large";
 }
 
+static status find(const run *r, mesh_estimate *own, space_error *found,
+                   double *bare) {
+  PASS(space_estimate(own->recovery, r->result.stress, own->elem_error, found));
+  return free_sides_energy(r, &own->free, bare);
+}
+
 /* From r->result.stress. */
 static status estimate(run *r, void *self) {
   mesh_estimate *own = self;
@@ -75,10 +81,8 @@ static status estimate(run *r, void *self) {
   r->errors.mesh_error.asked = run_finds_mesh_error(r);
   if (!r->errors.mesh_error.asked) return OK;
   PASS(recover(r, own));
-  PASS_TIMED(STAGE_MESH_ERROR, space_estimate(own->recovery, r->result.stress,
-                                              own->elem_error, &found));
+  PASS_TIMED(STAGE_MESH_ERROR, find(r, own, &found, &bare));
   r->errors.mesh_error.relative = found.relative;
-  PASS_TIMED(STAGE_MESH_ERROR, free_sides_energy(r, &own->free, &bare));
   doubt(own, &found, bare, &r->errors.mesh_error);
   double whole = hypot(found.norm, found.error);
   for (int e = 0; e < r->msh->n_elem; ++e)
