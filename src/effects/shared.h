@@ -12,6 +12,17 @@ const sparse_rows *nonlocal_average(const run *r, int contact_id);
  * mesh. ERR_MEMORY. */
 status mesh_recovery(const run *r, space_recovery **out);
 
+/* sides.c: what loads give at a node of a side, Pa. */
+typedef struct side_load {
+  double pressure, traction[3];
+} side_load;
+/* *out, new: [dim*n] of side[n] of mesh_border, node by node. ERR_MEMORY. */
+status side_loads_new(const run *r, int n, const int *side, side_load **out);
+/* Of what r->result.stress has more or less than loads give on those of side[n]
+ * that nothing holds or touches, over the elements behind, J: all of it is
+ * error. ERR_MEMORY. */
+status free_sides_energy(const run *r, int n, const int *side, double *energy);
+
 /* The factors of a crack at r->now. */
 typedef struct crack_factors {
   int n;

@@ -3,8 +3,8 @@
  * and of each element.
  */
 #include "effects/plan/effect.h"
+#include "effects/shared.h"
 
-#include "effects/errors/free_sides.h"
 #include "run/column_row.h"
 
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
@@ -14,7 +14,7 @@ typedef struct mesh_estimate {
   space_recovery *recovery; /* NULL until the first estimate */
   long elastic_no;          /* of the run, that it is made of */
   double *elem_error;       /* [n_elem] share of each element, - */
-  free_sides free;          /* of the same time */
+  int n_side, *side;        /* [n_side] of mesh_border */
 } mesh_estimate;
 
 static status estimate_new(run *r, void **self) {
@@ -31,11 +31,11 @@ static int is_recovery_known(const run *r, const mesh_estimate *own) {
 static status recover(const run *r, mesh_estimate *own) {
   if (is_recovery_known(r, own)) return OK;
   FORGET(own->recovery);
-  FORGET(own->free.side);
+  FORGET(own->side);
   TIMED(STAGE_MESH_ERROR);
   OWNS(own);
   PASS(space_recovery_new(&r->body.d, &own->recovery));
-  PASS(mesh_border(r->msh, &own->free.n, &own->free.side));
+  PASS(mesh_border(r->msh, &own->n_side, &own->side));
   if (r->m->n.goal > 0) PASS(space_keep(own->recovery));
   own->elastic_no = r->body.elastic_no;
   return OK;
@@ -70,7 +70,7 @@ static void doubt(mesh_estimate *own, const space_error *found, double bare,
 static status find(const run *r, mesh_estimate *own, space_error *found,
                    double *bare) {
   PASS(space_estimate(own->recovery, r->result.stress, own->elem_error, found));
-  return free_sides_energy(r, &own->free, bare);
+  return free_sides_energy(r, own->n_side, own->side, bare);
 }
 
 /* From r->result.stress. */

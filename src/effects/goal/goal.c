@@ -16,7 +16,6 @@
  */
 #include "effects/goal/parts.h"
 #include "effects/plan/effect.h"
-#include "effects/shared.h"
 #include "run/history/loop.h"
 
 #include <cblas.h>

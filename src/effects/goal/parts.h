@@ -6,8 +6,7 @@
  */
 #pragma once
 
-#include "fracture/fracture.h"
-#include "run/run.h"
+#include "effects/shared.h"
 
 /* A mean over the area or the volume of a group. */
 typedef struct goal_mean {
@@ -109,16 +108,11 @@ typedef struct goal_border {
 } goal_border;
 status goal_border_new(const mesh *m, goal_border *b); /* support.c */
 
-/* jumps.c: the loads of a side of the border at one of its nodes. */
-typedef struct goal_pull {
-  double pressure, traction[3]; /* Pa */
-} goal_pull;
-/* *pull, new: [dim*n] of the sides of a border, node by node. ERR_MEMORY. */
-status goal_pulls_new(const run *r, const goal_border *b, goal_pull **pull);
+/* jumps.c */
 /* 1: no stress that is continuous at a node has the loads of two sides with
  * normals n[dim], m[dim]; smooth: they are one side. */
-int goal_is_torn(int dim, const goal_pull *p, const double *n,
-                 const goal_pull *q, const double *m, int smooth);
+int goal_is_torn(int dim, const side_load *p, const double *n,
+                 const side_load *q, const double *m, int smooth);
 
 /* surface.c */
 typedef struct goal_surface {

@@ -2,7 +2,6 @@
  * Quantities of *GOAL and their derivatives; of pressures: pressure.c.
  */
 #include "effects/goal/parts.h"
-#include "effects/shared.h"
 
 #include <cblas.h>
 #include <lapacke.h>

@@ -134,7 +134,7 @@ typedef struct corner {
   kind of[2];                     /* the first of them */
   unsigned char held[2];          /* components that some face holds */
   unsigned char support, contact; /* 1: some face is held, closed */
-  const goal_pull *pull[2];       /* of the first faces */
+  const side_load *pull[2];       /* of the first faces */
   double normal[2][2];            /* outward, the same */
 } corner;
 
@@ -163,7 +163,7 @@ static kind contact_kind(const goal_surface *s, const number_pair *e) {
 }
 
 /* Of side v[2], turned outward. */
-static void add_pull(const mesh *m, const int *v, const goal_pull *pull,
+static void add_pull(const mesh *m, const int *v, const side_load *pull,
                      corner *c) {
   const double *a = m->x + 2 * v[0], *b = m->x + 2 * v[1];
   double n[2] = {b[1] - a[1], a[0] - b[0]};
@@ -216,7 +216,7 @@ static int is_singular(const corner *c) {
 
 /* 1: the same by loads, where the other side is free, or a roller of a body
  * that goes on behind it: its pressure is unknown, and has no part across. */
-static int is_torn(int dim, const corner *c, const goal_pull *const *pull,
+static int is_torn(int dim, const corner *c, const side_load *const *pull,
                    const double *n, const double *m) {
   const int free_too = c->of[0] == FREE && c->of[1] == FREE;
   const int mirrored = (c->of[0] == FREE || c->of[1] == FREE) &&
@@ -250,7 +250,7 @@ typedef struct rim {
   kind of;
   int support;
   double n[3];              /* outward normal */
-  const goal_pull *pull[2]; /* of the face at a and b */
+  const side_load *pull[2]; /* of the face at a and b */
 } rim;
 
 /* v[3]: turned outward. */
@@ -283,7 +283,7 @@ static kind side_contact(const goal_surface *s, const int *v) {
 
 /* The three edges of a face; held[3*n_node] += what it holds. */
 static void add_side(const run *r, const goal_surface *s, const int *v,
-                     const goal_pull *pull, unsigned char *held, rim *e) {
+                     const side_load *pull, unsigned char *held, rim *e) {
   const unsigned char *fixed = r->body.d.fixed;
   int n_held = 0, component = 0;
   double n[3];
@@ -324,7 +324,7 @@ static int is_singular_edge(const mesh *m, const rim *e, int count) {
   if (e[0].region != e[1].region)
     return at.of[0] != ROLLER || at.of[1] != ROLLER || turn > SLACK;
   for (int k = 0; k < 2; ++k) {
-    const goal_pull *const pull[2] = {e[0].pull[k], e[1].pull[k]};
+    const side_load *const pull[2] = {e[0].pull[k], e[1].pull[k]};
     if (is_torn(3, &at, pull, e[0].n, e[1].n)) return 1;
   }
   return is_singular(&at);
@@ -414,7 +414,7 @@ static status mark_space(const run *r, const goal_border *border,
   const mesh *m = r->msh;
   OWNED_NEW(rim, e, 3 * border->n);
   OWNED_NEW(unsigned char, held, 3 * m->n_node);
-  OWNED_OF(goal_pull, pull, goal_pulls_new(r, border, &pull));
+  OWNED_OF(side_load, pull, side_loads_new(r, border->n, border->side, &pull));
   for (int k = 0; k < border->n; ++k) {
     int v[3];
     mesh_side_nodes(m, border->side[k], v);
@@ -432,7 +432,7 @@ static status mark_plane(const run *r, const goal_border *border,
                          const joint *at, goal_surface *s) {
   const mesh *m = r->msh;
   OWNED_NEW(corner, c, m->n_node);
-  OWNED_OF(goal_pull, pull, goal_pulls_new(r, border, &pull));
+  OWNED_OF(side_load, pull, side_loads_new(r, border->n, border->side, &pull));
   for (int i = 0; i < m->n_node; ++i) c[i].angle = border->angle[i];
   for (int k = 0; k < border->n; ++k) {
     int v[2];
