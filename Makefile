@@ -338,9 +338,9 @@ scenes: $(program) $(scenes)
 whole    := $(addprefix $(out)/tests/unit/,average conformance fixed_point \
               fracture history mesh_reader methods nonlocal solver_block work) \
             $(out)/tests/regression/partial_slip
-stability: $(program) $(stab) $(whole) scenes
+stability: $(program) $(stab) $(whole) scenes reference
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
-	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes,$^)
+	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes reference,$^)
 
 layers: $(objects)
 	$(Q)tools/check_layers src $(objects)

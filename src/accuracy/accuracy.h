@@ -136,8 +136,7 @@ void pair_set(const contact_problem *cp, const double *u, const double *r,
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
                     pair *p, int *done);
 
-/* Stiffness of node i along its normal and in
- * its tangent plane, N/m. */
+/* Stiffness of a node along its normal and in its tangent plane, N/m. */
 typedef struct node_stiffness {
   double n, t;
 } node_stiffness;

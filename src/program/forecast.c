@@ -407,6 +407,10 @@ static status forecast_norm(const command *c, job_input *in, const double *eta,
                             model_of_cost *cost) {
   const int plane = cost->dim == 2;
   const double now = cost->deck.error;
+  if (cost->deck.is_coarse && cost->deck.depth < 1.0)
+    RAISE(ERR_UNSETTLED,
+          "the estimate of the error of the mesh sees nothing, make it finer: "
+          "no forecast");
   if (now + cost->deck.time <= wanted_errors[N_WANTED - 1]) {
     print_table(cost);
     return OK;

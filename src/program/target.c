@@ -20,9 +20,9 @@ static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
 static const double AIM = 0.93;
 /* -, of the error, or a pass had no effect. */
 static const double LEAST_GAIN = 0.95;
-enum { BLIND = 2 };
 /* -, of what a coarse mesh estimates; what the next one is to have of it. */
 static const double COARSE = 2.0, FINER = 0.6;
+enum { BLIND = 2 }; /* what is estimated tells nothing: half the length */
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
 static const double LEAST_TOL = 1e-14, SHORTEST = 1.0 / 16; /* - */
@@ -72,7 +72,7 @@ static status see_increment(void *ctx, const state *s) {
   p->energy = s->energy.strain;
   p->mesh = s->errors.mesh_error.relative;
   p->coarse = s->errors.mesh_error.why != NULL;
-  if (p->coarse && s->errors.mesh_error.depth <= 1.0) p->coarse = BLIND;
+  if (error_is_unseen(&s->errors.mesh_error)) p->coarse = BLIND;
   p->time = s->errors.time_error.relative;
   p->solver = s->errors.error.asked ? s->errors.error.relative : 0.0;
   COPY(p->eta, s->errors.elem_error, p->in->msh->n_elem);

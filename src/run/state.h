@@ -107,8 +107,14 @@ typedef struct error_share {
   double relative; /* -, of the energy norm of the solution; NAN: unknown */
   double cpu;      /* s, CPU time for it so far */
   const char *why; /* why it is zero, unknown or too small; or NULL */
-  double depth;    /* -, of the mesh: elements across the body */
+  double depth;    /* -, of the mesh: elements across the body; 0: it tells
+                      nothing */
 } error_share;
+
+/* 1: that of the mesh, which tells nothing. */
+static inline int error_is_unseen(const error_share *e) {
+  return e->why != NULL && e->depth < 1.0;
+}
 
 /* *SOLVER, TOL=BALANCED: where the solver stopped, and what that saved against
  * the tolerance of the default. */

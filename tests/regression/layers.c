@@ -175,6 +175,8 @@ static double energy_of_rows(int hard, const int n[2], const char *cards,
   char *lst = job_file(&j, "lst");
   ck_assert_int_eq(strstr(lst, "it may be many times as large") != NULL,
                    unseen);
+  ck_assert_int_eq(
+      strstr(lst, "the estimate of its error sees nothing") != NULL, unseen);
   free(lst);
   dat e = job_table(&j, "ENERGY", -1);
   const double energy = dat_at(&e, 0, "strain_energy");
@@ -221,8 +223,35 @@ START_TEST(stress_across_sides_is_that_of_loads) {
 }
 END_TEST
 
+/* A row whose error is seen reaches a target by twice of it; where nothing is
+ * seen there is no forecast. */
+START_TEST(row_that_is_seen_reaches_its_target) {
+  job j = job_begin("row");
+  for (int seen = 0; seen < 2; ++seen) {
+    block_file_write(&j, (int[]){64, 1}, (double[]){4.0, 1.0}, 0);
+    job_write(&j, "row.inp",
+              "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nCONTACT, 1, 2\n%s*ACCURACY, TARGET=60\n*END STEP\n",
+              seen ? "*DSLOAD\nTOP, P, \"1+x\"\n" : "TOP, 1\nTOP, 2, 2, -.1\n");
+    if (seen) {
+      ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+      char *json = job_file(&j, "json");
+      ck_assert_ptr_nonnull(strstr(json, "\"coarse_mesh\""));
+      ck_assert_ptr_null(strstr(json, "\"total_error_percent\": null"));
+      free(json);
+    } else {
+      ck_assert_int_eq(job_run(&j, "--estimate-cost"), 1);
+      ck_assert_ptr_nonnull(strstr(j.errors, "sees nothing"));
+    }
+  }
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("layers", creep_beside_a_group_that_expands,
           laws_have_the_temperature_of_their_elements, cold_elements_are_named,
           integrators_fit_the_law_of_each_group, averaged_groups_do_not_lock,
           rows_of_one_stress_have_no_estimate,
-          stress_across_sides_is_that_of_loads)
+          stress_across_sides_is_that_of_loads,
+          row_that_is_seen_reaches_its_target)

@@ -50,14 +50,14 @@ status mesh_recovery(const run *r, space_recovery **out) {
   return OK;
 }
 
-/* Why the estimate may be too small, and how deep the mesh is: as if it had one
+/* Why the estimate may be too small, and how deep the mesh is: as if it had no
  * element where the stress across free sides tells more of an error. */
 static void doubt(mesh_estimate *own, const space_error *found, double bare,
                   error_share *out) {
   const double rounding = EXACT * found->norm;
   const int unseen =
       SEEN * bare > fmax(found->error * found->error, rounding * rounding);
-  out->depth = unseen ? 1.0 : space_depth(own->recovery);
+  out->depth = unseen ? 0.0 : space_depth(own->recovery);
   out->why = NULL;
   if (unseen)
     out->why =

@@ -233,6 +233,13 @@ static size_t add_solver(const job *j, double others, double solver, char *text,
              ceil(100 * share));
 }
 
+/* The last estimate of the mesh says that it sees nothing. */
+static int mesh_is_unseen(const job *j) {
+  int k = j->run->n_increment;
+  while (k > 0 && !j->run->increments[k - 1].mesh_error.asked) --k;
+  return k > 0 && error_is_unseen(&j->run->increments[k - 1].mesh_error);
+}
+
 void job_advice(const job *j, char *text, size_t size) {
   budget_row rows[BUDGET_ROWS];
   const int n = job_budget(j, rows);
@@ -241,7 +248,11 @@ void job_advice(const job *j, char *text, size_t size) {
   size_t used = 0;
   text[0] = '\0';
   if (j->run->n_increment == 0 || isnan(in_mesh)) return;
-  if (in_steps > in_mesh)
+  if (mesh_is_unseen(j))
+    used = add(text, size, used,
+               "the mesh: the estimate of its error sees nothing, half the "
+               "length of the elements may");
+  else if (isgreater(in_steps, in_mesh))
     used =
         add(text, size, used,
             "the increments: half their length gives %.2g %% or less of %.2g "
