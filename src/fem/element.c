@@ -388,10 +388,10 @@ static double volume_ratio(const double *G) {
          G[2] * (G[3] * G[7] - e * G[6]);
 }
 
-/* Displacement gradient of an element, that of the hoop in G[8]. */
-static void gradient_at(const domain *d, int elem_id, const double *u,
-                        double G[9]) {
-  const int dim = d->mesh->dim, *v = d->mesh->elem + (dim + 1) * elem_id;
+/* Displacement gradient G[3*3] of an element, that of the hoop in G[8]. */
+static inline void gradient_at(const domain *d, int dim, int elem_id,
+                               const double *u, double *G) {
+  const int *v = d->mesh->elem + (dim + 1) * elem_id;
   element_shape s;
   shape_at(d, elem_id, &s);
   CLEAR(G, 9);
@@ -404,22 +404,28 @@ static void gradient_at(const domain *d, int elem_id, const double *u,
   }
 }
 
+/* Sum of the squares of the strains of a gradient. */
+static double strain_square(const double *G) {
+  const double yz = G[5] + G[7], zx = G[2] + G[6], xy = G[1] + G[3];
+  return G[0] * G[0] + G[4] * G[4] + G[8] * G[8] +
+         0.5 * (yz * yz + zx * zx + xy * xy);
+}
+
 void domain_deformation(const domain *d, const double *u, deformation *out) {
   double largest = 0;
   *out = (deformation){.volume = 1};
   for (int e = 0; e < d->mesh->n_elem; ++e) {
-    double G[9], square = 0;
-    gradient_at(d, e, u, G);
-    for (int i = 0; i < 3; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const double strain = 0.5 * (G[3 * i + c] + G[3 * c + i]);
-        square += strain * strain;
-      }
+    double G[9];
+    /* a constant is the length of loops without a branch */
+    if (d->mesh->dim == 2)
+      gradient_at(d, 2, e, u, G);
+    else
+      gradient_at(d, 3, e, u, G);
+    const double square = strain_square(G), volume = volume_ratio(G);
     if (square > largest) {
       largest = square;
       out->strain_elem = e;
     }
-    const double volume = volume_ratio(G);
     if (volume < out->volume) {
       out->volume = volume;
       out->volume_elem = e;
