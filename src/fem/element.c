@@ -292,6 +292,32 @@ void domain_internal_force(const domain *d, const double *sigma, double *F) {
   }
 }
 
+/* 1: a degree of freedom of the element is in held[dim*n_node]. */
+static int has_held(const mesh *m, int elem_id, const unsigned char *held) {
+  const int *v = m->elem + (m->dim + 1) * (size_t)elem_id;
+  for (int a = 0; a <= m->dim; ++a)
+    for (int c = 0; c < m->dim; ++c)
+      if (held[m->dim * (size_t)v[a] + c]) return 1;
+  return 0;
+}
+
+void domain_held_force(const domain *d, const double *u,
+                       const unsigned char *held, double *F) {
+  int next = 0;
+  CLEAR(F, (size_t)d->mesh->dim * d->mesh->n_node);
+  for (int k = 0; k < d->mesh->n_elem; ++k) {
+    const double *e0 = eigen_at(d, k, &next);
+    element_shape s;
+    double e[6], t[6];
+    if (!has_held(d->mesh, k, held)) continue;
+    shape_at(d, k, &s);
+    averaged_strain(d, k, u, &s, e);
+    take_eigen(d, e0, e);
+    stress_at(d, k, e, t);
+    add_force(d, k, &s, t, 1, F);
+  }
+}
+
 void eigen_force(const domain *d, const eigenstrain *x, double *F) {
   double t[6];
   cluster_begin(d->cluster, CLUSTER_STRESS);

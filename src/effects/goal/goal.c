@@ -516,7 +516,7 @@ static status find_goals(run *r, void *self) {
   double cpu = timer_cpu();
   PASS(goal_form_new(r, &s.form));
   forget(r, &own->before, own->n);
-  if (!(r->m->effects & EFFECT_REACTION) && !run_finds_mesh_error(r))
+  if (!run_finds_mesh_error(r))
     domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
   if (is_covered(r)) PASS(prepare(r, own, &s));
   for (int k = 0; k < own->n; ++k) {
