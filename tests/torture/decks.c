@@ -41,10 +41,11 @@ static int check_answer(tally *t, const random_deck *d, const job *j,
   return 1;
 }
 
-static void check_twins(tally *t, const random_deck *d, const tables *all) {
+static void check_twins(tally *t, const random_deck *d, const job *j,
+                        const tables *all) {
   char what[400];
   for (int k = 0; k < TWINS; ++k) {
-    twin_answer answer = twin_check(d, (twin_kind)k, all, what);
+    twin_answer answer = twin_check(d, (twin_kind)k, j, all, what);
     points_try(&t->twin[k]);
     t->refused += answer == TWIN_REFUSED;
     t->other += answer == TWIN_OTHER;
@@ -79,7 +80,7 @@ static void check_deck(tally *t, unsigned long long seed, int twins) {
     lose(&t->judged, &d, what);
   else
     good = check_answer(t, &d, &j, &all);
-  if (good && twins) check_twins(t, &d, &all);
+  if (good && twins) check_twins(t, &d, &j, &all);
   if (!good && getenv("DECKS_KEEP") != NULL)
     printf("deck %llu is kept in %s\n", seed, j.dir);
   else
