@@ -304,8 +304,8 @@ static void write_head(const writer *w, const deck_step *s) {
     fprintf(w->f, "\n%.17g, %.17g\n", dt, total);
 }
 
-/* Of every second deck errors of all kinds are estimated. */
-static int has_goals(const random_deck *d) { return d->seed % 2 == 1; }
+/* Of four in five decks errors of all kinds are estimated. */
+static int has_goals(const random_deck *d) { return d->seed % 5 != 0; }
 
 static void write_step(const writer *w, int i) {
   const random_deck *d = w->d;
