@@ -42,14 +42,15 @@ static int check_answer(tally *t, const random_deck *d, const job *j,
 }
 
 /* With which twins a deck is compared: none; in units of powers of two, which
- * leave all bits of decks without powers and exponentials; all. */
+ * leave all bits of decks without powers and exponentials, and numbered again;
+ * all. */
 typedef enum { ALONE, BITS, ALL_TWINS } extent;
 
 static void check_twins(tally *t, const random_deck *d, const job *j,
                         const tables *all, extent of) {
   char what[400];
   for (int k = 0; k < TWINS; ++k) {
-    if (of == BITS && k != POWERS) continue;
+    if (of == BITS && k != POWERS && k != NUMBERS) continue;
     twin_answer answer = twin_check(d, (twin_kind)k, j, all, what);
     points_try(&t->twin[k]);
     t->refused += answer == TWIN_REFUSED;
