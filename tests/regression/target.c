@@ -52,6 +52,16 @@ static int count(const char *text, const char *word) {
   return n;
 }
 
+/* The error of the solver in the first pass, %, times what its tolerance is
+ * changed by. */
+static double solver_is_changed(const char *lst) {
+  const char *row = strstr(lst, "\n  1 "), *by = strstr(row, "mesh, tol * ");
+  double solver, factor;
+  ck_assert(sscanf(row, "%*d %*f %*f %*f %lf", &solver) == 1);
+  ck_assert(by != NULL && sscanf(by, "mesh, tol * %lf", &factor) == 1);
+  return solver * factor;
+}
+
 START_TEST(target_is_reached_in_truth) {
   job coarse, fine, j;
   double strain, fine_strain;
@@ -60,7 +70,8 @@ START_TEST(target_is_reached_in_truth) {
   /* The potential falls with the square of the size: its limit. */
   double least = potential(&fine, &fine_strain);
   least -= (potential(&coarse, &strain) - least) / 3;
-  int code = press(&j, 4, "*ACCURACY, TARGET=3 %\n", "");
+  int code =
+      press(&j, 4, "*SOLVER, METHOD=SOR, TOL=0.1\n*ACCURACY, TARGET=3 %\n", "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   double energy = potential(&j, &strain) - least;
   double is = 100 * sqrt(fmax(energy, 0) / fine_strain);
@@ -68,6 +79,7 @@ START_TEST(target_is_reached_in_truth) {
   char *lst = job_file(&j, "lst"), *json = job_file(&j, "json");
   ck_assert_ptr_nonnull(strstr(lst, "target 3 % of the energy norm: reached"));
   ck_assert_ptr_nonnull(strstr(lst, "next digit"));
+  ck_assert_double_eq_tol(solver_is_changed(lst), 0.93 * 0.05 * 3, 0.01);
   ck_assert_ptr_nonnull(strstr(json, "\"reached\": true"));
   ck_assert_int_ge(count(json, "\"changed_next\""), 2);
   ck_assert_int_le(count(json, "\"changed_next\""), 4);

@@ -398,6 +398,9 @@ START_TEST(budget_goals_and_passes) {
   m->n.contact = 0;
   must_print(write_closing, "\ncontact   open 31, slip 32, stick 33\n");
   m->n.contact = 1;
+  m->dim = 3;
+  must_print(write_accuracy, " gives about 1 % for up to 38 times the CPU\n");
+  m->dim = 2;
   made->m.steps[0].accuracy.time_balanced = 1;
   all[1].time_error.relative = 0.04;
   all[1].error.relative = 1e-6;
