@@ -36,7 +36,11 @@ static const char *skip_blanks(const char *p) {
   return p;
 }
 
+/* One of them may look like a blank or a minus sign. */
+static int is_foreign(char c) { return (unsigned char)c >= 0x80; }
+
 static const char *wrong_end(const char *p) {
+  if (is_foreign(*p)) return "characters beyond ASCII after the number";
   if (is_letter(*p)) return "letters after the number";
   return "characters after the number";
 }
@@ -97,7 +101,8 @@ static const char *read_decimal(const char *text, decimal *d) {
   if (p[0] == '0' && (p[1] == 'x' || p[1] == 'X'))
     return "hexadecimal is not accepted";
   const char *end = read_mantissa(p, d);
-  if (end == NULL) return "not a number";
+  if (end == NULL)
+    return is_foreign(*p) ? "characters beyond ASCII" : "not a number";
   p = read_exponent(end, d);
   if (p == NULL)
     return !is_letter(*end) || is_letter(end[1]) ? wrong_end(end)

@@ -162,6 +162,7 @@ typedef struct error_state {
                     large */
   int noise;     /* 1: strains are rounding of the motion, found likewise */
   double lost;   /* N, largest rounding of a contact force, found likewise */
+  double misfit; /* J, of what does not balance the loads, found likewise */
   int evaluated; /* 1: those of mesh and solver are of r->now */
   int astray;    /* 1: its start contains an increment without convergence */
 } error_state;

@@ -319,6 +319,24 @@ START_TEST(no_digit_is_left_of_a_body_carried_too_far) {
 }
 END_TEST
 
+/* A pressed bar that creeps until its elastic strains are no more than the
+ * rounding of all: the stresses, whatever rounding makes of them, 0 too. */
+START_TEST(no_digit_is_left_of_a_bar_that_crept_too_far) {
+  static const char *const tau[] = {"1E-16", "1E-20", "1E-100"};
+  job j;
+  begin(&j, "rect 2 2 1 1", &as_it_is);
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1E3, 0.\n"
+            "*INELASTIC, LAW=MAXWELL\n%s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*BOUNDARY\n"
+            "LEFT, 1\nBOTTOM, 2\n*DSLOAD\nTOP, P, 10.\n*END STEP\n",
+            tau[_i]);
+  int code = job_run(&j, "");
+  ck_refused(&j, code);
+}
+END_TEST
+
 /* A hard layer on a soft one, shifted or turned by the supports of the soft one
  * alone: no stress at all, and displacements right to some digits. */
 START_TEST(rigid_motion_is_right_to_its_digits) {
@@ -634,6 +652,8 @@ int main(void) {
   tcase_add_test(tests, no_digit_is_left_of_needles);
   tcase_add_loop_test(tests, loss_of_a_body_led_far_is_told, 0, 4);
   tcase_add_loop_test(tests, no_digit_is_left_of_a_body_led_too_far, 0, 2);
+  tcase_add_loop_test(tests, no_digit_is_left_of_a_bar_that_crept_too_far, 0,
+                      3);
   tcase_add_loop_test(tests, creep_in_free_motion_is_rounding, 0, 3);
   tcase_add_loop_test(tests, body_lowered_through_a_gap_is_settled, 0, 6);
   tcase_add_test(tests, works_of_free_motion_stay_rounding_at_its_origin);

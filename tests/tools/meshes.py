@@ -186,6 +186,19 @@ class Meshes(unittest.TestCase):
             "BASE: 2 triangles", "FREE: 4 triangles", "SIDE: 1 triangles",
             "EVERY: 4 points", "FIX: 4 points", "BODY: 1 tetrahedra"])
 
+    def test_lines_of_other_files_and_lost_numbers(self):
+        code, groups, said = self.convert(
+            "*NODE, INPUT=more.inp\n*ELEMENT, TYPE=CPE3, INPUT=more2.inp\n"
+            "*AMPLITUDE, INPUT=none.inp\n*NSET, NSET=ALL\n1, 7\n"
+            "*NSET, NSET=G, GENERATE\n1, 99999999999\n",
+            more="1, 0., 0.\n2, 1., 0.\n3, 0., 1.\n2, 1., 0.\n",
+            more2="1, 1, 2, 3\n1, 1, 2, 3\n")
+        self.assertEqual(code, 0, said)
+        self.assertCountEqual(groups, ["ALL: 1 points", "G: 3 points",
+                                       "ALL_ELEMENTS: 1 triangles"])
+        self.assertEqual(said, "abaqus_mesh: ALL has 1 numbers that the model "
+                         "has not, the first 7\n")
+
     def test_what_is_not_read_is_refused(self):
         model = self.dir / "model.inp"
         node = "*NODE\n1, 0., 0.\n2, 1., 0.\n3, 0., 1.\n"
@@ -199,6 +212,8 @@ class Meshes(unittest.TestCase):
                 (body.replace("2, 3\n", "2\n"), "element 1 is not complete"),
                 (body.replace("1., 0.", "1.x, 0."), ":3: '1.x' is no number"),
                 (body.replace("1., 0.", "nan, 0."), ":3: 'nan' is no number"),
+                (body.replace("3, 0.", "2, 0."), ":4: node 2 is given twice"),
+                (body + "1, 1, 3, 2\n", ":7: element 1 is given twice"),
                 (body + "*NGEN\n1, 2\n", ":7: *NGEN is not read"),
                 (body + "*SURFACE, NAME=S\nA, S4\n",
                  ":8: element 1 has no face S4"),

@@ -363,6 +363,9 @@ START_TEST(partitions_have_their_groups) {
   ck_assert_msg(mesh_same(plain, m, 0.0, &what), "%s", what);
   memory_free(plain);
   memory_free(m);
+  snprintf(text, sizeof text, "%.*s%s", (int)(from - text_41), text_41, to);
+  ck_assert_ptr_null(mesh_file_text(&f, "none.msh", text));
+  ck_assert_ptr_nonnull(strstr(f.messages, "the file has no $Entities"));
   mesh_file_close(&f);
 }
 END_TEST

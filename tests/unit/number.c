@@ -40,6 +40,7 @@ static const good_real wrong_reals[] = { /* value: 0, reason */
   {"E5", 0}, {"1E5.0", 0}, {"1E309", 0}, {"-1.8E308", 0}, {"1.+999", 0},
   {"1 2", 0}, {"1e5e5", 0}, {"<H>", 0}, {"1em", 0}, {"--1", 0},
   {"0.5-1", 0}, {"10-03", 0}, {"2+3", 0},
+  {"10\302\240", 0}, {"1. \302\240", 0}, {"\342\210\22210", 0},
 };
 static const char *const reasons[] = {
   "empty", "empty", "not a number", "not a number", "not a number",
@@ -53,6 +54,8 @@ static const char *const reasons[] = {
   "letters after the number", "not a number", "letters after the number",
   "not a number", "a sum, or an exponent without E",
   "a sum, or an exponent without E", "a sum, or an exponent without E",
+  "characters beyond ASCII after the number",
+  "characters beyond ASCII after the number", "characters beyond ASCII",
 };
 /* clang-format on */
 

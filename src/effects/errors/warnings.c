@@ -1,7 +1,8 @@
 /*
  * Warnings about a solution of the equations that may be meaningless: strains
- * that are not small, elements turned inside out by the displacements, a
- * contact that no node ever touched. Each is reported once a run.
+ * that are not small, elements turned inside out by the displacements, bodies
+ * that slip farther than the faces where they touch are long, a contact that no
+ * node ever touched. Each is reported once a run.
  */
 #include "effects/plan/effect.h"
 
@@ -9,6 +10,8 @@ typedef struct warnings {
   int strain, folded; /* 1: told */
   int *touched;       /* [n_contact] 1: a node has touched */
   double *least;      /* [n_contact] m, gap now, if none has */
+  double *edge; /* [n_contact] m, longest of the faces of a pair whose partners
+                   stay; 0: slip is told, or may be large */
 } warnings;
 
 static const double LARGE = 0.05; /* -, strain */
@@ -54,6 +57,38 @@ static void note_touches(run *r, warnings *reported) {
   }
 }
 
+static double longest_edge(const mesh *m, const mesh_group *g) {
+  double longest = 0.0;
+  for (int k = 0; k < g->n_item; ++k) {
+    const int *v = m->face + (size_t)m->dim * g->item_id[k];
+    for (int a = 0; a < m->dim; ++a) {
+      const double *x = mesh_node_x(m, v[a]),
+                   *y = mesh_node_x(m, v[(a + 1) % m->dim]);
+      double square = 0.0;
+      for (int c = 0; c < m->dim; ++c) square = hypot(square, x[c] - y[c]);
+      longest = fmax(longest, square);
+    }
+  }
+  return longest;
+}
+
+/* Contact node i, pressed after a slip of more than a face since time 0. */
+static void warn_slip(run *r, int i, double *edge) {
+  const int dim = r->msh->dim, id = r->surface->contact_id[i];
+  const contact *c = &r->m->contacts[id];
+  const double *u = r->now.uc + dim * i;
+  const double slip = dim == 3 ? hypot(u[1], u[2]) : fabs(u[1]);
+  if (!(edge[id] > 0.0) || slip <= edge[id] || !(r->now.rc[dim * i] < 0.0))
+    return;
+  message_add(r->m->log, P4038, &c->at,
+              "step %d, increment %d, time %g: %s %s: node %zu has slipped by "
+              "%.3g, faces are up to %.3g long: it is still pressed on those "
+              "of time 0",
+              run_step_id(r) + 1, r->at.increment_no, r->now.t, contact_card(c),
+              c->name, r->surface->node_no[i], slip, edge[id]);
+  edge[id] = 0.0;
+}
+
 /* The least gap left of a contact, m; HUGE_VAL: no node has one. */
 static double least_gap(const run *r, int contact_id) {
   double least = HUGE_VAL;
@@ -69,7 +104,9 @@ static status look(run *r, void *self) {
   note_touches(r, own);
   for (int i = 0; i < r->m->n.contact; ++i)
     if (!own->touched[i]) own->least[i] = least_gap(r, i);
-  if (r->solving.report.outcome > 0) warn_deformation(r, own);
+  if (r->solving.report.outcome <= 0) return OK;
+  warn_deformation(r, own);
+  for (int i = 0; i < r->nodes.n; ++i) warn_slip(r, i, own->edge);
   return OK;
 }
 
@@ -93,7 +130,16 @@ static void end(run *r, void *self) {
 static status warnings_new(run *r, void **self) {
   warnings *own = *self;
   PASS_NEW_ALL(OF(own->touched, r->m->n.contact),
-               OF(own->least, r->m->n.contact));
+               OF(own->least, r->m->n.contact), OF(own->edge, r->m->n.contact));
+  for (int i = 0; i < r->m->n.contact; ++i) {
+    const contact *c = &r->m->contacts[i];
+    for (int k = 0; k < 2 && c->is_pair && !c->update; ++k)
+      own->edge[i] = fmax(
+          own->edge[i],
+          longest_edge(
+              r->msh,
+              &r->msh->group[k == 0 ? c->pair.slave_id : c->pair.master_id]));
+  }
   return OK;
 }
 
@@ -102,7 +148,8 @@ static status keep(run *r, void *self, archive *a) {
   PASS(archive_ints(a, "told_strain", &own->strain, 1));
   PASS(archive_ints(a, "told_folded", &own->folded, 1));
   PASS(archive_ints(a, "touched", own->touched, r->m->n.contact));
-  return archive_reals(a, "least_gap", own->least, r->m->n.contact);
+  PASS(archive_reals(a, "least_gap", own->least, r->m->n.contact));
+  return archive_reals(a, "edge", own->edge, r->m->n.contact);
 }
 
 static int requires_warnings(const model *m, const reason *why) {

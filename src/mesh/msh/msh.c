@@ -651,6 +651,10 @@ static status read_sections(msh *m) {
   if (!m->has_nodes || !m->has_elements)
     return scan_fail(&m->s, "the file ends without $%s: it is cut short",
                      m->has_nodes ? "Elements" : "Nodes");
+  if (m->s.version > 4.0 && !m->has_entities)
+    return scan_fail(&m->s,
+                     "the file has no $Entities, which says what "
+                     "belongs to the groups: write version 2.2");
   return OK;
 }
 

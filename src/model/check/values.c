@@ -129,8 +129,22 @@ static void check_initial_law(const model *m, const mesh *msh,
   }
 }
 
+/* An earlier line gives the same another value. */
+static void check_repeated(const model *m, const initial *c) {
+  for (const initial *o = m->initial.lines; o < c; ++o)
+    if (o->type == c->type && o->component == c->component &&
+        strcmp(o->group, c->group) == 0 &&
+        (o->value.formula != c->value.formula ||
+         o->value.number != c->value.number))
+      message_add(m->log, P2040, &o->at,
+                  "line %d of *INITIAL CONDITIONS gives group %s another "
+                  "value, which counts",
+                  c->at.line_no, c->group);
+}
+
 void check_initials(model *m, const mesh *msh) {
   for (EACH(initial, c, m->initial.lines, m->n.initial)) {
+    check_repeated(m, c);
     int nodal = c->type == INITIAL_DISPLACEMENT;
     c->group_id = nodal ? check_group(m, msh, c->group, &c->at)
                         : check_group_of(m, msh, c->group, msh->dim, &c->at);

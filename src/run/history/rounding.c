@@ -138,8 +138,13 @@ typedef struct misfit {
   double *rc;       /* [m of the contact problem] contact forces, N */
 } misfit;
 
+/* That of the energies, not that of a step of an integrator. */
+static condensed *elastic_body(const run *r) {
+  return r->elastic.c != NULL ? r->elastic.c : r->c;
+}
+
 static status misfit_new(const run *r, misfit *x) {
-  x->c = r->elastic.c != NULL ? r->elastic.c : r->c;
+  x->c = elastic_body(r);
   x->n_stress = (size_t)r->m->ns * r->msh->n_elem;
   PASS_NEW(x->stress, x->n_stress);
   PASS_NEW_REALS(r->n_dof, &x->rest, &x->w);
@@ -166,13 +171,13 @@ static double forces_energy(const run *r, double lost) {
                soft = r->errors.carried ? condensed_condition(r->c) : 1.0;
   return soft *
          (r->msh->n_node * rounding * rounding + r->nodes.n * left * left) /
-         condensed_stiffest(r->c);
+         condensed_stiffest(elastic_body(r));
 }
 
 /* 1: contact forces and supports carry the loads straight, and strains are
- * nothing else. */
+ * nothing else, nor are they lost. */
 static int forces_hide_strains(const run *r) {
-  return r->now.energy.strain <= forces_energy(r, 0.0);
+  return r->now.energy.strain + r->errors.misfit <= forces_energy(r, 0.0);
 }
 
 /* 1: no force acts on the body. */
@@ -347,6 +352,7 @@ static status find(run *r) {
   double square = 0.0;
   OWNED_PARTS(misfit, x, misfit_new(r, &x));
   PASS(find_error(r, &x, &square));
+  r->errors.misfit = 0.5 * square;
   r->now.peak_stress =
       fmax(r->now.peak_stress, largest_entry(x.n_stress, x.stress));
   r->errors.noise = is_noise(r, square);
@@ -498,7 +504,7 @@ static int is_doubtful(const run *r) {
 status rounding_find(run *r) {
   r->errors.rounding = (rounding_loss){0};
   r->errors.strained = r->errors.carried = r->errors.noise = 0;
-  r->errors.lost = 0.0;
+  r->errors.lost = r->errors.misfit = 0.0;
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
   if (r->solving.report.outcome <= 0) return OK;
