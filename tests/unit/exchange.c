@@ -492,8 +492,7 @@ START_TEST(what_is_not_available_is_said) {
     if (k == 0) replace("/fclib_local/spacedim", 0, 1, 3);
     answer a = read_as(EXCHANGE_FCLIB);
     ck_assert_int_eq(a.st, ERR_DECK);
-    ck_assert_ptr_nonnull(strstr(a.text, k == 0 ? "2 unknowns, no multiple of"
-                                                : "one triangle of /fclib"));
+    ck_assert_ptr_nonnull(strstr(a.text, k == 0 ? "no multiple" : "triangle"));
   }
   leave();
 }
