@@ -527,7 +527,7 @@ static void pass_on(const solver_ops *ops, void *from, void *to) {
 
 /* Of a solution nothing persists but what is saved. */
 START_TEST(nothing_persists_that_is_not_saved) {
-  enum { NODES = 8, MOST = 3 * NODES };
+  enum { NODES = 24, MOST = 3 * NODES };
   const solver_ops *ops;
   const solver_control control = {.tol = 1e-10};
   for (int k = 0; k < 8; ++k)
@@ -545,7 +545,9 @@ START_TEST(nothing_persists_that_is_not_saved) {
       for (int a = 0; a < 2; ++a)
         ck_assert_int_eq(solver_set_up(ops, &c.cp, param, &work[a]), OK);
       memcpy(f, c.f, bytes);
-      for (size_t j = 0; j < m; ++j) c.f[j] = -0.7 * f[(j + 3) % m];
+      for (size_t j = 0; j < m; ++j) /* another problem, or a near one */
+        c.f[j] =
+            k < 4 ? -0.7 * f[(j + 3) % m] : f[j] * (1 + 0.2 * sin((double)j));
       ck_assert_int_eq(
           ops->solve(&c.cp, param, work[0], &control, c.u, c.r, &rep[0]), OK);
       if (ops->keep != NULL) pass_on(ops, work[0], work[1]);
