@@ -271,6 +271,29 @@ START_TEST(increments_too_long_are_refused) {
 }
 END_TEST
 
+/* What did not converge is told as that, whatever it would wear. */
+START_TEST(increments_without_equilibrium_are_not_refused_for_wear) {
+  static const char *const limit[] = {"", ", METHOD=NEWTON, MAX_ITER=1"};
+  for (int i = 0; i < 2; ++i) {
+    job j = job_begin("rubbed");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "rubbed.inp",
+              "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0, 0\n0, 1\n"
+              "*CONTACT, NAME=FOOT, GROUP=BOTTOM, OBSTACLE=FLOOR\n"
+              "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n0.3\n"
+              "*WEAR, CONTACT=FOOT, COEFFICIENT=1.\n*STEP\n*QUASISTATIC\n"
+              "1., 1.\n*BOUNDARY\nTOP, 1, 1, 0.01\nTOP, 2, 2, -0.001\n"
+              "*SOLVER%s\n*END STEP\n",
+              limit[i]);
+    ck_assert_int_eq(job_run(&j, ""), 2 - i);
+    ck_assert_int_eq(strstr(j.errors, "P2050") != NULL, 1 - i);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Half the increments wear differently: no error of the steps is known, and no
  * sum of errors. */
 START_TEST(target_of_an_unknown_error_is_refused) {
@@ -355,6 +378,8 @@ int main(void) {
   tcase_add_test(tests, second_obstacle_that_is_not_met_is_open);
   tcase_add_test(tests, volume_with_friction_and_restart);
   tcase_add_test(tests, increments_too_long_are_refused);
+  tcase_add_test(tests,
+                 increments_without_equilibrium_are_not_refused_for_wear);
   tcase_add_test(tests, target_of_an_unknown_error_is_refused);
   tcase_add_test(tests, nothing_without_the_card);
   tcase_add_test(tests, flat_of_a_cylinder);

@@ -66,16 +66,16 @@ static double slip_of(const run *r, int i, int a) {
 }
 
 /* The largest eigenvalue of the symmetric root A root from below, of the roots
- * of D in the rows of r->problem.cp. */
-static status overshoot(const run *r, const double *root, double *largest) {
+ * of D[m], the wear of a force in the rows of r->problem.cp, m/N. */
+static status overshoot(const run *r, const double *D, double *largest) {
   enum { PRODUCTS = 20 };
   const contact_problem *cp = &r->problem.cp;
   const int m = cp->m;
-  OWNED double *x = NULL, *y = NULL;
+  OWNED double *x = NULL, *y = NULL, *root = NULL;
   double norm = 0.0;
-  PASS_NEW_REALS(m, &x, &y);
+  PASS_NEW_REALS(m, &x, &y, &root);
   *largest = 0.0;
-  for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] = root[i]);
+  for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] = root[i] = sqrt(D[i]));
   for (int k = 0; k < PRODUCTS && norm > 0.0; ++k) {
     for (int i = 0; i < m; ++i) x[i] = root[i] * y[i] / norm;
     contact_apply(cp, x, y);
@@ -101,12 +101,11 @@ static status refuse(const run *r, const effect_card *c, double factor) {
   RAISE(ERR_DECK, "%s:%d: the increment is not stable", PLACE(c->at));
 }
 
-static status wear_off(run *r, void *self) {
+/* D[dim*n] of the increment; the card of a node that wears. */
+static const effect_card *find_wear(const run *r, double *D) {
   const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
   const effect_card *worn = NULL;
-  double *depth = self, factor = 0.0;
-  OWNED_NEW(double, root, r->nodes.n_c);
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a) {
       const int id = surface_normal_of(s, i, a), k = dim * i + a;
@@ -114,14 +113,27 @@ static status wear_off(run *r, void *self) {
           id < 0 ? NULL : model_effect_card(r->m, "WEAR", id);
       if (c == NULL || !(r->now.rc[k] < 0.0)) continue;
       if (!(area_of(s, i, a) > 0.0)) continue;
-      const double per_force =
-          c->value[0] * slip_of(r, i, a) / area_of(s, i, a);
-      depth[dim * s->node_id[i] + a] -= per_force * r->now.rc[k];
-      root[k] = sqrt(per_force);
+      D[k] = c->value[0] * slip_of(r, i, a) / area_of(s, i, a);
       worn = c;
     }
-  PASS(overshoot(r, run_rows(r, 0, root), &factor));
-  return factor > 2.0 ? refuse(r, worn, factor) : OK;
+  return worn;
+}
+
+/* An increment that did not converge may slip by anything: it is not the wear
+ * that is refused, and none is taken. */
+static status wear_off(run *r, void *self) {
+  const int dim = r->msh->dim;
+  double *depth = self, factor = 0.0;
+  OWNED_NEW(double, D, r->nodes.n_c);
+  const effect_card *worn = find_wear(r, D);
+  PASS(overshoot(r, run_rows(r, 0, D), &factor));
+  if (factor > 2.0)
+    return r->solving.report.outcome > 0 ? refuse(r, worn, factor) : OK;
+  for (int i = 0; i < r->nodes.n; ++i)
+    for (int a = 0; a < dim; ++a)
+      depth[dim * r->surface->node_id[i] + a] -=
+          D[dim * i + a] * r->now.rc[dim * i + a];
+  return OK;
 }
 
 static status keep(run *r, void *self, archive *a) {
