@@ -48,6 +48,7 @@ typedef struct pass {
   double *first_size;        /* [first->n_node] m */
   double unknowns;           /* of this pass */
   double dt, tol;            /* factors on increments and tolerances */
+  double shorter;            /* of the increments, in the next pass */
   struct {
     double mesh, last_mesh; /* of meshing; of the pass before */
     double start;           /* of the process when the pass began */
@@ -161,11 +162,13 @@ static double price_of_mesh(const pass *p, double factor) {
   return p->cpu.mesh + slope * (factor - 1.0) * p->unknowns;
 }
 
-/* Estimated CPU seconds of a run with that many times the unknowns. */
+/* Estimated CPU seconds of a run with that many times the unknowns, and the
+ * increments of the next pass. */
 static double price(const pass *p, double factor) {
   double power = p->in->m->dim == 2 ? GROWTH_2D : GROWTH_3D;
   double rest = p->rows[p->n - 1].cpu - p->cpu.mesh - p->in->library_cpu;
-  return price_of_mesh(p, factor) + fmax(rest, 0.0) * pow(factor, power);
+  return price_of_mesh(p, factor) +
+         fmax(rest, 0.0) * pow(factor, power) / p->shorter;
 }
 
 /* A limit that a mesh of that many times the unknowns would exceed, or "". */
@@ -239,10 +242,10 @@ static void choose(pass *p, char *text, size_t size) {
   }
   if (has_norm(p) && p->time > TIME_SHARE * goal &&
       p->dt > SHORTEST * SHORTEST) {
-    double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
-    p->dt *= factor;
+    p->shorter = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
+    p->dt *= p->shorter;
     used += snprintf(text + used, size - used, "%sdt * %.2g",
-                     used > 0 ? ", " : "", factor);
+                     used > 0 ? ", " : "", p->shorter);
   }
   if (tol < 1.0) {
     p->tol *= tol;
@@ -342,6 +345,7 @@ static status begin(pass *p, const job_input *in) {
   RELEASE(p->eta, p->size);
   p->eta = p->size = NULL;
   p->energy = -1.0;
+  p->shorter = 1.0;
   p->mesh = p->time = p->solver = 0.0;
   /* The contact of the last pass is the start of this one. */
   memory_free(p->before);
