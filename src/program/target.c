@@ -47,7 +47,10 @@ typedef struct pass {
                                 lengths are the largest of all passes */
   double *first_size;        /* [first->n_node] m */
   double unknowns;           /* of this pass */
-  double dt, tol;            /* factors on increments and tolerances */
+  struct {
+    double dt, tol; /* on increments and tolerances */
+    double shorter; /* on the increments, in the next pass */
+  } factor;         /* -, of those of the deck; of this pass */
   struct {
     double mesh, last_mesh; /* of meshing; of the pass before */
     double start;           /* of the process when the pass began */
@@ -161,11 +164,13 @@ static double price_of_mesh(const pass *p, double factor) {
   return p->cpu.mesh + slope * (factor - 1.0) * p->unknowns;
 }
 
-/* Estimated CPU seconds of a run with that many times the unknowns. */
+/* Estimated CPU seconds of a run with that many times the unknowns, and the
+ * increments of the next pass. */
 static double price(const pass *p, double factor) {
   double power = p->in->m->dim == 2 ? GROWTH_2D : GROWTH_3D;
   double rest = p->rows[p->n - 1].cpu - p->cpu.mesh - p->in->library_cpu;
-  return price_of_mesh(p, factor) + fmax(rest, 0.0) * pow(factor, power);
+  return price_of_mesh(p, factor) +
+         fmax(rest, 0.0) * pow(factor, power) / p->factor.shorter;
 }
 
 /* A limit that a mesh of that many times the unknowns would exceed, or "". */
@@ -225,7 +230,7 @@ static double change_of_tol(const pass *p) {
   double over = aims_solver(p->goals, p->in->m, SOLVER_SHARE);
   if (has_norm(p))
     over = fmax(over, p->solver / (SOLVER_SHARE * p->target->percent / 100.0));
-  return over > 1.0 && p->tol > LEAST_TOL ? AIM / over : 1.0;
+  return over > 1.0 && p->factor.tol > LEAST_TOL ? AIM / over : 1.0;
 }
 
 /* Changes of the next pass; "" if none is possible. */
@@ -238,14 +243,14 @@ static void choose(pass *p, char *text, size_t size) {
     used += aims_name(p->goals, p->in->m, text + used, size - used);
   }
   if (has_norm(p) && p->time > TIME_SHARE * goal &&
-      p->dt > SHORTEST * SHORTEST) {
-    double factor = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
-    p->dt *= factor;
+      p->factor.dt > SHORTEST * SHORTEST) {
+    p->factor.shorter = fmax(AIM * TIME_SHARE * goal / p->time, SHORTEST);
+    p->factor.dt *= p->factor.shorter;
     used += snprintf(text + used, size - used, "%sdt * %.2g",
-                     used > 0 ? ", " : "", factor);
+                     used > 0 ? ", " : "", p->factor.shorter);
   }
   if (tol < 1.0) {
-    p->tol *= tol;
+    p->factor.tol *= tol;
     snprintf(text + used, size - used, "%stol * %.2g", used > 0 ? ", " : "",
              tol);
   }
@@ -342,6 +347,7 @@ static status begin(pass *p, const job_input *in) {
   RELEASE(p->eta, p->size);
   p->eta = p->size = NULL;
   p->energy = -1.0;
+  p->factor.shorter = 1.0;
   p->mesh = p->time = p->solver = 0.0;
   /* The contact of the last pass is the start of this one. */
   memory_free(p->before);
@@ -353,10 +359,10 @@ static status begin(pass *p, const job_input *in) {
   PASS(aims_begin(p->goals, in->msh));
   /* Increments and tolerances of the deck times the factors of the pass. */
   for (int i = 0; i < in->m->n.step; ++i) {
-    in->m->steps[i].dt *= p->dt;
-    in->m->steps[i].dt_min *= p->dt;
+    in->m->steps[i].dt *= p->factor.dt;
+    in->m->steps[i].dt_min *= p->factor.dt;
     in->m->steps[i].solver.tol =
-        fmax(in->m->steps[i].solver.tol * p->tol, LEAST_TOL);
+        fmax(in->m->steps[i].solver.tol * p->factor.tol, LEAST_TOL);
   }
   return OK;
 }
@@ -466,7 +472,7 @@ static status keep_first(pass *p) {
 status target_reach(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   const accuracy_target target = in->m->accuracy.target;
-  pass p = {.c = c, .target = &target, .in = in, .dt = 1.0, .tol = 1.0};
+  pass p = {.c = c, .target = &target, .in = in, .factor = {1.0, 1.0, 1.0}};
   const job_watch watch = {
       {.ctx = &p, .increment = see_increment, .ready = see_ready},
       see_finished};

@@ -186,7 +186,7 @@ START_TEST(limits_are_those_of_the_mesh_in_the_end) {
   char text[80];
   double within;
   job j;
-  snprintf(text, sizeof text, card, 10.0, 40.0);
+  snprintf(text, sizeof text, card, 13.0, 20.0);
   int code = job_run_with(&j, deck, text, 0, "-D N=10");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   job_end(&j);
@@ -415,12 +415,12 @@ START_TEST(order_at_a_sharp_edge_is_that_of_three_meshes) {
 }
 END_TEST
 
-/* The error of the increments of *VISCO counts too. */
-START_TEST(flow_has_its_share_of_the_target) {
+/* The block that creeps in increments of 1. */
+static job creep(int n, const char *accuracy) {
   job j = job_begin("creep");
   job_copy(&j, "input/creep_block/creep_block.geo");
   job_write(&j, "creep.inp",
-            "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n"
+            "*PARAMETER\nN = %d\n*MESH, FILE=creep_block.geo\n"
             "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n"
             "*INELASTIC, LAW=MAXWELL\n4.\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -429,11 +429,37 @@ START_TEST(flow_has_its_share_of_the_target) {
             "*FRICTION, CONTACT=C, LAW=COULOMB\n1.0\n*STEP\n"
             "*VISCO, INTEGRATOR=EULER\n1., 4.\n*BOUNDARY\nSYMMETRY, 1\n"
             "*DSLOAD\nTOP, P, 50.\nLEFT, P, 150.\n"
-            "*ACCURACY, TARGET=50\n*END STEP\n");
+            "*ACCURACY, %s\n*END STEP\n",
+            n, accuracy);
+  return j;
+}
+
+/* The error of the increments of *VISCO counts too. */
+START_TEST(flow_has_its_share_of_the_target) {
+  job j = creep(8, "TARGET=50");
   ck_assert_int_eq(job_run(&j, ""), 0);
   char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "error of the steps: about "));
   free(lst);
+  job_end(&j);
+}
+END_TEST
+
+/* A sixteenth of the increments cost sixteen times the seconds, but for the
+ * mesh of the pass. */
+START_TEST(seconds_of_shorter_increments_count) {
+  job j = creep(32, "TARGET=4, MAX_CPU=0.001");
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  const char *at = strstr(j.errors, "done after about ");
+  ck_assert_msg(at != NULL, "%s", j.errors);
+  char *json = job_file(&j, "json"), *pass = strstr(json, "\"passes\"");
+  const double end = atof(at + strlen("done after about "));
+  const double cpu = atof(strstr(pass, "\"cpu\": ") + 7);
+  const char *meshed = strstr(json, "\"stage\": \"mesh\"");
+  const double rest = cpu - atof(strstr(meshed, "\"cpu\": ") + 7);
+  ck_assert_msg(end > cpu + 8 * rest, "%g s after %g s with %g", end, cpu,
+                rest);
+  free(json);
   job_end(&j);
 }
 END_TEST
@@ -580,7 +606,7 @@ UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
           values_at_nodes_keep_the_mesh, forecast_is_near_the_truth,
           increments_are_made_shorter, least_increment_is_made_shorter_too,
           order_at_a_sharp_edge_is_that_of_three_meshes,
-          flow_has_its_share_of_the_target,
+          flow_has_its_share_of_the_target, seconds_of_shorter_increments_count,
           exact_solution_costs_one_pass_and_no_forecast,
           lines_of_the_passes_must_leave,
           exact_solution_needs_no_shorter_increments,

@@ -180,7 +180,8 @@ static const scene scenes[] = {
   {"crack", PULLED, AT("0.5"), {4}, "N", {"K1", "K2"}, PULLED_EXACT},
   {"crack", PULLED, AT("0.3"), {4}, "N", {"K1", "K2"}, PULLED_EXACT},
   {"crack slips", SLIPS, "", {6, 12, 25, 50}, "N", {"K2"}, {0.63456099}},
-  {"crack slips", SLIPS, AT("1"), {6}, "N", {"K2"}, {0.63456099}}};
+  {"crack slips", SLIPS, AT("1"), {6}, "N", {"K2"}, {0.63456099}},
+  {"crack slips", SLIPS, AT("0.5"), {4, 6, 8, 12}, "N", {"K2"}, {0.63456099}}};
 /* clang-format on */
 
 /* Rows of a kind. */
