@@ -81,12 +81,17 @@ static status attempt_adapted(run *r) {
     ++p->attempt;
     goto done;
   }
+  if (r->now.t < t) { /* the first half did not converge */
+    TRY(visco_advance(r, t));
+    r->course.missed = r->solving.report.outcome > 0;
+  }
   if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
+  if (r->solving.report.outcome == STOPPED_STAGNATION) tried *= 2.0;
   p->attempt = 1;
   ++p->increment_no;
   TRY(loop_accept(r, attempt, p->increment_no, t == end, cpu));
-  p->dt = fmax(least_length(r),
-               settled ? next_length(s, tried, planned, error) : tried);
+  p->dt = fmax(least_length(r), settled ? next_length(s, tried, planned, error)
+                                        : fmin(tried, s->dt_max));
 done:
   r->course.missed = 0;
   return st;

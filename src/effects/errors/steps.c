@@ -483,7 +483,9 @@ static status attempt_balanced(run *r, paths *own) {
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);
   if (flows) dt = SHORTER * tried;
-  if ((part > allowed || flows) && shorter) {
+  const int stuck = r->solving.report.outcome == STOPPED_STAGNATION;
+  if (stuck) dt = fmin(2.0 * tried, s->dt_max);
+  if ((part > allowed || flows) && shorter && !stuck) {
     PASS(refuse(r, tried, dt, "error of the steps above its share"));
     return OK;
   }
