@@ -52,6 +52,17 @@ static status forget_rounding(run *r, double *error) {
   return OK;
 }
 
+/* The increment to t is accepted, whatever its first half, tried before it, has
+ * come to. */
+static status finish_attempt(run *r, double t) {
+  if (r->now.t < t) {
+    PASS(visco_advance(r, t));
+    r->course.missed = r->solving.report.outcome > 0;
+  }
+  return outcome_is_fatal(r->solving.report.outcome) ? loop_no_equilibrium(r)
+                                                     : OK;
+}
+
 /* One attempt at an increment of a step with a tolerance. */
 static status attempt_adapted(run *r) {
   status st = OK;
@@ -81,11 +92,7 @@ static status attempt_adapted(run *r) {
     ++p->attempt;
     goto done;
   }
-  if (r->now.t < t) { /* the first half did not converge */
-    TRY(visco_advance(r, t));
-    r->course.missed = r->solving.report.outcome > 0;
-  }
-  if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
+  TRY(finish_attempt(r, t));
   if (r->solving.report.outcome == STOPPED_STAGNATION) tried *= 2.0;
   p->attempt = 1;
   ++p->increment_no;

@@ -453,6 +453,17 @@ static double strain_part(const run *r, const paths *own) {
   return share_of(own->path->error.strain - own->now.strain, left);
 }
 
+/* 1: no shorter increment would find an equilibrium (loop_cut_helps). */
+static int is_stuck(const run *r) {
+  return r->solving.report.outcome == STOPPED_STAGNATION;
+}
+
+/* 1: strains without stress outgrow their share. */
+static int flows_on(const run *r, const paths *own, int hides) {
+  return hides && !is_stuck(r) &&
+         strain_part(r, own) > r->step->accuracy.time_share;
+}
+
 static status attempt_balanced(run *r, paths *own) {
   const step *s = r->step;
   progress *p = &r->at;
@@ -478,14 +489,12 @@ static status attempt_balanced(run *r, paths *own) {
   if (!r->errors.evaluated) PASS(estimate_evaluate(r));
   PASS(measure(r, own, &part));
   PASS(rounding_hides_stresses(r, &hides));
-  part = hides ? 0.0 : part - before;
-  const int flows = hides && strain_part(r, own) > s->accuracy.time_share;
+  part = hides || is_stuck(r) ? 0.0 : part - before;
+  const int flows = flows_on(r, own, hides);
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);
   if (flows) dt = SHORTER * tried;
-  const int stuck = r->solving.report.outcome == STOPPED_STAGNATION;
-  if (stuck) dt = fmin(2.0 * tried, s->dt_max);
-  if ((part > allowed || flows) && shorter && !stuck) {
+  if ((part > allowed || flows) && shorter) {
     PASS(refuse(r, tried, dt, "error of the steps above its share"));
     return OK;
   }
