@@ -536,7 +536,7 @@ START_TEST(step_without_equilibrium_ends_soon) {
             ways[_i][0], ways[_i][1]);
   ck_assert_int_eq(job_run(&j, ""), 1);
   dat e = job_table(&j, "ENERGY", -1);
-  ck_assert_double_le(dat_at(&e, 0, "increment"), 100);
+  ck_assert_double_le(dat_at(&e, 0, "increment"), 45);
   ck_assert_double_eq(dat_at(&e, 0, "time"), 2);
   dat_free(&e);
   job_end(&j);
