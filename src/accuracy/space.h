@@ -72,5 +72,7 @@ double space_product(const space_recovery *s, int elem_id, const space_field *a,
 void space_sizes(const mesh *m, const double *eta, double target, double *size);
 /* The lengths size[n_node] that it has. */
 void space_lengths(const mesh *m, double *size);
-/* How many times the elements a mesh of these sizes has, about, -. */
+/* How many times the elements a mesh of these sizes has, about, -; that with
+ * the fewest for which |u - u_h| is "target", which passes come to. */
 double space_growth(const mesh *m, const double *size);
+double space_growth_to(const mesh *m, const double *eta, double target);

@@ -64,7 +64,8 @@ static inline void add_scaled(int dim, double factor, const double *v,
 /* Largest |v_i| of v[n]; 0 for n = 0. NaN is passed over. */
 static inline double largest_entry(size_t n, const double *v) {
   double most = 0.0;
-  for (size_t i = 0; i < n; ++i) most = fmax(most, fabs(v[i]));
+  for (size_t i = 0; i < n; ++i)
+    if (fabs(v[i]) > most) most = fabs(v[i]);
   return most;
 }
 

@@ -292,6 +292,32 @@ void domain_internal_force(const domain *d, const double *sigma, double *F) {
   }
 }
 
+/* 1: a degree of freedom of the element is in held[dim*n_node]. */
+static int has_held(const mesh *m, int elem_id, const unsigned char *held) {
+  const int *v = m->elem + (m->dim + 1) * (size_t)elem_id;
+  for (int a = 0; a <= m->dim; ++a)
+    for (int c = 0; c < m->dim; ++c)
+      if (held[m->dim * (size_t)v[a] + c]) return 1;
+  return 0;
+}
+
+void domain_held_force(const domain *d, const double *u,
+                       const unsigned char *held, double *F) {
+  int next = 0;
+  CLEAR(F, (size_t)d->mesh->dim * d->mesh->n_node);
+  for (int k = 0; k < d->mesh->n_elem; ++k) {
+    const double *e0 = eigen_at(d, k, &next);
+    element_shape s;
+    double e[6], t[6];
+    if (!has_held(d->mesh, k, held)) continue;
+    shape_at(d, k, &s);
+    averaged_strain(d, k, u, &s, e);
+    take_eigen(d, e0, e);
+    stress_at(d, k, e, t);
+    add_force(d, k, &s, t, 1, F);
+  }
+}
+
 void eigen_force(const domain *d, const eigenstrain *x, double *F) {
   double t[6];
   cluster_begin(d->cluster, CLUSTER_STRESS);
@@ -388,10 +414,10 @@ static double volume_ratio(const double *G) {
          G[2] * (G[3] * G[7] - e * G[6]);
 }
 
-/* Displacement gradient of an element, that of the hoop in G[8]. */
-static void gradient_at(const domain *d, int elem_id, const double *u,
-                        double G[9]) {
-  const int dim = d->mesh->dim, *v = d->mesh->elem + (dim + 1) * elem_id;
+/* Displacement gradient G[3*3] of an element, that of the hoop in G[8]. */
+static inline void gradient_at(const domain *d, int dim, int elem_id,
+                               const double *u, double *G) {
+  const int *v = d->mesh->elem + (dim + 1) * elem_id;
   element_shape s;
   shape_at(d, elem_id, &s);
   CLEAR(G, 9);
@@ -404,22 +430,28 @@ static void gradient_at(const domain *d, int elem_id, const double *u,
   }
 }
 
+/* Sum of the squares of the strains of a gradient. */
+static double strain_square(const double *G) {
+  const double yz = G[5] + G[7], zx = G[2] + G[6], xy = G[1] + G[3];
+  return G[0] * G[0] + G[4] * G[4] + G[8] * G[8] +
+         0.5 * (yz * yz + zx * zx + xy * xy);
+}
+
 void domain_deformation(const domain *d, const double *u, deformation *out) {
   double largest = 0;
   *out = (deformation){.volume = 1};
   for (int e = 0; e < d->mesh->n_elem; ++e) {
-    double G[9], square = 0;
-    gradient_at(d, e, u, G);
-    for (int i = 0; i < 3; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const double strain = 0.5 * (G[3 * i + c] + G[3 * c + i]);
-        square += strain * strain;
-      }
+    double G[9];
+    /* a constant is the length of loops without a branch */
+    if (d->mesh->dim == 2)
+      gradient_at(d, 2, e, u, G);
+    else
+      gradient_at(d, 3, e, u, G);
+    const double square = strain_square(G), volume = volume_ratio(G);
     if (square > largest) {
       largest = square;
       out->strain_elem = e;
     }
-    const double volume = volume_ratio(G);
     if (volume < out->volume) {
       out->volume = volume;
       out->volume_elem = e;

@@ -195,6 +195,10 @@ int condensed_kernel(const condensed *c, const double **kernel);
 void domain_stress(const domain *d, const double *u, double *e, double *sigma);
 /* Internal forces F = sum B' sigma w, global components [dim*n_node]. */
 void domain_internal_force(const domain *d, const double *sigma, double *F);
+/* The same of the stresses of u, right where held[dim*n_node] is 1: only the
+ * elements there are looked at. Not of averaged elements (cluster). */
+void domain_held_force(const domain *d, const double *u,
+                       const unsigned char *held, double *F);
 /* The largest strain, the root of e:e, and the least volume over that of the
  * mesh, not positive where an element is turned inside out. */
 typedef struct deformation {

@@ -18,9 +18,11 @@ static const double AIM = 0.93;  /* -, of the target */
 static const double GAIN = 0.95; /* -, of the error, or a mesh had no effect */
 static const double BLIND = 0.5; /* -, of the error, without an estimate */
 static const double FAR = 0.1;   /* -, of the error, or it is near */
-static const double ROUNDING = 1e-9; /* -, of the error */
-enum { GROWN = 2 };                  /* -, of the nodes: a mesh is finer */
-enum { BLIND_PASSES = 3 };           /* without one at all, at most */
+static const double NEAR = 0.5;  /* -, the same: nothing becomes coarser */
+static const double TIP = 3.0, FEW = 0.1; /* -, see least_length */
+static const double ROUNDING = 1e-9;      /* -, of the error */
+enum { GROWN = 3 };                       /* -, of the nodes: a mesh is finer */
+enum { BLIND_PASSES = 3 };                /* without one at all, at most */
 static const double ENDS = 2.0; /* -, of an estimate that is not reliable for
                                    the ends of contact */
 
@@ -149,6 +151,17 @@ void aims_check(const aims *a, const model *m, char *why, size_t size) {
   }
 }
 
+/* At the tip of a crack an element adds to a factor about a tenth of its length
+ * over the radius of the domain, of all factors. Where the lips are closed
+ * elements much smaller than the target needs are worse: the stress grows
+ * towards the tip, its error with it, until nodes there open and close by
+ * turns. */
+static double least_length(const pass_goal *g) {
+  const goal_result *r = &g->found;
+  if (!(r->radius > 0.0) || !(r->size > 0.0) || !is_estimate(g)) return 0.0;
+  return r->radius * fmin(TIP * g->allowed / r->size, FEW);
+}
+
 /* Part of the error that the next pass aims at, <= 1: there the estimate is
  * expected to be reliable. From where the ends of contact are not resolved the
  * error falls faster than by its order: far from the target a pass between. */
@@ -216,11 +229,26 @@ status aims_share(const aims *a, const mesh *msh, int i, double *share) {
   return OK;
 }
 
+/* Where a mesh of the passes is near the target nothing becomes coarser: errors
+ * scatter from mesh to mesh by more than is missing. length[n_node]: of the
+ * mesh. */
+static void limit_sizes(const aims *a, const pass_goal *g, int n_node,
+                        const double *length, double *size) {
+  const int near = a->n_pass > 1 && part_of(g) > NEAR;
+  const double least = least_length(g);
+  for (int k = 0; k < n_node; ++k) {
+    if (near) size[k] = fmin(size[k], length[k]);
+    size[k] = fmax(size[k], least);
+  }
+}
+
 status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
                   double *size) {
-  OWNED double *own = NULL, *more = NULL;
-  PASS_NEW_ALL(OF(own, msh->n_elem), OF(more, msh->n_node));
-  /* What gained nothing was too little: errors scatter from mesh to mesh. */
+  OWNED double *own = NULL, *more = NULL, *length = NULL;
+  PASS_NEW_ALL(OF(own, msh->n_elem), OF(more, msh->n_node),
+               OF(length, msh->n_node));
+  space_lengths(msh, length);
+  /* What gained nothing was too little. */
   const int tries = isfinite(a->least) ? a->in_vain : 0;
   for (int i = 0; i < a->n; ++i) {
     const double part = ldexp(part_of(last_row(a, i)), -tries);
@@ -228,6 +256,7 @@ status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
     const int any = find_own(a, msh, i, own);
     if (!any && eta == NULL) continue;
     find_sizes(msh, any ? own : eta, part, more);
+    limit_sizes(a, last_row(a, i), msh->n_node, length, more);
     for (int k = 0; k < msh->n_node; ++k) size[k] = fmin(size[k], more[k]);
   }
   return OK;

@@ -14,6 +14,8 @@
 
 #include "base/interrupt.h"
 
+#include <cblas.h>
+
 /* Shares of the target, -: errors allowed to the mesh, the increments and the
  * solver; the next pass aims at AIM of that. */
 static const double MESH_SHARE = 0.85, TIME_SHARE = 0.1, SOLVER_SHARE = 0.05;
@@ -125,7 +127,8 @@ static void halve(const mesh *msh, double *size) {
   for (int i = 0; i < msh->n_node; ++i) size[i] *= 0.5;
 }
 
-/* Sizes of the next mesh, and the factor by which the unknowns grow. */
+/* Sizes of the next mesh, and the factor by which the unknowns grow until the
+ * error of the mesh is the one wanted. */
 static status find_sizes(pass *p, double *factor) {
   const mesh *msh = p->in->msh;
   const double wanted = target_next(p->mesh, p->coarse, mesh_goal(p));
@@ -136,7 +139,8 @@ static status find_sizes(pass *p, double *factor) {
     space_sizes(msh, p->eta, wanted, p->size);
   if (has_norm(p) && p->coarse == BLIND) halve(msh, p->size);
   if (norm_wants_mesh(p))
-    *factor = pow(p->coarse == BLIND ? 2.0 : p->mesh / wanted, p->in->m->dim);
+    *factor = p->coarse == BLIND ? space_growth(msh, p->size)
+                                 : space_growth_to(msh, p->eta, wanted);
   if (!aims_count(p->goals)) return OK;
   PASS(aims_sizes(p->goals, p->in->m, msh, p->energy >= 0.0 ? p->eta : NULL,
                   p->size));
@@ -164,32 +168,56 @@ static double price(const pass *p, double factor) {
   return price_of_mesh(p, factor) + fmax(rest, 0.0) * pow(factor, power);
 }
 
-/* A limit that the next pass would exceed. */
+/* A limit that a mesh of that many times the unknowns would exceed, or "". */
+static void limit_of(const pass *p, double factor, char *text, size_t size) {
+  const accuracy_target *t = p->target;
+  const double cpu = timer_cpu() + price(p, factor);
+  const double bytes = (double)memory_peak() * factor;
+  text[0] = '\0';
+  if (t->max_cpu > 0.0 && cpu > t->max_cpu)
+    snprintf(text, size,
+             "its mesh would be done after about %.3g s of CPU, MAX_CPU is %g",
+             cpu, t->max_cpu);
+  else if (bytes - (double)memory_in_use() > memory_left())
+    snprintf(text, size,
+             "its mesh would need about %.3g MB more than %s leaves",
+             (bytes - (double)memory_in_use() - memory_left()) / 1e6,
+             memory_limit_of());
+  else if (t->max_memory > 0.0 && bytes > t->max_memory * 1048576.0)
+    snprintf(text, size, "its mesh would need about %.3g MB, MAX_MEMORY is %g",
+             bytes / 1048576.0, t->max_memory);
+}
+
+/* The error, %, that a mesh within the limits may reach, where one of "factor"
+ * times the unknowns reaches the target; HUGE_VAL: none. */
+static double within_limits(const pass *p, double factor) {
+  enum { HALVINGS = 30 };
+  double low = 1.0, high = factor;
+  char text[200];
+  limit_of(p, low, text, sizeof text);
+  if (text[0] != '\0') return HUGE_VAL;
+  for (int k = 0; k < HALVINGS; ++k) {
+    const double middle = sqrt(low * high);
+    limit_of(p, middle, text, sizeof text);
+    *(text[0] == '\0' ? &low : &high) = middle;
+  }
+  return p->target->percent * pow(factor / low, 1.0 / p->in->m->dim);
+}
+
+/* Limits that a mesh of that many times the unknowns would exceed. */
 static void check_limits(pass *p, double factor) {
   char text[200];
   const accuracy_target *t = p->target;
-  double cpu = timer_cpu() + price(p, factor);
-  double bytes = (double)memory_peak() * factor;
-  int most = t->max_passes > 0 ? t->max_passes : MAX_PASSES_DEFAULT;
-  if (p->n >= most) {
-    miss(p, "MAX_PASSES is reached");
-  } else if (t->max_cpu > 0.0 && cpu > t->max_cpu) {
-    snprintf(text, sizeof text,
-             "another pass would end after about %.3g s of CPU, MAX_CPU is %g",
-             cpu, t->max_cpu);
-    miss(p, text);
-  } else if (bytes - (double)memory_in_use() > memory_left()) {
-    snprintf(text, sizeof text,
-             "another pass would need about %.3g MB more than %s leaves",
-             (bytes - (double)memory_in_use() - memory_left()) / 1e6,
-             memory_limit_of());
-    miss(p, text);
-  } else if (t->max_memory > 0.0 && bytes > t->max_memory * 1048576.0) {
-    snprintf(text, sizeof text,
-             "another pass would need about %.3g MB, MAX_MEMORY is %g",
-             bytes / 1048576.0, t->max_memory);
-    miss(p, text);
-  }
+  const int most = t->max_passes > 0 ? t->max_passes : MAX_PASSES_DEFAULT;
+  limit_of(p, factor, text, sizeof text);
+  if (p->n >= most) miss(p, "MAX_PASSES is reached");
+  if (p->done || text[0] == '\0') return;
+  miss(p, text);
+  const double error = within_limits(p, factor);
+  if (norm_wants_mesh(p) && !aims_count(p->goals) &&
+      error < LEAST_GAIN * 100.0 * total(p))
+    snprintf(p->why, sizeof p->why, "%s; about %.2g %% is within that", text,
+             error);
 }
 
 /* Factor on the tolerance of the solver, 1: it stays. */
@@ -333,20 +361,34 @@ static status begin(pass *p, const job_input *in) {
   return OK;
 }
 
+static void drop_next(pass *p) {
+  if (p->next.msh == p->in->msh) p->next.msh = NULL;
+  job_input_free(&p->next);
+}
+
 /* Its messages are those of the first pass, shown only if something is wrong.
- */
+ * gmsh may fail with some sizes and not with others near them. */
 static status read_next(pass *p) {
+  enum { TRIES = 3 };
   job_mesh other = {0};
+  status st = ERR_MESH;
   p->cpu.start = timer_cpu();
   p->cpu.meshed = timer_cost(STAGE_MESH).cpu;
   p->cpu.last_mesh = p->cpu.mesh;
-  PASS(message_log_new(&p->next.log));
   if (refines(&p->rows[p->n - 1]))
     other =
         (job_mesh){.sizes = {{p->in->msh, p->size}, {p->first, p->first_size}}};
   else
     other.same = p->in->msh;
-  const status st = job_read(p->c, &other, p->next.log, &p->next);
+  for (int k = 0; k < TRIES && st == ERR_MESH; ++k) {
+    if (k > 0) {
+      drop_next(p);
+      status_clear();
+      cblas_dscal(p->in->msh->n_node, AIM, p->size, 1);
+    }
+    PASS(message_log_new(&p->next.log));
+    st = job_read(p->c, &other, p->next.log, &p->next);
+  }
   if (st != OK) message_print(p->next.log, stderr);
   PASS(st);
   return begin(p, &p->next);
@@ -367,11 +409,6 @@ static status prepare_next(pass *p) {
   if (st == OK) st = stop_asked(p); /* meshes take long */
   if (st != OK) miss(p, status_message());
   return st;
-}
-
-static void drop_next(pass *p) {
-  if (p->next.msh == p->in->msh) p->next.msh = NULL;
-  job_input_free(&p->next);
 }
 
 /* The input of the next pass in the place of the last. */

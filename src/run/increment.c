@@ -257,7 +257,7 @@ static status pose(run *r, const double *F) {
 double increment_free_load(const run *r, const double *F) {
   double most = 0.0;
   for (size_t i = 0; i < r->n_dof; ++i)
-    if (!r->body.fixed[i]) most = fmax(most, fabs(F[i]));
+    if (!r->body.fixed[i] && fabs(F[i]) > most) most = fabs(F[i]);
   return most;
 }
 

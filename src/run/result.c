@@ -15,10 +15,14 @@ int run_finds_mesh_error(const run *r) {
  * known: r->result.stress is that of r->now already. */
 static void find_reactions(run *r, int known) {
   double *reaction = r->now.reaction;
+  const domain *d = &r->body.d;
+  const int everywhere = d->cluster != NULL || r->body.ties.n > 0;
   TIMED(STAGE_REACTION);
-  if (!known)
-    domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
-  domain_internal_force(&r->body.d, r->result.stress, reaction);
+  if (!known && everywhere) domain_stress(d, r->now.u, NULL, r->result.stress);
+  if (known || everywhere)
+    domain_internal_force(d, r->result.stress, reaction);
+  else
+    domain_held_force(d, r->now.u, r->body.fixed, reaction);
   for (size_t i = 0; i < r->n_dof; ++i) reaction[i] -= r->now.F[i];
   if (r->nodes.n > 0) surface_spread(r->surface, -1.0, r->now.rc, reaction);
   ties_share(&r->body.ties, reaction);
@@ -304,14 +308,14 @@ status result_evaluate(run *r, int due) {
   unsigned effects = r->m->effects;
   int shown = (effects & EFFECT_STRESS) && due;
   int needed = run_finds_mesh_error(r) || r->m->accuracy.ref.has_stress;
-  if (shown || (needed && !(effects & EFFECT_REACTION))) {
+  if (shown || needed) {
     /* Stresses that an output or an error estimate needs. */
     stage s = run_finds_mesh_error(r) ? STAGE_MESH_ERROR : STAGE_REFERENCE;
     TIMED(shown ? STAGE_STRESS : s);
     domain_stress(&r->body.d, r->now.u, r->result.strain, r->result.stress);
   }
   if (r->nodes.n > 0) find_contact(r);
-  if (effects & EFFECT_REACTION) find_reactions(r, shown);
+  if (effects & EFFECT_REACTION) find_reactions(r, shown || needed);
   if (r->m->n.contact > 0) find_totals(r);
   find_torques(r);
   if (r->course.relaxing)

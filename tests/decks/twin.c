@@ -4,6 +4,7 @@
 #include "decks/twin.h"
 
 #include "base/base.h"
+#include "support/same_json.h"
 #include "support/traced.h"
 
 #include <check.h>
@@ -230,20 +231,36 @@ static twin_answer refused(const random_deck *d, twin_kind kind, int code,
   return may && !false_proof ? TWIN_REFUSED : TWIN_LOST;
 }
 
-twin_answer twin_check(const random_deck *d, twin_kind kind, const tables *own,
-                       char what[400]) {
+/* Of the largest; 0: bit for bit. */
+static double tolerance_of(const random_deck *d, twin_kind kind) {
+  if (kind == POWERS && is_exact(d)) return 0;
+  return kind == METHODS ? 1e-4 : kind == THREADS_ ? 1e-7 : 1e-6;
+}
+
+/* 1: of errors and goals too. */
+static int tells_same(twin_kind kind, double tol, const job *base, const job *j,
+                      char what[400]) {
+  if (tol == 0) return same_json_bits(base, j, what, 400);
+  return (kind != NUMBERS && kind != THREADS_) ||
+         same_json_errors(base, j, 1e-5, 1e-8, what, 400);
+}
+
+twin_answer twin_check(const random_deck *d, twin_kind kind, const job *base,
+                       const tables *own, char what[400]) {
   deck_text how = {.units = {1, 1, 1}};
-  job j = job_begin("twin");
-  double tol = kind == METHODS ? 1e-4 : kind == THREADS_ ? 1e-7 : 1e-6;
+  job j = job_begin(base->name);
+  const double tol = tolerance_of(d, kind);
   if (kind == POWERS) how.units = (deck_units){1024, 1 / 64., 4};
   if (kind == THOUSANDS) how.units = (deck_units){1000, 1e-3, 60};
-  if (kind == POWERS && is_exact(d)) tol = 0;
   if (kind == NUMBERS) how.shuffle = (unsigned)d->seed % 1000 + 1;
   if (kind == METHODS) how.method = method_of(d);
   deck_write(d, &how, &j);
   int code = twin_run(&j, kind == THREADS_ ? "--threads 2" : "");
   twin_answer answer = code == 0 ? compare(d, &how, &j, tol, own, what)
                                  : refused(d, kind, code, &j, what);
+  if (code == 0 && answer == TWIN_SAME &&
+      !tells_same(kind, tol, base, &j, what))
+    answer = TWIN_LOST;
   if (kind == METHODS)
     snprintf(what + strlen(what), 400 - strlen(what), " (%s)", how.method);
   put_away(&j, answer == TWIN_LOST || answer == TWIN_OTHER, what);

@@ -403,6 +403,35 @@ START_TEST(error_of_the_steps_goes_through_a_body_without_stress) {
 }
 END_TEST
 
+/* MIDPOINT takes all stress of a held bar in an increment of twice its
+ * relaxation time, and exp(-2) of it is left in truth: that is the error, in
+ * the place of none. Such an increment is cut where they are chosen. */
+START_TEST(error_of_the_steps_of_stress_relaxed_at_once) {
+  char visco[200];
+  snprintf(visco, sizeof visco,
+           "*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, %s2, 2, -1.E-3\n*END STEP\n"
+           "*STEP\n*VISCO, INTEGRATOR=MIDPOINT\n4., 4.\n"
+           "*ACCURACY, MESH=YES, TIME=%s\n",
+           _i == 0 ? "" : "1\nTOP, ", _i == 0 ? "YES" : "BALANCED");
+  scene s = {SOFT,
+             "*INELASTIC, LAW=MAXWELL\n2.\n",
+             "CPS3",
+             "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+             "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n",
+             NULL,
+             visco};
+  job j = run_scene(&s, 0);
+  dat e = job_table(&j, "ENERGY", -1);
+  if (_i == 0)
+    ck_assert_double_eq_tol(job_told(&j, "time_error_percent"),
+                            100 * exp(-2.0), 5);
+  else
+    ck_assert_double_ge(dat_at(&e, 0, "increment"), 8);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* Creep at constant volume locks linear elements, but not in plane stress; one
  * that swells does not. A step that is not *VISCO says that nothing flows. */
 START_TEST(locking_creep_is_told) {
@@ -482,6 +511,8 @@ int main(void) {
   tcase_add_test(tests, stages_beyond_the_limit_cut_the_increment);
   tcase_add_loop_test(
       tests, error_of_the_steps_goes_through_a_body_without_stress, 0, 2);
+  tcase_add_loop_test(tests, error_of_the_steps_of_stress_relaxed_at_once, 0,
+                      2);
   tcase_add_test(tests, locking_creep_is_told);
   tcase_add_test(tests, creep_without_a_state_is_not_settled);
   tcase_add_test(tests, increments_that_never_settle_end);

@@ -286,6 +286,43 @@ START_TEST(path_makes_the_zone_of_stick) {
 }
 END_TEST
 
+/* A static problem of the same loads, alone and after a path on which more has
+ * slipped: answers, goals and their errors are the same. */
+START_TEST(static_problem_knows_no_path) {
+#define GOALS                                               \
+  "*GOAL, NAME=E, QUANTITY=ENERGY\n"                        \
+  "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n" \
+  "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n"
+#define PRESSED(kind, side)                                                 \
+  "*STEP\n" kind "*BOUNDARY\nRIGHT, 1\n*DSLOAD\nTOP, P, 5.\nLEFT, P, " side \
+  "\n*PRINT, CONTACT, NODES, TOTALS, GOALS\n*END STEP\n"
+#define LAST PRESSED("*STATIC\n1.\n", "15.")
+  static const char *const names[] = {"CONTACT", "NODES", "TOTALS", "GOALS"};
+  job a = run_square(0.0, 0.2, 1.0, GOALS LAST, 0);
+  job b = run_square(0.0, 0.2, 1.0,
+                     GOALS PRESSED("*QUASISTATIC\n0.5, 1.\n", "18.") LAST, 0);
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k) {
+    dat x = job_table(&a, names[k], -1), y = job_table(&b, names[k], -1);
+    ck_assert(x.n_row == y.n_row && x.n_col == y.n_col && x.n_row > 0);
+    for (int c = 0; c < x.n_col; ++c) {
+      if (strstr("solver_error slip_distance", x.name[c]) != NULL) continue;
+      const double most = dat_max(&x, x.name[c]);
+      for (int i = 0; i < x.n_row; ++i) {
+        const double is = dat_at(&x, i, x.name[c]);
+        const double found = dat_at(&y, i, x.name[c]);
+        ck_assert_msg(isnan(is) || fabs(found - is) <= 1e-9 * most + 1e-13,
+                      "%s, row %d: %s %.12g, alone %.12g", names[k], i,
+                      x.name[c], found, is);
+      }
+    }
+    dat_free(&x);
+    dat_free(&y);
+  }
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
 /* Two layers, E ratio 1e6, nu = 0, p = 1: u_top = -(0.5 + 0.5e-6). */
 START_TEST(layers_of_a_million_to_one) {
   job j = job_begin("layers");
@@ -394,5 +431,6 @@ UNIT_MAIN("limits", no_load_no_motion, constant_load_keeps_everything,
           all_open_is_linear_elasticity, first_touch_at_the_end_of_an_increment,
           friction_from_none_to_sticking, greco_without_friction,
           greco_under_huge_friction, auto_comes_to_proximal,
-          path_makes_the_zone_of_stick, layers_of_a_million_to_one,
-          slip_turns_with_the_shear, local_friction_pays_for_nothing_else)
+          path_makes_the_zone_of_stick, static_problem_knows_no_path,
+          layers_of_a_million_to_one, slip_turns_with_the_shear,
+          local_friction_pays_for_nothing_else)

@@ -90,5 +90,53 @@ START_TEST(runs_take_what_is_expected) {
 }
 END_TEST
 
+/* Bytes that the run holds at most, in increments of 1/n. */
+static double held(const char *material, const char *law, const char *card,
+                   const char *second, int n) {
+  job j = job_begin("held");
+  job_copy(&j, "input/creep_block/creep_block.geo");
+  job_write(
+      &j, "held.inp",
+      "*PARAMETER\nN = 8\n*MESH, FILE=creep_block.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n130.D3, 0.2\n%s"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0., 0.\n0., 1., 0.\n"
+      "MOVE, \"2e-2*t\", \"1e-2*sin(t)\", 0.\n"
+      "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+      "*FRICTION, CONTACT=C, LAW=%s\n\"0.4 + 0.01*t\"\n%s"
+      "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+      "*GOAL, NAME=N, QUANTITY=FORCE, CONTACT=C\n"
+      "*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C\n"
+      "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n"
+      "*STEP\n*QUASISTATIC\n%.17g, 1.\n*BOUNDARY\nSYMMETRY, 1\n*DSLOAD\n"
+      "TOP, P, 50.\nLEFT, P, \"150*sin(2*t)\"\n"
+      "*ACCURACY, MESH=YES, TIME=YES, THEORY=YES\n*PRINT, CONTACT, NODES, "
+      "ELEMENTS, REACTIONS, TOTALS, ENERGY, ZONES, LOOP, GOALS\n*OUTPUT\n"
+      "*END STEP\n*STEP\n%s\n%.17g, 1.\n*END STEP\n",
+      material, law, card, 1.0 / n, second, 1.0 / n);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  const double bytes = job_told(&j, "peak_bytes");
+  job_end(&j);
+  return bytes;
+}
+
+/* But for the summary of each increment, which is smaller than two vectors. */
+START_TEST(more_increments_hold_no_more) {
+  static const char *const rows[][4] = {
+      {"", "COULOMB", "", "*QUASISTATIC, FORM=VELOCITY"},
+      {"*EXPANSION\n1.2E-5\n*INELASTIC, LAW=NORTON\n1E-10, 3.\n",
+       "NONLOCAL, RADIUS=8., ZONE=CONTACT",
+       "*WEAR, CONTACT=C, COEFFICIENT=1E-6\n",
+       "*VISCO, INTEGRATOR=THETA, THETA=0.8"}};
+  for (int k = 0; k < 2; ++k) {
+    const char *const *row = rows[k];
+    const double few = held(row[0], row[1], row[2], row[3], 4);
+    const double more = held(row[0], row[1], row[2], row[3], 16);
+    ck_assert_double_le(more - few, 24 * 1500);
+  }
+}
+END_TEST
+
 UNIT_MAIN("memory", limit_by_hand_is_obeyed, limit_of_the_process_is_seen,
-          runs_take_what_is_expected)
+          runs_take_what_is_expected, more_increments_hold_no_more)

@@ -192,6 +192,36 @@ START_TEST(balance_is_that_of_the_largest_work) {
 }
 END_TEST
 
+/* Supports that move work in increments without a table too: on averaged
+ * elements, and on nodes that carry what is tied to them. */
+START_TEST(supports_work_between_tables) {
+  static const char *const of[][2] = {
+      {"", "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"},
+      {"", "*TIE, NAME=P\nUNDER, OVER\n"},
+      {", FORMULATION=AVERAGED", "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"}};
+  for (int k = 0; k < 3; ++k) {
+    job j = job_begin("steps");
+    job_copy(&j, "tests/regression/mesh/pair.geo");
+    job_write(
+        &j, "steps.inp",
+        "*PARAMETER\nN = 4\n*MESH, FILE=pair.geo\n*MATERIAL, NAME=M\n"
+        "*ELASTIC\n1000., 0.49\n*SOLID SECTION, ELSET=LOWER, MATERIAL=M%s\n"
+        "*SOLID SECTION, ELSET=UPPER, MATERIAL=M%s\n%s"
+        "*STEP\n*QUASISTATIC\n0.25, 1.\n*BOUNDARY\nBOTTOM, 2\n"
+        "LEFT, 1, 1, -0.01\nRIGHT, 1, 1, \"-0.02*y\"\n"
+        "*DSLOAD\nTOP, P, 9.\n*PRINT, ENERGY, FREQUENCY=0\n"
+        "*OUTPUT, HDF5=NO\n*END STEP\n",
+        of[k][0], of[k][0], of[k][1]);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    dat e = job_table(&j, "ENERGY", -1);
+    ck_assert_double_ge(fabs(dat_at(&e, 0, "external_work")), 1e-3);
+    ck_assert_double_le(fabs(dat_at(&e, 0, "energy_defect_relative")), 1e-10);
+    dat_free(&e);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Sheared to slip one way; then a static problem with half the motion. Stick
  * and slip of it are from the origin: sigma_xy = mu p = 4, G = 500, so that the
  * foot has slipped 0.01 - 4/500 = 0.002 from the origin, and friction_work_end
@@ -411,7 +441,7 @@ UNIT_MAIN("steps", component_fixed_anew_starts_where_it_is,
           corner_forces_belong_to_their_contacts,
           corner_belongs_to_the_areas_of_both_contacts,
           supports_of_contact_nodes_balance, support_takes_over_from_contact,
-          balance_is_that_of_the_largest_work,
+          balance_is_that_of_the_largest_work, supports_work_between_tables,
           slip_distance_goes_on_with_other_supports,
           static_problem_slips_from_the_origin, same_contact_twice_is_refused,
           later_steps_are_checked_before_the_first,

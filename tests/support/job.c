@@ -125,12 +125,29 @@ void job_clear(const job *j) {
   globfree(&found);
 }
 
+/* The CPU of all stages is the sum of theirs, as far as it is printed. */
+static void check_sum(const char *stages) {
+  const char *all = strstr(stages, "all stages"), *at = stages;
+  double cpu, sum = 0.0, most = 5e-4;
+  long calls, bytes;
+  if (all == NULL || sscanf(all + 10, "%lf", &cpu) != 1) return;
+  for (double of; (at = strchr(at, '\n')) < all; ++at)
+    if (strlen(at) > 33 &&
+        sscanf(at + 33, "%ld %lf %ld", &calls, &of, &bytes) == 3 && calls > 0) {
+      sum += of;
+      most += 5e-4;
+    }
+  ck_assert(cpu >= 0.0);
+  ck_assert_double_le(fabs(cpu - sum), most);
+}
+
 long job_stage(const job *j, const char *stage, long *bytes) {
   char *text = job_file(j, "lst"), *end;
   ck_assert_ptr_nonnull(text);
-  const char *at = strstr(text, "COST\n");
-  at = at == NULL ? NULL : strstr(at, stage);
+  const char *all = strstr(text, "COST\n"),
+             *at = all == NULL ? NULL : strstr(all, stage);
   ck_assert_msg(at != NULL, "no stage '%s'", stage);
+  check_sum(all);
   long calls = strtol(at + strlen(stage), &end, 10);
   strtod(end, &end);
   if (bytes != NULL) *bytes = strtol(end, NULL, 10);

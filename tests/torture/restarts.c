@@ -150,6 +150,10 @@ static const struct {
      "*STEP\n*VISCO, INTEGRATOR=EULER, SUBSTEPS=AUTO\n4., 12.\n", ""},
     {"error of steps", MAXWELL, "", FLOOR, "COULOMB", "",
      "*STEP\n*VISCO, INTEGRATOR=HEUN\n0.25, 2.\n*ACCURACY, TIME=YES\n", ""},
+    {"turning loads", MAXWELL, "", FLOOR, "COULOMB", "",
+     "*STEP\n*VISCO, INTEGRATOR=THETA, THETA=0.8\n0.5, 3.\n*DSLOAD\n"
+     "TOP, P, \"50+20*sin(5*t)\"\nLEFT, P, \"150+60*sin(4*t)\"\n"
+     "*ACCURACY, TIME=YES\n", ""},
     {"balanced", "", "", FLOOR, "COULOMB", "",
      LATER "*ACCURACY, MESH=YES, TIME=BALANCED\n", ""},
     {"thermal", "*EXPANSION\n1.2E-5\n", "", FLOOR, "COULOMB", "",

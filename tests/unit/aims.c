@@ -8,9 +8,9 @@
 #include "support/grid.h"
 #include "support/unit.h"
 
-/* One pass with this result: lengths over those of the mesh; the target is 1.
- */
-static double ratio_of(const goal_result *result, int passes) {
+/* Passes with this result, the target is 1: lengths over those of the mesh, at
+ * a corner; the product of its element is "more" times that of others. */
+static double ratio_at(const goal_result *result, int passes, double more) {
   goal_card goal = {.quantity = GOAL_FORCE, .target = 1.0};
   model m = {.n.goal = 1, .accuracy.goals = &goal};
   mesh *msh = make_grid_2d((int[]){4, 4}, (double[]){1.0, 1.0});
@@ -18,11 +18,15 @@ static double ratio_of(const goal_result *result, int passes) {
   double *size = calloc((size_t)msh->n_node, sizeof *size);
   double *length = calloc((size_t)msh->n_node, sizeof *length);
   aims *a = NULL;
-  for (int k = 0; k < msh->n_elem; ++k) product[k] = 0.3;
+  for (int k = 0; k < msh->n_elem; ++k) {
+    const int *v = msh->elem + 3 * k;
+    product[k] = v[0] == 0 || v[1] == 0 || v[2] == 0 ? 0.3 * more : 0.3;
+  }
   ck_assert_int_eq(aims_new(&m, 0, &a), OK);
   for (int k = 0; k < passes; ++k) {
-    state s = {
-        .errors = {.n_goal = 1, .goals = result, .goal_products = product}};
+    goal_result of = *result;
+    if (more == 0.0) of.error *= passes - k;
+    state s = {.errors = {.n_goal = 1, .goals = &of, .goal_products = product}};
     ck_assert_int_eq(aims_begin(a, msh), OK);
     aims_see(a, msh, &s);
     aims_evaluate(a, &m);
@@ -30,7 +34,7 @@ static double ratio_of(const goal_result *result, int passes) {
   space_lengths(msh, length);
   for (int i = 0; i < msh->n_node; ++i) size[i] = 2.0 * length[i];
   ck_assert_int_eq(aims_sizes(a, &m, msh, NULL, size), OK);
-  for (int i = 1; i < msh->n_node; ++i)
+  for (int i = 1; i < msh->n_node && more > 0.0; ++i)
     ck_assert_double_eq_tol(size[i], size[0], 1e-12);
   const double ratio = size[0] / length[0];
   memory_free(a);
@@ -39,6 +43,10 @@ static double ratio_of(const goal_result *result, int passes) {
   free(length);
   memory_free(msh);
   return ratio;
+}
+
+static double ratio_of(const goal_result *result, int passes) {
+  return ratio_at(result, passes, 1.0);
 }
 
 /* |error| + band, the error of the solver, and 0.93 of the target in the place
@@ -75,4 +83,34 @@ START_TEST(sizes_follow_the_errors_of_a_goal) {
 }
 END_TEST
 
-UNIT_MAIN("aims", sizes_follow_the_errors_of_a_goal)
+/* Elements without an error become larger, but not in a mesh of the passes
+ * whose error is below twice the target. */
+START_TEST(near_the_target_nothing_becomes_coarser) {
+  goal_result r = {.value = 100.0, .error = 1.5};
+  ck_assert_double_ge(ratio_at(&r, 1, 0.0), 1.1);
+  ck_assert_double_eq_tol(ratio_at(&r, 2, 0.0), 1.0, 1e-12);
+  r.error = 2.0;
+  ck_assert_double_ge(ratio_at(&r, 2, 0.0), 1.04);
+}
+END_TEST
+
+/* A factor whose allowed error is 1 of 100 uses no element shorter than 0.03
+ * times the radius of its domain, whatever its own size; at most a tenth. */
+START_TEST(elements_at_a_tip_are_as_long_as_the_target_can_use) {
+  goal_result r = {.value = 0.5, .error = 40.0, .size = 100.0};
+  const double least = ratio_of(&r, 1);
+  const double length = sqrt(4.0 / sqrt(3.0) / 32.0);
+  r.radius = 0.8 * length / 0.03;
+  ck_assert_double_lt(least, 0.7);
+  ck_assert_double_eq_tol(ratio_of(&r, 1), 0.8, 1e-12);
+  r.size = 1.0;
+  r.radius = 8.0 * length;
+  ck_assert_double_eq_tol(ratio_of(&r, 1), 0.8, 1e-12);
+  r.size = 0.0;
+  ck_assert_double_eq_tol(ratio_of(&r, 1), least, 1e-12);
+}
+END_TEST
+
+UNIT_MAIN("aims", sizes_follow_the_errors_of_a_goal,
+          near_the_target_nothing_becomes_coarser,
+          elements_at_a_tip_are_as_long_as_the_target_can_use)

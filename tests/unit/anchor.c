@@ -232,22 +232,25 @@ START_TEST(drift_is_told_as_a_ray) {
 }
 END_TEST
 
+/* On the floor and far above it. */
 START_TEST(factors_of_two_change_no_bit) {
   const solver_ops *ops;
-  for (int i = 0; solver_row(i, &ops); ++i) {
-    if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
-    contact_case c = block(0.3, 1.0, 0.2), d = block(0.3, 1.0, 0.2);
-    case_units(&d, -13, 28);
-    case_cold(&c);
-    case_cold(&d);
-    solver_report one = solve_by(ops, &c, 1e-9, c.u, c.r);
-    solver_report two = solve_by(ops, &d, 1e-9, d.u, d.r);
-    ck_assert_int_eq(one.iterations, two.iterations);
-    for (int j = 0; j < c.cp.m; ++j)
-      ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
-    case_free(&c);
-    case_free(&d);
-  }
+  for (int i = 0; solver_row(i, &ops); ++i)
+    for (int far = 0; far < 2; ++far) {
+      if (ops == NULL || (ops->handles & SOLVES_FLOATING)) continue;
+      contact_case c = block(0.3, 1.0, 0.2), d = block(0.3, 1.0, 0.2);
+      for (int j = 0; j < c.cp.n; ++j) c.gap[j] = d.gap[j] = 30.0 * far;
+      case_units(&d, -13, 28);
+      case_cold(&c);
+      case_cold(&d);
+      solver_report one = solve_by(ops, &c, 1e-9, c.u, c.r);
+      solver_report two = solve_by(ops, &d, 1e-9, d.u, d.r);
+      ck_assert_int_eq(one.iterations, two.iterations);
+      for (int j = 0; j < c.cp.m; ++j)
+        ck_assert(d.u[j] == ldexp(c.u[j], -13) && d.r[j] == ldexp(c.r[j], 28));
+      case_free(&c);
+      case_free(&d);
+    }
 }
 END_TEST
 

@@ -108,6 +108,42 @@ START_TEST(solver_and_accuracy_of_a_step) {
 }
 END_TEST
 
+/* What a step does not say is as it was in the step before, and where. */
+START_TEST(a_step_of_nothing_is_like_the_one_before) {
+  static const char *const said[] = {
+      "*SOLVER, METHOD=SOR, TOL=1e-7, MAX_ITER=17, LIMIT_MAX_ITER=19, "
+      "CHECK=ALL, STIFFNESS=DENSE\n"
+      "*ACCURACY, MESH=NO, TIME=YES, SOLVER=NO, THEORY=YES\n"
+      "*OUTPUT, FREQUENCY=5, CONDENSED=FCLIB\n*RESTART, FREQUENCY=7\n",
+      "*SOLVER, TOL=BALANCED, SHARE=0.25\n"
+      "*ACCURACY, MESH=YES, TIME=BALANCED, TIME_SHARE=0.375\n"};
+  for (int k = 0; k < 2; ++k) {
+    text_model s;
+    char text[600];
+    snprintf(text, sizeof text,
+             "*STEP\n*QUASISTATIC\n1., 4.\n*BOUNDARY\nTOP, 1, 2\n%s*END STEP\n"
+             "*STEP\n*QUASISTATIC\n1., 4.\n*END STEP\n",
+             said[k]);
+    read_steps(&s, text);
+    const step *a = s.m->steps, *b = a + 1;
+    ck_assert_int_eq(a->accuracy.at.line_no, 20);
+    PAIRS(b->solver.ops == a->solver.ops, 1, b->solver.tol, a->solver.tol,
+          b->solver.max_iter, a->solver.max_iter, b->solver.limit_max_iter,
+          a->solver.limit_max_iter, b->solver.stiffness, a->solver.stiffness,
+          b->check, a->check, b->balanced, a->balanced, b->share, a->share);
+    PAIRS(b->accuracy.no_solver, a->accuracy.no_solver, b->accuracy.mesh,
+          a->accuracy.mesh, b->accuracy.time, a->accuracy.time,
+          b->accuracy.time_balanced, a->accuracy.time_balanced,
+          b->accuracy.time_share, a->accuracy.time_share, b->accuracy.theorems,
+          a->accuracy.theorems, b->accuracy.at.line_no, a->accuracy.at.line_no);
+    PAIRS(b->output.frequency, a->output.frequency, b->output.condensed,
+          a->output.condensed, b->output.at.line_no, a->output.at.line_no,
+          b->restart.frequency, a->restart.frequency);
+    text_model_close(&s);
+  }
+}
+END_TEST
+
 START_TEST(outputs_of_a_step) {
   text_model s;
   read_steps(&s,
@@ -239,4 +275,4 @@ END_TEST
 
 UNIT_MAIN("cards", obstacles_and_contacts, materials_and_goals,
           increments_of_a_step, solver_and_accuracy_of_a_step,
-          outputs_of_a_step)
+          a_step_of_nothing_is_like_the_one_before, outputs_of_a_step)

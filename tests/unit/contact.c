@@ -1,6 +1,7 @@
 /* src/contact/contact.c */
 #include "base/base.h"
 #include "contact/contact.h"
+#include "contact/formulation.h"
 #include "contact/reach.h"
 #include "support/contact_case.h"
 #include "support/planted.h"
@@ -471,7 +472,29 @@ START_TEST(active_nodes_take_their_own_data) {
 }
 END_TEST
 
-UNIT_MAIN("contact", active_nodes_take_their_own_data,
+/* Two nodes whose normals move as one, to the last digits: no given forces have
+ * an answer. Of stiffer normals they have. */
+START_TEST(normals_that_move_as_one_carry_no_given_forces) {
+  static const int node[] = {0, 1};
+  for (int k = 0; k < 2; ++k) {
+    contact_case c = case_new(2, 2, 0.3);
+    given_form *g = NULL;
+    c.A[0] = c.A[5] = c.A[15] = 1.0;
+    c.A[2] = c.A[8] = -0.75;
+    c.A[10] = 0.75 * 0.75 * (1.0 + (k == 0 ? 0x1p-50 : 0x1p-20));
+    const status st = given_form_new(&c.cp, 2, node, &g);
+    ck_assert_int_eq(st, k == 0 ? ERR_SINGULAR : OK);
+    if (k == 0)
+      ck_assert_str_eq(status_message(),
+                       "nothing holds the body against given normal forces");
+    memory_free(g);
+    case_free(&c);
+  }
+}
+END_TEST
+
+UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
+          active_nodes_take_their_own_data,
           blocks_give_the_residual_of_all_entries,
           residual_is_zero_for_solved_node, residual_is_that_of_all_nodes,
           each_broken_condition_shows_by_its_size,

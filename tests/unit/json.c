@@ -214,8 +214,9 @@ START_TEST(sums_goals_and_passes_of_the_run) {
   static goal_card cards[2] = {
       {.name = "SINK", .quantity = GOAL_DISPLACEMENT, .target = 0.125},
       {.name = "PULL", .quantity = GOAL_FORCE}};
-  goal_result goals[2] = {{6, -0.5, 0.0625, 0.25, 0.125, 18, GOAL_RELIABLE},
-                          {7, 8, 9, 10, 11, 19, GOAL_CANCELS}};
+  goal_result goals[2] = {
+      {6, -0.5, 0.0625, 0.25, 0.125, 18, 0, 0, GOAL_RELIABLE},
+      {7, 8, 9, 10, 11, 19, 0, 0, GOAL_CANCELS}};
   const pass_row rows[2] = {{100, 1, 2, 3, 4, 20, "finer"},
                             {200, 5, 6, 7, 8, 21, ""}};
   const pass_goal of_pass[4] = {{goals[0], 12, 13},

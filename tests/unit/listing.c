@@ -76,7 +76,7 @@ static state *make_increment(void) {
 /* clang-format on */
 
 START_TEST(errors_of_an_increment) {
-  goal_result goal = {6.0, -0.5, 0.01, 0.02, 0.03, 0.0, GOAL_RELIABLE};
+  goal_result goal = {6.0, -0.5, 0.01, 0.02, 0.03, 0.0, 0, 0, GOAL_RELIABLE};
   goal_card sink = {.name = "SINK", .quantity = GOAL_DISPLACEMENT};
   state *s = make_increment();
   state_errors *e = &s->errors;
@@ -334,8 +334,9 @@ START_TEST(budget_goals_and_passes) {
        .time_error = {1, 0.01, 9.0, NULL},
        .exact = {1, 0.03, 9.0, 9.0, 9.0, 9.0}},
       {.step_no = 1, .count = {31, 32, 33}, .iterations = 9}};
-  goal_result goals[2] = {{6.0, -0.5, 0.01, 0.02, 0.03, 0.0, GOAL_RELIABLE},
-                          {7.0, 0.25, 0.04, 0.05, 0.06, 0.0, GOAL_RELIABLE}};
+  goal_result goals[2] = {
+      {6.0, -0.5, 0.01, 0.02, 0.03, 0.0, 0, 0, GOAL_RELIABLE},
+      {7.0, 0.25, 0.04, 0.05, 0.06, 0.0, 0, 0, GOAL_RELIABLE}};
   pass_row rows[2] = {{100, 1, 2, 3, 4, 9, "finer"}, {200, 5, 6, 7, 8, 9, ""}};
   pass_row forecast = {300, 9, 9, 9, 0.5, 9, ""};
   pass_goal of_pass[4] = {{goals[0], 0.21, 0.125},
@@ -398,6 +399,9 @@ START_TEST(budget_goals_and_passes) {
   m->n.contact = 0;
   must_print(write_closing, "\ncontact   open 31, slip 32, stick 33\n");
   m->n.contact = 1;
+  m->dim = 3;
+  must_print(write_accuracy, " gives about 1 % for up to 38 times the CPU\n");
+  m->dim = 2;
   made->m.steps[0].accuracy.time_balanced = 1;
   all[1].time_error.relative = 0.04;
   all[1].error.relative = 1e-6;

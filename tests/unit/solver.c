@@ -1,6 +1,8 @@
 /* src/solver: every row of the table on the same problems. */
 #include "base/base.h"
+#include "base/archive/archive.h"
 #include "manual/manual.h"
+#include "support/folder.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
@@ -506,6 +508,67 @@ START_TEST(solved_state_is_kept_and_a_near_one_is_cheap) {
 }
 END_TEST
 
+/* What persists from one solution to the next, through a file. */
+static void pass_on(const solver_ops *ops, void *from, void *to) {
+  char folder[64], path[100], before[100];
+  archive *a = NULL;
+  folder_new(folder);
+  snprintf(path, sizeof path, "%s/work", folder);
+  snprintf(before, sizeof before, "%s/before", folder);
+  ck_assert_int_eq(archive_new(&a), OK);
+  ck_assert_int_eq(ops->keep(from, a), OK);
+  ck_assert_msg(archive_write(a, path, before) == OK, "%s", status_message());
+  archive_free(&a);
+  ck_assert_int_eq(archive_read(path, &a), OK);
+  ck_assert_int_eq(ops->keep(to, a), OK);
+  archive_free(&a);
+  folder_remove(folder);
+}
+
+/* Of a solution nothing persists but what is saved. */
+START_TEST(nothing_persists_that_is_not_saved) {
+  enum { NODES = 24, MOST = 3 * NODES };
+  const solver_ops *ops;
+  const solver_control control = {.tol = 1e-10};
+  for (int k = 0; k < 8; ++k)
+    for (int i = 0; solver_row(i, &ops) && ops != NULL; ++i) {
+      contact_case c = case_any(2 + k % 2, NODES, 0.4, k / 2 % 2,
+                                (unsigned long long)(900 + k));
+      double param[PARAM_SIZE / sizeof(double)] = {0.0}, W[MOST * MOST];
+      double f[MOST], u[MOST] = {0}, r[MOST] = {0};
+      const size_t m = (size_t)c.cp.m, bytes = m * sizeof *u;
+      void *work[2] = {NULL, NULL};
+      solver_report rep[2];
+      ck_assert(case_inverse((int)m, c.A, W));
+      if (ops->handles & NEEDS_COMPLIANCE) c.cp.W = W;
+      option_defaults(ops->options, param);
+      for (int a = 0; a < 2; ++a)
+        ck_assert_int_eq(solver_set_up(ops, &c.cp, param, &work[a]), OK);
+      memcpy(f, c.f, bytes);
+      for (size_t j = 0; j < m; ++j) /* another problem, or a near one */
+        c.f[j] =
+            k < 4 ? -0.7 * f[(j + 3) % m] : f[j] * (1 + 0.2 * sin((double)j));
+      ck_assert_int_eq(
+          ops->solve(&c.cp, param, work[0], &control, c.u, c.r, &rep[0]), OK);
+      if (ops->keep != NULL) pass_on(ops, work[0], work[1]);
+      memcpy(c.f, f, bytes);
+      case_cold(&c);
+      ck_assert_int_eq(
+          ops->solve(&c.cp, param, work[0], &control, c.u, c.r, &rep[0]), OK);
+      ck_assert_int_eq(
+          ops->solve(&c.cp, param, work[1], &control, u, r, &rep[1]), OK);
+      ck_assert_msg(rep[0].iterations == rep[1].iterations &&
+                        rep[0].outcome == rep[1].outcome &&
+                        memcmp(u, c.u, bytes) == 0 &&
+                        memcmp(r, c.r, bytes) == 0,
+                    "%s, problem %d: %d iterations, not %d", row_name(ops), k,
+                    rep[0].iterations, rep[1].iterations);
+      for (int a = 0; a < 2; ++a) memory_free(work[a]);
+      case_free(&c);
+    }
+}
+END_TEST
+
 /* Increments under the same load, solved to the same tolerance: friction acts
  * against the slip from the state reached. Random bodies, and a block that
  * contact alone holds. */
@@ -668,22 +731,20 @@ START_TEST(refused_memory_is_told_and_given_back) {
 }
 END_TEST
 
-UNIT_MAIN("solver", table_is_complete, one_triangle_slips_sticks_and_opens,
-          one_triangle_has_three_solutions_for_large_friction,
-          wedged_triangle_is_locked_by_friction, no_load_costs_nothing,
-          no_node_is_solved, all_open_and_all_stick_are_exact,
-          corner_node_meets_both_obstacles,
-          held_tangents_stay_where_they_are_put,
-          touching_without_force_is_solved, one_node_is_solved_in_every_state,
-          special_cases_are_solved_from_the_compliance,
-          nearly_singular_compliance_is_solved,
-          auto_solves_the_cycling_p_matrix,
-          rigid_body_is_solved_in_compliance_form,
-          slip_turns_with_the_load_at_any_angle, tolerance_1e_12_is_reached,
-          factors_of_two_change_no_bit_of_the_answer,
-          solved_state_is_kept_and_a_near_one_is_cheap,
-          body_at_rest_costs_next_to_nothing, nan_in_the_data_is_told,
-          nan_in_the_start_is_forgotten,
-          limit_of_iterations_is_honest_and_heard,
-          best_of_none_leaves_the_start, step_is_heard_as_it_was_told,
-          refused_memory_is_told_and_given_back)
+UNIT_MAIN(
+    "solver", table_is_complete, one_triangle_slips_sticks_and_opens,
+    one_triangle_has_three_solutions_for_large_friction,
+    wedged_triangle_is_locked_by_friction, no_load_costs_nothing,
+    no_node_is_solved, all_open_and_all_stick_are_exact,
+    corner_node_meets_both_obstacles, held_tangents_stay_where_they_are_put,
+    touching_without_force_is_solved, one_node_is_solved_in_every_state,
+    special_cases_are_solved_from_the_compliance,
+    nearly_singular_compliance_is_solved, auto_solves_the_cycling_p_matrix,
+    rigid_body_is_solved_in_compliance_form,
+    slip_turns_with_the_load_at_any_angle, tolerance_1e_12_is_reached,
+    factors_of_two_change_no_bit_of_the_answer,
+    solved_state_is_kept_and_a_near_one_is_cheap,
+    nothing_persists_that_is_not_saved, body_at_rest_costs_next_to_nothing,
+    nan_in_the_data_is_told, nan_in_the_start_is_forgotten,
+    limit_of_iterations_is_honest_and_heard, best_of_none_leaves_the_start,
+    step_is_heard_as_it_was_told, refused_memory_is_told_and_given_back)

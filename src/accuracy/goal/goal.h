@@ -39,6 +39,8 @@ typedef struct goal_result {
   double band;   /* half of it, round value + error */
   double ends;   /* -, share of elements where the contact or a support ends */
   double cpu;    /* s, CPU time for it so far */
+  double radius; /* m, of the domain of a factor in the plane; 0: of none */
+  double size;   /* of all factors there */
   goal_verdict verdict;
 } goal_result;
 /* Reals alone; of a sum over the increments the sums of theirs. */

@@ -297,17 +297,23 @@ static double share_of(double norm, double energy) {
   return norm > 0.0 ? norm / sqrt(norm * norm + 2.0 * energy) : 0.0;
 }
 
-/* That of all paths so far; of the strains if they are left without stress. */
+/* 1: paths without stress differ by more than the rounding of their motion. */
+static int differs(const run *r, double norm) {
+  return 0.5 * norm * norm > fmax(r->now.energy.rounding, rounding_of_works(r));
+}
+
+/* That of all paths so far. Of a body without stress, which the other path may
+ * have: of the largest energy so far, and of the strains that are left. */
 static double share_of_paths(const run *r, const paths *own) {
+  const energies *e = &r->now.energy;
   const double left = r->errors.left;
-  double share = share_of(total_error(own), r->now.energy.strain);
-  if (left >= 1.0) return share;
-  share = left > 0.0 ? left * share : 0.0;
-  const double strain = rounding_strain_left(r);
-  return strain > 0.0
-             ? fmax(share,
-                    share_of(own->before.strain + own->now.strain, strain))
-             : share;
+  if (left >= 1.0) return share_of(total_error(own), e->strain);
+  const double norm = left > 0.0 ? total_error(own) : own->now.norm,
+               strain = rounding_strain_left(r);
+  return fmax(differs(r, norm) ? share_of(norm, e->largest) : 0.0,
+              strain > 0.0
+                  ? share_of(own->before.strain + own->now.strain, strain)
+                  : 0.0);
 }
 
 static status compare(run *r, void *self) {
@@ -464,6 +470,13 @@ static int flows_on(const run *r, const paths *own, int hides) {
          strain_part(r, own) > r->step->accuracy.time_share;
 }
 
+/* What an attempt adds to the error of the stresses, sqrt(J): none where they
+ * are rounding, in both paths. */
+static double part_of(const run *r, double more, int hides) {
+  const int none = hides && !differs(r, fmax(more, 0.0));
+  return none || is_stuck(r) ? 0.0 : more;
+}
+
 static status attempt_balanced(run *r, paths *own) {
   const step *s = r->step;
   progress *p = &r->at;
@@ -489,7 +502,7 @@ static status attempt_balanced(run *r, paths *own) {
   if (!r->errors.evaluated) PASS(estimate_evaluate(r));
   PASS(measure(r, own, &part));
   PASS(rounding_hides_stresses(r, &hides));
-  part = hides || is_stuck(r) ? 0.0 : part - before;
+  part = part_of(r, part - before, hides);
   const int flows = flows_on(r, own, hides);
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);

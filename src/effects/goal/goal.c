@@ -450,6 +450,8 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;
+  out->radius = f->radius;
+  out->size = f->factors;
   out->band +=
       f->rough + f->held + of_coarseness(r, s, &e) +
       of_corner(r, own, id, e.error) +
@@ -499,8 +501,13 @@ static status find_goal(run *r, goal_state *own, shared *s, int id) {
   double *product = product_of(r, own, id);
   if (product != NULL) CLEAR(product, r->msh->n_elem);
   PASS(goal_form_set(r, &r->m->accuracy.goals[id], &s->form));
-  *out =
-      (goal_result){s->form.value, NAN, NAN, NAN, NAN, out->cpu, s->form.why};
+  *out = (goal_result){.value = s->form.value,
+                       .error = NAN,
+                       .solver = NAN,
+                       .band = NAN,
+                       .ends = NAN,
+                       .cpu = out->cpu,
+                       .verdict = s->form.why};
   if (s->form.why != GOAL_RELIABLE) return OK;
   out->verdict = GOAL_NOT_COVERED;
   if (s->estimator == NULL || (r->nodes.n_row > 0 && s->adjoint == NULL))
@@ -516,7 +523,7 @@ static status find_goals(run *r, void *self) {
   double cpu = timer_cpu();
   PASS(goal_form_new(r, &s.form));
   forget(r, &own->before, own->n);
-  if (!(r->m->effects & EFFECT_REACTION) && !run_finds_mesh_error(r))
+  if (!run_finds_mesh_error(r))
     domain_stress(&r->body.d, r->now.u, NULL, r->result.stress);
   if (is_covered(r)) PASS(prepare(r, own, &s));
   for (int k = 0; k < own->n; ++k) {

@@ -22,6 +22,7 @@ typedef struct goal_form {
   double *psi;  /* [dim*n] by contact forces, contact frame */
   double *tau;  /* [ns*n_elem] by strains, per volume; NULL: of no goal */
   fracture_linear factor; /* of a stress intensity factor; all-zero: of none */
+  double radius, factors; /* radius and size of goal_result */
   int n_mean;
   goal_mean mean[2]; /* [n_mean] of a displacement */
   int has_tau;

@@ -306,6 +306,8 @@ static status set_factor(run *r, const goal_card *g, goal_form *f) {
   PASS(cracks_derive(r, g->crack_id, point, g->component, &f->factor));
   const double part = k.points[point].size / k.points[point].radius;
   f->is_front = r->msh->dim == 3;
+  f->radius = f->is_front ? 0.0 : k.points[point].radius;
+  f->factors = hypot(k.at[point].K[0], k.at[point].K[1]);
   f->is_coarse =
       !f->is_front && (part * FEWEST > 1.0 ||
                        outgrows(r->msh, &f->factor, k.points[point].radius));

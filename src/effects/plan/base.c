@@ -49,9 +49,14 @@ static effect_work stresses(const plan_sizes *s) {
                        s->shown * s->elements * plan_element_work(s)};
 }
 
+/* Between the increments that are shown of the elements at supports alone. */
 static effect_work reactions(const plan_sizes *s) {
-  return (effect_work){s->held, "nodes", s->increments,
-                       s->increments * s->elements * plan_element_work(s)};
+  enum { AROUND = 4 }; /* elements a node of the border */
+  const double there = fmin(s->elements, AROUND * s->held);
+  return (effect_work){
+      s->held, "nodes", s->increments,
+      (s->shown * s->elements + (s->increments - s->shown) * there) *
+          plan_element_work(s)};
 }
 
 /* ---- the cards that require them ----------------------------------------- */

@@ -212,9 +212,11 @@ typedef struct burst {
 } burst;
 
 static status put_burst(hdf5_file *h, burst *b) {
-  const size_t bytes = sizeof *b->value * b->n;
+  const int n = b->n;
+  const off_t at = b->at;
   b->n = 0;
-  return hdf5_put(h->fd, h->path, b->value, bytes, b->at);
+  b->at = slot(at, n);
+  return hdf5_put(h->fd, h->path, b->value, sizeof *b->value * n, at);
 }
 
 static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
@@ -223,17 +225,19 @@ static status put_field(hdf5_file *h, const hdf5_field *f, const view *v,
   int ready[6];
   for (int k = 0; k < f->n_part; ++k)
     ready[k] = f->part[k] != NULL && column_ready(f->part[k], v->s);
-  for (int i = 0; i < items; ++i)
-    for (int k = 0; k < f->n_part; ++k, offset = slot(offset, 1)) {
-      if (b->n == CHUNK || slot(b->at, b->n) != offset) {
-        PASS(put_burst(h, b));
-        b->at = offset;
-      }
-      const int id = item_of(h, f, i);
+  if (slot(b->at, b->n) != offset) {
+    PASS(put_burst(h, b));
+    b->at = offset;
+  }
+  for (int i = 0; i < items; ++i) {
+    const int id = item_of(h, f, i);
+    for (int k = 0; k < f->n_part; ++k) {
+      if (b->n == CHUNK) PASS(put_burst(h, b));
       double value = f->part[k] == NULL && id >= 0 ? 0 : NAN;
       if (ready[k] && id >= 0) value = ready_value(f->part[k], v, id);
       b->value[b->n++] = value;
     }
+  }
   return OK;
 }
 

@@ -7,6 +7,7 @@
  * the increment by a parabola.
  */
 #include "run/history/loop.h"
+#include "run/visco.h"
 
 static const double FLAT = 1e-3; /* -, of the largest entry: no turn */
 
@@ -57,6 +58,8 @@ static status add_forces(run *r, double t0, double t, turn_list *list,
   const int n = r->nodes.n_row;
   const double middle = 0.5 * (t0 + t);
   OWNED_NEW(double, f, (size_t)5 * n);
+  visco_rest(r);
+  PASS(run_use(r, &r->elastic));
   for (int i = 0; i < 5; ++i)
     PASS(held_at(r, t0, t0 + 0.25 * i * (t - t0), f + (size_t)i * n));
   *all = add_force(n, f, t0, middle, list) &
