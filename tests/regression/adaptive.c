@@ -511,6 +511,38 @@ START_TEST(corners_do_not_shorten_what_follows) {
 }
 END_TEST
 
+/* Pushed out between a floor and a lid by more than friction holds: what does
+ * not converge in short increments is passed in long ones, whose ends are those
+ * of the tables. */
+START_TEST(step_without_equilibrium_ends_soon) {
+  static const char *const ways[][2] = {
+      {"VISCO, INTEGRATOR=BACKWARD, TOLERANCE=1E-3", ""},
+      {"QUASISTATIC", "*ACCURACY, MESH=YES, TIME=BALANCED\n"}};
+  job j = job_begin("lid");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "lid.inp",
+            "*PARAMETER\nN = 2\n*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n*INELASTIC, LAW=MAXWELL\n5.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=FLOOR, TYPE=PLANE\n0, 0\n0, 1\n"
+            "*OBSTACLE, NAME=LID, TYPE=PLANE\n0, 1\n0, -1\nMOVE, 0, -0.004\n"
+            "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=FLOOR\n"
+            "*FRICTION, CONTACT=F, LAW=COULOMB\n0.2\n"
+            "*CONTACT, NAME=L, GROUP=TOP, OBSTACLE=LID\n"
+            "*FRICTION, CONTACT=L, LAW=COULOMB\n0.3\n"
+            "*STEP\n*QUASISTATIC\n0.5, 1.\n*END STEP\n"
+            "*STEP\n*%s\n0.5, 1., 5E-4\n*DLOAD\nBODY, BX, 6.\n%s"
+            "*PRINT, ENERGY, FREQUENCY=0\n*END STEP\n",
+            ways[_i][0], ways[_i][1]);
+  ck_assert_int_eq(job_run(&j, ""), 1);
+  dat e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_le(dat_at(&e, 0, "increment"), 45);
+  ck_assert_double_eq(dat_at(&e, 0, "time"), 2);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(dense_tables_are_smooth) {
   const int smooth = count_of_wave(rows[_i], 0);
   const int points = count_of_wave(rows[_i], 1);
@@ -545,6 +577,7 @@ int main(void) {
                       ROWS);
   tcase_add_loop_test(tests, pulses_of_all_tables_end_increments, 0, N_PULSE);
   tcase_add_test(tests, corners_do_not_shorten_what_follows);
+  tcase_add_loop_test(tests, step_without_equilibrium_ends_soon, 0, 2);
   tcase_add_loop_test(tests, dense_tables_are_smooth, 0, ROWS);
   return unit_run("adaptive", tests);
 }

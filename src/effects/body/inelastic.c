@@ -52,6 +52,17 @@ static status forget_rounding(run *r, double *error) {
   return OK;
 }
 
+/* The increment to t is accepted, whatever its first half, tried before it, has
+ * come to. */
+static status finish_attempt(run *r, double t) {
+  if (r->now.t < t) {
+    PASS(visco_advance(r, t));
+    r->course.missed = r->solving.report.outcome > 0;
+  }
+  return outcome_is_fatal(r->solving.report.outcome) ? loop_no_equilibrium(r)
+                                                     : OK;
+}
+
 /* One attempt at an increment of a step with a tolerance. */
 static status attempt_adapted(run *r) {
   status st = OK;
@@ -81,12 +92,13 @@ static status attempt_adapted(run *r) {
     ++p->attempt;
     goto done;
   }
-  if (outcome_is_fatal(r->solving.report.outcome)) TRY(loop_no_equilibrium(r));
+  TRY(finish_attempt(r, t));
+  if (r->solving.report.outcome == STOPPED_STAGNATION) tried *= 2.0;
   p->attempt = 1;
   ++p->increment_no;
   TRY(loop_accept(r, attempt, p->increment_no, t == end, cpu));
-  p->dt = fmax(least_length(r),
-               settled ? next_length(s, tried, planned, error) : tried);
+  p->dt = fmax(least_length(r), settled ? next_length(s, tried, planned, error)
+                                        : fmin(tried, s->dt_max));
 done:
   r->course.missed = 0;
   return st;

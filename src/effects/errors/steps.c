@@ -459,10 +459,22 @@ static double strain_part(const run *r, const paths *own) {
   return share_of(own->path->error.strain - own->now.strain, left);
 }
 
+/* 1: no shorter increment would find an equilibrium (loop_cut_helps). */
+static int is_stuck(const run *r) {
+  return r->solving.report.outcome == STOPPED_STAGNATION;
+}
+
+/* 1: strains without stress outgrow their share. */
+static int flows_on(const run *r, const paths *own, int hides) {
+  return hides && !is_stuck(r) &&
+         strain_part(r, own) > r->step->accuracy.time_share;
+}
+
 /* What an attempt adds to the error of the stresses, sqrt(J): none where they
  * are rounding, in both paths. */
 static double part_of(const run *r, double more, int hides) {
-  return hides && !differs(r, fmax(more, 0.0)) ? 0.0 : more;
+  const int none = hides && !differs(r, fmax(more, 0.0));
+  return none || is_stuck(r) ? 0.0 : more;
 }
 
 static status attempt_balanced(run *r, paths *own) {
@@ -491,7 +503,7 @@ static status attempt_balanced(run *r, paths *own) {
   PASS(measure(r, own, &part));
   PASS(rounding_hides_stresses(r, &hides));
   part = part_of(r, part - before, hides);
-  const int flows = hides && strain_part(r, own) > s->accuracy.time_share;
+  const int flows = flows_on(r, own, hides);
   allowed = allowed_part(r, before);
   double dt = next_length(r, tried, planned, part, allowed);
   if (flows) dt = SHORTER * tried;

@@ -248,6 +248,7 @@ status loop_accept(run *r, int attempt, int increment_no, int last,
 
 int loop_cut_helps(const run *r) {
   const outcome o = r->solving.report.outcome;
+  if (o == STOPPED_STAGNATION && r->course.in_a_row > 0) return 0;
   if (o == STOPPED_STAGNATION && r->at.attempt > 1)
     return r->solving.report.residual < r->at.residual;
   return o != STOPPED_UNFIT;

@@ -18,7 +18,8 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why);
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last);
 /* 1 if a shorter increment may converge where this attempt did not: the solver
- * does not stagnate, or at a lower residual than before. */
+ * does not stagnate, or at a lower residual than before, after an increment
+ * that converged. Where there is no equilibrium increments grow. */
 int loop_cut_helps(const run *r);
 /* Reports that there is no equilibrium: ERR_SINGULAR. */
 status loop_no_equilibrium(run *r);
