@@ -20,7 +20,7 @@ static const struct {
               {"input/hertz_sphere/hertz_sphere", "-D NC=4", 3},
               {"input/hertz_sphere/hertz_sphere", "", 1},
               {"input/crack/crack", "-D N=10", 0.3},
-              {"input/crack/partly_closed", "-D N=10", 1},
+              {"input/crack/partly_closed", "-D N=10", 3},
               {"input/press_fit/press_fit", "", 0.3},
               {"input/roller/roller", "", 1},
               {"input/tempered_strip/tempered_strip", "", 3},
