@@ -239,8 +239,8 @@ static double tolerance_of(const random_deck *d, twin_kind kind) {
 
 /* 1: of errors and goals too: bit for bit, but for the power in the formula of
  * a gap, which they evaluate within elements; renumbered; with two threads not:
- * where a node that may slip moves by rounding alone, estimates that are not
- * reliable differ. */
+ * of a body that may rock on the one node that touches, the adjoint of a goal
+ * is rounding, and its verdict few_nodes. */
 static int tells_same(const random_deck *d, twin_kind kind, double tol,
                       const job *base, const job *j, char what[400]) {
   int formula = 0;
