@@ -37,6 +37,14 @@ static double add(double a, double b) { return a + b; }
 static double subtract(double a, double b) { return a - b; }
 static double multiply(double a, double b) { return a * b; }
 static double divide(double a, double b) { return a / b; }
+/* Small whole powers are products: bits stay in units that differ by powers of
+ * two, which pow rounds otherwise. */
+static double power(double a, double b) {
+  double product = a;
+  if (b != 2 && b != 3 && b != 4) return pow(a, b);
+  for (int k = 1; k < b; ++k) product *= a;
+  return product;
+}
 static double modulo(double a, double b) { return a - b * floor(a / b); }
 static double smaller(double a, double b) { return b < a || b != b ? b : a; }
 static double larger(double a, double b) { return b > a || b != b ? b : a; }
@@ -91,7 +99,7 @@ static const operator_row operators[] = {
   {"=",  0, 0, NULL,          "equality is written =="},
   {"+",  5, 0, add,           NULL}, {"-",  5, 0, subtract,  NULL},
   {"*",  6, 0, multiply,      NULL}, {"/",  6, 0, divide,    NULL},
-  {"^",  8, 1, pow,           NULL},
+  {"^",  8, 1, power,         NULL},
 };
 /* clang-format on */
 

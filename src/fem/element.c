@@ -442,7 +442,7 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
   *out = (deformation){.volume = 1};
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     double G[9];
-    /* a constant is the length of loops without a branch */
+    /* loops of a length that the compiler knows */
     if (d->mesh->dim == 2)
       gradient_at(d, 2, e, u, G);
     else

@@ -77,9 +77,9 @@ static void warn_slip(run *r, int i, double *edge) {
   const int dim = r->msh->dim, id = r->surface->contact_id[i];
   const contact *c = &r->m->contacts[id];
   const double *u = r->now.uc + dim * i;
+  if (!(edge[id] > 0.0) || !(r->now.rc[dim * i] < 0.0)) return;
   const double slip = dim == 3 ? hypot(u[1], u[2]) : fabs(u[1]);
-  if (!(edge[id] > 0.0) || slip <= edge[id] || !(r->now.rc[dim * i] < 0.0))
-    return;
+  if (slip <= edge[id]) return;
   message_add(r->m->log, P4038, &c->at,
               "step %d, increment %d, time %g: %s %s: node %zu has slipped by "
               "%.3g, faces are up to %.3g long: it is still pressed on those "

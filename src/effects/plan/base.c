@@ -49,7 +49,7 @@ static effect_work stresses(const plan_sizes *s) {
                        s->shown * s->elements * plan_element_work(s)};
 }
 
-/* Between the increments that are shown of the elements at supports alone. */
+/* Of all elements in increments that are shown, else of those at supports. */
 static effect_work reactions(const plan_sizes *s) {
   enum { AROUND = 4 }; /* elements a node of the border */
   const double there = fmin(s->elements, AROUND * s->held);
