@@ -74,6 +74,48 @@ START_TEST(elements_inside_out_are_told) {
 }
 END_TEST
 
+/* Pressed on a cylinder or a plane, then the one or the other moves aside by
+ * less or more than a face: a plane is the same everywhere, an obstacle that
+ * moves is met where it is, and along a zone of 0.4 to each side a slip of 0.07
+ * changes the gap by (0.07 / 0.4)^2 = 3 % of what it varies by. */
+START_TEST(slip_along_a_bent_obstacle_is_told) {
+  static const struct {
+    int n, radius; /* segments; 0: a plane */
+    double body, obstacle;
+    int told;
+  } rows[] = {{4, 1, 0.24, 0.0, 0},
+              {4, 1, 0.35, 0.0, 1},
+              {4, 1, 0.0, -0.35, 0},
+              {4, 0, 0.35, 0.0, 0},
+              {16, 100, 0.07, 0.0, 0}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+    char shape[40] = "PLANE";
+    job j = job_begin("aside");
+    if (rows[i].radius > 0)
+      snprintf(shape, sizeof shape, "CYLINDER, RADIUS=%d", rows[i].radius);
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "aside.inp",
+              "*PARAMETER\nN = %d\n*MESH, FILE=square.geo\n"
+              "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 0., 1., 0., 2., 1.\n"
+              "*OBSTACLE, NAME=O, TYPE=%s, AMPLITUDE=A\n0.5, %d\n%s"
+              "MOVE, %g, 0.\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O, NORMAL=OBSTACLE\n"
+              "*STEP\n*STATIC\n1.\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.002\n"
+              "*END STEP\n*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\n"
+              "TOP, 1, 1, %g\n*END STEP\n",
+              rows[i].n, shape, -rows[i].radius,
+              rows[i].radius > 0 ? "" : "0., 1.\n", rows[i].obstacle,
+              rows[i].body);
+    ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
+    ck_told(&j, "P4038", "step 2, increment 2, time 2: *CONTACT C: node ",
+            rows[i].told);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Also by a run that goes on where nothing is left to do. */
 START_TEST(a_contact_that_never_touched_is_told) {
   static const char lifted[] =
@@ -293,6 +335,7 @@ int main(void) {
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_test(tests, strains_above_five_percent_are_told);
   tcase_add_test(tests, elements_inside_out_are_told);
+  tcase_add_test(tests, slip_along_a_bent_obstacle_is_told);
   tcase_add_test(tests, a_contact_that_never_touched_is_told);
   tcase_add_test(tests, a_ball_that_no_normal_meets_is_told);
   tcase_add_test(tests, a_touch_of_an_increment_that_does_not_count_is_one);

@@ -1,17 +1,19 @@
 /*
  * Warnings about a solution of the equations that may be meaningless: strains
  * that are not small, elements turned inside out by the displacements, bodies
- * that slip farther than the faces where they touch are long, a contact that no
- * node ever touched. Each is reported once a run.
+ * that slip farther than the faces where they touch are long, past another body
+ * or along an obstacle that is not straight, a contact that no node ever
+ * touched. Each is reported once a run.
  */
 #include "effects/plan/effect.h"
+#include "run/history/loop.h"
 
 typedef struct warnings {
   int strain, folded; /* 1: told */
   int *touched;       /* [n_contact] 1: a node has touched */
   double *least;      /* [n_contact] m, gap now, if none has */
-  double *edge; /* [n_contact] m, longest of the faces of a pair whose partners
-                   stay; 0: slip is told, or may be large */
+  double *edge; /* [n_contact] m, longest of its faces; 0: slip is told, or may
+                   be large */
 } warnings;
 
 static const double LARGE = 0.05; /* -, strain */
@@ -72,6 +74,35 @@ static double longest_edge(const mesh *m, const mesh_group *g) {
   return longest;
 }
 
+/* Largest less least gap of the pressed nodes of a contact, m. */
+static double gaps_apart(const run *r, int contact_id) {
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (int i = 0; i < r->nodes.n; ++i) {
+    if (r->surface->contact_id[i] != contact_id ||
+        !(r->now.rc[r->msh->dim * i] < 0.0))
+      continue;
+    least = fmin(least, r->problem.gap[i]);
+    most = fmax(most, r->problem.gap[i]);
+  }
+  return most - least;
+}
+
+/* 1: where node i has slipped to, its gap to the obstacle is another. */
+static int leaves_gap(const run *r, int i, double slip) {
+  const int dim = r->msh->dim, id = r->surface->contact_id[i];
+  const obstacle *o = r->faces.pairs[id].support;
+  const double *u = r->now.u + dim * r->surface->node_id[i],
+               *n = r->surface->frame + dim * dim * i,
+               *x = r->surface->x + dim * i;
+  const double along = dot(dim, n, u);
+  double to[3] = {0.0};
+  for (int c = 0; c < dim; ++c) to[c] = x[c] + u[c] - along * n[c];
+  const double change = obstacle_gap(o, dim, to, n, r->now.t) -
+                        obstacle_gap(o, dim, x, n, r->now.t);
+  return fabs(change) > LARGE * gaps_apart(r, id) + rounding_of_gaps(r) +
+                            16 * DBL_EPSILON * slip;
+}
+
 /* Contact node i, pressed after a slip of more than a face since time 0. */
 static void warn_slip(run *r, int i, double *edge) {
   const int dim = r->msh->dim, id = r->surface->contact_id[i];
@@ -79,13 +110,14 @@ static void warn_slip(run *r, int i, double *edge) {
   const double *u = r->now.uc + dim * i;
   if (!(edge[id] > 0.0) || !(r->now.rc[dim * i] < 0.0)) return;
   const double slip = dim == 3 ? hypot(u[1], u[2]) : fabs(u[1]);
-  if (slip <= edge[id]) return;
+  if (slip <= edge[id] || (!c->is_pair && !leaves_gap(r, i, slip))) return;
   message_add(r->m->log, P4038, &c->at,
               "step %d, increment %d, time %g: %s %s: node %zu has slipped by "
-              "%.3g, faces are up to %.3g long: it is still pressed on those "
-              "of time 0",
+              "%.3g, faces are up to %.3g long: it is still pressed %s",
               run_step_id(r) + 1, r->at.increment_no, r->now.t, contact_card(c),
-              c->name, r->surface->node_no[i], slip, edge[id]);
+              c->name, r->surface->node_no[i], slip, edge[id],
+              c->is_pair ? "on those of time 0"
+                         : "by the obstacle where it was at time 0");
   edge[id] = 0.0;
 }
 
@@ -133,12 +165,12 @@ static status warnings_new(run *r, void **self) {
                OF(own->least, r->m->n.contact), OF(own->edge, r->m->n.contact));
   for (int i = 0; i < r->m->n.contact; ++i) {
     const contact *c = &r->m->contacts[i];
-    for (int k = 0; k < 2 && c->is_pair && !c->update; ++k)
-      own->edge[i] = fmax(
-          own->edge[i],
-          longest_edge(
-              r->msh,
-              &r->msh->group[k == 0 ? c->pair.slave_id : c->pair.master_id]));
+    const mesh_group *g = r->msh->group;
+    if (c->update || c->force.given) continue;
+    own->edge[i] = longest_edge(r->msh, &g[c->group_id]);
+    if (c->is_pair)
+      own->edge[i] =
+          fmax(own->edge[i], longest_edge(r->msh, &g[c->pair.master_id]));
   }
   return OK;
 }
