@@ -437,8 +437,14 @@ static double strain_square(const double *G) {
          0.5 * (yz * yz + zx * zx + xy * xy);
 }
 
+/* Square of the angle of a small rotation, the skew part of a gradient. */
+static double rotation_square(const double *G) {
+  const double yz = G[7] - G[5], zx = G[2] - G[6], xy = G[3] - G[1];
+  return 0.25 * (yz * yz + zx * zx + xy * xy);
+}
+
 void domain_deformation(const domain *d, const double *u, deformation *out) {
-  double largest = 0;
+  double largest = 0.0, farthest = 0.0;
   *out = (deformation){.volume = 1};
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     double G[9];
@@ -447,7 +453,12 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
       gradient_at(d, 2, e, u, G);
     else
       gradient_at(d, 3, e, u, G);
-    const double square = strain_square(G), volume = volume_ratio(G);
+    const double square = strain_square(G), turn = rotation_square(G),
+                 volume = volume_ratio(G);
+    if (turn > farthest) {
+      farthest = turn;
+      out->rotation_elem = e;
+    }
     if (square > largest) {
       largest = square;
       out->strain_elem = e;
@@ -458,4 +469,5 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
     }
   }
   out->strain = sqrt(largest);
+  out->rotation = sqrt(farthest);
 }

@@ -199,11 +199,12 @@ void domain_internal_force(const domain *d, const double *sigma, double *F);
  * elements there are looked at. Not of averaged elements (cluster). */
 void domain_held_force(const domain *d, const double *u,
                        const unsigned char *held, double *F);
-/* The largest strain, the root of e:e, and the least volume over that of the
- * mesh, not positive where an element is turned inside out. */
+/* The largest strain, the root of e:e, the largest rotation, of small ones, and
+ * the least volume over that of the mesh, not positive where an element is
+ * turned inside out. */
 typedef struct deformation {
-  double strain, volume; /* - */
-  int strain_elem, volume_elem;
+  double strain, rotation, volume; /* -, rad, - */
+  int strain_elem, rotation_elem, volume_elem;
 } deformation;
 void domain_deformation(const domain *d, const double *u, deformation *out);
 double domain_strain_energy(const domain *d, const double *u); /* J */

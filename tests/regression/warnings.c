@@ -63,6 +63,27 @@ START_TEST(strains_above_five_percent_are_told) {
 }
 END_TEST
 
+/* The end of a beam of length 10 and height 1 turns by 1.5 v / 10 where it is
+ * moved by v; the strain is 0.015 v. */
+START_TEST(rotations_above_a_tenth_are_told) {
+  static const double v[] = {0.6, 0.75};
+  for (int i = 0; i < 2; ++i) {
+    job j = job_begin("beam");
+    job_copy(&j, "tests/regression/mesh/square.geo");
+    job_write(&j, "beam.inp",
+              "*PARAMETER\nN = 12\nKIND = 2\nLX = 10\n"
+              "*MESH, FILE=square.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*STATIC\n1.\n"
+              "*BOUNDARY\nLEFT, 1, 2\nRIGHT, 2, 2, %g\n*END STEP\n",
+              v[i]);
+    ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
+    ck_told(&j, "P4039", "step 1, increment 1, time 1: the rotation of", i);
+    ck_told(&j, "P4019", "strains are taken as small", 0);
+    job_end(&j);
+  }
+}
+END_TEST
+
 START_TEST(elements_inside_out_are_told) {
   job j = run_block(0.0, "", PRESSED("990."));
   ck_told(&j, "P4020", "inside out", 0);
@@ -334,6 +355,7 @@ int main(void) {
   TCase *tests = tcase_create("warnings");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_test(tests, strains_above_five_percent_are_told);
+  tcase_add_test(tests, rotations_above_a_tenth_are_told);
   tcase_add_test(tests, elements_inside_out_are_told);
   tcase_add_test(tests, slip_along_a_bent_obstacle_is_told);
   tcase_add_test(tests, a_contact_that_never_touched_is_told);

@@ -1,48 +1,58 @@
 /*
  * Warnings about a solution of the equations that may be meaningless: strains
- * that are not small, elements turned inside out by the displacements, bodies
- * that slip farther than the faces where they touch are long, past another body
- * or along an obstacle that is not straight, a contact that no node ever
- * touched. Each is reported once a run.
+ * or rotations that are not small, elements turned inside out by the
+ * displacements, bodies that slip farther than the faces where they touch are
+ * long, past another body or along an obstacle that is not straight, a contact
+ * that no node ever touched. Each is reported once a run.
  */
 #include "effects/plan/effect.h"
 #include "run/history/loop.h"
 
 typedef struct warnings {
-  int strain, folded; /* 1: told */
-  int *touched;       /* [n_contact] 1: a node has touched */
-  double *least;      /* [n_contact] m, gap now, if none has */
+  int strain, rotation, folded; /* 1: told */
+  int *touched;                 /* [n_contact] 1: a node has touched */
+  double *least;                /* [n_contact] m, gap now, if none has */
   double *edge; /* [n_contact] m, longest of its faces; 0: slip is told, or may
                    be large */
 } warnings;
 
-static const double LARGE = 0.05; /* -, strain */
+static const double LARGE = 0.05; /* -, strain, change of a gap */
+static const double FAR = 0.1;    /* rad, rotation */
 
 static const char *section_of(const run *r, int elem_id) {
   return r->m->sections[r->m->elem_section[elem_id]].elset;
 }
 
+/* Told once: "the strain of", an element, what it is. */
+static void tell_element(run *r, int *told, message_id id, const char *what,
+                         int elem_id, const char *is) {
+  *told = 1;
+  message_add(r->m->log, id, &r->step->at,
+              "step %d, increment %d, time %g: the %s element %zu (group %s) "
+              "%s",
+              run_step_id(r) + 1, r->at.increment_no, r->now.t, what,
+              r->msh->elem_no[elem_id], section_of(r, elem_id), is);
+}
+
 static void warn_deformation(run *r, warnings *reported) {
   deformation x;
+  char is[80];
   if (reported->strain && reported->folded) return;
   domain_deformation(&r->body.d, r->now.u, &x);
   if (!reported->strain && x.strain > LARGE) {
-    reported->strain = 1;
-    message_add(r->m->log, P4019, &r->step->at,
-                "step %d, increment %d, time %g: the strain of element %zu "
-                "(group %s) is %.3g %%; strains are taken as small",
-                run_step_id(r) + 1, r->at.increment_no, r->now.t,
-                r->msh->elem_no[x.strain_elem], section_of(r, x.strain_elem),
-                100.0 * x.strain);
+    snprintf(is, sizeof is, "is %.3g %%; strains are taken as small",
+             100.0 * x.strain);
+    tell_element(r, &reported->strain, P4019, "strain of", x.strain_elem, is);
   }
-  if (!reported->folded && x.volume <= 0.0) {
-    reported->folded = 1;
-    message_add(r->m->log, P4020, &r->step->at,
-                "step %d, increment %d, time %g: the displacements turn "
-                "element %zu (group %s) inside out",
-                run_step_id(r) + 1, r->at.increment_no, r->now.t,
-                r->msh->elem_no[x.volume_elem], section_of(r, x.volume_elem));
+  if (!reported->strain && !reported->rotation && x.rotation > FAR) {
+    snprintf(is, sizeof is, "is %.3g rad; rotations are taken as small",
+             x.rotation);
+    tell_element(r, &reported->rotation, P4039, "rotation of", x.rotation_elem,
+                 is);
   }
+  if (!reported->folded && x.volume <= 0.0)
+    tell_element(r, &reported->folded, P4020, "displacements turn",
+                 x.volume_elem, "inside out");
 }
 
 /* Which contacts touch; the listing reports the first contact. */
@@ -178,6 +188,7 @@ static status warnings_new(run *r, void **self) {
 static status keep(run *r, void *self, archive *a) {
   warnings *own = self;
   PASS(archive_ints(a, "told_strain", &own->strain, 1));
+  PASS(archive_ints(a, "told_rotation", &own->rotation, 1));
   PASS(archive_ints(a, "told_folded", &own->folded, 1));
   PASS(archive_ints(a, "touched", own->touched, r->m->n.contact));
   PASS(archive_reals(a, "least_gap", own->least, r->m->n.contact));
