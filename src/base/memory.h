@@ -23,9 +23,9 @@
 #define CLEAR(to, n) memset((to), 0, (size_t)(n) * sizeof *(to))
 
 /* for (EACH(const load, l, list, n)): l is one of n items after another. */
-#define EACH(type, item, list, n)                \
-  type *item = (list), *item##_end = item + (n); \
-  item < item##_end;                             \
+#define EACH(type, item, list, n)                                 \
+  type *item = (list), *item##_end = (n) > 0 ? item + (n) : item; \
+  item < item##_end;                                              \
   ++item
 
 /* NEW_REALS(n, &a, &b, ...): n zeroed numbers for each, or FAIL. */
