@@ -285,6 +285,26 @@ START_TEST(forces_that_move_nodes_prove_nothing) {
 }
 END_TEST
 
+/* A node that only its friction moves off the wall, u_n = 2 r_t: a limit of 0.5
+ * moves it by up to 1. */
+START_TEST(friction_below_its_limit_may_give_way) {
+  static const double into[] = {0.9, 1.1}, force[] = {1, 0};
+  for (int k = 0; k < 2; ++k) {
+    double workspace[6];
+    contact_case c = case_new(2, 1, 0.3);
+    c.cp.W = c.A;
+    c.cp.A = NULL;
+    c.A[2] = 2.0;
+    c.A[3] = 1.0;
+    c.f[0] = into[k];
+    c.g0[0] = 0.5;
+    c.cp.B = NULL;
+    ck_assert_int_eq(proof_holds(&c.cp, force, workspace), k);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* Nodes that no force moves, all open: no forces. */
 START_TEST(compliance_of_zero_is_solved_without_forces) {
   const solver_ops *ops;
@@ -362,5 +382,6 @@ UNIT_MAIN("proof", balanced_load_has_no_proof,
           slip_is_no_part_of_the_proof,
           forces_without_bound_do_not_hide_a_body_too_thick,
           forces_that_move_nodes_prove_nothing,
+          friction_below_its_limit_may_give_way,
           compliance_of_zero_is_solved_without_forces,
           large_sparse_compliance_is_not_searched)
