@@ -330,6 +330,29 @@ START_TEST(crack_that_sticks_is_none) {
 }
 END_TEST
 
+/* Both lips of a crack have a node at its points: that above counts, of a body
+ * that is cut the one with larger x. */
+START_TEST(points_of_a_crack_are_on_the_lip_above) {
+  job j = job_begin("cut");
+  job_copy(&j, "tests/regression/bad/square.msh");
+  job_write(&j, "cut.inp",
+            "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=MIDDLE\n"
+            "*GOAL, NAME=A, QUANTITY=DISPLACEMENT, COMPONENT=1\n0.5, 0.\n"
+            "*GOAL, NAME=B, QUANTITY=DISPLACEMENT, COMPONENT=1\n0.5, 0.5\n"
+            "*GOAL, NAME=C, QUANTITY=DISPLACEMENT, COMPONENT=1\n0.5, 1.\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\nRIGHT, 1, 1, 0.1\n"
+            "RIGHT, 2, 2\n*PRINT, GOALS\n*OUTPUT, HDF5=NO\n*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  for (int k = 0; k < 3; ++k)
+    ck_assert_double_eq_tol(dat_at(&t, k, "value"), 0.1, 1e-12);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* In space the integral itself lacks some percent: the band has it, and it is
  * not called reliable. */
 START_TEST(disc_in_space) {
@@ -441,5 +464,6 @@ UNIT_MAIN("goals_cracks", target_of_a_closed_crack, open_crack_in_a_plate,
           wide_crack_in_a_coarse_strip, domain_of_long_elements,
           closed_crack_that_slips, error_of_the_solver_in_a_factor,
           crack_that_sticks_is_none, disc_in_space, no_factor_no_estimate,
+          points_of_a_crack_are_on_the_lip_above, no_factor_no_estimate,
           target_of_a_factor, target_on_meshes_that_scatter,
           target_of_an_interface_is_refused, tip_is_an_end_for_other_goals)

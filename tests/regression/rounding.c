@@ -560,6 +560,43 @@ START_TEST(nothing_is_told_of_plain_bodies) {
 }
 END_TEST
 
+/* Heated in a cavity that it fills, held by supports or by the walls, a body
+ * near incompressibility stays in place but for rounding. */
+START_TEST(body_heated_in_its_cavity_is_right) {
+  static const char *const nu[] = {"0.49999", "0.4999999"};
+  char walls[4 * 160] = "", *to = walls;
+  static const char *const wall[][3] = {{"LEFT", "0., 0.", "1., 0."},
+                                        {"RIGHT", "1., 1.", "-1., 0."},
+                                        {"BOTTOM", "0., 0.", "0., 1."},
+                                        {"TOP", "1., 1.", "0., -1."}};
+  const double poisson = strtod(nu[_i / 2], NULL);
+  job j;
+  begin(&j, "rect 3 3 1 1", &as_it_is);
+  for (int k = 0; k < 4; ++k)
+    to += sprintf(to,
+                  "*OBSTACLE, NAME=%s, TYPE=PLANE\n%s\n%s\n"
+                  "*CONTACT, NAME=%s, GROUP=%s, OBSTACLE=%s\n",
+                  wall[k][0], wall[k][1], wall[k][2], wall[k][0], wall[k][0],
+                  wall[k][0]);
+  job_write(
+      &j, "pressed.inp",
+      "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., %s\n"
+      "*EXPANSION\n1E-5\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+      "%s*STEP\n*STATIC\n%s*TEMPERATURE\nBODY, 100.\n"
+      "*PRINT, ELEMENTS\n*END STEP\n",
+      nu[_i / 2], _i % 2 == 0 ? "" : walls,
+      _i % 2 == 0 ? "*BOUNDARY\nLEFT, 1\nRIGHT, 1\nBOTTOM, 2\nTOP, 2\n" : "");
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "ELEMENTS", -1);
+  for (int k = 0; k < 18; ++k)
+    ck_assert_double_eq_tol(dat_at(&t, k, "stress_yy") * (1 - 2 * poisson),
+                            -1e-3, 1e-12);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* A load straight onto a wall, in whose corner the body touches a roller askew:
  * the wall takes all of it, and nothing else is there but rounding, or what the
  * solver has left: a loose tolerance may leave strains that are wrong (exit 1),
@@ -662,6 +699,7 @@ int main(void) {
       tests, pressures_below_the_rounding_of_coordinates_are_told, 0, 4);
   tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
+  tcase_add_loop_test(tests, body_heated_in_its_cavity_is_right, 0, 4);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
   tcase_add_loop_test(tests, load_that_friction_of_open_nodes_takes_is_right, 0,
                       6);

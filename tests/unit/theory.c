@@ -379,6 +379,23 @@ START_TEST(inequality_of_no_number_is_not_met) {
 }
 END_TEST
 
+/* A body that nothing loads is pushed out of its obstacle: forces that are
+ * rounding of its motion tell nothing, others do. */
+START_TEST(inequality_of_rounding_alone_is_met) {
+  double A[16] = {1e3, 0, -1e3, 0, 0, 1e3, 0, 0, -1e3, 0, 1e3, 0, 0, 0, 0, 1e3};
+  double f[4] = {1e-17, 0, 4e-18, 0}, u[4] = {-5e-5, 0, -5e-5, 0};
+  double gap[2] = {-5e-5, 1e-2}, least;
+  int fields;
+  const contact_problem cp = {
+      .dim = 2, .n = 2, .m = 4, .A = A, .f = f, .gap = gap, .floating = 1};
+  ck_assert_int_eq(inequality_least(&cp, u, &least, &fields), OK);
+  ck_assert_double_ge(least, -1e-10);
+  f[2] = 1e-10;
+  ck_assert_int_eq(inequality_least(&cp, u, &least, &fields), OK);
+  ck_assert_double_lt(least, -1e-3);
+}
+END_TEST
+
 /* ---- parts -------------------------------------------------------------- */
 
 /* A problem with its limit frozen has the same limit and the same solution. */
@@ -465,6 +482,7 @@ UNIT_MAIN("theory", largest_eigenvalues_are_those_of_closed_forms,
           bounds_hold_under_the_guaranteed_limit,
           wrong_answers_violate_the_bounds, inequality_tells_wrong_states,
           inequality_of_no_number_is_not_met,
+          inequality_of_rounding_alone_is_met,
           frozen_problems_have_the_same_solution,
           block_held_by_contact_has_a_limit_and_no_bounds,
           refused_memory_is_told_and_returned)

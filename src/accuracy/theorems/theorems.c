@@ -23,6 +23,7 @@ typedef struct trial {
   const contact_problem *cp;
   const double *u;
   double *r, *w;       /* [m] A u - f; test field */
+  double *rounding;    /* [n] of r, N */
   double size;         /* of test fields, m */
   double force, whole; /* (|f| + |r|), |u|: norms of the diagonal */
   unsigned long long seed;
@@ -91,14 +92,15 @@ static void set_node(trial *s, int i, move how) {
   }
 }
 
-/* The inequality of node i; |w - u|^2 of the diagonal is added. */
+/* The inequality of node i, as far as rounding of its forces does not decide;
+ * |w - u|^2 of the diagonal is added. */
 static double part(const trial *s, int i, double *square) {
   const contact_problem *cp = s->cp;
   double sum = 0.0;
   for (int k = 0; k < cp->dim; ++k) {
     int dof = cp->dim * i + k;
     double d = s->w[dof] - s->u[dof];
-    sum += s->r[dof] * d;
+    sum += s->r[dof] * d + s->rounding[i] * fabs(d);
     *square += contact_diagonal(cp, dof) * d * d;
   }
   if (cp->g0 != NULL && !contact_has_side(cp, i))
@@ -140,14 +142,17 @@ static void test_penetration(trial *s) {
 
 status inequality_least(const contact_problem *cp, const double *u,
                         double *least, int *fields) {
-  OWNED double *r = NULL, *w = NULL;
+  OWNED double *r = NULL, *w = NULL, *rounding = NULL;
   *least = 0.0;
   *fields = 0;
   if (cp->m == 0) return OK;
   PASS_NEW_REALS(cp->m, &r, &w);
+  PASS_NEW(rounding, cp->n);
   trial s = {.cp = cp, .u = u, .r = r, .w = w, .least = HUGE_VAL, .seed = 1998};
+  s.rounding = rounding;
   COPY(w, u, cp->m);
   set_scales(&s);
+  contact_roundings(cp, u, r, rounding);
   try_nodes(&s);
   for (int k = 0; k < FIELDS_OF_ALL; ++k) {
     double value = 0.0, square = 0.0;

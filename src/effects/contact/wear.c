@@ -119,8 +119,8 @@ static const effect_card *find_wear(const run *r, double *D) {
   return worn;
 }
 
-/* An increment that did not converge may slip by anything: it is not the wear
- * that is refused, and none is taken. */
+/* An increment that did not converge, or goes on from one, may slip by
+ * anything: it is not the wear that is refused, and none is taken. */
 static status wear_off(run *r, void *self) {
   const int dim = r->msh->dim;
   double *depth = self, factor = 0.0;
@@ -128,7 +128,9 @@ static status wear_off(run *r, void *self) {
   const effect_card *worn = find_wear(r, D);
   PASS(overshoot(r, run_rows(r, 0, D), &factor));
   if (factor > 2.0)
-    return r->solving.report.outcome > 0 ? refuse(r, worn, factor) : OK;
+    return r->solving.report.outcome > 0 && r->course.unsettled == 0
+               ? refuse(r, worn, factor)
+               : OK;
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 0; a < dim; ++a)
       depth[dim * r->surface->node_id[i] + a] -=

@@ -294,6 +294,34 @@ static int nearest_node(const mesh *msh, const double *x, double *distance) {
   return best;
 }
 
+/* 1: a node of the lip above of a crack. */
+static int is_above(const mesh *msh, int node_id) {
+  for (int c = 0; c < msh->n_crack; ++c)
+    for (int f = 0; f < msh->crack[c].n; ++f)
+      for (int i = 0; i < msh->dim; ++i)
+        if (mesh_face_nodes(msh, msh->crack[c].plus[f])[i] == node_id) return 1;
+  return 0;
+}
+
+/* Of the nodes at one place, which the lips of a crack or bodies that touch
+ * have, the one above, whatever their numbers are; else the first. */
+static int choose_side(const model *m, const mesh *msh, const goal_card *g,
+                       int k, int id) {
+  int best = id, n = 0;
+  for (int i = 0; i < msh->n_node; ++i) {
+    if (distance_to(msh, i, msh->x + msh->dim * id) > NEAR * NEAR * msh->size)
+      continue;
+    ++n;
+    if (is_above(msh, i) > is_above(msh, best)) best = i;
+  }
+  if (n > 1)
+    message_add(m->log, P2068, &g->point_at[k],
+                "*GOAL %s: %d nodes are at this point; node %zu counts%s",
+                g->name, n, msh->node_no[best],
+                is_above(msh, best) ? ", of the lip above" : "");
+  return best;
+}
+
 /* The node of point k of a goal. */
 static int find_point(const model *m, const mesh *msh, const goal_card *g,
                       int k) {
@@ -309,7 +337,7 @@ static int find_point(const model *m, const mesh *msh, const goal_card *g,
                 model_has_target(m) ? "; TARGET= meshes again: make it a "
                                       "Point of the .geo"
                                     : "");
-  return id;
+  return g->quantity == GOAL_DISPLACEMENT ? choose_side(m, msh, g, k, id) : id;
 }
 
 /* The node of the front nearest to the point of a goal; P2021 if the point is

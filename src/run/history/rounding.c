@@ -284,13 +284,20 @@ static int is_noise(const run *r, double square) {
   return square > ALL * ALL * 2.0 * r->now.energy.strain;
 }
 
+/* What errors of displacements count against, m: the largest one, or that of
+ * strains without stress, where the body is held so that it stays in place. */
+static double largest_motion(const run *r) {
+  const size_t n = (size_t)r->m->ns * r->strains.eigen.n;
+  const double strain = n > 0 ? largest_entry(n, r->strains.eigen.e0) : 0.0;
+  return fmax(largest_entry(r->n_dof, r->now.u), strain * r->msh->size);
+}
+
 /* The loss by the error w of the displacements. */
 static void take_loss(run *r, misfit *x, double square) {
   r->errors.rounding = (rounding_loss){.found = 1, .norm = sqrt(square)};
   if (square > 0.0) {
     r->errors.rounding.energy = sqrt(square / (2.0 * r->now.peak_energy));
-    r->errors.rounding.u =
-        largest_entry(r->n_dof, x->w) / largest_entry(r->n_dof, r->now.u);
+    r->errors.rounding.u = largest_entry(r->n_dof, x->w) / largest_motion(r);
   }
   /* The stresses of the displacement w alone, over those of the solution. */
   domain plain = r->body.d;
