@@ -146,46 +146,68 @@ static archive *through_a_file(archive *a) {
   return a;
 }
 
-/* Workspaces of METHOD=AUTO and of the normal form: saved before each of a
- * series of loads, the other goes on from the file to the same bits. */
+/* The workspace of METHOD=AUTO (kind 0), or of the normal form by the nodes
+ * that are opened (1) or whole (2). */
+typedef struct workspace {
+  contact_solver *s;
+  normal_form nf;
+} workspace;
+
+static void keep_work(workspace *w, int kind, archive *a) {
+  ck_assert_int_eq(
+      kind == 0 ? contact_solver_keep(w->s, a) : normal_form_keep(&w->nf, a),
+      OK);
+}
+
+static solver_report solve_in(workspace *w, int kind, const contact_problem *cp,
+                              double *u, double *r) {
+  const solver_control control = {.tol = 1e-10};
+  solver_report rep;
+  status st;
+  if (kind == 0)
+    st = contact_solve(w->s, cp, NULL, u, r, &rep);
+  else
+    st = (kind == 1 ? normal_form_opened : normal_form_solve)(
+        &w->nf, cp, &control, u, r, &rep);
+  ck_assert_int_eq(st, OK);
+  return rep;
+}
+
+static void release_work(workspace *w) {
+  contact_solver_free(&w->s);
+  normal_form_free(&w->nf);
+}
+
+/* Saved before each of a series of loads, another goes on from the file to the
+ * same bits. */
 START_TEST(saved_work_goes_on_to_the_same_bits) {
   enum { FEW = 48, MANY = 150, MOST = 2 * MANY };
   unsigned long long seed = 4321;
   const solver_choice choice = {.tol = 1e-10};
-  const solver_control control = {.tol = 1e-10};
-  for (int k = 0; k < 18; ++k) { /* 0: AUTO, 1: opened nodes, 2: all */
+  for (int k = 0; k < 18; ++k) {
     const int kind = k % 3, auto_mu = k / 6 % 3;
     contact_case c =
         case_any(2 + k % 2, k % 6 == 2 ? MANY : FEW,
                  kind == 0 ? 0.2 * auto_mu : 0.0, 0, 500u + (unsigned)k);
     const size_t bytes = (size_t)c.cp.m * sizeof(double);
-    contact_solver *s[2] = {NULL, NULL};
-    normal_form nf[2] = {{0}, {0}};
+    workspace w[2] = {{0}, {0}};
     if (auto_mu == 0 || kind > 0) c.cp.g0 = c.cp.ut0 = NULL, c.cp.B = NULL;
-    ck_assert_int_eq(contact_solver_new(&choice, &s[0]), OK);
+    ck_assert_int_eq(contact_solver_new(&choice, &w[0].s), OK);
     for (int step = 0; step < 5; ++step) {
       double u[2][MOST], r[2][MOST];
       solver_report rep[2];
       archive *a = NULL;
       for (int i = 0; i < c.cp.m; ++i)
         c.f[i] += (step % 2 ? 0.01 : 1.0) * (case_random(&seed) - 0.5);
-      ck_assert_int_eq(contact_solver_new(&choice, &s[1]), OK);
+      ck_assert_int_eq(contact_solver_new(&choice, &w[1].s), OK);
       ck_assert_int_eq(archive_new(&a), OK);
-      for (int to = 0; to < 2; ++to) {
-        ck_assert_int_eq(kind == 0 ? contact_solver_keep(s[to], a)
-                                   : normal_form_keep(&nf[to], a),
-                         OK);
-        if (to == 0) a = through_a_file(a);
-      }
+      keep_work(&w[0], kind, a);
+      a = through_a_file(a);
+      keep_work(&w[1], kind, a);
       for (int to = 0; to < 2; ++to) {
         memcpy(u[to], c.u, bytes);
         memcpy(r[to], c.r, bytes);
-        ck_assert_int_eq(
-            (kind == 0
-                 ? contact_solve(s[to], &c.cp, NULL, u[to], r[to], &rep[to])
-                 : (kind == 1 ? normal_form_opened : normal_form_solve)(
-                       &nf[to], &c.cp, &control, u[to], r[to], &rep[to])),
-            OK);
+        rep[to] = solve_in(&w[to], kind, &c.cp, u[to], r[to]);
       }
       ck_assert_msg(rep[0].iterations == rep[1].iterations &&
                         memcmp(u[0], u[1], bytes) == 0 &&
@@ -194,12 +216,10 @@ START_TEST(saved_work_goes_on_to_the_same_bits) {
                     rep[1].iterations, rep[0].iterations);
       memcpy(c.u, u[0], bytes);
       memcpy(c.r, r[0], bytes);
-      contact_solver_free(&s[1]);
-      normal_form_free(&nf[1]);
+      release_work(&w[1]);
       archive_free(&a);
     }
-    contact_solver_free(&s[0]);
-    normal_form_free(&nf[0]);
+    release_work(&w[0]);
     case_free(&c);
   }
 }
