@@ -63,7 +63,6 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       size_t size) {
   words w = {text, size};
   double scale = contact_scale(cp), most = 0.0;
-  text[0] = '\0';
   OWNED_NEW(double, value, cp->n);
   OWNED_PARTS(pair, p, pair_new(cp->n, cp->m, &p));
   pair_set(cp, u, r, &p);
@@ -246,7 +245,6 @@ static int add_bad_number(const words *w, const verdict_scene *s) {
 status verdict_text(const verdict_scene *s, char *text, size_t size) {
   words w = {text, size};
   outcome end = RUNNING;
-  text[0] = '\0';
   if (add_bad_number(&w, s)) return OK;
   OWNED_NEW(double, v, s->cp->m);
   PASS(find_motion(s, v, &end));

@@ -20,13 +20,13 @@ typedef struct verdict_scene {
 } verdict_scene;
 
 /*
- * A clause about the unsolved problem, "" if nothing is known. A motion without
- * resistance is searched by complementary pivoting, up to 2000 contact nodes.
- * Errors: ERR_MEMORY.
+ * To "text", "": a clause about the unsolved problem, nothing if nothing is
+ * known. A motion without resistance is searched by complementary pivoting, up
+ * to 2000 contact nodes. Errors: ERR_MEMORY.
  */
 status verdict_text(const verdict_scene *s, char *text, size_t size);
-/* The nodes where the conditions are violated most, as such a clause; "" if
- * unknown. */
+/* The nodes where the conditions are violated most, as such a clause; nothing
+ * if unknown. */
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
                       const double *u, const double *r, char *text,
                       size_t size);

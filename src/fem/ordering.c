@@ -42,10 +42,7 @@ status graph_of_unknowns(const stiffness *k, graph *g) {
   return OK;
 }
 
-void graph_release(graph *g) {
-  RELEASE(g->start, g->next);
-  *g = (graph){0};
-}
+void graph_release(graph *g) { RELEASE(g->start, g->next); }
 
 typedef struct dissection {
   const graph *g;

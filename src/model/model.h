@@ -238,7 +238,7 @@ typedef struct time_points {
 typedef struct print_request { /* one table of *PRINT */
   int table;                   /* one bit of PRINT_* */
   const char *group;       /* nodes or elements of a group only; NULL: all */
-  int group_id;            /* -1: all */
+  int group_id;            /* of group */
   int frequency;           /* every n-th increment and the last; 0: last only */
   const char *points_name; /* NULL: frequency counts */
   const time_points *points; /* the same, borrowed */

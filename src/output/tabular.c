@@ -26,7 +26,7 @@ struct tabular {
 
 static const mesh_group *request_group(const mesh *msh,
                                        const print_request *p) {
-  if (p->group == NULL || p->group_id < 0) return NULL;
+  if (p->group == NULL) return NULL;
   return &msh->group[p->group_id];
 }
 

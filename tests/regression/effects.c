@@ -403,6 +403,35 @@ START_TEST(calls_are_as_expected) {
 }
 END_TEST
 
+/* JSON: the rows of each table, of all or of a group, are those written. */
+START_TEST(rows_are_as_expected) {
+  static const char *const requests[] = {
+      "*PRINT, CONTACT, TOTALS, NODES, ELEMENTS, ENERGY, REACTIONS, LOOP\n",
+      "*PRINT, NODES, GROUP=TOP\n*PRINT, ELEMENTS, GROUP=BODY\n"};
+  static const char *const tables[][2] = {{"nodes", "NODES"},
+                                          {"elements", "ELEMENTS"},
+                                          {"contact nodes", "CONTACT"},
+                                          {"resultants", "TOTALS"},
+                                          {"energies", "ENERGY"},
+                                          {"reactions", "REACTIONS"},
+                                          {"loops", "LOOP"}};
+  for (int k = 0; k < 2; ++k) {
+    job j = block("", requests[k], "");
+    char *text = job_file(&j, "json"), key[60];
+    for (int i = 0; i < (k == 0 ? 7 : 2); ++i) {
+      dat t = job_table(&j, tables[i][1], -1);
+      snprintf(key, sizeof key, "\"table of %s\"", tables[i][0]);
+      const char *at = strstr(strstr(text, key), "\"rows\": ");
+      ck_assert_msg(strtol(strchr(at, ':') + 1, NULL, 10) == t.n_row,
+                    "%s: %d, %.16s", tables[i][1], t.n_row, at);
+      dat_free(&t);
+    }
+    free(text);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Without the cost columns two runs give the same bytes. */
 START_TEST(no_timing_leaves_calls_alone) {
   job a = block("", bare, "--no-timing"), b = block("", bare, "--no-timing");
@@ -428,4 +457,4 @@ UNIT_MAIN("effects", check_prints_the_plan_of_the_listing,
           reactions_are_of_supports_alone, no_stage_runs_uncalled,
           every_effect_is_called_for, no_friction_no_tangential_unknown,
           nothing_rubs_no_loop_one_factor, calls_are_as_expected,
-          no_timing_leaves_calls_alone)
+          rows_are_as_expected, no_timing_leaves_calls_alone)

@@ -1,6 +1,7 @@
 /*
  * A contact group of more faces than those that face the obstacle: the whole
- * surface of a block gives the answer of its foot.
+ * surface of a block gives the answer of its foot. Two blocks that are mirror
+ * images, with a crack between them: each is one on a plane.
  */
 #include "base/base.h"
 #include "support/grid.h"
@@ -26,6 +27,10 @@ static int is_below(const mesh *m, const int *node) {
   for (int k = 0; k < m->dim; ++k)
     if (m->x[m->dim * node[k] + 1] > 1e-9) return 0;
   return 1;
+}
+
+static int is_at_zero(const mesh *m, const int *node) {
+  return m->x[2 * node[0] + 1] == 0 && m->x[2 * node[1] + 1] == 0;
 }
 
 static void write_block(const job *j, int dim, double slant) {
@@ -64,10 +69,10 @@ static job run_block(int dim, double slant, const char *group,
   return j;
 }
 
-static void compare(const job *a, const job *b, const char *table,
+static void compare(const job *a, const job *b, const char *table, int row,
                     const char *column) {
   dat p = job_table(a, table, -1), q = job_table(b, table, -1);
-  const double x = dat_at(&p, 0, column), y = dat_at(&q, 0, column);
+  const double x = dat_at(&p, row, column), y = dat_at(&q, row, column);
   ck_assert_msg(fabs(x - y) <= 1e-9 * fabs(x), "%s: %.12g, foot %.12g", column,
                 y, x);
   dat_free(&p);
@@ -79,9 +84,9 @@ static void compare_groups(int dim, double slant, const char *shape,
   static const char *const column[] = {"normal", "closed_area", "pressure_max"};
   job a = run_block(dim, slant, "FOOT", shape, law);
   job b = run_block(dim, slant, "ALL", shape, law);
-  for (int k = 0; k < 3; ++k) compare(&a, &b, "TOTALS", column[k]);
-  compare(&a, &b, "GOALS", "error");
-  compare(&a, &b, "ENERGY", "strain_energy");
+  for (int k = 0; k < 3; ++k) compare(&a, &b, "TOTALS", 0, column[k]);
+  compare(&a, &b, "GOALS", 0, "error");
+  compare(&a, &b, "ENERGY", 0, "strain_energy");
   job_end(&a);
   job_end(&b);
 }
@@ -115,5 +120,51 @@ START_TEST(sides_of_a_block_have_no_part_in_its_foot) {
 }
 END_TEST
 
-UNIT_MAIN("facing", sides_of_a_body_of_revolution_neither,
+/* Cells above y = 0, and their mirror images below: diagonals alternate. */
+static void write_mirrored(const job *j, int with_image) {
+  const int below = with_image ? 4 : 0;
+  mesh *m = make_grid_2d((int[2]){8, 4 + below}, (double[2]){2, 1 + below / 4});
+  char path[128];
+  ck_assert_ptr_nonnull(m);
+  for (int i = 0; i < m->n_node; ++i) m->x[2 * i + 1] -= 0.25 * below;
+  add_side_group(m, "LINE", is_at_zero);
+  snprintf(path, sizeof path, "%s/block.msh", j->dir);
+  msh_write(path, m);
+  memory_free(m);
+}
+
+static job run_mirrored(int with_image) {
+  job j = job_begin("facing");
+  write_mirrored(&j, with_image);
+  job_write(&j, "facing.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s"
+            "*GOAL, NAME=FORCE, QUANTITY=FORCE, CONTACT=C\n"
+            "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.6\n"
+            "1., 0.\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, \"-0.01*x\"\n%s"
+            "*DSLOAD\nRIGHT, P, \"1+x\"\n"
+            "*PRINT, GOALS\n*END STEP\n",
+            with_image ? "*CRACK, NAME=C, GROUP=LINE\n"
+                       : "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+                         "*CONTACT, NAME=C, GROUP=LINE, OBSTACLE=O\n",
+            with_image ? "BOTTOM, 1\nBOTTOM, 2, 2, \"0.01*x\"\n" : "");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  return j;
+}
+
+START_TEST(crack_between_mirror_images_is_a_plane) {
+  job a = run_mirrored(0), b = run_mirrored(1);
+  for (int goal = 0; goal < 2; ++goal) {
+    compare(&a, &b, "GOALS", goal, "value");
+    compare(&a, &b, "GOALS", goal, "error");
+  }
+  job_end(&a);
+  job_end(&b);
+}
+END_TEST
+
+UNIT_MAIN("facing", crack_between_mirror_images_is_a_plane,
+          sides_of_a_body_of_revolution_neither,
           sides_of_a_block_have_no_part_in_its_foot)

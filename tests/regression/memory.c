@@ -23,6 +23,7 @@ START_TEST(limit_by_hand_is_obeyed) {
   ck_assert_int_eq(job_run_deck(&j, deck, "--max-memory 1"), 5);
   ck_assert_ptr_nonnull(strstr(
       j.errors, "protis: the memory that --max-memory leaves is too little"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "\nprotis: in "));
   ck_assert_int_eq(job_run_deck(&j, deck, "-D N=16 --max-memory 10 --check"),
                    0);
   ck_assert_ptr_nonnull(strstr(j.text, "the run would be refused"));

@@ -335,14 +335,30 @@ END_TEST
 
 /* A block of two materials with a face each under one with a face, twice as
  * long: from three times the mean of their moduli on the softer is the slave.
+ * That of a cubic material is (9 C_11 + 6 C_12 + 12 C_44)/15, C_nnnn in the
+ * mean over all directions n (Voigt 1889).
  */
 START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
   static const struct {
     double left, right;
     const char *told;
-  } cases[] = {{1, 5.2, "OVER (softer)"},    {5.2, 1, "OVER (softer)"},
-               {1, 4.8, "OVER (coarser)"},   {4.8, 1, "OVER (coarser)"},
-               {0.1, 0.5, "UNDER (softer)"}, {0.5, 0.1, "UNDER (softer)"}};
+    double shear; /* not 0: a cubic material with C_12 = 0 */
+  } cases[] = {
+      {1, 5.2, "OVER (softer)", 0},    {5.2, 1, "OVER (softer)", 0},
+      {1, 4.8, "OVER (coarser)", 0},   {4.8, 1, "OVER (coarser)", 0},
+      {0.1, 0.5, "UNDER (softer)", 0}, {0.5, 0.1, "UNDER (softer)", 0},
+      {5, 5, "OVER (softer)", 0.1},    {4.8, 4.8, "OVER (coarser)", 0.1},
+      {1, 1, "OVER (softer)", 3.1},    {1, 1, "OVER (coarser)", 2.9}};
+  char elastic[2][160];
+  const double s = cases[_i].shear;
+  for (int k = 0; k < 2; ++k) {
+    const double C = k == 0 ? cases[_i].left : cases[_i].right;
+    sprintf(elastic[k],
+            s == 0 ? "*ELASTIC\n%g, 0\n"
+                   : "*ELASTIC, TYPE=ANISO\n%g, 0, %g, 0, 0, %g, 0,\n"
+                     "0, 0, %g, 0, 0, 0, 0,\n%g, 0, 0, 0, 0, 0, %g\n",
+            C, C, C, s, s, s);
+  }
   job j = job_begin("mean");
   job_write(&j, "mean.msh",
             "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
@@ -361,8 +377,7 @@ START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
             "$EndElements\n");
   job_write(
       &j, "mean.inp",
-      "*MESH, FILE=mean.msh\n*MATERIAL, NAME=L\n*ELASTIC\n%g, 0\n"
-      "*MATERIAL, NAME=R\n*ELASTIC\n%g, 0\n"
+      "*MESH, FILE=mean.msh\n*MATERIAL, NAME=L\n%s*MATERIAL, NAME=R\n%s"
       "*MATERIAL, NAME=U\n*ELASTIC\n1., 0\n"
       "*SOLID SECTION, ELSET=LEFT, MATERIAL=L\n"
       "*SOLID SECTION, ELSET=RIGHT, MATERIAL=R\n"
@@ -370,7 +385,7 @@ START_TEST(modulus_of_a_surface_is_the_mean_of_its_faces) {
       "*CONTACT PAIR, NAME=P\nUNDER, OVER\n*STEP\n*STATIC\n"
       "*BOUNDARY\nBOTTOM, 1, 2\nUNDER, 1\nUPPER, 1\n*DLOAD\nUPPER, BY, -1e-3\n"
       "*END STEP\n",
-      cases[_i].left, cases[_i].right);
+      elastic[0], elastic[1]);
   ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
   char *text = job_file(&j, "lst");
   ck_assert_msg(strstr(text, cases[_i].told) != NULL, "%s: %.60s",
@@ -685,7 +700,7 @@ int main(void) {
   tcase_add_test(tests, circle_of_slaves_names_its_pairs);
   tcase_add_test(tests, dovetail_holds_one_way);
   tcase_add_loop_test(tests, modulus_of_a_surface_is_the_mean_of_its_faces, 0,
-                      6);
+                      10);
   tcase_add_loop_test(tests, rows_add_up_to_the_resultant, 0, 2);
   tcase_add_loop_test(tests, rows_beside_a_held_node_are_as_others, 0, 5);
   tcase_add_loop_test(tests, masters_side_by_side_are_one_floor, 0, 6);

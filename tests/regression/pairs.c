@@ -4,6 +4,7 @@
  * refused.
  */
 #include "base/base.h"
+#include "scenes/mesh.h"
 #include "support/job.h"
 #include "support/traced.h"
 #include "support/unit.h"
@@ -574,6 +575,44 @@ START_TEST(adjusted_nodes_are_tied) {
 }
 END_TEST
 
+/* Three blocks 0.1 apart: of the pair that asks for it the nodes are moved, of
+ * the other the gap stays. */
+START_TEST(one_of_two_pairs_is_adjusted) {
+  const mesh_change none = {.scale = 0};
+  char path[100];
+  int *number = NULL;
+  job j = job_begin("stack");
+  snprintf(path, sizeof path, "%s/stack.msh", j.dir);
+  FILE *to = fopen(path, "w");
+  ck_assert_ptr_nonnull(to);
+  ck_assert(scene_mesh_write(to,
+                             "rect 4 2 1 1 + rect 4 2 1 1 at 0 1.1 + "
+                             "rect 4 2 1 1 at 0 2.2",
+                             &none, &number));
+  fclose(to);
+  free(number);
+  job_write(&j, "stack.inp",
+            "*MESH, FILE=stack.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=BODY2, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=BODY3, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P%s\nTOP, BOTTOM2\n"
+            "*CONTACT PAIR, NAME=Q%s\nTOP2, BOTTOM3\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nBOTTOM, 1, 2\nTOP2, 1, 2\nTOP3, 1, 2\n"
+            "*PRINT, CONTACT\n*END STEP\n",
+            _i == 0 ? ", ADJUST=YES" : "", _i == 1 ? ", ADJUST=YES" : "");
+  ck_assert_msg(job_run(&j, "--no-timing") == 0, "%s", j.errors);
+  dat t = job_table(&j, "CONTACT", -1);
+  ck_assert_int_eq(t.n_row, 10);
+  for (int i = 0; i < 10; ++i)
+    ck_assert_double_eq_tol(dat_at(&t, i, "gap"),
+                            dat_at(&t, i, "contact_no") == _i + 1 ? 0 : 0.1,
+                            1e-12);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* Faces of two meshes of one seat are up to 0.02 apart, the interference is a
  * tenth of that: the pressure is that of Lame all round. */
 START_TEST(a_fit_is_that_of_the_curve_not_of_the_facets) {
@@ -715,6 +754,7 @@ int main(void) {
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
   tcase_add_test(tests, adjusted_nodes_are_on_the_master);
   tcase_add_test(tests, adjusted_nodes_are_tied);
+  tcase_add_loop_test(tests, one_of_two_pairs_is_adjusted, 0, 2);
   tcase_add_test(tests, a_fit_is_that_of_the_curve_not_of_the_facets);
   tcase_add_test(tests, moment_of_both_sides_is_that_of_the_pair);
   tcase_add_loop_test(tests, moment_in_space_is_about_any_axis, 0, 2);

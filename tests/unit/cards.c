@@ -273,6 +273,36 @@ START_TEST(materials_and_goals) {
 }
 END_TEST
 
-UNIT_MAIN("cards", obstacles_and_contacts, materials_and_goals,
-          increments_of_a_step, solver_and_accuracy_of_a_step,
+/* u_a and stress_ab by the letters of the axes, the shears in their order xy,
+ * yz, zx; of others a scene has none. */
+START_TEST(components_of_a_reference_have_the_letters_of_its_scene) {
+  static const char *const axes[] = {"xyz", "rzt", "xyz"};
+  static const char *const shears[] = {"xyyzzx", "rz"};
+  for (int k = 0; k < 3; ++k) {
+    const int dim = k < 2 ? 2 : 3;
+    for (const char *a = "xyzrt"; *a != '\0'; ++a) {
+      char name[16];
+      const char *at = strchr(axes[k], *a);
+      const int axis = at == NULL ? -1 : (int)(at - axes[k]);
+      sprintf(name, "u_%c", *a);
+      ck_assert_int_eq(reference_place(name, dim, k == 1),
+                       axis < dim ? axis : -1);
+      sprintf(name, "stress_%c%c", *a, *a);
+      ck_assert_int_eq(reference_place(name, dim, k == 1),
+                       axis < 0 ? -1 : 3 + axis);
+    }
+    for (int s = 0; s < 4; ++s) {
+      char name[16];
+      sprintf(name, "stress_%.2s", s < 3 ? shears[0] + 2 * s : shears[1]);
+      const int has = k == 1 ? s == 3 : s == 0 || (k == 2 && s < 3);
+      ck_assert_int_eq(reference_place(name, dim, k == 1),
+                       has ? 6 + s % 3 : -1);
+    }
+  }
+}
+END_TEST
+
+UNIT_MAIN("cards", components_of_a_reference_have_the_letters_of_its_scene,
+          obstacles_and_contacts, materials_and_goals, increments_of_a_step,
+          solver_and_accuracy_of_a_step,
           a_step_of_nothing_is_like_the_one_before, outputs_of_a_step)

@@ -3,6 +3,7 @@
 #include "solver/choice/choice.h"
 #include "solver/solver.h"
 #include "support/contact_case.h"
+#include "support/folder.h"
 #include "support/planted.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
@@ -127,6 +128,98 @@ START_TEST(opened_nodes_are_kept_and_change_no_answer) {
     normal_form_free(&nf);
     free(u);
     free(r);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* What was put into an archive, read from a file; takes it over. */
+static archive *through_a_file(archive *a) {
+  char folder[64], path[100], before[100];
+  folder_new(folder);
+  snprintf(path, sizeof path, "%s/work", folder);
+  snprintf(before, sizeof before, "%s/before", folder);
+  ck_assert_msg(archive_write(a, path, before) == OK, "%s", status_message());
+  archive_free(&a);
+  ck_assert_int_eq(archive_read(path, &a), OK);
+  folder_remove(folder);
+  return a;
+}
+
+/* The workspace of METHOD=AUTO (kind 0), or of the normal form by the nodes
+ * that are opened (1) or whole (2). */
+typedef struct workspace {
+  contact_solver *s;
+  normal_form nf;
+} workspace;
+
+static void keep_work(workspace *w, int kind, archive *a) {
+  ck_assert_int_eq(
+      kind == 0 ? contact_solver_keep(w->s, a) : normal_form_keep(&w->nf, a),
+      OK);
+}
+
+static solver_report solve_in(workspace *w, int kind, const contact_problem *cp,
+                              double *u, double *r) {
+  const solver_control control = {.tol = 1e-10};
+  solver_report rep;
+  status st;
+  if (kind == 0)
+    st = contact_solve(w->s, cp, NULL, u, r, &rep);
+  else
+    st = (kind == 1 ? normal_form_opened : normal_form_solve)(
+        &w->nf, cp, &control, u, r, &rep);
+  ck_assert_int_eq(st, OK);
+  return rep;
+}
+
+static void release_work(workspace *w) {
+  contact_solver_free(&w->s);
+  normal_form_free(&w->nf);
+}
+
+/* Saved before each of a series of loads, another goes on from the file to the
+ * same bits. */
+START_TEST(saved_work_goes_on_to_the_same_bits) {
+  enum { FEW = 48, MANY = 150, MOST = 2 * MANY };
+  unsigned long long seed = 4321;
+  const solver_choice choice = {.tol = 1e-10};
+  for (int k = 0; k < 18; ++k) {
+    const int kind = k % 3, auto_mu = k / 6 % 3;
+    contact_case c =
+        case_any(2 + k % 2, k % 6 == 2 ? MANY : FEW,
+                 kind == 0 ? 0.2 * auto_mu : 0.0, 0, 500u + (unsigned)k);
+    const size_t bytes = (size_t)c.cp.m * sizeof(double);
+    workspace w[2] = {{0}, {0}};
+    if (auto_mu == 0 || kind > 0) c.cp.g0 = c.cp.ut0 = NULL, c.cp.B = NULL;
+    ck_assert_int_eq(contact_solver_new(&choice, &w[0].s), OK);
+    for (int step = 0; step < 5; ++step) {
+      double u[2][MOST], r[2][MOST];
+      solver_report rep[2];
+      archive *a = NULL;
+      for (int i = 0; i < c.cp.m; ++i)
+        c.f[i] += (step % 2 ? 0.01 : 1.0) * (case_random(&seed) - 0.5);
+      ck_assert_int_eq(contact_solver_new(&choice, &w[1].s), OK);
+      ck_assert_int_eq(archive_new(&a), OK);
+      keep_work(&w[0], kind, a);
+      a = through_a_file(a);
+      keep_work(&w[1], kind, a);
+      for (int to = 0; to < 2; ++to) {
+        memcpy(u[to], c.u, bytes);
+        memcpy(r[to], c.r, bytes);
+        rep[to] = solve_in(&w[to], kind, &c.cp, u[to], r[to]);
+      }
+      ck_assert_msg(rep[0].iterations == rep[1].iterations &&
+                        memcmp(u[0], u[1], bytes) == 0 &&
+                        memcmp(r[0], r[1], bytes) == 0,
+                    "problem %d, step %d: %d iterations, not %d", k, step,
+                    rep[1].iterations, rep[0].iterations);
+      memcpy(c.u, u[0], bytes);
+      memcpy(c.r, r[0], bytes);
+      release_work(&w[1]);
+      archive_free(&a);
+    }
+    release_work(&w[0]);
     case_free(&c);
   }
 }
@@ -339,6 +432,7 @@ END_TEST
 UNIT_MAIN("choice", frictionless_problems_are_solved_in_both_forms,
           what_is_kept_changes_no_answer,
           opened_nodes_are_kept_and_change_no_answer,
+          saved_work_goes_on_to_the_same_bits,
           unfit_method_is_named_with_the_reason,
           tolerance_is_met_in_the_form_given,
           last_method_solves_what_the_others_leave,

@@ -35,7 +35,8 @@ static double *dataset(const char *dir, const char *name, int dims[2]) {
   if (set >= 0) {
     hid_t space = H5Dget_space(set);
     hsize_t sizes[2] = {1, 1};
-    H5Sget_simple_extent_dims(space, sizes, NULL);
+    const int rank = H5Sget_simple_extent_dims(space, sizes, NULL);
+    ck_assert_msg((rank == 2) == (sizes[1] > 1), "%s: rank %d", name, rank);
     for (int k = 0; k < 2; ++k) dims[k] = (int)sizes[k];
     x = calloc((size_t)(sizes[0] * sizes[1]), sizeof *x);
     if (H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, x) < 0)

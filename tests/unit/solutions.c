@@ -162,6 +162,20 @@ START_TEST(one_family_alone_confirms_nothing) {
 }
 END_TEST
 
+/* Without tangents the problem is convex: one solution from every start. */
+START_TEST(normal_unknowns_alone_have_one_solution) {
+  contact_case c = case_any(1, 6, 0.0, 0, 12);
+  solver_report rep = solve(&c);
+  solution_set some = {0};
+  ck_assert_int_eq(solutions_by_solvers(&c.cp, 1e-10, &rep, c.u, c.r, &some),
+                   OK);
+  ck_assert_int_eq(some.n_found, 1);
+  ck_assert(solution_set_confirmed(&some));
+  solution_set_free(&some);
+  case_free(&c);
+}
+END_TEST
+
 /* What a run that did not converge stopped with is no solution. */
 START_TEST(last_iterate_confirms_nothing) {
   contact_case c = case_any(2, 4, 0.2, 0, 11);
@@ -212,8 +226,8 @@ START_TEST(every_family_is_tried_once) {
 }
 END_TEST
 
-UNIT_MAIN("solutions", every_family_is_tried_once,
-          triangle_has_the_three_solutions, one_family_alone_confirms_nothing,
-          last_iterate_confirms_nothing, small_friction_has_one_solution,
-          enumeration_finds_what_solvers_find, ten_nodes_are_enumerated,
-          larger_problems_are_refused)
+UNIT_MAIN("solutions", normal_unknowns_alone_have_one_solution,
+          every_family_is_tried_once, triangle_has_the_three_solutions,
+          one_family_alone_confirms_nothing, last_iterate_confirms_nothing,
+          small_friction_has_one_solution, enumeration_finds_what_solvers_find,
+          ten_nodes_are_enumerated, larger_problems_are_refused)

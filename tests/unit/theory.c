@@ -406,6 +406,7 @@ START_TEST(frozen_problems_have_the_same_solution) {
     double least;
     int fields;
     frozen_problem p;
+    for (int i = 0; i < 6; ++i) c.g0[i] = 0.01 * i;
     solve(&c);
     for (int with = 0; with < 2; ++with) {
       ck_assert_int_eq(frozen_new(&c.cp, c.r, keep, with ? given : NULL, &p),
@@ -413,6 +414,7 @@ START_TEST(frozen_problems_have_the_same_solution) {
       for (int i = 0; i < 6; ++i)
         ck_assert_double_eq_tol(contact_node_limit(&p.cp, p.r, i),
                                 contact_node_limit(&c.cp, c.r, i), 1e-13);
+      ck_assert_double_le(contact_residual(&p.cp, c.u, p.r), 1e-11);
       ck_assert_double_eq(p.B.val[p.B.start[1]], 0.0);
       ck_assert_int_eq(inequality_least(&p.cp, c.u, &least, &fields), OK);
       ck_assert_double_ge(least, -1e-11);

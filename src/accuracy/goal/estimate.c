@@ -352,12 +352,7 @@ static void bubbles_of(goal_estimator *of, const double *G, int elem_id) {
 static void add_joints(goal_estimator *e) {
   const mesh *m = e->s.d->mesh;
   for (int k = 0; k < e->n_joint; ++k) finish_joint(e, &e->joint[k]);
-  for (int k = 0; k < m->n_elem && e->n_joint > 0; ++k) {
-    int n = 0;
-    for (int a = 0; a <= m->dim; ++a)
-      n += e->is_joint[m->elem[(m->dim + 1) * k + a]];
-    if (n > 1) bubbles_of(e, NULL, k);
-  }
+  for (int k = 0; k < m->n_elem && e->n_joint > 0; ++k) bubbles_of(e, NULL, k);
 }
 
 /* ---- what belongs to u --------------------------------------------------- */

@@ -235,12 +235,11 @@ static status refuse(const char *path, const char *why) {
 /* ERR_FILE: not there, without a seal, of another layout, not as sealed. */
 static status archive_check_seal(const char *path) {
   content c;
-  char text[ARCHIVE_SEAL], wanted[ARCHIVE_SEAL];
+  char text[ARCHIVE_SEAL] = "", wanted[ARCHIVE_SEAL];
   const char *why;
   ENDS_BY(descriptor_leave)
   int fd = file_descriptor(AT_FDCWD, path, O_RDONLY, &why);
   if (fd < 0) RAISE(ERR_FILE, "%s: cannot read: %s", path, why);
-  memset(text, 0, sizeof text);
   if (pread(fd, text, sizeof text, 0) < 0)
     PASS(text_failed(path, "read", errno));
   if (strncmp(text, mark, strlen(mark)) != 0)

@@ -206,7 +206,7 @@ double plan_rows(const plan_sizes *s, int table, double items) {
     for (EACH(const print_request, p, s->m->steps[i].print.requests,
               s->m->steps[i].print.n)) {
       if (p->table != table) continue;
-      if (p->group_id < 0) return items;
+      if (p->group == NULL) return items;
       const mesh_group *g = &s->msh->group[p->group_id];
       most = fmax(most, table == PRINT_ELEMENTS ? g->n_item : g->n_node);
     }

@@ -47,14 +47,14 @@ static status uniaxial_rate(const material *mat, kinematics kin, double stress,
                             double *rate) {
   ENDS_BY(law_sample_free) law_sample x = {0};
   double sigma[6] = {0.0, stress}, ei_rate[6] = {0.0};
-  double alpha_rate[FLOW_VALUE_MAX];
-  *rate = 0.0;
+  double alpha_rate[FLOW_VALUE_MAX], most = 0.0;
   PASS(law_sample_at(mat, &mat->law, kin, 0.0, &x));
   x.p.sigma = sigma;
   law_rate(&x.p, ei_rate, alpha_rate);
   for (int i = 0; i < x.kind.elastic.ns; ++i)
-    *rate = fmax(*rate, fabs(ei_rate[i]));
-  if (isnan(ei_rate[0] + ei_rate[1]) || hardens(&x.p)) *rate = HUGE_VAL;
+    most = fmax(most, fabs(ei_rate[i]));
+  const int unknown = isnan(ei_rate[0] + ei_rate[1]) || hardens(&x.p);
+  *rate = unknown ? HUGE_VAL : most;
   return OK;
 }
 

@@ -272,7 +272,6 @@ status apply_print(reading *r) {
     ADDED(print_request, q, s->print.requests, s->print.n, s->print.cap);
     q->table = 1 << i;
     q->group = p->group;
-    q->group_id = -1;
     q->frequency = p->frequency;
     q->points_name = p->output.points;
     q->points_at = *value_place(r, "TIME POINTS");

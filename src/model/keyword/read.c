@@ -63,7 +63,7 @@ static status model_finish_problem(reading *r) {
   if (s->print.n > 0 || (s->print.ended & PRINT_CONTACT)) return OK;
   PASS_GROW(s->print.requests, s->print.n, s->print.cap);
   s->print.requests[s->print.n++] = (print_request){
-      .table = PRINT_CONTACT, .group_id = -1, .frequency = 1, .at = s->at};
+      .table = PRINT_CONTACT, .frequency = 1, .at = s->at};
   return OK;
 }
 

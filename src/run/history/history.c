@@ -152,7 +152,7 @@ static int stress_is_due(const step *s, double t, int increment_no, int last) {
 
 /* Where an accepted increment did not converge to its tolerance. */
 static status note_misfit(run *r) {
-  char text[400];
+  char text[400] = "";
   size_t used = strlen(r->course.note);
   if (r->solving.report.outcome > 0) return OK;
   visco_warn_stuck(r);

@@ -324,7 +324,7 @@ static void find_held(const run *r, const contact_status *touch,
 
 /* Again with the body held by contact, where supports are weak. */
 static status find_adjacent_contact(run *r, misfit *x) {
-  double square = 0.0;
+  double square;
   OWNED_NEW(contact_status, touch, r->problem.cp.n);
   OWNED_NEW(unsigned char, held, r->problem.cp.m);
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
@@ -356,7 +356,7 @@ static void forget_strains(run *r) {
 
 static status find(run *r) {
   const double share = share_of_step(r);
-  double square = 0.0;
+  double square;
   OWNED_PARTS(misfit, x, misfit_new(r, &x));
   PASS(find_error(r, &x, &square));
   r->errors.misfit = 0.5 * square;
@@ -415,7 +415,7 @@ static int may_be_noise(const run *r) {
 }
 
 status rounding_hides_stresses(const run *r, int *hides) {
-  double square = 0.0;
+  double square;
   *hides = hides_strains(r, strains_lost(r));
   if (*hides || !may_be_noise(r)) return OK;
   TIMED(STAGE_RECOVERY);
