@@ -99,10 +99,11 @@ void contact_limit(const contact_problem *cp, const double *r, double *g);
  * slips. status[n]. */
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
-/* closed[m]: 1: an unknown whose obstacle is met, as contact_classify says of
- * normals, where the node touches a second (third) one. */
-void contact_classify_sides(const contact_problem *cp, const double *u,
-                            const double *r, unsigned char *closed);
+/* stopped[m]: 1: an unknown whose obstacle is met, or that sticks, as
+ * contact_classify says of nodes; force[m] or NULL: r without the rounding of
+ * open nodes. */
+void contact_stops(const contact_problem *cp, const double *u, const double *r,
+                   double *force, unsigned char *stopped);
 /*
  * Force scale of the problem, N (displacement scale, m, if A is NULL): an upper
  * estimate of the forces of its solution, from the data alone.

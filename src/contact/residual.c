@@ -479,16 +479,34 @@ static int is_closed(measure *x, int node_id, const measured *node, int k,
   return push > least && !has_no_force(x, b, node);
 }
 
-void contact_classify_sides(const contact_problem *cp, const double *u,
-                            const double *r, unsigned char *closed) {
+/* 1: friction holds a node. */
+static int is_stuck(measure *x, int node_id, const measured *node) {
+  const double g = contact_node_limit(x->cp, x->r, node_id), c = node->c.t;
+  const double least =
+      STATUS_MARGIN * forces_of(x, node, body_of(x, node_id), c);
+  return g != 0.0 && !(trial_friction(x, node_id, c) - g > least);
+}
+
+void contact_stops(const contact_problem *cp, const double *u, const double *r,
+                   double *force, unsigned char *stopped) {
   measure x;
   measure_set(cp, contact_scale(cp), u, r, &x);
-  for (int i = 0; i < cp->n; ++i) {
+  if (force != NULL) COPY(force, r, cp->m);
+  for (int dof = 0; dof < cp->m; ++dof) {
+    measured node;
+    const int k = dof % cp->dim;
+    measure_node(&x, dof / cp->dim, &node);
+    stopped[dof] =
+        contact_bound(cp, dof) < HUGE_VAL &&
+        is_closed(&x, dof / cp->dim, &node, k, k == 0 ? node.c.n : node.c.t);
+    if (force != NULL && k == 0 && !stopped[dof]) force[dof] = 0.0;
+  }
+  if (force != NULL) x.r = force;
+  for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
     measured node;
     measure_node(&x, i, &node);
-    for (int k = 1; k < cp->dim; ++k)
-      closed[i * cp->dim + k] =
-          (unsigned char)is_closed(&x, i, &node, k, node.c.t);
+    if (contact_has_side(cp, i) || !is_stuck(&x, i, &node)) continue;
+    for (int k = 1; k < cp->dim; ++k) stopped[i * cp->dim + k] = 1;
   }
 }
 
@@ -499,15 +517,8 @@ void contact_classify(const contact_problem *cp, const double *u,
   for (int i = 0; i < cp->n; ++i) {
     measured node;
     measure_node(&x, i, &node);
-    const body_size *b = body_of(&x, i);
-    double g = contact_node_limit(cp, r, i);
-    double trial = trial_friction(&x, i, node.c.t);
-    if (!is_closed(&x, i, &node, 0, node.c.n))
-      state[i] = CONTACT_OPEN;
-    else if (g == 0.0 ||
-             trial - g > STATUS_MARGIN * forces_of(&x, &node, b, node.c.t))
-      state[i] = CONTACT_SLIP;
-    else
-      state[i] = CONTACT_STICK;
+    state[i] = !is_closed(&x, i, &node, 0, node.c.n) ? CONTACT_OPEN
+               : is_stuck(&x, i, &node)              ? CONTACT_STICK
+                                                     : CONTACT_SLIP;
   }
 }

@@ -261,6 +261,13 @@ START_TEST(statuses_of_a_row_of_nodes) {
   ck_assert_int_eq(s[1], CONTACT_STICK);
   ck_assert_int_eq(s[2], CONTACT_SLIP);
   ck_assert_int_eq(s[3], CONTACT_OPEN); /* touches without force             */
+  static const unsigned char known[8] = {0, 0, 1, 1, 1, 0, 0, 0};
+  unsigned char stopped[8];
+  double force[8];
+  r[6] = -1e-18;
+  contact_stops(&c.cp, u, r, force, stopped);
+  ck_assert_mem_eq(stopped, known, sizeof known);
+  ck_assert(force[4] == -4.0 && force[6] == 0.0);
   case_free(&c);
 }
 END_TEST
