@@ -28,21 +28,20 @@ static void set_friction(linear_states *s, const double *u, const double *r,
     size = hypot(size, s->e[dof]);
   }
   for (int dof = first + 1; dof < first + cp->dim; ++dof) s->e[dof] /= size;
-  s->kappa[i] = c * g / (size - g);
+  s->kappa[i] = size - g > 0x1p-20 * g ? c * g / (size - g) : 0x1p20 * c;
   s->slip[i] = 1;
   ++s->n_slip;
 }
 
-/* What moves by rounding alone does not. */
 status linear_states_new(const contact_problem *cp, const double *u,
-                         const double *r, linear_states *out) {
+                         const double *r, int rests, linear_states *out) {
   linear_states *s = out;
   s->cp = cp;
   OWNED_NEW(unsigned char, stopped, cp->m);
   OWNED_NEW(double, force, cp->m);
   PASS_NEW_ALL(OF(s->free_id, cp->m), OF(s->place, cp->m), OF(s->closed, cp->n),
                OF(s->slip, cp->n), OF(s->e, cp->m), OF(s->kappa, cp->n));
-  contact_stops(cp, u, r, force, stopped);
+  contact_stops(cp, u, r, rests, force, stopped);
   for (int dof = 0; dof < cp->m; ++dof) {
     const int i = dof / cp->dim;
     const int moves = !stopped[dof] && !contact_held(cp, dof);
@@ -63,6 +62,19 @@ status linear_states_new(const contact_problem *cp, const double *u,
 void linear_states_free(linear_states *s) {
   RELEASE(s->free_id, s->place, s->closed, s->slip, s->e, s->kappa, s->known,
           s->added);
+}
+
+static const double NO_PIVOT = 0x1p-44; /* -, of the diagonal */
+
+int linear_is_regular(const linear_states *s, const double *factor,
+                      int cholesky) {
+  for (int k = 0; k < s->n_free; ++k) {
+    const double pivot = fabs(factor[k * ((size_t)s->n_free + 1)]);
+    if (!(pivot * (cholesky ? pivot : 1.0) >
+          NO_PIVOT * contact_diagonal(s->cp, s->free_id[k])))
+      return 0;
+  }
+  return 1;
 }
 
 double linear_turn(const linear_states *s, int a, int b) {

@@ -100,10 +100,10 @@ void contact_limit(const contact_problem *cp, const double *r, double *g);
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
 /* stopped[m]: 1: an unknown whose obstacle is met, or that sticks, as
- * contact_classify says of nodes; force[m] or NULL: r without the rounding of
- * open nodes. */
+ * contact_classify says of nodes; rests 0: a node at its limit slips, at rest
+ * too. force[m] or NULL: r without the rounding of open nodes. */
 void contact_stops(const contact_problem *cp, const double *u, const double *r,
-                   double *force, unsigned char *stopped);
+                   int rests, double *force, unsigned char *stopped);
 /*
  * Force scale of the problem, N (displacement scale, m, if A is NULL): an upper
  * estimate of the forces of its solution, from the data alone.

@@ -479,16 +479,17 @@ static int is_closed(measure *x, int node_id, const measured *node, int k,
   return push > least && !has_no_force(x, b, node);
 }
 
-/* 1: friction holds a node. */
-static int is_stuck(measure *x, int node_id, const measured *node) {
+/* 1: friction holds a node; at its limit, where it rests, as "rests" says. */
+static int is_stuck(measure *x, int node_id, const measured *node, int rests) {
   const double g = contact_node_limit(x->cp, x->r, node_id), c = node->c.t;
   const double least =
       STATUS_MARGIN * forces_of(x, node, body_of(x, node_id), c);
-  return g != 0.0 && !(trial_friction(x, node_id, c) - g > least);
+  const double more = trial_friction(x, node_id, c) - g;
+  return g != 0.0 && !(more > (rests ? least : -least));
 }
 
 void contact_stops(const contact_problem *cp, const double *u, const double *r,
-                   double *force, unsigned char *stopped) {
+                   int rests, double *force, unsigned char *stopped) {
   measure x;
   measure_set(cp, contact_scale(cp), u, r, &x);
   if (force != NULL) COPY(force, r, cp->m);
@@ -505,7 +506,7 @@ void contact_stops(const contact_problem *cp, const double *u, const double *r,
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
     measured node;
     measure_node(&x, i, &node);
-    if (contact_has_side(cp, i) || !is_stuck(&x, i, &node)) continue;
+    if (contact_has_side(cp, i) || !is_stuck(&x, i, &node, rests)) continue;
     for (int k = 1; k < cp->dim; ++k) stopped[i * cp->dim + k] = 1;
   }
 }
@@ -518,7 +519,7 @@ void contact_classify(const contact_problem *cp, const double *u,
     measured node;
     measure_node(&x, i, &node);
     state[i] = !is_closed(&x, i, &node, 0, node.c.n) ? CONTACT_OPEN
-               : is_stuck(&x, i, &node)              ? CONTACT_STICK
+               : is_stuck(&x, i, &node, 1)           ? CONTACT_STICK
                                                      : CONTACT_SLIP;
   }
 }

@@ -265,7 +265,7 @@ START_TEST(statuses_of_a_row_of_nodes) {
   unsigned char stopped[8];
   double force[8];
   r[6] = -1e-18;
-  contact_stops(&c.cp, u, r, force, stopped);
+  contact_stops(&c.cp, u, r, 1, force, stopped);
   ck_assert_mem_eq(stopped, known, sizeof known);
   ck_assert(force[4] == -4.0 && force[6] == 0.0);
   case_free(&c);

@@ -307,8 +307,8 @@ static status find_adjacent_contact(run *r, misfit *x) {
   const contact_problem *cp = &r->problem.cp;
   OWNED_NEW(unsigned char, held, cp->m);
   OWNED_NEW(double, force, cp->m);
-  contact_stops(cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc), force,
-                held);
+  contact_stops(cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc), 1,
+                force, held);
   for (int k = 0; k < cp->m; ++k) held[k] |= contact_held(cp, k) != 0;
   PASS(condensed_misfit_held(x->c, x->rest, x->rc, held, x->w, &square));
   if (square < HUGE_VAL) take_loss(r, x, square);
