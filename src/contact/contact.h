@@ -95,6 +95,9 @@ void contact_dense(const contact_problem *cp, double *M);
 void contact_reaction(const contact_problem *cp, const double *u, double *r);
 /* g[n] = max(0, g0 + B p) of the normal forces r[m], N. */
 void contact_limit(const contact_problem *cp, const double *r, double *g);
+/* Forces r[m] of open nodes that are rounding become 0. */
+void contact_drop_roundings(const contact_problem *cp, const double *u,
+                            double *r);
 /* Status of each node from u and r; a node without limit (g = 0) that touches
  * slips. status[n]. */
 void contact_classify(const contact_problem *cp, const double *u,

@@ -458,6 +458,20 @@ double contact_hidden(const contact_problem *cp, const double *u,
   return worst;
 }
 
+void contact_drop_roundings(const contact_problem *cp, const double *u,
+                            double *r) {
+  measure x;
+  measure_set(cp, 0.0, u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    const int n = cp->dim * i;
+    measured node;
+    measure_node(&x, i, &node);
+    if (r[n] <= 0.0 && u[n] >= cp->gap[i]) continue;
+    for (int k = cp->dim - 1; k >= 0 && fabs(r[n]) <= node.rounding; --k)
+      if (fabs(r[n + k]) <= node.rounding) r[n + k] = 0.0;
+  }
+}
+
 /* |r_t - c (u_t - ut0)| in the directions friction acts in, N. */
 static double trial_friction(const measure *x, int node_id, double c) {
   double z[2] = {0.0, 0.0};
