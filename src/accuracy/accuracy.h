@@ -82,10 +82,14 @@ typedef struct linear_states {
   unsigned char *known;         /* known_rows of an operator */
   double *added;
 } linear_states;
-/* out: all-zero. ERR_MEMORY. */
+/* out: all-zero; rests as of contact_stops. ERR_MEMORY. */
 status linear_states_new(const contact_problem *cp, const double *u,
-                         const double *r, linear_states *out);
+                         const double *r, int rests, linear_states *out);
 void linear_states_free(linear_states *s);
+/* 1: no pivot of the factor[n_free^2] of a matrix of the free unknowns, by LU
+ * or Cholesky, is rounding. */
+int linear_is_regular(const linear_states *s, const double *factor,
+                      int cholesky);
 /* Entry of kappa (I - e e') of two tangents of one sliding node, N/m. */
 double linear_turn(const linear_states *s, int a, int b);
 /* The factor of the operator for these states; it keeps one, so again before

@@ -169,7 +169,7 @@ static void pair_friction(const contact_problem *cp, const double *u,
       z[k] = r[dof] - c * (u[dof] - contact_stick(cp, dof));
       size = hypot(size, z[k]);
     }
-    p->slides[i] = size > g;
+    p->slides[i] = size > g * (1.0 - NO_LEVER);
     for (int k = 1; k < cp->dim; ++k) {
       int dof = i * cp->dim + k;
       if (!accuracy_rubs(cp, dof)) continue;

@@ -25,8 +25,8 @@ struct linear_contact {
 };
 
 static status map_new(const contact_problem *cp, const double *u,
-                      const double *r, linear_contact *s) {
-  PASS(linear_states_new(cp, u, r, &s->at));
+                      const double *r, int rests, linear_contact *s) {
+  PASS(linear_states_new(cp, u, r, rests, &s->at));
   PASS_NEW_ALL(OF(s->x, cp->m), OF(s->dg, cp->n));
   if (cp->op != NULL) PASS_NEW_REALS(cp->m, &s->b, &s->full, &s->Ax);
   return OK;
@@ -64,8 +64,9 @@ static status factor(linear_contact *s, int *good) {
     for (size_t i = j; i < ld; ++i) s->K[i + ld * j] = column[s->at.free_id[i]];
   }
   if (s->at.cp->dim == 3) add_turning(s);
-  *good = ld == 0 || LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', s->at.n_free,
-                                         s->K, s->at.n_free) == 0;
+  *good = ld == 0 || (LAPACKE_dpotrf_work(LAPACK_COL_MAJOR, 'L', s->at.n_free,
+                                          s->K, s->at.n_free) == 0 &&
+                      linear_is_regular(&s->at, s->K, 1));
   return OK;
 }
 
@@ -234,7 +235,7 @@ static status measure_limit(linear_contact *s, const double *r, double *rate) {
 status contraction_limit(const contact_problem *cp, const double *u,
                          const double *r, double *rate) {
   ENDS_BY(map_free) linear_contact s = {0};
-  PASS(map_new(cp, u, r, &s));
+  PASS(map_new(cp, u, r, 0, &s));
   PASS(measure(&s, r, rate));
   if (*rate > 0.0 && *rate < HUGE_VAL) PASS(measure_limit(&s, r, rate));
   return OK;
@@ -245,7 +246,7 @@ status contraction_rate(const contact_problem *cp, const double *u,
   status st = OK;
   linear_contact s = {0};
   int same = 0;
-  TRY(map_new(cp, u, r, &s));
+  TRY(map_new(cp, u, r, 0, &s));
   if (known != NULL) TRY(compare(&s, known, &same));
   if (same)
     *rate = known->rate[0];
@@ -263,7 +264,7 @@ status linear_contact_new(const contact_problem *cp, const double *u,
   int good = 0;
   PASS_NEW(*out, 1);
   OWNS(*out);
-  PASS(map_new(cp, u, r, *out));
+  PASS(map_new(cp, u, r, 1, *out));
   PASS(factor(*out, &good));
   if (good) return OK;
   FORGET(*out);

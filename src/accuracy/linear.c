@@ -14,7 +14,7 @@ node_stiffness accuracy_stiffness(const contact_problem *cp, int node_id) {
   return (node_stiffness){1.0 / n, 1.0 / t};
 }
 
-/* Friction of node i: slip, e, kappa. */
+/* Friction of node i, which slides: e, kappa. */
 static void set_friction(linear_states *s, const double *u, const double *r,
                          int i) {
   const contact_problem *cp = s->cp;
@@ -27,42 +27,31 @@ static void set_friction(linear_states *s, const double *u, const double *r,
     s->e[dof] = r[dof] - c * (u[dof] - contact_stick(cp, dof));
     size = hypot(size, s->e[dof]);
   }
-  s->slip[i] = size > g && g > 0.0;
-  for (int dof = first + 1; dof < first + cp->dim; ++dof)
-    s->e[dof] = s->slip[i] ? s->e[dof] / size : 0.0;
-  if (s->slip[i]) s->kappa[i] = c * g / (size - g);
-  s->n_slip += s->slip[i];
-}
-
-/* 1: the unknown can move. */
-static int is_free(const linear_states *s, const double *u, const double *r,
-                   int dof) {
-  const contact_problem *cp = s->cp;
-  const int i = dof / cp->dim;
-  const double bound = contact_bound(cp, dof);
-  if (contact_held(cp, dof)) return 0;
-  if (bound < HUGE_VAL) {
-    const node_stiffness c = accuracy_stiffness(cp, i);
-    const double step = dof % cp->dim == 0 ? c.n : c.t;
-    return !(r[dof] - step * (u[dof] - bound) < 0.0);
-  }
-  if (!accuracy_rubs(cp, dof)) return 1;
-  return s->slip[i] || contact_node_limit(cp, r, i) == 0.0;
+  for (int dof = first + 1; dof < first + cp->dim; ++dof) s->e[dof] /= size;
+  s->kappa[i] = size - g > 0x1p-20 * g ? c * g / (size - g) : 0x1p20 * c;
+  s->slip[i] = 1;
+  ++s->n_slip;
 }
 
 status linear_states_new(const contact_problem *cp, const double *u,
-                         const double *r, linear_states *out) {
+                         const double *r, int rests, linear_states *out) {
   linear_states *s = out;
   s->cp = cp;
+  OWNED_NEW(unsigned char, stopped, cp->m);
+  OWNED_NEW(double, force, cp->m);
   PASS_NEW_ALL(OF(s->free_id, cp->m), OF(s->place, cp->m), OF(s->closed, cp->n),
                OF(s->slip, cp->n), OF(s->e, cp->m), OF(s->kappa, cp->n));
-  for (int i = 0; i < cp->n; ++i) set_friction(s, u, r, i);
+  contact_stops(cp, u, r, rests, force, stopped);
   for (int dof = 0; dof < cp->m; ++dof) {
-    const int moves = is_free(s, u, r, dof);
+    const int i = dof / cp->dim;
+    const int moves = !stopped[dof] && !contact_held(cp, dof);
     s->place[dof] = moves ? s->n_free : -1;
     if (moves) s->free_id[s->n_free++] = dof;
+    if (moves && accuracy_rubs(cp, dof) && !s->slip[i] &&
+        contact_node_limit(cp, force, i) > 0.0)
+      set_friction(s, u, force, i);
     if (dof % cp->dim > 0) continue;
-    s->closed[dof / cp->dim] = !moves;
+    s->closed[i] = !moves;
     s->n_closed += !moves;
   }
   if (cp->op != NULL)
@@ -73,6 +62,19 @@ status linear_states_new(const contact_problem *cp, const double *u,
 void linear_states_free(linear_states *s) {
   RELEASE(s->free_id, s->place, s->closed, s->slip, s->e, s->kappa, s->known,
           s->added);
+}
+
+static const double NO_PIVOT = 0x1p-44; /* -, of the diagonal */
+
+int linear_is_regular(const linear_states *s, const double *factor,
+                      int cholesky) {
+  for (int k = 0; k < s->n_free; ++k) {
+    const double pivot = fabs(factor[k * ((size_t)s->n_free + 1)]);
+    if (!(pivot * (cholesky ? pivot : 1.0) >
+          NO_PIVOT * contact_diagonal(s->cp, s->free_id[k])))
+      return 0;
+  }
+  return 1;
 }
 
 double linear_turn(const linear_states *s, int a, int b) {

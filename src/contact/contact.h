@@ -95,14 +95,18 @@ void contact_dense(const contact_problem *cp, double *M);
 void contact_reaction(const contact_problem *cp, const double *u, double *r);
 /* g[n] = max(0, g0 + B p) of the normal forces r[m], N. */
 void contact_limit(const contact_problem *cp, const double *r, double *g);
+/* Forces r[m] of open nodes that are rounding become 0. */
+void contact_drop_roundings(const contact_problem *cp, const double *u,
+                            double *r);
 /* Status of each node from u and r; a node without limit (g = 0) that touches
  * slips. status[n]. */
 void contact_classify(const contact_problem *cp, const double *u,
                       const double *r, contact_status *status);
-/* closed[m]: 1: an unknown whose obstacle is met, as contact_classify says of
- * normals, where the node touches a second (third) one. */
-void contact_classify_sides(const contact_problem *cp, const double *u,
-                            const double *r, unsigned char *closed);
+/* stopped[m]: 1: an unknown whose obstacle is met, or that sticks, as
+ * contact_classify says of nodes; rests 0: a node at its limit slips, at rest
+ * too. force[m] or NULL: r without the rounding of open nodes. */
+void contact_stops(const contact_problem *cp, const double *u, const double *r,
+                   int rests, double *force, unsigned char *stopped);
 /*
  * Force scale of the problem, N (displacement scale, m, if A is NULL): an upper
  * estimate of the forces of its solution, from the data alone.

@@ -458,6 +458,20 @@ double contact_hidden(const contact_problem *cp, const double *u,
   return worst;
 }
 
+void contact_drop_roundings(const contact_problem *cp, const double *u,
+                            double *r) {
+  measure x;
+  measure_set(cp, 0.0, u, r, &x);
+  for (int i = 0; i < cp->n; ++i) {
+    const int n = cp->dim * i;
+    measured node;
+    measure_node(&x, i, &node);
+    if (r[n] <= 0.0 && u[n] >= cp->gap[i]) continue;
+    for (int k = cp->dim - 1; k >= 0 && fabs(r[n]) <= node.rounding; --k)
+      if (fabs(r[n + k]) <= node.rounding) r[n + k] = 0.0;
+  }
+}
+
 /* |r_t - c (u_t - ut0)| in the directions friction acts in, N. */
 static double trial_friction(const measure *x, int node_id, double c) {
   double z[2] = {0.0, 0.0};
@@ -479,16 +493,35 @@ static int is_closed(measure *x, int node_id, const measured *node, int k,
   return push > least && !has_no_force(x, b, node);
 }
 
-void contact_classify_sides(const contact_problem *cp, const double *u,
-                            const double *r, unsigned char *closed) {
+/* 1: friction holds a node; at its limit, where it rests, as "rests" says. */
+static int is_stuck(measure *x, int node_id, const measured *node, int rests) {
+  const double g = contact_node_limit(x->cp, x->r, node_id), c = node->c.t;
+  const double least =
+      STATUS_MARGIN * forces_of(x, node, body_of(x, node_id), c);
+  const double more = trial_friction(x, node_id, c) - g;
+  return g != 0.0 && !(more > (rests ? least : -least));
+}
+
+void contact_stops(const contact_problem *cp, const double *u, const double *r,
+                   int rests, double *force, unsigned char *stopped) {
   measure x;
   measure_set(cp, contact_scale(cp), u, r, &x);
-  for (int i = 0; i < cp->n; ++i) {
+  if (force != NULL) COPY(force, r, cp->m);
+  for (int dof = 0; dof < cp->m; ++dof) {
+    measured node;
+    const int k = dof % cp->dim;
+    measure_node(&x, dof / cp->dim, &node);
+    stopped[dof] =
+        contact_bound(cp, dof) < HUGE_VAL &&
+        is_closed(&x, dof / cp->dim, &node, k, k == 0 ? node.c.n : node.c.t);
+    if (force != NULL && k == 0 && !stopped[dof]) force[dof] = 0.0;
+  }
+  if (force != NULL) x.r = force;
+  for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
     measured node;
     measure_node(&x, i, &node);
-    for (int k = 1; k < cp->dim; ++k)
-      closed[i * cp->dim + k] =
-          (unsigned char)is_closed(&x, i, &node, k, node.c.t);
+    if (contact_has_side(cp, i) || !is_stuck(&x, i, &node, rests)) continue;
+    for (int k = 1; k < cp->dim; ++k) stopped[i * cp->dim + k] = 1;
   }
 }
 
@@ -499,15 +532,8 @@ void contact_classify(const contact_problem *cp, const double *u,
   for (int i = 0; i < cp->n; ++i) {
     measured node;
     measure_node(&x, i, &node);
-    const body_size *b = body_of(&x, i);
-    double g = contact_node_limit(cp, r, i);
-    double trial = trial_friction(&x, i, node.c.t);
-    if (!is_closed(&x, i, &node, 0, node.c.n))
-      state[i] = CONTACT_OPEN;
-    else if (g == 0.0 ||
-             trial - g > STATUS_MARGIN * forces_of(&x, &node, b, node.c.t))
-      state[i] = CONTACT_SLIP;
-    else
-      state[i] = CONTACT_STICK;
+    state[i] = !is_closed(&x, i, &node, 0, node.c.n) ? CONTACT_OPEN
+               : is_stuck(&x, i, &node, 1)           ? CONTACT_STICK
+                                                     : CONTACT_SLIP;
   }
 }

@@ -135,6 +135,8 @@ static status solve_posed(run *r) {
     r->solving.seen.untold = 1;
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &cp);
   effects_restore(r, &r->problem.cp, own_u, rc);
+  if (r->problem.given == NULL)
+    contact_drop_roundings(&r->problem.cp, own_u, rc);
   put_rows(r, own_u, rc);
   if (is_open(r, r->now.uc) && largest_entry(r->nodes.n_c, r->now.rc) > 0.0) {
     PASS(drop_reactions(r, &r->solving.report.residual, own_u, rc));

@@ -144,8 +144,8 @@ static void find_contact(run *r) {
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
                    run_rows(r, 1, r->now.rc), r->result.contact);
   if (r->problem.cp.side_gap != NULL)
-    contact_classify_sides(&r->problem.cp, r->now.uc, r->now.rc,
-                           r->result.closed);
+    contact_stops(&r->problem.cp, r->now.uc, r->now.rc, 1, NULL,
+                  r->result.closed);
   for (int i = r->nodes.n - 1, k = r->nodes.reach.n_in - 1;
        r->nodes.reach.in != NULL && i >= 0; --i)
     r->result.contact[i] = k >= 0 && r->nodes.reach.in[k] == i

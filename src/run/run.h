@@ -142,7 +142,7 @@ typedef struct derived {
   double *open_gap, *slip; /* [n], [n*(dim-1)] */
   double *g;               /* [n] limit, N, borrowed from friction */
   contact_status *contact; /* [n] */
-  unsigned char *closed;   /* [n_c] contact_classify_sides, or NULL: no sides */
+  unsigned char *closed;   /* [n_c] contact_stops, or NULL: no sides */
   contact_total *totals;   /* [n_contact] */
   double *distance;        /* [n] as in state, borrowed likewise; or NULL */
   double *torque;          /* [n_contact] as in state, or NULL */

@@ -33,7 +33,7 @@ START_TEST(carried_block_finds_its_partners) {
       there = run_carried("", "0", "0.25");
   ck_assert_int_eq(job_run(&moved, "--no-timing"), 0);
   ck_assert_int_eq(job_run(&there, "--no-timing"), 0);
-  ck_assert_ptr_null(strstr(moved.errors, "P4038"));
+  ck_assert_ptr_nonnull(strstr(moved.errors, "at the start of the step"));
   dat x = job_table(&moved, "CONTACT", -1),
       y = job_table(&there, "CONTACT", -1), t = job_table(&moved, "TOTALS", -1);
   ck_assert_int_eq(x.n_row, y.n_row);
@@ -63,18 +63,28 @@ START_TEST(carried_block_finds_its_partners) {
 }
 END_TEST
 
-/* Carried by less than a face, which is 0.1 long, and farther. */
-START_TEST(slip_on_the_partners_of_time_0_is_told) {
+/* Carried by less than a face, which is 0.1 long, and farther; in a step. */
+START_TEST(slip_on_the_partners_found_last_is_told) {
   static const char *const way[] = {"0.09", "0.11"};
-  for (int i = 0; i < 2; ++i) {
-    job j = run_carried("", way[i], "0");
+  static const char *const of[] = {"what it met at time 0\n",
+                                   "at the start of the step"};
+  for (int i = 0; i < 4; ++i) {
+    job j = run_carried(i / 2 == 0 ? "" : ", UPDATE=STEP", way[i % 2], "0");
     ck_assert_int_eq(job_run(&j, ""), 0);
     ck_assert_msg((strstr(j.errors,
                           "P4038: step 2, increment 1, time 2: "
-                          "*CONTACT PAIR P: node ") != NULL) == i,
+                          "*CONTACT PAIR P: node ") != NULL) == i % 2 &&
+                      (strstr(j.errors, of[i / 2]) != NULL) == i % 2,
                   "%s", j.errors);
     job_end(&j);
   }
+  job j = run_carried(", UPDATE=STEP",
+                      "0.09\n*END STEP\n*STEP\n*STATIC\n*BOUNDARY\n"
+                      "TOP, 1, 1, 0.18",
+                      "0");
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  ck_assert_ptr_null(strstr(j.errors, "P4038"));
+  job_end(&j);
 }
 END_TEST
 
@@ -110,5 +120,5 @@ START_TEST(partners_of_a_sheared_block_stay) {
 END_TEST
 
 UNIT_MAIN("pair_update", carried_block_finds_its_partners,
-          slip_on_the_partners_of_time_0_is_told,
+          slip_on_the_partners_found_last_is_told,
           partners_of_a_sheared_block_stay)

@@ -127,6 +127,19 @@ START_TEST(too_large_a_resultant_is_refused) {
 }
 END_TEST
 
+/* At rest after slip: friction is at its limit to rounding. */
+START_TEST(forces_at_their_limit_follow_it) {
+  for (unsigned k = 0; k < 8; ++k) {
+    scene s = scene_new(0.28, 0);
+    for (int i = 0; i < NODES; ++i) s.c.ut0[i] = s.c.u[2 * i + 1];
+    pair_set(&s.c.cp, s.c.u, s.c.r, &s.p);
+    disturb(&s, 1e-9, k);
+    check_balance(&s, 1e-9);
+    scene_free(&s);
+  }
+}
+END_TEST
+
 /* No node touches: nothing can balance anything. */
 START_TEST(open_body_cannot_be_balanced) {
   scene s = scene_new(0.1, 0);
@@ -141,4 +154,5 @@ START_TEST(open_body_cannot_be_balanced) {
 END_TEST
 
 UNIT_MAIN("balance", forces_take_up_the_resultant,
-          too_large_a_resultant_is_refused, open_body_cannot_be_balanced)
+          too_large_a_resultant_is_refused, forces_at_their_limit_follow_it,
+          open_body_cannot_be_balanced)

@@ -261,6 +261,28 @@ START_TEST(statuses_of_a_row_of_nodes) {
   ck_assert_int_eq(s[1], CONTACT_STICK);
   ck_assert_int_eq(s[2], CONTACT_SLIP);
   ck_assert_int_eq(s[3], CONTACT_OPEN); /* touches without force             */
+  static const unsigned char known[8] = {0, 0, 1, 1, 1, 0, 0, 0};
+  unsigned char stopped[8];
+  double force[8];
+  r[6] = -1e-18;
+  contact_stops(&c.cp, u, r, 1, force, stopped);
+  ck_assert_mem_eq(stopped, known, sizeof known);
+  ck_assert(force[4] == -4.0 && force[6] == 0.0);
+  case_free(&c);
+}
+END_TEST
+
+/* Of open nodes, and where they pull; not tangential forces of a given limit,
+ * nor what presses a closed node. */
+START_TEST(forces_of_rounding_are_dropped) {
+  contact_case c = case_new(2, 5, 0.5);
+  for (int i = 0; i < 10; ++i) c.A[i + 10 * i] = 2.0;
+  const double f[10] = {-1, 1, 4, 1, -2, 3, 0, 1, -2}, u[10] = {-0.5, 0.5};
+  double r[10] = {-1e-17, -1e-17, -4, -1e-17, 1e-17, -2, -1e-17, 0, 1e-3};
+  memcpy(c.f, f, sizeof f);
+  contact_drop_roundings(&c.cp, u, r);
+  static const double left[10] = {0, 0, -4, -1e-17, 0, -2, -1e-17, 0, 1e-3};
+  ck_assert_mem_eq(r, left, sizeof r);
   case_free(&c);
 }
 END_TEST
@@ -505,6 +527,6 @@ UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
           node_at_its_limit_sticks_until_it_moves,
-          second_obstacle_bounds_the_tangent, held_tangent_takes_no_friction,
-          what_only_carries_is_not_in_the_scale, bodies_are_measured_apart,
-          unlike_nodes_of_a_body_are_measured_apart)
+          forces_of_rounding_are_dropped, second_obstacle_bounds_the_tangent,
+          held_tangent_takes_no_friction, what_only_carries_is_not_in_the_scale,
+          bodies_are_measured_apart, unlike_nodes_of_a_body_are_measured_apart)

@@ -4,6 +4,8 @@
  * and its error against disturbed solutions; an operator against its matrix.
  */
 #include "accuracy/goal/goal.h"
+
+#include "accuracy/accuracy.h"
 #include "base/base.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
@@ -169,6 +171,60 @@ START_TEST(adjoint_is_the_derivative_by_the_positions_of_stick) {
 }
 END_TEST
 
+/* After slip nodes are at their limit and at rest: on whichever side of it
+ * rounding puts them. The contraction is that of nodes that go on. */
+START_TEST(nodes_at_rest_have_one_adjoint) {
+  const int dim = 2 + _i % 2;
+  int slipped = 0;
+  for (unsigned long long seed = 1; seed <= 12; ++seed) {
+    goal_case g = goal_new(dim, 0.4, _i / 2, seed);
+    double y[MOST], u[MOST], most = 0.0, rate[2];
+    unsigned long long dice = seed;
+    slipped += count(&g, CONTACT_SLIP);
+    contraction_rate(&g.c.cp, g.c.u, g.c.r, NULL, &rate[0]);
+    for (int k = 0; k < g.c.cp.m; ++k) {
+      if (k % dim > 0) g.c.ut0[(dim - 1) * (k / dim) + k % dim - 1] = g.c.u[k];
+      u[k] = g.c.u[k] * (1.0 + 1e-15 * (case_random(&dice) - 0.5));
+    }
+    find_adjoint(&g, g.c.u, g.c.r);
+    memcpy(y, g.y, sizeof y);
+    find_adjoint(&g, u, g.c.r);
+    contraction_rate(&g.c.cp, u, g.c.r, NULL, &rate[1]);
+    if (dim == 2) ck_assert_double_eq_tol(rate[1], rate[0], 1e-9);
+    for (int k = 0; k < g.c.cp.m; ++k) most = fmax(most, fabs(y[k]));
+    for (int k = 0; k < g.c.cp.m; ++k)
+      ck_assert_double_eq_tol(g.y[k], y[k], 1e-9 * most);
+    case_free(&g.c);
+  }
+  ck_assert_int_gt(slipped, 0);
+}
+END_TEST
+
+/* A block that slides on one node of its foot may turn about it, but for
+ * rounding. */
+START_TEST(a_block_that_rocks_has_no_adjoint) {
+  const case_block_data d = {.columns = 4,
+                             .layers = 2 + _i,
+                             .nu = 0.2,
+                             .mu = 0.3,
+                             .top = {0.0, -1e-3}};
+  contact_case c = case_block(&d);
+  contact_adjoint *a = NULL;
+  double rate;
+  for (int i = 0; i <= d.columns; ++i) c.u[2 * i] = -1.0;
+  for (int k = 0; k < c.cp.m; ++k) c.A[k * (c.cp.m + 1)] *= 1.0 + 1e-14;
+  c.u[4] = 0.0;
+  c.u[5] = -1.0;
+  c.r[4] = -1e-3;
+  c.r[5] = 0.3e-3;
+  ck_assert_int_eq(contact_adjoint_new(&c.cp, c.u, c.r, &a), OK);
+  ck_assert_ptr_null(a);
+  ck_assert_int_eq(contraction_rate(&c.cp, c.u, c.r, NULL, &rate), OK);
+  ck_assert(rate == HUGE_VAL);
+  case_free(&c);
+}
+END_TEST
+
 /* du, and with it J, by loads df and sticks ds: the transpose of the adjoint.
  */
 static double change_of(const goal_case *g, const double *df, const double *ds,
@@ -250,8 +306,10 @@ START_TEST(an_operator_gives_what_its_matrix_does) {
     goal_case g = goal_new(dim, kind == 0 ? 0.0 : 0.4, kind == 2, seed);
     const contact_problem matrix = g.c.cp;
     by_solves b = {.cp = &matrix};
+    double room[2 * MOST];
     const contact_operator op = {.ctx = &b,
                                  .diagonal = b.diagonal,
+                                 .room = room,
                                  .apply = apply,
                                  .set_rows = set_rows,
                                  .solve = solve};
@@ -379,6 +437,8 @@ int main(void) {
       tests, error_of_the_solver_is_that_of_a_disturbed_solution, 0, 6);
   tcase_add_loop_test(
       tests, adjoint_is_the_derivative_by_the_positions_of_stick, 0, 4);
+  tcase_add_loop_test(tests, nodes_at_rest_have_one_adjoint, 0, 4);
+  tcase_add_loop_test(tests, a_block_that_rocks_has_no_adjoint, 0, 6);
   tcase_add_loop_test(tests, changes_are_the_transpose_of_the_adjoint, 0, 6);
   tcase_add_loop_test(tests, an_operator_gives_what_its_matrix_does, 0, 6);
   tcase_add_test(tests, verdicts_change_at_their_limits);

@@ -118,9 +118,10 @@ static status factor(linear_system *s, int *singular) {
               linear_turn(rows, dof, t);
     }
   }
-  *singular =
-      n > 0 && LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, rows->n_free, rows->n_free,
-                                   s->M, rows->n_free, s->pivot) != 0;
+  if (n > 0)
+    LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, rows->n_free, rows->n_free, s->M,
+                        rows->n_free, s->pivot);
+  *singular = !linear_is_regular(rows, s->M, 0);
   return OK;
 }
 
@@ -296,7 +297,7 @@ status contact_adjoint_new(const contact_problem *cp, const double *u,
   a->u = u;
   a->r = r;
   PASS_NEW_REALS(cp->m, &a->w, &a->x, &a->Ax, &a->stick);
-  PASS(linear_states_new(cp, u, r, &a->rows));
+  PASS(linear_states_new(cp, u, r, 1, &a->rows));
   PASS(linear_system_new(&a->rows, &a->linear));
   if (a->linear != NULL) return OK;
   memory_free(a);

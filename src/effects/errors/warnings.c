@@ -10,11 +10,13 @@
 
 typedef struct warnings {
   int strain, rotation, folded; /* 1: told */
-  int *touched;                 /* [n_contact] 1: a node has touched */
-  double *least;                /* [n_contact] m, gap now, if none has */
-  double *edge; /* [n_contact] m, longest of its faces; 0: slip is told, or may
-                   be large */
+  int *touched;                 /* [n_contact] bits */
+  double *least; /* [n_contact] m, gap now, if none has touched */
+  double *edge;  /* [n_contact] m, longest of its faces; 0: forces are given */
 } warnings;
+
+/* Of warnings.touched: a node has touched; slip is told. */
+enum { TOUCHED = 1, SLIP_TOLD = 2 };
 
 static const double LARGE = 0.05; /* -, strain, change of a gap */
 static const double FAR = 0.1;    /* rad, rotation */
@@ -60,8 +62,8 @@ static void note_touches(run *r, warnings *reported) {
   for (int i = 0; i < r->m->n.contact; ++i) {
     const contact_total *t = &r->result.totals[i];
     const size_t used = strlen(r->course.note);
-    if (reported->touched[i] || t->n_slip + t->n_stick == 0) continue;
-    reported->touched[i] = 1;
+    if (reported->touched[i] != 0 || t->n_slip + t->n_stick == 0) continue;
+    reported->touched[i] = TOUCHED;
     if (r->course.total_no > 1)
       snprintf(r->course.note + used, sizeof r->course.note - used,
                "  contact %s touches for the first time\n",
@@ -113,22 +115,41 @@ static int leaves_gap(const run *r, int i, double slip) {
                             16 * DBL_EPSILON * slip;
 }
 
-/* Contact node i, pressed after a slip of more than a face since time 0. */
-static void warn_slip(run *r, int i, double *edge) {
+/* Contact node i, pressed after it has moved by u[dim] against its partners
+ * since they were found. */
+static void warn_slip(run *r, int i, const double *u, warnings *reported) {
   const int dim = r->msh->dim, id = r->surface->contact_id[i];
   const contact *c = &r->m->contacts[id];
-  const double *u = r->now.uc + dim * i;
-  if (!(edge[id] > 0.0) || !(r->now.rc[dim * i] < 0.0)) return;
   const double slip = dim == 3 ? hypot(u[1], u[2]) : fabs(u[1]);
-  if (slip <= edge[id] || (!c->is_pair && !leaves_gap(r, i, slip))) return;
+  if ((reported->touched[id] & SLIP_TOLD) || !(reported->edge[id] > 0.0) ||
+      !(r->now.rc[dim * i] < 0.0) || slip <= reported->edge[id] ||
+      (!c->is_pair && !leaves_gap(r, i, slip)))
+    return;
   message_add(r->m->log, P4038, &c->at,
               "step %d, increment %d, time %g: %s %s: node %zu has slipped by "
-              "%.3g, faces are up to %.3g long: it is still pressed %s",
+              "%.3g, faces are up to %.3g long: it is still pressed on what it "
+              "met at %s",
               run_step_id(r) + 1, r->at.increment_no, r->now.t, contact_card(c),
-              c->name, r->surface->node_no[i], slip, edge[id],
-              c->is_pair ? "on those of time 0"
-                         : "by the obstacle where it was at time 0");
-  edge[id] = 0.0;
+              c->name, r->surface->node_no[i], slip, reported->edge[id],
+              c->update ? "the start of the step" : "time 0");
+  reported->touched[id] |= SLIP_TOLD;
+}
+
+/* Slip since time 0, of UPDATE=STEP since the start of the step. */
+static status look_at_slip(run *r, warnings *reported) {
+  const double *from = r->faces.input.u;
+  OWNED double *moved = NULL, *since = NULL;
+  if (from != NULL) {
+    PASS_NEW_ALL(OF(moved, r->n_dof), OF(since, r->nodes.n_c));
+    for (size_t k = 0; k < r->n_dof; ++k) moved[k] = r->now.u[k] - from[k];
+    surface_relative(r->surface, moved, since);
+  }
+  for (int i = 0; i < r->nodes.n; ++i) {
+    const int updated =
+        from != NULL && r->m->contacts[r->surface->contact_id[i]].update;
+    warn_slip(r, i, (updated ? since : r->now.uc) + r->msh->dim * i, reported);
+  }
+  return OK;
 }
 
 /* The least gap left of a contact, m; HUGE_VAL: no node has one. */
@@ -145,11 +166,10 @@ static status look(run *r, void *self) {
   warnings *own = self;
   note_touches(r, own);
   for (int i = 0; i < r->m->n.contact; ++i)
-    if (!own->touched[i]) own->least[i] = least_gap(r, i);
+    if (own->touched[i] == 0) own->least[i] = least_gap(r, i);
   if (r->solving.report.outcome <= 0) return OK;
   warn_deformation(r, own);
-  for (int i = 0; i < r->nodes.n; ++i) warn_slip(r, i, own->edge);
-  return OK;
+  return look_at_slip(r, own);
 }
 
 /* Where an increment is not solved, what touched in it is not known. */
@@ -157,7 +177,7 @@ static void end(run *r, void *self) {
   const warnings *reported = self;
   for (int i = 0; i < r->m->n.contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
-    if (reported->touched[i] || c->force.given || c->is_crack) continue;
+    if (reported->touched[i] != 0 || c->force.given || c->is_crack) continue;
     char gap[80] = "at its end no normal of a node meets it";
     if (reported->least[i] < HUGE_VAL)
       snprintf(gap, sizeof gap, "the least gap at its end is %.3g",
@@ -176,7 +196,7 @@ static status warnings_new(run *r, void **self) {
   for (int i = 0; i < r->m->n.contact; ++i) {
     const contact *c = &r->m->contacts[i];
     const mesh_group *g = r->msh->group;
-    if (c->update || c->force.given) continue;
+    if (c->force.given) continue;
     own->edge[i] = longest_edge(r->msh, &g[c->group_id]);
     if (c->is_pair)
       own->edge[i] =
@@ -191,8 +211,7 @@ static status keep(run *r, void *self, archive *a) {
   PASS(archive_ints(a, "told_rotation", &own->rotation, 1));
   PASS(archive_ints(a, "told_folded", &own->folded, 1));
   PASS(archive_ints(a, "touched", own->touched, r->m->n.contact));
-  PASS(archive_reals(a, "least_gap", own->least, r->m->n.contact));
-  return archive_reals(a, "edge", own->edge, r->m->n.contact);
+  return archive_reals(a, "least_gap", own->least, r->m->n.contact);
 }
 
 static int requires_warnings(const model *m, const reason *why) {

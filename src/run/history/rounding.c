@@ -308,28 +308,15 @@ static void take_loss(run *r, misfit *x, double square) {
   if (wrong > 0.0) r->errors.rounding.stress = wrong / r->now.peak_stress;
 }
 
-/* 1 for each unknown of the contact problem that contact holds in place. */
-static void find_held(const run *r, const contact_status *touch,
-                      unsigned char *held) {
-  const contact_problem *cp = &r->problem.cp;
-  const double *rc = run_rows(r, 1, r->now.rc);
-  for (int q = 0; q < cp->m; ++q) {
-    const contact_status s = touch[q / cp->dim];
-    const int on_side = contact_bound(cp, q) < HUGE_VAL && rc[q] < 0.0;
-    held[q] =
-        q % cp->dim == 0 ? s != CONTACT_OPEN : s == CONTACT_STICK || on_side;
-    if (contact_held(cp, q)) held[q] = 1;
-  }
-}
-
 /* Again with the body held by contact, where supports are weak. */
 static status find_adjacent_contact(run *r, misfit *x) {
   double square;
-  OWNED_NEW(contact_status, touch, r->problem.cp.n);
-  OWNED_NEW(unsigned char, held, r->problem.cp.m);
-  contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
-                   run_rows(r, 1, r->now.rc), touch);
-  find_held(r, touch, held);
+  const contact_problem *cp = &r->problem.cp;
+  OWNED_NEW(unsigned char, held, cp->m);
+  OWNED_NEW(double, force, cp->m);
+  contact_stops(cp, run_rows(r, 0, r->now.uc), run_rows(r, 1, r->now.rc), 1,
+                force, held);
+  for (int k = 0; k < cp->m; ++k) held[k] |= contact_held(cp, k) != 0;
   PASS(condensed_misfit_held(x->c, x->rest, x->rc, held, x->w, &square));
   if (square < HUGE_VAL) take_loss(r, x, square);
   return OK;
