@@ -1,6 +1,7 @@
 /*
  * Relaxation: nodes in turn, each solved with the others held (local.h).
  */
+#include "base/number.h"
 #include "solver/local.h"
 
 enum { DRIFT_SWEEPS = 20 };
@@ -246,10 +247,10 @@ void relaxation_sweep(relaxation *s, int backward) {
 }
 
 int state_watch_returns(state_watch *w, const relaxation *s) {
-  uint64_t hash = 14695981039346656037u; /* FNV-1a */
+  const uint64_t hash =
+      number_hash(HASH_START, s->blocks->state,
+                  (size_t)s->cp->n * sizeof *s->blocks->state);
   int met = 0, kept = w->n < PATTERNS ? w->n : PATTERNS;
-  for (int i = 0; i < s->cp->n; ++i)
-    hash = (hash ^ (uint64_t)s->blocks->state[i]) * 1099511628211u;
   if (w->n > 0 && w->seen[(w->n - 1) % PATTERNS] == hash) return 0;
   for (int k = 0; k < kept; ++k) met = met || w->seen[k] == hash;
   w->seen[w->n++ % PATTERNS] = hash;

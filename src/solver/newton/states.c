@@ -2,6 +2,7 @@
 #include "solver/newton/system.h"
 
 #include "base/base.h"
+#include "base/number.h"
 
 static const double WARM_SLIP = 0x1p-20; /* -, of g: counts as slipping at the
                                             start */
@@ -218,16 +219,13 @@ void states_all_stick(states *s) {
   }
 }
 
-/* FNV-1a over the pattern. */
 uint64_t states_hash(const states *s) {
-  uint64_t h = 1469598103934665603u;
-  for (int i = 0; i < s->cp->m; ++i)
-    h = (h ^ s->guess.closed[i]) * 1099511628211u;
+  uint64_t h = number_hash(HASH_START, s->guess.closed, s->cp->m);
   for (int i = 0; i < s->cp->n; ++i) {
-    uint64_t sign =
-        s->guess.mode[i] == SLIP && s->guess.e[i * (s->cp->dim - 1)] > 0.0 ? 4u
-                                                                           : 0u;
-    h = (h ^ (s->guess.mode[i] | sign)) * 1099511628211u;
+    const unsigned char mode = s->guess.mode[i];
+    const int turned = mode == SLIP && s->guess.e[i * (s->cp->dim - 1)] > 0.0;
+    const unsigned char state = (unsigned char)(mode | turned << 2);
+    h = number_hash(h, &state, 1);
   }
   return h;
 }

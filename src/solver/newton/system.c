@@ -1,6 +1,7 @@
 /* A step: by an updated factor, or by a new one (system.h). */
 #include "solver/newton/system.h"
 
+#include "base/number.h"
 #include "solver/newton/dense.h"
 
 #include <cblas.h>
@@ -383,24 +384,17 @@ status newton_system_new(const contact_problem *cp, newton_system **out) {
   return OK;
 }
 
-/* FNV-1a of B; 0: none. */
-static uint64_t friction_hash(const contact_problem *cp) {
-  const sparse_rows *B = cp->B;
-  uint64_t h = 1469598103934665603u, bits;
+/* 0: none. */
+static uint64_t friction_hash(const sparse_rows *B) {
   if (B == NULL) return 0;
-  for (int i = 0; i < B->n; ++i) {
-    h = (h ^ (uint64_t)B->start[i + 1]) * 1099511628211u;
-    for (int k = B->start[i]; k < B->start[i + 1]; ++k) {
-      memcpy(&bits, &B->val[k], sizeof bits);
-      h = (h ^ (uint64_t)B->col[k]) * 1099511628211u;
-      h = (h ^ (bits ^ bits >> 32)) * 1099511628211u;
-    }
-  }
-  return h;
+  const size_t n = B->start[B->n];
+  uint64_t h = number_hash(HASH_START, B->start, (B->n + 1) * sizeof *B->start);
+  h = number_hash(h, B->col, n * sizeof *B->col);
+  return number_hash(h, B->val, n * sizeof *B->val);
 }
 
 void newton_system_fit(newton_system *s, const contact_problem *cp) {
-  uint64_t friction = friction_hash(cp);
+  uint64_t friction = friction_hash(cp->B);
   if (s->K.full && friction != s->friction) s->has_base = 0;
   s->friction = friction;
   s->cp = cp;

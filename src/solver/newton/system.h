@@ -97,7 +97,7 @@ void states_clean(const states *s);
 int states_next(states *s, int fresh);
 /* Every node closed, every node with friction sticks. */
 void states_all_stick(states *s);
-/* FNV-1a over the pattern. */
+/* Equal patterns have equal ones. */
 uint64_t states_hash(const states *s);
 
 /*
