@@ -461,12 +461,14 @@ double contact_hidden(const contact_problem *cp, const double *u,
 void contact_drop_roundings(const contact_problem *cp, const double *u,
                             double *r) {
   measure x;
-  measure_set(cp, 0.0, u, r, &x);
+  int known = 0;
   for (int i = 0; i < cp->n; ++i) {
     const int n = cp->dim * i;
     measured node;
+    if ((r[n] <= 0.0 && u[n] >= cp->gap[i]) || is_zero(cp->dim, r + n))
+      continue;
+    if (!known++) measure_set(cp, 0.0, u, r, &x);
     measure_node(&x, i, &node);
-    if (r[n] <= 0.0 && u[n] >= cp->gap[i]) continue;
     for (int k = cp->dim - 1; k >= 0 && fabs(r[n]) <= node.rounding; --k)
       if (fabs(r[n + k]) <= node.rounding) r[n + k] = 0.0;
   }

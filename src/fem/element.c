@@ -443,6 +443,10 @@ static double rotation_square(const double *G) {
   return 0.25 * (yz * yz + zx * zx + xy * xy);
 }
 
+/* Least sum of the squares of a gradient, a singular value of 1, that turns an
+ * element inside out. */
+static const double FOLDS = 1.0;
+
 void domain_deformation(const domain *d, const double *u, deformation *out) {
   double largest = 0.0, farthest = 0.0;
   *out = (deformation){.volume = 1};
@@ -453,8 +457,7 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
       gradient_at(d, 2, e, u, G);
     else
       gradient_at(d, 3, e, u, G);
-    const double square = strain_square(G), turn = rotation_square(G),
-                 volume = volume_ratio(G);
+    const double square = strain_square(G), turn = rotation_square(G);
     if (turn > farthest) {
       farthest = turn;
       out->rotation_elem = e;
@@ -463,6 +466,8 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
       largest = square;
       out->strain_elem = e;
     }
+    if (square + 2.0 * turn < FOLDS) continue;
+    const double volume = volume_ratio(G);
     if (volume < out->volume) {
       out->volume = volume;
       out->volume_elem = e;

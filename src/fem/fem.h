@@ -201,7 +201,7 @@ void domain_held_force(const domain *d, const double *u,
                        const unsigned char *held, double *F);
 /* The largest strain, the root of e:e, the largest rotation, of small ones, and
  * the least volume over that of the mesh, not positive where an element is
- * turned inside out. */
+ * turned inside out, of the elements that might be; 1: none. */
 typedef struct deformation {
   double strain, rotation, volume; /* -, rad, - */
   int strain_elem, rotation_elem, volume_elem;

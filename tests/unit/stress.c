@@ -128,20 +128,20 @@ START_TEST(deformation_is_that_of_the_gradient) {
     double A[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, e[6], square = 0;
     for (int i = 0; i < s->m->n_node; ++i) {
       linear(s->m, kin, i, u + dim * i);
-      for (int c = 0; c < dim; ++c) u[dim * i + c] *= 0.5 * sign;
+      for (int c = 0; c < dim; ++c) u[dim * i + c] *= 2 * sign;
     }
     for (int r = 0; r < dim; ++r)
       for (int c = 0; c < dim; ++c)
-        if (kin != AXISYMMETRIC || r == c) A[r][c] += 0.5 * sign * G[r][c];
+        if (kin != AXISYMMETRIC || r == c) A[r][c] += 2 * sign * G[r][c];
     if (kin == AXISYMMETRIC) A[2][2] = A[0][0];
     linear_strain(kin, e);
     if (kin == PLANE_STRESS) e[2] = 0; /* of the elastic law alone */
     for (int k = 0; k < (dim == 3 ? 6 : 4); ++k)
-      square += 0.25 * (k < 3 ? 1 : 0.5) * e[k] * e[k];
+      square += 4 * (k < 3 ? 1 : 0.5) * e[k] * e[k];
     domain_deformation(&s->d, u, &x);
     ck_assert_double_eq_tol(x.strain, sqrt(square), 1e-12);
     ck_assert_double_eq_tol(x.volume, fmin(1, det(A)), 1e-12);
-    ck_assert_double_eq_tol(x.rotation, 0.5 * turned(kin), 1e-12);
+    ck_assert_double_eq_tol(x.rotation, 2 * turned(kin), 1e-12);
   }
   free(u);
   scene_free(s);
