@@ -23,9 +23,10 @@ typedef struct equilibrium {
   double *e0, *sigma; /* all strains without stress, -; Pa */
   double *elastic;    /* [ns*n] the rest; NULL: moduli stay */
   energies energy;
-  double peak_energy, peak_stress; /* J, Pa, largest so far; the latter
-                                      where rounding was looked at */
-  double kept;                     /* J, of laws in elastic constants */
+  /* J, Pa, -: largest so far; the last two, of stresses and of strains without
+   * stress, where rounding was looked at. */
+  double peak_energy, peak_stress, peak_strain;
+  double kept; /* J, of laws in elastic constants */
 } equilibrium;
 
 typedef struct shadow shadow; /* shadow.c */

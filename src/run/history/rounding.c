@@ -285,11 +285,20 @@ static int is_noise(const run *r, double square) {
 }
 
 /* What errors of displacements count against, m: the largest one, or that of
- * strains without stress, where the body is held so that it stays in place. */
+ * the largest strains without stress so far, where the body is held so that it
+ * stays in place. */
 static double largest_motion(const run *r) {
+  return fmax(largest_entry(r->n_dof, r->now.u),
+              r->now.peak_strain * r->msh->size);
+}
+
+static void find_peaks(run *r, const misfit *x) {
+  equilibrium *e = &r->now;
   const size_t n = (size_t)r->m->ns * r->strains.eigen.n;
-  const double strain = n > 0 ? largest_entry(n, r->strains.eigen.e0) : 0.0;
-  return fmax(largest_entry(r->n_dof, r->now.u), strain * r->msh->size);
+  e->peak_stress = fmax(e->peak_stress, largest_entry(x->n_stress, x->stress));
+  if (n > 0)
+    e->peak_strain =
+        fmax(e->peak_strain, largest_entry(n, r->strains.eigen.e0));
 }
 
 /* The loss by the error w of the displacements. */
@@ -347,8 +356,7 @@ static status find(run *r) {
   OWNED_PARTS(misfit, x, misfit_new(r, &x));
   PASS(find_error(r, &x, &square));
   r->errors.misfit = 0.5 * square;
-  r->now.peak_stress =
-      fmax(r->now.peak_stress, largest_entry(x.n_stress, x.stress));
+  find_peaks(r, &x);
   r->errors.noise = is_noise(r, square);
   take_loss(r, &x, square);
   if (leaves_none(&r->errors.rounding, 1.0, x.c) && r->nodes.n_row > 0)
@@ -501,6 +509,7 @@ status rounding_find(run *r) {
   r->errors.lost = r->errors.misfit = 0.0;
   r->now.peak_energy = fmax(r->old.peak_energy, r->now.energy.strain);
   r->now.peak_stress = r->old.peak_stress;
+  r->now.peak_strain = r->old.peak_strain;
   if (r->solving.report.outcome <= 0) return OK;
   PASS(check_met(r));
   PASS(check_touch(r));

@@ -42,7 +42,8 @@ static status keep_equilibrium(const run *r, equilibrium *e, archive *a) {
                      e->elastic == NULL ? 0 : strains));
   PASS(archive_bytes(a, "energy", &e->energy, sizeof e->energy));
   PASS(archive_reals(a, "peak_energy", &e->peak_energy, 1));
-  return archive_reals(a, "peak_stress", &e->peak_stress, 1);
+  PASS(archive_reals(a, "peak_stress", &e->peak_stress, 1));
+  return archive_reals(a, "peak_strain", &e->peak_strain, 1);
 }
 
 /* Temperatures of the moduli, and whether the elastic matrix is theirs. */
