@@ -552,9 +552,10 @@ static double contact_power(const trial *a, const trial *b, int dim) {
 }
 
 /* now: of the mesh of the deck, with its goals. A mesh on which some goal has
- * no estimate yet is followed by another. */
+ * no estimate yet is followed by another, up to GROWN times that of the deck.
+ */
 static status forecast_goals(const command *c, job_input *in, trial *now) {
-  enum { LEAST = 2, MOST = 4 };
+  enum { LEAST = 2, MOST = 4, GROWN = 8 };
   static const double part = 0.3;
   status st = OK;
   OWNED_NEW(double, length, in->msh->n_node);
@@ -563,7 +564,8 @@ static status forecast_goals(const command *c, job_input *in, trial *now) {
   int n = 0;
   space_lengths(in->msh, length);
   const mesh_sizes first = {in->msh, length};
-  while (n < LEAST || (n < MOST && lacks_estimate(now->goals, in->m, n - 1))) {
+  while (n < LEAST || (n < MOST && lacks_estimate(now->goals, in->m, n - 1) &&
+                       s[(n + 1) % 2].t.unknowns < GROWN * now->unknowns)) {
     stand *to = &s[n % 2], *from = &s[(n + 1) % 2];
     stand_free(to);
     to->t.goals = now->goals;

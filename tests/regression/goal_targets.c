@@ -319,6 +319,19 @@ START_TEST(forecasts_of_goals_are_near_the_passes) {
 }
 END_TEST
 
+/* A goal that no mesh has an estimate of: its passes stay small. */
+START_TEST(forecast_of_no_estimate_takes_little_memory) {
+  job j;
+  int code = run_with(&j, "input/hertz_line/hertz_exact",
+                      "*GOAL, NAME=NONE, QUANTITY=PRESSURE, CONTACT=LINE, "
+                      "RADIUS=1E-9\n0., 0.\n",
+                      "", "--estimate-cost --max-memory 200 -D N=4");
+  OK_OR_STOP(code, j);
+  ck_assert_ptr_nonnull(strstr(j.text, "NONE: none"));
+  job_end(&j);
+}
+END_TEST
+
 /* The mesh of the file is refined as expected; its contact stays on the circle.
  */
 START_TEST(msh_of_a_cylinder_is_refined) {
@@ -397,6 +410,7 @@ END_TEST
 
 UNIT_MAIN("goal_targets", msh_of_a_cylinder_is_refined,
           forecasts_of_goals_are_near_the_passes,
+          forecast_of_no_estimate_takes_little_memory,
           every_goal_is_within_its_target, peak_of_the_sphere_in_space,
           force_and_slip_of_the_block, targets_out_of_reach_say_why,
           force_on_a_step_is_within_its_target, zero_needs_a_target_in_its_unit)
