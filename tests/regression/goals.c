@@ -446,7 +446,7 @@ END_TEST
 START_TEST(order_of_materials_changes_no_estimate) {
   static const char soft[] = "*SOLID SECTION, ELSET=SOFT, MATERIAL=S\n",
                     hard[] = "*SOLID SECTION, ELSET=HARD, MATERIAL=H\n";
-  told is[2][2];
+  told is[2][3];
   for (int k = 0; k < 2; ++k) {
     job j = job_begin("layers");
     job_copy(&j, "tests/regression/mesh/layers.geo");
@@ -458,15 +458,16 @@ START_TEST(order_of_materials_changes_no_estimate) {
         "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
         "*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.2\n0.5, 0.\n"
         "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=HARD\n"
+        "*GOAL, NAME=E, QUANTITY=ENERGY\n"
         "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.01\n"
         "*DSLOAD\nTOP, TX, 2.\n*PRINT, GOALS\n*END STEP\n",
         k == 0 ? soft : hard, k == 0 ? hard : soft);
     const int code = job_run(&j, "");
     ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
-    for (int i = 0; i < 2; ++i) is[k][i] = told_of(&j, i);
+    for (int i = 0; i < 3; ++i) is[k][i] = told_of(&j, i);
     job_end(&j);
   }
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < 3; ++i) {
     ck_assert_double_gt(fabs(is[0][i].error), 0);
     ck_assert_double_eq_tol(is[1][i].error, is[0][i].error,
                             1e-7 * fabs(is[0][i].error));

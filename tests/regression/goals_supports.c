@@ -13,7 +13,7 @@
 #define CLAMPED "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n*DSLOAD\nTOP, P, 10.\n"
 
 /* By supports alone the energy of a mesh is too large, by loads too small; by
- * both, and along supports that bend, by a part of each. */
+ * both, along supports that bend, or where friction rubs, by a part of each. */
 START_TEST(energies_by_loads_and_by_supports) {
   static const struct {
     const char *on, *step;
@@ -31,8 +31,14 @@ START_TEST(energies_by_loads_and_by_supports) {
        0.19257777, 1.0},
       {"GAP\n\"0.01*x^2\"",
        "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nRIGHT, 1\nTOP, 2, 2, -0.005\n",
-       0.0065382663, 3.0}};
-  for (int k = 0; k < 5; ++k) {
+       0.0065382663, 3.0},
+      /* values of 64 x 64 and 128 x 128 squares, extrapolated */
+      {PLANE,
+       "*FRICTION, CONTACT=C, LAW=COULOMB\n0.02\n"
+       "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\nRIGHT, 1\n"
+       "TOP, 2, 2, \"-0.01*(1+0.5*cos(pi*x/2))\"\n",
+       0.14964158, 3.0}};
+  for (int k = 0; k < 6; ++k) {
     char cards[400];
     snprintf(cards, sizeof cards, ENERGY "%s", rows[k].step);
     job j = body_of_block(16, rows[k].on, cards);
