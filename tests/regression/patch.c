@@ -123,6 +123,9 @@ START_TEST(widening_block_in_all_kinematics) {
       dat u = job_table(&j, "NODES", -1);
       field exact = {{0, kind[s].ex, 0}, {0, 0, kind[s].ey}};
       ck_assert_double_le(field_error(&u, 2, exact), 1e-10);
+      char *lst = job_file(&j, "lst"); /* all errors are rounding */
+      ck_assert_ptr_null(strstr(lst, "improve next"));
+      free(lst);
       dat_free(&u);
       job_end(&j);
     }

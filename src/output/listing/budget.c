@@ -191,6 +191,7 @@ static void print_budget(const job *j, FILE *f) {
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
 static const double EXACT = 1e-3; /* -, of the others: far more than needed */
 static const double WORTH = 0.05; /* -, of the CPU */
+static const double NONE = 1e-10; /* %, error that is rounding */
 
 /* The row of that name: its last error, %, NAN: none or unknown. */
 static double last_of(const budget_row *rows, int n, const char *name) {
@@ -252,13 +253,13 @@ void job_advice(const job *j, char *text, size_t size) {
     used = add(text, size, used,
                "the mesh: the estimate of its error sees nothing, half the "
                "length of the elements may");
-  else if (isgreater(in_steps, in_mesh))
+  else if (isgreater(in_steps, fmax(in_mesh, NONE)))
     used =
         add(text, size, used,
             "the increments: half their length gives %.2g %% or less of %.2g "
             "%% for 2 times the CPU",
             0.5 * in_steps, in_steps);
-  else if (in_mesh > 0.0)
+  else if (in_mesh > NONE)
     used = add(text, size, used,
                "the mesh: half the length of the elements gives about %.2g %% "
                "for up to %.0f times the CPU",
