@@ -509,14 +509,15 @@ void contact_stops(const contact_problem *cp, const double *u, const double *r,
   measure x;
   measure_set(cp, contact_scale(cp), u, r, &x);
   if (force != NULL) COPY(force, r, cp->m);
-  for (int dof = 0; dof < cp->m; ++dof) {
+  for (int i = 0; i < cp->n; ++i) {
+    const int first = cp->dim * i;
     measured node;
-    const int k = dof % cp->dim;
-    measure_node(&x, dof / cp->dim, &node);
-    stopped[dof] =
-        contact_bound(cp, dof) < HUGE_VAL &&
-        is_closed(&x, dof / cp->dim, &node, k, k == 0 ? node.c.n : node.c.t);
-    if (force != NULL && k == 0 && !stopped[dof]) force[dof] = 0.0;
+    measure_node(&x, i, &node);
+    for (int k = 0; k < cp->dim; ++k)
+      stopped[first + k] =
+          contact_bound(cp, first + k) < HUGE_VAL &&
+          is_closed(&x, i, &node, k, k == 0 ? node.c.n : node.c.t);
+    if (force != NULL && !stopped[first]) force[first] = 0.0;
   }
   if (force != NULL) x.r = force;
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {

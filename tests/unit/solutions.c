@@ -143,15 +143,21 @@ START_TEST(larger_problems_are_refused) {
 }
 END_TEST
 
-/* The answer of one solver is confirmed by another family only. */
-START_TEST(one_family_alone_confirms_nothing) {
-  contact_case c = case_any(2, 4, 0.2, 0, 11);
-  solver_report rep = solve(&c);
+/* By solvers: one solution, which is confirmed. */
+static solution_set only_solution(contact_case *c) {
+  solver_report rep = solve(c);
   solution_set some = {0};
-  ck_assert_int_eq(solutions_by_solvers(&c.cp, 1e-10, &rep, c.u, c.r, &some),
+  ck_assert_int_eq(solutions_by_solvers(&c->cp, 1e-10, &rep, c->u, c->r, &some),
                    OK);
   ck_assert_int_eq(some.n_found, 1);
   ck_assert(solution_set_confirmed(&some));
+  return some;
+}
+
+/* The answer of one solver is confirmed by another family only. */
+START_TEST(one_family_alone_confirms_nothing) {
+  contact_case c = case_any(2, 4, 0.2, 0, 11);
+  solution_set some = only_solution(&c);
   for (int k = 0; k < some.n_attempt; ++k)
     if (strcmp(some.attempts[k].family, some.attempts[0].family) != 0)
       some.attempts[k].solution_no = 0;
@@ -165,12 +171,7 @@ END_TEST
 /* Without tangents the problem is convex: one solution from every start. */
 START_TEST(normal_unknowns_alone_have_one_solution) {
   contact_case c = case_any(1, 6, 0.0, 0, 12);
-  solver_report rep = solve(&c);
-  solution_set some = {0};
-  ck_assert_int_eq(solutions_by_solvers(&c.cp, 1e-10, &rep, c.u, c.r, &some),
-                   OK);
-  ck_assert_int_eq(some.n_found, 1);
-  ck_assert(solution_set_confirmed(&some));
+  solution_set some = only_solution(&c);
   solution_set_free(&some);
   case_free(&c);
 }

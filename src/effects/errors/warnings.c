@@ -111,8 +111,8 @@ static int leaves_gap(const run *r, int i, double slip) {
   for (int c = 0; c < dim; ++c) to[c] = x[c] + u[c] - along * n[c];
   const double change = obstacle_gap(o, dim, to, n, r->now.t) -
                         obstacle_gap(o, dim, x, n, r->now.t);
-  return fabs(change) > LARGE * gaps_apart(r, id) + rounding_of_gaps(r) +
-                            16 * DBL_EPSILON * slip;
+  return fabs(change) > rounding_of_gaps(r) + 16 * DBL_EPSILON * slip &&
+         fabs(change) > LARGE * gaps_apart(r, id);
 }
 
 /* Contact node i, pressed after it has moved by u[dim] against its partners
