@@ -167,12 +167,11 @@ static double auglag_turning(const auglag_run *s, int a, int b) {
   return w->share[a / s->cp->dim] * ((a == b) - w->e[a] * w->e[b]);
 }
 
-/* The states after a step into w->state; counts the nodes that differ from the
- * step before. */
-static void auglag_take_states(auglag_run *s) {
+/* The nodes whose state differs from that after the step before, w->state;
+ * take: the states go there. */
+static int auglag_turned(auglag_run *s, int take) {
   auglag_work *w = s->w;
-  int dim = s->cp->dim;
-  s->turned = 0;
+  int dim = s->cp->dim, turned = 0;
   for (int node_id = 0; node_id < s->cp->n; ++node_id) {
     int differs = 0;
     for (int dof = node_id * dim; dof < (node_id + 1) * dim; ++dof) {
@@ -180,10 +179,11 @@ static void auglag_take_states(auglag_run *s) {
       unsigned char now =
           (unsigned char)(w->closed[dof] | w->mode[node_id] << 1 | sign << 3);
       differs = differs || now != w->state[dof];
-      w->state[dof] = now;
+      if (take) w->state[dof] = now;
     }
-    s->turned += differs;
+    turned += differs;
   }
+  return turned;
 }
 
 /* Residual of (u, F), reported; the best iterate is stored. */
@@ -232,6 +232,7 @@ static int operated_direction(auglag_run *s, const double *hold) {
 
 static const double RHO_NEWTON = 0x1p-2; /* -, of diag A */
 static const double DESCENT = 1e-4;      /* -, share of the slope */
+static const double LEVEL = 0x1p-40;     /* -, of |Phi|^2: none */
 enum { MEMORY = 4 /* steps |Phi| is compared with */ };
 
 /* Row of (A - F'(A - rho)) d of a free unknown; v = A d, d[m]. */
@@ -351,6 +352,16 @@ static double merit(const auglag_run *s) {
   return sum;
 }
 
+/* 1: |Phi| falls below the reference, by a step of this length. Where contact
+ * alone holds the body a motion that no force resists leaves |Phi| as it is
+ * until a state changes. */
+static int step_is_short(auglag_run *s, double a, double now,
+                         double reference) {
+  if (now <= (1.0 - DESCENT * a) * reference) return 1;
+  return s->cp->floating && now <= (1.0 + LEVEL) * reference &&
+         auglag_turned(s, 0) == 0;
+}
+
 /* Shorten the step until |Phi| is below the largest of the last ones. */
 static double shorten(auglag_run *s, double reference) {
   double a = 1.0, now;
@@ -358,7 +369,7 @@ static double shorten(auglag_run *s, double reference) {
   auglag_evaluate(s, s->w->y);
   now = merit(s);
   for (int k = 0; k < SHORTENINGS; ++k) {
-    if (now <= (1.0 - DESCENT * a) * reference) break;
+    if (step_is_short(s, a, now, reference)) break;
     auglag_move(s, -0.5 * a);
     a *= 0.5;
     auglag_evaluate(s, s->w->y);
@@ -387,7 +398,7 @@ static outcome auglag_newton(auglag_run *s) {
   auglag_evaluate(s, w->y);
   for (int k = 0; k < MEMORY; ++k) past[k] = merit(s);
   for (int k = 0;; ++k) {
-    auglag_take_states(s);
+    s->turned = auglag_turned(s, 1);
     s->cycle = met_before(s, k);
     met += s->cycle;
     residual = auglag_check(s);
@@ -536,7 +547,7 @@ static outcome minimise(auglag_run *s) {
   double multiplier, balance;
   auglag_evaluate(s, w->lambda);
   for (int k = 0;; ++k) {
-    auglag_take_states(s);
+    s->turned = auglag_turned(s, 1);
     double residual = auglag_check(s);
     if (isnan(residual)) return STOPPED_NAN;
     if (residual <= s->control->tol) return CONVERGED;
