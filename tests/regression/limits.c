@@ -234,7 +234,7 @@ END_TEST
 START_TEST(auto_comes_to_proximal) {
   job j;
   int code =
-      job_run_with(&j, "input/greco/greco", "", 0, "-D MU=1E6 -D N=52 -D DT=1");
+      job_run_with(&j, "input/greco/greco", "", 0, "-D MU=1E6 -D N=68 -D DT=1");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   job_end(&j);
 }
