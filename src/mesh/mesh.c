@@ -112,13 +112,9 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
 }
 
 status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
-  const size_t per = (size_t)m->dim + 1, n = per * m->n_elem;
-  PASS_NEW_ALL(OF(*start, m->n_node + 2), OF(*elem, n));
-  size_t *s = *start;
-  for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];
-  for (int i = 0; i < m->n_node; ++i) s[i + 2] += s[i + 1];
-  for (size_t k = 0; k < n; ++k) (*elem)[s[m->elem[k] + 1]++] = (int)(k / per);
-  return OK;
+  const int per = m->dim + 1;
+  return number_places(m->n_node, (size_t)per * m->n_elem, m->elem, per, start,
+                       elem);
 }
 
 void fault_add(faults *c, const char *format, ...) {

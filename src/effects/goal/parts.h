@@ -76,7 +76,8 @@ double goal_mean_bubbles(const run *r, const goal_estimator *e,
 void goal_rule_point(int n, int k, int pieces, double *b);
 /* boundary.c: faces round each node. */
 typedef struct goal_ring {
-  int *start, *face; /* [n_node+1], [dim*n_face] */
+  size_t *start; /* of number_places */
+  int *face;
 } goal_ring;
 /* All-zero r is new. ERR_MEMORY. */
 status goal_ring_new(const mesh *m, goal_ring *r);
