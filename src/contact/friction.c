@@ -232,13 +232,6 @@ typedef struct patch {
   int *contact_node; /* [n_node] of the surface, or -1 */
 } patch;
 
-/* Place of a mesh node in the group, whose ids ascend. */
-static int place_in(const mesh_group *g, int node_id) {
-  const int *at =
-      bsearch(&node_id, g->node_id, g->n_node, sizeof node_id, number_order);
-  return (int)(at - g->node_id);
-}
-
 /* A node whose normal force belongs to another contact has none for this. */
 static int carries(const contact_surface *s, int i, int contact_id) {
   return s->contact_id[i] == contact_id || !surface_is_corner(s, i);
@@ -264,8 +257,8 @@ static status patch_new(const contact_surface *s, const surface_input *in,
   }
   for (int k = 0; k < g->n_item; ++k)
     for (int c = 0; c < m->dim; ++c)
-      a->face[m->dim * k + c] =
-          place_in(g, m->face[m->dim * g->item_id[k] + c]);
+      a->face[m->dim * k + c] = number_find(m->face[m->dim * g->item_id[k] + c],
+                                            g->node_id, g->n_node);
   a->p = (average_patch){.dim = m->dim,
                          .axisymmetric = in->axisymmetric,
                          .n_node = g->n_node,

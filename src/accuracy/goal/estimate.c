@@ -87,10 +87,8 @@ static void gradients(const goal_solution *s, double *q) {
 /* ---- the part of u in the bubble of an edge ------------------------------ */
 
 static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
-  const goal_solution *s = &e->s;
-  const number_pair key = number_pair_of(a, b);
   if (!e->on_surface[a] || !e->on_surface[b]) return NULL;
-  return bsearch(&key, s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
+  return PAIR_FIND(e->s.edge, e->s.n_edge, a, b);
 }
 
 /* v[dim] with another part along n[dim]. */
@@ -128,18 +126,13 @@ static void hold(const goal_solution *s, const double *G, const contact_edge *c,
 static void support(const goal_solution *s, const double *G, int a, int b,
                     double *d, double *x) {
   const int dim = s->d->mesh->dim;
-  const number_pair v = number_pair_of(a, b);
-  const given_edge *g = NULL;
-  const bent_edge *bent = NULL;
+  const given_edge *g = PAIR_FIND(s->given, s->n_given, a, b);
+  const bent_edge *bent = PAIR_FIND(s->bent, s->n_bent, a, b);
   double u[3] = {0.0};
   int any = 0;
   for (int c = 0; c < dim; ++c)
     any |= s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c];
   if (!any) return;
-  if (s->n_given > 0)
-    g = bsearch(&v, s->given, s->n_given, sizeof *g, number_pair_order);
-  if (s->n_bent > 0)
-    bent = bsearch(&v, s->bent, s->n_bent, sizeof *bent, number_pair_order);
   if (bent != NULL) outside(s, G, a, b, bent->out, u);
   for (int c = 0; c < dim; ++c)
     if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c])
@@ -238,10 +231,8 @@ static void add_bubble(const domain *d, int elem_id, const int *edge,
 
 /* NULL: all elements of the edge are of one region. */
 static joint_edge *find_joint(const goal_estimator *e, int a, int b) {
-  const number_pair key = number_pair_of(a, b);
-  if (e->n_joint == 0 || !e->is_joint[a] || !e->is_joint[b]) return NULL;
-  return bsearch(&key, e->joint, e->n_joint, sizeof *e->joint,
-                 number_pair_order);
+  if (!e->is_joint[a] || !e->is_joint[b]) return NULL;
+  return PAIR_FIND(e->joint, e->n_joint, a, b);
 }
 
 /* Writes the edges between marked nodes, element by element, or counts them. */

@@ -199,20 +199,15 @@ static int can_stick(const friction_limit *limit, int i) {
   return 0;
 }
 
-static int in_group(const mesh_group *g, int node_id) {
-  for (int k = 0; k < g->n_node; ++k)
-    if (g->node_id[k] == node_id) return 1;
-  return 0;
-}
-
 /* The *BOUNDARY that holds contact node i most along its axis a, or NULL. */
 static const load *holder(const run *r, int i, int a) {
   const contact_surface *s = r->surface;
   const double *axis = &s->frame[s->dim * s->dim * i + s->dim * a];
   const load *best = NULL;
   for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
+    const mesh_group *g = &r->msh->group[l->group_id];
     if (l->kind != LOAD_FIXING ||
-        !in_group(&r->msh->group[l->group_id], s->node_id[i]))
+        number_find(s->node_id[i], g->node_id, g->n_node) < 0)
       continue;
     if (best == NULL || fabs(axis[l->component]) > fabs(axis[best->component]))
       best = l;
