@@ -119,19 +119,12 @@ status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
 
 void fault_add(faults *c, const char *format, ...) {
   if (++c->n > SHOWN + 1) return;
-  size_t used = strlen(c->text), left = sizeof c->text - used;
-  if (c->n > SHOWN) {
-    snprintf(c->text + used, left, ", ...");
-    return;
-  }
-  if (c->n > 1) {
-    int n = snprintf(c->text + used, left, ", ");
-    used += (size_t)n < left ? (size_t)n : left - 1;
-    left = sizeof c->text - used;
-  }
+  if (c->n > 1) text_add(c->text, sizeof c->text, ", ");
+  if (c->n > SHOWN) format = "...";
+  const size_t used = strlen(c->text);
   va_list args;
   va_start(args, format);
-  vsnprintf(c->text + used, left, format, args);
+  vsnprintf(c->text + used, sizeof c->text - used, format, args);
   va_end(args);
 }
 

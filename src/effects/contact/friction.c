@@ -94,9 +94,8 @@ static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
 }
 
 static void notify(run *r, const friction_rule *rule, int contact_id, jump j) {
-  size_t used = strlen(r->course.note);
   if (j.node_id < 0) return;
-  snprintf(r->course.note + used, sizeof r->course.note - used,
+  RUN_NOTE(r,
            "  %s of contact %s jumps at t = %.9g from %.6g to %.6g, node %zu\n",
            rule->law->value_name, r->m->contacts[contact_id].name, j.t, j.from,
            j.to, r->surface->node_no[j.node_id]);
@@ -111,9 +110,7 @@ static void note_change(run *r, int contact_id) {
       friction_in_force(r->m, step_id - 1, contact_id);
   if (now == before) return;
   if (now->law != before->law) {
-    size_t used = strlen(r->course.note);
-    snprintf(r->course.note + used, sizeof r->course.note - used,
-             "  friction of contact %s changes at t = %.9g from %s to %s\n",
+    RUN_NOTE(r, "  friction of contact %s changes at t = %.9g from %s to %s\n",
              r->m->contacts[contact_id].name, r->old.t,
              before->law == NULL ? "NONE" : before->law->name,
              now->law == NULL ? "NONE" : now->law->name);

@@ -197,10 +197,9 @@ static void give_back(run *r, contact_solver *own, double tol) {
 }
 
 static void note_jump(run *r, checked *own, double t, double share) {
-  size_t used = strlen(r->course.note);
   own->jumps = 1;
   own->jump_t = t;
-  snprintf(r->course.note + used, sizeof r->course.note - used,
+  RUN_NOTE(r,
            "  JUMP: no path of equilibria leads here: at time %.6g, within "
            "%.0e of the load of the\n  increment, the state changes by %.0f %% "
            "of its motion; the run goes on with another branch\n",
