@@ -421,17 +421,6 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   return OK;
 }
 
-/* The stress E e of an element by a strain e[ns]. */
-static void stress_by(const domain *d, int elem_id, const double *e,
-                      double *t) {
-  const int ns = d->ns;
-  const double *E = d->E + (size_t)(ns * ns) * d->section_id[elem_id];
-  for (int i = 0; i < ns; ++i) {
-    t[i] = 0.0;
-    for (int j = 0; j < ns; ++j) t[i] += E[i + ns * j] * e[j];
-  }
-}
-
 void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
                            double *d) {
   const mesh *m = e->s.d->mesh;
@@ -542,7 +531,7 @@ static double axi_residual(const goal_estimator *e, int elem_id,
     const double r = axi_strains(e, elem_id, p, y, b, of_y, of_b);
     if (of_u) axi_strains(e, elem_id, p, e->s.u, b, of_own, of_b);
     for (int k = 0; k < 4; ++k) of_y[k] -= of_u ? of_own[k] : 0.0;
-    stress_by(d, elem_id, of_y, t);
+    element_stress(d, elem_id, of_y, t);
     for (int k = 0; k < 4; ++k) {
       if (tau != NULL && !of_u) t[k] -= tau[k];
       if (eigen != NULL) t[k] += 2.0 * eigen[k];
@@ -706,7 +695,7 @@ void goal_estimator_force(goal_estimator *e, double *F) {
     return;
   }
   for (int k = 0; k < d->mesh->n_elem; ++k)
-    stress_by(d, k, e->all.strain + ns * k, e->sigma_y + ns * k);
+    element_stress(d, k, e->all.strain + ns * k, e->sigma_y + ns * k);
   domain_internal_force(d, e->sigma_y, F);
   for (size_t k = 0; k < n; ++k) F[k] = -F[k];
 }

@@ -85,18 +85,10 @@ static double stress_scale(const reduction *n, const state *s) {
 /* e' E e of a strain; its largest stress into *stress. */
 static double energy_of(const reduction *n, int elem_id, const double *e,
                         double *stress) {
-  double held[6], sum = 0.0;
-  int ns = n->m->ns;
-  const double *E =
-      n->moduli.E + (size_t)(ns * ns) * n->m->elem_section[elem_id];
-  *stress = 0.0;
-  for (int i = 0; i < ns; ++i) {
-    held[i] = 0.0;
-    for (int k = 0; k < ns; ++k) held[i] += E[ns * k + i] * e[k];
-    sum += held[i] * e[i];
-    *stress = fmax(*stress, fabs(held[i]));
-  }
-  return sum;
+  double held[6];
+  element_stress(&n->d, elem_id, e, held);
+  *stress = largest_entry(n->m->ns, held);
+  return dot(n->m->ns, held, e);
 }
 
 status reduction_stress(reduction *n, const state *s) {
