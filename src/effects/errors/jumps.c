@@ -68,17 +68,6 @@ static status load_change(run *r, double *room, double *size) {
 
 /* ---- slip through the increment ------------------------------------------ */
 
-/* Slip of node i since the last equilibrium, m. */
-static double slip_of(const contact_problem *cp, const double *u, int i) {
-  double slip = 0.0;
-  for (int k = 1; k < cp->dim; ++k) {
-    int dof = i * cp->dim + k;
-    if (!contact_held(cp, dof))
-      slip = hypot(slip, u[dof] - contact_stick(cp, dof));
-  }
-  return slip;
-}
-
 /* The state in which every node that has moved, and touches at one end of the
  * increment, slides: u[m], q[m]. */
 static void set_sliding(const contact_problem *cp, const double *before,
@@ -89,10 +78,10 @@ static void set_sliding(const contact_problem *cp, const double *before,
     double push = fmin(before[normal], q[normal]);
     if (push < 0.0) u[normal] = cp->gap[i];
     q[normal] = fmin(push, 0.0);
-    most = fmax(most, slip_of(cp, u, i));
+    most = fmax(most, contact_slip_of(cp, u, i));
   }
   for (int i = 0; i < cp->n; ++i) {
-    double slip = slip_of(cp, u, i), g = contact_node_limit(cp, q, i);
+    double slip = contact_slip_of(cp, u, i), g = contact_node_limit(cp, q, i);
     for (int k = 1; k < cp->dim; ++k) {
       int dof = i * cp->dim + k;
       int moves = slip > STILL * most && !contact_held(cp, dof);
