@@ -267,21 +267,14 @@ static status builder_new(builder *b) {
 
 /* ---- the patch --------------------------------------------------------- */
 
-static double triangle_area(const double *x) {
-  double a[3], b[3], n[3];
-  vector_of(3, x, x + 3, a);
-  vector_of(3, x, x + 6, b);
-  cross(a, b, n);
-  return 0.5 * norm(3, n);
-}
-
 /* Integrals of the P1 functions. */
 static void find_shares(builder *b) {
   const average_patch *p = b->p;
   for (int f = 0; f < p->n_face; ++f) {
     const double *x = b->at.corner + (size_t)(p->dim * p->dim) * f;
     const int *node = p->face + p->dim * f;
-    double size = p->dim == 3 ? triangle_area(x) : distance_of(2, x, x + 2);
+    double n[3], size = p->dim == 3 ? 0.5 * triangle_normal(x, n)
+                                    : distance_of(2, x, x + 2);
     for (int k = 0; k < p->dim; ++k) {
       double weight = 1.0 / p->dim;
       if (p->axisymmetric) weight = (2.0 * x[2 * k] + x[2 * !k]) / 6.0;
