@@ -226,12 +226,8 @@ static patch face_patch(const run *r, const goal_ring *rings, int face) {
   return p;
 }
 
-static int is_axisymmetric(const run *r) {
-  return r->m->sections[0].kin == AXISYMMETRIC;
-}
-
 static double turn_of(const run *r, double radius) {
-  return is_axisymmetric(r) ? 2.0 * M_PI * radius : 1.0;
+  return model_is_axisymmetric(r->m) ? 2.0 * M_PI * radius : 1.0;
 }
 
 /* What lies beyond a face, m3. */
@@ -304,7 +300,7 @@ static void add_part_beyond(const run *r, const patch *p, int face,
   double g[12];
   take_given(r, p, where, T);
   mesh_elem_gradients(m, e, g);
-  for (int k = 0; k < p->n && is_axisymmetric(r); ++k) {
+  for (int k = 0; k < p->n && model_is_axisymmetric(r->m); ++k) {
     const spot s = spot_at(m, p, k);
     for (int i = 0; i < p->n; ++i)
       dF[2 * p->node[i]] -= s.weight * s.beyond * 2.0 * M_PI * s.b[i] * t[2];

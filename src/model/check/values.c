@@ -419,7 +419,7 @@ static void check_axis(const model *m, const mesh *msh, const step *s,
   for (int k = 0; k < g->n_node; ++k) {
     int node = g->node_id[k];
     if (msh->x[(size_t)msh->dim * node] > rounding * msh->size) continue;
-    double u = load_at_node(l, msh, s, node, s->start + s->total);
+    double u = load_at_node(l, msh, s, node, step_end(s));
     if (u == 0.0) continue;
     message_add(m->log, P2059, &l->at,
                 "*BOUNDARY: u_r = %g at node %zu on the axis of symmetry", u,
@@ -488,25 +488,21 @@ static void check_tables(const model *m, const step *s) {
                 "*ACCURACY, TIME=BALANCED: the increments stay those of the "
                 "step, as their error under *WEAR, line %d, is not known",
                 wear->at.line_no);
-  for (int k = 0; k < s->print.n; ++k)
-    if (s->print.requests[k].table == PRINT_WEAR &&
-        model_effect_card(m, "WEAR", -1) == NULL)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, WEAR: no contact has *WEAR");
-    else if (s->print.requests[k].table == PRINT_GOALS && m->n.goal == 0)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, GOALS: there is no *GOAL");
-    else if (s->print.requests[k].table == PRINT_SIF && m->n.crack == 0)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, SIF: there is no *CRACK");
-    else if (s->print.requests[k].table == PRINT_SIF &&
-             m->sections[0].kin == AXISYMMETRIC)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, SIF: there are no factors of axisymmetric bodies");
+  const struct {
+    int table, empty;
+    const char *why;
+  } row[] = {{PRINT_WEAR, wear == NULL, "WEAR: no contact has *WEAR"},
+             {PRINT_GOALS, m->n.goal == 0, "GOALS: there is no *GOAL"},
+             {PRINT_SIF, m->n.crack == 0, "SIF: there is no *CRACK"},
+             {PRINT_SIF, m->n.crack > 0 && model_is_axisymmetric(m),
+              "SIF: there are no factors of axisymmetric bodies"}};
+  for (EACH(const print_request, p, s->print.requests, s->print.n))
+    for (size_t i = 0; i < sizeof row / sizeof *row; ++i)
+      if (p->table == row[i].table && row[i].empty)
+        message_add(m->log, P2058, &p->at, "*PRINT, %s", row[i].why);
 }
 
 void check_no_effect(const model *m, const mesh *msh) {
-  int axisymmetric = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
   for (int i = 0; i < m->n.points; ++i) check_times(m, &m->time.points[i]);
   for (int i = 0; i < m->n.material; ++i) check_material(m, &m->materials[i]);
   for (int i = 0; i < m->n.initial; ++i)
@@ -524,7 +520,7 @@ void check_no_effect(const model *m, const mesh *msh) {
       if (l->kind == LOAD_TEMPERATURE)
         check_heat(m, msh, "TEMPERATURE", l->group_id, &l->at);
       check_z(m, msh, &l->value, load_card(l), &l->at);
-      if (axisymmetric) check_axis(m, msh, s, l);
+      if (model_is_axisymmetric(m)) check_axis(m, msh, s, l);
     }
   }
 }
