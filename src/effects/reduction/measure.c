@@ -188,7 +188,8 @@ static status add_rates(reduction *n, const state *s, const omitted *row,
     if (!is_about(n, row, e)) continue;
     if (section_id != n->m->elem_section[e]) {
       section_id = n->m->elem_section[e];
-      PASS(law_sample_at(mat, &law, n->moduli.kin[section_id], s->t, &x));
+      PASS(law_sample_at(&mat->elastic, &law, n->moduli.kin[section_id], s->t,
+                         &x));
     }
     x.p.sigma = n->sigma + (size_t)n->m->ns * e;
     law_rate(&x.p, ei_rate, alpha_rate);

@@ -607,46 +607,35 @@ static void check_exact(const model *m, int step_id) {
 
 /* The fastest rate of the laws whose Jacobian is the same for ever, 1/s. */
 static status constant_rate(const model *m, double *fastest) {
-  static const double zero[FLOW_VALUE_MAX];
-  ENDS_BY(flow_kind_free) flow_kind kind = {0};
+  static const double zero[6];
+  ENDS_BY(law_sample_free) law_sample x = {0};
   *fastest = 0.0;
   for (int i = 0; i < m->n.section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
-    law_elastic elastic;
-    law_point p;
     double rate;
     if (mat->law.ops == NULL || !is_constant(mat)) continue;
-    PASS(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
-                          &elastic));
-    PASS(flow_new_kind(&kind, &mat->law, &elastic));
-    PASS(flow_coefficients(&kind, 0.0, 0.0, NULL, &p));
-    p.sigma = p.ei = p.alpha = zero;
-    PASS(law_fastest_rate(&p, &rate));
+    PASS(law_sample_at(&mat->elastic, &mat->law, (kinematics)m->sections[i].kin,
+                       0.0, &x));
+    x.p.sigma = zero;
+    PASS(law_fastest_rate(&x.p, &rate));
     *fastest = fmax(*fastest, rate);
-    flow_kind_free(&kind);
   }
   return OK;
 }
 
 /* 1: a mean stress alone makes nothing flow, as far as a shear does. */
 static status keeps_volume(const section *s, const material *mat, int *answer) {
-  static const double zero[FLOW_VALUE_MAX];
-  double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], ei_rate[6];
-  ENDS_BY(flow_kind_free) flow_kind kind = {0};
-  law_elastic elastic;
-  law_point p;
-  PASS(law_elastic_read(&mat->elastic, 0.0, (kinematics)s->kin, &elastic));
-  PASS(flow_new_kind(&kind, &mat->law, &elastic));
-  PASS(flow_coefficients(&kind, 0.0, 0.0, value, &p));
-  const double size = 1e-3 * elastic.young;
+  double alpha_rate[FLOW_VALUE_MAX], ei_rate[6];
+  ENDS_BY(law_sample_free) law_sample x = {0};
+  PASS(law_sample_at(&mat->elastic, &mat->law, (kinematics)s->kin, 0.0, &x));
+  const double size = 1e-3 * x.kind.elastic.young;
   const double mean[6] = {size, size, size}, shear[6] = {0, 0, 0, size};
-  p.ei = p.alpha = zero;
-  p.speed = 1.0; /* whatever the temperature */
-  p.sigma = mean;
-  law_rate(&p, ei_rate, alpha_rate);
+  x.p.speed = 1.0; /* whatever the temperature */
+  x.p.sigma = mean;
+  law_rate(&x.p, ei_rate, alpha_rate);
   double swelling = fabs(tensor_trace(ei_rate));
-  p.sigma = shear;
-  law_rate(&p, ei_rate, alpha_rate);
+  x.p.sigma = shear;
+  law_rate(&x.p, ei_rate, alpha_rate);
   *answer = swelling <= 1e-9 * fabs(ei_rate[3]);
   return OK;
 }
