@@ -190,8 +190,7 @@ static double held_value(const run *r, const double *ud, int i, int a) {
 static int can_stick(const friction_limit *limit, int i) {
   const sparse_rows *B = &limit->B;
   if (limit->g0[i] > 0.0) return 1;
-  for (int e = B->start == NULL ? 0 : B->start[i];
-       B->start != NULL && e < B->start[i + 1]; ++e)
+  for (int e = row_begin(B, i); e < row_end(B, i); ++e)
     if (B->val[e] > 0.0) return 1;
   return 0;
 }

@@ -577,8 +577,7 @@ static status goals_copy(const run *r, const void *of, run *copy, void **self) {
 }
 
 static int goals_due(const run *r) {
-  return !r->course.shadow ||
-         table_is_due(r->step, PRINT_GOALS, r->now.t, -1, 0);
+  return !r->course.shadow || table_is_due_now(r, PRINT_GOALS);
 }
 
 static void show(const void *self, state *s) {

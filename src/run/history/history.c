@@ -109,6 +109,13 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
   return 0;
 }
 
+int table_is_due_now(const run *r, int tables) {
+  const int within = r->course.shadow;
+  return table_is_due(r->step, tables, r->now.t,
+                      within ? -1 : r->at.increment_no,
+                      within ? 0 : r->at.last);
+}
+
 /* ---- tables at time points that no increment ends at -------------------- */
 
 /* The first time point of a table after "after" within the increment. */
