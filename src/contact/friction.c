@@ -35,8 +35,8 @@ void friction_limit_free(friction_limit *limit) {
 
 status friction_value(const friction_card *card, const contact_surface *s,
                       int i, double t, double *value) {
-  double x[3];
-  for (int c = 0; c < 3; ++c) x[c] = c < s->dim ? s->x[s->dim * i + c] : 0.0;
+  double x[3] = {0.0};
+  COPY(x, s->x + s->dim * i, s->dim);
   *value = quantity_value(&card->value, x, t);
   if (!(*value >= 0.0 && *value <= NUMBER_MOST))
     RAISE(ERR_DECK,

@@ -285,10 +285,6 @@ static status find_joints(goal_estimator *e) {
   return OK;
 }
 
-static void add_to(const double *d, double *sum) {
-  for (int c = 0; c < 3; ++c) sum[c] += d[c];
-}
-
 /* Once by each region. */
 static void add_joint(goal_estimator *e, const double *G, int region,
                       joint_edge *j) {
@@ -298,12 +294,12 @@ static void add_joint(goal_estimator *e, const double *G, int region,
   j->region = region;
   ++j->n;
   bubble_of(e, G, j->a, j->b, whole, given);
-  add_to(whole, j->whole);
-  add_to(given, j->given);
+  add_scaled(3, 1.0, whole, j->whole);
+  add_scaled(3, 1.0, given, j->given);
   const contact_edge *of = find_edge(e, j->a, j->b);
   if (of == NULL) return;
   COPY(contact, e->edge + dim * (of - e->s.edge), dim);
-  add_to(contact, j->contact);
+  add_scaled(3, 1.0, contact, j->contact);
 }
 
 /* From sums to means. */

@@ -44,7 +44,7 @@ static double value_at(const run *r, const friction_rule *rule, int i,
   double x[3] = {0.0, 0.0, 0.0};
   int dim = r->surface->dim;
   if (rule->law == NULL || rule->law->value_name == NULL) return 0.0;
-  for (int c = 0; c < dim; ++c) x[c] = r->surface->x[dim * i + c];
+  COPY(x, r->surface->x + dim * i, dim);
   return quantity_value(&rule->card.value, x, t);
 }
 

@@ -34,12 +34,11 @@ static const double STILL = 0x1p-30; /* -, of the largest slip: none */
 /* |a - b|_A of contact displacements; room[2*n_c]. */
 static double distance(const run *r, const double *a, const double *b,
                        double *room) {
-  double sum = 0.0;
-  for (int i = 0; i < r->nodes.n_c; ++i) room[i] = a[i] - b[i];
+  double *Ad = room + r->nodes.n_c;
+  vector_of(r->nodes.n_c, b, a, room);
   const double *d = run_rows(r, 0, room);
-  contact_apply(&r->problem.cp, d, room + r->nodes.n_c);
-  for (int i = 0; i < r->nodes.n_row; ++i) sum += d[i] * room[r->nodes.n_c + i];
-  return sqrt(fmax(sum, 0.0));
+  contact_apply(&r->problem.cp, d, Ad);
+  return sqrt(fmax(dot(r->nodes.n_row, d, Ad), 0.0));
 }
 
 /* What the load and the obstacles can move, in the energy norm; room[2*n_c]. */
@@ -48,8 +47,7 @@ static status load_change(run *r, double *room, double *size) {
   *size = r->now.motion == NULL
               ? 0.0
               : distance(r, r->now.motion, r->old.motion, room);
-  for (int i = 0; i < r->nodes.n_row; ++i)
-    room[i] = r->problem.f[i] - r->problem.f_before[i];
+  vector_of(r->nodes.n_row, r->problem.f_before, r->problem.f, room);
   if (r->body.moduli.n_own > 0 ||
       r->problem.n_before != r->nodes.n_row) { /* other matrix */
     const double *rc = run_rows(r, 1, r->old.rc);

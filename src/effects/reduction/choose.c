@@ -352,18 +352,11 @@ static status try_thermal(model *m, const mesh *msh) {
 /* Shortest distance of two nodes of a contact, length. */
 static double least_distance(const mesh *msh, const mesh_group *g) {
   double least = HUGE_VAL;
-  int dim = msh->dim;
   for (int i = 0; i < g->n_node; ++i)
-    for (int k = 0; k < i; ++k) {
-      double square = 0.0;
-      for (int c = 0; c < dim; ++c) {
-        double d =
-            msh->x[dim * g->node_id[i] + c] - msh->x[dim * g->node_id[k] + c];
-        square += d * d;
-      }
-      least = fmin(least, square);
-    }
-  return sqrt(least);
+    for (int k = 0; k < i; ++k)
+      least = fmin(least, distance_of(msh->dim, mesh_node_x(msh, g->node_id[i]),
+                                      mesh_node_x(msh, g->node_id[k])));
+  return least;
 }
 
 /* Value of an option of a law by name; NAN: it has none of that type. */

@@ -42,7 +42,7 @@ static double coefficient_of(const reduction *n, const state *s, int i) {
       friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
   double x[3] = {0.0, 0.0, 0.0};
   if (rule->aside == NULL) return 0.0;
-  for (int k = 0; k < c->dim; ++k) x[k] = c->x[c->dim * i + k];
+  COPY(x, c->x + c->dim * i, c->dim);
   return quantity_value(&rule->card.value, x, s->t);
 }
 
@@ -100,7 +100,7 @@ status reduction_stress(reduction *n, const state *s) {
                           n->T));
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double *own = n->strain + ns * e;
-    for (int i = 0; i < ns; ++i) own[i] = 0.0;
+    CLEAR(own, ns);
     if (warm && reduction_material(n, e)->expand.given)
       expansion_strain(&reduction_material(n, e)->expand, n->T[e], n->T0[e],
                        own);
