@@ -88,7 +88,7 @@ static void gradients(const goal_solution *s, double *q) {
 
 static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
   if (!e->on_surface[a] || !e->on_surface[b]) return NULL;
-  return PAIR_FIND(e->s.edge, e->s.n_edge, a, b);
+  return PAIR_FIND(e->s.surface->edge, e->s.surface->n_edge, a, b);
 }
 
 /* v[dim] with another part along n[dim]. */
@@ -126,8 +126,8 @@ static void hold(const goal_solution *s, const double *G, const contact_edge *c,
 static void support(const goal_solution *s, const double *G, int a, int b,
                     double *d, double *x) {
   const int dim = s->d->mesh->dim;
-  const given_edge *g = PAIR_FIND(s->given, s->n_given, a, b);
-  const bent_edge *bent = PAIR_FIND(s->bent, s->n_bent, a, b);
+  const given_edge *g = PAIR_FIND(s->surface->given, s->surface->n_given, a, b);
+  const bent_edge *bent = PAIR_FIND(s->surface->bent, s->surface->n_bent, a, b);
   double u[3] = {0.0};
   int any = 0;
   for (int c = 0; c < dim; ++c)
@@ -161,8 +161,9 @@ static void free_bubble(const goal_solution *s, const double *G, int a, int b,
                         double *d) {
   const mesh *m = s->d->mesh;
   const int dim = m->dim, n = dim * dim;
-  if (s->front != NULL && s->front[a] != s->front[b]) {
-    root_bubble(s, G, s->front[a] ? a : b, s->front[a] ? b : a, d);
+  const unsigned char *front = s->surface->front;
+  if (front != NULL && front[a] != front[b]) {
+    root_bubble(s, G, front[a] ? a : b, front[a] ? b : a, d);
     return;
   }
   const double *xa = m->x + dim * a, *xb = m->x + dim * b;
@@ -191,7 +192,7 @@ static void bubble_of(goal_estimator *e, const double *G, int a, int b,
     }
     for (int c = 0; c < dim; ++c) d[c] -= rest[c];
     if (contact->closed) hold(s, G, contact, d, x);
-    COPY(e->edge + dim * (contact - s->edge), d, dim);
+    COPY(e->edge + dim * (contact - s->surface->edge), d, dim);
     for (int c = 0; c < dim; ++c) d[c] += rest[c];
   }
   support(s, G, a, b, d, x);
@@ -298,7 +299,7 @@ static void add_joint(goal_estimator *e, const double *G, int region,
   add_scaled(3, 1.0, given, j->given);
   const contact_edge *of = find_edge(e, j->a, j->b);
   if (of == NULL) return;
-  COPY(contact, e->edge + dim * (of - e->s.edge), dim);
+  COPY(contact, e->edge + dim * (of - e->s.surface->edge), dim);
   add_scaled(3, 1.0, contact, j->contact);
 }
 
@@ -311,7 +312,8 @@ static void finish_joint(goal_estimator *e, joint_edge *j) {
     j->contact[c] /= j->n;
   }
   const contact_edge *of = find_edge(e, j->a, j->b);
-  if (of != NULL) COPY(e->edge + dim * (of - e->s.edge), j->contact, dim);
+  if (of != NULL)
+    COPY(e->edge + dim * (of - e->s.surface->edge), j->contact, dim);
 }
 
 /* The bubbles of the edges of an element; G NULL: of those of several
@@ -396,6 +398,7 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   const mesh *m = s->d->mesh;
   OWNED double *q = NULL, *G = NULL;
   const size_t n = m->dim * m->dim;
+  const goal_surface *on = s->surface;
   MAKES(goal_estimator, e, out);
   e->s = *s;
   e->recovery = recovery;
@@ -403,9 +406,9 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   gradients(s, q);
   e->n_region = space_regions(recovery);
   PASS_NEW_ALL(OF(e->stress, e->n_region), OF(e->own, m->n_elem),
-               OF(e->edge, m->dim * s->n_edge), OF(e->on_surface, m->n_node));
-  for (int k = 0; k < s->n_edge; ++k)
-    e->on_surface[s->edge[k].a] = e->on_surface[s->edge[k].b] = 1;
+               OF(e->edge, m->dim * on->n_edge), OF(e->on_surface, m->n_node));
+  for (int k = 0; k < on->n_edge; ++k)
+    e->on_surface[on->edge[k].a] = e->on_surface[on->edge[k].b] = 1;
   PASS(new_fields(e));
   PASS_NEW(e->sigma_y, (size_t)s->d->ns * m->n_elem);
   PASS_NEW(e->node_y, (size_t)s->d->ns * m->n_node);
@@ -635,7 +638,7 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   const mesh *m = e->s.d->mesh;
   int ends = 0;
   for (int a = 0; a <= m->dim; ++a)
-    ends |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
+    ends |= e->s.surface->ends[m->elem[(m->dim + 1) * elem_id + a]];
   if (ends == GOAL_NEAR_SUPPORT) out->near += both;
   ends &= ~GOAL_NEAR_SUPPORT;
   if (ends != 0) out->ends += both;
