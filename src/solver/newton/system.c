@@ -139,9 +139,8 @@ static double newton_cost(int n, int full) {
   return (full ? 2.0 : 1.0) / 3.0 * size * size * size + READ * size * size;
 }
 
-/* The condition number is computed only where the matrix can be singular for
- * valid data. */
-/* Factor of the base; 0: singular to rounding. */
+/* Factor of the base; 0: singular to rounding. The condition number is computed
+ * only where the matrix can be singular for valid data. */
 static int newton_factor(newton_system *s) {
   fill(s, 0.0);
   return dense_factor(&s->K, s->K.full || s->cp->floating);
