@@ -115,8 +115,7 @@ static double linear_limit(const search *s, const double *rho, double given,
                            int i) {
   const sparse_rows *B = s->cp->B;
   double g = given * s->cp->g0[i];
-  for (int k = B == NULL ? 0 : B->start[i]; B != NULL && k < B->start[i + 1];
-       ++k)
+  for (int k = row_begin(B, i); k < row_end(B, i); ++k)
     g -= B->val[k] * rho[2 * B->col[k]];
   return g;
 }
@@ -315,8 +314,7 @@ static status leaf(search *s) {
 /* 1: the limit of a node can be above zero without pressure on it. */
 static int rubs_open(const contact_problem *cp, int i) {
   if (cp->g0[i] > 0.0) return 1;
-  for (int k = cp->B == NULL ? 0 : cp->B->start[i];
-       cp->B != NULL && k < cp->B->start[i + 1]; ++k)
+  for (int k = row_begin(cp->B, i); k < row_end(cp->B, i); ++k)
     if (cp->B->col[k] != i && cp->B->val[k] > 0.0) return 1;
   return 0;
 }

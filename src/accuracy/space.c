@@ -145,7 +145,8 @@ struct space_recovery {
                          temperatures, have one */
   double *compliance; /* [ns*ns*n_section] 1/Pa, inv(E) of the estimate */
   double *of_error;   /* the same without the hoop strains */
-  int *start, *elem;  /* [n_node+1], elements round each node */
+  size_t *start;      /* of mesh_node_elements */
+  int *elem;
   int *patch, *stamp; /* [n_elem] elements of a patch; mark of the last patch */
   double *weight;     /* [n_elem] of the elements of a patch, - */
   int *seen;          /* [n_node] mark of the last patch */
@@ -218,17 +219,6 @@ status space_compliance(const domain *d, int section, double *S) {
   return OK;
 }
 
-static void list_neighbours(space_recovery *s) {
-  const mesh *m = s->d->mesh;
-  int vertices = m->dim + 1;
-  for (int k = 0; k < vertices * m->n_elem; ++k) ++s->start[m->elem[k] + 1];
-  for (int i = 0; i < m->n_node; ++i) s->start[i + 1] += s->start[i];
-  for (int k = 0; k < vertices * m->n_elem; ++k)
-    s->elem[s->start[m->elem[k]]++] = k / vertices;
-  for (int i = m->n_node; i > 0; --i) s->start[i] = s->start[i - 1];
-  s->start[0] = 0;
-}
-
 static void find_centroids(const mesh *m, double *x) {
   for (int e = 0; e < m->n_elem; ++e)
     for (int c = 0; c < m->dim; ++c, ++x) {
@@ -246,24 +236,21 @@ status space_recovery_new(const domain *d, space_recovery **out) {
     if (d->section_id[k] >= s->n_section) s->n_section = d->section_id[k] + 1;
   PASS_NEW_ALL(
       OF(s->region, m->n_elem), OF(s->compliance, d->ns * d->ns * s->n_section),
-      OF(s->of_error, d->ns * d->ns * s->n_section),
-      OF(s->start, m->n_node + 1),
-      OF(s->elem, (size_t)(m->dim + 1) * m->n_elem), OF(s->patch, m->n_elem),
+      OF(s->of_error, d->ns * d->ns * s->n_section), OF(s->patch, m->n_elem),
       OF(s->stamp, m->n_elem), OF(s->weight, m->n_elem), OF(s->seen, m->n_node),
       OF(s->recovered, (size_t)d->ns * m->n_node),
       OF(s->centroid, m->dim * m->n_elem), OF(s->measure, m->n_elem));
   find_centroids(m, s->centroid);
   for (int k = 0; k < m->n_elem; ++k) s->measure[k] = element_weight(d, k);
   PASS(find_regions(s));
-  list_neighbours(s);
-  return OK;
+  return mesh_node_elements(m, &s->start, &s->elem);
 }
 
 /* ---- patches ------------------------------------------------------------- */
 
 /* Add the elements of a region round a node to the patch of n; new size. */
 static int add_ring(space_recovery *s, int node, int region, int n) {
-  for (int k = s->start[node]; k < s->start[node + 1]; ++k) {
+  for (size_t k = s->start[node]; k < s->start[node + 1]; ++k) {
     int e = s->elem[k];
     if (s->stamp[e] == s->last || s->region[e] != region) continue;
     s->stamp[e] = s->last;
@@ -305,11 +292,11 @@ static int gather(space_recovery *s, int node, int region) {
 
 /* 1: the elements of one region close round the node. */
 static int is_inside(space_recovery *s, int node) {
-  const int first = s->start[node];
-  if (first == s->start[node + 1]) return 0;
+  const size_t first = s->start[node], count = s->start[node + 1] - first;
+  if (count == 0) return 0;
   ++s->last;
   const int n = add_ring(s, node, space_region(s, s->elem[first]), 0);
-  return n == s->start[node + 1] - first && is_closed(s, node, n);
+  return (size_t)n == count && is_closed(s, node, n);
 }
 
 double space_depth(space_recovery *s) {

@@ -6,8 +6,6 @@
 #include "contact/formulation.h"
 #include "solver/pivoting/lemke.h"
 
-#include <stdarg.h>
-
 enum { LISTED = 5, LARGEST = 2000, PARAM_SIZE = 512 };
 static const double PART = 0.01;   /* -, of the largest: does not count */
 static const double TIE = 1e-6;    /* -, values that count as equal */
@@ -19,23 +17,17 @@ typedef struct words {
   size_t size;
 } words;
 
-static void add(const words *w, const char *format, ...) {
-  size_t used = strlen(w->text);
-  va_list args;
-  va_start(args, format);
-  vsnprintf(w->text + used, w->size - used, format, args);
-  va_end(args);
-}
+#define ADD(w, ...) text_add((w)->text, (w)->size, __VA_ARGS__)
 
 static void add_node(const words *w, const contact_surface *s, int i) {
   if (s->x == NULL) {
-    add(w, "%zu", s->node_no[i]);
+    ADD(w, "%zu", s->node_no[i]);
     return;
   }
-  add(w, "%zu at (", s->node_no[i]);
+  ADD(w, "%zu at (", s->node_no[i]);
   for (int k = 0; k < s->dim; ++k)
-    add(w, "%s%.6g", k > 0 ? ", " : "", s->x[s->dim * i + k]);
-  add(w, ")");
+    ADD(w, "%s%.6g", k > 0 ? ", " : "", s->x[s->dim * i + k]);
+  ADD(w, ")");
 }
 
 /* The nodes with the largest value[n] above PART of the largest, up to LISTED,
@@ -50,11 +42,11 @@ static int add_nodes(const words *w, const contact_surface *s, double *value) {
     int next = 0;
     for (int i = 1; i < s->n; ++i)
       if (value[i] > (1.0 + TIE) * value[next]) next = i;
-    add(w, listed > 0 ? ", " : counted == 1 ? " node " : " nodes ");
+    ADD(w, listed > 0 ? ", " : counted == 1 ? " node " : " nodes ");
     add_node(w, s, next);
     value[next] = -1.0;
   }
-  if (counted > listed) add(w, " and %d more", counted - listed);
+  if (counted > listed) ADD(w, " and %d more", counted - listed);
   return counted;
 }
 
@@ -73,7 +65,7 @@ status verdict_misfit(const contact_problem *cp, const contact_surface *surface,
     most = fmax(most, defect);
   }
   if (!(most > MISFIT * scale)) return OK;
-  add(&w, "the contact conditions are violated most at");
+  ADD(&w, "the contact conditions are violated most at");
   add_nodes(&w, surface, value);
   return OK;
 }
@@ -146,17 +138,17 @@ static status add_moving(const words *w, const verdict_scene *s,
     if (slide[i] < PART * most) slide[i] = 0.0;
     opening += open[i] > 0.0;
   }
-  add(w, "nothing stops a motion in which contact");
+  ADD(w, "nothing stops a motion in which contact");
   if (opening > 0) {
     add_nodes(w, s->surface, open);
-    add(w, opening == 1 ? " separates" : " separate");
+    ADD(w, opening == 1 ? " separates" : " separate");
   }
   int before = opening;
   for (int i = 0; i < s->cp->n; ++i)
     if (slide[i] > 0.0) {
-      if (before > 0) add(w, " and contact");
+      if (before > 0) ADD(w, " and contact");
       int n = add_nodes(w, s->surface, slide);
-      add(w, n == 1 ? " slides" : " slide");
+      ADD(w, n == 1 ? " slides" : " slide");
       break;
     }
   return OK;
@@ -200,19 +192,19 @@ static status add_loads(const words *w, const verdict_scene *s, const double *u,
     const load *l = &s->step->loads.item[k];
     PASS(forces_of(s, k, F));
     if (!(dot(n, F, u) > PART * fabs(work))) continue;
-    add(w, listed++ == 0 ? ", driven by " : ", ");
-    add(w, "*%s on %s (line %d)", load_card(l), l->group, l->at.line_no);
+    ADD(w, listed++ == 0 ? ", driven by " : ", ");
+    ADD(w, "*%s on %s (line %d)", load_card(l), l->group, l->at.line_no);
   }
   for (int k = 0; k < s->m->n.contact && listed < LISTED; ++k) {
     const contact *c = &s->m->contacts[k];
     if (!(work_of_given(s, k, v, none) > PART * fabs(work))) continue;
-    add(w, listed++ == 0 ? ", driven by " : ", ");
-    add(w, "*CONTACT FORCE on %s (line %d)", c->name, c->force.at.line_no);
+    ADD(w, listed++ == 0 ? ", driven by " : ", ");
+    ADD(w, "*CONTACT FORCE on %s (line %d)", c->name, c->force.at.line_no);
   }
-  add(w, "; resultant of all loads (");
+  ADD(w, "; resultant of all loads (");
   for (int k = 0; k < s->msh->dim; ++k)
-    add(w, "%s%.6g", k > 0 ? ", " : "", sum[k]);
-  add(w, ")");
+    ADD(w, "%s%.6g", k > 0 ? ", " : "", sum[k]);
+  ADD(w, ")");
   return OK;
 }
 
@@ -234,9 +226,9 @@ static int add_bad_number(const words *w, const verdict_scene *s) {
     int i = dof / s->cp->dim;
     int bad_load = !isfinite(s->cp->f[dof]);
     if (!bad_load && isfinite(s->cp->gap[i])) continue;
-    add(w, "the %s of contact node ", bad_load ? "load" : "gap");
+    ADD(w, "the %s of contact node ", bad_load ? "load" : "gap");
     add_node(w, s->surface, i);
-    add(w, " is not a finite number");
+    ADD(w, " is not a finite number");
     return 1;
   }
   return 0;
@@ -251,9 +243,9 @@ status verdict_text(const verdict_scene *s, char *text, size_t size) {
   if (end == STOPPED_RAY) {
     PASS(add_moving(&w, s, v));
     PASS(add_drive(&w, s, v));
-    add(&w, "; a *BOUNDARY or another load can hold it");
+    ADD(&w, "; a *BOUNDARY or another load can hold it");
   } else if (end == CONVERGED) {
-    add(&w, "METHOD=LEMKE of *SOLVER finds one to 1E-8 of the loads");
+    ADD(&w, "METHOD=LEMKE of *SOLVER finds one to 1E-8 of the loads");
   } else {
     PASS(verdict_misfit(s->cp, s->surface, s->u, s->r, text, size));
   }

@@ -5,6 +5,7 @@
  */
 #include "base/number.h"
 
+#include "base/memory.h"
 #include "base/text.h"
 
 #include <errno.h>
@@ -211,6 +212,28 @@ int number_pair_end(const void *item, size_t size, int n, int i) {
     ++i;
   }
   return i;
+}
+
+void *number_pair_find(const void *item, size_t size, int n, int a, int b) {
+  const number_pair key = number_pair_of(a, b);
+  return n == 0 ? NULL : bsearch(&key, item, n, size, number_pair_order);
+}
+
+int number_find(int number, const int *list, int n) {
+  const int *at =
+      n == 0 ? NULL : bsearch(&number, list, n, sizeof *list, number_order);
+  return at == NULL ? -1 : (int)(at - list);
+}
+
+status number_places(int most, size_t n, const int *number, int per,
+                     size_t **start, int **item) {
+  PASS_NEW_ALL(OF(*start, most + 2), OF(*item, n));
+  size_t *s = *start;
+  for (size_t k = 0; k < n; ++k) ++s[number[k] + 2];
+  for (int i = 0; i < most; ++i) s[i + 2] += s[i + 1];
+  for (size_t k = 0; k < n; ++k)
+    (*item)[s[number[k] + 1]++] = (int)(k / (size_t)per);
+  return OK;
 }
 
 uint64_t number_hash(uint64_t h, const void *data, size_t n) {

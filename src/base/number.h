@@ -4,6 +4,8 @@
  */
 #pragma once
 
+#include "base/status.h"
+
 #include <stddef.h>
 #include <stdint.h>
 
@@ -42,3 +44,14 @@ static inline number_pair number_pair_of(int a, int b) {
 #define PAIR_END(item, n, i) number_pair_end((item), sizeof *(item), (n), (i))
 void number_pair_sort(void *item, size_t size, size_t n);
 int number_pair_end(const void *item, size_t size, int n, int i);
+/* The item of the pair of a and b among item[n] in their order, or NULL. */
+#define PAIR_FIND(item, n, a, b) \
+  number_pair_find((item), sizeof *(item), (n), (a), (b))
+void *number_pair_find(const void *item, size_t size, int n, int a, int b);
+/* Place in list[n], which ascends; -1: it is not there. */
+int number_find(int number, const int *list, int n);
+
+/* Where each i of 0 .. most-1 stands in number[n], items of "per" numbers: in
+ * the items (*item)[(*start)[i] .. (*start)[i+1]), ascending; both are new. */
+status number_places(int most, size_t n, const int *number, int per,
+                     size_t **start, int **item);

@@ -22,6 +22,14 @@ const char *text_of(const char *format, ...) {
   return text;
 }
 
+void text_add(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list args;
+  va_start(args, format);
+  vsnprintf(text + used, size - used, format, args);
+  va_end(args);
+}
+
 const char *text_number(double value, int digits) {
   if (isnan(value)) return "NaN";
   if (isinf(value)) return value > 0 ? "Inf" : "-Inf";

@@ -50,6 +50,9 @@ enum { TEXT_ROOM = 128, TEXT_ROOMS = 32 };
 char *text_room(void);
 const char *text_of(const char *format, ...)
     __attribute__((format(printf, 1, 2)));
+/* Adds to a text of that size what fits. */
+void text_add(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 /* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
  * Inf; in a text_room. */
 const char *text_number(double value, int digits);

@@ -47,6 +47,15 @@ static inline void cross(const double *a, const double *b, double *c) {
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
+/* n normal to the triangle of corners x[9]; |n|, twice the area. */
+static inline double triangle_normal(const double *x, double *n) {
+  double a[3], b[3];
+  vector_of(3, x, x + 3, a);
+  vector_of(3, x, x + 6, b);
+  cross(a, b, n);
+  return norm(3, n);
+}
+
 /* Twice the area between the first two edges e, six times the volume of all. */
 static inline double determinant(int dim, double (*e)[3]) {
   double c[3];

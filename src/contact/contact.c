@@ -138,6 +138,17 @@ double contact_stick(const contact_problem *cp, int dof) {
   return slides ? cp->ut0[node_id * (cp->dim - 1) + k - 1] : 0.0;
 }
 
+double contact_slip_of(const contact_problem *cp, const double *u,
+                       int node_id) {
+  double slip = 0.0;
+  for (int k = 1; k < cp->dim; ++k) {
+    int dof = node_id * cp->dim + k;
+    if (!contact_held(cp, dof))
+      slip = hypot(slip, u[dof] - contact_stick(cp, dof));
+  }
+  return slip;
+}
+
 /* ---- stiffness of a node ----------------------------------------------- */
 
 double contact_diagonal(const contact_problem *cp, int dof) {

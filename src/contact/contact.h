@@ -177,6 +177,8 @@ double contact_hidden(const contact_problem *cp, const double *u,
 int contact_held(const contact_problem *cp, int dof);
 double contact_bound(const contact_problem *cp, int dof);
 double contact_stick(const contact_problem *cp, int dof);
+/* Slip |u_t - ut0| of a node along what is not held, m. */
+double contact_slip_of(const contact_problem *cp, const double *u, int node_id);
 /* 1: the node touches a second obstacle. */
 int contact_has_side(const contact_problem *cp, int node_id);
 /* Diagonal of A (of an operator: of the stiffness it is condensed from), or of

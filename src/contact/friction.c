@@ -35,8 +35,8 @@ void friction_limit_free(friction_limit *limit) {
 
 status friction_value(const friction_card *card, const contact_surface *s,
                       int i, double t, double *value) {
-  double x[3];
-  for (int c = 0; c < 3; ++c) x[c] = c < s->dim ? s->x[s->dim * i + c] : 0.0;
+  double x[3] = {0.0};
+  COPY(x, s->x + s->dim * i, s->dim);
   *value = quantity_value(&card->value, x, t);
   if (!(*value >= 0.0 && *value <= NUMBER_MOST))
     RAISE(ERR_DECK,
@@ -46,85 +46,39 @@ status friction_value(const friction_card *card, const contact_surface *s,
   return OK;
 }
 
-/* Entries of row i once the rows of part are in place. */
-static int row_length(const sparse_rows *old, const sparse_rows *part, int row,
-                      int i) {
-  int n = old->start == NULL ? 0 : old->start[i + 1] - old->start[i];
-  return n + (row < 0 ? 0 : part->start[row + 1] - part->start[row]);
-}
-
-static void copy_row(const sparse_rows *from, int row, sparse_rows *to, int i) {
-  int n = from->start[row + 1] - from->start[row];
-  for (int k = 0; k < n; ++k) {
-    to->col[to->start[i] + k] = from->col[from->start[row] + k];
-    to->val[to->start[i] + k] = from->val[from->start[row] + k];
-  }
-}
-
-/* Put row k of part (columns: contact nodes) into the empty row node[k]. */
-static status add_rows(friction_limit *out, int n, const int *node,
-                       const sparse_rows *part) {
-  const sparse_rows *old = &out->B;
-  ENDS_BY(sparse_free) sparse_rows all = {.n = n};
-  OWNED_NEW(int, row_of, n);
-  for (int i = 0; i < n; ++i) row_of[i] = -1;
-  for (int k = 0; k < part->n; ++k) row_of[node[k]] = k;
-  PASS_NEW(all.start, n + 1);
-  for (int i = 0; i < n; ++i)
-    all.start[i + 1] = all.start[i] + row_length(old, part, row_of[i], i);
-  PASS_NEW_ALL(OF(all.col, all.start[n]), OF(all.val, all.start[n]));
-  for (int i = 0; i < n; ++i) {
-    if (row_of[i] >= 0)
-      copy_row(part, row_of[i], &all, i);
-    else if (old->start != NULL)
-      copy_row(old, i, &all, i);
-  }
-  sparse_free(&out->B);
-  out->B = all;
-  memset(&all, 0, sizeof all);
-  return OK;
-}
-
-/* Entries of the average at node i, 1 without one. */
-static int average_size(const sparse_rows *average, int i) {
-  return average == NULL ? 1 : average->start[i + 1] - average->start[i];
-}
-
-/* mu times the average at node i, to place n of rows. */
-static void add_average(const sparse_rows *average, int i, double mu,
-                        sparse_rows *rows, int n) {
-  if (average == NULL) {
-    rows->col[n] = i;
-    rows->val[n] = mu;
-    return;
-  }
-  for (int e = average->start[i]; e < average->start[i + 1]; ++e, ++n) {
-    rows->col[n] = average->col[e];
-    rows->val[n] = mu * average->val[e];
-  }
-}
-
-/* g = mu(x, t) times the normal force, or its average (card->average). */
+/* g = mu(x, t) times the normal force, or its average (card->average), in the
+ * rows of node[n_node], which have none yet. */
 static status friction_pressure_limit(const friction_card *card,
                                       const contact_surface *s, int n_node,
                                       const int *node, double t,
                                       friction_limit *out) {
-  ENDS_BY(sparse_free) sparse_rows rows = {.n = n_node};
-  PASS_NEW(rows.start, n_node + 1);
+  const sparse_rows *mean = card->average;
+  const int most = (out->B.start == NULL ? 0 : out->B.start[s->n]) +
+                   (mean == NULL ? n_node : mean->start[mean->n]);
+  ENDS_BY(sparse_free) sparse_rows all = {.n = s->n};
+  OWNED_NEW(double, mu, s->n);
+  PASS_NEW_ALL(OF(all.start, s->n + 1), OF(all.col, most), OF(all.val, most));
+  for (int i = 0; i < s->n; ++i) mu[i] = -1.0;
   for (int k = 0; k < n_node; ++k)
-    rows.start[k + 1] =
-        rows.start[k] + (surface_is_corner(s, node[k])
-                             ? 0
-                             : average_size(card->average, node[k]));
-  PASS_NEW_ALL(OF(rows.col, rows.start[n_node]),
-               OF(rows.val, rows.start[n_node]));
-  for (int k = 0; k < n_node; ++k) {
-    double mu;
-    if (surface_is_corner(s, node[k])) continue;
-    PASS(friction_value(card, s, node[k], t, &mu));
-    add_average(card->average, node[k], mu, &rows, rows.start[k]);
+    if (!surface_is_corner(s, node[k]))
+      PASS(friction_value(card, s, node[k], t, &mu[node[k]]));
+  for (int i = 0, n = 0; i < s->n; ++i) {
+    const int is_new = mu[i] >= 0.0;
+    const sparse_rows *from = is_new ? mean : &out->B;
+    if (from == NULL) {
+      all.col[n] = i;
+      all.val[n++] = mu[i];
+    }
+    for (int e = row_begin(from, i); e < row_end(from, i); ++e, ++n) {
+      all.col[n] = from->col[e];
+      all.val[n] = is_new ? mu[i] * from->val[e] : from->val[e];
+    }
+    all.start[i + 1] = n;
   }
-  return add_rows(out, s->n, node, &rows);
+  sparse_free(&out->B);
+  out->B = all;
+  all = (sparse_rows){0};
+  return OK;
 }
 
 /*
@@ -232,13 +186,6 @@ typedef struct patch {
   int *contact_node; /* [n_node] of the surface, or -1 */
 } patch;
 
-/* Place of a mesh node in the group, whose ids ascend. */
-static int place_in(const mesh_group *g, int node_id) {
-  const int *at =
-      bsearch(&node_id, g->node_id, g->n_node, sizeof node_id, number_order);
-  return (int)(at - g->node_id);
-}
-
 /* A node whose normal force belongs to another contact has none for this. */
 static int carries(const contact_surface *s, int i, int contact_id) {
   return s->contact_id[i] == contact_id || !surface_is_corner(s, i);
@@ -264,8 +211,8 @@ static status patch_new(const contact_surface *s, const surface_input *in,
   }
   for (int k = 0; k < g->n_item; ++k)
     for (int c = 0; c < m->dim; ++c)
-      a->face[m->dim * k + c] =
-          place_in(g, m->face[m->dim * g->item_id[k] + c]);
+      a->face[m->dim * k + c] = number_find(m->face[m->dim * g->item_id[k] + c],
+                                            g->node_id, g->n_node);
   a->p = (average_patch){.dim = m->dim,
                          .axisymmetric = in->axisymmetric,
                          .n_node = g->n_node,

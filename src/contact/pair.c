@@ -12,11 +12,7 @@ static const double rounding = 1e-9;
 
 int surface_tied(const surface_input *in, int node_id) {
   const tie_set *t = in->ties;
-  const int *at = t == NULL || t->n == 0
-                      ? NULL
-                      : bsearch(&node_id, t->node_id, t->n, sizeof *t->node_id,
-                                number_order);
-  return at == NULL ? -1 : (int)(at - t->node_id);
+  return t == NULL ? -1 : number_find(node_id, t->node_id, t->n);
 }
 
 /* Bit c: supports hold component c; of a tied node none. */
@@ -55,11 +51,8 @@ static int is_taken(const surface_input *in, int pair_id, int q) {
   for (const contact_pair *p = in->pairs; p < now; ++p) {
     const mortar *old = p->coupled;
     if (old == NULL) continue;
-    const int *at = bsearch(&now->coupled->node_id[q], old->node_id, old->n,
-                            sizeof *old->node_id, number_order);
-    if (at != NULL &&
-        pair_same_normal(in->mesh->dim, p, (int)(at - old->node_id), now, q))
-      return 1;
+    const int at = number_find(now->coupled->node_id[q], old->node_id, old->n);
+    if (at >= 0 && pair_same_normal(in->mesh->dim, p, at, now, q)) return 1;
   }
   return 0;
 }

@@ -154,12 +154,11 @@ static void check_axis(const builder *b, const contact_pair *p) {
  * NULL: there is none. */
 static candidate *find(const builder *b, int pair_id, int node_id) {
   const contact_pair *p = &b->in->pairs[pair_id];
-  const int *at = p->support == NULL || surface_tied(b->in, node_id) >= 0
-                      ? NULL
-                      : bsearch(&node_id, p->group->node_id, p->group->n_node,
-                                sizeof *p->group->node_id, number_order);
-  return at == NULL ? NULL
-                    : &b->list[b->first[pair_id] + (at - p->group->node_id)];
+  const mesh_group *g = p->group;
+  const int at = p->support == NULL || surface_tied(b->in, node_id) >= 0
+                     ? -1
+                     : number_find(node_id, g->node_id, g->n_node);
+  return at < 0 ? NULL : &b->list[b->first[pair_id] + at];
 }
 
 static void give(int dim, candidate *to, double w, const double *normal) {

@@ -274,8 +274,6 @@ static int is_symmetric(int m, const double *a) {
   return skew <= 1e-10 * largest;
 }
 
-/* With H = diag(h) the unknowns are v themselves: A = inv(H) M inv(H), which
- * may be singular. *done = 0: not possible. */
 /* The unknowns are H'v, counted from -w: gap and position of stick. */
 static void set_origin(exchange_problem *p, const double *w) {
   for (int j = 0; j < p->m; ++j)
@@ -285,6 +283,8 @@ static void set_origin(exchange_problem *p, const double *w) {
       p->ut0[j / p->dim * (p->dim - 1) + j % p->dim - 1] = -w[j];
 }
 
+/* With H = diag(h) the unknowns are v themselves: A = inv(H) M inv(H), which
+ * may be singular. *done = 0: not possible. */
 static void take_stiffness(exchange_problem *p, const global *g, int floating,
                            int *done) {
   size_t m = p->m;

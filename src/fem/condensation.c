@@ -58,18 +58,6 @@ static int connected_set(const graph *g, int first, unsigned char *seen,
   return n;
 }
 
-static int count_bodies(const stiffness *k, const graph *g, unsigned char *seen,
-                        int *list) {
-  int n = 0;
-  for (int i = 0; i < k->n_node; ++i) {
-    if (k->free[i] == 0 || seen[i]) continue;
-    connected_set(g, i, seen, list);
-    ++n;
-  }
-  memset(seen, 0, k->n_node);
-  return n;
-}
-
 /* f->node: the interior ordered, then the contact nodes in descending order,
  * which have an interior too where their tangents are not condensed.
  * list[n] ascending in, destroyed. */
@@ -136,17 +124,15 @@ static status pin_sets(condensed *c) {
 static status factor_bodies(condensed *c) {
   const stiffness *k = c->k;
   ENDS_BY(graph_release) graph g = {0};
-  int q = 0;
+  int capacity = 0;
   TIMED(STAGE_ORDERING);
   OWNED_NEW(int, list, k->n_node);
   OWNED_NEW(unsigned char, seen, k->n_node);
   OWNED_NEW(long, number, (size_t)k->dim * k->n_node);
   PASS(graph_of_unknowns(k, &g));
-  c->n_body = count_bodies(k, &g, seen, list);
-  PASS_NEW(c->body, c->n_body);
   for (int i = 0; i < k->n_node; ++i) {
     if (k->free[i] == 0 || seen[i]) continue;
-    body_factor *f = &c->body[q++];
+    ADDED(body_factor, f, c->body, c->n_body, capacity);
     const int n = connected_set(&g, i, seen, list);
     f->bad_node = i;
     PASS(order_body(c, &g, n, list, f));

@@ -167,8 +167,8 @@ static void strain_at(const domain *d, int elem_id, const double *u,
     strain_3d(d->mesh->elem + 4 * (size_t)elem_id, u, s, e);
 }
 
-static void stress_at(const domain *d, int elem_id, const double *e,
-                      double *sigma) {
+void element_stress(const domain *d, int elem_id, const double *e,
+                    double *sigma) {
   const size_t square = d->ns * d->ns;
   voigt_product(d->ns, d->E + square * d->section_id[elem_id], e, sigma);
 }
@@ -219,7 +219,7 @@ void domain_stress(const domain *d, const double *u, double *e, double *sigma) {
     shape_at(d, k, &s);
     averaged_strain(d, k, u, &s, strain);
     take_eigen(d, e0, strain);
-    if (sigma != NULL) stress_at(d, k, strain, sigma + ns * k);
+    if (sigma != NULL) element_stress(d, k, strain, sigma + ns * k);
     if (e == NULL) continue;
     /* Plane stress: the elastic strain e gets its zz, then e0 is put back. */
     if (d->kin[d->section_id[k]] == PLANE_STRESS && d->C != NULL)
@@ -247,7 +247,7 @@ void eigen_stress(const domain *d, const eigenstrain *x, const double *u,
     averaged_strain(d, x->elem_id[k], u, &s, strain);
     if (x->e0 != NULL) take_eigen(d, x->e0 + ns * k, strain);
     if (e != NULL) COPY(e + ns * k, strain, ns);
-    if (sigma != NULL) stress_at(d, x->elem_id[k], strain, sigma + ns * k);
+    if (sigma != NULL) element_stress(d, x->elem_id[k], strain, sigma + ns * k);
   }
 }
 
@@ -313,7 +313,7 @@ void domain_held_force(const domain *d, const double *u,
     shape_at(d, k, &s);
     averaged_strain(d, k, u, &s, e);
     take_eigen(d, e0, e);
-    stress_at(d, k, e, t);
+    element_stress(d, k, e, t);
     add_force(d, k, &s, t, 1, F);
   }
 }
@@ -322,13 +322,13 @@ void eigen_force(const domain *d, const eigenstrain *x, double *F) {
   double t[6];
   cluster_begin(d->cluster, CLUSTER_STRESS);
   for (int k = 0; k < x->n && d->cluster != NULL; ++k) {
-    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * k, t);
+    element_stress(d, x->elem_id[k], x->e0 + (size_t)d->ns * k, t);
     cluster_add(d->cluster, CLUSTER_STRESS, x->elem_id[k], t);
   }
   for (int k = 0; k < x->n; ++k) {
     element_shape s;
     shape_at(d, x->elem_id[k], &s);
-    stress_at(d, x->elem_id[k], x->e0 + (size_t)d->ns * k, t);
+    element_stress(d, x->elem_id[k], x->e0 + (size_t)d->ns * k, t);
     cluster_smooth(d->cluster, CLUSTER_STRESS, x->elem_id[k], t);
     add_force(d, x->elem_id[k], &s, t, 1, F);
   }
@@ -355,7 +355,7 @@ static void stress_of(const domain *d, int elem_id, const double *u,
                       const element_shape *s, double *t) {
   double e[6];
   averaged_strain(d, elem_id, u, s, e);
-  stress_at(d, elem_id, e, t);
+  element_stress(d, elem_id, e, t);
 }
 
 void domain_residual(const domain *d, const double *u, const double *F,
@@ -397,7 +397,7 @@ double domain_energy_without(const domain *d, int n, const int *elem_id,
     shape_at(d, k, &s);
     averaged_strain(d, k, u, &s, e);
     take_eigen(d, e0, e);
-    stress_at(d, k, e, t);
+    element_stress(d, k, e, t);
     sum += 0.5 * s.weight * voigt_dot(d->ns, e, t);
   }
   return sum;

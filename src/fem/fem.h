@@ -69,6 +69,9 @@ typedef struct domain {
  * major; returns the weight (volume, thickness or 2 pi r included). */
 double element_strain(const domain *d, int elem_id, double *B);
 double element_weight(const domain *d, int elem_id);
+/* sigma[ns] = E e of an element. */
+void element_stress(const domain *d, int elem_id, const double *e,
+                    double *sigma);
 
 typedef struct stiffness stiffness; /* sparse K of the free unknowns */
 typedef struct condensed condensed; /* factor and condensed matrix */

@@ -358,11 +358,11 @@ static void write_vector(int dim, const double *v, int direction, char *text,
     snprintf(text, size, "%c", "xyz"[at]);
     return;
   }
-  size_t used = 0;
-  for (int c = 0; c < dim && used < size; ++c)
-    used += snprintf(text + used, size - used, "%s%.6g", c == 0 ? "(" : ", ",
-                     direction ? v[c] / sqrt(norm) : v[c]);
-  if (used < size) snprintf(text + used, size - used, ")");
+  text[0] = '\0';
+  for (int c = 0; c < dim; ++c)
+    text_add(text, size, "%s%.6g", c == 0 ? "(" : ", ",
+             direction ? v[c] / sqrt(norm) : v[c]);
+  text_add(text, size, ")");
 }
 
 /* A coordinate from one relative to centre and size. */

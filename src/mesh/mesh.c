@@ -112,30 +112,19 @@ status mesh_bodies(const mesh *m, int *n_body, int *body) {
 }
 
 status mesh_node_elements(const mesh *m, size_t **start, int **elem) {
-  const size_t per = (size_t)m->dim + 1, n = per * m->n_elem;
-  PASS_NEW_ALL(OF(*start, m->n_node + 2), OF(*elem, n));
-  size_t *s = *start;
-  for (size_t k = 0; k < n; ++k) ++s[m->elem[k] + 2];
-  for (int i = 0; i < m->n_node; ++i) s[i + 2] += s[i + 1];
-  for (size_t k = 0; k < n; ++k) (*elem)[s[m->elem[k] + 1]++] = (int)(k / per);
-  return OK;
+  const int per = m->dim + 1;
+  return number_places(m->n_node, (size_t)per * m->n_elem, m->elem, per, start,
+                       elem);
 }
 
 void fault_add(faults *c, const char *format, ...) {
   if (++c->n > SHOWN + 1) return;
-  size_t used = strlen(c->text), left = sizeof c->text - used;
-  if (c->n > SHOWN) {
-    snprintf(c->text + used, left, ", ...");
-    return;
-  }
-  if (c->n > 1) {
-    int n = snprintf(c->text + used, left, ", ");
-    used += (size_t)n < left ? (size_t)n : left - 1;
-    left = sizeof c->text - used;
-  }
+  if (c->n > 1) text_add(c->text, sizeof c->text, ", ");
+  if (c->n > SHOWN) format = "...";
+  const size_t used = strlen(c->text);
   va_list args;
   va_start(args, format);
-  vsnprintf(c->text + used, left, format, args);
+  vsnprintf(c->text + used, sizeof c->text - used, format, args);
   va_end(args);
 }
 

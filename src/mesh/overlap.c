@@ -267,10 +267,9 @@ static status belong_together(search *s, int f, int *together) {
     return OK;
   for (int i = 0; i < m->n_group && !*together; ++i) {
     const mesh_group *g = &m->group[i];
-    size_t n = g->n_item, size = sizeof(int);
     *together = g->dim == m->dim &&
-                bsearch(&s->e, g->item_id, n, size, number_order) != NULL &&
-                bsearch(&f, g->item_id, n, size, number_order) != NULL;
+                number_find(s->e, g->item_id, g->n_item) >= 0 &&
+                number_find(f, g->item_id, g->n_item) >= 0;
   }
   return OK;
 }

@@ -39,6 +39,10 @@ int rule_has_average(const friction_rule *rule) {
   return rule_has_friction(rule) && rule->law->average != NULL;
 }
 
+int model_is_axisymmetric(const model *m) {
+  return m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
+}
+
 int model_has_axis(const model *m) {
   int any = 0;
   for (int i = 0; i < m->n.contact; ++i) any |= m->contacts[i].has_axis;
@@ -192,8 +196,7 @@ int model_rubs_locally(const model *m) {
 
 int facts_leaves_axis(const model *m, int obstacle_id, double t) {
   const obstacle *o = &m->obstacles[obstacle_id];
-  return m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC &&
-         o->shape == OBSTACLE_SPHERE &&
+  return model_is_axisymmetric(m) && o->shape == OBSTACLE_SPHERE &&
          quantity_value(&o->motion[0], o->point, t) != 0.0;
 }
 

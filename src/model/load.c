@@ -131,7 +131,7 @@ typedef struct patch {
 static status add_patch(const model *m, const mesh *msh, const load *l,
                         const step *s, double t, const patch *p, double *F) {
   double value[MAX_NODE], r[MAX_NODE], M[MAX_NODE * MAX_NODE];
-  int axisymmetric = m->sections[0].kin == AXISYMMETRIC;
+  int axisymmetric = model_is_axisymmetric(m);
   for (int i = 0; i < p->n; ++i) {
     PASS(node_value(m, msh, l, s, t, p->node[i], &value[i]));
     r[i] = 2.0 * M_PI * msh->x[(size_t)msh->dim * p->node[i]];

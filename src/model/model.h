@@ -539,6 +539,7 @@ int model_updates_pairs(const model *m);
 double model_thickness(const model *m, int elem_id); /* m */
 /* 1 if some contact has an axis for its torque. */
 int model_has_axis(const model *m);
+int model_is_axisymmetric(const model *m);
 /* "force", "length", ... */
 const char *goal_unit(const goal_card *g);
 /* The first *GOAL with TARGET=, or NULL; 1: some error is to be reached. */

@@ -79,8 +79,7 @@ static status order_by_number(int n, const size_t *no, int **order) {
 }
 
 static int in_group(const mesh_group *g, int node_id) {
-  return bsearch(&node_id, g->node_id, g->n_node, sizeof node_id,
-                 number_order) != NULL;
+  return number_find(node_id, g->node_id, g->n_node) >= 0;
 }
 
 /* The contact nodes in the order of their node_no. */

@@ -43,18 +43,13 @@ static status new_points(run *r, visco *v, const int *kind_of) {
   return OK;
 }
 
-int visco_point_of(const int *elem, int n, int elem_id) {
-  const int *found = bsearch(&elem_id, elem, n, sizeof *elem, number_order);
-  return found == NULL ? -1 : (int)(found - elem);
-}
-
 /* One line of *INITIAL CONDITIONS into both states. */
 static status take_initial(const run *r, visco *v, const initial *c) {
   const mesh_group *g = &r->msh->group[c->group_id];
   size_t ns = r->m->ns, part = c->component;
   for (int i = 0; i < g->n_item; ++i) {
     double value;
-    const int point = visco_point_of(v->elem, v->x.n, g->item_id[i]);
+    const int point = number_find(g->item_id[i], v->elem, v->x.n);
     const size_t k = point;
     if (point < 0) continue;
     PASS(load_initial(r->m, r->msh, c, v->elem[k], &value));

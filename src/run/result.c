@@ -159,15 +159,14 @@ static void add_row(const run *r, int i, int a, contact_total *t) {
   const contact_surface *s = r->surface;
   int dim = s->dim;
   const double *at = surface_place(s, i, a);
-  double force[3] = {0.0, 0.0, 0.0}, x[3] = {0.0, 0.0, 0.0};
+  double force[3] = {0.0}, x[3] = {0.0}, moment[3];
   for (int c = 0; c < dim; ++c) {
     x[c] = at[c];
     force[c] = s->frame[dim * dim * i + dim * a + c] * r->now.rc[dim * i + a];
     t->force[c] += force[c];
   }
-  t->moment[0] += x[1] * force[2] - x[2] * force[1];
-  t->moment[1] += x[2] * force[0] - x[0] * force[2];
-  t->moment[2] += x[0] * force[1] - x[1] * force[0];
+  cross(x, force, moment);
+  add_scaled(3, 1.0, moment, t->moment);
 }
 
 /* What the force of a normal closes of its contact, and presses on it. */

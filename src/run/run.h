@@ -4,6 +4,7 @@
  */
 #pragma once
 
+#include "base/text.h"
 #include "contact/reach.h"
 #include "run/effect.h"
 
@@ -201,7 +202,8 @@ typedef struct course_state {
   int due, kept; /* a checkpoint is due; has just been made */
   archive *from; /* borrowed: what the step in progress starts from, or NULL */
   stage_cost costs[STAGE_COUNT]; /* at the checkpoint */
-  char note[512]; /* what changed abruptly in the increment, "" or lines */
+  char note[512]; /* what changed abruptly in the increment, "" or lines of
+                     RUN_NOTE */
 } course_state;
 
 struct run {
@@ -446,3 +448,5 @@ double run_still(const run *r);
 void result_start(run *r, equilibrium *e);
 /* r->now becomes r->old. */
 status result_accept(run *r);
+#define RUN_NOTE(r, ...) \
+  text_add((r)->course.note, sizeof(r)->course.note, __VA_ARGS__)

@@ -63,9 +63,6 @@ static inline size_t visco_at(const run *r, int k) {
   return (size_t)r->m->ns * (size_t)k;
 }
 
-/* Place of an element in elem[n], ascending, or -1: its law does not flow. */
-int visco_point_of(const int *elem, int n, int elem_id);
-
 /* What an increment starts from, of the contact. */
 typedef struct start_point {
   double t;

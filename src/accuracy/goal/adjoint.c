@@ -84,8 +84,7 @@ static void add_slip(linear_system *s, int dof) {
   const contact_problem *cp = rows->cp;
   const int i = dof / cp->dim, n = rows->n_free;
   double *row = s->M + rows->place[dof];
-  for (int k = cp->B == NULL ? 0 : cp->B->start[i];
-       cp->B != NULL && k < cp->B->start[i + 1]; ++k) {
+  for (int k = row_begin(cp->B, i); k < row_end(cp->B, i); ++k) {
     const int j = cp->B->col[k];
     if (!rows->closed[j]) continue;
     const double *column =

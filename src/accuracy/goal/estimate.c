@@ -87,10 +87,8 @@ static void gradients(const goal_solution *s, double *q) {
 /* ---- the part of u in the bubble of an edge ------------------------------ */
 
 static const contact_edge *find_edge(const goal_estimator *e, int a, int b) {
-  const goal_solution *s = &e->s;
-  const number_pair key = number_pair_of(a, b);
   if (!e->on_surface[a] || !e->on_surface[b]) return NULL;
-  return bsearch(&key, s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
+  return PAIR_FIND(e->s.surface->edge, e->s.surface->n_edge, a, b);
 }
 
 /* v[dim] with another part along n[dim]. */
@@ -128,18 +126,13 @@ static void hold(const goal_solution *s, const double *G, const contact_edge *c,
 static void support(const goal_solution *s, const double *G, int a, int b,
                     double *d, double *x) {
   const int dim = s->d->mesh->dim;
-  const number_pair v = number_pair_of(a, b);
-  const given_edge *g = NULL;
-  const bent_edge *bent = NULL;
+  const given_edge *g = PAIR_FIND(s->surface->given, s->surface->n_given, a, b);
+  const bent_edge *bent = PAIR_FIND(s->surface->bent, s->surface->n_bent, a, b);
   double u[3] = {0.0};
   int any = 0;
   for (int c = 0; c < dim; ++c)
     any |= s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c];
   if (!any) return;
-  if (s->n_given > 0)
-    g = bsearch(&v, s->given, s->n_given, sizeof *g, number_pair_order);
-  if (s->n_bent > 0)
-    bent = bsearch(&v, s->bent, s->n_bent, sizeof *bent, number_pair_order);
   if (bent != NULL) outside(s, G, a, b, bent->out, u);
   for (int c = 0; c < dim; ++c)
     if (s->d->fixed[dim * a + c] && s->d->fixed[dim * b + c])
@@ -168,8 +161,9 @@ static void free_bubble(const goal_solution *s, const double *G, int a, int b,
                         double *d) {
   const mesh *m = s->d->mesh;
   const int dim = m->dim, n = dim * dim;
-  if (s->front != NULL && s->front[a] != s->front[b]) {
-    root_bubble(s, G, s->front[a] ? a : b, s->front[a] ? b : a, d);
+  const unsigned char *front = s->surface->front;
+  if (front != NULL && front[a] != front[b]) {
+    root_bubble(s, G, front[a] ? a : b, front[a] ? b : a, d);
     return;
   }
   const double *xa = m->x + dim * a, *xb = m->x + dim * b;
@@ -198,7 +192,7 @@ static void bubble_of(goal_estimator *e, const double *G, int a, int b,
     }
     for (int c = 0; c < dim; ++c) d[c] -= rest[c];
     if (contact->closed) hold(s, G, contact, d, x);
-    COPY(e->edge + dim * (contact - s->edge), d, dim);
+    COPY(e->edge + dim * (contact - s->surface->edge), d, dim);
     for (int c = 0; c < dim; ++c) d[c] += rest[c];
   }
   support(s, G, a, b, d, x);
@@ -238,10 +232,8 @@ static void add_bubble(const domain *d, int elem_id, const int *edge,
 
 /* NULL: all elements of the edge are of one region. */
 static joint_edge *find_joint(const goal_estimator *e, int a, int b) {
-  const number_pair key = number_pair_of(a, b);
-  if (e->n_joint == 0 || !e->is_joint[a] || !e->is_joint[b]) return NULL;
-  return bsearch(&key, e->joint, e->n_joint, sizeof *e->joint,
-                 number_pair_order);
+  if (!e->is_joint[a] || !e->is_joint[b]) return NULL;
+  return PAIR_FIND(e->joint, e->n_joint, a, b);
 }
 
 /* Writes the edges between marked nodes, element by element, or counts them. */
@@ -294,10 +286,6 @@ static status find_joints(goal_estimator *e) {
   return OK;
 }
 
-static void add_to(const double *d, double *sum) {
-  for (int c = 0; c < 3; ++c) sum[c] += d[c];
-}
-
 /* Once by each region. */
 static void add_joint(goal_estimator *e, const double *G, int region,
                       joint_edge *j) {
@@ -307,12 +295,12 @@ static void add_joint(goal_estimator *e, const double *G, int region,
   j->region = region;
   ++j->n;
   bubble_of(e, G, j->a, j->b, whole, given);
-  add_to(whole, j->whole);
-  add_to(given, j->given);
+  add_scaled(3, 1.0, whole, j->whole);
+  add_scaled(3, 1.0, given, j->given);
   const contact_edge *of = find_edge(e, j->a, j->b);
   if (of == NULL) return;
-  COPY(contact, e->edge + dim * (of - e->s.edge), dim);
-  add_to(contact, j->contact);
+  COPY(contact, e->edge + dim * (of - e->s.surface->edge), dim);
+  add_scaled(3, 1.0, contact, j->contact);
 }
 
 /* From sums to means. */
@@ -324,7 +312,8 @@ static void finish_joint(goal_estimator *e, joint_edge *j) {
     j->contact[c] /= j->n;
   }
   const contact_edge *of = find_edge(e, j->a, j->b);
-  if (of != NULL) COPY(e->edge + dim * (of - e->s.edge), j->contact, dim);
+  if (of != NULL)
+    COPY(e->edge + dim * (of - e->s.surface->edge), j->contact, dim);
 }
 
 /* The bubbles of the edges of an element; G NULL: of those of several
@@ -409,6 +398,7 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   const mesh *m = s->d->mesh;
   OWNED double *q = NULL, *G = NULL;
   const size_t n = m->dim * m->dim;
+  const goal_surface *on = s->surface;
   MAKES(goal_estimator, e, out);
   e->s = *s;
   e->recovery = recovery;
@@ -416,9 +406,9 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   gradients(s, q);
   e->n_region = space_regions(recovery);
   PASS_NEW_ALL(OF(e->stress, e->n_region), OF(e->own, m->n_elem),
-               OF(e->edge, m->dim * s->n_edge), OF(e->on_surface, m->n_node));
-  for (int k = 0; k < s->n_edge; ++k)
-    e->on_surface[s->edge[k].a] = e->on_surface[s->edge[k].b] = 1;
+               OF(e->edge, m->dim * on->n_edge), OF(e->on_surface, m->n_node));
+  for (int k = 0; k < on->n_edge; ++k)
+    e->on_surface[on->edge[k].a] = e->on_surface[on->edge[k].b] = 1;
   PASS(new_fields(e));
   PASS_NEW(e->sigma_y, (size_t)s->d->ns * m->n_elem);
   PASS_NEW(e->node_y, (size_t)s->d->ns * m->n_node);
@@ -428,17 +418,6 @@ status goal_estimator_new(const goal_solution *s, space_recovery *recovery,
   for (int k = 0; k < e->n_region; ++k) PASS(recover_region(e, k, q, G));
   add_joints(e);
   return OK;
-}
-
-/* The stress E e of an element by a strain e[ns]. */
-static void stress_by(const domain *d, int elem_id, const double *e,
-                      double *t) {
-  const int ns = d->ns;
-  const double *E = d->E + (size_t)(ns * ns) * d->section_id[elem_id];
-  for (int i = 0; i < ns; ++i) {
-    t[i] = 0.0;
-    for (int j = 0; j < ns; ++j) t[i] += E[i + ns * j] * e[j];
-  }
 }
 
 void goal_estimator_bubble(const goal_estimator *e, int elem_id, int a, int b,
@@ -551,7 +530,7 @@ static double axi_residual(const goal_estimator *e, int elem_id,
     const double r = axi_strains(e, elem_id, p, y, b, of_y, of_b);
     if (of_u) axi_strains(e, elem_id, p, e->s.u, b, of_own, of_b);
     for (int k = 0; k < 4; ++k) of_y[k] -= of_u ? of_own[k] : 0.0;
-    stress_by(d, elem_id, of_y, t);
+    element_stress(d, elem_id, of_y, t);
     for (int k = 0; k < 4; ++k) {
       if (tau != NULL && !of_u) t[k] -= tau[k];
       if (eigen != NULL) t[k] += 2.0 * eigen[k];
@@ -659,7 +638,7 @@ static double add_element(goal_estimator *e, int elem_id, const double *y,
   const mesh *m = e->s.d->mesh;
   int ends = 0;
   for (int a = 0; a <= m->dim; ++a)
-    ends |= e->s.ends[m->elem[(m->dim + 1) * elem_id + a]];
+    ends |= e->s.surface->ends[m->elem[(m->dim + 1) * elem_id + a]];
   if (ends == GOAL_NEAR_SUPPORT) out->near += both;
   ends &= ~GOAL_NEAR_SUPPORT;
   if (ends != 0) out->ends += both;
@@ -715,7 +694,7 @@ void goal_estimator_force(goal_estimator *e, double *F) {
     return;
   }
   for (int k = 0; k < d->mesh->n_elem; ++k)
-    stress_by(d, k, e->all.strain + ns * k, e->sigma_y + ns * k);
+    element_stress(d, k, e->all.strain + ns * k, e->sigma_y + ns * k);
   domain_internal_force(d, e->sigma_y, F);
   for (size_t k = 0; k < n; ++k) F[k] = -F[k];
 }

@@ -133,25 +133,33 @@ enum {
   GOAL_NEAR_SUPPORT = 4 /* of an element with such a node */
 };
 
+/* What the surface of the body does at the solution. */
+typedef struct goal_surface {
+  int n_edge;
+  contact_edge *edge;  /* [n_edge] sorted by a, b */
+  unsigned char *ends; /* [n_node] bits */
+  int n_given;
+  int n_bent;
+  bent_edge *bent;      /* [n_bent] sorted by a, b */
+  given_edge *given;    /* [n_given] the same; NULL: none */
+  unsigned char *front; /* [n_node] 1: of the front of a crack, round which u
+                           goes like the root of the distance; NULL: no crack */
+  int *closed, *whole;  /* [n_contact] closed nodes; faces with them alone */
+  int n_closed;         /* of all contacts */
+  int is_missed; /* 1: no node of a contact is closed, but its gap may end
+                    between nodes */
+} goal_surface;
+
 /* The solution. All is borrowed. */
 typedef struct goal_solution {
   const domain *d;
   const double *u;     /* [dim*n_node] m */
   const double *sigma; /* [ns*n_elem] Pa */
-  int n_edge;
-  const contact_edge *edge;   /* [n_edge] sorted by a, b */
-  const unsigned char *ends;  /* [n_node] bits */
-  const unsigned char *front; /* [n_node] 1: of the front of a crack, round
-                                 which u goes like the root of the distance;
-                                 NULL: no crack */
-  int n_bent;
-  const bent_edge *bent; /* [n_bent] sorted by a, b */
-  int n_given;
-  const given_edge *given; /* the same */
-  int has_flux;            /* 1: some J has a flux */
-  int has_mean;            /* 1: some J may be a mean of displacements */
-  int has_energy;          /* 1: some J is the energy */
-  int rubs;                /* 1: nodes slip whose friction follows pressures */
+  const goal_surface *surface;
+  int has_flux;   /* 1: some J has a flux */
+  int has_mean;   /* 1: some J may be a mean of displacements */
+  int has_energy; /* 1: some J is the energy */
+  int rubs;       /* 1: nodes slip whose friction follows pressures */
 } goal_solution;
 
 typedef struct goal_estimator goal_estimator;

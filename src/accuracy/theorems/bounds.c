@@ -189,8 +189,7 @@ static double limit_change(const contact_problem *cp,
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
     const sparse_rows *B = cp->B;
     double g = cp->g0[i], rows = 0.0, old = 0.0;
-    for (int k = B == NULL ? 0 : B->start[i]; B != NULL && k < B->start[i + 1];
-         ++k) {
+    for (int k = row_begin(B, i); k < row_end(B, i); ++k) {
       int dof = cp->dim * B->col[k];
       rows += fabs(B->val[k]);
       if (before->known > 0) g += B->val[k] * fmax(0.0, -before->r[dof]);

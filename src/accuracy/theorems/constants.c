@@ -192,8 +192,7 @@ static void apply_limit(void *ctx, const double *x, double *y) {
 
 static int has_row(const contact_problem *cp, int i) {
   const sparse_rows *B = cp->B;
-  for (int e = B == NULL ? 0 : B->start[i]; B != NULL && e < B->start[i + 1];
-       ++e)
+  for (int e = row_begin(B, i); e < row_end(B, i); ++e)
     if (B->val[e] != 0.0) return 1;
   return 0;
 }

@@ -60,17 +60,6 @@ static void set_scales(trial *s) {
   s->whole = sqrt(u2);
 }
 
-/* |v_t - ut0| of a node with friction. */
-static double slip_size(const contact_problem *cp, const double *v, int i) {
-  double size = 0.0;
-  for (int k = 1; k < cp->dim; ++k) {
-    int dof = cp->dim * i + k;
-    if (!contact_held(cp, dof))
-      size = hypot(size, v[dof] - contact_stick(cp, dof));
-  }
-  return size;
-}
-
 /* A field in K at a node. Sizes spread over four powers of ten: along a disc of
  * friction a small defect shows in small motions only. */
 static void set_node(trial *s, int i, move how) {
@@ -105,7 +94,7 @@ static double part(const trial *s, int i, double *square) {
   }
   if (cp->g0 != NULL && !contact_has_side(cp, i))
     sum += contact_node_limit(cp, s->r, i) *
-           (slip_size(cp, s->w, i) - slip_size(cp, s->u, i));
+           (contact_slip_of(cp, s->w, i) - contact_slip_of(cp, s->u, i));
   return sum;
 }
 

@@ -56,8 +56,7 @@ int archive_has_cpu(const archive *a) { return !a->no_cpu; }
 int archive_reads(const archive *a) { return a->path != NULL; }
 
 archive *archive_enter(archive *a, const char *group) {
-  size_t used = strlen(a->group);
-  snprintf(a->group + used, sizeof a->group - used, "%s/", group);
+  text_add(a->group, sizeof a->group, "%s/", group);
   return a;
 }
 

@@ -31,19 +31,16 @@ static const double ON_MIRROR = 1e-9; /* over the radius of the average */
 
 /* Faces around the nodes of a patch. */
 typedef struct fans {
-  int *start, *face; /* [n_node+1], [dim*n_face] */
+  size_t *start; /* of number_places */
+  int *face;
 } fans;
 
 static status fans_new(const average_patch *p, fans *f) {
-  int n = p->dim * p->n_face;
-  PASS_NEW_ALL(OF(f->start, p->n_node + 2), OF(f->face, n));
-  for (int k = 0; k < n; ++k) ++f->start[p->face[k] + 2];
-  for (int i = 0; i < p->n_node; ++i) f->start[i + 2] += f->start[i + 1];
-  for (int k = 0; k < n; ++k) f->face[f->start[p->face[k] + 1]++] = k / p->dim;
-  return OK;
+  return number_places(p->n_node, (size_t)p->dim * p->n_face, p->face, p->dim,
+                       &f->start, &f->face);
 }
 
-static int fan_size(const fans *f, int node) {
+static size_t fan_size(const fans *f, int node) {
   return f->start[node + 1] - f->start[node];
 }
 
@@ -102,7 +99,7 @@ static void set_mirrors(const average_patch *p, const average_rule *rule,
 /* Faces around node a that hold node b too. */
 static int shared(const average_patch *p, const fans *f, int a, int b) {
   int n = 0;
-  for (int k = f->start[a]; k < f->start[a + 1]; ++k)
+  for (size_t k = f->start[a]; k < f->start[a + 1]; ++k)
     for (int c = 0; c < p->dim; ++c) n += p->face[p->dim * f->face[k] + c] == b;
   return n;
 }
@@ -139,7 +136,7 @@ static void put(double *to, double along, double row) {
 
 /* A face around the node that has not been traversed, or -1. */
 static int next_face(const walk *w, int node) {
-  for (int k = w->f->start[node]; k < w->f->start[node + 1]; ++k)
+  for (size_t k = w->f->start[node]; k < w->f->start[node + 1]; ++k)
     if (!w->done[w->f->face[k]]) return w->f->face[k];
   return -1;
 }
@@ -270,21 +267,14 @@ static status builder_new(builder *b) {
 
 /* ---- the patch --------------------------------------------------------- */
 
-static double triangle_area(const double *x) {
-  double a[3], b[3], n[3];
-  vector_of(3, x, x + 3, a);
-  vector_of(3, x, x + 6, b);
-  cross(a, b, n);
-  return 0.5 * norm(3, n);
-}
-
 /* Integrals of the P1 functions. */
 static void find_shares(builder *b) {
   const average_patch *p = b->p;
   for (int f = 0; f < p->n_face; ++f) {
     const double *x = b->at.corner + (size_t)(p->dim * p->dim) * f;
     const int *node = p->face + p->dim * f;
-    double size = p->dim == 3 ? triangle_area(x) : distance_of(2, x, x + 2);
+    double n[3], size = p->dim == 3 ? 0.5 * triangle_normal(x, n)
+                                    : distance_of(2, x, x + 2);
     for (int k = 0; k < p->dim; ++k) {
       double weight = 1.0 / p->dim;
       if (p->axisymmetric) weight = (2.0 * x[2 * k] + x[2 * !k]) / 6.0;

@@ -110,9 +110,7 @@ double face_segment_distance(int dim, const double *a, const double *b,
  * outside of the triangle. */
 static double height(const double *corner, const double *x) {
   double n[3], a[3], b[3], side[3];
-  vector_of(3, corner, corner + 3, a);
-  vector_of(3, corner, corner + 6, b);
-  cross(a, b, n);
+  triangle_normal(corner, n);
   for (int k = 0; k < 3; ++k) {
     vector_of(3, corner + 3 * k, corner + 3 * ((k + 1) % 3), a);
     vector_of(3, corner + 3 * k, x, b);
@@ -342,21 +340,16 @@ static int is_plain(const mollifier *m, const double *corner, const double *x) {
 void face_triangle(const mollifier *m, const double *corner, const double *x,
                    double weight[3]) {
   flat f = {.m = m};
-  double a[3], b[3], n[3], to[3], e0[3], e1[3];
-  memset(weight, 0, 3 * sizeof *weight);
-  vector_of(3, corner, corner + 3, a);
-  vector_of(3, corner, corner + 6, b);
-  cross(a, b, n);
-  double twice = sqrt(dot(3, n, n)), length = sqrt(dot(3, a, a));
+  double n[3], to[3], e0[3], e1[3], twice = triangle_normal(corner, n);
+  CLEAR(weight, 3);
   if (!(twice > 0.0)) return;
   if (is_plain(m, corner, x)) {
     product_rule(m, corner, x, twice, weight);
     return;
   }
-  for (int c = 0; c < 3; ++c) {
-    n[c] /= twice;
-    e0[c] = a[c] / length;
-  }
+  for (int c = 0; c < 3; ++c) n[c] /= twice;
+  vector_of(3, corner, corner + 3, e0);
+  make_unit(3, e0);
   cross(n, e0, e1);
   vector_of(3, corner, x, to);
   double off = dot(3, to, n);

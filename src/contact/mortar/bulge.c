@@ -28,8 +28,8 @@ typedef struct shape {
   unsigned char *state; /* [n_node] of the enum */
   int *bends;           /* [n_node] edges there that bend */
   double *bulge;        /* of bulge_find */
-  size_t *start; /* [n_node+2] the places in face[] of those of a node: .. */
-  int *around;   /* .. in this list */
+  size_t *start;        /* of mortar_around */
+  int *around;
   int ring[MOST], n; /* the nodes around one, itself first */
 } shape;
 
@@ -48,15 +48,9 @@ static void step(const shape *s, int from, int to, double *e) {
 
 static status find_around(shape *s, int n) {
   const int dim = s->in->mesh->dim, n_node = s->in->mesh->n_node;
-  PASS_NEW_ALL(OF(s->start, n_node + 2), OF(s->around, dim * n),
-               OF(s->normal, dim * n_node), OF(s->state, n_node),
+  PASS_NEW_ALL(OF(s->normal, dim * n_node), OF(s->state, n_node),
                OF(s->bends, n_node));
-  for (int i = 0; i < dim * n; ++i)
-    ++s->start[nodes_of(s, i / dim)[i % dim] + 2];
-  for (int i = 0; i < n_node; ++i) s->start[i + 2] += s->start[i + 1];
-  for (int i = 0; i < dim * n; ++i)
-    s->around[s->start[nodes_of(s, i / dim)[i % dim] + 1]++] = i / dim;
-  return OK;
+  return mortar_around(s->in, n, s->face, &s->start, &s->around);
 }
 
 static void add_to_ring(shape *s, int node) {

@@ -124,12 +124,6 @@ static int triangles_of(const polygon *p, cell *out) {
   return p->n > 2 ? p->n - 2 : 0;
 }
 
-static polygon polygon_of(const cell *c) {
-  polygon p = {.n = 3};
-  memcpy(p.at, c->at, sizeof c->at);
-  return p;
-}
-
 /* Corners a, b of side k of b so that the cell is on its left. */
 static void side_of(const cell *c, int k, const double **a, const double **b) {
   const int next = (k + 1) % 3;
@@ -149,38 +143,37 @@ static double low_end(const cell *c) { return fmin(c->at[0][0], c->at[1][0]); }
 
 static double high_end(const cell *c) { return fmax(c->at[0][0], c->at[1][0]); }
 
+/* The common part of triangles a, b; a without it to rest, *n cells, unless
+ * that is NULL. */
+static polygon common(const cell *a, const cell *b, cell *rest, int *n) {
+  polygon p = {.n = 3}, left, right;
+  memcpy(p.at, a->at, sizeof a->at);
+  for (int k = 0; k < 3 && p.n > 2; ++k) {
+    const double *from, *to;
+    side_of(b, k, &from, &to);
+    split(&p, from, to, &left, &right);
+    if (rest != NULL) *n += triangles_of(&right, rest + *n);
+    p = left;
+  }
+  return p;
+}
+
 int cell_common(int dim, const cell *a, const cell *b, cell *out) {
   if (dim == 2)
     return add_segment(fmax(low_end(a), low_end(b)),
                        fmin(high_end(a), high_end(b)), out);
-  polygon p = polygon_of(a), rest;
-  for (int k = 0; k < 3 && p.n > 2; ++k) {
-    const double *from, *to;
-    polygon left;
-    side_of(b, k, &from, &to);
-    split(&p, from, to, &left, &rest);
-    p = left;
-  }
+  const polygon p = common(a, b, NULL, NULL);
   return triangles_of(&p, out);
 }
 
 int cell_without(int dim, const cell *a, const cell *b, cell *out) {
   int n = 0;
-  if (dim == 2) {
-    n += add_segment(low_end(a), fmin(high_end(a), low_end(b)), out);
-    n += add_segment(fmax(low_end(a), high_end(b)), high_end(a), out + n);
+  if (dim == 3) {
+    common(a, b, out, &n);
     return n;
   }
-  polygon p = polygon_of(a), rest;
-  for (int k = 0; k < 3 && p.n > 2; ++k) {
-    const double *from, *to;
-    polygon left;
-    side_of(b, k, &from, &to);
-    split(&p, from, to, &left, &rest);
-    n += triangles_of(&rest, out + n);
-    p = left;
-  }
-  return n;
+  n += add_segment(low_end(a), fmin(high_end(a), low_end(b)), out);
+  return n + add_segment(fmax(low_end(a), high_end(b)), high_end(a), out + n);
 }
 
 /*
@@ -249,9 +242,7 @@ static void keep_all(int dim, const cell *corner, int n, sample *p,
 /* The gradient of phi_k of a triangle. */
 static void gradient(const cell *c, int k, double *g) {
   const double *a = c->at[(k + 1) % 3], *b = c->at[(k + 2) % 3];
-  const double *o = c->at[k];
-  const double twice =
-      (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+  const double twice = turn(c->at[k], a, b);
   g[0] = (a[1] - b[1]) / twice;
   g[1] = (b[0] - a[0]) / twice;
 }

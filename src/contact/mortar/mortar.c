@@ -54,8 +54,8 @@ typedef struct builder {
   int *slot;      /* [n_node] -1, or place among the entries of a face or row */
   double *normal; /* [dim*n_node] of the masters and dropped nodes */
   double *bulge;  /* of bulge_find, both surfaces */
-  size_t *start;  /* [n_node+1] slave faces of a node: .. */
-  int *around;    /* .. places in the list */
+  size_t *start;  /* of mortar_around */
+  int *around;
   unsigned char *met; /* [mesh->n_face] 1: partner of a slave face */
   link *links;        /* of all rows */
   int n_link, link_capacity;
@@ -247,20 +247,6 @@ static status do_face(builder *b, int i) {
   PASS(add_dropped(b, face, part, kept));
   add_bulges(b, face, part);
   part->end = b->n_entry;
-  return OK;
-}
-
-/* Slave faces round each node. */
-static status set_around(builder *b) {
-  const mortar_input *in = b->in;
-  const int dim = in->mesh->dim, n = in->n_slave * dim;
-  PASS_NEW_ALL(OF(b->start, in->mesh->n_node + 2), OF(b->around, n));
-  for (int i = 0; i < n; ++i)
-    ++b->start[mortar_nodes(b->in, in->slave[i / dim])[i % dim] + 2];
-  for (int i = 0; i < in->mesh->n_node; ++i) b->start[i + 2] += b->start[i + 1];
-  for (int i = 0; i < n; ++i)
-    b->around[b->start[mortar_nodes(b->in, in->slave[i / dim])[i % dim] +
-                       1]++] = i / dim;
   return OK;
 }
 
@@ -571,7 +557,8 @@ static status builder_new(const mortar_input *in, mortar *out, builder *b) {
   PASS_NEW_ALL(OF(b->state, n), OF(b->face, in->n_slave),
                OF(b->met, in->mesh->n_face), OF(b->slot, n));
   for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
-  PASS(set_around(b));
+  PASS(mortar_around(b->in, b->in->n_slave, b->in->slave, &b->start,
+                     &b->around));
   set_states(b);
   if (!in->flat) {
     PASS_NEW(b->bulge, 3 * in->mesh->n_face);

@@ -8,6 +8,16 @@
 
 #include "base/base.h"
 
+status mortar_around(const mortar_input *in, int n, const int *face,
+                     size_t **start, int **item) {
+  const int dim = in->mesh->dim;
+  OWNED_NEW(int, node, (size_t)dim *n);
+  for (int i = 0; i < n; ++i)
+    COPY(node + dim * i, mortar_nodes(in, face[i]), dim);
+  return number_places(in->mesh->n_node, (size_t)dim * n, node, dim, start,
+                       item);
+}
+
 /* Faces that are seen at less than this sine, from their edge, - . */
 static const double edge_on = 1e-6;
 

@@ -16,6 +16,10 @@ static inline const double *mortar_place(const mortar_input *in, int node) {
   return in->x + (size_t)in->mesh->dim * (size_t)node;
 }
 
+/* number_places of the nodes of faces face[n]. */
+status mortar_around(const mortar_input *in, int n, const int *face,
+                     size_t **start, int **item);
+
 /* A face over or below the slave face: a partner, or one that hides what is
  * behind it, a master that does not oppose or a face of the slave. */
 enum { PARTNER = 0, HIDING_MASTER, HIDING_SLAVE };

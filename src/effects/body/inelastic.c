@@ -128,7 +128,7 @@ static void forget(run *r, void *self) { visco_forget(r); }
 static status keep(run *r, void *self, archive *a) { return visco_keep(r, a); }
 
 static int point_of(const view *v, int elem_id) {
-  return visco_point_of(v->s->body.flow_elem, v->s->body.flow->n, elem_id);
+  return number_find(elem_id, v->s->body.flow_elem, v->s->body.flow->n);
 }
 
 /* Inelastic strain; 0 where no law flows. */

@@ -58,9 +58,9 @@ static status new_materials(const run *r, crack_state *own) {
 
 /* The area of a lip face. */
 static double area_of(const run *r, int face) {
-  const int id = r->m->elem_section[r->msh->face_elem[face]];
   double normal[3];
-  return mesh_face_normal(r->msh, face, normal) * r->m->sections[id].thickness;
+  return mesh_face_normal(r->msh, face, normal) *
+         model_thickness(r->m, r->msh->face_elem[face]);
 }
 
 /* Lip k of a crack, the plus lips first. */
@@ -402,12 +402,7 @@ static effect_work expected(const plan_sizes *s) {
                        shown * s->elements * plan_element_work(s)};
 }
 
-static int factors_due(const run *r) {
-  const int within = r->course.shadow;
-  return table_is_due(r->step, PRINT_SIF, r->now.t,
-                      within ? -1 : r->at.increment_no,
-                      within ? 0 : r->at.last);
-}
+static int factors_due(const run *r) { return table_is_due_now(r, PRINT_SIF); }
 
 static int tips_items(const void *self) {
   return ((const crack_state *)self)->n;

@@ -44,7 +44,7 @@ static double value_at(const run *r, const friction_rule *rule, int i,
   double x[3] = {0.0, 0.0, 0.0};
   int dim = r->surface->dim;
   if (rule->law == NULL || rule->law->value_name == NULL) return 0.0;
-  for (int c = 0; c < dim; ++c) x[c] = r->surface->x[dim * i + c];
+  COPY(x, r->surface->x + dim * i, dim);
   return quantity_value(&rule->card.value, x, t);
 }
 
@@ -94,9 +94,8 @@ static jump narrow(const run *r, const friction_rule *rule, jump j, double t0) {
 }
 
 static void notify(run *r, const friction_rule *rule, int contact_id, jump j) {
-  size_t used = strlen(r->course.note);
   if (j.node_id < 0) return;
-  snprintf(r->course.note + used, sizeof r->course.note - used,
+  RUN_NOTE(r,
            "  %s of contact %s jumps at t = %.9g from %.6g to %.6g, node %zu\n",
            rule->law->value_name, r->m->contacts[contact_id].name, j.t, j.from,
            j.to, r->surface->node_no[j.node_id]);
@@ -111,9 +110,7 @@ static void note_change(run *r, int contact_id) {
       friction_in_force(r->m, step_id - 1, contact_id);
   if (now == before) return;
   if (now->law != before->law) {
-    size_t used = strlen(r->course.note);
-    snprintf(r->course.note + used, sizeof r->course.note - used,
-             "  friction of contact %s changes at t = %.9g from %s to %s\n",
+    RUN_NOTE(r, "  friction of contact %s changes at t = %.9g from %s to %s\n",
              r->m->contacts[contact_id].name, r->old.t,
              before->law == NULL ? "NONE" : before->law->name,
              now->law == NULL ? "NONE" : now->law->name);
@@ -193,15 +190,8 @@ static double held_value(const run *r, const double *ud, int i, int a) {
 static int can_stick(const friction_limit *limit, int i) {
   const sparse_rows *B = &limit->B;
   if (limit->g0[i] > 0.0) return 1;
-  for (int e = B->start == NULL ? 0 : B->start[i];
-       B->start != NULL && e < B->start[i + 1]; ++e)
+  for (int e = row_begin(B, i); e < row_end(B, i); ++e)
     if (B->val[e] > 0.0) return 1;
-  return 0;
-}
-
-static int in_group(const mesh_group *g, int node_id) {
-  for (int k = 0; k < g->n_node; ++k)
-    if (g->node_id[k] == node_id) return 1;
   return 0;
 }
 
@@ -211,8 +201,9 @@ static const load *holder(const run *r, int i, int a) {
   const double *axis = &s->frame[s->dim * s->dim * i + s->dim * a];
   const load *best = NULL;
   for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
+    const mesh_group *g = &r->msh->group[l->group_id];
     if (l->kind != LOAD_FIXING ||
-        !in_group(&r->msh->group[l->group_id], s->node_id[i]))
+        number_find(s->node_id[i], g->node_id, g->n_node) < 0)
       continue;
     if (best == NULL || fabs(axis[l->component]) > fabs(axis[best->component]))
       best = l;

@@ -412,10 +412,7 @@ static effect_work expected(const plan_sizes *s) {
 }
 
 static int zones_due(const run *r) {
-  const int within = r->course.shadow;
-  return r->nodes.n > 0 && table_is_due(r->step, PRINT_ZONES, r->now.t,
-                                        within ? -1 : r->at.increment_no,
-                                        within ? 0 : r->at.last);
+  return r->nodes.n > 0 && table_is_due_now(r, PRINT_ZONES);
 }
 
 static int zones_items(const void *self) {

@@ -98,7 +98,7 @@ static void add_energy(const element_at_work *e, const double *found,
                        const double *exact, double weight) {
   const int ns = e->d->ns;
   double error[MAX_NS];
-  for (int i = 0; i < ns; ++i) error[i] = found[i] - exact[i];
+  vector_of(ns, exact, found, error);
   e->sum->energy += weight * product(ns, e->S, error);
   e->sum->energy_all += weight * product(ns, e->S, exact);
 }
@@ -212,7 +212,7 @@ static double pressure_error(const run *r) {
   for (int i = 0; s != NULL && i < s->n; ++i) {
     double x[3] = {0.0, 0.0, 0.0};
     if (!(s->area[i] > 0.0)) continue;
-    for (int c = 0; c < s->dim; ++c) x[c] = s->x[s->dim * i + c];
+    COPY(x, s->x + s->dim * i, s->dim);
     double p = quantity_value(exact, x, r->now.t);
     double error = -r->now.rc[s->dim * i] / s->area[i] - p;
     sum += s->area[i] * error * error;

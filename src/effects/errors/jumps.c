@@ -34,12 +34,11 @@ static const double STILL = 0x1p-30; /* -, of the largest slip: none */
 /* |a - b|_A of contact displacements; room[2*n_c]. */
 static double distance(const run *r, const double *a, const double *b,
                        double *room) {
-  double sum = 0.0;
-  for (int i = 0; i < r->nodes.n_c; ++i) room[i] = a[i] - b[i];
+  double *Ad = room + r->nodes.n_c;
+  vector_of(r->nodes.n_c, b, a, room);
   const double *d = run_rows(r, 0, room);
-  contact_apply(&r->problem.cp, d, room + r->nodes.n_c);
-  for (int i = 0; i < r->nodes.n_row; ++i) sum += d[i] * room[r->nodes.n_c + i];
-  return sqrt(fmax(sum, 0.0));
+  contact_apply(&r->problem.cp, d, Ad);
+  return sqrt(fmax(dot(r->nodes.n_row, d, Ad), 0.0));
 }
 
 /* What the load and the obstacles can move, in the energy norm; room[2*n_c]. */
@@ -48,8 +47,7 @@ static status load_change(run *r, double *room, double *size) {
   *size = r->now.motion == NULL
               ? 0.0
               : distance(r, r->now.motion, r->old.motion, room);
-  for (int i = 0; i < r->nodes.n_row; ++i)
-    room[i] = r->problem.f[i] - r->problem.f_before[i];
+  vector_of(r->nodes.n_row, r->problem.f_before, r->problem.f, room);
   if (r->body.moduli.n_own > 0 ||
       r->problem.n_before != r->nodes.n_row) { /* other matrix */
     const double *rc = run_rows(r, 1, r->old.rc);
@@ -68,17 +66,6 @@ static status load_change(run *r, double *room, double *size) {
 
 /* ---- slip through the increment ------------------------------------------ */
 
-/* Slip of node i since the last equilibrium, m. */
-static double slip_of(const contact_problem *cp, const double *u, int i) {
-  double slip = 0.0;
-  for (int k = 1; k < cp->dim; ++k) {
-    int dof = i * cp->dim + k;
-    if (!contact_held(cp, dof))
-      slip = hypot(slip, u[dof] - contact_stick(cp, dof));
-  }
-  return slip;
-}
-
 /* The state in which every node that has moved, and touches at one end of the
  * increment, slides: u[m], q[m]. */
 static void set_sliding(const contact_problem *cp, const double *before,
@@ -89,10 +76,10 @@ static void set_sliding(const contact_problem *cp, const double *before,
     double push = fmin(before[normal], q[normal]);
     if (push < 0.0) u[normal] = cp->gap[i];
     q[normal] = fmin(push, 0.0);
-    most = fmax(most, slip_of(cp, u, i));
+    most = fmax(most, contact_slip_of(cp, u, i));
   }
   for (int i = 0; i < cp->n; ++i) {
-    double slip = slip_of(cp, u, i), g = contact_node_limit(cp, q, i);
+    double slip = contact_slip_of(cp, u, i), g = contact_node_limit(cp, q, i);
     for (int k = 1; k < cp->dim; ++k) {
       int dof = i * cp->dim + k;
       int moves = slip > STILL * most && !contact_held(cp, dof);
@@ -197,10 +184,9 @@ static void give_back(run *r, contact_solver *own, double tol) {
 }
 
 static void note_jump(run *r, checked *own, double t, double share) {
-  size_t used = strlen(r->course.note);
   own->jumps = 1;
   own->jump_t = t;
-  snprintf(r->course.note + used, sizeof r->course.note - used,
+  RUN_NOTE(r,
            "  JUMP: no path of equilibria leads here: at time %.6g, within "
            "%.0e of the load of the\n  increment, the state changes by %.0f %% "
            "of its motion; the run goes on with another branch\n",

@@ -104,8 +104,7 @@ static status pose(run *r, void *self, double t) {
 }
 
 static void note_start(run *r, const nested *x) {
-  const size_t used = strlen(r->course.note);
-  snprintf(r->course.note + used, sizeof r->course.note - used,
+  RUN_NOTE(r,
            "  started from the coarser mesh (%d contact nodes): %d of %d "
            "contact nodes end in another state\n",
            coarser_nodes(x->of),

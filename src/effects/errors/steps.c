@@ -189,12 +189,9 @@ done:
 /* Energy norm of the difference of the paths without inelastic strains,
  * sqrt(J). */
 static double condensed_difference(const run *r, finer_path *p) {
-  double square = 0.0;
-  for (int k = 0; k < r->nodes.n_c; ++k)
-    p->d[k] = r->now.uc[k] - p->end.start.uc[k];
+  vector_of(r->nodes.n_c, p->end.start.uc, r->now.uc, p->d);
   condensed_product(r->c, p->d, p->Ad);
-  for (int k = 0; k < r->nodes.n_c; ++k) square += p->d[k] * p->Ad[k];
-  return sqrt(fmax(square, 0.0));
+  return sqrt(fmax(dot(r->nodes.n_c, p->d, p->Ad), 0.0));
 }
 
 /* sqrt(2 E) of displacements and strains without stress (NULL: none). */

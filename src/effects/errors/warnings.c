@@ -61,12 +61,10 @@ static void warn_deformation(run *r, warnings *reported) {
 static void note_touches(run *r, warnings *reported) {
   for (int i = 0; i < r->m->n.contact; ++i) {
     const contact_total *t = &r->result.totals[i];
-    const size_t used = strlen(r->course.note);
     if (reported->touched[i] != 0 || t->n_slip + t->n_stick == 0) continue;
     reported->touched[i] = TOUCHED;
     if (r->course.total_no > 1)
-      snprintf(r->course.note + used, sizeof r->course.note - used,
-               "  contact %s touches for the first time\n",
+      RUN_NOTE(r, "  contact %s touches for the first time\n",
                r->m->contacts[i].name);
   }
 }

@@ -208,10 +208,8 @@ status goal_add_doubts(const run *r, const goal_surface *s, const double *z,
     for (int a = 0; a < dim; ++a)
       for (int b = a + 1; b <= dim; ++b) {
         const int *v = m->elem + (dim + 1) * k;
-        const number_pair key = number_pair_of(v[a], v[b]);
         if (where[v[a]] < 0 || where[v[b]] < 0) continue;
-        const contact_edge *e = bsearch(&key, s->edge, s->n_edge,
-                                        sizeof *s->edge, number_pair_order);
+        const contact_edge *e = PAIR_FIND(s->edge, s->n_edge, v[a], v[b]);
         if (e != NULL) product[k] += part[e - s->edge];
       }
   return OK;

@@ -91,14 +91,8 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
 /* ---- faces --------------------------------------------------------------- */
 
 status goal_ring_new(const mesh *m, goal_ring *r) {
-  PASS_NEW_ALL(OF(r->start, m->n_node + 1), OF(r->face, m->dim * m->n_face));
-  for (int k = 0; k < m->dim * m->n_face; ++k) ++r->start[m->face[k] + 1];
-  for (int i = 0; i < m->n_node; ++i) r->start[i + 1] += r->start[i];
-  for (int k = 0; k < m->dim * m->n_face; ++k)
-    r->face[r->start[m->face[k]]++] = k / m->dim;
-  for (int i = m->n_node; i > 0; --i) r->start[i] = r->start[i - 1];
-  r->start[0] = 0;
-  return OK;
+  return number_places(m->n_node, (size_t)m->dim * m->n_face, m->face, m->dim,
+                       &r->start, &r->face);
 }
 
 /* The sum n[dim] of normals like "own" at a node goes on behind a plane that
@@ -117,7 +111,7 @@ static void normal_at(const run *r, const goal_ring *rings, int node,
   const mesh *m = r->msh;
   const unsigned char *held = r->body.d.fixed + m->dim * node;
   CLEAR(n, 3);
-  for (int k = rings->start[node]; k < rings->start[node + 1]; ++k) {
+  for (size_t k = rings->start[node]; k < rings->start[node + 1]; ++k) {
     const int face = rings->face[k];
     double other[3] = {0.0};
     if (m->face_other[face] >= 0) continue;
@@ -232,12 +226,8 @@ static patch face_patch(const run *r, const goal_ring *rings, int face) {
   return p;
 }
 
-static int is_axisymmetric(const run *r) {
-  return r->m->sections[0].kin == AXISYMMETRIC;
-}
-
 static double turn_of(const run *r, double radius) {
-  return is_axisymmetric(r) ? 2.0 * M_PI * radius : 1.0;
+  return model_is_axisymmetric(r->m) ? 2.0 * M_PI * radius : 1.0;
 }
 
 /* What lies beyond a face, m3. */
@@ -310,7 +300,7 @@ static void add_part_beyond(const run *r, const patch *p, int face,
   double g[12];
   take_given(r, p, where, T);
   mesh_elem_gradients(m, e, g);
-  for (int k = 0; k < p->n && is_axisymmetric(r); ++k) {
+  for (int k = 0; k < p->n && model_is_axisymmetric(r->m); ++k) {
     const spot s = spot_at(m, p, k);
     for (int i = 0; i < p->n; ++i)
       dF[2 * p->node[i]] -= s.weight * s.beyond * 2.0 * M_PI * s.b[i] * t[2];

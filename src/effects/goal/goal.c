@@ -169,14 +169,7 @@ static status prepare(run *r, goal_state *own, shared *s) {
   const goal_solution found = {.d = &r->body.d,
                                .u = r->now.u,
                                .sigma = r->result.stress,
-                               .n_edge = s->surface.n_edge,
-                               .edge = s->surface.edge,
-                               .ends = s->surface.ends,
-                               .front = s->surface.front,
-                               .n_bent = s->surface.n_bent,
-                               .bent = s->surface.bent,
-                               .n_given = s->surface.n_given,
-                               .given = s->surface.given,
+                               .surface = &s->surface,
                                .has_flux = has_goal_of(r->m, GOAL_SIF),
                                .has_mean = has_mean(r->m),
                                .has_energy = has_goal_of(r->m, GOAL_ENERGY),
@@ -577,8 +570,7 @@ static status goals_copy(const run *r, const void *of, run *copy, void **self) {
 }
 
 static int goals_due(const run *r) {
-  return !r->course.shadow ||
-         table_is_due(r->step, PRINT_GOALS, r->now.t, -1, 0);
+  return !r->course.shadow || table_is_due_now(r, PRINT_GOALS);
 }
 
 static void show(const void *self, state *s) {

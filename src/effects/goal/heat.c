@@ -26,16 +26,6 @@ static int strain_at(const run *r, int k, const spot *s, double *d) {
   return 1;
 }
 
-/* t[ns] = E d0. */
-static void stress_of(const domain *d, int e, const double *strain, double *t) {
-  const int ns = d->ns;
-  const double *E = d->E + (size_t)(ns * ns) * d->section_id[e];
-  for (int i = 0; i < ns; ++i) {
-    t[i] = 0.0;
-    for (int c = 0; c < 3; ++c) t[i] += E[i + ns * c] * strain[c];
-  }
-}
-
 /* Forces of a stress t at a point of an element, of this weight; r: its radius,
  * 0: not axisymmetric. */
 static void add_force(const mesh *m, int e, const double *b, const double *t,
@@ -64,14 +54,14 @@ static void add_spot(const run *r, const spot *s, double *dF, double *rest) {
   for (int k = 0; k < r->strains.eigen.n; ++k) {
     const int e = r->strains.elem[k];
     const kinematics kin = d->kin[d->section_id[e]];
-    double strain[3], t[6], radius = 0.0,
-                            weight = mesh_elem_measure(m, e) / n / s->pieces;
+    double strain[6] = {0.0}, t[6], radius = 0.0;
+    double weight = mesh_elem_measure(m, e) / n / s->pieces;
     if (!strain_at(r, k, s, strain)) continue;
     for (int a = 0; a < n && kin == AXISYMMETRIC; ++a)
       radius += s->b[a] * m->x[2 * m->elem[n * e + a]];
     weight *= kin == AXISYMMETRIC ? 2.0 * M_PI * radius
                                   : d->thickness[d->section_id[e]];
-    stress_of(d, e, strain, t);
+    element_stress(d, e, strain, t);
     add_force(m, e, s->b, t, weight, radius, dF);
     for (int c = 0; c < 3; ++c) rest[3 * (size_t)e + c] += weight * strain[c];
   }
@@ -110,7 +100,8 @@ status goal_add_thermal(const run *r, double *dF, double **rest) {
 }
 
 double goal_thermal_rest(const run *r, int elem_id, const double *rest, int c) {
-  double t[6];
-  stress_of(&r->body.d, elem_id, rest + 3 * (size_t)elem_id, t);
+  double d0[6] = {0.0}, t[6];
+  COPY(d0, rest + 3 * (size_t)elem_id, 3);
+  element_stress(&r->body.d, elem_id, d0, t);
   return t[c];
 }

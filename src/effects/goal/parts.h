@@ -76,7 +76,8 @@ double goal_mean_bubbles(const run *r, const goal_estimator *e,
 void goal_rule_point(int n, int k, int pieces, double *b);
 /* boundary.c: faces round each node. */
 typedef struct goal_ring {
-  int *start, *face; /* [n_node+1], [dim*n_face] */
+  size_t *start; /* of number_places */
+  int *face;
 } goal_ring;
 /* All-zero r is new. ERR_MEMORY. */
 status goal_ring_new(const mesh *m, goal_ring *r);
@@ -115,21 +116,6 @@ status goal_border_new(const mesh *m, goal_border *b); /* support.c */
 int goal_is_torn(int dim, const side_load *p, const double *n,
                  const side_load *q, const double *m, int smooth);
 
-/* surface.c */
-typedef struct goal_surface {
-  int n_edge;
-  contact_edge *edge;  /* [n_edge] sorted */
-  unsigned char *ends; /* [n_node] GOAL_END_OF_CONTACT, _SUPPORT or 0 */
-  int n_given;
-  int n_bent;
-  bent_edge *bent;      /* [n_bent] sorted */
-  given_edge *given;    /* [n_given] sorted; NULL: none */
-  unsigned char *front; /* [n_node] 1: of the front of a crack; NULL: none */
-  int *closed, *whole;  /* [n_contact] closed nodes; faces with them alone */
-  int n_closed;         /* of all contacts */
-  int is_missed; /* 1: no node of a contact is closed, but its gap may end
-                    between nodes */
-} goal_surface;
 /* boundary.c: s->bent. */
 status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
 /* support.c: s->given, then what supports and interfaces between the regions
@@ -137,6 +123,7 @@ status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
 status goal_add_given(const run *r, goal_surface *s);
 status goal_mark_supports(const run *r, const goal_border *border,
                           const space_recovery *of, goal_surface *s);
+/* surface.c */
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
 /* between.c: of an edge. */

@@ -41,9 +41,9 @@ typedef struct weight {
 
 /* Coordinate along the line, m. */
 static double along(const weight *w, const double *x) {
-  double s = 0.0;
-  for (int c = 0; c < w->dim; ++c) s += (x[c] - w->origin[c]) * w->t[c];
-  return s;
+  double d[3];
+  vector_of(w->dim, w->origin, x, d);
+  return dot(w->dim, d, w->t);
 }
 
 /* From a force to one of unit thickness, or of unit length round the axis. */
@@ -325,7 +325,7 @@ static void refine_peak(const run *r, const line *l, weight *w) {
   const double bend = (pb / b - pa / a) / (b - a), slope = pa / a - bend * a;
   if (!(bend < 0.0)) return;
   const double s = fmin(fmax(-0.5 * slope / bend, a), b);
-  for (int c = 0; c < w->dim; ++c) w->origin[c] += s * w->t[c];
+  add_scaled(w->dim, s, w->t, w->origin);
 }
 
 /* Planes of symmetry at the ends of the line. */

@@ -154,10 +154,7 @@ static kind held_kind(const mesh *m, const number_pair *e, int component) {
 }
 
 static kind contact_kind(const goal_surface *s, const number_pair *e) {
-  const contact_edge *found =
-      s->n_edge == 0
-          ? NULL
-          : bsearch(e, s->edge, s->n_edge, sizeof *s->edge, number_pair_order);
+  const contact_edge *found = PAIR_FIND(s->edge, s->n_edge, e->a, e->b);
   if (found == NULL || !found->closed) return FREE;
   return found->stuck ? CLAMPED : ROLLER;
 }

@@ -48,7 +48,7 @@ static status uniaxial_rate(const material *mat, kinematics kin, double stress,
   ENDS_BY(law_sample_free) law_sample x = {0};
   double sigma[6] = {0.0, stress}, ei_rate[6] = {0.0};
   double alpha_rate[FLOW_VALUE_MAX], most = 0.0;
-  PASS(law_sample_at(mat, &mat->law, kin, 0.0, &x));
+  PASS(law_sample_at(&mat->elastic, &mat->law, kin, 0.0, &x));
   x.p.sigma = sigma;
   law_rate(&x.p, ei_rate, alpha_rate);
   for (int i = 0; i < x.kind.elastic.ns; ++i)
@@ -101,7 +101,7 @@ static status relaxed_law(const material *mat, kinematics kin, double *R,
   ENDS_BY(law_sample_free) law_sample x = {0};
   *time = 0.0;
   if (mat->law.ops->relaxed == NULL) return OK;
-  PASS(law_sample_at(mat, &mat->law, kin, 0.0, &x));
+  PASS(law_sample_at(&mat->elastic, &mat->law, kin, 0.0, &x));
   *time = mat->law.ops->relaxed(&x.p, R) / x.p.speed;
   return OK;
 }
@@ -200,8 +200,8 @@ static status see_material(preview *p, int id, double t) {
   ENDS_BY(law_sample_free) law_sample x = {0};
   double sigma[6];
   law.ops = mat->law_aside;
-  PASS(
-      law_sample_at(mat, &law, (kinematics)reduction_kinematics(m, id), t, &x));
+  PASS(law_sample_at(&mat->elastic, &law,
+                     (kinematics)reduction_kinematics(m, id), t, &x));
   x.p.sigma = sigma;
   for (int e = 0; e < n->msh->n_elem; ++e) {
     if (p->flows[e] || reduction_material(n, e) != mat) continue;
@@ -352,18 +352,11 @@ static status try_thermal(model *m, const mesh *msh) {
 /* Shortest distance of two nodes of a contact, length. */
 static double least_distance(const mesh *msh, const mesh_group *g) {
   double least = HUGE_VAL;
-  int dim = msh->dim;
   for (int i = 0; i < g->n_node; ++i)
-    for (int k = 0; k < i; ++k) {
-      double square = 0.0;
-      for (int c = 0; c < dim; ++c) {
-        double d =
-            msh->x[dim * g->node_id[i] + c] - msh->x[dim * g->node_id[k] + c];
-        square += d * d;
-      }
-      least = fmin(least, square);
-    }
-  return sqrt(least);
+    for (int k = 0; k < i; ++k)
+      least = fmin(least, distance_of(msh->dim, mesh_node_x(msh, g->node_id[i]),
+                                      mesh_node_x(msh, g->node_id[k])));
+  return least;
 }
 
 /* Value of an option of a law by name; NAN: it has none of that type. */

@@ -42,7 +42,7 @@ static double coefficient_of(const reduction *n, const state *s, int i) {
       friction_in_force(n->m, s->step_no - 1, c->contact_id[i]);
   double x[3] = {0.0, 0.0, 0.0};
   if (rule->aside == NULL) return 0.0;
-  for (int k = 0; k < c->dim; ++k) x[k] = c->x[c->dim * i + k];
+  COPY(x, c->x + c->dim * i, c->dim);
   return quantity_value(&rule->card.value, x, s->t);
 }
 
@@ -85,18 +85,10 @@ static double stress_scale(const reduction *n, const state *s) {
 /* e' E e of a strain; its largest stress into *stress. */
 static double energy_of(const reduction *n, int elem_id, const double *e,
                         double *stress) {
-  double held[6], sum = 0.0;
-  int ns = n->m->ns;
-  const double *E =
-      n->moduli.E + (size_t)(ns * ns) * n->m->elem_section[elem_id];
-  *stress = 0.0;
-  for (int i = 0; i < ns; ++i) {
-    held[i] = 0.0;
-    for (int k = 0; k < ns; ++k) held[i] += E[ns * k + i] * e[k];
-    sum += held[i] * e[i];
-    *stress = fmax(*stress, fabs(held[i]));
-  }
-  return sum;
+  double held[6];
+  element_stress(&n->d, elem_id, e, held);
+  *stress = largest_entry(n->m->ns, held);
+  return dot(n->m->ns, held, e);
 }
 
 status reduction_stress(reduction *n, const state *s) {
@@ -108,7 +100,7 @@ status reduction_stress(reduction *n, const state *s) {
                           n->T));
   for (int e = 0; e < n->msh->n_elem; ++e) {
     double *own = n->strain + ns * e;
-    for (int i = 0; i < ns; ++i) own[i] = 0.0;
+    CLEAR(own, ns);
     if (warm && reduction_material(n, e)->expand.given)
       expansion_strain(&reduction_material(n, e)->expand, n->T[e], n->T0[e],
                        own);
@@ -196,7 +188,8 @@ static status add_rates(reduction *n, const state *s, const omitted *row,
     if (!is_about(n, row, e)) continue;
     if (section_id != n->m->elem_section[e]) {
       section_id = n->m->elem_section[e];
-      PASS(law_sample_at(mat, &law, n->moduli.kin[section_id], s->t, &x));
+      PASS(law_sample_at(&mat->elastic, &law, n->moduli.kin[section_id], s->t,
+                         &x));
     }
     x.p.sigma = n->sigma + (size_t)n->m->ns * e;
     law_rate(&x.p, ei_rate, alpha_rate);

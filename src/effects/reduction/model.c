@@ -51,20 +51,6 @@ double reduction_increments(const step *s, double dt) {
   return s->kind == STEP_STATIC ? 1.0 : ceil(s->total / dt);
 }
 
-void law_sample_free(law_sample *x) { flow_kind_free(&x->kind); }
-
-status law_sample_at(const material *mat, const law_card *law, kinematics kin,
-                     double t, law_sample *x) {
-  static const double zero[FLOW_VALUE_MAX];
-  law_elastic elastic;
-  law_sample_free(x);
-  PASS(law_elastic_read(&mat->elastic, 0.0, kin, &elastic));
-  PASS(flow_new_kind(&x->kind, law, &elastic));
-  PASS(flow_coefficients(&x->kind, t, 0.0, x->value, &x->p));
-  x->p.ei = x->p.alpha = zero;
-  return OK;
-}
-
 /* Each friction rule of the model once. */
 static void each_rule(model *m, void (*change)(friction_rule *rule)) {
   for (int i = 0; i < m->n.contact; ++i) change(&m->contacts[i].friction);

@@ -42,17 +42,6 @@ int reduction_kinematics(const model *m, int material_id);
 /* Increments of a step if each has dt. */
 double reduction_increments(const step *s, double dt);
 
-/* A law without strain at time t under a stress p.sigma that is still to be
- * set, in the place of the one before (all-zero: none). */
-typedef struct law_sample {
-  flow_kind kind;
-  double value[FLOW_VALUE_MAX];
-  law_point p;
-} law_sample;
-status law_sample_at(const material *mat, const law_card *law, kinematics kin,
-                     double t, law_sample *x);
-void law_sample_free(law_sample *x);
-
 /* measure.c */
 const material *reduction_material(const reduction *n, int elem_id);
 /* Stresses of the run into n->sigma: its thermal strains and those of the laws

@@ -28,12 +28,12 @@ static int needed(const option *table) {
 }
 
 const char *law_line_text(const option *table, char *text, size_t size) {
-  size_t used = 0;
   const int n = needed(table);
-  for (int i = 0; table[i].name != NULL && used < size; ++i)
-    used += snprintf(text + used, size - used, i < n ? "%s%s" : " [%s%s]",
-                     i == 0 ? "" : ", ", table[i].name);
-  if (used < size) snprintf(text + used, size - used, " [, temperature]");
+  text[0] = '\0';
+  for (int i = 0; table[i].name != NULL; ++i)
+    text_add(text, size, i < n ? "%s%s" : " [%s%s]", i == 0 ? "" : ", ",
+             table[i].name);
+  text_add(text, size, " [, temperature]");
   return text;
 }
 

@@ -72,6 +72,20 @@ status flow_heat(flow_kind *kind, double temperature) {
   return law_elastic_heat(&kind->elastic, temperature);
 }
 
+void law_sample_free(law_sample *x) { flow_kind_free(&x->kind); }
+
+status law_sample_at(const elastic_table *elastic, const law_card *law,
+                     kinematics kin, double t, law_sample *x) {
+  static const double zero[FLOW_VALUE_MAX];
+  law_elastic e;
+  law_sample_free(x);
+  PASS(law_elastic_read(elastic, 0.0, kin, &e));
+  PASS(flow_new_kind(&x->kind, law, &e));
+  PASS(flow_coefficients(&x->kind, t, 0.0, x->value, &x->p));
+  x->p.ei = x->p.alpha = zero;
+  return OK;
+}
+
 status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p) {
   PASS(flow_heat(kind, temperature));

@@ -62,13 +62,23 @@ void flow_state_copy(const flow *x, const flow_state *from, flow_state *to);
 status flow_heat(flow_kind *kind, double temperature);
 /* A law at a time and temperature, without the state; "value" has space for
  * FLOW_VALUE_MAX coefficients. */
+enum { FLOW_VALUE_MAX = 512 };
 status flow_coefficients(flow_kind *kind, double t, double temperature,
                          double *value, law_point *p);
-enum { FLOW_VALUE_MAX = 512 };
 /* The same at the temperature of a point; ERR_DECK: it is not above absolute
  * zero, which the law counts from. */
 status flow_at_point(flow_kind *kind, double t, double temperature,
                      double *value, law_point *p);
+/* A law without strain at time t under a stress p.sigma that is still to be
+ * set, in the place of the one before (all-zero: none). */
+typedef struct law_sample {
+  flow_kind kind;
+  double value[FLOW_VALUE_MAX];
+  law_point p;
+} law_sample;
+status law_sample_at(const elastic_table *elastic, const law_card *law,
+                     kinematics kin, double t, law_sample *x);
+void law_sample_free(law_sample *x);
 /* Test of a point: 1 if it flows, counted. */
 int flow_goes_on(const flow *x, const law_point *p);
 /* Rates at a state: ei_rate[ns*n], alpha_rate[alpha_at[n]]; *power gets what is

@@ -185,19 +185,21 @@ static void take_nested(const reading *r, const card_options *p, step *s) {
     report_idle(r, "NESTED", "the first step and a .geo in *MESH");
 }
 
-/* 1: the step has one already. */
-static int second_in_step(const reading *r, int given) {
-  if (given)
+/* 1: the step has one already; else it is given, at this place. */
+static int second_in_step(const reading *r, int *given, place *at) {
+  if (*given)
     message_add(r->m->log, P2011, &r->card->at,
                 "a step has one *%s card, this is its second", r->card->name);
-  return given;
+  else
+    *at = r->card->at;
+  return (*given)++;
 }
 
 status apply_solver(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
-  if (second_in_step(r, s->solver_at.file != NULL)) return OK;
-  s->solver_at = r->card->at;
+  int given = s->solver_at.file != NULL;
+  if (second_in_step(r, &given, &s->solver_at)) return OK;
   s->solver.ops = solver_find(p->solver.method);
   s->balanced = p->tol < 0.0;
   s->share = p->solver.share;
@@ -241,9 +243,7 @@ static void take_target(const reading *r, const card_options *p) {
 status apply_accuracy(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
-  if (second_in_step(r, s->accuracy.given)) return OK;
-  s->accuracy.given = 1;
-  s->accuracy.at = r->card->at;
+  if (second_in_step(r, &s->accuracy.given, &s->accuracy.at)) return OK;
   s->accuracy.no_solver = !p->accuracy.solver;
   s->accuracy.mesh = p->accuracy.mesh;
   s->accuracy.time = p->time > 0 || p->accuracy.target > 0.0;
@@ -292,9 +292,7 @@ status apply_print(reading *r) {
 status apply_output(reading *r) {
   const card_options *p = r->param;
   step *s = open_step(r);
-  if (second_in_step(r, s->output.given)) return OK;
-  s->output.given = 1;
-  s->output.at = r->card->at;
+  if (second_in_step(r, &s->output.given, &s->output.at)) return OK;
   s->output.frequency = p->output.hdf5 ? p->frequency : -1;
   s->output.condensed = p->output.condensed == 1 ? p->frequency : -1;
   if (!p->output.hdf5 && p->output.condensed != 1 && p->frequency != 1)
@@ -304,9 +302,7 @@ status apply_output(reading *r) {
 
 status apply_restart(reading *r) {
   step *s = open_step(r);
-  if (second_in_step(r, s->restart.given)) return OK;
-  s->restart.given = 1;
-  s->restart.at = r->card->at;
+  if (second_in_step(r, &s->restart.given, &s->restart.at)) return OK;
   s->restart.frequency = r->param->frequency;
   return OK;
 }

@@ -18,7 +18,7 @@ static void check_whole(const model *m, const char *what, int n, int all) {
 /* Components of *REFERENCE to their places; of u and of the stresses all. */
 static void check_reference(model *m) {
   closed_form *ref = &m->accuracy.ref;
-  int axi = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
+  const int axi = model_is_axisymmetric(m);
   int n_u = 0, n_stress = 0;
   for (EACH(const reference_line, l, ref->line, ref->n)) {
     int at = reference_place(l->name, m->dim, axi);
@@ -61,7 +61,7 @@ static void check_turn(const model *m, int dim, int obstacle_id) {
   const obstacle *o = &m->obstacles[obstacle_id];
   const place *at = &m->moves[obstacle_id].rotate_at;
   if (!o->turns || dim == 3) return;
-  if (m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC)
+  if (model_is_axisymmetric(m))
     message_add(m->log, P2043, at,
                 "*OBSTACLE %s: an axisymmetric model has no displacement "
                 "around its axis that could follow ROTATE",
@@ -75,7 +75,7 @@ static void check_turn(const model *m, int dim, int obstacle_id) {
 
 static void check_torque_axis(const model *m, int dim, const contact *c) {
   if (!c->has_axis || c->axis_of_obstacle || dim == 3) return;
-  if (m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC)
+  if (model_is_axisymmetric(m))
     message_add(m->log, P2037, &c->axis_at,
                 "*CONTACT %s: AXIS counts for plane models and in 3-D only",
                 c->name);
@@ -88,9 +88,9 @@ static void check_torque_axis(const model *m, int dim, const contact *c) {
 /* Options of a friction law that are not for every model. */
 static void check_law(const model *m, const char *contact_name,
                       const friction_rule *rule) {
-  int axisymmetric = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
   if (rule->law == NULL || rule->law->misfit == NULL) return;
-  const char *why = rule->law->misfit(rule->card.param, m->dim, axisymmetric);
+  const char *why =
+      rule->law->misfit(rule->card.param, m->dim, model_is_axisymmetric(m));
   if (why != NULL)
     message_add(m->log, P2045, &rule->at, "*FRICTION, LAW=%s on contact %s: %s",
                 rule->law->name, contact_name, why);
@@ -199,7 +199,7 @@ static void check_locking(const model *m) {
 /* The radius x of an axisymmetric model is not negative. */
 static void check_radius(const model *m, const mesh *msh) {
   static const double rounding = 1e-9; /* of the size of the mesh */
-  if (m->n.section == 0 || m->sections[0].kin != AXISYMMETRIC) return;
+  if (!model_is_axisymmetric(m)) return;
   for (int i = 0; i < msh->n_node; ++i) {
     const double *x = msh->x + (size_t)msh->dim * i;
     if (x[0] >= -rounding * msh->size) continue;
@@ -384,8 +384,7 @@ static void check_goal(const model *m, const mesh *msh, goal_card *g) {
     g->group_id = check_group_of(m, msh, g->group, msh->dim, &g->group_at);
   else if (g->group != NULL)
     g->group_id = check_group(m, msh, g->group, &g->group_at);
-  if (g->quantity == GOAL_SIF && m->n.section > 0 &&
-      m->sections[0].kin == AXISYMMETRIC)
+  if (g->quantity == GOAL_SIF && model_is_axisymmetric(m))
     message_add(m->log, P2024, &g->at,
                 "*GOAL %s: there are no stress intensity factors of "
                 "axisymmetric bodies",

@@ -419,7 +419,7 @@ static void check_axis(const model *m, const mesh *msh, const step *s,
   for (int k = 0; k < g->n_node; ++k) {
     int node = g->node_id[k];
     if (msh->x[(size_t)msh->dim * node] > rounding * msh->size) continue;
-    double u = load_at_node(l, msh, s, node, s->start + s->total);
+    double u = load_at_node(l, msh, s, node, step_end(s));
     if (u == 0.0) continue;
     message_add(m->log, P2059, &l->at,
                 "*BOUNDARY: u_r = %g at node %zu on the axis of symmetry", u,
@@ -488,25 +488,21 @@ static void check_tables(const model *m, const step *s) {
                 "*ACCURACY, TIME=BALANCED: the increments stay those of the "
                 "step, as their error under *WEAR, line %d, is not known",
                 wear->at.line_no);
-  for (int k = 0; k < s->print.n; ++k)
-    if (s->print.requests[k].table == PRINT_WEAR &&
-        model_effect_card(m, "WEAR", -1) == NULL)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, WEAR: no contact has *WEAR");
-    else if (s->print.requests[k].table == PRINT_GOALS && m->n.goal == 0)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, GOALS: there is no *GOAL");
-    else if (s->print.requests[k].table == PRINT_SIF && m->n.crack == 0)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, SIF: there is no *CRACK");
-    else if (s->print.requests[k].table == PRINT_SIF &&
-             m->sections[0].kin == AXISYMMETRIC)
-      message_add(m->log, P2058, &s->print.requests[k].at,
-                  "*PRINT, SIF: there are no factors of axisymmetric bodies");
+  const struct {
+    int table, empty;
+    const char *why;
+  } row[] = {{PRINT_WEAR, wear == NULL, "WEAR: no contact has *WEAR"},
+             {PRINT_GOALS, m->n.goal == 0, "GOALS: there is no *GOAL"},
+             {PRINT_SIF, m->n.crack == 0, "SIF: there is no *CRACK"},
+             {PRINT_SIF, m->n.crack > 0 && model_is_axisymmetric(m),
+              "SIF: there are no factors of axisymmetric bodies"}};
+  for (EACH(const print_request, p, s->print.requests, s->print.n))
+    for (size_t i = 0; i < sizeof row / sizeof *row; ++i)
+      if (p->table == row[i].table && row[i].empty)
+        message_add(m->log, P2058, &p->at, "*PRINT, %s", row[i].why);
 }
 
 void check_no_effect(const model *m, const mesh *msh) {
-  int axisymmetric = m->n.section > 0 && m->sections[0].kin == AXISYMMETRIC;
   for (int i = 0; i < m->n.points; ++i) check_times(m, &m->time.points[i]);
   for (int i = 0; i < m->n.material; ++i) check_material(m, &m->materials[i]);
   for (int i = 0; i < m->n.initial; ++i)
@@ -524,7 +520,7 @@ void check_no_effect(const model *m, const mesh *msh) {
       if (l->kind == LOAD_TEMPERATURE)
         check_heat(m, msh, "TEMPERATURE", l->group_id, &l->at);
       check_z(m, msh, &l->value, load_card(l), &l->at);
-      if (axisymmetric) check_axis(m, msh, s, l);
+      if (model_is_axisymmetric(m)) check_axis(m, msh, s, l);
     }
   }
 }
@@ -611,46 +607,35 @@ static void check_exact(const model *m, int step_id) {
 
 /* The fastest rate of the laws whose Jacobian is the same for ever, 1/s. */
 static status constant_rate(const model *m, double *fastest) {
-  static const double zero[FLOW_VALUE_MAX];
-  ENDS_BY(flow_kind_free) flow_kind kind = {0};
+  static const double zero[6];
+  ENDS_BY(law_sample_free) law_sample x = {0};
   *fastest = 0.0;
   for (int i = 0; i < m->n.section; ++i) {
     const material *mat = &m->materials[m->sections[i].material_id];
-    law_elastic elastic;
-    law_point p;
     double rate;
     if (mat->law.ops == NULL || !is_constant(mat)) continue;
-    PASS(law_elastic_read(&mat->elastic, 0.0, (kinematics)m->sections[i].kin,
-                          &elastic));
-    PASS(flow_new_kind(&kind, &mat->law, &elastic));
-    PASS(flow_coefficients(&kind, 0.0, 0.0, NULL, &p));
-    p.sigma = p.ei = p.alpha = zero;
-    PASS(law_fastest_rate(&p, &rate));
+    PASS(law_sample_at(&mat->elastic, &mat->law, (kinematics)m->sections[i].kin,
+                       0.0, &x));
+    x.p.sigma = zero;
+    PASS(law_fastest_rate(&x.p, &rate));
     *fastest = fmax(*fastest, rate);
-    flow_kind_free(&kind);
   }
   return OK;
 }
 
 /* 1: a mean stress alone makes nothing flow, as far as a shear does. */
 static status keeps_volume(const section *s, const material *mat, int *answer) {
-  static const double zero[FLOW_VALUE_MAX];
-  double value[FLOW_VALUE_MAX], alpha_rate[FLOW_VALUE_MAX], ei_rate[6];
-  ENDS_BY(flow_kind_free) flow_kind kind = {0};
-  law_elastic elastic;
-  law_point p;
-  PASS(law_elastic_read(&mat->elastic, 0.0, (kinematics)s->kin, &elastic));
-  PASS(flow_new_kind(&kind, &mat->law, &elastic));
-  PASS(flow_coefficients(&kind, 0.0, 0.0, value, &p));
-  const double size = 1e-3 * elastic.young;
+  double alpha_rate[FLOW_VALUE_MAX], ei_rate[6];
+  ENDS_BY(law_sample_free) law_sample x = {0};
+  PASS(law_sample_at(&mat->elastic, &mat->law, (kinematics)s->kin, 0.0, &x));
+  const double size = 1e-3 * x.kind.elastic.young;
   const double mean[6] = {size, size, size}, shear[6] = {0, 0, 0, size};
-  p.ei = p.alpha = zero;
-  p.speed = 1.0; /* whatever the temperature */
-  p.sigma = mean;
-  law_rate(&p, ei_rate, alpha_rate);
+  x.p.speed = 1.0; /* whatever the temperature */
+  x.p.sigma = mean;
+  law_rate(&x.p, ei_rate, alpha_rate);
   double swelling = fabs(tensor_trace(ei_rate));
-  p.sigma = shear;
-  law_rate(&p, ei_rate, alpha_rate);
+  x.p.sigma = shear;
+  law_rate(&x.p, ei_rate, alpha_rate);
   *answer = swelling <= 1e-9 * fabs(ei_rate[3]);
   return OK;
 }

@@ -336,18 +336,12 @@ static status carry_choices(const step *old, step *s) {
     s->check = old->check;
   }
   if (!s->accuracy.given) {
-    s->accuracy.no_solver = old->accuracy.no_solver;
-    s->accuracy.mesh = old->accuracy.mesh;
-    s->accuracy.time = old->accuracy.time;
-    s->accuracy.time_balanced = old->accuracy.time_balanced;
-    s->accuracy.time_share = old->accuracy.time_share;
-    s->accuracy.theorems = old->accuracy.theorems;
-    s->accuracy.at = old->accuracy.at;
+    s->accuracy = old->accuracy;
+    s->accuracy.given = 0;
   }
   if (!s->output.given) {
-    s->output.frequency = old->output.frequency;
-    s->output.condensed = old->output.condensed;
-    s->output.at = old->output.at;
+    s->output = old->output;
+    s->output.given = 0;
   }
   if (!s->restart.given) s->restart.frequency = old->restart.frequency;
   for (int i = 0; i < old->print.n && !s->print.given; ++i) {

@@ -7,8 +7,6 @@
 
 #include "effects/rows.h"
 
-#include <stdarg.h>
-
 static const stage mesh_stages[] = {
     STAGE_MESH,     STAGE_SURFACE, STAGE_COUPLING, STAGE_ASSEMBLY,
     STAGE_ORDERING, STAGE_FACTOR,  STAGE_CONDENSE};
@@ -200,17 +198,6 @@ static double last_of(const budget_row *rows, int n, const char *name) {
   return NAN;
 }
 
-static size_t add(char *text, size_t size, size_t used, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
-static size_t add(char *text, size_t size, size_t used, const char *format,
-                  ...) {
-  va_list list;
-  va_start(list, format);
-  int n = used < size ? vsnprintf(text + used, size - used, format, list) : 0;
-  va_end(list);
-  return used + (n > 0 ? n : 0);
-}
-
 static int is_balanced(const model *m) {
   int any = 0;
   for (int i = 0; i < m->n.step; ++i) any |= m->steps[i].balanced;
@@ -218,19 +205,18 @@ static int is_balanced(const model *m) {
 }
 
 /* What the solver does in vain. */
-static size_t add_solver(const job *j, double others, double solver, char *text,
-                         size_t size, size_t used) {
-  if (!(solver >= 0.0 && solver < EXACT * others) || is_balanced(j->m))
-    return used;
+static void add_solver(const job *j, double others, double solver, char *text,
+                       size_t size) {
+  if (!(solver >= 0.0 && solver < EXACT * others) || is_balanced(j->m)) return;
   if (solver > 0.0)
-    used = add(text, size, used, "; the solver is %.0e times more exact",
-               others / solver);
+    text_add(text, size, "; the solver is %.0e times more exact",
+             others / solver);
   else
-    used = add(text, size, used, "; the solver is exact");
-  if (j->o->no_timing || j->m->n.contact == 0) return used;
+    text_add(text, size, "; the solver is exact");
+  if (j->o->no_timing || j->m->n.contact == 0) return;
   double share = timer_cost(STAGE_CONTACT).cpu / timer_cpu();
-  if (share < WORTH) return used;
-  return add(text, size, used, ", TOL=BALANCED saves up to %.0f %% of the CPU",
+  if (share >= WORTH)
+    text_add(text, size, ", TOL=BALANCED saves up to %.0f %% of the CPU",
              ceil(100 * share));
 }
 
@@ -246,34 +232,32 @@ void job_advice(const job *j, char *text, size_t size) {
   const int n = job_budget(j, rows);
   const double in_mesh = last_of(rows, n, "mesh");
   const double in_steps = last_of(rows, n, "steps");
-  size_t used = 0;
   text[0] = '\0';
   if (j->run->n_increment == 0 || isnan(in_mesh)) return;
   if (mesh_is_unseen(j))
-    used = add(text, size, used,
-               "the mesh: the estimate of its error sees nothing, half the "
-               "length of the elements may");
+    text_add(text, size,
+             "the mesh: the estimate of its error sees nothing, half the "
+             "length of the elements may");
   else if (isgreater(in_steps, fmax(in_mesh, NONE)))
-    used =
-        add(text, size, used,
-            "the increments: half their length gives %.2g %% or less of %.2g "
-            "%% for 2 times the CPU",
-            0.5 * in_steps, in_steps);
+    text_add(text, size,
+             "the increments: half their length gives %.2g %% or less of %.2g "
+             "%% for 2 times the CPU",
+             0.5 * in_steps, in_steps);
   else if (in_mesh > NONE)
-    used = add(text, size, used,
-               "the mesh: half the length of the elements gives about %.2g %% "
-               "for up to %.0f times the CPU",
-               0.5 * in_mesh,
-               j->m->dim < 3 ? pow(4.0, GROWTH_2D) : pow(8.0, GROWTH_3D));
+    text_add(text, size,
+             "the mesh: half the length of the elements gives about %.2g %% "
+             "for up to %.0f times the CPU",
+             0.5 * in_mesh,
+             j->m->dim < 3 ? pow(4.0, GROWTH_2D) : pow(8.0, GROWTH_3D));
   else
     return;
-  used = add_solver(j, fmax(in_mesh, in_steps), last_of(rows, n, "solver"),
-                    text, size, used);
+  add_solver(j, fmax(in_mesh, in_steps), last_of(rows, n, "solver"), text,
+             size);
   if (isnan(in_steps) && path_counts(j->m))
-    add(text, size, used, "; %s",
-        j->m->effects & EFFECT_TIME_ERROR
-            ? "the error of the steps is unknown"
-            : "of the steps no error is known without TIME=YES");
+    text_add(text, size, "; %s",
+             j->m->effects & EFFECT_TIME_ERROR
+                 ? "the error of the steps is unknown"
+                 : "of the steps no error is known without TIME=YES");
 }
 
 static void print_advice(const job *j, FILE *f) {

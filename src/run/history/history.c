@@ -109,6 +109,13 @@ int table_is_due(const step *s, int tables, double t, int increment_no,
   return 0;
 }
 
+int table_is_due_now(const run *r, int tables) {
+  const int within = r->course.shadow;
+  return table_is_due(r->step, tables, r->now.t,
+                      within ? -1 : r->at.increment_no,
+                      within ? 0 : r->at.last);
+}
+
 /* ---- tables at time points that no increment ends at -------------------- */
 
 /* The first time point of a table after "after" within the increment. */
@@ -153,24 +160,20 @@ static int stress_is_due(const step *s, double t, int increment_no, int last) {
 /* Where an accepted increment did not converge to its tolerance. */
 static status note_misfit(run *r) {
   char text[400] = "";
-  size_t used = strlen(r->course.note);
   if (r->solving.report.outcome > 0) return OK;
   visco_warn_stuck(r);
   if (r->nodes.n == 0) return OK;
   PASS(verdict_misfit(&r->problem.cp, r->surface, run_rows(r, 0, r->now.uc),
                       run_rows(r, 1, r->now.rc), text, sizeof text));
-  if (text[0] != '\0')
-    snprintf(r->course.note + used, sizeof r->course.note - used, "  %s\n",
-             text);
+  if (text[0] != '\0') RUN_NOTE(r, "  %s\n", text);
   return OK;
 }
 
 /* Where nodes were added in the increment. */
 static void note_nodes(run *r) {
   const int now = reach_count(&r->nodes.reach, r->nodes.n);
-  size_t used = strlen(r->course.note);
   if (r->nodes.n == 0 || now == r->nodes.n_reported) return;
-  snprintf(r->course.note + used, sizeof r->course.note - used,
+  RUN_NOTE(r,
            "  inactive contact nodes touch: solved again with %d nodes, not "
            "%d, of %d\n",
            now, r->nodes.n_reported, r->nodes.n);

@@ -17,6 +17,7 @@ status loop_reject(run *r, int attempt, int increment_no, const char *why);
  */
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last);
+int table_is_due_now(const run *r, int tables); /* of r->now, or a shadow */
 /* 1 if a shorter increment may converge where this attempt did not: the solver
  * does not stagnate, or at a lower residual than before, after an increment
  * that converged. Where there is no equilibrium increments grow. */

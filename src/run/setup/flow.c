@@ -2,6 +2,7 @@
  * Points whose law flows, before anything is solved: inelastic strains, those
  * of the units of their laws; temperatures of the steps in which they flow.
  */
+#include "base/number.h"
 #include "model/facts.h"
 #include "run/visco.h"
 
@@ -55,7 +56,7 @@ static void find_given(const run *r, unsigned char *bits) {
     if (c->type != INITIAL_STRAIN && c->type != INITIAL_INTERNAL) continue;
     const mesh_group *g = &r->msh->group[c->group_id];
     for (int k = 0; k < g->n_item; ++k) {
-      const int point = visco_point_of(v->elem, v->x.n, g->item_id[k]);
+      const int point = number_find(g->item_id[k], v->elem, v->x.n);
       if (point < 0) continue;
       bits[point] |= c->type == INITIAL_STRAIN ? STRAIN_GIVEN : UNITS_GIVEN;
     }

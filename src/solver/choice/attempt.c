@@ -252,8 +252,7 @@ status attempt_run(contact_solver *s, const contact_problem *cp,
   else
     TRY(suit(s, cp, a->ops, &own, &why));
   if (why != NULL) {
-    size_t used = strlen(s->log);
-    snprintf(s->log + used, LOG_SIZE - used, "%s%s: %s", used > 0 ? ", " : "",
+    text_add(s->log, LOG_SIZE, "%s%s: %s", s->log[0] != '\0' ? ", " : "",
              a->ops->name, why);
     goto done;
   }

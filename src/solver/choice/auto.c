@@ -199,16 +199,14 @@ static int allowance(const contact_solver *s, const contact_problem *cp,
 /* Append to the log how an attempt ended. */
 static void note(contact_solver *s, const solver_report *rep,
                  const attempt *a) {
-  size_t used = strlen(s->log);
   int cut = rep->outcome == STOPPED_ITERATIONS && a->max_iter > 0;
   if (rep->outcome == STOPPED_UNFIT) return; /* attempt_run did */
-  snprintf(s->log + used, LOG_SIZE - used, "%s%s%s: %s", used > 0 ? ", " : "",
+  text_add(s->log, LOG_SIZE, "%s%s%s: %s", s->log[0] != '\0' ? ", " : "",
            rep->solver, a->how == ALONG_PATH ? " along a friction path" : "",
            outcome_text(rep->outcome));
-  used = strlen(s->log);
   if (cut)
-    snprintf(s->log + used, LOG_SIZE - used, " (%d of %d allowed)",
-             rep->iterations, a->max_iter);
+    text_add(s->log, LOG_SIZE, " (%d of %d allowed)", rep->iterations,
+             a->max_iter);
 }
 
 /* Significance of a failure; a singular compliance has none, a method that does

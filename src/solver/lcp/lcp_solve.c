@@ -4,6 +4,7 @@
  */
 #include "solver/lcp/lcp_solve.h"
 
+#include "base/text.h"
 #include "contact/contact.h"
 #include "solver/lcp/lcp.h"
 
@@ -523,8 +524,7 @@ typedef struct run {
 } run;
 
 static void note(lcp_verdict *v, const char *who, outcome o) {
-  size_t used = strlen(v->log);
-  snprintf(v->log + used, LCP_LOG - used, "%s%s: %s", used > 0 ? ", " : "", who,
+  text_add(v->log, LCP_LOG, "%s%s: %s", v->log[0] != '\0' ? ", " : "", who,
            outcome_text(o));
   v->method = who;
 }

@@ -66,16 +66,11 @@ void operated_system_fit(operated_system *s) { s->stepped = 0; }
 
 /* ---- friction that follows pressure -------------------------------------- */
 
-/* kappa (I - e e') of a slipping node in space, entry (a, b). */
-static double turning(const pattern *p, int node, int a, int b) {
-  const double *e = p->e + 2 * node;
-  return p->kappa[node] * ((a == b) - e[a] * e[b]);
-}
-
-/* What the factor has less of it. */
+/* What the factor has less of the turning of a slipping node. */
 static double missing(const operated_system *s, const pattern *p, int node,
                       int a, int b) {
-  return turning(p, node, a, b) - s->added[9 * node + 3 * (1 + a) + 1 + b];
+  return pattern_turning(p, node, a, b) -
+         s->added[9 * node + 3 * (1 + a) + 1 + b];
 }
 
 /* Rows that differ from those of the factor: friction follows pressure in them,
@@ -218,7 +213,7 @@ static void wanted(const contact_problem *cp, const operated_rows *rows,
   CLEAR(block, dim * dim);
   for (int a = 0; a < 2 && dim == 3 && rows->p->mode[node] == SLIP; ++a)
     for (int b = 0; b < 2; ++b)
-      block[3 * (1 + a) + 1 + b] = turning(rows->p, node, a, b);
+      block[3 * (1 + a) + 1 + b] = pattern_turning(rows->p, node, a, b);
   for (int a = 0; a < dim && rows->hold != NULL; ++a)
     block[(dim + 1) * a] += rows->hold[dim * node + a];
 }

@@ -88,13 +88,6 @@ static void newton_limit_rows(const newton_system *s, const pattern *p,
   }
 }
 
-/* Entry (a, b) of kappa (I - e e') of a slipping node, times power. */
-static double turning(const newton_system *s, const pattern *p, int node_id,
-                      int a, int b) {
-  const double *e = p->e + 2 * node_id;
-  return s->power * p->kappa[node_id] * ((a == b ? 1.0 : 0.0) - e[a] * e[b]);
-}
-
 static void fill(newton_system *s, double spring) {
   const pattern *p = &s->base;
   size_t ld = p->n_free, m = s->m;
@@ -113,7 +106,7 @@ static void fill(newton_system *s, double spring) {
         int i = p->place[3 * node_id + 1 + a],
             j = p->place[3 * node_id + 1 + b];
         if (i >= 0 && j >= 0)
-          s->K.a[i + ld * j] += turning(s, p, node_id, a, b);
+          s->K.a[i + ld * j] += s->power * pattern_turning(p, node_id, a, b);
       }
   }
 }
@@ -135,7 +128,7 @@ static void newton_row(const newton_system *s, const pattern *p, int dof,
     if (p->closed[n]) cblas_daxpy(m, a, cp->A + stride * n, step, to, 1);
   }
   for (int a = 0; tangents == 2 && a < 2; ++a)
-    to[node_id * 3 + 1 + a] += turning(s, p, node_id, k, a);
+    to[node_id * 3 + 1 + a] += s->power * pattern_turning(p, node_id, k, a);
 }
 
 /* ---- new factor ---------------------------------------------------------- */
@@ -146,9 +139,8 @@ static double newton_cost(int n, int full) {
   return (full ? 2.0 : 1.0) / 3.0 * size * size * size + READ * size * size;
 }
 
-/* The condition number is computed only where the matrix can be singular for
- * valid data. */
-/* Factor of the base; 0: singular to rounding. */
+/* Factor of the base; 0: singular to rounding. The condition number is computed
+ * only where the matrix can be singular for valid data. */
 static int newton_factor(newton_system *s) {
   fill(s, 0.0);
   return dense_factor(&s->K, s->K.full || s->cp->floating);

@@ -35,6 +35,11 @@ typedef struct pattern {
   int *free_id, *place;  /* [m] free unknowns; their place, -1: known */
   int n_free;
 } pattern;
+/* kappa (I - e e') of a slipping node in space, entry (a, b). */
+static inline double pattern_turning(const pattern *p, int node, int a, int b) {
+  const double *e = p->e + 2 * node;
+  return p->kappa[node] * ((a == b) - e[a] * e[b]);
+}
 status pattern_new(int dim, int n, pattern *p);
 
 typedef struct newton_system newton_system;
