@@ -681,6 +681,68 @@ START_TEST(load_that_friction_of_open_nodes_takes_is_right) {
 }
 END_TEST
 
+/* Contact and slight friction alone hold the body upright: pressed by p it is
+ * wider by p nu (1 + nu)/E, soft to that for its bulk modulus. */
+START_TEST(free_body_near_incompressibility_is_right) {
+  static const double nu = 0.4999999;
+  job j;
+  begin(&j, "rect 4 4 1 1 alternate", &as_it_is);
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., %.7f\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.E-4\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 0.01\n"
+            "*PRINT, CONTACT\n*END STEP\n",
+            nu);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "u_t"),
+                            0.01 * nu * (1 + nu) * dat_at(&c, i, "x"), 5e-6);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* In a corner a body near incompressibility creeps for a time dt of many
+ * relaxation times: the force on the floor. */
+static double crept_force(const char *law, const char *dt) {
+  job j;
+  begin(&j, "rect 3 3 1 1", &as_it_is);
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "1000., 0.49999\n*INELASTIC, LAW=%s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD\n%s, %s\n*BOUNDARY\n"
+            "TOP, 1, 2\nRIGHT, 1, 2\n*DSLOAD\nLEFT, P, 10.\n"
+            "*PRINT, TOTALS\n*END STEP\n",
+            law, dt, dt);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s, dt %s: exit %d: %s", law, dt, code, j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  const double force = dat_at(&t, 0, "normal");
+  dat_free(&t);
+  job_end(&j);
+  return force;
+}
+
+/* NORTON with n = 1 is MAXWELL with tau = 1/(3 G A) = 2 (1 + nu)/(3 E A). */
+START_TEST(creep_far_beyond_its_relaxation_is_right) {
+  static const char *const dt[] = {"1.E3", "1.E6"};
+  const double expected =
+      crept_force("MAXWELL, TYPE=DEVIATORIC\n0.99999333333333333", dt[_i]);
+  ck_assert_double_gt(expected, 1.0);
+  ck_assert_double_eq_tol(crept_force("NORTON\n1.E-3, 1.", dt[_i]), expected,
+                          1e-6 * expected);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("rounding");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -703,6 +765,8 @@ int main(void) {
       tests, pressures_below_the_rounding_of_coordinates_are_told, 0, 4);
   tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
+  tcase_add_test(tests, free_body_near_incompressibility_is_right);
+  tcase_add_loop_test(tests, creep_far_beyond_its_relaxation_is_right, 0, 2);
   tcase_add_loop_test(tests, body_heated_in_its_cavity_is_right, 0, 4);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
   tcase_add_loop_test(tests, load_that_friction_of_open_nodes_takes_is_right, 0,
