@@ -392,6 +392,7 @@ static status follow_point(const scheme_call *a, int k, point_work *r,
                            double *D) {
   const size_t ns = a->x->ns, bytes = ns * ns * sizeof *D;
   const double *sigma_old = a->old->sigma + ns * k;
+  const flow_kind *kind = &a->x->kind[a->x->kind_id[k]];
   point_step *l = &r->l;
   PASS(point_step_begin(a->x, a->p, k, a->old, a->now, l));
   const int maps = has_map(a->x, k);
@@ -405,7 +406,7 @@ static status follow_point(const scheme_call *a, int k, point_work *r,
   point_step_place(a->p, sigma_old, l->y, l);
   if (D == NULL) return OK;
   if (maps || rests)
-    memcpy(D, maps ? r->D : l->E, bytes);
+    memcpy(D, maps ? r->D : kind->elastic.E, bytes);
   else
     PASS(point_step_tangent(a->p, l, D));
   return OK;
