@@ -234,17 +234,28 @@ static int add_bad_number(const words *w, const verdict_scene *s) {
   return 0;
 }
 
+static status add_motion(const words *w, const verdict_scene *s, outcome *end) {
+  OWNED_NEW(double, v, s->cp->m);
+  PASS(find_motion(s, v, end));
+  if (*end != STOPPED_RAY) return OK;
+  PASS(add_moving(w, s, v));
+  PASS(add_drive(w, s, v));
+  ADD(w, "; a *BOUNDARY or another load can hold it");
+  return OK;
+}
+
+status verdict_motion(const verdict_scene *s, char *text, size_t size) {
+  outcome end = RUNNING;
+  return add_motion(&(words){text, size}, s, &end);
+}
+
 status verdict_text(const verdict_scene *s, char *text, size_t size) {
   words w = {text, size};
   outcome end = RUNNING;
   if (add_bad_number(&w, s)) return OK;
-  OWNED_NEW(double, v, s->cp->m);
-  PASS(find_motion(s, v, &end));
-  if (end == STOPPED_RAY) {
-    PASS(add_moving(&w, s, v));
-    PASS(add_drive(&w, s, v));
-    ADD(&w, "; a *BOUNDARY or another load can hold it");
-  } else if (end == CONVERGED) {
+  PASS(add_motion(&w, s, &end));
+  if (end == STOPPED_RAY) return OK;
+  if (end == CONVERGED) {
     ADD(&w, "METHOD=LEMKE of *SOLVER finds one to 1E-8 of the loads");
   } else {
     PASS(verdict_misfit(s->cp, s->surface, s->u, s->r, text, size));

@@ -25,6 +25,8 @@ typedef struct verdict_scene {
  * to 2000 contact nodes. Errors: ERR_MEMORY.
  */
 status verdict_text(const verdict_scene *s, char *text, size_t size);
+/* The motion alone, nothing if none is found. */
+status verdict_motion(const verdict_scene *s, char *text, size_t size);
 /* The nodes where the conditions are violated most, as such a clause; nothing
  * if unknown. */
 status verdict_misfit(const contact_problem *cp, const contact_surface *surface,

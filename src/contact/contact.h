@@ -25,6 +25,7 @@ typedef struct body_size {
                           moved, N */
   double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
   double reach;        /* the same of positions that follow from the data */
+  double bent;         /* the same of u without rigid motions */
   double root;         /* largest sqrt(k), sqrt(N/m) */
   double position;     /* largest bound, or place of stick, m */
 } body_size;
@@ -63,7 +64,9 @@ typedef struct contact_problem {
   const unsigned char *held;
   /* NULL: not known; by contact_bodies_new */
   const contact_bodies *bodies;
-  int floating; /* A is singular: contact alone holds the body */
+  int floating;         /* A is singular: contact alone holds the body */
+  int n_motion;         /* of its rigid motions; 0: not known */
+  const double *motion; /* [m*n_motion] orthonormal, or NULL */
   double load;  /* N, final size of the loads: forces below its rounding are
                    zero (contact_scale); 0: not known */
   double moved; /* m, of the last equilibrium: a body that floats may be as

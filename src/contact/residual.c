@@ -109,6 +109,8 @@ static const double FLOOR = 0x1p-14;    /* -, of loads to come, of a fall */
 static const double LEVER = 0x1p10;     /* -, motion over force/stiffness */
 static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale */
 
+enum { MOST_MOTIONS = 48 }; /* whose part of u is known */
+
 /* An iterate and the scales of its errors. */
 typedef struct measure {
   const contact_problem *cp;
@@ -116,6 +118,8 @@ typedef struct measure {
   double scale, largest; /* contact_scale; largest diagonal */
   double forces;         /* largest of a body, N */
   body_size one, *size;  /* of the only body; of all */
+  int n_motion;
+  double motion[MOST_MOTIONS]; /* coefficients of u, m */
 } measure;
 
 /* A node of it. */
@@ -217,6 +221,19 @@ static double load_of(const contact_problem *cp, int node_id,
   return most;
 }
 
+/* Largest displacement of a node without the rigid motions. */
+static double bent_at(const measure *x, int node_id) {
+  double most = 0.0;
+  if (x->n_motion == 0) return 0.0;
+  for (int i = node_id * x->cp->dim; i < (node_id + 1) * x->cp->dim; ++i) {
+    double left = x->u[i];
+    for (int k = 0; k < x->n_motion; ++k)
+      left -= x->motion[k] * x->cp->motion[(size_t)k * x->cp->m + i];
+    most = larger(most, fabs(left));
+  }
+  return most;
+}
+
 static void add_node(measure *x, int node_id) {
   const contact_problem *cp = x->cp;
   const double *v =
@@ -234,6 +251,7 @@ static void add_node(measure *x, int node_id) {
   double moved = fmin(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
   b->fallen = larger(b->fallen, node.c.n * moved);
   b->carried = larger(b->carried, root * largest_of(cp->dim, v));
+  b->bent = larger(b->bent, root * bent_at(x, node_id));
   b->reach = larger(b->reach, reach_of(x, node_id, node.k, &b->position));
   b->root = larger(b->root, root);
 }
@@ -245,11 +263,14 @@ static void measure_set(const contact_problem *cp, double scale,
   x->largest = contact_largest_diagonal(cp);
   for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
     x->size[b] = (body_size){0};
+  x->n_motion = cp->n_motion <= MOST_MOTIONS ? cp->n_motion : 0;
+  for (int k = 0; k < x->n_motion; ++k)
+    x->motion[k] = cblas_ddot(cp->m, cp->motion + (size_t)k * cp->m, 1, u, 1);
   for (int i = 0; i < cp->n; ++i) add_node(x, i);
   for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b) {
     body_size *s = &x->size[b];
     x->forces = larger(x->forces, larger(s->load, s->contact));
-    s->reach = larger(s->reach, 2.0 * s->root * s->position);
+    s->reach = larger(s->reach, 2.0 * s->root * s->position) + s->bent;
   }
 }
 

@@ -230,6 +230,7 @@ static void set_problem(run *r) {
       .floating = condensed_floating(r->c),
       .load = fmax(r->loads.largest, increment_strain_load(r)),
       .moved = largest_entry(r->nodes.n_c, r->old.uc)};
+  r->problem.cp.n_motion = condensed_motions(r->c, &r->problem.cp.motion);
   if (r->nodes.reach.in != NULL)
     reach_cut(&r->nodes.reach, &r->problem.part, &r->problem.cp);
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &r->problem.cp);

@@ -402,6 +402,26 @@ START_TEST(block_between_others_slides_away) {
 }
 END_TEST
 
+/* Clamped by 0.01 between rigid planes, N = 0.01 E/(1 - nu^2) = 11 on each, the
+ * block bears less than 2 mu N = 6.6: more is no proof, since N may grow as it
+ * tilts, but what happens is said. */
+START_TEST(clamped_block_that_slides_away_is_named) {
+  static const char ceiling[] =
+      "*OBSTACLE, NAME=T, TYPE=PLANE\n0., 0.99\n0., -1.\n"
+      "*CONTACT, NAME=T, GROUP=TOP, OBSTACLE=T\n"
+      "*FRICTION, CONTACT=T, LAW=COULOMB\n0.3\n";
+  job j = run_free(0.3, ceiling, "*DSLOAD\nLEFT, TX, 8.\n", 1);
+  ck_assert_ptr_nonnull(
+      strstr(j.errors, "P4040: step 1, increment 2, time 1:"));
+  ck_assert_ptr_nonnull(strstr(j.errors, " slide, driven by *DSLOAD on LEFT"));
+  ck_assert_ptr_nonnull(
+      strstr(j.errors, "the last equilibrium is that of time 0.5\n"));
+  job_end(&j);
+  j = run_free(0.3, ceiling, "*DSLOAD\nLEFT, TX, 6.\n", 0);
+  job_end(&j);
+}
+END_TEST
+
 /* A block that creeps on a floor that rises and is unloaded at once lies on it
  * without force: no node is closed by rounding, whatever modulus and time. */
 START_TEST(touch_without_force_is_open) {
@@ -543,6 +563,7 @@ int main(void) {
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);
   tcase_add_test(tests, block_between_others_slides_away);
+  tcase_add_test(tests, clamped_block_that_slides_away_is_named);
   tcase_add_test(tests, touch_without_force_is_open);
   tcase_add_loop_test(tests, jammed_wedge_stays_where_it_was, 0, 6);
   return unit_run("floating", tests);

@@ -570,7 +570,7 @@ START_TEST(body_heated_in_its_cavity_is_right) {
                                         {"RIGHT", "1., 1.", "-1., 0."},
                                         {"BOTTOM", "0., 0.", "0., 1."},
                                         {"TOP", "1., 1.", "0., -1."}};
-  const double poisson = strtod(nu[_i / 2], NULL);
+  const double poisson = strtod(nu[_i / 2 % 2], NULL);
   job j;
   begin(&j, "rect 3 3 1 1", &as_it_is);
   for (int k = 0; k < 4; ++k)
@@ -587,9 +587,10 @@ START_TEST(body_heated_in_its_cavity_is_right) {
       "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n%s"
       "*TEMPERATURE\nBODY, 100.\n*PRINT, ELEMENTS\n*END STEP\n"
       "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.25, 1.\n"
-      "*TEMPERATURE\nBODY, 0.\n*END STEP\n",
-      nu[_i / 2], _i % 2 == 0 ? "" : walls,
-      _i % 2 == 0 ? "*BOUNDARY\nLEFT, 1\nRIGHT, 1\nBOTTOM, 2\nTOP, 2\n" : "");
+      "*TEMPERATURE\nBODY, %s\n*END STEP\n",
+      nu[_i / 2 % 2], _i % 2 == 0 ? "" : walls,
+      _i % 2 == 0 ? "*BOUNDARY\nLEFT, 1\nRIGHT, 1\nBOTTOM, 2\nTOP, 2\n" : "",
+      _i < 4 ? "0." : "1.E-9");
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   dat t = job_table(&j, "ELEMENTS", 1);
@@ -681,6 +682,86 @@ START_TEST(load_that_friction_of_open_nodes_takes_is_right) {
 }
 END_TEST
 
+/* Contact and slight friction alone hold the body upright: pressed by p it is
+ * wider by p nu (1 + nu)/E, soft to that for its bulk modulus. */
+START_TEST(free_body_near_incompressibility_is_right) {
+  static const double nu = 0.4999999;
+  job j;
+  begin(&j, "rect 4 4 1 1 alternate", &as_it_is);
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1., %.7f\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.E-4\n*STEP\n*QUASISTATIC\n"
+            "0.5, 1.\n*BOUNDARY\nLEFT, 1\n*DSLOAD\nTOP, P, 0.01\n"
+            "*PRINT, CONTACT\n*END STEP\n",
+            nu);
+  int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat c = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < c.n_row; ++i)
+    ck_assert_double_eq_tol(dat_at(&c, i, "u_t"),
+                            0.01 * nu * (1 + nu) * dat_at(&c, i, "x"), 5e-6);
+  dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+#define CORNER "TOP, 1, 2\nRIGHT, 1, 2\n*DSLOAD\nLEFT, P, 10.\n"
+#define PRESSED "LEFT, 1\n*DSLOAD\nTOP, P, 10.\n"
+#define NORTON "NORTON\n1.E-3, 1."
+/* NORTON with n = 1: tau = 1/(3 G A) = 2 (1 + nu)/(3 E A). */
+#define MAXWELL "MAXWELL, TYPE=DEVIATORIC\n0.99999333333333333"
+#define BINGHAM "BINGHAM\n3., 1.E3"
+#define LONG "BACKWARD\n1.E3, 1.E3"
+#define LONGER "BACKWARD\n1.E6, 1.E6"
+
+/* The force on the floor of a body near incompressibility that creeps. */
+static double crept_force(const char *law, const char *visco,
+                          const char *supports) {
+  job j;
+  begin(&j, "rect 4 4 1 1 alternate", &as_it_is);
+  job_write(&j, "pressed.inp",
+            "*MESH, FILE=pressed.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "1000., 0.49999\n*INELASTIC, LAW=%s\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n"
+            "*VISCO, INTEGRATOR=%s\n*BOUNDARY\n%s"
+            "*PRINT, TOTALS\n*END STEP\n",
+            law, visco, supports);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "%s, %s: exit %d: %s", law, visco, code, j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  const double force = dat_at(&t, 0, "normal");
+  dat_free(&t);
+  job_end(&j);
+  return force;
+}
+
+/* Far beyond the relaxation time, and where parts of the body rest. */
+START_TEST(creep_near_incompressibility_is_right) {
+  static const struct {
+    const char *law[2], *visco[2], *supports;
+    double tol;
+  } cases[] = {{{NORTON, MAXWELL}, {LONG, LONG}, CORNER, 1e-6},
+               {{NORTON, MAXWELL}, {LONGER, LONGER}, CORNER, 1e-6},
+               {{NORTON, MAXWELL}, {LONG, LONG}, PRESSED, 1e-6},
+               {{BINGHAM, BINGHAM},
+                {"MIDPOINT\n0.1, 0.5", "HEUN\n0.1, 0.5"},
+                CORNER,
+                1e-2}};
+  double force[2];
+  for (int k = 0; k < 2; ++k)
+    force[k] =
+        crept_force(cases[_i].law[k], cases[_i].visco[k], cases[_i].supports);
+  ck_assert_double_gt(force[1], 1.0);
+  ck_assert_double_eq_tol(force[0], force[1], cases[_i].tol * force[1]);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("rounding");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -703,7 +784,9 @@ int main(void) {
       tests, pressures_below_the_rounding_of_coordinates_are_told, 0, 4);
   tcase_add_test(tests, rounding_may_hide_a_friction_of_next_to_nothing);
   tcase_add_loop_test(tests, nothing_is_told_of_plain_bodies, 0, 2);
-  tcase_add_loop_test(tests, body_heated_in_its_cavity_is_right, 0, 4);
+  tcase_add_test(tests, free_body_near_incompressibility_is_right);
+  tcase_add_loop_test(tests, creep_near_incompressibility_is_right, 0, 4);
+  tcase_add_loop_test(tests, body_heated_in_its_cavity_is_right, 0, 8);
   tcase_add_loop_test(tests, load_that_contact_takes_at_once_is_right, 0, 16);
   tcase_add_loop_test(tests, load_that_friction_of_open_nodes_takes_is_right, 0,
                       6);

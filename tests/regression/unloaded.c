@@ -362,6 +362,28 @@ START_TEST(load_that_is_zero_but_for_rounding_lifts_nothing) {
 }
 END_TEST
 
+/* Near incompressibility a body that is led along above its floor creeps by
+ * rounding, more with each increment: it is no error of the solver. */
+START_TEST(body_led_along_has_no_error_of_its_rounding) {
+  job j = job_begin("led");
+  job_copy(&j, "tests/regression/mesh/square.geo");
+  job_write(&j, "led.inp",
+            "*PARAMETER\nN = 6\n*MESH, FILE=square.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.4999999\n"
+            "*INELASTIC, LAW=MAXWELL, TYPE=DEVIATORIC\n1.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -0.5\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+            "*STEP\n*VISCO, INTEGRATOR=THETA, THETA=0.8\n0.05, 4.\n"
+            "*BOUNDARY\nTOP, 1, 1, \"1.3*sin(t)\"\nTOP, 2, 2, \"0.7*t\"\n"
+            "*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("unloaded");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -380,5 +402,6 @@ int main(void) {
   tcase_add_loop_test(tests, forces_within_the_tolerance_hold_no_body, 0, 4);
   tcase_add_loop_test(tests, load_that_is_zero_but_for_rounding_lifts_nothing,
                       0, 12);
+  tcase_add_test(tests, body_led_along_has_no_error_of_its_rounding);
   return unit_run("unloaded", tests);
 }

@@ -120,7 +120,8 @@ typedef struct law_ops {
   const option *terms;   /* each further line, the same; or NULL */
   int min_term;          /* lines of terms needed */
   int linear;            /* rates linear in (sigma, e^i, alpha): one Jacobian
-                            for all points with the same values */
+                            for all points with the same values; 0: of the
+                            deviator of sigma, without volume */
   int uses_ei;           /* e^i itself enters its rate */
   /* 1: the temperature itself enters the rates of this card; NULL: none do.
    * T_ZERO= of the card is then known to the law. */

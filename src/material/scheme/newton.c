@@ -33,7 +33,7 @@ typedef struct point_step {
   double *y, *old, *f, *trial, *kept; /* [n] e^i and alpha */
   double *M, *X;                      /* [n*n], [n*ns] */
   int *pivot;                         /* [n] */
-  double E[36];                       /* [ns*ns] at the end of the step, Pa */
+  double E[36], bulk;                 /* of point_elasticity(), [ns*ns], Pa */
   law_jacobian j;
   double value[FLOW_VALUE_MAX];
   law_point p;
@@ -64,6 +64,19 @@ static status point_step_new(const flow *x, point_step *l) {
 
 static void point_step_free(point_step *l) { RELEASE(l->work, l->pivot); }
 
+/* The elasticity at the end of the step as l->E + l->bulk m m', m = (1, 1, 1,
+ * 0, ...), with Lame's constants diag(2 G) + lambda m m': near nu = 1/2 the
+ * rounding of the bulk part would hide what flows under a deviator. */
+static void point_elasticity(const flow_kind *kind, point_step *l) {
+  const law_elastic *el = &kind->elastic;
+  const int ns = el->ns;
+  COPY(l->E, el->E, ns * ns);
+  l->bulk = 0.0;
+  if (kind->law->ops->linear || el->plane_stress) return;
+  l->bulk = el->E[1];
+  for (int k = 0; k < 9; ++k) l->E[k % 3 + ns * (k / 3)] -= l->bulk;
+}
+
 /* Point k with its start values; coefficients at the theta-point. */
 static status point_step_begin(const flow *x, const scheme_step *p, int k,
                                const flow_state *old, const flow_state *now,
@@ -73,7 +86,7 @@ static status point_step_begin(const flow *x, const scheme_step *p, int k,
   flow_kind *kind = &x->kind[x->kind_id[k]];
   double T = (1 - th) * old->temperature[k] + th * now->temperature[k];
   PASS(flow_heat(kind, now->temperature[k]));
-  COPY(l->E, kind->elastic.E, x->ns * x->ns);
+  point_elasticity(kind, l);
   PASS(flow_at_point(kind, old->t + th * p->dt, T, l->value, &l->p));
   l->p.dt = p->dt;
   l->ns = x->ns;
@@ -89,7 +102,7 @@ static status point_step_begin(const flow *x, const scheme_step *p, int k,
   return OK;
 }
 
-/* The theta-point of y; sigma_old[ns]. */
+/* The theta-point of y, its stress without the bulk part; sigma_old[ns]. */
 static void point_step_place(const scheme_step *p, const double *sigma_old,
                              const double *y, point_step *l) {
   const double th = p->theta;
@@ -228,12 +241,14 @@ static int point_follow(const scheme_step *p, const double *sigma_old,
   return 0;
 }
 
-/* Newton iteration of one point for l->e, from and into l->y; *solved = 0 if
- * it fails. */
+/* Newton iteration of one point for l->e, from and into l->y, without the
+ * volume that its tolerance leaves; *solved = 0 if it fails. */
 static void point_step_solve(const scheme_step *p, const double *sigma_old,
                              point_step *l, int *solved) {
   if (!point_newton(p, sigma_old, l) && !point_follow(p, sigma_old, l))
     *solved = 0;
+  const double volume = tensor_trace(l->y) - tensor_trace(l->old);
+  for (int i = 0; i < 3 && !l->p.law->ops->linear; ++i) l->y[i] -= volume / 3.0;
 }
 
 /* 1: no rate at the theta-point of the old e^i and alpha, which are then the
@@ -254,7 +269,7 @@ static status point_step_tangent(const scheme_step *p, point_step *l,
     RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < ns; ++i) {
-      double sum = E[i + ns * j];
+      double sum = E[i + ns * j] + (i < 3 && j < 3 ? l->bulk : 0.0);
       for (int q = 0; q < ns; ++q) sum -= E[i + ns * q] * l->X[q + n * j];
       D[i + ns * j] = sum;
     }
@@ -324,7 +339,7 @@ status flow_compliance(const flow *x, const scheme_step *p,
   for (int k = 0; k < x->n; ++k) {
     double size = 0.0, *own = Q + square * k;
     PASS(compliance_at(x, p, k, old, now, &l, own));
-    PASS(energy_size(x->ns, l.E, own, &size));
+    PASS(energy_size(x->ns, x->kind[x->kind_id[k]].elastic.E, own, &size));
     *largest = fmax(*largest, size);
   }
   return OK;
@@ -377,6 +392,7 @@ static status follow_point(const scheme_call *a, int k, point_work *r,
                            double *D) {
   const size_t ns = a->x->ns, bytes = ns * ns * sizeof *D;
   const double *sigma_old = a->old->sigma + ns * k;
+  const flow_kind *kind = &a->x->kind[a->x->kind_id[k]];
   point_step *l = &r->l;
   PASS(point_step_begin(a->x, a->p, k, a->old, a->now, l));
   const int maps = has_map(a->x, k);
@@ -390,7 +406,7 @@ static status follow_point(const scheme_call *a, int k, point_work *r,
   point_step_place(a->p, sigma_old, l->y, l);
   if (D == NULL) return OK;
   if (maps || rests)
-    memcpy(D, maps ? r->D : l->E, bytes);
+    memcpy(D, maps ? r->D : kind->elastic.E, bytes);
   else
     PASS(point_step_tangent(a->p, l, D));
   return OK;
@@ -413,6 +429,8 @@ static status solve_points(const scheme_call *a, point_work *r) {
     COPY(a->now->alpha + x->alpha_at[k], l->y + ns, l->na);
     for (size_t i = 0; i < ns; ++i) elastic[i] = l->e[i] - l->y[i];
     tensor_product(x->ns, l->E, elastic, a->now->sigma + at);
+    for (int i = 0; i < 3; ++i)
+      a->now->sigma[at + i] += l->bulk * tensor_trace(elastic);
   }
   return OK;
 }

@@ -157,6 +157,34 @@ static int stress_is_due(const step *s, double t, int increment_no, int last) {
   return table_is_due(s, ~0, t, increment_no, last);
 }
 
+static verdict_scene scene_of(run *r) {
+  return (verdict_scene){.m = r->m,
+                         .msh = r->msh,
+                         .step = r->step,
+                         .t = r->now.t,
+                         .surface = r->surface,
+                         .cp = &r->problem.cp,
+                         .given = r->problem.given,
+                         .u = run_rows(r, 0, r->now.uc),
+                         .r = run_rows(r, 1, r->now.rc),
+                         .c = r->c};
+}
+
+/* What moves, once a run: neither an equilibrium nor a proof was found. */
+static status tell_motion(run *r) {
+  char why[1024] = "";
+  if (r->course.unsolved > 0 || !r->problem.cp.floating) return OK;
+  const verdict_scene scene = scene_of(r);
+  PASS(verdict_motion(&scene, why, sizeof why));
+  if (why[0] != '\0')
+    message_add(r->m->log, P4040, &r->step->at,
+                "step %d, increment %d, time %g: no equilibrium found: %s; the "
+                "last equilibrium is that of time %g",
+                run_step_id(r) + 1, r->at.increment_no, r->now.t, why,
+                r->old.t);
+  return OK;
+}
+
 /* Where an accepted increment did not converge to its tolerance. */
 static status note_misfit(run *r) {
   char text[400] = "";
@@ -166,7 +194,7 @@ static status note_misfit(run *r) {
   PASS(verdict_misfit(&r->problem.cp, r->surface, run_rows(r, 0, r->now.uc),
                       run_rows(r, 1, r->now.rc), text, sizeof text));
   if (text[0] != '\0') RUN_NOTE(r, "  %s\n", text);
-  return OK;
+  return tell_motion(r);
 }
 
 /* Where nodes were added in the increment. */
@@ -274,16 +302,7 @@ status loop_no_equilibrium(run *r) {
   const outcome o = r->solving.report.outcome;
   const char *tried = contact_solver_log(r->solver);
   const char *const by = tried[0] == '\0' ? "" : "tried ";
-  verdict_scene scene = {.m = r->m,
-                         .msh = r->msh,
-                         .step = r->step,
-                         .t = r->now.t,
-                         .surface = r->surface,
-                         .cp = &r->problem.cp,
-                         .given = r->problem.given,
-                         .u = run_rows(r, 0, r->now.uc),
-                         .r = run_rows(r, 1, r->now.rc),
-                         .c = r->c};
+  const verdict_scene scene = scene_of(r);
   if (o == STOPPED_UNFIT)
     RAISE(ERR_SINGULAR,
           "step %d, time %g: the method cannot treat this problem: %s; use "

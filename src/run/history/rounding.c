@@ -430,8 +430,11 @@ double rounding_strain_left(const run *r) {
   plain.eigen = NULL;
   if (r->strains.visco == NULL) return 0.0;
   const double energy = domain_strain_energy(&plain, r->now.u);
-  const double none =
-      fmax(strains_rounding(r, strains_lost(r)), forces_energy(r, 0.0));
+  const double moved = strains_rounding(r, strains_lost(r)),
+               peak = r->msh->n_node * RUN_CARRIED * RUN_CARRIED *
+                      r->now.peak_energy;
+  const double none = fmax(forces_energy(r, 0.0),
+                           condensed_condition(r->c) * fmax(moved, peak));
   return energy > FAR * none ? energy : 0.0;
 }
 
