@@ -509,9 +509,8 @@ START_TEST(run_without_a_file_begins_anew) {
 }
 END_TEST
 
-/* Temperatures and the mesh of files under the names of before, of the mesh one
- * that gmsh finds: of the step in progress, and
- * of one to come. */
+/* Files under the names of before: temperatures of the step in progress, and of
+ * one to come; the mesh, of a file that gmsh finds. */
 START_TEST(files_are_in_the_seal) {
   static const char *const names[] = {"first.msh", "second.msh"};
   int changes, all;
