@@ -155,6 +155,23 @@ static int read_field(const job *j, const char *name, double *x, int n) {
   return found;
 }
 
+/* The deck is one text of JOB.h5, which has that. */
+static void deck_has(const job *j, const char *words) {
+  char path[128], text[8192] = "";
+  snprintf(path, sizeof path, "%s/%s.h5", j->dir, j->name);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  hid_t set = H5Dopen2(file, "/deck", H5P_DEFAULT);
+  hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+  ck_assert_int_eq(H5Sget_simple_extent_npoints(space), 1);
+  ck_assert_uint_lt(H5Tget_size(type), sizeof text);
+  ck_assert(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0);
+  ck_assert_ptr_nonnull(strstr(text, words));
+  H5Sclose(space);
+  H5Tclose(type);
+  H5Dclose(set);
+  H5Fclose(file);
+}
+
 /* Pulled by 1, the lower half has a Kelvin-Voigt unit: its strain, which is
  * its alpha, is (1 - exp(-1))/500 at t = 6; the upper half has none. */
 START_TEST(fields_of_creep_are_read_back) {
@@ -175,6 +192,7 @@ START_TEST(fields_of_creep_are_read_back) {
             "*OUTPUT, FREQUENCY=0\n*END STEP\n");
   ck_assert_int_eq(job_run(&j, "--no-timing"), 0);
   dat d = job_table(&j, "ELEMENTS", -1);
+  deck_has(&j, "LAW=KELVIN");
   ck_assert_int_eq(read_field(&j, "/fields/ei_yy/00001", ei, MOST), d.n_row);
   ck_assert_int_eq(read_field(&j, "/fields/alpha_2/00001", alpha, MOST),
                    d.n_row);

@@ -4,6 +4,7 @@
  * counted in writes (the run is traced), so that nothing depends on time.
  */
 #include "base/base.h"
+#include "support/folder.h"
 #include "support/small_job.h"
 #include "support/traced.h"
 #include "support/unit.h"
@@ -508,8 +509,8 @@ START_TEST(run_without_a_file_begins_anew) {
 }
 END_TEST
 
-/* Temperatures of a file under the name of before: of the step in progress, and
- * of one to come. */
+/* Files under the names of before: temperatures of the step in progress, and of
+ * one to come; the mesh, of a file that gmsh finds. */
 START_TEST(files_are_in_the_seal) {
   static const char *const names[] = {"first.msh", "second.msh"};
   int changes, all;
@@ -517,12 +518,20 @@ START_TEST(files_are_in_the_seal) {
   edit(&j, "130.D3, 0.2", "130.D3, 0.2\n*EXPANSION\n1.E-5");
   edit(&j, "*BOUNDARY\nTOP, 1, 1, -0.01",
        "*TEMPERATURE, FILE=second.msh\nBODY\n*BOUNDARY\nTOP, 1, 1, -0.01");
+  edit(&j, "FILE=greco.geo", "FILE=outer.geo");
+  job_write(&j, "outer.geo", "Merge StrCat(\"greco\", \".geo\");\n");
+  char *block = file_read("input/greco/greco.geo", NULL);
   for (int k = 0; k < 2; ++k) write_field(&j, names[k], 20);
   ck_assert_int_eq(run_until(&j, nothing, 0, 0, &all), 0);
   ck_assert_int_eq(run_until(&j, nothing, all * 3 / 10, SIGINT, &changes), 130);
   write_field(&j, names[0], 21);
   refused(&j, 2, "*TEMPERATURE, FILE=first.msh");
   write_field(&j, names[0], 20);
+  job_write(&j, "greco.geo", "%s\nDilate {{0, 0, 0}, 2} { Surface{1}; }\n",
+            block);
+  refused(&j, 4, "with another mesh");
+  job_write(&j, "greco.geo", "%s", block);
+  free(block);
   write_field(&j, names[1], 21);
   goes_on(&j, 0, "a file of a later step");
   job_end(&j);

@@ -132,7 +132,8 @@ START_TEST(corner_forces_belong_to_their_contacts) {
 }
 END_TEST
 
-/* Both contacts have all of their face, pressure and zone, corner and all. */
+/* Both contacts have all of their face, nodes, pressure and zone, corner and
+ * all. */
 START_TEST(corner_belongs_to_the_areas_of_both_contacts) {
   job j = run_cards(
       "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
@@ -147,6 +148,7 @@ START_TEST(corner_belongs_to_the_areas_of_both_contacts) {
     ck_assert_double_eq_tol(dat_at(&t, i, "closed_area"), 1.0, 1e-12);
     ck_assert_double_eq_tol(dat_at(&z, i, "extent"), 1.0, 1e-12);
   }
+  ck_assert_double_eq(dat_at(&t, 0, "slip"), dat_at(&t, 1, "slip"));
   ck_assert_double_ge(dat_at(&t, 1, "pressure_max"), 22.0);
   dat_free(&z);
   dat_free(&t);

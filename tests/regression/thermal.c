@@ -157,6 +157,15 @@ START_TEST(held_on_all_sides) {
   all_equal(&confined, "stress_zz", -600.0, 600.0);
   balanced(&confined);
   job_end(&confined);
+  /* Its reactions where no stress is shown: of a quarter of a side. */
+  s.steps = "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nRIGHT, 1\n" HEAT(
+      100.) "*PRINT, REACTIONS\n*OUTPUT, HDF5=NO\n"
+            "*ACCURACY, MESH=NO, SOLVER=NO\n*END STEP\n";
+  job alone = run_scene(&s);
+  dat d = job_table(&alone, "REACTIONS", -1);
+  ck_assert_double_eq_tol(dat_max(&d, "reaction_x"), 150.0, 1e-9);
+  dat_free(&d);
+  job_end(&alone);
 }
 END_TEST
 

@@ -346,6 +346,10 @@ START_TEST(friction_along_a_held_direction_is_told) {
     ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
     ck_told(&j, "P4022", "leans by 0.79 rad from obstacle O", rubs);
     ck_told(&j, "P4022", "at node 2 at (1, 0)", rubs);
+    /* Forces that follow from statics have no stiffness of their own. */
+    char *lst = job_file(&j, "lst");
+    ck_assert_ptr_null(strstr(lst, "no bound"));
+    free(lst);
     job_end(&j);
   }
 }

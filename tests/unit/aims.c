@@ -9,8 +9,10 @@
 #include "support/unit.h"
 
 /* Passes with this result, the target is 1: lengths over those of the mesh, at
- * a corner; the product of its element is "more" times that of others. */
-static double ratio_at(const goal_result *result, int passes, double more) {
+ * a corner, 2 where none is required; the product of its element is "more"
+ * times that of others, each. */
+static double ratio_at(const goal_result *result, int passes, double each,
+                       double more) {
   goal_card goal = {.quantity = GOAL_FORCE, .target = 1.0};
   model m = {.n.goal = 1, .accuracy.goals = &goal};
   mesh *msh = make_grid_2d((int[]){4, 4}, (double[]){1.0, 1.0});
@@ -20,7 +22,7 @@ static double ratio_at(const goal_result *result, int passes, double more) {
   aims *a = NULL;
   for (int k = 0; k < msh->n_elem; ++k) {
     const int *v = msh->elem + 3 * k;
-    product[k] = v[0] == 0 || v[1] == 0 || v[2] == 0 ? 0.3 * more : 0.3;
+    product[k] = v[0] == 0 || v[1] == 0 || v[2] == 0 ? each * more : each;
   }
   ck_assert_int_eq(aims_new(&m, 0, &a), OK);
   for (int k = 0; k < passes; ++k) {
@@ -46,7 +48,7 @@ static double ratio_at(const goal_result *result, int passes, double more) {
 }
 
 static double ratio_of(const goal_result *result, int passes) {
-  return ratio_at(result, passes, 1.0);
+  return ratio_at(result, passes, 0.3, 1.0);
 }
 
 /* |error| + band, the error of the solver, and 0.93 of the target in the place
@@ -83,14 +85,22 @@ START_TEST(sizes_follow_the_errors_of_a_goal) {
 }
 END_TEST
 
+/* The gap alone is in error: what elements have is rounding. */
+START_TEST(products_of_rounding_require_no_sizes) {
+  const goal_result r = {.value = 100.0, .error = 3.0};
+  ck_assert_double_eq_tol(ratio_at(&r, 1, 1e-12, 1.0), 2.0, 1e-12);
+  ck_assert_double_lt(ratio_at(&r, 1, 1e-6, 1.0), 1.0);
+}
+END_TEST
+
 /* Elements without an error become larger, but not in a mesh of the passes
  * whose error is below twice the target. */
 START_TEST(near_the_target_nothing_becomes_coarser) {
   goal_result r = {.value = 100.0, .error = 1.5};
-  ck_assert_double_ge(ratio_at(&r, 1, 0.0), 1.1);
-  ck_assert_double_eq_tol(ratio_at(&r, 2, 0.0), 1.0, 1e-12);
+  ck_assert_double_ge(ratio_at(&r, 1, 0.3, 0.0), 1.1);
+  ck_assert_double_eq_tol(ratio_at(&r, 2, 0.3, 0.0), 1.0, 1e-12);
   r.error = 2.0;
-  ck_assert_double_ge(ratio_at(&r, 2, 0.0), 1.04);
+  ck_assert_double_ge(ratio_at(&r, 2, 0.3, 0.0), 1.04);
 }
 END_TEST
 
@@ -112,5 +122,6 @@ START_TEST(elements_at_a_tip_are_as_long_as_the_target_can_use) {
 END_TEST
 
 UNIT_MAIN("aims", sizes_follow_the_errors_of_a_goal,
+          products_of_rounding_require_no_sizes,
           near_the_target_nothing_becomes_coarser,
           elements_at_a_tip_are_as_long_as_the_target_can_use)

@@ -63,6 +63,7 @@ START_TEST(values_agree_with_c) {
       {"-1<0", 1},
       {"if(x>0,t,2)", T},
       {"if(x<0,t,2)", 2},
+      {"if(-x,t,2)", T},
       {"if(0,1/0,3)", 3},
       {"sin(x)", sin(X)},
       {"COS(x)", cos(X)},

@@ -136,6 +136,10 @@ static const bad_mesh errors[] = {
                      "2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 1 2 4 3\n"),
    "error P3028: 1 element(s) have the nodes of another one of their group: 1 "
    "and 2"},
+  {"thrice.msh", MSH(BODY, SQUARE, "4\n" TWO "3 2 2 2 1 2 3 1\n"
+                     "4 2 2 1 1 3 1 2\n"),
+   "error P3028: 1 element(s) have the nodes of another one of their group: 1 "
+   "and 4"},
   {"no.msh", MSH(BODY, SQUARE, "2\n2 2 2 1 1 1 2 3\n2 2 2 1 1 1 3 4\n"),
    "error P3029: 1 element(s) have the number of another one: 2"},
   {"face.msh", MSH(SIDE, SQUARE, "4\n" TWO "5 1 2 2 1 1 2\n5 1 2 2 1 2 3\n"),
