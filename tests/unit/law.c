@@ -396,6 +396,23 @@ static void check_linear(law_case *c) {
 START_TEST(a_linear_law_is_its_jacobian) { for_all(5, check_linear); }
 END_TEST
 
+/* All others flow under a deviator, and without volume. */
+static void check_deviator(law_case *c) {
+  double out[6 + LAW_ALPHA_MAX], pressed[6 + LAW_ALPHA_MAX];
+  if (c->card.ops->linear) return;
+  rates(c, out);
+  ck_assert_double_le(fabs(out[0] + out[1] + out[2]),
+                      1e-14 * largest(out, c->ns));
+  for (int i = 0; i < 3 && !c->elastic.plane_stress; ++i) c->sigma[i] -= stress;
+  rates(c, pressed);
+  same(c, pressed, out, c->ns + c->n_alpha, 1e-9, "pressure");
+}
+
+START_TEST(a_law_that_is_not_linear_has_no_pressure) {
+  for_all(5, check_deviator);
+}
+END_TEST
+
 static void check_flows(law_case *c) {
   double out[6 + LAW_ALPHA_MAX];
   for (int k = 0; k < 40; ++k) {
@@ -499,4 +516,5 @@ UNIT_MAIN("law", terms_have_no_order, nothing_happens_at_rest,
           fastest_rate_is_the_largest_eigenvalue,
           a_turned_stress_gives_turned_rates, plane_rates_are_those_of_3d,
           lateral_directions_flow_alike, a_linear_law_is_its_jacobian,
+          a_law_that_is_not_linear_has_no_pressure,
           a_law_flows_where_a_rate_is_not_zero, a_trial_law_passes)
