@@ -259,26 +259,28 @@ START_TEST(static_problem_slips_from_the_origin) {
 END_TEST
 
 /* The way slipped is the sum of the slips of all increments that touch, also
- * where the supports change and the contact surface is made again. */
+ * where the supports change and the contact surface is made again, with a node
+ * more. */
 START_TEST(slip_distance_goes_on_with_other_supports) {
   job j = run_cards(
       "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
       "*CONTACT, NAME=F, GROUP=BOTTOM, OBSTACLE=O\n"
       "*FRICTION, CONTACT=F, LAW=COULOMB\n0.4\n"
       "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nTOP, 2, 2, -0.01\n"
-      "TOP, 1, 1, 0.02\n*PRINT, CONTACT\n*END STEP\n"
+      "TOP, 1, 1, 0.02\nLEFT, 2, 2\n*PRINT, CONTACT\n*END STEP\n"
       "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY, OP=NEW\nTOP, 1, 1, 0.03\n"
       "*DSLOAD\nTOP, P, 10.\n*END STEP\n",
       0);
   double way[32] = {0};
   for (int k = 0; k < 4; ++k) {
     dat c = job_table(&j, "CONTACT", k);
-    ck_assert_int_le(c.n_row, 32);
+    ck_assert_int_eq(c.n_row, k < 2 ? 4 : 5);
     for (int i = 0; i < c.n_row; ++i) {
-      if (dat_at(&c, i, "pressure") > 0) way[i] += fabs(dat_at(&c, i, "slip"));
-      ck_assert_double_eq_tol(dat_at(&c, i, "slip_distance"), way[i], 1e-12);
+      double *own = &way[(int)dat_at(&c, i, "node_no") % 32];
+      if (dat_at(&c, i, "pressure") > 0) *own += fabs(dat_at(&c, i, "slip"));
+      ck_assert_double_eq_tol(dat_at(&c, i, "slip_distance"), *own, 1e-12);
     }
-    if (k == 1) ck_assert_double_ge(way[1], 0.005);
+    if (k == 1) ck_assert_double_ge(way[2], 0.002);
     dat_free(&c);
   }
   job_end(&j);

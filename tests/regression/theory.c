@@ -283,6 +283,20 @@ START_TEST(two_contacts_have_rows_of_their_own) {
 }
 END_TEST
 
+/* Friction that vanishes at the last nodes of a contact is friction. */
+START_TEST(friction_of_a_part_has_a_limit) {
+  static const char cards[] =
+      "*FRICTION, CONTACT=FOOT, LAW=COULOMB\n\"if(x < 20, 0.02, 0)\"\n"
+      "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1, 1, -0.01\n"
+      "TOP, 2, 2, -0.02\n*ACCURACY, THEORY=YES\n*END STEP\n";
+  job j = run_text(4, cards, "");
+  ck_assert_double_eq_tol(result(&j, "mu_unique", 0) * result(&j, "factor", 0),
+                          0.02, 1e-9);
+  ck_assert_int_eq(count(&j, "lst", "\n  FOOT  "), 1);
+  job_end(&j);
+}
+END_TEST
+
 /* ---- Theorem 3.2 -------------------------------------------------------- */
 
 /* The block of 4 x 4 squares pressed and pushed, then let creep. */
@@ -580,7 +594,7 @@ END_TEST
 UNIT_MAIN("theory, whole runs", greco_has_the_guaranteed_limits_of_the_table,
           greco_contracts_as_measured_elsewhere, triangle_gives_both_limits,
           bounds_hold_at_every_increment, average_raises_the_guaranteed_limit,
-          two_contacts_have_rows_of_their_own,
+          two_contacts_have_rows_of_their_own, friction_of_a_part_has_a_limit,
           stress_contracts_with_the_rate_of_a_bar,
           rates_beside_a_group_that_expands,
           closed_contact_makes_the_stress_depend_on_strains,

@@ -102,7 +102,7 @@ static status relaxed_law(const material *mat, kinematics kin, double *R,
   *time = 0.0;
   if (mat->law.ops->relaxed == NULL) return OK;
   PASS(law_sample_at(&mat->elastic, &mat->law, kin, 0.0, &x));
-  *time = mat->law.ops->relaxed(&x.p, R) / x.p.speed;
+  *time = mat->law.ops->relaxed(&x.p, R);
   return OK;
 }
 
