@@ -207,8 +207,8 @@ START_TEST(rate_is_that_of_the_worst_pass) {
 END_TEST
 
 /* Two nodes that slip towards each other: the rate is that of the largest
- * eigenvalue of -mu A_nt inv(A_tt) e. */
-START_TEST(rate_of_two_nodes_is_an_eigenvalue) {
+ * eigenvalue of -mu A_nt inv(A_tt) e, times the size of A_nt. */
+static void check_two_nodes(double size, double expected) {
   static const double nt[2][2] = {{-0.8, 0.3}, {0.2, 0.5}};
   static const double tt[2][2] = {{2.0, -0.6}, {-0.6, 3.0}};
   static const double e[] = {1.0, -1.0}, mu = 0.5;
@@ -221,7 +221,8 @@ START_TEST(rate_of_two_nodes_is_an_eigenvalue) {
     c.u[2 * i + 1] = -0.1 * e[i];
     for (int k = 0; k < 2; ++k) {
       c.A[2 * i + 1 + 4 * (2 * k + 1)] = tt[i][k];
-      c.A[2 * i + 4 * (2 * k + 1)] = c.A[2 * k + 1 + 4 * 2 * i] = nt[i][k];
+      c.A[2 * i + 4 * (2 * k + 1)] = c.A[2 * k + 1 + 4 * 2 * i] =
+          size * nt[i][k];
     }
   }
   const double det = tt[0][0] * tt[1][1] - tt[0][1] * tt[0][1];
@@ -233,8 +234,16 @@ START_TEST(rate_of_two_nodes_is_an_eigenvalue) {
   const double half = 0.5 * (T[0][0] + T[1][1]);
   const double root = sqrt(half * half - T[0][0] * T[1][1] + T[0][1] * T[1][0]);
   ck_assert_int_eq(contraction_limit(&c.cp, c.u, c.r, &limit), OK);
-  ck_assert_double_eq_tol(limit, fabs(half) + root, 1e-9);
+  ck_assert_double_eq_tol(limit, expected * (fabs(half) + root),
+                          1e-9 * expected + DBL_MIN);
   case_free(&c);
+}
+
+/* A product of the size of its rounding contracts to nothing. */
+START_TEST(rate_of_two_nodes_is_an_eigenvalue) {
+  check_two_nodes(1.0, 1.0);
+  check_two_nodes(0x1p-40, 0x1p-40);
+  check_two_nodes(0x1p-56, 0.0);
 }
 END_TEST
 
