@@ -352,11 +352,11 @@ static double merit(const auglag_run *s) {
   return sum;
 }
 
-/* 1: |Phi| falls below the reference, by a step of this length. Where contact
- * alone holds the body a motion that no force resists leaves |Phi| as it is
- * until a state changes. */
-static int step_is_short(auglag_run *s, double a, double now,
-                         double reference) {
+/* 1: a step of this length brings |Phi| below the reference; or leaves it there
+ * with all states, as a rigid motion does of a body that contact alone holds.
+ */
+static int step_is_accepted(auglag_run *s, double a, double now,
+                            double reference) {
   if (now <= (1.0 - DESCENT * a) * reference) return 1;
   return s->cp->floating && now <= (1.0 + LEVEL) * reference &&
          auglag_turned(s, 0) == 0;
@@ -369,7 +369,7 @@ static double shorten(auglag_run *s, double reference) {
   auglag_evaluate(s, s->w->y);
   now = merit(s);
   for (int k = 0; k < SHORTENINGS; ++k) {
-    if (step_is_short(s, a, now, reference)) break;
+    if (step_is_accepted(s, a, now, reference)) break;
     auglag_move(s, -0.5 * a);
     a *= 0.5;
     auglag_evaluate(s, s->w->y);
