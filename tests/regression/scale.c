@@ -182,7 +182,6 @@ START_TEST(motions_and_strains_beyond_the_range_are_no_answer) {
       "*BOUNDARY\nRIGHT, 1\nTOP, 1, 1, \"%s*t\"\n"};
   static const char *const sizes[] = {"1E90", "1E140", "1E155", "1E165",
                                       "1E290"};
-  int refused = 0;
   for (int k = 0; k < 4 * 5; ++k) {
     job j = job_begin("range");
     char card[100];
@@ -199,8 +198,10 @@ START_TEST(motions_and_strains_beyond_the_range_are_no_answer) {
               "*PRINT, CONTACT, ENERGY, NODES, ELEMENTS\n*END STEP\n",
               card);
     int code = job_run(&j, "");
-    ck_assert_msg(code == 6 || (code == 0 && k % 5 < 2), "%s: exit %d: %s",
-                  card, code, j.errors);
+    /* without a force of contact rounding may decide which gaps are open */
+    const int has = k % 5 < 2, pressed = k / 5 == 1 || k / 5 == 2;
+    ck_assert_msg((code == 6 && !(has && pressed)) || (code == 0 && has),
+                  "%s: exit %d: %s", card, code, j.errors);
     const char *says = strstr(j.errors, "protis: error: ");
     ck_assert_msg(code == 0 || strstr(says, "range of the numbers") ||
                       strstr(says, "rounding leaves no correct digit"),
@@ -212,13 +213,11 @@ START_TEST(motions_and_strains_beyond_the_range_are_no_answer) {
     char *text = job_file(&j, "dat");
     ck_assert_ptr_null(strstr(text, "NaN"));
     ck_assert_ptr_null(strstr(text, "Inf"));
-    refused += code == 6;
     free(text);
     /* strains and temperatures that no card gives are not seen ahead */
     if (k / 5 != 2 && k % 5 > 2) ck_assert_int_eq(job_run(&j, "--check"), 6);
     job_end(&j);
   }
-  ck_assert_int_lt(refused, 15);
 }
 END_TEST
 
