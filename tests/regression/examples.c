@@ -217,6 +217,146 @@ static void check_xml(const job *j, const char *path) {
   free(text);
 }
 
+/* Over time: against closed forms, and ordinary differential equations solved
+ * by SciPy to 1e-8 or better. */
+/* First row of table number k. */
+static double first_of(const job *j, const char *table, int k,
+                       const char *column) {
+  dat d = job_table(j, table, k);
+  double value = dat_at(&d, 0, column);
+  dat_free(&d);
+  return value;
+}
+
+/* Half-width of the contact, a^2 = 4 P R (1 + t/tau)/(pi E*), 40 increments of
+ * 0.25 after the press. */
+static void lee_radok(const job *j) {
+  static const struct {
+    int table;
+    double a;
+  } at[] = {
+      {1, 0.1141700}, {4, 0.1318321652}, {8, 0.1522266722}, {40, 0.2636643304}};
+  for (size_t i = 0; i < sizeof at / sizeof *at; ++i)
+    ck_assert_double_eq_tol(first_of(j, "ZONES", at[i].table, "x_to"), at[i].a,
+                            0.01 * at[i].a);
+}
+
+/* Steady stresses of a power law at every radius; their scale is p. */
+static void steady_tube(const job *j, double n) {
+  dat d = job_table(j, "ELEMENTS", -1);
+  const double p = 100, down = pow(2, 2 / n) - 1;
+  for (int i = 0; i < d.n_row; ++i) {
+    double power = pow(2 / dat_at(&d, i, "r"), 2 / n);
+    double rr = -p * (power - 1) / down;
+    double tt = p * (1 - (1 - 2 / n) * power) / down;
+    ck_assert_double_eq_tol(dat_at(&d, i, "stress_rr"), rr, 0.01 * p);
+    ck_assert_double_eq_tol(dat_at(&d, i, "stress_tt"), tt, 0.01 * p);
+    ck_assert_double_eq_tol(dat_at(&d, i, "stress_zz"), 0.5 * (rr + tt),
+                            0.01 * p);
+  }
+  ck_assert_int_gt(d.n_row, 79);
+  dat_free(&d);
+}
+
+static void norton_ring(const job *j) { steady_tube(j, 5); }
+
+static void norton_ring_3(const job *j) { steady_tube(j, 3); }
+
+/* 80 increments a cycle: peaks of the first and the tenth, and ends. */
+static void chaboche_cycle(const job *j) {
+  static const struct {
+    int table;
+    double stress, p;
+  } at[] = {{19, 158.206082382848, 0.00341793917617152},
+            {59, -173.5536836491167, 0.010170287760614367},
+            {79, 95.7920336668121, 0.012547822224613},
+            {339, 177.70981177721313, 0.05612988793031968},
+            {779, -179.04055116891456, 0.12758889382413002},
+            {799, 107.33080676002308, 0.12979617764350623}};
+  double high = 0, low = 0;
+  for (size_t i = 0; i < sizeof at / sizeof *at; ++i) {
+    ck_assert_double_eq_tol(first_of(j, "ELEMENTS", at[i].table, "stress_yy"),
+                            at[i].stress, 1e-3 * 180);
+    ck_assert_double_eq_tol(first_of(j, "ELEMENTS", at[i].table, "alpha_1"),
+                            at[i].p, 1e-3 * at[i].p);
+  }
+  for (int k = 720; k < 800; ++k) {
+    double stress = first_of(j, "ELEMENTS", k, "stress_yy");
+    high = fmax(high, stress), low = fmin(low, stress);
+  }
+  ck_assert_double_eq_tol(high, 184.34035916957623, 1e-3 * 180);
+  ck_assert_double_eq_tol(low, -184.4860144136457, 1e-3 * 180);
+}
+
+enum { PERIOD = 64, PERIODS = 20 };
+
+/* Largest change of the pressure from a period to the next. */
+static double change(const double *f, int period) {
+  double largest = 0;
+  for (int i = 1; i <= PERIOD; ++i)
+    largest = fmax(largest,
+                   fabs(f[period * PERIOD + i] - f[(period - 1) * PERIOD + i]));
+  return largest;
+}
+
+/* What differs from the cycle falls by exp(-x) in a period, x the integral of
+ * 1/tau over the time of contact, 0.52828 of it: 0.3665. The cycle counts as
+ * reached at 1e-6 of the largest pressure; it is that of SciPy. */
+static void periodic_viscous(const job *j) {
+  double f[PERIODS * PERIOD + 1] = {0}, largest = 0;
+  int reached = 0, open = 0;
+  for (int k = 1; k <= PERIODS * PERIOD; ++k) {
+    f[k] = first_of(j, "TOTALS", k - 1, "normal");
+    if (k <= (PERIODS - 1) * PERIOD) continue;
+    largest = fmax(largest, f[k]);
+    open += f[k] == 0;
+  }
+  for (int n = 1; n < PERIODS && reached == 0; ++n)
+    if (change(f, n) <= 1e-6 * largest) reached = n;
+  ck_assert_int_ge(reached, 13);
+  ck_assert_int_le(reached, 16);
+  ck_assert_double_eq_tol(change(f, 9) / change(f, 8), 0.3665, 0.02 * 0.3665);
+  ck_assert_double_eq_tol(largest, 3.2950371, 1e-3 * 3.3);
+  ck_assert_double_eq_tol(f[19 * PERIOD + PERIOD / 2], 0.7856917309,
+                          1e-3 * 3.3);
+  ck_assert_double_eq_tol(f[19 * PERIOD + 3 * PERIOD / 4], 3.2171948813,
+                          1e-3 * 3.3);
+  ck_assert_double_eq_tol(open / (double)PERIOD, 0.47172, 1.0 / PERIOD);
+}
+
+/* Stress left in the middle of the strip over its height, profile.txt. */
+static void tempered_strip(const job *j) {
+  double y[64], stress[64], scale = 0;
+  int n = 0;
+  char text[96];
+  FILE *file = fopen("input/tempered_strip/profile.txt", "r");
+  ck_assert_ptr_nonnull(file);
+  while (n < 64 && fgets(text, sizeof text, file) != NULL)
+    if (text[0] != '#' && sscanf(text, "%lf %lf", &y[n], &stress[n]) == 2) ++n;
+  fclose(file);
+  ck_assert_int_eq(n, 41);
+  for (int i = 0; i < n; ++i) scale = fmax(scale, fabs(stress[i]));
+  dat d = job_table(j, "ELEMENTS", -1);
+  for (int i = 0; i < d.n_row; ++i) {
+    double at = dat_at(&d, i, "y") * (n - 1);
+    int k = (int)at;
+    double expected = stress[k] + (at - k) * (stress[k + 1] - stress[k]);
+    ck_assert_double_eq_tol(dat_at(&d, i, "stress_xx"), expected, 0.01 * scale);
+  }
+  ck_assert_int_ge(d.n_row, 40);
+  dat_free(&d);
+}
+
+static const struct {
+  const char *deck;
+  void (*check)(const job *j);
+} over_time[] = {
+    {"norton_ring", norton_ring},
+    {"chaboche_cycle", chaboche_cycle},
+    {"periodic_viscous", periodic_viscous},
+    {"tempered_strip", tempered_strip},
+};
+
 /* Run one deck (path without .inp) and compare its lines. */
 static void run_deck(const char *path, int n, const line *lines) {
   const char *name = strrchr(path, '/') + 1;
@@ -235,6 +375,8 @@ static void run_deck(const char *path, int n, const line *lines) {
     ++compared;
   }
   ck_assert_msg(compared > 0, "no line for %s in reference.txt", path);
+  for (size_t k = 0; k < sizeof over_time / sizeof *over_time; ++k)
+    if (strcmp(over_time[k].deck, name) == 0) over_time[k].check(&j);
   job_end(&j);
 }
 
@@ -265,4 +407,28 @@ START_TEST(every_example_gives_the_values_of_its_table) {
 }
 END_TEST
 
-UNIT_MAIN("examples", every_example_gives_the_values_of_its_table)
+/* With other numbers than in the table. */
+static void run_other(const char *name, const char *words,
+                      void (*check)(const job *j)) {
+  char deck[96];
+  job j = job_begin(name);
+  snprintf(deck, sizeof deck, "input/%s/%s", name, name);
+  int code = job_run_deck(&j, deck, words);
+  ck_assert_msg(code == 0, "%s: exit %d: %s", name, code, j.errors);
+  check(&j);
+  job_end(&j);
+}
+
+START_TEST(half_width_grows_like_the_compliance) {
+  run_other("lee_radok", "", lee_radok);
+}
+END_TEST
+
+START_TEST(tube_of_another_power_law_becomes_steady) {
+  run_other("norton_ring", "-D EXPONENT=3 -D A=1E-11", norton_ring_3);
+}
+END_TEST
+
+UNIT_MAIN("examples", every_example_gives_the_values_of_its_table,
+          half_width_grows_like_the_compliance,
+          tube_of_another_power_law_becomes_steady)
