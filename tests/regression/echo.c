@@ -151,7 +151,7 @@ static const example examples[] = {
     {"input/greco", "greco", "greco.geo", "-D N=8 -D SIDE=100"},
     {"input/lying_block", "lying_block", "lying_block.geo", "-D N=4"},
     {"input/lying_block", "lying_block_3d", "lying_block_3d.geo", ""},
-    {"input/block_shear_3d", "block_shear_3d", "block_shear_3d.geo", ""},
+    {"input/block_shear_3d", "block_shear_3d", "block_shear_3d.geo", "-D N=4"},
     {"input/hertz_line", "disc", "disc.geo", ""},
     {"input/hertz_line", "hertz_line_friction", "hertz_line.geo", ""},
     {"input/hertz_sphere", "hertz_sphere", "hertz_sphere.geo", ""}};
