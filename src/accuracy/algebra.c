@@ -79,7 +79,8 @@ static int admissible(const contact_problem *cp, const pair *p) {
   return 1;
 }
 
-static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding */
+/* -, condition, or component of a motion, that is rounding */
+static const double NO_LEVER = 0x1p-44;
 
 /* y of G y = b in place of b[k]; 0: some motion has no force against it, or
  * only one with a lever arm of rounding. root[5 k], pivot[2 k] are workspace.
@@ -117,9 +118,11 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
   PASS_NEW_ALL(OF(Z, (size_t)m * k), OF(G, (size_t)k * k), OF(y, k),
                OF(root, 5 * k), OF(pivot, 2 * k));
   for (int c = 0; c < k; ++c) {
+    const double *motion = inverse->kernel + (size_t)m * c;
+    const double least = NO_LEVER * largest_entry(m, motion);
     double *z = Z + (size_t)m * c;
     for (int dof = 0; dof < m; ++dof)
-      z[dof] = slack(cp, p, dof) * inverse->kernel[(size_t)m * c + dof];
+      if (fabs(motion[dof]) > least) z[dof] = slack(cp, p, dof) * motion[dof];
     follow_limit(cp, p, z);
   }
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1.0,

@@ -547,6 +547,61 @@ START_TEST(jammed_wedge_stays_where_it_was) {
 }
 END_TEST
 
+/* Columns of two cells, their inner side but the last cracked; the groups FOOT,
+ * SIDE, LINE, BODY. */
+static void write_cracked(const job *j, int columns) {
+  char text[4000] = "", *end = text;
+  const int n = columns + 1;
+#define ADD(...) end += sprintf(end, __VA_ARGS__)
+  for (int k = 0; k < 3 * n; ++k)
+    ADD("%d %g %g 0\n", k + 1, 0.37 * (k % n),
+        0.3 * (k / n) + (k / n == 1 ? 0.01 * (k * k % 7) : 0));
+  ADD("$EndNodes\n$Elements\n%d\n", 6 * columns + 1);
+  for (int k = 1; k <= columns; ++k) ADD("%d 1 2 1 1 %d %d\n", k, k, k + 1);
+  for (int k = 0; k < 2; ++k)
+    ADD("%d 1 2 2 2 %d %d\n", columns + 1 + k, k * n + 1, k * n + n + 1);
+  for (int k = 1; k < columns; ++k)
+    ADD("%d 1 2 3 3 %d %d\n", columns + 2 + k, n + k, n + k + 1);
+  for (int k = 0; k < 2 * columns; ++k) {
+    const int a = k / columns * n + k % columns + 1, b = a + n + 1;
+    ADD("%d 2 2 4 4 %d %d %d\n", 2 * columns + 2 * k + 2, a, a + 1, b);
+    ADD("%d 2 2 4 4 %d %d %d\n", 2 * columns + 2 * k + 3, a, b, b - 1);
+  }
+#undef ADD
+  job_write(j, "cracked.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n"
+            "1 1 \"FOOT\"\n1 2 \"SIDE\"\n1 3 \"LINE\"\n2 4 \"BODY\"\n"
+            "$EndPhysicalNames\n$Nodes\n%d\n%s$EndElements\n",
+            3 * n, text);
+}
+
+/* A body that lies on a floor is raised, and left there by the floor and by its
+ * weight: its crack, which does not move against itself, has no part in that.
+ */
+START_TEST(cracked_body_that_is_left_stays) {
+  for (int columns = 5; columns <= 8; ++columns) {
+    job j = job_begin("cracked");
+    write_cracked(&j, columns);
+    job_write(&j, "cracked.inp",
+              "*MESH, FILE=cracked.msh\n*MATERIAL, NAME=M\n*ELASTIC\n"
+              "1000., 0.3\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*AMPLITUDE, NAME=UP\n0., 0., 1., 1., 2., 0.\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE, AMPLITUDE=UP\n0., 0.\n0., 1.\n"
+              "MOVE, 0., 0.26\n*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+              "*CRACK, NAME=SLIT, GROUP=LINE\n*STEP\n*QUASISTATIC\n1., 2.\n"
+              "*BOUNDARY\nSIDE, 1\n*DLOAD\nBODY, BY, \"-(t < 1.5)\"\n"
+              "*PRINT, NODES, FREQUENCY=0\n*END STEP\n");
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat d = job_table(&j, "NODES", -1);
+    for (int i = 0; i < d.n_row; ++i)
+      ck_assert_double_eq_tol(dat_at(&d, i, "u_y"), 0.26, 2e-3);
+    dat_free(&d);
+    job_end(&j);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("floating");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -561,6 +616,7 @@ int main(void) {
   tcase_add_test(tests, body_on_one_face_is_lifted);
   tcase_add_test(tests, free_motions_are_named);
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
+  tcase_add_test(tests, cracked_body_that_is_left_stays);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);
   tcase_add_test(tests, block_between_others_slides_away);
   tcase_add_test(tests, clamped_block_that_slides_away_is_named);

@@ -477,7 +477,9 @@ START_TEST(order_of_materials_changes_no_estimate) {
 END_TEST
 
 /* A uniform pressure, by means that an end of the surface cuts, that are
- * shorter than an edge, off the surface, and of two thicknesses. */
+ * shorter than an edge, off the surface, and of two thicknesses; a node, or an
+ * end of the surface, at the very radius counts as beyond it, whatever rounding
+ * says of 0.1. */
 START_TEST(means_of_a_pressure_lie_on_its_surface) {
   static const char *cards =
       "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
@@ -493,6 +495,12 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
       "1.5, 0.\n"
       "*GOAL, NAME=OFF, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.5\n"
       "2., 1.\n"
+      "*GOAL, NAME=EDGE, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.1\n"
+      "1.3, 0.\n"
+      "*GOAL, NAME=TWO, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.2\n"
+      "1.3, 0.\n"
+      "*GOAL, NAME=END, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.3\n"
+      "3.7, 0.\n"
       "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 10.\n"
       "*PRINT, GOALS\n";
   job j = job_begin("block");
@@ -503,6 +511,9 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
   ck_assert(has_verdict(&j, "SHORT", "no_zone"));
   ck_assert(has_verdict(&j, "FEW", "few_nodes"));
   ck_assert(has_verdict(&j, "OFF", "no_zone"));
+  ck_assert(has_verdict(&j, "EDGE", "few_nodes"));
+  ck_assert(has_verdict(&j, "TWO", "reliable"));
+  ck_assert(has_verdict(&j, "END", "reliable"));
   for (int k = 0; k < 3; k += 2)
     ck_assert_double_eq_tol(told_of(&j, k).value, 10.0, 0.05);
   write_block(&j, 0.1, ", THICKNESS=2.", cards);

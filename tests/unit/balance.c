@@ -153,6 +153,22 @@ START_TEST(open_body_cannot_be_balanced) {
 }
 END_TEST
 
+/* The only force is along a motion by rounding alone: none is made of it. */
+START_TEST(lever_of_rounding_is_none) {
+  scene s = scene_new(0.0, 1);
+  double along[M];
+  int done = 1;
+  for (int i = 0; i < M; ++i) along[i] = i % 2 == 1 ? 1.0 : 1e-17 * (i + 1);
+  s.inverse.n_kernel = 1;
+  s.inverse.kernel = along;
+  for (int i = 0; i < NODES; ++i) s.c.g0[i] = s.p.q[2 * i + 1] = 0.0;
+  disturb(&s, 1e-20, 5);
+  ck_assert_int_eq(pair_balance(&s.c.cp, &s.inverse, &s.p, &done), OK);
+  ck_assert_int_eq(done, 0);
+  scene_free(&s);
+}
+END_TEST
+
 UNIT_MAIN("balance", forces_take_up_the_resultant,
           too_large_a_resultant_is_refused, forces_at_their_limit_follow_it,
-          open_body_cannot_be_balanced)
+          open_body_cannot_be_balanced, lever_of_rounding_is_none)

@@ -367,13 +367,20 @@ static void set_disc_of_axis(const goal_card *g, weight *w, goal_form *f) {
   w->at = on_disc;
 }
 
+/* Lengths that differ by less, -, are the same: a node or an end of the surface
+ * that far away has no weight in the mean. */
+static const double SAME = 1e-9;
+
+static double within(const weight *w) { return w->radius * (1.0 - SAME); }
+
 /* A mean takes nodes on both sides of its middle, which lies on the surface. */
 static void judge_mean(const goal_card *g, const weight *w, const double *near,
                        double longest, goal_form *f) {
   const double away =
       g->n_point > 0 ? distance_of(w->dim, g->point[0], near) : 0.0;
-  f->is_coarse = w->radius < 2.0 * longest;
-  if (f->why == GOAL_RELIABLE && (w->radius < longest || away > w->radius))
+  const double least = longest * (1.0 - SAME);
+  f->is_coarse = w->radius < 2.0 * least;
+  if (f->why == GOAL_RELIABLE && (w->radius < least || away > w->radius))
     f->why = GOAL_NO_ZONE;
 }
 
@@ -383,11 +390,11 @@ static void judge_line(const run *r, const goal_card *g, const line *l,
                        const weight *w, goal_form *f) {
   double longest = 0.0;
   for (int k = 1; k < l->n; ++k)
-    if (l->s[k] > -w->radius && l->s[k - 1] < w->radius)
+    if (l->s[k] > -within(w) && l->s[k - 1] < within(w))
       longest = fmax(longest, l->s[k] - l->s[k - 1]);
   judge_mean(g, w, r->surface->x + w->dim * l->node[l->peak], longest, f);
   for (int k = 0; k<l->n; k += l->n> 1 ? l->n - 1 : 1)
-    if (fabs(l->s[k]) < w->radius && is_closed(r, l, k) &&
+    if (fabs(l->s[k]) < within(w) && is_closed(r, l, k) &&
         !goal_is_mirrored(r, l->node[k]) && f->why == GOAL_RELIABLE)
       f->why = GOAL_NO_END;
 }
@@ -542,7 +549,7 @@ static int find_top(const run *r, const goal_card *g, const weight *w,
     for (int image = 0; image < 8 && is_on(r, g, q); ++image) {
       double at[2] = {0.0};
       if (!(image_of(w, r->surface->x + 3 * q, image, away) <
-            w->radius * w->radius))
+            within(w) * within(w)))
         continue;
       for (int a = 0; a < 2; ++a)
         for (int c = 0; c < 3; ++c)
@@ -581,12 +588,12 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
   w->at = on_disc;
   w->radius = g->radius;
   if (!(g->radius > 0.0)) PASS(set_half_of_disc(r, g, w, f));
-  PASS(look_round(r, g, w->radius, w, &border));
+  PASS(look_round(r, g, within(w), w, &border));
   if (g->n_point > 0)
     memcpy(w->origin, g->point[0], sizeof w->origin);
   else
     climb(r, g, peak, w);
-  PASS(look_round(r, g, w->radius, w, &border));
+  PASS(look_round(r, g, within(w), w, &border));
   judge_mean(g, w, at, border.longest, f);
   if (border.cut && f->why == GOAL_RELIABLE) f->why = GOAL_NO_END;
   return OK;

@@ -7,7 +7,7 @@
 #include <lapacke.h>
 
 static const double FREE = 0x1p-36; /* -, square of what moves with a motion */
-static const double MARGIN = 0x1p-40;   /* -, of the gaps */
+static const double MARGIN = 0x1p-40;   /* -, of the gaps, and of the motion */
 static const double BALANCED = 0x1p-30; /* -, of the work of the loads */
 static const double REAL = 0x1p-10;     /* -, of the scale: never hidden */
 
@@ -127,11 +127,21 @@ static int find_free(rest *s) {
   return LAPACKE_dpotrs(LAPACK_COL_MAJOR, 'L', k, 1, s->L, k, s->q, k) == 0;
 }
 
-/* How far q leads beyond the bound of unknown i, m; 0: it has none. */
-static double beyond(const rest *s, int i) {
+/* The bound of unknown i as a plane in the space of x: its normal side[k] of
+ * length 1, and how far q leads beyond it, m; -HUGE_VAL: there is none, or no
+ * motion moves the unknown. */
+static double beyond(const rest *s, int i, double *side) {
   const double bound = contact_bound(s->cp, i);
   if (s->forced[i] || !(bound < HUGE_VAL)) return -HUGE_VAL;
-  return cblas_ddot(s->k, s->V + i, s->m, s->q, 1) - fmax(0.0, bound - s->u[i]);
+  for (int j = 0; j < s->k; ++j) side[j] = -s->V[i + s->m * j];
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, s->k, s->L,
+              s->k, side, 1);
+  const double lever = cblas_dnrm2(s->k, side, 1);
+  if (!(lever > MARGIN)) return -HUGE_VAL;
+  cblas_dscal(s->k, 1.0 / lever, side, 1);
+  return (cblas_ddot(s->k, s->V + i, s->m, s->q, 1) -
+          fmax(0.0, bound - s->u[i])) /
+         lever;
 }
 
 /* The column that does the most work on the rest, into "next"; 0: none. */
@@ -139,13 +149,9 @@ static int next_column(const rest *s, double unit, const double *left,
                        double *side, double *next) {
   double most = 0.0;
   for (int i = 0; i < s->m; ++i) {
-    if (!(beyond(s, i) > -HUGE_VAL)) continue;
-    /* The column of the bound of unknown i: what pushes back, and how far it is
-     * crossed, over "unit". */
-    for (int j = 0; j < s->k; ++j) side[j] = -s->V[i + s->m * j];
-    cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, s->k,
-                s->L, s->k, side, 1);
-    side[s->k] = beyond(s, i) / unit;
+    /* What pushes back, and how far the bound is crossed, over "unit". */
+    side[s->k] = beyond(s, i, side) / unit;
+    if (!(side[s->k] > -HUGE_VAL)) continue;
     const double work = cblas_ddot(s->k + 1, side, 1, left, 1);
     if (!(work > MARGIN * cblas_dnrm2(s->k + 1, side, 1)) || work <= most)
       continue;
@@ -160,10 +166,10 @@ static status keep_out(rest *s) {
   nonnegative sum;
   double unit = 0.0;
   const int k = s->k;
-  for (int i = 0; i < s->m; ++i) unit = fmax(unit, beyond(s, i));
+  OWNED_NEW(double, side, k + 1);
+  for (int i = 0; i < s->m; ++i) unit = fmax(unit, beyond(s, i, side));
   if (!(unit > 0.0)) return OK;
   PASS(nonnegative_new(k + 1, &sum));
-  OWNED_NEW(double, side, k + 1);
   sum.b[k] = 1.0;
   nonnegative_begin(&sum);
   for (double *next; (next = nonnegative_next(&sum)) != NULL;)
