@@ -187,6 +187,16 @@ START_TEST(coefficients_may_vary_in_time) {
   ck_assert_int_eq(law_values(law_of(&s), 3, 0, value), ERR_DECK);
   ck_assert_ptr_nonnull(strstr(status_message(), "tau = -1 is not positive"));
   text_model_close(&s);
+  for (unsigned bits = 0; bits < 4; ++bits) {
+    char cards[80];
+    snprintf(cards, sizeof cards, "*INELASTIC, LAW=USER\n\"1E-9*q%s%s\"",
+             bits & LAW_VARIES_TIME ? "*(1 + t)" : "",
+             bits & LAW_VARIES_TEMPERATURE ? "*exp(temp)" : "");
+    read_deck(&s, "", cards);
+    ck_assert_int_eq(s.st, OK);
+    ck_assert_uint_eq(law_varies(law_of(&s)), bits);
+    text_model_close(&s);
+  }
 }
 END_TEST
 
