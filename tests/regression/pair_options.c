@@ -691,6 +691,26 @@ START_TEST(tied_area_goes_round_a_blunt_corner) {
 }
 END_TEST
 
+/* The pair of a tie again. */
+START_TEST(contact_of_tied_faces_is_told) {
+  job j = job_begin("tied");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "tied.inp",
+            "*PARAMETER\nN = 4\nM = 4\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*TIE, NAME=T, SLAVE=FIRST\nUNDER, OVER\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 2);
+  ck_assert_ptr_nonnull(strstr(
+      j.errors, "P4033: *CONTACT PAIR P: 4 of 4 faces of the slave UNDER"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "left out of contact: 5"));
+  job_end(&j);
+}
+END_TEST
+
 /* The nodes of a tip have no row. */
 START_TEST(rows_of_a_crack_add_up_to_its_resultant) {
   job j;
@@ -725,6 +745,7 @@ int main(void) {
   tcase_add_loop_test(tests, lower_master_beyond_a_step_is_not_met, 0, 2);
   tcase_add_loop_test(tests, tied_nodes_leave_their_area_in_a_contact, 0, 9);
   tcase_add_loop_test(tests, tied_area_goes_round_a_blunt_corner, 0, 2);
+  tcase_add_test(tests, contact_of_tied_faces_is_told);
   tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);
 }
