@@ -348,20 +348,15 @@ static status part(const double *all, const double *vector, int size, int m,
 }
 
 /* With s G (G'v + b) = 0 added, which makes M definite where the constraints
- * hold the bodies. */
+ * hold the bodies; l takes up s G b. */
 static status reduce_held(const hdf5_source *s, const global *g,
                           const triplets *joined, double *all, double *vector) {
   int usable = 0;
-  OWNED double *f = NULL;
   double stiff = 0.0;
   PASS(reduce_global(&g->M, joined, g->f, all, vector, &usable));
   if (usable) return OK;
   OWNED_PARTS(triplets, held, springs_add(&g->M, &g->G, &stiff, &held));
-  PASS_NEW(f, g->M.rows);
-  COPY(f, g->f, g->M.rows);
-  for (long k = 0; k < g->G.n; ++k)
-    f[g->G.row[k]] -= stiff * g->G.value[k] * g->b[g->G.column[k]];
-  PASS(reduce_global(&held, joined, f, all, vector, &usable));
+  PASS(reduce_global(&held, joined, g->f, all, vector, &usable));
   if (!usable) PASS(reduce_any(s->path, &g->M, joined, g->f, all, vector));
   return OK;
 }

@@ -387,7 +387,7 @@ START_TEST(goals_that_are_not_covered_say_so) {
 END_TEST
 
 /* A block of two parts side by side, 4 x 2, with "goals" and a contact. */
-static void write_block(job *j, double size, const char *right,
+static void write_block(job *j, double size, double young, const char *right,
                         const char *goals) {
   job_write(j, "block.geo",
             "h = %g;\nPoint(1) = {0, 0, 0, h};\nPoint(2) = {2, 0, 0, h};\n"
@@ -407,21 +407,21 @@ static void write_block(job *j, double size, const char *right,
             "Physical Curve(\"SIDE\") = {6};\n",
             size);
   job_write(j, "block.inp",
-            "*MESH, FILE=block.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*MESH, FILE=block.geo\n*MATERIAL, NAME=M\n*ELASTIC\n%g, 0.3\n"
             "*SOLID SECTION, ELSET=LEFT, MATERIAL=M\n"
             "*SOLID SECTION, ELSET=RIGHT, MATERIAL=M%s\n%s"
             "*END STEP\n",
-            right, goals);
+            young, right, goals);
   const int code = job_run(j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j->errors);
 }
 
-/* Two parabolas below a block: the zone of the larger pressure, from the first
- * to the last closed node of it but for one element. */
+/* Two parabolas below a soft block: the zone of the larger pressure, from the
+ * first to the last closed node of it but for one element. */
 START_TEST(width_is_that_of_one_zone) {
   job j = job_begin("block");
   write_block(
-      &j, 0.025, "",
+      &j, 0.025, 1e-3, "",
       "*OBSTACLE, NAME=O, TYPE=GAP\n"
       "\"min((x - 1)^2/8 + 0.008, (x - 3.01)^2/4)\"\n"
       "*CONTACT, NAME=FOOT, GROUP=FOOT, OBSTACLE=O\n"
@@ -504,7 +504,7 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
       "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 10.\n"
       "*PRINT, GOALS\n";
   job j = job_begin("block");
-  write_block(&j, 0.1, "", cards);
+  write_block(&j, 0.1, 1000., "", cards);
   ck_assert(has_verdict(&j, "MIRROR", "reliable"));
   ck_assert(has_verdict(&j, "CUT", "no_end"));
   ck_assert(has_verdict(&j, "WHOLE", "reliable"));
@@ -516,7 +516,7 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
   ck_assert(has_verdict(&j, "END", "reliable"));
   for (int k = 0; k < 3; k += 2)
     ck_assert_double_eq_tol(told_of(&j, k).value, 10.0, 0.05);
-  write_block(&j, 0.1, ", THICKNESS=2.", cards);
+  write_block(&j, 0.1, 1000., ", THICKNESS=2.", cards);
   ck_assert(has_verdict(&j, "MIRROR", "not_covered"));
   ck_assert(isnan(told_of(&j, 0).value));
   job_end(&j);
@@ -527,7 +527,7 @@ END_TEST
  * the mean of two displacements has the mean of their errors. */
 START_TEST(means_are_of_volumes_and_of_nodes) {
   job j = job_begin("block");
-  write_block(&j, 0.1, "",
+  write_block(&j, 0.1, 1000., "",
               "*GOAL, NAME=S, QUANTITY=STRESS, GROUP=ALL, COMPONENT=YY\n"
               "*GOAL, NAME=L, QUANTITY=DISPLACEMENT, COMPONENT=2\n0., 2.\n"
               "*GOAL, NAME=R, QUANTITY=DISPLACEMENT, COMPONENT=2\n4., 2.\n"
@@ -560,7 +560,7 @@ START_TEST(slip_that_changes_its_sense_is_an_end) {
              "*PRINT, GOALS, TOTALS\n",
              k);
     job j = job_begin("block");
-    write_block(&j, 0.2, "", cards);
+    write_block(&j, 0.2, 1000., "", cards);
     dat t = job_table(&j, "TOTALS", -1);
     ck_assert_double_eq(dat_at(&t, 0, "open") + dat_at(&t, 0, "stick"), 0.0);
     ends[k] = told_of(&j, 0).ends;
@@ -679,7 +679,7 @@ START_TEST(ends_that_a_point_holds_are_ends) {
              "*STEP\n*STATIC\n*BOUNDARY\n%s, 1\nTOP, 2, 2, -0.05\n"
              "*PRINT, GOALS\n",
              hold[k]);
-    write_block(&j, 0.1, "", cards);
+    write_block(&j, 0.1, 1000., "", cards);
     ck_assert_int_eq(isnan(told_of(&j, 0).value), k == 0);
     ck_assert_int_eq(has_verdict(&j, "WIDE", "no_end"), k == 0);
     job_end(&j);

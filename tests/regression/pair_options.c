@@ -619,12 +619,16 @@ static const side sides[] = {
 /* 1: the block of contact C is the only one on the plane. */
 static int alone(const side *of) { return of->area == 1; }
 
-static int press_side(job *j, const side *of) {
+/* rise: of the right end of the second foot. */
+static int press_side(job *j, const side *of, double rise) {
   *j = job_begin("side");
   job_copy(j, "tests/regression/mesh/pair.geo");
-  job_write(j, "side.geo",
-            "Include \"pair.geo\";\nPhysical Curve(\"FOOT\") = {2};\n"
-            "Physical Curve(\"HEEL\") = {12};\n");
+  job_write(
+      j, "side.geo",
+      "Geometry.AutoCoherence = 0;\nInclude \"pair.geo\";\n"
+      "Translate {0, %g, 0} {Point{13};}\n"
+      "Physical Curve(\"FOOT\") = {2};\nPhysical Curve(\"HEEL\") = {12};\n",
+      rise);
   job_write(j, "side.inp",
             "*PARAMETER\nA = -90\nN = 4\nM = %d\n*MESH, FILE=side.geo\n"
             "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
@@ -651,7 +655,7 @@ START_TEST(tied_nodes_leave_their_area_in_a_contact) {
   const side *of = &sides[_i];
   const int coarse = _i == 3, both = *of->other == 'H';
   job j;
-  ck_assert_msg(press_side(&j, of) == 0, "%s", j.errors);
+  ck_assert_msg(press_side(&j, of, 0) == 0, "%s", j.errors);
   ck_assert_int_eq(strstr(j.errors, "P4002") != NULL, *of->other == 'O');
   ck_assert_int_eq(strstr(j.errors, "P4035") != NULL, coarse);
   dat c = job_table(&j, "CONTACT", -1), all = job_table(&j, "TOTALS", -1);
@@ -669,6 +673,40 @@ START_TEST(tied_nodes_leave_their_area_in_a_contact) {
   }
   dat_free(&all);
   dat_free(&c);
+  job_end(&j);
+}
+END_TEST
+
+/* The second foot rises by 22 degrees: with the same obstacle that is one
+ * surface, with another one it is not. */
+START_TEST(tied_area_goes_round_a_blunt_corner) {
+  static const side feet[] = {
+      {"SLAVE=FIRST", "FOOT", "HEEL, OBSTACLE=O", 4, 0.875},
+      {"SLAVE=FIRST", "FOOT", "HEEL, OBSTACLE=Q", 4, 1}};
+  job j;
+  ck_assert_msg(press_side(&j, &feet[_i], 0.4) == 0, "%s", j.errors);
+  ck_assert_double_eq_tol(value(&j, "TOTALS", -1, "closed_area"), feet[_i].area,
+                          1e-12);
+  job_end(&j);
+}
+END_TEST
+
+/* The pair of a tie again. */
+START_TEST(contact_of_tied_faces_is_told) {
+  job j = job_begin("tied");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "tied.inp",
+            "*PARAMETER\nN = 4\nM = 4\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*TIE, NAME=T, SLAVE=FIRST\nUNDER, OVER\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 1, 2\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, ""), 2);
+  ck_assert_ptr_nonnull(strstr(
+      j.errors, "P4033: *CONTACT PAIR P: 4 of 4 faces of the slave UNDER"));
+  ck_assert_ptr_nonnull(strstr(j.errors, "left out of contact: 5"));
   job_end(&j);
 }
 END_TEST
@@ -706,6 +744,8 @@ int main(void) {
   tcase_add_loop_test(tests, masters_side_by_side_are_one_floor, 0, 6);
   tcase_add_loop_test(tests, lower_master_beyond_a_step_is_not_met, 0, 2);
   tcase_add_loop_test(tests, tied_nodes_leave_their_area_in_a_contact, 0, 9);
+  tcase_add_loop_test(tests, tied_area_goes_round_a_blunt_corner, 0, 2);
+  tcase_add_test(tests, contact_of_tied_faces_is_told);
   tcase_add_test(tests, rows_of_a_crack_add_up_to_its_resultant);
   return unit_run("pair_options", tests);
 }

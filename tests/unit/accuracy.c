@@ -5,7 +5,7 @@
 #include "accuracy/accuracy.h"
 #include "base/base.h"
 #include "solver/solver.h"
-#include "support/contact_case.h"
+#include "support/operated_case.h"
 #include "support/unit.h"
 
 enum { PARAM_SIZE = 512 };
@@ -207,7 +207,8 @@ START_TEST(rate_is_that_of_the_worst_pass) {
 END_TEST
 
 /* Two nodes that slip towards each other: the rate is that of the largest
- * eigenvalue of -mu A_nt inv(A_tt) e, times the size of A_nt. */
+ * eigenvalue of -mu A_nt inv(A_tt) e, times the size of A_nt; by the entries
+ * and by products and solves. */
 static void check_two_nodes(double size, double expected) {
   static const double nt[2][2] = {{-0.8, 0.3}, {0.2, 0.5}};
   static const double tt[2][2] = {{2.0, -0.6}, {-0.6, 3.0}};
@@ -233,9 +234,13 @@ static void check_two_nodes(double size, double expected) {
   }
   const double half = 0.5 * (T[0][0] + T[1][1]);
   const double root = sqrt(half * half - T[0][0] * T[1][1] + T[0][1] * T[1][0]);
-  ck_assert_int_eq(contraction_limit(&c.cp, c.u, c.r, &limit), OK);
-  ck_assert_double_eq_tol(limit, expected * (fabs(half) + root),
-                          1e-9 * expected + DBL_MIN);
+  for (int k = 0; k < 2; ++k) {
+    operated_case *o = k == 0 ? NULL : operated_new(&c);
+    ck_assert_int_eq(contraction_limit(&c.cp, c.u, c.r, &limit), OK);
+    ck_assert_double_eq_tol(limit, expected * (fabs(half) + root),
+                            1e-9 * expected + DBL_MIN);
+    if (o != NULL) operated_free(o, &c);
+  }
   case_free(&c);
 }
 

@@ -1,4 +1,5 @@
-/* src/output/fclib.c: what stands in the file, what is refused. */
+/* src/output/fclib.c: what stands in the file, what is refused; of files read,
+ * the shapes. */
 #include "base/base.h"
 #include "exchange/exchange.h"
 #include "output/writers.h"
@@ -150,6 +151,55 @@ START_TEST(layout_behind_a_user_block_is_read) {
 }
 END_TEST
 
+/* A matrix of ones in the place of one of a problem with one contact in the
+ * plane; of the local one also R of one row, where "row" is set; no group: an
+ * empty file. */
+static const struct misfit {
+  const char *group;
+  int rows, columns, row;
+  const char *text;
+} misfits[] = {{"/fclib_local/V", 3, 1, 1, "V has 3 rows and 1 columns"},
+               {"/fclib_local/V", 2, 2, 1, "V has 2 rows and 2 columns"},
+               {"/fclib_local/V", 2, 1, 0, "one is missing"},
+               {"/fclib_local/X", 1, 1, 1, "one is missing"},
+               {"/fclib_global/M", 2, 3, 0, "M is not square"},
+               {"/fclib_global/H", 3, 2, 0, "H has 3 rows, M has 2"},
+               {"/fclib_global/G", 3, 1, 0, "G has 3 rows, M has 2"},
+               {NULL, 0, 0, 0, "neither a group"}};
+
+START_TEST(matrices_that_do_not_fit_are_refused) {
+  const place at = {.file = "a.inp", .line_no = 1};
+  const double one[] = {1, 1, 1, 1, 1, 1}, mu[] = {0.3};
+  const fclib_global_data g = {2, 1, 2, one, one, one, one, mu};
+  message_log *log;
+  enter();
+  ck_assert_int_eq(message_log_new(&log), OK);
+  for (size_t k = 0; k < sizeof misfits / sizeof *misfits; ++k) {
+    const struct misfit *x = &misfits[k];
+    exchange_problem *p;
+    if (x->group == NULL)
+      fclib_end(fclib_begin(path));
+    else if (strncmp(x->group, "/fclib_local", 12) == 0)
+      fclib_local(path, STORE_TRIPLET, 2, 1, one, one, mu);
+    else
+      fclib_global(path, STORE_TRIPLET, &g);
+    hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    if (x->row) fclib_matrix(file, "/fclib_local/R", STORE_ROWS, 1, 1, one);
+    if (x->group != NULL && H5Lexists(file, x->group, H5P_DEFAULT) > 0)
+      ck_assert_int_ge(H5Ldelete(file, x->group, H5P_DEFAULT), 0);
+    if (x->group != NULL)
+      fclib_matrix(file, x->group, STORE_ROWS, x->rows, x->columns, one);
+    fclib_end(file);
+    ck_assert_int_eq(exchange_read(path, EXCHANGE_FCLIB, &at, log, &p),
+                     ERR_DECK);
+    ck_assert_msg(strstr(status_message(), x->text) != NULL, "%s: %s", x->text,
+                  status_message());
+  }
+  memory_free(log);
+  leave();
+}
+END_TEST
+
 /* No file is left, not even the one aside. */
 START_TEST(problems_without_a_place_are_refused) {
   enter();
@@ -202,5 +252,6 @@ END_TEST
 UNIT_MAIN("fclib", signs_are_those_of_the_layout,
           singular_stiffness_is_written_as_global,
           layout_behind_a_user_block_is_read,
+          matrices_that_do_not_fit_are_refused,
           problems_without_a_place_are_refused,
           every_refused_request_is_reported)

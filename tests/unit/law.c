@@ -246,6 +246,21 @@ static void check_jacobian(law_case *c) {
 START_TEST(jacobian_agrees_with_differences) { for_all(5, check_jacobian); }
 END_TEST
 
+/* Creep whose rate is a multiple of a small stress has that slope at rest. */
+START_TEST(slope_of_creep_at_rest) {
+  static const char *const data[][2] = {{"NORTON", "1E-9, 1."},
+                                        {"HYPERBOLIC", "1E-3, 1E-6, 1."}};
+  static law_case c;
+  for (int i = 0; i < 2; ++i) {
+    ck_assert_int_eq(law_case_new(law_find(data[i][0]), 0, data[i][1], young,
+                                  nu, SOLID_3D, &c),
+                     1);
+    check_jacobian(&c);
+    law_case_free(&c);
+  }
+}
+END_TEST
+
 /* The coupled matrix from differences of the rates under held strain. */
 static void check_fastest(law_case *c) {
   static double M[ROOM], column[6 + LAW_ALPHA_MAX], re[2][6 + LAW_ALPHA_MAX];
@@ -512,7 +527,7 @@ END_TEST
 
 UNIT_MAIN("law", terms_have_no_order, nothing_happens_at_rest,
           dissipation_is_not_negative, power_is_lost_or_kept,
-          jacobian_agrees_with_differences,
+          jacobian_agrees_with_differences, slope_of_creep_at_rest,
           fastest_rate_is_the_largest_eigenvalue,
           a_turned_stress_gives_turned_rates, plane_rates_are_those_of_3d,
           lateral_directions_flow_alike, a_linear_law_is_its_jacobian,

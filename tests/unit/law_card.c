@@ -187,6 +187,16 @@ START_TEST(coefficients_may_vary_in_time) {
   ck_assert_int_eq(law_values(law_of(&s), 3, 0, value), ERR_DECK);
   ck_assert_ptr_nonnull(strstr(status_message(), "tau = -1 is not positive"));
   text_model_close(&s);
+  for (unsigned bits = 0; bits < 4; ++bits) {
+    char cards[80];
+    snprintf(cards, sizeof cards, "*INELASTIC, LAW=USER\n\"1E-9*q%s%s\"",
+             bits & LAW_VARIES_TIME ? "*(1 + t)" : "",
+             bits & LAW_VARIES_TEMPERATURE ? "*exp(temp)" : "");
+    read_deck(&s, "", cards);
+    ck_assert_int_eq(s.st, OK);
+    ck_assert_uint_eq(law_varies(law_of(&s)), bits);
+    text_model_close(&s);
+  }
 }
 END_TEST
 
@@ -253,6 +263,9 @@ START_TEST(long_term_moduli_between_two_sets) {
       elastic_at(&s.m->materials[0].elastic, 50.0, C, text, sizeof text));
   near(C[21], G / .5);
   near((C[0] + 2 * C[6]) / 3, K / .75);
+  /* the larger Poisson number of both: of the second, G = E/2.6, K = E/1.2 */
+  near(elastic_table_most(&s.m->materials[0].elastic, 1),
+       (3 / (1.2 * .75) - 2 / (2.6 * .5)) / (6 / (1.2 * .75) + 2 / (2.6 * .5)));
   text_model_close(&s);
 }
 END_TEST

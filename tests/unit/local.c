@@ -4,6 +4,8 @@
  * the limit of uniqueness, starts near to the answer and far from it.
  */
 #include "solver/local.h"
+
+#include "base/base.h"
 #include "support/contact_case.h"
 #include "support/unit.h"
 
@@ -115,5 +117,79 @@ START_TEST(node_at_several_obstacles_meets_its_conditions) {
 }
 END_TEST
 
+/* Two nodes that springs of 1 N/m along both axes join, without a support. */
+static contact_case pair_of_nodes(double mu) {
+  contact_case c = case_new(2, 2, mu);
+  for (int i = 0; i < 4; ++i) {
+    c.A[5 * i] = 1.0;
+    c.A[(i + 2) % 4 + 4 * i] = -1.0;
+    c.gap[i / 2] = 1000.0;
+  }
+  c.cp.floating = 1;
+  return c;
+}
+
+/* Sweeps that gave up: the load carries the pair to the obstacle, along it or
+ * away from it. */
+START_TEST(body_before_an_obstacle_does_not_drift_off) {
+  static const double load[3][2] = {{1, 0.1}, {0, 1}, {-1, 0.1}};
+  for (int k = 0; k < 3; ++k) {
+    contact_case c = pair_of_nodes(0.0);
+    const best_iterate none = {.residual = HUGE_VAL};
+    solver_report rep = {.outcome = STOPPED_STAGNATION};
+    node_blocks *blocks;
+    double work[4];
+    c.f[0] = load[k][0];
+    c.f[1] = load[k][1];
+    ck_assert_int_eq(node_blocks_new(&c.cp, &blocks), OK);
+    relaxation s = {&c.cp, blocks, .u = c.u, .r = c.r, .omega = 1.0};
+    relaxation_start(&s);
+    relaxation_refresh(&s);
+    relaxation_end(&s, &none, work, &rep);
+    ck_assert_int_eq(rep.outcome, k == 0 ? STOPPED_STAGNATION : STOPPED_RAY);
+    memory_free(blocks);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* A step of the pair in the plane of the motion, its gaps and stick positions;
+ * steps to the nearest, 0: none. */
+static const struct {
+  double d[2], gap[2], stick[2];
+  int steps;
+} flights[] = {{{1, 0}, {9, 6}, {0, 0}, 6},    {{-1, 0}, {9, 6}, {0, 0}, 0},
+               {{0, 1}, {9, 6}, {8, 5}, 5},    {{0, 1}, {9, 6}, {-8, -5}, 0},
+               {{0, -1}, {9, 6}, {-4, -7}, 4}, {{0, -2}, {9, 6}, {-14, 5}, 7},
+               {{1, 2}, {9, 3}, {16, 40}, 3}};
+
+/* Straight on to the first obstacle or the first position of stick ahead. */
+START_TEST(body_flies_to_what_is_next) {
+  for (size_t k = 0; k < sizeof flights / sizeof *flights; ++k) {
+    contact_case c = pair_of_nodes(1.0);
+    const double *d = flights[k].d;
+    const int steps = flights[k].steps;
+    const double from[] = {2 - d[0], 2 - d[1], 2 - d[0], 2 - d[1]};
+    node_blocks *blocks;
+    ck_assert_int_eq(node_blocks_new(&c.cp, &blocks), OK);
+    c.g0[0] = c.g0[1] = 1.0;
+    for (int i = 0; i < 4; ++i) {
+      c.u[i] = 2;
+      c.gap[i / 2] = 2 + flights[k].gap[i / 2];
+      c.ut0[i / 2] = 2 + flights[k].stick[i / 2];
+      c.f[i] = d[i % 2];
+    }
+    relaxation s = {&c.cp, blocks, .u = c.u, .r = c.r, .omega = 1.0};
+    relaxation_start(&s);
+    ck_assert_int_eq(relaxation_fly(&s, from), steps > 0 ? 2 : 0);
+    for (int i = 0; i < 4; ++i) ck_assert(c.u[i] == 2 + steps * d[i % 2]);
+    memory_free(blocks);
+    case_free(&c);
+  }
+}
+END_TEST
+
 UNIT_MAIN("local", node_meets_its_conditions,
-          node_at_several_obstacles_meets_its_conditions)
+          node_at_several_obstacles_meets_its_conditions,
+          body_before_an_obstacle_does_not_drift_off,
+          body_flies_to_what_is_next)

@@ -1,6 +1,7 @@
 /* src/mesh/child.c, raw.c: the process in which gmsh reads and meshes: how it
  * ends, what it leaves, what it must not do. */
 #include "base/base.h"
+#include "mesh/msh/geo.h"
 #include "mesh/raw.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
@@ -301,6 +302,32 @@ START_TEST(options_of_merged_files_are_refused) {
 }
 END_TEST
 
+/* A file that only gmsh can name or that cannot be read may have any name,
+ * whatever follows it. */
+START_TEST(files_without_a_name_may_have_any_word) {
+  static const char *const texts[] = {
+      "// Merge h;\n Include \"in.geo\"; Printf(\"a\");",
+      "Merge StrCat(\"x\", \".geo\"); Include \"in.geo\"; Printf(\"a\");",
+      "Merge\"x.msh\"; Printf(\"a\"); Include \"in.geo\";",
+      "Include \"none.geo\"; Include \"in.geo\"; Printf(\"a\");"};
+  mesh_file f;
+  mesh_file_open(&f);
+  mesh_file_write(&f, "in.geo", PLATE, strlen(PLATE));
+  for (int i = 0; i < 4; ++i) {
+    char path[192];
+    geo_text g;
+    mesh_file_write(&f, "g.geo", texts[i], strlen(texts[i]));
+    snprintf(path, sizeof path, "%s/g.geo", f.folder);
+    ck_assert_int_eq(geo_read(path, &g), OK);
+    ck_assert_int_eq(g.n_file, i == 3 ? 3 : 2);
+    ck_assert_int_eq(geo_has(&g, "Surface"), 1);
+    ck_assert_int_eq(geo_has(&g, "h"), i > 0);
+    geo_free(&g);
+  }
+  mesh_file_close(&f);
+}
+END_TEST
+
 /* Pipes do not take the place of standard streams. */
 START_TEST(closed_streams_do_not_disturb) {
   mesh_file f;
@@ -382,6 +409,6 @@ UNIT_MAIN("mesh_reader", good_file_is_read_after_bad_ones,
           signals_do_not_disturb, want_of_memory_in_gmsh_is_told,
           want_of_memory_is_never_taken_for_a_bad_mesh, nothing_is_printed,
           geometry_alone_makes_the_mesh, options_of_merged_files_are_refused,
-          closed_streams_do_not_disturb,
+          files_without_a_name_may_have_any_word, closed_streams_do_not_disturb,
           exit_of_gmsh_runs_no_handler_of_the_program,
           rubbish_from_the_reader_is_refused)

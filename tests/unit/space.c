@@ -414,6 +414,31 @@ START_TEST(one_layer_of_elements_has_an_estimate) {
 }
 END_TEST
 
+/* As many elements as a linear stress has coefficients: their mean, not what
+ * they would give exactly. dim + 1 elements of a box of edges 2, 1, ... */
+START_TEST(stresses_that_just_determine_a_fit_are_averaged) {
+  static const double length[] = {2, 1, 1};
+  mesh *m = _i == 2 ? make_grid_2d((int[]){2, 1}, length)
+                    : make_grid_3d((int[]){1, 1, 1}, length);
+  scene *s = scene_new(m, _i == 2 ? PLANE_STRAIN : SOLID_3D, 3);
+  space_recovery *recovery;
+  space_error found;
+  double sigma[24] = {0}, square = 0;
+  m->n_elem = _i + 1;
+  for (int e = 0; e < m->n_elem; ++e) {
+    const double x = 2 * e - _i, volume = _i == 2 ? 0.5 : 2 / 6.0;
+    sigma[s->d.ns * e] = x;
+    if (_i == 2) sigma[s->d.ns * e + 2] = 0.3 * x;
+    square += volume * x * x * (_i == 2 ? 1 - 0.3 * 0.3 : 1) / 3;
+  }
+  ck_assert_int_eq(space_recovery_new(&s->d, &recovery), OK);
+  ck_assert_int_eq(space_estimate(recovery, sigma, NULL, &found), OK);
+  ck_assert_double_eq_tol(found.error, sqrt(square), 1e-12);
+  memory_free(recovery);
+  scene_free(s);
+}
+END_TEST
+
 /* Where fewer than nine elements are along an edge. */
 START_TEST(few_nodes_inside_are_told) {
   for (int n = 8; n <= 10; n += 2) {
@@ -605,6 +630,8 @@ int main(void) {
   tcase_add_loop_test(tests, linear_stress_is_recovered, 0, 3);
   tcase_add_test(tests, hoop_strains_have_no_error);
   tcase_add_test(tests, one_layer_of_elements_has_an_estimate);
+  tcase_add_loop_test(tests, stresses_that_just_determine_a_fit_are_averaged, 2,
+                      4);
   tcase_add_loop_test(tests, few_nodes_inside_are_told, 0, 2);
   tcase_add_test(tests, an_estimate_has_no_unit);
   return unit_run("space", tests);

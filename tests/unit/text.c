@@ -1,8 +1,10 @@
 /* src/base/text.c */
+#define _GNU_SOURCE /* fopencookie */
 #include "base/base.h"
 #include "support/folder.h"
 #include "support/unit.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -99,6 +101,23 @@ START_TEST(full_disk_is_told_with_file_and_reason) {
 }
 END_TEST
 
+static ssize_t refuse_blocks(void *file, const char *bytes, size_t n) {
+  errno = EDQUOT;
+  return -1;
+}
+
+/* A write that fails while the file is checked names its own reason, not that
+ * of a second one. */
+START_TEST(reason_of_a_failed_write_is_the_first) {
+  cookie_io_functions_t refuse = {.write = refuse_blocks};
+  text_file t = {.f = fopencookie(NULL, "w", refuse), .path = "a.lst"};
+  fprintf(t.f, "in the buffer\n");
+  ck_assert_int_eq(text_check(&t), ERR_FILE);
+  ck_assert_ptr_nonnull(strstr(status_message(), strerror(EDQUOT)));
+  fclose(t.f);
+}
+END_TEST
+
 START_TEST(missing_folder_is_told) {
   text_file t = {0};
   size_t before = memory_in_use();
@@ -169,5 +188,6 @@ UNIT_MAIN("text", joined_as_in_fortran,
           seventeen_digits_read_back_exactly,
           exponents_have_three_digits_and_zero_no_sign, a_word_has_no_blank,
           wrapped_words_keep_their_order_and_the_indent, paths_are_joined_once,
-          full_disk_is_told_with_file_and_reason, missing_folder_is_told,
+          full_disk_is_told_with_file_and_reason,
+          reason_of_a_failed_write_is_the_first, missing_folder_is_told,
           lines_are_handed_over_as_they_end)

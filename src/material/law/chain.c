@@ -249,7 +249,7 @@ const law_ops kelvin_law = {
   .name = "KELVIN", .reference = "Thomson 1865; Voigt 1892",
   .help = "a spring and Kelvin-Voigt units in series, a unit a line",
   .example = "5E4, 1E5\n2E5, 3E6",
-  .terms = kelvin_terms, .min_term = 1, .units = units, CHAIN_COMMON};
+  .terms = kelvin_terms, .units = units, CHAIN_COMMON};
 
 const law_ops burgers_law = {
   .name = "BURGERS", .reference = "Burgers 1935",

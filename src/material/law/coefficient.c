@@ -128,23 +128,14 @@ static status open_set(lines *r, const record *line, double T) {
 
 /* The lines of the set that just ended are as many as those of the first. */
 static void close_set(lines *r, const place *at) {
-  const law_ops *ops = r->law->ops;
-  const int first = ops->fields != NULL, n_line = r->in_set;
+  const int n_line = r->in_set;
   if (r->wrong) return;
   if (r->law->n_set == 1) r->n_line = n_line;
-  if (n_line != r->n_line) {
-    message_add(r->log, P2009, at,
-                "*%s: %d line%s for this temperature, %d for the first",
-                r->c->name, n_line, n_line == 1 ? "" : "s", r->n_line);
-    r->wrong = 1;
-  } else if (n_line - first < ops->min_term) {
-    char text[256];
-    message_add(r->log, P2007, at, "*%s, LAW=%s needs %d more line%s: %s",
-                r->c->name, ops->name, ops->min_term - (n_line - first),
-                ops->min_term == 1 ? "" : "s",
-                law_line_text(ops->terms, text, sizeof text));
-    r->wrong = 1;
-  }
+  if (n_line == r->n_line) return;
+  message_add(r->log, P2009, at,
+              "*%s: %d line%s for this temperature, %d for the first",
+              r->c->name, n_line, n_line == 1 ? "" : "s", r->n_line);
+  r->wrong = 1;
 }
 
 /* The table that line number i of a set is read by; NULL: one too many. */

@@ -66,7 +66,8 @@ static const option hyperbolic_fields[] = {
 /* Rates at an equivalent stress q; a is the internal variable, if there is. */
 typedef struct creep {
   double rate, a_rate; /* dp/dt, 1/s; of a */
-  double by_q, a_by_q; /* slopes in q; in q = 0 the limit if finite, else 0 */
+  double by_q, a_by_q; /* slopes in q; in q = 0 the limit if finite, else 0,
+                          as always for USER */
   double by_a, a_by_a; /* their slopes in a */
 } creep;
 

@@ -117,8 +117,8 @@ typedef struct law_ops {
   const option *options; /* words on the card, or NULL */
   const option *fields;  /* first data line, all OPT_REAL of a struct of doubles
                             in the order of the line; or NULL */
-  const option *terms;   /* each further line, the same; or NULL */
-  int min_term;          /* lines of terms needed */
+  const option *terms;   /* each further line, the same, one or more where
+                            there are no fields; or NULL */
   int linear;            /* rates linear in (sigma, e^i, alpha): one Jacobian
                             for all points with the same values; 0: of the
                             deviator of sigma, without volume */

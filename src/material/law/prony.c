@@ -212,7 +212,7 @@ const law_ops prony_law = {
   .reference = "Prony series as in Abaqus, time domain viscoelasticity",
   .help = "generalised Maxwell body in shear and bulk, a term a line",
   .example = "0.3, 0.1, 0.5\n0.2, 0., 10.\n0.25, 0.3, 200.",
-  .terms = terms, .min_term = 1, .linear = 1, .n_alpha = n_alpha, .rate = rate,
+  .terms = terms, .linear = 1, .n_alpha = n_alpha, .rate = rate,
   .units = units, .jacobian = jacobian, .fastest_rate = fastest_rate,
   .relaxing = relaxing, .relaxed = relaxed, .dissipation = dissipation,
   .stored = stored, .check = check};
