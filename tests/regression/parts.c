@@ -223,13 +223,16 @@ END_TEST
 
 /* Rates sigma/tau under forces: the displacement grows by their trapezia. */
 START_TEST(change_by_creep_under_a_force_that_falls) {
-  double sum = 0, worst = 0, energy[5], local[2];
+  double sum = 0, most[5] = {0}, worst = 0, energy[5], local[2];
   for (int k = 1; k < 5; ++k) {
+    most[k] = most[k - 1] + 0.25 * fmax(level[k - 1], level[k]) / 1e7;
     sum += 0.25 * 0.5 * (level[k - 1] + level[k]) / 1e7;
     worst = fmax(worst, sum / level[k]);
   }
   bound_of("*INELASTIC, LAW=MAXWELL\n1E7\n", "", "*VISCO, INTEGRATOR=EULER\n",
-           "*DSLOAD\nFOOT1, P, 10., A\nFOOT2, P, 10., A\n", energy, local);
+           "*DSLOAD\nFOOT1, P, 10., A\nFOOT2, P, 10., A\nFOOT1, TX, 30., A\n",
+           energy, local);
+  ck_assert_double_eq_tol(local[0] / worst_of(most), 1, 1e-6);
   ck_assert_double_eq_tol(local[1] / worst, 1, 1e-6);
 }
 END_TEST
