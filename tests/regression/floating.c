@@ -4,6 +4,7 @@
  */
 #include "base/base.h"
 #include "solver/solver.h"
+#include "support/fclib_file.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -602,6 +603,35 @@ START_TEST(cracked_body_that_is_left_stays) {
 }
 END_TEST
 
+/* Two feet joined by 2^52, of loads 1 and 1.5, both at 1/3: what rounding makes
+ * of the forces is no solution. */
+START_TEST(forces_below_the_rounding_of_a_file_are_no_solution) {
+  static const char *const method[] = {"AUTO", "PCG", "LAGRANGE", "PROXIMAL"};
+  const double K = 0x1p52, f[] = {-1.0, 0.0, -1.5, 0.0}, mu[] = {0.1, 0.1};
+  const double w[] = {1.0 / 3.0, 0.0, 1.0 / 3.0, 0.0};
+  const double M[] = {K, 0, -K, 0, 0, K, 0, 0, -K, 0, K, 0, 0, 0, 0, K};
+  const double H[] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  char path[80];
+  job j = job_begin("feet");
+  snprintf(path, sizeof path, "%s/problem.h5", j.dir);
+  fclib_global(path, STORE_COLUMNS,
+               &(fclib_global_data){2, 2, 4, M, H, f, w, mu});
+  job_write(&j, "feet.inp",
+            "*CONDENSED PROBLEM, FILE=problem.h5\n*STEP\n"
+            "*SOLVER, METHOD=%s\n*PRINT, CONTACT\n*END STEP\n",
+            method[_i]);
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 1 || code == 0, "exit %d: %s", code, j.errors);
+  if (code == 0) {
+    dat t = job_table(&j, "CONTACT", -1);
+    for (int i = 0; i < 2; ++i)
+      ck_assert_double_eq_tol(-dat_at(&t, i, "f_n") / f[2 * i], 1, 0.1);
+    dat_free(&t);
+  }
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("floating");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -622,5 +652,7 @@ int main(void) {
   tcase_add_test(tests, clamped_block_that_slides_away_is_named);
   tcase_add_test(tests, touch_without_force_is_open);
   tcase_add_loop_test(tests, jammed_wedge_stays_where_it_was, 0, 6);
+  tcase_add_loop_test(
+      tests, forces_below_the_rounding_of_a_file_are_no_solution, 0, 4);
   return unit_run("floating", tests);
 }

@@ -427,7 +427,8 @@ START_TEST(contact_between_nodes_is_not_none) {
 END_TEST
 
 /* A shear that ends at a corner, where no stress fits both sides, next to a
- * free side, to a plane of symmetry, or a pressure on all sides, which fits. */
+ * free side, to a plane of symmetry, or a pressure on all sides, which fits, as
+ * a shear does next to a plane that the body goes on behind as if turned. */
 START_TEST(ends_of_loads_are_not_reliable) {
   static const struct {
     const char *point, *load, *word;
@@ -436,8 +437,9 @@ START_TEST(ends_of_loads_are_not_reliable) {
       {"0., 1.", "TOP, TX, 3.\n", "support_end"},
       {"2., 1.", "TOP, P, \"3+x^2\"\nRIGHT, P, \"1+y^2\"\n", "reliable"},
       {"2., 1.", "TOP, TX, \"x\"\nRIGHT, TY, \"y\"\n", "support_end"},
-      {"2., 1.", "TOP, TX, \"x\"\nRIGHT, TY, \"2*y\"\n", "reliable"}};
-  for (int k = 0; k < 5; ++k) {
+      {"2., 1.", "TOP, TX, \"x\"\nRIGHT, TY, \"2*y\"\n", "reliable"},
+      {"1.875, 1.", "TOP, TX, \"x\"\n*BOUNDARY\nRIGHT, 2\n", "reliable"}};
+  for (int k = 0; k < 6; ++k) {
     char cards[500];
     snprintf(cards, sizeof cards,
              "PLANE\n9., 0.\n-1., 0.\n"

@@ -190,7 +190,8 @@ static double bound_of(const char *material, const char *cards,
   ck_assert_ptr_null(strstr(lst, "not left out: "));
   free(lst);
   double bound = job_told(&j, "bound");
-  *local = job_told(&j, "stress");
+  local[0] = job_told(&j, "stress");
+  local[1] = job_told(&j, "change");
   for (int k = 0; k < 4; ++k) {
     dat e = job_table(&j, "ENERGY", k);
     energy[k + 1] = dat_at(&e, 0, "strain_energy");
@@ -209,21 +210,37 @@ static double worst_of(const double *sum) {
 
 /* Rates sigma/tau: the larger of both ends of each increment adds up. */
 START_TEST(bound_of_creep_under_a_load_that_falls) {
-  double sum[5] = {0}, energy[5], local;
+  double sum[5] = {0}, energy[5], local[2];
   for (int k = 1; k < 5; ++k)
     sum[k] = sum[k - 1] + 0.25 * fmax(level[k - 1], level[k]) / 1e7;
   double told = bound_of("*INELASTIC, LAW=MAXWELL\n1E7\n", "",
                          "*VISCO, INTEGRATOR=EULER\n",
-                         "TIPS, 2, 2, -0.001, A\n", energy, &local);
+                         "TIPS, 2, 2, -0.001, A\n", energy, local);
   ck_assert_double_eq_tol(told / worst_of(sum), 1, 1e-6);
-  ck_assert_double_eq_tol(local / worst_of(sum), 1, 1e-6);
+  ck_assert_double_eq_tol(local[0] / worst_of(sum), 1, 1e-6);
+}
+END_TEST
+
+/* Rates sigma/tau under forces: the displacement grows by their trapezia. */
+START_TEST(change_by_creep_under_a_force_that_falls) {
+  double sum = 0, most[5] = {0}, worst = 0, energy[5], local[2];
+  for (int k = 1; k < 5; ++k) {
+    most[k] = most[k - 1] + 0.25 * fmax(level[k - 1], level[k]) / 1e7;
+    sum += 0.25 * 0.5 * (level[k - 1] + level[k]) / 1e7;
+    worst = fmax(worst, sum / level[k]);
+  }
+  bound_of("*INELASTIC, LAW=MAXWELL\n1E7\n", "", "*VISCO, INTEGRATOR=EULER\n",
+           "*DSLOAD\nFOOT1, P, 10., A\nFOOT2, P, 10., A\nFOOT1, TX, 30., A\n",
+           energy, local);
+  ck_assert_double_eq_tol(local[0] / worst_of(most), 1, 1e-6);
+  ck_assert_double_eq_tol(local[1] / worst, 1, 1e-6);
 }
 END_TEST
 
 /* A pull along the floor of 1, mu N s: square roots add up. */
 START_TEST(bound_of_friction_under_a_pull_that_falls) {
   const double mu = 1e-13, N = 10, size = sqrt(2 / G);
-  double sum[5] = {0}, energy[5], local;
+  double sum[5] = {0}, energy[5], local[2];
   for (int k = 1; k < 5; ++k)
     sum[k] = sum[k - 1] +
              sqrt(2 * mu * N * fabs(level[k] - level[k - 1]) / G) / size;
@@ -236,7 +253,7 @@ START_TEST(bound_of_friction_under_a_pull_that_falls) {
                "*FRICTION, CONTACT=B, LAW=COULOMB\n1E-13\n*AMPLITUDE, NAME=ON\n"
                "0., 1., 1., 1.\n",
                "*QUASISTATIC\n", "*CLOAD\nTIPS, 1, 1., A\nTIPS, 2, -10., ON\n",
-               energy, &local);
+               energy, local);
   ck_assert_double_eq_tol(told / worst_of(sum), 1, 1e-6);
 }
 END_TEST
@@ -250,7 +267,7 @@ START_TEST(bound_of_heat_that_falls) {
   const double whole = 3 * sqrt(2 * K) * alpha_T;
   for (int k = 0; k < 2; ++k) {
     char cards[400];
-    double added = 0, worst = 0, energy[5], local;
+    double added = 0, worst = 0, energy[5], local[2];
     snprintf(cards, sizeof cards,
              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., -1.\n0., 1.\n"
              "*CONTACT, NAME=A, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n%s",
@@ -258,7 +275,7 @@ START_TEST(bound_of_heat_that_falls) {
     double told = bound_of("*EXPANSION\n1E-5\n", cards, "*QUASISTATIC\n",
                            "*DSLOAD\nFOOT1, P, 10.\nFOOT2, P, 10.\n"
                            "*TEMPERATURE, AMPLITUDE=A\nBODY, 1E-3\n",
-                           energy, &local);
+                           energy, local);
     for (int i = 1; i < 5; ++i) {
       added += 2 * whole * fabs(level[i] - level[i - 1]);
       worst = fmax(worst,
@@ -440,4 +457,5 @@ UNIT_MAIN("parts", shares_of_the_elements_make_up_the_error,
           true_stress_error_counts_every_component,
           target_counts_all_errors_of_the_largest_increment,
           bound_of_creep_under_a_load_that_falls,
+          change_by_creep_under_a_force_that_falls,
           bound_of_friction_under_a_pull_that_falls)

@@ -259,6 +259,37 @@ START_TEST(path_on_a_moving_obstacle_goes_on) {
 }
 END_TEST
 
+/* Steps that creep, and one between that has no path beside the run: the errors
+ * of the paths add up. */
+static job stepwise(void) {
+  job j = small_creep(0.1, "", "INTEGRATOR=EULER");
+  edit(&j, "*ACCURACY, TIME=YES\n",
+       "*ACCURACY, TIME=YES\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
+       "0.5, 1.\n*DSLOAD\nTOP, P, 80.\n*END STEP\n*STEP\n*STATIC\n1.\n"
+       "*ACCURACY, TIME=NO\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
+       "0.5, 1.\n*ACCURACY, TIME=YES\n");
+  edit(&j, "0.5, 4.", "0.5, 1.");
+  edit(&j, "MAXWELL\n4.\n", "NORTON\n1E-10, 3.\n");
+  return j;
+}
+
+START_TEST(paths_of_steps_go_on) {
+  static const int stops[] = {20, 25, 28};
+  int changes, all;
+  job whole = stepwise();
+  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
+  for (int k = 0; k < 3; ++k) {
+    job j = stepwise();
+    ck_assert_int_eq(
+        run_until(&j, nothing, all * stops[k] / 36, SIGINT, &changes), 130);
+    goes_on(&j, 0, "steps");
+    same_files(&whole, &j, "steps");
+    job_end(&j);
+  }
+  job_end(&whole);
+}
+END_TEST
+
 /* What friction remembers of errors, of which a goal that wears has none, the
  * solutions that CHECK= finds, and what is worn off. */
 START_TEST(errors_of_goals_go_on) {
@@ -735,10 +766,10 @@ UNIT_MAIN("restart", what_is_read_is_written_again,
           adapted_increments_go_on, factors_of_adapted_increments_go_on,
           killed_twice_goes_on, unstable_attempt_is_not_made_twice,
           chosen_tolerance_goes_on, path_on_a_moving_obstacle_goes_on,
-          known_rate_goes_on, largest_loads_and_energies_go_on,
-          run_without_a_file_begins_anew, files_are_in_the_seal,
-          restart_files_are_equal, errors_of_goals_go_on, factor_goes_on,
-          kind_of_stiffness_goes_on, factor_of_tangents_goes_on,
+          paths_of_steps_go_on, known_rate_goes_on,
+          largest_loads_and_energies_go_on, run_without_a_file_begins_anew,
+          files_are_in_the_seal, restart_files_are_equal, errors_of_goals_go_on,
+          factor_goes_on, kind_of_stiffness_goes_on, factor_of_tangents_goes_on,
           observed_work_goes_on, restart_file_does_not_grow,
           missed_tolerance_goes_on, some_jobs_start_anew,
           damaged_files_are_refused)

@@ -272,6 +272,59 @@ START_TEST(mesh_without_geometry_is_refined) {
 }
 END_TEST
 
+/* A shaft of radius 1 in a bush, in four straight pieces to the quarter: nodes
+ * that refining adds lie on the circle, on both bodies. */
+START_TEST(surfaces_of_a_pair_are_refined_as_they_are_round) {
+  static const double radius[] = {0.5, 1.0, 1.0, 2.0};
+  static const char *const side[] = {"SHAFT", "BUSH"};
+  char nodes[2000] = "", cells[2000] = "";
+  int no = 0;
+  for (int k = 0; k < 20; ++k)
+    text_add(nodes, sizeof nodes, "%d %.17g %.17g 0\n", k + 1,
+             radius[k / 5] * cos(M_PI / 8 * (k % 5)),
+             radius[k / 5] * sin(M_PI / 8 * (k % 5)));
+  for (int k = 0; k < 20; ++k) {
+    const int outer = k / 5 % 2, v = k + 1;
+    if (k % 5 < 4)
+      text_add(cells, sizeof cells, "%d 1 2 %d 1 %d %d\n", ++no, k / 5 + 1, v,
+               v + 1);
+    if (outer) continue;
+    if (k % 5 % 4 == 0)
+      text_add(cells, sizeof cells, "%d 1 2 %d 1 %d %d\n", ++no,
+               k % 5 == 0 ? 5 : 6, v, v + 5);
+    if (k % 5 < 4)
+      text_add(cells, sizeof cells,
+               "%d 2 2 7 1 %d %d %d\n%d 2 2 7 1 %d %d %d\n", no + 1, v, v + 5,
+               v + 6, no + 2, v, v + 6, v + 1);
+    if (k % 5 < 4) no += 2;
+  }
+  job j = job_begin("ring");
+  job_write(&j, "ring.msh",
+            MSH("7\n1 1 \"BORE\"\n1 2 \"SHAFT\"\n1 3 \"BUSH\"\n1 4 "
+                "\"RIM\"\n1 5 \"SX\"\n1 6 \"SY\"\n2 7 \"BODY\"\n",
+                "20\n%s", "%d\n%s"),
+            nodes, no, cells);
+  job_write(&j, "ring.inp",
+            "*MESH, FILE=ring.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=FIT\nSHAFT, BUSH\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nSX, 2, 2\nSY, 1, 1\n*DSLOAD\nRIM, P, 10.\n"
+            "*ACCURACY, TARGET=15\n*PRINT, NODES, GROUP=SHAFT\n"
+            "*PRINT, NODES, GROUP=BUSH\n*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  for (int i = 0; i < 2; ++i) {
+    dat t = job_table(&j, "NODES", i);
+    ck_assert_msg(t.n_row > 8, "%s has %d nodes", side[i], t.n_row);
+    for (int k = 0; k < t.n_row; ++k)
+      ck_assert_double_eq_tol(hypot(dat_at(&t, k, "x"), dat_at(&t, k, "y")), 1,
+                              1e-12);
+    dat_free(&t);
+  }
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(values_at_nodes_keep_the_mesh) {
   static const char msh[] =
       MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
@@ -603,6 +656,7 @@ UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
           limits_are_those_of_the_mesh_in_the_end,
           sizes_that_gmsh_fails_with_are_made_smaller,
           structured_geometry_is_made_finer, mesh_without_geometry_is_refined,
+          surfaces_of_a_pair_are_refined_as_they_are_round,
           values_at_nodes_keep_the_mesh, forecast_is_near_the_truth,
           increments_are_made_shorter, least_increment_is_made_shorter_too,
           order_at_a_sharp_edge_is_that_of_three_meshes,

@@ -275,6 +275,161 @@ START_TEST(initial_state_has_its_worst_nodes) {
 }
 END_TEST
 
+/* ---- model and equations ------------------------------------------------- */
+
+static int group_named(const char *name) {
+  return (int)(mesh_find_group(made->msh, name) - made->msh->group);
+}
+
+START_TEST(model_and_its_sizes) {
+  static const friction_ops coulomb = {.name = "COULOMB"},
+                            bowl = {.name = "BOWL"};
+  made = made_up_new(2, 1, 1);
+  model *m = &made->m;
+  friction_change change = {.contact_id = 0, .rule.law = &bowl};
+  const surface_pair two = {.slave_id = group_named("LEFT"),
+                            .master_id = group_named("RIGHT"),
+                            .adjust = 1,
+                            .moved = 0.125,
+                            .why = "finer"};
+  tie glue = {.name = "GLUE", .pair = two};
+  m->n.material = 9;
+  m->n.tie = 1;
+  m->ties = &glue;
+  m->steps[0].friction.n = 1;
+  m->steps[0].friction.changes = &change;
+  made->foot.friction.law = &coulomb;
+  made->body.averaged = 1;
+  must_print(listing_open,
+             "\nMODEL\n-----\n"
+             "  dimension                       2\n"
+             "  nodes                           4\n"
+             "  elements                        2\n"
+             "  groups                          5\n"
+             "  materials                       9\n"
+             "  sections                        1\n"
+             "  contacts                        1\n"
+             "  steps                           1\n"
+             "  group    ");
+  must_print(listing_open,
+             "  section  BODY                 plane strain, material STEEL, "
+             "volume averaged\n"
+             "  contact  FOOT                 group BOTTOM, obstacle FLOOR, "
+             "friction COULOMB\n"
+             "  tie      GLUE                 slave LEFT (finer), master "
+             "RIGHT, nodes moved by up to 0.125\n"
+             "  contact  FOOT                 from step 1 on friction BOWL\n"
+             "\nEFFECTS\n");
+  made->body.kin = AXISYMMETRIC;
+  made->foot.is_pair = 1;
+  made->foot.pair = two;
+  made->foot.pair.adjust = made->body.averaged = 0;
+  made->foot.friction.law = NULL;
+  must_print(listing_open,
+             "  section  BODY                 axisymmetric, material STEEL\n"
+             "  contact  FOOT                 slave LEFT (finer), master "
+             "RIGHT, friction none\n");
+  made_up_free(made);
+}
+END_TEST
+
+START_TEST(equations_and_end) {
+  made = made_up_new(2, 1, 1);
+  summary = (run_summary){
+      .facts_known = 1,
+      .facts = {.choice = {.dense.bytes = 1.0, .why = "fewer bytes"},
+                .info = {.bodies = 2,
+                         .unknowns = 31,
+                         .contact_unknowns = 32,
+                         .factor_entries = 33,
+                         .ordering = "AMD"},
+                .condition = 1.5e3,
+                .digits = 12.5,
+                .n_contact_node = 34,
+                .n_left_out = 35,
+                .average_entries = 36},
+      .verdict = ERR_UNSETTLED,
+      .message = "why"};
+  made->m.effects |= EFFECT_NONLOCAL;
+  must_print(listing_ready,
+             "\nEQUATIONS\n---------\n"
+             "  bodies                          2\n"
+             "  unknowns                       31\n"
+             "  contact nodes                  34\n"
+             "    out of reach                 35\n"
+             "  contact unknowns               32\n"
+             "  factor entries                 33\n"
+             "  average entries                36\n"
+             "  ordering                      AMD\n"
+             "  stiffness                   DENSE  fewer bytes\n"
+             "  condition                1.5E+003\n"
+             "  digits left                  12.5 of 16, at worst\n"
+             "\nINCREMENTS\n");
+  must_print(
+      listing_end,
+      "\nEND\n---\n  exit 1: finished, but an increment did not converge "
+      "to its tolerance\n  why\n");
+  summary.facts.choice.sparse = summary.facts.floating = 1;
+  summary.facts.condition = NAN;
+  summary.facts.n_left_out = 0;
+  summary.message = "";
+  made->m.effects &= ~EFFECT_NONLOCAL;
+  made->m.problem.given = 1;
+  must_print(listing_ready,
+             "\nEQUATIONS\n---------\n"
+             "  unknowns                       31\n"
+             "  contact nodes                  34\n"
+             "  contact unknowns               32\n"
+             "  ordering                      AMD\n"
+             "  stiffness                  FACTOR  fewer bytes\n"
+             "  contact alone holds at least one body\n"
+             "\nINCREMENTS\n");
+  summary.facts.choice.dense.bytes = 0;
+  must_print(listing_ready,
+             "  ordering                      AMD\n"
+             "  contact alone holds at least one body\n");
+  made_up_free(made);
+}
+END_TEST
+
+/* What *EFFECTS, MODE=AUTO left out: each in another way. */
+START_TEST(effects_left_out) {
+  made = made_up_new(2, 1, 1);
+  model *m = &made->m;
+  summary = (run_summary){.message = ""};
+  m->reduction.n = 3;
+  m->reduction.tol = 0.25;
+  const omitted base = {.bit = EFFECT_BIT_THERMAL,
+                        .why = "small",
+                        .bound = 0.1,
+                        .local = 0.2,
+                        .change = 0.3,
+                        .checked = 14,
+                        .again = 15};
+  for (int i = 0; i < 3; ++i) m->reduction.row[i] = base;
+  m->reduction.row[1].back = m->reduction.row[2].back = 1;
+  m->reduction.row[2].lost = 1;
+  m->reduction.row[0].checked = 16;
+  m->reduction.row[0].again = 17;
+  must_print(listing_open,
+             "  left out: thermal strain: small\n"
+             "  not left out: thermal strain: small\n"
+             "    without it: at most 1.0e-01 of the energy norm, 2.0e-01 of "
+             "the largest stress,\n    solved again with it: 3.0e-01 of the "
+             "largest displacement or force, after 14\n    increments; too "
+             "much for TOL=0.25, this is the run with it\n"
+             "  not left out: thermal strain: small\n"
+             "    without it an increment was not solved to its tolerance, "
+             "this is the run\n    with it\n");
+  must_print(listing_summary,
+             "  without thermal strain: changes the answer by at most "
+             "1.0e-01 of the energy norm,\n    2.0e-01 of the largest "
+             "stress, at each of 16 increments\n    17 of them solved again "
+             "with it: 3.0e-01 of the largest displacement or force\n");
+  made_up_free(made);
+}
+END_TEST
+
 /* ---- accuracy of the run ------------------------------------------------- */
 
 static status write_accuracy(const job *j, text_file *to) {
@@ -420,4 +575,5 @@ END_TEST
 
 UNIT_MAIN("listing", errors_of_an_increment, solutions_of_an_increment,
           theorems_of_an_increment, initial_state_has_its_worst_nodes,
+          model_and_its_sizes, equations_and_end, effects_left_out,
           counts_of_the_run, budget_goals_and_passes)
