@@ -335,14 +335,8 @@ static status carry_choices(const step *old, step *s) {
     s->share = old->share;
     s->check = old->check;
   }
-  if (!s->accuracy.given) {
-    s->accuracy = old->accuracy;
-    s->accuracy.given = 0;
-  }
-  if (!s->output.given) {
-    s->output = old->output;
-    s->output.given = 0;
-  }
+  if (!s->accuracy.given) s->accuracy = old->accuracy;
+  if (!s->output.given) s->output = old->output;
   if (!s->restart.given) s->restart.frequency = old->restart.frequency;
   for (int i = 0; i < old->print.n && !s->print.given; ++i) {
     if (old->print.requests[i].table & s->print.ended) continue;
