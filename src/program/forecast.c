@@ -348,17 +348,14 @@ static void print_fit(const model_of_cost *c) {
  * meshes scatter. */
 static double order_of(const model_of_cost *c, double full) {
   const trial *runs[] = {&c->deck, &c->coarse, &c->fine};
-  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  double x = 0.0, xx = 0.0, xy = 0.0;
   double two = -exponent(c->coarse.error, c->fine.error, c->coarse.unknowns,
                          c->fine.unknowns);
-  for (int i = 0; i < 3; ++i) {
-    x += log(runs[i]->unknowns) / 3.0;
-    y += log(runs[i]->error) / 3.0;
-  }
+  for (int i = 0; i < 3; ++i) x += log(runs[i]->unknowns) / 3.0;
   for (int i = 0; i < 3; ++i) {
     double dx = log(runs[i]->unknowns) - x;
     xx += dx * dx;
-    xy += dx * (log(runs[i]->error) - y);
+    xy += dx * log(runs[i]->error);
   }
   double order = two >= full ? two : fmax(two, fmin(-xy / xx, full));
   return within(0.5 * full, order, 1.1 * full);
