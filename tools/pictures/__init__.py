@@ -3,17 +3,13 @@ share. Needs numpy, h5py and matplotlib."""
 import pathlib
 import warnings
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-from matplotlib import colors, pyplot  # noqa: E402  behind the backend
+from matplotlib import colors, figure as figures, rcParams
 
 BLUE, RED, GREEN, GREY = "#1b4f9c", "#b5432a", "#2d7a3a", "#666666"
 OPEN, SLIP, STICK = "#ffffff", "#f2a100", "#b0124e"
 
 warnings.filterwarnings("ignore", "Glyph .* missing")
-pyplot.rcParams.update({
+rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 10, "axes.titlesize": 10.5,
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
     "grid.color": "#dddddd", "grid.linewidth": 0.6, "axes.axisbelow": True,
@@ -27,11 +23,15 @@ def plain(text):
     return str(text).replace("$", r"\$")
 
 
+def empty(width, height):
+    """A figure in inches; without pyplot, which takes long to load."""
+    return figures.Figure(figsize=(width, height), layout="constrained")
+
+
 def new(width=9.0, height=4.2, columns=1, ratios=None):
     """A figure in inches and its row of axes."""
-    figure, axes = pyplot.subplots(1, columns, figsize=(width, height),
-                                   layout="constrained", squeeze=False,
-                                   gridspec_kw={"width_ratios": ratios})
+    figure = empty(width, height)
+    axes = figure.subplots(1, columns, squeeze=False, width_ratios=ratios)
     figure.get_layout_engine().set(w_pad=0.08, wspace=0.04)
     return figure, axes
 
@@ -74,4 +74,3 @@ def save(figure, path):
             whole = image.convert("RGB")
         whole.quantize(palette=palette_of(whole), dither=0).save(path,
                                                                  optimize=True)
-    pyplot.close(figure)

@@ -3,9 +3,9 @@ import textwrap
 
 import matplotlib.tri
 import numpy as np
-from matplotlib import collections, pyplot
+from matplotlib import collections
 
-from . import BLUE, GREY, RED, legend_below, plain
+from . import BLUE, GREY, RED, empty, legend_below, plain
 from .body import (COLOURS, MAP, MARKS, boundary, colour_bar, comma, line_of,
                    marks, meaning, norm_of)
 from .results import Missing
@@ -176,9 +176,8 @@ def draw(job, title=None, abscissa=None, only=None):
     solid = job.dimension == 3
     wide = min(len(contacts), 2 if solid else 3)
     high = -(-len(contacts) // wide)
-    figure, axes = pyplot.subplots(
-        high, wide, squeeze=False, layout="constrained",
-        figsize=((5.2 if solid else 4.6) * wide + 1.4, 4.4 * high + 0.4))
+    figure = empty((5.2 if solid else 4.6) * wide + 1.4, 4.4 * high + 0.4)
+    axes = figure.subplots(high, wide, squeeze=False)
     for panel, contact in zip(axes.flat, contacts):
         if solid:
             draw_plane(figure, panel, job, contact, job.length)

@@ -3,9 +3,8 @@ import collections
 import pathlib
 
 import numpy as np
-from matplotlib import pyplot
 
-from . import BLUE, GREEN, GREY, RED, body, closed, legend_below
+from . import BLUE, GREEN, GREY, RED, body, closed, empty, legend_below
 
 Example = collections.namedtuple("Example", "name decks title draw view rows")
 EXAMPLES = {}
@@ -56,8 +55,7 @@ def draw_body(figure, axes, job, inset=None, **how):
 def picture(one, results):
     """The figure of an example from the results of its decks."""
     wide = one.view.get("width", 1.0)
-    figure = pyplot.figure(figsize=(9.6, 4.5 if one.rows == 1 else 6.2),
-                           layout="constrained")
+    figure = empty(9.6, 4.5 if one.rows == 1 else 6.2)
     figure.get_layout_engine().set(w_pad=0.08, wspace=0.05,
                                    rect=(0, 0, 0.985, 1))
     grid = figure.add_gridspec(one.rows, 2, width_ratios=(wide, 1))
@@ -73,7 +71,7 @@ def picture(one, results):
 
 def readme(plane, solid):
     """The picture of the README: a plane body and a contact in space."""
-    figure = pyplot.figure(figsize=(9.6, 4.9), layout="constrained")
+    figure = empty(9.6, 4.9)
     figure.get_layout_engine().set(w_pad=0.08, wspace=0.05,
                                    rect=(0, 0, 0.985, 1))
     left, right = figure.subplots(1, 2, width_ratios=(1, 1.12))

@@ -2,10 +2,9 @@
 import math
 
 from deck_tools import compared, load_done
-from matplotlib import pyplot
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from . import BLUE, GREEN, RED, legend_below, new, plain
+from . import BLUE, GREEN, RED, empty, legend_below, new, plain
 from .results import Missing
 
 COLOURS = (BLUE, RED, GREEN, "#6b4a9c", "#c77700", "#0b7a87")
@@ -74,9 +73,8 @@ def forces(job):
     totals = job.h5["totals"]
     time = job.h5["history/time"][...]
     names = [c.name for c in job.contacts if c.name in totals] or list(totals)
-    figure, axes = pyplot.subplots(
-        1, len(names), figsize=(4.2 * len(names) + 2, 3.6), squeeze=False,
-        layout="constrained")
+    figure = empty(4.2 * len(names) + 2, 3.6)
+    axes = figure.subplots(1, len(names), squeeze=False)
     for panel, contact in zip(axes[0], names):
         group = totals[contact]
         shown = [n for n in group if n.startswith("force_")]
