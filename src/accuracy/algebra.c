@@ -79,8 +79,7 @@ static int admissible(const contact_problem *cp, const pair *p) {
   return 1;
 }
 
-/* -, condition, or component of a motion, that is rounding */
-static const double NO_LEVER = 0x1p-44;
+static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding */
 
 /* y of G y = b in place of b[k]; 0: some motion has no force against it, or
  * only one with a lever arm of rounding. root[5 k], pivot[2 k] are workspace.
@@ -105,30 +104,59 @@ static int solve_balance(int k, double *G, double *b, double *root,
   return 1;
 }
 
+/* t: what rounding can have put into the rows of d, sums of m products. */
+static void row_roundings(const contact_problem *cp, pair *p) {
+  const double *M = contact_matrix(cp);
+  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
+  for (int i = 0; i < cp->m; ++i)
+    p->t[i] =
+        fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
+  if (cp->op != NULL) { /* room[m..] is free between two products */
+    double *size = cp->op->room + cp->m;
+    cp->op->apply(cp->op->ctx, x, cp->op->room, size);
+    for (int i = 0; i < cp->m; ++i) p->t[i] += size[i];
+  }
+  for (int j = 0; cp->op == NULL && j < cp->m; ++j) {
+    const double *column = M + (size_t)j * cp->m;
+    double size = fabs(x[j]);
+    for (int i = 0; size > 0.0 && i < cp->m; ++i)
+      p->t[i] += size * fabs(column[i]);
+  }
+  cblas_dscal(cp->m, 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m)), p->t, 1);
+}
+
+/* y = R' d, where rounding alone leaves a part of it: 0. 1: all of it is. */
+static int find_resultants(const contact_problem *cp,
+                           const inverse_energy *inverse, pair *p, double *y) {
+  int none = 1;
+  row_roundings(cp, p);
+  for (int c = 0; c < inverse->n_kernel; ++c) {
+    const double *motion = inverse->kernel + (size_t)cp->m * c;
+    double least = 0.0;
+    for (int i = 0; i < cp->m; ++i) least += fabs(motion[i]) * p->t[i];
+    y[c] = cblas_ddot(cp->m, motion, 1, p->d, 1);
+    if (fabs(y[c]) <= least) y[c] = 0.0;
+    none = none && y[c] == 0.0;
+  }
+  return none;
+}
+
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
                     pair *p, int *done) {
   int m = cp->m, k = inverse->n_kernel;
   OWNED double *Z = NULL, *G = NULL, *y = NULL, *root = NULL;
   OWNED int *pivot = NULL;
-  *done = 0;
-  if (cblas_dasum(m, p->d, 1) == 0.0) {
-    *done = 1;
-    return OK;
-  }
   PASS_NEW_ALL(OF(Z, (size_t)m * k), OF(G, (size_t)k * k), OF(y, k),
                OF(root, 5 * k), OF(pivot, 2 * k));
+  if ((*done = find_resultants(cp, inverse, p, y))) return OK;
   for (int c = 0; c < k; ++c) {
-    const double *motion = inverse->kernel + (size_t)m * c;
-    const double least = NO_LEVER * largest_entry(m, motion);
     double *z = Z + (size_t)m * c;
     for (int dof = 0; dof < m; ++dof)
-      if (fabs(motion[dof]) > least) z[dof] = slack(cp, p, dof) * motion[dof];
+      z[dof] = slack(cp, p, dof) * inverse->kernel[(size_t)m * c + dof];
     follow_limit(cp, p, z);
   }
   cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1.0,
               inverse->kernel, m, Z, m, 0.0, G, k);
-  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, inverse->kernel, m, p->d, 1,
-              0.0, y, 1);
   if (!solve_balance(k, G, y, root, pivot)) return OK;
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, Z, m, y, 1, 0.0, p->t, 1);
   for (int dof = 0; dof < m; ++dof) {
@@ -207,36 +235,21 @@ static double pair_distance(const contact_problem *cp, const double *u,
 static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal */
 
 /*
- * Largest |e|_inv(M) of what rounding can have put into d: its rows are sums
- * of m products. x' inv(M) x <= condition * sum x_i^2/D_ii, D the diagonal of M
- * or of what M is condensed from: where the body moves without energy, or its
- * forces follow from statics, M_ii may be rounding itself.
+ * Largest |e|_inv(M) of what rounding can have put into d. x' inv(M) x <=
+ * condition * sum x_i^2/D_ii, D the diagonal of M or of what M is condensed
+ * from: where the body moves without energy, or its forces follow from statics,
+ * M_ii may be rounding itself.
  */
 static double pair_rounding(const contact_problem *cp,
                             const inverse_energy *inverse, pair *p) {
-  const double *M = contact_matrix(cp);
-  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
-  double sum = 0.0, unit = 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m)), least = 0.0;
+  double sum = 0.0, least = 0.0;
   for (int i = 0; i < cp->m && inverse->n_kernel > 0; ++i)
     least = fmax(least, NO_PIVOT * contact_diagonal(cp, i));
-  for (int i = 0; i < cp->m; ++i)
-    p->t[i] =
-        fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
-  if (cp->op != NULL) { /* room[m..] is free between two products */
-    double *size = cp->op->room + cp->m;
-    cp->op->apply(cp->op->ctx, x, cp->op->room, size);
-    for (int i = 0; i < cp->m; ++i) p->t[i] += size[i];
-  }
-  for (int j = 0; cp->op == NULL && j < cp->m; ++j) {
-    const double *column = M + (size_t)j * cp->m;
-    double size = fabs(x[j]);
-    for (int i = 0; size > 0.0 && i < cp->m; ++i)
-      p->t[i] += size * fabs(column[i]);
-  }
+  row_roundings(cp, p);
   for (int i = 0; i < cp->m; ++i) {
     const double own = inverse->diagonal != NULL ? inverse->diagonal[i] : 0.0;
     const double of = fmax(fmax(contact_diagonal(cp, i), least), own);
-    sum += unit * p->t[i] * (unit * p->t[i] / of);
+    sum += p->t[i] * (p->t[i] / of);
   }
   return sqrt(inverse->condition * sum);
 }
