@@ -498,6 +498,38 @@ START_TEST(body_without_a_joint_below_is_named) {
 }
 END_TEST
 
+/* Node 0 alone joins the two, by a tie or by contact; they slide over each
+ * other, or turn about it. */
+START_TEST(bodies_joined_at_the_first_node_alone_are_one_set) {
+  mesh *a = make_grid_2d((int[]){2, 2}, (double[]){1, 1});
+  scene *s = scene_new(grid_join(a, a, (double[]){-1, -1}), PLANE_STRAIN, 1);
+  int at[] = {0}, above[] = {17};
+  double part[] = {1, 1};
+  node_links to = {2, 1, (size_t[]){0, 1}, above, part};
+  const tie_set ties = {1, at, to};
+  free_motion *list;
+  int n;
+  if (_i == 0) s->d.ties = &ties;
+  if (_i == 1) {
+    s->m->group[0].n_node = 1;
+    s->m->group[0].node_id[0] = 0;
+    scene_contact(s, "BODY", (double[]){0, -1}, 0);
+    s->surface.master = &to;
+  }
+  ck_assert_int_eq(domain_free_motions(&s->d, &n, &list), OK);
+  ck_assert_int_eq(n, _i == 0 ? 4 : 6);
+  for (int i = 0; i < n; ++i) {
+    ck_assert_int_eq(list[i].set_id, 0);
+    ck_assert_int_eq(list[i].held_by, i < 4    ? HELD_BY_NOTHING
+                                      : i == 4 ? HELD_BY_FRICTION
+                                               : HELD_BY_CONTACT);
+  }
+  memory_free(list);
+  memory_free(a);
+  scene_free(s);
+}
+END_TEST
+
 START_TEST(every_refused_request_is_survived) {
   stack *k = stack_new("OTP", sides[1], 0);
   scene *s = k->s;
@@ -549,6 +581,8 @@ int main(void) {
                       3);
   tcase_add_loop_test(tests, stack_of_three_is_one_set_held_by_contact, 0, 3);
   tcase_add_loop_test(tests, body_without_a_joint_below_is_named, 0, 3);
+  tcase_add_loop_test(tests, bodies_joined_at_the_first_node_alone_are_one_set,
+                      0, 2);
   tcase_add_test(tests, every_refused_request_is_survived);
   return unit_run("support", tests);
 }
