@@ -126,6 +126,12 @@ class Walls(unittest.TestCase):
     def test_each_contact_has_a_panel_in_its_plane(self):
         self.check(self.job)
 
+    def test_body_is_drawn_in_colours_of_its_stresses(self):
+        picture = pathlib.Path(f"{self.job}_body.svg")
+        tool("plot", "body", str(self.job), str(picture))
+        svg = picture.read_text(encoding="utf-8")
+        self.assertGreater(len(set(re.findall("fill: #......", svg))), 20)
+
     def test_table_alone_gives_the_same(self):
         alone = self.job.with_name("alone.dat")
         alone.write_bytes(self.job.with_suffix(".dat").read_bytes())

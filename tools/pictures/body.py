@@ -1,6 +1,6 @@
 """The body with its mesh, deformed, its obstacles and what its contacts do."""
 import numpy as np
-from matplotlib import cm, collections, colormaps, colors, lines
+from matplotlib import cm, collections, colors, lines
 
 from . import BLUE, GREY, OPEN, SLIP, STICK, legend_below
 from .results import STATUS
@@ -361,7 +361,7 @@ def draw_3d(axes, job, name=None, scale=None, elevation=None, azimuth=-60.0,
     values = element_values(job, name) if name else np.zeros(len(job.elements))
     norm, both = norm_of(values[owner])
     palette = "RdBu_r" if both else MAP
-    rgba = colormaps[palette](norm(values[owner]))
+    rgba = cm.ScalarMappable(norm, palette).to_rgba(values[owner])
     order = np.argsort(points[faces].mean(axis=1) @ view[2])
     rgba = lit(points[faces], view, rgba)
     edge = min(0.35, 40 / np.sqrt(len(faces)) / 10)
@@ -418,7 +418,7 @@ def draw_round(axes, job, name=None, scale=None, elevation=30.0, azimuth=-45.0,
                              np.radians(turn))
     norm, both = norm_of(values)
     palette = "RdBu_r" if both else MAP
-    rgba = lit(shapes, view, colormaps[palette](norm(found)))
+    rgba = lit(shapes, view, cm.ScalarMappable(norm, palette).to_rgba(found))
     order = np.argsort(shapes.mean(axis=1) @ view[2])
     axes.add_collection(collections.PolyCollection(
         (shapes @ view[:2].T)[order], facecolors=rgba[order],
