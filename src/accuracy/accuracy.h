@@ -123,11 +123,12 @@ void dense_inverse_solve(dense_inverse *d, const double *x, double *v);
 typedef struct pair {
   double *v, *q;         /* [m] m, N */
   double *d, *t;         /* [m] defect of the equation; workspace */
+  double *rounding;      /* [m] what rounding can have put into d */
   unsigned char *slides; /* [n] |q_t| = g */
 } pair;
 
 status pair_new(int n, int m, pair *p);
-/* v and q from a solution (u, r) by one step of the natural map. */
+/* v and q from a solution (u, r) by one step of the natural map; rounding. */
 void pair_set(const contact_problem *cp, const double *u, const double *r,
               pair *p);
 

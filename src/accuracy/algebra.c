@@ -104,36 +104,15 @@ static int solve_balance(int k, double *G, double *b, double *root,
   return 1;
 }
 
-/* t: what rounding can have put into the rows of d, sums of m products. */
-static void row_roundings(const contact_problem *cp, pair *p) {
-  const double *M = contact_matrix(cp);
-  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
-  for (int i = 0; i < cp->m; ++i)
-    p->t[i] =
-        fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
-  if (cp->op != NULL) { /* room[m..] is free between two products */
-    double *size = cp->op->room + cp->m;
-    cp->op->apply(cp->op->ctx, x, cp->op->room, size);
-    for (int i = 0; i < cp->m; ++i) p->t[i] += size[i];
-  }
-  for (int j = 0; cp->op == NULL && j < cp->m; ++j) {
-    const double *column = M + (size_t)j * cp->m;
-    double size = fabs(x[j]);
-    for (int i = 0; size > 0.0 && i < cp->m; ++i)
-      p->t[i] += size * fabs(column[i]);
-  }
-  cblas_dscal(cp->m, 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m)), p->t, 1);
-}
-
 /* y = R' d, where rounding alone leaves a part of it: 0. 1: all of it is. */
 static int find_resultants(const contact_problem *cp,
-                           const inverse_energy *inverse, pair *p, double *y) {
+                           const inverse_energy *inverse, const pair *p,
+                           double *y) {
   int none = 1;
-  row_roundings(cp, p);
   for (int c = 0; c < inverse->n_kernel; ++c) {
     const double *motion = inverse->kernel + (size_t)cp->m * c;
     double least = 0.0;
-    for (int i = 0; i < cp->m; ++i) least += fabs(motion[i]) * p->t[i];
+    for (int i = 0; i < cp->m; ++i) least += fabs(motion[i]) * p->rounding[i];
     y[c] = cblas_ddot(cp->m, motion, 1, p->d, 1);
     if (fabs(y[c]) <= least) y[c] = 0.0;
     none = none && y[c] == 0.0;
@@ -162,6 +141,7 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
   for (int dof = 0; dof < m; ++dof) {
     p->q[dof] += p->t[dof];
     p->d[dof] -= p->t[dof];
+    p->rounding[dof] += DBL_EPSILON * fabs(p->t[dof]);
   }
   *done = admissible(cp, p);
   return OK;
@@ -170,7 +150,7 @@ status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
 /* ---- the admissible pair ------------------------------------------------ */
 
 status pair_new(int n, int m, pair *p) {
-  PASS_NEW_REALS(m, &p->v, &p->q, &p->d, &p->t);
+  PASS_NEW_REALS(m, &p->v, &p->q, &p->d, &p->t, &p->rounding);
   PASS_NEW(p->slides, n);
   return OK;
 }
@@ -211,10 +191,32 @@ static void pair_friction(const contact_problem *cp, const double *u,
   }
 }
 
+/* The rows of d are sums of m products. */
+static void row_roundings(const contact_problem *cp, pair *p) {
+  const double *M = contact_matrix(cp);
+  const double *x = contact_has_stiffness(cp) ? p->v : p->q;
+  for (int i = 0; i < cp->m; ++i)
+    p->rounding[i] =
+        fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
+  if (cp->op != NULL) { /* room[m..] is free between two products */
+    double *size = cp->op->room + cp->m;
+    cp->op->apply(cp->op->ctx, x, cp->op->room, size);
+    for (int i = 0; i < cp->m; ++i) p->rounding[i] += size[i];
+  }
+  for (int j = 0; cp->op == NULL && j < cp->m; ++j) {
+    const double *column = M + (size_t)j * cp->m;
+    double size = fabs(x[j]);
+    for (int i = 0; size > 0.0 && i < cp->m; ++i)
+      p->rounding[i] += size * fabs(column[i]);
+  }
+  cblas_dscal(cp->m, 0.5 * DBL_EPSILON * (2.0 + sqrt(cp->m)), p->rounding, 1);
+}
+
 void pair_set(const contact_problem *cp, const double *u, const double *r,
               pair *p) {
   pair_normal(cp, u, r, p);
   pair_friction(cp, u, r, p);
+  row_roundings(cp, p);
 }
 
 /* |u - v|_A or |r - q|_W. */
@@ -241,15 +243,14 @@ static const double NO_PIVOT = 0x1p-44; /* -, of the largest diagonal */
  * M_ii may be rounding itself.
  */
 static double pair_rounding(const contact_problem *cp,
-                            const inverse_energy *inverse, pair *p) {
+                            const inverse_energy *inverse, const pair *p) {
   double sum = 0.0, least = 0.0;
   for (int i = 0; i < cp->m && inverse->n_kernel > 0; ++i)
     least = fmax(least, NO_PIVOT * contact_diagonal(cp, i));
-  row_roundings(cp, p);
   for (int i = 0; i < cp->m; ++i) {
     const double own = inverse->diagonal != NULL ? inverse->diagonal[i] : 0.0;
     const double of = fmax(fmax(contact_diagonal(cp, i), least), own);
-    sum += p->t[i] * (p->t[i] / of);
+    sum += p->rounding[i] * (p->rounding[i] / of);
   }
   return sqrt(inverse->condition * sum);
 }

@@ -217,8 +217,9 @@ static void check_xml(const job *j, const char *path) {
   free(text);
 }
 
-/* Over time: against closed forms, and ordinary differential equations solved
- * by SciPy to 1e-8 or better. */
+/* ---- over time: closed forms, and differential equations that SciPy solved
+ * to 1e-8 or better -------------------------------------------------------- */
+
 /* First row of table number k. */
 static double first_of(const job *j, const char *table, int k,
                        const char *column) {

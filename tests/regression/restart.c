@@ -259,8 +259,8 @@ START_TEST(path_on_a_moving_obstacle_goes_on) {
 }
 END_TEST
 
-/* Steps that creep, and one between that has no path beside the run: the errors
- * of the paths add up. */
+/* Steps that creep, and one between without an estimate in time: the errors of
+ * the others add up. */
 static job stepwise(void) {
   job j = small_creep(0.1, "", "INTEGRATOR=EULER");
   edit(&j, "*ACCURACY, TIME=YES\n",

@@ -46,7 +46,7 @@ static scene scene_new(double shear, int given) {
 }
 
 static void scene_free(scene *s) {
-  RELEASE(s->p.v, s->p.q, s->p.d, s->p.t, s->p.slides);
+  RELEASE(s->p.v, s->p.q, s->p.d, s->p.t, s->p.rounding, s->p.slides);
   memory_free(s->dense);
   case_free(&s->c);
 }
