@@ -636,7 +636,7 @@ static double end_for(const run *r, const line *l, weight *w, double x0) {
     const double L = beyond(w, l->s[k]);
     if (!(L > 0.0)) continue;
     const double p = -r->now.rc[2 * l->node[k]] * per_length(w, x);
-    w->n += p > 0.0;
+    w->n += is_closed(r, l, k);
     w->N1 += p * L;
     w->N2 += p * L * L;
   }
