@@ -157,6 +157,64 @@ START_TEST(blocks_slide_past_a_wall) {
 }
 END_TEST
 
+/* A block that hangs over the edge of another: whether its own top is among the
+ * masters, or that of a third above it too, what is beyond the edge meets
+ * nothing. */
+START_TEST(back_of_a_slave_is_no_partner) {
+  static const char *const masters[] = {"under", "under, top", "under, over"};
+  double is[3];
+  job j = job_begin("edge");
+  for (int k = 0; k < 3; ++k) {
+    job_write(&j, "edge.geo",
+              "Macro Quad\n"
+              "  q = newp; Point(q) = {a, b, 0}; Point(q+1) = {a+2, b, 0};\n"
+              "  Point(q+2) = {a+2, b+1, 0}; Point(q+3) = {a, b+1, 0};\n"
+              "  l = newl; Line(l) = {q, q+1}; Line(l+1) = {q+1, q+2};\n"
+              "  Line(l+2) = {q+2, q+3}; Line(l+3) = {q+3, q};\n"
+              "  Transfinite Curve{l, l+2} = 6;\n"
+              "  Transfinite Curve{l+1, l+3} = 4;\n"
+              "  Curve Loop(l) = {l:l+3}; Plane Surface(l) = {l};\n"
+              "  Transfinite Surface{l}; s[] = {l, l, l+1, l+2, l+3};\n"
+              "  If (space)\n"
+              "    s[] = Extrude {0, 0, 0.5} { Surface{l}; Layers{1}; };\n"
+              "    s[] = {s[1], s[2], s[3], s[4], s[5]};\n  EndIf\nReturn\n"
+              "space = %d;\na = 0; b = 0; Call Quad;\n"
+              "foot = s[1]; under = s[3]; body[] = {s[0]};\n"
+              "a = 0.7; b = 1; Call Quad;\n"
+              "bottom = s[1]; top = s[3]; body[] += {s[0]};\n"
+              "a = 0.7; b = 2.4; Call Quad;\nover = s[3]; lid = s[1];\n"
+              "body[] += {s[0]};\n"
+              "Physical %s(\"BODY\") = {body[]};\n"
+              "Physical %s(\"FOOT\") = {foot, lid};\n"
+              "Physical %s(\"UNDER\") = {%s};\n"
+              "Physical %s(\"OVER\") = {bottom};\n"
+              "Physical %s(\"TOP\") = {top};\n",
+              _i, _i ? "Volume" : "Surface", _i ? "Surface" : "Curve",
+              _i ? "Surface" : "Curve", masters[k], _i ? "Surface" : "Curve",
+              _i ? "Surface" : "Curve");
+    job_write(&j, "edge.inp",
+              "*MESH, FILE=edge.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*CONTACT PAIR, NAME=P, SLAVE=SECOND\nUNDER, OVER\n"
+              "*FRICTION, CONTACT=P, LAW=COULOMB\n0.5\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nFOOT, 1, %d\n*DSLOAD\nTOP, P, 1.\n"
+              "*PRINT, TOTALS, CONTACT\n*END STEP\n",
+              2 + _i);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    ck_assert_ptr_null(strstr(j.errors, "P4004"));
+    dat all = job_table(&j, "TOTALS", -1), c = job_table(&j, "CONTACT", -1);
+    ck_assert_double_eq_tol(dat_at(&all, 0, "normal"), _i ? 1.0 : 2.0, 1e-9);
+    is[k] = 0.0;
+    for (int i = 0; i < c.n_row; ++i)
+      is[k] = fmax(is[k], dat_at(&c, i, "pressure"));
+    ck_assert_double_eq_tol(is[k], is[0], 1e-9);
+    dat_free(&c);
+    dat_free(&all);
+  }
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("pair_supports");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -164,5 +222,6 @@ int main(void) {
                       2);
   tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 8);
   tcase_add_loop_test(tests, blocks_slide_past_a_wall, 0, 6);
+  tcase_add_loop_test(tests, back_of_a_slave_is_no_partner, 0, 2);
   return unit_run("pair_supports", tests);
 }

@@ -691,10 +691,10 @@ START_TEST(bad_pairs_are_told) {
       /* a share of 0.16 % of the area of the nodes at the ends */
       {"*PARAMETER\nC = 0.24\n*TIE, NAME=P, SLAVE=FIRST\nUNDER, OVER\n",
        "P4025: *TIE P: 2 of 5 nodes of UNDER have no partner on OVER", 0},
-      {"*CONTACT PAIR, NAME=P, ADJUST=YES\nLEFT, RIGHT\n", "are up to 1 apart",
-       2},
-      {"*CONTACT PAIR, NAME=P, ADJUST=YES\nRIGHT, LEFT\n", "are up to 1 apart",
-       2}};
+      {"*PARAMETER\nG = -0.3\n*CONTACT PAIR, NAME=P, ADJUST=YES\nUNDER, OVER\n",
+       "are up to 0.3 apart", 2},
+      /* the sides of one body */
+      {"*CONTACT PAIR, NAME=P\nRIGHT, LEFT\n", "P4023", 2}};
   job j = job_begin("bad");
   job_copy(&j, "tests/regression/mesh/pair.geo");
   job_write(&j, "bad.inp",

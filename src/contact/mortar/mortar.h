@@ -14,8 +14,9 @@
  * that is a face of the master that opposes the slave face: the product of the
  * unit normals is below 0 by more than rounding. Other faces hide what is
  * behind them on their side: those of the master that do not oppose, and those
- * of the slave but for the face itself and its neighbours. So the back of a
- * thin body or the far side of a ring is no partner, provided that the groups
+ * of the slave but for the face itself and its neighbours; and the back of the
+ * slave's body, where the line leaves it, hides itself and what is behind it
+ * (back.c). So the far side of a ring is no partner, provided that the groups
  * hold the faces in between. Nothing is a partner beyond the diagonal of the
  * box round the larger surface.
  *

@@ -92,9 +92,11 @@ static box_beam beam_of(const facet *f, double low, double high) {
   return b;
 }
 
-/* Height of the partner above the middle of the cells. */
-static double middle_height(int dim, const partner *p, const cell *cells) {
-  double sum = 0.0, total = 0.0;
+/* Height of the partner above the middle of the cells, which is at x[dim]. */
+static double middle_height(const facet *f, const partner *p, const cell *cells,
+                            double *x) {
+  const int dim = f->dim;
+  double sum = 0.0, total = 0.0, middle[2] = {0, 0};
   for (int i = p->first; i < p->first + p->n; ++i) {
     double phi[3], at[2] = {0, 0};
     const double measure = cell_measure(dim, &cells[i]);
@@ -102,8 +104,12 @@ static double middle_height(int dim, const partner *p, const cell *cells) {
       for (int c = 0; c < dim - 1; ++c) at[c] += cells[i].at[k][c] / dim;
     cell_functions(dim, &p->s.in_plane, at, phi);
     sum += measure * dot(dim, phi, p->s.height);
+    add_scaled(dim - 1, measure, at, middle);
     total += measure;
   }
+  COPY(x, f->origin, dim);
+  for (int a = 0; a < dim - 1; ++a)
+    add_scaled(dim, middle[a] / total, f->axis[a], x);
   return sum / total;
 }
 
@@ -114,8 +120,10 @@ static double cells_measure(int dim, int n, const cell *cells) {
 }
 
 /* Clip with one face; it joins the list if something is in common. */
-static status try_face(partner_search *s, const facet *f, partner p) {
+static status try_face(partner_search *s, int face, const facet *f, partner p) {
   const int dim = f->dim;
+  double x[3];
+  int is_behind = 0;
   cell common[CLIP_CELLS];
   facet_project(f, mortar_nodes(s->in, p.face), s->in->x, &p.s);
   ++s->clips;
@@ -128,8 +136,11 @@ static status try_face(partner_search *s, const facet *f, partner p) {
     PASS_GROW(s->cells, s->n_cell, s->cell_capacity);
     s->cells[s->n_cell++] = common[i];
   }
-  p.height = middle_height(dim, &p, s->cells);
+  p.height = middle_height(f, &p, s->cells, x);
   if (fabs(p.height) > s->reach) return OK;
+  if (p.hides == PARTNER && p.height < 0)
+    PASS(partner_is_behind(s, face, f, x, &p, &is_behind));
+  if (is_behind) return OK;
   PASS_GROW(s->list, s->n, s->capacity);
   s->list[s->n++] = p;
   return OK;
@@ -280,7 +291,7 @@ static status add_masters(partner_search *s, int face, const facet *f) {
                                     ? PARTNER
                                     : HIDING_MASTER,
                        .size = m->measure};
-    if (m->measure > 0 && p.face != face) PASS(try_face(s, f, p));
+    if (m->measure > 0 && p.face != face) PASS(try_face(s, face, f, p));
   }
   return OK;
 }
@@ -306,7 +317,7 @@ static status add_slaves(partner_search *s, int face, const facet *f) {
     const partner p = {.face = s->in->slave[s->found[i]],
                        .hides = HIDING_SLAVE};
     if (share_node(dim, node, mortar_nodes(s->in, p.face))) continue;
-    if (!is_listed(s, n_master, p.face)) PASS(try_face(s, f, p));
+    if (!is_listed(s, n_master, p.face)) PASS(try_face(s, face, f, p));
   }
   return OK;
 }

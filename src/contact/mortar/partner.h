@@ -48,6 +48,8 @@ typedef struct partner_search {
   int n_cell, cell_capacity;
   cell *rest; /* workspace */
   int rest_capacity;
+  size_t *around;   /* [n_node+1] elements around a node: */
+  int *around_elem; /* [around[n_node]]; or NULL, not needed so far */
   long clips;
 } partner_search;
 
@@ -57,6 +59,10 @@ status partner_search_new(const mortar_input *in, partner_search *s);
 double partner_rounding(const partner_search *s, const facet *f);
 /* list and cells of this slave face. */
 status partner_find(partner_search *s, int face, const facet *f);
+/* back.c: 1: partner p, below the face "from", is the back of its body or is
+ * behind that, on the line through x, a point of the face that p covers. */
+status partner_is_behind(partner_search *s, int from, const facet *f,
+                         const double *x, const partner *p, int *is);
 
 /*
  * bulge.c: heights of a curved surface over its flat faces, m, outwards, at
