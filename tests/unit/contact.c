@@ -243,6 +243,14 @@ START_TEST(compliance_form_measures_the_same_state) {
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
   r[1] = -4.4; /* W_tt dr = 0.2, scale q_t = 2.5                              */
   ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.2 / 2.5, 1e-13);
+  /* a gap of 1: pressed by 4, 0.4 of friction is a tenth of that             */
+  c.gap[0] = u[0] = 1.0;
+  r[0] = -4.0;
+  r[1] = -2.0;
+  u[1] = 1.5;
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  r[1] = -2.4;
+  ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.1, 1e-13);
   case_free(&c);
 }
 END_TEST
@@ -269,6 +277,23 @@ START_TEST(statuses_of_a_row_of_nodes) {
   ck_assert_mem_eq(stopped, known, sizeof known);
   ck_assert(force[4] == -4.0 && force[6] == 0.0);
   case_free(&c);
+}
+END_TEST
+
+/* Friction within the rounding, over the limit of the node, not less than what
+ * is called none; over the given force where that is larger. */
+START_TEST(hidden_friction_is_a_part_of_the_limit) {
+  static const double mu[] = {1e-12, 0.5, 2.0}, part[] = {0x1p-30, 0.5, 1.0};
+  const double u[2] = {0.0, 1e-17}, r[2] = {-8.0, 0.0}, own = 16.0;
+  for (int k = 0; k < 3; ++k) {
+    contact_case c = one_node(4.0, 2.0, mu[k]);
+    const double want = 2e-17 / (part[k] * 8.0);
+    c.f[0] = 8.0;
+    ck_assert_double_eq_tol(contact_hidden(&c.cp, u, r, NULL) / want, 1, 1e-12);
+    ck_assert_double_eq_tol(contact_hidden(&c.cp, u, r, &own) / want, 0.5,
+                            1e-12);
+    case_free(&c);
+  }
 }
 END_TEST
 
@@ -527,6 +552,7 @@ UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
           node_at_its_limit_sticks_until_it_moves,
+          hidden_friction_is_a_part_of_the_limit,
           forces_of_rounding_are_dropped, second_obstacle_bounds_the_tangent,
           held_tangent_takes_no_friction, what_only_carries_is_not_in_the_scale,
           bodies_are_measured_apart, unlike_nodes_of_a_body_are_measured_apart)

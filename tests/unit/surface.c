@@ -142,6 +142,26 @@ START_TEST(plane_has_one_normal_whatever_its_triangles) {
 }
 END_TEST
 
+/* A square of two triangles: a third of either is that of the tied corner. */
+START_TEST(area_of_a_tied_corner_is_shared_by_the_others) {
+  static const double area[] = {0.25, 0.5, 0.25};
+  int tied = 0;
+  size_t start[2] = {0, 0};
+  face_scene c;
+  faces_begin(&c, 3);
+  for (int i = 0; i < 4; ++i) faces_node(&c, i % 3 > 0, i > 1, 0);
+  faces_face(&c, 0, 1, 2);
+  faces_face(&c, 0, 2, 3);
+  faces_contact(&c, "LID", 0, 2);
+  c.in.ties = &(tie_set){1, &tied, {.dim = 3, .n = 1, .start = start}};
+  ck_assert_int_eq(faces_build(&c), OK);
+  ck_assert_int_eq(c.s->n, 3);
+  for (int i = 0; i < 3; ++i)
+    ck_assert_double_eq_tol(c.s->area[i], area[i], 1e-15);
+  faces_end(&c);
+}
+END_TEST
+
 START_TEST(fixed_direction_is_held_as_tangent) {
   face_scene c;
   faces_flat_bottom(&c, 4);
@@ -511,6 +531,7 @@ UNIT_MAIN("surface", areas_of_a_polyline_are_half_sums_times_thickness,
           axisymmetric_areas_are_integrals_around_the_axis,
           normals_of_a_circle_are_radial, normals_and_areas_of_an_octahedron,
           plane_has_one_normal_whatever_its_triangles,
+          area_of_a_tied_corner_is_shared_by_the_others,
           fixed_direction_is_held_as_tangent,
           nodes_fixed_along_the_normal_are_left_out_and_named,
           gap_is_measured_along_the_normal_of_the_node,
