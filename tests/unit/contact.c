@@ -119,14 +119,55 @@ START_TEST(weak_body_is_judged_by_its_own_loads) {
 }
 END_TEST
 
+/* Two nodes on a spring of 4, in weak springs. */
+static contact_case free_body(double spring) {
+  contact_case c = case_new(2, 2, 0.0);
+  c.A[0] = c.A[10] = 4.0 + spring;
+  c.A[2] = c.A[8] = -4.0;
+  return c;
+}
+
+/* A force of 1e-12 on a body that is on its way to, or from its obstacle: it
+ * counts over 2^-14 of the force that the shorter of way and gap makes. */
+START_TEST(free_fall_through_a_gap_is_in_the_scale) {
+  static const double way[] = {0.5, -1.0}, gap[] = {2.0, -0.25};
+  for (int k = 0; k < 2; ++k) {
+    contact_case c = free_body(0.0);
+    const double u[4] = {way[k], 0, way[k], 0}, r[4] = {0};
+    const double least = 0x1p-14 * 4 * fmin(fabs(way[k]), fabs(gap[k]));
+    c.gap[0] = c.gap[1] = gap[k];
+    c.f[0] = 1e-12;
+    ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 1e-12 / least,
+                            0.05e-12 / least);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Far from its obstacle by a weak load: a drift, but not where that is no rigid
+ * motion, nor where the body has been. */
+START_TEST(soft_body_does_not_drift) {
+  static const double along[4] = {0, M_SQRT1_2, 0, M_SQRT1_2};
+  for (int known = 0; known < 3; ++known) {
+    contact_case c = free_body(0x1p-20);
+    const double u[4] = {-1, 0, -1, 0}, r[4] = {0};
+    c.f[0] = c.f[2] = -0x1p-20;
+    c.cp.floating = 1;
+    c.cp.motion = along;
+    c.cp.n_motion = known == 1;
+    c.cp.moved = known == 2;
+    ck_assert((contact_residual(&c.cp, u, r) > 0.0) == !known);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* A free body that lies on its obstacle: the load that is left of 1 N is
  * rounding, and so is what it presses. */
 START_TEST(rounding_of_the_loads_is_no_load) {
-  contact_case c = case_new(2, 2, 0.0);
+  contact_case c = free_body(0.0);
   const double u[4] = {-0.25, 0.0, -0.25, 0.0}, r[4] = {-1e-16, 0.0, 0.0, 0.0};
   contact_status state[2];
-  c.A[0] = c.A[10] = 4.0;
-  c.A[2] = c.A[8] = -4.0;
   c.gap[0] = c.gap[1] = -0.25;
   c.f[0] = 1e-16;
   for (int known = 0; known < 2; ++known) {
@@ -548,6 +589,7 @@ UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
           weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
           scale_is_above_rounding_of_loads_and_of_the_way,
           rounding_of_the_loads_is_no_load,
+          free_fall_through_a_gap_is_in_the_scale, soft_body_does_not_drift,
           closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
