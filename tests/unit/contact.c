@@ -199,6 +199,38 @@ START_TEST(scale_is_of_the_problem) {
   ck_assert_double_eq_tol(contact_scale(&c.cp), 1e-3, 1e-12);
   c.f[1] = 6.0; /* nothing but rounding left                                  */
   ck_assert(contact_scale(&c.cp) == 0x1p-14 * 12.0);
+  /* held 3 along the floor, which takes 3 off the load of 8 */
+  const unsigned char held[2] = {0, 1};
+  c.cp.held = held;
+  c.A[1] = c.A[2] = 1.0;
+  c.f[0] = 8.0;
+  ck_assert(contact_scale(&c.cp) == 5.0);
+  /* of a compliance the way to the moved stick position */
+  c.cp.held = NULL;
+  c.cp.W = c.A;
+  c.cp.A = NULL;
+  c.f[0] = 0.5;
+  ck_assert(contact_scale(&c.cp) == 6.0 - 3.0);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(stiffness_of_tangents_and_of_a_motion) {
+  contact_case c = case_new(3, 1, 0.5);
+  unsigned char held[3] = {0, 0, 0};
+  const double v[3] = {0.0, 0.0, 10.0};
+  c.A[0] = 4.0;
+  c.A[4] = 2.0;
+  ck_assert_double_eq_tol(contact_resistance(&c.cp, v, 1e-10),
+                          3.0 * DBL_EPSILON / 1e-10 * 4.0 * 10.0, 1e-16);
+  c.A[8] = 3.0;
+  ck_assert(contact_resistance(&c.cp, v, 1e-10) == 30.0);
+  c.cp.held = held;
+  ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 2.5);
+  held[1] = 1;
+  ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 3.0);
+  held[2] = 1;
+  ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 7.0);
   case_free(&c);
 }
 END_TEST
@@ -587,6 +619,7 @@ UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
           residual_is_zero_for_solved_node, residual_is_that_of_all_nodes,
           each_broken_condition_shows_by_its_size,
           weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
+          stiffness_of_tangents_and_of_a_motion,
           scale_is_above_rounding_of_loads_and_of_the_way,
           rounding_of_the_loads_is_no_load,
           free_fall_through_a_gap_is_in_the_scale, soft_body_does_not_drift,
