@@ -119,14 +119,55 @@ START_TEST(weak_body_is_judged_by_its_own_loads) {
 }
 END_TEST
 
+/* Two nodes on a spring of 4, in weak springs. */
+static contact_case free_body(double spring) {
+  contact_case c = case_new(2, 2, 0.0);
+  c.A[0] = c.A[10] = 4.0 + spring;
+  c.A[2] = c.A[8] = -4.0;
+  return c;
+}
+
+/* A force of 1e-12 on a body that is on its way to, or from its obstacle: it
+ * counts over 2^-14 of the force that the shorter of way and gap makes. */
+START_TEST(free_fall_through_a_gap_is_in_the_scale) {
+  static const double way[] = {0.5, -1.0}, gap[] = {2.0, -0.25};
+  for (int k = 0; k < 2; ++k) {
+    contact_case c = free_body(0.0);
+    const double u[4] = {way[k], 0, way[k], 0}, r[4] = {0};
+    const double least = 0x1p-14 * 4 * fmin(fabs(way[k]), fabs(gap[k]));
+    c.gap[0] = c.gap[1] = gap[k];
+    c.f[0] = 1e-12;
+    ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 1e-12 / least,
+                            0.05e-12 / least);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Far from its obstacle by a weak load: a drift, but not where that is no rigid
+ * motion, nor where the body has been. */
+START_TEST(soft_body_does_not_drift) {
+  static const double along[4] = {0, M_SQRT1_2, 0, M_SQRT1_2};
+  for (int known = 0; known < 3; ++known) {
+    contact_case c = free_body(0x1p-20);
+    const double u[4] = {-1, 0, -1, 0}, r[4] = {0};
+    c.f[0] = c.f[2] = -0x1p-20;
+    c.cp.floating = 1;
+    c.cp.motion = along;
+    c.cp.n_motion = known == 1;
+    c.cp.moved = known == 2;
+    ck_assert((contact_residual(&c.cp, u, r) > 0.0) == !known);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* A free body that lies on its obstacle: the load that is left of 1 N is
  * rounding, and so is what it presses. */
 START_TEST(rounding_of_the_loads_is_no_load) {
-  contact_case c = case_new(2, 2, 0.0);
+  contact_case c = free_body(0.0);
   const double u[4] = {-0.25, 0.0, -0.25, 0.0}, r[4] = {-1e-16, 0.0, 0.0, 0.0};
   contact_status state[2];
-  c.A[0] = c.A[10] = 4.0;
-  c.A[2] = c.A[8] = -4.0;
   c.gap[0] = c.gap[1] = -0.25;
   c.f[0] = 1e-16;
   for (int known = 0; known < 2; ++known) {
@@ -158,6 +199,38 @@ START_TEST(scale_is_of_the_problem) {
   ck_assert_double_eq_tol(contact_scale(&c.cp), 1e-3, 1e-12);
   c.f[1] = 6.0; /* nothing but rounding left                                  */
   ck_assert(contact_scale(&c.cp) == 0x1p-14 * 12.0);
+  /* held 3 along the floor, which takes 3 off the load of 8 */
+  const unsigned char held[2] = {0, 1};
+  c.cp.held = held;
+  c.A[1] = c.A[2] = 1.0;
+  c.f[0] = 8.0;
+  ck_assert(contact_scale(&c.cp) == 5.0);
+  /* of a compliance the way to the moved stick position */
+  c.cp.held = NULL;
+  c.cp.W = c.A;
+  c.cp.A = NULL;
+  c.f[0] = 0.5;
+  ck_assert(contact_scale(&c.cp) == 6.0 - 3.0);
+  case_free(&c);
+}
+END_TEST
+
+START_TEST(stiffness_of_tangents_and_of_a_motion) {
+  contact_case c = case_new(3, 1, 0.5);
+  unsigned char held[3] = {0, 0, 0};
+  const double v[3] = {0.0, 0.0, 10.0};
+  c.A[0] = 4.0;
+  c.A[4] = 2.0;
+  ck_assert_double_eq_tol(contact_resistance(&c.cp, v, 1e-10),
+                          3.0 * DBL_EPSILON / 1e-10 * 4.0 * 10.0, 1e-16);
+  c.A[8] = 3.0;
+  ck_assert(contact_resistance(&c.cp, v, 1e-10) == 30.0);
+  c.cp.held = held;
+  ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 2.5);
+  held[1] = 1;
+  ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 3.0);
+  held[2] = 1;
+  ck_assert(contact_tangent_diagonal(&c.cp, 0, 7.0) == 7.0);
   case_free(&c);
 }
 END_TEST
@@ -243,6 +316,14 @@ START_TEST(compliance_form_measures_the_same_state) {
   ck_assert(contact_residual(&c.cp, u, r) == 0.0);
   r[1] = -4.4; /* W_tt dr = 0.2, scale q_t = 2.5                              */
   ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.2 / 2.5, 1e-13);
+  /* a gap of 1: pressed by 4, 0.4 of friction is a tenth of that             */
+  c.gap[0] = u[0] = 1.0;
+  r[0] = -4.0;
+  r[1] = -2.0;
+  u[1] = 1.5;
+  ck_assert(contact_residual(&c.cp, u, r) == 0.0);
+  r[1] = -2.4;
+  ck_assert_double_eq_tol(contact_residual(&c.cp, u, r), 0.1, 1e-13);
   case_free(&c);
 }
 END_TEST
@@ -269,6 +350,23 @@ START_TEST(statuses_of_a_row_of_nodes) {
   ck_assert_mem_eq(stopped, known, sizeof known);
   ck_assert(force[4] == -4.0 && force[6] == 0.0);
   case_free(&c);
+}
+END_TEST
+
+/* Friction within the rounding, over the limit of the node, not less than what
+ * is called none; over the given force where that is larger. */
+START_TEST(hidden_friction_is_a_part_of_the_limit) {
+  static const double mu[] = {1e-12, 0.5, 2.0}, part[] = {0x1p-30, 0.5, 1.0};
+  const double u[2] = {0.0, 1e-17}, r[2] = {-8.0, 0.0}, own = 16.0;
+  for (int k = 0; k < 3; ++k) {
+    contact_case c = one_node(4.0, 2.0, mu[k]);
+    const double want = 2e-17 / (part[k] * 8.0);
+    c.f[0] = 8.0;
+    ck_assert_double_eq_tol(contact_hidden(&c.cp, u, r, NULL) / want, 1, 1e-12);
+    ck_assert_double_eq_tol(contact_hidden(&c.cp, u, r, &own) / want, 0.5,
+                            1e-12);
+    case_free(&c);
+  }
 }
 END_TEST
 
@@ -521,12 +619,15 @@ UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
           residual_is_zero_for_solved_node, residual_is_that_of_all_nodes,
           each_broken_condition_shows_by_its_size,
           weak_body_is_judged_by_its_own_loads, scale_is_of_the_problem,
+          stiffness_of_tangents_and_of_a_motion,
           scale_is_above_rounding_of_loads_and_of_the_way,
           rounding_of_the_loads_is_no_load,
+          free_fall_through_a_gap_is_in_the_scale, soft_body_does_not_drift,
           closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
           node_at_its_limit_sticks_until_it_moves,
+          hidden_friction_is_a_part_of_the_limit,
           forces_of_rounding_are_dropped, second_obstacle_bounds_the_tangent,
           held_tangent_takes_no_friction, what_only_carries_is_not_in_the_scale,
           bodies_are_measured_apart, unlike_nodes_of_a_body_are_measured_apart)

@@ -61,10 +61,13 @@ START_TEST(fixed_side_of_a_corner_is_dropped) {
 }
 END_TEST
 
-/* One obstacle, one smooth surface: its parts share the node in between. */
+/* One obstacle, one smooth surface: its parts share the node in between, with
+ * the mean of their normals by area, (-0.1, -0.5). */
 START_TEST(contacts_side_by_side_on_one_obstacle_are_one_surface) {
+  const double length = hypot(0.25, 0.1);
   face_scene c;
   faces_flat_bottom(&c, 4);
+  c.x[1] = 0.1;
   faces_contact(&c, "LEFT", 0, 1);
   faces_contact(&c, "RIGHT", 1, 4);
   c.pair[1].support = c.pair[0].support;
@@ -73,8 +76,10 @@ START_TEST(contacts_side_by_side_on_one_obstacle_are_one_surface) {
   ck_assert_int_eq(c.s->n, 5);
   ck_assert_int_eq(c.s->contact_id[1], 0);
   ck_assert_int_eq(c.s->side_id[1], -1);
-  ck_assert_double_eq(c.s->area[1], 0.25);
-  ck_assert_double_eq_tol(faces_area(c.s), 1, 1e-15);
+  ck_assert_double_eq_tol(c.s->area[1], 0.125 + length / 2, 1e-15);
+  ck_assert_double_eq_tol(faces_area(c.s), 0.75 + length, 1e-15);
+  ck_assert_double_eq_tol(c.s->frame[4], -sqrt(1.0 / 26), 1e-15);
+  ck_assert_double_eq_tol(c.s->frame[5], -sqrt(25.0 / 26), 1e-15);
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
   faces_end(&c);
 }

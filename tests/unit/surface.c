@@ -142,6 +142,26 @@ START_TEST(plane_has_one_normal_whatever_its_triangles) {
 }
 END_TEST
 
+/* A square of two triangles: a third of either is that of the tied corner. */
+START_TEST(area_of_a_tied_corner_is_shared_by_the_others) {
+  static const double area[] = {0.25, 0.5, 0.25};
+  int tied = 0;
+  size_t start[2] = {0, 0};
+  face_scene c;
+  faces_begin(&c, 3);
+  for (int i = 0; i < 4; ++i) faces_node(&c, i % 3 > 0, i > 1, 0);
+  faces_face(&c, 0, 1, 2);
+  faces_face(&c, 0, 2, 3);
+  faces_contact(&c, "LID", 0, 2);
+  c.in.ties = &(tie_set){1, &tied, {.dim = 3, .n = 1, .start = start}};
+  ck_assert_int_eq(faces_build(&c), OK);
+  ck_assert_int_eq(c.s->n, 3);
+  for (int i = 0; i < 3; ++i)
+    ck_assert_double_eq_tol(c.s->area[i], area[i], 1e-15);
+  faces_end(&c);
+}
+END_TEST
+
 START_TEST(fixed_direction_is_held_as_tangent) {
   face_scene c;
   faces_flat_bottom(&c, 4);
@@ -160,6 +180,27 @@ START_TEST(fixed_direction_is_held_as_tangent) {
   }
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
   faces_end(&c);
+}
+END_TEST
+
+/* The end of an arc at x = 1: smooth across a plane of symmetry, all of whose
+ * nodes are held, two at least; else it leans as its face. */
+START_TEST(held_end_of_an_arc_leans_without_symmetry) {
+  const double pi = acos(-1);
+  for (int other = 0; other < 3; ++other) { /* none, free, held */
+    face_scene c;
+    faces_begin(&c, 2);
+    for (int i = -4; i <= 0; ++i)
+      faces_node(&c, 1 + sin(i * pi / 12), 1 - cos(i * pi / 12), 0);
+    for (int i = 0; i < 4; ++i) faces_face(&c, i, i + 1, 0);
+    if (other > 0) c.fixed[faces_node(&c, 1, 2, 0)] = other > 1;
+    c.fixed[4] = 1;
+    faces_contact(&c, "ARC", 0, 4);
+    ck_assert_int_eq(faces_build(&c), OK);
+    ck_assert_double_eq_tol(c.s->frame[16], other > 1 ? 0 : -sin(pi / 24),
+                            1e-15);
+    faces_end(&c);
+  }
 }
 END_TEST
 
@@ -431,6 +472,26 @@ START_TEST(turned_normals_of_a_disc_in_a_bush_are_told) {
 }
 END_TEST
 
+/* A plane below the end of a flat bottom leans by 0.005 rad, which a node held
+ * along the bottom does not see. */
+START_TEST(held_node_sees_no_turned_normal) {
+  for (int held = 0; held < 2; ++held) {
+    face_scene c;
+    faces_flat_bottom(&c, 2);
+    c.fixed[2] = held > 0;
+    faces_contact(&c, "FOOT", 0, 2);
+    c.support[0] = (obstacle){.name = "SLOPE",
+                              .shape = OBSTACLE_PLANE,
+                              .point = {1, 0, 0},
+                              .direction = {-sin(0.005), cos(0.005), 0}};
+    ck_assert_int_eq(faces_build(&c), OK);
+    ck_assert_int_eq(faces_said(&c, "up to 0.005 rad"), !held);
+    ck_assert_int_eq(faces_said(&c, "P4018"), !held);
+    faces_end(&c);
+  }
+}
+END_TEST
+
 START_TEST(sphere_off_the_axis_is_refused) {
   face_scene c;
   faces_flat_bottom(&c, 4);
@@ -511,7 +572,9 @@ UNIT_MAIN("surface", areas_of_a_polyline_are_half_sums_times_thickness,
           axisymmetric_areas_are_integrals_around_the_axis,
           normals_of_a_circle_are_radial, normals_and_areas_of_an_octahedron,
           plane_has_one_normal_whatever_its_triangles,
+          area_of_a_tied_corner_is_shared_by_the_others,
           fixed_direction_is_held_as_tangent,
+          held_end_of_an_arc_leans_without_symmetry,
           nodes_fixed_along_the_normal_are_left_out_and_named,
           gap_is_measured_along_the_normal_of_the_node,
           nodes_out_of_reach_are_left_out_with_a_note,
@@ -525,6 +588,6 @@ UNIT_MAIN("surface", areas_of_a_polyline_are_half_sums_times_thickness,
           groups_that_are_no_boundary_are_refused,
           fin_without_thickness_has_no_normal,
           turned_normals_of_a_disc_in_a_bush_are_told,
-          sphere_off_the_axis_is_refused,
+          held_node_sees_no_turned_normal, sphere_off_the_axis_is_refused,
           lengths_times_a_power_of_two_scale_every_bit,
           refused_memory_is_reported_and_given_back)
