@@ -455,6 +455,28 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
+/* Next to an end of a line that is no plane of symmetry there is no peak, and
+ * where nothing is closed no zone, nor a largest pressure. */
+START_TEST(pressures_at_ends_and_of_an_open_contact) {
+  static const char *const at[] = {"F1", "0., 0.", "F2", "2., 0.",
+                                   "R1", "0., 1.", "R2", "2., 1."};
+  char cards[700] = PLANE CONTACT
+      "*OBSTACLE, NAME=FAR, TYPE=PLANE\n0., 9.\n0., -1.\n"
+      "*CONTACT, NAME=ROOF, GROUP=TOP, OBSTACLE=FAR\n"
+      "*GOAL, NAME=OPEN, QUANTITY=PRESSURE, CONTACT=ROOF\n";
+  for (int k = 0; k < 4; ++k)
+    snprintf(strchr(cards, '\0'), 100,
+             "*GOAL, NAME=%s, QUANTITY=PRESSURE, CONTACT=%s\n%s\n", at[2 * k],
+             k < 2 ? "C" : "ROOF", at[2 * k + 1]);
+  strcat(cards, "*STEP\n*STATIC\n*BOUNDARY\nCORNER, 1\n*DSLOAD\nTOP, P, 1.\n");
+  job j = body_of("rect 4 2 2 1 alternate", cards);
+  ck_assert(goal_has_verdict(&j, "OPEN", "no_zone"));
+  for (int k = 0; k < 4; ++k)
+    ck_assert_msg(goal_has_verdict(&j, at[2 * k], "no_peak"), "%s", at[2 * k]);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
           nodes_of_supports_have_a_part_of_the_force, zeros_are_not_exact,
           energies_by_loads_and_by_supports, ends_of_supports_are_not_reliable,
@@ -463,4 +485,5 @@ UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
           energies_by_loads_and_by_temperatures,
           temperatures_that_vary_within_elements, materials_that_meet_in_space,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
-          radius_of_a_zone_that_planes_halve)
+          radius_of_a_zone_that_planes_halve,
+          pressures_at_ends_and_of_an_open_contact)

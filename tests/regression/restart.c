@@ -260,33 +260,47 @@ START_TEST(path_on_a_moving_obstacle_goes_on) {
 END_TEST
 
 /* Steps that creep, and one between without an estimate in time: the errors of
- * the others add up. */
-static job stepwise(void) {
-  job j = small_creep(0.1, "", "INTEGRATOR=EULER");
-  edit(&j, "*ACCURACY, TIME=YES\n",
-       "*ACCURACY, TIME=YES\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
-       "0.5, 1.\n*DSLOAD\nTOP, P, 80.\n*END STEP\n*STEP\n*STATIC\n1.\n"
-       "*ACCURACY, TIME=NO\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
-       "0.5, 1.\n*ACCURACY, TIME=YES\n");
+ * the others add up; the loads of the second and of the third. */
+static job stepwise(double mu, const char *const *load) {
+  char steps[300];
+  job j = small_creep(mu, "", "INTEGRATOR=EULER");
+  snprintf(steps, sizeof steps,
+           "*ACCURACY, TIME=YES\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
+           "0.5, 1.\n*DSLOAD\nTOP, P, %s\n*END STEP\n*STEP\n*STATIC\n1.\n%s"
+           "*ACCURACY, TIME=NO\n*END STEP\n*STEP\n*VISCO, INTEGRATOR=HEUN\n"
+           "0.5, 1.\n*ACCURACY, TIME=YES\n",
+           load[0], load[1]);
+  edit(&j, "*ACCURACY, TIME=YES\n", steps);
   edit(&j, "0.5, 4.", "0.5, 1.");
   edit(&j, "MAXWELL\n4.\n", "NORTON\n1E-10, 3.\n");
+  edit(&j, "MATERIAL=M\n*OBS", "MATERIAL=M, TYPE=CPS3\n*OBS");
   return j;
 }
 
+/* Those of stresses; of strains that stay without stress; none where the loads
+ * turn too often. */
 START_TEST(paths_of_steps_go_on) {
-  static const int stops[] = {20, 25, 28};
-  int changes, all;
-  job whole = stepwise();
-  ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
-  for (int k = 0; k < 3; ++k) {
-    job j = stepwise();
-    ck_assert_int_eq(
-        run_until(&j, nothing, all * stops[k] / 36, SIGINT, &changes), 130);
-    goes_on(&j, 0, "steps");
-    same_files(&whole, &j, "steps");
-    job_end(&j);
+  static const char *const loads[][2] = {
+      {"80.", ""},
+      {"\"10*t^3\"", "*DSLOAD\nTOP, P, 0.\nLEFT, P, 0.\n"},
+      {"\"80+sin(50*t)\"", "*DSLOAD\nTOP, P, 80.\n"}};
+  static const int stops[][3] = {{20, 25, 28}, {18, 20}, {20}};
+  for (int i = 0; i < 3; ++i) {
+    int changes, all;
+    job whole = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
+    ck_assert_int_eq(run_until(&whole, nothing, 0, 0, &all), 0);
+    ck_assert_int_eq(isnan(job_told(&whole, "time_error_percent")), i == 2);
+    for (int k = 0; k < 3 && stops[i][k] > 0; ++k) {
+      job j = stepwise(i == 1 ? 0.0 : 0.1, loads[i]);
+      ck_assert_int_eq(
+          run_until(&j, nothing, all * stops[i][k] / 36, SIGINT, &changes),
+          130);
+      goes_on(&j, 0, loads[i][0]);
+      same_files(&whole, &j, "steps");
+      job_end(&j);
+    }
+    job_end(&whole);
   }
-  job_end(&whole);
 }
 END_TEST
 
