@@ -201,6 +201,11 @@ void message_forget(message_log *log, message_mark since) {
   COPY(log->count, since.count, 3);
 }
 
+void message_take(message_log *log, const message_log *from) {
+  for (EACH(const message, m, from->items, from->n))
+    message_add(log, m->id, m->at, "%s", m->text);
+}
+
 int message_get(const message_log *log, int k, message_view *out) {
   if (k >= log->n) return 0;
   const message *m = &log->items[k];

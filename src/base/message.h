@@ -52,6 +52,8 @@ typedef struct message_mark {
 } message_mark;
 message_mark message_now(const message_log *log);
 void message_forget(message_log *log, message_mark since);
+/* Add those of another log. */
+void message_take(message_log *log, const message_log *from);
 /* Number k, from 0, of those stored, as they were added; all borrowed. 0: no
  * more. */
 typedef struct message_view {
