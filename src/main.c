@@ -44,7 +44,12 @@ static status do_job(const command *c, message_log *log, job_input *in,
 
 static status run_job(const command *c, message_log *log, int *unsettled) {
   job_input in = {0};
+  const message_mark before = message_now(log);
   status st = do_job(c, log, &in, unsettled);
+  if (in.log != NULL) { /* of the last pass of TARGET=, as its files */
+    message_forget(log, before);
+    message_take(log, in.log);
+  }
   message_print(log, stderr);
   if (in.closing != NULL) fputs(in.closing, stderr);
   job_input_free(&in);

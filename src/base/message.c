@@ -187,6 +187,25 @@ void message_add(message_log *log, message_id id, const place *at,
 
 int message_count(const message_log *log, severity s) { return log->count[s]; }
 
+message_mark message_now(const message_log *log) {
+  message_mark now = {.n = log->n};
+  COPY(now.count, log->count, 3);
+  return now;
+}
+
+void message_forget(message_log *log, message_mark since) {
+  while (log->n > since.n) {
+    --log->n;
+    RELEASE(log->items[log->n].at, log->items[log->n].text);
+  }
+  COPY(log->count, since.count, 3);
+}
+
+void message_take(message_log *log, const message_log *from) {
+  for (EACH(const message, m, from->items, from->n))
+    message_add(log, m->id, m->at, "%s", m->text);
+}
+
 int message_get(const message_log *log, int k, message_view *out) {
   if (k >= log->n) return 0;
   const message *m = &log->items[k];

@@ -45,6 +45,15 @@ void message_add(message_log *log, message_id id, const place *at,
  * ERR_MEMORY. */
 void message_memory(message_log *log);
 int message_count(const message_log *log, severity s);
+/* How many there are now, and back to that many: those of a trial that was
+ * given up are not those of the run. */
+typedef struct message_mark {
+  int n, count[3]; /* stored; by severity */
+} message_mark;
+message_mark message_now(const message_log *log);
+void message_forget(message_log *log, message_mark since);
+/* Add those of another log. */
+void message_take(message_log *log, const message_log *from);
 /* Number k, from 0, of those stored, as they were added; all borrowed. 0: no
  * more. */
 typedef struct message_view {

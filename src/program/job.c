@@ -224,9 +224,11 @@ static status try_without(watcher *w, const command *c, job_input *in,
   FORGET(w->n);
   PASS(reduction_new(in->m, in->msh, &w->n));
   w->refuted = 0;
+  const message_mark before = message_now(in->m->log);
   const status st = job_solve(c, in, &watch, NULL, unsettled);
   *again = !is_final(st) &&
            reduction_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
+  if (*again) message_forget(in->m->log, before);
   return st;
 }
 

@@ -372,8 +372,8 @@ static void drop_next(pass *p) {
   job_input_free(&p->next);
 }
 
-/* Its messages are those of the first pass, shown only if something is wrong.
- * gmsh may fail with some sizes and not with others near them. */
+/* Its messages are told at the end of the run, or at once if something is
+ * wrong. gmsh may fail with some sizes and not with others near them. */
 static status read_next(pass *p) {
   enum { TRIES = 3 };
   job_mesh other = {0};

@@ -21,7 +21,7 @@ static const char *touching = "CONTACT"; /* group of the contact            */
 static const char *held = "SYMMETRY, 1, 1";
 static double height = 30.0;
 
-static job run_scene(const scene *s) {
+static job try_scene(const scene *s, int *code) {
   job j = job_begin("block");
   block_file_write(&j, (int[]){8, 6}, (double[]){40.0, height}, 0);
   job_write(&j, "block.inp",
@@ -37,7 +37,13 @@ static job run_scene(const scene *s) {
             "*OUTPUT, HDF5=NO\n*END STEP\n",
             s->nu, s->material, touching, s->law == NULL ? "" : s->law,
             s->effects, s->dt == NULL ? "0.25" : s->dt, held, s->loads);
-  int code = job_run(&j, "");
+  *code = job_run(&j, "");
+  return j;
+}
+
+static job run_scene(const scene *s) {
+  int code;
+  job j = try_scene(s, &code);
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
 }
@@ -327,6 +333,29 @@ START_TEST(bound_of_friction_is_that_of_the_work_at_its_nodes) {
 }
 END_TEST
 
+/* Messages of trials are not those of the run: once each, and its exit code. */
+static void is_free(const scene *s) {
+  int code;
+  job j = try_scene(s, &code);
+  ck_assert_msg(code == 6, "exit %d: %s", code, j.errors);
+  ck_assert_ptr_nonnull(strstr(j.errors, "\n1 error"));
+  job_end(&j);
+}
+
+START_TEST(body_that_is_free_to_move_ends_all_trials) {
+  const scene small = {
+      "*EXPANSION\n1.2D-5\n",  "",  "*TEMPERATURE\nBODY, 1.D-4\n",
+      "*EFFECTS, MODE=AUTO\n", 0.2, NULL};
+  scene threshold = small;
+  threshold.material = "*INELASTIC, LAW=BINGHAM\n20., 1.D5\n";
+  threshold.loads = "";
+  threshold.dt = "0.02";
+  held = "TOP, 2, 2, -0.01";
+  is_free(&small);
+  is_free(&threshold);
+}
+END_TEST
+
 static job run_cube(const char *effects) {
   job j = job_begin("cube");
   job_copy(&j, "tests/regression/mesh/cube.geo");
@@ -483,4 +512,5 @@ UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           bound_of_friction_is_that_of_the_work_in_space,
           change_is_that_of_the_nodes_it_changes_most,
           change_is_that_of_the_sum_of_friction,
+          body_that_is_free_to_move_ends_all_trials,
           nothing_is_left_out_unless_asked, random_scenes_agree)

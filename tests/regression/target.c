@@ -253,7 +253,8 @@ START_TEST(sizes_that_gmsh_fails_with_are_made_smaller) {
 }
 END_TEST
 
-/* A .msh is refined, also for --estimate-cost. */
+/* A .msh is refined, also for --estimate-cost. Messages are those of the last
+ * pass, as in the listing: the obstacle is nearest between the first nodes. */
 START_TEST(mesh_without_geometry_is_refined) {
   static const char msh[] =
       MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
@@ -262,10 +263,19 @@ START_TEST(mesh_without_geometry_is_refined) {
           "4 2 2 3 1 1 3 4\n");
   job j = job_begin("square");
   job_write(&j, "square.msh", "%s", msh);
-  job_write(&j, "square.inp", "*MESH, FILE=square.msh\n%s", square_deck);
+  job_write(
+      &j, "square.inp",
+      "*MESH, FILE=square.msh\n*OBSTACLE, NAME=O, TYPE=GAP\n"
+      "\"0.5 + (x - 0.5)^2\"\n*CONTACT, NAME=C, GROUP=TOP, OBSTACLE=O\n%s",
+      square_deck);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   ck_assert_double_gt(job_told(&j, "unknowns"), 20.0);
+  char *lst = job_file(&j, "lst"), *told = strstr(lst, "P4021: ");
+  ck_assert_ptr_nonnull(told);
+  told[strcspn(told, "\n")] = '\0';
+  ck_assert_msg(strstr(j.errors, told) != NULL, "%s: %s", told, j.errors);
+  free(lst);
   ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
   ck_assert_ptr_nonnull(strstr(j.text, "unknowns"));
   job_end(&j);

@@ -163,6 +163,8 @@ END_TEST
 
 START_TEST(after_a_hundred_errors_the_rest_is_counted) {
   message_log *log = new_log();
+  message_add(log, P1030, NULL, "of the run");
+  const message_mark before = message_now(log);
   for (int i = 1; i <= 250; ++i) {
     ck_assert_int_eq(message_wanted(log, ERROR), i <= 100);
     place at = {"a", i, 1, "x", NULL, 0};
@@ -171,14 +173,18 @@ START_TEST(after_a_hundred_errors_the_rest_is_counted) {
   place at = {"a", 999, 1, "x", NULL, 0};
   message_add(log, P1030, &at, "a warning");
   ck_assert_int_eq(message_count(log, ERROR), 250);
-  ck_assert_int_eq(message_count(log, WARNING), 1);
+  ck_assert_int_eq(message_count(log, WARNING), 2);
   ck_assert_ptr_nonnull(strstr(printed(log), "number 100\n"));
   ck_assert_ptr_null(strstr(text, "number 101\n"));
   ck_assert_ptr_nonnull(strstr(text,
-                               "\n250 errors (100 shown), 1 warning; protis "
+                               "\n250 errors (100 shown), 2 warnings; protis "
                                "--explain P1003 says what to do\n"));
   ck_assert_int_eq(message_status(log, ERR_MESH), ERR_MESH);
   ck_assert_str_eq(status_message(), "250 errors in the input");
+  /* of a trial that was given up */
+  message_forget(log, before);
+  ck_assert_int_eq(message_status(log, ERR_MESH), OK);
+  ck_assert_str_eq(printed(log), "warning P1030: of the run\n1 warning\n");
   memory_free(log);
 }
 END_TEST

@@ -236,9 +236,11 @@ static status run_elastic(model *m, const mesh *msh, unsigned char *flows,
   }
   for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = short_step(&m->steps[i]);
   m->effects = effects_required(m);
+  const message_mark before = message_now(m->log);
   p.st = reduction_new(m, msh, &p.n);
   *seen =
       p.st == OK && history_run(m, msh, effect_table, &sink, &unsettled) == OK;
+  message_forget(m->log, before);
   for (int i = 0; i < m->n.step; ++i) m->steps[i].dt = dt[i];
   reduction_restore(m);
   memory_free(p.n);
