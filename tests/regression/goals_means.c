@@ -1,7 +1,8 @@
 /*
  * *GOAL, QUANTITY=DISPLACEMENT, GROUP=: the mean over the area of faces, the
  * volume of elements, on meshes whose edges are 1:8, of fields that all the
- * border prescribes; goals of mirror images.
+ * border prescribes; goals of mirror images; pressures that are no parabola
+ * round their largest and no root at the end of the zone.
  */
 #include "base/base.h"
 #include "scenes/mesh.h"
@@ -203,6 +204,65 @@ START_TEST(goals_of_mirror_images_are_the_same) {
 }
 END_TEST
 
+/* A strip, length x 1, of squares 1/n, with contact goals. */
+static job strip(int length, int n, const char *gap, const char *cards) {
+  job j = job_begin("strip");
+  job_write(
+      &j, "strip.geo",
+      "Point(1) = {0, 0, 0}; Point(2) = {%d, 0, 0};\n"
+      "Point(3) = {%d, 1, 0}; Point(4) = {0, 1, 0};\n"
+      "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};\n"
+      "Line(4) = {4, 1}; Curve Loop(1) = {1:4};\n"
+      "Plane Surface(1) = {1}; Transfinite Surface{1};\n"
+      "Transfinite Curve{1, 3} = %d; Transfinite Curve{2, 4} = %d;\n"
+      "Physical Surface(\"BODY\") = {1}; Physical Curve(\"FOOT\") = {1};\n"
+      "Physical Curve(\"END\") = {2}; Physical Curve(\"TOP\") = {3};\n"
+      "Physical Curve(\"LEFT\") = {4};\n",
+      length, length, length * n + 1, n + 1);
+  job_write(&j, "strip.inp",
+            "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s\"\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+            "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=C\n"
+            "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=C\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\n%s*PRINT, GOALS, ZONES\n"
+            "*END STEP\n",
+            gap, cards);
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  return j;
+}
+
+/* A heavy strip on the floor, lifted at its end: of 60 lengths half is lifted
+ * but for a height or two (a beam), and the pressures rise within the last two
+ * heights alone, to where nodes begin to be open. */
+START_TEST(width_ends_between_closed_and_open_nodes) {
+  job j =
+      strip(60, 2, "0", "*DLOAD\nBODY, BY, -1E-6\n*DSLOAD\nEND, TY, 1.5E-5\n");
+  dat t = job_table(&j, "GOALS", -1), z = job_table(&j, "ZONES", -1);
+  const double at = dat_at(&z, 0, "extent");
+  ck_assert_double_eq_tol(at, 30.0, 2.0);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "value"), at, 0.5);
+  ck_assert_double_ge(dat_at(&t, 0, "band"), 0.5);
+  dat_free(&t);
+  dat_free(&z);
+  job_end(&j);
+}
+END_TEST
+
+/* A layer under a flat punch with a rounded edge: the largest pressure, near
+ * the edge, is 42.07 by RADIUS=0.08 on squares of 1/48. */
+START_TEST(band_of_the_largest_pressure_has_a_narrow_peak) {
+  job j = strip(6, 8, "0.1*max(0, x - 2)^2", "TOP, 1\nTOP, 2, 2, -0.03\n");
+  dat t = job_table(&j, "GOALS", -1);
+  const double off = 42.07 - dat_at(&t, 1, "corrected");
+  ck_assert_double_le(fabs(off), dat_at(&t, 1, "band"));
+  ck_assert_double_le(dat_at(&t, 1, "band"), 0.3 * 42.07);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("goals_means");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -211,5 +271,7 @@ int main(void) {
                       3);
   tcase_add_loop_test(tests, errors_of_means_have_what_is_beyond_chords, 0, 2);
   tcase_add_test(tests, goals_of_mirror_images_are_the_same);
+  tcase_add_test(tests, width_ends_between_closed_and_open_nodes);
+  tcase_add_test(tests, band_of_the_largest_pressure_has_a_narrow_peak);
   return unit_run("goals_means", tests);
 }

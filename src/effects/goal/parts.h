@@ -40,7 +40,8 @@ typedef struct goal_form {
                          than at them */
   double size;        /* sum of the magnitudes that value is the sum of */
   double held;        /* what forces of held nodes, in none of them, may be */
-  double rough;       /* what the integral of a factor lacks */
+  double rough;       /* what the integral of a factor lacks, what a pressure or
+                         a width is else than its mean */
   const double *rest; /* of goal_add_thermal, borrowed; NULL: none */
   goal_verdict why;   /* GOAL_RELIABLE: it has a value */
 } goal_form;

@@ -11,13 +11,15 @@
  * where the contact is one, and a disc in space and, within rho of it, on the
  * axis. What is beyond a plane of symmetry is on the other side of it. The
  * largest in space is where a paraboloid has its top that fits the pressures
- * within rho, of which the largest alone may be far from there.
+ * within rho, of which the largest alone may be far from there. Without RADIUS=
+ * rho is halved while that changes the mean by more than NARROW.
  *
  * The width of a zone is that of the pressure c sqrt(a - x) at its end,
  *
  *   a = x0 + 7/4 N2/N1,   Nk = integral of p (x - x0)^k over x > x0,
  *
- * with x0 at three quarters from the middle to a (Hertz: .0016 a too much).
+ * with x0 at three quarters from the middle to a (Hertz: .0016 a too much), or
+ * closer to a until a is where nodes begin to be open.
  */
 #include "base/base.h"
 #include "effects/goal/parts.h"
@@ -110,7 +112,7 @@ static int is_on(const run *r, const goal_card *g, int q) {
   return r->surface->contact_id[q] == g->contact_id;
 }
 
-/* Adds to psi; J of the linear function. */
+/* Adds to psi, unless NULL; J of the linear function. */
 static double add_nodes(const run *r, const goal_card *g, const weight *w,
                         double *psi) {
   const int dim = w->dim;
@@ -118,7 +120,7 @@ static double add_nodes(const run *r, const goal_card *g, const weight *w,
   for (int q = 0; q < r->nodes.n; ++q) {
     if (!is_on(r, g, q)) continue;
     const double v = w->at(w, r->surface->x + dim * q);
-    psi[dim * q] += v;
+    if (psi != NULL) psi[dim * q] += v;
     sum += v * r->now.rc[dim * q];
   }
   return sum;
@@ -608,18 +610,50 @@ static int has_one_thickness(const run *r, const goal_card *g) {
   return 1;
 }
 
+static status place_mean(const run *r, const goal_card *g, int peak, weight *w,
+                         goal_form *f) {
+  *w = weight_at(r, g, peak);
+  return w->dim == 2 ? place_on_line(r, g, peak, w, f)
+                     : place_on_disc(r, g, peak, w, f);
+}
+
+/* -, of the mean; on Hertz's contact half the radius changes it by 0.002. */
+static const double NARROW = 0.02;
+
+/* A radius over which the pressure goes like a parabola, while its half has two
+ * elements. */
+static status narrow(const run *r, const goal_card *g, int peak, weight *w,
+                     goal_form *f) {
+  for (double mean = add_nodes(r, g, w, NULL);;) {
+    weight half;
+    goal_card closer = *g;
+    goal_form of_half = {.why = GOAL_RELIABLE};
+    closer.radius = 0.5 * w->radius;
+    PASS(place_mean(r, &closer, peak, &half, &of_half));
+    if (of_half.why != GOAL_RELIABLE || of_half.is_coarse) {
+      f->is_coarse |= f->rough > 0.0;
+      return OK;
+    }
+    const double next = add_nodes(r, g, &half, NULL);
+    const double change = fabs(next - mean);
+    const int ends = change <= NARROW * fabs(next);
+    if (!ends || f->rough > 0.0) f->rough = change;
+    if (ends) return OK;
+    *w = half;
+    mean = next;
+  }
+}
+
 status goal_set_pressure(const run *r, const goal_card *g, goal_form *f) {
   const int peak = peak_of(r, g);
   f->value = NAN;
   if (peak < 0) f->why = GOAL_NO_ZONE;
   if (!has_one_thickness(r, g)) f->why = GOAL_NOT_COVERED;
   if (f->why != GOAL_RELIABLE) return OK;
-  weight w = weight_at(r, g, peak);
-  if (w.dim == 2)
-    PASS(place_on_line(r, g, peak, &w, f));
-  else
-    PASS(place_on_disc(r, g, peak, &w, f));
+  weight w;
+  PASS(place_mean(r, g, peak, &w, f));
   if (f->why != GOAL_RELIABLE) return OK;
+  if (!(g->radius > 0.0)) PASS(narrow(r, g, peak, &w, f));
   f->value = add_nodes(r, g, &w, f->psi);
   return add_faces(r, g, &w, &f->curved);
 }
@@ -647,7 +681,9 @@ static double end_for(const run *r, const line *l, weight *w, double x0) {
 typedef struct zone_ends {
   weight w[2];
   int mirrored[2];
-  double at[2]; /* m, along the line */
+  double at[2];             /* m, along the line */
+  double part[2];           /* -, of the half width, from x0 to the end */
+  double least[2], most[2]; /* sign times at that nodes allow, m */
 } zone_ends;
 
 /* The ends for x0 that follows from them. */
@@ -659,9 +695,32 @@ static void find_ends(const run *r, const line *l, zone_ends *z) {
                                            : 0.5 * (z->at[0] + z->at[1]);
     for (int k = 0; k < 2; ++k)
       if (!z->mirrored[k])
-        z->at[k] = end_for(r, l, &z->w[k], middle + 0.75 * (z->at[k] - middle));
+        z->at[k] = end_for(r, l, &z->w[k],
+                           middle + (1.0 - z->part[k]) * (z->at[k] - middle));
   }
 }
+
+enum { LEAST = 2 }; /* closed nodes beyond x0 */
+
+/* 1: an end is where it cannot be. */
+static int is_off(const zone_ends *z, int k) {
+  const double at = z->w[k].sign * z->at[k];
+  return !z->mirrored[k] && !(at >= z->least[k] && at <= z->most[k]);
+}
+
+/* Halves the parts at ends that are off; 1: there are. */
+static int move_x0(const line *l, const int *end, zone_ends *z) {
+  int any = 0;
+  for (int k = 0; k < 2; ++k) {
+    if (!is_off(z, k) || z->w[k].n <= LEAST) continue;
+    z->part[k] *= 0.5;
+    any = 1;
+  }
+  for (int k = 0; k < 2 && any; ++k) z->at[k] = l->s[end[k]];
+  return any;
+}
+
+static const double QUARTER = 0.25; /* -, of the half width */
 
 /* End k of the zone from its last closed node; 0: at the end of the surface. */
 static int start_end(const run *r, const line *l, int k, int at,
@@ -670,16 +729,21 @@ static int start_end(const run *r, const line *l, int k, int at,
   z->w[k] = *w;
   z->w[k].at = at_end;
   z->w[k].sign = k == 0 ? -1.0 : 1.0;
-  z->w[k].most =
-      border ? HUGE_VAL : z->w[k].sign * l->s[at + (k == 0 ? -1 : 1)];
   z->at[k] = l->s[at];
+  z->part[k] = QUARTER;
+  if (!border) {
+    const int out = k == 0 ? -1 : 1;
+    z->w[k].most = z->w[k].sign * l->s[at + out];
+    z->least[k] = z->w[k].sign * l->s[at - out];
+    z->most[k] = 2.0 * z->w[k].most - z->w[k].sign * l->s[at];
+  }
   z->mirrored[k] = border && goal_is_mirrored(r, l->node[at]);
   return z->mirrored[k] || !border;
 }
 
 static status set_ends(const run *r, const goal_card *g, const line *l,
                        const weight *w, goal_form *f) {
-  enum { LEAST = 2 };
+  enum { HALVINGS = 30 };
   int end[2];
   zone_ends z;
   zone_of(r, l, &end[0], &end[1]);
@@ -688,14 +752,17 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
     if (!start_end(r, l, k, end[k], w, &z)) f->why = GOAL_NO_END;
   if (f->why != GOAL_RELIABLE) return OK;
   find_ends(r, l, &z);
+  for (int n = 0; n < HALVINGS && move_x0(l, end, &z); ++n) find_ends(r, l, &z);
   f->value = z.at[1] - z.at[0];
   for (int k = 0; k < 2; ++k) {
     if (z.mirrored[k]) continue;
-    if (z.w[k].n < LEAST) {
+    if (z.w[k].n < LEAST || is_off(&z, k)) {
       f->value = NAN;
       f->why = GOAL_NO_ZONE;
       return OK;
     }
+    if (z.part[k] < QUARTER)
+      f->rough += z.w[k].most - z.w[k].sign * l->s[end[k]];
     add_nodes(r, g, &z.w[k], f->psi);
     PASS(add_faces(r, g, &z.w[k], &f->curved));
   }
