@@ -164,30 +164,36 @@ END_TEST
 /* A slab between two rollers that come nearer, its whole surface in contact
  * with both: each side is with the roller that it faces. */
 START_TEST(of_two_obstacles_that_behind_the_body_is_none) {
-  face_scene c;
-  faces_begin(&c, 2);
-  for (int i = 0; i < 4; ++i) faces_node(&c, i == 1 || i == 2, i / 2, 0);
-  faces_face(&c, 0, 1, 0);
-  faces_face(&c, 2, 3, 0);
-  faces_contact(&c, "FOOT", 0, 2);
-  faces_contact(&c, "HEAD", 0, 2);
-  for (int k = 0; k < 2; ++k) {
-    c.support[k] = (obstacle){.name = k ? "ABOVE" : "BELOW",
-                              .shape = OBSTACLE_CYLINDER,
-                              .radius = 2.9,
-                              .point = {0.5, k ? 4 : -3, 0}};
-    formula_compile(&c.support[k].motion[1], k ? "-t" : "t");
+  static const double radius[] = {2.9, 0.52}, away[] = {3, 0.2};
+  for (int near = 0; near < 2; ++near) {
+    face_scene c;
+    faces_begin(&c, 2);
+    for (int i = 0; i < 4; ++i) faces_node(&c, i == 1 || i == 2, i / 2, 0);
+    faces_face(&c, 0, 1, 0);
+    faces_face(&c, 2, 3, 0);
+    faces_contact(&c, "FOOT", 0, 2);
+    faces_contact(&c, "HEAD", 0, 2);
+    for (int k = 0; k < 2; ++k) {
+      c.support[k] =
+          (obstacle){.name = k ? "ABOVE" : "BELOW",
+                     .shape = OBSTACLE_CYLINDER,
+                     .radius = radius[near],
+                     .point = {0.5, k ? 1 + away[near] : -away[near], 0}};
+      formula_compile(&c.support[k].motion[1], k ? "-t" : "t");
+    }
+    ck_assert_int_eq(faces_build(&c), OK);
+    ck_assert_int_eq(c.s->n, 4);
+    for (int i = 0; i < 4; ++i) {
+      ck_assert_int_eq(c.s->contact_id[i], i / 2);
+      ck_assert_int_eq(c.s->side_id[i], -1);
+      ck_assert_double_eq_tol(
+          c.s->gap0[i], away[near] - sqrt(radius[near] * radius[near] - 0.25),
+          1e-14);
+    }
+    ck_assert_int_eq(faces_said(&c, "2 nodes cannot reach"), 2);
+    for (int k = 0; k < 2; ++k) formula_release(&c.support[k].motion[1]);
+    faces_end(&c);
   }
-  ck_assert_int_eq(faces_build(&c), OK);
-  ck_assert_int_eq(c.s->n, 4);
-  for (int i = 0; i < 4; ++i) {
-    ck_assert_int_eq(c.s->contact_id[i], i / 2);
-    ck_assert_int_eq(c.s->side_id[i], -1);
-    ck_assert_double_eq_tol(c.s->gap0[i], 3 - sqrt(2.9 * 2.9 - 0.25), 1e-14);
-  }
-  ck_assert_int_eq(faces_said(&c, "2 nodes cannot reach"), 2);
-  for (int k = 0; k < 2; ++k) formula_release(&c.support[k].motion[1]);
-  faces_end(&c);
 }
 END_TEST
 

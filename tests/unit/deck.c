@@ -172,6 +172,8 @@ static const wrong_deck wrong_decks[] = {
   {"*PARAMETER\nWIDTH=2\nA = 2*widht\n*A\n",
    "a.inp:3:7: error P1022: unknown name WIDHT in expression '2*widht'; "
    "did you mean WIDTH?", "1 error"},
+  {"*PARAMETER\nN=2\nA = <N>*foo\n*A\n",
+   "a.inp:3:5: error P1022: unknown name FOO in expression '2*foo'", "1 error"},
   {"*PARAMETER\nA = 2*(3\n*A\n",
    "a.inp:2:7: error P1022: '(' is not closed in expression '2*(3'", "1 error"},
   {"*PARAMETER\nA = t*2\n*A\n", "a.inp:2:5: error P1022: 't*2' depends on x, "
@@ -566,6 +568,8 @@ START_TEST(values_are_numbers_or_expressions) {
   ck_assert_uint_eq(quantity_variables(&q), 9);
   ck_assert_int_eq(deck_quantity(r.d, &f[2], NULL, r.log, &q), 0);
   ck_assert(q.formula == NULL && q.number == 6);
+  q.factor = &(value_table){.n = 2, .variable = 1};
+  ck_assert_uint_eq(quantity_variables(&q), 2);
   ck_assert_int_eq(deck_real(&f[2], r.log, &real), 0);
   ck_assert(real == 6);
   ck_assert_int_eq(deck_int(&f[3], r.log, &whole), 0);
@@ -582,9 +586,9 @@ START_TEST(wrong_values_are_reported_at_their_place) {
       "a.inp:2:4: error P1024: not a number: '1.5q' (letters after the number)",
       "a.inp:2:10: error P1037: empty field, a number expected\n",
       "a.inp:2:11: error P1025: not an integer: '2.0'\n",
-      "a.inp:2:18: error P1022: unknown name FOO in expression 'x+foo'\n",
-      "a.inp:2:23: error P1023: '1/0' is not finite\n",
-      "a.inp:2:30: error P1025: not an integer: '9999999999' (too large)\n",
+      "a.inp:2:20: error P1022: unknown name FOO in expression 'x+foo'\n",
+      "a.inp:2:25: error P1023: '1/0' is not finite\n",
+      "a.inp:2:32: error P1025: not an integer: '9999999999' (too large)\n",
       "a.inp:3:1: error P1024: not a number: 'x*2' (no expression of a "
       "constant "
       "value)\n"};
@@ -593,7 +597,7 @@ START_TEST(wrong_values_are_reported_at_their_place) {
   int whole;
   decks_enter();
   read_deck r = decks_read_good(
-      "*A\nx, 1.5q, ,2.0,\"x+foo\",\"1/0\", 9999999999\n\"x*2\"\n");
+      "*A\nx, 1.5q, ,2.0,\"  x+foo\",\"1/0\", 9999999999\n\"x*2\"\n");
   const field *f = r.d->cards[0].records[0].fields;
   ck_assert_int_eq(deck_real(&f[0], r.log, &real), -1);
   ck_assert_int_eq(deck_quantity(r.d, &f[1], NULL, r.log, &q), -1);

@@ -286,6 +286,29 @@ static void check_fastest(law_case *c) {
   same(c, &limit, &radius, 1, 1e-6, "fastest rate");
 }
 
+/* Where the rate rises less than the stress, or falls, a change of direction is
+ * the fastest. */
+START_TEST(change_of_direction_may_be_fastest) {
+  static const struct {
+    const char *law, *data;
+    int words;
+    double p;
+  } of[] = {{"USER", "\"1E-3\"", 0, 0.1},
+            {"NORTON", "1E-9, 1., 1.", 1, 1.0},
+            {"PERZYNA", "10., 1E4, 0., 1., -1E4, 20.", 0, 0.001}};
+  static law_case c;
+  for (int i = 0; i < 3; ++i) {
+    ck_assert(law_case_new(law_find(of[i].law), of[i].words, of[i].data, young,
+                           nu, SOLID_3D, &c));
+    for (int q = 0; q < 6; ++q) c.sigma[q] = stress * (q - 2.2);
+    c.alpha[0] = of[i].p;
+    ck_assert_int_eq(c.n_alpha, 1);
+    check_fastest(&c);
+    law_case_free(&c);
+  }
+}
+END_TEST
+
 START_TEST(fastest_rate_is_the_largest_eigenvalue) {
   for_all(5, check_fastest);
 }
@@ -379,6 +402,61 @@ START_TEST(terms_have_no_order) {
       if (k == 1) same(&c, R[0], R[1], 36, 1e-12, "end");
       law_case_free(&c);
     }
+  }
+}
+END_TEST
+
+/* R = sigma to e^i at the end over 1/E along the stress, the time to it. */
+START_TEST(end_of_a_series_is_in_closed_form) {
+  static const struct {
+    const char *law, *data;
+    double time, R;
+  } of[] = {{"ZENER", "5E4, 1E5", 2.0, 2.0},
+            {"KELVIN", "5E4, 1E5\n2E5, 6E5\n1E5, 1E5", 3.0, 3.5},
+            {"KELVIN", "5E4, 1E5\n0., 1E5", -1.0, 0.0},
+            {"BURGERS", "2E6, 5E4, 1E5", -1.0, 0.0},
+            {"PRONY", "0.1, 0.6, 2.", 5.0, 0.0},
+            {"PRONY", "0.6, 0.1, 2.", 5.0, 0.0},
+            {"PRONY", "0.3, 1., 2.", -1.0, 0.0}};
+  static law_case c;
+  for (int i = 0; i < 7; ++i) {
+    const law_ops *ops = law_find(of[i].law);
+    double R[36];
+    law_case_new(ops, 0, of[i].data, young, nu, SOLID_3D, &c);
+    law_point p = law_case_point(&c);
+    ck_assert_double_eq_tol(ops->relaxed(&p, R), of[i].time, 1e-13);
+    if (of[i].R > 0) ck_assert_double_eq_tol(R[0] * young, of[i].R, 1e-13);
+    law_case_free(&c);
+  }
+}
+END_TEST
+
+/* The inelastic strain of its units, and the only one from that: without the
+ * part that it has not. */
+START_TEST(only_unit_follows_from_the_strain) {
+  static const char *const data[][2] = {{"PRONY", "0.3, 0.1, 0.5"},
+                                        {"PRONY", "0.3, 0., 0.5"},
+                                        {"PRONY", "0., 0.1, 0.5"},
+                                        {"KELVIN", "5E4, 1E5"}};
+  static law_case c;
+  for (int i = 0; i < 4; ++i) {
+    const law_ops *ops = law_find(data[i][0]);
+    double only[6], sum[6] = {0};
+    law_case_new(ops, 0, data[i][1], young, nu, SOLID_3D, &c);
+    for (int q = 0; q < 6; ++q) c.alpha[q] = 1e-3 * (q - 2.2);
+    law_point p = law_case_point(&c);
+    ck_assert_int_eq(ops->units(&p, NULL, sum), 0);
+    const double mean = (c.alpha[0] + c.alpha[1] + c.alpha[2]) / 3;
+    memcpy(c.ei, sum, sizeof sum);
+    ops->units(&p, only, sum);
+    for (int q = 0; q < 6; ++q) {
+      const double part = q < 3 ? mean : 0;
+      const double want = i == 1   ? c.alpha[q] - part
+                          : i == 2 ? part
+                                   : c.alpha[q];
+      ck_assert_double_eq_tol(only[q], want, 1e-17);
+    }
+    law_case_free(&c);
   }
 }
 END_TEST
@@ -525,7 +603,9 @@ START_TEST(a_trial_law_passes) {
 }
 END_TEST
 
-UNIT_MAIN("law", terms_have_no_order, nothing_happens_at_rest,
+UNIT_MAIN("law", change_of_direction_may_be_fastest,
+          end_of_a_series_is_in_closed_form, only_unit_follows_from_the_strain,
+          terms_have_no_order, nothing_happens_at_rest,
           dissipation_is_not_negative, power_is_lost_or_kept,
           jacobian_agrees_with_differences, slope_of_creep_at_rest,
           fastest_rate_is_the_largest_eigenvalue,

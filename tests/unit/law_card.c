@@ -255,15 +255,16 @@ START_TEST(long_term_moduli_between_two_sets) {
   char text[256];
   const double E = 1500, nu = 0.2, G = E / (2 + 2 * nu), K = E / (3 - 6 * nu);
   read_deck(&s,
-            "\n2000., 0.1, 0.\n1000., 0.3, 100.\n*VISCOELASTIC, TIME=PRONY\n"
-            ".3, .1, 2.\n.2, .15, 9.\n*MATERIAL, NAME=N\n*ELASTIC",
+            "\n2000., 0.1, 0.\n1000., 0.3, 100.\n900., 0.2, 200.\n"
+            "*VISCOELASTIC, TIME=PRONY\n.3, .1, 2.\n.2, .15, 9.\n"
+            "*MATERIAL, NAME=N\n*ELASTIC",
             "");
   ck_assert_int_eq(s.st, OK);
   ck_assert_ptr_null(
       elastic_at(&s.m->materials[0].elastic, 50.0, C, text, sizeof text));
   near(C[21], G / .5);
   near((C[0] + 2 * C[6]) / 3, K / .75);
-  /* the larger Poisson number of both: of the second, G = E/2.6, K = E/1.2 */
+  /* the largest Poisson number of all: of the second, G = E/2.6, K = E/1.2 */
   near(elastic_table_most(&s.m->materials[0].elastic, 1),
        (3 / (1.2 * .75) - 2 / (2.6 * .5)) / (6 / (1.2 * .75) + 2 / (2.6 * .5)));
   text_model_close(&s);
