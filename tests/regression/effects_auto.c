@@ -285,6 +285,10 @@ START_TEST(friction_without_slip_is_left_out) {
   stays(&twice, "friction");
   small.loads = "*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n"; /* five of them */
   stays(&small, "friction");
+  pushed.loads =
+      "*END STEP\n*STEP\n*QUASISTATIC\n1., 1.\n*FRICTION, "
+      "CONTACT=FOOT, LAW=COULOMB\n0.2\n*DSLOAD\nLEFT, P, 20.\n";
+  compare(&pushed, "friction", -1, 1e-12);
   held = "TOP, 2, 2, -0.01"; /* sideways by friction alone */
   stays(&still, "friction");
 }

@@ -191,7 +191,8 @@ START_TEST(results_stay_in_their_folder) {
 }
 END_TEST
 
-/* Those of a longer run before are gone, at a restart those after it. */
+/* Those of a longer run before are gone, at a restart those after it, and all
+ * where there shall be none. */
 START_TEST(condensed_problems_are_of_one_run) {
   static const char make[] =
       "touch block_condensed_00009.h5 block_condensed_00042.h5.tmp "
@@ -206,6 +207,9 @@ START_TEST(condensed_problems_are_of_one_run) {
     ck_assert_msg(job_run(&j, again ? "--restart" : "") == 0, "%s", j.errors);
     shell(&j, count);
   }
+  shell(&j, "sed -i 's/, CONDENSED=FCLIB/, HDF5=NO/' block.inp");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  shell(&j, "test -z \"$(ls | grep 'condensed_0')\"");
   job_end(&j);
 }
 END_TEST
