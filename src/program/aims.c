@@ -32,9 +32,12 @@ struct aims {
   int counts;    /* 1: some goal counts; 0: they are only shown */
   double least;  /* -, largest off over its target, least of all passes */
   int in_vain;   /* passes since */
-  int nodes, least_nodes; /* of the mesh, of that with the least */
-  pass_goal *rows;        /* [MAX_PASS_ROWS*n] */
-  double *product;        /* [n*n_elem] of the last increment */
+  int nodes, least_nodes;  /* of the mesh, of that with the least */
+  int closed, most_closed; /* contact nodes; before */
+  pass_goal *rows;         /* [MAX_PASS_ROWS*n] */
+  double *product;         /* [n*n_elem] of the last increment */
+  int *contact;            /* [n_node] 1 + its contact, 0: none; there */
+  double *gap;             /* [n_node] m, negative: closed; there */
 };
 
 status aims_new(const model *m, int all, aims **out) {
@@ -59,17 +62,32 @@ status aims_begin(aims *a, const mesh *msh) {
   if (a == NULL) return OK;
   OWNS(a);
   FORGET(a->product);
+  FORGET(a->contact);
+  FORGET(a->gap);
   ++a->n_pass;
   a->nodes = msh->n_node;
-  if (a->counts) PASS_NEW(a->product, (size_t)a->n * msh->n_elem);
+  if (a->closed > a->most_closed) a->most_closed = a->closed;
+  if (!a->counts) return OK;
+  PASS_NEW_ALL(OF(a->product, (size_t)a->n * msh->n_elem),
+               OF(a->contact, msh->n_node), OF(a->gap, msh->n_node));
   return OK;
+}
+
+static void see_contact(aims *a, const state_contacts *c) {
+  const contact_surface *s = c->surface;
+  a->closed = c->n_slip + c->n_stick;
+  for (int i = 0; s != NULL && i < s->n; ++i) {
+    a->contact[s->node_id[i]] = 1 + s->contact_id[i];
+    a->gap[s->node_id[i]] = c->contact[i] != CONTACT_OPEN ? -1.0 : c->gap[i];
+  }
 }
 
 void aims_see(aims *a, const mesh *msh, const state *s) {
   if (a == NULL) return;
   for (int i = 0; i < a->n; ++i) last_row(a, i)->found = s->errors.goals[i];
-  if (a->counts)
-    COPY(a->product, s->errors.goal_products, (size_t)a->n * msh->n_elem);
+  if (!a->counts) return;
+  COPY(a->product, s->errors.goal_products, (size_t)a->n * msh->n_elem);
+  see_contact(a, &s->contacts);
 }
 
 int aims_count(const aims *a) { return a != NULL && a->counts; }
@@ -122,7 +140,10 @@ void aims_evaluate(aims *a, const model *m) {
     if (goal->target > 0.0)
       most = fmax(most, isnan(g->off) ? HUGE_VAL : g->off / g->allowed);
   }
-  a->in_vain = most >= GAIN * a->least ? a->in_vain + 1 : 0;
+  /* Zones that nodes come to have an estimate in the end. */
+  const int grows =
+      isinf(most) && 2 * a->closed >= 3 * a->most_closed && a->closed > 0;
+  a->in_vain = most >= GAIN * a->least && !grows ? a->in_vain + 1 : 0;
   if (a->in_vain == 0) a->least_nodes = a->nodes;
   a->least = fmin(a->least, most);
 }
@@ -134,17 +155,19 @@ int aims_stand_still(const aims *a) {
   return isfinite(a->least) && a->nodes >= GROWN * a->least_nodes;
 }
 
-void aims_check(const aims *a, const model *m, char *why, size_t size) {
+void aims_check(const aims *a, const model *m, int last, char *why,
+                size_t size) {
   why[0] = '\0';
   for (int i = 0; a != NULL && i < a->n && why[0] == '\0'; ++i) {
     const goal_card *goal = &m->accuracy.goals[i];
     const pass_goal *g = last_row(a, i);
     const double value = fabs(g->found.value + g->found.error);
     if (!(goal->target > 0.0)) continue;
-    if (!may_have_estimate(g))
+    if (last ? !is_estimate(g) : !may_have_estimate(g))
       snprintf(why, size, "%s: %s", goal->name,
                goal_verdict_text(g->found.verdict));
-    else if (goal->in_percent && a->n_pass > 1 && g->off >= value)
+    else if (goal->in_percent && a->n_pass > 1 && is_estimate(g - a->n) &&
+             g->off >= value)
       snprintf(why, size,
                "%s is zero within its error: give its TARGET= in its unit",
                goal->name);
@@ -242,6 +265,28 @@ static void limit_sizes(const aims *a, const pass_goal *g, int n_node,
   }
 }
 
+/* The gap at a node, m; HUGE_VAL: in another contact than number "of", 0: any.
+ */
+static double gap_at(const aims *a, int node, int of) {
+  const int is = a->contact[node];
+  return is != 0 && (of == 0 || is == of) ? a->gap[node] : HUGE_VAL;
+}
+
+/* Too few nodes for an estimate: half the length round the closed ones of the
+ * contact, or the nearest to it. length[n_node]: of the mesh. */
+static void halve_zone(const aims *a, const mesh *msh, int of,
+                       const double *length, double *size) {
+  const int corners = msh->dim + 1;
+  double least = HUGE_VAL;
+  for (int i = 0; i < msh->n_node; ++i) least = fmin(least, gap_at(a, i, of));
+  for (int k = 0; k < corners * msh->n_elem && least < HUGE_VAL; ++k) {
+    const int *v = msh->elem + k / corners * corners;
+    if (gap_at(a, msh->elem[k], of) > least) continue;
+    for (int b = 0; b < corners; ++b)
+      size[v[b]] = fmin(size[v[b]], BLIND * length[v[b]]);
+  }
+}
+
 status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
                   double *size) {
   OWNED double *own = NULL, *more = NULL, *length = NULL;
@@ -254,9 +299,13 @@ status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
     const double part = ldexp(part_of(last_row(a, i)), -tries);
     if (!a->all && !(m->accuracy.goals[i].target > 0.0)) continue;
     const int any = find_own(a, msh, i, own);
-    if (!any && eta == NULL) continue;
-    find_sizes(msh, any ? own : eta, part, more);
+    if (any || eta != NULL)
+      find_sizes(msh, any ? own : eta, part, more);
+    else
+      COPY(more, size, msh->n_node);
     limit_sizes(a, last_row(a, i), msh->n_node, length, more);
+    if (!any && !is_estimate(last_row(a, i)))
+      halve_zone(a, msh, 1 + m->accuracy.goals[i].contact_id, length, more);
     for (int k = 0; k < msh->n_node; ++k) size[k] = fmin(size[k], more[k]);
   }
   return OK;

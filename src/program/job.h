@@ -156,8 +156,9 @@ void aims_evaluate(aims *a, const model *m);
 
 /* Of the last pass; NULL: nothing is wanted. 1: all targets are reached. */
 int aims_are_met(const aims *a, const model *m);
-/* Why no mesh can reach them, or "". */
-void aims_check(const aims *a, const model *m, char *why, size_t size);
+/* Why no mesh can reach them, or ""; last 1: or that the last has not. */
+void aims_check(const aims *a, const model *m, int last, char *why,
+                size_t size);
 /* 1: the meshes of the last two passes brought the goals no nearer. */
 int aims_stand_still(const aims *a);
 /* Largest error of the contact solver over that share of what is allowed, -. */

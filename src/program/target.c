@@ -39,6 +39,7 @@ typedef struct pass {
   double energy;             /* J, largest strain energy that counts */
   double mesh, time, solver; /* -, errors there */
   int coarse;   /* 1: that of the mesh may be twice as large; 2: any */
+  int in_vain;  /* passes in a row whose mesh hardly had a smaller error */
   double *eta;  /* [n_elem] shares of the elements there */
   double *size; /* [n_node] of the next mesh, m */
   aims *goals;  /* or NULL: there are none */
@@ -130,6 +131,17 @@ static void halve(const mesh *msh, double *size) {
   for (int i = 0; i < msh->n_node; ++i) size[i] *= 0.5;
 }
 
+/* Errors scatter from mesh to mesh: after one in vain nothing is coarser. */
+static status sizes_of_norm(pass *p, double wanted) {
+  const mesh *msh = p->in->msh;
+  OWNED_NEW(double, length, msh->n_node);
+  space_lengths(msh, length);
+  space_sizes(msh, p->eta, wanted, p->size);
+  for (int i = 0; i < msh->n_node && p->in_vain > 0; ++i)
+    p->size[i] = fmin(p->size[i], length[i]);
+  return OK;
+}
+
 /* Sizes of the next mesh, and the factor by which the unknowns grow until the
  * error of the mesh is the one wanted. */
 static status find_sizes(pass *p, double *factor) {
@@ -138,8 +150,7 @@ static status find_sizes(pass *p, double *factor) {
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
-  if (has_norm(p) && p->coarse != BLIND)
-    space_sizes(msh, p->eta, wanted, p->size);
+  if (has_norm(p) && p->coarse != BLIND) PASS(sizes_of_norm(p, wanted));
   if (has_norm(p) && p->coarse == BLIND) halve(msh, p->size);
   if (norm_wants_mesh(p))
     *factor = p->coarse == BLIND ? space_growth(msh, p->size)
@@ -260,19 +271,23 @@ static int refines(const pass_row *row) {
   return strncmp(row->change, "mesh", 4) == 0;
 }
 
-/* 1: the last pass gained nothing although the mesh was to change. */
+/* Did the last pass gain nothing although the mesh was to change? */
+static void see_gain(pass *p) {
+  const int vain = p->n > 1 && refines(&p->rows[p->n - 2]) &&
+                   norm_wants_mesh(p) && !p->coarse &&
+                   p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh;
+  p->in_vain = vain ? p->in_vain + 1 : 0;
+}
+
 static int was_in_vain(const pass *p) {
   if (p->n < 2 || !refines(&p->rows[p->n - 2])) return 0;
-  if (norm_wants_mesh(p) && !p->coarse &&
-      p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh)
-    return 1;
-  return aims_stand_still(p->goals);
+  return p->in_vain > 1 || aims_stand_still(p->goals);
 }
 
 /* Errors that no other pass can change. */
 static void check_known(pass *p) {
   char why[256];
-  aims_check(p->goals, p->in->m, why, sizeof why);
+  aims_check(p->goals, p->in->m, 0, why, sizeof why);
   if (has_norm(p) && isnan(total(p)))
     miss(p, isnan(p->time)
                 ? "the error of the steps is unknown, see the listing"
@@ -282,6 +297,15 @@ static void check_known(pass *p) {
     miss(p, why);
 }
 
+/* A goal without a value has no error. */
+static void miss_in_vain(pass *p) {
+  char why[256] = "";
+  if (aims_stand_still(p->goals))
+    aims_check(p->goals, p->in->m, 1, why, sizeof why);
+  miss(p,
+       why[0] != '\0' ? why : "a mesh asked to be finer has no smaller error");
+}
+
 /* After the increments of a pass: is it the last? */
 static status decide(pass *p) {
   pass_row *row = &p->rows[p->n - 1];
@@ -289,6 +313,7 @@ static status decide(pass *p) {
   p->done = norm_is_met(p) && aims_are_met(p->goals, p->in->m);
   if (!p->done) check_known(p);
   if (p->done) return OK;
+  see_gain(p);
   PASS(find_sizes(p, &factor));
   choose(p, row->change, sizeof row->change);
   int finer = refines(row);
@@ -299,7 +324,7 @@ static status decide(pass *p) {
          "a .msh with values at its nodes (FILE=) is not refined: give them as "
          "expressions");
   else if (was_in_vain(p))
-    miss(p, "a mesh asked to be finer has no smaller error");
+    miss_in_vain(p);
   else
     check_limits(p, finer ? factor : 1.0);
   if (p->done) row->change[0] = '\0';

@@ -216,6 +216,40 @@ static void must_miss(const char *goal, const char *in_step, int exit_code,
   job_end(&j);
 }
 
+/* A square held above, an obstacle below the middle of its only side that
+ * touches: on the mesh of the file nothing does, and the body has no energy. */
+static int square_on_a_bump(job *j, const char *goal, double down) {
+  *j = job_begin("square");
+  block_file_write(j, (int[]){1, 1}, (double[]){1.0, 1.0}, 0);
+  job_write(j, "square.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"0.003*(x - 0.45)^2\"\n"
+            "*CONTACT, NAME=C, GROUP=CONTACT, OBSTACLE=O\n"
+            "*GOAL, NAME=G, QUANTITY=%s, CONTACT=C, TARGET=2 %%\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.\nTOP, 2, 2, %g\n"
+            "*PRINT, GOALS, TOTALS\n*END STEP\n",
+            goal, down);
+  return job_run(j, "");
+}
+
+START_TEST(zone_between_the_first_nodes_is_found) {
+  static const char *const goal[] = {"WIDTH", "PRESSURE", "FORCE"};
+  /* limits of 100, 200, 400 squares along the side */
+  static const double exact[] = {0.3008, 0.51026, 0.12023};
+  job j;
+  for (int k = 0; k < 3; ++k) {
+    const int code = square_on_a_bump(&j, goal[k], -2e-4);
+    OK_OR_STOP(code, j);
+    ck_true(&j, 0, exact[k], 0.02 * exact[k]);
+    job_end(&j);
+  }
+  ck_assert_int_eq(square_on_a_bump(&j, "WIDTH", 2e-4), 1);
+  ck_assert_ptr_nonnull(strstr(j.errors, "G: none: too few closed nodes"));
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(targets_out_of_reach_say_why) {
   char goal[400];
   snprintf(goal, sizeof goal, grip, "0.1 %");
@@ -413,4 +447,5 @@ UNIT_MAIN("goal_targets", msh_of_a_cylinder_is_refined,
           forecast_of_no_estimate_takes_little_memory,
           every_goal_is_within_its_target, peak_of_the_sphere_in_space,
           force_and_slip_of_the_block, targets_out_of_reach_say_why,
+          zone_between_the_first_nodes_is_found,
           force_on_a_step_is_within_its_target, zero_needs_a_target_in_its_unit)

@@ -207,6 +207,12 @@ static const char square_deck[] =
     "*BOUNDARY\nBOTTOM, 1, 2\n*DSLOAD\nTOP, TX, 0.1\n"
     "*ACCURACY, TARGET=8\n*END STEP\n";
 
+static const char square_msh[] =
+    MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
+        "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
+        "4\n1 1 2 1 1 1 2\n2 1 2 2 3 3 4\n3 2 2 3 1 1 2 3\n"
+        "4 2 2 3 1 1 3 4\n");
+
 /* Transfinite curves and surfaces are set free, and sizes within limits. */
 START_TEST(structured_geometry_is_made_finer) {
   static const char *const fixed[] = {
@@ -256,13 +262,8 @@ END_TEST
 /* A .msh is refined, also for --estimate-cost. Messages are those of the last
  * pass, as in the listing: the obstacle is nearest between the first nodes. */
 START_TEST(mesh_without_geometry_is_refined) {
-  static const char msh[] =
-      MSH("3\n1 1 \"BOTTOM\"\n1 2 \"TOP\"\n2 3 \"BODY\"\n",
-          "4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n",
-          "4\n1 1 2 1 1 1 2\n2 1 2 2 3 3 4\n3 2 2 3 1 1 2 3\n"
-          "4 2 2 3 1 1 3 4\n");
   job j = job_begin("square");
-  job_write(&j, "square.msh", "%s", msh);
+  job_write(&j, "square.msh", "%s", square_msh);
   job_write(
       &j, "square.inp",
       "*MESH, FILE=square.msh\n*OBSTACLE, NAME=O, TYPE=GAP\n"
@@ -278,6 +279,24 @@ START_TEST(mesh_without_geometry_is_refined) {
   free(lst);
   ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
   ck_assert_ptr_nonnull(strstr(j.text, "unknowns"));
+  job_end(&j);
+}
+END_TEST
+
+/* A square on an inclined floor: the third mesh has 3.0 % of error, the fourth,
+ * of other places, 3.2; the fifth is that one made finer. */
+START_TEST(pass_in_vain_is_followed_by_another) {
+  job j = job_begin("square");
+  job_write(&j, "square.msh", "%s", square_msh);
+  job_write(&j, "square.inp",
+            "*MESH, FILE=square.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"0.002 - 0.01*x\"\n"
+            "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nTOP, 1, 1, 0.002\nTOP, 2, 2, -0.005\n"
+            "*ACCURACY, TARGET=3\n*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   job_end(&j);
 }
 END_TEST
@@ -666,6 +685,7 @@ UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
           limits_are_those_of_the_mesh_in_the_end,
           sizes_that_gmsh_fails_with_are_made_smaller,
           structured_geometry_is_made_finer, mesh_without_geometry_is_refined,
+          pass_in_vain_is_followed_by_another,
           surfaces_of_a_pair_are_refined_as_they_are_round,
           values_at_nodes_keep_the_mesh, forecast_is_near_the_truth,
           increments_are_made_shorter, least_increment_is_made_shorter_too,
