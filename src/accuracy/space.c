@@ -10,9 +10,10 @@
  *
  * The hoop strain u_r / r of axisymmetry, though taken at the centroid, varies
  * in an element and has an error of the order h^2: with c the hoop strain of
- * S d, the energy is that of S d without it,
+ * S d, the energy is that of S d without it, as the law sees it, which averages
+ * a share of the change of volume: without c v, v of cluster_hoop(),
  *
- *   d' S d - 2 c d_tt + E_tt c^2.
+ *   d' S d - 2 c v' d + c^2 v' E v.
  */
 #include "accuracy/space.h"
 
@@ -535,14 +536,23 @@ double space_product(const space_recovery *s, int elem_id, const space_field *a,
   return product_by(s, space_compliance_of(s, elem_id), elem_id, a, b, square);
 }
 
-/* S[16] becomes S D E D S, D the unit matrix without the hoop. */
-static void leave_hoop(double E_tt, double *S) {
-  double c[4];
+/* The part of the change of volume that is averaged in a section, -. */
+static double share_in(const domain *d, int section) {
+  const cluster_set *c = d->cluster;
+  for (int k = 0; c != NULL && k < c->n; ++k)
+    if (d->section_id[c->elem[c->start[k]]] == section) return c->share[k];
+  return 0.0;
+}
+
+/* S[16] of the elasticity E[16] without c v of the head of this file. */
+static void leave_hoop(const double *E, double share, double *S) {
+  double c[4], v[4];
+  cluster_hoop(share, v);
+  const double size = energy_product(4, E, v, v);
   COPY(c, S + 8, 4);
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4; ++i)
-      S[i + 4 * j] +=
-          E_tt * c[i] * c[j] - (i == 2 ? c[j] : 0.0) - (j == 2 ? c[i] : 0.0);
+      S[i + 4 * j] += size * c[i] * c[j] - v[i] * c[j] - c[i] * v[j];
 }
 
 status space_moduli(space_recovery *s) {
@@ -552,7 +562,7 @@ status space_moduli(space_recovery *s) {
   COPY(s->of_error, s->compliance, square * s->n_section);
   for (int i = 0; i < s->n_section; ++i)
     if (s->d->kin[i] == AXISYMMETRIC)
-      leave_hoop(s->d->E[16 * i + 10], s->of_error + 16 * i);
+      leave_hoop(s->d->E + 16 * i, share_in(s->d, i), s->of_error + 16 * i);
   return OK;
 }
 

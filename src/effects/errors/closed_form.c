@@ -103,11 +103,33 @@ static void add_energy(const element_at_work *e, const double *found,
   e->sum->energy_all += weight * product(ns, e->S, exact);
 }
 
+/* out[ns]: stresses "of" the element, and in axisymmetry what its hoop strain,
+ * which is that of the centroid in them, is more at x. */
+static void add_hoop(const element_at_work *e, const double *of,
+                     const double x[3], const double *shape, double *out) {
+  const domain *d = e->d;
+  const cluster_set *c = d->cluster;
+  double more = 0.0, r = 0.0, mean = 0.0, v[4];
+  COPY(out, of, d->ns);
+  if (d->kin[d->section_id[e->elem_id]] != AXISYMMETRIC) return;
+  for (int a = 0; a < 3; ++a) {
+    const double u_r = node_values(e, a)[0];
+    more += shape[a] * u_r / x[0];
+    mean += u_r / 3.0;
+    r += d->mesh->x[2 * d->mesh->elem[3 * e->elem_id + a]] / 3.0;
+  }
+  more -= mean / r;
+  const int cluster = c != NULL ? c->of[e->elem_id] : -1;
+  cluster_hoop(cluster >= 0 ? c->share[cluster] : 0.0, v);
+  for (int j = 0; j < 4; ++j)
+    for (int i = 0; i < 4; ++i) out[i] += more * e->E[i + 4 * j] * v[j];
+}
+
 static void add_stress(const element_at_work *e, const double x[3],
-                       double weight) {
+                       const double *shape, double weight) {
   int ns = e->d->ns;
   const double *found = e->stress + (size_t)ns * e->elem_id;
-  double exact[MAX_NS];
+  double exact[MAX_NS], at_x[MAX_NS];
   for (int i = 0; i < ns; ++i) {
     const quantity *q = &e->ref->value[REFERENCE_STRESS + i];
     exact[i] = quantity_value(q, x, e->a->t);
@@ -116,7 +138,8 @@ static void add_stress(const element_at_work *e, const double x[3],
     e->sum->stress += twice * error * error;
     e->sum->stress_all += twice * exact[i] * exact[i];
   }
-  add_energy(e, found, exact, weight);
+  add_hoop(e, found, x, shape, at_x);
+  add_energy(e, at_x, exact, weight);
 }
 
 /* One point of the element: shape functions and share of the measure. */
@@ -134,14 +157,15 @@ static void add_point(const element_at_work *e, const double *shape,
       d->kin[id] == AXISYMMETRIC ? 2.0 * acos(-1.0) * x[0] : d->thickness[id];
   if (e->ref->has_u) add_displacement(e, x, shape, weight);
   if (e->ref->has_stress)
-    add_stress(e, x, weight);
+    add_stress(e, x, shape, weight);
   else if (e->ref->has_u) {
     /* The stresses that the strains of the closed form have without expansion
      * and inelastic strains; those of the solution likewise. */
-    double strain[MAX_NS], exact[MAX_NS];
+    double strain[MAX_NS], exact[MAX_NS], at_x[MAX_NS];
     exact_strain(e, x, strain);
     voigt_product(e->d->ns, e->E, strain, exact);
-    add_energy(e, e->elastic, exact, weight);
+    add_hoop(e, e->elastic, x, shape, at_x);
+    add_energy(e, at_x, exact, weight);
   }
 }
 

@@ -741,6 +741,15 @@ static int start_end(const run *r, const line *l, int k, int at,
   return z->mirrored[k] || !border;
 }
 
+/* What an end may be off: by half of its part, where that has nodes for it, and
+ * by an edge where its part is less than a quarter. */
+static double roughness_of(const zone_ends *z, const zone_ends *half, int k,
+                           double edge) {
+  const double least = z->part[k] < QUARTER ? edge : 0.0;
+  const int known = half->w[k].n >= 2 * LEAST;
+  return known ? fmax(fabs(half->at[k] - z->at[k]), least) : least;
+}
+
 static status set_ends(const run *r, const goal_card *g, const line *l,
                        const weight *w, goal_form *f) {
   enum { HALVINGS = 30 };
@@ -753,6 +762,9 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
   if (f->why != GOAL_RELIABLE) return OK;
   find_ends(r, l, &z);
   for (int n = 0; n < HALVINGS && move_x0(l, end, &z); ++n) find_ends(r, l, &z);
+  zone_ends half = z;
+  for (int k = 0; k < 2; ++k) half.part[k] *= 0.5;
+  find_ends(r, l, &half);
   f->value = z.at[1] - z.at[0];
   for (int k = 0; k < 2; ++k) {
     if (z.mirrored[k]) continue;
@@ -761,8 +773,8 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
       f->why = GOAL_NO_ZONE;
       return OK;
     }
-    if (z.part[k] < QUARTER)
-      f->rough += z.w[k].most - z.w[k].sign * l->s[end[k]];
+    f->rough +=
+        roughness_of(&z, &half, k, z.w[k].most - z.w[k].sign * l->s[end[k]]);
     add_nodes(r, g, &z.w[k], f->psi);
     PASS(add_faces(r, g, &z.w[k], &f->curved));
   }

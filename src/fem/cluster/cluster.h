@@ -56,3 +56,11 @@ void cluster_begin(cluster_set *c, cluster_field f);
 void cluster_add(cluster_set *c, cluster_field f, int elem_id, const double *t);
 void cluster_smooth(const cluster_set *c, cluster_field f, int elem_id,
                     double *t);
+
+/* v[4]: what the law sees, with that share, of a hoop strain that varies by 1
+ * within an axisymmetric element and has no mean over it. */
+static inline void cluster_hoop(double share, double *v) {
+  v[0] = v[1] = -share / 3.0;
+  v[2] = 1.0 - share / 3.0;
+  v[3] = 0.0;
+}
