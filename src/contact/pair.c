@@ -260,15 +260,15 @@ void pairs_release(const surface_input *in) {
 
 /* ---- rows of the surface ------------------------------------------------ */
 
-/* 1: supports hold all masters of the first normal along the axis that
- * component c of node i is, if it is held. */
+/* 1: supports hold all masters of node i, which has one normal, along the axis
+ * that component c is, if it is held. */
 static int masters_held(const contact_surface *s, const surface_input *in,
                         int i, int c, int m, const pair_row *rows) {
   const int dim = s->dim;
   unsigned all = (1u << dim) - 1, axis = 0;
   for (int e = 0; e < m; ++e) {
     const node_links *l = rows[e].of == NULL ? NULL : &rows[e].of->to;
-    if (l == NULL || rows[e].normal > 0) continue;
+    if (l == NULL) continue;
     for (size_t k = l->start[rows[e].row]; k < l->start[rows[e].row + 1]; ++k)
       all &= held_bits(in, l->master[k]);
   }
