@@ -132,11 +132,12 @@ START_TEST(belt_gives_slip_distance_direction_torque_and_loop) {
 END_TEST
 
 /*
- * A disc in a bore of its own size, pulled down: it touches below and is open
- * above. The contact line is a ring; its zones follow each other, each begins
- * where the one before ends, and add up to the polygon of 64 sides.
+ * A disc in a bore of its own size, pulled down, or to its first node: it
+ * touches there and is open on the other side. The contact line is a ring; its
+ * zones follow each other, each begins where the one before ends, and add up to
+ * the polygon of 64 sides.
  */
-START_TEST(zones_of_a_ring_close) {
+static void check_ring(const char *pull, const char *across) {
   job j = job_begin("ring");
   job_write(&j, "ring.geo",
             "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {-1, 0, 0};"
@@ -152,8 +153,8 @@ START_TEST(zones_of_a_ring_close) {
             "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
             "*CONTACT, NAME=C, GROUP=RIM, OBSTACLE=O\n"
             "*FRICTION, CONTACT=C, LAW=COULOMB\n0.2\n*STEP\n*STATIC\n"
-            "*BOUNDARY\nHUB, 1\n*DLOAD\nBODY, BY, -10.\n"
-            "*PRINT, ZONES\n*END STEP\n");
+            "*BOUNDARY\nHUB, %s\n*DLOAD\nBODY, %s\n*PRINT, ZONES\n*END STEP\n",
+            across, pull);
   int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   dat z = job_table(&j, "ZONES", -1);
@@ -167,12 +168,19 @@ START_TEST(zones_of_a_ring_close) {
     ck_assert(dat_at(&z, i, "zone") != dat_at(&z, next, "zone") ||
               dat_at(&z, i, "direction") != dat_at(&z, next, "direction"));
     if (dat_at(&z, i, "zone") == 0.0)
-      ck_assert_double_gt(dat_at(&z, i, "y_from"), -0.5);
+      ck_assert_double_lt(
+          across[0] == '1' ? -dat_at(&z, i, "y_from") : dat_at(&z, i, "x_from"),
+          0.5);
   }
   ck_assert_double_eq_tol(dat_sum(&z, "extent"), 128 * sin(acos(-1.0) / 64),
                           1e-9);
   dat_free(&z);
   job_end(&j);
+}
+
+START_TEST(zones_of_a_ring_close) {
+  check_ring("BY, -10.", "1");
+  check_ring("BX, 10.", "2");
 }
 END_TEST
 
