@@ -30,6 +30,10 @@ START_TEST(corner_on_two_obstacles_has_both_normals) {
   ck_assert_double_eq(side[2], 0.5);
   ck_assert_double_eq(gap[3], 0.5);
   ck_assert(side[1] == HUGE_VAL && side[3] == HUGE_VAL);
+  double t[2]; /* across the first normal, whatever the second */
+  c.s->frame[10] = 0.6, c.s->frame[11] = -0.8;
+  surface_tangent(c.s, 2, 1, t);
+  ck_assert(t[0] == 0 && t[1] == -1);
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
   faces_end(&c);
 }

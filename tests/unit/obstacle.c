@@ -114,6 +114,30 @@ START_TEST(gap_of_a_disc_above_a_cylinder_by_hand) {
 }
 END_TEST
 
+/* A point that has passed the middle of a circle: how far it has come. */
+START_TEST(gap_of_a_deep_point_is_back_to_where_it_entered) {
+  const obstacle o = {.shape = OBSTACLE_CYLINDER, .radius = 1};
+  const double down[2] = {0, -1};
+  for (int k = -1; k <= 1; ++k) {
+    const double x[2] = {0, 0.5 * k};
+    ck_assert_double_eq_tol(obstacle_gap(&o, 2, x, down, 0), 0.5 * k - 1,
+                            1e-15);
+  }
+}
+END_TEST
+
+/* By any of what may depend on time. */
+START_TEST(obstacle_that_depends_on_time_moves) {
+  for (int k = 0; k < 6; ++k) {
+    obstacle o = {.shape = OBSTACLE_GAP, .turns = 1};
+    quantity *q[] = {&o.motion[2], &o.angle, &o.gap};
+    formula_compile(q[k / 2], k % 2 ? "t" : "x");
+    ck_assert_int_eq(obstacle_moves(&o), k % 2);
+    formula_release(q[k / 2]);
+  }
+}
+END_TEST
+
 START_TEST(line_along_the_axis_misses_the_cylinder) {
   obstacle o = {
       .shape = OBSTACLE_CYLINDER, .radius = 1, .direction = {0, 0, 1}};
@@ -308,8 +332,12 @@ START_TEST(given_gap_turns_about_the_normal_and_tilts_a_little) {
   ck_assert_double_eq_tol(obstacle_gap(&o, 3, x, down, 0), 6 - 10, 1e-13);
   memory_free(e);
   obstacle c = {.shape = OBSTACLE_CONFORMING, .turns = 1, .axis = {0, 1, 0}};
-  c.angle.number = 1e-6;
-  ck_assert_double_eq_tol(obstacle_gap(&c, 3, x, down, 0), 4e-6, 1e-11);
+  for (int k = 0; k < 2; ++k) { /* the height of its arm */
+    const double angle = c.angle.number = k ? 0.3 : 1e-6;
+    x[2] = 2 * k;
+    ck_assert_double_eq_tol(obstacle_gap(&c, 3, x, down, 0),
+                            4 * sin(angle) - x[2] * (1 - cos(angle)), 1e-14);
+  }
 }
 END_TEST
 
@@ -336,6 +364,13 @@ START_TEST(surface_passes_by_angle_times_arm) {
   p.axis[0] = 1;
   p.angle.formula = o.angle.formula;
   ck_assert_double_eq_tol(obstacle_tilt(&p, 0.25), 0.75, 1e-14);
+  expression *late = NULL;
+  int column;
+  ck_assert_int_eq(expression_compile("1+t", NULL, NULL, &late, &column), OK);
+  p.angle.formula = late;
+  ck_assert_double_eq_tol(obstacle_tilt(&p, 0.25), 0.25, 1e-14);
+  memory_free(late);
+  p.angle.formula = o.angle.formula;
   ck_assert_double_eq(obstacle_tilt(&o, 0.25), 0);
   p.axis[0] = 0;
   double low[3] = {0, 0, -1}, y[3] = {3, 4, 1};
@@ -410,6 +445,8 @@ END_TEST
 UNIT_MAIN("obstacle", plane_is_met_where_it_was_left,
           circle_and_sphere_are_met_where_they_were_left,
           gap_of_a_disc_above_a_cylinder_by_hand,
+          gap_of_a_deep_point_is_back_to_where_it_entered,
+          obstacle_that_depends_on_time_moves,
           line_along_the_axis_misses_the_cylinder,
           flat_sphere_keeps_the_digits_of_the_gap,
           flat_circle_keeps_the_digits_of_the_gap,

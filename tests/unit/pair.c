@@ -96,6 +96,45 @@ static double part_sum(const face_scene *c, int q, int k) {
   return sum;
 }
 
+/* Forces on both sides do the work of the relative displacements, and are found
+ * again from their sums at the nodes. */
+static void check_forces(const contact_surface *s, int n_node) {
+  double u[3 * FACES_MAX], w[3 * FACES_MAX], r[3 * FACES_MAX],
+      F[3 * FACES_MAX] = {0};
+  double again[3 * FACES_MAX], work = 0;
+  const int n = s->dim * s->n, dim = s->dim;
+  unsigned char fixed[3 * FACES_MAX];
+  unsigned seed = 1;
+  for (int i = 0; i < s->dim * n_node; ++i) u[i] = noise(&seed);
+  for (int i = 0; i < n; ++i) r[i] = noise(&seed);
+  surface_relative(s, u, w);
+  surface_spread(s, 1, r, F);
+  for (int i = 0; i < s->dim * n_node; ++i) work -= F[i] * u[i];
+  for (int i = 0; i < n; ++i) work += r[i] * w[i];
+  ck_assert_double_eq_tol(work, 0, 1e-13);
+  ck_assert_int_eq(surface_forces(s, n_node, F, again), OK);
+  for (int i = 0; i < n; ++i) ck_assert_double_eq_tol(again[i], r[i], 1e-13);
+  /* row by row; what supports prescribe of it */
+  for (int i = 0; i < n; ++i) {
+    const int q = i / dim, a = i % dim;
+    const double *row = s->frame + dim * i;
+    double v[3], along = 0, own = 0;
+    surface_motion(s, u, q, a, v);
+    for (int k = 0; k < dim; ++k) {
+      along += row[k] * v[k];
+      own += row[k] * u[dim * s->node_id[q] + k] / surface_share(s, q, a);
+    }
+    ck_assert_double_eq_tol(along, w[i], 1e-13);
+    for (int held = 0; held < 2; ++held) {
+      memset(fixed, held, sizeof fixed);
+      ck_assert_double_eq_tol(surface_prescribed(s, fixed, u, q, a),
+                              held ? w[i] : w[i] - own, 1e-13);
+    }
+    ck_assert(surface_is_mutual(s, q, a) ||
+              s->master->start[q] < s->master->start[q + 1]);
+  }
+}
+
 /* ---- nodes --------------------------------------------------------------- */
 
 /* Pairs side by side: a common node is of the earlier one. The displacements
@@ -215,7 +254,31 @@ START_TEST(nodes_held_along_the_normal_are_left_to_their_neighbours) {
   }
   ck_assert_double_eq_tol(area, 1, 1e-14);
   ck_assert_int_eq(c.pair[0].coupled->n_dropped, 2);
+  check_forces(c.s, c.m.n_node);
   faces_end(&c);
+}
+END_TEST
+
+/* The slave moved by (1/2, 1/16): coupled there with UPDATE, three of its nodes
+ * meet the master; the gap is that of time 0 all the same. */
+START_TEST(moved_slave_has_the_gap_of_its_start) {
+  for (int update = 0; update < 2; ++update) {
+    face_scene c;
+    double u[2 * FACES_MAX] = {0}, w[2 * FACES_MAX];
+    flat_pair(&c);
+    for (int i = 0; i < 5; ++i) u[2 * i] = 0.5, u[2 * i + 1] = 0.0625;
+    c.fixed[0] = 2;
+    c.in.u = u;
+    c.pair[0].update = update;
+    ck_assert_int_eq(build(&c), OK);
+    ck_assert_int_eq(c.s->n, update ? 2 : 4);
+    surface_relative(c.s, u, w);
+    for (int q = 0; q < c.s->n; ++q) {
+      ck_assert_double_eq_tol(c.s->gap0[q], 0.1, 1e-14);
+      ck_assert_double_eq_tol(w[2 * q], -0.0625, 1e-14);
+    }
+    faces_end(&c);
+  }
 }
 END_TEST
 
@@ -245,25 +308,6 @@ START_TEST(held_tangent_is_relative_to_none) {
   }
 }
 END_TEST
-
-/* Forces on both sides do the work of the relative displacements, and are found
- * again from their sums at the nodes. */
-static void check_forces(const contact_surface *s, int n_node) {
-  double u[3 * FACES_MAX], w[3 * FACES_MAX], r[3 * FACES_MAX],
-      F[3 * FACES_MAX] = {0};
-  double again[3 * FACES_MAX], work = 0;
-  const int n = s->dim * s->n;
-  unsigned seed = 1;
-  for (int i = 0; i < s->dim * n_node; ++i) u[i] = noise(&seed);
-  for (int i = 0; i < n; ++i) r[i] = noise(&seed);
-  surface_relative(s, u, w);
-  surface_spread(s, 1, r, F);
-  for (int i = 0; i < s->dim * n_node; ++i) work -= F[i] * u[i];
-  for (int i = 0; i < n; ++i) work += r[i] * w[i];
-  ck_assert_double_eq_tol(work, 0, 1e-13);
-  ck_assert_int_eq(surface_forces(s, n_node, F, again), OK);
-  for (int i = 0; i < n; ++i) ck_assert_double_eq_tol(again[i], r[i], 1e-13);
-}
 
 static const double lean[3] = {-0.3, 0, 1};
 
@@ -419,6 +463,7 @@ int main(void) {
   tcase_add_test(tests, normals_are_compared_where_the_pairs_meet);
   tcase_add_test(tests,
                  nodes_held_along_the_normal_are_left_to_their_neighbours);
+  tcase_add_test(tests, moved_slave_has_the_gap_of_its_start);
   tcase_add_test(tests, held_tangent_is_relative_to_none);
   tcase_add_loop_test(tests, rows_at_an_edge_are_relative_to_their_own_partner,
                       0, 2);
