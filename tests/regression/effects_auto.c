@@ -294,6 +294,25 @@ START_TEST(friction_without_slip_is_left_out) {
 }
 END_TEST
 
+/* The increment in which a body responds at once to what flows then ends no
+ * step: FREQUENCY=0 has one table. */
+START_TEST(response_at_once_ends_no_step) {
+  const scene s = {"*INELASTIC, LAW=MAXWELL\n4.\n",
+                   coulomb,
+                   "LEFT, P, 5., ON\n",
+                   "",
+                   0.2,
+                   NULL};
+  job j = run_scene(&s);
+  char *text = job_file(&j, "dat");
+  const char *first = strstr(text, "increment 5 time 1.0000000000000000E+000 ");
+  ck_assert_msg(first != NULL, "%.300s", text);
+  ck_assert_ptr_eq(strstr(text, "table ENERGY"), strstr(first, "table ENERGY"));
+  free(text);
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(nothing_is_left_out_unless_asked) {
   const scene s = {
       "*EXPANSION\n1.2D-5\n",    coulomb, "*TEMPERATURE\nBODY, 1.D-6\n",
@@ -515,6 +534,6 @@ UNIT_MAIN("effects_auto", small_thermal_strain_is_left_out,
           bound_of_friction_is_that_of_the_work_at_its_nodes,
           bound_of_friction_is_that_of_the_work_in_space,
           change_is_that_of_the_nodes_it_changes_most,
-          change_is_that_of_the_sum_of_friction,
+          change_is_that_of_the_sum_of_friction, response_at_once_ends_no_step,
           body_that_is_free_to_move_ends_all_trials,
           nothing_is_left_out_unless_asked, random_scenes_agree)

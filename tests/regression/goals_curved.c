@@ -243,6 +243,28 @@ START_TEST(shaft_turns_in_a_ring) {
 }
 END_TEST
 
+/* Held all round: u = 2e-4 (4/r - r) under a pressure of 100 within. The edges
+ * of the support in two of its faces are as far from it as those in one. */
+START_TEST(slice_that_a_curved_support_holds) {
+  job j = job_begin("held");
+  job_write(&j, "held.geo", "%sMesh.MeshSizeMax = 0.3;\n", SLICE);
+  job_write(&j, "held.inp",
+            "*MESH, FILE=held.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1\n1., 0., 0.\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n*STEP\n*STATIC\n*BOUNDARY\n"
+            "BOTTOM, 2\nLEFT, 1\nFACES, 3\nOUTER, 1, 2\n*DSLOAD\n"
+            "INNER, P, 100.\n*PRINT, GOALS\n*END STEP\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  check_goal(&t, 0, 6e-4, 0.015);
+  check_goal(&t, 1, 50.0 * M_PI / 4 * 6e-4, 0.1);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* A column of height 40 under the force c y^2 per volume: c 40^4/4/E at its
  * top. Its nodes are in error by the load alone. */
 START_TEST(column_under_a_load_of_a_formula) {
@@ -320,6 +342,7 @@ int main(void) {
   TCase *tests = tcase_create("goals_curved");
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_test(tests, round_surfaces_in_space_lose_load_at_their_rim);
+  tcase_add_test(tests, slice_that_a_curved_support_holds);
   tcase_add_test(tests, plane_ring_under_a_pressure);
   tcase_add_test(tests, plane_ring_under_tractions_of_a_formula);
   tcase_add_test(tests, shell_of_revolution_under_a_pressure);
