@@ -139,7 +139,8 @@ static status find_sizes(pass *p, double *factor) {
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
-  if (has_norm(p) && p->coarse != BLIND) PASS(sizes_of_norm(p, wanted));
+  if (has_norm(p) && p->coarse != BLIND)
+    space_sizes(msh, p->eta, wanted, p->size);
   if (has_norm(p) && p->coarse == BLIND) halve(msh, p->size);
   if (norm_wants_mesh(p))
     *factor = p->coarse == BLIND ? space_growth(msh, p->size)
