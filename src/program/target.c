@@ -131,17 +131,6 @@ static void halve(const mesh *msh, double *size) {
   for (int i = 0; i < msh->n_node; ++i) size[i] *= 0.5;
 }
 
-/* Errors scatter from mesh to mesh: after one in vain nothing is coarser. */
-static status sizes_of_norm(pass *p, double wanted) {
-  const mesh *msh = p->in->msh;
-  OWNED_NEW(double, length, msh->n_node);
-  space_lengths(msh, length);
-  space_sizes(msh, p->eta, wanted, p->size);
-  for (int i = 0; i < msh->n_node && p->in_vain > 0; ++i)
-    p->size[i] = fmin(p->size[i], length[i]);
-  return OK;
-}
-
 /* Sizes of the next mesh, and the factor by which the unknowns grow until the
  * error of the mesh is the one wanted. */
 static status find_sizes(pass *p, double *factor) {
@@ -150,7 +139,8 @@ static status find_sizes(pass *p, double *factor) {
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
-  if (has_norm(p) && p->coarse != BLIND) PASS(sizes_of_norm(p, wanted));
+  if (has_norm(p) && p->coarse != BLIND)
+    space_sizes(msh, p->eta, wanted, p->size);
   if (has_norm(p) && p->coarse == BLIND) halve(msh, p->size);
   if (norm_wants_mesh(p))
     *factor = p->coarse == BLIND ? space_growth(msh, p->size)
@@ -271,7 +261,8 @@ static int refines(const pass_row *row) {
   return strncmp(row->change, "mesh", 4) == 0;
 }
 
-/* Did the last pass gain nothing although the mesh was to change? */
+/* Did the last pass gain nothing although the mesh was to change? One tells
+ * nothing: errors scatter from mesh to mesh. */
 static void see_gain(pass *p) {
   const int vain = p->n > 1 && refines(&p->rows[p->n - 2]) &&
                    norm_wants_mesh(p) && !p->coarse &&

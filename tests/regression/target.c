@@ -284,7 +284,7 @@ START_TEST(mesh_without_geometry_is_refined) {
 END_TEST
 
 /* A square on an inclined floor: the third mesh has 3.0 % of error, the fourth,
- * of other places, 3.2; the fifth is that one made finer. */
+ * of other places, 3.2; the fifth reaches the target. */
 START_TEST(pass_in_vain_is_followed_by_another) {
   job j = job_begin("square");
   job_write(&j, "square.msh", "%s", square_msh);
