@@ -89,7 +89,7 @@ static void check_parameter(const reading *r, const goal_card *g,
                 "*GOAL, QUANTITY=%s needs %s=", word, name);
   if (!takes && is_given(r, name))
     message_add(r->m->log, P2037, value_place(r, name),
-                "*GOAL: %s= counts not with QUANTITY=%s", name, word);
+                "*GOAL: %s= has no effect with QUANTITY=%s", name, word);
 }
 
 static void check_component(const reading *r, goal_card *g) {
