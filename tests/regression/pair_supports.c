@@ -215,6 +215,71 @@ START_TEST(back_of_a_slave_is_no_partner) {
 }
 END_TEST
 
+/* A bar on the upper tread of a step, and above the lower one, which it does
+ * not reach: whether that is a master too changes nothing, with a node of the
+ * bar above the edge or not. */
+START_TEST(step_of_a_master_is_no_slope) {
+  static const struct {
+    double edge;
+    int space;
+  } cases[] = {{1.03, 0}, {1.0, 0}, {1.03, 1}};
+  const char *side = cases[_i].space ? "Surface" : "Curve";
+  double is[2];
+  job j = job_begin("stair");
+  for (int k = 0; k < 2; ++k) {
+    job_write(
+        &j, "stair.geo",
+        "e = %g; space = %d; h = 0.25; Point(1) = {0, 0, 0, h};\n"
+        "Point(2) = {e, 0, 0, h}; Point(3) = {e, 0.5, 0, h};\n"
+        "Point(4) = {0, 0.5, 0, h}; Point(5) = {2, 0, 0, h};\n"
+        "Point(6) = {2, 0.4, 0, h}; Point(7) = {e, 0.4, 0, h};\n"
+        "Line(1) = {1, 2}; Line(2) = {2, 5}; Line(3) = {5, 6};\n"
+        "Line(4) = {6, 7}; Line(5) = {7, 3}; Line(6) = {3, 4};\n"
+        "Line(7) = {4, 1}; Curve Loop(1) = {1:7};\n"
+        "Plane Surface(1) = {1};\n"
+        "Point(11) = {-0.1 * space, 0.5, 0, h}; Point(12) = {2, 0.5, 0, h};\n"
+        "Point(13) = {2, 0.8, 0, h}; Point(14) = {-0.1 * space, 0.8, 0, h};\n"
+        "Line(11) = {11, 12}; Line(12) = {12, 13};\n"
+        "Line(13) = {13, 14}; Line(14) = {14, 11};\n"
+        "Transfinite Curve{11, 13} = 9; Curve Loop(2) = {11:14};\n"
+        "Plane Surface(2) = {2};\n"
+        "body[] = {1, 2}; foot[] = {1, 2}; bar[] = {11}; top[] = {13};\n"
+        "tread[] = {6}; low[] = {4};\n"
+        "If (space)\n"
+        "  a[] = Extrude {0, 0, 0.4} { Surface{1}; Layers{1}; };\n"
+        "  b[] = Extrude {0, 0, 0.4} { Surface{2}; Layers{2}; };\n"
+        "  body[] = {a[1], b[1]}; foot[] = {a[2], a[3]};\n"
+        "  tread[] = {a[7]}; low[] = {a[5]}; bar[] = {b[2]};\n"
+        "  top[] = {b[4]};\nEndIf\n"
+        "Physical %s(\"BODY\") = {body[]};\n"
+        "Physical %s(\"FOOT\") = {foot[]};\n"
+        "Physical %s(\"TREAD\") = {tread[]%s};\n"
+        "Physical %s(\"BAR\") = {bar[]};\n"
+        "Physical %s(\"TOP\") = {top[]};\n",
+        cases[_i].edge, cases[_i].space, cases[_i].space ? "Volume" : "Surface",
+        side, side, k ? ", low[]" : "", side, side);
+    job_write(&j, "stair.inp",
+              "*MESH, FILE=stair.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.E5, 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*CONTACT PAIR, NAME=P, SLAVE=SECOND\nTREAD, BAR\n"
+              "*FRICTION, CONTACT=P, LAW=COULOMB\n0.5\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nFOOT, 1, %d\n*DSLOAD\nTOP, P, \"2-x\"\n"
+              "*PRINT, NODES\n*END STEP\n",
+              2 + cases[_i].space);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    dat t = job_table(&j, "NODES", -1);
+    is[k] = 0.0;
+    for (int i = 0; i < t.n_row; ++i)
+      if (dat_at(&t, i, "x") > 1.999 && dat_at(&t, i, "y") > 0.79)
+        is[k] = dat_at(&t, i, "u_y");
+    dat_free(&t);
+  }
+  ck_assert_double_lt(is[0], 0.0);
+  ck_assert_double_eq_tol(is[1], is[0], 1e-9 * fabs(is[0]));
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("pair_supports");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -223,5 +288,6 @@ int main(void) {
   tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 8);
   tcase_add_loop_test(tests, blocks_slide_past_a_wall, 0, 6);
   tcase_add_loop_test(tests, back_of_a_slave_is_no_partner, 0, 2);
+  tcase_add_loop_test(tests, step_of_a_master_is_no_slope, 0, 3);
   return unit_run("pair_supports", tests);
 }

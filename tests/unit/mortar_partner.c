@@ -92,26 +92,49 @@ START_TEST(plates_see_the_next_plate_and_not_what_is_behind) {
 END_TEST
 
 /* Masters one behind the other in space: the nearer, smaller one hides the
- * middle of the other. */
+ * middle of the other. A node has the gap of one of them, and all of the nearer
+ * is met. */
 START_TEST(the_nearest_of_two_masters_is_the_partner) {
   pair p = two_new(3);
-  two_add_square(&p, 1, 3, 0, 1, 0);
+  two_add_square(&p, 1, 8, 0, 1, 0);
+  int first = p.m.n_node;
   two_add_square(&p, 0, 4, 0, 1, 0);
-  for (int i = 16; i < p.m.n_node; ++i) p.m.x[3 * i + 2] = -0.4;
-  const int first = p.m.n_node;
+  for (int i = first; i < p.m.n_node; ++i) p.m.x[3 * i + 2] = -0.4;
+  first = p.m.n_node;
   two_add_square(&p, 0, 2, 0.2, 0.7, 0);
   for (int i = first; i < p.m.n_node; ++i) p.m.x[3 * i + 2] = -0.1;
   mortar *m = two_couple(&p);
-  double sum = 0;
-  ck_assert_int_eq(m->n, 16);
-  ck_assert_double_eq_tol(m->covered, 1, 1e-13);
-  for (int q = 0; q < 16; ++q) {
-    sum += m->area[q] * m->gap[3 * q + 2];
+  double near = 0.0, far = 0.0;
+  for (int q = 0; q < m->n; ++q) {
+    const double gap = m->gap[3 * q + 2];
+    ck_assert_double_eq_tol(gap, gap > -0.25 ? -0.1 : -0.4, 1e-13);
+    if (gap > -0.25)
+      near += m->area[q];
+    else
+      far += m->area[q];
     ck_assert_double_eq_tol(two_part_sum(m, q), 1, 1e-13);
   }
-  ck_assert_double_eq_tol(sum, -0.4 * 0.75 - 0.1 * 0.25, 1e-13);
+  ck_assert_double_eq_tol(near, 0.25, 1e-13);
+  ck_assert_double_gt(far, 0.2);
+  ck_assert_double_eq_tol(near + far, m->covered, 1e-13);
   memory_free(m);
   two_free(&p);
+}
+END_TEST
+
+/* A step below 1 % of a face is a mean of both heights. */
+START_TEST(slight_steps_are_no_steps) {
+  for (int k = 0; k < 2; ++k) {
+    pair p = two_new(2);
+    add_plate(&p, 1, 10, (double[]){0, 1, 1, 2});
+    add_plate(&p, 0, 1, (double[]){0, 0.45, 0, 1});
+    add_plate(&p, 0, 1, (double[]){0.45, 1, 0, k ? 0.998 : 0.9995});
+    mortar *m = two_couple(&p);
+    ck_assert_int_eq(m->n, 11);
+    ck_assert_double_eq_tol(m->covered, k ? 0.85 : 1.0, 1e-12);
+    memory_free(m);
+    two_free(&p);
+  }
 }
 END_TEST
 
@@ -223,7 +246,7 @@ END_TEST
 
 UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           plates_see_the_next_plate_and_not_what_is_behind,
-          the_nearest_of_two_masters_is_the_partner,
+          the_nearest_of_two_masters_is_the_partner, slight_steps_are_no_steps,
           overlapping_bodies_are_partners,
           surfaces_with_nothing_in_common_have_no_rows,
           masters_apart_hide_each_other,

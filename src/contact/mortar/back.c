@@ -63,8 +63,7 @@ status partner_is_behind(partner_search *s, int from, const facet *f,
     *is = has_side(m, elem, corner, m->dim, mesh_face_nodes(m, p->face));
     if (*is) return OK;
     if (s->around == NULL)
-      PASS(number_places(m->n_node, (size_t)(m->dim + 1) * m->n_elem, m->elem,
-                         m->dim + 1, &s->around, &s->around_elem));
+      PASS(mesh_node_elements(m, &s->around, &s->around_elem));
     elem = element_behind(s, elem, corner);
     if (elem < 0) {
       *is = far < 1.0;

@@ -45,6 +45,7 @@ typedef struct face_part {
 typedef struct builder {
   const mortar_input *in;
   partner_search search;
+  step_search steps;
   unsigned char *state; /* [n_node] of the enum */
   face_part *face;      /* [n_slave] */
   entry *entries;
@@ -221,6 +222,7 @@ static status do_face(builder *b, int i) {
   int kept[3];
   memset(part, 0, sizeof *part);
   part->first = part->end = b->n_entry;
+  b->search.n = 0;
   if (facet_set(b->in->mesh->dim, mortar_nodes(b->in, face), b->in->x, &f) != 0)
     return OK;
   memcpy(part->normal, f.normal, sizeof part->normal);
@@ -228,6 +230,7 @@ static status do_face(builder *b, int i) {
   part->rounding = partner_rounding(&b->search, &f);
   set_shares(b, face, &f, part->share);
   PASS(partner_find(&b->search, face, &f));
+  steps_leave(&b->steps, i, &b->search);
   PASS(set_points(b, face, &f, &corner));
   const int *node = mortar_nodes(b->in, face);
   int n_kept = 0;
@@ -305,9 +308,28 @@ static void leave_out(builder *b) {
   }
 }
 
+/* Again the faces with parts beyond a step. */
+static status do_steps(builder *b) {
+  for (int i = 0; i < b->in->mesh->n_node; ++i)
+    if (b->start[i + 1] > b->start[i])
+      PASS(steps_find(&b->steps, &b->search,
+                      (int)(b->start[i + 1] - b->start[i]),
+                      b->around + b->start[i]));
+  for (int k = 0, last = -1; k < b->steps.n_left; ++k) {
+    const int i = b->steps.left[k].slave_no;
+    if (i != last) PASS(do_face(b, i));
+    last = i;
+  }
+  return OK;
+}
+
 static status do_faces(builder *b) {
   const int dim = b->in->mesh->dim;
-  for (int i = 0; i < b->in->n_slave; ++i) PASS(do_face(b, i));
+  for (int i = 0; i < b->in->n_slave; ++i) {
+    PASS(do_face(b, i));
+    PASS(steps_see(&b->steps, i, &b->search));
+  }
+  PASS(do_steps(b));
   leave_out(b);
   for (int i = 0; i < b->in->n_slave; ++i) {
     const int *node = mortar_nodes(b->in, b->in->slave[i]);
@@ -555,7 +577,8 @@ static status builder_new(const mortar_input *in, mortar *out, builder *b) {
   const size_t n = in->mesh->n_node;
   *b = (builder){.in = in, .out = out};
   PASS_NEW_ALL(OF(b->state, n), OF(b->face, in->n_slave),
-               OF(b->met, in->mesh->n_face), OF(b->slot, n));
+               OF(b->met, in->mesh->n_face), OF(b->slot, n),
+               OF(b->steps.first, in->n_slave + 1));
   for (size_t i = 0; i < n; ++i) b->slot[i] = -1;
   PASS(mortar_around(b->in, b->in->n_slave, b->in->slave, &b->start,
                      &b->around));

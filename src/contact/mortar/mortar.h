@@ -20,6 +20,9 @@
  * hold the faces in between. Nothing is a partner beyond the diagonal of the
  * box round the larger surface.
  *
+ * Where partners of a node lie at two heights, one behind a step, the node
+ * meets the nearer alone (step.c), as beyond an edge.
+ *
  * Where the bodies differ in thickness they touch over the smaller one. The gap
  * is that of curved surfaces, if the faces are those of one (bulge.c): two
  * meshes of one circle have none, up to h^4/R^3, where their faces are apart by

@@ -65,6 +65,35 @@ status partner_is_behind(partner_search *s, int from, const facet *f,
                          const double *x, const partner *p, int *is);
 
 /*
+ * step.c: partners of a node that lie beyond a step of the master.
+ * steps_see: in the order of the slave faces, what partner_find has found;
+ * steps_find: of a node, by the numbers of its slave faces; steps_leave: takes
+ * those beyond a step from the list of slave face number i. ERR_MEMORY.
+ */
+typedef struct step_node { /* partners of the slave faces round a node */
+  int *face, *set; /* [n] of the mesh; place of one that it is joined with */
+  int n, capacity, set_capacity;
+  double normal[3], size; /* of the slave; of its largest face, m */
+} step_node;
+
+typedef struct step_part {
+  int slave_no, face; /* slave face, by its number; master, of the mesh */
+} step_part;
+
+typedef struct step_search {
+  int *first, *seen; /* [n_slave+1]; [first[n_slave]] partners, of the mesh */
+  int n_seen, capacity;
+  step_part *left; /* [n_left] beyond a step */
+  int n_left, left_capacity;
+  step_node node; /* workspace */
+} step_search;
+
+status steps_see(step_search *t, int i, const partner_search *s);
+status steps_find(step_search *t, partner_search *s, int n_face,
+                  const int *slave_no);
+void steps_leave(const step_search *t, int i, partner_search *s);
+
+/*
  * bulge.c: heights of a curved surface over its flat faces, m, outwards, at
  * rest.
  * bulge[edges*n_face], 1 edge of a face in 2-D, 3 in 3-D, is zero and gets
