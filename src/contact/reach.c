@@ -85,7 +85,7 @@ status reach_part_new(int n, int dim, reach_part *out) {
   return OK;
 }
 
-/* The diagonal of "from", a row a node at most one entry. */
+/* Of the diagonal "from", a row a node at most one entry. */
 static void cut_limit(const contact_reach *x, const sparse_rows *from,
                       const sparse_rows *to) {
   int n = 0;
@@ -93,7 +93,6 @@ static void cut_limit(const contact_reach *x, const sparse_rows *from,
     const int i = x->in[k];
     to->start[k] = n;
     for (int e = from->start[i]; e < from->start[i + 1]; ++e) {
-      if (from->col[e] != i) continue;
       to->col[n] = k;
       to->val[n++] = from->val[e];
     }

@@ -594,6 +594,80 @@ END_TEST
 
 /* Two nodes whose normals move as one, to the last digits: no given forces have
  * an answer. Of stiffer normals they have. */
+/* Nodes stay that once were taken; after two distances all are. */
+START_TEST(active_nodes_become_more) {
+  enum { N = 5 };
+  static const double gap[N] = {200, 1, 100, 300, 400};
+  static const double u_n[3][N] = {{0, 0, 101}, {0}, {0}};
+  static const int count[3] = {2, 2, N};
+  contact_reach x = {.distance = 0.5};
+  ck_assert_int_eq(reach_choose(&x, N, gap), OK);
+  ck_assert(x.n_in == 1 && x.in[0] == 1); /* the nearest */
+  for (int k = 0; k < 3; ++k) {
+    ck_assert_int_eq(reach_misses(&x, N, gap, u_n[k], 1), k == 0);
+    ck_assert_int_eq(reach_extend(&x, N, gap, u_n[k], 1, 0), OK);
+    ck_assert_int_eq(reach_count(&x, N), count[k]);
+  }
+  reach_free(&x);
+}
+END_TEST
+
+/* From 1 to 1e-17, the place of a bound or of stick: there to the last bit. The
+ * load that is left is 0.5 and rounding. */
+START_TEST(increment_ends_on_its_bounds) {
+  const double place = 1e-17, force[2] = {0.0, 0.0};
+  for (int side = 0; side < 2; ++side) {
+    contact_case c = one_node(4.0, 2.0, 0.5);
+    velocity_form *v = NULL;
+    contact_problem left;
+    double u[2] = {place, place}, *start = u;
+    c.gap[0] = place;
+    c.ut0[0] = side ? 5.0 : place;
+    c.cp.side_gap = side ? &place : NULL;
+    c.f[0] = 4.0 * (1.0 + DBL_EPSILON);
+    c.f[1] = 2.5;
+    ck_assert_int_eq(velocity_form_new(&c.cp, &v), OK);
+    velocity_form_old(v)[0] = velocity_form_old(v)[1] = 1.0;
+    velocity_form_set(v, &c.cp, force, &left, &start);
+    ck_assert(left.f[0] == 0.0 && left.f[1] == 0.5);
+    ck_assert(left.gap[0] == -1.0 && left.ut0[0] == (side ? 4.0 : -1.0));
+    ck_assert(side ? left.side_gap[0] == -1.0 : left.side_gap == NULL);
+    ck_assert(start[0] == -1.0 && start[1] == -1.0);
+    velocity_form_apply(v, &c.cp, u);
+    ck_assert(u[0] == place && u[1] == place);
+    memory_free(v);
+    case_free(&c);
+  }
+}
+END_TEST
+
+/* Limits by the pressures of three nodes, two of them given: 1 + 2 + 6. */
+START_TEST(given_pressures_are_in_the_limits) {
+  int start[4] = {0, 3, 6, 9}, column[9];
+  double part[9], u[6], r[6];
+  const int known[2] = {1, 2};
+  const double force[2] = {10.0, 20.0};
+  for (int e = 0; e < 9; ++e) {
+    column[e] = e % 3;
+    part[e] = 0.1 * (e % 3 + 1);
+  }
+  const sparse_rows all = {.n = 3, .start = start, .col = column, .val = part};
+  contact_case c = case_new(2, 3, 0.5);
+  contact_problem out;
+  given_form *g = NULL;
+  for (int i = 0; i < 6; ++i) c.A[7 * i] = 2.0;
+  for (int i = 0; i < 3; ++i) c.g0[i] = 1.0;
+  c.cp.B = &all;
+  ck_assert_int_eq(given_form_new(&c.cp, 2, known, &g), OK);
+  ck_assert_int_eq(given_form_set(g, &c.cp, force, 9.0, u, r, &out), OK);
+  for (int i = 0; i < 3; ++i) ck_assert_double_eq_tol(out.g0[i], 9.0, 1e-14);
+  for (int e = 0; e < 9; ++e)
+    ck_assert(out.B->val[e] == (e % 3 > 0 ? 0.0 : 0.1));
+  memory_free(g);
+  case_free(&c);
+}
+END_TEST
+
 START_TEST(normals_that_move_as_one_carry_no_given_forces) {
   static const int node[] = {0, 1};
   for (int k = 0; k < 2; ++k) {
@@ -626,8 +700,9 @@ UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
           closed_gap_counts_where_it_is_nearer, nan_anywhere_gives_nan,
           factors_of_two_leave_every_bit, disc_is_exact_at_any_angle,
           compliance_form_measures_the_same_state, statuses_of_a_row_of_nodes,
-          node_at_its_limit_sticks_until_it_moves,
-          hidden_friction_is_a_part_of_the_limit,
+          node_at_its_limit_sticks_until_it_moves, increment_ends_on_its_bounds,
+          given_pressures_are_in_the_limits,
+          hidden_friction_is_a_part_of_the_limit, active_nodes_become_more,
           forces_of_rounding_are_dropped, second_obstacle_bounds_the_tangent,
           held_tangent_takes_no_friction, what_only_carries_is_not_in_the_scale,
           bodies_are_measured_apart, unlike_nodes_of_a_body_are_measured_apart)

@@ -1,6 +1,7 @@
 /* src/contact/surface.c where a node is in several contacts: corners, obstacles
  * side by side and below one another. */
 #include "base/base.h"
+#include "contact/friction.h"
 #include "support/faces.h"
 #include "support/formula.h"
 #include "support/unit.h"
@@ -35,6 +36,34 @@ START_TEST(corner_on_two_obstacles_has_both_normals) {
   surface_tangent(c.s, 2, 1, t);
   ck_assert(t[0] == 0 && t[1] == -1);
   ck_assert_int_eq(faces_said(&c, "P4"), 0);
+  faces_end(&c);
+}
+END_TEST
+
+/* The normal force of a corner is that of its first contact, whose averages of
+ * the pressure have it alone. */
+START_TEST(corner_presses_in_its_first_contact) {
+  const friction_ops *law = &nonlocal_friction;
+  char why[160];
+  void *param = calloc(1, law->param_size);
+  const friction_card card = {.param = param};
+  face_scene c;
+  option_defaults(law->options, param);
+  ck_assert_int_eq(option_read(option_find(law->options, "RADIUS"), "10.",
+                               param, why, sizeof why),
+                   0);
+  faces_two_sides(&c);
+  ck_assert_int_eq(faces_build(&c), OK);
+  for (int id = 0; id < 2; ++id) {
+    sparse_rows G = {.n = 0};
+    int n = 0;
+    ck_assert_int_eq(
+        law->average(&card, c.s, &c.in, id, &c.pair[id].at, c.log, &G), OK);
+    for (int e = 0; e < G.start[G.n]; ++e) n += G.col[e] == 2;
+    ck_assert_int_eq(n, id == 0 ? 3 : 0);
+    sparse_free(&G);
+  }
+  free(param);
   faces_end(&c);
 }
 END_TEST
@@ -264,6 +293,7 @@ START_TEST(corner_moves_with_both_obstacles) {
 END_TEST
 
 UNIT_MAIN("corner", corner_on_two_obstacles_has_both_normals,
+          corner_presses_in_its_first_contact,
           corner_with_friction_is_warned_about_once,
           fixed_side_of_a_corner_is_dropped,
           contacts_side_by_side_on_one_obstacle_are_one_surface,

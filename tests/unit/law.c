@@ -406,6 +406,26 @@ START_TEST(terms_have_no_order) {
 }
 END_TEST
 
+/* Temperatures are from absolute zero: 20 over -273.15 is 293.15 over 0. */
+START_TEST(arrhenius_has_absolute_temperatures) {
+  static const double T[] = {20, 293.15, 20}, zero[] = {-273.15, 0, 0};
+  static law_case c;
+  double out[3][6];
+  law_case_new(law_find("HYPERBOLIC"), 0, "1E-3, 0.02, 3., 1E4", young, nu,
+               SOLID_3D, &c);
+  c.sigma[0] = stress;
+  for (int k = 0; k < 3; ++k) {
+    c.temperature = T[k];
+    c.card.shift.zero = zero[k];
+    rates(&c, out[k]);
+  }
+  law_case_free(&c);
+  ck_assert_double_eq_tol(out[0][0] / out[1][0], 1, 1e-14);
+  ck_assert_double_eq_tol(log(out[2][0] / out[1][0]),
+                          1e4 / 8.314462618 * (1 / 293.15 - 1 / 20.), 1e-10);
+}
+END_TEST
+
 /* R = sigma to e^i at the end over 1/E along the stress, the time to it. */
 START_TEST(end_of_a_series_is_in_closed_form) {
   static const struct {
@@ -604,6 +624,7 @@ START_TEST(a_trial_law_passes) {
 END_TEST
 
 UNIT_MAIN("law", change_of_direction_may_be_fastest,
+          arrhenius_has_absolute_temperatures,
           end_of_a_series_is_in_closed_form, only_unit_follows_from_the_strain,
           terms_have_no_order, nothing_happens_at_rest,
           dissipation_is_not_negative, power_is_lost_or_kept,

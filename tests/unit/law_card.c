@@ -187,6 +187,11 @@ START_TEST(coefficients_may_vary_in_time) {
   ck_assert_int_eq(law_values(law_of(&s), 3, 0, value), ERR_DECK);
   ck_assert_ptr_nonnull(strstr(status_message(), "tau = -1 is not positive"));
   text_model_close(&s);
+  read_deck(&s, "", "*INELASTIC, LAW=HYPERBOLIC\n1E-3, .02, 3., \"1E4*t\"");
+  ck_assert_int_eq(s.st, OK);
+  ck_assert_uint_eq(law_varies(law_of(&s)),
+                    LAW_VARIES_TIME | LAW_VARIES_TEMPERATURE);
+  text_model_close(&s);
   for (unsigned bits = 0; bits < 4; ++bits) {
     char cards[80];
     snprintf(cards, sizeof cards, "*INELASTIC, LAW=USER\n\"1E-9*q%s%s\"",

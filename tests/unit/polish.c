@@ -142,6 +142,8 @@ START_TEST(rows_hand_out_the_direction) {
       double bad = slip_misdirection(&c.cp, c.u, c.r);
       ck_assert_msg(bad <= (form == 0 ? TOL : 4 * 0x1p-52 / SHORT), "%s: %g",
                     row_name(ops), bad);
+      ck_assert_double_eq_tol(rep.residual, contact_residual(&c.cp, c.u, c.r),
+                              1e-14);
     }
   }
   case_free(&c);

@@ -92,6 +92,20 @@ START_TEST(patch_of_constant_strain_is_reproduced) {
   domain_internal_force(&s->d, t, F);
   for (size_t i = 0; i < N; ++i)
     if (!s->fixed[i]) ck_assert_double_eq_tol(F[i], 0, 1e-12);
+  /* A strain without stress in the last element: the whole strain stays. */
+  const int last = s->m->n_elem - 1;
+  const double e0[6] = {1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};
+  s->d.eigen = &(eigenstrain){.n = 1, .elem_id = &last, .e0 = e0};
+  domain_stress(&s->d, u, e, t);
+  for (size_t i = T - (size_t)ns; i < T; ++i) {
+    const size_t row = i % (size_t)ns;
+    double sigma = 0;
+    for (size_t q = 0; q < (size_t)ns; ++q)
+      sigma += s->E[row + (size_t)ns * q] * (strain[q] - e0[q]);
+    ck_assert_double_eq_tol(t[i], sigma, 1e-11);
+    if (kin != PLANE_STRESS || row != 2)
+      ck_assert_double_eq_tol(e[i], strain[row], 1e-12);
+  }
   free(F);
   free(u);
   free(exact);
