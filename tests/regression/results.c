@@ -253,9 +253,47 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
 }
 END_TEST
 
+/* A strip on 21 contacts, each of a unit of length under a pressure of 1: each
+ * has the node at its end, the first both. */
+START_TEST(end_shows_twenty_contacts) {
+  char cards[2000] = "";
+  for (int i = 0; i < 21; ++i)
+    snprintf(strchr(cards, '\0'), 90,
+             "*CONTACT, NAME=C%d, GROUP=B%d, OBSTACLE=O, NORMAL=OBSTACLE\n", i,
+             i);
+  job j = job_begin("strip");
+  job_write(&j, "strip.geo",
+            "For i In {0:21}\nPoint(i+1) = {i, 0, 0};\nEndFor\n"
+            "Point(23) = {21, 1, 0}; Point(24) = {0, 1, 0};\n"
+            "For i In {1:23}\nLine(i) = {i, i+1};\nEndFor\n"
+            "Line(24) = {24, 1}; Curve Loop(1) = {1:24};\n"
+            "Plane Surface(1) = {1}; Physical Surface(\"BODY\") = {1};\n"
+            "Physical Curve(\"TOP\") = {23}; Physical Curve(\"SIDE\") = {24};\n"
+            "For i In {0:20}\nPhysical Curve(Sprintf(\"B%%g\", i)) = {i+1};\n"
+            "EndFor\nMesh.MeshSizeMax = 1;\n");
+  job_write(&j, "strip.inp",
+            "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+            "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 1.\n"
+            "*END STEP\n",
+            cards);
+  char *said = on_a_terminal(&j, "--no-timing");
+  ck_assert_msg(
+      strstr(said, "\nC0        force_x 0, force_y 1.5, open 0, slip 2, ") !=
+              NULL &&
+          strstr(said,
+                 "\nC19       force_x 0, force_y 1, open 0, slip 1, "
+                 "stick 0\r\n          1 contacts more: JOB.json\r\n") != NULL,
+      "%s", said);
+  free(said);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("results", run_on_a_terminal_ends_with_what_matters,
-          rows_have_the_name_of_their_group, tables_are_read_by_other_programs,
-          tables_that_are_not_whole_are_told,
+          rows_have_the_name_of_their_group, end_shows_twenty_contacts,
+          tables_are_read_by_other_programs, tables_that_are_not_whole_are_told,
           what_cannot_be_printed_is_an_error,
           json_has_the_contacts_at_the_end_of_each_step,
           nodes_have_the_name_of_their_contact)
