@@ -16,11 +16,11 @@
 /* The mesh again with elements of "size" at the nodes of m; NULL: of m itself.
  */
 static mesh *read_again(mesh_file *f, const mesh *m, const double *size) {
-  static const char *const rounds[] = {"BOTTOM", "RIGHT", "FRONT"};
+  static const char *const rounds[] = {"BOTTOM", "RIGHT", "FRONT", "LEFT"};
   const mesh_source source = {.file = mesh_file_path(f, "grid.msh"),
                               .scale = 1.0,
                               .sizes = {{size == NULL ? NULL : m, size}},
-                              .n_round = m->dim == 2 ? 2 : 1,
+                              .n_round = 2,
                               .rounds = rounds + (m->dim == 2 ? 0 : 2)};
   mesh *out = mesh_file_from(f, &source);
   ck_assert_msg(out != NULL, "%s", f->messages);
