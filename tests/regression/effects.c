@@ -117,6 +117,8 @@ START_TEST(plan_names_the_reason) {
        "fields in JOB.h5", "*OUTPUT, block.inp:25"},
       {"*DLOAD\nBODY, BX, 1.\n", "", "body forces",
        "*DLOAD on group BODY, block.inp:22"},
+      {"*DLOAD\nBODY, BX, 1.\n" LATER "*DLOAD\nBODY, BX, 2.\nBODY, BY, 1.\n",
+       "", "body forces", "  256 elements "},
       {"", "", "body forces", "no *DLOAD card"},
       {"*OUTPUT, HDF5=NO\n*ACCURACY, MESH=NO\n", "", "stresses",
        "no output requires them"},

@@ -15,9 +15,10 @@ static const double area = 0.70710678118654752; /* of a tip: half an edge */
 
 /* Two tips, each in a contact of its own, pressed by 10 and 4, then by twice
  * that: a smooth floor bears what presses. */
-static job two_contacts(void) {
-  job j = tips_new(
-      500, "",
+static job pressed(const char *prints) {
+  char text[900];
+  snprintf(
+      text, sizeof text,
       "*UNITS, LENGTH=\"US ft, [long]\"\n"
       "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
       "*CONTACT, NAME=LEFT, GROUP=FOOT1, OBSTACLE=O, NORMAL=OBSTACLE\n"
@@ -25,13 +26,17 @@ static job two_contacts(void) {
       "NORMAL=OBSTACLE\n"
       "*STEP\n*QUASISTATIC\n0.5, 1.\n*BOUNDARY\nCLAMPED, 1, 2\n"
       "*CLOAD\nTIPS, 2, -4.\nFOOT1, 2, -6.\n*SOLVER, TOL=1E-13\n"
-      "*PRINT, CONTACT, TOTALS\n*END STEP\n"
+      "%s*END STEP\n"
       "*STEP\n*QUASISTATIC\n0.5, 1.\n*CLOAD\nTIPS, 2, -8.\nFOOT1, 2, -12.\n"
-      "*END STEP\n");
+      "*END STEP\n",
+      prints);
+  job j = tips_new(500, "", text);
   int code = job_run(&j, "--no-timing");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
 }
+
+static job two_contacts(void) { return pressed("*PRINT, CONTACT, TOTALS\n"); }
 
 /* The next number of that name after *at. */
 static double next_number(const char **at, const char *name) {
@@ -126,6 +131,16 @@ START_TEST(tables_are_read_by_other_programs) {
                   ways[i].words, said);
     free(said);
   }
+  job_end(&j);
+}
+END_TEST
+
+/* Tables of one kind of several groups are one. */
+START_TEST(rows_have_the_name_of_their_group) {
+  job j = pressed("*PRINT, NODES, GROUP=FOOT1\n*PRINT, NODES, GROUP=FOOT2\n");
+  char *said = read_by(&j, "NODES:last", "cut -d, -f1,2,4 | uniq");
+  ck_assert_str_eq(said, "step,increment,group\n2,2,FOOT1\n2,2,FOOT2\n");
+  free(said);
   job_end(&j);
 }
 END_TEST
@@ -238,7 +253,46 @@ START_TEST(run_on_a_terminal_ends_with_what_matters) {
 }
 END_TEST
 
+/* A strip on 21 contacts, each of a unit of length under a pressure of 1: each
+ * has the node at its end, the first both. */
+START_TEST(end_shows_twenty_contacts) {
+  char cards[2000] = "";
+  for (int i = 0; i < 21; ++i)
+    snprintf(strchr(cards, '\0'), 90,
+             "*CONTACT, NAME=C%d, GROUP=B%d, OBSTACLE=O, NORMAL=OBSTACLE\n", i,
+             i);
+  job j = job_begin("strip");
+  job_write(&j, "strip.geo",
+            "For i In {0:21}\nPoint(i+1) = {i, 0, 0};\nEndFor\n"
+            "Point(23) = {21, 1, 0}; Point(24) = {0, 1, 0};\n"
+            "For i In {1:23}\nLine(i) = {i, i+1};\nEndFor\n"
+            "Line(24) = {24, 1}; Curve Loop(1) = {1:24};\n"
+            "Plane Surface(1) = {1}; Physical Surface(\"BODY\") = {1};\n"
+            "Physical Curve(\"TOP\") = {23}; Physical Curve(\"SIDE\") = {24};\n"
+            "For i In {0:20}\nPhysical Curve(Sprintf(\"B%%g\", i)) = {i+1};\n"
+            "EndFor\nMesh.MeshSizeMax = 1;\n");
+  job_write(&j, "strip.inp",
+            "*MESH, FILE=strip.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n%s"
+            "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 1.\n"
+            "*END STEP\n",
+            cards);
+  char *said = on_a_terminal(&j, "--no-timing");
+  ck_assert_msg(
+      strstr(said, "\nC0        force_x 0, force_y 1.5, open 0, slip 2, ") !=
+              NULL &&
+          strstr(said,
+                 "\nC19       force_x 0, force_y 1, open 0, slip 1, "
+                 "stick 0\r\n          1 contacts more: JOB.json\r\n") != NULL,
+      "%s", said);
+  free(said);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("results", run_on_a_terminal_ends_with_what_matters,
+          rows_have_the_name_of_their_group, end_shows_twenty_contacts,
           tables_are_read_by_other_programs, tables_that_are_not_whole_are_told,
           what_cannot_be_printed_is_an_error,
           json_has_the_contacts_at_the_end_of_each_step,

@@ -16,11 +16,11 @@
 /* The mesh again with elements of "size" at the nodes of m; NULL: of m itself.
  */
 static mesh *read_again(mesh_file *f, const mesh *m, const double *size) {
-  static const char *const rounds[] = {"BOTTOM", "RIGHT", "FRONT"};
+  static const char *const rounds[] = {"BOTTOM", "RIGHT", "FRONT", "LEFT"};
   const mesh_source source = {.file = mesh_file_path(f, "grid.msh"),
                               .scale = 1.0,
                               .sizes = {{size == NULL ? NULL : m, size}},
-                              .n_round = m->dim == 2 ? 2 : 1,
+                              .n_round = 2,
                               .rounds = rounds + (m->dim == 2 ? 0 : 2)};
   mesh *out = mesh_file_from(f, &source);
   ck_assert_msg(out != NULL, "%s", f->messages);
@@ -51,6 +51,7 @@ static double finer_in_space(const double *x) {
 }
 static double fine(const double *x) { return 0.03; }
 static double large(const double *x) { return 9.0; }
+static double slightly_finer(const double *x) { return 0.25; }
 
 /* ---- what holds of every mesh ----------------------------------------------
  */
@@ -210,6 +211,7 @@ START_TEST(angles_keep_half_of_the_smallest) {
 }
 END_TEST
 
+/* Nor is a mesh whose elements, of 0.277, are all a little too large kept. */
 START_TEST(nothing_gets_larger) {
   mesh_file f;
   const char *what = NULL;
@@ -218,6 +220,9 @@ START_TEST(nothing_gets_larger) {
   msh_write(mesh_file_path(&f, "grid.msh"), grid);
   mesh *m = read_again(&f, grid, NULL), *same = refine(&f, m, large);
   ck_assert_msg(mesh_same(m, same, 0.0, &what), "%s", what);
+  mesh *more = refine(&f, m, slightly_finer);
+  ck_assert_int_ge(more->n_elem, 2 * m->n_elem);
+  memory_free(more);
   memory_free(same);
   memory_free(m);
   memory_free(grid);
