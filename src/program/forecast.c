@@ -138,9 +138,10 @@ static const double LEAST_GOAL_DOUBT = 1.7, CANCELS_DOUBT = 6.0;
 typedef struct model_of_cost {
   int dim;
   trial deck, coarse, fine;
-  double order;   /* of the error in N */
-  double contact; /* power of N that m is like */
-  double share;   /* of the unknowns that P1 would need, on the first mesh */
+  plan_sizes sizes; /* of the deck */
+  double order;     /* of the error in N */
+  double contact;   /* power of N that m is like */
+  double share;     /* of the unknowns that P1 would need, on the first mesh */
 } model_of_cost;
 
 /* Passes towards a target. */
@@ -182,6 +183,18 @@ static double of_shadow_run(const model_of_cost *c, double ratio) {
   return sum;
 }
 
+/* CPU seconds of tables and fields, which the three runs do not write. */
+static double of_files(const model_of_cost *c, double unknowns, double times) {
+  static const double OPERATION = 1e-9; /* s */
+  const double ratio = unknowns / c->deck.unknowns;
+  plan_sizes s = c->sizes;
+  s.nodes *= ratio;
+  s.elements *= ratio;
+  s.held *= pow(ratio, c->contact);
+  s.contact *= pow(ratio, c->contact);
+  return OPERATION * times * plan_output(&s);
+}
+
 /* CPU seconds of a run with N unknowns and that many times the increments. */
 static double cpu_at(const model_of_cost *c, double unknowns, double times) {
   const trial *b = &c->fine;
@@ -193,12 +206,12 @@ static double cpu_at(const model_of_cost *c, double unknowns, double times) {
       by = of_shadow_run(c, ratio) / shadow;
     sum += b->cpu[i] * by * (is_of_run(i) ? 1.0 : times);
   }
-  return sum;
+  return sum + of_files(c, unknowns, times);
 }
 
-static double sum_of(const trial *t) {
-  double sum = 0.0;
-  for (int i = 0; i < STAGE_COUNT; ++i) sum += t->cpu[i];
+static double cpu_of_deck(const model_of_cost *c) {
+  double sum = of_files(c, c->deck.unknowns, 1.0);
+  for (int i = 0; i < STAGE_COUNT; ++i) sum += c->deck.cpu[i];
   return sum;
 }
 
@@ -236,7 +249,7 @@ static course go(const model_of_cost *c, double goal) {
                .time = c->deck.time,
                .is_coarse = c->deck.is_coarse,
                .times = 1.0,
-               .cpu = sum_of(&c->deck)};
+               .cpu = cpu_of_deck(c)};
   for (int k = 1; error_of(&at) + at.time > goal && k < MOST_PASSES; ++k) {
     int late = at.time > TIME_SHARE * goal;
     double mesh_goal = late ? MESH_SHARE * goal : goal - at.time;
@@ -501,7 +514,7 @@ static void print_level(const model_of_cost *c, const goal_fit *g,
     printf("out of reach");
   else
     printf("%.2g s, %.2g MB, %.2g unknowns, within %.2g",
-           sum_of(&c->deck) + 2.0 * cpu_at(c, unknowns, 1.0),
+           cpu_of_deck(c) + 2.0 * cpu_at(c, unknowns, 1.0),
            bytes_at(c, unknowns) / 1048576.0, unknowns,
            doubt_of_goal(c, g, off, order, unknowns));
 }
@@ -558,6 +571,7 @@ static status forecast_goals(const command *c, job_input *in, trial *now) {
   OWNED_NEW(double, length, in->msh->n_node);
   stand s[2] = {{.t.goals = now->goals}, {.t.goals = now->goals}};
   model_of_cost cost = {.dim = in->m->dim, .deck = *now};
+  PASS(plan_sizes_find(in->m, in->msh, 0, &cost.sizes));
   int n = 0;
   space_lengths(in->msh, length);
   const mesh_sizes first = {in->msh, length};
@@ -594,6 +608,7 @@ status forecast_print(const command *c, job_input *in) {
   if (job_is_geo(in->m)) mesh_gmsh_load();
   OWNED_NEW(double, eta, in->msh->n_elem);
   if (in->m->n.goal > 0) PASS(aims_new(in->m, 1, &goals));
+  PASS(plan_sizes_find(in->m, in->msh, 0, &cost.sizes));
   cost.deck.goals = goals;
   PASS(run_trial(in, &cost.deck, eta));
   stage_costs(NULL, &cost.deck);

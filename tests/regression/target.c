@@ -3,6 +3,7 @@
  * passes, and what they tell.
  */
 #include "base/base.h"
+#include "support/block_file.h"
 #include "support/job.h"
 #include "support/mesh_file.h"
 #include "support/unit.h"
@@ -663,6 +664,38 @@ START_TEST(exact_solution_needs_no_shorter_increments) {
 }
 END_TEST
 
+/* CPU seconds of that error. */
+static double forecast_cpu(const job *j, double level) {
+  double found, cpu;
+  for (const char *at = j->text; at != NULL; at = strchr(at + 1, '\n'))
+    if (sscanf(at, "%lf %*f %*f %lf", &found, &cpu) == 2 && found == level)
+      return cpu;
+  return NAN;
+}
+
+/* A number of a table takes 250 ns, a row ten of them: 63 nodes and 96 elements
+ * in 100 increments. */
+START_TEST(tables_count_in_the_forecast) {
+  double cpu[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("block");
+    block_file_write(&j, (int[]){8, 6}, (double[]){4.0, 3.0}, 0);
+    job_write(
+        &j, "block.inp",
+        "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*QUASISTATIC\n"
+        "0.01, 1.\n*BOUNDARY\nCONTACT, 2\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 1.\n"
+        "*OUTPUT, HDF5=NO\n%s*END STEP\n",
+        k ? "*PRINT, NODES, ELEMENTS\n" : "");
+    ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
+    cpu[k] = forecast_cpu(&j, 10);
+    job_end(&j);
+  }
+  ck_assert_msg(cpu[1] > cpu[0] + 0.5 * 100 * (63 + 96) * 10 * 250e-9,
+                "%g, %g s", cpu[0], cpu[1]);
+}
+END_TEST
+
 /* Loads that return to zero, to rounding, leave errors of that size. */
 START_TEST(unloaded_body_has_no_large_error) {
   job j;
@@ -694,4 +727,4 @@ UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
           exact_solution_costs_one_pass_and_no_forecast,
           lines_of_the_passes_must_leave,
           exact_solution_needs_no_shorter_increments,
-          unloaded_body_has_no_large_error)
+          unloaded_body_has_no_large_error, tables_count_in_the_forecast)

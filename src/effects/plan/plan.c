@@ -102,6 +102,18 @@ static status add_laws(const model *m, const mesh *msh, effect_plan *p,
   return OK;
 }
 
+double plan_output(const plan_sizes *s) {
+  double sum = 0.0;
+  for (int k = 0; effect_table[k] != NULL; ++k) {
+    const effect_ops *e = effect_table[k];
+    const int writes = e->table.bit != 0 || e->own == STAGE_HDF5 ||
+                       e->own == STAGE_FCLIB || e->own == STAGE_LISTING;
+    if (writes && e->expected != NULL && effect_is_on(e, s->m))
+      sum += e->expected(s).operations;
+  }
+  return sum;
+}
+
 status plan_new(const model *m, const mesh *msh, int n, effect_plan **out) {
   int capacity = 0;
   MAKES(effect_plan, p, out);

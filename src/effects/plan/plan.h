@@ -109,6 +109,8 @@ int plan_requires_table(const model *m, int table, const reason *why);
 /* Rows of a table of "all": all of whose requests name a group, the largest. */
 double plan_rows(const plan_sizes *s, int table, double all);
 effect_work plan_table(const plan_sizes *s, int table, double all);
+/* Operations of all tables and fields. */
+double plan_output(const plan_sizes *s);
 double plan_contact_unknowns(const plan_sizes *s);
 double plan_element_work(const plan_sizes *s); /* a pass over one */
 /* Condensed matrix of n unknowns, and the problems solved with it. */
