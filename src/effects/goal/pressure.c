@@ -617,8 +617,8 @@ static status place_mean(const run *r, const goal_card *g, int peak, weight *w,
                      : place_on_disc(r, g, peak, w, f);
 }
 
-/* -, of the mean; on Hertz's contact half the radius changes it by 0.002. */
-static const double NARROW = 0.02;
+/* -, of the mean; half the radius changes that of Hertz by 0.002. */
+static const double NARROW = 0.01;
 
 /* A radius over which the pressure goes like a parabola, while its half has two
  * elements. */
