@@ -617,11 +617,11 @@ static status place_mean(const run *r, const goal_card *g, int peak, weight *w,
                      : place_on_disc(r, g, peak, w, f);
 }
 
-/* -, of the mean; on Hertz's contact half the radius changes it by 0.002. */
-static const double NARROW = 0.02;
+/* -, of the mean; half the radius changes that of Hertz by 0.002. */
+static const double NARROW = 0.01;
 
 /* A radius over which the pressure goes like a parabola, while its half has two
- * elements. */
+ * elements; what the mean may be off. */
 static status narrow(const run *r, const goal_card *g, int peak, weight *w,
                      goal_form *f) {
   for (double mean = add_nodes(r, g, w, NULL);;) {
@@ -632,6 +632,8 @@ static status narrow(const run *r, const goal_card *g, int peak, weight *w,
     PASS(place_mean(r, &closer, peak, &half, &of_half));
     if (of_half.why != GOAL_RELIABLE || of_half.is_coarse) {
       f->is_coarse |= f->rough > 0.0;
+      if (!(f->rough > 0.0) && g->n_point == 0)
+        f->rough = fabs(pressure_of(r, peak) - mean);
       return OK;
     }
     const double next = add_nodes(r, g, &half, NULL);
