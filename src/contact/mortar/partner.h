@@ -64,12 +64,7 @@ status partner_find(partner_search *s, int face, const facet *f);
 status partner_is_behind(partner_search *s, int from, const facet *f,
                          const double *x, const partner *p, int *is);
 
-/*
- * step.c: partners of a node that lie beyond a step of the master.
- * steps_see: in the order of the slave faces, what partner_find has found;
- * steps_find: of a node, by the numbers of its slave faces; steps_leave: takes
- * those beyond a step from the list of slave face number i. ERR_MEMORY.
- */
+/* step.c: partners of a node that lie beyond a step of the master. */
 typedef struct step_node { /* partners of the slave faces round a node */
   int *face, *set; /* [n] of the mesh; place of one that it is joined with */
   int n, capacity, set_capacity;
@@ -88,9 +83,12 @@ typedef struct step_search {
   step_node node; /* workspace */
 } step_search;
 
+/* Slave face number i, in their order: what partner_find has found. */
 status steps_see(step_search *t, int i, const partner_search *s);
+/* Of a node, by the numbers of its slave faces; ERR_MEMORY. */
 status steps_find(step_search *t, partner_search *s, int n_face,
                   const int *slave_no);
+/* Takes those beyond a step from the list of slave face number i. */
 void steps_leave(const step_search *t, int i, partner_search *s);
 
 /*
