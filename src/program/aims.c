@@ -265,8 +265,7 @@ static void limit_sizes(const aims *a, const pass_goal *g, int n_node,
   }
 }
 
-/* The gap at a node, m; HUGE_VAL: in another contact than number "of", 0: any.
- */
+/* The gap at a node of contact number "of", 0: of any, m; else HUGE_VAL. */
 static double gap_at(const aims *a, int node, int of) {
   const int is = a->contact[node];
   return is != 0 && (of == 0 || is == of) ? a->gap[node] : HUGE_VAL;

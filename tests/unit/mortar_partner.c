@@ -122,13 +122,13 @@ START_TEST(the_nearest_of_two_masters_is_the_partner) {
 }
 END_TEST
 
-/* A step below 1 % of a face is a mean of both heights. */
+/* A step below 0.1 % of a face is a mean of both heights. */
 START_TEST(slight_steps_are_no_steps) {
   for (int k = 0; k < 2; ++k) {
     pair p = two_new(2);
     add_plate(&p, 1, 10, (double[]){0, 1, 1, 2});
     add_plate(&p, 0, 1, (double[]){0, 0.45, 0, 1});
-    add_plate(&p, 0, 1, (double[]){0.45, 1, 0, k ? 0.998 : 0.9995});
+    add_plate(&p, 0, 1, (double[]){0.45, 1, 0, k ? 0.9998 : 0.99995});
     mortar *m = two_couple(&p);
     ck_assert_int_eq(m->n, 11);
     ck_assert_double_eq_tol(m->covered, k ? 0.85 : 1.0, 1e-12);

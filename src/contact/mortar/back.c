@@ -28,8 +28,8 @@ static int element_behind(const partner_search *s, int elem, int corner) {
   return -1;
 }
 
-/* The side, by its opposite node, through which the line
- * from x along d leaves an element; how far from x, of the length of d. */
+/* The side, by its opposite node, through which the line from x along d leaves
+ * an element; how far from x, of the length of d. */
 static int leaving_side(const partner_search *s, int elem, const double *x,
                         const double *d, double *far) {
   const int dim = s->in->mesh->dim, *v = mesh_elem_nodes(s->in->mesh, elem);
@@ -59,7 +59,7 @@ status partner_is_behind(partner_search *s, int from, const facet *f,
   for (int c = 0; c < m->dim; ++c) d[c] = p->height * f->normal[c];
   for (int elem = m->face_elem[from], n = 0; n < m->n_elem; ++n) {
     const int corner = leaving_side(s, elem, x, d, &far);
-    if (corner < 0 || far > 1.5) return OK;
+    if (corner < 0 || far > 1.5) return OK; /* p is at 1 */
     *is = has_side(m, elem, corner, m->dim, mesh_face_nodes(m, p->face));
     if (*is) return OK;
     if (s->around == NULL)

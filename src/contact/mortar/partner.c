@@ -146,27 +146,26 @@ static status try_face(partner_search *s, int face, const facet *f, partner p) {
   return OK;
 }
 
-static int root(partner *list, int i) {
-  while (list[i].group != i) i = list[i].group = list[list[i].group].group;
-  return i;
+status face_sets_add(face_sets *a, int face) {
+  PASS_GROW(a->face, a->n, a->capacity);
+  PASS_GROW(a->set, a->n, a->set_capacity);
+  a->set[a->n] = a->n;
+  a->face[a->n++] = face;
+  return OK;
 }
 
-/* 1: the partners are joined through nodes. */
-static int are_joined(partner_search *s, int dim) {
-  int n_group = s->n;
-  for (int i = 0; i < s->n; ++i) s->list[i].group = i;
-  for (int i = 0; i < s->n * dim; ++i) {
-    const int node = mortar_nodes(s->in, s->list[i / dim].face)[i % dim];
-    const int a = root(s->list, i / dim);
-    if (s->group[node] < 0) s->group[node] = a;
-    const int b = root(s->list, s->group[node]);
-    if (a == b) continue;
-    s->list[a].group = b;
-    --n_group;
+int face_sets_join(partner_search *s, face_sets *a) {
+  const int dim = s->in->mesh->dim;
+  int n_set = a->n;
+  for (int k = 0; k < a->n * dim; ++k) {
+    int *at = &s->group[mortar_nodes(s->in, a->face[k / dim])[k % dim]];
+    if (*at < 0) *at = k / dim;
+    n_set -= forest_root(a->set, *at) != forest_root(a->set, k / dim);
+    forest_join(a->set, *at, k / dim);
   }
-  for (int i = 0; i < s->n * dim; ++i)
-    s->group[mortar_nodes(s->in, s->list[i / dim].face)[i % dim]] = -1;
-  return n_group <= 1;
+  for (int k = 0; k < a->n * dim; ++k)
+    s->group[mortar_nodes(s->in, a->face[k / dim])[k % dim]] = -1;
+  return n_set <= 1;
 }
 
 static int share_node(int dim, const int *a, const int *b) {
@@ -257,15 +256,19 @@ static void leave_hiding(partner_search *s) {
   s->n = n;
 }
 
-/* 1: no part is covered twice or hidden. */
-static int is_single(partner_search *s, const facet *f) {
+/* *is 1: no part is covered twice or hidden. */
+static status find_single(partner_search *s, const facet *f, int *is) {
   double covered = 0.0;
+  s->sets.n = 0;
+  *is = 0;
   for (int i = 0; i < s->n; ++i) {
-    if (s->list[i].hides) return 0;
+    if (s->list[i].hides) return OK;
     covered += cells_measure(f->dim, s->list[i].n, s->cells + s->list[i].first);
+    PASS(face_sets_add(&s->sets, s->list[i].face));
   }
-  return covered <= f->measure * (1 + s->n * partner_rounding(s, f)) &&
-         are_joined(s, f->dim);
+  *is = covered <= f->measure * (1 + s->n * partner_rounding(s, f)) &&
+        face_sets_join(s, &s->sets);
+  return OK;
 }
 
 /* Of faces one behind the other only the nearest is left. */
@@ -323,9 +326,11 @@ static status add_slaves(partner_search *s, int face, const facet *f) {
 }
 
 status partner_find(partner_search *s, int face, const facet *f) {
+  int is_single;
   s->n = s->n_cell = 0;
   PASS(add_masters(s, face, f));
   if (s->n > 0) PASS(add_slaves(s, face, f));
   leave_hiding(s);
-  return is_single(s, f) ? OK : leave_nearest(s, f);
+  PASS(find_single(s, f, &is_single));
+  return is_single ? OK : leave_nearest(s, f);
 }

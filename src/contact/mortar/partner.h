@@ -26,13 +26,18 @@ enum { PARTNER = 0, HIDING_MASTER, HIDING_SLAVE };
 
 typedef struct partner {
   int face;      /* id in the mesh */
-  int group;     /* workspace */
   int hides;     /* of the enum */
   shadow s;      /* in the plane of the slave face */
   double size;   /* area of the face, m2 */
   double height; /* along the normal, at the middle of the covered part, m */
   int first, n;  /* cells */
 } partner;
+
+/* Faces, and which are joined through nodes. */
+typedef struct face_sets {
+  int *face, *set; /* [n] of the mesh; place of one that it is joined with */
+  int n, capacity, set_capacity;
+} face_sets;
 
 typedef struct partner_search {
   const mortar_input *in;
@@ -42,6 +47,7 @@ typedef struct partner_search {
   facet *master;  /* [n_master], measure 0: degenerate */
   int *found;     /* [n_master or n_slave] */
   int *group;     /* [n_node] -1, workspace */
+  face_sets sets; /* workspace */
   partner *list;  /* [n] of the current slave face */
   int n, capacity;
   cell *cells; /* [n_cell] */
@@ -59,15 +65,17 @@ status partner_search_new(const mortar_input *in, partner_search *s);
 double partner_rounding(const partner_search *s, const facet *f);
 /* list and cells of this slave face. */
 status partner_find(partner_search *s, int face, const facet *f);
+status face_sets_add(face_sets *a, int face);
+/* 1: all are joined. */
+int face_sets_join(partner_search *s, face_sets *a);
 /* back.c: 1: partner p, below the face "from", is the back of its body or is
  * behind that, on the line through x, a point of the face that p covers. */
 status partner_is_behind(partner_search *s, int from, const facet *f,
                          const double *x, const partner *p, int *is);
 
 /* step.c: partners of a node that lie beyond a step of the master. */
-typedef struct step_node { /* partners of the slave faces round a node */
-  int *face, *set; /* [n] of the mesh; place of one that it is joined with */
-  int n, capacity, set_capacity;
+typedef struct step_node {
+  face_sets of;           /* partners of the slave faces round a node */
   double normal[3], size; /* of the slave; of its largest face, m */
 } step_node;
 

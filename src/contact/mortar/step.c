@@ -7,9 +7,8 @@
 
 #include "base/base.h"
 
-/* -, of the largest face round the node: both sides of a higher step touch only
- * by a turn that is not small. */
-static const double LEAST = 0.01;
+/* -, of the largest face round the node: strains close a lower step. */
+static const double LEAST = 0.001;
 
 status steps_see(step_search *t, int i, const partner_search *s) {
   for (int k = 0; k < s->n; ++k) {
@@ -21,54 +20,40 @@ status steps_see(step_search *t, int i, const partner_search *s) {
 }
 
 static status add_face(step_node *a, int face) {
-  for (int k = 0; k < a->n; ++k)
-    if (a->face[k] == face) return OK;
-  PASS_GROW(a->face, a->n, a->capacity);
-  PASS_GROW(a->set, a->n, a->set_capacity);
-  a->set[a->n] = a->n;
-  a->face[a->n++] = face;
-  return OK;
+  for (int k = 0; k < a->of.n; ++k)
+    if (a->of.face[k] == face) return OK;
+  return face_sets_add(&a->of, face);
 }
 
-/* 1: they are joined through nodes. */
-static int join(partner_search *s, step_node *a) {
+/* How much higher face b is than face a, d[dim] from a node of a to one of b,
+ * "away" in the plane, m: the less of what either plane says, less what their
+ * tilt may make of it; 0: not clear. */
+static double height_of(const partner_search *s, const double *normal, int a,
+                        int b, const double *d, double away) {
   const int dim = s->in->mesh->dim;
-  int n_set = a->n;
-  for (int k = 0; k < a->n * dim; ++k) {
-    int *at = &s->group[mortar_nodes(s->in, a->face[k / dim])[k % dim]];
-    if (*at < 0) *at = k / dim;
-    n_set -= forest_root(a->set, *at) != forest_root(a->set, k / dim);
-    forest_join(a->set, *at, k / dim);
-  }
-  for (int k = 0; k < a->n * dim; ++k)
-    s->group[mortar_nodes(s->in, a->face[k / dim])[k % dim]] = -1;
-  return n_set <= 1;
+  facet f, g;
+  if (facet_set(dim, mortar_nodes(s->in, a), s->in->x, &f) != 0 ||
+      facet_set(dim, mortar_nodes(s->in, b), s->in->x, &g) != 0)
+    return 0.0;
+  const double over = dot(dim, d, f.normal) / dot(dim, normal, f.normal);
+  const double back = dot(dim, d, g.normal) / dot(dim, normal, g.normal);
+  const double tilt = distance_of(dim, f.normal, g.normal);
+  const double least = fmin(fabs(over), fabs(back)) - tilt * away;
+  return over * back > 0.0 && least > 0.0 ? copysign(least, over) : 0.0;
 }
 
-/* How far x is beyond the plane of a face through "of", along the normal, m. */
-static double height_over(const partner_search *s, const double *normal,
-                          int face, const double *of, const double *x) {
-  const int dim = s->in->mesh->dim;
-  double d[3];
-  facet f;
-  if (facet_set(dim, mortar_nodes(s->in, face), s->in->x, &f) != 0) return 0.0;
-  vector_of(dim, of, x, d);
-  return dot(dim, d, f.normal) / dot(dim, normal, f.normal);
-}
-
-/* How much higher set b is than set a where they are nearest in the plane, m;
- * 0: not clear. */
+/* How much higher set b is than a where they are nearest in the plane, m. */
 static double step_to(const partner_search *s, const step_node *n, int a,
                       int b) {
-  const int dim = s->in->mesh->dim, size = dim * n->n;
+  const int dim = s->in->mesh->dim, size = dim * n->of.n;
   double least = HUGE_VAL, step = 0.0;
   for (int i = 0; i < size; ++i) {
-    if (forest_root(n->set, i / dim) != a) continue;
-    const int face = n->face[i / dim];
+    if (forest_root(n->of.set, i / dim) != a) continue;
+    const int face = n->of.face[i / dim];
     const double *x = mortar_place(s->in, mortar_nodes(s->in, face)[i % dim]);
     for (int j = 0; j < size; ++j) {
-      if (forest_root(n->set, j / dim) != b) continue;
-      const int other = n->face[j / dim];
+      if (forest_root(n->of.set, j / dim) != b) continue;
+      const int other = n->of.face[j / dim];
       const double *y =
           mortar_place(s->in, mortar_nodes(s->in, other)[j % dim]);
       double d[3];
@@ -77,28 +62,28 @@ static double step_to(const partner_search *s, const step_node *n, int a,
       const double away = dot(dim, d, d) - height * height;
       if (!(away < least)) continue;
       least = away;
-      const double over = height_over(s, n->normal, face, x, y);
-      const double back = -height_over(s, n->normal, other, y, x);
-      step = over * back > 0.0 ? copysign(fmin(fabs(over), fabs(back)), over)
-                               : 0.0;
+      step = height_of(s, n->normal, face, other, d, sqrt(fmax(0.0, away)));
     }
   }
   return step;
 }
 
-/* 1: set b is beyond a step. */
+/* 1: set b is beyond a step; of two sets one is. */
 static int is_beyond(const partner_search *s, const step_node *n, int b) {
-  for (int a = 0; a < n->n; ++a)
-    if (n->set[a] == a && a != b && step_to(s, n, a, b) > LEAST * n->size)
-      return 1;
+  for (int a = 0; a < n->of.n; ++a) {
+    if (n->of.set[a] != a || a == b) continue;
+    const double step = a < b ? step_to(s, n, a, b) : -step_to(s, n, b, a);
+    if (step > LEAST * n->size) return 1;
+  }
   return 0;
 }
 
 /* The parts of slave face i on partners beyond a step. */
 static status leave(step_search *t, const step_node *n, int set, int i) {
   for (int e = t->first[i]; e < t->first[i + 1]; ++e)
-    for (int k = 0; k < n->n; ++k) {
-      if (n->face[k] != t->seen[e] || forest_root(n->set, k) != set) continue;
+    for (int k = 0; k < n->of.n; ++k) {
+      if (n->of.face[k] != t->seen[e] || forest_root(n->of.set, k) != set)
+        continue;
       PASS_GROW(t->left, t->n_left, t->left_capacity);
       t->left[t->n_left++] = (step_part){i, t->seen[e]};
     }
@@ -109,7 +94,7 @@ static status look_round(step_search *t, const partner_search *s, int n_face,
                          const int *slave_no) {
   const int dim = s->in->mesh->dim;
   step_node *n = &t->node;
-  n->n = 0;
+  n->of.n = 0;
   n->size = 0.0;
   CLEAR(n->normal, 3);
   for (int k = 0; k < n_face; ++k) {
@@ -130,9 +115,9 @@ status steps_find(step_search *t, partner_search *s, int n_face,
                   const int *slave_no) {
   const step_node *n = &t->node;
   PASS(look_round(t, s, n_face, slave_no));
-  if (n->n < 2 || join(s, &t->node)) return OK;
-  for (int b = 0; b < n->n; ++b) {
-    if (n->set[b] != b || !is_beyond(s, n, b)) continue;
+  if (n->of.n < 2 || face_sets_join(s, &t->node.of)) return OK;
+  for (int b = 0; b < n->of.n; ++b) {
+    if (n->of.set[b] != b || !is_beyond(s, n, b)) continue;
     for (int k = 0; k < n_face; ++k) PASS(leave(t, n, b, slave_no[k]));
   }
   return OK;
