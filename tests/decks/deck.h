@@ -226,7 +226,11 @@ typedef struct deck_text {
   deck_units units;
   const char *method; /* NULL: that of the deck                   */
   unsigned shuffle;   /* 0: nodes and elements in order           */
+  int turned;         /* 1: the axes change places, deck_axis()           */
 } deck_text;
+
+/* What the axis c, from 0, is in the text: x y, or x y z go round. */
+int deck_axis(const deck_text *how, int dim, int c);
 
 /* JOB.inp, deck.msh and field.msh into the folder of the job. */
 void deck_write(const random_deck *d, const deck_text *how, const job *j);

@@ -11,8 +11,9 @@
 #include <signal.h>
 #include <sys/resource.h>
 
-const char *const twin_name[TWINS] = {"threads", "units, powers of two",
-                                      "units, 1000", "numbering", "methods"};
+const char *const twin_name[TWINS] = {"threads",     "units, powers of two",
+                                      "units, 1000", "numbering",
+                                      "axes",        "methods"};
 
 enum { CPU_SECONDS = 60 };
 
@@ -53,11 +54,19 @@ static void put_away(job *j, int lost, char what[400]) {
  * nodes, with the second. */
 static const double smallest[2] = {1e-5, 1e-3};
 
+/* 1: in axes of a contact, or a variable of a law that may be a component. */
+static int has_own_axes(const char *name) {
+  const size_t n = strlen(name);
+  return (n > 2 && name[n - 1] >= '0' && name[n - 1] <= '9') ||
+         strcmp(name, "torque") == 0;
+}
+
 /* 1: what two right answers may differ in, a coordinate, or a name. */
-static int is_left_out(const char *name) {
+static int is_left_out(const char *name, const deck_text *how) {
   static const char *const out[] = {"status", "slip_dir", "open",  "slip[",
                                     "stick",  "closed",   "defect"};
   if (name[0] != '\0' && name[1] == '\0') return 1;
+  if (how->turned && has_own_axes(name)) return 1;
   if (strcmp(name, "slip") == 0) return 0;
   if (strcmp(name, "contact") == 0) return 1;
   for (size_t k = 0; k < sizeof out / sizeof *out; ++k)
@@ -71,7 +80,45 @@ static double unit_factor(const table *t, int c, const deck_units *u) {
          pow(u->time, t->unit[c][2]);
 }
 
-/* Back into base units and to the numbers of the deck. */
+/* The column of c in a turned table, whose last letters are the axes. */
+static int turned_column(const table *t, const deck_text *how, int dim, int c) {
+  char name[2][24];
+  size_t n = strlen(t->name[c]), at = n;
+  while (at > 0 && strchr("xyz", t->name[c][at - 1]) != NULL) --at;
+  if (at == 0 || n - at > 2 || t->name[c][at - 1] != '_') return c;
+  for (int k = 0; k < 2; ++k) memcpy(name[k], t->name[c], n + 1);
+  for (size_t i = at; i < n; ++i)
+    name[0][i] = name[1][at + n - 1 - i] =
+        (char)('x' + deck_axis(how, dim, t->name[c][i] - 'x'));
+  const int to = table_column(t, name[0]);
+  return to >= 0 ? to : table_column(t, name[1]);
+}
+
+/* 1: of the other sign, where x and y change places. */
+static int is_around(const char *name) {
+  static const char *const names[] = {"u_t",       "f_t",      "tangential",
+                                      "slip",      "moment_z", "moment_of_both",
+                                      "traction_t"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; ++k)
+    if (strcmp(name, names[k]) == 0) return 1;
+  return 0;
+}
+
+static void turn_back(table *t, const deck_text *how, int dim) {
+  double of[COLUMNS_];
+  for (int row = 0; row < t->n_row; ++row) {
+    double *v = t->value + row * t->n_col;
+    for (int c = 0; c < t->n_col; ++c) {
+      const int to = turned_column(t, how, dim, c);
+      of[c] = to < 0 ? NAN : v[to];
+      const int counts = t->unit[c][0] == 0 && t->unit[c][1] == 0;
+      if (dim == 2 && is_around(t->name[c]) && !counts) of[c] = -of[c];
+    }
+    memcpy(v, of, (size_t)t->n_col * sizeof *v);
+  }
+}
+
+/* Back into base units, and to the numbers and the axes of the deck. */
 static void restore(const random_deck *d, const deck_text *how, tables *all) {
   const solid *s = &d->mesh;
   int *node = deck_numbers(s->n_node, how->shuffle);
@@ -85,6 +132,7 @@ static void restore(const random_deck *d, const deck_text *how, tables *all) {
     all->at[i].t /= how->units.time;
     for (int k = 0; k < TABLES; ++k) {
       table *t = &all->at[i].of[k];
+      if (how->turned) turn_back(t, how, s->dim);
       int nodes = k == T_CONTACT || k == T_NODES || k == T_REACTIONS;
       for (int row = 0; row < t->n_row; ++row) {
         double *v = t->value + row * t->n_col;
@@ -103,11 +151,11 @@ static void restore(const random_deck *d, const deck_text *how, tables *all) {
 }
 
 /* Largest magnitude among the columns of the unit of column c. */
-static double scale_of(const table *t, int c, double least) {
-  double most = least;
+static double scale_of(const table *t, int c, const deck_text *how) {
+  double most = smallest[how->method != NULL];
   for (int k = 0; k < t->n_col; ++k) {
     if (memcmp(t->unit[k], t->unit[c], sizeof *t->unit) != 0) continue;
-    if (k == 0 || is_left_out(t->name[k])) continue;
+    if (k == 0 || is_left_out(t->name[k], how)) continue;
     for (int row = 0; row < t->n_row; ++row)
       most = fmax(most, fabs(table_at(t, row, k)));
   }
@@ -116,7 +164,7 @@ static double scale_of(const table *t, int c, double least) {
 
 /* Of the largest, over what rows and columns a table differs. */
 static double table_difference(const table *a, const table *b, int by_number,
-                               double least, const char **name) {
+                               const deck_text *how, const char **name) {
   double worst = 0;
   if (a->n_row != b->n_row || a->n_col != b->n_col) return HUGE_VAL;
   int most = 0;
@@ -124,8 +172,8 @@ static double table_difference(const table *a, const table *b, int by_number,
     most = (int)fmax(most, fmax(table_at(a, row, 0), table_at(b, row, 0)));
   int *row_of = table_rows(b, most);
   for (int c = by_number; c < a->n_col; ++c) {
-    double scale = scale_of(a, c, least);
-    if (is_left_out(a->name[c])) continue;
+    double scale = scale_of(a, c, how);
+    if (is_left_out(a->name[c], how)) continue;
     for (int row = 0; row < a->n_row; ++row) {
       int other = by_number ? row_of[(int)table_at(a, row, 0)] : row;
       double x = table_at(a, row, c);
@@ -140,7 +188,7 @@ static double table_difference(const table *a, const table *b, int by_number,
   return worst;
 }
 
-static double difference(const tables *a, const tables *b, double least,
+static double difference(const tables *a, const tables *b, const deck_text *how,
                          char what[400]) {
   double worst = 0;
   snprintf(what, 400, "%d increments, not %d", b->n, a->n);
@@ -150,7 +198,7 @@ static double difference(const tables *a, const tables *b, double least,
           k == T_CONTACT || k == T_NODES || k == T_REACTIONS || k == T_ELEMENTS;
       const char *name = "rows";
       double off = table_difference(&a->at[i].of[k], &b->at[i].of[k], numbers,
-                                    least, &name);
+                                    how, &name);
       if (fabs(a->at[i].t - b->at[i].t) > 1e-9) off = HUGE_VAL;
       if (off <= worst) continue;
       worst = off;
@@ -171,14 +219,18 @@ static int is_exact(const random_deck *d) {
   return 1;
 }
 
+static int is_given(const random_deck *d) {
+  int given = 0;
+  for (int k = 0; k < d->n_contact; ++k) given |= d->contact[k].given;
+  return given;
+}
+
 /* Another method, or the stiffness as an operator. */
 static const char *method_of(const random_deck *d) {
   static const char *const name[] = {"NEWTON", "SOR",      "AUGLAG",
                                      "LEMKE",  "PROXIMAL", "AITKEN",
                                      "PCG",    "LAGRANGE"};
-  int given = 0;
-  for (int k = 0; k < d->n_contact; ++k) given |= d->contact[k].given;
-  if (d->seed % 2 == 1 && !given) return "AUTO, STIFFNESS=FACTOR";
+  if (d->seed % 2 == 1 && !is_given(d)) return "AUTO, STIFFNESS=FACTOR";
   return name[d->seed / 3 % 8];
 }
 
@@ -205,7 +257,7 @@ static twin_answer compare(const random_deck *d, const deck_text *how, job *j,
   tables t = tables_read(j);
   twin_answer answer = TWIN_SAME;
   restore(d, how, &t);
-  if (difference(own, &t, smallest[how->method != NULL], what) > tol) {
+  if (difference(own, &t, how, what) > tol) {
     char *sta = job_file(j, "sta");
     answer = d->balanced ? TWIN_SAME : may_branch(d) ? TWIN_OTHER : TWIN_LOST;
     judge(d, &t, sta, &q);
@@ -237,11 +289,13 @@ static double tolerance_of(const random_deck *d, twin_kind kind) {
   return kind == METHODS ? 1e-4 : kind == THREADS_ ? 1e-7 : 1e-6;
 }
 
-/* 1: of errors and goals too: bit for bit; with two threads, and renumbered. */
-static int tells_same(twin_kind kind, double tol, const job *base, const job *j,
-                      char what[400]) {
+/* 1: of errors and goals too: bit for bit; with two threads, renumbered, and
+ * turned. */
+static int tells_same(const random_deck *d, twin_kind kind, double tol,
+                      const job *base, const job *j, char what[400]) {
   if (tol == 0) return same_json_bits(base, j, what, 400);
-  return (kind != NUMBERS && kind != THREADS_) ||
+  if (kind == TURNS && (d->balanced || is_given(d))) return 1;
+  return (kind != NUMBERS && kind != THREADS_ && kind != TURNS) ||
          same_json_errors(base, j, 1e-5, 1e-8, what, 400);
 }
 
@@ -253,13 +307,14 @@ twin_answer twin_check(const random_deck *d, twin_kind kind, const job *base,
   if (kind == POWERS) how.units = (deck_units){1024, 1 / 64., 4};
   if (kind == THOUSANDS) how.units = (deck_units){1000, 1e-3, 60};
   if (kind == NUMBERS) how.shuffle = (unsigned)d->seed % 1000 + 1;
+  how.turned = kind == TURNS;
   if (kind == METHODS) how.method = method_of(d);
   deck_write(d, &how, &j);
   int code = twin_run(&j, kind == THREADS_ ? "--threads 2" : "");
   twin_answer answer = code == 0 ? compare(d, &how, &j, tol, own, what)
                                  : refused(d, kind, code, &j, what);
   if (code == 0 && answer == TWIN_SAME &&
-      !tells_same(kind, tol, base, &j, what))
+      !tells_same(d, kind, tol, base, &j, what))
     answer = TWIN_LOST;
   if (kind == METHODS)
     snprintf(what + strlen(what), 400 - strlen(what), " (%s)", how.method);

@@ -10,6 +10,7 @@ typedef enum {
   POWERS,    /* units that are powers of two                                 */
   THOUSANDS, /* units as mm and kN                                          */
   NUMBERS,   /* nodes and elements numbered again                             */
+  TURNS,     /* x y change places, x y z go round; not in axisymmetric decks */
   METHODS,   /* another method of *SOLVER                                    */
   TWINS
 } twin_kind;
@@ -24,7 +25,6 @@ typedef enum { TWIN_SAME, TWIN_OTHER, TWIN_REFUSED, TWIN_LOST } twin_answer;
  * "own". TWIN_OTHER: another answer that is one too. what[400]: how it differs.
  */
 twin_answer twin_check(const random_deck *d, twin_kind kind, const job *base,
-                       const tables *own,
-                       char what[400]);
+                       const tables *own, char what[400]);
 /* Stops a run in its middle and goes on: all files equal. 1: they are. */
 int twin_restart(const random_deck *d, char what[400]);

@@ -19,6 +19,10 @@ static double in(const writer *w, double v, double L, double F, double T) {
   return v * pow(u->length, L) * pow(u->force, F) * pow(u->time, T);
 }
 
+static int axis(const writer *w, int c) {
+  return deck_axis(w->how, w->d->mesh.dim, c);
+}
+
 static double stress(const writer *w, double v) { return in(w, v, -2, 1, 0); }
 
 static void put(const writer *w, const char *before, double v) {
@@ -35,15 +39,18 @@ static void put_linear(const writer *w, const linear *v, double L, double F) {
   }
   put(w, "\"", in(w, v->at0, L, F, 0));
   for (int c = 0; c < w->d->mesh.dim; ++c)
-    fprintf(w->f, " + (%.17g)*%c", in(w, v->slope[c], L - 1, F, 0), 'x' + c);
+    fprintf(w->f, " + (%.17g)*%c", in(w, v->slope[c], L - 1, F, 0),
+            'x' + axis(w, c));
   fprintf(w->f, "\"");
 }
 
 static void put_vector(const writer *w, const char *before, const double *v,
                        double L) {
+  double of[3];
   fprintf(w->f, "%s", before);
   for (int c = 0; c < w->d->mesh.dim; ++c)
-    put(w, c == 0 ? "" : ", ", in(w, v[c], L, 0, 0));
+    of[axis(w, c)] = in(w, v[c], L, 0, 0);
+  for (int c = 0; c < w->d->mesh.dim; ++c) put(w, c == 0 ? "" : ", ", of[c]);
 }
 
 /* ---- before the steps --------------------------------------------------- */
@@ -155,12 +162,15 @@ static void write_sections(const writer *w) {
 
 static void write_motion(const writer *w, const deck_obstacle *o) {
   int dim = w->d->mesh.dim, moves = 0, formula = o->motion == BY_FORMULA;
-  double omega = in(w, o->omega, 0, 0, -1);
+  double omega = in(w, o->omega, 0, 0, -1), move[3];
   if (o->motion == STANDS) return;
-  for (int c = 0; c < dim; ++c) moves |= o->move[c] != 0;
+  for (int c = 0; c < dim; ++c) {
+    moves |= o->move[c] != 0;
+    move[axis(w, c)] = in(w, o->move[c], 1, 0, 0);
+  }
   if (moves) fprintf(w->f, "MOVE");
   for (int c = 0; c < dim && moves; ++c) {
-    double v = in(w, o->move[c], 1, 0, 0);
+    double v = move[c];
     if (formula)
       fprintf(w->f, ", \"(%.17g)*sin(%.17g*t)\"", v, omega);
     else
@@ -168,12 +178,13 @@ static void write_motion(const writer *w, const deck_obstacle *o) {
   }
   if (moves) fprintf(w->f, "\n");
   if (o->angle == 0) return;
+  const double angle = w->how->turned && dim == 2 ? -o->angle : o->angle;
   put_vector(w, "ROTATE, ", o->pivot, 1);
   if (dim == 3) put_vector(w, ", ", o->axis, 0);
   if (formula)
-    fprintf(w->f, ", \"(%.17g)*sin(%.17g*t)\"\n", o->angle, omega);
+    fprintf(w->f, ", \"(%.17g)*sin(%.17g*t)\"\n", angle, omega);
   else
-    fprintf(w->f, ", %.17g\n", o->angle);
+    fprintf(w->f, ", %.17g\n", angle);
 }
 
 static void write_obstacle(const writer *w, int k) {
@@ -186,8 +197,8 @@ static void write_obstacle(const writer *w, int k) {
   if (o->motion == BY_COURSE) fprintf(w->f, ", AMPLITUDE=A%d", o->course);
   fprintf(w->f, "\n");
   if (o->kind == GAP)
-    fprintf(w->f, "\"%.17g + %.17g*(x - (%.17g))^2\"\n",
-            in(w, o->gap0, 1, 0, 0), in(w, o->gap2, -1, 0, 0),
+    fprintf(w->f, "\"%.17g + %.17g*(%c - (%.17g))^2\"\n",
+            in(w, o->gap0, 1, 0, 0), in(w, o->gap2, -1, 0, 0), 'x' + axis(w, 0),
             in(w, o->gap_at, 1, 0, 0));
   if (o->kind == PLANE || o->kind == CYLINDER || o->kind == SPHERE) {
     put_vector(w, "", o->point, 1);
@@ -226,7 +237,7 @@ static void write_average(const writer *w, const deck_friction *f) {
           f->geodesic ? ", DISTANCE=GEODESIC" : "");
   for (int c = 0; c < 3; ++c)
     if (f->mirror[c])
-      fprintf(w->f, ", MIRROR_%c=%s", 'X' + c,
+      fprintf(w->f, ", MIRROR_%c=%s", 'X' + axis(w, c),
               f->mirror[c] == 1 ? "MIN" : "MAX");
 }
 
@@ -240,7 +251,8 @@ static void write_friction(const writer *w, int k, const deck_friction *f) {
     fprintf(w->f, "\n");
     return;
   }
-  if (f->table) fprintf(w->f, ", TABLE=%c", f->table);
+  if (f->table)
+    fprintf(w->f, ", TABLE=%c", in_time ? 'T' : 'X' + axis(w, f->table - 'X'));
   if (f->course >= 0) fprintf(w->f, ", AMPLITUDE=A%d", f->course);
   fprintf(w->f, "\n");
   for (int i = 0; i < f->pairs.n; ++i)
@@ -256,13 +268,12 @@ static void write_friction(const writer *w, int k, const deck_friction *f) {
 /* Group and what of it: the fields before the value. */
 static void write_place(const writer *w, const deck_load *l) {
   static const char *const label[] = {"", "P", "T", "B", "GRAV", "", ""};
-  static const char axis[] = "XYZ";
-  int c = l->component;
+  int c = axis(w, l->component);
   fprintf(w->f, "%s, ", w->d->mesh.group[l->group].name);
   if (l->kind == FIX) fprintf(w->f, "%d, %d, ", c + 1, c + 1);
   if (l->kind == POINT) fprintf(w->f, "%d, ", c + 1);
   if (l->kind == TRACTION || l->kind == BODY_FORCE)
-    fprintf(w->f, "%s%c, ", label[l->kind], axis[c]);
+    fprintf(w->f, "%s%c, ", label[l->kind], 'X' + c);
   if (l->kind == PRESSURE || l->kind == GRAVITY)
     fprintf(w->f, "%s, ", label[l->kind]);
 }
@@ -336,7 +347,7 @@ static void write_initial(const writer *w) {
   fprintf(w->f, "*INITIAL CONDITIONS, TYPE=DISPLACEMENT, INCOMPATIBLE=RELAX\n");
   for (int g = 0; g < d->mesh.n_group; ++g)
     for (int c = 0; c < d->mesh.dim && d->material_of[g] >= 0; ++c)
-      fprintf(w->f, "%s, %d, %.17g\n", d->mesh.group[g].name, c + 1,
+      fprintf(w->f, "%s, %d, %.17g\n", d->mesh.group[g].name, axis(w, c) + 1,
               in(w, d->start[c], 1, 0, 0));
 }
 
@@ -346,16 +357,18 @@ static void write_goals(const writer *w) {
   while (d->material_of[of] < 0) ++of;
   fprintf(w->f,
           "*GOAL, NAME=E, QUANTITY=ENERGY\n"
-          "*GOAL, NAME=S, QUANTITY=STRESS, COMPONENT=XY, GROUP=%s\n",
+          "*GOAL, NAME=S, QUANTITY=STRESS, COMPONENT=%s, GROUP=%s\n",
+          axis(w, 0) == 1 && axis(w, 1) == 2 ? "YZ" : "XY",
           d->mesh.group[of].name);
   if (d->n_contact == 0) return;
   fprintf(w->f,
-          "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=%s\n"
+          "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=%d, GROUP=%s\n"
           "*GOAL, NAME=N, QUANTITY=FORCE, CONTACT=C0\n"
-          "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C0, COMPONENT=1\n"
+          "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C0, COMPONENT=%d\n"
           "*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C0\n"
           "*GOAL, NAME=W, QUANTITY=FRICTION WORK\n",
-          d->mesh.group[d->contact[0].group].name);
+          axis(w, 0) + 1, d->mesh.group[d->contact[0].group].name,
+          axis(w, 0) + 1);
 }
 
 static void write_deck(const writer *w) {
@@ -370,6 +383,10 @@ static void write_deck(const writer *w) {
   write_initial(w);
   if (has_goals(d)) write_goals(w);
   for (int i = 0; i < d->n_step; ++i) write_step(w, i);
+}
+
+int deck_axis(const deck_text *how, int dim, int c) {
+  return how->turned && c < dim ? (c + 1) % dim : c;
 }
 
 static FILE *open_file(const job *j, const char *name) {

@@ -52,9 +52,10 @@ void deck_write_mesh(const random_deck *d, const deck_text *how, FILE *f) {
   fprintf(f, "$EndPhysicalNames\n$Nodes\n%d\n", s->n_node);
   for (int i = 0; i < s->n_node; ++i) {
     fprintf(f, "%d", node_no[i]);
-    for (int c = 0; c < 3; ++c)
-      fprintf(f, " %.17g",
-              c < s->dim ? s->x[s->dim * i + c] * how->units.length : 0.0);
+    double x[3] = {0};
+    for (int c = 0; c < s->dim; ++c)
+      x[deck_axis(how, s->dim, c)] = s->x[s->dim * i + c] * how->units.length;
+    for (int c = 0; c < 3; ++c) fprintf(f, " %.17g", x[c]);
     fprintf(f, "\n");
   }
   fprintf(f, "$EndNodes\n");
