@@ -1,8 +1,8 @@
 /*
  * Random decks that combine effects (tests/decks): each is run, its answer
  * judged by what the test recomputes from the tables, and compared with that
- * of the same deck with two threads, in other units, numbered again, along other
- * axes, by another method, and stopped in its middle and gone on with.
+ * of the same deck with two threads, in other units, numbered again, along
+ * other axes, by another method, and stopped in its middle and gone on with.
  *
  * DECKS=count,first: how many, from which seed on; DECKS_KEEP=1: what is lost
  * stays in its folder.

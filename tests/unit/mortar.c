@@ -447,6 +447,54 @@ START_TEST(gaps_are_those_of_the_curve) {
 }
 END_TEST
 
+static double gap_of(pair *p, int q, int flat) {
+  p->in.flat = flat;
+  mortar *m = two_couple(p);
+  const int dim = m->to.dim;
+  double gap = 0;
+  for (int c = 0; c < dim; ++c)
+    gap += m->gap[dim * q + c] * m->normal[dim * q + c];
+  memory_free(m);
+  return gap;
+}
+
+/* s = h^2/8R is the height of an arc over its edge from the axis, a part t
+ * along it 4 s t (1 - t), and psi = 3 - 4 t of the node on the axis: its mean
+ * with the radius is 6/5 s. */
+START_TEST(arc_at_the_axis_has_the_mean_of_the_closed_form) {
+  const double h = 1.0 / 8, R = 2;
+  pair p = two_new(2);
+  two_add_line(&p, 1, 8, 0, 1, 0);
+  for (int i = 0; i <= 8; ++i) p.m.x[2 * i + 1] = pow(p.m.x[2 * i], 2) / 2 / R;
+  two_add_line(&p, 0, 1, 0, 2, 0);
+  p.in.axisymmetric = 1;
+  const double beyond = gap_of(&p, 0, 1) - gap_of(&p, 0, 0);
+  ck_assert_double_eq_tol(beyond / (h * h / 8 / R), 1.2, 0.01);
+  two_free(&p);
+}
+END_TEST
+
+static void turn_corners(pair *p) {
+  for (int f = 0; f < p->in.n_slave + p->in.n_master; ++f) {
+    int *v = p->m.face + 3 * f, first = v[0];
+    v[0] = v[1];
+    v[1] = v[2];
+    v[2] = first;
+  }
+}
+
+START_TEST(gaps_of_a_sphere_do_not_hang_on_the_order_of_corners) {
+  pair p = plane_pair(3, 3, 5, 0.3);
+  bend(&p, 0);
+  for (int q = 0; q < 16; ++q) {
+    const double gap = gap_of(&p, q, 0);
+    turn_corners(&p);
+    ck_assert_double_eq_tol(gap_of(&p, q, 0), gap, 1e-14);
+  }
+  two_free(&p);
+}
+END_TEST
+
 /* ---- normals, places, units ---------------------------------------------- */
 
 /* Slave at an angle to the master: the mean is half way. */
@@ -622,6 +670,8 @@ UNIT_MAIN("mortar", planes_reproduce_linear_fields_and_constant_pressure,
           dropped_nodes_leave_their_part_to_the_neighbours,
           dropped_nodes_in_space_keep_linear_fields_and_forces,
           matching_lips_move_with_their_copies, gaps_are_those_of_the_curve,
+          arc_at_the_axis_has_the_mean_of_the_closed_form,
+          gaps_of_a_sphere_do_not_hang_on_the_order_of_corners,
           normals_are_the_mean_of_both_sides_or_those_of_the_slave,
           normals_beside_a_node_left_out_are_the_mean_too,
           rows_sum_to_one_far_from_the_origin, ratio_of_the_sizes_has_no_unit,

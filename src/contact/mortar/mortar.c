@@ -54,7 +54,7 @@ typedef struct builder {
   int n_point, point_capacity;
   int *slot;      /* [n_node] -1, or place among the entries of a face or row */
   double *normal; /* [dim*n_node] of the masters and dropped nodes */
-  double *bulge;  /* of bulge_find, both surfaces */
+  double *bulge;  /* of bulge_find, both surfaces; NULL: none */
   size_t *start;  /* of mortar_around */
   int *around;
   unsigned char *met; /* [mesh->n_face] 1: partner of a slave face */
@@ -79,15 +79,36 @@ static double thinner(const builder *b, int face, int k) {
   return fmin(1.0, w[b->search.list[k].face] / w[face]);
 }
 
-/* Rules exact for degree 3 on a segment, 2 on a triangle. */
-static void rule_point(int dim, int k, double *bary) {
-  if (dim == 2) {
-    const double a = 0.5 - 0.5 / sqrt(3.0);
-    bary[k] = 1 - a;
-    bary[1 - k] = a;
-    return;
-  }
-  for (int i = 0; i < 3; ++i) bary[i] = i == k ? 2.0 / 3 : 1.0 / 6;
+/* A rule: points in turn near each of the corners, the coordinates of all
+ * others at[], - . */
+typedef struct rule {
+  int n;
+  double at[2], part[2];
+} rule;
+
+/* Exact for degree 3 on a segment, 2 on a triangle; where surfaces bulge, for 5
+ * on a segment of a body of revolution (Gauss), for 4 on a triangle (Dunavant,
+ * Int. J. Num. Meth. Eng. 21, 1985, table II). */
+static const rule plain[] = {{2, {0.21132486540518708}, {0.5}},
+                             {3, {1. / 6}, {1. / 3}}};
+static const rule bulging[] = {
+    {3, {0.1127016653792583, 0.5}, {5. / 18, 8. / 18}},
+    {6,
+     {0.44594849091596489, 0.09157621350977074},
+     {0.22338158967801147, 0.10995174365532187}}};
+
+static const rule *rule_of(const builder *b) {
+  const int space = b->in->mesh->dim == 3;
+  const int bulges = b->bulge != NULL && (space || b->in->axisymmetric);
+  return bulges ? &bulging[space] : &plain[space];
+}
+
+/* Point k; its weight. */
+static double rule_point(const rule *r, int dim, int k, double *bary) {
+  const int of = k / dim;
+  for (int i = 0; i < dim; ++i) bary[i] = r->at[of];
+  bary[k % dim] = 1.0 - (dim - 1) * r->at[of];
+  return r->part[of];
 }
 
 static double face_size(int dim, double measure) {
@@ -99,17 +120,17 @@ static status add_points(builder *b, int face, const facet *f, int of,
                          const cell *c, const double *ref) {
   const int dim = f->dim;
   const cell *other = &b->search.list[of].s.in_plane;
-  for (int k = 0; k < dim; ++k) {
-    sample s = {.weight = cell_measure(dim, c) / dim};
+  const rule *r = rule_of(b);
+  for (int k = 0; k < r->n; ++k) {
+    sample s = {.partner = of};
     double bary[3], at[2] = {0, 0};
-    rule_point(dim, k, bary);
+    s.weight = cell_measure(dim, c) * rule_point(r, dim, k, bary);
     for (int i = 0; i < dim; ++i)
       for (int a = 0; a < dim - 1; ++a) {
         s.offset[a] += bary[i] * (c->at[i][a] - ref[a]);
         at[a] += bary[i] * c->at[i][a];
       }
     cell_functions(dim, &f->in_plane, at, s.phi);
-    s.partner = of;
     cell_functions(dim, other, at, s.other);
     s.weight *= thickness(b, face, s.phi) * thinner(b, face, of);
     if (!(s.weight > 0)) continue;
@@ -207,8 +228,8 @@ static void set_shares(const builder *b, int face, const facet *f,
   CLEAR(share, 3);
   for (int k = 0; k < dim; ++k) {
     double phi[3];
-    rule_point(dim, k, phi);
-    const double w = f->measure / dim * thickness(b, face, phi);
+    const double part = rule_point(&plain[dim - 2], dim, k, phi);
+    const double w = part * f->measure * thickness(b, face, phi);
     for (int j = 0; j < dim; ++j) share[j] += w * phi[j];
   }
 }
@@ -587,6 +608,8 @@ static status builder_new(const mortar_input *in, mortar *out, builder *b) {
     PASS_NEW(b->bulge, 3 * in->mesh->n_face);
     PASS(bulge_find(in, in->n_slave, in->slave, b->bulge));
     PASS(bulge_find(in, in->n_master, in->master, b->bulge));
+    if (largest_entry(3 * (size_t)in->mesh->n_face, b->bulge) == 0)
+      b->bulge = NULL;
   }
   return partner_search_new(in, &b->search);
 }
