@@ -160,6 +160,12 @@ void visco_part_strains(run *r, const visco_part *p) {
   if (!all) to_points(r, p, v->stress, v->now.e);
 }
 
+/* Points that are not averaged, over their volume. */
+typedef struct locking_sums {
+  double stress, strain; /* square of the deviators, J Pa, m3 */
+  double growth;         /* m3, square of the inelastic change of volume */
+} locking_sums;
+
 /* Square of the deviator of a stress, or of a strain whose shears are doubled:
  * shear 2 or 1/2. */
 static inline double deviator_square(int ns, const double *t, double shear) {
@@ -211,9 +217,7 @@ static double mean_bulk(const run *r) {
 static double apparent_ratio(const run *r) {
   const visco *v = r->strains.visco;
   locking_sums sum = {0};
-  if (v->sums.known) sum = v->sums.locking;
-  for (int k = 0; k < v->x.n && !v->sums.known; ++k)
-    add_locking(r->m->ns, r, k, &sum);
+  for (int k = 0; k < v->x.n; ++k) add_locking(r->m->ns, r, k, &sum);
   if (sum.strain == 0.0 || sum.growth > 1e-6 * sum.strain) return -1.0;
   double K = mean_bulk(r), G = 0.5 * sqrt(sum.stress / sum.strain);
   return (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G));
@@ -297,8 +301,6 @@ static inline void add_points(int ns, const run *r, const visco_part *p,
   for (int k = p->point; k < end; ++k) add_works(ns, r, k, sum);
   for (int k = p->point; k < end && r->now.thermal != NULL; ++k)
     add_thermal(r, k, sum);
-  if (r->strains.visco->reported.locking) return;
-  for (int k = p->point; k < end; ++k) add_locking(ns, r, k, &sum->locking);
 }
 
 status visco_part_sums(run *r, const visco_part *p) {

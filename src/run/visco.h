@@ -8,12 +8,6 @@
 
 enum { SLOTS = 4 };
 
-/* Points that are not averaged, over their volume (points.c). */
-typedef struct locking_sums {
-  double stress, strain; /* square of the deviators, J Pa, m3 */
-  double growth;         /* m3, square of the inelastic change of volume */
-} locking_sums;
-
 /* Sums over the points for an increment and its end, computed during a step of
  * constant laws. */
 typedef struct point_sums {
@@ -25,7 +19,6 @@ typedef struct point_sums {
   double strain;             /* J, energy of the stresses */
   double stored;             /* J, stored by the laws */
   double elastic;            /* m3, square of the elastic strains */
-  locking_sums locking;
 } point_sums;
 
 struct visco {

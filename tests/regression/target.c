@@ -92,6 +92,24 @@ START_TEST(target_is_reached_in_truth) {
 }
 END_TEST
 
+/* Where the solver alone is to do better the mesh of the last pass stays. */
+START_TEST(tighter_solver_takes_over_the_mesh) {
+  job j;
+  int code = press(
+      &j, 2, "*SOLVER, METHOD=SOR, TOL=0.1\n*ACCURACY, TARGET=12 %\n", "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  const char *row = strstr(j.text, "  mesh\n   2 "), *end = NULL;
+  double unknowns[2];
+  ck_assert_msg(row != NULL && strstr(row, "  tol * ") != NULL, "%s", j.text);
+  row += strlen("  mesh\n   2 ");
+  unknowns[0] = strtod(row, (char **)&end);
+  ck_assert(sscanf(strstr(end, "\n   3 "), " 3 %lf", &unknowns[1]) == 1);
+  ck_assert_double_gt(unknowns[0], 500);
+  ck_assert_double_eq(unknowns[0], unknowns[1]);
+  job_end(&j);
+}
+END_TEST
+
 #define CUBE_SIDE \
   "(-3.1245736543072164E-6*cosh(K*z) + 3.4326728826486094E-6*z*sinh(K*z))"
 static const char cube_field[] =
@@ -714,7 +732,8 @@ END_TEST
 
 UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
           goal_of_a_coarse_mesh_is_not_reliable, forecast_of_a_coarse_mesh,
-          target_is_reached_in_truth, limits_stop_with_the_best_there_is,
+          target_is_reached_in_truth, tighter_solver_takes_over_the_mesh,
+          limits_stop_with_the_best_there_is,
           limits_are_those_of_the_mesh_in_the_end,
           sizes_that_gmsh_fails_with_are_made_smaller,
           structured_geometry_is_made_finer, mesh_without_geometry_is_refined,

@@ -184,7 +184,39 @@ START_TEST(zones_of_a_ring_close) {
 }
 END_TEST
 
+/* Nothing slips: the zone of stick ends where the contact does, though the
+ * limit that is left grows towards the edge. Under an even pressure the square
+ * of a limit that ends at x = 0.65 is linear, and so its zone is exact. */
+START_TEST(stick_ends_where_the_contact_or_the_limit_does) {
+  static const char *const gap[] = {"0.01*(x - 0.6)", "-0.001"};
+  static const char *const mu[] = {"1 + 9*x", "sqrt(max(0, 0.65 - x))"};
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("cube");
+    job_copy(&j, "tests/regression/mesh/cube.geo");
+    job_write(&j, "cube.inp",
+              "*MESH, FILE=cube.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=GAP\n\"%s\"\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n\"%s\"\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nTOP, 1, 3\n*PRINT, ZONES\n*END STEP\n",
+              gap[k], mu[k]);
+    int code = job_run(&j, "");
+    ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+    dat z = job_table(&j, "ZONES", -1);
+    double slip = dat_at(&z, dat_zone(&z, 1), "area");
+    double stick = dat_at(&z, dat_zone(&z, 2), "area");
+    ck_assert_double_eq_tol(slip, k == 0 ? 0 : 0.35, 1e-12);
+    ck_assert_double_eq_tol(stick, k == 0 ? stick : 0.65, 1e-12);
+    ck_assert_double_gt(stick, 0.25);
+    dat_free(&z);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("zones", zones_of_a_ring_close,
           radius_of_hertz_is_found_between_the_nodes,
           one_zone_reaches_from_end_to_end,
-          belt_gives_slip_distance_direction_torque_and_loop)
+          belt_gives_slip_distance_direction_torque_and_loop,
+          stick_ends_where_the_contact_or_the_limit_does)

@@ -292,6 +292,28 @@ START_TEST(corner_moves_with_both_obstacles) {
 }
 END_TEST
 
+/* A plane that turns passes a side by the arm to where the normal of the side
+ * meets it: straight below the corner, 1 from the pivot. */
+START_TEST(side_of_a_corner_moves_where_its_own_normal_meets) {
+  face_scene c;
+  double motion[10] = {0};
+  faces_two_sides(&c);
+  c.support[1] = (obstacle){.name = "GROUND",
+                            .shape = OBSTACLE_PLANE,
+                            .point = {0, -0.5, 0},
+                            .direction = {0, 1, 0},
+                            .turns = 1,
+                            .pivot = {1, -0.5, 0},
+                            .axis = {0, 0, 1}};
+  formula_compile(&c.support[1].angle, "-t");
+  ck_assert_int_eq(faces_build(&c), OK);
+  surface_drift(c.s, &c.in, 0, 0.25, motion);
+  ck_assert_double_eq(motion[5], -0.25);
+  formula_release(&c.support[1].angle);
+  faces_end(&c);
+}
+END_TEST
+
 UNIT_MAIN("corner", corner_on_two_obstacles_has_both_normals,
           corner_presses_in_its_first_contact,
           corner_with_friction_is_warned_about_once,
@@ -304,4 +326,5 @@ UNIT_MAIN("corner", corner_on_two_obstacles_has_both_normals,
           of_two_obstacles_that_behind_the_body_is_none,
           faces_twice_at_one_place_are_an_error,
           cube_corner_stands_on_three_obstacles,
-          corner_moves_with_both_obstacles)
+          corner_moves_with_both_obstacles,
+          side_of_a_corner_moves_where_its_own_normal_meets)

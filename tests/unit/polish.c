@@ -62,6 +62,23 @@ START_TEST(short_slip_gets_its_direction) {
 }
 END_TEST
 
+/* A better direction that misses the tolerance of the forces is not taken. */
+START_TEST(state_beyond_the_tolerance_is_left) {
+  double u[M], r[M], kept[M];
+  contact_case c = short_slip(u, r);
+  int sweeps = 0;
+  u[1] = SHORT * cos(ANGLE + 0.5);
+  u[2] = SHORT * sin(ANGLE + 0.5);
+  u[M - 3] -= 0.1 * SHORT;
+  contact_reaction(&c.cp, u, r);
+  memcpy(kept, u, sizeof u);
+  ck_assert_int_eq(polish_slip(&c.cp, TOL, 1, u, r, &sweeps), OK);
+  ck_assert_int_eq(sweeps, 1);
+  ck_assert_mem_eq(kept, u, sizeof u);
+  case_free(&c);
+}
+END_TEST
+
 /* Sticking nodes entered the obstacle and slid by no more than the residual can
  * see: they are put back, and only then; the one that slips stays, also that
  * before a wall, which has no friction, and the last, which is open, keeps no
@@ -151,5 +168,5 @@ START_TEST(rows_hand_out_the_direction) {
 END_TEST
 
 UNIT_MAIN("polish", short_slip_gets_its_direction,
-          held_nodes_lie_on_the_obstacle, exact_answer_is_left_alone,
-          rows_hand_out_the_direction)
+          state_beyond_the_tolerance_is_left, held_nodes_lie_on_the_obstacle,
+          exact_answer_is_left_alone, rows_hand_out_the_direction)

@@ -115,6 +115,24 @@ START_TEST(wedged_triangle_is_locked_by_friction) {
 }
 END_TEST
 
+/* Its load is taken away: the wedge stays, though no force solves it too. */
+START_TEST(wedge_stays_without_a_load) {
+  static const double A[] = {1, -0.8, -0.8, 1};
+  const solver_ops *ops;
+  for (int i = 0; solver_row(i, &ops); ++i) {
+    contact_case c = case_new(2, 1, 2.0);
+    memcpy(c.A, A, sizeof A);
+    c.ut0[0] = c.u[1] = c.r[1] = 1;
+    c.r[0] = -0.9;
+    solver_report rep = solve_by(ops, &c, 1e-12, c.u, c.r);
+    ck_assert_int_eq(rep.outcome, CONVERGED);
+    ck_assert_double_eq_tol(c.u[1], 1, 1e-11);
+    ck_assert_double_eq_tol(c.r[0], -0.8, 1e-11);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* ---- degenerate problems ------------------------------------------------ */
 
 START_TEST(no_load_costs_nothing) {
@@ -734,8 +752,8 @@ END_TEST
 UNIT_MAIN(
     "solver", table_is_complete, one_triangle_slips_sticks_and_opens,
     one_triangle_has_three_solutions_for_large_friction,
-    wedged_triangle_is_locked_by_friction, no_load_costs_nothing,
-    no_node_is_solved, all_open_and_all_stick_are_exact,
+    wedged_triangle_is_locked_by_friction, wedge_stays_without_a_load,
+    no_load_costs_nothing, no_node_is_solved, all_open_and_all_stick_are_exact,
     corner_node_meets_both_obstacles, held_tangents_stay_where_they_are_put,
     touching_without_force_is_solved, one_node_is_solved_in_every_state,
     special_cases_are_solved_from_the_compliance,

@@ -208,10 +208,8 @@ static double level_reach(const finder *z, const level *l, int i, int j) {
 
 /* The same; a zone of stick ends at the latest where the contact does. */
 static double reach(const finder *z, const level *l, int i, int j) {
-  double part = level_reach(z, l, i, j);
-  if (l == &z->stick && !z->closed.in[j])
-    part = fmin(part, level_reach(z, &z->closed, i, j));
-  return part;
+  const double part = level_reach(z, l, i, j);
+  return z->closed.in[j] ? part : fmin(part, level_reach(z, &z->closed, i, j));
 }
 
 /* ---- in three dimensions: areas ------------------------------------------ */

@@ -26,7 +26,7 @@ const char *solver_family(const char *name) {
 }
 
 status attempt_archive(const contact_solver *s, int row, archive *a) {
-  const solver_ops *ops = row < N_SOLVER ? solver_list[row] : s->choice.ops;
+  const solver_ops *ops = solver_list[row];
   if (s->work[row] == NULL || ops->keep == NULL) return OK;
   IN_GROUP(a, text_of("work%d", row));
   return ops->keep(s->work[row], a);

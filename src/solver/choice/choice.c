@@ -213,7 +213,7 @@ status contact_solver_keep(contact_solver *s, archive *a) {
   if (s->best_u == NULL && s->from != NULL)
     return archive_pass_on(s->from, s->group, a);
   int there = 0;
-  for (int i = 0; i <= N_SOLVER; ++i) {
+  for (int i = 0; i < N_SOLVER; ++i) {
     PASS(attempt_archive(s, i, a));
     if (s->work[i] != NULL) there |= 1 << i;
   }

@@ -133,7 +133,7 @@ struct contact_solver {
   /* What belongs to one matrix. */
   contact_problem last;     /* whose matrix it is; borrowed, all-zero: none */
   void *work[N_SOLVER + 1]; /* of solver_list, last of a solver that is not in
-                               it; NULL: not set up */
+                               it, never saved; NULL: not set up */
   void *param;              /* defaults of the current method of the chain */
   size_t param_size;
   fixed_point *fixed;
