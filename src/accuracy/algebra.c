@@ -38,7 +38,9 @@
  * Equilibrium of a body that contact alone holds: its stiffness has motions R
  * without energy, and the energy of d is finite only if R' d = 0. The forces
  * change by dq = Z y, Z = W R with the forces as weights (which keep their
- * sign), on sliding nodes by the limit of the new pressure; R' Z y = R' d.
+ * sign), on sliding nodes by the limit of the new pressure; R' Z y = R' d. Of
+ * motions that no force resists, as those of a body that has left the others,
+ * rounding alone may be left.
  */
 
 /* Largest change of the force of an unknown, N; 0: it is given. */
@@ -79,7 +81,27 @@ static int admissible(const contact_problem *cp, const pair *p) {
   return 1;
 }
 
-static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding */
+static const double NO_LEVER = 0x1p-44; /* -, lever, condition: rounding */
+
+/* Unit diagonal of G[k k]; rows and columns without one: 0. */
+static void scale_balance(int k, double *G, double *root) {
+  for (int a = 0; a < k; ++a) {
+    root[a] = 1.0 / sqrt(fabs(G[a + k * a]));
+    if (!(root[a] < HUGE_VAL)) root[a] = 0.0;
+  }
+  for (int c = 0; c < k; ++c)
+    for (int a = 0; a < k; ++a) G[a + k * c] *= root[a] * root[c];
+}
+
+/* Motions that forces resist, on which the others depend: the first of order[k]
+ * (from 1 on). G[k k] is lost, root[3 k] workspace. */
+static int find_resisted(int k, double *G, double *root, int *order) {
+  int rank = 0;
+  scale_balance(k, G, root);
+  LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', k, G, k, order, &rank, NO_LEVER,
+                      root + k);
+  return rank;
+}
 
 /* y of G y = b in place of b[k]; 0: some motion has no force against it, or
  * only one with a lever arm of rounding. root[5 k], pivot[2 k] are workspace.
@@ -87,12 +109,7 @@ static const double NO_LEVER = 0x1p-44; /* -, condition that is rounding */
 static int solve_balance(int k, double *G, double *b, double *root,
                          int *pivot) {
   double norm, condition = 0.0;
-  for (int a = 0; a < k; ++a) {
-    root[a] = 1.0 / sqrt(fabs(G[a + k * a]));
-    if (!(root[a] < HUGE_VAL)) return 0;
-  }
-  for (int c = 0; c < k; ++c)
-    for (int a = 0; a < k; ++a) G[a + k * c] *= root[a] * root[c];
+  scale_balance(k, G, root);
   norm = LAPACKE_dlange_work(LAPACK_COL_MAJOR, '1', k, k, G, k, NULL);
   if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, k, k, G, k, pivot) != 0) return 0;
   LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', k, G, k, norm, &condition,
@@ -120,30 +137,48 @@ static int find_resultants(const contact_problem *cp,
   return none;
 }
 
+/* z[m] = W R of a motion, without lever arms of rounding. */
+static void weigh(const contact_problem *cp, const pair *p,
+                  const double *motion, double *z) {
+  const double least = NO_LEVER * largest_entry(cp->m, motion);
+  for (int dof = 0; dof < cp->m; ++dof)
+    z[dof] = fabs(motion[dof]) > least ? slack(cp, p, dof) * motion[dof] : 0.0;
+}
+
 status pair_balance(const contact_problem *cp, const inverse_energy *inverse,
                     pair *p, int *done) {
-  int m = cp->m, k = inverse->n_kernel;
-  OWNED double *Z = NULL, *G = NULL, *y = NULL, *root = NULL;
-  OWNED int *pivot = NULL;
-  PASS_NEW_ALL(OF(Z, (size_t)m * k), OF(G, (size_t)k * k), OF(y, k),
-               OF(root, 5 * k), OF(pivot, 2 * k));
+  const int m = cp->m, k = inverse->n_kernel;
+  const double *R = inverse->kernel;
+  OWNED double *Z = NULL, *G = NULL, *y = NULL, *b = NULL, *root = NULL;
+  OWNED int *order = NULL, *pivot = NULL;
+  PASS_NEW_ALL(OF(Z, (size_t)m * k), OF(G, (size_t)k * k), OF(y, k), OF(b, k),
+               OF(root, 5 * k), OF(order, k), OF(pivot, 2 * k));
   if ((*done = find_resultants(cp, inverse, p, y))) return OK;
-  for (int c = 0; c < k; ++c) {
+  for (int c = 0; c < k; ++c)
+    weigh(cp, p, R + (size_t)m * c, Z + (size_t)m * c);
+  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1.0, R, m, Z, m,
+              0.0, G, k);
+  const int rank = find_resisted(k, G, root, order);
+  if (rank == 0) return OK;
+  for (int c = 0; c < rank; ++c) {
     double *z = Z + (size_t)m * c;
-    for (int dof = 0; dof < m; ++dof)
-      z[dof] = slack(cp, p, dof) * inverse->kernel[(size_t)m * c + dof];
+    weigh(cp, p, R + (size_t)m * (order[c] - 1), z);
     follow_limit(cp, p, z);
+    cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, R, m, z, 1, 0.0, root, 1);
+    for (int a = 0; a < rank; ++a) G[a + rank * c] = root[order[a] - 1];
+    b[c] = y[order[c] - 1];
   }
-  cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, k, k, m, 1.0,
-              inverse->kernel, m, Z, m, 0.0, G, k);
-  if (!solve_balance(k, G, y, root, pivot)) return OK;
-  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1.0, Z, m, y, 1, 0.0, p->t, 1);
+  if (!solve_balance(rank, G, b, root, pivot)) return OK;
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, rank, 1.0, Z, m, b, 1, 0.0, p->t,
+              1);
   for (int dof = 0; dof < m; ++dof) {
     p->q[dof] += p->t[dof];
     p->d[dof] -= p->t[dof];
     p->rounding[dof] += DBL_EPSILON * fabs(p->t[dof]);
   }
+  find_resultants(cp, inverse, p, y);
   *done = admissible(cp, p);
+  for (int c = rank; c < k; ++c) *done = *done && y[order[c] - 1] == 0.0;
   return OK;
 }
 

@@ -152,6 +152,56 @@ static void first_change(linear_contact *s, const double *r) {
                              : 0.0;
 }
 
+static const double NO_LEVER = 0x1p-44; /* -, of a motion that is rounding */
+
+/* Largest entry of columns [from, k[ of R, in rows that are known or rub, or in
+ * all. */
+static double find_pivot(const linear_contact *s, const double *R, int from,
+                         int all, int *row, int *column) {
+  const contact_problem *cp = s->at.cp;
+  double most = 0.0;
+  for (int i = 0; i < cp->m; ++i) {
+    if (!all && s->at.place[i] >= 0 &&
+        !(i % cp->dim > 0 && s->at.slip[i / cp->dim]))
+      continue;
+    for (int c = from; c < cp->n_motion; ++c)
+      if (fabs(R[i + (size_t)cp->m * c]) > most) {
+        most = fabs(R[i + (size_t)cp->m * c]);
+        *row = i;
+        *column = c;
+      }
+  }
+  return most;
+}
+
+/* Motions of bodies that nothing known and no slip takes part in, as those of
+ * one that has left the others, keep their place: no force and no energy
+ * changes by that. */
+static status hold_idle(linear_contact *s) {
+  const contact_problem *cp = s->at.cp;
+  const int m = cp->m, k = cp->n_motion;
+  int row = 0, column = 0;
+  OWNED_NEW(double, R, (size_t)m *k);
+  COPY(R, cp->motion, (size_t)m * k);
+  for (int done = 0, all = 0; all < 2; ++all)
+    for (; done < k && find_pivot(s, R, done, all, &row, &column) > NO_LEVER;
+         ++done) {
+      double *by = R + (size_t)m * done;
+      cblas_dswap(m, by, 1, R + (size_t)m * column, 1);
+      for (int c = done + 1; c < k; ++c)
+        cblas_daxpy(m, -R[row + (size_t)m * c] / by[row], by, 1,
+                    R + (size_t)m * c, 1);
+      if (all) s->at.place[row] = -1;
+    }
+  s->at.n_free = 0;
+  for (int i = 0; i < m; ++i) {
+    if (s->at.place[i] < 0) continue;
+    s->at.place[i] = s->at.n_free;
+    s->at.free_id[s->at.n_free++] = i;
+  }
+  return OK;
+}
+
 static status measure(linear_contact *s, const double *r, double *rate) {
   double last;
   int good = 0;
@@ -159,6 +209,7 @@ static status measure(linear_contact *s, const double *r, double *rate) {
   if (s->at.n_slip == 0) return OK;
   OWNED_NEW(double, dn, s->at.cp->n);
   *rate = HUGE_VAL;
+  PASS(hold_idle(s));
   PASS(factor(s, &good));
   if (!good) return OK;
   PASS(gather_columns(s));

@@ -22,6 +22,28 @@ status side_loads_new(const run *r, int n, const int *side, side_load **out);
  * that nothing holds or touches, over the elements behind, J: all of it is
  * error. ERR_MEMORY. */
 status free_sides_energy(const run *r, int n, const int *side, double *energy);
+/* energy[n_elem]: what obstacles that are in the body between the nodes of
+ * their contacts would deform the elements by, or lift it, J. ERR_MEMORY. */
+status entered_energy(const run *r, double *energy);
+
+/* sides.c: faces round each node. */
+typedef struct smooth_faces {
+  size_t *start; /* of number_places */
+  int *face;
+} smooth_faces;
+/* All-zero r is new. ERR_MEMORY. */
+status smooth_faces_new(const mesh *m, smooth_faces *r);
+/* The sum n[dim] of normals like "own" at a node goes on behind a plane that
+ * holds it, but not where it is clamped. */
+void smooth_mirror(int dim, const unsigned char *held, const double *own,
+                   double *n);
+/* Normal n[dim] of the surface at a node of a face with the unit normal own. */
+void smooth_normal(const run *r, const smooth_faces *rings, int node,
+                   const double *own, double *n);
+/* out[dim]: from the middle of an edge of nodes v[2] of a face to the surface
+ * of the body, m. */
+void smooth_bulge(const run *r, const smooth_faces *rings, int face,
+                  const int *v, double *out);
 
 /* The factors of a crack at r->now. */
 typedef struct crack_factors {

@@ -56,6 +56,8 @@ typedef struct domain {
    * always are; NULL: none. Its means are overwritten. */
   cluster_set *cluster;
   const tie_set *ties; /* NULL: none */
+  const unsigned char
+      *rubs;  /* [n_contact] 1: there is friction; NULL: at all */
   int rows;   /* contact unknowns of a node that are condensed, the normal
                  first: 1 (its tangents count in the interior) or dim; 0:
                  dim */
@@ -87,6 +89,7 @@ status stiffness_order(const stiffness *k, const double *x, whole_order *o);
 /* What resists a rigid motion that *BOUNDARY leaves free. */
 typedef enum {
   HELD_BY_NOTHING,  /* no contact unknown moves with it: no equilibrium */
+  HELD_BY_TANGENTS, /* only tangential unknowns without friction do */
   HELD_BY_FRICTION, /* only tangential contact unknowns move with it */
   HELD_BY_CONTACT   /* contact nodes move along their normal (one-sided!) */
 } motion_hold;

@@ -466,15 +466,22 @@ static void add_supports(triangle *t) {
   }
 }
 
-/* Contact unknowns that are one-sided normals, or the other ones. */
-static void add_contact(triangle *t, int normals) {
+static motion_hold holds_as(const domain *d, int q, int c) {
+  const contact_surface *f = d->surface;
+  if (c == 0 || f->side_id[(f->dim - 1) * q + c - 1] >= 0)
+    return HELD_BY_CONTACT;
+  return d->rubs == NULL || d->rubs[f->contact_id[q]] ? HELD_BY_FRICTION
+                                                      : HELD_BY_TANGENTS;
+}
+
+/* Contact unknowns by what they hold as they are: normals are one-sided. */
+static void add_contact(triangle *t, motion_hold by) {
   const body_sets *s = t->s;
   const contact_surface *f = s->d->surface;
   for (int k = s->start[t->id]; k < s->start[t->id + 1]; ++k) {
     const int i = s->node[k], q = s->contact[i];
     for (int c = 0; q >= 0 && c < f->dim; ++c) {
-      const int one_sided = c == 0 || f->side_id[(f->dim - 1) * q + c - 1] >= 0;
-      if (!f->held[f->dim * q + c] && one_sided == normals)
+      if (!f->held[f->dim * q + c] && holds_as(s->d, q, c) == by)
         add_condition(t, i, c);
     }
   }
@@ -676,10 +683,10 @@ static status set_motions(const body_sets *s, int id, motion_list *list,
   TRY(null_space(&f.t, &f.of[HELD_BY_CONTACT]));
   if (f.of[HELD_BY_CONTACT].rank == 0) goto done;
   if (r != NULL) TRY(keep_motions(&f, r));
-  add_contact(&f.t, 1);
-  TRY(null_space(&f.t, &f.of[HELD_BY_FRICTION]));
-  add_contact(&f.t, 0);
-  TRY(null_space(&f.t, &f.of[HELD_BY_NOTHING]));
+  for (int by = HELD_BY_CONTACT; by > HELD_BY_NOTHING; --by) {
+    add_contact(&f.t, (motion_hold)by);
+    TRY(null_space(&f.t, &f.of[by - 1]));
+  }
   NEW_ALL(OF(f.known, (size_t)n * n), OF(f.rest, n), OF(f.part, n));
   for (int hold = HELD_BY_NOTHING; hold <= HELD_BY_CONTACT; ++hold)
     TRY(append_motions(&f, (motion_hold)hold, list));

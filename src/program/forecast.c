@@ -61,8 +61,9 @@ static status see_ready(void *ctx, const setup_facts *facts,
 static status see_increment(void *ctx, const state *s) {
   trial *t = ctx;
   aims_see(t->goals, t->in->msh, s);
-  if (s->energy.strain < t->energy) return OK;
-  t->energy = s->energy.strain;
+  const double energy = s->energy.strain + s->errors.mesh_error.entered;
+  if (energy < t->energy) return OK;
+  t->energy = energy;
   t->error = s->errors.mesh_error.relative;
   t->is_coarse = s->errors.mesh_error.why != NULL;
   t->depth = s->errors.mesh_error.depth;

@@ -95,8 +95,9 @@ static status print_memory(const model *m, const mesh *msh) {
 
 /* Motions that supports leave; ERR_SINGULAR: nothing holds one. */
 static status print_motions(const model *m, const mesh *msh, int step_id) {
-  static const char *const held[] = {
-      "nothing holds it", "held by friction only", "held by contact only"};
+  static const char *const held[] = {"nothing holds it", "nothing holds it",
+                                     "held by friction only",
+                                     "held by contact only"};
   OWNED free_motion *list = NULL;
   int n = 0;
   status st = history_motions(m, msh, effect_table, step_id, &n, &list);

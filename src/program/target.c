@@ -24,6 +24,7 @@ static const double AIM = 0.93;
 static const double LEAST_GAIN = 0.95;
 /* -, of what a coarse mesh estimates; what the next one is to have of it. */
 static const double COARSE = 2.0, FINER = 0.6;
+enum { GROWN = 2 }; /* -, of the unknowns: a mesh is finer */
 enum { BLIND = 2 }; /* what is estimated tells nothing: half the length */
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
 static const double EXACT = 1e-10; /* -, errors of rounding alone */
@@ -38,11 +39,14 @@ typedef struct pass {
   int n;                     /* rows, this pass included */
   double energy;             /* J, largest strain energy that counts */
   double mesh, time, solver; /* -, errors there */
-  int coarse;   /* 1: that of the mesh may be twice as large; 2: any */
-  int in_vain;  /* passes in a row whose mesh hardly had a smaller error */
-  double *eta;  /* [n_elem] shares of the elements there */
-  double *size; /* [n_node] of the next mesh, m */
-  aims *goals;  /* or NULL: there are none */
+  int coarse; /* 1: that of the mesh may be twice as large; 2: any */
+  struct {
+    int n;         /* in a row whose mesh hardly had a smaller error */
+    double gained; /* unknowns of the last one before these */
+  } vain;          /* passes */
+  double *eta;     /* [n_elem] shares of the elements there */
+  double *size;    /* [n_node] of the next mesh, m */
+  aims *goals;     /* or NULL: there are none */
   coarser *contact, *before; /* of this pass, of the one before */
   mesh *first;               /* of the deck, with targets of goals: its
                                 lengths are the largest of all passes */
@@ -74,8 +78,9 @@ static status see_increment(void *ctx, const state *s) {
   pass *p = ctx;
   PASS(job_keep_contact(p->contact, s));
   aims_see(p->goals, p->in->msh, s);
-  if (!s->errors.mesh_error.asked || s->energy.strain < p->energy) return OK;
-  p->energy = s->energy.strain;
+  const double energy = s->energy.strain + s->errors.mesh_error.entered;
+  if (!s->errors.mesh_error.asked || energy < p->energy) return OK;
+  p->energy = energy;
   p->mesh = s->errors.mesh_error.relative;
   p->coarse = s->errors.mesh_error.why != NULL;
   if (error_is_unseen(&s->errors.mesh_error)) p->coarse = BLIND;
@@ -135,7 +140,9 @@ static void halve(const mesh *msh, double *size) {
  * error of the mesh is the one wanted. */
 static status find_sizes(pass *p, double *factor) {
   const mesh *msh = p->in->msh;
-  const double wanted = target_next(p->mesh, p->coarse, mesh_goal(p));
+  /* What gained nothing was too little. */
+  const double wanted =
+      target_next(p->mesh, p->coarse, mesh_goal(p)) * pow(0.5, 0.5 * p->vain.n);
   *factor = 1.0;
   PASS_NEW(p->size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) p->size[i] = HUGE_VAL;
@@ -262,17 +269,20 @@ static int refines(const pass_row *row) {
 }
 
 /* Did the last pass gain nothing although the mesh was to change? One tells
- * nothing: errors scatter from mesh to mesh. */
+ * nothing, nor do those of a mesh that has hardly grown: errors scatter from
+ * mesh to mesh. */
 static void see_gain(pass *p) {
   const int vain = p->n > 1 && refines(&p->rows[p->n - 2]) &&
                    norm_wants_mesh(p) && !p->coarse &&
                    p->rows[p->n - 1].mesh > LEAST_GAIN * p->rows[p->n - 2].mesh;
-  p->in_vain = vain ? p->in_vain + 1 : 0;
+  p->vain.n = vain ? p->vain.n + 1 : 0;
+  if (!vain) p->vain.gained = p->unknowns;
 }
 
 static int was_in_vain(const pass *p) {
   if (p->n < 2 || !refines(&p->rows[p->n - 2])) return 0;
-  return p->in_vain > 1 || aims_stand_still(p->goals);
+  return (p->vain.n > 1 && p->unknowns > GROWN * p->vain.gained) ||
+         aims_stand_still(p->goals);
 }
 
 /* Errors that no other pass can change. */

@@ -109,6 +109,8 @@ typedef struct error_share {
   const char *why; /* why it is zero, unknown or too small; or NULL */
   double depth;    /* -, of the mesh: elements across the body; 0: it tells
                       nothing */
+  double entered;  /* J, of what obstacles between the nodes would deform; of
+                      that of the mesh */
 } error_share;
 
 /* 1: that of the mesh, which tells nothing. */

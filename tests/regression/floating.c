@@ -338,6 +338,34 @@ START_TEST(body_under_another_that_is_lifted_stays) {
 }
 END_TEST
 
+/* Friction on the floor alone leaves the upper of two blocks free, that between
+ * them alone both. */
+START_TEST(block_on_one_that_rubs_is_free) {
+  static const char *const rubs[] = {
+      "", "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n",
+      "*FRICTION, CONTACT=P, LAW=COULOMB\n0.3\n",
+      "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*FRICTION, CONTACT=P, "
+      "LAW=COULOMB\n0.3\n"};
+  for (int k = 0; k < 4; ++k) {
+    job j = job_begin("rubs");
+    job_copy(&j, "tests/regression/mesh/stack.geo");
+    job_write(&j, "rubs.inp",
+              "*PARAMETER\nNB = 2\n*MESH, FILE=stack.geo\n*MATERIAL, NAME=M\n"
+              "*ELASTIC\n1., 0.3\n*SOLID SECTION, ELSET=BLOCKS, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+              "*CONTACT, NAME=C, GROUP=BOTTOM 1, OBSTACLE=O\n"
+              "*CONTACT PAIR, NAME=P\nTOP 1, BOTTOM 2\n%s"
+              "*STEP\n*STATIC\n*BOUNDARY\nTOP 2, 2, 2, -0.01\n"
+              "*ACCURACY, TARGET=50 %%\n*END STEP\n",
+              rubs[k]);
+    ck_assert_int_eq(job_run(&j, k == 1 ? "" : "--check"), k < 3 ? 6 : 0);
+    ck_assert_int_eq(strstr(j.errors, "free to move: translation") != NULL,
+                     k < 3);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* A free body that a turning block pushes before it goes where the motions say,
  * whatever the modulus. */
 START_TEST(body_that_is_pushed_along_goes_one_way) {
@@ -646,6 +674,7 @@ int main(void) {
   tcase_add_test(tests, body_on_one_face_is_lifted);
   tcase_add_test(tests, free_motions_are_named);
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
+  tcase_add_test(tests, block_on_one_that_rubs_is_free);
   tcase_add_test(tests, cracked_body_that_is_left_stays);
   tcase_add_test(tests, body_that_is_pushed_along_goes_one_way);
   tcase_add_test(tests, block_between_others_slides_away);

@@ -159,6 +159,40 @@ START_TEST(rate_of_the_triangle_is_known) {
 }
 END_TEST
 
+/* The triangle that slides, and above it a body that has left it: two nodes,
+ * joined by springs of which one is stretched by the slip, with two motions.
+ * Nothing of it is in the rate, unless a motion slides. */
+START_TEST(body_that_has_left_is_not_in_the_rate) {
+  const double mu = 0.9, cosine = 0.8, sine = 0.6;
+  for (int slides = 0; slides < 2; ++slides) {
+    contact_case one = case_triangle(0.3, mu, mu + 0.02, -1.0);
+    contact_case c = case_new(2, 3, mu);
+    double R[12] = {0.0}, rate;
+    ck_assert_int_eq(solve(&one, "lemke", 1e-12).outcome, CONVERGED);
+    for (int i = 0; i < 2; ++i) {
+      const double spring[] = {0.0, i, i == 0, i == 1, -(i == 0), -(i == 1)};
+      for (int a = 0; a < 36; ++a) c.A[a] += spring[a % 6] * spring[a / 6];
+      for (int a = 0; a < 2; ++a) c.A[a + 6 * i] += one.A[a + 2 * i];
+      c.u[i] = one.u[i];
+      c.r[i] = one.r[i];
+      c.gap[1 + i] = 1.0;
+      R[2 + i] = R[4 + i] = sqrt(0.5) * (i == 0 ? cosine : -sine);
+      R[8 + i] = R[10 + i] = sqrt(0.5) * (i == 0 ? sine : cosine);
+    }
+    if (slides) R[1] = 0.1;
+    c.cp.n_motion = 2;
+    c.cp.motion = R;
+    ck_assert_int_eq(contraction_rate(&c.cp, c.u, c.r, NULL, &rate), OK);
+    if (slides)
+      ck_assert(rate == HUGE_VAL);
+    else
+      ck_assert_double_eq_tol(rate, mu / 1.8, 1e-12);
+    case_free(&one);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* Two states in turn, as at the end of an increment and through it: a factor
  * each, and none while they stay. */
 START_TEST(two_rates_are_remembered) {
@@ -370,8 +404,9 @@ END_TEST
 
 UNIT_MAIN("accuracy", bound_holds_for_a_given_limit_and_is_not_absurd,
           bound_holds_without_friction, bound_holds_with_coulomb_friction,
-          rate_of_the_triangle_is_known, two_rates_are_remembered,
-          rate_is_that_of_the_worst_pass, rate_of_two_nodes_is_an_eigenvalue,
+          rate_of_the_triangle_is_known, body_that_has_left_is_not_in_the_rate,
+          two_rates_are_remembered, rate_is_that_of_the_worst_pass,
+          rate_of_two_nodes_is_an_eigenvalue,
           no_bound_beyond_the_critical_friction,
           bound_holds_at_held_and_cornered_nodes,
           bound_holds_in_the_compliance_form, bound_changes_with_the_units_only,

@@ -175,6 +175,30 @@ START_TEST(resultant_of_rounding_needs_no_forces) {
 }
 END_TEST
 
+/* Without friction no force acts along the floor: the pressures of two nodes
+ * balance the rest of a defect, whatever motions are mixed in the kernel, and
+ * none that pulls there. */
+START_TEST(motion_without_forces_leaves_the_others) {
+  for (int pulls = 0; pulls < 2; ++pulls) {
+    scene s = scene_new(0.0, 1);
+    int done = 1;
+    disturb(&s, 1e-9, 5);
+    for (int i = 0; i < NODES; ++i) {
+      s.c.g0[i] = s.p.q[2 * i + 1] = 0.0;
+      if (i != 1 && i != NODES - 2) s.p.q[2 * i] = 0.0;
+      if (!pulls) s.p.d[2 * i + 1] = 0.0;
+    }
+    if (pulls)
+      ck_assert_int_eq(pair_balance(&s.c.cp, &s.inverse, &s.p, &done), OK);
+    else
+      check_balance(&s, 1e-9);
+    ck_assert_int_eq(done, !pulls);
+    scene_free(&s);
+  }
+}
+END_TEST
+
 UNIT_MAIN("balance", forces_take_up_the_resultant,
           too_large_a_resultant_is_refused, forces_at_their_limit_follow_it,
-          open_body_cannot_be_balanced, resultant_of_rounding_needs_no_forces)
+          open_body_cannot_be_balanced, resultant_of_rounding_needs_no_forces,
+          motion_without_forces_leaves_the_others)

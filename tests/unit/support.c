@@ -348,7 +348,7 @@ START_TEST(pair_of_free_bodies_moves_as_one) {
   for (int gap = 0; gap < 2; ++gap) {
     stack *k = stack_new(joints[_i % 2], sides[_i / 2], gap / 64.0);
     free_motion *list;
-    int n, of[3] = {0};
+    int n, of[HELD_BY_CONTACT + 1] = {0};
     ck_assert_int_eq(domain_free_motions(&k->s->d, &n, &list), OK);
     ck_assert_int_eq(n, 6);
     for (int i = 0; i < n; ++i) {

@@ -63,14 +63,40 @@ static void doubt(mesh_estimate *own, const space_error *found, double bare,
     out->why =
         "stress across sides is not their load: "
         "it may be many times as large";
+  else if (out->entered > 0.0)
+    out->why =
+        "an obstacle is in the body between its nodes: it may be twice as "
+        "large";
   else if (found->relative > EXACT && space_is_coarse(out->depth))
     out->why = "few nodes inside the body: it may be twice as large";
 }
 
-static status find(const run *r, mesh_estimate *own, space_error *found,
+/* Where an obstacle is in the body between the nodes that is the error, unless
+ * stresses tell of it. */
+static status add_entered(run *r, mesh_estimate *own, space_error *found) {
+  double sum = 0.0;
+  const double rounding = EXACT * found->norm;
+  OWNED_NEW(double, energy, r->msh->n_elem);
+  PASS(entered_energy(r, energy));
+  for (int e = 0; e < r->msh->n_elem; ++e) {
+    const double square = own->elem_error[e] * own->elem_error[e];
+    const double whole = 2.0 * energy[e];
+    if (!(SEEN * whole > fmax(square, rounding * rounding))) continue;
+    own->elem_error[e] = sqrt(whole);
+    sum += whole - square;
+  }
+  r->errors.mesh_error.entered = 0.5 * sum;
+  found->error = sqrt(found->error * found->error + sum);
+  if (sum > 0.0)
+    found->relative = found->error / hypot(found->norm, found->error);
+  return OK;
+}
+
+static status find(run *r, mesh_estimate *own, space_error *found,
                    double *bare) {
   PASS(space_estimate(own->recovery, r->result.stress, own->elem_error, found));
-  return free_sides_energy(r, own->n_side, own->side, bare);
+  PASS(free_sides_energy(r, own->n_side, own->side, bare));
+  return add_entered(r, own, found);
 }
 
 /* From r->result.stress. */
@@ -79,6 +105,7 @@ static status estimate(run *r, void *self) {
   double cpu = timer_cpu(), bare;
   space_error found;
   r->errors.mesh_error.asked = run_finds_mesh_error(r);
+  r->errors.mesh_error.entered = 0.0;
   if (!r->errors.mesh_error.asked) return OK;
   PASS(recover(r, own));
   PASS_TIMED(STAGE_MESH_ERROR, find(r, own, &found, &bare));

@@ -90,61 +90,8 @@ static spot spot_at(const mesh *m, const patch *p, int k) {
 
 /* ---- faces --------------------------------------------------------------- */
 
-status goal_ring_new(const mesh *m, goal_ring *r) {
-  return number_places(m->n_node, (size_t)m->dim * m->n_face, m->face, m->dim,
-                       &r->start, &r->face);
-}
-
-/* The sum n[dim] of normals like "own" at a node goes on behind a plane that
- * holds it, but not where it is clamped. */
-static void mirror(int dim, const unsigned char *held, const double *own,
-                   double *n) {
-  int n_held = 0;
-  for (int c = 0; c < dim; ++c) n_held += held[c];
-  for (int c = 0; c < dim && n_held < dim; ++c)
-    if (held[c] && 1.0 - 2.0 * own[c] * own[c] >= SMOOTH) n[c] = 0.0;
-}
-
-/* Of the surface at a node of a face with the unit normal own. */
-static void normal_at(const run *r, const goal_ring *rings, int node,
-                      const double *own, double *n) {
-  const mesh *m = r->msh;
-  const unsigned char *held = r->body.d.fixed + m->dim * node;
-  CLEAR(n, 3);
-  for (size_t k = rings->start[node]; k < rings->start[node + 1]; ++k) {
-    const int face = rings->face[k];
-    double other[3] = {0.0};
-    if (m->face_other[face] >= 0) continue;
-    const double measure = mesh_face_normal(m, face, other);
-    if (dot(m->dim, own, other) >= SMOOTH)
-      add_scaled(m->dim, measure, other, n);
-  }
-  mirror(m->dim, held, own, n);
-  goal_make_unit(m->dim, n);
-}
-
-void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
-                double *out) {
-  const mesh *m = r->msh;
-  double own[3] = {0.0}, n[2][3], turn = 0.0, chord = 0.0, size = 0.0;
-  mesh_face_normal(m, face, own);
-  for (int k = 0; k < 2; ++k) normal_at(r, rings, v[k], own, n[k]);
-  for (int c = 0; c < m->dim; ++c) {
-    const double d = m->x[m->dim * v[1] + c] - m->x[m->dim * v[0] + c];
-    turn += 0.5 * (n[1][c] - n[0][c]) * d;
-    chord = hypot(chord, d);
-    out[c] = n[0][c] + n[1][c];
-    size = hypot(size, out[c]);
-  }
-  turn /= chord; /* the sine of half the angle of an arc */
-  const double height =
-      0.5 * chord * turn / (1.0 + sqrt(fmax(0.0, 1.0 - turn * turn)));
-  for (int c = 0; c < m->dim; ++c)
-    out[c] *= fabs(turn) > 1e-9 && size > 0.0 ? height / size : 0.0;
-}
-
 /* The edges of face f that are curved, to e; their number. */
-static int bent_edges(const run *r, const goal_ring *rings, int f,
+static int bent_edges(const run *r, const smooth_faces *rings, int f,
                       bent_edge *e) {
   const int dim = r->msh->dim, *node = r->msh->face + dim * f;
   int n = 0;
@@ -153,7 +100,7 @@ static int bent_edges(const run *r, const goal_ring *rings, int f,
       const int first = node[a] < node[b] ? a : b;
       const int v[2] = {node[first], node[a + b - first]};
       bent_edge now = {.a = v[0], .b = v[1]};
-      goal_bulge(r, rings, f, v, now.out);
+      smooth_bulge(r, rings, f, v, now.out);
       if (largest_entry(dim, now.out) > 0.0) e[n++] = now;
     }
   return n;
@@ -170,7 +117,7 @@ static void join_bent(bent_edge *e, const bent_edge *other) {
   for (int c = 0; c < 3; ++c) e->out[c] = share * (e->out[c] + other->out[c]);
 }
 
-status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s) {
+status goal_add_bent(const run *r, const smooth_faces *rings, goal_surface *s) {
   const mesh *m = r->msh;
   int kept = 0, n = 0;
   PASS_NEW(s->bent, m->n_face * (m->dim == 3 ? 3 : 1));
@@ -186,11 +133,11 @@ status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s) {
   return OK;
 }
 
-static void set_bulges(const run *r, const goal_ring *rings, patch *p) {
+static void set_bulges(const run *r, const smooth_faces *rings, patch *p) {
   const mesh *m = r->msh;
   double n[3][3], length = 0.0, most = 0.0;
   for (int i = 0; i < p->n; ++i)
-    normal_at(r, rings, p->node[i], p->normal, n[i]);
+    smooth_normal(r, rings, p->node[i], p->normal, n[i]);
   for (int i = 0; i < p->n; ++i)
     for (int j = i + 1; j < p->n; ++j) {
       for (int c = 0; c < m->dim; ++c) {
@@ -204,7 +151,7 @@ static void set_bulges(const run *r, const goal_ring *rings, patch *p) {
   p->is_curved = most > 1e-9 * length;
 }
 
-static patch face_patch(const run *r, const goal_ring *rings, int face) {
+static patch face_patch(const run *r, const smooth_faces *rings, int face) {
   const mesh *m = r->msh;
   patch p = {.n = m->dim, .elem = m->face_elem[face]};
   const int *v = m->elem + (m->dim + 1) * m->face_elem[face];
@@ -241,7 +188,7 @@ static double volume_beyond(const run *r, const patch *p) {
 }
 
 status goal_volumes_beyond(const run *r, double *volume) {
-  OWNED_PARTS(goal_ring, rings, goal_ring_new(r->msh, &rings));
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(r->msh, &rings));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
     volume[r->msh->face_elem[f]] += volume_beyond(r, &p);
@@ -409,8 +356,8 @@ static status rim_new(const mesh *m, const mesh_group *g, rim_edge **e,
   return OK;
 }
 
-/* Of the rim at end k of an edge, as normal_at; next[2*n] the other end with
- * the same node in a ring. */
+/* Of the rim at end k of an edge, as smooth_normal; next[2*n] the other end
+ * with the same node in a ring. */
 static void out_at(const run *r, const rim_edge *e, const int *next, int k,
                    double *out) {
   const rim_edge *own = e + k / 2;
@@ -423,7 +370,7 @@ static void out_at(const run *r, const rim_edge *e, const int *next, int k,
       out[c] += other->length * other->out[c];
     at = next[at];
   } while (at != k);
-  mirror(3, held, own->out, out);
+  smooth_mirror(3, held, own->out, out);
   goal_make_unit(3, out);
 }
 
@@ -475,7 +422,7 @@ static patch element_patch(const run *r, int e) {
   return p;
 }
 
-static status add_loads(const run *r, const goal_ring *rings, double *dF) {
+static status add_loads(const run *r, const smooth_faces *rings, double *dF) {
   const load_list *all = &r->step->loads;
   for (EACH(const load, l, all->item, all->n)) {
     const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
@@ -492,7 +439,7 @@ static status add_loads(const run *r, const goal_ring *rings, double *dF) {
 }
 
 status goal_add_boundary(const run *r, double *dF) {
-  OWNED_PARTS(goal_ring, rings, goal_ring_new(r->msh, &rings));
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(r->msh, &rings));
   OWNED_OF(int, where, goal_places(r, &where));
   for (int f = 0; f < r->msh->n_face; ++f) {
     const patch p = face_patch(r, &rings, f);
@@ -543,7 +490,7 @@ status goal_beyond_mean(const run *r, const goal_mean *w, double mean,
   const mesh *m = r->msh;
   const mesh_group *g = &m->group[w->group_id];
   *sum = 0.0;
-  OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
   OWNED_NEW(unsigned char, in, m->n_face + m->n_elem);
   for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
   for (int f = 0; f < m->n_face; ++f) {

@@ -75,17 +75,6 @@ double goal_mean_bubbles(const run *r, const goal_estimator *e,
  * simplex of n corners: Gauss points, n of each of its pieces, of degree 3 on a
  * line, else 2; pieces = 2^i. */
 void goal_rule_point(int n, int k, int pieces, double *b);
-/* boundary.c: faces round each node. */
-typedef struct goal_ring {
-  size_t *start; /* of number_places */
-  int *face;
-} goal_ring;
-/* All-zero r is new. ERR_MEMORY. */
-status goal_ring_new(const mesh *m, goal_ring *r);
-/* out[dim]: from the middle of an edge of nodes v[2] of a face to the surface
- * of the body, m. */
-void goal_bulge(const run *r, const goal_ring *rings, int face, const int *v,
-                double *out);
 /* where[n_node]: contact node of a mesh node, or -1; new. */
 status goal_places(const run *r, int **where);
 /* Adds dF[dim*n_node] of its head. ERR_MEMORY. */
@@ -118,7 +107,7 @@ int goal_is_torn(int dim, const side_load *p, const double *n,
                  const side_load *q, const double *m, int smooth);
 
 /* boundary.c: s->bent. */
-status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
+status goal_add_bent(const run *r, const smooth_faces *rings, goal_surface *s);
 /* support.c: s->given, then what supports and interfaces between the regions
  * "of" add to s->ends. */
 status goal_add_given(const run *r, goal_surface *s);

@@ -180,7 +180,7 @@ static int is_whole(const run *r, const int *where, const int *v) {
 }
 
 /* Edge v[2] of a face. */
-static void add_edge(const run *r, const goal_ring *rings,
+static void add_edge(const run *r, const smooth_faces *rings,
                      const gap_slopes *slopes, int face, const int *v,
                      const int *where, goal_surface *s) {
   const number_pair is = number_pair_of(v[0], v[1]);
@@ -193,7 +193,7 @@ static void add_edge(const run *r, const goal_ring *rings,
   const contact_status a = r->result.contact[q[0]], b = r->result.contact[q[1]];
   e.closed = a != CONTACT_OPEN && b != CONTACT_OPEN;
   e.stuck = a == CONTACT_STICK && b == CONTACT_STICK;
-  goal_bulge(r, rings, face, v, e.out);
+  smooth_bulge(r, rings, face, v, e.out);
   if (e.closed) set_middle(r, slopes, q, &e);
   if (state_of(r, q[0]) != state_of(r, q[1]))
     s->ends[is.a] = s->ends[is.b] = GOAL_END_OF_CONTACT;
@@ -348,7 +348,7 @@ static void unite_edges(goal_surface *s) {
 }
 
 /* The edges of a contact on an obstacle. */
-static void add_group(const run *r, const goal_ring *rings,
+static void add_group(const run *r, const smooth_faces *rings,
                       const gap_slopes *slopes, int id, const int *where,
                       goal_surface *s) {
   const int dim = r->msh->dim;
@@ -369,7 +369,7 @@ status goal_surface_new(const run *r, const goal_border *border,
   const mesh *m = r->msh;
   OWNED int *where = NULL, *seen = NULL;
   int n = 0;
-  OWNED_PARTS(goal_ring, rings, goal_ring_new(m, &rings));
+  OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
   PASS_NEW_ALL(OF(s->ends, m->n_node), OF(seen, m->n_node),
                OF(s->closed, r->m->n.contact), OF(s->whole, r->m->n.contact));
   PASS(goal_places(r, &where));

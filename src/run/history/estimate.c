@@ -31,7 +31,11 @@ int error_bound_doubts(const error_bound *e, double share) {
 
 static void take_left(run *r, double left) {
   double *whole = &r->errors.mesh_error.relative, *part = r->errors.elem_error;
+  const double entered = r->errors.mesh_error.entered;
   r->errors.left = left;
+  if (entered > 0.0)
+    left =
+        fmax(left, sqrt(entered / (entered + r->now.energy.largest)) / *whole);
   *whole = left > 0.0 ? left * *whole : 0.0;
   if (!(left > 0.0)) r->errors.mesh_error.why = NULL;
   for (int e = 0; r->errors.mesh_error.asked && e < r->msh->n_elem; ++e)
