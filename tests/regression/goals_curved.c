@@ -265,6 +265,37 @@ START_TEST(slice_that_a_curved_support_holds) {
 }
 END_TEST
 
+/* All of its round surfaces are given u = 1e-3 (x, y), which linear elements
+ * have: the stress is 1e-3 E/((1 + nu)(1 - 2 nu)) or 1e-3 E/(1 - nu) along x,
+ * and errors are those of the shape alone. */
+START_TEST(ring_whose_round_surfaces_are_given) {
+  const double stress = _i ? 1e2 / 0.52 : 1e2 / 0.7;
+  job j = job_begin("given");
+  job_write(&j, "given.geo", "%sMesh.MeshSizeMax = 0.5;\n", PLANE);
+  job_write(&j, "given.inp",
+            "*MESH, FILE=given.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+            "*GOAL, NAME=M, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=INNER\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+            "*GOAL, NAME=XX, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n"
+            "OUTER, 1, 1, \"1e-3*x\"\nOUTER, 2, 2, \"1e-3*y\"\n"
+            "INNER, 1, 1, \"1e-3*x\"\nINNER, 2, 2, \"1e-3*y\"\n"
+            "*PRINT, GOALS\n*END STEP\n",
+            _i ? "CPE3" : "CPS3");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  check_goal(&t, 0, 1e-3 * M_2_PI, 0.02);
+  const double energy[] = {1e-3 * stress * 0.75 * M_PI,
+                           dat_at(&t, 1, "corrected")};
+  ck_assert_double_eq_tol(energy[1], energy[0], dat_at(&t, 1, "band"));
+  ck_assert_double_eq_tol(dat_at(&t, 2, "value"), stress, 1e-9 * stress);
+  ck_assert_double_eq_tol(dat_at(&t, 2, "error"), 0.0, 1e-5 * stress);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* A column of height 40 under the force c y^2 per volume: c 40^4/4/E at its
  * top. Its nodes are in error by the load alone. */
 START_TEST(column_under_a_load_of_a_formula) {
@@ -350,6 +381,7 @@ int main(void) {
   tcase_add_test(tests, slice_in_space_under_a_pressure);
   tcase_add_test(tests, mean_stress_of_a_ring);
   tcase_add_loop_test(tests, ring_on_a_shaft, 0, 5);
+  tcase_add_loop_test(tests, ring_whose_round_surfaces_are_given, 0, 2);
   tcase_add_test(tests, round_foot_is_pressed_flat);
   tcase_add_loop_test(tests, shaft_turns_in_a_ring, 0, 2);
   tcase_add_test(tests, column_under_a_load_of_a_formula);

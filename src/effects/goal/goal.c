@@ -304,8 +304,8 @@ static status complete(const run *r, const shared *s, double *product,
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   const double between = goal_mean_bubbles(r, s->estimator, f);
   e->error += f->curved + along + beyond + between;
-  e->magnitude +=
-      fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between) + doubt;
+  e->magnitude += fmax(fabs(f->curved), f->beyond) + fabs(along) +
+                  fabs(beyond) + fabs(between) + doubt;
   e->product += doubt;
   e->ends += doubt;
   e->error += e->hoop;

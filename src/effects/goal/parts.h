@@ -37,7 +37,8 @@ typedef struct goal_form {
   int is_front;       /* 1: a factor in space */
   int is_square;      /* 1: the energy, whose error has a quadratic part too */
   double curved;      /* contact forces times what psi is between the nodes more
-                         than at them */
+                         than at them; what of the body is beyond its faces */
+  double beyond;      /* of the latter the sum of the magnitudes */
   double size;        /* sum of the magnitudes that value is the sum of */
   double held;        /* what forces of held nodes, in none of them, may be */
   double rough;       /* what the integral of a factor lacks, what a pressure or
@@ -128,10 +129,10 @@ status goal_mark_supports(const run *r, const goal_border *border,
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
 /* between.c: of an edge. */
-/* x[3]: point k of GOAL_PIECES of an edge between contact nodes q[2], on the
- * arc that the surface of the body is. */
-void goal_point_of(const run *r, const contact_edge *e, const int *q, int k,
-                   double *x);
+/* x[3]: point k of GOAL_PIECES of an edge between a[dim] and b[dim], on the arc
+ * that the surface of the body is, out[dim] from the middle of the edge. */
+void goal_point_of(int dim, const double *a, const double *b, const double *out,
+                   int k, double *x);
 /* d[GOAL_PIECES + 1] less the line through its ends. */
 void goal_take_line(double *d);
 /* The middle of the parabola that is zero at the ends and has the integral of

@@ -122,7 +122,7 @@ static void gap_along(const run *r, const int *q, const contact_edge *e,
   int finite = 1;
   for (int k = 0; k <= GOAL_PIECES; ++k) {
     double x[3], n[3];
-    goal_point_of(r, e, q, k, x);
+    goal_point_of(dim, s->x + dim * q[0], s->x + dim * q[1], e->out, k, x);
     COPY(n, e->n, 3);
     if (p->obstacle_normal) obstacle_normal(p->support, dim, x, n);
     d[k] = obstacle_gap(p->support, dim, x, n, r->now.t);
