@@ -376,8 +376,18 @@ static int has_component(const model *m, const mesh *msh, const goal_card *g) {
   return g->component < msh->dim;
 }
 
+/* The moment in the plane if none is given. */
+static void check_moment(const model *m, const mesh *msh, goal_card *g) {
+  if (g->quantity != GOAL_MOMENT || g->component != GOAL_NORMAL) return;
+  g->component = 2;
+  if (msh->dim == 3)
+    message_add(m->log, P2007, &g->at,
+                "*GOAL, QUANTITY=MOMENT needs COMPONENT= in space");
+}
+
 static void check_goal(const model *m, const mesh *msh, goal_card *g) {
   if (g->quantity == GOAL_SIF && g->crack_id < 0) return;
+  check_moment(m, msh, g);
   if (g->n_point > 0)
     g->node_id = g->quantity == GOAL_SIF ? find_front(m, msh, g)
                                          : find_point(m, msh, g, 0);
