@@ -71,6 +71,9 @@ status goal_add_mean(const run *r, int group_id, int component, double sign,
                      goal_form *f);
 double goal_mean_bubbles(const run *r, const goal_estimator *e,
                          const goal_form *f);
+/* 1: the faces of a contact have one thickness, so that forces per length are
+ * pressures times it. */
+int goal_has_one_thickness(const run *r, int contact_id);
 
 /* boundary.c: b[n] barycentric coordinates of point k of n * pieces in a
  * simplex of n corners: Gauss points, n of each of its pieces, of degree 3 on a
@@ -117,6 +120,17 @@ status goal_border_new(const mesh *m, goal_border *b); /* support.c */
  * normals n[dim], m[dim]; smooth: they are one side. */
 int goal_is_torn(int dim, const side_load *p, const double *n,
                  const side_load *q, const double *m, int smooth);
+/* 1: node i is on a plane of symmetry along tangent a, or on the axis. */
+int goal_is_mirrored(const run *r, int i);
+/* corner[n], zero: how sharply the gap turns at closed nodes in the plane, by
+ * the pressure that it makes within an edge over the largest of the contact; 0
+ * where it turns as much all along. Above GOAL_CORNER it is part of an infinite
+ * pressure, or of one that the mesh does not have. */
+#define GOAL_CORNER 0.05
+status goal_corners(const run *r, const int *where, double *corner);
+/* The largest corner above that of a contact within a radius of x[dim]. */
+status goal_sharpest(const run *r, int contact_id, const double *x,
+                     double radius, double *most);
 
 /* boundary.c: s->bent. */
 status goal_add_bent(const run *r, const goal_ring *rings, goal_surface *s);
@@ -156,5 +170,3 @@ status goal_value_between(const run *r, const goal_surface *s, const double *z,
  * NULL: the elements have it more. */
 status goal_add_doubts(const run *r, const goal_surface *s, const double *z,
                        const double *F, double *product, double *sum);
-/* 1: node i is on a plane of symmetry along tangent a, or on the axis. */
-int goal_is_mirrored(const run *r, int i);
