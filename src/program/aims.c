@@ -101,7 +101,8 @@ static int is_estimate(const pass_goal *g) {
   return g->found.verdict == GOAL_RELIABLE ||
          g->found.verdict == GOAL_CANCELS || g->found.verdict == GOAL_FRONT ||
          g->found.verdict == GOAL_FEW_ELEMENTS ||
-         g->found.verdict == GOAL_COARSE || is_at_end(g);
+         g->found.verdict == GOAL_COARSE || g->found.verdict == GOAL_LOCKED ||
+         is_at_end(g);
 }
 
 /* 1: a finer mesh may have an estimate. */

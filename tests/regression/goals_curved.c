@@ -4,7 +4,7 @@
  * (Lame) and a column under its own load.
  */
 #include "base/base.h"
-#include "support/job.h"
+#include "support/goal_body.h"
 #include "support/unit.h"
 
 /* A quarter of a ring from radius 1 to 2; in space a slice of it. */
@@ -14,7 +14,7 @@
   "Line(1) = {2, 3}; Circle(2) = {3, 1, 4}; Line(3) = {4, 5};\n"             \
   "Circle(4) = {5, 1, 2};\nCurve Loop(1) = {1:4}; Plane Surface(1) = {1};\n" \
   "Mesh.MeshSizeMax = 0.125;\n"
-#define PLANE                                                                  \
+#define QUARTER                                                                \
   RING "Physical Surface(\"BODY\") = {1}; Physical Curve(\"BOTTOM\") = {1};\n" \
        "Physical Curve(\"OUTER\") = {2}; Physical Curve(\"LEFT\") = {3};\n"    \
        "Physical Curve(\"INNER\") = {4};\n"
@@ -84,26 +84,26 @@ static void check_body(const char *geo, const char *section, const char *z,
 #define PUSHED "*DSLOAD\nINNER, TX, \"100*x\"\nINNER, TY, \"100*y\"\n"
 
 START_TEST(plane_ring_under_a_pressure) {
-  check_body(PLANE, ", TYPE=CPE3", "", PRESSED,
+  check_body(QUARTER, ", TYPE=CPE3", "", PRESSED,
              &(closed){of_ring, M_2_PI, M_PI_2, 0.15});
 }
 END_TEST
 
 /* On the chord between two nodes a formula has another value. */
 START_TEST(plane_ring_under_tractions_of_a_formula) {
-  check_body(PLANE, ", TYPE=CPE3", "", PUSHED,
+  check_body(QUARTER, ", TYPE=CPE3", "", PUSHED,
              &(closed){of_ring, M_2_PI, M_PI_2, 0.15});
 }
 END_TEST
 
 START_TEST(shell_of_revolution_under_a_pressure) {
-  check_body(PLANE, ", TYPE=CAX3", "", PRESSED,
+  check_body(QUARTER, ", TYPE=CAX3", "", PRESSED,
              &(closed){of_ball, M_PI_4, 2 * M_PI, 0.8});
 }
 END_TEST
 
 START_TEST(shell_of_revolution_under_tractions_of_a_formula) {
-  check_body(PLANE, ", TYPE=CAX3", "", PUSHED,
+  check_body(QUARTER, ", TYPE=CAX3", "", PUSHED,
              &(closed){of_ball, M_PI_4, 2 * M_PI, 0.8});
 }
 END_TEST
@@ -118,7 +118,7 @@ END_TEST
  * load alone 100 times the area of INNER across x over that of the ring. */
 START_TEST(mean_stress_of_a_ring) {
   job j = job_begin("mean");
-  job_write(&j, "mean.geo", "%s", PLANE);
+  job_write(&j, "mean.geo", "%s", QUARTER);
   job_write(&j, "mean.inp",
             "*MESH, FILE=mean.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
@@ -150,7 +150,7 @@ START_TEST(ring_on_a_shaft) {
   const double wide = solid ? 0.5 : 1.0;
   job j = job_begin("shaft");
   job_write(&j, "shaft.geo", "%sMesh.MeshSizeMax = %g;\n",
-            solid ? SLICE : PLANE, solid ? 0.125 : 0.0625);
+            solid ? SLICE : QUARTER, solid ? 0.125 : 0.0625);
   job_write(
       &j, "shaft.inp",
       "*MESH, FILE=shaft.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
@@ -265,6 +265,69 @@ START_TEST(slice_that_a_curved_support_holds) {
 }
 END_TEST
 
+/* All of its round surfaces are given u = 1e-3 (x, y), which linear elements
+ * have: the stress is 1e-3 E/((1 + nu)(1 - 2 nu)) or 1e-3 E/(1 - nu) along x,
+ * and errors are those of the shape alone. */
+START_TEST(ring_whose_round_surfaces_are_given) {
+  const double stress = _i ? 1e2 / 0.52 : 1e2 / 0.7;
+  job j = job_begin("given");
+  job_write(&j, "given.geo", "%sMesh.MeshSizeMax = 0.5;\n", QUARTER);
+  job_write(&j, "given.inp",
+            "*MESH, FILE=given.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=%s\n"
+            "*GOAL, NAME=M, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=INNER\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+            "*GOAL, NAME=XX, QUANTITY=STRESS, COMPONENT=XX, GROUP=BODY\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n"
+            "OUTER, 1, 1, \"1e-3*x\"\nOUTER, 2, 2, \"1e-3*y\"\n"
+            "INNER, 1, 1, \"1e-3*x\"\nINNER, 2, 2, \"1e-3*y\"\n"
+            "*PRINT, GOALS\n*END STEP\n",
+            _i ? "CPE3" : "CPS3");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  check_goal(&t, 0, 1e-3 * M_2_PI, 0.02);
+  const double energy[] = {1e-3 * stress * 0.75 * M_PI,
+                           dat_at(&t, 1, "corrected")};
+  ck_assert_double_eq_tol(energy[1], energy[0], dat_at(&t, 1, "band"));
+  ck_assert_double_eq_tol(dat_at(&t, 2, "value"), stress, 1e-9 * stress);
+  ck_assert_double_eq_tol(dat_at(&t, 2, "error"), 0.0, 1e-5 * stress);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* Linear elements lock in it: displacements are less than half of those of
+ * Lame, of which no residual tells; a stress that loads alone give is none of
+ * it. */
+START_TEST(ring_that_locks) {
+  static const double nu = 0.4999, stiff = 1.4999 / 1e5 * 100.0 / 3.0;
+  job j = job_begin("lock");
+  job_write(&j, "lock.geo", "%sMesh.MeshSizeMax = 0.25;\n", QUARTER);
+  job_write(&j, "lock.inp",
+            "*MESH, FILE=lock.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.4999\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*GOAL, NAME=U, QUANTITY=DISPLACEMENT, COMPONENT=1\n1., 0.\n"
+            "*GOAL, NAME=E, QUANTITY=ENERGY\n"
+            "*GOAL, NAME=ZZ, QUANTITY=STRESS, COMPONENT=ZZ, GROUP=BODY\n"
+            "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DSLOAD\n"
+            "INNER, P, 100.\n*PRINT, GOALS\n*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  const double u = stiff * (1 - 2 * nu + 4);
+  const char *const name[] = {"U", "E", "ZZ"};
+  const double exact[] = {u, 50.0 * M_PI_2 * u, 200.0 / 3.0 * nu};
+  for (int k = 0; k < 3; ++k) {
+    const double band = dat_at(&t, k, "band");
+    ck_assert_double_le(fabs(dat_at(&t, k, "corrected") - exact[k]), band);
+    ck_assert_int_eq(goal_has_verdict(&j, name[k], "locked"), k < 2);
+    ck_assert(k < 2 || band < 0.05 * exact[k]);
+  }
+  ck_assert_double_lt(dat_at(&t, 0, "value"), 0.5 * u);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* A column of height 40 under the force c y^2 per volume: c 40^4/4/E at its
  * top. Its nodes are in error by the load alone. */
 START_TEST(column_under_a_load_of_a_formula) {
@@ -350,6 +413,8 @@ int main(void) {
   tcase_add_test(tests, slice_in_space_under_a_pressure);
   tcase_add_test(tests, mean_stress_of_a_ring);
   tcase_add_loop_test(tests, ring_on_a_shaft, 0, 5);
+  tcase_add_loop_test(tests, ring_whose_round_surfaces_are_given, 0, 2);
+  tcase_add_test(tests, ring_that_locks);
   tcase_add_test(tests, round_foot_is_pressed_flat);
   tcase_add_loop_test(tests, shaft_turns_in_a_ring, 0, 2);
   tcase_add_test(tests, column_under_a_load_of_a_formula);

@@ -510,6 +510,38 @@ START_TEST(open_nodes_have_no_part_in_a_width) {
 }
 END_TEST
 
+/* A foot on a wedge of a slope of 0.03 and on a parabola, pressed in by 0.02,
+ * on 14 edges: the tangential force and the width are those of 128. A corner of
+ * the gap at a node, and an end that three nodes tell, are not known better. */
+START_TEST(corners_of_gaps_and_widths_of_few_nodes_have_bands) {
+  static const struct {
+    const char *type, *cards;
+    double exact;
+  } rows[] = {
+      {", TYPE=CPS3",
+       "GAP\n\"0.03*x\"" CONTACT "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n"
+       "*GOAL, NAME=G, QUANTITY=FORCE, CONTACT=C, COMPONENT=TANGENT\n",
+       1.0797},
+      {"",
+       "GAP\n\"x^2/20\"" CONTACT "*GOAL, NAME=G, QUANTITY=WIDTH, CONTACT=C\n",
+       0.5426}};
+  for (int k = 0; k < 2; ++k) {
+    char cards[400];
+    snprintf(cards, sizeof cards,
+             "%s*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.02\n",
+             rows[k].cards);
+    job j = body_of_type(rows[k].type, "rect 14 7 1 0.5 alternate", cards);
+    dat t = job_table(&j, "GOALS", -1);
+    const double band = dat_at(&t, 0, "band");
+    ck_assert_double_eq_tol(dat_at(&t, 0, "corrected"), rows[k].exact, band);
+    ck_assert_double_lt(band, 0.3 * rows[k].exact);
+    ck_assert(goal_has_verdict(&j, "G", "contact_end"));
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
 UNIT_MAIN("goals_doubts", displacements_of_corners_are_in_their_bands,
           ends_of_supports_reach_beyond_their_elements,
           estimates_of_coarse_meshes_are_doubted,
@@ -530,4 +562,6 @@ UNIT_MAIN("goals_doubts", displacements_of_corners_are_in_their_bands,
           zones_of_three_nodes_are_not_reliable,
           work_of_a_single_node_remains_doubtful,
           contact_between_nodes_is_not_none, ends_of_loads_are_not_reliable,
-          forces_on_nodes_are_not_reliable, open_nodes_have_no_part_in_a_width)
+          forces_on_nodes_are_not_reliable,
+          corners_of_gaps_and_widths_of_few_nodes_have_bands,
+          open_nodes_have_no_part_in_a_width)

@@ -19,6 +19,7 @@ typedef enum {
   GOAL_FEW_NODES,    /* three closed nodes or less */
   GOAL_FEW_ELEMENTS, /* round the tip of a crack */
   GOAL_COARSE,       /* few nodes of the mesh are inside the body */
+  GOAL_LOCKED,       /* elements lock near nu = 1/2 */
   GOAL_FRONT,        /* an integral round the front of a crack in space */
   GOAL_CANCELS,      /* parts of opposite sign, of which little is left */
   GOAL_NO_HISTORY,   /* errors of the increments before are not in it */

@@ -29,6 +29,7 @@ static const struct {
     [GOAL_FEW_ELEMENTS] = {"few_elements",
                            "not reliable: few elements round the tip"},
     [GOAL_COARSE] = {"coarse_mesh", "not reliable: few nodes inside the body"},
+    [GOAL_LOCKED] = {"locked", "not reliable: elements lock near nu = 1/2"},
     [GOAL_FRONT] = {"crack_front", "not reliable: front of a crack in space"},
     [GOAL_CANCELS] = {"cancels", "not reliable: errors cancel"},
     [GOAL_NO_HISTORY] = {"no_history",

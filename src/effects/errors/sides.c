@@ -167,11 +167,40 @@ void smooth_mirror(int dim, const unsigned char *held, const double *own,
     if (held[c] && 1.0 - 2.0 * own[c] * own[c] >= SMOOTH) n[c] = 0.0;
 }
 
+/* Sets plane[dim] of the normals of the planes that hold a node which its own
+ * surface holds too, by their faces. */
+static void find_planes(const run *r, const smooth_faces *rings, int node,
+                        unsigned char *plane) {
+  const mesh *m = r->msh;
+  const int dim = m->dim;
+  for (size_t k = rings->start[node]; k < rings->start[node + 1]; ++k) {
+    const int face = rings->face[k];
+    double n[3];
+    int held[3] = {1, 1, 1}, n_held = 0;
+    if (m->face_other[face] >= 0) continue;
+    mesh_face_normal(m, face, n);
+    for (int c = 0; c < dim; ++c) {
+      for (int i = 0; i < dim; ++i)
+        held[c] &= r->body.d.fixed[dim * m->face[dim * face + i] + c];
+      n_held += held[c];
+    }
+    for (int c = 0; n_held < dim && c < dim; ++c)
+      plane[c] |= held[c] && 1.0 - fabs(n[c]) < 1e-9;
+  }
+}
+
 void smooth_normal(const run *r, const smooth_faces *rings, int node,
                    const double *own, double *n) {
   const mesh *m = r->msh;
   const unsigned char *held = r->body.d.fixed + m->dim * node;
+  unsigned char plane[3] = {0};
+  int n_held = 0;
   CLEAR(n, 3);
+  for (int c = 0; c < m->dim; ++c) n_held += held[c];
+  if (n_held == m->dim) {
+    find_planes(r, rings, node, plane);
+    held = plane;
+  }
   for (size_t k = rings->start[node]; k < rings->start[node + 1]; ++k) {
     const int face = rings->face[k];
     double other[3] = {0.0};

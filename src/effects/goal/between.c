@@ -11,23 +11,21 @@ void goal_take_line(double *d) {
   for (int k = 0; k <= GOAL_PIECES; ++k) d[k] -= first + rise * k / GOAL_PIECES;
 }
 
-void goal_point_of(const run *r, const contact_edge *e, const int *q, int k,
-                   double *x) {
-  const contact_surface *s = r->surface;
+void goal_point_of(int dim, const double *a, const double *b, const double *out,
+                   int k, double *x) {
   const double at = (double)k / GOAL_PIECES;
   double chord = 0.0, height = 0.0;
   CLEAR(x, 3);
-  for (int c = 0; c < s->dim; ++c) {
-    const double *a = s->x + s->dim * q[0], *b = s->x + s->dim * q[1];
+  for (int c = 0; c < dim; ++c) {
     x[c] = (1.0 - at) * a[c] + at * b[c];
     chord = hypot(chord, b[c] - a[c]);
-    height = hypot(height, e->out[c]);
+    height = hypot(height, out[c]);
   }
   if (!(height > 0.0)) return;
   const double radius = 0.5 * height + chord * chord / (8.0 * height);
   const double off = (at - 0.5) * chord;
   const double below = off * off / (radius + sqrt(radius * radius - off * off));
-  add_scaled(s->dim, 1.0 - below / height, e->out, x);
+  add_scaled(dim, 1.0 - below / height, out, x);
 }
 
 double goal_parabola(const double *d, double *rough) {
@@ -139,7 +137,8 @@ static double value_of(const run *r, const contact_edge *e, const int *q,
     return 0.0;
   for (int k = 0; k <= GOAL_PIECES; ++k) {
     double x[3];
-    goal_point_of(r, e, q, k, x);
+    goal_point_of(dim, r->surface->x + dim * q[0], r->surface->x + dim * q[1],
+                  e->out, k, x);
     d[k] = quantity_value(&rule->card.value, x, r->now.t);
     if (!isfinite(d[k])) return 0.0;
   }

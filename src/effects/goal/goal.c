@@ -16,6 +16,7 @@
  */
 #include "effects/goal/parts.h"
 #include "effects/plan/effect.h"
+#include "model/check/check.h"
 #include "run/history/loop.h"
 
 #include <cblas.h>
@@ -304,8 +305,8 @@ static status complete(const run *r, const shared *s, double *product,
   const double beyond = cblas_ddot((int)r->n_dof, s->lacks, 1, s->y, 1);
   const double between = goal_mean_bubbles(r, s->estimator, f);
   e->error += f->curved + along + beyond + between;
-  e->magnitude +=
-      fabs(f->curved) + fabs(along) + fabs(beyond) + fabs(between) + doubt;
+  e->magnitude += fmax(fabs(f->curved), f->beyond) + fabs(along) +
+                  fabs(beyond) + fabs(between) + doubt;
   e->product += doubt;
   e->ends += doubt;
   e->error += e->hoop;
@@ -363,6 +364,37 @@ static status doubt_of_mesh(run *r, goal_state *own, goal_result *out) {
   return OK;
 }
 
+/* Closed nodes of the contact of a goal, or of all. */
+static int closed_of(const run *r, const shared *s, int id) {
+  const int of = r->m->accuracy.goals[id].contact_id;
+  return of >= 0 ? s->surface.closed[of] : s->surface.n_closed;
+}
+
+/* Elements that lock do not show how much: the goal may be as much too small as
+ * displacements are, or twice that, unless its adjoint strains nothing. */
+static status doubt_of_locking(run *r, goal_state *own, const shared *s, int id,
+                               const goal_estimate *e) {
+  static const double RIGID = 1e-9; /* -, of the value */
+  goal_result *out = &own->result[id];
+  const int closed = closed_of(r, s, id);
+  const double size = fmax(fabs(s->form.value), s->form.size);
+  space_recovery *recovery;
+  double most = 0.0;
+  PASS(recover(r, own, &recovery));
+  double n = space_depth(recovery);
+  if (closed > 0) n = fmin(n, 0.5 * (r->msh->dim == 3 ? sqrt(closed) : closed));
+  for (EACH(const section, of, r->m->sections, r->m->n.section)) {
+    const double nu = model_locking_nu(r->m, of);
+    if (nu > 0.0) most = fmax(most, model_locking_error(nu, n));
+  }
+  const double lack = 2.0 * most / (1.0 - most) * size;
+  if (!(lack > 0.0) || e->product <= RIGID * size) return OK;
+  if (out->verdict == GOAL_RELIABLE || lack > out->band)
+    out->verdict = GOAL_LOCKED;
+  out->band += lack;
+  return OK;
+}
+
 /* 1: the same force of the obstacle on another node would change J: where few
  * nodes have the forces, it is what their places make it. Radial forces are
  * those of the place too. */
@@ -387,12 +419,6 @@ static int turns(const run *r, const shared *s) {
         most = fmax(most, fabs(dot(dim, on->frame + dim * k, z)));
   }
   return most > TURN * size;
-}
-
-/* Closed nodes of the contact of a goal, or of all. */
-static int closed_of(const run *r, const shared *s, int id) {
-  const int of = r->m->accuracy.goals[id].contact_id;
-  return of >= 0 ? s->surface.closed[of] : s->surface.n_closed;
 }
 
 /* 1: few closed nodes, or nodes in a line on a surface in space: of the contact
@@ -451,6 +477,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
       (DIGITS + DBL_EPSILON * r->msh->n_node) * fmax(f->size, fabs(value));
   out->verdict = verdict_of(f, &e, out->verdict);
   PASS(doubt_of_mesh(r, own, out));
+  PASS(doubt_of_locking(r, own, s, id, &e));
   const int exact = e.magnitude <= ROUNDING * fabs(value);
   doubt_of_nodes(r, s, id, exact, own->before.missed, out);
   if (f->is_still && s->surface.n_closed > 0) out->verdict = GOAL_NO_SLIP;

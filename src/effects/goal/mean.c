@@ -104,3 +104,11 @@ double goal_mean_bubbles(const run *r, const goal_estimator *e,
   }
   return sum;
 }
+
+int goal_has_one_thickness(const run *r, int contact_id) {
+  const mesh_group *of = r->faces.pairs[contact_id].group;
+  const double *thickness = r->faces.face_weight;
+  for (int k = 0; k < of->n_item; ++k)
+    if (thickness[of->item_id[k]] != thickness[of->item_id[0]]) return 0;
+  return 1;
+}

@@ -37,7 +37,8 @@ typedef struct goal_form {
   int is_front;       /* 1: a factor in space */
   int is_square;      /* 1: the energy, whose error has a quadratic part too */
   double curved;      /* contact forces times what psi is between the nodes more
-                         than at them */
+                         than at them; what of the body is beyond its faces */
+  double beyond;      /* of the latter the sum of the magnitudes */
   double size;        /* sum of the magnitudes that value is the sum of */
   double held;        /* what forces of held nodes, in none of them, may be */
   double rough;       /* what the integral of a factor lacks, what a pressure or
@@ -70,6 +71,9 @@ status goal_add_mean(const run *r, int group_id, int component, double sign,
                      goal_form *f);
 double goal_mean_bubbles(const run *r, const goal_estimator *e,
                          const goal_form *f);
+/* 1: the faces of a contact have one thickness, so that forces per length are
+ * pressures times it. */
+int goal_has_one_thickness(const run *r, int contact_id);
 
 /* boundary.c: b[n] barycentric coordinates of point k of n * pieces in a
  * simplex of n corners: Gauss points, n of each of its pieces, of degree 3 on a
@@ -105,6 +109,17 @@ status goal_border_new(const mesh *m, goal_border *b); /* support.c */
  * normals n[dim], m[dim]; smooth: they are one side. */
 int goal_is_torn(int dim, const side_load *p, const double *n,
                  const side_load *q, const double *m, int smooth);
+/* 1: node i is on a plane of symmetry along tangent a, or on the axis. */
+int goal_is_mirrored(const run *r, int i);
+/* corner[n], zero: how sharply the gap turns at closed nodes in the plane, by
+ * the pressure that it makes within an edge over the largest of the contact; 0
+ * where it turns as much all along. Above GOAL_CORNER it is part of an infinite
+ * pressure, or of one that the mesh does not have. */
+#define GOAL_CORNER 0.05
+status goal_corners(const run *r, const int *where, double *corner);
+/* The largest corner above that of a contact within a radius of x[dim]. */
+status goal_sharpest(const run *r, int contact_id, const double *x,
+                     double radius, double *most);
 
 /* boundary.c: s->bent. */
 status goal_add_bent(const run *r, const smooth_faces *rings, goal_surface *s);
@@ -117,10 +132,10 @@ status goal_mark_supports(const run *r, const goal_border *border,
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
 /* between.c: of an edge. */
-/* x[3]: point k of GOAL_PIECES of an edge between contact nodes q[2], on the
- * arc that the surface of the body is. */
-void goal_point_of(const run *r, const contact_edge *e, const int *q, int k,
-                   double *x);
+/* x[3]: point k of GOAL_PIECES of an edge between a[dim] and b[dim], on the arc
+ * that the surface of the body is, out[dim] from the middle of the edge. */
+void goal_point_of(int dim, const double *a, const double *b, const double *out,
+                   int k, double *x);
 /* d[GOAL_PIECES + 1] less the line through its ends. */
 void goal_take_line(double *d);
 /* The middle of the parabola that is zero at the ends and has the integral of
@@ -144,5 +159,3 @@ status goal_value_between(const run *r, const goal_surface *s, const double *z,
  * NULL: the elements have it more. */
 status goal_add_doubts(const run *r, const goal_surface *s, const double *z,
                        const double *F, double *product, double *sum);
-/* 1: node i is on a plane of symmetry along tangent a, or on the axis. */
-int goal_is_mirrored(const run *r, int i);

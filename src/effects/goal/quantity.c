@@ -4,7 +4,6 @@
 #include "effects/goal/parts.h"
 
 #include <cblas.h>
-#include <lapacke.h>
 
 status goal_form_new(const run *r, goal_form *f) {
   PASS_NEW(f->load, r->n_dof);
@@ -25,7 +24,7 @@ static void clear(const run *r, goal_form *f) {
   if (f->has_tau) CLEAR(f->tau, (size_t)r->m->ns * r->msh->n_elem);
   fracture_linear_free(&f->factor);
   memset(f->spin, 0, sizeof f->spin);
-  f->value = f->curved = f->size = f->held = f->rough = 0.0;
+  f->value = f->curved = f->beyond = f->size = f->held = f->rough = 0.0;
   f->n_mean = 0;
   f->has_tau = f->is_field = f->is_square = f->is_coarse = f->is_front =
       f->sums = f->is_still = 0;
@@ -189,6 +188,12 @@ static status set_displacement(const run *r, const goal_card *g, goal_form *f) {
   return OK;
 }
 
+/* Of the body beyond the faces of an element. */
+static void add_beyond(double part, goal_form *f) {
+  f->curved += part;
+  f->beyond += fabs(part);
+}
+
 static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   const domain *d = &r->body.d;
   const mesh_group *of = &r->msh->group[g->group_id];
@@ -209,7 +214,8 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   }
   for (int k = 0; k < of->n_item; ++k) {
     const size_t e = of->item_id[k];
-    f->curved += beyond[e] / whole * (r->result.stress[ns * e + c] - f->value);
+    add_beyond(beyond[e] / whole * (r->result.stress[ns * e + c] - f->value),
+               f);
     if (f->rest != NULL)
       f->curved -= goal_thermal_rest(r, (int)e, f->rest, (int)c) / whole;
   }
@@ -217,24 +223,26 @@ static status set_stress(const run *r, const goal_card *g, goal_form *f) {
   return OK;
 }
 
-/* 1/2 sigma : inv(E) sigma of an element, J/m3; 0 where E is singular. */
-static double energy_density(const run *r, int elem_id) {
+/* 1/2 sigma : inv(E) sigma of an element, J/m3. */
+static status energy_density(const run *r, int elem_id, double *density) {
   const domain *d = &r->body.d;
-  const size_t ns = d->ns;
-  const double *sigma = r->result.stress + ns * elem_id;
-  double E[36], strain[6];
-  COPY(E, d->E + ns * ns * d->section_id[elem_id], ns * ns);
-  COPY(strain, sigma, ns);
-  if (LAPACKE_dposv(LAPACK_COL_MAJOR, 'U', d->ns, 1, E, d->ns, strain, d->ns))
-    return 0.0;
-  return 0.5 * cblas_ddot(d->ns, sigma, 1, strain, 1);
+  const double *sigma = r->result.stress + (size_t)d->ns * elem_id;
+  double S[36] = {0.0};
+  PASS(space_compliance(d, d->section_id[elem_id], S));
+  *density = 0.0;
+  for (int i = 0; i < d->ns; ++i)
+    for (int k = 0; k < d->ns; ++k)
+      *density += 0.5 * sigma[i] * S[i + d->ns * k] * sigma[k];
+  return OK;
 }
 
 static status set_energy(const run *r, const goal_card *g, goal_form *f) {
   OWNED_NEW(double, beyond, r->msh->n_elem);
   PASS(goal_volumes_beyond(r, beyond));
   for (int e = 0; e < r->msh->n_elem; ++e) {
-    if (beyond[e] != 0.0) f->curved += beyond[e] * energy_density(r, e);
+    double density = 0.0;
+    if (beyond[e] != 0.0) PASS(energy_density(r, e, &density));
+    add_beyond(beyond[e] * density, f);
     if (f->rest != NULL)
       f->curved -=
           cblas_ddot(3, r->result.stress + r->m->ns * e, 1, f->rest + 3 * e, 1);

@@ -19,18 +19,19 @@ static const double SLACK = 0.27;
 
 /* ---- what supports prescribe between the nodes --------------------------- */
 
-/* Edge v[2] of a support whose value varies. */
-static given_edge edge_of(const run *r, const load *l, const int *v) {
+/* Edge v[2] of a support whose value varies, which it has on the surface. */
+static given_edge edge_of(const run *r, const goal_surface *s, const load *l,
+                          const int *v) {
   const number_pair is = number_pair_of(v[0], v[1]);
   given_edge e = {.a = is.a, .b = is.b};
   const mesh *m = r->msh;
+  const bent_edge *bent = PAIR_FIND(s->bent, s->n_bent, v[0], v[1]);
+  const double flat[3] = {0.0}, *out = bent != NULL ? bent->out : flat;
   double d[GOAL_PIECES + 1], rough;
   for (int k = 0; k <= GOAL_PIECES; ++k) {
-    const double at = (double)k / GOAL_PIECES;
-    double x[3] = {0.0};
-    for (int c = 0; c < m->dim; ++c)
-      x[c] =
-          (1.0 - at) * m->x[m->dim * v[0] + c] + at * m->x[m->dim * v[1] + c];
+    double x[3];
+    goal_point_of(m->dim, m->x + m->dim * v[0], m->x + m->dim * v[1], out, k,
+                  x);
     d[k] = load_at_point(l, r->step, x, r->now.t);
   }
   goal_take_line(d);
@@ -41,8 +42,8 @@ static given_edge edge_of(const run *r, const load *l, const int *v) {
 
 /* Edges of the elements with both ends in[n_node] the group of a load; counts
  * them where e is NULL. */
-static int edges_in(const run *r, const load *l, const unsigned char *in,
-                    given_edge *e) {
+static int edges_in(const run *r, const goal_surface *s, const load *l,
+                    const unsigned char *in, given_edge *e) {
   const mesh *m = r->msh;
   int n = 0;
   for (int k = 0; k < m->n_elem; ++k) {
@@ -51,7 +52,7 @@ static int edges_in(const run *r, const load *l, const unsigned char *in,
       for (int b = a + 1; b <= m->dim; ++b) {
         const int ends[2] = {v[a], v[b]};
         if (!in[v[a]] || !in[v[b]]) continue;
-        if (e != NULL) e[n] = edge_of(r, l, ends);
+        if (e != NULL) e[n] = edge_of(r, s, l, ends);
         ++n;
       }
   }
@@ -74,7 +75,8 @@ static int unite(given_edge *e, int n) {
 }
 
 /* Writes the edges of all loads to e, or counts them. */
-static status given_edges(const run *r, given_edge *e, int *n) {
+static status given_edges(const run *r, const goal_surface *s, given_edge *e,
+                          int *n) {
   OWNED unsigned char *in = NULL;
   *n = 0;
   for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
@@ -82,7 +84,7 @@ static status given_edges(const run *r, given_edge *e, int *n) {
     const mesh_group *g = &r->msh->group[l->group_id];
     if (in == NULL) PASS_NEW(in, r->msh->n_node);
     for (int k = 0; k < g->n_node; ++k) in[g->node_id[k]] = 1;
-    *n += edges_in(r, l, in, e == NULL ? NULL : e + *n);
+    *n += edges_in(r, s, l, in, e == NULL ? NULL : e + *n);
     for (int k = 0; k < g->n_node; ++k) in[g->node_id[k]] = 0;
   }
   return OK;
@@ -90,10 +92,10 @@ static status given_edges(const run *r, given_edge *e, int *n) {
 
 status goal_add_given(const run *r, goal_surface *s) {
   int n;
-  PASS(given_edges(r, NULL, &n));
+  PASS(given_edges(r, s, NULL, &n));
   if (n == 0) return OK;
   PASS_NEW(s->given, n);
-  PASS(given_edges(r, s->given, &n));
+  PASS(given_edges(r, s, s->given, &n));
   s->n_given = unite(s->given, n);
   return OK;
 }

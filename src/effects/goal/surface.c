@@ -5,30 +5,6 @@
 #include "base/base.h"
 #include "effects/goal/parts.h"
 
-/* 1: a face at a node in the plane is held along its normal, as the node is. */
-static int has_held_face(const run *r, int node) {
-  const mesh *m = r->msh;
-  for (int f = 0; f < m->n_face; ++f) {
-    const int *v = m->face + 2 * f;
-    if ((v[0] != node && v[1] != node) || m->face_other[f] >= 0) continue;
-    for (int c = 0; c < 2; ++c)
-      if (r->body.d.fixed[2 * v[0] + c] && r->body.d.fixed[2 * v[1] + c] &&
-          fabs(m->x[2 * v[0] + c] - m->x[2 * v[1] + c]) <= 1e-9 * m->size)
-        return 1;
-  }
-  return 0;
-}
-
-int goal_is_mirrored(const run *r, int i) {
-  const int dim = r->msh->dim;
-  int any = 0;
-  if (r->faces.input.axisymmetric &&
-      r->surface->x[dim * i] <= 1e-9 * r->msh->size)
-    return 1;
-  for (int a = 1; a < dim; ++a) any |= r->surface->held[dim * i + a];
-  return any && (dim == 3 || has_held_face(r, r->surface->node_id[i]));
-}
-
 /* Integral of the bubble of an edge over a face. */
 static double bubble_weight(const run *r, int face) {
   const mesh *m = r->msh;
@@ -122,7 +98,7 @@ static void gap_along(const run *r, const int *q, const contact_edge *e,
   int finite = 1;
   for (int k = 0; k <= GOAL_PIECES; ++k) {
     double x[3], n[3];
-    goal_point_of(r, e, q, k, x);
+    goal_point_of(dim, s->x + dim * q[0], s->x + dim * q[1], e->out, k, x);
     COPY(n, e->n, 3);
     if (p->obstacle_normal) obstacle_normal(p->support, dim, x, n);
     d[k] = obstacle_gap(p->support, dim, x, n, r->now.t);
@@ -364,6 +340,16 @@ static void add_group(const run *r, const smooth_faces *rings,
   }
 }
 
+/* At a corner of the gap stresses go like the logarithm of the distance. */
+static status mark_corners(const run *r, const int *where, goal_surface *s) {
+  OWNED_NEW(double, corner, r->nodes.n);
+  PASS(goal_corners(r, where, corner));
+  for (int q = 0; q < r->nodes.n; ++q)
+    if (fabs(corner[q]) > GOAL_CORNER)
+      s->ends[r->surface->node_id[q]] |= GOAL_END_OF_CONTACT;
+  return OK;
+}
+
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s) {
   const mesh *m = r->msh;
@@ -385,6 +371,7 @@ status goal_surface_new(const run *r, const goal_border *border,
   PAIR_SORT(s->edge, s->n_edge);
   mark_border(r, where, seen, s);
   PASS(mark_front(m, s));
+  PASS(mark_corners(r, where, s));
   unite_edges(s);
   for (int q = 0; q < r->nodes.n; ++q)
     s->closed[r->surface->contact_id[q]] +=

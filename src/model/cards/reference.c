@@ -95,8 +95,9 @@ static void check_parameter(const reading *r, const goal_card *g,
 static void check_component(const reading *r, goal_card *g) {
   const int least = quantities[g->quantity].least;
   const int most = quantities[g->quantity].most;
-  check_parameter(r, g, "COMPONENT", most >= 0,
-                  most >= 0 && g->quantity != GOAL_FORCE);
+  check_parameter(
+      r, g, "COMPONENT", most >= 0,
+      most >= 0 && g->quantity != GOAL_FORCE && g->quantity != GOAL_MOMENT);
   if (!is_given(r, "COMPONENT")) {
     g->component = GOAL_NORMAL;
     return;

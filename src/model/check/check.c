@@ -172,26 +172,29 @@ static void check_kinematics(model *m, const mesh *msh) {
  * n^2), within a third of the errors observed for nu = 0.49 to 0.4999 and n = 8
  * to 64.
  */
-double model_locking_error(double nu, int n) {
+double model_locking_error(double nu, double n) {
   return 0.55 / (1.0 + 5.0 * (1.0 - 2.0 * nu) * n * n);
+}
+
+double model_locking_nu(const model *m, const section *s) {
+  if (s->material_id < 0 || s->kin == PLANE_STRESS || s->averaged) return 0.0;
+  const elastic_table *of = &m->materials[s->material_id].elastic;
+  if (of->n == 0 || of->type != ELASTIC_ISO) return 0.0;
+  const double nu = elastic_table_most(of, 1);
+  return nu > 0.49 ? nu : 0.0;
 }
 
 static void check_locking(const model *m) {
   enum { COARSE = 16, FINE = 64 };
   for (EACH(const section, s, m->sections, m->n.section)) {
-    const material *mat =
-        s->material_id < 0 || s->kin == PLANE_STRESS || s->averaged
-            ? NULL
-            : &m->materials[s->material_id];
-    if (mat == NULL || mat->elastic.n == 0 || mat->elastic.type != ELASTIC_ISO)
-      continue;
-    double nu = elastic_table_most(&mat->elastic, 1);
-    if (nu <= 0.49) continue;
+    const double nu = model_locking_nu(m, s);
+    if (!(nu > 0.0)) continue;
     message_add(m->log, P2055, &s->at,
                 "nu = %g of material %s: linear elements lock; expect "
                 "displacements too small by some %.2g %% with %d elements "
                 "across a wall, %.2g %% with %d",
-                nu, mat->name, 100.0 * model_locking_error(nu, COARSE), COARSE,
+                nu, m->materials[s->material_id].name,
+                100.0 * model_locking_error(nu, COARSE), COARSE,
                 100.0 * model_locking_error(nu, FINE), FINE);
   }
 }
@@ -373,8 +376,18 @@ static int has_component(const model *m, const mesh *msh, const goal_card *g) {
   return g->component < msh->dim;
 }
 
+/* The moment in the plane if none is given. */
+static void check_moment(const model *m, const mesh *msh, goal_card *g) {
+  if (g->quantity != GOAL_MOMENT || g->component != GOAL_NORMAL) return;
+  g->component = 2;
+  if (msh->dim == 3)
+    message_add(m->log, P2007, &g->at,
+                "*GOAL, QUANTITY=MOMENT needs COMPONENT= in space");
+}
+
 static void check_goal(const model *m, const mesh *msh, goal_card *g) {
   if (g->quantity == GOAL_SIF && g->crack_id < 0) return;
+  check_moment(m, msh, g);
   if (g->n_point > 0)
     g->node_id = g->quantity == GOAL_SIF ? find_front(m, msh, g)
                                          : find_point(m, msh, g, 0);

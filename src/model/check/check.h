@@ -13,7 +13,9 @@ status model_open_cracks(model *m, mesh *msh);
 
 /* Relative error of displacements to expect of P1 elements that lock at nu, n
  * of them across a wall. */
-double model_locking_error(double nu, int n);
+double model_locking_error(double nu, double n);
+/* nu of a section whose elements lock by it; else 0. */
+double model_locking_nu(const model *m, const section *s);
 
 /* 1 if the integrator of a *VISCO step can be unstable or ring. */
 int step_has_limit(const step *s);

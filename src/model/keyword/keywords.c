@@ -260,7 +260,7 @@ static const option goal_options[] = {
        "of DISPLACEMENT: group whose mean is taken off"),
   CHOICE(goal.component, "COMPONENT", GOAL_COMPONENTS, OPTION_ABSENT,
          "of FORCE (NORMAL if absent), DISPLACEMENT, STRESS, of MOMENT the "
-         "axis through the point, of SIF the mode"),
+         "axis through the point (3 if absent in the plane), of SIF the mode"),
   REAL(radius, "RADIUS", DBL_MIN, DBL_MAX, OPTION_ABSENT, "length",
        "of the mean that PRESSURE is; half the half width of the zone if "
        "absent"),
