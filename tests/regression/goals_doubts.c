@@ -352,6 +352,40 @@ START_TEST(friction_that_turns_back_within_an_edge) {
 }
 END_TEST
 
+/* A given friction acts on open nodes too. On 8 edges all nodes slide, the
+ * force is the limit and without an error by its elements; on 96 one of them
+ * stops where it slides least (projected Gauss-Seidel: -0.341). */
+START_TEST(friction_that_may_stop_is_not_reliable) {
+  job j =
+      body_of_block(8, "CYLINDER, RADIUS=20.\n1., -20.\nMOVE, -0.0012, 0.0019",
+                    "*FRICTION, CONTACT=C, LAW=TRESCA\n0.2\n"
+                    "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+                    "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nTOP, 1\n"
+                    "TOP, 2, 2, -0.004\n");
+  dat t = job_table(&j, "GOALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "value"), -0.4, 1e-9);
+  ck_assert_double_gt(dat_at(&t, 0, "band"), 0.4 - 0.341);
+  ck_assert_double_lt(dat_at(&t, 0, "band"), 0.2);
+  ck_assert(!goal_has_verdict(&j, "T", "reliable"));
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* Nodes that a support holds next to open ones that slide. */
+START_TEST(friction_of_held_nodes_next_to_open_ones) {
+  job j =
+      body_of_block(8, PLANE "\nMOVE, 0., -1.",
+                    "*FRICTION, CONTACT=C, LAW=TRESCA\n1.E-6\n"
+                    "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+                    "*STEP\n*QUASISTATIC\n1., 1.\n*BOUNDARY\nLEFT, 1\n"
+                    "TOP, 2\n*DSLOAD\nRIGHT, TX, 1.\n");
+  goal_check(&j, -2e-6, 0.3, 0.4, 1.5);
+  ck_assert(goal_has_verdict(&j, "T", "support_end"));
+  job_end(&j);
+}
+END_TEST
+
 /* On a cylinder that touches one row of nodes the moment about its axis is by
  * chance what it is. */
 START_TEST(moment_about_a_row_of_nodes_is_not_reliable) {
@@ -558,6 +592,8 @@ UNIT_MAIN("goals_doubts", displacements_of_corners_are_in_their_bands,
           friction_between_the_nodes_is_in_the_estimate,
           passes_do_not_refine_by_rounding,
           friction_that_turns_back_within_an_edge,
+          friction_that_may_stop_is_not_reliable,
+          friction_of_held_nodes_next_to_open_ones,
           moment_about_a_row_of_nodes_is_not_reliable,
           zones_of_three_nodes_are_not_reliable,
           work_of_a_single_node_remains_doubtful,

@@ -6,6 +6,19 @@
 #include "base/base.h"
 #include "effects/goal/parts.h"
 
+#include <cblas.h>
+
+static const double FULL = 1e-6; /* -, of the limit: friction has reached it */
+static const double HALT = 2.0; /* -, edges over which slip may go on falling */
+
+int goal_slides(const run *r, int q) {
+  const int dim = r->msh->dim;
+  const double g = r->result.g == NULL ? 0.0 : r->result.g[q];
+  if (r->result.contact[q] != CONTACT_OPEN || !(g > 0.0))
+    return r->result.contact[q] == CONTACT_SLIP;
+  return cblas_dnrm2(dim - 1, r->now.rc + dim * q + 1, 1) >= (1.0 - FULL) * g;
+}
+
 void goal_take_line(double *d) {
   const double first = d[0], rise = d[GOAL_PIECES] - d[0];
   for (int k = 0; k <= GOAL_PIECES; ++k) d[k] -= first + rise * k / GOAL_PIECES;
@@ -107,21 +120,12 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
   return OK;
 }
 
-/* Of a node that slips and one whose friction has the opposite direction: in
- * between it turns back, the nodes have that in the middle, and it may be at
- * either end. */
-static double reversal_of(const run *r, const contact_edge *e, const int *q,
-                          const double *z) {
-  const int dim = r->msh->dim;
-  double v[2][3], part = 0.0;
-  if (!e->closed || e->stuck || e->other[0] >= 0) return 0.0;
-  const double t[2] = {traction_of(r, q[0], 1, v[0]),
-                       traction_of(r, q[1], 1, v[1])};
-  if (!(dot(dim, v[0], v[1]) < 0.0)) return 0.0;
-  for (int c = 0; c < dim; ++c)
-    part += 0.25 * (t[0] * v[0][c] - t[1] * v[1][c]) *
-            (z[dim * e->a + c] + z[dim * e->b + c]);
-  return fabs(part) * e->weight * (dim == 2 ? 1.5 : 1.0);
+/* Opposed tractions of friction at the ends q[2] of an edge. */
+static int turns_back(const run *r, const int *q) {
+  double v[2][3];
+  traction_of(r, q[0], 1, v[0]);
+  traction_of(r, q[1], 1, v[1]);
+  return dot(r->msh->dim, v[0], v[1]) < 0.0;
 }
 
 /* Of an edge whose nodes q[2] slip, its friction value a formula: by what that
@@ -157,10 +161,60 @@ static double value_of(const run *r, const contact_edge *e, const int *q,
   return part;
 }
 
+/* The slip of contact node q, m; 0: its friction is below the limit. */
+static double slip_of(const run *r, int q) {
+  const int n = r->msh->dim - 1;
+  return goal_slides(r, q) ? cblas_dnrm2(n, r->result.slip + n * q, 1) : 0.0;
+}
+
+/* rise[q]: by how much the slip grows from node q to a neighbour, where it
+ * falls to none; 0: it falls to one, which may have stopped or turned. */
+static void find_rises(const run *r, const goal_surface *s, const int *where,
+                       double *rise) {
+  for (int q = 0; q < r->nodes.n; ++q) rise[q] = -1.0;
+  for (EACH(const contact_edge, e, s->edge, s->n_edge)) {
+    if (e->other[0] >= 0) continue;
+    const int q[2] = {where[e->a], where[e->b]};
+    const double more = slip_of(r, q[1]) - slip_of(r, q[0]);
+    const int turned = turns_back(r, q);
+    for (int k = 0; k < 2; ++k) {
+      double *own = &rise[q[k]], by = k == 0 ? more : -more;
+      *own = turned || by < 0.0 || *own == 0.0 ? 0.0 : fmax(*own, by);
+    }
+  }
+}
+
+/* 1: nodes q[2] of an edge slide, and one has the least slip of all round it,
+ * so little that it may be zero next to it. */
+static int may_stop(const run *r, const int *q, const double *rise) {
+  int halts = 0;
+  for (int k = 0; k < 2; ++k) {
+    const double slip = slip_of(r, q[k]);
+    if (!(slip > 0.0)) return 0;
+    halts |= slip < HALT * rise[q[k]];
+  }
+  return halts;
+}
+
+/* Of an edge within which friction turns back: the nodes have that in the
+ * middle, and it may be at either end. So it may where the nodes stop: there
+ * friction may be anything. */
+static double reversal_of(const run *r, const contact_edge *e, const int *q,
+                          const double *rise, const double *z) {
+  const int dim = r->msh->dim, turns = turns_back(r, q);
+  double v[2][3], part = 0.0;
+  if (!turns && !may_stop(r, q, rise)) return 0.0;
+  const double t[2] = {traction_of(r, q[0], 1, v[0]),
+                       (turns ? -1.0 : 1.0) * traction_of(r, q[1], 1, v[1])};
+  for (int c = 0; c < dim; ++c)
+    part += 0.25 * (t[0] * v[0][c] + t[1] * v[1][c]) *
+            (z[dim * e->a + c] + z[dim * e->b + c]);
+  return fabs(part) * e->weight * (dim == 2 ? 1.5 : 1.0);
+}
+
 /* 1: both nodes q[2] of an edge slip on an obstacle. */
 static int slips(const run *r, const contact_edge *e, const int *q) {
-  return e->other[0] < 0 && r->result.contact[q[0]] == CONTACT_SLIP &&
-         r->result.contact[q[1]] == CONTACT_SLIP;
+  return e->other[0] < 0 && goal_slides(r, q[0]) && goal_slides(r, q[1]);
 }
 
 status goal_value_between(const run *r, const goal_surface *s, const double *z,
@@ -177,17 +231,17 @@ status goal_value_between(const run *r, const goal_surface *s, const double *z,
 
 /* What an edge may lack: see goal_add_doubts. */
 static double doubt_of(const run *r, const contact_edge *e, const int *q,
-                       const double *z, const double *F) {
+                       const double *rise, const double *z, const double *F) {
   const contact_surface *s = r->surface;
   const int dim = s->dim;
   double rough = 0.0;
-  if (!e->closed || e->other[0] >= 0) return 0.0;
+  if (e->other[0] >= 0) return 0.0;
   if (slips(r, e, q)) value_of(r, e, q, z, &rough);
-  for (int k = 0; k < 2; ++k)
+  for (int k = 0; k < 2 && e->closed; ++k)
     rough +=
         0.5 * e->weight * e->rough / s->area[q[k]] *
         fabs(dot(dim, s->frame + dim * dim * q[k], F + dim * s->node_id[q[k]]));
-  return rough + reversal_of(r, e, q, z);
+  return rough + (e->stuck ? 0.0 : reversal_of(r, e, q, rise, z));
 }
 
 status goal_add_doubts(const run *r, const goal_surface *s, const double *z,
@@ -197,10 +251,12 @@ status goal_add_doubts(const run *r, const goal_surface *s, const double *z,
   *sum = 0.0;
   OWNED_OF(int, where, goal_places(r, &where));
   OWNED_NEW(double, part, s->n_edge);
+  OWNED_NEW(double, rise, r->nodes.n);
+  find_rises(r, s, where, rise);
   for (int k = 0; k < s->n_edge; ++k) {
     const contact_edge *e = &s->edge[k];
     const int q[2] = {where[e->a], where[e->b]};
-    part[k] = doubt_of(r, e, q, z, F);
+    part[k] = doubt_of(r, e, q, rise, z, F);
     *sum += part[k];
   }
   for (int k = 0; k < m->n_elem && product != NULL; ++k)

@@ -155,7 +155,7 @@ static int has_mean(const model *m) {
 /* 1: nodes slip, and their friction follows the pressures. */
 static int rubs(const run *r) {
   for (int i = 0; i < r->nodes.n && r->problem.B != NULL; ++i)
-    if (r->result.contact[i] == CONTACT_SLIP && r->result.g[i] > 0.0) return 1;
+    if (goal_slides(r, i) && r->result.g[i] > 0.0) return 1;
   return 0;
 }
 
@@ -194,8 +194,7 @@ static void spread_held(const run *r, double *psi) {
   const int dim = r->msh->dim;
   for (int i = 0; B != NULL && i < r->nodes.n; ++i) {
     double along = 0.0;
-    if (r->result.contact[i] != CONTACT_SLIP || !(r->result.g[i] > 0.0))
-      continue;
+    if (!goal_slides(r, i) || !(r->result.g[i] > 0.0)) continue;
     for (int k = dim * i + 1; k < dim * (i + 1); ++k)
       if (r->surface->held[k]) along += psi[k] * r->now.rc[k] / r->result.g[i];
     for (int e = B->start[i]; e < B->start[i + 1]; ++e)

@@ -131,7 +131,10 @@ status goal_mark_supports(const run *r, const goal_border *border,
 /* surface.c */
 status goal_surface_new(const run *r, const goal_border *border,
                         const space_recovery *of, goal_surface *s);
-/* between.c: of an edge. */
+/* between.c */
+/* 1: the friction of contact node q, closed or not, has reached its limit. */
+int goal_slides(const run *r, int q);
+/* Of an edge: */
 /* x[3]: point k of GOAL_PIECES of an edge between a[dim] and b[dim], on the arc
  * that the surface of the body is, out[dim] from the middle of the edge. */
 void goal_point_of(int dim, const double *a, const double *b, const double *out,
@@ -154,7 +157,8 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
 status goal_value_between(const run *r, const goal_surface *s, const double *z,
                           double *sum);
 /* What J, whose derivative by friction is z[dim*n_node], may lack by edges
- * within which friction turns back, or gap or friction value are rougher than a
+ * within which friction turns back or may stop, or gap or friction value are
+ * rougher than a
  * parabola, F[dim*n_node] the forces of the adjoint: *sum; product[n_elem] or
  * NULL: the elements have it more. */
 status goal_add_doubts(const run *r, const goal_surface *s, const double *z,

@@ -86,8 +86,7 @@ static void add_row(const run *r, int face, const int *q, int k, int a,
   const int row = r->msh->dim * q[k] + a;
   int open_end = !goal_is_mirrored(r, q[k]);
   if (!r->surface->held[row] || r->now.rc[row] != 0.0) return;
-  for (int l = 0; l < r->msh->dim; ++l)
-    open_end |= r->result.contact[q[l]] == CONTACT_SLIP;
+  for (int l = 0; l < r->msh->dim; ++l) open_end |= goal_slides(r, q[l]);
   const double part = f->psi[row] * held_part(r, face, q, k, a);
   f->curved += part;
   if (open_end) f->held += 3.0 * fabs(part);

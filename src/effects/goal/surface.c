@@ -138,11 +138,13 @@ static void set_middle(const run *r, const gap_slopes *slopes, const int *q,
   if (!isfinite(e->excess)) e->excess = 0.0;
 }
 
-/* OPEN, STICK, or the sense of the slip. */
+/* The status, and whether and in which sense friction lets the node slide,
+ * which a given limit does at open nodes too. */
 static int state_of(const run *r, int q) {
-  const int k = r->msh->dim - 1;
-  if (r->result.contact[q] != CONTACT_SLIP) return (int)r->result.contact[q];
-  return k == 1 && r->result.slip[q] < 0.0 ? -1 : CONTACT_SLIP;
+  enum { NONE, ONE, OTHER, SENSES };
+  const int turned = r->msh->dim == 2 && r->result.slip[q] < 0.0;
+  const int sense = !goal_slides(r, q) ? NONE : turned ? OTHER : ONE;
+  return SENSES * (int)r->result.contact[q] + sense;
 }
 
 /* 1: all nodes v[dim] of a face are closed, or at the front of a crack. */
