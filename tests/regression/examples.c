@@ -150,11 +150,14 @@ static void set_kernels(void) {
   setenv("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX2,-AVX512F,-FMA,-FMA4", 1);
 }
 
-/* Tolerances of sums: what other kernels of OpenBLAS make of the same run. */
+#ifdef __x86_64__
+/* Tolerances of sums: what other kernels of OpenBLAS make of the same run,
+ * those that this machine has. */
 static void spread(sums *s, const char *path) {
   static const char *const kernels[] = {"Prescott", "Sandybridge", "Haswell",
                                         "SkylakeX"};
-  for (size_t i = 0; i < sizeof kernels / sizeof *kernels; ++i) {
+  const size_t n = __builtin_cpu_supports("avx512f") ? 4 : 3;
+  for (size_t i = 0; i < n; ++i) {
     setenv("OPENBLAS_CORETYPE", kernels[i], 1);
     job j = job_deck(path, words_of(path));
     sums other = sums_of(&j);
@@ -166,7 +169,6 @@ static void spread(sums *s, const char *path) {
 }
 
 static void compare_sums(const job *j, const char *path) {
-#ifdef __x86_64__
   char file[256];
   snprintf(file, sizeof file, "tests/regression/sums/%s.txt", j->name);
   sums s = sums_of(j);
@@ -176,10 +178,12 @@ static void compare_sums(const job *j, const char *path) {
   }
   sums_check(&s, file);
   sums_free(&s);
-#else
-  (void)j, (void)path;
-#endif
 }
+#else
+static void compare_sums(const job *j, const char *path) {
+  (void)j, (void)path;
+}
+#endif
 
 /* Tags of JOB.xdmf close in the order they open; cells have the rows and
  * columns that their topology says. */
