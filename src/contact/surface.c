@@ -594,16 +594,37 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
   return couple_node(b, s, i, n_kept < dim ? n_kept : dim, kept);
 }
 
-/* A depth that is told, m: facets of curved surfaces enter each other. */
+/* What a deck adds to the gap of a pair, m; 0: nothing, or a formula. */
+static double added(const contact_pair *p) {
+  return p->change == NULL || p->change->formula != NULL
+             ? 0.0
+             : p->change_sign * p->change->number;
+}
+
+/* A depth that is told, m: facets of curved surfaces enter each other, which is
+ * no matter unless it counts beside what the deck adds. */
 static double told_depth(const builder *b, const contact_pair *p) {
-  static const double sagitta = 0.05;
+  static const double sagitta = 0.05, part = 0.1;
   const mesh *m = b->in->mesh;
   double mean = 0.0, normal[3];
   if (p->support != NULL) return rounding * m->size;
   for (int k = 0; k < p->group->n_item; ++k)
     mean +=
         mesh_face_normal(m, p->group->item_id[k], normal) / p->group->n_item;
-  return sagitta * (b->dim == 2 ? mean : sqrt(mean));
+  mean = sagitta * (b->dim == 2 ? mean : sqrt(mean));
+  return added(p) == 0.0
+             ? mean
+             : fmin(mean, fmax(part * fabs(added(p)), rounding * m->size));
+}
+
+/* ", 2 times the INTERFERENCE", of a depth. */
+static node_text beside_added(const contact_pair *p, double depth) {
+  node_text t = {""};
+  if (added(p) != 0.0)
+    snprintf(t.text, sizeof t.text, ", %.2g times the %s",
+             depth / fabs(added(p)),
+             p->change_sign < 0.0 ? "INTERFERENCE" : "CLEARANCE");
+  return t;
 }
 
 static void say(const builder *b, int pair_id) {
@@ -630,9 +651,9 @@ static void say(const builder *b, int pair_id) {
   if (t->depth > told_depth(b, p))
     message_add(b->log, P4004, &p->at,
                 "%s %s: deepest penetration of %s is %.4g, %.2g of the "
-                "size of the mesh, at %s",
+                "size of the mesh%s, at %s",
                 p->card, p->name, partner(p).text, t->depth, t->depth / m->size,
-                describe(m, t->deep_node).text);
+                beside_added(p, t->depth).text, describe(m, t->deep_node).text);
   if (t->sine > told_sine)
     message_add(b->log, P4018, &p->at,
                 "*CONTACT %s: the normals of the body differ from those of "

@@ -525,21 +525,32 @@ START_TEST(interference_and_clearance) {
 }
 END_TEST
 
-/* Facets enter each other by up to 5 % of their size, about 0.3. */
+/* Facets enter each other by up to 5 % of their size, about 0.3, and by a tenth
+ * of an interference. */
 START_TEST(depth_is_told_beyond_that_of_facets) {
-  static const char *const numbers[] = {"N = 2\nM = 2\nDEEP = 0.01",
-                                        "N = 2\nM = 2\nDEEP = 0.02"};
-  for (int k = 0; k < 2; ++k) {
+  static const struct {
+    const char *numbers, *joint, *told;
+  } rows[] = {
+      {"N = 2\nM = 2\nDEEP = 0.01", PAIR, NULL},
+      {"N = 2\nM = 2\nDEEP = 0.02", PAIR, "of the size of the mesh, at"},
+      {"N = 2\nM = 2\nDEEP = 0.01", PAIR "INTERFERENCE, 0.11\n", NULL},
+      {"N = 2\nM = 2\nDEEP = 0.01", PAIR "INTERFERENCE, 0.005\n",
+       "of the size of the mesh, 2 times the INTERFERENCE, at"},
+      {"N = 2\nM = 2\nDEEP = 0.01", PAIR "CLEARANCE, 0.05\n",
+       "of the size of the mesh, 0.2 times the CLEARANCE, at"}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {
     const scene s = {"pair3",
-                     numbers[k],
+                     rows[k].numbers,
                      "",
                      {1e3, 1e3},
                      0,
-                     PAIR,
+                     rows[k].joint,
                      "BOTTOM, 3\nLEFT, 1\nFRONT, 2\n",
                      "TOP, P, 1.\n"};
     job j = run_scene(&s, "--check");
-    ck_assert_msg((strstr(j.errors, "P4004") != NULL) == k, "%s", j.errors);
+    const char *told = rows[k].told == NULL ? "P4004" : rows[k].told;
+    ck_assert_msg((strstr(j.errors, told) != NULL) == (rows[k].told != NULL),
+                  "%s", j.errors);
     job_end(&j);
   }
 }
