@@ -73,9 +73,8 @@ static void set_sliding(const contact_problem *cp, const double *before,
   double most = 0.0;
   for (int i = 0; i < cp->n; ++i) {
     int normal = i * cp->dim;
-    double push = fmin(before[normal], q[normal]);
-    if (push < 0.0) u[normal] = cp->gap[i];
-    q[normal] = fmin(push, 0.0);
+    q[normal] = fmin(before[normal], q[normal]);
+    if (q[normal] < 0.0) u[normal] = cp->gap[i];
     most = fmax(most, contact_slip_of(cp, u, i));
   }
   for (int i = 0; i < cp->n; ++i) {
