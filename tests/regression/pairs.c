@@ -525,6 +525,26 @@ START_TEST(interference_and_clearance) {
 }
 END_TEST
 
+/* Facets enter each other by up to 5 % of their size, about 0.3. */
+START_TEST(depth_is_told_beyond_that_of_facets) {
+  static const char *const numbers[] = {"N = 2\nM = 2\nDEEP = 0.01",
+                                        "N = 2\nM = 2\nDEEP = 0.02"};
+  for (int k = 0; k < 2; ++k) {
+    const scene s = {"pair3",
+                     numbers[k],
+                     "",
+                     {1e3, 1e3},
+                     0,
+                     PAIR,
+                     "BOTTOM, 3\nLEFT, 1\nFRONT, 2\n",
+                     "TOP, P, 1.\n"};
+    job j = run_scene(&s, "--check");
+    ck_assert_msg((strstr(j.errors, "P4004") != NULL) == k, "%s", j.errors);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* The seat of a ring, facets within those of the bore, is moved by up to 0.03:
  * what is left of the gap, but for a clearance of 1, is a thousandth of it. */
 START_TEST(adjusted_nodes_are_on_the_master) {
@@ -754,6 +774,7 @@ int main(void) {
   tcase_add_loop_test(tests, held_master_is_a_plane, 0, 6);
   tcase_add_test(tests, restart_is_bit_for_bit);
   tcase_add_loop_test(tests, interference_and_clearance, 0, 4);
+  tcase_add_test(tests, depth_is_told_beyond_that_of_facets);
   tcase_add_test(tests, adjusted_nodes_are_on_the_master);
   tcase_add_test(tests, adjusted_nodes_are_tied);
   tcase_add_loop_test(tests, one_of_two_pairs_is_adjusted, 0, 2);
