@@ -23,7 +23,8 @@ static double root_of(const contact_problem *cp, int node_id) {
   return sqrt(most);
 }
 
-/* 1: an entry of columns a and rows b is above "least". */
+/* 1: an entry of columns a and rows b is above "least"; a compliance from a
+ * file may be unsymmetric. */
 static int joined(const contact_problem *cp, int a, int b, double least) {
   for (int j = a * cp->dim; j < (a + 1) * cp->dim; ++j) {
     const double *column = contact_matrix(cp) + (size_t)j * cp->m;
@@ -47,7 +48,9 @@ static void find_bodies(const contact_problem *cp, const double *root,
     }
     for (int k = found; k < cp->n; ++k) {
       int other = list[k];
-      if (!joined(cp, a, other, JOINED * root[a] * root[other])) continue;
+      const double least = JOINED * root[a] * root[other];
+      if (!joined(cp, a, other, least) && !joined(cp, other, a, least))
+        continue;
       b->of[other] = b->of[a];
       list[k] = list[found];
       list[found++] = other;

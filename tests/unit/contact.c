@@ -513,6 +513,21 @@ START_TEST(unlike_nodes_of_a_body_are_measured_apart) {
 }
 END_TEST
 
+/* Whichever of two nodes comes first. */
+START_TEST(nodes_of_which_one_feels_the_other_are_a_body) {
+  for (int k = 0; k < 2; ++k) {
+    contact_case c = case_new(2, 2, 0.5);
+    contact_bodies *b = NULL;
+    for (int i = 0; i < 4; ++i) c.A[5 * i] = 1;
+    c.A[k == 0 ? 2 : 8] = 0.5;
+    ck_assert_int_eq(contact_bodies_new(&c.cp, &b), OK);
+    ck_assert_int_eq(b->n, 1);
+    memory_free(b);
+    case_free(&c);
+  }
+}
+END_TEST
+
 /* Bodies and residual of any u, r from the blocks and from all entries. */
 START_TEST(blocks_give_the_residual_of_all_entries) {
   for (int k = 0; k < 12; ++k) {
@@ -705,4 +720,5 @@ UNIT_MAIN("contact", normals_that_move_as_one_carry_no_given_forces,
           hidden_friction_is_a_part_of_the_limit, active_nodes_become_more,
           forces_of_rounding_are_dropped, second_obstacle_bounds_the_tangent,
           held_tangent_takes_no_friction, what_only_carries_is_not_in_the_scale,
-          bodies_are_measured_apart, unlike_nodes_of_a_body_are_measured_apart)
+          bodies_are_measured_apart, unlike_nodes_of_a_body_are_measured_apart,
+          nodes_of_which_one_feels_the_other_are_a_body)
