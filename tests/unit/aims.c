@@ -121,7 +121,56 @@ START_TEST(elements_at_a_tip_are_as_long_as_the_target_can_use) {
 }
 END_TEST
 
+/* Without an estimate elements round the closed nodes of the contact, here one
+ * of contact 0, or round its nearest node, become half as long; with one that
+ * needs no sizes they stay. */
+START_TEST(zones_without_an_estimate_become_finer) {
+  int node_id[] = {0, 12, 24}, contact_id[] = {0, 1, 1};
+  const double gap[] = {0.0, 0.2, -1e-18};
+  const contact_status is[] = {CONTACT_STICK, CONTACT_OPEN, CONTACT_OPEN};
+  const contact_surface surface = {
+      .dim = 2, .n = 3, .node_id = node_id, .contact_id = contact_id};
+  mesh *msh = make_grid_2d((int[]){4, 4}, (double[]){1.0, 1.0});
+  double *product = calloc((size_t)msh->n_elem, sizeof *product);
+  double *length = calloc((size_t)msh->n_node, sizeof *length);
+  double *size = calloc((size_t)msh->n_node, sizeof *size);
+  space_lengths(msh, length);
+  for (int of = -1; of < 3; ++of) {
+    const int near = of == 1 ? 24 : of == 2 ? -1 : 0;
+    goal_card goal = {
+        .quantity = GOAL_WIDTH, .target = 1.0, .contact_id = of % 2};
+    const model m = {.n.goal = 1, .accuracy.goals = &goal};
+    const goal_result found = {
+        .value = NAN, .verdict = of == 2 ? GOAL_RELIABLE : GOAL_FEW_NODES};
+    const state s = {
+        .contacts = {.surface = &surface, .contact = is, .gap = gap},
+        .errors = {.n_goal = 1, .goals = &found, .goal_products = product}};
+    aims *a = NULL;
+    ck_assert_int_eq(aims_new(&m, 0, &a), OK);
+    ck_assert_int_eq(aims_begin(a, msh), OK);
+    aims_see(a, msh, &s);
+    aims_evaluate(a, &m);
+    for (int i = 0; i < msh->n_node; ++i) size[i] = 2.0 * length[i];
+    ck_assert_int_eq(aims_sizes(a, &m, msh, NULL, size), OK);
+    for (int i = 0; i < msh->n_node; ++i) {
+      int beside = 0;
+      for (int k = 0; k < 9 * msh->n_elem; ++k) {
+        const int *v = msh->elem + k / 9 * 3;
+        beside |= v[k % 3] == i && v[k / 3 % 3] == near;
+      }
+      ck_assert_double_eq(size[i], (beside ? 0.5 : 2.0) * length[i]);
+    }
+    memory_free(a);
+  }
+  free(product);
+  free(length);
+  free(size);
+  memory_free(msh);
+}
+END_TEST
+
 UNIT_MAIN("aims", sizes_follow_the_errors_of_a_goal,
           products_of_rounding_require_no_sizes,
           near_the_target_nothing_becomes_coarser,
-          elements_at_a_tip_are_as_long_as_the_target_can_use)
+          elements_at_a_tip_are_as_long_as_the_target_can_use,
+          zones_without_an_estimate_become_finer)

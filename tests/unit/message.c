@@ -185,7 +185,15 @@ START_TEST(after_a_hundred_errors_the_rest_is_counted) {
   message_forget(log, before);
   ck_assert_int_eq(message_status(log, ERR_MESH), OK);
   ck_assert_str_eq(printed(log), "warning P1030: of the run\n1 warning\n");
+  message_add(log, P1003, NULL, "of the run");
+  message_forget(log, message_now(log));
+  message_log *other = new_log();
+  message_take(other, log);
+  ck_assert_int_eq(message_count(log, ERROR), 1);
+  ck_assert_int_eq(message_count(other, ERROR), 1);
+  ck_assert_int_eq(message_count(other, WARNING), 1);
   memory_free(log);
+  memory_free(other);
 }
 END_TEST
 

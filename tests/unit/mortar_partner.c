@@ -138,6 +138,78 @@ START_TEST(slight_steps_are_no_steps) {
 }
 END_TEST
 
+/* A slit of 0.04 between a side and a steeper one: that its edge is higher by
+ * so much the bend of a curve may make, or a step alone. */
+START_TEST(bend_across_a_slit_is_no_step) {
+  static const struct {
+    double slope[2], higher;
+    int is_step;
+  } cases[] = {{{0, 0.1}, 0.006, 0},
+               {{0, 0.1}, 0.0085, 1},
+               {{0.577, 1.732}, 0.02 * (0.577 + 1.732), 0}};
+  for (int k = 0; k < 3; ++k) {
+    pair p = two_new(2);
+    two_add_line(&p, 1, 20, -1, 1, 0);
+    for (int side = 0; side < 2; ++side) {
+      const double rise = 0.48 * cases[k].slope[side], x = 0.02 + 0.48 * side;
+      const double y = -0.5 + side * cases[k].higher;
+      const int a =
+          two_add_node(&p, side ? 0.02 : -0.5, side ? y : y - rise, 0);
+      const int b = two_add_node(&p, side ? x : -0.02, side ? y + rise : y, 0);
+      two_add_face(&p, 0, (int[]){b, a});
+    }
+    mortar *m = two_couple(&p);
+    if (cases[k].is_step)
+      ck_assert_double_lt(m->covered, 0.9);
+    else
+      ck_assert_double_eq_tol(m->covered, 0.96, 1e-12);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+/* The same in space, where a face of an area of 1/128 has a size of 0.088. */
+START_TEST(slight_steps_in_space_are_no_steps) {
+  for (int k = 0; k < 2; ++k) {
+    pair p = two_new(3);
+    two_add_square(&p, 1, 8, 0, 1, 0);
+    int first = p.m.n_node;
+    two_add_square(&p, 0, 4, 0, 1, 0);
+    for (int i = first; i < p.m.n_node; ++i) p.m.x[3 * i + 2] = -0.4;
+    first = p.m.n_node;
+    two_add_square(&p, 0, 2, 0.2, 0.7, 0);
+    for (int i = first; i < p.m.n_node; ++i)
+      p.m.x[3 * i + 2] = -0.4 + (k ? 1.5e-4 : 5e-5);
+    mortar *m = two_couple(&p);
+    if (k == 0)
+      ck_assert_double_eq_tol(m->covered, 1, 1e-12);
+    else
+      ck_assert_double_lt(m->covered, 0.9);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+/* Three treads, the middle one a single face: a face that has left the lowest
+ * by the first edge, at 0.52, still has the middle one, which those round the
+ * second edge, at 0.68, leave. */
+START_TEST(each_face_leaves_what_is_beyond_its_own_step) {
+  static const double x[4] = {0, 0.52, 0.68, 1}, y[3] = {-0.3, -0.2, -0.1};
+  pair p = two_new(2);
+  two_add_line(&p, 1, 20, 0, 1, 0);
+  for (int i = 0; i < 3; ++i) {
+    const int a = two_add_node(&p, x[i], y[i], 0);
+    two_add_face(&p, 0, (int[]){two_add_node(&p, x[i + 1], y[i], 0), a});
+  }
+  mortar *m = two_couple(&p);
+  ck_assert_double_eq_tol(m->covered, 1 - 0.07 - 0.08, 1e-12);
+  memory_free(m);
+  two_free(&p);
+}
+END_TEST
+
 /* An overlap of the bodies, here of several faces, is a negative gap. Their
  * sides, level or not, are no partners of each other. */
 START_TEST(overlapping_bodies_are_partners) {
@@ -247,6 +319,8 @@ END_TEST
 UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           plates_see_the_next_plate_and_not_what_is_behind,
           the_nearest_of_two_masters_is_the_partner, slight_steps_are_no_steps,
+          bend_across_a_slit_is_no_step, slight_steps_in_space_are_no_steps,
+          each_face_leaves_what_is_beyond_its_own_step,
           overlapping_bodies_are_partners,
           surfaces_with_nothing_in_common_have_no_rows,
           masters_apart_hide_each_other,
