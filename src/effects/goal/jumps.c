@@ -68,7 +68,8 @@ typedef struct turns {
   double *by;         /* [n] what they press by their corner, Pa */
   double *near, *far; /* [n] sums of its size next to them, and next to these */
   int *edges, *open;  /* [n] of them; those that are */
-  double *more;       /* [n] 2: in a plane of symmetry, else 1 */
+  double *more;       /* [n] at an end of the surface 2 in a plane of symmetry,
+                         which has an edge behind it, or 0; else 1 */
 } turns;
 
 /* E/(1 - nu^2) of the plane of an element, Pa. */
@@ -84,10 +85,17 @@ static void add_slope(const run *r, const int *q, double modulus, turns *t) {
   const double slope = (r->problem.gap[q[1]] - r->problem.gap[q[0]]) /
                        hypot(y[0] - x[0], y[1] - x[1]);
   for (int k = 0; k < 2; ++k) {
-    t->by[q[k]] +=
-        (k == 0 ? slope : -slope) * t->more[q[k]] * modulus / (2.0 * M_PI);
+    t->by[q[k]] += (k == 0 ? slope : -slope) * modulus / (2.0 * M_PI);
     ++t->edges[q[k]];
     t->open[q[k]] += r->result.contact[q[1 - k]] == CONTACT_OPEN;
+  }
+}
+
+static void mirror(const run *r, int contact_id, turns *t) {
+  for (int q = 0; q < r->nodes.n; ++q) {
+    if (r->surface->contact_id[q] != contact_id) continue;
+    t->more[q] = t->edges[q] > 1 ? 1.0 : goal_is_mirrored(r, q) ? 2.0 : 0.0;
+    t->by[q] *= t->more[q];
   }
 }
 
@@ -130,10 +138,12 @@ status goal_corners(const run *r, const int *where, double *corner) {
   OWNED_NEW(int, counts, 2 * n);
   turns t = {values, values + n, values + 2 * n,
              counts, counts + n, values + 3 * n};
-  for (int q = 0; q < n; ++q) t.more[q] = goal_is_mirrored(r, q) ? 2.0 : 1.0;
   for (int k = 0; k < r->m->n.contact && n > 0; ++k) {
     double largest = 0.0;
-    for (int pass = 0; pass < 3; ++pass) add_edges(r, where, k, pass, &t);
+    for (int pass = 0; pass < 3; ++pass) {
+      add_edges(r, where, k, pass, &t);
+      if (pass == 0) mirror(r, k, &t);
+    }
     for (int q = 0; q < n; ++q)
       if (s->contact_id[q] == k && s->area[q] > 0.0)
         largest = fmax(largest, -r->now.rc[2 * q] / s->area[q]);
