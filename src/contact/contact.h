@@ -33,6 +33,7 @@ typedef struct contact_bodies {
   int n;
   int *of;         /* [nodes] body of each */
   body_size *size; /* [n] workspace of the residual */
+  double *bent;    /* [2*unknowns] the same */
 } contact_bodies;
 
 typedef struct contact_problem {

@@ -102,7 +102,7 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
     else
       find_bodies(cp, root, list, b);
   }
-  PASS_NEW(b->size, b->n);
+  PASS_NEW_ALL(OF(b->size, b->n), OF(b->bent, 2 * (size_t)cp->m));
   return OK;
 }
 
@@ -112,8 +112,6 @@ static const double FLOOR = 0x1p-14;    /* -, of loads to come, of a fall */
 static const double LEVER = 0x1p10;     /* -, motion over force/stiffness */
 static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale */
 
-enum { MOST_MOTIONS = 48 }; /* whose part of u is known */
-
 /* An iterate and the scales of its errors. */
 typedef struct measure {
   const contact_problem *cp;
@@ -121,8 +119,7 @@ typedef struct measure {
   double scale, largest; /* contact_scale; largest diagonal */
   double forces;         /* largest of a body, N */
   body_size one, *size;  /* of the only body; of all */
-  int n_motion;
-  double motion[MOST_MOTIONS]; /* coefficients of u, m */
+  const double *bent; /* [m] u without the rigid motions, m; NULL: not known */
 } measure;
 
 /* A node of it. */
@@ -226,15 +223,21 @@ static double load_of(const contact_problem *cp, int node_id,
 
 /* Largest displacement of a node without the rigid motions. */
 static double bent_at(const measure *x, int node_id) {
-  double most = 0.0;
-  if (x->n_motion == 0) return 0.0;
-  for (int i = node_id * x->cp->dim; i < (node_id + 1) * x->cp->dim; ++i) {
-    double left = x->u[i];
-    for (int k = 0; k < x->n_motion; ++k)
-      left -= x->motion[k] * x->cp->motion[(size_t)k * x->cp->m + i];
-    most = larger(most, fabs(left));
-  }
-  return most;
+  const int dim = x->cp->dim;
+  return x->bent == NULL ? 0.0 : largest_of(dim, x->bent + node_id * dim);
+}
+
+static void find_bent(measure *x) {
+  const contact_problem *cp = x->cp;
+  const int m = cp->m, k = cp->n_motion;
+  if (k == 0 || cp->bodies == NULL) return;
+  double *bent = cp->bodies->bent, *part = bent + m;
+  COPY(bent, x->u, m);
+  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, cp->motion, m, x->u, 1, 0.0,
+              part, 1);
+  cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, -1.0, cp->motion, m, part, 1,
+              1.0, bent, 1);
+  x->bent = bent;
 }
 
 static void add_node(measure *x, int node_id) {
@@ -266,9 +269,7 @@ static void measure_set(const contact_problem *cp, double scale,
   x->largest = contact_largest_diagonal(cp);
   for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
     x->size[b] = (body_size){0};
-  x->n_motion = cp->n_motion <= MOST_MOTIONS ? cp->n_motion : 0;
-  for (int k = 0; k < x->n_motion; ++k)
-    x->motion[k] = cblas_ddot(cp->m, cp->motion + (size_t)k * cp->m, 1, u, 1);
+  find_bent(x);
   for (int i = 0; i < cp->n; ++i) add_node(x, i);
   for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b) {
     body_size *s = &x->size[b];

@@ -660,6 +660,39 @@ START_TEST(forces_below_the_rounding_of_a_file_are_no_solution) {
 }
 END_TEST
 
+/* Seventeen blocks near incompressibility have 51 free motions: what they are
+ * bent by is no drift, as of one alone. */
+START_TEST(many_free_bodies_are_solved_as_one_is) {
+  job j = job_begin("row");
+  job_write(&j, "row.geo",
+            "foot[] = {}; top[] = {}; body[] = {};\n"
+            "For b In {0 : 16}\n  p = newp; l = newl;\n  For i In {0 : 3}\n"
+            "    Point(p + i) = {2 * b + (i == 1 || i == 2), i > 1, 0};\n"
+            "  EndFor\n  For i In {0 : 3}\n"
+            "    Line(l + i) = {p + i, p + (i + 1) %% 4};\n"
+            "    Transfinite Curve{l + i} = 4;\n  EndFor\n"
+            "  Curve Loop(l) = {l : l + 3}; Plane Surface(l) = {l};\n"
+            "  Transfinite Surface{l} Alternated;\n"
+            "  foot[] += l; top[] += l + 2; body[] += l;\nEndFor\n"
+            "Physical Curve(\"FOOT\") = {foot[]};\n"
+            "Physical Curve(\"TOP\") = {top[]};\n"
+            "Physical Surface(\"BODY\") = {body[]};\n");
+  job_write(&j, "row.inp",
+            "*MESH, FILE=row.geo\n*MATERIAL, NAME=M\n*ELASTIC\n"
+            "1., 0.49999999\n*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+            "*OBSTACLE, NAME=O, TYPE=PLANE\n0., 0.\n0., 1.\n"
+            "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+            "*FRICTION, CONTACT=C, LAW=COULOMB\n1.E-4\n*STEP\n*STATIC\n"
+            "*SOLVER, METHOD=NEWTON\n*DSLOAD\nTOP, P, 0.005\n"
+            "*PRINT, TOTALS\n*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "TOTALS", -1);
+  ck_assert_double_eq_tol(dat_at(&t, 0, "normal"), 17 * 0.005, 1e-9);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("floating");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -680,6 +713,7 @@ int main(void) {
   tcase_add_test(tests, block_between_others_slides_away);
   tcase_add_test(tests, clamped_block_that_slides_away_is_named);
   tcase_add_test(tests, touch_without_force_is_open);
+  tcase_add_test(tests, many_free_bodies_are_solved_as_one_is);
   tcase_add_loop_test(tests, jammed_wedge_stays_where_it_was, 0, 6);
   tcase_add_loop_test(
       tests, forces_below_the_rounding_of_a_file_are_no_solution, 0, 4);
