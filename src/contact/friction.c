@@ -120,7 +120,8 @@ static status tresca_limit(const friction_card *card, const contact_surface *s,
 const friction_ops tresca_friction = {
     .name = "TRESCA",
     .reference = "Cocu, Pratt, Raous 1998, problem (2.14) with given g",
-    .help = "given sliding limit g(x, t), whatever the pressure",
+    .help =
+        "given sliding limit g(x, t), whatever the pressure, at open nodes too",
     .value_name = "g",
     .value_unit = "force/length^2",
     .options = friction_no_options,

@@ -292,11 +292,14 @@ static status open_earlier(output *o) {
   status st = OK;
   archive *a = o->o.from;
   file_ends ends;
+  OWNED char *was = NULL;
+  PASS(archive_text(a, "deck", &was));
   IN_GROUP(a, "output");
   TRY(output_read(o, a, &ends));
   o->quiet = 1;
   for (int k = 0; k < N_END; ++k) TRY(remove_old(o, results[k]));
   TRY(open_text(o, "lst", ends.lst, &o->lst));
+  TRY(listing_again(&o->job, was, &o->lst));
   TRY(open_text(o, "sta", ends.sta, &o->sta));
   TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
   TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));

@@ -80,16 +80,10 @@ static const place *place_in_deck(const deck *d, const place *at) {
   return at;
 }
 
-static status read_text(archive *a, const char *name, char **text) {
-  const size_t n = archive_length(a, name);
-  PASS_NEW(*text, n + 1);
-  return archive_bytes(a, name, *text, n);
-}
-
 /* Messages of the run so far, so that repeated ones are recognised. */
 static status report_warnings(const job_input *in, archive *a) {
   char *end;
-  OWNED_OF(char, text, read_text(a, "warnings", &text));
+  OWNED_OF(char, text, archive_text(a, "warnings", &text));
   for (char *line = text; (end = strchr(line, '\n')) != NULL; line = end + 1) {
     int id, no, used = 0;
     *end = '\0';
@@ -316,7 +310,7 @@ static status check_identity(const identity *was, const identity *is,
 
 static status check_files(const job_input *in, archive *a, int step_no) {
   OWNED char *was = NULL, *is = NULL;
-  PASS(read_text(a, "files", &was));
+  PASS(archive_text(a, "files", &was));
   PASS(restart_files(in, &is));
   return compare_files(was, is, step_no);
 }
@@ -326,7 +320,7 @@ static status check_job(const command *c, const job_input *in, archive *a,
   identity was, is;
   OWNED char *text = NULL, *now = NULL;
   PASS(archive_bytes(a, "identity", &was, sizeof was));
-  PASS(read_text(a, "deck", &text));
+  PASS(archive_text(a, "deck", &text));
   PASS(text_made(&now, in->m, write_echo));
   identify(c, in, &is);
   PASS(compare_decks(text, now, was.step_no));

@@ -135,6 +135,10 @@ START_TEST(later_steps_may_change) {
        "TOP, 1, 1, -0.01\n*SOLVER, METHOD=SOR\n*PRINT, CONTACT, LOOP\n"
        "*RESTART\n");
   goes_on(&j, 0, "solver and output of a later step");
+  char *lst = job_file(&j, "lst"), *again = strstr(lst, "DECK OF THE RESTART");
+  ck_assert_ptr_nonnull(again);
+  ck_assert_ptr_nonnull(strstr(again, "METHOD=SOR"));
+  free(lst);
   ck_assert(job_has(&j, "rst.h5"));
   job_end(&j);
 }

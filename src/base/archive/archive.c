@@ -165,6 +165,12 @@ status archive_bytes(archive *a, const char *name, void *v, size_t n) {
   return pass(a, name, ARCHIVE_BYTE, v, n);
 }
 
+status archive_text(archive *a, const char *name, char **text) {
+  const size_t n = archive_length(a, name);
+  PASS_NEW(*text, n + 1);
+  return archive_bytes(a, name, *text, n);
+}
+
 /*
  * The file of an archive: the seal, then HDF5 behind it (its user block):
  *   /list             text, a line "kind length name" per array, in order

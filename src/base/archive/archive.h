@@ -50,6 +50,8 @@ size_t archive_length(const archive *a, const char *name);
 status archive_reals(archive *a, const char *name, double *v, size_t n);
 status archive_ints(archive *a, const char *name, int *v, size_t n);
 status archive_bytes(archive *a, const char *name, void *v, size_t n);
+/* Bytes read as a new text. */
+status archive_text(archive *a, const char *name, char **text);
 
 /* Written to a temporary file, synchronised, renamed; the file that was at
  * "path" becomes "before". ERR_FILE names the file. */

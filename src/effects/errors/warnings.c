@@ -15,8 +15,9 @@ typedef struct warnings {
   double *edge;  /* [n_contact] m, longest of its faces; 0: forces are given */
 } warnings;
 
-/* Of warnings.touched: a node has touched; slip is told. */
-enum { TOUCHED = 1, SLIP_TOLD = 2 };
+/* Of warnings.touched: a node has touched; slip, friction of an open node is
+ * told. */
+enum { TOUCHED = 1, SLIP_TOLD = 2, OPEN_TOLD = 4 };
 
 static const double LARGE = 0.05; /* -, strain, change of a gap */
 static const double FAR = 0.1;    /* rad, rotation */
@@ -61,8 +62,9 @@ static void warn_deformation(run *r, warnings *reported) {
 static void note_touches(run *r, warnings *reported) {
   for (int i = 0; i < r->m->n.contact; ++i) {
     const contact_total *t = &r->result.totals[i];
-    if (reported->touched[i] != 0 || t->n_slip + t->n_stick == 0) continue;
-    reported->touched[i] = TOUCHED;
+    if ((reported->touched[i] & TOUCHED) || t->n_slip + t->n_stick == 0)
+      continue;
+    reported->touched[i] |= TOUCHED;
     if (r->course.total_no > 1)
       RUN_NOTE(r, "  contact %s touches for the first time\n",
                r->m->contacts[i].name);
@@ -160,13 +162,34 @@ static double least_gap(const run *r, int contact_id) {
   return least;
 }
 
+/* A given limit of friction, and a gap. */
+static void warn_open(run *r, warnings *reported) {
+  const friction_limit *limit = r->problem.limit;
+  for (int i = 0; i < r->nodes.n && limit != NULL; ++i) {
+    const int id = r->surface->contact_id[i];
+    const contact *c = &r->m->contacts[id];
+    if ((reported->touched[id] & OPEN_TOLD) || c->force.given ||
+        !(limit->g0[i] > 0.0) || r->result.contact[i] != CONTACT_OPEN ||
+        !(r->result.open_gap[i] > rounding_of_gaps(r)))
+      continue;
+    reported->touched[id] |= OPEN_TOLD;
+    message_add(r->m->log, P4041, &c->at,
+                "step %d, increment %d, time %g: %s %s: node %zu is open by "
+                "%.3g and has friction: its limit is given",
+                run_step_id(r) + 1, r->at.increment_no, r->now.t,
+                contact_card(c), c->name, r->surface->node_no[i],
+                r->result.open_gap[i]);
+  }
+}
+
 static status look(run *r, void *self) {
   warnings *own = self;
   note_touches(r, own);
   for (int i = 0; i < r->m->n.contact; ++i)
-    if (own->touched[i] == 0) own->least[i] = least_gap(r, i);
+    if (!(own->touched[i] & TOUCHED)) own->least[i] = least_gap(r, i);
   if (r->solving.report.outcome <= 0) return OK;
   warn_deformation(r, own);
+  warn_open(r, own);
   return look_at_slip(r, own);
 }
 
@@ -175,7 +198,8 @@ static void end(run *r, void *self) {
   const warnings *reported = self;
   for (int i = 0; i < r->m->n.contact && r->course.unsettled == 0; ++i) {
     const contact *c = &r->m->contacts[i];
-    if (reported->touched[i] != 0 || c->force.given || c->is_crack) continue;
+    if ((reported->touched[i] & TOUCHED) || c->force.given || c->is_crack)
+      continue;
     char gap[80] = "at its end no normal of a node meets it";
     if (reported->least[i] < HUGE_VAL)
       snprintf(gap, sizeof gap, "the least gap at its end is %.3g",

@@ -151,6 +151,8 @@ int job_sizes(const job *j, size_row rows[SIZE_ROWS]);
 
 /* Deck, model, effects. */
 status listing_open(const job *j, text_file *lst);
+/* The deck again where a restart has another than "was", its echo. */
+status listing_again(const job *j, const char *was, text_file *lst);
 /* The equations, once they are factored. */
 status listing_ready(const job *j, text_file *lst);
 /* An initial state that is given. */

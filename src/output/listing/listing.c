@@ -156,6 +156,17 @@ status listing_open(const job *j, text_file *lst) {
   return text_check(lst);
 }
 
+static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
+
+status listing_again(const job *j, const char *was, text_file *lst) {
+  OWNED char *now = NULL;
+  PASS(text_made(&now, j->m, write_echo));
+  if (strcmp(now, was) == 0) return OK;
+  heading(lst->f, "DECK OF THE RESTART");
+  fputs(now, lst->f);
+  return text_check(lst);
+}
+
 status listing_ready(const job *j, text_file *lst) {
   const setup_facts *facts = &j->run->facts;
   heading(lst->f, "EQUATIONS");
