@@ -602,7 +602,7 @@ static double added(const contact_pair *p) {
 }
 
 /* A depth that is told, m: facets of curved surfaces enter each other, which is
- * no matter unless it counts beside what the deck adds. */
+ * no matter unless it counts next to what the deck adds. */
 static double told_depth(const builder *b, const contact_pair *p) {
   static const double sagitta = 0.05, part = 0.1;
   const mesh *m = b->in->mesh;
@@ -617,8 +617,8 @@ static double told_depth(const builder *b, const contact_pair *p) {
              : fmin(mean, fmax(part * fabs(added(p)), rounding * m->size));
 }
 
-/* ", 2 times the INTERFERENCE", of a depth. */
-static node_text beside_added(const contact_pair *p, double depth) {
+/* ", 2 times the INTERFERENCE", what a depth is. */
+static node_text share_of_added(const contact_pair *p, double depth) {
   node_text t = {""};
   if (added(p) != 0.0)
     snprintf(t.text, sizeof t.text, ", %.2g times the %s",
@@ -653,7 +653,8 @@ static void say(const builder *b, int pair_id) {
                 "%s %s: deepest penetration of %s is %.4g, %.2g of the "
                 "size of the mesh%s, at %s",
                 p->card, p->name, partner(p).text, t->depth, t->depth / m->size,
-                beside_added(p, t->depth).text, describe(m, t->deep_node).text);
+                share_of_added(p, t->depth).text,
+                describe(m, t->deep_node).text);
   if (t->sine > told_sine)
     message_add(b->log, P4018, &p->at,
                 "*CONTACT %s: the normals of the body differ from those of "
