@@ -94,8 +94,8 @@ START_TEST(errors_of_an_increment) {
   e->in_doubt = e->after_miss = e->jumps = 1;
   e->jump_t = 1.375;
   e->balance = (balance_report){1, 3, 3.5, 9, 99, 99};
-  e->mesh_error = (error_share){1, 4, 99, "coarse", 99};
-  e->time_error = (error_share){1, 5, 99, "no order", 99};
+  e->mesh_error = (error_share){1, 4, 99, "coarse", 99, 0};
+  e->time_error = (error_share){1, 5, 99, "no order", 99, 0};
   e->exact = (true_error){1, 6, 7, 8, 9, 99};
   must_have(made, &none,
             HEAD

@@ -91,8 +91,8 @@ START_TEST(errors_of_an_increment) {
                            .hidden = 0.2};
   e->in_doubt = e->after_miss = 1;
   e->balance = (balance_report){1, 0.001, 3e-5, 9, 12.0, 9.0};
-  e->mesh_error = (error_share){1, 0.04, 9.0, NULL, 0.0};
-  e->time_error = (error_share){1, 0.05, 9.0, "no order is seen", 0.0};
+  e->mesh_error = (error_share){1, 0.04, 9.0, NULL, 0.0, 0.0};
+  e->time_error = (error_share){1, 0.05, 9.0, "no order is seen", 0.0, 0.0};
   e->exact = (true_error){1, 0.011, 0.012, 0.013, 0.014, 9.0};
   e->n_goal = 1;
   e->goals = &goal;
