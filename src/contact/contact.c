@@ -11,32 +11,9 @@
 
 static const double ROUNDING_FLOOR = 0x1p-14; /* -, contact_scale */
 
-double larger(double a, double b) {
-  if (isnan(a)) return a;
-  return b <= a ? a : b;
-}
-
-double smaller(double a, double b) {
-  if (isnan(a)) return a;
-  return b >= a ? a : b;
-}
-
-double contact_length(int n, const double *v) {
-  if (n == 2) return hypot(v[0], v[1]);
-  return n == 1 ? fabs(v[0]) : 0.0;
-}
-
 void contact_product(int m, const double *M, const double *x, double *y) {
   if (m == 0) return;
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, m, 1.0, M, m, x, 1, 0.0, y, 1);
-}
-
-int contact_has_stiffness(const contact_problem *cp) {
-  return cp->A != NULL || cp->op != NULL;
-}
-
-const double *contact_matrix(const contact_problem *cp) {
-  return contact_has_stiffness(cp) ? cp->A : cp->W;
 }
 
 void contact_apply(const contact_problem *cp, const double *x, double *y) {
@@ -119,10 +96,6 @@ double contact_node_limit(const contact_problem *cp, const double *r,
 
 void contact_limit(const contact_problem *cp, const double *r, double *g) {
   for (int i = 0; i < cp->n; ++i) g[i] = contact_node_limit(cp, r, i);
-}
-
-int contact_held(const contact_problem *cp, int dof) {
-  return cp->held != NULL && cp->held[dof];
 }
 
 double contact_bound(const contact_problem *cp, int dof) {

@@ -77,9 +77,13 @@ typedef struct contact_problem {
 typedef enum { CONTACT_OPEN, CONTACT_SLIP, CONTACT_STICK } contact_status;
 
 /* 1: the problem is in displacements, A u = f + r; 0: in forces. */
-int contact_has_stiffness(const contact_problem *cp);
+static inline int contact_has_stiffness(const contact_problem *cp) {
+  return cp->A != NULL || cp->op != NULL;
+}
 /* A, or W where that alone is known; NULL if the stiffness is an operator. */
-const double *contact_matrix(const contact_problem *cp);
+static inline const double *contact_matrix(const contact_problem *cp) {
+  return contact_has_stiffness(cp) ? cp->A : cp->W;
+}
 
 /* The parts of a problem that its matrix couples weakly or not at all. */
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out);
@@ -178,7 +182,9 @@ double contact_hidden(const contact_problem *cp, const double *u,
                       const double *r, const double *own);
 /* Single unknowns: 1 if prescribed; the bound from above (gap, or side_gap;
  * HUGE_VAL: none), m; the position of stick, m, of a tangential unknown. */
-int contact_held(const contact_problem *cp, int dof);
+static inline int contact_held(const contact_problem *cp, int dof) {
+  return cp->held != NULL && cp->held[dof];
+}
 double contact_bound(const contact_problem *cp, int dof);
 double contact_stick(const contact_problem *cp, int dof);
 /* Slip |u_t - ut0| of a node along what is not held, m. */

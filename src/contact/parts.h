@@ -4,11 +4,17 @@
 #include "contact/contact.h"
 #include "contact/surface.h"
 
+#include <math.h>
+
 enum { CHUNK = 64 }; /* rows and columns of a product kept on the stack */
 
 /* The larger, the smaller of two, NaN if one is. */
-double larger(double a, double b);
-double smaller(double a, double b);
+static inline double larger(double a, double b) {
+  return isnan(a) || b <= a ? a : b;
+}
+static inline double smaller(double a, double b) {
+  return isnan(a) || b >= a ? a : b;
+}
 /* The largest diagonal entry. */
 double contact_largest_diagonal(const contact_problem *cp);
 /* Stiffness of a node along its normal and in its tangent plane, N/m; the
@@ -19,7 +25,10 @@ typedef struct node_step {
 node_step contact_step(const contact_problem *cp, int node_id,
                        double largest_diagonal);
 /* Length of v[n], n = 0, 1 or 2. */
-double contact_length(int n, const double *v);
+static inline double contact_length(int n, const double *v) {
+  if (n == 2) return hypot(v[0], v[1]);
+  return n == 1 ? fabs(v[0]) : 0.0;
+}
 
 /*
  * The contact frame of one node: rows n, t1[, t2] in two or three dimensions,
