@@ -106,9 +106,9 @@ double contact_bound(const contact_problem *cp, int dof) {
 }
 
 double contact_stick(const contact_problem *cp, int dof) {
-  int node_id = dof / cp->dim, k = dof % cp->dim;
-  const int slides = cp->ut0 != NULL && k > 0;
-  return slides ? cp->ut0[node_id * (cp->dim - 1) + k - 1] : 0.0;
+  if (cp->ut0 == NULL) return 0.0;
+  const int node_id = dof / cp->dim, k = dof % cp->dim;
+  return k > 0 ? cp->ut0[node_id * (cp->dim - 1) + k - 1] : 0.0;
 }
 
 double contact_slip_of(const contact_problem *cp, const double *u,
@@ -125,10 +125,10 @@ double contact_slip_of(const contact_problem *cp, const double *u,
 /* ---- stiffness of a node ----------------------------------------------- */
 
 double contact_diagonal(const contact_problem *cp, int dof) {
-  const int k = dof % cp->dim;
   if (cp->op != NULL) return cp->op->diagonal[dof];
   if (cp->blocks != NULL)
-    return sparse_blocks_own(cp->blocks, dof / cp->dim)[k + k * cp->dim];
+    return sparse_blocks_own(cp->blocks,
+                             dof / cp->dim)[dof % cp->dim * (1 + cp->dim)];
   return contact_matrix(cp)[(size_t)dof * cp->m + dof];
 }
 

@@ -31,9 +31,10 @@ typedef struct body_size {
 } body_size;
 typedef struct contact_bodies {
   int n;
-  int *of;         /* [nodes] body of each */
-  body_size *size; /* [n] workspace of the residual */
-  double *bent;    /* [2*unknowns] the same */
+  int *of;               /* [nodes] body of each */
+  body_size *size;       /* [n] workspace of the residual */
+  double *bent;          /* [2*unknowns] the same */
+  struct measured *node; /* [nodes] the same */
 } contact_bodies;
 
 typedef struct contact_problem {

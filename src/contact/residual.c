@@ -86,6 +86,16 @@ static void find_sparse_bodies(const contact_problem *cp, const double *root,
   }
 }
 
+/* A node of an iterate. */
+typedef struct measured {
+  node_step c;          /* N/m */
+  double k;             /* the larger of c, N/m */
+  double rounding;      /* what rounding can have put into a row, N */
+  double drift;         /* the same, by motion not of the data, N */
+  double normal, slide; /* scale along the normal, in the tangent plane, N */
+  double q[3];          /* the nearest forces of an obstacle, N */
+} measured;
+
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   OWNED double *root = NULL;
   OWNED int *list = NULL;
@@ -102,7 +112,8 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
     else
       find_bodies(cp, root, list, b);
   }
-  PASS_NEW_ALL(OF(b->size, b->n), OF(b->bent, 2 * (size_t)cp->m));
+  PASS_NEW_ALL(OF(b->size, b->n), OF(b->bent, 2 * (size_t)cp->m),
+               OF(b->node, cp->n));
   return OK;
 }
 
@@ -121,16 +132,6 @@ typedef struct measure {
   body_size one, *size;  /* of the only body; of all */
   const double *bent; /* [m] u without the rigid motions, m; NULL: not known */
 } measure;
-
-/* A node of it. */
-typedef struct measured {
-  node_step c;          /* N/m */
-  double k;             /* the larger of c, N/m */
-  double rounding;      /* what rounding can have put into a row, N */
-  double drift;         /* the same, by motion not of the data, N */
-  double normal, slide; /* scale along the normal, in the tangent plane, N */
-  double q[3];          /* the nearest forces of an obstacle, N */
-} measured;
 
 static body_size *body_of(measure *x, int node_id) {
   return x->size + (x->cp->bodies == NULL ? 0 : x->cp->bodies->of[node_id]);
@@ -260,6 +261,7 @@ static void add_node(measure *x, int node_id) {
   b->bent = larger(b->bent, root * bent_at(x, node_id));
   b->reach = larger(b->reach, reach_of(x, node_id, node.k, &b->position));
   b->root = larger(b->root, root);
+  if (cp->bodies != NULL) cp->bodies->node[node_id] = node;
 }
 
 static void measure_set(const contact_problem *cp, double scale,
@@ -306,7 +308,10 @@ static void measure_node(measure *x, int node_id, measured *node) {
   const contact_problem *cp = x->cp;
   int first = node_id * cp->dim;
   body_size *b = body_of(x, node_id);
-  project(x, node_id, node);
+  if (cp->bodies != NULL)
+    *node = cp->bodies->node[node_id];
+  else
+    project(x, node_id, node);
   double terms = largest_of(cp->dim, cp->f + first);
   if (!contact_has_stiffness(cp))
     terms = node->k * (terms + largest_of(cp->dim, x->u + first));
