@@ -28,6 +28,7 @@ typedef struct body_size {
   double bent;         /* the same of u without rigid motions */
   double root;         /* largest sqrt(k), sqrt(N/m) */
   double position;     /* largest bound, or place of stick, m */
+  double to_come;      /* load at the end, if it grows like all loads, N */
 } body_size;
 typedef struct contact_bodies {
   int n;

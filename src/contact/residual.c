@@ -278,12 +278,11 @@ static void measure_set(const contact_problem *cp, double scale,
     x->forces = larger(x->forces, larger(s->load, s->contact));
     s->reach = larger(s->reach, 2.0 * s->root * s->position) + s->bent;
   }
-}
-
-/* Final size of the loads of a body, growing like those of all, N. */
-static double load_to_come(const measure *x, const body_size *b) {
-  double own = larger(b->load, b->contact);
-  return x->forces > 0.0 ? own / x->forces * x->cp->load : x->cp->load;
+  for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b) {
+    body_size *s = &x->size[b];
+    const double own = larger(s->load, s->contact);
+    s->to_come = x->forces > 0.0 ? own / x->forces * cp->load : cp->load;
+  }
 }
 
 /* Forces that a part of a node, of stiffness c, is compared with. */
@@ -297,9 +296,8 @@ static double forces_of(const measure *x, const measured *node,
 /* Scale of them: not below rounding. */
 static double scale_of(const measure *x, const body_size *b,
                        const measured *node, double c) {
-  double least = contact_has_stiffness(x->cp)
-                     ? larger(load_to_come(x, b), b->fallen)
-                     : 0.0;
+  double least =
+      contact_has_stiffness(x->cp) ? larger(b->to_come, b->fallen) : 0.0;
   least = larger(FLOOR * least, LEAST / ROUNDING * node->rounding);
   return larger(forces_of(x, node, b, c), least);
 }
@@ -320,7 +318,8 @@ static void measure_node(measure *x, int node_id, measured *node) {
   if (b->carried > b->reach)
     node->drift = DBL_EPSILON * sqrt(node->k) * b->carried;
   node->normal = scale_of(x, b, node, node->c.n);
-  node->slide = scale_of(x, b, node, node->c.t);
+  node->slide = contact_has_stiffness(cp) ? node->normal
+                                          : scale_of(x, b, node, node->c.t);
 }
 
 /* An error over its scale, less that of rounding, or of a drift. */
