@@ -392,7 +392,10 @@ static void add_entered(const run *r, int id, double force, const int *where,
 status entered_energy(const run *r, double *energy) {
   const mesh *m = r->msh;
   double force = 0.0;
-  if (r->surface == NULL) return OK;
+  int any = 0;
+  for (int k = 0; k < r->m->n.contact && r->surface != NULL; ++k)
+    any |= may_enter(r, k);
+  if (!any) return OK;
   OWNED_NEW(int, where, m->n_node);
   OWNED_PARTS(smooth_faces, rings, smooth_faces_new(m, &rings));
   for (int i = 0; i < m->n_node; ++i) where[i] = -1;
