@@ -36,6 +36,7 @@ typedef struct contact_bodies {
   body_size *size;       /* [n] workspace of the residual */
   double *bent;          /* [2*unknowns] the same */
   struct measured *node; /* [nodes] the same */
+  const void **matrix;   /* [4] the same: what is in node follows from it */
 } contact_bodies;
 
 typedef struct contact_problem {

@@ -10,10 +10,10 @@ enum { CHUNK = 64 }; /* rows and columns of a product kept on the stack */
 
 /* The larger, the smaller of two, NaN if one is. */
 static inline double larger(double a, double b) {
-  return isnan(a) || b <= a ? a : b;
+  return b <= a ? a : b > a ? b : a + b;
 }
 static inline double smaller(double a, double b) {
-  return isnan(a) || b >= a ? a : b;
+  return b >= a ? a : b < a ? b : a + b;
 }
 /* The largest diagonal entry. */
 double contact_largest_diagonal(const contact_problem *cp);

@@ -86,15 +86,18 @@ static void find_sparse_bodies(const contact_problem *cp, const double *root,
   }
 }
 
-/* A node of an iterate. */
+/* A node of an iterate; c, k, root follow from the matrix. */
 typedef struct measured {
   node_step c;          /* N/m */
   double k;             /* the larger of c, N/m */
+  double root;          /* of k, or of 1/k where the matrix is a compliance */
   double rounding;      /* what rounding can have put into a row, N */
   double drift;         /* the same, by motion not of the data, N */
   double normal, slide; /* scale along the normal, in the tangent plane, N */
   double q[3];          /* the nearest forces of an obstacle, N */
 } measured;
+
+enum { N_KEY = 4 };
 
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   OWNED double *root = NULL;
@@ -113,7 +116,7 @@ status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
       find_bodies(cp, root, list, b);
   }
   PASS_NEW_ALL(OF(b->size, b->n), OF(b->bent, 2 * (size_t)cp->m),
-               OF(b->node, cp->n));
+               OF(b->node, cp->n), OF(b->matrix, N_KEY));
   return OK;
 }
 
@@ -127,7 +130,8 @@ static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale */
 typedef struct measure {
   const contact_problem *cp;
   const double *u, *r;
-  double scale, largest; /* contact_scale; largest diagonal */
+  double scale, largest; /* contact_scale; largest diagonal, where it is not in
+                            what follows from the matrix */
   double forces;         /* largest of a body, N */
   body_size one, *size;  /* of the only body; of all */
   const double *bent; /* [m] u without the rigid motions, m; NULL: not known */
@@ -170,11 +174,29 @@ static void project_friction(const measure *x, int node_id, double c,
   for (int k = 1; k < x->cp->dim && !(size <= g); ++k) q[k] *= g / size;
 }
 
-/* c, k and q of a node. */
+static measured step_of(const measure *x, int node_id) {
+  const node_step c = contact_step(x->cp, node_id, x->largest);
+  const double k = larger(c.n, c.t);
+  const double root = sqrt(contact_has_stiffness(x->cp) ? k : 1.0 / k);
+  return (measured){.c = c, .k = k, .root = root};
+}
+
+/* The steps of all nodes, where those of another matrix are in their room. */
+static void find_steps(measure *x) {
+  const contact_problem *cp = x->cp;
+  const contact_bodies *b = cp->bodies;
+  const void *key[N_KEY] = {contact_matrix(cp), cp->op, cp->blocks, cp->held};
+  if (b != NULL && memcmp(b->matrix, key, sizeof key) == 0) return;
+  x->largest = contact_largest_diagonal(cp);
+  if (b == NULL) return;
+  memcpy(b->matrix, key, sizeof key);
+  for (int i = 0; i < cp->n; ++i) b->node[i] = step_of(x, i);
+}
+
+/* q of a node whose c is known. */
 static void project(const measure *x, int node_id, measured *node) {
   int n = node_id * x->cp->dim;
-  *node = (measured){.c = contact_step(x->cp, node_id, x->largest)};
-  node->k = larger(node->c.n, node->c.t);
+  node->q[1] = node->q[2] = 0.0;
   node->q[0] = pushing(x->r[n] - node->c.n * (x->u[n] - x->cp->gap[node_id]));
   if (contact_has_side(x->cp, node_id))
     project_sides(x, node_id, node->c.t, node->q);
@@ -193,11 +215,11 @@ static double largest_of(int n, const double *v) {
 /* Bound of the motion by loads, obstacles and where it was: displacements that
  * drift off and forces that grow without bound are no solution, however large
  * their rounding is. */
-static double reach_of(const measure *x, int node_id, double k,
+static double reach_of(const measure *x, int node_id, const measured *node,
                        double *position) {
   const contact_problem *cp = x->cp;
   double force = 0.0;
-  if (!contact_has_stiffness(cp)) return LEVER * x->scale * sqrt(k);
+  if (!contact_has_stiffness(cp)) return LEVER * x->scale / node->root;
   if (!cp->floating) return HUGE_VAL;
   *position = larger(*position, cp->moved);
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i) {
@@ -205,7 +227,7 @@ static double reach_of(const measure *x, int node_id, double k,
     force = larger(force, fabs(cp->f[i]));
     *position = larger(*position, fabs(bound < HUGE_VAL ? bound : stick));
   }
-  return LEVER * force / sqrt(k);
+  return LEVER * force / node->root;
 }
 
 /* Force of the load at a node that nothing else holds, N. */
@@ -246,29 +268,29 @@ static void add_node(measure *x, int node_id) {
   const double *v =
       (contact_has_stiffness(cp) ? x->u : x->r) + node_id * cp->dim;
   body_size *b = body_of(x, node_id);
-  measured node;
-  project(x, node_id, &node);
-  double root = contact_has_stiffness(cp) ? sqrt(node.k) : 1.0 / sqrt(node.k);
+  measured own, *node = cp->bodies == NULL ? &own : cp->bodies->node + node_id;
+  if (cp->bodies == NULL) own = step_of(x, node_id);
+  project(x, node_id, node);
+  double root = node->root;
   double force =
-      larger(fabs(node.q[0]), contact_length(cp->dim - 1, node.q + 1));
-  double load = load_of(cp, node_id, &node);
+      larger(fabs(node->q[0]), contact_length(cp->dim - 1, node->q + 1));
+  double load = load_of(cp, node_id, node);
   b->contact = larger(b->contact, force);
   b->load = larger(b->load, load);
-  b->displacement = larger(b->displacement, larger(force, load) / node.k);
-  double moved = fmin(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
-  b->fallen = larger(b->fallen, node.c.n * moved);
+  b->displacement = larger(b->displacement, larger(force, load) / node->k);
+  double moved = smaller(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
+  b->fallen = larger(b->fallen, node->c.n * moved);
   b->carried = larger(b->carried, root * largest_of(cp->dim, v));
   b->bent = larger(b->bent, root * bent_at(x, node_id));
-  b->reach = larger(b->reach, reach_of(x, node_id, node.k, &b->position));
+  b->reach = larger(b->reach, reach_of(x, node_id, node, &b->position));
   b->root = larger(b->root, root);
-  if (cp->bodies != NULL) cp->bodies->node[node_id] = node;
 }
 
 static void measure_set(const contact_problem *cp, double scale,
                         const double *u, const double *r, measure *x) {
   *x = (measure){.cp = cp, .u = u, .r = r, .scale = scale};
   x->size = cp->bodies == NULL ? &x->one : cp->bodies->size;
-  x->largest = contact_largest_diagonal(cp);
+  find_steps(x);
   for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
     x->size[b] = (body_size){0};
   find_bent(x);
@@ -306,17 +328,20 @@ static void measure_node(measure *x, int node_id, measured *node) {
   const contact_problem *cp = x->cp;
   int first = node_id * cp->dim;
   body_size *b = body_of(x, node_id);
-  if (cp->bodies != NULL)
+  if (cp->bodies != NULL) {
     *node = cp->bodies->node[node_id];
-  else
+  } else {
+    *node = step_of(x, node_id);
     project(x, node_id, node);
+  }
   double terms = largest_of(cp->dim, cp->f + first);
   if (!contact_has_stiffness(cp))
     terms = node->k * (terms + largest_of(cp->dim, x->u + first));
   double carried = smaller(b->carried, b->reach);
-  node->rounding = ROUNDING * (terms + sqrt(node->k) * carried);
-  if (b->carried > b->reach)
-    node->drift = DBL_EPSILON * sqrt(node->k) * b->carried;
+  const double weight =
+      contact_has_stiffness(cp) ? node->root : 1.0 / node->root;
+  node->rounding = ROUNDING * (terms + weight * carried);
+  if (b->carried > b->reach) node->drift = DBL_EPSILON * weight * b->carried;
   node->normal = scale_of(x, b, node, node->c.n);
   node->slide = contact_has_stiffness(cp) ? node->normal
                                           : scale_of(x, b, node, node->c.t);
