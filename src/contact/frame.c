@@ -192,14 +192,27 @@ int mirrors_lean(const surface_input *in, const contact_pair *p, int node_id,
   return 1.0 - frame_project(m->dim, fixed, n) > told;
 }
 
-int mirrors_have(const mirrors *s, const surface_input *in, int node_id) {
+/* Bit c: a plane across direction c has the node. */
+static unsigned planes_at(const mirrors *s, const surface_input *in,
+                          int node_id) {
   const double *x = &in->mesh->x[(size_t)in->mesh->dim * node_id];
   const double near = rounding * in->mesh->size;
-  for (int c = 0; c < in->mesh->dim; ++c) {
-    if (!(in->fixed[node_id] >> c & 1)) continue;
-    if ((s->planes >> 2 * c & 1) && x[c] - s->low[c] <= near) continue;
-    if ((s->planes >> 2 * c & 2) && s->high[c] - x[c] <= near) continue;
-    return 0;
-  }
-  return 1;
+  unsigned at = 0;
+  for (int c = 0; c < in->mesh->dim; ++c)
+    if (((s->planes >> 2 * c & 1) && x[c] - s->low[c] <= near) ||
+        ((s->planes >> 2 * c & 2) && s->high[c] - x[c] <= near))
+      at |= 1u << c;
+  return at;
+}
+
+int mirrors_have(const mirrors *s, const surface_input *in, int node_id) {
+  const unsigned held = in->fixed[node_id] & ((1u << in->mesh->dim) - 1);
+  return (held & ~planes_at(s, in, node_id)) == 0;
+}
+
+void mirrors_mark(const surface_input *in, unsigned char *at) {
+  mirrors s = {0};
+  mirrors_find(in, &s);
+  for (int i = 0; i < in->mesh->n_node; ++i)
+    at[i] = (unsigned char)planes_at(&s, in, i);
 }

@@ -114,6 +114,7 @@ status surfaces_couple(const surface_input *in, const double *x,
                        const mesh_group *slave, const mesh_group *master,
                        unsigned how, const unsigned char *dropped,
                        mortar **out) {
+  OWNED_NEW(unsigned char, mirrored, in->mesh->n_node);
   const mortar_input of = {.mesh = in->mesh,
                            .n_slave = slave->n_item,
                            .n_master = master->n_item,
@@ -124,7 +125,9 @@ status surfaces_couple(const surface_input *in, const double *x,
                            .axisymmetric = in->axisymmetric,
                            .slave_normal = (how & COUPLE_SLAVE_NORMAL) != 0,
                            .flat = (how & COUPLE_FLAT) != 0,
-                           .dropped = dropped};
+                           .dropped = dropped,
+                           .mirrored = mirrored};
+  if (!of.flat) mirrors_mark(in, mirrored);
   FORGET(*out);
   return mortar_couple(&of, out);
 }

@@ -74,6 +74,8 @@ void mirrors_find(const surface_input *in, mirrors *out);
 /* 1: what holds the node is a plane of symmetry, where the normals of its own
  * faces, half of those around it, lean. */
 int mirrors_have(const mirrors *s, const surface_input *in, int node_id);
+/* at[n_node]: bit c: such a plane across direction c has the node. */
+void mirrors_mark(const surface_input *in, unsigned char *at);
 /* 1: a surface of the unit normal n at the node is smooth across that plane:
  * the faces next to those of the node lean more. */
 int mirrors_bend(const mesh *m, const mesh_group *g, int node_id,

@@ -44,7 +44,9 @@ typedef struct tally {
   int n_dependent, dependent_node, dependent_on;
   int n_doubled; /* as near to another obstacle by the same faces */
   int deep_node;
-  double depth;    /* deepest penetration, m */
+  double depth; /* deepest penetration, m */
+  int far_node;
+  double far;      /* largest gap, m */
   int turned_node; /* where the normals of body and obstacle differ most */
   double sine;     /* of the angle between them */
   int held_node;   /* where supports hold most of the contact normal */
@@ -443,6 +445,9 @@ static void measure(builder *b, candidate *c) {
   } else if (-c->gap > t->depth) {
     t->depth = -c->gap;
     t->deep_node = c->node_id;
+  } else if (c->gap > t->far) {
+    t->far = c->gap;
+    t->far_node = c->node_id;
   }
 }
 
@@ -601,20 +606,32 @@ static double added(const contact_pair *p) {
              : p->change_sign * p->change->number;
 }
 
-/* A depth that is told, m: facets of curved surfaces enter each other, which is
- * no matter unless it counts next to what the deck adds. */
-static double told_depth(const builder *b, const contact_pair *p) {
-  static const double sagitta = 0.05, part = 0.1;
-  const mesh *m = b->in->mesh;
+/* What facets of a curved surface are off by, m. */
+static double sagitta(const builder *b, const contact_pair *p) {
+  static const double part = 0.05; /* -, of their size */
   double mean = 0.0, normal[3];
-  if (p->support != NULL) return rounding * m->size;
   for (int k = 0; k < p->group->n_item; ++k)
-    mean +=
-        mesh_face_normal(m, p->group->item_id[k], normal) / p->group->n_item;
-  mean = sagitta * (b->dim == 2 ? mean : sqrt(mean));
+    mean += mesh_face_normal(b->in->mesh, p->group->item_id[k], normal) /
+            p->group->n_item;
+  return part * (b->dim == 2 ? mean : sqrt(mean));
+}
+
+/* A depth, or a gap, that is told, m: facets enter each other and gape, which
+ * is no matter unless it counts next to what the deck adds. */
+static double told_depth(const builder *b, const contact_pair *p) {
+  static const double part = 0.1;
+  const double size = b->in->mesh->size;
+  if (p->support != NULL) return rounding * size;
+  const double facets = sagitta(b, p);
   return added(p) == 0.0
-             ? mean
-             : fmin(mean, fmax(part * fabs(added(p)), rounding * m->size));
+             ? facets
+             : fmin(facets, fmax(part * fabs(added(p)), rounding * size));
+}
+
+/* 1: the gaps of a pair are of facets alone, and are told. */
+static int tells_gap(const builder *b, const contact_pair *p, const tally *t) {
+  return p->support == NULL && added(p) != 0.0 && t->far <= sagitta(b, p) &&
+         t->far > fmax(t->depth, told_depth(b, p));
 }
 
 /* ", 2 times the INTERFERENCE", what a depth is. */
@@ -625,6 +642,22 @@ static node_text share_of_added(const contact_pair *p, double depth) {
              depth / fabs(added(p)),
              p->change_sign < 0.0 ? "INTERFERENCE" : "CLEARANCE");
   return t;
+}
+
+static void say_distance(const builder *b, const contact_pair *p,
+                         const tally *t) {
+  const mesh *m = b->in->mesh;
+  if (tells_gap(b, p, t))
+    message_add(b->log, P4004, &p->at, "%s %s: %s is up to %.4g away%s, at %s",
+                p->card, p->name, partner(p).text, t->far,
+                share_of_added(p, t->far).text, describe(m, t->far_node).text);
+  else if (t->depth > told_depth(b, p))
+    message_add(b->log, P4004, &p->at,
+                "%s %s: deepest penetration of %s is %.4g, %.2g of the "
+                "size of the mesh%s, at %s",
+                p->card, p->name, partner(p).text, t->depth, t->depth / m->size,
+                share_of_added(p, t->depth).text,
+                describe(m, t->deep_node).text);
 }
 
 static void say(const builder *b, int pair_id) {
@@ -648,13 +681,7 @@ static void say(const builder *b, int pair_id) {
                 "*CONTACT %s: %d nodes cannot reach obstacle %s along their "
                 "normal and are left out",
                 p->name, t->n_unreached, p->support->name);
-  if (t->depth > told_depth(b, p))
-    message_add(b->log, P4004, &p->at,
-                "%s %s: deepest penetration of %s is %.4g, %.2g of the "
-                "size of the mesh%s, at %s",
-                p->card, p->name, partner(p).text, t->depth, t->depth / m->size,
-                share_of_added(p, t->depth).text,
-                describe(m, t->deep_node).text);
+  say_distance(b, p, t);
   if (t->sine > told_sine)
     message_add(b->log, P4018, &p->at,
                 "*CONTACT %s: the normals of the body differ from those of "

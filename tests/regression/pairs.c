@@ -526,7 +526,7 @@ START_TEST(interference_and_clearance) {
 END_TEST
 
 /* Facets enter each other by up to 5 % of their size, about 0.3, and by a tenth
- * of an interference. */
+ * of an interference; so far they gape. */
 START_TEST(depth_is_told_beyond_that_of_facets) {
   static const struct {
     const char *numbers, *joint, *told;
@@ -536,6 +536,9 @@ START_TEST(depth_is_told_beyond_that_of_facets) {
       {"N = 2\nM = 2\nDEEP = 0.01", PAIR "INTERFERENCE, 0.11\n", NULL},
       {"N = 2\nM = 2\nDEEP = 0.01", PAIR "INTERFERENCE, 0.005\n",
        "of the size of the mesh, 2 times the INTERFERENCE, at"},
+      {"N = 2\nM = 2\nDEEP = -0.01", PAIR, NULL},
+      {"N = 2\nM = 2\nDEEP = -0.01", PAIR "INTERFERENCE, 0.005\n",
+       " away, 2 times the INTERFERENCE, at"},
       {"N = 2\nM = 2\nDEEP = 0.01", PAIR "CLEARANCE, 0.05\n",
        "of the size of the mesh, 0.2 times the CLEARANCE, at"}};
   for (size_t k = 0; k < sizeof rows / sizeof *rows; ++k) {

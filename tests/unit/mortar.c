@@ -495,6 +495,56 @@ START_TEST(gaps_of_a_sphere_do_not_hang_on_the_order_of_corners) {
 }
 END_TEST
 
+/* The slave is inside of the master. */
+static void add_inside_out(pair *p, int of_slave, int a, int b, int c) {
+  const int in_space = p->m.dim == 3;
+  two_add_face(p, of_slave,
+               !of_slave  ? (int[]){a, b, c}
+               : in_space ? (int[]){a, c, b}
+                          : (int[]){b, a});
+}
+
+/* An eighth of a sphere in n rows, or a quarter of a circle in n edges, between
+ * planes of symmetry: bits of their nodes. */
+static void add_eighth(pair *p, int of_slave, int n, unsigned char *planes) {
+  const int dim = p->m.dim, rows = dim == 3 ? n : 0;
+  for (int j = 0; j <= rows; ++j)
+    for (int i = 0; i <= n - j; ++i) {
+      const double x[3] = {i, n - i - j, j}, size = sqrt(dot(3, x, x));
+      const int at = two_add_node(p, x[0] / size, x[1] / size, x[2] / size);
+      for (int c = 0; c < dim; ++c)
+        planes[at] |= (unsigned char)((x[c] == 0) << c);
+    }
+  for (int j = 0, a = p->m.n_node - (n + 1) * (rows + 2) / 2; j <= rows; ++j)
+    for (int i = 0; i <= n - j; ++i, ++a) {
+      const int up = a + n - j + 1;
+      if (i + j < n && j < n) add_inside_out(p, of_slave, a, a + 1, up);
+      if (dim == 3 && i + j + 1 < n)
+        add_inside_out(p, of_slave, a + 1, up + 1, up);
+    }
+}
+
+/* Nodes in planes of symmetry are fitted as those inside: of a circle, whose
+ * curvature is one, as without the planes. */
+START_TEST(gaps_at_planes_of_symmetry_are_those_of_the_whole) {
+  for (int dim = 2; dim <= 3; ++dim) {
+    pair p = two_new(dim);
+    double apart[2];
+    unsigned char planes[400] = {0};
+    add_eighth(&p, 1, 8, planes);
+    add_eighth(&p, 0, 6, planes);
+    for (int known = 0; known < 2; ++known) {
+      p.in.mirrored = known ? planes : NULL;
+      mortar *m = two_couple(&p);
+      apart[known] = largest_gap(m);
+      memory_free(m);
+    }
+    ck_assert_double_le(apart[1], (dim == 2 ? 1.0 : 0.6) * apart[0]);
+    two_free(&p);
+  }
+}
+END_TEST
+
 /* ---- normals, places, units ---------------------------------------------- */
 
 /* Slave at an angle to the master: the mean is half way. */
@@ -672,6 +722,7 @@ UNIT_MAIN("mortar", planes_reproduce_linear_fields_and_constant_pressure,
           matching_lips_move_with_their_copies, gaps_are_those_of_the_curve,
           arc_at_the_axis_has_the_mean_of_the_closed_form,
           gaps_of_a_sphere_do_not_hang_on_the_order_of_corners,
+          gaps_at_planes_of_symmetry_are_those_of_the_whole,
           normals_are_the_mean_of_both_sides_or_those_of_the_slave,
           normals_beside_a_node_left_out_are_the_mean_too,
           rows_sum_to_one_far_from_the_origin, ratio_of_the_sizes_has_no_unit,

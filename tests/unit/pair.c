@@ -431,6 +431,31 @@ START_TEST(coarse_masters_are_told) {
 }
 END_TEST
 
+/* Two meshes of a curve that is the steeper the farther from x = 0, where a
+ * support makes a plane of symmetry: the end bends as its other half does. */
+START_TEST(curves_go_on_behind_planes_of_symmetry) {
+  double apart[2];
+  for (int held = 0; held < 2; ++held) {
+    face_scene c;
+    faces_begin(&c, 2);
+    add_line(&c, 4, (double[]){0, 0}, (double[]){1, 0});
+    const mesh_group *slave = group_from(&c, "SLAVE", 0);
+    add_line(&c, 7, (double[]){1, -0.1}, (double[]){0, -0.1});
+    add_pair(&c, slave, group_from(&c, "MASTER", 4));
+    for (int i = 0; i < c.m.n_node; ++i) {
+      const double x = c.x[2 * i];
+      c.x[2 * i + 1] = x * x * (0.25 + 0.1 * x * x);
+      c.fixed[i] = (unsigned char)(held && x == 0);
+    }
+    ck_assert_int_eq(build(&c), OK);
+    ck_assert_int_eq(c.s->node_id[0], 0);
+    apart[held] = fabs(c.s->gap0[0]);
+    faces_end(&c);
+  }
+  ck_assert_double_le(apart[1], 0.3 * apart[0]);
+}
+END_TEST
+
 START_TEST(surfaces_that_do_not_meet_are_an_error) {
   face_scene c;
   faces_begin(&c, 2);
@@ -470,6 +495,7 @@ int main(void) {
   tcase_add_test(tests, floor_covers_what_it_does_without_a_wall);
   tcase_add_loop_test(tests, normal_is_the_mean_or_that_of_the_slave, 0, 2);
   tcase_add_loop_test(tests, coarse_masters_are_told, 0, 4);
+  tcase_add_test(tests, curves_go_on_behind_planes_of_symmetry);
   tcase_add_test(tests, surfaces_that_do_not_meet_are_an_error);
   tcase_add_test(tests, pair_whose_nodes_are_all_held_is_an_error);
   return unit_run("pair", tests);

@@ -4,9 +4,10 @@
  * t the slopes over the edge of the tangent planes at its ends: h^2/8R in the
  * middle of an edge on a circle or sphere. The smaller slope counts for both.
  * The tangent plane at a node is that of the quadratic nearest to the nodes
- * around it. A surface of flat parts stays flat at its kinks: no edge bends
- * next to a flat node, nor one alone. All is that of the mesh at rest: what
- * bends a plane is a displacement, which is linear over a face.
+ * around it, and to their images behind planes of symmetry. A surface of flat
+ * parts stays flat at its kinks: no edge bends next to a flat node, nor one
+ * alone. All is that of the mesh at rest: what bends a plane is a displacement,
+ * which is linear over a face.
  */
 #include "base/base.h"
 #include "contact/mortar/partner.h"
@@ -17,7 +18,7 @@
 static const double sharp = 0.3, flat = 1e-9;
 
 /* Coefficients of a quadratic, by dimension; most nodes to fit. */
-enum { TERMS = 5, MOST = 60 };
+enum { TERMS = 5, MOST = 60, ROWS = 2 * MOST };
 enum { FITS = 1, FLAT = 2, AT_FLAT = 4 };
 static const int terms_of[4] = {0, 0, 2, TERMS};
 
@@ -59,12 +60,17 @@ static void add_to_ring(shape *s, int node) {
   if (s->n < MOST) s->ring[s->n++] = node;
 }
 
+/* Bit c: a plane of symmetry across direction c has the node. */
+static unsigned planes_of(const shape *s, int node) {
+  return s->in->mirrored == NULL ? 0 : s->in->mirrored[node];
+}
+
 /* The mean normal of the faces at a node, for a start, with axes across it in
  * f; 0: one of them is too far from it. */
 static int start_normal(const shape *s, int node, facet *f) {
   const int dim = s->in->mesh->dim;
   double mean[3] = {0.0, 0.0, 0.0};
-  for (int pass = 0; pass < 2; ++pass)
+  for (int pass = 0; pass < 2; ++pass) {
     for (size_t a = s->start[node]; a < s->start[node + 1]; ++a) {
       if (!face_plane(s, s->around[a], f)) return 0;
       if (pass == 0)
@@ -73,6 +79,9 @@ static int start_normal(const shape *s, int node, facet *f) {
                cos(atan(sharp)) * sqrt(dot(dim, mean, mean)))
         return 0;
     }
+    for (int c = 0; c < dim; ++c)
+      if (planes_of(s, node) >> c & 1) mean[c] = 0.0;
+  }
   memcpy(f->normal, mean, sizeof mean);
   return 1;
 }
@@ -96,20 +105,38 @@ static void find_ring(shape *s, int node) {
   }
 }
 
+/* Steps from ring[0] to the others, and to their images behind the planes of
+ * symmetry there: d[3*ROWS]; their number. */
+static int find_steps(const shape *s, double *d) {
+  const int dim = s->in->mesh->dim;
+  int n = 0;
+  for (int i = 1; i < s->n; ++i) {
+    const unsigned planes =
+        planes_of(s, s->ring[0]) & ~planes_of(s, s->ring[i]);
+    for (unsigned image = 0; image < 1u << dim && n < ROWS; ++image) {
+      if ((image & ~planes) != 0) continue;
+      double *e = d + 3 * n++;
+      step(s, s->ring[0], s->ring[i], e);
+      for (int c = 0; c < dim; ++c)
+        if (image >> c & 1) e[c] = -e[c];
+    }
+  }
+  return n;
+}
+
 /* Slopes of the surface at ring[0] over the axes of f; 0: none is found; -1: it
  * is flat but for rounding. */
 static int fit_slopes(const shape *s, const facet *f, double *slope) {
-  const int dim = f->dim, n = terms_of[dim], m = s->n - 1;
-  double A[MOST * TERMS], b[MOST], work[20 * TERMS], d[3];
+  const int dim = f->dim, n = terms_of[dim];
+  double A[ROWS * TERMS], b[ROWS], work[20 * TERMS], steps[3 * ROWS + 3];
   double most = 0.0, size = 0.0;
   lapack_int rank, pivot[TERMS] = {0};
-  for (int i = 0; i < m; ++i) {
-    step(s, s->ring[0], s->ring[i + 1], d);
-    size += sqrt(dot(dim, d, d)) / m;
-  }
+  const int m = find_steps(s, steps);
+  for (int i = 0; i < m; ++i)
+    size += sqrt(dot(dim, steps + 3 * i, steps + 3 * i)) / m;
   for (int i = 0; i < m; ++i) {
     double x[2] = {0.0, 0.0};
-    step(s, s->ring[0], s->ring[i + 1], d);
+    const double *d = steps + 3 * i;
     const double length = sqrt(dot(dim, d, d)), part = length / size;
     for (int a = 0; a < dim - 1; ++a) x[a] = dot(dim, f->axis[a], d) / length;
     const double row[TERMS] = {x[0], dim == 2 ? x[0] * x[0] * part : x[1],

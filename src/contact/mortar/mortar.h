@@ -78,6 +78,8 @@ typedef struct mortar_input {
                                 sides */
   int flat;                  /* 1: the gap is that of the faces as they are */
   const unsigned char *dropped; /* [n_node] 1: carries no multiplier; NULL */
+  /* [n_node] bit c: in a plane of symmetry across direction c; NULL */
+  const unsigned char *mirrored;
 } mortar_input;
 
 typedef struct mortar {
