@@ -82,33 +82,8 @@ void contact_reaction(const contact_problem *cp, const double *u, double *r) {
   for (int i = 0; i < cp->m; ++i) r[i] -= cp->f[i];
 }
 
-double contact_node_limit(const contact_problem *cp, const double *r,
-                          int node_id) {
-  if (cp->g0 == NULL) return 0.0;
-  double g = cp->g0[node_id];
-  if (cp->B != NULL)
-    for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
-      double p = -r[(size_t)cp->B->col[k] * cp->dim];
-      if (p > 0.0 || isnan(p)) g += cp->B->val[k] * p;
-    }
-  return g > 0.0 || isnan(g) ? g : 0.0;
-}
-
 void contact_limit(const contact_problem *cp, const double *r, double *g) {
   for (int i = 0; i < cp->n; ++i) g[i] = contact_node_limit(cp, r, i);
-}
-
-double contact_bound(const contact_problem *cp, int dof) {
-  int node_id = dof / cp->dim, k = dof % cp->dim;
-  if (k == 0) return cp->gap[node_id];
-  if (cp->side_gap == NULL) return HUGE_VAL;
-  return cp->side_gap[node_id * (cp->dim - 1) + k - 1];
-}
-
-double contact_stick(const contact_problem *cp, int dof) {
-  if (cp->ut0 == NULL) return 0.0;
-  const int node_id = dof / cp->dim, k = dof % cp->dim;
-  return k > 0 ? cp->ut0[node_id * (cp->dim - 1) + k - 1] : 0.0;
 }
 
 double contact_slip_of(const contact_problem *cp, const double *u,

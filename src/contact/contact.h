@@ -188,12 +188,27 @@ double contact_hidden(const contact_problem *cp, const double *u,
 static inline int contact_held(const contact_problem *cp, int dof) {
   return cp->held != NULL && cp->held[dof];
 }
-double contact_bound(const contact_problem *cp, int dof);
-double contact_stick(const contact_problem *cp, int dof);
+static inline double contact_bound(const contact_problem *cp, int dof) {
+  int node_id = dof / cp->dim, k = dof % cp->dim;
+  if (k == 0) return cp->gap[node_id];
+  if (cp->side_gap == NULL) return HUGE_VAL;
+  return cp->side_gap[node_id * (cp->dim - 1) + k - 1];
+}
+
+static inline double contact_stick(const contact_problem *cp, int dof) {
+  if (cp->ut0 == NULL) return 0.0;
+  const int node_id = dof / cp->dim, k = dof % cp->dim;
+  return k > 0 ? cp->ut0[node_id * (cp->dim - 1) + k - 1] : 0.0;
+}
 /* Slip |u_t - ut0| of a node along what is not held, m. */
 double contact_slip_of(const contact_problem *cp, const double *u, int node_id);
 /* 1: the node touches a second obstacle. */
-int contact_has_side(const contact_problem *cp, int node_id);
+static inline int contact_has_side(const contact_problem *cp, int node_id) {
+  if (cp->side_gap == NULL) return 0;
+  for (int k = 1; k < cp->dim; ++k)
+    if (contact_bound(cp, node_id * cp->dim + k) < HUGE_VAL) return 1;
+  return 0;
+}
 /* Diagonal of A (of an operator: of the stiffness it is condensed from), or of
  * W where that alone is known. */
 double contact_diagonal(const contact_problem *cp, int dof);
@@ -208,5 +223,14 @@ double contact_tangent_diagonal(const contact_problem *cp, int node_id,
 /* y = M x, M[m*m] column major. */
 void contact_product(int m, const double *M, const double *x, double *y);
 /* Sliding limit of one node, N. */
-double contact_node_limit(const contact_problem *cp, const double *r,
-                          int node_id);
+static inline double contact_node_limit(const contact_problem *cp,
+                                        const double *r, int node_id) {
+  if (cp->g0 == NULL) return 0.0;
+  double g = cp->g0[node_id];
+  if (cp->B != NULL)
+    for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
+      double p = -r[(size_t)cp->B->col[k] * cp->dim];
+      if (p > 0.0 || isnan(p)) g += cp->B->val[k] * p;
+    }
+  return g > 0.0 || isnan(g) ? g : 0.0;
+}

@@ -129,11 +129,13 @@ static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale */
 /* An iterate and the scales of its errors. */
 typedef struct measure {
   const contact_problem *cp;
+  int is_stiff; /* contact_has_stiffness */
   const double *u, *r;
   double scale, largest; /* contact_scale; largest diagonal, where it is not in
                             what follows from the matrix */
   double forces;         /* largest of a body, N */
   body_size one, *size;  /* of the only body; of all */
+  measured own;          /* a node where no bodies are known */
   const double *bent; /* [m] u without the rigid motions, m; NULL: not known */
 } measure;
 
@@ -144,12 +146,6 @@ static body_size *body_of(measure *x, int node_id) {
 /* ---- natural map --------------------------------------------------------- */
 
 static double pushing(double z) { return z < 0.0 || isnan(z) ? z : 0.0; }
-
-int contact_has_side(const contact_problem *cp, int node_id) {
-  for (int k = 1; k < cp->dim; ++k)
-    if (contact_bound(cp, node_id * cp->dim + k) < HUGE_VAL) return 1;
-  return 0;
-}
 
 /* Frictionless node: no force along a free tangent, unilateral where a second
  * obstacle bounds it. */
@@ -193,6 +189,13 @@ static void find_steps(measure *x) {
   for (int i = 0; i < cp->n; ++i) b->node[i] = step_of(x, i);
 }
 
+/* The node in its room, its step known. */
+static measured *node_of(measure *x, int node_id) {
+  if (x->cp->bodies != NULL) return x->cp->bodies->node + node_id;
+  x->own = step_of(x, node_id);
+  return &x->own;
+}
+
 /* q of a node whose c is known. */
 static void project(const measure *x, int node_id, measured *node) {
   int n = node_id * x->cp->dim;
@@ -219,7 +222,7 @@ static double reach_of(const measure *x, int node_id, const measured *node,
                        double *position) {
   const contact_problem *cp = x->cp;
   double force = 0.0;
-  if (!contact_has_stiffness(cp)) return LEVER * x->scale / node->root;
+  if (!x->is_stiff) return LEVER * x->scale / node->root;
   if (!cp->floating) return HUGE_VAL;
   *position = larger(*position, cp->moved);
   for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i) {
@@ -231,12 +234,12 @@ static double reach_of(const measure *x, int node_id, const measured *node,
 }
 
 /* Force of the load at a node that nothing else holds, N. */
-static double load_of(const contact_problem *cp, int node_id,
-                      const measured *node) {
+static double load_of(const measure *x, int node_id, const measured *node) {
+  const contact_problem *cp = x->cp;
   const double *load = cp->f_load != NULL ? cp->f_load : cp->f;
   int first = node_id * cp->dim;
   double most = 0.0;
-  if (!contact_has_stiffness(cp))
+  if (!x->is_stiff)
     return node->c.n * larger(0.0, cp->f[first] - cp->gap[node_id]);
   for (int k = 0; k < cp->dim; ++k)
     if (!contact_held(cp, first + k))
@@ -265,16 +268,14 @@ static void find_bent(measure *x) {
 
 static void add_node(measure *x, int node_id) {
   const contact_problem *cp = x->cp;
-  const double *v =
-      (contact_has_stiffness(cp) ? x->u : x->r) + node_id * cp->dim;
+  const double *v = (x->is_stiff ? x->u : x->r) + node_id * cp->dim;
   body_size *b = body_of(x, node_id);
-  measured own, *node = cp->bodies == NULL ? &own : cp->bodies->node + node_id;
-  if (cp->bodies == NULL) own = step_of(x, node_id);
+  measured *node = node_of(x, node_id);
   project(x, node_id, node);
   double root = node->root;
   double force =
       larger(fabs(node->q[0]), contact_length(cp->dim - 1, node->q + 1));
-  double load = load_of(cp, node_id, node);
+  double load = load_of(x, node_id, node);
   b->contact = larger(b->contact, force);
   b->load = larger(b->load, load);
   b->displacement = larger(b->displacement, larger(force, load) / node->k);
@@ -289,6 +290,7 @@ static void add_node(measure *x, int node_id) {
 static void measure_set(const contact_problem *cp, double scale,
                         const double *u, const double *r, measure *x) {
   *x = (measure){.cp = cp, .u = u, .r = r, .scale = scale};
+  x->is_stiff = contact_has_stiffness(cp);
   x->size = cp->bodies == NULL ? &x->one : cp->bodies->size;
   find_steps(x);
   for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
@@ -310,7 +312,7 @@ static void measure_set(const contact_problem *cp, double scale,
 /* Forces that a part of a node, of stiffness c, is compared with. */
 static double forces_of(const measure *x, const measured *node,
                         const body_size *b, double c) {
-  double most = contact_has_stiffness(x->cp) ? x->scale : c * x->scale;
+  double most = x->is_stiff ? x->scale : c * x->scale;
   double own = smaller(larger(b->load, b->contact), node->k * b->displacement);
   return smaller(most, own);
 }
@@ -318,33 +320,28 @@ static double forces_of(const measure *x, const measured *node,
 /* Scale of them: not below rounding. */
 static double scale_of(const measure *x, const body_size *b,
                        const measured *node, double c) {
-  double least =
-      contact_has_stiffness(x->cp) ? larger(b->to_come, b->fallen) : 0.0;
+  double least = x->is_stiff ? larger(b->to_come, b->fallen) : 0.0;
   least = larger(FLOOR * least, LEAST / ROUNDING * node->rounding);
   return larger(forces_of(x, node, b, c), least);
 }
 
-static void measure_node(measure *x, int node_id, measured *node) {
+/* The node, until the next one or the next iterate. */
+static const measured *measure_node(measure *x, int node_id) {
   const contact_problem *cp = x->cp;
   int first = node_id * cp->dim;
   body_size *b = body_of(x, node_id);
-  if (cp->bodies != NULL) {
-    *node = cp->bodies->node[node_id];
-  } else {
-    *node = step_of(x, node_id);
-    project(x, node_id, node);
-  }
+  measured *node = node_of(x, node_id);
+  if (cp->bodies == NULL) project(x, node_id, node);
   double terms = largest_of(cp->dim, cp->f + first);
-  if (!contact_has_stiffness(cp))
+  if (!x->is_stiff)
     terms = node->k * (terms + largest_of(cp->dim, x->u + first));
   double carried = smaller(b->carried, b->reach);
-  const double weight =
-      contact_has_stiffness(cp) ? node->root : 1.0 / node->root;
+  const double weight = x->is_stiff ? node->root : 1.0 / node->root;
   node->rounding = ROUNDING * (terms + weight * carried);
-  if (b->carried > b->reach) node->drift = DBL_EPSILON * weight * b->carried;
+  node->drift = b->carried > b->reach ? DBL_EPSILON * weight * b->carried : 0.0;
   node->normal = scale_of(x, b, node, node->c.n);
-  node->slide = contact_has_stiffness(cp) ? node->normal
-                                          : scale_of(x, b, node, node->c.t);
+  node->slide = x->is_stiff ? node->normal : scale_of(x, b, node, node->c.t);
+  return node;
 }
 
 /* An error over its scale, less that of rounding, or of a drift. */
@@ -378,7 +375,7 @@ static double equation_of(const measure *x, const measured *node,
   double worst = 0.0;
   for (int k = 0; k < x->cp->dim; ++k) {
     double c = k == 0 ? node->c.n : node->c.t;
-    double e = contact_has_stiffness(x->cp) ? fabs(d[k]) : c * fabs(d[k]);
+    double e = x->is_stiff ? fabs(d[k]) : c * fabs(d[k]);
     worst = larger(worst, beyond(node, e, k == 0 ? node->normal : node->slide));
   }
   return worst;
@@ -419,10 +416,9 @@ double contact_residual_at(const contact_problem *cp, double scale,
     int count = cp->n - first < CHUNK ? cp->n - first : CHUNK;
     equation_rows(&x, first * cp->dim, count * cp->dim, d);
     for (int i = 0; i < count; ++i) {
-      measured node;
-      measure_node(&x, first + i, &node);
-      worst = larger(worst, map_of(&x, first + i, &node));
-      worst = larger(worst, equation_of(&x, &node, d + i * cp->dim));
+      const measured *node = measure_node(&x, first + i);
+      worst = larger(worst, map_of(&x, first + i, node));
+      worst = larger(worst, equation_of(&x, node, d + i * cp->dim));
     }
   }
   return isnan(scale) ? NAN : worst;
@@ -446,12 +442,11 @@ double contact_mismatch(const contact_problem *cp, double scale,
   double worst = 0.0, d[3];
   measure_set(cp, scale, u, r, &x);
   for (int i = 0; i < cp->n; ++i) {
-    measured node;
-    measure_node(&x, i, &node);
-    worst = larger(worst, map_of(&x, i, &node));
+    const measured *node = measure_node(&x, i);
+    worst = larger(worst, map_of(&x, i, node));
     for (int k = 0; raw != NULL && k < cp->dim; ++k)
       d[k] = of[i * cp->dim + k] - raw[i * cp->dim + k];
-    if (raw != NULL) worst = larger(worst, equation_of(&x, &node, d));
+    if (raw != NULL) worst = larger(worst, equation_of(&x, node, d));
   }
   return isnan(scale) ? NAN : worst;
 }
@@ -470,9 +465,8 @@ void contact_roundings(const contact_problem *cp, const double *u,
   measure x;
   measure_set(cp, 0.0, u, r, &x);
   for (int i = 0; i < cp->n; ++i) {
-    measured node;
-    measure_node(&x, i, &node);
-    rounding[i] = node.rounding;
+    const measured *node = measure_node(&x, i);
+    rounding[i] = node->rounding;
   }
 }
 
@@ -481,9 +475,8 @@ void contact_errors(const contact_problem *cp, double tol, const double *u,
   measure x;
   measure_set(cp, contact_scale(cp), u, r, &x);
   for (int i = 0; i < cp->n; ++i) {
-    measured node;
-    measure_node(&x, i, &node);
-    error[i] = fmax(node.rounding, tol * fmax(node.normal, node.slide));
+    const measured *node = measure_node(&x, i);
+    error[i] = fmax(node->rounding, tol * fmax(node->normal, node->slide));
   }
 }
 
@@ -495,19 +488,18 @@ double contact_hidden(const contact_problem *cp, const double *u,
   double worst = 0.0;
   measure_set(cp, 0.0, u, r, &x);
   for (int i = 0; i < cp->n; ++i) {
-    measured node;
     const body_size *b = body_of(&x, i);
-    measure_node(&x, i, &node);
-    const node_step e = map_errors(&x, i, &node);
+    const measured *node = measure_node(&x, i);
+    const node_step e = map_errors(&x, i, node);
     double most = larger(b->load, b->contact), side = 1.0;
     if (own != NULL) most = larger(most, own[i]);
-    if (has_no_force(&x, b, &node)) continue;
-    if (cp->g0 != NULL && node.q[0] < 0.0)
-      side = smaller(1.0, contact_node_limit(cp, r, i) / -node.q[0]);
+    if (has_no_force(&x, b, node)) continue;
+    if (cp->g0 != NULL && node->q[0] < 0.0)
+      side = smaller(1.0, contact_node_limit(cp, r, i) / -node->q[0]);
     if (side > 0.0) side = larger(side, SLIGHT);
-    if (e.n > 0.0) worst = larger(worst, smaller(e.n, node.rounding) / most);
+    if (e.n > 0.0) worst = larger(worst, smaller(e.n, node->rounding) / most);
     if (e.t > 0.0 && side > 0.0)
-      worst = larger(worst, smaller(e.t, node.rounding) / (side * most));
+      worst = larger(worst, smaller(e.t, node->rounding) / (side * most));
   }
   return worst;
 }
@@ -518,13 +510,12 @@ void contact_drop_roundings(const contact_problem *cp, const double *u,
   int known = 0;
   for (int i = 0; i < cp->n; ++i) {
     const int n = cp->dim * i;
-    measured node;
     if ((r[n] <= 0.0 && u[n] >= cp->gap[i]) || is_zero(cp->dim, r + n))
       continue;
     if (!known++) measure_set(cp, 0.0, u, r, &x);
-    measure_node(&x, i, &node);
-    for (int k = cp->dim - 1; k >= 0 && fabs(r[n]) <= node.rounding; --k)
-      if (fabs(r[n + k]) <= node.rounding) r[n + k] = 0.0;
+    const measured *node = measure_node(&x, i);
+    for (int k = cp->dim - 1; k >= 0 && fabs(r[n]) <= node->rounding; --k)
+      if (fabs(r[n + k]) <= node->rounding) r[n + k] = 0.0;
   }
 }
 
@@ -565,19 +556,17 @@ void contact_stops(const contact_problem *cp, const double *u, const double *r,
   if (force != NULL) COPY(force, r, cp->m);
   for (int i = 0; i < cp->n; ++i) {
     const int first = cp->dim * i;
-    measured node;
-    measure_node(&x, i, &node);
+    const measured *node = measure_node(&x, i);
     for (int k = 0; k < cp->dim; ++k)
       stopped[first + k] =
           contact_bound(cp, first + k) < HUGE_VAL &&
-          is_closed(&x, i, &node, k, k == 0 ? node.c.n : node.c.t);
+          is_closed(&x, i, node, k, k == 0 ? node->c.n : node->c.t);
     if (force != NULL && !stopped[first]) force[first] = 0.0;
   }
   if (force != NULL) x.r = force;
   for (int i = 0; i < cp->n && cp->g0 != NULL; ++i) {
-    measured node;
-    measure_node(&x, i, &node);
-    if (contact_has_side(cp, i) || !is_stuck(&x, i, &node, rests)) continue;
+    const measured *node = measure_node(&x, i);
+    if (contact_has_side(cp, i) || !is_stuck(&x, i, node, rests)) continue;
     for (int k = 1; k < cp->dim; ++k) stopped[i * cp->dim + k] = 1;
   }
 }
@@ -587,10 +576,9 @@ void contact_classify(const contact_problem *cp, const double *u,
   measure x;
   measure_set(cp, contact_scale(cp), u, r, &x);
   for (int i = 0; i < cp->n; ++i) {
-    measured node;
-    measure_node(&x, i, &node);
-    state[i] = !is_closed(&x, i, &node, 0, node.c.n) ? CONTACT_OPEN
-               : is_stuck(&x, i, &node, 1)           ? CONTACT_STICK
+    const measured *node = measure_node(&x, i);
+    state[i] = !is_closed(&x, i, node, 0, node->c.n) ? CONTACT_OPEN
+               : is_stuck(&x, i, node, 1)            ? CONTACT_STICK
                                                      : CONTACT_SLIP;
   }
 }
