@@ -483,13 +483,14 @@ static void turn_corners(pair *p) {
   }
 }
 
+/* But for the quadrature of curves that are no polynomials over a face. */
 START_TEST(gaps_of_a_sphere_do_not_hang_on_the_order_of_corners) {
   pair p = plane_pair(3, 3, 5, 0.3);
   bend(&p, 0);
   for (int q = 0; q < 16; ++q) {
     const double gap = gap_of(&p, q, 0);
     turn_corners(&p);
-    ck_assert_double_eq_tol(gap_of(&p, q, 0), gap, 1e-14);
+    ck_assert_double_eq_tol(gap_of(&p, q, 0), gap, 1e-9);
   }
   two_free(&p);
 }
@@ -504,14 +505,23 @@ static void add_inside_out(pair *p, int of_slave, int a, int b, int c) {
                           : (int[]){b, a});
 }
 
+static void at_eighth(int dim, int n, int i, int j, double *x) {
+  const double turn = acos(0) * i / n;
+  x[0] = dim == 3 ? i : i > 0 ? sin(turn) : 0;
+  x[1] = dim == 3 ? n - i - j : i < n ? cos(turn) : 0;
+  x[2] = j;
+  make_unit(3, x);
+}
+
 /* An eighth of a sphere in n rows, or a quarter of a circle in n edges, between
  * planes of symmetry: bits of their nodes. */
 static void add_eighth(pair *p, int of_slave, int n, unsigned char *planes) {
   const int dim = p->m.dim, rows = dim == 3 ? n : 0;
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= n - j; ++i) {
-      const double x[3] = {i, n - i - j, j}, size = sqrt(dot(3, x, x));
-      const int at = two_add_node(p, x[0] / size, x[1] / size, x[2] / size);
+      double x[3];
+      at_eighth(dim, n, i, j, x);
+      const int at = two_add_node(p, x[0], x[1], x[2]);
       for (int c = 0; c < dim; ++c)
         planes[at] |= (unsigned char)((x[c] == 0) << c);
     }
@@ -539,7 +549,30 @@ START_TEST(gaps_at_planes_of_symmetry_are_those_of_the_whole) {
       apart[known] = largest_gap(m);
       memory_free(m);
     }
-    ck_assert_double_le(apart[1], (dim == 2 ? 1.0 : 0.6) * apart[0]);
+    ck_assert_double_le(apart[1], (dim == 2 ? 1.01 : 0.4) * apart[0]);
+    two_free(&p);
+  }
+}
+END_TEST
+
+/* A coarse mesh of a circle and a fine one, 24 of its faces on each: what is
+ * left of h^2/8R, 0.034, is of the next order, alpha^4 with alpha = pi/12 half
+ * the angle of a face. */
+START_TEST(gaps_of_a_coarse_circle_are_small_of_the_next_order) {
+  const double next = pow(acos(0) / 6, 4);
+  for (int of_slave = 0; of_slave < 2; ++of_slave) {
+    pair p = two_new(2);
+    double mean = 0;
+    unsigned char planes[400] = {0};
+    add_eighth(&p, 1, of_slave ? 3 : 72, planes);
+    add_eighth(&p, 0, of_slave ? 72 : 3, planes);
+    p.in.mirrored = planes;
+    mortar *m = two_couple(&p);
+    for (int q = 0; q < m->n; ++q)
+      mean += dot(2, m->gap + 2 * q, m->normal + 2 * q) / m->n;
+    ck_assert_double_le(fabs(mean), 0.03 * next);
+    ck_assert_double_le(largest_gap(m), 0.04 * next);
+    memory_free(m);
     two_free(&p);
   }
 }
@@ -723,6 +756,7 @@ UNIT_MAIN("mortar", planes_reproduce_linear_fields_and_constant_pressure,
           arc_at_the_axis_has_the_mean_of_the_closed_form,
           gaps_of_a_sphere_do_not_hang_on_the_order_of_corners,
           gaps_at_planes_of_symmetry_are_those_of_the_whole,
+          gaps_of_a_coarse_circle_are_small_of_the_next_order,
           normals_are_the_mean_of_both_sides_or_those_of_the_slave,
           normals_beside_a_node_left_out_are_the_mean_too,
           rows_sum_to_one_far_from_the_origin, ratio_of_the_sizes_has_no_unit,

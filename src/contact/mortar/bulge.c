@@ -1,8 +1,8 @@
 /*
  * What a curved surface has beyond its flat faces, m: over a face the quadratic
- *   sum over edges ij of 4 phi_i phi_j s_ij,   s_ij = length (t_i + t_j)/8,
- * t the slopes over the edge of the tangent planes at its ends: h^2/8R in the
- * middle of an edge on a circle or sphere. The smaller slope counts for both.
+ *   sum over edges ij of 4 phi_i phi_j s_ij,
+ * s the height of an arc over the edge, h^2/8R for a circle or sphere. Its
+ * slope is the smaller one of those of the tangent planes at the ends.
  * The tangent plane at a node is that of the quadratic nearest to the nodes
  * around it, and to their images behind planes of symmetry. A surface of flat
  * parts stays flat at its kinks: no edge bends next to a flat node, nor one
@@ -18,7 +18,7 @@
 static const double sharp = 0.3, flat = 1e-9;
 
 /* Coefficients of a quadratic, by dimension; most nodes to fit. */
-enum { TERMS = 5, MOST = 60, ROWS = 2 * MOST };
+enum { TERMS = 5, MOST = 60, ROWS = 2 * MOST, STEPS = 3 * ROWS };
 enum { FITS = 1, FLAT = 2, AT_FLAT = 4 };
 static const int terms_of[4] = {0, 0, 2, TERMS};
 
@@ -65,6 +65,25 @@ static unsigned planes_of(const shape *s, int node) {
   return s->in->mirrored == NULL ? 0 : s->in->mirrored[node];
 }
 
+/* Steps from ring[0] to the others, and to their images behind the planes of
+ * symmetry there: d[STEPS]; their number. */
+static int find_steps(const shape *s, double *d) {
+  const int dim = s->in->mesh->dim;
+  int n = 0;
+  for (int i = 1; i < s->n; ++i) {
+    const unsigned planes =
+        planes_of(s, s->ring[0]) & ~planes_of(s, s->ring[i]);
+    for (unsigned image = 0; image < 1u << dim && n < ROWS; ++image) {
+      if ((image & ~planes) != 0) continue;
+      double *e = d + 3 * n++;
+      step(s, s->ring[0], s->ring[i], e);
+      for (int c = 0; c < dim; ++c)
+        if (image >> c & 1) e[c] = -e[c];
+    }
+  }
+  return n;
+}
+
 /* The mean normal of the faces at a node, for a start, with axes across it in
  * f; 0: one of them is too far from it. */
 static int start_normal(const shape *s, int node, facet *f) {
@@ -95,40 +114,22 @@ static void add_faces_of(shape *s, int node) {
 /* The nodes of the faces around a node; in space, where they are too few for a
  * fit, of those around them too, not across sharp edges. */
 static void find_ring(shape *s, int node) {
+  double steps[STEPS];
   s->n = 0;
   add_to_ring(s, node);
   add_faces_of(s, node);
-  if (s->in->mesh->dim == 2 || s->n > TERMS + 1) return;
+  if (s->in->mesh->dim == 2 || find_steps(s, steps) > TERMS) return;
   for (int i = 1, end = s->n; i < end; ++i) {
     facet f;
     if (start_normal(s, s->ring[i], &f)) add_faces_of(s, s->ring[i]);
   }
 }
 
-/* Steps from ring[0] to the others, and to their images behind the planes of
- * symmetry there: d[3*ROWS]; their number. */
-static int find_steps(const shape *s, double *d) {
-  const int dim = s->in->mesh->dim;
-  int n = 0;
-  for (int i = 1; i < s->n; ++i) {
-    const unsigned planes =
-        planes_of(s, s->ring[0]) & ~planes_of(s, s->ring[i]);
-    for (unsigned image = 0; image < 1u << dim && n < ROWS; ++image) {
-      if ((image & ~planes) != 0) continue;
-      double *e = d + 3 * n++;
-      step(s, s->ring[0], s->ring[i], e);
-      for (int c = 0; c < dim; ++c)
-        if (image >> c & 1) e[c] = -e[c];
-    }
-  }
-  return n;
-}
-
 /* Slopes of the surface at ring[0] over the axes of f; 0: none is found; -1: it
  * is flat but for rounding. */
 static int fit_slopes(const shape *s, const facet *f, double *slope) {
   const int dim = f->dim, n = terms_of[dim];
-  double A[ROWS * TERMS], b[ROWS], work[20 * TERMS], steps[3 * ROWS + 3];
+  double A[ROWS * TERMS], b[ROWS], work[20 * TERMS], steps[STEPS];
   double most = 0.0, size = 0.0;
   lapack_int rank, pivot[TERMS] = {0};
   const int m = find_steps(s, steps);
@@ -193,6 +194,11 @@ static double rise(const shape *s, int node, const double *e, const double *f) {
   return fabs(t) > flat && fabs(t) < sharp ? t : 0.0;
 }
 
+/* Of a circle whose slope over a chord is t at its ends. */
+static double arc_height(double chord, double t) {
+  return 0.5 * chord * t / (1.0 + sqrt(1.0 + t * t));
+}
+
 /* s of edge k of a face. First those whose ends have fits that bend the same
  * way are counted at their nodes; second, an edge has it if another one at one
  * of its nodes bends, and an end without a fit has the slope of the other. */
@@ -216,7 +222,7 @@ static void set_edge(shape *s, int face, int k, const double *f, int second) {
   if (!j_fits) b = a;
   if (a * b > 0.0 && (s->bends[i] > own || s->bends[j] > own))
     s->bulge[(dim == 2 ? 1 : 3) * s->face[face] + k] =
-        copysign(0.25 * sqrt(dot(dim, e, e)) * fmin(fabs(a), fabs(b)), a);
+        arc_height(sqrt(dot(dim, e, e)), copysign(fmin(fabs(a), fabs(b)), a));
 }
 
 status bulge_find(const mortar_input *in, int n, const int *face,

@@ -207,14 +207,37 @@ static status add_masters(builder *b, face_part *part) {
   return OK;
 }
 
+/* Height of the curve of a partner above its face, along the normal of the
+ * slave face f: over a point of it that lies to the side, as the face leans. */
+static double other_bulge(const builder *b, const facet *f, const sample *p) {
+  const partner *m = &b->search.list[p->partner];
+  const cell *c = &m->s.in_plane;
+  const int dim = f->dim;
+  double at[2] = {0, 0}, slope[2] = {0, 0}, origin[3], phi[3];
+  cell_functions(dim, c, at, origin);
+  for (int a = 0; a < dim - 1; ++a) {
+    const double unit[2] = {a == 0, a == 1};
+    cell_functions(dim, c, unit, phi);
+    for (int k = 0; k < dim; ++k) {
+      slope[a] += m->s.height[k] * (phi[k] - origin[k]);
+      at[a] += p->phi[k] * f->in_plane.at[k][a];
+    }
+  }
+  const double steep = sqrt(1.0 + dot(dim - 1, slope, slope));
+  const double height = bulge_height(dim, b->bulge, m->face, p->other);
+  for (int a = 0; a < dim - 1; ++a) at[a] -= height * slope[a] / steep;
+  cell_functions(dim, c, at, phi);
+  return steep * bulge_height(dim, b->bulge, m->face, phi);
+}
+
 /* Of surfaces that are one in truth both heights cancel. */
-static void add_bulges(const builder *b, int face, face_part *part) {
+static void add_bulges(const builder *b, int face, const facet *f,
+                       face_part *part) {
   const int dim = b->in->mesh->dim;
   for (int k = 0; k < b->n_point && b->bulge != NULL; ++k) {
     const sample *p = &b->points[k];
     const double own = bulge_height(dim, b->bulge, face, p->phi),
-                 other = bulge_height(
-                     dim, b->bulge, b->search.list[p->partner].face, p->other);
+                 other = other_bulge(b, f, p);
     if (fabs(own + other) <= seen * (fabs(own) + fabs(other))) continue;
     for (int j = 0; j < dim; ++j)
       part->bulge[j] += p->weight * p->psi[j] * (own + other);
@@ -269,7 +292,7 @@ static status do_face(builder *b, int i) {
   if (n_kept == 0) return OK;
   PASS(add_masters(b, part));
   PASS(add_dropped(b, face, part, kept));
-  add_bulges(b, face, part);
+  add_bulges(b, face, &f, part);
   part->end = b->n_entry;
   return OK;
 }
@@ -525,7 +548,7 @@ static void set_gap(builder *b, int q) {
     const face_part *f = &b->face[b->around[a]];
     add_scaled(dim,
                -f->bulge[corner_of(b, b->around[a], node)] / b->out->area[q],
-               b->out->normal + (size_t)dim * q, gap);
+               f->normal, gap);
   }
 }
 
