@@ -192,6 +192,39 @@ START_TEST(slight_steps_in_space_are_no_steps) {
 }
 END_TEST
 
+/* A step is measured by the largest face round the node and along the mean of
+ * their normals: 5e-4 is less than 0.1 % of 0.8, not of 0.2; the normal of a
+ * corner between a level face and one of 60 degrees makes 9.2e-4 of 8e-4, less
+ * than 0.1 % of the length 1 of the level one. */
+START_TEST(all_faces_of_a_node_measure_its_step) {
+  static const struct {
+    double x[3][2], higher;
+    int first; /* node of the first face */
+  } cases[] = {{{{0, 0}, {0.8, 0}, {1, 0}}, 5e-4, 0},
+               {{{0, 0}, {0.8, 0}, {1, 0}}, 5e-4, 1},
+               {{{0, 0}, {1, 0}, {1.2, 0.346}}, 8e-4, 0},
+               {{{0, 0}, {1, 0}, {1.2, 0.346}}, 8e-4, 1}};
+  for (int k = 0; k < 4; ++k) {
+    pair p = two_new(2);
+    for (int i = 2; i >= 0; --i)
+      two_add_node(&p, cases[k].x[i][0], cases[k].x[i][1], 0);
+    for (int i = 0; i < 2; ++i) {
+      const int left = 2 - (i + cases[k].first) % 2;
+      two_add_face(&p, 1, (int[]){left, left - 1});
+    }
+    for (int i = 0; i < 2; ++i) {
+      const double y = -0.3 + i * cases[k].higher;
+      const int left = two_add_node(&p, 0.5 * i, y, 0);
+      two_add_face(&p, 0, (int[]){two_add_node(&p, 0.5 + 0.5 * i, y, 0), left});
+    }
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, 1, 1e-12);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
 /* Three treads, the middle one a single face: a face that has left the lowest
  * by the first edge, at 0.52, still has the middle one, which those round the
  * second edge, at 0.68, leave. */
@@ -320,6 +353,7 @@ UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           plates_see_the_next_plate_and_not_what_is_behind,
           the_nearest_of_two_masters_is_the_partner, slight_steps_are_no_steps,
           bend_across_a_slit_is_no_step, slight_steps_in_space_are_no_steps,
+          all_faces_of_a_node_measure_its_step,
           each_face_leaves_what_is_beyond_its_own_step,
           overlapping_bodies_are_partners,
           surfaces_with_nothing_in_common_have_no_rows,
