@@ -349,6 +349,46 @@ START_TEST(bodies_overlap_by_half_the_slave) {
 }
 END_TEST
 
+/* A plate 0.4 thick of four layers of elements, at rest half as thick: a master
+ * inside it is a partner, across layers too; its back and one behind that are
+ * none. */
+START_TEST(masters_behind_the_back_are_no_partners) {
+  static const struct {
+    double height;
+    int is;
+  } cases[] = {{0.05, 1}, {0.15, 1}, {0.38, 1}, {0.4, 0}, {0.45, 0}, {0.7, 0}};
+  enum { LAYERS = 4 };
+  for (int k = 0; k < 6; ++k) {
+    int elem[6 * LAYERS], face_elem[2] = {0, -1};
+    double now[2 * (2 * LAYERS + 4)];
+    pair p = two_new(2);
+    for (int i = 0; i <= LAYERS; ++i) {
+      const int a = two_add_node(&p, 0, 0.1 * i, 0);
+      const int b = two_add_node(&p, 1, 0.1 * i, 0);
+      if (i < LAYERS)
+        memcpy(elem + 6 * i, (int[]){a, b, b + 2, a, b + 2, a + 2},
+               6 * sizeof *elem);
+    }
+    two_add_face(&p, 1, (int[]){0, 1});
+    int master[2] = {2 * LAYERS + 1, 2 * LAYERS};
+    for (int i = 0; i < 2 && cases[k].height != 0.4; ++i)
+      master[i] = two_add_node(&p, 1 - i, cases[k].height, 0);
+    two_add_face(&p, 0, master);
+    p.m.n_elem = 2 * LAYERS;
+    p.m.elem = elem;
+    p.m.face_elem = face_elem;
+    memcpy(now, p.m.x, sizeof now);
+    for (int i = 0; i < p.m.n_node; ++i) p.m.x[2 * i + 1] *= 0.5;
+    p.in.x = now;
+    p.in.flat = 1;
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, cases[k].is, 1e-12);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
 UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           plates_see_the_next_plate_and_not_what_is_behind,
           the_nearest_of_two_masters_is_the_partner, slight_steps_are_no_steps,
@@ -359,4 +399,5 @@ UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           surfaces_with_nothing_in_common_have_no_rows,
           masters_apart_hide_each_other,
           partners_are_within_the_extent_of_the_surfaces,
-          bodies_overlap_by_half_the_slave)
+          bodies_overlap_by_half_the_slave,
+          masters_behind_the_back_are_no_partners)
