@@ -311,15 +311,18 @@ START_TEST(masters_apart_hide_each_other) {
 }
 END_TEST
 
-/* Nothing is a partner beyond the diagonal of the master, 1.02 long. */
+/* Nothing is a partner beyond the diagonal of the master, 1.02 long, wherever
+ * the surfaces are. */
 START_TEST(partners_are_within_the_extent_of_the_surfaces) {
-  for (int above = 0; above < 2; ++above) {
+  for (int k = 0; k < 6; ++k) {
     pair p = two_new(2);
+    const int above = k % 2;
     const double slope = 0.2, middle = hypot(1, slope) * (above ? 1.01 : 0.99);
     two_add_line(&p, 1, 1, 0, 1, 0);
     two_add_line(&p, 0, 1, 0, 1, 0);
     for (int i = 2; i < 4; ++i)
       p.m.x[2 * i + 1] = -middle + slope * (0.5 - p.m.x[2 * i]);
+    for (int i = 0; i < 8; ++i) p.m.x[i] += 8 * (k / 2 - 1);
     mortar *m = two_couple(&p);
     ck_assert_double_eq_tol(m->covered, !above, 1e-15);
     memory_free(m);
@@ -343,6 +346,22 @@ START_TEST(bodies_overlap_by_half_the_slave) {
           m->normal[2 * q + 1] < -0.99)
         below += m->area[q];
     ck_assert_double_eq_tol(below, above ? 0 : 7.0 / 8, 1e-13);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+/* A face of both surfaces does not hide itself, overlapping or apart. */
+START_TEST(faces_of_both_surfaces_are_partners) {
+  for (int overlap = 0; overlap < 2; ++overlap) {
+    pair p = two_new(2);
+    two_add_line(&p, 1, 1, 0, 1, 0);
+    two_add_line(&p, 0, 1, 0, 1, 0);
+    for (int i = 2; i < 4; ++i) p.m.x[2 * i + 1] = overlap ? 0.05 : -0.05;
+    p.slave[p.in.n_slave++] = p.master[0];
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, 1, 1e-15);
     memory_free(m);
     two_free(&p);
   }
@@ -399,5 +418,5 @@ UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           surfaces_with_nothing_in_common_have_no_rows,
           masters_apart_hide_each_other,
           partners_are_within_the_extent_of_the_surfaces,
-          bodies_overlap_by_half_the_slave,
+          bodies_overlap_by_half_the_slave, faces_of_both_surfaces_are_partners,
           masters_behind_the_back_are_no_partners)
