@@ -352,6 +352,21 @@ START_TEST(bodies_overlap_by_half_the_slave) {
 }
 END_TEST
 
+/* Of a folded master, which covers less than the slave, the fold on top. */
+START_TEST(folds_hide_what_is_below) {
+  static const double x[4][2] = {
+      {0.3, -0.1}, {0, -0.12}, {0.3, -0.2}, {0, -0.4}};
+  pair p = two_new(2);
+  two_add_line(&p, 1, 1, 0, 1, 0);
+  for (int i = 0; i < 4; ++i) two_add_node(&p, x[i][0], x[i][1], 0);
+  for (int i = 2; i < 5; ++i) two_add_face(&p, 0, (int[]){i, i + 1});
+  mortar *m = two_couple(&p);
+  ck_assert_double_eq_tol(m->covered, 0.3, 1e-15);
+  memory_free(m);
+  two_free(&p);
+}
+END_TEST
+
 /* A face of both surfaces does not hide itself, overlapping or apart. */
 START_TEST(faces_of_both_surfaces_are_partners) {
   for (int overlap = 0; overlap < 2; ++overlap) {
@@ -418,5 +433,6 @@ UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           surfaces_with_nothing_in_common_have_no_rows,
           masters_apart_hide_each_other,
           partners_are_within_the_extent_of_the_surfaces,
-          bodies_overlap_by_half_the_slave, faces_of_both_surfaces_are_partners,
+          bodies_overlap_by_half_the_slave, folds_hide_what_is_below,
+          faces_of_both_surfaces_are_partners,
           masters_behind_the_back_are_no_partners)
