@@ -576,23 +576,23 @@ START_TEST(corners_of_gaps_and_widths_of_few_nodes_have_bands) {
 }
 END_TEST
 
-/* Next to a corner of the gap that presses, by 1000 0.06/2 pi as told in
+/* Next to a corner of the gap that presses, by 1000 0.1/2 pi as told in
  * jumps.c, the mean has twice that in its band, whatever lesser ones are near;
  * next to one that is hollow, or away from it, it has not. */
 START_TEST(pressures_next_to_corners_have_bands) {
   static const struct {
     const char *gap, *point;
     int is;
-  } rows[] = {{"0.03*abs(x-1)+0.024*(abs(x-0.625)+abs(x-1.375))", "1., 0.", 1},
-              {"0.03*abs(x-1)", "0.5, 0.", 0},
-              {"-0.03*abs(x-1)", "1., 0.", 0}};
-  const double corner = 60.0 / (2.0 * M_PI);
+  } rows[] = {{"0.05*abs(x-1)+0.03*(abs(x-0.625)+abs(x-1.375))", "1., 0.", 1},
+              {"0.05*abs(x-1)", "0.5, 0.", 0},
+              {"-0.05*abs(x-1)", "1., 0.", 0}};
+  const double corner = 100.0 / (2.0 * M_PI);
   for (int k = 0; k < 3; ++k) {
     char cards[400];
     snprintf(cards, sizeof cards,
              "GAP\n\"%s\"" CONTACT
              "*GOAL, NAME=G, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.4\n%s\n"
-             "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.1\n"
+             "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1\nTOP, 2, 2, -0.15\n"
              "*PRINT, CONTACT\n",
              rows[k].gap, rows[k].point);
     job j = body_of_type(", TYPE=CPS3", "rect 16 8 2 1 alternate", cards);
