@@ -301,6 +301,29 @@ START_TEST(friction_between_the_nodes_is_in_the_estimate) {
 }
 END_TEST
 
+/* A limit with a bend within an edge, and its mirror image: the same band. */
+START_TEST(bends_of_friction_have_bands) {
+  static const char *const of[2][2] = {{"5.", "max(0,x-1.1)"},
+                                       {"-5.", "max(0,0.9-x)"}};
+  double band[2];
+  for (int k = 0; k < 2; ++k) {
+    char cards[512];
+    snprintf(cards, sizeof cards,
+             PLANE "\nMOVE, %s, 0." CONTACT
+                   "*FRICTION, CONTACT=C, LAW=TRESCA\n\"%s\"\n"
+                   "*GOAL, NAME=T, QUANTITY=FORCE, CONTACT=C, COMPONENT=1\n"
+                   "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n",
+             of[k][0], of[k][1]);
+    job j = body_of("rect 8 8 2 1 alternate", cards);
+    dat t = job_table(&j, "GOALS", -1);
+    band[k] = dat_at(&t, 0, "band");
+    dat_free(&t);
+    job_end(&j);
+  }
+  ck_assert_double_eq_tol(band[1], band[0], 1e-6 * band[0]);
+}
+END_TEST
+
 /* There are no products of errors to refine by but rounding, which the
  * thickness changes: it must not change the meshes. */
 START_TEST(passes_do_not_refine_by_rounding) {
@@ -624,7 +647,7 @@ UNIT_MAIN(
     obstacles_between_open_nodes_are_seen,
     obstacles_that_no_node_reaches_leave_all_unknown,
     rounding_of_fine_meshes_is_in_the_band,
-    friction_between_the_nodes_is_in_the_estimate,
+    friction_between_the_nodes_is_in_the_estimate, bends_of_friction_have_bands,
     passes_do_not_refine_by_rounding, friction_that_turns_back_within_an_edge,
     friction_that_may_stop_is_not_reliable,
     friction_of_held_nodes_next_to_open_ones,
