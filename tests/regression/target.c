@@ -110,6 +110,31 @@ START_TEST(tighter_solver_takes_over_the_mesh) {
 }
 END_TEST
 
+/* Errors within their shares whose sum is above the target: the mesh gets what
+ * the others leave, in a second pass if there may be one. */
+START_TEST(mesh_has_what_the_solver_leaves) {
+  double total = 0.0, of_solver = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    char cards[120];
+    job j;
+    snprintf(cards, sizeof cards,
+             "*SOLVER, METHOD=SOR, TOL=3E-3\n"
+             "*ACCURACY, TARGET=%.9g %%, MAX_PASSES=%d\n",
+             k == 0 ? 90.0 : total - 0.5 * of_solver, k == 1 ? 2 : 1);
+    const int code = press(&j, 2, cards, "");
+    ck_assert_msg(code == (k == 2), "exit %d: %s", code, j.errors);
+    ck_assert_int_eq(strstr(j.errors, "MAX_PASSES is reached") != NULL, k == 2);
+    char *json = job_file(&j, "json");
+    const char *at = strstr(json, "\"passes\"");
+    total = atof(strstr(at, "total_error_percent\": ") + 22);
+    of_solver = atof(strstr(at, "solver_error_percent\": ") + 23);
+    ck_assert_int_eq(count(json, "\"changed_next\""), 1 + (k == 1));
+    free(json);
+    job_end(&j);
+  }
+}
+END_TEST
+
 #define CUBE_SIDE \
   "(-3.1245736543072164E-6*cosh(K*z) + 3.4326728826486094E-6*z*sinh(K*z))"
 static const char cube_field[] =
@@ -758,7 +783,7 @@ END_TEST
 UNIT_MAIN("target", estimate_of_a_coarse_mesh_counts_twice,
           goal_of_a_coarse_mesh_is_not_reliable, forecast_of_a_coarse_mesh,
           forecast_is_of_meshes_whose_error_falls, target_is_reached_in_truth,
-          tighter_solver_takes_over_the_mesh,
+          mesh_has_what_the_solver_leaves, tighter_solver_takes_over_the_mesh,
           limits_stop_with_the_best_there_is,
           limits_are_those_of_the_mesh_in_the_end,
           sizes_that_gmsh_fails_with_are_made_smaller,
