@@ -37,11 +37,12 @@
   "Physical Curve(\"TOP\") = {4}; Physical Curve(\"BOTTOM\") = {1};\n"       \
   "Physical Curve(\"LEFT\") = {3};\n"
 
-/* A body, u_x on its border, the others zero or as told; means of u_x over
- * TOP and BODY (NAN: not known). */
+/* A body, a displacement on its border, the others zero or as told; its means
+ * over TOP and BODY (NAN: not known). */
 typedef struct field {
   const char *geo, *section, *cards;
   double top, body;
+  int component; /* from 0 */
 } field;
 
 static job run_field(const field *f) {
@@ -51,12 +52,13 @@ static job run_field(const field *f) {
             "*MESH, FILE=means.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
             "*EXPANSION\n1.E-3\n"
             "*SOLID SECTION, ELSET=BODY, MATERIAL=M%s\n"
-            "*GOAL, NAME=T, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=TOP\n"
-            "*GOAL, NAME=B, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=BODY\n"
-            "*GOAL, NAME=D, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=TOP, "
+            "*GOAL, NAME=T, QUANTITY=DISPLACEMENT, COMPONENT=%d, GROUP=TOP\n"
+            "*GOAL, NAME=B, QUANTITY=DISPLACEMENT, COMPONENT=%d, GROUP=BODY\n"
+            "*GOAL, NAME=D, QUANTITY=DISPLACEMENT, COMPONENT=%d, GROUP=TOP, "
             "FROM=BODY\n"
             "*STEP\n*STATIC\n%s*PRINT, GOALS\n*END STEP\n",
-            f->section, f->cards);
+            f->section, f->component + 1, f->component + 1, f->component + 1,
+            f->cards);
   const int code = job_run(&j, "");
   ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
   return j;
@@ -65,9 +67,9 @@ static job run_field(const field *f) {
 #define GIVEN(u, last) \
   "*BOUNDARY\nBORDER, 1, 1, \"" u "\"\nBORDER, 2, " #last ", 0\n"
 static const field linear[] = {
-    {PLANE, ", TYPE=CPE3", GIVEN("0.3*x+0.1*y", 2), 0.25, 0.2},
-    {PLANE, ", TYPE=CAX3", GIVEN("0.3*x", 2), 0.2, 0.2},
-    {CUBE, "", GIVEN("0.3*x+0.1*z", 3), 0.2, 0.2}};
+    {PLANE, ", TYPE=CPE3", GIVEN("0.3*x+0.1*y", 2), 0.25, 0.2, 0},
+    {PLANE, ", TYPE=CAX3", GIVEN("0.3*x", 2), 0.2, 0.2, 0},
+    {CUBE, "", GIVEN("0.3*x+0.1*z", 3), 0.2, 0.2, 0}};
 
 START_TEST(means_of_linear_fields_are_exact) {
   job j = run_field(&linear[_i]);
@@ -83,11 +85,25 @@ START_TEST(means_of_linear_fields_are_exact) {
 }
 END_TEST
 
-/* What the border prescribes between the nodes is in the error. */
+/* Goal D is T less B, and so is its error. */
+static void check_difference(const dat *t) {
+  double error[3];
+  for (int k = 0; k < 3; ++k) error[k] = dat_at(t, k, "error");
+  ck_assert_double_eq_tol(error[2], error[0] - error[1],
+                          1e-10 * (fabs(error[0]) + fabs(error[1])));
+}
+
+/* What the border prescribes between the nodes is in the error; with the body
+ * force of that field its mean over the body is known too. */
+#define FORCED(u, last, force) \
+  GIVEN(u, last) "*DLOAD\nBODY, BX, \"-" force "*700/(1.3*0.4)\"\n"
 static const field square[] = {
-    {PLANE, ", TYPE=CPE3", GIVEN("x^2", 2), 1.0 / 3.0, NAN},
-    {PLANE, ", TYPE=CAX3", GIVEN("x^2", 2), 0.5, NAN},
-    {CUBE, "", GIVEN("x^2+z^2", 3), 2.0 / 3.0, NAN}};
+    {PLANE, ", TYPE=CPE3\n0.5", FORCED("x^2", 2, "2"), 1.0 / 3.0, 1.0 / 3.0, 0},
+    {PLANE, ", TYPE=CAX3", FORCED("x^2", 2, "3"), 0.5, 0.5, 0},
+    {CUBE, "",
+     "*BOUNDARY\nBORDER, 1, 2, 0\nBORDER, 3, 3, \"x^2+y^2\"\n"
+     "*DLOAD\nBODY, BZ, \"-4*1000/2.6\"\n",
+     4.0 / 3.0, 2.0 / 3.0, 2}};
 
 START_TEST(errors_of_means_have_what_is_between_the_nodes) {
   job j = run_field(&square[_i]);
@@ -95,6 +111,9 @@ START_TEST(errors_of_means_have_what_is_between_the_nodes) {
   const double found = dat_at(&t, 0, "value"), is = square[_i].top;
   ck_assert_double_gt(fabs(found - is), 1e-3);
   ck_assert_double_eq_tol(found + dat_at(&t, 0, "error"), is, 1e-10);
+  const double lacks = square[_i].body - dat_at(&t, 1, "value");
+  ck_assert_double_eq_tol(dat_at(&t, 1, "error"), lacks, 0.05 * fabs(lacks));
+  check_difference(&t);
   dat_free(&t);
   job_end(&j);
 }
@@ -104,8 +123,8 @@ END_TEST
  * an arc, not over its chords. */
 #define WARMED "*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*TEMPERATURE\nBODY, 10.\n"
 static const field round_ones[] = {
-    {RING, ", TYPE=CPS3", WARMED, 0.02 / M_PI, 0.28 / 9.0 / M_PI},
-    {RING, ", TYPE=CAX3", WARMED, M_PI / 400.0, 0.45 * M_PI / 112.0}};
+    {RING, ", TYPE=CPS3", WARMED, 0.02 / M_PI, 0.28 / 9.0 / M_PI, 0},
+    {RING, ", TYPE=CAX3", WARMED, M_PI / 400.0, 0.45 * M_PI / 112.0, 0}};
 
 START_TEST(errors_of_means_have_what_is_beyond_chords) {
   job j = run_field(&round_ones[_i]);
@@ -116,6 +135,7 @@ START_TEST(errors_of_means_have_what_is_beyond_chords) {
     ck_assert_double_gt(fabs(lacks), 1e-6);
     ck_assert_double_eq_tol(dat_at(&t, k, "error"), lacks, 0.08 * fabs(lacks));
   }
+  check_difference(&t);
   dat_free(&t);
   job_end(&j);
 }

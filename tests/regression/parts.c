@@ -1,7 +1,7 @@
 /*
  * Parts of what is told as a sum or as the largest: the shares of a target, the
- * bounds of effects left out under loads that rise and fall, zones of a ring,
- * each component of a stress in the true error.
+ * tables in a forecast, the bounds of effects left out under loads that rise
+ * and fall, zones of a ring, each component of a stress in the true error.
  */
 #include "base/base.h"
 #include "support/block_file.h"
@@ -76,6 +76,38 @@ START_TEST(target_counts_all_errors_of_the_largest_increment) {
   ck_assert_double_eq_tol(total, sum, 1e-5 * sum);
   free(json);
   job_end(&j);
+}
+END_TEST
+
+/* CPU seconds of that error. */
+static double forecast_cpu(const job *j, double level) {
+  double found, cpu;
+  for (const char *at = j->text; at != NULL; at = strchr(at + 1, '\n'))
+    if (sscanf(at, "%lf %*f %*f %lf", &found, &cpu) == 2 && found == level)
+      return cpu;
+  return NAN;
+}
+
+/* A number of a table takes 250 ns, a row ten of them: 63 nodes and 96 elements
+ * in 100 increments. */
+START_TEST(tables_count_in_the_forecast) {
+  double cpu[2];
+  for (int k = 0; k < 2; ++k) {
+    job j = job_begin("block");
+    block_file_write(&j, (int[]){8, 6}, (double[]){4.0, 3.0}, 0);
+    job_write(
+        &j, "block.inp",
+        "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+        "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n*QUASISTATIC\n"
+        "0.01, 1.\n*BOUNDARY\nCONTACT, 2\nSYMMETRY, 1\n*DSLOAD\nTOP, P, 1.\n"
+        "*OUTPUT, HDF5=NO\n%s*END STEP\n",
+        k ? "*PRINT, NODES, ELEMENTS\n" : "");
+    ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
+    cpu[k] = forecast_cpu(&j, 10);
+    job_end(&j);
+  }
+  ck_assert_msg(cpu[1] > cpu[0] + 0.5 * 100 * (63 + 96) * 10 * 250e-9,
+                "%g, %g s", cpu[0], cpu[1]);
 }
 END_TEST
 
@@ -462,6 +494,6 @@ UNIT_MAIN("parts", shares_of_the_elements_make_up_the_error,
           directions_of_slip_part_where_there_is_none,
           true_stress_error_counts_every_component,
           target_counts_all_errors_of_the_largest_increment,
-          bound_of_creep_under_a_load_that_falls,
+          tables_count_in_the_forecast, bound_of_creep_under_a_load_that_falls,
           change_by_creep_under_a_force_that_falls,
           bound_of_friction_under_a_pull_that_falls)

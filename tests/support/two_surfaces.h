@@ -17,7 +17,7 @@ typedef struct pair {
 /* Room for 4000 nodes and 8000 faces. */
 pair two_new(int dim);
 void two_free(pair *p);
-/* Their coupling, new (memory_free). */
+/* Their coupling, new (memory_free); at in.x, or where it is NULL at rest. */
 mortar *two_couple(pair *p);
 void two_add_face(pair *p, int of_slave, const int *node);
 /* Its id; z in 3-D alone. */

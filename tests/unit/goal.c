@@ -7,6 +7,7 @@
 
 #include "accuracy/accuracy.h"
 #include "base/base.h"
+#include "effects/goal/parts.h"
 #include "support/solver_rows.h"
 #include "support/unit.h"
 
@@ -429,6 +430,38 @@ START_TEST(ends_of_rounding_are_no_ends) {
 }
 END_TEST
 
+/* A parabola is its own; what has no integral beside it is rough, here by 1.5
+ * times the mean 2/pi of |sin|, but for a rule of 16 pieces. */
+START_TEST(parabolas_have_the_integral) {
+  for (int k = 0; k < 2; ++k) {
+    double d[GOAL_PIECES + 1], rough;
+    for (int i = 0; i <= GOAL_PIECES; ++i) {
+      const double t = (double)i / GOAL_PIECES;
+      d[i] = 12.0 * t * (1.0 - t) + k * sin(2.0 * M_PI * t);
+    }
+    ck_assert_double_eq_tol(goal_parabola(d, &rough), 3.0, 1e-14);
+    ck_assert_double_eq_tol(rough, k * 3.0 / M_PI, 0.02);
+  }
+}
+END_TEST
+
+/* Points of an edge lie on the circle through its ends and its middle. */
+START_TEST(points_of_an_edge_lie_on_its_arc) {
+  static const double angle = 1.2, turn = 0.3;
+  double ends[2][2], out[2];
+  for (int c = 0; c < 2; ++c) {
+    for (int k = 0; k < 2; ++k)
+      ends[k][c] = cos(turn + (2 * k - 1) * 0.5 * angle - c * 0.5 * M_PI);
+    out[c] = (1.0 - cos(0.5 * angle)) * cos(turn - c * 0.5 * M_PI);
+  }
+  for (int k = 0; k <= GOAL_PIECES; ++k) {
+    double x[3];
+    goal_point_of(2, ends[0], ends[1], out, k, x);
+    ck_assert_double_eq_tol(hypot(x[0], x[1]), 1.0, 1e-14);
+  }
+}
+END_TEST
+
 int main(void) {
   TCase *tests = tcase_create("goal");
   tcase_set_timeout(tests, UNIT_SECONDS);
@@ -445,5 +478,7 @@ int main(void) {
   tcase_add_test(tests, few_nodes_have_a_wider_band);
   tcase_add_test(tests, sums_keep_the_doubts_of_their_parts);
   tcase_add_test(tests, ends_of_rounding_are_no_ends);
+  tcase_add_test(tests, parabolas_have_the_integral);
+  tcase_add_test(tests, points_of_an_edge_lie_on_its_arc);
   return unit_run("goal", tests);
 }

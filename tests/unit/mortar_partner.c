@@ -192,6 +192,39 @@ START_TEST(slight_steps_in_space_are_no_steps) {
 }
 END_TEST
 
+/* A step is measured by the largest face round the node and along the mean of
+ * their normals: 5e-4 is less than 0.1 % of 0.8, not of 0.2; the normal of a
+ * corner between a level face and one of 60 degrees makes 9.2e-4 of 8e-4, less
+ * than 0.1 % of the length 1 of the level one. */
+START_TEST(all_faces_of_a_node_measure_its_step) {
+  static const struct {
+    double x[3][2], higher;
+    int first; /* node of the first face */
+  } cases[] = {{{{0, 0}, {0.8, 0}, {1, 0}}, 5e-4, 0},
+               {{{0, 0}, {0.8, 0}, {1, 0}}, 5e-4, 1},
+               {{{0, 0}, {1, 0}, {1.2, 0.346}}, 8e-4, 0},
+               {{{0, 0}, {1, 0}, {1.2, 0.346}}, 8e-4, 1}};
+  for (int k = 0; k < 4; ++k) {
+    pair p = two_new(2);
+    for (int i = 2; i >= 0; --i)
+      two_add_node(&p, cases[k].x[i][0], cases[k].x[i][1], 0);
+    for (int i = 0; i < 2; ++i) {
+      const int left = 2 - (i + cases[k].first) % 2;
+      two_add_face(&p, 1, (int[]){left, left - 1});
+    }
+    for (int i = 0; i < 2; ++i) {
+      const double y = -0.3 + i * cases[k].higher;
+      const int left = two_add_node(&p, 0.5 * i, y, 0);
+      two_add_face(&p, 0, (int[]){two_add_node(&p, 0.5 + 0.5 * i, y, 0), left});
+    }
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, 1, 1e-12);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
 /* Three treads, the middle one a single face: a face that has left the lowest
  * by the first edge, at 0.52, still has the middle one, which those round the
  * second edge, at 0.68, leave. */
@@ -278,15 +311,18 @@ START_TEST(masters_apart_hide_each_other) {
 }
 END_TEST
 
-/* Nothing is a partner beyond the diagonal of the master, 1.02 long. */
+/* Nothing is a partner beyond the diagonal of the master, 1.02 long, wherever
+ * the surfaces are. */
 START_TEST(partners_are_within_the_extent_of_the_surfaces) {
-  for (int above = 0; above < 2; ++above) {
+  for (int k = 0; k < 6; ++k) {
     pair p = two_new(2);
+    const int above = k % 2;
     const double slope = 0.2, middle = hypot(1, slope) * (above ? 1.01 : 0.99);
     two_add_line(&p, 1, 1, 0, 1, 0);
     two_add_line(&p, 0, 1, 0, 1, 0);
     for (int i = 2; i < 4; ++i)
       p.m.x[2 * i + 1] = -middle + slope * (0.5 - p.m.x[2 * i]);
+    for (int i = 0; i < 8; ++i) p.m.x[i] += 8 * (k / 2 - 1);
     mortar *m = two_couple(&p);
     ck_assert_double_eq_tol(m->covered, !above, 1e-15);
     memory_free(m);
@@ -316,13 +352,87 @@ START_TEST(bodies_overlap_by_half_the_slave) {
 }
 END_TEST
 
+/* Of a folded master, which covers less than the slave, the fold on top. */
+START_TEST(folds_hide_what_is_below) {
+  static const double x[4][2] = {
+      {0.3, -0.1}, {0, -0.12}, {0.3, -0.2}, {0, -0.4}};
+  pair p = two_new(2);
+  two_add_line(&p, 1, 1, 0, 1, 0);
+  for (int i = 0; i < 4; ++i) two_add_node(&p, x[i][0], x[i][1], 0);
+  for (int i = 2; i < 5; ++i) two_add_face(&p, 0, (int[]){i, i + 1});
+  mortar *m = two_couple(&p);
+  ck_assert_double_eq_tol(m->covered, 0.3, 1e-15);
+  memory_free(m);
+  two_free(&p);
+}
+END_TEST
+
+/* A face of both surfaces does not hide itself, overlapping or apart. */
+START_TEST(faces_of_both_surfaces_are_partners) {
+  for (int overlap = 0; overlap < 2; ++overlap) {
+    pair p = two_new(2);
+    two_add_line(&p, 1, 1, 0, 1, 0);
+    two_add_line(&p, 0, 1, 0, 1, 0);
+    for (int i = 2; i < 4; ++i) p.m.x[2 * i + 1] = overlap ? 0.05 : -0.05;
+    p.slave[p.in.n_slave++] = p.master[0];
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, 1, 1e-15);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
+/* A plate 0.4 thick of four layers of elements, at rest half as thick: a master
+ * inside it is a partner, across layers too; its back and one behind that are
+ * none. */
+START_TEST(masters_behind_the_back_are_no_partners) {
+  static const struct {
+    double height;
+    int is;
+  } cases[] = {{0.05, 1}, {0.15, 1}, {0.38, 1}, {0.4, 0}, {0.45, 0}, {0.7, 0}};
+  enum { LAYERS = 4 };
+  for (int k = 0; k < 6; ++k) {
+    int elem[6 * LAYERS], face_elem[2] = {0, -1};
+    double now[2 * (2 * LAYERS + 4)];
+    pair p = two_new(2);
+    for (int i = 0; i <= LAYERS; ++i) {
+      const int a = two_add_node(&p, 0, 0.1 * i, 0);
+      const int b = two_add_node(&p, 1, 0.1 * i, 0);
+      if (i < LAYERS)
+        memcpy(elem + 6 * i, (int[]){a, b, b + 2, a, b + 2, a + 2},
+               6 * sizeof *elem);
+    }
+    two_add_face(&p, 1, (int[]){0, 1});
+    int master[2] = {2 * LAYERS + 1, 2 * LAYERS};
+    for (int i = 0; i < 2 && cases[k].height != 0.4; ++i)
+      master[i] = two_add_node(&p, 1 - i, cases[k].height, 0);
+    two_add_face(&p, 0, master);
+    p.m.n_elem = 2 * LAYERS;
+    p.m.elem = elem;
+    p.m.face_elem = face_elem;
+    memcpy(now, p.m.x, sizeof now);
+    for (int i = 0; i < p.m.n_node; ++i) p.m.x[2 * i + 1] *= 0.5;
+    p.in.x = now;
+    p.in.flat = 1;
+    mortar *m = two_couple(&p);
+    ck_assert_double_eq_tol(m->covered, cases[k].is, 1e-12);
+    memory_free(m);
+    two_free(&p);
+  }
+}
+END_TEST
+
 UNIT_MAIN("mortar_partner", rings_have_no_partner_on_the_far_side,
           plates_see_the_next_plate_and_not_what_is_behind,
           the_nearest_of_two_masters_is_the_partner, slight_steps_are_no_steps,
           bend_across_a_slit_is_no_step, slight_steps_in_space_are_no_steps,
+          all_faces_of_a_node_measure_its_step,
           each_face_leaves_what_is_beyond_its_own_step,
           overlapping_bodies_are_partners,
           surfaces_with_nothing_in_common_have_no_rows,
           masters_apart_hide_each_other,
           partners_are_within_the_extent_of_the_surfaces,
-          bodies_overlap_by_half_the_slave)
+          bodies_overlap_by_half_the_slave, folds_hide_what_is_below,
+          faces_of_both_surfaces_are_partners,
+          masters_behind_the_back_are_no_partners)

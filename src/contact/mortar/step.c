@@ -115,7 +115,7 @@ status steps_find(step_search *t, partner_search *s, int n_face,
                   const int *slave_no) {
   const step_node *n = &t->node;
   PASS(look_round(t, s, n_face, slave_no));
-  if (n->of.n < 2 || face_sets_join(s, &t->node.of)) return OK;
+  if (face_sets_join(s, &t->node.of)) return OK;
   for (int b = 0; b < n->of.n; ++b) {
     if (n->of.set[b] != b || !is_beyond(s, n, b)) continue;
     for (int k = 0; k < n_face; ++k) PASS(leave(t, n, b, slave_no[k]));

@@ -123,11 +123,10 @@ static void add_edges(const run *r, const int *where, int contact_id, int pass,
 }
 
 /* 1: closed, with closed edges on both sides, and far sharper than where a few
- * edges away. */
+ * edges away; at an end of the surface by[q] is 0. */
 static int is_corner(const run *r, const turns *t, int q) {
   static const double SHARP = 3.0; /* -, of a smooth gap 1, at its bends 2 */
   return r->result.contact[q] != CONTACT_OPEN && t->open[q] == 0 &&
-         t->edges[q] * t->more[q] > 1.5 &&
          2.0 * fabs(t->by[q]) > SHARP * t->far[q];
 }
 
