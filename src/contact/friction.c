@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "contact/average/average.h"
+#include "contact/parts.h"
 
 #include <strings.h>
 
@@ -192,6 +193,62 @@ static int carries(const contact_surface *s, int i, int contact_id) {
   return s->contact_id[i] == contact_id || !surface_is_corner(s, i);
 }
 
+/* A row of the matrix, by the nodes of the surface. */
+typedef struct line {
+  int n, *col;   /* its entries */
+  double *value; /* [n] of the surface */
+  int *in_row;   /* [n] the last row that had it, from 1 */
+  int row;
+} line;
+
+static void add_to_line(line *l, int j, double value) {
+  if (l->in_row[j] != l->row) {
+    l->in_row[j] = l->row;
+    l->value[j] = 0.0;
+    l->col[l->n++] = j;
+  }
+  l->value[j] += value;
+}
+
+/* The pressure at a node of *TIE is that of its masters in the contact, by
+ * their parts along its normal: a line, if any, gets them times a value.
+ * Returns one of them, a node of the surface; -1: none is in it. */
+static int add_masters(const contact_surface *s, const surface_input *in,
+                       int contact_id, int node_id, double value, line *to) {
+  const int tied = surface_tied(in, node_id), dim = s->dim;
+  double sum = 0.0;
+  int one = -1;
+  for (int pass = 0; tied >= 0 && pass < 1 + (to != NULL); ++pass) {
+    const node_links *l = &in->ties->to;
+    for (size_t e = l->start[tied]; e < l->start[tied + 1]; ++e) {
+      const int i = number_find(l->master[e], s->node_id, s->n);
+      double part = 0.0;
+      if (i < 0 || s->contact_id[i] != contact_id) continue;
+      const double *normal = s->frame + dim * dim * i;
+      for (int c = 0; c < dim; ++c)
+        part += normal[c] * normal[c] * l->part[dim * e + c];
+      if (!(part > 0.0)) continue;
+      if (pass == 0)
+        sum += part;
+      else
+        add_to_line(to, i, value * part / sum);
+      one = i;
+    }
+  }
+  return one;
+}
+
+/* A node of the patch. In the plane a node of *TIE is the only master of it in
+ * the contact, so that lines go on there. */
+static int patch_node(const contact_surface *s, const surface_input *in,
+                      int contact_id, int node_id) {
+  const mesh_group *g = in->pairs[contact_id].group;
+  const int one =
+      s->dim == 2 ? add_masters(s, in, contact_id, node_id, 0.0, NULL) : -1;
+  return number_find(one < 0 ? node_id : s->node_id[one], g->node_id,
+                     g->n_node);
+}
+
 static status patch_new(const contact_surface *s, const surface_input *in,
                         int contact_id, patch *a) {
   const mesh *m = in->mesh;
@@ -207,13 +264,16 @@ static status patch_new(const contact_surface *s, const surface_input *in,
     while (i < s->n && s->node_id[i] < g->node_id[k]) ++i;
     int there = i < s->n && s->node_id[i] == g->node_id[k];
     a->contact_node[k] = there ? i : -1;
-    a->active[k] = there && carries(s, i, contact_id);
+    a->active[k] = there
+                       ? carries(s, i, contact_id) != 0
+                       : dim == 3 && add_masters(s, in, contact_id,
+                                                 g->node_id[k], 0.0, NULL) >= 0;
     if (a->part != NULL) a->part[k] = there ? s->covered[i] : 1.0;
   }
   for (int k = 0; k < g->n_item; ++k)
     for (int c = 0; c < m->dim; ++c)
-      a->face[m->dim * k + c] = number_find(m->face[m->dim * g->item_id[k] + c],
-                                            g->node_id, g->n_node);
+      a->face[m->dim * k + c] =
+          patch_node(s, in, contact_id, m->face[m->dim * g->item_id[k] + c]);
   a->p = (average_patch){.dim = m->dim,
                          .axisymmetric = in->axisymmetric,
                          .n_node = g->n_node,
@@ -236,22 +296,45 @@ static void warn(double radius, const char *contact_name,
               f->n_local);
 }
 
+/* Row k of G. */
+static void set_line(const contact_surface *s, const surface_input *in,
+                     int contact_id, const patch *a, const sparse_rows *G,
+                     int k, line *to) {
+  const mesh_group *g = in->pairs[contact_id].group;
+  to->n = 0;
+  to->row = k + 1;
+  for (int e = G->start[k]; e < G->start[k + 1]; ++e) {
+    const int j = a->contact_node[G->col[e]];
+    if (j >= 0)
+      add_to_line(to, j, G->val[e]);
+    else
+      add_masters(s, in, contact_id, g->node_id[G->col[e]], G->val[e], to);
+  }
+  qsort(to->col, to->n, sizeof *to->col, number_order);
+}
+
 /* Rows of the nodes whose friction is that of this contact, for forces: times
  * the tributary areas. */
-static status to_surface(const contact_surface *s, int contact_id,
-                         const patch *a, const sparse_rows *G,
+static status to_surface(const contact_surface *s, const surface_input *in,
+                         int contact_id, const patch *a, const sparse_rows *G,
                          sparse_rows *out) {
-  int n = 0;
-  PASS_NEW_ALL(OF(out->start, s->n + 1), OF(out->col, G->start[G->n]),
-               OF(out->val, G->start[G->n]));
+  int n = 0, cap[2] = {0, 0};
+  OWNED double *value = NULL;
+  OWNED int *col = NULL, *in_row = NULL;
+  PASS_NEW_ALL(OF(out->start, s->n + 1), OF(value, s->n), OF(col, s->n),
+               OF(in_row, s->n));
+  line l = {0, col, value, in_row, 0};
   out->n = s->n;
   for (int k = 0; k < G->n; ++k) {
     int i = a->contact_node[k];
     if (i < 0 || s->contact_id[i] != contact_id) continue;
-    for (int e = G->start[k]; e < G->start[k + 1]; ++e) {
-      int j = a->contact_node[G->col[e]];
+    set_line(s, in, contact_id, a, G, k, &l);
+    for (int e = 0; e < l.n; ++e) {
+      const int j = col[e];
+      PASS_GROW(out->col, n, cap[0]);
+      PASS_GROW(out->val, n, cap[1]);
       out->col[n] = j;
-      out->val[n++] = G->val[e] * (s->area[i] / s->area[j]);
+      out->val[n++] = value[j] * (s->area[i] / s->area[j]);
     }
     out->start[i + 1] = n;
   }
@@ -278,7 +361,7 @@ static status nonlocal_average(const friction_card *card,
   average_facts facts;
   PASS(patch_new(s, in, contact_id, a));
   PASS(average_build(&a->p, &rule, &G, &facts));
-  PASS(to_surface(s, contact_id, a, &G, out));
+  PASS(to_surface(s, in, contact_id, a, &G, out));
   warn(own->radius, in->pairs[contact_id].name, &facts, at, log);
   return OK;
 }
@@ -286,10 +369,10 @@ static status nonlocal_average(const friction_card *card,
 static const char *nonlocal_misfit(const void *param, int dim,
                                    int axisymmetric) {
   const nonlocal *own = param;
-  int mirrors = own->mirror_x || own->mirror_y || own->mirror_z;
+  int mirrored = own->mirror_x || own->mirror_y || own->mirror_z;
   if (own->distance && (dim == 3 || axisymmetric))
     return "DISTANCE=GEODESIC is for plane models; use STRAIGHT";
-  if (own->distance && mirrors)
+  if (own->distance && mirrored)
     return "MIRROR_X, MIRROR_Y need DISTANCE=STRAIGHT";
   if (own->mirror_x && axisymmetric)
     return "MIRROR_X would mirror the radius; the axis needs no mirror";
