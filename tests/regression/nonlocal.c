@@ -708,6 +708,33 @@ START_TEST(average_goes_on_across_a_tie) {
 }
 END_TEST
 
+/* The tips of a crack under a uniform pressure carry nothing, but the pressure
+ * goes on to them: with k constant R(p)/p is 1/2 there and grows by 1/(2 rho).
+ */
+START_TEST(average_goes_on_to_the_tips) {
+  job j = job_begin("tips");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "tips.inp",
+            "*PARAMETER\nN = 8\nW = 3\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=LINE\n*FRICTION, CONTACT=C, LAW=NONLOCAL,\n"
+            "KERNEL=CONSTANT, RADIUS=0.4\n0.3\n*STEP\n*STATIC\n*BOUNDARY\n"
+            "PLATE, 1\nBOTTOM, 2\n*DSLOAD\nTOP, P, 5.\n*PRINT, CONTACT\n"
+            "*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < t.n_row; ++i) {
+    const double left = 1 - fabs(dat_at(&t, i, "x"));
+    ck_assert_double_eq_tol(
+        dat_at(&t, i, "limit"),
+        0.3 * dat_at(&t, i, "f_n") * fmin(1, 0.5 + left / 0.8), 1e-8);
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           mirror_takes_the_edge_away, normalized_edges_keep_a_uniform_pressure,
           limit_is_the_average_of_the_pressures,
@@ -720,4 +747,5 @@ UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           square_base_has_the_mass_of_the_kernel, cone_is_exact_at_any_angle,
           round_base_has_the_mass_of_the_kernel, given_forces_are_averaged,
           velocity_form_has_the_same_zone, law_may_change_from_step_to_step,
-          slave_may_end_beyond_its_master, average_goes_on_across_a_tie)
+          slave_may_end_beyond_its_master, average_goes_on_across_a_tie,
+          average_goes_on_to_the_tips)
