@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "contact/average/average.h"
+#include "contact/parts.h"
 
 #include <strings.h>
 
@@ -185,11 +186,113 @@ typedef struct patch {
   unsigned char *active;
   double *part;
   int *contact_node; /* [n_node] of the surface, or -1 */
+  sparse_rows mean;  /* pressures at its nodes by those of the surface */
 } patch;
 
 /* A node whose normal force belongs to another contact has none for this. */
 static int carries(const contact_surface *s, int i, int contact_id) {
   return s->contact_id[i] == contact_id || !surface_is_corner(s, i);
+}
+
+/* A row of the matrix, by the nodes of the surface. */
+typedef struct line {
+  int n, *col;   /* its entries */
+  double *value; /* [n] of the surface */
+  int *in_row;   /* [n] the last row that had it, from 1 */
+  int row;
+} line;
+
+static void add_to_line(line *l, int j, double value) {
+  if (l->in_row[j] != l->row) {
+    l->in_row[j] = l->row;
+    l->value[j] = 0.0;
+    l->col[l->n++] = j;
+  }
+  l->value[j] += value;
+}
+
+/* The masters of a node of *TIE in the contact, by their parts along its
+ * normal: to a line, if any. Returns one of them, a node of the surface; -1:
+ * none is in it. */
+static int add_masters(const contact_surface *s, const surface_input *in,
+                       int contact_id, int node_id, line *to) {
+  const int tied = surface_tied(in, node_id), dim = s->dim;
+  const node_links *l = tied < 0 ? NULL : &in->ties->to;
+  int one = -1;
+  if (l == NULL) return -1;
+  for (size_t e = l->start[tied]; e < l->start[tied + 1]; ++e) {
+    const int i = number_find(l->master[e], s->node_id, s->n);
+    double part = 0.0;
+    if (i < 0 || s->contact_id[i] != contact_id) continue;
+    const double *normal = s->frame + dim * dim * i;
+    for (int c = 0; c < dim; ++c)
+      part += normal[c] * normal[c] * l->part[dim * e + c];
+    if (!(part > 0.0)) continue;
+    if (to != NULL) add_to_line(to, i, part);
+    one = i;
+  }
+  return one;
+}
+
+/* Those that carry the part of a node of the front of a crack: the others on
+ * its faces. */
+static void add_others(const patch *a, int k, line *to) {
+  const average_patch *p = &a->p;
+  for (int f = 0; f < p->n_face; ++f) {
+    const int *v = p->face + p->dim * f;
+    int on = 0;
+    for (int c = 0; c < p->dim; ++c) on |= v[c] == k;
+    for (int c = 0; c < p->dim && on; ++c)
+      if (a->contact_node[v[c]] >= 0)
+        add_to_line(to, a->contact_node[v[c]], 1.0);
+  }
+}
+
+/* The pressure at a node of the patch is a mean of those of the surface. */
+static status find_means(const contact_surface *s, const surface_input *in,
+                         int contact_id, patch *a) {
+  const mesh_group *g = in->pairs[contact_id].group;
+  const int is_crack = strcmp(in->pairs[contact_id].card, "*CRACK") == 0;
+  int n = 0, cap[2] = {0, 0};
+  OWNED double *value = NULL;
+  OWNED int *col = NULL, *in_row = NULL;
+  PASS_NEW_ALL(OF(value, s->n), OF(col, s->n), OF(in_row, s->n));
+  line l = {0, col, value, in_row, 0};
+  OWNS(a);
+  PASS_NEW(a->mean.start, g->n_node + 1);
+  a->mean.n = g->n_node;
+  for (int k = 0; k < g->n_node; ++k) {
+    double sum = 0.0;
+    l.n = 0;
+    l.row = k + 1;
+    if (a->contact_node[k] >= 0)
+      add_to_line(&l, a->contact_node[k], 1.0);
+    else if (s->dim == 3 && surface_tied(in, g->node_id[k]) >= 0)
+      add_masters(s, in, contact_id, g->node_id[k], &l);
+    else if (is_crack)
+      add_others(a, k, &l);
+    if (a->contact_node[k] < 0) a->active[k] = l.n > 0;
+    for (int e = 0; e < l.n; ++e) sum += value[col[e]];
+    for (int e = 0; e < l.n; ++e) {
+      PASS_GROW(a->mean.col, n, cap[0]);
+      PASS_GROW(a->mean.val, n, cap[1]);
+      a->mean.col[n] = col[e];
+      a->mean.val[n++] = value[col[e]] / sum;
+    }
+    a->mean.start[k + 1] = n;
+  }
+  return OK;
+}
+
+/* A node of the patch. In the plane a node of *TIE is the only master of it in
+ * the contact, so that lines go on there. */
+static int patch_node(const contact_surface *s, const surface_input *in,
+                      int contact_id, int node_id) {
+  const mesh_group *g = in->pairs[contact_id].group;
+  const int one =
+      s->dim == 2 ? add_masters(s, in, contact_id, node_id, NULL) : -1;
+  return number_find(one < 0 ? node_id : s->node_id[one], g->node_id,
+                     g->n_node);
 }
 
 static status patch_new(const contact_surface *s, const surface_input *in,
@@ -212,8 +315,8 @@ static status patch_new(const contact_surface *s, const surface_input *in,
   }
   for (int k = 0; k < g->n_item; ++k)
     for (int c = 0; c < m->dim; ++c)
-      a->face[m->dim * k + c] = number_find(m->face[m->dim * g->item_id[k] + c],
-                                            g->node_id, g->n_node);
+      a->face[m->dim * k + c] =
+          patch_node(s, in, contact_id, m->face[m->dim * g->item_id[k] + c]);
   a->p = (average_patch){.dim = m->dim,
                          .axisymmetric = in->axisymmetric,
                          .n_node = g->n_node,
@@ -222,7 +325,7 @@ static status patch_new(const contact_surface *s, const surface_input *in,
                          .face = a->face,
                          .active = a->active,
                          .part = a->part};
-  return OK;
+  return find_means(s, in, contact_id, a);
 }
 
 static void warn(double radius, const char *contact_name,
@@ -236,22 +339,39 @@ static void warn(double radius, const char *contact_name,
               f->n_local);
 }
 
+/* Row k of G. */
+static void set_line(const patch *a, const sparse_rows *G, int k, line *to) {
+  to->n = 0;
+  to->row = k + 1;
+  for (int e = G->start[k]; e < G->start[k + 1]; ++e)
+    for (int h = row_begin(&a->mean, G->col[e]);
+         h < row_end(&a->mean, G->col[e]); ++h)
+      add_to_line(to, a->mean.col[h], G->val[e] * a->mean.val[h]);
+  qsort(to->col, to->n, sizeof *to->col, number_order);
+}
+
 /* Rows of the nodes whose friction is that of this contact, for forces: times
  * the tributary areas. */
 static status to_surface(const contact_surface *s, int contact_id,
                          const patch *a, const sparse_rows *G,
                          sparse_rows *out) {
-  int n = 0;
-  PASS_NEW_ALL(OF(out->start, s->n + 1), OF(out->col, G->start[G->n]),
-               OF(out->val, G->start[G->n]));
+  int n = 0, cap[2] = {0, 0};
+  OWNED double *value = NULL;
+  OWNED int *col = NULL, *in_row = NULL;
+  PASS_NEW_ALL(OF(out->start, s->n + 1), OF(value, s->n), OF(col, s->n),
+               OF(in_row, s->n));
+  line l = {0, col, value, in_row, 0};
   out->n = s->n;
   for (int k = 0; k < G->n; ++k) {
     int i = a->contact_node[k];
     if (i < 0 || s->contact_id[i] != contact_id) continue;
-    for (int e = G->start[k]; e < G->start[k + 1]; ++e) {
-      int j = a->contact_node[G->col[e]];
+    set_line(a, G, k, &l);
+    for (int e = 0; e < l.n; ++e) {
+      const int j = col[e];
+      PASS_GROW(out->col, n, cap[0]);
+      PASS_GROW(out->val, n, cap[1]);
       out->col[n] = j;
-      out->val[n++] = G->val[e] * (s->area[i] / s->area[j]);
+      out->val[n++] = value[j] * (s->area[i] / s->area[j]);
     }
     out->start[i + 1] = n;
   }
@@ -286,10 +406,10 @@ static status nonlocal_average(const friction_card *card,
 static const char *nonlocal_misfit(const void *param, int dim,
                                    int axisymmetric) {
   const nonlocal *own = param;
-  int mirrors = own->mirror_x || own->mirror_y || own->mirror_z;
+  int mirrored = own->mirror_x || own->mirror_y || own->mirror_z;
   if (own->distance && (dim == 3 || axisymmetric))
     return "DISTANCE=GEODESIC is for plane models; use STRAIGHT";
-  if (own->distance && mirrors)
+  if (own->distance && mirrored)
     return "MIRROR_X, MIRROR_Y need DISTANCE=STRAIGHT";
   if (own->mirror_x && axisymmetric)
     return "MIRROR_X would mirror the radius; the axis needs no mirror";

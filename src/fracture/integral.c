@@ -134,12 +134,30 @@ static void growth_slope(const work *w, const double *g, const local *at,
   field_turn(at, sum, out);
 }
 
+/* Vector i of of[dim*n], in the frame of a place. */
+static void turned_vector(const work *w, const double *of, int i,
+                          const local *at, double to[3]) {
+  const size_t dim = w->m->dim;
+  double given[3] = {0, 0, 0};
+  COPY(given, of + dim * i, dim);
+  field_turn_vector(at, given, to);
+}
+
 /* (sig_ij X_ij,l + saux_ij,j u_i,l) Q_l */
 static double lack(const field_tensor *s, const field_tensor *d,
                    const auxiliary *x, const double *Q) {
   double sum = field_product(s, &x->X) * Q[0];
   for (int l = 0; l < 3; ++l)
     for (int i = 0; i < 3; ++i) sum += x->div[i] * d->of[i][l] * Q[l];
+  return sum;
+}
+
+/* -b_i d_i,l Q_l */
+static double body_work(const double b[3], const field_tensor *d,
+                        const double *Q) {
+  double sum = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int l = 0; l < 3; ++l) sum -= b[i] * d->of[i][l] * Q[l];
   return sum;
 }
 
@@ -310,19 +328,21 @@ static const double centre[2][4] = {{1.0 / 3, 1.0 / 3, 1.0 / 3, 0},
 static void add_element(work *w, int elem) {
   const double *phi = centre[w->m->dim - 2];
   const int n = w->m->dim + 1;
-  double g[12], Q[DOMAINS][3];
+  double g[12], Q[DOMAINS][3], b[3] = {0, 0, 0};
   field_tensor s, d, grow[DOMAINS], P;
   local at;
   if (!set_corners(w, n, w->m->elem + (size_t)n * elem)) return;
   w->measure = set_fields(w, elem, g);
   place_at(w, phi, &at);
+  if (w->state->force != NULL) turned_vector(w, w->state->force, elem, &at, b);
   field_turn(&at, w->stress, &s);
   field_turn(&at, w->slope, &d);
   energy_flux(&s, &d, w->state->share, &P);
   for (int k = 0; k < DOMAINS; ++k) {
     growth_at(w, phi, &at, k, Q[k]);
     growth_slope(w, g, &at, k, &grow[k]);
-    w->sum->I[k][MODES] += w->measure * field_product(&P, &grow[k]);
+    w->sum->I[k][MODES] +=
+        w->measure * (field_product(&P, &grow[k]) + body_work(b, &d, Q[k]));
   }
   for (int mode = 0; mode < MODES && w->x->G > 0; ++mode) {
     auxiliary x;
@@ -330,7 +350,8 @@ static void add_element(work *w, int elem) {
     interaction_flux(&s, &d, &x, &P);
     for (int k = 0; k < DOMAINS; ++k)
       w->sum->I[k][mode] +=
-          w->measure * (field_product(&P, &grow[k]) + lack(&s, &d, &x, Q[k]));
+          w->measure * (field_product(&P, &grow[k]) + lack(&s, &d, &x, Q[k]) +
+                        body_work(b, &x.d, Q[k]));
   }
 }
 
@@ -365,14 +386,6 @@ static int derive_element(work *w, int elem, int mode, const double *part,
 }
 
 /* ---- lips ---------------------------------------------------------------- */
-
-/* The given traction at a node in the frame of its place. */
-static void traction_of(const work *w, int node, const local *at, double t[3]) {
-  const size_t dim = w->m->dim;
-  double given[3] = {0, 0, 0};
-  COPY(given, w->state->traction + dim * node, dim);
-  field_turn_vector(at, given, t);
-}
 
 /* Corners of lip number i, the plus lips first, and on which side its body is;
  * returns its face id, -1: it is in no domain. */
@@ -413,7 +426,7 @@ static void find_trends(work *w) {
       double t[3];
       locate(w->p, w->at[k].x, &at);
       if (!is_smooth(w, -at.x[0])) continue;
-      traction_of(w, w->m->face[dim * face + k], &at, t);
+      turned_vector(w, w->state->traction, w->m->face[dim * face + k], &at, t);
       add_to_trend(&w->side[w->above], -at.x[0], t);
     }
   }
@@ -440,7 +453,7 @@ static double set_traction(work *w, corner *c, int node) {
   if (behind < w->scatter && of->n > 0)
     trend_at(of, behind, w->scatter, c->traction);
   else
-    traction_of(w, node, &at, c->traction);
+    turned_vector(w, w->state->traction, node, &at, c->traction);
   return behind;
 }
 

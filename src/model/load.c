@@ -170,23 +170,60 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
   return OK;
 }
 
+/* An element under a load on bodies. */
+static patch body_patch(const model *m, const mesh *msh, const load *l, int e) {
+  patch p = {.n = msh->dim + 1, .factor = 1.0};
+  COPY(p.node, msh->elem + (size_t)p.n * e, p.n);
+  p.measure = mesh_elem_measure(msh, e) * model_thickness(m, e);
+  if (l->kind == LOAD_GRAVITY) {
+    const section *sec = &m->sections[m->elem_section[e]];
+    p.factor = m->materials[sec->material_id].density;
+    memcpy(p.direction, l->direction, sizeof p.direction);
+  } else {
+    p.direction[l->component] = 1.0;
+  }
+  return p;
+}
+
 static status add_elements(const model *m, const mesh *msh, const load *l,
                            const step *s, double t, double *F) {
   const mesh_group *g = &msh->group[l->group_id];
   TIMED(STAGE_BODY);
   for (int k = 0; k < g->n_item; ++k) {
-    int e = g->item_id[k];
-    patch p = {.n = msh->dim + 1, .factor = 1.0};
-    COPY(p.node, msh->elem + (size_t)p.n * e, p.n);
-    p.measure = mesh_elem_measure(msh, e) * model_thickness(m, e);
-    if (l->kind == LOAD_GRAVITY) {
-      const section *sec = &m->sections[m->elem_section[e]];
-      p.factor = m->materials[sec->material_id].density;
-      memcpy(p.direction, l->direction, sizeof p.direction);
-    } else {
-      p.direction[l->component] = 1.0;
-    }
+    const patch p = body_patch(m, msh, l, g->item_id[k]);
     PASS(add_patch(m, msh, l, s, t, &p, F));
+  }
+  return OK;
+}
+
+static int is_body(const load *l) {
+  return l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY;
+}
+
+int load_has_body(const model *m) {
+  for (int i = 0; i < m->n.step; ++i)
+    for (EACH(const load, l, m->steps[i].loads.item, m->steps[i].loads.n))
+      if (is_body(l)) return 1;
+  return 0;
+}
+
+status load_body(const model *m, const mesh *msh, const step *s, double t,
+                 double *F, double *b) {
+  const int dim = msh->dim;
+  CLEAR(F, (size_t)dim * msh->n_node);
+  CLEAR(b, (size_t)dim * msh->n_elem);
+  for (EACH(const load, l, s->loads.item, s->loads.n)) {
+    const mesh_group *g = &msh->group[l->group_id];
+    if (!is_body(l)) continue;
+    PASS(add_elements(m, msh, l, s, t, F));
+    for (int k = 0; k < g->n_item; ++k) {
+      const patch p = body_patch(m, msh, l, g->item_id[k]);
+      double sum = 0.0;
+      for (int i = 0; i < p.n; ++i)
+        sum += load_at_node(l, msh, s, p.node[i], t) * p.factor / p.n;
+      for (int c = 0; c < dim; ++c)
+        b[(size_t)dim * g->item_id[k] + c] += sum * p.direction[c];
+    }
   }
   return OK;
 }

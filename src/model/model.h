@@ -571,6 +571,11 @@ void model_fit_problem(model *m, int dim, int friction, effect_finder *find);
  * ERR_DECK if a value is not finite (the record names card, node and time). */
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F);
+/* 1: a step has loads on bodies. What a step has of them: their part of
+ * load_forces, and their mean over each element, b[dim*n_elem], N/m3. */
+int load_has_body(const model *m);
+status load_body(const model *m, const mesh *msh, const step *s, double t,
+                 double *F, double *b);
 /* Total time at the end of a step. */
 double step_end(const step *s);
 const char *load_card(const load *l); /* "DLOAD" */

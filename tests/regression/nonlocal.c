@@ -665,6 +665,76 @@ START_TEST(slave_may_end_beyond_its_master) {
 }
 END_TEST
 
+/* A uniform pressure p on a side of two blocks that are tied, of the height 2:
+ * with k constant the ends take mu p rho/4 each, in space what the overlap of
+ * the face a b with itself moved by d lacks on the mean over the disc of d: (a
+ * + b) 4 rho/(3 pi) - rho^2/(2 pi). The joint takes nothing. */
+START_TEST(average_goes_on_across_a_tie) {
+  static const struct {
+    const char *geo, *way, *held, *distance;
+    double lost, near;
+  } cases[] = {{"pair", "", "2", "STRAIGHT", 0.2, 1e-3},
+               {"pair", "", "2", "GEODESIC", 0.2, 1e-3},
+               {"pair3", "0., ", "2, 3", "STRAIGHT", 0.483831, 0.012}};
+  for (int k = 0; k < 3; ++k) {
+    char file[40];
+    const int n = k < 2 ? 16 : 5;
+    job j = job_begin("joint");
+    snprintf(file, sizeof file, "tests/regression/mesh/%s.geo", cases[k].geo);
+    job_copy(&j, file);
+    job_write(&j, "joint.inp",
+              "*PARAMETER\nN = %d\nM = %d\n*MESH, FILE=%s.geo\n"
+              "*MATERIAL, NAME=A\n*ELASTIC\n1000., 0.\n"
+              "*SOLID SECTION, ELSET=LOWER, MATERIAL=A\n"
+              "*SOLID SECTION, ELSET=UPPER, MATERIAL=A\n"
+              "*TIE, NAME=T\nUNDER, OVER\n*OBSTACLE, NAME=O, TYPE=PLANE\n"
+              "%s0., 0.\n1., %s0.\nMOVE, %s0., 0.1\n"
+              "*CONTACT, NAME=P, GROUP=LEFT, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=P, LAW=NONLOCAL, KERNEL=CONSTANT,\n"
+              "RADIUS=0.4, DISTANCE=%s\n0.3\n*STEP\n*STATIC\n*BOUNDARY\n"
+              "LEFT, %s\n*DSLOAD\nRIGHT, P, 10.\n*PRINT, TOTALS\n"
+              "*END STEP\n",
+              n, n + 2, cases[k].geo, cases[k].way, cases[k].way, cases[k].way,
+              cases[k].distance, cases[k].held);
+    ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+    dat t = job_table(&j, "TOTALS", -1);
+    const double is = dat_at(&t, 0, k < 2 ? "force_y" : "force_z");
+    const double wanted = 3 * (2 - cases[k].lost);
+    ck_assert_msg(fabs(is - wanted) < cases[k].near * wanted, "%d: %g, not %g",
+                  k, is, wanted);
+    dat_free(&t);
+    job_end(&j);
+  }
+}
+END_TEST
+
+/* The tips of a crack under a uniform pressure carry nothing, but the pressure
+ * goes on to them: with k constant R(p)/p is 1/2 there and grows by 1/(2 rho).
+ */
+START_TEST(average_goes_on_to_the_tips) {
+  job j = job_begin("tips");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "tips.inp",
+            "*PARAMETER\nN = 8\nW = 3\nANGLE = 0.\n*MESH, FILE=crack.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+            "*SOLID SECTION, ELSET=PLATE, MATERIAL=M\n"
+            "*CRACK, NAME=C, GROUP=LINE\n*FRICTION, CONTACT=C, LAW=NONLOCAL,\n"
+            "KERNEL=CONSTANT, RADIUS=0.4\n0.3\n*STEP\n*STATIC\n*BOUNDARY\n"
+            "PLATE, 1\nBOTTOM, 2\n*DSLOAD\nTOP, P, 5.\n*PRINT, CONTACT\n"
+            "*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "CONTACT", -1);
+  for (int i = 0; i < t.n_row; ++i) {
+    const double left = 1 - fabs(dat_at(&t, i, "x"));
+    ck_assert_double_eq_tol(
+        dat_at(&t, i, "limit"),
+        0.3 * dat_at(&t, i, "f_n") * fmin(1, 0.5 + left / 0.8), 1e-8);
+  }
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           mirror_takes_the_edge_away, normalized_edges_keep_a_uniform_pressure,
           limit_is_the_average_of_the_pressures,
@@ -677,4 +747,5 @@ UNIT_MAIN("nonlocal", uniform_pressure_has_its_closed_form,
           square_base_has_the_mass_of_the_kernel, cone_is_exact_at_any_angle,
           round_base_has_the_mass_of_the_kernel, given_forces_are_averaged,
           velocity_form_has_the_same_zone, law_may_change_from_step_to_step,
-          slave_may_end_beyond_its_master)
+          slave_may_end_beyond_its_master, average_goes_on_across_a_tie,
+          average_goes_on_to_the_tips)

@@ -157,6 +157,32 @@ START_TEST(blocks_slide_past_a_wall) {
 }
 END_TEST
 
+/* A driven body wears one that a plane of symmetry holds: the next *VISCO step,
+ * where nothing changes, has no increment without length, although the held
+ * node of the slave comes from its masters by rounding. */
+START_TEST(held_slave_starts_a_step_smoothly) {
+  job j = job_begin("worn");
+  job_copy(&j, "tests/regression/mesh/pair.geo");
+  job_write(&j, "worn.inp",
+            "*PARAMETER\nN = 3\nM = 7\nC = -0.3\n*MESH, FILE=pair.geo\n"
+            "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n4.\n"
+            "*SOLID SECTION, ELSET=LOWER, MATERIAL=M\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M\n"
+            "*CONTACT PAIR, NAME=P, SLAVE=FIRST\nUNDER, OVER\n"
+            "*WEAR, CONTACT=P, COEFFICIENT=1E-5\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*BOUNDARY\n"
+            "BOTTOM, 2\nLEFT, 1\nUPPER, 1, 1, 0.0028\nUPPER, 2, 2, -0.0011\n"
+            "*PRINT, ENERGY\n*END STEP\n"
+            "*STEP\n*VISCO, INTEGRATOR=BACKWARD\n0.5, 1.\n*END STEP\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat e = job_table(&j, "ENERGY", -1);
+  ck_assert_double_eq(dat_at(&e, 0, "increment"), 2);
+  dat_free(&e);
+  job_end(&j);
+}
+END_TEST
+
 /* A block that hangs over the edge of another: whether its own top is among the
  * masters, or that of a third above it too, what is beyond the edge meets
  * nothing. */
@@ -287,6 +313,7 @@ int main(void) {
                       2);
   tcase_add_loop_test(tests, driven_bodies_slide_on_each_other, 0, 8);
   tcase_add_loop_test(tests, blocks_slide_past_a_wall, 0, 6);
+  tcase_add_test(tests, held_slave_starts_a_step_smoothly);
   tcase_add_loop_test(tests, back_of_a_slave_is_no_partner, 0, 2);
   tcase_add_loop_test(tests, step_of_a_master_is_no_slope, 0, 3);
   return unit_run("pair_supports", tests);

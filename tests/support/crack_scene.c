@@ -124,7 +124,7 @@ void scene_load(crack_scene *s, crack_field *field, const void *ctx) {
 fracture_factors *scene_factors(const crack_scene *s, int *n,
                                 fracture_point **points) {
   const fracture_body body = {s->m, &s->crack, s->section, s->material};
-  const fracture_state state = {s->u, s->sigma, s->traction, 0.5};
+  const fracture_state state = {s->u, s->sigma, s->traction, 0.5, s->force};
   fracture *f;
   must(fracture_new(&body, &f) == OK, "fracture_new");
   *n = fracture_count(f);
@@ -144,4 +144,5 @@ void scene_end(crack_scene *s) {
   free(s->u);
   free(s->sigma);
   free(s->traction);
+  free(s->force);
 }

@@ -20,6 +20,7 @@ typedef struct crack_scene {
   int *side;      /* [n_node] */
   double turn[9]; /* x = turn y, row by row */
   double *u, *sigma, *traction;
+  double *force; /* [dim*n_elem], NULL: none */
 } crack_scene;
 
 /* Take over a mesh with the crack CRACK at that height, open and turn it; turn

@@ -452,6 +452,41 @@ START_TEST(factors_of_a_straight_front) {
 }
 END_TEST
 
+/* Hangs by the stress z - 0.5 along z, which is zero on the crack. */
+static void hanging(const void *field, const double *y, int side, double *u) {
+  const fracture_material *x = &strain_steel;
+  const double z = y[2] - 0.5;
+  tip_displacement(field, y, side, u);
+  for (int k = 0; k < 2; ++k) {
+    u[k] -= x->nu / x->E * z * y[k];
+    u[2] += x->nu / x->E * y[k] * y[k] / 2;
+  }
+  u[2] += z * z / (2 * x->E);
+}
+
+/* The weight of a body whose stress leaves the crack alone adds nothing to the
+ * factors, but a tenth of sliding where it is not counted. */
+START_TEST(weight_counts) {
+  crack_scene s;
+  tip_field f = {.dim = 3, .kappa = 1.8, .G = G, .tip = {0.5, 0.5}};
+  f.K[0] = 1;
+  start_cube(&s, 14);
+  scene_move(&s, hanging, &f);
+  answer without = ask(&s);
+  s.force = calloc((size_t)3 * s.m->n_elem, sizeof *s.force);
+  for (int k = 0; k < 3 * s.m->n_elem; ++k)
+    s.force[k] = -s.turn[3 * (k % 3) + 2];
+  answer a = ask(&s);
+  ck_assert_double_gt(fabs(without.at[7].K[1]), 0.03);
+  for (int k = 0; k < 3; ++k)
+    ck_assert_double_eq_tol(a.at[7].K[k], k == 0, 0.01);
+  ck_assert_double_eq_tol(a.at[7].J * stiffness_of(&strain_steel), 1, 0.02);
+  drop(&without);
+  drop(&a);
+  scene_end(&s);
+}
+END_TEST
+
 /* A front x = 0.5 - (y - 0.5)^2 / 4 with nodes at uneven distances. */
 START_TEST(frames_follow_an_uneven_front) {
   mesh *m = make_grid_3d((const int[]){8, 32, 8}, (const double[]){1, 1, 1});
@@ -623,7 +658,7 @@ END_TEST
  * place of by_u it is within "near". */
 static void check_linear(const crack_scene *s, int point, double near) {
   const fracture_body body = {s->m, &s->crack, s->section, s->material};
-  const fracture_state state = {s->u, s->sigma, s->traction, 0.5};
+  const fracture_state state = {s->u, s->sigma, s->traction, 0.5, NULL};
   const int dim = s->m->dim;
   answer a = ask(s);
   fracture *f;
@@ -720,7 +755,7 @@ UNIT_MAIN("fracture", fields_are_those_of_complex_functions,
           domains_end_where_the_crack_is_no_longer_straight,
           domains_end_at_another_material,
           tip_between_materials_has_the_energy_release_rate_alone,
-          factors_of_a_straight_front, factors_of_a_penny,
+          factors_of_a_straight_front, weight_counts, factors_of_a_penny,
           factors_of_a_front_that_is_bent_inward,
           scatter_is_half_of_what_domains_differ_by,
           scatter_of_no_number_is_none, closed_front_has_no_end,

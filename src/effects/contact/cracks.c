@@ -34,6 +34,7 @@ typedef struct crack_state {
   double *sigma;    /* [ns*n_elem] Pa */
   double *traction; /* [dim*n_node] on the lips, Pa */
   double *lumped;   /* [dim*n_node] workspace of find_tractions, Pa */
+  double *force;    /* [dim*n_elem] on the elements, N/m3; NULL: none */
   double *area;     /* [n_node] of the lips, m2; 0 at the fronts */
   double *shift;    /* [dim*n_node] from a node to where the force of a uniform
                        traction acts that it takes, m */
@@ -138,6 +139,8 @@ static status cracks_new(run *r, void **self) {
   PASS_NEW(own->sigma, (size_t)r->m->ns * r->msh->n_elem);
   PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped);
   PASS_NEW_ALL(OF(own->area, r->msh->n_node), OF(own->shift, r->n_dof));
+  if (load_has_body(r->m))
+    PASS_NEW(own->force, (size_t)r->msh->dim * r->msh->n_elem);
   own->step_id = -1;
   own->flows =
       facts_has_inelastic(r->m) || (r->m->effects & EFFECT_THERMAL) != 0;
@@ -293,7 +296,7 @@ static double exponent_of(const run *r, const fracture_point *p) {
 /* C(t) by the rates of the increment. */
 static status find_creep(const run *r, crack_state *own) {
   const double dt = r->now.t - r->old.t;
-  fracture_state s = {own->rate, own->sigma, own->traction, 0.5};
+  fracture_state s = {own->rate, own->sigma, own->traction, 0.5, own->force};
   for (int i = 0; i < own->n; ++i)
     own->tips[i].creep = own->tips[i].creep_scatter = NAN;
   if (!own->flows || r->step->kind != STEP_VISCO || !(dt > 0.0)) return OK;
@@ -336,7 +339,7 @@ static status check_elastic(const run *r, const crack_state *own, double *u) {
 
 static fracture_state state_of(const run *r, const crack_state *own) {
   return (fracture_state){own->flows ? own->elastic : r->now.u, own->sigma,
-                          own->traction, 0.5};
+                          own->traction, 0.5, own->force};
 }
 
 /* own->found of r->now, once an increment. */
@@ -346,6 +349,10 @@ static status find_all(run *r, crack_state *own) {
   domain_stress(&r->body.d, r->now.u, NULL, own->sigma);
   /* Of contact forces and loads at the lips. */
   COPY(own->traction, r->now.F, r->n_dof);
+  if (own->force != NULL) {
+    PASS(load_body(r->m, r->msh, r->step, r->now.t, own->lumped, own->force));
+    for (size_t k = 0; k < r->n_dof; ++k) own->traction[k] -= own->lumped[k];
+  }
   if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
   over_areas(r, own, own->traction);
   shift_all(r, own, 0, own->traction);
