@@ -21,6 +21,7 @@ static status solve(const command *c, job_input *in, int *unsettled) {
   OWNED_GET(char, stop, text_path(c->dir, in->m->name.job, "stop"));
   PASS(output_spare(in->m, c->dir));
   PASS(job_lock_take(c->dir, in->m->name.job, &lock));
+  output_drop_aside(in->m, c->dir);
   interrupt_catch(stop);
   if (c->restart) PASS(restart_read(c, in, &from));
   if (in->problem == NULL && in->m->steps[0].nested && from == NULL)

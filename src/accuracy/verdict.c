@@ -88,9 +88,12 @@ static status put_given(const verdict_scene *s, given_form **form,
   return given_form_set(*form, &before, force, s->msh->size, u, r, cp);
 }
 
-/* v[m]: the motion; *outcome of complementary pivoting. */
-static status find_motion(const verdict_scene *s, double *v, outcome *end) {
+/* v[m]: the motion; *outcome of complementary pivoting with that many facets.
+ */
+static status pivot(const verdict_scene *s, const char *facets, double *v,
+                    outcome *end) {
   const contact_problem *cp = s->cp;
+  char why[100];
   _Alignas(16) char param[PARAM_SIZE] = {0};
   const solver_ops *lemke = solver_find("lemke");
   const solver_control control = {.tol = 1e-8};
@@ -108,6 +111,8 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
   OWNED_OF(given_form, form, put_given(s, &form, &own));
   PASS_NEW_REALS(cp->m, &u, &r);
   option_defaults(lemke->options, param);
+  (void)option_read(option_find(lemke->options, "FACETS"), facets, param, why,
+                    sizeof why);
   OWNED_OF(void, work, solver_set_up(lemke, &own, param, &work));
   PASS(lemke->solve(&own, param, work, &control, u, r, &rep));
   *end = rep.outcome;
@@ -118,6 +123,14 @@ static status find_motion(const verdict_scene *s, double *v, outcome *end) {
     *end = STOPPED_STAGNATION;
   if (form != NULL) given_form_move(form, v);
   return OK;
+}
+
+/* In space the polygon allows more friction than the disc, 8 % with 8 facets,
+ * which hides motions next to the limit; with 32 it is 0.5 %. */
+static status find_motion(const verdict_scene *s, double *v, outcome *end) {
+  PASS(pivot(s, "8", v, end));
+  if (*end == STOPPED_RAY || *end == CONVERGED || s->cp->dim == 2) return OK;
+  return pivot(s, "32", v, end);
 }
 
 /* Nodes that open, and those that only slide. */

@@ -739,12 +739,23 @@ static status surface_new(int dim, int n, int pairs, contact_surface **out) {
   return OK;
 }
 
+/* Normals are sides or areas, and are squared. */
+static status check_range(const mesh *m) {
+  const double normal = m->dim == 2 ? m->size : m->size * m->size;
+  if (normal < NUMBER_MOST && normal > 1.0 / NUMBER_MOST) return OK;
+  RAISE(ERR_MESH,
+        "the mesh, %.3g long, is out of range: the squares of normals are no "
+        "numbers above 0; use other units, or SCALE= of *MESH",
+        m->size);
+}
+
 status surface_build(const surface_input *in, message_log *log,
                      contact_surface **out) {
   status st = OK;
   builder b = {.in = in, .log = log, .dim = in->mesh->dim};
   contact_surface *s = NULL;
   *out = NULL;
+  TRY(check_range(in->mesh));
   TRY(collect(&b));
   mirrors_find(in, &b.mirrors);
   TRY(surface_new(b.dim, b.n, has_pair(in), &s));

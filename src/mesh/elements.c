@@ -221,17 +221,21 @@ static status cut_flat(builder *b, double far) {
   return OK;
 }
 
-/* A square or cube of larger or smaller lengths is no number. */
-static void report_flat(const builder *b, const faults *bad, double far) {
-  const char *what = b->m->dim == 2 ? "area" : "volume";
-  if (far > 1e-98 && far < 1e100)
-    message_add(b->log, P3022, b->at, "%d element(s) have no %s: %s", bad->n,
-                what, bad->text);
-  else
-    message_add(b->log, P3022, b->at,
-                "the coordinates, up to %g, are out of range: the %s of %d "
-                "element(s) is no number above 0; use other units",
-                far, what, bad->n);
+static void report_flat(const builder *b, const faults *bad) {
+  message_add(b->log, P3022, b->at, "%d element(s) have no %s: %s", bad->n,
+              b->m->dim == 2 ? "area" : "volume", bad->text);
+}
+
+/* 1: areas and volumes, and what they are divided by, are numbers. */
+static int in_range(const builder *b, double far) {
+  const double root = b->m->dim == 2 ? far : far * sqrt(far);
+  if (far == 0.0) return 1; /* the elements are flat */
+  if (root >= 1.0 / NUMBER_MOST && root <= NUMBER_MOST) return 1;
+  message_add(b->log, P3022, b->at,
+              "the coordinates, up to %g, are out of range: %s are no numbers "
+              "above 0; use other units",
+              far, b->m->dim == 2 ? "areas" : "volumes");
+  return 0;
 }
 
 /* Turn every element to positive orientation; flat ones are reported. */
@@ -240,6 +244,7 @@ static status orient(builder *b) {
   faults bad = {0};
   int n = m->dim + 1;
   double far = largest_entry((size_t)m->dim * m->n_node, m->x), det;
+  if (!in_range(b, far)) return build_check(b);
   if (m->dim == 2) PASS(cut_flat(b, far));
   for (int e = 0; e < m->n_elem; ++e) {
     int *v = mesh_elem_nodes(m, e);
@@ -250,7 +255,7 @@ static status orient(builder *b) {
     fault_centre(m, n, v, centre);
     fault_at(&bad, m->dim, m->elem_no[e], centre);
   }
-  if (bad.n > 0) report_flat(b, &bad, far);
+  if (bad.n > 0) report_flat(b, &bad);
   return build_check(b);
 }
 

@@ -12,14 +12,16 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 /* JOB.stop is removed only if it was made during the run. The first N_OLD of
  * an earlier run must not be taken for results of this one, the first N_END of
- * the part before a restart not for those of the whole. In the order in which
- * they go: what JOB.sta tells stands in JOB.h5 at every moment. */
-enum { N_END = 4, N_OLD = 11 };
+ * the part before a restart not for those of the whole; the first N_RESULT are
+ * results. In the order in which they go: what JOB.sta tells stands in JOB.h5
+ * at every moment. */
+enum { N_END = 4, N_OLD = 11, N_RESULT = 12 };
 /* clang-format off */
 static const char *const results[] = {
     "json", "xdmf", "body.xdmf", "contact.xdmf", "rst.h5", "rst.old.h5",
@@ -60,10 +62,35 @@ static void close_folder(DIR **folder) {
   if (*folder != NULL) closedir(*folder);
 }
 
-/* All files of condensed problems of increments after that one are spared, or
- * cleared. */
+static status spare_it(const model *m, const char *path, const char *to) {
+  return spare(m->deck, path);
+}
+
+static status clear_it(const model *m, const char *path, const char *to) {
+  return file_clear(path);
+}
+
+static status drop_it(const model *m, const char *path, const char *to) {
+  unlink(path);
+  return OK;
+}
+
+/* Into the folder "to". */
+static status move_it(const model *m, const char *path, const char *to) {
+  const char *const name = strrchr(path, '/') + 1;
+  OWNED_NEW(char, moved, strlen(to) + strlen(name) + 2);
+  sprintf(moved, "%s/%s", to, name);
+  PASS(file_clear(moved));
+  if (rename(path, moved) != 0 && errno != ENOENT)
+    PASS(text_failed(path, "move", errno));
+  return OK;
+}
+
+typedef status deal(const model *m, const char *path, const char *to);
+
+/* All files of condensed problems of increments after that one. */
 static status each_condensed(const model *m, const char *dir, int after,
-                             int cleared) {
+                             deal *with, const char *to) {
   DIR *folder ENDS_BY(close_folder) = opendir(dir);
   if (folder == NULL && (errno == ENOENT || errno == ENOTDIR)) return OK;
   if (folder == NULL) return text_failed(dir, "read", errno);
@@ -71,18 +98,43 @@ static status each_condensed(const model *m, const char *dir, int after,
     if (increment_of(e->d_name, m->name.job) <= after) continue;
     OWNED_NEW(char, path, strlen(dir) + strlen(e->d_name) + 2);
     sprintf(path, "%s/%s", dir, e->d_name);
-    PASS(cleared ? file_clear(path) : spare(m->deck, path));
+    PASS(with(m, path, to));
   }
   return OK;
 }
 
-status output_spare(const model *m, const char *dir) {
-  if (m->deck == NULL) return OK;
-  for (size_t k = 0; k < sizeof results / sizeof *results; ++k) {
+/* The first n kinds of results. */
+static status each_result(const model *m, const char *dir, size_t n, deal *with,
+                          const char *to) {
+  for (size_t k = 0; k < n; ++k) {
     OWNED_GET(char, path, text_path(dir, m->name.job, results[k]));
-    PASS(spare(m->deck, path));
+    PASS(with(m, path, to));
   }
-  return each_condensed(m, dir, 0, 0);
+  return each_condensed(m, dir, 0, with, to);
+}
+
+status output_spare(const model *m, const char *dir) {
+  enum { ALL = sizeof results / sizeof *results };
+  if (m->deck == NULL) return OK;
+  OWNED_GET(char, aside, text_path(dir, m->name.job, "pass"));
+  PASS(each_result(m, aside, N_RESULT, spare_it, NULL));
+  return each_result(m, dir, ALL, spare_it, NULL);
+}
+
+status output_set_aside(const model *m, const char *dir) {
+  OWNED_GET(char, aside, text_path(dir, m->name.job, "pass"));
+  if (mkdir(aside, 0777) != 0 && errno != EEXIST)
+    PASS(text_failed(aside, "make", errno));
+  return each_result(m, dir, N_RESULT, move_it, aside);
+}
+
+void output_drop_aside(const model *m, const char *dir) {
+  char *aside = text_path(dir, m->name.job, "pass");
+  if (aside != NULL && access(aside, F_OK) == 0) {
+    (void)each_result(m, aside, N_RESULT, drop_it, NULL);
+    rmdir(aside); /* it stays where somebody keeps files there */
+  }
+  memory_free(aside);
 }
 
 enum { XDMF_PAUSE = 1 };               /* s */
@@ -278,7 +330,7 @@ static status open_new(output *o) {
   for (int k = 0; k < N_OLD; ++k) PASS(remove_old(o, results[k]));
   PASS(open_text(o, "sta", -1, &o->sta));
   PASS(open_text(o, "cvg", -1, &o->cvg));
-  PASS(each_condensed(o->m, o->o.dir, 0, 1));
+  PASS(each_condensed(o->m, o->o.dir, 0, clear_it, NULL));
   PASS(tabular_open(o->m, o->msh, o->o.dir, -1, &o->dat));
   if (o->dat == NULL) PASS(remove_old(o, "dat"));
   PASS(sta_header(&o->o, &o->sta));
@@ -303,7 +355,7 @@ static status open_earlier(output *o) {
   TRY(open_text(o, "sta", ends.sta, &o->sta));
   TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
   TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
-  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, 1));
+  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, clear_it, NULL));
   TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
 done:
   if (o->run.increments == NULL) o->run.n_increment = 0;

@@ -12,6 +12,10 @@ typedef struct output output;
  * reads, under whatever name, ERR_FILE if it is protected or no file. Before
  * anything is touched. */
 status output_spare(const model *m, const char *dir);
+/* The files of a pass of TARGET= go to DIR/JOB.pass until those of the next one
+ * are whole, ERR_FILE; that is removed, as far as it can be. */
+status output_set_aside(const model *m, const char *dir);
+void output_drop_aside(const model *m, const char *dir);
 /* Open all files of the job: the text files, flushed line by line, and JOB.h5
  * with space for the estimated number of increments. JOB.xdmf, JOB.json and
  * condensed problems of an earlier run, and its restart files, are removed.

@@ -48,10 +48,11 @@ typedef struct pass {
   double *size;    /* [n_node] of the next mesh, m */
   aims *goals;     /* or NULL: there are none */
   coarser *contact, *before; /* of this pass, of the one before */
-  mesh *first;               /* of the deck, with targets of goals: its
-                                lengths are the largest of all passes */
-  double *first_size;        /* [first->n_node] m */
-  double unknowns;           /* of this pass */
+  struct {
+    mesh *msh;    /* of the deck, with targets of goals: its lengths */
+    double *size; /* [msh->n_node] are the largest of all passes, m */
+  } first;
+  double unknowns; /* of this pass */
   struct {
     double dt, tol; /* on increments and tolerances */
     double shorter; /* on the increments, in the next pass */
@@ -62,6 +63,7 @@ typedef struct pass {
     double meshed;          /* of that on meshes */
   } cpu;                    /* s */
   int done;                 /* 1: no other pass */
+  int aside;                /* pass whose files are aside, 0: none */
   char why[256];            /* why the target is missed; or "" */
 } pass;
 
@@ -408,8 +410,8 @@ static status read_next(pass *p) {
   p->cpu.meshed = timer_cost(STAGE_MESH).cpu;
   p->cpu.last_mesh = p->cpu.mesh;
   if (refines(&p->rows[p->n - 1]))
-    other =
-        (job_mesh){.sizes = {{p->in->msh, p->size}, {p->first, p->first_size}}};
+    other = (job_mesh){
+        .sizes = {{p->in->msh, p->size}, {p->first.msh, p->first.size}}};
   else
     other.same = p->in->msh;
   for (int k = 0; k < TRIES && st == ERR_MESH; ++k) {
@@ -449,15 +451,32 @@ static void take_next(pass *p) {
   p->next.first = in->first != NULL ? in->first : in->d;
   if (in->first == NULL) in->d = NULL;
   in->first = NULL;
-  if (in->msh == p->first || in->msh == p->next.msh) in->msh = NULL;
+  if (in->msh == p->first.msh || in->msh == p->next.msh) in->msh = NULL;
   job_input_free(in);
   *in = p->next;
   p->next = (job_input){0};
 }
 
+/* A pass that did not end leaves the files of the one before aside. */
+static status tell_aside(pass *p, status st) {
+  char why[1024];
+  const int of = p->aside;
+  if (of == 0 || st == OK) return st;
+  p->aside = 0;
+  snprintf(why, sizeof why, "%s", status_message());
+  OWNED_GET(char, aside, text_path(p->c->dir, p->in->m->name.job, "pass"));
+  return status_fail(st, __func__, __LINE__,
+                     "%s; the files of pass %d are in %s", why, p->n, aside);
+}
+
+static void drop_aside(pass *p) {
+  if (p->aside > 0) output_drop_aside(p->in->m, p->c->dir);
+  p->aside = 0;
+}
+
 static status see_finished(void *ctx, status st, output *out) {
   pass *p = ctx;
-  if (st != OK) return st;
+  if (st != OK) return tell_aside(p, st);
   aims_evaluate(p->goals, p->in->m);
   pass_row *row = &p->rows[p->n++];
   *row = (pass_row){.unknowns = p->unknowns,
@@ -489,9 +508,9 @@ static status see_finished(void *ctx, status st, output *out) {
 }
 
 static status keep_first(pass *p) {
-  PASS_NEW(p->first_size, p->in->msh->n_node);
-  p->first = p->in->msh;
-  space_lengths(p->first, p->first_size);
+  PASS_NEW(p->first.size, p->in->msh->n_node);
+  p->first.msh = p->in->msh;
+  space_lengths(p->first.msh, p->first.size);
   return OK;
 }
 
@@ -507,13 +526,18 @@ status target_reach(const command *c, job_input *in, int *unsettled) {
   TRY(begin(&p, in));
   for (;;) {
     *unsettled = 0;
-    TRY(job_solve(c, in, &watch, NULL, unsettled));
+    st = job_solve(c, in, &watch, NULL, unsettled);
+    if (p.n > p.aside && st != ERR_FILE) drop_aside(&p);
+    TRY(st);
     if (p.done) break;
+    TRY(output_set_aside(in->m, c->dir));
+    p.aside = p.n;
     take_next(&p);
   }
 done:
+  st = tell_aside(&p, st);
   drop_next(&p);
-  if (p.first != in->msh) memory_free(p.first);
-  RELEASE(p.eta, p.size, p.first_size, p.before, p.contact, p.goals);
+  if (p.first.msh != in->msh) memory_free(p.first.msh);
+  RELEASE(p.eta, p.size, p.first.size, p.before, p.contact, p.goals);
   return st;
 }

@@ -147,6 +147,38 @@ START_TEST(body_on_one_face_is_lifted) {
 }
 END_TEST
 
+/* A tetrahedron of weight 1 on three nodes, 1 from its axis: a body force
+ * k (-y, x) twists it by 3 k/20, the nodes hold mu, each along its own circle,
+ * which is no corner of a polygon of friction. */
+START_TEST(a_twist_beyond_the_limit_has_a_verdict) {
+  static const double share[] = {0.999, 1.006, 1.02};
+  for (int k = 0; k < 3; ++k) {
+    job j = job_begin("twist");
+    job_write(&j, "twist.msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n"
+              "2 1 \"FOOT\"\n3 2 \"BODY\"\n$EndPhysicalNames\n$Nodes\n4\n"
+              "1 0 1 0\n2 -0.8660254037844386 -0.5 0\n"
+              "3 0.8660254037844386 -0.5 0\n4 0 0 1\n$EndNodes\n$Elements\n2\n"
+              "1 2 2 1 1 1 2 3\n2 4 2 2 2 1 2 3 4\n$EndElements\n");
+    job_write(&j, "twist.inp",
+              "*MESH, FILE=twist.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*OBSTACLE, NAME=O, TYPE=CONFORMING\n"
+              "*CONTACT, NAME=C, GROUP=FOOT, OBSTACLE=O\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n0.3\n*STEP\n*STATIC\n"
+              "*DLOAD\nBODY, BZ, -1.\nBODY, BX, \"-%g*y\"\nBODY, BY, \"%g*x\"\n"
+              "*END STEP\n",
+              2 * share[k], 2 * share[k]);
+    const int code = job_run(&j, "");
+    ck_assert_msg(code == (share[k] > 1 ? 6 : 0), "%g of the limit: exit %d",
+                  share[k], code);
+    ck_assert_msg(code == 0 || strstr(j.errors, " slide") != NULL, "%s",
+                  j.errors);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Without any contact or support the free motions are named. */
 START_TEST(free_motions_are_named) {
   static const struct {
@@ -705,6 +737,7 @@ int main(void) {
   tcase_add_test(tests, layers_of_any_contrast_weigh_the_same);
   tcase_add_test(tests, no_equilibrium_is_a_verdict);
   tcase_add_test(tests, body_on_one_face_is_lifted);
+  tcase_add_test(tests, a_twist_beyond_the_limit_has_a_verdict);
   tcase_add_test(tests, free_motions_are_named);
   tcase_add_test(tests, body_under_another_that_is_lifted_stays);
   tcase_add_test(tests, block_on_one_that_rubs_is_free);

@@ -283,6 +283,34 @@ START_TEST(file_size_limit_is_a_failed_write) {
 }
 END_TEST
 
+/* The second pass of TARGET= has larger files: it fails, in which increment or
+ * file whatever, and leaves the results of the first, which are removed where
+ * it ends. */
+START_TEST(a_pass_that_fails_leaves_the_one_before) {
+  job j = block(5);
+  char *deck = job_file(&j, "inp"), *at = strstr(deck, "*PRINT, TOTALS");
+  ck_assert_ptr_nonnull(at);
+  *at = '\0';
+  job_write(&j, "block.inp",
+            "%s*ACCURACY, TARGET=3 %%\n*OUTPUT, FREQUENCY=0\n*END STEP\n",
+            deck);
+  free(deck);
+  ck_assert_int_eq(finish(start(&j, 100000)), 4);
+  char *errors = errors_of(&j), *json = job_file(&j, "pass/block.json");
+  ck_assert_msg(strstr(errors, "the files of pass 1 are in ") != NULL &&
+                    strstr(errors, "/block.pass") != NULL,
+                "%s", errors);
+  ck_assert_ptr_nonnull(json);
+  ck_assert_ptr_nonnull(strstr(json, "\"code\": 0"));
+  ck_assert(job_has(&j, "pass/block.h5") && job_has(&j, "pass/block.lst"));
+  free(errors);
+  free(json);
+  ck_assert_int_eq(job_run(&j, ""), 0);
+  ck_assert(job_has(&j, "h5") && !job_has(&j, "pass"));
+  job_end(&j);
+}
+END_TEST
+
 START_TEST(second_job_of_the_name_is_refused) {
   job j = block(MANY);
   char owner[40];
@@ -514,5 +542,6 @@ UNIT_MAIN("interrupt", file_system_without_locks_is_no_matter,
           signals_end_after_an_increment, signals_come_together,
           ignored_signals_stay_ignored, earlier_file_stays,
           file_ends_after_an_increment, second_signal_ends_at_once,
-          file_size_limit_is_a_failed_write, second_job_of_the_name_is_refused,
-          other_file_of_that_name_stays)
+          file_size_limit_is_a_failed_write,
+          a_pass_that_fails_leaves_the_one_before,
+          second_job_of_the_name_is_refused, other_file_of_that_name_stays)
