@@ -8,7 +8,6 @@
 #include "manual/manual.h"
 #include "program/inform.h"
 
-#include <ctype.h>
 #include <getopt.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -244,22 +243,10 @@ static int check_together(const command *c) {
   return -1;
 }
 
-/* 1: the results cannot show it: a line of a listing ends at a line break, the
- * name of a file in .xdmf at a colon. */
-static int is_bad_name(const char *job) {
-  const char *slash = strrchr(job, '/');
-  const char *name = slash == NULL ? job : slash + 1;
-  for (; *name != '\0'; ++name)
-    if (*name == ':' || iscntrl((unsigned char)*name)) return 1;
-  return 0;
-}
-
 /* The job itself; -1: run it. */
 static int take_job(int n, char **job, command *c) {
   if (n == 0 || job[0][0] == '\0') return wrong("no job given", "");
   if (n > 1) return wrong("one job at a time; not expected: ", job[1]);
-  if (is_bad_name(job[0]))
-    return wrong("the name of a job has no colon and no line break: ", job[0]);
   c->deck_file = find_deck(job[0]);
   if (c->deck_file == NULL) return no_memory();
   if (c->dir == NULL) c->dir = folder_of(c->deck_file);
