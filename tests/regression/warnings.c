@@ -137,6 +137,53 @@ START_TEST(slip_along_a_bent_obstacle_is_told) {
 }
 END_TEST
 
+/* A column of the width 1 and the height 2 on longer faces, pressed by 1 and
+ * pushed by s at its top: the pressures act at 0.5 + 2 s. Where nodes of the
+ * column are the slave it tips. */
+START_TEST(pressures_beyond_the_end_of_the_master_are_told) {
+  static const struct {
+    const char *push, *slave;
+    int code;
+    const char *told;
+  } rows[] = {{"0.24", "AUTO", 0, NULL},
+              {"0.255", "AUTO", 0, "acts 0.01 beyond the end of the master UP"},
+              {"-0.26", "AUTO", 0, "acts 0.02 beyond the end of the master UP"},
+              {"0.255", "SECOND", 6, NULL}};
+  for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+    job j = job_begin("column");
+    job_write(&j, "column.msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n"
+              "1 1 \"LOW\"\n1 2 \"UP\"\n1 3 \"TOP\"\n1 4 \"FIXED\"\n"
+              "2 5 \"BODY\"\n$EndPhysicalNames\n$Nodes\n13\n"
+              "1 -0.6 0 0\n2 0.2 0 0\n3 0.8 0 0\n4 1.6 0 0\n"
+              "5 -0.6 1 0\n6 0.2 1 0\n7 0.8 1 0\n8 1.6 1 0\n"
+              "9 0 1 0\n10 0.5 1 0\n11 1 1 0\n12 0 3 0\n13 1 3 0\n"
+              "$EndNodes\n$Elements\n18\n"
+              "1 1 2 4 4 1 2\n2 1 2 4 4 2 3\n3 1 2 4 4 3 4\n"
+              "4 1 2 1 1 5 6\n5 1 2 1 1 6 7\n6 1 2 1 1 7 8\n"
+              "7 1 2 2 2 9 10\n8 1 2 2 2 10 11\n9 1 2 3 3 12 13\n"
+              "10 2 2 5 5 1 2 6\n11 2 2 5 5 1 6 5\n12 2 2 5 5 2 3 7\n"
+              "13 2 2 5 5 2 7 6\n14 2 2 5 5 3 4 8\n15 2 2 5 5 3 8 7\n"
+              "16 2 2 5 5 9 10 12\n17 2 2 5 5 10 11 13\n"
+              "18 2 2 5 5 10 13 12\n$EndElements\n");
+    job_write(&j, "column.inp",
+              "*MESH, FILE=column.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n"
+              "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
+              "*CONTACT PAIR, NAME=C, SLAVE=%s\nLOW, UP\n"
+              "*FRICTION, CONTACT=C, LAW=COULOMB\n1.\n*STEP\n*STATIC\n"
+              "*BOUNDARY\nFIXED, 1, 2\n*DSLOAD\nTOP, P, 1.\nTOP, TX, %s\n"
+              "*END STEP\n",
+              rows[i].slave, rows[i].push);
+    const int code = job_run(&j, "--no-timing");
+    ck_assert_msg(code == rows[i].code, "%d: exit %d: %s", (int)i, code,
+                  j.errors);
+    ck_told(&j, "P4042", rows[i].told == NULL ? "beyond the end" : rows[i].told,
+            rows[i].told != NULL);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Also by a run that goes on where nothing is left to do. */
 START_TEST(a_contact_that_never_touched_is_told) {
   static const char lifted[] =
@@ -362,6 +409,7 @@ int main(void) {
   tcase_add_test(tests, rotations_above_a_tenth_are_told);
   tcase_add_test(tests, elements_inside_out_are_told);
   tcase_add_test(tests, slip_along_a_bent_obstacle_is_told);
+  tcase_add_test(tests, pressures_beyond_the_end_of_the_master_are_told);
   tcase_add_test(tests, a_contact_that_never_touched_is_told);
   tcase_add_test(tests, a_ball_that_no_normal_meets_is_told);
   tcase_add_test(tests, a_touch_of_an_increment_that_does_not_count_is_one);

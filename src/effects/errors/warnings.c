@@ -2,8 +2,9 @@
  * Warnings about a solution of the equations that may be meaningless: strains
  * or rotations that are not small, elements turned inside out by the
  * displacements, bodies that slip farther than the faces where they touch are
- * long, past another body or along an obstacle that is not straight, a contact
- * that no node ever touched. Each is reported once a run.
+ * long, past another body or along an obstacle that is not straight, bodies
+ * pressed on another one beyond its end, a contact that no node ever touched.
+ * Each is reported once a run.
  */
 #include "effects/plan/effect.h"
 #include "run/history/loop.h"
@@ -15,12 +16,13 @@ typedef struct warnings {
   double *edge;  /* [n_contact] m, longest of its faces; 0: forces are given */
 } warnings;
 
-/* Of warnings.touched: a node has touched; slip, friction of an open node is
- * told. */
-enum { TOUCHED = 1, SLIP_TOLD = 2, OPEN_TOLD = 4 };
+/* Of warnings.touched: a node has touched; slip, friction of an open node, a
+ * resultant beyond the master is told. */
+enum { TOUCHED = 1, SLIP_TOLD = 2, OPEN_TOLD = 4, BEYOND_TOLD = 8 };
 
 static const double LARGE = 0.05; /* -, strain, change of a gap */
 static const double FAR = 0.1;    /* rad, rotation */
+static const double CLOSE = 1e-3; /* -, of a face: not told to be beyond */
 
 static const char *section_of(const run *r, int elem_id) {
   return r->m->sections[r->m->elem_section[elem_id]].elset;
@@ -182,6 +184,94 @@ static void warn_open(run *r, warnings *reported) {
   }
 }
 
+/* Where the resultant of the pressures of a pair acts on the master, m; 0: none
+ * does. */
+static int find_middle(const run *r, int id, double *x) {
+  const int dim = r->msh->dim;
+  const contact_surface *s = r->surface;
+  double force = 0.0;
+  for (int i = 0; i < s->n; ++i) {
+    const double f = -r->now.rc[dim * i];
+    if (s->contact_id[i] != id || !(f > 0.0)) continue;
+    for (int c = 0; c < dim; ++c)
+      x[c] +=
+          f * (s->x[dim * i + c] + s->gap0[i] * s->frame[dim * dim * i + c]);
+    force += f;
+  }
+  for (int c = 0; c < dim; ++c) x[c] /= force;
+  return force > 0.0;
+}
+
+/* v = x less the nearest point of the convex hull of the nodes of a group
+ * (Gilbert, SIAM J. Control 4 (1966)); how far they are apart along v, m, where
+ * that is not less than "close". */
+static double beyond_hull(const mesh *m, const mesh_group *g, const double *x,
+                          double close, double *v) {
+  enum { STEPS = 100 };
+  const int dim = m->dim;
+  double apart = 0.0;
+  vector_of(dim, mesh_node_x(m, g->node_id[0]), x, v);
+  for (int turn = 0; turn < STEPS && dot(dim, v, v) > close * close; ++turn) {
+    double least = HUGE_VAL, p[3], to[3], near[3] = {0.0};
+    for (int k = 0; k < g->n_node; ++k) {
+      vector_of(dim, mesh_node_x(m, g->node_id[k]), x, p);
+      if (dot(dim, v, p) >= least) continue;
+      least = dot(dim, v, p);
+      COPY(near, p, dim);
+    }
+    apart = least / sqrt(dot(dim, v, v));
+    vector_of(dim, v, near, to);
+    const double square = dot(dim, to, to);
+    if (!(square > 0.0)) break;
+    add_scaled(dim, fmin(1.0, -dot(dim, v, to) / square), to, v);
+  }
+  return apart;
+}
+
+/* 1: the direction v is along the surface at all nodes with pressure. */
+static int is_along(const run *r, int id, const double *v) {
+  static const double leans = 0.1; /* -, sine */
+  const int dim = r->msh->dim;
+  const double most = leans * sqrt(dot(dim, v, v));
+  int along = 1;
+  for (int i = 0; i < r->nodes.n; ++i)
+    if (r->surface->contact_id[i] == id && r->now.rc[dim * i] < 0.0)
+      along &= fabs(dot(dim, v, r->surface->frame + dim * dim * i)) <= most;
+  return along;
+}
+
+/* 1: no node of a pair is in another one, whose master may bear it too. */
+static int is_alone(const run *r, int id) {
+  const mesh_group *own = r->faces.pairs[id].group;
+  for (int p = 0; p < r->m->n.contact; ++p) {
+    const mesh_group *g = r->faces.pairs[p].group;
+    for (int k = 0; k < own->n_node && p != id; ++k)
+      if (number_find(own->node_id[k], g->node_id, g->n_node) >= 0) return 0;
+  }
+  return 1;
+}
+
+/* Pressures at nodes beyond the end of the master, whose faces it covers in
+ * part, hold a body that has tipped over its end. */
+static void warn_beyond(run *r, int id, warnings *reported) {
+  const contact *c = &r->m->contacts[id];
+  double x[3] = {0.0}, v[3];
+  if (!c->is_pair || c->is_crack || c->update ||
+      (reported->touched[id] & BEYOND_TOLD) || !find_middle(r, id, x))
+    return;
+  const mesh_group *g = &r->msh->group[c->pair.master_id];
+  const double close = CLOSE * reported->edge[id],
+               far = beyond_hull(r->msh, g, x, close, v);
+  if (!(far > close) || !is_along(r, id, v) || !is_alone(r, id)) return;
+  reported->touched[id] |= BEYOND_TOLD;
+  message_add(r->m->log, P4042, &c->at,
+              "step %d, increment %d, time %g: %s %s: the resultant of the "
+              "pressures acts %.3g beyond the end of the master %s: the body "
+              "tips over it",
+              run_step_id(r) + 1, r->at.increment_no, r->now.t, contact_card(c),
+              c->name, far, g->name);
+}
+
 static status look(run *r, void *self) {
   warnings *own = self;
   note_touches(r, own);
@@ -190,6 +280,7 @@ static status look(run *r, void *self) {
   if (r->solving.report.outcome <= 0) return OK;
   warn_deformation(r, own);
   warn_open(r, own);
+  for (int i = 0; i < r->m->n.contact; ++i) warn_beyond(r, i, own);
   return look_at_slip(r, own);
 }
 
