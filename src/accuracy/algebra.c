@@ -81,8 +81,6 @@ static int admissible(const contact_problem *cp, const pair *p) {
   return 1;
 }
 
-static const double NO_LEVER = 0x1p-44; /* -, lever, condition: rounding */
-
 /* Unit diagonal of G[k k]; rows and columns without one: 0. */
 static void scale_balance(int k, double *G, double *root) {
   for (int a = 0; a < k; ++a) {
@@ -98,8 +96,8 @@ static void scale_balance(int k, double *G, double *root) {
 static int find_resisted(int k, double *G, double *root, int *order) {
   int rank = 0;
   scale_balance(k, G, root);
-  LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', k, G, k, order, &rank, NO_LEVER,
-                      root + k);
+  LAPACKE_dpstrf_work(LAPACK_COL_MAJOR, 'L', k, G, k, order, &rank,
+                      CONTACT_NO_LEVER, root + k);
   return rank;
 }
 
@@ -114,7 +112,7 @@ static int solve_balance(int k, double *G, double *b, double *root,
   if (LAPACKE_dgetrf(LAPACK_COL_MAJOR, k, k, G, k, pivot) != 0) return 0;
   LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', k, G, k, norm, &condition,
                       root + k, pivot + k);
-  if (!(condition > NO_LEVER)) return 0;
+  if (!(condition > CONTACT_NO_LEVER)) return 0;
   for (int a = 0; a < k; ++a) b[a] *= root[a];
   LAPACKE_dgetrs(LAPACK_COL_MAJOR, 'N', k, 1, G, k, pivot, b, k);
   for (int a = 0; a < k; ++a) b[a] *= root[a];
@@ -140,7 +138,7 @@ static int find_resultants(const contact_problem *cp,
 /* z[m] = W R of a motion, without lever arms of rounding. */
 static void weigh(const contact_problem *cp, const pair *p,
                   const double *motion, double *z) {
-  const double least = NO_LEVER * largest_entry(cp->m, motion);
+  const double least = CONTACT_NO_LEVER * largest_entry(cp->m, motion);
   for (int dof = 0; dof < cp->m; ++dof)
     z[dof] = fabs(motion[dof]) > least ? slack(cp, p, dof) * motion[dof] : 0.0;
 }
@@ -215,7 +213,7 @@ static void pair_friction(const contact_problem *cp, const double *u,
       z[k] = r[dof] - c * (u[dof] - contact_stick(cp, dof));
       size = hypot(size, z[k]);
     }
-    p->slides[i] = size > g * (1.0 - NO_LEVER);
+    p->slides[i] = size > g * (1.0 - CONTACT_NO_LEVER);
     for (int k = 1; k < cp->dim; ++k) {
       int dof = i * cp->dim + k;
       if (!accuracy_rubs(cp, dof)) continue;

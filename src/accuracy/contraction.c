@@ -152,8 +152,6 @@ static void first_change(linear_contact *s, const double *r) {
                              : 0.0;
 }
 
-static const double NO_LEVER = 0x1p-44; /* -, of a motion that is rounding */
-
 /* Largest entry of columns [from, k[ of R, in rows that are known or rub, or in
  * all. */
 static double find_pivot(const linear_contact *s, const double *R, int from,
@@ -184,7 +182,8 @@ static status hold_idle(linear_contact *s) {
   OWNED_NEW(double, R, (size_t)m *k);
   COPY(R, cp->motion, (size_t)m * k);
   for (int done = 0, all = 0; all < 2; ++all)
-    for (; done < k && find_pivot(s, R, done, all, &row, &column) > NO_LEVER;
+    for (; done < k &&
+           find_pivot(s, R, done, all, &row, &column) > CONTACT_NO_LEVER;
          ++done) {
       double *by = R + (size_t)m * done;
       cblas_dswap(m, by, 1, R + (size_t)m * column, 1);

@@ -39,6 +39,8 @@ typedef struct contact_bodies {
   const void **matrix;   /* [4] the same: what is in node follows from it */
 } contact_bodies;
 
+#define CONTACT_NO_LEVER 0x1p-44 /* -, of a motion: rounding */
+
 typedef struct contact_problem {
   int dim, n, m; /* 2 or 3; contact nodes; m = dim*n unknowns */
   /* [m*m] condensed stiffness, N/m, symmetric, positive (semi)definite; NULL:

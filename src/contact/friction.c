@@ -187,6 +187,7 @@ typedef struct patch {
   double *part;
   int *contact_node; /* [n_node] of the surface, or -1 */
   sparse_rows mean;  /* pressures at its nodes by those of the surface */
+  int has_means;     /* 1: those of some are of other nodes */
 } patch;
 
 /* A node whose normal force belongs to another contact has none for this. */
@@ -271,7 +272,10 @@ static status find_means(const contact_surface *s, const surface_input *in,
       add_masters(s, in, contact_id, g->node_id[k], &l);
     else if (is_crack)
       add_others(a, k, &l);
-    if (a->contact_node[k] < 0) a->active[k] = l.n > 0;
+    if (a->contact_node[k] < 0) {
+      a->active[k] = l.n > 0;
+      a->has_means |= l.n > 0;
+    }
     for (int e = 0; e < l.n; ++e) sum += value[col[e]];
     for (int e = 0; e < l.n; ++e) {
       PASS_GROW(a->mean.col, n, cap[0]);
@@ -347,7 +351,7 @@ static void set_line(const patch *a, const sparse_rows *G, int k, line *to) {
     for (int h = row_begin(&a->mean, G->col[e]);
          h < row_end(&a->mean, G->col[e]); ++h)
       add_to_line(to, a->mean.col[h], G->val[e] * a->mean.val[h]);
-  qsort(to->col, to->n, sizeof *to->col, number_order);
+  if (a->has_means) qsort(to->col, to->n, sizeof *to->col, number_order);
 }
 
 /* Rows of the nodes whose friction is that of this contact, for forces: times

@@ -97,7 +97,7 @@ typedef struct measured {
   double q[3];          /* the nearest forces of an obstacle, N */
 } measured;
 
-enum { N_KEY = 4 };
+enum { N_KEY = 4 }; /* see find_steps */
 
 status contact_bodies_new(const contact_problem *cp, contact_bodies **out) {
   OWNED double *root = NULL;
@@ -170,6 +170,7 @@ static void project_friction(const measure *x, int node_id, double c,
   for (int k = 1; k < x->cp->dim && !(size <= g); ++k) q[k] *= g / size;
 }
 
+/* What follows from the matrix. */
 static measured step_of(const measure *x, int node_id) {
   const node_step c = contact_step(x->cp, node_id, x->largest);
   const double k = larger(c.n, c.t);
@@ -177,7 +178,7 @@ static measured step_of(const measure *x, int node_id) {
   return (measured){.c = c, .k = k, .root = root};
 }
 
-/* The steps of all nodes, where those of another matrix are in their room. */
+/* The steps of all nodes, where those found last are of another matrix. */
 static void find_steps(measure *x) {
   const contact_problem *cp = x->cp;
   const contact_bodies *b = cp->bodies;

@@ -235,8 +235,6 @@ void smooth_bulge(const run *r, const smooth_faces *rings, int face,
 
 /* ---- obstacles between the nodes ----------------------------------------- */
 
-static const double LEVER = 0x1p-44; /* -, of a motion: not rounding */
-
 /* A face of a contact; of its nodes: */
 typedef struct entered_face {
   const run *r;
@@ -300,7 +298,7 @@ static int is_free(const run *r, int q) {
   const contact_problem *cp = &r->problem.cp;
   const int k = condensed_motions(r->c, &R);
   for (int c = 0; c < k && q < r->nodes.n; ++c)
-    if (fabs(R[cp->dim * q + (size_t)cp->m * c]) > LEVER) return 1;
+    if (fabs(R[cp->dim * q + (size_t)cp->m * c]) > CONTACT_NO_LEVER) return 1;
   return 0;
 }
 

@@ -266,8 +266,8 @@ static void warn_beyond(run *r, int id, warnings *reported) {
   reported->touched[id] |= BEYOND_TOLD;
   message_add(r->m->log, P4042, &c->at,
               "step %d, increment %d, time %g: %s %s: the resultant of the "
-              "pressures acts %.3g beyond the end of the master %s: the body "
-              "tips over it",
+              "pressures acts %.3g beyond the end of the master %s, where no "
+              "pressure can act",
               run_step_id(r) + 1, r->at.increment_no, r->now.t, contact_card(c),
               c->name, far, g->name);
 }

@@ -357,10 +357,10 @@ static int starts_anew(const run *r) {
 /* A held slave follows its masters up to their rounding. */
 int loop_starts_smoothly(const run *r) {
   if (starts_anew(r)) return 0;
-  const double way = largest_entry(r->n_dof, r->old.u);
+  const double moved = largest_entry(r->n_dof, r->old.u);
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->body.fixed[i] && fabs(r->loads.ud[i] - r->old.u[i]) >
-                                1e-12 * fmax(way, fabs(r->loads.ud[i])))
+                                1e-12 * fmax(moved, fabs(r->loads.ud[i])))
       return 0;
   return same_vector(r->n_dof, r->now.F, r->old.F) &&
          same_vector(strains_kept(r), r->now.e0, r->old.e0);
