@@ -11,7 +11,7 @@ struct step_matrix {
   const sparse_rows *W;           /* the one or the other */
   int *place;                     /* [m] in the system, -1: eliminated */
   double *line;                   /* [m] the current row */
-  int n_touched, *touched;        /* [m] its entries */
+  int n_touched, *touched;        /* [m] its entries; all of a dense W */
   unsigned char *is_touched;      /* [m] */
   const double *d;                /* [m] borrowed */
   double *rhs, *x;                /* [m] */
@@ -46,6 +46,7 @@ status step_matrix_new(const contact_problem *cp, const force_set *set,
     PASS(compliance_rows(cp, &s->own));
     s->W = &s->own;
     PASS_NEW_ALL(OF(s->full, m * m), OF(s->pivot, m));
+    for (int i = 0; i < s->m; ++i) step_matrix_add(s, i, 0.0);
   }
   return OK;
 }
@@ -68,7 +69,10 @@ void step_matrix_add(step_matrix *s, int j, double value) {
 void step_matrix_add_row(step_matrix *s, int j, double share) {
   const sparse_rows *W = s->W;
   for (int k = W->start[j]; k < W->start[j + 1]; ++k)
-    step_matrix_add(s, W->col[k], share * W->val[k]);
+    if (is_sparse(s))
+      step_matrix_add(s, W->col[k], share * W->val[k]);
+    else
+      s->line[W->col[k]] += share * W->val[k];
 }
 
 /* The entries of the current row in ascending order; the rows of W that they
@@ -107,27 +111,28 @@ static status put_sparse(step_matrix *s, int row) {
     s->rows.val[n++] = s->line[j];
   }
   s->rows.start[row + 1] = n;
+  for (int a = 0; a < s->n_touched; ++a) {
+    s->line[s->touched[a]] = 0.0;
+    s->is_touched[s->touched[a]] = 0;
+  }
+  s->n_touched = 0;
   return OK;
 }
 
+static void put_dense(step_matrix *s, int row) {
+  double *to = s->full + (size_t)row * s->k;
+  for (int j = 0; j < s->m; ++j)
+    if (s->place[j] >= 0) to[s->place[j]] = s->line[j];
+  CLEAR(s->line, s->m);
+}
+
 status step_matrix_put(step_matrix *s, int i) {
-  status st = OK;
-  int row = s->place[i];
-  double *to = is_sparse(s) ? NULL : s->full + (size_t)row * s->k;
-  sort_touched(s);
+  const int row = s->place[i];
+  if (is_sparse(s)) sort_touched(s);
   s->rhs[row] = take_out(s, i);
-  if (to == NULL)
-    st = put_sparse(s, row);
-  else
-    CLEAR(to, s->k);
-  for (int a = 0; a < s->n_touched; ++a) {
-    const int j = s->touched[a];
-    if (to != NULL && s->place[j] >= 0) to[s->place[j]] = s->line[j];
-    s->line[j] = 0.0;
-    s->is_touched[j] = 0;
-  }
-  s->n_touched = 0;
-  return st;
+  if (is_sparse(s)) return put_sparse(s, row);
+  put_dense(s, row);
+  return OK;
 }
 
 /* The rows one after the other are the transpose by columns. */
