@@ -235,12 +235,13 @@ static void precondition(run *s) {
 /* v = W p, with the curvature of the circles. */
 static void curvature_product(run *s) {
   const contact_problem *cp = s->cp;
+  const int dim = cp->dim;
   pcg_work *w = s->w;
   force_set_product(w->set, w->p, w->v);
   ++s->steps;
   for (int i = 0; s->bent && i < cp->n; ++i)
-    for (int k = 1; w->set->rim[i] && k < cp->dim; ++k)
-      w->v[i * cp->dim + k] += w->turn[i] * w->p[i * cp->dim + k];
+    for (int j = i * dim + 1; w->set->rim[i] && j < (i + 1) * dim; ++j)
+      w->v[j] += w->turn[i] * w->p[j];
 }
 
 /* r to r0 + share*(v - r0) and into the set; x there. 1: J has not grown but by
