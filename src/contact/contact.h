@@ -23,12 +23,15 @@ typedef struct body_size {
   double displacement; /* largest of both over the stiffness of its node, m */
   double fallen;       /* largest c_n times the part of its gap that a node has
                           moved, N */
-  double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m) */
+  double carried;      /* largest sqrt(k) |u|, or |r|/sqrt(k), sqrt(N m);
+                          within reach */
   double reach;        /* the same of positions that follow from the data */
   double bent;         /* the same of u without rigid motions */
   double root;         /* largest sqrt(k), sqrt(N/m) */
   double position;     /* largest bound, or place of stick, m */
-  double to_come;      /* load at the end, if it grows like all loads, N */
+  double forces;       /* the larger of load and contact, N */
+  double drift;        /* rounding of what is carried beyond reach, sqrt(N m) */
+  double least;        /* scale of forces to come, or after a fall, N */
 } body_size;
 typedef struct contact_bodies {
   int n;

@@ -26,8 +26,8 @@ node_step contact_step(const contact_problem *cp, int node_id,
                        double largest_diagonal);
 /* Length of v[n], n = 0, 1 or 2. */
 static inline double contact_length(int n, const double *v) {
-  if (n == 2) return hypot(v[0], v[1]);
-  return n == 1 ? fabs(v[0]) : 0.0;
+  if (n == 2 && v[1] != 0.0) return hypot(v[0], v[1]);
+  return n > 0 ? fabs(v[0]) : 0.0;
 }
 
 /*

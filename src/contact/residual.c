@@ -126,21 +126,34 @@ static const double FLOOR = 0x1p-14;    /* -, of loads to come, of a fall */
 static const double LEVER = 0x1p10;     /* -, motion over force/stiffness */
 static const double STATUS_MARGIN = 0x1p-30; /* -, of the scale */
 
+/* Of a constant dim, loops over it are unrolled. */
+#define INLINED inline __attribute__((always_inline))
+
 /* An iterate and the scales of its errors. */
 typedef struct measure {
   const contact_problem *cp;
+  int dim;      /* a constant where loops over it are to be unrolled */
   int is_stiff; /* contact_has_stiffness */
   const double *u, *r;
   double scale, largest; /* contact_scale; largest diagonal, where it is not in
                             what follows from the matrix */
-  double forces;         /* largest of a body, N */
-  body_size one, *size;  /* of the only body; of all */
+  body_size one;         /* where no bodies are known */
   measured own;          /* a node where no bodies are known */
   const double *bent; /* [m] u without the rigid motions, m; NULL: not known */
 } measure;
 
-static body_size *body_of(measure *x, int node_id) {
-  return x->size + (x->cp->bodies == NULL ? 0 : x->cp->bodies->of[node_id]);
+static INLINED body_size *body_at(measure *x, int body_id) {
+  return x->cp->bodies == NULL ? &x->one : x->cp->bodies->size + body_id;
+}
+
+static INLINED body_size *body_of(measure *x, int node_id) {
+  return body_at(x, x->cp->bodies == NULL ? 0 : x->cp->bodies->of[node_id]);
+}
+
+/* Position of stick along tangent k, m. */
+static INLINED double stick_of(const measure *x, int node_id, int k) {
+  const double *stick = x->cp->ut0;
+  return stick == NULL ? 0.0 : stick[node_id * (x->dim - 1) + k - 1];
 }
 
 /* ---- natural map --------------------------------------------------------- */
@@ -149,204 +162,240 @@ static double pushing(double z) { return z < 0.0 || isnan(z) ? z : 0.0; }
 
 /* Frictionless node: no force along a free tangent, unilateral where a second
  * obstacle bounds it. */
-static void project_sides(const measure *x, int node_id, double c, double *q) {
-  for (int k = 1; k < x->cp->dim; ++k) {
-    int dof = node_id * x->cp->dim + k;
+static INLINED void project_sides(const measure *x, int node_id, double c,
+                                  double *q) {
+  for (int k = 1; k < x->dim; ++k) {
+    int dof = node_id * x->dim + k;
     double bound = contact_bound(x->cp, dof);
     if (bound < HUGE_VAL) q[k] = pushing(x->r[dof] - c * (x->u[dof] - bound));
   }
 }
 
-/* P_g(r_t - c (u_t - ut0)) in the directions friction acts in. */
-static void project_friction(const measure *x, int node_id, double c,
-                             double *q) {
-  double g = contact_node_limit(x->cp, x->r, node_id);
-  for (int k = 1; k < x->cp->dim; ++k) {
-    int dof = node_id * x->cp->dim + k;
+/* P_g(r_t - c (u_t - ut0)) in the directions friction acts in; its length. */
+static INLINED double project_friction(const measure *x, int node_id, double c,
+                                       double *q) {
+  const double g = contact_node_limit(x->cp, x->r, node_id);
+  if (g == 0.0) return 0.0;
+  for (int k = 1; k < x->dim; ++k) {
+    int dof = node_id * x->dim + k;
     if (!contact_held(x->cp, dof))
-      q[k] = x->r[dof] - c * (x->u[dof] - contact_stick(x->cp, dof));
+      q[k] = x->r[dof] - c * (x->u[dof] - stick_of(x, node_id, k));
   }
-  double size = contact_length(x->cp->dim - 1, q + 1);
-  for (int k = 1; k < x->cp->dim && !(size <= g); ++k) q[k] *= g / size;
+  double size = contact_length(x->dim - 1, q + 1);
+  for (int k = 1; k < x->dim && !(size <= g); ++k) q[k] *= g / size;
+  return smaller(size, g);
 }
 
 /* What follows from the matrix. */
-static measured step_of(const measure *x, int node_id) {
-  const node_step c = contact_step(x->cp, node_id, x->largest);
+static measured step_of(const contact_problem *cp, int node_id,
+                        double largest) {
+  const node_step c = contact_step(cp, node_id, largest);
   const double k = larger(c.n, c.t);
-  const double root = sqrt(contact_has_stiffness(x->cp) ? k : 1.0 / k);
+  const double root = sqrt(contact_has_stiffness(cp) ? k : 1.0 / k);
   return (measured){.c = c, .k = k, .root = root};
 }
 
-/* The steps of all nodes, where those found last are of another matrix. */
-static void find_steps(measure *x) {
-  const contact_problem *cp = x->cp;
+/* The steps of all nodes, where those found last are of another matrix; the
+ * largest diagonal where no bodies are known. */
+static double find_steps(const contact_problem *cp) {
   const contact_bodies *b = cp->bodies;
   const void *key[N_KEY] = {contact_matrix(cp), cp->op, cp->blocks, cp->held};
-  if (b != NULL && memcmp(b->matrix, key, sizeof key) == 0) return;
-  x->largest = contact_largest_diagonal(cp);
-  if (b == NULL) return;
+  if (b != NULL && memcmp(b->matrix, key, sizeof key) == 0) return 0.0;
+  const double largest = contact_largest_diagonal(cp);
+  if (b == NULL) return largest;
   memcpy(b->matrix, key, sizeof key);
-  for (int i = 0; i < cp->n; ++i) b->node[i] = step_of(x, i);
+  for (int i = 0; i < cp->n; ++i) b->node[i] = step_of(cp, i, largest);
+  return 0.0;
 }
 
 /* The node in its room, its step known. */
-static measured *node_of(measure *x, int node_id) {
+static INLINED measured *node_of(measure *x, int node_id) {
   if (x->cp->bodies != NULL) return x->cp->bodies->node + node_id;
-  x->own = step_of(x, node_id);
+  x->own = step_of(x->cp, node_id, x->largest);
   return &x->own;
 }
 
-/* q of a node whose c is known. */
-static void project(const measure *x, int node_id, measured *node) {
-  int n = node_id * x->cp->dim;
+/* q of a node whose c is known; its length in the tangent plane. */
+static INLINED double project(const measure *x, int node_id, measured *node) {
+  int n = node_id * x->dim;
   node->q[1] = node->q[2] = 0.0;
   node->q[0] = pushing(x->r[n] - node->c.n * (x->u[n] - x->cp->gap[node_id]));
-  if (contact_has_side(x->cp, node_id))
-    project_sides(x, node_id, node->c.t, node->q);
-  else
-    project_friction(x, node_id, node->c.t, node->q);
+  if (!contact_has_side(x->cp, node_id))
+    return project_friction(x, node_id, node->c.t, node->q);
+  project_sides(x, node_id, node->c.t, node->q);
+  return contact_length(x->dim - 1, node->q + 1);
 }
 
 /* ---- scale --------------------------------------------------------------- */
 
+/* Of n > 0 numbers. */
 static double largest_of(int n, const double *v) {
-  double most = 0.0;
-  for (int i = 0; i < n; ++i) most = larger(most, fabs(v[i]));
+  double most = fabs(v[0]);
+  for (int i = 1; i < n; ++i) most = larger(most, fabs(v[i]));
   return most;
 }
 
 /* Bound of the motion by loads, obstacles and where it was: displacements that
  * drift off and forces that grow without bound are no solution, however large
  * their rounding is. */
-static double reach_of(const measure *x, int node_id, const measured *node,
-                       double *position) {
+static INLINED void add_reach(const measure *x, int node_id,
+                              const measured *node, body_size *b) {
   const contact_problem *cp = x->cp;
-  double force = 0.0;
-  if (!x->is_stiff) return LEVER * x->scale / node->root;
-  if (!cp->floating) return HUGE_VAL;
-  *position = larger(*position, cp->moved);
-  for (int i = node_id * cp->dim; i < (node_id + 1) * cp->dim; ++i) {
-    double bound = contact_bound(cp, i), stick = contact_stick(cp, i);
-    force = larger(force, fabs(cp->f[i]));
-    *position = larger(*position, fabs(bound < HUGE_VAL ? bound : stick));
+  double reach = x->scale;
+  if (x->is_stiff) {
+    reach = largest_of(x->dim, cp->f + node_id * x->dim);
+    b->root = larger(b->root, node->root);
+    b->position = larger(b->position, cp->moved);
   }
-  return LEVER * force / node->root;
+  for (int k = 0; k < x->dim && x->is_stiff; ++k) {
+    const double bound = contact_bound(cp, node_id * x->dim + k);
+    const double at = bound < HUGE_VAL ? bound : stick_of(x, node_id, k);
+    b->position = larger(b->position, fabs(at));
+  }
+  b->reach = larger(b->reach, LEVER * reach / node->root);
 }
 
 /* Force of the load at a node that nothing else holds, N. */
-static double load_of(const measure *x, int node_id, const measured *node) {
+static INLINED double load_of(const measure *x, int node_id,
+                              const measured *node) {
   const contact_problem *cp = x->cp;
   const double *load = cp->f_load != NULL ? cp->f_load : cp->f;
-  int first = node_id * cp->dim;
+  int first = node_id * x->dim;
   double most = 0.0;
   if (!x->is_stiff)
     return node->c.n * larger(0.0, cp->f[first] - cp->gap[node_id]);
-  for (int k = 0; k < cp->dim; ++k)
+  for (int k = 0; k < x->dim; ++k)
     if (!contact_held(cp, first + k))
       most = larger(most, fabs(load[first + k]));
   return most;
 }
 
-/* Largest displacement of a node without the rigid motions. */
-static double bent_at(const measure *x, int node_id) {
-  const int dim = x->cp->dim;
-  return x->bent == NULL ? 0.0 : largest_of(dim, x->bent + node_id * dim);
-}
-
-static void find_bent(measure *x) {
-  const contact_problem *cp = x->cp;
+/* u without the rigid motions, NULL: not known. */
+static const double *find_bent(const contact_problem *cp, const double *u) {
   const int m = cp->m, k = cp->n_motion;
-  if (k == 0 || cp->bodies == NULL) return;
+  if (k == 0 || cp->bodies == NULL) return NULL;
   double *bent = cp->bodies->bent, *part = bent + m;
-  COPY(bent, x->u, m);
-  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, cp->motion, m, x->u, 1, 0.0,
+  COPY(bent, u, m);
+  cblas_dgemv(CblasColMajor, CblasTrans, m, k, 1.0, cp->motion, m, u, 1, 0.0,
               part, 1);
   cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, -1.0, cp->motion, m, part, 1,
               1.0, bent, 1);
-  x->bent = bent;
+  return bent;
 }
 
-static void add_node(measure *x, int node_id) {
-  const contact_problem *cp = x->cp;
-  const double *v = (x->is_stiff ? x->u : x->r) + node_id * cp->dim;
-  body_size *b = body_of(x, node_id);
-  measured *node = node_of(x, node_id);
-  project(x, node_id, node);
-  double root = node->root;
-  double force =
-      larger(fabs(node->q[0]), contact_length(cp->dim - 1, node->q + 1));
-  double load = load_of(x, node_id, node);
+/* What bounds the rounding of a body. */
+static INLINED void add_motion(const measure *x, int node_id,
+                               const measured *node, body_size *b) {
+  const int dim = x->dim, first = node_id * dim;
+  const double *v = (x->is_stiff ? x->u : x->r) + first, root = node->root;
+  b->carried = larger(b->carried, root * largest_of(dim, v));
+  if (x->bent != NULL)
+    b->bent = larger(b->bent, root * largest_of(dim, x->bent + first));
+  if (b->reach < HUGE_VAL) add_reach(x, node_id, node, b);
+}
+
+static INLINED void add_forces(const measure *x, int node_id, measured *node,
+                               body_size *b) {
+  const int n = node_id * x->dim;
+  const double tangential = project(x, node_id, node);
+  const double force = larger(fabs(node->q[0]), tangential);
+  const double load = load_of(x, node_id, node);
   b->contact = larger(b->contact, force);
   b->load = larger(b->load, load);
   b->displacement = larger(b->displacement, larger(force, load) / node->k);
-  double moved = smaller(fabs(x->u[node_id * cp->dim]), fabs(cp->gap[node_id]));
+  double moved = smaller(fabs(x->u[n]), fabs(x->cp->gap[node_id]));
   b->fallen = larger(b->fallen, node->c.n * moved);
-  b->carried = larger(b->carried, root * largest_of(cp->dim, v));
-  b->bent = larger(b->bent, root * bent_at(x, node_id));
-  b->reach = larger(b->reach, reach_of(x, node_id, node, &b->position));
-  b->root = larger(b->root, root);
+}
+
+/* Forces of the bodies, once those of their nodes are known. */
+static INLINED void end_forces(measure *x, int n_body) {
+  double most = 0.0;
+  for (int b = 0; b < n_body; ++b) {
+    body_size *s = body_at(x, b);
+    s->forces = larger(s->load, s->contact);
+    most = larger(most, s->forces);
+  }
+  for (int b = 0; b < n_body && x->is_stiff; ++b) {
+    body_size *s = body_at(x, b);
+    double to_come = x->cp->load;
+    if (most > 0.0) to_come = s->forces / most * to_come;
+    s->least = FLOOR * larger(to_come, s->fallen);
+  }
+}
+
+/* forces 0: what roundings follow from. */
+static INLINED void measure_part(measure *x, int forces) {
+  const contact_problem *cp = x->cp;
+  const int n_body = cp->bodies == NULL ? 1 : cp->bodies->n;
+  x->is_stiff = contact_has_stiffness(cp);
+  x->largest = find_steps(cp);
+  x->bent = find_bent(cp, x->u);
+  for (int b = 0; b < n_body; ++b)
+    *body_at(x, b) =
+        (body_size){.reach = x->is_stiff && !cp->floating ? HUGE_VAL : 0.0};
+  for (int i = 0; i < cp->n; ++i) {
+    body_size *b = body_of(x, i);
+    measured *node = node_of(x, i);
+    add_motion(x, i, node, b);
+    if (forces) add_forces(x, i, node, b);
+  }
+  for (int b = 0; b < n_body; ++b) {
+    body_size *s = body_at(x, b);
+    s->reach = larger(s->reach, 2.0 * s->root * s->position) + s->bent;
+    s->drift = s->carried > s->reach ? DBL_EPSILON * s->carried : 0.0;
+    s->carried = smaller(s->carried, s->reach);
+  }
+  if (forces) end_forces(x, n_body);
 }
 
 static void measure_set(const contact_problem *cp, double scale,
                         const double *u, const double *r, measure *x) {
-  *x = (measure){.cp = cp, .u = u, .r = r, .scale = scale};
-  x->is_stiff = contact_has_stiffness(cp);
-  x->size = cp->bodies == NULL ? &x->one : cp->bodies->size;
-  find_steps(x);
-  for (int b = 0; cp->bodies != NULL && b < cp->bodies->n; ++b)
-    x->size[b] = (body_size){0};
-  find_bent(x);
-  for (int i = 0; i < cp->n; ++i) add_node(x, i);
-  for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b) {
-    body_size *s = &x->size[b];
-    x->forces = larger(x->forces, larger(s->load, s->contact));
-    s->reach = larger(s->reach, 2.0 * s->root * s->position) + s->bent;
-  }
-  for (int b = 0; b < (cp->bodies == NULL ? 1 : cp->bodies->n); ++b) {
-    body_size *s = &x->size[b];
-    const double own = larger(s->load, s->contact);
-    s->to_come = x->forces > 0.0 ? own / x->forces * cp->load : cp->load;
-  }
+  *x = (measure){.cp = cp, .dim = cp->dim, .u = u, .r = r, .scale = scale};
+  measure_part(x, 1);
 }
 
 /* Forces that a part of a node, of stiffness c, is compared with. */
-static double forces_of(const measure *x, const measured *node,
-                        const body_size *b, double c) {
+static INLINED double forces_of(const measure *x, const measured *node,
+                                const body_size *b, double c) {
   double most = x->is_stiff ? x->scale : c * x->scale;
-  double own = smaller(larger(b->load, b->contact), node->k * b->displacement);
+  double own = smaller(b->forces, node->k * b->displacement);
   return smaller(most, own);
 }
 
 /* Scale of them: not below rounding. */
-static double scale_of(const measure *x, const body_size *b,
-                       const measured *node, double c) {
-  double least = x->is_stiff ? larger(b->to_come, b->fallen) : 0.0;
-  least = larger(FLOOR * least, LEAST / ROUNDING * node->rounding);
+static INLINED double scale_of(const measure *x, const body_size *b,
+                               const measured *node, double c) {
+  const double least = larger(b->least, LEAST / ROUNDING * node->rounding);
   return larger(forces_of(x, node, b, c), least);
 }
 
-/* The node, until the next one or the next iterate. */
-static const measured *measure_node(measure *x, int node_id) {
-  const contact_problem *cp = x->cp;
-  int first = node_id * cp->dim;
-  body_size *b = body_of(x, node_id);
+/* The node, its rounding and drift until the next one or the next iterate. */
+static INLINED measured *round_node(measure *x, int node_id) {
+  const body_size *b = body_of(x, node_id);
   measured *node = node_of(x, node_id);
-  if (cp->bodies == NULL) project(x, node_id, node);
-  double terms = largest_of(cp->dim, cp->f + first);
-  if (!x->is_stiff)
-    terms = node->k * (terms + largest_of(cp->dim, x->u + first));
-  double carried = smaller(b->carried, b->reach);
-  const double weight = x->is_stiff ? node->root : 1.0 / node->root;
-  node->rounding = ROUNDING * (terms + weight * carried);
-  node->drift = b->carried > b->reach ? DBL_EPSILON * weight * b->carried : 0.0;
+  const int first = node_id * x->dim;
+  double terms = largest_of(x->dim, x->cp->f + first), weight = node->root;
+  if (!x->is_stiff) {
+    terms = node->k * (terms + largest_of(x->dim, x->u + first));
+    weight = 1.0 / weight;
+  }
+  node->rounding = ROUNDING * (terms + weight * b->carried);
+  node->drift = weight * b->drift;
+  return node;
+}
+
+/* All of it. */
+static INLINED const measured *measure_node(measure *x, int node_id) {
+  const body_size *b = body_of(x, node_id);
+  measured *node = round_node(x, node_id);
+  if (x->cp->bodies == NULL) project(x, node_id, node);
   node->normal = scale_of(x, b, node, node->c.n);
   node->slide = x->is_stiff ? node->normal : scale_of(x, b, node, node->c.t);
   return node;
 }
 
 /* An error over its scale, less that of rounding, or of a drift. */
-static double beyond(const measured *node, double error, double scale) {
+static INLINED double beyond(const measured *node, double error, double scale) {
   double more = error <= node->rounding ? 0.0 : error - node->rounding;
   more = larger(more, node->drift);
   if (scale > 0.0 || isnan(scale)) return more / scale;
@@ -356,25 +405,27 @@ static double beyond(const measured *node, double error, double scale) {
 /* ---- residual ------------------------------------------------------------ */
 
 /* Residual of the natural map along the normal, in the tangent plane. */
-static node_step map_errors(const measure *x, int node_id,
-                            const measured *node) {
-  const double *r = x->r + node_id * x->cp->dim;
+static INLINED node_step map_errors(const measure *x, int node_id,
+                                    const measured *node) {
+  const double *r = x->r + node_id * x->dim;
   double e[3] = {0.0, 0.0, 0.0};
-  for (int k = 0; k < x->cp->dim; ++k) e[k] = r[k] - node->q[k];
-  return (node_step){fabs(e[0]), contact_length(x->cp->dim - 1, e + 1)};
+  for (int k = 0; k < x->dim; ++k) e[k] = r[k] - node->q[k];
+  return (node_step){fabs(e[0]), contact_length(x->dim - 1, e + 1)};
 }
 
-static double map_of(const measure *x, int node_id, const measured *node) {
+static INLINED double map_of(const measure *x, int node_id,
+                             const measured *node) {
   const node_step e = map_errors(x, node_id, node);
+  if (x->is_stiff) return beyond(node, larger(e.n, e.t), node->normal);
   return larger(beyond(node, e.n, node->normal),
                 beyond(node, e.t, node->slide));
 }
 
 /* d[dim]: defect of the equation at the node, N (m). */
-static double equation_of(const measure *x, const measured *node,
-                          const double *d) {
+static INLINED double equation_of(const measure *x, const measured *node,
+                                  const double *d) {
   double worst = 0.0;
-  for (int k = 0; k < x->cp->dim; ++k) {
+  for (int k = 0; k < x->dim; ++k) {
     double c = k == 0 ? node->c.n : node->c.t;
     double e = x->is_stiff ? fabs(d[k]) : c * fabs(d[k]);
     worst = larger(worst, beyond(node, e, k == 0 ? node->normal : node->slide));
@@ -384,11 +435,11 @@ static double equation_of(const measure *x, const measured *node,
 
 /* d[rows] = A u - f - r, or W r + q - u, from row "first"; A u of an operator
  * is in its room. */
-static void equation_rows(const measure *x, int first, int rows, double *d) {
-  const contact_problem *cp = x->cp;
+static void equation_rows(const contact_problem *cp, const double *u,
+                          const double *r, int first, int rows, double *d) {
   const double *M = contact_matrix(cp);
-  const double *v = contact_has_stiffness(cp) ? x->u : x->r,
-               *y = contact_has_stiffness(cp) ? x->r : x->u;
+  const double *v = contact_has_stiffness(cp) ? u : r,
+               *y = contact_has_stiffness(cp) ? r : u;
   double sign = contact_has_stiffness(cp) ? 1.0 : -1.0;
   for (int i = 0; i < rows; ++i) d[i] = y[first + i] + sign * cp->f[first + i];
   if (cp->op != NULL) {
@@ -407,22 +458,30 @@ static void equation_rows(const measure *x, int first, int rows, double *d) {
               v, 1, -1.0, d, 1);
 }
 
-double contact_residual_at(const contact_problem *cp, double scale,
-                           const double *u, const double *r) {
-  measure x;
+static INLINED double residual_of(const contact_problem *cp, int dim,
+                                  double scale, const double *u,
+                                  const double *r) {
+  measure x = {.cp = cp, .dim = dim, .u = u, .r = r, .scale = scale};
   double worst = 0.0, d[3 * CHUNK];
-  measure_set(cp, scale, u, r, &x);
+  measure_part(&x, 1);
   if (cp->op != NULL) contact_apply(cp, u, cp->op->room);
   for (int first = 0; first < cp->n; first += CHUNK) {
     int count = cp->n - first < CHUNK ? cp->n - first : CHUNK;
-    equation_rows(&x, first * cp->dim, count * cp->dim, d);
+    equation_rows(cp, u, r, first * dim, count * dim, d);
     for (int i = 0; i < count; ++i) {
       const measured *node = measure_node(&x, first + i);
       worst = larger(worst, map_of(&x, first + i, node));
-      worst = larger(worst, equation_of(&x, node, d + i * cp->dim));
+      worst = larger(worst, equation_of(&x, node, d + i * dim));
     }
   }
   return isnan(scale) ? NAN : worst;
+}
+
+double contact_residual_at(const contact_problem *cp, double scale,
+                           const double *u, const double *r) {
+  if (cp->dim == 2) return residual_of(cp, 2, scale, u, r);
+  if (cp->dim == 3) return residual_of(cp, 3, scale, u, r);
+  return residual_of(cp, 1, scale, u, r);
 }
 
 double contact_residual(const contact_problem *cp, const double *u,
@@ -436,20 +495,28 @@ double contact_residual(const contact_problem *cp, const double *u,
   return residual;
 }
 
-double contact_mismatch(const contact_problem *cp, double scale,
-                        const double *u, const double *r, const double *raw) {
-  measure x;
+static INLINED double mismatch(const contact_problem *cp, int dim, double scale,
+                               const double *u, const double *r,
+                               const double *raw) {
+  measure x = {.cp = cp, .dim = dim, .u = u, .r = r, .scale = scale};
   const double *of = contact_has_stiffness(cp) ? r : u;
   double worst = 0.0, d[3];
-  measure_set(cp, scale, u, r, &x);
+  measure_part(&x, 1);
   for (int i = 0; i < cp->n; ++i) {
     const measured *node = measure_node(&x, i);
     worst = larger(worst, map_of(&x, i, node));
-    for (int k = 0; raw != NULL && k < cp->dim; ++k)
-      d[k] = of[i * cp->dim + k] - raw[i * cp->dim + k];
-    if (raw != NULL) worst = larger(worst, equation_of(&x, node, d));
+    if (raw == NULL) continue;
+    for (int k = 0; k < dim; ++k) d[k] = of[i * dim + k] - raw[i * dim + k];
+    worst = larger(worst, equation_of(&x, node, d));
   }
   return isnan(scale) ? NAN : worst;
+}
+
+double contact_mismatch(const contact_problem *cp, double scale,
+                        const double *u, const double *r, const double *raw) {
+  if (cp->dim == 2) return mismatch(cp, 2, scale, u, r, raw);
+  if (cp->dim == 3) return mismatch(cp, 3, scale, u, r, raw);
+  return mismatch(cp, 1, scale, u, r, raw);
 }
 
 /* ---- status ------------------------------------------------------------ */
@@ -461,14 +528,22 @@ static int has_no_force(const measure *x, const body_size *b,
   return b->load <= ROUNDING * x->cp->load && !(b->contact > node->rounding);
 }
 
+static INLINED void find_roundings(const contact_problem *cp, int dim,
+                                   const double *u, const double *r,
+                                   double *rounding) {
+  measure x = {.cp = cp, .dim = dim, .u = u, .r = r};
+  measure_part(&x, 0);
+  for (int i = 0; i < cp->n; ++i) rounding[i] = round_node(&x, i)->rounding;
+}
+
 void contact_roundings(const contact_problem *cp, const double *u,
                        const double *r, double *rounding) {
-  measure x;
-  measure_set(cp, 0.0, u, r, &x);
-  for (int i = 0; i < cp->n; ++i) {
-    const measured *node = measure_node(&x, i);
-    rounding[i] = node->rounding;
-  }
+  if (cp->dim == 2)
+    find_roundings(cp, 2, u, r, rounding);
+  else if (cp->dim == 3)
+    find_roundings(cp, 3, u, r, rounding);
+  else
+    find_roundings(cp, 1, u, r, rounding);
 }
 
 void contact_errors(const contact_problem *cp, double tol, const double *u,
@@ -507,14 +582,14 @@ double contact_hidden(const contact_problem *cp, const double *u,
 
 void contact_drop_roundings(const contact_problem *cp, const double *u,
                             double *r) {
-  measure x;
+  measure x = {.cp = cp, .dim = cp->dim, .u = u, .r = r};
   int known = 0;
   for (int i = 0; i < cp->n; ++i) {
     const int n = cp->dim * i;
     if ((r[n] <= 0.0 && u[n] >= cp->gap[i]) || is_zero(cp->dim, r + n))
       continue;
-    if (!known++) measure_set(cp, 0.0, u, r, &x);
-    const measured *node = measure_node(&x, i);
+    if (!known++) measure_part(&x, 0);
+    const measured *node = round_node(&x, i);
     for (int k = cp->dim - 1; k >= 0 && fabs(r[n]) <= node->rounding; --k)
       if (fabs(r[n + k]) <= node->rounding) r[n + k] = 0.0;
   }
@@ -523,18 +598,18 @@ void contact_drop_roundings(const contact_problem *cp, const double *u,
 /* |r_t - c (u_t - ut0)| in the directions friction acts in, N. */
 static double trial_friction(const measure *x, int node_id, double c) {
   double z[2] = {0.0, 0.0};
-  for (int k = 1; k < x->cp->dim; ++k) {
-    int dof = node_id * x->cp->dim + k;
+  for (int k = 1; k < x->dim; ++k) {
+    int dof = node_id * x->dim + k;
     if (!contact_held(x->cp, dof))
       z[k - 1] = x->r[dof] - c * (x->u[dof] - contact_stick(x->cp, dof));
   }
-  return contact_length(x->cp->dim - 1, z);
+  return contact_length(x->dim - 1, z);
 }
 
 /* 1: unknown k of a node, of stiffness c, is at its obstacle. */
 static int is_closed(measure *x, int node_id, const measured *node, int k,
                      double c) {
-  const int dof = node_id * x->cp->dim + k;
+  const int dof = node_id * x->dim + k;
   const body_size *b = body_of(x, node_id);
   const double least = STATUS_MARGIN * forces_of(x, node, b, c);
   double push = c * (x->u[dof] - contact_bound(x->cp, dof)) - x->r[dof];
