@@ -25,6 +25,7 @@ typedef struct crack_state {
   int n;
   tip *tips;               /* [n] */
   fracture_factors *found; /* [n] of the last increment that needed them */
+  double *times;           /* [n] G over its integral, - */
   int step_id;             /* of that increment; -1: none */
   double t;                /* its end, s */
   int flows;               /* 1: there are strains without stress */
@@ -126,7 +127,8 @@ static status new_cracks(run *r, crack_state *own) {
   for (int i = 0; i < m->n_crack; ++i)
     for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
       own->area[m->crack[i].front_node[k]] = 0.0;
-  PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n));
+  PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n),
+               OF(own->times, own->n));
   for (int i = 0, n = 0; i < m->n_crack; ++i)
     for (int k = 0; k < fracture_count(own->of[i]); ++k)
       own->tips[n++] = (tip){.crack_id = i, .point = k};
@@ -293,7 +295,8 @@ static double exponent_of(const run *r, const fracture_point *p) {
                                                : NAN;
 }
 
-/* C(t) by the rates of the increment. */
+/* C(t) by the rates of the increment, of laws linear in the stress as many
+ * times its integral as G is. */
 static status find_creep(const run *r, crack_state *own) {
   const double dt = r->now.t - r->old.t;
   fracture_state s = {own->rate, own->sigma, own->traction, 0.5, own->force};
@@ -310,8 +313,9 @@ static status find_creep(const run *r, crack_state *own) {
       s.share = n / (n + 1.0);
       fracture_find(f, &s, found);
     }
-    if (!isnan(n)) t->creep = found[t->point].J;
-    if (!isnan(n)) t->creep_scatter = found[t->point].J_scatter;
+    const double times = n > 1.0 ? 1.0 : own->times[t - own->tips];
+    if (!isnan(n)) t->creep = times * found[t->point].J;
+    if (!isnan(n)) t->creep_scatter = times * found[t->point].J_scatter;
   }
   return OK;
 }
@@ -342,6 +346,35 @@ static fracture_state state_of(const run *r, const crack_state *own) {
                           own->traction, 0.5, own->force};
 }
 
+/* Of an isotropic body the factors give the energy release rate. Its integral,
+ * of squares of the stresses, falls short by the squares of their errors too,
+ * as much again in space. Returns how many times larger the rate is, 1 where
+ * there are no factors. */
+static double rate_of(const fracture_material *x, fracture_factors *f) {
+  const double plane = (x->plane_stress ? 1.0 : 1.0 - x->nu * x->nu) / x->E;
+  const double part[MODES] = {plane, plane, (1.0 + x->nu) / x->E};
+  double rate = 0.0, scatter = 0.0;
+  for (int k = 0; k < MODES; ++k) {
+    rate += part[k] * f->K[k] * f->K[k];
+    scatter += 2.0 * part[k] * fabs(f->K[k]) * f->K_scatter[k];
+  }
+  const double times = rate / f->J;
+  if (isnan(rate)) return 1.0;
+  f->J = rate;
+  f->J_scatter = scatter;
+  return isfinite(times) ? times : 1.0;
+}
+
+static void rates_of(const crack_state *own, const fracture *of,
+                     fracture_factors *found, double *times) {
+  const fracture_point *p = fracture_points(of);
+  for (int k = 0; k < fracture_count(of); ++k) {
+    const fracture_material *x =
+        p[k].section < 0 ? NULL : &own->materials[p[k].section];
+    times[k] = x != NULL && x->E > 0.0 ? rate_of(x, &found[k]) : 1.0;
+  }
+}
+
 /* own->found of r->now, once an increment. */
 static status find_all(run *r, crack_state *own) {
   const int step_id = run_step_id(r);
@@ -361,6 +394,7 @@ static status find_all(run *r, crack_state *own) {
   const fracture_state s = state_of(r, own);
   for (int i = 0, n = 0; i < r->msh->n_crack; ++i) {
     fracture_find(own->of[i], &s, own->found + n);
+    rates_of(own, own->of[i], own->found + n, own->times + n);
     n += fracture_count(own->of[i]);
   }
   own->step_id = step_id;
