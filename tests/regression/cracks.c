@@ -218,6 +218,56 @@ START_TEST(sheared_disc_in_space) {
 }
 END_TEST
 
+/* A pair of forces at (0.8, 0.35) and (0.8, -0.35) opens a crack of the half
+ * length 1 in an infinite plate, or the supports there that move apart: K by
+ * quadrature of Kelvin's stresses on the line, of a force of 1 across and of
+ * 0.5 along the crack. A force at the tip itself has none. */
+START_TEST(forces_near_a_tip) {
+  static const char cloads[] = "*CLOAD\nUP, 2, 1.\nDOWN, 2, -1.\n";
+  static const char along[] = "UP, 1, 0.5\nDOWN, 1, -0.5\n";
+  static const char moves[] = "UP, 2, 2, 1E-3\nDOWN, 2, 2, -1E-3\n";
+  job j = job_begin("points");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "points.geo",
+            "Include \"crack.geo\";\nPoint(7) = {0.8, 0.35, 0};\n"
+            "Point(8) = {0.8, -0.35, 0};\nPoint{7, 8} In Surface{1};\n"
+            "Physical Point(\"UP\") = {7};\nPhysical Point(\"DOWN\") = {8};\n"
+            "Physical Point(\"TIP\") = {6};\n");
+  job_write(
+      &j, "points.inp",
+      "*PARAMETER\nN = 10\nANGLE = 0.\n*MESH, FILE=points.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=PLATE, MATERIAL=M, THICKNESS=0.5\n"
+      "*CRACK, NAME=C, GROUP=LINE\n"
+      "*GOAL, NAME=K, QUANTITY=SIF, CRACK=C, COMPONENT=1\n1., 0.\n"
+      "*STEP\n*STATIC\n*BOUNDARY\n" HELD
+      "%s%s%s*PRINT, SIF, REACTIONS, GOALS\n*OUTPUT, HDF5=NO\n*END STEP\n",
+      _i == 1 ? moves : cloads, _i == 0 ? along : "",
+      _i == 2 ? "TIP, 1, 1.\n" : "");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "SIF", -1), f = job_table(&j, "REACTIONS", -1),
+      g = job_table(&j, "GOALS", -1);
+  const int tip = dat_row_near(&t, "x", 1);
+  const double P =
+      _i == 1 ? dat_at(&f, dat_row_near(&f, "y", 0.35), "reaction_y") : 1;
+  const double K = 1.38340 * P / 0.5, two = _i == 0 ? 0.28635 / 0.5 : 0;
+  ck_assert_int_eq(strstr(j.errors, "P4043") != NULL, _i == 2);
+  if (_i < 2) {
+    ck_assert_double_eq_tol(dat_at(&t, tip, "K_I"), K, 0.01 * K);
+    ck_assert_double_eq_tol(dat_at(&t, tip, "K_II"), two, 0.005 * K);
+    ck_assert(isnan(dat_at(&g, 0, "band")));
+  } else {
+    ck_assert(isnan(dat_at(&t, tip, "K_I")) && isnan(dat_at(&t, tip, "G")));
+    ck_assert(!isnan(dat_at(&t, 1 - tip, "K_I")));
+  }
+  dat_free(&t);
+  dat_free(&f);
+  dat_free(&g);
+  job_end(&j);
+}
+END_TEST
+
 /* Beam on two supports 4 W apart, crack W/2 (ASTM E399: 2.66 P S/W^1.5): linear
  * elements of W/80 at the tip are 3 % short of it in bending. With two
  * materials that meet at the tip there is no K, but an energy release rate. */
@@ -493,6 +543,7 @@ int main(void) {
   tcase_add_test(tests, crack_closed_in_part);
   tcase_add_test(tests, disc_in_space);
   tcase_add_test(tests, sheared_disc_in_space);
+  tcase_add_loop_test(tests, forces_near_a_tip, 0, 3);
   tcase_add_loop_test(tests, beam_on_three_points, 0, 2);
   tcase_add_loop_test(tests, crack_in_a_warm_body, 0, 2);
   tcase_add_test(tests, rate_integral_of_power_law_creep);
