@@ -55,6 +55,7 @@ static void find_point(fracture *f, const fracture_state *s,
   const elasticity x = elasticity_at(f, p);
   integrals sum;
   integrals_find(f, s, p, &x, &sum);
+  out->pointed = sum.pointed;
   compare(&sum, MODES, 1, &out->J, &out->J_scatter);
   for (int mode = 0; mode < MODES && x.G > 0; ++mode)
     compare(&sum, mode, factor_of(&x, mode), &out->K[mode],
@@ -64,7 +65,7 @@ static void find_point(fracture *f, const fracture_state *s,
 void fracture_find(fracture *f, const fracture_state *s,
                    fracture_factors *out) {
   for (int i = 0; i < f->n; ++i) {
-    out[i] = (fracture_factors){{NAN, NAN, NAN}, {NAN, NAN, NAN}, NAN, NAN};
+    out[i] = (fracture_factors){{NAN, NAN, NAN}, {NAN, NAN, NAN}, NAN, NAN, 0};
     if (f->point[i].radius > 0) find_point(f, s, &f->point[i], &out[i]);
   }
 }

@@ -4,7 +4,7 @@
  * node of the front:
  *
  *   I = int P_lj Q_l,j + (sig_ij X_ij,l + saux_ij,j u_i,l - b_i uaux_i,l) Q_l
- *       dV - int_lips t_i uaux_i,l Q_l dS,
+ *       dV - int_lips t_i uaux_i,l Q_l dS - sum_nodes F_i uaux_i,l Q_l,
  *   P_lj = sig_ij uaux_i,l + saux_ij u_i,l - sig:eaux delta_lj,
  *
  *   K_I, K_II = E'/2 I / int q ds,   K_III = G I / int q ds,
@@ -13,10 +13,10 @@
  * fields are those of Williams with K = 1, around a front of constant
  * curvature; X is what its strains lack to be those of uaux, and saux is not
  * quite in equilibrium: both vanish at a straight front (Gosz, Moran, Engng.
- * Fract. Mech. 69 (2002)). b: body forces, t: tractions on the lips. The energy
- * release rate has the fields themselves in place of the auxiliary ones, with
- * half of sig:eps. u is taken without the rotation of the lips near the point,
- * which has a part in I by its quadrature alone.
+ * Fract. Mech. 69 (2002)). b: body forces, t: tractions on the lips, F: forces
+ * at nodes. The energy release rate has the fields themselves in place of the
+ * auxiliary ones, with half of sig:eps. u is taken without the rotation of the
+ * lips near the point, which has a part in I by its quadrature alone.
  *
  * A domain holds straight crack alone: its size is the distance to the nearest
  * node of another boundary, kink, branch or material, half of the distance to
@@ -59,6 +59,8 @@ typedef struct fracture_state { /* borrowed */
                    and strains that grow by the power n of the stress n/(n+1),
                    and J is C(t), W/m2 */
   const double *force; /* [dim*n_elem] on the elements, N/m3; NULL: none */
+  const double *point; /* [dim*n_node] at nodes, 2-D: over the thickness, N
+                          (N/m); NULL: none. At a front there are no factors. */
 } fracture_state;
 
 typedef struct fracture_point { /* a tip, or a node of the front */
@@ -77,6 +79,7 @@ typedef struct fracture_point { /* a tip, or a node of the front */
 typedef struct fracture_factors {
   double K[3], K_scatter[3]; /* I, II, III (0 in 2-D), Pa m^(1/2) */
   double J, J_scatter;       /* energy release rate, J/m2 */
+  int pointed;               /* 1: forces at nodes of the domains have a part */
 } fracture_factors;
 
 typedef struct fracture fracture;

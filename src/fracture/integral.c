@@ -502,6 +502,89 @@ static void add_lips(work *w) {
   }
 }
 
+/* ---- forces at nodes ----------------------------------------------------- */
+
+/* Forces at a front are rounding below that part of the stress there over an
+ * element, -. */
+static const double no_force = 1e-6;
+
+/* The mean slope of the elements round a node, *size their mean stress; returns
+ * 1: they are above the crack. */
+static int slope_round(work *w, int node, double mean[3][3], double *size) {
+  const size_t *at = w->f->start + node;
+  const int n = w->m->dim + 1;
+  double sum = 0, height = 0, g[12];
+  memset(mean, 0, 9 * sizeof **mean);
+  *size = 0;
+  for (size_t k = at[0]; k < at[1]; ++k) {
+    const int elem = w->f->elem[k];
+    const double measure = set_fields(w, elem, g);
+    local c;
+    set_corners(w, n, w->m->elem + (size_t)n * elem);
+    place_at(w, centre[w->m->dim - 2], &c);
+    sum += measure;
+    height += measure * c.x[1];
+    for (int i = 0; i < 9; ++i) {
+      mean[i / 3][i % 3] += measure * w->slope[i / 3][i % 3];
+      *size += measure * fabs(w->stress[i / 3][i % 3]);
+    }
+  }
+  for (int i = 0; i < 9; ++i) mean[i / 3][i % 3] /= sum;
+  *size /= sum;
+  return height > 0;
+}
+
+/* Of the force t[3] in the frame of a place; limit < 0: not at the front, where
+ * by symmetry a force moves with the field of one mode alone. */
+static void add_force(work *w, const corner *c, const local *at,
+                      const double t[3], const field_tensor *own,
+                      double limit) {
+  field_tensor d[MODES + 1] = {0};
+  d[MODES] = *own;
+  for (int mode = 0; mode < MODES && w->x->G > 0 && limit < 0; ++mode) {
+    auxiliary x;
+    auxiliary_set(w->x, at, mode, &x);
+    d[mode] = x.d;
+  }
+  for (int mode = 0; mode < 2 && limit >= 0; ++mode)
+    if (fabs(t[mode]) > limit) d[mode].of[0][0] = d[MODES].of[0][0] = NAN;
+  for (int k = 0; k < DOMAINS; ++k) {
+    double Q[3];
+    field_turn_vector(at, c->Q[k], Q);
+    for (int mode = 0; mode <= MODES; ++mode)
+      w->sum->I[k][mode] += body_work(t, &d[mode], Q);
+  }
+}
+
+static void add_node(work *w, int node) {
+  double mean[3][3], t[3], size;
+  field_tensor d;
+  corner c;
+  local at;
+  const int above = slope_round(w, node, mean, &size);
+  place_of(w->m, node, c.x);
+  set_growth(w, &c);
+  locate(w->p, c.x, &at);
+  if (!(c.q[0] > 0)) return;
+  turned_vector(w, w->state->point, node, &at, t);
+  field_turn(&at, mean, &d);
+  const double r = hypot(at.x[0], at.x[1]);
+  if (fabs(at.x[1]) <= rounding * r) at.x[1] = above ? 0.0 : -0.0;
+  add_force(w, &c, &at, t, &d,
+            r > rounding * w->p->size
+                ? -1
+                : no_force * size * pow(w->p->size, w->m->dim - 1));
+  w->sum->pointed |= dot(3, t, t) > 0;
+}
+
+static void add_nodes(work *w) {
+  const int dim = w->m->dim;
+  for (int i = 0; i < w->m->n_node; ++i)
+    if (w->f->node_seen[i] == w->f->mark &&
+        largest_entry(dim, w->state->point + dim * i) > 0)
+      add_node(w, i);
+}
+
 /* ---- their derivative by tractions --------------------------------------- */
 
 /* What a line takes: by the tractions that it is made of. */
@@ -666,6 +749,7 @@ void integrals_find(fracture *f, const fracture_state *s,
   find_turn(&w);
   for (int i = 0; i < n; ++i) add_element(&w, f->elem_list[i]);
   if (s->traction != NULL) add_lips(&w);
+  if (s->point != NULL) add_nodes(&w);
   measure_front(&w, f->n);
 }
 

@@ -239,6 +239,14 @@ static status add_points(const model *m, const mesh *msh, const load *l,
   return OK;
 }
 
+status load_points(const model *m, const mesh *msh, const step *s, double t,
+                   double *F) {
+  CLEAR(F, (size_t)msh->dim * msh->n_node);
+  for (EACH(const load, l, s->loads.item, s->loads.n))
+    if (l->kind == LOAD_POINT) PASS(add_points(m, msh, l, s, t, F));
+  return OK;
+}
+
 status load_forces(const model *m, const mesh *msh, const step *s, double t,
                    double *F) {
   CLEAR(F, (size_t)msh->dim * msh->n_node);

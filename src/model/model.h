@@ -576,6 +576,9 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
 int load_has_body(const model *m);
 status load_body(const model *m, const mesh *msh, const step *s, double t,
                  double *F, double *b);
+/* The part of *CLOAD of load_forces. */
+status load_points(const model *m, const mesh *msh, const step *s, double t,
+                   double *F);
 /* Total time at the end of a step. */
 double step_end(const step *s);
 const char *load_card(const load *l); /* "DLOAD" */

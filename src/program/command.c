@@ -247,6 +247,11 @@ static int check_together(const command *c) {
 static int take_job(int n, char **job, command *c) {
   if (n == 0 || job[0][0] == '\0') return wrong("no job given", "");
   if (n > 1) return wrong("one job at a time; not expected: ", job[1]);
+  const char *slash = strrchr(job[0], '/');
+  if (strchr(slash == NULL ? job[0] : slash, ':') != NULL)
+    return wrong("a colon in the name of a job, which ends the name of a file "
+                 "in .xdmf: ",
+                 job[0]);
   c->deck_file = find_deck(job[0]);
   if (c->deck_file == NULL) return no_memory();
   if (c->dir == NULL) c->dir = folder_of(c->deck_file);

@@ -317,7 +317,7 @@ END_TEST
 static const int not_by_cases[] = {3004, 3005, 3025, 3027, 3050, 3051, 3052,
                                    3053, 3054, 3055, 3056, 4024, 4025, 4026,
                                    4027, 4028, 4029, 4030, 4031, 4032, 4033,
-                                   4034, 4035, 4036, 4038, 4040, 4042};
+                                   4034, 4035, 4036, 4038, 4040, 4042, 4043};
 
 static void check_messages(const seen *s) {
 #define MESSAGE_NUMBER(number, level, title, remedy) number,

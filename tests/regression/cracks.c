@@ -162,18 +162,19 @@ START_TEST(crack_closed_in_part) {
 }
 END_TEST
 
-/* Unit disc in a ball, pressed apart: K_I = 2/sqrt(pi). The coarse elements
- * make it too small. */
+/* Unit disc in a ball, pressed apart: K_I = 2/sqrt(pi), G = K_I^2 (1 - nu^2)/E.
+ * The coarse elements make both too small. */
 START_TEST(disc_in_space) {
   job j = run_crack("penny", "N = 16", "", "SKIN, 1, 3\n",
                     "DISC+, P, 1.\nDISC-, P, 1.\n");
   dat t = job_table(&j, "SIF", -1);
-  double sum = 0, worst = 0;
+  double sum = 0, rate = 0, worst = 0;
   int n = 0;
   for (int i = 0; i < t.n_row; ++i) {
     const double K = dat_at(&t, i, "K_I");
     if (isnan(K)) continue;
     sum += K;
+    rate += dat_at(&t, i, "G");
     ++n;
     worst = fmax(worst, hypot(dat_at(&t, i, "K_II"), dat_at(&t, i, "K_III")));
     ck_assert_double_eq_tol(
@@ -182,6 +183,7 @@ START_TEST(disc_in_space) {
   ck_assert_int_gt(n, t.n_row / 2);
   ck_assert_double_eq_tol(sum / n, 2 / sqrt(pi), 0.08 * 2 / sqrt(pi));
   ck_assert_double_lt(sum / n, 2 / sqrt(pi));
+  ck_assert_double_eq_tol(rate / n, 0.00364 / pi, 0.16 * 0.00364 / pi);
   ck_assert_double_le(worst, 0.03);
   dat_free(&t);
   job_end(&j);
@@ -195,7 +197,7 @@ START_TEST(sheared_disc_in_space) {
   job j = run_crack("penny", "N = 16", "", "SKIN, 1, 3\n",
                     "DISC+, TX, 1.\nDISC-, TX, -1.\n");
   dat t = job_table(&j, "SIF", -1);
-  double two = 0, three = 0, cc = 0, ss = 0, one = 0;
+  double two = 0, three = 0, cc = 0, ss = 0, one = 0, rate = 0;
   for (int i = 0; i < t.n_row; ++i) {
     const double c = dat_at(&t, i, "x"), s = dat_at(&t, i, "y");
     if (isnan(dat_at(&t, i, "K_I"))) continue;
@@ -204,11 +206,64 @@ START_TEST(sheared_disc_in_space) {
     one = fmax(one, fabs(dat_at(&t, i, "K_I")));
     cc += c * c;
     ss += s * s;
+    rate += dat_at(&t, i, "G");
   }
+  ck_assert_double_eq_tol(
+      rate, whole * whole * (0.91 * cc + 1.3 * 0.49 * ss) / 1000, 0.16 * rate);
   ck_assert_double_eq_tol(fabs(two) / cc, whole, 0.1 * whole);
   ck_assert_double_eq_tol(fabs(three) / ss, (1 - nu) * whole, 0.1 * whole);
   ck_assert_double_le(one, 0.05 * whole);
   dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
+/* A pair of forces at (0.8, 0.35) and (0.8, -0.35) opens a crack of the half
+ * length 1 in an infinite plate, or the supports there that move apart: K by
+ * quadrature of Kelvin's stresses on the line, of a force of 1 across and of
+ * 0.5 along the crack. A force at the tip itself has none. */
+START_TEST(forces_near_a_tip) {
+  static const char cloads[] = "*CLOAD\nUP, 2, 1.\nDOWN, 2, -1.\n";
+  static const char along[] = "UP, 1, 0.5\nDOWN, 1, -0.5\n";
+  static const char moves[] = "UP, 2, 2, 1E-3\nDOWN, 2, 2, -1E-3\n";
+  job j = job_begin("points");
+  job_copy(&j, "input/crack/crack.geo");
+  job_write(&j, "points.geo",
+            "Include \"crack.geo\";\nPoint(7) = {0.8, 0.35, 0};\n"
+            "Point(8) = {0.8, -0.35, 0};\nPoint{7, 8} In Surface{1};\n"
+            "Physical Point(\"UP\") = {7};\nPhysical Point(\"DOWN\") = {8};\n"
+            "Physical Point(\"TIP\") = {6};\n");
+  job_write(
+      &j, "points.inp",
+      "*PARAMETER\nN = 10\nANGLE = 0.\n*MESH, FILE=points.geo\n"
+      "*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=PLATE, MATERIAL=M, THICKNESS=0.5\n"
+      "*CRACK, NAME=C, GROUP=LINE\n"
+      "*GOAL, NAME=K, QUANTITY=SIF, CRACK=C, COMPONENT=1\n1., 0.\n"
+      "*STEP\n*STATIC\n*BOUNDARY\n" HELD
+      "%s%s%s*PRINT, SIF, REACTIONS, GOALS\n*OUTPUT, HDF5=NO\n*END STEP\n",
+      _i == 1 ? moves : cloads, _i == 0 ? along : "",
+      _i == 2 ? "TIP, 1, 1.\n" : "");
+  int code = job_run(&j, "--no-timing");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "SIF", -1), f = job_table(&j, "REACTIONS", -1),
+      g = job_table(&j, "GOALS", -1);
+  const int tip = dat_row_near(&t, "x", 1);
+  const double P =
+      _i == 1 ? dat_at(&f, dat_row_near(&f, "y", 0.35), "reaction_y") : 1;
+  const double K = 1.38340 * P / 0.5, two = _i == 0 ? 0.28635 / 0.5 : 0;
+  ck_assert_int_eq(strstr(j.errors, "P4043") != NULL, _i == 2);
+  if (_i < 2) {
+    ck_assert_double_eq_tol(dat_at(&t, tip, "K_I"), K, 0.01 * K);
+    ck_assert_double_eq_tol(dat_at(&t, tip, "K_II"), two, 0.005 * K);
+    ck_assert(isnan(dat_at(&g, 0, "band")));
+  } else {
+    ck_assert(isnan(dat_at(&t, tip, "K_I")) && isnan(dat_at(&t, tip, "G")));
+    ck_assert(!isnan(dat_at(&t, 1 - tip, "K_I")));
+  }
+  dat_free(&t);
+  dat_free(&f);
+  dat_free(&g);
   job_end(&j);
 }
 END_TEST
@@ -488,6 +543,7 @@ int main(void) {
   tcase_add_test(tests, crack_closed_in_part);
   tcase_add_test(tests, disc_in_space);
   tcase_add_test(tests, sheared_disc_in_space);
+  tcase_add_loop_test(tests, forces_near_a_tip, 0, 3);
   tcase_add_loop_test(tests, beam_on_three_points, 0, 2);
   tcase_add_loop_test(tests, crack_in_a_warm_body, 0, 2);
   tcase_add_test(tests, rate_integral_of_power_law_creep);

@@ -658,7 +658,7 @@ END_TEST
  * place of by_u it is within "near". */
 static void check_linear(const crack_scene *s, int point, double near) {
   const fracture_body body = {s->m, &s->crack, s->section, s->material};
-  const fracture_state state = {s->u, s->sigma, s->traction, 0.5, NULL};
+  const fracture_state state = {s->u, s->sigma, s->traction, 0.5, NULL, NULL};
   const int dim = s->m->dim;
   answer a = ask(s);
   fracture *f;

@@ -25,6 +25,7 @@ typedef struct crack_state {
   int n;
   tip *tips;               /* [n] */
   fracture_factors *found; /* [n] of the last increment that needed them */
+  double *times;           /* [n] G over its integral, - */
   int step_id;             /* of that increment; -1: none */
   double t;                /* its end, s */
   int flows;               /* 1: there are strains without stress */
@@ -35,6 +36,9 @@ typedef struct crack_state {
   double *traction; /* [dim*n_node] on the lips, Pa */
   double *lumped;   /* [dim*n_node] workspace of find_tractions, Pa */
   double *force;    /* [dim*n_elem] on the elements, N/m3; NULL: none */
+  double *point;    /* [dim*n_node] at nodes, by *CLOAD, loads on faces inside
+                       and supports, 2-D: over the thickness, N (N/m) */
+  double *held;     /* [dim*n_node] workspace of find_points, N */
   double *area;     /* [n_node] of the lips, m2; 0 at the fronts */
   double *shift;    /* [dim*n_node] from a node to where the force of a uniform
                        traction acts that it takes, m */
@@ -86,15 +90,33 @@ static void add_areas(const run *r, const mesh_crack *c, crack_state *own) {
   }
 }
 
+/* 1: supports or *CLOAD of a step act on a point in its plane. */
+static int has_force(const run *r, const fracture_point *p) {
+  for (int i = 0; i < r->m->n.step; ++i) {
+    const load_list *all = &r->m->steps[i].loads;
+    for (EACH(const load, l, all->item, all->n)) {
+      if (l->kind != LOAD_FIXING && l->kind != LOAD_POINT) continue;
+      const mesh_group *g = &r->msh->group[l->group_id];
+      const double *e = p->frame + l->component;
+      for (int k = 0; k < g->n_node; ++k)
+        if (g->node_id[k] == p->node && hypot(e[0], e[3]) > 1e-6) return 1;
+    }
+  }
+  return 0;
+}
+
 /* Points of a front without factors, and why. */
 static void tell_points(const run *r, int id, const fracture *f) {
   const crack *c = &r->m->mesh.cracks[id];
   const int n = fracture_count(f);
   const fracture_point *p = fracture_points(f);
-  int two = 0, crowded = 0, two_at = 0, crowded_at = 0;
+  int two = 0, crowded = 0, forced = 0, two_at = 0, crowded_at = 0,
+      forced_at = 0;
   for (int i = 0; i < n; ++i) {
     if (p[i].section < 0 && two++ == 0) two_at = p[i].node;
     if (!(p[i].radius > 0.0) && crowded++ == 0) crowded_at = p[i].node;
+    if (p[i].radius > 0.0 && has_force(r, &p[i]) && forced++ == 0)
+      forced_at = p[i].node;
   }
   if (two > 0)
     message_add(r->m->log, P4028, &c->at,
@@ -108,6 +130,12 @@ static void tell_points(const run *r, int id, const fracture *f) {
                 "elements to another boundary, kink or crack, the first is "
                 "%zu: no factors there",
                 c->name, crowded, n, r->msh->node_no[crowded_at]);
+  if (forced > 0)
+    message_add(r->m->log, P4043, &c->at,
+                "*CRACK %s: supports or *CLOAD act on %d of %d nodes of its "
+                "front, the first is %zu: no factors where their force is in a "
+                "domain",
+                c->name, forced, n, r->msh->node_no[forced_at]);
 }
 
 static status new_cracks(run *r, crack_state *own) {
@@ -126,7 +154,8 @@ static status new_cracks(run *r, crack_state *own) {
   for (int i = 0; i < m->n_crack; ++i)
     for (int k = 0; k < m->crack[i].front_start[m->crack[i].n_front]; ++k)
       own->area[m->crack[i].front_node[k]] = 0.0;
-  PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n));
+  PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n),
+               OF(own->times, own->n));
   for (int i = 0, n = 0; i < m->n_crack; ++i)
     for (int k = 0; k < fracture_count(own->of[i]); ++k)
       own->tips[n++] = (tip){.crack_id = i, .point = k};
@@ -137,7 +166,8 @@ static status new_cracks(run *r, crack_state *own) {
 static status cracks_new(run *r, void **self) {
   crack_state *own = *self;
   PASS_NEW(own->sigma, (size_t)r->m->ns * r->msh->n_elem);
-  PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped);
+  PASS_NEW_REALS(r->n_dof, &own->traction, &own->lumped, &own->point,
+                 &own->held);
   PASS_NEW_ALL(OF(own->area, r->msh->n_node), OF(own->shift, r->n_dof));
   if (load_has_body(r->m))
     PASS_NEW(own->force, (size_t)r->msh->dim * r->msh->n_elem);
@@ -293,10 +323,12 @@ static double exponent_of(const run *r, const fracture_point *p) {
                                                : NAN;
 }
 
-/* C(t) by the rates of the increment. */
+/* C(t) by the rates of the increment, of laws linear in the stress as many
+ * times its integral as G is. */
 static status find_creep(const run *r, crack_state *own) {
   const double dt = r->now.t - r->old.t;
-  fracture_state s = {own->rate, own->sigma, own->traction, 0.5, own->force};
+  fracture_state s = {own->rate, own->sigma, own->traction,
+                      0.5,       own->force, own->point};
   for (int i = 0; i < own->n; ++i)
     own->tips[i].creep = own->tips[i].creep_scatter = NAN;
   if (!own->flows || r->step->kind != STEP_VISCO || !(dt > 0.0)) return OK;
@@ -310,8 +342,9 @@ static status find_creep(const run *r, crack_state *own) {
       s.share = n / (n + 1.0);
       fracture_find(f, &s, found);
     }
-    if (!isnan(n)) t->creep = found[t->point].J;
-    if (!isnan(n)) t->creep_scatter = found[t->point].J_scatter;
+    const double times = n > 1.0 ? 1.0 : own->times[t - own->tips];
+    if (!isnan(n)) t->creep = times * found[t->point].J;
+    if (!isnan(n)) t->creep_scatter = times * found[t->point].J_scatter;
   }
   return OK;
 }
@@ -338,8 +371,75 @@ static status check_elastic(const run *r, const crack_state *own, double *u) {
 }
 
 static fracture_state state_of(const run *r, const crack_state *own) {
-  return (fracture_state){own->flows ? own->elastic : r->now.u, own->sigma,
-                          own->traction, 0.5, own->force};
+  return (fracture_state){own->flows ? own->elastic : r->now.u,
+                          own->sigma,
+                          own->traction,
+                          0.5,
+                          own->force,
+                          own->point};
+}
+
+/* Of an isotropic body the factors give the energy release rate. Its integral,
+ * of squares of the stresses, falls short by the squares of their errors too,
+ * as much again in space. Returns how many times larger the rate is, 1 where
+ * there are no factors. */
+static double rate_of(const fracture_material *x, fracture_factors *f) {
+  const double plane = (x->plane_stress ? 1.0 : 1.0 - x->nu * x->nu) / x->E;
+  const double part[MODES] = {plane, plane, (1.0 + x->nu) / x->E};
+  double rate = 0.0, scatter = 0.0;
+  for (int k = 0; k < MODES; ++k) {
+    rate += part[k] * f->K[k] * f->K[k];
+    scatter += 2.0 * part[k] * fabs(f->K[k]) * f->K_scatter[k];
+  }
+  const double times = rate / f->J;
+  if (isnan(rate)) return 1.0;
+  f->J = rate;
+  f->J_scatter = scatter;
+  return isfinite(times) ? times : 1.0;
+}
+
+static void rates_of(const crack_state *own, const fracture *of,
+                     fracture_factors *found, double *times) {
+  const fracture_point *p = fracture_points(of);
+  for (int k = 0; k < fracture_count(of); ++k) {
+    const fracture_material *x =
+        p[k].section < 0 ? NULL : &own->materials[p[k].section];
+    times[k] = x != NULL && x->E > 0.0 ? rate_of(x, &found[k]) : 1.0;
+  }
+}
+
+/* Internal forces less loads and contact forces, of what supports hold; those
+ * of tied nodes act on their masters. In own->held. */
+static void find_held(const run *r, const crack_state *own) {
+  domain_internal_force(&r->body.d, own->sigma, own->held);
+  for (size_t k = 0; k < r->n_dof; ++k) own->held[k] -= r->now.F[k];
+  if (r->nodes.n > 0) surface_spread(r->surface, -1.0, r->now.rc, own->held);
+  ties_share(&r->body.ties, own->held);
+  for (size_t k = 0; k < r->n_dof; ++k)
+    if (!r->body.fixed[k]) own->held[k] = 0.0;
+}
+
+/* Loads own->traction that are on no lip, *CLOAD and what supports hold become
+ * own->point. */
+static status find_points(const run *r, const crack_state *own) {
+  const mesh *m = r->msh;
+  const int dim = m->dim;
+  PASS(load_points(r->m, m, r->step, r->now.t, own->point));
+  for (size_t k = 0; k < r->n_dof; ++k) own->traction[k] -= own->point[k];
+  for (int i = 0; i < m->n_crack; ++i) {
+    const mesh_crack *c = &m->crack[i];
+    for (int k = 0; k < c->front_start[c->n_front]; ++k)
+      CLEAR(own->traction + dim * c->front_node[k], dim);
+  }
+  find_held(r, own);
+  for (int i = 0; i < (dim + 1) * m->n_elem; ++i)
+    own->lumped[m->elem[i]] = model_thickness(r->m, i / (dim + 1));
+  for (size_t k = 0; k < r->n_dof; ++k) {
+    own->point[k] += own->held[k];
+    if (!(own->area[k / dim] > 0.0)) own->point[k] += own->traction[k];
+    own->point[k] /= own->lumped[k / dim];
+  }
+  return OK;
 }
 
 /* own->found of r->now, once an increment. */
@@ -353,6 +453,7 @@ static status find_all(run *r, crack_state *own) {
     PASS(load_body(r->m, r->msh, r->step, r->now.t, own->lumped, own->force));
     for (size_t k = 0; k < r->n_dof; ++k) own->traction[k] -= own->lumped[k];
   }
+  PASS(find_points(r, own));
   if (r->nodes.n > 0) surface_spread(r->surface, 1.0, r->now.rc, own->traction);
   over_areas(r, own, own->traction);
   shift_all(r, own, 0, own->traction);
@@ -361,6 +462,7 @@ static status find_all(run *r, crack_state *own) {
   const fracture_state s = state_of(r, own);
   for (int i = 0, n = 0; i < r->msh->n_crack; ++i) {
     fracture_find(own->of[i], &s, own->found + n);
+    rates_of(own, own->of[i], own->found + n, own->times + n);
     n += fracture_count(own->of[i]);
   }
   own->step_id = step_id;

@@ -46,7 +46,7 @@ static const option norton_fields[] = {
               "stress^-n time^-(1+m)", "factor"),
   OPTION_REAL(norton_value, n, "n", 1, 1000, NULL, "-",
               "exponent of the equivalent stress"),
-  OPTION_REAL(norton_value, m, "m", -0.99, 100, "0", "-",
+  OPTION_REAL(norton_value, m, "m", -0.99, 1, "0", "-",
               "exponent of hardening, in general from -1 to 0"),
   OPTION_END};
 static const option hyperbolic_fields[] = {

@@ -103,6 +103,16 @@ static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
   if (msh->dim == 3 && m->moves[id].short_at.file != NULL)
     message_add(m->log, P2009, &m->moves[id].short_at,
                 "2 numbers on this line of *OBSTACLE; a mesh in 3-D needs 3");
+  const obstacle *o = &m->obstacles[id];
+  if (msh->dim == 2 && o->shape == OBSTACLE_PLANE && o->direction[2] != 0.0)
+    message_add(m->log, P2025, &m->moves[id].at,
+                "*OBSTACLE %s: the normal has a part along z, but the mesh is "
+                "2-D",
+                o->name);
+  if (msh->dim == 2 &&
+      (o->motion[2].formula != NULL || o->motion[2].number != 0.0))
+    message_add(m->log, P2025, &m->moves[id].move_at,
+                "*OBSTACLE %s: MOVE along z, but the mesh is 2-D", o->name);
   for (int k = 0; k < m->n.step; ++k)
     if (facts_leaves_axis(m, id, step_end(&m->steps[k]))) off = 1;
   if (off)
@@ -130,10 +140,6 @@ static void check_contacts(model *m, const mesh *msh) {
       message_add(m->log, P2007, &m->moves[c->obstacle_id].at,
                   "*OBSTACLE: a cylinder in 3-D needs a line with the "
                   "direction of its axis");
-    if (msh->dim == 2 && o->shape == OBSTACLE_PLANE && o->direction[0] == 0.0 &&
-        o->direction[1] == 0.0)
-      message_add(m->log, P2027, &m->moves[c->obstacle_id].at,
-                  "*OBSTACLE: the normal has no part in the plane of the mesh");
     check_turn(m, msh->dim, c->obstacle_id);
     check_torque_axis(m, msh->dim, c);
   }
