@@ -30,13 +30,10 @@ typedef struct lagrange {
 
 typedef enum { BY_NESTEROV, BY_NOTHING } acceleration_kind;
 
-/* clang-format off */
 static const option lagrange_options[] = {
-  OPTION_CHOICE(lagrange, acceleration, "ACCELERATION", "NESTEROV|NONE",
-                "NESTEROV", "extrapolation of the forces between the steps"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_CHOICE(lagrange, acceleration, "ACCELERATION", "NESTEROV|NONE",
+                  "NESTEROV", "extrapolation of the forces between the steps"),
+    OPTION_END};
 
 enum {
   STEPS = 100000, /* default limit */

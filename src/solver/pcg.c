@@ -38,13 +38,10 @@ typedef struct pcg {
 
 typedef enum { BY_FACE, BY_DIAGONAL } preconditioner_kind;
 
-/* clang-format off */
 static const option pcg_options[] = {
-  OPTION_CHOICE(pcg, preconditioner, "PRECONDITIONER", "FACE|DIAGONAL", "FACE",
-                "of the conjugate gradients on a face"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_CHOICE(pcg, preconditioner, "PRECONDITIONER", "FACE|DIAGONAL",
+                  "FACE", "of the conjugate gradients on a face"),
+    OPTION_END};
 
 enum {
   STEPS = 20000,  /* default limit */

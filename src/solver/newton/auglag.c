@@ -614,13 +614,10 @@ typedef struct auglag {
 
 typedef enum { BY_NEWTON, BY_UZAWA } variant_kind;
 
-/* clang-format off */
 static const option auglag_options[] = {
-  OPTION_CHOICE(auglag, variant, "VARIANT", "NEWTON|UZAWA", "NEWTON",
-                "both equations at once, or multiplier after displacement"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_CHOICE(auglag, variant, "VARIANT", "NEWTON|UZAWA", "NEWTON",
+                  "both equations at once, or multiplier after displacement"),
+    OPTION_END};
 
 static const double SOFT = 0x1p-20; /* -, of the stiffness: none */
 
