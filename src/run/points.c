@@ -198,12 +198,11 @@ static inline void add_locking(int ns, const run *r, int k, locking_sums *sum) {
 /* Mean of the bulk moduli, Pa. */
 static double mean_bulk(const run *r) {
   const visco *v = r->strains.visco;
-  const int ns = r->m->ns;
   double bulk = 0.0, volume = 0.0;
   for (int k = 0; k < v->x.n; ++k) {
     const double *E = run_elasticity(r, v->elem[k]), w = v->x.weight[k];
     if (!can_lock(r, k)) continue;
-    for (int i = 0; i < 9; ++i) bulk += w * E[ns * (i / 3) + i % 3] / 9.0;
+    for (int i = 0; i < 9; ++i) bulk += w * E[r->m->ns * (i / 3) + i % 3] / 9.0;
     volume += w;
   }
   return bulk / volume;

@@ -132,9 +132,8 @@ static void find_borne(run *r) {
 
 /* Slip against the obstacle, gap left, status. */
 static void find_contact(run *r) {
-  int dim = r->msh->dim;
   for (int i = 0; i < r->nodes.n; ++i) {
-    r->result.open_gap[i] = r->problem.gap[i] - r->now.uc[dim * i];
+    r->result.open_gap[i] = r->problem.gap[i] - r->now.uc[r->msh->dim * i];
     find_slip(r, i);
   }
   if (r->result.g != NULL) {

@@ -72,12 +72,11 @@ struct goal_estimator {
 static void gradients(const goal_solution *s, double *q) {
   const mesh *m = s->d->mesh;
   const int dim = m->dim;
-  const double *u = s->u;
   double g[12];
   for (int e = 0; e < m->n_elem; ++e, q += dim * dim) {
     mesh_elem_gradients(m, e, g);
     for (int a = 0; a <= dim; ++a) {
-      const double *v = u + (size_t)dim * m->elem[(dim + 1) * e + a];
+      const double *v = s->u + (size_t)dim * m->elem[(dim + 1) * e + a];
       for (int c = 0; c < dim; ++c)
         for (int k = 0; k < dim; ++k) q[c * dim + k] += v[c] * g[dim * a + k];
     }
@@ -729,14 +728,13 @@ static void set_adjoint(goal_estimator *e, int of_u, const double **y) {
 
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           int of_u, double *product, goal_estimate *out) {
-  const mesh *m = e->s.d->mesh;
   *out = (goal_estimate){0};
   set_adjoint(e, of_u, &y);
   for (int region = 0; region < e->n_region; ++region) {
     space_recover(e->recovery, region, e->s.d->ns, e->sigma_y, e->node_y);
     if (of_u && e->eigen != NULL)
       space_recover(e->recovery, region, e->s.d->ns, e->eigen, e->node_eigen);
-    for (int k = 0; k < m->n_elem; ++k) {
+    for (int k = 0; k < e->s.d->mesh->n_elem; ++k) {
       if (space_region(e->recovery, k) != region) continue;
       const double both = add_element(e, k, y, tau, of_u, out);
       if (product != NULL) product[k] = both;

@@ -108,8 +108,7 @@ static void count(trial *s, double value, double square) {
 }
 
 static void try_nodes(trial *s) {
-  const contact_problem *cp = s->cp;
-  for (int i = 0; i < cp->n; ++i)
+  for (int i = 0; i < s->cp->n; ++i)
     for (int k = 0; k < FIELDS_A_NODE; ++k) {
       double square = 0.0;
       set_node(s, i, moves[k % PATTERNS]);

@@ -119,7 +119,6 @@ static double face_size(int dim, double measure) {
 static status add_points(builder *b, int face, const facet *f, int of,
                          const cell *c, const double *ref) {
   const int dim = f->dim;
-  const cell *other = &b->search.list[of].s.in_plane;
   const rule *r = rule_of(b);
   for (int k = 0; k < r->n; ++k) {
     sample s = {.partner = of};
@@ -131,7 +130,7 @@ static status add_points(builder *b, int face, const facet *f, int of,
         at[a] += bary[i] * c->at[i][a];
       }
     cell_functions(dim, &f->in_plane, at, s.phi);
-    cell_functions(dim, other, at, s.other);
+    cell_functions(dim, &b->search.list[of].s.in_plane, at, s.other);
     s.weight *= thickness(b, face, s.phi) * thinner(b, face, of);
     if (!(s.weight > 0)) continue;
     PASS_GROW(b->points, b->n_point, b->point_capacity);
@@ -592,7 +591,6 @@ static double master_area(const builder *b, int i) {
 
 /* What messages need. */
 static status sum_up(builder *b) {
-  const int dim = b->in->mesh->dim;
   mortar *m = b->out;
   double masters = 0.0, slaves = 0.0;
   OWNS(m);
@@ -600,7 +598,7 @@ static status sum_up(builder *b) {
   for (int i = 0; i < b->in->n_slave; ++i) {
     const face_part *f = &b->face[i];
     double area = 0.0, whole = 0.0;
-    for (int k = 0; k < dim; ++k) {
+    for (int k = 0; k < b->in->mesh->dim; ++k) {
       whole += f->share[k];
       if (f->thin > 0.0) area += f->d[k] / f->thin;
     }

@@ -90,10 +90,9 @@ static void set_levels(finder *z) {
 
 /* Contact nodes of a face, node[dim]; 0 if one of them is not in contact. */
 static int face_nodes(const finder *z, int face_id, int *node) {
-  const mesh *m = z->r->msh;
   int all = 1;
   for (int k = 0; k < z->dim; ++k) {
-    node[k] = z->index[m->face[z->dim * face_id + k]];
+    node[k] = z->index[z->r->msh->face[z->dim * face_id + k]];
     all &= node[k] >= 0;
   }
   return all;

@@ -26,10 +26,9 @@ static int side_of(const mesh *m, int face) {
 
 /* to[dim] of a side. */
 static void add_load(const run *r, const load *l, int side, side_load *to) {
-  const int dim = r->msh->dim;
   int v[3];
   mesh_side_nodes(r->msh, side, v);
-  for (int a = 0; a < dim; ++a) {
+  for (int a = 0; a < r->msh->dim; ++a) {
     const double value = load_at_node(l, r->msh, r->step, v[a], r->now.t);
     *(l->kind == LOAD_PRESSURE ? &to[a].pressure
                                : &to[a].traction[l->component]) += value;

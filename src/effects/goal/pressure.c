@@ -234,12 +234,11 @@ typedef struct line {
 
 /* next[2*n]: the contact nodes next to each node of the line, or -1. */
 static status find_next(const run *r, const goal_card *g, int *next) {
-  const mesh *m = r->msh;
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
   OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
   for (int k = 0; k < of->n_item; ++k) {
-    const int *v = m->face + 2 * of->item_id[k];
+    const int *v = r->msh->face + 2 * of->item_id[k];
     for (int a = 0; a < 2; ++a) {
       const int q = where[v[a]], other = where[v[1 - a]];
       if (q >= 0 && other >= 0) next[2 * q + (next[2 * q] >= 0)] = other;

@@ -62,13 +62,12 @@ static int near_crack(const opening *o, int n, const int *v) {
 
 /* owner[n_face] of the mesh: the crack of a face, counted from 1. */
 static void take_group(opening *o, int crack, int *owner) {
-  const mesh *m = o->m;
   const mesh_group *g = o->cut[crack].group;
   const place *at = o->cut[crack].at;
   faults outer = {0}, twice = {0};
   for (int i = 0; i < g->n_item; ++i) {
     int f = g->item_id[i];
-    if (m->face_other[f] < 0) {
+    if (o->m->face_other[f] < 0) {
       opening_note(o, f, &outer);
     } else if (owner[f] > 0) {
       opening_note(o, f, &twice);

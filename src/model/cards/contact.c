@@ -289,7 +289,6 @@ static void read_lines(const reading *r, contact *c) {
 
 status apply_contact_pair(reading *r) {
   const card_options *p = r->param;
-  model *m = r->m;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
   c->is_pair = 1;
@@ -304,7 +303,7 @@ status apply_contact_pair(reading *r) {
   c->change.amplitude_at = *value_place(r, "AMPLITUDE");
   read_lines(r, c);
   if (p->amplitude != NULL && !c->change.given)
-    message_add(m->log, P2007, &c->at,
+    message_add(r->m->log, P2007, &c->at,
                 "*CONTACT PAIR: AMPLITUDE= needs a line CLEARANCE or "
                 "INTERFERENCE");
   return OK;
