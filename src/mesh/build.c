@@ -157,12 +157,11 @@ static status fill_group(builder *b, mesh_group *g, filling *f) {
   faults outside = {0};
   f->n_node = f->n_item = 0;
   for (int i = 0; i < b->raw->n_block; ++i) {
-    const raw_block *p = &b->raw->block[i];
-    if (!block_in_group(p, g->dim, g->tag)) continue;
+    if (!block_in_group(&b->raw->block[i], g->dim, g->tag)) continue;
     if (g->dim >= b->m->dim - 1)
       add_items(b, i, f);
     else
-      add_nodes(b, p, f, &outside);
+      add_nodes(b, &b->raw->block[i], f, &outside);
   }
   g->n_node = f->n_node;
   g->n_item = f->n_item;

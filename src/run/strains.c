@@ -102,7 +102,6 @@ static item_ends ends_of(const run *r) {
 /* Item k of r->strains.eigen. */
 static void item_work(const run *r, const item_ends *x, int k, energies *e,
                       double *held) {
-  const int ns = r->m->ns;
   double w = element_weight(&r->body.d, r->strains.elem[k]);
   double thermal = 0.0, all = 0.0, stress[6];
   for (size_t i = at(r, k); i < at(r, k + 1); ++i) {
@@ -113,9 +112,9 @@ static void item_work(const run *r, const item_ends *x, int k, energies *e,
   }
   e->thermal += w * (thermal + softened(r, k));
   e->inelastic += w * (all - thermal);
-  tensor_product(ns, run_elasticity(r, r->strains.elem[k]), x->e0[1] + at(r, k),
-                 stress);
-  *held += 0.5 * w * dot(ns, x->e0[1] + at(r, k), stress);
+  tensor_product(r->m->ns, run_elasticity(r, r->strains.elem[k]),
+                 x->e0[1] + at(r, k), stress);
+  *held += 0.5 * w * dot(r->m->ns, x->e0[1] + at(r, k), stress);
 }
 
 /* Items from, ..., to - 1, which hold whole clusters. */

@@ -349,10 +349,9 @@ static void add_joints(goal_estimator *e) {
 static status recover_region(goal_estimator *e, int region, const double *q,
                              double *G) {
   const mesh *m = e->s.d->mesh;
-  const int ns = e->s.d->ns;
-  PASS_NEW(e->stress[region], (size_t)ns * m->n_node);
+  PASS_NEW(e->stress[region], (size_t)e->s.d->ns * m->n_node);
   space_recover(e->recovery, region, m->dim * m->dim, q, G);
-  space_recover(e->recovery, region, ns, e->s.sigma, e->stress[region]);
+  space_recover(e->recovery, region, e->s.d->ns, e->s.sigma, e->stress[region]);
   const space_field f = {e->s.sigma, e->stress[region]};
   for (int k = 0; k < m->n_elem; ++k) {
     if (space_region(e->recovery, k) != region) continue;
@@ -565,10 +564,9 @@ static double axi_difference(const goal_estimator *e, int elem_id, int point,
 static double axi_product(const goal_estimator *e, int elem_id,
                           const space_field *u, const space_field *of_w,
                           const double *w, double *own) {
-  const domain *d = e->s.d;
   const double *S = space_compliance_of(e->recovery, elem_id);
-  const double share =
-      element_weight(d, elem_id) / (3.0 * radius_of(d->mesh, elem_id));
+  const double share = element_weight(e->s.d, elem_id) /
+                       (3.0 * radius_of(e->s.d->mesh, elem_id));
   double sum = 0.0;
   *own = 0.0;
   for (int p = 0; p < 3; ++p) {

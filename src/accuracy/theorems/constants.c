@@ -208,10 +208,9 @@ static status largest_of(const block *b,
 /* 1: a motion without energy moves the block: nothing bounds it. A motion that
  * does not, as of a body that lies on its obstacle, adds nothing to |v_t|. */
 static int is_loose(const block *b) {
-  const inverse_energy *e = &b->e->dual;
   if (b->e->inverse == NULL) return 1;
-  for (int c = 0; c < e->n_kernel; ++c) {
-    const double *z = e->kernel + (size_t)c * b->cp->m;
+  for (int c = 0; c < b->e->dual.n_kernel; ++c) {
+    const double *z = b->e->dual.kernel + (size_t)c * b->cp->m;
     double most = largest_entry(b->cp->m, z), part = 0.0;
     for (int k = 0; k < b->n; ++k) part = fmax(part, fabs(z[b->dof[k]]));
     if (part > MOVES * most) return 1;

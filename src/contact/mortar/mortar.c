@@ -232,13 +232,12 @@ static double other_bulge(const builder *b, const facet *f, const sample *p) {
 /* Of surfaces that are one in truth both heights cancel. */
 static void add_bulges(const builder *b, int face, const facet *f,
                        face_part *part) {
-  const int dim = b->in->mesh->dim;
   for (int k = 0; k < b->n_point && b->bulge != NULL; ++k) {
     const sample *p = &b->points[k];
-    const double own = bulge_height(dim, b->bulge, face, p->phi),
+    const double own = bulge_height(b->in->mesh->dim, b->bulge, face, p->phi),
                  other = other_bulge(b, f, p);
     if (fabs(own + other) <= seen * (fabs(own) + fabs(other))) continue;
-    for (int j = 0; j < dim; ++j)
+    for (int j = 0; j < b->in->mesh->dim; ++j)
       part->bulge[j] += p->weight * p->psi[j] * (own + other);
   }
 }

@@ -272,10 +272,9 @@ static int slip_sign(const finder *z, int i) {
 
 /* Part of the distance from node i to the next one, j, where the zone ends. */
 static double zone_end(const finder *z, int i, int j) {
-  const contact_status *kind = z->r->result.contact;
   const level *l = &z->closed;
   if (z->closed.in[i] && z->closed.in[j]) l = &z->stick;
-  if (kind[i] != kind[j])
+  if (z->r->result.contact[i] != z->r->result.contact[j])
     return l->in[i] ? reach(z, l, i, j) : 1.0 - reach(z, l, j, i);
   double a = fabs(z->r->result.slip[i]), b = fabs(z->r->result.slip[j]);
   return a + b > 0.0 ? a / (a + b) : 0.5;

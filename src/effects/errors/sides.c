@@ -324,15 +324,14 @@ static int is_hollow(const smooth_faces *rings, int face, const double *own,
 static void set_face(const run *r, int id, int face, const int *where,
                      const double *own, entered_face *f) {
   const mesh *m = r->msh;
-  const contact_surface *s = r->surface;
   const int dim = m->dim, *v = m->face + dim * face;
   for (int i = 0; i < dim; ++i) {
     const int q = where[v[i]];
-    const int is = q >= 0 && s->contact_id[q] == id;
+    const int is = q >= 0 && r->surface->contact_id[q] == id;
     f->moves |= is && is_free(r, q);
     f->x[i] = m->x + dim * v[i];
     f->u[i] = r->now.u + dim * v[i];
-    COPY(f->n[i], is ? s->frame + dim * dim * q : own, dim);
+    COPY(f->n[i], is ? r->surface->frame + dim * dim * q : own, dim);
     const double gap =
         obstacle_gap(f->p->support, dim, f->x[i], f->n[i], r->now.t);
     if (is && q < r->nodes.n && isfinite(gap))

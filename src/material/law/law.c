@@ -258,12 +258,11 @@ static status spectral_radius(const law_point *p, double *M, int n,
 }
 
 status law_fastest_rate(const law_point *p, double *rate) {
-  const law_ops *ops = p->law->ops;
   const law_elastic *el = p->elastic;
   *rate = 0;
   if (!law_flows(p)) return OK;
-  if (ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
-    *rate = p->speed * ops->fastest_rate(p);
+  if (p->law->ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
+    *rate = p->speed * p->law->ops->fastest_rate(p);
   else
     *rate = -1;
   if (!(*rate < 0)) return OK;

@@ -61,11 +61,10 @@ static int units(const law_point *p, double *only, double *sum) {
 
 /* Total strain less the part of e^i that is not in the terms. */
 static void total_strain(const law_point *p, double *e) {
-  const int ns = p->elastic->ns;
   double ei[6] = {0};
   shares(p, ei);
-  tensor_product(ns, p->elastic->S, p->sigma, e);
-  for (int i = 0; i < ns; ++i) e[i] += ei[i];
+  tensor_product(p->elastic->ns, p->elastic->S, p->sigma, e);
+  for (int i = 0; i < p->elastic->ns; ++i) e[i] += ei[i];
 }
 
 static void rate(const law_point *p, double *ei_rate, double *alpha_rate) {

@@ -102,12 +102,11 @@ status flow_coefficients(flow_kind *kind, double t, double temperature,
 
 status flow_at_point(flow_kind *kind, double t, double temperature,
                      double *value, law_point *p) {
-  const law_card *law = kind->law;
   const char *wrong = kind->varies & LAW_VARIES_TEMPERATURE
-                          ? law_too_cold(law, temperature)
+                          ? law_too_cold(kind->law, temperature)
                           : NULL;
   if (wrong != NULL)
-    RAISE(ERR_DECK, LAW_FORM "time %g: %s", LAW_ARGS(law), t, wrong);
+    RAISE(ERR_DECK, LAW_FORM "time %g: %s", LAW_ARGS(kind->law), t, wrong);
   return flow_coefficients(kind, t, temperature, value, p);
 }
 

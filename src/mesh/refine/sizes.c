@@ -53,10 +53,9 @@ static double coordinates(const refine_sizes *s, int elem, const double *x,
 
 /* The elements next to x, ascending: g->found; their number. */
 static int find_near(const size_grid *g, const double *x) {
-  const int dim = g->s.dim;
   int n = 0;
   if (g->tree.n == 0) return 0;
-  double r = LEAST * distance_of(dim, g->tree.box, g->tree.box + dim);
+  double r = LEAST * distance_of(g->s.dim, g->tree.box, g->tree.box + g->s.dim);
   for (; n == 0 && r > 0.0 && r < HUGE_VAL; r *= WIDER)
     n = box_tree_near(&g->tree, x, r, g->found);
   qsort(g->found, n, sizeof *g->found, number_order);

@@ -187,10 +187,9 @@ status apply_obstacle(reading *r) {
                 "ROTATE");
   /* A point or direction of two numbers: not enough in 3-D. */
   move *of = &r->m->moves[o - r->m->obstacles];
-  const record *line = r->card->records;
   for (int i = 0; i < lines && o->shape != OBSTACLE_GAP; ++i)
-    if (line[i].n_field == 2 && of->short_at.file == NULL)
-      of->short_at = line[i].at;
+    if (r->card->records[i].n_field == 2 && of->short_at.file == NULL)
+      of->short_at = r->card->records[i].at;
   read_shape(r, lines, o);
   return OK;
 }

@@ -28,11 +28,10 @@ void run_free_surface(run *r) {
 }
 
 static void node_bits(run *r) {
-  int dim = r->msh->dim;
   for (int i = 0; i < r->msh->n_node; ++i) {
     unsigned bits = 0;
-    for (int c = 0; c < dim; ++c)
-      bits |= (r->body.fixed[dim * i + c] != 0) << c;
+    for (int c = 0; c < r->msh->dim; ++c)
+      bits |= (r->body.fixed[r->msh->dim * i + c] != 0) << c;
     r->faces.node_fixed[i] = (unsigned char)bits;
   }
   /* A tied node moves with others, wholly. */
