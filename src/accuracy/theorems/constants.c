@@ -122,10 +122,6 @@ void energy_norm_free(energy_norm *e) {
   *e = (energy_norm){0};
 }
 
-int energy_norm_regular(const energy_norm *e) {
-  return e->inverse != NULL && e->dual.n_kernel == 0;
-}
-
 double energy_norm_of(energy_norm *e, const double *v) {
   contact_product(e->m, e->A, v, e->y);
   return sqrt(fmax(0.0, cblas_ddot(e->m, v, 1, e->y, 1)));
