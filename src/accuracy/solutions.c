@@ -98,7 +98,6 @@ status solution_set_add(const contact_problem *cp, double tol, const double *u,
   double distance = 0.0;
   *no = 0;
   s->n = cp->n;
-  s->m = cp->m;
   if (!(contact_residual(cp, u, r) <= tol)) return OK;
   for (int i = 0; i < s->n_found; ++i) {
     const solution *old = &s->found[i];

@@ -50,11 +50,6 @@ status strains_new(run *r) {
   return OK;
 }
 
-void strains_free(run *r) {
-  visco_free(r->strains.visco);
-  RELEASE(r->strains.elem, r->strains.load);
-}
-
 void strains_collect(run *r) {
   equilibrium *now = &r->now;
   if (r->strains.eigen.n == 0) return;

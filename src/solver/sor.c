@@ -64,7 +64,6 @@ typedef struct course {
   double mark;        /* residual at the last progress */
   double last_change; /* of the check before */
   int since;          /* checks since the last progress */
-  int cures;          /* cures tried */
   int order, chosen;  /* sweep_order; 1: omega by the program */
   state_watch watch;
   int turned, returns; /* since the last check: nodes that changed their state,
@@ -100,7 +99,6 @@ static int cure(relaxation *s, course *c) {
   c->since = c->circling = 0;
   c->mark = HUGE_VAL;
   c->last_change = 0.0;
-  ++c->cures;
   if (s->omega > 1.05) {
     s->omega = 1.0 + 0.5 * (s->omega - 1.0);
     c->omega_cap = s->omega;

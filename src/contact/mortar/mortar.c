@@ -379,7 +379,6 @@ static status do_faces(builder *b) {
     for (int k = 0; k < dim; ++k) redo |= b->state[node[k]] == SCANT;
     if (redo) PASS(do_face(b, i));
   }
-  b->out->clips = b->search.clips;
   return OK;
 }
 
@@ -578,16 +577,6 @@ static status set_nodes(builder *b) {
   return OK;
 }
 
-/* Area of a master face, m2. */
-static double master_area(const builder *b, int i) {
-  double share[3], sum = 0.0;
-  const facet *f = &b->search.master[i];
-  if (!(f->measure > 0)) return 0;
-  set_shares(b, b->in->master[i], f, share);
-  for (int k = 0; k < f->dim; ++k) sum += share[k];
-  return sum;
-}
-
 /* What messages need. */
 static status sum_up(builder *b) {
   mortar *m = b->out;
@@ -601,7 +590,6 @@ static status sum_up(builder *b) {
       whole += f->share[k];
       if (f->thin > 0.0) area += f->d[k] / f->thin;
     }
-    m->slave_area += whole;
     m->covered += area;
     if (area > seen * whole && area < (1.0 - seen) * whole)
       m->cut[m->n_cut++] = b->in->slave[i];
@@ -609,7 +597,6 @@ static status sum_up(builder *b) {
     masters += f->masters;
     slaves += f->end > f->first ? area * f->size : 0;
   }
-  for (int i = 0; i < b->in->n_master; ++i) m->master_area += master_area(b, i);
   m->size_ratio = slaves > 0 ? masters / slaves : 0;
   return OK;
 }
@@ -668,9 +655,4 @@ void ties_share(const tie_set *t, double *F) {
     for (int k = 0; k < t->to.dim * t->n; ++k)
       more |= share(t, k / t->to.dim, k % t->to.dim, F);
   }
-}
-
-void links_release(node_links *l) {
-  RELEASE(l->start, l->master, l->part);
-  *l = (node_links){0};
 }

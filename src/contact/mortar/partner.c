@@ -125,7 +125,6 @@ static status try_face(partner_search *s, int face, const facet *f, partner p) {
   int is_behind = 0;
   cell common[CLIP_CELLS];
   facet_project(f, mortar_nodes(s->in, p.face), s->in->x, &p.s);
-  ++s->clips;
   p.n = cell_common(f->dim, &f->in_plane, &p.s.in_plane, common);
   const double negligible =
       partner_rounding(s, f) * fmin(f->measure, p.s.measure);

@@ -155,11 +155,6 @@ status law_elastic_read(const elastic_table *table, double temperature,
   return OK;
 }
 
-status law_elastic_heat(law_elastic *el, double temperature) {
-  if (el->table == NULL || el->temperature == temperature) return OK;
-  return law_elastic_read(el->table, temperature, el->kin, el);
-}
-
 int law_n_alpha(const law_card *law, int ns) {
   return law->ops->n_alpha == NULL ? 0 : law->ops->n_alpha(law, ns);
 }

@@ -101,8 +101,8 @@ status run_build_surface(run *r) {
  */
 
 void run_free_ties(run *r) {
-  memory_free(r->body.ties.node_id);
-  links_release(&r->body.ties.to);
+  const node_links *to = &r->body.ties.to;
+  RELEASE(r->body.ties.node_id, to->start, to->master, to->part);
   r->body.ties = (tie_set){0};
   r->body.d.ties = NULL;
 }

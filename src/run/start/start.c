@@ -78,11 +78,6 @@ done:
   return st;
 }
 
-status start_report_new(const mesh *msh, start_report *report) {
-  PASS_NEW_ALL(OF(report->defect, msh->n_node), OF(report->kind, msh->n_node));
-  return OK;
-}
-
 static status set_line(const model *m, const mesh *msh, const initial *line,
                        double *u) {
   const mesh_group *g = &msh->group[line->group_id];
