@@ -85,7 +85,6 @@ typedef struct linear_states {
 /* out: all-zero; rests as of contact_stops. ERR_MEMORY. */
 status linear_states_new(const contact_problem *cp, const double *u,
                          const double *r, int rests, linear_states *out);
-void linear_states_free(linear_states *s);
 /* 1: no pivot of the factor[n_free^2] of a matrix of the free unknowns, by LU
  * or Cholesky, is rounding. */
 int linear_is_regular(const linear_states *s, const double *factor,

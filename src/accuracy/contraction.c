@@ -26,16 +26,12 @@ struct linear_contact {
 };
 
 static status map_new(const contact_problem *cp, const double *u,
-                      const double *r, int rests, linear_contact *s) {
+                      const double *r, int rests, linear_contact **out) {
+  MAKES(linear_contact, s, out);
   PASS(linear_states_new(cp, u, r, rests, &s->at));
   PASS_NEW_ALL(OF(s->x, cp->m), OF(s->dg, cp->n));
   if (cp->op != NULL) PASS_NEW_REALS(cp->m, &s->b, &s->full, &s->Ax);
   return OK;
-}
-
-static void map_free(linear_contact *s) {
-  linear_states_free(&s->at);
-  RELEASE(s->K, s->x, s->P, s->dg, s->b, s->full, s->Ax);
 }
 
 /* kappa (I - e e') of the sliding nodes. */
@@ -59,6 +55,7 @@ static status factor(linear_contact *s, int *good) {
     return OK;
   }
   size_t ld = s->at.n_free, m = s->at.cp->m;
+  OWNS(s);
   PASS_NEW(s->K, ld * ld);
   for (size_t j = 0; j < ld; ++j) {
     const double *column = s->at.cp->A + m * s->at.free_id[j];
@@ -106,6 +103,7 @@ static double move(linear_contact *s) {
 
 static status gather_columns(linear_contact *s) {
   if (s->at.cp->op != NULL) return OK;
+  OWNS(s);
   PASS_NEW(s->P, (size_t)s->at.n_free * s->at.n_closed);
   double *to = s->P;
   for (int i = 0; i < s->at.cp->n; ++i) {
@@ -286,40 +284,33 @@ static status measure_limit(linear_contact *s, const double *r, double *rate) {
 
 status contraction_limit(const contact_problem *cp, const double *u,
                          const double *r, double *rate) {
-  ENDS_BY(map_free) linear_contact s = {0};
-  PASS(map_new(cp, u, r, 0, &s));
-  PASS(measure(&s, r, rate));
-  if (*rate > 0.0 && *rate < HUGE_VAL) PASS(measure_limit(&s, r, rate));
+  OWNED_OF(linear_contact, s, map_new(cp, u, r, 0, &s));
+  PASS(measure(s, r, rate));
+  if (*rate > 0.0 && *rate < HUGE_VAL) PASS(measure_limit(s, r, rate));
   return OK;
 }
 
 status contraction_rate(const contact_problem *cp, const double *u,
                         const double *r, known_rate *known, double *rate) {
-  status st = OK;
-  linear_contact s = {0};
   int same = 0;
-  TRY(map_new(cp, u, r, 0, &s));
-  if (known != NULL) TRY(compare(&s, known, &same));
-  if (same)
+  OWNED_OF(linear_contact, s, map_new(cp, u, r, 0, &s));
+  if (known != NULL) PASS(compare(s, known, &same));
+  if (same) {
     *rate = known->rate[0];
-  else
-    TRY(measure(&s, r, rate));
+    return OK;
+  }
+  const status st = measure(s, r, rate);
   if (known != NULL) known->rate[0] = *rate;
-done:
   if (st != OK) known_rate_forget(known);
-  map_free(&s);
   return st;
 }
 
 status linear_contact_new(const contact_problem *cp, const double *u,
                           const double *r, linear_contact **out) {
   int good = 0;
-  PASS_NEW(*out, 1);
-  OWNS(*out);
-  PASS(map_new(cp, u, r, 1, *out));
+  PASS(map_new(cp, u, r, 1, out));
   PASS(factor(*out, &good));
-  if (good) return OK;
-  FORGET(*out);
+  if (!good) FORGET(*out);
   return OK;
 }
 

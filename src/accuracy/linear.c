@@ -59,11 +59,6 @@ status linear_states_new(const contact_problem *cp, const double *u,
   return OK;
 }
 
-void linear_states_free(linear_states *s) {
-  RELEASE(s->free_id, s->place, s->closed, s->slip, s->e, s->kappa, s->known,
-          s->added);
-}
-
 static const double NO_PIVOT = 0x1p-44; /* -, of the diagonal */
 
 int linear_is_regular(const linear_states *s, const double *factor,

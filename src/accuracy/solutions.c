@@ -98,7 +98,6 @@ status solution_set_add(const contact_problem *cp, double tol, const double *u,
   double distance = 0.0;
   *no = 0;
   s->n = cp->n;
-  s->m = cp->m;
   if (!(contact_residual(cp, u, r) <= tol)) return OK;
   for (int i = 0; i < s->n_found; ++i) {
     const solution *old = &s->found[i];
@@ -191,12 +190,11 @@ static int can_solve(const contact_problem *cp, const solver_ops *ops) {
 
 /* 1: row i represents its family: no row before it of the same kind can. */
 static int is_chosen(const contact_problem *cp, int i) {
-  const solver_ops *ops = solver_list[i];
   for (int k = 0; k < i; ++k)
-    if (strcmp(solver_list[k]->family, ops->family) == 0 &&
+    if (strcmp(solver_list[k]->family, solver_list[i]->family) == 0 &&
         can_solve(cp, solver_list[k]))
       return 0;
-  return can_solve(cp, ops);
+  return can_solve(cp, solver_list[i]);
 }
 
 static status try_solver(const contact_problem *cp, double tol,

@@ -32,7 +32,7 @@ typedef struct solution_attempt {
 } solution_attempt;
 
 typedef struct solution_set {
-  int n, m; /* nodes, unknowns of the problem */
+  int n; /* nodes of the problem */
   int n_found, cap_found;
   solution *found; /* [n_found] owned; first that of the run, if any */
   int n_attempt, cap_attempt;

@@ -419,10 +419,9 @@ static status grow(fit_weights *w, size_t *have, size_t n) {
 
 /* The patch and weights of a region. */
 static status keep_region(space_recovery *s, int region, fit_weights *w) {
-  const mesh *m = s->d->mesh;
   size_t have = 0;
-  PASS_NEW(w->start, m->n_node + 1);
-  for (int i = 0; i < m->n_node; ++i) {
+  PASS_NEW(w->start, s->d->mesh->n_node + 1);
+  for (int i = 0; i < s->d->mesh->n_node; ++i) {
     const int n = gather(s, i, region);
     const size_t at = w->start[i], next = at + n;
     if (next > have) PASS(grow(w, &have, next));

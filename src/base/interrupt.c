@@ -10,7 +10,6 @@
 
 enum { SIGNALLED = 128 }; /* exit code of a process that a signal ended */
 
-/* clang-format off */
 static const struct {
   int signal_no;
   status code;
@@ -18,14 +17,12 @@ static const struct {
   /* 1: the second such signal ends the process; the others are sent repeatedly,
    * or together */
   int urgent;
-} requests[] = {
-    {SIGINT,  ERR_INTERRUPTED, "SIGINT",  1},
-    {SIGTERM, ERR_TERMINATED,  "SIGTERM", 1},
-    {SIGHUP,  ERR_HANGUP,      "SIGHUP",  0},
-    {SIGXCPU, ERR_CPU_LIMIT,   "SIGXCPU", 0},
-    {SIGUSR1, ERR_USER_1,      "SIGUSR1", 0},
-    {SIGUSR2, ERR_USER_2,      "SIGUSR2", 0}};
-/* clang-format on */
+} requests[] = {{SIGINT, ERR_INTERRUPTED, "SIGINT", 1},
+                {SIGTERM, ERR_TERMINATED, "SIGTERM", 1},
+                {SIGHUP, ERR_HANGUP, "SIGHUP", 0},
+                {SIGXCPU, ERR_CPU_LIMIT, "SIGXCPU", 0},
+                {SIGUSR1, ERR_USER_1, "SIGUSR1", 0},
+                {SIGUSR2, ERR_USER_2, "SIGUSR2", 0}};
 enum { REQUESTS = sizeof requests / sizeof *requests };
 
 static volatile sig_atomic_t caught; /* row of the first + 1, 0: none */

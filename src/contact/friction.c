@@ -153,30 +153,27 @@ typedef struct nonlocal {
   int mirror_x, mirror_y, mirror_z; /* average_mirror */
 } nonlocal;
 
-/* clang-format off */
 static const option nonlocal_options[] = {
-  OPTION_REAL(nonlocal, radius, "RADIUS", DBL_MIN, DBL_MAX, NULL, "length",
-              "rho: the pressure is averaged over what is nearer"),
-  OPTION_CHOICE(nonlocal, kernel, "KERNEL", KERNEL_WORDS, "BUMP",
-                "weight over the distance r" KERNEL_HELP),
-  OPTION_CHOICE(nonlocal, edge, "EDGE", "FREE|NORMALIZED", "FREE",
-                "FREE: no pressure beyond the edges of the contact; "
-                "NORMALIZED: divide by the part of the weight inside"),
-  OPTION_CHOICE(nonlocal, zone, "ZONE", "SURFACE|CONTACT", "SURFACE",
-                "SURFACE: friction also at separated points within RADIUS of "
-                "the pressed zone; CONTACT: at touching points only"),
-  OPTION_CHOICE(nonlocal, distance, "DISTANCE", "STRAIGHT|GEODESIC",
-                "STRAIGHT", "r in space, or along the contact line (plane)"),
-  OPTION_CHOICE(nonlocal, mirror_x, "MIRROR_X", "NONE|MIN|MAX", "NONE",
-                "plane of symmetry at the least or largest x of the contact: "
-                "the pressure goes on behind it as its mirror image"),
-  OPTION_CHOICE(nonlocal, mirror_y, "MIRROR_Y", "NONE|MIN|MAX", "NONE",
-                "the same for y (z of an axisymmetric model)"),
-  OPTION_CHOICE(nonlocal, mirror_z, "MIRROR_Z", "NONE|MIN|MAX", "NONE",
-                "the same for z in 3-D"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_REAL(nonlocal, radius, "RADIUS", DBL_MIN, DBL_MAX, NULL, "length",
+                "rho: the pressure is averaged over what is nearer"),
+    OPTION_CHOICE(nonlocal, kernel, "KERNEL", KERNEL_WORDS, "BUMP",
+                  "weight over the distance r" KERNEL_HELP),
+    OPTION_CHOICE(nonlocal, edge, "EDGE", "FREE|NORMALIZED", "FREE",
+                  "FREE: no pressure beyond the edges of the contact; "
+                  "NORMALIZED: divide by the part of the weight inside"),
+    OPTION_CHOICE(nonlocal, zone, "ZONE", "SURFACE|CONTACT", "SURFACE",
+                  "SURFACE: friction also at separated points within RADIUS of "
+                  "the pressed zone; CONTACT: at touching points only"),
+    OPTION_CHOICE(nonlocal, distance, "DISTANCE", "STRAIGHT|GEODESIC",
+                  "STRAIGHT", "r in space, or along the contact line (plane)"),
+    OPTION_CHOICE(nonlocal, mirror_x, "MIRROR_X", "NONE|MIN|MAX", "NONE",
+                  "plane of symmetry at the least or largest x of the contact: "
+                  "the pressure goes on behind it as its mirror image"),
+    OPTION_CHOICE(nonlocal, mirror_y, "MIRROR_Y", "NONE|MIN|MAX", "NONE",
+                  "the same for y (z of an axisymmetric model)"),
+    OPTION_CHOICE(nonlocal, mirror_z, "MIRROR_Z", "NONE|MIN|MAX", "NONE",
+                  "the same for z in 3-D"),
+    OPTION_END};
 
 /* The faces of a contact as a patch of the average. */
 typedef struct patch {

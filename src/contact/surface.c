@@ -260,11 +260,10 @@ static int add_coupled(const builder *b, int pair_id, candidate *first) {
 
 /* Order by node; the contacts of a node keep their order. */
 static status sort_candidates(builder *b) {
-  int n_node = b->in->mesh->n_node;
-  OWNED_NEW(int, start, n_node + 1);
+  OWNED_NEW(int, start, b->in->mesh->n_node + 1);
   OWNED_NEW(candidate, sorted, b->n);
   for (int i = 0; i < b->n; ++i) ++start[b->list[i].node_id + 1];
-  for (int k = 0; k < n_node; ++k) start[k + 1] += start[k];
+  for (int k = 0; k < b->in->mesh->n_node; ++k) start[k + 1] += start[k];
   for (int i = 0; i < b->n; ++i)
     sorted[start[b->list[i].node_id]++] = b->list[i];
   memory_free(b->list);
@@ -425,7 +424,6 @@ static double mean_apart(const builder *b, const candidate *c) {
 
 /* Gap at time 0, or left out. */
 static void measure(builder *b, candidate *c) {
-  const mesh *m = b->in->mesh;
   const contact_pair *p = &b->in->pairs[c->pair_id];
   tally *t = &b->tallies[c->pair_id];
   const surface_row at = row_of(b, c);
@@ -433,11 +431,11 @@ static void measure(builder *b, candidate *c) {
   if (isnan(c->gap) || c->gap == -HUGE_VAL) {
     message_add(b->log, P4007, &p->at, "%s %s: gap is %s at %s, time 0",
                 p->card, p->name, isnan(c->gap) ? "not a number" : "-inf",
-                describe(m, c->node_id).text);
+                describe(b->in->mesh, c->node_id).text);
     c->left_out = 1;
   } else if (c->gap == HUGE_VAL) {
     if (pair_moves(p)) {
-      c->gap = SURFACE_UNMET * m->size;
+      c->gap = SURFACE_UNMET * b->in->mesh->size;
     } else {
       c->left_out = 1;
       ++t->n_unreached;
@@ -580,11 +578,10 @@ static status couple_node(builder *b, contact_surface *s, int i, int n_kept,
 static status set_node(builder *b, contact_surface *s, int n_kept,
                        const candidate *const *kept) {
   OWNS(s);
-  const mesh *m = b->in->mesh;
   int dim = b->dim, i = s->n++;
   const candidate *c = kept[0];
   s->node_id[i] = c->node_id;
-  s->node_no[i] = m->node_no[c->node_id];
+  s->node_no[i] = b->in->mesh->node_no[c->node_id];
   s->contact_id[i] = c->pair_id;
   for (int k = 0; k < dim - 1; ++k) {
     const candidate *side = k + 1 < n_kept ? kept[k + 1] : NULL;
@@ -592,7 +589,7 @@ static status set_node(builder *b, contact_surface *s, int n_kept,
     s->side_area[i * (dim - 1) + k] = side != NULL ? side->area : 0.0;
   }
   for (int k = 0; k < dim; ++k)
-    s->x[dim * i + k] = m->x[(size_t)dim * c->node_id + k];
+    s->x[dim * i + k] = b->in->mesh->x[(size_t)dim * c->node_id + k];
   s->area[i] = c->area;
   s->gap0[i] = c->gap;
   if (!set_frame(b, s, i, n_kept, kept)) note_corner(b, n_kept, kept);

@@ -391,8 +391,8 @@ static status read_all(reader *r) {
 
 static void reader_free(reader *r) {
   while (r->top != NULL) source_pop(&r->top);
-  logical_free(&r->line);
-  RELEASE(r->scratch.text, r->format, r->waiting_format);
+  RELEASE(r->line.all.text, r->line.segments, r->scratch.text, r->format,
+          r->waiting_format);
 }
 
 status deck_read(const char *file, int n_define, const char *const *defines,

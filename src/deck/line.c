@@ -220,8 +220,6 @@ done:
 
 /* ---- logical lines ------------------------------------------------------ */
 
-void logical_free(logical *l) { RELEASE(l->all.text, l->segments); }
-
 place logical_place(const logical *l, int byte) {
   int low = 0, high = l->n_segment;
   while (high - low > 1) {

@@ -113,7 +113,6 @@ typedef enum { LINE_FREE, LINE_DEFINITION } line_kind;
 
 /* Fill r->line from the line given and its continuation lines. */
 status logical_read(reader *r, const physical *first, line_kind kind);
-void logical_free(logical *l);
 /* Place of a byte of the logical line. */
 place logical_place(const logical *l, int byte);
 

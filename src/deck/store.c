@@ -8,22 +8,16 @@
 enum { CHUNK_BYTES = 1 << 16, ALIGN = 16 };
 
 struct chunk {
-  chunk *next;
   size_t used, size;
-  char *bytes; /* [size] */
+  _Alignas(ALIGN) char bytes[]; /* [size] */
 };
 
 static chunk *new_chunk(deck *d, size_t size) {
+  const size_t bytes = size > CHUNK_BYTES ? size : CHUNK_BYTES;
   OWNS(d);
-  chunk *c = memory_new(1, sizeof *c);
+  chunk *c = memory_new(1, sizeof *c + bytes);
   if (c == NULL) return NULL;
-  c->size = size > CHUNK_BYTES ? size : CHUNK_BYTES;
-  c->bytes = memory_new(c->size, 1);
-  if (c->bytes == NULL) {
-    memory_free(c);
-    return NULL;
-  }
-  c->next = d->own->last;
+  c->size = bytes;
   d->own->last = c;
   return c;
 }

@@ -151,14 +151,12 @@ static int contact_of(const condensed *c, int row) {
 
 /* Component of a row of A among those of all nodes. */
 static size_t component_of(const condensed *c, int row) {
-  const stiffness *k = c->k;
   const int i = c->d.surface->node_id[contact_of(c, row)];
-  return (size_t)k->dim * i + row % k->rows;
+  return (size_t)c->k->dim * i + row % c->k->rows;
 }
 
 static int is_held(const condensed *c, int row) {
-  const stiffness *k = c->k;
-  return c->d.surface->held[k->dim * contact_of(c, row) + row % k->rows];
+  return c->d.surface->held[c->k->dim * contact_of(c, row) + row % c->k->rows];
 }
 
 /* The factors of the whole matrix: one of each body, or the operator's. */
@@ -509,9 +507,8 @@ status condensed_untouched(condensed *c, const double *f, double *u) {
 
 status condensed_misfit(condensed *c, const double *rest, const double *rc,
                         double *w, double *square) {
-  const stiffness *k = c->k;
   *square = 0;
-  CLEAR(w, (size_t)k->dim * k->n_node);
+  CLEAR(w, (size_t)c->k->dim * c->k->n_node);
   set_load(c, rest);
   for (int q = 0; q < c->m; ++q) c->load[component_of(c, q)] += rc[q];
   PASS(want_all_rows(c));

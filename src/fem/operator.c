@@ -269,10 +269,9 @@ static void gather_node(const sparse_operator *o, int id, const double *v,
 
 /* v -= Q Q'v: no force by a rigid motion, no motion of forces. */
 static void project(const sparse_operator *o, double *v) {
-  const rigid_motions *r = o->rigid;
   const size_t m = o->k->n_row;
-  for (int c = 0; c < r->k; ++c) {
-    const double *q = r->Q + m * c;
+  for (int c = 0; c < o->rigid->k; ++c) {
+    const double *q = o->rigid->Q + m * c;
     add_scaled((int)m, -dot((int)m, q, v), q, v);
   }
 }
@@ -291,8 +290,7 @@ static void gather(const sparse_operator *o, const double *u, double *Au,
 
 static void apply(void *ctx, const double *u, double *Au, double *size) {
   sparse_operator *o = ctx;
-  const int m = o->k->n_row;
-  COPY(Au, u, m);
+  COPY(Au, u, o->k->n_row);
   project(o, Au);
   /* The contact unknowns have u[m]: o->work.v at them and next to them. */
   clear(o);
@@ -301,7 +299,7 @@ static void apply(void *ctx, const double *u, double *Au, double *size) {
   for (int q = 0; q < o->k->n_row; ++q)
     if (!o->held[q]) o->work.v[o->number[o->unknown[q]]] = Au[q];
   gather(o, u, Au, size);
-  for (int q = 0; size != NULL && q < m; ++q)
+  for (int q = 0; size != NULL && q < o->k->n_row; ++q)
     if (o->held[q]) size[q] = fabs(Au[q]);
 }
 

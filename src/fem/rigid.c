@@ -68,9 +68,8 @@ typedef struct box {
 } box;
 
 static void extend(const domain *d, int node, box *b) {
-  const int dim = d->mesh->dim;
-  const double *x = d->mesh->x + (size_t)dim * node;
-  for (int c = 0; c < dim; ++c) {
+  const double *x = d->mesh->x + (size_t)d->mesh->dim * node;
+  for (int c = 0; c < d->mesh->dim; ++c) {
     if (!b->found || x[c] < b->low[c]) b->low[c] = x[c];
     if (!b->found || x[c] > b->high[c]) b->high[c] = x[c];
   }

@@ -157,12 +157,11 @@ static status fill_group(builder *b, mesh_group *g, filling *f) {
   faults outside = {0};
   f->n_node = f->n_item = 0;
   for (int i = 0; i < b->raw->n_block; ++i) {
-    const raw_block *p = &b->raw->block[i];
-    if (!block_in_group(p, g->dim, g->tag)) continue;
+    if (!block_in_group(&b->raw->block[i], g->dim, g->tag)) continue;
     if (g->dim >= b->m->dim - 1)
       add_items(b, i, f);
     else
-      add_nodes(b, p, f, &outside);
+      add_nodes(b, &b->raw->block[i], f, &outside);
   }
   g->n_node = f->n_node;
   g->n_item = f->n_item;
@@ -366,15 +365,8 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
     PASS(read_geo(source, head, at, log, &raw));
   else
     PASS(read_msh(source, head, at, log, &raw));
-  if (source->sizes[0].of != NULL && !mesh_is_program(source->file)) {
-    const mesh *of = source->sizes[0].of;
-    const refine_request request = {
-        {of->dim, of->n_node, of->n_elem, of->x, of->elem, source->sizes[0].at},
-        source->scale,
-        source->n_round,
-        source->rounds};
-    PASS(raw_refine(raw, &request));
-  }
+  if (source->sizes[0].of != NULL && !mesh_is_program(source->file))
+    PASS(raw_refine(raw, source));
   raw->meets = source->meets;
   raw->made = mesh_is_program(source->file);
   return build_mesh(raw, source->scale, at, log, out);

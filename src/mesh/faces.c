@@ -107,10 +107,8 @@ static int find_face(const face_list *f, const int *v) {
 }
 
 void mesh_side_nodes(const mesh *m, int id, int *v) {
-  /* clang-format off */
   static const int side_2d[3][2] = {{0, 1}, {1, 2}, {2, 0}};
   static const int side_3d[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  /* clang-format on */
   const int *w = mesh_elem_nodes(m, id / (m->dim + 1));
   const int side = id % (m->dim + 1);
   if (m->dim == 2) {

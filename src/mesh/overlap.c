@@ -335,11 +335,10 @@ static status grow_tree(search *s) {
 
 /* Elements that own a side of the boundary, with each other. */
 static status check_skin(search *s, const char *is_skin) {
-  const mesh *m = s->b->m;
   int n = 0;
-  for (int e = 0; e < m->n_elem; ++e) n += is_skin[e];
+  for (int e = 0; e < s->b->m->n_elem; ++e) n += is_skin[e];
   PASS(start_list(s, n));
-  for (int e = 0; e < m->n_elem; ++e)
+  for (int e = 0; e < s->b->m->n_elem; ++e)
     if (is_skin[e]) s->elem[s->n++] = e;
   PASS(grow_tree(s));
   for (int i = 0; i < n; ++i) PASS(find(s, s->elem[i], i + 1));

@@ -168,11 +168,10 @@ enum { PARTS = 64 };
  * increment, points of its table. */
 static double next_look(const course *c, const double ends[2], int *part,
                         int *point, int end_point) {
-  const value_table *table = c->value->factor;
   const double by_part =
       *part == PARTS ? ends[1] : ends[0] + (ends[1] - ends[0]) * *part / PARTS;
   if (*point < end_point) {
-    const double at = table->at[*point] + c->value->factor_start;
+    const double at = c->value->factor->at[*point] + c->value->factor_start;
     *point += at <= by_part;
     *part += at == by_part;
     if (at <= by_part) return at;

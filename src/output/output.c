@@ -286,11 +286,10 @@ static status sink_rejected(void *ctx, const state *s, const char *why) {
 }
 
 history_sink output_sink(output *o) {
-  const history_sink *first = &o->o.first;
   return (history_sink){
       .ctx = o,
       .expect = sink_expect,
-      .checkpoint = first->checkpoint != NULL ? sink_checkpoint : NULL,
+      .checkpoint = o->o.first.checkpoint != NULL ? sink_checkpoint : NULL,
       .ready = sink_ready,
       .start = sink_start,
       .increment = sink_increment,

@@ -206,7 +206,6 @@ status output_remember(output *o, const state *s) {
   ADDED(increment_summary, i, run->increments, run->n_increment, run->capacity);
   *i = (increment_summary){.step_no = s->step_no,
                            .increment_no = s->increment_no,
-                           .total_no = s->total_no,
                            .attempt = s->attempt,
                            .t = s->t,
                            .dt = s->dt,

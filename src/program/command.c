@@ -267,27 +267,25 @@ static const char *word_read(int argc, char **argv) {
 
 /* Options and queries; -1: go on with the job. */
 static int read_options(int argc, char **argv, command *c) {
-  /* clang-format off */
   const struct option words[] = {
-    {"check", no_argument, &c->check_only, 1},
-    {"estimate-cost", no_argument, &c->estimate_cost, 1},
-    {"threads", required_argument, NULL, ASK_THREADS},
-    {"max-memory", required_argument, NULL, ASK_MEMORY},
-    {"safe", no_argument, &c->safe, 1},
-    {"restart", no_argument, &c->restart, 1},
-    {"table", required_argument, NULL, ASK_TABLE},
-    {"format", required_argument, NULL, ASK_FORMAT},
-    {"quiet", no_argument, &c->quiet, 1},
-    {"no-timing", no_argument, &c->no_timing, 1},
-    {"help", no_argument, NULL, 'h'},
-    {"version", no_argument, NULL, 'V'},
-    {"keywords", no_argument, NULL, ASK_KEYWORDS},
-    {"list", required_argument, NULL, ASK_LIST},
-    {"explain", no_argument, NULL, ASK_EXPLAIN},
-    {"manual", no_argument, NULL, ASK_MANUAL},
-    {"example", required_argument, NULL, ASK_EXAMPLE},
-    {NULL, 0, NULL, 0}};
-  /* clang-format on */
+      {"check", no_argument, &c->check_only, 1},
+      {"estimate-cost", no_argument, &c->estimate_cost, 1},
+      {"threads", required_argument, NULL, ASK_THREADS},
+      {"max-memory", required_argument, NULL, ASK_MEMORY},
+      {"safe", no_argument, &c->safe, 1},
+      {"restart", no_argument, &c->restart, 1},
+      {"table", required_argument, NULL, ASK_TABLE},
+      {"format", required_argument, NULL, ASK_FORMAT},
+      {"quiet", no_argument, &c->quiet, 1},
+      {"no-timing", no_argument, &c->no_timing, 1},
+      {"help", no_argument, NULL, 'h'},
+      {"version", no_argument, NULL, 'V'},
+      {"keywords", no_argument, NULL, ASK_KEYWORDS},
+      {"list", required_argument, NULL, ASK_LIST},
+      {"explain", no_argument, NULL, ASK_EXPLAIN},
+      {"manual", no_argument, NULL, ASK_MANUAL},
+      {"example", required_argument, NULL, ASK_EXAMPLE},
+      {NULL, 0, NULL, 0}};
   int what, code = -1;
   while (code < 0 &&
          (what = getopt_long(argc, argv, ":o:D:hV", words, NULL)) != -1) {

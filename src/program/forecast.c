@@ -199,14 +199,13 @@ static double of_files(const model_of_cost *c, double unknowns, double times) {
 
 /* CPU seconds of a run with N unknowns and that many times the increments. */
 static double cpu_at(const model_of_cost *c, double unknowns, double times) {
-  const trial *b = &c->fine;
-  double sum = 0.0, ratio = unknowns / b->unknowns;
+  double sum = 0.0, ratio = unknowns / c->fine.unknowns;
   double shadow = of_shadow_run(c, 1.0);
   for (int i = 0; i < STAGE_COUNT; ++i) {
     double by = growth(c, (stage)i, ratio);
     if (i == STAGE_TIME_ERROR && shadow > 0.0)
       by = of_shadow_run(c, ratio) / shadow;
-    sum += b->cpu[i] * by * (is_of_run(i) ? 1.0 : times);
+    sum += c->fine.cpu[i] * by * (is_of_run(i) ? 1.0 : times);
   }
   return sum + of_files(c, unknowns, times);
 }

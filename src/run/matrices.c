@@ -12,9 +12,9 @@ const material *run_material(const run *r, int elem_id) {
 }
 
 const double *run_elasticity(const run *r, int elem_id) {
-  const int ns = r->m->ns;
-  return r->body.moduli.E +
-         (size_t)(ns * ns) * moduli_entry(&r->body.moduli, r->m, elem_id);
+  const moduli *x = &r->body.moduli;
+  const int *of = x->section_id != NULL ? x->section_id : r->m->elem_section;
+  return x->E + (size_t)(r->m->ns * r->m->ns) * of[elem_id];
 }
 
 void matrices_free(matrices *m) {

@@ -10,11 +10,6 @@ int moduli_follows(const model *m, int elem_id) {
          material_of(m, m->elem_section[elem_id])->elastic.n > 1;
 }
 
-int moduli_entry(const moduli *x, const model *m, int elem_id) {
-  return x->section_id != NULL ? x->section_id[elem_id]
-                               : m->elem_section[elem_id];
-}
-
 /* C, which is of the size of an entry, into entry i. */
 static void put_entry(moduli *x, const model *m, int i, const double C[36]) {
   COPY(x->C + 36 * (size_t)i, C, 36);

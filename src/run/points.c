@@ -102,9 +102,8 @@ void visco_add_strains(const run *r, double *e0) {
 }
 
 void visco_temperatures(const run *r, const equilibrium *e, flow_state *s) {
-  const visco *v = r->strains.visco;
-  for (int k = 0; k < v->x.n && e->temperature != NULL; ++k)
-    s->temperature[k] = e->temperature[v->elem[k]];
+  for (int k = 0; k < r->strains.visco->x.n && e->temperature != NULL; ++k)
+    s->temperature[k] = e->temperature[r->strains.visco->elem[k]];
 }
 
 void visco_strains(run *r, const equilibrium *e, flow_state *s) {
@@ -178,9 +177,8 @@ static inline double deviator_square(int ns, const double *t, double shear) {
 
 static int can_lock(const run *r, int k) {
   const visco *v = r->strains.visco;
-  const cluster_set *c = r->body.d.cluster;
   return !v->x.kind[v->x.kind_id[k]].elastic.plane_stress &&
-         (c == NULL || c->of[v->elem[k]] < 0);
+         (r->body.d.cluster == NULL || r->body.d.cluster->of[v->elem[k]] < 0);
 }
 
 /* Adds point k of v->now. */
@@ -198,12 +196,11 @@ static inline void add_locking(int ns, const run *r, int k, locking_sums *sum) {
 /* Mean of the bulk moduli, Pa. */
 static double mean_bulk(const run *r) {
   const visco *v = r->strains.visco;
-  const int ns = r->m->ns;
   double bulk = 0.0, volume = 0.0;
   for (int k = 0; k < v->x.n; ++k) {
     const double *E = run_elasticity(r, v->elem[k]), w = v->x.weight[k];
     if (!can_lock(r, k)) continue;
-    for (int i = 0; i < 9; ++i) bulk += w * E[ns * (i / 3) + i % 3] / 9.0;
+    for (int i = 0; i < 9; ++i) bulk += w * E[r->m->ns * (i / 3) + i % 3] / 9.0;
     volume += w;
   }
   return bulk / volume;

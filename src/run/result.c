@@ -132,9 +132,8 @@ static void find_borne(run *r) {
 
 /* Slip against the obstacle, gap left, status. */
 static void find_contact(run *r) {
-  int dim = r->msh->dim;
   for (int i = 0; i < r->nodes.n; ++i) {
-    r->result.open_gap[i] = r->problem.gap[i] - r->now.uc[dim * i];
+    r->result.open_gap[i] = r->problem.gap[i] - r->now.uc[r->msh->dim * i];
     find_slip(r, i);
   }
   if (r->result.g != NULL) {
@@ -192,12 +191,11 @@ static void add_side(const run *r, int i, int a, contact_total *t) {
 
 static void add_node(const run *r, int i) {
   const contact_surface *s = r->surface;
-  const int dim = s->dim;
   const contact_status now = r->result.contact[i];
   contact_total *own = &r->result.totals[s->contact_id[i]];
-  for (int a = 0; a < dim; ++a) {
+  for (int a = 0; a < s->dim; ++a) {
     contact_total *t = &r->result.totals[surface_contact_of(s, i, a)];
-    const double rc = r->now.rc[dim * i + a];
+    const double rc = r->now.rc[s->dim * i + a];
     add_row(r, i, a, t);
     if (a == 0)
       add_normal(rc, s->area[i], now != CONTACT_OPEN, t);

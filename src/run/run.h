@@ -329,14 +329,11 @@ void moduli_free(moduli *x); /* accepts all-zero */
 status moduli_heat(moduli *x, const model *m, const double *T, int *changed);
 /* What d knows of its elements, borrowed from x and m. */
 void moduli_domain(const moduli *x, const model *m, domain *d);
-/* Entry of an element. */
-int moduli_entry(const moduli *x, const model *m, int elem_id);
 /* 1 if the stiffness of the element can change. */
 int moduli_follows(const model *m, int elem_id);
 
 /* strains.c: strains that carry no stress. */
 status strains_new(run *r);
-void strains_free(run *r);
 /* Components of them that an equilibrium has arrays for. */
 size_t strains_kept(const run *r);
 /* r->strains.eigen.e0 from the current strains. */

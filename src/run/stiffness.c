@@ -142,7 +142,6 @@ static void say(stiffness_choice *c, int sparse, const char *why) {
 
 /* By seconds, where both fit; where one does not, the other. */
 static void compare(const run *r, double most, stiffness_choice *c) {
-  const observed_work *seen = &r->solving.seen;
   const int dense_fits = c->dense.bytes <= most;
   const int factor_fits = c->factor.bytes <= most;
   if (dense_fits != factor_fits)
@@ -151,10 +150,10 @@ static void compare(const run *r, double most, stiffness_choice *c) {
     say(c, c->factor.bytes < c->dense.bytes, "it needs less memory");
   else
     say(c, c->factor.seconds < c->dense.seconds, "it is expected to be faster");
-  if (dense_fits && factor_fits && seen->increments > 0)
+  if (dense_fits && factor_fits && r->solving.seen.increments > 0)
     snprintf(c->why + strlen(c->why), sizeof c->why - strlen(c->why),
              ", by %.1f systems an increment and %.1f solves each",
-             systems_of_increment(seen), look_ahead(r).solves);
+             systems_of_increment(&r->solving.seen), look_ahead(r).solves);
 }
 
 /* made: kinds whose matrices are there, for the current supports and nodes. */

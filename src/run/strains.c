@@ -50,11 +50,6 @@ status strains_new(run *r) {
   return OK;
 }
 
-void strains_free(run *r) {
-  visco_free(r->strains.visco);
-  RELEASE(r->strains.elem, r->strains.load);
-}
-
 void strains_collect(run *r) {
   equilibrium *now = &r->now;
   if (r->strains.eigen.n == 0) return;
@@ -102,7 +97,6 @@ static item_ends ends_of(const run *r) {
 /* Item k of r->strains.eigen. */
 static void item_work(const run *r, const item_ends *x, int k, energies *e,
                       double *held) {
-  const int ns = r->m->ns;
   double w = element_weight(&r->body.d, r->strains.elem[k]);
   double thermal = 0.0, all = 0.0, stress[6];
   for (size_t i = at(r, k); i < at(r, k + 1); ++i) {
@@ -113,9 +107,9 @@ static void item_work(const run *r, const item_ends *x, int k, energies *e,
   }
   e->thermal += w * (thermal + softened(r, k));
   e->inelastic += w * (all - thermal);
-  tensor_product(ns, run_elasticity(r, r->strains.elem[k]), x->e0[1] + at(r, k),
-                 stress);
-  *held += 0.5 * w * dot(ns, x->e0[1] + at(r, k), stress);
+  tensor_product(r->m->ns, run_elasticity(r, r->strains.elem[k]),
+                 x->e0[1] + at(r, k), stress);
+  *held += 0.5 * w * dot(r->m->ns, x->e0[1] + at(r, k), stress);
 }
 
 /* Items from, ..., to - 1, which hold whole clusters. */

@@ -29,13 +29,10 @@ typedef struct aitken {
   int acceleration; /* acceleration_kind */
 } aitken;
 
-/* clang-format off */
 static const option aitken_options[] = {
-  OPTION_CHOICE(aitken, acceleration, "ACCELERATION", "AITKEN|ANDERSON|NONE",
-                "AITKEN", "how the sweeps are combined"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_CHOICE(aitken, acceleration, "ACCELERATION", "AITKEN|ANDERSON|NONE",
+                  "AITKEN", "how the sweeps are combined"),
+    OPTION_END};
 
 enum {
   SWEEPS = 20000, /* default limit */

@@ -30,13 +30,10 @@ typedef struct lagrange {
 
 typedef enum { BY_NESTEROV, BY_NOTHING } acceleration_kind;
 
-/* clang-format off */
 static const option lagrange_options[] = {
-  OPTION_CHOICE(lagrange, acceleration, "ACCELERATION", "NESTEROV|NONE",
-                "NESTEROV", "extrapolation of the forces between the steps"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_CHOICE(lagrange, acceleration, "ACCELERATION", "NESTEROV|NONE",
+                  "NESTEROV", "extrapolation of the forces between the steps"),
+    OPTION_END};
 
 enum {
   STEPS = 100000, /* default limit */
@@ -110,13 +107,12 @@ static outcome check(run *s, int k) {
 static int project_step(run *s) {
   lagrange_work *w = s->w;
   const force_set *set = w->set;
-  int m = s->cp->m;
   double energy = 0.0, metric = 0.0, size = 0.0;
-  for (int i = 0; i < m; ++i)
+  for (int i = 0; i < s->cp->m; ++i)
     s->r[i] = w->y[i] - w->step * set->D[i] * w->y_x[i];
   force_set_project(set, 0.0, s->r);
   force_set_product(set, s->r, w->x);
-  for (int i = 0; i < m; ++i) {
+  for (int i = 0; i < s->cp->m; ++i) {
     w->x[i] += w->c[i];
     w->y[i] = s->r[i] - w->y[i];
     energy += w->y[i] * (w->x[i] - w->y_x[i]);

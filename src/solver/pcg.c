@@ -38,13 +38,10 @@ typedef struct pcg {
 
 typedef enum { BY_FACE, BY_DIAGONAL } preconditioner_kind;
 
-/* clang-format off */
 static const option pcg_options[] = {
-  OPTION_CHOICE(pcg, preconditioner, "PRECONDITIONER", "FACE|DIAGONAL", "FACE",
-                "of the conjugate gradients on a face"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_CHOICE(pcg, preconditioner, "PRECONDITIONER", "FACE|DIAGONAL",
+                  "FACE", "of the conjugate gradients on a face"),
+    OPTION_END};
 
 enum {
   STEPS = 20000,  /* default limit */
@@ -69,12 +66,11 @@ typedef struct pcg_work {
 static status pcg_setup(const contact_problem *cp, const void *par,
                         void *work) {
   pcg_work *w = work;
-  int m = cp->m;
   PASS(force_set_new(cp, &w->set));
-  PASS_NEW_REALS(m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
+  PASS_NEW_REALS(cp->m, &w->x, &w->phi, &w->beta, &w->z, &w->p, &w->v, &w->r0,
                  &w->x0, &w->e);
   PASS_NEW(w->turn, cp->n);
-  return best_iterate_new(m, &w->best);
+  return best_iterate_new(cp->m, &w->best);
 }
 
 /* ---- the set ------------------------------------------------------------- */
@@ -180,12 +176,11 @@ static double longest_in_disc(const run *s, int node_id, const double *p) {
 
 /* Longest a for which r - a p stays in the set; rims turn freely. */
 static double longest(const run *s, const double *p, int rims_too) {
-  const contact_problem *cp = s->cp;
   double a = HUGE_VAL;
-  for (int dof = 0; dof < cp->m; ++dof)
+  for (int dof = 0; dof < s->cp->m; ++dof)
     if (s->w->set->part[dof] == PUSH && p[dof] < 0.0)
       a = fmin(a, s->r[dof] / p[dof]);
-  for (int i = 0; i < cp->n; ++i)
+  for (int i = 0; i < s->cp->n; ++i)
     if (rims_too || !s->w->set->rim[i]) a = fmin(a, longest_in_disc(s, i, p));
   return a;
 }

@@ -20,17 +20,15 @@ typedef struct sor {
 typedef enum { SWEEP_FORWARD, SWEEP_BACKWARD, SWEEP_SYMMETRIC } sweep_order;
 typedef enum { FRICTION_DIRECT, FRICTION_FIXED_POINT } friction_update;
 
-/* clang-format off */
 static const option sor_options[] = {
-  OPTION_REAL(sor, omega, "OMEGA", 0, 1.999, "0", "-",
-              "relaxation factor; 0: chosen by the program"),
-  OPTION_CHOICE(sor, sweep, "SWEEP", "FORWARD|BACKWARD|SYMMETRIC", "FORWARD",
-                "order in which the nodes are visited"),
-  OPTION_CHOICE(sor, friction, "FRICTION", "DIRECT|FIXED_POINT", "DIRECT",
-                "sliding limit updated in the sweep, or around Tresca passes"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_REAL(sor, omega, "OMEGA", 0, 1.999, "0", "-",
+                "relaxation factor; 0: chosen by the program"),
+    OPTION_CHOICE(sor, sweep, "SWEEP", "FORWARD|BACKWARD|SYMMETRIC", "FORWARD",
+                  "order in which the nodes are visited"),
+    OPTION_CHOICE(
+        sor, friction, "FRICTION", "DIRECT|FIXED_POINT", "DIRECT",
+        "sliding limit updated in the sweep, or around Tresca passes"),
+    OPTION_END};
 
 enum {
   SWEEPS = 20000, /* default limit */
@@ -66,7 +64,6 @@ typedef struct course {
   double mark;        /* residual at the last progress */
   double last_change; /* of the check before */
   int since;          /* checks since the last progress */
-  int cures;          /* cures tried */
   int order, chosen;  /* sweep_order; 1: omega by the program */
   state_watch watch;
   int turned, returns; /* since the last check: nodes that changed their state,
@@ -102,7 +99,6 @@ static int cure(relaxation *s, course *c) {
   c->since = c->circling = 0;
   c->mark = HUGE_VAL;
   c->last_change = 0.0;
-  ++c->cures;
   if (s->omega > 1.05) {
     s->omega = 1.0 + 0.5 * (s->omega - 1.0);
     c->omega_cap = s->omega;

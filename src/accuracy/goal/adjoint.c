@@ -381,8 +381,7 @@ status contact_adjoint_solve(contact_adjoint *a, const double *j,
 
 status contact_adjoint_change(contact_adjoint *a, const double *df,
                               const double *stick, double *du) {
-  const contact_problem *cp = a->cp;
-  for (int k = 0; k < cp->m; ++k) {
+  for (int k = 0; k < a->cp->m; ++k) {
     a->x[k] = df[k];
     du[k] = sticks(a, k) ? stick[k] : 0.0;
   }

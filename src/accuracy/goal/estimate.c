@@ -72,12 +72,11 @@ struct goal_estimator {
 static void gradients(const goal_solution *s, double *q) {
   const mesh *m = s->d->mesh;
   const int dim = m->dim;
-  const double *u = s->u;
   double g[12];
   for (int e = 0; e < m->n_elem; ++e, q += dim * dim) {
     mesh_elem_gradients(m, e, g);
     for (int a = 0; a <= dim; ++a) {
-      const double *v = u + (size_t)dim * m->elem[(dim + 1) * e + a];
+      const double *v = s->u + (size_t)dim * m->elem[(dim + 1) * e + a];
       for (int c = 0; c < dim; ++c)
         for (int k = 0; k < dim; ++k) q[c * dim + k] += v[c] * g[dim * a + k];
     }
@@ -350,10 +349,9 @@ static void add_joints(goal_estimator *e) {
 static status recover_region(goal_estimator *e, int region, const double *q,
                              double *G) {
   const mesh *m = e->s.d->mesh;
-  const int ns = e->s.d->ns;
-  PASS_NEW(e->stress[region], (size_t)ns * m->n_node);
+  PASS_NEW(e->stress[region], (size_t)e->s.d->ns * m->n_node);
   space_recover(e->recovery, region, m->dim * m->dim, q, G);
-  space_recover(e->recovery, region, ns, e->s.sigma, e->stress[region]);
+  space_recover(e->recovery, region, e->s.d->ns, e->s.sigma, e->stress[region]);
   const space_field f = {e->s.sigma, e->stress[region]};
   for (int k = 0; k < m->n_elem; ++k) {
     if (space_region(e->recovery, k) != region) continue;
@@ -566,10 +564,9 @@ static double axi_difference(const goal_estimator *e, int elem_id, int point,
 static double axi_product(const goal_estimator *e, int elem_id,
                           const space_field *u, const space_field *of_w,
                           const double *w, double *own) {
-  const domain *d = e->s.d;
   const double *S = space_compliance_of(e->recovery, elem_id);
-  const double share =
-      element_weight(d, elem_id) / (3.0 * radius_of(d->mesh, elem_id));
+  const double share = element_weight(e->s.d, elem_id) /
+                       (3.0 * radius_of(e->s.d->mesh, elem_id));
   double sum = 0.0;
   *own = 0.0;
   for (int p = 0; p < 3; ++p) {
@@ -729,14 +726,13 @@ static void set_adjoint(goal_estimator *e, int of_u, const double **y) {
 
 status goal_estimate_find(goal_estimator *e, const double *y, const double *tau,
                           int of_u, double *product, goal_estimate *out) {
-  const mesh *m = e->s.d->mesh;
   *out = (goal_estimate){0};
   set_adjoint(e, of_u, &y);
   for (int region = 0; region < e->n_region; ++region) {
     space_recover(e->recovery, region, e->s.d->ns, e->sigma_y, e->node_y);
     if (of_u && e->eigen != NULL)
       space_recover(e->recovery, region, e->s.d->ns, e->eigen, e->node_eigen);
-    for (int k = 0; k < m->n_elem; ++k) {
+    for (int k = 0; k < e->s.d->mesh->n_elem; ++k) {
       if (space_region(e->recovery, k) != region) continue;
       const double both = add_element(e, k, y, tau, of_u, out);
       if (product != NULL) product[k] = both;

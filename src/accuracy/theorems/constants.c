@@ -122,10 +122,6 @@ void energy_norm_free(energy_norm *e) {
   *e = (energy_norm){0};
 }
 
-int energy_norm_regular(const energy_norm *e) {
-  return e->inverse != NULL && e->dual.n_kernel == 0;
-}
-
 double energy_norm_of(energy_norm *e, const double *v) {
   contact_product(e->m, e->A, v, e->y);
   return sqrt(fmax(0.0, cblas_ddot(e->m, v, 1, e->y, 1)));
@@ -208,10 +204,9 @@ static status largest_of(const block *b,
 /* 1: a motion without energy moves the block: nothing bounds it. A motion that
  * does not, as of a body that lies on its obstacle, adds nothing to |v_t|. */
 static int is_loose(const block *b) {
-  const inverse_energy *e = &b->e->dual;
   if (b->e->inverse == NULL) return 1;
-  for (int c = 0; c < e->n_kernel; ++c) {
-    const double *z = e->kernel + (size_t)c * b->cp->m;
+  for (int c = 0; c < b->e->dual.n_kernel; ++c) {
+    const double *z = b->e->dual.kernel + (size_t)c * b->cp->m;
     double most = largest_entry(b->cp->m, z), part = 0.0;
     for (int k = 0; k < b->n; ++k) part = fmax(part, fabs(z[b->dof[k]]));
     if (part > MOVES * most) return 1;

@@ -108,8 +108,7 @@ static void count(trial *s, double value, double square) {
 }
 
 static void try_nodes(trial *s) {
-  const contact_problem *cp = s->cp;
-  for (int i = 0; i < cp->n; ++i)
+  for (int i = 0; i < s->cp->n; ++i)
     for (int k = 0; k < FIELDS_A_NODE; ++k) {
       double square = 0.0;
       set_node(s, i, moves[k % PATTERNS]);
@@ -235,10 +234,6 @@ static int mark_contact(const theorems_scene *s, const contact_problem *cp,
   return any;
 }
 
-static void add_row(theorems *t, const theorems_contact *row) {
-  t->contacts[t->n_contact++] = *row;
-}
-
 static void set_limit(theorems_contact *row) {
   row->limit = row->mu > 0.0 ? row->mu / row->factor : NAN;
 }
@@ -256,16 +251,16 @@ static status know_friction(theorems *t, const theorems_scene *s,
   PASS(friction_constants(&p->cp, &t->norm, 1, &all));
   for (int c = 0; c < s->n_contact; ++c) {
     theorems_contact row = {.contact_id = c, .mu = s->mu[c]};
-    ENDS_BY(frozen_free) frozen_problem part = {0};
     if (!mark_contact(s, &p->cp, c, keep)) continue;
     all.mu = fmax(all.mu, row.mu);
-    PASS(frozen_new(&p->cp, p->r, keep, NULL, &part));
+    OWNED_PARTS(frozen_problem, part,
+                frozen_new(&p->cp, p->r, keep, NULL, &part));
     PASS(friction_constants(&part.cp, &t->norm, 0, &row));
     set_limit(&row);
-    add_row(t, &row);
+    t->contacts[t->n_contact++] = row;
   }
   set_limit(&all);
-  add_row(t, &all);
+  t->contacts[t->n_contact++] = all;
   return OK;
 }
 
@@ -312,7 +307,7 @@ static status check_bounds(theorems *t, const theorems_scene *s,
                            const frozen_problem *p, theorems_report *out) {
   const theorems_contact *all = &t->contacts[t->n_contact - 1];
   const char *why = NULL;
-  if (!energy_norm_regular(&t->norm))
+  if (t->norm.inverse == NULL || t->norm.dual.n_kernel > 0)
     why = "contact alone holds a body, loads have no norm";
   else if (!(all->factor < 1.0))
     why = "mu is not under 1/C_h";
@@ -330,9 +325,8 @@ static status check_bounds(theorems *t, const theorems_scene *s,
 
 status theorems_start(theorems *t, const theorems_scene *s) {
   OWNS(t);
-  ENDS_BY(frozen_free) frozen_problem p = {0};
   int fields;
-  PASS(frozen_new(s->cp, s->r, NULL, s->given, &p));
+  OWNED_PARTS(frozen_problem, p, frozen_new(s->cp, s->r, NULL, s->given, &p));
   PASS(know_matrix(t, s->cp));
   PASS(inequality_least(&p.cp, s->u, &t->start, &fields));
   PASS(state_before_keep(&p.cp, s->u, p.r, &t->before));
@@ -343,9 +337,8 @@ status theorems_start(theorems *t, const theorems_scene *s) {
 status theorems_check(theorems *t, const theorems_scene *s,
                       theorems_report *out) {
   OWNS(t);
-  ENDS_BY(frozen_free) frozen_problem p = {0};
   *out = (theorems_report){.asked = 1, .has_start = t->has_start};
-  PASS(frozen_new(s->cp, s->r, NULL, s->given, &p));
+  OWNED_PARTS(frozen_problem, p, frozen_new(s->cp, s->r, NULL, s->given, &p));
   PASS(know_matrix(t, s->cp));
   if (!t->seen) t->before.known = -1;
   out->fresh = t->contacts == NULL;

@@ -140,7 +140,6 @@ void energy_norm_free(energy_norm *e);                  /* accepts all-zero */
 double energy_norm_of(energy_norm *e, const double *v); /* |v|, sqrt(J) */
 /* |f|_*; defined without motions that have no energy only. */
 double energy_norm_dual(energy_norm *e, const double *f);
-int energy_norm_regular(const energy_norm *e); /* 1: there are none */
 
 /* y = H x with a symmetric positive semidefinite H[n*n]. */
 typedef struct symmetric_map {

@@ -90,11 +90,6 @@ static archive_item *find(const archive *a, const char *name) {
   return find_whole(a, text);
 }
 
-size_t archive_length(const archive *a, const char *name) {
-  const archive_item *i = find(a, name);
-  return i != NULL ? i->n : 0;
-}
-
 /* A new item without data; its place may move with the next one. */
 static status archive_add(archive *a, const char *name, archive_kind kind,
                           size_t n, archive_item **out) {
@@ -166,7 +161,8 @@ status archive_bytes(archive *a, const char *name, void *v, size_t n) {
 }
 
 status archive_text(archive *a, const char *name, char **text) {
-  const size_t n = archive_length(a, name);
+  const archive_item *i = find(a, name);
+  const size_t n = i != NULL ? i->n : 0;
   PASS_NEW(*text, n + 1);
   return archive_bytes(a, name, *text, n);
 }

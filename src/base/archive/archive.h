@@ -38,9 +38,6 @@ void archive_go(archive *a, const char *group);
  * the same names, but those it has; borrowed from it until archive_write.
  * ERR_MEMORY. */
 status archive_pass_on(const archive *from, const char *group, archive *to);
-/* Length of an array of the present group in items of its kind; 0: it is not
- * there. */
-size_t archive_length(const archive *a, const char *name);
 
 /*
  * One array. Writing: v[n] is borrowed until archive_write, except short

@@ -403,13 +403,12 @@ static status add_entry(sparse_rows *rows, int *n, int cap[2], int col,
 
 /* Row i of raw from these entries, scaled to its mass. */
 static status keep_row(builder *b, int i, int cap[2]) {
-  const average_patch *p = b->p;
   double seen = 0.0;
   int n = b->raw.start[i];
   qsort(b->touched, b->n_touched, sizeof *b->touched, number_order);
   for (int k = 0; k < b->n_touched; ++k) {
     int j = b->touched[k];
-    if (p->active[j]) seen += b->row[j];
+    if (b->p->active[j]) seen += b->row[j];
   }
   b->alone[i] = b->neighbours == 0;
   int whole = !b->cut && !meets_rim(b, i);
@@ -418,7 +417,7 @@ static status keep_row(builder *b, int i, int cap[2]) {
     int j = b->touched[k];
     double value = b->row[j] * (b->mass[i] / seen);
     b->row[j] = 0.0;
-    if (p->active[j]) PASS(add_entry(&b->raw, &n, cap, j, value));
+    if (b->p->active[j]) PASS(add_entry(&b->raw, &n, cap, j, value));
   }
   b->raw.start[i + 1] = n;
   return OK;

@@ -119,7 +119,6 @@ static double face_size(int dim, double measure) {
 static status add_points(builder *b, int face, const facet *f, int of,
                          const cell *c, const double *ref) {
   const int dim = f->dim;
-  const cell *other = &b->search.list[of].s.in_plane;
   const rule *r = rule_of(b);
   for (int k = 0; k < r->n; ++k) {
     sample s = {.partner = of};
@@ -131,7 +130,7 @@ static status add_points(builder *b, int face, const facet *f, int of,
         at[a] += bary[i] * c->at[i][a];
       }
     cell_functions(dim, &f->in_plane, at, s.phi);
-    cell_functions(dim, other, at, s.other);
+    cell_functions(dim, &b->search.list[of].s.in_plane, at, s.other);
     s.weight *= thickness(b, face, s.phi) * thinner(b, face, of);
     if (!(s.weight > 0)) continue;
     PASS_GROW(b->points, b->n_point, b->point_capacity);
@@ -233,13 +232,12 @@ static double other_bulge(const builder *b, const facet *f, const sample *p) {
 /* Of surfaces that are one in truth both heights cancel. */
 static void add_bulges(const builder *b, int face, const facet *f,
                        face_part *part) {
-  const int dim = b->in->mesh->dim;
   for (int k = 0; k < b->n_point && b->bulge != NULL; ++k) {
     const sample *p = &b->points[k];
-    const double own = bulge_height(dim, b->bulge, face, p->phi),
+    const double own = bulge_height(b->in->mesh->dim, b->bulge, face, p->phi),
                  other = other_bulge(b, f, p);
     if (fabs(own + other) <= seen * (fabs(own) + fabs(other))) continue;
-    for (int j = 0; j < dim; ++j)
+    for (int j = 0; j < b->in->mesh->dim; ++j)
       part->bulge[j] += p->weight * p->psi[j] * (own + other);
   }
 }
@@ -381,7 +379,6 @@ static status do_faces(builder *b) {
     for (int k = 0; k < dim; ++k) redo |= b->state[node[k]] == SCANT;
     if (redo) PASS(do_face(b, i));
   }
-  b->out->clips = b->search.clips;
   return OK;
 }
 
@@ -580,19 +577,8 @@ static status set_nodes(builder *b) {
   return OK;
 }
 
-/* Area of a master face, m2. */
-static double master_area(const builder *b, int i) {
-  double share[3], sum = 0.0;
-  const facet *f = &b->search.master[i];
-  if (!(f->measure > 0)) return 0;
-  set_shares(b, b->in->master[i], f, share);
-  for (int k = 0; k < f->dim; ++k) sum += share[k];
-  return sum;
-}
-
 /* What messages need. */
 static status sum_up(builder *b) {
-  const int dim = b->in->mesh->dim;
   mortar *m = b->out;
   double masters = 0.0, slaves = 0.0;
   OWNS(m);
@@ -600,11 +586,10 @@ static status sum_up(builder *b) {
   for (int i = 0; i < b->in->n_slave; ++i) {
     const face_part *f = &b->face[i];
     double area = 0.0, whole = 0.0;
-    for (int k = 0; k < dim; ++k) {
+    for (int k = 0; k < b->in->mesh->dim; ++k) {
       whole += f->share[k];
       if (f->thin > 0.0) area += f->d[k] / f->thin;
     }
-    m->slave_area += whole;
     m->covered += area;
     if (area > seen * whole && area < (1.0 - seen) * whole)
       m->cut[m->n_cut++] = b->in->slave[i];
@@ -612,7 +597,6 @@ static status sum_up(builder *b) {
     masters += f->masters;
     slaves += f->end > f->first ? area * f->size : 0;
   }
-  for (int i = 0; i < b->in->n_master; ++i) m->master_area += master_area(b, i);
   m->size_ratio = slaves > 0 ? masters / slaves : 0;
   return OK;
 }
@@ -671,9 +655,4 @@ void ties_share(const tie_set *t, double *F) {
     for (int k = 0; k < t->to.dim * t->n; ++k)
       more |= share(t, k / t->to.dim, k % t->to.dim, F);
   }
-}
-
-void links_release(node_links *l) {
-  RELEASE(l->start, l->master, l->part);
-  *l = (node_links){0};
 }

@@ -61,7 +61,6 @@ typedef struct tie_set {
   node_links to; /* row q: node_id[q] */
 } tie_set;
 
-void links_release(node_links *l); /* accepts all-zero */
 /* What acts on tied nodes goes to their masters, but for components of
  * supports: F[dim*n_node]. No node may be tied to itself, by any way. */
 void ties_share(const tie_set *t, double *F);
@@ -94,17 +93,15 @@ typedef struct mortar {
                     surfaces have beyond their faces, along the normal, m */
   node_links to; /* row q: node_id[q]; parts alike for all components */
   /* For messages */
-  int n_dropped;   /* slave nodes left out: said by the caller, or common */
-  int n_scant;     /* covered, but by less than 1 % */
-  int n_uncovered; /* without any partner */
-  int n_bare;      /* faces covered but without a node that carries */
-  int n_cut;       /* faces of which a part has no partner */
-  int *cut;        /* [n_cut] of mesh->face */
-  double covered;  /* area of the slave that has a partner, m2 */
-  double slave_area, master_area;
+  int n_dropped;     /* slave nodes left out: said by the caller, or common */
+  int n_scant;       /* covered, but by less than 1 % */
+  int n_uncovered;   /* without any partner */
+  int n_bare;        /* faces covered but without a node that carries */
+  int n_cut;         /* faces of which a part has no partner */
+  int *cut;          /* [n_cut] of mesh->face */
+  double covered;    /* area of the slave that has a partner, m2 */
   double size_ratio; /* mean size of master faces over that of slave faces,
                         where they are coupled, -; 0 if nothing is */
-  long clips;        /* pairs of faces clipped */
 } mortar;
 
 /* *out is new, also if n = 0. ERR_MEMORY. */

@@ -121,16 +121,14 @@ static double cells_measure(int dim, int n, const cell *cells) {
 
 /* Clip with one face; it joins the list if something is in common. */
 static status try_face(partner_search *s, int face, const facet *f, partner p) {
-  const int dim = f->dim;
   double x[3];
   int is_behind = 0;
   cell common[CLIP_CELLS];
   facet_project(f, mortar_nodes(s->in, p.face), s->in->x, &p.s);
-  ++s->clips;
-  p.n = cell_common(dim, &f->in_plane, &p.s.in_plane, common);
+  p.n = cell_common(f->dim, &f->in_plane, &p.s.in_plane, common);
   const double negligible =
       partner_rounding(s, f) * fmin(f->measure, p.s.measure);
-  if (!(cells_measure(dim, p.n, common) > negligible)) return OK;
+  if (!(cells_measure(f->dim, p.n, common) > negligible)) return OK;
   p.first = s->n_cell;
   for (int i = 0; i < p.n; ++i) {
     PASS_GROW(s->cells, s->n_cell, s->cell_capacity);

@@ -56,7 +56,6 @@ typedef struct partner_search {
   int rest_capacity;
   size_t *around;   /* [n_node+1] elements around a node: */
   int *around_elem; /* [around[n_node]]; or NULL, not needed so far */
-  long clips;
 } partner_search;
 
 status partner_search_new(const mortar_input *in, partner_search *s);

@@ -90,7 +90,7 @@ static status report_new(run *r, void **self) {
   if (r->course.from != NULL || (r->step != NULL && run_step_id(r) > 0))
     return OK;
   TIMED(effect_stage(&initial_state_effect));
-  PASS(start_report_new(r->msh, own));
+  PASS_NEW_ALL(OF(own->defect, r->msh->n_node), OF(own->kind, r->msh->n_node));
   return start_displacements(r->m, r->msh, r->old.u, own);
 }
 

@@ -19,7 +19,6 @@ typedef struct tip {
 } tip;
 
 typedef struct crack_state {
-  int n_crack;
   fracture **of;                /* [n_crack] */
   fracture_material *materials; /* [n_section] */
   int n;
@@ -141,7 +140,6 @@ static void tell_points(const run *r, int id, const fracture *f) {
 static status new_cracks(run *r, crack_state *own) {
   const mesh *m = r->msh;
   PASS_NEW(own->of, m->n_crack);
-  own->n_crack = m->n_crack;
   for (int i = 0; i < m->n_crack; ++i) {
     const mesh_crack *c = &m->crack[i];
     const fracture_body body = {m, c, r->m->elem_section, own->materials};

@@ -42,8 +42,8 @@ static int limit_varies(const run *r) {
 static double value_at(const run *r, const friction_rule *rule, int i,
                        double t) {
   double x[3] = {0.0, 0.0, 0.0};
-  int dim = r->surface->dim;
   if (rule->law == NULL || rule->law->value_name == NULL) return 0.0;
+  int dim = r->surface->dim;
   COPY(x, r->surface->x + dim * i, dim);
   return quantity_value(&rule->card.value, x, t);
 }
@@ -520,10 +520,9 @@ VALUE(sliding_limit, v->s->contacts.limit[id])
 
 /* Component of the slip in global directions. */
 static double slide_of(const view *v, int id, int part) {
-  int dim = SURFACE->dim;
-  const double *slip = v->s->contacts.slip + at(dim - 1, id, 0);
+  const double *slip = v->s->contacts.slip + at(SURFACE->dim - 1, id, 0);
   double sum = 0, t[3];
-  for (int k = 1; k < dim; ++k) {
+  for (int k = 1; k < SURFACE->dim; ++k) {
     surface_tangent(SURFACE, id, k, t);
     sum += t[part] * slip[k - 1];
   }

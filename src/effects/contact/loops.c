@@ -27,7 +27,6 @@ static status begin_step(run *r, void *self) {
 static status find_loops(run *r, void *self) {
   contact_loop *loops = self;
   const contact_surface *s = r->surface;
-  int dim = r->msh->dim;
   for (int i = 0; i < r->m->n.contact; ++i) {
     contact_loop *l = &loops[i];
     double weight = 0.0, apart = 0.0; /* of all nodes, of those at no corner */
@@ -39,8 +38,8 @@ static status find_loops(run *r, void *self) {
       if (s->contact_id[k] != i) continue;
       weight += s->area[k];
       if (!surface_is_corner(s, k)) apart += s->area[k];
-      for (int a = 0; a < dim - 1; ++a) {
-        int c = dim * k + a + 1;
+      for (int a = 0; a < r->msh->dim - 1; ++a) {
+        int c = r->msh->dim * k + a + 1;
         const double u_t = surface_along(s, r->now.u, r->now.uc, k, a + 1);
         l->mean_u_t[a] += s->area[k] * (u_t - l->mean_u_t[a]) / weight;
         if (surface_is_corner(s, k)) continue;

@@ -15,10 +15,9 @@ typedef struct velocity {
  * start values may be others. Normals with a given force are uncoupled, at
  * 0. */
 static void put_old(run *r, double *u_old) {
-  const double *given = r->problem.given;
   run_take_rows(r, r->old.uc, u_old);
-  for (int i = 0; i < r->nodes.n && given != NULL; ++i)
-    if (given[i] >= 0.0) u_old[r->nodes.rows * i] = 0.0;
+  for (int i = 0; i < r->nodes.n && r->problem.given != NULL; ++i)
+    if (r->problem.given[i] >= 0.0) u_old[r->nodes.rows * i] = 0.0;
 }
 
 static status take(run *r, void *self, contact_problem *cp, double **u,

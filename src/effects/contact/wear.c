@@ -69,8 +69,7 @@ static double slip_of(const run *r, int i, int a) {
  * of D[m], the wear of a force in the rows of r->problem.cp, m/N. */
 static status overshoot(const run *r, const double *D, double *largest) {
   enum { PRODUCTS = 20 };
-  const contact_problem *cp = &r->problem.cp;
-  const int m = cp->m;
+  const int m = r->problem.cp.m;
   OWNED double *x = NULL, *y = NULL, *root = NULL;
   double norm = 0.0;
   PASS_NEW_REALS(m, &x, &y, &root);
@@ -78,7 +77,7 @@ static status overshoot(const run *r, const double *D, double *largest) {
   for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] = root[i] = sqrt(D[i]));
   for (int k = 0; k < PRODUCTS && norm > 0.0; ++k) {
     for (int i = 0; i < m; ++i) x[i] = root[i] * y[i] / norm;
-    contact_apply(cp, x, y);
+    contact_apply(&r->problem.cp, x, y);
     norm = 0.0;
     for (int i = 0; i < m; ++i) norm = hypot(norm, y[i] *= root[i]);
     *largest = norm;
@@ -104,11 +103,10 @@ static status refuse(const run *r, const effect_card *c, double factor) {
 /* D[dim*n] of the increment; the card of a node that wears. */
 static const effect_card *find_wear(const run *r, double *D) {
   const contact_surface *s = r->surface;
-  const int dim = r->msh->dim;
   const effect_card *worn = NULL;
   for (int i = 0; i < r->nodes.n; ++i)
-    for (int a = 0; a < dim; ++a) {
-      const int id = surface_normal_of(s, i, a), k = dim * i + a;
+    for (int a = 0; a < r->msh->dim; ++a) {
+      const int id = surface_normal_of(s, i, a), k = r->msh->dim * i + a;
       const effect_card *c =
           id < 0 ? NULL : model_effect_card(r->m, "WEAR", id);
       if (c == NULL || !(r->now.rc[k] < 0.0)) continue;

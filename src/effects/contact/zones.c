@@ -90,10 +90,9 @@ static void set_levels(finder *z) {
 
 /* Contact nodes of a face, node[dim]; 0 if one of them is not in contact. */
 static int face_nodes(const finder *z, int face_id, int *node) {
-  const mesh *m = z->r->msh;
   int all = 1;
   for (int k = 0; k < z->dim; ++k) {
-    node[k] = z->index[m->face[z->dim * face_id + k]];
+    node[k] = z->index[z->r->msh->face[z->dim * face_id + k]];
     all &= node[k] >= 0;
   }
   return all;
@@ -273,10 +272,9 @@ static int slip_sign(const finder *z, int i) {
 
 /* Part of the distance from node i to the next one, j, where the zone ends. */
 static double zone_end(const finder *z, int i, int j) {
-  const contact_status *kind = z->r->result.contact;
   const level *l = &z->closed;
   if (z->closed.in[i] && z->closed.in[j]) l = &z->stick;
-  if (kind[i] != kind[j])
+  if (z->r->result.contact[i] != z->r->result.contact[j])
     return l->in[i] ? reach(z, l, i, j) : 1.0 - reach(z, l, j, i);
   double a = fabs(z->r->result.slip[i]), b = fabs(z->r->result.slip[j]);
   return a + b > 0.0 ? a / (a + b) : 0.5;

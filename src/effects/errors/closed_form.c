@@ -127,10 +127,9 @@ static void add_hoop(const element_at_work *e, const double *of,
 
 static void add_stress(const element_at_work *e, const double x[3],
                        const double *shape, double weight) {
-  int ns = e->d->ns;
-  const double *found = e->stress + (size_t)ns * e->elem_id;
+  const double *found = e->stress + (size_t)e->d->ns * e->elem_id;
   double exact[MAX_NS], at_x[MAX_NS];
-  for (int i = 0; i < ns; ++i) {
+  for (int i = 0; i < e->d->ns; ++i) {
     const quantity *q = &e->ref->value[REFERENCE_STRESS + i];
     exact[i] = quantity_value(q, x, e->a->t);
     double error = found[i] - exact[i];

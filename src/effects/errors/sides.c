@@ -26,10 +26,9 @@ static int side_of(const mesh *m, int face) {
 
 /* to[dim] of a side. */
 static void add_load(const run *r, const load *l, int side, side_load *to) {
-  const int dim = r->msh->dim;
   int v[3];
   mesh_side_nodes(r->msh, side, v);
-  for (int a = 0; a < dim; ++a) {
+  for (int a = 0; a < r->msh->dim; ++a) {
     const double value = load_at_node(l, r->msh, r->step, v[a], r->now.t);
     *(l->kind == LOAD_PRESSURE ? &to[a].pressure
                                : &to[a].traction[l->component]) += value;
@@ -325,15 +324,14 @@ static int is_hollow(const smooth_faces *rings, int face, const double *own,
 static void set_face(const run *r, int id, int face, const int *where,
                      const double *own, entered_face *f) {
   const mesh *m = r->msh;
-  const contact_surface *s = r->surface;
   const int dim = m->dim, *v = m->face + dim * face;
   for (int i = 0; i < dim; ++i) {
     const int q = where[v[i]];
-    const int is = q >= 0 && s->contact_id[q] == id;
+    const int is = q >= 0 && r->surface->contact_id[q] == id;
     f->moves |= is && is_free(r, q);
     f->x[i] = m->x + dim * v[i];
     f->u[i] = r->now.u + dim * v[i];
-    COPY(f->n[i], is ? s->frame + dim * dim * q : own, dim);
+    COPY(f->n[i], is ? r->surface->frame + dim * dim * q : own, dim);
     const double gap =
         obstacle_gap(f->p->support, dim, f->x[i], f->n[i], r->now.t);
     if (is && q < r->nodes.n && isfinite(gap))

@@ -108,9 +108,8 @@ status goal_work_between(const run *r, const goal_surface *s, const double *y,
       if (along) cross(spin, e->out, more);
       *turn +=
           force * product_between(dim, v, y + dim * e->a, y + dim * e->b, more);
-      const friction_limit *limit = r->problem.limit;
-      const int is_given =
-          along && limit != NULL && limit->g0[where[e->a]] > 0.0;
+      const int is_given = along && r->problem.limit != NULL &&
+                           r->problem.limit->g0[where[e->a]] > 0.0;
       for (int c = 0; c < dim && is_given; ++c)
         sum +=
             0.5 * (v[0][c] * z[dim * e->a + c] + v[1][c] * z[dim * e->b + c]);

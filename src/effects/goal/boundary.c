@@ -423,8 +423,7 @@ static patch element_patch(const run *r, int e) {
 }
 
 static status add_loads(const run *r, const smooth_faces *rings, double *dF) {
-  const load_list *all = &r->step->loads;
-  for (EACH(const load, l, all->item, all->n)) {
+  for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
     const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
     if (!on_faces && (l->kind != LOAD_BODY || !goal_load_varies(l))) continue;
     const mesh_group *g = &r->msh->group[l->group_id];

@@ -161,7 +161,6 @@ static int rubs(const run *r) {
 
 static status prepare(run *r, goal_state *own, shared *s) {
   space_recovery *recovery;
-  const int n = r->nodes.n_row;
   PASS(recover(r, own, &recovery));
   PASS(goal_surface_new(r, &own->border, recovery, &s->surface));
   const size_t dim = r->msh->dim;
@@ -180,8 +179,8 @@ static status prepare(run *r, goal_state *own, shared *s) {
   PASS(goal_add_boundary(r, s->lacks));
   PASS(goal_add_thermal(r, s->lacks, &s->rest));
   s->form.rest = s->rest;
-  PASS_NEW_REALS(n, &s->j, &s->more, &s->psi, &s->y_c, &s->moved);
-  if (n == 0) return OK;
+  PASS_NEW_REALS(r->nodes.n_row, &s->j, &s->more, &s->psi, &s->y_c, &s->moved);
+  if (r->nodes.n_row == 0) return OK;
   PASS(set_moved(r, own, s));
   return contact_adjoint_new(&r->problem.cp, run_rows(r, 0, r->now.uc),
                              run_rows(r, 1, r->now.rc), &s->adjoint);

@@ -109,14 +109,13 @@ static void add_turn(const int *q, int pass, turns *t) {
 
 static void add_edges(const run *r, const int *where, int contact_id, int pass,
                       turns *t) {
-  const mesh *m = r->msh;
   const mesh_group *of = r->faces.pairs[contact_id].group;
   for (int i = 0; i < of->n_item && !r->m->contacts[contact_id].is_pair; ++i) {
-    const int face = of->item_id[i], *v = m->face + 2 * face;
+    const int face = of->item_id[i], *v = r->msh->face + 2 * face;
     const int q[2] = {where[v[0]], where[v[1]]};
     if (q[0] < 0 || q[1] < 0) continue;
     if (pass == 0)
-      add_slope(r, q, modulus_of(&r->body.d, m->face_elem[face]), t);
+      add_slope(r, q, modulus_of(&r->body.d, r->msh->face_elem[face]), t);
     else
       add_turn(q, pass, t);
   }

@@ -151,16 +151,15 @@ static const double face_rule[POINTS_3D][4] = {
  * weight less its P1 function. */
 static double face_rest(const run *r, const weight *w, const int *q,
                         double measure) {
-  const contact_surface *s = r->surface;
   const int dim = w->dim, n = dim == 3 ? POINTS_3D : POINTS_2D;
   double sum = 0.0;
   for (int p = 0; p < n; ++p) {
     const double *b = dim == 3 ? face_rule[p] : line_rule[p];
     double x[3] = {0.0}, traction = 0.0, linear = 0.0;
     for (int k = 0; k < dim; ++k) {
-      const double *at = s->x + dim * q[k];
+      const double *at = r->surface->x + dim * q[k];
       for (int c = 0; c < dim; ++c) x[c] += b[k] * at[c];
-      traction += b[k] * r->now.rc[dim * q[k]] / s->area[q[k]];
+      traction += b[k] * r->now.rc[dim * q[k]] / r->surface->area[q[k]];
       linear += b[k] * w->at(w, at);
     }
     const double turn = w->axi ? 2.0 * M_PI * x[0] : w->thickness;
@@ -208,15 +207,14 @@ static int mirrors_of(const run *r, int q) {
  * closed. */
 static int peak_of(const run *r, const goal_card *g) {
   static const double margin = 0.01; /* -, for each plane */
-  const int dim = r->msh->dim;
   int best = -1;
   double most = 0.0;
   for (int q = 0; q < r->nodes.n; ++q) {
     double d = 0.0;
     double value = pressure_of(r, q) * (1.0 + margin * mirrors_of(r, q));
     if (!is_on(r, g, q)) continue;
-    for (int c = 0; g->n_point > 0 && c < dim; ++c)
-      d = hypot(d, r->surface->x[dim * q + c] - g->point[0][c]);
+    for (int c = 0; g->n_point > 0 && c < r->msh->dim; ++c)
+      d = hypot(d, r->surface->x[r->msh->dim * q + c] - g->point[0][c]);
     if (g->n_point > 0) value = 1.0 / (d + 1e-12 * r->msh->size);
     if (value <= most) continue;
     most = value;
@@ -234,12 +232,11 @@ typedef struct line {
 
 /* next[2*n]: the contact nodes next to each node of the line, or -1. */
 static status find_next(const run *r, const goal_card *g, int *next) {
-  const mesh *m = r->msh;
   const mesh_group *of = r->faces.pairs[g->contact_id].group;
   OWNED_OF(int, where, goal_places(r, &where));
   for (int k = 0; k < 2 * r->nodes.n; ++k) next[k] = -1;
   for (int k = 0; k < of->n_item; ++k) {
-    const int *v = m->face + 2 * of->item_id[k];
+    const int *v = r->msh->face + 2 * of->item_id[k];
     for (int a = 0; a < 2; ++a) {
       const int q = where[v[a]], other = where[v[1 - a]];
       if (q >= 0 && other >= 0) next[2 * q + (next[2 * q] >= 0)] = other;
@@ -489,9 +486,8 @@ static status look_round(const run *r, const goal_card *g, double radius,
     const int v[2] = {e[k].a, e[k].b};
     last = PAIR_END(e, n, k);
     if (!is_near(r, v[0], w, radius) && !is_near(r, v[1], w, radius)) continue;
-    const double *x = r->msh->x;
-    out->longest =
-        fmax(out->longest, distance_of(3, x + 3 * v[0], x + 3 * v[1]));
+    out->longest = fmax(out->longest, distance_of(3, r->msh->x + 3 * v[0],
+                                                  r->msh->x + 3 * v[1]));
     if (last == k + 1 && !add_planes(r, e + k, w))
       out->cut |= carries(r, where, v[0]) || carries(r, where, v[1]);
   }

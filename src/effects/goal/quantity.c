@@ -154,7 +154,6 @@ static status set_force(const run *r, const goal_card *g, goal_form *f) {
 
 /* Dissipated so far, by the limits at the ends; derivative: of the last. */
 static status set_friction(const run *r, const goal_card *g, goal_form *f) {
-  const contact_surface *s = r->surface;
   const int dim = r->msh->dim;
   f->value = r->now.energy.friction_end;
   f->sums = 1;
@@ -162,7 +161,7 @@ static status set_friction(const run *r, const goal_card *g, goal_form *f) {
   for (int i = 0; i < r->nodes.n; ++i)
     for (int a = 1; a < dim; ++a) {
       const int k = (dim - 1) * i + a - 1;
-      if (s->side_id[k] >= 0) continue;
+      if (r->surface->side_id[k] >= 0) continue;
       f->rows[dim * i + a] = -r->now.rc[dim * i + a];
       f->psi[dim * i + a] = -r->result.slip[k];
     }

@@ -461,12 +461,11 @@ status goal_border_new(const mesh *m, goal_border *b) {
 
 /* Under a force on a node the displacement is infinite. */
 static void mark_forces(const run *r, unsigned char *ends) {
-  const int dim = r->msh->dim;
   for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
     const mesh_group *g = &r->msh->group[l->group_id];
     for (int k = 0; l->kind == LOAD_POINT && k < g->n_node; ++k) {
       const int i = g->node_id[k];
-      if (!r->body.d.fixed[dim * i + l->component] &&
+      if (!r->body.d.fixed[r->msh->dim * i + l->component] &&
           load_at_node(l, r->msh, r->step, i, r->now.t) != 0.0)
         ends[i] |= GOAL_END_OF_SUPPORT;
     }

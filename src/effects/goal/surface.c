@@ -43,8 +43,7 @@ static double face_slope(const run *r, int face, const int *q, double *g) {
 }
 
 static status gap_slopes_new(const run *r, const int *where, gap_slopes *out) {
-  const mesh *m = r->msh;
-  const int dim = m->dim;
+  const int dim = r->msh->dim;
   OWNED_NEW(double, weight, r->nodes.n);
   PASS_NEW_ALL(OF(out->of, 3 * r->nodes.n), OF(out->n_face, r->nodes.n));
   for (int k = 0; k < r->m->n.contact && r->nodes.n > 0; ++k) {
@@ -53,7 +52,7 @@ static status gap_slopes_new(const run *r, const int *where, gap_slopes *out) {
       int q[3], all = 1;
       double g[3];
       for (int c = 0; c < dim; ++c) {
-        q[c] = where[m->face[dim * of->item_id[i] + c]];
+        q[c] = where[r->msh->face[dim * of->item_id[i] + c]];
         all = all && q[c] >= 0;
       }
       const double by = all ? face_slope(r, of->item_id[i], q, g) : 0.0;
@@ -206,9 +205,8 @@ static void add_lip_edge(const run *r, const int *v, const int *other, int n_q,
  * w[dim], node by node. */
 static void add_lip_edges(const run *r, const int *where, const int *v,
                           const int *w, double weight, goal_surface *s) {
-  const int dim = r->msh->dim;
-  for (int a = 0; a < dim; ++a)
-    for (int b = a + 1; b < dim; ++b) {
+  for (int a = 0; a < r->msh->dim; ++a)
+    for (int b = a + 1; b < r->msh->dim; ++b) {
       const int near[2] = {v[a], v[b]}, far[2] = {w[a], w[b]};
       int q[2], n = 0;
       for (int k = 0; k < 2; ++k)

@@ -120,7 +120,6 @@ status reduction_stress(reduction *n, const state *s) {
 static status measure_thermal(reduction *n, const state *s, double *sum,
                               double *norm, double *stress) {
   double now = 0.0, change = 0.0;
-  int ns = n->m->ns;
   *stress = 0.0;
   PASS(load_temperature(n->m, n->msh, &n->m->steps[s->step_no - 1], s->t, n->T0,
                         n->T));
@@ -131,8 +130,8 @@ static status measure_thermal(reduction *n, const state *s, double *sum,
     double w = element_weight(&n->d, e);
     expansion_strain(&mat->expand, n->T[e], n->T0[e], strain);
     for (int i = 0; i < 3; ++i) {
-      moved[i] = strain[i] - n->heat[ns * e + i];
-      n->heat[ns * e + i] = strain[i];
+      moved[i] = strain[i] - n->heat[n->m->ns * e + i];
+      n->heat[n->m->ns * e + i] = strain[i];
     }
     now += w * energy_of(n, e, strain, &own);
     change += w * energy_of(n, e, moved, &none);

@@ -81,7 +81,6 @@ static void wrong_count(const lines *r, const record *line,
 
 /* The values of a line; an empty field or none has its initial value. */
 static status read_line(lines *r, const record *line, const option *table) {
-  law_card *law = r->law;
   double initial;
   const int n = law_n_field(table);
   if (line->n_field < needed(table) || line->n_field > n + 1) {
@@ -90,7 +89,7 @@ static status read_line(lines *r, const record *line, const option *table) {
   }
   for (int i = 0; i < n && !r->wrong; ++i) {
     const field *f = i < line->n_field ? &line->fields[i] : NULL;
-    ADDED(quantity, q, law->value, r->n_value, r->capacity);
+    ADDED(quantity, q, r->law->value, r->n_value, r->capacity);
     const int absent = f == NULL || (f->text[0] == '\0' && !f->quoted);
     if (!absent || table[i].initial == NULL) {
       r->wrong |= read_value(r, f, &table[i], q) != 0;

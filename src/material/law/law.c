@@ -155,11 +155,6 @@ status law_elastic_read(const elastic_table *table, double temperature,
   return OK;
 }
 
-status law_elastic_heat(law_elastic *el, double temperature) {
-  if (el->table == NULL || el->temperature == temperature) return OK;
-  return law_elastic_read(el->table, temperature, el->kin, el);
-}
-
 int law_n_alpha(const law_card *law, int ns) {
   return law->ops->n_alpha == NULL ? 0 : law->ops->n_alpha(law, ns);
 }
@@ -258,12 +253,11 @@ static status spectral_radius(const law_point *p, double *M, int n,
 }
 
 status law_fastest_rate(const law_point *p, double *rate) {
-  const law_ops *ops = p->law->ops;
   const law_elastic *el = p->elastic;
   *rate = 0;
   if (!law_flows(p)) return OK;
-  if (ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
-    *rate = p->speed * ops->fastest_rate(p);
+  if (p->law->ops->fastest_rate != NULL && el->isotropic && !el->plane_stress)
+    *rate = p->speed * p->law->ops->fastest_rate(p);
   else
     *rate = -1;
   if (!(*rate < 0)) return OK;

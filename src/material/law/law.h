@@ -39,8 +39,6 @@ void law_elastic_set(const double C6[36], elastic_type type, kinematics kin,
  * kept (borrowed). ERR_DECK: they are no elasticity there. */
 status law_elastic_read(const elastic_table *table, double temperature,
                         kinematics kin, law_elastic *out);
-/* To another temperature; nothing to do without a table. ERR_DECK likewise. */
-status law_elastic_heat(law_elastic *el, double temperature);
 
 struct law_ops;
 

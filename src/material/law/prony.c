@@ -13,16 +13,14 @@ typedef struct prony_term {
   double g, k, tau;
 } prony_term;
 
-/* clang-format off */
 static const option terms[] = {
-  OPTION_REAL(prony_term, g, "g_i", 0, 1, "0", "-",
-              "part of the shear modulus that relaxes"),
-  OPTION_REAL(prony_term, k, "k_i", 0, 1, "0", "-",
-              "part of the bulk modulus that relaxes"),
-  OPTION_REAL(prony_term, tau, "tau_i", DBL_MIN, DBL_MAX, NULL, "time",
-              "relaxation time"),
-  OPTION_END};
-/* clang-format on */
+    OPTION_REAL(prony_term, g, "g_i", 0, 1, "0", "-",
+                "part of the shear modulus that relaxes"),
+    OPTION_REAL(prony_term, k, "k_i", 0, 1, "0", "-",
+                "part of the bulk modulus that relaxes"),
+    OPTION_REAL(prony_term, tau, "tau_i", DBL_MIN, DBL_MAX, NULL, "time",
+                "relaxation time"),
+    OPTION_END};
 
 static const prony_term *terms_of(const law_point *p) {
   return (const void *)p->value;
@@ -63,11 +61,10 @@ static int units(const law_point *p, double *only, double *sum) {
 
 /* Total strain less the part of e^i that is not in the terms. */
 static void total_strain(const law_point *p, double *e) {
-  const int ns = p->elastic->ns;
   double ei[6] = {0};
   shares(p, ei);
-  tensor_product(ns, p->elastic->S, p->sigma, e);
-  for (int i = 0; i < ns; ++i) e[i] += ei[i];
+  tensor_product(p->elastic->ns, p->elastic->S, p->sigma, e);
+  for (int i = 0; i < p->elastic->ns; ++i) e[i] += ei[i];
 }
 
 static void rate(const law_point *p, double *ei_rate, double *alpha_rate) {

@@ -69,7 +69,9 @@ void flow_state_copy(const flow *x, const flow_state *from, flow_state *to) {
 }
 
 status flow_heat(flow_kind *kind, double temperature) {
-  return law_elastic_heat(&kind->elastic, temperature);
+  law_elastic *el = &kind->elastic;
+  if (el->table == NULL || el->temperature == temperature) return OK;
+  return law_elastic_read(el->table, temperature, el->kin, el);
 }
 
 void law_sample_free(law_sample *x) { flow_kind_free(&x->kind); }
@@ -102,12 +104,11 @@ status flow_coefficients(flow_kind *kind, double t, double temperature,
 
 status flow_at_point(flow_kind *kind, double t, double temperature,
                      double *value, law_point *p) {
-  const law_card *law = kind->law;
   const char *wrong = kind->varies & LAW_VARIES_TEMPERATURE
-                          ? law_too_cold(law, temperature)
+                          ? law_too_cold(kind->law, temperature)
                           : NULL;
   if (wrong != NULL)
-    RAISE(ERR_DECK, LAW_FORM "time %g: %s", LAW_ARGS(law), t, wrong);
+    RAISE(ERR_DECK, LAW_FORM "time %g: %s", LAW_ARGS(kind->law), t, wrong);
   return flow_coefficients(kind, t, temperature, value, p);
 }
 

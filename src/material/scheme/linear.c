@@ -48,8 +48,7 @@ static status new_jacobian(const law_point *p, int na, law_jacobian *j) {
 
 /* y' = L y + G e of a linear law, L[n*n], G[n*ns]. */
 static status linear_law(const flow_kind *k, double *L, double *G) {
-  const law_elastic *el = &k->elastic;
-  const int ns = el->ns, na = k->n_alpha, n = ns + na;
+  const int ns = k->elastic.ns, na = k->n_alpha, n = ns + na;
   law_point p = flow_kind_point(k);
   OWNED double *zero = NULL, *top = NULL;
   PASS_NEW_ALL(OF(zero, n), OF(top, n * ns));
@@ -57,7 +56,7 @@ static status linear_law(const flow_kind *k, double *L, double *G) {
   OWNED_PARTS(law_jacobian, j, new_jacobian(&p, na, &j));
   put_block(ns, ns, j.ei_sigma, top, n);
   put_block(na, ns, j.alpha_sigma, top + ns, n);
-  multiply(n, ns, ns, 1.0, top, el->E, G);
+  multiply(n, ns, ns, 1.0, top, k->elastic.E, G);
   for (int i = 0; i < n * ns; ++i) L[i] = -G[i];
   put_block(ns, ns, j.ei_ei, L, n);
   put_block(ns, na, j.ei_alpha, L + n * ns, n);

@@ -159,11 +159,10 @@ void linear_predict(const scheme_call *a, int from, int to) {
 
 /* The rest for now->e, Q1 (e - e_old) and D (e - e_old) more. */
 static inline void follow(int ns, const scheme_call *a, int k) {
-  const flow *x = a->x;
-  const int kind = x->kind_id[k];
+  const int kind = a->x->kind_id[k];
   const linear_map *m = &a->w->map[kind];
   const size_t at = (size_t)ns * k;
-  double de[6], y[FLOW_VALUE_MAX], *alpha = a->now->alpha + x->alpha_at[k];
+  double de[6], y[FLOW_VALUE_MAX], *alpha = a->now->alpha + a->x->alpha_at[k];
   for (int i = 0; i < ns; ++i) de[i] = a->now->e[at + i] - a->old->e[at + i];
   voigt_add(ns, a->w->D_kind + ns * ns * kind, de, a->now->sigma + at);
   if (m->n == ns) {

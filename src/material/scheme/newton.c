@@ -263,14 +263,13 @@ static int point_step_rests(const flow *x, const scheme_step *p,
 static status point_step_tangent(const scheme_step *p, point_step *l,
                                  double *D) {
   const int ns = l->ns, n = l->n;
-  const double *E = l->E;
   point_matrix(p, l->E, l);
   if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, ns, l->M, n, l->pivot, l->X, n) != 0)
     RAISE(ERR_SINGULAR, "the step of an inelastic law has no solution");
   for (int j = 0; j < ns; ++j)
     for (int i = 0; i < ns; ++i) {
-      double sum = E[i + ns * j] + (i < 3 && j < 3 ? l->bulk : 0.0);
-      for (int q = 0; q < ns; ++q) sum -= E[i + ns * q] * l->X[q + n * j];
+      double sum = l->E[i + ns * j] + (i < 3 && j < 3 ? l->bulk : 0.0);
+      for (int q = 0; q < ns; ++q) sum -= l->E[i + ns * q] * l->X[q + n * j];
       D[i + ns * j] = sum;
     }
   /* The stiffness is symmetric: so is what the iteration takes. */
@@ -446,13 +445,12 @@ static status linear_stress(const flow *x, const flow_tangent *law,
     const size_t at = (size_t)ns * k;
     flow_kind *kind = &x->kind[x->kind_id[k]];
     PASS(flow_heat(kind, now->temperature[k]));
-    const double *E = kind->elastic.E;
-    const double *D = law->elastic ? E : law->D + ns * at;
+    const double *D = law->elastic ? kind->elastic.E : law->D + ns * at;
     double step[6], change[6], whole[6];
     for (size_t i = 0; i < (size_t)ns; ++i)
       step[i] = now->e[at + i] - law->e[at + i];
     tensor_product(ns, D, step, change);
-    tensor_product(ns, E, now->e + at, whole);
+    tensor_product(ns, kind->elastic.E, now->e + at, whole);
     sum_scaled(ns, law->sigma + at, 1.0, change, linear + at);
     sum += x->weight[k] *
            (dot(ns, whole, whole) + dot(ns, linear + at, linear + at));

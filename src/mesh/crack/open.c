@@ -62,13 +62,12 @@ static int near_crack(const opening *o, int n, const int *v) {
 
 /* owner[n_face] of the mesh: the crack of a face, counted from 1. */
 static void take_group(opening *o, int crack, int *owner) {
-  const mesh *m = o->m;
   const mesh_group *g = o->cut[crack].group;
   const place *at = o->cut[crack].at;
   faults outer = {0}, twice = {0};
   for (int i = 0; i < g->n_item; ++i) {
     int f = g->item_id[i];
-    if (m->face_other[f] < 0) {
+    if (o->m->face_other[f] < 0) {
       opening_note(o, f, &outer);
     } else if (owner[f] > 0) {
       opening_note(o, f, &twice);
@@ -99,14 +98,13 @@ static int has_dimension(const opening *o, int crack) {
 }
 
 static status take_faces(opening *o) {
-  const mesh *m = o->m;
   OWNED int *owner = NULL;
   int most = 0;
   for (int k = 0; k < o->n; ++k) most += o->cut[k].group->n_item;
-  PASS_NEW_ALL(OF(owner, m->n_face), OF(o->group_id, o->n),
+  PASS_NEW_ALL(OF(owner, o->m->n_face), OF(o->group_id, o->n),
                OF(o->first, o->n + 1), OF(o->face, most));
   for (int k = 0; k < o->n; ++k) {
-    o->group_id[k] = (int)(o->cut[k].group - m->group);
+    o->group_id[k] = (int)(o->cut[k].group - o->m->group);
     if (has_dimension(o, k)) take_group(o, k, owner);
     o->first[k + 1] = o->n_face;
   }
@@ -181,12 +179,11 @@ static int side_of(const opening *o, int elem, int face_id) {
 }
 
 static status cut_sides(opening *o) {
-  const mesh *m = o->m;
   PASS_NEW(o->lip, 2 * o->n_face);
   for (int i = 0; i < o->n_face; ++i) {
     int f = o->face[i], *lip = o->lip + 2 * i;
-    lip[0] = side_of(o, m->face_elem[f], f);
-    lip[1] = side_of(o, m->face_other[f], f);
+    lip[0] = side_of(o, o->m->face_elem[f], f);
+    lip[1] = side_of(o, o->m->face_other[f], f);
     o->across[lip[0]] = o->across[lip[1]] = -1;
   }
   return OK;

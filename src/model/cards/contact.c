@@ -187,10 +187,9 @@ status apply_obstacle(reading *r) {
                 "ROTATE");
   /* A point or direction of two numbers: not enough in 3-D. */
   move *of = &r->m->moves[o - r->m->obstacles];
-  const record *line = r->card->records;
   for (int i = 0; i < lines && o->shape != OBSTACLE_GAP; ++i)
-    if (line[i].n_field == 2 && of->short_at.file == NULL)
-      of->short_at = line[i].at;
+    if (r->card->records[i].n_field == 2 && of->short_at.file == NULL)
+      of->short_at = r->card->records[i].at;
   read_shape(r, lines, o);
   return OK;
 }
@@ -289,7 +288,6 @@ static void read_lines(const reading *r, contact *c) {
 
 status apply_contact_pair(reading *r) {
   const card_options *p = r->param;
-  model *m = r->m;
   contact *c = NULL;
   PASS(new_contact(r, p->name, &c));
   c->is_pair = 1;
@@ -304,7 +302,7 @@ status apply_contact_pair(reading *r) {
   c->change.amplitude_at = *value_place(r, "AMPLITUDE");
   read_lines(r, c);
   if (p->amplitude != NULL && !c->change.given)
-    message_add(m->log, P2007, &c->at,
+    message_add(r->m->log, P2007, &c->at,
                 "*CONTACT PAIR: AMPLITUDE= needs a line CLEARANCE or "
                 "INTERFERENCE");
   return OK;

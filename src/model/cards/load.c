@@ -268,12 +268,11 @@ static status open_initial(reading *r) {
 }
 
 status apply_initial(reading *r) {
-  const card_options *p = r->param;
   model *m = r->m;
   if (r->misread) return OK;
   PASS(open_initial(r));
   for (EACH(const record, line, r->card->records, r->card->n_record)) {
-    initial c = {.type = p->type, .group_id = -1};
+    initial c = {.type = r->param->type, .group_id = -1};
     if (read_initial(r, line, &c) != 0) continue;
     c.group = line->fields[0].text;
     c.at = line->fields[0].at;

@@ -25,15 +25,14 @@ static void report_twice(const reading *r) {
 
 status apply_elastic(reading *r) {
   const card_options *p = r->param;
-  const card *c = r->card;
   material *mat = &r->m->materials[r->material_id];
   char text[256];
   if (mat->has_elastic++) {
     report_twice(r);
     return OK;
   }
-  mat->moduli = card_parameter(c, "MODULI") == NULL ? -1 : p->body.moduli;
-  PASS(elastic_table_read(c, (elastic_type)p->type, mat->name, r->m->log,
+  mat->moduli = card_parameter(r->card, "MODULI") == NULL ? -1 : p->body.moduli;
+  PASS(elastic_table_read(r->card, (elastic_type)p->type, mat->name, r->m->log,
                           &mat->elastic));
   if (mat->elastic.n > 0)
     (void)elastic_at(&mat->elastic, 0.0, mat->C, text, (int)sizeof text);

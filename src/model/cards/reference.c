@@ -5,17 +5,16 @@
 #include "base/base.h"
 #include "model/cards/cards.h"
 
-/* clang-format off */
 static const struct {
   const char *name;
   int plane, axisymmetric, solid; /* place in "value"; -1: none */
-} components[] = {
-  {"u_x", 0, -1, 0},  {"u_y", 1, -1, 1},  {"u_r", -1, 0, -1}, {"u_z", -1, 1, 2},
-  {"stress_xx", 3, -1, 3},  {"stress_yy", 4, -1, 4},  {"stress_zz", 5, 4, 5},
-  {"stress_xy", 6, -1, 6},  {"stress_yz", -1, -1, 7}, {"stress_zx", -1, -1, 8},
-  {"stress_rr", -1, 3, -1}, {"stress_tt", -1, 5, -1}, {"stress_rz", -1, 6, -1},
-  {"pressure", 9, 9, 9}};
-/* clang-format on */
+} components[] = {{"u_x", 0, -1, 0},        {"u_y", 1, -1, 1},
+                  {"u_r", -1, 0, -1},       {"u_z", -1, 1, 2},
+                  {"stress_xx", 3, -1, 3},  {"stress_yy", 4, -1, 4},
+                  {"stress_zz", 5, 4, 5},   {"stress_xy", 6, -1, 6},
+                  {"stress_yz", -1, -1, 7}, {"stress_zx", -1, -1, 8},
+                  {"stress_rr", -1, 3, -1}, {"stress_tt", -1, 5, -1},
+                  {"stress_rz", -1, 6, -1}, {"pressure", 9, 9, 9}};
 
 enum { N_COMPONENT = sizeof components / sizeof *components };
 

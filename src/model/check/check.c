@@ -59,15 +59,14 @@ static void check_twice(const model *m, int contact_id) {
 /* In the plane an obstacle turns in the plane, and not about r = 0. */
 static void check_turn(const model *m, int dim, int obstacle_id) {
   const obstacle *o = &m->obstacles[obstacle_id];
-  const place *at = &m->moves[obstacle_id].rotate_at;
   if (!o->turns || dim == 3) return;
   if (model_is_axisymmetric(m))
-    message_add(m->log, P2043, at,
+    message_add(m->log, P2043, &m->moves[obstacle_id].rotate_at,
                 "*OBSTACLE %s: an axisymmetric model has no displacement "
                 "around its axis that could follow ROTATE",
                 o->name);
   else if (o->axis[0] != 0.0 || o->axis[1] != 0.0)
-    message_add(m->log, P2043, at,
+    message_add(m->log, P2043, &m->moves[obstacle_id].rotate_at,
                 "*OBSTACLE %s: the axis of ROTATE is (%g, %g, %g); in a plane "
                 "model it is along z",
                 o->name, o->axis[0], o->axis[1], o->axis[2]);
@@ -458,8 +457,7 @@ static unsigned held_bits(const mesh *msh, const unsigned char *fixed,
 static surface_facts facts_of(const model *m, const mesh *msh,
                               const unsigned char *fixed, int group_id) {
   const mesh_group *g = &msh->group[group_id];
-  const int dim = msh->dim;
-  surface_facts f = {.all = (1u << dim) - 1};
+  surface_facts f = {.all = (1u << msh->dim) - 1};
   double area = 0.0, normal[3];
   for (int k = 0; k < g->n_item; ++k) {
     const int face = g->item_id[k];
@@ -467,7 +465,7 @@ static surface_facts facts_of(const model *m, const mesh *msh,
     area += mesh_face_normal(msh, face, normal) / g->n_item;
     f.modulus += mean_modulus(m->materials[s->material_id].C) / g->n_item;
   }
-  f.size = dim == 2 ? area : sqrt(area);
+  f.size = msh->dim == 2 ? area : sqrt(area);
   for (int k = 0; k < g->n_node; ++k)
     f.all &= held_bits(msh, fixed, g->node_id[k]);
   return f;

@@ -491,9 +491,8 @@ unsigned scene_of(const model *m) {
 static int most_internal(const model *m) {
   int most = 0;
   for (int i = 0; i < m->n.material; ++i) {
-    const law_card *law = &m->materials[i].law;
-    if (!m->materials[i].used || law->ops == NULL) continue;
-    int n = law_n_alpha(law, m->ns);
+    if (!m->materials[i].used || m->materials[i].law.ops == NULL) continue;
+    int n = law_n_alpha(&m->materials[i].law, m->ns);
     if (n > most) most = n;
   }
   return most;

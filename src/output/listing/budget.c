@@ -72,18 +72,16 @@ static int collect(const run_summary *run, share_of *of, budget_row *row) {
   return n > 0;
 }
 
-/* clang-format off */
 static const struct {
   const char *name, *json;
   share_of *of;
   const stage *stages;
   size_t n_stage;
 } budget_table[BUDGET_ROWS] = {
-  {"mesh",   "mesh",   mesh_share,   STAGES(mesh_stages)},
-  {"steps",  "time",   time_share,   STAGES(time_stages)},
-  {"solver", "solver", solver_share, STAGES(solver_stages)},
-  {"true, by *REFERENCE", "true", true_share, NULL, 0}};
-/* clang-format on */
+    {"mesh", "mesh", mesh_share, STAGES(mesh_stages)},
+    {"steps", "time", time_share, STAGES(time_stages)},
+    {"solver", "solver", solver_share, STAGES(solver_stages)},
+    {"true, by *REFERENCE", "true", true_share, NULL, 0}};
 
 /* 1: the steps make no error, whoever asked. */
 static int has_no_error(const job *j, share_of *const *of) {

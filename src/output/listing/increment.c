@@ -70,14 +70,13 @@ static void print_solution(const solution_set *set, int i, FILE *f) {
 /* Nodal values of one solution of an enumeration. */
 static void print_values(const state *s, const solution *a, FILE *f) {
   static const char *const words[] = {"OPEN", "SLIP", "STICK"};
-  const contact_surface *of = s->contacts.surface;
   fprintf(f, "        %8s %-6s %12s %12s %12s %12s\n", "node_no", "status",
           "u_n", "u_t", "f_n", "f_t");
   for (int i = 0; i < s->errors.solutions->n; ++i)
-    fprintf(f, "        %8zu %-6s %s %s %s %s\n", of->node_no[i],
-            words[a->status[i]], text_number(a->u[2 * i], 4),
-            text_number(a->u[2 * i + 1], 4), text_number(-a->r[2 * i], 4),
-            text_number(a->r[2 * i + 1], 4));
+    fprintf(f, "        %8zu %-6s %s %s %s %s\n",
+            s->contacts.surface->node_no[i], words[a->status[i]],
+            text_number(a->u[2 * i], 4), text_number(a->u[2 * i + 1], 4),
+            text_number(-a->r[2 * i], 4), text_number(a->r[2 * i + 1], 4));
 }
 
 /* The attempts that found solution number i + 1: a line for each solver. */

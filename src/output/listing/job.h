@@ -42,7 +42,7 @@ typedef struct pass_goal {
 } pass_goal;
 
 typedef struct increment_summary {
-  int step_no, increment_no, total_no, attempt;
+  int step_no, increment_no, attempt;
   double t, dt;
   struct {
     int open, slip, stick;

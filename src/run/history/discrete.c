@@ -164,8 +164,7 @@ done:
 }
 
 static state state_of(const discrete *d) {
-  const exchange_problem *p = d->p;
-  const contact_problem *cp = p->dim > 1 ? &d->cp : NULL;
+  const contact_problem *cp = d->p->dim > 1 ? &d->cp : NULL;
   const int doubt = error_bound_doubts(&d->error, 1.0);
   /* clang-format off */
   state s = {
@@ -181,7 +180,7 @@ static state state_of(const discrete *d) {
                  .solutions =
                      d->step->check != CHECK_NONE ? &d->solutions : NULL}};
   /* clang-format on */
-  for (int i = 0; i < p->n; ++i) {
+  for (int i = 0; i < d->p->n; ++i) {
     s.contacts.n_open += d->contact[i] == CONTACT_OPEN;
     s.contacts.n_slip += d->contact[i] == CONTACT_SLIP;
     s.contacts.n_stick += d->contact[i] == CONTACT_STICK;

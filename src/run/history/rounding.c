@@ -447,7 +447,6 @@ static status find_noise(run *r) {
 /* Largest stress next to each contact node times its area, own[n], N. */
 static status find_own(const run *r, double *own) {
   const mesh *m = r->msh;
-  const contact_surface *s = r->surface;
   OWNED double *sigma = NULL, *most = NULL;
   PASS_NEW_ALL(OF(sigma, (size_t)r->m->ns * m->n_elem), OF(most, m->n_node));
   domain_stress(&r->body.d, r->now.u, NULL, sigma);
@@ -461,7 +460,7 @@ static status find_own(const run *r, double *own) {
   }
   for (int k = 0; k < r->problem.cp.n; ++k) {
     const int i = r->nodes.reach.in != NULL ? r->nodes.reach.in[k] : k;
-    own[k] = most[s->node_id[i]] * s->area[i];
+    own[k] = most[r->surface->node_id[i]] * r->surface->area[i];
   }
   return OK;
 }

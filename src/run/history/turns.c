@@ -14,12 +14,11 @@ static const double FLAT = 1e-3; /* -, of the largest entry: no turn */
 /* The contact forces of a body that keeps to its obstacles without slip, from
  * time t0 to t, but for what it has at t0; without new inelastic strains. */
 static status held_at(run *r, double t0, double t, double *f) {
-  const int n = r->nodes.n_c;
   PASS(increment_begin(r, t));
   PASS(condense_load(r->c, strains_load(r), r->loads.ud, f));
   if (r->now.motion == NULL) return OK;
   OWNED double *moved = NULL, *force = NULL;
-  PASS_NEW_REALS(n, &moved, &force);
+  PASS_NEW_REALS(r->nodes.n_c, &moved, &force);
   surface_drift(r->surface, &r->faces.input, t0, t, moved);
   condensed_product(r->c, run_rows(r, 0, moved), force);
   for (int i = 0; i < r->nodes.n_row; ++i) f[i] -= force[i];

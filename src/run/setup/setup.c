@@ -123,9 +123,10 @@ void run_free(run *r) {
   effects_release(r);
   free_equilibrium(&r->old);
   free_equilibrium(&r->now);
-  strains_free(r);
+  visco_free(r->strains.visco);
   moduli_free(&r->body.moduli);
-  RELEASE(r->body.d.cluster, r->body.fixed, r->faces.pairs, r->faces.node_fixed,
-          r->faces.face_weight, r->result.totals, r->result.torque, r->loads.ud,
-          r->loads.start, r->result.strain, r->result.stress);
+  RELEASE(r->strains.elem, r->strains.load, r->body.d.cluster, r->body.fixed,
+          r->faces.pairs, r->faces.node_fixed, r->faces.face_weight,
+          r->result.totals, r->result.torque, r->loads.ud, r->loads.start,
+          r->result.strain, r->result.stress);
 }

@@ -28,11 +28,10 @@ void run_free_surface(run *r) {
 }
 
 static void node_bits(run *r) {
-  int dim = r->msh->dim;
   for (int i = 0; i < r->msh->n_node; ++i) {
     unsigned bits = 0;
-    for (int c = 0; c < dim; ++c)
-      bits |= (r->body.fixed[dim * i + c] != 0) << c;
+    for (int c = 0; c < r->msh->dim; ++c)
+      bits |= (r->body.fixed[r->msh->dim * i + c] != 0) << c;
     r->faces.node_fixed[i] = (unsigned char)bits;
   }
   /* A tied node moves with others, wholly. */
@@ -102,8 +101,8 @@ status run_build_surface(run *r) {
  */
 
 void run_free_ties(run *r) {
-  memory_free(r->body.ties.node_id);
-  links_release(&r->body.ties.to);
+  const node_links *to = &r->body.ties.to;
+  RELEASE(r->body.ties.node_id, to->start, to->master, to->part);
   r->body.ties = (tie_set){0};
   r->body.d.ties = NULL;
 }

@@ -78,11 +78,6 @@ done:
   return st;
 }
 
-status start_report_new(const mesh *msh, start_report *report) {
-  PASS_NEW_ALL(OF(report->defect, msh->n_node), OF(report->kind, msh->n_node));
-  return OK;
-}
-
 static status set_line(const model *m, const mesh *msh, const initial *line,
                        double *u) {
   const mesh_group *g = &msh->group[line->group_id];
@@ -158,13 +153,12 @@ static void add_defect(start_report *report, int node_id, double size,
 /* Remainder of K u - F at each component: free ones must have none. */
 static void test_balance(const start_input *in, const double *rc,
                          double *reaction, start_report *report) {
-  int dim = in->mesh->dim;
-  size_t n_dof = (size_t)dim * in->mesh->n_node;
+  size_t n_dof = (size_t)in->mesh->dim * in->mesh->n_node;
   COPY(reaction, in->R, n_dof);
   if (in->surface != NULL) surface_spread(in->surface, -1.0, rc, reaction);
   if (in->ties != NULL) ties_share(in->ties, reaction);
   for (size_t k = 0; k < n_dof; ++k) {
-    int node_id = (int)(k / dim);
+    int node_id = (int)(k / in->mesh->dim);
     if (in->fixed[k]) {
       add_defect(report, node_id, in->stiffness[k] * fabs(in->u[k] - in->ud[k]),
                  DEFECT_SUPPORT);
@@ -224,7 +218,6 @@ static void test_contact(const start_input *in, const double *rc,
 
 status start_test(const start_input *in, double *rc, double *reaction,
                   start_report *report) {
-  int n = in->mesh->n_node;
   if (in->surface != NULL) {
     /* Contact forces of the start: r = basis' (K u - F); a held unknown has
      * none, its force is the support's. */
@@ -236,14 +229,14 @@ status start_test(const start_input *in, double *rc, double *reaction,
   test_balance(in, rc, reaction, report);
   if (in->surface != NULL) test_contact(in, rc, report);
   report->scale = in->load;
-  for (int i = 0; i < n; ++i)
+  for (int i = 0; i < in->mesh->n_node; ++i)
     if (report->defect[i] > report->worst) {
       report->worst = report->defect[i];
       report->node_id = i;
     }
   report->scale = fmax(report->scale, report->worst);
   report->ratio = report->scale > 0.0 ? report->worst / report->scale : 0.0;
-  for (int i = 0; i < n; ++i)
+  for (int i = 0; i < in->mesh->n_node; ++i)
     report->n_bad += report->defect[i] > start_tolerance * report->scale;
   return OK;
 }

@@ -50,7 +50,6 @@ typedef struct start_report {
   double source_time;  /* s */
 } start_report;
 
-status start_report_new(const mesh *msh, start_report *report);
 /* u_0 of the deck: the end of another run, then the lines; u[dim*n_node].
  * Errors in the log: ERR_FILE, ERR_DECK. */
 status start_displacements(const model *m, const mesh *msh, double *u,

@@ -26,10 +26,9 @@ const char *solver_family(const char *name) {
 }
 
 status attempt_archive(const contact_solver *s, int row, archive *a) {
-  const solver_ops *ops = solver_list[row];
-  if (s->work[row] == NULL || ops->keep == NULL) return OK;
+  if (s->work[row] == NULL || solver_list[row]->keep == NULL) return OK;
   IN_GROUP(a, text_of("work%d", row));
-  return ops->keep(s->work[row], a);
+  return solver_list[row]->keep(s->work[row], a);
 }
 
 /* A new workspace reads its saved data. */

@@ -153,7 +153,8 @@ static void forget_factors(contact_solver *s) {
   for (int i = 0; i <= N_SOLVER; ++i) FORGET(s->work[i]);
   FORGET(s->fixed);
   FORGET(s->path);
-  other_form_free(&s->other);
+  RELEASE(s->other.matrix, s->other.load);
+  s->other = (other_form){0};
   s->inverse_wanted = 0;
   normal_form_free(&s->normal);
   anchor_free(&s->held);

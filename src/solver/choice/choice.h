@@ -90,7 +90,6 @@ typedef struct other_form {
 } other_form;
 /* Make it, unless it was tried before. */
 status other_form_make(const contact_problem *cp, other_form *o);
-void other_form_free(other_form *o); /* all zero afterwards */
 
 typedef struct opened opened;
 

@@ -58,11 +58,6 @@ status other_form_make(const contact_problem *cp, other_form *o) {
   return OK;
 }
 
-void other_form_free(other_form *o) {
-  RELEASE(o->matrix, o->load);
-  *o = (other_form){0};
-}
-
 /*
  * Contact without friction from the state with every node closed.
  *

@@ -188,10 +188,9 @@ static int auglag_turned(auglag_run *s, int take) {
 
 /* Residual of (u, F), reported; the best iterate is stored. */
 static double auglag_check(auglag_run *s) {
-  const contact_problem *cp = s->cp;
   auglag_work *w = s->w;
-  double residual = contact_mismatch(cp, s->scale, s->u, w->F, w->y);
-  solver_keep_best(&w->best, cp->m, residual, s->u, w->F);
+  double residual = contact_mismatch(s->cp, s->scale, s->u, w->F, w->y);
+  solver_keep_best(&w->best, s->cp->m, residual, s->u, w->F);
   solver_report_states(s->control, "auglag", s->steps, residual, s->turned,
                        s->cycle);
   return residual;
@@ -239,7 +238,6 @@ enum { MEMORY = 4 /* steps |Phi| is compared with */ };
 static double newton_row(const auglag_run *s, int row, const double *v,
                          const double *d) {
   const contact_problem *cp = s->cp;
-  const auglag_work *w = s->w;
   int node_id = row / cp->dim, first = node_id * cp->dim;
   double value = v[row];
   if (!auglag_slips(s, row)) return value;
@@ -248,8 +246,8 @@ static double newton_row(const auglag_run *s, int row, const double *v,
   if (cp->B == NULL) return value;
   for (int k = cp->B->start[node_id]; k < cp->B->start[node_id + 1]; ++k) {
     int n = cp->B->col[k] * cp->dim;
-    if (w->closed[n] == CLOSED)
-      value += w->e[row] * cp->B->val[k] * (v[n] - auglag_rho(s, n) * d[n]);
+    if (s->w->closed[n] == CLOSED)
+      value += s->w->e[row] * cp->B->val[k] * (v[n] - auglag_rho(s, n) * d[n]);
   }
   return value;
 }
@@ -614,13 +612,10 @@ typedef struct auglag {
 
 typedef enum { BY_NEWTON, BY_UZAWA } variant_kind;
 
-/* clang-format off */
 static const option auglag_options[] = {
-  OPTION_CHOICE(auglag, variant, "VARIANT", "NEWTON|UZAWA", "NEWTON",
-                "both equations at once, or multiplier after displacement"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_CHOICE(auglag, variant, "VARIANT", "NEWTON|UZAWA", "NEWTON",
+                  "both equations at once, or multiplier after displacement"),
+    OPTION_END};
 
 static const double SOFT = 0x1p-20; /* -, of the stiffness: none */
 

@@ -270,11 +270,10 @@ static void add_column(const compliance_system *s, int dof, double a,
 /* Limits follow the pressure: returns 1 if one does. */
 static int add_limits(compliance_system *s) {
   const sparse_rows *B = s->cp->B;
-  const pattern *p = s->p;
   size_t n = s->n;
   int found = 0, dim = s->cp->dim;
   for (int i = 0; B != NULL && i < s->cp->n; ++i) {
-    if (p->mode[i] != SLIP) continue;
+    if (s->p->mode[i] != SLIP) continue;
     int made = 0;
     for (int k = B->start[i]; k < B->start[i + 1]; ++k) {
       int j = s->place[B->col[k]];
@@ -282,7 +281,7 @@ static int add_limits(compliance_system *s) {
       if (!made) {
         CLEAR(s->x, n);
         for (int t = 0; t < dim - 1; ++t)
-          add_column(s, i * dim + 1 + t, p->e[i * (dim - 1) + t], s->x);
+          add_column(s, i * dim + 1 + t, s->p->e[i * (dim - 1) + t], s->x);
       }
       found = made = 1;
       cblas_daxpy(s->n, -B->val[k], s->x, 1, s->K.a + n * j, 1);

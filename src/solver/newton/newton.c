@@ -31,13 +31,10 @@ typedef struct newton {
   int steps; /* of one attempt; 0: chosen by the program */
 } newton;
 
-/* clang-format off */
 static const option newton_options[] = {
-  OPTION_INT(newton, steps, "STEPS", 0, 10000, "0", "-",
-             "steps of one attempt; 0: chosen by the program"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_INT(newton, steps, "STEPS", 0, 10000, "0", "-",
+               "steps of one attempt; 0: chosen by the program"),
+    OPTION_END};
 
 enum {
   HISTORY = 64,    /* patterns remembered */

@@ -6,7 +6,6 @@
 
 struct step_matrix {
   int m, k;                       /* unknowns; of them in the system */
-  const force_set *set;           /* borrowed */
   sparse_rows own;                /* rows of W where the set has none */
   const sparse_rows *W;           /* the one or the other */
   int *place;                     /* [m] in the system, -1: eliminated */
@@ -32,7 +31,6 @@ status step_matrix_new(const contact_problem *cp, const force_set *set,
   PASS_NEW(s, 1);
   *out = s;
   s->m = cp->m;
-  s->set = set;
   s->W = &set->rows;
   PASS_NEW_ALL(OF(s->place, m), OF(s->line, m), OF(s->touched, m),
                OF(s->is_touched, m), OF(s->rhs, m), OF(s->x, m));

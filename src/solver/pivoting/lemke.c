@@ -348,16 +348,15 @@ static void lemke_product(const void *ctx, int n_id, const int *id,
 /* What friction adds to a row at the columns id (compliance form). */
 static void add_limit_row(const lemke_run *s, const variable *v, int n_id,
                           const int *id, double *to) {
-  const lemke_work *w = s->w;
   const sparse_rows *B = s->cp->B;
   for (int k = 0; k < n_id; ++k) {
-    const variable *a = w->var + id[k];
+    const variable *a = s->w->var + id[k];
     int same = a->node_id == v->node_id;
     if (v->type == SLIDE && a->type == LIMIT && same) to[k] += 1.0;
     if (v->type != LIMIT) continue;
     if (a->type == SLIDE && same) to[k] -= 1.0;
     for (int e = row_begin(B, v->node_id); e < row_end(B, v->node_id); ++e)
-      if (w->node.normal[B->col[e]] == id[k])
+      if (s->w->node.normal[B->col[e]] == id[k])
         to[k] += limit_entry(s, v->node_id, e);
   }
 }
@@ -489,9 +488,8 @@ static void polish(lemke_run *s, double *x) {
 /* Stiffness form: r from raw with the conditions of the basis enforced
  * exactly. */
 static void clean_forces(const lemke_run *s, double *r) {
-  const contact_problem *cp = s->cp;
   const lemke_work *w = s->w;
-  for (int dof = 0; dof < cp->m; ++dof)
+  for (int dof = 0; dof < s->cp->m; ++dof)
     r[dof] = w->kind[dof] == IS_FRICTION ? w->raw[dof] : 0.0;
   for (int a = 0; a < w->reduced.n_var; ++a) {
     int dof = w->reduced.kept[w->var[a].dof];
@@ -502,7 +500,7 @@ static void clean_forces(const lemke_run *s, double *r) {
     const variable *v = w->var + a;
     int dof = w->reduced.kept[v->dof];
     if (v->type != SLIDE || w->node.n_slide[v->node_id] != 2) continue;
-    double g = contact_node_limit(cp, r, v->node_id);
+    double g = contact_node_limit(s->cp, r, v->node_id);
     if (lcp_row_is_tight(w->lcp, a) || v->e[0] * r[dof] < -g)
       r[dof] = -g * v->e[0];
   }
@@ -621,13 +619,10 @@ typedef struct lemke {
   int facets; /* of the friction polygon, 3-D; 0: 8 */
 } lemke;
 
-/* clang-format off */
 static const option lemke_options[] = {
-  OPTION_INT(lemke, facets, "FACETS", 4, 64, "8", "-",
-             "facets of the friction cone of the first stage in 3-D; even"),
-  OPTION_END
-};
-/* clang-format on */
+    OPTION_INT(lemke, facets, "FACETS", 4, 64, "8", "-",
+               "facets of the friction cone of the first stage in 3-D; even"),
+    OPTION_END};
 
 static const solver_ops *const correctors[N_CORRECTOR] = {&newton_solver,
                                                           &sor_solver};
