@@ -238,7 +238,7 @@ static void check_floor(int kind) {
     f.n[0][0] = sin(TURN / 2);
     f.n[0][1] = -cos(TURN / 2);
     snprintf(obstacle, sizeof obstacle,
-             "CYLINDER, RADIUS=1.\n%.17g, %.17g\nMOVE, 0., 0.", f.at[0],
+             "CYLINDER, RADIUS=1.\n%.17g, %.17g\nMOVE, \"0*t\", 0.", f.at[0],
              f.at[1]);
   } else {
     snprintf(obstacle, sizeof obstacle,
