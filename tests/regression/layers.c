@@ -4,7 +4,10 @@
  */
 #include "base/base.h"
 #include "support/block_file.h"
+#include "support/grid.h"
 #include "support/job.h"
+#include "support/mesh_file.h"
+#include "support/msh_write.h"
 #include "support/unit.h"
 
 const int job_without_fields = 1;
@@ -223,6 +226,65 @@ START_TEST(stress_across_sides_is_that_of_loads) {
 }
 END_TEST
 
+/* Its stress is the same everywhere and across its sides that of their loads:
+ * the estimate sees that there is no error. */
+static void must_see_none(job *j, const char *cards) {
+  job_write(j, "even.inp",
+            "*MESH, FILE=even.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n%s"
+            "*ACCURACY, MESH=YES\n*END STEP\n",
+            cards);
+  ck_assert_msg(job_run(j, "") == 0, "%s", j->errors);
+  ck_assert_double_lt(job_told(j, "mesh_error_percent"), 1e-6);
+  char *lst = job_file(j, "lst");
+  ck_assert_ptr_null(strstr(lst, "it may be many times as large"));
+  free(lst);
+  job_end(j);
+}
+
+/* A box with six stresses, E strain = (1 + nu) stress - nu trace. */
+START_TEST(six_stresses_across_sides_are_their_loads) {
+  static const char *const side[] = {"RIGHT", "TOP", "BACK", "LEFT", "FRONT"};
+  static const double stress[3][3] = {
+      {1.0, 0.4, 0.6}, {0.4, 2.0, 0.5}, {0.6, 0.5, 3.0}};
+  static const int normal[] = {0, 1, 2, 0, 2};
+  char cards[2000] = "*STEP\n*STATIC\n*BOUNDARY\n", path[100];
+  job j = job_begin("even");
+  mesh *m = make_grid_3d((int[]){1, 1, 1}, (double[]){1.0, 2.0, 3.0});
+  snprintf(path, sizeof path, "%s/even.msh", j.dir);
+  msh_write(path, m);
+  memory_free(m);
+  for (int i = 0; i < 3; ++i)
+    text_add(cards, sizeof cards, "BOTTOM, %d, %d, \"%.15g*x + %.15g*z\"\n",
+             i + 1, i + 1, (1.3 * stress[i][0] - (i == 0) * 1.8) / 1000,
+             (1.3 * stress[i][2] - (i == 2) * 1.8) / 1000);
+  text_add(cards, sizeof cards, "*DSLOAD\n");
+  for (int k = 0; k < 5; ++k)
+    for (int i = 0; i < 3; ++i)
+      text_add(cards, sizeof cards, "%s, T%c, %g\n", side[k], "XYZ"[i],
+               (k > 2 ? -1 : 1) * stress[i][normal[k]]);
+  must_see_none(&j, cards);
+}
+END_TEST
+
+/* Where forces act on the nodes of a side, and on both sides of a pair. */
+START_TEST(sides_that_nodes_load_are_not_free) {
+  job j = job_begin("even");
+  job_write(&j, "even.msh", "%s",
+            MSH("5\n1 1 \"FLOOR\"\n1 2 \"LOWER\"\n1 3 \"UPPER\"\n1 4 \"TOP\"\n"
+                "2 5 \"BODY\"\n",
+                "8\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n5 0 1 0\n6 1 1 0\n"
+                "7 1 2 0\n8 0 2 0\n",
+                "8\n1 1 2 1 1 1 2\n2 1 2 2 1 3 4\n3 1 2 3 1 5 6\n"
+                "4 1 2 4 1 7 8\n5 2 2 5 1 1 2 3\n6 2 2 5 1 1 3 4\n"
+                "7 2 2 5 1 5 6 7\n8 2 2 5 1 5 7 8\n"));
+  must_see_none(&j,
+                "*CONTACT PAIR, NAME=P\nUPPER, LOWER\n*STEP\n*STATIC\n"
+                "*BOUNDARY\nFLOOR, 2\nFLOOR, 1, 1, \"0.39E-3*x\"\n"
+                "TOP, 1, 1, \"0.39E-3*x\"\n*CLOAD\nTOP, 2, -0.5\n");
+}
+END_TEST
+
 /* A row whose error is seen reaches a target by twice of it; where nothing is
  * seen there is no forecast. */
 START_TEST(row_that_is_seen_reaches_its_target) {
@@ -254,4 +316,6 @@ UNIT_MAIN("layers", creep_beside_a_group_that_expands,
           integrators_fit_the_law_of_each_group, averaged_groups_do_not_lock,
           rows_of_one_stress_have_no_estimate,
           stress_across_sides_is_that_of_loads,
+          six_stresses_across_sides_are_their_loads,
+          sides_that_nodes_load_are_not_free,
           row_that_is_seen_reaches_its_target)

@@ -259,9 +259,7 @@ static double depth_at(const entered_face *f, const double *b) {
     free += b[i] * (f->more[i] + f->deep[i] - dot(dim, f->n[i], f->u[i]));
   }
   make_unit(dim, n);
-  if (f->p->obstacle_normal) obstacle_normal(f->p->support, dim, x, n);
-  const double gap = obstacle_gap(f->p->support, dim, x, n, f->r->now.t);
-  return isfinite(gap) ? -gap - free : -HUGE_VAL;
+  return -obstacle_gap(f->p->support, dim, x, n, f->r->now.t) - free;
 }
 
 /* Where it is deepest, from the best point of a lattice on, m. */
@@ -336,9 +334,7 @@ static void set_face(const run *r, int id, int face, const int *where,
         obstacle_gap(f->p->support, dim, f->x[i], f->n[i], r->now.t);
     if (is && q < r->nodes.n && isfinite(gap))
       f->more[i] = r->problem.gap[q] - gap;
-    f->deep[i] = fmax(
-        0.0, dot(dim, f->n[i], f->u[i]) - fmin(gap, HUGE_VAL) - f->more[i]);
-    if (!isfinite(f->deep[i])) f->deep[i] = 0.0;
+    f->deep[i] = fmax(0.0, dot(dim, f->n[i], f->u[i]) - gap - f->more[i]);
   }
 }
 
