@@ -365,8 +365,15 @@ status mesh_read_gmsh(const mesh_source *source, const place *at,
     PASS(read_geo(source, head, at, log, &raw));
   else
     PASS(read_msh(source, head, at, log, &raw));
-  if (source->sizes[0].of != NULL && !mesh_is_program(source->file))
-    PASS(raw_refine(raw, source));
+  if (source->sizes[0].of != NULL && !mesh_is_program(source->file)) {
+    const mesh *of = source->sizes[0].of;
+    const refine_request request = {
+        {of->dim, of->n_elem, of->x, of->elem, source->sizes[0].at},
+        source->scale,
+        source->n_round,
+        source->rounds};
+    PASS(raw_refine(raw, &request));
+  }
   raw->meets = source->meets;
   raw->made = mesh_is_program(source->file);
   return build_mesh(raw, source->scale, at, log, out);

@@ -152,17 +152,14 @@ static double clock_now(void) {
  * seconds, and not above its share of the run except the last time: the cost
  * stays small however long it grows. */
 static status show_records(output *o, int all) {
-  hdf5_shape shape;
-  if (o->h5 == NULL) return OK;
-  hdf5_shape_of(o->h5, &shape);
-  if (shape.n_record == o->n_xdmf) return OK;
+  if (o->h5 == NULL || hdf5_records(o->h5) == o->n_xdmf) return OK;
   double now = clock_now();
   if (!all && o->n_xdmf > 0 && now < o->xdmf_at + XDMF_PAUSE) return OK;
   double cpu = timer_cpu();
   if (!all && o->xdmf_cpu > XDMF_SHARE * cpu) return OK;
-  PASS(xdmf_write(&shape, o->xdmf));
+  PASS(xdmf_write(o->h5, o->xdmf));
   o->xdmf_cpu += timer_cpu() - cpu;
-  o->n_xdmf = shape.n_record;
+  o->n_xdmf = hdf5_records(o->h5);
   o->xdmf_at = now;
   return OK;
 }
@@ -300,7 +297,7 @@ history_sink output_sink(output *o) {
 
 static void release(output *o) {
   RELEASE(o->plan, o->json, o->xdmf);
-  for (int i = 0; i < o->run.n_increment; ++i)
+  for (int i = 0; o->run.increments != NULL && i < o->run.n_increment; ++i)
     RELEASE(o->run.increments[i].solutions,
             (void *)o->run.increments[i].theorems.contacts);
   RELEASE(o->run.ends, o->run.goals, o->run.increments, o->saved.read, o);
@@ -340,53 +337,49 @@ static status open_new(output *o) {
 }
 
 static status open_earlier(output *o) {
-  status st = OK;
   archive *a = o->o.from;
   file_ends ends;
   OWNED char *was = NULL;
   PASS(archive_text(a, "deck", &was));
   IN_GROUP(a, "output");
-  TRY(output_read(o, a, &ends));
+  PASS(output_read(o, a, &ends));
   o->quiet = 1;
-  for (int k = 0; k < N_END; ++k) TRY(remove_old(o, results[k]));
-  TRY(open_text(o, "lst", ends.lst, &o->lst));
-  TRY(listing_again(&o->job, was, &o->lst));
-  TRY(open_text(o, "sta", ends.sta, &o->sta));
-  TRY(open_text(o, "cvg", ends.cvg, &o->cvg));
-  TRY(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
-  TRY(each_condensed(o->m, o->o.dir, o->run.n_increment, clear_it, NULL));
-  TRY(open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL));
-done:
-  if (o->run.increments == NULL) o->run.n_increment = 0;
-  return st;
+  for (int k = 0; k < N_END; ++k) PASS(remove_old(o, results[k]));
+  PASS(open_text(o, "lst", ends.lst, &o->lst));
+  PASS(listing_again(&o->job, was, &o->lst));
+  PASS(open_text(o, "sta", ends.sta, &o->sta));
+  PASS(open_text(o, "cvg", ends.cvg, &o->cvg));
+  PASS(tabular_open(o->m, o->msh, o->o.dir, ends.dat, &o->dat));
+  PASS(each_condensed(o->m, o->o.dir, o->run.n_increment, clear_it, NULL));
+  return open_hdf5(o, ends.has_h5 ? &ends.h5 : NULL);
 }
 
 static status open_all(output *o) {
   PASS_GET(o->json, text_path(o->o.dir, o->m->name.job, "json"));
   PASS_GET(o->xdmf, text_path(o->o.dir, o->m->name.job, "xdmf"));
+  PASS_NEW(o->run.ends, o->m->n.step * job_end_size(o->m));
+  if (o->m->n.goal > 0) PASS_NEW(o->run.goals, o->m->n.step * o->m->n.goal);
+  PASS(plan_new(o->m, o->m->problem.given ? NULL : o->msh, o->o.n_problem,
+                &o->plan));
+  o->job = (job){o->m, o->msh, &o->o, &o->run, o->plan};
   return o->o.from == NULL ? open_new(o) : open_earlier(o);
 }
 
 status output_open(const model *m, const mesh *msh, const output_options *opt,
                    output **out) {
-  status st = OK;
-  output *o = NULL;
+  output *o;
   *out = NULL;
-  NEW(o, 1);
+  PASS_NEW(o, 1);
   o->m = m;
   o->msh = msh;
   o->o = *opt;
   o->attempt = 1;
   o->run.message = "";
   o->progress = opt->progress && isatty(STDERR_FILENO);
-  NEW(o->run.ends, m->n.step * job_end_size(m));
-  if (m->n.goal > 0) NEW(o->run.goals, m->n.step * m->n.goal);
-  TRY(plan_new(m, m->problem.given ? NULL : msh, opt->n_problem, &o->plan));
-  o->job = (job){m, msh, &o->o, &o->run, o->plan};
-  TRY(open_all(o));
-  *out = o;
-done:
-  if (st != OK && o != NULL) {
+  const status st = open_all(o);
+  if (st == OK) {
+    *out = o;
+  } else {
     text_close(&o->saved.file);
     text_close(&o->lst);
     text_close(&o->sta);
@@ -415,12 +408,9 @@ void output_passes(output *o, const pass_table *passes) {
 /* The last record, once more in files of one grid. */
 static status write_last(const output *o) {
   static const char *const names[] = {"body.xdmf", "contact.xdmf"};
-  hdf5_shape shape;
-  if (o->h5 == NULL) return OK;
-  hdf5_shape_of(o->h5, &shape);
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 2 && o->h5 != NULL; ++k) {
     OWNED_GET(char, path, text_path(o->o.dir, o->m->name.job, names[k]));
-    PASS(xdmf_write_last(&shape, k, path));
+    PASS(xdmf_write_last(o->h5, k, path));
   }
   return OK;
 }

@@ -146,7 +146,7 @@ START_TEST(solutions_and_theorems_of_an_increment) {
   solution found[2] = {
       {u, u, status_of, {0.5, 0.25, 1, 2, 3, {4, 5}, {6, 7}, 8, 0}},
       {u, u, status_of, {1.5, 1.25, 14, 15, 16, {17, 18}, {19, 20}, 21, 1}}};
-  solution_set set = {.n = 2, .m = 4, .n_found = 2, .found = found};
+  solution_set set = {.n = 2, .n_found = 2, .found = found};
   theorems_contact rows[2] = {{0, 31, 32, 33, 34, 35, 36, 37, MU_UNDER},
                               {-1, 41, 42, 43, 44, 45, 46, 47, MU_ABOVE}};
   made_up *made = make_increment();

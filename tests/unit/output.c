@@ -1,6 +1,6 @@
 /* src/output: all files of a made-up run, and what happens when one fails. */
 #include "output/output.h"
-#include "output/hdf5/hdf5.h"
+#include "output/hdf5/file.h"
 
 #include "base/base.h"
 #include "output/writers.h"
@@ -402,15 +402,19 @@ START_TEST(xdmf_names_the_cells_of_the_contact) {
       {6, 3,
        "Triangle\" NumberOfElements=\"6\">" INTS
        "\"6 3\">a.h5:/contact/faces"}};
-  const double time = 0.5;
-  char dir[64], path[96], want[600];
+  double time = 0.5;
+  char dir[64], path[96], want[600], name[] = "out/a.h5";
   folder_new(dir);
   snprintf(path, sizeof path, "%s/a.xdmf", dir);
   for (int k = 0; k < 3; ++k) {
-    const hdf5_shape shape = {
-        "out/a.h5",         9, 7, 4,    5,    surface[k].faces,
-        surface[k].corners, 0, 1, NULL, &time};
-    ck_assert_int_eq(xdmf_write(&shape, path), OK);
+    const mesh msh = {.dim = surface[k].corners, .n_node = 9, .n_elem = 7};
+    const hdf5_file h = {.msh = &msh,
+                         .path = name,
+                         .n_contact_node = 5,
+                         .n_contact_face = surface[k].faces,
+                         .n_record = 1,
+                         .times = &time};
+    ck_assert_int_eq(xdmf_write(&h, path), OK);
     char *text = folder_file(dir, "a.xdmf", NULL);
     snprintf(want, sizeof want,
              "<Topology TopologyType=\"%s</DataItem>\n</Topology>\n"

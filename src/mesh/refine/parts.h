@@ -10,7 +10,7 @@ static inline uint64_t key_of(int a, int b) {
 
 typedef struct size_grid size_grid;
 /* *out is new. ERR_MEMORY. */
-status size_grid_new(const mesh_sizes *s, size_grid **out);
+status size_grid_new(const refine_sizes *s, size_grid **out);
 /* m; beyond the mesh about that of the nearest element. */
 double size_grid_at(const size_grid *g, const double *x);
 

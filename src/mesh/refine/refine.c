@@ -28,7 +28,7 @@ typedef struct cell_list {
 } cell_list;
 
 typedef struct bisection {
-  const mesh_source *q;
+  const refine_request *q;
   raw_mesh *raw;
   int dim, n_node;
   double *x;               /* [3*n_node] m */
@@ -392,14 +392,14 @@ static status give(const bisection *b) {
   return OK;
 }
 
-status raw_refine(raw_mesh *raw, const mesh_source *q) {
+status raw_refine(raw_mesh *raw, const refine_request *q) {
   bisection b = {.q = q, .raw = raw};
   int done = 0;
   if (!is_simple(raw)) return OK;
   SCRATCH;
   PASS(take(&b));
   if (b.dim < 2) return OK;
-  PASS(size_grid_new(q->sizes, &b.sizes));
+  PASS(size_grid_new(&q->sizes, &b.sizes));
   double limit = MIDDLE[b.dim];
   for (int round = 0; round < ROUNDS && !done; ++round)
     PASS(run_round(&b, &limit, &done));

@@ -370,19 +370,7 @@ status hdf5_sync(hdf5_file *h, hdf5_count *n) {
   return OK;
 }
 
-void hdf5_shape_of(const hdf5_file *h, hdf5_shape *shape) {
-  *shape = (hdf5_shape){.path = h->path,
-                        .n_node = h->msh->n_node,
-                        .n_elem = h->msh->n_elem,
-                        .corners = h->msh->dim + 1,
-                        .n_contact_node = h->n_contact_node,
-                        .n_contact_face = h->n_contact_face,
-                        .face_corners = h->msh->dim,
-                        .n_field = h->n_field,
-                        .n_record = h->n_record,
-                        .fields = h->fields,
-                        .times = h->times};
-}
+int hdf5_records(const hdf5_file *h) { return h->n_record; }
 
 static status end_file(hdf5_file *h, int finished) {
   int spare = h->n_row < h->now.n_row || h->n_record < h->now.n_record;

@@ -30,20 +30,12 @@ status hdf5_increment(hdf5_file *h, const state *s);
 /* Cut what was not used if "finished"; frees h; accepts NULL. */
 status hdf5_close(hdf5_file *h, int finished);
 
-typedef struct hdf5_shape { /* data for JOB.xdmf */
-  const char *path;
-  int n_node, n_elem, corners, n_contact_node, n_contact_face, face_corners;
-  int n_field, n_record;
-  const hdf5_field *fields; /* [n_field] */
-  const double *times;      /* [n_record] */
-} hdf5_shape;
-void hdf5_shape_of(const hdf5_file *h, hdf5_shape *shape);
+int hdf5_records(const hdf5_file *h); /* written so far */
 /* Name of record i (from 0) below GROUP/NAME. */
 void hdf5_record_name(char *text, size_t size, int i);
 
 /* JOB.xdmf; written to a temporary file and renamed. */
-status xdmf_write(const hdf5_shape *shape, const char *path);
+status xdmf_write(const hdf5_file *h, const char *path);
 /* The last record of the body or of the contact alone, the same way; nothing if
  * there is none. */
-status xdmf_write_last(const hdf5_shape *shape, int of_contact,
-                       const char *path);
+status xdmf_write_last(const hdf5_file *h, int of_contact, const char *path);

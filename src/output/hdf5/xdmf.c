@@ -7,7 +7,7 @@
  * JOB.body.xdmf, JOB.contact.xdmf: one grid of the last record, without time,
  * for readers that take nothing else (meshio.read).
  */
-#include "output/hdf5/hdf5.h"
+#include "output/hdf5/file.h"
 
 /* Where the name of a record and its time stand in a text of any record. */
 enum { NAME = 1, TIME = 2 };
@@ -77,34 +77,34 @@ static void write_field(FILE *f, const char *file, const part *p,
 
 typedef struct pattern {
   const part *of;
-  const hdf5_shape *shape;
+  const hdf5_file *h;
 } pattern;
 
 /* The text of any record of a part, with NAME and TIME. */
 static status write_pattern(FILE *f, const void *what) {
   const pattern *all = what;
   const part *p = all->of;
-  const hdf5_shape *s = all->shape;
-  const char *slash = strrchr(s->path, '/');
-  const char *file = slash != NULL ? slash + 1 : s->path;
+  const hdf5_file *h = all->h;
+  const char *slash = strrchr(h->path, '/');
+  const char *file = slash != NULL ? slash + 1 : h->path;
   fprintf(f, "<Grid Name=\"%s\" GridType=\"Uniform\">\n", p->name);
   if (!p->alone) fprintf(f, "<Time Value=\"%c\"/>\n", TIME);
   if (!p->alone && p->on_points == PER_CONTACT_NODE)
     fputs("<Information Name=\"status\" Value=\"0 OPEN, 1 SLIP, 2 STICK\"/>\n",
           f);
   write_mesh(f, file, p);
-  for (int k = 0; k < s->n_field; ++k) {
-    entity of = s->fields[k].of;
+  for (int k = 0; k < h->n_field; ++k) {
+    entity of = h->fields[k].of;
     if (of == PER_INCREMENT || of == PER_CONTACT) continue;
     if (of == p->on_points || of == p->on_cells)
-      write_field(f, file, p, &s->fields[k]);
+      write_field(f, file, p, &h->fields[k]);
   }
   fputs("</Grid>\n", f);
   return OK;
 }
 
-static status make_pattern(const part *p, const hdf5_shape *s, char **text) {
-  return text_made(text, &(pattern){p, s}, write_pattern);
+static status make_pattern(const part *p, const hdf5_file *h, char **text) {
+  return text_made(text, &(pattern){p, h}, write_pattern);
 }
 
 static void write_record(FILE *f, const char *text, int record_id, double t) {
@@ -122,36 +122,36 @@ static void write_record(FILE *f, const char *text, int record_id, double t) {
 }
 
 static void write_part(FILE *f, const part *p, const char *text,
-                       const hdf5_shape *s) {
+                       const hdf5_file *h) {
   fprintf(f,
           "<Grid Name=\"%s\" GridType=\"Collection\" "
           "CollectionType=\"Temporal\">\n",
           p->name);
-  for (int i = 0; i < s->n_record; ++i) write_record(f, text, i, s->times[i]);
+  for (int i = 0; i < h->n_record; ++i) write_record(f, text, i, h->times[i]);
   fputs("</Grid>\n", f);
 }
 
 /* Without faces (every neighbour was left out) the nodes are shown. */
-static part surface_part(const hdf5_shape *s) {
+static part surface_part(const hdf5_file *h) {
   part p = {"contact",         "/contact/points",
-            "/contact/faces",  s->face_corners == 2 ? "Polyline" : "Triangle",
-            s->n_contact_node, s->n_contact_face,
-            s->face_corners,   PER_CONTACT_NODE,
+            "/contact/faces",  h->msh->dim == 2 ? "Polyline" : "Triangle",
+            h->n_contact_node, h->n_contact_face,
+            h->msh->dim,       PER_CONTACT_NODE,
             PER_INCREMENT,     0};
-  if (s->n_contact_face == 0) {
+  if (h->n_contact_face == 0) {
     p.cells = "/contact/index";
     p.topology = "Polyvertex";
-    p.n_cell = s->n_contact_node;
+    p.n_cell = h->n_contact_node;
     p.corners = 1;
   }
   return p;
 }
 
-static part body_part(const hdf5_shape *s) {
+static part body_part(const hdf5_file *h) {
   return (part){"body",           "/mesh/nodes",
-                "/mesh/elements", s->corners == 3 ? "Triangle" : "Tetrahedron",
-                s->n_node,        s->n_elem,
-                s->corners,       PER_NODE,
+                "/mesh/elements", h->msh->dim == 2 ? "Triangle" : "Tetrahedron",
+                h->msh->n_node,   h->msh->n_elem,
+                h->msh->dim + 1,  PER_NODE,
                 PER_ELEMENT,      0};
 }
 
@@ -159,7 +159,7 @@ static const char head[] =
     "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n<Domain>\n";
 
 typedef struct content {
-  const hdf5_shape *shape;
+  const hdf5_file *h;
   part surface, body;
   const char *surface_text, *body_text; /* of a record; the first may be NULL */
 } content;
@@ -168,18 +168,16 @@ static void write_all(FILE *f, const void *what) {
   const content *c = what;
   fputs(head, f);
   if (c->surface_text != NULL)
-    write_part(f, &c->surface, c->surface_text, c->shape);
-  write_part(f, &c->body, c->body_text, c->shape);
+    write_part(f, &c->surface, c->surface_text, c->h);
+  write_part(f, &c->body, c->body_text, c->h);
   fputs("</Domain>\n</Xdmf>\n", f);
 }
 
-status xdmf_write(const hdf5_shape *shape, const char *path) {
+status xdmf_write(const hdf5_file *h, const char *path) {
   OWNED char *surface = NULL, *body = NULL;
-  content c = {
-      .shape = shape, .surface = surface_part(shape), .body = body_part(shape)};
-  if (shape->n_contact_node > 0)
-    PASS(make_pattern(&c.surface, shape, &surface));
-  PASS(make_pattern(&c.body, shape, &body));
+  content c = {.h = h, .surface = surface_part(h), .body = body_part(h)};
+  if (h->n_contact_node > 0) PASS(make_pattern(&c.surface, h, &surface));
+  PASS(make_pattern(&c.body, h, &body));
   c.surface_text = surface;
   c.body_text = body;
   return text_replace(path, &c, write_all);
@@ -197,11 +195,10 @@ static void write_last(FILE *f, const void *what) {
   fputs("</Domain>\n</Xdmf>\n", f);
 }
 
-status xdmf_write_last(const hdf5_shape *shape, int of_contact,
-                       const char *path) {
-  part p = of_contact ? surface_part(shape) : body_part(shape);
-  if (shape->n_record == 0 || p.n_point == 0) return OK;
+status xdmf_write_last(const hdf5_file *h, int of_contact, const char *path) {
+  part p = of_contact ? surface_part(h) : body_part(h);
+  if (h->n_record == 0 || p.n_point == 0) return OK;
   p.alone = 1;
-  OWNED_OF(char, text, make_pattern(&p, shape, &text));
-  return text_replace(path, &(snapshot){text, shape->n_record - 1}, write_last);
+  OWNED_OF(char, text, make_pattern(&p, h, &text));
+  return text_replace(path, &(snapshot){text, h->n_record - 1}, write_last);
 }
