@@ -99,7 +99,8 @@ status box_tree_new(int dim, int n, int corners, const double *x,
 static int is_near(int dim, const double *box, const double *x, double r) {
   double sum = 0.0;
   for (int c = 0; c < dim; ++c) {
-    double d = fmax(fmax(box[c] - x[c], x[c] - box[dim + c]), 0.0);
+    const double below = box[c] - x[c], above = x[c] - box[dim + c];
+    const double d = below > 0.0 ? below : above > 0.0 ? above : 0.0;
     sum += d * d;
   }
   return sum < r * r;
@@ -130,7 +131,7 @@ static int is_wanted(int dim, const double *box, const query *q) {
                          : is_near(dim, box, q->x, q->r);
 }
 
-static int search(const box_tree *t, const query *q, int *found) {
+static inline int search(const box_tree *t, const query *q, int *found) {
   size_t size = 2 * (size_t)t->dim;
   range open[DEEPEST + 2];
   int n_open = 0, n = 0;

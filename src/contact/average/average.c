@@ -445,7 +445,8 @@ static status transpose(const sparse_rows *a, sparse_rows *out) {
 /* l_i G_ij of a pair, so that no node gives away more than its mass. */
 static double pair_value(const builder *b, int i, int j, double ij, double ji) {
   double one = b->share[i] * ij, other = b->share[j] * ji;
-  return 0.5 * (one + other) * fmin(b->part[i], b->part[j]);
+  double part = b->part[i] < b->part[j] ? b->part[i] : b->part[j];
+  return 0.5 * (one + other) * part;
 }
 
 /* Row i of G into col, val; returns the number of its entries. *left is what
