@@ -79,7 +79,8 @@ typedef struct fracture_point { /* a tip, or a node of the front */
 typedef struct fracture_factors {
   double K[3], K_scatter[3]; /* I, II, III (0 in 2-D), Pa m^(1/2) */
   double J, J_scatter;       /* energy release rate, J/m2 */
-  int pointed;               /* 1: forces at nodes of the domains have a part */
+  unsigned pointed;          /* bits of the modes in which forces at nodes of
+ the domains have a part */
 } fracture_factors;
 
 typedef struct fracture fracture;

@@ -504,8 +504,8 @@ static void add_lips(work *w) {
 
 /* ---- forces at nodes ----------------------------------------------------- */
 
-/* Forces at a front are rounding below that part of the stress there over an
- * element, -. */
+/* Forces are rounding below that part of the stress over an element at the
+ * front, their works below that of their largest, -. */
 static const double no_force = 1e-6;
 
 /* The mean slope of the elements round a node, *size their mean stress; returns
@@ -534,47 +534,54 @@ static int slope_round(work *w, int node, double mean[3][3], double *size) {
   return height > 0;
 }
 
-/* Of the force t[3] in the frame of a place; limit < 0: not at the front, where
- * by symmetry a force moves with the field of one mode alone. */
+/* -t_i d_il Q_l, 0: by rounding. */
+static double force_work(const double t[3], const field_tensor *d,
+                         const double *Q) {
+  const double is = body_work(t, d, Q);
+  const double most = dot(3, t, t) * field_product(d, d) * dot(3, Q, Q);
+  return fabs(is) <= no_force * sqrt(most) ? 0 : is;
+}
+
+/* Of the force t[3] in the frame of a place. At the front it moves by symmetry
+ * with the field of one mode alone, which is infinite there. The slope under it
+ * is so too: where it works there is no energy release rate. */
 static void add_force(work *w, const corner *c, const local *at,
-                      const double t[3], const field_tensor *own,
-                      double limit) {
-  field_tensor d[MODES + 1] = {0};
-  d[MODES] = *own;
-  for (int mode = 0; mode < MODES && w->x->G > 0 && limit < 0; ++mode) {
-    auxiliary x;
-    auxiliary_set(w->x, at, mode, &x);
-    d[mode] = x.d;
-  }
-  for (int mode = 0; mode < 2 && limit >= 0; ++mode)
-    if (fabs(t[mode]) > limit) d[mode].of[0][0] = d[MODES].of[0][0] = NAN;
+                      const double t[3], const field_tensor *slope) {
+  const int front = hypot(at->x[0], at->x[1]) <= rounding * w->p->size;
+  const double most = no_force * sqrt(dot(3, t, t));
+  double Q[DOMAINS][3];
   for (int k = 0; k < DOMAINS; ++k) {
-    double Q[3];
-    field_turn_vector(at, c->Q[k], Q);
-    for (int mode = 0; mode <= MODES; ++mode)
-      w->sum->I[k][mode] += body_work(t, &d[mode], Q);
+    field_turn_vector(at, c->Q[k], Q[k]);
+    if (fabs(force_work(t, slope, Q[k])) > 0) w->sum->I[k][MODES] = NAN;
+  }
+  for (int mode = 0; mode < MODES && w->x->G > 0; ++mode) {
+    auxiliary x;
+    const double none = front && mode < 2 && fabs(t[mode]) > most ? NAN : 0;
+    if (!front) auxiliary_set(w->x, at, mode, &x);
+    for (int k = 0; k < DOMAINS; ++k) {
+      const double share = front ? none : force_work(t, &x.d, Q[k]);
+      if (share != 0) w->sum->pointed |= 1u << mode;
+      w->sum->I[k][mode] += share;
+    }
   }
 }
 
 static void add_node(work *w, int node) {
   double mean[3][3], t[3], size;
-  field_tensor d;
+  field_tensor slope;
   corner c;
   local at;
   const int above = slope_round(w, node, mean, &size);
   place_of(w->m, node, c.x);
   set_growth(w, &c);
   locate(w->p, c.x, &at);
-  if (!(c.q[0] > 0)) return;
   turned_vector(w, w->state->point, node, &at, t);
-  field_turn(&at, mean, &d);
-  const double r = hypot(at.x[0], at.x[1]);
-  if (fabs(at.x[1]) <= rounding * r) at.x[1] = above ? 0.0 : -0.0;
-  add_force(w, &c, &at, t, &d,
-            r > rounding * w->p->size
-                ? -1
-                : no_force * size * pow(w->p->size, w->m->dim - 1));
-  w->sum->pointed |= dot(3, t, t) > 0;
+  field_turn(&at, mean, &slope);
+  if (fabs(at.x[1]) <= rounding * hypot(at.x[0], at.x[1]))
+    at.x[1] = above ? 0.0 : -0.0;
+  size *= no_force * pow(w->p->size, w->m->dim - 1);
+  if (c.q[0] > 0 && dot(3, t, t) > size * size)
+    add_force(w, &c, &at, t, &slope);
 }
 
 static void add_nodes(work *w) {

@@ -86,7 +86,7 @@ void energy_flux(const field_tensor *s, const field_tensor *d, double share,
 typedef struct integrals {
   double I[DOMAINS][MODES + 1]; /* of the modes and, last, the energy */
   double length[DOMAINS];       /* int q ds; 1 in 2-D */
-  int pointed;                  /* 1: forces at nodes have a part */
+  unsigned pointed; /* bits of modes in which forces at nodes have a part */
 } integrals;
 /* At a point with a radius. */
 void integrals_find(fracture *f, const fracture_state *s,

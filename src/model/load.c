@@ -124,8 +124,7 @@ static void simplex_mass(int n, double measure, const double *r, double *M) {
 typedef struct patch {
   int n, node[MAX_NODE]; /* its nodes */
   double measure;        /* length^(n-1), thickness included */
-  double direction[3];   /* of the load, unit length */
-  double factor;         /* density for gravity, else 1 */
+  double direction[3];   /* force per measure over the value of the load */
 } patch;
 
 static status add_patch(const model *m, const mesh *msh, const load *l,
@@ -140,7 +139,6 @@ static status add_patch(const model *m, const mesh *msh, const load *l,
   for (int i = 0; i < p->n; ++i) {
     double force = 0.0;
     for (int j = 0; j < p->n; ++j) force += M[i + p->n * j] * value[j];
-    force *= p->factor;
     double *Fi = F + (size_t)msh->dim * p->node[i];
     for (int c = 0; c < msh->dim; ++c) Fi[c] += force * p->direction[c];
   }
@@ -157,7 +155,7 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
   for (int k = 0; k < g->n_item; ++k) {
     int face = g->item_id[k];
     double normal[3];
-    patch p = {.n = msh->dim, .factor = 1.0};
+    patch p = {.n = msh->dim};
     COPY(p.node, msh->face + (size_t)msh->dim * face, msh->dim);
     p.measure = mesh_face_normal(msh, face, normal) *
                 model_thickness(m, msh->face_elem[face]);
@@ -170,18 +168,20 @@ static status add_faces(const model *m, const mesh *msh, const load *l,
   return OK;
 }
 
+void load_per_value(const model *m, const load *l, int elem_id, double f[3]) {
+  const section *sec = &m->sections[m->elem_section[elem_id]];
+  for (int c = 0; c < 3; ++c)
+    f[c] = l->kind == LOAD_GRAVITY
+               ? m->materials[sec->material_id].density * l->direction[c]
+               : c == l->component;
+}
+
 /* An element under a load on bodies. */
 static patch body_patch(const model *m, const mesh *msh, const load *l, int e) {
-  patch p = {.n = msh->dim + 1, .factor = 1.0};
+  patch p = {.n = msh->dim + 1};
   COPY(p.node, msh->elem + (size_t)p.n * e, p.n);
   p.measure = mesh_elem_measure(msh, e) * model_thickness(m, e);
-  if (l->kind == LOAD_GRAVITY) {
-    const section *sec = &m->sections[m->elem_section[e]];
-    p.factor = m->materials[sec->material_id].density;
-    memcpy(p.direction, l->direction, sizeof p.direction);
-  } else {
-    p.direction[l->component] = 1.0;
-  }
+  load_per_value(m, l, e, p.direction);
   return p;
 }
 
@@ -220,7 +220,7 @@ status load_body(const model *m, const mesh *msh, const step *s, double t,
       const patch p = body_patch(m, msh, l, g->item_id[k]);
       double sum = 0.0;
       for (int i = 0; i < p.n; ++i)
-        sum += load_at_node(l, msh, s, p.node[i], t) * p.factor / p.n;
+        sum += load_at_node(l, msh, s, p.node[i], t) / p.n;
       for (int c = 0; c < dim; ++c)
         b[(size_t)dim * g->item_id[k] + c] += sum * p.direction[c];
     }

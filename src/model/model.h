@@ -576,6 +576,8 @@ status load_forces(const model *m, const mesh *msh, const step *s, double t,
 int load_has_body(const model *m);
 status load_body(const model *m, const mesh *msh, const step *s, double t,
                  double *F, double *b);
+/* Force per volume in an element, N/m3 over the value of such a load. */
+void load_per_value(const model *m, const load *l, int elem_id, double f[3]);
 /* The part of *CLOAD of load_forces. */
 status load_points(const model *m, const mesh *msh, const step *s, double t,
                    double *F);

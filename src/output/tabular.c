@@ -131,13 +131,25 @@ static status write_table(tabular *t, const view *v, const print_request *p) {
   return text_check(&t->dat);
 }
 
+/* 1: request i of a step prints here, and none before it the same rows. */
+static int is_due(const step *now, int i, const state *s) {
+  const print_request *all = now->print.requests, *own = &all[i];
+  const int increment_no = s->within ? -1 : s->increment_no;
+  for (int k = 0; k < i; ++k)
+    if (all[k].table == own->table &&
+        (own->group == NULL) == (all[k].group == NULL) &&
+        (own->group == NULL || strcmp(all[k].group, own->group) == 0) &&
+        print_shows(&all[k], now, s->t, increment_no, s->end_of_step))
+      return 0;
+  return print_shows(own, now, s->t, increment_no, s->end_of_step);
+}
+
 status tabular_increment(tabular *t, const state *s) {
   if (t == NULL) return OK;
   view v = {t->m, t->msh, s};
   const step *now = &t->m->steps[s->step_no - 1];
   for (int i = 0; i < now->print.n; ++i)
-    if (print_shows(&now->print.requests[i], now, s->t,
-                    s->within ? -1 : s->increment_no, s->end_of_step)) {
+    if (is_due(now, i, s)) {
       TIMED(effect_stage(effect_of_table(now->print.requests[i].table)));
       PASS(write_table(t, &v, &now->print.requests[i]));
     }

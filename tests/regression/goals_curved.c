@@ -114,6 +114,36 @@ START_TEST(slice_in_space_under_a_pressure) {
 }
 END_TEST
 
+/* A disc with a hole that turns, rho omega^2 = 1000 in plane stress, and under
+ * its weight of 1000: the mean of stress_yy is that of 1000 y over the body.
+ * What lies beyond the chords has these forces too. */
+START_TEST(forces_on_the_body_beyond_chords) {
+  job j = job_begin("turning");
+  const double u = 2e-5 * 250 * (3.3 + 4 * 0.7);
+  job_write(&j, "turning.geo", "%s", QUARTER);
+  job_write(
+      &j, "turning.inp",
+      "*MESH, FILE=turning.geo\n*MATERIAL, NAME=M\n*ELASTIC\n1.D5, 0.3\n"
+      "*DENSITY\n100.\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3\n"
+      "*GOAL, NAME=OUT, QUANTITY=DISPLACEMENT, COMPONENT=1\n2., 0.\n"
+      "*GOAL, NAME=MEAN, QUANTITY=DISPLACEMENT, COMPONENT=1, GROUP=OUTER\n"
+      "*GOAL, NAME=YY, QUANTITY=STRESS, COMPONENT=YY, GROUP=BODY\n"
+      "*STEP\n*STATIC\n*BOUNDARY\nBOTTOM, 2\nLEFT, 1\n*DLOAD\n%s"
+      "*PRINT, GOALS\n*END STEP\n",
+      _i == 0 ? "BODY, BX, \"1000*x\"\nBODY, BY, \"1000*y\"\n"
+              : "BODY, GRAV, 10., 0., -1.\n");
+  const int code = job_run(&j, "");
+  ck_assert_msg(code == 0, "exit %d: %s", code, j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  if (_i == 0) check_goal(&t, 0, u, 0.15);
+  if (_i == 0) check_goal(&t, 1, M_2_PI * u, 0.15);
+  if (_i == 1) check_goal(&t, 2, -1000 * 7.0 / 3 / (0.75 * M_PI), 0.1);
+  dat_free(&t);
+  job_end(&j);
+}
+END_TEST
+
 /* The mean of a stress is that of the whole body, which the mesh is not: by the
  * load alone 100 times the area of INNER across x over that of the ring. */
 START_TEST(mean_stress_of_a_ring) {
@@ -411,6 +441,7 @@ int main(void) {
   tcase_add_test(tests, shell_of_revolution_under_a_pressure);
   tcase_add_test(tests, shell_of_revolution_under_tractions_of_a_formula);
   tcase_add_test(tests, slice_in_space_under_a_pressure);
+  tcase_add_loop_test(tests, forces_on_the_body_beyond_chords, 0, 2);
   tcase_add_test(tests, mean_stress_of_a_ring);
   tcase_add_loop_test(tests, ring_on_a_shaft, 0, 5);
   tcase_add_loop_test(tests, ring_whose_round_surfaces_are_given, 0, 2);

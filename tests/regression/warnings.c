@@ -137,18 +137,28 @@ START_TEST(slip_along_a_bent_obstacle_is_told) {
 }
 END_TEST
 
+#define CARRIED                                                   \
+  "*BOUNDARY\nFIXED, 1, 1, 0.7\n*END STEP\n*STEP\n*QUASISTATIC\n" \
+  "1., 1.\n*BOUNDARY\nFIXED, 1, 1, 0.7\n*DSLOAD\n"
+
 /* A column of the width 1 and the height 2 on longer faces, pressed by 1 and
  * pushed by s at its top: the pressures act at 0.5 + 2 s. Where nodes of the
- * column are the slave it tips. */
+ * column are the slave it tips. With UPDATE=STEP all of it is carried along
+ * before. */
 START_TEST(pressures_beyond_the_end_of_the_master_are_told) {
   static const struct {
-    const char *push, *slave;
+    const char *push, *slave, *carried;
     int code;
     const char *told;
-  } rows[] = {{"0.24", "AUTO", 0, NULL},
-              {"0.255", "AUTO", 0, "acts 0.01 beyond the end of the master UP"},
-              {"-0.26", "AUTO", 0, "acts 0.02 beyond the end of the master UP"},
-              {"0.255", "SECOND", 6, NULL}};
+  } rows[] = {
+      {"0.24", "AUTO", "", 0, NULL},
+      {"0.255", "AUTO", "", 0, "acts 0.01 beyond the end of the master UP"},
+      {"-0.26", "AUTO", "", 0, "acts 0.02 beyond the end of the master UP"},
+      {"0.24", "AUTO, UPDATE=STEP", CARRIED, 0, NULL},
+      {"0.255", "AUTO, UPDATE=STEP", CARRIED, 0,
+       "step 2, increment 1, time 2: *CONTACT PAIR C: the resultant of the "
+       "pressures acts 0.01 beyond"},
+      {"0.255", "SECOND", "", 6, NULL}};
   for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
     job j = job_begin("column");
     job_write(&j, "column.msh",
@@ -171,9 +181,9 @@ START_TEST(pressures_beyond_the_end_of_the_master_are_told) {
               "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n"
               "*CONTACT PAIR, NAME=C, SLAVE=%s\nLOW, UP\n"
               "*FRICTION, CONTACT=C, LAW=COULOMB\n1.\n*STEP\n*STATIC\n"
-              "*BOUNDARY\nFIXED, 1, 2\n*DSLOAD\nTOP, P, 1.\nTOP, TX, %s\n"
+              "*BOUNDARY\nFIXED, 1, 2\n*DSLOAD\nTOP, P, 1.\n%sTOP, TX, %s\n"
               "*END STEP\n",
-              rows[i].slave, rows[i].push);
+              rows[i].slave, rows[i].carried, rows[i].push);
     const int code = job_run(&j, "--no-timing");
     ck_assert_msg(code == rows[i].code, "%d: exit %d: %s", (int)i, code,
                   j.errors);

@@ -184,37 +184,47 @@ static void warn_open(run *r, warnings *reported) {
   }
 }
 
-/* Where the resultant of the pressures of a pair acts on the master, m; 0: none
- * does. */
-static int find_middle(const run *r, int id, double *x) {
+/* Where the resultant of the pressures of a pair acts on the master, m, of
+ * UPDATE=STEP at the start of the step, since[n_c] the motion relative to the
+ * master till then; 0: none does. */
+static int find_middle(const run *r, int id, const double *since, double *x) {
   const int dim = r->msh->dim;
   const contact_surface *s = r->surface;
+  const double *from = since == NULL ? NULL : r->faces.input.u;
   double force = 0.0;
   for (int i = 0; i < s->n; ++i) {
     const double f = -r->now.rc[dim * i];
     if (s->contact_id[i] != id || !(f > 0.0)) continue;
+    const double gap = s->gap0[i] - (from != NULL ? since[dim * i] : 0.0);
     for (int c = 0; c < dim; ++c)
-      x[c] +=
-          f * (s->x[dim * i + c] + s->gap0[i] * s->frame[dim * dim * i + c]);
+      x[c] += f * (s->x[dim * i + c] + gap * s->frame[dim * dim * i + c] +
+                   (from != NULL ? from[dim * s->node_id[i] + c] : 0.0));
     force += f;
   }
   for (int c = 0; c < dim; ++c) x[c] /= force;
   return force > 0.0;
 }
 
+/* From node k of a group, moved by u[n_dof] if that is not NULL, to x. */
+static void from_node(const mesh *m, const mesh_group *g, const double *u,
+                      int k, const double *x, double *v) {
+  vector_of(m->dim, mesh_node_x(m, g->node_id[k]), x, v);
+  if (u != NULL) add_scaled(m->dim, -1.0, u + m->dim * g->node_id[k], v);
+}
+
 /* v = x less the nearest point of the convex hull of the nodes of a group
  * (Gilbert, SIAM J. Control 4 (1966)); how far they are apart along v, m, where
  * that is not less than "close". */
-static double beyond_hull(const mesh *m, const mesh_group *g, const double *x,
-                          double close, double *v) {
+static double beyond_hull(const mesh *m, const mesh_group *g, const double *u,
+                          const double *x, double close, double *v) {
   enum { STEPS = 100 };
   const int dim = m->dim;
   double apart = 0.0;
-  vector_of(dim, mesh_node_x(m, g->node_id[0]), x, v);
+  from_node(m, g, u, 0, x, v);
   for (int turn = 0; turn < STEPS && dot(dim, v, v) > close * close; ++turn) {
     double least = HUGE_VAL, p[3], to[3], near[3] = {0.0};
     for (int k = 0; k < g->n_node; ++k) {
-      vector_of(dim, mesh_node_x(m, g->node_id[k]), x, p);
+      from_node(m, g, u, k, x, p);
       if (dot(dim, v, p) >= least) continue;
       least = dot(dim, v, p);
       COPY(near, p, dim);
@@ -253,15 +263,19 @@ static int is_alone(const run *r, int id) {
 
 /* Pressures at nodes beyond the end of the master, whose faces it covers in
  * part, hold a body that has tipped over its end. */
-static void warn_beyond(run *r, int id, warnings *reported) {
+static void warn_beyond(run *r, int id, const double *since,
+                        warnings *reported) {
   const contact *c = &r->m->contacts[id];
   double x[3] = {0.0}, v[3];
-  if (!c->is_pair || c->is_crack || c->update ||
-      (reported->touched[id] & BEYOND_TOLD) || !find_middle(r, id, x))
+  if (!c->is_pair || c->is_crack || (reported->touched[id] & BEYOND_TOLD) ||
+      !find_middle(r, id, c->update ? since : NULL, x))
     return;
   const mesh_group *g = &r->msh->group[c->pair.master_id];
   const double close = CLOSE * reported->edge[id],
-               far = beyond_hull(r->msh, g, x, close, v);
+               far = beyond_hull(
+                   r->msh, g,
+                   c->update && since != NULL ? r->faces.input.u : NULL, x,
+                   close, v);
   if (!(far > close) || !is_along(r, id, v) || !is_alone(r, id)) return;
   reported->touched[id] |= BEYOND_TOLD;
   message_add(r->m->log, P4042, &c->at,
@@ -272,6 +286,15 @@ static void warn_beyond(run *r, int id, warnings *reported) {
               c->name, far, g->name);
 }
 
+static status look_beyond(run *r, warnings *reported) {
+  const double *from = r->faces.input.u;
+  OWNED double *since = NULL;
+  if (from != NULL) PASS_NEW(since, r->nodes.n_c);
+  if (from != NULL) surface_relative(r->surface, from, since);
+  for (int i = 0; i < r->m->n.contact; ++i) warn_beyond(r, i, since, reported);
+  return OK;
+}
+
 static status look(run *r, void *self) {
   warnings *own = self;
   note_touches(r, own);
@@ -280,7 +303,7 @@ static status look(run *r, void *self) {
   if (r->solving.report.outcome <= 0) return OK;
   warn_deformation(r, own);
   warn_open(r, own);
-  for (int i = 0; i < r->m->n.contact; ++i) warn_beyond(r, i, own);
+  PASS(look_beyond(r, own));
   return look_at_slip(r, own);
 }
 

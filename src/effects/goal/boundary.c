@@ -422,9 +422,36 @@ static patch element_patch(const run *r, int e) {
   return p;
 }
 
+/* A load on bodies on what lies beyond the faces of its elements. */
+static status add_body_beyond(const run *r, const smooth_faces *rings,
+                              const load *l, double *dF) {
+  const mesh *m = r->msh;
+  const mesh_group *g = &m->group[l->group_id];
+  OWNED_NEW(unsigned char, in, m->n_elem);
+  for (int k = 0; k < g->n_item; ++k) in[g->item_id[k]] = 1;
+  for (int f = 0; f < m->n_face; ++f) {
+    if (m->face_other[f] >= 0 || !in[m->face_elem[f]]) continue;
+    const patch p = face_patch(r, rings, f);
+    double force[3];
+    load_per_value(r->m, l, m->face_elem[f], force);
+    for (int k = 0; k < p.n && p.is_curved; ++k) {
+      const spot s = spot_at(m, &p, k);
+      const double value = load_at_point(l, r->step, s.on, r->now.t);
+      if (!isfinite(value)) continue;
+      for (int i = 0; i < p.n * m->dim; ++i)
+        dF[m->dim * p.node[i / m->dim] + i % m->dim] +=
+            s.weight * s.beyond * turn_of(r, s.x[0]) * s.b[i / m->dim] * value *
+            force[i % m->dim];
+    }
+  }
+  return OK;
+}
+
 static status add_loads(const run *r, const smooth_faces *rings, double *dF) {
   for (EACH(const load, l, r->step->loads.item, r->step->loads.n)) {
     const int on_faces = l->kind == LOAD_PRESSURE || l->kind == LOAD_TRACTION;
+    if (l->kind == LOAD_BODY || l->kind == LOAD_GRAVITY)
+      PASS(add_body_beyond(r, rings, l, dF));
     if (!on_faces && (l->kind != LOAD_BODY || !goal_load_varies(l))) continue;
     const mesh_group *g = &r->msh->group[l->group_id];
     for (int k = 0; k < g->n_item; ++k) {

@@ -307,7 +307,8 @@ static status set_factor(run *r, const goal_card *g, goal_form *f) {
   f->why = point < 0 ? GOAL_NO_FACTOR : GOAL_RELIABLE;
   if (point < 0) return OK;
   f->value = k.at[point].K[g->component];
-  if (!k.is_linear || k.at[point].pointed) f->why = GOAL_NOT_COVERED;
+  if (!k.is_linear || (k.at[point].pointed >> g->component & 1u) != 0)
+    f->why = GOAL_NOT_COVERED;
   if (f->why == GOAL_NOT_COVERED) return OK;
   PASS(cracks_derive(r, g->crack_id, point, g->component, &f->factor));
   const double part = k.points[point].size / k.points[point].radius;
