@@ -14,8 +14,6 @@ static const double SAME = 1e-6; /* -, relative distance of one state */
 static const double UNIT = 1e-3; /* -, of the energy of the scale: counts as
                                     the norm of a state without deformation */
 
-static void free_solution(solution *s) { RELEASE(s->u, s->r, s->status); }
-
 int solution_set_confirmed(const solution_set *s) {
   const char *family = NULL;
   if (s->n_found == 0) return 0;
@@ -30,7 +28,8 @@ int solution_set_confirmed(const solution_set *s) {
 
 void solution_set_free(solution_set *s) {
   if (s == NULL) return;
-  for (int i = 0; i < s->n_found; ++i) free_solution(&s->found[i]);
+  for (EACH(const solution, f, s->found, s->n_found))
+    RELEASE(f->u, f->r, f->status);
   RELEASE(s->found, s->attempts);
   *s = (solution_set){0};
 }
@@ -79,17 +78,13 @@ static void find_facts(const contact_problem *cp, solution *s) {
 
 static status copy_solution(const contact_problem *cp, const double *u,
                             const double *r, solution *s) {
-  status st = OK;
-  *s = (solution){0};
-  NEW_REALS(cp->m, &s->u, &s->r);
-  NEW(s->status, cp->n);
+  PASS_NEW_REALS(cp->m, &s->u, &s->r);
+  PASS_NEW(s->status, cp->n);
   COPY(s->u, u, cp->m);
   COPY(s->r, r, cp->m);
   contact_classify(cp, u, r, s->status);
   find_facts(cp, s);
-done:
-  if (st != OK) free_solution(s);
-  return st;
+  return OK;
 }
 
 status solution_set_add(const contact_problem *cp, double tol, const double *u,
@@ -112,10 +107,10 @@ status solution_set_add(const contact_problem *cp, double tol, const double *u,
     PASS(find_distance(
         cp, x, contact_has_stiffness(cp) ? s->found[0].u : s->found[0].r,
         &distance));
-  PASS_GROW(s->found, s->n_found, s->cap_found);
-  PASS(copy_solution(cp, u, r, &s->found[s->n_found]));
-  s->found[s->n_found].facts.distance = distance;
-  *no = ++s->n_found;
+  ADDED(solution, new, s->found, s->n_found, s->cap_found);
+  PASS(copy_solution(cp, u, r, new));
+  new->facts.distance = distance;
+  *no = s->n_found;
   return OK;
 }
 

@@ -268,10 +268,9 @@ status verdict_text(const verdict_scene *s, char *text, size_t size) {
   if (add_bad_number(&w, s)) return OK;
   PASS(add_motion(&w, s, &end));
   if (end == STOPPED_RAY) return OK;
-  if (end == CONVERGED) {
+  if (end == CONVERGED)
     ADD(&w, "METHOD=LEMKE of *SOLVER finds one to 1E-8 of the loads");
-  } else {
+  else
     PASS(verdict_misfit(s->cp, s->surface, s->u, s->r, text, size));
-  }
   return OK;
 }

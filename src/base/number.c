@@ -171,12 +171,11 @@ const char *number_int(const char *text, int *value) {
 /* The decimal separator of the locale, of any length, becomes a point. */
 static void put_point(char *text) {
   char *to = text;
-  for (const char *from = text; *from != '\0'; ++from) {
+  for (const char *from = text; *from != '\0'; ++from)
     if (strchr("+-e0123456789", *from) != NULL)
       *to++ = *from;
     else if (to == text || to[-1] != '.')
       *to++ = '.';
-  }
   *to = '\0';
 }
 

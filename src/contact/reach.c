@@ -46,12 +46,11 @@ status reach_choose(contact_reach *x, int n, const double *gap) {
 
 int reach_misses(const contact_reach *x, int n, const double *gap,
                  const double *u_n, int stride) {
-  for (int i = 0, next = 0; x->in != NULL && i < n; ++i) {
+  for (int i = 0, next = 0; x->in != NULL && i < n; ++i)
     if (next < x->n_in && x->in[next] == i)
       ++next;
     else if (!(u_n[stride * i] <= gap[i]))
       return 1;
-  }
   return 0;
 }
 

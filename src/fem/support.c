@@ -480,10 +480,9 @@ static void add_contact(triangle *t, motion_hold by) {
   const contact_surface *f = s->d->surface;
   for (int k = s->start[t->id]; k < s->start[t->id + 1]; ++k) {
     const int i = s->node[k], q = s->contact[i];
-    for (int c = 0; q >= 0 && c < f->dim; ++c) {
+    for (int c = 0; q >= 0 && c < f->dim; ++c)
       if (!f->held[f->dim * q + c] && holds_as(s->d, q, c) == by)
         add_condition(t, i, c);
-    }
   }
 }
 

@@ -61,4 +61,4 @@ status nodes_coincident(builder *b);
 status elements_gather(builder *b); /* types; corners as raw nodes */
 status elements_finish(builder *b); /* orientation, order, repeated ones */
 status faces_finish(builder *b);    /* ids, elements on both sides */
-status overlap_check(builder *b); /* across faces, anywhere */
+status overlap_check(builder *b);   /* across faces, anywhere */

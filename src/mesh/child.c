@@ -528,12 +528,11 @@ static size_t send_entity(const child *c, int dim, int tag, int top) {
     get_elements(c, dim, tag, &e);
     for (size_t i = 0; i < n_physical; ++i) /* the sign is an orientation */
       physical[i] = abs(physical[i]);
-    for (size_t i = 0; i < e.n_type; ++i) {
+    for (size_t i = 0; i < e.n_type; ++i)
       if (n_physical == 0)
         loose += e.no_n[i];
       else if (e.no_n[i] > 0)
         send_block(c, dim, &e, i, physical, n_physical);
-    }
     free_elements(c, &e);
   }
   return loose;

@@ -49,28 +49,23 @@ static void print_reason(const state *s, const char *why, FILE *f) {
             check_text(s, check));
 }
 
-/* Error of the solver in %, "-": not required, or no bound. */
-static const char *error_text(const state *s) {
-  if (!s->errors.error.asked || isnan(s->errors.error.relative)) return "-";
-  return text_number(100 * s->errors.error.relative, 1);
-}
-
 /* An estimate in %, "-": not required, or unknown. */
-static const char *share_text(const error_share *e) {
-  if (!e->asked || isnan(e->relative)) return "-";
-  return text_number(100 * e->relative, 1);
+static const char *share_text(int asked, double relative) {
+  return !asked || isnan(relative) ? "-" : text_number(100 * relative, 1);
 }
 
 status sta_line(const output_options *o, const state *s, const char *why,
                 text_file *sta) {
   const solver_report *r = &s->report;
+  const state_errors *e = &s->errors;
   fprintf(sta->f, "%6d %5d %3d %11s %11s %7d %7d %7d %-9s %7d %10s %9s %9s %9s",
           s->step_no, s->increment_no, s->attempt, text_number(s->t, 4),
           text_number(s->dt, 4), s->contacts.n_open, s->contacts.n_slip,
           s->contacts.n_stick, r->solver != NULL ? r->solver : "-",
           r->iterations, text_number(r->residual, 3),
-          share_text(&s->errors.mesh_error), share_text(&s->errors.time_error),
-          error_text(s));
+          share_text(e->mesh_error.asked, e->mesh_error.relative),
+          share_text(e->time_error.asked, e->time_error.relative),
+          share_text(e->error.asked, e->error.relative));
   if (!o->no_timing) fprintf(sta->f, " %9.3f", s->cpu);
   print_reason(s, why, sta->f);
   return text_check(sta);

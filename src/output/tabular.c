@@ -78,20 +78,15 @@ static status order_by_number(int n, const size_t *no, int **order) {
   return OK;
 }
 
-static int in_group(const mesh_group *g, int node_id) {
-  return number_find(node_id, g->node_id, g->n_node) >= 0;
-}
-
 /* The contact nodes in the order of their node_no. */
 static status contact_rows(const table *columns, tabular *t, const view *v,
                            const mesh_group *g) {
   const contact_surface *surface = v->s->contacts.surface;
   if (surface == NULL) return OK;
-  OWNED_NEW(size_t, no, surface->n);
-  for (int i = 0; i < surface->n; ++i) no[i] = surface->node_no[i];
-  OWNED_OF(int, order, order_by_number(surface->n, no, &order));
+  OWNED_OF(int, order, order_by_number(surface->n, surface->node_no, &order));
   for (int i = 0; i < surface->n; ++i)
-    if (g == NULL || in_group(g, surface->node_id[order[i]]))
+    if (g == NULL ||
+        number_find(surface->node_id[order[i]], g->node_id, g->n_node) >= 0)
       table_row(columns, v, order[i], t->dat.f);
   return OK;
 }

@@ -74,9 +74,22 @@ static status see_increment(void *ctx, const state *s) {
   return OK;
 }
 
-/* One run without output. */
-static status run_quietly(job_input *in, trial *t) {
+/* CPU seconds of the stages since "before". */
+static void stage_costs(const trial *before, trial *t) {
+  for (int i = 0; i < STAGE_COUNT; ++i)
+    t->cpu[i] =
+        timer_cost((stage)i).cpu - (before != NULL ? before->cpu[i] : 0);
+}
+
+/* One run without output, with its error of the mesh in the energy norm, and
+ * that of the increments if "time". */
+static status run_trial(job_input *in, int time, trial *t) {
   int unsettled = 0;
+  for (int i = 0; i < in->m->n.step; ++i) {
+    in->m->steps[i].accuracy.mesh = MESH_ERROR_YES;
+    if (time) in->m->steps[i].accuracy.time = 1;
+  }
+  in->m->effects |= EFFECT_MESH_ERROR | (time ? EFFECT_TIME_ERROR : 0);
   const history_sink sink = {.ctx = t,
                              .expect = see_sizes,
                              .ready = see_ready,
@@ -90,25 +103,6 @@ static status run_quietly(job_input *in, trial *t) {
   t->bytes = (double)memory_peak();
   aims_evaluate(t->goals, in->m);
   return OK;
-}
-
-/* With its errors in the energy norm; eta[n_elem] or NULL: shares of the
- * elements in that of the mesh. */
-static status run_trial(job_input *in, trial *t, double *eta) {
-  t->eta = eta;
-  for (int i = 0; i < in->m->n.step; ++i) {
-    in->m->steps[i].accuracy.mesh = MESH_ERROR_YES;
-    in->m->steps[i].accuracy.time = 1;
-  }
-  in->m->effects |= EFFECT_MESH_ERROR | EFFECT_TIME_ERROR;
-  return run_quietly(in, t);
-}
-
-/* CPU seconds of the stages since "before". */
-static void stage_costs(const trial *before, trial *t) {
-  for (int i = 0; i < STAGE_COUNT; ++i)
-    t->cpu[i] =
-        timer_cost((stage)i).cpu - (before != NULL ? before->cpu[i] : 0);
 }
 
 /* 1: paid once a run, not once an increment. */
@@ -400,23 +394,29 @@ static status fit(model_of_cost *c, double wanted) {
   return OK;
 }
 
+/* The job on a mesh of those sizes, read into *in; eta: NULL, or *eta is new,
+ * [n_elem] as in trial, and the increments have no estimate. */
+static status run_other(const command *c, const job_mesh *on, job_input *in,
+                        double **eta, trial *t) {
+  trial before = {0};
+  PASS(message_log_new(&in->log));
+  stage_costs(NULL, &before);
+  status st = job_read(c, on, in->log, in);
+  if (st == OK && eta != NULL) PASS_NEW(*eta, in->msh->n_elem);
+  t->eta = eta != NULL ? *eta : NULL;
+  if (st == OK) st = run_trial(in, eta == NULL, t);
+  if (st != OK) message_print(in->log, stderr);
+  stage_costs(&before, t);
+  return st;
+}
+
 /* The job on a mesh that is to have the error "wanted"; eta[n_elem] of *in. */
 static status run_adapted(const command *c, const job_input *in,
                           const double *eta, double wanted, trial *t) {
-  status st = OK;
-  job_input other = {0};
-  trial before = {0};
+  job_input other ENDS_BY(job_input_free) = {0};
   OWNED_NEW(double, size, in->msh->n_node);
-  TRY(message_log_new(&other.log));
   space_sizes(in->msh, eta, wanted, size);
-  stage_costs(NULL, &before);
-  TRY(job_read(c, &(job_mesh){.sizes = {{in->msh, size}}}, other.log, &other));
-  TRY(run_trial(&other, t, NULL));
-  stage_costs(&before, t);
-done:
-  if (st != OK && other.log != NULL) message_print(other.log, stderr);
-  job_input_free(&other);
-  return st;
+  return run_other(c, &(job_mesh){.sizes = {{in->msh, size}}}, &other, NULL, t);
 }
 
 static status forecast_norm(const command *c, job_input *in, const double *eta,
@@ -464,27 +464,13 @@ static void stand_free(stand *s) {
 static status run_for_goals(const command *c, const mesh_sizes *first,
                             const job_input *at, const double *eta, double part,
                             stand *s) {
-  trial before = {0};
   const mesh *msh = at->msh;
   OWNED_NEW(double, size, msh->n_node);
   for (int i = 0; i < msh->n_node; ++i) size[i] = HUGE_VAL;
   aims_ask(s->t.goals, part);
   PASS(aims_sizes(s->t.goals, at->m, msh, eta, size));
-  PASS(message_log_new(&s->in.log));
-  stage_costs(NULL, &before);
-  status st = job_read(c, &(job_mesh){.sizes = {{msh, size}, *first}},
-                       s->in.log, &s->in);
-  if (st == OK) {
-    PASS_NEW(s->eta, s->in.msh->n_elem);
-    s->t.eta = s->eta;
-    s->in.m->effects |= EFFECT_MESH_ERROR;
-    for (int i = 0; i < s->in.m->n.step; ++i)
-      s->in.m->steps[i].accuracy.mesh = MESH_ERROR_YES;
-    st = run_quietly(&s->in, &s->t);
-  }
-  if (st != OK) message_print(s->in.log, stderr);
-  stage_costs(&before, &s->t);
-  return st;
+  return run_other(c, &(job_mesh){.sizes = {{msh, size}, *first}}, &s->in,
+                   &s->eta, &s->t);
 }
 
 /* A goal on the meshes of the deck and of the last two runs, and the share of
@@ -621,7 +607,8 @@ status forecast_print(const command *c, job_input *in) {
   if (in->m->n.goal > 0) PASS(aims_new(in->m, 1, &goals));
   PASS(plan_sizes_find(in->m, in->msh, 0, &cost.sizes));
   cost.deck.goals = goals;
-  PASS(run_trial(in, &cost.deck, eta));
+  cost.deck.eta = eta;
+  PASS(run_trial(in, 1, &cost.deck));
   stage_costs(NULL, &cost.deck);
   PASS(forecast_norm(c, in, eta, &cost));
   return in->m->n.goal > 0 ? forecast_goals(c, in, &cost.deck) : OK;

@@ -206,15 +206,6 @@ static status see_increment(void *ctx, const state *s) {
   return OK;
 }
 
-/* 1: the run gave no answer to measure, or one that did not converge. */
-static int has_failed(const watcher *w, status st, int unsettled) {
-  return !w->refuted && (st != OK || unsettled > 0);
-}
-
-static int is_final(status st) {
-  return status_is_request(st) || st == ERR_MEMORY || st == ERR_FILE;
-}
-
 /* A run without the rows that are not back; *again: some are now. */
 static status try_without(watcher *w, const command *c, job_input *in,
                           int *unsettled, int *again) {
@@ -226,8 +217,10 @@ static status try_without(watcher *w, const command *c, job_input *in,
   w->refuted = 0;
   const message_mark before = message_now(in->m->log);
   const status st = job_solve(c, in, &watch, NULL, unsettled);
-  *again = !is_final(st) &&
-           reduction_take_back(in->m, has_failed(w, st, *unsettled)) > 0;
+  /* The run gave no answer to measure, or one that did not converge. */
+  const int failed = !w->refuted && (st != OK || *unsettled > 0);
+  *again = !status_is_request(st) && st != ERR_MEMORY && st != ERR_FILE &&
+           reduction_take_back(in->m, failed) > 0;
   if (*again) message_forget(in->m->log, before);
   return st;
 }
@@ -243,14 +236,13 @@ status job_solve_auto(const command *c, job_input *in, int *unsettled) {
   status st = OK;
   watcher w = {.m = in->m};
   int again = 1;
-  TRY(reduction_choose(in->m, in->msh));
+  PASS(reduction_choose(in->m, in->msh));
   while (again && left_out(in->m) > 0)
     st = try_without(&w, c, in, unsettled, &again);
   if (again) {
     reduction_restore(in->m);
     st = job_solve(c, in, NULL, NULL, unsettled);
   }
-done:
   memory_free(w.n);
   reduction_restore(in->m);
   return st;

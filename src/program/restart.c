@@ -43,9 +43,6 @@ static void identify(const command *c, const job_input *in, identity *id) {
   id->mesh = mesh_hash(in->msh);
 }
 
-/* The deck with all its defaults. */
-static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
-
 /* ---- warnings reported so far -------------------------------------------- */
 
 /* Number of a file of the deck, which another name may lead to, or -1. */
@@ -117,7 +114,7 @@ status restart_write(void *ctx, run *r) {
   identity id;
   OWNED char *path = NULL, *before = NULL, *text = NULL, *reported = NULL;
   PASS(file_names(w->c, w->in->m, &path, &before));
-  PASS(text_made(&text, w->in->m, write_echo));
+  PASS(text_made(&text, w->in->m, model_echo));
   PASS(text_made(&reported, w->in, list_warnings));
   identify(w->c, w->in, &id);
   id.step_no = r->at.step_id + 1;
@@ -321,7 +318,7 @@ static status check_job(const command *c, const job_input *in, archive *a,
   OWNED char *text = NULL, *now = NULL;
   PASS(archive_bytes(a, "identity", &was, sizeof was));
   PASS(archive_text(a, "deck", &text));
-  PASS(text_made(&now, in->m, write_echo));
+  PASS(text_made(&now, in->m, model_echo));
   identify(c, in, &is);
   PASS(compare_decks(text, now, was.step_no));
   PASS(check_files(in, a, was.step_no));

@@ -113,12 +113,9 @@ static void forget_order(run *r) {
 }
 
 static status make_order(run *r) {
-  stiffness *k = NULL;
   forget_order(r);
-  status st = stiffness_assemble(&r->body.d, &k);
-  if (st == OK) st = stiffness_order(k, r->msh->x, &r->body.order);
-  memory_free(k);
-  PASS(st);
+  OWNED_OF(stiffness, k, stiffness_assemble(&r->body.d, &k));
+  PASS(stiffness_order(k, r->msh->x, &r->body.order));
   r->body.d.order = &r->body.order;
   return OK;
 }

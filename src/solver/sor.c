@@ -138,11 +138,10 @@ static int is_checked(int k) {
 static void steer(relaxation *s, course *c, int k) {
   int flies = relaxation_fly(s, c->before);
   if (flies > 1) c->since = c->circling = 0;
-  if (flies) {
+  if (flies)
     c->last_change = 0.0;
-  } else if (k % CHECK == 0) {
+  else if (k % CHECK == 0)
     choose_omega(s, c);
-  }
 }
 
 static outcome sweeps(relaxation *s, course *c, const solver_control *control,

@@ -25,7 +25,7 @@ static char *echo_of(const char *path) {
   if (st != OK) message_print(log, stderr);
   ck_assert_msg(st == OK, "%s", path);
   FILE *out = open_memstream(&text, &size);
-  model_echo(m, out);
+  model_echo(out, m);
   fclose(out);
   memory_free(m);
   memory_free(d);

@@ -141,7 +141,7 @@ START_TEST(solutions_of_an_increment) {
       {"sor", "sweeps", "slip", CONVERGED, 9.0, 2},
       {"pcg", "descent", "last", STOPPED_STAGNATION, 3e-4, 0}};
   solution_set set = {.n = 2,
-                      .m = 4,
+
                       .n_found = 2,
                       .found = found,
                       .n_pattern = 81,

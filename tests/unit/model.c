@@ -204,7 +204,7 @@ START_TEST(echo_reads_back_to_the_same_echo) {
     text_model_read(&s, pass == 0 ? text : echo[0], square());
     ck_assert_int_eq(s.st, OK);
     FILE *f = open_memstream(&echo[pass], &size);
-    model_echo(s.m, f);
+    model_echo(f, s.m);
     fclose(f);
     text_model_close(&s);
   }

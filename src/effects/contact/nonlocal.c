@@ -78,9 +78,8 @@ static void zone_apply(const friction_limit *limit, const friction_zone *z) {
 }
 
 static status zone_fit(const run *r, const sparse_rows *B, friction_zone *z) {
-  if (z->off == NULL) {
+  if (z->off == NULL)
     PASS_NEW_ALL(OF(z->off, r->nodes.n), OF(z->returned, r->nodes.n));
-  }
   if (z->B.val == NULL || z->room < B->start[B->n]) {
     memory_free(z->B.val);
     PASS_NEW(z->B.val, B->start[B->n]);

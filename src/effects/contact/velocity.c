@@ -24,9 +24,8 @@ static status take(run *r, void *self, contact_problem *cp, double **u,
                    double *force) {
   velocity *own = self;
   own->before = *cp;
-  if (own->m != cp->m) { /* other nodes, by the supports or within reach */
+  if (own->m != cp->m) /* other nodes, by the supports or within reach */
     FORGET(own->form);
-  }
   own->m = cp->m;
   OWNS(own);
   if (own->form == NULL) PASS(velocity_form_new(cp, &own->form));

@@ -221,10 +221,9 @@ effect_work plan_table(const plan_sizes *s, int table, double all) {
 int plan_requires_table(const model *m, int table, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)
     for (EACH(const print_request, p, m->steps[i].print.requests,
-              m->steps[i].print.n)) {
+              m->steps[i].print.n))
       if (p->table == table)
         return plan_at(why, &p->at, "*PRINT, %s", print_word(table));
-    }
   return plan_says(0, why, "no *PRINT, %s", print_word(table));
 }
 

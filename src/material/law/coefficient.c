@@ -91,12 +91,11 @@ static status read_line(lines *r, const record *line, const option *table) {
     const field *f = i < line->n_field ? &line->fields[i] : NULL;
     ADDED(quantity, q, r->law->value, r->n_value, r->capacity);
     const int absent = f == NULL || (f->text[0] == '\0' && !f->quoted);
-    if (!absent || table[i].initial == NULL) {
+    if (!absent || table[i].initial == NULL)
       r->wrong |= read_value(r, f, &table[i], q) != 0;
-    } else if (strcmp(table[i].initial, OPTION_ABSENT) != 0 &&
-               number_real(table[i].initial, &initial) == NULL) {
+    else if (strcmp(table[i].initial, OPTION_ABSENT) != 0 &&
+             number_real(table[i].initial, &initial) == NULL)
       q->number = initial;
-    }
   }
   return OK;
 }

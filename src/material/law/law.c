@@ -61,12 +61,11 @@ static void project_columns(int ns, int deviatoric, double *Q) {
   for (int j = 0; j < ns; ++j) {
     double *v = Q + ns * j;
     const double mean = tensor_trace(v) / 3;
-    for (int i = 0; i < ns; ++i) {
+    for (int i = 0; i < ns; ++i)
       if (deviatoric)
         v[i] -= i < 3 ? mean : 0;
       else
         v[i] = i < 3 ? mean : 0;
-    }
   }
 }
 

@@ -180,9 +180,7 @@ status scheme_work_new(scheme_work **out) {
 
 void scheme_work_free(scheme_work *w) {
   if (w == NULL) return;
-  for (int i = 0; i < STAGES; ++i) {
-    RELEASE(w->ei_rate[i], w->alpha_rate[i]);
-  }
+  for (int i = 0; i < STAGES; ++i) RELEASE(w->ei_rate[i], w->alpha_rate[i]);
   for (int i = 0; w->map != NULL && i < w->n_kind; ++i)
     linear_map_free(&w->map[i]);
   RELEASE(w->map, w->D_kind, w->sigma_k, w->e_k, w->linear, w->D, w);

@@ -231,9 +231,7 @@ status geo_sets(const geo_text *g, const char *name, geo_setting *how,
 }
 
 void geo_free(geo_text *g) {
-  for (int i = 0; i < g->n_file; ++i) {
-    RELEASE(g->file[i], g->text[i]);
-  }
+  for (int i = 0; i < g->n_file; ++i) RELEASE(g->file[i], g->text[i]);
   RELEASE(g->file, g->text, g->name);
   *g = (geo_text){0};
 }

@@ -115,16 +115,16 @@ static int has_name(const char *text, const char *name) {
   return 0;
 }
 
-status model_echo(const model *m, FILE *out) {
-  status st = OK;
-  const deck *d = m->deck;
-  char *cards = NULL;
-  size_t size;
-  FILE *f = open_memstream(&cards, &size);
-  if (f == NULL) FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
-  for (int i = 0; i < d->n_card; ++i) echo_card(m, &d->cards[i], f);
-  if (!text_memory_end(f, &cards))
-    FAIL(ERR_MEMORY, "memory exhausted: text of the deck");
+static status echo_cards(FILE *out, const void *of) {
+  const model *m = of;
+  for (int i = 0; i < m->deck->n_card; ++i)
+    echo_card(m, &m->deck->cards[i], out);
+  return OK;
+}
+
+status model_echo(FILE *out, const void *of) {
+  const deck *d = ((const model *)of)->deck;
+  OWNED_OF(char, cards, text_made(&cards, of, echo_cards));
   /* Names are replaced by their values, except in expressions and the .geo. */
   int any = 0;
   for (int i = 0; i < d->n_symbol; ++i) {
@@ -135,9 +135,7 @@ status model_echo(const model *m, FILE *out) {
     fprintf(out, "%s = %.17g\n", s->typed, s->value);
   }
   fputs(cards, out);
-done:
-  free(cards);
-  return st;
+  return OK;
 }
 
 static const char *where_text(unsigned where) {

@@ -50,9 +50,9 @@ status model_resolve(model *m, int lost);
 /* 1: an unknown card has NAME= this. */
 int name_is_lost(const model *m, const char *name);
 
-/* The deck with all defaults written out, includes and parameters resolved;
- * reading it gives the same model. */
-status model_echo(const model *m, FILE *out);
+/* The deck of a model with all defaults written out, includes and parameters
+ * resolved; reading it gives the same model. For text_made, too. */
+status model_echo(FILE *out, const void *of);
 /* Help from the keyword table: all cards in short, or one in full; 0 if there
  * is no card of that name. */
 int keywords_print(const char *name, FILE *out);

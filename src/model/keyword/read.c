@@ -62,8 +62,8 @@ static status model_finish_problem(reading *r) {
   s->restart.frequency = -1;
   if (s->print.n > 0 || (s->print.ended & PRINT_CONTACT)) return OK;
   PASS_GROW(s->print.requests, s->print.n, s->print.cap);
-  s->print.requests[s->print.n++] = (print_request){
-      .table = PRINT_CONTACT, .frequency = 1, .at = s->at};
+  s->print.requests[s->print.n++] =
+      (print_request){.table = PRINT_CONTACT, .frequency = 1, .at = s->at};
   return OK;
 }
 

@@ -428,9 +428,7 @@ ENERGY("energy_defect_relative", "-", 0, defect_relative,
 NO_COLUMN};
 /* clang-format on */
 
-static const column zone_columns[] = {OF_EFFECTS(0), NO_COLUMN};
-static const column tip_columns[] = {OF_EFFECTS(0), NO_COLUMN};
-static const column goal_columns[] = {OF_EFFECTS(0), NO_COLUMN};
+static const column effect_columns[] = {OF_EFFECTS(0), NO_COLUMN};
 
 static const struct {
   entity of;
@@ -439,9 +437,9 @@ static const struct {
              {PER_NODE, node_columns},
              {PER_ELEMENT, element_columns},
              {PER_CONTACT_NODE, contact_node_columns},
-             {PER_ZONE, zone_columns},
-             {PER_TIP, tip_columns},
-             {PER_GOAL, goal_columns},
+             {PER_ZONE, effect_columns},
+             {PER_TIP, effect_columns},
+             {PER_GOAL, effect_columns},
              {PER_CONTACT, contact_columns}};
 
 enum { N_PART = sizeof parts / sizeof *parts };
@@ -502,8 +500,7 @@ static int most_internal(const model *m) {
 static int is_asked(const column *c, const model *m) {
   if ((c->needs & NEEDS_TORQUE) != 0 && !model_has_axis(m)) return 0;
   if ((c->needs & NEEDS_SEVERAL) != 0 && m->n.contact < 2) return 0;
-  if ((c->needs & NEEDS_ALPHA) != 0 && c->part >= most_internal(m)) return 0;
-  return 1;
+  return (c->needs & NEEDS_ALPHA) == 0 || c->part < most_internal(m);
 }
 
 int column_visible(const column *c, const model *m) {
@@ -571,8 +568,6 @@ const char *column_unit(const char *unit, const model *m) {
 
 enum { COLUMNS = sizeof((table *)0)->col / sizeof(column *) };
 
-static int larger(int a, int b) { return a > b ? a : b; }
-
 static void cell_name(const column *c, const model *m, char *text,
                       size_t size) {
   snprintf(text, size, "%s[%s]", c->name, column_unit(c->unit, m));
@@ -582,8 +577,9 @@ static void cell_name(const column *c, const model *m, char *text,
 static int cell_width(const column *c, const model *m, int digits) {
   char name[160];
   cell_name(c, m, name, sizeof name);
-  int width = c->form == AS_REAL ? digits + 8 : 11;
-  return larger(width, (int)strlen(name)) + 1;
+  const int least = c->form == AS_REAL ? digits + 8 : 11;
+  const int width = (int)strlen(name);
+  return (width > least ? width : least) + 1;
 }
 
 void table_choose(table *t, entity of, unsigned print_bit, const view *v,

@@ -220,12 +220,10 @@ static status add_contact(hdf5_file *h) {
   return add_faces(h, place_of);
 }
 
-static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
-
 static status add_deck(hdf5_file *h) {
   char *text = NULL;
   if (h->m->deck == NULL) return OK;
-  PASS(text_made(&text, h->m, write_echo));
+  PASS(text_made(&text, h->m, model_echo));
   return add_fixed(h, "/deck", DATA_TEXT, (int)strlen(text) + 1, 1, NULL, text);
 }
 

@@ -83,13 +83,9 @@ static const struct {
     {"solver", "solver", solver_share, STAGES(solver_stages)},
     {"true, by *REFERENCE", "true", true_share, NULL, 0}};
 
-/* 1: the steps make no error, whoever asked. */
-static int has_no_error(const job *j, share_of *const *of) {
-  return *of == time_share && j->run->n_increment > 0 && !j->m->problem.given &&
-         !path_counts(j->m);
-}
-
 int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
+  const int steps_are_exact =
+      j->run->n_increment > 0 && !j->m->problem.given && !path_counts(j->m);
   int n = 0;
   for (int k = 0; k < BUDGET_ROWS; ++k) {
     rows[n] = (budget_row){
@@ -97,7 +93,7 @@ int job_budget(const job *j, budget_row rows[BUDGET_ROWS]) {
         .json = budget_table[k].json,
         .reached = cpu_of(budget_table[k].stages, budget_table[k].n_stage)};
     n += collect(j->run, budget_table[k].of, &rows[n]) ||
-         has_no_error(j, &budget_table[k].of);
+         (budget_table[k].of == time_share && steps_are_exact);
     if (n == BUDGET_ROWS) break;
   }
   return n;
@@ -363,25 +359,18 @@ static void print_norm(const pass_row *r, int is_pass, FILE *f) {
   fprintf(f, " %10s", text_number(r->total, 2));
 }
 
-static void print_pass(const job *j, int no, FILE *f) {
-  const pass_table *t = &j->run->passes;
-  const pass_row *r = &t->rows[no - 1];
-  fprintf(f, "  %-10d %10.0f", no, r->unknowns);
-  if (t->target > 0.0) print_norm(r, 1, f);
-  if (t->goals != NULL) passes_goals(j->m, t->goals, no - 1, f);
-  if (!j->o->no_timing) fprintf(f, " %9.3g", r->cpu);
-  fprintf(f, "  %s\n", r->change);
-}
-
-static void print_forecast(const job *j, FILE *f) {
+/* no 0: the forecast. */
+static void print_pass(const job *j, const pass_row *r, int no, FILE *f) {
   const pass_table *t = &j->run->passes;
   char head[80];
-  fprintf(f, "  %-10s %10.0f", "next digit", t->forecast->unknowns);
-  if (t->target > 0.0) print_norm(t->forecast, 0, f);
-  for (int i = 0; t->goals != NULL && i < j->m->n.goal; ++i)
+  fprintf(f, "  %-10s %10.0f", no > 0 ? text_of("%d", no) : "next digit",
+          r->unknowns);
+  if (t->target > 0.0) print_norm(r, no > 0, f);
+  if (t->goals != NULL && no > 0) passes_goals(j->m, t->goals, no - 1, f);
+  for (int i = 0; t->goals != NULL && no == 0 && i < j->m->n.goal; ++i)
     fprintf(f, " %*s", goal_head(j->m, i, head, sizeof head), "");
-  if (!j->o->no_timing) fprintf(f, " %9.3g", t->forecast->cpu);
-  fprintf(f, "  forecast\n");
+  if (!j->o->no_timing) fprintf(f, " %9.3g", r->cpu);
+  fprintf(f, "  %s\n", no > 0 ? r->change : "forecast");
 }
 
 /* "target 1 % of the energy norm, 2 % of PEAK: reached" */
@@ -414,8 +403,8 @@ static void print_passes(const job *j, FILE *f) {
   if (t->goals != NULL) passes_goal_heads(j->m, f);
   if (!j->o->no_timing) fprintf(f, " %9s", "cpu[s]");
   fprintf(f, "  changed next\n");
-  for (int i = 0; i < t->n; ++i) print_pass(j, i + 1, f);
-  if (t->forecast != NULL) print_forecast(j, f);
+  for (int i = 0; i < t->n; ++i) print_pass(j, &t->rows[i], i + 1, f);
+  if (t->forecast != NULL) print_pass(j, t->forecast, 0, f);
   if (t->goals != NULL)
     fputs(
         "  of goals: |error| + band + |error of the solver|, the first two "

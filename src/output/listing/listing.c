@@ -146,7 +146,7 @@ status listing_open(const job *j, text_file *lst) {
   fprintf(f, "PROTIS %s\n\n%s\n", version,
           j->m->name.title != NULL ? j->m->name.title : "");
   heading(f, "DECK");
-  if (j->m->deck != NULL) PASS(model_echo(j->m, f));
+  if (j->m->deck != NULL) PASS(model_echo(f, j->m));
   heading(f, "MODEL");
   print_sizes(j, 0, f);
   print_model(j, f);
@@ -156,11 +156,9 @@ status listing_open(const job *j, text_file *lst) {
   return text_check(lst);
 }
 
-static status write_echo(FILE *f, const void *m) { return model_echo(m, f); }
-
 status listing_again(const job *j, const char *was, text_file *lst) {
   OWNED char *now = NULL;
-  PASS(text_made(&now, j->m, write_echo));
+  PASS(text_made(&now, j->m, model_echo));
   if (strcmp(now, was) == 0) return OK;
   heading(lst->f, "DECK OF THE RESTART");
   fputs(now, lst->f);

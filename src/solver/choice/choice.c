@@ -136,10 +136,8 @@ status polish_slip(const contact_problem *cp, double tol, int most, double *u,
 }
 
 status contact_solver_new(const solver_choice *choice, contact_solver **out) {
-  contact_solver *s;
   size_t size = 1;
-  PASS_NEW(s, 1);
-  *out = s;
+  MAKES(contact_solver, s, out);
   s->choice = *choice;
   for (int i = 0; solver_list[i] != NULL; ++i)
     if (solver_list[i]->param_size > size) size = solver_list[i]->param_size;

@@ -557,12 +557,11 @@ void lcp_run(lcp_work *w, const lcp_problem *p, lcp_report *rep) {
   rep->outcome = RUNNING;
   rep->pivots = 1;
   if (p->each != NULL) p->each(p->ctx, 1, w->z[0] * w->power);
-  while (rep->outcome == RUNNING) {
+  while (rep->outcome == RUNNING)
     if (rep->pivots >= limit)
       rep->outcome = STOPPED_ITERATIONS;
     else
       rep->outcome = advance(w, p, rep, &age);
-  }
 }
 
 void lcp_values(const lcp_work *w, double *z) {
@@ -574,12 +573,11 @@ void lcp_values(const lcp_work *w, double *z) {
 double lcp_ray(const lcp_work *w, double *y) {
   double y0 = 0.0;
   CLEAR(y, w->n);
-  for (int a = 0; a < w->s; ++a) {
+  for (int a = 0; a < w->s; ++a)
     if (w->var[a] == w->n)
       y0 = w->enter.dz[a];
     else
       y[w->var[a]] = fmax(w->enter.dz[a], 0.0);
-  }
   if (w->enter.id >= 0 && w->enter.id < w->n) y[w->enter.id] = 1.0;
   return y0;
 }

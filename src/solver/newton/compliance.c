@@ -189,11 +189,9 @@ static const double SYMMETRIC = 0x1p-41; /* -, of the largest diagonal */
 
 status compliance_system_new(const contact_problem *cp,
                              compliance_system **out) {
-  compliance_system *s;
   size_t m = cp->m;
   int capacity = cp->g0 == NULL && cp->side_gap == NULL ? cp->n : cp->m;
-  PASS_NEW(s, 1);
-  *out = s;
+  MAKES(compliance_system, s, out);
   PASS_NEW_ALL(OF(s->list, m), OF(s->place, cp->n), OF(s->turn, cp->n),
                OF(s->dof, m), OF(s->x, m), OF(s->y, m), OF(s->base, m),
                OF(s->in_base, m), OF(s->column, m));

@@ -46,10 +46,8 @@ struct operated_system {
 };
 
 status operated_system_new(const contact_problem *cp, operated_system **out) {
-  operated_system *s;
   const size_t m = cp->m;
-  PASS_NEW(s, 1);
-  *out = s;
+  MAKES(operated_system, s, out);
   s->m = cp->m;
   s->power = power_to_one(largest_entry(m, cp->op->diagonal));
   PASS_NEW_REALS(m, &s->b, &s->x, &s->Ax);

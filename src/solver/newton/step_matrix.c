@@ -26,10 +26,8 @@ static int is_sparse(const step_matrix *s) { return s->full == NULL; }
 
 status step_matrix_new(const contact_problem *cp, const force_set *set,
                        step_matrix **out) {
-  step_matrix *s;
   size_t m = cp->m;
-  PASS_NEW(s, 1);
-  *out = s;
+  MAKES(step_matrix, s, out);
   s->m = cp->m;
   s->W = &set->rows;
   PASS_NEW_ALL(OF(s->place, m), OF(s->line, m), OF(s->touched, m),

@@ -357,10 +357,8 @@ status pattern_new(int dim, int n, pattern *p) {
 }
 
 status newton_system_new(const contact_problem *cp, newton_system **out) {
-  newton_system *s;
   size_t m = cp->m, capacity = m / SHARE + 1;
-  PASS_NEW(s, 1);
-  *out = s;
+  MAKES(newton_system, s, out);
   s->m = cp->m;
   s->n_node = cp->n;
   s->inverse.capacity = (int)capacity;
