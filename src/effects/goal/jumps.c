@@ -102,7 +102,7 @@ static void mirror(const run *r, int contact_id, turns *t) {
 static void add_turn(const int *q, int pass, turns *t) {
   for (int k = 0; k < 2; ++k)
     if (pass == 1)
-      t->near[q[k]] += fabs(t->by[q[1 - k]]) * t->more[q[k]];
+      t->near[q[k]] += fabs(t->by[q[1 - k]]) * fmax(1.0, t->more[q[k]]);
     else
       t->far[q[k]] += (t->near[q[1 - k]] - fabs(t->by[q[k]])) * t->more[q[k]];
 }
