@@ -204,9 +204,11 @@ $(program): $(out)/src/main.o $(leave) $(library)
 	$(Q)$(CC) $(LDFLAGS) $^ $(static) -o $@ 2> /dev/null || \
 	  $(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
+# See tests/support/marks.c.
+marks := -Wl$(comma)--wrap=_mark_point
 $(out)/tests/%: $(out)/tests/%.o $(support) $(leave) $(library)
 	@echo "  LD   $@"
-	$(Q)$(CC) $(LDFLAGS) $^ $(checklib) $(LDLIBS) -o $@
+	$(Q)$(CC) $(LDFLAGS) $(marks) $^ $(checklib) $(LDLIBS) -o $@
 
 $(out)/tests/%.o: CPPFLAGS += -Itests
 
