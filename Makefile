@@ -204,7 +204,7 @@ $(program): $(out)/src/main.o $(leave) $(library)
 	$(Q)$(CC) $(LDFLAGS) $^ $(static) -o $@ 2> /dev/null || \
 	  $(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
-# See tests/support/marks.c.
+# See tests/support/marks.h.
 marks := -Wl$(comma)--wrap=_mark_point
 $(out)/tests/%: $(out)/tests/%.o $(support) $(leave) $(library)
 	@echo "  LD   $@"

@@ -1,14 +1,6 @@
-/*
- * check writes down each place where an assertion has held, for the report of a
- * crash: more time than the assertion takes, in loops over tables. Here a place
- * is written down once in a while (the linker calls this: Makefile, marks).
- */
-#include <check.h>
+#include "support/marks.h"
 
 enum { PLACES = 64 };
-
-void __real__mark_point(const char *file, int line);
-void __wrap__mark_point(const char *file, int line);
 
 void __wrap__mark_point(const char *file, int line) {
   static struct {
