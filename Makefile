@@ -338,8 +338,10 @@ scenes: $(program) $(scenes)
 
 # Programs of make test that run all their cases here (unit_whole).
 whole    := $(addprefix $(out)/tests/unit/,average conformance fixed_point \
-              fracture history mesh_reader methods nonlocal solver_block work) \
-            $(out)/tests/regression/partial_slip
+              fracture history mesh_reader methods nonlocal records \
+              solver_block sundials work) \
+            $(addprefix $(out)/tests/regression/,goal_targets partial_slip \
+              stiffness)
 stability: $(program) $(stab) $(whole) scenes reference
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
 	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes reference,$^)

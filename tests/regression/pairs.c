@@ -11,6 +11,8 @@
 
 #include <signal.h>
 
+const int job_without_fields = 1;
+
 /* Two blocks of pair.geo or pair3.geo: E and nu of both, cards of the contact,
  * supports, loads. */
 typedef struct scene {
@@ -477,8 +479,8 @@ START_TEST(restart_is_bit_for_bit) {
       "*WEAR, CONTACT=P, COEFFICIENT=1.E-3\n";
   traced t = {.action = TRACE_SIGNAL, .number = SIGTERM};
   job whole, stopped;
-  run_block(&whole, 1, cards, "*RESTART\n");
-  run_block(&stopped, 1, cards, "*RESTART\n");
+  run_block(&whole, 1, cards, "*RESTART\n*OUTPUT\n");
+  run_block(&stopped, 1, cards, "*RESTART\n*OUTPUT\n");
   job_clear(&stopped);
   ck_assert_int_eq(traced_run(&stopped, words, &t), 0);
   t.at = t.changes / 2;

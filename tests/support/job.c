@@ -332,6 +332,10 @@ job job_deck(const char *deck, const char *words) {
 int job_run_with(job *j, const char *deck, const char *cards, int without,
                  const char *words) {
   char path[PATH], text[LINE];
+  char *all = job_deck_text(deck);
+  int fields = &job_without_fields == NULL || strstr(all, "*OUTPUT") != NULL ||
+               strstr(cards, "*OUTPUT") != NULL;
+  free(all);
   *j = job_begin(strrchr(deck, '/') + 1);
   job_copy_meshes(j, deck);
   snprintf(path, sizeof path, "%s.inp", deck);
@@ -342,7 +346,11 @@ int job_run_with(job *j, const char *deck, const char *cards, int without,
   ck_assert_ptr_nonnull(to);
   while (fgets(text, sizeof text, from) != NULL) {
     if (without && strncmp(text, "*ACCURACY", 9) == 0) continue;
-    if (strncmp(text, "*END STEP", 9) == 0) fputs(cards, to);
+    if (strncmp(text, "*END STEP", 9) == 0) {
+      if (!fields) fputs("*OUTPUT, HDF5=NO\n", to);
+      fputs(cards, to);
+      fields = 1; /* said once, it holds for later steps */
+    }
     fputs(text, to);
   }
   fclose(from);
