@@ -225,8 +225,7 @@ START_TEST(patch) {
 }
 END_TEST
 
-/* ---- ties -----------------------------------------------------------------
- */
+/* ---- ties ---------------------------------------------------------------- */
 
 /* The component that a support holds is its own: the upper block is carried
  * sideways, without shear. */
@@ -329,8 +328,7 @@ START_TEST(node_of_two_ties_is_of_the_first) {
 }
 END_TEST
 
-/* ---- which side is the slave ----------------------------------------------
- */
+/* ---- which side is the slave --------------------------------------------- */
 
 START_TEST(slave_is_chosen) {
   static const struct {
@@ -409,8 +407,7 @@ START_TEST(slave_is_chosen) {
 }
 END_TEST
 
-/* ---- a held master is the rigid plane -------------------------------------
- */
+/* ---- a held master is the rigid plane ------------------------------------ */
 
 /* A block pressed on one side more than on the other, then passed by a plane
  * or by a held block that moves as it does. */
@@ -494,8 +491,7 @@ START_TEST(restart_is_bit_for_bit) {
 }
 END_TEST
 
-/* ---- gaps ----------------------------------------------------------------
- */
+/* ---- gaps ---------------------------------------------------------------- */
 
 /* Columns without lateral strain, clamped at both ends: of the interference d
  * each takes its part, p = d/(1/E1 + 1/E2); a clearance comes off first. */
@@ -700,8 +696,7 @@ START_TEST(moment_of_both_sides_is_that_of_the_pair) {
 }
 END_TEST
 
-/* ---- what is refused ------------------------------------------------------
- */
+/* ---- what is refused ----------------------------------------------------- */
 
 START_TEST(bad_pairs_are_told) {
   static const struct {
