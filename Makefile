@@ -340,8 +340,7 @@ scenes: $(program) $(scenes)
 whole    := $(addprefix $(out)/tests/unit/,average conformance fixed_point \
               fracture history mesh_reader methods nonlocal records \
               solver_block sundials work) \
-            $(addprefix $(out)/tests/regression/,goal_targets partial_slip \
-              stiffness)
+            $(addprefix $(out)/tests/regression/,goal_targets partial_slip)
 stability: $(program) $(stab) $(whole) scenes reference
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
 	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes reference,$^)
