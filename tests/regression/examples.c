@@ -23,7 +23,7 @@ static const char *const coarser[][2] = {
     {"lee_radok", "-D NC=20"},
     {"nonlocal_hertz", "-D NC=16"},
     {"roller", "-D N1=10 -D N2=14"},
-    {"torsion_sphere_3d", "-D NC=4"},
+    {"torsion_sphere_3d", "-D NC=6"},
     {"two_rollers", "-D N1=10 -D N2=14"},
 };
 
