@@ -204,7 +204,7 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
   static const char *const kinds[] = {"STIFFNESS=AUTO", "STIFFNESS=DENSE"};
   job j[2];
   for (int k = 0; k < 2; ++k) {
-    j[k] = strip(600, kinds[k]);
+    j[k] = strip(300, kinds[k]);
     ck_assert_int_eq(job_run(&j[k], ""), 0);
     char *listing = job_file(&j[k], "lst");
     ck_assert_ptr_nonnull(strstr(
@@ -213,7 +213,7 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
   }
   dat a = job_table(&j[0], "CONTACT", 0), b = job_table(&j[1], "CONTACT", 0);
   double force = 0;
-  ck_assert_int_eq(a.n_row, 601);
+  ck_assert_int_eq(a.n_row, 301);
   ck_assert_double_le(apart(&a, &b, "f_n", &force), 1e-9);
   ck_assert_double_le(apart(&a, &b, "f_t", &force), 1e-9);
   for (int k = 0; k < 2; ++k) job_end(&j[k]);
