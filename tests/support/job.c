@@ -92,6 +92,9 @@ void job_coarsen(const char *deck, char *words, size_t size) {
     if (sscanf(line, "%7[A-Z0-9] = %lf", name, &value) != 2) continue;
     if (strcmp(name, "DT") == 0)
       snprintf(words + n, size - n, " -D DT=%g", 4 * value);
+    else if (strcmp(name, "CYCLES") == 0 || strcmp(name, "PERIODS") == 0 ||
+             strcmp(name, "END") == 0)
+      snprintf(words + n, size - n, " -D %s=%g", name, value / 5);
     else if (strspn(name, "NC12") == strlen(name) && value >= 8)
       snprintf(words + n, size - n, " -D %s=%g", name,
                value / (value > 15 ? 4 : 2));
