@@ -204,9 +204,11 @@ $(program): $(out)/src/main.o $(leave) $(library)
 	$(Q)$(CC) $(LDFLAGS) $^ $(static) -o $@ 2> /dev/null || \
 	  $(CC) $(LDFLAGS) $^ $(LDLIBS) -o $@
 
+# See tests/support/marks.h.
+marks := -Wl$(comma)--wrap=_mark_point
 $(out)/tests/%: $(out)/tests/%.o $(support) $(leave) $(library)
 	@echo "  LD   $@"
-	$(Q)$(CC) $(LDFLAGS) $^ $(checklib) $(LDLIBS) -o $@
+	$(Q)$(CC) $(LDFLAGS) $(marks) $^ $(checklib) $(LDLIBS) -o $@
 
 $(out)/tests/%.o: CPPFLAGS += -Itests
 
@@ -336,8 +338,9 @@ scenes: $(program) $(scenes)
 
 # Programs of make test that run all their cases here (unit_whole).
 whole    := $(addprefix $(out)/tests/unit/,average conformance fixed_point \
-              fracture history mesh_reader methods nonlocal solver_block work) \
-            $(out)/tests/regression/partial_slip
+              fracture history mesh_reader methods nonlocal records \
+              solver_block sundials work) \
+            $(addprefix $(out)/tests/regression/,goal_targets partial_slip)
 stability: $(program) $(stab) $(whole) scenes reference
 	$(Q)JOBS=$(JOBS) PROTIS=$(abspath $(program)) PROTIS_PROBLEMS=$(PROBLEMS) \
 	  PROTIS_SEED=$(SEED) tools/run_tests $(filter-out $(program) $(scenes) scenes reference,$^)

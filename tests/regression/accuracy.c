@@ -8,6 +8,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 static job run_block(const char *law, const char *cards, const char *solver) {
   job j = job_begin("block");
   job_copy(&j, "tests/regression/mesh/square.geo");

@@ -7,6 +7,8 @@
 #include "support/square_case.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 static const struct {
   const char *integrator;
   int order;

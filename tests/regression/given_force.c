@@ -11,6 +11,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 static job run_block(const char *cards, const char *step, const char *method) {
   job j = job_begin("block");
   job_copy(&j, "tests/regression/mesh/square.geo");

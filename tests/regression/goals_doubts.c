@@ -7,6 +7,8 @@
 #include "support/goal_body.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 /* An obstacle that the body does not reach. */
 #define FAR_FROM \
   "PLANE\n9., 0.\n-1., 0.\n*CONTACT, NAME=C, GROUP=RIGHT, OBSTACLE=O\n"

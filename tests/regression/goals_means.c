@@ -9,6 +9,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 /* The unit square, and the cube on it; fine at one corner. */
 #define SQUARE                                                              \
   "Point(1) = {0, 0, 0, 0.05}; Point(2) = {1, 0, 0, 0.4};\n"                \

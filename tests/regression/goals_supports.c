@@ -8,6 +8,8 @@
 #include "support/goal_body.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 #define ENERGY "*GOAL, NAME=E, QUANTITY=ENERGY\n"
 #define PRESSED "*STEP\n*STATIC\n*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.01\n"
 #define CLAMPED "*STEP\n*STATIC\n*BOUNDARY\nLEFT, 1, 2\n*DSLOAD\nTOP, P, 10.\n"

@@ -7,6 +7,7 @@
 #include "base/base.h"
 #include "scenes/mesh.h"
 #include "support/job.h"
+#include "support/kept_mesh.h"
 #include "support/unit.h"
 
 #include <errno.h>
@@ -74,6 +75,7 @@ static pid_t start(const job *j, rlim_t file_limit) {
   if (file_limit > 0 && setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(99);
   for (size_t k = 0; k < sizeof requests / sizeof *requests; ++k)
     signal(requests[k].number, k < n_ignored ? SIG_IGN : SIG_DFL);
+  kept_mesh_preload("");
   execl(program(), program(), deck, "--no-timing", (char *)NULL);
   _exit(99);
 }

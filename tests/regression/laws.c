@@ -255,14 +255,14 @@ END_TEST
  * plastic width dp between -+200 tanh(100 dp/2). alpha: p, then a_xx, a_yy, ...
  */
 START_TEST(armstrong_frederick_loop) {
-  enum { HALF = 100 };
+  enum { HALF = 50 };
   double high = 0, low = 0, p[2] = {0};
   scene s = {HARD,
              CHABOCHE(100.),
              "CPS3",
              SAW(0., 1.),
              NULL,
-             "*VISCO, INTEGRATOR=MIDPOINT\n0.01, 11.\n" SYMMETRY
+             "*VISCO, INTEGRATOR=MIDPOINT\n0.02, 11.\n" SYMMETRY
              "*BOUNDARY, AMPLITUDE=SAW\nTOP, 2, 2, 0.012\n"};
   job j = run_scene(&s, 0);
   for (int k = 4; k < 11 * HALF; k += k == HALF - 1 ? 8 * HALF : 5) {

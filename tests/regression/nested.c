@@ -11,6 +11,8 @@
 
 #include <signal.h>
 
+const int job_without_fields = 1;
+
 static const char told[] = "started from the coarser mesh";
 
 /* Iterations of the first increment in a listing. */

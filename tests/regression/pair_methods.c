@@ -5,6 +5,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 #define PAIR "*CONTACT PAIR, NAME=P\nUNDER, OVER\n"
 
 /* ---- methods ------------------------------------------------------------- */

@@ -6,6 +6,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 /* Two wedges without friction on each other, the lower one held at its right
  * side and its foot, the upper one at its left side: action is reaction, and
  * the supports bear the slope of the load. */

@@ -8,6 +8,8 @@
 #include <math.h>
 #include <signal.h>
 
+const int job_without_fields = 1;
+
 /* A block that was pressed, carried by 0.25 along the other and pressed more
  * has the forces of one that was meshed there. */
 static job run_carried(const char *update, const char *way, const char *D) {

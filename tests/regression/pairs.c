@@ -11,6 +11,8 @@
 
 #include <signal.h>
 
+const int job_without_fields = 1;
+
 /* Two blocks of pair.geo or pair3.geo: E and nu of both, cards of the contact,
  * supports, loads. */
 typedef struct scene {
@@ -223,8 +225,7 @@ START_TEST(patch) {
 }
 END_TEST
 
-/* ---- ties -----------------------------------------------------------------
- */
+/* ---- ties ---------------------------------------------------------------- */
 
 /* The component that a support holds is its own: the upper block is carried
  * sideways, without shear. */
@@ -327,8 +328,7 @@ START_TEST(node_of_two_ties_is_of_the_first) {
 }
 END_TEST
 
-/* ---- which side is the slave ----------------------------------------------
- */
+/* ---- which side is the slave --------------------------------------------- */
 
 START_TEST(slave_is_chosen) {
   static const struct {
@@ -407,8 +407,7 @@ START_TEST(slave_is_chosen) {
 }
 END_TEST
 
-/* ---- a held master is the rigid plane -------------------------------------
- */
+/* ---- a held master is the rigid plane ------------------------------------ */
 
 /* A block pressed on one side more than on the other, then passed by a plane
  * or by a held block that moves as it does. */
@@ -477,8 +476,8 @@ START_TEST(restart_is_bit_for_bit) {
       "*WEAR, CONTACT=P, COEFFICIENT=1.E-3\n";
   traced t = {.action = TRACE_SIGNAL, .number = SIGTERM};
   job whole, stopped;
-  run_block(&whole, 1, cards, "*RESTART\n");
-  run_block(&stopped, 1, cards, "*RESTART\n");
+  run_block(&whole, 1, cards, "*RESTART\n*OUTPUT\n");
+  run_block(&stopped, 1, cards, "*RESTART\n*OUTPUT\n");
   job_clear(&stopped);
   ck_assert_int_eq(traced_run(&stopped, words, &t), 0);
   t.at = t.changes / 2;
@@ -492,8 +491,7 @@ START_TEST(restart_is_bit_for_bit) {
 }
 END_TEST
 
-/* ---- gaps ----------------------------------------------------------------
- */
+/* ---- gaps ---------------------------------------------------------------- */
 
 /* Columns without lateral strain, clamped at both ends: of the interference d
  * each takes its part, p = d/(1/E1 + 1/E2); a clearance comes off first. */
@@ -698,8 +696,7 @@ START_TEST(moment_of_both_sides_is_that_of_the_pair) {
 }
 END_TEST
 
-/* ---- what is refused ------------------------------------------------------
- */
+/* ---- what is refused ----------------------------------------------------- */
 
 START_TEST(bad_pairs_are_told) {
   static const struct {

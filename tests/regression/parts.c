@@ -10,6 +10,8 @@
 #include "support/turned_mesh.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 static const double G = 500;
 
 static void run(job *j) {

@@ -412,7 +412,7 @@ static void check_kinds(int cells, const char *const solver[2],
 /* The kind of stiffness is that of the step, not of the one before it. */
 START_TEST(kind_of_stiffness_goes_on) {
   check_kinds(
-      600, (const char *const[]){", STIFFNESS=DENSE", ""},
+      300, (const char *const[]){", STIFFNESS=DENSE", ""},
       (const char *const[]){"", ""},
       (const char *const[]){"DENSE  STIFFNESS of", "FACTOR  it is expected"});
 }

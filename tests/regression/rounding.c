@@ -12,6 +12,8 @@
 #include "support/job.h"
 #include "support/unit.h"
 
+const int job_without_fields = 1;
+
 static const char wavy_x[] = "x + 0.05*sin(3.14159265358979*x)*sin(9*y)";
 static const char wavy_y[] = "y + 0.05*sin(6.28318530717959*y)*cos(7*x)";
 

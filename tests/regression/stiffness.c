@@ -17,12 +17,12 @@ static const struct {
   const char *deck, *words;
 } decks[] = {
     {"input/greco/greco", "-D N=16"},
-    {"input/block_shear_3d/block_shear_3d", "-D N=4"},
+    {"input/block_shear_3d/block_shear_3d", "-D N=4 -D NZ=3"},
     {"input/creep_block/creep_block", ""},
     {"input/lying_block/lying_block_3d", "-D N=6"},
     {"input/press_fit/press_fit", ""},
     {"input/arch/arch", ""},
-    {"input/nonlocal_slider/nonlocal_slider", ""},
+    {"input/nonlocal_slider/nonlocal_slider", "-D N=80"},
     {"input/torsion_sphere_3d/torsion_sphere_3d", "-D NC=3 -D DT=1"},
 };
 enum { DECKS = sizeof decks / sizeof *decks };
@@ -115,15 +115,18 @@ END_TEST
 /* No equilibrium: the words of NEWTON on the entries. */
 START_TEST(every_method_finds_no_equilibrium) {
   char card[100];
-  job a = job_begin("dense"), b = job_begin("method");
+  job a;
   const char *deck = "input/arch/arch", *thin = "-D H=0.1";
-  snprintf(card, sizeof card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR\n",
-           methods[_i]);
   ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, thin), 6);
-  ck_assert_int_eq(job_run_with(&b, deck, card, 0, thin), 6);
-  ck_assert_str_eq(a.errors, b.errors);
+  for (int k = 0; k < METHODS; ++k) {
+    job b;
+    snprintf(card, sizeof card, "*SOLVER, METHOD=%s, STIFFNESS=FACTOR\n",
+             k == 0 ? "NEWTON" : methods[k]);
+    ck_assert_int_eq(job_run_with(&b, deck, card, 0, thin), 6);
+    ck_assert_msg(strcmp(a.errors, b.errors) == 0, "%s: %s", card, b.errors);
+    job_end(&b);
+  }
   job_end(&a);
-  job_end(&b);
 }
 END_TEST
 
@@ -201,7 +204,7 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
   static const char *const kinds[] = {"STIFFNESS=AUTO", "STIFFNESS=DENSE"};
   job j[2];
   for (int k = 0; k < 2; ++k) {
-    j[k] = strip(600, kinds[k]);
+    j[k] = strip(300, kinds[k]);
     ck_assert_int_eq(job_run(&j[k], ""), 0);
     char *listing = job_file(&j[k], "lst");
     ck_assert_ptr_nonnull(strstr(
@@ -210,7 +213,7 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
   }
   dat a = job_table(&j[0], "CONTACT", 0), b = job_table(&j[1], "CONTACT", 0);
   double force = 0;
-  ck_assert_int_eq(a.n_row, 601);
+  ck_assert_int_eq(a.n_row, 301);
   ck_assert_double_le(apart(&a, &b, "f_n", &force), 1e-9);
   ck_assert_double_le(apart(&a, &b, "f_t", &force), 1e-9);
   for (int k = 0; k < 2; ++k) job_end(&j[k]);
@@ -219,7 +222,6 @@ START_TEST(contact_of_most_of_the_body_is_not_condensed) {
 }
 END_TEST
 
-/* No equilibrium: the verdict of DENSE, and its words. */
 /* Unknowns, entries and solves of the last iteration, and words of its row. */
 static int last_system(const job *j, double system[3]) {
   char *text = job_file(j, "cvg"), *row = NULL;
@@ -266,17 +268,6 @@ START_TEST(iterations_tell_their_linear_systems) {
 }
 END_TEST
 
-START_TEST(verdicts_are_the_same) {
-  job a = job_begin("dense"), b = job_begin("factor");
-  const char *deck = "input/arch/arch", *thin = "-D H=0.1";
-  ck_assert_int_eq(job_run_with(&a, deck, DENSE, 0, thin), 6);
-  ck_assert_int_eq(job_run_with(&b, deck, FACTOR, 0, thin), 6);
-  ck_assert_str_eq(a.errors, b.errors);
-  job_end(&a);
-  job_end(&b);
-}
-END_TEST
-
 /* What --list solvers says of a method is what the check of a deck does. */
 START_TEST(list_says_which_methods_take_factors) {
   static const char *const all[] = {"NEWTON", "LEMKE",  "SOR",      "PCG",
@@ -312,8 +303,7 @@ int main(void) {
   tcase_add_loop_test(tests, both_kinds_give_the_same_forces, 0, DECKS);
   tcase_add_loop_test(tests, every_method_gives_the_forces_of_the_entries, 0,
                       FIVE);
-  tcase_add_test(tests, verdicts_are_the_same);
-  tcase_add_loop_test(tests, every_method_finds_no_equilibrium, 1, METHODS);
+  tcase_add_test(tests, every_method_finds_no_equilibrium);
   tcase_add_test(tests, iterations_tell_their_linear_systems);
   tcase_add_test(tests, list_says_which_methods_take_factors);
   tcase_add_test(tests, kind_is_chosen_by_cost);

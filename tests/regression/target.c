@@ -10,6 +10,8 @@
 
 #include <sys/resource.h>
 
+const int job_without_fields = 1;
+
 /* Hertz's block, frictionless, of NC segments on the half contact. */
 static int press(job *j, int nc, const char *accuracy, const char *words) {
   *j = job_begin("block");

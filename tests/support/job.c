@@ -1,14 +1,18 @@
 /*
  * Runs of the program for the tests.
  */
+#define _GNU_SOURCE /* posix_spawn_file_actions_addchdir_np */
 #include "support/job.h"
 
 #include "support/folder.h"
+#include "support/kept_mesh.h"
 
 #include <check.h>
 #include <ctype.h>
+#include <fcntl.h>
 #include <glob.h>
 #include <math.h>
+#include <spawn.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,7 +21,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { PATH = 512, LINE = 8192 };
+enum { PATH = 512, LINE = 8192, WORDS = 64 };
 
 job job_begin(const char *name) {
   job j = {.dir = ""};
@@ -88,6 +92,9 @@ void job_coarsen(const char *deck, char *words, size_t size) {
     if (sscanf(line, "%7[A-Z0-9] = %lf", name, &value) != 2) continue;
     if (strcmp(name, "DT") == 0)
       snprintf(words + n, size - n, " -D DT=%g", 4 * value);
+    else if (strcmp(name, "CYCLES") == 0 || strcmp(name, "PERIODS") == 0 ||
+             strcmp(name, "END") == 0)
+      snprintf(words + n, size - n, " -D %s=%g", name, value / 5);
     else if (strspn(name, "NC12") == strlen(name) && value >= 8)
       snprintf(words + n, size - n, " -D %s=%g", name,
                value / (value > 15 ? 4 : 2));
@@ -160,23 +167,69 @@ static const char *program(void) {
   return p == NULL ? "build/release/protis" : p;
 }
 
-/* Run a command of the shell in "dir" and keep what it printed. Where meshes
- * are kept for all programs, by tools/run_tests, they are read once. */
+/* Cut a command into its words, ended by NULL; 0: only a shell can. */
+static int cut(char *command, char *words[WORDS]) {
+  char *to = command;
+  int n = 0;
+  if (strpbrk(command, "\\$`*?[|&;<>~#\n") != NULL) return 0;
+  for (const char *at = command; *(at += strspn(at, " ")) != '\0';) {
+    char quote = '\0';
+    if (n == WORDS - 1) return 0;
+    words[n++] = to;
+    for (; *at != '\0' && (quote != '\0' || *at != ' '); ++at)
+      if (*at == quote)
+        quote = '\0';
+      else if (quote == '\0' && (*at == '\'' || *at == '"'))
+        quote = *at;
+      else
+        *to++ = *at;
+    at += *at != '\0';
+    *to++ = '\0';
+  }
+  words[n] = NULL;
+  return n;
+}
+
+/* Start a program in "dir": what waitpid says of its end. */
+static int spawn(char *const *words, const char *dir, const char *out,
+                 const char *errors) {
+  enum { FLAGS = O_WRONLY | O_CREAT | O_TRUNC };
+  posix_spawn_file_actions_t to;
+  pid_t pid;
+  int code;
+  posix_spawn_file_actions_init(&to);
+  posix_spawn_file_actions_addopen(&to, STDOUT_FILENO, out, FLAGS, 0666);
+  posix_spawn_file_actions_addopen(&to, STDERR_FILENO, errors, FLAGS, 0666);
+  posix_spawn_file_actions_addchdir_np(&to, dir);
+  ck_assert_int_eq(posix_spawn(&pid, words[0], &to, NULL, words, environ), 0);
+  posix_spawn_file_actions_destroy(&to);
+  ck_assert_int_eq(waitpid(pid, &code, 0), pid);
+  return code;
+}
+
+/* Run a command of the shell in "dir" and keep what it printed; the shell is
+ * started where the command needs one. Where meshes are kept for all programs,
+ * by tools/run_tests, they are read once. */
 static int run_command(job *j, const char *dir, const char *command) {
-  static const char mesh[] =
-      "export LD_PRELOAD=\"${LD_PRELOAD:+$LD_PRELOAD:}$PROTIS_MESH\" &&";
-  char line[6 * PATH], path[PATH];
-  int kept = getenv("MESH_KEPT") != NULL && getenv("PROTIS_MESH") != NULL;
-  snprintf(line, sizeof line,
-           "cd '%s' && %s { %s\n} > '%s/stdout.txt' 2> '%s/stderr.txt'", dir,
-           kept ? mesh : "", command, j->dir, j->dir);
-  int code = system(line);
-  snprintf(path, sizeof path, "%s/stderr.txt", j->dir);
+  char text[8 * PATH], out[PATH], errors[PATH], *words[WORDS];
+  char *shell[] = {"/bin/sh", "-c", (char *)command, NULL};
+  char *old = getenv("LD_PRELOAD");
+  snprintf(text, sizeof text, "%s", command);
+  snprintf(out, sizeof out, "%s/stdout.txt", j->dir);
+  snprintf(errors, sizeof errors, "%s/stderr.txt", j->dir);
+  const int alone = cut(text, words) > 0 && words[0][0] == '/';
+  if (old != NULL) old = strdup(old);
+  kept_mesh_preload(old != NULL ? old : "");
+  const int code = spawn(alone ? words : shell, dir, out, errors);
+  if (old != NULL)
+    setenv("LD_PRELOAD", old, 1);
+  else
+    unsetenv("LD_PRELOAD");
+  free(old);
   free(j->errors);
-  j->errors = file_read(path, NULL);
-  snprintf(path, sizeof path, "%s/stdout.txt", j->dir);
+  j->errors = file_read(errors, NULL);
   free(j->text);
-  j->text = file_read(path, NULL);
+  j->text = file_read(out, NULL);
   const char *none = j->errors == NULL ? NULL : strstr(j->errors, "(null)");
   ck_assert_msg(none == NULL, "a name is missing: %s", j->errors);
   return WIFEXITED(code) ? WEXITSTATUS(code) : 1000 + WTERMSIG(code);
@@ -282,6 +335,10 @@ job job_deck(const char *deck, const char *words) {
 int job_run_with(job *j, const char *deck, const char *cards, int without,
                  const char *words) {
   char path[PATH], text[LINE];
+  char *all = job_deck_text(deck);
+  int fields = &job_without_fields == NULL || strstr(all, "*OUTPUT") != NULL ||
+               strstr(cards, "*OUTPUT") != NULL;
+  free(all);
   *j = job_begin(strrchr(deck, '/') + 1);
   job_copy_meshes(j, deck);
   snprintf(path, sizeof path, "%s.inp", deck);
@@ -292,7 +349,11 @@ int job_run_with(job *j, const char *deck, const char *cards, int without,
   ck_assert_ptr_nonnull(to);
   while (fgets(text, sizeof text, from) != NULL) {
     if (without && strncmp(text, "*ACCURACY", 9) == 0) continue;
-    if (strncmp(text, "*END STEP", 9) == 0) fputs(cards, to);
+    if (strncmp(text, "*END STEP", 9) == 0) {
+      if (!fields) fputs("*OUTPUT, HDF5=NO\n", to);
+      fputs(cards, to);
+      fields = 1; /* said once, it holds for later steps */
+    }
     fputs(text, to);
   }
   fclose(from);

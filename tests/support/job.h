@@ -42,7 +42,7 @@ void job_copy_meshes(const job *j, const char *deck);
 /* Of an example, "input/x/x"; caller frees. */
 char *job_deck_text(const char *deck);
 /* Options that make an example cheaper: half the segments (a quarter of more
- * than 15), increments of four times the length. */
+ * than 15), increments of four times the length, a fifth of the cycles. */
 void job_coarsen(const char *deck, char *words, size_t size);
 /* The one of JOB.lst and JOB.json ("lst", "json") that is there with an exit
  * code other than that, or NULL. */

@@ -87,14 +87,44 @@ static int counts(const job *j, const char *path, int timed) {
          (timed || strstr(path, ".xdmf") == NULL);
 }
 
+/* 1: the descriptor was opened for writing. */
+static int is_writable(pid_t pid, unsigned long long fd) {
+  char name[64], line[PATH];
+  unsigned flags = 0;
+  snprintf(name, sizeof name, "/proc/%d/fdinfo/%llu", (int)pid, fd);
+  FILE *f = fopen(name, "r");
+  if (f == NULL) return 0;
+  while (fgets(line, sizeof line, f) != NULL)
+    if (sscanf(line, "flags: %o", &flags) == 1) break;
+  fclose(f);
+  return (flags & O_ACCMODE) != O_RDONLY;
+}
+
+/* Descriptors of the run that were looked up since they were opened; a file
+ * that is renamed stays in the folder. */
+typedef enum { UNKNOWN, WITHIN, ELSEWHERE } place;
+enum { MOST_FILES = 256 };
+static place known[MOST_FILES];
+
 static int of_folder(const job *j, pid_t pid, unsigned long long fd,
                      int timed) {
   char link[64], path[PATH];
+  if (fd < MOST_FILES && known[fd] != UNKNOWN) return known[fd] == WITHIN;
   snprintf(link, sizeof link, "/proc/%d/fd/%llu", (int)pid, fd);
   ssize_t n = readlink(link, path, sizeof path - 1);
   if (n < 0) return 0;
   path[n] = '\0';
-  return counts(j, path, timed);
+  const int within = counts(j, path, timed);
+  if (fd < MOST_FILES) known[fd] = within ? WITHIN : ELSEWHERE;
+  return within;
+}
+
+/* The descriptor ends: another file may have its number. */
+static int closes_file(const job *j, pid_t pid, unsigned long long fd,
+                       int timed) {
+  const int within = of_folder(j, pid, fd, timed);
+  if (fd < MOST_FILES) known[fd] = UNKNOWN;
+  return within && is_writable(pid, fd);
 }
 
 /* The path that stands there in the memory of the run; 0: none. */
@@ -119,19 +149,6 @@ static int names_folder(const job *j, pid_t pid, unsigned long long address,
   return path_at(pid, address, path) && counts(j, path, timed);
 }
 
-/* 1: the descriptor was opened for writing. */
-static int is_writable(pid_t pid, unsigned long long fd) {
-  char name[64], line[PATH];
-  unsigned flags = 0;
-  snprintf(name, sizeof name, "/proc/%d/fdinfo/%llu", (int)pid, fd);
-  FILE *f = fopen(name, "r");
-  if (f == NULL) return 0;
-  while (fgets(line, sizeof line, f) != NULL)
-    if (sscanf(line, "flags: %o", &flags) == 1) break;
-  fclose(f);
-  return (flags & O_ACCMODE) != O_RDONLY;
-}
-
 static int changes_file(const job *j, pid_t pid,
                         const struct user_regs_struct *r, int timed) {
   switch (r->orig_rax) {
@@ -141,7 +158,7 @@ static int changes_file(const job *j, pid_t pid,
     case SYS_ftruncate:
       return of_folder(j, pid, r->rdi, timed);
     case SYS_close:
-      return of_folder(j, pid, r->rdi, timed) && is_writable(pid, r->rdi);
+      return closes_file(j, pid, r->rdi, timed);
     case SYS_openat:
       return (r->rdx & O_ACCMODE) != O_RDONLY &&
              names_folder(j, pid, r->rsi, timed);
@@ -224,6 +241,7 @@ static int ended(int code) {
 
 static int follow(const job *j, pid_t pid, traced *t) {
   int code, spoilt = 0;
+  memset(known, 0, sizeof known);
   ck_assert_int_eq(waitpid(pid, &code, 0), pid);
   if (t == NULL) return ended(code);
   ck_assert_msg(WIFSTOPPED(code), "cannot be traced: %x", code);

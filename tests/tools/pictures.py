@@ -5,16 +5,19 @@ JOB.json. Runs in the folder of the sources; PROTIS: the program. Needs
 python3-matplotlib and python3-h5py."""
 import contextlib
 import io
+import itertools
 import json
 import math
 import os
 import pathlib
 import re
 import runpy
+import shlex
 import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock as mock
 import xml.etree.ElementTree as tree
 
 sys.path.insert(0, "tools")
@@ -230,6 +233,41 @@ class Page(unittest.TestCase):
     def test_page_has_its_pictures(self):
         svg = "{http://www.w3.org/2000/svg}svg"
         self.assertEqual(len(list(tree.parse(self.page).iter(svg))), 4)
+
+
+class Tutorial(unittest.TestCase):
+    """Its commands run in their order, those of tools/ in this process."""
+
+    def run_lines(self, text):
+        for tools, lines in itertools.groupby(
+                text.splitlines(), lambda line: line.startswith("tools/")):
+            if not tools:
+                run("/bin/sh", "-euc", "\n".join(lines))
+                continue
+            for name, *words in map(shlex.split, lines):
+                self.assertTrue(os.access(name, os.X_OK), name)
+                tool(name.removeprefix("tools/"), *words)
+
+    def test_every_command_runs(self):
+        text = (ROOT / "src/manual/tutorial.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"^```(sh|file (\S+))\n(.*?)^```$", text,
+                            re.MULTILINE | re.DOTALL)
+        with tempfile.TemporaryDirectory() as folder, mock.patch.dict(
+                os.environ, PATH=f"{pathlib.Path(PROGRAM).parent}:"
+                                 f"{os.environ['PATH']}"):
+            os.chdir(folder)
+            os.symlink(ROOT / "tools", "tools")
+            try:
+                for kind, file, lines in blocks:
+                    if kind == "sh":
+                        self.run_lines(lines)
+                    else:
+                        pathlib.Path(file).write_text(lines, encoding="utf-8")
+                made = {p.name for p in pathlib.Path().rglob("*.*")}
+            finally:
+                os.chdir(ROOT)
+        self.assertLessEqual({"body.png", "foot.png", "force.png", "foot.html",
+                              "study.svg"}, made)
 
 
 class Gallery(unittest.TestCase):

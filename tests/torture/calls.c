@@ -214,7 +214,7 @@ static void try_scene(points *t, const char *kind, job j, const char *words) {
   failing_watch();
   ck_assert_msg(run(&j, words, &end) == 0, "%s", j.errors);
   int all = failing_points(&list);
-  long n = getenv("PROTIS_CALLS") != NULL ? all : points_number(8, 0.02);
+  long n = getenv("PROTIS_CALLS") != NULL ? all : points_number(5, 0.02);
   long missed = 0, tried = n < all ? n : all;
   for (long k = 0; k < tried; ++k) {
     const failing_point *p = &list[points_spread(k, n, all) - 1];

@@ -105,7 +105,7 @@ START_TEST(random_decks_hold) {
       "random decks, turned",     "random decks, other methods"};
   const char *text = getenv("DECKS");
   unsigned long long first = getenv("PROTIS_POINTS") == NULL ? 270 : 0;
-  long count = points_number(5, 0.075);
+  long count = points_number(3, 0.075);
   tally t = {.judged.kind = "random decks, judged",
              .restart.kind = "random decks, restarts"};
   for (int k = 0; k < TWINS; ++k) t.twin[k].kind = kind[k];

@@ -134,6 +134,7 @@ START_TEST(records_of_any_number_are_found) {
   static const int sizes[] = {2,    8,    9,    255,  256,    257,
                               2100, 8191, 8192, 8193, 100012, 262200};
   const int n = sizes[_i];
+  if (n == 100012 && !unit_whole()) return; /* 262200 has six digits, too  */
   off_t *offset[2];
   for (int k = 0; k < 2; ++k) offset[k] = calloc((size_t)n, sizeof(off_t));
   hid_t file = create_file(H5F_LIBVER_EARLIEST);

@@ -374,6 +374,7 @@ static void check_order(const history *h, const point_drive *d, int row,
                now, order);
 }
 
+/* Without PROTIS_PROBLEMS a law and a scheme meet under one of the controls. */
 START_TEST(every_law_under_every_control) {
   const history *h = &histories[_i / 3];
   const point_drive d = drive_of(h, _i % 3);
@@ -382,9 +383,11 @@ START_TEST(every_law_under_every_control) {
   by_cvode(h, &d, y0, y);
   h->strain(y, ei);
   ck_assert_double_gt(sqrt(contract(ei, ei)), 0.02 * h->scale);
-  for (int k = 0; k < N_ROW; ++k)
+  for (int k = 0; k < N_ROW; ++k) {
+    if (!unit_whole() && (k + _i / 3 + _i) % 3 != 0) continue;
     if (h->linear || !scheme_find(rows[k].name)->linear_only)
       check_order(h, &d, k, ei);
+  }
 }
 END_TEST
 
