@@ -414,12 +414,14 @@ static double volume_ratio(const double *G) {
          G[2] * (G[3] * G[7] - e * G[6]);
 }
 
-/* Displacement gradient G[3*3] of an element, that of the hoop in G[8]. */
-static inline void gradient_at(const domain *d, int dim, int elem_id,
-                               const double *u, double *G) {
+/* Displacement gradient G[3*3] of an element, that of the hoop in G[8]; returns
+ * the sum of the squares of the gradients of its shape functions, 1/m2. */
+static inline double gradient_at(const domain *d, int dim, int elem_id,
+                                 const double *u, double *G) {
   const int *v = d->mesh->elem + (dim + 1) * elem_id;
   element_shape s;
   shape_at(d, elem_id, &s);
+  double sum = (dim + 1) * s.hoop * s.hoop;
   CLEAR(G, 9);
   for (int a = 0; a <= dim; ++a) {
     const double *u_a = u + (size_t)dim * v[a];
@@ -427,7 +429,10 @@ static inline void gradient_at(const domain *d, int dim, int elem_id,
       for (int c = 0; c < dim; ++c)
         G[3 * i + c] += u_a[i] * s.grad[dim * a + c];
     if (dim == 2) G[8] += u_a[0] * s.hoop;
+    for (int c = 0; c < dim; ++c)
+      sum += s.grad[dim * a + c] * s.grad[dim * a + c];
   }
+  return sum;
 }
 
 /* Sum of the squares of the strains of a gradient. */
@@ -448,15 +453,14 @@ static double rotation_square(const double *G) {
 static const double FOLDS = 1.0;
 
 void domain_deformation(const domain *d, const double *u, deformation *out) {
-  double largest = 0.0, farthest = 0.0;
+  const int dim = d->mesh->dim;
+  double largest = 0.0, farthest = 0.0, whole = 0.0, gain = 0.0;
   *out = (deformation){.volume = 1};
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     double G[9];
     /* loops of a length that the compiler knows */
-    if (d->mesh->dim == 2)
-      gradient_at(d, 2, e, u, G);
-    else
-      gradient_at(d, 3, e, u, G);
+    const double slope =
+        dim == 2 ? gradient_at(d, 2, e, u, G) : gradient_at(d, 3, e, u, G);
     const double square = strain_square(G), turn = rotation_square(G);
     if (turn > farthest) {
       farthest = turn;
@@ -466,6 +470,8 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
       largest = square;
       out->strain_elem = e;
     }
+    if (slope > gain) gain = slope;
+    if (square + 2.0 * turn > whole) whole = square + 2.0 * turn;
     if (square + 2.0 * turn < FOLDS) continue;
     const double volume = volume_ratio(G);
     if (volume < out->volume) {
@@ -475,4 +481,6 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
   }
   out->strain = sqrt(largest);
   out->rotation = sqrt(farthest);
+  out->gradient = sqrt(whole);
+  out->gain = sqrt(dim * (dim + 1) * gain);
 }

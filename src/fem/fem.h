@@ -211,6 +211,9 @@ void domain_held_force(const domain *d, const double *u,
 typedef struct deformation {
   double strain, rotation, volume; /* -, rad, - */
   int strain_elem, rotation_elem, volume_elem;
+  double gradient; /* -, the largest, its squares summed; strain and rotation
+                      are below it, and below 1 no element is turned */
+  double gain;     /* 1/m, of displacements up to d it is below gain*d */
 } deformation;
 void domain_deformation(const domain *d, const double *u, deformation *out);
 double domain_strain_energy(const domain *d, const double *u); /* J */

@@ -181,16 +181,20 @@ static int can_lock(const run *r, int k) {
          (r->body.d.cluster == NULL || r->body.d.cluster->of[v->elem[k]] < 0);
 }
 
-/* Adds point k of v->now. */
-static inline void add_locking(int ns, const run *r, int k, locking_sums *sum) {
+/* Of v->now. */
+static inline locking_sums sum_locking(int ns, const run *r) {
   const visco *v = r->strains.visco;
-  const double w = v->x.weight[k];
-  const double *ei = v->now.ei + visco_at(r, k);
-  const double growth = ei[0] + ei[1] + ei[2];
-  if (!can_lock(r, k)) return;
-  sum->stress += w * deviator_square(ns, v->now.sigma + visco_at(r, k), 2.0);
-  sum->strain += w * deviator_square(ns, v->now.e + visco_at(r, k), 0.5);
-  sum->growth += w * growth * growth;
+  locking_sums sum = {0};
+  for (int k = 0; k < v->x.n; ++k) {
+    const size_t at = (size_t)ns * k;
+    const double w = v->x.weight[k], *ei = v->now.ei + at;
+    const double growth = ei[0] + ei[1] + ei[2];
+    if (!can_lock(r, k)) continue;
+    sum.stress += w * deviator_square(ns, v->now.sigma + at, 2.0);
+    sum.strain += w * deviator_square(ns, v->now.e + at, 0.5);
+    sum.growth += w * growth * growth;
+  }
+  return sum;
 }
 
 /* Mean of the bulk moduli, Pa. */
@@ -212,9 +216,9 @@ static double mean_bulk(const run *r) {
  * -1 if there are none, or if they flow in volume too.
  */
 static double apparent_ratio(const run *r) {
-  const visco *v = r->strains.visco;
-  locking_sums sum = {0};
-  for (int k = 0; k < v->x.n; ++k) add_locking(r->m->ns, r, k, &sum);
+  /* loops of a length that the compiler knows */
+  const locking_sums sum =
+      r->m->ns == 4 ? sum_locking(4, r) : sum_locking(6, r);
   if (sum.strain == 0.0 || sum.growth > 1e-6 * sum.strain) return -1.0;
   double K = mean_bulk(r), G = 0.5 * sqrt(sum.stress / sum.strain);
   return (3.0 * K - 2.0 * G) / (2.0 * (3.0 * K + G));

@@ -156,7 +156,27 @@ START_TEST(deformation_is_that_of_the_gradient) {
     ck_assert_double_eq_tol(x.strain, sqrt(square), 1e-12);
     ck_assert_double_eq_tol(x.volume, fmin(1, det(A)), 1e-12);
     ck_assert_double_eq_tol(x.rotation, 2 * turned(kin), 1e-12);
+    square += 8 * turned(kin) * turned(kin);
+    ck_assert_double_eq_tol(x.gradient, sqrt(square), 1e-12);
   }
+  free(u);
+  scene_free(s);
+}
+END_TEST
+
+START_TEST(displacements_bound_their_gradient) {
+  scene *s = patch(all_kinematics[_i]);
+  const int m = s->m->dim * s->m->n_node;
+  double *u = calloc((size_t)m, sizeof *u), steepest = 0;
+  deformation x;
+  for (int own = 0; own < m; ++own) {
+    for (int i = 0; i < m; ++i) u[i] = (i - own) % s->m->dim == 0 ? -1 : 0;
+    u[own] = 1;
+    domain_deformation(&s->d, u, &x);
+    ck_assert_double_le(x.gradient, x.gain);
+    steepest = fmax(steepest, x.gradient);
+  }
+  ck_assert_double_gt(steepest, 0.2 * x.gain);
   free(u);
   scene_free(s);
 }
@@ -273,6 +293,7 @@ int main(void) {
   tcase_set_timeout(tests, UNIT_SECONDS);
   tcase_add_loop_test(tests, patch_of_constant_strain_is_reproduced, 0, 4);
   tcase_add_loop_test(tests, deformation_is_that_of_the_gradient, 0, 4);
+  tcase_add_loop_test(tests, displacements_bound_their_gradient, 0, 4);
   tcase_add_loop_test(tests, weights_add_up_to_the_volume, 0, 4);
   tcase_add_loop_test(tests, internal_force_is_stiffness_times_displacement, 0,
                       4);

@@ -180,10 +180,16 @@ static int forces_hide_strains(const run *r) {
   return r->now.energy.strain + r->errors.misfit <= forces_energy(r, 0.0);
 }
 
+/* 1: a load that no support bears at once. */
+static int is_loaded(const run *r) {
+  for (size_t i = 0; i < r->n_dof; ++i)
+    if (!r->body.fixed[i] && fabs(r->now.F[i]) > 0.0) return 1;
+  return 0;
+}
+
 /* 1: no force acts on the body. */
 static int is_unloaded(const run *r) {
-  return increment_free_load(r, r->now.F) == 0.0 &&
-         largest_entry(r->nodes.n_c, r->now.rc) == 0.0;
+  return !is_loaded(r) && largest_entry(r->nodes.n_c, r->now.rc) == 0.0;
 }
 
 /* 1: nor do its supports strain it. */
@@ -211,7 +217,7 @@ int rounding_is_all(const run *r) {
        r->now.energy.strain <= strains_rounding(r, strains_lost(r)) +
                                    forces_energy(r, r->errors.lost)))
     return 1;
-  if (increment_free_load(r, r->now.F) > 0.0) return 0;
+  if (is_loaded(r)) return 0;
   const double u = force > 0.0 ? fmax(strains_lost(r), rounding_of_gaps(r))
                                : strains_lost(r);
   return force <= condensed_stiffest(r->c) * u && hides_strains(r, u);
@@ -472,9 +478,7 @@ static double hidden_by_gaps(const run *r, const double *own) {
   const contact_problem *cp = &r->problem.cp;
   const double least = rounding_of_gaps(r), force = largest_force(r);
   double worst = 0.0;
-  if (!(increment_free_load(r, r->now.F) > 0.0) &&
-      largest_entry(r->n_dof, r->now.u) <= least)
-    return 0.0;
+  if (!is_loaded(r) && largest_entry(r->n_dof, r->now.u) <= least) return 0.0;
   for (int k = 0; k < cp->n; ++k) {
     const int i = r->nodes.reach.in != NULL ? r->nodes.reach.in[k] : k;
     const double gap = fabs(r->surface->gap0[i]);
