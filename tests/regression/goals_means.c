@@ -6,6 +6,7 @@
  */
 #include "base/base.h"
 #include "scenes/mesh.h"
+#include "support/block_file.h"
 #include "support/job.h"
 #include "support/unit.h"
 
@@ -226,6 +227,64 @@ START_TEST(goals_of_mirror_images_are_the_same) {
 }
 END_TEST
 
+/* ---- halves and thicknesses ---------------------------------------------- */
+
+enum { HALF_GOALS = 5 };
+
+/* A block 1 high that its foot presses on a bump, from its plane of symmetry on
+ * or on both sides of it; value, error and band of pressures at it, beyond it
+ * and beside it, of the largest one, and of the width. */
+static void press_bump(int both, double thickness, double of[HALF_GOALS][3],
+                       char verdicts[999]) {
+  static const char *const columns[] = {"value", "error", "band"};
+  job j = job_begin("bump");
+  const double at = both;
+  block_file_write(&j, (int[]){20 * (1 + both), 6}, (double[]){1.0 + both, 1.0},
+                   1);
+  job_write(&j, "bump.inp",
+            "*PARAMETER\nA = %g\n*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n"
+            "*ELASTIC\n1000., 0.3\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3, THICKNESS=%g\n"
+            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M, TYPE=CPS3, THICKNESS=%g\n"
+            "*OBSTACLE, NAME=O, TYPE=GAP\n\"0.12*(x-A)^2\"\n"
+            "*CONTACT, NAME=C, GROUP=TOP, OBSTACLE=O\n"
+            "*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.3\n%g, 1.\n"
+            "*GOAL, NAME=Q, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.4\n%g, 1.\n"
+            "*GOAL, NAME=R, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.3\n%g, 1.\n"
+            "*GOAL, NAME=S, QUANTITY=PRESSURE, CONTACT=C\n"
+            "*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C\n*STEP\n*STATIC\n"
+            "*BOUNDARY\nCONTACT, 1\nCONTACT, 2, 2, 0.05\n%s*PRINT, GOALS\n"
+            "*END STEP\n",
+            at, thickness, 2 * thickness, at, at + 0.1, at + 0.35,
+            both ? "" : "LEFT, 1\n");
+  ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
+  dat t = job_table(&j, "GOALS", -1);
+  take_verdicts(&j, verdicts, 999);
+  for (int i = 0; i < HALF_GOALS; ++i)
+    for (int k = 0; k < 3; ++k)
+      of[i][k] = dat_at(&t, i, columns[k]) * (both || i < 4 ? 1.0 : 2.0);
+  dat_free(&t);
+  job_end(&j);
+}
+
+/* Errors have more to recover from where there are both, a deeper mesh, and the
+ * mean round the largest pressure is as wide as its zone on that side. */
+START_TEST(goals_of_halves_and_of_thick_plates_are_the_same) {
+  double half[HALF_GOALS][3], of[HALF_GOALS][3];
+  char verdicts[2][999];
+  press_bump(0, 1.0, half, verdicts[0]);
+  for (int both = 0; both < 2; ++both) {
+    press_bump(both, 0.7, of, verdicts[1]);
+    if (!both) ck_assert_str_eq(verdicts[0], verdicts[1]);
+    for (int i = 0; i < HALF_GOALS; ++i)
+      for (int k = 0; k < (!both ? 3 : i != 3); ++k)
+        ck_assert_msg(fabs(of[i][k] - half[i][k]) <= 1e-7 * fabs(half[i][k]),
+                      "%d: goal %d, number %d: %.12g, %.12g", both, i, k,
+                      of[i][k], half[i][k]);
+  }
+}
+END_TEST
+
 /* A strip, length x 1, of squares 1/n, with contact goals. */
 static job strip(int length, int n, const char *gap, const char *cards) {
   job j = job_begin("strip");
@@ -293,6 +352,7 @@ int main(void) {
                       3);
   tcase_add_loop_test(tests, errors_of_means_have_what_is_beyond_chords, 0, 2);
   tcase_add_test(tests, goals_of_mirror_images_are_the_same);
+  tcase_add_test(tests, goals_of_halves_and_of_thick_plates_are_the_same);
   tcase_add_test(tests, width_ends_between_closed_and_open_nodes);
   tcase_add_test(tests, band_of_the_largest_pressure_has_a_narrow_peak);
   return unit_run("goals_means", tests);

@@ -159,6 +159,30 @@ START_TEST(integrators_fit_the_law_of_each_group) {
 }
 END_TEST
 
+/* What the laws of groups took is told of the first of them. */
+START_TEST(laws_of_groups_have_one_cost) {
+  static const char law[] = "*INELASTIC, LAW=MAXWELL\n2.\n";
+  for (int k = 0; k < 2; ++k) {
+    const layers s = {.hard = law,
+                      .soft = k == 0 ? "" : law,
+                      .of_soft = "",
+                      .of_hard = "",
+                      .at = {20, 20},
+                      .integrator = "HEUN"};
+    job j = run_layers(&s, "", 0);
+    char *lst = job_file(&j, "lst"), *at = lst;
+    for (int i = 0; i < 2; ++i) {
+      at = strstr(at + 1, "inelastic strain, HARD ");
+      ck_assert_ptr_nonnull(at);
+    }
+    at[strcspn(at, "\n")] = '\0';
+    ck_assert_int_eq(strstr(at, "  part of the first group") != NULL, k);
+    free(lst);
+    job_end(&j);
+  }
+}
+END_TEST
+
 /* Rows on each other on a floor that they are glued to, the lower half so hard;
  * "unseen": the estimate of the error says that it sees nothing. */
 static double energy_of_rows(int hard, const int n[2], const char *cards,
@@ -314,7 +338,7 @@ END_TEST
 UNIT_MAIN("layers", creep_beside_a_group_that_expands,
           laws_have_the_temperature_of_their_elements, cold_elements_are_named,
           integrators_fit_the_law_of_each_group, averaged_groups_do_not_lock,
-          rows_of_one_stress_have_no_estimate,
+          laws_of_groups_have_one_cost, rows_of_one_stress_have_no_estimate,
           stress_across_sides_is_that_of_loads,
           six_stresses_across_sides_are_their_loads,
           sides_that_nodes_load_are_not_free,

@@ -139,8 +139,7 @@ static void set_corner(const corner_case *c, floor_run *f) {
   if (c->mirrored) f->fixed[0] = f->fixed[2 * 9] = f->held[1] = 1;
   if (c->open > 0) f->status[c->open] = CONTACT_OPEN;
   f->contact->is_pair = c->is_pair;
-  f->rc[6] = -4.0;
-  f->area[3] = 1.0; /* the largest pressure is 4 */
+  f->area[3] = 0.25; /* the largest pressure is 4 */
 }
 
 static void check_corner(const corner_case *c) {
@@ -178,6 +177,7 @@ static const corner_case corners[] = {
     /* An end that is not held, and one that the image goes on behind. */
     {{1, 1, 1, 1, 1, 1, 1, 1}, -1, 0, 0, 0, 0, 0},
     {{1, 1, 1, 1, 1, 1, 1, 1}, 0, 2.0, 1, 0, 0, 0},
+    {{1, 1, 1.8, 1.8, 1.8, 1.8, 1.8, 1.8}, -1, 0, 1, 0, 0, 0},
     /* Bends of 1 and -1 at the nodes two edges away, where 3 * 0.65 are less
      * than twice the corner and 3 * 0.7 are not. */
     {{0, 0, -0.325, -0.325, 0.675, 0.675, 1, 1}, 4, 1, 0, 0, 0, 0},
@@ -188,6 +188,22 @@ static const corner_case corners[] = {
 };
 
 START_TEST(corners_press_by_what_the_gap_turns) { check_corner(&corners[_i]); }
+END_TEST
+
+/* Of two corners the sharper, whichever is first. */
+START_TEST(sharpest_corner_is_the_largest) {
+  static const corner_case two[] = {{.slope = {1, 1, 3, 3, 3, 3, 4, 4}},
+                                    {.slope = {1, 1, 2, 2, 2, 2, 4, 4}}};
+  for (int k = 0; k < 2; ++k) {
+    floor_run f;
+    double most;
+    set_corner(&two[k], &f);
+    ck_assert_int_eq(goal_sharpest(&f.r, 0, f.s.x, 20.0, &most), OK);
+    ck_assert_double_eq_tol(
+        most, 2.0 * YOUNG / (1 - NU * NU) / (2 * M_PI) / 4.0, 1e-9);
+    floor_end(&f);
+  }
+}
 END_TEST
 
 /* Held by the face that stands on it, along the normal of that. */
@@ -286,26 +302,37 @@ START_TEST(tractions_follow_the_arc) {
 }
 END_TEST
 
-/* Friction of a limit 1 + x^2 on an edge of length 1: the integral of x^2 - x
- * is -1/6. */
+/*
+ * Friction of a limit 1 + x^2 and more on an edge of length 1: the integral of
+ * x^2 - x is -1/6, and that of x (x - 1/2) (x - 1), which is no parabola, 0.
+ */
 START_TEST(values_between_the_nodes_are_those_of_the_formula) {
   floor_run f;
-  double z[2 * MOST] = {0.0}, sum;
-  floor_new(&f, 2);
+  double z[2 * MOST] = {0.0}, F[2 * MOST] = {0.0}, sum, size = 0.0;
+  floor_new(&f, 3);
   contact_edge e[] = {{.a = 0, .b = 1, .weight = 2.0 / 3.0, .other = {-1, -1}},
                       {.a = 1, .b = 2, .weight = 9.0, .other = {-1, -1}},
-                      {.a = 1, .b = 2, .weight = 9.0, .other = {0, 0}}};
-  const goal_surface s = {.n_edge = 3, .edge = e};
+                      {.a = 1, .b = 3, .weight = 9.0, .other = {0, 0}},
+                      {.a = 2, .b = 3, .weight = 9.0, .other = {-1, -1}}};
+  const goal_surface s = {.n_edge = 4, .edge = e};
   f.contact->friction.law = &tresca_friction;
-  formula_compile(&f.contact->friction.card.value, "1+x^2");
-  for (int q = 0; q < 2; ++q) {
-    f.status[q] = CONTACT_SLIP;
-    f.rc[2 * q + 1] = (1 + q) * f.area[q];
-    z[2 * q] = 3.0;
-    z[2 * q + 1] = 7.0;
+  formula_compile(&f.contact->friction.card.value, "1+x^2+x*(x-0.5)*(x-1)");
+  for (int k = 0; k < GOAL_PIECES; ++k) {
+    const double x = (double)k / GOAL_PIECES;
+    size += fabs(x * (x - 0.5) * (x - 1.0)) / GOAL_PIECES;
   }
-  ck_assert_int_eq(goal_value_between(&f.r, &s, z, &sum), OK);
-  ck_assert_double_eq_tol(sum, -3.0 / 6.0, 1e-14);
+  for (int way = 1; way >= -1; way -= 2) {
+    for (int q = 0; q < 4; ++q) {
+      f.status[q] = q == 2 ? CONTACT_STICK : CONTACT_SLIP;
+      f.rc[2 * q + 1] = (1 + q) * f.area[q];
+      z[2 * q] = way * 3.0;
+      z[2 * q + 1] = 7.0;
+    }
+    ck_assert_int_eq(goal_value_between(&f.r, &s, z, &sum), OK);
+    ck_assert_double_eq_tol(sum, way * -3.0 / 6.0, 1e-14);
+    ck_assert_int_eq(goal_add_doubts(&f.r, &s, z, F, NULL, &sum), OK);
+    ck_assert_double_eq_tol(sum, 3.0 * size, 1e-14);
+  }
   formula_release(&f.contact->friction.card.value);
   floor_end(&f);
 }
@@ -390,6 +417,7 @@ int main(void) {
   tcase_add_test(tests, loads_are_torn_by_their_own_size);
   tcase_add_loop_test(tests, corners_press_by_what_the_gap_turns, 0,
                       sizeof corners / sizeof *corners);
+  tcase_add_test(tests, sharpest_corner_is_the_largest);
   tcase_add_test(tests, planes_of_symmetry_are_held_faces);
   tcase_add_test(tests, points_of_an_edge_lie_on_its_arc);
   tcase_add_test(tests, parabolas_have_the_integral);
