@@ -10,9 +10,11 @@
  * files FOLDER/key-i.p, of elements with v vertices; s = 1: geometry of
  * OpenCASCADE.
  */
+#define _GNU_SOURCE /* accept4 */
 #include "mesh/raw.h"
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -98,22 +100,32 @@ static int is_mesh(const char *path) {
   return there && last.magic == WIRE_MAGIC && last.kind == WIRE_END;
 }
 
-static void serve(const char *folder, int fd) {
-  static char text[MOST], *words[HEAD + 2 * NUMBERS];
-  char part[4300], whole[4200];
-  int code = 1, n = receive(fd, text, words);
+/* A request in a thread of its own: of the two forks that it would take
+ * otherwise, each copies the map of libgmsh and all it is linked with. */
+typedef struct request {
+  const char *folder;
+  int fd;
+  char text[MOST], *words[HEAD + 2 * NUMBERS], whole[4200], part[4300];
+} request;
+
+static void *serve(void *data) {
+  request *r = data;
+  int code = 1, n = receive(r->fd, r->text, r->words);
   if (n > 0) {
-    snprintf(whole, sizeof whole, "%s/%s", folder, words[0]);
-    snprintf(part, sizeof part, "%s.%d", whole, (int)getpid());
+    snprintf(r->whole, sizeof r->whole, "%s/%s", r->folder, r->words[0]);
+    snprintf(r->part, sizeof r->part, "%s.%d", r->whole, r->fd);
     const pid_t pid = fork();
-    if (pid == 0) make(whole, part, n, words);
-    if (pid > 0 && waitpid(pid, &code, 0) == pid && code == 0 && is_mesh(part))
-      rename(part, whole);
+    if (pid == 0) make(r->whole, r->part, n, r->words);
+    if (pid > 0 && waitpid(pid, &code, 0) == pid && code == 0 &&
+        is_mesh(r->part))
+      rename(r->part, r->whole);
     else
-      unlink(part);
+      unlink(r->part);
   }
-  send(fd, "", 1, MSG_NOSIGNAL);
-  _exit(0);
+  send(r->fd, "", 1, MSG_NOSIGNAL);
+  close(r->fd);
+  free(r);
+  return NULL;
 }
 
 int main(int argc, char **argv) {
@@ -126,10 +138,12 @@ int main(int argc, char **argv) {
   if (bind(fd, (struct sockaddr *)&at, sizeof at) != 0 || listen(fd, 16) != 0)
     return 1;
   for (;;) {
-    const int one = accept(fd, NULL, NULL);
-    if (one < 0) continue;
-    if (fork() == 0) serve(argv[1], one);
-    close(one);
-    while (waitpid(-1, NULL, WNOHANG) > 0) continue;
+    const int one = accept4(fd, NULL, NULL, SOCK_CLOEXEC);
+    request *r = one < 0 ? NULL : calloc(1, sizeof *r);
+    pthread_t thread;
+    if (r == NULL) continue;
+    *r = (request){.folder = argv[1], .fd = one};
+    if (pthread_create(&thread, NULL, serve, r) != 0) return 1;
+    pthread_detach(thread);
   }
 }

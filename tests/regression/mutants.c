@@ -20,7 +20,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { DECKS = 64, SECONDS = 60, QUICK = 1000, ACCEPTED = 100 };
+enum { DECKS = 64, SECONDS = 60, QUICK = 600, ACCEPTED = 100 };
 
 typedef struct deck_texts {
   int n;

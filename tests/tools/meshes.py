@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """Meshes of other programs: tools/abaqus_mesh. Runs in the folder of the
 sources; PROTIS: the program."""
+import contextlib
 import csv
 import io
 import os
 import pathlib
+import runpy
 import subprocess
 import sys
 import tempfile
@@ -124,10 +126,18 @@ class Meshes(unittest.TestCase):
         (self.dir / "model.inp").write_bytes(text.encode())
         for name, other in files.items():
             (self.dir / f"{name}.inp").write_text(other)
-        done = subprocess.run(
-            [sys.executable, "tools/abaqus_mesh", self.dir / "model.inp",
-             self.dir / "model.msh"], capture_output=True, text=True)
-        return done.returncode, done.stdout.splitlines(), done.stderr
+        said, errors, argv, code = io.StringIO(), io.StringIO(), sys.argv, 0
+        sys.argv = ["tools/abaqus_mesh", str(self.dir / "model.inp"),
+                    str(self.dir / "model.msh")]
+        try:  # in this process
+            with contextlib.redirect_stdout(said), (
+                    contextlib.redirect_stderr(errors)):
+                runpy.run_path(sys.argv[0], run_name="__main__")
+        except SystemExit as end:
+            code = end.code or 0
+        finally:
+            sys.argv = argv
+        return code, said.getvalue().splitlines(), errors.getvalue()
 
     def test_sets_of_instances_become_groups(self):
         code, groups, said = self.convert(ASSEMBLY.replace("\n", "\r\n"))

@@ -146,8 +146,8 @@ static const struct {
   refusal how;
   long few;
   double share;
-} kinds[] = {{"memory, program, one request", {.own = 1}, 4, 0.15},
-             {"memory, program, from one on", {.own = 1, .always = 1}, 4, 0.15},
+} kinds[] = {{"memory, program, one request", {.own = 1}, 3, 0.15},
+             {"memory, program, from one on", {.own = 1, .always = 1}, 3, 0.15},
              {"memory, libraries, one request", {.own = 0}, 2, 0.115},
              {"memory, libraries, from one on", {.always = 1}, 2, 0.115}};
 
@@ -164,7 +164,7 @@ END_TEST
 START_TEST(mesh_reader_is_starved) {
   points t = {.kind = "memory, mesh reader"};
   kept_mesh(NULL);
-  long n = points_number(6, 0.01);
+  long n = points_number(4, 0.01);
   job whole = small_flat(0.4, "", "AUTO"), j = small_flat(0.4, "", "AUTO");
   ck_assert_int_eq(run(&whole, &(refusal){0}).code, 0);
   for (long k = 0; k < n; ++k) {

@@ -58,7 +58,7 @@ typedef struct problem {
 
 /* Mostly small, one in a hundred large. */
 static int size_of(int k) {
-  if (k % 100 == 50) return k % 200 > 50 ? 100 : unit_whole() ? 300 : 150;
+  if (k % 100 == 50) return k % 200 > 50 ? 100 : unit_whole() ? 300 : 80;
   if (k % 20 == 7) return 20 + (k * 13) % 50;
   return 1 + (k * 7) % 12;
 }
@@ -342,7 +342,7 @@ static int solves_planted(const solver_ops *ops, const planted *p, int k) {
 }
 
 static void run_planted(int k, int *solved) {
-  const int sizes[] = {6, 24, 45, unit_whole() ? 90 : 60};
+  const int sizes[] = {6, 24, 45, unit_whole() ? 90 : 30};
   static const double mus[] = {0.1, 0.3, 0.7};
   const solver_ops *ops;
   planted p = planted_new((planted_kind)((k + k / SLICES) % 4), 2 + k / 3 % 2,

@@ -99,7 +99,7 @@ START_TEST(large_decks_take_time_and_room_in_proportion) {
       "1,2,3,4,5,6,7,8,",    "<N>,<M>,<nope>",       "*A, B=1, B=2, C=<N>",
       "*PARAMETER\nA=1+1+1", "*LEGACY, FORMAT=(I5)", "\"x+\",\"1",
       "<<<<<<<<<<<<<<<<<<<", "*A,B,C,D,E,F,G,H,I,"};
-  const size_t size = (size_t)(getenv("PROTIS_POINTS") == NULL ? 1 : 4) << 20;
+  const size_t size = (size_t)(getenv("PROTIS_POINTS") == NULL ? 1 : 8) << 19;
   decks_enter();
   for (size_t i = 0; i < sizeof lines / sizeof *lines; ++i) {
     FILE *f = fopen("a.inp", "w");

@@ -15,7 +15,7 @@ static const struct {
   int dim, nodes, layers, is_large;
 } blocks[] = {{2, 17, 16, 0},  {2, 65, 64, 0}, {2, 257, 256, 1},
               {2, 257, 64, 0}, {3, 81, 8, 0},  {3, 169, 12, 0},
-              {3, 361, 18, 1}, {3, 625, 12, 0}};
+              {3, 361, 18, 1}, {3, 625, 12, 1}};
 
 START_TEST(factor_has_the_size_that_was_expected) {
   for (size_t k = 0; k < sizeof blocks / sizeof *blocks; ++k) {
