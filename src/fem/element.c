@@ -448,13 +448,30 @@ static double rotation_square(const double *G) {
   return 0.25 * (yz * yz + zx * zx + xy * xy);
 }
 
+double domain_spread(const domain *d, const double *u) {
+  const int dim = d->mesh->dim;
+  double most = 0.0;
+  for (int e = 0; e < d->mesh->n_elem; ++e) {
+    const int *v = d->mesh->elem + (size_t)(dim + 1) * e;
+    const int hoop = d->kin[d->section_id[e]] == AXISYMMETRIC;
+    for (int c = 0; c < dim; ++c) {
+      const double *u_c = u + c, own = hoop ? 0.0 : u_c[(size_t)dim * v[0]];
+      for (int a = !hoop; a <= dim; ++a) {
+        const double by = fabs(u_c[(size_t)dim * v[a]] - own);
+        if (by > most) most = by;
+      }
+    }
+  }
+  return most;
+}
+
 /* Least sum of the squares of a gradient, a singular value of 1, that turns an
  * element inside out. */
 static const double FOLDS = 1.0;
 
 void domain_deformation(const domain *d, const double *u, deformation *out) {
   const int dim = d->mesh->dim;
-  double largest = 0.0, farthest = 0.0, whole = 0.0, gain = 0.0;
+  double largest = 0.0, farthest = 0.0, gain = 0.0;
   *out = (deformation){.volume = 1};
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     double G[9];
@@ -471,7 +488,6 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
       out->strain_elem = e;
     }
     if (slope > gain) gain = slope;
-    if (square + 2.0 * turn > whole) whole = square + 2.0 * turn;
     if (square + 2.0 * turn < FOLDS) continue;
     const double volume = volume_ratio(G);
     if (volume < out->volume) {
@@ -481,6 +497,5 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
   }
   out->strain = sqrt(largest);
   out->rotation = sqrt(farthest);
-  out->gradient = sqrt(whole);
   out->gain = sqrt(dim * (dim + 1) * gain);
 }
