@@ -448,20 +448,26 @@ static double rotation_square(const double *G) {
   return 0.25 * (yz * yz + zx * zx + xy * xy);
 }
 
-double domain_spread(const domain *d, const double *u) {
-  const int dim = d->mesh->dim;
-  double most = 0.0;
-  for (int e = 0; e < d->mesh->n_elem; ++e) {
-    const int *v = d->mesh->elem + (size_t)(dim + 1) * e;
-    const int hoop = d->kin[d->section_id[e]] == AXISYMMETRIC;
-    for (int c = 0; c < dim; ++c) {
-      const double *u_c = u + c, own = hoop ? 0.0 : u_c[(size_t)dim * v[0]];
-      for (int a = !hoop; a <= dim; ++a) {
-        const double by = fabs(u_c[(size_t)dim * v[a]] - own);
-        if (by > most) most = by;
-      }
+/* Of one element, at least "most". */
+static inline double spread_at(const domain *d, int dim, int elem_id,
+                               const double *u, double most) {
+  const int *v = d->mesh->elem + (size_t)(dim + 1) * elem_id;
+  const int hoop = d->kin[d->section_id[elem_id]] == AXISYMMETRIC;
+  for (int c = 0; c < dim; ++c) {
+    const double own = hoop ? 0.0 : u[(size_t)dim * v[0] + c];
+    for (int a = 0; a <= dim; ++a) {
+      const double by = fabs(u[(size_t)dim * v[a] + c] - own);
+      if (by > most) most = by;
     }
   }
+  return most;
+}
+
+double domain_spread(const domain *d, const double *u) {
+  double most = 0.0;
+  for (int e = 0; e < d->mesh->n_elem; ++e)
+    most = d->mesh->dim == 2 ? spread_at(d, 2, e, u, most)
+                             : spread_at(d, 3, e, u, most);
   return most;
 }
 
