@@ -448,13 +448,36 @@ static double rotation_square(const double *G) {
   return 0.25 * (yz * yz + zx * zx + xy * xy);
 }
 
+/* Of one element, at least "most". */
+static inline double spread_at(const domain *d, int dim, int elem_id,
+                               const double *u, double most) {
+  const int *v = d->mesh->elem + (size_t)(dim + 1) * elem_id;
+  const int hoop = d->kin[d->section_id[elem_id]] == AXISYMMETRIC;
+  for (int c = 0; c < dim; ++c) {
+    const double own = hoop ? 0.0 : u[(size_t)dim * v[0] + c];
+    for (int a = 0; a <= dim; ++a) {
+      const double by = fabs(u[(size_t)dim * v[a] + c] - own);
+      if (by > most) most = by;
+    }
+  }
+  return most;
+}
+
+double domain_spread(const domain *d, const double *u) {
+  double most = 0.0;
+  for (int e = 0; e < d->mesh->n_elem; ++e)
+    most = d->mesh->dim == 2 ? spread_at(d, 2, e, u, most)
+                             : spread_at(d, 3, e, u, most);
+  return most;
+}
+
 /* Least sum of the squares of a gradient, a singular value of 1, that turns an
  * element inside out. */
 static const double FOLDS = 1.0;
 
 void domain_deformation(const domain *d, const double *u, deformation *out) {
   const int dim = d->mesh->dim;
-  double largest = 0.0, farthest = 0.0, whole = 0.0, gain = 0.0;
+  double largest = 0.0, farthest = 0.0, gain = 0.0;
   *out = (deformation){.volume = 1};
   for (int e = 0; e < d->mesh->n_elem; ++e) {
     double G[9];
@@ -471,7 +494,6 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
       out->strain_elem = e;
     }
     if (slope > gain) gain = slope;
-    if (square + 2.0 * turn > whole) whole = square + 2.0 * turn;
     if (square + 2.0 * turn < FOLDS) continue;
     const double volume = volume_ratio(G);
     if (volume < out->volume) {
@@ -481,6 +503,5 @@ void domain_deformation(const domain *d, const double *u, deformation *out) {
   }
   out->strain = sqrt(largest);
   out->rotation = sqrt(farthest);
-  out->gradient = sqrt(whole);
   out->gain = sqrt(dim * (dim + 1) * gain);
 }

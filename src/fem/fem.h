@@ -211,11 +211,13 @@ void domain_held_force(const domain *d, const double *u,
 typedef struct deformation {
   double strain, rotation, volume; /* -, rad, - */
   int strain_elem, rotation_elem, volume_elem;
-  double gradient; /* -, the largest, its squares summed; strain and rotation
-                      are below it, and below 1 no element is turned */
-  double gain;     /* 1/m, of displacements up to d it is below gain*d */
+  double gain; /* 1/m, times domain_spread: above strain, rotation, and, below
+                  1, no element is turned */
 } deformation;
 void domain_deformation(const domain *d, const double *u, deformation *out);
+/* Largest difference of a displacement between two nodes of an element; largest
+ * displacement, where it makes a hoop strain, m. */
+double domain_spread(const domain *d, const double *u);
 double domain_strain_energy(const domain *d, const double *u); /* J */
 /* The same of all elements but n of them, ascending, which hold whole
  * clusters. */

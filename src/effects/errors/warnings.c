@@ -11,8 +11,7 @@
 
 typedef struct warnings {
   int strain, rotation, folded; /* 1: told */
-  double gradient, gain;        /* of the displacements u[n_dof]; 0: none yet */
-  double *u;                    /* m */
+  double gain;                  /* 1/m, of a deformation; 0: not known */
   int *touched;                 /* [n_contact] bits */
   double *least; /* [n_contact] m, gap now, if none has touched */
   double *edge;  /* [n_contact] m, longest of its faces; 0: forces are given */
@@ -41,26 +40,19 @@ static void tell_element(run *r, int *told, message_id id, const char *what,
               r->msh->elem_no[elem_id], section_of(r, elem_id), is);
 }
 
-/* 1: the displacements have changed by so little since they were looked at that
- * nothing is to be told. */
-static int is_told(const run *r, const warnings *reported) {
-  double moved = 0.0;
+/* 1: nothing is to be told of the elements, or too small. */
+static int is_slight(const run *r, const warnings *reported) {
   if (reported->strain && reported->folded) return 1;
-  for (size_t i = 0; i < r->n_dof; ++i) {
-    const double by = fabs(r->now.u[i] - reported->u[i]);
-    if (by > moved) moved = by;
-  }
-  return reported->gain > 0.0 && reported->gradient + reported->gain * moved <
-                                     (reported->strain ? 1.0 : LARGE);
+  return reported->gain > 0.0 &&
+         reported->gain * domain_spread(&r->body.d, r->now.u) <
+             (reported->strain ? 1.0 : LARGE);
 }
 
 static void warn_deformation(run *r, warnings *reported) {
   deformation x;
   char is[80];
-  if (is_told(r, reported)) return;
+  if (is_slight(r, reported)) return;
   domain_deformation(&r->body.d, r->now.u, &x);
-  COPY(reported->u, r->now.u, r->n_dof);
-  reported->gradient = x.gradient;
   reported->gain = x.gain;
   if (!reported->strain && x.strain > LARGE) {
     snprintf(is, sizeof is, "is %.3g %%; strains are taken as small",
@@ -345,7 +337,7 @@ static void end(run *r, void *self) {
 
 static status warnings_new(run *r, void **self) {
   warnings *own = *self;
-  PASS_NEW_ALL(OF(own->u, r->n_dof), OF(own->touched, r->m->n.contact),
+  PASS_NEW_ALL(OF(own->touched, r->m->n.contact),
                OF(own->least, r->m->n.contact), OF(own->edge, r->m->n.contact));
   for (int i = 0; i < r->m->n.contact; ++i) {
     const contact *c = &r->m->contacts[i];
