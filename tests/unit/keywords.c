@@ -157,7 +157,7 @@ static const struct {
   {"NORTON", "HARDENING", 0, 0, "TIME"},
   {"NORTON", "A", 0, ANY, NULL},
   {"NORTON", "n", 1, 1000, NULL},
-  {"NORTON", "m", -0.99, 100, "0"},
+  {"NORTON", "m", -0.99, 1, "0"},
   {"HYPERBOLIC", "A", 0, ANY, NULL},
   {"HYPERBOLIC", "B", POSITIVE, ANY, NULL},
   {"HYPERBOLIC", "n", 1, 1000, NULL},

@@ -108,8 +108,8 @@ static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
                 "*OBSTACLE %s: the normal has a part along z, but the mesh is "
                 "2-D",
                 o->name);
-  if (msh->dim == 2 &&
-      (o->motion[2].formula != NULL || o->motion[2].number != 0.0))
+  if (msh->dim == 2 && o->motion[2].formula == NULL &&
+      o->motion[2].number != 0.0)
     message_add(m->log, P2025, &m->moves[id].move_at,
                 "*OBSTACLE %s: MOVE along z, but the mesh is 2-D", o->name);
   for (int k = 0; k < m->n.step; ++k)
