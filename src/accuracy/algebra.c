@@ -102,8 +102,7 @@ static int find_resisted(int k, double *G, double *root, int *order) {
 }
 
 /* y of G y = b in place of b[k]; 0: some motion has no force against it, or
- * only one with a lever arm of rounding. root[5 k], pivot[2 k] are workspace.
- */
+ * only one with a lever arm of rounding. root[5 k], pivot[2 k]: workspace. */
 static int solve_balance(int k, double *G, double *b, double *root,
                          int *pivot) {
   double norm, condition = 0.0;

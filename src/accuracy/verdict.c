@@ -88,8 +88,7 @@ static status put_given(const verdict_scene *s, given_form **form,
   return given_form_set(*form, &before, force, s->msh->size, u, r, cp);
 }
 
-/* v[m]: the motion; *outcome of complementary pivoting with that many facets.
- */
+/* v[m]: the motion; *outcome of complementary pivoting with so many facets. */
 static status pivot(const verdict_scene *s, const char *facets, double *v,
                     outcome *end) {
   const contact_problem *cp = s->cp;

@@ -40,8 +40,7 @@ status force_set_fit(force_set *s, const contact_problem *cp);
 void force_set_project(const force_set *s, double margin, double *r);
 void force_set_product(const force_set *s, const double *r,
                        double *u); /* W r */
-/* Largest eigenvalue of D W, from below by the power method. v[m], z[m]: work.
- */
+/* Largest eigenvalue of D W, from below by the power method. v, z[m]: work. */
 double force_set_spectrum(const force_set *s, double *v, double *z);
 /* All entries of W that are not zero. */
 status compliance_rows(const contact_problem *cp, sparse_rows *rows);

@@ -303,8 +303,7 @@ static status place_of(node_links *l, int first, int master, pair_links *room,
   return OK;
 }
 
-/* Area of the node of a coupling, without what it carries for neighbours, m2.
- */
+/* Area of the node of a coupling, less what it carries for neighbours, m2. */
 static double own_area(const pair_row *row) {
   return row->of->area[row->row] / row->of->share[row->row];
 }
@@ -513,8 +512,7 @@ status surface_forces(const contact_surface *s, int n_node, const double *F,
 
 /* ---- circles --------------------------------------------------------------
  * Nodes all of whose masters have their place are done, from pass to pass; who
- * waits for ever waits for a node of a circle.
- */
+ * waits for ever waits for a node of a circle. */
 
 typedef struct finder {
   const contact_surface *s;

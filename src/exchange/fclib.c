@@ -185,21 +185,20 @@ static status read_constraints(const hdf5_source *s, int m, constraints *c) {
 }
 
 static status read_local(const hdf5_source *s, exchange_problem *p) {
-  ENDS_BY(triplets_free) triplets W = {0};
-  OWNED double *q = NULL;
+  triplets size = {0};
   p->form = "FCLIB, local";
-  PASS(triplets_size(s, LOCAL "/W", &W));
-  if (W.rows != W.columns)
+  PASS(triplets_size(s, LOCAL "/W", &size));
+  if (size.rows != size.columns)
     RAISE(ERR_DECK, "%s: " LOCAL "/W is not square: %d rows, %d columns",
-          s->path, W.rows, W.columns);
-  PASS(set_size(s, LOCAL, W.rows, p));
-  PASS(triplets_read(s, LOCAL "/W", &W));
+          s->path, size.rows, size.columns);
+  PASS(set_size(s, LOCAL, size.rows, p));
+  OWNED_PARTS(triplets, W, triplets_read(s, LOCAL "/W", &W));
   if (triplets_triangle(&W) != 0)
     RAISE(ERR_DECK,
           "%s: only one triangle of " LOCAL "/W is there; expected all of it",
           s->path);
   PASS(new_arrays(p));
-  PASS(read_vector(s, LOCAL "/vectors/q", p->m, &q));
+  OWNED_OF(double, q, read_vector(s, LOCAL "/vectors/q", p->m, &q));
   PASS(read_friction(s, LOCAL "/vectors/mu", p));
   COPY(p->load, q, p->m);
   OWNED_PARTS(constraints, c, read_constraints(s, p->m, &c));
@@ -222,13 +221,6 @@ typedef struct global {
   double *f, *w, *b; /* [M.rows], [H.columns], [G.columns] */
   double *h;         /* diagonal of H, or NULL */
 } global;
-
-static void global_release(global *g) {
-  triplets_free(&g->M);
-  triplets_free(&g->H);
-  triplets_free(&g->G);
-  RELEASE(g->f, g->w, g->b, g->h);
-}
 
 static status read_matrices(const hdf5_source *s, global *g) {
   PASS(triplets_read(s, GLOBAL "/M", &g->M));
@@ -291,13 +283,8 @@ static void take_stiffness(exchange_problem *p, const global *g, int floating,
   double *a = p->matrix;
   CLEAR(a, m * m);
   triplets_dense(&g->M, a);
-  int upper = 0, lower = 0;
-  for (size_t j = 0; j < m; ++j)
-    for (size_t i = 0; i < j; ++i) {
-      upper |= a[i + m * j] != 0.0;
-      lower |= a[j + m * i] != 0.0;
-    }
-  for (size_t j = 0; j < m && upper != lower; ++j)
+  const int one = triplets_triangle(&g->M) != 0;
+  for (size_t j = 0; j < m && one; ++j)
     for (size_t i = 0; i < j; ++i)
       a[i + m * j] = a[j + m * i] = a[i + m * j] + a[j + m * i];
   *done = is_symmetric(p->m, a);
@@ -420,18 +407,24 @@ static status condense_global(const hdf5_source *s, global *g,
   return OK;
 }
 
+/* All but the friction; of H alone the size is known before. */
+static status read_parts(const hdf5_source *s, exchange_problem *p, global *g) {
+  PASS(triplets_size(s, GLOBAL "/H", &g->H));
+  PASS(set_size(s, GLOBAL, g->H.columns, p));
+  PASS(read_matrices(s, g));
+  PASS(read_vector(s, GLOBAL "/vectors/f", g->M.rows, &g->f));
+  PASS(read_vector(s, GLOBAL "/vectors/w", p->m, &g->w));
+  if (g->G.columns > 0)
+    PASS(read_vector(s, GLOBAL "/vectors/b", g->G.columns, &g->b));
+  return find_diagonal(g);
+}
+
 static status read_global(const hdf5_source *s, exchange_problem *p) {
-  ENDS_BY(global_release) global g = {0};
   p->form = "FCLIB, global";
-  PASS(triplets_size(s, GLOBAL "/H", &g.H));
-  PASS(set_size(s, GLOBAL, g.H.columns, p));
-  PASS(read_matrices(s, &g));
+  OWNED_PARTS(global, g, read_parts(s, p, &g));
   PASS(new_arrays(p));
-  PASS(read_vector(s, GLOBAL "/vectors/f", g.M.rows, &g.f));
-  PASS(read_vector(s, GLOBAL "/vectors/w", p->m, &g.w));
   PASS(read_friction(s, GLOBAL "/vectors/mu", p));
   p->unknowns = g.M.rows + g.G.columns;
-  PASS(find_diagonal(&g));
   if (g.h == NULL && g.G.columns == 0) PASS(condense_bodies(&g, p));
   if (p->blocks != NULL) {
     turn_signs(p);
@@ -439,11 +432,7 @@ static status read_global(const hdf5_source *s, exchange_problem *p) {
     return OK;
   }
   PASS(new_matrix(s, GLOBAL, p));
-  if (g.G.columns > 0) {
-    PASS(read_vector(s, GLOBAL "/vectors/b", g.G.columns, &g.b));
-    PASS(condense_constrained(s, &g, p));
-    return OK;
-  }
+  if (g.G.columns > 0) return condense_constrained(s, &g, p);
   return condense_global(s, &g, p);
 }
 

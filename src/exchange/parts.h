@@ -22,7 +22,6 @@ typedef struct triplets {
 status triplets_size(const hdf5_source *s, const char *group, triplets *t);
 /* GROUP/m, n, nz, p, i, x: triplet, by columns (CSC) or by rows (CSR). */
 status triplets_read(const hdf5_source *s, const char *group, triplets *t);
-void triplets_free(triplets *t);
 /* Dense, column major with leading dimension t->rows, into zeroed a. */
 void triplets_dense(const triplets *t, double *a);
 /* Numbers of the entries, column by column: those of column j are entry[k],

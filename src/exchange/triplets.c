@@ -15,11 +15,8 @@ typedef struct arrays {
   const char *group;
   int nz;
   long n_p, n_i, n_x; /* items in the file */
-  int *p, *i;
-  double *x;
+  int *p, *i;         /* borrowed */
 } arrays;
-
-static void arrays_free(arrays *a) { RELEASE(a->p, a->i, a->x); }
 
 static const char *name_of(char text[NAME], const char *group,
                            const char *item) {
@@ -31,18 +28,6 @@ static status group_int(const hdf5_source *s, const char *group,
                         const char *item, int *value) {
   char name[NAME];
   return source_int(s, name_of(name, group, item), value);
-}
-
-/* The three arrays; those of a matrix without entries may be missing. */
-static status read_arrays(arrays *a) {
-  char name[NAME];
-  const long most = MOST_ITEMS;
-  PASS(
-      source_ints(a->s, name_of(name, a->group, "p"), 1, most, &a->n_p, &a->p));
-  PASS(
-      source_ints(a->s, name_of(name, a->group, "i"), 1, most, &a->n_i, &a->i));
-  return source_reals(a->s, name_of(name, a->group, "x"), 1, most, &a->n_x,
-                      &a->x);
 }
 
 static status too_short(const arrays *a, const char *item, long have,
@@ -84,7 +69,8 @@ static void expand(const int *start, int n, int *line) {
     for (int e = start[k]; e < start[k + 1]; ++e) line[e] = k;
 }
 
-static status fill(arrays *a, triplets *t) {
+/* The lines of the entries: t->row or t->column. */
+static status fill(const arrays *a, triplets *t, int **line) {
   int compressed = a->nz < 0;
   int lines = a->nz == BY_ROW ? t->rows : t->columns;
   int limit = a->nz == BY_ROW ? t->columns : t->rows;
@@ -97,25 +83,15 @@ static status fill(arrays *a, triplets *t) {
     PASS(too_short(a, "p", a->n_p, t->n));
     PASS(check_index(a, "p", a->p, t->n, lines));
   }
-  PASS_NEW(t->column, t->n);
+  PASS_NEW(*line, t->n);
   if (compressed && a->n_p > 0)
-    expand(a->p, lines, t->column);
+    expand(a->p, lines, *line);
   else if (t->n > 0)
-    COPY(t->column, a->p, t->n);
-  t->row = a->i;
-  t->value = a->x;
-  a->i = NULL;
-  a->x = NULL;
-  if (a->nz == BY_ROW) {
-    int *swap = t->row;
-    t->row = t->column;
-    t->column = swap;
-  }
+    COPY(*line, a->p, t->n);
   return OK;
 }
 
 status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
-  memset(t, 0, sizeof *t);
   if (!source_has(s, group))
     RAISE(ERR_DECK, "%s: there is no group %s", s->path, group);
   PASS(group_int(s, group, "m", &t->rows));
@@ -127,19 +103,23 @@ status triplets_size(const hdf5_source *s, const char *group, triplets *t) {
 }
 
 status triplets_read(const hdf5_source *s, const char *group, triplets *t) {
-  ENDS_BY(arrays_free) arrays a = {.s = s, .group = group};
+  const long most = MOST_ITEMS;
+  char name[NAME];
+  arrays a = {.s = s, .group = group};
   PASS(triplets_size(s, group, t));
   PASS(group_int(s, group, "nz", &a.nz));
   if (a.nz < BY_ROW)
     RAISE(ERR_DECK, "%s: %s/nz = %d; expected a number of entries, -1 or -2",
           s->path, group, a.nz);
-  PASS(read_arrays(&a));
-  return fill(&a, t);
-}
-
-void triplets_free(triplets *t) {
-  RELEASE(t->row, t->column, t->value);
-  memset(t, 0, sizeof *t);
+  /* Those of a matrix without entries may be missing. */
+  int **i = a.nz == BY_ROW ? &t->column : &t->row;
+  OWNED_OF(int, p,
+           source_ints(s, name_of(name, group, "p"), 1, most, &a.n_p, &p));
+  PASS(source_ints(s, name_of(name, group, "i"), 1, most, &a.n_i, i));
+  PASS(source_reals(s, name_of(name, group, "x"), 1, most, &a.n_x, &t->value));
+  a.p = p;
+  a.i = *i;
+  return fill(&a, t, a.nz == BY_ROW ? &t->row : &t->column);
 }
 
 void triplets_dense(const triplets *t, double *a) {

@@ -103,8 +103,7 @@ static void put_blocks(columns *w) {
   }
 }
 
-/* Scaled lower triangle in elimination order, f->pinned included; *out is new.
- */
+/* Scaled lower triangle in elimination order, with f->pinned; *out is new. */
 static status body_factor_matrix(const stiffness *k, const body_factor *f,
                                  const long *number, cholmod_common *cm,
                                  cholmod_sparse **out) {

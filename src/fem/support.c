@@ -106,25 +106,17 @@ static int number_sets(int n_elem, int *up, int *id) {
 
 /* Number the pieces body by body; body_of[n_elem]. */
 static status sort_pieces(const mesh *m, const int *body_of, pieces *p) {
-  OWNED int *count = NULL, *number = NULL;
+  OWNED int *count = NULL, *number = NULL, *first = NULL;
   PASS_NEW_ALL(OF(count, p->n_body + 1), OF(number, p->n_piece),
-               OF(p->body, p->n_piece), OF(p->piece_elem, p->n_piece));
-  for (int q = 0; q < p->n_piece; ++q) number[q] = -1;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (int e = 0; e < m->n_elem; ++e) {
-      int *q = &number[p->piece[e]];
-      if (pass == 0 && *q < 0) {
-        *q = body_of[e];
-        ++count[*q + 1];
-      } else if (pass == 1 && *q < 0) {
-        *q = count[body_of[e]]++;
-        p->body[*q] = body_of[e];
-        p->piece_elem[*q] = e;
-      }
-    }
-    if (pass == 1) break;
-    for (int b = 0; b < p->n_body; ++b) count[b + 1] += count[b];
-    for (int q = 0; q < p->n_piece; ++q) number[q] = -1;
+               OF(first, p->n_piece), OF(p->body, p->n_piece),
+               OF(p->piece_elem, p->n_piece));
+  for (int e = m->n_elem; e-- > 0;) first[p->piece[e]] = e;
+  for (int q = 0; q < p->n_piece; ++q) ++count[body_of[first[q]] + 1];
+  for (int b = 0; b < p->n_body; ++b) count[b + 1] += count[b];
+  for (int q = 0; q < p->n_piece; ++q) {
+    const int b = body_of[first[q]], k = number[q] = count[b]++;
+    p->body[k] = b;
+    p->piece_elem[k] = first[q];
   }
   for (int e = 0; e < m->n_elem; ++e) p->piece[e] = number[p->piece[e]];
   return OK;
@@ -165,13 +157,6 @@ typedef struct body_sets {
   int *start, *node; /* [n_body+1] nodes of that set: its own, and nodes at
                         rest that have masters in it, ascending */
 } body_sets;
-
-static void sets_release(body_sets *s) {
-  RELEASE(s->p.piece, s->p.body, s->p.piece_elem, s->p.start, s->p.elem);
-  RELEASE(s->first_piece, s->at, s->body, s->contact, s->tie, s->set, s->column,
-          s->n, s->start, s->node);
-  *s = (body_sets){0};
-}
 
 static void find_nodes(body_sets *s) {
   const domain *d = s->d;
@@ -214,7 +199,7 @@ static void measure_bodies(body_sets *s, double *low, double *high) {
   }
 }
 
-/* Bodies and pieces, each body a set. Fails with s empty. */
+/* Bodies and pieces, each body a set. */
 static status sets_find(const domain *d, body_sets *s) {
   const int n_node = d->mesh->n_node;
   *s = (body_sets){.d = d};
@@ -358,15 +343,10 @@ static status triangle_new(const body_sets *s, int id, int closed,
   return OK;
 }
 
-static void triangle_release(triangle *t) {
-  RELEASE(t->r, t->end, t->owner, t->row);
-}
-
 /* Rotate the next condition into the triangle. */
 static void add_row(triangle *t) {
   double *row = t->row;
-  /* Is the next condition more than rounding? A pair within one piece has none.
-   */
+  /* Is the condition more than rounding? A pair within one piece has none. */
   double most = 0;
   for (int k = t->first; k < t->last; ++k) most = fmax(most, fabs(t->row[k]));
   const int adds = most > exact_limit * t->most;
@@ -672,28 +652,28 @@ static status keep_motions(const finder *f, rigid_motions *r) {
   return OK;
 }
 
+static status find_spaces(const body_sets *s, int id, finder *f) {
+  PASS(triangle_new(s, id, 1, &f->t));
+  const int n = f->t.n;
+  add_supports(&f->t);
+  PASS(null_space(&f->t, &f->of[HELD_BY_CONTACT]));
+  if (f->of[HELD_BY_CONTACT].rank == 0) return OK;
+  for (int by = HELD_BY_CONTACT; by > HELD_BY_NOTHING; --by) {
+    add_contact(&f->t, (motion_hold)by);
+    PASS(null_space(&f->t, &f->of[by - 1]));
+  }
+  PASS_NEW_ALL(OF(f->known, (size_t)n * n), OF(f->rest, n), OF(f->part, n));
+  return OK;
+}
+
 static status set_motions(const body_sets *s, int id, motion_list *list,
                           rigid_motions *r) {
-  status st = OK;
-  finder f = {0};
-  TRY(triangle_new(s, id, 1, &f.t));
-  const int n = f.t.n;
-  add_supports(&f.t);
-  TRY(null_space(&f.t, &f.of[HELD_BY_CONTACT]));
-  if (f.of[HELD_BY_CONTACT].rank == 0) goto done;
-  if (r != NULL) TRY(keep_motions(&f, r));
-  for (int by = HELD_BY_CONTACT; by > HELD_BY_NOTHING; --by) {
-    add_contact(&f.t, (motion_hold)by);
-    TRY(null_space(&f.t, &f.of[by - 1]));
-  }
-  NEW_ALL(OF(f.known, (size_t)n * n), OF(f.rest, n), OF(f.part, n));
+  OWNED_PARTS(finder, f, find_spaces(s, id, &f));
+  if (f.of[HELD_BY_CONTACT].rank == 0) return OK;
+  if (r != NULL) PASS(keep_motions(&f, r));
   for (int hold = HELD_BY_NOTHING; hold <= HELD_BY_CONTACT; ++hold)
-    TRY(append_motions(&f, (motion_hold)hold, list));
-done:
-  triangle_release(&f.t);
-  for (int i = 0; i <= HELD_BY_CONTACT; ++i) memory_free(f.of[i].Z);
-  RELEASE(f.known, f.rest, f.part);
-  return st;
+    PASS(append_motions(&f, (motion_hold)hold, list));
+  return OK;
 }
 
 /* 1: supports, hinges and ties leave the set no motion. */
@@ -732,24 +712,20 @@ static status keep_places(const body_sets *s, rigid_motions *r) {
 
 status support_motions(const domain *d, int *n, free_motion **list,
                        rigid_motions *r) {
-  status st = OK;
-  body_sets s = {0};
   motion_list found = {0};
-  TRY(sets_find(d, &s));
-  if (sets_linked(&s)) TRY(drop_bodies_at_rest(&s));
+  *n = 0;
+  *list = NULL;
+  OWNED_PARTS(body_sets, s, sets_find(d, &s));
+  if (sets_linked(&s)) PASS(drop_bodies_at_rest(&s));
   sets_join(&s, TIES_AND_PAIRS);
-  if (r != NULL) TRY(keep_places(&s, r));
-  for (int id = 0; id < s.p.n_body; ++id)
-    if (s.set[id] == id) TRY(set_motions(&s, id, &found, r));
-done:
-  sets_release(&s);
-  if (st != OK) {
-    memory_free(found.item);
-    found = (motion_list){0};
+  if (r != NULL) PASS(keep_places(&s, r));
+  for (int id = 0; id < s.p.n_body; ++id) {
+    const status st = s.set[id] == id ? set_motions(&s, id, &found, r) : OK;
+    *list = found.item;
+    if (st != OK) return st;
   }
   *n = found.n;
-  *list = found.item;
-  return st;
+  return OK;
 }
 
 status domain_free_motions(const domain *d, int *n, free_motion **list) {

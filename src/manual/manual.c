@@ -166,8 +166,7 @@ static void list_integrators(FILE *out) {
             scheme_list[i]->reference, scheme_list[i]->help);
 }
 
-/* The scenes that have a column, if not all; its dataset, if of another name.
- */
+/* The scenes that have a column, if not all; its dataset, if named apart. */
 static void print_column(const column *c, FILE *out) {
   static const struct {
     unsigned bit;

@@ -2,8 +2,7 @@
 #include "effects/rows.h"
 #include "output/writers.h"
 
-/* RFC 8259, UTF-8, one value after the other. A comma is due: a flag a depth.
- */
+/* RFC 8259, UTF-8, value after value. A comma is due: a flag a depth. */
 typedef struct json {
   FILE *f;
   int depth;

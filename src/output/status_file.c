@@ -121,8 +121,7 @@ void progress_line(const char *text) {
   fflush(stderr);
 }
 
-/* Increments after this one: of its step at its dt, of the steps that follow.
- */
+/* Increments after this one: of its step at its dt, of the steps after it. */
 static double increments_left(const model *m, const state *s) {
   const step *now = &m->steps[s->step_no - 1];
   double n = step_increments_left(now, s->t, s->dt, s->increment_no);

@@ -559,8 +559,7 @@ static double contact_power(const trial *a, const trial *b, int dim) {
 }
 
 /* now: of the mesh of the deck, with its goals. A mesh on which some goal has
- * no estimate yet is followed by another, up to GROWN times that of the deck.
- */
+ * no estimate yet is followed by another, up to GROWN times the first. */
 static status forecast_goals(const command *c, job_input *in, trial *now) {
   enum { LEAST = 2, MOST = 4, GROWN = 8 };
   static const double part = 0.3;

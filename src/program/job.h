@@ -164,8 +164,7 @@ int aims_stand_still(const aims *a);
 /* Largest error of the contact solver over that share of what is allowed, -. */
 double aims_solver(const aims *a, const model *m, double share);
 /* size[n_node] of the next mesh made smaller where a goal requires that;
- * eta[n_elem]: errors of the elements in the energy norm, or NULL. ERR_MEMORY.
- */
+ * eta[n_elem]: energy norm of the error of each, or NULL. ERR_MEMORY. */
 status aims_sizes(aims *a, const model *m, const mesh *msh, const double *eta,
                   double *size);
 /* In the place of the targets: the errors shall fall to that part. */

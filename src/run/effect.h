@@ -183,11 +183,9 @@ typedef struct effect_ops {
               files; or NO_BIT */
   /* 1: the model requires it; the card or fact that does, or why none does. */
   int (*required)(const model *m, const reason *why);
-  /* Work expected before anything is solved; NULL: none, no row in the plan.
-   */
+  /* Work expected before anything is solved; NULL: no row in the plan. */
   effect_work (*expected)(const plan_sizes *s);
-  /* Of the hooks; 0: one of its name is made; STAGE_NONE: they are not timed.
-   */
+  /* Of the hooks; 0: one of its name is made; STAGE_NONE: not timed. */
   stage own;
   stage more[EFFECT_STAGES]; /* of run and outputs that count as it, 0 ends */
   const char *within;        /* the effect that it is part of; no stage then */

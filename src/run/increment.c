@@ -298,8 +298,7 @@ static status take_before(const run *r, double **out) {
   return OK;
 }
 
-/* Displacements of all nodes; a body that no force holds is put to its place.
- */
+/* Displacements of all nodes; a body that no force holds is put in place. */
 static status recover(run *r, const double *F) {
   OWNED double *before = NULL;
   double *u = run_rows(r, 0, r->now.uc), *f = run_rows(r, 1, r->now.rc);

@@ -67,6 +67,7 @@ status visco_new(run *r) {
   TIMED(STAGE_INELASTIC);
   PASS_NEW(v, 1);
   r->strains.visco = v;
+  OWNS(v);
   OWNED_NEW(int, kind_of, r->m->n.section);
   PASS(new_kinds(r, &v->x, kind_of));
   PASS(new_points(r, v, kind_of));
@@ -84,14 +85,7 @@ void visco_free(visco *v) {
   if (v == NULL) return;
   for (int i = 0; i < SLOTS; ++i) matrices_free(&v->slot[i]);
   matrices_free(&v->fresh);
-  flow_state_free(&v->old);
-  flow_state_free(&v->now);
-  flow_state_free(&v->middle);
-  memory_free(v->fine);
-  scheme_work_free(v->work);
-  flow_free(&v->x);
-  RELEASE(v->place, v->elem, v->E, v->stress, v->section_id, v->kin,
-          v->thickness, v);
+  memory_free(v);
 }
 
 void visco_add_strains(const run *r, double *e0) {

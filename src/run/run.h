@@ -365,7 +365,7 @@ void visco_show(const run *r, state *s); /* view of the outputs */
 void run_change_moduli(run *r);
 void visco_new_solvers(run *r); /* for a step with the same supports */
 void visco_forget(run *r);      /* matrices are made again */
-/* visco.c, at the start of any step: the strains of r->now are those of r->old.
+/* visco.c, at the start of a step: the strains of r->now are those of r->old.
  */
 void visco_rest(run *r);
 /* At the start of a *VISCO step: stresses of r->old. */
@@ -389,8 +389,7 @@ void visco_take(run *r);
 status visco_accept(run *r);
 status visco_keep(run *r, archive *a);
 
-/* increment.c: the equilibrium at time t into r->now; read r->solving.report.
- */
+/* increment.c: equilibrium at time t into r->now; read r->solving.report. */
 status increment_solve(run *r, double t);
 /* Largest of the loads F[dim*n_node] that no support bears at once, N. */
 double increment_free_load(const run *r, const double *F);

@@ -88,13 +88,14 @@ static status factor_constant(run *r, int again, const domain *d, matrices *m) {
   return again ? factor_again(d, m) : factor(d, m);
 }
 
-/* Each point a section of its own. */
+/* Each point a section of its own, with room for its E. */
 static status new_sections(run *r) {
   visco *v = r->strains.visco;
   const moduli *own = &r->body.moduli;
   int n = own->n + v->x.n;
+  OWNS(v->work);
   PASS_NEW_ALL(OF(v->section_id, r->msh->n_elem), OF(v->kin, n),
-               OF(v->thickness, n));
+               OF(v->thickness, n), OF(v->E, visco_at(r, r->m->ns) * n));
   COPY(v->section_id, r->body.d.section_id, r->msh->n_elem);
   COPY(v->kin, own->kin, own->n);
   COPY(v->thickness, own->thickness, own->n);
@@ -110,8 +111,7 @@ static status new_sections(run *r) {
 static status fresh_domain(run *r, const flow_tangent *law, domain *d) {
   visco *v = r->strains.visco;
   size_t square = visco_at(r, r->m->ns), n = r->body.moduli.n;
-  if (v->section_id == NULL) PASS(new_sections(r));
-  if (v->E == NULL) PASS_NEW(v->E, square * (n + v->x.n));
+  if (v->E == NULL) PASS(new_sections(r));
   COPY(v->E, r->body.moduli.E, square * n);
   COPY(v->E + square * n, law->D, square * v->x.n);
   v->E_is_fresh = 1;
@@ -268,7 +268,7 @@ static status keep_fresh(run *r, archive *a) {
   PASS(archive_ints(a, "fresh", &there, 1));
   if (archive_reads(a)) v->E_is_fresh = there;
   if (!there) return OK;
-  if (v->E == NULL) PASS_NEW(v->E, square * (n + v->x.n));
+  if (v->E == NULL) PASS(new_sections(r));
   PASS(archive_reals(a, "tangents", v->E + square * n, square * v->x.n));
   return matrices_keep(&v->fresh, a, "fresh_solver");
 }

@@ -227,7 +227,6 @@ equilibrium start_point_use(run *r, const start_point *p) {
 /* From r->now, which is temporarily the accepted state, to t. */
 static status second_half(run *r, double t) {
   visco *v = r->strains.visco;
-  if (v->middle.e == NULL) PASS(flow_state_new(&v->x, &v->middle));
   OWNED_PARTS(start_point, p, start_point_new(r, &p));
   start_point_copy(r, &r->now, &p);
   flow_state_copy(&v->x, &v->now, &v->middle);
@@ -241,7 +240,11 @@ static status second_half(run *r, double t) {
 static status two_halves(run *r, double t) {
   visco *v = r->strains.visco;
   size_t n = visco_at(r, v->x.n);
-  if (v->fine == NULL) PASS_NEW(v->fine, n);
+  if (v->fine == NULL) {
+    OWNS(v);
+    PASS_NEW(v->fine, n);
+    PASS(flow_state_new(&v->x, &v->middle));
+  }
   r->course.shadow = 1;
   status st = advance(r, 0.5 * (r->old.t + t));
   if (st == OK && r->solving.report.outcome > 0) st = second_half(r, t);

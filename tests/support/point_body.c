@@ -106,6 +106,8 @@ void point_body_new(const point_input *in, const point_drive *drive,
                                 SOLID_3D, &b->c),
                    1);
   b->drive = *drive;
+  b->parts = memory_new(1, 1);
+  OWNS(b->parts);
   b->x.ns = 6;
   b->x.n_kind = 1;
   b->x.kind = memory_new(1, sizeof *b->x.kind);
@@ -121,10 +123,7 @@ void point_body_new(const point_input *in, const point_drive *drive,
 }
 
 void point_body_free(point_body *b) {
-  scheme_work_free(b->work);
-  flow_state_free(&b->old);
-  flow_state_free(&b->now);
-  flow_free(&b->x);
+  memory_free(b->parts);
   law_case_free(&b->c);
 }
 

@@ -21,6 +21,7 @@ typedef struct point_body {
   flow x;
   flow_state now, old;
   scheme_work *work;
+  char *parts;          /* owns all of them                                   */
   scheme_result result; /* of the last step                                   */
   int n_equilibrium, n_linear; /* asked for                                   */
 } point_body;

@@ -65,11 +65,6 @@ status frozen_new(const contact_problem *cp, const double *r,
   return OK;
 }
 
-void frozen_free(frozen_problem *p) {
-  RELEASE(p->B.val, p->f, p->gap, p->g0, p->r);
-  *p = (frozen_problem){0};
-}
-
 /* ---- The fixed point of Theorem 3.2 of CPR98: rate and constants
  * (theorems.h). */
 

@@ -273,14 +273,13 @@ static mu_regime regime_of(const theorems_contact *row) {
 /* The measured rate of one row, the limits of other contacts fixed. */
 static status measure(const theorems_scene *s, const frozen_problem *p,
                       unsigned char *keep, theorems_contact *row) {
-  ENDS_BY(frozen_free) frozen_problem part = {0};
   row->rate = 0.0;
-  if (row->contact_id >= 0) {
-    mark_contact(s, &p->cp, row->contact_id, keep);
-    PASS(frozen_new(&p->cp, p->r, keep, NULL, &part));
-  }
-  const contact_problem *cp = row->contact_id >= 0 ? &part.cp : &p->cp;
-  if (cp->B != NULL) PASS(contraction_limit(cp, s->u, p->r, &row->rate));
+  memset(keep, 1, p->cp.n);
+  if (row->contact_id >= 0) mark_contact(s, &p->cp, row->contact_id, keep);
+  OWNED_PARTS(frozen_problem, part,
+              frozen_new(&p->cp, p->r, keep, NULL, &part));
+  if (p->cp.B != NULL)
+    PASS(contraction_limit(&part.cp, s->u, p->r, &row->rate));
   row->suggested = row->rate > 0.0 ? row->mu / row->rate : HUGE_VAL;
   row->regime = regime_of(row);
   return OK;

@@ -169,7 +169,6 @@ typedef struct frozen_problem {
 status frozen_new(const contact_problem *cp, const double *r,
                   const unsigned char *keep_row, const unsigned char *given,
                   frozen_problem *out);
-void frozen_free(frozen_problem *p); /* accepts all-zero */
 
 /*
  * normal, tangent and factor of the friction that the rows of cp->B say; with

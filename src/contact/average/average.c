@@ -9,7 +9,7 @@
 
 /* ---- where distances are measured: on the patch itself, or on its lines laid
  * out straight. The straight layout copies the patch; the geodesic one follows
- * the lines and lays each out on a row of its own, too far apart to interact.
+ * the lines and lays each out on its own row, too far apart to interact. ----
  */
 
 typedef struct layout {

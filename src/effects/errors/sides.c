@@ -148,8 +148,7 @@ status free_sides_energy(const run *r, int n, const int *side, double *energy) {
   return OK;
 }
 
-/* ---- curved surfaces ------------------------------------------------------
- */
+/* ---- curved surfaces ----------------------------------------------------- */
 
 static const double SMOOTH = 0.86; /* -, cosine between faces of a surface */
 
@@ -246,8 +245,7 @@ typedef struct entered_face {
   int moves;                 /* 1: contact alone holds one along its normal */
 } entered_face;
 
-/* How deep the obstacle is at the point of b[dim], m, more than at the nodes.
- */
+/* How deep the obstacle is at the point of b[dim] beyond that at nodes, m. */
 static double depth_at(const entered_face *f, const double *b) {
   const int dim = f->r->msh->dim;
   double x[3] = {0.0}, n[3] = {0.0}, free = 0.0;

@@ -53,7 +53,6 @@ static status theorems_scene_new(run *r, const equilibrium *e,
 
 typedef struct body_map {
   run *r;
-  matrices own; /* where those of the run are of other moduli */
   condensed *c; /* of the elastic body, borrowed */
   frozen_problem problem;
   linear_contact *contact;
@@ -64,20 +63,17 @@ typedef struct body_map {
   int begun;          /* 0: e0 is there */
 } body_map;
 
-static status elastic_body(run *r, body_map *b) {
-  b->c = r->elastic.c;
+/* own: where those of the run are of other moduli. */
+static status elastic_body(run *r, matrices *own) {
   if (!r->body.stale) return OK;
-  PASS(stiffness_assemble(&r->body.d, &b->own.k));
-  PASS(condense(b->own.k, &r->body.d, &b->own.c));
-  b->c = b->own.c;
-  return OK;
+  PASS(stiffness_assemble(&r->body.d, &own->k));
+  return condense(own->k, &r->body.d, &own->c);
 }
 
 /* The contact of the elastic body, limit given, in the present states. */
 static status linear_body(run *r, const unsigned char *given, body_map *b) {
   contact_problem cp = r->problem.cp;
   OWNED_NEW(unsigned char, none, r->nodes.n);
-  PASS(elastic_body(r, b));
   cp.A = condensed_matrix(b->c);
   cp.op = condensed_operator(b->c);
   PASS(frozen_new(&cp, run_rows(r, 1, r->now.rc), none, given, &b->problem));
@@ -85,10 +81,12 @@ static status linear_body(run *r, const unsigned char *given, body_map *b) {
                             b->problem.r, &b->contact);
 }
 
-static status body_map_new(run *r, const unsigned char *given, body_map *b) {
+static status body_map_new(run *r, const unsigned char *given, condensed *c,
+                           body_map *b) {
   const visco *v = r->strains.visco;
   const size_t ns = r->m->ns, n = v->x.n;
   b->r = r;
+  b->c = c;
   PASS_NEW(b->Q, ns * ns * n);
   PASS_NEW_REALS(ns * r->strains.eigen.n, &b->e0, &b->sigma);
   PASS_NEW_REALS(r->n_dof, &b->F, &b->u);
@@ -99,12 +97,6 @@ static status body_map_new(run *r, const unsigned char *given, body_map *b) {
       b->e0[visco_at(r, v->place[k]) + i] =
           sin(1.0 + 2.0 * (double)(visco_at(r, k) + i));
   return OK;
-}
-
-static void body_map_free(body_map *b) {
-  matrices_free(&b->own);
-  frozen_free(&b->problem);
-  RELEASE(b->contact, b->Q, b->e0, b->sigma, b->F, b->u, b->f, b->du);
 }
 
 /* e0 = Q sigma of all points. */
@@ -155,13 +147,16 @@ static double theta_of(const step *s) {
 static status see_path(run *r, const unsigned char *given, checked *own) {
   visco *v = r->strains.visco;
   theorems_path *out = &own->report.path;
-  ENDS_BY(body_map_free) body_map b = {0};
+  ENDS_BY(matrices_free) matrices elastic = {0};
   if (v == NULL || r->step->kind != STEP_VISCO) return OK;
   const scheme_step p = {
       .t = r->now.t, .dt = r->now.t - r->old.t, .theta = theta_of(r->step)};
-  const stress_map map = {&b, answer_of_body};
   *out = (theorems_path){.asked = 1};
-  PASS(body_map_new(r, given, &b));
+  PASS(elastic_body(r, &elastic));
+  OWNED_PARTS(
+      body_map, b,
+      body_map_new(r, given, r->body.stale ? elastic.c : r->elastic.c, &b));
+  const stress_map map = {&b, answer_of_body};
   PASS(flow_compliance(&v->x, &p, &v->old, &v->now, b.Q, &out->bound));
   if (b.contact == NULL)
     out->why = "nothing holds what is free under given friction";

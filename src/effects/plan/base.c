@@ -227,40 +227,28 @@ int plan_requires_table(const model *m, int table, const reason *why) {
   return plan_says(0, why, "no *PRINT, %s", print_word(table));
 }
 
-static effect_work held_rows(const plan_sizes *s) {
-  return plan_table(s, PRINT_REACTIONS, s->held);
-}
-
-#define TABLE_ROWS(name, bit, all)                      \
-  static effect_work name##_rows(const plan_sizes *s) { \
-    return plan_table(s, bit, all);                     \
-  }
-TABLE_ROWS(contact, PRINT_CONTACT, s->contact)
-TABLE_ROWS(totals, PRINT_TOTALS, s->m->n.contact)
-TABLE_ROWS(nodes, PRINT_NODES, s->nodes)
-TABLE_ROWS(elements, PRINT_ELEMENTS, s->elements)
-TABLE_ROWS(energy, PRINT_ENERGY, 1.0)
-
-#define TABLE(row, text, bit_, of_, rows_)                       \
+/* all: rows of the table of everything. */
+#define TABLE(row, text, bit_, of_, all)                         \
   static int requires_##row(const model *m, const reason *why) { \
     return plan_requires_table(m, bit_, why);                    \
+  }                                                              \
+  static effect_work row##_rows(const plan_sizes *s) {           \
+    return plan_table(s, bit_, all);                             \
   }                                                              \
   const effect_ops row##_effect = {.name = text,                 \
                                    .bit = NO_BIT,                \
                                    .required = requires_##row,   \
-                                   .expected = rows_,            \
+                                   .expected = row##_rows,       \
                                    .table = {bit_, of_}};
 TABLE(contact_table, "table of contact nodes", PRINT_CONTACT, PER_CONTACT_NODE,
-      contact_rows)
+      s->contact)
 TABLE(totals_table, "table of resultants", PRINT_TOTALS, PER_CONTACT,
-      totals_rows)
-TABLE(nodes_table, "table of nodes", PRINT_NODES, PER_NODE, nodes_rows)
+      s->m->n.contact)
+TABLE(nodes_table, "table of nodes", PRINT_NODES, PER_NODE, s->nodes)
 TABLE(elements_table, "table of elements", PRINT_ELEMENTS, PER_ELEMENT,
-      elements_rows)
-TABLE(energy_table, "table of energies", PRINT_ENERGY, PER_INCREMENT,
-      energy_rows)
-TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, PER_NODE,
-      held_rows)
+      s->elements)
+TABLE(energy_table, "table of energies", PRINT_ENERGY, PER_INCREMENT, 1.0)
+TABLE(reactions_table, "table of reactions", PRINT_REACTIONS, PER_NODE, s->held)
 
 static int requires_fields(const model *m, const reason *why) {
   for (int i = 0; i < m->n.step; ++i)

@@ -150,8 +150,7 @@ typedef struct law_ops {
   int (*series)(const law_point *p, int part, int k, law_unit *unit);
   /* Adds the strains of the units in alpha, whose sum e^i is, to sum[ns]: 1 if
    * its rest is that of a dashpot, 0: none. "only", alpha again or NULL: gets
-   * e^i first if there is but one unit and no dashpot. NULL: no such strains.
-   */
+   * e^i first if there is but one unit, no dashpot. NULL: no such strains. */
   int (*units)(const law_point *p, double *only, double *sum);
   /* 0 if every rate is exactly zero at the point; NULL: the law always flows */
   int (*flows)(const law_point *p);

@@ -36,15 +36,6 @@ status flow_new_points(flow *x, int n, const int *kind_id) {
   return OK;
 }
 
-void flow_kind_free(flow_kind *k) { FORGET(k->value); }
-
-void flow_free(flow *x) {
-  for (int i = 0; x->kind != NULL && i < x->n_kind; ++i)
-    flow_kind_free(&x->kind[i]);
-  RELEASE(x->kind, x->kind_id, x->alpha_at, x->weight, x->tally);
-  memset(x, 0, sizeof *x);
-}
-
 static size_t components(const flow *x) { return (size_t)x->ns * x->n; }
 
 status flow_state_new(const flow *x, flow_state *s) {
@@ -52,11 +43,6 @@ status flow_state_new(const flow *x, flow_state *s) {
                OF(s->sigma, components(x)), OF(s->alpha, x->alpha_at[x->n]),
                OF(s->temperature, x->n));
   return OK;
-}
-
-void flow_state_free(flow_state *s) {
-  RELEASE(s->e, s->ei, s->sigma, s->alpha, s->temperature);
-  memset(s, 0, sizeof *s);
 }
 
 void flow_state_copy(const flow *x, const flow_state *from, flow_state *to) {
@@ -74,7 +60,7 @@ status flow_heat(flow_kind *kind, double temperature) {
   return law_elastic_read(el->table, temperature, el->kin, el);
 }
 
-void law_sample_free(law_sample *x) { flow_kind_free(&x->kind); }
+void law_sample_free(law_sample *x) { FORGET(x->kind.value); }
 
 status law_sample_at(const elastic_table *elastic, const law_card *law,
                      kinematics kin, double t, law_sample *x) {
@@ -249,7 +235,8 @@ void sum_scaled(size_t n, const double *x, double a, const double *v,
   for (size_t i = 0; i < n; ++i) y[i] = x[i] + a * v[i];
 }
 
-status need(double **array, size_t n) {
+status need(scheme_work *w, double **array, size_t n) {
+  OWNS(w);
   if (*array == NULL) PASS_NEW(*array, n);
   return OK;
 }

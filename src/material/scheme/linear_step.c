@@ -7,7 +7,11 @@
 #include "base/base.h"
 #include "material/voigt.h"
 
-void linear_map_free(linear_map *m) { RELEASE(m->P, m->Q0, m->Q1, m->Q); }
+status linear_map_new(int ns, size_t n, linear_map *m) {
+  PASS_NEW_ALL(OF(m->P, n * n), OF(m->Q0, n * ns), OF(m->Q1, n * ns),
+               OF(m->Q, n * ns));
+  return OK;
+}
 
 /* Deviator and mean are treated separately if the elasticity is isotropic. */
 static int is_series(const flow_kind *k) {
@@ -23,10 +27,6 @@ status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
   const int ns = k->elastic.ns, n = ns + k->n_alpha, series = is_series(k);
   const int general = !series && k->law->ops->relaxing == NULL;
   m->n = n;
-  PASS(need(&m->P, n * n));
-  PASS(need(&m->Q0, n * ns));
-  PASS(need(&m->Q1, n * ns));
-  PASS(need(&m->Q, n * ns));
   if (series)
     PASS(series_map(k, p, exact, m, D));
   else if (!general)
@@ -47,9 +47,12 @@ static status linear_maps(const flow *x, const scheme_step *p, int exact,
       w->made.exact == exact)
     return OK;
   w->made.dt = 0.0;
-  if (w->map == NULL) PASS_NEW(w->map, x->n_kind);
-  w->n_kind = x->n_kind;
-  PASS(need(&w->D_kind, square * x->n_kind));
+  if (w->map == NULL) {
+    OWNS(w);
+    PASS_NEW_ALL(OF(w->map, x->n_kind), OF(w->D_kind, square * x->n_kind));
+    for (int i = 0; i < x->n_kind; ++i)
+      PASS(linear_map_new(x->ns, x->ns + x->kind[i].n_alpha, &w->map[i]));
+  }
   for (int i = 0; i < x->n_kind; ++i)
     PASS(linear_map_make(&x->kind[i], p, exact, &w->map[i],
                          w->D_kind + square * i));
@@ -117,6 +120,7 @@ static status map_between(const scheme_call *a, int kind, linear_map *m,
   scheme_step part = *a->p;
   part.t = mid->t;
   part.dt = mid->t - a->old->t;
+  PASS(linear_map_new(x->ns, x->ns + x->kind[kind].n_alpha, m));
   PASS(linear_map_make(&x->kind[kind], &part, 1, m, D));
   for (int k = 0; k < x->n; ++k) {
     const size_t at = (size_t)x->ns * k;
@@ -132,8 +136,7 @@ static status map_between(const scheme_call *a, int kind, linear_map *m,
 status exponential_between(const scheme_call *a, flow_state *mid) {
   double D[36];
   for (int i = 0; i < a->x->n_kind; ++i) {
-    ENDS_BY(linear_map_free) linear_map m = {0};
-    PASS(map_between(a, i, &m, D, mid));
+    OWNED_PARTS(linear_map, m, map_between(a, i, &m, D, mid));
   }
   return OK;
 }

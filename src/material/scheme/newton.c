@@ -42,7 +42,6 @@ typedef struct point_step {
 
 static status point_step_new(const flow *x, point_step *l) {
   int ns = x->ns, na = x->most_alpha, n = ns + na;
-  memset(l, 0, sizeof *l);
   PASS_NEW_ALL(OF(l->pivot, n),
                OF(l->work, na + 5 * n + n * n + n * ns + 2 * ns * ns +
                                2 * ns * na + na * na));
@@ -61,8 +60,6 @@ static status point_step_new(const flow *x, point_step *l) {
   l->j.alpha_alpha = l->j.alpha_sigma + na * ns;
   return OK;
 }
-
-static void point_step_free(point_step *l) { RELEASE(l->work, l->pivot); }
 
 /* The elasticity at the end of the step as l->E + l->bulk m m', m = (1, 1, 1,
  * 0, ...), with Lame's constants diag(2 G) + lambda m m': near nu = 1/2 the
@@ -332,9 +329,8 @@ status flow_compliance(const flow *x, const scheme_step *p,
                        const flow_state *old, const flow_state *now, double *Q,
                        double *largest) {
   const size_t square = x->ns * x->ns;
-  ENDS_BY(point_step_free) point_step l = {0};
+  OWNED_PARTS(point_step, l, point_step_new(x, &l));
   *largest = 0.0;
-  PASS(point_step_new(x, &l));
   for (int k = 0; k < x->n; ++k) {
     double size = 0.0, *own = Q + square * k;
     PASS(compliance_at(x, p, k, old, now, &l, own));
@@ -353,13 +349,13 @@ static const double stress_tol = 1e-10;
 /* Workspace of one point. */
 typedef struct point_work {
   point_step l;
-  linear_map map; /* of a linear law, made when first needed */
+  linear_map map; /* of a linear law */
   double D[36];   /* [ns*ns] that it leaves, Pa */
 } point_work;
 
-static void point_work_free(point_work *r) {
-  point_step_free(&r->l);
-  linear_map_free(&r->map);
+static status point_work_new(const flow *x, point_work *r) {
+  PASS(point_step_new(x, &r->l));
+  return linear_map_new(x->ns, x->ns + x->most_alpha, &r->map);
 }
 
 static int has_map(const flow *x, int k) {
@@ -370,17 +366,12 @@ static int has_map(const flow *x, int k) {
 /* Point k by the map: r->l.y and r->D. */
 static status follow_map(const scheme_call *a, int k, point_work *r) {
   const flow *x = a->x;
-  const size_t ns = x->ns, n = ns + x->most_alpha;
   point_step *l = &r->l;
   flow_kind now = x->kind[x->kind_id[k]];
   if (now.varies != 0) {
     now.value = l->value;
     now.speed = l->p.speed;
   }
-  PASS(need(&r->map.P, n * n));
-  PASS(need(&r->map.Q0, n * ns));
-  PASS(need(&r->map.Q1, n * ns));
-  PASS(need(&r->map.Q, n * ns));
   PASS(linear_map_make(&now, a->p, 0, &r->map, r->D));
   linear_at(x, &r->map, k, a->old, l->e, l->y);
   return OK;
@@ -489,13 +480,12 @@ status newton_advance(const scheme_call *a) {
   int stalled = 0;
   scheme_work *w = a->w;
   scheme_result *out = a->out;
-  ENDS_BY(point_work_free) point_work r = {0};
-  PASS(point_step_new(x, &r.l));
+  OWNED_PARTS(point_work, r, point_work_new(x, &r));
   size_t n = (size_t)x->ns * x->n;
-  PASS(need(&w->sigma_k, n));
-  PASS(need(&w->e_k, n));
-  PASS(need(&w->linear, n));
-  if (!p->initial) PASS(need(&w->D, n * x->ns));
+  PASS(need(w, &w->sigma_k, n));
+  PASS(need(w, &w->e_k, n));
+  PASS(need(w, &w->linear, n));
+  if (!p->initial) PASS(need(w, &w->D, n * x->ns));
   a->now->t = p->t;
   PASS(a->b->begin(a->b->ctx, a->now));
   COPY(a->now->e, a->old->e, (size_t)x->ns * x->n);

@@ -52,8 +52,8 @@ static status rates(const scheme_call *a, const flow_state *s, int i,
     a->out->settled = 0;
     return OK;
   }
-  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * a->x->n));
-  PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
+  PASS(need(w, &w->ei_rate[i], (size_t)a->x->ns * a->x->n));
+  PASS(need(w, &w->alpha_rate[i], a->x->alpha_at[a->x->n]));
   PASS(flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], &power));
   a->out->dissipated += part * power;
   return OK;
@@ -74,7 +74,7 @@ static status heun_advance(const scheme_call *a) {
   PASS(rates(a, a->now, 1, h / 2));
   PASS(add_stage(a, h, (double[STAGES]){h / 2, h / 2}));
   if (!a->out->settled) return OK;
-  PASS(need(&w->e_k, n));
+  PASS(need(w, &w->e_k, n));
   sum_scaled(n, w->ei_rate[1], -1, w->ei_rate[0], w->e_k);
   a->out->error = h / 2 * flow_norm(a->x, w->e_k);
   return OK;
@@ -108,8 +108,8 @@ static status rk4_advance(const scheme_call *a) {
 static status end_rates(const scheme_call *a, const flow_state *s, int i,
                         double *power) {
   scheme_work *w = a->w;
-  PASS(need(&w->ei_rate[i], (size_t)a->x->ns * a->x->n));
-  PASS(need(&w->alpha_rate[i], a->x->alpha_at[a->x->n]));
+  PASS(need(w, &w->ei_rate[i], (size_t)a->x->ns * a->x->n));
+  PASS(need(w, &w->alpha_rate[i], a->x->alpha_at[a->x->n]));
   return flow_rates(a->x, s, a->p->dt, w->ei_rate[i], w->alpha_rate[i], power);
 }
 
@@ -176,14 +176,6 @@ status scheme_dissipated(const scheme_call *a, double t, double *energy) {
 status scheme_work_new(scheme_work **out) {
   PASS_NEW(*out, 1);
   return OK;
-}
-
-void scheme_work_free(scheme_work *w) {
-  if (w == NULL) return;
-  for (int i = 0; i < STAGES; ++i) RELEASE(w->ei_rate[i], w->alpha_rate[i]);
-  for (int i = 0; w->map != NULL && i < w->n_kind; ++i)
-    linear_map_free(&w->map[i]);
-  RELEASE(w->map, w->D_kind, w->sigma_k, w->e_k, w->linear, w->D, w);
 }
 
 static status theta_advance(const scheme_call *a) {

@@ -48,14 +48,12 @@ typedef struct flow_state {
 } flow_state;
 
 /* flow.c. Kinds are filled by the caller: n_kind rows, then flow_new_kind for
- * each, flow_new_points once kind_id is known. */
+ * each, flow_new_points once kind_id is known. What they request is the
+ * caller's, who OWNS it. */
 status flow_new_kind(flow_kind *k, const law_card *law,
                      const law_elastic *elastic);
-void flow_kind_free(flow_kind *k); /* accepts an all-zero kind */
 status flow_new_points(flow *x, int n, const int *kind_id);
-void flow_free(flow *x);
 status flow_state_new(const flow *x, flow_state *s);
-void flow_state_free(flow_state *s);
 void flow_state_copy(const flow *x, const flow_state *from, flow_state *to);
 /* The elasticity of a kind at a temperature, into kind->elastic. ERR_DECK: the
  * constants are none there. */
@@ -190,8 +188,7 @@ typedef struct scheme {
 
 extern const scheme *const scheme_list[];    /* NULL at the end */
 const scheme *scheme_find(const char *name); /* case ignored; or NULL */
-status scheme_work_new(scheme_work **out);   /* filled as the schemes need it */
-void scheme_work_free(scheme_work *w);
+status scheme_work_new(scheme_work **out);   /* memory_free */
 /* What the laws have dissipated in a step up to mid->t, J. */
 status scheme_dissipated(const scheme_call *a, double t, double *energy);
 /* Largest |rate| dt that the scheme damps; HUGE_VAL: no limit. */

@@ -31,7 +31,6 @@ struct scheme_work {
   linear_key made;                /* what map[] and D_kind are for */
   linear_map *map;                /* [n_kind] */
   double *D_kind;                 /* [ns*ns*n_kind] Pa */
-  int n_kind;
 };
 
 /* The law of a kind at its values; stress and state are to be set. */
@@ -44,11 +43,12 @@ static inline law_point flow_kind_point(const flow_kind *k) {
 /* y = x + a v over n components */
 void sum_scaled(size_t n, const double *x, double a, const double *v,
                 double *y);
-void linear_map_free(linear_map *m);
-status need(double **array, size_t n); /* allocate if NULL */
+/* Allocate an array of w if NULL. */
+status need(scheme_work *w, double **array, size_t n);
 
-/* linear_step.c: the map of a kind (arrays that are NULL are made) and its
- * D[ns*ns]; those of all kinds into w, if others are there. */
+/* linear_step.c: room for a map of at most n = ns + n_alpha; the map of a kind
+ * and its D[ns*ns]. */
+status linear_map_new(int ns, size_t n, linear_map *m);
 status linear_map_make(const flow_kind *k, const scheme_step *p, int exact,
                        linear_map *m, double *D);
 /* y[m->n] of point k from the old state for the new strain e */

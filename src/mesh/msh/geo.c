@@ -130,8 +130,7 @@ static const char *after_name(const char *q) {
   return q + strspn(q, " \t");
 }
 
-/* 1: the name stands in the text up to "end" and to the end of the statement.
- */
+/* 1: the name stands in the text up to "end" and to the statement's end. */
 static int has_name(const char *q, const char *end, const char *name) {
   const size_t n = strlen(name);
   for (int in_quotes = 0; q < end && *q != ';'; ++q)

@@ -245,8 +245,7 @@ static double lone_value(double d[3][3]) {
 }
 
 /* Unit vectors s, t of the plane normal to the eigenvector of "lone", from the
- * columns of d - lone I: the longest, and of the others what is normal to it.
- */
+ * columns of d - lone I: the longest, and of the others what is normal. */
 static void plane_of(double d[3][3], double lone, double *s, double *t) {
   double c[3][3];
   int p = 0;

@@ -28,8 +28,7 @@ int column_visible(const column *c, const model *m);
 int column_ready(const column *c, const state *s);
 /* Number of items of its entity. */
 int column_items(const column *c, const view *v);
-/* The defect over the largest of the energies so far; 0 if nothing moved yet.
- */
+/* The defect over the largest of the energies so far; 0: nothing moved yet. */
 double energy_defect_relative(const energies *e);
 /* Unit with the labels of *UNITS: "force/length^2" -> "N/mm^2", one word
  * without brackets; in a text_room. */

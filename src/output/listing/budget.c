@@ -178,8 +178,7 @@ static void print_budget(const job *j, FILE *f) {
 /* Elements of half the length have half the error where no edge is singular;
  * their unknowns are 2^dim times as many, and the CPU seconds grow like a power
  * of them, 1.2 in the plane and 1.75 in space (target.c), at most: meshing and
- * output grow less. Increments of half the length have half the error or less.
- */
+ * output grow less. Increments of half the length: half the error or less. */
 static const double GROWTH_2D = 1.2, GROWTH_3D = 1.75; /* -, of the CPU */
 static const double EXACT = 1e-3; /* -, of the others: far more than needed */
 static const double WORTH = 0.05; /* -, of the CPU */

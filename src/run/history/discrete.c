@@ -62,8 +62,7 @@ static status condensed_energy(const contact_problem *cp, const double *u,
 }
 
 /* The bound by the inverse of the matrix given; where that is a definite
- * compliance with Coulomb friction, A[m*m] is computed for its rate.
- */
+ * compliance with Coulomb friction, A[m*m] is computed for its rate. */
 static status bound_error(const contact_problem *cp, dense_inverse *dense,
                           const double *u, const double *r,
                           solver_error *found) {

@@ -13,8 +13,7 @@
 status loop_accept(run *r, int attempt, int increment_no, int last, double cpu);
 /* It is not: reported with the reason. */
 status loop_reject(run *r, int attempt, int increment_no, const char *why);
-/* 1 if one of these tables (bits PRINT_*) shows the increment that ends at t.
- */
+/* 1: one of these tables (bits PRINT_*) shows the increment that ends at t. */
 int table_is_due(const step *s, int tables, double t, int increment_no,
                  int last);
 int table_is_due_now(const run *r, int tables); /* of r->now, or a shadow */
@@ -69,7 +68,7 @@ double rounding_of_works(const run *r);
  * of both, of the motion, or left by the solver. After rounding_find. */
 int rounding_is_all(const run *r);
 
-/* estimate.c: errors at r->now into r->errors.error, mesh_error, as required.
+/* estimate.c: errors at r->now into r->errors.error, mesh_error, if required.
  */
 status estimate_increment(run *r);
 /* Of a copy of the run at a time within the increment: that of the mesh. */

@@ -72,7 +72,6 @@ void shadow_leave(shadow **p) {
     moduli_free(&b->r.body.moduli);
   }
   if (b->r.problem.given != NULL) contact_solver_free(&b->r.elastic.solver);
-  flow_state_free(&b->v.now);
   memory_free(b);
 }
 
@@ -99,6 +98,7 @@ static status own_points(const run *r, shadow *b) {
   for (int i = 0; i < SLOTS; ++i) v->slot[i] = (matrices){0};
   v->fresh = (matrices){0};
   b->r.strains.visco = v;
+  OWNS(b);
   PASS(flow_state_new(&v->x, &v->now));
   flow_state_copy(&v->x, &r->strains.visco->old, &v->now);
   return OK;

@@ -25,8 +25,7 @@ static status held_at(run *r, double t0, double t, double *f) {
   return OK;
 }
 
-/* What a parabola through v at 0, 1/2, 1 reaches beyond both ends; *s: where.
- */
+/* What a parabola through v at 0, 1/2, 1 reaches beyond its ends; *s: where. */
 static double beyond(const double v[3], double *s) {
   const double bend = 2.0 * (v[0] - 2.0 * v[1] + v[2]), rate = v[2] - v[0];
   *s = bend != 0.0 ? 0.5 - 0.5 * rate / bend : 0.0;

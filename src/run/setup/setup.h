@@ -41,9 +41,7 @@ status run_check_range(run *r);
 /* Contact nodes that the problems of r->step have at least; 0: not known. */
 int run_least_nodes(const run *r);
 
-/* surface.c: the surface of r->body.fixed, with or without the state of the old
- * one.
- */
+/* surface.c: the surface of r->body.fixed, with or without the old state. */
 status run_build_surface(run *r);
 void run_free_surface(run *r);
 

@@ -184,8 +184,7 @@ status run_build_ties(run *r) {
   node_bits(r);
   timer_enter(STAGE_COUPLING);
   NEW_ALL(OF(m, n), OF(dropped, r->msh->n_node));
-  /* Nodes that all their components hold, or an earlier tie has, are left out.
-   */
+  /* Nodes that all their components or an earlier tie hold are left out. */
   const int dim = r->msh->dim;
   for (int i = 0; i < r->msh->n_node; ++i) {
     int all = 1;

@@ -113,12 +113,10 @@ int proof_holds(const contact_problem *cp, const double *v, double *workspace) {
 }
 
 /* ---- stiffness: forces nearest to balance --------------------------------
- *
  * In the modes R the load b = R'f must be a sum of columns with factors >= 0:
  * of a normal force with its friction; of the friction g0, with factor 1, for
  * which an entry is added to all columns and to b (lcp_solve.h). Where no
- * column does work on the rest, it is v.
- */
+ * column does work on the rest, it is v. */
 
 typedef struct balance {
   const contact_problem *cp;

@@ -108,8 +108,7 @@ double *nonnegative_next(const nonnegative *s) {
   return s->n < s->rows ? s->G + (size_t)s->rows * s->n : NULL;
 }
 
-/* y[n]: factors of the columns for b[rows] by least squares; 0: not possible.
- */
+/* y[n]: factors of the columns for b[rows] by least squares; 0: impossible. */
 static int fit(nonnegative *s, const double *b) {
   int rows = s->rows;
   COPY(s->Q, s->G, (size_t)rows * s->n);
@@ -564,8 +563,7 @@ static void choose(run *s, int k) {
              s->work);
 }
 
-/* 0: the limit of the method. Where others follow the first attempts are short.
- */
+/* 0: the limit of the method. Where others follow, first attempts are short. */
 static int pivots_allowed(const run *s) {
   int most = s->control->max_iter, left = most - s->v->iterations;
   int few = FEW_PIVOTS + PIVOTS_A_ROW * s->p->n;

@@ -351,8 +351,7 @@ static double merit(const auglag_run *s) {
 }
 
 /* 1: a step of this length brings |Phi| below the reference; or leaves it there
- * with all states, as a rigid motion does of a body that contact alone holds.
- */
+ * with all states, as a rigid motion does of a body held by contact alone. */
 static int step_is_accepted(auglag_run *s, double a, double now,
                             double reference) {
   if (now <= (1.0 - DESCENT * a) * reference) return 1;

@@ -459,8 +459,7 @@ static status begin(run *s) {
   return OK;
 }
 
-/* Residual at r; of an operator r and A u - f have drifted apart by rounding.
- */
+/* Residual at r; an operator's r and A u - f have drifted apart by rounding. */
 static double residual_of(const run *s) {
   const contact_problem *cp = s->cp;
   double *raw = cp->op != NULL ? s->w->by.b : NULL;

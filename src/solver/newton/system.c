@@ -46,7 +46,7 @@ static const double SPRING = 0x1p-36; /* -, of the diagonal */
 
 /* ---- the matrix ---------------------------------------------------------- */
 
-/* 1: under the guess friction of the node follows pressure: M has no symmetry.
+/* 1: under the guess friction of the node follows pressure: M is not symmetric.
  */
 static int couples(const newton_system *s, const pattern *p, int node_id) {
   const sparse_rows *B = s->cp->B;
