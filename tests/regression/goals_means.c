@@ -241,24 +241,30 @@ static void press_bump(int both, double thickness, double of[HALF_GOALS][3],
   const double at = both;
   block_file_write(&j, (int[]){20 * (1 + both), 6}, (double[]){1.0 + both, 1.0},
                    1);
-  job_write(&j, "bump.inp",
-            "*PARAMETER\nA = %g\n*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n"
-            "*ELASTIC\n1000., 0.3\n"
-            "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3, THICKNESS=%g\n"
-            "*SOLID SECTION, ELSET=UPPER, MATERIAL=M, TYPE=CPS3, THICKNESS=%g\n"
-            "*OBSTACLE, NAME=O, TYPE=GAP\n\"0.12*(x-A)^2\"\n"
-            "*CONTACT, NAME=C, GROUP=TOP, OBSTACLE=O\n"
-            "*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.3\n%g, 1.\n"
-            "*GOAL, NAME=Q, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.4\n%g, 1.\n"
-            "*GOAL, NAME=R, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.3\n%g, 1.\n"
-            "*GOAL, NAME=S, QUANTITY=PRESSURE, CONTACT=C\n"
-            "*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C\n*STEP\n*STATIC\n"
-            "*BOUNDARY\nCONTACT, 1\nCONTACT, 2, 2, 0.05\n%s*PRINT, GOALS\n"
-            "*END STEP\n",
-            at, thickness, 2 * thickness, at, at + 0.1, at + 0.35,
-            both ? "" : "LEFT, 1\n");
+  job_write(
+      &j, "bump.inp",
+      "*PARAMETER\nA = %g\n*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n"
+      "*ELASTIC\n1000., 0.3\n"
+      "*SOLID SECTION, ELSET=BODY, MATERIAL=M, TYPE=CPS3, THICKNESS=%g\n"
+      "*SOLID SECTION, ELSET=UPPER, MATERIAL=M, TYPE=CPS3, THICKNESS=%g\n"
+      "*OBSTACLE, NAME=O, TYPE=GAP\n\"0.12*(x-A)^2\"\n"
+      "*CONTACT, NAME=C, GROUP=TOP, OBSTACLE=O\n"
+      "*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.3\n%g, 1.\n"
+      "*GOAL, NAME=Q, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.4\n%g, 1.\n"
+      "*GOAL, NAME=R, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.3\n%g, 1.\n"
+      "*GOAL, NAME=S, QUANTITY=PRESSURE, CONTACT=C\n"
+      "*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C\n*STEP\n*STATIC\n"
+      "*BOUNDARY\nCONTACT, 1\nCONTACT, 2, 2, 0.05\n%s*PRINT, GOALS, TOTALS\n"
+      "*END STEP\n",
+      at, thickness, 2 * thickness, at, at + 0.1, at + 0.35,
+      both ? "" : "LEFT, 1\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   dat t = job_table(&j, "GOALS", -1);
+  dat sums = job_table(&j, "TOTALS", -1);
+  const double most = dat_at(&sums, 0, "pressure_max");
+  ck_assert_double_gt(dat_at(&t, 0, "value"), 0.7 * most);
+  ck_assert_double_lt(dat_at(&t, 0, "value"), most);
+  dat_free(&sums);
   take_verdicts(&j, verdicts, 999);
   for (int i = 0; i < HALF_GOALS; ++i)
     for (int k = 0; k < 3; ++k)

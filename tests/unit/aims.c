@@ -169,8 +169,57 @@ START_TEST(zones_without_an_estimate_become_finer) {
 }
 END_TEST
 
+/* The pass after which goals stand still, 0: none of n, on meshes of cells[k]
+ * squares with nodes that slip and stick. */
+static int still_after(int n, const int *cells, const int *slip,
+                       const int *stick, double error) {
+  goal_card goal = {.quantity = GOAL_FORCE, .target = 1.0};
+  const model m = {.n.goal = 1, .accuracy.goals = &goal};
+  const goal_result found = {
+      .value = 9.0,
+      .error = error,
+      .verdict = isnan(error) ? GOAL_FEW_NODES : GOAL_RELIABLE};
+  aims *a = NULL;
+  int still = 0;
+  ck_assert_int_eq(aims_new(&m, 0, &a), OK);
+  for (int k = 0; k < n && !still; ++k) {
+    mesh *msh = make_grid_2d((int[]){cells[k], 1}, (double[]){1.0, 1.0});
+    double *product = calloc((size_t)msh->n_elem, sizeof *product);
+    const state s = {
+        .contacts = {.n_slip = slip[k], .n_stick = stick[k]},
+        .errors = {.n_goal = 1, .goals = &found, .goal_products = product}};
+    ck_assert_int_eq(aims_begin(a, msh), OK);
+    aims_see(a, msh, &s);
+    aims_evaluate(a, &m);
+    if (aims_stand_still(a)) still = k + 1;
+    free(product);
+    memory_free(msh);
+  }
+  memory_free(a);
+  return still;
+}
+
+/* An error that stays ends it on three times the nodes, in two passes. Where
+ * none is known four passes do, unless half as many nodes more are closed. */
+START_TEST(goals_stand_still_where_passes_gain_nothing) {
+  static const int one[] = {1, 1, 1, 1, 1, 1}, none[] = {0, 0, 0, 0, 0, 0};
+  static const int more[] = {2, 3, 5, 8, 12, 18},
+                   few[] = {5, 7, 10, 14, 20, 29};
+  static const int cells[] = {1, 3, 5, 7, 9, 11}, near[] = {5, 6, 7, 8, 9, 10};
+  ck_assert_int_eq(still_after(6, cells, one, none, 3.0), 3);
+  ck_assert_int_eq(still_after(6, near, one, none, 3.0), 5);
+  ck_assert_int_eq(still_after(6, cells, one, none, NAN), 5);
+  ck_assert_int_eq(still_after(6, cells, one, one, NAN), 5);
+  ck_assert_int_eq(still_after(6, cells, none, none, NAN), 4);
+  ck_assert_int_eq(still_after(6, cells, more, none, NAN), 0);
+  ck_assert_int_eq(still_after(6, cells, none, more, NAN), 0);
+  ck_assert_int_eq(still_after(6, cells, few, none, NAN), 5);
+}
+END_TEST
+
 UNIT_MAIN("aims", sizes_follow_the_errors_of_a_goal,
           products_of_rounding_require_no_sizes,
           near_the_target_nothing_becomes_coarser,
           elements_at_a_tip_are_as_long_as_the_target_can_use,
-          zones_without_an_estimate_become_finer)
+          zones_without_an_estimate_become_finer,
+          goals_stand_still_where_passes_gain_nothing)
