@@ -660,7 +660,8 @@ static int run_on_small_disk(made_up *made, const char *dir, int pages) {
 START_TEST(full_file_system_of_any_size_is_told) {
   made_up *made = made_up_new(2, 16, 3); /* a field fills pages of its own */
   int code = 0, failures = 0, pages = 0;
-  for (; pages < 1500 && code != NOT_ALLOWED; pages += 1 + pages / 4) {
+  const int steps = getenv("PROTIS_POINTS") != NULL ? 5 : 4;
+  for (; pages < 1500 && code != NOT_ALLOWED; pages += 1 + pages / steps) {
     char dir[64];
     folder_new(dir);
     fflush(NULL);
