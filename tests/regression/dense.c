@@ -66,15 +66,14 @@ START_TEST(energies_balance_at_points) {
                    "*PRINT, ENERGY, TIME POINTS=T\n*PRINT, ENERGY\n"};
   job j = square_run(&s, 0);
   double lost = 0;
-  /* Step 1; three points, the first increment as a point and as such ... */
-  static const double time[] = {1, 1.1, 1.2, 1.4, 1.5, 1.5, 1.7, 2};
-  for (int k = 0; k < 8; ++k) {
+  /* Step 1; three points, the first increment, once for both requests ... */
+  static const double time[] = {1, 1.1, 1.2, 1.4, 1.5, 1.7, 2};
+  for (int k = 0; k < 7; ++k) {
     ck_assert_double_eq_tol(square_energy(&j, k, "time"), time[k], 1e-12);
     ck_assert_double_le(fabs(square_energy(&j, k, "energy_defect_relative")),
                         1e-10);
     double now = square_energy(&j, k, "viscous_dissipation");
-    if (k > 0 && k != 5) ck_assert_double_gt(now, lost);
-    if (k == 5) ck_assert_double_eq(now, lost);
+    if (k > 0) ck_assert_double_gt(now, lost);
     lost = now;
   }
   job_end(&j);
