@@ -305,7 +305,7 @@ START_TEST(sides_that_nodes_load_are_not_free) {
   must_see_none(&j,
                 "*CONTACT PAIR, NAME=P\nUPPER, LOWER\n*STEP\n*STATIC\n"
                 "*BOUNDARY\nFLOOR, 2\nFLOOR, 1, 1, \"0.39E-3*x\"\n"
-                "TOP, 1, 1, \"0.39E-3*x\"\n*CLOAD\nTOP, 2, -0.5\n");
+                "UPPER, 1, 1, \"0.39E-3*x\"\n*CLOAD\nTOP, 2, -0.5\n");
 }
 END_TEST
 

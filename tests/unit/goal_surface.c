@@ -388,13 +388,13 @@ END_TEST
 START_TEST(friction_that_may_stop_is_doubted) {
   const double t[] = {1, 3, 5};
   double of[4];
-  ck_assert_double_eq_tol(doubt(t, (double[]){1, 0.6, 1}, 0, 0, 0, of),
+  ck_assert_double_eq_tol(doubt(t, (double[]){1, 0.63, 1}, 0, 0, 0, of),
                           6.0 + 12.0, 1e-14);
-  ck_assert_double_eq_tol(doubt(t, (double[]){1, 0.6, 0.7}, 0, 0, 0, of),
+  ck_assert_double_eq_tol(doubt(t, (double[]){1, 0.63, 0.7}, 0, 0, 0, of),
                           6.0 + 12.0, 1e-14);
   ck_assert_double_eq(doubt(t, (double[]){1, 0.7, 1}, 0, 0, 0, of), 0.0);
-  ck_assert_double_eq(doubt(t, (double[]){1, 0.6, 0.55}, 0, 0, 0, of), 0.0);
-  ck_assert_double_eq_tol(doubt(t, (double[]){1, 0.6, 0}, 0, 0, 0, of), 0.0,
+  ck_assert_double_eq(doubt(t, (double[]){1, 0.63, 0.55}, 0, 0, 0, of), 0.0);
+  ck_assert_double_eq_tol(doubt(t, (double[]){1, 0.63, 0}, 0, 0, 0, of), 0.0,
                           1e-14);
   ck_assert_double_eq_tol(doubt(t, (double[]){0.1, 1, 1.5}, 0, 0, 0, of), 6.0,
                           1e-14);
