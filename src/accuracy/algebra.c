@@ -230,9 +230,9 @@ static void row_roundings(const contact_problem *cp, pair *p) {
   for (int i = 0; i < cp->m; ++i)
     p->rounding[i] =
         fabs(cp->f[i]) + fabs(contact_has_stiffness(cp) ? p->q[i] : p->v[i]);
-  if (cp->op != NULL) { /* room[m..] is free between two products */
-    double *size = cp->op->room + cp->m;
-    cp->op->apply(cp->op->ctx, x, cp->op->room, size);
+  if (cp->op != NULL) { /* workspace[m..] is free between two products */
+    double *size = cp->op->workspace + cp->m;
+    cp->op->apply(cp->op->ctx, x, cp->op->workspace, size);
     for (int i = 0; i < cp->m; ++i) p->rounding[i] += size[i];
   }
   for (int j = 0; cp->op == NULL && j < cp->m; ++j) {

@@ -7,17 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-char *text_room(void) {
-  static _Thread_local char room[TEXT_ROOMS][TEXT_ROOM];
+char *text_buffer(void) {
+  static _Thread_local char buffers[TEXT_BUFFERS][TEXT_BUFFER];
   static _Thread_local unsigned next;
-  return room[next++ % TEXT_ROOMS];
+  return buffers[next++ % TEXT_BUFFERS];
 }
 
 const char *text_of(const char *format, ...) {
-  char *text = text_room();
+  char *text = text_buffer();
   va_list args;
   va_start(args, format);
-  vsnprintf(text, TEXT_ROOM, format, args);
+  vsnprintf(text, TEXT_BUFFER, format, args);
   va_end(args);
   return text;
 }
@@ -33,11 +33,11 @@ void text_add(char *text, size_t size, const char *format, ...) {
 const char *text_number(double value, int digits) {
   if (isnan(value)) return "NaN";
   if (isinf(value)) return value > 0 ? "Inf" : "-Inf";
-  char *text = text_room();
-  snprintf(text, TEXT_ROOM, "%.*E", digits, value == 0 ? 0.0 : value);
+  char *text = text_buffer();
+  snprintf(text, TEXT_BUFFER, "%.*E", digits, value == 0 ? 0.0 : value);
   char *e = strchr(text, 'E');
   int exponent = atoi(e + 1);
-  snprintf(e, text + TEXT_ROOM - e, "E%c%03d", exponent < 0 ? '-' : '+',
+  snprintf(e, text + TEXT_BUFFER - e, "E%c%03d", exponent < 0 ? '-' : '+',
            abs(exponent));
   return text;
 }

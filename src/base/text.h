@@ -46,15 +46,15 @@ status text_failed(const char *path, const char *doing, int error_no);
 /* What was printed has left; no failure if its reader has gone. */
 status text_flush_output(void);
 /* Space for a short text; the same is returned again after 31 others. */
-enum { TEXT_ROOM = 128, TEXT_ROOMS = 32 };
-char *text_room(void);
+enum { TEXT_BUFFER = 128, TEXT_BUFFERS = 32 };
+char *text_buffer(void);
 const char *text_of(const char *format, ...)
     __attribute__((format(printf, 1, 2)));
 /* Adds to a text of that size what fits. */
 void text_add(char *text, size_t size, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 /* "1.5000E+000": digits after the point, three-digit exponent, no -0, NaN,
- * Inf; in a text_room. */
+ * Inf; in a text_buffer. */
 const char *text_number(double value, int digits);
 /* Right-aligned in a field of the width, at least one blank before it. */
 void text_cell(FILE *f, const char *text, int width);

@@ -56,7 +56,7 @@ void contact_block(const contact_problem *cp, int node_id, double *block) {
 /* Column by column; symmetric to the last bit. */
 static void form_entries(const contact_problem *cp, double *M) {
   const size_t m = cp->m;
-  double *e = cp->op->room;
+  double *e = cp->op->workspace;
   CLEAR(e, m);
   for (size_t j = 0; j < m; ++j) {
     e[j] = 1.0;
@@ -160,7 +160,7 @@ static double reference_position(const contact_problem *cp, int dof,
 
 /* Largest |f - A d| of all rows, N. */
 static double load_of_operator(const contact_problem *cp, int closed) {
-  double worst = 0.0, *d = cp->op->room, *Ad = cp->op->room + cp->m;
+  double worst = 0.0, *d = cp->op->workspace, *Ad = cp->op->workspace + cp->m;
   for (int i = 0; i < cp->m; ++i) d[i] = reference_position(cp, i, closed);
   contact_apply(cp, d, Ad);
   for (int i = 0; i < cp->m; ++i)

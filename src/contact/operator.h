@@ -23,7 +23,7 @@ typedef struct contact_operator {
   int n_body;
   const double *kernel; /* [m*n_kernel] orthonormal motions without energy */
   int n_kernel;
-  double *room;             /* [2*m] workspace of the contact problem */
+  double *workspace;        /* [2*m] of the contact problem */
   double unknowns, entries; /* of the matrix that is factored; of its factor */
   /* Au[m] = A u; size[m], or NULL: the sums of the magnitudes of its terms. */
   void (*apply)(void *ctx, const double *u, double *Au, double *size);

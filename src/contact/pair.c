@@ -290,16 +290,16 @@ static int source_of(const contact_surface *s, const surface_input *in, int i,
 }
 
 /* The place of a master in the row that starts at "first", new if need be. */
-static status place_of(node_links *l, int first, int master, pair_links *room,
+static status place_of(node_links *l, int first, int master, pair_links *links,
                        int *at) {
-  for (*at = first; *at < room->n; ++*at)
+  for (*at = first; *at < links->n; ++*at)
     if (l->master[*at] == master) return OK;
-  PASS_GROW(l->master, room->n, room->capacity);
+  PASS_GROW(l->master, links->n, links->capacity);
   for (int c = 0; c < l->dim; ++c) {
-    PASS_GROW(l->part, room->n_part, room->part_capacity);
-    l->part[room->n_part++] = 0.0;
+    PASS_GROW(l->part, links->n_part, links->part_capacity);
+    l->part[links->n_part++] = 0.0;
   }
-  l->master[room->n++] = master;
+  l->master[links->n++] = master;
   return OK;
 }
 
@@ -338,9 +338,9 @@ static double weight_of(const pair_row *row, int m, const pair_row *rows) {
 }
 
 status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
-                    int m, const pair_row *rows, pair_links *room) {
+                    int m, const pair_row *rows, pair_links *links) {
   node_links *l = s->master;
-  const int dim = s->dim, first = room->n;
+  const int dim = s->dim, first = links->n;
   int source[3];
   for (int c = 0; c < dim; ++c) source[c] = source_of(s, in, i, n, c, m, rows);
   for (int k = 0; k < m; ++k) {
@@ -350,7 +350,7 @@ status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
     for (size_t e = to->start[rows[k].row]; e < to->start[rows[k].row + 1];
          ++e) {
       int at;
-      PASS(place_of(l, first, to->master[e], room, &at));
+      PASS(place_of(l, first, to->master[e], links, &at));
       for (int c = 0; c < dim; ++c)
         if (source[c] == rows[k].normal)
           l->part[dim * at + c] += by * to->part[dim * e];
@@ -358,7 +358,7 @@ status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
   }
   for (int c = 0; c < dim; ++c) set_resultant(s, i, c, source[c], m, rows);
   l->n = i + 1;
-  l->start[i + 1] = room->n;
+  l->start[i + 1] = links->n;
   return OK;
 }
 

@@ -119,7 +119,7 @@ typedef struct pair_links {
  * other; to none at corners, and where supports hold them but not the masters.
  * ERR_MEMORY. */
 status pair_add_row(contact_surface *s, const surface_input *in, int i, int n,
-                    int m, const pair_row *rows, pair_links *room);
+                    int m, const pair_row *rows, pair_links *links);
 /* ERR_DECK with an error in the log if slave nodes of pairs move with
  * each other in a circle; ERR_MEMORY. */
 status pairs_check_circles(const contact_surface *s, const surface_input *in,

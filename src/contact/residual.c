@@ -208,7 +208,7 @@ static double find_steps(const contact_problem *cp) {
   return 0.0;
 }
 
-/* The node in its room, its step known. */
+/* The node in its place, its step known. */
 static INLINED measured *node_of(measure *x, int node_id) {
   if (x->cp->bodies != NULL) return x->cp->bodies->node + node_id;
   x->own = step_of(x->cp, node_id, x->largest);
@@ -434,7 +434,7 @@ static INLINED double equation_of(const measure *x, const measured *node,
 }
 
 /* d[rows] = A u - f - r, or W r + q - u, from row "first"; A u of an operator
- * is in its room. */
+ * is in its place. */
 static void equation_rows(const contact_problem *cp, const double *u,
                           const double *r, int first, int rows, double *d) {
   const double *M = contact_matrix(cp);
@@ -443,7 +443,7 @@ static void equation_rows(const contact_problem *cp, const double *u,
   double sign = contact_has_stiffness(cp) ? 1.0 : -1.0;
   for (int i = 0; i < rows; ++i) d[i] = y[first + i] + sign * cp->f[first + i];
   if (cp->op != NULL) {
-    for (int i = 0; i < rows; ++i) d[i] = cp->op->room[first + i] - d[i];
+    for (int i = 0; i < rows; ++i) d[i] = cp->op->workspace[first + i] - d[i];
     return;
   }
   if (cp->blocks != NULL) {
@@ -464,7 +464,7 @@ static INLINED double residual_of(const contact_problem *cp, int dim,
   measure x = {.cp = cp, .dim = dim, .u = u, .r = r, .scale = scale};
   double worst = 0.0, d[3 * CHUNK];
   measure_part(&x, 1);
-  if (cp->op != NULL) contact_apply(cp, u, cp->op->room);
+  if (cp->op != NULL) contact_apply(cp, u, cp->op->workspace);
   for (int first = 0; first < cp->n; first += CHUNK) {
     int count = cp->n - first < CHUNK ? cp->n - first : CHUNK;
     equation_rows(cp, u, r, first * dim, count * dim, d);

@@ -472,12 +472,12 @@ static void put_parts(const columns *c, row_sets *t, int k, double *b) {
 /* Their entries of W from x[rows] = inv(M) b, half of each across the diagonal:
  * W becomes symmetric. */
 static status take_parts(const columns *c, const row_sets *t, const double *x,
-                         triplets *W, long room) {
+                         triplets *W, long capacity) {
   for (long e = 0; e < c->H->n; ++e) {
     const int i = c->H->column[e], j = t->current[t->of[c->H->row[e]]];
     const double half = 0.5 * c->H->value[e] * x[c->H->row[e]];
     if (j < 0 || half == 0.0) continue;
-    if (W->n + 2 > room) RAISE(ERR_INTERNAL, "more entries than counted");
+    if (W->n + 2 > capacity) RAISE(ERR_INTERNAL, "more entries than counted");
     for (int turn = 0; turn < 2; ++turn) {
       W->row[W->n] = turn ? j : i;
       W->column[W->n] = turn ? i : j;
@@ -498,14 +498,15 @@ static double count_parts(const columns *c, const row_sets *t) {
 }
 
 static status solve_parts(reduction *s, const columns *c, row_sets *t,
-                          long room, triplets *W) {
+                          long capacity, triplets *W) {
   OWNED_NEW(double, x, s->n);
-  PASS_NEW_ALL(OF(W->row, room), OF(W->column, room), OF(W->value, room));
+  PASS_NEW_ALL(OF(W->row, capacity), OF(W->column, capacity),
+               OF(W->value, capacity));
   for (int k = 0; k < t->most; ++k) {
     CLEAR(x, s->n);
     put_parts(c, t, k, x);
     PASS(solve_scaled(s, x));
-    PASS(take_parts(c, t, x, W, room));
+    PASS(take_parts(c, t, x, W, capacity));
   }
   return OK;
 }

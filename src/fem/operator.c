@@ -644,8 +644,9 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
   const size_t m = o->k->n_row, size = o->k->rows * m;
   PASS_NEW_ALL(OF(o->number, (size_t)o->k->dim * o->k->n_node),
                OF(o->unknown, m), OF(o->held, m), OF(o->rows.known, m),
-               OF(o->rows.added, size), OF(o->diagonal, m), OF(o->room, 2 * m),
-               OF(o->body, m / o->k->rows), OF(o->part.node, m / o->k->rows));
+               OF(o->rows.added, size), OF(o->diagonal, m),
+               OF(o->workspace, 2 * m), OF(o->body, m / o->k->rows),
+               OF(o->part.node, m / o->k->rows));
   memcpy(o->held, d->held, k->n_row);
   COPY(o->body, d->body, k->n_row / k->rows);
   for (int i = 0; i < o->k->n_node; ++i)
@@ -661,7 +662,7 @@ status sparse_operator_new(const operator_data *d, const char **ordering,
                                .n_body = d->n_body,
                                .kernel = d->rigid->Q,
                                .n_kernel = d->rigid->k,
-                               .room = o->room,
+                               .workspace = o->workspace,
                                .unknowns = (double)o->f.n,
                                .entries = (double)o->f.L->xsize,
                                .apply = apply,

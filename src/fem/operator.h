@@ -62,9 +62,9 @@ typedef struct sparse_operator {
     double *v, *z; /* [unknowns] by place, [interior] by place inside */
     double *y;     /* [unknowns] inv(K_ii) of the load last condensed */
   } work;
-  double *diagonal; /* [m] N/m, what seen has */
-  double *room;     /* [2*m] what seen has, as the next */
-  int *body;        /* [m/rows] */
+  double *diagonal;  /* [m] N/m, what seen has */
+  double *workspace; /* [2*m] what seen has, as the next */
+  int *body;         /* [m/rows] */
 } sparse_operator;
 
 /* What it is made of, all borrowed until sparse_operator_free but held and

@@ -401,7 +401,7 @@ typedef struct omitted {
   int back;      /* 1: it matters, the run was repeated with it */
   int lost;      /* 1: the run without it was not solved to its tolerance */
 } omitted;
-enum { NEGLECT_MAX = 16 };
+enum { OMITTED_MAX = 16 };
 
 typedef struct model {
   deck *deck;
@@ -467,7 +467,7 @@ typedef struct model {
     double tol;         /* - */
     place at;
     int n;
-    omitted row[NEGLECT_MAX]; /* [n] */
+    omitted row[OMITTED_MAX]; /* [n] */
     unsigned char *still; /* [n_elem] material.is_still; NULL: nowhere, owned */
   } reduction;
   effect_card *effect_cards; /* [n.effect_card] in the order of the deck */

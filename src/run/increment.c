@@ -8,7 +8,8 @@
 /* The unknown of a row of r->problem.cp among those of all contact nodes. */
 static int unknown_of(const run *r, int row) {
   int i = row / r->nodes.rows;
-  return r->msh->dim * (r->nodes.reach.in != NULL ? r->nodes.reach.in[i] : i) +
+  return r->msh->dim *
+             (r->nodes.active.in != NULL ? r->nodes.active.in[i] : i) +
          row % r->nodes.rows;
 }
 
@@ -42,8 +43,8 @@ static status take_interior(const run *r) {
   OWNED_NEW(double, w, r->nodes.n_c);
   surface_relative(r->surface, r->now.u, w);
   for (int i = 0; i < r->nodes.n; ++i) {
-    int is_in = r->nodes.reach.in == NULL ||
-                (next < r->nodes.reach.n_in && r->nodes.reach.in[next] == i);
+    int is_in = r->nodes.active.in == NULL ||
+                (next < r->nodes.active.n_in && r->nodes.active.in[next] == i);
     next += is_in;
     for (int a = is_in ? r->nodes.rows : 0; a < dim; ++a)
       r->now.uc[dim * i + a] = w[dim * i + a];
@@ -214,7 +215,7 @@ static void set_problem(run *r) {
   int all = r->nodes.rows > 1;
   r->problem.cp = (contact_problem){
       .dim = r->nodes.rows,
-      .n = reach_count(&r->nodes.reach, r->nodes.n),
+      .n = active_count(&r->nodes.active, r->nodes.n),
       .m = r->nodes.n_row,
       .A = condensed_matrix(r->c),
       .op = condensed_operator(r->c),
@@ -231,8 +232,8 @@ static void set_problem(run *r) {
       .load = fmax(r->loads.largest, increment_strain_load(r)),
       .moved = largest_entry(r->nodes.n_c, r->old.uc)};
   r->problem.cp.n_motion = condensed_motions(r->c, &r->problem.cp.motion);
-  if (r->nodes.reach.in != NULL)
-    reach_cut(&r->nodes.reach, &r->problem.part, &r->problem.cp);
+  if (r->nodes.active.in != NULL)
+    active_cut(&r->nodes.active, &r->problem.part, &r->problem.cp);
   r->problem.cp.bodies = contact_solver_bodies(r->solver, &r->problem.cp);
 }
 

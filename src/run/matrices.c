@@ -95,9 +95,9 @@ status run_use(run *r, matrices *m) {
 }
 
 void run_take_nodes(run *r) {
-  r->body.d.in = r->nodes.reach.in;
-  r->body.d.n_in = r->nodes.reach.n_in;
-  r->nodes.n_row = r->nodes.rows * reach_count(&r->nodes.reach, r->nodes.n);
+  r->body.d.in = r->nodes.active.in;
+  r->body.d.n_in = r->nodes.active.n_in;
+  r->nodes.n_row = r->nodes.rows * active_count(&r->nodes.active, r->nodes.n);
 }
 
 status run_room_for_part(run *r) {
@@ -105,16 +105,16 @@ status run_room_for_part(run *r) {
       r->nodes.n_row < r->nodes.n_c || surface_has_held(r->surface);
   for (int k = 0; k < 2 && apart && r->problem.row[k] == NULL; ++k)
     PASS_NEW(r->problem.row[k], r->nodes.rows * r->nodes.n);
-  if (r->nodes.reach.in != NULL && r->problem.part.gap == NULL)
-    PASS(reach_part_new(r->nodes.n, r->nodes.rows, &r->problem.part));
+  if (r->nodes.active.in != NULL && r->problem.part.gap == NULL)
+    PASS(active_part_new(r->nodes.n, r->nodes.rows, &r->problem.part));
   return OK;
 }
 
 int run_misses_nodes(const run *r) {
-  if (r->nodes.reach.in == NULL) return 0;
+  if (r->nodes.active.in == NULL) return 0;
   return r->solving.report.outcome <= 0 ||
-         reach_misses(&r->nodes.reach, r->nodes.n, r->problem.gap, r->now.uc,
-                      r->msh->dim);
+         active_too_few(&r->nodes.active, r->nodes.n, r->problem.gap, r->now.uc,
+                        r->msh->dim);
 }
 
 status run_renew_nodes(run *r) {
@@ -128,7 +128,7 @@ status run_renew_nodes(run *r) {
 }
 
 status run_add_nodes(run *r) {
-  PASS(reach_extend(&r->nodes.reach, r->nodes.n, r->problem.gap, r->now.uc,
-                    r->msh->dim, r->solving.report.outcome <= 0));
+  PASS(active_extend(&r->nodes.active, r->nodes.n, r->problem.gap, r->now.uc,
+                     r->msh->dim, r->solving.report.outcome <= 0));
   return run_renew_nodes(r);
 }

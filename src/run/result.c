@@ -138,16 +138,16 @@ static void find_contact(run *r) {
   }
   if (r->result.g != NULL) {
     contact_limit(&r->problem.cp, run_rows(r, 1, r->now.rc), r->result.g);
-    reach_spread(&r->nodes.reach, r->nodes.n, r->result.g);
+    active_spread(&r->nodes.active, r->nodes.n, r->result.g);
   }
   contact_classify(&r->problem.cp, run_rows(r, 0, r->now.uc),
                    run_rows(r, 1, r->now.rc), r->result.contact);
   if (r->problem.cp.side_gap != NULL)
     contact_stops(&r->problem.cp, r->now.uc, r->now.rc, 1, NULL,
                   r->result.closed);
-  for (int i = r->nodes.n - 1, k = r->nodes.reach.n_in - 1;
-       r->nodes.reach.in != NULL && i >= 0; --i)
-    r->result.contact[i] = k >= 0 && r->nodes.reach.in[k] == i
+  for (int i = r->nodes.n - 1, k = r->nodes.active.n_in - 1;
+       r->nodes.active.in != NULL && i >= 0; --i)
+    r->result.contact[i] = k >= 0 && r->nodes.active.in[k] == i
                                ? r->result.contact[k--]
                                : CONTACT_OPEN;
   find_borne(r);

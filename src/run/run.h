@@ -5,7 +5,7 @@
 #pragma once
 
 #include "base/text.h"
-#include "contact/reach.h"
+#include "contact/active.h"
 #include "run/effect.h"
 
 /* One equilibrium: displacements, contact forces, loads, and its time. */
@@ -69,7 +69,7 @@ typedef struct progress {
 typedef struct contact_nodes {
   int n, n_c;          /* contact nodes; dim*n */
   int rows, n_row;     /* unknowns of a node in cp: 1 or dim; of all of them */
-  contact_reach reach; /* the contact nodes of cp */
+  active_nodes active; /* the contact nodes of cp */
   int n_reported;      /* how many the output has */
 } contact_nodes;
 
@@ -126,7 +126,7 @@ typedef struct posed_problem {
   const sparse_rows *B;        /* [n*n] -, of limit, or in its place */
   const double *given;         /* [n] given normal forces, N; < 0: none */
   double *row[2];              /* [rows*n] workspace of run_rows, or NULL */
-  reach_part part;             /* data of cp where it does not have all nodes */
+  active_part part;            /* data of cp where it does not have all nodes */
   contact_problem cp;
   double *f_before; /* [n_row] condensed load of r->old, N */
   int n_before;     /* its n_row */
@@ -294,7 +294,7 @@ status matrices_keep(matrices *m, archive *a, const char *group);
 /* The operator that is made again follows what the one before a restart did. */
 status matrices_follow(matrices *m);
 
-/* The contact nodes of r->problem.cp are those of r->nodes.reach; allocates
+/* The contact nodes of r->problem.cp are those of r->nodes.active; allocates
  * their part and unknowns. */
 void run_take_nodes(run *r);
 status run_room_for_part(run *r);
@@ -304,8 +304,8 @@ int run_misses_nodes(const run *r);
 /* Those and more nodes for r->problem.cp, with a matrix and a solver of their
  * own. */
 status run_add_nodes(run *r);
-/* A stiffness, chosen again, and a solver for the nodes that r->nodes.reach now
- * has. */
+/* A stiffness, chosen again, and a solver for the nodes that r->nodes.active
+ * now has. */
 status run_renew_nodes(run *r);
 
 /* stiffness.c: how the contact problem of the current supports and nodes knows

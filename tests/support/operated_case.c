@@ -135,7 +135,7 @@ operated_case *operated_new(contact_case *c) {
   o->M = calloc(m * m, sizeof *o->M);
   o->y = calloc(m, sizeof *o->y);
   o->diagonal = calloc(m, sizeof *o->diagonal);
-  o->room = calloc(2 * m, sizeof *o->room);
+  o->workspace = calloc(2 * m, sizeof *o->workspace);
   for (size_t i = 0; i < m; ++i)
     o->diagonal[i] =
         (contact_held(full, (int)i) ? 1 : LARGER) * full->A[i * (m + 1)];
@@ -146,7 +146,7 @@ operated_case *operated_new(contact_case *c) {
                              .diagonal = o->diagonal,
                              .body = o->bodies->of,
                              .n_body = o->bodies->n,
-                             .room = o->room,
+                             .workspace = o->workspace,
                              .apply = apply,
                              .set_rows = set_rows,
                              .solve = solve,
@@ -169,7 +169,7 @@ void operated_free(operated_case *o, contact_case *c) {
   free(o->M);
   free(o->y);
   free(o->diagonal);
-  free(o->room);
+  free(o->workspace);
   free(o->kernel);
   free(o);
 }

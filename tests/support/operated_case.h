@@ -13,7 +13,7 @@ typedef struct operated_case {
   contact_bodies *bodies;
   unsigned char *known; /* [m]                                                */
   double *M, *y;        /* [m*m] factor of the free rows; [m]                 */
-  double *diagonal, *room, *kernel;
+  double *diagonal, *workspace, *kernel;
   double power; /* of two, over the diagonal                                  */
   int pin[6]; /* unknowns with springs where no row is known                  */
 } operated_case;

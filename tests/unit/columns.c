@@ -433,7 +433,7 @@ START_TEST(units_are_composed_from_the_labels) {
   ck_assert_str_eq(column_unit("force*length", &m), "N*mm");
   ck_assert_str_eq(column_unit("time", &m), "time");
   ck_assert_str_eq(column_unit("-", &m), "-");
-  char label[2 * TEXT_ROOM] = "";
+  char label[2 * TEXT_BUFFER] = "";
   memset(label, 'm', sizeof label - 1);
   m.unit.length = label;
   ck_assert_uint_eq(strlen(column_unit("length", &m)), 79);

@@ -2,7 +2,7 @@
 #include "base/base.h"
 #include "contact/contact.h"
 #include "contact/formulation.h"
-#include "contact/reach.h"
+#include "contact/active.h"
 #include "support/contact_case.h"
 #include "support/planted.h"
 #include "support/unit.h"
@@ -578,18 +578,18 @@ START_TEST(active_nodes_take_their_own_data) {
   const int in[IN] = {1, 4};
   for (int dim = 2; dim <= 3; ++dim) {
     contact_case c = case_new(dim, N, 0.5);
-    contact_reach x = {.distance = 3.0};
-    reach_part part;
+    active_nodes x = {.distance = 3.0};
+    active_part part;
     memcpy(c.gap, gap, sizeof gap);
     unsigned char held[3 * N];
     for (int k = 0; k < dim * N; ++k) held[k] = (unsigned char)k;
     for (int k = 0; k < (dim - 1) * N; ++k) c.ut0[k] = 10 + k;
     for (int i = 0; i < N; ++i) c.g0[i] = c.B->val[i] = 100 + i;
     c.cp.held = held;
-    ck_assert_int_eq(reach_choose(&x, N, c.gap), OK);
-    ck_assert_int_eq(reach_count(&x, N), IN);
-    ck_assert_int_eq(reach_part_new(IN, dim, &part), OK);
-    reach_cut(&x, &part, &c.cp);
+    ck_assert_int_eq(active_choose(&x, N, c.gap), OK);
+    ck_assert_int_eq(active_count(&x, N), IN);
+    ck_assert_int_eq(active_part_new(IN, dim, &part), OK);
+    active_cut(&x, &part, &c.cp);
     for (int k = 0; k < IN; ++k) {
       ck_assert_double_eq(c.cp.gap[k], gap[in[k]]);
       ck_assert_double_eq(c.cp.g0[k], 100 + in[k]);
@@ -600,8 +600,8 @@ START_TEST(active_nodes_take_their_own_data) {
         ck_assert_double_eq(c.cp.ut0[(dim - 1) * k + a],
                             10 + (dim - 1) * in[k] + a);
     }
-    reach_part_free(&part);
-    reach_free(&x);
+    active_part_free(&part);
+    active_free(&x);
     case_free(&c);
   }
 }
@@ -615,15 +615,15 @@ START_TEST(active_nodes_become_more) {
   static const double gap[N] = {200, 1, 100, 300, 400};
   static const double u_n[3][N] = {{0, 0, 101}, {0}, {0}};
   static const int count[3] = {2, 2, N};
-  contact_reach x = {.distance = 0.5};
-  ck_assert_int_eq(reach_choose(&x, N, gap), OK);
+  active_nodes x = {.distance = 0.5};
+  ck_assert_int_eq(active_choose(&x, N, gap), OK);
   ck_assert(x.n_in == 1 && x.in[0] == 1); /* the nearest */
   for (int k = 0; k < 3; ++k) {
-    ck_assert_int_eq(reach_misses(&x, N, gap, u_n[k], 1), k == 0);
-    ck_assert_int_eq(reach_extend(&x, N, gap, u_n[k], 1, 0), OK);
-    ck_assert_int_eq(reach_count(&x, N), count[k]);
+    ck_assert_int_eq(active_too_few(&x, N, gap, u_n[k], 1), k == 0);
+    ck_assert_int_eq(active_extend(&x, N, gap, u_n[k], 1, 0), OK);
+    ck_assert_int_eq(active_count(&x, N), count[k]);
   }
-  reach_free(&x);
+  active_free(&x);
 }
 END_TEST
 

@@ -307,10 +307,10 @@ START_TEST(an_operator_gives_what_its_matrix_does) {
     goal_case g = goal_new(dim, kind == 0 ? 0.0 : 0.4, kind == 2, seed);
     const contact_problem matrix = g.c.cp;
     by_solves b = {.cp = &matrix};
-    double room[2 * MOST];
+    double workspace[2 * MOST];
     const contact_operator op = {.ctx = &b,
                                  .diagonal = b.diagonal,
-                                 .room = room,
+                                 .workspace = workspace,
                                  .apply = apply,
                                  .set_rows = set_rows,
                                  .solve = solve};
@@ -393,7 +393,7 @@ START_TEST(verdicts_change_at_their_limits) {
                              .supports = 5.0 * cases[k].supports,
                              .near = 5.0 * cases[k].near,
                              .few = 2.0 * fabs(cases[k].error) * cases[k].few};
-    ck_assert_int_eq(goal_judge(&e).verdict, cases[k].verdict);
+    ck_assert_int_eq(goal_evaluate(&e).verdict, cases[k].verdict);
   }
 }
 END_TEST
@@ -401,9 +401,9 @@ END_TEST
 /* By a zone of few nodes three times the estimate may be missing. */
 START_TEST(few_nodes_have_a_wider_band) {
   goal_estimate e = {.error = -0.5, .magnitude = 2.0, .product = 5.0};
-  const double band = goal_judge(&e).band;
+  const double band = goal_evaluate(&e).band;
   e.few = 0.5;
-  ck_assert_double_eq(goal_judge(&e).band, band + 1.5);
+  ck_assert_double_eq(goal_evaluate(&e).band, band + 1.5);
 }
 END_TEST
 
@@ -411,9 +411,9 @@ END_TEST
 START_TEST(sums_keep_the_doubts_of_their_parts) {
   const goal_estimate few = {.error = 0.5, .magnitude = 0.5, .few = 0.5};
   goal_estimate sum = {.error = 0.5, .magnitude = 1.0, .product = 5.0};
-  ck_assert_int_eq(goal_judge(&sum).verdict, GOAL_RELIABLE);
+  ck_assert_int_eq(goal_evaluate(&sum).verdict, GOAL_RELIABLE);
   goal_estimate_add(&few, &sum);
-  const goal_result r = goal_judge(&sum);
+  const goal_result r = goal_evaluate(&sum);
   ck_assert_int_eq(r.verdict, GOAL_FEW_NODES);
   ck_assert_double_eq(r.error, 1.0);
   ck_assert_double_eq_tol(r.band, 0.1 * 1.5 + 1.5, 1e-15);
@@ -424,7 +424,7 @@ END_TEST
 START_TEST(ends_of_rounding_are_no_ends) {
   const goal_estimate e = {
       .error = 2.0, .magnitude = 2.0, .product = 1e-15, .ends = 1e-15};
-  const goal_result r = goal_judge(&e);
+  const goal_result r = goal_evaluate(&e);
   ck_assert_int_eq(r.verdict, GOAL_RELIABLE);
   ck_assert_double_eq(r.ends, 0.0);
 }

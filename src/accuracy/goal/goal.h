@@ -61,7 +61,7 @@ typedef struct goal_estimate {
 /* *sum += *e. */
 void goal_estimate_add(const goal_estimate *e, goal_estimate *sum);
 /* The result of an estimate but for value, solver and cpu. */
-goal_result goal_judge(const goal_estimate *e);
+goal_result goal_evaluate(const goal_estimate *e);
 
 /*
  * The linearised problem of (u, r): nodes closed, stuck and sliding remain so.

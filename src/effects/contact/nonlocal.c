@@ -17,7 +17,7 @@ typedef struct friction_zone {
   unsigned char
       *returned; /* [n] switched on again in this increment: once only */
   sparse_rows B; /* start, col borrowed from the limit */
-  int room;      /* entries of B.val */
+  int capacity;  /* entries of B.val */
 } friction_zone;
 
 typedef struct nonlocal {
@@ -80,10 +80,10 @@ static void zone_apply(const friction_limit *limit, const friction_zone *z) {
 static status zone_fit(const run *r, const sparse_rows *B, friction_zone *z) {
   if (z->off == NULL)
     PASS_NEW_ALL(OF(z->off, r->nodes.n), OF(z->returned, r->nodes.n));
-  if (z->B.val == NULL || z->room < B->start[B->n]) {
+  if (z->B.val == NULL || z->capacity < B->start[B->n]) {
     memory_free(z->B.val);
     PASS_NEW(z->B.val, B->start[B->n]);
-    z->room = B->start[B->n];
+    z->capacity = B->start[B->n];
   }
   z->B = (sparse_rows){B->n, B->start, B->col, z->B.val};
   return OK;

@@ -139,18 +139,18 @@ static void add_slopes(const finder *z, const mesh_group *group, level *l) {
 
 /* Part of the distance from node i of the set to node j outside. */
 static double face_reach(const finder *z, const level *l, int i, int j) {
-  double way[3], fall = 0.0;
+  double apart[3], fall = 0.0;
   if (l->weight[i] <= 0.0) return 0.5;
-  difference(z, i, j, way);
+  difference(z, i, j, apart);
   for (int c = 0; c < z->dim; ++c)
-    fall -= way[c] * l->slope[z->dim * i + c] / l->weight[i];
+    fall -= apart[c] * l->slope[z->dim * i + c] / l->weight[i];
   return fall > 0.0 ? fmin(1.0, l->square[i] / fall) : 0.5;
 }
 
 static double distance(const finder *z, int i, int j) {
-  double way[3] = {0};
-  difference(z, i, j, way);
-  return sqrt(dot(3, way, way));
+  double apart[3] = {0};
+  difference(z, i, j, apart);
+  return sqrt(dot(3, apart, apart));
 }
 
 /* Nodes of the zone from node i at its edge inwards, away from j: as many as
@@ -298,21 +298,21 @@ static double thickness_at(const finder *z, int i) {
 /* Add the piece from part a to b of the distance from node i to the next. */
 static void add_piece(const finder *z, int i, double a, double b,
                       contact_zone *zone) {
-  double way[3];
+  double apart[3];
   const run *r = z->r;
-  difference(z, i, z->next[i], way);
+  difference(z, i, z->next[i], apart);
   double length = distance(z, i, z->next[i]) * (b - a);
-  double radius = r->surface->x[2 * i] + 0.5 * (a + b) * way[0];
+  double radius = r->surface->x[2 * i] + 0.5 * (a + b) * apart[0];
   zone->length += length;
   zone->area += length * (r->faces.input.axisymmetric ? 2 * acos(-1.0) * radius
                                                       : thickness_at(z, i));
 }
 
 static void set_point(const finder *z, int i, double part, double *x) {
-  double way[3] = {0.0, 0.0, 0.0};
-  if (part > 0.0) difference(z, i, z->next[i], way);
+  double apart[3] = {0.0, 0.0, 0.0};
+  if (part > 0.0) difference(z, i, z->next[i], apart);
   for (int c = 0; c < 2; ++c)
-    x[c] = z->r->surface->x[2 * i + c] + part * way[c];
+    x[c] = z->r->surface->x[2 * i + c] + part * apart[c];
 }
 
 /* The zone that begins with node j: half a piece before it, where the line is a

@@ -31,35 +31,36 @@ static const double RATE = 0.98;   /* -, of a measured rate: it may be 1 */
 static const double NEAR = 1e-2;   /* -, residual of a state near the path */
 static const double STILL = 0x1p-30; /* -, of the largest slip: none */
 
-/* |a - b|_A of contact displacements; room[2*n_c]. */
+/* |a - b|_A of contact displacements; workspace[2*n_c]. */
 static double distance(const run *r, const double *a, const double *b,
-                       double *room) {
-  double *Ad = room + r->nodes.n_c;
-  vector_of(r->nodes.n_c, b, a, room);
-  const double *d = run_rows(r, 0, room);
+                       double *workspace) {
+  double *Ad = workspace + r->nodes.n_c;
+  vector_of(r->nodes.n_c, b, a, workspace);
+  const double *d = run_rows(r, 0, workspace);
   contact_apply(&r->problem.cp, d, Ad);
   return sqrt(fmax(dot(r->nodes.n_row, d, Ad), 0.0));
 }
 
-/* What the load and the obstacles can move, in the energy norm; room[2*n_c]. */
-static status load_change(run *r, double *room, double *size) {
+/* What the load and the obstacles can move, in the energy norm;
+ * workspace[2*n_c]. */
+static status load_change(run *r, double *workspace, double *size) {
   double square = 0.0;
   *size = r->now.motion == NULL
               ? 0.0
-              : distance(r, r->now.motion, r->old.motion, room);
-  vector_of(r->nodes.n_row, r->problem.f_before, r->problem.f, room);
+              : distance(r, r->now.motion, r->old.motion, workspace);
+  vector_of(r->nodes.n_row, r->problem.f_before, r->problem.f, workspace);
   if (r->body.moduli.n_own > 0 ||
       r->problem.n_before != r->nodes.n_row) { /* other matrix */
     const double *rc = run_rows(r, 1, r->old.rc);
     contact_apply(&r->problem.cp, run_rows(r, 0, r->old.uc),
-                  room + r->nodes.n_c);
+                  workspace + r->nodes.n_c);
     for (int i = 0; i < r->nodes.n_row; ++i)
-      room[i] = r->problem.f[i] + rc[i] - room[r->nodes.n_c + i];
+      workspace[i] = r->problem.f[i] + rc[i] - workspace[r->nodes.n_c + i];
   }
   if (condensed_floating(r->c))
     square = HUGE_VAL;
   else
-    PASS(condensed_force_energy(r->c, room, &square));
+    PASS(condensed_force_energy(r->c, workspace, &square));
   *size += sqrt(square);
   return OK;
 }
@@ -113,7 +114,7 @@ typedef struct path {
   point p[POINTS];
   int n;
   double shortest, least; /* part that is not halved, s; motion that counts */
-  double *room;           /* [2*n_c] */
+  double *workspace;      /* [2*n_c] */
 } path;
 
 /* The state u, rc as point number "at". */
@@ -137,7 +138,7 @@ static void measure(path *s, int k) {
   size_t bytes = s->r->problem.cp.n * sizeof *a->status;
   a->motion = memcmp(a->status, b->status, bytes) == 0
                   ? 0.0
-                  : distance(s->r, b->u, a->u, s->room);
+                  : distance(s->r, b->u, a->u, s->workspace);
 }
 
 /* Halve what moves most until it is short, *found, or moves by nothing. */
@@ -196,8 +197,9 @@ static void note_jump(run *r, checked *own, double t, double share) {
 static status look_into(run *r, double t, double *at, double *share) {
   status st = OK;
   OWNED_NEW(path, s, 1);
-  OWNED_NEW(double, room, 2 * r->nodes.n_c);
-  *s = (path){r, .room = room, .shortest = ldexp(t - r->old.t, -DEPTH) * 1.5};
+  OWNED_NEW(double, workspace, 2 * r->nodes.n_c);
+  *s = (path){r, .workspace = workspace,
+              .shortest = ldexp(t - r->old.t, -DEPTH) * 1.5};
   contact_solver *own = NULL;
   const double tol = r->solving.tol;
   int found = -1;
@@ -207,7 +209,7 @@ static status look_into(run *r, double t, double *at, double *share) {
   if (r->solving.report.outcome <= 0) goto done;
   TRY(insert(s, 0, t, r->now.uc, r->now.rc));
   TRY(insert(s, 0, r->old.t, r->old.uc, r->old.rc));
-  double all = distance(r, s->p[1].u, s->p[0].u, room);
+  double all = distance(r, s->p[1].u, s->p[0].u, workspace);
   s->least = LEFT * all;
   measure(s, 0);
   TRY(follow(s, &found));
@@ -222,7 +224,8 @@ done:
 static status look_for_jump(run *r, void *self, double t) {
   status st = OK;
   checked *own = self;
-  double change = HUGE_VAL, rate = 0.0, share = 0.0, at = 0.0, *room = NULL;
+  double change = HUGE_VAL, rate = 0.0, share = 0.0, at = 0.0,
+         *workspace = NULL;
   int missed = r->solving.report.outcome <= 0, lost = own->lost;
   own->jumps = 0;
   own->lost = missed && !(r->solving.report.residual <= NEAR);
@@ -231,16 +234,16 @@ static status look_for_jump(run *r, void *self, double t) {
     return OK;
   if (r->step->kind != STEP_QUASISTATIC) return OK;
   timer_enter_whole(STAGE_CHECK);
-  NEW(room, 2 * r->nodes.n_c);
-  TRY(load_change(r, room, &change));
-  int leaps = distance(r, r->now.uc, r->old.uc, room) > SUSPECT * change;
+  NEW(workspace, 2 * r->nodes.n_c);
+  TRY(load_change(r, workspace, &change));
+  int leaps = distance(r, r->now.uc, r->old.uc, workspace) > SUSPECT * change;
   if (!missed && !leaps) TRY(sliding_rate(r, &rate));
   if (!missed && !leaps && !(rate >= RATE)) goto done;
   TRY(look_into(r, t, &at, &share));
   TRY(increment_solve(r, t));
   if (share > 0.0) note_jump(r, own, at, share);
 done:
-  memory_free(room);
+  memory_free(workspace);
   timer_leave(STAGE_CHECK);
   return st;
 }

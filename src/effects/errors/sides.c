@@ -275,11 +275,11 @@ static double deepest(const entered_face *f) {
       COPY(b, at, dim);
     }
   for (int k = 0; k < HALVINGS; ++k, size *= 0.5)
-    for (int way = 0; way < dim * dim; ++way) {
+    for (int axis = 0; axis < dim * dim; ++axis) {
       double at[] = {b[0], b[1], b[2]};
-      at[way % dim] -= size;
-      at[way / dim] += size;
-      const double depth = at[way % dim] < 0.0 ? most : depth_at(f, at);
+      at[axis % dim] -= size;
+      at[axis / dim] += size;
+      const double depth = at[axis % dim] < 0.0 ? most : depth_at(f, at);
       if (!(depth > most)) continue;
       most = depth;
       COPY(b, at, dim);

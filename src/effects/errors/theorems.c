@@ -168,7 +168,7 @@ static status see_path(run *r, const unsigned char *given, checked *own) {
   return OK;
 }
 
-static status see_theory(run *r, checked *own, int at_start) {
+static status check_theorems(run *r, checked *own, int at_start) {
   theorems_scene s;
   OWNED double *mu = NULL;
   OWNED unsigned char *given = NULL;
@@ -183,9 +183,11 @@ static status see_theory(run *r, checked *own, int at_start) {
   return OK;
 }
 
-static status see_increment(run *r, void *own) { return see_theory(r, own, 0); }
+static status see_increment(run *r, void *own) {
+  return check_theorems(r, own, 0);
+}
 
-static status see_start(run *r, void *own) { return see_theory(r, own, 1); }
+static status see_start(run *r, void *own) { return check_theorems(r, own, 1); }
 
 static int is_checked(const step *s) { return s->accuracy.theorems; }
 

@@ -463,7 +463,7 @@ static status estimate(run *r, goal_state *own, shared *s, int id) {
     goal_estimate_add(&e, &own->before.sum[id]);
     e = own->before.sum[id];
   }
-  *out = goal_judge(&e);
+  *out = goal_evaluate(&e);
   out->value = value;
   out->solver = solver;
   out->cpu = cpu;

@@ -373,8 +373,8 @@ static const double SAME = 1e-9;
 static double within(const weight *w) { return w->radius * (1.0 - SAME); }
 
 /* A mean takes nodes on both sides of its middle, which lies on the surface. */
-static void judge_mean(const goal_card *g, const weight *w, const double *near,
-                       double longest, goal_form *f) {
+static void evaluate_mean(const goal_card *g, const weight *w,
+                          const double *near, double longest, goal_form *f) {
   const double away =
       g->n_point > 0 ? distance_of(w->dim, g->point[0], near) : 0.0;
   const double least = longest * (1.0 - SAME);
@@ -385,13 +385,13 @@ static void judge_mean(const goal_card *g, const weight *w, const double *near,
 
 /* The longest edge within the radius, and whether it is cut by an end of the
  * surface that carries; l->s is from the middle. */
-static void judge_line(const run *r, const goal_card *g, const line *l,
-                       const weight *w, goal_form *f) {
+static void evaluate_line(const run *r, const goal_card *g, const line *l,
+                          const weight *w, goal_form *f) {
   double longest = 0.0;
   for (int k = 1; k < l->n; ++k)
     if (l->s[k] > -within(w) && l->s[k - 1] < within(w))
       longest = fmax(longest, l->s[k] - l->s[k - 1]);
-  judge_mean(g, w, r->surface->x + w->dim * l->node[l->peak], longest, f);
+  evaluate_mean(g, w, r->surface->x + w->dim * l->node[l->peak], longest, f);
   for (int k = 0; k<l->n; k += l->n> 1 ? l->n - 1 : 1)
     if (fabs(l->s[k]) < within(w) && is_closed(r, l, k) &&
         !goal_is_mirrored(r, l->node[k]) && f->why == GOAL_RELIABLE)
@@ -420,7 +420,7 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
   set_mirrors(r, &l, w);
   w->at = on_line;
   if (w->axi) set_disc_of_axis(g, w, f);
-  judge_line(r, g, &l, w, f);
+  evaluate_line(r, g, &l, w, f);
   return OK;
 }
 
@@ -592,7 +592,7 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
   else
     climb(r, g, peak, w);
   PASS(look_round(r, g, within(w), w, &border));
-  judge_mean(g, w, at, border.longest, f);
+  evaluate_mean(g, w, at, border.longest, f);
   if (border.cut && f->why == GOAL_RELIABLE) f->why = GOAL_NO_END;
   return OK;
 }

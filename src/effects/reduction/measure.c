@@ -61,7 +61,7 @@ status reduction_new(const model *m, const mesh *msh, reduction **out) {
   PASS_NEW_REALS(strains, &n->heat, &n->flow.strain, &n->flow.strain_rate,
                  &n->strain);
   PASS_NEW(n->elem_id, msh->n_elem);
-  PASS_NEW(n->way, (msh->dim - 1) * msh->n_node);
+  PASS_NEW(n->slip, (msh->dim - 1) * msh->n_node);
   PASS_NEW_REALS(msh->dim * msh->n_node, &n->force, &n->u);
   for (int e = 0; e < msh->n_elem; ++e) n->elem_id[e] = e;
   PASS_NEW_REALS(msh->n_elem, &n->flow.stress, &n->flow.rate);
@@ -235,7 +235,7 @@ static void measure_friction(reduction *n, const state *s, double *sum,
     for (int k = 0; k < sides; ++k)
       slip = hypot(slip, s->contacts.slip[sides * i + k]);
     for (int k = 0; k < sides; ++k)
-      n->way[sides * c->node_id[i] + k] += s->contacts.slip[sides * i + k];
+      n->slip[sides * c->node_id[i] + k] += s->contacts.slip[sides * i + k];
     work += coefficient_of(n, s, i) * fmax(p, 0.0) * slip;
   }
   *sum += sqrt(work);
@@ -264,14 +264,14 @@ static void take_strains(reduction *n, const omitted *row) {
 /* Friction at node i against a displacement: at most its limit, and the force
  * that returns the node alone, N. */
 static double friction_force(const reduction *n, const state *s, int i,
-                             double way) {
+                             double slip) {
   const contact_problem *cp = s->contacts.problem;
   const int k = cp->dim * i;
   double held = 0.0;
   for (int a = 1; a < cp->dim; ++a)
     held = fmax(held, contact_diagonal(cp, k + a));
   return fmin(coefficient_of(n, s, i) * fmax(-s->contacts.rc[k], 0.0),
-              held * way);
+              held * slip);
 }
 
 /* Friction against the displacement of each node into n->force, N. */
@@ -279,12 +279,12 @@ static void take_friction(reduction *n, const state *s) {
   const contact_surface *c = s->contacts.surface;
   const int sides = n->msh->dim - 1;
   for (int i = 0; c != NULL && i < c->n; ++i) {
-    const double *way = n->way + sides * c->node_id[i];
-    const double length = sides == 2 ? hypot(way[0], way[1]) : fabs(way[0]);
+    const double *slip = n->slip + sides * c->node_id[i];
+    const double length = sides == 2 ? hypot(slip[0], slip[1]) : fabs(slip[0]);
     if (!(length > 0.0)) continue;
     const double force = friction_force(n, s, i, length);
     for (int a = 0; a < sides; ++a)
-      surface_spread_row(c, i, a + 1, -(force * way[a] / length), n->force);
+      surface_spread_row(c, i, a + 1, -(force * slip[a] / length), n->force);
   }
 }
 

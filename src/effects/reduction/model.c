@@ -35,7 +35,7 @@ int reduction_has_initial(const model *m) {
 }
 
 omitted *reduction_row(model *m, int bit, int id) {
-  if (m->reduction.n == NEGLECT_MAX) return NULL;
+  if (m->reduction.n == OMITTED_MAX) return NULL;
   omitted *row = &m->reduction.row[m->reduction.n++];
   *row = (omitted){.bit = bit, .id = id};
   return row;

@@ -19,10 +19,10 @@ struct reduction {
     double *stress;      /* [n_elem] Pa, of the inelastic strain so far */
     double *rate;        /* [n_elem] Pa/s, of the last increment */
   } flow;
-  double *way;              /* [(dim-1)*n_node] all slip so far, m*/
-  double sum[NEGLECT_MAX];  /* sqrt(J), of the row */
-  double last[NEGLECT_MAX]; /* sqrt(J)/s, rate of the last increment */
-  double seen[NEGLECT_MAX]; /* -, bound at the last increment solved again */
+  double *slip;             /* [(dim-1)*n_node] all slip so far, m */
+  double sum[OMITTED_MAX];  /* sqrt(J), of the row */
+  double last[OMITTED_MAX]; /* sqrt(J)/s, rate of the last increment */
+  double seen[OMITTED_MAX]; /* -, bound at the last increment solved again */
   double tangential;        /* N, largest tangential force so far */
   double total;             /* N, largest of their sums so far */
   int *elem_id;             /* [n_elem] all */

@@ -116,7 +116,7 @@ status apply_amplitude(reading *r) {
 
 /* One more time, after the others; *right 0 if it is not. */
 static status add_time(reading *r, const record *line, double t, time_points *p,
-                       int *room, int *right) {
+                       int *capacity, int *right) {
   *right = p->n == 0 || t > p->t[p->n - 1];
   if (!*right) {
     message_add(r->m->log, P2057, &line->at,
@@ -124,14 +124,14 @@ static status add_time(reading *r, const record *line, double t, time_points *p,
                 p->t[p->n - 1]);
     return OK;
   }
-  PASS_GROW(p->t, p->n, *room);
+  PASS_GROW(p->t, p->n, *capacity);
   p->t[p->n++] = t;
   return OK;
 }
 
 /* First, last, interval. */
 static status read_range(reading *r, const record *line, time_points *p,
-                         int *room) {
+                         int *capacity) {
   enum { MOST = 1000000 };
   double v[3];
   int right = 1;
@@ -147,17 +147,17 @@ static status read_range(reading *r, const record *line, time_points *p,
     return OK;
   }
   for (int i = 0; i <= (int)n && right; ++i)
-    PASS(add_time(r, line, v[0] + i * v[2], p, room, &right));
+    PASS(add_time(r, line, v[0] + i * v[2], p, capacity, &right));
   return OK;
 }
 
 static status read_times(reading *r, const record *line, time_points *p,
-                         int *room) {
+                         int *capacity) {
   int right = 1;
   for (int i = 0; i < line->n_field && right; ++i) {
     double t;
     if (deck_real(&line->fields[i], r->m->log, &t) != 0) return OK;
-    PASS(add_time(r, line, t, p, room, &right));
+    PASS(add_time(r, line, t, p, capacity, &right));
   }
   return OK;
 }
@@ -165,7 +165,7 @@ static status read_times(reading *r, const record *line, time_points *p,
 status apply_time_points(reading *r) {
   const card_options *p = r->param;
   model *m = r->m;
-  int room = 0;
+  int capacity = 0;
   for (int i = 0; i < m->n.points; ++i)
     name_taken(r, p->name, m->time.points[i].name);
   ADDED(time_points, own, m->time.points, m->n.points, m->cap.points);
@@ -173,8 +173,8 @@ status apply_time_points(reading *r) {
                        .total_time = p->time,
                        .at = *value_place(r, "NAME")};
   for (EACH(const record, line, r->card->records, r->card->n_record))
-    PASS(p->type ? read_range(r, line, own, &room)
-                 : read_times(r, line, own, &room));
+    PASS(p->type ? read_range(r, line, own, &capacity)
+                 : read_times(r, line, own, &capacity));
   return OK;
 }
 

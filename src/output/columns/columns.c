@@ -549,7 +549,7 @@ const char *column_unit(const char *unit, const model *m) {
   const char *const words[] = {"length", "force", "time"};
   const char *const labels[] = {m->unit.length, m->unit.force, m->unit.time};
   enum { LABEL = 80 };
-  char *text = text_room();
+  char *text = text_buffer();
   size_t used = 0;
   text[0] = '\0';
   while (*unit != '\0' && used + 1 < LABEL) {

@@ -263,7 +263,7 @@ static void print_share(const char *of, const error_share *e, FILE *f) {
 }
 
 /* Against *REFERENCE, as far as it goes. */
-static void print_truth(const state *s, FILE *f) {
+static void print_closed_form(const state *s, FILE *f) {
   const true_error *e = &s->errors.exact;
   const struct {
     const char *text;
@@ -357,7 +357,7 @@ status listing_increment(const job *j, const state *s, text_file *lst) {
   }
   print_share("mesh", &s->errors.mesh_error, lst->f);
   print_share("steps", &s->errors.time_error, lst->f);
-  print_truth(s, lst->f);
+  print_closed_form(s, lst->f);
   listing_goals_now(j, s, lst->f);
   if (!j->m->problem.given) print_energies(j, &v, lst->f);
   return text_check(lst);

@@ -199,7 +199,7 @@ static status note_misfit(run *r) {
 
 /* Where nodes were added in the increment. */
 static void note_nodes(run *r) {
-  const int now = reach_count(&r->nodes.reach, r->nodes.n);
+  const int now = active_count(&r->nodes.active, r->nodes.n);
   if (r->nodes.n == 0 || now == r->nodes.n_reported) return;
   RUN_NOTE(r,
            "  inactive contact nodes touch: solved again with %d nodes, not "

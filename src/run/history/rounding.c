@@ -465,7 +465,7 @@ static status find_own(const run *r, double *own) {
     }
   }
   for (int k = 0; k < r->problem.cp.n; ++k) {
-    const int i = r->nodes.reach.in != NULL ? r->nodes.reach.in[k] : k;
+    const int i = r->nodes.active.in != NULL ? r->nodes.active.in[k] : k;
     own[k] = most[r->surface->node_id[i]] * r->surface->area[i];
   }
   return OK;
@@ -480,7 +480,7 @@ static double hidden_by_gaps(const run *r, const double *own) {
   double worst = 0.0;
   if (!is_loaded(r) && largest_entry(r->n_dof, r->now.u) <= least) return 0.0;
   for (int k = 0; k < cp->n; ++k) {
-    const int i = r->nodes.reach.in != NULL ? r->nodes.reach.in[k] : k;
+    const int i = r->nodes.active.in != NULL ? r->nodes.active.in[k] : k;
     const double gap = fabs(r->surface->gap0[i]);
     if (gap == 0.0 || gap > least || !(r->now.rc[cp->dim * i] < 0.0)) continue;
     worst = fmax(worst, gap * contact_diagonal(cp, cp->dim * k) /

@@ -6,20 +6,20 @@
 
 /* The nodes of a continued run. */
 static status keep_nodes(run *r, archive *a) {
-  ENDS_BY(reach_free) contact_reach x = r->nodes.reach;
+  ENDS_BY(active_free) active_nodes x = r->nodes.active;
   x.in = NULL;
   PASS(archive_reals(a, "reach", &x.distance, 1));
   PASS(archive_ints(a, "reach_passes", &x.passes, 1));
   PASS(archive_ints(a, "nodes_in", &x.n_in, 1));
   if (!archive_reads(a))
-    return archive_ints(a, "in", r->nodes.reach.in, x.n_in);
+    return archive_ints(a, "in", r->nodes.active.in, x.n_in);
   if (x.n_in > 0) PASS_NEW(x.in, r->nodes.n);
   PASS(archive_ints(a, "in", x.in, x.n_in));
-  r->nodes.reach.distance = x.distance;
-  r->nodes.reach.passes = x.passes;
-  if (reach_is_same(&x, &r->nodes.reach)) return OK;
-  contact_reach old = r->nodes.reach;
-  r->nodes.reach = x;
+  r->nodes.active.distance = x.distance;
+  r->nodes.active.passes = x.passes;
+  if (active_is_same(&x, &r->nodes.active)) return OK;
+  active_nodes old = r->nodes.active;
+  r->nodes.active = x;
   x = old;
   return run_renew_nodes(r);
 }
@@ -81,7 +81,7 @@ static status keep_contact(run *r, archive *a) {
   PASS(keep_nodes(r, a));
   PASS(archive_reals(a, "f_before", r->problem.f_before, r->nodes.n_row));
   r->problem.n_before = r->nodes.n_row;
-  r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
+  r->nodes.n_reported = active_count(&r->nodes.active, r->nodes.n);
   PASS(keep_rate(r, a));
   return matrices_keep(&r->elastic, a, "elastic");
 }

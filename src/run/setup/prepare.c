@@ -50,31 +50,32 @@ static double least_stiffness(const run *r) {
 }
 
 /* Upper estimate of the displacement of the contact nodes in the step, m. */
-static status find_reach(run *r) {
-  double force = 0.0, way = 0.0, end = r->step->start + r->step->total;
+static status find_active(run *r) {
+  double force = 0.0, motion = 0.0, end = r->step->start + r->step->total;
   PASS(load_forces(r->m, r->msh, r->step, end, r->now.F));
   PASS(
       load_prescribed(r->m, r->msh, r->step, end, r->loads.start, r->loads.ud));
   for (size_t k = 0; k < r->n_dof; ++k) {
     force += fabs(r->now.F[k]);
-    way = fmax(way, fabs(r->old.u[k]));
-    if (r->body.fixed[k]) way = fmax(way, fabs(r->loads.ud[k]));
+    motion = fmax(motion, fabs(r->old.u[k]));
+    if (r->body.fixed[k]) motion = fmax(motion, fabs(r->loads.ud[k]));
   }
-  r->nodes.reach.distance = 2.0 * way + GENEROUS * force / least_stiffness(r);
+  r->nodes.active.distance =
+      2.0 * motion + GENEROUS * force / least_stiffness(r);
   return OK;
 }
 
 /* The active nodes at the start or the end of the step. */
 static status choose_nodes(run *r, int n_motion) {
-  r->nodes.reach.passes = 0;
+  r->nodes.active.passes = 0;
   if (!may_leave_out(r, n_motion)) return OK;
   TIMED(STAGE_SURFACE);
   OWNED_NEW(double, gap, r->nodes.n);
-  PASS(find_reach(r));
+  PASS(find_active(r));
   PASS(surface_gap(r->surface, &r->faces.input, r->step->start + r->step->total,
                    gap, NULL));
   for (int i = 0; i < r->nodes.n; ++i) gap[i] = fmin(gap[i], r->problem.gap[i]);
-  PASS(reach_choose(&r->nodes.reach, r->nodes.n, gap));
+  PASS(active_choose(&r->nodes.active, r->nodes.n, gap));
   run_take_nodes(r);
   return run_room_for_part(r);
 }
@@ -88,7 +89,7 @@ static status report_ready(run *r) {
       .digits = condensed_digits(r->c),
       .floating = condensed_floating(r->c),
       .n_contact_node = r->nodes.n,
-      .n_left_out = r->nodes.n - reach_count(&r->nodes.reach, r->nodes.n)};
+      .n_left_out = r->nodes.n - active_count(&r->nodes.active, r->nodes.n)};
   effects_describe(r, &facts);
   return r->sink->ready(r->sink->ctx, &facts, r->surface);
 }
@@ -159,7 +160,7 @@ static status make_matrices(run *r, int chosen) {
   PASS(run_check_supports(r, &motions));
   PASS(choose_nodes(r, motions));
   r->problem.n_before = r->nodes.n_row;
-  r->nodes.n_reported = reach_count(&r->nodes.reach, r->nodes.n);
+  r->nodes.n_reported = active_count(&r->nodes.active, r->nodes.n);
   r->c = NULL;
   matrices_free(&r->elastic);
   PASS(chosen ? run_take_stiffness(r) : run_choose_stiffness(r));

@@ -22,8 +22,8 @@ void run_free_surface(run *r) {
   RELEASE(r->result.contact, r->result.closed);
   r->result.contact = NULL;
   r->result.closed = NULL;
-  reach_free(&r->nodes.reach);
-  reach_part_free(&r->problem.part);
+  active_free(&r->nodes.active);
+  active_part_free(&r->problem.part);
   run_take_nodes(r);
 }
 

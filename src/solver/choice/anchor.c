@@ -181,7 +181,7 @@ static status hold_operator(const contact_problem *cp, anchor *an) {
                               .diagonal = cp->op->diagonal,
                               .body = cp->op->body,
                               .n_body = cp->op->n_body,
-                              .room = cp->op->room,
+                              .workspace = cp->op->workspace,
                               .apply = held_apply,
                               .set_rows = held_rows,
                               .solve = held_solve};

@@ -63,7 +63,7 @@ static double share_of(const goal_estimate *e, double part) {
              : 0.0;
 }
 
-goal_result goal_judge(const goal_estimate *e) {
+goal_result goal_evaluate(const goal_estimate *e) {
   goal_result r = {.error = e->error,
                    .band = BAND * e->magnitude + e->ends +
                            (SHARP - 1.0) * (e->sharp + e->few) +

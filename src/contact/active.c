@@ -1,31 +1,31 @@
-/* Active contact nodes (reach.h). */
-#include "contact/reach.h"
+/* Active contact nodes (active.h). */
+#include "contact/active.h"
 
 #include "base/base.h"
 
 enum { MOST_PASSES = 2 };
 static const double LONGER = 4.0; /* -, after a distance that was too short */
 
-void reach_free(contact_reach *x) {
+void active_free(active_nodes *x) {
   FORGET(x->in);
   x->n_in = 0;
 }
 
-int reach_count(const contact_reach *x, int n) {
+int active_count(const active_nodes *x, int n) {
   return x->in != NULL ? x->n_in : n;
 }
 
-int reach_is_same(const contact_reach *a, const contact_reach *b) {
+int active_is_same(const active_nodes *a, const active_nodes *b) {
   if (a->in == NULL || b->in == NULL) return a->in == b->in;
   return a->n_in == b->n_in &&
          memcmp(a->in, b->in, a->n_in * sizeof *a->in) == 0;
 }
 
 /* keep[n]: 1 of the nodes to be taken. */
-static status take(contact_reach *x, int n, const unsigned char *keep) {
+static status take(active_nodes *x, int n, const unsigned char *keep) {
   int count = 0;
   for (int i = 0; i < n; ++i) count += keep[i];
-  reach_free(x);
+  active_free(x);
   if (2 * count > n) return OK;
   PASS_NEW(x->in, n);
   for (int i = 0; i < n; ++i)
@@ -33,7 +33,7 @@ static status take(contact_reach *x, int n, const unsigned char *keep) {
   return OK;
 }
 
-status reach_choose(contact_reach *x, int n, const double *gap) {
+status active_choose(active_nodes *x, int n, const double *gap) {
   int nearest = 0;
   OWNED_NEW(unsigned char, keep, n);
   for (int i = 0; i < n; ++i) {
@@ -44,8 +44,8 @@ status reach_choose(contact_reach *x, int n, const double *gap) {
   return take(x, n, keep);
 }
 
-int reach_misses(const contact_reach *x, int n, const double *gap,
-                 const double *u_n, int stride) {
+int active_too_few(const active_nodes *x, int n, const double *gap,
+                   const double *u_n, int stride) {
   for (int i = 0, next = 0; x->in != NULL && i < n; ++i)
     if (next < x->n_in && x->in[next] == i)
       ++next;
@@ -54,8 +54,8 @@ int reach_misses(const contact_reach *x, int n, const double *gap,
   return 0;
 }
 
-status reach_extend(contact_reach *x, int n, const double *gap,
-                    const double *u_n, int stride, int all) {
+status active_extend(active_nodes *x, int n, const double *gap,
+                     const double *u_n, int stride, int all) {
   OWNED_NEW(unsigned char, keep, n);
   all = all || x->passes >= MOST_PASSES;
   x->distance *= LONGER;
@@ -68,14 +68,14 @@ status reach_extend(contact_reach *x, int n, const double *gap,
 
 /* ---- the problem of the active nodes ------------------------------ */
 
-void reach_part_free(reach_part *p) {
+void active_part_free(active_part *p) {
   RELEASE(p->gap, p->ut0, p->g0, p->held);
   sparse_free(&p->B);
-  *p = (reach_part){0};
+  *p = (active_part){0};
 }
 
-status reach_part_new(int n, int dim, reach_part *out) {
-  *out = (reach_part){0};
+status active_part_new(int n, int dim, active_part *out) {
+  *out = (active_part){0};
   PASS_NEW(out->gap, n);
   if (dim == 1) return OK;
   PASS_NEW_ALL(OF(out->ut0, n * (dim - 1)), OF(out->g0, n),
@@ -85,7 +85,7 @@ status reach_part_new(int n, int dim, reach_part *out) {
 }
 
 /* Of the diagonal "from", a row a node at most one entry. */
-static void cut_limit(const contact_reach *x, const sparse_rows *from,
+static void cut_limit(const active_nodes *x, const sparse_rows *from,
                       const sparse_rows *to) {
   int n = 0;
   for (int k = 0; k < x->n_in; ++k) {
@@ -100,14 +100,14 @@ static void cut_limit(const contact_reach *x, const sparse_rows *from,
 }
 
 /* Size values a node; NULL stays NULL. */
-static const double *cut_reals(const contact_reach *x, int size,
+static const double *cut_reals(const active_nodes *x, int size,
                                const double *from, double *to) {
   for (int k = 0; from != NULL && k < x->n_in; ++k)
     COPY(to + size * k, from + size * x->in[k], size);
   return from != NULL ? to : NULL;
 }
 
-void reach_cut(const contact_reach *x, reach_part *part, contact_problem *cp) {
+void active_cut(const active_nodes *x, active_part *part, contact_problem *cp) {
   const int dim = cp->dim;
   const unsigned char *held = cp->held;
   cp->gap = cut_reals(x, 1, cp->gap, part->gap);
@@ -122,7 +122,7 @@ void reach_cut(const contact_reach *x, reach_part *part, contact_problem *cp) {
   cp->B = &part->B;
 }
 
-void reach_spread(const contact_reach *x, int n, double *a) {
+void active_spread(const active_nodes *x, int n, double *a) {
   int k = x->n_in - 1;
   for (int i = n - 1; x->in != NULL && i >= 0; --i)
     a[i] = k >= 0 && x->in[k] == i ? a[k--] : 0.0;
