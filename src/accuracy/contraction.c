@@ -178,7 +178,7 @@ static status hold_idle(linear_contact *s) {
   const int m = cp->m, k = cp->n_motion;
   int row = 0, column = 0;
   OWNED_NEW(double, R, (size_t)m *k);
-  COPY(R, cp->motion, (size_t)m * k);
+  if (k > 0) COPY(R, cp->motion, (size_t)m * k);
   for (int done = 0, all = 0; all < 2; ++all)
     for (; done < k &&
            find_pivot(s, R, done, all, &row, &column) > CONTACT_NO_LEVER;

@@ -68,7 +68,7 @@ static void find_facts(const contact_problem *cp, solution *s) {
     f->n_open += s->status[i] == CONTACT_OPEN;
     f->n_slip += s->status[i] == CONTACT_SLIP;
     f->n_stick += s->status[i] == CONTACT_STICK;
-    for (int k = 0; k < 2; ++k) {
+    for (int k = 0; k < 2 && k < cp->dim; ++k) {
       double u = s->u[i * cp->dim + k];
       f->lowest[k] = i == 0 ? u : fmin(f->lowest[k], u);
       f->highest[k] = i == 0 ? u : fmax(f->highest[k], u);

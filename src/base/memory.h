@@ -141,7 +141,8 @@ void memory_leave(void *p); /* p: address of a pointer whose block is freed */
 #define OWNER_TILL_END(object, name)                                 \
   void *name##_ __attribute__((cleanup(memory_own_again), unused)) = \
       memory_own(object)
-/* MAKES(type, s, out): s = *out is a new object that OWNS the rest; RAISE. */
+/* MAKES(type, s, out): s = *out is a new object that OWNS the rest; may
+ * return ERR_MEMORY. */
 #define MAKES(type, s, out) \
   PASS_NEW(*out, 1);        \
   type *s = *out;           \

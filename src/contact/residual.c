@@ -150,10 +150,11 @@ static INLINED body_size *body_of(measure *x, int node_id) {
   return body_at(x, x->cp->bodies == NULL ? 0 : x->cp->bodies->of[node_id]);
 }
 
-/* Position of stick along tangent k, m. */
+/* Position of stick along tangent k, m; 0 along the normal, k = 0. */
 static INLINED double stick_of(const measure *x, int node_id, int k) {
   const double *stick = x->cp->ut0;
-  return stick == NULL ? 0.0 : stick[node_id * (x->dim - 1) + k - 1];
+  if (k == 0 || stick == NULL) return 0.0;
+  return stick[node_id * (x->dim - 1) + k - 1];
 }
 
 /* ---- natural map --------------------------------------------------------- */
@@ -323,7 +324,7 @@ static INLINED void end_forces(measure *x, int n_body) {
   }
 }
 
-/* forces 0: what roundings follow from. */
+/* What errors are compared with; without "forces" their roundings alone. */
 static INLINED void measure_part(measure *x, int forces) {
   const contact_problem *cp = x->cp;
   const int n_body = cp->bodies == NULL ? 1 : cp->bodies->n;
@@ -384,7 +385,7 @@ static INLINED measured *round_node(measure *x, int node_id) {
   return node;
 }
 
-/* All of it. */
+/* The same, and what is compared with it. */
 static INLINED const measured *measure_node(measure *x, int node_id) {
   const body_size *b = body_of(x, node_id);
   measured *node = round_node(x, node_id);

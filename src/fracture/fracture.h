@@ -79,8 +79,7 @@ typedef struct fracture_point { /* a tip, or a node of the front */
 typedef struct fracture_factors {
   double K[3], K_scatter[3]; /* I, II, III (0 in 2-D), Pa m^(1/2) */
   double J, J_scatter;       /* energy release rate, J/m2 */
-  unsigned pointed;          /* bits of the modes in which forces at nodes of
- the domains have a part */
+  unsigned pointed; /* bits of the modes with a part of forces at nodes */
 } fracture_factors;
 
 typedef struct fracture fracture;

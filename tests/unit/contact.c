@@ -157,6 +157,12 @@ START_TEST(soft_body_does_not_drift) {
     c.cp.n_motion = known == 1;
     c.cp.moved = known == 2;
     ck_assert((contact_residual(&c.cp, u, r) > 0.0) == !known);
+    /* Without an obstacle; what stands before the positions of stick is not
+     * one of the normal. */
+    double stick[] = {2.0, 0.0, 0.0};
+    c.gap[0] = c.gap[1] = HUGE_VAL;
+    c.cp.ut0 = stick + 1;
+    ck_assert((contact_residual(&c.cp, u, r) > 0.0) == !known);
     case_free(&c);
   }
 }

@@ -33,7 +33,7 @@ typedef struct crack_state {
                        same forces, m; NULL: none flows */
   double *sigma;    /* [ns*n_elem] Pa */
   double *traction; /* [dim*n_node] on the lips, Pa */
-  double *lumped;   /* [dim*n_node] workspace of find_tractions, Pa */
+  double *lumped;   /* [dim*n_node] workspace: traction, Pa; thickness, m */
   double *force;    /* [dim*n_elem] on the elements, N/m3; NULL: none */
   double *point;    /* [dim*n_node] at nodes, by *CLOAD, loads on faces inside
                        and supports, 2-D: over the thickness, N (N/m) */
@@ -393,7 +393,7 @@ static double rate_of(const fracture_material *x, fracture_factors *f) {
   if (isnan(rate)) return 1.0;
   f->J = rate;
   f->J_scatter = scatter;
-  return isfinite(times) ? times : 1.0;
+  return times > 0.5 && times < 2.0 ? times : 1.0; /* else: rounding */
 }
 
 static void rates_of(const crack_state *own, const fracture *of,

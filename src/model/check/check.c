@@ -2,6 +2,7 @@
  * The model against the mesh: kinematics, sections, contacts, goals, pairs of
  * surfaces, and the parts in order.
  */
+#include "base/base.h"
 #include "mesh/crack/crack.h"
 #include "model/cards/cards.h"
 #include "model/check/parts.h"
@@ -103,7 +104,9 @@ static void check_obstacle_fields(const model *m, const mesh *msh, int id) {
     message_add(m->log, P2009, &m->moves[id].short_at,
                 "2 numbers on this line of *OBSTACLE; a mesh in 3-D needs 3");
   const obstacle *o = &m->obstacles[id];
-  if (msh->dim == 2 && o->shape == OBSTACLE_PLANE && o->direction[2] != 0.0)
+  if (msh->dim == 2 && o->shape == OBSTACLE_PLANE &&
+      fabs(o->direction[2]) >
+          DBL_EPSILON * hypot(o->direction[0], o->direction[1]))
     message_add(m->log, P2025, &m->moves[id].at,
                 "*OBSTACLE %s: the normal has a part along z, but the mesh is "
                 "2-D",
@@ -134,7 +137,9 @@ static void check_contacts(model *m, const mesh *msh) {
     const obstacle *o = &m->obstacles[c->obstacle_id];
     int no_axis = o->direction[0] == 0.0 && o->direction[1] == 0.0 &&
                   o->direction[2] == 0.0;
-    check_obstacle_fields(m, msh, c->obstacle_id);
+    int first = 0;
+    while (m->contacts[first].obstacle_id != c->obstacle_id) ++first;
+    if (first == i) check_obstacle_fields(m, msh, c->obstacle_id);
     if (msh->dim == 3 && o->shape == OBSTACLE_CYLINDER && no_axis)
       message_add(m->log, P2007, &m->moves[c->obstacle_id].at,
                   "*OBSTACLE: a cylinder in 3-D needs a line with the "

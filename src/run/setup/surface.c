@@ -184,7 +184,7 @@ status run_build_ties(run *r) {
   node_bits(r);
   timer_enter(STAGE_COUPLING);
   NEW_ALL(OF(m, n), OF(dropped, r->msh->n_node));
-  /* Nodes that all their components or an earlier tie hold are left out. */
+  /* Nodes held in all components, or by an earlier tie, are left out. */
   const int dim = r->msh->dim;
   for (int i = 0; i < r->msh->n_node; ++i) {
     int all = 1;
