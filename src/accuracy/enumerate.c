@@ -257,7 +257,7 @@ static int decompose(int n, double *K, const double *b, double scale, double *x,
 }
 
 /* The whole system again, with pivoting. */
-static status solve_anew(search *s) {
+static status solve_again(search *s) {
   int dof[ROWS], n = free_unknowns(s, dof), no;
   double K[ROWS * ROWS], y[LENGTH], b[ROWS], xf[ROWS], vf[ROWS];
   double x[ROWS] = {0.0}, v[ROWS] = {0.0}, rest = 0.0;
@@ -300,7 +300,7 @@ static int add_row(search *s, int dof) {
 static status leaf(search *s) {
   double x[ROWS];
   ++s->out->n_pattern;
-  if (s->weak > 0) return solve_anew(s);
+  if (s->weak > 0) return solve_again(s);
   CLEAR(x, s->cp->m);
   for (int q = s->n_row - 1; q >= 0; --q) {
     double sum = s->row[q][s->cp->m];
@@ -308,7 +308,7 @@ static status leaf(search *s) {
       sum -= s->row[q][s->column[p]] * x[s->column[p]];
     x[s->column[q]] = sum / s->row[q][s->column[q]];
   }
-  return signs_hold(s, x) ? solve_anew(s) : OK;
+  return signs_hold(s, x) ? solve_again(s) : OK;
 }
 
 /* 1: the limit of a node can be above zero without pressure on it. */

@@ -89,23 +89,30 @@ static void add_areas(const run *r, const mesh_crack *c, crack_state *own) {
   }
 }
 
-/* 1: supports or *CLOAD of a step act on a point in its plane. */
-static int has_force(const run *r, const fracture_point *p) {
-  for (int i = 0; i < r->m->n.step; ++i) {
-    const load_list *all = &r->m->steps[i].loads;
-    for (EACH(const load, l, all->item, all->n)) {
+/* forces[n_node]: bits of the components in which supports or *CLOAD of a step
+ * act. */
+static void mark_forces(const run *r, unsigned char *forces) {
+  for (int i = 0; i < r->m->n.step; ++i)
+    for (EACH(const load, l, r->m->steps[i].loads.item,
+              r->m->steps[i].loads.n)) {
       if (l->kind != LOAD_FIXING && l->kind != LOAD_POINT) continue;
       const mesh_group *g = &r->msh->group[l->group_id];
-      const double *e = p->frame + l->component;
       for (int k = 0; k < g->n_node; ++k)
-        if (g->node_id[k] == p->node && hypot(e[0], e[3]) > 1e-6) return 1;
+        forces[g->node_id[k]] |= (unsigned char)(1u << l->component);
     }
-  }
+}
+
+/* 1: such forces act on a point in its plane. */
+static int has_force(const fracture_point *p, const unsigned char *forces) {
+  for (int c = 0; c < 3; ++c)
+    if (forces[p->node] >> c & 1u && hypot(p->frame[c], p->frame[3 + c]) > 1e-6)
+      return 1;
   return 0;
 }
 
 /* Points of a front without factors, and why. */
-static void tell_points(const run *r, int id, const fracture *f) {
+static void tell_points(const run *r, int id, const fracture *f,
+                        const unsigned char *forces) {
   const crack *c = &r->m->mesh.cracks[id];
   const int n = fracture_count(f);
   const fracture_point *p = fracture_points(f);
@@ -114,7 +121,7 @@ static void tell_points(const run *r, int id, const fracture *f) {
   for (int i = 0; i < n; ++i) {
     if (p[i].section < 0 && two++ == 0) two_at = p[i].node;
     if (!(p[i].radius > 0.0) && crowded++ == 0) crowded_at = p[i].node;
-    if (p[i].radius > 0.0 && has_force(r, &p[i]) && forced++ == 0)
+    if (p[i].radius > 0.0 && has_force(&p[i], forces) && forced++ == 0)
       forced_at = p[i].node;
   }
   if (two > 0)
@@ -139,6 +146,7 @@ static void tell_points(const run *r, int id, const fracture *f) {
 
 static status new_cracks(run *r, crack_state *own) {
   const mesh *m = r->msh;
+  OWNED_NEW(unsigned char, forces, m->n_node);
   PASS_NEW(own->of, m->n_crack);
   for (int i = 0; i < m->n_crack; ++i) {
     const mesh_crack *c = &m->crack[i];
@@ -157,7 +165,8 @@ static status new_cracks(run *r, crack_state *own) {
   for (int i = 0, n = 0; i < m->n_crack; ++i)
     for (int k = 0; k < fracture_count(own->of[i]); ++k)
       own->tips[n++] = (tip){.crack_id = i, .point = k};
-  for (int i = 0; i < m->n_crack; ++i) tell_points(r, i, own->of[i]);
+  mark_forces(r, forces);
+  for (int i = 0; i < m->n_crack; ++i) tell_points(r, i, own->of[i], forces);
   return OK;
 }
 

@@ -349,14 +349,14 @@ static int starts_hotter(const run *r) {
 
 /* 1: temperatures jump, or supports, loads or friction end: at once, whether
  * the body moves or not, or would with effects that are left out. */
-static int starts_anew(const run *r) {
+static int starts_again(const run *r) {
   const int ends = r->step->renewed != 0 || r->step->friction.n > 0;
   return starts_hotter(r) || (ends && run_step_id(r) > 0);
 }
 
 /* A held slave follows its masters up to their rounding. */
 int loop_starts_smoothly(const run *r) {
-  if (starts_anew(r)) return 0;
+  if (starts_again(r)) return 0;
   const double moved = largest_entry(r->n_dof, r->old.u);
   for (size_t i = 0; i < r->n_dof; ++i)
     if (r->body.fixed[i] && fabs(r->loads.ud[i] - r->old.u[i]) >
@@ -390,7 +390,7 @@ static status start_visco(run *r, int *increment_no) {
       PASS(loop_no_equilibrium(r));
     const int moved = !same_vector(r->n_dof, r->now.u, r->old.u) &&
                       !(r->nodes.n > 0 && touched_by_rounding(r));
-    if (moved || starts_anew(r))
+    if (moved || starts_again(r))
       PASS(loop_accept(r, 1, ++*increment_no, 0, cpu));
   }
   return visco_begin_step(r);
