@@ -114,8 +114,10 @@ static int read_course_lines(const reading *r, struct move *m, obstacle *o) {
 static void read_shape(const reading *r, int n_line, obstacle *o) {
   const record *line = r->card->records;
   static const char *const wanted[] = {
-      "no geometry lines", "point; normal towards the body",
-      "point of the axis; direction of the axis (3-D)", "centre",
+      "no geometry lines",
+      "a line with a point, then one with the normal towards the body",
+      "a line with a point of the axis, then in 3-D one with its direction",
+      "a line with the centre",
       "the gap: a number or an expression of x y z t"};
   static const int least[] = {0, 2, 1, 1, 1}, most[] = {0, 2, 2, 1, 1};
   if (n_line < least[o->shape] || n_line > most[o->shape]) {
