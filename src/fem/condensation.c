@@ -284,8 +284,11 @@ status condense(const stiffness *k, const domain *d, condensed **out) {
   c->ordering = "natural";
   NEW(c->load, (size_t)k->dim * k->n_node);
   NEW(c->prescribed, (size_t)k->dim * k->n_node);
-  TRY(find_motions(c));
-  TRY(pin_sets(c));
+  timer_enter_more(STAGE_ORDERING);
+  st = find_motions(c);
+  if (st == OK) st = pin_sets(c);
+  timer_leave(STAGE_ORDERING);
+  TRY(st);
   if (d->sparse && c->m > 0) {
     TRY(make_operator(c));
   } else {
@@ -628,8 +631,9 @@ double condensed_digits(const condensed *c) {
 }
 
 condense_info condensed_info(const condensed *c) {
-  condense_info info = {
-      .bodies = c->n_body, .contact_unknowns = c->m, .ordering = c->ordering};
+  condense_info info = {.bodies = c->rigid.n_body,
+                        .contact_unknowns = c->m,
+                        .ordering = c->ordering};
   for (int q = 0; q < n_factor(c); ++q) {
     const body_factor *f = factor_at(c, q);
     info.unknowns += f->n;

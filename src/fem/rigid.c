@@ -225,13 +225,12 @@ status rigid_orthonormalise(const stiffness *k, const domain *d,
   return OK;
 }
 
-/* The unknown with the largest displacement by the motions left in the rows of
- * rest[m*k]. */
-static int most_moved(int m, int k, const double *rest) {
+/* The unknown with the largest displacement, from the squares left[m]. */
+static int most_moved(int m, const double *left) {
   double most = 0;
   int at = 0;
   for (int i = 0; i < m; ++i) {
-    const double moved = cblas_dnrm2(k, rest + i, m);
+    const double moved = sqrt(fmax(left[i], 0));
     if (moved <= most * (1 + tie)) continue;
     most = moved;
     at = i;
@@ -239,20 +238,33 @@ static int most_moved(int m, int k, const double *rest) {
   return at;
 }
 
-/* Gauss elimination with pivots: a pinned motion leaves the others. */
+/* Gauss elimination with pivots: a pinned motion leaves the others. What the
+ * others move an unknown by is not smaller than 1 / sqrt(m) for the next pivot,
+ * so that its square may be found by subtraction. */
 status rigid_pin(const rigid_motions *r, const rigid_set *s,
                  unsigned char *pinned) {
+  enum { PASSES = 2 };
   const int m = r->m, k = s->k;
-  OWNED double *rest = NULL, *moved = NULL, *axis = NULL;
-  PASS_NEW_ALL(OF(rest, (size_t)m * k), OF(moved, m), OF(axis, k));
-  COPY(rest, r->Q + (size_t)m * s->first, (size_t)m * k);
+  const double *Q = r->Q + (size_t)m * s->first;
+  OWNED double *axes = NULL, *left = NULL, *moved = NULL, *part = NULL;
+  PASS_NEW_ALL(OF(axes, (size_t)k * k), OF(left, m), OF(moved, m), OF(part, k));
+  for (int j = 0; j < k; ++j)
+    for (int i = 0; i < m; ++i)
+      left[i] += Q[(size_t)m * j + i] * Q[(size_t)m * j + i];
   for (int j = 0; j < k; ++j) {
-    const int at = most_moved(m, k, rest);
-    cblas_dcopy(k, rest + at, m, axis, 1);
+    const int at = most_moved(m, left);
+    double *axis = axes + (size_t)k * j;
+    cblas_dcopy(k, Q + at, m, axis, 1);
+    for (int pass = 0; pass < PASSES; ++pass) {
+      cblas_dgemv(CblasColMajor, CblasTrans, k, j, 1, axes, k, axis, 1, 0, part,
+                  1);
+      cblas_dgemv(CblasColMajor, CblasNoTrans, k, j, -1, axes, k, part, 1, 1,
+                  axis, 1);
+    }
     cblas_dscal(k, 1 / cblas_dnrm2(k, axis, 1), axis, 1);
-    cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1, rest, m, axis, 1, 0,
-                moved, 1);
-    cblas_dger(CblasColMajor, m, k, -1, moved, 1, axis, 1, rest, m);
+    cblas_dgemv(CblasColMajor, CblasNoTrans, m, k, 1, Q, m, axis, 1, 0, moved,
+                1);
+    for (int i = 0; i < m; ++i) left[i] -= moved[i] * moved[i];
     pinned[at] = 1;
   }
   return OK;

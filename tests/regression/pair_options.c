@@ -272,6 +272,7 @@ START_TEST(bodies_between_others_balance) {
                             1e-11);
   ck_assert_double_le(fabs(value(&j, "ENERGY", -1, "energy_defect_relative")),
                       1e-10);
+  ck_assert_double_eq(job_told(&j, "bodies"), 4);
   dat_free(&n);
   dat_free(&t);
   job_end(&j);

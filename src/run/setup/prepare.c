@@ -242,7 +242,10 @@ static status find_motions(const run *r, int *n, free_motion **list) {
     rubs[i] =
         rule_has_friction(friction_in_force(r->m, run_step_id(r), i)) != 0;
   d.rubs = rubs;
-  return domain_free_motions(&d, n, list);
+  timer_enter_more(STAGE_ORDERING);
+  const status st = domain_free_motions(&d, n, list);
+  timer_leave(STAGE_ORDERING);
+  return st;
 }
 
 status run_check_supports(const run *r, int *n) {
