@@ -8,7 +8,8 @@ status fracture_new(const fracture_body *body, fracture **out) {
   MAKES(fracture, f, out);
   f->body = *body;
   const mesh *m = f->body.mesh;
-  f->n = f->body.crack->front_start[f->body.crack->n_front];
+  for (EACH(const mesh_crack, c, body->crack, body->n_crack))
+    f->n += c->front_start[c->n_front];
   PASS_NEW_ALL(OF(f->point, f->n), OF(f->elem_seen, m->n_elem),
                OF(f->node_seen, m->n_node), OF(f->elem_list, m->n_elem),
                OF(f->node_list, m->n_node));

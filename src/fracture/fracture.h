@@ -41,7 +41,8 @@ typedef struct fracture_material { /* of a section */
 /* What does not change with time; all borrowed. */
 typedef struct fracture_body {
   const mesh *mesh;
-  const mesh_crack *crack;
+  int n_crack;
+  const mesh_crack *crack;           /* [n_crack] */
   const int *section_id;             /* [n_elem] */
   const fracture_material *material; /* [n_section] those of section_id */
 } fracture_body;
@@ -64,7 +65,7 @@ typedef struct fracture_state { /* borrowed */
 } fracture_state;
 
 typedef struct fracture_point { /* a tip, or a node of the front */
-  int node;
+  int crack, node;
   double origin[3]; /* its place, m */
   double frame[9];  /* rows e1 of growth, e2 normal to the crack to the plus
                        side, e3 = e1 x e2; 2-D: e3 is z or -z */
@@ -84,8 +85,8 @@ typedef struct fracture_factors {
 
 typedef struct fracture fracture;
 
-/* Points in the order of crack->front_node, and their domains. *out is new.
- * ERR_MEMORY. */
+/* Points crack by crack in the order of front_node, and their domains. *out is
+ * new. ERR_MEMORY. */
 status fracture_new(const fracture_body *body, fracture **out);
 int fracture_count(const fracture *f);
 const fracture_point *fracture_points(const fracture *f); /* borrowed */

@@ -747,7 +747,8 @@ static void measure_front(work *w, int n) {
 void integrals_find(fracture *f, const fracture_state *s,
                     const fracture_point *p, const elasticity *x,
                     integrals *out) {
-  work w = {.f = f, .m = f->body.mesh, .crack = f->body.crack, .p = p};
+  work w = {
+      .f = f, .m = f->body.mesh, .crack = &f->body.crack[p->crack], .p = p};
   memset(out, 0, sizeof *out);
   w.state = s;
   w.x = x;
@@ -763,7 +764,8 @@ void integrals_find(fracture *f, const fracture_state *s,
 status integrals_derive(fracture *f, const fracture_state *s,
                         const fracture_point *p, const elasticity *x, int mode,
                         const double *part, fracture_linear *out) {
-  work w = {.f = f, .m = f->body.mesh, .crack = f->body.crack, .p = p};
+  work w = {
+      .f = f, .m = f->body.mesh, .crack = &f->body.crack[p->crack], .p = p};
   const int dim = w.m->dim;
   const size_t each = (dim + 1) * dim * dim;
   by_slopes sum = {{0}, {0}};

@@ -201,7 +201,7 @@ static double half_way(const fracture *f, const fracture_point *p,
                        double radius) {
   const mesh *m = f->body.mesh;
   for (EACH(const fracture_point, other, f->point, f->n)) {
-    if (other->node == p->node) continue;
+    if (other->crack != p->crack || other->node == p->node) continue;
     if (m->dim == 3 && dot(3, other->frame + 6, p->frame + 6) > 0.5) continue;
     radius = fmin(radius, distance(m, other->node, p->node) / 2);
   }
@@ -227,24 +227,22 @@ static void look_round(const fracture *f, fracture_point *p) {
 }
 
 /* That of the minus lip points to the plus side. */
-static void add_normal(const fracture *f, int face, double *sum) {
+static void add_normal(const mesh *m, const mesh_crack *c, int face,
+                       double *sum) {
   double normal[3] = {0.0};
-  const double area =
-      mesh_face_normal(f->body.mesh, f->body.crack->minus[face], normal);
+  const double area = mesh_face_normal(m, c->minus[face], normal);
   for (int k = 0; k < 3; ++k) sum[k] += area * normal[k];
 }
 
 /* From the other node of the last face to the tip. */
-static void set_frame_2d(const fracture *f, int i) {
-  const mesh *m = f->body.mesh;
-  const mesh_crack *c = f->body.crack;
-  fracture_point *p = &f->point[i];
+static void set_frame_2d(const mesh *m, const mesh_crack *c, int i,
+                         fracture_point *p) {
   double *e1 = p->frame, *e2 = e1 + 3, *e3 = e1 + 6, x[3];
   const int *v = m->face + 2 * (size_t)c->plus[c->front_face[i]];
   place_of(m, v[0] == p->node ? v[1] : v[0], x);
   for (int k = 0; k < 3; ++k) e1[k] = p->origin[k] - x[k];
   make_unit(3, e1);
-  add_normal(f, c->front_face[i], e2);
+  add_normal(m, c, c->front_face[i], e2);
   make_unit(3, e2);
   cross(e1, e2, e3);
 }
@@ -261,15 +259,14 @@ static int along(const mesh_crack *c, int chain, int i, int step) {
 
 /* y1 = c y3 - k/2 y3^2 through two neighbours on both sides, by least squares:
  * turns the frame by c and gives the curvature k. */
-static void fit_circle(const fracture *f, int chain, int i) {
-  const mesh *m = f->body.mesh;
-  fracture_point *p = &f->point[i];
+static void fit_circle(const mesh *m, const mesh_crack *crack, int chain, int i,
+                       fracture_point *p) {
   double s2 = 0, s3 = 0, s4 = 0, r1 = 0, r2 = 0;
   for (int step = -2; step <= 2; ++step) {
-    const int j = along(f->body.crack, chain, i, step);
+    const int j = along(crack, chain, i, step);
     double x[3];
     if (j < 0 || step == 0) continue;
-    place_of(m, f->body.crack->front_node[j], x);
+    place_of(m, crack->front_node[j], x);
     for (int k = 0; k < 3; ++k) x[k] -= p->origin[k];
     const double y1 = dot(3, x, p->frame), y3 = dot(3, x, p->frame + 6);
     s2 += y3 * y3;
@@ -287,42 +284,50 @@ static void fit_circle(const fracture *f, int chain, int i) {
   cross(p->frame + 3, p->frame + 6, p->frame);
 }
 
-static void set_frame_3d(const fracture *f, int chain, int i) {
-  const mesh *m = f->body.mesh;
-  const mesh_crack *c = f->body.crack;
-  fracture_point *p = &f->point[i];
+static void set_frame_3d(const mesh *m, const mesh_crack *c, int chain, int i,
+                         fracture_point *p) {
   double *e1 = p->frame, *e2 = e1 + 3, *e3 = e1 + 6, x[3];
   const int before = along(c, chain, i, -1), after = along(c, chain, i, 1);
   place_of(m, c->front_node[before < 0 ? i : before], x);
   place_of(m, c->front_node[after < 0 ? i : after], e3);
   for (int k = 0; k < 3; ++k) e3[k] -= x[k];
   make_unit(3, e3);
-  if (before >= 0) add_normal(f, c->front_face[before], e2);
-  if (after >= 0) add_normal(f, c->front_face[after - 1], e2);
+  if (before >= 0) add_normal(m, c, c->front_face[before], e2);
+  if (after >= 0) add_normal(m, c, c->front_face[after - 1], e2);
   const double part = dot(3, e2, e3);
   for (int k = 0; k < 3; ++k) e2[k] -= part * e3[k];
   make_unit(3, e2);
   cross(e2, e3, e1);
-  fit_circle(f, chain, i);
+  fit_circle(m, c, chain, i, p);
+}
+
+/* Node i of a front. */
+static void set_point(const fracture *f, int crack, int chain, int i,
+                      fracture_point *p) {
+  const mesh *m = f->body.mesh;
+  const mesh_crack *c = &f->body.crack[crack];
+  p->crack = crack;
+  p->node = c->front_node[i];
+  place_of(m, p->node, p->origin);
+  look_round(f, p);
+  if (m->dim == 2)
+    set_frame_2d(m, c, i, p);
+  else
+    set_frame_3d(m, c, chain, i, p);
 }
 
 status points_find(fracture *f) {
   const mesh *m = f->body.mesh;
-  const mesh_crack *c = f->body.crack;
+  fracture_point *p = f->point;
   ENDS_BY(release) obstacles o = {0};
   PASS(find_obstacles(&f->body, &o));
-  for (int chain = 0; chain < c->n_front; ++chain)
-    for (int i = c->front_start[chain]; i < c->front_start[chain + 1]; ++i) {
-      fracture_point *p = &f->point[i];
-      p->node = c->front_node[i];
-      place_of(m, p->node, p->origin);
-      look_round(f, p);
-      if (m->dim == 2)
-        set_frame_2d(f, i);
-      else
-        set_frame_3d(f, chain, i);
-    }
-  for (EACH(fracture_point, p, f->point, f->n)) {
+  for (int k = 0; k < f->body.n_crack; ++k) {
+    const mesh_crack *c = &f->body.crack[k];
+    for (int chain = 0; chain < c->n_front; ++chain)
+      for (int i = c->front_start[chain]; i < c->front_start[chain + 1]; ++i)
+        set_point(f, k, chain, i, p++);
+  }
+  for (p = f->point; p < f->point + f->n; ++p) {
     double most = p->curvature != 0 ? 0.5 / fabs(p->curvature) : m->size;
     p->radius = half_way(f, p, fmin(most, m->size));
     p->radius = free_radius(m, &o, p, p->radius);

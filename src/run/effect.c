@@ -14,11 +14,15 @@ void *effect_state(const effect_list *list, const effect_ops *e) {
   return NULL;
 }
 
-static void enter(const run *r, int k) {
+typedef enum { PREPARES, ACTS } use; /* a call of the stage: what acts only */
+
+static void enter(const run *r, int k, use u) {
   const effect_ops *e = r->effects.on[k].ops;
   const stage s = r->effects.on[k].stage;
   if (s == STAGE_NONE || e->inside) return;
-  if (e->shadow)
+  if (u == PREPARES)
+    timer_enter_more(s);
+  else if (e->shadow)
     timer_enter_whole(s);
   else
     timer_enter(s);
@@ -46,6 +50,12 @@ static status new_state(const run *r, const effect_ops *e, void **own) {
   return OK;
 }
 
+static status create(run *r, const effect_ops *e, void **own) {
+  PASS(new_state(r, e, own));
+  OWNS(*own);
+  return e->on.create == NULL ? OK : e->on.create(r, own);
+}
+
 status effects_create(run *r, const effect_ops *const *table) {
   effect_list *list = &r->effects;
   for (int k = 0; table[k] != NULL; ++k) {
@@ -55,9 +65,10 @@ status effects_create(run *r, const effect_ops *const *table) {
     list->on[list->n].stage =
         e->own != 0 ? e->own : timer_own_stage(k, e->name);
     void **own = &list->on[list->n++].state;
-    PASS(new_state(r, e, own));
-    OWNS(*own);
-    if (e->on.create != NULL) PASS(e->on.create(r, own));
+    enter(r, list->n - 1, PREPARES);
+    const status st = create(r, e, own);
+    leave(r, list->n - 1);
+    PASS(st);
   }
   return OK;
 }
@@ -70,40 +81,41 @@ const char *effects_sum_up(const run *r) {
 }
 
 /* effects_HOOK: "call" for each effect e that has the hook and for which "if_"
- * holds, own its state, timed or not. */
-#define FOR_HOOK(hook, parameters, timed, if_, call) \
-  status effects_##hook parameters {                 \
-    for (int k = 0; k < r->effects.n; ++k) {         \
-      const effect_ops *e = r->effects.on[k].ops;    \
-      void *own = r->effects.on[k].state;            \
-      if (e->on.hook == NULL || !(if_)) continue;    \
-      if (timed) enter(r, k);                        \
-      const status st = call;                        \
-      if (timed) leave(r, k);                        \
-      if (st != OK) return st;                       \
-    }                                                \
-    return OK;                                       \
+ * holds, own its state. */
+#define FOR_HOOK(hook, parameters, use, if_, call) \
+  status effects_##hook parameters {               \
+    for (int k = 0; k < r->effects.n; ++k) {       \
+      const effect_ops *e = r->effects.on[k].ops;  \
+      void *own = r->effects.on[k].state;          \
+      if (e->on.hook == NULL || !(if_)) continue;  \
+      enter(r, k, use);                            \
+      const status st = call;                      \
+      leave(r, k);                                 \
+      if (st != OK) return st;                     \
+    }                                              \
+    return OK;                                     \
   }
 
-FOR_HOOK(check, (run * r), 0, 1, e->on.check(r, own))
-FOR_HOOK(prepare, (run * r), 0, 1, e->on.prepare(r, own))
-FOR_HOOK(begin_step, (run * r), 1, 1, e->on.begin_step(r, own))
-FOR_HOOK(start, (run * r), 1, 1, e->on.start(r, own))
-FOR_HOOK(make_step, (run * r, int *made), 1, !*made,
+FOR_HOOK(check, (run * r), PREPARES, 1, e->on.check(r, own))
+FOR_HOOK(prepare, (run * r), PREPARES, 1, e->on.prepare(r, own))
+FOR_HOOK(begin_step, (run * r), ACTS, 1, e->on.begin_step(r, own))
+FOR_HOOK(start, (run * r), ACTS, 1, e->on.start(r, own))
+FOR_HOOK(make_step, (run * r, int *made), ACTS, !*made,
          e->on.make_step(r, own, made))
-FOR_HOOK(attempt, (run * r, double t), 1, 1, e->on.attempt(r, own, t))
-FOR_HOOK(solve, (run * r, double t, int *made), 1, !*made,
+FOR_HOOK(attempt, (run * r, double t), ACTS, 1, e->on.attempt(r, own, t))
+FOR_HOOK(solve, (run * r, double t, int *made), ACTS, !*made,
          e->on.solve(r, own, t, made))
-FOR_HOOK(initial, (run * r), 1, is_due(r, k), e->on.initial(r, own))
-FOR_HOOK(load, (run * r, double t), 1, 1, e->on.load(r, own, t))
-FOR_HOOK(pose, (run * r, double t), 1, 1, e->on.pose(r, own, t))
-FOR_HOOK(rewrite, (run * r, contact_problem *cp, double **u, double *force), 1,
-         is_due(r, k), e->on.rewrite(r, own, cp, u, force))
-FOR_HOOK(found, (run * r, int *again), 1, !*again, e->on.found(r, own, again))
-FOR_HOOK(examine, (run * r, double t), 1, 1, e->on.examine(r, own, t))
-FOR_HOOK(estimate, (run * r), 1, !r->effects.on[k].borrowed,
+FOR_HOOK(initial, (run * r), ACTS, is_due(r, k), e->on.initial(r, own))
+FOR_HOOK(load, (run * r, double t), ACTS, 1, e->on.load(r, own, t))
+FOR_HOOK(pose, (run * r, double t), ACTS, 1, e->on.pose(r, own, t))
+FOR_HOOK(rewrite, (run * r, contact_problem *cp, double **u, double *force),
+         ACTS, is_due(r, k), e->on.rewrite(r, own, cp, u, force))
+FOR_HOOK(found, (run * r, int *again), ACTS, !*again,
+         e->on.found(r, own, again))
+FOR_HOOK(examine, (run * r, double t), ACTS, 1, e->on.examine(r, own, t))
+FOR_HOOK(estimate, (run * r), ACTS, !r->effects.on[k].borrowed,
          e->on.estimate(r, own))
-FOR_HOOK(accept, (run * r), 1, is_due(r, k), e->on.accept(r, own))
+FOR_HOOK(accept, (run * r), ACTS, is_due(r, k), e->on.accept(r, own))
 
 void effects_restore(run *r, contact_problem *cp, double *u, double *force) {
   for (int k = r->effects.n - 1; k >= 0; --k)

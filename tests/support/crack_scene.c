@@ -123,7 +123,7 @@ void scene_load(crack_scene *s, crack_field *field, const void *ctx) {
 
 fracture_factors *scene_factors(const crack_scene *s, int *n,
                                 fracture_point **points) {
-  const fracture_body body = {s->m, &s->crack, s->section, s->material};
+  const fracture_body body = {s->m, 1, &s->crack, s->section, s->material};
   const fracture_state state = {s->u, s->sigma, s->traction,
                                 0.5,  s->force, NULL};
   fracture *f;

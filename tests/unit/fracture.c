@@ -657,7 +657,7 @@ END_TEST
 /* K of all modes at a point is by_u'u + by_traction't; with the flux in the
  * place of by_u it is within "near". */
 static void check_linear(const crack_scene *s, int point, double near) {
-  const fracture_body body = {s->m, &s->crack, s->section, s->material};
+  const fracture_body body = {s->m, 1, &s->crack, s->section, s->material};
   const fracture_state state = {s->u, s->sigma, s->traction, 0.5, NULL, NULL};
   const int dim = s->m->dim;
   answer a = ask(s);
@@ -729,7 +729,7 @@ END_TEST
 START_TEST(each_refused_request_is_an_error_and_frees_all) {
   crack_scene s;
   start_square(&s, 8, &strain_steel, 0);
-  const fracture_body body = {s.m, &s.crack, s.section, s.material};
+  const fracture_body body = {s.m, 1, &s.crack, s.section, s.material};
   for (long k = 1, refused = 1; refused; ++k) {
     const size_t before = memory_in_use();
     fracture *f;

@@ -78,7 +78,7 @@ static moved_field field_of(int dim) {
 
 /* K is by_u'u + by_traction't. */
 static void check_derivative(const crack_scene *s, int point, const double *K) {
-  const fracture_body body = {s->m, &s->crack, s->section, s->material};
+  const fracture_body body = {s->m, 1, &s->crack, s->section, s->material};
   const fracture_state state = {s->u, s->sigma, s->traction, 0.5, NULL, NULL};
   fracture *f;
   ck_assert_int_eq(fracture_new(&body, &f), OK);

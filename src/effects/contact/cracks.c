@@ -12,23 +12,23 @@ enum { MODES = 3 };
 
 /* A row of the table. */
 typedef struct tip {
-  int crack_id, point;
   fracture_factors found;
   double creep, creep_scatter; /* C(t), W/m2; NAN: nothing creeps there */
   double jump[2];              /* K_I, K_II of the lips behind it, Pa m^(1/2) */
 } tip;
 
 typedef struct crack_state {
-  fracture **of;                /* [n_crack] */
+  fracture *of;
   fracture_material *materials; /* [n_section] */
   int n;
-  tip *tips;               /* [n] */
-  fracture_factors *found; /* [n] of the last increment that needed them */
-  double *times;           /* [n] G over its integral, - */
-  int step_id;             /* of that increment; -1: none */
-  double t;                /* its end, s */
-  int flows;               /* 1: there are strains without stress */
-  double *rate;            /* [dim*n_node] of the displacements, m/s, or NULL */
+  const fracture_point *points; /* [n] of "of" */
+  tip *tips;                    /* [n] */
+  fracture_factors *found;      /* [n] of the last increment that needed them */
+  double *times;                /* [n] G over its integral, - */
+  int step_id;                  /* of that increment; -1: none */
+  double t;                     /* its end, s */
+  int flows;                    /* 1: there are strains without stress */
+  double *rate;     /* [dim*n_node] of the displacements, m/s, or NULL */
   double *elastic;  /* [dim*n_node] displacements of an elastic body under the
                        same forces, m; NULL: none flows */
   double *sigma;    /* [ns*n_elem] Pa */
@@ -110,12 +110,16 @@ static int has_force(const fracture_point *p, const unsigned char *forces) {
   return 0;
 }
 
+static int front_size(const run *r, int crack_id) {
+  const mesh_crack *c = &r->msh->crack[crack_id];
+  return c->front_start[c->n_front];
+}
+
 /* Points of a front without factors, and why. */
-static void tell_points(const run *r, int id, const fracture *f,
+static void tell_points(const run *r, int id, const fracture_point *p,
                         const unsigned char *forces) {
   const crack *c = &r->m->mesh.cracks[id];
-  const int n = fracture_count(f);
-  const fracture_point *p = fracture_points(f);
+  const int n = front_size(r, id);
   int two = 0, crowded = 0, forced = 0, two_at = 0, crowded_at = 0,
       forced_at = 0;
   for (int i = 0; i < n; ++i) {
@@ -146,14 +150,12 @@ static void tell_points(const run *r, int id, const fracture *f,
 
 static status new_cracks(run *r, crack_state *own) {
   const mesh *m = r->msh;
+  const fracture_body body = {m, m->n_crack, m->crack, r->m->elem_section,
+                              own->materials};
   OWNED_NEW(unsigned char, forces, m->n_node);
-  PASS_NEW(own->of, m->n_crack);
-  for (int i = 0; i < m->n_crack; ++i) {
-    const mesh_crack *c = &m->crack[i];
-    const fracture_body body = {m, c, r->m->elem_section, own->materials};
-    PASS(fracture_new(&body, &own->of[i]));
-    own->n += fracture_count(own->of[i]);
-  }
+  PASS(fracture_new(&body, &own->of));
+  own->n = fracture_count(own->of);
+  own->points = fracture_points(own->of);
   for (int i = 0; i < m->n_crack; ++i) add_areas(r, &m->crack[i], own);
   for (int k = 0; k < m->dim * m->n_node; ++k)
     if (own->area[k / m->dim] > 0.0) own->shift[k] /= own->area[k / m->dim];
@@ -162,11 +164,9 @@ static status new_cracks(run *r, crack_state *own) {
       own->area[m->crack[i].front_node[k]] = 0.0;
   PASS_NEW_ALL(OF(own->tips, own->n), OF(own->found, own->n),
                OF(own->times, own->n));
-  for (int i = 0, n = 0; i < m->n_crack; ++i)
-    for (int k = 0; k < fracture_count(own->of[i]); ++k)
-      own->tips[n++] = (tip){.crack_id = i, .point = k};
   mark_forces(r, forces);
-  for (int i = 0; i < m->n_crack; ++i) tell_points(r, i, own->of[i], forces);
+  for (int i = 0, n = 0; i < m->n_crack; n += front_size(r, i++))
+    tell_points(r, i, own->points + n, forces);
   return OK;
 }
 
@@ -267,9 +267,9 @@ static void add_jump(fit *f, double x, double jump, double modulus) {
 }
 
 /* From nodes within half of the largest domain, not next to the tip. */
-static void find_jumps(const run *r, const crack_state *own, tip *t) {
+static void find_jumps(const run *r, const crack_state *own,
+                       const fracture_point *p, tip *t) {
   enum { NEAR = 2 };
-  const fracture_point *p = &fracture_points(own->of[t->crack_id])[t->point];
   const contact_surface *s = r->surface;
   fit found[2] = {{.n = 0.0}, {.n = 0.0}};
   t->jump[0] = t->jump[1] = NAN;
@@ -279,7 +279,7 @@ static void find_jumps(const run *r, const crack_state *own, tip *t) {
   const double modulus =
       mat->plane_stress ? mat->E : mat->E / (1.0 - mat->nu * mat->nu);
   for (int i = 0; i < r->nodes.n; ++i) {
-    if (s->contact_id[i] != r->m->mesh.cracks[t->crack_id].contact_id) continue;
+    if (s->contact_id[i] != r->m->mesh.cracks[p->crack].contact_id) continue;
     const double d[2] = {s->x[2 * i] - p->origin[0],
                          s->x[2 * i + 1] - p->origin[1]};
     const double x = hypot(d[0], d[1]);
@@ -335,23 +335,22 @@ static double exponent_of(const run *r, const fracture_point *p) {
 static status find_creep(const run *r, crack_state *own) {
   const double dt = r->now.t - r->old.t;
   fracture_state s = {own->rate, own->sigma, own->traction,
-                      0.5,       own->force, own->point};
-  for (int i = 0; i < own->n; ++i)
-    own->tips[i].creep = own->tips[i].creep_scatter = NAN;
+                      NAN,       own->force, own->point};
+  for (EACH(tip, t, own->tips, own->n)) t->creep = t->creep_scatter = NAN;
   if (!own->flows || r->step->kind != STEP_VISCO || !(dt > 0.0)) return OK;
   OWNED_NEW(fracture_factors, found, own->n);
   for (size_t k = 0; k < r->n_dof; ++k)
     own->rate[k] = (r->now.u[k] - r->old.u[k]) / dt;
-  for (EACH(tip, t, own->tips, own->n)) {
-    fracture *f = own->of[t->crack_id];
-    const double n = exponent_of(r, &fracture_points(f)[t->point]);
-    if (t->point == 0 || s.share != n / (n + 1.0)) {
-      s.share = n / (n + 1.0);
-      fracture_find(f, &s, found);
+  for (int i = 0; i < own->n; ++i) {
+    const double n = exponent_of(r, &own->points[i]), share = n / (n + 1.0);
+    if (isnan(n)) continue;
+    if (s.share != share) {
+      s.share = share;
+      fracture_find(own->of, &s, found);
     }
-    const double times = n > 1.0 ? 1.0 : own->times[t - own->tips];
-    if (!isnan(n)) t->creep = times * found[t->point].J;
-    if (!isnan(n)) t->creep_scatter = times * found[t->point].J_scatter;
+    const double times = n > 1.0 ? 1.0 : own->times[i];
+    own->tips[i].creep = times * found[i].J;
+    own->tips[i].creep_scatter = times * found[i].J_scatter;
   }
   return OK;
 }
@@ -405,13 +404,11 @@ static double rate_of(const fracture_material *x, fracture_factors *f) {
   return times > 0.5 && times < 2.0 ? times : 1.0; /* else: rounding */
 }
 
-static void rates_of(const crack_state *own, const fracture *of,
-                     fracture_factors *found, double *times) {
-  const fracture_point *p = fracture_points(of);
-  for (int k = 0; k < fracture_count(of); ++k) {
-    const fracture_material *x =
-        p[k].section < 0 ? NULL : &own->materials[p[k].section];
-    times[k] = x != NULL && x->E > 0.0 ? rate_of(x, &found[k]) : 1.0;
+static void find_rates(const crack_state *own) {
+  for (int k = 0; k < own->n; ++k) {
+    const int id = own->points[k].section;
+    const fracture_material *x = id < 0 ? NULL : &own->materials[id];
+    own->times[k] = x != NULL && x->E > 0.0 ? rate_of(x, &own->found[k]) : 1.0;
   }
 }
 
@@ -467,24 +464,25 @@ static status find_all(run *r, crack_state *own) {
   if (own->flows) PASS(find_elastic(r, own->elastic));
   if (own->flows) PASS(check_elastic(r, own, own->elastic));
   const fracture_state s = state_of(r, own);
-  for (int i = 0, n = 0; i < r->msh->n_crack; ++i) {
-    fracture_find(own->of[i], &s, own->found + n);
-    rates_of(own, own->of[i], own->found + n, own->times + n);
-    n += fracture_count(own->of[i]);
-  }
+  fracture_find(own->of, &s, own->found);
+  find_rates(own);
   own->step_id = step_id;
   own->t = r->now.t;
   return OK;
 }
 
+static int first_point(const run *r, int crack_id) {
+  int first = 0;
+  for (int i = 0; i < crack_id; ++i) first += front_size(r, i);
+  return first;
+}
+
 status cracks_factors(run *r, int crack_id, crack_factors *out) {
   crack_state *own = effect_state(&r->effects, &cracks_effect);
-  int first = 0;
+  const int first = first_point(r, crack_id);
   PASS(find_all(r, own));
-  for (int i = 0; i < crack_id; ++i) first += fracture_count(own->of[i]);
-  *out = (crack_factors){fracture_count(own->of[crack_id]),
-                         fracture_points(own->of[crack_id]), own->found + first,
-                         !own->flows};
+  *out = (crack_factors){front_size(r, crack_id), own->points + first,
+                         own->found + first, !own->flows};
   return OK;
 }
 
@@ -492,7 +490,8 @@ status cracks_derive(const run *r, int crack_id, int point, int mode,
                      fracture_linear *out) {
   const crack_state *own = effect_state(&r->effects, &cracks_effect);
   const fracture_state s = state_of(r, own);
-  return fracture_derive(own->of[crack_id], &s, point, mode, out);
+  return fracture_derive(own->of, &s, first_point(r, crack_id) + point, mode,
+                         out);
 }
 
 static status find_factors(run *r, void *self) {
@@ -500,7 +499,7 @@ static status find_factors(run *r, void *self) {
   PASS(find_all(r, own));
   for (int i = 0; i < own->n; ++i) {
     own->tips[i].found = own->found[i];
-    find_jumps(r, own, &own->tips[i]);
+    find_jumps(r, own, &own->points[i], &own->tips[i]);
   }
   return find_creep(r, own);
 }
@@ -531,8 +530,7 @@ static const tip *tip_of(const view *v, int id) {
 
 static const fracture_point *point_of(const view *v, int id) {
   const crack_state *own = effect_state(v->s->effects, &cracks_effect);
-  const tip *t = &own->tips[id];
-  return &fracture_points(own->of[t->crack_id])[t->point];
+  return &own->points[id];
 }
 
 static double tip_rate(const view *v, int id, int part) {
@@ -547,7 +545,7 @@ static double tip_creep(const view *v, int id, int part) {
 
 #include "run/column_row.h"
 
-VALUE(crack_no, tip_of(v, id)->crack_id + 1)
+VALUE(crack_no, point_of(v, id)->crack + 1)
 VALUE(tip_node, v->msh->node_no[point_of(v, id)->node])
 VALUE(tip_x, point_of(v, id)->origin[part])
 VALUE(tip_K, tip_of(v, id)->found.K[part])
@@ -556,7 +554,7 @@ VALUE(tip_jump, tip_of(v, id)->jump[part])
 VALUE(tip_radius, point_of(v, id)->radius)
 
 static const char *crack_word(const view *v, int id) {
-  return v->m->mesh.cracks[tip_of(v, id)->crack_id].name;
+  return v->m->mesh.cracks[point_of(v, id)->crack].name;
 }
 
 /* clang-format off */
