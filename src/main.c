@@ -93,14 +93,13 @@ static int flush_output(int exit_code) {
  * the job does (lock.c), and not every file system can. Messages are written by
  * lines. */
 static void prepare_process(void) {
-  static char lines[BUFSIZ];
   int fd;
   do {
     fd = open("/dev/null", O_RDWR);
     if (fd == STDOUT_FILENO && close(fd) == 0) fd = open("/dev/null", O_RDONLY);
   } while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd > STDERR_FILENO) close(fd);
-  setvbuf(stderr, lines, _IOLBF, sizeof lines);
+  setvbuf(stderr, NULL, _IOLBF, BUFSIZ);
   setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
 }
 
