@@ -90,7 +90,8 @@ static int flush_output(int exit_code) {
 
 /* No file of the job gets the number of a stream that was closed, and what is
  * printed to none is not lost unseen: it cannot be written. HDF5 locks no file:
- * the job does (lock.c), and not every file system can. */
+ * the job does (lock.c), and not every file system can. Messages are written by
+ * lines. */
 static void prepare_process(void) {
   int fd;
   do {
@@ -98,6 +99,7 @@ static void prepare_process(void) {
     if (fd == STDOUT_FILENO && close(fd) == 0) fd = open("/dev/null", O_RDONLY);
   } while (fd >= 0 && fd <= STDERR_FILENO);
   if (fd > STDERR_FILENO) close(fd);
+  setvbuf(stderr, NULL, _IOLBF, BUFSIZ);
   setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
 }
 

@@ -155,7 +155,7 @@ START_TEST(peak_of_the_sphere_in_space) {
   job j;
   const int code = run_with(&j, "input/hertz_sphere/hertz_sphere_3d",
                             "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, "
-                            "CONTACT=POLE, TARGET=6 %\n",
+                            "CONTACT=POLE, TARGET=10 %\n",
                             "", "-D NC=2");
   OK_OR_STOP(code, j);
   ck_ladder(&j, 1);
