@@ -17,7 +17,9 @@ void contact_product(int m, const double *M, const double *x, double *y) {
 }
 
 void contact_apply(const contact_problem *cp, const double *x, double *y) {
-  if (cp->op != NULL)
+  if (is_zero(cp->m, x))
+    CLEAR(y, cp->m);
+  else if (cp->op != NULL)
     cp->op->apply(cp->op->ctx, x, y, NULL);
   else if (cp->blocks != NULL)
     sparse_blocks_product(cp->blocks, x, y);

@@ -19,7 +19,10 @@ static double largest_of_column(const contact_problem *cp, int dof) {
   const size_t d = cp->dim, m = cp->m;
   double most = 0.0;
   if (cp->op != NULL) return 0.0;
-  if (b == NULL) return largest_entry(m, cp->W + m * dof);
+  if (b == NULL) {
+    const double *column = cp->W + m * dof;
+    return fabs(column[cblas_idamax(cp->m, column, 1)]);
+  }
   for (int k = b->start[dof / cp->dim]; k < b->start[dof / cp->dim + 1]; ++k)
     most = fmax(most, largest_entry(d, b->val + d * (d * k + dof % d)));
   return most;

@@ -443,6 +443,10 @@ static void equation_rows(const contact_problem *cp, const double *u,
                *y = contact_has_stiffness(cp) ? r : u;
   double sign = contact_has_stiffness(cp) ? 1.0 : -1.0;
   for (int i = 0; i < rows; ++i) d[i] = y[first + i] + sign * cp->f[first + i];
+  if (is_zero(cp->m, v)) {
+    for (int i = 0; i < rows; ++i) d[i] = -d[i];
+    return;
+  }
   if (cp->op != NULL) {
     for (int i = 0; i < rows; ++i) d[i] = cp->op->workspace[first + i] - d[i];
     return;

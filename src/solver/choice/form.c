@@ -25,8 +25,9 @@ double form_scale(int m, const double *diagonal, double *scale) {
 
 void form_apply_scale(int m, double power, const double *scale, double *M) {
   const size_t n = m;
-  for (size_t j = 0; j < n; ++j)
-    for (size_t i = 0; i < n; ++i) M[i + n * j] *= power * scale[i] * scale[j];
+  for (size_t j = 0; j < n; ++j) cblas_dscal(m, power * scale[j], M + n * j, 1);
+  for (size_t i = 0; i < n; ++i)
+    if (scale[i] != 1.0) cblas_dscal(m, scale[i], M + i, m);
 }
 
 status form_invert(int m, dense *d, int *good) {

@@ -131,7 +131,9 @@ typedef struct course {
  * tolerance is still quadratic: it turns the forces of slipping nodes exactly
  * against their slip. */
 static int solved(const run *s, course *c, double residual) {
-  int within = residual <= s->control->tol, linear = s->cp->dim < 3;
+  const int within = residual <= s->control->tol;
+  const int linear =
+      s->cp->dim < 3 || !memchr(s->st->guess.mode, SLIP, s->cp->n);
   if (solver_few_digits(s->control->tol)) return within;
   int rests = (linear && c->changes == 0) || c->settled;
   c->settled = within;

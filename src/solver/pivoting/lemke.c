@@ -69,9 +69,9 @@ typedef struct lemke_work {
   variable *var;          /* [n_var] */
   double *q, *d, *z, *dz; /* [n_var] */
   struct {
-    const solver_ops *ops[N_CORRECTOR];
-    void *param[N_CORRECTOR], *work[N_CORRECTOR];
+    void *param[N_CORRECTOR], *work[N_CORRECTOR]; /* NULL: not used yet */
   } corrector;
+  contact_problem of; /* at set-up, where saved data are read */
 } lemke_work;
 
 typedef struct lemke_run {
@@ -284,12 +284,16 @@ static int lemke_has_limit(const lemke_run *s, const variable *v) {
 static void lemke_add_limits(const lemke_run *s, const double *z, double *y) {
   const lemke_work *w = s->w;
   int stiff = lemke_is_stiff(s);
+  int node_id = -1; /* of the sum */
+  double sum = 0.0;
   for (int a = 0; a < w->reduced.n_var; ++a) {
     const variable *v = w->var + a;
     if (!lemke_has_limit(s, v)) continue;
     int first = w->node.slide[v->node_id],
         last = first + w->node.n_slide[v->node_id];
-    y[a] += limit_sum(s, v->node_id, stiff ? y : z);
+    if (v->node_id != node_id) sum = limit_sum(s, v->node_id, stiff ? y : z);
+    node_id = v->node_id;
+    y[a] += sum;
     for (int j = first; j < last && !stiff; ++j) {
       y[a] -= z[j];
       y[j] += z[a];
@@ -627,19 +631,17 @@ static const option lemke_options[] = {
 static const solver_ops *const correctors[N_CORRECTOR] = {&newton_solver,
                                                           &sor_solver};
 
-static status set_up_correctors(const contact_problem *cp, lemke_work *w) {
-  for (int i = 0; i < N_CORRECTOR; ++i) {
-    const solver_ops *ops = correctors[i];
-    if ((ops->handles & NEEDS_STIFFNESS) && !contact_has_stiffness(cp))
-      continue;
-    char *param = NULL;
-    PASS_NEW(param, ops->param_size + 1);
-    w->corrector.param[i] = param;
-    w->corrector.ops[i] = ops;
-    option_defaults(ops->options, param);
-    PASS(solver_set_up(ops, cp, param, &w->corrector.work[i]));
-  }
-  return OK;
+/* What a solution first requires it for; the saved data of one need it too. */
+static status set_up_corrector(const contact_problem *cp, lemke_work *w,
+                               int i) {
+  const solver_ops *ops = correctors[i];
+  char *param = NULL;
+  OWNS(w);
+  if (w->corrector.work[i] != NULL) return OK;
+  PASS_NEW(param, ops->param_size + 1);
+  w->corrector.param[i] = param;
+  option_defaults(ops->options, param);
+  return solver_set_up(ops, cp, param, &w->corrector.work[i]);
 }
 
 static status lemke_setup(const contact_problem *cp, const void *par,
@@ -647,6 +649,7 @@ static status lemke_setup(const contact_problem *cp, const void *par,
   lemke_work *w = work;
   const lemke *p = par;
   size_t m = cp->m;
+  w->of = *cp;
   w->m = cp->m;
   w->facets = p->facets >= 4 ? p->facets + p->facets % 2 : 8;
   int n_var = cp->n * (cp->dim == 2 ? 4 : w->facets + 2);
@@ -660,9 +663,8 @@ static status lemke_setup(const contact_problem *cp, const void *par,
       OF(w->reduced.S, m * m), OF(w->reduced.inner, m * m),
       OF(w->spare, cp->floating ? m * m : 0), OF(w->work, 4 * m + 4),
       OF(w->reduced.D, cp->n), OF(w->reduced.tame, cp->n), OF(w->var, n_var));
-  PASS(lcp_new(n_var, contact_has_stiffness(cp) ? cp->m : cp->m + 2 * cp->n,
-               &w->lcp));
-  return set_up_correctors(cp, w);
+  return lcp_new(n_var, contact_has_stiffness(cp) ? cp->m : cp->m + 2 * cp->n,
+                 &w->lcp);
 }
 
 /* The outcome; from the state of a polygon to that of the disc, and from
@@ -675,13 +677,14 @@ static status correct(lemke_run *s, double *u, double *r, solver_report *rep) {
   COPY(w->best_u, u, s->cp->m);
   COPY(w->best_r, r, s->cp->m);
   for (int i = 0; i < N_CORRECTOR && rep->outcome != CONVERGED; ++i) {
+    const solver_ops *ops = correctors[i];
     solver_report inner = {.outcome = RUNNING};
-    if (w->corrector.ops[i] == NULL) continue;
+    if ((ops->handles & NEEDS_STIFFNESS) && !lemke_is_stiff(s)) continue;
+    PASS(set_up_corrector(s->cp, w, i));
     COPY(u, w->best_u, s->cp->m);
     COPY(r, w->best_r, s->cp->m);
-    PASS(w->corrector.ops[i]->solve(s->cp, w->corrector.param[i],
-                                    w->corrector.work[i], s->control, u, r,
-                                    &inner));
+    PASS(ops->solve(s->cp, w->corrector.param[i], w->corrector.work[i],
+                    s->control, u, r, &inner));
     rep->iterations += inner.iterations;
     rep->residual = contact_residual(s->cp, u, r);
     rep->outcome = rep->residual <= s->control->tol ? CONVERGED : inner.outcome;
@@ -745,9 +748,13 @@ static status lemke_solve(const contact_problem *cp, const void *par,
 static status lemke_keep(void *work, archive *a) {
   lemke_work *w = work;
   for (int i = 0; i < N_CORRECTOR; ++i) {
-    const solver_ops *ops = w->corrector.ops[i];
-    if (ops == NULL || ops->keep == NULL) continue;
+    const solver_ops *ops = correctors[i];
+    int used = w->corrector.work[i] != NULL;
+    if (ops->keep == NULL) continue;
     IN_GROUP(a, ops->name);
+    PASS(archive_ints(a, "used", &used, 1));
+    if (!used) continue;
+    PASS(set_up_corrector(&w->of, w, i));
     PASS(ops->keep(w->corrector.work[i], a));
   }
   return OK;
