@@ -256,7 +256,7 @@ static void press_bump(int both, double thickness, double of[HALF_GOALS][3],
       "*GOAL, NAME=W, QUANTITY=WIDTH, CONTACT=C\n*STEP\n*STATIC\n"
       "*BOUNDARY\nCONTACT, 1\nCONTACT, 2, 2, 0.05\n%s*PRINT, GOALS, TOTALS\n"
       "*END STEP\n",
-      at, thickness, 2 * thickness, at, at + 0.1, at + 0.35,
+      at, thickness, 2 * thickness, at, at + 0.12, at + 0.35,
       both ? "" : "LEFT, 1\n");
   ck_assert_msg(job_run(&j, "") == 0, "%s", j.errors);
   dat t = job_table(&j, "GOALS", -1);

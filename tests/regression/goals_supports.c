@@ -457,6 +457,23 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
+/* Of the border within the radius of a point one side alone is closed, between
+ * others; or it is within that of the node next to it, not of the point. At a
+ * node of the border there is no peak. */
+START_TEST(means_end_at_a_border_that_is_closed_in_part) {
+  job j = of_peak("box 8 8 1 1 1 0.3", "max(0, abs(y-0.5)-0.2)",
+                  ", RADIUS=0.45\n0.15, 0.5, 0.\n"
+                  "*GOAL, NAME=Q, QUANTITY=PRESSURE, CONTACT=C\n0., 0.5, 0.\n"
+                  "*GOAL, NAME=R, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.18\n"
+                  "0.185, 0.5, 0.",
+                  "FRONT, 2\nTOP, 3, 3, -0.01\n");
+  ck_assert(goal_has_verdict(&j, "P", "no_end"));
+  ck_assert(goal_has_verdict(&j, "Q", "no_peak"));
+  ck_assert(!goal_has_verdict(&j, "R", "no_end"));
+  job_end(&j);
+}
+END_TEST
+
 /* Next to an end of a line that is no plane of symmetry there is no peak, and
  * where nothing is closed no zone, nor a largest pressure. */
 START_TEST(pressures_at_ends_and_of_an_open_contact) {
@@ -488,4 +505,5 @@ UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
           temperatures_that_vary_within_elements, materials_that_meet_in_space,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
           radius_of_a_zone_that_planes_halve,
+          means_end_at_a_border_that_is_closed_in_part,
           pressures_at_ends_and_of_an_open_contact)
