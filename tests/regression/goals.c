@@ -494,7 +494,7 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
       "*GOAL, NAME=TWO, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.2\n"
       "1.3, 0.\n"
       "*GOAL, NAME=END, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.3\n"
-      "3.7, 0.\n"
+      "3.7, 0.\n*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
       "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 10.\n"
       "*PRINT, GOALS\n";
   job j = job_begin("block");
@@ -512,6 +512,7 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
     ck_assert_double_eq_tol(told_of(&j, k).value, 10.0, 0.05);
   write_block(&j, 0.1, 1000., ", THICKNESS=2.", cards);
   ck_assert(goal_has_verdict(&j, "MIRROR", "not_covered"));
+  ck_assert(goal_has_verdict(&j, "WIDE", "not_covered"));
   ck_assert(isnan(told_of(&j, 0).value));
   job_end(&j);
 }

@@ -730,7 +730,6 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
   int end[2];
   zone_ends z;
   zone_of(r, l, &end[0], &end[1]);
-  if (end[1] - end[0] <= LEAST) f->why = GOAL_NO_ZONE;
   for (int k = 0; k < 2; ++k)
     if (!start_end(r, l, k, end[k], w, &z)) f->why = GOAL_NO_END;
   if (f->why != GOAL_RELIABLE) return OK;
