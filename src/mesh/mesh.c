@@ -40,6 +40,20 @@ double mesh_face_normal(const mesh *m, int face_id, double *normal) {
   return 0.5 * twice;
 }
 
+/* Gauss; Dunavant, Int. J. Num. Meth. Eng. 21, 1985, table II. */
+const face_rule mesh_face_rule[2] = {
+    {3, {0.1127016653792583, 0.5}, {5. / 18, 8. / 18}},
+    {6,
+     {0.44594849091596489, 0.09157621350977074},
+     {0.22338158967801147, 0.10995174365532187}}};
+
+double face_rule_point(const face_rule *r, int dim, int k, double *phi) {
+  const int of = k / dim;
+  for (int i = 0; i < dim; ++i) phi[i] = r->at[of];
+  phi[k % dim] = 1.0 - (dim - 1) * r->at[of];
+  return r->part[of];
+}
+
 double mesh_elem_measure(const mesh *m, int elem_id) {
   const int *v = mesh_elem_nodes(m, elem_id);
   double a[3], b[3], c[3], ab[3];

@@ -118,6 +118,16 @@ const char *mesh_nearest_group(const mesh *m, const char *name);
 /* Area (2-D: length per unit thickness is the caller's) and outward normal of
  * a face: normal[dim] of unit length; returns the measure, length^(dim-1). */
 double mesh_face_normal(const mesh *m, int face_id, double *normal);
+/* A quadrature on faces: points in turn near each of the corners, the P1
+ * functions of all others at[], - . */
+typedef struct face_rule {
+  int n;
+  double at[2], part[2];
+} face_rule;
+/* Exact for degree 5 on a segment, 4 on a triangle. */
+extern const face_rule mesh_face_rule[2];
+/* P1 functions phi[dim] at point k; its part of the measure. */
+double face_rule_point(const face_rule *r, int dim, int k, double *phi);
 /* Area or volume of an element, > 0, length^dim. */
 double mesh_elem_measure(const mesh *m, int elem_id);
 /* Gradients g[dim*(dim+1)] of its P1 functions, 1/length, one after the other;

@@ -374,6 +374,15 @@ static int falls(const model_of_cost *c) {
   return c->fine.error < 0.99 * c->coarse.error;
 }
 
+/* Power of N that the contact unknowns are like, from two runs. */
+static double contact_power(const trial *a, const trial *b, int dim) {
+  const double full = 1.0 - 1.0 / dim;
+  if (!(a->contact > 0.0 && b->contact > a->contact)) return full;
+  return within(0.5 * full,
+                exponent(a->contact, b->contact, a->unknowns, b->unknowns),
+                1.0);
+}
+
 /* Results of the three runs; wanted: the error intended for the fine one, -. */
 static status fit(model_of_cost *c, double wanted) {
   const trial *a = &c->coarse, *b = &c->fine;
@@ -384,11 +393,7 @@ static status fit(model_of_cost *c, double wanted) {
           "%.3g %% with %.0f; no forecast",
           100 * a->error, a->unknowns, 100 * b->error, b->unknowns);
   c->order = order_of(c, full);
-  c->contact = 1.0 - full;
-  if (a->contact > 0.0 && b->contact > 0.0)
-    c->contact =
-        within(0.5 * c->contact,
-               exponent(a->contact, b->contact, a->unknowns, b->unknowns), 1.0);
+  c->contact = contact_power(a, b, c->dim);
   c->share =
       b->unknowns / c->deck.unknowns * pow(wanted / c->deck.error, c->dim);
   return OK;
@@ -547,15 +552,6 @@ static int lacks_estimate(const aims *a, const model *m, int pass) {
   int lacks = 0;
   for (int i = 0; i < m->n.goal; ++i) lacks |= isnan(g[i].off);
   return lacks;
-}
-
-/* Power of N that the contact unknowns are like, from two runs. */
-static double contact_power(const trial *a, const trial *b, int dim) {
-  const double full = 1.0 - 1.0 / dim;
-  if (!(a->contact > 0.0 && b->contact > a->contact)) return full;
-  return within(0.5 * full,
-                exponent(a->contact, b->contact, a->unknowns, b->unknowns),
-                1.0);
 }
 
 /* now: of the mesh of the deck, with its goals. A mesh on which some goal has

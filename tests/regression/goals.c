@@ -5,8 +5,7 @@
  * pushed once, and to and fro (144 times the nodes).
  */
 #include "base/base.h"
-#include "scenes/mesh.h"
-#include "support/job.h"
+#include "support/goal_body.h"
 #include "support/unit.h"
 
 const int job_without_fields = 1;
@@ -25,20 +24,6 @@ static told told_of(const job *j, int row) {
                             1e-12 * fabs(g.value));
   dat_free(&t);
   return g;
-}
-
-/* The verdict of a row, in JSON; caller frees. */
-static int has_verdict(const job *j, const char *goal, const char *word) {
-  char wanted[80], *json = job_file(j, "json"), *at, *end;
-  snprintf(wanted, sizeof wanted, "\"goal\": \"%s\"", goal);
-  at = strstr(json, wanted);
-  ck_assert_msg(at != NULL, "no %s", wanted);
-  end = strchr(at, '}');
-  *end = '\0';
-  snprintf(wanted, sizeof wanted, "\"verdict\": \"%s\"", word);
-  const int has = strstr(at, wanted) != NULL;
-  free(json);
-  return has;
 }
 
 /* The estimate is that part of the true error; the truth is in "wide" bands. */
@@ -90,7 +75,7 @@ START_TEST(goals_of_the_half_plane_of_hertz) {
   check_goal(&j, 2, -0.00204203522 * length, 0.7, 1.4, 1.0);
   check_goal(&j, 0, 1.00026235 * p0, 0.2, 2.0, 1.0);
   check_goal(&j, 3, 1.00157562 * a, 0.5, 2.5, 1.0);
-  ck_assert(has_verdict(&j, "WIDE", "contact_end"));
+  ck_assert(goal_has_verdict(&j, "WIDE", "contact_end"));
   const told peak = told_of(&j, 0), most = told_of(&j, 4);
   ck_assert_double_eq_tol(most.value, peak.value, 1e-3 * p0);
   job_end(&j);
@@ -146,7 +131,7 @@ START_TEST(friction_force_of_the_block) {
   dat_free(&t);
   /* Equilibrium gives the normal force whatever the mesh. */
   ck_assert_double_lt(fabs(told_of(&j, 2).error), 1e-9);
-  ck_assert(has_verdict(&j, "PRESSED", "reliable"));
+  ck_assert(goal_has_verdict(&j, "PRESSED", "reliable"));
   job_end(&j);
 }
 END_TEST
@@ -217,7 +202,7 @@ START_TEST(errors_of_earlier_increments_are_in_it) {
   check_goal(&j, 1, -0.012159874, 0.8, 1.25, 1.0);
   check_goal(&j, 2, 5.204, 0.5, 1.1, 1.0);
   check_goal(&j, 3, 14.9095, 0.8, 1.25, 1.0);
-  ck_assert(has_verdict(&j, "UY", "reliable"));
+  ck_assert(goal_has_verdict(&j, "UY", "reliable"));
   /* All of the base sticks: it ends at the corner alone. */
   dat t = job_table(&j, "GOALS", 0);
   ck_assert_double_gt(dat_at(&t, 0, "contact_ends"), 3.0);
@@ -305,18 +290,24 @@ START_TEST(peak_and_width_of_the_sphere) {
   static const char goals[] =
       "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=POLE\n"
       "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=POLE\n"
-      "*PARAMETER\nR3 = \"0.3*A\"\n"
-      "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=POLE\n<R3>, 0.\n";
+      "*PARAMETER\nR3 = \"0.3*A\"\nR1 = \"0.1*A\"\n"
+      "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=POLE\n<R3>, 0.\n"
+      "*GOAL, NAME=NEXT, QUANTITY=PRESSURE, CONTACT=POLE\n<R1>, 0.\n"
+      "*GOAL, NAME=CUT, QUANTITY=PRESSURE, CONTACT=POLE, RADIUS=<R3>\n"
+      "<R1>, 0.\n";
   job j = with_goals("input/hertz_sphere/hertz_sphere", goals, "-D NC=16");
   check_goal(&j, 0, 4688.3, 0.7, 1.5, 1.0);
   check_goal(&j, 1, 1.0016 * 0.31913, 0.5, 2.0, 1.0);
-  const told at = told_of(&j, 2);
+  const told at = told_of(&j, 2), next = told_of(&j, 3);
   ck_assert_double_eq_tol(at.value + at.error, 4688.3 * sqrt(1.0 - 0.09), 40.0);
+  ck_assert_double_eq_tol(next.value + next.error, 4688.3 * sqrt(1.0 - 0.01),
+                          40.0);
+  ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
   job_end(&j);
   j = with_goals("input/hertz_sphere/hertz_sphere_3d", goals, "");
   check_goal(&j, 0, 4688.3, 0.3, 2.0, 1.0);
   ck_assert(isnan(told_of(&j, 1).value));
-  ck_assert(has_verdict(&j, "WIDE", "not_covered"));
+  ck_assert(goal_has_verdict(&j, "WIDE", "not_covered"));
   job_end(&j);
 }
 END_TEST
@@ -372,12 +363,12 @@ START_TEST(goals_that_are_not_covered_say_so) {
                      "*GOAL, NAME=GRIP, QUANTITY=FORCE, CONTACT=FOOT, "
                      "COMPONENT=1\n*GOAL, NAME=WORK, QUANTITY=FRICTION WORK\n",
                      "-D N=8");
-  ck_assert(!has_verdict(&j, "GRIP", "no_history"));
+  ck_assert(!goal_has_verdict(&j, "GRIP", "no_history"));
   ck_assert(isfinite(told_of(&j, 1).error));
   job_end(&j);
   j = with_goals("input/creep_block/creep_block",
                  "*GOAL, NAME=E, QUANTITY=ENERGY\n", "-D N=8");
-  ck_assert(has_verdict(&j, "E", "not_covered"));
+  ck_assert(goal_has_verdict(&j, "E", "not_covered"));
   ck_assert(isfinite(told_of(&j, 0).value) && isnan(told_of(&j, 0).error));
   char *lst = job_file(&j, "lst");
   ck_assert_ptr_nonnull(strstr(lst, "no estimate: not covered"));
@@ -428,12 +419,15 @@ START_TEST(width_is_that_of_one_zone) {
       "*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
       "*GOAL, NAME=PEAK, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.15\n"
       "*GOAL, NAME=AT, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.15\n3.01, 0.\n"
+      "*GOAL, NAME=WHOLE, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=1.05\n1., "
+      "0.\n"
       "*STEP\n*STATIC\n"
       "*BOUNDARY\nTOP, 1\nTOP, 2, 2, -0.05\n*PRINT, GOALS, ZONES\n");
   dat z = job_table(&j, "ZONES", -1);
   ck_assert_int_eq(z.n_row, 5);
   ck_assert_double_gt(dat_at(&z, 1, "extent"), 0.2);
   ck_assert_double_eq_tol(told_of(&j, 0).value, dat_at(&z, 3, "extent"), 0.025);
+  ck_assert(!goal_has_verdict(&j, "WHOLE", "no_end")); /* an open one */
   const told peak = told_of(&j, 1), at = told_of(&j, 2);
   ck_assert_double_eq_tol(peak.value + peak.error, at.value + at.error,
                           3e-4 * at.value);
@@ -500,24 +494,25 @@ START_TEST(means_of_a_pressure_lie_on_its_surface) {
       "*GOAL, NAME=TWO, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.2\n"
       "1.3, 0.\n"
       "*GOAL, NAME=END, QUANTITY=PRESSURE, CONTACT=FOOT, RADIUS=0.3\n"
-      "3.7, 0.\n"
+      "3.7, 0.\n*GOAL, NAME=WIDE, QUANTITY=WIDTH, CONTACT=FOOT\n"
       "*STEP\n*STATIC\n*BOUNDARY\nSIDE, 1\n*DSLOAD\nTOP, P, 10.\n"
       "*PRINT, GOALS\n";
   job j = job_begin("block");
   write_block(&j, 0.1, 1000., "", cards);
-  ck_assert(has_verdict(&j, "MIRROR", "reliable"));
-  ck_assert(has_verdict(&j, "CUT", "no_end"));
-  ck_assert(has_verdict(&j, "WHOLE", "reliable"));
-  ck_assert(has_verdict(&j, "SHORT", "no_zone"));
-  ck_assert(has_verdict(&j, "FEW", "few_nodes"));
-  ck_assert(has_verdict(&j, "OFF", "no_zone"));
-  ck_assert(has_verdict(&j, "EDGE", "few_nodes"));
-  ck_assert(has_verdict(&j, "TWO", "reliable"));
-  ck_assert(has_verdict(&j, "END", "reliable"));
+  ck_assert(goal_has_verdict(&j, "MIRROR", "reliable"));
+  ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
+  ck_assert(goal_has_verdict(&j, "WHOLE", "reliable"));
+  ck_assert(goal_has_verdict(&j, "SHORT", "no_zone"));
+  ck_assert(goal_has_verdict(&j, "FEW", "few_nodes"));
+  ck_assert(goal_has_verdict(&j, "OFF", "no_zone"));
+  ck_assert(goal_has_verdict(&j, "EDGE", "few_nodes"));
+  ck_assert(goal_has_verdict(&j, "TWO", "reliable"));
+  ck_assert(goal_has_verdict(&j, "END", "reliable"));
   for (int k = 0; k < 3; k += 2)
     ck_assert_double_eq_tol(told_of(&j, k).value, 10.0, 0.05);
   write_block(&j, 0.1, 1000., ", THICKNESS=2.", cards);
-  ck_assert(has_verdict(&j, "MIRROR", "not_covered"));
+  ck_assert(goal_has_verdict(&j, "MIRROR", "not_covered"));
+  ck_assert(goal_has_verdict(&j, "WIDE", "not_covered"));
   ck_assert(isnan(told_of(&j, 0).value));
   job_end(&j);
 }
@@ -659,7 +654,7 @@ START_TEST(means_in_space_go_on_behind_planes_of_symmetry) {
     ck_assert_double_eq_tol(g.value, 10.0, 0.5);
     ck_assert_double_eq_tol(g.value + g.error, 10.0, 0.1);
   }
-  ck_assert(has_verdict(&j, "CUT", "no_end"));
+  ck_assert(goal_has_verdict(&j, "CUT", "no_end"));
   job_end(&j);
 }
 END_TEST
@@ -681,7 +676,7 @@ START_TEST(ends_that_a_point_holds_are_ends) {
              hold[k]);
     write_block(&j, 0.1, 1000., "", cards);
     ck_assert_int_eq(isnan(told_of(&j, 0).value), k == 0);
-    ck_assert_int_eq(has_verdict(&j, "WIDE", "no_end"), k == 0);
+    ck_assert_int_eq(goal_has_verdict(&j, "WIDE", "no_end"), k == 0);
     job_end(&j);
   }
 }

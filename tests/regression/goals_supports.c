@@ -394,7 +394,7 @@ END_TEST
 
 static job of_peak(const char *words, const char *gap, const char *radius,
                    const char *hold) {
-  char on[100], cards[400];
+  char on[100], cards[600];
   snprintf(on, sizeof on, "GAP\n\"%s\"" CONTACT, gap);
   snprintf(cards, sizeof cards,
            "%s*GOAL, NAME=P, QUANTITY=PRESSURE, CONTACT=C%s\n*STEP\n*STATIC\n"
@@ -421,6 +421,20 @@ START_TEST(peaks_do_not_jump_where_a_zone_reaches_a_plane) {
     job_end(&j);
   }
   ck_assert_double_eq_tol(part[1], part[0], 0.003);
+}
+END_TEST
+
+/* On elements that no smaller mean fits, the largest pressure may be that of
+ * its node. */
+START_TEST(peaks_on_few_elements_have_that_of_their_node_in_the_band) {
+  job j = of_peak("rect 24 12 1 0.5 alternate", "0.1*(x-0.6)^2", "",
+                  "TOP, 2, 2, -0.009\n");
+  dat t = job_table(&j, "GOALS", -1), c = job_table(&j, "CONTACT", -1);
+  const double off = dat_max(&c, "pressure") - dat_at(&t, 0, "value");
+  ck_assert_double_ge(dat_at(&t, 0, "band"), fabs(off));
+  dat_free(&t);
+  dat_free(&c);
+  job_end(&j);
 }
 END_TEST
 
@@ -457,6 +471,23 @@ START_TEST(radius_of_a_zone_that_planes_halve) {
 }
 END_TEST
 
+/* Of the border within the radius of a point a part is closed; or it is within
+ * that of the node next to it, not of the point. At a node of the border there
+ * is no peak. */
+START_TEST(means_end_at_a_border_that_is_closed_in_part) {
+  job j = of_peak("box 8 8 1 1 1 0.3", "max(0, y-0.13)",
+                  ", RADIUS=0.3\n0.15, 0.25, 0.\n"
+                  "*GOAL, NAME=Q, QUANTITY=PRESSURE, CONTACT=C, RADIUS=0.18\n"
+                  "0.185, 0., 0.\n"
+                  "*GOAL, NAME=R, QUANTITY=PRESSURE, CONTACT=C\n0., 0.125, 0.",
+                  "FRONT, 2\nTOP, 3, 3, -0.01\n");
+  ck_assert(goal_has_verdict(&j, "P", "no_end"));
+  ck_assert(!goal_has_verdict(&j, "Q", "no_end"));
+  ck_assert(goal_has_verdict(&j, "R", "no_peak"));
+  job_end(&j);
+}
+END_TEST
+
 /* Next to an end of a line that is no plane of symmetry there is no peak, and
  * where nothing is closed no zone, nor a largest pressure. */
 START_TEST(pressures_at_ends_and_of_an_open_contact) {
@@ -487,5 +518,7 @@ UNIT_MAIN("goals_supports", energy_of_a_ring_that_is_pressed,
           energies_by_loads_and_by_temperatures,
           temperatures_that_vary_within_elements, materials_that_meet_in_space,
           peaks_do_not_jump_where_a_zone_reaches_a_plane,
+          peaks_on_few_elements_have_that_of_their_node_in_the_band,
           radius_of_a_zone_that_planes_halve,
+          means_end_at_a_border_that_is_closed_in_part,
           pressures_at_ends_and_of_an_open_contact)

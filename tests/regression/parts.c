@@ -81,19 +81,65 @@ START_TEST(target_counts_all_errors_of_the_largest_increment) {
 }
 END_TEST
 
-/* CPU seconds of that error. */
-static double forecast_cpu(const job *j, double level) {
-  double found, cpu;
+/* Unknowns, increments, CPU seconds and memory of that error. */
+static void forecast_row(const job *j, double level, double row[4]) {
+  double found;
   for (const char *at = j->text; at != NULL; at = strchr(at + 1, '\n'))
-    if (sscanf(at, "%lf %*f %*f %lf", &found, &cpu) == 2 && found == level)
-      return cpu;
-  return NAN;
+    if (sscanf(at, "%lf %lf %lf %lf %lf", &found, &row[0], &row[1], &row[2],
+               &row[3]) == 5 &&
+        found == level)
+      return;
+  ck_abort_msg("no row for %g: %s", level, j->text);
 }
+
+/* Increments make 0.093 of an error, by their first order; the mesh what is
+ * left of it, by the order that is told, and little less. Seconds go with
+ * unknowns, or their power 1.25, times increments, but for what is paid once,
+ * memory with a power 1.05. */
+START_TEST(forecast_of_a_flow_is_that_of_its_errors) {
+  double by_time, order, fitted, of, row[2][4];
+  job j = job_begin("block");
+  block_file_write(&j, (int[]){8, 6}, (double[]){4.0, 3.0}, 0);
+  job_write(&j, "block.inp",
+            "*MESH, FILE=block.msh\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.3\n"
+            "*INELASTIC, LAW=MAXWELL\n2.\n"
+            "*SOLID SECTION, ELSET=BODY, MATERIAL=M\n*STEP\n"
+            "*VISCO, INTEGRATOR=BACKWARD\n0.2, 1.\n*BOUNDARY\n"
+            "CONTACT, 1, 2\n*DSLOAD\nTOP, P, \"1+x\"\n"
+            "*OUTPUT, HDF5=NO\n*END STEP\n");
+  ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
+  const char *deck = strstr(j.text, "increments: ");
+  const char *fit = strstr(j.text, "error ~ unknowns^(-");
+  ck_assert(deck != NULL && fit != NULL);
+  ck_assert_int_eq(sscanf(deck, "increments: %lf", &by_time), 1);
+  ck_assert_int_eq(
+      sscanf(fit,
+             "error ~ unknowns^(-%lf) (%*[^)]), fitted to %*f %% with %*f "
+             "and %lf %% with %lf",
+             &order, &fitted, &of),
+      3);
+  for (int k = 0; k < 2; ++k) {
+    const double level = k == 0 ? 0.3 : 0.1;
+    forecast_row(&j, level, row[k]);
+    ck_assert_double_eq_tol(row[k][1], by_time / (0.093 * level),
+                            0.01 * row[k][1]);
+    const double left = fitted * pow(of / row[k][0], order) / level;
+    ck_assert_msg(left > 0.6 && left < 0.95, "%g of %g %%", left, level);
+  }
+  const double more = row[1][0] / row[0][0], times = row[1][1] / row[0][1];
+  const double longer = row[1][2] / row[0][2], held = row[1][3] / row[0][3];
+  ck_assert_msg(
+      longer > 0.5 * more * times && longer < 1.1 * pow(more, 1.25) * times,
+      "%g times the seconds", longer);
+  ck_assert_double_eq_tol(held, pow(more, 1.05), 0.02 * held);
+  job_end(&j);
+}
+END_TEST
 
 /* A number of a table takes 250 ns, a row ten of them: 63 nodes and 96 elements
  * in 100 increments. */
 START_TEST(tables_count_in_the_forecast) {
-  double cpu[2];
+  double cpu[2], row[4];
   for (int k = 0; k < 2; ++k) {
     job j = job_begin("block");
     block_file_write(&j, (int[]){8, 6}, (double[]){4.0, 3.0}, 0);
@@ -105,7 +151,8 @@ START_TEST(tables_count_in_the_forecast) {
         "*OUTPUT, HDF5=NO\n%s*END STEP\n",
         k ? "*PRINT, NODES, ELEMENTS\n" : "");
     ck_assert_int_eq(job_run(&j, "--estimate-cost"), 0);
-    cpu[k] = forecast_cpu(&j, 10);
+    forecast_row(&j, 10, row);
+    cpu[k] = row[2];
     job_end(&j);
   }
   ck_assert_msg(cpu[1] > cpu[0] + 0.5 * 100 * (63 + 96) * 10 * 250e-9,
@@ -496,6 +543,8 @@ UNIT_MAIN("parts", shares_of_the_elements_make_up_the_error,
           directions_of_slip_part_where_there_is_none,
           true_stress_error_counts_every_component,
           target_counts_all_errors_of_the_largest_increment,
-          tables_count_in_the_forecast, bound_of_creep_under_a_load_that_falls,
+          tables_count_in_the_forecast,
+          forecast_of_a_flow_is_that_of_its_errors,
+          bound_of_creep_under_a_load_that_falls,
           change_by_creep_under_a_force_that_falls,
           bound_of_friction_under_a_pull_that_falls)

@@ -200,11 +200,12 @@ static int still_after(int n, const int *cells, const int *slip,
 }
 
 /* An error that stays ends it on three times the nodes, in two passes. Where
- * none is known four passes do, unless half as many nodes more are closed. */
+ * none is known four passes do, unless half as many nodes more are closed than
+ * in all passes before. */
 START_TEST(goals_stand_still_where_passes_gain_nothing) {
   static const int one[] = {1, 1, 1, 1, 1, 1}, none[] = {0, 0, 0, 0, 0, 0};
   static const int more[] = {2, 3, 5, 8, 12, 18},
-                   few[] = {5, 7, 10, 14, 20, 29};
+                   few[] = {5, 7, 10, 14, 20, 29}, back[] = {9, 2, 9, 2, 9, 2};
   static const int cells[] = {1, 3, 5, 7, 9, 11}, near[] = {5, 6, 7, 8, 9, 10};
   ck_assert_int_eq(still_after(6, cells, one, none, 3.0), 3);
   ck_assert_int_eq(still_after(6, near, one, none, 3.0), 5);
@@ -214,6 +215,7 @@ START_TEST(goals_stand_still_where_passes_gain_nothing) {
   ck_assert_int_eq(still_after(6, cells, more, none, NAN), 0);
   ck_assert_int_eq(still_after(6, cells, none, more, NAN), 0);
   ck_assert_int_eq(still_after(6, cells, few, none, NAN), 5);
+  ck_assert_int_eq(still_after(6, cells, back, none, NAN), 5);
 }
 END_TEST
 

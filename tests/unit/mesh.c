@@ -569,7 +569,27 @@ START_TEST(bodies_give_back_all_when_refused) {
 }
 END_TEST
 
-UNIT_MAIN("mesh", disc_in_frame_has_its_areas_normals_and_groups,
+/* Means of phi_0^a phi_1^b: a! b!/(a + b + 1)! on a segment, twice a! b!/(a + b
+ * + 2)! on a triangle. */
+START_TEST(face_rules_are_exact_to_their_degree) {
+  for (int dim = 2; dim <= 3; ++dim)
+    for (int a = 0; a <= 7 - dim; ++a)
+      for (int b = 0; a + b <= 7 - dim; ++b) {
+        const face_rule *r = &mesh_face_rule[dim - 2];
+        const double is =
+            tgamma(dim) * tgamma(a + 1) * tgamma(b + 1) / tgamma(a + b + dim);
+        double sum = 0.0, phi[3];
+        for (int k = 0; k < r->n; ++k) {
+          const double part = face_rule_point(r, dim, k, phi);
+          sum += part * pow(phi[0], a) * pow(phi[1], b);
+        }
+        ck_assert_double_eq_tol(sum, is, 1e-15);
+      }
+}
+END_TEST
+
+UNIT_MAIN("mesh", face_rules_are_exact_to_their_degree,
+          disc_in_frame_has_its_areas_normals_and_groups,
           cubes_have_their_volumes_normals_and_groups,
           all_formats_give_the_same_mesh_2d, all_formats_give_the_same_mesh_3d,
           meshing_twice_gives_the_same_bytes, numbers_reach_the_geometry,

@@ -79,36 +79,15 @@ static double thinner(const builder *b, int face, int k) {
   return fmin(1.0, w[b->search.list[k].face] / w[face]);
 }
 
-/* A rule: points in turn near each of the corners, the coordinates of all
- * others at[], - . */
-typedef struct rule {
-  int n;
-  double at[2], part[2];
-} rule;
+/* Exact for degree 3 on a segment, 2 on a triangle. */
+static const face_rule plain[] = {{2, {0.21132486540518708}, {0.5}},
+                                  {3, {1. / 6}, {1. / 3}}};
 
-/* Exact for degree 3 on a segment, 2 on a triangle; where surfaces bulge, for 5
- * on a segment of a body of revolution (Gauss), for 4 on a triangle (Dunavant,
- * Int. J. Num. Meth. Eng. 21, 1985, table II). */
-static const rule plain[] = {{2, {0.21132486540518708}, {0.5}},
-                             {3, {1. / 6}, {1. / 3}}};
-static const rule bulging[] = {
-    {3, {0.1127016653792583, 0.5}, {5. / 18, 8. / 18}},
-    {6,
-     {0.44594849091596489, 0.09157621350977074},
-     {0.22338158967801147, 0.10995174365532187}}};
-
-static const rule *rule_of(const builder *b) {
+/* A better one where surfaces bulge. */
+static const face_rule *rule_of(const builder *b) {
   const int space = b->in->mesh->dim == 3;
   const int bulges = b->bulge != NULL && (space || b->in->axisymmetric);
-  return bulges ? &bulging[space] : &plain[space];
-}
-
-/* Point k; its weight. */
-static double rule_point(const rule *r, int dim, int k, double *bary) {
-  const int of = k / dim;
-  for (int i = 0; i < dim; ++i) bary[i] = r->at[of];
-  bary[k % dim] = 1.0 - (dim - 1) * r->at[of];
-  return r->part[of];
+  return bulges ? &mesh_face_rule[space] : &plain[space];
 }
 
 static double face_size(int dim, double measure) {
@@ -119,11 +98,11 @@ static double face_size(int dim, double measure) {
 static status add_points(builder *b, int face, const facet *f, int of,
                          const cell *c, const double *ref) {
   const int dim = f->dim;
-  const rule *r = rule_of(b);
+  const face_rule *r = rule_of(b);
   for (int k = 0; k < r->n; ++k) {
     sample s = {.partner = of};
     double bary[3], at[2] = {0, 0};
-    s.weight = cell_measure(dim, c) * rule_point(r, dim, k, bary);
+    s.weight = cell_measure(dim, c) * face_rule_point(r, dim, k, bary);
     for (int i = 0; i < dim; ++i)
       for (int a = 0; a < dim - 1; ++a) {
         s.offset[a] += bary[i] * (c->at[i][a] - ref[a]);
@@ -249,7 +228,7 @@ static void set_shares(const builder *b, int face, const facet *f,
   CLEAR(share, 3);
   for (int k = 0; k < dim; ++k) {
     double phi[3];
-    const double part = rule_point(&plain[dim - 2], dim, k, phi);
+    const double part = face_rule_point(&plain[dim - 2], dim, k, phi);
     const double w = part * f->measure * thickness(b, face, phi);
     for (int j = 0; j < dim; ++j) share[j] += w * phi[j];
   }

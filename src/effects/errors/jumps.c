@@ -41,26 +41,18 @@ static double distance(const run *r, const double *a, const double *b,
   return sqrt(fmax(dot(r->nodes.n_row, d, Ad), 0.0));
 }
 
-/* What the load and the obstacles can move, in the energy norm;
- * workspace[2*n_c]. */
+/* What the obstacles and the load, less the forces of the state before, can
+ * move, in the energy norm; workspace[2*n_c]. */
 static status load_change(run *r, double *workspace, double *size) {
-  double square = 0.0;
+  double *more = workspace + r->nodes.n_c, square;
   *size = r->now.motion == NULL
               ? 0.0
               : distance(r, r->now.motion, r->old.motion, workspace);
-  vector_of(r->nodes.n_row, r->problem.f_before, r->problem.f, workspace);
-  if (r->body.moduli.n_own > 0 ||
-      r->problem.n_before != r->nodes.n_row) { /* other matrix */
-    const double *rc = run_rows(r, 1, r->old.rc);
-    contact_apply(&r->problem.cp, run_rows(r, 0, r->old.uc),
-                  workspace + r->nodes.n_c);
-    for (int i = 0; i < r->nodes.n_row; ++i)
-      workspace[i] = r->problem.f[i] + rc[i] - workspace[r->nodes.n_c + i];
-  }
-  if (condensed_floating(r->c))
-    square = HUGE_VAL;
-  else
-    PASS(condensed_force_energy(r->c, workspace, &square));
+  contact_apply(&r->problem.cp, run_rows(r, 0, r->old.uc), more);
+  const double *rc = run_rows(r, 1, r->old.rc);
+  for (int i = 0; i < r->nodes.n_row; ++i)
+    more[i] = r->problem.f[i] + rc[i] - more[i];
+  PASS(condensed_force_energy(r->c, more, &square));
   *size += sqrt(square);
   return OK;
 }
@@ -167,10 +159,7 @@ static status follow(path *s, int *found) {
 /* AUTO in the place of the method of the deck, so that the result does not
  * depend on it, nor on what TOL=BALANCED allows; *own: that of the deck. */
 static status lend_solver(run *r, contact_solver **own) {
-  solver_choice choice = r->step->solver;
-  choice.ops = NULL;
-  choice.param = NULL;
-  choice.max_iter = 0;
+  const solver_choice choice = {.tol = r->step->solver.tol};
   *own = r->elastic.solver;
   r->elastic.solver = NULL;
   return contact_solver_new(&choice, &r->elastic.solver);

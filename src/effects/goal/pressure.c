@@ -126,36 +126,16 @@ static double add_nodes(const run *r, const goal_card *g, const weight *w,
   return sum;
 }
 
-/* Points and weights of a face: Gauss on a line, degree 5 in a triangle. */
-enum { POINTS_2D = 3, POINTS_3D = 7 };
-static const double line_rule[POINTS_2D][3] = {
-    {0.11270166537925831, 0.88729833462074169, 5.0 / 18.0},
-    {0.5, 0.5, 8.0 / 18.0},
-    {0.88729833462074169, 0.11270166537925831, 5.0 / 18.0}};
-#define FAR_A 0.79742698535308732
-#define FAR_B 0.10128650732345634
-#define NEAR_A 0.05971587178976982
-#define NEAR_B 0.47014206410511509
-#define FAR_W 0.12593918054482715
-#define NEAR_W 0.13239415278850618
-static const double face_rule[POINTS_3D][4] = {
-    {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, 0.225},
-    {FAR_A, FAR_B, FAR_B, FAR_W},
-    {FAR_B, FAR_A, FAR_B, FAR_W},
-    {FAR_B, FAR_B, FAR_A, FAR_W},
-    {NEAR_A, NEAR_B, NEAR_B, NEAR_W},
-    {NEAR_B, NEAR_A, NEAR_B, NEAR_W},
-    {NEAR_B, NEAR_B, NEAR_A, NEAR_W}};
-
 /* Integral over a face between contact nodes q[dim] of the traction times the
  * weight less its P1 function. */
 static double face_rest(const run *r, const weight *w, const int *q,
                         double measure) {
-  const int dim = w->dim, n = dim == 3 ? POINTS_3D : POINTS_2D;
+  const int dim = w->dim;
+  const face_rule *rule = &mesh_face_rule[dim == 3];
   double sum = 0.0;
-  for (int p = 0; p < n; ++p) {
-    const double *b = dim == 3 ? face_rule[p] : line_rule[p];
-    double x[3] = {0.0}, traction = 0.0, linear = 0.0;
+  for (int p = 0; p < rule->n; ++p) {
+    double b[3], x[3] = {0.0}, traction = 0.0, linear = 0.0;
+    const double part = face_rule_point(rule, dim, p, b);
     for (int k = 0; k < dim; ++k) {
       const double *at = r->surface->x + dim * q[k];
       for (int c = 0; c < dim; ++c) x[c] += b[k] * at[c];
@@ -163,7 +143,7 @@ static double face_rest(const run *r, const weight *w, const int *q,
       linear += b[k] * w->at(w, at);
     }
     const double turn = w->axi ? 2.0 * M_PI * x[0] : w->thickness;
-    sum += b[dim] * measure * turn * traction * (w->at(w, x) - linear);
+    sum += part * measure * turn * traction * (w->at(w, x) - linear);
   }
   return sum;
 }
@@ -196,10 +176,8 @@ static double pressure_of(const run *r, int q) {
 
 /* How many planes of symmetry a node stands on. */
 static int mirrors_of(const run *r, int q) {
-  const int dim = r->msh->dim;
-  int n = 0;
-  for (int a = 1; a < dim; ++a) n += r->surface->held[dim * q + a];
-  return n > 0 ? n : goal_is_mirrored(r, q);
+  const unsigned char *held = r->surface->held + r->msh->dim * q;
+  return r->msh->dim == 2 ? goal_is_mirrored(r, q) : held[1] + held[2];
 }
 
 /* Contact node nearest to the point of the goal, or that of the largest
@@ -314,7 +292,8 @@ static weight weight_at(const run *r, const goal_card *g, int q) {
 
 /* ---- the pressure at a point --------------------------------------------- */
 
-/* The top of the parabola through the peak and its neighbours. */
+/* The top of the parabola through the peak, above both its neighbours, and
+ * these. */
 static void refine_peak(const run *r, const line *l, weight *w) {
   const int k = l->peak;
   const double a = l->s[k - 1], b = l->s[k + 1];
@@ -323,8 +302,7 @@ static void refine_peak(const run *r, const line *l, weight *w) {
   const double pb = pressure_of(r, l->node[k + 1]) - p;
   const double bend = (pb / b - pa / a) / (b - a), slope = pa / a - bend * a;
   if (!(bend < 0.0)) return;
-  const double s = fmin(fmax(-0.5 * slope / bend, a), b);
-  add_scaled(w->dim, s, w->t, w->origin);
+  add_scaled(w->dim, -0.5 * slope / bend, w->t, w->origin);
 }
 
 /* Planes of symmetry at the ends of the line. */
@@ -409,8 +387,6 @@ static status place_on_line(const run *r, const goal_card *g, int peak,
   w->radius = g->radius > 0.0 ? g->radius : half_of(r, &l, first, last);
   if (at_border && !mirrored)
     f->why = GOAL_NO_PEAK;
-  else if (last - first < 2)
-    f->why = GOAL_NO_ZONE;
   else if (!at_border && g->n_point == 0)
     refine_peak(r, &l, w);
   if (g->n_point > 0)
@@ -512,17 +488,13 @@ static status parts_behind(const run *r, const goal_card *g, double largest,
 }
 
 /* Half the radius of a disc of the area that is closed, m. */
-static status set_half_of_disc(const run *r, const goal_card *g, weight *w,
-                               goal_form *f) {
-  int closed = 0;
+static status set_half_of_disc(const run *r, const goal_card *g, weight *w) {
   double area = 0.0, largest = 0.0, behind[3] = {0.0};
   for (int q = 0; q < r->nodes.n; ++q)
     if (is_on(r, g, q) && r->result.contact[q] != CONTACT_OPEN) {
       area += r->surface->area[q];
       largest = fmax(largest, pressure_of(r, q));
-      ++closed;
     }
-  if (closed < 6) f->why = GOAL_NO_ZONE;
   PASS(parts_behind(r, g, largest, behind));
   w->radius = 0.5 * sqrt(area / M_PI);
   for (int c = 0; c < 3; ++c) w->radius *= sqrt(1.0 + behind[c]);
@@ -585,7 +557,7 @@ static status place_on_disc(const run *r, const goal_card *g, int peak,
   if (border.cut) f->why = GOAL_NO_PEAK;
   w->at = on_disc;
   w->radius = g->radius;
-  if (!(g->radius > 0.0)) PASS(set_half_of_disc(r, g, w, f));
+  if (!(g->radius > 0.0)) PASS(set_half_of_disc(r, g, w));
   PASS(look_round(r, g, within(w), w, &border));
   if (g->n_point > 0)
     memcpy(w->origin, g->point[0], sizeof w->origin);
@@ -758,7 +730,6 @@ static status set_ends(const run *r, const goal_card *g, const line *l,
   int end[2];
   zone_ends z;
   zone_of(r, l, &end[0], &end[1]);
-  if (end[1] - end[0] <= LEAST) f->why = GOAL_NO_ZONE;
   for (int k = 0; k < 2; ++k)
     if (!start_end(r, l, k, end[k], w, &z)) f->why = GOAL_NO_END;
   if (f->why != GOAL_RELIABLE) return OK;

@@ -342,15 +342,15 @@ status auto_solve(contact_solver *s, const contact_problem *cp, double *u,
   for (int i = 0; i < n && !solved; ++i) {
     if (is_skipped(cp, order[i])) continue;
     PASS(run_link(s, cp, order[i], first, &to));
-    iterations += rep->iterations;
+    rep->iterations = iterations += rep->iterations;
+    solved = rep->outcome == CONVERGED;
     first = first && rep->outcome == STOPPED_UNFIT && s->log[0] == '\0';
-    if (best.outcome == RUNNING || rep->outcome == CONVERGED ||
-        says_more(cp, rep, &best)) {
+    if (best.outcome == RUNNING || says_more(cp, rep, &best)) {
       best = *rep;
       COPY(s->best_u, u, cp->m);
       COPY(s->best_r, r, cp->m);
     }
-    if (rep->outcome == CONVERGED || rep->outcome == STOPPED_RAY) break;
+    if (rep->outcome == STOPPED_RAY) break;
   }
   if (solved) return OK;
   PASS(attempt_prove(s, cp, &best));
