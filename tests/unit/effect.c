@@ -1,6 +1,5 @@
 /* src/run/effect.c: which hooks of a table are called, in which order and with
  * what, by effects that write down their names. */
-#include "base/base.h"
 #include "run/run.h"
 #include "support/unit.h"
 
@@ -306,7 +305,7 @@ static void says(run *r, size_t k, const char *letters, status returns) {
 
 static model words = {.effects = 1u << 5};
 
-START_TEST(every_hook_is_called_in_order) {
+TEST(every_hook_is_called_in_order) {
   run r = {.m = &words};
   failing = 0;
   ck_assert_int_eq(effects_create(&r, table), OK);
@@ -333,9 +332,8 @@ START_TEST(every_hook_is_called_in_order) {
   effects_release(&r);
   ck_assert_int_eq(r.effects.n, 0);
 }
-END_TEST
 
-START_TEST(copy_borrows_what_accepts_nothing) {
+TEST(copy_borrows_what_accepts_nothing) {
   run r = {.m = &words}, other;
   failing = 0;
   ck_assert_int_eq(effects_create(&r, table), OK);
@@ -356,9 +354,8 @@ START_TEST(copy_borrows_what_accepts_nothing) {
   effects_release(&other);
   effects_release(&r);
 }
-END_TEST
 
-START_TEST(each_keeps_its_own_group) {
+TEST(each_keeps_its_own_group) {
   run r = {.m = &words};
   archive *file;
   ck_assert_int_eq(archive_new(&file), OK);
@@ -372,19 +369,17 @@ START_TEST(each_keeps_its_own_group) {
   effects_release(&r);
   archive_free(&file);
 }
-END_TEST
 
 /* Memory was refused in its "create". */
-START_TEST(nothing_is_forgotten_that_was_not_made) {
+TEST(nothing_is_forgotten_that_was_not_made) {
   static const effect_ops row = {.on = ALL(.create = create_a)};
   run r = {.effects = {1, {{.ops = &row}}}};
   said[0] = '\0';
   effects_forget(&r);
   ck_assert_str_eq(said, "");
 }
-END_TEST
 
-START_TEST(rows_are_asked_for_what_they_say) {
+TEST(rows_are_asked_for_what_they_say) {
   run r = {.m = &words};
   failing = 0;
   ck_assert_int_eq(effects_create(&r, table), OK);
@@ -400,9 +395,5 @@ START_TEST(rows_are_asked_for_what_they_say) {
   ck_assert_int_eq(effects_strain(&r, 3), 0);
   effects_release(&r);
 }
-END_TEST
 
-UNIT_MAIN("effect", every_hook_is_called_in_order,
-          copy_borrows_what_accepts_nothing, each_keeps_its_own_group,
-          nothing_is_forgotten_that_was_not_made,
-          rows_are_asked_for_what_they_say)
+UNIT_MAIN("effect")
